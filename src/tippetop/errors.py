@@ -1,0 +1,73 @@
+"""What can go wrong, each with one sentence that says what to do.
+
+    TippetopError
+    |-- InvalidInput (ValueError)      a value that cannot be: names the field, the value and what is accepted
+    |-- FileTrouble (OSError)          a file that cannot be read, or may not be overwritten
+    `-- Unavailable (RuntimeError)     something optional that is not installed here
+
+How a run ends is not an error: see `tippetop.simulate.Outcome`.
+"""
+
+from difflib import get_close_matches
+
+
+class _Missing:
+    def __repr__(self) -> str:
+        return "(nothing)"
+
+
+MISSING = _Missing()
+"""Stands for a value that was not given."""
+
+
+class TippetopError(Exception):
+    """Base of every error this package raises on purpose."""
+
+
+class InvalidInput(TippetopError, ValueError):
+    """A value that cannot be.
+
+    Parameters
+    ----------
+    field
+        Where the value stands, dotted: ``launch.tilt``.
+    value
+        The value given.
+    accepted
+        What would be accepted, as the end of the sentence "accepted: ...".
+    others
+        How many more values of the same input cannot be.
+    """
+
+    def __init__(self, field: str, value: object, accepted: str, others: int = 0) -> None:
+        self.field = field
+        self.value = value
+        self.accepted = accepted
+        self.others = others
+        more = f" (and {others} more)" if others else ""
+        fault = "is missing" if value is MISSING else f"= {short(value)} is not possible"
+        super().__init__(f"{field} {fault}; accepted: {accepted}{more}")
+
+    def __reduce__(self) -> tuple[type["InvalidInput"], tuple[str, object, str, int]]:
+        return type(self), (self.field, self.value, self.accepted, self.others)
+
+
+class FileTrouble(TippetopError, OSError):
+    """A file that cannot be read or written, or that exists and may not be overwritten."""
+
+
+class Unavailable(TippetopError, RuntimeError):
+    """Something optional that is asked for and not installed."""
+
+
+def short(value: object, limit: int = 60) -> str:
+    """A value as it would be typed, cut to at most `limit` characters."""
+    text = repr(value)
+    return text if len(text) <= limit else text[: limit - 3] + "..."
+
+
+def one_of(given: object, choices: list[str]) -> str:
+    """The choices as a phrase, with the likeliest meant one first when there is one."""
+    listing = ", ".join(choices)
+    close = get_close_matches(str(given), choices, n=1)
+    return f"{listing} (did you mean {close[0]}?)" if close else listing

@@ -1,0 +1,69 @@
+"""Friction laws: the force and torque of the table per unit normal force, given the slip."""
+
+from typing import NamedTuple, Protocol, Self
+
+from tippetop.mechanics.vectors import Horizontal, Scalar, Vector
+
+
+class Traction(NamedTuple):
+    """What the table does to the body at the contact, per unit normal force."""
+
+    force: Horizontal
+    torque: Vector
+
+
+NO_TORQUE: Vector = (0.0, 0.0, 0.0)
+
+
+class FrictionLaw(Protocol):
+    """What the mechanics asks of a friction law."""
+
+    def traction(self, slip: Horizontal, angular_velocity: Vector) -> Traction:
+        """Force and torque per unit normal force at this slip velocity (m/s) and angular velocity (rad/s)."""
+
+    def coefficients(self, speed: Scalar) -> tuple[Scalar, ...]:
+        """The law's numbers when velocities are measured in `speed` (m/s)."""
+
+    @classmethod
+    def from_coefficients(cls, coefficients: tuple[Scalar, ...]) -> Self:
+        """Make the law with these numbers."""
+
+
+class ViscousFriction(NamedTuple):
+    """Friction proportional to slip and normal force, f = -mu v (mu in s/m), with no torque."""
+
+    mu: Scalar
+
+    def traction(self, slip: Horizontal, angular_velocity: Vector) -> Traction:
+        """Force and torque per unit normal force."""
+        return Traction((-self.mu * slip[0], -self.mu * slip[1]), NO_TORQUE)
+
+    def coefficients(self, speed: Scalar) -> tuple[Scalar, ...]:
+        """Friction coefficient mu in units of 1 / speed."""
+        return (self.mu * speed,)
+
+    @classmethod
+    def from_coefficients(cls, coefficients: tuple[Scalar, ...]) -> Self:
+        """Make the law with this mu."""
+        return cls(*coefficients)
+
+
+class RegularizedCoulombFriction(NamedTuple):
+    """Coulomb friction smoothed below the slip speed eps (m/s): f = -mu v / sqrt(v^2 + eps^2), no torque."""
+
+    mu: Scalar
+    eps: Scalar
+
+    def traction(self, slip: Horizontal, angular_velocity: Vector) -> Traction:
+        """Force and torque per unit normal force."""
+        factor = -self.mu * (slip[0] ** 2 + slip[1] ** 2 + self.eps**2) ** -0.5
+        return Traction((factor * slip[0], factor * slip[1]), NO_TORQUE)
+
+    def coefficients(self, speed: Scalar) -> tuple[Scalar, ...]:
+        """Friction coefficient mu, and eps in units of speed."""
+        return (self.mu, self.eps / speed)
+
+    @classmethod
+    def from_coefficients(cls, coefficients: tuple[Scalar, ...]) -> Self:
+        """Make the law with these mu and eps."""
+        return cls(*coefficients)

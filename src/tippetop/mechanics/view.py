@@ -1,0 +1,97 @@
+"""The report's variables as a view of the state: singular where the axis is vertical, and only there.
+
+With X the horizontal direction into which the axis leans, Y = z x X, 3 = n, 2 = Y and 1 = 2 x 3, the angular
+velocity is -phi' sin(theta) 1 + theta' 2 + omega3 3, where theta is the tilt and phi the azimuth of the axis.
+"""
+
+from typing import NamedTuple
+
+from tippetop.mechanics.shape import contact_vector
+from tippetop.mechanics.state import SlidingState
+from tippetop.mechanics.top import Top
+from tippetop.mechanics.vectors import Functions, Horizontal, Scalar, Vector, add, cross, scale
+
+
+class Angles(NamedTuple):
+    """The state of a sliding body in Euler angles.
+
+    Attributes
+    ----------
+    tilt, tilt_rate
+        theta, rad, and theta', rad/s.
+    azimuth, precession
+        phi, rad, and phi', rad/s.
+    spin
+        Axial spin omega3, rad/s.
+    slip
+        Slip velocity along X and Y, m/s.
+    """
+
+    tilt: Scalar
+    tilt_rate: Scalar
+    azimuth: Scalar
+    precession: Scalar
+    spin: Scalar
+    slip: Horizontal
+
+
+def axis_sine(axis: Vector) -> Scalar:
+    """Sine of the tilt, from the horizontal part of the axis: accurate near the poles."""
+    return (axis[0] ** 2 + axis[1] ** 2) ** 0.5
+
+
+def precession_rate(axis: Vector, momentum: Vector, top: Top) -> Scalar:
+    """Precession phi' = (L_z - I3 omega3 c) / (I1 sin^2 theta), rad/s, from the horizontal parts alone.
+
+    L_z - (L.n) n_z = L_z s^2 - n_z (L_x n_x + L_y n_y), which does not cancel near the poles.
+    """
+    sine_squared = axis[0] ** 2 + axis[1] ** 2
+    leaning = momentum[0] * axis[0] + momentum[1] * axis[1]
+    return (momentum[2] - axis[2] * leaning / sine_squared) / top.transverse_inertia
+
+
+def tilt_rate(axis: Vector, momentum: Vector, top: Top) -> Scalar:
+    """Rate of the tilt theta' = (n_x n_x' + n_y n_y') / (sin(theta) cos(theta)) = L.Y / I1, rad/s."""
+    return (momentum[1] * axis[0] - momentum[0] * axis[1]) / (axis_sine(axis) * top.transverse_inertia)
+
+
+def slip_along_tilt(axis: Vector, slip: Horizontal) -> Horizontal:
+    """Slip velocity along X, into which the axis leans, and Y = z x X, m/s."""
+    sine = axis_sine(axis)
+    return (
+        (slip[0] * axis[0] + slip[1] * axis[1]) / sine,
+        (slip[1] * axis[0] - slip[0] * axis[1]) / sine,
+    )
+
+
+def state_from_angles(angles: Angles, top: Top, functions: Functions) -> SlidingState:
+    """The state of a sliding body at the origin with no work done, from Euler angles.
+
+    Parameters
+    ----------
+    angles
+        Tilt, azimuth, their rates, axial spin and slip.
+    top
+        The body.
+    functions
+        Where sin and cos come from: `math`, `numpy`, `sympy`, ...
+    """
+    sin_tilt, cos_tilt = functions.sin(angles.tilt), functions.cos(angles.tilt)
+    sin_azimuth, cos_azimuth = functions.sin(angles.azimuth), functions.cos(angles.azimuth)
+    axis = (sin_tilt * cos_azimuth, sin_tilt * sin_azimuth, cos_tilt)
+    second = (-sin_azimuth, cos_azimuth, 0.0)
+    first = cross(second, axis)
+    omega = add(
+        add(scale(-angles.precession * sin_tilt, first), scale(angles.tilt_rate, second)),
+        scale(angles.spin, axis),
+    )
+    momentum = add(
+        scale(top.transverse_inertia, omega),
+        scale((top.axial_inertia - top.transverse_inertia) * angles.spin, axis),
+    )
+    swing = cross(omega, contact_vector(axis, top.shape))
+    velocity = (
+        angles.slip[0] * cos_azimuth - angles.slip[1] * sin_azimuth - swing[0],
+        angles.slip[0] * sin_azimuth + angles.slip[1] * cos_azimuth - swing[1],
+    )
+    return SlidingState(axis, momentum, velocity, (0.0, 0.0), first, 0.0)

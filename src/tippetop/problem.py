@@ -1,0 +1,320 @@
+"""The physics of a run, complete and validated: body, friction, launch, contact and gravity.
+
+Every part is frozen, refuses what cannot be, and reads and writes TOML and JSON.
+"""
+
+import json
+import math
+import tomllib
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Annotated, Any, Literal, Self, TypeAlias
+
+import tomli_w
+from pydantic import Field, model_validator
+
+from tippetop.errors import FileTrouble, InvalidInput, one_of
+from tippetop.mechanics import friction as friction_laws
+from tippetop.mechanics import shape as shapes
+from tippetop.mechanics.motion import contact
+from tippetop.mechanics.state import SlidingState
+from tippetop.mechanics.top import Top
+from tippetop.mechanics.view import Angles, state_from_angles
+from tippetop.validation import Part
+
+Positive = Annotated[float, Field(gt=0)]
+Fraction = Annotated[float, Field(ge=0, le=1)]
+Tilt = Annotated[float, Field(ge=0, le=math.pi)]
+
+
+class EccentricSphere(Part):
+    """A sphere whose centre of mass is off its centre: the tippe top.
+
+    Attributes
+    ----------
+    radius
+        Radius of the sphere, m.
+    eccentricity
+        Distance of the centre of mass from the centre, in radii, between 0 and 1.
+    """
+
+    kind: Literal["eccentric_sphere"] = "eccentric_sphere"
+    radius: Positive
+    eccentricity: Annotated[float, Field(gt=0, lt=1)]
+
+    @property
+    def law(self) -> shapes.Shape:
+        """The shape as the mechanics takes it."""
+        return shapes.EccentricSphere(self.radius, self.eccentricity)
+
+
+class Spheroid(Part):
+    """A spheroid with its centre of mass at its centre: the spinning egg.
+
+    Attributes
+    ----------
+    across, along
+        Semi-axes across and along the axis of symmetry, m.
+    """
+
+    kind: Literal["spheroid"] = "spheroid"
+    across: Positive
+    along: Positive
+
+    @property
+    def law(self) -> shapes.Shape:
+        """The shape as the mechanics takes it."""
+        return shapes.Spheroid(self.across, self.along)
+
+
+class ViscousFriction(Part):
+    """Friction force -mu N v for slip velocity v and normal force N.
+
+    Attributes
+    ----------
+    mu
+        Friction coefficient, s/m.
+    """
+
+    kind: Literal["viscous"] = "viscous"
+    mu: Annotated[float, Field(ge=0)]
+
+    @property
+    def law(self) -> friction_laws.FrictionLaw:
+        """The law as the mechanics takes it."""
+        return friction_laws.ViscousFriction(self.mu)
+
+
+class RegularizedCoulombFriction(Part):
+    """Friction force -mu N v / sqrt(v^2 + eps^2) for slip velocity v and normal force N.
+
+    Attributes
+    ----------
+    mu
+        Friction coefficient, dimensionless.
+    eps
+        Slip speed below which the force falls to zero, m/s.
+    """
+
+    kind: Literal["regularized_coulomb"] = "regularized_coulomb"
+    mu: Annotated[float, Field(ge=0)]
+    eps: Positive = 1e-3
+
+    @property
+    def law(self) -> friction_laws.FrictionLaw:
+        """The law as the mechanics takes it."""
+        return friction_laws.RegularizedCoulombFriction(self.mu, self.eps)
+
+
+Shape: TypeAlias = Annotated[EccentricSphere | Spheroid, Field(discriminator="kind")]
+Friction: TypeAlias = Annotated[ViscousFriction | RegularizedCoulombFriction, Field(discriminator="kind")]
+
+
+class Body(Part):
+    """A rigid body of revolution.
+
+    Attributes
+    ----------
+    mass
+        Mass, kg.
+    shape
+        Outer surface, and where the centre of mass is in it.
+    I1, I3
+        Principal moments of inertia about the centre of mass, kg m^2: transverse to and along the axis of
+        symmetry. No body has I3 > 2 I1.
+    """
+
+    mass: Positive
+    shape: Shape
+    I1: Positive
+    I3: Positive
+
+    @model_validator(mode="after")
+    def _can_exist(self) -> Self:
+        if self.I3 > 2 * self.I1:
+            raise InvalidInput("I3", self.I3, f"at most 2 I1 = {2 * self.I1:g}, as for any body")
+        return self
+
+
+class Launch(Part):
+    """How the top is set on the table.
+
+    Attributes
+    ----------
+    tilt
+        Angle theta between the axis and the vertical, rad, in [0, pi].
+    spin
+        Axial spin omega3, rad/s.
+    azimuth
+        Direction phi into which the axis leans, rad.
+    tilt_rate, precession
+        theta' and phi', rad/s.
+    slip
+        Slip velocity of the contact point, m/s: along the direction into which the axis leans, and 90
+        degrees to the left of it.
+    """
+
+    tilt: Tilt
+    spin: float
+    azimuth: float = 0.0
+    tilt_rate: float = 0.0
+    precession: float = 0.0
+    slip: tuple[float, float] = (0.0, 0.0)
+
+
+class Contact(Part):
+    """What happens when the table would have to pull.
+
+    Attributes
+    ----------
+    liftoff
+        "ignore": the table pulls (bilateral contact); "stop": the run ends there; "fly": the top leaves
+        the table.
+    restitution
+        Ratio of the normal impulses of restitution and compression in an impact (Poisson), in [0, 1].
+    """
+
+    liftoff: Literal["fly", "stop", "ignore"] = "stop"
+    restitution: Fraction = 0.0
+
+
+class Problem(Part):
+    """Everything physical about a run.
+
+    Attributes
+    ----------
+    body, friction, launch, contact
+        The parts; see their own pages.
+    gravity
+        Acceleration of gravity, m/s^2.
+    """
+
+    body: Body
+    friction: Friction
+    launch: Launch
+    contact: Contact = Contact()
+    gravity: Positive = 9.8
+
+    @model_validator(mode="after")
+    def _contact_is_possible(self) -> Self:
+        start = self.start()
+        if contact(start.axis, start.momentum, start.velocity, self.top).resistance <= 0:
+            raise InvalidInput(
+                "launch.slip",
+                self.launch.slip,
+                "less slip or less friction: here any push of the table would drag the body further into it "
+                "(Painleve's paradox)",
+            )
+        return self
+
+    @property
+    def top(self) -> Top:
+        """The problem's numbers as the mechanics takes them, SI."""
+        body = self.body
+        return Top(body.mass, body.I1, body.I3, body.shape.law, self.friction.law, self.gravity)
+
+    def start(self) -> SlidingState:
+        """The state at launch, SI."""
+        launch = self.launch
+        angles = Angles(
+            launch.tilt, launch.tilt_rate, launch.azimuth, launch.precession, launch.spin, launch.slip
+        )
+        return state_from_angles(angles, self.top, _PoleExact())
+
+    def replace(self, changes: Mapping[str, Any]) -> Self:
+        """Copy with some fields replaced, named with dots: ``problem.replace({"launch.spin": 100.0})``.
+
+        Raises
+        ------
+        InvalidInput
+            If there is no such field, or it cannot have such a value.
+        """
+        fields = self.model_dump()
+        for name, value in changes.items():
+            *parents, last = name.split(".")
+            table = fields
+            for parent in parents:
+                table = table[parent] if isinstance(table.get(parent), dict) else {}
+            if last not in table:
+                raise InvalidInput("field", name, "one of " + one_of(name, list(_dotted_names(fields))))
+            table[last] = value
+        return type(self)(**fields)
+
+    def to_toml(self) -> str:
+        """Write the problem as TOML."""
+        return tomli_w.dumps(json.loads(self.to_json()))
+
+    def to_json(self) -> str:
+        """Write the problem as JSON."""
+        return self.model_dump_json()
+
+    @classmethod
+    def from_toml(cls, text: str) -> Self:
+        """Read a problem from TOML text.
+
+        Raises
+        ------
+        InvalidInput
+            If the text is not TOML, or not a problem.
+        """
+        try:
+            fields = tomllib.loads(text)
+        except tomllib.TOMLDecodeError as error:
+            raise InvalidInput("problem", text.strip(), f"TOML; {error}") from None
+        return cls(**fields)
+
+    @classmethod
+    def from_json(cls, text: str) -> Self:
+        """Read a problem from JSON text.
+
+        Raises
+        ------
+        InvalidInput
+            If the text is not JSON, or not a problem.
+        """
+        try:
+            fields = json.loads(text)
+        except json.JSONDecodeError as error:
+            raise InvalidInput("problem", text.strip(), f"JSON; {error}") from None
+        if not isinstance(fields, dict):
+            raise InvalidInput("problem", fields, "a JSON object")
+        return cls(**fields)
+
+    @classmethod
+    def read(cls, path: Path | str) -> Self:
+        """Read a problem from a .toml or .json file.
+
+        Raises
+        ------
+        FileTrouble
+            If the file cannot be read.
+        InvalidInput
+            If it does not hold a problem.
+        """
+        path = Path(path)
+        try:
+            text = path.read_text(encoding="utf-8")
+        except UnicodeDecodeError:
+            raise FileTrouble(f"{path} is not a text file; accepted: a problem in TOML or JSON") from None
+        except OSError as error:
+            raise FileTrouble(f"{path} cannot be read: {error.strerror}") from None
+        return cls.from_json(text) if path.suffix == ".json" else cls.from_toml(text)
+
+
+class _PoleExact:
+    """Sine and cosine with sin(pi) = 0, so that a launch at tilt pi is exactly vertical."""
+
+    def sin(self, angle: float) -> float:
+        return 0.0 if abs(angle) == math.pi else math.sin(angle)
+
+    def cos(self, angle: float) -> float:
+        return math.cos(angle)
+
+
+def _dotted_names(fields: Mapping[str, Any], prefix: str = "") -> Iterator[str]:
+    """Every field's name with dots, depth first."""
+    for name, value in fields.items():
+        if isinstance(value, dict):
+            yield from _dotted_names(value, f"{prefix}{name}.")
+        else:
+            yield f"{prefix}{name}"

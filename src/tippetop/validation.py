@@ -1,0 +1,80 @@
+"""The base of every part of a problem: frozen, validated, and clear about what it refuses."""
+
+import math
+from collections.abc import Mapping
+from typing import Any, Self
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic_core import ErrorDetails
+
+from tippetop.errors import MISSING, InvalidInput, one_of
+
+
+class Part(BaseModel):
+    """A frozen, validated piece of a problem.
+
+    Raises
+    ------
+    InvalidInput
+        If a field is missing, unknown, not finite or outside its range.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, validate_default=True)
+
+    def __init__(self, **fields: Any) -> None:
+        try:
+            super().__init__(**fields)
+        except ValidationError as error:
+            raise _as_invalid_input(error, type(self)) from None
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """Copy with some fields replaced, and validated like any other."""
+        return type(self)(**{**dict(self), **(update or {})})
+
+
+def _as_invalid_input(error: ValidationError, part: type[Part]) -> InvalidInput:
+    """Turn a validation error into the one sentence a user reads, about the most telling of its details."""
+    details = sorted(error.errors(), key=lambda detail: detail["type"] != "extra_forbidden")
+    first, others = details[0], len(details) - 1
+    field = ".".join(str(step) for step in first["loc"] if step not in _UNION_TAGS)
+    cause = first.get("ctx", {}).get("error")
+    if isinstance(cause, InvalidInput):
+        inner = cause.field if not field or cause.field.startswith(f"{field}.") else f"{field}.{cause.field}"
+        return InvalidInput(inner, cause.value, cause.accepted, cause.others + others)
+    value = MISSING if first["type"] == "missing" else first["input"]
+    return InvalidInput(field, value, _accepted(first, part), others)
+
+
+_UNION_TAGS = {"eccentric_sphere", "spheroid", "viscous", "regularized_coulomb"}
+
+
+def _accepted(detail: ErrorDetails, part: type[Part]) -> str:
+    """What would be accepted instead, from the kind of validation error."""
+    match detail["type"]:
+        case "greater_than" | "greater_than_equal" | "less_than" | "less_than_equal":
+            return _range(part.model_fields[str(detail["loc"][0])].metadata)
+        case "finite_number" | "float_type" | "float_parsing":
+            return "a finite number"
+        case "missing":
+            return "a value; it has no default"
+        case "extra_forbidden":
+            return "one of the keys " + one_of(detail["loc"][-1], list(part.model_fields))
+        case "union_tag_invalid" | "literal_error":
+            context = detail["ctx"]
+            return str(context.get("expected_tags") or context["expected"])
+        case "union_tag_not_found" | "model_type" | "model_attributes_type":
+            return "a table of its fields"
+        case _:
+            return detail["msg"][0].lower() + detail["msg"][1:]
+
+
+def _range(constraints: list[Any]) -> str:
+    """The constraints of a number in words: "a number greater than 0 and less than 1"."""
+    words = {"gt": "greater than", "ge": "at least", "lt": "less than", "le": "at most"}
+    bounds = [
+        f"{phrase} {'pi' if bound == math.pi else format(bound, 'g')}"
+        for constraint in constraints
+        for name, phrase in words.items()
+        if (bound := getattr(constraint, name, None)) is not None
+    ]
+    return "a number " + " and ".join(bounds)
