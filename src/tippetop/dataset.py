@@ -1,0 +1,154 @@
+"""Results as labelled datasets: names, units, provenance, and files that keep all of it."""
+
+import os
+import tempfile
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from tippetop.errors import FileTrouble
+
+
+class Label(NamedTuple):
+    """How a variable is described: what it is, its SI unit, and its dimensions after time."""
+
+    long_name: str
+    units: str
+    dimensions: tuple[str, ...] = ()
+
+
+LABELS = {
+    "theta": Label("tilt of the axis from the vertical", "rad"),
+    "theta_dot": Label("rate of the tilt", "rad s-1"),
+    "phi": Label("azimuth of the axis, in (-pi, pi]", "rad"),
+    "phi_dot": Label("precession; not a number where the axis is vertical", "rad s-1"),
+    "omega3": Label("axial spin", "rad s-1"),
+    "slip_x": Label("slip velocity along the direction into which the axis leans", "m s-1"),
+    "slip_y": Label(
+        "slip velocity 90 degrees to the left of the direction into which the axis leans", "m s-1"
+    ),
+    "normal_force": Label("normal force of the table", "N"),
+    "energy": Label("kinetic and potential energy; zero at rest with the centre of mass on the table", "J"),
+    "work": Label("work of the contact force since launch", "J"),
+    "jellett": Label("Jellett's integral", "kg m3 s-1"),
+    "height": Label("height of the centre of mass above the table", "m"),
+    "gap": Label("height of the lowest point above the table", "m"),
+    "x": Label("position of the centre of mass along x", "m"),
+    "y": Label("position of the centre of mass along y", "m"),
+    "axis": Label("unit vector along the axis of symmetry", "1", ("space",)),
+    "velocity": Label("velocity of the centre of mass", "m s-1", ("space",)),
+    "angular_momentum": Label("angular momentum about the centre of mass", "kg m2 s-1", ("space",)),
+    "orientation": Label("orientation of the body as a unit quaternion", "1", ("quaternion",)),
+}
+"""Every variable over time but the phase."""
+
+SPACE = ["x", "y", "z"]
+QUATERNION = ["w", "x", "y", "z"]
+CONVENTIONS = "CF-1.11"
+
+
+def assemble(
+    times: NDArray[np.float64],
+    variables: Mapping[str, NDArray[np.float64]],
+    phases: NDArray[np.int8],
+    phase_names: Sequence[str],
+    events: Mapping[str, tuple[NDArray[Any], str, str]],
+    attributes: Mapping[str, Any],
+) -> xr.Dataset:
+    """Label the arrays of a run.
+
+    Parameters
+    ----------
+    times
+        Sample times, s, shape (k,).
+    variables
+        The variables of `LABELS`, shape (k, ...).
+    phases, phase_names
+        Number of the phase at every sample, shape (k,), and the names that the numbers stand for.
+    events
+        Values over the events with their long name and unit.
+    attributes
+        Provenance.
+    """
+    data: dict[str, Any] = {}
+    for name, values in variables.items():
+        label = LABELS[name]
+        described = {"long_name": label.long_name, "units": label.units}
+        data[name] = (("time", *label.dimensions), values, described)
+    flags = {
+        "long_name": "what the top is doing",
+        "flag_values": np.arange(len(phase_names), dtype=np.int8),
+        "flag_meanings": " ".join(phase_names),
+    }
+    data["phase"] = (("time",), phases, flags)
+    for name, (values, long_name, units) in events.items():
+        described = {"long_name": long_name, "units": units} if units else {"long_name": long_name}
+        data[name] = (("event",), values, described)
+    coordinates = {
+        "time": (("time",), times, {"long_name": "time since launch", "units": "s", "standard_name": "time"}),
+        "space": SPACE,
+        "quaternion": QUATERNION,
+    }
+    return xr.Dataset(data, coordinates, {"Conventions": CONVENTIONS, **attributes})
+
+
+def write_run(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Path:
+    """Write a result as NetCDF, beside its place first, so that no half-written file is ever left there.
+
+    Raises
+    ------
+    FileTrouble
+        If the file exists and `overwrite` is false, or cannot be written.
+    """
+    path = Path(path)
+    refuse_overwriting(path, overwrite)
+    try:
+        handle, beside = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+        os.close(handle)
+        try:
+            run.to_netcdf(beside, engine="h5netcdf")
+            Path(beside).chmod(0o666 & ~_umask())
+            Path(beside).replace(path)
+        finally:
+            Path(beside).unlink(missing_ok=True)
+    except OSError as error:
+        raise FileTrouble(f"{path} cannot be written: {error.strerror or error}") from None
+    return path
+
+
+def read_run(path: Path | str) -> xr.Dataset:
+    """Read a result written by `write_run`.
+
+    Raises
+    ------
+    FileTrouble
+        If the file cannot be read or is not a result.
+    """
+    path = Path(path)
+    try:
+        with xr.open_dataset(path, engine="h5netcdf", decode_times=False) as file:
+            run = file.load()
+    except (OSError, ValueError, KeyError, RuntimeError) as error:
+        reason = (
+            error.strerror if isinstance(error, OSError) and error.strerror else "it is damaged or no NetCDF"
+        )
+        raise FileTrouble(f"{path} cannot be read: {reason}") from None
+    if "tippetop_version" not in run.attrs:
+        raise FileTrouble(f"{path} is not a result of this program")
+    return run
+
+
+def refuse_overwriting(path: Path, overwrite: bool) -> None:
+    """Raise `FileTrouble` if the file exists and may not be overwritten."""
+    if path.exists() and not overwrite:
+        raise FileTrouble(f"{path} exists; it is overwritten only when asked for (--force)")
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask

@@ -1,0 +1,81 @@
+"""Integrators by name: Taylor's method where heyoka is installed, SciPy's, and the classical Runge-Kutta."""
+
+from importlib.util import find_spec
+
+import numpy as np
+
+from tippetop.errors import InvalidInput, Unavailable, one_of
+from tippetop.integrators.base import Arc, Guard, Integrator, Motion
+from tippetop.integrators.classical import ClassicalRK4
+from tippetop.integrators.scipy_methods import DEFAULT_TOLERANCE, LEAST_TOLERANCE, METHODS, SciPy
+
+__all__ = ["NAMES", "Arc", "Guard", "Integrator", "Motion", "default_name", "has_taylor", "make_integrator"]
+
+NAMES = ["taylor", *METHODS, "rk4"]
+"""The integrators by the names users give."""
+
+
+def has_taylor() -> bool:
+    """Whether heyoka, which compiles Taylor's method, is installed."""
+    return find_spec("heyoka") is not None
+
+
+def default_name() -> str:
+    """The best integrator that is installed."""
+    return "taylor" if has_taylor() else "dop853"
+
+
+def make_integrator(
+    name: str | None = None,
+    tolerance: float | None = None,
+    step: float | None = None,
+    time_unit: float = 1.0,
+) -> Integrator:
+    """Make an integrator.
+
+    Parameters
+    ----------
+    name
+        One of `NAMES`; None for the best installed.
+    tolerance
+        Relative error per step; None for the integrator's own default. Not for "rk4".
+    step
+        Step size of "rk4", s; for no other.
+    time_unit
+        The motion's unit of time, s.
+
+    Raises
+    ------
+    InvalidInput
+        If there is no such integrator, or it cannot have such a tolerance or step.
+    Unavailable
+        If it is not installed.
+    """
+    name = default_name() if name is None else name
+    if name not in NAMES:
+        raise InvalidInput("integrator", name, one_of(name, NAMES))
+    if name == "rk4":
+        if tolerance is not None:
+            raise InvalidInput("tolerance", tolerance, "none with rk4, whose error follows from its step")
+        if step is None or not (np.isfinite(step) and step > 0):
+            raise InvalidInput("step", step, "a step size in seconds greater than 0, which rk4 needs")
+        return ClassicalRK4(step / time_unit)
+    if step is not None:
+        raise InvalidInput("step", step, f"none with {name}, which chooses its own")
+    least = np.finfo(float).eps if name == "taylor" else LEAST_TOLERANCE
+    if tolerance is not None and not (least <= tolerance < 1):
+        raise InvalidInput("tolerance", tolerance, f"a number from {least:.2g} to 1 with {name}")
+    if name == "taylor":
+        return _taylor(tolerance)
+    return SciPy(name, DEFAULT_TOLERANCE[name] if tolerance is None else tolerance)
+
+
+def _taylor(tolerance: float | None) -> Integrator:
+    if not has_taylor():
+        raise Unavailable(
+            "the integrator taylor needs heyoka, which is not installed; accepted: "
+            + ", ".join(name for name in NAMES if name != "taylor")
+        )
+    from tippetop.integrators.taylor import Taylor  # noqa: PLC0415 - optional, and slow to import
+
+    return Taylor() if tolerance is None else Taylor(tolerance)

@@ -1,0 +1,119 @@
+"""SciPy's integrators behind the seam."""
+
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy.integrate import BDF, DOP853, LSODA, RK45, Radau
+
+from tippetop.integrators.base import Arc, Array, Guard, Motion
+from tippetop.integrators.sampling import Samples, first_fall, polish
+
+METHODS: dict[str, Any] = {
+    "dop853": DOP853,
+    "rk45": RK45,
+    "radau": Radau,
+    "bdf": BDF,
+    "lsoda": LSODA,
+}
+
+LEAST_TOLERANCE = 2.3e-14
+"""Below this SciPy's solvers do not honour a relative tolerance."""
+
+DEFAULT_TOLERANCE = {"dop853": 1e-12, "rk45": 1e-10, "radau": 1e-9, "bdf": 1e-9, "lsoda": 1e-11}
+
+
+@dataclass(frozen=True)
+class SciPy:
+    """One of SciPy's adaptive methods.
+
+    Attributes
+    ----------
+    name
+        A key of `METHODS`.
+    tolerance
+        Relative tolerance per step.
+    absolute
+        Absolute tolerance per step; None for the same.
+    """
+
+    name: str
+    tolerance: float
+    absolute: float | None = None
+
+    def integrate(
+        self,
+        motion: Motion,
+        parameters: Sequence[float],
+        start: tuple[float, Array],
+        end: float,
+        times: Array,
+        guards: Sequence[Guard] = (),
+    ) -> Arc:
+        """Follow the motion; see `tippetop.integrators.base.Integrator`."""
+        solver = self._solver(motion, parameters, start, end)
+        samples = Samples(times, start)
+        steps, failure, extra = 0, None, 0
+        while solver.status == "running" and failure is None:
+            before, base = float(solver.t), solver.y.copy()
+            failure = _take_step(solver)
+            if failure is not None:
+                break
+            steps += 1
+            reach = float(solver.t)
+            dense = solver.dense_output() if guards or samples.wanted_before(reach) else None
+            fall = first_fall(guards, parameters, dense, (before, reach)) if guards and dense else None
+            if fall is not None and dense is not None:
+                index, guess = fall
+
+                def advance(at: float, before: float = before, base: Array = base) -> Array:
+                    nonlocal extra
+                    state, evaluations = self._land(motion, parameters, (before, base), at)
+                    extra += evaluations
+                    return state
+
+                at, last = polish(guards[index], parameters, advance, (before, reach), guess)
+                samples.take(at, dense)
+                grid, states = samples.result(motion.size)
+                return Arc(grid, states, at, last, index, None, steps, solver.nfev + extra)
+            if dense is not None:
+                samples.take(reach, dense)
+        grid, states = samples.result(motion.size)
+        return Arc(
+            grid, states, float(solver.t), solver.y.copy(), None, failure, steps, solver.nfev + solver.nlu
+        )
+
+    def _solver(
+        self, motion: Motion, parameters: Sequence[float], start: tuple[float, Array], end: float
+    ) -> Any:
+        def rates(_: float, y: Array) -> Array:
+            return np.array(motion.rates(y.tolist(), parameters))
+
+        absolute = self.tolerance if self.absolute is None else self.absolute
+        return METHODS[self.name](rates, start[0], start[1], end, rtol=self.tolerance, atol=absolute)
+
+    def _land(
+        self, motion: Motion, parameters: Sequence[float], start: tuple[float, Array], end: float
+    ) -> tuple[Array, int]:
+        """Integrate afresh to exactly this time; return the state there and the evaluations it took."""
+        solver = self._solver(motion, parameters, start, end)
+        while solver.status == "running":
+            if _take_step(solver) is not None:
+                break
+        return solver.y.copy(), solver.nfev
+
+
+def _take_step(solver: Any) -> str | None:
+    """Take a step; say why there was none."""
+    with warnings.catch_warnings():
+        # LSODA reports trouble as a warning, and overflow on the way to it is no news.
+        warnings.simplefilter("ignore")
+        try:
+            message = solver.step()
+        except (ValueError, OverflowError, ZeroDivisionError, np.linalg.LinAlgError) as error:
+            return f"the solution is no longer finite ({error})"
+    if solver.status == "failed":
+        return str(message) if message else "the step size fell to nothing"
+    return None if np.all(np.isfinite(solver.y)) else "the solution is no longer finite"
