@@ -77,7 +77,7 @@ def __getattr__(name: str) -> Any:
 
 
 class _Package(ModuleType):
-    """This package, whose attribute `simulate` is the function and never the module of the same name."""
+    """A package whose attribute `simulate` is the function, never the module of the same name."""
 
     def __setattr__(self, name: str, value: object) -> None:
         if not (name == "simulate" and isinstance(value, ModuleType)):

@@ -1,7 +1,5 @@
 """Results as labelled datasets: names, units, provenance, and files that keep all of it."""
 
-import os
-import tempfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -11,6 +9,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from tippetop.errors import FileTrouble
+from tippetop.files import refuse_overwriting, written_beside
 
 
 class Label(NamedTuple):
@@ -106,17 +105,8 @@ def write_run(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Pat
     """
     path = Path(path)
     refuse_overwriting(path, overwrite)
-    try:
-        handle, beside = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-        os.close(handle)
-        try:
-            run.to_netcdf(beside, engine="h5netcdf")
-            Path(beside).chmod(0o666 & ~_umask())
-            Path(beside).replace(path)
-        finally:
-            Path(beside).unlink(missing_ok=True)
-    except OSError as error:
-        raise FileTrouble(f"{path} cannot be written: {error.strerror or error}") from None
+    with written_beside(path) as beside:
+        run.to_netcdf(beside, engine="h5netcdf")
     return path
 
 
@@ -140,15 +130,3 @@ def read_run(path: Path | str) -> xr.Dataset:
     if "tippetop_version" not in run.attrs:
         raise FileTrouble(f"{path} is not a result of this program")
     return run
-
-
-def refuse_overwriting(path: Path, overwrite: bool) -> None:
-    """Raise `FileTrouble` if the file exists and may not be overwritten."""
-    if path.exists() and not overwrite:
-        raise FileTrouble(f"{path} exists; it is overwritten only when asked for (--force)")
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask

@@ -1,0 +1,54 @@
+"""The command line: collects the commands and turns what goes wrong into one sentence and an exit code."""
+
+import sys
+from typing import Annotated
+
+import typer
+
+from tippetop import __version__
+from tippetop.cli.problem import problem
+from tippetop.cli.reproduce import reproduce
+from tippetop.cli.simulate import simulate
+from tippetop.errors import TippetopError
+
+app = typer.Typer(
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+app.command()(simulate)
+app.command()(reproduce)
+app.command()(problem)
+
+MISUSE = 2
+INTERRUPTED = 130
+
+
+def _print_version(asked: bool) -> None:
+    if asked:
+        typer.echo(f"tippetop {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def tippetop(
+    _version: Annotated[
+        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Show the version.")
+    ] = False,
+) -> None:
+    """A laboratory for the tippe top, the toy that turns itself upside down."""
+
+
+def main() -> None:
+    """Run the command line; misuse ends with one sentence and exit code 2, Ctrl-C with 130."""
+    try:
+        app()
+    except TippetopError as error:
+        typer.echo(f"tippetop: {error}", err=True)
+        sys.exit(MISUSE)
+    except KeyboardInterrupt:
+        typer.echo("tippetop: interrupted", err=True)
+        sys.exit(INTERRUPTED)
+    except BrokenPipeError:
+        # Whoever was reading has read enough (`tippetop ... | head`).
+        sys.stderr.close()

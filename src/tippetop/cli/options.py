@@ -1,0 +1,62 @@
+"""The options that several commands share: how a problem is put together on the command line."""
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from tippetop.errors import InvalidInput
+
+if TYPE_CHECKING:
+    from tippetop.problem import Problem
+
+ProblemFile = Annotated[
+    Path | None, typer.Argument(help="Problem to start from, .toml or .json; the report's top if left out.")
+]
+Preset = Annotated[str | None, typer.Option(help="Body by name: report, report-table-1.")]
+Spin = Annotated[float | None, typer.Option(help="Axial spin at launch, rad/s.")]
+Tilt = Annotated[float | None, typer.Option(help="Tilt of the axis at launch, rad, from 0 to pi.")]
+Mu = Annotated[float | None, typer.Option(help="Friction coefficient: s/m if viscous, else dimensionless.")]
+LiftOff = Annotated[str | None, typer.Option(help="When the table would have to pull: stop, ignore or fly.")]
+Changes = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="FIELD=VALUE", help="Any other field, e.g. body.shape.eccentricity=0.2."),
+]
+Json = Annotated[bool, typer.Option("--json", help="Print JSON for programs.")]
+Force = Annotated[bool, typer.Option("--force", help="Overwrite results that exist.")]
+
+
+def chosen_problem(
+    file: Path | None,
+    preset: str | None,
+    settings: dict[str, Any],
+    changes: list[str] | None,
+) -> "Problem":
+    """The problem of a file (or the report's), with a preset body and some fields changed.
+
+    Raises
+    ------
+    InvalidInput, FileTrouble
+        If the file, the preset or a field is not what it should be.
+    """
+    from tippetop import presets  # noqa: PLC0415 - slow to import, and not needed for --help
+    from tippetop.problem import Problem  # noqa: PLC0415
+
+    problem = presets.report_problem() if file is None else Problem.read(file)
+    if preset is not None:
+        problem = problem.model_copy(update={"body": presets.body(preset)})
+    given = {field: value for field, value in settings.items() if value is not None}
+    given.update(_parsed(change) for change in changes or [])
+    return problem.replace(given)
+
+
+def _parsed(change: str) -> tuple[str, Any]:
+    """Field and value of a `--set FIELD=VALUE`: a number or list as in JSON, or else a word."""
+    field, equals, value = change.partition("=")
+    if not equals:
+        raise InvalidInput("--set", change, "FIELD=VALUE")
+    try:
+        return field, json.loads(value)
+    except json.JSONDecodeError:
+        return field, value

@@ -1,0 +1,124 @@
+"""`tippetop simulate`: one run, its summary, its files."""
+
+import json
+import time
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from tippetop.cli.options import (
+    Changes,
+    Force,
+    Json,
+    LiftOff,
+    Mu,
+    Preset,
+    ProblemFile,
+    Spin,
+    Tilt,
+    chosen_problem,
+)
+
+IMAGES = {".png", ".svg", ".pdf"}
+
+
+def simulate(
+    file: ProblemFile = None,
+    preset: Preset = None,
+    spin: Spin = None,
+    tilt: Tilt = None,
+    mu: Mu = None,
+    liftoff: LiftOff = None,
+    changes: Changes = None,
+    duration: Annotated[float, typer.Option(help="Length of the run, s.")] = 20.0,
+    samples: Annotated[int, typer.Option(help="Number of samples.")] = 2001,
+    integrator: Annotated[
+        str | None, typer.Option(help="taylor, dop853, rk45, radau, bdf, lsoda or rk4; the best installed.")
+    ] = None,
+    tolerance: Annotated[float | None, typer.Option(help="Relative error per step.")] = None,
+    step: Annotated[float | None, typer.Option(help="Step of rk4, s.")] = None,
+    out: Annotated[Path | None, typer.Option(help="Write the run as NetCDF.")] = None,
+    plot: Annotated[Path | None, typer.Option(help="Draw the run as .png, .svg or .pdf.")] = None,
+    as_json: Json = False,
+    force: Force = False,
+) -> None:
+    """Simulate one launch and say what becomes of the top."""
+    from tippetop.dataset import write_run  # noqa: PLC0415 - slow to import
+    from tippetop.files import refuse_overwriting, written_beside  # noqa: PLC0415
+    from tippetop.simulate import simulate as run_problem  # noqa: PLC0415
+    from tippetop.summary import summarize  # noqa: PLC0415
+
+    settings = {"launch.spin": spin, "launch.tilt": tilt, "friction.mu": mu, "contact.liftoff": liftoff}
+    chosen = chosen_problem(file, preset, settings, changes)
+    _check_image(plot)
+    for path in filter(None, (out, plot)):
+        refuse_overwriting(path, force)
+    began = time.perf_counter()
+    run = run_problem(
+        chosen, duration, samples=samples, integrator=integrator, tolerance=tolerance, step=step
+    )
+    elapsed = time.perf_counter() - began
+    if out is not None:
+        write_run(run, out, overwrite=force)
+    if plot is not None:
+        from tippetop.figures.overview import overview  # noqa: PLC0415 - slow to import
+        from tippetop.figures.style import save  # noqa: PLC0415
+
+        with written_beside(plot) as beside:
+            save(overview(run), beside)
+    summary = summarize(run)
+    if as_json:
+        files = {"out": out and str(out), "plot": plot and str(plot)}
+        typer.echo(json.dumps({**summary, **files, "problem": chosen.model_dump()}, indent=2))
+    else:
+        _print_summary(summary, elapsed, [path for path in (out, plot) if path is not None])
+
+
+def _check_image(plot: Path | None) -> None:
+    from tippetop.errors import InvalidInput  # noqa: PLC0415
+
+    if plot is not None and plot.suffix.lower() not in IMAGES:
+        raise InvalidInput("--plot", str(plot), "a file name that ends in .png, .svg or .pdf")
+
+
+def _print_summary(summary: dict[str, Any], elapsed: float, files: list[Path]) -> None:
+    from rich.console import Console  # noqa: PLC0415
+    from rich.table import Table  # noqa: PLC0415
+
+    console = Console()
+    table = Table(box=None, show_header=False, padding=(0, 2, 0, 0))
+    table.add_column(style="dim")
+    table.add_column(justify="right", style="bold")
+    table.add_column()
+    for name, value, unit in _rows(summary):
+        table.add_row(name, value, unit)
+    console.print(f"[bold]{summary['outcome'].replace('_', ' ')}[/]: {summary['advice']}")
+    console.print(table)
+    console.print(
+        f"[dim]{summary['steps']} steps of {summary['integrator']} in {elapsed:.3g} s[/]", highlight=False
+    )
+    for path in files:
+        console.print(f"wrote {path}", highlight=False)
+
+
+def _rows(summary: dict[str, Any]) -> list[tuple[str, str, str]]:
+    final = summary["final"]
+    rows = [
+        ("simulated", f"{summary['duration']:.6g}", "s"),
+        ("final tilt", _shown(final["theta"]), "rad"),
+        ("final axial spin", _shown(final["omega3"]), "rad/s"),
+        ("final precession", _shown(final["phi_dot"]), "rad/s"),
+        ("turns over at", _shown(summary["turns_over"], "never"), "s" if summary["turns_over"] else ""),
+        ("within 0.01 rad of its final tilt at", _shown(summary["arrives"]), "s"),
+        ("least normal force", _shown(summary["least_normal_force"]), "N"),
+        ("energy lost", _shown(summary["energy_lost"]), f"J of {summary['energy_start']:.6g}"),
+        ("drift of Jellett's integral", f"{summary['jellett_drift']:.1e}", "relative"),
+        ("error of the energy balance", f"{summary['energy_error']:.1e}", "relative"),
+    ]
+    rows += [(event["kind"], _shown(event["time"]), "s") for event in summary["events"][:5]]
+    return rows
+
+
+def _shown(value: float | None, otherwise: str = "undefined") -> str:
+    return otherwise if value is None else f"{value:.7g}"

@@ -1,0 +1,60 @@
+"""One run at a glance: the report's four variables, the normal force and the energy."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from tippetop.figures.style import ACCENT, CONVERGED, MUTED, WIDTH, house_style, pi_ticks
+
+TALLEST_PRECESSION = 400.0
+"""Precession beyond which a curve is cut off, rad/s: it peaks without bound where the axis is vertical."""
+
+
+class Panel(NamedTuple):
+    """What a panel shows: a title with its unit, and the variable's values."""
+
+    title: str
+    values: np.ndarray[Any, Any]
+
+
+def overview(run: xr.Dataset) -> Figure:
+    """Draw tilt, axial spin, precession, slip, normal force and energy of a run against time."""
+    panels = [
+        Panel("Tilt θ (rad)", run["theta"].values),
+        Panel("Axial spin ω₃ (rad/s)", run["omega3"].values),
+        Panel("Precession φ′ (rad/s)", run["phi_dot"].values),
+        Panel("Slip speed (m/s)", np.hypot(run["slip_x"].values, run["slip_y"].values)),
+        Panel("Normal force (N)", run["normal_force"].values),
+        Panel("Energy (J)", run["energy"].values),
+    ]
+    with house_style():
+        figure = Figure(figsize=(WIDTH, 6.2))
+        grid = figure.subplots(3, 2, sharex=True)
+        for axes, panel in zip(grid.flat, panels, strict=True):
+            axes.plot(run["time"].values, panel.values, color=CONVERGED, linewidth=1.1)
+            axes.set_title(panel.title)
+            _mark_events(axes, run)
+        pi_ticks(grid[0, 0].yaxis)
+        grid[0, 0].set_ylim(-0.1, np.pi + 0.1)
+        _cut(grid[1, 0], run["phi_dot"].values)
+        grid[2, 0].axhline(0.0, color=MUTED, linewidth=0.8)
+        for axes in grid[2]:
+            axes.set_xlabel("Time (s)")
+        return figure
+
+
+def _mark_events(axes: Axes, run: xr.Dataset) -> None:
+    for time in run["event_time"].values:
+        axes.axvline(time, color=ACCENT, linewidth=0.8, linestyle=(0, (4, 3)))
+
+
+def _cut(axes: Axes, values: np.ndarray[Any, Any]) -> None:
+    """Keep the peaks at the poles from flattening everything else."""
+    finite = values[np.isfinite(values)]
+    if len(finite) and np.abs(finite).max() > TALLEST_PRECESSION:
+        typical = 1.5 * float(np.quantile(np.abs(finite), 0.98))
+        bound = min(TALLEST_PRECESSION, max(typical, 1.0))
+        axes.set_ylim(max(-bound, 1.1 * finite.min()), min(bound, 1.1 * finite.max()))
