@@ -16,7 +16,7 @@ def summarize(run: xr.Dataset) -> dict[str, Any]:
     -------
     dict
         Keys: outcome, advice, duration (s), final (theta, theta_dot, omega3, phi_dot: rad and rad/s),
-        turns_over (s: the tilt first passes pi/2; None if it never does), arrives (s: first within 0.01 rad of
+        turns_over (s: the tilt first passes pi/2; None if never), arrives (s: first within 0.01 rad of
         its last value), least_normal_force (N), energy_start, energy_lost (J), jellett_drift and energy_error
         (relative), events (kind and time, s), integrator, steps, evaluations. What is not a number is None.
     """

@@ -1,0 +1,46 @@
+# Needs Python 3.11 or later and make; everything else is fetched into .venv.
+PYTHON ?= $(shell command -v python3.11 || command -v python3)
+VENV ?= .venv
+BIN = $(VENV)/bin
+OUT ?= tippetop-report
+
+.PHONY: reproduce test check lint types contract bench quick clean
+
+reproduce: $(VENV)/.installed ## Redo the whole report into $(OUT)
+	$(BIN)/tippetop reproduce --out $(OUT) --force
+
+test: $(VENV)/.installed-dev ## Run the tests
+	$(BIN)/python -m pytest -n auto
+
+check: lint types contract test ## All that a change must pass
+
+lint: $(VENV)/.installed-dev
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+
+types: $(VENV)/.installed-dev
+	$(BIN)/mypy
+
+contract: $(VENV)/.installed-dev
+	$(BIN)/lint-imports
+
+quick: $(VENV)/.installed ## A coarse report in half a minute
+	$(BIN)/tippetop reproduce --quick --out $(OUT) --force
+
+bench: $(VENV)/.installed-dev ## Measure what is promised of speed
+	$(BIN)/python -m benchmarks
+
+$(VENV)/bin/python:
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --upgrade pip
+
+$(VENV)/.installed: pyproject.toml | $(VENV)/bin/python
+	$(BIN)/python -m pip install --quiet --editable .
+	touch $@
+
+$(VENV)/.installed-dev: pyproject.toml | $(VENV)/bin/python
+	$(BIN)/python -m pip install --quiet --editable '.[test,lint,bench]'
+	touch $@ $(VENV)/.installed
+
+clean:
+	rm -rf $(VENV) $(OUT)
