@@ -65,6 +65,12 @@ class Kind(NamedTuple):
     shape: type[Shape]
     friction: type[FrictionLaw]
     proportions: int
+    coefficients: int
+
+    @property
+    def numbers(self) -> int:
+        """How many dimensionless numbers a top of this kind has."""
+        return 2 + self.proportions + self.coefficients
 
     def top(self, numbers: tuple[Scalar, ...]) -> Top:
         """Make the top of this kind, in natural units, with these dimensionless numbers."""
@@ -76,4 +82,5 @@ class Kind(NamedTuple):
 
 def kind_of(top: Top) -> Kind:
     """The kind of a top."""
-    return Kind(type(top.shape), type(top.friction), len(top.shape.proportions))
+    coefficients = top.friction.coefficients(1.0)
+    return Kind(type(top.shape), type(top.friction), len(top.shape.proportions), len(coefficients))
