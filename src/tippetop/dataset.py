@@ -20,6 +20,14 @@ class Label(NamedTuple):
     dimensions: tuple[str, ...] = ()
 
 
+class Described(NamedTuple):
+    """Values over a dimension other than time, with what they are and their SI unit, if they have one."""
+
+    values: NDArray[Any]
+    long_name: str
+    units: str = ""
+
+
 LABELS = {
     "theta": Label("tilt of the axis from the vertical", "rad"),
     "theta_dot": Label("rate of the tilt", "rad s-1"),
@@ -55,7 +63,7 @@ def assemble(
     variables: Mapping[str, NDArray[np.float64]],
     phases: NDArray[np.int8],
     phase_names: Sequence[str],
-    events: Mapping[str, tuple[NDArray[Any], str, str]],
+    lists: Mapping[str, Mapping[str, Described]],
     attributes: Mapping[str, Any],
 ) -> xr.Dataset:
     """Label the arrays of a run.
@@ -68,8 +76,8 @@ def assemble(
         The variables of `LABELS`, shape (k, ...).
     phases, phase_names
         Number of the phase at every sample, shape (k,), and the names that the numbers stand for.
-    events
-        Values over the events with their long name and unit.
+    lists
+        Values over dimensions other than time, by the dimension and the name.
     attributes
         Provenance.
     """
@@ -84,9 +92,10 @@ def assemble(
         "flag_meanings": " ".join(phase_names),
     }
     data["phase"] = (("time",), phases, flags)
-    for name, (values, long_name, units) in events.items():
-        described = {"long_name": long_name, "units": units} if units else {"long_name": long_name}
-        data[name] = (("event",), values, described)
+    for dimension, columns in lists.items():
+        for name, (values, long_name, units) in columns.items():
+            described = {"long_name": long_name, "units": units} if units else {"long_name": long_name}
+            data[name] = ((dimension,), values, described)
     coordinates = {
         "time": (("time",), times, {"long_name": "time since launch", "units": "s", "standard_name": "time"}),
         "space": SPACE,

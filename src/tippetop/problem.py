@@ -16,8 +16,8 @@ from pydantic import Field, model_validator
 from tippetop.errors import FileTrouble, InvalidInput, one_of
 from tippetop.mechanics import friction as friction_laws
 from tippetop.mechanics import shape as shapes
-from tippetop.mechanics.motion import contact
-from tippetop.mechanics.state import SlidingState
+from tippetop.mechanics.motion import along_table, contact, on_table
+from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.view import Angles, state_from_angles
 from tippetop.validation import Part
@@ -152,6 +152,11 @@ class Launch(Part):
     slip
         Slip velocity of the contact point, m/s: along the direction into which the axis leans, and 90
         degrees to the left of it.
+    gap
+        Height of the lowest point above the table, m: more than 0 for a top that is dropped or thrown.
+    velocity
+        Velocity of the centre of mass along x, y and z, m/s; it takes the place of `slip`. Without it the
+        lowest point moves with the slip velocity and neither up nor down.
     """
 
     tilt: Tilt
@@ -160,6 +165,14 @@ class Launch(Part):
     tilt_rate: float = 0.0
     precession: float = 0.0
     slip: tuple[float, float] = (0.0, 0.0)
+    gap: Annotated[float, Field(ge=0)] = 0.0
+    velocity: tuple[float, float, float] | None = None
+
+    @model_validator(mode="after")
+    def _moves_one_way(self) -> Self:
+        if self.velocity is not None and self.slip != (0.0, 0.0):
+            raise InvalidInput("slip", self.slip, "0 where velocity is given, which determines it")
+        return self
 
 
 class Contact(Part):
@@ -168,13 +181,13 @@ class Contact(Part):
     Attributes
     ----------
     liftoff
-        "ignore": the table pulls (bilateral contact); "stop": the run ends there; "fly": the top leaves
-        the table.
+        "fly": the top leaves the table; "stop": the run ends there; "ignore": the table pulls (bilateral
+        contact).
     restitution
         Ratio of the normal impulses of restitution and compression in an impact (Poisson), in [0, 1].
     """
 
-    liftoff: Literal["fly", "stop", "ignore"] = "stop"
+    liftoff: Literal["fly", "stop", "ignore"] = "fly"
     restitution: Fraction = 0.0
 
 
@@ -197,13 +210,20 @@ class Problem(Part):
 
     @model_validator(mode="after")
     def _contact_is_possible(self) -> Self:
-        start = self.start()
+        if self.contact.liftoff == "fly":
+            return self
+        launch = self.launch
+        if launch.gap or launch.velocity is not None:
+            field = "launch.gap" if launch.gap else "launch.velocity"
+            value = launch.gap if launch.gap else launch.velocity
+            raise InvalidInput(field, value, "a launch on the table, unless contact.liftoff is 'fly'")
+        start = along_table(self.start())
         if contact(start.axis, start.momentum, start.velocity, self.top).resistance <= 0:
             raise InvalidInput(
                 "launch.slip",
                 self.launch.slip,
                 "less slip or less friction: here any push of the table would drag the body further into it "
-                "(Painleve's paradox)",
+                "(Painleve's paradox), unless contact.liftoff is 'fly'",
             )
         return self
 
@@ -213,13 +233,18 @@ class Problem(Part):
         body = self.body
         return Top(body.mass, body.I1, body.I3, body.shape.law, self.friction.law, self.gravity)
 
-    def start(self) -> SlidingState:
+    def start(self) -> State:
         """The state at launch, SI."""
-        launch = self.launch
+        launch, top = self.launch, self.top
         angles = Angles(
             launch.tilt, launch.tilt_rate, launch.azimuth, launch.precession, launch.spin, launch.slip
         )
-        return state_from_angles(angles, self.top, _PoleExact())
+        touching = on_table(state_from_angles(angles, top, _PoleExact()), top)
+        x, y, height = touching.position
+        return touching._replace(
+            position=(x, y, height + launch.gap),
+            velocity=touching.velocity if launch.velocity is None else launch.velocity,
+        )
 
     def replace(self, changes: Mapping[str, Any]) -> Self:
         """Copy with some fields replaced, named with dots: ``problem.replace({"launch.spin": 100.0})``.
@@ -246,7 +271,7 @@ class Problem(Part):
 
     def to_json(self) -> str:
         """Write the problem as JSON."""
-        return self.model_dump_json()
+        return self.model_dump_json(exclude_none=True)
 
     @classmethod
     def from_toml(cls, text: str) -> Self:

@@ -6,20 +6,22 @@ from dataclasses import dataclass
 import numpy as np
 import psutil
 import xarray as xr
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tippetop import __version__
-from tippetop.dataset import assemble
+from tippetop.dataset import Described, assemble
 from tippetop.errors import InvalidInput
 from tippetop.integrators import Integrator, make_integrator
 from tippetop.integrators.base import Array
 from tippetop.integrators.classical import ClassicalRK4
-from tippetop.mechanics.motion import on_table
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Units, dimensionless_numbers, kind_of, natural_units
 from tippetop.observables import in_si, observe, si_factors
-from tippetop.phases import Event, Outcome, Phase, PhaseKind, Sliding, Stretch
+from tippetop.phases import Event, Outcome, PhaseKind, Stretch, Transition, first_phase
 from tippetop.problem import Problem
+
+PHASE_LIMIT = 100_000
+"""How many phases a run goes through at most unless told otherwise."""
 
 BYTES_PER_SAMPLE = 1600
 """Memory that a sample takes at most while a result is being made."""
@@ -27,15 +29,28 @@ BYTES_PER_SAMPLE = 1600
 
 @dataclass(frozen=True)
 class Course:
-    """The phases a run went through, in natural units."""
+    """The phases a run went through, in natural units.
 
-    stretches: tuple[tuple[PhaseKind, Stretch], ...]
+    Attributes
+    ----------
+    start
+        How the run began.
+    stretches
+        What each phase made of its time, in order.
+    outcome, detail
+        How the run ended, and more about it where there is more to say.
+    """
+
+    start: Transition
+    stretches: tuple[Stretch, ...]
     outcome: Outcome
+    detail: str = ""
 
     @property
     def events(self) -> list[Event]:
         """Everything that happened, in order."""
-        return [event for _, stretch in self.stretches for event in stretch.events]
+        transitions = [self.start, *(stretch.transition for stretch in self.stretches)]
+        return [event for transition in transitions for event in transition.events]
 
 
 def simulate(
@@ -47,6 +62,7 @@ def simulate(
     integrator: str | Integrator | None = None,
     tolerance: float | None = None,
     step: float | None = None,
+    phase_limit: int = PHASE_LIMIT,
 ) -> xr.Dataset:
     """Simulate a problem.
 
@@ -66,13 +82,16 @@ def simulate(
         Relative error per step; None for the integrator's own default.
     step
         Step size of "rk4", s.
+    phase_limit
+        How many phases (slides and flights) the run may go through before it ends early.
 
     Returns
     -------
     xarray.Dataset
         Variables over `time` (SI units on each): theta, theta_dot, phi, phi_dot, omega3, slip_x, slip_y,
         normal_force, energy, work, jellett, height, gap, x, y, axis, velocity, angular_momentum, orientation,
-        phase. Over `event`: event_time, event_kind. Attributes: problem (JSON), outcome, outcome_advice,
+        phase. Over `event`: event_time, event_kind, event_impulse, event_energy_lost. Over `flight`:
+        flight_start, flight_end, flight_highest_gap. Attributes: problem (JSON), outcome, outcome_advice,
         integrator, tolerance or step, steps, evaluations, tippetop_version, Conventions. When the run ends
         before `duration`, the last sample is its end.
 
@@ -87,49 +106,43 @@ def simulate(
     top = problem.top
     units = natural_units(top)
     method = integrator_of(integrator, tolerance, step, units)
-    start = (0.0, to_natural(on_table(problem.start(), top), units))
-    course = follow_phases(first_phase(problem), start, duration / units.time, grid / units.time, method)
+    state = to_natural(problem.start(), units)
+    contact = problem.contact
+    start = first_phase(kind_of(top), dimensionless_numbers(top), state, contact.liftoff, contact.restitution)
+    course = follow_phases(start, duration / units.time, grid / units.time, method, phase_limit)
     return _label(problem, course, grid, units, _method_attributes(method, units))
 
 
 def follow_phases(
-    phase: Phase, start: tuple[float, Array], end: float, times: Array, integrator: Integrator
+    start: Transition, end: float, times: Array, integrator: Integrator, limit: int = PHASE_LIMIT
 ) -> Course:
     """Go from phase to phase until one says how the run ends; times in the units of the phases.
 
     Parameters
     ----------
-    phase, start
-        The first phase, and the time and whole state (shape (16,)) in which it begins.
+    start
+        The first phase and the state in which it begins.
     end
         When the run ends at the latest.
     times
         Increasing sample times, shape (k,).
     integrator
         The method for phases that need one.
+    limit
+        How many phases to go through at most.
     """
-    stretches: list[tuple[PhaseKind, Stretch]] = []
-    while True:
-        stretch = phase.follow(start, end, times, integrator)
-        stretches.append((phase.kind, stretch))
-        if isinstance(stretch.then, Outcome):
-            return Course(tuple(stretches), stretch.then)
-        phase, start = stretch.then, (stretch.end_time, stretch.next_state)
+    stretches: list[Stretch] = []
+    time, transition = 0.0, start
+    while not isinstance(transition.then, Outcome):
+        if time >= end:
+            return Course(start, tuple(stretches), Outcome.COMPLETED)
+        if len(stretches) == limit:
+            return Course(start, tuple(stretches), Outcome.TOO_MANY_PHASES)
+        stretch = transition.then.follow((time, transition.state), end, times, integrator)
+        stretches.append(stretch)
+        time, transition = stretch.end_time, stretch.transition
         times = times[len(stretch.times) :]
-
-
-def first_phase(problem: Problem) -> Phase:
-    """The phase in which a problem's launch begins.
-
-    Raises
-    ------
-    InvalidInput
-        If the problem lets the top fly, which is not possible yet.
-    """
-    if problem.contact.liftoff == "fly":
-        raise InvalidInput("contact.liftoff", "fly", "'stop' or 'ignore'; flight is not available yet")
-    top = problem.top
-    return Sliding(kind_of(top), dimensionless_numbers(top), problem.contact.liftoff == "ignore")
+    return Course(start, tuple(stretches), transition.then, transition.detail)
 
 
 def sample_times(duration: float, samples: int, times: ArrayLike | None) -> Array:
@@ -175,16 +188,16 @@ def _label(
     problem: Problem, course: Course, grid: Array, units: Units, method: dict[str, str | float]
 ) -> xr.Dataset:
     """The dataset of a run."""
-    reached = sum(len(stretch.times) for _, stretch in course.stretches)
-    times = grid[:reached]
-    pieces = [stretch.states for _, stretch in course.stretches]
-    kinds = [np.full(len(stretch.times), kind, dtype=np.int8) for kind, stretch in course.stretches]
-    last_kind, last = course.stretches[-1]
-    ended = last.end_time * units.time
-    if course.outcome is not Outcome.COMPLETED and (not reached or times[-1] < ended):
-        times = np.append(times, ended)
-        pieces.append(last.end_state[None])
-        kinds.append(np.array([last_kind], dtype=np.int8))
+    stretches = course.stretches
+    times = grid[: sum(len(stretch.times) for stretch in stretches)]
+    pieces = [stretch.states for stretch in stretches]
+    kinds = [np.full(len(stretch.times), stretch.kind, dtype=np.int8) for stretch in stretches]
+    if course.outcome is not Outcome.COMPLETED:
+        ended = stretches[-1].end_time * units.time if stretches else 0.0
+        if not len(times) or times[-1] < ended:
+            times = np.append(times, ended)
+            pieces.append((stretches[-1].end_state if stretches else course.start.state)[None])
+            kinds.append(np.array([stretches[-1].kind if stretches else PhaseKind.SLIDING], dtype=np.int8))
     state = in_si(np.concatenate(pieces), units)
     phases = np.concatenate(kinds)
     variables = observe(state, phases == PhaseKind.SLIDING, problem.top)
@@ -192,22 +205,43 @@ def _label(
         "title": "Motion of a spinning top on a table",
         "problem": problem.to_json(),
         "outcome": course.outcome.name.lower(),
-        "outcome_advice": " ".join(filter(None, (course.outcome.value, last.detail))),
+        "outcome_advice": " ".join(filter(None, (course.outcome.value, course.detail))),
         **method,
-        "steps": sum(stretch.steps for _, stretch in course.stretches),
-        "evaluations": sum(stretch.evaluations for _, stretch in course.stretches),
+        "steps": sum(stretch.steps for stretch in stretches),
+        "evaluations": sum(stretch.evaluations for stretch in stretches),
         "tippetop_version": __version__,
     }
     names = [kind.name.lower() for kind in PhaseKind]
-    return assemble(times, variables, phases, names, _event_arrays(course.events, units), attributes)
+    lists = {"event": _event_arrays(course.events, units), "flight": _flight_arrays(stretches, units)}
+    return assemble(times, variables, phases, names, lists, attributes)
 
 
-def _event_arrays(events: Sequence[Event], units: Units) -> dict[str, tuple[NDArray[np.generic], str, str]]:
-    """Values over the events, with long name and unit."""
+def _event_arrays(events: Sequence[Event], units: Units) -> dict[str, Described]:
+    """Values over the events."""
     kinds = np.array([event.kind.value for event in events], dtype="<U16")
+    numbers = [(event.time, event.impulse, event.energy_lost) for event in events]
+    times, impulses, losses = np.array(numbers, dtype=float).reshape(-1, 3).T
     return {
-        "event_time": (np.array([event.time for event in events]) * units.time, "when it happened", "s"),
-        "event_kind": (kinds, "what happened", ""),
+        "event_time": Described(times * units.time, "when it happened", "s"),
+        "event_kind": Described(kinds, "what happened"),
+        "event_impulse": Described(impulses * units.mass * units.speed, "normal impulse of the table", "N s"),
+        "event_energy_lost": Described(losses * units.energy, "energy lost in it", "J"),
+    }
+
+
+def _flight_arrays(stretches: Sequence[Stretch], units: Units) -> dict[str, Described]:
+    """Values over the flights."""
+    begun = [0.0, *(stretch.end_time for stretch in stretches)]
+    numbers = [
+        (begin, stretch.end_time, stretch.highest_gap)
+        for begin, stretch in zip(begun, stretches, strict=False)
+        if stretch.kind is PhaseKind.FLIGHT
+    ]
+    starts, ends, gaps = np.array(numbers, dtype=float).reshape(-1, 3).T
+    return {
+        "flight_start": Described(starts * units.time, "when the flight began", "s"),
+        "flight_end": Described(ends * units.time, "when it ended", "s"),
+        "flight_highest_gap": Described(gaps * units.length, "highest gap in it", "m"),
     }
 
 

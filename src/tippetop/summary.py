@@ -18,7 +18,8 @@ def summarize(run: xr.Dataset) -> dict[str, Any]:
         Keys: outcome, advice, duration (s), final (theta, theta_dot, omega3, phi_dot: rad and rad/s),
         turns_over (s: the tilt first passes pi/2; None if never), arrives (s: first within 0.01 rad of
         its last value), least_normal_force (N), energy_start, energy_lost (J), jellett_drift and energy_error
-        (relative), events (kind and time, s), integrator, steps, evaluations. What is not a number is None.
+        (relative), flights (how many), airborne_time (s), highest_gap (m), impact_energy_lost (J), events
+        (kind and time, s), integrator, steps, evaluations. What is not a number is None.
     """
     theta = run["theta"].values
     energy = run["energy"].values
@@ -42,6 +43,10 @@ def summarize(run: xr.Dataset) -> dict[str, Any]:
         "energy_lost": float(energy[0] - energy[-1]),
         "jellett_drift": _number(np.ptp(jellett) / moment[0]),
         "energy_error": float(np.abs(balance).max() / abs(energy[0])),
+        "flights": run.sizes["flight"],
+        "airborne_time": float((run["flight_end"] - run["flight_start"]).sum()),
+        "highest_gap": float(run["flight_highest_gap"].values.max(initial=0.0)),
+        "impact_energy_lost": float(run["event_energy_lost"].values.sum()),
         "events": [
             {"kind": str(kind), "time": float(at)}
             for kind, at in zip(run["event_kind"].values, run["event_time"].values, strict=True)

@@ -116,7 +116,16 @@ def _rows(summary: dict[str, Any]) -> list[tuple[str, str, str]]:
         ("drift of Jellett's integral", f"{summary['jellett_drift']:.1e}", "relative"),
         ("error of the energy balance", f"{summary['energy_error']:.1e}", "relative"),
     ]
-    rows += [(event["kind"], _shown(event["time"]), "s") for event in summary["events"][:5]]
+    lift_offs = [event["time"] for event in summary["events"] if event["kind"] == "lift-off"]
+    if lift_offs:
+        rows.append(("leaves the table first at", _shown(lift_offs[0]), "s"))
+    if summary["flights"]:
+        rows += [
+            ("flights", str(summary["flights"]), ""),
+            ("airborne for", _shown(summary["airborne_time"]), "s"),
+            ("highest above the table", _shown(summary["highest_gap"]), "m"),
+            ("energy lost in impacts", _shown(summary["impact_energy_lost"]), "J"),
+        ]
     return rows
 
 

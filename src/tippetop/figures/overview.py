@@ -36,7 +36,7 @@ def overview(run: xr.Dataset) -> Figure:
         for axes, panel in zip(grid.flat, panels, strict=True):
             axes.plot(run["time"].values, panel.values, color=CONVERGED, linewidth=1.1)
             axes.set_title(panel.title)
-            _mark_events(axes, run)
+            shade_flights(axes, run)
         pi_ticks(grid[0, 0].yaxis)
         grid[0, 0].set_ylim(-0.1, np.pi + 0.1)
         _cut(grid[1, 0], run["phi_dot"].values)
@@ -46,9 +46,12 @@ def overview(run: xr.Dataset) -> Figure:
         return figure
 
 
-def _mark_events(axes: Axes, run: xr.Dataset) -> None:
-    for time in run["event_time"].values:
-        axes.axvline(time, color=ACCENT, linewidth=0.8, linestyle=(0, (4, 3)))
+def shade_flights(axes: Axes, run: xr.Dataset) -> None:
+    """Shade the time a run spends above the table; a run that stopped at lift-off gets a line there."""
+    for begin, end in zip(run["flight_start"].values, run["flight_end"].values, strict=True):
+        axes.axvspan(begin, end, color=ACCENT, alpha=0.15, linewidth=0.4)
+    if run.attrs["outcome"] == "lifted_off":
+        axes.axvline(float(run["time"][-1]), color=ACCENT, linewidth=0.8, linestyle=(0, (4, 3)))
 
 
 def _cut(axes: Axes, values: np.ndarray[Any, Any]) -> None:

@@ -46,7 +46,8 @@ class Taylor:
             run.time = start[0]
             run.state[:] = start[1]
             run.pars[:] = parameters
-            run.reset_cooldowns()
+            if guards:
+                run.reset_cooldowns()
             pieces, steps, outcome = _propagate(run, grid)
             end_time, end_state = float(run.time), np.array(run.state)
         states = np.concatenate(pieces)
