@@ -1,0 +1,258 @@
+"""One launch, by the report's method and converged (the report's Figs. 4, 5 and 8 to 16)."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MultipleLocator
+
+from tippetop.figures.style import (
+    ACCENT,
+    CONVERGED,
+    INK,
+    MUTED,
+    REPORT,
+    WIDTH,
+    house_style,
+    panel_letter,
+    pi_ticks,
+)
+
+Box = tuple[float, float, float, float]
+
+_NAME, _NAME_REPORT = "converged", "report's method"
+_WIDE, _THIN = 2.6, 1.0
+_LINES = (("_listing", "time_listing", REPORT, _WIDE), ("", "time", CONVERGED, _THIN))
+
+
+def motion_figure(
+    run: xr.Dataset,
+    precession_limit: float = 200.0,
+    zoom: tuple[float, float] | None = None,
+    inset: Box = (0.5, 0.13, 0.48, 0.56),
+) -> Figure:
+    """Return tilt, axial spin, precession and slip of a launch, by both methods.
+
+    `run` has theta, omega3, phi_dot, slip_x, slip_y over time and, with the suffix _listing, over
+    time_listing. The precession is cut at `precession_limit` rad/s: it has peaks wherever the axis comes near
+    the vertical. `zoom` is a span of time, s, whose tilt is also drawn large, in the box
+    `inset` (left, bottom, width, height in parts of the panel). The reversals of the
+    precession are marked: `quiet_start` and `quiet_end` where they enclose a calm that comes later than 1 s,
+    otherwise `last_reversal`.
+    """
+    with house_style():
+        figure = Figure(figsize=(WIDTH, 5.0))
+        panels = figure.subplots(2, 2, sharex=True)
+        tilt, spin, turning, slip = panels.flat
+        _pair(tilt, run, "theta", legend=True)
+        _tilt_axis(tilt)
+        if zoom:
+            _zoom(tilt, run, zoom, inset)
+        _pair(spin, run, "omega3")
+        spin.set_ylabel(r"axial spin $\omega_3$ (rad/s)")
+        _precession(turning, run, precession_limit)
+        _slip(slip, run)
+        for axes in panels[1]:
+            axes.set_xlabel("time (s)")
+        for axes, letter in zip(panels.flat, "abcd", strict=True):
+            panel_letter(axes, letter)
+            axes.set_xlim(0, float(run["time"][-1]))
+    return figure
+
+
+def tilt_figure(
+    run: xr.Dataset,
+    zoom: tuple[float, float] | None = None,
+    inset: Box = (0.56, 0.14, 0.42, 0.56),
+) -> Figure:
+    """Return the tilt of a launch over time by both methods, with the lift-off (`lift_off_time`) marked.
+
+    `zoom` is a span of time, s, that is also drawn large, in the box `inset` (left, bottom, width, height in
+    parts of the panel).
+    """
+    with house_style():
+        figure, axes = _wide_panel(run)
+        _pair(axes, run, "theta", legend=True)
+        _tilt_axis(axes)
+        if zoom:
+            _zoom(axes, run, zoom, inset)
+        _mark_lift_off(axes, float(run["lift_off_time"]))
+    return figure
+
+
+def upright_figure(run: xr.Dataset, until: float = 3.0) -> Figure:
+    """Return the tilt of a launch that stays near the vertical, up to a time, s, on a scale of its own."""
+    with house_style():
+        figure, axes = _wide_panel(run)
+        _pair(axes, run, "theta", legend=True)
+        axes.set_xlim(0, until)
+        axes.xaxis.set_major_locator(MultipleLocator(0.5))
+        axes.set_ylim(0, 1.12 * float(run["theta"].max()))
+        axes.set_ylabel(r"tilt $\theta$ (rad)")
+    return figure
+
+
+def energy_figure(run: xr.Dataset, reported: tuple[float, float]) -> Figure:
+    """Return the energy over time: the report's (4.1) by its method, and the converged energy.
+
+    `run` also has launch_energy, J, and lift_off_time, s. `reported` is the time, s, and energy, J, that the
+    report names.
+    """
+    with house_style():
+        figure, axes = _wide_panel(run)
+        start = 1e3 * float(run["launch_energy"])
+        axes.axhline(start, color=MUTED, lw=0.9, ls=(0, (4, 3)))
+        axes.annotate(
+            "energy at launch", (0, start), (2, -3), textcoords="offset points", va="top", color=MUTED, size=9
+        )
+        names = ("(4.1), report's method", "full energy, converged")
+        _pair(axes, run, "energy", scale=1e3, legend=True, names=names)
+        axes.set_ylabel("energy (mJ)")
+        axes.set_ylim(bottom=0)
+        at = (reported[0], 1e3 * reported[1])
+        axes.plot(*at, "s", color=REPORT, ms=6, mec=INK, mew=0.6, zorder=5)
+        _callout(axes, f"the report's\n{reported[1]:g} J at {reported[0]:g} s", at, (34, 34), INK, "left")
+        _mark_lift_off(axes, float(run["lift_off_time"]), "left")
+    return figure
+
+
+def force_figure(run: xr.Dataset) -> Figure:
+    """Return the normal force over time; below zero the table would have to pull.
+
+    `run` also has lift_off_time, s.
+    """
+    with house_style():
+        figure, axes = _wide_panel(run)
+        low = 1.12 * min(float(run["normal_force"].min()), float(run["normal_force_listing"].min()))
+        axes.axhspan(low, 0, color=ACCENT, alpha=0.07, lw=0)
+        axes.axhline(0, color=ACCENT, lw=1.0)
+        _pair(axes, run, "normal_force", legend=True)
+        axes.annotate(
+            "the table pulls", (0, low), (6, 5), textcoords="offset points", color=ACCENT, size=9, va="bottom"
+        )
+        axes.set_ylabel("normal force $g_n$ (N)")
+        axes.set_ylim(bottom=low)
+        _mark_lift_off(axes, float(run["lift_off_time"]), "left")
+    return figure
+
+
+def stopped_figure(run: xr.Dataset, reported_stop: float) -> Figure:
+    """Return the tilt up to where the table would have to pull, and up to where the report stopped, s."""
+    with house_style():
+        figure, axes = _wide_panel(run)
+        stop = float(run["lift_off_time"])
+        before = run.sel(time=run["time"] <= stop)
+        other = run.sel(time_listing=run["time_listing"] <= reported_stop)
+        axes.plot(other["time_listing"], other["theta_listing"], color=REPORT, lw=_WIDE, label=_NAME_REPORT)
+        axes.plot(before["time"], before["theta"], color=CONVERGED, lw=_THIN + 0.3, label=_NAME)
+        _tilt_axis(axes)
+        axes.set_ylim(0, 3 * np.pi / 4)
+        pi_ticks(axes.yaxis, 3 * np.pi / 4)
+        axes.set_xlim(0, 6.4)
+        end = float(np.interp(stop, run["time"], run["theta"]))
+        last = float(other["theta_listing"][-1])
+        axes.plot([stop], [end], "o", color=ACCENT, ms=6, zorder=5)
+        axes.plot([reported_stop], [last], "s", color=REPORT, ms=6, zorder=5, mec=INK, mew=0.6)
+        _callout(axes, f"the top leaves the table\nat {stop:.3f} s", (stop, end), (-44, 26), ACCENT, "right")
+        _callout(
+            axes, f"the report stops\nat {reported_stop:g} s", (reported_stop, last), (-20, 62), INK, "center"
+        )
+        axes.legend(loc="upper left")
+    return figure
+
+
+def _callout(
+    axes: Axes, text: str, at: tuple[float, float], offset: tuple[float, float], color: str, side: str
+) -> None:
+    axes.annotate(
+        text, at, offset, textcoords="offset points", color=color, size=9, ha=side, va="center",
+        arrowprops={"arrowstyle": "-", "color": color, "lw": 0.8, "shrinkA": 2, "shrinkB": 5},
+    )  # fmt: skip
+
+
+def _wide_panel(run: xr.Dataset) -> tuple[Figure, Axes]:
+    figure = Figure(figsize=(WIDTH, 3.0))
+    axes = figure.subplots()
+    axes.set_xlabel("time (s)")
+    axes.set_xlim(0, float(run["time"][-1]))
+    axes.xaxis.set_major_locator(MultipleLocator(2))
+    return figure, axes
+
+
+def _pair(
+    axes: Axes,
+    run: xr.Dataset,
+    name: str,
+    *,
+    scale: float = 1.0,
+    legend: bool = False,
+    names: tuple[str, str] = (_NAME_REPORT, _NAME),
+) -> None:
+    """Draw a variable by both methods: the report's below and wide, so that it shows where they differ."""
+    theirs, ours = run[f"{name}_listing"], run[name]
+    axes.plot(run["time_listing"], scale * theirs, color=REPORT, lw=_WIDE, label=names[0])
+    axes.plot(run["time"], scale * ours, color=CONVERGED, lw=_THIN, label=names[1])
+    if legend:
+        axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.2)
+
+
+def _tilt_axis(axes: Axes) -> None:
+    axes.set_ylabel(r"tilt $\theta$ (rad)")
+    pi_ticks(axes.yaxis)
+    axes.set_ylim(-0.06, np.pi + 0.1)
+
+
+def _precession(axes: Axes, run: xr.Dataset, limit: float) -> None:
+    axes.axhline(0, color=MUTED, lw=0.8)
+    _pair(axes, run, "phi_dot")
+    axes.set_ylim(-limit, limit)
+    last = float(run["last_reversal"])
+    quiet = [float(run[name]) for name in ("quiet_start", "quiet_end")]
+    marks = [time for time in (quiet if quiet[0] > 1.0 else [last]) if np.isfinite(time)]
+    axes.plot(marks, np.zeros(len(marks)), "o", color=ACCENT, ms=5, zorder=5)
+    for time in marks:
+        axes.annotate(
+            f"{time:.2f} s", (time, 0), (7, 5), textcoords="offset points", color=ACCENT, size=9, va="bottom",
+            bbox={"fc": "white", "ec": "none", "pad": 0.8, "alpha": 0.85},
+        )  # fmt: skip
+    axes.set_ylabel(r"precession $\dot\varphi$ (rad/s)")
+
+
+def _slip(axes: Axes, run: xr.Dataset) -> None:
+    for suffix, time, color, width in _LINES:
+        speed = np.hypot(run[f"slip_x{suffix}"], run[f"slip_y{suffix}"])
+        axes.plot(run[time], speed, color=color, lw=width)
+    axes.set_ylabel("slip speed $|v_A|$ (m/s)")
+    axes.set_ylim(bottom=0)
+
+
+def _mark_lift_off(axes: Axes, time: float, side: str = "right") -> None:
+    """Mark the instant after which the table would have to pull; nothing where there is none."""
+    if not np.isfinite(time):
+        return
+    axes.axvline(time, color=ACCENT, lw=1.0, ls=(0, (4, 3)))
+    axes.annotate(
+        f"lift-off, {time:.2f} s", (time, 1.0), (4 if side == "right" else -4, -2),
+        xycoords=("data", "axes fraction"), textcoords="offset points", color=ACCENT, size=9,
+        ha="left" if side == "right" else "right", va="top",
+    )  # fmt: skip
+
+
+def _zoom(axes: Axes, run: xr.Dataset, span: tuple[float, float], box: Box) -> None:
+    """Draw a span of time of the tilt large inside the panel, and show where it is taken from."""
+    inset = axes.inset_axes(box)
+    drawn = []
+    for suffix, time, color, width in _LINES:
+        part = run.sel({time: slice(*span)})
+        inset.plot(part[time], part[f"theta{suffix}"], color=color, lw=width)
+        drawn.append(part[f"theta{suffix}"].values)
+    low, high = min(part.min() for part in drawn), max(part.max() for part in drawn)
+    inset.set_xlim(*span)
+    inset.set_ylim(low - 0.08 * (high - low), high + 0.08 * (high - low))
+    inset.tick_params(labelsize=7.5, length=2, pad=2)
+    inset.locator_params(nbins=4)
+    inset.grid(visible=False)
+    inset.spines[["top", "right"]].set_visible(True)
+    axes.indicate_inset_zoom(inset, edgecolor=INK, alpha=0.45, lw=0.8)

@@ -1,0 +1,50 @@
+"""Experiments: the computations that figures and claims are made from, each giving one dataset."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import xarray as xr
+
+from tippetop import __version__
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """A computation that depends on nothing else.
+
+    Attributes
+    ----------
+    id
+        What it is called.
+    title
+        What it finds out, in a few words.
+    cost
+        About how long it takes, s: for the order of work and for the time left.
+    compute
+        Does it; the argument says whether a coarser version is enough.
+    """
+
+    id: str
+    title: str
+    cost: float
+    compute: Callable[[bool], xr.Dataset]
+
+    def run(self, quick: bool) -> xr.Dataset:
+        """Compute, and note on the result what it is."""
+        data = self.compute(quick)
+        data.attrs = {
+            "title": self.title,
+            "experiment": self.id,
+            "quick": int(quick),
+            "tippetop_version": __version__,
+            "Conventions": "CF-1.11",
+            **data.attrs,
+        }
+        return data
+
+
+def variable(
+    values: object, units: str, long_name: str, dimensions: tuple[str, ...] = ()
+) -> tuple[tuple[str, ...], object, dict[str, str]]:
+    """A variable of a dataset with its unit and its meaning."""
+    return (dimensions, values, {"units": units, "long_name": long_name})

@@ -1,0 +1,154 @@
+"""The numerical methods: their order, and what a stiff launch costs them."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+
+from tippetop.integrators.base import Array, Motion
+from tippetop.integrators.scipy_methods import SciPy
+from tippetop.mechanics.vectors import Scalar
+from tippetop.presets import report_problem
+from tippetop.problem import Problem
+from tippetop.report.experiment import Experiment, variable
+from tippetop.report.experiments.runs import on_table
+from tippetop.report.listing import launch_state, listing_rates
+from tippetop.report.ode45 import ABSOLUTE, RELATIVE, dormand_prince_step, ode45
+from tippetop.simulate import simulate
+
+EXPLICIT, IMPLICIT = ("ode45", "dop853"), ("radau", "bdf", "lsoda")
+
+LAUNCHES = ((10.0, 0.3), (155.0, 0.3), (155.0, 10.0), (10.0, 100.0), (155.0, 100.0))
+"""Spins (rad/s) and friction coefficients (s/m) on which the methods are compared."""
+
+_SPAN = 5.0
+
+
+def _generic() -> Problem:
+    """A launch with nothing special about it, so that no term of an error vanishes by symmetry."""
+    changes = {"launch.tilt_rate": 2.0, "launch.precession": 6.0, "launch.slip": (0.1, 0.05)}
+    return on_table(report_problem(80.0, tilt=0.7).replace(changes))
+
+
+def _order(quick: bool) -> xr.Dataset:
+    problem, span = _generic(), 0.1
+    steps = span / np.array([50, 100, 200] if quick else [50, 100, 200, 400])
+    motion, start = listing_rates(problem, wrap=None), launch_state(problem)
+
+    def rates(y: Array) -> Array:
+        return np.array(motion.rates(y.tolist(), ()))
+
+    def by_rk4(duration: float, step: float) -> Array:
+        run = simulate(problem, duration, times=[duration], integrator="rk4", step=step)
+        return np.asarray(run["axis"].values[-1])
+
+    def by_taylor(duration: float) -> xr.Dataset:
+        return simulate(problem, duration, times=[duration])
+
+    def by_dormand_prince(duration: float, step: float) -> float:
+        state = start
+        for _ in range(round(duration / step)):
+            state, _stages = dormand_prince_step(rates, state, rates(state), step)
+        return float(state[0])
+
+    final = by_taylor(span)
+    errors = {
+        "rk4_in_all": [_distance(by_rk4(span, h), final) for h in steps],
+        "rk4_in_a_step": [_distance(by_rk4(h, h), by_taylor(float(h))) for h in steps],
+        "ode45_in_all": [abs(by_dormand_prince(span, h) - float(final["theta"][-1])) for h in steps],
+    }
+    data = xr.Dataset(coords={"step": variable(steps, "s", "length of a step", ("step",))})
+    for name, values in errors.items():
+        data[name] = variable(np.array(values), "rad", f"error of the axis or tilt: {name}", ("step",))
+        slope = float(np.log(values[-1] / values[-2]) / np.log(steps[-1] / steps[-2]))
+        data[f"order_{name}"] = variable(
+            slope, "1", f"power of the step in the error, between the two finest: {name}"
+        )
+    return data
+
+
+def _distance(axis: Array, run: xr.Dataset) -> float:
+    return float(np.linalg.norm(axis - run["axis"].values[-1]))
+
+
+class _Counted:
+    """The listing's right-hand side, counting every evaluation, those for a Jacobian included."""
+
+    def __init__(self, problem: Problem) -> None:
+        self.motion = listing_rates(problem)
+        self.count = 0
+
+    def __call__(self, y: Sequence[Scalar], parameters: Sequence[Scalar]) -> Sequence[Scalar]:
+        self.count += 1
+        return self.motion.rates(y, parameters)
+
+
+def evaluations(problem: Problem, method: str, span: float) -> int:
+    """Evaluations of the right-hand side at the report's tolerances; -1 where the method gives up."""
+    rates = _Counted(problem)
+    start = launch_state(problem)
+    if method == "ode45":
+        failure = ode45(lambda y: np.array(rates(y.tolist(), ())), span, start).failure
+    else:
+        motion = Motion(rates, size=7, parameters=0)
+        scipy = SciPy(method, RELATIVE, ABSOLUTE)
+        failure = scipy.integrate(motion, (), (0.0, start), span, np.array([span])).failure
+    return rates.count if failure is None else -1
+
+
+def _stiffness(quick: bool) -> xr.Dataset:
+    span = 1.5 if quick else _SPAN
+    methods = (*EXPLICIT, *IMPLICIT)
+    counts = np.array(
+        [
+            [evaluations(report_problem(spin, mu=mu), method, span) for method in methods]
+            for spin, mu in LAUNCHES
+        ]
+    )
+    counted = np.where(counts < 0, np.nan, counts)
+    explicit = np.nanmin(counted[:, : len(EXPLICIT)], axis=1)
+    implicit = np.nanmin(counted[:, len(EXPLICIT) :], axis=1)
+    name = "evaluations of the best explicit method over those of the best implicit one"
+    return xr.Dataset(
+        {
+            "evaluations": variable(
+                counts, "1", "evaluations of the right-hand side", ("launch", "integrator")
+            ),
+            "stiffness": variable(explicit / implicit, "1", name, ("launch",)),
+            "launch_spin": variable([spin for spin, _ in LAUNCHES], "rad s-1", "spin", ("launch",)),
+            "launch_mu": variable([mu for _, mu in LAUNCHES], "s m-1", "friction coefficient", ("launch",)),
+        },
+        {"integrator": list(methods)},
+        {"span_s": span, "relative_tolerance": RELATIVE, "absolute_tolerance": ABSOLUTE},
+    )
+
+
+def _jump(quick: bool) -> xr.Dataset:
+    """The listing's right-hand side just before and just after the axis is vertical."""
+    problem = report_problem()
+    motion = listing_rates(problem)
+    tiny = 1e-9
+    rest = (3.0, 0.0, 10.0, 155.0, 0.05, 0.05)
+    before, after = (np.array(motion.rates((side * tiny, *rest), ())) for side in (-1, 1))
+    smooth = listing_rates(problem, wrap=None)
+    true = [np.array(smooth.rates((side * tiny, *rest), ())) for side in (-1, 1)]
+    return xr.Dataset(
+        {
+            "jump_listing": variable(
+                abs(after[6] - before[6]), "m s-2", "jump of the rate of v_y with theta modulo pi"
+            ),
+            "jump": variable(abs(true[1][6] - true[0][6]), "m s-2", "its change without the modulo"),
+            "size": variable(abs(after[6]), "m s-2", "the rate of v_y itself"),
+        },
+        attrs={
+            "state": f"theta = -/+{tiny:g}; theta', phi, phi', omega3, v_x, v_y = {rest}",
+        },
+    )
+
+
+EXPERIMENTS = [
+    Experiment("order", "order of accuracy of the two Runge-Kutta formulas", 1.0, _order),
+    Experiment("stiffness", "evaluations of explicit and implicit methods", 12.0, _stiffness),
+    Experiment("theta-mod-pi", "the listing's right-hand side at the poles", 0.1, _jump),
+]
+"""What is said about numerical methods."""

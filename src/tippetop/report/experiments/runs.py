@@ -1,0 +1,176 @@
+"""Single launches, by the report's method and converged."""
+
+import math
+from collections.abc import Callable
+from functools import partial
+
+import numpy as np
+import xarray as xr
+
+from tippetop.mechanics.euler import published_energy
+from tippetop.presets import REPORT_TABLE_1, report_problem
+from tippetop.problem import Problem
+from tippetop.report.experiment import Experiment, variable
+from tippetop.report.listing import CONTROLS, listing_run
+from tippetop.report.readings import crossings, first_below_zero, flip_time, longest_quiet
+from tippetop.simulate import simulate
+
+WINDOW = 20.0
+"""Length of the report's runs, s (its listing, line 13)."""
+
+ARRIVALS = (0.01, 0.02, 0.05, 0.1)
+"""Distances from the last tilt at which a top may be said to have arrived, rad; the report's is the first."""
+
+SERIES = ("theta", "theta_dot", "phi_dot", "omega3", "slip_x", "slip_y", "normal_force", "energy")
+_DRAWN = 10_000
+
+
+def on_table(problem: Problem) -> Problem:
+    """The problem with a table that pulls when it must, as in the report."""
+    return problem.replace({"contact.liftoff": "ignore"})
+
+
+def stopping(problem: Problem) -> Problem:
+    """The problem with a run that ends where the table would have to pull."""
+    return problem.replace({"contact.liftoff": "stop"})
+
+
+def lift_off_time(run: xr.Dataset) -> float:
+    """When the top first left the table, s; nan if it did not."""
+    times = run["event_time"].values[run["event_kind"].values == "lift-off"]
+    return float(times[0]) if len(times) else math.nan
+
+
+def comparison(problem: Problem, quick: bool, *, both_controls: bool = False) -> xr.Dataset:
+    """One launch by the report's method and converged, on a table that pulls, with what is read off both.
+
+    Variables over `time` are converged; those over `time_listing`, named ``..._listing``, are the report's
+    method at its own points of output. With both controls, ``..._scipy`` is read off the same method with
+    SciPy's control of the step.
+    """
+    problem = on_table(problem)
+    true = simulate(problem, WINDOW, samples=20_001 if quick else 40_001)
+    controls = CONTROLS if both_controls else CONTROLS[:1]
+    listings = {control: listing_run(problem, WINDOW, control) for control in controls}
+    with np.errstate(all="ignore"):
+        published = _published_energy(true, problem)
+    true = true.assign(energy_published=("time", published))
+    data = _series(true, listings["ode45"])
+    data = data.assign(_readings(true, ""))
+    for suffix, run in zip(("_listing", "_scipy"), listings.values(), strict=False):
+        data = data.assign(_readings(run, suffix))
+    stopped = lift_off_time(simulate(stopping(problem), WINDOW, samples=2))
+    data["lift_off_time"] = variable(stopped, "s", "when the table would first have to pull")
+    data.attrs = {
+        "problem": problem.to_json(),
+        "outcome": true.attrs["outcome"],
+        "outcome_advice": true.attrs["outcome_advice"],
+        "failure_listing": listings["ode45"].attrs["failure"],
+    }
+    return data
+
+
+def _series(true: xr.Dataset, listing: xr.Dataset) -> xr.Dataset:
+    """The variables that are drawn, thinned to a number of points that a figure can show."""
+
+    def thin(run: xr.Dataset) -> xr.Dataset:
+        return run.isel(time=slice(None, None, max(1, math.ceil(run.sizes["time"] / _DRAWN))))
+
+    kept = thin(true[[*SERIES, "energy_published"]]).drop_attrs(deep=False)
+    kept["energy_published"].attrs = {
+        "units": "J",
+        "long_name": "energy by the report's equation (4.1), along the converged motion",
+    }
+    other = thin(listing[[*SERIES, "theta_integrated"]]).rename(
+        {"time": "time_listing"} | {name: f"{name}_listing" for name in (*SERIES, "theta_integrated")}
+    )
+    for name in SERIES:
+        described = dict(kept[name].attrs)
+        described["long_name"] = f"{described['long_name']}, by the report's method"
+        other[f"{name}_listing"].attrs = described
+    other["energy_listing"].attrs["long_name"] = "energy by the report's equation (4.1) and its method"
+    other["theta_integrated_listing"].attrs = {"units": "rad", "long_name": "theta before it is wrapped"}
+    other["time_listing"].attrs = {"units": "s", "long_name": "time of the report's method"}
+    return xr.merge([kept, other], combine_attrs="override", compat="no_conflicts")
+
+
+def _published_energy(run: xr.Dataset, problem: Problem) -> np.ndarray:
+    names = ("theta", "theta_dot", "phi", "phi_dot", "omega3", "slip_x", "slip_y")
+    return np.asarray(published_energy([run[name].values for name in names], problem.top, np))
+
+
+def _readings(run: xr.Dataset, suffix: str) -> dict[str, object]:
+    """What is read off a run; see `tippetop.report.readings`."""
+    times, theta, turning = run["time"].values, run["theta"].values, run["phi_dot"].values
+    changes = crossings(times, turning)
+    quiet = longest_quiet(times, turning)
+    slip = np.hypot(run["slip_x"].values, run["slip_y"].values)
+    force, energy = run["normal_force"].values, run["energy"].values
+    values = {
+        "arrival_time": variable(
+            [flip_time(times, theta, within) for within in ARRIVALS],
+            "s",
+            "first time at which the tilt is within this of its last value",
+            ("within",),
+        ),
+        "reversals": variable(len(changes), "1", "how often the precession changes sign"),
+        "quiet_start": variable(quiet[0], "s", "start of the longest time between two reversals"),
+        "quiet_end": variable(quiet[1], "s", "end of the longest time between two reversals"),
+        "last_reversal": variable(changes[-1] if len(changes) else np.nan, "s", "last reversal"),
+        "end_theta": variable(theta[-1], "rad", "tilt at the end"),
+        "end_phi_dot": variable(turning[-1], "rad s-1", "precession at the end"),
+        "end_omega3": variable(run["omega3"].values[-1], "rad s-1", "axial spin at the end"),
+        "end_slip": variable(slip[-1], "m s-1", "slip speed at the end"),
+        "largest_slip": variable(slip.max(), "m s-1", "largest slip speed"),
+        "least_force": variable(force.min(), "N", "least normal force"),
+        "zero_of_force": variable(first_below_zero(times, force), "s", "first time with a pulling table"),
+        "launch_energy": variable(energy[0], "J", "energy at launch"),
+        "largest_energy": variable(energy.max(), "J", "largest energy"),
+    }
+    readings: dict[str, object] = {f"{name}{suffix}": value for name, value in values.items()}
+    readings["within"] = variable(list(ARRIVALS), "rad", "distance from the last tilt", ("within",))
+    return readings
+
+
+def _experiment(
+    name: str, cost: float, problem: Callable[[], Problem], title: str, both_controls: bool = False
+) -> Experiment:
+    return Experiment(name, title, cost, partial(_compare, problem, both_controls))
+
+
+def _compare(problem: Callable[[], Problem], both_controls: bool, quick: bool) -> xr.Dataset:
+    return comparison(problem(), quick, both_controls=both_controls)
+
+
+def _table_1() -> Problem:
+    return report_problem(50.0).replace({"body": REPORT_TABLE_1.model_dump()})
+
+
+def _settling(quick: bool) -> xr.Dataset:
+    """How far the tilt still swings, in the second before several times, on the table of Fig. 8."""
+    ends = np.array([20.0, 40.0, 80.0] if quick else [20.0, 40.0, 80.0, 160.0])
+    run = simulate(
+        on_table(report_problem(155.0, mu=100.0)), float(ends[-1]), samples=int(200 * ends[-1]) + 1
+    )
+    swings = [float(np.ptp(run["theta"].sel(time=slice(end - 1.0, end)).values)) for end in ends]
+    return xr.Dataset(
+        {"swing": variable(swings, "rad", "swing of the tilt in the second before", ("end",))},
+        {"end": variable(ends, "s", "end of that second", ("end",))},
+    )
+
+
+EXPERIMENTS = [
+    Experiment("settling-mu-100", "how the nutation of Fig. 8 dies away", 0.8, _settling),
+    _experiment("run-155", 1.4, report_problem, "launch at 155 rad/s", both_controls=True),
+    _experiment("run-50", 0.8, partial(report_problem, 50.0), "launch at 50 rad/s", both_controls=True),
+    _experiment("run-50-table-1", 0.8, _table_1, "launch at 50 rad/s of the body that Table 1 prints"),
+    _experiment("run-mu-100", 4.0, partial(report_problem, 155.0, mu=100.0), "launch on an impossible table"),
+    _experiment("run-175", 2.0, partial(report_problem, 175.0), "launch at 175 rad/s", both_controls=True),
+    _experiment("run-10", 0.5, partial(report_problem, 10.0), "launch at 10 rad/s"),
+    _experiment("run-90", 1.0, partial(report_problem, 90.0), "launch at 90 rad/s"),
+    _experiment("run-120", 1.1, partial(report_problem, 120.0), "launch at 120 rad/s"),
+    _experiment(
+        "run-150-pi-4", 1.2, partial(report_problem, 150.0, math.pi / 4), "launch at 150 rad/s and pi/4"
+    ),
+]
+"""The launches of Figs. 4, 5, 8, 9 to 12 and 13 to 16, and that of Table 1."""

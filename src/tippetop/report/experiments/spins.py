@@ -1,0 +1,160 @@
+"""Where a launch ends up as a function of its spin: Fig. 6 and its two critical points."""
+
+import math
+
+import numpy as np
+import xarray as xr
+from scipy.optimize import brentq
+
+from tippetop.presets import report_problem
+from tippetop.report.experiment import Experiment, variable
+from tippetop.report.experiments.runs import WINDOW, lift_off_time, on_table, stopping
+from tippetop.report.listing import listing_run
+from tippetop.report.readings import SETTLED
+from tippetop.simulate import simulate
+
+MARGINS = (0.001, SETTLED, 0.1)
+"""Tilts that may count as upright, and distances from pi that may count as turned over, rad."""
+
+TURNED = 0.1
+"""How far from pi a final tilt must be for a launch to count as not turned over, rad."""
+
+LONG_WINDOWS = (20.0, 60.0, 200.0, 1000.0)
+
+_TILT = ("rad", "tilt at the end of the run")
+
+
+def final_tilt(spin: float, window: float = WINDOW) -> float:
+    """Tilt at the end of a converged run on a table that pulls, rad; nan if it became singular."""
+    run = simulate(on_table(report_problem(spin)), window, samples=2)
+    return float(run["theta"].values[-1]) if run.attrs["outcome"] == "completed" else math.nan
+
+
+def _listing_spins(quick: bool) -> np.ndarray:
+    low = np.arange(24.0, 32.0, 2.0 if quick else 1.0)
+    high = np.arange(76.5, 80.6, 1.0 if quick else 0.5)
+    top = np.arange(164.0, 178.0, 2.0 if quick else 1.0)
+    between = np.concatenate([np.arange(5, 24, 6), np.arange(35, 76, 8), np.arange(85, 164, 10)])
+    coarse = between[::3] if quick else between
+    return np.unique(
+        np.concatenate([coarse, low, high, top, [180.0] if quick else [184, 190, 196, 203, 210]])
+    )
+
+
+def _by_listing(quick: bool) -> xr.Dataset:
+    spins = _listing_spins(quick)
+    tilts = np.array(
+        [float(listing_run(report_problem(float(spin)), WINDOW)["theta"].values[-1]) for spin in spins]
+    )
+    low, high = (spins >= 24) & (spins < 32), (spins > 76) & (spins < 81)
+    upright = [_where(spins[low], np.log(tilts[low]), math.log(margin)) for margin in MARGINS]
+    inverted = [_where(spins[high], -np.log(math.pi - tilts[high]), -math.log(margin)) for margin in MARGINS]
+    lost = spins[(spins > 100) & (np.abs(tilts - math.pi) > TURNED)]
+    name = "spin above which the final tilt is no longer 0, by the report's method"
+    other = "spin above which the final tilt is pi, by the report's method"
+    return xr.Dataset(
+        {
+            "final_theta_listing": variable(tilts, *_TILT, ("spin_listing",)),
+            "critical_upright_listing": variable(upright, "rad s-1", name, ("margin",)),
+            "critical_inverted_listing": variable(inverted, "rad s-1", other, ("margin",)),
+            "lost_listing": variable(
+                lost.min() if len(lost) else np.nan,
+                "rad s-1",
+                "least spin above 100 rad/s that does not end at pi, by the report's method",
+            ),
+        },
+        {
+            "spin_listing": variable(spins, "rad s-1", "spin at launch", ("spin_listing",)),
+            "margin": variable(list(MARGINS), "rad", "what counts as 0", ("margin",)),
+        },
+    )
+
+
+def _where(x: np.ndarray, y: np.ndarray, level: float) -> float:
+    """Where rising values reach a level, by linear interpolation."""
+    return float(np.interp(level, np.maximum.accumulate(y), x))
+
+
+def _converged(quick: bool) -> xr.Dataset:
+    spins = np.arange(5.0, 210.1, 2.5 if quick else 0.5)
+    tilts = np.array([final_tilt(float(spin)) for spin in spins])
+    lost = spins[(spins > 100) & ~(np.abs(tilts - math.pi) < TURNED)]
+    onset = _lift_off_onset(0.5 if quick else 0.01)
+    return xr.Dataset(
+        {
+            "final_theta": variable(tilts, *_TILT, ("spin",)),
+            "lift_off_onset": variable(
+                onset, "rad s-1", "least spin at which the table would have to pull within the window"
+            ),
+            "lost": variable(
+                lost.min() if len(lost) else np.nan,
+                "rad s-1",
+                "least spin above 100 rad/s that does not end at pi on a table that pulls",
+            ),
+        },
+        {"spin": variable(spins, "rad s-1", "spin at launch", ("spin",))},
+        {"window_s": WINDOW},
+    )
+
+
+def _lift_off_onset(accuracy: float) -> float:
+    def lifts(spin: float) -> bool:
+        run = simulate(stopping(report_problem(spin)), WINDOW, samples=2)
+        return not math.isnan(lift_off_time(run))
+
+    low, high = 120.0, 200.0
+    while high - low > accuracy:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if lifts(middle) else (middle, high)
+    return 0.5 * (low + high)
+
+
+def critical_spins(window: float, margin: float) -> tuple[float, float]:
+    """Spins between which a launch ends neither upright nor turned over, rad/s.
+
+    Parameters
+    ----------
+    window
+        Length of the runs, s.
+    margin
+        Tilt at the end that counts as upright, and distance from pi that counts as turned over, rad.
+    """
+
+    def upright(spin: float) -> float:
+        return math.log(max(final_tilt(spin, window), 1e-12) / margin)
+
+    def inverted(spin: float) -> float:
+        return -math.log(max(math.pi - final_tilt(spin, window), 1e-12) / margin)
+
+    return (
+        float(brentq(upright, 22.0, 34.0, xtol=2e-3)),
+        float(brentq(inverted, 72.0, 84.0, xtol=2e-3)),
+    )
+
+
+def _thresholds(quick: bool) -> xr.Dataset:
+    windows = (20.0, 200.0) if quick else LONG_WINDOWS
+    by_window = np.array([critical_spins(window, SETTLED) for window in windows])
+    by_margin = np.array([critical_spins(WINDOW, margin) for margin in MARGINS])
+    names = ("spin above which the final tilt is no longer 0", "spin above which the final tilt is pi")
+    return xr.Dataset(
+        {
+            "upright_by_window": variable(by_window[:, 0], "rad s-1", names[0], ("window",)),
+            "inverted_by_window": variable(by_window[:, 1], "rad s-1", names[1], ("window",)),
+            "upright_by_margin": variable(by_margin[:, 0], "rad s-1", names[0], ("margin",)),
+            "inverted_by_margin": variable(by_margin[:, 1], "rad s-1", names[1], ("margin",)),
+        },
+        {
+            "window": variable(list(windows), "s", "length of the runs", ("window",)),
+            "margin": variable(list(MARGINS), "rad", "what counts as 0", ("margin",)),
+        },
+        {"margin_of_windows_rad": SETTLED},
+    )
+
+
+EXPERIMENTS = [
+    Experiment("final-tilt-listing", "final tilt against spin, by the report's method", 14.0, _by_listing),
+    Experiment("final-tilt", "final tilt against spin, converged", 7.0, _converged),
+    Experiment("critical-spins", "critical spins against the length of the runs", 9.0, _thresholds),
+]
+"""What Fig. 6 is made from."""

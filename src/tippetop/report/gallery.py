@@ -1,0 +1,236 @@
+"""The figures: which experiments each is drawn from, how, and what to say under it."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import xarray as xr
+from matplotlib.figure import Figure
+
+from tippetop.figures import methods, runs, schematics, sweeps
+from tippetop.report.claim import Data
+from tippetop.report.quoted import ABNORMAL_SPIN, CRITICAL_SPINS, ENERGY, ENERGY_TIME, STOP
+
+_CRITICAL = (float(CRITICAL_SPINS[0]), float(CRITICAL_SPINS[1]))
+
+Draw = Callable[[xr.Dataset], Figure]
+
+
+@dataclass(frozen=True)
+class Plate:
+    """A figure of the report redone, or one of our own.
+
+    Attributes
+    ----------
+    id
+        Name, and stem of its files.
+    title
+        Heading.
+    caption
+        What is seen, in a few sentences.
+    needs
+        Names of the experiments it shows.
+    draw
+        Makes the figure from their merged dataset (empty for a drawing that needs none).
+    """
+
+    id: str
+    title: str
+    caption: str
+    needs: tuple[str, ...]
+    draw: Draw
+
+    def dataset(self, data: Data) -> xr.Dataset:
+        """The data behind the figure."""
+        parts = [data[name] for name in self.needs]
+        return xr.merge(parts, combine_attrs="drop_conflicts", compat="no_conflicts", join="outer")
+
+
+def _drawing(make: Callable[..., Figure]) -> Draw:
+    return lambda _: make()
+
+
+def _run(
+    id_: str, title: str, caption: str, experiment: str, draw: Callable[..., Figure], **options: Any
+) -> Plate:
+    return Plate(id_, title, caption, (experiment,), partial(draw, **options))
+
+
+_BOTH = (
+    "Orange, wide: the report's method, its equations with theta modulo pi by ode45 at default tolerances. "
+    "Blue, thin: converged. "
+)
+
+PLATES: dict[str, Plate] = {
+    plate.id: plate
+    for plate in (
+        Plate(
+            "fig01",
+            "Figure 1: the tippe top",
+            "A ball cut flat, with a stem on the cut. The centre of mass (CM) lies below the centre of the "
+            "ball while the toy is upright, and higher when it spins on its stem: the spin pays for the "
+            "climb.",
+            (),
+            _drawing(schematics.tippe_top_drawing),
+        ),
+        Plate(
+            "fig02",
+            "Figure 2: the Euler angles",
+            "The three turns that take the space axes x, y, z to the body axes X, Y, Z: about z, about the "
+            "line of nodes N, and about Z.",
+            (),
+            _drawing(schematics.euler_angles_drawing),
+        ),
+        Plate(
+            "fig03",
+            "Figure 3: the model",
+            "A sphere whose centre of mass is off its centre O by alpha R along the axis 3. A is the point "
+            "that touches the table, a the vector from the centre of mass to it.",
+            (),
+            _drawing(schematics.model_drawing),
+        ),
+        _run(
+            "fig04",
+            "Figure 4: launch at 155 rad/s",
+            _BOTH
+            + "a, tilt, with 0.4 s drawn large. b, spin about the body's axis. c, precession, cut off: it "
+            "has a peak whenever the axis passes close to the vertical; dots mark the two reversals between "
+            "which it keeps its sense. d, slip speed of the point of contact.",
+            "run-155",
+            runs.motion_figure,
+            zoom=(5.2, 5.6),
+        ),
+        _run(
+            "fig05",
+            "Figure 5: launch at 50 rad/s",
+            _BOTH + "Panels as in Figure 4; the dot marks the last reversal of the precession.",
+            "run-50",
+            runs.motion_figure,
+            precession_limit=80.0,
+            zoom=(0.0, 1.6),
+            inset=(0.36, 0.66, 0.6, 0.32),
+        ),
+        Plate(
+            "fig06",
+            "Figure 6: final tilt against spin",
+            "Tilt after 20 s on a table that pulls when it must, as in the report. Dashed: the critical "
+            "spins, the report's in orange, converged ones from the longest runs in blue. In the shaded "
+            "range the table would have to pull within 20 s, and the motion on it is not physical.",
+            ("final-tilt-listing", "final-tilt", "critical-spins"),
+            partial(sweeps.final_tilt_figure, reported=(*_CRITICAL, float(ABNORMAL_SPIN))),
+        ),
+        Plate(
+            "windows",
+            "Critical spins and patience",
+            "The critical spins read from runs of different length (settled: within 0.01 rad). The grey bar "
+            "at 20 s spans what other meanings of settled give there, 0.001 to 0.1 rad. Dashed: the report.",
+            ("critical-spins",),
+            partial(sweeps.windows_figure, reported=_CRITICAL),
+        ),
+        Plate(
+            "fig07",
+            "Figure 7: flip time against friction",
+            "a, the report's range, with fits of a power of mu by least squares and the correlation of the "
+            "logarithms; the report does not say at which spin. b, three decades of friction: the curve is "
+            "level where the time goes as 1/mu. The jumps come from the definition of the flip time, the "
+            "gaps from runs on a table that pulls that became singular.",
+            ("flip-times", "flip-times-wide"),
+            sweeps.flip_time_figure,
+        ),
+        _run(
+            "fig08",
+            "Figure 8: mu = 100 s/m",
+            _BOTH + "The spin is not given in the report; 155 rad/s here.",
+            "run-mu-100",
+            runs.tilt_figure,
+            zoom=(12.8, 13.8),
+        ),
+        _run(
+            "fig09",
+            "Figure 9: launch at 175 rad/s",
+            _BOTH
+            + "From the dashed line on the table has to pull, which no table does; neither curve is physical "
+            "there, and the two drift apart.",
+            "run-175",
+            runs.tilt_figure,
+            zoom=(5.3, 5.8),
+            inset=(0.6, 0.52, 0.38, 0.44),
+        ),
+        _run(
+            "fig10",
+            "Figure 10: energy at 175 rad/s",
+            "Orange: the report's energy (4.1), which leaves out slip, along its own motion. Blue: the full "
+            "energy along the converged one. It rises only where the normal force is negative, for then "
+            "friction drives the slip.",
+            "run-175",
+            runs.energy_figure,
+            reported=(float(ENERGY_TIME), float(ENERGY)),
+        ),
+        _run(
+            "fig11",
+            "Figure 11: normal force at 175 rad/s",
+            _BOTH + "In the shaded range the table would have to pull.",
+            "run-175",
+            runs.force_figure,
+        ),
+        _run(
+            "fig12",
+            "Figure 12: 175 rad/s, stopped before flight",
+            _BOTH
+            + "The converged run ends where the normal force falls through zero; the report's, where it "
+            "chose to stop.",
+            "run-175",
+            runs.stopped_figure,
+            reported_stop=float(STOP),
+        ),
+        _run(
+            "fig13",
+            "Figure 13: launch at 10 rad/s",
+            _BOTH + "The first 3 s of 20 s, on a scale of their own.",
+            "run-10",
+            runs.upright_figure,
+        ),
+        _run(
+            "fig14",
+            "Figure 14: launch at 90 rad/s",
+            _BOTH,
+            "run-90",
+            runs.tilt_figure,
+            zoom=(5.5, 6.0),
+        ),
+        _run(
+            "fig15",
+            "Figure 15: launch at 120 rad/s",
+            _BOTH,
+            "run-120",
+            runs.tilt_figure,
+            zoom=(5.5, 6.0),
+        ),
+        _run(
+            "fig16",
+            "Figure 16: launch at 150 rad/s and theta = pi/4",
+            _BOTH + "From the dashed line on the table has to pull at times.",
+            "run-150-pi-4",
+            runs.tilt_figure,
+            zoom=(5.5, 6.0),
+        ),
+        Plate(
+            "order",
+            "Order of accuracy",
+            "Error against the length of the step, for the method of Appendix B and for the formula inside "
+            "ode45. The order is the slope, here between the two shortest steps.",
+            ("order",),
+            methods.order_figure,
+        ),
+        Plate(
+            "stiffness",
+            "What a stiff launch costs",
+            "Evaluations of the right-hand side, those for Jacobians included, for the same stretch of "
+            "motion at the report's tolerances.",
+            ("stiffness",),
+            methods.stiffness_figure,
+        ),
+    )
+}
+"""Every figure by its name, in the order of the page."""

@@ -1,0 +1,133 @@
+"""MATLAB's ode45 as the report used it: Dormand-Prince 5(4) with that program's control of the step.
+
+SciPy's RK45 has the same formula but chooses the size of its steps otherwise: it weighs the error by its root
+mean square, ode45 by its largest component; and the two grow and shrink a step by different rules. At the
+default tolerance that is enough to move the instants of a sensitive motion by tenths of a second, hence both.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.integrate import RK45
+
+from tippetop.integrators.base import Array
+
+Rates = Callable[[Array], Array]
+
+RELATIVE, ABSOLUTE = 1e-3, 1e-6
+"""Tolerances of ode45 when none are given."""
+
+REFINE = 4
+"""Points of output for every step taken."""
+
+_A, _B, _E, _P = RK45.A, RK45.B, RK45.E, RK45.P
+_STAGES = 7
+
+
+@dataclass(frozen=True)
+class Solution:
+    """What the method returns.
+
+    Attributes
+    ----------
+    times, states
+        Ends of the steps and the points of output between them, shapes (k,) and (k, size).
+    steps, evaluations
+        Steps accepted, and evaluations of the right-hand side.
+    failure
+        Why it gave up, or None.
+    """
+
+    times: Array
+    states: Array
+    steps: int
+    evaluations: int
+    failure: str | None = None
+
+
+def dormand_prince_step(rates: Rates, state: Array, slope: Array, step: float) -> tuple[Array, Array]:
+    """Take one step of the fifth-order formula.
+
+    Parameters
+    ----------
+    rates
+        The right-hand side.
+    state, slope
+        State and rates at the start, shape (size,).
+    step
+        Length of the step.
+
+    Returns
+    -------
+    The state at the end, shape (size,), and the rates at all stages, shape (7, size).
+    """
+    stages = np.empty((_STAGES, len(state)))
+    stages[0] = slope
+    for i in range(1, _STAGES - 1):
+        stages[i] = rates(state + step * (_A[i, :i] @ stages[:i]))
+    end = state + step * (_B @ stages[:-1])
+    stages[-1] = rates(end)
+    return end, stages
+
+
+def ode45(
+    rates: Rates, duration: float, start: Array, relative: float = RELATIVE, absolute: float = ABSOLUTE
+) -> Solution:
+    """Integrate y' = rates(y) from time 0 as MATLAB's ode45 does (Shampine & Reichelt 1997).
+
+    Parameters
+    ----------
+    rates
+        The right-hand side.
+    duration
+        Length of the run.
+    start
+        State at time 0, shape (size,).
+    relative, absolute
+        Tolerances per step.
+    """
+    threshold, longest = absolute / relative, 0.1 * duration
+    time, state = 0.0, np.array(start, dtype=float)
+    slope = rates(state)
+    evaluations, steps = 1, 0
+    pace = float(np.max(np.abs(slope) / np.maximum(np.abs(state), threshold))) / (0.8 * relative**0.2)
+    step = min(longest, 1.0 / pace) if pace > 0 else longest
+    times, states = [time], [state]
+
+    def result(failure: str | None = None) -> Solution:
+        return Solution(np.array(times), np.array(states), steps, evaluations, failure)
+
+    while time < duration:
+        shortest = 16.0 * float(np.spacing(time))
+        step = min(longest, max(shortest, step))
+        if 1.1 * step >= duration - time:
+            step = duration - time
+        failed = False
+        while True:
+            try:
+                end, stages = dormand_prince_step(rates, state, slope, step)
+            except (ArithmeticError, ValueError) as error:
+                return result(f"the solution is no longer finite ({error})")
+            evaluations += _STAGES - 1
+            weight = np.maximum(np.maximum(np.abs(state), np.abs(end)), threshold)
+            error_size = step * float(np.max(np.abs(_E @ stages) / weight))
+            if error_size <= relative:
+                break
+            if step <= shortest or not np.isfinite(error_size):
+                return result("no step is short enough for the tolerance")
+            shrink = 0.5 if failed else max(0.1, 0.8 * (relative / error_size) ** 0.2)
+            step, failed = max(shortest, step * shrink), True
+        steps += 1
+        between = stages.T @ _P
+        for part in np.arange(1, REFINE) / REFINE:
+            times.append(time + step * part)
+            states.append(state + step * (between @ part ** np.arange(1, 5)))
+        time = duration if step == duration - time else time + step
+        state, slope = end, stages[-1]
+        times.append(time)
+        states.append(state)
+        if not failed:
+            growth = 1.25 * (error_size / relative) ** 0.2
+            step = step / growth if growth > 0.2 else 5.0 * step
+    return result()

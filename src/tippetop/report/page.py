@@ -1,0 +1,110 @@
+"""The page: every figure and every claim in one file that opens without a network."""
+
+import base64
+from collections import Counter
+from collections.abc import Mapping, Sequence, Set
+
+import jinja2
+
+from tippetop import __version__
+from tippetop.integrators import default_name
+from tippetop.report.claim import RULE, Judgement, Value, Verdict
+from tippetop.report.gallery import PLATES, Plate
+
+_TEMPLATE = "page.html.j2"
+
+
+def render(
+    plates: Sequence[Plate],
+    judgements: Sequence[Judgement],
+    pictures: Mapping[str, bytes],
+    *,
+    quick: bool,
+    partial: str | None = None,
+) -> str:
+    """The page as HTML.
+
+    Parameters
+    ----------
+    plates
+        The figures on it.
+    judgements
+        The claims on it.
+    pictures
+        The figures' SVG by name; they become part of the page.
+    quick
+        Whether to say that the computations were coarse.
+    partial
+        What was asked for, when it was not everything.
+    """
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("tippetop.report", "."),
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        undefined=jinja2.StrictUndefined,
+    )
+    shown = {plate.id for plate in plates}
+    claims = [worded(judgement, shown) for judgement in judgements]
+    counts = Counter(claim["verdict"] for claim in claims)
+    return environment.get_template(_TEMPLATE).render(
+        figures=[
+            {
+                "id": plate.id,
+                "title": plate.title,
+                "caption": plate.caption,
+                "image": _embedded(pictures[plate.id]),
+                "has_data": bool(plate.needs),
+                "claims": [claim for claim in claims if claim["figure"] == plate.id],
+            }
+            for plate in plates
+        ],
+        claims=claims,
+        verdicts=[
+            {"name": verdict.name.lower(), "count": counts[verdict.name.lower()], "meaning": verdict.value}
+            for verdict in Verdict
+        ],
+        rule=RULE,
+        quick=quick,
+        partial=partial,
+        version=__version__,
+        integrator=default_name(),
+    )
+
+
+def worded(judgement: Judgement, shown: Set[str] = frozenset()) -> dict[str, str | None]:
+    """A claim in words, for people; `shown` are the figures that it may refer to."""
+    statement, finding = judgement.claim.statement, judgement.finding
+    unit = "" if statement.unit == "1" else f" {statement.unit}"
+    reported = statement.printed.replace("pi", "π") or _number(judgement.reported)
+    span = finding.listing_range
+    figure = judgement.claim.figure
+    return {
+        "id": judgement.claim.id,
+        "place": statement.source.place,
+        "text": statement.text,
+        "reported": f"{reported}{unit}" if statement.holds is None else reported,
+        "listing": "–" if finding.listing is None else _number(finding.listing) + unit,
+        "range": f"{_number(span[0])} to {_number(span[1])}{unit}" if span else None,
+        "range_over": finding.range_over,
+        "converged": _number(finding.converged) + unit,
+        "tolerance": None if judgement.tolerance is None else f"± {judgement.tolerance:g}{unit}",
+        "tolerance_from": statement.tolerance_from,
+        "verdict": judgement.verdict.name.lower(),
+        "note": finding.note,
+        "figure": figure if figure in shown else None,
+        "figure_title": PLATES[figure].title.partition(":")[0] if figure in shown and figure else None,
+    }
+
+
+def _number(value: Value) -> str:
+    """A value for people."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if value == 0:
+        return "0"
+    return f"{value:.2e}" if abs(value) < 1e-3 else f"{value:.5g}"
+
+
+def _embedded(svg: bytes) -> str:
+    return "data:image/svg+xml;base64," + base64.b64encode(svg).decode("ascii")

@@ -1,0 +1,16 @@
+"""Numbers that the report prints and that more than one figure or claim needs, each with its place."""
+
+END_OF_FIG_5 = {"theta": 1.503, "phi_dot": 35.257, "omega3": -8.201}
+"""The end state of the run at 50 rad/s, rad and rad/s (section 3.1, below Fig. 5)."""
+
+CRITICAL_SPINS = ("26.3", "78.6")
+"""omega_c1 and omega_c2, rad/s (section 3.2)."""
+
+ABNORMAL_SPIN = "170"
+"""omega_a, rad/s (section 3.2)."""
+
+ENERGY, ENERGY_TIME, FALL = "0.06", "6", "15"
+"""The energy at 175 rad/s, J, when it is reached, s, and the fall to compare, R (section 4, Fig. 10)."""
+
+STOP = "5.62"
+"""When the run at 175 rad/s is stopped "before" it flies, s (section 4, Fig. 12)."""

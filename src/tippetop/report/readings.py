@@ -1,0 +1,47 @@
+"""What is read off a run: when it has turned over, where phi' changes sign, when the table begins to pull.
+
+All functions take the times and values of a run that is sampled finely enough to show them.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tippetop.integrators.base import Array
+
+SETTLED = 0.01
+"""How near the tilt must be to its last value to have arrived, rad: the report's own measure."""
+
+
+def flip_time(times: Array, theta: Array, within: float = SETTLED) -> float:
+    """The first time at which theta is within this of its last value (the report's section 3.3), s."""
+    return float(times[np.argmax(np.abs(theta - theta[-1]) < within)])
+
+
+def crossings(times: Array, values: Array) -> Array:
+    """Times at which the values change sign, by linear interpolation, s."""
+    finite = np.isfinite(values)
+    times, values = times[finite], values[finite]
+    here = np.flatnonzero(np.signbit(values[1:]) != np.signbit(values[:-1]))
+    before, after = values[here], values[here + 1]
+    return np.asarray(times[here] + (times[here + 1] - times[here]) * before / (before - after))
+
+
+def longest_quiet(times: Array, values: Array) -> tuple[float, float]:
+    """The longest time between two changes of sign, s; nan where there are fewer than two."""
+    changes = crossings(times, values)
+    if len(changes) < 2:
+        return np.nan, np.nan
+    k = int(np.argmax(np.diff(changes)))
+    return float(changes[k]), float(changes[k + 1])
+
+
+def first_below_zero(times: Array, values: Array) -> float:
+    """The first time at which the values are negative, s; nan if they never are."""
+    below: NDArray[np.bool_] = values < 0
+    if not below.any():
+        return float("nan")
+    k = int(np.argmax(below))
+    if k == 0:
+        return float(times[0])
+    before, after = values[k - 1], values[k]
+    return float(times[k - 1] + (times[k] - times[k - 1]) * before / (before - after))

@@ -1,0 +1,209 @@
+"""Redo the report: compute what its figures and claims need, judge, draw, and write a folder with a page."""
+
+import json
+import os
+import shutil
+import tempfile
+import time
+from collections import Counter
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import xarray as xr
+
+from tippetop.dataset import write_run
+from tippetop.errors import FileTrouble
+from tippetop.figures.style import save
+from tippetop.files import refuse_overwriting
+from tippetop.report.claim import Data, Judgement
+from tippetop.report.experiments import EXPERIMENTS
+from tippetop.report.gallery import PLATES
+from tippetop.report.page import render
+from tippetop.report.selection import Selection, select
+from tippetop.report.tasks import Task, carry_out
+
+PAGE, CLAIMS_FILE, FIGURES, DATA = "index.html", "claims.json", "figures", "data"
+
+_DRAWING_COST = 0.8
+
+Progress = Callable[[float, float, str], None]
+"""Told the work done, all the work (both in about seconds), and what was done last."""
+
+
+@dataclass(frozen=True)
+class Reproduction:
+    """What came of redoing the report.
+
+    Attributes
+    ----------
+    folder
+        Where it was written.
+    judgements
+        The claims examined, in the order of the report.
+    figures
+        Names of the figures drawn.
+    quick
+        Whether coarser computations were asked for.
+    seconds
+        How long it took.
+    """
+
+    folder: Path
+    judgements: tuple[Judgement, ...]
+    figures: tuple[str, ...]
+    quick: bool
+    seconds: float
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """How many claims got each verdict."""
+        return dict(Counter(judgement.verdict.name.lower() for judgement in self.judgements))
+
+
+def reproduce(
+    folder: Path | str,
+    *,
+    only: str | None = None,
+    quick: bool = False,
+    force: bool = False,
+    workers: int | None = None,
+    progress: Progress | None = None,
+) -> Reproduction:
+    """Redo the report's figures and examine its claims.
+
+    Parameters
+    ----------
+    folder
+        Where to write index.html, claims.json, figures/ and data/. Nothing is written before all is computed.
+    only
+        Name of one figure or claim; see `tippetop.report.selection.select`.
+    quick
+        Use coarser sweeps and fewer samples; the results say so.
+    force
+        Overwrite files of an earlier run.
+    workers
+        Number of processes; None for one per processor, at most 2. A script that asks for more than one must
+        be importable (``if __name__ == "__main__":``).
+    progress
+        Told how far it is.
+
+    Raises
+    ------
+    InvalidInput
+        If there is no such figure or claim.
+    FileTrouble
+        If there are results already, or the folder cannot be written.
+    """
+    began = time.monotonic()
+    folder = Path(folder)
+    chosen = select(only)
+    names = _files(chosen)
+    for name in names:
+        refuse_overwriting(folder / name, force)
+    with _staging(folder) as stage:
+        results = carry_out(_tasks(chosen, quick, stage), _processes(workers), progress)
+        data = {experiment.id: results[experiment.id] for experiment in chosen.experiments}
+        judgements = tuple(
+            Judgement(claim, claim.examine({name: data[name] for name in claim.needs}), quick)
+            for claim in chosen.claims
+        )
+        _write_data(chosen, data, stage)
+        records = [judgement.record() for judgement in judgements]
+        text = json.dumps(records, indent=2, ensure_ascii=False)
+        (stage / CLAIMS_FILE).write_text(text + "\n", encoding="utf-8")
+        figures = tuple(plate.id for plate in chosen.plates)
+        seconds = time.monotonic() - began
+        pictures = {name: (stage / FIGURES / f"{name}.svg").read_bytes() for name in figures}
+        page = render(chosen.plates, judgements, pictures, quick=quick, partial=only)
+        (stage / PAGE).write_text(page, encoding="utf-8")
+        _move(stage, folder, names)
+    return Reproduction(folder, judgements, figures, quick, seconds)
+
+
+def _files(chosen: Selection) -> list[str]:
+    """Names of the files to be written, the page last."""
+    names = [f"{FIGURES}/{plate.id}.{kind}" for plate in chosen.plates for kind in ("png", "svg")]
+    names += [f"{DATA}/{plate.id}.nc" for plate in chosen.plates if plate.needs]
+    names += [f"{DATA}/{name}.nc" for name in _unseen(chosen)]
+    return [*names, CLAIMS_FILE, PAGE]
+
+
+def _unseen(chosen: Selection) -> list[str]:
+    """Names of the experiments that no figure shows: their data are files of their own."""
+    shown = {name for plate in chosen.plates for name in plate.needs}
+    return [experiment.id for experiment in chosen.experiments if experiment.id not in shown]
+
+
+def _tasks(chosen: Selection, quick: bool, stage: Path) -> list[Task]:
+    def fixed(*arguments: Any) -> Callable[[dict[str, Any]], tuple[Any, ...]]:
+        return lambda _: arguments
+
+    tasks = [
+        Task(experiment.id, experiment.cost * (0.3 if quick else 1.0), _compute, fixed(experiment.id, quick))
+        for experiment in chosen.experiments
+    ]
+    for plate in chosen.plates:
+
+        def inputs(results: dict[str, Any], id_: str = plate.id) -> tuple[Any, ...]:
+            return id_, {name: results[name] for name in PLATES[id_].needs}, stage / FIGURES
+
+        tasks.append(Task(f"figure {plate.id}", _DRAWING_COST, _draw, inputs, plate.needs))
+    return tasks
+
+
+def _compute(name: str, quick: bool) -> xr.Dataset:
+    """Run an experiment (in a process of its own)."""
+    return EXPERIMENTS[name].run(quick)
+
+
+def _draw(name: str, data: Data, folder: Path) -> None:
+    """Draw a figure (in a process of its own)."""
+    plate = PLATES[name]
+    figure = plate.draw(plate.dataset(data))
+    for kind in ("png", "svg"):
+        save(figure, folder / f"{name}.{kind}")
+
+
+def _processes(workers: int | None) -> int:
+    return min(2, os.cpu_count() or 1) if workers is None else max(1, workers)
+
+
+def _write_data(chosen: Selection, data: Data, stage: Path) -> None:
+    for plate in chosen.plates:
+        if plate.needs:
+            write_run(plate.dataset(data), stage / DATA / f"{plate.id}.nc")
+    for name in _unseen(chosen):
+        write_run(data[name], stage / DATA / f"{name}.nc")
+
+
+@contextmanager
+def _staging(folder: Path) -> Iterator[Path]:
+    """A folder beside the one to be written, gone afterwards whatever happens."""
+    try:
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        if folder.exists() and not folder.is_dir():
+            raise FileTrouble(f"{folder} is not a folder")
+        stage = Path(tempfile.mkdtemp(dir=folder.parent, prefix=f".{folder.name}."))
+    except FileTrouble:
+        raise
+    except OSError as error:
+        raise FileTrouble(f"{folder} cannot be written: {error.strerror or error}") from None
+    try:
+        for name in (FIGURES, DATA):
+            (stage / name).mkdir()
+        yield stage
+    finally:
+        shutil.rmtree(stage, ignore_errors=True)
+
+
+def _move(stage: Path, folder: Path, names: list[str]) -> None:
+    """Put the finished files in their places."""
+    try:
+        for name in names:
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            (stage / name).replace(folder / name)
+    except OSError as error:
+        raise FileTrouble(f"{folder} cannot be written: {error.strerror or error}") from None

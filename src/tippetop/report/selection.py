@@ -1,0 +1,70 @@
+"""What to redo: everything, or one figure or claim with only the experiments it needs."""
+
+import re
+from dataclasses import dataclass
+from difflib import get_close_matches
+
+from tippetop.errors import InvalidInput
+from tippetop.report.claim import Claim
+from tippetop.report.claims import CLAIMS
+from tippetop.report.experiment import Experiment
+from tippetop.report.experiments import EXPERIMENTS
+from tippetop.report.gallery import PLATES, Plate
+
+
+@dataclass(frozen=True)
+class Selection:
+    """Figures, claims, and the experiments they need."""
+
+    plates: tuple[Plate, ...]
+    claims: tuple[Claim, ...]
+
+    @property
+    def experiments(self) -> tuple[Experiment, ...]:
+        """The experiments needed, in their usual order."""
+        needed = {name for plate in self.plates for name in plate.needs}
+        needed.update(name for claim in self.claims for name in claim.needs)
+        return tuple(experiment for name, experiment in EXPERIMENTS.items() if name in needed)
+
+
+def select(only: str | None = None) -> Selection:
+    """Choose what to redo.
+
+    Parameters
+    ----------
+    only
+        Name of a figure (fig06; 6 will do) or of a claim; None for everything. With a figure come the claims
+        that can be decided from its data; with a claim, the figure that shows it if it needs nothing more.
+
+    Raises
+    ------
+    InvalidInput
+        If there is no such figure or claim.
+    """
+    if only is None:
+        return Selection(tuple(PLATES.values()), tuple(CLAIMS.values()))
+    name = _figure_name(only)
+    if name in PLATES:
+        plate = PLATES[name]
+        shown = (claim for claim in CLAIMS.values() if claim.figure == name)
+        return Selection((plate,), tuple(claim for claim in shown if set(claim.needs) <= set(plate.needs)))
+    if name in CLAIMS:
+        claim = CLAIMS[name]
+        shown_in = PLATES.get(claim.figure or "")
+        fitting = shown_in is not None and set(shown_in.needs) <= set(claim.needs)
+        return Selection((shown_in,) if shown_in is not None and fitting else (), (claim,))
+    raise InvalidInput("--only", only, _accepted(name))
+
+
+def _accepted(given: str) -> str:
+    """The names that are likely meant, or else what names there are."""
+    close = get_close_matches(given, [*PLATES, *CLAIMS], n=4, cutoff=0.5)
+    if close:
+        return "the name of a figure or claim, such as " + ", ".join(close)
+    return "a figure (" + ", ".join(PLATES) + ") or a claim (" + ", ".join(CLAIMS) + ")"
+
+
+def _figure_name(given: str) -> str:
+    """A figure's name from the ways in which people write it: 6, fig6, Fig. 6."""
+    match = re.fullmatch(r"(?:fig(?:ure)?\.?\s*)?0*(\d{1,2})", given.strip(), flags=re.IGNORECASE)
+    return f"fig{int(match[1]):02d}" if match else given.strip()

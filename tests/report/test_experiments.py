@@ -1,0 +1,88 @@
+"""The cheap experiments: independent ways to the same number agree, and misprints do not."""
+
+import math
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from tippetop.presets import report_problem
+from tippetop.report.claim import Judgement, Verdict
+from tippetop.report.claims import CLAIMS
+from tippetop.report.experiments import EXPERIMENTS
+from tippetop.report.experiments.methods import evaluations
+
+
+@pytest.fixture(scope="module")
+def computed() -> dict[str, xr.Dataset]:
+    names = ("printed-equations", "steady-bodies", "unit-of-mu", "block", "order", "run-50", "run-50-table-1")
+    return {name: EXPERIMENTS[name].run(quick=True) for name in names}
+
+
+def verdict(computed: dict[str, xr.Dataset], name: str) -> Verdict:
+    claim = CLAIMS[name]
+    return Judgement(claim, claim.examine({need: computed[need] for need in claim.needs}), True).verdict
+
+
+def test_torque_of_2_7_has_the_wrong_sign(computed: dict[str, xr.Dataset]) -> None:
+    check = computed["printed-equations"]
+    assert float(check["torque"]) == pytest.approx(float(check["torque_corrected"]), rel=1e-6)
+    assert float(check["torque_listing"]) == pytest.approx(float(check["torque_corrected"]), rel=1e-9)
+    assert float(check["torque_printed"]) == pytest.approx(-float(check["torque_corrected"]), rel=1e-12)
+    assert float(check["power"]) < 0 < float(check["power_printed"])
+    assert verdict(computed, "eq-2.7") is Verdict.CORRECTED
+
+
+def test_equation_2_9_is_right_in_the_listing_only(computed: dict[str, xr.Dataset]) -> None:
+    check = computed["printed-equations"]
+    assert float(check["precession_listing"]) == pytest.approx(float(check["precession"]), rel=1e-6)
+    assert verdict(computed, "eq-2.9") is Verdict.CORRECTED
+
+
+def test_steady_states_obey_2_16_and_2_17_for_every_body(computed: dict[str, xr.Dataset]) -> None:
+    steady = computed["steady-bodies"]
+    assert np.all((steady["theta"] > 0.05) & (steady["theta"] < math.pi - 0.05))
+    assert len(np.unique(steady["theta"].round(3))) == steady.sizes["body"]
+    for name in ("eq-2.16", "eq-2.17-any-body", "eq-2.17"):
+        assert verdict(computed, name) is Verdict.REPRODUCED
+
+
+def test_only_s_per_m_keeps_the_motion_when_metres_become_centimetres(
+    computed: dict[str, xr.Dataset],
+) -> None:
+    check = computed["unit-of-mu"]
+    misses = abs(check["theta_in_centimetres"] - check["theta_in_metres"])
+    assert float(misses.sel(power=-1)) < 1e-12
+    assert float(misses.sel(power=1)) > 1e-3
+
+
+def test_block_slides_as_viscous_friction_has_it(computed: dict[str, xr.Dataset]) -> None:
+    assert float(computed["block"]["distance"]) == pytest.approx(1.0 / (100.0 * 9.8), rel=1e-9)
+
+
+def test_orders_are_those_of_the_textbooks(computed: dict[str, xr.Dataset]) -> None:
+    order = computed["order"]
+    assert float(order["order_rk4_in_all"]) == pytest.approx(4.0, abs=0.1)
+    assert float(order["order_rk4_in_a_step"]) == pytest.approx(5.0, abs=0.1)
+    assert float(order["order_ode45_in_all"]) == pytest.approx(5.0, abs=0.4)
+
+
+def test_only_the_inertias_of_the_listing_give_the_end_of_fig_5(computed: dict[str, xr.Dataset]) -> None:
+    assert verdict(computed, "table-1-inertia") is Verdict.CORRECTED
+    run, other = computed["run-50"], computed["run-50-table-1"]
+    assert abs(float(run["end_omega3"] - other["end_omega3"])) > 1.0
+
+
+def test_both_methods_are_in_a_comparison(computed: dict[str, xr.Dataset]) -> None:
+    run = computed["run-50"]
+    for name in ("theta", "omega3", "phi_dot", "slip_x", "normal_force", "energy"):
+        assert run[name].attrs["units"] == run[f"{name}_listing"].attrs["units"]
+        assert "report" in run[f"{name}_listing"].attrs["long_name"]
+    assert run.attrs["quick"] == 1
+
+
+def test_evaluations_count_those_for_jacobians() -> None:
+    # 7 variables: every Jacobian by differences costs 7 evaluations more than the solver itself reports.
+    problem = report_problem(10.0, mu=100.0)
+    assert evaluations(problem, "radau", 0.05) > 0
+    assert evaluations(problem, "ode45", 0.05) > 2 * evaluations(problem, "bdf", 0.05) > 0

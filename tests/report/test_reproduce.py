@@ -1,0 +1,147 @@
+"""Redoing the report from end to end: files, page, refusals and interruptions."""
+
+import json
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+from typer import Typer
+from typer.testing import CliRunner
+
+from tippetop.cli.reproduce import reproduce as command
+from tippetop.dataset import read_run
+from tippetop.errors import FileTrouble, InvalidInput
+from tippetop.report.claims import CLAIMS
+from tippetop.report.gallery import PLATES
+from tippetop.report.reproduce import reproduce
+
+FIELDS = {"id", "source", "statement", "reported", "listing", "converged", "unit", "verdict", "note", "quick"}
+
+
+class Links(HTMLParser):
+    """Everything a page loads, links to, and can be linked at."""
+
+    def __init__(self, page: str) -> None:
+        super().__init__()
+        self.loaded: list[str] = []
+        self.links: list[str] = []
+        self.names: list[str] = []
+        self.tags: set[str] = set()
+        self.feed(page)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.add(tag)
+        values = dict(attrs)
+        self.loaded += [values["src"]] if values.get("src") else []
+        self.links += [values["href"]] if values.get("href") else []
+        self.names += [values["id"]] if values.get("id") else []
+
+
+def check_page(folder: Path) -> None:
+    """The page is whole by itself, and none of its links leads nowhere."""
+    text = (folder / "index.html").read_text(encoding="utf-8")
+    page = Links(text)
+    assert all(source.startswith("data:image/svg+xml;base64,") for source in page.loaded)
+    assert not page.tags & {"script", "link", "iframe"}
+    assert "@import" not in text
+    assert "url(" not in text
+    assert len(page.names) == len(set(page.names))
+    for link in page.links:
+        if link.startswith("#"):
+            assert link[1:] in page.names
+        else:
+            assert (folder / link).is_file()
+
+
+@pytest.fixture(scope="module")
+def fig13(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("report") / "out"
+    reproduce(folder, only="fig13", quick=True, workers=1)
+    return folder
+
+
+def test_one_figure_with_its_data_and_claims(fig13: Path) -> None:
+    files = sorted(str(path.relative_to(fig13)) for path in fig13.rglob("*") if path.is_file())
+    assert files == ["claims.json", "data/fig13.nc", "figures/fig13.png", "figures/fig13.svg", "index.html"]
+    records = json.loads((fig13 / "claims.json").read_text(encoding="utf-8"))
+    assert [record["id"] for record in records] == ["fig13-upright"]
+    assert (fig13 / "figures/fig13.png").read_bytes().startswith(b"\x89PNG")
+    data = read_run(fig13 / "data/fig13.nc")
+    assert {"theta", "theta_listing"} <= set(data.data_vars)
+    assert data["theta"].attrs["units"] == "rad"
+
+
+def test_page_stands_alone(fig13: Path) -> None:
+    check_page(fig13)
+
+
+def test_quick_run_says_so(fig13: Path) -> None:
+    assert "Quick run" in (fig13 / "index.html").read_text(encoding="utf-8")
+    assert all(record["quick"] for record in json.loads((fig13 / "claims.json").read_text(encoding="utf-8")))
+
+
+def test_results_are_not_overwritten_unasked(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    reproduce(out, only="fig08-block", workers=1)
+    (out / "claims.json").write_text("mine", encoding="utf-8")
+    with pytest.raises(FileTrouble, match="--force"):
+        reproduce(out, only="fig08-block", workers=1)
+    assert (out / "claims.json").read_text(encoding="utf-8") == "mine"
+    reproduce(out, only="fig08-block", workers=1, force=True)
+    assert json.loads((out / "claims.json").read_text(encoding="utf-8"))[0]["id"] == "fig08-block"
+
+
+def test_interrupted_run_leaves_nothing(tmp_path: Path) -> None:
+    def interrupt(done: float, total: float, what: str) -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        reproduce(tmp_path / "out", only="fig08-block", workers=1, progress=interrupt)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_file_in_the_way_is_named(tmp_path: Path) -> None:
+    (tmp_path / "out").write_text("", encoding="utf-8")
+    with pytest.raises(FileTrouble, match="out is not a folder"):
+        reproduce(tmp_path / "out", only="fig08-block", workers=1)
+
+
+def test_unknown_name_is_refused_before_any_work(tmp_path: Path) -> None:
+    with pytest.raises(InvalidInput, match="fig99"):
+        reproduce(tmp_path / "out", only="fig99")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_command_prints_json_for_programs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("os.cpu_count", lambda: 1)
+    app = Typer()
+    app.command()(command)
+    out = tmp_path / "out"
+    result = CliRunner().invoke(app, ["--only", "fig08-block", "--out", str(out), "--json"])
+    assert result.exit_code == 0
+    told = json.loads(result.stdout)
+    assert told["counts"] == {told["claims"][0]["verdict"]: 1}
+    assert Path(told["page"]).is_file()
+    again = CliRunner().invoke(app, ["--only", "fig08-block", "--out", str(out)])
+    assert isinstance(again.exception, FileTrouble)
+
+
+@pytest.mark.slow
+def test_whole_report_in_its_quick_version(tmp_path: Path) -> None:
+    told: list[float] = []
+    result = reproduce(
+        tmp_path / "out", quick=True, workers=2, progress=lambda done, total, _: told.append(done / total)
+    )
+    assert told[-1] == pytest.approx(1.0)
+    records = json.loads((tmp_path / "out/claims.json").read_text(encoding="utf-8"))
+    assert [record["id"] for record in records] == list(CLAIMS)
+    for record in records:
+        assert set(record) >= FIELDS
+        assert record["verdict"] in {"reproduced", "corrected", "explained"}
+        assert record["converged"] is not None
+        assert record["reported"] is not None
+        assert record["note"]
+        assert "nan" not in record["note"]
+    assert sum(result.counts.values()) == len(CLAIMS)
+    assert {path.stem for path in (tmp_path / "out/figures").glob("*.png")} == set(PLATES)
+    check_page(tmp_path / "out")
