@@ -53,56 +53,58 @@ class SciPy:
         guards: Sequence[Guard] = (),
     ) -> Arc:
         """Follow the motion; see `tippetop.integrators.base.Integrator`."""
-        solver = self._solver(motion, parameters, start, end)
+        rates = _Counted(motion, parameters)
+        solver = self._solver(rates, start, end)
         samples = Samples(times, start)
-        steps, failure, extra = 0, None, 0
-        while solver.status == "running" and failure is None:
+        steps, failure = 0, None
+        while solver.status == "running":
             before, base = float(solver.t), solver.y.copy()
             failure = _take_step(solver)
             if failure is not None:
                 break
             steps += 1
             reach = float(solver.t)
-            dense = solver.dense_output() if guards or samples.wanted_before(reach) else None
-            fall = first_fall(guards, parameters, dense, (before, reach)) if guards and dense else None
-            if fall is not None and dense is not None:
+            if not guards and not samples.wanted_before(reach):
+                continue
+            dense = solver.dense_output()
+            fall = first_fall(guards, parameters, dense, (before, reach))
+            if fall is not None:
                 index, guess = fall
 
                 def advance(at: float, before: float = before, base: Array = base) -> Array:
-                    nonlocal extra
-                    state, evaluations = self._land(motion, parameters, (before, base), at)
-                    extra += evaluations
-                    return state
+                    return self._land(rates, (before, base), at)
 
                 at, last = polish(guards[index], parameters, advance, (before, reach), guess)
                 samples.take(at, dense)
-                grid, states = samples.result(motion.size)
-                return Arc(grid, states, at, last, index, None, steps, solver.nfev + extra)
-            if dense is not None:
-                samples.take(reach, dense)
+                return Arc(*samples.result(motion.size), at, last, index, None, steps, rates.calls)
+            samples.take(reach, dense)
         grid, states = samples.result(motion.size)
-        return Arc(
-            grid, states, float(solver.t), solver.y.copy(), None, failure, steps, solver.nfev + solver.nlu
-        )
+        return Arc(grid, states, float(solver.t), solver.y.copy(), None, failure, steps, rates.calls)
 
-    def _solver(
-        self, motion: Motion, parameters: Sequence[float], start: tuple[float, Array], end: float
-    ) -> Any:
-        def rates(_: float, y: Array) -> Array:
-            return np.array(motion.rates(y.tolist(), parameters))
-
+    def _solver(self, rates: "_Counted", start: tuple[float, Array], end: float) -> Any:
         absolute = self.tolerance if self.absolute is None else self.absolute
         return METHODS[self.name](rates, start[0], start[1], end, rtol=self.tolerance, atol=absolute)
 
-    def _land(
-        self, motion: Motion, parameters: Sequence[float], start: tuple[float, Array], end: float
-    ) -> tuple[Array, int]:
-        """Integrate afresh to exactly this time; return the state there and the evaluations it took."""
-        solver = self._solver(motion, parameters, start, end)
+    def _land(self, rates: "_Counted", start: tuple[float, Array], end: float) -> Array:
+        """The state after integrating afresh to exactly this time."""
+        if end <= start[0]:
+            return start[1]
+        solver = self._solver(rates, start, end)
         while solver.status == "running":
             if _take_step(solver) is not None:
                 break
-        return solver.y.copy(), solver.nfev
+        return np.array(solver.y)
+
+
+class _Counted:
+    """The right-hand side as SciPy takes it, with a count of how often it was evaluated."""
+
+    def __init__(self, motion: Motion, parameters: Sequence[float]) -> None:
+        self.motion, self.parameters, self.calls = motion, parameters, 0
+
+    def __call__(self, _: float, y: Array) -> Array:
+        self.calls += 1
+        return np.array(self.motion.rates(y.tolist(), self.parameters))
 
 
 def _take_step(solver: Any) -> str | None:
