@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from tippetop import __version__
+from tippetop.cli.critical import critical
 from tippetop.cli.problem import problem
 from tippetop.cli.reproduce import reproduce
 from tippetop.cli.simulate import simulate
@@ -18,6 +19,7 @@ app = typer.Typer(
 )
 app.command()(simulate)
 app.command()(reproduce)
+app.command()(critical)
 app.command()(problem)
 
 MISUSE = 2

@@ -147,17 +147,12 @@ def touchdown(state: State, top: Top, horizon: float, start: Start = Start.AIRBO
     ballistic = (state.position[2], state.velocity[2], -0.5 * top.gravity)
     horizon = min(horizon, 2.0 * falling_time(*ballistic))
     time = 0.0
-    if start == Start.AIRBORNE:
-        if gap(state, top) <= 0.0:
-            return 0.0
-    else:
+    if start != Start.AIRBORNE:
         support = (top.shape.height(tip.series()) + 0.0 * tip.series()).terms
         ballistic = (*support[:start], *ballistic[start:])
         terms = [-term for term in support]
         terms[start:3] = [b - s for b, s in zip(ballistic[start:], support[start:3], strict=True)]
         opening = Opening(terms[next((j for j in range(start, DEGREE) if terms[j]), DEGREE) :])
-        if opening.terms[0] <= 0.0:
-            return 0.0
         time = min(horizon, START * Disc.of_time(tip, top.shape, 0.0, 0.0, WIDEST)[0])
         root = first_root(opening.at, 0.0, time, opening.jerk_bound(time))
         if root is not None:
@@ -257,7 +252,7 @@ class Opening(NamedTuple):
 
 
 def first_root(function: Callable[[float], Triple], low: float, high: float, jerk: float) -> float | None:
-    """First root from `low` to `high` of a function that starts positive; `jerk` bounds its third rate."""
+    """First root from `low` to `high`, or `low` if not positive there; `jerk` bounds the third derivative."""
     time, step, finest = low, high - low, FINEST * (high - low)
     value, rate, acceleration = function(time)
     while value > 0.0:
