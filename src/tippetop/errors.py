@@ -45,8 +45,9 @@ class InvalidInput(TippetopError, ValueError):
         self.accepted = accepted
         self.others = others
         more = f" (and {others} more)" if others else ""
+        name = field if field.isprintable() else repr(field)
         fault = "is missing" if value is MISSING else f"= {short(value)} is not possible"
-        super().__init__(f"{field} {fault}; accepted: {accepted}{more}")
+        super().__init__(f"{name} {fault}; accepted: {accepted}{more}")
 
     def __reduce__(self) -> tuple[type["InvalidInput"], tuple[str, object, str, int]]:
         return type(self), (self.field, self.value, self.accepted, self.others)

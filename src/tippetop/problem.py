@@ -20,11 +20,12 @@ from tippetop.mechanics.motion import along_table, contact, on_table
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.view import Angles, state_from_angles
-from tippetop.validation import Part
+from tippetop.validation import NO_WORD, Number, Part
 
-Positive = Annotated[float, Field(gt=0)]
-Fraction = Annotated[float, Field(ge=0, le=1)]
-Tilt = Annotated[float, Field(ge=0, le=math.pi)]
+Positive = Annotated[float, Field(gt=0), NO_WORD]
+Fraction = Annotated[float, Field(ge=0, le=1), NO_WORD]
+Tilt = Annotated[float, Field(ge=0, le=math.pi), NO_WORD]
+NotNegative = Annotated[float, Field(ge=0), NO_WORD]
 
 
 class EccentricSphere(Part):
@@ -40,7 +41,7 @@ class EccentricSphere(Part):
 
     kind: Literal["eccentric_sphere"] = "eccentric_sphere"
     radius: Positive
-    eccentricity: Annotated[float, Field(gt=0, lt=1)]
+    eccentricity: Annotated[float, Field(gt=0, lt=1), NO_WORD]
 
     @property
     def law(self) -> shapes.Shape:
@@ -77,7 +78,7 @@ class ViscousFriction(Part):
     """
 
     kind: Literal["viscous"] = "viscous"
-    mu: Annotated[float, Field(ge=0)]
+    mu: NotNegative
 
     @property
     def law(self) -> friction_laws.FrictionLaw:
@@ -97,7 +98,7 @@ class RegularizedCoulombFriction(Part):
     """
 
     kind: Literal["regularized_coulomb"] = "regularized_coulomb"
-    mu: Annotated[float, Field(ge=0)]
+    mu: NotNegative
     eps: Positive = 1e-3
 
     @property
@@ -160,13 +161,13 @@ class Launch(Part):
     """
 
     tilt: Tilt
-    spin: float
-    azimuth: float = 0.0
-    tilt_rate: float = 0.0
-    precession: float = 0.0
-    slip: tuple[float, float] = (0.0, 0.0)
-    gap: Annotated[float, Field(ge=0)] = 0.0
-    velocity: tuple[float, float, float] | None = None
+    spin: Number
+    azimuth: Number = 0.0
+    tilt_rate: Number = 0.0
+    precession: Number = 0.0
+    slip: tuple[Number, Number] = (0.0, 0.0)
+    gap: NotNegative = 0.0
+    velocity: tuple[Number, Number, Number] | None = None
 
     @model_validator(mode="after")
     def _moves_one_way(self) -> Self:
@@ -210,6 +211,8 @@ class Problem(Part):
 
     @model_validator(mode="after")
     def _contact_is_possible(self) -> Self:
+        if not math.isfinite(self._resistance()):
+            raise InvalidInput("problem", self.to_json(), "sizes and speeds whose squares are numbers")
         if self.contact.liftoff == "fly":
             return self
         launch = self.launch
@@ -217,8 +220,7 @@ class Problem(Part):
             field = "launch.gap" if launch.gap else "launch.velocity"
             value = launch.gap if launch.gap else launch.velocity
             raise InvalidInput(field, value, "a launch on the table, unless contact.liftoff is 'fly'")
-        start = along_table(self.start())
-        if contact(start.axis, start.momentum, start.velocity, self.top).resistance <= 0:
+        if not self._resistance() > 0:
             raise InvalidInput(
                 "launch.slip",
                 self.launch.slip,
@@ -226,6 +228,15 @@ class Problem(Part):
                 "(Painleve's paradox), unless contact.liftoff is 'fly'",
             )
         return self
+
+    def _resistance(self) -> float:
+        """The resistance of the contact at launch; nan where its arithmetic breaks down."""
+        try:
+            start = along_table(self.start())
+            touch = contact(start.axis, start.momentum, start.velocity, self.top)
+            return float(touch.resistance + 0.0 * touch.push)
+        except ArithmeticError:
+            return math.nan
 
     @property
     def top(self) -> Top:
@@ -284,7 +295,7 @@ class Problem(Part):
         """
         try:
             fields = tomllib.loads(text)
-        except tomllib.TOMLDecodeError as error:
+        except (ValueError, RecursionError) as error:
             raise InvalidInput("problem", text.strip(), f"TOML; {error}") from None
         return cls(**fields)
 
@@ -299,7 +310,7 @@ class Problem(Part):
         """
         try:
             fields = json.loads(text)
-        except json.JSONDecodeError as error:
+        except (ValueError, RecursionError) as error:
             raise InvalidInput("problem", text.strip(), f"JSON; {error}") from None
         if not isinstance(fields, dict):
             raise InvalidInput("problem", fields, "a JSON object")
@@ -318,12 +329,14 @@ class Problem(Part):
         """
         path = Path(path)
         try:
-            text = path.read_text(encoding="utf-8")
+            text = path.read_text(encoding="utf-8-sig")
         except UnicodeDecodeError:
             raise FileTrouble(f"{path} is not a text file; accepted: a problem in TOML or JSON") from None
         except OSError as error:
             raise FileTrouble(f"{path} cannot be read: {error.strerror}") from None
-        return cls.from_json(text) if path.suffix == ".json" else cls.from_toml(text)
+        except ValueError as error:
+            raise FileTrouble(f"{str(path)!r} cannot be read: {error}") from None
+        return cls.from_json(text) if path.suffix.lower() == ".json" else cls.from_toml(text)
 
 
 class _PoleExact:

@@ -2,12 +2,26 @@
 
 import math
 from collections.abc import Mapping
-from typing import Any, Self
+from typing import Annotated, Any, Self, TypeAlias
 
-from pydantic import BaseModel, ConfigDict, ValidationError
-from pydantic_core import ErrorDetails
+from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError
+from pydantic_core import ErrorDetails, PydanticCustomError
 
 from tippetop.errors import MISSING, InvalidInput, one_of
+
+
+def _no_word(value: Any) -> Any:
+    """Refuse what Python would turn into a number although nobody would call it one."""
+    if isinstance(value, (bool, str, bytes)):
+        raise PydanticCustomError("float_type", "a finite number")
+    return value
+
+
+NO_WORD = BeforeValidator(_no_word)
+"""Makes a field of numbers refuse truth values and digits in quotes."""
+
+Number: TypeAlias = Annotated[float, NO_WORD]
+"""A number, and nothing that only looks like one."""
 
 
 class Part(BaseModel):
@@ -41,7 +55,15 @@ def _as_invalid_input(error: ValidationError, part: type[Part]) -> InvalidInput:
     if isinstance(cause, InvalidInput):
         inner = cause.field if not field or cause.field.startswith(f"{field}.") else f"{field}.{cause.field}"
         return InvalidInput(inner, cause.value, cause.accepted, cause.others + others)
-    value = MISSING if first["type"] == "missing" else first["input"]
+    match first["type"]:
+        case "missing":
+            value = MISSING
+        case "union_tag_not_found" if isinstance(first["input"], Mapping):
+            return InvalidInput(f"{field}.kind", MISSING, "a kind of it", others)
+        case "union_tag_invalid":
+            field, value = f"{field}.kind", first["input"].get("kind")
+        case _:
+            value = first["input"]
     return InvalidInput(field, value, _accepted(first, part), others)
 
 

@@ -25,7 +25,10 @@ def jellett(state: State, top: Top) -> Scalar:
 
 
 def friction_power(state: SlidingState, top: Top) -> Scalar:
-    """Power of friction, N (f.v + t.omega), W: never positive, and the rate of change of the energy."""
+    """Power of friction, N (f.v + t.omega), W: the rate of change of the energy.
+
+    Never positive while the table pushes; a table that pulls (N < 0) makes it positive.
+    """
     touch = contact(state.axis, state.momentum, state.velocity, top)
     omega = angular_velocity(state.axis, state.momentum, top)
     return touch.normal_force * power_per_normal_force(touch.slip, omega, touch.traction)

@@ -22,7 +22,8 @@ class State(NamedTuple):
     marker
         Unit vector fixed in the body and perpendicular to the axis; with the axis it gives the orientation.
     work
-        Work of the contact force since the start, J (never positive: friction only takes).
+        Work of the contact force since the start, J (friction only takes, as long as the table
+        only pushes).
     """
 
     axis: Vector

@@ -1,0 +1,81 @@
+"""Energy, Jellett's integral and the power of friction: their meaning, and what cannot change them."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import assume, given
+
+from strategies import slides, spheres, tops
+from tippetop.mechanics.friction import ViscousFriction
+from tippetop.mechanics.invariants import energy, friction_power, jellett
+from tippetop.mechanics.motion import angular_velocity, contact, on_table, sliding_rates
+from tippetop.mechanics.shape import EccentricSphere
+from tippetop.mechanics.top import Top
+from tippetop.mechanics.vectors import dot, length
+from tippetop.mechanics.view import Angles, state_from_angles
+
+
+def normal_force(state, top):
+    return contact(state.axis, state.momentum, state.velocity, top).normal_force
+
+
+@given(slides())
+def test_friction_takes_energy_while_the_table_pushes_and_gives_it_while_the_table_pulls(slide):
+    """A bilateral contact that is let pull turns friction into a source of energy."""
+    top, state = slide
+    power, push = friction_power(state, top), normal_force(state, top)
+    assert power <= 0.0 if push >= 0.0 else power >= 0.0
+    assert sliding_rates(state, top).work == power
+
+
+def test_a_fast_tilted_spin_would_have_to_be_pulled_down():
+    """Energy gain does occur: at 45 degrees and 300 rad/s, precessing at 100 rad/s and slipping."""
+    top = Top(0.02, 3.0e-6, 3.2e-6, EccentricSphere(0.02, 0.3), ViscousFriction(0.3), 9.8)
+    state = state_from_angles(Angles(math.pi / 4, 0.0, 0.0, 100.0, 300.0, (0.0, 0.1)), top, math)
+    assert normal_force(state, top) < 0.0
+    assert friction_power(state, top) > 0.0
+
+
+@given(slides())
+def test_energy_is_the_sum_over_six_point_masses_that_make_up_the_body(slide):
+    """Pairs of masses on the three principal axes have any inertia that a body can have."""
+    top, state = slide
+    assume(2.0 * top.transverse_inertia > 1.0001 * top.axial_inertia)
+    whole = on_table(state, top)
+    omega = angular_velocity(state.axis, state.momentum, top)
+    third = np.array(state.axis)
+    first = np.array(state.marker)
+    second = np.cross(third, first)
+    mass = top.mass / 6.0
+    across = math.sqrt(top.axial_inertia / (4.0 * mass))
+    along = math.sqrt((top.transverse_inertia - top.axial_inertia / 2.0) / (2.0 * mass))
+    total = 0.0
+    for arm in (across * first, across * second, along * third):
+        for side in (1.0, -1.0):
+            velocity = np.array(whole.velocity) + np.cross(omega, side * arm)
+            height = whole.position[2] + side * arm[2]
+            total += 0.5 * mass * velocity @ velocity + mass * top.gravity * height
+    assert energy(whole, top) == pytest.approx(total, rel=1e-12)
+
+
+@given(slides(tops(shapes=spheres())))
+def test_jelletts_integral_is_the_angular_momentum_against_the_contact_vector(slide):
+    """For the eccentric sphere lambda = R (L_z - alpha L.n)."""
+    top, state = slide
+    radius, alpha = top.shape
+    expected = radius * (state.momentum[2] - alpha * dot(state.momentum, state.axis))
+    assert jellett(on_table(state, top), top) == pytest.approx(
+        expected, abs=1e-14 * radius * length(state.momentum)
+    )
+
+
+@given(slides())
+def test_without_friction_the_vertical_and_the_axial_angular_momentum_are_constant(slide):
+    top, state = slide
+    rates = sliding_rates(state, top._replace(friction=ViscousFriction(0.0)))
+    turning = dot(state.momentum, rates.axis)
+    axial = dot(rates.momentum, state.axis) + turning
+    moment = (abs(normal_force(state, top)) + top.mass * top.gravity) * top.shape.size
+    assert rates.momentum[2] == pytest.approx(0.0, abs=1e-13 * moment)
+    assert axial == pytest.approx(0.0, abs=1e-12 * (moment + length(state.momentum) * length(rates.axis)))

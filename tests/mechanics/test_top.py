@@ -1,0 +1,123 @@
+"""Units: a top and the same top in its natural units are one motion."""
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from strategies import angles, numbers, slides, tops
+from tippetop.mechanics.invariants import energy, friction_power, jellett
+from tippetop.mechanics.motion import contact, on_table, sliding_rates
+from tippetop.mechanics.state import SlidingState
+from tippetop.mechanics.top import dimensionless_numbers, kind_of, natural_units
+from tippetop.mechanics.view import state_from_angles
+
+
+def in_natural_units(state, units):
+    """The same sliding state, measured in these units."""
+    return SlidingState(
+        state.axis,
+        tuple(x / units.angular_momentum for x in state.momentum),
+        tuple(x / units.speed for x in state.velocity),
+        tuple(x / units.length for x in state.position),
+        state.marker,
+        state.work / units.energy,
+    )
+
+
+def in_natural_time(rates, units):
+    """The same rates of change of a sliding state, measured in these units."""
+    return SlidingState.unpack([rate * units.time for rate in in_natural_units(rates, units).pack()])
+
+
+@given(tops())
+def test_natural_units_make_mass_size_and_gravity_one(top):
+    units = natural_units(top)
+    assert top.mass / units.mass == 1.0
+    assert top.shape.size / units.length == 1.0
+    assert top.gravity * units.time**2 / units.length == pytest.approx(1.0, rel=1e-14)
+    natural = kind_of(top).top(dimensionless_numbers(top))
+    assert (natural.mass, natural.shape.size, natural.gravity) == (1.0, 1.0, 1.0)
+
+
+@given(tops())
+def test_derived_units_are_products_of_the_basic_ones(top):
+    units = natural_units(top)
+    assert units.speed == pytest.approx(math.sqrt(top.gravity * top.shape.size), rel=1e-14)
+    assert units.energy == pytest.approx(top.mass * top.gravity * top.shape.size, rel=1e-14)
+    assert units.angular_momentum == pytest.approx(units.energy * units.time, rel=1e-14)
+
+
+@given(tops())
+def test_a_top_in_natural_units_has_the_numbers_it_was_made_from(top):
+    numbers_of_top = dimensionless_numbers(top)
+    natural = kind_of(top).top(numbers_of_top)
+    assert kind_of(natural) == kind_of(top)
+    assert dimensionless_numbers(natural) == pytest.approx(numbers_of_top, rel=1e-14)
+
+
+@given(slides())
+def test_a_top_moves_the_same_in_its_natural_units(slide):
+    top, state = slide
+    units, natural = natural_units(top), kind_of(top).top(dimensionless_numbers(top))
+    scaled = in_natural_units(state, units)
+    expected = in_natural_time(sliding_rates(state, top), units)
+    rates = sliding_rates(scaled, natural)
+    for actual, there in zip(rates, expected, strict=True):
+        assert actual == pytest.approx(there, rel=1e-10, abs=1e-10)
+    touch, touch_there = (
+        contact(s.axis, s.momentum, s.velocity, t) for s, t in ((scaled, natural), (state, top))
+    )
+    weight = units.energy / units.length
+    assert touch.normal_force == pytest.approx(touch_there.normal_force / weight, rel=1e-10, abs=1e-10)
+    assert touch.resistance == pytest.approx(touch_there.resistance, rel=1e-10)
+
+
+@given(slides())
+def test_energy_jellett_and_power_scale_with_their_units(slide):
+    top, state = slide
+    units, natural = natural_units(top), kind_of(top).top(dimensionless_numbers(top))
+    scaled, whole = in_natural_units(state, units), on_table(state, top)
+    there = on_table(scaled, natural)
+    assert energy(there, natural) == pytest.approx(energy(whole, top) / units.energy, rel=1e-12)
+    expected = jellett(whole, top) / (units.angular_momentum * units.length)
+    assert jellett(there, natural) == pytest.approx(expected, rel=1e-10, abs=1e-12)
+    power = friction_power(state, top) * units.time / units.energy
+    assert friction_power(scaled, natural) == pytest.approx(power, rel=1e-10, abs=1e-12)
+
+
+@given(
+    tops().flatmap(lambda top: st.tuples(st.just(top), angles(top))), numbers(0.1, 10.0), numbers(0.1, 10.0)
+)
+def test_a_larger_top_under_other_gravity_moves_alike_in_slower_time(launch, larger, stronger):
+    """Lengths times k, gravity times g: times sqrt(k/g), with the friction law's numbers scaled along."""
+    top, motion = launch
+    slower = math.sqrt(larger / stronger)
+    giant = top._replace(
+        transverse_inertia=top.transverse_inertia * larger**2,
+        axial_inertia=top.axial_inertia * larger**2,
+        shape=type(top.shape)(
+            top.shape[0] * larger, top.shape[1] * (larger if hasattr(top.shape, "along") else 1.0)
+        ),
+        friction=type(top.friction).from_coefficients(top.friction.coefficients(slower / larger)),
+        gravity=top.gravity * stronger,
+    )
+    far = motion._replace(
+        tilt_rate=motion.tilt_rate / slower,
+        precession=motion.precession / slower,
+        spin=motion.spin / slower,
+        slip=tuple(v * larger / slower for v in motion.slip),
+    )
+    near_touch, far_touch = (
+        contact(s.axis, s.momentum, s.velocity, t)
+        for s, t in (
+            (state_from_angles(motion, top, math), top),
+            (state_from_angles(far, giant, math), giant),
+        )
+    )
+    assert far_touch.resistance == pytest.approx(near_touch.resistance, rel=1e-10, abs=1e-10)
+    assert far_touch.push == pytest.approx(
+        near_touch.push * stronger, rel=1e-10, abs=1e-10 * top.mass * top.gravity * stronger
+    )
+    assert dimensionless_numbers(giant) == pytest.approx(dimensionless_numbers(top), rel=1e-12)
