@@ -1,0 +1,153 @@
+"""`tippetop critical`: what the theory says of a launch, without simulating it."""
+
+import json
+import math
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from tippetop.cli.options import Changes, Json, LiftOff, Mu, Preset, ProblemFile, Spin, Tilt, chosen_problem
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from tippetop.theory.overview import Judged, Outlook
+
+
+def critical(
+    file: ProblemFile = None,
+    preset: Preset = None,
+    spin: Spin = None,
+    tilt: Tilt = None,
+    mu: Mu = None,
+    liftoff: LiftOff = None,
+    changes: Changes = None,
+    as_json: Json = False,
+) -> None:
+    """Say what the theory knows of a launch: its critical spins, its end, and how long it takes."""
+    from tippetop.theory.overview import outlook  # noqa: PLC0415 - slow to import
+
+    settings = {"launch.spin": spin, "launch.tilt": tilt, "friction.mu": mu, "contact.liftoff": liftoff}
+    problem = chosen_problem(file, preset, settings, changes)
+    found = outlook(problem)
+    if as_json:
+        typer.echo(json.dumps({**_plain(found), "problem": problem.model_dump()}, indent=2))
+    else:
+        from rich.console import Console  # noqa: PLC0415
+
+        _print(found, Console())
+
+
+def _plain(found: "Outlook") -> dict[str, Any]:
+    """The record as JSON takes it: what is infinite or undefined is null."""
+    prediction = found.prediction
+    return {
+        "inertia_ratio": found.inertia_ratio,
+        "eccentricity": found.eccentricity,
+        "group": found.group and found.group.value,
+        "group_description": found.group and found.group.description,
+        "lambda_up": _finite(found.lambda_up),
+        "lambda_down": _finite(found.lambda_down),
+        "omega_c1": _finite(found.critical_spins.upright),
+        "omega_c2": _finite(found.critical_spins.inverted),
+        "jellett": found.jellett,
+        "final": prediction and _plain_state(prediction.final),
+        "final_certain": prediction and prediction.certain,
+        "final_possible": prediction and [_plain_state(state) for state in prediction.reachable],
+        "steady_states": [
+            {
+                **_plain_state(judged.state),
+                "stable": judged.spectrum.stable,
+                "growth_rate": judged.spectrum.growth_rate,
+                "frame_rate": judged.spectrum.frame_rate,
+                "eigenvalues": [[value.real, value.imag] for value in judged.spectrum.eigenvalues.tolist()],
+                "neutral": list(judged.spectrum.neutral),
+            }
+            for judged in found.steady
+        ],
+        "mu_flip_time": found.mu_flip_time,
+        "flip_time": found.flip_time,
+    }
+
+
+def _plain_state(state: Any) -> dict[str, Any]:
+    names = ("tilt", "precession", "spin", "jellett", "energy")
+    return {"kind": state.kind.value, **{name: _finite(getattr(state, name)) for name in names}}
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
+def _print(found: "Outlook", console: "Console") -> None:
+    from rich.table import Table  # noqa: PLC0415
+
+    table = Table(box=None, show_header=False, padding=(0, 2, 0, 0))
+    table.add_column(style="dim")
+    table.add_column(justify="right", style="bold")
+    table.add_column()
+    for row in _rows(found):
+        table.add_row(*row)
+    if found.group is not None:
+        console.print(f"[bold]Group {found.group.value}[/]: {found.group.description}.", highlight=False)
+    console.print(table)
+    states = Table(title="Steady states of this launch", title_justify="left", title_style="bold", box=None)
+    for heading in ("kind", "tilt", "precession", "axial spin", "energy", "", "growth rate"):
+        states.add_column(heading, justify="left" if heading in ("kind", "") else "right")
+    for judged in found.steady:
+        states.add_row(*_state_row(judged))
+    console.print(states)
+    for judged in found.steady:
+        console.print(f"[dim]{judged.state.kind.value}:[/] {_eigenvalues(judged)}", highlight=False)
+    console.print(
+        "[dim]rad, rad/s, J; eigenvalues in 1/s, in the frame that turns with the precession (for vertical "
+        "spins, a frame at rest), without the zeros of symmetry.[/]",
+        highlight=False,
+    )
+
+
+def _rows(found: "Outlook") -> list[tuple[str, str, str]]:
+    upright, inverted = found.critical_spins.upright, found.critical_spins.inverted
+    sphere = found.group is not None
+    rows = [
+        ("upright spin is left above ω_c1" if sphere else "upright changes at", _shown(upright), "rad/s"),
+        ("inverted spin holds above ω_c2" if sphere else "inverted changes at", _shown(inverted), "rad/s"),
+        ("λ_up", _shown(found.lambda_up), "kg m²/s"),
+        ("λ_down", _shown(found.lambda_down), "kg m²/s"),
+        ("λ of this launch", _shown(found.jellett), "kg m²/s"),
+    ]
+    if found.inertia_ratio is not None and found.eccentricity is not None:
+        rows.insert(0, ("γ = I1/I3, α", f"{found.inertia_ratio:.6g}, {found.eccentricity:.6g}", ""))
+    if found.prediction is not None:
+        final, certain = found.prediction.final, found.prediction.certain
+        doubt = "" if certain else " (least energy of several within reach)"
+        rows.append(("ends as", f"{final.kind.value} at θ = {final.tilt:.9g}", f"rad{doubt}"))
+    if found.mu_flip_time is not None:
+        rows.append(("μ t until 0.01 rad from there, μ → 0", _shown(found.mu_flip_time), "s²/m"))
+    if found.flip_time is not None:
+        rows.append(("so at this friction about", _shown(found.flip_time), "s"))
+    return rows
+
+
+def _state_row(judged: "Judged") -> tuple[str, ...]:
+    state, spectrum = judged.state, judged.spectrum
+    verdict = "stable" if spectrum.stable else "unstable" if spectrum.unstable else "neutral"
+    return (
+        state.kind.value,
+        f"{state.tilt:.6g}",
+        f"{state.precession:.6g}",
+        f"{state.spin:.6g}",
+        f"{state.energy:.5g}",
+        verdict,
+        f"{spectrum.growth_rate:.5g}",
+    )
+
+
+def _eigenvalues(judged: "Judged") -> str:
+    """The eigenvalues in a row; of each pair of conjugates, the one above stands for both."""
+    shown = [value for value in judged.spectrum.eigenvalues.tolist() if value.imag >= 0]
+    return ", ".join(f"{v.real:.5g} ± {v.imag:.6g}i" if v.imag else f"{v.real:.5g}" for v in shown)
+
+
+def _shown(value: float) -> str:
+    return f"{value:.10g}" if math.isfinite(value) else "never"

@@ -1,0 +1,1 @@
+"""What can be known of a top without simulating it: steady states, their stability, the slow flow."""

@@ -1,0 +1,179 @@
+"""The slow flow: how a little friction carries a top from its launch to its steady state.
+
+For small mu the tilt nutates as on a smooth table, lambda is constant, and what else the nutation leaves
+alone, L3 and the energy, drifts at a rate proportional to mu: by friction's torque and power averaged over
+one nutation (`tippetop.theory.nutation`). Time enters only as mu t, which is why the time to turn over goes
+as 1 / mu.
+
+When the nutation has died away, what is left is a drift along the steady precessions of the smooth table,
+in the tilt alone, and time is an integral over the tilt (`tippetop.theory.drift`).
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+
+from tippetop.errors import InvalidInput
+from tippetop.mechanics.friction import ViscousFriction
+from tippetop.mechanics.motion import along_table
+from tippetop.problem import Problem
+from tippetop.theory.dual import Array
+from tippetop.theory.nutation import (
+    Constants,
+    Numbers,
+    Orbit,
+    constants,
+    natural_constants,
+    numbers_of,
+    orbit,
+)
+from tippetop.theory.prediction import stable_by_energy
+from tippetop.theory.steady import jellett_of_launch, steady_states
+from tippetop.theory.whirling import Goals, Stage, follow_nutation
+
+
+@dataclass(frozen=True)
+class SlowFlow:
+    """The tilt of a launch in the limit of small friction, as a function of mu t.
+
+    Attributes
+    ----------
+    mu_time
+        mu t, s^2/m, increasing, shape (n,).
+    tilt_low, tilt_high
+        Least and largest tilt of the nutation at that time, rad, shape (n,): equal once it has died away.
+    final_tilt
+        Tilt of the steady state the flow ends in, rad; nan if it could not be followed that far, as where so
+        wide a nutation would need a table that pulls.
+    """
+
+    mu_time: Array
+    tilt_low: Array
+    tilt_high: Array
+    final_tilt: float
+
+    def tilts(self, mu_times: Array) -> tuple[Array, Array]:
+        """Least and largest tilt at these values of mu t (s^2/m), rad: nan outside those followed."""
+        low, high = (
+            PchipInterpolator(self.mu_time, tilts, extrapolate=False)(mu_times)
+            for tilts in (self.tilt_low, self.tilt_high)
+        )
+        return low, high
+
+
+def averaged_flow(
+    problem: Problem, distance: float = 1e-6, samples: int = 200, tolerance: float = 1e-5
+) -> SlowFlow:
+    """The slow flow of a launch of an eccentric sphere with viscous friction; the size of mu does not matter.
+
+    Parameters
+    ----------
+    problem
+        The launch. The horizontal velocity of its centre of mass has no part: it dies away by itself.
+    distance
+        How far from the final tilt the flow is followed, rad.
+    samples
+        At how many times the nutating part is given; 0 for those of the integrator's steps.
+    tolerance
+        Error of the logarithms of the whirls in a step of the nutating part.
+
+    Raises
+    ------
+    InvalidInput
+        If the body is no eccentric sphere, its friction is not viscous, or the launch is exactly vertical.
+    """
+    top = problem.top
+    numbers = numbers_of(top)
+    if not isinstance(top.friction, ViscousFriction):
+        raise InvalidInput("friction", top.friction, "viscous friction; no other slip averages out")
+    launch = _mirrored(natural_constants(constants(along_table(problem.start()), top), top), numbers)
+    path = Orbit(*(float(number) for number in orbit(launch, numbers)))
+    if problem.launch.tilt in (0.0, math.pi) and problem.launch.tilt_rate == 0.0:
+        raise InvalidInput("launch.tilt", problem.launch.tilt, "a tilted launch: a vertical spin is steady")
+    jellett = float(launch.vertical - numbers.alpha * launch.axial)
+    states = steady_states(top, abs(jellett_of_launch(problem)))
+    goals = Goals(
+        [state.tilt for state in states], [state.tilt for state in stable_by_energy(states)], distance
+    )
+    return _follow(path, jellett, numbers, goals, samples, tolerance, 1.0 / float(top.gravity))
+
+
+def flip_time_limit(problem: Problem, distance: float = 0.01) -> float:
+    """Limit for small mu of mu times the flip time, s^2/m.
+
+    The flip time is the first at which the tilt is within `distance` (rad) of its end; inf where the flow
+    does not reach one.
+
+    Raises
+    ------
+    InvalidInput
+        As `averaged_flow`.
+    """
+    flow = averaged_flow(problem, distance=distance, samples=0)
+    away = _distances(flow)
+    if not math.isfinite(flow.final_tilt):
+        return math.inf
+    if np.all(away[:-1] >= distance):
+        return float(flow.mu_time[-1])
+    flow = averaged_flow(problem, distance=distance, samples=_FINE)
+    away = _distances(flow)
+    first = int(np.flatnonzero(away <= distance * (1.0 + 1e-9))[0])
+    if first == 0:
+        return 0.0
+    share = (away[first - 1] - distance) / (away[first - 1] - away[first])
+    return float(flow.mu_time[first - 1] + share * (flow.mu_time[first] - flow.mu_time[first - 1]))
+
+
+def local_exponent(mu: Array, flip_time: Array) -> Array:
+    """Exponent d ln t / d ln mu along a table of flip times, shape (n,): -1 where t goes as 1 / mu."""
+    exponent: Array = np.gradient(np.log(flip_time), np.log(mu))
+    return exponent
+
+
+_FINE = 4000
+_MOST_STAGES = 20
+
+
+def _distances(flow: SlowFlow) -> Array:
+    """Distance of the nutation from the final tilt, rad, negative where it contains it."""
+    away: Array = np.maximum(flow.tilt_low - flow.final_tilt, flow.final_tilt - flow.tilt_high)
+    return away
+
+
+def _mirrored(values: Constants, numbers: Numbers) -> Constants:
+    """The constants, seen in a mirror if Jellett's integral is negative."""
+    if values.vertical - numbers.alpha * values.axial < 0.0:
+        return Constants(-values.vertical, -values.axial, values.energy)
+    return values
+
+
+def _follow(
+    path: Orbit,
+    jellett: float,
+    numbers: Numbers,
+    goals: Goals,
+    samples: int,
+    tolerance: float,
+    unit: float,
+) -> SlowFlow:
+    """Follow the nutation, from the pole that it is nearer to, until it has died away, then the tilt alone.
+
+    All in natural units; `unit` is that of mu t.
+    """
+    stages: list[Stage] = []
+    begin = 0.0
+    while not (stages and stages[-1].done) and len(stages) < _MOST_STAGES:
+        stage = follow_nutation(path, jellett, numbers, goals, samples, tolerance)
+        stages.append(stage._replace(time=begin + stage.time))
+        begin, path = float(stages[-1].time[-1]), stage.end
+    last = stages[-1]
+    time, low, high = (
+        np.concatenate([first, *(array[1:] for array in rest)])
+        for first, *rest in zip(*((stage.time, stage.low, stage.high) for stage in stages), strict=True)
+    )
+    if last.tail is not None:
+        time = np.concatenate([time, begin + last.tail.time[1:]])
+        low, high = (np.concatenate([bound, last.tail.tilt[1:]]) for bound in (low, high))
+    return SlowFlow(time * unit, low, high, last.final_tilt)

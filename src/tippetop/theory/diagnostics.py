@@ -1,0 +1,95 @@
+"""What a run says about the theory: gyroscopic balance, constants of the smooth table, envelope.
+
+All functions take the axis and the angular momentum of a run, as arrays over time, and have no singularity
+where the axis is vertical, except for quantities that are infinite there.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tippetop.mechanics.motion import axial_spin
+from tippetop.mechanics.state import SlidingState
+from tippetop.mechanics.top import Top
+from tippetop.mechanics.vectors import Vector
+from tippetop.mechanics.view import precession_rate
+from tippetop.theory.dual import Array
+from tippetop.theory.nutation import (
+    Constants,
+    constants,
+    effective_potential,
+    natural_constants,
+    numbers_of,
+    orbit,
+    turning_tilts,
+    whirls,
+)
+
+
+class Envelope(NamedTuple):
+    """Least and largest tilt of the nutation that a smooth table would leave the top in, rad, shape (n,)."""
+
+    low: Array
+    high: Array
+
+
+def gyroscopic_balance(axis: Array, momentum: Array, top: Top) -> Array:
+    """Xi = I1 phi' cos(theta) - I3 omega3, kg m^2/s, shape (n,).
+
+    A spinning body is in gyroscopic balance where xi is small beside I3 omega3: its nutation is then fast,
+    and its tilt moves slowly (Moffatt and Shimomura 2002; Ueda, Sasaki and Watanabe 2005).
+
+    Parameters
+    ----------
+    axis, momentum
+        Axis n and angular momentum L about the centre of mass (kg m^2/s), shape (n, 3).
+    top
+        The body.
+
+    Returns
+    -------
+    array
+        nan where the axis is vertical, where phi' has no meaning.
+    """
+    n, L = _vector(axis), _vector(momentum)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        precessing = top.transverse_inertia * precession_rate(n, L, top) * n[2]
+    balance: Array = precessing - top.axial_inertia * axial_spin(n, L, top)
+    return np.where(np.isfinite(balance), balance, np.nan)
+
+
+def smooth_constants(axis: Array, momentum: Array, top: Top) -> Constants:
+    """What a smooth table would leave alone from each instant on: L_z, L3 and energy as arrays, shape (n,).
+
+    The energy is that without the horizontal motion of the centre of mass, for a body on the table.
+    """
+    n, L = _vector(axis), _vector(momentum)
+    zero = np.zeros_like(n[0])
+    state = SlidingState(n, L, (zero, zero), (zero, zero), (zero, zero, zero), zero)
+    return constants(state, top)
+
+
+def potential_at(index: int, axis: Array, momentum: Array, top: Top, tilts: Array) -> Array:
+    """Effective potential, J, of these tilts (rad, between 0 and pi, shape (k,)) at one instant of a run."""
+    values = smooth_constants(axis[index : index + 1], momentum[index : index + 1], top)
+    potential: Array = effective_potential(np.asarray(tilts, dtype=float), values, top, np)
+    return potential
+
+
+def nutation_envelope(axis: Array, momentum: Array, top: Top) -> Envelope:
+    """The turning points of the nutation, with the constants of a smooth table at each instant.
+
+    Raises
+    ------
+    InvalidInput
+        If the body is not an eccentric sphere.
+    """
+    numbers = numbers_of(top)
+    values = natural_constants(smooth_constants(axis, momentum, top), top)
+    return Envelope(*turning_tilts(whirls(orbit(values, numbers))))
+
+
+def _vector(rows: Array) -> Vector:
+    """The three components of vectors in rows."""
+    rows = np.asarray(rows, dtype=float)
+    return rows[:, 0], rows[:, 1], rows[:, 2]

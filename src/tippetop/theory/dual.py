@@ -1,0 +1,139 @@
+"""Exact derivatives of the mechanics: numbers that carry their gradient.
+
+The mechanics is written in plain operators, so it runs on these numbers unchanged, and its derivatives come
+out exact to rounding: no step to choose, and no formula written a second time (Griewank and Walther,
+*Evaluating Derivatives*, 2008, chapter 3).
+"""
+
+from collections.abc import Callable, Sequence
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array: TypeAlias = NDArray[np.float64]
+
+
+class Dual:
+    """A number, or an array of numbers, with its derivatives along k directions.
+
+    Parameters
+    ----------
+    value
+        The number, or an array of any shape.
+    gradient
+        Its derivatives, shape (k, *value.shape).
+    """
+
+    __slots__ = ("gradient", "value")
+    __array_ufunc__ = None  # so that an array on the left leaves the operation to this class
+
+    def __init__(self, value: Any, gradient: Any) -> None:
+        self.value = value
+        self.gradient = gradient
+
+    def __repr__(self) -> str:
+        return f"Dual({self.value!r}, {self.gradient!r})"
+
+    def __neg__(self) -> "Dual":
+        return Dual(-self.value, -self.gradient)
+
+    def __add__(self, other: Any) -> "Dual":
+        if isinstance(other, Dual):
+            return Dual(self.value + other.value, self.gradient + other.gradient)
+        return Dual(self.value + other, self.gradient)
+
+    __radd__ = __add__
+
+    def __sub__(self, other: Any) -> "Dual":
+        return self.__add__(-other)
+
+    def __rsub__(self, other: Any) -> "Dual":
+        return (-self).__add__(other)
+
+    def __mul__(self, other: Any) -> "Dual":
+        if isinstance(other, Dual):
+            gradient = self.value * other.gradient + other.value * self.gradient
+            return Dual(self.value * other.value, gradient)
+        return Dual(self.value * other, self.gradient * other)
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: Any) -> "Dual":
+        if isinstance(other, Dual):
+            quotient = self.value / other.value
+            return Dual(quotient, (self.gradient - quotient * other.gradient) / other.value)
+        return Dual(self.value / other, self.gradient / other)
+
+    def __rtruediv__(self, other: Any) -> "Dual":
+        quotient = other / self.value
+        return Dual(quotient, -quotient / self.value * self.gradient)
+
+    def __pow__(self, exponent: float) -> "Dual":
+        slope = exponent * self.value ** (exponent - 1)
+        return Dual(self.value**exponent, slope * self.gradient)
+
+
+def sin(angle: Any) -> Any:
+    """Sine of a number, an array or a dual number."""
+    if isinstance(angle, Dual):
+        return Dual(np.sin(angle.value), np.cos(angle.value) * angle.gradient)
+    return np.sin(angle)
+
+
+def cos(angle: Any) -> Any:
+    """Cosine of a number, an array or a dual number."""
+    if isinstance(angle, Dual):
+        return Dual(np.cos(angle.value), -np.sin(angle.value) * angle.gradient)
+    return np.cos(angle)
+
+
+def variable(value: Any) -> Dual:
+    """A number, or an array of them, as the one variable to differentiate by: gradient of shape (1, ...)."""
+    value = np.asarray(value, dtype=float)
+    return Dual(value, np.ones((1, *value.shape)))
+
+
+def variables(point: Sequence[Any]) -> list[Dual]:
+    """The numbers, or arrays of one shape, of a point as independent variables."""
+    values = np.asarray(np.broadcast_arrays(*point), dtype=float)
+    directions = np.eye(len(values)).reshape(len(values), len(values), *(1,) * (values.ndim - 1))
+    return [
+        Dual(value, direction * np.ones_like(values))
+        for value, direction in zip(values, directions, strict=True)
+    ]
+
+
+def derivative(quantity: Any, like: Dual) -> Array:
+    """Gradient of a quantity, shape (k, *value.shape); zero where it is a plain number.
+
+    Parameters
+    ----------
+    quantity
+        What came out of a computation with dual numbers.
+    like
+        One of the variables that went in, for the shape of a zero.
+    """
+    gradient = quantity.gradient if isinstance(quantity, Dual) else 0.0
+    whole: Array = gradient + np.zeros_like(like.gradient)
+    return whole
+
+
+def jacobian(function: Callable[[list[Dual]], Sequence[Any]], point: Sequence[Any]) -> Array:
+    """Matrix of the derivatives of a function at a point, or at many points at once.
+
+    Parameters
+    ----------
+    function
+        Takes k dual numbers and returns r of them; plain operators only.
+    point
+        k numbers, or k arrays of one shape.
+
+    Returns
+    -------
+    array
+        Shape (*shape, r, k): the derivative of each result by each variable.
+    """
+    seeds = variables(point)
+    rows = np.stack([derivative(result, seeds[0]) for result in function(seeds)])
+    return np.moveaxis(rows, (0, 1), (-2, -1))

@@ -1,0 +1,221 @@
+"""Which tops turn over: a map of the eccentric sphere by gamma = I1 / I3 and alpha, its eccentricity.
+
+The stable steady states are the minima over the tilt of the least energy at a given Jellett's integral. For
+the eccentric sphere everything about them follows from D(c) = alpha - (1 - gamma) c, c = cos(theta):
+
+- There is a steady precession at this tilt where D > 0.
+- Its Jellett's integral is lambda^2 = m g R^3 I3 alpha P^2 / D with P = gamma (1 - c^2) + (c - alpha)^2.
+- P' = -2 D, so that lambda turns back where 3 D^2 = gamma (1 - gamma - alpha^2): a fold. The precession is
+  stable where D is larger than there, and everywhere if gamma >= 1 - alpha^2.
+
+Three groups follow from the sign of D at the two ends: gamma = 1 - alpha and gamma = 1 + alpha are their
+boundaries (Ebenfeld and Scheck 1995; Ueda, Sasaki and Watanabe 2005; Ciocci, Malengier, Langerock and
+Grimonprez 2012). Where the fold is divides them further.
+"""
+
+import math
+from enum import StrEnum
+from typing import NamedTuple
+
+import numpy as np
+
+from tippetop.errors import InvalidInput
+from tippetop.mechanics.shape import EccentricSphere
+from tippetop.mechanics.top import Top
+from tippetop.theory.steady import precession_branch
+from tippetop.theory.thresholds import lambda_down, lambda_up
+
+
+class Group(StrEnum):
+    """How an eccentric sphere behaves when it is spun ever faster near theta = 0."""
+
+    IA = "Ia"
+    IB = "Ib"
+    IIA = "IIa"
+    IIB = "IIb"
+    IIC = "IIc"
+    III = "III"
+
+    @property
+    def description(self) -> str:
+        """What the group does, in a sentence."""
+        return _DESCRIPTIONS[self]
+
+    @property
+    def inverts(self) -> bool:
+        """Whether the top, set upright, turns over completely when it spins fast enough."""
+        return self in (Group.IIA, Group.IIB, Group.IIC)
+
+    @property
+    def leaves_upright(self) -> bool:
+        """Whether the upright spin becomes unstable at some spin."""
+        return self.inverts or self is Group.III
+
+    @property
+    def coexistence(self) -> bool:
+        """Whether two steady states are stable at some spins, so that the launch decides between them."""
+        return self not in (Group.IIA, Group.III)
+
+
+_DESCRIPTIONS = {
+    Group.IA: "never inverts: the upright spin is stable at any spin; from some spin on, a tilted "
+    "precession or the inverted spin is stable beside it",
+    Group.IB: "never inverts: the upright spin is stable at any spin; from some spin on, the inverted "
+    "spin is stable beside it, and no precession is",
+    Group.IIA: "inverts completely, and gradually: one steady state is stable at every spin",
+    Group.IIB: "inverts completely, with a jump: over a range of spins, the upright spin and another state "
+    "are both stable",
+    Group.IIC: "inverts completely, in one jump: no precession is stable, and over a range of spins both "
+    "vertical spins are",
+    Group.III: "stops part-way: it leaves the upright spin, but the inverted spin is never stable",
+}
+
+
+class Fold(NamedTuple):
+    """Where the Jellett's integral of the steady precessions is least, inside the branch.
+
+    Attributes
+    ----------
+    tilt
+        theta, rad.
+    jellett
+        lambda, kg m^2/s.
+    """
+
+    tilt: float
+    jellett: float
+
+
+class JellettRange(NamedTuple):
+    """Range of the size of Jellett's integral, kg m^2/s."""
+
+    low: float
+    high: float
+
+
+def classify(gamma: float, alpha: float) -> Group:
+    """Group of the eccentric sphere with inertia ratio gamma = I1 / I3 and eccentricity alpha.
+
+    Raises
+    ------
+    InvalidInput
+        If alpha is not between 0 and 1, or gamma is less than 1/2, as for no body.
+    """
+    if not 0.0 < alpha < 1.0:
+        raise InvalidInput("alpha", alpha, "a number greater than 0 and less than 1")
+    if not gamma >= 0.5:
+        raise InvalidInput("gamma", gamma, "a number at least 0.5, as for any body")
+    if gamma >= inverted_boundary(alpha):
+        return Group.III
+    no_stable_precession = _fold_measure(gamma, alpha) >= alpha + 1.0 - gamma
+    if gamma <= upright_boundary(alpha):
+        return Group.IB if no_stable_precession else Group.IA
+    if no_stable_precession:
+        return Group.IIC
+    return Group.IIB if _fold_measure(gamma, alpha) > alpha - 1.0 + gamma else Group.IIA
+
+
+def classify_top(top: Top) -> Group:
+    """Group of an eccentric sphere.
+
+    Raises
+    ------
+    InvalidInput
+        If the top is of another shape.
+    """
+    return classify(inertia_ratio(top), eccentricity(top))
+
+
+def inertia_ratio(top: Top) -> float:
+    """Gamma = I1 / I3."""
+    return float(top.transverse_inertia / top.axial_inertia)
+
+
+def eccentricity(top: Top) -> float:
+    """Alpha of an eccentric sphere.
+
+    Raises
+    ------
+    InvalidInput
+        If the top is of another shape.
+    """
+    if not isinstance(top.shape, EccentricSphere):
+        raise InvalidInput(
+            "body.shape", top.shape, "an eccentric sphere; Jellett's integral holds for no other"
+        )
+    return float(top.shape.eccentricity)
+
+
+def upright_boundary(alpha: float) -> float:
+    """Gamma of the boundary between groups I and II: below it the upright spin is stable at any spin."""
+    return 1.0 - alpha
+
+
+def inverted_boundary(alpha: float) -> float:
+    """Gamma of the boundary between groups II and III: above it the inverted spin is stable at no spin."""
+    return 1.0 + alpha
+
+
+def jump_boundary(alpha: float) -> float:
+    """Gamma of the boundary between groups IIb and IIa, where the fold enters at theta = 0.
+
+    The larger root of 4 gamma^2 - (1 - alpha)(7 + alpha) gamma + 3 (1 - alpha)^2.
+    """
+    return (1.0 - alpha) / 8.0 * (7.0 + alpha + math.sqrt(1.0 + 14.0 * alpha + alpha**2))
+
+
+def precession_boundaries(alpha: float) -> tuple[float, float]:
+    """Gammas between which no precession is stable (groups Ib and IIc), where the fold leaves at theta = pi.
+
+    The roots of 4 gamma^2 - (1 + alpha)(7 - alpha) gamma + 3 (1 + alpha)^2; (nan, nan) where there are none,
+    for alpha > 7 - 4 sqrt(3) = 0.0718.
+    """
+    discriminant = 1.0 - 14.0 * alpha + alpha**2
+    if discriminant < 0.0:
+        return math.nan, math.nan
+    middle, half = 7.0 - alpha, math.sqrt(discriminant)
+    return (1.0 + alpha) / 8.0 * (middle - half), (1.0 + alpha) / 8.0 * (middle + half)
+
+
+def equal_thresholds(alpha: float) -> float:
+    """Gamma in group II at which both vertical spins change stability together, lambda_up = lambda_down.
+
+    Below it the upright spin outlasts the coming of the inverted one, so that a top that leaves it turns over
+    completely at once.
+    """
+    return (1.0 - alpha**2) * (1.0 + 3.0 * alpha**2) / (1.0 + 6.0 * alpha**2 + alpha**4)
+
+
+def fold(top: Top) -> Fold | None:
+    """The fold of the branch of steady precessions of an eccentric sphere, or None if it has none inside.
+
+    Raises
+    ------
+    InvalidInput
+        If the top is of another shape.
+    """
+    gamma, alpha = inertia_ratio(top), eccentricity(top)
+    if classify(gamma, alpha) not in (Group.IA, Group.IIB):
+        return None
+    cosine = (alpha - _fold_measure(gamma, alpha)) / (1.0 - gamma)
+    tilt = math.acos(cosine)
+    return Fold(tilt, float(precession_branch(top, np.array([tilt])).jellett[0]))
+
+
+def coexistence(top: Top) -> JellettRange | None:
+    """Jellett's integrals for which two steady states of an eccentric sphere are stable, or None.
+
+    Raises
+    ------
+    InvalidInput
+        If the top is of another shape.
+    """
+    if not classify_top(top).coexistence:
+        return None
+    turning = fold(top)
+    return JellettRange(lambda_down(top) if turning is None else turning.jellett, lambda_up(top))
+
+
+def _fold_measure(gamma: float, alpha: float) -> float:
+    """D at the fold, sqrt(gamma (1 - gamma - alpha^2) / 3); 0 where there is none and every D is larger."""
+    return math.sqrt(max(gamma * (1.0 - gamma - alpha**2) / 3.0, 0.0))

@@ -1,0 +1,333 @@
+"""Nutation of an eccentric sphere on a smooth table, and what a little friction takes from it.
+
+Without friction L_z, L3 = L.n and the energy are constant, and the tilt swings between two turning points.
+In units of mass, radius and gravity, with p = 1 - cos(theta), q = L_z - L3 and e the energy above that of
+the axial spin and of theta = 0,
+
+    (I1 + alpha^2 s^2) p'^2 / 2 = s^2 (e - alpha p) - (q + L3 p)^2 / (2 I1) = alpha (p - p1)(p2 - p)(p3 - p),
+
+with s^2 = p (2 - p) and p1 <= p2 <= 2 <= p3. The substitution p = (p1 + p2)/2 + (p2 - p1)/2 cos(psi) makes
+time a smooth function of the phase psi down to p1 = p2, and averages over a nutation converge exponentially
+with equidistant phases.
+
+The tilt swings as if the axis were the sum of two whirls, a fast and a slow one, as it is near theta = 0:
+sin(theta/2) at the turning points is the sum and the difference of two amplitudes, whose squares are named
+`fast` and `slow` here. They stay good where one of them vanishes (a steady precession of a smooth table) and
+where they are equal (a nutation through the vertical), and near theta = 0 friction makes them grow or decay
+exponentially.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from tippetop.mechanics.invariants import energy
+from tippetop.mechanics.motion import axial_spin, on_table
+from tippetop.mechanics.state import SlidingState
+from tippetop.mechanics.top import Top, dimensionless_numbers, natural_units
+from tippetop.mechanics.vectors import Functions, Scalar
+from tippetop.theory.groups import eccentricity
+
+
+class Constants(NamedTuple):
+    """What a nutation on a smooth table leaves alone.
+
+    Attributes
+    ----------
+    vertical, axial
+        Angular momentum about the vertical, L_z, and about the axis, L3, kg m^2/s.
+    energy
+        Energy without the horizontal motion of the centre of mass, J.
+    """
+
+    vertical: Scalar
+    axial: Scalar
+    energy: Scalar
+
+
+class Numbers(NamedTuple):
+    """The dimensionless numbers of an eccentric sphere: inertias in m R^2, and alpha."""
+
+    transverse: float
+    axial: float
+    alpha: float
+
+
+class Orbit(NamedTuple):
+    """A nutation of a smooth table, in units of mass, radius and gravity.
+
+    Attributes
+    ----------
+    middle, half
+        (p1 + p2)/2 and (p2 - p1)/2 of the turning points p = 1 - cos(theta).
+    far
+        The third root p3.
+    excess
+        q = L_z - L3.
+    axial
+        L3.
+    swing
+        e, the energy less that of the axial spin and of theta = 0.
+    """
+
+    middle: Scalar
+    half: Scalar
+    far: Scalar
+    excess: Scalar
+    axial: Scalar
+    swing: Scalar
+
+
+class Whirls(NamedTuple):
+    """Squares of the amplitudes whose sum and difference are sin(theta/2) at the turning points."""
+
+    fast: Scalar
+    slow: Scalar
+
+
+class WhirlRates(NamedTuple):
+    """How friction changes a nutation, on average, per unit of friction coefficient, in natural units.
+
+    Jellett's integral and the whirls leave two choices of the third root, which can meet: it is followed too.
+
+    Attributes
+    ----------
+    fast, slow
+        Logarithmic rates of the whirls.
+    root
+        Rate of sqrt(|p3|), which goes on to negative values where p3 touches zero.
+    """
+
+    fast: float
+    slow: float
+    root: float
+
+
+class Drain(NamedTuple):
+    """What friction takes from a nutation, on average, per unit of friction coefficient, in natural units.
+
+    Attributes
+    ----------
+    axial
+        Rate of L3.
+    energy
+        Rate of the energy.
+    """
+
+    axial: float
+    energy: float
+
+
+def constants(state: SlidingState, top: Top) -> Constants:
+    """The constants of the smooth table at an instant, SI."""
+    resting = state._replace(velocity=(0.0, 0.0))
+    axial = top.axial_inertia * axial_spin(state.axis, state.momentum, top)
+    return Constants(state.momentum[2], axial, energy(on_table(resting, top), top))
+
+
+def natural_constants(values: Constants, top: Top) -> Constants:
+    """The constants in units of mass, radius and gravity."""
+    units = natural_units(top)
+    momentum = units.angular_momentum
+    return Constants(values.vertical / momentum, values.axial / momentum, values.energy / units.energy)
+
+
+def numbers_of(top: Top) -> Numbers:
+    """The dimensionless numbers of an eccentric sphere.
+
+    Raises
+    ------
+    InvalidInput
+        If the top is of another shape.
+    """
+    eccentricity(top)
+    transverse, axial, alpha = dimensionless_numbers(top)[:3]
+    return Numbers(float(transverse), float(axial), float(alpha))
+
+
+def effective_potential(tilt: Scalar, values: Constants, top: Top, functions: Functions) -> Scalar:
+    """Potential energy, J, in which the tilt (rad) moves on a smooth table: any shape, 0 < tilt < pi.
+
+    (L_z - L3 c)^2 / (2 I1 s^2) + L3^2 / (2 I3) + m g h(c); the tilt swings where it is below the energy.
+    """
+    s, c = functions.sin(tilt), functions.cos(tilt)
+    turning = (values.vertical - values.axial * c) ** 2 / (2.0 * top.transverse_inertia * s**2)
+    spinning = values.axial**2 / (2.0 * top.axial_inertia)
+    return turning + spinning + top.mass * top.gravity * top.shape.height(c)
+
+
+_NEWTON_STEPS = 40
+
+
+def orbit(values: Constants, numbers: Numbers) -> Orbit:
+    """The nutation with these constants, both in natural units; arrays of them too.
+
+    Newton's method from above the largest root of the cubic converges to it monotonically, and the other two
+    follow without cancellation. Constants that rounding has put beyond those of a steady precession give it.
+    """
+    I1, I3, alpha = numbers
+    axial = values.axial
+    excess = values.vertical - axial
+    swing = values.energy - axial**2 / (2.0 * I3) - (1.0 - alpha)
+    total = (swing + axial**2 / (2.0 * I1)) / alpha + 2.0
+    pairs = (2.0 * swing - excess * axial / I1) / alpha
+    product = excess**2 / (2.0 * I1 * alpha)
+    far = total + 0.0
+    for _ in range(_NEWTON_STEPS):
+        value = ((far - total) * far + pairs) * far - product
+        slope = (3.0 * far - 2.0 * total) * far + pairs
+        far = far - value / slope
+    near = product / far
+    middle = (pairs - near) / far / 2.0
+    half = np.sqrt(np.maximum(middle**2 - near, 0.0))
+    return Orbit(middle, half, far, excess, axial, swing)
+
+
+def whirls(path: Orbit) -> Whirls:
+    """The two whirls of a nutation, or of arrays of them: the fast one is the larger where L_z > L3."""
+    apart = np.copysign(np.sqrt(np.maximum(path.middle**2 - path.half**2, 0.0)), path.excess)
+    return Whirls((path.middle + apart) / 4.0, (path.middle - apart) / 4.0)
+
+
+def turning_tilts(pair: Whirls) -> tuple[Scalar, Scalar]:
+    """Least and largest tilt of a nutation with these whirls, rad; arrays of them too."""
+    fast, slow = np.sqrt(pair.fast), np.sqrt(pair.slow)
+    return 2.0 * np.arcsin(abs(fast - slow)), 2.0 * np.arcsin(np.minimum(fast + slow, 1.0))
+
+
+def orbit_of_whirls(pair: Whirls, root: float, jellett: float, numbers: Numbers) -> Orbit:
+    """The nutation with these whirls, sqrt(|p3|) near `root`, and this Jellett's integral, in natural units.
+
+    L_z - L3 and L3 are linear in r = sqrt(|p3|), and eliminating the energy from the coefficients of the
+    cubic leaves a quadratic equation for r. Newton's method improves the root given, but not where two meet.
+    """
+    I1, _, alpha = numbers
+    difference = pair.fast - pair.slow
+    both = 4.0 * (pair.fast + pair.slow)
+    near = 4.0 * difference * difference
+    slope = _excess_slope(numbers) * difference
+    off = 1.0 / (1.0 - alpha) ** 2
+    square = abs(alpha) * I1 * (2.0 - both) - alpha * slope * slope * off
+    linear = jellett * slope * (1.0 + alpha) * off
+    constant = -alpha * I1 * (4.0 + near - 2.0 * both) - jellett * jellett * off
+    for _ in range(2):
+        steepness = 2.0 * square * root + linear
+        step = ((square * root + linear) * root + constant) / steepness if steepness != 0.0 else math.inf
+        if abs(step) < _CLOSE * (abs(root) + _CLOSE):
+            root -= step
+    far = math.copysign(root * root, alpha)
+    excess = slope * root
+    axial = (jellett - excess) / (1.0 - alpha)
+    swing = 0.5 * (alpha * (near + far * both) + excess * axial / I1)
+    return Orbit(0.5 * both, 4.0 * math.sqrt(pair.fast * pair.slow), far, excess, axial, swing)
+
+
+def _excess_slope(numbers: Numbers) -> float:
+    """What L_z - L3 is of sqrt(|p3|) times the difference of the whirls."""
+    return 2.0 * math.sqrt(2.0 * numbers.transverse * abs(numbers.alpha))
+
+
+_CLOSE = 1e-2
+
+
+def upside_down(path: Orbit, numbers: Numbers) -> tuple[Orbit, Numbers]:
+    """The same nutation and top with the axis drawn the other way: p = 1 + cos(theta), -alpha for alpha.
+
+    Near theta = pi the whirls of this one stay good.
+    """
+    turned = Orbit(
+        2.0 - path.middle,
+        path.half,
+        2.0 - path.far,
+        path.excess + 2.0 * path.axial,
+        -path.axial,
+        path.swing - 2.0 * numbers.alpha,
+    )
+    return turned, numbers._replace(alpha=-numbers.alpha)
+
+
+def phases(path: Orbit) -> tuple[float, ...]:
+    """Cosines of as many equidistant phases psi between 0 and pi as an average over the nutation needs.
+
+    The error falls as exp(-2 n kappa) for n phases, with cosh(kappa) the distance of the third root from the
+    middle of the nutation over its half-width; as many are taken as make it 1e-12, at most 64.
+    """
+    reach = abs(path.far - path.middle) / path.half if path.half > 0.0 else math.inf
+    kappa = math.acosh(reach) if reach > 1.0 else 0.0
+    return _PHASES[
+        max(2, min(_MOST_PHASES, math.ceil(_DIGITS / (2.0 * kappa)))) if kappa > 0.0 else _MOST_PHASES
+    ]
+
+
+_MOST_PHASES = 64
+_DIGITS = 12.0 * math.log(10.0)
+_PHASES = tuple(
+    tuple(math.cos((j + 0.5) * math.pi / count) for j in range(count)) for count in range(_MOST_PHASES + 1)
+)
+
+
+def drain(path: Orbit, numbers: Numbers) -> Drain:
+    """What friction takes from a nutation on average: torque about the axis and power, per unit of friction.
+
+    The centre of mass rests horizontally, as it does on average: its own motion decays as exp(-mu g t) and
+    turns with no nutation. Then the slip is (omega x a) along the table, v_X = -h theta' and s v_Y = s^2
+    omega3 - (L_z - L3 c)(c - alpha) / I1, and the torque about the axis is -mu N s v_Y. N is that of the
+    smooth table, 1 + z'' with z = 1 - alpha c.
+    """
+    I1, I3, alpha = numbers
+    middle, half, far, excess, axial, swing = path
+    spin = axial / I3
+    weights = torque = power = 0.0
+    for cosine in phases(path):
+        p = middle + half * cosine
+        c = 1.0 - p
+        sine_squared = p * (2.0 - p)
+        inertia = I1 + alpha * alpha * sine_squared
+        about = excess + axial * p
+        room = swing - alpha * p
+        rate_squared = (2.0 * sine_squared * room - about * about / I1) / inertia
+        acceleration = (
+            2.0 * c * room - alpha * sine_squared - about * axial / I1 - rate_squared * alpha * alpha * c
+        ) / inertia
+        across = sine_squared * spin - about / I1 * (c - alpha)
+        height = 1.0 - alpha * c
+        weight = math.sqrt(inertia / (alpha * (far - p)))
+        pressed = weight * (1.0 + alpha * acceleration)
+        weights += weight
+        torque -= pressed * across
+        power -= pressed * (height * height * rate_squared + across * across) / sine_squared
+    return Drain(torque / weights, power / weights)
+
+
+def whirl_rates(pair: Whirls, root: float, jellett: float, numbers: Numbers) -> WhirlRates:
+    """Rates of a nutation's whirls per unit of friction coefficient, in natural units.
+
+    The rates of L3 and of the energy, at constant Jellett's integral, carried over by differentiating the sum
+    of the cubic's roots, the sum of their products in pairs, and L_z - L3.
+    """
+    I1, I3, alpha = numbers
+    path = orbit_of_whirls(pair, root, jellett, numbers)
+    taken = drain(path, numbers)
+    far, excess, axial = path.far, path.excess, path.axial
+    root = math.copysign(math.sqrt(abs(far)), root)
+    difference, both = pair.fast - pair.slow, 2.0 * path.middle
+    slope = _excess_slope(numbers)
+    axial_rate = taken.axial
+    excess_rate = (alpha - 1.0) * axial_rate
+    swing_rate = taken.energy - axial / I3 * axial_rate
+    total_rate = (swing_rate + axial * axial_rate / I1) / alpha
+    pairs_rate = (2.0 * swing_rate - (excess * axial_rate + axial * excess_rate) / I1) / alpha
+
+    first = pairs_rate - far * total_rate
+    second = excess_rate / slope
+    span = 8.0 * difference * difference + 2.0 * far * (far - both)
+    far_slope = math.copysign(2.0 * root, root * alpha)
+    difference_rate = (first * difference - far_slope * (both - far) * second) / span
+    root_rate = (8.0 * difference * second - root * first) / span
+    sum_rate = (total_rate - far_slope * root_rate) / 4.0
+    return WhirlRates(
+        0.5 * (sum_rate + difference_rate) / pair.fast,
+        0.5 * (sum_rate - difference_rate) / pair.slow,
+        root_rate,
+    )

@@ -1,0 +1,254 @@
+"""Linear stability of the steady states, in a frame that turns with the precession.
+
+A steady precession is an equilibrium of the equations of motion written in the frame that turns about the
+vertical at its rate phi'. There the linear motion has constant coefficients, and its eigenvalues decide.
+Three of them mean nothing: that the axis is a unit vector takes one away, and two are zero whatever the
+parameters, those of the turned and of the neighbouring steady states. They are divided out exactly, because
+together they form a Jordan block, whose eigenvalues rounding would spread over 1e-8 of the others.
+
+The Jacobian is that of `tippetop.mechanics.motion.sliding_rates` itself, differentiated exactly.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import expm
+
+from tippetop.mechanics.motion import sliding_rates
+from tippetop.mechanics.state import SlidingState
+from tippetop.mechanics.top import Top, Units, dimensionless_numbers, kind_of, natural_units
+from tippetop.mechanics.vectors import Scalar
+from tippetop.mechanics.view import Angles, state_from_angles
+from tippetop.theory import dual
+from tippetop.theory.dual import Array, derivative, jacobian, variable
+from tippetop.theory.steady import (
+    Branch,
+    Kind,
+    SteadyState,
+    precession_rate_squared,
+    rolling_spin,
+    state_of,
+)
+
+Complex: TypeAlias = NDArray[np.complex128]
+
+TURNED = "the same state turned about the vertical"
+NEIGHBOUR = "the neighbouring steady state, of another Jellett's integral"
+
+NEUTRAL = {
+    Kind.UPRIGHT: (NEIGHBOUR,),
+    Kind.INVERTED: (NEIGHBOUR,),
+    Kind.PRECESSION: (TURNED, NEIGHBOUR),
+    Kind.LEVEL: (TURNED, NEIGHBOUR),
+}
+"""The zero eigenvalues of each kind of steady state, by their motion: not counted in a `Spectrum`."""
+
+ROUNDING = 1e-12
+"""Growth rates below this fraction of the largest eigenvalue are taken for zero."""
+
+
+@dataclass(frozen=True)
+class Spectrum:
+    """The eigenvalues of the linear motion about a steady state, but for its neutral directions.
+
+    Attributes
+    ----------
+    eigenvalues
+        1/s, by decreasing real part: 5 for a precession, 6 for a vertical spin.
+    frame_rate
+        Angular velocity of the frame about the vertical, rad/s: in another frame the imaginary parts of a
+        vertical spin's eigenvalues shift by the difference.
+    neutral
+        Names of the zero eigenvalues that were divided out, which are those of symmetry.
+    """
+
+    eigenvalues: Complex
+    frame_rate: float
+    neutral: tuple[str, ...]
+
+    @property
+    def growth_rate(self) -> float:
+        """Largest real part, 1/s."""
+        return float(self.eigenvalues[0].real)
+
+    @property
+    def stable(self) -> bool:
+        """Whether every perturbation decays; False also where one neither grows nor decays."""
+        return self.growth_rate < -self._rounding
+
+    @property
+    def unstable(self) -> bool:
+        """Whether some perturbation grows; False also where one neither grows nor decays."""
+        return self.growth_rate > self._rounding
+
+    @property
+    def _rounding(self) -> float:
+        return ROUNDING * float(np.abs(self.eigenvalues).max())
+
+
+def spectrum(steady: SteadyState, top: Top, frame_rate: float | None = None) -> Spectrum:
+    """Eigenvalues of the linear motion about a steady state.
+
+    Parameters
+    ----------
+    steady
+        The steady state.
+    top
+        The body on its table; here its friction matters.
+    frame_rate
+        Angular velocity of the frame, rad/s. Default: the state's precession, which is 0, a frame at rest,
+        for a vertical spin. Only a vertical spin is steady in other frames.
+    """
+    rate = steady.precession
+    if frame_rate is not None and steady.kind in (Kind.UPRIGHT, Kind.INVERTED):
+        rate = frame_rate
+    point = (np.array([steady.tilt]), np.array([steady.precession]), np.array([steady.spin]))
+    eigenvalues = _eigenvalues(steady.kind, *point, np.array([rate]), top)
+    return Spectrum(eigenvalues[0], rate, NEUTRAL[steady.kind])
+
+
+def branch_eigenvalues(branch: Branch, top: Top) -> Complex:
+    """Eigenvalues along a branch of steady precessions, 1/s, shape (n, 5), nan where there is no state."""
+    found = np.full((branch.tilt.size, 5), complex(math.nan, math.nan))
+    exists = np.isfinite(branch.precession)
+    if exists.any():
+        tilt, rate, spin = branch.tilt[exists], branch.precession[exists], branch.spin[exists]
+        found[exists] = _eigenvalues(Kind.PRECESSION, tilt, rate, spin, rate, top)
+    return found
+
+
+def vertical_eigenvalues(kind: Kind, top: Top, spins: Array) -> Complex:
+    """Eigenvalues of vertical spins at these axial spins (rad/s), in a frame at rest, 1/s, shape (n, 6)."""
+    spins = np.atleast_1d(np.asarray(spins, dtype=float))
+    zero = np.zeros_like(spins)
+    tilt = np.full_like(spins, 0.0 if kind is Kind.UPRIGHT else math.pi)
+    return _eigenvalues(kind, tilt, zero, spins, zero, top)
+
+
+def vertical_growth_rates(kind: Kind, top: Top, spins: Array) -> Array:
+    """Growth rates of the vertical spin at these axial spins (rad/s), 1/s, shape (n,)."""
+    growth: Array = vertical_eigenvalues(kind, top, spins)[:, 0].real
+    return growth
+
+
+def linear_tilts(steady: SteadyState, top: Top, start: SlidingState, times: Array) -> Array:
+    """Distance of the axis from the vertical in the linear motion about a vertical spin, rad, shape (n,).
+
+    Parameters
+    ----------
+    steady
+        A vertical spin.
+    top
+        The body on its table.
+    start
+        A state close to it, SI.
+    times
+        Times after it, s, shape (n,).
+    """
+    point = (np.array([steady.tilt]), np.zeros(1), np.array([steady.spin]))
+    linear = _linear(steady.kind, *point, np.zeros(1), top)
+    units = linear.units
+    vertical = state_of(steady, top)
+    away = np.array(
+        [
+            *(a - b for a, b in zip(start.axis, vertical.axis, strict=True)),
+            *(
+                (a - b) / units.angular_momentum
+                for a, b in zip(start.momentum, vertical.momentum, strict=True)
+            ),
+            *(a / units.speed for a in start.velocity),
+        ]
+    )
+    steps = np.asarray(times, dtype=float)[:, None, None] / units.time
+    later = expm(steps * linear.matrix) @ (linear.basis[0].T @ away)
+    horizontal = later @ linear.basis[0].T[:, :2]
+    tilts: Array = np.hypot(horizontal[:, 0], horizontal[:, 1])
+    return tilts
+
+
+class _Linear(NamedTuple):
+    """Linear motion about n steady states in natural units: its matrix, on a basis of what counts."""
+
+    basis: Array
+    matrix: Array
+    units: Units
+
+
+def _linear(kind: Kind, tilt: Array, precession: Array, spin: Array, frame: Array, top: Top) -> _Linear:
+    """Linear motion about n steady states of one kind, shapes (n, 8, k) and (n, k, k)."""
+    units = Units(*(float(unit) for unit in natural_units(top)))
+    natural = kind_of(top).top(tuple(float(number) for number in dimensionless_numbers(top)))
+    angles = Angles(tilt, 0.0, 0.0, precession * units.time, spin * units.time, (0.0, 0.0))
+    point = _coordinates(state_from_angles(angles, natural, np), tilt)
+
+    matrix = jacobian(_rates_in_frame(natural, frame * units.time), point)
+    basis = _complement(_meaningless(kind, angles, point, natural))
+    return _Linear(basis, np.swapaxes(basis, -1, -2) @ matrix @ basis, units)
+
+
+def _eigenvalues(kind: Kind, tilt: Array, precession: Array, spin: Array, frame: Array, top: Top) -> Complex:
+    """Eigenvalues of n steady states of one kind, 1/s, by decreasing real part, shape (n, 5 or 6)."""
+    linear = _linear(kind, tilt, precession, spin, frame, top)
+    values: Complex = np.linalg.eigvals(linear.matrix).astype(complex) / linear.units.time
+    order = np.lexsort((values.imag, -values.real))
+    return np.take_along_axis(values, order, axis=-1)
+
+
+def _coordinates(state: SlidingState, like: Array) -> list[Array]:
+    """The 8 numbers n, L, u of n states, as arrays."""
+    eight = (*state.axis, *state.momentum, *state.velocity)
+    return [np.broadcast_to(np.asarray(number, dtype=float), like.shape) for number in eight]
+
+
+def _rates_in_frame(top: Top, frame: Array) -> Callable[[Sequence[Any]], list[Any]]:
+    """Rates of the 8 numbers n, L, u seen from a frame that turns about the vertical."""
+
+    def rates(y: Sequence[Any]) -> list[Any]:
+        rest = ((0.0, 0.0), (1.0, 0.0, 0.0), 0.0)
+        still = sliding_rates(SlidingState((y[0], y[1], y[2]), (y[3], y[4], y[5]), (y[6], y[7]), *rest), top)
+        seen = [*still.axis, *still.momentum, *still.velocity]
+        for i, turned in enumerate(_turned(y)):
+            seen[i] = seen[i] - frame * turned
+        return seen
+
+    return rates
+
+
+def _turned(y: Sequence[Scalar]) -> tuple[Scalar, ...]:
+    """Products z x n, z x L and z x u: how the 8 numbers change as the state turns about the vertical."""
+    return (-y[1], y[0], 0.0, -y[4], y[3], 0.0, -y[7], y[6])
+
+
+def _meaningless(kind: Kind, angles: Angles, point: list[Array], top: Top) -> Array:
+    """The directions to divide out, shape (n, 8, 2 or 3): off the unit sphere, and the neutral ones."""
+    zero = np.zeros_like(point[0])
+    off_sphere = [*point[:3], *[zero] * 5]
+    if kind in (Kind.UPRIGHT, Kind.INVERTED):
+        directions = [off_sphere, [*[zero] * 3, *point[:3], zero, zero]]
+    elif kind is Kind.LEVEL:
+        directions = [off_sphere, list(_turned(point)), [*[zero] * 5, zero + 1.0, zero, zero]]
+    else:
+        directions = [off_sphere, list(_turned(point)), _along_branch(angles, top)]
+    columns = [np.stack([number + zero for number in direction], axis=-1) for direction in directions]
+    return np.stack(columns, axis=-1)
+
+
+def _along_branch(angles: Angles, top: Top) -> list[Array]:
+    """Derivative of the steady precession by its tilt."""
+    tilt = variable(angles.tilt)
+    c = dual.cos(tilt)
+    mirrored = np.where(np.asarray(angles.precession) < 0, -1.0, 1.0)
+    rate = mirrored * precession_rate_squared(c, top) ** 0.5
+    moved = Angles(tilt, 0.0, 0.0, rate, rate * rolling_spin(c, top.shape), (0.0, 0.0))
+    state = state_from_angles(moved, top, dual)
+    return [derivative(number, tilt)[0] for number in (*state.axis, *state.momentum, *state.velocity)]
+
+
+def _complement(directions: Array) -> Array:
+    """Orthonormal basis of what is perpendicular to the directions, shape (n, 8, 8 - m)."""
+    basis: Array = np.linalg.qr(directions, mode="complete").Q[..., directions.shape[-1] :]
+    return basis

@@ -1,0 +1,265 @@
+"""Steady states of a body of revolution on a table: no slip, no friction, constant tilt.
+
+In a steady precession the axis turns about the vertical at the rate phi' with constant tilt and axial spin
+omega3, the centre of mass rests and the contact point does not slip. That slip vanishes gives
+omega3 = phi' (c + h' / (h - h' c)), and the balance of the moments phi'^2 (I3 omega3 / phi' - I1 c) = m g h',
+with c = cos(theta) and the support function h(c). For the eccentric sphere these are equation (2.17) of the
+report, omega3 = phi' (c - alpha), and phi'^2 = m g R alpha / (I1 c + I3 (alpha - c)).
+
+Friction does not enter: the same states serve every friction law. What counts them is Jellett's integral.
+"""
+
+import math
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import NamedTuple
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from tippetop.mechanics.invariants import energy, jellett
+from tippetop.mechanics.shape import Shape, contact_vector
+from tippetop.mechanics.state import SlidingState, State
+from tippetop.mechanics.top import Top
+from tippetop.mechanics.vectors import VERTICAL, Functions, Scalar, Vector, add, dot, scale
+from tippetop.mechanics.view import Angles, state_from_angles
+from tippetop.problem import Problem
+from tippetop.theory.dual import Array
+
+
+class Kind(StrEnum):
+    """What a steady state looks like."""
+
+    UPRIGHT = "upright"
+    INVERTED = "inverted"
+    PRECESSION = "precession"
+    LEVEL = "level"
+    """Axis horizontal, no axial spin, any precession: for shapes that are the same at both ends."""
+
+
+@dataclass(frozen=True)
+class SteadyState:
+    """A motion that friction leaves alone.
+
+    Attributes
+    ----------
+    kind
+        Vertical spin at theta = 0 or pi, steady precession, or level spin.
+    tilt
+        theta, rad.
+    precession
+        phi', rad/s; 0 by convention for a vertical spin, where only the axial spin has a meaning.
+    spin
+        Axial spin omega3, rad/s.
+    jellett
+        Jellett's integral lambda, kg m^2/s.
+    energy
+        Energy, J, in the convention of `tippetop.mechanics.invariants.energy`.
+    """
+
+    kind: Kind
+    tilt: float
+    precession: float
+    spin: float
+    jellett: float
+    energy: float
+
+
+@dataclass(frozen=True)
+class Branch:
+    """The steady precessions with phi' > 0 at given tilts; those with phi' < 0 are their mirror images.
+
+    All attributes are arrays of one shape, as those of `SteadyState`. Where there is no steady precession,
+    everything but the tilt is nan.
+    """
+
+    tilt: Array
+    precession: Array
+    spin: Array
+    jellett: Array
+    energy: Array
+
+
+class RollingPrecession(NamedTuple):
+    """A precession without slip, per unit precession, whether steady or not.
+
+    Attributes
+    ----------
+    axis
+        Axis n.
+    momentum
+        L / phi', kg m^2.
+    jellett
+        lambda / phi', kg m^2.
+    """
+
+    axis: Vector
+    momentum: Vector
+    jellett: Scalar
+
+
+def rolling_precession(tilt: Scalar, top: Top, functions: Functions) -> RollingPrecession:
+    """The precession without slip at a tilt, rad, leaning along x: L = phi' I1 (z - c n) + I3 omega3 n."""
+    axis = (functions.sin(tilt), 0.0, functions.cos(tilt))
+    along = scale(gyroscopic_reaction(axis[2], top), axis)
+    momentum = add(scale(top.transverse_inertia, VERTICAL), along)
+    return RollingPrecession(axis, momentum, jellett(_at_rest(axis, momentum, top), top))
+
+
+def rolling_spin(c: Scalar, shape: Shape) -> Scalar:
+    """Ratio omega3 / phi' of a precession without slip, c + h' / (h - h' c): (2.17) for the sphere."""
+    slope = shape.slope(c)
+    return c + slope / (shape.height(c) - slope * c)
+
+
+def gyroscopic_reaction(c: Scalar, top: Top) -> Scalar:
+    """Gyroscopic moment of a precession without slip, I3 omega3 / phi' - I1 c, in phi'^2 sin(theta)."""
+    return top.axial_inertia * rolling_spin(c, top.shape) - top.transverse_inertia * c
+
+
+def weight_moment(c: Scalar, top: Top) -> Scalar:
+    """Moment of the table's support over sin(theta), m g h', J: what the gyroscopic moment balances."""
+    return top.mass * top.gravity * top.shape.slope(c)
+
+
+def precession_rate_squared(c: Scalar, top: Top) -> Scalar:
+    """phi'^2 of the steady precession, rad^2/s^2: there is none where it is not positive."""
+    return weight_moment(c, top) / gyroscopic_reaction(c, top)
+
+
+def precession_branch(top: Top, tilts: Array) -> Branch:
+    """The steady precessions at these tilts (rad, any shape), which may include 0 and pi as limits."""
+    tilts = np.asarray(tilts, dtype=float)
+    rolling = rolling_precession(tilts, top, np)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        squared = precession_rate_squared(rolling.axis[2], top)
+        rate = np.sqrt(np.where(np.isfinite(squared) & (squared > 0), squared, np.nan))
+    whole = _at_rest(rolling.axis, scale(rate, rolling.momentum), top)
+    return Branch(
+        tilts,
+        rate,
+        rate * rolling_spin(rolling.axis[2], top.shape),
+        rate * rolling.jellett,
+        energy(whole, top),
+    )
+
+
+def vertical_spin(kind: Kind, top: Top, spin: float) -> SteadyState:
+    """The vertical spin at theta = 0 or pi with this axial spin omega3, rad/s."""
+    c = 1.0 if kind is Kind.UPRIGHT else -1.0
+    whole = _at_rest((0.0, 0.0, c), (0.0, 0.0, c * top.axial_inertia * spin), top)
+    return SteadyState(kind, _tilt_of(kind), 0.0, spin, jellett(whole, top), energy(whole, top))
+
+
+def level_spin(top: Top, precession: float) -> SteadyState:
+    """The spin with horizontal axis at this precession, rad/s, of a shape that has one."""
+    whole = _at_rest((1.0, 0.0, 0.0), (0.0, 0.0, top.transverse_inertia * precession), top)
+    return SteadyState(Kind.LEVEL, math.pi / 2, precession, 0.0, jellett(whole, top), energy(whole, top))
+
+
+def steady_states(top: Top, jellett: float) -> list[SteadyState]:
+    """All steady states with this Jellett's integral, by increasing tilt.
+
+    Parameters
+    ----------
+    top
+        The body on its table; its friction does not matter.
+    jellett
+        lambda, kg m^2/s. For an eccentric sphere it is conserved, and these are all the states a motion can
+        end in; for other shapes it only labels them.
+
+    Notes
+    -----
+    With lambda = phi' Lambda(theta), a steady precession is a root of lambda^2 (I3 omega3/phi' - I1 c) -
+    m g h' Lambda^2, which is regular everywhere (a polynomial of degree 4 in c for the eccentric sphere).
+    """
+    upright = vertical_spin(Kind.UPRIGHT, top, jellett / vertical_spin(Kind.UPRIGHT, top, 1.0).jellett)
+    inverted = vertical_spin(Kind.INVERTED, top, jellett / vertical_spin(Kind.INVERTED, top, 1.0).jellett)
+    between = [_precession_at(tilt, jellett, top) for tilt in _precession_tilts(top, jellett)]
+    if has_level_spin(top):
+        between.append(level_spin(top, jellett / level_spin(top, 1.0).jellett))
+    return [upright, *sorted(between, key=lambda state: state.tilt), inverted]
+
+
+def has_level_spin(top: Top) -> bool:
+    """Whether the body can spin with its axis horizontal at any rate."""
+    return bool(top.shape.slope(0.0) == 0.0)
+
+
+def jellett_of_launch(problem: Problem) -> float:
+    """Jellett's integral of a launch, kg m^2/s."""
+    return float(jellett(problem.start(), problem.top))
+
+
+def least_energy(tilt: Scalar, jellett: float, top: Top, functions: Functions) -> Scalar:
+    """Least energy, J, that a body with this tilt (rad) and this Jellett's integral (kg m^2/s) can have.
+
+    lambda^2 / (2 a.I a) + m g h: its minima over the tilt are the stable steady states, because friction only
+    takes energy and leaves lambda alone (Bou-Rabee, Marsden and Romero 2004; Ebenfeld and Scheck 1995).
+    """
+    axis = (functions.sin(tilt), 0.0, functions.cos(tilt))
+    potential = energy(_at_rest(axis, (0.0, 0.0, 0.0), top), top)
+    return potential + 0.5 * jellett**2 / inertia_about_contact(axis, top)
+
+
+def inertia_about_contact(axis: Vector, top: Top) -> Scalar:
+    """Inertia a.I a about the contact vector, kg m^4: lambda^2 / (2 a.I a) is the least kinetic energy."""
+    arm = contact_vector(axis, top.shape)
+    along = dot(arm, axis)
+    return top.transverse_inertia * (dot(arm, arm) - along**2) + top.axial_inertia * along**2
+
+
+def state_of(steady: SteadyState, top: Top) -> SlidingState:
+    """The mechanical state of a steady state, leaning along x."""
+    angles = Angles(steady.tilt, 0.0, 0.0, steady.precession, steady.spin, (0.0, 0.0))
+    return state_from_angles(angles, top, math)
+
+
+def _at_rest(axis: Vector, momentum: Vector, top: Top) -> State:
+    """The body on the table with its centre of mass at rest."""
+    zero = (0.0, 0.0, 0.0)
+    return State(axis, momentum, zero, (0.0, 0.0, top.shape.height(axis[2])), zero, 0.0)
+
+
+def _tilt_of(kind: Kind) -> float:
+    return 0.0 if kind is Kind.UPRIGHT else math.pi
+
+
+def _precession_at(tilt: float, jellett: float, top: Top) -> SteadyState:
+    """The steady precession at a tilt known to be one for this Jellett's integral."""
+    rolling = rolling_precession(tilt, top, math)
+    rate = jellett / rolling.jellett
+    whole = _at_rest(rolling.axis, scale(rate, rolling.momentum), top)
+    spin = rate * rolling_spin(rolling.axis[2], top.shape)
+    return SteadyState(Kind.PRECESSION, tilt, float(rate), float(spin), jellett, float(energy(whole, top)))
+
+
+_DEGREES = (8, 32, 128, 512)
+_ROUNDING = 1e-13
+
+
+def _precession_tilts(top: Top, jellett: float) -> list[float]:
+    """Tilts of the steady precessions with this Jellett's integral.
+
+    The balance is smooth in c, so it is its Chebyshev series, whose roots are the eigenvalues of a matrix:
+    none is missed, however close two of them are.
+    """
+    if jellett == 0.0:
+        return []
+
+    def balance(c: Array) -> Array:
+        rolling = rolling_precession(np.arccos(c), top, np)
+        supported = weight_moment(c, top) * (rolling.jellett / jellett) ** 2
+        balanced: Array = (gyroscopic_reaction(c, top) - supported) / top.axial_inertia
+        return balanced
+
+    series = np.zeros(1)
+    for degree in _DEGREES:
+        series = chebyshev.chebinterpolate(balance, degree)  # type: ignore[arg-type]  # its stub knows no arrays
+        size = np.abs(series)
+        if size[-2:].max() <= _ROUNDING * size.max():
+            break
+    roots = chebyshev.chebroots(chebyshev.chebtrim(series, _ROUNDING * np.abs(series).max()))
+    cosines = np.sort(roots[np.isreal(roots)].real)[::-1]
+    level = 1e-9 * top.shape.size
+    return [math.acos(c) for c in cosines if -1.0 < c < 1.0 and abs(top.shape.slope(c)) > level]

@@ -1,0 +1,199 @@
+"""The slow flow while the top nutates: the two whirls of the nutation grow or decay by friction.
+
+Near a vertical the logarithms of the whirls are linear in time, so that a few large steps of a method of high
+order are enough. The whirls are those about the pole that the nutation is nearer to.
+"""
+
+import math
+from contextlib import suppress
+from typing import NamedTuple
+
+import numpy as np
+from scipy.integrate import DOP853, OdeSolution
+
+from tippetop.theory.drift import Drift, drift, smooth_precession
+from tippetop.theory.dual import Array
+from tippetop.theory.nutation import (
+    Numbers,
+    Orbit,
+    WhirlRates,
+    Whirls,
+    orbit_of_whirls,
+    turning_tilts,
+    upside_down,
+    whirl_rates,
+    whirls,
+)
+
+
+class Goals(NamedTuple):
+    """Tilts of all and of the stable steady states, and how close the flow is to come to them, rad."""
+
+    steady: list[float]
+    stable: list[float]
+    distance: float
+
+
+class Stage(NamedTuple):
+    """A part of the slow flow, in natural units.
+
+    Attributes
+    ----------
+    time
+        mu t from its begin, shape (n,).
+    low, high
+        Turning tilts of the nutation, rad, shape (n,).
+    end
+        The nutation at its end.
+    tail
+        The drift of the tilt that follows, or None.
+    final_tilt
+        Tilt of the steady state that it or its tail ends in, rad, or nan.
+    done
+        Whether it leads to the end of the flow; otherwise the other pole has come nearer.
+    """
+
+    time: Array
+    low: Array
+    high: Array
+    end: Orbit
+    tail: Drift | None
+    final_tilt: float
+    done: bool
+
+
+def follow_nutation(
+    path: Orbit, jellett: float, numbers: Numbers, goals: Goals, samples: int, tolerance: float
+) -> Stage:
+    """Follow the whirls until the nutation has died away, is steady, or is nearer to the other pole.
+
+    Parameters
+    ----------
+    path
+        The nutation at the beginning, in natural units.
+    jellett
+        Jellett's integral, not negative.
+    numbers
+        The top's.
+    goals
+        Where the flow may end.
+    samples
+        At how many times the turning tilts are given; 0 for the integrator's steps.
+    tolerance
+        Error in a step, of the logarithms.
+    """
+    turned = path.middle > 1.0
+    seen, seen_numbers = upside_down(path, numbers) if turned else (path, numbers)
+    pair = Whirls(*(float(whirl) for whirl in whirls(seen)))
+    least = _NO_WHIRL * (pair.fast + pair.slow)
+    point = np.array(
+        [math.log(max(pair.fast, least)), math.log(max(pair.slow, least)), math.sqrt(abs(seen.far))]
+    )
+
+    def rates(_: float, y: Array) -> Array:
+        return np.array(_rates(_whirls_of(y), float(y[2]), jellett, seen_numbers))
+
+    first = _FIRST_STEP / np.abs(rates(0.0, point)).max()
+    solver = DOP853(rates, 0.0, point, _LONGEST, first_step=first, rtol=tolerance, atol=tolerance)
+    times, points, pieces = [0.0], [point], []
+    tail: Drift | None = None
+    final, done = math.nan, True
+    for _ in range(_MOST_STEPS):
+        pair = _whirls_of(solver.y)
+        seen = orbit_of_whirls(pair, float(solver.y[2]), jellett, seen_numbers)
+        path = upside_down(seen, seen_numbers)[0] if turned else seen
+        final = _reached(_seen_tilts(pair, turned), goals)
+        if math.isfinite(final):
+            break
+        if _dies(seen, pair, WhirlRates(*solver.f)):
+            tail = _drift_from(path, jellett, numbers, goals)
+            if tail is not None:
+                final = tail.final_tilt
+                break
+        if seen.middle > _FAR_FROM_POLE:
+            done = False
+            break
+        if solver.step() is not None:
+            break
+        times.append(float(solver.t))
+        points.append(solver.y)
+        if samples:
+            pieces.append(solver.dense_output())
+    if pieces:
+        solution = OdeSolution(times, pieces)
+        times = list(np.linspace(times[0], times[-1], samples))
+        points = list(solution(times).T)
+    low, high = _seen_tilts(Whirls(*np.exp(np.array(points)[:, :2]).T), turned)
+    return Stage(np.array(times), low, high, path, tail, final, done)
+
+
+_DEAD = 1e-3
+"""Half-width of the nutation over sin^2(theta) below which the tilt alone is followed."""
+
+_FAR_FROM_POLE = 1.3
+"""Middle of the nutation, 1 - cos(theta), beyond which the other pole is clearly nearer."""
+
+_LONGEST = 1e5
+_FIRST_STEP = 1.0
+_MOST_STEPS = 400
+_LEAST_WHIRL = 1e-7
+_NO_WHIRL = 1e-16
+_ROUNDING = 1e-12
+
+
+def _rates(pair: Whirls, root: float, jellett: float, numbers: Numbers) -> WhirlRates:
+    """Rates of the whirls; not a number outside what a nutation can be, so that the step is made smaller."""
+    if math.sqrt(pair.fast) + math.sqrt(pair.slow) <= 1.0 + _ROUNDING:
+        with suppress(ValueError, ZeroDivisionError):
+            return whirl_rates(pair, root, jellett, numbers)
+    return WhirlRates(math.nan, math.nan, math.nan)
+
+
+def _whirls_of(y: Array) -> Whirls:
+    """The whirls with these logarithms, neither taken so small that its rate would be lost in rounding.
+
+    The logarithmic rate of a small whirl does not depend on its size.
+    """
+    fast, slow = math.exp(min(y[0], 0.0)), math.exp(min(y[1], 0.0))
+    return Whirls(max(fast, _LEAST_WHIRL * slow), max(slow, _LEAST_WHIRL * fast))
+
+
+def _seen_tilts(pair: Whirls, turned: bool) -> tuple[Array, Array]:
+    """Turning tilts of a nutation seen from theta = 0, or from pi."""
+    low, high = turning_tilts(pair)
+    return (math.pi - high, math.pi - low) if turned else (low, high)
+
+
+def _reached(tilts: tuple[Array, Array], goals: Goals) -> float:
+    """Tilt of the stable steady state that the whole nutation is close to, or nan."""
+    low, high = tilts
+    for goal in goals.stable:
+        if abs(low - goal) <= goals.distance and abs(high - goal) <= goals.distance:
+            return goal
+    return math.nan
+
+
+def _dies(path: Orbit, pair: Whirls, rates: WhirlRates) -> bool:
+    """Whether the nutation is small, and getting smaller, relative to the distance from the vertical."""
+    sine_squared = path.middle * (2.0 - path.middle)
+    if path.half > _DEAD * sine_squared:
+        return False
+    middle_rate = 2.0 * (pair.fast * rates.fast + pair.slow * rates.slow)
+    widening = 0.5 * (rates.fast + rates.slow) - middle_rate * 2.0 * (1.0 - path.middle) / sine_squared
+    return bool(widening < 0.0)
+
+
+def _drift_from(path: Orbit, jellett: float, numbers: Numbers, goals: Goals) -> Drift | None:
+    """The drift in the tilt alone from here on: along whichever precession the nutation goes about."""
+    tilt = 2.0 * math.asin(math.sqrt(min(path.middle / 2.0, 1.0)))
+    sine_squared = path.middle * (2.0 - path.middle)
+    turning = (path.excess + path.axial * path.middle) / (numbers.transverse * sine_squared)
+    c = np.float64(1.0 - path.middle)
+    with np.errstate(invalid="ignore"):
+        fast, slow = (smooth_precession(c, jellett, which, numbers) for which in (True, False))
+    if not math.isfinite(fast):
+        return None
+    nearer_fast = bool(abs(turning - fast) < abs(turning - slow))
+    found = drift(tilt, jellett, nearer_fast, numbers, goals.steady, goals.distance)
+    # On the way to an unstable state the nutation grows again.
+    return found if found is not None and found.final_tilt in goals.stable else None

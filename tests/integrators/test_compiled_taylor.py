@@ -1,0 +1,314 @@
+"""The Taylor method is compiled once for all values, and kept between processes where that is possible."""
+
+import os
+import sqlite3
+import subprocess
+import sys
+import threading
+from pathlib import Path
+
+import numpy as np
+import pytest
+from exact_motions import DEFAULTS, FREQUENCY, KEPLER, OSCILLATOR
+
+from tippetop.integrators import Guard, Motion, has_taylor
+
+if not has_taylor():
+    pytest.skip("heyoka is not installed", allow_module_level=True)
+
+import heyoka as hy
+
+from tippetop.integrators import taylor
+from tippetop.integrators.compile_cache import VARIABLE
+
+TAYLOR = DEFAULTS[0]
+NO_TIMES = np.array([])
+
+
+@pytest.fixture
+def compilations(monkeypatch):
+    """The tolerances of all that is compiled from here on."""
+    made = []
+    make = hy.taylor_adaptive
+
+    def count(*arguments, **options):
+        made.append(options["tol"])
+        return make(*arguments, **options)
+
+    monkeypatch.setattr(hy, "taylor_adaptive", count)
+    return made
+
+
+def swing(motion, frequency, guards=(), tolerance=None):
+    """Follow an oscillator of this frequency for a second; return the arc."""
+    integrator = taylor.Taylor(tolerance) if tolerance else taylor.Taylor()
+    return integrator.integrate(motion, (frequency,), (0.0, np.array([1.0, 0.0])), 1.0, NO_TIMES, guards)
+
+
+def oscillator():
+    """A motion that nothing has been compiled for."""
+    return Motion(lambda y, p: (y[1], -(p[0] ** 2) * y[0]), size=2, parameters=1)
+
+
+def test_one_compilation_serves_all_values_of_the_parameters(compilations):
+    motion, guards = oscillator(), (Guard("position", lambda y, _: y[0]),)
+    frequencies = np.linspace(0.1, 3.0, 20)
+    for frequency in frequencies:
+        arc = swing(motion, frequency, guards)
+        quarter = np.pi / 2 / frequency
+        assert (arc.guard is not None) == (quarter < 1.0)
+        assert arc.end_time == pytest.approx(min(quarter, 1.0), rel=1e-14)
+        assert arc.end_state[0] == pytest.approx(np.cos(frequency * arc.end_time), abs=1e-14)
+    assert len(compilations) == 1
+
+
+def test_equal_guards_and_equal_tolerances_share_a_compilation_and_others_do_not(compilations):
+    motion, guard = oscillator(), Guard("position", lambda y, _: y[0])
+    swing(motion, 1.0, [guard])
+    swing(motion, 1.0, (Guard(guard.name, guard.value),))
+    swing(motion, 1.0, [guard], taylor.Taylor().tolerance)
+    assert len(compilations) == 1
+    swing(motion, 1.0)
+    swing(motion, 1.0, [guard], 1e-9)
+    assert compilations == [taylor.Taylor().tolerance, taylor.Taylor().tolerance, 1e-9]
+
+
+def test_an_arc_that_hit_a_guard_leaves_nothing_behind_for_the_next():
+    motion, guards = oscillator(), (Guard("position", lambda y, _: y[0]),)
+    first = swing(motion, 2.0, guards)
+    swing(motion, 2.5, guards)
+    again = swing(motion, 2.0, guards)
+    assert first.guard == again.guard == 0
+    assert again.end_time == first.end_time
+    np.testing.assert_array_equal(again.end_state, first.end_state)
+
+
+@pytest.mark.parametrize("chunk", [0.01, 0.5, 1.0, 6.999, 7.0])
+@pytest.mark.parametrize("count", [0, 1, 2, 8, 200])
+def test_long_motions_are_followed_in_chunks_that_do_not_show(monkeypatch, chunk, count):
+    times = np.linspace(0.0, KEPLER.end, count)
+    whole = TAYLOR.integrator.integrate(KEPLER.motion, KEPLER.parameters, KEPLER.start, KEPLER.end, times)
+    monkeypatch.setattr(taylor, "CHUNK", chunk)
+    arc = TAYLOR.integrator.integrate(KEPLER.motion, KEPLER.parameters, KEPLER.start, KEPLER.end, times)
+    np.testing.assert_array_equal(arc.times, times)
+    np.testing.assert_allclose(arc.states, KEPLER.states(times), rtol=0, atol=1e-12)
+    np.testing.assert_allclose(arc.end_state, whole.end_state, rtol=0, atol=1e-13)
+
+
+@pytest.mark.parametrize("chunk", [0.1, 0.9239, 100.0])
+def test_guard_is_found_in_whichever_chunk_it_falls(monkeypatch, chunk):
+    monkeypatch.setattr(taylor, "CHUNK", chunk)
+    times = np.linspace(0.0, OSCILLATOR.end, 501)
+    guards = [Guard("position", lambda y, _: y[0])]
+    arc = TAYLOR.integrator.integrate(
+        OSCILLATOR.motion, OSCILLATOR.parameters, OSCILLATOR.start, OSCILLATOR.end, times, guards
+    )
+    when = np.pi / 2 / FREQUENCY
+    assert arc.guard == 0
+    assert arc.end_time == pytest.approx(when, rel=1e-14)
+    np.testing.assert_array_equal(arc.times, times[times <= when])
+
+
+def test_threads_that_share_a_compilation_do_not_mix_their_motions():
+    motion, times = oscillator(), np.linspace(0.0, 50.0, 20_001)
+    frequencies = np.linspace(0.5, 3.0, 8)
+    results = {}
+
+    def run(frequency):
+        start = 0.0, np.array([1.0, 0.0])
+        for _ in range(5):
+            results[frequency] = taylor.Taylor().integrate(motion, (frequency,), start, 50.0, times)
+
+    threads = [threading.Thread(target=run, args=(frequency,)) for frequency in frequencies]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    for frequency in frequencies:
+        np.testing.assert_allclose(results[frequency].states[:, 0], np.cos(frequency * times), atol=1e-11)
+
+
+# --- between processes --------------------------------------------------------------------------------------
+
+SWING = """
+import numpy as np
+from tippetop.integrators import Motion, make_integrator
+motion = Motion(lambda y, p: (y[1], -p[0] ** 2 * y[0]), size=2, parameters=1)
+start = 0.0, np.array([1.0, 0.0])
+arc = make_integrator("taylor").integrate(motion, (np.pi,), start, 1.0, np.array([]))
+assert abs(arc.end_state[0] + 1.0) < 1e-14, arc
+assert abs(arc.end_state[1]) < 1e-14, arc
+"""
+
+
+def swing_elsewhere(**variables):
+    """Follow half a swing in another process, which must be right and silent."""
+    environment = {name: value for name, value in os.environ.items() if name != VARIABLE}
+    done = subprocess.run(
+        [sys.executable, "-W", "error", "-c", SWING],
+        env={**environment, **{name: str(value) for name, value in variables.items()}},
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert (done.stdout, done.stderr, done.returncode) == ("", "", 0)
+
+
+def kept(folder):
+    """The compiled code in a cache: each piece's key, and when it was last used."""
+    with sqlite3.connect(folder / "cache.db") as database:
+        rows = database.execute("SELECT hash, last_access FROM cache").fetchall()
+    database.close()
+    return dict(rows)
+
+
+@pytest.fixture(scope="module")
+def filled_cache(tmp_path_factory):
+    """A folder in which a process has left its compiled code."""
+    folder = tmp_path_factory.mktemp("filled")
+    swing_elsewhere(**{VARIABLE: folder})
+    return folder
+
+
+def copy_of(filled_cache, folder):
+    """A copy of a cache, for doing harm to."""
+    folder.mkdir()
+    database = folder / "cache.db"
+    with sqlite3.connect(filled_cache / "cache.db") as source, sqlite3.connect(database) as target:
+        source.backup(target)
+    source.close()
+    target.close()
+    return database
+
+
+def test_a_second_process_compiles_nothing(filled_cache, tmp_path):
+    folder = copy_of(filled_cache, tmp_path / "cache").parent
+    before = kept(folder)
+    assert before
+    # What is found is marked as used; what is compiled is added. Age everything, to see which it is.
+    with sqlite3.connect(folder / "cache.db") as database:
+        database.execute("UPDATE cache SET last_access = last_access - 1000000")
+    database.close()
+    aged = kept(folder)
+    swing_elsewhere(**{VARIABLE: folder})
+    after = kept(folder)
+    assert after.keys() == before.keys()
+    assert all(after[key] != aged[key] for key in after)
+
+
+def test_cache_folder_is_made_when_there_is_none(tmp_path):
+    swing_elsewhere(**{VARIABLE: tmp_path / "deep" / "down"})
+    assert kept(tmp_path / "deep" / "down")
+
+
+def test_cache_is_kept_in_the_users_cache_folder(tmp_path):
+    swing_elsewhere(XDG_CACHE_HOME=tmp_path, HOME=tmp_path)
+    [database] = tmp_path.rglob("cache.db")
+    assert "tippetop" in database.parent.name
+    assert kept(database.parent)
+
+
+def test_cache_can_be_turned_off(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    swing_elsewhere(XDG_CACHE_HOME=tmp_path, HOME=tmp_path, **{VARIABLE: "off"})
+    assert list(tmp_path.rglob("*")) == []
+
+
+def garbage(database: Path) -> None:
+    database.write_bytes(np.random.default_rng(1).bytes(10_000))
+
+
+def nothing_at_all(database: Path) -> None:
+    database.write_bytes(b"")
+
+
+def head_only(database: Path) -> None:
+    database.write_bytes(database.read_bytes()[:50])
+
+
+def half(database: Path) -> None:
+    content = database.read_bytes()
+    database.write_bytes(content[: len(content) // 2])
+
+
+def all_but_the_last_page(database: Path) -> None:
+    database.write_bytes(database.read_bytes()[:-4096])
+
+
+def holes(database: Path) -> None:
+    content = database.read_bytes()
+    cut = len(content) // 3
+    database.write_bytes(content[:cut] + bytes(cut) + content[2 * cut :])
+
+
+def another_programs_tables(database: Path) -> None:
+    database.unlink()
+    with sqlite3.connect(database) as other:
+        other.execute("CREATE TABLE cache (name TEXT)")
+    other.close()
+
+
+@pytest.mark.parametrize(
+    ("damage", "beyond_use"),
+    [
+        (garbage, True),
+        (nothing_at_all, True),
+        (head_only, True),
+        (half, True),
+        (all_but_the_last_page, True),
+        (holes, False),
+        (another_programs_tables, False),
+    ],
+    ids=lambda damage: getattr(damage, "__name__", ""),
+)
+def test_damaged_cache_costs_a_compilation_and_nothing_else(filled_cache, tmp_path, damage, beyond_use):
+    database = copy_of(filled_cache, tmp_path / "cache")
+    keys = kept(database.parent).keys()
+    damage(database)
+    swing_elsewhere(**{VARIABLE: database.parent})
+    if beyond_use:
+        assert kept(database.parent).keys() == keys
+
+
+def a_file_in_its_place(folder: Path) -> Path:
+    place = folder / "file"
+    place.write_text("mine")
+    return place
+
+
+def below_a_file(folder: Path) -> Path:
+    return a_file_in_its_place(folder) / "cache"
+
+
+def a_folder_that_cannot_be_made(_: Path) -> Path:
+    return Path("/proc/no/such/folder")
+
+
+def a_folder_that_cannot_be_written(_: Path) -> Path:
+    return Path("/proc/self")
+
+
+def a_folder_in_place_of_the_database(folder: Path) -> Path:
+    (folder / "cache.db" / "inside").mkdir(parents=True)
+    return folder
+
+
+@pytest.mark.parametrize(
+    "place",
+    [
+        a_file_in_its_place,
+        below_a_file,
+        a_folder_that_cannot_be_made,
+        a_folder_that_cannot_be_written,
+        a_folder_in_place_of_the_database,
+    ],
+    ids=lambda place: place.__name__,
+)
+def test_where_no_cache_can_be_kept_every_process_compiles_for_itself(tmp_path, place):
+    folder = place(tmp_path)
+    before = sorted(tmp_path.rglob("*"))
+    swing_elsewhere(**{VARIABLE: folder})
+    assert sorted(tmp_path.rglob("*")) == before
+    if folder.is_file():
+        assert folder.read_text() == "mine"

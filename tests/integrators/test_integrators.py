@@ -1,0 +1,395 @@
+"""Every integrator against motions that are known exactly."""
+
+import math
+
+import numpy as np
+import pytest
+from exact_motions import (
+    AXIS,
+    DEFAULTS,
+    ECCENTRICITY,
+    EXACT,
+    FALL,
+    FREE_TOP,
+    FREQUENCY,
+    GRAVITY,
+    KEPLER,
+    LOOSE,
+    MOMENTUM,
+    OSCILLATOR,
+)
+
+from tippetop.errors import InvalidInput
+from tippetop.integrators import NAMES, Guard, Motion, has_taylor, make_integrator
+
+every_method = pytest.mark.parametrize("method", DEFAULTS, ids=lambda method: method.label)
+every_method_also_loose = pytest.mark.parametrize(
+    "method", [*DEFAULTS, *LOOSE], ids=lambda method: method.label
+)
+NO_TIMES = np.array([])
+
+
+def follow(method, exact, times=NO_TIMES, guards=(), parameters=None, end=None):
+    return method.integrator.integrate(
+        exact.motion,
+        exact.parameters if parameters is None else parameters,
+        exact.start,
+        exact.end if end is None else end,
+        np.asarray(times, dtype=float),
+        guards,
+    )
+
+
+def test_every_integrator_is_tested():
+    assert [method.integrator.name for method in DEFAULTS] == NAMES if has_taylor() else NAMES[1:]
+
+
+# --- exact solutions ----------------------------------------------------------------------------------------
+
+
+@every_method_also_loose
+@pytest.mark.parametrize("exact", EXACT, ids=lambda exact: exact.label)
+def test_motion_ends_where_the_exact_solution_does(method, exact):
+    arc = follow(method, exact)
+    assert arc.failure is None
+    assert arc.guard is None
+    assert arc.end_time == exact.end
+    np.testing.assert_allclose(arc.end_state, exact.state(exact.end), rtol=0, atol=method.allowed(arc, exact))
+
+
+@every_method
+@pytest.mark.parametrize("exact", EXACT, ids=lambda exact: exact.label)
+def test_samples_lie_on_the_exact_solution(method, exact):
+    times = np.linspace(0.0, exact.end, 57)
+    arc = follow(method, exact, times)
+    np.testing.assert_array_equal(arc.times, times)
+    error = np.abs(arc.states - exact.states(times)).max()
+    # Within a step the solution is interpolated, for which an order of accuracy may be lost.
+    assert error <= 10 * method.allowed(arc, exact)
+
+
+@every_method
+def test_energy_angular_momentum_and_perihelion_are_conserved(method):
+    arc = follow(method, KEPLER, np.linspace(0.0, KEPLER.end, 57))
+    x, y, u, v = arc.states.T
+    allowed = 10 * method.allowed(arc, KEPLER)
+    e = ECCENTRICITY
+    np.testing.assert_allclose((u**2 + v**2) / 2 - 1 / np.hypot(x, y), -0.5, rtol=0, atol=allowed)
+    np.testing.assert_allclose(x * v - y * u, np.sqrt(1 - e**2), rtol=0, atol=allowed)
+    np.testing.assert_allclose(v * (x * v - y * u) - x / np.hypot(x, y), e, rtol=0, atol=allowed)
+
+
+@every_method
+def test_free_top_keeps_its_length_and_its_angle_to_the_momentum(method):
+    arc = follow(method, FREE_TOP, np.linspace(0.0, FREE_TOP.end, 57))
+    allowed = 10 * method.allowed(arc, FREE_TOP)
+    np.testing.assert_allclose(np.linalg.norm(arc.states, axis=1), 1.0, rtol=0, atol=allowed)
+    np.testing.assert_allclose(arc.states @ MOMENTUM, AXIS @ MOMENTUM, rtol=0, atol=allowed)
+
+
+@every_method
+def test_clock_may_start_anywhere(method):
+    times = np.array([3.0, 3.5, 4.0])
+    arc = method.integrator.integrate(
+        OSCILLATOR.motion, OSCILLATOR.parameters, (3.0, OSCILLATOR.state(0.0)), 4.0, times, ()
+    )
+    np.testing.assert_array_equal(arc.times, times)
+    allowed = 10 * method.allowed(arc, OSCILLATOR)
+    np.testing.assert_allclose(arc.states, OSCILLATOR.states(times - 3.0), rtol=0, atol=allowed)
+    assert arc.end_time == 4.0
+
+
+@every_method
+def test_classical_or_adaptive_work_is_counted(method):
+    short, long = follow(method, OSCILLATOR, end=2.0), follow(method, OSCILLATOR, end=4.0)
+    assert 0 < short.steps < long.steps
+    assert short.evaluations < long.evaluations
+    assert long.evaluations >= long.steps
+
+
+# --- sample times -------------------------------------------------------------------------------------------
+
+
+@every_method
+@pytest.mark.parametrize(
+    "times",
+    [
+        [],
+        [0.0],
+        [5.0],
+        [2.0],
+        [0.0, 5.0],
+        [1e-12, 1e-6, 0.1, 0.1 + 1e-12, 4.999999999999],
+        [4.9, 5.0],
+    ],
+    ids=str,
+)
+def test_samples_are_taken_at_exactly_the_times_asked_for(method, times):
+    arc = follow(method, OSCILLATOR, times)
+    assert arc.times.tolist() == times
+    assert arc.states.shape == (len(times), 2)
+    allowed = 10 * method.allowed(arc, OSCILLATOR)
+    np.testing.assert_allclose(arc.states, OSCILLATOR.states(times), rtol=0, atol=allowed)
+
+
+@every_method
+def test_first_sample_is_the_start_and_the_last_is_the_end(method):
+    arc = follow(method, KEPLER, [0.0, KEPLER.end])
+    np.testing.assert_array_equal(arc.states[0], KEPLER.start[1])
+    np.testing.assert_allclose(arc.states[1], arc.end_state, rtol=1e-13)
+
+
+@every_method
+def test_samples_do_not_change_the_motion(method):
+    sparse, dense = follow(method, KEPLER), follow(method, KEPLER, np.linspace(0.0, KEPLER.end, 1001))
+    allowed = method.allowed(sparse, KEPLER)
+    np.testing.assert_allclose(sparse.end_state, dense.end_state, rtol=0, atol=allowed)
+
+
+# --- guards -------------------------------------------------------------------------------------------------
+
+QUARTER_TURN = math.pi / 2 / FREQUENCY
+AT_MINOR_AXIS = math.pi / 2 - ECCENTRICITY
+LANDING = math.sqrt(2 * 3.0 / GRAVITY)
+
+POSITION = Guard("position", lambda y, _: y[0])
+NEARER_THAN_MEAN = Guard("nearer than the mean distance", lambda y, _: 1.0 - (y[0] ** 2 + y[1] ** 2) ** 0.5)
+
+CROSSINGS = [
+    # motion, guard, when it falls through zero, and how fast
+    pytest.param(OSCILLATOR, POSITION, QUARTER_TURN, FREQUENCY, id="oscillator"),
+    pytest.param(FALL, POSITION, LANDING, GRAVITY * LANDING, id="landing"),
+    pytest.param(KEPLER, NEARER_THAN_MEAN, AT_MINOR_AXIS, ECCENTRICITY, id="Kepler"),
+]
+
+
+@every_method_also_loose
+@pytest.mark.parametrize(("exact", "guard", "when", "slope"), CROSSINGS)
+def test_guard_is_located_to_the_accuracy_of_the_motion(method, exact, guard, when, slope):
+    arc = follow(method, exact, guards=[guard])
+    allowed = method.allowed(arc, exact)
+    assert arc.guard == 0
+    assert arc.failure is None
+    assert abs(arc.end_time - when) <= allowed / slope + 4e-16 * when
+    np.testing.assert_allclose(arc.end_state, exact.state(when), rtol=0, atol=2 * allowed)
+    # Where the arc ends, the guard is zero, however good the motion up to there is.
+    assert abs(guard.value(arc.end_state, exact.parameters)) <= 1e-13
+
+
+@every_method
+def test_samples_stop_at_the_guard(method):
+    times = np.arange(0.0, OSCILLATOR.end, QUARTER_TURN / 7.5)
+    arc = follow(method, OSCILLATOR, times, [POSITION])
+    np.testing.assert_array_equal(arc.times, times[times <= QUARTER_TURN])
+    allowed = 10 * method.allowed(arc, OSCILLATOR)
+    np.testing.assert_allclose(arc.states, OSCILLATOR.states(arc.times), rtol=0, atol=allowed)
+
+
+@every_method
+def test_rising_through_zero_is_no_end(method):
+    """The speed of the oscillator starts by falling, so that it rises through zero half a turn later."""
+    speed = Guard("speed", lambda y, _: y[1])
+    begin = OSCILLATOR.state(QUARTER_TURN)
+    arc = method.integrator.integrate(
+        OSCILLATOR.motion, OSCILLATOR.parameters, (0.0, begin), 2 * QUARTER_TURN, NO_TIMES, [speed]
+    )
+    assert arc.guard is None
+    assert arc.end_time == 2 * QUARTER_TURN
+
+
+@every_method
+@pytest.mark.parametrize("first", [0, 1, 2])
+def test_earliest_of_several_guards_ends_the_motion(method, first):
+    """All three fall in the same quarter turn, a few hundredths of it apart."""
+    levels = [0.30, 0.25, 0.20]
+    levels.insert(first, levels.pop(0))
+    guards = [Guard(f"below {level}", lambda y, _, level=level: y[0] - level) for level in levels]
+    arc = follow(method, OSCILLATOR, guards=guards)
+    assert arc.guard == first
+    allowed = method.allowed(arc, OSCILLATOR)
+    assert abs(arc.end_time - math.acos(0.30) / FREQUENCY) <= allowed
+
+
+CLEARANCE = Motion(OSCILLATOR.motion.rates, size=2, parameters=2)
+DIP = Guard("dip", lambda y, p: y[0] + p[1])
+"""Falls through zero where the oscillator is lower than minus the second parameter."""
+
+
+def dive(method, depth, phase):
+    """Follow a swing through a dip of this depth, begun at this phase; return the arc and the true time."""
+    begin = np.array([math.cos(phase), -math.sin(phase)])
+    arc = method.integrator.integrate(CLEARANCE, (1.0, 1.0 - depth), (0.0, begin), 5.0, NO_TIMES, [DIP])
+    return arc, math.acos(depth - 1.0) - phase
+
+
+@every_method
+def test_shallow_dip_below_zero_is_found_wherever_in_a_step_it_is(method):
+    depth = 1e-3
+    for phase in np.linspace(0.0, 2.9, 30):
+        arc, when = dive(method, depth, phase)
+        assert arc.guard == 0, f"missed the dip begun at phase {phase}"
+        # At the edge of the dip the guard falls at the rate sqrt(2 depth).
+        allowed = method.allowed(arc, OSCILLATOR) / math.sqrt(2 * depth)
+        assert abs(arc.end_time - when) <= allowed
+
+
+@pytest.mark.parametrize("method", LOOSE, ids=lambda method: method.label)
+def test_shallow_dip_is_found_in_the_long_steps_of_a_loose_tolerance(method):
+    missed = [phase for phase in np.linspace(0.0, 2.9, 30) if dive(method, 1e-3, phase)[0].guard is None]
+    assert missed == []
+
+
+@every_method
+@pytest.mark.parametrize("phase", np.linspace(0.0, 2.9, 10).round(2))
+def test_guard_that_comes_close_to_zero_and_turns_back_ends_nothing(method, phase):
+    begin = np.array([math.cos(phase), -math.sin(phase)])
+    arc = method.integrator.integrate(CLEARANCE, (1.0, 1.0 + 1e-3), (0.0, begin), 5.0, NO_TIMES, [DIP])
+    assert arc.guard is None
+    assert arc.end_time == 5.0
+
+
+# --- motions that cannot go on ------------------------------------------------------------------------------
+
+
+class TooMuchWork(AssertionError):
+    """Raised by an equation of motion that has been evaluated absurdly often."""
+
+
+def limited(rates, budget=200_000):
+    """The same rates, as long as they are not asked for too often."""
+    calls = 0
+
+    def count(y, p):
+        nonlocal calls
+        calls += 1
+        if calls > budget:
+            raise TooMuchWork(f"more than {budget} evaluations and no end")
+        return rates(y, p)
+
+    return count
+
+
+SINGULAR = [
+    # rates, start, and when the motion ceases to exist
+    pytest.param(lambda y, _: (y[0] ** 2, y[0]), (1.0, 0.0), 1.0, id="blows up"),
+    pytest.param(lambda y, _: (y[0] ** 3, y[0]), (1.0, 0.0), 0.5, id="blows up faster"),
+    pytest.param(lambda y, _: (y[0] ** 50, y[0]), (1.0, 0.0), 1 / 49, id="overflows"),
+    pytest.param(lambda y, _: (-1.0 / y[0], y[0]), (1.0, 0.0), 0.5, id="falls into a singularity"),
+]
+
+
+@every_method
+@pytest.mark.parametrize(("rates", "begin", "last"), SINGULAR)
+def test_motion_that_ceases_to_exist_is_a_failure_and_no_exception(method, rates, begin, last):
+    if method.step and rates((1.0, 0.0), ())[0] < 0:
+        pytest.skip("fixed steps leap over the singularity")
+    times = np.linspace(0.0, 2.0, 41)
+    arc = method.integrator.integrate(
+        Motion(limited(rates), 2, 0), (), (0.0, np.array(begin)), 2.0, times, ()
+    )
+    assert arc.failure
+    assert "\n" not in arc.failure
+    assert arc.guard is None
+    # What was computed before stays, and ends with something finite.
+    assert np.all(np.isfinite(arc.states))
+    assert np.all(np.isfinite(arc.end_state))
+    assert abs(arc.end_time - last) <= 0.1
+    before = times < last - 0.05
+    np.testing.assert_array_equal(arc.times[: before.sum()], times[before])
+    assert len(arc.states) == len(arc.times)
+
+
+@every_method
+def test_motion_that_is_singular_from_the_start_is_a_failure_and_no_exception(method):
+    motion = Motion(limited(lambda y, _: (1.0 / y[0], y[0])), 2, 0)
+    begin = np.array([0.0, 1.0])
+    arc = method.integrator.integrate(motion, (), (0.0, begin), 1.0, np.array([0.0, 0.5]), ())
+    assert arc.failure
+    assert arc.guard is None
+    assert arc.end_time == 0.0
+    np.testing.assert_array_equal(arc.end_state, begin)
+    np.testing.assert_array_equal(arc.times, [0.0])
+    np.testing.assert_array_equal(arc.states, [begin])
+
+
+# --- the order of the classical method ----------------------------------------------------------------------
+
+
+def errors_of_classical_method(end, steps):
+    errors = []
+    for count in steps:
+        arc = make_integrator("rk4", step=end / count).integrate(
+            KEPLER.motion, KEPLER.parameters, KEPLER.start, end, NO_TIMES
+        )
+        assert arc.steps == count
+        errors.append(np.linalg.norm(arc.end_state - KEPLER.state(end)))
+    return np.array(errors)
+
+
+def test_classical_method_converges_with_the_fourth_power_of_its_step():
+    counts = np.array([400, 800, 1600])
+    errors = errors_of_classical_method(3.0, counts)
+    assert np.log2(errors[:-1] / errors[1:]) == pytest.approx(4.0, abs=0.1)
+
+
+def test_one_step_of_the_classical_method_errs_by_the_fifth_power_of_its_length():
+    steps = np.array([0.02, 0.01, 0.005])
+    errors = np.concatenate([errors_of_classical_method(step, [1]) for step in steps])
+    assert np.log2(errors[:-1] / errors[1:]) == pytest.approx(5.0, abs=0.1)
+
+
+def test_step_that_does_not_divide_the_time_is_shortened_at_the_end():
+    arc = make_integrator("rk4", step=0.3).integrate(
+        OSCILLATOR.motion, OSCILLATOR.parameters, OSCILLATOR.start, 1.0, NO_TIMES
+    )
+    assert arc.steps == 4
+    assert arc.end_time == 1.0
+    np.testing.assert_allclose(arc.end_state, OSCILLATOR.state(1.0), atol=1e-2)
+
+
+# --- asking for one -----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", [method.integrator.name for method in LOOSE])
+def test_integrator_is_made_with_the_tolerance_asked_for(name):
+    assert make_integrator(name, 1e-7).tolerance == 1e-7
+
+
+def test_step_is_given_in_seconds():
+    assert make_integrator("rk4", step=0.002, time_unit=0.04).step == pytest.approx(0.05)
+
+
+@pytest.mark.parametrize(
+    ("field", "arguments"),
+    [
+        ("integrator", {"name": "euler"}),
+        ("integrator", {"name": ""}),
+        ("tolerance", {"name": "taylor", "tolerance": 0.0}),
+        ("tolerance", {"name": "taylor", "tolerance": 1e-16}),
+        ("tolerance", {"name": "dop853", "tolerance": 1e-15}),
+        ("tolerance", {"name": "bdf", "tolerance": 1.0}),
+        ("tolerance", {"name": "bdf", "tolerance": -1e-6}),
+        ("tolerance", {"name": "lsoda", "tolerance": math.nan}),
+        ("tolerance", {"name": "lsoda", "tolerance": math.inf}),
+        ("tolerance", {"name": "rk4", "step": 0.1, "tolerance": 1e-6}),
+        ("step", {"name": "rk4"}),
+        ("step", {"name": "rk4", "step": 0.0}),
+        ("step", {"name": "rk4", "step": -0.1}),
+        ("step", {"name": "rk4", "step": math.nan}),
+        ("step", {"name": "rk4", "step": math.inf}),
+        ("step", {"name": "taylor", "step": 0.1}),
+        ("step", {"name": "rk45", "step": 0.1}),
+    ],
+)
+def test_integrator_that_cannot_be_is_refused_in_one_line_that_names_the_field(field, arguments):
+    with pytest.raises(InvalidInput) as refusal:
+        make_integrator(**arguments)
+    assert refusal.value.field == field
+    assert str(refusal.value).startswith(field)
+    assert "accepted:" in str(refusal.value)
+    assert "\n" not in str(refusal.value)
+
+
+def test_misspelt_integrator_is_told_the_nearest():
+    with pytest.raises(InvalidInput, match="did you mean radau"):
+        make_integrator("raddau")

@@ -1,0 +1,407 @@
+"""Free flight against its differential equations, and its end against the gap in fifty digits."""
+
+import math
+from typing import NamedTuple
+
+import mpmath as mp
+import numpy as np
+import pytest
+from hypothesis import assume, example, given, settings
+from hypothesis import strategies as st
+from scipy.integrate import solve_ivp
+
+from strategies import numbers, slides, spheres, spheroids, tops
+from tippetop.mechanics.flight import Start, fly, gap, gap_rate, touchdown
+from tippetop.mechanics.friction import ViscousFriction
+from tippetop.mechanics.invariants import energy
+from tippetop.mechanics.motion import angular_velocity, axis_rate, on_table, point_velocity
+from tippetop.mechanics.shape import EccentricSphere, Spheroid, contact_vector
+from tippetop.mechanics.state import State
+from tippetop.mechanics.top import Top
+from tippetop.mechanics.vectors import cross, dot, length, scale
+from tippetop.mechanics.view import Angles, state_from_angles
+
+DIGITS = 50
+SHAPES = {
+    "tippe top": EccentricSphere(0.02, 0.3),
+    "lentil": Spheroid(0.02, 0.011),
+    "egg": Spheroid(0.02, 0.034),
+}
+
+
+class Bead(NamedTuple):
+    """A shape that is no sphere and no spheroid: a sphere with a quadratic and a cubic bump."""
+
+    radius: float
+    bump: float
+
+    @property
+    def size(self):
+        return self.radius
+
+    def height(self, c):
+        return self.radius * (1.0 + self.bump * (c**2 - c**3 / 5) / (3 + c))
+
+    def slope(self, c):
+        numerator = (2 * c - 3 * c**2 / 5) * (3 + c) - (c**2 - c**3 / 5)
+        return self.radius * self.bump * numerator / (3 + c) ** 2
+
+    def curvature(self, c):
+        # with u = 3 + c, (c^2 - c^3/5)/u = -u^2/5 + 14 u/5 - 57/5 + 72/(5 u)
+        return self.radius * self.bump * (-2 / 5 + 144 / 5 / (3 + c) ** 3)
+
+
+def time_unit(top):
+    return math.sqrt(top.shape.size / top.gravity)
+
+
+def speed_unit(top):
+    return math.sqrt(top.shape.size * top.gravity)
+
+
+@st.composite
+def flights(draw, top_strategy=None):
+    """A top in the air: some way up, or on the table, with any velocity."""
+    top, sliding = draw(slides(top_strategy))
+    state = on_table(sliding, top)
+    up = draw(numbers(0.0, 3.0)) * top.shape.size
+    rising = draw(numbers(-2.0, 2.0)) * speed_unit(top)
+    return top, state._replace(
+        position=(*state.position[:2], state.position[2] + up), velocity=(*state.velocity[:2], rising)
+    )
+
+
+def tipping(shape, tilt_rate, tilt=0.8, precession=150.0, spin=300.0):
+    """A body of this shape on the table, at a tilt that changes at this rate."""
+    top = Top(0.02, 3.0e-6, 3.3e-6, shape, ViscousFriction(0.3), 9.8)
+    return top, on_table(
+        state_from_angles(Angles(tilt, tilt_rate, 0.3, precession, spin, (0.1, 0.2)), top, math), top
+    )
+
+
+class ExactGap:
+    """The gap during a flight in many digits, from the tip of the axis: c = A + B cos(w t) + C sin(w t)."""
+
+    def __init__(self, state, top, start):
+        n, momentum = ([mp.mpf(x) for x in v] for v in (state.axis, state.momentum))
+        self.shape = type(top.shape)(*map(mp.mpf, top.shape))
+        square = sum(x * x for x in momentum)
+        self.w = mp.sqrt(square) / mp.mpf(top.transverse_inertia)
+        square = square or mp.mpf(1)
+        self.mean = momentum[2] * sum(a * b for a, b in zip(momentum, n, strict=True)) / square
+        self.cosine = n[2] - self.mean
+        self.sine = (momentum[0] * n[1] - momentum[1] * n[0]) / mp.sqrt(square)
+        self.parabola = [mp.mpf(state.position[2]), mp.mpf(state.velocity[2]), -mp.mpf(top.gravity) / 2]
+        self.support = mp.taylor(self.height, 0, 4)
+        self.parabola[:start] = self.support[:start]
+
+    def height(self, t):
+        tip = self.mean + self.cosine * mp.cos(self.w * t) + self.sine * mp.sin(self.w * t)
+        return self.shape.height(tip)
+
+    def __call__(self, t):
+        t = mp.mpf(t)
+        return self.parabola[0] + t * (self.parabola[1] + t * self.parabola[2]) - self.height(t)
+
+    def derivative(self, order):
+        """A derivative of the gap at the start."""
+        return math.factorial(order) * ((self.parabola[order] if order < 3 else 0) - self.support[order])
+
+
+def check_touchdown(state, top, start, horizon, precision=1e-7):
+    """The answer is a root of the exact gap, the first one, and there is none if the answer is none."""
+    time = touchdown(state, top, horizon, start)
+    with mp.workdps(DIGITS):
+        exact = ExactGap(state, top, start)
+        leading = next(exact.derivative(order) for order in range(start, 5) if exact.derivative(order))
+        if time == 0.0:
+            assert leading <= 0 or (start == Start.AIRBORNE and leading <= 1e-15 * top.shape.size)
+            return time
+        assert leading > 0
+        end = horizon if time is None else time
+        fraction = [k / 300 for k in range(1, 300)] + [10 ** (-k / 15) for k in range(1, 120)]
+        gaps = [exact(end * f) for f in fraction]
+        peak = max(abs(g) for g in gaps)
+        fuzz = precision * peak + 1e-15 * (top.shape.size + abs(state.position[2]))
+        assert min(gaps) > 0 or min(gaps) > -fuzz
+        assert min(gaps[: int(299 * 0.98)]) > -1e-15 * top.shape.size
+        if time is not None:
+            assert abs(exact(time)) < fuzz
+    return time
+
+
+# Flight -----------------------------------------------------------------------------------------------
+
+
+@settings(max_examples=25)
+@given(flights(), numbers(0.0, 3.0))
+def test_flight_solves_the_equations_of_free_motion(case, multiple):
+    top, state = case
+    elapsed = multiple * time_unit(top)
+
+    def rates(_, y):
+        now = State.unpack(y)
+        omega = angular_velocity(now.axis, now.momentum, top)
+        falling = (0.0, 0.0, -top.gravity)
+        return State(
+            axis_rate(now.axis, now.momentum, top),
+            (0.0, 0.0, 0.0),
+            falling,
+            now.velocity,
+            cross(omega, now.marker),
+            0.0,
+        ).pack()
+
+    solution = solve_ivp(rates, (0.0, elapsed), state.pack(), method="DOP853", rtol=1e-12, atol=1e-13)
+    there, expected = fly(state, elapsed, top, math), State.unpack(solution.y[:, -1])
+    assert there.momentum == state.momentum
+    assert there.work == state.work
+    for name in ("axis", "marker", "position", "velocity"):
+        assert getattr(there, name) == pytest.approx(getattr(expected, name), rel=1e-9, abs=1e-9)
+
+
+@given(flights(), numbers(0.0, 5.0), numbers(0.0, 5.0))
+def test_flights_add_up_and_conserve(case, first, second):
+    top, state = case
+    t1, t2 = first * time_unit(top), second * time_unit(top)
+    there, stopover = fly(state, t1 + t2, top, math), fly(fly(state, t1, top, math), t2, top, math)
+    scales = State(1.0, length(state.momentum) + 1e-300, 10 * speed_unit(top), 60 * top.shape.size, 1.0, 1.0)
+    for name, size in zip(State._fields[:5], scales[:5], strict=True):
+        here = getattr(there, name)
+        assert here == pytest.approx(getattr(stopover, name), rel=1e-12, abs=1e-12 * max(1.0, size))
+    assert length(there.axis) == pytest.approx(1.0, rel=1e-14)
+    assert dot(there.axis, there.marker) == pytest.approx(0.0, abs=1e-13)
+    fuzz = 1e-13 * top.mass * (top.gravity * 100 * top.shape.size + 100 * speed_unit(top) ** 2)
+    assert energy(there, top) == pytest.approx(energy(state, top), rel=1e-13, abs=fuzz)
+
+
+def test_arrays_fly_as_floats_do():
+    top, state = tipping(SHAPES["egg"], 20.0)
+    times = np.linspace(0.0, 0.3, 7).reshape(7, 1)
+    together = fly(state, times, top, np)
+    assert all(np.shape(x) == times.shape for x in together.pack())
+    alone = [fly(state, float(t), top, math).pack() for t in times.ravel()]
+    np.testing.assert_allclose(np.array(together.pack())[:, :, 0].T, alone, rtol=1e-14, atol=1e-15)
+
+
+def test_a_body_without_momentum_falls_without_turning():
+    top, state = tipping(SHAPES["egg"], 0.0)
+    there = fly(state._replace(momentum=(0.0, 0.0, 0.0)), 0.5, top, math)
+    assert there.axis == state.axis
+    assert there.marker == state.marker
+    assert there.position[2] == pytest.approx(
+        state.position[2] + state.velocity[2] * 0.5 - 9.8 / 8, rel=1e-15
+    )
+
+
+@pytest.mark.parametrize("tiny", [1e-20, 1e-100, 1e-300])
+def test_slow_turning_is_exact_to_the_last_digit(tiny):
+    """Rotation by a tiny angle is addition of the angle times the rate, whatever the size of the momentum."""
+    top, state = tipping(SHAPES["egg"], 0.0)
+    slow = state._replace(momentum=scale(tiny, state.momentum), axis=(1.0, 0.0, 0.0), marker=(0.0, 0.0, 1.0))
+    there = fly(slow, 0.5, top, math)
+    expected = scale(0.5, axis_rate(slow.axis, slow.momentum, top))
+    assert there.axis[1:] == pytest.approx(expected[1:], rel=1e-11, abs=0.0)
+
+
+@given(flights())
+def test_the_gap_opens_at_the_vertical_velocity_of_the_lowest_point(case):
+    top, state = case
+    arm = contact_vector(state.axis, top.shape)
+    omega = angular_velocity(state.axis, state.momentum, top)
+    assert gap(state, top) == pytest.approx(state.position[2] + arm[2], rel=1e-12, abs=1e-15)
+    swing = length(omega) * length(arm) + length(state.velocity)
+    rate = point_velocity(state.velocity, omega, arm)[2]
+    assert gap_rate(state, top) == pytest.approx(rate, rel=1e-12, abs=1e-14 * swing)
+
+
+@given(slides())
+def test_a_body_on_the_table_has_no_gap_and_opens_none(slide):
+    top, sliding = slide
+    state = on_table(sliding, top)
+    assert (gap(state, top), gap_rate(state, top)) == (0.0, 0.0)
+
+
+# Touchdown: exact answers ------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("spin", [0.0, 1e-8, 300.0])
+@pytest.mark.parametrize("shape", SHAPES.values(), ids=SHAPES)
+class TestUprightBodies:
+    """A body with a vertical axis that spins about it, or not at all, flies like a point."""
+
+    def upright(self, shape, spin, up=0.0, rising=0.0):
+        top = Top(0.02, 3.0e-6, 3.3e-6, shape, ViscousFriction(0.3), 9.8)
+        momentum = (0.0, 0.0, top.axial_inertia * spin)
+        position = (0.0, 0.0, shape.height(1.0) + up)
+        return top, State((0.0, 0.0, 1.0), momentum, (0.0, 0.0, rising), position, (1.0, 0.0, 0.0), 0.0)
+
+    @pytest.mark.parametrize("fall", [1e-3, 0.01, 1.0])
+    def test_a_fall(self, shape, spin, fall):
+        top, state = self.upright(shape, spin, up=4.9 * fall**2)
+        assert touchdown(state, top, math.inf) == pytest.approx(fall, rel=1e-9)
+
+    @pytest.mark.parametrize("hop", [1e-12, 1e-6, 1e-3, 1.0])
+    def test_a_rebound(self, shape, spin, hop):
+        top, state = self.upright(shape, spin, rising=4.9 * hop)
+        assert touchdown(state, top, math.inf, Start.REBOUND) == pytest.approx(hop, rel=1e-12)
+        assert touchdown(state, top, 0.999 * hop, Start.REBOUND) is None
+
+    @pytest.mark.parametrize("start", list(Start))
+    def test_a_body_that_rests_touches_at_once(self, shape, spin, start):
+        top, state = self.upright(shape, spin)
+        assert touchdown(state, top, 1.0, start) == 0.0
+
+    def test_a_body_below_the_table_touches_at_once(self, shape, spin):
+        top, state = self.upright(shape, spin, up=-1e-9, rising=1.0)
+        assert touchdown(state, top, 1.0) == 0.0
+
+    def test_without_gravity_it_never_comes_back(self, shape, spin):
+        top, state = self.upright(shape, spin, rising=1.0)
+        assert touchdown(state, top._replace(gravity=0.0), 100.0, Start.REBOUND) is None
+
+
+def lifting_off(shape, tilt_rate):
+    """A body at lift-off: gravity is what makes the acceleration of its gap vanish."""
+    top, state = tipping(shape, tilt_rate)
+    with mp.workdps(DIGITS):
+        exact = ExactGap(state, top, Start.LIFT_OFF)
+        gravity = float(-2 * exact.support[2])
+        jerk, snap = exact.derivative(3), exact.derivative(4)
+    return top._replace(gravity=gravity), state, float(jerk), float(snap)
+
+
+@pytest.mark.parametrize("tilt_rate", [1e-5, 1e-4, 1e-3, 1e-2, 1e-1])
+@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize("shape", [SHAPES["tippe top"], SHAPES["lentil"]], ids=["tippe top", "lentil"])
+def test_a_short_hop_lasts_four_times_the_jerk_over_the_snap(shape, sign, tilt_rate):
+    """The gap is J t^3/6 + S t^4/24 near lift-off; with J < 0 the table would have to be penetrated."""
+    top, state, jerk, snap = lifting_off(shape, sign * tilt_rate)
+    time = touchdown(state, top, 1.0, Start.LIFT_OFF)
+    if jerk < 0.0:
+        assert time == 0.0
+    else:
+        assert snap < 0.0
+        assert time == pytest.approx(-4.0 * jerk / snap, rel=1e-3)
+    assert (jerk < 0.0) != (lifting_off(shape, -sign * tilt_rate)[2] < 0.0)
+
+
+# Touchdown: many digits --------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("tilt_rate", [0.3, 1.0, 3.0, 10.0, 30.0, 100.0])
+@pytest.mark.parametrize("shape", [SHAPES["tippe top"], SHAPES["lentil"]], ids=["tippe top", "lentil"])
+def test_hops_of_all_lengths_after_lift_off(shape, tilt_rate):
+    sign = 1.0 if lifting_off(shape, tilt_rate)[2] > 0.0 else -1.0
+    top, state, _, _ = lifting_off(shape, sign * tilt_rate)
+    assert check_touchdown(state, top, Start.LIFT_OFF, 1.0) > 0.0
+
+
+@pytest.mark.parametrize("miss", [1e-3, 1e-6])
+@pytest.mark.parametrize("shape", [SHAPES["tippe top"], SHAPES["lentil"]], ids=["tippe top", "lentil"])
+def test_a_rebound_that_just_clears_the_table_is_told_from_one_that_does_not(shape, miss):
+    """Under a bit more weight than lift-off allows, the gap is v t - a t^2/2 + J t^3/6: it dips at 3a/2J."""
+    sign = 1.0 if lifting_off(shape, 10.0)[2] > 0.0 else -1.0
+    top, state, jerk, _ = lifting_off(shape, sign * 10.0)
+    soon = 0.05 * top.transverse_inertia / length(state.momentum)
+    top = top._replace(gravity=top.gravity + jerk * soon / 1.5)
+    with mp.workdps(DIGITS):
+        still = ExactGap(state, top, Start.REBOUND)
+        sinking = mp.diff(still.height, 0)
+        still.parabola[1] = sinking
+        dip = mp.findroot(lambda t: mp.diff(lambda s: still(s) / s, t), soon)
+        needed = -still(dip) / dip
+        assert needed > 0.0
+        assert dip == pytest.approx(soon, rel=0.5)
+        clears, touches = (float(sinking + (1 + m) * needed) for m in (miss, -miss))
+    clear = state._replace(velocity=(0.0, 0.0, clears))
+    touch = state._replace(velocity=(0.0, 0.0, touches))
+    assert check_touchdown(touch, top, Start.REBOUND, 1.0) == pytest.approx(float(dip), rel=3.0 * miss**0.5)
+    assert check_touchdown(clear, top, Start.REBOUND, 1.0) > 1.2 * dip
+
+
+@st.composite
+def lift_offs(draw):
+    """A body at lift-off, from the gravity that this takes; most hops are short, some very short."""
+    top = draw(tops(st.one_of(spheres(), spheroids())))
+    unit = 1.0 / time_unit(top)
+    tilt_rate = draw(st.sampled_from([-1.0, 1.0])) * 10.0 ** draw(numbers(-6.0, 0.7)) * unit
+    tilt, precession, spin = draw(numbers(0.05, 3.1)), draw(numbers(-8.0, 8.0)), draw(numbers(-15.0, 15.0))
+    motion = Angles(tilt, tilt_rate, 0.3, precession * unit, spin * unit, (0.0, 0.0))
+    state = on_table(state_from_angles(motion, top, math), top)
+    with mp.workdps(DIGITS):
+        gravity = float(-2 * ExactGap(state, top, Start.LIFT_OFF).support[2])
+    assume(gravity > 1e-3 * top.gravity)
+    return top._replace(gravity=gravity), state
+
+
+@settings(max_examples=40)
+@given(lift_offs())
+def test_the_first_touch_after_lift_off(case):
+    top, state = case
+    check_touchdown(state, top, Start.LIFT_OFF, 30.0 * time_unit(top))
+
+
+@settings(max_examples=40)
+@given(flights())
+def test_the_first_touch_after_a_throw(case):
+    top, state = case
+    assume(gap(state, top) > 0.0)
+    assert touchdown(state, top, math.inf) is not None
+    check_touchdown(state, top, Start.AIRBORNE, 30.0 * time_unit(top))
+
+
+@settings(max_examples=40)
+@given(flights(), numbers(-9.0, 1.0), st.sampled_from([Start.REBOUND, Start.RELEASE]))
+def test_the_first_touch_after_a_rebound_or_a_release(case, magnitude, start):
+    top, state = case
+    at_rest = on_table(state._replace(velocity=state.velocity[:2], position=state.position[:2]), top)
+    leap = 10.0**magnitude * speed_unit(top) if start == Start.REBOUND else 0.0
+    leaping = at_rest._replace(velocity=(*at_rest.velocity[:2], at_rest.velocity[2] + leap))
+    check_touchdown(leaping, top, start, 30.0 * time_unit(top))
+
+
+@pytest.mark.parametrize("rising", [0.0, 0.05, 1.0, 5.0])
+@pytest.mark.parametrize("shape", [*SHAPES.values(), Bead(0.02, 2.0)], ids=[*SHAPES, "bead"])
+def test_hops_of_bodies_that_turn_many_times(shape, rising):
+    top, state = tipping(shape, 30.0)
+    state = state._replace(velocity=(0.0, 0.0, state.velocity[2] + rising))
+    start = Start.REBOUND if rising else Start.RELEASE
+    time = check_touchdown(state, top, start, math.inf if rising else 1.0)
+    assert rising < 5.0 or rising / 9.8 < time < 3.0 * rising / 9.8
+
+
+@pytest.mark.parametrize("shape", [*SHAPES.values(), Bead(0.02, 2.0)], ids=[*SHAPES, "bead"])
+@pytest.mark.parametrize("miss", [1e-5, 1e-9, 1e-12])
+def test_a_graze_is_told_from_a_miss(shape, miss):
+    """A body thrown so that its gap has a minimum first: there it just touches the table, or just not."""
+    top, state = tipping(shape, 100.0, precession=250.0)
+    high = state._replace(position=(0.0, 0.0, state.position[2] + shape.size), velocity=(0.0, 0.0, 0.3))
+    looks = np.linspace(0.0, 0.2, 20001)
+    gaps = gap(fly(high, looks, top, np), top)
+    dips = [k for k in range(1, 20000) if gaps[k] < min(gaps[k - 1], gaps[k + 1])]
+    k = next(k for k in dips if gaps[k] < min(gaps[:k]))
+    with mp.workdps(DIGITS):
+        exact = ExactGap(high, top, Start.AIRBORNE)
+        dip = mp.findroot(lambda t: mp.diff(exact, t), (looks[k - 1], looks[k + 1]), solver="anderson")
+        lowest = float(exact(dip))
+    for sign in (1, -1):
+        low = high._replace(position=(0.0, 0.0, high.position[2] - lowest + sign * miss * shape.size))
+        time = check_touchdown(low, top, Start.AIRBORNE, 0.2)
+        if sign < 0:
+            assert time == pytest.approx(float(dip), abs=3.0 * math.sqrt(miss) / 30.0)
+            assert time < dip
+        else:
+            assert time is None or time > float(dip) + 1e-4
+
+
+@given(flights(), numbers(0.05, 3.0))
+@example(tipping(SHAPES["egg"], 20.0), 1.0)
+def test_the_horizon_hides_what_lies_beyond_it_and_nothing_else(case, part):
+    top, state = case
+    assume(gap(state, top) > 1e-6 * top.shape.size)
+    time = touchdown(state, top, math.inf)
+    assume(abs(part - 1.0) > 1e-9)
+    seen = touchdown(state, top, part * time)
+    assert (seen is None) == (part < 1.0)
+    assert seen is None or seen == pytest.approx(time, rel=1e-9)

@@ -1,0 +1,286 @@
+"""Results in files: nothing is lost, nothing is overwritten unasked, and no half-written file is left."""
+
+import gc
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis import strategies as st
+
+import tippetop as tt
+from tippetop.presets import report_problem
+
+
+@pytest.fixture(scope="module")
+def lifted_off():
+    """A run with an event in it."""
+    problem = report_problem(0.0, tilt=2.5).replace({"launch.tilt_rate": 100.0, "contact.liftoff": "stop"})
+    run = tt.simulate(problem, 1.0, samples=201)
+    assert run.sizes["event"] == 1
+    return run
+
+
+@pytest.fixture(scope="module")
+def completed():
+    """A run without any event."""
+    run = tt.simulate(report_problem().replace({"contact.liftoff": "stop"}), 0.1, samples=11)
+    assert run.sizes["event"] == 0
+    return run
+
+
+@pytest.fixture(scope="module")
+def vertical():
+    """A run in which something is not a number."""
+    run = tt.simulate(report_problem(tilt=0.0).replace({"contact.liftoff": "stop"}), 0.1, samples=3)
+    assert np.all(np.isnan(run.phi_dot))
+    return run
+
+
+@pytest.fixture(params=["lifted_off", "completed", "vertical"])
+def run(request):
+    return request.getfixturevalue(request.param)
+
+
+def same(read, written):
+    """Whether everything is the same: values to the last bit, types, dimensions, units and attributes."""
+    xr.testing.assert_identical(read, written)
+    assert list(read.attrs) == list(written.attrs)
+    for name in written.variables:
+        assert read[name].dtype == written[name].dtype, name
+        for key, value in written[name].attrs.items():
+            assert np.asarray(read[name].attrs[key]).dtype == np.asarray(value).dtype, (name, key)
+    for key, value in written.attrs.items():
+        assert type(read.attrs[key]) is type(value) or read.attrs[key].dtype.kind in "fi", key
+    return True
+
+
+# --- there and back -----------------------------------------------------------------------------------------
+
+
+def test_what_is_read_is_what_was_written(run, tmp_path):
+    path = tt.write_run(run, tmp_path / "run.nc")
+    assert path == tmp_path / "run.nc"
+    assert same(tt.read_run(path), run)
+
+
+def test_names_of_files_may_be_text(completed, tmp_path):
+    tt.write_run(completed, str(tmp_path / "run.nc"))
+    assert same(tt.read_run(str(tmp_path / "run.nc")), completed)
+
+
+def test_what_is_read_again_can_be_written_again(lifted_off, tmp_path):
+    first = tt.read_run(tt.write_run(lifted_off, tmp_path / "first.nc"))
+    second = tt.read_run(tt.write_run(first, tmp_path / "second.nc"))
+    assert same(second, lifted_off)
+
+
+def test_events_keep_their_kinds_and_samples_their_orientation(lifted_off, tmp_path):
+    read = tt.read_run(tt.write_run(lifted_off, tmp_path / "run.nc"))
+    assert read.event_kind.values.tolist() == ["lift-off"]
+    assert read.event_kind.dtype.kind == "U"
+    np.testing.assert_array_equal(read.orientation, lifted_off.orientation)
+    assert read["quaternion"].values.tolist() == ["w", "x", "y", "z"]
+
+
+def test_problem_that_is_read_runs_as_the_one_written(lifted_off, tmp_path):
+    read = tt.read_run(tt.write_run(lifted_off, tmp_path / "run.nc"))
+    again = tt.simulate(tt.Problem.from_json(read.attrs["problem"]), 1.0, samples=201)
+    assert same(again, lifted_off)
+
+
+@settings(
+    max_examples=10,
+    deadline=None,
+    phases=[Phase.explicit, Phase.generate],
+    suppress_health_check=[HealthCheck.function_scoped_fixture],
+)
+@given(
+    numbers=st.lists(st.floats(), min_size=11, max_size=11),
+    count=st.integers(0, 3),
+    detail=st.text(st.characters(codec="utf-8", exclude_categories=["Cc"])),
+)
+def test_every_number_and_every_sentence_survives_a_file(completed, tmp_path, numbers, count, detail):
+    """Also what is infinite, not a number, negative zero or too small for full precision."""
+    kinds = np.array(["lift-off", "touchdown", "impact"][:count], dtype=completed.event_kind.dtype)
+    run = completed.drop_dims(set(completed.sizes) - {"time", "space", "quaternion"})
+    run["theta"] = run.theta.copy(data=numbers)
+    run["event_kind"] = ("event", kinds.astype(str), completed.event_kind.attrs)
+    run.attrs["outcome_advice"] = detail
+    read = tt.read_run(tt.write_run(run, tmp_path / "run.nc", overwrite=True))
+    assert same(read, run)
+    np.testing.assert_array_equal(np.signbit(read.theta), np.signbit(run.theta))
+
+
+def test_file_is_one_that_others_can_read_by_the_conventions(lifted_off, tmp_path):
+    """CF: a convention named, units on every quantity, and flags explained by as many words as values."""
+    path = tt.write_run(lifted_off, tmp_path / "run.nc")
+    with xr.open_dataset(path, engine="h5netcdf", decode_cf=False) as raw:
+        assert raw.attrs["Conventions"].startswith("CF-1.")
+        flags, meanings = raw.phase.attrs["flag_values"], raw.phase.attrs["flag_meanings"].split()
+        assert np.size(flags) == len(meanings)
+        assert np.asarray(flags).dtype == raw.phase.dtype == np.int8
+        assert set(raw.phase.values) <= set(np.atleast_1d(flags))
+        assert meanings[0] == "sliding"
+        for name, variable in raw.data_vars.items():
+            if variable.dtype == np.float64:
+                assert variable.attrs["units"], name
+
+
+def test_file_takes_the_permissions_of_any_new_file(completed, tmp_path):
+    (tmp_path / "any").write_text("")
+    path = tt.write_run(completed, tmp_path / "run.nc")
+    assert path.stat().st_mode == (tmp_path / "any").stat().st_mode
+
+
+# --- nothing is overwritten unasked, nor half written -------------------------------------------------------
+
+
+def told(trouble):
+    """What a user is told, which is one line."""
+    text = str(trouble.value)
+    assert "\n" not in text
+    return text
+
+
+def test_file_that_exists_is_not_overwritten_unasked(completed, lifted_off, tmp_path):
+    path = tt.write_run(completed, tmp_path / "run.nc")
+    with pytest.raises(tt.FileTrouble, match="exists") as trouble:
+        tt.write_run(lifted_off, path)
+    assert str(path) in told(trouble)
+    assert same(tt.read_run(path), completed)
+
+
+def test_file_that_exists_is_overwritten_when_asked_for(completed, lifted_off, tmp_path):
+    path = tt.write_run(completed, tmp_path / "run.nc")
+    tt.write_run(lifted_off, path, overwrite=True)
+    assert same(tt.read_run(path), lifted_off)
+    assert list(tmp_path.iterdir()) == [path]
+
+
+class PowerCut(BaseException):
+    """Something that is no ordinary error."""
+
+
+@pytest.mark.parametrize(
+    ("error", "raised"),
+    [
+        (OSError(28, "No space left on device"), tt.FileTrouble),
+        (ValueError("cannot be encoded"), ValueError),
+        (KeyboardInterrupt(), KeyboardInterrupt),
+        (PowerCut(), PowerCut),
+    ],
+    ids=["full disk", "error", "Ctrl-C", "anything"],
+)
+@pytest.mark.parametrize("there", [False, True], ids=["new", "overwriting"])
+def test_nothing_is_left_of_a_file_whose_writing_fails(
+    completed, lifted_off, tmp_path, monkeypatch, error, raised, there
+):
+    path = tmp_path / "run.nc"
+    if there:
+        tt.write_run(lifted_off, path)
+
+    def half_a_file(_, target, **options):
+        Path(target).write_bytes(b"\x89HDF\r\n\x1a\n and no more")
+        raise error
+
+    with monkeypatch.context() as broken:
+        broken.setattr(xr.Dataset, "to_netcdf", half_a_file)
+        with pytest.raises(raised) as trouble:
+            tt.write_run(completed, path, overwrite=there)
+    if raised is tt.FileTrouble:
+        assert str(path) in told(trouble)
+        assert "No space left" in told(trouble)
+    assert list(tmp_path.iterdir()) == ([path] if there else [])
+    if there:
+        assert same(tt.read_run(path), lifted_off)
+
+
+@pytest.mark.parametrize("place", ["no/such/folder/run.nc", "file/run.nc", "/proc/run.nc"])
+def test_place_that_cannot_be_written_to_is_named(completed, tmp_path, place):
+    (tmp_path / "file").write_text("mine")
+    with pytest.raises(tt.FileTrouble) as trouble:
+        tt.write_run(completed, tmp_path / place)
+    assert str(tmp_path / place) in told(trouble)
+    assert (tmp_path / "file").read_text() == "mine"
+    assert len(list(tmp_path.iterdir())) == 1
+
+
+def test_folder_is_not_replaced_by_a_file(completed, tmp_path):
+    (tmp_path / "folder").mkdir()
+    for overwrite in (False, True):
+        with pytest.raises(tt.FileTrouble) as trouble:
+            tt.write_run(completed, tmp_path / "folder", overwrite=overwrite)
+        assert "folder" in told(trouble)
+    assert [path.name for path in tmp_path.rglob("*")] == ["folder"]
+
+
+# --- what cannot be read ------------------------------------------------------------------------------------
+
+
+def refused(path):
+    """What is said about a file that cannot be read, with nothing said anywhere else."""
+    with pytest.raises(tt.FileTrouble) as trouble:
+        tt.read_run(path)
+    text = told(trouble)
+    assert text.startswith(str(path))
+    del trouble
+    gc.collect()  # what complains as it is thrown away does so here, as a warning, and thus as an error
+    return text
+
+
+@pytest.mark.parametrize("kept", [0.0, 0.001, 0.01, 0.1, 0.3, 0.5, 0.9, 0.99, 0.9999])
+def test_truncated_file_is_refused(lifted_off, tmp_path, kept):
+    path = tt.write_run(lifted_off, tmp_path / "run.nc")
+    content = path.read_bytes()
+    path.write_bytes(content[: math.floor(kept * len(content))])
+    assert "cannot be read" in refused(path)
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        np.random.default_rng(2).bytes(5000),
+        b"theta,phi\n0.1,0.2\n",
+        b"CDF\x01" + bytes(100),
+        b"\x89HDF\r\n\x1a\n" + bytes(3000),
+    ],
+    ids=["garbage", "text", "empty classic NetCDF", "HDF5 of zeros"],
+)
+def test_file_that_is_no_netcdf_is_refused(tmp_path, content):
+    path = tmp_path / "run.nc"
+    path.write_bytes(content)
+    assert "cannot be read" in refused(path)
+
+
+def test_damaged_beginning_is_refused(lifted_off, tmp_path):
+    path = tt.write_run(lifted_off, tmp_path / "run.nc")
+    content = path.read_bytes()
+    path.write_bytes(content[:60] + np.random.default_rng(3).bytes(500) + content[560:])
+    assert "cannot be read" in refused(path)
+
+
+def test_netcdf_of_another_program_is_refused(tmp_path):
+    path = tmp_path / "weather.nc"
+    weather = xr.Dataset({"temperature": ("time", [280.0, 281.0])}, attrs={"Conventions": "CF-1.11"})
+    weather.to_netcdf(path, engine="h5netcdf")
+    assert "not a result of this program" in refused(path)
+
+
+def test_file_that_is_not_there_is_refused(tmp_path):
+    assert "No such file" in refused(tmp_path / "none.nc")
+
+
+def test_folder_is_refused(tmp_path):
+    assert "cannot be read" in refused(tmp_path)
+
+
+def test_reading_leaves_the_file_alone_and_closed(lifted_off, tmp_path):
+    path = tt.write_run(lifted_off, tmp_path / "run.nc")
+    content = path.read_bytes()
+    read = tt.read_run(path)
+    assert path.read_bytes() == content
+    tt.write_run(read, path, overwrite=True)
+    assert same(tt.read_run(path), lifted_off)

@@ -1,0 +1,180 @@
+"""Runs that leave the table: slides, flights and impacts as one."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import tippetop as tt
+from independent_hops import Toy, hop_along
+from tippetop.presets import REPORT, report_problem
+
+FIRST_LIFT_OFF = {175.0: 5.361332, 170.0: 5.85182}
+"""Converged times of the first lift-off of the report's top launched at tilt 0.1 with mu 0.3 s/m."""
+
+ONSET = 165.0900
+"""Converged spin beyond which that launch leaves the table, rad/s."""
+
+
+def test_without_lift_off_flying_and_bilateral_contact_are_the_same_run():
+    free = tt.simulate(report_problem(155.0), 20.0)
+    held = tt.simulate(report_problem(155.0).replace({"contact.liftoff": "ignore"}), 20.0)
+    assert free.sizes["event"] == 0
+    assert np.abs(free.theta - held.theta).max() < 1e-11
+    assert np.abs(free.omega3 - held.omega3).max() < 1e-8
+
+
+@pytest.mark.parametrize(("spin", "time"), FIRST_LIFT_OFF.items())
+def test_first_lift_off(spin, time):
+    run = tt.simulate(report_problem(spin), 6.0)
+    assert run.event_kind[0] == "lift-off"
+    assert float(run.event_time[0]) == pytest.approx(time, abs=1e-6)
+
+
+def test_onset_of_lift_off():
+    def leaves(spin):
+        return tt.simulate(report_problem(spin), 20.0, samples=2).sizes["event"] > 0
+
+    low, high = 160.0, 170.0
+    assert leaves(high)
+    assert not leaves(low)
+    while high - low > 1e-5:
+        middle = (low + high) / 2
+        low, high = (low, middle) if leaves(middle) else (middle, high)
+    assert high == pytest.approx(ONSET, abs=1e-4)
+
+
+def test_an_independent_simulation_in_small_steps_hops_alike():
+    before = tt.simulate(report_problem(175.0), 5.3, times=[5.3]).isel(time=-1)
+    launch = {
+        "tilt": float(before.theta),
+        "tilt_rate": float(before.theta_dot),
+        "precession": float(before.phi_dot),
+        "spin": float(before.omega3),
+        "slip": (float(before.slip_x), float(before.slip_y)),
+    }
+    problem = report_problem(175.0).replace({f"launch.{name}": value for name, value in launch.items()})
+    duration = 0.45
+    run = tt.simulate(problem, duration, samples=2)
+    toy = Toy(m=0.02, R=0.02, alpha=0.3, I1=REPORT.I1, I3=REPORT.I3, mu=0.3, g=9.8)
+    start = [launch["tilt"], launch["tilt_rate"], 0.0, launch["precession"], launch["spin"], *launch["slip"]]
+    final, lifts, lands = hop_along(toy, start, duration, 1e-5)
+
+    kinds, times = run.event_kind.values, run.event_time.values
+    assert len(lifts) > 5
+    np.testing.assert_allclose(times[kinds == "lift-off"], lifts, atol=2e-8)
+    np.testing.assert_allclose(times[kinds == "touchdown"], lands, atol=2e-8)
+    last = run.isel(time=-1)
+    ours = [float(last[name]) for name in ("theta", "theta_dot", "phi_dot", "omega3")]
+    np.testing.assert_allclose(ours, final[[0, 1, 3, 4]], rtol=1e-5)
+
+
+launches = st.fixed_dictionaries(
+    {
+        "launch.tilt": st.floats(0.0, math.pi),
+        "launch.spin": st.floats(-300.0, 300.0),
+        "launch.tilt_rate": st.floats(-30.0, 30.0),
+        "launch.precession": st.floats(-100.0, 100.0),
+        "launch.slip": st.tuples(st.floats(-1.0, 1.0), st.floats(-1.0, 1.0)),
+        "launch.gap": st.one_of(st.just(0.0), st.floats(1e-6, 0.05)),
+        "contact.restitution": st.sampled_from([0.0, 0.3, 0.8, 1.0]),
+        "friction.mu": st.floats(0.0, 1.0),
+    }
+)
+bodies = st.one_of(
+    st.builds(
+        lambda e: tt.Body(
+            mass=0.02, shape=tt.EccentricSphere(radius=0.02, eccentricity=e), I1=3e-6, I3=3.2e-6
+        ),
+        st.floats(0.05, 0.6),
+    ),
+    st.builds(
+        lambda b: tt.Body(mass=0.02, shape=tt.Spheroid(across=0.02, along=b), I1=4e-6, I3=3.2e-6),
+        st.floats(0.01, 0.04),
+    ),
+)
+
+
+@settings(max_examples=300)
+@given(bodies, launches)
+def test_what_must_hold_through_slides_flights_and_impacts(body, launch):
+    problem = tt.Problem(
+        body=body, friction=tt.ViscousFriction(mu=0.3), launch=tt.Launch(tilt=0.1, spin=1.0)
+    ).replace(launch)
+    run = tt.simulate(problem, 1.0, samples=200, phase_limit=150)
+    assert run.outcome in {"completed", "too_many_phases"}
+    energy = run.energy.values
+    assert np.abs(energy - energy[0] - run.work.values).max() < 1e-10 * energy[0]
+    losses = run.event_energy_lost.values
+    assert (losses >= 0).all()
+    assert (np.diff(run.work.values) <= 1e-13 * energy[0]).all()
+    assert run.gap.values.min() > -1e-12
+    sliding = run.phase.values == 0
+    assert (run.normal_force.values[sliding] > -1e-12).all()
+    if isinstance(body.shape, tt.EccentricSphere):
+        moment = np.linalg.norm(run.angular_momentum.values[0]) * 2 * body.shape.radius
+        assert np.ptp(run.jellett.values) <= 1e-11 * max(moment, 1e-9)
+
+
+def test_samples_inside_a_flight_lie_on_the_flight():
+    problem = report_problem(100.0, tilt=1.0).replace(
+        {"launch.gap": 0.05, "launch.velocity": (0.1, -0.2, 0.3)}
+    )
+    run = tt.simulate(problem, 0.1, samples=50)
+    assert (run.phase == 1).all()
+    t = run.time.values
+    np.testing.assert_allclose(run.height, run.height[0].item() + 0.3 * t - 4.9 * t**2, rtol=1e-12)
+    np.testing.assert_allclose(run.x, 0.1 * t, atol=1e-15)
+    np.testing.assert_allclose(run.angular_momentum, np.broadcast_to(run.angular_momentum[0], (50, 3)))
+    assert (run.normal_force == 0).all()
+
+
+def test_a_dropped_top_falls_and_bounces_back_by_its_restitution():
+    drop, restitution = 0.02, 0.6
+    problem = report_problem(0.0, tilt=0.0).replace({"launch.gap": drop, "contact.restitution": restitution})
+    run = tt.simulate(problem, 1.0)
+    falls = math.sqrt(2 * drop / 9.8)
+    touchdowns = run.event_time.values[run.event_kind.values == "touchdown"]
+    assert touchdowns[0] == pytest.approx(falls, rel=1e-12)
+    assert touchdowns[1] - touchdowns[0] == pytest.approx(2 * restitution * falls, rel=1e-9)
+    assert touchdowns[2] - touchdowns[1] == pytest.approx(2 * restitution**2 * falls, rel=1e-9)
+    rest = falls * (1 + 2 * restitution / (1 - restitution))
+    assert touchdowns[-1] == pytest.approx(rest, abs=1e-5)
+    assert run.phase.values[-1] == 0
+    weight = 0.02 * 9.8
+    assert run.event_energy_lost.values.sum() == pytest.approx(weight * drop, rel=1e-9)
+    assert float(run.flight_highest_gap[1]) == pytest.approx(drop * restitution**2, rel=1e-6)
+
+
+def test_a_perfectly_elastic_bounce_never_ends_and_loses_nothing():
+    problem = report_problem(0.0, tilt=0.0).replace({"launch.gap": 0.001, "contact.restitution": 1.0})
+    run = tt.simulate(problem, 10.0, phase_limit=100)
+    assert run.outcome == "too_many_phases"
+    assert "phases" in run.outcome_advice
+    assert run.sizes["flight"] == 100
+    assert run.energy.values[-1] == pytest.approx(run.energy.values[0], rel=1e-12)
+
+
+def test_a_launch_that_the_table_would_have_to_hold_starts_in_flight():
+    problem = report_problem(0.0, tilt=1.5).replace({"launch.tilt_rate": 60.0, "launch.precession": -60.0})
+    bilateral = tt.simulate(problem.replace({"contact.liftoff": "ignore"}), 1e-4, samples=2)
+    pulled = problem if float(bilateral.normal_force[0]) < 0 else None
+    assert pulled is not None
+    run = tt.simulate(pulled, 0.01)
+    assert float(run.event_time[0]) == 0.0
+    assert run.event_kind[0] == "lift-off"
+    assert float(run.flight_start[0]) == 0.0
+    assert float(run.gap[1]) > 0
+
+
+def test_a_launch_in_painleves_paradox_starts_with_an_impact():
+    paradox = report_problem(0.0, tilt=1.5, mu=100.0).replace({"launch.slip": (10.0, 0.0)})
+    run = tt.simulate(paradox, 0.01)
+    assert run.event_kind[0] == "impact"
+    assert float(run.event_impulse[0]) > 0
+    assert float(run.event_energy_lost[0]) > 0
+    assert np.hypot(run.slip_x, run.slip_y).values[0] <= 10.0
+    with pytest.raises(tt.InvalidInput, match="Painleve"):
+        paradox.replace({"contact.liftoff": "stop"})

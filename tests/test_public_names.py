@@ -1,0 +1,134 @@
+"""The names users see, and what is loaded to show them."""
+
+import itertools
+import subprocess
+import sys
+
+import pytest
+
+import tippetop as tt
+
+HEAVY = ["matplotlib", "xarray", "heyoka", "nicegui", "numpy", "scipy", "pydantic", "h5py", "pandas"]
+
+
+def in_new_process(code):
+    """Run code in a process of its own, with warnings as errors; return what it prints."""
+    done = subprocess.run(
+        [sys.executable, "-W", "error", "-c", code], capture_output=True, text=True, timeout=60, check=False
+    )
+    assert (done.stderr, done.returncode) == ("", 0)
+    return done.stdout.strip()
+
+
+def loaded_after(code):
+    """Which heavy libraries some code loads."""
+    return in_new_process(
+        f"{code}\nimport sys\nprint(*[name for name in {HEAVY} if name in sys.modules])"
+    ).split()
+
+
+def test_import_loads_no_library():
+    assert loaded_after("import tippetop") == []
+
+
+def test_looking_at_the_names_loads_no_library():
+    assert loaded_after("import tippetop; dir(tippetop); tippetop.__version__; tippetop.__doc__") == []
+
+
+def test_stating_a_problem_loads_no_library_that_only_running_it_needs():
+    code = "import tippetop as tt; tt.Problem; tt.InvalidInput; tt.presets.REPORT"
+    assert set(loaded_after(code)) & {"matplotlib", "xarray", "heyoka", "nicegui", "h5py", "scipy"} == set()
+
+
+def test_simulating_loads_neither_matplotlib_nor_the_laboratory():
+    assert set(loaded_after("import tippetop as tt; tt.simulate")) & {"matplotlib", "nicegui"} == set()
+
+
+AFRESH = """
+import sys
+
+def afresh(code):
+    'Run code as if the package had not been imported yet.'
+    for name in [name for name in sys.modules if name.partition(".")[0] == "tippetop"]:
+        del sys.modules[name]
+    names = {}
+    exec(code, names)
+    return names
+"""
+
+
+def test_each_name_can_be_imported_first():
+    """In whatever order names are asked for, what they need is loaded."""
+    in_new_process(
+        AFRESH
+        + f"""
+for name in {tt.__all__}:
+    value = afresh(f"from tippetop import {{name}}")[name]
+    assert value is not None
+    assert value is getattr(sys.modules["tippetop"], name)
+    home = getattr(value, "__module__", "tippetop")
+    assert home.startswith("tippetop"), (name, home)
+"""
+    )
+
+
+def test_all_can_be_imported_at_once():
+    names = in_new_process("from tippetop import *; print(*sorted(set(dir()) - {'__annotations__'}))").split()
+    assert set(tt.__all__) <= set(names)
+
+
+def test_dir_lists_the_public_names_in_order():
+    assert dir(tt) == sorted(tt.__all__)
+    assert len(set(tt.__all__)) == len(tt.__all__)
+
+
+def test_what_users_are_shown_is_public():
+    shown = "Problem Body EccentricSphere Spheroid ViscousFriction Launch Contact simulate presets"
+    assert set(shown.split()) <= set(tt.__all__)
+    assert callable(tt.simulate)
+    assert tt.presets.REPORT_TABLE_1.I1 == tt.presets.REPORT.I3
+
+
+def test_unknown_name_is_an_attribute_error_that_names_it():
+    with pytest.raises(AttributeError, match="no attribute 'simulation'"):
+        tt.simulation  # noqa: B018
+    with pytest.raises(ImportError):
+        from tippetop import simulation  # noqa: F401, PLC0415
+
+
+WAYS = [
+    "import tippetop.simulate",
+    "from tippetop.simulate import Course",
+    "from tippetop import simulate",
+    "import tippetop; tippetop.simulate",
+    "import tippetop.dataset, tippetop.phases",
+    "import importlib; importlib.import_module('tippetop.simulate')",
+]
+
+
+def test_simulate_is_the_function_in_whichever_order_it_is_imported():
+    orders = ["\n".join(ways) for count in (1, 2) for ways in itertools.permutations(WAYS, count)]
+    in_new_process(
+        AFRESH
+        + f"""
+from types import FunctionType, ModuleType
+for order in {orders}:
+    afresh(order)
+    import tippetop
+    from tippetop import simulate
+    module = sys.modules["tippetop.simulate"]
+    assert isinstance(module, ModuleType), order
+    assert type(tippetop.simulate) is FunctionType, order
+    assert simulate is tippetop.simulate is module.simulate, order
+"""
+    )
+
+
+def test_errors_are_what_their_kind_suggests():
+    for error, kinds in {
+        tt.InvalidInput: (tt.TippetopError, ValueError),
+        tt.FileTrouble: (tt.TippetopError, OSError),
+        tt.Unavailable: (tt.TippetopError, RuntimeError),
+    }.items():
+        assert issubclass(error, kinds[0])
+        assert issubclass(error, kinds[1])

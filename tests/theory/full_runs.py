@@ -1,0 +1,94 @@
+"""Full runs on a table that may pull, to hold the theory against, and random tops for it."""
+
+import math
+from functools import lru_cache
+
+import numpy as np
+from hypothesis import strategies as st
+
+from strategies import numbers
+from tippetop.integrators import Motion, make_integrator
+from tippetop.mechanics.friction import ViscousFriction
+from tippetop.mechanics.motion import along_table, sliding_rates
+from tippetop.mechanics.shape import EccentricSphere
+from tippetop.mechanics.state import SlidingState
+from tippetop.mechanics.top import Top, dimensionless_numbers, kind_of, natural_units
+from tippetop.problem import Problem
+
+RADIUS, MASS, GRAVITY, AXIAL_INERTIA = 0.02, 0.02, 9.8, 3.2e-6
+
+
+@lru_cache
+def sliding(kind):
+    """Equations of motion of a sliding top, as the integrators take them."""
+
+    def rates(y, parameters):
+        return sliding_rates(SlidingState.unpack(y), kind.top(tuple(parameters))).pack()
+
+    return Motion(rates, size=14, parameters=kind.numbers)
+
+
+def full_run(problem, times, smooth=False):
+    """Axis, angular momentum and horizontal velocity of a sliding top, SI, in rows."""
+    top = problem.top
+    if smooth:
+        top = top._replace(friction=ViscousFriction(0.0))
+    units = natural_units(top)
+    start = along_table(problem.start())
+    begin = np.array(
+        [
+            *start.axis,
+            *(number / units.angular_momentum for number in start.momentum),
+            *(number / units.speed for number in start.velocity),
+            *(0.0, 0.0),
+            *start.marker,
+            0.0,
+        ]
+    )
+    if smooth:
+        begin[6:8] = 0.0
+    natural = np.asarray(times, dtype=float) / units.time
+    arc = make_integrator().integrate(
+        sliding(kind_of(top)), dimensionless_numbers(top), (0.0, begin), natural[-1], natural
+    )
+    assert arc.failure is None
+    states = arc.states
+    return states[:, :3], states[:, 3:6] * units.angular_momentum, states[:, 6:8] * units.speed
+
+
+def tilts_of(axis):
+    """Tilt from the axis, accurate at both poles."""
+    return np.arctan2(np.hypot(axis[:, 0], axis[:, 1]), axis[:, 2])
+
+
+def sphere(gamma, alpha, mu=0.3):
+    """An eccentric sphere with this inertia ratio and eccentricity."""
+    shape = EccentricSphere(RADIUS, alpha)
+    return Top(MASS, gamma * AXIAL_INERTIA, AXIAL_INERTIA, shape, ViscousFriction(mu), GRAVITY)
+
+
+def sphere_problem(gamma, alpha, tilt, spin, mu=0.3):
+    """A launch at rest in tilt of such a sphere."""
+    return Problem(
+        body={
+            "mass": MASS,
+            "shape": {"kind": "eccentric_sphere", "radius": RADIUS, "eccentricity": alpha},
+            "I1": gamma * AXIAL_INERTIA,
+            "I3": AXIAL_INERTIA,
+        },
+        friction={"kind": "viscous", "mu": mu},
+        launch={"tilt": tilt, "spin": spin},
+        contact={"liftoff": "ignore"},
+        gravity=GRAVITY,
+    )
+
+
+def jellett_unit(top):
+    """sqrt(m g R^3 I3 alpha), in which the thresholds are numbers of gamma and alpha."""
+    radius, alpha = top.shape
+    return math.sqrt(top.mass * top.gravity * radius**3 * top.axial_inertia * alpha)
+
+
+gammas, alphas = numbers(0.5, 2.0), numbers(0.02, 0.9)
+all_spheres = st.builds(sphere, gammas, alphas, numbers(0.01, 1.0))
+"""Eccentric spheres of every group."""

@@ -1,0 +1,202 @@
+"""The slow flow against full runs, against itself, and what it is the limit of."""
+
+import math
+
+import numpy as np
+import pytest
+from full_runs import full_run, sphere_problem, tilts_of
+
+from tippetop import presets
+from tippetop.errors import InvalidInput
+from tippetop.integrators import has_taylor
+from tippetop.mechanics.shape import EccentricSphere
+from tippetop.mechanics.top import natural_units
+from tippetop.theory import whirling
+from tippetop.theory.averaging import averaged_flow, flip_time_limit, local_exponent
+from tippetop.theory.drift import drift, smooth_precession
+from tippetop.theory.nutation import Whirls, numbers_of, orbit_of_whirls, turning_tilts, whirl_rates
+from tippetop.theory.prediction import predict
+from tippetop.theory.steady import jellett_of_launch, precession_branch, steady_states
+
+REPORT = presets.report_problem(spin=100.0)
+LAUNCHES = [
+    REPORT,
+    presets.report_problem(spin=50.0),
+    presets.report_problem(spin=20.0, tilt=0.5),
+    presets.report_problem(spin=150.0, tilt=0.785),
+    presets.report_problem(spin=-100.0, tilt=1.5),
+    presets.report_problem(spin=100.0, tilt=2.5),
+    presets.report_problem(spin=60.0, tilt=3.0).replace({"launch.precession": 4.0}),
+    sphere_problem(1.5, 0.3, 0.2, 90.0),
+    sphere_problem(0.6, 0.3, 0.3, 60.0),
+    sphere_problem(0.97, 0.04, 2.7, -15.0),
+]
+
+
+def flip_time(problem, window, count):
+    """First time a full run is within 0.01 rad of theta = pi, s, looked for in a window of time."""
+    axis, _, _ = full_run(problem, np.concatenate([[0.0], np.linspace(*window, count)]))
+    away = math.pi - tilts_of(axis)[1:] - 0.01
+    times = np.linspace(*window, count)
+    first = int(np.argmax(away < 0.0))
+    assert first > 0
+    share = away[first - 1] / (away[first - 1] - away[first])
+    return times[first - 1] + share * (times[first] - times[first - 1])
+
+
+def test_the_limit_of_the_flip_time_of_the_report():
+    """mu t for mu -> 0, known to five digits from full runs."""
+    assert flip_time_limit(REPORT) == pytest.approx(2.3437, abs=6e-5)
+
+
+@pytest.mark.skipif(not has_taylor(), reason="long runs need the Taylor integrator")
+def test_full_runs_approach_the_limit_quadratically():
+    limit = flip_time_limit(REPORT)
+    excess = [
+        mu * flip_time(REPORT.replace({"friction.mu": mu}), (2.33 / mu, 2.37 / mu), 4001) / limit - 1.0
+        for mu in (0.04, 0.02, 0.005)
+    ]
+    assert excess[2] == pytest.approx(0.0, abs=1e-5)
+    assert excess[0] / excess[1] == pytest.approx(4.0, rel=0.1)
+
+
+@pytest.mark.parametrize("problem", LAUNCHES)
+@pytest.mark.skipif(not has_taylor(), reason="long runs need the Taylor integrator")
+def test_the_tilt_of_a_full_run_with_little_friction_is_in_the_envelope_of_the_flow(problem):
+    mu = 0.001
+    flow = averaged_flow(problem)
+    mu_times = np.linspace(0.0, min(flow.mu_time[-1], 3.0), 300)
+    low, high = flow.tilts(mu_times)
+    axis, _, _ = full_run(problem.replace({"friction.mu": mu}), mu_times / mu)
+    tilts = tilts_of(axis)
+    margin = 0.02
+    assert np.all(tilts > low - margin)
+    assert np.all(tilts < high + margin)
+
+
+@pytest.mark.parametrize("mu", [0.3, 0.03, 0.003])
+@pytest.mark.skipif(not has_taylor(), reason="long runs need the Taylor integrator")
+def test_the_tilt_as_a_function_of_mu_t_comes_closer_as_mu_falls(mu):
+    flow = averaged_flow(REPORT)
+    mu_times = np.linspace(0.6, 2.4, 50)
+    axis, _, _ = full_run(REPORT.replace({"friction.mu": mu}), np.concatenate([[0.0], mu_times / mu]))
+    error = np.abs(tilts_of(axis)[1:] - flow.tilts(mu_times)[0]).max()
+    assert error < {0.3: 0.3, 0.03: 4e-3, 0.003: 1e-3}[mu]
+
+
+@pytest.mark.parametrize("problem", LAUNCHES)
+def test_the_flow_ends_in_the_predicted_state(problem):
+    flow = averaged_flow(problem)
+    assert flow.final_tilt in [state.tilt for state in predict(problem).reachable]
+    assert np.all(np.diff(flow.mu_time) > 0.0)
+    assert np.all(flow.tilt_low <= flow.tilt_high)
+    last = np.array([flow.tilt_low[-1], flow.tilt_high[-1]])
+    assert last == pytest.approx(flow.final_tilt, abs=2e-6)
+    low, high = flow.tilts(np.array([0.0]))
+    assert low[0] - 1e-9 <= problem.launch.tilt <= high[0] + 1e-9
+
+
+@pytest.mark.parametrize("problem", LAUNCHES[:4])
+def test_with_and_without_the_shortcut_for_a_dead_nutation_the_flow_is_the_same(problem, monkeypatch):
+    short = averaged_flow(problem, distance=0.01, tolerance=1e-7)
+    monkeypatch.setattr(whirling, "_drift_from", lambda *_: None)
+    whole = averaged_flow(problem, distance=0.01, samples=1000)
+    assert whole.final_tilt == short.final_tilt
+    mu_times = np.linspace(0.4, 1.0, 50)[:-1] * short.mu_time[-1]
+    for one, other in zip(short.tilts(mu_times), whole.tilts(mu_times), strict=True):
+        assert one == pytest.approx(other, rel=2e-3, abs=1e-4)
+
+
+def test_the_size_of_the_friction_and_the_sense_of_the_spin_do_not_matter():
+    limit = flip_time_limit(REPORT)
+    assert flip_time_limit(REPORT.replace({"friction.mu": 7.0})) == limit
+    assert flip_time_limit(REPORT.replace({"launch.spin": -100.0})) == pytest.approx(limit, rel=1e-12)
+
+
+def test_a_wide_nutation_that_reaches_the_end_counts():
+    """Launched within 0.01 rad of its end, the top is there at once."""
+    problem = presets.report_problem(spin=60.0, tilt=math.pi - 0.005)
+    assert flip_time_limit(problem) == 0.0
+
+
+@pytest.mark.parametrize("tilt", [0.3, 1.0, 1.7, 2.6])
+@pytest.mark.parametrize("fast", [True, False])
+def test_the_drift_moves_as_the_whirls_of_a_dying_nutation_do(tilt, fast):
+    """The limit of a nutation of no width is a precession of the smooth table: two ways to its speed."""
+    top = REPORT.top
+    numbers = numbers_of(top)
+    units = natural_units(top)
+    kept = jellett_of_launch(REPORT) / (units.angular_momentum * units.length)
+    goals = [state.tilt for state in steady_states(top, jellett_of_launch(REPORT))]
+    moving = drift(tilt, kept, fast, numbers, goals, 1e-6)
+    assert moving is not None
+    speed = (moving.tilt[1] - moving.tilt[0]) / (moving.time[1] - moving.time[0])
+    middle = 0.5 * (moving.tilt[1] + moving.tilt[0])
+
+    rate = smooth_precession(math.cos(middle), kept, fast, numbers)
+    whirl = math.sin(middle / 2.0) ** 2
+    # The fast precession has L_z > L3, the slow one below the equator not necessarily.
+    turning = numbers.transverse * math.cos(middle) * rate - numbers.alpha / rate
+    excess = kept + (numbers.alpha - 1.0) * turning
+    tiny = 1e-9 * whirl
+    pair = Whirls(whirl, tiny) if excess > 0.0 else Whirls(tiny, whirl)
+    root = abs(excess) / (2.0 * math.sqrt(2.0 * numbers.transverse * numbers.alpha) * whirl)
+    path = orbit_of_whirls(pair, root, kept, numbers)
+    assert path.axial == pytest.approx(turning, rel=1e-6)
+    assert turning_tilts(pair)[0] == pytest.approx(middle, abs=1e-3)
+    rates = whirl_rates(pair, root, kept, numbers)
+    growth = rates.fast if excess > 0.0 else rates.slow
+    assert math.tan(middle / 2.0) * growth == pytest.approx(speed, rel=2e-2)
+
+
+def test_the_drift_stops_at_the_steady_states():
+    """A steady precession is one of a smooth table too, and does not drift."""
+    top = REPORT.top
+    branch = precession_branch(top, np.array([1.2]))
+    units = natural_units(top)
+    kept = float(branch.jellett[0]) / (units.angular_momentum * units.length)
+    rate = smooth_precession(math.cos(1.2), kept, True, numbers_of(top))
+    assert rate / units.time == pytest.approx(branch.precession[0], rel=1e-12)
+    goals = [state.tilt for state in steady_states(top, float(branch.jellett[0]))]
+    ahead = drift(1.0, kept, True, numbers_of(top), goals, 1e-5)
+    behind = drift(1.5, kept, True, numbers_of(top), goals, 1e-5)
+    assert ahead.final_tilt == behind.final_tilt == pytest.approx(1.2, abs=1e-9)
+    assert ahead.tilt[-1] == pytest.approx(1.2 - 1e-5, abs=1e-8)
+    assert behind.tilt[-1] == pytest.approx(1.2 + 1e-5, abs=1e-8)
+
+
+def test_the_local_exponent_of_a_power_law():
+    mu = np.geomspace(0.01, 1.0, 20)
+    assert local_exponent(mu, 2.0 / mu) == pytest.approx(-1.0, abs=1e-12)
+    assert local_exponent(mu, 2.0 * mu**-0.985) == pytest.approx(-0.985, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"body.shape": {"kind": "spheroid", "across": 0.02, "along": 0.03}},
+        {"friction": {"kind": "regularized_coulomb", "mu": 0.3, "eps": 0.01}},
+        {"launch.tilt": 0.0},
+        {"launch.tilt": math.pi},
+    ],
+)
+def test_launches_without_a_slow_flow_are_refused(changes):
+    with pytest.raises(InvalidInput):
+        averaged_flow(REPORT.replace(changes))
+
+
+def test_the_flow_needs_no_units():
+    """Twice the radius, mass times 3: time goes as sqrt(R/g), mu as 1/sqrt(g R), so that mu t goes as 1/g."""
+    body = REPORT.body
+    larger = REPORT.replace(
+        {
+            "body.mass": 3.0 * body.mass,
+            "body.shape.radius": 2.0 * body.shape.radius,
+            "body.I1": 12.0 * body.I1,
+            "body.I3": 12.0 * body.I3,
+            "launch.spin": 100.0 * math.sqrt(1.5 / 2.0),
+            "gravity": 1.5 * REPORT.gravity,
+        }
+    )
+    assert isinstance(larger.top.shape, EccentricSphere)
+    assert flip_time_limit(larger) == pytest.approx(flip_time_limit(REPORT) / 1.5, rel=1e-9)

@@ -1,0 +1,85 @@
+"""Derivatives by dual numbers against computer algebra and against what is known of them."""
+
+import math
+
+import numpy as np
+import pytest
+import sympy
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from strategies import numbers, slides
+from tippetop.mechanics.motion import sliding_rates
+from tippetop.mechanics.state import SlidingState
+from tippetop.theory import dual
+from tippetop.theory.dual import Dual, derivative, jacobian, variable, variables
+
+
+def rates_of_eight(y, top):
+    rest = ((0.0, 0.0), (1.0, 0.0, 0.0), 0.0)
+    rates = sliding_rates(SlidingState(tuple(y[:3]), tuple(y[3:6]), tuple(y[6:8]), *rest), top)
+    return [*rates.axis, *rates.momentum, *rates.velocity]
+
+
+def eight_numbers(state):
+    return [*state.axis, *state.momentum, *state.velocity]
+
+
+@given(numbers(0.1, 3.0))
+def test_every_operation_differentiates_as_the_rules_say(x):
+    t = variable(x)
+    cases = [
+        (3.0 - t, -1.0),
+        (t - 3.0, 1.0),
+        (2.0 * t + 1.0, 2.0),
+        (-t * t, -2.0 * x),
+        (t / (1.0 + t), 1.0 / (1.0 + x) ** 2),
+        (2.0 / t, -2.0 / x**2),
+        (t / 4.0, 0.25),
+        (t**3, 3.0 * x**2),
+        (t**-0.5, -0.5 * x**-1.5),
+        (dual.sin(t) * dual.cos(t), math.cos(2.0 * x)),
+    ]
+    for quantity, slope in cases:
+        assert derivative(quantity, t)[0] == pytest.approx(slope, rel=1e-14, abs=1e-15)
+
+
+def test_an_array_on_the_left_leaves_the_operation_to_the_dual_number():
+    t = variable(np.array([1.0, 2.0]))
+    for quantity in (np.array([3.0, 4.0]) * t, np.float64(3.5) + t, np.array([3.0, 4.0]) / t):
+        assert isinstance(quantity, Dual)
+        assert quantity.gradient.shape == (1, 2)
+
+
+def test_plain_results_have_zero_derivatives():
+    assert jacobian(lambda y: [y[0] * y[1], 5.0], [2.0, 3.0]).tolist() == [[3.0, 2.0], [0.0, 0.0]]
+
+
+def test_many_points_give_the_matrices_of_each():
+    first, second = np.array([1.0, 2.0, 3.0]), np.array([4.0, 5.0, 6.0])
+    together = jacobian(lambda y: [y[0] / y[1], y[0] * y[0], y[1]], [first, second])
+    assert together.shape == (3, 3, 2)
+    for i, matrix in enumerate(together):
+        alone = jacobian(lambda y: [y[0] / y[1], y[0] * y[0], y[1]], [first[i], second[i]])
+        assert np.array_equal(matrix, alone)
+
+
+def test_variables_are_independent():
+    x, y = variables([1.0, 2.0])
+    assert x.gradient.tolist() == [1.0, 0.0]
+    assert y.gradient.tolist() == [0.0, 1.0]
+
+
+@settings(max_examples=10)
+@given(slides(), st.lists(numbers(-1.0, 1.0), min_size=8, max_size=8))
+def test_the_jacobian_of_the_mechanics_is_that_of_computer_algebra(case, direction):
+    """Along a direction, sliding_rates(y + s v) is a function of s alone, which SymPy differentiates."""
+    top, state = case
+    y = eight_numbers(state)
+    along = [number * max(abs(entry), 1e-6) for number, entry in zip(direction, y, strict=True)]
+    s = sympy.Symbol("s")
+    moved = [entry + s * step for entry, step in zip(y, along, strict=True)]
+    slopes = [float(sympy.diff(sympy.sympify(rate), s).subs(s, 0)) for rate in rates_of_eight(moved, top)]
+    matrix = jacobian(lambda t: rates_of_eight(t, top), y)
+    scale = np.abs(matrix) @ np.abs(along) + 1e-300
+    assert np.abs(matrix @ along - slopes) / scale == pytest.approx(0.0, abs=1e-11)

@@ -1,0 +1,79 @@
+"""The final state predicted from lambda and the energy against full runs."""
+
+import math
+
+import numpy as np
+import pytest
+from full_runs import full_run, sphere_problem, tilts_of
+
+from tippetop import presets
+from tippetop.errors import InvalidInput
+from tippetop.theory.prediction import predict
+from tippetop.theory.steady import Kind, jellett_of_launch, precession_branch
+
+SETTLING = [
+    (0.6, 0.3, 0.1, 70.0, 100.0),
+    (0.6, 0.3, 3.0, -60.0, 200.0),
+    (131 / 140, 0.3, 0.1, 100.0, 60.0),
+    (131 / 140, 0.3, 0.1, 50.0, 400.0),
+    (131 / 140, 0.3, 0.1, 20.0, 200.0),
+    (0.75, 0.3, 0.1, 100.0, 60.0),
+    (1.5, 0.3, 0.1, 90.0, 200.0),
+    (1.5, 0.3, 2.8, -90.0, 200.0),
+]
+
+
+@pytest.mark.parametrize(("gamma", "alpha", "tilt", "spin", "duration"), SETTLING)
+def test_runs_end_in_the_predicted_state(gamma, alpha, tilt, spin, duration):
+    problem = sphere_problem(gamma, alpha, tilt, spin)
+    prediction = predict(problem)
+    axis, momentum, velocity = full_run(problem, [0.0, duration])
+    assert prediction.certain
+    assert tilts_of(axis)[-1] == pytest.approx(prediction.final.tilt, abs=1e-6)
+    spin_at_end = momentum[-1] @ axis[-1] / problem.top.axial_inertia
+    assert spin_at_end == pytest.approx(prediction.final.spin, rel=1e-5)
+    assert np.abs(velocity[-1]).max() < 1e-6
+
+
+def test_the_prediction_has_the_lambda_of_the_launch():
+    problem = presets.report_problem(spin=50.0)
+    prediction = predict(problem)
+    assert prediction.jellett == jellett_of_launch(problem)
+    assert prediction.final.jellett == prediction.jellett
+
+
+def test_where_two_states_are_stable_energy_bars_one_from_a_gentle_launch():
+    """Group Ia: the upright spin and a tilted state. Set down upright, the top cannot climb the barrier."""
+    upright = predict(sphere_problem(0.6, 0.3, 0.05, 60.0))
+    assert len(upright.stable) == 2
+    assert upright.certain
+    assert upright.final.kind is Kind.UPRIGHT
+    assert upright.stable[0].energy <= upright.stable[1].energy
+
+
+def test_where_energy_does_not_decide_both_are_left_and_the_run_ends_in_one():
+    problem = sphere_problem(0.6, 0.3, 1.0, 150.0, mu=0.1)
+    prediction = predict(problem)
+    assert not prediction.certain
+    assert prediction.reachable == prediction.stable
+    axis, _, _ = full_run(problem, [0.0, 300.0])
+    final = tilts_of(axis)[-1]
+    assert min(abs(final - state.tilt) for state in prediction.reachable) < 1e-6
+
+
+def test_a_launch_on_a_precession_stays_there():
+    top = presets.report_problem().top
+    branch = precession_branch(top, np.array([2.0]))
+    problem = presets.report_problem(tilt=2.0).replace(
+        {"launch.precession": float(branch.precession[0]), "launch.spin": float(branch.spin[0])}
+    )
+    assert predict(problem).final.tilt == pytest.approx(2.0, abs=1e-9)
+
+
+def test_other_shapes_are_refused():
+    problem = presets.report_problem().replace(
+        {"body.shape": {"kind": "spheroid", "across": 0.02, "along": 0.03}}
+    )
+    with pytest.raises(InvalidInput, match="Jellett"):
+        predict(problem)
+    assert math.isfinite(jellett_of_launch(problem))
