@@ -157,14 +157,16 @@ def test_jellett_and_energy_hold_for_every_tippe_top(problem):
     longest_arm = shape.radius * (1 + shape.eccentricity)
     size = largest(np.linalg.norm(run.angular_momentum, axis=1)) * longest_arm
     assert largest(run.jellett - run.jellett[0]) <= 1e-12 * size
-    before = float(run.energy[0])
+    # The energy is largest at launch, unless the table pulls: friction then drives the top.
+    before, most = float(run.energy[0]), largest(run.energy)
     if run.attrs["outcome"] != "failed":
-        assert largest(run.energy - before - run.work) <= 1e-11 * before
+        assert largest(run.energy - before - run.work) <= 1e-11 * most
     lengths = np.linalg.norm(run.axis, axis=1)
     np.testing.assert_allclose(lengths, 1.0, rtol=0, atol=1e-12)
     if problem.contact.liftoff == "stop":
         # A table that does not pull takes energy and never gives any.
-        assert np.all(np.diff(run.work) <= 1e-15 * before)
+        assert most == pytest.approx(before, rel=1e-11)
+        assert np.all(np.diff(run.work) <= 1e-13 * before)
         assert float(run.normal_force.min()) >= -1e-12 * problem.body.mass * problem.gravity
 
 

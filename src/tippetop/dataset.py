@@ -1,5 +1,6 @@
 """Results as labelled datasets: names, units, provenance, and files that keep all of it."""
 
+import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -132,9 +133,8 @@ def read_run(path: Path | str) -> xr.Dataset:
         with xr.open_dataset(path, engine="h5netcdf", decode_times=False) as file:
             run = file.load()
     except (OSError, ValueError, KeyError, RuntimeError) as error:
-        reason = (
-            error.strerror if isinstance(error, OSError) and error.strerror else "it is damaged or no NetCDF"
-        )
+        number = error.errno if isinstance(error, OSError) else None
+        reason = os.strerror(number) if number else "it is damaged or no NetCDF"
         raise FileTrouble(f"{path} cannot be read: {reason}") from None
     if "tippetop_version" not in run.attrs:
         raise FileTrouble(f"{path} is not a result of this program")

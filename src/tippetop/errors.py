@@ -8,7 +8,9 @@
 How a run ends is not an error: see `tippetop.simulate.Outcome`.
 """
 
+import math
 from difflib import get_close_matches
+from numbers import Real
 
 
 class _Missing:
@@ -59,6 +61,11 @@ class FileTrouble(TippetopError, OSError):
 
 class Unavailable(TippetopError, RuntimeError):
     """Something optional that is asked for and not installed."""
+
+
+def is_number(value: object) -> bool:
+    """Whether a value is a finite real number."""
+    return isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value)
 
 
 def short(value: object, limit: int = 60) -> str:

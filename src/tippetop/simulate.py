@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from tippetop import __version__
 from tippetop.dataset import Described, assemble
-from tippetop.errors import InvalidInput
+from tippetop.errors import InvalidInput, is_number
 from tippetop.integrators import Integrator, make_integrator
 from tippetop.integrators.base import Array
 from tippetop.integrators.classical import ClassicalRK4
@@ -147,14 +147,17 @@ def follow_phases(
 
 def sample_times(duration: float, samples: int, times: ArrayLike | None) -> Array:
     """Sample times, s, checked; see `simulate`."""
-    if not (np.isfinite(duration) and duration > 0):
+    if not (is_number(duration) and duration > 0):
         raise InvalidInput("duration", duration, "a finite number of seconds greater than 0")
     if times is None:
         if isinstance(samples, bool) or not isinstance(samples, (int, np.integer)) or samples < 2:
             raise InvalidInput("samples", samples, "a whole number, at least 2")
         _check_memory(samples)
         return np.linspace(0.0, duration, int(samples))
-    grid = np.array(times, dtype=float)
+    try:
+        grid = np.array(times, dtype=float)
+    except (TypeError, ValueError):
+        raise InvalidInput("times", times, "a list of increasing finite numbers") from None
     if grid.ndim != 1 or not len(grid) or not np.all(np.isfinite(grid)) or np.any(np.diff(grid) <= 0):
         raise InvalidInput("times", times, "a list of increasing finite numbers")
     if grid[0] < 0 or grid[-1] > duration:
@@ -167,7 +170,7 @@ def integrator_of(
     integrator: str | Integrator | None, tolerance: float | None, step: float | None, units: Units
 ) -> Integrator:
     """The integrator asked for, with its step in natural units."""
-    if integrator is None or isinstance(integrator, str):
+    if integrator is None or isinstance(integrator, str) or not hasattr(integrator, "integrate"):
         return make_integrator(integrator, tolerance, step, units.time)
     return integrator
 
@@ -218,7 +221,7 @@ def _label(
 
 def _event_arrays(events: Sequence[Event], units: Units) -> dict[str, Described]:
     """Values over the events."""
-    kinds = np.array([event.kind.value for event in events], dtype="<U16")
+    kinds = np.array([event.kind.value for event in events], dtype=str)
     numbers = [(event.time, event.impulse, event.energy_lost) for event in events]
     times, impulses, losses = np.array(numbers, dtype=float).reshape(-1, 3).T
     return {

@@ -117,6 +117,17 @@ def test_a_wide_nutation_that_reaches_the_end_counts():
     """Launched within 0.01 rad of its end, the top is there at once."""
     problem = presets.report_problem(spin=60.0, tilt=math.pi - 0.005)
     assert flip_time_limit(problem) == 0.0
+    swinging = problem.replace({"launch.tilt_rate": 6.0})
+    assert averaged_flow(swinging).tilt_low[0] < math.pi - 0.02
+    assert flip_time_limit(swinging) == 0.0
+
+
+def test_a_nutation_that_dies_on_the_way_to_an_unstable_state_grows_again():
+    """This launch drifts to theta = 0 first, which is unstable, and inverts only then."""
+    problem = sphere_problem(0.58, 0.46, 0.7, 190.0)
+    flow = averaged_flow(problem)
+    assert flow.tilt_high.min() < 0.02
+    assert flow.final_tilt == predict(problem).final.tilt == math.pi
 
 
 @pytest.mark.parametrize("tilt", [0.3, 1.0, 1.7, 2.6])

@@ -85,7 +85,10 @@ def test_the_group_says_what_the_energies_show(gamma, alpha):
         (0.88, 0.04, Group.IB),
         (0.75, 0.3, Group.IIB),
         (0.97, 0.04, Group.IIC),
-        (1.5, 0.3, Group.III),
+        (1.29, 0.3, Group.IIA),
+        (1.31, 0.3, Group.III),
+        (0.71, 0.3, Group.IIB),
+        (0.69, 0.3, Group.IA),
     ],
 )
 def test_known_tops(gamma, alpha, group):

@@ -148,6 +148,18 @@ def test_upside_down_the_nutation_is_the_same(problem):
 
 @pytest.mark.parametrize("problem", LAUNCHES)
 @pytest.mark.parametrize("turned", [False, True])
+def test_a_root_that_is_a_little_wrong_is_put_right(problem, turned):
+    values, numbers_ = natural(problem)
+    kept = values.vertical - numbers_.alpha * values.axial
+    path = orbit(values, numbers_)
+    seen, view = upside_down(path, numbers_) if turned else (path, numbers_)
+    pair, root = Whirls(*map(float, whirls(seen))), math.sqrt(abs(seen.far))
+    again = orbit_of_whirls(pair, root * (1.0 + 1e-4), kept, view)
+    assert tuple(again) == pytest.approx(tuple(seen), rel=1e-8)
+
+
+@pytest.mark.parametrize("problem", LAUNCHES)
+@pytest.mark.parametrize("turned", [False, True])
 def test_the_whirls_change_as_the_constants_do(problem, turned):
     """The rates of the whirls against the whirls of slightly drained constants."""
     values, numbers_ = natural(problem)

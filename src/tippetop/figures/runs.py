@@ -8,6 +8,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MultipleLocator
 
+from tippetop.figures.flights import continue_pushing
+from tippetop.figures.overview import shade_flights
 from tippetop.figures.style import (
     ACCENT,
     CONVERGED,
@@ -23,6 +25,7 @@ from tippetop.figures.style import (
 Box = tuple[float, float, float, float]
 
 _NAME, _NAME_REPORT = "converged", "report's method"
+_PULLS = "converged, table pulls"
 _WIDE, _THIN = 2.6, 1.0
 _LINES = (("_listing", "time_listing", REPORT, _WIDE), ("", "time", CONVERGED, _THIN))
 
@@ -69,16 +72,19 @@ def tilt_figure(
 ) -> Figure:
     """Return the tilt of a launch over time by both methods, with the lift-off (`lift_off_time`) marked.
 
+    With `theta_flight` over time, and `flight_start` and `flight_end` over flight, also how it goes on when
+    the table only pushes.
+
     `zoom` is a span of time, s, that is also drawn large, in the box `inset` (left, bottom, width, height in
     parts of the panel).
     """
     with house_style():
         figure, axes = _wide_panel(run)
-        _pair(axes, run, "theta", legend=True)
+        _trio(axes, run, "theta")
         _tilt_axis(axes)
         if zoom:
             _zoom(axes, run, zoom, inset)
-        _mark_lift_off(axes, float(run["lift_off_time"]))
+        _mark_lift_off(axes, float(run["lift_off_time"]), "left")
     return figure
 
 
@@ -95,10 +101,10 @@ def upright_figure(run: xr.Dataset, until: float = 3.0) -> Figure:
 
 
 def energy_figure(run: xr.Dataset, reported: tuple[float, float]) -> Figure:
-    """Return the energy over time: the report's (4.1) by its method, and the converged energy.
+    """Return the energy over time: the report's (4.1) by its method, and the converged one on both tables.
 
-    `run` also has launch_energy, J, and lift_off_time, s. `reported` is the time, s, and energy, J, that the
-    report names.
+    `run` has energy and energy_flight over time, energy_listing over time_listing, launch_energy, J,
+    lift_off_time, s, and the flights. `reported` is the time, s, and energy, J, that the report names.
     """
     with house_style():
         figure, axes = _wide_panel(run)
@@ -107,8 +113,8 @@ def energy_figure(run: xr.Dataset, reported: tuple[float, float]) -> Figure:
         axes.annotate(
             "energy at launch", (0, start), (2, -3), textcoords="offset points", va="top", color=MUTED, size=9
         )
-        names = ("(4.1), report's method", "full energy, converged")
-        _pair(axes, run, "energy", scale=1e3, legend=True, names=names)
+        names = ("(4.1), report's method", "full energy, table pulls")
+        _trio(axes, run, "energy", scale=1e3, names=names)
         axes.set_ylabel("energy (mJ)")
         axes.set_ylim(bottom=0)
         at = (reported[0], 1e3 * reported[1])
@@ -128,7 +134,7 @@ def force_figure(run: xr.Dataset) -> Figure:
         low = 1.12 * min(float(run["normal_force"].min()), float(run["normal_force_listing"].min()))
         axes.axhspan(low, 0, color=ACCENT, alpha=0.07, lw=0)
         axes.axhline(0, color=ACCENT, lw=1.0)
-        _pair(axes, run, "normal_force", legend=True)
+        _trio(axes, run, "normal_force")
         axes.annotate(
             "the table pulls", (0, low), (6, 5), textcoords="offset points", color=ACCENT, size=9, va="bottom"
         )
@@ -139,7 +145,7 @@ def force_figure(run: xr.Dataset) -> Figure:
 
 
 def stopped_figure(run: xr.Dataset, reported_stop: float) -> Figure:
-    """Return the tilt up to where the table would have to pull, and up to where the report stopped, s."""
+    """Return the tilt up to where the report stopped, s, up to the lift-off, and from there on in flight."""
     with house_style():
         figure, axes = _wide_panel(run)
         stop = float(run["lift_off_time"])
@@ -147,17 +153,17 @@ def stopped_figure(run: xr.Dataset, reported_stop: float) -> Figure:
         other = run.sel(time_listing=run["time_listing"] <= reported_stop)
         axes.plot(other["time_listing"], other["theta_listing"], color=REPORT, lw=_WIDE, label=_NAME_REPORT)
         axes.plot(before["time"], before["theta"], color=CONVERGED, lw=_THIN + 0.3, label=_NAME)
+        continue_pushing(axes, run, "theta")
+        shade_flights(axes, run)
         _tilt_axis(axes)
-        axes.set_ylim(0, 3 * np.pi / 4)
-        pi_ticks(axes.yaxis, 3 * np.pi / 4)
-        axes.set_xlim(0, 6.4)
+        axes.set_xlim(0, 8)
         end = float(np.interp(stop, run["time"], run["theta"]))
         last = float(other["theta_listing"][-1])
         axes.plot([stop], [end], "o", color=ACCENT, ms=6, zorder=5)
         axes.plot([reported_stop], [last], "s", color=REPORT, ms=6, zorder=5, mec=INK, mew=0.6)
-        _callout(axes, f"the top leaves the table\nat {stop:.3f} s", (stop, end), (-44, 26), ACCENT, "right")
+        _callout(axes, f"the top leaves the table\nat {stop:.3f} s", (stop, end), (-44, 22), ACCENT, "right")
         _callout(
-            axes, f"the report stops\nat {reported_stop:g} s", (reported_stop, last), (-20, 62), INK, "center"
+            axes, f"the report stops\nat {reported_stop:g} s", (reported_stop, last), (38, -34), INK, "left"
         )
         axes.legend(loc="upper left")
     return figure
@@ -196,6 +202,18 @@ def _pair(
     axes.plot(run["time"], scale * ours, color=CONVERGED, lw=_THIN, label=names[1])
     if legend:
         axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.2)
+
+
+def _trio(
+    axes: Axes, run: xr.Dataset, name: str, *, scale: float = 1.0, names: tuple[str, str] | None = None
+) -> None:
+    """Draw a variable by both methods and, where the top flies, as it goes on when the table only pushes."""
+    flies = f"{name}_flight" in run
+    _pair(axes, run, name, scale=scale, names=names or (_NAME_REPORT, _PULLS if flies else _NAME))
+    if flies:
+        shade_flights(axes, run)
+        continue_pushing(axes, run, name, scale=scale)
+    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, borderaxespad=0.2, columnspacing=1.4)
 
 
 def _tilt_axis(axes: Axes) -> None:
@@ -248,6 +266,9 @@ def _zoom(axes: Axes, run: xr.Dataset, span: tuple[float, float], box: Box) -> N
         part = run.sel({time: slice(*span)})
         inset.plot(part[time], part[f"theta{suffix}"], color=color, lw=width)
         drawn.append(part[f"theta{suffix}"].values)
+    if "theta_flight" in run:
+        shade_flights(inset, run)
+        continue_pushing(inset, run, "theta")
     low, high = min(part.min() for part in drawn), max(part.max() for part in drawn)
     inset.set_xlim(*span)
     inset.set_ylim(low - 0.08 * (high - low), high + 0.08 * (high - low))

@@ -8,11 +8,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, NullFormatter, ScalarFormatter
 
+from tippetop.figures.flights import PUSHES
 from tippetop.figures.style import (
     ACCENT,
     CONVERGED,
     FAINT,
     INK,
+    MUTED,
     REPORT,
     WIDTH,
     house_style,
@@ -24,8 +26,9 @@ from tippetop.figures.style import (
 def final_tilt_figure(sweep: xr.Dataset, reported: tuple[float, float, float]) -> Figure:
     """Return the final tilt against the spin at launch, with the critical points.
 
-    `sweep` has final_theta over spin, final_theta_listing over spin_listing, upright_by_window and
-    inverted_by_window over window, and lift_off_onset. `reported` are the report's two critical spins and the
+    `sweep` has final_theta over spin, final_theta_flight (on a table that only pushes) over spin_flight,
+    final_theta_listing over spin_listing, upright_by_window and inverted_by_window over window, and
+    lift_off_onset. `reported` are the report's two critical spins and the
     spin of its abnormal point, rad/s.
     """
     with house_style():
@@ -39,7 +42,12 @@ def final_tilt_figure(sweep: xr.Dataset, reported: tuple[float, float, float]) -
         below = sweep.sel(spin=sweep["spin"] <= onset)
         above = sweep.sel(spin=sweep["spin"] > onset)
         axes.plot(below["spin"], below["final_theta"], color=CONVERGED, lw=1.8, label="converged")
-        axes.plot(above["spin"], above["final_theta"], ".", color=CONVERGED, ms=3, alpha=0.6)
+        axes.plot(above["spin"], above["final_theta"], ".", color=MUTED, ms=3, label="converged, table pulls")
+        flying = sweep.sel(spin_flight=sweep["spin_flight"] > onset)
+        axes.plot(
+            flying["spin_flight"], flying["final_theta_flight"], "-D", color=PUSHES, ms=3.5, lw=1.4, zorder=5,
+            label="table only pushes",
+        )  # fmt: skip
         axes.plot(
             sweep["spin_listing"], sweep["final_theta_listing"], "o", color=REPORT, label="report's method",
             ms=5, mec="white", mew=0.5, zorder=4,

@@ -4,7 +4,7 @@ from importlib.util import find_spec
 
 import numpy as np
 
-from tippetop.errors import InvalidInput, Unavailable, one_of
+from tippetop.errors import InvalidInput, Unavailable, is_number, one_of
 from tippetop.integrators.base import Arc, Guard, Integrator, Motion
 from tippetop.integrators.classical import ClassicalRK4
 from tippetop.integrators.scipy_methods import DEFAULT_TOLERANCE, LEAST_TOLERANCE, METHODS, SciPy
@@ -26,7 +26,7 @@ def default_name() -> str:
 
 
 def make_integrator(
-    name: str | None = None,
+    name: object = None,
     tolerance: float | None = None,
     step: float | None = None,
     time_unit: float = 1.0,
@@ -52,18 +52,18 @@ def make_integrator(
         If it is not installed.
     """
     name = default_name() if name is None else name
-    if name not in NAMES:
+    if not isinstance(name, str) or name not in NAMES:
         raise InvalidInput("integrator", name, one_of(name, NAMES))
     if name == "rk4":
         if tolerance is not None:
             raise InvalidInput("tolerance", tolerance, "none with rk4, whose error follows from its step")
-        if step is None or not (np.isfinite(step) and step > 0):
+        if step is None or not (is_number(step) and step > 0):
             raise InvalidInput("step", step, "a step size in seconds greater than 0, which rk4 needs")
         return ClassicalRK4(step / time_unit)
     if step is not None:
         raise InvalidInput("step", step, f"none with {name}, which chooses its own")
     least = np.finfo(float).eps if name == "taylor" else LEAST_TOLERANCE
-    if tolerance is not None and not (least <= tolerance < 1):
+    if tolerance is not None and not (is_number(tolerance) and least <= tolerance < 1):
         raise InvalidInput("tolerance", tolerance, f"a number from {least:.2g} to 1 with {name}")
     if name == "taylor":
         return _taylor(tolerance)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from tippetop.integrators.base import Arc, Array, Guard, Motion
-from tippetop.integrators.sampling import Samples, first_fall, polish
+from tippetop.integrators.sampling import RightHandSide, Samples, first_fall, polish
 
 
 @dataclass(frozen=True)
@@ -32,9 +32,10 @@ class ClassicalRK4:
         guards: Sequence[Guard] = (),
     ) -> Arc:
         """Follow the motion; see `tippetop.integrators.base.Integrator`."""
+        rates = RightHandSide(motion, parameters)
 
         def advance(state: Array, step: float) -> Array:
-            return _step(motion, parameters, state, step)
+            return _step(rates, state, step)
 
         time, state = start
         samples = Samples(times, start)
@@ -46,33 +47,29 @@ class ClassicalRK4:
             if not np.all(np.isfinite(state)):
                 grid, states = samples.result(motion.size)
                 failure = "the solution is no longer finite"
-                return Arc(grid, states, before, base, None, failure, count - 1, 4 * count)
+                return Arc(grid, states, before, base, None, failure, count - 1, rates.calls)
 
             def dense(at: float, before: float = before, base: Array = base) -> Array:
                 return advance(base, at - before)
 
             if guards:
-                fall = first_fall(guards, parameters, dense, (before, reach))
+                fall = first_fall(guards, parameters, dense, dense, (before, reach))
                 if fall is not None:
                     index, guess = fall
                     at, last = polish(guards[index], parameters, dense, (before, reach), guess)
                     samples.take(at, dense)
                     grid, states = samples.result(motion.size)
-                    return Arc(grid, states, at, last, index, None, count, 4 * count)
+                    return Arc(grid, states, at, last, index, None, count, rates.calls)
             time = reach
             samples.take(time, dense)
         grid, states = samples.result(motion.size)
-        return Arc(grid, states, time, state, None, None, steps, 4 * steps)
+        return Arc(grid, states, time, state, None, None, steps, rates.calls)
 
 
-def _step(motion: Motion, parameters: Sequence[float], state: Array, step: float) -> Array:
-    """One step of the classical method."""
-
-    def rates(y: Array) -> Array:
-        return np.array(motion.rates(y.tolist(), parameters))
-
-    k1 = rates(state)
-    k2 = rates(state + 0.5 * step * k1)
-    k3 = rates(state + 0.5 * step * k2)
-    k4 = rates(state + step * k3)
+def _step(rates: RightHandSide, state: Array, step: float) -> Array:
+    """One step of the classical method, for a motion that does not depend on the time."""
+    k1 = rates(0.0, state)
+    k2 = rates(0.0, state + 0.5 * step * k1)
+    k3 = rates(0.0, state + 0.5 * step * k2)
+    k4 = rates(0.0, state + step * k3)
     return state + step / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)

@@ -11,6 +11,9 @@ import platformdirs
 VARIABLE = "TIPPETOP_CACHE"
 """Environment variable that names another folder for the cache, or "off" for none."""
 
+DATABASE = "cache.db"
+"""The compiler's file in that folder."""
+
 LIMIT = 512 * 2**20
 """Size in bytes past which the oldest compiled code is dropped."""
 
@@ -29,11 +32,19 @@ def use_compile_cache() -> Path | None:
         hy.llvm_state.set_diskcache_enabled(False)
         return None
     folder = Path(place) if place else platformdirs.user_cache_path("tippetop", appauthor=False)
-    with contextlib.suppress(OSError):
-        discard_if_damaged(folder / "cache.db")
-    hy.llvm_state.set_diskcache_path(folder)
-    hy.llvm_state.set_diskcache_limit(LIMIT)
-    return folder
+    for _ in range(2):
+        with contextlib.suppress(OSError):
+            discard_if_damaged(folder / DATABASE)
+        try:
+            hy.llvm_state.set_diskcache_path(folder)
+            hy.llvm_state.set_diskcache_limit(LIMIT)
+        except RuntimeError:
+            with contextlib.suppress(OSError):
+                (folder / DATABASE).unlink()
+        else:
+            return folder
+    hy.llvm_state.set_diskcache_enabled(False)
+    return None
 
 
 def discard_if_damaged(database: Path) -> None:

@@ -5,13 +5,34 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
-from tippetop.integrators.base import Array, Guard
+from tippetop.integrators.base import Array, Guard, Motion
 
 Dense = Callable[[float], Array]
 """The solution within a step as a function of time."""
 
-PROBES = (0.0, 0.25, 0.5, 0.75, 1.0)
+PROBES = tuple(np.linspace(0.0, 1.0, 9).tolist())
 """Where within a step a guard is looked at, as fractions of the step."""
+
+INEXACT = 0.05
+"""How near zero a dip must come, as a part of its depth, for the interpolation not to be trusted about it."""
+
+
+class RightHandSide:
+    """A motion's rates as the step-by-step methods take them, with a count of how often they were asked.
+
+    Where the arithmetic breaks down, the rates are not numbers, and the method finds no step.
+    """
+
+    def __init__(self, motion: Motion, parameters: Sequence[float]) -> None:
+        self.motion, self.parameters, self.calls = motion, parameters, 0
+
+    def __call__(self, _: float, state: Array) -> Array:
+        """The rates at a state, whatever the time."""
+        self.calls += 1
+        try:
+            return np.array(self.motion.rates(state.tolist(), self.parameters))
+        except ArithmeticError:
+            return np.full(self.motion.size, np.nan)
 
 
 class Samples:
@@ -40,12 +61,27 @@ class Samples:
 
 
 def first_fall(
-    guards: Sequence[Guard], parameters: Sequence[float], dense: Dense, step: tuple[float, float]
+    guards: Sequence[Guard],
+    parameters: Sequence[float],
+    dense: Dense,
+    advance: Dense,
+    step: tuple[float, float],
 ) -> tuple[int, float] | None:
     """The guard that first falls through zero within a step, and when.
 
     A guard that dips below zero and returns within the step is found by minimising it between the probes
     where its probed values bend that way.
+
+    Parameters
+    ----------
+    guards, parameters
+        The guards, and the numbers in them.
+    dense
+        The solution within the step, as interpolated.
+    advance
+        The same by a step of its own: dearer, and exact where the interpolation of a long step is not.
+    step
+        Where it begins and ends.
     """
     first: tuple[int, float] | None = None
     start, end = step
@@ -53,33 +89,44 @@ def first_fall(
     states = [dense(time) for time in probes]
     for index, guard in enumerate(guards):
 
-        def value(time: float, guard: Guard = guard) -> float:
-            return float(guard.value(dense(time).tolist(), parameters))
+        def value(time: float, solution: Dense = dense, guard: Guard = guard) -> float:
+            return float(guard.value(solution(time).tolist(), parameters))
+
+        def exact(time: float, value: Callable[[float, Dense], float] = value) -> float:
+            return value(time, advance)
 
         values = [float(guard.value(state.tolist(), parameters)) for state in states]
-        bracket = _bracket(probes, values, value)
-        if bracket is None:
+        found = _bracket(probes, values, value, exact)
+        if found is None:
             continue
-        time = float(brentq(value, *bracket, xtol=1e-15 * max(1.0, abs(end)), rtol=1e-15))
+        low, high, function = found
+        time = float(brentq(function, low, high, xtol=1e-15 * max(1.0, abs(end)), rtol=1e-15))
         if first is None or time < first[1]:
             first = index, time
     return first
 
 
+Value = Callable[[float], float]
+
+
 def _bracket(
-    probes: Sequence[float], values: Sequence[float], value: Callable[[float], float]
-) -> tuple[float, float] | None:
-    """The first interval over which the guard falls from positive to not positive."""
-    for i in range(len(probes) - 1):
-        if values[i] > 0 >= values[i + 1]:
-            return probes[i], probes[i + 1]
-        if i and values[i] <= min(values[i - 1], values[i + 1]):
-            # A dip between the probes: its depth is at most a few times the drop that the probes show.
-            drop = max(values[i - 1], values[i + 1]) - values[i]
-            if 0 < values[i] < 4.0 * drop:
-                low = minimize_scalar(value, bounds=(probes[i - 1], probes[i + 1]), method="bounded")
+    probes: Sequence[float], values: Sequence[float], value: Value, exact: Value
+) -> tuple[float, float, Value] | None:
+    """The first interval over which the guard falls from positive to not positive, and in which solution."""
+    last = len(probes) - 1
+    for i in range(last + 1):
+        before, after = max(i - 1, 0), min(i + 1, last)
+        if values[i] > 0 and values[i] <= min(values[before], values[after]):
+            # Between the probes it may be lower, though by little: by less than it falls within two of them.
+            drop = max(values[max(i - 2, 0) : i + 3]) - values[i]
+            if values[i] < drop:
+                low = minimize_scalar(value, bounds=(probes[before], probes[after]), method="bounded")
                 if low.fun <= 0:
-                    return probes[i - 1], float(low.x)
+                    return probes[before], float(low.x), value
+                if low.fun < INEXACT * drop and exact(float(low.x)) <= 0 < exact(probes[before]):
+                    return probes[before], float(low.x), exact
+        if values[i] > 0 >= values[after]:
+            return probes[i], probes[after], value
     return None
 
 

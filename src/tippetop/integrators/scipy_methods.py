@@ -9,7 +9,7 @@ import numpy as np
 from scipy.integrate import BDF, DOP853, LSODA, RK45, Radau
 
 from tippetop.integrators.base import Arc, Array, Guard, Motion
-from tippetop.integrators.sampling import Samples, first_fall, polish
+from tippetop.integrators.sampling import RightHandSide, Samples, first_fall, polish
 
 METHODS: dict[str, Any] = {
     "dop853": DOP853,
@@ -21,6 +21,9 @@ METHODS: dict[str, Any] = {
 
 LEAST_TOLERANCE = 2.3e-14
 """Below this SciPy's solvers do not honour a relative tolerance."""
+
+LEAST_STEP = 1e-15
+"""A step shorter than this part of the time gets nowhere."""
 
 DEFAULT_TOLERANCE = {"dop853": 1e-12, "rk45": 1e-10, "radau": 1e-9, "bdf": 1e-9, "lsoda": 1e-11}
 
@@ -53,9 +56,11 @@ class SciPy:
         guards: Sequence[Guard] = (),
     ) -> Arc:
         """Follow the motion; see `tippetop.integrators.base.Integrator`."""
-        rates = _Counted(motion, parameters)
-        solver = self._solver(rates, start, end)
+        rates = RightHandSide(motion, parameters)
         samples = Samples(times, start)
+        if not np.all(np.isfinite(rates(*start))):
+            return Arc(*samples.result(motion.size), *start, None, "the motion is singular from the start")
+        solver = self._solver(rates, start, end)
         steps, failure = 0, None
         while solver.status == "running":
             before, base = float(solver.t), solver.y.copy()
@@ -64,16 +69,19 @@ class SciPy:
                 break
             steps += 1
             reach = float(solver.t)
+            if reach - before <= LEAST_STEP * max(1.0, abs(reach)) and reach < end:
+                failure = "the step size fell to nothing"
+                break
             if not guards and not samples.wanted_before(reach):
                 continue
             dense = solver.dense_output()
-            fall = first_fall(guards, parameters, dense, (before, reach))
+
+            def advance(at: float, before: float = before, base: Array = base) -> Array:
+                return self._land(rates, (before, base), at)
+
+            fall = first_fall(guards, parameters, dense, advance, (before, reach))
             if fall is not None:
                 index, guess = fall
-
-                def advance(at: float, before: float = before, base: Array = base) -> Array:
-                    return self._land(rates, (before, base), at)
-
                 at, last = polish(guards[index], parameters, advance, (before, reach), guess)
                 samples.take(at, dense)
                 return Arc(*samples.result(motion.size), at, last, index, None, steps, rates.calls)
@@ -81,11 +89,11 @@ class SciPy:
         grid, states = samples.result(motion.size)
         return Arc(grid, states, float(solver.t), solver.y.copy(), None, failure, steps, rates.calls)
 
-    def _solver(self, rates: "_Counted", start: tuple[float, Array], end: float) -> Any:
+    def _solver(self, rates: RightHandSide, start: tuple[float, Array], end: float) -> Any:
         absolute = self.tolerance if self.absolute is None else self.absolute
         return METHODS[self.name](rates, start[0], start[1], end, rtol=self.tolerance, atol=absolute)
 
-    def _land(self, rates: "_Counted", start: tuple[float, Array], end: float) -> Array:
+    def _land(self, rates: RightHandSide, start: tuple[float, Array], end: float) -> Array:
         """The state after integrating afresh to exactly this time."""
         if end <= start[0]:
             return start[1]
@@ -94,17 +102,6 @@ class SciPy:
             if _take_step(solver) is not None:
                 break
         return np.array(solver.y)
-
-
-class _Counted:
-    """The right-hand side as SciPy takes it, with a count of how often it was evaluated."""
-
-    def __init__(self, motion: Motion, parameters: Sequence[float]) -> None:
-        self.motion, self.parameters, self.calls = motion, parameters, 0
-
-    def __call__(self, _: float, y: Array) -> Array:
-        self.calls += 1
-        return np.array(self.motion.rates(y.tolist(), self.parameters))
 
 
 def _take_step(solver: Any) -> str | None:

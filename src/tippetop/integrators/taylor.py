@@ -52,11 +52,14 @@ class Taylor:
             end_time, end_state = float(run.time), np.array(run.state)
         states = np.concatenate(pieces)
         stopped = outcome != hy.taylor_outcome.time_limit
-        wanted = np.searchsorted(grid, times)
-        wanted = wanted[wanted < len(states)]
         failure = None
         if outcome == hy.taylor_outcome.err_nf_state:
+            # The last step led nowhere; what is known ends with the last sample before it.
             failure = "the solution is no longer finite"
+            states = states[np.isfinite(states).all(axis=1)] if len(states) else start[1][None]
+            end_time, end_state = float(grid[len(states) - 1]), states[-1]
+        wanted = np.searchsorted(grid, times)
+        wanted = wanted[wanted < len(states)]
         return Arc(
             grid[wanted],
             states[wanted],
@@ -79,7 +82,7 @@ class _Compiled:
 def _compiled(motion: Motion, guards: tuple[Guard, ...], tolerance: float) -> _Compiled:
     """Compile the equations and the guards, or fetch them from the cache across processes."""
     use_compile_cache()
-    state = hy.make_vars(*(f"y{i}" for i in range(motion.size)))
+    state = [hy.make_vars(f"y{i}") for i in range(motion.size)]
     parameters = [hy.par[i] for i in range(motion.parameters)]
     rates = [hy.expression(rate) for rate in motion.rates(state, parameters)]
     events = [

@@ -1,50 +1,20 @@
 """The figures: which experiments each is drawn from, how, and what to say under it."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-import xarray as xr
 from matplotlib.figure import Figure
 
-from tippetop.figures import methods, runs, schematics, sweeps
-from tippetop.report.claim import Data
+from tippetop.figures import flights, methods, runs, schematics, sweeps
+from tippetop.report import gallery_why
+from tippetop.report.experiments.flights import HOPS_WINDOW, MU, TILT
+from tippetop.report.plate import Draw, Plate
 from tippetop.report.quoted import ABNORMAL_SPIN, CRITICAL_SPINS, ENERGY, ENERGY_TIME, STOP
 
+__all__ = ["PLATES", "Plate"]
+
 _CRITICAL = (float(CRITICAL_SPINS[0]), float(CRITICAL_SPINS[1]))
-
-Draw = Callable[[xr.Dataset], Figure]
-
-
-@dataclass(frozen=True)
-class Plate:
-    """A figure of the report redone, or one of our own.
-
-    Attributes
-    ----------
-    id
-        Name, and stem of its files.
-    title
-        Heading.
-    caption
-        What is seen, in a few sentences.
-    needs
-        Names of the experiments it shows.
-    draw
-        Makes the figure from their merged dataset (empty for a drawing that needs none).
-    """
-
-    id: str
-    title: str
-    caption: str
-    needs: tuple[str, ...]
-    draw: Draw
-
-    def dataset(self, data: Data) -> xr.Dataset:
-        """The data behind the figure."""
-        parts = [data[name] for name in self.needs]
-        return xr.merge(parts, combine_attrs="drop_conflicts", compat="no_conflicts", join="outer")
 
 
 def _drawing(make: Callable[..., Figure]) -> Draw:
@@ -114,9 +84,10 @@ PLATES: dict[str, Plate] = {
         Plate(
             "fig06",
             "Figure 6: final tilt against spin",
-            "Tilt after 20 s on a table that pulls when it must, as in the report. Dashed: the critical "
-            "spins, the report's in orange, converged ones from the longest runs in blue. In the shaded "
-            "range the table would have to pull within 20 s, and the motion on it is not physical.",
+            "Tilt after 20 s. Dashed: the critical spins, the report's in orange, converged ones from the "
+            "longest runs in blue. In the shaded range the table would have to pull within 20 s. If it does, "
+            "as in the report, the launches end anywhere (grey); on a table that only pushes the top flies "
+            "at times and falls back without rebound (green). Figure hops follows it to higher spins.",
             ("final-tilt-listing", "final-tilt", "critical-spins"),
             partial(sweeps.final_tilt_figure, reported=(*_CRITICAL, float(ABNORMAL_SPIN))),
         ),
@@ -150,8 +121,9 @@ PLATES: dict[str, Plate] = {
             "fig09",
             "Figure 9: launch at 175 rad/s",
             _BOTH
-            + "From the dashed line on the table has to pull, which no table does; neither curve is physical "
-            "there, and the two drift apart.",
+            + "From the dashed line on the table has to pull, which no table does; neither of these curves "
+            "is physical there, and the two drift apart. Green: what happens on a table that only pushes, "
+            "with impacts that do not rebound. The top flies (shaded), and still turns over.",
             "run-175",
             runs.tilt_figure,
             zoom=(5.3, 5.8),
@@ -162,7 +134,8 @@ PLATES: dict[str, Plate] = {
             "Figure 10: energy at 175 rad/s",
             "Orange: the report's energy (4.1), which leaves out slip, along its own motion. Blue: the full "
             "energy along the converged one. It rises only where the normal force is negative, for then "
-            "friction drives the slip.",
+            "friction drives the slip. Green: on a table that only pushes it falls while the top slides and "
+            "in impacts, and is kept in flight (shaded).",
             "run-175",
             runs.energy_figure,
             reported=(float(ENERGY_TIME), float(ENERGY)),
@@ -170,7 +143,9 @@ PLATES: dict[str, Plate] = {
         _run(
             "fig11",
             "Figure 11: normal force at 175 rad/s",
-            _BOTH + "In the shaded range the table would have to pull.",
+            _BOTH
+            + "In the range shaded below zero the table would have to pull. Green: on a table that only "
+            "pushes the force is zero in flight and never negative; impulses of impacts are not drawn.",
             "run-175",
             runs.force_figure,
         ),
@@ -179,7 +154,7 @@ PLATES: dict[str, Plate] = {
             "Figure 12: 175 rad/s, stopped before flight",
             _BOTH
             + "The converged run ends where the normal force falls through zero; the report's, where it "
-            "chose to stop.",
+            "chose to stop. Green: there is no need to stop; the top hops (shaded) and turns over.",
             "run-175",
             runs.stopped_figure,
             reported_stop=float(STOP),
@@ -210,10 +185,41 @@ PLATES: dict[str, Plate] = {
         _run(
             "fig16",
             "Figure 16: launch at 150 rad/s and theta = pi/4",
-            _BOTH + "From the dashed line on the table has to pull at times.",
+            _BOTH
+            + "From the dashed line on the table has to pull at times. Green: on a table that only pushes; "
+            "flights are shaded.",
             "run-150-pi-4",
             runs.tilt_figure,
             zoom=(5.5, 6.0),
+        ),
+        Plate(
+            "onset-mu",
+            "Lift-off against spin and friction",
+            f"Every dot is a launch at a tilt of {TILT:g} rad; colored ones leave the table, hollow ones do "
+            "not, not even in the longer time. The onset is the first spin of a column that leaves the "
+            "table, refined by halving the step; below it only the dots are known to stay. On a slippery "
+            "table all takes longer, and 20 s are too short to see the lift-off. Square: the report's.",
+            ("onset-mu",),
+            partial(flights.onset_figure, over="mu", reported=float(ABNORMAL_SPIN)),
+        ),
+        Plate(
+            "onset-tilt",
+            "Lift-off against spin and tilt",
+            f"The same for different tilts at launch, mu = {MU:g} s/m, within 20 s. Of tops launched lying "
+            "down none of the scan leaves the table.",
+            ("onset-tilt",),
+            partial(flights.onset_figure, over="tilt", reported=float(ABNORMAL_SPIN)),
+        ),
+        Plate(
+            "hops",
+            "What becomes of the abnormal point",
+            "Launches on a table that only pushes, followed through all their flights for "
+            f"{HOPS_WINDOW:g} s. a, share of the time in the air. b, when the axis first passes the "
+            "horizontal. c, number of flights. d, tilt at the end. The abnormal point is none of the top's: "
+            "beyond it the top hops, for more of the time the faster it spins, and turns over later, but it "
+            "does turn over.",
+            ("hops", "hops-bouncing"),
+            flights.hops_figure,
         ),
         Plate(
             "order",
@@ -231,6 +237,7 @@ PLATES: dict[str, Plate] = {
             ("stiffness",),
             methods.stiffness_figure,
         ),
+        *gallery_why.PLATES,
     )
 }
 """Every figure by its name, in the order of the page."""

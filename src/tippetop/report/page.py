@@ -48,16 +48,12 @@ def render(
     claims = [worded(judgement, shown) for judgement in judgements]
     counts = Counter(claim["verdict"] for claim in claims)
     return environment.get_template(_TEMPLATE).render(
-        figures=[
+        sections=[
             {
-                "id": plate.id,
-                "title": plate.title,
-                "caption": plate.caption,
-                "image": _embedded(pictures[plate.id]),
-                "has_data": bool(plate.needs),
-                "claims": [claim for claim in claims if claim["figure"] == plate.id],
+                "title": section,
+                "figures": [_shown(plate, pictures, claims) for plate in plates if plate.section == section],
             }
-            for plate in plates
+            for section in dict.fromkeys(plate.section for plate in plates)
         ],
         claims=claims,
         verdicts=[
@@ -70,6 +66,20 @@ def render(
         version=__version__,
         integrator=default_name(),
     )
+
+
+def _shown(
+    plate: Plate, pictures: Mapping[str, bytes], claims: Sequence[dict[str, str | None]]
+) -> dict[str, object]:
+    """A figure for the page."""
+    return {
+        "id": plate.id,
+        "title": plate.title,
+        "caption": plate.caption,
+        "image": _embedded(pictures[plate.id]),
+        "has_data": bool(plate.needs),
+        "claims": [claim for claim in claims if claim["figure"] == plate.id],
+    }
 
 
 def worded(judgement: Judgement, shown: Set[str] = frozenset()) -> dict[str, str | None]:

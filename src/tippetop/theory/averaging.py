@@ -21,7 +21,6 @@ from tippetop.mechanics.motion import along_table
 from tippetop.problem import Problem
 from tippetop.theory.dual import Array
 from tippetop.theory.nutation import (
-    Constants,
     Numbers,
     Orbit,
     constants,
@@ -88,12 +87,12 @@ def averaged_flow(
     numbers = numbers_of(top)
     if not isinstance(top.friction, ViscousFriction):
         raise InvalidInput("friction", top.friction, "viscous friction; no other slip averages out")
-    launch = _mirrored(natural_constants(constants(along_table(problem.start()), top), top), numbers)
+    launch = natural_constants(constants(along_table(problem.start()), top), top)
     path = Orbit(*(float(number) for number in orbit(launch, numbers)))
     if problem.launch.tilt in (0.0, math.pi) and problem.launch.tilt_rate == 0.0:
         raise InvalidInput("launch.tilt", problem.launch.tilt, "a tilted launch: a vertical spin is steady")
     jellett = float(launch.vertical - numbers.alpha * launch.axial)
-    states = steady_states(top, abs(jellett_of_launch(problem)))
+    states = steady_states(top, jellett_of_launch(problem))
     goals = Goals(
         [state.tilt for state in states], [state.tilt for state in stable_by_energy(states)], distance
     )
@@ -140,13 +139,6 @@ def _distances(flow: SlowFlow) -> Array:
     """Distance of the nutation from the final tilt, rad, negative where it contains it."""
     away: Array = np.maximum(flow.tilt_low - flow.final_tilt, flow.final_tilt - flow.tilt_high)
     return away
-
-
-def _mirrored(values: Constants, numbers: Numbers) -> Constants:
-    """The constants, seen in a mirror if Jellett's integral is negative."""
-    if values.vertical - numbers.alpha * values.axial < 0.0:
-        return Constants(-values.vertical, -values.axial, values.energy)
-    return values
 
 
 def _follow(

@@ -5,8 +5,9 @@ mass, radius and gravity, with c = cos(theta), Jellett's integral fixes its rate
 
     I1 (1 - alpha c) phi'^2 - lambda phi' - alpha (c - alpha) = 0,      L3 = I1 c phi' - alpha / phi',
 
-a fast and a slow one. The friction of its slip turns L3 at the rate -mu s^2 (omega3 - phi' (c - alpha)), N
-being the weight, and so moves the tilt, until the slip vanishes in a steady state.
+a fast and a slow one (the other way round where lambda is negative). The friction of its slip turns L3 at
+the rate -mu s^2 (omega3 - phi' (c - alpha)), N being the weight, and so moves the tilt, until the slip
+vanishes in a steady state.
 """
 
 import math
@@ -65,9 +66,9 @@ def drift(
     tilt
         Where it starts, rad.
     jellett
-        Jellett's integral, not negative.
+        Jellett's integral.
     fast
-        Whether the precession is the fast one.
+        Which of the two precessions it is.
     numbers
         The top's.
     steady_tilts

@@ -117,8 +117,9 @@ def apparent_critical_spins(problem: Problem, window: float, visible: float) -> 
     """Critical spins as runs of finite length show them, rad/s.
 
     Near its threshold a vertical spin attracts or repels slowly. A run that ends `visible` away from the
-    vertical passes for one that goes elsewhere: so the upright spin seems to be left below its threshold,
-    and the inverted spin seems to be reached only above its own.
+    vertical passes for one that goes elsewhere: so the upright spin seems to be left below its threshold
+    (or above, if launches have time to come closer than that even at it), and the inverted spin seems to be
+    reached only above its own.
 
     Parameters
     ----------
@@ -129,9 +130,11 @@ def apparent_critical_spins(problem: Problem, window: float, visible: float) -> 
     visible
         Least distance from the vertical that is told from none, rad; less than the launch's tilt.
 
-    Notes ----- The upright spin: the launch is followed in the linear motion about the upright spin. The
-    inverted spin: a distance of 1 rad at the start of the window is let decay at the growth rate of the
-    inverted spin; the time of turning over is not counted, so this is a lower bound of the bias.
+    Notes
+    -----
+    The upright spin: the launch is followed in the linear motion about the upright spin. The inverted spin:
+    a distance of 1 rad at the start of the window is let decay at the growth rate of the inverted spin; the
+    time of turning over is not counted, so this is a lower bound of the bias.
 
     Raises
     ------
@@ -156,7 +159,10 @@ def apparent_critical_spins(problem: Problem, window: float, visible: float) -> 
         rate = growth_rates_of_launches(Kind.INVERTED, problem, np.array([spin]))
         return float(rate[0]) * window - math.log(visible)
 
-    return CriticalSpins(_toward_rest(tilt_left, real.upright), _away_from_rest(distance_left, real.inverted))
+    # Where even the threshold's own slow motion has come within `visible`, the bias is upward.
+    settles = math.isfinite(real.upright) and tilt_left(real.upright) < 0.0
+    search = _away_from_rest if settles else _toward_rest
+    return CriticalSpins(search(tilt_left, real.upright), _away_from_rest(distance_left, real.inverted))
 
 
 class _JellettLine(NamedTuple):

@@ -72,7 +72,7 @@ def follow_nutation(
     path
         The nutation at the beginning, in natural units.
     jellett
-        Jellett's integral, not negative.
+        Jellett's integral.
     numbers
         The top's.
     goals

@@ -35,10 +35,44 @@ def stopping(problem: Problem) -> Problem:
     return problem.replace({"contact.liftoff": "stop"})
 
 
+def pushing(problem: Problem, restitution: float = 0.0) -> Problem:
+    """The problem with a table that only pushes: the top flies, falls back and hits it."""
+    return problem.replace({"contact.liftoff": "fly", "contact.restitution": restitution})
+
+
 def lift_off_time(run: xr.Dataset) -> float:
     """When the top first left the table, s; nan if it did not."""
     times = run["event_time"].values[run["event_kind"].values == "lift-off"]
     return float(times[0]) if len(times) else math.nan
+
+
+FLIGHT_READINGS = {
+    "flights": ("1", "number of flights"),
+    "airborne_time": ("s", "time spent above the table in all"),
+    "last_touchdown": ("s", "end of the last flight; 0 without one"),
+    "highest_gap": ("m", "greatest height of the lowest point above the table"),
+    "turning_time": ("s", "when the axis first passed the horizontal"),
+    "energy_rise": ("J", "largest rise of the energy from sample to sample"),
+    "energy_in_impacts": ("J", "energy lost in impacts on the table"),
+    "final_theta_flight": ("rad", "tilt at the end, on a table that only pushes"),
+}
+"""What `flight_readings` gives, with unit and meaning."""
+
+
+def flight_readings(run: xr.Dataset) -> dict[str, float]:
+    """What is read off a run on a table that only pushes; the names are those of `FLIGHT_READINGS`."""
+    turned = crossings(run["time"].values, run["theta"].values - 0.5 * math.pi)
+    ends = run["flight_end"].values
+    return {
+        "flights": float(len(ends)),
+        "airborne_time": float((ends - run["flight_start"].values).sum()),
+        "last_touchdown": float(ends[-1]) if len(ends) else 0.0,
+        "highest_gap": float(run["flight_highest_gap"].values.max(initial=0.0)),
+        "turning_time": float(turned[0]) if len(turned) else math.nan,
+        "energy_rise": float(np.diff(run["energy"].values).max()),
+        "energy_in_impacts": float(run["event_energy_lost"].values.sum()),
+        "final_theta_flight": float(run["theta"].values[-1]),
+    }
 
 
 def comparison(problem: Problem, quick: bool, *, both_controls: bool = False) -> xr.Dataset:
@@ -46,7 +80,8 @@ def comparison(problem: Problem, quick: bool, *, both_controls: bool = False) ->
 
     Variables over `time` are converged; those over `time_listing`, named ``..._listing``, are the report's
     method at its own points of output. With both controls, ``..._scipy`` is read off the same method with
-    SciPy's control of the step.
+    SciPy's control of the step. If the table would have to pull, there are also variables over `time` named
+    ``..._flight``, converged for a table that only pushes, and what is read off them.
     """
     problem = on_table(problem)
     true = simulate(problem, WINDOW, samples=20_001 if quick else 40_001)
@@ -61,6 +96,8 @@ def comparison(problem: Problem, quick: bool, *, both_controls: bool = False) ->
         data = data.assign(_readings(run, suffix))
     stopped = lift_off_time(simulate(stopping(problem), WINDOW, samples=2))
     data["lift_off_time"] = variable(stopped, "s", "when the table would first have to pull")
+    if math.isfinite(stopped):
+        data = data.assign(_continuation(problem, data["time"].values))
     data.attrs = {
         "problem": problem.to_json(),
         "outcome": true.attrs["outcome"],
@@ -92,6 +129,19 @@ def _series(true: xr.Dataset, listing: xr.Dataset) -> xr.Dataset:
     other["theta_integrated_listing"].attrs = {"units": "rad", "long_name": "theta before it is wrapped"}
     other["time_listing"].attrs = {"units": "s", "long_name": "time of the report's method"}
     return xr.merge([kept, other], combine_attrs="override", compat="no_conflicts")
+
+
+def _continuation(problem: Problem, times: np.ndarray) -> dict[str, object]:
+    """The launch on a table that only pushes: what is drawn of it, its flights and what is read off it."""
+    run = simulate(pushing(problem), WINDOW, times=times)
+    drawn: dict[str, object] = {}
+    for name in ("theta", "normal_force", "energy"):
+        label = f"{run[name].attrs['long_name']}, on a table that only pushes"
+        drawn[f"{name}_flight"] = variable(run[name].values, run[name].attrs["units"], label, ("time",))
+    for name in ("flight_start", "flight_end", "flight_highest_gap"):
+        drawn[name] = run[name]
+    readings = flight_readings(run)
+    return drawn | {name: variable(readings[name], *FLIGHT_READINGS[name]) for name in readings}
 
 
 def _published_energy(run: xr.Dataset, problem: Problem) -> np.ndarray:

@@ -8,7 +8,7 @@ from scipy.optimize import brentq
 
 from tippetop.presets import report_problem
 from tippetop.report.experiment import Experiment, variable
-from tippetop.report.experiments.runs import WINDOW, lift_off_time, on_table, stopping
+from tippetop.report.experiments.runs import WINDOW, lift_off_time, on_table, pushing, stopping
 from tippetop.report.listing import listing_run
 from tippetop.report.readings import SETTLED
 from tippetop.simulate import simulate
@@ -21,6 +21,9 @@ TURNED = 0.1
 
 LONG_WINDOWS = (20.0, 60.0, 200.0, 1000.0)
 
+FLYING = (165.0, 210.0)
+"""Spins between which Fig. 6 also has the final tilt on a table that only pushes, rad/s."""
+
 _TILT = ("rad", "tilt at the end of the run")
 
 
@@ -28,6 +31,11 @@ def final_tilt(spin: float, window: float = WINDOW) -> float:
     """Tilt at the end of a converged run on a table that pulls, rad; nan if it became singular."""
     run = simulate(on_table(report_problem(spin)), window, samples=2)
     return float(run["theta"].values[-1]) if run.attrs["outcome"] == "completed" else math.nan
+
+
+def true_final_tilt(spin: float) -> float:
+    """Tilt at the end of a run on a table that only pushes, rad."""
+    return float(simulate(pushing(report_problem(spin)), WINDOW, samples=2)["theta"].values[-1])
 
 
 def _listing_spins(quick: bool) -> np.ndarray:
@@ -80,9 +88,14 @@ def _converged(quick: bool) -> xr.Dataset:
     tilts = np.array([final_tilt(float(spin)) for spin in spins])
     lost = spins[(spins > 100) & ~(np.abs(tilts - math.pi) < TURNED)]
     onset = _lift_off_onset(0.5 if quick else 0.01)
+    flying = np.arange(FLYING[0], FLYING[1] + 0.1, 7.5 if quick else 2.5)
+    true_tilts = [true_final_tilt(float(spin)) for spin in flying]
     return xr.Dataset(
         {
             "final_theta": variable(tilts, *_TILT, ("spin",)),
+            "final_theta_flight": variable(
+                true_tilts, "rad", "tilt at the end of the run on a table that only pushes", ("spin_flight",)
+            ),
             "lift_off_onset": variable(
                 onset, "rad s-1", "least spin at which the table would have to pull within the window"
             ),
@@ -92,7 +105,10 @@ def _converged(quick: bool) -> xr.Dataset:
                 "least spin above 100 rad/s that does not end at pi on a table that pulls",
             ),
         },
-        {"spin": variable(spins, "rad s-1", "spin at launch", ("spin",))},
+        {
+            "spin": variable(spins, "rad s-1", "spin at launch", ("spin",)),
+            "spin_flight": variable(flying, "rad s-1", "spin at launch", ("spin_flight",)),
+        },
         {"window_s": WINDOW},
     )
 

@@ -1,0 +1,231 @@
+"""Times of a run, of the bare integration inside it, of an import and of the command line.
+
+The run is the report's top at 155 rad/s over 20 s with every variable of the result at 2001 samples. Beside
+it stands the bare integration of the eight numbers that drive the motion, by the same method at the same
+tolerance. The two are timed in turns, so that whatever else the machine does touches both.
+"""
+
+import argparse
+import cProfile
+import json
+import os
+import platform
+import pstats
+import statistics
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from importlib.util import find_spec
+from typing import Any
+
+import heyoka as hy
+from rich.console import Console
+from rich.table import Table
+
+import tippetop as tt
+from tippetop.mechanics.friction import ViscousFriction
+from tippetop.mechanics.motion import axis_rate, contact, moment_per_normal_force
+from tippetop.mechanics.shape import EccentricSphere
+from tippetop.mechanics.top import Top, dimensionless_numbers, natural_units
+from tippetop.presets import report_problem
+
+SPIN, DURATION, SAMPLES = 155.0, 20.0, 2001
+TOLERANCE = 2e-16
+TARGET_RATIO = 4.0
+"""A run may take this many times the bare integration."""
+
+
+def bare_integration(problem: tt.Problem, duration: float) -> Callable[[], tuple[float, int]]:
+    """The integration alone, of axis, angular momentum and horizontal velocity, in natural units.
+
+    Returns a function that integrates and returns the final tilt's cosine and the steps.
+    """
+    numbers, units = dimensionless_numbers(problem.top), natural_units(problem.top)
+    variables = hy.make_vars(*(f"n{i}" for i in "xyz"), *(f"L{i}" for i in "xyz"), "ux", "uy")
+    axis, momentum, velocity = tuple(variables[:3]), tuple(variables[3:6]), tuple(variables[6:])
+    par = hy.par
+    top = Top(1.0, par[0], par[1], EccentricSphere(1.0, par[2]), ViscousFriction(par[3]), 1.0)
+    touch = contact(axis, momentum, (velocity[0], velocity[1]), top)
+    normal = touch.normal_force
+    moment = moment_per_normal_force(touch.arm, touch.traction)
+    rates = (
+        *axis_rate(axis, momentum, top),
+        *(normal * component for component in moment),
+        *(normal * component for component in touch.traction.force),
+    )
+    system = [(variable, hy.expression(rate)) for variable, rate in zip(variables, rates, strict=True)]
+    integrator = hy.taylor_adaptive(system, [0.0] * 8, pars=[1.0] * 4, tol=TOLERANCE)
+
+    first = tt.simulate(problem, duration, times=[0.0])
+    start = [
+        *first.axis.values[0],
+        *(first.angular_momentum.values[0] / units.angular_momentum),
+        *(first.velocity.values[0, :2] / units.speed),
+    ]
+    end = duration / units.time
+
+    def integrate() -> tuple[float, int]:
+        integrator.time = 0.0
+        integrator.state[:] = start
+        integrator.pars[:] = numbers
+        _, _, _, steps, *_ = integrator.propagate_until(end)
+        return float(integrator.state[2]), int(steps)
+
+    return integrate
+
+
+def seconds(action: Callable[[], Any]) -> float:
+    """How long an action takes, s."""
+    begin = time.perf_counter()
+    action()
+    return time.perf_counter() - begin
+
+
+def in_turns(actions: dict[str, Callable[[], Any]], rounds: int) -> dict[str, list[float]]:
+    """Times of several actions, each once a round."""
+    times: dict[str, list[float]] = {name: [] for name in actions}
+    for _ in range(rounds):
+        for name, action in actions.items():
+            times[name].append(seconds(action))
+    return times
+
+
+def new_process(*arguments: str) -> Callable[[], None]:
+    """An action that runs Python in a new process, which must succeed."""
+
+    def run() -> None:
+        subprocess.run([sys.executable, *arguments], check=True, stdout=subprocess.DEVNULL)
+
+    return run
+
+
+def hot_spots(action: Callable[[], Any], repeats: int = 20, count: int = 15) -> list[dict[str, Any]]:
+    """Where the time of an action goes: the functions with most time of their own."""
+    profile = cProfile.Profile()
+    profile.enable()
+    for _ in range(repeats):
+        action()
+    profile.disable()
+    entries: dict[Any, Any] = pstats.Stats(profile).stats  # type: ignore[attr-defined]
+    spots = [
+        {
+            "function": f"{os.path.relpath(file) if file.startswith('/') else file}:{line}({name})",
+            "calls": calls / repeats,
+            "own_ms": 1e3 * own / repeats,
+            "total_ms": 1e3 * total / repeats,
+        }
+        for (file, line, name), (_, calls, own, total, _) in entries.items()
+    ]
+    return sorted(spots, key=lambda spot: -spot["own_ms"])[:count]
+
+
+def measure(rounds: int, processes: int) -> dict[str, Any]:
+    """Take all times."""
+    problem = report_problem(SPIN).replace({"contact.liftoff": "stop"})
+    bare = bare_integration(problem, DURATION)
+
+    def run() -> Any:
+        return tt.simulate(problem, DURATION, samples=SAMPLES)
+
+    result, (cosine, steps) = run(), bare()
+    if abs(cosine - float(result.axis[-1, 2])) > 1e-9 or result.attrs["integrator"] != "taylor":
+        raise SystemExit("the two integrations do not end alike: nothing to compare")
+    warm = in_turns({"simulate": run, "bare integration": bare}, rounds)
+    ratios = [a / b for a, b in zip(warm["simulate"], warm["bare integration"], strict=True)]
+
+    commands: dict[str, tuple[str, ...]] = {
+        "python": ("-c", ""),
+        "import tippetop": ("-c", "import tippetop"),
+        "import and one run": (
+            "-c",
+            "import tippetop as tt; from tippetop.presets import report_problem;"
+            f"tt.simulate(report_problem({SPIN}), {DURATION})",
+        ),
+    }
+    if find_spec("tippetop.cli.main"):
+        start = "import sys; from tippetop.cli.main import main; sys.exit(main())"
+        commands["tippetop --help"] = ("-c", start, "--help")
+        commands["tippetop simulate"] = ("-c", start, "simulate", "--json")
+    actions = {name: new_process(*arguments) for name, arguments in commands.items()}
+    fresh = {}
+    for name, action in actions.items():
+        try:
+            action()  # fills the caches, and shows whether it works at all
+        except subprocess.CalledProcessError:
+            continue
+        fresh[name] = action
+    cold = in_turns(fresh, processes)
+
+    def median_ms(values: list[float]) -> float:
+        return 1e3 * statistics.median(values)
+
+    return {
+        "run": {"spin": SPIN, "duration": DURATION, "samples": SAMPLES, "steps": steps},
+        "warm_ms": {name: median_ms(values) for name, values in warm.items()},
+        "best_ms": {name: 1e3 * min(values) for name, values in warm.items()},
+        "ratio": statistics.median(ratios),
+        "target_ratio": TARGET_RATIO,
+        "process_ms": {name: median_ms(values) for name, values in cold.items()},
+        "rounds": rounds,
+        "machine": {
+            "python": platform.python_version(),
+            "heyoka": hy.__version__,
+            "processor": platform.processor() or platform.machine(),
+            "cores": os.cpu_count(),
+            "load": os.getloadavg()[0],
+        },
+    }
+
+
+def show(figures: dict[str, Any], console: Console) -> None:
+    """Print the times for people."""
+    table = Table(title=f"{SPIN:g} rad/s, {DURATION:g} s, {SAMPLES} samples, all variables")
+    table.add_column("what")
+    table.add_column("median, ms", justify="right")
+    table.add_column("best, ms", justify="right")
+    for name, value in figures["warm_ms"].items():
+        table.add_row(name, f"{value:.2f}", f"{figures['best_ms'][name]:.2f}")
+    verdict = "within" if figures["ratio"] <= TARGET_RATIO else "[red]over[/red]"
+    table.add_row("ratio", f"{figures['ratio']:.2f}", f"{verdict} {TARGET_RATIO:g}")
+    for name, value in figures["process_ms"].items():
+        table.add_row(f"new process: {name}", f"{value:.0f}", "", end_section=name == "python")
+    console.print(table)
+
+
+def show_profile(spots: list[dict[str, Any]], console: Console) -> None:
+    """Print where the time goes."""
+    table = Table(title="where the time of simulate goes (under a profiler, which adds to every call)")
+    for name in ("function", "calls", "own, ms", "total, ms"):
+        table.add_column(name, justify="left" if name == "function" else "right")
+    for spot in spots:
+        numbers = (f"{spot['calls']:g}", f"{spot['own_ms']:.2f}", f"{spot['total_ms']:.2f}")
+        table.add_row(spot["function"], *numbers)
+    console.print(table)
+
+
+def main() -> None:
+    """Measure and print; exit with 1 when the run takes too many times the bare integration."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
+    parser.add_argument("--json", action="store_true", help="print JSON for programs")
+    parser.add_argument("--profile", action="store_true", help="also show where the time goes")
+    parser.add_argument("--rounds", type=int, default=101, help="how often each run is timed")
+    parser.add_argument("--processes", type=int, default=7, help="how often each new process is timed")
+    arguments = parser.parse_args()
+
+    figures = measure(arguments.rounds, arguments.processes)
+    if arguments.profile:
+        problem = report_problem(SPIN).replace({"contact.liftoff": "stop"})
+        figures["profile"] = hot_spots(lambda: tt.simulate(problem, DURATION, samples=SAMPLES))
+    if arguments.json:
+        print(json.dumps(figures, indent=2))
+    else:
+        console = Console()
+        show(figures, console)
+        if arguments.profile:
+            show_profile(figures["profile"], console)
+    sys.exit(0 if figures["ratio"] <= TARGET_RATIO else 1)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,183 @@
+"""Launches that leave the table: from which spin on, and how they go on."""
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+import xarray as xr
+
+from tippetop.presets import report_problem
+from tippetop.problem import Problem
+from tippetop.report.experiment import Experiment, variable
+from tippetop.report.experiments.runs import (
+    FLIGHT_READINGS,
+    WINDOW,
+    flight_readings,
+    lift_off_time,
+    pushing,
+    stopping,
+)
+from tippetop.simulate import simulate
+
+LONG_WINDOW = 200.0
+"""Length of the longer runs in which a lift-off is looked for, s."""
+
+HOPS_WINDOW = 60.0
+"""Length of the runs that are followed through all their flights, s."""
+
+HOPS_PER_SECOND = 100
+"""Samples a second of these runs."""
+
+TILT, MU = 0.1, 0.3
+"""The tilt, rad, and the friction, s/m, that are kept where the other one varies: the report's."""
+
+HOP_SPINS = (160.0, 168.0, 175.0, 200.0, 250.0, 300.0, 400.0, 500.0, 700.0, 1000.0)
+HOP_SPINS_QUICK = (160.0, 175.0, 300.0, 600.0)
+BOUNCING = 0.5
+BOUNCING_SPINS = (175.0, 200.0, 250.0, 300.0)
+BOUNCING_SPINS_QUICK = (175.0, 200.0)
+
+
+def leaves_at(problem: Problem, window: float) -> float:
+    """When a launch first leaves the table, s; nan if it does not within the window."""
+    return lift_off_time(simulate(stopping(problem), window, samples=2))
+
+
+def first_onset(
+    times: Callable[[float], float], spins: np.ndarray, scanned: np.ndarray, window: float, accuracy: float
+) -> float:
+    """The least spin that leaves the table, rad/s: the first of a scan that does, then halving.
+
+    Parameters
+    ----------
+    times
+        The time of the first lift-off at a spin, s; nan if there is none.
+    spins, scanned
+        The spins of the scan, increasing, rad/s, and their times.
+    window
+        How late a lift-off may come, s.
+    accuracy
+        Largest error, rad/s.
+
+    Returns
+    -------
+    float
+        The onset; nan if none of the scan lifts off, or already the first does.
+    """
+    lifting = np.flatnonzero(scanned <= window)
+    if not len(lifting) or lifting[0] == 0:
+        return math.nan
+    low, high = float(spins[lifting[0] - 1]), float(spins[lifting[0]])
+    while high - low > 2.0 * accuracy:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if times(middle) <= window else (middle, high)
+    return 0.5 * (low + high)
+
+
+def _onsets(
+    name: str,
+    values: np.ndarray,
+    described: tuple[str, str],
+    problem: Callable[[float, float], Problem],
+    windows: tuple[float, ...],
+    quick: bool,
+) -> xr.Dataset:
+    """Times of the first lift-off over spin and another parameter, and the onset for each of its values."""
+    spins = np.arange(60.0, 600.1, 60.0 if quick else 30.0)
+    times = np.array([[leaves_at(problem(spin, value), windows[-1]) for spin in spins] for value in values])
+
+    def onset(window: float, value: float, row: np.ndarray) -> float:
+        def leaves(spin: float) -> float:
+            return leaves_at(problem(spin, value), window)
+
+        return first_onset(leaves, spins, row, window, 0.5 if quick else 0.05)
+
+    onsets = [
+        [onset(window, value, row) for value, row in zip(values, times, strict=True)] for window in windows
+    ]
+    onset_name = "least spin of the scan that leaves the table, refined by halving"
+    return xr.Dataset(
+        {
+            "first_lift_off": variable(times, "s", "when the top first leaves the table", (name, "spin")),
+            "onset": variable(onsets, "rad s-1", onset_name, ("window", name)),
+        },
+        {
+            "spin": variable(spins, "rad s-1", "spin at launch", ("spin",)),
+            "window": variable(list(windows), "s", "length of the runs", ("window",)),
+            name: variable(values, *described, (name,)),
+        },
+    )
+
+
+def _over_mu(quick: bool) -> xr.Dataset:
+    data = _onsets(
+        "mu",
+        np.geomspace(0.03, 10.0, 4 if quick else 10),
+        ("s m-1", "friction"),
+        lambda spin, mu: report_problem(spin, TILT, mu),
+        (WINDOW, 0.5 * LONG_WINDOW if quick else LONG_WINDOW),
+        quick,
+    )
+    data.attrs["tilt_rad"] = TILT
+    return data
+
+
+def _over_tilt(quick: bool) -> xr.Dataset:
+    data = _onsets(
+        "tilt",
+        np.linspace(0.05, 1.4, 6 if quick else 16),
+        ("rad", "tilt at launch"),
+        lambda spin, tilt: report_problem(spin, tilt, MU),
+        (WINDOW,),
+        quick,
+    )
+    data.attrs["mu_s_per_m"] = MU
+    return data
+
+
+def followed(spins: tuple[float, ...], restitution: float) -> xr.Dataset:
+    """Launches on a table that only pushes, followed through all their flights.
+
+    Variables over restitution and spin: those of `FLIGHT_READINGS`, and first_lift_off, s.
+
+    Parameters
+    ----------
+    spins
+        Spins at launch, rad/s.
+    restitution
+        Part of the speed of approach with which the top rebounds.
+    """
+    samples = int(HOPS_PER_SECOND * HOPS_WINDOW) + 1
+    columns: dict[str, list[float]] = {name: [] for name in (*FLIGHT_READINGS, "first_lift_off")}
+    for spin in spins:
+        run = simulate(pushing(report_problem(spin), restitution), HOPS_WINDOW, samples=samples)
+        readings = flight_readings(run) | {"first_lift_off": lift_off_time(run)}
+        for name, column in columns.items():
+            column.append(readings[name])
+    meanings = FLIGHT_READINGS | {"first_lift_off": ("s", "when the top first leaves the table")}
+    over = ("restitution", "spin")
+    return xr.Dataset(
+        {name: variable([column], *meanings[name], over) for name, column in columns.items()},
+        {
+            "spin": variable(list(spins), "rad s-1", "spin at launch", ("spin",)),
+            "restitution": variable([restitution], "1", "coefficient of restitution", ("restitution",)),
+        },
+        {"window_s": HOPS_WINDOW},
+    )
+
+
+def _hops(quick: bool) -> xr.Dataset:
+    return followed(HOP_SPINS_QUICK if quick else HOP_SPINS, 0.0)
+
+
+def _bouncing(quick: bool) -> xr.Dataset:
+    return followed(BOUNCING_SPINS_QUICK if quick else BOUNCING_SPINS, BOUNCING)
+
+
+EXPERIMENTS = [
+    Experiment("onset-mu", "the least spin that leaves the table, against friction", 7.0, _over_mu),
+    Experiment("onset-tilt", "the least spin that leaves the table, against tilt", 5.0, _over_tilt),
+    Experiment("hops", "launches followed through their flights", 11.0, _hops),
+    Experiment("hops-bouncing", "the same with impacts that rebound", 5.0, _bouncing),
+]
+"""What the figures of lift-off and flight are made from."""

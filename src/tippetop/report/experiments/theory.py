@@ -1,0 +1,215 @@
+"""Steady states of the report's top and of others, found without a simulation, and runs beside them."""
+
+import math
+
+import numpy as np
+import xarray as xr
+
+from tippetop.integrators.base import Array
+from tippetop.presets import REPORT, REPORT_TABLE_1, report_problem
+from tippetop.problem import Body, EccentricSphere, Problem
+from tippetop.report.experiment import Experiment, variable
+from tippetop.report.experiments.runs import WINDOW
+from tippetop.simulate import simulate
+from tippetop.theory.groups import (
+    classify,
+    classify_top,
+    eccentricity,
+    equal_thresholds,
+    inertia_ratio,
+    inverted_boundary,
+    jump_boundary,
+    precession_boundaries,
+    upright_boundary,
+)
+from tippetop.theory.prediction import predict
+from tippetop.theory.stability import branch_eigenvalues
+from tippetop.theory.steady import Kind, jellett_of_launch, precession_branch
+from tippetop.theory.thresholds import (
+    apparent_critical_spins,
+    critical_spin,
+    critical_spin_from_spectrum,
+    critical_spins,
+    growth_rates_of_launches,
+)
+
+VISIBLE = (0.001, 0.002, 0.005, 0.01)
+"""Distances from the vertical that may be told from none, rad: up to the report's own 0.01 rad."""
+
+QUOTED_SPINS = (50.0, 60.0, 100.0)
+"""Spins at which the predicted final tilt is compared with a run in words, rad/s."""
+
+JUMP_RATIO = 0.75
+"""I1 / I3 of a top like the report's that jumps: with alpha = 0.3 it is in group IIb."""
+
+LEINE_GLOCKER = Body(mass=0.006, shape=EccentricSphere(radius=0.015, eccentricity=0.2), I1=8e-7, I3=7e-7)
+"""The tippe top of Leine and Glocker, Eur. J. Mech. A/Solids 22 (2003) 193."""
+
+_KINDS = (Kind.UPRIGHT, Kind.INVERTED)
+
+LONG_RUN = 400.0
+"""Length of the runs whose end is compared with the steady states, s."""
+
+
+def _critical(quick: bool) -> xr.Dataset:
+    """The critical spins by formula and by the spectrum, and what a short window makes of them."""
+    problem = report_problem()
+    top = problem.top
+    spins = np.linspace(10.0, 105.0, 39 if quick else 191)
+    visible = np.array(VISIBLE)
+    launches = critical_spins(problem)
+    seen = [apparent_critical_spins(problem, WINDOW, float(least)) for least in visible]
+    formula = [critical_spin(kind, top) for kind in _KINDS]
+    spectrum = [critical_spin_from_spectrum(kind, top) for kind in _KINDS]
+    rates = [growth_rates_of_launches(kind, problem, spins) for kind in _KINDS]
+    return xr.Dataset(
+        {
+            "critical_launch": variable(
+                [launches.upright, launches.inverted], "rad s-1", "critical spin at launch", ("vertical",)
+            ),
+            "critical_formula": variable(
+                formula, "rad s-1", "critical axial spin of the vertical spin, by formula", ("vertical",)
+            ),
+            "critical_spectrum": variable(
+                spectrum,
+                "rad s-1",
+                "critical axial spin of the vertical spin, where its growth rate vanishes",
+                ("vertical",),
+            ),
+            "growth_rate": variable(
+                rates, "s-1", "growth rate of the vertical spin", ("vertical", "growth_spin")
+            ),
+            "apparent_upright": variable(
+                [pair.upright for pair in seen], "rad s-1", "omega_c1 as the window shows it", ("visible",)
+            ),
+            "apparent_inverted": variable(
+                [pair.inverted for pair in seen], "rad s-1", "omega_c2 as the window shows it", ("visible",)
+            ),
+        },
+        {
+            "vertical": [kind.value for kind in _KINDS],
+            "growth_spin": variable(spins, "rad s-1", "spin at launch", ("growth_spin",)),
+            "visible": variable(visible, "rad", "least tilt told from none", ("visible",)),
+        },
+        {"apparent_window_s": WINDOW},
+    )
+
+
+def _bifurcation(quick: bool) -> xr.Dataset:
+    """Steady states against spin with their stability, and where long runs end, for two bodies."""
+    jumping = REPORT.model_copy(update={"I1": JUMP_RATIO * REPORT.I3})
+    gradual = [10.0, 24.0, 35.0, *QUOTED_SPINS, 70.0, 85.0, 120.0]
+    if not quick:
+        gradual = sorted([*gradual, 17.0, 31.0, 40.0, 45.0, 55.0, 65.0, 74.0, 92.0, 110.0])
+    sudden = [20.0, 50.0, 110.0] if quick else [10.0, 20.0, 30.0, 42.0, 49.0, 56.0, 70.0, 85.0, 105.0, 120.0]
+    tilts = np.linspace(0.0, math.pi, 181 if quick else 721)
+    parts = [
+        _diagram("", REPORT, tilts, [(spin, 0.1) for spin in gradual]),
+        _diagram("_jump", jumping, tilts, [(spin, tilt) for spin in sudden for tilt in (0.1, math.pi - 0.1)]),
+    ]
+    whole = xr.merge(parts, compat="no_conflicts", join="exact", combine_attrs="drop_conflicts")
+    whole.attrs = {"long_run_s": LONG_RUN, "inertia_ratio_jump": JUMP_RATIO}
+    return whole
+
+
+def _diagram(suffix: str, body: Body, tilts: Array, launches: list[tuple[float, float]]) -> xr.Dataset:
+    """Steady states of a body against the spin of a launch near theta = 0, and runs.
+
+    A launch is the spin near theta = 0 that has its Jellett's integral, rad/s, and its tilt, rad.
+    """
+    base = report_problem().replace({"body": body.model_dump()})
+    branch = precession_branch(base.top, tilts)
+    eigenvalues = branch_eigenvalues(branch, base.top)
+    found = [_launched(base, spin, tilt) for spin, tilt in launches]
+    ends = [float(simulate(problem, LONG_RUN, samples=2)["theta"].values[-1]) for problem in found]
+    predicted = [predict(problem) for problem in found]
+    limits = critical_spins(base)
+    run, over = f"run{suffix}", f"branch_theta{suffix}"
+    return xr.Dataset(
+        {
+            f"branch_spin{suffix}": variable(
+                branch.jellett / _per_spin(base), "rad s-1", "spin of launches that can end there", (over,)
+            ),
+            f"branch_growth{suffix}": variable(
+                np.max(eigenvalues.real, axis=1), "s-1", "growth rate of the steady precession", (over,)
+            ),
+            f"run_spin{suffix}": variable(
+                [spin for spin, _ in launches], "rad s-1", "spin near theta = 0 of the same lambda", (run,)
+            ),
+            f"run_tilt{suffix}": variable([tilt for _, tilt in launches], "rad", "tilt at launch", (run,)),
+            f"run_end{suffix}": variable(ends, "rad", "tilt at the end of a long run", (run,)),
+            f"run_predicted{suffix}": variable(
+                [one.final.tilt for one in predicted],
+                "rad",
+                "reachable stable steady tilt of least energy",
+                (run,),
+            ),
+            f"run_certain{suffix}": variable(
+                [int(one.certain) for one in predicted], "1", "whether it is the only one in reach", (run,)
+            ),
+            f"run_stable{suffix}": variable(
+                [len(one.stable) for one in predicted], "1", "number of stable steady states", (run,)
+            ),
+            f"limits{suffix}": variable(
+                [limits.upright, limits.inverted], "rad s-1", "critical spins at launch", ("vertical",)
+            ),
+        },
+        {
+            over: variable(branch.tilt, "rad", "tilt of the steady precession", (over,)),
+            "vertical": [kind.value for kind in _KINDS],
+        },
+    )
+
+
+def _per_spin(problem: Problem) -> float:
+    """Jellett's integral of the launch, per unit of spin."""
+    return jellett_of_launch(problem.replace({"launch.spin": 1.0}))
+
+
+def _launched(base: Problem, spin: float, tilt: float) -> Problem:
+    """The launch at this tilt with the Jellett's integral of one at the usual tilt with this spin."""
+    tilted = base.replace({"launch.tilt": tilt})
+    return tilted.replace({"launch.spin": spin * _per_spin(base) / _per_spin(tilted)})
+
+
+def _groups(quick: bool) -> xr.Dataset:
+    """The map of the groups over gamma and alpha, and some tops on it."""
+    alpha = np.linspace(1e-3, 0.6, 121 if quick else 601)
+    bodies = {
+        "report, listing": REPORT,
+        "report, Table 1": REPORT_TABLE_1,
+        "Leine and Glocker 2003": LEINE_GLOCKER,
+    }
+    tops = [report_problem().replace({"body": body.model_dump()}).top for body in bodies.values()]
+    lines = {
+        "upright_boundary": [upright_boundary(a) for a in alpha],
+        "inverted_boundary": [inverted_boundary(a) for a in alpha],
+        "jump_boundary": [jump_boundary(a) for a in alpha],
+        "equal_thresholds": [equal_thresholds(a) for a in alpha],
+        "no_precession_from": [precession_boundaries(a)[0] for a in alpha],
+        "no_precession_to": [precession_boundaries(a)[1] for a in alpha],
+    }
+    gamma = np.linspace(0.5, 1.6, 111 if quick else 441)
+    letters = sorted({classify(float(g), float(a)).value for g in gamma[::10] for a in alpha[::10]})
+    names = {name: name.replace("_", " ") for name in lines}
+    return xr.Dataset(
+        {
+            **{name: variable(lines[name], "1", f"gamma at the {names[name]}", ("alpha",)) for name in lines},
+            "top_gamma": variable([inertia_ratio(top) for top in tops], "1", "I1 / I3", ("top",)),
+            "top_alpha": variable([eccentricity(top) for top in tops], "1", "eccentricity", ("top",)),
+            "top_group": (("top",), [classify_top(top).value for top in tops], {"long_name": "group"}),
+        },
+        {
+            "alpha": variable(alpha, "1", "eccentricity", ("alpha",)),
+            "top": list(bodies),
+        },
+        {"groups": ", ".join(letters), "gamma_least": float(gamma[0]), "gamma_greatest": float(gamma[-1])},
+    )
+
+
+EXPERIMENTS = [
+    Experiment("why-critical", "critical spins without a simulation", 1.0, _critical),
+    Experiment("why-bifurcation", "steady states against spin, and long runs", 5.0, _bifurcation),
+    Experiment("why-groups", "which tops turn over", 0.3, _groups),
+]
+"""What the figures about steady states are made from."""

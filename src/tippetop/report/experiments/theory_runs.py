@@ -1,0 +1,189 @@
+"""How the top gets where it is going: the limit of weak friction, and what a run says of its nutation."""
+
+import math
+
+import numpy as np
+import xarray as xr
+
+from tippetop.integrators.base import Array
+from tippetop.presets import report_problem
+from tippetop.report.experiment import Experiment, variable
+from tippetop.report.experiments.runs import WINDOW, on_table
+from tippetop.report.readings import SETTLED, flip_time
+from tippetop.simulate import simulate
+from tippetop.theory.averaging import averaged_flow, flip_time_limit, local_exponent
+from tippetop.theory.diagnostics import (
+    gyroscopic_balance,
+    nutation_envelope,
+    potential_at,
+    smooth_constants,
+)
+from tippetop.theory.prediction import predict
+from tippetop.theory.steady import Kind
+from tippetop.theory.thresholds import growth_rates_of_launches
+
+SPIN = 100.0
+"""Spin of the launches whose slow flow is shown, rad/s."""
+
+FRICTIONS = (0.3, 0.03, 0.003)
+"""Friction coefficients of the runs that are laid over each other, s/m."""
+
+CROSSED = math.pi / 2
+"""Tilt at which the top has turned half over, rad."""
+
+DIAGNOSED_SPIN = 155.0
+"""Spin of the run that is looked into, rad/s: the report's main one."""
+
+_BINS = 400
+
+
+def _collapse(quick: bool) -> xr.Dataset:
+    """The tilt against mu t: the averaged flow, and runs at several frictions."""
+    problem = report_problem(SPIN)
+    flow = averaged_flow(problem, samples=400)
+    end = 1.1 * flip_time_limit(problem)
+    edges = np.linspace(0.0, end, _BINS + 1)
+    middle = 0.5 * (edges[1:] + edges[:-1])
+    low, high = flow.tilts(middle)
+    frictions = FRICTIONS[:2] if quick else FRICTIONS
+    bounds = np.array([_band(mu, edges) for mu in frictions])
+    swing = simulate(on_table(problem), end / FRICTIONS[0], samples=2501)
+    of_run = ("friction", "mu_time")
+    return xr.Dataset(
+        {
+            "flow_low": variable(low, "rad", "least tilt of the nutation, averaged flow", ("mu_time",)),
+            "flow_high": variable(high, "rad", "largest tilt of the nutation, averaged flow", ("mu_time",)),
+            "run_low": variable(bounds[:, 0], "rad", "least tilt of the run around this time", of_run),
+            "run_high": variable(bounds[:, 1], "rad", "largest tilt of the run around this time", of_run),
+            "theta_swing": variable(
+                swing["theta"].values, "rad", "tilt of the run with most friction", ("mu_time_swing",)
+            ),
+            "flip_limit": variable(
+                flip_time_limit(problem, SETTLED), "s2 m-1", "limit of mu times flip time"
+            ),
+        },
+        {
+            "mu_time": variable(middle, "s2 m-1", "mu t", ("mu_time",)),
+            "friction": variable(list(frictions), "s m-1", "friction coefficient", ("friction",)),
+            "mu_time_swing": variable(
+                FRICTIONS[0] * swing["time"].values, "s2 m-1", "mu t", ("mu_time_swing",)
+            ),
+        },
+        {"spin_rad_per_s": SPIN},
+    )
+
+
+def _band(mu: float, edges: Array) -> tuple[Array, Array]:
+    """Least and largest tilt of a run between these values of mu t."""
+    each = 60
+    times = np.linspace(edges[0], edges[-1], each * (len(edges) - 1) + 1) / mu
+    run = simulate(on_table(report_problem(SPIN, mu=mu)), float(times[-1]), times=times)
+    theta = run["theta"].values
+    parts = np.concatenate([theta[:-1].reshape(-1, each), theta[each::each, None]], axis=1)
+    return parts.min(axis=1), parts.max(axis=1)
+
+
+def _exponent(quick: bool) -> xr.Dataset:
+    """The time to turn over against friction, by several definitions, and its limit."""
+    small = np.geomspace(0.01 if quick else 0.003, 0.3, 4 if quick else 13)
+    mu = np.concatenate([small[:-1], np.geomspace(0.3, 3.0, 25)])
+    problem = report_problem(SPIN)
+    final = predict(problem).final.tilt
+    times = np.array([_times(float(one), final) for one in mu]).T
+    flow = averaged_flow(problem, samples=4000)
+    half = float(np.interp(CROSSED, *_rising(flow.tilt_high, flow.mu_time)))
+    names = ("crossing_time", "arrival_time_end", "settling_time", "arrival_time_window")
+    words = (
+        "first time with a tilt of more than pi/2",
+        "first time within 0.01 rad of the steady tilt",
+        "time from which on the tilt stays within 0.01 rad of the steady tilt",
+        "first time within 0.01 rad of the tilt after 20 s, the report's definition",
+    )
+    data = xr.Dataset(
+        coords={"mu_flip": variable(mu, "s m-1", "friction coefficient", ("mu_flip",))},
+        attrs={"spin_rad_per_s": SPIN, "within_rad": SETTLED},
+    )
+    for name, long_name, row in zip(names, words, times, strict=True):
+        data[name] = variable(row, "s", long_name, ("mu_flip",))
+    for name, row in zip(names[:2], times, strict=False):
+        exponent = local_exponent(mu, row)
+        data[f"exponent_{name}"] = variable(exponent, "1", f"d ln t / d ln mu, {name}", ("mu_flip",))
+    data["decay_rate"] = variable(
+        [_decay_rate(float(one)) for one in mu], "s-1", "decay rate of the inverted spin", ("mu_flip",)
+    )
+    data["limit_crossing"] = variable(half, "s2 m-1", "limit of mu t at the first tilt of pi/2")
+    data["limit_arrival"] = variable(flip_time_limit(problem, SETTLED), "s2 m-1", "limit of mu t, arrival")
+    return data
+
+
+def _times(mu: float, final: float) -> tuple[float, float, float, float]:
+    """When a run turns half over, first comes near its end, stays there, flips by the report's rule, s."""
+    duration = max(WINDOW, 3.5 / mu + 8.0 / _decay_rate(mu))
+    run = simulate(on_table(report_problem(SPIN, mu=mu)), duration, samples=40_001)
+    times, theta = run["time"].values, run["theta"].values
+    far = np.abs(theta - final) >= SETTLED
+    last = int(np.flatnonzero(far)[-1])
+    first = int(np.argmin(far))
+    early = times <= WINDOW
+    by_report = flip_time(times[early], theta[early]) if theta[early][-1] > CROSSED else math.nan
+    return (
+        float(times[np.argmax(theta > CROSSED)]),
+        float(times[first]),
+        float(times[min(last + 1, len(times) - 1)]),
+        by_report,
+    )
+
+
+def _decay_rate(mu: float) -> float:
+    """Decay rate of the inverted spin that the launch leads to, 1/s."""
+    return -float(growth_rates_of_launches(Kind.INVERTED, report_problem(SPIN, mu=mu), np.array([SPIN]))[0])
+
+
+def _rising(values: Array, times: Array) -> tuple[Array, Array]:
+    """What `numpy.interp` needs to find when the values first reach a level."""
+    highest = np.maximum.accumulate(values)
+    new = np.append(True, np.diff(highest) > 0)
+    return highest[new], times[new]
+
+
+def _diagnostics(quick: bool) -> xr.Dataset:
+    """Gyroscopic balance, envelope of the nutation and effective potential along the report's main run."""
+    problem = on_table(report_problem(DIAGNOSED_SPIN))
+    top = problem.top
+    run = simulate(problem, 10.0, samples=2001 if quick else 5001)
+    axis, momentum = run["axis"].values, run["angular_momentum"].values
+    xi = gyroscopic_balance(axis, momentum, top)
+    envelope = nutation_envelope(axis, momentum, top)
+    values = smooth_constants(axis, momentum, top)
+    axial = top.axial_inertia * run["omega3"].values
+    instants = np.array([0.0, 3.0, 5.0, 5.5, 6.0, 8.0])
+    index = np.searchsorted(run["time"].values, instants)
+    tilts = np.linspace(1e-3, math.pi - 1e-3, 1201)
+    wells = [potential_at(int(i), axis, momentum, top, tilts) for i in index]
+    over = ("time_diagnosed",)
+    return xr.Dataset(
+        {
+            "theta_diagnosed": variable(run["theta"].values, "rad", "tilt", over),
+            "balance": variable(xi, "kg m2 s-1", "xi = I1 phi' cos(theta) - I3 omega3", over),
+            "balance_ratio": variable(xi / float(abs(axial[0])), "1", "xi over I3 omega3 at launch", over),
+            "envelope_low": variable(envelope.low, "rad", "least tilt a smooth table would allow", over),
+            "envelope_high": variable(envelope.high, "rad", "largest tilt a smooth table would allow", over),
+            "potential": variable(wells, "J", "effective potential", ("instant", "well_theta")),
+            "level": variable(np.asarray(values.energy)[index], "J", "energy", ("instant",)),
+            "instant_theta": variable(run["theta"].values[index], "rad", "tilt", ("instant",)),
+        },
+        {
+            "time_diagnosed": variable(run["time"].values, "s", "time", over),
+            "instant": variable(run["time"].values[index], "s", "instant of the run", ("instant",)),
+            "well_theta": variable(tilts, "rad", "tilt", ("well_theta",)),
+        },
+        {"spin_rad_per_s": DIAGNOSED_SPIN},
+    )
+
+
+EXPERIMENTS = [
+    Experiment("why-collapse", "runs at small friction against the averaged flow", 2.0, _collapse),
+    Experiment("why-exponent", "turning over against friction, in several senses", 6.0, _exponent),
+    Experiment("why-diagnostics", "what the main run says of its nutation", 1.0, _diagnostics),
+]
+"""What the figures about the way to the end are made from."""

@@ -1,0 +1,44 @@
+"""What a figure is: which experiments it is drawn from, how, and what to say under it."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import xarray as xr
+from matplotlib.figure import Figure
+
+from tippetop.report.claim import Data
+
+Draw = Callable[[xr.Dataset], Figure]
+
+
+@dataclass(frozen=True)
+class Plate:
+    """A figure of the report redone, or one of our own.
+
+    Attributes
+    ----------
+    id
+        Name, and stem of its files.
+    title
+        Heading.
+    caption
+        What is seen, in a few sentences.
+    needs
+        Names of the experiments it shows.
+    draw
+        Makes the figure from their merged dataset (empty for a drawing that needs none).
+    section
+        Heading of the part of the page that it belongs to.
+    """
+
+    id: str
+    title: str
+    caption: str
+    needs: tuple[str, ...]
+    draw: Draw
+    section: str = "Figures"
+
+    def dataset(self, data: Data) -> xr.Dataset:
+        """The data behind the figure."""
+        parts = [data[name] for name in self.needs]
+        return xr.merge(parts, combine_attrs="drop_conflicts", compat="no_conflicts", join="outer")

@@ -1,0 +1,152 @@
+"""Launches that leave the table: the onset, what is read off the flights, and what is said of them."""
+
+import math
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from tippetop.presets import report_problem
+from tippetop.report.claim import Judgement, Verdict
+from tippetop.report.claims import CLAIMS
+from tippetop.report.experiment import variable
+from tippetop.report.experiments import EXPERIMENTS
+from tippetop.report.experiments.flights import first_onset, followed, leaves_at
+from tippetop.report.experiments.runs import FLIGHT_READINGS, comparison
+from tippetop.report.gallery import PLATES
+from tippetop.simulate import simulate
+
+
+@pytest.fixture(scope="module")
+def computed() -> dict[str, xr.Dataset]:
+    tilts = {"final_theta_flight": variable([math.pi, 3.1], "rad", "tilt", ("spin_flight",))}
+    return {
+        "run-175": EXPERIMENTS["run-175"].run(quick=True),
+        "hops": followed((160.0, 175.0, 200.0), 0.0),
+        "hops-bouncing": followed((175.0,), 0.5),
+        "final-tilt": xr.Dataset(
+            {**tilts, "lift_off_onset": 165.1, "lost": 169.0},
+            {"spin_flight": [165.0, 210.0]},
+            {"window_s": 20.0},
+        ),
+    }
+
+
+@pytest.fixture(scope="module")
+def onsets() -> dict[str, xr.Dataset]:
+    return {"onset-mu": onset_data("mu", 132.0), "onset-tilt": onset_data("tilt", 120.0)}
+
+
+def onset_data(name: str, least: float) -> xr.Dataset:
+    """A scan of two values, of which the second never leaves the table."""
+    return xr.Dataset(
+        {
+            "first_lift_off": ((name, "spin"), [[math.nan, 3.0, 2.0], [math.nan] * 3]),
+            "onset": (("window", name), [[least, math.nan]]),
+        },
+        {"spin": [100.0, 200.0, 300.0], "window": [20.0], name: [0.5, 1.3]},
+        {"tilt_rad": 0.1, "mu_s_per_m": 0.3},
+    )
+
+
+def judge(data: dict[str, xr.Dataset], name: str) -> Judgement:
+    claim = CLAIMS[name]
+    return Judgement(claim, claim.examine({need: data[need] for need in claim.needs}), True)
+
+
+def test_onset_is_where_the_first_scanned_spin_that_lifts_says() -> None:
+    # Lift-off at 37 and more, except from 52 to 78: the scan sees 40, 50 and 80, and takes the first.
+    def times(spin: float) -> float:
+        return 1.0 if spin >= 37.0 and not 52.0 < spin < 78.0 else math.nan
+
+    spins = np.arange(10.0, 90.0, 10.0)
+    scanned = np.array([times(spin) for spin in spins])
+    assert first_onset(times, spins, scanned, 5.0, 0.01) == pytest.approx(37.0, abs=0.01)
+    assert math.isnan(first_onset(times, spins[:3], scanned[:3], 5.0, 0.01))
+    assert math.isnan(first_onset(times, spins[3:], scanned[3:], 5.0, 0.01))
+    assert math.isnan(first_onset(times, spins, scanned, 0.5, 0.01))
+
+
+def test_lift_off_at_175_does_not_depend_on_the_window() -> None:
+    problem = report_problem(175.0)
+    assert leaves_at(problem, 20.0) == pytest.approx(5.361332, abs=2e-6)
+    assert leaves_at(problem, 6.0) == pytest.approx(leaves_at(problem, 20.0), abs=1e-9)
+    assert math.isnan(leaves_at(problem, 5.0))
+
+
+def test_readings_are_those_of_the_flights(computed: dict[str, xr.Dataset]) -> None:
+    run = simulate(report_problem(175.0), 20.0, samples=2001)
+    both = computed["hops"].sel(restitution=0.0, spin=175.0)
+    assert int(both["flights"]) == run.sizes["flight"]
+    assert float(both["airborne_time"]) == pytest.approx(
+        float((run["flight_end"] - run["flight_start"]).sum())
+    )
+    assert float(both["last_touchdown"]) == pytest.approx(float(run["flight_end"][-1]))
+    lost = run["event_energy_lost"].values
+    assert float(both["energy_in_impacts"]) == pytest.approx(lost.sum())
+    theta = np.interp(float(both["turning_time"]), run["time"], run["theta"])
+    assert theta == pytest.approx(math.pi / 2, abs=0.02)
+
+
+def test_a_launch_below_the_onset_has_no_flights(computed: dict[str, xr.Dataset]) -> None:
+    slow = computed["hops"].sel(restitution=0.0, spin=160.0)
+    assert int(slow["flights"]) == 0
+    assert float(slow["airborne_time"]) == float(slow["last_touchdown"]) == float(slow["highest_gap"]) == 0.0
+    assert math.isnan(float(slow["first_lift_off"]))
+
+
+def test_comparison_goes_on_in_flight_only_where_there_is_one(computed: dict[str, xr.Dataset]) -> None:
+    run = computed["run-175"]
+    before = run.sel(time=slice(None, float(run["lift_off_time"])))
+    for name in ("theta", "normal_force", "energy"):
+        assert before[f"{name}_flight"].values == pytest.approx(before[name].values, rel=1e-6)
+        assert run[f"{name}_flight"].attrs["units"] == run[name].attrs["units"]
+    assert float(run["normal_force_flight"].min()) == 0.0
+    assert float(run["normal_force"].min()) < 0.0
+    assert set(FLIGHT_READINGS) <= set(run.data_vars)
+    assert "theta_flight" not in comparison(report_problem(20.0), quick=True)
+
+
+def test_the_abnormal_point_is_not_one_of_the_top(computed: dict[str, xr.Dataset]) -> None:
+    for name in ("sec4-may-fly", "sec4-energy-falls", "sum-abnormal", "sum-turns-over"):
+        judged = judge(computed, name)
+        assert judged.verdict is Verdict.REPRODUCED, name
+        assert "nan" not in judged.finding.note
+    assert "28 flights" in judge(computed, "sec4-may-fly").finding.note
+
+
+@pytest.mark.parametrize("sweep", ["hops", "hops-bouncing", "final-tilt"])
+def test_one_launch_that_does_not_turn_over_would_be_seen(
+    computed: dict[str, xr.Dataset], sweep: str
+) -> None:
+    spoilt = dict(computed)
+    spoilt[sweep] = computed[sweep].copy(deep=True)
+    spoilt[sweep]["final_theta_flight"][..., -1] = 0.8
+    judged = judge(spoilt, "sum-abnormal")
+    assert judged.verdict is Verdict.CORRECTED
+    assert "still" in judged.finding.note
+
+
+def test_a_rise_of_the_energy_would_be_seen(computed: dict[str, xr.Dataset]) -> None:
+    spoilt = computed | {"hops": computed["hops"].copy(deep=True)}
+    spoilt["hops"]["energy_rise"][..., 1] = 1e-9
+    assert judge(spoilt, "sec4-energy-falls").verdict is Verdict.CORRECTED
+
+
+def test_onset_below_that_of_the_report_is_told(onsets: dict[str, xr.Dataset]) -> None:
+    judged = judge(onsets, "sec4-huge-spin")
+    assert judged.verdict is Verdict.CORRECTED
+    for words in ("120 rad/s", "132 rad/s", "From a tilt of 1.30 rad on"):
+        assert words in judged.finding.note
+    higher = {name: data.assign(onset=data["onset"] + 100.0) for name, data in onsets.items()}
+    assert judge(higher, "sec4-huge-spin").verdict is Verdict.REPRODUCED
+
+
+@pytest.mark.parametrize("name", ["fig09", "fig10", "fig11", "fig12", "onset-mu", "onset-tilt", "hops"])
+def test_figures_can_be_drawn(
+    computed: dict[str, xr.Dataset], onsets: dict[str, xr.Dataset], name: str
+) -> None:
+    plate = PLATES[name]
+    axes = plate.draw(plate.dataset(computed | onsets)).axes
+    colors = {line.get_color() for panel in axes for line in panel.get_lines()}
+    assert ("#109B60" in colors) != name.startswith("onset")
