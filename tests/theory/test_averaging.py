@@ -13,8 +13,9 @@ from tippetop.mechanics.shape import EccentricSphere
 from tippetop.mechanics.top import natural_units
 from tippetop.theory import whirling
 from tippetop.theory.averaging import averaged_flow, flip_time_limit, local_exponent
+from tippetop.theory.drain import whirl_rates
 from tippetop.theory.drift import drift, smooth_precession
-from tippetop.theory.nutation import Whirls, numbers_of, orbit_of_whirls, turning_tilts, whirl_rates
+from tippetop.theory.nutation import Whirls, numbers_of, orbit_of_whirls, turning_tilts
 from tippetop.theory.prediction import predict
 from tippetop.theory.steady import jellett_of_launch, precession_branch, steady_states
 

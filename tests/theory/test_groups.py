@@ -80,7 +80,7 @@ def test_the_group_says_what_the_energies_show(gamma, alpha):
         (131 / 140, 0.3, Group.IIA),  # the report's listing
         (140 / 131, 0.3, Group.IIA),  # its Table 1
         (8 / 7, 0.2, Group.IIA),  # Leine and Glocker 2003
-        (1.0, 0.1, Group.IIA),  # a homogeneous ball with a hollow: the textbook's A = C
+        (1.0, 0.1, Group.IIA),  # equal moments of inertia
         (0.6, 0.3, Group.IA),
         (0.88, 0.04, Group.IB),
         (0.75, 0.3, Group.IIB),

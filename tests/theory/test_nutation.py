@@ -17,11 +17,11 @@ from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.top import natural_units
 from tippetop.theory import dual
 from tippetop.theory.diagnostics import smooth_constants
+from tippetop.theory.drain import drain, whirl_rates
 from tippetop.theory.nutation import (
     Constants,
     Whirls,
     constants,
-    drain,
     effective_potential,
     natural_constants,
     numbers_of,
@@ -29,7 +29,6 @@ from tippetop.theory.nutation import (
     orbit_of_whirls,
     turning_tilts,
     upside_down,
-    whirl_rates,
     whirls,
 )
 

@@ -10,7 +10,8 @@ the eccentric sphere everything about them follows from D(c) = alpha - (1 - gamm
 
 Three groups follow from the sign of D at the two ends: gamma = 1 - alpha and gamma = 1 + alpha are their
 boundaries (Ebenfeld and Scheck 1995; Ueda, Sasaki and Watanabe 2005; Ciocci, Malengier, Langerock and
-Grimonprez 2012). Where the fold is divides them further.
+Grimonprez 2012). Where the fold is divides them further, into six kinds; the letters are not those of the
+last of these papers, whose IIb is IIa here.
 """
 
 import math

@@ -11,17 +11,16 @@ from typing import NamedTuple
 import numpy as np
 from scipy.integrate import DOP853, OdeSolution
 
+from tippetop.theory.drain import WhirlRates, whirl_rates
 from tippetop.theory.drift import Drift, drift, smooth_precession
 from tippetop.theory.dual import Array
 from tippetop.theory.nutation import (
     Numbers,
     Orbit,
-    WhirlRates,
     Whirls,
     orbit_of_whirls,
     turning_tilts,
     upside_down,
-    whirl_rates,
     whirls,
 )
 
