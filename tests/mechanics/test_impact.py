@@ -331,6 +331,38 @@ def test_a_law_with_torque_against_integration(spin, restitution):
     assert result.energy_lost == pytest.approx(lose(state, result.state, top), rel=1e-10)
 
 
+class SteadyDrilling(NamedTuple):
+    """Steep Coulomb friction and a torque against drilling whose size is given."""
+
+    mu: float
+    eps: float
+    lever: float
+
+    def traction(self, slip, angular_velocity):
+        force = RegularizedCoulombFriction(self.mu, self.eps).traction(slip, angular_velocity).force
+        return Traction(force, (0.0, 0.0, -math.copysign(self.lever, angular_velocity[2])))
+
+
+@pytest.mark.parametrize("restitution", [0.0, 0.7])
+def test_slip_that_is_held_against_a_torque_stays_held(restitution):
+    """The body sticks early, with f = -M_tt^-1 (M_tn + what the torque does), and drilling goes on."""
+    top = Top(0.02, 3.0e-6, 3.3e-6, EccentricSphere(0.02, 0.3), SteadyDrilling(0.9, 1e-4, 1e-4), 9.8)
+    state = State(
+        (0.6, 0.0, 0.8), (0.0, 1e-5, 2e-4), (0.1, 0.1, -0.5), (0.0, 0.0, 0.02), (0.0, 1.0, 0.0), 0.0
+    )
+    result, end = check_against_integration(state, restitution, top, "Radau", 1e-9, 1e-6)
+    rigid = Rigid(state, top)
+    torque = rigid.inverse_inertia @ np.array([0.0, 0.0, -1e-4])
+    pull = (rigid.answer[:, 2] + np.cross(torque, rigid.arm))[:2]
+    holding = -np.linalg.solve(rigid.answer[:2, :2], pull)
+    assert top.friction.traction((end[0], end[1]), (0.0, 0.0, 1.0)).force == pytest.approx(holding, abs=1e-3)
+    turned = np.array(result.state.momentum) - rigid.momentum
+    impulse = top.mass * (np.array(result.state.velocity) - np.array(state.velocity))
+    twist = np.array([0.0, 0.0, -1e-4 * result.impulse])
+    assert turned == pytest.approx(np.cross(rigid.arm, impulse) + twist, rel=1e-9, abs=1e-15)
+    assert result.energy_lost == pytest.approx(lose(state, result.state, top), rel=1e-10)
+
+
 # Painleve's paradox and Poisson's hypothesis ---------------------------------------------------------------
 
 

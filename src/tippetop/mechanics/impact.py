@@ -47,6 +47,9 @@ TOLERANCE = 1e-9
 STUCK = 1e-8
 """How near the traction must be to the one that holds the slip constant to count as equal to it."""
 
+SHORTEST = 1e-12
+"""Step, relative to the longest, that is taken whatever its error: at a jump of the law."""
+
 FUZZ = 1e-14
 """Round-off in the velocity of the contact point, relative to what it is made of."""
 
@@ -361,7 +364,8 @@ class LawfulCourse(NamedTuple):
     integrated over s instead, dp = ds / (|f|/|v| + 1/v_0) with v_0 the initial speed of the contact point:
     slip then decays at the rate of M however steep the law, and needs no more than some tens of units of s
     to fall by twenty orders of magnitude. Once friction has come to hold the slip constant, f = -M_tt^-1
-    M_tn, it stays so, and the rest of the course is a straight line; it is checked that the law agrees.
+    M_tn (less what a torque does), it stays so, and the rest of the course is a straight line; it is checked
+    that the law agrees.
     """
 
     body: Striking
@@ -378,7 +382,7 @@ class LawfulCourse(NamedTuple):
                 return held
             there, new_slope, doubt = self.step(here, slope, step)
             reached = goal(unpack(there)) >= 0.0
-            if doubt > 1.0 or (reached and waiting):
+            if (doubt > 1.0 and step > SHORTEST * longest) or (reached and waiting):
                 step *= min(0.5, max(0.1, 0.9 * doubt**-0.2))
                 continue
             if reached:
@@ -424,10 +428,10 @@ class LawfulCourse(NamedTuple):
 
     def held(self, blow: Blow, goal: Goal) -> Blow | None:
         """The rest of the course if friction holds the slip constant, if it does so all along."""
-        east, north, up = self.body.answer
-        area = east[0] * north[1] - north[0] * east[1]
-        holding = ((north[0] * up[1] - north[1] * up[0]) / area, (east[1] * up[0] - east[0] * up[1]) / area)
+        (a, b, _), (_, d, _), _ = self.body.answer
         point, _, traction = self.body.friction(blow)
+        x, y, _ = self.body.response(Blow(1.0, (0.0, 0.0), traction.torque, 0.0))
+        holding = ((b * y - d * x) / (a * d - b * b), (b * x - a * y) / (a * d - b * b))
         fuzz = FUZZ * length(self.body.point) * math.hypot(*traction.force) / (math.hypot(*point[:2]) or 1.0)
         if math.dist(traction.force, holding) > STUCK + fuzz:
             return None
@@ -441,7 +445,7 @@ class LawfulCourse(NamedTuple):
                 blow.normal_work + q * (point[2] + 0.5 * q * rise),
             )
 
-        end = first_reach(along, goal, length(self.body.point) / up[2])
+        end = first_reach(along, goal, length(self.body.point) / self.body.answer[2][2])
         later = self.body.friction(end)[2]
         drift = math.dist((*later.force, *later.torque), (*traction.force, *traction.torque))
         return end if drift <= 2.0 * (STUCK + fuzz) else None

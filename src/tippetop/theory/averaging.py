@@ -2,7 +2,7 @@
 
 For small mu the tilt nutates as on a smooth table, lambda is constant, and what else the nutation leaves
 alone, L3 and the energy, drifts at a rate proportional to mu: by friction's torque and power averaged over
-one nutation (`tippetop.theory.nutation`). Time enters only as mu t, which is why the time to turn over goes
+one nutation (`tippetop.theory.drain`). Time enters only as mu t, which is why the time to turn over goes
 as 1 / mu.
 
 When the nutation has died away, what is left is a drift along the steady precessions of the smooth table,

@@ -1,0 +1,125 @@
+"""What a little friction takes from a nutation, on average: torque, power, and the decay of its whirls."""
+
+import math
+from typing import NamedTuple
+
+from tippetop.theory.nutation import Numbers, Orbit, Whirls, excess_slope, orbit_of_whirls
+
+
+class Drain(NamedTuple):
+    """What friction takes from a nutation, on average, per unit of friction coefficient, in natural units.
+
+    Attributes
+    ----------
+    axial
+        Rate of L3.
+    energy
+        Rate of the energy.
+    """
+
+    axial: float
+    energy: float
+
+
+class WhirlRates(NamedTuple):
+    """How friction changes a nutation, on average, per unit of friction coefficient, in natural units.
+
+    Jellett's integral and the whirls leave two choices of the third root, which can meet: it is followed too.
+
+    Attributes
+    ----------
+    fast, slow
+        Logarithmic rates of the whirls.
+    root
+        Rate of sqrt(|p3|), which goes on to negative values where p3 touches zero.
+    """
+
+    fast: float
+    slow: float
+    root: float
+
+
+def phases(path: Orbit) -> tuple[float, ...]:
+    """Cosines of as many equidistant phases psi between 0 and pi as an average over the nutation needs.
+
+    The error falls as exp(-2 n kappa) for n phases, with cosh(kappa) the distance of the third root from the
+    middle of the nutation over its half-width; as many are taken as make it 1e-12, at most 64.
+    """
+    reach = abs(path.far - path.middle) / path.half if path.half > 0.0 else math.inf
+    kappa = math.acosh(reach) if reach > 1.0 else 0.0
+    return _PHASES[
+        max(2, min(_MOST_PHASES, math.ceil(_DIGITS / (2.0 * kappa)))) if kappa > 0.0 else _MOST_PHASES
+    ]
+
+
+_MOST_PHASES = 64
+_DIGITS = 12.0 * math.log(10.0)
+_PHASES = tuple(
+    tuple(math.cos((j + 0.5) * math.pi / count) for j in range(count)) for count in range(_MOST_PHASES + 1)
+)
+
+
+def drain(path: Orbit, numbers: Numbers) -> Drain:
+    """What friction takes from a nutation on average: torque about the axis and power, per unit of friction.
+
+    The centre of mass rests horizontally, as it does on average: its own motion decays as exp(-mu g t) and
+    turns with no nutation. Then the slip is (omega x a) along the table, v_X = -h theta' and s v_Y = s^2
+    omega3 - (L_z - L3 c)(c - alpha) / I1, and the torque about the axis is -mu N s v_Y. N is that of the
+    smooth table, 1 + z'' with z = 1 - alpha c.
+    """
+    I1, I3, alpha = numbers
+    middle, half, far, excess, axial, swing = path
+    spin = axial / I3
+    weights = torque = power = 0.0
+    for cosine in phases(path):
+        p = middle + half * cosine
+        c = 1.0 - p
+        sine_squared = p * (2.0 - p)
+        inertia = I1 + alpha * alpha * sine_squared
+        about = excess + axial * p
+        room = swing - alpha * p
+        rate_squared = (2.0 * sine_squared * room - about * about / I1) / inertia
+        acceleration = (
+            2.0 * c * room - alpha * sine_squared - about * axial / I1 - rate_squared * alpha * alpha * c
+        ) / inertia
+        across = sine_squared * spin - about / I1 * (c - alpha)
+        height = 1.0 - alpha * c
+        weight = math.sqrt(inertia / (alpha * (far - p)))
+        pressed = weight * (1.0 + alpha * acceleration)
+        weights += weight
+        torque -= pressed * across
+        power -= pressed * (height * height * rate_squared + across * across) / sine_squared
+    return Drain(torque / weights, power / weights)
+
+
+def whirl_rates(pair: Whirls, root: float, jellett: float, numbers: Numbers) -> WhirlRates:
+    """Rates of a nutation's whirls per unit of friction coefficient, in natural units.
+
+    The rates of L3 and of the energy, at constant Jellett's integral, carried over by differentiating the sum
+    of the cubic's roots, the sum of their products in pairs, and L_z - L3.
+    """
+    I1, I3, alpha = numbers
+    path = orbit_of_whirls(pair, root, jellett, numbers)
+    taken = drain(path, numbers)
+    far, excess, axial = path.far, path.excess, path.axial
+    root = math.copysign(math.sqrt(abs(far)), root)
+    difference, both = pair.fast - pair.slow, 2.0 * path.middle
+    slope = excess_slope(numbers)
+    axial_rate = taken.axial
+    excess_rate = (alpha - 1.0) * axial_rate
+    swing_rate = taken.energy - axial / I3 * axial_rate
+    total_rate = (swing_rate + axial * axial_rate / I1) / alpha
+    pairs_rate = (2.0 * swing_rate - (excess * axial_rate + axial * excess_rate) / I1) / alpha
+
+    first = pairs_rate - far * total_rate
+    second = excess_rate / slope
+    span = 8.0 * difference * difference + 2.0 * far * (far - both)
+    far_slope = math.copysign(2.0 * root, root * alpha)
+    difference_rate = (first * difference - far_slope * (both - far) * second) / span
+    root_rate = (8.0 * difference * second - root * first) / span
+    sum_rate = (total_rate - far_slope * root_rate) / 4.0
+    return WhirlRates(
+        0.5 * (sum_rate + difference_rate) / pair.fast,
+        0.5 * (sum_rate - difference_rate) / pair.slow,
+        root_rate,
+    )
