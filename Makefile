@@ -4,13 +4,16 @@ VENV ?= .venv
 BIN = $(VENV)/bin
 OUT ?= tippetop-report
 
-.PHONY: reproduce test check lint types contract bench quick clean
+.PHONY: reproduce test test-browser check lint types contract bench quick clean
 
 reproduce: $(VENV)/.installed ## Redo the whole report into $(OUT)
 	$(BIN)/tippetop reproduce --out $(OUT) --force
 
 test: $(VENV)/.installed-dev ## Run the tests
 	$(BIN)/python -m pytest -n auto
+
+test-browser: $(VENV)/.installed-dev ## Run the tests of the laboratory's page; they need Debian's chromium
+	$(BIN)/python -m pytest -m browser
 
 check: lint types contract test ## All that a change must pass
 

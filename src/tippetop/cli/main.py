@@ -7,6 +7,7 @@ import typer
 
 from tippetop import __version__
 from tippetop.cli.critical import critical
+from tippetop.cli.lab import lab
 from tippetop.cli.problem import problem
 from tippetop.cli.reproduce import reproduce
 from tippetop.cli.simulate import simulate
@@ -20,6 +21,7 @@ app = typer.Typer(
 app.command()(simulate)
 app.command()(reproduce)
 app.command()(critical)
+app.command()(lab)
 app.command()(problem)
 
 MISUSE = 2

@@ -3,7 +3,7 @@
 import json
 import time
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -20,6 +20,12 @@ from tippetop.cli.options import (
     chosen_problem,
 )
 
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from tippetop.problem import Problem
+
+DEFAULT_SAMPLES = 2001
 IMAGES = {".png", ".svg", ".pdf"}
 
 
@@ -32,7 +38,9 @@ def simulate(
     liftoff: LiftOff = None,
     changes: Changes = None,
     duration: Annotated[float, typer.Option(help="Length of the run, s.")] = 20.0,
-    samples: Annotated[int, typer.Option(help="Number of samples.")] = 2001,
+    samples: Annotated[
+        int | None, typer.Option(help="Number of samples; 2001, or what a moving picture needs.")
+    ] = None,
     integrator: Annotated[
         str | None, typer.Option(help="taylor, dop853, rk45, radau, bdf, lsoda or rk4; the best installed.")
     ] = None,
@@ -40,6 +48,11 @@ def simulate(
     step: Annotated[float | None, typer.Option(help="Step of rk4, s.")] = None,
     out: Annotated[Path | None, typer.Option(help="Write the run as NetCDF.")] = None,
     plot: Annotated[Path | None, typer.Option(help="Draw the run as .png, .svg or .pdf.")] = None,
+    csv: Annotated[Path | None, typer.Option(help="Write every variable as CSV.")] = None,
+    glb: Annotated[Path | None, typer.Option(help="Write the moving top as an animated .glb.")] = None,
+    html: Annotated[Path | None, typer.Option(help="Write a page that plays the run offline.")] = None,
+    mp4: Annotated[Path | None, typer.Option(help="Write a film; needs ffmpeg.")] = None,
+    gif: Annotated[Path | None, typer.Option(help="Write a film as an animated picture.")] = None,
     as_json: Json = False,
     force: Force = False,
 ) -> None:
@@ -52,8 +65,17 @@ def simulate(
     settings = {"launch.spin": spin, "launch.tilt": tilt, "friction.mu": mu, "contact.liftoff": liftoff}
     chosen = chosen_problem(file, preset, settings, changes)
     _check_image(plot)
-    for path in filter(None, (out, plot)):
+    moving = {"glb": glb, "html": html, "mp4": mp4, "gif": gif}
+    files = {"out": out, "plot": plot, "csv": csv, **moving}
+    wanted = {kind: path for kind, path in files.items() if path is not None}
+    for path in wanted.values():
         refuse_overwriting(path, force)
+    if mp4 is not None:
+        from tippetop.export.movie import ffmpeg  # noqa: PLC0415 - slow to import
+
+        ffmpeg()
+    if samples is None:
+        samples = _samples(chosen, duration, any(moving.values()))
     began = time.perf_counter()
     run = run_problem(
         chosen, duration, samples=samples, integrator=integrator, tolerance=tolerance, step=step
@@ -67,12 +89,42 @@ def simulate(
 
         with written_beside(plot) as beside:
             save(overview(run), beside)
+    for kind in wanted:
+        _export(run, kind, wanted[kind], force)
     summary = summarize(run)
     if as_json:
-        files = {"out": out and str(out), "plot": plot and str(plot)}
-        typer.echo(json.dumps({**summary, **files, "problem": chosen.model_dump()}, indent=2))
+        written = {kind: path and str(path) for kind, path in files.items()}
+        typer.echo(json.dumps({**summary, **written, "problem": chosen.model_dump()}, indent=2))
     else:
-        _print_summary(summary, elapsed, [path for path in (out, plot) if path is not None])
+        _print_summary(summary, elapsed, list(wanted.values()))
+
+
+def _samples(problem: "Problem", duration: float, moving: bool) -> int:
+    """How many samples a run is given where nobody says."""
+    from tippetop.export.track import sample_count  # noqa: PLC0415 - slow to import
+
+    return max(DEFAULT_SAMPLES, sample_count(problem, duration)) if moving else DEFAULT_SAMPLES
+
+
+def _export(run: "xr.Dataset", kind: str, path: Path, force: bool) -> None:
+    """Write one of the moving pictures or the table of a run."""
+    match kind:
+        case "csv":
+            from tippetop.export.csv import write_csv  # noqa: PLC0415
+
+            write_csv(run, path, overwrite=force)
+        case "glb":
+            from tippetop.export.glb import write_glb  # noqa: PLC0415
+
+            write_glb(run, path, overwrite=force)
+        case "html":
+            from tippetop.export.html import write_html  # noqa: PLC0415
+
+            write_html(run, path, overwrite=force)
+        case "mp4" | "gif":
+            from tippetop.export.movie import write_movie  # noqa: PLC0415
+
+            write_movie(run, path, overwrite=force)
 
 
 def _check_image(plot: Path | None) -> None:

@@ -87,6 +87,9 @@ class FreeToFly:
             collision = impact(before, 0.0, top)
         hit = Event(EventKind.IMPACT, time, float(collision.impulse), float(collision.energy_lost))
         after = np.array(collision.state.pack())
+        if not collision.impulse:
+            # Nothing but rounding kept the contact from being a resting one.
+            return Transition(events, Sliding(self.top, self.numbers, self), after)
         if rebounds:
             return Transition((*events, hit), self._flight(Start.REBOUND), after)
         return self.resting(time, after, (*events, hit))

@@ -1,0 +1,1 @@
+"""Runs as files that others open: pictures that move, models that play, tables."""

@@ -1,0 +1,79 @@
+"""A run as one HTML file that plays it without a network."""
+
+import html
+from pathlib import Path
+
+import xarray as xr
+
+from tippetop import __version__
+from tippetop.export.bundle import packed, player_code, three_packed
+from tippetop.export.track import pack_run
+from tippetop.export.words import tell
+from tippetop.files import refuse_overwriting, written_beside
+
+_PAGE = """<!doctype html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta name="color-scheme" content="light dark">
+<meta name="generator" content="tippetop {version}">
+<title>{title}</title>
+<style>
+  html, body {{ height: 100%; margin: 0; }}
+  #player {{ height: 100%; }}
+</style>
+</head>
+<body>
+<div id="player"></div>
+<noscript>This page plays a run of a tippe top; it needs JavaScript.</noscript>
+<script type="text/plain" id="three">{three}</script>
+<script type="text/plain" id="run">{run}</script>
+<script type="module">
+{player}
+const text = (id) => document.getElementById(id).textContent;
+const three = await importText(new TextDecoder().decode(await unzip(text("three"))));
+const player = createPlayer(three, document.getElementById("player"), {{ theme: "auto" }});
+player.load(await unzip(text("run")));
+player.toggle(true);
+globalThis.tippetopPlayer = player;
+</script>
+</body>
+</html>
+"""
+
+
+def html_page(run: xr.Dataset) -> str:
+    """The page of a run.
+
+    Raises
+    ------
+    Unavailable
+        If three.js is not installed: it comes with NiceGUI.
+    """
+    story = tell(run)
+    return _PAGE.format(
+        version=__version__,
+        title=html.escape(f"Tippe top: {story.headline}"),
+        three=three_packed(),
+        run=packed(pack_run(run, story)),
+        player=player_code(),
+    )
+
+
+def write_html(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Path:
+    """Write a run as a self-contained HTML file that plays it in any browser, offline.
+
+    Raises
+    ------
+    FileTrouble
+        If the file exists and `overwrite` is false, or cannot be written.
+    Unavailable
+        If three.js is not installed: it comes with NiceGUI.
+    """
+    path = Path(path)
+    refuse_overwriting(path, overwrite)
+    page = html_page(run)
+    with written_beside(path) as beside:
+        beside.write_text(page, encoding="utf-8")
+    return path

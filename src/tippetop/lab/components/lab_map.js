@@ -1,0 +1,34 @@
+// The phase map on the page.
+
+import { watchTheme } from "tippetop-lab";
+import { PhaseMap } from "tippetop-lab/map.js";
+
+export default {
+  template: `<div class="lab-map">
+    <canvas tabindex="0" role="application" aria-label="Map of final tilts over spin and friction.
+      Arrow keys choose a cell, Enter launches it."></canvas>
+    <div class="lab-map-key" aria-hidden="true"><span>upright</span><i></i><span>inverted</span>
+      <b></b><span>leaves the table</span></div>
+    <p class="lab-map-tip" aria-live="polite"></p></div>`,
+  mounted() {
+    this.map = new PhaseMap(this.$el.querySelector("canvas"), this.$el.querySelector(".lab-map-tip"));
+    this.map.addEventListener("launch", ({ detail }) => this.$emit("launch", detail));
+    this.observer = watchTheme((dark) => this.map.setTheme(dark));
+  },
+  unmounted() {
+    this.observer?.disconnect();
+    this.map?.dispose();
+  },
+  methods: {
+    begin(map) {
+      this.$el.classList.add("lab-map-begun");
+      this.map.begin(map);
+    },
+    put(row, tilts, flights) {
+      this.map.put(row, tilts, flights);
+    },
+    here(spin, mu) {
+      this.map.here(spin, mu);
+    },
+  },
+};

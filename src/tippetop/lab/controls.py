@@ -1,0 +1,198 @@
+"""The launch controls: what can be set, between which bounds, and how it stands in a problem."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, get_args
+
+from nicegui import events, ui
+
+from tippetop.lab.setup import Setup
+from tippetop.problem import Friction
+from tippetop.validation import Part
+
+Change = Callable[[dict[str, Any], bool], None]
+"""Is told what to change, and whether the browser has asked for the new run already."""
+
+LAWS: dict[str, type[Part]] = {
+    law.model_fields["kind"].default: law for law in get_args(get_args(Friction)[0])
+}
+"""The friction laws by the word that tells them apart in a problem."""
+
+_NAMES = {"viscous": "viscous, −μNv", "regularized_coulomb": "Coulomb, smoothed"}
+
+
+@dataclass(frozen=True)
+class Dial:
+    """A number to set by a slider or by typing.
+
+    Attributes
+    ----------
+    label, unit
+        What it is.
+    low, high, step
+        Bounds and step of the slider; a number beyond them can be typed.
+    read
+        Its value in a setup; None where it has no meaning.
+    write
+        The changes that set it.
+    logarithmic
+        Whether the slider goes by powers of ten.
+    name
+        The field it sets, if it sets just that: the browser then asks for the new run by itself.
+    """
+
+    label: str
+    unit: str
+    low: float
+    high: float
+    step: float
+    read: Callable[[Setup], float | None]
+    write: Callable[[Setup, float], dict[str, Any]]
+    logarithmic: bool = False
+    name: str = ""
+
+
+def _field(
+    name: str, label: str, unit: str, low: float, high: float, step: float, logarithmic: bool = False
+) -> Dial:
+    """The dial of a field of a problem, named with dots."""
+
+    def read(setup: Setup) -> float | None:
+        value: Any = setup.problem
+        for part in name.split("."):
+            value = getattr(value, part, None)
+        return None if value is None else float(value)
+
+    def write(_setup: Setup, value: float) -> dict[str, Any]:
+        return {name: value}
+
+    return Dial(label, unit, low, high, step, read, write, logarithmic, name)
+
+
+def _inertia(name: str, label: str) -> Dial:
+    """The dial of an inertia, in units of mass times size squared."""
+
+    def unit(setup: Setup) -> float:
+        body = setup.problem.body
+        return body.mass * float(body.shape.law.size) ** 2
+
+    def read(setup: Setup) -> float | None:
+        return float(getattr(setup.problem.body, name)) / unit(setup)
+
+    def write(setup: Setup, value: float) -> dict[str, Any]:
+        return {f"body.{name}": value * unit(setup)}
+
+    return Dial(label, "mR²", 0.2, 0.7, 0.005, read, write)
+
+
+SPIN = _field("launch.spin", "Spin ω₃", "rad/s", 0.0, 250.0, 0.5)
+MU = _field("friction.mu", "Friction μ", "", 0.01, 10.0, 0.01, logarithmic=True)
+MAIN = (SPIN, _field("launch.tilt", "Tilt θ", "rad", 0.0, math.pi, 0.01), MU)
+TABLE = (
+    _field("contact.restitution", "Restitution", "", 0.0, 1.0, 0.01),
+    _field("gravity", "Gravity", "m/s²", 0.1, 25.0, 0.1),
+    Dial(
+        "Duration", "s", 1.0, 60.0, 1.0, lambda setup: setup.duration, lambda _, value: {"duration": value},
+        name="duration",
+    ),
+)  # fmt: skip
+TOP = (
+    _field("body.shape.eccentricity", "Eccentricity α", "", 0.02, 0.6, 0.01),
+    _inertia("I1", "Inertia I₁"),
+    _inertia("I3", "Inertia I₃"),
+    _field("body.mass", "Mass m", "kg", 0.002, 0.5, 0.001, logarithmic=True),
+)
+START = (
+    _field("launch.tilt_rate", "Tilt rate θ′", "rad/s", -50.0, 50.0, 0.5),
+    _field("launch.precession", "Precession φ′", "rad/s", -100.0, 100.0, 0.5),
+    _field("launch.gap", "Gap below", "m", 0.0, 0.1, 0.001),
+)
+
+
+class _Slider(ui.slider):
+    """A slider that goes where it is moved without waiting for an answer."""
+
+    LOOPBACK = False
+
+
+def _moved(dial: Dial) -> str:
+    """What the browser does when a slider moves: move it, and ask for the new run."""
+    value = "Number((10 ** at).toPrecision(3))" if dial.logarithmic else "at"
+    asked = f"tippetopLab.tune({dial.name!r}, {value});" if dial.name else ""
+    return f'(at) => {{ element.props["model-value"] = at; {asked} }}'
+
+
+class DialRow:
+    """A dial on the page: its name, a slider and a number, kept in step."""
+
+    def __init__(self, dial: Dial, current: Callable[[], Setup], change: Change) -> None:
+        self._dial, self._current, self._change = dial, current, change
+        self._quiet = False
+        self._marked: dict[str, float] = {}
+        name = dial.label + (f" ({dial.unit})" if dial.unit else "")
+        with ui.element("div").classes("lab-dial") as self.row:
+            ui.label(name).classes("lab-dial-name").props('aria-hidden="true"')
+            self.number = ui.number(on_change=None, format="%.6g").props(
+                f'dense outlined hide-bottom-space aria-label="{name}" step="any"'
+            )
+            self.number.on("change", self._typed)
+            low, high = self._place(dial.low), self._place(dial.high)
+            step = 0.01 if dial.logarithmic else dial.step
+            with ui.element("div").classes("lab-dial-slider"):
+                self.slider = _Slider(min=low, max=high, step=step, on_change=self._slid)
+                self.slider.props(f'aria-label="{name}" dense').mark(dial.label)
+                self.slider.on("update:model-value", js_handler=_moved(dial))
+                self.marks = ui.element("div").classes("lab-dial-marks")
+
+    def show(self, setup: Setup) -> None:
+        """Show the dial's value in a setup."""
+        value = self._dial.read(setup)
+        self.row.set_visibility(value is not None)
+        if value is None:
+            return
+        self._quiet = True
+        self.number.value = float(f"{value:.6g}")
+        self.slider.value = self._place(min(max(value, self._dial.low), self._dial.high))
+        self._quiet = False
+
+    def mark(self, marks: dict[str, float]) -> None:
+        """Mark values on the slider, by their names."""
+        if marks == self._marked:
+            return
+        self._marked = marks
+        self.marks.clear()
+        span = self._place(self._dial.high) - self._place(self._dial.low)
+        with self.marks:
+            for name, value in marks.items():
+                if self._dial.low < value < self._dial.high:
+                    share = (self._place(value) - self._place(self._dial.low)) / span
+                    ui.label(f"{name} {value:.1f}").style(f"left: {100 * share:.2f}%")
+
+    def _place(self, value: float) -> float:
+        return math.log10(value) if self._dial.logarithmic else value
+
+    def _slid(self, event: events.ValueChangeEventArguments[float | None]) -> None:
+        if self._quiet or event.value is None:
+            return
+        value = float(f"{10**event.value:.3g}") if self._dial.logarithmic else float(event.value)
+        self._quiet = True
+        self.number.value = float(f"{value:.6g}")
+        self._quiet = False
+        self._change(self._dial.write(self._current(), value), bool(self._dial.name))
+
+    def _typed(self) -> None:
+        if self.number.value is None:
+            self.show(self._current())
+        else:
+            self._change(self._dial.write(self._current(), float(self.number.value)), False)
+
+
+def law_choices() -> dict[str, str]:
+    """The friction laws by their word, with names to read."""
+    return {word: _NAMES.get(word, word.replace("_", " ")) for word in LAWS}
+
+
+def law_fields(word: str) -> list[str]:
+    """The numbers of a friction law other than mu."""
+    return [name for name, info in LAWS[word].model_fields.items() if name not in ("kind", "mu") and info]

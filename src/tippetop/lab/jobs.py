@@ -1,0 +1,79 @@
+"""What the worker processes of the laboratory do: a run for the page, a file of it, a map of many."""
+
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from tippetop.dataset import write_run
+from tippetop.export.csv import write_csv
+from tippetop.export.glb import write_glb
+from tippetop.export.html import write_html
+from tippetop.export.track import pack_run, sample_count
+from tippetop.lab.setup import Setup, first_setup
+from tippetop.simulate import simulate
+
+PHASES = 4000
+"""Slides and flights a run on the page may go through."""
+
+_WRITERS = {"nc": write_run, "csv": write_csv, "glb": write_glb, "html": write_html}
+KINDS = ("nc", "csv", "toml", "glb", "html")
+"""The files there are of a run, by their suffix."""
+
+
+class MapRow(NamedTuple):
+    """One row of a map: at one friction, launches with many spins.
+
+    Attributes
+    ----------
+    row
+        Its number.
+    tilts
+        Final tilts, rad.
+    flights
+        How many times each left the table.
+    """
+
+    row: int
+    tilts: list[float]
+    flights: list[int]
+
+
+def run_of(setup: Setup) -> xr.Dataset:
+    """The run of a launch, with samples enough to play it at any speed."""
+    count = sample_count(setup.problem, setup.duration)
+    return simulate(setup.problem, setup.duration, samples=count, phase_limit=PHASES)
+
+
+def track_of(setup: Setup) -> bytes:
+    """The run of a launch as the player takes it."""
+    return pack_run(run_of(setup))
+
+
+def file_of(setup: Setup, kind: str) -> bytes:
+    """The run of a launch as a file of one of the `KINDS`."""
+    if kind == "toml":
+        return setup.problem.to_toml().encode()
+    run = run_of(setup)
+    with tempfile.TemporaryDirectory() as folder:
+        return _WRITERS[kind](run, Path(folder) / f"run.{kind}").read_bytes()
+
+
+def map_rows(setup: Setup, spins: list[float], frictions: list[float]) -> Iterator[MapRow]:
+    """The final tilts over spin and friction coefficient, one row after the other."""
+    for row, mu in enumerate(frictions):
+        ends = [_end(setup.changed({"launch.spin": spin, "friction.mu": mu})) for spin in spins]
+        yield MapRow(row, [tilt for tilt, _ in ends], [flights for _, flights in ends])
+
+
+def _end(setup: Setup) -> tuple[float, int]:
+    run = simulate(setup.problem, setup.duration, times=np.array([setup.duration]), phase_limit=PHASES)
+    return float(run["theta"].values[-1]), run.sizes["flight"]
+
+
+def warm_up() -> None:
+    """Load the libraries and compile the equations: then a worker's first run is as fast as the next."""
+    track_of(first_setup().changed({"duration": 0.1}))

@@ -1,0 +1,69 @@
+"""A run in a Jupyter notebook: the same player as on the page, as a widget."""
+
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import xarray as xr
+
+from tippetop.errors import InvalidInput, Unavailable
+from tippetop.export.bundle import player_code, three_packed
+from tippetop.export.track import pack_run
+
+THEMES = ("auto", "light", "dark")
+
+
+def view(run: xr.Dataset, height: int = 480, theme: str = "auto") -> Any:
+    """A widget that plays a run; its `show(run)` plays another in its place.
+
+    Parameters
+    ----------
+    run
+        The run, as from `tippetop.simulate`.
+    height
+        Height of the widget, pixels.
+    theme
+        "light", "dark", or "auto" for what the browser prefers.
+
+    Raises
+    ------
+    InvalidInput
+        If there is no such theme, or the height is not positive.
+    Unavailable
+        If anywidget or NiceGUI (which brings three.js) is not installed.
+    """
+    if theme not in THEMES:
+        raise InvalidInput("theme", theme, ", ".join(THEMES))
+    if height <= 0:
+        raise InvalidInput("height", height, "a number of pixels greater than 0")
+    return _widget()(track=pack_run(run), height=height, theme=theme)
+
+
+@cache
+def module_code() -> str:
+    """The widget's module: the player, three.js as text, and what joins them to a notebook."""
+    joint = (Path(__file__).parent / "components" / "notebook.js").read_text(encoding="utf-8")
+    return f'{player_code()}\nconst THREE_PACKED = "{three_packed()}";\n{joint}'
+
+
+@cache
+def _widget() -> Any:
+    try:
+        import anywidget  # noqa: PLC0415 - optional
+        import traitlets  # noqa: PLC0415 - comes with anywidget
+    except ImportError:
+        raise Unavailable("a run is shown in a notebook by anywidget: pip install 'tippetop[lab]'") from None
+
+    def show(self: Any, run: xr.Dataset) -> None:
+        """Play another run in the same widget."""
+        self.track = pack_run(run)
+
+    members = {
+        "__doc__": "A run that plays.",
+        "_esm": module_code(),
+        "track": traitlets.Bytes().tag(sync=True),
+        "height": traitlets.Int(480).tag(sync=True),
+        "theme": traitlets.Unicode("auto").tag(sync=True),
+        "show": show,
+    }
+    return type("RunView", (anywidget.AnyWidget,), members)

@@ -1,0 +1,121 @@
+"""The laboratory's server: the page, the runs it asks for, and the files of a run."""
+
+import socket
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Any
+
+from tippetop.errors import TippetopError, Unavailable
+from tippetop.lab.setup import read_query
+from tippetop.lab.workers import Workers
+
+TRACK_PATH = "/lab/track"
+FILE_PATH = "/lab/file"
+
+_TYPES = {
+    "nc": "application/x-netcdf",
+    "csv": "text/csv; charset=utf-8",
+    "toml": "application/toml; charset=utf-8",
+    "glb": "model/gltf-binary",
+    "html": "text/html; charset=utf-8",
+}
+
+
+def serve(
+    host: str = "127.0.0.1",
+    port: int = 8421,
+    browser: bool = True,
+    workers: int | None = None,
+    announce: Callable[[str], None] = print,
+) -> None:
+    """Serve the laboratory until interrupted.
+
+    Parameters
+    ----------
+    host, port
+        Where to listen.
+    browser
+        Whether to open the page in a browser.
+    workers
+        How many processes simulate; None for as many as the machine has to spare.
+    announce
+        Is told the address, in a sentence.
+
+    Raises
+    ------
+    Unavailable
+        If NiceGUI is not installed, or the port is taken.
+    """
+    try:
+        from nicegui import app, ui  # noqa: PLC0415 - optional
+    except ImportError:
+        raise Unavailable("the laboratory needs NiceGUI: pip install 'tippetop[lab]'") from None
+    from tippetop.lab.page import register_page  # noqa: PLC0415 - needs NiceGUI
+
+    _check_free(host, port)
+    pool = Workers(workers)
+    _add_routes(app, pool)
+    register_page(pool)
+    app.on_startup(lambda: announce(f"the laboratory is at http://{_shown(host)}:{port}/ (Ctrl-C ends it)"))
+    try:
+        ui.run(
+            host=host,
+            port=port,
+            title="Tippe top laboratory",
+            favicon="🍄",
+            dark=None,
+            show=browser,
+            reload=False,
+            tailwind=False,
+            show_welcome_message=False,
+            message_history_length=100,
+        )
+    finally:
+        pool.close()
+
+
+def _check_free(host: str, port: int) -> None:
+    try:
+        family = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0][0]
+    except OSError as error:
+        raise Unavailable(f"{host} is no address to listen at: {error.strerror}") from None
+    with socket.socket(family, socket.SOCK_STREAM) as trial:
+        trial.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            trial.bind((host, port))
+        except OSError as error:
+            raise Unavailable(
+                f"port {port} of {host} cannot be listened at ({error.strerror}); choose another with --port"
+            ) from None
+
+
+def _shown(host: str) -> str:
+    return f"[{host}]" if ":" in host else host
+
+
+def _add_routes(app: Any, pool: Workers) -> None:
+    """The runs and files by the launch in their address; nothing is kept between one request and the next."""
+    from fastapi import Request, Response  # noqa: PLC0415 - comes with NiceGUI
+
+    def answer(work: Callable[[], bytes], kind: str, name: str | None = None) -> Response:
+        try:
+            content = work()
+        except TippetopError as error:
+            return Response(str(error), status_code=422, media_type="text/plain")
+        # Numbers hardly compress; saying that they are as they are keeps them from being tried.
+        headers = {"Cache-Control": "no-store", "Content-Encoding": "identity"}
+        if name is not None:
+            headers["Content-Disposition"] = f'attachment; filename="{name}"'
+        return Response(content, media_type=kind, headers=headers)
+
+    def track(request: Request) -> Response:
+        return answer(lambda: pool.track(read_query(request.query_params)), "application/octet-stream")
+
+    def file(kind: str, request: Request) -> Response:
+        media = _TYPES.get(kind, "text/plain")
+        return answer(lambda: pool.file(read_query(request.query_params), kind), media, f"tippetop.{kind}")
+
+    with suppress(AttributeError):
+        track.__annotations__["request"] = file.__annotations__["request"] = Request
+    app.add_api_route(TRACK_PATH, track, methods=["GET"], response_model=None)
+    app.add_api_route(FILE_PATH + "/tippetop.{kind}", file, methods=["GET"], response_model=None)

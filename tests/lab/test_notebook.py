@@ -1,0 +1,71 @@
+"""The widget, and the notebook that shows it."""
+
+import base64
+import json
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+import tippetop as tt
+
+pytest.importorskip("anywidget", reason="anywidget shows runs in notebooks; it comes with the lab extra")
+pytest.importorskip("nicegui", reason="NiceGUI brings three.js; it comes with the lab extra")
+
+from tippetop.lab.notebook import module_code, view
+
+NOTEBOOK = Path(__file__).parents[2] / "notebooks" / "tippe_top.ipynb"
+
+HOST = """async ([code, first, second]) => {
+  const bytes = (text) => new DataView(Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer);
+  const values = { track: bytes(first), height: 300, theme: "dark" };
+  const calls = {};
+  const model = { get: (name) => values[name], on: (name, call) => (calls[name] = call), off: () => {} };
+  const url = URL.createObjectURL(new Blob([code], { type: "text/javascript" }));
+  const widget = (await import(url)).default;
+  const clean = await widget.render({ model, el: document.body });
+  const words = () => document.querySelector(".tt-words strong").textContent;
+  const before = words();
+  values.track = bytes(second);
+  calls["change:track"]();
+  await new Promise((done) => setTimeout(done, 300));
+  const drawn = document.querySelector("canvas.tt-canvas").width;
+  const after = words();
+  clean();
+  return [before, after, drawn];
+}"""
+
+
+def test_the_widget_plays_a_run_and_then_another(visit: Callable) -> None:
+    runs = [tt.simulate(tt.presets.report_problem(spin=spin), 1.0, samples=400) for spin in (20.0, 155.0)]
+    widget = view(runs[0], height=300)
+    first = widget.track
+    widget.show(runs[1])
+    visitor = visit()
+    visitor.page.goto("about:blank")
+    blocks = [base64.b64encode(block).decode() for block in (first, widget.track)]
+    before, after, drawn = visitor.ask(HOST, [module_code(), *blocks])
+    assert before.startswith("stays upright")
+    assert after != before
+    assert drawn > 100
+    widget.close()
+
+
+def test_the_widget_refuses_what_it_cannot_be() -> None:
+    run = tt.simulate(tt.presets.report_problem(), 0.1, samples=5)
+    with pytest.raises(tt.InvalidInput, match="auto, light, dark"):
+        view(run, theme="pink")
+    with pytest.raises(tt.InvalidInput, match="height"):
+        view(run, height=0)
+
+
+def test_the_notebook_runs_from_top_to_bottom(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    cells = json.loads(NOTEBOOK.read_text(encoding="utf-8"))["cells"]
+    names: dict[str, object] = {}
+    for cell in cells:
+        if cell["cell_type"] == "code":
+            assert cell["outputs"] == [], "it is kept without outputs"
+            exec("".join(cell["source"]), names)
+    assert set(os.listdir(tmp_path)) == {"flying.html", "flying.glb", "flying.csv"}

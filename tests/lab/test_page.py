@@ -1,0 +1,266 @@
+"""The page in a real browser, as its visitors use it."""
+
+import re
+import tomllib
+from collections.abc import Callable
+from pathlib import Path
+from urllib.parse import parse_qs, urlparse
+
+import numpy as np
+import pytest
+
+import tippetop as tt
+from tippetop.export.words import tell
+from tippetop.theory.thresholds import critical_spins
+
+SLIDER = ".q-slider__track-container"
+
+# How many shades there are in the scene, what share is the toy's blue, and where that is from left to right.
+COLOURS = """() => {
+  const { scene } = tippetopLab.player;
+  scene.draw(6.5);
+  const gl = scene.renderer.getContext();
+  const [width, height] = [gl.drawingBufferWidth, gl.drawingBufferHeight];
+  const data = new Uint8Array(4 * width * height);
+  gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, data);
+  const blue = [];
+  const shades = new Set();
+  for (let i = 0; i < data.length; i += 4) {
+    shades.add((data[i] >> 3) * 4096 + (data[i + 1] >> 3) * 64 + (data[i + 2] >> 3));
+    if (data[i + 2] > data[i] + 50) blue.push((i / 4) % width / width);
+  }
+  return [shades.size, blue.length / (width * height), blue.reduce((a, b) => a + b, 0) / blue.length];
+}"""
+
+
+def luminance(colour: list[float]) -> float:
+    """Relative luminance of an sRGB colour, as WCAG defines it."""
+    value = np.array(colour) / 255
+    linear = np.where(value <= 0.04045, value / 12.92, ((value + 0.055) / 1.055) ** 2.4)
+    return float(linear @ [0.2126, 0.7152, 0.0722])
+
+
+def test_a_visitor_sees_the_top_turn_over(server: str, visit: Callable) -> None:
+    visitor = visit().open(server)
+    page = visitor.page
+    expected = tell(tt.simulate(tt.presets.report_problem(), 20.0, samples=5001)).headline
+    assert page.locator(".tt-words strong").inner_text().lower() == expected
+    visitor.wait("() => tippetopLab.player.time > 0.2")  # it plays
+    visitor.pause(6.5)
+    shades, share, middle = visitor.ask(COLOURS)
+    assert shades > 100, "lit, not flat"
+    assert 0.01 < share < 0.3
+    assert middle == pytest.approx(0.5, abs=0.1), "the camera follows the top"
+    spins = critical_spins(tt.presets.report_problem())
+    marks = page.locator(".lab-dial-marks").first.inner_text()
+    assert f"{spins.upright:.1f}" in marks
+    assert f"{spins.inverted:.1f}" in marks
+
+
+def test_the_player_shows_the_simulation_at_any_time(server: str, visit: Callable) -> None:
+    visitor = visit().open(f"{server}/?launch.spin=175&duration=10")
+    times = np.sort(np.random.default_rng(4).uniform(0.0, 10.0, 200))
+    exact = tt.simulate(tt.presets.report_problem(spin=175.0), 10.0, times=times)
+    shown = visitor.ask(
+        """(times) => times.map((t) => { const { orientation, position } = tippetopLab.player.track.at(t);
+        return [...orientation, ...position]; })""",
+        times.tolist(),
+    )
+    quaternions, positions = np.array(shown)[:, :4], np.array(shown)[:, 4:]
+    overlap = np.abs(np.einsum("ij,ij->i", quaternions, exact["orientation"].values))
+    assert 2 * np.arccos(np.clip(overlap, 0, 1)).max() < 5e-3
+    assert positions == pytest.approx(exact[["x", "y", "height"]].to_array().values.T, abs=2e-5)
+    flights = visitor.ask("() => tippetopLab.player.track.header.flights")
+    run = tt.simulate(tt.presets.report_problem(spin=175.0), 10.0)
+    assert np.array(flights)[:, 0] == pytest.approx(run["flight_start"].values)
+
+
+def test_dragging_a_slider_simulates_at_once(server: str, visit: Callable) -> None:
+    visitor = visit().open(server)
+    visitor.pause()
+    box = visitor.page.locator(SLIDER).first.bounding_box()
+    middle = box["y"] + box["height"] / 2
+    visitor.page.mouse.move(box["x"] + box["width"] * 155 / 250, middle)
+    visitor.page.mouse.down()
+    visitor.page.mouse.move(box["x"] + box["width"] * 60 / 250, middle, steps=6)
+    visitor.page.mouse.move(box["x"] + box["width"] * 20 / 250, middle, steps=6)
+    visitor.page.mouse.up()
+    visitor.launched("problem.launch.spin < 25")
+    spin = visitor.ask("() => tippetopLab.player.track.header.problem.launch.spin")
+    headline = tell(tt.simulate(tt.presets.report_problem(spin=spin), 20.0)).headline
+    visitor.wait("(words) => document.querySelector('.tt-words strong').textContent === words", headline)
+    visitor.wait("(spin) => document.querySelector('.lab-dial input').value === String(spin)", spin)
+    visitor.wait("(spin) => new URLSearchParams(location.search).get('launch.spin') === String(spin)", spin)
+
+
+def test_time_is_one_for_scene_plots_and_strip(server: str, visit: Callable) -> None:
+    visitor = visit().open(f"{server}/?launch.spin=175")
+    visitor.pause(5.0)
+    strip = visitor.page.locator(".tt-scrub input")
+    box = strip.bounding_box()
+    visitor.page.mouse.click(box["x"] + 0.4 * box["width"], box["y"] + box["height"] / 2)
+    visitor.wait("() => Math.abs(tippetopLab.player.time - 8) < 0.1")
+    visitor.page.locator(".lab-plots-overlay").scroll_into_view_if_needed()
+    plot = visitor.page.locator(".lab-plots-overlay").bounding_box()
+    first, last = plot["x"] + 58, plot["x"] + plot["width"] / 2 - 14
+    visitor.page.mouse.move(first + 5, plot["y"] + 90)
+    visitor.page.mouse.down()
+    visitor.page.mouse.move(first + 0.25 * (last - first), plot["y"] + 90, steps=4)
+    visitor.page.mouse.up()
+    visitor.wait("() => Math.abs(tippetopLab.player.time - 5) < 0.1")
+    cursor = visitor.page.locator(".lab-plot-cursor").first.bounding_box()
+    assert cursor["x"] == pytest.approx(first + 0.25 * (last - first), abs=2.5)
+    shown = float(visitor.page.locator(".lab-plot-title b").first.inner_text())
+    time = visitor.ask("() => tippetopLab.player.time")
+    theta = tt.simulate(tt.presets.report_problem(spin=175.0), 20.0, times=[0.0, time])["theta"][-1]
+    assert shown == pytest.approx(float(theta), abs=5e-3)  # straight between samples
+
+
+def test_everything_is_within_reach_of_the_keyboard(server: str, visit: Callable) -> None:
+    visitor = visit().open(server)
+    visitor.pause(1.0)
+    page = visitor.page
+    page.locator("canvas.tt-canvas").focus()
+    page.keyboard.press("ArrowRight")
+    assert visitor.ask("() => tippetopLab.player.time") == pytest.approx(1.0 + 1 / 60)
+    page.keyboard.press(" ")
+    visitor.wait("() => tippetopLab.player.playing && tippetopLab.player.time > 1.05")
+    page.keyboard.press(" ")
+    assert not visitor.ask("() => tippetopLab.player.playing")
+    page.locator("[data-do=speed]").select_option(label="1/1000")
+    start = visitor.ask("() => { tippetopLab.player.seek(2); return 2; }")
+    page.locator("canvas.tt-canvas").focus()
+    page.keyboard.press("ArrowRight")
+    assert visitor.ask("() => tippetopLab.player.time") == pytest.approx(start + 1 / 60_000)
+    seen = set()
+    page.locator("body").click(position={"x": 3, "y": 3})
+    for _ in range(40):
+        page.keyboard.press("Tab")
+        seen.add(
+            visitor.ask(
+                """() => { const e = document.activeElement; return e.getAttribute("aria-label") ||
+                (e.matches("button, a") && e.textContent.trim()) ||
+                e.closest("[aria-label]")?.getAttribute("aria-label"); }"""
+            )
+        )
+    wanted = {"Play", "Time", "Speed", "View", "Spin ω₃ (rad/s)", "Tilt θ (rad)", "Friction μ", "Zoom in"}
+    assert wanted <= seen
+
+
+def test_what_cannot_be_is_refused_with_a_sentence(server: str, visit: Callable) -> None:
+    visitor = visit().open(f"{server}/?launch.tilt=9")
+    page = visitor.page
+    assert "launch.tilt = 9 is not possible" in page.locator(".lab-refused").inner_text()
+    assert visitor.ask("() => tippetopLab.player.track.header.problem.launch.tilt") == 0.1
+    number = page.get_by_label("Tilt θ (rad)").and_(page.locator("input"))
+    number.fill("-1")
+    number.press("Enter")
+    page.get_by_text(
+        re.compile("launch.tilt = -1.0 is not possible; accepted: a number at least 0")
+    ).wait_for()
+    number.fill("0.2")
+    number.press("Enter")
+    visitor.launched("problem.launch.tilt === 0.2")
+    assert not page.locator(".lab-refused").is_visible()
+
+
+def test_a_cell_of_the_map_is_a_launch(server: str, visit: Callable) -> None:
+    visitor = visit().open(f"{server}/?duration=4")
+    page = visitor.page
+    page.get_by_role("button", name="Compute").click()
+    page.locator(".lab-map-tip", has_text="Point at a cell").wait_for()
+    page.locator(".lab-note", has_text="1 of").or_(
+        page.locator(".lab-note", has_text="2 of")
+    ).first.wait_for()
+    canvas = page.locator(".lab-map canvas")
+    canvas.scroll_into_view_if_needed()
+    box = canvas.bounding_box()
+    page.mouse.move(box["x"] + 54 + 0.5 * (box["width"] - 64), box["y"] + box["height"] - 42)
+    tip = page.locator(".lab-map-tip").inner_text()
+    spin, mu, angle = (float(number) for number in re.findall(r"(?:spin|μ|at) ([\d.]+)", tip))
+    page.mouse.down()
+    page.mouse.up()
+    visitor.launched(
+        f"Math.abs(problem.launch.spin - {spin}) < 0.5 && Math.abs(problem.friction.mu / {mu} - 1) < 0.01"
+    )
+    problem = visitor.ask("() => tippetopLab.player.track.header.problem")
+    run = tt.simulate(tt.Problem(**problem), 4.0)
+    assert np.degrees(float(run["theta"][-1])) == pytest.approx(angle, abs=0.051)
+    canvas.focus()
+    page.keyboard.press("ArrowLeft")
+    page.keyboard.press("ArrowLeft")
+    page.keyboard.press("Enter")
+    visitor.launched(f"problem.launch.spin < {spin} - 1")
+
+
+def test_two_visitors_do_not_disturb_each_other(server: str, visit: Callable) -> None:
+    one, two = visit().open(f"{server}/?launch.spin=100"), visit().open(f"{server}/?launch.spin=50")
+    one.pause()
+    two.pause()
+    for visitor, key in ((one, "ArrowRight"), (two, "ArrowLeft")):
+        visitor.page.locator(SLIDER).first.focus()
+        for _ in range(4):
+            visitor.page.keyboard.press(key)
+    one.launched("problem.launch.spin === 102")
+    two.launched("problem.launch.spin === 48")
+    one.page.locator(SLIDER).nth(1).focus()
+    one.page.keyboard.press("ArrowRight")
+    one.launched("problem.launch.spin === 102 && problem.launch.tilt > 0.1")
+    assert two.ask("() => tippetopLab.player.track.header.problem.launch") | {"slip": None} == {
+        "spin": 48, "tilt": 0.1, "azimuth": 0, "tilt_rate": 0, "precession": 0, "gap": 0, "slip": None,
+    }  # fmt: skip
+
+
+def test_a_link_holds_the_launch(server: str, visit: Callable) -> None:
+    query = (
+        "launch.spin=120&launch.slip=%5B0.1%2C0.0%5D&friction.kind=regularized_coulomb&friction.mu=0.2"
+        "&friction.eps=0.002&contact.liftoff=stop&body.shape.eccentricity=0.25&gravity=9.81&duration=7"
+    )
+    visitor = visit().open(f"{server}/?{query}")
+    problem = tt.Problem(**visitor.ask("() => tippetopLab.player.track.header.problem"))
+    assert problem.friction == tt.RegularizedCoulombFriction(mu=0.2, eps=0.002)
+    assert problem.launch.slip == (0.1, 0.0)
+    link = visitor.ask("() => tippetopLab.link")
+    other = visit().open(link)
+    assert tt.Problem(**other.ask("() => tippetopLab.player.track.header.problem")) == problem
+    assert parse_qs(urlparse(link).query)["duration"] == ["7"]
+
+
+def test_downloads_open_again(files: dict[str, Path]) -> None:
+    problem = tt.presets.report_problem(spin=175.0)
+    run = tt.read_run(files["nc"])
+    assert tt.Problem.from_json(run.attrs["problem"]) == problem
+    assert float(run["time"][-1]) == 7.0
+    assert tt.Problem.read(files["toml"]) == problem
+    assert tomllib.loads(files["toml"].read_text())["launch"]["spin"] == 175.0
+    assert len(files["csv"].read_text().splitlines()) == run.sizes["time"] + 1
+    model = pytest.importorskip("pygltflib").GLTF2().load(str(files["glb"]))
+    assert len(model.animations) == 1
+
+
+def test_the_html_file_plays_without_a_network(files: dict[str, Path], visit: Callable) -> None:
+    visitor = visit(offline=True)
+    visitor.page.goto(files["html"].as_uri())
+    visitor.wait("() => globalThis.tippetopPlayer?.time > 0.1")
+    assert "leaves the table" in visitor.page.locator(".tt-words strong").inner_text()
+    assert [url for url in visitor.requests if not url.startswith(("file:", "blob:", "data:"))] == []
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_the_page_fits_a_phone_in_light_and_dark(server: str, visit: Callable, scheme: str) -> None:
+    visitor = visit(
+        viewport={"width": 390, "height": 780}, color_scheme=scheme, has_touch=True, is_mobile=True
+    ).open(server)
+    assert visitor.ask("() => document.documentElement.scrollWidth") <= 390
+    assert visitor.ask("() => tippetopLab.player.dark") is (scheme == "dark")
+    ink, paper = visitor.ask(
+        """() => { const s = getComputedStyle(document.querySelector(".lab-controls"));
+        return [s.color, s.backgroundColor].map((c) => c.match(/[\\d.]+/g).slice(0, 3).map(Number)); }"""
+    )
+    bright, dim = sorted((luminance(ink), luminance(paper)), reverse=True)
+    assert (bright + 0.05) / (dim + 0.05) > 7, "text is told from its background (WCAG AAA)"
+    small = visitor.ask(
+        """() => [...document.querySelectorAll(".tt-bar button")].map((b) => b.getBoundingClientRect())
+        .filter((box) => Math.min(box.width, box.height) < 32).length"""
+    )
+    assert small == 0, "buttons are large enough for a thumb"
