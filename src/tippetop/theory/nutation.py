@@ -1,4 +1,4 @@
-"""Nutation of an eccentric sphere on a smooth table, and what a little friction takes from it.
+"""Nutation of an eccentric sphere on a smooth table: its constants, its turning points, its two whirls.
 
 Without friction L_z, L3 = L.n and the energy are constant, and the tilt swings between two turning points.
 In units of mass, radius and gravity, with p = 1 - cos(theta), q = L_z - L3 and e the energy above that of
