@@ -163,8 +163,9 @@ def test_jellett_and_energy_hold_for_every_tippe_top(problem):
         assert largest(run.energy - before - run.work) <= 1e-11 * most
     lengths = np.linalg.norm(run.axis, axis=1)
     np.testing.assert_allclose(lengths, 1.0, rtol=0, atol=1e-12)
-    if problem.contact.liftoff == "stop":
-        # A table that does not pull takes energy and never gives any.
+    if problem.contact.liftoff == "stop" and run.sizes["time"] > 1:
+        # A table that does not pull takes energy and never gives any. (A launch that it would have to hold
+        # down ends where it begins.)
         assert most == pytest.approx(before, rel=1e-11)
         assert np.all(np.diff(run.work) <= 1e-13 * before)
         assert float(run.normal_force.min()) >= -1e-12 * problem.body.mass * problem.gravity
