@@ -11,6 +11,7 @@ from tippetop.cli.lab import lab
 from tippetop.cli.problem import problem
 from tippetop.cli.reproduce import reproduce
 from tippetop.cli.simulate import simulate
+from tippetop.cli.sweep import sweep
 from tippetop.errors import TippetopError
 
 app = typer.Typer(
@@ -21,6 +22,7 @@ app = typer.Typer(
 app.command()(simulate)
 app.command()(reproduce)
 app.command()(critical)
+app.command()(sweep)
 app.command()(lab)
 app.command()(problem)
 

@@ -1,0 +1,262 @@
+"""`tippetop sweep`: many launches, kept in a store, with maps beside it."""
+
+import json
+import sys
+import time
+import tomllib
+from collections import Counter
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from tippetop.cli.options import (
+    Changes,
+    Force,
+    Json,
+    LiftOff,
+    Mu,
+    Preset,
+    Spin,
+    Tilt,
+    chosen_problem,
+)
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from tippetop.problem import Problem
+    from tippetop.sweep import Draws, Product, Progress, Sweep
+    from tippetop.sweep.run import Watcher
+
+INTERRUPTED = 130
+
+
+def sweep(
+    file: Annotated[
+        Path | None,
+        typer.Argument(
+            help="Sweep (.toml with axes or draws), or problem to start from; else the report's top."
+        ),
+    ] = None,
+    preset: Preset = None,
+    spin: Spin = None,
+    tilt: Tilt = None,
+    mu: Mu = None,
+    liftoff: LiftOff = None,
+    changes: Changes = None,
+    axis: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="FIELD=VALUES",
+            help="Values of a field: FIRST:LAST:COUNT, FIRST:LAST:COUNT:geo or A,B,C. Axes cross.",
+        ),
+    ] = None,
+    draw: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="FIELD=LOW:HIGH", help="Draw a field at random instead; append :log for its log."
+        ),
+    ] = None,
+    count: Annotated[int | None, typer.Option(help="Number of draws.")] = None,
+    seed: Annotated[int, typer.Option(help="What the draws follow from.")] = 0,
+    duration: Annotated[float | None, typer.Option(help="Length of every run, s; 20 if left out.")] = None,
+    tolerance: Annotated[
+        float | None, typer.Option(help="Relative error per step; 1e-9 if left out.")
+    ] = None,
+    workers: Annotated[
+        int | None, typer.Option(help="Number of processes; all processors if left out.")
+    ] = None,
+    scheduler: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="Compute on a running dask.distributed cluster.")
+    ] = None,
+    out: Annotated[Path, typer.Option(help="Zarr store to write.")] = Path("sweep.zarr"),
+    resume: Annotated[bool, typer.Option("--resume", help="Finish a store that is there.")] = False,
+    maps: Annotated[bool, typer.Option(help="Draw maps beside the store.")] = True,
+    as_json: Json = False,
+    force: Force = False,
+) -> None:
+    """See what becomes of many launches: over axes that cross, or draws at random."""
+    from tippetop.errors import InvalidInput  # noqa: PLC0415 - slow to import
+    from tippetop.sweep import Store, fill  # noqa: PLC0415
+    from tippetop.sweep.store import read_sweep  # noqa: PLC0415
+
+    if resume and force:
+        raise InvalidInput("--force", "--resume", "one of the two")
+    settings = {"launch.spin": spin, "launch.tilt": tilt, "friction.mu": mu, "contact.liftoff": liftoff}
+    over = (axis, draw, count, seed)
+    kept = read_sweep(out) if resume and file is None else None
+    chosen = _chosen_sweep(file, kept, preset, settings, changes, over, duration, tolerance)
+    store = Store.resume(out, chosen) if resume else Store.create(out, chosen, force)
+    began = time.perf_counter()
+    progress: list[Progress] = []
+    with _shown(progress, silent=as_json or not sys.stderr.isatty()) as watcher:
+        try:
+            fill(store, workers=workers, scheduler=scheduler, watcher=watcher)
+        except KeyboardInterrupt:
+            done = f"{progress[-1].done} of {progress[-1].cells} cells" if progress else "the grid"
+            typer.echo(f"tippetop: interrupted; {done} are in {out}: go on with --resume", err=True)
+            raise typer.Exit(INTERRUPTED) from None
+    dataset = store.dataset()
+    pictures = _draw_maps(dataset, out) if maps else []
+    summary = _summary(dataset, progress[-1], time.perf_counter() - began)
+    if as_json:
+        files = {"out": str(out), "maps": [str(path) for path in pictures]}
+        typer.echo(json.dumps({**summary, **files, "sweep": store.sweep.describe()}, indent=2))
+    else:
+        _print_summary(summary, [out, *pictures])
+
+
+def _chosen_sweep(
+    file: Path | None,
+    kept: "Sweep | None",
+    preset: str | None,
+    settings: dict[str, Any],
+    changes: list[str] | None,
+    over: tuple[list[str] | None, list[str] | None, int | None, int],
+    duration: float | None,
+    tolerance: float | None,
+) -> "Sweep":
+    """The sweep that the file, or the store to be resumed, and the options ask for."""
+    from dataclasses import replace  # noqa: PLC0415
+
+    from tippetop.errors import InvalidInput  # noqa: PLC0415 - slow to import
+    from tippetop.sweep import Sweep  # noqa: PLC0415
+
+    base = Sweep.read(file) if file is not None and _holds_sweep(file) else kept
+    grid = _chosen_grid(*over)
+    problem = _changed(base.problem, preset, settings, changes) if base else None
+    problem = problem or chosen_problem(file, preset, settings, changes)
+    times = {k: v for k, v in (("duration", duration), ("tolerance", tolerance)) if v is not None}
+    if base is not None:
+        return replace(base, problem=problem, grid=grid or base.grid, **times)
+    if grid is None:
+        raise InvalidInput("--axis", "nothing", "at least one axis, or --draw, or a sweep's file")
+    return Sweep(problem, grid, **times)
+
+
+def _changed(
+    problem: "Problem", preset: str | None, settings: dict[str, Any], changes: list[str] | None
+) -> "Problem":
+    """A problem with a preset body and some fields changed."""
+    from tippetop import presets  # noqa: PLC0415 - slow to import
+    from tippetop.cli.options import _parsed  # noqa: PLC0415
+
+    if preset is not None:
+        problem = problem.model_copy(update={"body": presets.body(preset)})
+    given = {field: value for field, value in settings.items() if value is not None}
+    return problem.replace({**given, **dict(_parsed(change) for change in changes or [])})
+
+
+def _chosen_grid(
+    axis: list[str] | None, draw: list[str] | None, count: int | None, seed: int
+) -> "Product | Draws | None":
+    """The grid that the options ask for, if they do."""
+    from tippetop.errors import InvalidInput  # noqa: PLC0415 - slow to import
+    from tippetop.sweep import Axis, Draws, Product, Range  # noqa: PLC0415
+
+    if axis and draw:
+        raise InvalidInput("--draw", draw[0], "axes or draws, not both")
+    if axis:
+        return Product(tuple(Axis.parse(text) for text in axis))
+    if draw:
+        if count is None:
+            raise InvalidInput("--count", count, "the number of draws")
+        return Draws(tuple(Range.parse(text) for text in draw), count, seed)
+    return None
+
+
+def _holds_sweep(file: Path) -> bool:
+    """Whether a file is a sweep's rather than a problem's."""
+    from tippetop.sweep.definition import is_sweep  # noqa: PLC0415 - slow to import
+
+    try:
+        return file.suffix != ".json" and is_sweep(tomllib.loads(file.read_text(encoding="utf-8")))
+    except (OSError, ValueError):
+        return False
+
+
+@contextmanager
+def _shown(seen: list["Progress"], silent: bool) -> Iterator["Watcher"]:
+    """A watcher that keeps what it is told, and shows it on a terminal."""
+    from rich.console import Console  # noqa: PLC0415
+    from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn  # noqa: PLC0415
+    from rich.progress import Progress as Bar  # noqa: PLC0415
+
+    columns = (
+        BarColumn(bar_width=None),
+        MofNCompleteColumn(),
+        TextColumn("{task.fields[rate]}"),
+        TimeElapsedColumn(),
+        TextColumn("{task.fields[left]}"),
+    )
+    with Bar(*columns, console=Console(stderr=True), disable=silent, transient=True) as bar:
+        shown = bar.add_task("sweep", total=None, rate="", left="")
+
+        def watcher(progress: "Progress") -> None:
+            seen.append(progress)
+            left = progress.time_left
+            bar.update(
+                shown,
+                total=progress.cells,
+                completed=progress.done,
+                rate=f"{progress.rate:,.0f} launches/s" if progress.rate else "",
+                left="" if left is None else f"{left:,.0f} s left",
+            )
+
+        yield watcher
+
+
+def _draw_maps(dataset: "xr.Dataset", out: Path) -> list[Path]:
+    """Draw the maps that the sweep's dimensions allow, beside the store."""
+    from tippetop.figures.maps import MAPPED, phase_map  # noqa: PLC0415 - slow to import
+    from tippetop.figures.style import save  # noqa: PLC0415
+    from tippetop.files import written_beside  # noqa: PLC0415
+
+    if len(dataset["outcome"].dims) > 2:
+        return []
+    paths = []
+    for name in MAPPED:
+        path = out.with_name(f"{out.stem}.{name}.png")
+        with written_beside(path) as beside:
+            save(phase_map(dataset, name), beside)
+        paths.append(path)
+    return paths
+
+
+def _summary(dataset: "xr.Dataset", progress: "Progress", elapsed: float) -> dict[str, Any]:
+    names = dataset["outcome"].attrs["flag_meanings"].split()
+    groups = Counter(int(value) for value in dataset["outcome"].values.ravel())
+    return {
+        "cells": progress.cells,
+        "computed": progress.done - progress.before,
+        "seconds": elapsed,
+        "launches_per_second": progress.rate,
+        "outcomes": {name: groups[k] for k, name in enumerate(names) if groups[k]},
+        "flights": int(dataset["flights"].where(dataset["flights"] >= 0, 0).sum()),
+    }
+
+
+def _print_summary(summary: dict[str, Any], files: list[Path]) -> None:
+    from rich.console import Console  # noqa: PLC0415
+    from rich.table import Table  # noqa: PLC0415
+
+    console = Console()
+    table = Table(box=None, show_header=False, padding=(0, 2, 0, 0))
+    table.add_column(style="dim")
+    table.add_column(justify="right", style="bold")
+    for name, number in summary["outcomes"].items():
+        table.add_row(name.replace("_", " "), f"{number:,}")
+    if summary["flights"]:
+        table.add_row("flights", f"{summary['flights']:,}")
+    console.print(f"[bold]{summary['cells']:,} launches[/]")
+    console.print(table)
+    console.print(
+        f"[dim]{summary['computed']:,} computed in {summary['seconds']:.3g} s, "
+        f"{summary['launches_per_second']:,.0f} a second[/]",
+        highlight=False,
+    )
+    for path in files:
+        console.print(f"wrote {path}", highlight=False)

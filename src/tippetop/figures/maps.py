@@ -1,0 +1,193 @@
+"""Maps of a sweep: what became of every launch, over one or two of its numbers."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.colors import BoundaryNorm, ListedColormap, LogNorm, Normalize
+from matplotlib.figure import Figure
+
+from tippetop.figures.style import (
+    CONVERGED,
+    CYCLE,
+    FAINT,
+    INK,
+    MUTED,
+    SEQUENTIAL,
+    WIDTH,
+    house_style,
+    pi_ticks,
+)
+
+MAPPED = ("final_theta", "turns_over", "flights")
+"""The maps that are drawn of every sweep."""
+
+NAMES = {
+    "launch.spin": "Axial spin at launch (rad/s)",
+    "launch.tilt": "Tilt at launch (rad)",
+    "friction.mu": "Friction coefficient μ (s/m)",
+    "body.shape.eccentricity": "Eccentricity α",
+    "contact.restitution": "Coefficient of restitution",
+    "body.I1": "I₁ (kg m²)",
+    "body.I3": "I₃ (kg m²)",
+    "gravity": "Gravity (m/s²)",
+    "draw": "Draw",
+}
+"""What the axes of maps are called; others by their field."""
+
+TITLES = {
+    "final_theta": "Final tilt θ (rad)",
+    "turns_over": "Time of turning over (s); grey: never",
+    "arrives": "Time of arriving within 0.01 rad (s)",
+    "flights": "Number of flights; grey: none",
+    "airborne_time": "Time in the air (s)",
+    "least_normal_force": "Least normal force (N)",
+    "first_lift_off": "First lift-off (s); grey: never",
+    "energy_lost": "Energy lost (J)",
+    "highest_gap": "Largest gap (m)",
+    "highest": "Largest height (m)",
+    "outcome": "Outcome",
+}
+
+MOST_STEP = 1.05
+"""Ratio of neighbouring steps of an axis from which on it counts as geometric."""
+
+
+class Shade(NamedTuple):
+    """How values become colours: a colormap, and what goes where in it."""
+
+    cmap: Any
+    norm: Any
+    none: str
+
+
+def phase_map(sweep: xr.Dataset, variable: str = "final_theta") -> Figure:
+    """Draw a variable of a sweep: over two axes as colours, over one as a curve, of draws as points.
+
+    Raises
+    ------
+    ValueError
+        If the sweep has more than two dimensions.
+    """
+    values = sweep[variable]
+    with house_style():
+        figure = Figure(figsize=(WIDTH, 4.6))
+        axes = figure.subplots()
+        axes.set_title(TITLES.get(variable, variable))
+        if values.dims == ("draw",):
+            _scatter(figure, axes, sweep, variable)
+        elif values.ndim == 1:
+            _curve(axes, sweep, variable)
+        elif values.ndim == 2:
+            _colours(figure, axes, sweep, variable)
+        else:
+            raise ValueError(f"a map has one or two dimensions, and the sweep has {values.ndim}")
+        return figure
+
+
+def _colours(figure: Figure, axes: Axes, sweep: xr.Dataset, variable: str) -> None:
+    """One cell a rectangle; the first dimension to the right, the second upwards."""
+    across, up = (str(name) for name in sweep[variable].dims)
+    values = _shown(sweep, variable).T
+    shade = _shade(sweep, variable, values)
+    axes.set_facecolor(shade.none)
+    axes.grid(visible=False)
+    image = axes.pcolormesh(
+        sweep[across].values,
+        sweep[up].values,
+        np.ma.masked_invalid(values),
+        cmap=shade.cmap,
+        norm=shade.norm,
+        shading="nearest",
+        rasterized=True,
+    )
+    for name, axis in ((across, axes.xaxis), (up, axes.yaxis)):
+        axis.set_label_text(NAMES.get(name, name))
+        if _is_geometric(sweep[name].values):
+            (axes.set_xscale if axis is axes.xaxis else axes.set_yscale)("log")
+    axes.set_xlim(*_ends(sweep[across].values))
+    axes.set_ylim(*_ends(sweep[up].values))
+    _bar(figure, axes, image, sweep, variable)
+
+
+def _curve(axes: Axes, sweep: xr.Dataset, variable: str) -> None:
+    (across,) = (str(name) for name in sweep[variable].dims)
+    axes.plot(sweep[across].values, _shown(sweep, variable), ".-", color=CONVERGED, linewidth=0.8)
+    axes.set_xlabel(NAMES.get(across, across))
+    if _is_geometric(sweep[across].values):
+        axes.set_xscale("log")
+    if variable == "final_theta":
+        pi_ticks(axes.yaxis)
+
+
+def _scatter(figure: Figure, axes: Axes, sweep: xr.Dataset, variable: str) -> None:
+    fields = [str(name) for name in sweep.coords if name != "draw"]
+    values = _shown(sweep, variable)
+    if len(fields) == 1:
+        axes.plot(sweep[fields[0]].values, values, ".", color=CONVERGED)
+    else:
+        shade = _shade(sweep, variable, values)
+        x, y = sweep[fields[0]].values, sweep[fields[1]].values
+        nothing = ~np.isfinite(values)
+        axes.scatter(x[nothing], y[nothing], 8, facecolors="none", edgecolors=MUTED, linewidths=0.4)
+        image = axes.scatter(x[~nothing], y[~nothing], 8, values[~nothing], cmap=shade.cmap, norm=shade.norm)
+        axes.set_ylabel(NAMES.get(fields[1], fields[1]))
+        _bar(figure, axes, image, sweep, variable)
+    axes.set_xlabel(NAMES.get(fields[0], fields[0]))
+
+
+def _shown(sweep: xr.Dataset, variable: str) -> np.ndarray[Any, Any]:
+    """The values, not a number where there are none."""
+    values = np.asarray(sweep[variable].values, dtype=float)
+    nothing = sweep["status"].values == 0
+    if np.issubdtype(sweep[variable].dtype, np.integer):
+        nothing = nothing | (values < 0)
+    return np.where(nothing, np.nan, values)
+
+
+def _shade(sweep: xr.Dataset, variable: str, values: np.ndarray[Any, Any]) -> Shade:
+    """Colours of a variable; what has no value is light grey."""
+    meanings = sweep[variable].attrs.get("flag_meanings")
+    if meanings is not None:
+        count = len(meanings.split())
+        norm = BoundaryNorm(np.arange(count + 1) - 0.5, count)
+        return Shade(ListedColormap((*CYCLE, INK)[:count]), norm, FAINT)
+    if variable == "final_theta":
+        return Shade(SEQUENTIAL, Normalize(0.0, np.pi), FAINT)
+    finite = values[np.isfinite(values)]
+    least, most = (float(finite.min()), float(finite.max())) if len(finite) else (0.0, 1.0)
+    if variable == "flights" and most > 20:
+        return Shade(SEQUENTIAL, LogNorm(1.0, most), FAINT)
+    return Shade(SEQUENTIAL, Normalize(least, most if most > least else least + 1.0), FAINT)
+
+
+def _bar(figure: Figure, axes: Axes, image: Any, sweep: xr.Dataset, variable: str) -> None:
+    bar = figure.colorbar(image, ax=axes, pad=0.02)
+    bar.outline.set_visible(False)
+    meanings = sweep[variable].attrs.get("flag_meanings")
+    if meanings is not None:
+        names = meanings.replace("_", "-").split()
+        bar.set_ticks(list(range(len(names))), labels=names)
+    elif variable == "final_theta":
+        pi_ticks(bar.ax.yaxis)
+
+
+def _is_geometric(values: np.ndarray[Any, Any]) -> bool:
+    """Whether the values grow by ratios rather than by steps."""
+    if len(values) < 3 or np.any(values[0] * values <= 0):
+        return False
+    steps, ratios = np.diff(values), np.diff(np.log(np.abs(values)))
+    even = [float(np.abs(jumps).max() / np.abs(jumps).min()) for jumps in (ratios, steps)]
+    return even[0] < MOST_STEP <= even[1]
+
+
+def _ends(values: np.ndarray[Any, Any]) -> tuple[float, float]:
+    """Where the first and the last cell end."""
+    if len(values) == 1:
+        return float(values[0]) - 0.5, float(values[0]) + 0.5
+    if _is_geometric(values):
+        first, last = (values[1] / values[0]) ** 0.5, (values[-1] / values[-2]) ** 0.5
+        return float(values[0] / first), float(values[-1] * last)
+    half = 0.5 * (values[1] - values[0]), 0.5 * (values[-1] - values[-2])
+    return float(values[0] - half[0]), float(values[-1] + half[1])

@@ -1,0 +1,29 @@
+"""Sweeps: what becomes of many launches, over grids or random draws of any of a problem's numbers.
+
+`Sweep` says what to compute, `compute` does it in memory, and `run_sweep` into a store that survives whatever
+happens to the program.
+"""
+
+from tippetop.sweep.cells import Fault
+from tippetop.sweep.definition import Sweep
+from tippetop.sweep.grid import Axis, Draws, Product, Range
+from tippetop.sweep.observe import VARIABLES, Group
+from tippetop.sweep.run import Progress, compute, fill, run_sweep
+from tippetop.sweep.store import Status, Store
+
+__all__ = [
+    "VARIABLES",
+    "Axis",
+    "Draws",
+    "Fault",
+    "Group",
+    "Product",
+    "Progress",
+    "Range",
+    "Status",
+    "Store",
+    "Sweep",
+    "compute",
+    "fill",
+    "run_sweep",
+]

@@ -1,0 +1,183 @@
+"""The cells of a sweep as arrays of launches, and which of them cannot be.
+
+No problem is built for a cell: the fields that change are put into the base problem as arrays, and the
+mechanics makes arrays of them. What a problem would refuse is refused here by the same limits, cell by cell.
+"""
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import Any, TypeVar, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tippetop.errors import InvalidInput, one_of
+from tippetop.integrators.base import Array
+from tippetop.mechanics.motion import along_table, contact, on_table
+from tippetop.mechanics.state import State
+from tippetop.mechanics.top import Top, Units, dimensionless_numbers, kind_of, natural_units
+from tippetop.mechanics.vectors import scale
+from tippetop.mechanics.view import Angles, state_from_angles
+from tippetop.problem import Problem
+from tippetop.sweep.courses import Launches
+from tippetop.validation import Part
+
+PartType = TypeVar("PartType", bound=Part)
+
+
+class Fault(IntEnum):
+    """Why there is no such problem as a cell asks for."""
+
+    NONE = 0
+    VALUE_OUT_OF_RANGE = 1
+    NO_SUCH_BODY = 2
+    NO_CONTACT_FORCE = 3
+
+
+@dataclass(frozen=True)
+class Cells:
+    """Cells of a sweep.
+
+    Attributes
+    ----------
+    fault
+        Numbers of `Fault`, shape (n,).
+    top, units
+        The tops in SI, and their natural units; arrays of shape (n,), or one number for all.
+    start
+        States at launch in natural units, every number of shape (n,).
+    problem
+        The problem whose fields are arrays of shape (n,) where they change.
+    """
+
+    fault: NDArray[np.int8]
+    top: Top
+    units: Units
+    start: State
+    problem: Problem
+
+    def launches(self, which: NDArray[np.intp], duration: float) -> Launches:
+        """Some of the cells as launches."""
+        count = len(self.fault)
+        numbers = [spread(number, count)[which] for number in dimensionless_numbers(self.top)]
+        contact_rule = self.problem.contact
+        return Launches(
+            kind_of(self.top),
+            np.array(numbers),
+            State.unpack([number[which] for number in self.start.pack()]),
+            (duration / spread(self.units.time, count))[which],
+            contact_rule.liftoff,
+            spread(contact_rule.restitution, count)[which],
+        )
+
+
+def cells_of(problem: Problem, values: Mapping[str, Array]) -> Cells:
+    """The cells that put these values, each of shape (n,), into a problem.
+
+    Raises
+    ------
+    InvalidInput
+        If a field is none, or not a number.
+    """
+    known = dict(numeric_fields(problem))
+    for field in values:
+        if field not in known:
+            raise InvalidInput("axis", field, "one of " + one_of(field, list(known)))
+    count = len(next(iter(values.values())))
+    filled = put(problem, values)
+    fault = np.full(count, Fault.NONE, dtype=np.int8)
+    with np.errstate(all="ignore"):
+        top = filled.top
+        start = launch_state(filled, top, count)
+        if filled.contact.liftoff != "fly":
+            sliding = along_table(start)
+            touch = contact(sliding.axis, sliding.momentum, sliding.velocity, top)
+            lifted = spread(filled.launch.gap, count) > 0.0
+            fault[~(touch.resistance > 0.0) | lifted] = Fault.NO_CONTACT_FORCE
+        fault[~(spread(filled.body.I3, count) <= 2.0 * spread(filled.body.I1, count))] = Fault.NO_SUCH_BODY
+        for field, numbers in values.items():
+            fault[~allowed(numbers, known[field])] = Fault.VALUE_OUT_OF_RANGE
+        units = natural_units(top)
+        return Cells(fault, top, units, natural_state(start, units), filled)
+
+
+def numeric_fields(part: Part, prefix: str = "") -> Iterator[tuple[str, list[Any]]]:
+    """Names of all fields that are numbers, with dots, and the limits that each was declared with."""
+    for name, info in type(part).model_fields.items():
+        value = getattr(part, name)
+        if isinstance(value, Part):
+            yield from numeric_fields(value, f"{prefix}{name}.")
+        elif isinstance(value, tuple):
+            yield from ((f"{prefix}{name}.{place}", []) for place in range(len(value)))
+        elif isinstance(value, float):
+            yield f"{prefix}{name}", list(info.metadata)
+
+
+def put(part: PartType, values: Mapping[str, Array], prefix: str = "") -> PartType:
+    """A part with arrays for some of its numbers: not validated, but with all its properties."""
+    fields: dict[str, Any] = {}
+    for name in type(part).model_fields:
+        value, path = getattr(part, name), f"{prefix}{name}"
+        if isinstance(value, Part):
+            fields[name] = put(value, values, f"{path}.")
+        elif isinstance(value, tuple):
+            fields[name] = tuple(values.get(f"{path}.{k}", number) for k, number in enumerate(value))
+        else:
+            fields[name] = values.get(path, value)
+    return cast(PartType, type(part).model_construct(**fields))
+
+
+def allowed(values: Array, limits: list[Any]) -> NDArray[np.bool_]:
+    """Which values a field may have."""
+    fine = np.isfinite(values)
+    for limit in limits:
+        for name, holds in _LIMITS.items():
+            bound = getattr(limit, name, None)
+            if bound is not None:
+                fine &= holds(values, bound)
+    return fine
+
+
+_LIMITS = {"gt": np.greater, "ge": np.greater_equal, "lt": np.less, "le": np.less_equal}
+
+
+class _PoleExact:
+    """Sine and cosine of arrays with sin(pi) = 0, so that a launch at tilt pi is exactly vertical."""
+
+    def sin(self, angle: Any) -> Any:
+        return np.where(np.abs(angle) == math.pi, 0.0, np.sin(angle))
+
+    def cos(self, angle: Any) -> Any:
+        return np.cos(angle)
+
+
+def launch_state(problem: Problem, top: Top, count: int) -> State:
+    """The states at launch in SI, as `tippetop.problem.Problem.start` for one."""
+    launch = problem.launch
+    angles = Angles(
+        launch.tilt, launch.tilt_rate, launch.azimuth, launch.precession, launch.spin, launch.slip
+    )
+    touching = on_table(state_from_angles(angles, top, _PoleExact()), top)
+    x, y, height = touching.position
+    velocity = touching.velocity if launch.velocity is None else launch.velocity
+    state = touching._replace(position=(x, y, height + launch.gap), velocity=velocity)
+    return State.unpack([spread(number, count).copy() for number in state.pack()])
+
+
+def natural_state(state: State, units: Units) -> State:
+    """States in natural units from those in SI."""
+    return State(
+        state.axis,
+        scale(1.0 / units.angular_momentum, state.momentum),
+        scale(1.0 / units.speed, state.velocity),
+        scale(1.0 / units.length, state.position),
+        state.marker,
+        state.work / units.energy,
+    )
+
+
+def spread(number: Any, count: int) -> Array:
+    """A number, or an array of them, as an array of shape (count,)."""
+    return np.broadcast_to(np.asarray(number, dtype=float), (count,))

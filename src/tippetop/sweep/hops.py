@@ -1,0 +1,221 @@
+"""Flights and impacts of many tops at once.
+
+A flight is closed: the axis turns about the constant angular momentum and the centre of mass falls, so that
+the gap is a known function of time. Its first zero is found piece by piece, on Taylor polynomials that are
+exact to rounding there. What vanishes at the start of a flight (`tippetop.mechanics.flight.Start`) is divided
+out.
+
+An impact without restitution ends where the contact point stops sinking. Its equations, in which the normal
+impulse plays the part of time, are solved by the same polynomials; see `tippetop.mechanics.impact`.
+"""
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tippetop.integrators.base import Array
+from tippetop.mechanics.flight import Tip, fly
+from tippetop.mechanics.impact import contact_velocity
+from tippetop.mechanics.motion import (
+    along_table,
+    angular_velocity,
+    axis_rate,
+    contact,
+    moment_per_normal_force,
+    on_table,
+)
+from tippetop.mechanics.shape import contact_vector
+from tippetop.mechanics.state import State
+from tippetop.mechanics.top import Kind, Top
+from tippetop.mechanics.vectors import length, scale
+from tippetop.sweep.polynomials import Polynomials
+from tippetop.sweep.series import Series, horner, solution
+from tippetop.sweep.stepper import NumPyArithmetic, step_size
+from tippetop.sweep.watch import Indices, Watch
+
+PLAIN = NumPyArithmetic()
+
+PIECES = 100_000
+"""Pieces that a flight may have: each is a fraction of a turn."""
+
+PUSHES = 50
+"""Pieces that an impact may have before it is left to the method that takes stiff friction."""
+
+DEGREE = 12
+"""Degree of an impact's polynomials."""
+
+TINY = 1e-150
+"""Added to a frequency that may be zero."""
+
+Flags = NDArray[np.bool_]
+
+
+class Hops(NamedTuple):
+    """What became of flights: all of shape (n,).
+
+    Attributes
+    ----------
+    duration
+        How long each lasted.
+    landed
+        Whether it ended on the table rather than at the horizon.
+    state
+        The states at the end.
+    highest_gap, highest
+        Largest gap of each, and largest height of its centre of mass.
+    """
+
+    duration: Array
+    landed: Flags
+    state: State
+    highest_gap: Array
+    highest: Array
+
+
+def picked(state: State, launches: Indices | Flags) -> State:
+    """Some of many states."""
+    return State.unpack([np.asarray(number)[launches] for number in state.pack()])
+
+
+def tip_of(state: State, top: Top) -> Tip:
+    """Motion of the tip of the axis in free flight."""
+    turning = axis_rate(state.axis, state.momentum, top)
+    return Tip(
+        state.axis[2],
+        turning[2],
+        axis_rate(turning, state.momentum, top)[2],
+        length(scale(1.0 / top.transverse_inertia, state.momentum)) + TINY,
+    )
+
+
+def hop(
+    state: State,
+    kind: Kind,
+    numbers: Array,
+    horizon: Array,
+    vanishing: Indices,
+    watched: tuple[Watch, Indices, Array],
+) -> Hops:
+    """Fly until the table is touched.
+
+    Parameters
+    ----------
+    state
+        The states at the start, every number an array of shape (n,).
+    kind, numbers
+        The tops: their dimensionless numbers, shape (kind.numbers, n).
+    horizon
+        How long to fly at most, shape (n,).
+    vanishing
+        How many of gap, gap rate and gap acceleration vanish at the start, shape (n,).
+    watched
+        Who watches the axis, under which numbers, and the times at the start.
+    """
+    watch, launches, begun = watched
+    time, highest = np.zeros_like(horizon), np.zeros_like(horizon)
+    landed = np.zeros(horizon.shape, dtype=bool)
+    for piece in range(PIECES):
+        active = np.flatnonzero(~landed & (time < horizon))
+        if not len(active):
+            break
+        top = kind.top(tuple(numbers[:, active]))
+        here = fly(picked(state, active), time[active], top, np)
+        tip, gap, reach = flight_terms(here, top)
+        reach = np.minimum(reach, horizon[active] - time[active])
+        zero = Polynomials(divided(gap, vanishing[active]) if piece == 0 else gap, reach).first_fall()
+        touches = ~np.isnan(zero)
+        span = np.where(touches, zero, reach)
+        highest[active] = np.maximum(highest[active], Polynomials(gap, span).greatest())
+        watch.see(launches[active], begun[active] + time[active], Polynomials(tip, span))
+        time[active] = np.where(span == horizon[active] - time[active], horizon[active], time[active] + span)
+        landed[active] = touches
+    top = kind.top(tuple(numbers))
+    last = fly(state, time, top, np)
+    ground = on_table(along_table(last), top).position[2]
+    x, y, z = last.position
+    summit = np.clip(state.velocity[2] / top.gravity, 0.0, time)
+    return Hops(
+        time,
+        landed,
+        last._replace(position=(x, y, np.where(landed, ground, z))),
+        highest,
+        fly(state, summit, top, np).position[2],
+    )
+
+
+def flight_terms(state: State, top: Top) -> tuple[Array, Array, Array]:
+    """Polynomials of n_z and of the gap in flight, shape (degree + 1, n), and how far they serve."""
+    count = len(state.axis[2])
+    terms = tip_of(state, top).series().terms
+    support = top.shape.height(Series(lambda k: terms[k], PLAIN))
+    height = np.array([np.broadcast_to(support[k], count) for k in range(len(terms))])
+    gap = -height
+    gap[0] += state.position[2]
+    gap[1] += state.velocity[2]
+    gap[2] -= 0.5 * top.gravity
+    tip = np.array([np.broadcast_to(term, count) for term in terms])
+    with np.errstate(all="ignore"):
+        reach = step_size([list(tip), list(height)], np.full(count, np.inf), PLAIN)
+    return tip, gap, np.where(np.isnan(reach), np.inf, reach)
+
+
+def divided(terms: Array, vanishing: Indices) -> Array:
+    """Polynomials whose first coefficients vanish, divided by the power of time that they have."""
+    place = np.arange(len(terms))[:, None] + vanishing
+    inside = place < len(terms)
+    found: Array = np.where(inside, np.take_along_axis(terms, np.where(inside, place, 0), axis=0), 0.0)
+    return found
+
+
+def collide(state: State, top: Top) -> tuple[State, Flags]:
+    """States after impacts without restitution, and which of them are to be had; the others are unchanged.
+
+    Left out are tops whose contact point does not sink, and impacts too stiff for this method.
+    """
+    arm = contact_vector(state.axis, top.shape)
+    point = contact_velocity(state, arm, top)
+    sinking = point[2] < 0.0
+    stopping = top.mass * length(point) + TINY
+    moving = np.array(np.broadcast_arrays(*state.momentum, *state.velocity))
+    struck = np.zeros(sinking.shape, dtype=bool)
+    waiting = sinking.copy()
+
+    def read(y: Sequence[Any]) -> State:
+        return state._replace(momentum=(y[0], y[1], y[2]), velocity=(y[3], y[4], y[5]))
+
+    def rates(y: Sequence[Any]) -> tuple[Any, ...]:
+        now = read(y)
+        point = contact_velocity(now, arm, top)
+        omega = angular_velocity(now.axis, now.momentum, top)
+        traction = top.friction.traction((point[0], point[1]), omega)
+        return (*moment_per_normal_force(arm, traction), *scale(1.0 / top.mass, (*traction.force, 1.0)))
+
+    for _ in range(PUSHES):
+        if not waiting.any():
+            break
+        with np.errstate(all="ignore"):
+            y = solution(list(moving), rates, PLAIN)
+            terms = [[series[k] for k in range(DEGREE + 1)] for series in y]
+            sink = -contact_velocity(read(y), arm, top)[2]
+            span = step_size(terms, stopping, PLAIN)
+        approach = np.array([np.broadcast_to(sink[k], span.shape) for k in range(DEGREE + 1)])
+        end = np.full(span.shape, np.nan)
+        end[waiting] = Polynomials(approach[:, waiting], span[waiting]).first_fall()
+        stops = waiting & ~np.isnan(end)
+        push = np.where(stops, end, span)
+        moved = np.array([horner(series, push) for series in terms])
+        moving = np.where(waiting, moved, moving)
+        struck |= stops
+        waiting &= ~stops
+    after = np.where(struck, moving, np.array(np.broadcast_arrays(*state.momentum, *state.velocity)))
+    return read(list(after)), struck
+
+
+def slides(state: State, top: Top) -> Flags:
+    """Whether tops in contact, whose contact point is at rest vertically, go on sliding."""
+    sliding = along_table(state)
+    touch = contact(sliding.axis, sliding.momentum, sliding.velocity, top)
+    found: Flags = (touch.resistance > 0.0) & (touch.push > 0.0)
+    return found

@@ -1,0 +1,160 @@
+"""First zeros and extremes of many polynomials at once, each on its own interval from zero."""
+
+from copy import copy
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tippetop.integrators.base import Array
+
+LOOKS = 32
+"""Intervals at whose ends a polynomial is looked at; between them its second derivative bounds it."""
+
+TURNS = 60
+"""Improvements of a zero at most: Newton's where they stay in the bracket, halvings where they do not."""
+
+_PLACES = np.linspace(0.0, 1.0, LOOKS + 1)
+
+
+class Polynomials:
+    """Polynomials on intervals.
+
+    Parameters
+    ----------
+    terms
+        Coefficients in increasing order, shape (degree + 1, n).
+    span
+        Ends of the intervals, from 0, shape (n,).
+    """
+
+    def __init__(self, terms: Array, span: Array) -> None:
+        powers = np.arange(len(terms))
+        self.span = span
+        self.unit = terms * span ** powers[:, None]
+        self._places = _PLACES[:, None] ** powers
+
+    @cached_property
+    def values(self) -> Array:
+        """Values at the looks, shape (LOOKS + 1, n)."""
+        found: Array = self._places @ self.unit
+        return found
+
+    @cached_property
+    def bending(self) -> Array:
+        """How far a polynomial can lie below two neighbouring looks: interval^2 / 8 max |f''|, shape (n,)."""
+        powers = np.arange(len(self.unit))
+        found: Array = (powers * (powers - 1)) @ np.abs(self.unit) / (8.0 * LOOKS**2)
+        return found
+
+    def some(self, which: NDArray[np.intp], sign: float = 1.0, shift: Array | float = 0.0) -> "Polynomials":
+        """Some of the polynomials, times a sign and plus numbers."""
+        chosen = copy(self)
+        chosen.__dict__.pop("values", None)
+        chosen.__dict__.pop("bending", None)
+        chosen.span, chosen.unit = self.span[which], sign * self.unit[:, which]
+        chosen.unit[0] += shift
+        return chosen
+
+    def first_fall(self) -> Array:
+        """First times at which the polynomials fall to zero from above, nan where they do not, shape (n,).
+
+        Where no look finds a polynomial at or below zero, but its second derivative could take it there
+        between two looks, its least value there is found first. A polynomial that starts at or below zero and
+        does not rise falls at 0.
+        """
+        values = self.values
+        falls = (values[1:] <= 0.0) & (values[:-1] > 0.0)
+        found = np.asarray(falls.any(axis=0))
+        after = np.where(found, falls.argmax(axis=0) + 1, LOOKS + 1)
+        low, high = (after - 1) / LOOKS, after / LOOKS
+
+        beyond = np.pad(values, ((1, 1), (0, 0)), constant_values=np.inf)
+        dips = (values > 0.0) & (values <= beyond[:-2]) & (values <= beyond[2:]) & (values <= self.bending)
+        dips &= np.arange(LOOKS + 1)[:, None] < after
+        for lane in np.flatnonzero(dips.any(axis=0)):
+            for look in np.flatnonzero(dips[:, lane]):
+                place, value = least_near(self.unit[:, [lane]], np.array([look / LOOKS]))
+                if value[0] <= 0.0 and 0.0 <= place[0] < 1.0:
+                    low[lane], high[lane], found[lane] = max(int(look) - 1, 0) / LOOKS, place[0], True
+                    break
+        zeros = np.full(found.shape, np.nan)
+        which = np.flatnonzero(found)
+        if len(which):
+            zeros[which] = bracketed_zero(self.unit[:, which], low[which], high[which])
+        zeros[(values[0] <= 0.0) & (values[1] <= 0.0)] = 0.0
+        return zeros * self.span
+
+    def least(self) -> Array:
+        """Least values, from a parabola through the lowest look and its neighbours, shape (n,)."""
+        return -vertices(-self.values)
+
+    def greatest(self) -> Array:
+        """Greatest values, from a parabola through the highest look and its neighbours, shape (n,)."""
+        return vertices(self.values)
+
+    def refined_least(self) -> tuple[Array, Array]:
+        """Times at which the least values are taken, and those values, by Newton's method; of shape (n,)."""
+        best = self.values.argmin(axis=0)
+        place, value = least_near(self.unit, best / LOOKS)
+        at_look = np.take_along_axis(self.values, best[None], axis=0)[0]
+        better = (place >= 0.0) & (place <= 1.0) & (value < at_look)
+        return np.where(better, place, best / LOOKS) * self.span, np.where(better, value, at_look)
+
+
+def vertices(values: Array) -> Array:
+    """Greatest values of what was looked at, shape (LOOKS + 1, n)."""
+    best = values.argmax(axis=0)
+    inside = np.clip(best, 1, LOOKS - 1)
+    before, here, after = (np.take_along_axis(values, (inside + k)[None], axis=0)[0] for k in (-1, 0, 1))
+    bend = 2.0 * here - before - after
+    rise = (after - before) ** 2 / np.where(bend > 0.0, 8.0 * bend, np.inf)
+    highest = np.take_along_axis(values, best[None], axis=0)[0]
+    found: Array = np.where(inside == best, here + rise, highest)
+    return found
+
+
+def value_and_slope(terms: Array, place: Array) -> tuple[Array, Array]:
+    """Values and first derivatives of polynomials at one place each."""
+    value, slope = terms[-1], np.zeros_like(place)
+    for term in terms[-2::-1]:
+        slope = slope * place + value
+        value = value * place + term
+    return value, slope
+
+
+def least_near(unit: Array, guess: Array) -> tuple[Array, Array]:
+    """Places of least values no further than a look from a guess, and those values, by Newton's method."""
+    slopes = unit[1:] * np.arange(1, len(unit))[:, None]
+    place = guess.copy()
+    for _ in range(5):
+        slope, bend = value_and_slope(slopes, place)
+        rising = bend > 0.0
+        move = np.where(rising, -slope / np.where(rising, bend, 1.0), 0.0)
+        place = np.clip(place + move, guess - 1.0 / LOOKS, guess + 1.0 / LOOKS)
+    return place, value_and_slope(unit, place)[0]
+
+
+def bracketed_zero(unit: Array, low: Array, high: Array) -> Array:
+    """Zeros between places where the polynomials are positive and not positive."""
+    zeros = 0.5 * (low + high)
+    work = np.arange(len(zeros))
+    place = zeros.copy()
+    for _ in range(TURNS):
+        value, slope = value_and_slope(unit, place)
+        low = np.where(value > 0.0, place, low)
+        high = np.where(value > 0.0, high, place)
+        newton = place - value / np.where(slope == 0.0, 1.0, slope)
+        # Newton's method doubles the digits that are right: from nine on, this was the last step.
+        arrived = np.abs(newton - place) <= 1e-9 * place
+        inside = arrived | ((newton > low) & (newton < high))
+        new = np.where(inside, np.clip(newton, low, high), 0.5 * (low + high))
+        zeros[work] = new
+        moving = ~arrived & (np.abs(new - place) > 4e-16 * new)
+        if not moving.any():
+            break
+        place = new
+        if 2 * np.count_nonzero(moving) < len(work):
+            work, unit = work[moving], unit[:, moving]
+            low, high, place = low[moving], high[moving], place[moving]
+    return zeros

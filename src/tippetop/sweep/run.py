@@ -1,0 +1,162 @@
+"""Carry out a sweep, into a store or into memory."""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from tippetop.sweep.definition import Sweep
+from tippetop.sweep.observe import VARIABLES
+from tippetop.sweep.store import STATUS, Status, Store, coordinate_attributes, layout_attributes
+from tippetop.sweep.tasks import results
+
+
+@dataclass(frozen=True)
+class Progress:
+    """How far a sweep is.
+
+    Attributes
+    ----------
+    cells
+        How many cells there are.
+    before
+        How many of them were done before this run began.
+    done
+        How many are done.
+    elapsed
+        Time since this run began, s.
+    """
+
+    cells: int
+    before: int
+    done: int
+    elapsed: float
+
+    @property
+    def rate(self) -> float:
+        """Cells per second in this run."""
+        return (self.done - self.before) / self.elapsed if self.elapsed > 0 else 0.0
+
+    @property
+    def time_left(self) -> float | None:
+        """Time that is left at this rate, s; None if there is no rate yet."""
+        return (self.cells - self.done) / self.rate if self.rate > 0 else None
+
+
+Watcher = Callable[[Progress], None]
+
+
+def fill(
+    store: Store, *, workers: int | None = None, scheduler: str | None = None, watcher: Watcher | None = None
+) -> Progress:
+    """Compute what is missing in a store.
+
+    Parameters
+    ----------
+    store
+        From `Store.create` or `Store.resume`.
+    workers
+        How many processes; None for as many as there are processors, 1 for this process alone.
+    scheduler
+        Address of a running dask.distributed scheduler, instead of processes.
+    watcher
+        Told of the progress, at the beginning and after every task.
+
+    Raises
+    ------
+    FileTrouble
+        If the store cannot be written; it stays good, and another call goes on where this one ended.
+    """
+    sweep = store.sweep
+    tasks = store.remaining()
+    sizes = {task: sweep.numbers(task).size for task in tasks}
+    before = sweep.cells - sum(sizes.values())
+    began = time.monotonic()
+    progress = Progress(sweep.cells, before, before, 0.0)
+    if watcher is not None:
+        watcher(progress)
+    if tasks:
+        for task, found in results(sweep, tasks, workers, scheduler):
+            store.write(task, found)
+            progress = Progress(sweep.cells, before, progress.done + sizes[task], time.monotonic() - began)
+            if watcher is not None:
+                watcher(progress)
+    return progress
+
+
+def run_sweep(
+    sweep: Sweep | None,
+    out: Path | str,
+    *,
+    resume: bool = False,
+    overwrite: bool = False,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    watcher: Watcher | None = None,
+) -> xr.Dataset:
+    """Carry out a sweep into a store, and open it.
+
+    Parameters
+    ----------
+    sweep
+        What to compute; None to take it from the store that is resumed.
+    out
+        Folder of the store.
+    resume
+        Finish a store that is there.
+    overwrite
+        Replace what is there.
+    workers, scheduler, watcher
+        See `fill`.
+
+    Returns
+    -------
+    xarray.Dataset
+        The variables of `tippetop.sweep.observe.VARIABLES` and `status` over the grid, read when used.
+
+    Raises
+    ------
+    FileTrouble
+        If something is there already, or it is of another sweep, or cannot be written.
+    """
+    store = Store.resume(out, sweep) if resume or sweep is None else Store.create(out, sweep, overwrite)
+    fill(store, workers=workers, scheduler=scheduler, watcher=watcher)
+    return store.dataset()
+
+
+def compute(
+    sweep: Sweep,
+    *,
+    workers: int | None = 1,
+    scheduler: str | None = None,
+    watcher: Watcher | None = None,
+) -> xr.Dataset:
+    """Carry out a sweep in memory.
+
+    Returns
+    -------
+    xarray.Dataset
+        As from `run_sweep`.
+    """
+    shape, grid = sweep.grid.shape, sweep.grid
+    arrays = {name: np.full(shape, kind.missing, dtype=kind.dtype) for name, kind in VARIABLES.items()}
+    done, began = 0, time.monotonic()
+    for task, found in results(sweep, sweep.tasks, workers, scheduler):
+        region = sweep.region(task)
+        for name, values in found.items():
+            arrays[name][region] = values.reshape(arrays[name][region].shape)
+        done += found["outcome"].size
+        if watcher is not None:
+            watcher(Progress(sweep.cells, 0, done, time.monotonic() - began))
+    status = np.full(shape, Status.DONE, dtype=np.int8)
+    data = {"status": (grid.dimensions, status, STATUS.attributes)}
+    for name, kind in VARIABLES.items():
+        data[name] = (grid.dimensions, arrays[name], kind.attributes)
+    coordinates = {
+        name: ((along,), values, coordinate_attributes(name))
+        for name, (along, values) in grid.coordinates().items()
+    }
+    return xr.Dataset(data, coordinates, layout_attributes(sweep))

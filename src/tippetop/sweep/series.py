@@ -1,0 +1,169 @@
+"""Power series in time whose coefficients are made when they are asked for.
+
+Equations of motion written in plain operators, evaluated on such series, give every coefficient of their own
+solution, each from those before it: Taylor's method (Moore 1966, Interval Analysis, chapter 11; Jorba and
+Zou 2005, Experimental Mathematics 14). The coefficients may be arrays, one number a launch, or expressions
+that are compiled for such arrays.
+"""
+
+from collections.abc import Callable, Sequence
+from typing import Any, Protocol
+
+from tippetop.mechanics.vectors import Scalar
+
+
+class Arithmetic(Protocol):
+    """What is done to coefficients beside plain operators."""
+
+    def total(self, terms: Sequence[Scalar]) -> Scalar:
+        """Sum of terms."""
+
+    def least(self, a: Scalar, b: Scalar) -> Scalar:
+        """The smaller of two, element by element; the second where one is not a number."""
+
+    def size(self, a: Scalar) -> Scalar:
+        """Absolute value."""
+
+    def below(self, a: Scalar, b: Scalar) -> Scalar:
+        """1 where the first is less than the second, else 0."""
+
+    def choose(self, condition: Scalar, a: Scalar, b: Scalar) -> Scalar:
+        """The first where a condition is not 0, else the second."""
+
+
+class Series:
+    """A power series in time, by a rule for its k-th coefficient.
+
+    Parameters
+    ----------
+    rule
+        From k to the coefficient of t^k; it is called once for every k, in increasing order, and may use
+        earlier coefficients of the series itself.
+    arithmetic
+        How coefficients are added up.
+    """
+
+    __array_ufunc__ = None
+    """Keeps NumPy from taking a series for an element of an array."""
+
+    def __init__(self, rule: Callable[[int], Scalar], arithmetic: Arithmetic) -> None:
+        self.rule = rule
+        self.arithmetic = arithmetic
+        self.known: list[Scalar] = []
+
+    def __getitem__(self, k: int) -> Scalar:
+        while len(self.known) <= k:
+            self.known.append(self.rule(len(self.known)))
+        return self.known[k]
+
+    def _made(self, rule: Callable[[int], Scalar]) -> "Series":
+        return Series(rule, self.arithmetic)
+
+    def __add__(self, other: Any) -> "Series":
+        if isinstance(other, Series):
+            return self._made(lambda k: self[k] + other[k])
+        if is_number(other, 0.0):
+            return self
+        return self._made(lambda k: self[k] if k else self[0] + other)
+
+    def __mul__(self, other: Any) -> Any:
+        if isinstance(other, Series):
+            if other is self:
+                return self._squared()
+            return self._made(lambda k: self.arithmetic.total([self[j] * other[k - j] for j in range(k + 1)]))
+        if is_number(other, 0.0):
+            return 0.0
+        if is_number(other, 1.0):
+            return self
+        return self._made(lambda k: other * self[k])
+
+    def _squared(self) -> "Series":
+        def rule(k: int) -> Scalar:
+            terms = [2.0 * (self[j] * self[k - j]) for j in range((k + 1) // 2)]
+            if k % 2 == 0:
+                terms.append(self[k // 2] * self[k // 2])
+            return self.arithmetic.total(terms)
+
+        return self._made(rule)
+
+    def __truediv__(self, other: Any) -> Any:
+        if not isinstance(other, Series):
+            return self * (1.0 / other)
+        inverse: list[Scalar] = []
+
+        def rule(k: int) -> Scalar:
+            if k == 0:
+                inverse.append(1.0 / other[0])
+                return self[0] * inverse[0]
+            known = self.arithmetic.total([quotient[j] * other[k - j] for j in range(k)])
+            return (self[k] - known) * inverse[0]
+
+        quotient = self._made(rule)
+        return quotient
+
+    def __pow__(self, exponent: float) -> "Series":
+        if exponent == 2:
+            return self._squared()
+        inverse: list[Scalar] = []
+
+        def rule(k: int) -> Scalar:
+            # y' a = exponent a' y, term by term.
+            if k == 0:
+                inverse.append(1.0 / self[0])
+                return self[0] ** exponent
+            factors = [((exponent + 1.0) * j - k) / k for j in range(1, k + 1)]
+            terms = [f * (self[j] * power[k - j]) for j, f in enumerate(factors, start=1)]
+            return self.arithmetic.total(terms) * inverse[0]
+
+        power = self._made(rule)
+        return power
+
+    def __neg__(self) -> "Series":
+        return self._made(lambda k: -self[k])
+
+    def __sub__(self, other: Any) -> "Series":
+        return self.__add__(-other)
+
+    def __radd__(self, other: Any) -> "Series":
+        return self.__add__(other)
+
+    def __rsub__(self, other: Any) -> "Series":
+        return (-self).__add__(other)
+
+    def __rmul__(self, other: Any) -> Any:
+        return self * other
+
+    def __rtruediv__(self, other: Any) -> Any:
+        return self**-1.0 * other
+
+
+def is_number(value: object, number: float) -> bool:
+    """Whether a value is a plain number, and this one."""
+    return isinstance(value, (int, float)) and value == number
+
+
+def solution(
+    start: Sequence[Scalar],
+    rates: Callable[[Sequence[Series]], Sequence[Any]],
+    arithmetic: Arithmetic,
+) -> list[Series]:
+    """The series of the solution of y' = rates(y) that starts at y = start."""
+    unknown = [Series(lambda _: None, arithmetic) for _ in start]
+    slopes = list(rates(unknown))
+
+    def rule(first: Scalar, slope: Any) -> Callable[[int], Scalar]:
+        if not isinstance(slope, Series):
+            return lambda k: (first, 0.0 * first + slope)[k] if k < 2 else 0.0 * first
+        return lambda k: slope[k - 1] * (1.0 / k) if k else first
+
+    for series, first, slope in zip(unknown, start, slopes, strict=True):
+        series.rule = rule(first, slope)
+    return unknown
+
+
+def horner(coefficients: Sequence[Scalar], time: Scalar) -> Scalar:
+    """Value of a polynomial, its coefficients in increasing order, at a time."""
+    value = coefficients[-1]
+    for coefficient in reversed(coefficients[:-1]):
+        value = coefficient + value * time
+    return value

@@ -1,0 +1,197 @@
+"""Who computes the tasks of a sweep: this process, processes beside it, or a Dask cluster."""
+
+import json
+import multiprocessing
+import os
+import signal
+import threading
+from collections import deque
+from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from functools import lru_cache
+from importlib.util import find_spec
+from typing import Any, TypeAlias
+
+from numpy.typing import NDArray
+
+from tippetop import __version__
+from tippetop.errors import InvalidInput, Unavailable
+from tippetop.sweep.definition import Sweep, sweep_from
+from tippetop.sweep.ensemble import follow_cells
+
+Task: TypeAlias = tuple[int, ...]
+Found: TypeAlias = dict[str, NDArray[Any]]
+Call: TypeAlias = tuple[str, str, tuple[tuple[int, int], ...]]
+
+RESTARTS = 3
+"""How often processes that died are started again before the sweep is given up."""
+
+AHEAD = 2
+"""Tasks handed out for every worker, so that none waits."""
+
+PATIENCE = 10.0
+"""How long a scheduler may take to answer, s."""
+
+THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
+
+_turn = threading.Lock()
+
+
+def compute_block(description: str, version: str, block: tuple[tuple[int, int], ...]) -> Found:
+    """Compute a block of cells from parameters: this is all that a worker is sent.
+
+    Raises
+    ------
+    Unavailable
+        If the worker has another version of this package.
+    """
+    if version != __version__:
+        raise Unavailable(f"a worker has tippetop {__version__}, and the sweep is run by {version}")
+    sweep = _sweep(description)
+    # Compiled functions have one set of buffers; a worker with several threads takes turns.
+    with _turn:
+        return follow_cells(sweep, sweep.numbers_in(block).ravel())
+
+
+@lru_cache(maxsize=4)
+def _sweep(description: str) -> Sweep:
+    return sweep_from(json.loads(description))
+
+
+def results(
+    sweep: Sweep, tasks: Sequence[Task], workers: int | None = None, scheduler: str | None = None
+) -> Iterator[tuple[Task, Found]]:
+    """Compute tasks and give what they found as it comes, in any order.
+
+    Parameters
+    ----------
+    sweep, tasks
+        What to compute.
+    workers
+        How many processes; None for as many as there are processors, 1 for this process alone.
+    scheduler
+        Address of a running dask.distributed scheduler, instead of processes.
+
+    Raises
+    ------
+    InvalidInput
+        If the number of workers is not positive, or there is no scheduler at the address.
+    Unavailable
+        If dask.distributed is needed and not installed.
+    """
+    if workers is not None and workers < 1:
+        raise InvalidInput("workers", workers, "a whole number, at least 1")
+    calls = {task: _call(sweep, task) for task in tasks}
+    if scheduler is not None:
+        with _cluster(scheduler) as (executor, size):
+            yield from _share(executor, size, calls)
+        return
+    count = min(workers or processors(), max(len(tasks), 1))
+    if count == 1:
+        for task, call in calls.items():
+            yield task, compute_block(*call)
+        return
+    yield from _share_locally(count, calls)
+
+
+def _call(sweep: Sweep, task: Task) -> Call:
+    """What `compute_block` is called with for a task."""
+    block = tuple((part.start, part.stop) for part in sweep.region(task))
+    return json.dumps(sweep.describe()), __version__, block
+
+
+def processors() -> int:
+    """How many processors this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _share(executor: Executor, workers: int, calls: Mapping[Task, Call]) -> Iterator[tuple[Task, Found]]:
+    """Hand tasks out, a few ahead of every worker, and give back what comes."""
+    waiting = deque(calls)
+    running: dict[Future[Found], Task] = {}
+    try:
+        while waiting or running:
+            while waiting and len(running) < AHEAD * workers:
+                task = waiting.popleft()
+                running[executor.submit(compute_block, *calls[task])] = task
+            done, _ = wait(running, return_when=FIRST_COMPLETED)
+            for future in done:
+                task = running.pop(future)
+                yield task, future.result()
+    finally:
+        for future in running:
+            future.cancel()
+
+
+def _share_locally(workers: int, calls: Mapping[Task, Call]) -> Iterator[tuple[Task, Found]]:
+    """Share tasks among processes; those of processes that died are done again."""
+    left = dict(calls)
+    for attempt in range(RESTARTS + 1):
+        try:
+            with _pool(workers) as executor:
+                for task, found in _share(executor, workers, dict(left)):
+                    del left[task]
+                    yield task, found
+            return
+        except BrokenProcessPool:
+            if attempt == RESTARTS:
+                raise Unavailable(
+                    f"processes that compute the sweep were killed {RESTARTS + 1} times (is there enough "
+                    "memory?); what is done is kept"
+                ) from None
+
+
+@contextmanager
+def _pool(workers: int) -> Iterator[Executor]:
+    """Processes of one thread each, which end when they are no longer needed, or this one ends."""
+    before = {name: os.environ.get(name) for name in THREADS}
+    os.environ.update(dict.fromkeys(THREADS, "1"))
+    try:
+        context = multiprocessing.get_context("spawn")
+        executor = ProcessPoolExecutor(workers, mp_context=context, initializer=_begin_work)
+        try:
+            yield executor
+        finally:
+            processes = list((executor._processes or {}).values())
+            executor.shutdown(wait=False, cancel_futures=True)
+            for process in processes:
+                process.terminate()
+            for process in processes:
+                process.join()
+    finally:
+        for name, value in before.items():
+            if value is None:
+                os.environ.pop(name, None)
+            else:
+                os.environ[name] = value
+
+
+def _begin_work() -> None:
+    """Leave Ctrl-C to the parent, and end with it even if it is killed."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+
+        def follow() -> None:
+            parent.join()
+            os._exit(1)
+
+        threading.Thread(target=follow, daemon=True).start()
+
+
+@contextmanager
+def _cluster(address: str) -> Iterator[tuple[Executor, int]]:
+    """A running cluster, and how many workers it has."""
+    if find_spec("distributed") is None:
+        raise Unavailable("a scheduler needs dask.distributed: pip install 'tippetop[sweep]'")
+    from distributed import Client  # noqa: PLC0415 - optional, and slow to import
+
+    try:
+        client: Any = Client(address, timeout=PATIENCE, set_as_default=False)  # type: ignore[no-untyped-call]
+    except (OSError, ValueError) as error:
+        raise InvalidInput("scheduler", address, f"the address of a running scheduler ({error})") from None
+    with client:
+        size = max(len(client.scheduler_info(n_workers=-1)["workers"]), 1)
+        yield client.get_executor(retries=RESTARTS), size

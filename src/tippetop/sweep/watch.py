@@ -1,0 +1,76 @@
+"""What is watched of the axis on the way: how far it moves, when it turns over, when it reaches a band."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tippetop.integrators.base import Array
+from tippetop.sweep.polynomials import Polynomials
+
+Indices = NDArray[np.intp]
+
+
+@dataclass
+class Watch:
+    """The motion of the tip of the axis, n_z, for n launches.
+
+    Attributes
+    ----------
+    down, up
+        Least and largest n_z since they were last set back.
+    turned
+        First time at which n_z falls through zero, which is when the top turns over; nan before.
+    low, high
+        A band of n_z that is waited for, or nan.
+    reached
+        First time at which n_z is in the band; nan before.
+    """
+
+    down: Array
+    up: Array
+    turned: Array
+    low: Array
+    high: Array
+    reached: Array = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.reached = np.full(self.low.shape, np.nan)
+
+    @classmethod
+    def of(cls, count: int) -> "Watch":
+        """The watch of launches that wait for no band."""
+        nothing = np.full(count, np.nan)
+        return cls(np.full(count, np.inf), np.full(count, -np.inf), *(nothing.copy() for _ in range(3)))
+
+    def set_back(self) -> None:
+        """Forget the extremes."""
+        self.down[:], self.up[:] = np.inf, -np.inf
+
+    def spread(self, launches: Indices, down: Array, up: Array) -> None:
+        """Take in extremes of n_z."""
+        self.down[launches] = np.fmin(self.down[launches], down)
+        self.up[launches] = np.fmax(self.up[launches], up)
+
+    def see(self, launches: Indices, time: Array, tip: Polynomials) -> None:
+        """Take in n_z as polynomials in time since `time`, shape (n,)."""
+        self.spread(launches, tip.least(), tip.greatest())
+        start = tip.values[0]
+        some = np.flatnonzero(np.isnan(self.turned[launches]) & (tip.values.min(axis=0) < 0.0))
+        if len(some):
+            self.turned[launches[some]] = time[some] + tip.some(some).first_fall()
+        some = np.flatnonzero(np.isnan(self.reached[launches]) & ~np.isnan(self.low[launches]))
+        if len(some):
+            low, high = self.low[launches[some]], self.high[launches[some]]
+            here = start[some]
+            falls = tip.some(some, shift=-high).first_fall()
+            rises = tip.some(some, sign=-1.0, shift=low).first_fall()
+            after = np.where(here > high, falls, np.where(here < low, rises, 0.0))
+            self.reached[launches[some]] = time[some] + after
+
+    def some(self, which: Indices) -> "Watch":
+        """The watch of some of the launches."""
+        arrays = (self.down, self.up, self.turned, self.low, self.high)
+        watch = Watch(*(array[which] for array in arrays))
+        watch.reached = self.reached[which]
+        return watch

@@ -1,0 +1,40 @@
+"""Sweeps that the tests share: small, quick, and with all that can happen in them."""
+
+import numpy as np
+
+from tippetop.presets import report_problem
+from tippetop.simulate import simulate
+from tippetop.sweep import Axis, Product, Sweep
+
+FIELDS = ("final_theta", "final_omega3", "energy_lost", "airborne_time", "first_lift_off", "end_time")
+
+
+def lively(liftoff="fly", spins=5, mus=3, duration=1.4, tolerance=1e-12, tilt=1.0):
+    """Launches of which some lift off, over spin and friction; tilted, so that things happen early."""
+    problem = report_problem(tilt=tilt).replace({"contact.liftoff": liftoff})
+    axes = Axis.linear("launch.spin", 40.0, 240.0, spins), Axis.geometric("friction.mu", 0.2, 1.0, mus)
+    return Sweep(problem, Product(axes), duration, tolerance)
+
+
+def thrown():
+    """Launches that fall on the table, bounce, and slide on; short."""
+    problem = report_problem(spin=150.0, tilt=0.5)
+    axes = Axis.listed("launch.gap", [0.0, 0.001]), Axis.listed("contact.restitution", [0.0, 0.4])
+    return Sweep(problem, Product(axes), 0.12, 1e-9)
+
+
+def problem_of(sweep, cell):
+    """The problem of a cell."""
+    return sweep.problem.replace(
+        {field: float(values[0]) for field, values in sweep.grid.values(np.array([cell])).items()}
+    )
+
+
+def truth(problem, duration, samples=2001, **options):
+    """A run to compare with."""
+    return simulate(problem, duration, samples=samples, **options)
+
+
+def same(one, other):
+    """Whether two results are equal, number by number."""
+    return all(np.array_equal(one[name], other[name], equal_nan=one[name].dtype.kind == "f") for name in one)

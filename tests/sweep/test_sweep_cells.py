@@ -1,0 +1,100 @@
+"""Cells as arrays are the same launches as problems, and are refused where problems are."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from strategies import problems
+from tippetop.errors import InvalidInput
+from tippetop.mechanics.top import dimensionless_numbers, natural_units
+from tippetop.presets import report_problem
+from tippetop.simulate import to_natural
+from tippetop.sweep.cells import Fault, cells_of, numeric_fields
+
+EDGES = {
+    "launch.tilt": [-0.1, 0.0, 1.0, math.pi, 3.2, math.nan],
+    "body.I3": [-1e-6, 0.0, 3e-6, 5.98e-6, 6.0e-6, math.inf],
+    "friction.mu": [-0.1, 0.0, 1e9],
+    "body.shape.eccentricity": [0.0, 0.5, 1.0],
+    "launch.slip.1": [0.0, -3.0, math.nan],
+    "launch.slip.0": [0.0, 9.0, 40.0, -40.0],
+    "contact.restitution": [-0.1, 0.0, 1.0, 1.1],
+    "launch.gap": [-1e-3, 0.0, 1e-3],
+    "gravity": [0.0, 9.8],
+}
+
+
+def as_problem(problem, field, value):
+    """The problem with one number changed, or None where there is no such problem."""
+    *parents, last = field.split(".")
+    try:
+        if not last.isdigit():
+            return problem.replace({field: value})
+        numbers = list(getattr(problem.launch, parents[-1]))
+        numbers[int(last)] = value
+        return problem.replace({".".join(parents): tuple(numbers)})
+    except InvalidInput:
+        return None
+
+
+@settings(max_examples=40)
+@given(problems(), st.sampled_from(["body.mass", "body.I1", "launch.tilt", "launch.spin", "friction.mu"]))
+def test_cells_start_as_their_problems_do(problem, field):
+    value = float(dict(_flat(problem.model_dump()))[field])
+    values = np.array([value, 0.5 * value, value])
+    cells = cells_of(problem, {field: values})
+    for index, number in enumerate(values):
+        one = as_problem(problem, field, float(number))
+        assert (one is None) == (cells.fault[index] != Fault.NONE)
+        if one is None:
+            continue
+        launches = cells.launches(np.array([index]), 3.0)
+        units = natural_units(one.top)
+        numbers = np.array(dimensionless_numbers(one.top))
+        assert launches.numbers[:, 0] == pytest.approx(numbers, rel=1e-14)
+        start = np.array(launches.state.pack())[:, 0]
+        wanted = to_natural(one.start(), units)
+        assert start == pytest.approx(wanted, rel=1e-12, abs=1e-13 * max(1.0, np.abs(wanted).max()))
+        assert launches.end[0] == pytest.approx(3.0 / units.time, rel=1e-14)
+
+
+def _flat(table, prefix=""):
+    for name, value in table.items():
+        if isinstance(value, dict):
+            yield from _flat(value, f"{prefix}{name}.")
+        else:
+            yield f"{prefix}{name}", value
+
+
+@pytest.mark.parametrize("liftoff", ["fly", "stop", "ignore"])
+@pytest.mark.parametrize("field", EDGES)
+def test_cells_are_refused_where_problems_are(field, liftoff):
+    problem = report_problem(spin=100.0, tilt=1.0, mu=0.5).replace({"contact.liftoff": liftoff})
+    cells = cells_of(problem, {field: np.array(EDGES[field])})
+    refused = [as_problem(problem, field, value) is None for value in EDGES[field]]
+    assert (cells.fault != Fault.NONE).tolist() == refused
+
+
+def test_a_cell_is_labelled_with_what_is_wrong_with_it():
+    problem = report_problem(tilt=1.0).replace({"contact.liftoff": "stop"})
+    assert cells_of(problem, {"launch.tilt": np.array([4.0])}).fault == [Fault.VALUE_OUT_OF_RANGE]
+    assert cells_of(problem, {"body.I3": np.array([1.0])}).fault == [Fault.NO_SUCH_BODY]
+    assert cells_of(problem, {"launch.slip.0": np.array([40.0])}).fault == [Fault.NO_CONTACT_FORCE]
+
+
+def test_every_number_of_a_problem_can_be_swept():
+    fields = [name for name, _ in numeric_fields(report_problem())]
+    assert {"launch.spin", "friction.mu", "body.shape.eccentricity", "launch.slip.1", "gravity"} <= set(
+        fields
+    )
+    problem = report_problem()
+    for field in fields:
+        assert cells_of(problem, {field: np.array([0.3, 0.4])}).fault.shape == (2,)
+
+
+def test_a_field_that_is_none_is_refused_with_the_likeliest_meant():
+    with pytest.raises(InvalidInput, match=r"did you mean launch\.spin"):
+        cells_of(report_problem(), {"launch.spim": np.array([1.0])})

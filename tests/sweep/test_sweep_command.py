@@ -1,0 +1,154 @@
+"""The command `tippetop sweep` as a person uses it."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+import typer
+import xarray as xr
+from typer.testing import CliRunner
+
+from tippetop.cli.sweep import sweep as command
+from tippetop.errors import FileTrouble, InvalidInput
+from tippetop.presets import report_problem
+from tippetop.sweep import Store
+
+AXES = ["--axis", "launch.spin=50:200:3", "--axis", "friction.mu=0.1:1:2:geo"]
+SHORT = ["--tilt", "1.0", "--duration", "0.1", "--workers", "1"]
+
+
+def run(*arguments):
+    """What the command prints; its errors are raised."""
+    app = typer.Typer()
+    app.command()(command)
+    result = CliRunner().invoke(app, [str(argument) for argument in arguments])
+    if result.exception is not None and not isinstance(result.exception, SystemExit):
+        raise result.exception
+    assert result.exit_code == 0, result.output
+    return result.stdout
+
+
+def test_a_sweep_writes_a_store_and_maps_beside_it(tmp_path):
+    out = tmp_path / "a.zarr"
+    said = run(*AXES, *SHORT, "--out", out)
+    assert "6 launches" in said
+    assert sorted(path.name for path in tmp_path.iterdir()) == [
+        "a.final_theta.png",
+        "a.flights.png",
+        "a.turns_over.png",
+        "a.zarr",
+    ]
+    assert xr.open_zarr(out)["final_theta"].shape == (3, 2)
+
+
+def test_programs_get_json(tmp_path):
+    out = tmp_path / "a.zarr"
+    said = json.loads(run(*AXES, *SHORT, "--out", out, "--json", "--no-maps"))
+    assert said["cells"] == said["computed"] == sum(said["outcomes"].values()) == 6
+    assert said["launches_per_second"] > 0
+    assert said["maps"] == []
+    assert said["sweep"]["problem"]["launch"]["tilt"] == 1.0
+    again = json.loads(run("--out", out, "--resume", "--json", "--no-maps"))
+    assert again["computed"] == 0
+    assert again["outcomes"] == said["outcomes"]
+
+
+def test_draws_and_settings_reach_the_sweep(tmp_path):
+    out = tmp_path / "a.zarr"
+    draws = ["--draw", "launch.spin=10:20", "--draw", "friction.mu=0.1:1:log", "--count", 5, "--seed", 3]
+    options = [
+        "--set",
+        "gravity=3.7",
+        "--liftoff",
+        "stop",
+        "--preset",
+        "report-table-1",
+    ]
+    run(*draws, *options, *SHORT, "--tolerance", "1e-8", "--out", out, "--no-maps")
+    sweep = Store.resume(out).sweep
+    assert sweep.grid.shape == (5,)
+    assert sweep.grid.seed == 3
+    assert sweep.problem.gravity == 3.7
+    assert sweep.problem.contact.liftoff == "stop"
+    assert sweep.problem.body.I1 > sweep.problem.body.I3
+    assert sweep.tolerance == 1e-8
+
+
+def test_a_problem_and_a_sweep_are_read_from_files(tmp_path):
+    (tmp_path / "top.toml").write_text(report_problem(spin=77.0).to_toml())
+    run(tmp_path / "top.toml", *AXES[2:], *SHORT, "--out", tmp_path / "a.zarr", "--no-maps")
+    assert Store.resume(tmp_path / "a.zarr").sweep.problem.launch.spin == 77.0
+    (tmp_path / "sweep.toml").write_text(
+        'problem = "top.toml"\nduration = 0.1\n[axes]\nlaunch.tilt = [0.2, 0.3]\n'
+    )
+    run(tmp_path / "sweep.toml", "--mu", 0.7, "--workers", 1, "--out", tmp_path / "b.zarr", "--no-maps")
+    sweep = Store.resume(tmp_path / "b.zarr").sweep
+    assert sweep.grid.dimensions == ("launch.tilt",)
+    assert sweep.problem.friction.mu == 0.7
+    assert sweep.duration == 0.1
+
+
+@pytest.mark.parametrize(
+    ("arguments", "field"),
+    [
+        ([], "--axis"),
+        (["--axis", "launch.spn=1,2"], "axis"),
+        (["--axis", "launch.spin"], "--axis"),
+        (["--draw", "launch.spin=1:2"], "--count"),
+        (["--draw", "launch.spin=1:2", "--axis", "friction.mu=1,2"], "--draw"),
+        ([*AXES, "--resume", "--force"], "--force"),
+        ([*AXES, "--workers", "0"], "workers"),
+        ([*AXES, "--duration", "0"], "duration"),
+    ],
+)
+def test_misuse_is_refused_by_what_is_wrong(tmp_path, arguments, field):
+    with pytest.raises(InvalidInput) as refusal:
+        run(*arguments, "--out", tmp_path / "a.zarr")
+    assert refusal.value.field == field
+
+
+def test_a_store_is_not_overwritten_or_mixed_with_another(tmp_path):
+    out = tmp_path / "a.zarr"
+    run(*AXES, *SHORT, "--out", out, "--no-maps")
+    with pytest.raises(FileTrouble, match="--force"):
+        run(*AXES, *SHORT, "--out", out)
+    with pytest.raises(FileTrouble, match=r"problem\.friction\.mu is 0\.3 in it, and 0\.9 here"):
+        run("--mu", 0.9, "--resume", "--out", out)
+    run(*AXES, *SHORT, "--mu", 0.9, "--force", "--out", out, "--no-maps")
+
+
+INTERRUPTED = """
+import typer
+from tippetop.cli.sweep import sweep
+if __name__ == "__main__":
+    app = typer.Typer()
+    app.command()(sweep)
+    app()
+"""
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_ctrl_c_leaves_a_line_and_a_store_that_resumes(tmp_path, workers):
+    script, out = tmp_path / "run.py", tmp_path / "a.zarr"
+    script.write_text(INTERRUPTED)
+    options = ["--axis", "launch.spin=1:250:120", "--axis", "friction.mu=0.1:1:100", "--no-maps"]
+    process = subprocess.Popen(
+        [sys.executable, script, *options, "--workers", str(workers), "--out", out],
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    while not list(out.glob("status/c/*/*")):
+        assert process.poll() is None
+        time.sleep(0.05)
+    os.killpg(process.pid, signal.SIGINT)
+    _, said = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert "interrupted" in said
+    assert "--resume" in said
+    assert "Traceback" not in said
+    assert 0 < len(Store.resume(out).remaining()) < len(Store.resume(out).sweep.tasks)

@@ -1,0 +1,254 @@
+"""The engine against single runs, against itself, and against what must hold."""
+
+import math
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from sweeps import lively, problem_of, same, thrown, truth
+
+from tippetop.integrators import has_taylor
+from tippetop.presets import report_problem
+from tippetop.problem import Body, Problem, RegularizedCoulombFriction, Spheroid
+from tippetop.summary import summarize
+from tippetop.sweep import VARIABLES, Axis, Fault, Group, Product, Sweep, compute, ensemble, lanes
+from tippetop.sweep.cells import cells_of
+from tippetop.sweep.ensemble import follow_cells
+from tippetop.sweep.observe import nothing_known
+from tippetop.sweep.stepper import DOWN, LEFT, LOW, ROWS, TAKEN, UP, NumPyStepper, order_for, stepper
+
+EGG = Body(mass=0.05, shape=Spheroid(across=0.02, along=0.03), I1=9e-6, I3=5e-6)
+
+
+def check_against_runs(sweep, cells=None, closeness=1e-7, **options):
+    """Every observable of cells against a single run of the problem each; return the cells' values."""
+    found = follow_cells(sweep, np.arange(sweep.cells))
+    for cell in range(sweep.cells) if cells is None else cells:
+        samples = 4001 if options else int(5000 * sweep.duration) + 1
+        run = truth(problem_of(sweep, cell), sweep.duration, samples, **options)
+        summary = summarize(run)
+        here = {name: values[cell] for name, values in found.items()}
+        step = sweep.duration / (samples - 1)
+        lifts = [event["time"] for event in summary["events"] if event["kind"] == "lift-off"]
+        assert here["final_theta"] == pytest.approx(summary["final"]["theta"], abs=closeness)
+        assert here["final_omega3"] == pytest.approx(summary["final"]["omega3"], rel=closeness, abs=closeness)
+        if summary["final"]["phi_dot"] is not None and abs(math.sin(here["final_theta"])) > 1e-2:
+            assert here["final_phi_dot"] == pytest.approx(summary["final"]["phi_dot"], rel=10 * closeness)
+        assert here["end_time"] == pytest.approx(summary["duration"], rel=closeness)
+        assert here["energy_lost"] == pytest.approx(
+            summary["energy_lost"], abs=closeness * summary["energy_start"]
+        )
+        assert here["flights"] == summary["flights"]
+        assert here["airborne_time"] == pytest.approx(summary["airborne_time"], abs=closeness)
+        assert here["highest_gap"] == pytest.approx(summary["highest_gap"], abs=1e-7)
+        assert here["highest"] == pytest.approx(float(run["height"].max()), rel=1e-4)
+        assert here["jellett_error"] < 1e-9 or run.attrs["problem"].find("spheroid") > 0
+        if lifts:
+            assert here["first_lift_off"] == pytest.approx(lifts[0], abs=closeness)
+        else:
+            assert np.isnan(here["first_lift_off"])
+        if lifts or summary["flights"]:
+            assert here["least_normal_force"] == 0.0
+        else:
+            least = float(run["normal_force"].min())
+            assert here["least_normal_force"] == pytest.approx(
+                least, abs=1e-3 * float(run["normal_force"].max())
+            )
+            assert here["least_normal_force"] < least + 1e-9
+        if summary["turns_over"] is None:
+            assert np.isnan(here["turns_over"])
+        else:
+            assert here["turns_over"] == pytest.approx(summary["turns_over"], abs=step)
+        assert summary["arrives"] - 2 * step <= here["arrives"] <= summary["arrives"] + 1e-9
+    return found
+
+
+@pytest.mark.parametrize("liftoff", ["fly", "stop", "ignore"])
+def test_cells_are_single_runs(liftoff):
+    found = check_against_runs(lively(liftoff))
+    lifted = np.isfinite(found["first_lift_off"])
+    assert lifted.any() == (liftoff != "ignore")
+    assert (found["flights"].sum() > 10) == (liftoff == "fly")
+    assert np.array_equal(found["outcome"] == Group.LIFTED_OFF, lifted & (liftoff == "stop"))
+
+
+def test_a_top_that_turns_over_is_a_single_run():
+    axes = Axis.listed("launch.spin", [20.0, 50.0, 155.0, 180.0]), Axis.listed("friction.mu", [0.3])
+    found = check_against_runs(Sweep(report_problem(), Product(axes), 12.0, 1e-12))
+    assert found["outcome"].tolist() == [Group.UPRIGHT, Group.TILTED, Group.INVERTED, Group.INVERTED]
+    assert found["flights"][3] > 0
+
+
+def test_other_shapes_and_friction_laws_are_single_runs():
+    egg = Problem(
+        body=EGG, friction=RegularizedCoulombFriction(mu=0.3, eps=0.01), launch={"tilt": 1.5, "spin": 0.0}
+    )
+    egg = egg.replace({"launch.precession": 150.0, "contact.liftoff": "ignore"})
+    axis = Axis.listed("launch.precession", [60.0, 150.0])
+    check_against_runs(Sweep(egg, Product((axis,)), 0.6, 1e-12), closeness=1e-6)
+    flying = egg.replace({"contact.liftoff": "fly"})
+    check_against_runs(Sweep(flying, Product((axis,)), 0.6, 1e-12), closeness=1e-6)
+
+
+def test_thrown_and_bouncing_tops_are_single_runs():
+    problem = report_problem(spin=100.0, tilt=0.5).replace({"contact.restitution": 0.5})
+    axes = Axis.listed("launch.gap", [0.0, 0.002, 0.01]), Axis.listed("contact.restitution", [0.0, 0.6])
+    found = check_against_runs(Sweep(problem, Product(axes), 0.4, 1e-12), closeness=1e-6)
+    assert np.all(found["flights"][2:] > 0)
+    assert np.all(found["flights"][[3, 5]] > found["flights"][[2, 4]])
+
+
+def test_the_engine_agrees_with_another_method():
+    sweep = lively("fly", 2, 2, 1.3, 1e-12)
+    check_against_runs(sweep, cells=[3], closeness=1e-6, integrator="dop853", tolerance=1e-13)
+
+
+def test_a_cell_does_not_depend_on_its_neighbours():
+    sweep = lively(tolerance=1e-9)
+    cells = np.arange(sweep.cells)
+    together = follow_cells(sweep, cells)
+    alone = [follow_cells(sweep, cells[k : k + 1]) for k in (0, 7, 14)]
+    for k, one in zip((0, 7, 14), alone, strict=True):
+        for name, values in one.items():
+            assert values[0] == pytest.approx(together[name][k], rel=1e-11, abs=1e-12, nan_ok=True), name
+    backwards = follow_cells(sweep, cells[::-1])
+    for name, values in backwards.items():
+        assert values[::-1] == pytest.approx(together[name], rel=1e-11, abs=1e-12, nan_ok=True), name
+
+
+def test_a_cell_does_not_depend_on_lanes_waves_and_windows(monkeypatch):
+    sweep = lively(tolerance=1e-9)
+    cells = np.arange(sweep.cells)
+    usual = follow_cells(sweep, cells)
+    monkeypatch.setattr(ensemble, "LANES_AT_ONCE", 4)
+    monkeypatch.setattr(lanes, "WAVE", 3)
+    monkeypatch.setattr(lanes, "WINDOW", 12)
+    monkeypatch.setattr(lanes, "CROWDED", 1.5)
+    other = follow_cells(sweep, cells)
+    for name, values in other.items():
+        assert values == pytest.approx(usual[name], rel=1e-11, abs=1e-12, nan_ok=True), name
+
+
+@pytest.mark.skipif(not has_taylor(), reason="heyoka is what is compared with")
+def test_numpy_makes_the_steps_that_heyoka_compiles():
+    sweep = lively("ignore", 4, 4)
+    cells = cells_of(sweep.problem, sweep.grid.values(np.arange(16)))
+    launches = cells.launches(np.arange(16), 1.0)
+    state = launches.state
+    before = np.zeros((ROWS, 16))
+    for row, number in enumerate((*state.axis, *state.momentum, *state.velocity[:2])):
+        before[row] = number
+    before[LEFT] = launches.end
+    before[LOW], before[DOWN], before[UP] = np.inf, np.inf, -np.inf
+    cares = np.tile([[1.0], [1.0], [np.inf], [-np.inf]], 16)
+    numbers = np.concatenate((launches.numbers, cares))
+    compiled, plain = stepper(launches.kind, 1e-9), NumPyStepper(launches.kind, order_for(1e-9))
+    one, other = np.empty_like(before), np.empty_like(before)
+    compiled.step(before, one, numbers)
+    plain.step(before, other, numbers)
+    assert one == pytest.approx(other, rel=1e-11, abs=1e-13)
+    for ours, theirs in zip(compiled.jet(before, numbers), plain.jet(before, numbers), strict=True):
+        assert ours == pytest.approx(theirs, rel=1e-9, abs=1e-9 * np.abs(theirs).max())
+    assert np.all(one[TAKEN] > 0)
+
+
+NO_HEYOKA = """
+import sys
+sys.modules["heyoka"] = None
+import numpy as np
+sys.path.insert(0, {folder!r})
+from sweeps import thrown
+from tippetop.sweep.ensemble import follow_cells
+found = follow_cells(thrown(), np.arange(4))
+np.savez({out!r}, **found)
+"""
+
+
+@pytest.mark.skipif(not has_taylor(), reason="heyoka is what is compared with")
+def test_a_sweep_is_the_same_without_heyoka(tmp_path):
+    code = NO_HEYOKA.format(folder=str(Path(__file__).parent), out=str(tmp_path / "found"))
+    subprocess.run([sys.executable, "-c", code], check=True)
+    without = np.load(tmp_path / "found.npz")
+    found = follow_cells(thrown(), np.arange(4))
+    assert found["flights"].sum() > 0
+    for name, values in found.items():
+        assert without[name] == pytest.approx(values, rel=1e-9, abs=1e-10, nan_ok=True), name
+
+
+def test_bad_cells_are_labelled_and_harm_no_other():
+    axes = Axis.listed("body.I3", [3.2e-6, 1.0, -1.0]), Axis.listed("launch.tilt", [1.0, 4.0])
+    problem = report_problem(spin=200.0)
+    sweep = Sweep(problem, Product(axes), 0.2, 1e-9)
+    dataset = compute(sweep)
+    assert (dataset["outcome"] == Group.BAD).values.tolist() == [[False, True], [True, True], [True, True]]
+    assert dataset["fault"].values.tolist() == [
+        [Fault.NONE, Fault.VALUE_OUT_OF_RANGE],
+        [Fault.NO_SUCH_BODY, Fault.VALUE_OUT_OF_RANGE],
+        [Fault.VALUE_OUT_OF_RANGE, Fault.VALUE_OUT_OF_RANGE],
+    ]
+    one = Sweep(
+        problem.replace({"body.I3": 3.2e-6}), Product((Axis.listed("launch.tilt", [1.0]),)), 0.2, 1e-9
+    )
+    good, alone = follow_cells(sweep, np.array([0])), follow_cells(one, np.array([0]))
+    assert same(good, alone)
+    bad = follow_cells(sweep, np.array([1, 2]))
+    unknown = nothing_known(2)
+    unknown["fault"][:] = [Fault.VALUE_OUT_OF_RANGE, Fault.NO_SUCH_BODY]
+    assert same(bad, unknown)
+
+
+def test_a_motion_that_becomes_singular_is_labelled():
+    """With a table that may pull, much friction leads to Painleve's paradox: no bound on the force."""
+    problem = report_problem(spin=200.0, tilt=1.0).replace(
+        {"contact.liftoff": "ignore", "launch.slip": (-0.3, 0.0)}
+    )
+    sweep = Sweep(problem, Product((Axis.listed("friction.mu", [0.3, 40.0]),)), 1.0, 1e-9)
+    found = follow_cells(sweep, np.arange(2))
+    runs = [truth(problem_of(sweep, k), 1.0, 11) for k in range(2)]
+    assert [outcome == Group.FAILED for outcome in found["outcome"]] == [
+        run.attrs["outcome"] == "failed" for run in runs
+    ]
+
+
+def test_a_launch_that_takes_too_long_is_given_up(monkeypatch):
+    monkeypatch.setattr(lanes, "STEP_LIMIT", 50)
+    found = follow_cells(lively("ignore", 2, 2), np.arange(4))
+    assert np.all(found["outcome"] == Group.FAILED)
+    monkeypatch.undo()
+    monkeypatch.setattr(lanes, "FLIGHT_LIMIT", 2)
+    found = follow_cells(lively("fly", 2, 2), np.arange(4))
+    assert np.array_equal(found["outcome"] == Group.FAILED, found["flights"] == 2)
+    assert (found["outcome"] == Group.FAILED).any()
+
+
+def test_a_smaller_tolerance_is_a_smaller_error():
+    exact = follow_cells(lively("ignore", tolerance=1e-12), np.arange(15))
+    errors = []
+    for tolerance in (1e-6, 1e-9):
+        found = follow_cells(lively("ignore", tolerance=tolerance), np.arange(15))
+        errors.append(np.abs(found["final_theta"] - exact["final_theta"]).max())
+    assert errors[0] > 10 * errors[1] > 0
+    assert errors[1] < 1e-7
+
+
+def test_upright_launches_stay_where_they_are():
+    axes = Axis.listed("launch.tilt", [0.0, math.pi]), Axis.listed("launch.spin", [0.0, 100.0])
+    found = follow_cells(Sweep(report_problem(), Product(axes), 1.0), np.arange(4))
+    assert found["final_theta"] == pytest.approx([0, 0, math.pi, math.pi], abs=1e-12)
+    assert found["arrives"].tolist() == [0.0] * 4
+    assert np.all(np.isnan(found["final_phi_dot"]))
+    assert found["energy_lost"] == pytest.approx(0, abs=1e-15)
+    assert found["least_normal_force"] == pytest.approx(0.02 * 9.8)
+
+
+def test_every_variable_is_described():
+    dataset = compute(lively(duration=0.1))
+    for name, kind in VARIABLES.items():
+        variable = dataset[name]
+        assert variable.attrs["long_name"]
+        assert "units" in variable.attrs or "flag_meanings" in variable.attrs
+        assert variable.dtype == kind.dtype
+        if "flag_meanings" in variable.attrs:
+            assert len(variable.attrs["flag_meanings"].split()) == len(variable.attrs["flag_values"])

@@ -1,0 +1,76 @@
+"""Maps show the values of their sweep, where they belong."""
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+from matplotlib.collections import QuadMesh
+
+from tippetop.figures.maps import MAPPED, phase_map
+from tippetop.figures.style import save
+from tippetop.presets import report_problem
+from tippetop.sweep import VARIABLES, Axis, Draws, Product, Range, Sweep, compute
+
+
+@pytest.fixture(scope="module")
+def plane():
+    axes = Axis.linear("launch.spin", 100.0, 200.0, 3), Axis.geometric("friction.mu", 0.1, 1.0, 4)
+    return compute(Sweep(report_problem(tilt=1.0), Product(axes), 0.2))
+
+
+@pytest.mark.parametrize("name", [name for name in VARIABLES if name != "steps"])
+def test_a_map_holds_every_cell(plane, name, tmp_path):
+    figure = phase_map(plane, name)
+    axes, bar = figure.axes
+    mesh = next(child for child in axes.get_children() if isinstance(child, QuadMesh))
+    values = np.asarray(plane[name].values, dtype=float).T
+    shown = np.ma.filled(mesh.get_array().astype(float), np.nan)
+    assert np.array_equal(shown, values, equal_nan=True)
+    assert axes.get_xscale() == "linear"
+    assert axes.get_yscale() == "log"
+    assert "spin" in axes.get_xlabel()
+    assert "μ" in axes.get_ylabel()
+    if "flag_meanings" in plane[name].attrs:
+        labels = [label.get_text().replace("-", "_") for label in bar.get_yticklabels()]
+        assert labels == plane[name].attrs["flag_meanings"].split()
+    save(figure, tmp_path / "map.png")
+
+
+def test_what_is_not_computed_is_not_shown(plane):
+    partly = plane.copy(deep=True)
+    partly["status"][0, :] = 0
+    mesh = next(child for child in phase_map(partly).axes[0].get_children() if isinstance(child, QuadMesh))
+    assert mesh.get_array().mask[:, 0].all()
+    assert not mesh.get_array().mask[:, 1:].any()
+
+
+def test_cells_are_drawn_where_their_values_are(plane):
+    mesh = next(child for child in phase_map(plane).axes[0].get_children() if isinstance(child, QuadMesh))
+    corners = mesh.get_coordinates()
+    spins, mus = plane["launch.spin"].values, plane["friction.mu"].values
+    assert np.all((corners[:, :-1, 0] < spins) & (spins < corners[:, 1:, 0]))
+    assert np.all((mus > corners[:-1, :, 1].T) & (mus < corners[1:, :, 1].T))
+
+
+def test_one_axis_is_a_curve_and_draws_are_points():
+    curve = compute(Sweep(report_problem(), Product((Axis.linear("launch.spin", 1, 9, 5),)), 0.1))
+    (line,) = phase_map(curve, "final_theta").axes[0].lines
+    assert line.get_ydata() == pytest.approx(curve["final_theta"].values)
+    ranges = Range("launch.spin", 1, 9), Range("launch.tilt", 0.1, 0.2)
+    draws = compute(Sweep(report_problem(), Draws(ranges, 6), 0.1))
+    points = phase_map(draws, "final_theta").axes[0].collections[-1]
+    assert np.asarray(points.get_offsets())[:, 0] == pytest.approx(draws["launch.spin"].values)
+    assert np.asarray(points.get_array()) == pytest.approx(draws["final_theta"].values)
+    single = compute(Sweep(report_problem(), Draws(ranges[:1], 6), 0.1))
+    assert phase_map(single).axes[0].lines[0].get_xdata() == pytest.approx(single["launch.spin"].values)
+
+
+def test_more_dimensions_make_no_map(plane):
+    with pytest.raises(ValueError, match="one or two dimensions"):
+        phase_map(plane.expand_dims({"gravity": [1.0, 2.0]}))
+
+
+def test_making_a_map_leaves_the_style_alone(plane):
+    before = dict(mpl.rcParams)
+    for name in MAPPED:
+        phase_map(plane, name)
+    assert dict(mpl.rcParams) == before

@@ -1,0 +1,88 @@
+"""Zeros and extremes of polynomials that were made from them."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tippetop.sweep.polynomials import LOOKS, Polynomials
+
+
+def with_roots(roots, factor=1.0):
+    return factor * np.poly(roots)[::-1].reshape(-1, 1)
+
+
+def ones(value=1.0):
+    return np.array([value])
+
+
+@given(st.lists(st.floats(0.01, 3.0), min_size=1, max_size=5, unique=True), st.floats(0.5, 2.0))
+def test_first_fall_is_the_smallest_root_at_which_the_polynomial_falls(roots, span):
+    roots = sorted(roots)
+    gaps = np.diff([0.0, *roots])
+    if np.any(gaps < 1e-2) or abs(roots[0] - span) < 1e-9:
+        # Roots that merge, or a root at the very end, are decided by rounding.
+        return
+    terms = with_roots(roots)
+    terms *= np.sign(terms[0])  # positive at 0, so that the first root is a fall
+    found = Polynomials(terms, ones(span)).first_fall()[0]
+    if roots[0] < span:
+        assert found == pytest.approx(roots[0], rel=1e-9)
+    else:
+        assert np.isnan(found)
+
+
+@pytest.mark.parametrize("width", [1e-1, 1e-3, 1e-5])
+def test_a_dip_between_two_looks_is_found(width):
+    middle = 0.5 / LOOKS + 10 / LOOKS
+    found = Polynomials(with_roots([middle - width / LOOKS, middle + width / LOOKS]), ones()).first_fall()[0]
+    assert found == pytest.approx(middle - width / LOOKS, rel=1e-9)
+
+
+@pytest.mark.parametrize("middle", [0.4 / LOOKS, 1.0 - 0.4 / LOOKS])
+def test_a_dip_in_the_first_or_the_last_interval_is_found(middle):
+    width = 0.3 / LOOKS
+    found = Polynomials(with_roots([middle - width, middle + width]), ones()).first_fall()[0]
+    assert found == pytest.approx(middle - width, rel=1e-9)
+
+
+def test_a_graze_that_does_not_touch_is_none():
+    middle = 0.5 / LOOKS + 10 / LOOKS
+    terms = with_roots([middle, middle])
+    terms[0] += 1e-8
+    assert np.isnan(Polynomials(terms, ones()).first_fall()[0])
+
+
+def test_polynomials_do_not_meddle_with_each_other():
+    terms = np.hstack(
+        [
+            with_roots([0.3, 0.9, 2.0]) * -1.0,
+            with_roots([0.6, 5.0, 7.0]) * -1.0,
+            0 * with_roots([1, 1, 1]) + 1,
+        ]
+    )
+    found = Polynomials(terms, np.ones(3)).first_fall()
+    assert found[:2] == pytest.approx([0.3, 0.6], rel=1e-14)
+    assert np.isnan(found[2])
+
+
+def test_starting_at_zero_and_sinking_falls_at_once_and_rising_does_not():
+    assert Polynomials(np.array([[0.0], [-1.0]]), ones()).first_fall()[0] == 0.0
+    assert np.isnan(Polynomials(np.array([[0.0], [1.0]]), ones()).first_fall()[0])
+
+
+@given(st.floats(0.1, 0.9))
+def test_extremes_of_a_parabola_are_exact(vertex):
+    terms = np.array([[vertex**2], [-2.0 * vertex], [1.0]])
+    below, above = Polynomials(terms, ones()), Polynomials(-terms, ones())
+    assert below.least()[0] == pytest.approx(0.0, abs=1e-15)
+    assert above.greatest()[0] == pytest.approx(0.0, abs=1e-15)
+    place, value = below.refined_least()
+    assert place[0] == pytest.approx(vertex, abs=1e-12)
+    assert value[0] == pytest.approx(0.0, abs=1e-15)
+
+
+def test_an_extreme_at_an_end_is_the_end():
+    rising = Polynomials(np.array([[1.0], [2.0]]), ones(3.0))
+    assert rising.least()[0] == 1.0
+    assert rising.greatest()[0] == 7.0

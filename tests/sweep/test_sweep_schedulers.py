@@ -1,0 +1,115 @@
+"""The same sweep by one process, by several, and by a Dask cluster some of whose workers are killed."""
+
+import os
+import signal
+import threading
+import time
+
+import numpy as np
+import psutil
+import pytest
+from sweeps import lively, same
+
+from tippetop.errors import InvalidInput, Unavailable
+from tippetop.sweep import VARIABLES, compute, definition
+from tippetop.sweep import tasks as scheduling
+
+
+def arrays(dataset):
+    return {name: dataset[name].values for name in VARIABLES}
+
+
+@pytest.fixture
+def small_tasks(monkeypatch):
+    monkeypatch.setattr(definition, "LEAST_CELLS_A_TASK", 4)
+    monkeypatch.setattr(definition, "TASKS", 1000)
+
+
+def quick():
+    return lively("fly", 6, 4, 0.1, 1e-9)
+
+
+def test_several_processes_find_what_one_does(small_tasks):
+    assert same(arrays(compute(quick(), workers=1)), arrays(compute(quick(), workers=2)))
+
+
+def test_processes_that_are_killed_are_started_again(small_tasks):
+    sweep = quick()
+    kept = {}
+    killed = False
+    for task, found in scheduling.results(sweep, sweep.tasks, workers=2):
+        kept[task] = found
+        if not killed:
+            workers = [child for child in psutil.Process().children() if "spawn" in " ".join(child.cmdline())]
+            os.kill(workers[-1].pid, signal.SIGKILL)
+            killed = True
+    assert sorted(kept) == sweep.tasks
+    assert sum(found["outcome"].size for found in kept.values()) == sweep.cells
+
+
+def test_no_process_outlives_its_use(small_tasks):
+    sweep = quick()
+    results = scheduling.results(sweep, sweep.tasks, workers=2)
+    next(results)
+    started = psutil.Process().children(recursive=True)
+    results.close()
+    alive = [child for child in started if child.is_running() and "tracker" not in " ".join(child.cmdline())]
+    assert alive == []
+
+
+def test_a_number_of_workers_that_cannot_be_is_refused():
+    with pytest.raises(InvalidInput, match="workers"):
+        compute(quick(), workers=0)
+
+
+def test_workers_of_another_version_are_refused():
+    with pytest.raises(Unavailable, match=r"the sweep is run by 99\.0"):
+        scheduling.compute_block("{}", "99.0", ((0, 1),))
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_a_dask_cluster_finds_the_same_though_a_worker_is_killed(small_tasks):
+    distributed = pytest.importorskip("distributed")
+    sweep = lively("fly", 6, 4, 0.3, 1e-9)
+    alone = arrays(compute(sweep, workers=1))
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs=50
+    ) as cluster:
+        address = cluster.scheduler_address
+        victims = [worker.pid for worker in cluster.workers.values()]
+        done = threading.Event()
+
+        def kill() -> None:
+            while not done.is_set():
+                if began.is_set():
+                    os.kill(victims[0], signal.SIGKILL)
+                    return
+                time.sleep(0.01)
+
+        began = threading.Event()
+        killer = threading.Thread(target=kill)
+        killer.start()
+        try:
+            together = compute(sweep, scheduler=address, watcher=lambda _: began.set())
+        finally:
+            done.set()
+            killer.join()
+        assert not psutil.pid_exists(victims[0]) or psutil.Process(victims[0]).status() == "zombie"
+    assert same(alone, arrays(together))
+    assert np.all(together["status"].values == 1)
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_a_scheduler_that_is_not_there_is_refused(monkeypatch):
+    monkeypatch.setattr(scheduling, "PATIENCE", 1.0)
+    pytest.importorskip("distributed")
+    with pytest.raises(InvalidInput, match="scheduler"):
+        compute(quick(), scheduler="tcp://127.0.0.1:1")
+    with pytest.raises(InvalidInput, match="scheduler"):
+        compute(quick(), scheduler="nonsense://")
+
+
+def test_dask_that_is_not_installed_is_said_to_be_missing(monkeypatch):
+    monkeypatch.setattr(scheduling, "find_spec", lambda name: None)
+    with pytest.raises(Unavailable, match=r"pip install 'tippetop\[sweep\]'"):
+        compute(quick(), scheduler="tcp://127.0.0.1:1")

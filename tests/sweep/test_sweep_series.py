@@ -1,0 +1,58 @@
+"""Series whose sums are known, and the solutions they make."""
+
+import math
+
+import numpy as np
+import pytest
+
+from tippetop.mechanics.flight import Series as FlightSeries
+from tippetop.sweep.series import Series, horner, solution
+from tippetop.sweep.stepper import NumPyArithmetic
+
+PLAIN = NumPyArithmetic()
+DEGREE = 12
+
+
+def series(terms):
+    return Series(lambda k: terms[k] if k < len(terms) else 0.0 * terms[0], PLAIN)
+
+
+def terms_of(one, count=DEGREE):
+    return [one[k] for k in range(count)]
+
+
+@pytest.mark.parametrize(
+    ("make", "value"),
+    [
+        (lambda t: 1.0 / (1.0 - t), lambda t: 1.0 / (1.0 - t)),
+        (lambda t: (1.0 + t) ** 0.5, lambda t: math.sqrt(1.0 + t)),
+        (lambda t: (2.0 + t) ** -0.5, lambda t: 1.0 / math.sqrt(2.0 + t)),
+        (lambda t: (1.0 + t) ** 2 - t * t - 2.0 * t, lambda t: 1.0),
+        (lambda t: (3.0 - t) / (1.0 + t * t), lambda t: (3.0 - t) / (1.0 + t * t)),
+        (lambda t: -t + t * (1.0 + t) * (2.0 - t), lambda t: -t + t * (1.0 + t) * (2.0 - t)),
+    ],
+)
+def test_arithmetic_of_series_is_that_of_functions(make, value):
+    made = make(series([np.zeros(1), np.ones(1)]))
+    time = 0.01
+    assert horner(terms_of(made), time) == pytest.approx(value(time), rel=1e-14)
+
+
+def test_series_agree_with_those_of_a_flight():
+    terms = [1.3, 0.2, -0.4, 0.7, *([0.01] * 13)]
+    ours, theirs = series([np.array([term]) for term in terms]), FlightSeries(terms)
+    for power in (0.5, -1.0, 3.7):
+        found = terms_of(ours**power, len(terms))
+        assert np.allclose(np.ravel(found), (theirs**power).terms, rtol=1e-12)
+
+
+def test_solution_of_a_harmonic_oscillator_is_a_circle():
+    y = solution([np.ones(1), np.zeros(1)], lambda y: (-y[1], y[0]), PLAIN)
+    for k in range(DEGREE):
+        assert y[0][k] == pytest.approx((1, 0, -1, 0)[k % 4] / math.factorial(k), abs=1e-17)
+        assert y[1][k] == pytest.approx((0, 1, 0, -1)[k % 4] / math.factorial(k), abs=1e-17)
+
+
+def test_solution_with_a_constant_rate_is_a_line():
+    (y,) = solution([np.array([2.0])], lambda _: (3.0,), PLAIN)
+    assert np.ravel(terms_of(y)).tolist() == [2.0, 3.0, *([0.0] * (DEGREE - 2))]

@@ -1,0 +1,241 @@
+"""Stores: what they hold, what they survive, and what they refuse."""
+
+import errno
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from sweeps import lively, same
+
+from tippetop.errors import FileTrouble
+from tippetop.presets import report_problem
+from tippetop.sweep import (
+    VARIABLES,
+    Axis,
+    Draws,
+    Product,
+    Range,
+    Status,
+    Store,
+    Sweep,
+    compute,
+    definition,
+    fill,
+    run_sweep,
+)
+from tippetop.sweep import store as stores
+
+zarr = pytest.importorskip("zarr")
+
+KILLS = int(os.environ.get("TIPPETOP_KILLS", "3"))
+"""How often the sweep is killed; the benchmark does it fifty times."""
+
+
+@pytest.fixture
+def small_tasks(monkeypatch):
+    monkeypatch.setattr(definition, "LEAST_CELLS_A_TASK", 4)
+    monkeypatch.setattr(definition, "TASKS", 1000)
+
+
+def quick(cells=24, **options):
+    return lively("fly", cells // 4, 4, options.pop("duration", 0.1), 1e-9)
+
+
+@pytest.mark.parametrize(
+    "sweep",
+    [
+        quick(),
+        Sweep(
+            report_problem(), Draws((Range("launch.spin", 10, 200), Range("launch.tilt", 0, 4)), 9, 5), 0.1
+        ),
+    ],
+)
+def test_a_store_is_the_sweep_in_memory(tmp_path, sweep):
+    stored = run_sweep(sweep, tmp_path / "a.zarr", workers=1)
+    xr.testing.assert_identical(stored.load(), compute(sweep))
+
+
+def test_a_store_opens_with_plain_xarray(tmp_path):
+    run_sweep(quick(), tmp_path / "a.zarr", workers=1)
+    opened = xr.open_zarr(tmp_path / "a.zarr")
+    assert opened["final_theta"].dims == ("launch.spin", "friction.mu")
+    assert opened["friction.mu"].values == pytest.approx(np.geomspace(0.2, 1, 4))
+    assert set(VARIABLES) < set(opened)
+    assert json.loads(opened.attrs["problem"])["launch"]["tilt"] == 1.0
+    assert opened["status"].attrs["flag_meanings"] == "pending done"
+    assert opened.sel({"launch.spin": 240.0}).sizes == {"friction.mu": 4}
+
+
+def test_a_task_is_a_chunk_and_there_are_no_shards(tmp_path, small_tasks):
+    sweep = quick()
+    run_sweep(sweep, tmp_path / "a.zarr", workers=1)
+    for name in ("status", *VARIABLES):
+        array = zarr.open_array(tmp_path / "a.zarr" / name, mode="r")
+        assert array.chunks == sweep.chunk
+        assert array.shards is None
+        assert array.metadata.zarr_format == 3
+
+
+def test_the_status_alone_decides_what_remains(tmp_path, small_tasks):
+    sweep = quick()
+    path = tmp_path / "a.zarr"
+    run_sweep(sweep, path, workers=1)
+    store = Store.resume(path, sweep)
+    assert store.remaining() == []
+    status = zarr.open_array(path / "status", mode="r+")
+    task = sweep.tasks[2]
+    status[sweep.region(task)] = Status.PENDING
+    assert Store.resume(path, sweep).remaining() == [task]
+    theta = zarr.open_array(path / "final_theta", mode="r+")
+    theta[sweep.region(task)] = 99.0
+    xr.testing.assert_identical(run_sweep(sweep, path, resume=True, workers=1).load(), compute(sweep))
+
+
+@pytest.mark.parametrize("damage", [b"", b"\x00", b"garbage that is no chunk"])
+def test_a_chunk_cut_short_is_done_again(tmp_path, small_tasks, damage):
+    sweep = quick()
+    path = tmp_path / "a.zarr"
+    run_sweep(sweep, path, workers=1)
+    (path / "status" / "c" / "0" / "0").write_bytes(damage)
+    store = Store.resume(path, sweep)
+    assert store.remaining() == [(0, 0)]
+    fill(store, workers=1)
+    xr.testing.assert_identical(store.dataset().load(), compute(sweep))
+
+
+@pytest.mark.parametrize(
+    ("other", "named"),
+    [
+        (
+            Sweep(quick().problem.replace({"friction.mu": 0.5}), quick().grid, 0.1, 1e-9),
+            "problem.friction.mu",
+        ),
+        (Sweep(quick().problem, quick().grid, 0.2, 1e-9), "duration"),
+        (Sweep(quick().problem, quick().grid, 0.1, 1e-8), "tolerance"),
+        (lively("fly", 7, 4, 0.1, 1e-9), r"grid\.axes\.0\.count"),
+        (lively("stop", 6, 4, 0.1, 1e-9), "problem.contact.liftoff"),
+    ],
+)
+def test_another_sweep_is_refused_by_what_differs(tmp_path, other, named):
+    Store.create(tmp_path / "a.zarr", quick())
+    with pytest.raises(FileTrouble, match=rf"another sweep.*{named} is .* in it, and .* here"):
+        Store.resume(tmp_path / "a.zarr", other)
+
+
+def test_another_version_is_refused(tmp_path, monkeypatch):
+    Store.create(tmp_path / "a.zarr", quick())
+    monkeypatch.setattr(stores, "__version__", "99.0")
+    with pytest.raises(FileTrouble, match=r"made by version .* of tippetop, and this is 99\.0"):
+        Store.resume(tmp_path / "a.zarr", quick())
+
+
+def test_what_is_there_is_not_overwritten_unasked(tmp_path):
+    run_sweep(quick(), tmp_path / "a.zarr", workers=1)
+    with pytest.raises(FileTrouble, match="--force"):
+        Store.create(tmp_path / "a.zarr", quick())
+    assert Store.resume(tmp_path / "a.zarr").remaining() == []
+    Store.create(tmp_path / "a.zarr", quick(), overwrite=True)
+    assert len(Store.resume(tmp_path / "a.zarr").remaining()) == len(quick().tasks)
+    assert [path.name for path in tmp_path.iterdir()] == ["a.zarr"]
+
+
+def test_what_is_no_store_is_refused(tmp_path):
+    with pytest.raises(FileTrouble, match="no sweep to resume"):
+        Store.resume(tmp_path / "nothing.zarr")
+    (tmp_path / "b.zarr").mkdir()
+    (tmp_path / "b.zarr" / "zarr.json").write_text("{}")
+    with pytest.raises(FileTrouble, match="not a sweep of this program"):
+        Store.resume(tmp_path / "b.zarr")
+
+
+def test_a_full_disk_leaves_a_store_that_resumes(tmp_path, small_tasks, monkeypatch):
+    sweep = quick()
+    path = tmp_path / "a.zarr"
+    original = zarr.storage.LocalStore.set
+    written = []
+
+    async def set_until_full(self, key, value):
+        written.append(key)
+        if len(written) > 40:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        await original(self, key, value)
+
+    store = Store.create(path, sweep)
+    with monkeypatch.context() as patch:
+        patch.setattr(zarr.storage.LocalStore, "set", set_until_full)
+        with pytest.raises(FileTrouble, match=r"a\.zarr cannot be written: No space left on device"):
+            fill(store, workers=1)
+    left = len(Store.resume(path).remaining())
+    assert 0 < left < len(sweep.tasks)
+    xr.testing.assert_identical(run_sweep(sweep, path, resume=True, workers=1).load(), compute(sweep))
+
+
+@pytest.mark.skipif(not Path("/sys/kernel").is_dir(), reason="a folder in which not even root may write")
+def test_a_folder_in_which_nothing_can_be_written_is_said_to_be(tmp_path):
+    with pytest.raises(FileTrouble, match="cannot be written"):
+        Store.create("/sys/kernel/a.zarr", quick())
+    with pytest.raises(FileTrouble, match="cannot be written"):
+        Store.create(tmp_path / "missing" / "a.zarr", quick())
+
+
+FILL = """
+import sys
+sys.path.insert(0, {folder!r})
+from test_sweep_store import quick, definition
+definition.LEAST_CELLS_A_TASK, definition.TASKS = 4, 1000
+from tippetop.sweep import Store, fill
+from pathlib import Path
+if __name__ == "__main__":
+    path = Path({path!r})
+    store = Store.resume(path, quick(80)) if path.exists() else Store.create(path, quick(80))
+    print("filling", flush=True)
+    fill(store, workers=1)
+"""
+
+
+def test_a_sweep_killed_at_random_moments_loses_nothing(tmp_path, small_tasks):
+    path = tmp_path / "a.zarr"
+    script = tmp_path / "fill.py"
+    script.write_text(FILL.format(folder=str(Path(__file__).parent), path=str(path)))
+    random = np.random.default_rng(11)
+    left = []
+    for _ in range(KILLS):
+        process = subprocess.Popen([sys.executable, script], stdout=subprocess.PIPE)
+        assert process.stdout.readline() == b"filling\n"
+        time.sleep(random.uniform(0.0, 0.4))
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+        process.stdout.close()
+        left.append(len(Store.resume(path).remaining()))
+    assert left == sorted(left, reverse=True)
+    subprocess.run([sys.executable, script], check=True, stdout=subprocess.DEVNULL)
+    found, whole = xr.open_zarr(path).load(), compute(quick(80))
+    xr.testing.assert_identical(found, whole)
+    assert not list(path.rglob("*.partial"))
+    assert same(
+        {name: found[name].values for name in VARIABLES}, {name: whole[name].values for name in VARIABLES}
+    )
+
+
+def test_progress_is_told_and_counts_what_was_there(tmp_path, small_tasks):
+    sweep = quick()
+    seen = []
+    run_sweep(sweep, tmp_path / "a.zarr", workers=1, watcher=seen.append)
+    assert [progress.done for progress in seen] == list(range(0, 25, 4))
+    assert seen[-1].rate > 0
+    assert seen[-1].time_left == 0
+    again = []
+    run_sweep(sweep, tmp_path / "a.zarr", resume=True, workers=1, watcher=again.append)
+    assert [(progress.before, progress.done) for progress in again] == [(24, 24)]
+    assert again[0].time_left is None
+
+
+def test_a_small_axis_is_one_task():
+    assert Sweep(report_problem(), Product((Axis.linear("launch.spin", 1, 2, 100),))).chunk == (100,)
