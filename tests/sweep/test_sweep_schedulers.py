@@ -49,11 +49,17 @@ def test_processes_that_are_killed_are_started_again(small_tasks):
 
 def test_no_process_outlives_its_use(small_tasks):
     sweep = quick()
+    before = psutil.Process().children(recursive=True)
     results = scheduling.results(sweep, sweep.tasks, workers=2)
     next(results)
-    started = psutil.Process().children(recursive=True)
+    started = [
+        child
+        for child in psutil.Process().children(recursive=True)
+        if child not in before and "tracker" not in " ".join(child.cmdline())
+    ]
+    assert started
     results.close()
-    alive = [child for child in started if child.is_running() and "tracker" not in " ".join(child.cmdline())]
+    _, alive = psutil.wait_procs(started, timeout=10)
     assert alive == []
 
 
