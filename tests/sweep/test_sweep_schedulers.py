@@ -55,7 +55,7 @@ def test_no_process_outlives_its_use(small_tasks):
     started = [
         child
         for child in psutil.Process().children(recursive=True)
-        if child not in before and "tracker" not in " ".join(child.cmdline())
+        if child not in before and "resource_tracker" not in " ".join(child.cmdline())
     ]
     assert started
     results.close()
