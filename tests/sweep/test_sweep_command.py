@@ -47,7 +47,8 @@ def test_a_sweep_writes_a_store_and_maps_beside_it(tmp_path):
 
 def test_programs_get_json(tmp_path):
     out = tmp_path / "a.zarr"
-    said = json.loads(run(*AXES, *SHORT, "--out", out, "--json", "--no-maps"))
+    said = json.loads(run(*AXES, *SHORT, "--settled", "1e-3", "--out", out, "--json", "--no-maps"))
+    assert said["sweep"]["settled"] == 1e-3
     assert said["cells"] == said["computed"] == sum(said["outcomes"].values()) == 6
     assert said["launches_per_second"] > 0
     assert said["maps"] == []
@@ -103,6 +104,7 @@ def test_a_problem_and_a_sweep_are_read_from_files(tmp_path):
         ([*AXES, "--resume", "--force"], "--force"),
         ([*AXES, "--workers", "0"], "workers"),
         ([*AXES, "--duration", "0"], "duration"),
+        ([*AXES, "--settled", "1"], "settled"),
     ],
 )
 def test_misuse_is_refused_by_what_is_wrong(tmp_path, arguments, field):

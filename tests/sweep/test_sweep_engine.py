@@ -9,11 +9,13 @@ import numpy as np
 import pytest
 from sweeps import lively, problem_of, same, thrown, truth
 
+from tippetop.errors import InvalidInput
 from tippetop.integrators import has_taylor
 from tippetop.presets import report_problem
 from tippetop.problem import Body, Problem, RegularizedCoulombFriction, Spheroid
 from tippetop.summary import summarize
 from tippetop.sweep import VARIABLES, Axis, Fault, Group, Product, Sweep, compute, ensemble, lanes
+from tippetop.sweep import stepper as stepping
 from tippetop.sweep.cells import cells_of
 from tippetop.sweep.ensemble import follow_cells
 from tippetop.sweep.observe import nothing_known
@@ -152,6 +154,64 @@ def test_numpy_makes_the_steps_that_heyoka_compiles():
     for ours, theirs in zip(compiled.jet(before, numbers), plain.jet(before, numbers), strict=True):
         assert ours == pytest.approx(theirs, rel=1e-9, abs=1e-9 * np.abs(theirs).max())
     assert np.all(one[TAKEN] > 0)
+
+
+def test_lift_off_is_not_left_to_looks(monkeypatch):
+    """Seen at its ends only, a step in which the force dips below zero often shows nothing of it."""
+    sweep = lively("stop", 8, 4, tolerance=1e-9)
+    usual = follow_cells(sweep, np.arange(32))
+    monkeypatch.setattr(stepping, "FORCE_LOOKS", 1)
+    stepper.cache_clear()
+    found = follow_cells(sweep, np.arange(32))
+    stepper.cache_clear()
+    assert np.isfinite(usual["first_lift_off"]).sum() > 5
+    assert found["first_lift_off"] == pytest.approx(usual["first_lift_off"], rel=1e-12, nan_ok=True)
+
+
+def settling(settled):
+    """Launches that end upright, inverted and between, some of them after flights, over a long time."""
+    axes = (
+        Axis.listed("launch.spin", [15.0, 45.0, 60.0, 120.0, 190.0]),
+        Axis.listed("friction.mu", [0.3, 0.8]),
+    )
+    return Sweep(report_problem(), Product(axes), 60.0, 1e-9, settled)
+
+
+def test_launches_that_have_settled_end_early_and_where_they_would_have_ended():
+    cells = np.arange(10)
+    whole, short = (follow_cells(settling(settled), cells) for settled in (None, 1e-3))
+    assert np.all(whole["end_time"] == 60.0)
+    assert np.sum(short["end_time"] < 40.0) >= 8
+    assert np.abs(short["final_theta"] - whole["final_theta"]).max() <= 1e-3
+    assert set(whole["outcome"]) == {Group.UPRIGHT, Group.TILTED, Group.INVERTED}
+    for name in ("outcome", "flights", "turns_over", "first_lift_off", "least_normal_force"):
+        assert short[name] == pytest.approx(whole[name], rel=1e-9, nan_ok=True), name
+
+
+def test_a_tilt_that_is_held_never_leaves():
+    """The whole run after the moment at which the engine ended it, looked at by single runs."""
+    sweep = settling(1e-2)
+    short = follow_cells(sweep, np.arange(10))
+    for cell in (1, 2, 5):
+        run = truth(problem_of(sweep, cell), 60.0)
+        later = run["theta"].values[run["time"].values >= short["end_time"][cell]]
+        assert len(later) > 100
+        assert np.abs(later - short["final_theta"][cell]).max() <= 1e-2
+
+
+def test_a_launch_that_swings_has_not_settled():
+    """Without friction nothing settles, and a top that stands where it is unstable does not count as held."""
+    axes = Axis.listed("launch.tilt", [0.0, 0.3]), Axis.listed("friction.mu", [0.0, 0.01])
+    found = follow_cells(Sweep(report_problem(), Product(axes), 1.0, 1e-9, 1e-2), np.arange(4))
+    assert np.all(found["end_time"] == 1.0)
+
+
+def test_only_eccentric_spheres_are_known_to_settle():
+    egg = report_problem().replace({"body": EGG.model_dump()})
+    grid = Product((Axis.listed("launch.spin", [1.0]),))
+    assert Sweep(egg, grid).settled is None
+    with pytest.raises(InvalidInput, match="sphere"):
+        Sweep(egg, grid, settled=1e-3)
 
 
 NO_HEYOKA = """

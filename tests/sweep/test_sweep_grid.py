@@ -74,7 +74,7 @@ def test_draws_that_cannot_be_are_refused(text):
     ],
 )
 def test_sweeps_come_back_from_their_description(grid):
-    sweep = Sweep(report_problem(), grid, 3.0, 1e-8)
+    sweep = Sweep(report_problem(), grid, 3.0, 1e-8, 1e-4)
     assert grid_from(json.loads(json.dumps(grid.describe()))) == grid
     assert sweep_from(json.loads(json.dumps(sweep.describe()))) == sweep
 
@@ -98,6 +98,7 @@ SWEEP = """
 problem = "top.toml"
 duration = 2.5
 tolerance = 1e-8
+settled = 1e-3
 [axes]
 launch.spin = { from = 0, to = 100, count = 3 }
 "friction.mu" = { from = 0.1, to = 1, count = 2, spacing = "geometric" }
@@ -115,7 +116,7 @@ def test_a_sweep_is_read_from_one_file(tmp_path):
             Axis.listed("body.shape.eccentricity", [0.2, 0.3]),
         )
     )
-    assert Sweep.read(tmp_path / "sweep.toml") == Sweep(report_problem(mu=0.2), grid, 2.5, 1e-8)
+    assert Sweep.read(tmp_path / "sweep.toml") == Sweep(report_problem(mu=0.2), grid, 2.5, 1e-8, 1e-3)
 
 
 def test_draws_are_read_from_a_file(tmp_path):
@@ -134,6 +135,8 @@ def test_draws_are_read_from_a_file(tmp_path):
         (("duration = 2.5", "duration = -1"), "duration"),
         (("duration = 2.5", "duraton = 1"), "sweep"),
         (("tolerance = 1e-8", "tolerance = 1e-20"), "tolerance"),
+        (("settled = 1e-3", "settled = 0.1"), "settled"),
+        (("settled = 1e-3", "settled = nan"), "settled"),
         (("launch.spin", "launch.spn"), "axis"),
         (("count = 3", "count = 3.5"), "axes.launch.spin.count"),
         (("count = 3", "cout = 3"), "axes"),

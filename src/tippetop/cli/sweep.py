@@ -66,6 +66,10 @@ def sweep(
     tolerance: Annotated[
         float | None, typer.Option(help="Relative error per step; 1e-9 if left out.")
     ] = None,
+    settled: Annotated[
+        float | None,
+        typer.Option(help="End a run once its tilt is held within this for good, rad; else all run on."),
+    ] = None,
     workers: Annotated[
         int | None, typer.Option(help="Number of processes; all processors if left out.")
     ] = None,
@@ -88,7 +92,8 @@ def sweep(
     settings = {"launch.spin": spin, "launch.tilt": tilt, "friction.mu": mu, "contact.liftoff": liftoff}
     over = (axis, draw, count, seed)
     kept = read_sweep(out) if resume and file is None else None
-    chosen = _chosen_sweep(file, kept, preset, settings, changes, over, duration, tolerance)
+    limits = {"duration": duration, "tolerance": tolerance, "settled": settled}
+    chosen = _chosen_sweep(file, kept, preset, settings, changes, over, limits)
     store = Store.resume(out, chosen) if resume else Store.create(out, chosen, force)
     began = time.perf_counter()
     progress: list[Progress] = []
@@ -116,8 +121,7 @@ def _chosen_sweep(
     settings: dict[str, Any],
     changes: list[str] | None,
     over: tuple[list[str] | None, list[str] | None, int | None, int],
-    duration: float | None,
-    tolerance: float | None,
+    limits: dict[str, float | None],
 ) -> "Sweep":
     """The sweep that the file, or the store to be resumed, and the options ask for."""
     from dataclasses import replace  # noqa: PLC0415
@@ -129,12 +133,12 @@ def _chosen_sweep(
     grid = _chosen_grid(*over)
     problem = _changed(base.problem, preset, settings, changes) if base else None
     problem = problem or chosen_problem(file, preset, settings, changes)
-    times = {k: v for k, v in (("duration", duration), ("tolerance", tolerance)) if v is not None}
+    given = {name: limit for name, limit in limits.items() if limit is not None}
     if base is not None:
-        return replace(base, problem=problem, grid=grid or base.grid, **times)
+        return replace(base, problem=problem, grid=grid or base.grid, **given)
     if grid is None:
         raise InvalidInput("--axis", "nothing", "at least one axis, or --draw, or a sweep's file")
-    return Sweep(problem, grid, **times)
+    return Sweep(problem, grid, **given)
 
 
 def _changed(

@@ -24,8 +24,11 @@ from tippetop.sweep.grid import (
     Range,
     grid_from,
 )
+from tippetop.theory.groups import eccentricity
 
 DEFAULT_TOLERANCE = 1e-9
+SETTLED_RANGE = (1e-6, 1e-2)
+"""Tilts, rad, that may count as settled: above rounding, and small enough that nothing more happens."""
 LEAST_TOLERANCE = float(np.finfo(float).eps)
 
 MOST_CELLS_A_TASK = 4096
@@ -48,23 +51,33 @@ class Sweep:
         Length of every run, s.
     tolerance
         Relative error per step.
+    settled
+        A run ends once its energy holds the tilt within this for good, rad (see
+        `tippetop.theory.prediction.is_held`); None to follow every run for its whole duration.
 
     Raises
     ------
     InvalidInput
-        If a field is none, the duration is not positive or the tolerance is out of range.
+        If a field is none, the duration is not positive, or the tolerance is out of range; or if runs are to
+        end when they have settled, and the tops are not eccentric spheres.
     """
 
     problem: Problem
     grid: Product | Draws
     duration: float = 20.0
     tolerance: float = DEFAULT_TOLERANCE
+    settled: float | None = None
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.duration) and self.duration > 0):
             raise InvalidInput("duration", self.duration, "a finite number of seconds greater than 0")
         if not LEAST_TOLERANCE <= self.tolerance <= 1e-3:
             raise InvalidInput("tolerance", self.tolerance, f"a number from {LEAST_TOLERANCE:.2g} to 0.001")
+        if self.settled is not None:
+            least, most = SETTLED_RANGE
+            if not least <= self.settled <= most:
+                raise InvalidInput("settled", self.settled, f"a tilt from {least:g} to {most:g} rad")
+            eccentricity(self.problem.top)
         cells_of(self.problem, self.grid.values(np.arange(1)))
 
     @property
@@ -109,6 +122,7 @@ class Sweep:
             "grid": self.grid.describe(),
             "duration": self.duration,
             "tolerance": self.tolerance,
+            "settled": self.settled,
         }
 
     @classmethod
@@ -141,6 +155,7 @@ def sweep_from(description: Mapping[str, Any]) -> Sweep:
         grid_from(description["grid"]),
         description["duration"],
         description["tolerance"],
+        description["settled"],
     )
 
 
@@ -157,7 +172,7 @@ def sweep_from_tables(fields: Mapping[str, Any], folder: Path = Path()) -> Sweep
     InvalidInput, FileTrouble
         If the tables are not those of a sweep.
     """
-    keys = ["problem", "axes", "draws", "duration", "tolerance"]
+    keys = ["problem", "axes", "draws", "duration", "tolerance", "settled"]
     for key in fields:
         if key not in keys:
             raise InvalidInput("sweep", key, "the keys " + one_of(key, keys))
@@ -175,7 +190,8 @@ def sweep_from_tables(fields: Mapping[str, Any], folder: Path = Path()) -> Sweep
         grid: Product | Draws = Product(tuple(_axis(field, entry) for field, entry in axes.items()))
     else:
         grid = _draws(_table("draws", fields["draws"]))
-    settings = {name: _number(name, fields[name]) for name in ("duration", "tolerance") if name in fields}
+    limits = ("duration", "tolerance", "settled")
+    settings = {name: _number(name, fields[name]) for name in limits if name in fields}
     return Sweep(problem, grid, **settings)
 
 

@@ -39,7 +39,7 @@ def follow_cells(sweep: Sweep, numbers: Flat) -> dict[str, NDArray[np.generic]]:
         block = alike[first : first + LANES_AT_ONCE]
         some, which = launches.some(block), good[block]
         method = stepper(some.kind, sweep.tolerance)
-        lanes = Lanes(some, method)
+        lanes = Lanes(some, method, settled=sweep.settled)
         ends = lanes.run()
         arrives = arrivals(some, method, lanes.notes, final_band(ends))
         for name, values in observed(cells, which, some, ends, arrives).items():

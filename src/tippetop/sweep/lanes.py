@@ -38,6 +38,7 @@ from tippetop.sweep.stepper import (
     Stepper,
 )
 from tippetop.sweep.watch import Indices, Watch
+from tippetop.theory.prediction import is_held
 
 WAVE = 8
 """Steps between looks at the lanes that wait."""
@@ -71,6 +72,8 @@ class Lanes:
         Least and largest n_z of a band, each of shape (n,); a launch ends when it reaches its own.
     resumed
         States and times left, shape (SIZE + 1, n), where the launches are not at their beginning.
+    settled
+        A launch ends once its tilt is held within this, rad; None for none.
     """
 
     def __init__(
@@ -79,11 +82,13 @@ class Lanes:
         stepper: Stepper,
         band: tuple[Array, Array] | None = None,
         resumed: Array | None = None,
+        settled: float | None = None,
     ) -> None:
         count = len(launches)
         lanes = count + -count % LANES
         filled = np.minimum(np.arange(lanes), count - 1)
         self.launches, self.stepper, self.banded = launches, stepper, band is not None
+        self.settled = settled
         self.ends = Ends.unknown(count)
         self.notes: list[Note] = []
         self.cell = filled
@@ -335,9 +340,21 @@ class Lanes:
         lost = np.flatnonzero(self.alive & (left > 0.0) & stuck)
         if len(lost):
             self._retire(lost, self._whole(lost), (self.end - left)[lost], Outcome.FAILED)
+        if self.settled is not None:
+            self._end_the_settled(self.settled)
         working = np.flatnonzero(self.alive)
         if len(working) and len(working) + LANES < CROWDED * len(self.alive):
             self._close_ranks(working)
+
+    def _end_the_settled(self, closeness: float) -> None:
+        """End the launches whose tilt is held."""
+        lanes = np.flatnonzero(self.alive)
+        if not len(lanes):
+            return
+        state = self._whole(lanes)
+        held = is_held(state, self._top(lanes), closeness)
+        time = self.end[lanes] - self.rows[LEFT, lanes]
+        self._retire(lanes[held], picked(state, held), time[held], Outcome.COMPLETED)
 
     def _close_ranks(self, working: Indices) -> None:
         """Keep the lanes at work, and as many others as fill them up."""

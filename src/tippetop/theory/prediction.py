@@ -12,11 +12,16 @@ This holds while the table only pushes. A bilateral contact that pulls can give 
 import math
 from dataclasses import dataclass
 
-from tippetop.mechanics.invariants import energy
+import numpy as np
+from numpy.typing import NDArray
+
+from tippetop.mechanics.invariants import energy, jellett
+from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
+from tippetop.mechanics.view import axis_sine
 from tippetop.problem import Problem
 from tippetop.theory.groups import eccentricity
-from tippetop.theory.steady import SteadyState, jellett_of_launch, steady_states
+from tippetop.theory.steady import SteadyState, jellett_of_launch, least_energy, steady_states
 
 
 @dataclass(frozen=True)
@@ -81,6 +86,30 @@ def final_states(top: Top, jellett: float) -> tuple[SteadyState, ...]:
     """
     eccentricity(top)
     return _by_energy(stable_by_energy(steady_states(top, jellett)))
+
+
+def is_held(state: State, top: Top, closeness: float) -> NDArray[np.bool_]:
+    """Whether the energy that is left holds an eccentric sphere's tilt within `closeness`, rad, for good.
+
+    It does where the least energy that goes with Jellett's integral is above it on both sides: the tilt
+    cannot pass there, and a stable steady state lies between. Beyond a vertical axis there is nothing to bar.
+
+    Parameters
+    ----------
+    state
+        States, every number of shape (n,).
+    top
+        The tops, with numbers or arrays of shape (n,).
+    closeness
+        How far the tilt may still go either way, rad.
+    """
+    tilt = np.arctan2(axis_sine(state.axis), state.axis[2])
+    left, integral = energy(state, top), jellett(state, top)
+    below, above = tilt - closeness, tilt + closeness
+    bars_below = (below < 0.0) | (least_energy(np.maximum(below, 0.0), integral, top, np) > left)
+    bars_above = (above > math.pi) | (least_energy(np.minimum(above, math.pi), integral, top, np) > left)
+    held: NDArray[np.bool_] = bars_below & bars_above
+    return held
 
 
 def stable_by_energy(states: list[SteadyState]) -> list[SteadyState]:

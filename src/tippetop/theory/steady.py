@@ -191,7 +191,7 @@ def jellett_of_launch(problem: Problem) -> float:
     return float(jellett(problem.start(), problem.top))
 
 
-def least_energy(tilt: Scalar, jellett: float, top: Top, functions: Functions) -> Scalar:
+def least_energy(tilt: Scalar, jellett: Scalar, top: Top, functions: Functions) -> Scalar:
     """Least energy, J, that a body with this tilt (rad) and this Jellett's integral (kg m^2/s) can have.
 
     lambda^2 / (2 a.I a) + m g h: its minima over the tilt are the stable steady states, because friction only
