@@ -9,10 +9,9 @@ from scipy.optimize import curve_fit
 from tippetop.integrators.base import Array
 from tippetop.presets import report_problem
 from tippetop.report.experiment import Experiment, variable
-from tippetop.report.experiments.runs import WINDOW, on_table
+from tippetop.report.experiments.runs import WINDOW, on_table, swept
 from tippetop.report.listing import listing_run
 from tippetop.report.readings import SETTLED, flip_time
-from tippetop.simulate import simulate
 
 SPIN = 155.0
 """The report does not say at which spin its Fig. 7 was made; this is that of its main run, rad/s."""
@@ -21,18 +20,23 @@ OTHER_SPINS = (100.0, 110.0, 120.0, 130.0, 140.0, 150.0, 160.0)
 """Other spins it may have used, rad/s: all of them turn the top over without lifting it at mu = 0.3 s/m."""
 
 
-def converged_flip_time(spin: float, mu: float, window: float = WINDOW) -> float:
-    """Flip time on a table that pulls, s; nan if the run became singular or did not turn the top over."""
-    run = simulate(on_table(report_problem(spin, mu=mu)), window, samples=8001)
-    theta = run["theta"].values
-    if run.attrs["outcome"] != "completed" or theta[-1] < math.pi / 2:
-        return math.nan
-    return flip_time(run["time"].values, theta)
+def converged_flip_times(spins: Array, mu: Array, window: float = WINDOW) -> Array:
+    """Flip times on a table that pulls, s, of every spin with every friction coefficient, shape (spins, mu).
+
+    They are nan where a run became singular or did not turn the top over.
+    """
+    found = swept(on_table(report_problem()), {"launch.spin": spins, "friction.mu": mu}, window)
+    times: Array = found["arrives"].where(found["final_theta"] > math.pi / 2).values
+    return times
 
 
-def listing_flip_time(spin: float, mu: float, window: float = WINDOW) -> float:
-    """Flip time by the report's method and definition, s; nan if the method gave up."""
-    run = listing_run(report_problem(spin, mu=mu), window)
+def listing_flip_times(spins: Array, mu: Array) -> Array:
+    """The same by the report's method and definition; nan if the method gave up."""
+    return np.array([[_listing_flip_time(float(spin), float(m)) for m in mu] for spin in spins])
+
+
+def _listing_flip_time(spin: float, mu: float) -> float:
+    run = listing_run(report_problem(spin, mu=mu), WINDOW)
     return math.nan if run.attrs["failure"] else flip_time(run["time"].values, run["theta"].values)
 
 
@@ -52,10 +56,8 @@ def power_law(mu: Array, times: Array) -> tuple[float, float, float, float]:
 
 def _flip_times(quick: bool) -> xr.Dataset:
     mu = np.linspace(0.2, 1.0, 9 if quick else 17)
-    columns = {
-        "": np.array([converged_flip_time(SPIN, float(m)) for m in mu]),
-        "_listing": np.array([listing_flip_time(SPIN, float(m)) for m in mu]),
-    }
+    spins = np.array([SPIN])
+    columns = {"": converged_flip_times(spins, mu)[0], "_listing": listing_flip_times(spins, mu)[0]}
     data = xr.Dataset(
         coords={"mu": variable(mu, "s m-1", "friction coefficient", ("mu",))},
         attrs={"spin_rad_per_s": SPIN, "within_rad": SETTLED, "window_s": WINDOW},
@@ -79,8 +81,8 @@ def _other_spins(quick: bool) -> xr.Dataset:
             "mu": variable(mu, "s m-1", "friction coefficient", ("mu",)),
         }
     )
-    for suffix, measure in (("", converged_flip_time), ("_listing", listing_flip_time)):
-        times = np.array([[measure(float(spin), float(m)) for m in mu] for spin in spins])
+    for suffix, measure in (("", converged_flip_times), ("_listing", listing_flip_times)):
+        times = measure(spins, mu)
         exponents = [power_law(mu, row)[1] for row in times]
         data[f"flip_time{suffix}"] = variable(times, "s", "flip time", ("spin", "mu"))
         data[f"exponent{suffix}"] = variable(exponents, "1", "b of the fit a mu^b", ("spin",))
@@ -90,12 +92,10 @@ def _other_spins(quick: bool) -> xr.Dataset:
 def _wide(quick: bool) -> xr.Dataset:
     mu = np.geomspace(0.01, 10.0, 13 if quick else 37)
     spins = np.array([100.0, 155.0])
-    times = np.array(
-        [
-            [converged_flip_time(float(spin), float(m), max(WINDOW, 4.0 / m + 4.0)) for m in mu]
-            for spin in spins
-        ]
-    )
+    windows = np.maximum(WINDOW, 4.0 / mu + 4.0)
+    times = np.empty((len(spins), len(mu)))
+    for window in np.unique(windows):
+        times[:, windows == window] = converged_flip_times(spins, mu[windows == window], float(window))
     small = mu <= 0.1001
     slopes = [float(np.polyfit(np.log(mu[small]), np.log(row[small]), 1)[0]) for row in times]
     return xr.Dataset(
@@ -112,8 +112,8 @@ def _wide(quick: bool) -> xr.Dataset:
 
 
 EXPERIMENTS = [
-    Experiment("flip-times", "flip time against friction, at 155 rad/s", 7.0, _flip_times),
-    Experiment("flip-times-spins", "the same at other spins", 14.0, _other_spins),
-    Experiment("flip-times-wide", "flip time over three decades of friction", 3.0, _wide),
+    Experiment("flip-times", "flip time against friction, at 155 rad/s", 2.0, _flip_times),
+    Experiment("flip-times-spins", "the same at other spins", 7.0, _other_spins),
+    Experiment("flip-times-wide", "flip time over three decades of friction", 2.5, _wide),
 ]
 """What Fig. 7 is made from."""

@@ -1,7 +1,7 @@
 """Single launches, by the report's method and converged."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
 
 import numpy as np
@@ -14,6 +14,7 @@ from tippetop.report.experiment import Experiment, variable
 from tippetop.report.listing import CONTROLS, listing_run
 from tippetop.report.readings import crossings, first_below_zero, flip_time, longest_quiet
 from tippetop.simulate import simulate
+from tippetop.sweep import Axis, Group, Product, Sweep, compute
 
 WINDOW = 20.0
 """Length of the report's runs, s (its listing, line 13)."""
@@ -38,6 +39,17 @@ def stopping(problem: Problem) -> Problem:
 def pushing(problem: Problem, restitution: float = 0.0) -> Problem:
     """The problem with a table that only pushes: the top flies, falls back and hits it."""
     return problem.replace({"contact.liftoff": "fly", "contact.restitution": restitution})
+
+
+SWEPT = 1e-12
+"""Relative error per step of the sweeps, as of single runs."""
+
+
+def swept(problem: Problem, values: Mapping[str, np.ndarray], window: float = WINDOW) -> xr.Dataset:
+    """What becomes of the launches that cross these values of fields; nan where one became singular."""
+    axes = (Axis.listed(field, list(numbers)) for field, numbers in values.items())
+    found = compute(Sweep(problem, Product(tuple(axes)), window, SWEPT))
+    return found.where(~found["outcome"].isin([Group.FAILED, Group.BAD]))
 
 
 def lift_off_time(run: xr.Dataset) -> float:

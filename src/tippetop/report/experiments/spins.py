@@ -8,7 +8,7 @@ from scipy.optimize import brentq
 
 from tippetop.presets import report_problem
 from tippetop.report.experiment import Experiment, variable
-from tippetop.report.experiments.runs import WINDOW, lift_off_time, on_table, pushing, stopping
+from tippetop.report.experiments.runs import WINDOW, lift_off_time, on_table, pushing, stopping, swept
 from tippetop.report.listing import listing_run
 from tippetop.report.readings import SETTLED
 from tippetop.simulate import simulate
@@ -31,11 +31,6 @@ def final_tilt(spin: float, window: float = WINDOW) -> float:
     """Tilt at the end of a converged run on a table that pulls, rad; nan if it became singular."""
     run = simulate(on_table(report_problem(spin)), window, samples=2)
     return float(run["theta"].values[-1]) if run.attrs["outcome"] == "completed" else math.nan
-
-
-def true_final_tilt(spin: float) -> float:
-    """Tilt at the end of a run on a table that only pushes, rad."""
-    return float(simulate(pushing(report_problem(spin)), WINDOW, samples=2)["theta"].values[-1])
 
 
 def _listing_spins(quick: bool) -> np.ndarray:
@@ -85,11 +80,11 @@ def _where(x: np.ndarray, y: np.ndarray, level: float) -> float:
 
 def _converged(quick: bool) -> xr.Dataset:
     spins = np.arange(5.0, 210.1, 2.5 if quick else 0.5)
-    tilts = np.array([final_tilt(float(spin)) for spin in spins])
+    tilts = swept(on_table(report_problem()), {"launch.spin": spins})["final_theta"].values
     lost = spins[(spins > 100) & ~(np.abs(tilts - math.pi) < TURNED)]
     onset = _lift_off_onset(0.5 if quick else 0.01)
     flying = np.arange(FLYING[0], FLYING[1] + 0.1, 7.5 if quick else 2.5)
-    true_tilts = [true_final_tilt(float(spin)) for spin in flying]
+    true_tilts = swept(pushing(report_problem()), {"launch.spin": flying})["final_theta"].values
     return xr.Dataset(
         {
             "final_theta": variable(tilts, *_TILT, ("spin",)),
@@ -170,7 +165,7 @@ def _thresholds(quick: bool) -> xr.Dataset:
 
 EXPERIMENTS = [
     Experiment("final-tilt-listing", "final tilt against spin, by the report's method", 14.0, _by_listing),
-    Experiment("final-tilt", "final tilt against spin, converged", 7.0, _converged),
+    Experiment("final-tilt", "final tilt against spin, converged", 2.5, _converged),
     Experiment("critical-spins", "critical spins against the length of the runs", 9.0, _thresholds),
 ]
 """What Fig. 6 is made from."""
