@@ -7,8 +7,11 @@ import sys
 import pytest
 
 import tippetop as tt
+from tippetop.integrators import has_taylor
 
+PARTS_OF_SCIPY = ["scipy.integrate", "scipy.linalg", "scipy.optimize", "scipy.spatial"]
 HEAVY = ["matplotlib", "xarray", "heyoka", "nicegui", "numpy", "scipy", "pydantic", "h5py", "pandas"]
+HEAVY += PARTS_OF_SCIPY
 
 
 def in_new_process(code):
@@ -42,6 +45,18 @@ def test_stating_a_problem_loads_no_library_that_only_running_it_needs():
 
 def test_simulating_loads_neither_matplotlib_nor_the_laboratory():
     assert set(loaded_after("import tippetop as tt; tt.simulate")) & {"matplotlib", "nicegui"} == set()
+
+
+@pytest.mark.skipif(not has_taylor(), reason="heyoka is not installed")
+def test_the_usual_run_at_the_command_line_loads_only_what_it_needs():
+    code = """
+import contextlib, io, sys
+from tippetop.cli.main import main
+sys.argv = ["tippetop", "simulate", "--duration", "0.1"]
+with contextlib.redirect_stdout(io.StringIO()), contextlib.suppress(SystemExit):
+    main()
+"""
+    assert set(loaded_after(code)) & {"matplotlib", "nicegui", "h5py", *PARTS_OF_SCIPY} == set()
 
 
 AFRESH = """

@@ -2,7 +2,6 @@
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from tippetop.integrators.base import Array
 from tippetop.mechanics.invariants import energy, jellett
@@ -84,7 +83,24 @@ def orientation(state: State) -> Array:
     """
     axis, marker = np.stack(state.axis, axis=1), np.stack(state.marker, axis=1)
     frames = np.stack((marker, np.cross(axis, marker), axis), axis=2)
-    quaternions = Rotation.from_matrix(frames).as_quat(scalar_first=True)
+    quaternions = _quaternions(frames)
     jumps = np.einsum("ij,ij->i", quaternions[1:], quaternions[:-1]) < 0
     signs = np.concatenate(([1.0], np.cumprod(np.where(jumps, -1.0, 1.0))))
     return np.asarray(quaternions * signs[:, None])
+
+
+def _quaternions(frames: Array) -> Array:
+    """Unit quaternions, scalar first, of rotation matrices of shape (k, 3, 3)."""
+    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = np.moveaxis(frames, 0, 2)
+    # Four times the products of every two components; the row of the largest loses no digits.
+    products = np.array(
+        [
+            [1.0 + xx + yy + zz, zy - yz, xz - zx, yx - xy],
+            [zy - yz, 1.0 + xx - yy - zz, yx + xy, zx + xz],
+            [xz - zx, yx + xy, 1.0 - xx + yy - zz, zy + yz],
+            [yx - xy, zx + xz, zy + yz, 1.0 - xx - yy + zz],
+        ]
+    )
+    largest = np.argmax(np.einsum("iik->ik", products), axis=0)
+    rows = products[largest, :, np.arange(len(largest))]
+    return np.asarray(rows / np.linalg.norm(rows, axis=1, keepdims=True))

@@ -13,7 +13,6 @@ from tippetop.dataset import Described, assemble
 from tippetop.errors import InvalidInput, is_number
 from tippetop.integrators import Integrator, make_integrator
 from tippetop.integrators.base import Array
-from tippetop.integrators.classical import ClassicalRK4
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Units, dimensionless_numbers, kind_of, natural_units
 from tippetop.observables import in_si, observe, si_factors
@@ -256,8 +255,8 @@ def _flight_arrays(stretches: Sequence[Stretch], units: Units) -> dict[str, Desc
 def _method_attributes(method: Integrator, units: Units) -> dict[str, str | float]:
     """The method and its one setting."""
     settings: dict[str, str | float] = {"integrator": method.name}
-    if isinstance(method, ClassicalRK4):
-        settings["step"] = method.step * units.time
+    if hasattr(method, "step"):
+        settings["step"] = float(method.step) * units.time
     elif hasattr(method, "tolerance"):
         settings["tolerance"] = float(method.tolerance)
     return settings

@@ -1,5 +1,6 @@
 """The command line: collects the commands and turns what goes wrong into one sentence and an exit code."""
 
+import gc
 import sys
 from typing import Annotated
 
@@ -26,6 +27,9 @@ app.command()(sweep)
 app.command()(lab)
 app.command()(problem)
 
+GARBAGE = 50_000
+"""Objects made between two looks for garbage: importing the libraries makes many, and drops hardly one."""
+
 MISUSE = 2
 INTERRUPTED = 130
 
@@ -47,6 +51,7 @@ def tippetop(
 
 def main() -> None:
     """Run the command line; misuse ends with one sentence and exit code 2, Ctrl-C with 130."""
+    gc.set_threshold(GARBAGE)
     try:
         app()
     except TippetopError as error:

@@ -75,7 +75,7 @@ def simulate(
 
         ffmpeg()
     if samples is None:
-        samples = _samples(chosen, duration, any(moving.values()))
+        samples = _samples(chosen, duration) if any(moving.values()) else DEFAULT_SAMPLES
     began = time.perf_counter()
     run = run_problem(
         chosen, duration, samples=samples, integrator=integrator, tolerance=tolerance, step=step
@@ -99,11 +99,11 @@ def simulate(
         _print_summary(summary, elapsed, list(wanted.values()))
 
 
-def _samples(problem: "Problem", duration: float, moving: bool) -> int:
-    """How many samples a run is given where nobody says."""
+def _samples(problem: "Problem", duration: float) -> int:
+    """How many samples a run that is to be played is given where nobody says."""
     from tippetop.export.track import sample_count  # noqa: PLC0415 - slow to import
 
-    return max(DEFAULT_SAMPLES, sample_count(problem, duration)) if moving else DEFAULT_SAMPLES
+    return max(DEFAULT_SAMPLES, sample_count(problem, duration))
 
 
 def _export(run: "xr.Dataset", kind: str, path: Path, force: bool) -> None:

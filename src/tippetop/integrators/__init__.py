@@ -6,12 +6,16 @@ import numpy as np
 
 from tippetop.errors import InvalidInput, Unavailable, is_number, one_of
 from tippetop.integrators.base import Arc, Guard, Integrator, Motion
-from tippetop.integrators.classical import ClassicalRK4
-from tippetop.integrators.scipy_methods import DEFAULT_TOLERANCE, LEAST_TOLERANCE, METHODS, SciPy
 
 __all__ = ["NAMES", "Arc", "Guard", "Integrator", "Motion", "default_name", "has_taylor", "make_integrator"]
 
-NAMES = ["taylor", *METHODS, "rk4"]
+SCIPY_TOLERANCES = {"dop853": 1e-12, "rk45": 1e-10, "radau": 1e-9, "bdf": 1e-9, "lsoda": 1e-11}
+"""SciPy's methods, with the relative error per step that each is given where nobody says."""
+
+LEAST_SCIPY_TOLERANCE = 2.3e-14
+"""Below this SciPy's solvers do not honour a relative tolerance."""
+
+NAMES = ["taylor", *SCIPY_TOLERANCES, "rk4"]
 """The integrators by the names users give."""
 
 
@@ -59,15 +63,15 @@ def make_integrator(
             raise InvalidInput("tolerance", tolerance, "none with rk4, whose error follows from its step")
         if step is None or not (is_number(step) and step > 0):
             raise InvalidInput("step", step, "a step size in seconds greater than 0, which rk4 needs")
-        return ClassicalRK4(step / time_unit)
+        return _classical(step / time_unit)
     if step is not None:
         raise InvalidInput("step", step, f"none with {name}, which chooses its own")
-    least = np.finfo(float).eps if name == "taylor" else LEAST_TOLERANCE
+    least = np.finfo(float).eps if name == "taylor" else LEAST_SCIPY_TOLERANCE
     if tolerance is not None and not (is_number(tolerance) and least <= tolerance < 1):
         raise InvalidInput("tolerance", tolerance, f"a number from {least:.2g} to 1 with {name}")
     if name == "taylor":
         return _taylor(tolerance)
-    return SciPy(name, DEFAULT_TOLERANCE[name] if tolerance is None else tolerance)
+    return _scipy(name, SCIPY_TOLERANCES[name] if tolerance is None else tolerance)
 
 
 def _taylor(tolerance: float | None) -> Integrator:
@@ -79,3 +83,15 @@ def _taylor(tolerance: float | None) -> Integrator:
     from tippetop.integrators.taylor import Taylor  # noqa: PLC0415 - optional, and slow to import
 
     return Taylor() if tolerance is None else Taylor(tolerance)
+
+
+def _scipy(name: str, tolerance: float) -> Integrator:
+    from tippetop.integrators.scipy_methods import SciPy  # noqa: PLC0415 - slow to import
+
+    return SciPy(name, tolerance)
+
+
+def _classical(step: float) -> Integrator:
+    from tippetop.integrators.classical import ClassicalRK4  # noqa: PLC0415 - slow to import
+
+    return ClassicalRK4(step)

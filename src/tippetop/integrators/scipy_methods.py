@@ -19,13 +19,8 @@ METHODS: dict[str, Any] = {
     "lsoda": LSODA,
 }
 
-LEAST_TOLERANCE = 2.3e-14
-"""Below this SciPy's solvers do not honour a relative tolerance."""
-
 LEAST_STEP = 1e-15
 """A step shorter than this part of the time gets nowhere."""
-
-DEFAULT_TOLERANCE = {"dop853": 1e-12, "rk45": 1e-10, "radau": 1e-9, "bdf": 1e-9, "lsoda": 1e-11}
 
 
 @dataclass(frozen=True)
