@@ -741,6 +741,8 @@ def test_bytes_per_sample_are_enough():
         ),
         ("step", {"step": 1e-3}),
         ("tolerance", {"integrator": "rk4", "step": 1e-3, "tolerance": 1e-9}),
+        ("tolerance", {"integrator": make_integrator("dop853"), "tolerance": 1e-9}),
+        ("step", {"integrator": make_integrator("rk4", step=0.1), "step": 1e-3}),
     ],
     ids=lambda value: value if isinstance(value, str) else str(next(reversed(value.values()))),
 )

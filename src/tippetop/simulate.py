@@ -79,11 +79,12 @@ def simulate(
     times
         Sample times instead, s: increasing, from 0 to `duration`.
     integrator
-        "taylor", "dop853", "rk45", "radau", "bdf", "lsoda" or "rk4"; None for the best installed.
+        "taylor", "dop853", "rk45", "radau", "bdf", "lsoda" or "rk4"; None for the best installed; or an
+        object of one's own, which follows motions as `tippetop.integrators.base.Integrator` does.
     tolerance
-        Relative error per step; None for the integrator's own default.
+        Relative error per step; None for the integrator's own default. Only with an integrator by name.
     step
-        Step size of "rk4", s.
+        Step size of "rk4", s; for no other.
     phase_limit
         How many phases (slides and flights) the run may go through before it ends early.
 
@@ -174,6 +175,9 @@ def integrator_of(
     """The integrator asked for, with its step in natural units."""
     if integrator is None or isinstance(integrator, str) or not hasattr(integrator, "integrate"):
         return make_integrator(integrator, tolerance, step, units.time)
+    for setting, value in {"tolerance": tolerance, "step": step}.items():
+        if value is not None:
+            raise InvalidInput(setting, value, "none with an integrator object, which has its own")
     return integrator
 
 
