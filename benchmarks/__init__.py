@@ -1,1 +1,1 @@
-"""How long things take: `python -m benchmarks`."""
+"""What the package costs, as ratios to other programs in the same run; `python -m benchmarks`."""

@@ -5,25 +5,20 @@ it stands the bare integration of the eight numbers that drive the motion, by th
 tolerance. The two are timed in turns, so that whatever else the machine does touches both.
 """
 
-import argparse
 import cProfile
-import json
 import os
-import platform
 import pstats
 import statistics
 import subprocess
 import sys
 import time
 from collections.abc import Callable
-from importlib.util import find_spec
 from typing import Any
 
 import heyoka as hy
-from rich.console import Console
-from rich.table import Table
 
 import tippetop as tt
+from benchmarks.surroundings import COMMAND_LINE, markdown
 from tippetop.mechanics.friction import ViscousFriction
 from tippetop.mechanics.motion import axis_rate, contact, moment_per_normal_force
 from tippetop.mechanics.shape import EccentricSphere
@@ -120,8 +115,9 @@ def hot_spots(action: Callable[[], Any], repeats: int = 20, count: int = 15) -> 
     return sorted(spots, key=lambda spot: -spot["own_ms"])[:count]
 
 
-def measure(rounds: int, processes: int) -> dict[str, Any]:
-    """Take all times."""
+def measure(quick: bool, profile: bool) -> dict[str, Any]:
+    """Take all times, and see where they go if asked to."""
+    rounds, processes = (21, 3) if quick else (101, 7)
     problem = report_problem(SPIN).replace({"contact.liftoff": "stop"})
     bare = bare_integration(problem, DURATION)
 
@@ -142,25 +138,18 @@ def measure(rounds: int, processes: int) -> dict[str, Any]:
             "import tippetop as tt; from tippetop.presets import report_problem;"
             f"tt.simulate(report_problem({SPIN}), {DURATION})",
         ),
+        "tippetop --help": ("-c", COMMAND_LINE, "--help"),
+        "tippetop simulate": ("-c", COMMAND_LINE, "simulate", "--json"),
     }
-    if find_spec("tippetop.cli.main"):
-        start = "import sys; from tippetop.cli.main import main; sys.exit(main())"
-        commands["tippetop --help"] = ("-c", start, "--help")
-        commands["tippetop simulate"] = ("-c", start, "simulate", "--json")
     actions = {name: new_process(*arguments) for name, arguments in commands.items()}
-    fresh = {}
-    for name, action in actions.items():
-        try:
-            action()  # fills the caches, and shows whether it works at all
-        except subprocess.CalledProcessError:
-            continue
-        fresh[name] = action
-    cold = in_turns(fresh, processes)
+    for action in actions.values():
+        action()  # fills the caches
+    cold = in_turns(actions, processes)
 
     def median_ms(values: list[float]) -> float:
         return 1e3 * statistics.median(values)
 
-    return {
+    found = {
         "run": {"spin": SPIN, "duration": DURATION, "samples": SAMPLES, "steps": steps},
         "warm_ms": {name: median_ms(values) for name, values in warm.items()},
         "best_ms": {name: 1e3 * min(values) for name, values in warm.items()},
@@ -168,64 +157,24 @@ def measure(rounds: int, processes: int) -> dict[str, Any]:
         "target_ratio": TARGET_RATIO,
         "process_ms": {name: median_ms(values) for name, values in cold.items()},
         "rounds": rounds,
-        "machine": {
-            "python": platform.python_version(),
-            "heyoka": hy.__version__,
-            "processor": platform.processor() or platform.machine(),
-            "cores": os.cpu_count(),
-            "load": os.getloadavg()[0],
-        },
     }
+    return found | {"profile": hot_spots(run)} if profile else found
 
 
-def show(figures: dict[str, Any], console: Console) -> None:
-    """Print the times for people."""
-    table = Table(title=f"{SPIN:g} rad/s, {DURATION:g} s, {SAMPLES} samples, all variables")
-    table.add_column("what")
-    table.add_column("median, ms", justify="right")
-    table.add_column("best, ms", justify="right")
-    for name, value in figures["warm_ms"].items():
-        table.add_row(name, f"{value:.2f}", f"{figures['best_ms'][name]:.2f}")
-    verdict = "within" if figures["ratio"] <= TARGET_RATIO else "[red]over[/red]"
-    table.add_row("ratio", f"{figures['ratio']:.2f}", f"{verdict} {TARGET_RATIO:g}")
-    for name, value in figures["process_ms"].items():
-        table.add_row(f"new process: {name}", f"{value:.0f}", "", end_section=name == "python")
-    console.print(table)
-
-
-def show_profile(spots: list[dict[str, Any]], console: Console) -> None:
-    """Print where the time goes."""
-    table = Table(title="where the time of simulate goes (under a profiler, which adds to every call)")
-    for name in ("function", "calls", "own, ms", "total, ms"):
-        table.add_column(name, justify="left" if name == "function" else "right")
-    for spot in spots:
-        numbers = (f"{spot['calls']:g}", f"{spot['own_ms']:.2f}", f"{spot['total_ms']:.2f}")
-        table.add_row(spot["function"], *numbers)
-    console.print(table)
-
-
-def main() -> None:
-    """Measure and print; exit with 1 when the run takes too many times the bare integration."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
-    parser.add_argument("--json", action="store_true", help="print JSON for programs")
-    parser.add_argument("--profile", action="store_true", help="also show where the time goes")
-    parser.add_argument("--rounds", type=int, default=101, help="how often each run is timed")
-    parser.add_argument("--processes", type=int, default=7, help="how often each new process is timed")
-    arguments = parser.parse_args()
-
-    figures = measure(arguments.rounds, arguments.processes)
-    if arguments.profile:
-        problem = report_problem(SPIN).replace({"contact.liftoff": "stop"})
-        figures["profile"] = hot_spots(lambda: tt.simulate(problem, DURATION, samples=SAMPLES))
-    if arguments.json:
-        print(json.dumps(figures, indent=2))
-    else:
-        console = Console()
-        show(figures, console)
-        if arguments.profile:
-            show_profile(figures["profile"], console)
-    sys.exit(0 if figures["ratio"] <= TARGET_RATIO else 1)
-
-
-if __name__ == "__main__":
-    main()
+def tables(found: dict[str, Any]) -> str:
+    """The figures for people, in Markdown."""
+    verdict = "within" if found["ratio"] <= TARGET_RATIO else "over"
+    rows = [
+        [name, f"{value:.2f}", f"{found['best_ms'][name]:.2f}"] for name, value in found["warm_ms"].items()
+    ]
+    rows.append(["ratio", f"{found['ratio']:.2f}", f"{verdict} {TARGET_RATIO:g}"])
+    rows += [[f"new process: {name}", f"{value:.0f}", ""] for name, value in found["process_ms"].items()]
+    heads = [f"{SPIN:g} rad/s, {DURATION:g} s, {SAMPLES} samples, all variables", "median, ms", "best, ms"]
+    if "profile" not in found:
+        return markdown(heads, rows)
+    spots = [
+        [spot["function"], f"{spot['calls']:g}", f"{spot['own_ms']:.2f}", f"{spot['total_ms']:.2f}"]
+        for spot in found["profile"]
+    ]
+    where = markdown(["under a profiler, which adds to every call", "calls", "own, ms", "total, ms"], spots)
+    return f"{markdown(heads, rows)}\n\n{where}"

@@ -1,32 +1,30 @@
 """What a sweep costs: by grid size, by workers, by flights, and in memory.
 
-    python benchmarks/bench_sweep_scale.py [--quick] [--json FILE]
-
-Spin from 0 to 250 rad/s and friction from 0.05 to 1 s/m, 20 s each, as the maps in the documentation. Memory
-is the largest sum over all processes of the sweep, at half-second looks.
+Spin from 0 to 250 rad/s and friction from 0.05 to 1 s/m, 20 s each, by the command line, as the maps in the
+documentation. Memory is the largest of all processes of the sweep together, looked at twice a second.
 """
 
-import argparse
 import json
 import os
 import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Callable
 from dataclasses import asdict, dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import psutil
 
+from benchmarks.surroundings import COMMAND_LINE, PROCESSORS, markdown, memory_of
 from tippetop.presets import report_problem
 from tippetop.sweep import Axis, Product, Sweep
 from tippetop.sweep.ensemble import follow_cells
-from tippetop.sweep.tasks import processors
 
-COMMAND = "from tippetop.cli.sweep import sweep; import typer; typer.run(sweep)"
 DURATION = 20.0
+QUICK_SIDES, SIDES, WHOLE = (30, 60), (30, 100, 300), 1000
+"""Cells along each axis; the whole maps are done on all processors only."""
 
 
 @dataclass(frozen=True)
@@ -56,27 +54,18 @@ class Cost:
     flights: int
 
 
-def command(liftoff: str, side: int, workers: int) -> Cost:
+def sweep_by_command(liftoff: str, side: int, workers: int) -> Cost:
     """Carry out a sweep by the command line, and watch it."""
     with tempfile.TemporaryDirectory() as folder:
-        options = {
-            "--axis": [f"launch.spin=0:250:{side}", f"friction.mu=0.05:1:{side}"],
-            "--duration": [str(DURATION)],
-            "--liftoff": [liftoff],
-            "--workers": [str(workers)],
-            "--out": [f"{folder}/sweep.zarr"],
-        }
-        words = [word for name, values in options.items() for value in values for word in (name, value)]
-        call = [sys.executable, "-c", COMMAND, *words, "--json", "--no-maps"]
+        axes = ["--axis", f"launch.spin=0:250:{side}", "--axis", f"friction.mu=0.05:1:{side}"]
+        limits = ["--duration", str(DURATION), "--liftoff", liftoff, "--workers", str(workers)]
+        call = [sys.executable, "-c", COMMAND_LINE, "sweep", *axes, *limits]
+        call += ["--out", f"{folder}/sweep.zarr", "--json", "--no-maps"]
         before, began, peak = os.times(), time.perf_counter(), 0
         process = subprocess.Popen(call, stdout=subprocess.PIPE, text=True)
         watched = psutil.Process(process.pid)
         while process.poll() is None:
-            try:
-                family = (watched, *watched.children(recursive=True))
-                peak = max(peak, sum(one.memory_info().rss for one in family))
-            except psutil.Error:
-                pass
+            peak = max(peak, memory_of(watched))
             time.sleep(0.5)
         clock, after = time.perf_counter() - began, os.times()
         said: dict[str, Any] = json.loads(process.stdout.read() if process.stdout else "{}")
@@ -95,45 +84,59 @@ def cost_of_a_flight(cells: int) -> tuple[float, float]:
     whole = Sweep(problem, Product((axis,)), DURATION)
     calm = Sweep(problem, Product((axis,)), 5.0)
     numbers = np.arange(cells)
-    follow_cells(calm, numbers[:16])
+    follow_cells(whole, numbers[:16])
     times, found = [], []
     for sweep in (calm, whole):
         began = time.process_time()
         found.append(follow_cells(sweep, numbers))
         times.append(time.process_time() - began)
+    if found[0]["flights"].any():
+        raise SystemExit("some of the calm launches fly: the cost of a step cannot be told")
     step = times[0] / found[0]["steps"].sum()
     flights = found[1]["flights"].sum()
     return 1e3 * float((times[1] - step * found[1]["steps"].sum()) / flights), float(flights) / cells
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--quick", action="store_true", help="small grids only")
-    parser.add_argument("--json", type=Path, help="write the figures here")
-    options = parser.parse_args()
-    flight, number = cost_of_a_flight(512 if options.quick else 2048)
-    print(f"A flight adds {1e3 * flight:.3g} us to a launch (launches of {number:.3g} flights).\n")
-    sides = (30, 60) if options.quick else (30, 100, 300)
-    most = processors()
+def measure(quick: bool, whole: bool, say: Callable[[str], None]) -> dict[str, Any]:
+    """All costs; with those of the whole maps, a million launches each, if asked for."""
+    flight, number = cost_of_a_flight(512 if quick else 2048)
+    plans = [(side, workers) for side in (QUICK_SIDES if quick else SIDES) for workers in {1, PROCESSORS}]
+    plans += [(WHOLE, PROCESSORS)] if whole else []
     costs = []
-    print("| lift-off | cells | workers | clock (s) | processors (s) | ms a cell | memory (MiB) | flights |")
-    print("| --- | --- | --- | --- | --- | --- | --- | --- |", flush=True)
     for liftoff in ("stop", "fly"):
-        for side in sides:
-            for workers in sorted({1, most}):
-                cost = command(liftoff, side, workers)
-                costs.append(cost)
-                print(
-                    f"| {liftoff} | {side} x {side} | {workers} | {cost.clock:.3g} | {cost.used:.3g} "
-                    f"| {1e3 * cost.used / side**2:.3g} | {cost.memory:.0f} | {cost.flights:,} |",
-                    flush=True,
-                )
-    if options.json is not None:
-        figures = {"flight_ms": flight, "costs": [asdict(cost) for cost in costs]}
-        options.json.write_text(json.dumps(figures, indent=2))
+        for side, workers in plans:
+            costs.append(sweep_by_command(liftoff, side, workers))
+            say(f"{liftoff}, {side} x {side} on {workers}: {costs[-1].clock:.3g} s")
+    most = [cost for cost in costs if cost.liftoff == "fly" and cost.workers == PROCESSORS]
+    least, largest = most[0], most[-1]
+    a_cell = (largest.memory - least.memory) * 2**20 / (largest.side**2 - least.side**2)
+    return {
+        "flight_ms": flight,
+        "flights_a_launch": number,
+        "bytes_a_cell": a_cell,
+        "costs": [asdict(cost) for cost in costs],
+    }
 
 
-if __name__ == "__main__":
-    main()
+def tables(found: dict[str, Any]) -> str:
+    """The figures for people, in Markdown."""
+    heads = ["cells", "where the table would pull", "workers", "clock, s", "processors, s"]
+    heads += ["launches/s", "memory in all, MiB", "flights"]
+    rows = [
+        [
+            f"{cost.side} x {cost.side}",
+            cost.liftoff,
+            f"{cost.workers}",
+            f"{cost.clock:.3g}",
+            f"{cost.used:.3g}",
+            f"{cost.side**2 / cost.clock:,.3g}",
+            f"{cost.memory:,.0f}",
+            f"{cost.flights:,}",
+        ]
+        for cost in (Cost(**one) for one in found["costs"])
+    ]
+    return (
+        f"{markdown(heads, rows)}\n\n"
+        f"A flight adds {1e3 * found['flight_ms']:.3g} microseconds of a processor to a launch (measured on "
+        f"launches of {found['flights_a_launch']:.3g} flights), a cell {found['bytes_a_cell']:.3g} bytes."
+    )

@@ -1,0 +1,51 @@
+"""Where the measurements are made: the machine, new processes of Python, and their memory."""
+
+import importlib.metadata
+import os
+import platform
+from typing import Any
+
+import psutil
+
+COMMAND_LINE = "import sys; from tippetop.cli.main import main; sys.exit(main())"
+"""Given to `python -c`, this is `tippetop`."""
+
+PROCESSORS = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+"""How many processors may be used."""
+
+_LIBRARIES = ("heyoka", "numpy", "scipy", "diffrax", "jax", "zarr")
+
+
+def machine() -> dict[str, Any]:
+    """What the figures were measured on."""
+    versions = {}
+    for name in _LIBRARIES:
+        try:
+            versions[name] = importlib.metadata.version(name)
+        except importlib.metadata.PackageNotFoundError:
+            continue
+    return {
+        "python": platform.python_version(),
+        "libraries": versions,
+        "processor": platform.processor() or platform.machine(),
+        "processors": PROCESSORS,
+        "load": os.getloadavg()[0] if hasattr(os, "getloadavg") else None,
+    }
+
+
+def memory_of(process: psutil.Process) -> int:
+    """Memory of a process and its children, each shared page counted in parts, bytes."""
+    total = 0
+    for one in (process, *process.children(recursive=True)):
+        try:
+            full = one.memory_full_info()
+            total += getattr(full, "pss", full.uss)
+        except psutil.Error:  # it has just ended
+            continue
+    return total
+
+
+def markdown(heads: list[str], rows: list[list[str]]) -> str:
+    """A table in Markdown; all columns but the first are numbers."""
+    rule = ["---", *("---:" for _ in heads[1:])]
+    return "\n".join("| " + " | ".join(cells) + " |" for cells in (heads, rule, *rows))
