@@ -4,11 +4,12 @@ import matplotlib as mpl
 import numpy as np
 import pytest
 from matplotlib.collections import QuadMesh
+from sweeps import lively
 
 from tippetop.figures.maps import MAPPED, phase_map
 from tippetop.figures.style import save
 from tippetop.presets import report_problem
-from tippetop.sweep import VARIABLES, Axis, Draws, Product, Range, Sweep, compute
+from tippetop.sweep import VARIABLES, Axis, Draws, Group, Product, Range, Sweep, compute
 
 
 @pytest.fixture(scope="module")
@@ -74,3 +75,14 @@ def test_making_a_map_leaves_the_style_alone(plane):
     for name in MAPPED:
         phase_map(plane, name)
     assert dict(mpl.rcParams) == before
+
+
+def test_launches_that_were_stopped_at_lift_off_show_no_final_tilt():
+    sweep = compute(lively("stop"))
+    lifted = sweep["outcome"].values == Group.LIFTED_OFF
+    assert lifted.any()
+    assert not lifted.all()
+    axes = phase_map(sweep).axes[0]
+    mesh = next(child for child in axes.get_children() if isinstance(child, QuadMesh))
+    assert np.array_equal(np.ma.getmaskarray(mesh.get_array()), lifted.T)
+    assert "left the table" in axes.get_title(loc="left")

@@ -35,7 +35,7 @@ from tippetop.sweep import store as stores
 zarr = pytest.importorskip("zarr")
 
 KILLS = int(os.environ.get("TIPPETOP_KILLS", "3"))
-"""How often the sweep is killed; the benchmark does it fifty times."""
+"""How often the sweep is killed; more often takes longer, and shows more."""
 
 
 @pytest.fixture

@@ -19,6 +19,7 @@ from tippetop.figures.style import (
     house_style,
     pi_ticks,
 )
+from tippetop.sweep import Group
 
 MAPPED = ("final_theta", "turns_over", "flights")
 """The maps that are drawn of every sweep."""
@@ -74,7 +75,7 @@ def phase_map(sweep: xr.Dataset, variable: str = "final_theta") -> Figure:
     with house_style():
         figure = Figure(figsize=(WIDTH, 4.6))
         axes = figure.subplots()
-        axes.set_title(TITLES.get(variable, variable))
+        axes.set_title(_title(sweep, variable))
         if values.dims == ("draw",):
             _scatter(figure, axes, sweep, variable)
         elif values.ndim == 1:
@@ -137,10 +138,24 @@ def _scatter(figure: Figure, axes: Axes, sweep: xr.Dataset, variable: str) -> No
     axes.set_xlabel(NAMES.get(fields[0], fields[0]))
 
 
+def _title(sweep: xr.Dataset, variable: str) -> str:
+    title = TITLES.get(variable, variable)
+    if variable == "final_theta" and _ended_early(sweep).any():
+        return f"{title}; grey: left the table before the end"
+    return title
+
+
+def _ended_early(sweep: xr.Dataset) -> np.ndarray[Any, Any]:
+    """Which launches were stopped where they lifted off, so that their last tilt is not their end."""
+    return np.asarray(sweep["outcome"].values == Group.LIFTED_OFF)
+
+
 def _shown(sweep: xr.Dataset, variable: str) -> np.ndarray[Any, Any]:
     """The values, not a number where there are none."""
     values = np.asarray(sweep[variable].values, dtype=float)
     nothing = sweep["status"].values == 0
+    if variable == "final_theta":
+        nothing = nothing | _ended_early(sweep)
     if np.issubdtype(sweep[variable].dtype, np.integer):
         nothing = nothing | (values < 0)
     return np.where(nothing, np.nan, values)
