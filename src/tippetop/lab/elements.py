@@ -10,7 +10,7 @@ from nicegui import events
 from nicegui.element import Element
 
 from tippetop.export.bundle import PLAYER
-from tippetop.lab.jobs import MapRow
+from tippetop.lab.map_job import Fate, MapPart
 
 _COMPONENTS = Path(__file__).parent / "components"
 
@@ -51,13 +51,13 @@ class PhaseMap(Element, component=_COMPONENTS / "lab_map.js"):
         self, spins: Sequence[float], frictions: Sequence[float], unit: str, marks: Sequence[float]
     ) -> None:
         """Begin a map of these spins (rad/s) and friction coefficients, with some spins marked."""
-        self.run_method(
-            "begin", {"spins": [*spins], "frictions": [*frictions], "unit": unit, "marks": [*marks]}
-        )
+        fates = [fate.sentence for fate in Fate]
+        axes = {"spins": [*spins], "frictions": [*frictions], "unit": unit, "marks": [*marks]}
+        self.run_method("begin", axes | {"fates": fates})
 
-    def put(self, row: MapRow) -> None:
-        """Draw a row."""
-        self.run_method("put", row.row, row.tilts, row.flights)
+    def put(self, part: MapPart) -> None:
+        """Draw what has become known."""
+        self.run_method("put", part.cells, part.tilts, part.flights, part.fates)
 
     def here(self, spin: float, mu: float) -> None:
         """Mark the launch that is shown."""

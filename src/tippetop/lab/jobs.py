@@ -1,11 +1,8 @@
-"""What the worker processes of the laboratory do: a run for the page, a file of it, a map of many."""
+"""What the worker processes of the laboratory do: a run for the page, or a file of it."""
 
 import tempfile
-from collections.abc import Iterator
 from pathlib import Path
-from typing import NamedTuple
 
-import numpy as np
 import xarray as xr
 
 from tippetop.dataset import write_run
@@ -22,24 +19,6 @@ PHASES = 4000
 _WRITERS = {"nc": write_run, "csv": write_csv, "glb": write_glb, "html": write_html}
 KINDS = ("nc", "csv", "toml", "glb", "html")
 """The files there are of a run, by their suffix."""
-
-
-class MapRow(NamedTuple):
-    """One row of a map: at one friction, launches with many spins.
-
-    Attributes
-    ----------
-    row
-        Its number.
-    tilts
-        Final tilts, rad.
-    flights
-        How many times each left the table.
-    """
-
-    row: int
-    tilts: list[float]
-    flights: list[int]
 
 
 def run_of(setup: Setup) -> xr.Dataset:
@@ -60,18 +39,6 @@ def file_of(setup: Setup, kind: str) -> bytes:
     run = run_of(setup)
     with tempfile.TemporaryDirectory() as folder:
         return _WRITERS[kind](run, Path(folder) / f"run.{kind}").read_bytes()
-
-
-def map_rows(setup: Setup, spins: list[float], frictions: list[float]) -> Iterator[MapRow]:
-    """The final tilts over spin and friction coefficient, one row after the other."""
-    for row, mu in enumerate(frictions):
-        ends = [_end(setup.changed({"launch.spin": spin, "friction.mu": mu})) for spin in spins]
-        yield MapRow(row, [tilt for tilt, _ in ends], [flights for _, flights in ends])
-
-
-def _end(setup: Setup) -> tuple[float, int]:
-    run = simulate(setup.problem, setup.duration, times=np.array([setup.duration]), phase_limit=PHASES)
-    return float(run["theta"].values[-1]), run.sizes["flight"]
 
 
 def warm_up() -> None:

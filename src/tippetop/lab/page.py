@@ -14,7 +14,8 @@ from tippetop.lab import controls
 from tippetop.lab.elements import PhaseMap, Player, Plots
 from tippetop.lab.jobs import KINDS
 from tippetop.lab.launches import launches
-from tippetop.lab.phase_map import plan_map, rows_of
+from tippetop.lab.map_job import Fate
+from tippetop.lab.phase_map import parts_of, plan_map
 from tippetop.lab.server import FILE_PATH, TRACK_PATH
 from tippetop.lab.setup import Setup, first_setup, read_query
 from tippetop.lab.workers import Workers
@@ -245,23 +246,30 @@ class Laboratory:
 
     def _begin_map(self) -> None:
         self.stop_map()
-        plan = plan_map(self.setup, controls.SPIN.high)
+        try:
+            plan = plan_map(self.setup, controls.SPIN.high)
+        except InvalidInput as error:
+            self.map_note.text = str(error)
+            return
         spins = known_spins(self.setup.problem)
         marks = [s for s in (spins.upright, spins.inverted) if math.isfinite(s)] if spins else []
         unit = " s/m" if self.setup.problem.friction.kind == "viscous" else ""
         self.map.begin(plan.spins, plan.frictions, unit, marks)
         self.map_button.text = "Compute again"
+        self.progress.value = 0.0
+        self.map_note.text = "The laboratory gets ready for it."
 
         async def work() -> None:
+            followed = 0
             try:
-                done = 0
-                async for row in rows_of(plan, self.pool):
-                    done += 1
-                    self.map.put(row)
-                    self.progress.value = done / len(plan.frictions)
-                    self.map_note.text = f"{done} of {len(plan.frictions)} rows"
+                async for part in parts_of(plan, self.pool):
+                    followed += sum(fate != Fate.IN_THE_AIR for fate in part.fates)
+                    self.map.put(part)
+                    self.progress.value = part.share
+                    self.map_note.text = f"{followed} launches followed"
+                self.progress.value = 1.0
                 self.map_note.text = (
-                    "Computed; click a cell to launch it. It stays as computed when controls move."
+                    f"{followed} launches. Click one to see it. The map stays as it is when controls move."
                 )
             except TippetopError as error:
                 self.map_note.text = str(error)

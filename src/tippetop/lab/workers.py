@@ -17,6 +17,7 @@ from typing import Any, TypeVar
 
 from tippetop.errors import InvalidInput, TippetopError, one_of
 from tippetop.lab import jobs
+from tippetop.lab.map_job import MapPart, map_parts, warm_up_map
 from tippetop.lab.setup import Setup
 
 PATIENCE = 6.0
@@ -33,15 +34,16 @@ _CONTEXT = multiprocessing.get_context("spawn")
 
 
 class Worker:
-    """A process that does one job at a time."""
+    """A process that does one job at a time, once it has warmed up."""
 
-    def __init__(self) -> None:
+    def __init__(self, warm_up: Callable[[], None] = jobs.warm_up) -> None:
+        self._warm_up = warm_up
         self._start()
 
     def _start(self) -> None:
         self._end, theirs = _CONTEXT.Pipe()
         self._process = _CONTEXT.Process(
-            target=_work, args=(theirs,), daemon=True, name="tippetop lab worker"
+            target=_work, args=(theirs, self._warm_up), daemon=True, name="tippetop lab worker"
         )
         self._process.start()
         theirs.close()
@@ -112,15 +114,16 @@ class Worker:
 
 
 class Workers:
-    """A few workers for runs, and one for maps, which take their time, once there is a map to make."""
+    """A few workers for runs, and one for maps, which take their time."""
 
     def __init__(self, count: int | None = None) -> None:
         self._runners: queue.SimpleQueue[Worker] = queue.SimpleQueue()
-        self._mapper: Worker | None = None
         self._mapping = threading.Lock()
         self._all = [Worker() for _ in range(count or max(1, min(4, (os.cpu_count() or 2) - 1)))]
         for worker in self._all:
             self._runners.put(worker)
+        self._mapper = Worker(warm_up_map)
+        self._all.append(self._mapper)
 
     def track(self, setup: Setup) -> bytes:
         """The run of a launch as the player takes it.
@@ -144,10 +147,10 @@ class Workers:
             raise InvalidInput("kind", kind, one_of(kind, list(jobs.KINDS)))
         return self._one(setup, jobs.file_of, setup, kind, patience=FILE_PATIENCE)
 
-    def map_rows(
+    def map_parts(
         self, setup: Setup, spins: list[float], frictions: list[float], stopped: threading.Event
-    ) -> Iterator[jobs.MapRow]:
-        """The rows of a map, as they are done, until it is `stopped`.
+    ) -> Iterator[MapPart]:
+        """The parts of a map, as they are done, until it is `stopped`.
 
         Raises
         ------
@@ -155,15 +158,12 @@ class Workers:
             If it would take too long.
         """
         with self._mapping:
-            if self._mapper is None:
-                self._mapper = Worker()
-                self._all.append(self._mapper)
             try:
                 yield from self._mapper.results(
-                    jobs.map_rows, setup, spins, frictions, patience=MAP_PATIENCE, stopped=stopped
+                    map_parts, setup, spins, frictions, patience=MAP_PATIENCE, stopped=stopped
                 )
             except TimeoutError:
-                raise _too_long(setup, MAP_PATIENCE) from None
+                raise _too_long(setup, MAP_PATIENCE, "a map") from None
 
     def _one(self, setup: Setup, job: Callable[..., _Result], *arguments: Any, patience: float) -> _Result:
         worker = self._runners.get()
@@ -181,19 +181,19 @@ class Workers:
             worker.close()
 
 
-def _too_long(setup: Setup, patience: float) -> InvalidInput:
+def _too_long(setup: Setup, patience: float, what: str = "a run") -> InvalidInput:
     return InvalidInput(
         "duration",
         setup.duration,
-        f"a run that is computed within {patience:g} s, and this one is not: make it shorter, "
+        f"{what} that is computed within {patience:g} s, and this one is not: make it shorter, "
         "or take less spin, friction or restitution",
     )
 
 
-def _work(end: Connection) -> None:
+def _work(end: Connection, warm_up: Callable[[], None]) -> None:
     """The life of a worker: jobs from the other end of the pipe, until it closes."""
     with suppress(KeyboardInterrupt, EOFError, BrokenPipeError):
-        jobs.warm_up()
+        warm_up()
         end.send("ready")
         while True:
             job, arguments = end.recv()

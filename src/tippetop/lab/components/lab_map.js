@@ -7,8 +7,8 @@ export default {
   template: `<div class="lab-map">
     <canvas tabindex="0" role="application" aria-label="Map of final tilts over spin and friction.
       Arrow keys choose a cell, Enter launches it."></canvas>
-    <div class="lab-map-key" aria-hidden="true"><span>upright</span><i></i><span>inverted</span>
-      <b></b><span>leaves the table</span></div>
+    <div class="lab-map-key" aria-hidden="true"><span>upright <i></i> inverted</span>
+      <span><b></b> leaves the table</span><span><u></u> no final tilt; point to see why</span></div>
     <p class="lab-map-tip" aria-live="polite"></p></div>`,
   mounted() {
     this.map = new PhaseMap(this.$el.querySelector("canvas"), this.$el.querySelector(".lab-map-tip"));
@@ -24,8 +24,8 @@ export default {
       this.$el.classList.add("lab-map-begun");
       this.map.begin(map);
     },
-    put(row, tilts, flights) {
-      this.map.put(row, tilts, flights);
+    put(cells, tilts, flights, fates) {
+      this.map.put(cells, tilts, flights, fates);
     },
     here(spin, mu) {
       this.map.here(spin, mu);
