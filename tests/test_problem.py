@@ -661,6 +661,11 @@ class TestPresets:
     def test_presets_are_found_by_their_names(self):
         assert presets.body("report") == presets.REPORT
         assert presets.body("report-table-1") == presets.REPORT_TABLE_1
+        assert presets.body("leine-glocker") == presets.LEINE_GLOCKER == presets.leine_glocker_problem().body
+
+    def test_leine_and_glockers_centre_of_mass_is_3_mm_from_the_middle(self):
+        shape = presets.LEINE_GLOCKER.shape
+        assert shape.radius * shape.eccentricity == pytest.approx(3e-3, rel=1e-15)
 
     def test_the_reports_problem_is_launched_at_rest_in_tilt(self):
         """theta = 0.1 rad and omega3 = 155 rad/s with everything else zero, mu = 0.3 s/m, g = 9.8 m/s^2."""

@@ -1,7 +1,14 @@
 """Bodies and problems known by name."""
 
 from tippetop.errors import InvalidInput, one_of
-from tippetop.problem import Body, EccentricSphere, Launch, Problem, ViscousFriction
+from tippetop.problem import (
+    Body,
+    EccentricSphere,
+    Launch,
+    Problem,
+    RegularizedCoulombFriction,
+    ViscousFriction,
+)
 
 _MASS, _RADIUS = 0.02, 0.02
 _TWO_FIFTHS = 2 / 5 * _MASS * _RADIUS**2
@@ -15,7 +22,14 @@ REPORT_TABLE_1 = Body(
 )
 """The report's top as its Table 1 prints it, with the two inertias exchanged."""
 
-BODIES = {"report": REPORT, "report-table-1": REPORT_TABLE_1}
+LEINE_GLOCKER = Body(mass=6e-3, shape=EccentricSphere(radius=1.5e-2, eccentricity=0.2), I1=8e-7, I3=7e-7)
+"""The sphere of Leine and Glocker's top, whose centre of mass is 3 mm from the middle of 15 mm.
+
+R. I. Leine and Ch. Glocker, "A set-valued force law for spatial Coulomb-Contensou friction", European Journal
+of Mechanics A/Solids 22 (2003) 193-216. Their second sphere, the stem's, is left out.
+"""
+
+BODIES = {"report": REPORT, "report-table-1": REPORT_TABLE_1, "leine-glocker": LEINE_GLOCKER}
 """The bodies by the names used on the command line."""
 
 
@@ -36,3 +50,16 @@ def body(name: str) -> Body:
 def report_problem(spin: float = 155.0, tilt: float = 0.1, mu: float = 0.3) -> Problem:
     """The report's top and table, launched at rest in tilt: spin in rad/s, tilt in rad, mu in s/m."""
     return Problem(body=REPORT, friction=ViscousFriction(mu=mu), launch=Launch(tilt=tilt, spin=spin))
+
+
+def leine_glocker_problem(spin: float = 180.0, tilt: float = 0.1, mu: float = 0.3) -> Problem:
+    """Leine and Glocker's top on dry friction, without drilling: spin in rad/s, tilt in rad, mu a number.
+
+    See `LEINE_GLOCKER` for the reference.
+    """
+    return Problem(
+        body=LEINE_GLOCKER,
+        friction=RegularizedCoulombFriction(mu=mu),
+        launch=Launch(tilt=tilt, spin=spin),
+        gravity=9.81,
+    )

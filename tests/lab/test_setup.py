@@ -7,6 +7,10 @@ from hypothesis import strategies as st
 import tippetop as tt
 from tippetop.lab.launches import launches
 from tippetop.lab.setup import LONGEST, Setup, first_setup, read_query
+from tippetop.theory.groups import classify
+from tippetop.theory.prediction import predict
+from tippetop.theory.steady import Kind
+from tippetop.theory.thresholds import critical_spins
 
 
 def reread(setup: Setup) -> Setup:
@@ -82,3 +86,14 @@ def test_launches_to_start_from_are_told_apart() -> None:
     assert first_setup() in offered.values()
     assert len(set(offered)) == len(offered)
     assert {setup.problem.body for setup in offered.values()} == set(tt.presets.BODIES.values())
+
+
+def test_tops_of_the_literature_turn_over_as_theory_says_of_theirs() -> None:
+    (setup,) = [each for name, each in launches().items() if name.startswith("Leine and Glocker 2003")]
+    problem = setup.problem
+    assert classify(problem.body.I1 / problem.body.I3, problem.body.shape.eccentricity).inverts  # type: ignore[union-attr]
+    assert problem.launch.spin > critical_spins(problem).inverted
+    run = tt.simulate(problem, setup.duration)
+    assert run["theta"][0] < 0.2
+    assert run["theta"][-1] > 2.0
+    assert predict(problem).reachable[0].kind is Kind.INVERTED

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from tippetop.lab.setup import Setup, first_setup
-from tippetop.presets import BODIES
+from tippetop.presets import BODIES, leine_glocker_problem
 
 REPORT_LAUNCHES: Mapping[str, Mapping[str, Any]] = {
     "Report, Fig. 4: turns over completely (155 rad/s)": {},
@@ -21,10 +21,12 @@ REPORT_LAUNCHES: Mapping[str, Mapping[str, Any]] = {
 
 
 def launches() -> dict[str, Setup]:
-    """Every launch to start from, by its name: the report's, then one for every other body known by name."""
+    """Every launch to start from, by its name: the report's, the literature's, and those of other bodies."""
     first = first_setup()
     found = {name: first.changed(changes) for name, changes in REPORT_LAUNCHES.items()}
+    found["Leine and Glocker 2003: dry friction (180 rad/s)"] = Setup(leine_glocker_problem())
+    known = {setup.problem.body for setup in found.values()}
     for name, body in BODIES.items():
-        if body != first.problem.body:
+        if body not in known:
             found[f"Top: {name.replace('-', ' ')}"] = Setup(first.problem.model_copy(update={"body": body}))
     return found
