@@ -4,6 +4,7 @@ import gc
 import math
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 import xarray as xr
@@ -36,6 +37,14 @@ def vertical():
     """A run in which something is not a number."""
     run = tt.simulate(report_problem(tilt=0.0).replace({"contact.liftoff": "stop"}), 0.1, samples=3)
     assert np.all(np.isnan(run.phi_dot))
+    return run
+
+
+@pytest.fixture(scope="module")
+def sampled():
+    """A run with flights, long enough for its variables to be kept in several blocks."""
+    run = tt.simulate(report_problem(175.0).replace({"contact.liftoff": "fly"}), 7.0, samples=3001)
+    assert run.sizes["flight"] > 1
     return run
 
 
@@ -260,6 +269,32 @@ def test_damaged_beginning_is_refused(lifted_off, tmp_path):
     content = path.read_bytes()
     path.write_bytes(content[:60] + np.random.default_rng(3).bytes(500) + content[560:])
     assert "cannot be read" in refused(path)
+
+
+def places(path):
+    """Where the data blocks of a file are: variable, first byte and size of each."""
+    with h5py.File(path) as file:
+        return [
+            (name, chunk.byte_offset, chunk.size)
+            for name, variable in file.items()
+            if variable.chunks is not None
+            for chunk in map(variable.id.get_chunk_info, range(variable.id.get_num_chunks()))
+        ]
+
+
+@pytest.mark.parametrize("source", ["lifted_off", "sampled"])
+def test_data_overwritten_within_the_file_are_refused(request, tmp_path, source):
+    run = request.getfixturevalue(source)
+    path = tt.write_run(run, tmp_path / "run.nc")
+    content = path.read_bytes()
+    blocks = places(path)
+    assert {name for name, *_ in blocks} == {name for name in run.variables if run[name].size}
+    for name, first, size in blocks:
+        damaged = bytearray(content)
+        damaged[first + (size - 4) // 2] ^= 0x10
+        path.write_bytes(damaged)
+        with pytest.raises(tt.FileTrouble, match="cannot be read: it is damaged"):
+            pytest.fail(f"{name} is read as {tt.read_run(path)[name].values}")
 
 
 def test_netcdf_of_another_program_is_refused(tmp_path):

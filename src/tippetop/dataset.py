@@ -1,7 +1,7 @@
 """Results as labelled datasets: names, units, provenance, and files that keep all of it."""
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -116,8 +116,21 @@ def write_run(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Pat
     path = Path(path)
     refuse_overwriting(path, overwrite)
     with written_beside(path) as beside:
-        run.to_netcdf(beside, engine="h5netcdf")
+        run.to_netcdf(beside, engine="h5netcdf", encoding=_encoding(run))
     return path
+
+
+def _encoding(run: xr.Dataset) -> dict[Hashable, dict[str, Any]]:
+    """How each variable is kept: with a checksum, so that damage is seen when it is read."""
+    encoding: dict[Hashable, dict[str, Any]] = {}
+    for name, variable in run.variables.items():
+        # HDF5 keeps no checksum of a single number.
+        if variable.ndim:
+            encoding[name] = {"fletcher32": True}
+            if variable.dtype.kind == "U":
+                # Nor of strings of any length, only of where they are; of letters it does.
+                encoding[name]["dtype"] = "S1"
+    return encoding
 
 
 def read_run(path: Path | str) -> xr.Dataset:
@@ -126,7 +139,7 @@ def read_run(path: Path | str) -> xr.Dataset:
     Raises
     ------
     FileTrouble
-        If the file cannot be read or is not a result.
+        If the file cannot be read, is damaged or is not a result.
     """
     path = Path(path)
     try:
@@ -138,4 +151,5 @@ def read_run(path: Path | str) -> xr.Dataset:
         raise FileTrouble(f"{path} cannot be read: {reason}") from None
     if "tippetop_version" not in run.attrs:
         raise FileTrouble(f"{path} is not a result of this program")
-    return run
+    words = {name: run[name].astype(str) for name in run.variables if run[name].dtype == object}
+    return run.assign(words)
