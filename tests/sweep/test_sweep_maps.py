@@ -3,6 +3,7 @@
 import matplotlib as mpl
 import numpy as np
 import pytest
+import xarray as xr
 from matplotlib.collections import QuadMesh
 from sweeps import lively
 
@@ -65,9 +66,23 @@ def test_one_axis_is_a_curve_and_draws_are_points():
     assert phase_map(single).axes[0].lines[0].get_xdata() == pytest.approx(single["launch.spin"].values)
 
 
-def test_more_dimensions_make_no_map(plane):
-    with pytest.raises(ValueError, match="one or two dimensions"):
-        phase_map(plane.expand_dims({"gravity": [1.0, 2.0]}))
+@pytest.mark.parametrize(("count", "drawn"), [(2, [0, 1]), (17, [0, 2, 4, 6, 8, 10, 12, 14, 16])])
+def test_more_axes_go_from_panel_to_panel(plane, count, drawn, tmp_path):
+    tilts = np.linspace(0.1, 0.9, count)
+    parts = [plane.assign(final_theta=plane["final_theta"] + k) for k in range(count)]
+    cube = xr.concat(parts, xr.DataArray(tilts, dims="launch.tilt", name="launch.tilt"))
+    cube = cube.expand_dims({"gravity": [1.0, 2.0, 3.0]}).transpose(
+        "launch.spin", "friction.mu", "launch.tilt", "gravity"
+    )
+    figure = phase_map(cube)
+    meshes = [child for axes in figure.axes for child in axes.get_children() if isinstance(child, QuadMesh)]
+    maps = [mesh for mesh in meshes if mesh.get_array().shape == (4, 3)]
+    assert len(maps) == len(drawn)
+    for mesh, place in zip(maps, drawn, strict=True):
+        assert np.array_equal(mesh.get_array(), parts[place]["final_theta"].values.T)
+        assert f"{tilts[place]:.4g}" in mesh.axes.get_title(loc="left")
+    assert "Gravity (m/s²) = 2" in figure.get_suptitle()
+    save(figure, tmp_path / "map.png")
 
 
 def test_making_a_map_leaves_the_style_alone(plane):

@@ -214,13 +214,11 @@ def _shown(seen: list["Progress"], silent: bool) -> Iterator["Watcher"]:
 
 
 def _draw_maps(dataset: "xr.Dataset", out: Path) -> list[Path]:
-    """Draw the maps that the sweep's dimensions allow, beside the store."""
+    """Draw maps beside the store."""
     from tippetop.figures.maps import MAPPED, phase_map  # noqa: PLC0415 - slow to import
     from tippetop.figures.style import save  # noqa: PLC0415
     from tippetop.files import written_beside  # noqa: PLC0415
 
-    if len(dataset["outcome"].dims) > 2:
-        return []
     paths = []
     for name in MAPPED:
         path = out.with_name(f"{out.stem}.{name}.png")

@@ -51,6 +51,9 @@ TITLES = {
     "outcome": "Outcome",
 }
 
+MOST_PANELS = 9
+"""Maps that are drawn side by side."""
+
 MOST_STEP = 1.05
 """Ratio of neighbouring steps of an axis from which on it counts as geometric."""
 
@@ -64,15 +67,15 @@ class Shade(NamedTuple):
 
 
 def phase_map(sweep: xr.Dataset, variable: str = "final_theta") -> Figure:
-    """Draw a variable of a sweep: over two axes as colours, over one as a curve, of draws as points.
+    """Draw a variable of a sweep: over axes as colours, over one axis as a curve, of draws as points.
 
-    Raises
-    ------
-    ValueError
-        If the sweep has more than two dimensions.
+    Of three axes the third goes from panel to panel, over at most `MOST_PANELS` of its values; of more than
+    three, those after the third stay at the middle one of their values.
     """
     values = sweep[variable]
     with house_style():
+        if values.ndim > 2:
+            return _panels(sweep, variable)
         figure = Figure(figsize=(WIDTH, 4.6))
         axes = figure.subplots()
         axes.set_title(_title(sweep, variable))
@@ -80,18 +83,49 @@ def phase_map(sweep: xr.Dataset, variable: str = "final_theta") -> Figure:
             _scatter(figure, axes, sweep, variable)
         elif values.ndim == 1:
             _curve(axes, sweep, variable)
-        elif values.ndim == 2:
-            _colours(figure, axes, sweep, variable)
         else:
-            raise ValueError(f"a map has one or two dimensions, and the sweep has {values.ndim}")
+            shade = _shade(sweep, variable, _shown(sweep, variable))
+            image = _colours(axes, sweep, variable, shade)
+            _bar(figure, [axes], image, sweep, variable)
         return figure
 
 
-def _colours(figure: Figure, axes: Axes, sweep: xr.Dataset, variable: str) -> None:
+def _panels(sweep: xr.Dataset, variable: str) -> Figure:
+    """Maps side by side, one for each of some values of the third axis."""
+    third, *others = (str(name) for name in sweep[variable].dims[2:])
+    sweep = sweep.isel({name: sweep.sizes[name] // 2 for name in others})
+    places = np.unique(np.linspace(0, sweep.sizes[third] - 1, MOST_PANELS).round().astype(int))
+    columns = min(3, len(places))
+    rows = -(-len(places) // columns)
+    figure = Figure(figsize=(WIDTH, 1.2 + 2.4 * rows))
+    grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+    title = "; ".join([_title(sweep, variable), *(_value(sweep, name) for name in others)])
+    figure.suptitle(title, x=0.01, ha="left", weight="bold", size="medium")
+    shade = _shade(sweep, variable, _shown(sweep, variable))
+    for place, axes in enumerate(grid.flat):
+        if place >= len(places):
+            axes.set_visible(False)
+            continue
+        part = sweep.isel({third: places[place]})
+        image = _colours(axes, part, variable, shade)
+        axes.set_title(_value(part, third), size="small", weight="normal")
+        axes.tick_params(labelbottom=place + columns >= len(places))
+        figure.supxlabel(axes.get_xlabel(), size="medium")
+        figure.supylabel(axes.get_ylabel(), size="medium")
+        axes.set(xlabel="", ylabel="")
+    _bar(figure, list(grid.flat), image, sweep, variable)
+    return figure
+
+
+def _value(sweep: xr.Dataset, name: str) -> str:
+    """Where a sweep was cut."""
+    return f"{NAMES.get(name, name)} = {sweep[name].values:.4g}"
+
+
+def _colours(axes: Axes, sweep: xr.Dataset, variable: str, shade: Shade) -> Any:
     """One cell a rectangle; the first dimension to the right, the second upwards."""
     across, up = (str(name) for name in sweep[variable].dims)
     values = _shown(sweep, variable).T
-    shade = _shade(sweep, variable, values)
     axes.set_facecolor(shade.none)
     axes.grid(visible=False)
     image = axes.pcolormesh(
@@ -109,7 +143,7 @@ def _colours(figure: Figure, axes: Axes, sweep: xr.Dataset, variable: str) -> No
             (axes.set_xscale if axis is axes.xaxis else axes.set_yscale)("log")
     axes.set_xlim(*_ends(sweep[across].values))
     axes.set_ylim(*_ends(sweep[up].values))
-    _bar(figure, axes, image, sweep, variable)
+    return image
 
 
 def _curve(axes: Axes, sweep: xr.Dataset, variable: str) -> None:
@@ -134,7 +168,7 @@ def _scatter(figure: Figure, axes: Axes, sweep: xr.Dataset, variable: str) -> No
         axes.scatter(x[nothing], y[nothing], 8, facecolors="none", edgecolors=MUTED, linewidths=0.4)
         image = axes.scatter(x[~nothing], y[~nothing], 8, values[~nothing], cmap=shade.cmap, norm=shade.norm)
         axes.set_ylabel(NAMES.get(fields[1], fields[1]))
-        _bar(figure, axes, image, sweep, variable)
+        _bar(figure, [axes], image, sweep, variable)
     axes.set_xlabel(NAMES.get(fields[0], fields[0]))
 
 
@@ -177,7 +211,7 @@ def _shade(sweep: xr.Dataset, variable: str, values: np.ndarray[Any, Any]) -> Sh
     return Shade(SEQUENTIAL, Normalize(least, most if most > least else least + 1.0), FAINT)
 
 
-def _bar(figure: Figure, axes: Axes, image: Any, sweep: xr.Dataset, variable: str) -> None:
+def _bar(figure: Figure, axes: list[Axes], image: Any, sweep: xr.Dataset, variable: str) -> None:
     bar = figure.colorbar(image, ax=axes, pad=0.02)
     bar.outline.set_visible(False)
     meanings = sweep[variable].attrs.get("flag_meanings")
