@@ -2,6 +2,8 @@
 
 import os
 import signal
+import subprocess
+import sys
 import threading
 import time
 
@@ -61,6 +63,23 @@ def test_no_process_outlives_its_use(small_tasks):
     results.close()
     _, alive = psutil.wait_procs(started, timeout=10)
     assert alive == []
+
+
+UNGUARDED = """
+from tippetop.presets import report_problem
+from tippetop.sweep import Axis, Product, Sweep, compute
+print("once")
+axis = Axis.linear("launch.spin", 10, 100, 600)
+print(compute(Sweep(report_problem(), Product((axis,)), 0.01), workers=2).sizes["launch.spin"])
+print(__file__.endswith("script.py"), __spec__)
+"""
+
+
+def test_workers_do_not_run_the_script_that_started_them(tmp_path):
+    script = tmp_path / "script.py"
+    script.write_text(UNGUARDED)
+    ran = subprocess.run([sys.executable, script], capture_output=True, text=True, check=True)
+    assert ran.stdout.split() == ["once", "600", "True", "None"]
 
 
 def test_a_number_of_workers_that_cannot_be_is_refused():

@@ -4,6 +4,7 @@ import json
 import multiprocessing
 import os
 import signal
+import sys
 import threading
 from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
@@ -12,6 +13,7 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from functools import lru_cache
 from importlib.util import find_spec
+from multiprocessing.context import SpawnContext, SpawnProcess
 from typing import Any, TypeAlias
 
 from numpy.typing import NDArray
@@ -143,14 +145,34 @@ def _share_locally(workers: int, calls: Mapping[Task, Call]) -> Iterator[tuple[T
                 ) from None
 
 
+class _Process(SpawnProcess):
+    """A process that does not run the caller's script again: a worker needs this package alone."""
+
+    def start(self) -> None:
+        main = sys.modules["__main__"]
+        spec, main.__spec__ = getattr(main, "__spec__", None), None
+        file = vars(main).pop("__file__", None)
+        try:
+            super().start()
+        finally:
+            main.__spec__ = spec
+            if file is not None:
+                main.__file__ = file
+
+
+class _Context(SpawnContext):
+    """How such processes are started."""
+
+    Process = _Process
+
+
 @contextmanager
 def _pool(workers: int) -> Iterator[Executor]:
     """Processes of one thread each, which end when they are no longer needed, or this one ends."""
     before = {name: os.environ.get(name) for name in THREADS}
     os.environ.update(dict.fromkeys(THREADS, "1"))
     try:
-        context = multiprocessing.get_context("spawn")
-        executor = ProcessPoolExecutor(workers, mp_context=context, initializer=_begin_work)
+        executor = ProcessPoolExecutor(workers, mp_context=_Context(), initializer=_begin_work)
         try:
             yield executor
         finally:
