@@ -4,7 +4,7 @@ VENV ?= .venv
 BIN = $(VENV)/bin
 OUT ?= tippetop-report
 
-.PHONY: reproduce test test-browser check lint types contract bench quick clean
+.PHONY: reproduce test test-browser chromium check lint types contract bench quick clean
 
 reproduce: $(VENV)/.installed ## Redo the whole report into $(OUT)
 	$(BIN)/tippetop reproduce --out $(OUT) --force
@@ -14,6 +14,10 @@ test: $(VENV)/.installed-dev ## Run the tests
 
 test-browser: $(VENV)/.installed-dev ## Run the tests of the laboratory's page; they need Debian's chromium
 	$(BIN)/python -m pytest -m browser
+
+chromium: ## Install Debian's chromium, as root, unless it is there
+	command -v chromium >/dev/null || { apt-get update -qq && \
+	  DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends chromium >/dev/null; }
 
 check: lint types contract test ## All that a change must pass
 

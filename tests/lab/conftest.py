@@ -14,6 +14,8 @@ import pytest
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 ARGUMENTS = [
     "--no-sandbox",
+    # The shared memory of a container is small.
+    "--disable-dev-shm-usage",
     # Pictures without graphics hardware: WebGL in software, and the page put together without it.
     "--use-gl=angle",
     "--use-angle=swiftshader",
@@ -73,7 +75,7 @@ def browser() -> Iterator[object]:
         "playwright.sync_api", reason="Playwright drives the browser; test extra"
     )
     if CHROMIUM is None:
-        pytest.skip("there is no Chromium here (apt install chromium)")
+        pytest.skip("there is no Chromium here (make chromium)")
     with playwright.sync_playwright() as driver:
         running = driver.chromium.launch(executable_path=CHROMIUM, args=ARGUMENTS)
         yield running
