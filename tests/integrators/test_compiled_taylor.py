@@ -271,6 +271,22 @@ def test_damaged_cache_costs_a_compilation_and_nothing_else(filled_cache, tmp_pa
         assert kept(database.parent).keys() == keys
 
 
+@pytest.mark.parametrize("hold", ["IMMEDIATE", "EXCLUSIVE"])
+def test_cache_that_another_process_holds_is_left_alone(filled_cache, tmp_path, hold):
+    database = copy_of(filled_cache, tmp_path / "cache")
+    keys, identity = kept(database.parent).keys(), database.stat().st_ino
+    holder = sqlite3.connect(database, isolation_level=None)
+    try:
+        holder.execute(f"BEGIN {hold}")
+        swing_elsewhere(**{VARIABLE: database.parent})
+        assert database.stat().st_ino == identity
+        holder.execute("ROLLBACK")
+    finally:
+        holder.close()
+    assert kept(database.parent).keys() == keys
+    swing_elsewhere(**{VARIABLE: database.parent})
+
+
 def a_file_in_its_place(folder: Path) -> Path:
     place = folder / "file"
     place.write_text("mine")
