@@ -19,6 +19,9 @@ LAWS: dict[str, type[Part]] = {
 }
 """The friction laws by the word that tells them apart in a problem."""
 
+LAW_NUMBERS = {"eps": "Smoothed below a slip of (m/s)"}
+"""What the numbers of a friction law other than mu are, to read."""
+
 _NAMES = {"viscous": "viscous, −μNv", "regularized_coulomb": "Coulomb, smoothed"}
 
 

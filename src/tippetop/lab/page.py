@@ -209,7 +209,8 @@ class Laboratory:
                     self._law_number(name, float(value))
 
     def _law_number(self, name: str, value: float) -> None:
-        number = ui.number(name, value=value, format="%.6g").props('dense outlined step="any"')
+        label = controls.LAW_NUMBERS.get(name, name)
+        number = ui.number(label, value=value, format="%.6g").props('dense outlined step="any"')
 
         def typed() -> None:
             if number.value is not None:

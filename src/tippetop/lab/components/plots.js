@@ -149,11 +149,13 @@ export class Plots extends EventTarget {
       yAxis: this.panels.map((p, k) => {
         const [low, high] = this.range(p.name);
         const angle = p.name === "theta" && high - low > 2;
+        // So many that neighbouring labels differ.
+        const digits = Math.ceil(Math.log10(Math.max(Math.abs(low), Math.abs(high)) / (high - low))) + 2;
         return {
           gridIndex: k, type: "value", min: low, max: angle ? Math.PI : high, splitNumber: 3,
           ...(angle ? { interval: Math.PI / 4 } : {}),
           axisLabel: { color: ink, fontSize: 11, showMinLabel: angle, showMaxLabel: angle,
-            formatter: angle ? quarter : (value) => short(value) },
+            formatter: angle ? quarter : (value) => short(value, Math.min(Math.max(digits, 3), 7)) },
           splitLine: { lineStyle: { color: faint } },
         };
       }),
