@@ -287,6 +287,22 @@ class TestRefusals:
             Problem(**{**fields_with("gravity", 9.8), "gra\nvity": 9.8})
         the_one_line_of(caught.value)
 
+    @pytest.mark.parametrize(
+        ("changes", "field", "others"),
+        [
+            ({"launch.spin": -1e200}, "launch.spin", 0),
+            ({"launch.precession": 1e308, "launch.spin": 1e200}, "launch.precession", 1),
+            ({"body.shape.radius": 1e200}, "body.shape.radius", 0),
+            ({"launch.slip": (0.0, 1e308), "launch.spin": 1e200}, "launch.slip.1", 1),
+            ({"body.I1": 1e-310, "body.I3": 1e-310}, "body.I1", 1),
+        ],
+    )
+    def test_numbers_that_cannot_be_reckoned_with_are_named(self, changes, field, others):
+        with pytest.raises(InvalidInput) as caught:
+            presets.report_problem().replace(changes)
+        assert (caught.value.field, caught.value.others) == (field, others)
+        assert str(caught.value).startswith(f"{field} = {caught.value.value} is not possible")
+
     def test_an_unknown_preset(self):
         with pytest.raises(InvalidInput) as caught:
             presets.body("reprot")

@@ -212,7 +212,7 @@ class Problem(Part):
     @model_validator(mode="after")
     def _contact_is_possible(self) -> Self:
         if not math.isfinite(self._resistance()):
-            raise InvalidInput("problem", self.to_json(), "sizes and speeds whose squares are numbers")
+            raise self._out_of_reach()
         if self.contact.liftoff == "fly":
             return self
         launch = self.launch
@@ -237,6 +237,14 @@ class Problem(Part):
             return float(touch.resistance + 0.0 * touch.push)
         except ArithmeticError:
             return math.nan
+
+    def _out_of_reach(self) -> InvalidInput:
+        """The refusal of numbers with which no computer can reckon, about the one furthest from 1."""
+        numbers = {name: value for name, value in _numbers(self.model_dump()) if value}
+        distance = {name: abs(math.log(abs(value))) for name, value in numbers.items()}
+        worst = max(distance, key=distance.__getitem__)
+        others = sum(2 * other > distance[worst] for other in distance.values()) - 1
+        return InvalidInput(worst, numbers[worst], "a number whose square is a number too", others)
 
     @property
     def top(self) -> Top:
@@ -347,6 +355,19 @@ class _PoleExact:
 
     def cos(self, angle: float) -> float:
         return math.cos(angle)
+
+
+def _numbers(value: Any, name: str = "") -> Iterator[tuple[str, float]]:
+    """Every number in the fields, with its name with dots."""
+    match value:
+        case dict():
+            for field, inner in value.items():
+                yield from _numbers(inner, f"{name}.{field}" if name else field)
+        case tuple():
+            for index, inner in enumerate(value):
+                yield from _numbers(inner, f"{name}.{index}")
+        case float():
+            yield name, value
 
 
 def _dotted_names(fields: Mapping[str, Any], prefix: str = "") -> Iterator[str]:
