@@ -2,9 +2,10 @@
 
 import gc
 import sys
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
+from typer.core import TyperGroup
 
 from tippetop import __version__
 from tippetop.cli.critical import critical
@@ -15,7 +16,24 @@ from tippetop.cli.simulate import simulate
 from tippetop.cli.sweep import sweep
 from tippetop.errors import TippetopError
 
+MISUSE = 2
+INTERRUPTED = 130
+
+
+class Commands(TyperGroup):
+    """Commands that say so when Ctrl-C ends them: typer alone ends them without a word."""
+
+    def invoke(self, ctx: Any) -> Any:
+        """Run the command asked for."""
+        try:
+            return super().invoke(ctx)
+        except KeyboardInterrupt:
+            typer.echo("tippetop: interrupted", err=True)
+            raise typer.Exit(INTERRUPTED) from None
+
+
 app = typer.Typer(
+    cls=Commands,
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
@@ -29,9 +47,6 @@ app.command()(problem)
 
 GARBAGE = 50_000
 """Objects made between two looks for garbage: importing the libraries makes many, and drops hardly one."""
-
-MISUSE = 2
-INTERRUPTED = 130
 
 
 def _print_version(asked: bool) -> None:
@@ -57,9 +72,6 @@ def main() -> None:
     except TippetopError as error:
         typer.echo(f"tippetop: {error}", err=True)
         sys.exit(MISUSE)
-    except KeyboardInterrupt:
-        typer.echo("tippetop: interrupted", err=True)
-        sys.exit(INTERRUPTED)
     except BrokenPipeError:
         # Whoever was reading has read enough (`tippetop ... | head`).
         sys.stderr.close()
