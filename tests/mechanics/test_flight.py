@@ -11,13 +11,14 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from strategies import numbers, slides, spheres, spheroids, tops
-from tippetop.mechanics.flight import Start, fly, gap, gap_rate, touchdown
+from tippetop.mechanics.flight import fly, gap, gap_rate
 from tippetop.mechanics.friction import ViscousFriction
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import angular_velocity, axis_rate, on_table, point_velocity
 from tippetop.mechanics.shape import EccentricSphere, Spheroid, contact_vector
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
+from tippetop.mechanics.touchdown import Start, touchdown
 from tippetop.mechanics.vectors import cross, dot, length, scale
 from tippetop.mechanics.view import Angles, state_from_angles
 

@@ -8,13 +8,14 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from strategies import slides, spheres, spheroids, tops
-from tippetop.mechanics.flight import Start, fly, gap_rate, touchdown
+from tippetop.mechanics.flight import fly, gap_rate
 from tippetop.mechanics.friction import ViscousFriction
 from tippetop.mechanics.impact import impact
 from tippetop.mechanics.invariants import energy, jellett
 from tippetop.mechanics.motion import contact, on_table
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import dimensionless_numbers, kind_of, natural_units
+from tippetop.mechanics.touchdown import Start, touchdown
 from tippetop.sweep.cells import natural_state
 from tippetop.sweep.hops import collide, hop
 from tippetop.sweep.hops import slides as goes_on

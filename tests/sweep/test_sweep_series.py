@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from tippetop.mechanics.flight import Series as FlightSeries
+from tippetop.mechanics.algebra import Series as FlightSeries
 from tippetop.sweep.series import Series, horner, solution
 from tippetop.sweep.stepper import NumPyArithmetic
 

@@ -5,11 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from tippetop.integrators.base import Array
-from tippetop.mechanics.flight import Start, gap_rate
+from tippetop.mechanics.flight import gap_rate
 from tippetop.mechanics.impact import impact
 from tippetop.mechanics.motion import along_table, contact
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Kind
+from tippetop.mechanics.touchdown import Start
 from tippetop.phases.base import Event, EventKind, Outcome, Transition
 from tippetop.phases.flight import Flight
 from tippetop.phases.sliding import Sliding

@@ -6,10 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from tippetop.integrators.base import Array, Integrator
-from tippetop.mechanics.flight import Start, fly, gap, touchdown
+from tippetop.mechanics.flight import fly, gap
 from tippetop.mechanics.motion import along_table, on_table
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Kind
+from tippetop.mechanics.touchdown import Start, touchdown
 from tippetop.phases.base import Outcome, PhaseKind, Stretch, Transition, Transitions
 
 LOOKS = 64

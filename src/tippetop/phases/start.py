@@ -1,10 +1,11 @@
 """The phase in which a launch begins."""
 
 from tippetop.integrators.base import Array
-from tippetop.mechanics.flight import Start, gap, gap_rate
+from tippetop.mechanics.flight import gap, gap_rate
 from tippetop.mechanics.motion import along_table, contact
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Kind
+from tippetop.mechanics.touchdown import Start
 from tippetop.phases.base import Transition
 from tippetop.phases.contact import FreeToFly, StopAtLiftOff
 from tippetop.phases.flight import Flight

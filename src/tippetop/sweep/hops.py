@@ -2,8 +2,8 @@
 
 A flight is closed: the axis turns about the constant angular momentum and the centre of mass falls, so that
 the gap is a known function of time. Its first zero is found piece by piece, on Taylor polynomials that are
-exact to rounding there. What vanishes at the start of a flight (`tippetop.mechanics.flight.Start`) is divided
-out.
+exact to rounding there. What vanishes at the start of a flight (`tippetop.mechanics.touchdown.Start`) is
+divided out.
 
 An impact without restitution ends where the contact point stops sinking. Its equations, in which the normal
 impulse plays the part of time, are solved by the same polynomials; see `tippetop.mechanics.impact`.
@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tippetop.integrators.base import Array
-from tippetop.mechanics.flight import Tip, fly
-from tippetop.mechanics.impact import contact_velocity
+from tippetop.mechanics.blow import contact_velocity
+from tippetop.mechanics.flight import fly
 from tippetop.mechanics.motion import (
     along_table,
     angular_velocity,
@@ -29,6 +29,7 @@ from tippetop.mechanics.motion import (
 from tippetop.mechanics.shape import contact_vector
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Kind, Top
+from tippetop.mechanics.touchdown import Tip
 from tippetop.mechanics.vectors import length, scale
 from tippetop.sweep.polynomials import Polynomials
 from tippetop.sweep.series import Series, horner, solution

@@ -8,10 +8,11 @@ that step if nothing came of it, from where they land if the top flew. Lanes at 
 import numpy as np
 
 from tippetop.integrators.base import Array
-from tippetop.mechanics.flight import Start, gap, gap_rate
+from tippetop.mechanics.flight import gap, gap_rate
 from tippetop.mechanics.motion import along_table, on_table
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.top import Top
+from tippetop.mechanics.touchdown import Start
 from tippetop.phases import EventKind, Outcome, Transition, first_phase
 from tippetop.phases.contact import FreeToFly
 from tippetop.phases.flight import Flight

@@ -1,0 +1,140 @@
+"""A body that is struck at its contact point: what the table has done to it, and how it answers."""
+
+from collections.abc import Callable
+from typing import NamedTuple, Protocol, TypeAlias
+
+from tippetop.mechanics.friction import NO_TORQUE, Traction
+from tippetop.mechanics.motion import angular_velocity, point_velocity
+from tippetop.mechanics.roots import crossing
+from tippetop.mechanics.shape import contact_vector
+from tippetop.mechanics.state import State
+from tippetop.mechanics.top import Top
+from tippetop.mechanics.vectors import Horizontal, Vector, add, cross, length, scale
+
+FUZZ = 1e-14
+"""Round-off in the velocity of the contact point, relative to what it is made of."""
+
+
+class Blow(NamedTuple):
+    """What the table has done to the body so far.
+
+    Attributes
+    ----------
+    push
+        Normal impulse p, N s.
+    rub
+        Impulse of friction, N s.
+    twist
+        Impulse of the torque, N m s.
+    normal_work
+        Work of the normal impulse, J.
+    """
+
+    push: float
+    rub: Horizontal
+    twist: Vector
+    normal_work: float
+
+
+NO_BLOW = Blow(0.0, (0.0, 0.0), NO_TORQUE, 0.0)
+
+Goal: TypeAlias = Callable[[Blow], float]
+"""Negative as long as a phase of the impact lasts."""
+
+
+class Striking(NamedTuple):
+    """A body at the start of an impact, and how its contact point answers to an impulse.
+
+    Attributes
+    ----------
+    state, top
+        The body.
+    arm
+        Contact vector a, m.
+    point
+        Velocity of the contact point, m/s; a normal part that is but round-off is zero.
+    answer
+        Columns of M: velocity of the contact point per unit impulse along x, y and z, 1/kg.
+    """
+
+    state: State
+    top: Top
+    arm: Vector
+    point: Vector
+    answer: tuple[Vector, Vector, Vector]
+
+    @classmethod
+    def of(cls, state: State, top: Top) -> "Striking":
+        """The body in this state."""
+        arm = contact_vector(state.axis, top.shape)
+        at_rest = state._replace(momentum=NO_TORQUE, velocity=NO_TORQUE)
+        point = contact_velocity(state, arm, top)
+        omega = angular_velocity(state.axis, state.momentum, top)
+        if abs(point[2]) <= FUZZ * (length(state.velocity) + length(omega) * length(arm)):
+            point = (point[0], point[1], 0.0)
+        here = cls(state, top, arm, point, (NO_TORQUE, NO_TORQUE, NO_TORQUE))
+        nudged = [
+            contact_velocity(struck(at_rest, arm, unit, NO_TORQUE, top), arm, top)
+            for unit in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+        ]
+        return here._replace(answer=(nudged[0], nudged[1], nudged[2]))
+
+    def after(self, blow: Blow) -> State:
+        """The state after a blow, its work left out."""
+        return struck(self.state, self.arm, (*blow.rub, blow.push), blow.twist, self.top)
+
+    def response(self, blow: Blow) -> Vector:
+        """Change of the velocity of the contact point by a blow, m/s."""
+        (x, y), p, (east, north, up) = blow.rub, blow.push, self.answer
+        change = (
+            x * east[0] + y * north[0] + p * up[0],
+            x * east[1] + y * north[1] + p * up[1],
+            x * east[2] + y * north[2] + p * up[2],
+        )
+        if blow.twist == NO_TORQUE:
+            return change
+        return add(change, cross(angular_velocity(self.state.axis, blow.twist, self.top), self.arm))
+
+    def approach(self, blow: Blow) -> float:
+        """Normal velocity of the contact point after a blow, m/s."""
+        return float(self.point[2] + self.response(blow)[2])
+
+    def friction(self, blow: Blow) -> tuple[Vector, Vector, Traction]:
+        """Velocity of the contact point, angular velocity and traction after a blow."""
+        omega = angular_velocity(self.state.axis, self.after(blow).momentum, self.top)
+        point = add(self.point, self.response(blow))
+        return point, omega, self.top.friction.traction((point[0], point[1]), omega)
+
+
+class Course(Protocol):
+    """How an impact runs under some friction law."""
+
+    def until(self, blow: Blow, goal: Goal) -> Blow:
+        """The first blow from a given one on at which the goal is not negative."""
+
+
+def struck(state: State, arm: Vector, impulse: Vector, twist: Vector, top: Top) -> State:
+    """The state after an impulse at the contact and an impulse of torque."""
+    return state._replace(
+        momentum=add(state.momentum, add(cross(arm, impulse), twist)),
+        velocity=add(state.velocity, scale(1.0 / top.mass, impulse)),
+    )
+
+
+def contact_velocity(state: State, arm: Vector, top: Top) -> Vector:
+    """Velocity of the body's contact point, m/s."""
+    return point_velocity(state.velocity, angular_velocity(state.axis, state.momentum, top), arm)
+
+
+def first_reach(along: Callable[[float], Blow], goal: Goal, guess: float) -> Blow:
+    """The blow at which the goal stops being negative, on a course where it does so once.
+
+    Where the goal is zero at the start, it is about to become negative: that start is passed over.
+    """
+    high = guess
+    while goal(along(high)) < 0.0:
+        high *= 2.0
+    low = 0.0 if goal(along(0.0)) < 0.0 else 0.5 * high
+    while goal(along(low)) >= 0.0:
+        low, high = 0.5 * low, low
+    return along(crossing(lambda q: goal(along(q)), low, high))

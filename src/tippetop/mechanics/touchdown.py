@@ -1,0 +1,204 @@
+"""The instant at which a free flight ends."""
+
+import math
+from enum import IntEnum
+from typing import NamedTuple
+
+from tippetop.mechanics.algebra import Disc, Series
+from tippetop.mechanics.flight import SMALL
+from tippetop.mechanics.motion import axis_rate
+from tippetop.mechanics.roots import Triple, first_root
+from tippetop.mechanics.shape import Shape
+from tippetop.mechanics.state import State
+from tippetop.mechanics.top import Top
+from tippetop.mechanics.vectors import length, scale
+
+DEGREE = 16
+"""Degree of the Taylor polynomial of the gap at the start of a flight."""
+
+START = 10.0 ** (-16.0 / (DEGREE + 1))
+"""Fraction of its disc on which that polynomial is used: its tail is below round-off there."""
+
+WIDEST = 4.0
+"""Largest radius of a disc of complex time, as an angle of the axis about L, rad."""
+
+NARROWEST = 1e-9
+"""Smallest such radius that is tried, rad."""
+
+
+class Start(IntEnum):
+    """How a flight starts: how many of gap, gap rate and gap acceleration are then zero by construction."""
+
+    AIRBORNE = 0
+    REBOUND = 1
+    RELEASE = 2
+    LIFT_OFF = 3
+
+
+def touchdown(state: State, top: Top, horizon: float, start: Start = Start.AIRBORNE) -> float | None:
+    """Time of the first touch of the table after the start of a flight, s.
+
+    Parameters
+    ----------
+    state
+        The state at the start, floats.
+    top
+        The body and gravity, floats.
+    horizon
+        How far to look, s; it may be infinite if there is gravity.
+    start
+        What vanishes at the start: nothing (the gap is positive), the gap (a rebound), its rate too (a body
+        that is let go on the table), or its acceleration too (lift-off, where the normal force reaches zero).
+        What vanishes is taken as exactly zero, so that round-off in `state` can neither end a flight at once
+        nor lengthen it.
+
+    Returns
+    -------
+    float or None
+        The time, 0.0 if the body penetrates the table at once, None if it touches nowhere in (0, horizon].
+
+    Notes
+    -----
+    The gap is G(t) = z + v t - g t^2/2 - h(c(t)), where the height c of the axis's tip is a sine in time.
+
+    *Start.* On a first interval G is its Taylor polynomial of degree 16, made by arithmetic of truncated
+    power series on h and divided by t^k, where k coefficients vanish: what remains is free of cancellation,
+    and has a simple root even for hops of picoseconds. After it, G is evaluated directly.
+
+    *Bounds.* On a disc of complex time of radius rho, c stays in a disc that is known, and arithmetic of
+    discs on h gives a disc of some radius r for h(c). By Cauchy's estimate, |G'''| <= 6 r / (rho^3 (1 - q)^4)
+    within q rho of its centre. For the first polynomial the same estimate bounds the tail, below 2e-16 r.
+
+    *Search.* With G, G', G'' at t and that bound on G''', a step [t, t + s] is passed only if the cubic below
+    G is positive on it, or if G is surely falling or surely concave on it and positive at its end. If it is
+    falling or concave, and not positive at its end, the step holds exactly one root, which is the first: it
+    is found by bracketing. Otherwise s is halved. So no touch is passed over and none is invented, up to
+    round-off: the gap is known within about 1e-16 of h, and a graze nearer than that counts as a touch. Any
+    shape will do that is written in plain operators and is analytic on [-1, 1].
+    """
+    turning = axis_rate(state.axis, state.momentum, top)
+    tip = Tip(
+        state.axis[2],
+        turning[2],
+        axis_rate(turning, state.momentum, top)[2],
+        length(scale(1.0 / top.transverse_inertia, state.momentum)) + SMALL,
+    )
+    ballistic = (state.position[2], state.velocity[2], -0.5 * top.gravity)
+    horizon = min(horizon, 2.0 * falling_time(*ballistic))
+    time = 0.0
+    if start != Start.AIRBORNE:
+        support = (top.shape.height(tip.series()) + 0.0 * tip.series()).terms
+        ballistic = (*support[:start], *ballistic[start:])
+        terms = [-term for term in support]
+        terms[start:3] = [b - s for b, s in zip(ballistic[start:], support[start:3], strict=True)]
+        opening = Opening(terms[next((j for j in range(start, DEGREE) if terms[j]), DEGREE) :])
+        time = min(horizon, START * analytic_disc(tip, top.shape, 0.0, 0.0, WIDEST)[0])
+        root = first_root(opening.at, 0.0, time, opening.jerk_bound(time))
+        if root is not None:
+            return root
+
+    separation = Separation(tip, top.shape, ballistic)
+    angle = WIDEST
+    while time < horizon:
+        radius, spread = analytic_disc(tip, top.shape, time, 0.25, angle)
+        angle = min(WIDEST, 2.0 * radius * tip.frequency)
+        end = min(horizon, time + 0.5 * radius)
+        root = first_root(separation.at, time, end, 6.0 * spread / (0.75**4 * radius**3))
+        if root is not None:
+            return root
+        time = end
+    return None
+
+
+def falling_time(height: float, rate: float, half: float) -> float:
+    """Time after which height + rate t + half t^2 stays negative, infinite if half is not negative."""
+    if half >= 0.0:
+        return math.inf
+    return -(rate + math.sqrt(max(rate * rate - 4.0 * half * height, 0.0))) / (2.0 * half)
+
+
+class Tip(NamedTuple):
+    """Height c = n_z of the tip of the axis in free flight: its value, two derivatives, and frequency."""
+
+    height: float
+    rate: float
+    acceleration: float
+    frequency: float
+
+    def at(self, time: float) -> Triple:
+        """Height, rate and acceleration at a time: c'' turns into -w^2 c' and back."""
+        w = self.frequency
+        cosine, sine, half = math.cos(w * time), math.sin(w * time) / w, math.sin(0.5 * w * time) / w
+        return (
+            self.height + self.rate * sine + 2.0 * self.acceleration * half * half,
+            self.rate * cosine + self.acceleration * sine,
+            self.acceleration * cosine - self.rate * w * w * sine,
+        )
+
+    def series(self) -> "Series":
+        """Height as a power series in time."""
+        terms = [self.height, self.rate, 0.5 * self.acceleration]
+        for j in range(1, DEGREE - 1):
+            terms.append(-(self.frequency**2) * terms[j] / ((j + 1) * (j + 2)))
+        return Series(terms)
+
+    def spread(self, time: float, angle: float) -> float:
+        """Largest |c - c(time)| for complex times within angle / frequency of a real one."""
+        _, rate, acceleration = self.at(time)
+        w = self.frequency
+        return abs(rate) * math.sinh(angle) / w + abs(acceleration) * (math.cosh(angle) - 1.0) / w**2
+
+
+class Separation(NamedTuple):
+    """The gap as a function of time: a parabola less the support function at the tip's height."""
+
+    tip: Tip
+    shape: Shape
+    parabola: Triple
+
+    def at(self, time: float) -> Triple:
+        """Gap, its rate and its acceleration."""
+        p0, p1, p2 = self.parabola
+        c, rate, acceleration = self.tip.at(time)
+        slope = self.shape.slope(c)
+        return (
+            p0 + time * (p1 + time * p2) - self.shape.height(c),
+            p1 + 2.0 * time * p2 - slope * rate,
+            2.0 * p2 - self.shape.curvature(c) * rate * rate - slope * acceleration,
+        )
+
+
+class Opening(NamedTuple):
+    """A polynomial in time: the gap at the start of a flight, divided by the power of time that it has."""
+
+    terms: list[float]
+
+    def at(self, time: float) -> Triple:
+        """Value and first two derivatives, by Horner's rule."""
+        value = rate = half = 0.0
+        for term in reversed(self.terms):
+            half = half * time + rate
+            rate = rate * time + value
+            value = value * time + term
+        return value, rate, 2.0 * half
+
+    def jerk_bound(self, time: float) -> float:
+        """A bound on the third derivative up to this time."""
+        bound = 0.0
+        for j in range(len(self.terms) - 1, 2, -1):
+            bound = bound * time + j * (j - 1) * (j - 2) * abs(self.terms[j])
+        return bound
+
+
+def analytic_disc(tip: Tip, shape: Shape, time: float, ahead: float, angle: float) -> tuple[float, float]:
+    """Radius of a disc of time centred `ahead` radii after `time` where h(c) is analytic, and of h(c)."""
+    while True:
+        radius = angle / tip.frequency
+        centre = time + ahead * radius
+        try:
+            c = Disc(tip.at(centre)[0], tip.spread(centre, angle))
+            return radius, float((shape.height(c) + 0.0 * c).radius)
+        except ArithmeticError:
+            angle *= 0.5
+            if angle < NARROWEST:
+                raise

@@ -1,0 +1,87 @@
+"""The course of an impact with viscous friction, in closed form."""
+
+import math
+from typing import NamedTuple
+
+from tippetop.mechanics.blow import Blow, Goal, Striking, first_reach
+from tippetop.mechanics.friction import NO_TORQUE, ViscousFriction
+from tippetop.mechanics.vectors import Horizontal, length
+
+
+class Mode(NamedTuple):
+    """A direction in which slip, v' = coupling - mu stiffness v, answers to friction along itself only.
+
+    Attributes
+    ----------
+    direction
+        A unit vector, horizontal.
+    stiffness, coupling
+        Slip along it per unit impulse along it, and per unit normal impulse, 1/kg.
+    slip
+        Slip along it at the start, m/s.
+    """
+
+    direction: Horizontal
+    stiffness: float
+    coupling: float
+    slip: float
+
+
+class ViscousCourse(NamedTuple):
+    """An impact with viscous friction, in closed form.
+
+    With phi_1(x) = (1 - exp(-x)) / x and phi_(k+1) = (1/k! - phi_k) / x at x = mu stiffness p, the slip of a
+    mode is exp(-x) slip + coupling p phi_1, its impulse of friction -mu (slip p phi_1 + coupling p^2 phi_2),
+    and the integral of that over p is -mu (slip p^2 phi_2 + coupling p^3 phi_3).
+
+    One mode lies across the plane of n and z and has no coupling, so that the slope of the normal velocity,
+    M_nn - mu (coupling slip), is monotone with a positive limit: compression has one end, and the velocity
+    keeps growing after it.
+    """
+
+    body: Striking
+    mu: float
+    modes: tuple[Mode, Mode]
+
+    @classmethod
+    def of(cls, body: Striking, law: ViscousFriction) -> "ViscousCourse":
+        """The course of this body's impact, from the principal directions of its tangential answer."""
+        east, north, up = body.answer
+        angle = 0.5 * math.atan2(2.0 * east[1], east[0] - north[1])
+        cosine, sine = math.cos(angle), math.sin(angle)
+
+        def mode(x: float, y: float) -> Mode:
+            stiffness = x * x * east[0] + 2.0 * x * y * east[1] + y * y * north[1]
+            return Mode((x, y), stiffness, x * up[0] + y * up[1], x * body.point[0] + y * body.point[1])
+
+        return cls(body, law.mu, (mode(cosine, sine), mode(-sine, cosine)))
+
+    def until(self, blow: Blow, goal: Goal) -> Blow:
+        """The first blow from a given one on at which the goal is not negative."""
+        guess = length(self.body.point) / self.body.answer[2][2]
+        return first_reach(lambda q: self.blow(blow.push + q), goal, guess)
+
+    def blow(self, p: float) -> Blow:
+        """The blow when the normal impulse is p."""
+        rub = (0.0, 0.0)
+        work = p * (self.body.point[2] + 0.5 * p * self.body.answer[2][2])
+        for (x, y), stiffness, coupling, slip in self.modes:
+            phi_1, phi_2, phi_3 = phis(self.mu * stiffness * p)
+            impulse = -self.mu * p * (slip * phi_1 + coupling * p * phi_2)
+            rub = (rub[0] + impulse * x, rub[1] + impulse * y)
+            work -= self.mu * p * p * coupling * (slip * phi_2 + coupling * p * phi_3)
+        return Blow(p, rub, NO_TORQUE, work)
+
+
+def phis(x: float) -> tuple[float, float, float]:
+    """phi_1, phi_2 and phi_3 of x >= 0, where phi_k = sum of (-x)^j / (j + k)! over j."""
+    if x < 1.0:
+        phi_3 = term = 1.0 / 6.0
+        for j in range(4, 20):
+            term *= -x / j
+            phi_3 += term
+        phi_2 = 0.5 - x * phi_3
+        return 1.0 - x * phi_2, phi_2, phi_3
+    phi_1 = -math.expm1(-x) / x
+    phi_2 = (1.0 - phi_1) / x
+    return phi_1, phi_2, (0.5 - phi_2) / x
