@@ -88,7 +88,7 @@ class Visit:
     def __init__(self, browser, **options) -> None:  # type: ignore[no-untyped-def]
         self.context = browser.new_context(**{"viewport": {"width": 1000, "height": 700}, **options})
         self.page = self.context.new_page()
-        self.page.set_default_timeout(30_000)
+        self.page.set_default_timeout(60_000)
         self.trouble: list[str] = []
         self.requests: list[str] = []
         self.page.on("console", lambda said: said.type == "error" and self.trouble.append(said.text))

@@ -31,6 +31,12 @@ def test_a_port_that_is_taken_is_refused_with_a_sentence() -> None:
             serve(port=port, browser=False)
 
 
+def test_an_address_of_another_machine_is_refused_with_a_sentence() -> None:
+    pytest.importorskip("nicegui")
+    with pytest.raises(tt.Unavailable, match=r"192\.0\.2\.1 is no address of this machine; .*--host"):
+        serve(host="192.0.2.1", browser=False)  # kept for documentation, so nobody's
+
+
 def test_without_nicegui_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "nicegui", None)
     with pytest.raises(tt.Unavailable, match=r"pip install 'tippetop\[lab\]'"):

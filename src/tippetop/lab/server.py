@@ -1,5 +1,6 @@
 """The laboratory's server: the page, the runs it asks for, and the files of a run."""
 
+import errno
 import socket
 from collections.abc import Callable
 from contextlib import suppress
@@ -84,6 +85,10 @@ def _check_free(host: str, port: int) -> None:
         try:
             trial.bind((host, port))
         except OSError as error:
+            if error.errno == errno.EADDRNOTAVAIL:
+                raise Unavailable(
+                    f"{host} is no address of this machine; choose another with --host"
+                ) from None
             raise Unavailable(
                 f"port {port} of {host} cannot be listened at ({error.strerror}); choose another with --port"
             ) from None
