@@ -2,7 +2,7 @@
 
 import functools
 import math
-import sys
+from importlib import import_module
 
 import numpy as np
 import pytest
@@ -686,7 +686,7 @@ def test_samples_that_do_not_fit_into_memory_are_refused(monkeypatch):
     class Memory:
         available = 10_000_000
 
-    monkeypatch.setattr(sys.modules["tippetop.simulate"].psutil, "virtual_memory", Memory)
+    monkeypatch.setattr(import_module("tippetop.simulate").psutil, "virtual_memory", Memory)
     assert tt.simulate(report(), 0.01, samples=100).sizes["time"] == 100
     for arguments in (
         {"samples": 1_000_000},
