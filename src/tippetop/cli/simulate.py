@@ -26,7 +26,15 @@ if TYPE_CHECKING:
     from tippetop.problem import Problem
 
 DEFAULT_SAMPLES = 2001
-IMAGES = {".png", ".svg", ".pdf"}
+ENDINGS = {
+    "plot": [".png", ".svg", ".pdf"],
+    "csv": [".csv"],
+    "glb": [".glb"],
+    "html": [".html", ".htm"],
+    "mp4": [".mp4"],
+    "gif": [".gif"],
+}
+"""How the names of the files of each kind may end."""
 
 
 def simulate(
@@ -64,10 +72,10 @@ def simulate(
 
     settings = {"launch.spin": spin, "launch.tilt": tilt, "friction.mu": mu, "contact.liftoff": liftoff}
     chosen = chosen_problem(file, preset, settings, changes)
-    _check_image(plot)
     moving = {"glb": glb, "html": html, "mp4": mp4, "gif": gif}
     files = {"out": out, "plot": plot, "csv": csv, **moving}
     wanted = {kind: path for kind, path in files.items() if path is not None}
+    _check_names(wanted)
     for path in wanted.values():
         refuse_overwriting(path, force)
     if mp4 is not None:
@@ -127,11 +135,18 @@ def _export(run: "xr.Dataset", kind: str, path: Path, force: bool) -> None:
             write_movie(run, path, overwrite=force)
 
 
-def _check_image(plot: Path | None) -> None:
+def _check_names(wanted: dict[str, Path]) -> None:
+    """Refuse names that promise another kind of file, or that are given twice."""
     from tippetop.errors import InvalidInput  # noqa: PLC0415
 
-    if plot is not None and plot.suffix.lower() not in IMAGES:
-        raise InvalidInput("--plot", str(plot), "a file name that ends in .png, .svg or .pdf")
+    taken: dict[Path, str] = {}
+    for kind, path in wanted.items():
+        endings = ENDINGS.get(kind)
+        if endings and path.suffix.lower() not in endings:
+            raise InvalidInput(f"--{kind}", str(path), f"a file name that ends in {' or '.join(endings)}")
+        if path.resolve() in taken:
+            raise InvalidInput(f"--{kind}", str(path), f"a file other than that of --{taken[path.resolve()]}")
+        taken[path.resolve()] = kind
 
 
 def _print_summary(summary: dict[str, Any], elapsed: float, files: list[Path]) -> None:

@@ -4,7 +4,7 @@ from importlib.util import find_spec
 
 import numpy as np
 
-from tippetop.errors import InvalidInput, Unavailable, is_number, one_of
+from tippetop.errors import MISSING, InvalidInput, Unavailable, is_number, one_of
 from tippetop.integrators.base import Arc, Guard, Integrator, Motion
 
 __all__ = ["NAMES", "Arc", "Guard", "Integrator", "Motion", "default_name", "has_taylor", "make_integrator"]
@@ -62,7 +62,11 @@ def make_integrator(
         if tolerance is not None:
             raise InvalidInput("tolerance", tolerance, "none with rk4, whose error follows from its step")
         if step is None or not (is_number(step) and step > 0):
-            raise InvalidInput("step", step, "a step size in seconds greater than 0, which rk4 needs")
+            raise InvalidInput(
+                "step",
+                MISSING if step is None else step,
+                "a step size in seconds greater than 0, which rk4 needs",
+            )
         return _classical(step / time_unit)
     if step is not None:
         raise InvalidInput("step", step, f"none with {name}, which chooses its own")
