@@ -8,7 +8,9 @@ import typer
 def lab(
     host: Annotated[str, typer.Option(help="Address to listen at; 0.0.0.0 lets others in.")] = "127.0.0.1",
     port: Annotated[int, typer.Option(min=1, max=65535, help="Port to listen at.")] = 8421,
-    browser: Annotated[bool, typer.Option(help="Open the page in a browser.")] = True,
+    browser: Annotated[
+        bool, typer.Option(show_default=False, help="Open the page in a browser; opened if left out.")
+    ] = True,
     workers: Annotated[
         int | None, typer.Option(min=1, help="Processes that simulate; as many as there are cores to spare.")
     ] = None,

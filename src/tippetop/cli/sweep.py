@@ -78,7 +78,9 @@ def sweep(
     ] = None,
     out: Annotated[Path, typer.Option(help="Zarr store to write.")] = Path("sweep.zarr"),
     resume: Annotated[bool, typer.Option("--resume", help="Finish a store that is there.")] = False,
-    maps: Annotated[bool, typer.Option(help="Draw maps beside the store.")] = True,
+    maps: Annotated[
+        bool, typer.Option(show_default=False, help="Draw maps beside the store; drawn if left out.")
+    ] = True,
     as_json: Json = False,
     force: Force = False,
 ) -> None:
