@@ -47,7 +47,9 @@ def test_where_no_theory_holds_the_motion_alone_is_told() -> None:
     egg = tt.Body(mass=0.02, shape=tt.Spheroid(across=0.015, along=0.025), I1=4e-6, I3=2e-6)
     problem = tt.presets.report_problem(spin=10.0).model_copy(update={"body": egg})
     assert known_spins(problem) is None
-    assert tell(tt.simulate(problem, 1.0)).details == ()
+    run = tt.simulate(problem, 1.0)
+    assert tell(run).details == ()
+    assert tell(run.isel(time=[0])).headline.endswith("and still moving"), "it ended where it began"
 
 
 def test_a_top_set_on_its_stem_stays_there() -> None:

@@ -121,7 +121,7 @@ def _settled(run: xr.Dataset, end: Prediction | None) -> bool:
     if end is not None:
         return any(abs(state.tilt - theta[-1]) < SETTLED for state in end.reachable)
     late = run["time"].values > 0.9 * run["time"].values[-1]
-    return bool(np.ptp(theta[late]) < SETTLED)
+    return bool(late.any() and np.ptp(theta[late]) < SETTLED)
 
 
 def _flights(run: xr.Dataset) -> list[str]:
