@@ -1,4 +1,5 @@
 import asyncio
+import os
 import threading
 import time
 from collections.abc import Iterable, Iterator
@@ -13,7 +14,7 @@ from tippetop.lab import workers
 from tippetop.lab.map_job import Fate, MapPart, map_parts
 from tippetop.lab.phase_map import COLUMNS, ROWS, MapPlan, parts_of, plan_map
 from tippetop.lab.setup import Setup, first_setup
-from tippetop.lab.workers import Workers
+from tippetop.lab.workers import Worker, Workers
 
 
 @pytest.fixture(scope="module")
@@ -52,6 +53,14 @@ def test_a_fault_in_a_job_is_a_sentence_and_the_worker_goes_on(pool: Workers) ->
     with pytest.raises(tt.InvalidInput, match="can be computed"):
         pool.track(None)  # type: ignore[arg-type]
     assert pool.track(first_setup().changed({"duration": 0.1})).startswith(MAGIC)
+
+
+def test_a_worker_that_ends_is_replaced() -> None:
+    worker = Worker()
+    with pytest.raises(tt.Unavailable, match="try again"):
+        list(worker.results(os._exit, 1, patience=60))
+    assert list(worker.results(len, "abc", patience=60)) == [3]
+    worker.close()
 
 
 def known_of(parts: Iterable[MapPart]) -> dict[int, tuple[float | None, int, Fate]]:

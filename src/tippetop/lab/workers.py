@@ -15,7 +15,7 @@ from contextlib import suppress
 from multiprocessing.connection import Connection
 from typing import Any, TypeVar
 
-from tippetop.errors import InvalidInput, TippetopError, one_of
+from tippetop.errors import InvalidInput, TippetopError, Unavailable, one_of
 from tippetop.lab import jobs
 from tippetop.lab.map_job import MapPart, map_parts, warm_up_map
 from tippetop.lab.setup import Setup
@@ -62,6 +62,8 @@ class Worker:
         ------
         TimeoutError
             If it takes longer than `patience` seconds; its process is then replaced.
+        Unavailable
+            If its process ends meanwhile; it is then replaced, too.
         TippetopError
             What the job raises.
         """
@@ -85,7 +87,8 @@ class Worker:
         except (EOFError, OSError) as error:
             if isinstance(error, TippetopError | TimeoutError):
                 raise
-            raise RuntimeError("a worker ended") from error
+            sentence = "the process that computed this has ended, and another takes its place: try again"
+            raise Unavailable(sentence) from error
         finally:
             if not finished:
                 self.close()
