@@ -14,7 +14,7 @@ from tippetop.integrators import has_taylor
 from tippetop.presets import report_problem
 from tippetop.problem import Body, Problem, RegularizedCoulombFriction, Spheroid
 from tippetop.summary import summarize
-from tippetop.sweep import VARIABLES, Axis, Fault, Group, Product, Sweep, compute, ensemble, lanes
+from tippetop.sweep import VARIABLES, Axis, Fault, Group, Product, Sweep, compute, ensemble, hops, lanes
 from tippetop.sweep import stepper as stepping
 from tippetop.sweep.cells import cells_of
 from tippetop.sweep.ensemble import follow_cells
@@ -164,8 +164,39 @@ def test_lift_off_is_not_left_to_looks(monkeypatch):
     stepper.cache_clear()
     found = follow_cells(sweep, np.arange(32))
     stepper.cache_clear()
-    assert np.isfinite(usual["first_lift_off"]).sum() > 5
+    assert np.isfinite(usual["first_lift_off"]).sum() >= 5
     assert found["first_lift_off"] == pytest.approx(usual["first_lift_off"], rel=1e-12, nan_ok=True)
+
+
+@pytest.mark.parametrize("liftoff", ["fly", "ignore"])
+def test_launches_that_begin_beyond_a_right_angle_are_single_runs(liftoff):
+    """Some fall back upright, some swing, some are thrown; none turns over merely because it is there."""
+    problem = report_problem(spin=155.0).replace({"contact.liftoff": liftoff, "launch.precession": -40.0})
+    # With the faster spin a table that pulls drives the top until its motion is singular.
+    spins = Axis.listed("launch.spin", [5.0, 155.0] if liftoff == "fly" else [5.0])
+    axes = Axis.listed("launch.tilt", [1.6, 2.0, 2.5]), spins
+    found = check_against_runs(Sweep(problem, Product(axes), 0.8, 1e-12), closeness=1e-6)
+    assert np.isnan(found["turns_over"]).any() == (liftoff == "fly")
+    if liftoff == "fly":
+        gaps = Axis.listed("launch.gap", [0.003, 0.05]), Axis.listed("launch.tilt", [2.0, 3.0])
+        check_against_runs(Sweep(report_problem(), Product(gaps), 0.3, 1e-12), closeness=1e-6)
+
+
+def test_a_launch_that_ends_in_its_first_flight_has_arrived():
+    axis = Axis.listed("launch.gap", [0.5, 50.0])
+    sweep = Sweep(report_problem(), Product((axis,)), 0.2, 1e-12)
+    found = check_against_runs(sweep, closeness=1e-6)
+    assert np.all(np.isfinite(found["arrives"]))
+
+
+def test_a_flight_that_cannot_be_followed_is_said_to_have_failed(monkeypatch):
+    monkeypatch.setattr(hops, "PIECES", 1)
+    problem = report_problem(spin=2000.0, tilt=1.0).replace({"launch.precession": 3000.0})
+    axis = Axis.listed("launch.gap", [1.0])
+    found = follow_cells(Sweep(problem, Product((axis,)), 0.3, 1e-9), np.arange(1))
+    assert found["outcome"][0] == Group.FAILED
+    assert found["end_time"][0] == pytest.approx(found["airborne_time"][0])
+    assert 0.0 < found["end_time"][0] < 0.3
 
 
 def settling(settled):

@@ -19,9 +19,12 @@ def ones(value=1.0):
 @given(st.lists(st.floats(0.01, 3.0), min_size=1, max_size=5, unique=True), st.floats(0.5, 2.0))
 def test_first_fall_is_the_smallest_root_at_which_the_polynomial_falls(roots, span):
     roots = sorted(roots)
-    gaps = np.diff([0.0, *roots])
+    gaps, triples = np.diff([0.0, *roots]), np.array(roots[2:]) - np.array(roots[:-2])
     if np.any(gaps < 1e-2) or abs(roots[0] - span) < 1e-9:
         # Roots that merge, or a root at the very end, are decided by rounding.
+        return
+    if np.any(triples < 2.0 * span / LOOKS):
+        # More than one extreme between two looks is not seen.
         return
     terms = with_roots(roots)
     terms *= np.sign(terms[0])  # positive at 0, so that the first root is a fall
@@ -44,6 +47,11 @@ def test_a_dip_in_the_first_or_the_last_interval_is_found(middle):
     width = 0.3 / LOOKS
     found = Polynomials(with_roots([middle - width, middle + width]), ones()).first_fall()[0]
     assert found == pytest.approx(middle - width, rel=1e-9)
+
+
+def test_a_dip_right_before_a_fall_is_found():
+    roots = [1.3125, 1.34375, 1.375]
+    assert Polynomials(-with_roots(roots), ones(1.65625)).first_fall()[0] == pytest.approx(1.3125, rel=1e-9)
 
 
 def test_a_graze_that_does_not_touch_is_none():

@@ -94,6 +94,7 @@ class Lanes:
         self.notes: list[Note] = []
         self.cell = filled
         self.alive = np.arange(lanes) < count
+        self.launched = self.alive.copy()
         self.numbers = np.concatenate((launches.numbers[:, filled], np.full((CARES, lanes), np.nan)))
         self.end = launches.end[filled]
         self.rows, self.spare = np.zeros((ROWS, lanes)), np.zeros((ROWS, lanes))
@@ -131,14 +132,16 @@ class Lanes:
 
     def run(self) -> Ends:
         """Follow every launch to its end."""
-        while self.alive.any():
+        # Launches that ended in the flight they began with are noted in the first window.
+        noted = self.launched
+        while noted.any():
             begun = self.rows[: LEFT + 1].copy()
-            noted = self.alive.copy()
             for _ in range(WINDOW // WAVE):
                 for _ in range(WAVE):
                     self._stride()
                 self._look()
             self._close(noted, begun)
+            noted = self.alive.copy()
         return self.ends
 
     def _stride(self) -> None:
@@ -203,10 +206,10 @@ class Lanes:
             ends.airborne[cells] += flown.duration
             ends.highest_gap[cells] = np.fmax(ends.highest_gap[cells], flown.highest_gap)
             ends.highest[cells] = np.fmax(ends.highest[cells], flown.highest)
-            time = np.where(flown.landed, time + flown.duration, self.end[lanes])
-            over = ~flown.landed
+            over = ~flown.landed & (flown.duration >= horizon)
+            time = np.where(over, self.end[lanes], time + flown.duration)
             self._retire(lanes[over], picked(flown.state, over), time[over], Outcome.COMPLETED)
-            spent = flown.landed & (ends.flights[cells] >= FLIGHT_LIMIT)
+            spent = ~over & (~flown.landed | (ends.flights[cells] >= FLIGHT_LIMIT))
             self._retire(lanes[spent], picked(flown.state, spent), time[spent], Outcome.TOO_MANY_PHASES)
             landed = flown.landed & ~spent
             lanes, time, state = lanes[landed], time[landed], picked(flown.state, landed)

@@ -87,7 +87,7 @@ VARIABLES = {
     "final_theta": Variable("tilt of the axis from the vertical at the end", "rad"),
     "final_omega3": Variable("axial spin at the end", "rad s-1"),
     "final_phi_dot": Variable("precession at the end; not a number where the axis is vertical", "rad s-1"),
-    "turns_over": Variable("time at which the tilt first passes a right angle", "s"),
+    "turns_over": Variable("time at which the tilt first rises past a right angle", "s"),
     "arrives": Variable(f"time at which the tilt is first within {NEAR_FINAL} rad of its final value", "s"),
     "least_normal_force": Variable("least normal force; 0 where the top left the table", "N"),
     "first_lift_off": Variable("time at which the table would first have to pull", "s"),

@@ -40,6 +40,12 @@ class Polynomials:
         found: Array = self._places @ self.unit
         return found
 
+    @property
+    def slopes(self) -> Array:
+        """First derivatives at the looks, over the interval, shape (LOOKS + 1, n)."""
+        found: Array = self._places[:, :-1] @ (self.unit[1:] * np.arange(1, len(self.unit))[:, None])
+        return found
+
     @cached_property
     def bending(self) -> Array:
         """How far a polynomial can lie below two neighbouring looks: interval^2 / 8 max |f''|, shape (n,)."""
@@ -56,12 +62,12 @@ class Polynomials:
         chosen.unit[0] += shift
         return chosen
 
-    def first_fall(self) -> Array:
+    def first_fall(self, from_above: bool = False) -> Array:
         """First times at which the polynomials fall to zero from above, nan where they do not, shape (n,).
 
         Where no look finds a polynomial at or below zero, but its second derivative could take it there
         between two looks, its least value there is found first. A polynomial that starts at or below zero and
-        does not rise falls at 0.
+        does not rise falls at 0, unless it has to come `from_above`: then it may start at zero, not below.
         """
         values = self.values
         falls = (values[1:] <= 0.0) & (values[:-1] > 0.0)
@@ -69,20 +75,22 @@ class Polynomials:
         after = np.where(found, falls.argmax(axis=0) + 1, LOOKS + 1)
         low, high = (after - 1) / LOOKS, after / LOOKS
 
-        beyond = np.pad(values, ((1, 1), (0, 0)), constant_values=np.inf)
-        dips = (values > 0.0) & (values <= beyond[:-2]) & (values <= beyond[2:]) & (values <= self.bending)
-        dips &= np.arange(LOOKS + 1)[:, None] < after
+        dips = (
+            (values[:-1] > 0.0) & (values[1:] > 0.0) & (np.minimum(values[:-1], values[1:]) <= self.bending)
+        )
+        dips &= (self.slopes[:-1] < 0.0) & (self.slopes[1:] > 0.0) & (np.arange(LOOKS)[:, None] < after)
         for lane in np.flatnonzero(dips.any(axis=0)):
             for look in np.flatnonzero(dips[:, lane]):
-                place, value = least_near(self.unit[:, [lane]], np.array([look / LOOKS]))
-                if value[0] <= 0.0 and 0.0 <= place[0] < 1.0:
-                    low[lane], high[lane], found[lane] = max(int(look) - 1, 0) / LOOKS, place[0], True
+                place, value = least_near(self.unit[:, [lane]], np.array([(look + 0.5) / LOOKS]))
+                if value[0] <= 0.0:
+                    low[lane], high[lane], found[lane] = look / LOOKS, place[0], True
                     break
         zeros = np.full(found.shape, np.nan)
         which = np.flatnonzero(found)
         if len(which):
             zeros[which] = bracketed_zero(self.unit[:, which], low[which], high[which])
-        zeros[(values[0] <= 0.0) & (values[1] <= 0.0)] = 0.0
+        starts = (values[0] == 0.0) if from_above else (values[0] <= 0.0)
+        zeros[starts & (values[1] <= 0.0)] = 0.0
         return zeros * self.span
 
     def least(self) -> Array:

@@ -20,7 +20,8 @@ class Watch:
     down, up
         Least and largest n_z since they were last set back.
     turned
-        First time at which n_z falls through zero, which is when the top turns over; nan before.
+        First time at which n_z falls through zero, which is when the top turns over; nan before. A top that
+        starts beyond a right angle turns over when it passes it from below.
     low, high
         A band of n_z that is waited for, or nan.
     reached
@@ -58,7 +59,7 @@ class Watch:
         start = tip.values[0]
         some = np.flatnonzero(np.isnan(self.turned[launches]) & (tip.values.min(axis=0) < 0.0))
         if len(some):
-            self.turned[launches[some]] = time[some] + tip.some(some).first_fall()
+            self.turned[launches[some]] = time[some] + tip.some(some).first_fall(from_above=True)
         some = np.flatnonzero(np.isnan(self.reached[launches]) & ~np.isnan(self.low[launches]))
         if len(some):
             low, high = self.low[launches[some]], self.high[launches[some]]
