@@ -75,10 +75,9 @@ class Polynomials:
         after = np.where(found, falls.argmax(axis=0) + 1, LOOKS + 1)
         low, high = (after - 1) / LOOKS, after / LOOKS
 
-        dips = (
-            (values[:-1] > 0.0) & (values[1:] > 0.0) & (np.minimum(values[:-1], values[1:]) <= self.bending)
-        )
-        dips &= (self.slopes[:-1] < 0.0) & (self.slopes[1:] > 0.0) & (np.arange(LOOKS)[:, None] < after)
+        slopes, nearer = self.slopes, np.minimum(values[:-1], values[1:])
+        dips = (nearer > 0.0) & (nearer <= self.bending) & (slopes[:-1] < 0.0) & (slopes[1:] > 0.0)
+        dips &= np.arange(LOOKS)[:, None] < after
         for lane in np.flatnonzero(dips.any(axis=0)):
             for look in np.flatnonzero(dips[:, lane]):
                 place, value = least_near(self.unit[:, [lane]], np.array([(look + 0.5) / LOOKS]))
