@@ -1,6 +1,7 @@
 """Grids: the values they hold, how they are written, and what they refuse."""
 
 import json
+import tomllib
 
 import numpy as np
 import pytest
@@ -8,7 +9,7 @@ import pytest
 from tippetop.errors import FileTrouble, InvalidInput
 from tippetop.presets import report_problem
 from tippetop.sweep import Axis, Draws, Product, Range, Sweep
-from tippetop.sweep.definition import sweep_from
+from tippetop.sweep.definition import is_sweep, sweep_from
 from tippetop.sweep.grid import grid_from
 
 
@@ -139,6 +140,11 @@ def test_draws_are_read_from_a_file(tmp_path):
         (("settled = 1e-3", "settled = nan"), "settled"),
         (("launch.spin", "launch.spn"), "axis"),
         (("count = 3", "count = 3.5"), "axes.launch.spin.count"),
+        (("count = 3", "count = true"), "axes.launch.spin.count"),
+        (("[0.2, 0.3]", "{ values = 3 }"), "axes.body.shape.eccentricity"),
+        (("[0.2, 0.3]", "[1" + 400 * "0" + "]"), "body.shape.eccentricity"),
+        (("[0.2, 0.3]", 3000 * "[" + 3000 * "]"), "sweep"),
+        (("[axes]", "[axes]\n'launch.spin' = [1]"), "axes"),
         (("count = 3", "cout = 3"), "axes"),
         (('problem = "top.toml"', ""), "problem"),
         (("[0.2, 0.3]", '["a"]'), "body.shape.eccentricity"),
@@ -152,6 +158,34 @@ def test_files_that_cannot_be_are_refused_by_the_field(tmp_path, change, field):
     with pytest.raises(InvalidInput) as refusal:
         Sweep.read(tmp_path / "sweep.toml")
     assert refusal.value.field.startswith(field)
+
+
+def test_values_of_some_cells_are_made_without_the_others():
+    laws = ("spin", "lin"), ("tilt", "geo")
+    axes = tuple(Axis.parse(f"launch.{name}=0.1:7:10000:{law}") for name, law in laws)
+    some = Product(axes).values(np.array([0, 10**4, 10**8 - 1]))
+    assert some["launch.spin"].tolist() == [0.1, axes[0].values[1], 7.0]
+    assert some["launch.tilt"].tolist() == [0.1, 0.1, 7.0]
+    assert axes[0].values == pytest.approx(np.linspace(0.1, 7, 10**4), rel=1e-15)
+    assert axes[1].values == pytest.approx(np.geomspace(0.1, 7, 10**4), rel=1e-13)
+    draws = Draws((Range("launch.spin", 10, 20), Range("launch.tilt", 1, 2, "log-uniform")), 10**6, 4)
+    everything = draws.coordinates()
+    for name, values in draws.values(np.array([999_999, 999_990])).items():
+        assert values.tolist() == everything[name][1][[999_999, 999_990]].tolist()
+
+
+def test_a_slip_is_no_axis_where_the_velocity_is_given():
+    thrown = report_problem().replace({"launch.velocity": (0.1, 0.0, 0.0)})
+    with pytest.raises(InvalidInput, match="velocity"):
+        Sweep(thrown, Product((Axis.listed("launch.slip.0", [0.1, 0.2]),)))
+
+
+def test_a_misspelt_sweep_is_not_taken_for_a_problem(tmp_path):
+    (tmp_path / "top.toml").write_text(report_problem().to_toml())
+    (tmp_path / "sweep.toml").write_text("\ufeff" + SWEEP)
+    assert Sweep.read(tmp_path / "sweep.toml").cells == 12
+    assert is_sweep({"problem": "top.toml", "draw": {}})
+    assert not is_sweep(tomllib.loads(report_problem().to_toml()))
 
 
 def test_a_file_that_is_not_there_is_said_to_be_missing(tmp_path):

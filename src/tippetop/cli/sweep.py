@@ -179,7 +179,7 @@ def _holds_sweep(file: Path) -> bool:
     from tippetop.sweep.definition import is_sweep  # noqa: PLC0415 - slow to import
 
     try:
-        return file.suffix != ".json" and is_sweep(tomllib.loads(file.read_text(encoding="utf-8")))
+        return file.suffix != ".json" and is_sweep(tomllib.loads(file.read_text(encoding="utf-8-sig")))
     except (OSError, ValueError):
         return False
 

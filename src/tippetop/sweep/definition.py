@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from tippetop.errors import FileTrouble, InvalidInput, one_of
+from tippetop.errors import MISSING, FileTrouble, InvalidInput, one_of
 from tippetop.problem import Problem
 from tippetop.sweep.cells import cells_of
 from tippetop.sweep.grid import (
@@ -138,12 +138,12 @@ class Sweep:
         """
         path = Path(path)
         try:
-            fields = tomllib.loads(path.read_text(encoding="utf-8"))
+            fields = tomllib.loads(path.read_text(encoding="utf-8-sig"))
         except UnicodeDecodeError:
             raise FileTrouble(f"{path} is not a text file; accepted: a sweep in TOML") from None
         except OSError as error:
             raise FileTrouble(f"{path} cannot be read: {error.strerror}") from None
-        except tomllib.TOMLDecodeError as error:
+        except (ValueError, RecursionError) as error:
             raise InvalidInput("sweep", str(path), f"TOML; {error}") from None
         return sweep_from_tables(fields, path.parent)
 
@@ -161,7 +161,7 @@ def sweep_from(description: Mapping[str, Any]) -> Sweep:
 
 def is_sweep(fields: Mapping[str, Any]) -> bool:
     """Whether the tables of a TOML file are those of a sweep rather than of a problem."""
-    return "axes" in fields or "draws" in fields
+    return bool({"axes", "draws", "duration"} & set(fields)) or isinstance(fields.get("problem"), dict | str)
 
 
 def sweep_from_tables(fields: Mapping[str, Any], folder: Path = Path()) -> Sweep:
@@ -176,7 +176,7 @@ def sweep_from_tables(fields: Mapping[str, Any], folder: Path = Path()) -> Sweep
     for key in fields:
         if key not in keys:
             raise InvalidInput("sweep", key, "the keys " + one_of(key, keys))
-    base = fields.get("problem")
+    base = fields.get("problem", MISSING)
     if isinstance(base, str):
         problem = Problem.read(folder / base)
     elif isinstance(base, dict):
@@ -198,7 +198,7 @@ def sweep_from_tables(fields: Mapping[str, Any], folder: Path = Path()) -> Sweep
 def _axis(field: str, entry: Any) -> Axis:
     accepted = "{ from, to, count, spacing } or { values }"
     entry = {"values": entry} if isinstance(entry, list) else entry
-    if isinstance(entry, dict) and set(entry) == {"values"}:
+    if isinstance(entry, dict) and set(entry) == {"values"} and isinstance(entry["values"], list):
         return Axis(field, tuple(_number(field, v) for v in entry["values"]), len(entry["values"]), LISTED)
     if not isinstance(entry, dict) or not {"from", "to", "count"} <= set(entry) <= {
         "from",
@@ -207,8 +207,7 @@ def _axis(field: str, entry: Any) -> Axis:
         "spacing",
     }:
         raise InvalidInput(f"axes.{field}", entry, accepted)
-    if not isinstance(entry["count"], int):
-        raise InvalidInput(f"axes.{field}.count", entry["count"], "a whole number")
+    _check_whole(f"axes.{field}.count", entry["count"])
     spacing = str(entry.get("spacing", LINEAR))
     spacing = GEOMETRIC if spacing == "geo" else spacing
     return Axis(field, (_number(field, entry["from"]), _number(field, entry["to"])), entry["count"], spacing)
@@ -216,9 +215,9 @@ def _axis(field: str, entry: Any) -> Axis:
 
 def _draws(table: Mapping[str, Any]) -> Draws:
     settings = dict(table)
-    count, seed = settings.pop("count", None), settings.pop("seed", 0)
-    if not isinstance(count, int) or not isinstance(seed, int):
-        raise InvalidInput("draws", f"count {count}, seed {seed}", "whole numbers")
+    count, seed = settings.pop("count", MISSING), settings.pop("seed", 0)
+    _check_whole("draws.count", count)
+    _check_whole("draws.seed", seed)
     fields = _table("draws.fields", settings.pop("fields", None))
     if settings:
         raise InvalidInput("draws", next(iter(settings)), "the keys count, seed, fields")
@@ -235,7 +234,14 @@ def _table(name: str, value: Any) -> Mapping[str, Any]:
     """A table of fields, whose names may be dotted keys of TOML or strings with dots."""
     if not isinstance(value, dict):
         raise InvalidInput(name, value, "a table of fields")
-    return dict(_flattened(value)) if name != "draws" else value
+    if name == "draws":
+        return value
+    pairs = _flattened(value)
+    if len(dict(pairs)) < len(pairs):
+        raise InvalidInput(
+            name, ", ".join(field for field, _ in pairs), "fields that differ from one another"
+        )
+    return dict(pairs)
 
 
 def _flattened(table: Mapping[str, Any], prefix: str = "") -> list[tuple[str, Any]]:
@@ -251,4 +257,12 @@ def _flattened(table: Mapping[str, Any], prefix: str = "") -> list[tuple[str, An
 def _number(name: str, value: Any) -> float:
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         raise InvalidInput(name, value, "a number")
-    return float(value)
+    try:
+        return float(value)
+    except OverflowError:
+        raise InvalidInput(name, value, "a finite number") from None
+
+
+def _check_whole(name: str, value: Any) -> None:
+    if isinstance(value, bool) or not isinstance(value, int):
+        raise InvalidInput(name, value, "a whole number")

@@ -14,7 +14,7 @@ from tippetop.integrators.base import Array
 LINEAR, GEOMETRIC, LISTED = "linear", "geometric", "listed"
 UNIFORM, LOG_UNIFORM = "uniform", "log-uniform"
 
-MOST_CELLS = 10**9
+MOST_CELLS = 10**8
 """Cells a sweep may have."""
 
 Flat = NDArray[np.int64]
@@ -124,11 +124,16 @@ class Axis:
     @property
     def values(self) -> Array:
         """All values, shape (count,)."""
-        if self.spacing == LINEAR:
-            return np.linspace(self.numbers[0], self.numbers[1], self.count)
-        if self.spacing == GEOMETRIC:
-            return np.geomspace(self.numbers[0], self.numbers[1], self.count)
-        return np.array(self.numbers)
+        return self.at(np.arange(self.count))
+
+    def at(self, places: Flat) -> Array:
+        """Some of the values, by their places, without making the others."""
+        if self.spacing == LISTED:
+            return np.array(self.numbers)[places]
+        first, last = self.numbers
+        share = places / max(self.count - 1, 1)
+        inner = first + (last - first) * share if self.spacing == LINEAR else first * (last / first) ** share
+        return np.where(places == self.count - 1, last if self.count > 1 else first, inner)
 
 
 def _spacing(word: str) -> str:
@@ -167,7 +172,7 @@ class Product:
     def values(self, cells: Flat) -> dict[str, Array]:
         """The values of the fields in these cells."""
         places = np.unravel_index(cells, self.shape)
-        return {axis.field: axis.values[place] for axis, place in zip(self.axes, places, strict=True)}
+        return {axis.field: axis.at(place) for axis, place in zip(self.axes, places, strict=True)}
 
     def coordinates(self) -> dict[str, tuple[str, NDArray[Any]]]:
         """The coordinates."""
@@ -269,18 +274,26 @@ class Draws:
 
     def values(self, cells: Flat) -> dict[str, Array]:
         """The values of the fields in these draws."""
-        return {name: values[cells] for name, (_, values) in self.coordinates().items() if name != "draw"}
+        first = int(cells.min())
+        drawn = self._drawn(first, int(cells.max()) + 1)
+        return {field: values[cells - first] for field, values in drawn.items()}
 
     def coordinates(self) -> dict[str, tuple[str, NDArray[Any]]]:
         """The number of every draw, and the values drawn."""
         found: dict[str, tuple[str, NDArray[Any]]] = {"draw": ("draw", np.arange(self.count))}
+        found |= {field: ("draw", values) for field, values in self._drawn(0, self.count).items()}
+        return found
+
+    def _drawn(self, first: int, last: int) -> dict[str, Array]:
+        """The draws from first to before last, without making those before."""
+        found = {}
         for place, entry in enumerate(self.ranges):
-            shares = np.random.default_rng([self.seed, place]).random(self.count)
+            source = np.random.PCG64([self.seed, place]).advance(first)
+            shares = np.random.Generator(source).random(last - first)
             if entry.law == LOG_UNIFORM:
-                drawn = entry.low * (entry.high / entry.low) ** shares
+                found[entry.field] = entry.low * (entry.high / entry.low) ** shares
             else:
-                drawn = entry.low + (entry.high - entry.low) * shares
-            found[entry.field] = ("draw", drawn)
+                found[entry.field] = entry.low + (entry.high - entry.low) * shares
         return found
 
     def describe(self) -> dict[str, Any]:

@@ -96,7 +96,11 @@ VARIABLES = {
     "energy_lost": Variable("energy lost from launch to end", "J"),
     "highest": Variable("largest height of the centre of mass above the table", "m"),
     "highest_gap": Variable("largest height of the lowest point above the table", "m"),
-    "jellett_error": Variable("change of Jellett's integral, relative to |L| h at launch", "1"),
+    "jellett_error": Variable(
+        "change of Jellett's integral from launch to end, relative to |L| h at launch; "
+        "an error for eccentric spheres alone, which conserve it",
+        "1",
+    ),
     "end_time": Variable("time at which the run ended", "s"),
     "steps": Variable("steps of the integrator", "1", "int32"),
 }
@@ -124,7 +128,7 @@ def observed(cells: Cells, which: NDArray[np.intp], launches: Launches, ends: En
     mass, size, time = (np.broadcast_to(unit, len(cells.fault))[which] for unit in cells.units)
     force = mass * size / time**2
     with np.errstate(all="ignore"):
-        moment = length(launches.state.momentum) * np.abs(launches.state.position[2])
+        moment = length(launches.state.momentum) * top.shape.height(launches.state.axis[2])
         change = np.abs(jellett(end, top) - jellett(launches.state, top))
         drift = change / np.where(moment > 0, moment, np.nan)
         lost = energy(launches.state, top) - energy(end, top)

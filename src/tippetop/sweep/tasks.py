@@ -25,7 +25,9 @@ from tippetop.sweep.ensemble import follow_cells
 
 Task: TypeAlias = tuple[int, ...]
 Found: TypeAlias = dict[str, NDArray[Any]]
-Call: TypeAlias = tuple[str, str, tuple[tuple[int, int], ...]]
+Block: TypeAlias = tuple[tuple[int, int], ...]
+Call: TypeAlias = tuple[str, str, Block]
+"""What `compute_block` is called with."""
 
 RESTARTS = 3
 """How often processes that died are started again before the sweep is given up."""
@@ -41,7 +43,7 @@ THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 _turn = threading.Lock()
 
 
-def compute_block(description: str, version: str, block: tuple[tuple[int, int], ...]) -> Found:
+def compute_block(description: str, version: str, block: Block) -> Found:
     """Compute a block of cells from parameters: this is all that a worker is sent.
 
     Raises
@@ -85,7 +87,8 @@ def results(
     """
     if workers is not None and workers < 1:
         raise InvalidInput("workers", workers, "a whole number, at least 1")
-    calls = {task: _call(sweep, task) for task in tasks}
+    description = json.dumps(sweep.describe())
+    calls = {task: (description, __version__, _block(sweep, task)) for task in tasks}
     if scheduler is not None:
         with _cluster(scheduler) as (executor, size):
             yield from _share(executor, size, calls)
@@ -98,10 +101,9 @@ def results(
     yield from _share_locally(count, calls)
 
 
-def _call(sweep: Sweep, task: Task) -> Call:
-    """What `compute_block` is called with for a task."""
-    block = tuple((part.start, part.stop) for part in sweep.region(task))
-    return json.dumps(sweep.describe()), __version__, block
+def _block(sweep: Sweep, task: Task) -> Block:
+    """The cells of a task: first and last along every dimension."""
+    return tuple((part.start, part.stop) for part in sweep.region(task))
 
 
 def processors() -> int:
