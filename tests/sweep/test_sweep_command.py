@@ -105,12 +105,25 @@ def test_a_problem_and_a_sweep_are_read_from_files(tmp_path):
         ([*AXES, "--workers", "0"], "workers"),
         ([*AXES, "--duration", "0"], "duration"),
         ([*AXES, "--settled", "1"], "settled"),
+        ([*AXES, "--count", "5"], "--count"),
+        ([*AXES, "--seed", "5"], "--seed"),
+        (["--draw", "launch.spin=1:2", "--count", "3", "--seed", "-1"], "seed"),
     ],
 )
 def test_misuse_is_refused_by_what_is_wrong(tmp_path, arguments, field):
     with pytest.raises(InvalidInput) as refusal:
         run(*arguments, "--out", tmp_path / "a.zarr")
     assert refusal.value.field == field
+
+
+def test_a_picture_of_somebody_else_is_not_overwritten(tmp_path):
+    (tmp_path / "a.flights.png").write_text("a holiday")
+    with pytest.raises(FileTrouble, match=r"a\.flights\.png exists"):
+        run(*AXES, *SHORT, "--out", tmp_path / "a.zarr")
+    assert [path.name for path in tmp_path.iterdir()] == ["a.flights.png"]
+    run(*AXES, *SHORT, "--out", tmp_path / "a.zarr", "--force")
+    run("--out", tmp_path / "a.zarr", "--resume")
+    assert (tmp_path / "a.flights.png").read_bytes().startswith(b"\x89PNG")
 
 
 def test_a_store_is_not_overwritten_or_mixed_with_another(tmp_path):

@@ -138,3 +138,20 @@ def test_dask_that_is_not_installed_is_said_to_be_missing(monkeypatch):
     monkeypatch.setattr(scheduling, "find_spec", lambda name: None)
     with pytest.raises(Unavailable, match=r"pip install 'tippetop\[sweep\]'"):
         compute(quick(), scheduler="tcp://127.0.0.1:1")
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_a_cluster_without_workers_is_refused_and_one_that_is_lost_is_told_of(small_tasks):
+    distributed = pytest.importorskip("distributed")
+    quiet = {"dashboard_address": None, "silence_logs": 50}
+    with (
+        distributed.LocalCluster(n_workers=0, **quiet) as cluster,
+        pytest.raises(InvalidInput, match="workers"),
+    ):
+        compute(quick(), scheduler=cluster.scheduler_address)
+    cluster = distributed.LocalCluster(n_workers=1, threads_per_worker=1, **quiet)
+    found = scheduling.results(quick(), quick().tasks, scheduler=cluster.scheduler_address)
+    next(found)
+    cluster.close()
+    with pytest.raises(Unavailable, match="was lost"):
+        list(found)

@@ -14,7 +14,7 @@ import pytest
 import xarray as xr
 from sweeps import lively, same
 
-from tippetop.errors import FileTrouble
+from tippetop.errors import FileTrouble, InvalidInput
 from tippetop.presets import report_problem
 from tippetop.sweep import (
     VARIABLES,
@@ -153,6 +153,67 @@ def test_what_is_no_store_is_refused(tmp_path):
     (tmp_path / "b.zarr" / "zarr.json").write_text("{}")
     with pytest.raises(FileTrouble, match="not a sweep of this program"):
         Store.resume(tmp_path / "b.zarr")
+
+
+@pytest.mark.parametrize("kind", ["folder", "file", "link", "other store"])
+def test_what_is_no_sweep_is_never_overwritten(tmp_path, kind):
+    there = tmp_path / "a.zarr"
+    keep = tmp_path / "mine"
+    keep.mkdir()
+    (keep / "thesis.txt").write_text("years of work")
+    if kind == "folder":
+        keep.rename(there)
+    elif kind == "file":
+        there.write_text("years of work")
+    elif kind == "link":
+        there.symlink_to(keep)
+    else:
+        zarr.create_group(there, attributes={"format": "somebody else's"}, zarr_format=3)
+    before = sorted(str(path) for path in tmp_path.rglob("*"))
+    with pytest.raises(FileTrouble, match="is no sweep"):
+        Store.create(there, quick(), overwrite=True)
+    assert sorted(str(path) for path in tmp_path.rglob("*")) == before
+
+
+def test_an_empty_folder_and_a_sweep_of_another_version_may_be_overwritten(tmp_path):
+    path = tmp_path / "a.zarr"
+    path.mkdir()
+    Store.create(path, quick(), overwrite=True)
+    zarr.open_group(path).attrs["format"] = "tippetop sweep 99"
+    assert len(Store.create(path, quick(), overwrite=True).remaining()) == len(quick().tasks)
+
+
+def test_a_store_is_filled_by_one_process_at_a_time(tmp_path, small_tasks):
+    store = Store.create(tmp_path / "a.zarr", quick())
+    with store.held(), pytest.raises(FileTrouble, match="is being filled by another process"):
+        fill(Store.resume(store.path), workers=1)
+    left = store.path / "final_theta" / "c" / "0" / "0.1234.partial"
+    left.parent.mkdir(parents=True)
+    left.write_text("half a chunk")
+    fill(Store.resume(store.path), workers=1)
+    assert not left.exists()
+    assert not store.remaining()
+
+
+def test_a_damaged_chunk_is_told_in_a_sentence(tmp_path, small_tasks):
+    run_sweep(quick(), tmp_path / "a.zarr", workers=1)
+    chunk = next(path for path in (tmp_path / "a.zarr" / "flights" / "c").rglob("*") if path.is_file())
+    chunk.write_bytes(chunk.read_bytes()[:5])
+    store = Store.resume(tmp_path / "a.zarr")
+    assert store.load(["outcome"])["outcome"].shape == quick().grid.shape
+    with pytest.raises(FileTrouble, match=r"a\.zarr is damaged"):
+        store.load(["flights"])
+
+
+def test_nothing_is_written_where_nobody_can_compute(tmp_path):
+    run_sweep(quick(), tmp_path / "a.zarr", workers=1)
+    for options in ({"workers": 0}, {"scheduler": "nonsense://"}):
+        with pytest.raises(InvalidInput):
+            run_sweep(quick(), tmp_path / "a.zarr", overwrite=True, **options)
+        with pytest.raises(InvalidInput):
+            run_sweep(quick(), tmp_path / "b.zarr", **options)
+    assert not Store.resume(tmp_path / "a.zarr").remaining()
+    assert not (tmp_path / "b.zarr").exists()
 
 
 def test_a_full_disk_leaves_a_store_that_resumes(tmp_path, small_tasks, monkeypatch):

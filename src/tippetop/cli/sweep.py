@@ -23,6 +23,8 @@ from tippetop.cli.options import (
     Tilt,
     chosen_problem,
 )
+from tippetop.errors import MISSING, InvalidInput
+from tippetop.files import refuse_overwriting, written_beside
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -61,7 +63,7 @@ def sweep(
         ),
     ] = None,
     count: Annotated[int | None, typer.Option(help="Number of draws.")] = None,
-    seed: Annotated[int, typer.Option(help="What the draws follow from.")] = 0,
+    seed: Annotated[int | None, typer.Option(help="What the draws follow from; 0 if left out.")] = None,
     duration: Annotated[float | None, typer.Option(help="Length of every run, s; 20 if left out.")] = None,
     tolerance: Annotated[
         float | None, typer.Option(help="Relative error per step; 1e-9 if left out.")
@@ -85,35 +87,39 @@ def sweep(
     force: Force = False,
 ) -> None:
     """See what becomes of many launches: over axes that cross, or draws at random."""
-    from tippetop.errors import InvalidInput  # noqa: PLC0415 - slow to import
-    from tippetop.sweep import Store, fill  # noqa: PLC0415
+    from tippetop.sweep import Store, fill  # noqa: PLC0415 - slow to import
     from tippetop.sweep.store import read_sweep  # noqa: PLC0415
+    from tippetop.sweep.tasks import need_workers  # noqa: PLC0415
 
     if resume and force:
-        raise InvalidInput("--force", "--resume", "one of the two")
+        raise InvalidInput("--force", "with --resume", "one of the two")
     settings = {"launch.spin": spin, "launch.tilt": tilt, "friction.mu": mu, "contact.liftoff": liftoff}
     over = (axis, draw, count, seed)
     kept = read_sweep(out) if resume and file is None else None
     limits = {"duration": duration, "tolerance": tolerance, "settled": settled}
     chosen = _chosen_sweep(file, kept, preset, settings, changes, over, limits)
+    need_workers(workers, scheduler)
+    pictures = _map_files(out) if maps else {}
+    for path in pictures.values():
+        refuse_overwriting(path, force or resume)
     store = Store.resume(out, chosen) if resume else Store.create(out, chosen, force)
     began = time.perf_counter()
     progress: list[Progress] = []
-    with _shown(progress, silent=as_json or not sys.stderr.isatty()) as watcher:
-        try:
+    try:
+        with _shown(progress, silent=as_json or not sys.stderr.isatty()) as watcher:
             fill(store, workers=workers, scheduler=scheduler, watcher=watcher)
-        except KeyboardInterrupt:
-            done = f"{progress[-1].done} of {progress[-1].cells} cells" if progress else "the grid"
-            typer.echo(f"tippetop: interrupted; {done} are in {out}: go on with --resume", err=True)
-            raise typer.Exit(INTERRUPTED) from None
-    dataset = store.dataset()
-    pictures = _draw_maps(dataset, out) if maps else []
+        dataset = store.load(["status", "outcome", *dict.fromkeys(["flights", *pictures])])
+        _draw_maps(dataset, pictures)
+    except KeyboardInterrupt:
+        done = f"{progress[-1].done:,} of {progress[-1].cells:,}" if progress else "none"
+        typer.echo(f"tippetop: interrupted; {done} cells are in {out}: go on with --resume", err=True)
+        raise typer.Exit(INTERRUPTED) from None
     summary = _summary(dataset, progress[-1], time.perf_counter() - began)
     if as_json:
-        files = {"out": str(out), "maps": [str(path) for path in pictures]}
+        files = {"out": str(out), "maps": [str(path) for path in pictures.values()]}
         typer.echo(json.dumps({**summary, **files, "sweep": store.sweep.describe()}, indent=2))
     else:
-        _print_summary(summary, [out, *pictures])
+        _print_summary(summary, [out, *pictures.values()])
 
 
 def _chosen_sweep(
@@ -122,13 +128,12 @@ def _chosen_sweep(
     preset: str | None,
     settings: dict[str, Any],
     changes: list[str] | None,
-    over: tuple[list[str] | None, list[str] | None, int | None, int],
+    over: tuple[list[str] | None, list[str] | None, int | None, int | None],
     limits: dict[str, float | None],
 ) -> "Sweep":
     """The sweep that the file, or the store to be resumed, and the options ask for."""
     from dataclasses import replace  # noqa: PLC0415
 
-    from tippetop.errors import InvalidInput  # noqa: PLC0415 - slow to import
     from tippetop.sweep import Sweep  # noqa: PLC0415
 
     base = Sweep.read(file) if file is not None and _holds_sweep(file) else kept
@@ -139,7 +144,7 @@ def _chosen_sweep(
     if base is not None:
         return replace(base, problem=problem, grid=grid or base.grid, **given)
     if grid is None:
-        raise InvalidInput("--axis", "nothing", "at least one axis, or --draw, or a sweep's file")
+        raise InvalidInput("--axis", MISSING, "at least one axis, or --draw, or a sweep's file")
     return Sweep(problem, grid, **given)
 
 
@@ -157,20 +162,22 @@ def _changed(
 
 
 def _chosen_grid(
-    axis: list[str] | None, draw: list[str] | None, count: int | None, seed: int
+    axis: list[str] | None, draw: list[str] | None, count: int | None, seed: int | None
 ) -> "Product | Draws | None":
     """The grid that the options ask for, if they do."""
-    from tippetop.errors import InvalidInput  # noqa: PLC0415 - slow to import
     from tippetop.sweep import Axis, Draws, Product, Range  # noqa: PLC0415
 
     if axis and draw:
         raise InvalidInput("--draw", draw[0], "axes or draws, not both")
+    for name, number in (("--count", count), ("--seed", seed)):
+        if number is not None and not draw:
+            raise InvalidInput(name, number, "only with --draw")
     if axis:
         return Product(tuple(Axis.parse(text) for text in axis))
     if draw:
         if count is None:
-            raise InvalidInput("--count", count, "the number of draws")
-        return Draws(tuple(Range.parse(text) for text in draw), count, seed)
+            raise InvalidInput("--count", MISSING, "the number of draws")
+        return Draws(tuple(Range.parse(text) for text in draw), count, seed or 0)
     return None
 
 
@@ -215,19 +222,21 @@ def _shown(seen: list["Progress"], silent: bool) -> Iterator["Watcher"]:
         yield watcher
 
 
-def _draw_maps(dataset: "xr.Dataset", out: Path) -> list[Path]:
-    """Draw maps beside the store."""
-    from tippetop.figures.maps import MAPPED, phase_map  # noqa: PLC0415 - slow to import
-    from tippetop.figures.style import save  # noqa: PLC0415
-    from tippetop.files import written_beside  # noqa: PLC0415
+def _map_files(out: Path) -> dict[str, Path]:
+    """The maps that are drawn beside a store: variables and files."""
+    from tippetop.figures.maps import MAPPED  # noqa: PLC0415 - slow to import
 
-    paths = []
-    for name in MAPPED:
-        path = out.with_name(f"{out.stem}.{name}.png")
+    return {name: out.with_name(f"{out.name.removesuffix('.zarr')}.{name}.png") for name in MAPPED}
+
+
+def _draw_maps(dataset: "xr.Dataset", files: dict[str, Path]) -> None:
+    """Draw maps beside the store."""
+    from tippetop.figures.maps import phase_map  # noqa: PLC0415 - slow to import
+    from tippetop.figures.style import save  # noqa: PLC0415
+
+    for name, path in files.items():
         with written_beside(path) as beside:
             save(phase_map(dataset, name), beside)
-        paths.append(path)
-    return paths
 
 
 def _summary(dataset: "xr.Dataset", progress: "Progress", elapsed: float) -> dict[str, Any]:

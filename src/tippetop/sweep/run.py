@@ -11,7 +11,7 @@ import xarray as xr
 from tippetop.sweep.definition import Sweep
 from tippetop.sweep.observe import VARIABLES
 from tippetop.sweep.store import STATUS, Status, Store, coordinate_attributes, layout_attributes
-from tippetop.sweep.tasks import results
+from tippetop.sweep.tasks import need_workers, results
 
 
 @dataclass(frozen=True)
@@ -68,8 +68,14 @@ def fill(
     Raises
     ------
     FileTrouble
-        If the store cannot be written; it stays good, and another call goes on where this one ended.
+        If the store cannot be written, or another process fills it; it stays good, and another call goes on
+        where this one ended.
     """
+    with store.held():
+        return _fill(store, workers, scheduler, watcher)
+
+
+def _fill(store: Store, workers: int | None, scheduler: str | None, watcher: Watcher | None) -> Progress:
     sweep = store.sweep
     tasks = store.remaining()
     sizes = {task: sweep.numbers(task).size for task in tasks}
@@ -122,6 +128,7 @@ def run_sweep(
     FileTrouble
         If something is there already, or it is of another sweep, or cannot be written.
     """
+    need_workers(workers, scheduler)
     store = Store.resume(out, sweep) if resume or sweep is None else Store.create(out, sweep, overwrite)
     fill(store, workers=workers, scheduler=scheduler, watcher=watcher)
     return store.dataset()

@@ -20,6 +20,7 @@ import numpy as np
 
 from tippetop.integrators import has_taylor
 from tippetop.integrators.base import Array
+from tippetop.interrupts import deferred
 from tippetop.mechanics.motion import contact, sliding_rates
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.top import Kind
@@ -178,7 +179,9 @@ def stepper(kind: Kind, tolerance: float) -> Stepper:
     order = order_for(tolerance)
     if not has_taylor():
         return NumPyStepper(kind, order)
-    from tippetop.sweep.compiled import CompiledStepper  # noqa: PLC0415 - optional, and slow to import
+    # An interrupted import of heyoka leaves it in pieces.
+    with deferred():
+        from tippetop.sweep.compiled import CompiledStepper  # noqa: PLC0415 - optional, and slow to import
 
     return CompiledStepper(kind, order)
 

@@ -25,6 +25,7 @@ from tippetop import __version__
 from tippetop.dataset import CONVENTIONS
 from tippetop.errors import FileTrouble, InvalidInput, Unavailable, short
 from tippetop.files import refuse_overwriting
+from tippetop.interrupts import deferred
 from tippetop.sweep.definition import Sweep, sweep_from
 from tippetop.sweep.observe import VARIABLES, Variable
 
@@ -67,14 +68,19 @@ class Store:
         Raises
         ------
         FileTrouble
-            If something is there already and `overwrite` is false, or it cannot be written.
+            If something is there already and `overwrite` is false or it is no sweep, or it cannot be written.
         Unavailable
             If zarr is not installed.
         """
         need_zarr()
         path = Path(path)
         refuse_overwriting(path, overwrite)
-        with in_words(path, "written"):
+        if path.is_symlink() or (path.exists() and not _may_be_replaced(path)):
+            raise FileTrouble(
+                f"{path} exists and is no sweep, so it is not overwritten; choose another --out"
+            )
+        # Zarr writes in a thread of its own, which Ctrl-C does not stop.
+        with in_words(path, "written"), deferred():
             beside = Path(tempfile.mkdtemp(dir=path.parent, prefix=f".{path.name}."))
             try:
                 fresh = beside / path.name
@@ -109,10 +115,32 @@ class Store:
         store = cls(path, kept)
         if tuple(store._array("status").chunks) != kept.chunk:
             raise FileTrouble(f"{path} has other chunks than this version makes; start afresh with --force")
-        with in_words(path, "written"):
-            for partial in path.rglob("*.partial"):
-                partial.unlink(missing_ok=True)
         return store
+
+    @contextmanager
+    def held(self) -> Iterator[None]:
+        """Keep other processes from filling the store meanwhile, and clear away what a killed one left.
+
+        Raises
+        ------
+        FileTrouble
+            If another process fills it, or it cannot be written.
+        """
+        from filelock import FileLock, Timeout  # noqa: PLC0415 - optional
+
+        lock = FileLock(self.path / ".lock", blocking=False)
+        with in_words(self.path, "written"):
+            try:
+                lock.acquire()
+            except Timeout:
+                raise FileTrouble(f"{self.path} is being filled by another process") from None
+        try:
+            with in_words(self.path, "written"):
+                for partial in self.path.rglob("*.partial"):
+                    partial.unlink(missing_ok=True)
+            yield
+        finally:
+            lock.release()
 
     def status(self) -> NDArray[np.int8]:
         """Numbers of `Status` over the grid; what cannot be read counts as pending."""
@@ -152,6 +180,22 @@ class Store:
         opened: xr.Dataset = xr.open_zarr(self.path)
         return opened
 
+    def load(self, names: list[str]) -> xr.Dataset:
+        """Some of the variables, read now.
+
+        Raises
+        ------
+        FileTrouble
+            If they cannot be read.
+        """
+        try:
+            loaded: xr.Dataset = self.dataset()[names].load()
+        except (OSError, ValueError, RuntimeError) as error:
+            raise FileTrouble(
+                f"{self.path} is damaged and cannot be read ({error}); start afresh with --force"
+            ) from None
+        return loaded
+
     def _array(self, name: str) -> Any:
         return self._group[name]
 
@@ -160,6 +204,17 @@ def need_zarr() -> None:
     """Raise `Unavailable` if zarr is not installed."""
     if find_spec("zarr") is None:
         raise Unavailable("a sweep is kept in a Zarr store; install it with: pip install 'tippetop[sweep]'")
+
+
+def _may_be_replaced(path: Path) -> bool:
+    """Whether a folder is empty or holds a sweep, of whatever version."""
+    if not path.is_dir() or not any(path.iterdir()):
+        return path.is_dir()
+    try:
+        layout = json.loads((path / "zarr.json").read_text(encoding="utf-8"))["attributes"]["format"]
+    except (OSError, ValueError, KeyError, TypeError):
+        return False
+    return str(layout).startswith(FORMAT.rstrip("0123456789"))
 
 
 def read_sweep(path: Path | str) -> Sweep:

@@ -8,7 +8,7 @@ import sys
 import threading
 from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from functools import lru_cache
@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from tippetop import __version__
 from tippetop.errors import InvalidInput, Unavailable
+from tippetop.interrupts import deferred
 from tippetop.sweep.definition import Sweep, sweep_from
 from tippetop.sweep.ensemble import follow_cells
 
@@ -85,13 +86,11 @@ def results(
     Unavailable
         If dask.distributed is needed and not installed.
     """
-    if workers is not None and workers < 1:
-        raise InvalidInput("workers", workers, "a whole number, at least 1")
+    _check_number(workers)
     description = json.dumps(sweep.describe())
     calls = {task: (description, __version__, _block(sweep, task)) for task in tasks}
     if scheduler is not None:
-        with _cluster(scheduler) as (executor, size):
-            yield from _share(executor, size, calls)
+        yield from _share_with_cluster(scheduler, calls)
         return
     count = min(workers or processors(), max(len(tasks), 1))
     if count == 1:
@@ -99,6 +98,25 @@ def results(
             yield task, compute_block(*call)
         return
     yield from _share_locally(count, calls)
+
+
+def need_workers(workers: int | None, scheduler: str | None) -> None:
+    """See that there is someone to compute, before anything is written.
+
+    Raises
+    ------
+    InvalidInput, Unavailable
+        As from `results`.
+    """
+    _check_number(workers)
+    if scheduler is not None:
+        with _cluster(scheduler):
+            pass
+
+
+def _check_number(workers: int | None) -> None:
+    if workers is not None and workers < 1:
+        raise InvalidInput("workers", workers, "a whole number, at least 1")
 
 
 def _block(sweep: Sweep, task: Task) -> Block:
@@ -143,8 +161,21 @@ def _share_locally(workers: int, calls: Mapping[Task, Call]) -> Iterator[tuple[T
             if attempt == RESTARTS:
                 raise Unavailable(
                     f"processes that compute the sweep were killed {RESTARTS + 1} times (is there enough "
-                    "memory?); what is done is kept"
+                    "memory?); what is done is kept, and --resume goes on"
                 ) from None
+
+
+@contextmanager
+def _ctrl_c_blocked() -> Iterator[None]:
+    """Keep Ctrl-C from processes that are started meanwhile, which inherit what is blocked."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 class _Process(SpawnProcess):
@@ -155,7 +186,8 @@ class _Process(SpawnProcess):
         spec, main.__spec__ = getattr(main, "__spec__", None), None
         file = vars(main).pop("__file__", None)
         try:
-            super().start()
+            with _ctrl_c_blocked():
+                super().start()
         finally:
             main.__spec__ = spec
             if file is not None:
@@ -176,6 +208,9 @@ def _pool(workers: int) -> Iterator[Executor]:
     try:
         executor = ProcessPoolExecutor(workers, mp_context=_Context(), initializer=_begin_work)
         try:
+            # Ctrl-C between two of them would take from one what it is about to open.
+            with deferred():
+                executor.submit(processors)
             yield executor
         finally:
             processes = list((executor._processes or {}).values())
@@ -205,6 +240,20 @@ def _begin_work() -> None:
         threading.Thread(target=follow, daemon=True).start()
 
 
+def _share_with_cluster(address: str, calls: Mapping[Task, Call]) -> Iterator[tuple[Task, Found]]:
+    """Hand tasks to a cluster, which does those of workers that died again."""
+    with _cluster(address) as (executor, size):
+        try:
+            yield from _share(executor, size, calls)
+        except Exception as error:
+            if isinstance(error, CancelledError) or type(error).__module__.startswith("distributed"):
+                raise Unavailable(
+                    f"the cluster at {address} was lost ({type(error).__name__}); what is done is kept, and "
+                    "--resume goes on"
+                ) from None
+            raise
+
+
 @contextmanager
 def _cluster(address: str) -> Iterator[tuple[Executor, int]]:
     """A running cluster, and how many workers it has."""
@@ -217,5 +266,7 @@ def _cluster(address: str) -> Iterator[tuple[Executor, int]]:
     except (OSError, ValueError) as error:
         raise InvalidInput("scheduler", address, f"the address of a running scheduler ({error})") from None
     with client:
-        size = max(len(client.scheduler_info(n_workers=-1)["workers"]), 1)
+        size = len(client.scheduler_info(n_workers=-1)["workers"])
+        if not size:
+            raise InvalidInput("scheduler", address, "a scheduler that has workers")
         yield client.get_executor(retries=RESTARTS), size
