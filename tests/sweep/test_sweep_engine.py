@@ -14,7 +14,7 @@ from tippetop.integrators import has_taylor
 from tippetop.presets import report_problem
 from tippetop.problem import Body, Problem, RegularizedCoulombFriction, Spheroid
 from tippetop.summary import summarize
-from tippetop.sweep import VARIABLES, Axis, Fault, Group, Product, Sweep, compute, ensemble, hops, lanes
+from tippetop.sweep import VARIABLES, Axis, Ending, Fault, Product, Sweep, compute, ensemble, hops, lanes
 from tippetop.sweep import stepper as stepping
 from tippetop.sweep.cells import cells_of
 from tippetop.sweep.ensemble import follow_cells
@@ -73,13 +73,13 @@ def test_cells_are_single_runs(liftoff):
     lifted = np.isfinite(found["first_lift_off"])
     assert lifted.any() == (liftoff != "ignore")
     assert (found["flights"].sum() > 10) == (liftoff == "fly")
-    assert np.array_equal(found["outcome"] == Group.LIFTED_OFF, lifted & (liftoff == "stop"))
+    assert np.array_equal(found["outcome"] == Ending.LIFTED_OFF, lifted & (liftoff == "stop"))
 
 
 def test_a_top_that_turns_over_is_a_single_run():
     axes = Axis.listed("launch.spin", [20.0, 50.0, 155.0, 180.0]), Axis.listed("friction.mu", [0.3])
     found = check_against_runs(Sweep(report_problem(), Product(axes), 12.0, 1e-12))
-    assert found["outcome"].tolist() == [Group.UPRIGHT, Group.TILTED, Group.INVERTED, Group.INVERTED]
+    assert found["outcome"].tolist() == [Ending.UPRIGHT, Ending.TILTED, Ending.INVERTED, Ending.INVERTED]
     assert found["flights"][3] > 0
 
 
@@ -194,7 +194,7 @@ def test_a_flight_that_cannot_be_followed_is_said_to_have_failed(monkeypatch):
     problem = report_problem(spin=2000.0, tilt=1.0).replace({"launch.precession": 3000.0})
     axis = Axis.listed("launch.gap", [1.0])
     found = follow_cells(Sweep(problem, Product((axis,)), 0.3, 1e-9), np.arange(1))
-    assert found["outcome"][0] == Group.FAILED
+    assert found["outcome"][0] == Ending.FAILED
     assert found["end_time"][0] == pytest.approx(found["airborne_time"][0])
     assert 0.0 < found["end_time"][0] < 0.3
 
@@ -214,7 +214,7 @@ def test_launches_that_have_settled_end_early_and_where_they_would_have_ended():
     assert np.all(whole["end_time"] == 60.0)
     assert np.sum(short["end_time"] < 40.0) >= 8
     assert np.abs(short["final_theta"] - whole["final_theta"]).max() <= 1e-3
-    assert set(whole["outcome"]) == {Group.UPRIGHT, Group.TILTED, Group.INVERTED}
+    assert set(whole["outcome"]) == {Ending.UPRIGHT, Ending.TILTED, Ending.INVERTED}
     for name in ("outcome", "flights", "turns_over", "first_lift_off", "least_normal_force"):
         assert short[name] == pytest.approx(whole[name], rel=1e-9, nan_ok=True), name
 
@@ -273,7 +273,7 @@ def test_bad_cells_are_labelled_and_harm_no_other():
     problem = report_problem(spin=200.0)
     sweep = Sweep(problem, Product(axes), 0.2, 1e-9)
     dataset = compute(sweep)
-    assert (dataset["outcome"] == Group.BAD).values.tolist() == [[False, True], [True, True], [True, True]]
+    assert (dataset["outcome"] == Ending.BAD).values.tolist() == [[False, True], [True, True], [True, True]]
     assert dataset["fault"].values.tolist() == [
         [Fault.NONE, Fault.VALUE_OUT_OF_RANGE],
         [Fault.NO_SUCH_BODY, Fault.VALUE_OUT_OF_RANGE],
@@ -298,7 +298,7 @@ def test_a_motion_that_becomes_singular_is_labelled():
     sweep = Sweep(problem, Product((Axis.listed("friction.mu", [0.3, 40.0]),)), 1.0, 1e-9)
     found = follow_cells(sweep, np.arange(2))
     runs = [truth(problem_of(sweep, k), 1.0, 11) for k in range(2)]
-    assert [outcome == Group.FAILED for outcome in found["outcome"]] == [
+    assert [outcome == Ending.FAILED for outcome in found["outcome"]] == [
         run.attrs["outcome"] == "failed" for run in runs
     ]
 
@@ -306,12 +306,12 @@ def test_a_motion_that_becomes_singular_is_labelled():
 def test_a_launch_that_takes_too_long_is_given_up(monkeypatch):
     monkeypatch.setattr(lanes, "STEP_LIMIT", 50)
     found = follow_cells(lively("ignore", 2, 2), np.arange(4))
-    assert np.all(found["outcome"] == Group.FAILED)
+    assert np.all(found["outcome"] == Ending.FAILED)
     monkeypatch.undo()
     monkeypatch.setattr(lanes, "FLIGHT_LIMIT", 2)
     found = follow_cells(lively("fly", 2, 2), np.arange(4))
-    assert np.array_equal(found["outcome"] == Group.FAILED, found["flights"] == 2)
-    assert (found["outcome"] == Group.FAILED).any()
+    assert np.array_equal(found["outcome"] == Ending.FAILED, found["flights"] == 2)
+    assert (found["outcome"] == Ending.FAILED).any()
 
 
 def test_a_smaller_tolerance_is_a_smaller_error():

@@ -10,7 +10,7 @@ from sweeps import lively
 from tippetop.figures.maps import MAPPED, phase_map
 from tippetop.figures.style import save
 from tippetop.presets import report_problem
-from tippetop.sweep import VARIABLES, Axis, Draws, Group, Product, Range, Sweep, compute
+from tippetop.sweep import VARIABLES, Axis, Draws, Ending, Product, Range, Sweep, compute
 
 
 @pytest.fixture(scope="module")
@@ -94,7 +94,7 @@ def test_making_a_map_leaves_the_style_alone(plane):
 
 def test_launches_that_were_stopped_at_lift_off_show_no_final_tilt():
     sweep = compute(lively("stop"))
-    lifted = sweep["outcome"].values == Group.LIFTED_OFF
+    lifted = sweep["outcome"].values == Ending.LIFTED_OFF
     assert lifted.any()
     assert not lifted.all()
     axes = phase_map(sweep).axes[0]

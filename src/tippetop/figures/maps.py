@@ -19,7 +19,7 @@ from tippetop.figures.style import (
     house_style,
     pi_ticks,
 )
-from tippetop.sweep import Group
+from tippetop.sweep import Ending
 
 MAPPED = ("final_theta", "turns_over", "flights")
 """The maps that are drawn of every sweep."""
@@ -181,7 +181,7 @@ def _title(sweep: xr.Dataset, variable: str) -> str:
 
 def _ended_early(sweep: xr.Dataset) -> np.ndarray[Any, Any]:
     """Which launches were stopped where they lifted off, so that their last tilt is not their end."""
-    return np.asarray(sweep["outcome"].values == Group.LIFTED_OFF)
+    return np.asarray(sweep["outcome"].values == Ending.LIFTED_OFF)
 
 
 def _shown(sweep: xr.Dataset, variable: str) -> np.ndarray[Any, Any]:

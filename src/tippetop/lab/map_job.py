@@ -13,7 +13,7 @@ from tippetop.problem import Problem
 from tippetop.sweep.definition import Sweep
 from tippetop.sweep.ensemble import follow_cells
 from tippetop.sweep.grid import Axis, Flat, Product
-from tippetop.sweep.observe import Group
+from tippetop.sweep.observe import Ending
 
 STRIDES = (4, 2, 1)
 """Every fourth row and column comes first, then every second, then all."""
@@ -93,7 +93,7 @@ def map_parts(
         began = time.monotonic()
         for band in np.array_split(level, min(BANDS, len(level))):
             found = follow_cells(at_first, band)
-            off = np.isin(found["outcome"], [Group.LIFTED_OFF, Group.BAD]) & twice
+            off = np.isin(found["outcome"], [Ending.LIFTED_OFF, Ending.BAD]) & twice
             flying.append(band[off])
             done += int(np.sum(~off))
             yield _part(band, found, off, done / at_first.cells)
@@ -135,7 +135,7 @@ def _part(
 ) -> MapPart:
     outcome = found["outcome"]
     fates = np.select(
-        [off, outcome == Group.LIFTED_OFF, outcome == Group.FAILED, outcome == Group.BAD],
+        [off, outcome == Ending.LIFTED_OFF, outcome == Ending.FAILED, outcome == Ending.BAD],
         [Fate.IN_THE_AIR, Fate.STOPPED, Fate.FAILED, Fate.IMPOSSIBLE],
         Fate.FOLLOWED,
     )

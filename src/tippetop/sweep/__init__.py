@@ -7,7 +7,7 @@ happens to the program.
 from tippetop.sweep.cells import Fault
 from tippetop.sweep.definition import Sweep
 from tippetop.sweep.grid import Axis, Draws, Product, Range
-from tippetop.sweep.observe import VARIABLES, Group
+from tippetop.sweep.observe import VARIABLES, Ending
 from tippetop.sweep.run import Progress, compute, fill, run_sweep
 from tippetop.sweep.store import Status, Store
 
@@ -15,8 +15,8 @@ __all__ = [
     "VARIABLES",
     "Axis",
     "Draws",
+    "Ending",
     "Fault",
-    "Group",
     "Product",
     "Progress",
     "Range",

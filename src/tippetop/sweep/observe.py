@@ -27,7 +27,7 @@ HEIGHT_LOOKS = 65
 """Tilts at which the height of the centre of mass is looked at, over the range that a launch went through."""
 
 
-class Group(IntEnum):
+class Ending(IntEnum):
     """What became of a launch."""
 
     UPRIGHT = 0
@@ -81,7 +81,10 @@ def _meanings(flags: type[IntEnum]) -> tuple[str, ...]:
 
 VARIABLES = {
     "outcome": Variable(
-        f"what became of the launch (upright, inverted: within {NEAR_POLE} rad)", "", "int8", _meanings(Group)
+        f"what became of it (upright, inverted: within {NEAR_POLE} rad)",
+        "",
+        "int8",
+        _meanings(Ending),
     ),
     "fault": Variable("why there is no such launch", "", "int8", _meanings(Fault)),
     "final_theta": Variable("tilt of the axis from the vertical at the end", "rad"),
@@ -134,7 +137,7 @@ def observed(cells: Cells, which: NDArray[np.intp], launches: Launches, ends: En
         lost = energy(launches.state, top) - energy(end, top)
         precession = np.where(axis_sine(end.axis) > 0, precession_rate(end.axis, end.momentum, top), np.nan)
     found = {
-        "outcome": group(ends),
+        "outcome": ending(ends),
         "final_theta": tilt(end),
         "final_omega3": axial_spin(end.axis, end.momentum, top) / time,
         "final_phi_dot": precession / time,
@@ -154,14 +157,14 @@ def observed(cells: Cells, which: NDArray[np.intp], launches: Launches, ends: En
     return {name: np.broadcast_to(values, (count,)) for name, values in found.items()}
 
 
-def group(ends: Ends) -> NDArray[np.int8]:
-    """Numbers of `Group`."""
+def ending(ends: Ends) -> NDArray[np.int8]:
+    """Numbers of `Ending`."""
     final = tilt(ends.state)
     near = [final <= NEAR_POLE, final >= np.pi - NEAR_POLE]
-    found = np.select(near, [Group.UPRIGHT, Group.INVERTED], Group.TILTED)
-    found[ends.outcome == OUTCOMES.index(Outcome.LIFTED_OFF)] = Group.LIFTED_OFF
+    found = np.select(near, [Ending.UPRIGHT, Ending.INVERTED], Ending.TILTED)
+    found[ends.outcome == OUTCOMES.index(Outcome.LIFTED_OFF)] = Ending.LIFTED_OFF
     gave_up = np.isin(ends.outcome, [OUTCOMES.index(Outcome.FAILED), OUTCOMES.index(Outcome.TOO_MANY_PHASES)])
-    found[gave_up] = Group.FAILED
+    found[gave_up] = Ending.FAILED
     return found.astype(np.int8)
 
 
@@ -176,5 +179,5 @@ def sliding_height(ends: Ends, top: Top) -> Array:
 def nothing_known(count: int) -> dict[str, NDArray[Any]]:
     """The variables of cells that were not launched."""
     found = {name: np.full(count, kind.missing, dtype=kind.dtype) for name, kind in VARIABLES.items()}
-    found["outcome"][:] = Group.BAD
+    found["outcome"][:] = Ending.BAD
     return found

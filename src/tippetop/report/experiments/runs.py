@@ -14,7 +14,7 @@ from tippetop.report.experiment import Experiment, variable
 from tippetop.report.listing import CONTROLS, listing_run
 from tippetop.report.readings import crossings, first_below_zero, flip_time, longest_quiet
 from tippetop.simulate import simulate
-from tippetop.sweep import Axis, Group, Product, Sweep, compute
+from tippetop.sweep import Axis, Ending, Product, Sweep, compute
 
 WINDOW = 20.0
 """Length of the report's runs, s (its listing, line 13)."""
@@ -49,7 +49,7 @@ def swept(problem: Problem, values: Mapping[str, np.ndarray], window: float = WI
     """What becomes of the launches that cross these values of fields; nan where one became singular."""
     axes = (Axis.listed(field, list(numbers)) for field, numbers in values.items())
     found = compute(Sweep(problem, Product(tuple(axes)), window, SWEPT))
-    return found.where(~found["outcome"].isin([Group.FAILED, Group.BAD]))
+    return found.where(~found["outcome"].isin([Ending.FAILED, Ending.BAD]))
 
 
 def lift_off_time(run: xr.Dataset) -> float:
