@@ -90,7 +90,11 @@ def short() -> xr.Dataset:
 
 
 def test_gif_has_a_picture_for_every_moment(short: xr.Dataset, tmp_path: Path) -> None:
-    path = write_movie(short, tmp_path / "run.gif", fps=10.0, pixels=(96, 72))
+    told: list[tuple[int, int]] = []
+    path = write_movie(
+        short, tmp_path / "run.gif", fps=10.0, pixels=(96, 72), watcher=lambda *so_far: told.append(so_far)
+    )
+    assert told == [(number, len(told)) for number in range(1, len(told) + 1)]
     with Image.open(path) as film:
         assert film.size == (96, 72)
         assert film.n_frames == 6

@@ -1,7 +1,10 @@
 """`tippetop simulate`: one run, its summary, its files."""
 
 import json
+import sys
 import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -132,7 +135,22 @@ def _export(run: "xr.Dataset", kind: str, path: Path, force: bool) -> None:
         case "mp4" | "gif":
             from tippetop.export.movie import write_movie  # noqa: PLC0415
 
-            write_movie(run, path, overwrite=force)
+            with _progress(f"drawing {path.name}") as watcher:
+                write_movie(run, path, overwrite=force, watcher=watcher)
+
+
+@contextmanager
+def _progress(what: str) -> Iterator[Callable[[int, int], None]]:
+    """A watcher that shows on a terminal how far something is, and how long it still takes."""
+    from rich.console import Console  # noqa: PLC0415
+    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn  # noqa: PLC0415
+    from rich.progress import TimeRemainingColumn as TimeLeft  # noqa: PLC0415
+
+    columns = (TextColumn(what), BarColumn(), TaskProgressColumn(), TimeLeft())
+    silent = not sys.stderr.isatty()
+    with Progress(*columns, console=Console(stderr=True), disable=silent, transient=True) as bar:
+        shown = bar.add_task(what)
+        yield lambda done, count: bar.update(shown, total=count, completed=done)
 
 
 def _check_names(wanted: dict[str, Path]) -> None:

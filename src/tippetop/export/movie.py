@@ -3,7 +3,7 @@
 import math
 import shutil
 import subprocess
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +21,7 @@ from tippetop.mechanics.shape import contact_vector
 from tippetop.problem import Problem
 
 Frame = NDArray[np.uint8]
+Watcher = Callable[[int, int], None]
 
 MOST_FRAMES = 20_000
 _EYE = np.array([2.6, -6.0, 3.0])
@@ -35,6 +36,7 @@ def write_movie(
     fps: float | None = None,
     speed: float = 1.0,
     pixels: tuple[int, int] | None = None,
+    watcher: Watcher | None = None,
 ) -> Path:
     """Write a run as a film, .mp4 or .gif by the path's suffix.
 
@@ -48,6 +50,8 @@ def write_movie(
         Seconds of the run per second of film: less than 1 for slow motion.
     pixels
         Width and height, even numbers; None for 640 x 480 in an .mp4 and 360 x 270 in a .gif.
+    watcher
+        Told after every picture how many there are so far, and how many there will be.
 
     Raises
     ------
@@ -68,6 +72,8 @@ def write_movie(
     extent = pixels or ((640, 480) if encoder else (360, 270))
     _check(rate, speed, extent)
     pictures = frames(run, rate, speed, extent)
+    if watcher is not None:
+        pictures = _told(pictures, frame_count(run, rate, speed), watcher)
     with written_beside(path) as beside:
         if encoder:
             _encode(encoder, pictures, beside, rate, extent)
@@ -92,8 +98,15 @@ def ffmpeg() -> str:
     return found
 
 
-def frames(run: xr.Dataset, fps: float, speed: float, pixels: tuple[int, int]) -> Iterator[Frame]:
-    """The pictures of a film, shape (height, width, 3) each.
+def _told(pictures: Iterator[Frame], count: int, watcher: Watcher) -> Iterator[Frame]:
+    """The same pictures, each of them reported once it is done with."""
+    for number, drawn in enumerate(pictures, start=1):
+        yield drawn
+        watcher(number, count)
+
+
+def frame_count(run: xr.Dataset, fps: float, speed: float) -> int:
+    """How many pictures a film has.
 
     Raises
     ------
@@ -106,6 +119,18 @@ def frames(run: xr.Dataset, fps: float, speed: float, pixels: tuple[int, int]) -
         raise InvalidInput(
             "speed", speed, f"at least {speed * count / MOST_FRAMES:.2g} for a run of {duration:g} s"
         )
+    return count
+
+
+def frames(run: xr.Dataset, fps: float, speed: float, pixels: tuple[int, int]) -> Iterator[Frame]:
+    """The pictures of a film, shape (height, width, 3) each.
+
+    Raises
+    ------
+    InvalidInput
+        If there would be too many.
+    """
+    count = frame_count(run, fps, speed)
     problem = Problem.from_json(run.attrs["problem"])
     toy = Toy(problem.body)
     times = np.arange(count) * speed / fps
