@@ -13,7 +13,7 @@ from tippetop.sweep.lanes import Lanes, arrivals
 from tippetop.sweep.observe import VARIABLES, final_band, nothing_known, observed
 from tippetop.sweep.stepper import stepper
 
-LANES_AT_ONCE = 1024
+LANES_AT_ONCE = 2048
 """Launches that are followed together: enough to make little of Python's part, few enough for the cache."""
 
 
