@@ -21,7 +21,7 @@ import numpy as np
 
 import tippetop as tt
 from benchmarks.contenders import CONTENDERS, DURATION, ENGINE, Array, engine, problem
-from benchmarks.surroundings import PROCESSORS, markdown
+from benchmarks.surroundings import PROCESSORS, markdown, rounded
 
 SPINS = (130.0, 160.0)
 TARGET = 1e-9
@@ -173,7 +173,7 @@ def measure(quick: bool, say: Callable[[str], None]) -> dict[str, Any]:
             say(f"{name}: tolerance {tolerance:.0e}, error {tried.error:.1e} rad")
             if tried.error <= TARGET:
                 figure = race(name, spins, tolerance, truth)
-                say(f"{name}: {figure.rate:,.3g} launches/s, error {figure.error:.1e} rad")
+                say(f"{name}: {rounded(figure.rate)} launches/s, error {figure.error:.1e} rad")
                 if figure.error <= TARGET:
                     break
         if figure is None or figure.error > TARGET:
@@ -193,9 +193,9 @@ def tables(found: dict[str, Any]) -> str:
             figure.name,
             f"{figure.tolerance:.0e}",
             f"{figure.error:.1e}",
-            f"{figure.rate:,.3g}",
-            f"{figure.processor_ms:,.3g}",
-            f"{ours.rate / figure.rate:,.3g}",
+            rounded(figure.rate),
+            rounded(figure.processor_ms),
+            rounded(ours.rate / figure.rate),
             f"{figure.memory:,.0f}",
         ]
         for figure in figures

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 import psutil
 
-from benchmarks.surroundings import COMMAND_LINE, PROCESSORS, markdown, memory_of
+from benchmarks.surroundings import COMMAND_LINE, PROCESSORS, markdown, memory_of, rounded
 from tippetop.presets import report_problem
 from tippetop.sweep import Axis, Product, Sweep
 from tippetop.sweep.ensemble import follow_cells
@@ -127,9 +127,9 @@ def tables(found: dict[str, Any]) -> str:
             f"{cost.side} x {cost.side}",
             cost.liftoff,
             f"{cost.workers}",
-            f"{cost.clock:.3g}",
-            f"{cost.used:.3g}",
-            f"{cost.side**2 / cost.clock:,.3g}",
+            rounded(cost.clock),
+            rounded(cost.used),
+            rounded(cost.side**2 / cost.clock),
             f"{cost.memory:,.0f}",
             f"{cost.flights:,}",
         ]

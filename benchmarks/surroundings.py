@@ -45,6 +45,11 @@ def memory_of(process: psutil.Process) -> int:
     return total
 
 
+def rounded(value: float) -> str:
+    """A number to three digits, without a power of ten."""
+    return f"{float(f'{value:.3g}'):,g}"
+
+
 def markdown(heads: list[str], rows: list[list[str]]) -> str:
     """A table in Markdown; all columns but the first are numbers."""
     rule = ["---", *("---:" for _ in heads[1:])]
