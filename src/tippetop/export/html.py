@@ -35,7 +35,7 @@ const text = (id) => document.getElementById(id).textContent;
 const three = await importText(new TextDecoder().decode(await unzip(text("three"))));
 const player = createPlayer(three, document.getElementById("player"), {{ theme: "auto" }});
 player.load(await unzip(text("run")));
-player.toggle(true);
+player.toggle(!stillness());
 globalThis.tippetopPlayer = player;
 </script>
 </body>

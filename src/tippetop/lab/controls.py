@@ -145,6 +145,8 @@ class DialRow:
             with ui.element("div").classes("lab-dial-slider"):
                 self.slider = _Slider(min=low, max=high, step=step, on_change=self._slid)
                 self.slider.props(f'aria-label="{name}" dense').mark(dial.label)
+                if dial.logarithmic:
+                    self.slider.props(f'data-powers data-unit="{dial.unit}"')
                 self.slider.on("update:model-value", js_handler=_moved(dial))
                 self.marks = ui.element("div").classes("lab-dial-marks")
 
@@ -156,7 +158,10 @@ class DialRow:
             return
         self._quiet = True
         self.number.value = float(f"{value:.6g}")
-        self.slider.value = self._place(min(max(value, self._dial.low), self._dial.high))
+        bounded = min(max(value, self._dial.low), self._dial.high)
+        # Not where it stands for that already: it may be on its way, and would lose steps.
+        if self.slider.value is None or not math.isclose(self._value(self.slider.value), bounded):
+            self.slider.value = self._place(bounded)
         self._quiet = False
 
     def mark(self, marks: dict[str, float]) -> None:
@@ -175,10 +180,14 @@ class DialRow:
     def _place(self, value: float) -> float:
         return math.log10(value) if self._dial.logarithmic else value
 
+    def _value(self, place: float) -> float:
+        """What a place of the slider stands for, as the browser rounds it too."""
+        return float(f"{10**place:.3g}") if self._dial.logarithmic else float(place)
+
     def _slid(self, event: events.ValueChangeEventArguments[float | None]) -> None:
         if self._quiet or event.value is None:
             return
-        value = float(f"{10**event.value:.3g}") if self._dial.logarithmic else float(event.value)
+        value = self._value(event.value)
         self._quiet = True
         self.number.value = float(f"{value:.6g}")
         self._quiet = False

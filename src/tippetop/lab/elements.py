@@ -26,10 +26,13 @@ class Player(
         super().__init__()
         self._props["track-path"] = track_path
         self._props["file-path"] = file_path
+        self.asked = 0
+        """How many launches the browser was told to show."""
 
     def launch(self, query: str, play: bool = False) -> None:
         """Show a launch, given as the query of a link, from the start if it is to `play`."""
-        self.run_method("launch", query, play)
+        self.asked += 1
+        self.run_method("launch", query, play, self.asked)
 
 
 class Plots(Element, component=_COMPONENTS / "lab_plots.js"):
@@ -59,6 +62,6 @@ class PhaseMap(Element, component=_COMPONENTS / "lab_map.js"):
         """Draw what has become known."""
         self.run_method("put", part.cells, part.tilts, part.flights, part.fates)
 
-    def here(self, spin: float, mu: float) -> None:
-        """Mark the launch that is shown."""
-        self.run_method("here", spin, mu)
+    def here(self, place: tuple[float, float] | None) -> None:
+        """Mark a spin and friction as those of the launch that is shown; None if it is not on the map."""
+        self.run_method("here", place)

@@ -2,8 +2,10 @@
 
 import asyncio
 import math
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
+from urllib.parse import parse_qsl
 
 from fastapi import Request
 from nicegui import background_tasks, events, ui
@@ -15,10 +17,11 @@ from tippetop.lab.elements import PhaseMap, Player, Plots
 from tippetop.lab.jobs import KINDS
 from tippetop.lab.launches import launches
 from tippetop.lab.map_job import Fate
-from tippetop.lab.phase_map import parts_of, plan_map
+from tippetop.lab.phase_map import MapPlan, parts_of, plan_map
 from tippetop.lab.server import FILE_PATH, TRACK_PATH
 from tippetop.lab.setup import Setup, first_setup, read_query
 from tippetop.lab.workers import Workers
+from tippetop.theory.prediction import Prediction
 
 SHOW_DELAY = 0.12
 """How long the words beside a slider wait for the picture of its run, s."""
@@ -53,6 +56,7 @@ class Laboratory:
         self.pool, self.setup = pool, setup
         self.quiet = self.showing = False
         self.law_shown: tuple[object, ...] = ()
+        self.plan: MapPlan | None = None
         self.mapping: asyncio.Task[None] | None = None
         ui.add_css(_CSS)
         ui.colors(primary="#1b74bd")
@@ -68,6 +72,8 @@ class Laboratory:
                 with ui.element("div").classes("lab-side"):
                     self._map()
                     self._files()
+        self.player.on("refused", self._refused)
+        self.player.on("link", self._linked)
         self.player.on("ready", lambda: self.player.launch(self.setup.query, play=True))
         self.show()
         self.complain(trouble)
@@ -113,7 +119,7 @@ class Laboratory:
                 ui.label("Map: where launches end").classes("lab-subtitle").props(
                     'role="heading" aria-level="2"'
                 )
-                self.map_button = ui.button("Compute", on_click=self._begin_map).props(
+                self.map_button = ui.button("Compute", on_click=self._press_map).props(
                     "dense no-caps outline"
                 )
             self.progress = ui.linear_progress(0.0, show_value=False).props(
@@ -126,12 +132,18 @@ class Laboratory:
         with ui.element("section").classes("lab-files").props('aria-label="Files"'):
             ui.label("Keep or share this run").classes("lab-subtitle").props('role="heading" aria-level="2"')
             with ui.element("div").classes("lab-links"):
-                ui.button("Copy link", icon="link", on_click=self._copy).props("outline dense no-caps")
+                # In the browser: what a click has not asked for may not reach the clipboard.
+                copy = ui.button("Copy link", icon="link").props("outline dense no-caps")
+                copy.on("click", js_handler="() => tippetopLab.copy()")
                 for kind in KINDS:
                     link = ui.element("a").classes("lab-file")
                     link.props(f'data-kind="{kind}" download="tippetop.{kind}" href="#"')
                     with link:
                         ui.label(_FILE_NAMES[kind])
+            with ui.element("div").classes("lab-link") as self.link_row:
+                ui.label("The browser lets nothing onto the clipboard here. Copy the link from this field:")
+                self.link = ui.input().props('dense outlined readonly aria-label="Link to this launch"')
+            self.link_row.set_visibility(False)
 
     def change(self, changes: dict[str, Any], asked: bool = False, play: bool = False) -> None:
         """Change the launch and show what it does, or say why it cannot be.
@@ -149,6 +161,7 @@ class Laboratory:
             self.setup = self.setup.changed(changes)
         except InvalidInput as error:
             self.complain(str(error))
+            self.show()
             return
         self.complain("")
         if asked:
@@ -156,6 +169,23 @@ class Laboratory:
         else:
             self.player.launch(self.setup.query, play)
             self.show()
+
+    def go_to(self, setup: Setup) -> None:
+        """Launch something else, and play it from the start."""
+        self.setup = setup
+        self.complain("")
+        self.player.launch(self.setup.query, play=True)
+        self.show()
+
+    def _refused(self, event: events.GenericEventArguments) -> None:
+        """Go back to the launch that the browser still shows, as no run came of a newer one."""
+        if event.args["heard"] != self.player.asked:
+            return  # Another launch is on its way to the browser, and what comes of that will be told.
+        with suppress(InvalidInput):
+            self.setup = read_query(dict(parse_qsl(event.args["query"])))
+        self.show()
+        if event.args["why"]:
+            self.complain(event.args["why"])
 
     def _show_soon(self) -> None:
         """Show the launch once the browser has its run: the picture comes first."""
@@ -190,10 +220,19 @@ class Laboratory:
         spins, end = known_spins(problem), known_end(problem)
         marks = {"ωc₁": spins.upright, "ωc₂": spins.inverted} if spins else {}
         self.spin_row.mark({name: value for name, value in marks.items() if math.isfinite(value)})
-        self.prospect.text = f"Heads for {steady_in_words(end.reachable[0])}." if end else ""
-        mu = getattr(problem.friction, "mu", None)
-        if mu is not None:
-            self.map.here(problem.launch.spin, mu)
+        self.prospect.text = _prospect(end) if end else ""
+        self._show_here()
+
+    def _show_here(self) -> None:
+        """Mark the launch on the map, if the map is of launches like it."""
+        mu = getattr(self.setup.problem.friction, "mu", None)
+        here = None
+        if mu is not None and self.plan is not None:
+            spin = self.setup.problem.launch.spin
+            with suppress(InvalidInput):
+                if _cell(self.plan, spin, mu) == self.setup:
+                    here = (spin, mu)
+        self.map.here(here)
 
     def _show_law(self, word: str) -> None:
         friction = self.setup.problem.friction
@@ -221,10 +260,7 @@ class Laboratory:
     def _preset(self, event: events.ValueChangeEventArguments[str | None]) -> None:
         if self.quiet or event.value is None:
             return
-        self.setup = self.presets[event.value]
-        self.complain("")
-        self.player.launch(self.setup.query, play=True)
-        self.show()
+        self.go_to(self.presets[event.value])
 
     def _law(self, event: events.ValueChangeEventArguments[str | None]) -> None:
         if not self.quiet and event.value is not None:
@@ -238,25 +274,45 @@ class Laboratory:
     def _theme(self) -> None:
         self.dark.value = {None: True, True: False, False: None}[self.dark.value]
 
-    def _copy(self) -> None:
-        ui.run_javascript("navigator.clipboard?.writeText(tippetopLab.link)")
-        ui.notify("The link to this launch is on the clipboard.")
+    def _linked(self, event: events.GenericEventArguments) -> None:
+        """Say that the link is copied, or show it where the browser copies nothing: not over plain http."""
+        self.link_row.set_visibility(not event.args["copied"])
+        if event.args["copied"]:
+            ui.notify("The link to this launch is on the clipboard.")
+            return
+        self.link.value = event.args["link"]
+        self.link.run_method("focus")
+        self.link.run_method("select")
 
     def _launch_cell(self, spin: float, mu: float) -> None:
-        self.change({"launch.spin": spin, "friction.mu": mu}, play=True)
+        """Launch what a cell of the map shows: the rest of it may have been set otherwise since."""
+        if self.plan is not None:
+            try:
+                self.go_to(_cell(self.plan, spin, mu))
+            except InvalidInput as error:
+                self.complain(str(error))
+
+    def _press_map(self) -> None:
+        if self.mapping is None:
+            self._begin_map()
+            return
+        self.stop_map()
+        self.map_button.text = "Compute again"
+        self.map_note.text = "Stopped. What there is of it can be launched."
 
     def _begin_map(self) -> None:
-        self.stop_map()
         try:
             plan = plan_map(self.setup, controls.SPIN.high)
         except InvalidInput as error:
             self.map_note.text = str(error)
             return
+        self.plan = plan
         spins = known_spins(self.setup.problem)
         marks = [s for s in (spins.upright, spins.inverted) if math.isfinite(s)] if spins else []
         unit = " s/m" if self.setup.problem.friction.kind == "viscous" else ""
         self.map.begin(plan.spins, plan.frictions, unit, marks)
-        self.map_button.text = "Compute again"
+        self._show_here()
+        self.map_button.text = "Stop"
         self.progress.value = 0.0
         self.map_note.text = "The laboratory gets ready for it."
 
@@ -274,6 +330,8 @@ class Laboratory:
                 )
             except TippetopError as error:
                 self.map_note.text = str(error)
+            self.mapping = None
+            self.map_button.text = "Compute again"
 
         self.mapping = background_tasks.create(work(), name="phase map")
 
@@ -282,3 +340,16 @@ class Laboratory:
         if self.mapping is not None and not self.mapping.done():
             self.mapping.cancel()
         self.mapping = None
+
+
+def _cell(plan: MapPlan, spin: float, mu: float) -> Setup:
+    """The launch of a cell of a map."""
+    return plan.setup.changed({"launch.spin": spin, "friction.mu": mu})
+
+
+def _prospect(end: Prediction) -> str:
+    """What theory says a launch heads for."""
+    states = " or for ".join(steady_in_words(state) for state in end.reachable)
+    return f"Heads for {states}" + (
+        "." if end.certain else ": both are stable, and the launch's details decide."
+    )

@@ -242,6 +242,11 @@ export class Player extends EventTarget {
   }
 }
 
+// Whether the visitor asks for no motion that was not asked for.
+export function stillness() {
+  return matchMedia("(prefers-reduced-motion: reduce)").matches;
+}
+
 export function createPlayer(libraries, host, options) {
   return new Player(libraries, host, options);
 }

@@ -38,6 +38,7 @@ export const STYLE = `
 .tt-arrows i { width: 14px; height: 4px; border-radius: 2px; }
 .tt-scrub { position: relative; flex: 1 1 auto; height: 36px; border: 1px solid var(--tt-line); border-radius: 8px;
   overflow: hidden; }
+.tt-scrub:focus-within { outline: 2px solid var(--tt-accent); outline-offset: 1px; }
 .tt-strip { position: absolute; inset: 0; width: 100%; height: 100%; }
 .tt-scrub input { position: absolute; inset: 0; width: 100%; height: 100%; margin: 0; background: transparent;
   appearance: none; -webkit-appearance: none; cursor: ew-resize; }

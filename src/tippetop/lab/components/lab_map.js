@@ -1,6 +1,6 @@
 // The phase map on the page.
 
-import { watchTheme } from "tippetop-lab";
+import { lab, watchTheme } from "tippetop-lab";
 import { PhaseMap } from "tippetop-lab/map.js";
 
 export default {
@@ -12,6 +12,7 @@ export default {
     <p class="lab-map-tip" aria-live="polite"></p></div>`,
   mounted() {
     this.map = new PhaseMap(this.$el.querySelector("canvas"), this.$el.querySelector(".lab-map-tip"));
+    lab.map = this.map;
     this.map.addEventListener("launch", ({ detail }) => this.$emit("launch", detail));
     this.observer = watchTheme((dark) => this.map.setTheme(dark));
   },
@@ -27,8 +28,8 @@ export default {
     put(cells, tilts, flights, fates) {
       this.map.put(cells, tilts, flights, fates);
     },
-    here(spin, mu) {
-      this.map.here(spin, mu);
+    here(place) {
+      this.map.here(place);
     },
   },
 };

@@ -1,8 +1,13 @@
 // The player on the page: fetches the launch it is told, shows it, and keeps links and address in step.
 
 import { OrbitControls, THREE } from "nicegui-scene";
-import { lab, watchTheme } from "tippetop-lab";
-import { createPlayer } from "tippetop-player";
+import { lab, readPowers, watchTheme } from "tippetop-lab";
+import { createPlayer, stillness } from "tippetop-player";
+
+// How long a run may be on its way before that is shown, ms.
+const PATIENCE = 300;
+// When the slider's last move has reached the server, ms: it is held back for 50.
+const SETTLED = 100;
 
 export default {
   template: `<div class="lab-player"><div class="lab-player-host"></div>
@@ -16,47 +21,105 @@ export default {
     this.player.addEventListener("time", () => this.moved());
     this.observer = watchTheme((dark) => this.player.setTheme(dark ? "dark" : "light"));
     lab.tune = (name, value) => this.tune(name, value);
+    lab.copy = () => this.copy();
+    this.powers = readPowers();
     globalThis.tippetopLab = lab;
     this.$emit("ready");
   },
   unmounted() {
     this.observer?.disconnect();
+    this.powers?.disconnect();
+    clearTimeout(this.waiting);
     this.player?.dispose();
   },
   methods: {
-    // Show a launch, given as the query of a link; while one is on its way only the newest waits.
-    async launch(query, play) {
-      this.next = this.query = query;
-      this.share(query);
-      if (this.busy) return;
-      this.busy = true;
-      while (this.next !== undefined) {
-        const wanted = this.next;
-        this.next = undefined;
-        try {
-          const response = await fetch(`${this.trackPath}?${wanted}`);
-          if (response.ok) this.show(wanted, await response.arrayBuffer(), play);
-          else this.say(await response.text());
-        } catch (error) {
-          this.say("The laboratory's server does not answer.");
-        }
-      }
-      this.busy = false;
+    // Show a launch, given as the query of a link; `number` counts what the page's server side has asked for.
+    launch(query, play, number) {
+      this.heard = number;
+      this.request({ query, play, changes: {} });
     },
     // Change one field of the launch that is shown: a slider's short way, without asking the page's server side.
     tune(name, value) {
-      const query = new URLSearchParams(this.query);
-      query.set(name, value);
-      if (query.toString() !== this.query) this.launch(query.toString());
+      const query = changed(this.query, { [name]: value });
+      if (query === this.query) return;
+      const waiting = this.next;
+      this.request({ query, play: waiting?.play ?? false, changes: { ...waiting?.changes, [name]: value } });
     },
-    show(query, buffer, play) {
+    // Ask for a run; while one is on its way only the newest waits.
+    request(wanted) {
+      this.next = wanted;
+      this.query = wanted.query;
+      this.share(wanted.query);
+      if (!this.busy) this.work();
+    },
+    async work() {
+      this.busy = true;
+      while (this.next) {
+        const wanted = this.next;
+        this.next = null;
+        this.expect(true);
+        const { ok, content, sentence } = await this.ask(wanted.query);
+        this.expect(false);
+        if (ok) this.show(wanted, content);
+        else if (ok === false) this.refuse(wanted, sentence);
+        else this.say(sentence);
+      }
+      this.busy = false;
+    },
+    async ask(query) {
+      try {
+        const response = await fetch(`${this.trackPath}?${query}`);
+        if (response.ok) return { ok: true, content: await response.arrayBuffer() };
+        return { ok: response.status === 422 ? false : undefined, sentence: await response.text() };
+      } catch (error) {
+        return { sentence: "The laboratory's server does not answer." };
+      }
+    },
+    // Show that a run is being computed, where that takes long enough to be noticed.
+    expect(waiting) {
+      clearTimeout(this.waiting);
+      if (waiting) this.waiting = setTimeout(() => this.$el.setAttribute("aria-busy", "true"), PATIENCE);
+      else this.$el.removeAttribute("aria-busy");
+    },
+    show({ query, play }, buffer) {
       this.say("");
-      this.player.load(buffer);
+      this.good = query;
+      try {
+        this.player.load(buffer);
+      } catch (error) {
+        console.error(error);
+        this.say(`The run came, but cannot be shown: ${error.message}`);
+        return;
+      }
       if (play) {
         this.player.seek(0);
-        this.player.toggle(true);
+        this.player.toggle(!stillness());
       }
       this.fresh = query;
+    },
+    // What is refused is forgotten, so that it does not spoil what is asked for next; the page is told.
+    refuse(wanted, sentence) {
+      if (this.good === undefined) {
+        this.say(sentence);
+        return;
+      }
+      const { next } = this;
+      if (next && Object.keys(next.changes).length) next.query = changed(this.good, next.changes);
+      this.query = next ? next.query : this.good;
+      this.share(this.query);
+      const mended = next && Object.keys(wanted.changes).every((name) => name in next.changes);
+      setTimeout(() => {
+        this.$emit("refused", { query: this.query, heard: this.heard, why: mended ? "" : sentence });
+      }, SETTLED);
+    },
+    async copy() {
+      const { link } = lab;
+      try {
+        await navigator.clipboard.writeText(link);
+        this.$emit("link", { link, copied: true });
+      } catch (error) {
+        this.$emit("link", { link, copied: false });
+      }
     },
     say(sentence) {
       this.trouble.textContent = sentence;
@@ -79,3 +142,10 @@ export default {
     },
   },
 };
+
+// A query with some fields changed.
+function changed(query, changes) {
+  const fields = new URLSearchParams(query);
+  for (const [name, value] of Object.entries(changes)) fields.set(name, value);
+  return fields.toString();
+}

@@ -50,9 +50,9 @@ export class PhaseMap extends EventTarget {
     return null;
   }
 
-  // Mark the launch that is shown now.
-  here(spin, mu) {
-    this.now = [spin, mu];
+  // Mark the spin and friction of the launch that is shown now; null if it is not on the map.
+  here(place) {
+    this.now = place;
     this.draw();
   }
 
