@@ -23,10 +23,10 @@ def reread(setup: Setup) -> Setup:
     mu=st.floats(0, 100),
     eccentricity=st.floats(0.01, 0.9),
     restitution=st.floats(0, 1),
-    duration=st.integers(1, int(LONGEST)),
+    duration=st.floats(0.01, LONGEST),
 )
 def test_a_link_holds_every_launch(
-    spin: float, tilt: float, mu: float, eccentricity: float, restitution: float, duration: int
+    spin: float, tilt: float, mu: float, eccentricity: float, restitution: float, duration: float
 ) -> None:
     setup = first_setup().changed(
         {
@@ -64,7 +64,8 @@ def test_choosing_another_law_drops_the_numbers_of_the_old_one() -> None:
     [
         ({"launch.tilt": "9"}, "launch.tilt"),
         ({"launch.spn": "9"}, "launch.spn"),
-        ({"nonsense": "1"}, "nonsense"),
+        ({"gravity.deep": "1"}, "gravity"),
+        ({"nonsense.deep": "1"}, "nonsense"),
         ({"launch.spin.deep": "1"}, "launch.spin"),
         ({"friction.kind": "glue"}, "friction"),
         ({"launch.spin": "NaN"}, "launch.spin"),
@@ -79,6 +80,15 @@ def test_a_link_that_cannot_be_followed_names_its_fault(query: dict[str, str], f
     with pytest.raises(tt.InvalidInput) as refusal:
         read_query(query)
     assert field in str(refusal.value)
+
+
+def test_what_others_add_to_a_link_is_passed_over() -> None:
+    query = {"launch.spin": "100", "utm_source": "a letter", "fbclid": "x" * 500}
+    assert read_query(query) == first_setup().changed({"launch.spin": 100.0})
+
+
+def test_links_of_whole_seconds_read_as_such() -> None:
+    assert first_setup().query.endswith("duration=20")
 
 
 def test_launches_to_start_from_are_told_apart() -> None:

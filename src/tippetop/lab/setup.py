@@ -16,6 +16,7 @@ LONGEST = 120.0
 LONGEST_VALUE = 200
 """Longest value of a field in a link, letters."""
 
+_PLAIN = {"duration", *Problem.model_fields}
 _ALTERNATIVES = {"friction": "kind", "body.shape": "kind"}
 
 
@@ -56,7 +57,7 @@ class Setup:
     def query(self) -> str:
         """The launch as the query of a link: every field by its name with dots."""
         fields = dict(_leaves(json.loads(self.problem.to_json())))
-        return urlencode({**fields, "duration": f"{self.duration:g}"})
+        return urlencode({**fields, "duration": repr(self.duration).removesuffix(".0")})
 
 
 def first_setup() -> Setup:
@@ -70,9 +71,11 @@ def read_query(query: Mapping[str, str]) -> Setup:
     Raises
     ------
     InvalidInput
-        If the link names a field that does not exist, or a value that cannot be.
+        If the link names a field that does not exist, or a value that cannot be. What is no name like those
+        of fields is passed over: others add utm_source and the like to links that they pass on.
     """
-    return first_setup().changed({name: _parsed(name, value) for name, value in query.items()})
+    fields = {name: value for name, value in query.items() if "." in name or name in _PLAIN}
+    return first_setup().changed({name: _parsed(name, value) for name, value in fields.items()})
 
 
 def _merged(problem: Problem, changes: Mapping[str, Any]) -> Problem:
