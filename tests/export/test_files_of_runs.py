@@ -15,6 +15,7 @@ from tippetop.export.glb import key_times, write_glb
 from tippetop.export.html import write_html
 from tippetop.export.movie import write_movie
 from tippetop.export.poses import poses_at, turned
+from tippetop.export.raycast import fine_path
 
 pygltflib = pytest.importorskip(
     "pygltflib", reason="pygltflib opens .glb files; it comes with the test extra"
@@ -60,6 +61,18 @@ def test_glb_plays_the_run(flying: xr.Dataset, tmp_path: Path) -> None:
     assert np.abs(overlap) == pytest.approx(1.0, abs=1e-5)
     steps = np.einsum("ij,ij->i", quaternions[1:], quaternions[:-1])
     assert (steps > np.cos(0.3)).all(), "the shortest way between two keys is the way the top turns"
+
+
+def test_a_run_that_ended_at_its_launch_is_a_still_model(tmp_path: Path) -> None:
+    launch = tt.Launch(tilt=1.5, spin=155.0, precession=100.0)
+    contact = tt.Contact(liftoff="stop")
+    problem = tt.presets.report_problem().model_copy(update={"launch": launch, "contact": contact})
+    run = tt.simulate(problem, 20.0)
+    assert float(run["time"][-1]) == 0.0
+    model = pygltflib.GLTF2().load(str(write_glb(run, tmp_path / "run.glb")))
+    assert not model.animations
+    assert model.nodes[1].translation[2] > 0
+    assert write_movie(run, tmp_path / "run.gif", pixels=(32, 32)).stat().st_size > 100
 
 
 def test_glb_is_a_model_in_metres_with_y_up(flying: xr.Dataset, tmp_path: Path) -> None:
@@ -161,3 +174,26 @@ def test_a_file_that_exists_is_kept_unless_told_otherwise(short: xr.Dataset, tmp
     options = {"fps": 2.0, "pixels": (32, 32)} if write is write_movie else {}
     write(short, path, True, **options)
     assert path.stat().st_size > 100
+
+
+@pytest.mark.parametrize(("asked", "each"), [(30.0, 30), (20.0, 50), (240.0, 20), (7.0, 140)])
+def test_a_gif_plays_in_time_at_any_rate(short: xr.Dataset, tmp_path: Path, asked: float, each: int) -> None:
+    with Image.open(write_movie(short, tmp_path / "run.gif", fps=asked, pixels=(32, 32))) as film:
+        assert film.info["duration"] == each
+        total = sum(_shown(film, number) for number in range(film.n_frames))
+    assert total == pytest.approx(500, abs=2 * each)
+
+
+def _shown(film: Image.Image, number: int) -> int:
+    film.seek(number)
+    return int(film.info["duration"])
+
+
+def test_the_trace_of_a_film_stops_where_the_top_flies(flying: xr.Dataset) -> None:
+    touching = flying["normal_force"].values != 0.0
+    assert not touching.all()
+    trace = flying[["x", "y"]].to_array().values.T / 0.02
+    path, reached = fine_path(trace, touching)
+    drawn = np.diff(reached) > 0
+    assert (drawn == (touching[1:] & touching[:-1])).all()
+    assert len(path) == reached[-1]

@@ -59,9 +59,6 @@ def glb_bytes(run: xr.Dataset) -> bytes:
     model = _Model()
     toy = model.mesh("toy", [(lathe(part), part.opacity) for part in toy_parts(problem.body)])
     table = model.mesh("table", [(_disc(_TABLE_RADII * size(problem.body)), 1.0)])
-    key = model.accessor(times.astype("<f4"), "SCALAR", bounds=True)
-    moves = model.accessor(poses.positions.astype("<f4"), "VEC3")
-    turns = model.accessor(quaternions[:, [1, 2, 3, 0]].astype("<f4"), "VEC4")
     start = {"translation": poses.positions[0].tolist(), "rotation": quaternions[0, [1, 2, 3, 0]].tolist()}
     # glTF has y up; the root turns z up into it.
     half = 0.5**0.5
@@ -70,25 +67,33 @@ def glb_bytes(run: xr.Dataset) -> bytes:
         {"name": "toy", "mesh": toy, **start},
         {"name": "table", "mesh": table},
     ]
-    model.json["animations"] = [
-        {
-            "name": tell(run).headline,
-            "samplers": [
-                {"input": key, "output": moves, "interpolation": "LINEAR"},
-                {"input": key, "output": turns, "interpolation": "LINEAR"},
-            ],
-            "channels": [
-                {"sampler": 0, "target": {"node": 1, "path": "translation"}},
-                {"sampler": 1, "target": {"node": 1, "path": "rotation"}},
-            ],
-        }
-    ]
+    # A run that ended at its launch stands still.
+    if len(times) > 1:
+        key = model.accessor(times.astype("<f4"), "SCALAR", bounds=True)
+        moves = model.accessor(poses.positions.astype("<f4"), "VEC3")
+        turns = model.accessor(quaternions[:, [1, 2, 3, 0]].astype("<f4"), "VEC4")
+        model.json["animations"] = [_animation(tell(run).headline, key, moves, turns)]
     model.json["asset"]["extras"] = {"problem": json.loads(run.attrs["problem"])}
     return model.bytes()
 
 
+def _animation(name: str, key: int, moves: int, turns: int) -> dict[str, Any]:
+    """An animation of the toy, by the numbers of its accessors."""
+    return {
+        "name": name,
+        "samplers": [
+            {"input": key, "output": moves, "interpolation": "LINEAR"},
+            {"input": key, "output": turns, "interpolation": "LINEAR"},
+        ],
+        "channels": [
+            {"sampler": 0, "target": {"node": 1, "path": "translation"}},
+            {"sampler": 1, "target": {"node": 1, "path": "rotation"}},
+        ],
+    }
+
+
 def key_times(run: xr.Dataset, body: Body) -> NDArray[np.float64]:
-    """Times of the animation's keys, s: so dense that the body turns little between them.
+    """Times of the animation's keys, s: so dense that the body turns little between them; one if it is still.
 
     Raises
     ------
@@ -102,7 +107,7 @@ def key_times(run: xr.Dataset, body: Body) -> NDArray[np.float64]:
         raise InvalidInput(
             "duration", duration, f"at most {duration * MOST_KEYS / keys:.3g} s for so fast a top"
         )
-    return np.linspace(0.0, duration, max(keys, 2))
+    return np.linspace(0.0, duration, keys)
 
 
 def _disc(radius: float) -> Mesh:

@@ -45,7 +45,8 @@ def write_movie(
     run, path, overwrite
         What, where, and whether a file there may go.
     fps
-        Pictures per second; None for 30 in an .mp4 and 20 in a .gif.
+        Pictures per second; None for 30 in an .mp4 and 20 in a .gif. A .gif shows each for a whole number of
+        hundredths of a second, two at least: it gets the nearest rate that it can hold, and plays in time.
     speed
         Seconds of the run per second of film: less than 1 for slow motion.
     pixels
@@ -71,6 +72,8 @@ def write_movie(
     rate = fps if fps is not None else 30.0 if encoder else 20.0
     extent = pixels or ((640, 480) if encoder else (360, 270))
     _check(rate, speed, extent)
+    if not encoder:
+        rate = gif_rate(rate)
     pictures = frames(run, rate, speed, extent)
     if watcher is not None:
         pictures = _told(pictures, frame_count(run, rate, speed), watcher)
@@ -80,6 +83,11 @@ def write_movie(
         else:
             _save_gif(pictures, beside, rate)
     return path
+
+
+def gif_rate(fps: float) -> float:
+    """The rate nearest to `fps` that a .gif can hold; browsers slow down what is faster than 50."""
+    return 100.0 / min(max(round(100.0 / fps), 2), 0xFFFF)
 
 
 def ffmpeg() -> str:
@@ -138,7 +146,7 @@ def frames(run: xr.Dataset, fps: float, speed: float, pixels: tuple[int, int]) -
     axes = [turned(poses.quaternions, np.tile(unit, (count, 1))) for unit in np.eye(3)]
     arm = contact_vector(tuple(run["axis"].values.T), problem.top.shape)
     trace = np.stack([run["x"].values + arm[0], run["y"].values + arm[1]], axis=1) / toy.size
-    path, reached = fine_path(trace)
+    path, reached = fine_path(trace, run["normal_force"].values != 0.0)
     seen = reached[np.searchsorted(run["time"].values, times, side="right") - 1]
     headline = tell(run).headline
     cell = 10 ** round(math.log10(toy.size / 2)) / toy.size
@@ -193,4 +201,4 @@ def _encode(encoder: str, pictures: Iterator[Frame], path: Path, fps: float, pix
 def _save_gif(pictures: Iterator[Frame], path: Path, fps: float) -> None:
     first = Image.fromarray(next(pictures)).quantize(128)
     rest = (Image.fromarray(drawn).quantize(palette=first, dither=Image.Dither.NONE) for drawn in pictures)
-    first.save(path, format="GIF", save_all=True, append_images=rest, duration=1000 / fps, loop=0)
+    first.save(path, format="GIF", save_all=True, append_images=rest, duration=round(1000 / fps), loop=0)

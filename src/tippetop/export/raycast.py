@@ -184,9 +184,13 @@ def _table(view: View, rays: Array, cell: float) -> Array:
     return np.asarray(colour + fog * (_SKY - colour))
 
 
-def fine_path(trace: Array) -> tuple[Array, NDArray[np.intp]]:
-    """Points near enough to look like a line, and how many there are up to every corner of a path."""
+def fine_path(trace: Array, touching: NDArray[np.bool_]) -> tuple[Array, NDArray[np.intp]]:
+    """Points near enough to look like a line, and how many there are up to every corner of a path.
+
+    There are none between corners of which one is not `touching` the table.
+    """
     steps = np.maximum(np.ceil(np.linalg.norm(np.diff(trace, axis=0), axis=1) / 0.012), 1).astype(int)
+    steps[~(touching[1:] & touching[:-1])] = 0
     number = np.repeat(np.arange(len(steps)), steps)
     share = (np.arange(len(number)) - np.repeat(np.cumsum(steps) - steps, steps)) / steps[number]
     path = trace[number] + share[:, None] * (trace[number + 1] - trace[number])
