@@ -1,8 +1,15 @@
+import http.client
 import json
+import os
+import signal
 import socket
+import subprocess
 import sys
+import time
 import urllib.error
 import urllib.request
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 
 import pytest
 import typer
@@ -65,3 +72,59 @@ def test_a_file_can_be_had_without_the_page(server: str) -> None:
         assert answer.headers["Content-Disposition"] == 'attachment; filename="tippetop.toml"'
     assert problem == tt.presets.report_problem(spin=99.0)
     assert json.loads(problem.to_json())["launch"]["spin"] == 99.0
+
+
+SERVE = "import typer; from tippetop.cli.lab import lab; typer.run(lab)"
+
+
+def is_listening(port: int) -> bool:
+    with socket.socket() as trial:
+        return trial.connect_ex(("127.0.0.1", port)) == 0
+
+
+def status_of(port: int, path: str, visitor: str = "127.0.0.1") -> int:
+    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=60, source_address=(visitor, 0))
+    connection.request("GET", path)
+    answer = connection.getresponse()
+    answer.read()
+    connection.close()
+    return answer.status
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="others have one loopback address only")
+def test_a_greedy_visitor_stops_neither_the_others_nor_the_end(tmp_path: Path) -> None:
+    pytest.importorskip("nicegui")
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")}
+    log = tmp_path / "log"
+    command = [sys.executable, "-u", "-c", SERVE, "--port", str(port), "--no-browser", "--workers", "1"]
+    with (
+        log.open("w") as trouble,
+        subprocess.Popen(
+            command, stdout=subprocess.PIPE, stderr=trouble, env=environment, text=True
+        ) as process,
+        ThreadPoolExecutor(45) as threads,
+    ):
+        assert process.stdout is not None
+        process.stdout.readline()
+        while not is_listening(port):
+            time.sleep(0.1)
+        assert status_of(port, "/lab/track?duration=0.1") == 200
+        path = "/lab/track?friction.mu=1e6&duration=120"
+        greedy = [threads.submit(status_of, port, path) for _ in range(45)]
+        time.sleep(1.0)
+        began = time.monotonic()
+        assert status_of(port, "/", "127.0.0.2") == 200
+        assert time.monotonic() - began < 3
+        assert status_of(port, "/lab/track?duration=0.1", "127.0.0.2") == 200
+        assert time.monotonic() - began < 20, "it waits for one run, and for another worker"
+        began = time.monotonic()
+        process.send_signal(signal.SIGINT)
+        process.wait(timeout=15)
+        assert time.monotonic() - began < 10
+        answers = sorted(each.result() for each in greedy)
+    assert set(answers) <= {422, 503}
+    assert answers.count(503) >= 39
+    assert log.read_text() == ""

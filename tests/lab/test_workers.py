@@ -1,10 +1,15 @@
 import asyncio
 import os
+import subprocess
+import sys
+import tempfile
 import threading
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Awaitable, Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 from types import SimpleNamespace
+from typing import TypeVar
 
 import pytest
 
@@ -14,7 +19,26 @@ from tippetop.lab import workers
 from tippetop.lab.map_job import Fate, MapPart, map_parts
 from tippetop.lab.phase_map import COLUMNS, ROWS, MapPlan, parts_of, plan_map
 from tippetop.lab.setup import Setup, first_setup
+from tippetop.lab.turns import Turns
 from tippetop.lab.workers import Worker, Workers
+
+Result = TypeVar("Result")
+
+
+def in_a_loop(work: Callable[[], Awaitable[Result]]) -> Result:
+    async def run() -> Result:
+        return await work()
+
+    with ThreadPoolExecutor(1) as thread:  # another test's browser may have a loop in this one
+        return thread.submit(asyncio.run, run()).result()
+
+
+def is_alive(process: int) -> bool:
+    """Whether a process runs: one that ended and that nobody minds is none."""
+    try:
+        return Path(f"/proc/{process}/stat").read_text().rsplit(")", 1)[1].split()[0] != "Z"
+    except FileNotFoundError:
+        return False
 
 
 @pytest.fixture(scope="module")
@@ -168,5 +192,159 @@ def test_a_page_that_goes_away_stops_its_map(pool: Workers) -> None:
         other = MapPlan(Setup(tt.presets.report_problem(), 0.1), [10.0, 20.0], [0.3])
         return len(seen.cells), len(known_of([part async for part in parts_of(other, pool)]))
 
-    with ThreadPoolExecutor(1) as thread:  # another test's browser may have a loop in this one
-        assert thread.submit(asyncio.run, look()).result() == (COLUMNS * ROWS // 64, 2)
+    assert in_a_loop(look) == (COLUMNS * ROWS // 64, 2)
+
+
+def test_a_stopped_map_that_waits_is_not_begun() -> None:
+    worker, stopped = Worker(), threading.Event()
+    process = worker._process.pid
+    stopped.set()
+    assert list(worker.results(time.sleep, 60, patience=1, stopped=stopped)) == []
+    assert worker._process.pid == process, "and its process still warms up"
+    worker.close()
+
+
+def test_a_map_that_waits_for_another_can_be_given_up(pool: Workers) -> None:
+    first, second = threading.Event(), threading.Event()
+    plan = plan_map(first_setup(), 250.0)
+    parts = pool.map_parts(plan.setup, plan.spins, plan.frictions, first)
+    next(parts)
+    threading.Timer(0.1, second.set).start()
+    began = time.monotonic()
+    assert list(pool.map_parts(plan.setup, plan.spins, plan.frictions, second)) == []
+    assert time.monotonic() - began < 2
+    first.set()
+    assert list(parts) == []
+
+
+def test_files_do_not_wait_for_pictures_nor_leave_anything_behind(
+    pool: Workers, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    short = first_setup().changed({"duration": 0.1})
+    long = first_setup().changed({"launch.spin": 20_000.0, "friction.mu": 50.0, "duration": 120})
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    pool.track(short)  # the worker is ready
+    with ThreadPoolExecutor(1) as thread:
+        refused = thread.submit(pool.track, long)
+        assert pool.file(short, "csv").startswith(b"time")
+        with pytest.raises(tt.InvalidInput, match="within 6 s"):
+            refused.result()
+    with monkeypatch.context() as patch:
+        patch.setattr(workers, "FILE_PATIENCE", 0.3)
+        with pytest.raises(tt.InvalidInput, match=r"within 0\.3 s"):
+            pool.file(long, "nc")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_those_who_wait_hear_when_the_laboratory_is_closed() -> None:
+    closing = Workers(1)
+    closing.track(first_setup().changed({"duration": 0.1}))
+    long = first_setup().changed({"launch.spin": 20_000.0, "friction.mu": 50.0, "duration": 120})
+    with ThreadPoolExecutor(2) as threads:
+        waiting = [threads.submit(closing.track, long) for _ in range(2)]
+        time.sleep(0.5)
+        closing.close()
+        for each in waiting:
+            with pytest.raises(tt.Unavailable, match="is being closed"):
+                each.result(timeout=3)
+    assert not any(worker._process.is_alive() for worker in closing._all), "none is started again"
+
+
+def test_a_worker_ends_with_its_server_even_if_that_is_killed() -> None:
+    pytest.importorskip("resource", reason="this reads /proc")
+    program = """
+import threading, time
+from tippetop.lab.workers import Worker
+worker = Worker(int)
+list(worker.results(int, patience=60))
+threading.Thread(target=lambda: list(worker.results(time.sleep, 60, patience=90)), daemon=True).start()
+print(worker._process.pid, flush=True)
+time.sleep(60)
+"""
+    command = [sys.executable, "-c", program]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as server:
+        assert server.stdout is not None
+        process = int(server.stdout.readline())
+        time.sleep(0.5)
+        assert is_alive(process)
+        server.kill()
+    deadline = time.monotonic() + 10
+    while is_alive(process) and time.monotonic() < deadline:
+        time.sleep(0.1)
+    assert not is_alive(process)
+
+
+async def is_wanted() -> None:
+    """Somebody waits."""
+
+
+def test_a_visitor_who_asks_for_much_delays_others_by_one_run() -> None:
+    done = []
+
+    async def ask() -> None:
+        turns = Turns(1)
+
+        def work(name: str) -> None:
+            time.sleep(0.1)
+            done.append(name)
+
+        async def come(name: str, after: float = 0.0) -> None:
+            await asyncio.sleep(after)
+            await turns.take(name, lambda: work(name), is_wanted)
+
+        await asyncio.gather(*(come("greedy") for _ in range(4)), come("neighbour", 0.05))
+
+    in_a_loop(ask)
+    assert done == ["greedy", "neighbour", "greedy", "greedy", "greedy"]
+
+
+def test_one_visitor_does_not_have_all_places() -> None:
+    async def ask() -> bool:
+        turns, open_again = Turns(2), threading.Event()
+        greedy = [asyncio.create_task(turns.take("greedy", open_again.wait, is_wanted)) for _ in range(3)]
+        await asyncio.sleep(0.05)
+        answered = await asyncio.wait_for(turns.take("neighbour", lambda: True, is_wanted), 5)
+        open_again.set()
+        await asyncio.gather(*greedy)
+        return answered
+
+    assert in_a_loop(ask)
+
+
+def test_too_much_is_refused_with_a_sentence() -> None:
+    async def ask() -> None:
+        turns, open_again = Turns(1, most=3, of_one=2), threading.Event()
+
+        def come(name: str) -> "asyncio.Task[bool]":
+            return asyncio.create_task(turns.take(name, open_again.wait, is_wanted))
+
+        waiting = [come("a"), come("a"), come("b")]
+        await asyncio.sleep(0.05)
+        with pytest.raises(tt.Unavailable, match=r"2 runs of yours .* try again"):
+            await come("a")
+        with pytest.raises(tt.Unavailable, match=r"many others .* try again"):
+            await come("c")
+        open_again.set()
+        assert await asyncio.gather(*waiting, return_exceptions=True) == [True] * 3
+        assert await come("a"), "and then there is room again"
+
+    in_a_loop(ask)
+
+
+def test_work_whose_visitor_has_left_is_not_begun() -> None:
+    async def ask() -> list[str]:
+        turns, done, open_again = Turns(1), [], threading.Event()
+
+        async def has_left() -> None:
+            raise tt.Unavailable("nobody waits")
+
+        first = asyncio.create_task(turns.take("a", open_again.wait, is_wanted))
+        await asyncio.sleep(0.05)
+        with pytest.raises(tt.Unavailable, match="nobody waits"):
+            await turns.take("b", lambda: done.append("b"), has_left)
+        open_again.set()
+        await first
+        await turns.take("c", lambda: done.append("c"), is_wanted)
+        return done
+
+    assert in_a_loop(ask) == ["c"]

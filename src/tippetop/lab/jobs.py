@@ -1,6 +1,5 @@
 """What the worker processes of the laboratory do: a run for the page, or a file of it."""
 
-import tempfile
 from pathlib import Path
 
 import xarray as xr
@@ -32,13 +31,11 @@ def track_of(setup: Setup) -> bytes:
     return pack_run(run_of(setup))
 
 
-def file_of(setup: Setup, kind: str) -> bytes:
-    """The run of a launch as a file of one of the `KINDS`."""
+def file_of(setup: Setup, kind: str, folder: Path) -> bytes:
+    """The run of a launch as a file of one of the `KINDS`, written in a folder that the caller removes."""
     if kind == "toml":
         return setup.problem.to_toml().encode()
-    run = run_of(setup)
-    with tempfile.TemporaryDirectory() as folder:
-        return _WRITERS[kind](run, Path(folder) / f"run.{kind}").read_bytes()
+    return _WRITERS[kind](run_of(setup), folder / f"run.{kind}").read_bytes()
 
 
 def warm_up() -> None:

@@ -3,15 +3,17 @@
 import errno
 import socket
 from collections.abc import Callable
-from contextlib import suppress
 from typing import Any
 
 from tippetop.errors import TippetopError, Unavailable
-from tippetop.lab.setup import read_query
+from tippetop.lab.setup import Setup, read_query
+from tippetop.lab.turns import Turns
 from tippetop.lab.workers import Workers
 
 TRACK_PATH = "/lab/track"
 FILE_PATH = "/lab/file"
+FAREWELL = 3
+"""How long the end of the server waits for answers under way, s."""
 
 _TYPES = {
     "nc": "application/x-netcdf",
@@ -70,6 +72,7 @@ def serve(
             tailwind=False,
             show_welcome_message=False,
             message_history_length=100,
+            timeout_graceful_shutdown=FAREWELL,
         )
     finally:
         pool.close()
@@ -101,26 +104,39 @@ def _shown(host: str) -> str:
 def _add_routes(app: Any, pool: Workers) -> None:
     """The runs and files by the launch in their address; nothing is kept between one request and the next."""
     from fastapi import Request, Response  # noqa: PLC0415 - comes with NiceGUI
+    from nicegui.server import Server  # noqa: PLC0415
 
-    def answer(work: Callable[[], bytes], kind: str, name: str | None = None) -> Response:
+    # Files take longer, and have their own worker: pictures do not wait for them.
+    runs, files = Turns(pool.count), Turns(1)
+
+    async def answer(
+        request: Request, turns: Turns, work: Callable[[Setup], bytes], kind: str, name: str | None = None
+    ) -> Response:
+        async def wanted() -> None:
+            if Server.instance.should_exit:
+                raise Unavailable("the laboratory is being closed")
+            if await request.is_disconnected():
+                raise Unavailable("nobody waits for this any more")
+
+        visitor = request.client.host if request.client else ""
         try:
-            content = work()
+            setup = read_query(request.query_params)
+            content = await turns.take(visitor, lambda: work(setup), wanted)
         except TippetopError as error:
-            return Response(str(error), status_code=422, media_type="text/plain")
+            status = 503 if isinstance(error, Unavailable) else 422
+            return Response(str(error), status_code=status, media_type="text/plain")
         # Numbers hardly compress; saying that they are as they are keeps them from being tried.
         headers = {"Cache-Control": "no-store", "Content-Encoding": "identity"}
         if name is not None:
             headers["Content-Disposition"] = f'attachment; filename="{name}"'
         return Response(content, media_type=kind, headers=headers)
 
-    def track(request: Request) -> Response:
-        return answer(lambda: pool.track(read_query(request.query_params)), "application/octet-stream")
+    async def track(request: Request) -> Response:
+        return await answer(request, runs, pool.track, "application/octet-stream")
 
-    def file(kind: str, request: Request) -> Response:
+    async def file(kind: str, request: Request) -> Response:
         media = _TYPES.get(kind, "text/plain")
-        return answer(lambda: pool.file(read_query(request.query_params), kind), media, f"tippetop.{kind}")
+        return await answer(request, files, lambda setup: pool.file(setup, kind), media, f"tippetop.{kind}")
 
-    with suppress(AttributeError):
-        track.__annotations__["request"] = file.__annotations__["request"] = Request
     app.add_api_route(TRACK_PATH, track, methods=["GET"], response_model=None)
     app.add_api_route(FILE_PATH + "/tippetop.{kind}", file, methods=["GET"], response_model=None)

@@ -8,11 +8,14 @@ import logging
 import multiprocessing
 import os
 import queue
+import signal
+import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from multiprocessing.connection import Connection
+from pathlib import Path
 from typing import Any, TypeVar
 
 from tippetop.errors import InvalidInput, TippetopError, Unavailable, one_of
@@ -38,6 +41,8 @@ class Worker:
 
     def __init__(self, warm_up: Callable[[], None] = jobs.warm_up) -> None:
         self._warm_up = warm_up
+        self._closed = False
+        self._changing = threading.Lock()
         self._start()
 
     def _start(self) -> None:
@@ -67,9 +72,10 @@ class Worker:
         TippetopError
             What the job raises.
         """
+        if not self._await_ready(stopped):
+            return
         finished = False
         try:
-            self._await_ready()
             self._end.send((job, arguments))
             deadline = time.monotonic() + patience
             while True:
@@ -87,12 +93,10 @@ class Worker:
         except (EOFError, OSError) as error:
             if isinstance(error, TippetopError | TimeoutError):
                 raise
-            sentence = "the process that computed this has ended, and another takes its place: try again"
-            raise Unavailable(sentence) from error
+            raise self._ended() from error
         finally:
             if not finished:
-                self.close()
-                self._start()
+                self._restart()
 
     def _heard(self, deadline: float, stopped: threading.Event | None) -> bool:
         """Wait for a result; False when stopped before there is one."""
@@ -104,27 +108,56 @@ class Worker:
                 raise TimeoutError
         return False
 
-    def _await_ready(self) -> None:
-        if not self._ready:
-            self._end.recv()
-            self._ready = True
+    def _await_ready(self, stopped: threading.Event | None) -> bool:
+        """Wait until the process has warmed up; False when stopped, and nothing is to be sent."""
+        try:
+            while not (stopped and stopped.is_set()):
+                if self._ready:
+                    return True
+                if self._end.poll(GLANCE):
+                    self._end.recv()
+                    self._ready = True
+        except (EOFError, OSError) as error:
+            self._restart()
+            raise self._ended() from error
+        return False
+
+    def _ended(self) -> Unavailable:
+        if self._closed:
+            return Unavailable("the laboratory is being closed")
+        return Unavailable("the process that computed this has ended, and another takes its place: try again")
+
+    def _restart(self) -> None:
+        """Put another process in the place of this one, unless it is closed."""
+        with self._changing:
+            if not self._closed:
+                self._kill()
+                self._end.close()
+                self._start()
 
     def close(self) -> None:
-        """End the process, whatever it does."""
+        """End the process, whatever it does, for good; another thread that waits for it hears so."""
+        with self._changing:
+            self._closed = True
+            self._kill()
+
+    def _kill(self) -> None:
         self._process.kill()
         self._process.join()
-        self._end.close()
 
 
 class Workers:
-    """A few workers for runs, and one for maps, which take their time."""
+    """A few workers for runs, one for files and one for maps, which take their time."""
 
     def __init__(self, count: int | None = None) -> None:
-        self._runners: queue.SimpleQueue[Worker] = queue.SimpleQueue()
+        self.count = count or max(1, min(4, (os.cpu_count() or 2) - 1))
+        """How many runs can be under way at once."""
+        self._closed = threading.Event()
+        self._changing = threading.Lock()
+        self._all = [Worker() for _ in range(self.count)]
+        self._runners = _queue_of(self._all)
+        self._filers: queue.SimpleQueue[Worker] | None = None
         self._mapping = threading.Lock()
-        self._all = [Worker() for _ in range(count or max(1, min(4, (os.cpu_count() or 2) - 1)))]
-        for worker in self._all:
-            self._runners.put(worker)
         self._mapper = Worker(warm_up_map)
         self._all.append(self._mapper)
 
@@ -136,7 +169,7 @@ class Workers:
         InvalidInput
             If it would take too long.
         """
-        return self._one(setup, jobs.track_of, setup, patience=PATIENCE)
+        return self._one(self._runners, setup, jobs.track_of, setup, patience=PATIENCE)
 
     def file(self, setup: Setup, kind: str) -> bytes:
         """The run of a launch as a file.
@@ -148,7 +181,21 @@ class Workers:
         """
         if kind not in jobs.KINDS:
             raise InvalidInput("kind", kind, one_of(kind, list(jobs.KINDS)))
-        return self._one(setup, jobs.file_of, setup, kind, patience=FILE_PATIENCE)
+        # Its folder is looked after here, since the process that writes in it may have to be killed.
+        with tempfile.TemporaryDirectory(prefix="tippetop-") as folder:
+            return self._one(
+                self._their_filers(), setup, jobs.file_of, setup, kind, Path(folder), patience=FILE_PATIENCE
+            )
+
+    def _their_filers(self) -> queue.SimpleQueue[Worker]:
+        """The worker for files, which is started when the first file is asked for."""
+        with self._changing:
+            if self._filers is None:
+                self._check_open()
+                worker = Worker()
+                self._all.append(worker)
+                self._filers = _queue_of([worker])
+            return self._filers
 
     def map_parts(
         self, setup: Setup, spins: list[float], frictions: list[float], stopped: threading.Event
@@ -160,28 +207,59 @@ class Workers:
         InvalidInput
             If it would take too long.
         """
-        with self._mapping:
-            try:
-                yield from self._mapper.results(
-                    map_parts, setup, spins, frictions, patience=MAP_PATIENCE, stopped=stopped
-                )
-            except TimeoutError:
-                raise _too_long(setup, MAP_PATIENCE, "a map") from None
+        while not self._mapping.acquire(timeout=GLANCE):
+            if stopped.is_set():
+                return
+            self._check_open()
+        try:
+            yield from self._mapper.results(
+                map_parts, setup, spins, frictions, patience=MAP_PATIENCE, stopped=stopped
+            )
+        except TimeoutError:
+            raise _too_long(setup, MAP_PATIENCE, "a map") from None
+        finally:
+            self._mapping.release()
 
-    def _one(self, setup: Setup, job: Callable[..., _Result], *arguments: Any, patience: float) -> _Result:
-        worker = self._runners.get()
+    def _one(
+        self,
+        workers: queue.SimpleQueue[Worker],
+        setup: Setup,
+        job: Callable[..., _Result],
+        *arguments: Any,
+        patience: float,
+    ) -> _Result:
+        worker = self._wait_for(workers)
         try:
             (result,) = worker.results(job, *arguments, patience=patience)
         except TimeoutError:
             raise _too_long(setup, patience) from None
         finally:
-            self._runners.put(worker)
+            workers.put(worker)
         return result  # type: ignore[no-any-return]
 
+    def _wait_for(self, workers: queue.SimpleQueue[Worker]) -> Worker:
+        while True:
+            self._check_open()
+            with suppress(queue.Empty):
+                return workers.get(timeout=GLANCE)
+
+    def _check_open(self) -> None:
+        if self._closed.is_set():
+            raise Unavailable("the laboratory is being closed")
+
     def close(self) -> None:
-        """End all processes."""
-        for worker in self._all:
-            worker.close()
+        """End all processes; who waits for one is told so."""
+        with self._changing:
+            self._closed.set()
+            for worker in self._all:
+                worker.close()
+
+
+def _queue_of(workers: list[Worker]) -> queue.SimpleQueue[Worker]:
+    waiting: queue.SimpleQueue[Worker] = queue.SimpleQueue()
+    for worker in workers:
+        waiting.put(worker)
+    return waiting
 
 
 def _too_long(setup: Setup, patience: float, what: str = "a run") -> InvalidInput:
@@ -195,6 +273,9 @@ def _too_long(setup: Setup, patience: float, what: str = "a run") -> InvalidInpu
 
 def _work(end: Connection, warm_up: Callable[[], None]) -> None:
     """The life of a worker: jobs from the other end of the pipe, until it closes."""
+    # Ctrl-C is for the server, which ends its workers.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_follow_parent, daemon=True, name="follow the server").start()
     with suppress(KeyboardInterrupt, EOFError, BrokenPipeError):
         warm_up()
         end.send("ready")
@@ -212,3 +293,11 @@ def _work(end: Connection, warm_up: Callable[[], None]) -> None:
                 logging.getLogger(__name__).exception("a job failed: %s", arguments)
                 result = InvalidInput("launch", "this one", f"one that can be computed ({error!r})")
             end.send((True, result))
+
+
+def _follow_parent() -> None:
+    """End with the server even if it is killed: a job does not look at its pipe until it is done."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)
