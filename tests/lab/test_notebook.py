@@ -21,7 +21,8 @@ HOST = """async ([code, first, second]) => {
   const bytes = (text) => new DataView(Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer);
   const values = { track: bytes(first), height: 300, theme: "dark" };
   const calls = {};
-  const model = { get: (name) => values[name], on: (name, call) => (calls[name] = call), off: () => {} };
+  const model = { get: (name) => values[name], on: (name, call) => (calls[name] = call),
+    off: (name) => delete calls[name] };
   const url = URL.createObjectURL(new Blob([code], { type: "text/javascript" }));
   const widget = (await import(url)).default;
   const clean = await widget.render({ model, el: document.body });
@@ -32,8 +33,15 @@ HOST = """async ([code, first, second]) => {
   await new Promise((done) => setTimeout(done, 300));
   const drawn = document.querySelector("canvas.tt-canvas").width;
   const after = words();
+  Object.assign(values, { height: 200, theme: "light" });
+  calls["change:height"]();
+  calls["change:theme"]();
+  const player = document.querySelector(".tt-player");
+  const changed = [player.offsetHeight, player.classList.contains("tt-dark")];
+  const gl = document.querySelector("canvas.tt-canvas").getContext("webgl2");
   clean();
-  return [before, after, drawn];
+  const left = [document.body.childElementCount, gl.isContextLost(), Object.keys(calls).length];
+  return [before, after, drawn, changed, left];
 }"""
 
 
@@ -45,10 +53,12 @@ def test_the_widget_plays_a_run_and_then_another(visit: Callable) -> None:
     visitor = visit()
     visitor.page.goto("about:blank")
     blocks = [base64.b64encode(block).decode() for block in (first, widget.track)]
-    before, after, drawn = visitor.ask(HOST, [module_code(), *blocks])
+    before, after, drawn, changed, left = visitor.ask(HOST, [module_code(), *blocks])
     assert before.startswith("stays upright")
     assert after != before
     assert drawn > 100
+    assert changed == [200, False]
+    assert left == [0, True, 0], "nothing stays, graphics least of all"
     widget.close()
 
 

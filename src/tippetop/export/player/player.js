@@ -239,6 +239,8 @@ export class Player extends EventTarget {
     cancelAnimationFrame(this.frame);
     this.resizing.disconnect();
     this.scene?.dispose();
+    this.host.replaceChildren();
+    this.host.classList.remove("tt-player", "tt-dark");
   }
 }
 

@@ -229,6 +229,8 @@ export class Scene {
     this.ink.dispose();
     this.controls.dispose();
     this.renderer.dispose();
+    // A browser holds but some sixteen contexts, and frees one of a canvas that is gone when it likes.
+    this.renderer.forceContextLoss();
   }
 }
 

@@ -7,18 +7,22 @@ async function three() {
 
 async function render({ model, el }) {
   const host = document.createElement("div");
-  host.style.height = `${model.get("height")}px`;
+  const stretch = () => (host.style.height = `${model.get("height")}px`);
+  stretch();
   el.append(host);
   const player = createPlayer(await three(), host, { theme: model.get("theme") });
   const show = () => {
     const view = model.get("track");
     player.load(new Uint8Array(view.buffer, view.byteOffset, view.byteLength).slice().buffer);
   };
-  model.on("change:track", show);
+  const paint = () => player.setTheme(model.get("theme"));
+  const changes = { "change:track": show, "change:height": stretch, "change:theme": paint };
+  for (const [change, call] of Object.entries(changes)) model.on(change, call);
   show();
   return () => {
-    model.off("change:track", show);
+    for (const [change, call] of Object.entries(changes)) model.off(change, call);
     player.dispose();
+    host.remove();
   };
 }
 
