@@ -239,6 +239,19 @@ def test_a_run_that_takes_long_is_seen_to_come_and_plays_when_asked(server: str,
     assert page.locator(".lab-player[aria-busy]").count() == 0
 
 
+def test_a_run_that_ended_at_its_launch_is_a_point(server: str, visit: Callable) -> None:
+    visitor = visit().open(f"{server}/?contact.liftoff=stop&launch.precession=100&launch.tilt=1.5")
+    assert visitor.ask("() => tippetopLab.player.duration") == 0
+    painted = """() => { const canvas = document.querySelector(".lab-plots-host canvas");
+      const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+      let count = 0;
+      for (let i = 0; i < data.length; i += 4) {
+        if (data[i] === 11 && data[i + 1] === 95 && data[i + 2] === 165) count++;
+      }
+      return count; }"""
+    visitor.wait(f"() => ({painted})() > 10")
+
+
 def test_a_link_that_cannot_be_copied_is_shown(server: str, visit: Callable) -> None:
     visitor = visit().open(server)
     page = visitor.page

@@ -5,7 +5,8 @@ export function drawStrip(canvas, track, dark) {
   const width = (canvas.width = Math.max(1, Math.round(canvas.clientWidth * ratio)));
   const height = (canvas.height = Math.max(1, Math.round(canvas.clientHeight * ratio)));
   const pen = canvas.getContext("2d");
-  const { duration, count, time } = track;
+  const { count, time } = track;
+  const duration = track.duration || 1;
   pen.clearRect(0, 0, width, height);
   pen.fillStyle = dark ? "rgba(102,197,240,.25)" : "rgba(11,95,165,.16)";
   for (const [begin, end] of track.header.flights) {

@@ -61,12 +61,12 @@ export class Plots extends EventTarget {
   }
 
   get span() {
-    return this.window ?? [0, this.track?.duration ?? 1];
+    return this.window ?? [0, this.track?.duration || 1];
   }
 
   // Make the span shown longer or shorter by a factor, the same time staying where it is; null shows all.
   zoom(factor, time) {
-    const whole = this.track?.duration ?? 1;
+    const whole = this.track?.duration || 1;
     const [begin, end] = this.span;
     const length = factor === null ? whole : Math.max((end - begin) * factor, 0.01);
     if (length >= whole) this.window = null;
@@ -160,7 +160,10 @@ export class Plots extends EventTarget {
         };
       }),
       series: this.panels.map((p, k) => ({
-        type: "line", xAxisIndex: k, yAxisIndex: k, symbol: "none", silent: true, clip: true,
+        type: "line", xAxisIndex: k, yAxisIndex: k, silent: true, clip: true,
+        // A run that ended at its launch is a point.
+        symbol: "circle", symbolSize: 7, showSymbol: !this.track.duration,
+        itemStyle: { color: (this.dark ? DARK_COLOURS : COLOURS)[k % COLOURS.length] },
         lineStyle: { width: 1.4, color: (this.dark ? DARK_COLOURS : COLOURS)[k % COLOURS.length] },
         data: this.points(p.name, begin, end, p.width),
         markArea: { silent: true, itemStyle: { color: shade }, data: areas },
