@@ -201,6 +201,37 @@ def test_what_is_refused_does_not_spoil_what_is_asked_next(server: str, visit: C
     visitor.wait("([box, value]) => box.value === value", [number.element_handle(), before])
 
 
+def test_a_launch_that_cannot_be_followed_is_gone_back_from(server: str, visit: Callable) -> None:
+    visitor = visit().open(f"{server}/?launch.spin=100")
+    visitor.trouble = Forgiving("422")
+    page = visitor.page
+    page.route("**/lab/track*", lambda route: route.fulfill(status=422, body="It gets too fast."))
+    spin = page.locator(".lab-dial", has_text="Spin")
+    spin.locator(SLIDER).focus()
+    page.keyboard.press("ArrowRight")
+    page.locator(".lab-refused", has_text="It gets too fast.").wait_for()
+    visitor.wait("(box) => box.value === '100'", spin.locator("input").element_handle())
+    page.unroute("**/lab/track*")
+    page.locator(SLIDER).nth(1).focus()
+    page.keyboard.press("ArrowRight")
+    visitor.launched("problem.launch.tilt === 0.11 && problem.launch.spin === 100")
+    page.locator(".lab-refused").wait_for(state="hidden")
+
+
+def test_a_fault_of_the_player_is_not_laid_on_the_server(server: str, visit: Callable) -> None:
+    visitor = visit().open(server)
+    visitor.trouble = Forgiving("not a run")
+    page = visitor.page
+    page.route("**/lab/track*", lambda route: route.fulfill(body="something else"))
+    page.locator(SLIDER).first.focus()
+    page.keyboard.press("ArrowRight")
+    page.locator(".lab-trouble", has_text="this is not a run").wait_for()
+    page.unroute("**/lab/track*")
+    page.keyboard.press("ArrowRight")
+    visitor.launched("problem.launch.spin === 156")
+    page.locator(".lab-trouble").wait_for(state="hidden")
+
+
 def test_a_slider_by_powers_of_ten_keeps_every_step(server: str, visit: Callable) -> None:
     visitor = visit().open(server)
     visitor.pause()
@@ -262,6 +293,13 @@ def test_a_link_that_cannot_be_copied_is_shown(server: str, visit: Callable) -> 
     link = visitor.ask("() => tippetopLab.link")
     visitor.wait("(link) => getSelection().toString() === link", link)
     assert field.input_value() == link
+
+
+def test_a_link_is_copied(server: str, visit: Callable) -> None:
+    visitor = visit(permissions=["clipboard-read", "clipboard-write"]).open(server)
+    visitor.page.get_by_role("button", name="Copy link").click()
+    visitor.page.get_by_text("is on the clipboard").wait_for()
+    assert visitor.ask("() => navigator.clipboard.readText()") == visitor.ask("() => tippetopLab.link")
 
 
 def test_nothing_moves_by_itself_where_that_is_not_wanted(server: str, visit: Callable) -> None:
@@ -401,6 +439,13 @@ def test_the_html_file_plays_without_a_network(files: dict[str, Path], visit: Ca
     visitor.wait("() => globalThis.tippetopPlayer?.time > 0.1")
     assert "leaves the table" in visitor.page.locator(".tt-words strong").inner_text()
     assert [url for url in visitor.requests if not url.startswith(("file:", "blob:", "data:"))] == []
+
+
+def test_the_html_file_waits_where_motion_is_not_wanted(files: dict[str, Path], visit: Callable) -> None:
+    visitor = visit(offline=True, reduced_motion="reduce")
+    visitor.page.goto(files["html"].as_uri())
+    visitor.wait("() => globalThis.tippetopPlayer?.frames > 0")
+    assert not visitor.ask("() => tippetopPlayer.playing")
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
