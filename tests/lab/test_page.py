@@ -373,6 +373,11 @@ def test_a_map_can_be_stopped(server: str, visit: Callable) -> None:
     page.get_by_role("button", name="Compute").click()
     page.get_by_role("button", name="Stop").click()
     page.locator(".lab-note", has_text="Stopped").wait_for()
+    page.wait_for_timeout(3000)
+    assert "Stopped" in page.locator(".lab-note").inner_text(), "nothing more comes of it"
+    page.get_by_role("button", name="Compute again").click()
+    page.locator(".lab-note", has_text="launches followed").wait_for()
+    page.get_by_role("button", name="Stop").click()
     page.get_by_role("button", name="Compute again").wait_for()
 
 
