@@ -5,9 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from tippetop.errors import InvalidInput
-from tippetop.phases.base import EventKind
+from tippetop.mechanics.top import natural_units
+from tippetop.phases.base import EventKind, Outcome
 from tippetop.problem import EccentricSphere, Problem
 from tippetop.summary import NEAR_FINAL
 from tippetop.theory.prediction import Prediction, predict
@@ -17,8 +19,17 @@ from tippetop.theory.thresholds import CriticalSpins, critical_spins
 NEAR = 0.05
 """How close to a vertical the axis must end to count as there, rad."""
 
+AROUND = 0.3
+"""How close to a vertical the axis must be all along to have stayed there, rad."""
+
 SETTLED = 0.02
-"""How close to a steady state the tilt must end to count as settled, rad."""
+"""How close to a steady state the tilt must stay at the end to count as settled, rad."""
+
+LATE = 0.1
+"""Share of a run that counts as its end."""
+
+SWINGS = 20.0
+"""How long the end must be at least, in natural units of time: a few swings of the tilt."""
 
 
 @dataclass(frozen=True)
@@ -40,9 +51,11 @@ class Story:
 def tell(run: xr.Dataset) -> Story:
     """The story of a run."""
     problem = Problem.from_json(run.attrs["problem"])
-    spins, prediction = known_spins(problem), known_end(problem)
-    clauses = [_end(run, problem, spins, prediction), *_flights(run)]
-    details = [_steady(prediction)] if prediction else []
+    prediction = known_end(problem)
+    clauses = [_end(run, problem, prediction), *_flights(run)]
+    details = [f"It heads for {end_in_words(prediction)}."] if prediction else []
+    if _is_frictionless(problem):
+        details.append("There is no friction: nothing makes it settle.")
     if run.attrs["outcome"] != "completed":
         details.insert(0, run.attrs["outcome_advice"])
     return Story("; ".join(clauses), tuple(details))
@@ -59,7 +72,9 @@ def known_spins(problem: Problem) -> CriticalSpins | None:
 
 
 def known_end(problem: Problem) -> Prediction | None:
-    """The steady states a launch heads for; None where the theory does not hold."""
+    """The steady states a launch heads for; None where the theory does not hold, or nothing takes energy."""
+    if _is_frictionless(problem):
+        return None
     try:
         prediction = predict(problem)
     except InvalidInput:
@@ -67,16 +82,29 @@ def known_end(problem: Problem) -> Prediction | None:
     return prediction if prediction.reachable else None
 
 
+def end_in_words(prediction: Prediction) -> str:
+    """All that a launch may head for, as a phrase: "inverted spin with ω₃ = −82.87 rad/s"."""
+    states = " or for ".join(steady_in_words(state) for state in prediction.reachable)
+    return states if prediction.certain else f"{states}: each is stable, and the launch's details decide"
+
+
 def steady_in_words(state: SteadyState) -> str:
     """A steady state as a phrase."""
+    precession, spin = (number_in_words(value, 2) for value in (state.precession, state.spin))
     if state.kind is Kind.PRECESSION:
         return (
             f"precession at {math.degrees(state.tilt):.1f}° (θ = {state.tilt:.3f} rad) "
-            f"with φ′ = {state.precession:.2f} and ω₃ = {state.spin:.2f} rad/s"
+            f"with φ′ = {precession} and ω₃ = {spin} rad/s"
         )
     if state.kind is Kind.LEVEL:
-        return f"level spin with φ′ = {state.precession:.2f} rad/s"
-    return f"{state.kind.value} spin with ω₃ = {state.spin:.2f} rad/s"
+        return f"level spin with φ′ = {precession} rad/s"
+    return f"{state.kind.value} spin with ω₃ = {spin} rad/s"
+
+
+def number_in_words(value: float, places: int) -> str:
+    """A number as it is printed: with a true minus sign, and none before zero."""
+    text = f"{value:.{places}f}"
+    return text.replace("-", "−") if float(text) else text.lstrip("-")
 
 
 def arrival(run: xr.Dataset) -> float:
@@ -90,23 +118,35 @@ def arrival(run: xr.Dataset) -> float:
     return float(time[first - 1] + share * (time[first] - time[first - 1]))
 
 
-def _end(run: xr.Dataset, problem: Problem, spins: CriticalSpins | None, end: Prediction | None) -> str:
-    theta = float(run["theta"].values[-1])
-    start, arrives = problem.launch.tilt, arrival(run)
-    if theta > math.pi - NEAR:
-        return "stays inverted" if start > math.pi / 2 else f"inverts at {arrives:.2f} s"
-    if theta < NEAR and start > math.pi / 2:
-        return f"falls back upright at {arrives:.2f} s"
-    if theta < NEAR:
-        return _upright(abs(problem.launch.spin), spins)
-    angle = f"{math.degrees(theta):.1f}°"
-    if _settled(run, end):
-        return f"settles at {angle} from {arrives:.2f} s on"
-    return f"is at {angle} when the run ends, and still moving"
+def _is_frictionless(problem: Problem) -> bool:
+    return getattr(problem.friction, "mu", None) == 0
 
 
-def _upright(spin: float, spins: CriticalSpins | None) -> str:
-    if spins is None:
+def _end(run: xr.Dataset, problem: Problem, end: Prediction | None) -> str:
+    theta = run["theta"].values
+    upside_down = problem.launch.tilt > math.pi / 2
+    if theta[-1] < NEAR and np.all(theta < AROUND):
+        return _upright(problem)
+    if theta[-1] > math.pi - NEAR and np.all(theta > math.pi - AROUND):
+        return "stays inverted"
+    swings = _late(run, problem, 0.0)
+    unstable = end is not None and all(state.kind is not Kind.UPRIGHT for state in end.reachable)
+    if np.all(theta[swings] < NEAR) and not unstable:
+        return f"{'falls back' if upside_down else 'comes'} upright at {_since(run, theta >= NEAR):.2f} s"
+    # Where it can end nowhere else, being there once is enough.
+    foretold = end is not None and end.certain and end.final.kind is Kind.INVERTED
+    if theta[-1] > math.pi - NEAR and (foretold or np.all(theta[swings] > math.pi - NEAR)):
+        return f"inverts at {arrival(run):.2f} s"
+    angle = f"{math.degrees(theta[-1]):.1f}°"
+    since = _settled(run, problem, end)
+    if since is None:
+        return f"is at {angle} when the run ends, and still moving"
+    return f"settles at {angle} from {since:.2f} s on" if since else f"stays at {angle}"
+
+
+def _upright(problem: Problem) -> str:
+    spin, spins = abs(problem.launch.spin), known_spins(problem)
+    if spins is None or _is_frictionless(problem):
         return "stays upright"
     if spins.upright == math.inf:
         return "stays upright, as at any spin"
@@ -115,29 +155,46 @@ def _upright(spin: float, spins: CriticalSpins | None) -> str:
     return f"is still upright when the run ends, though its spin is above {spins.upright:.1f} rad/s"
 
 
-def _settled(run: xr.Dataset, end: Prediction | None) -> bool:
-    """Whether the tilt has reached a steady state: the foretold one, or, where none is, any."""
+def _late(run: xr.Dataset, problem: Problem, share: float) -> NDArray[np.bool_]:
+    """The samples of the end of a run: a share of it, and a few swings at least."""
+    time = run["time"].values
+    swings = SWINGS * float(natural_units(problem.top).time)
+    late: NDArray[np.bool_] = time >= time[-1] - max(share * time[-1], swings)
+    return late
+
+
+def _settled(run: xr.Dataset, problem: Problem, end: Prediction | None) -> float | None:
+    """Since when the tilt is at a steady state, s: at a foretold one, or, where none is, at any."""
     theta = run["theta"].values
-    if end is not None:
-        return any(abs(state.tilt - theta[-1]) < SETTLED for state in end.reachable)
-    late = run["time"].values > 0.9 * run["time"].values[-1]
-    return bool(late.any() and np.ptp(theta[late]) < SETTLED)
+    late = _late(run, problem, LATE)
+    if run.attrs["outcome"] != Outcome.COMPLETED.name.lower() or late[0]:
+        return None
+    tilts = [state.tilt for state in end.reachable] if end else [float(theta[-1])]
+    for tilt in tilts:
+        off = np.abs(theta - tilt) > SETTLED
+        if not np.any(off & late):
+            return _since(run, off) if np.any(off) else 0.0
+    return None
+
+
+def _since(run: xr.Dataset, off: NDArray[np.bool_]) -> float:
+    """When the tilt arrives for good, s: one that swings passes its last value before."""
+    return max(arrival(run), float(run["time"].values[off][-1]))
 
 
 def _flights(run: xr.Dataset) -> list[str]:
-    lift_offs = run["event_time"].values[run["event_kind"].values == EventKind.LIFT_OFF.value]
-    if not len(lift_offs):
-        return []
-    count = run.sizes["flight"]
-    if not count:
-        return [f"the table would have to pull from {lift_offs[0]:.2f} s on"]
-    times = "once, at" if count == 1 else f"{count} times from"
-    return [f"leaves the table {times} {lift_offs[0]:.2f} s"]
-
-
-def _steady(prediction: Prediction) -> str:
-    first = f"It heads for {steady_in_words(prediction.reachable[0])}"
-    if prediction.certain:
-        return f"{first}."
-    others = " or ".join(steady_in_words(state) for state in prediction.reachable[1:])
-    return f"{first}, or for {others}: both are stable, and the launch's details decide."
+    kinds, times = run["event_kind"].values, run["event_time"].values
+    starts, ends = run["flight_start"].values, run["flight_end"].values
+    lift_offs = times[kinds == EventKind.LIFT_OFF.value]
+    clauses = []
+    if len(starts) and starts[0] == 0 and not np.any(lift_offs == 0):  # let go above the table
+        if not len(times):
+            return ["never touches the table"]
+        clauses.append(f"comes down on the table at {ends[0]:.2f} s")
+        starts = starts[1:]
+    if len(starts):
+        often = "once, at" if len(starts) == 1 else f"{len(starts)} times from"
+        clauses.append(f"leaves the table {often} {starts[0]:.2f} s")
+    if run.attrs["outcome"] == Outcome.LIFTED_OFF.name.lower():
+        clauses.append(f"the table would have to pull from {lift_offs[-1]:.2f} s on")
+    return clauses
