@@ -181,7 +181,7 @@ def test_a_gif_plays_in_time_at_any_rate(short: xr.Dataset, tmp_path: Path, aske
     with Image.open(write_movie(short, tmp_path / "run.gif", fps=asked, pixels=(32, 32))) as film:
         assert film.info["duration"] == each
         total = sum(_shown(film, number) for number in range(film.n_frames))
-    assert total == pytest.approx(500, abs=2 * each)
+    assert 500 < total <= 500 + each
 
 
 def _shown(film: Image.Image, number: int) -> int:
