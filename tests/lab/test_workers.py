@@ -303,9 +303,11 @@ def test_one_visitor_does_not_have_all_places() -> None:
         turns, open_again = Turns(2), threading.Event()
         greedy = [asyncio.create_task(turns.take("greedy", open_again.wait, is_wanted)) for _ in range(3)]
         await asyncio.sleep(0.05)
-        answered = await asyncio.wait_for(turns.take("neighbour", lambda: True, is_wanted), 5)
-        open_again.set()
-        await asyncio.gather(*greedy)
+        try:
+            answered = await asyncio.wait_for(turns.take("neighbour", lambda: True, is_wanted), 5)
+        finally:
+            open_again.set()
+            await asyncio.gather(*greedy)
         return answered
 
     assert in_a_loop(ask)
@@ -320,11 +322,13 @@ def test_too_much_is_refused_with_a_sentence() -> None:
 
         waiting = [come("a"), come("a"), come("b")]
         await asyncio.sleep(0.05)
-        with pytest.raises(tt.Unavailable, match=r"2 runs of yours .* try again"):
-            await come("a")
-        with pytest.raises(tt.Unavailable, match=r"many others .* try again"):
-            await come("c")
+        refused = [come("a"), come("c")]
+        await asyncio.sleep(0.05)
         open_again.set()
+        with pytest.raises(tt.Unavailable, match=r"2 runs of yours .* try again"):
+            await refused[0]
+        with pytest.raises(tt.Unavailable, match=r"many others .* try again"):
+            await refused[1]
         assert await asyncio.gather(*waiting, return_exceptions=True) == [True] * 3
         assert await come("a"), "and then there is room again"
 
@@ -340,9 +344,11 @@ def test_work_whose_visitor_has_left_is_not_begun() -> None:
 
         first = asyncio.create_task(turns.take("a", open_again.wait, is_wanted))
         await asyncio.sleep(0.05)
-        with pytest.raises(tt.Unavailable, match="nobody waits"):
-            await turns.take("b", lambda: done.append("b"), has_left)
+        left = asyncio.create_task(turns.take("b", lambda: done.append("b"), has_left))
+        await asyncio.sleep(0.5)
         open_again.set()
+        with pytest.raises(tt.Unavailable, match="nobody waits"):
+            await left
         await first
         await turns.take("c", lambda: done.append("c"), is_wanted)
         return done
