@@ -313,7 +313,7 @@ def test_nothing_moves_by_itself_where_that_is_not_wanted(server: str, visit: Ca
 
 def test_both_ends_are_told_where_both_are_stable(server: str, visit: Callable) -> None:
     visitor = visit().open(f"{server}/?launch.spin=45&body.shape.eccentricity=0.1")
-    assert "both are stable" in visitor.page.locator(".lab-prospect").inner_text()
+    assert "each is stable" in visitor.page.locator(".lab-prospect").inner_text()
 
 
 def test_a_cell_of_the_map_is_a_launch(server: str, visit: Callable) -> None:

@@ -11,7 +11,7 @@ from fastapi import Request
 from nicegui import background_tasks, events, ui
 
 from tippetop.errors import InvalidInput, TippetopError
-from tippetop.export.words import known_end, known_spins, steady_in_words
+from tippetop.export.words import end_in_words, known_end, known_spins
 from tippetop.lab import controls
 from tippetop.lab.elements import PhaseMap, Player, Plots
 from tippetop.lab.jobs import KINDS
@@ -21,7 +21,6 @@ from tippetop.lab.phase_map import MapPlan, parts_of, plan_map
 from tippetop.lab.server import FILE_PATH, TRACK_PATH
 from tippetop.lab.setup import Setup, first_setup, read_query
 from tippetop.lab.workers import Workers
-from tippetop.theory.prediction import Prediction
 
 SHOW_DELAY = 0.12
 """How long the words beside a slider wait for the picture of its run, s."""
@@ -220,7 +219,7 @@ class Laboratory:
         spins, end = known_spins(problem), known_end(problem)
         marks = {"ωc₁": spins.upright, "ωc₂": spins.inverted} if spins else {}
         self.spin_row.mark({name: value for name, value in marks.items() if math.isfinite(value)})
-        self.prospect.text = _prospect(end) if end else ""
+        self.prospect.text = f"Heads for {end_in_words(end)}." if end else ""
         self._show_here()
 
     def _show_here(self) -> None:
@@ -345,11 +344,3 @@ class Laboratory:
 def _cell(plan: MapPlan, spin: float, mu: float) -> Setup:
     """The launch of a cell of a map."""
     return plan.setup.changed({"launch.spin": spin, "friction.mu": mu})
-
-
-def _prospect(end: Prediction) -> str:
-    """What theory says a launch heads for."""
-    states = " or for ".join(steady_in_words(state) for state in end.reachable)
-    return f"Heads for {states}" + (
-        "." if end.certain else ": both are stable, and the launch's details decide."
-    )
