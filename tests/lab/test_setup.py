@@ -107,3 +107,9 @@ def test_tops_of_the_literature_turn_over_as_theory_says_of_theirs() -> None:
     assert run["theta"][0] < 0.2
     assert run["theta"][-1] > 2.0
     assert predict(problem).reachable[0].kind is Kind.INVERTED
+
+
+@pytest.mark.parametrize("name", ["gravty", "Duration", "launch.spn"])
+def test_a_misspelt_field_of_a_link_is_refused(name: str) -> None:
+    with pytest.raises(tt.InvalidInput):
+        read_query({name: "9"})

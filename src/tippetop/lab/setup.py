@@ -4,6 +4,7 @@ import json
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from difflib import get_close_matches
 from typing import Any, Self
 from urllib.parse import urlencode
 
@@ -71,10 +72,10 @@ def read_query(query: Mapping[str, str]) -> Setup:
     Raises
     ------
     InvalidInput
-        If the link names a field that does not exist, or a value that cannot be. What is no name like those
-        of fields is passed over: others add utm_source and the like to links that they pass on.
+        If the link names a field that does not exist, or a value that cannot be. A name unlike those of
+        fields is passed over: others add utm_source and the like to links that they pass on.
     """
-    fields = {name: value for name, value in query.items() if "." in name or name in _PLAIN}
+    fields = {name: value for name, value in query.items() if "." in name or get_close_matches(name, _PLAIN)}
     return first_setup().changed({name: _parsed(name, value) for name, value in fields.items()})
 
 
