@@ -10,6 +10,7 @@ from typer.core import TyperGroup
 from tippetop import __version__
 from tippetop.cli.critical import critical
 from tippetop.cli.lab import lab
+from tippetop.cli.options import INTERRUPTED
 from tippetop.cli.problem import problem
 from tippetop.cli.reproduce import reproduce
 from tippetop.cli.simulate import simulate
@@ -17,7 +18,6 @@ from tippetop.cli.sweep import sweep
 from tippetop.errors import TippetopError
 
 MISUSE = 2
-INTERRUPTED = 130
 
 
 class Commands(TyperGroup):

@@ -11,6 +11,9 @@ from tippetop.errors import InvalidInput
 if TYPE_CHECKING:
     from tippetop.problem import Problem
 
+INTERRUPTED = 130
+"""Exit code of a command that Ctrl-C ended."""
+
 ProblemFile = Annotated[
     Path | None, typer.Argument(help="Problem to start from, .toml or .json; the report's top if left out.")
 ]
@@ -44,6 +47,21 @@ def chosen_problem(
     from tippetop.problem import Problem  # noqa: PLC0415
 
     problem = presets.report_problem() if file is None else Problem.read(file)
+    return changed_problem(problem, preset, settings, changes)
+
+
+def changed_problem(
+    problem: "Problem", preset: str | None, settings: dict[str, Any], changes: list[str] | None
+) -> "Problem":
+    """A problem with a preset body and some fields changed.
+
+    Raises
+    ------
+    InvalidInput
+        If the preset or a field is not what it should be.
+    """
+    from tippetop import presets  # noqa: PLC0415 - slow to import, and not needed for --help
+
     if preset is not None:
         problem = problem.model_copy(update={"body": presets.body(preset)})
     given = {field: value for field, value in settings.items() if value is not None}

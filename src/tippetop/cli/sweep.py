@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from tippetop.cli.options import (
+    INTERRUPTED,
     Changes,
     Force,
     Json,
@@ -21,6 +22,7 @@ from tippetop.cli.options import (
     Preset,
     Spin,
     Tilt,
+    changed_problem,
     chosen_problem,
 )
 from tippetop.errors import MISSING, InvalidInput
@@ -29,11 +31,8 @@ from tippetop.files import refuse_overwriting, written_beside
 if TYPE_CHECKING:
     import xarray as xr
 
-    from tippetop.problem import Problem
     from tippetop.sweep import Draws, Product, Progress, Sweep
     from tippetop.sweep.run import Watcher
-
-INTERRUPTED = 130
 
 
 def sweep(
@@ -138,27 +137,14 @@ def _chosen_sweep(
 
     base = Sweep.read(file) if file is not None and _holds_sweep(file) else kept
     grid = _chosen_grid(*over)
-    problem = _changed(base.problem, preset, settings, changes) if base else None
-    problem = problem or chosen_problem(file, preset, settings, changes)
     given = {name: limit for name, limit in limits.items() if limit is not None}
     if base is not None:
+        problem = changed_problem(base.problem, preset, settings, changes)
         return replace(base, problem=problem, grid=grid or base.grid, **given)
+    problem = chosen_problem(file, preset, settings, changes)
     if grid is None:
         raise InvalidInput("--axis", MISSING, "at least one axis, or --draw, or a sweep's file")
     return Sweep(problem, grid, **given)
-
-
-def _changed(
-    problem: "Problem", preset: str | None, settings: dict[str, Any], changes: list[str] | None
-) -> "Problem":
-    """A problem with a preset body and some fields changed."""
-    from tippetop import presets  # noqa: PLC0415 - slow to import
-    from tippetop.cli.options import _parsed  # noqa: PLC0415
-
-    if preset is not None:
-        problem = problem.model_copy(update={"body": presets.body(preset)})
-    given = {field: value for field, value in settings.items() if value is not None}
-    return problem.replace({**given, **dict(_parsed(change) for change in changes or [])})
 
 
 def _chosen_grid(
