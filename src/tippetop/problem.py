@@ -19,6 +19,7 @@ from tippetop.mechanics import shape as shapes
 from tippetop.mechanics.motion import along_table, contact, on_table
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
+from tippetop.mechanics.vectors import Functions
 from tippetop.mechanics.view import Angles, state_from_angles
 from tippetop.validation import NO_WORD, Number, Part
 
@@ -192,6 +193,19 @@ class Contact(Part):
     restitution: Fraction = 0.0
 
 
+class _PoleExact:
+    """Sine and cosine with sin(pi) = 0, so that a launch at tilt pi is exactly vertical."""
+
+    def sin(self, angle: float) -> float:
+        return 0.0 if abs(angle) == math.pi else math.sin(angle)
+
+    def cos(self, angle: float) -> float:
+        return math.cos(angle)
+
+
+_EXACT = _PoleExact()
+
+
 class Problem(Part):
     """Everything physical about a run.
 
@@ -252,13 +266,13 @@ class Problem(Part):
         body = self.body
         return Top(body.mass, body.I1, body.I3, body.shape.law, self.friction.law, self.gravity)
 
-    def start(self) -> State:
-        """The state at launch, SI."""
+    def start(self, functions: Functions = _EXACT) -> State:
+        """The state at launch, SI; with sine and cosine for whatever the fields are, such as arrays."""
         launch, top = self.launch, self.top
         angles = Angles(
             launch.tilt, launch.tilt_rate, launch.azimuth, launch.precession, launch.spin, launch.slip
         )
-        touching = on_table(state_from_angles(angles, top, _PoleExact()), top)
+        touching = on_table(state_from_angles(angles, top, functions), top)
         x, y, height = touching.position
         return touching._replace(
             position=(x, y, height + launch.gap),
@@ -345,16 +359,6 @@ class Problem(Part):
         except ValueError as error:
             raise FileTrouble(f"{str(path)!r} cannot be read: {error}") from None
         return cls.from_json(text) if path.suffix.lower() == ".json" else cls.from_toml(text)
-
-
-class _PoleExact:
-    """Sine and cosine with sin(pi) = 0, so that a launch at tilt pi is exactly vertical."""
-
-    def sin(self, angle: float) -> float:
-        return 0.0 if abs(angle) == math.pi else math.sin(angle)
-
-    def cos(self, angle: float) -> float:
-        return math.cos(angle)
 
 
 def _numbers(value: Any, name: str = "") -> Iterator[tuple[str, float]]:

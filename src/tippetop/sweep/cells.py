@@ -15,11 +15,10 @@ from numpy.typing import NDArray
 
 from tippetop.errors import InvalidInput, one_of
 from tippetop.integrators.base import Array
-from tippetop.mechanics.motion import along_table, contact, on_table
+from tippetop.mechanics.motion import along_table, contact
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top, Units, dimensionless_numbers, kind_of, natural_units
 from tippetop.mechanics.vectors import scale
-from tippetop.mechanics.view import Angles, state_from_angles
 from tippetop.problem import Problem
 from tippetop.sweep.courses import Launches
 from tippetop.validation import Part
@@ -94,7 +93,7 @@ def cells_of(problem: Problem, values: Mapping[str, Array]) -> Cells:
     fault = np.full(count, Fault.NONE, dtype=np.int8)
     with np.errstate(all="ignore"):
         top = filled.top
-        start = launch_state(filled, top, count)
+        start = launch_state(filled, count)
         if filled.contact.liftoff != "fly":
             sliding = along_table(start)
             touch = contact(sliding.axis, sliding.momentum, sliding.velocity, top)
@@ -157,16 +156,9 @@ class _PoleExact:
         return np.cos(angle)
 
 
-def launch_state(problem: Problem, top: Top, count: int) -> State:
-    """The states at launch in SI, as `tippetop.problem.Problem.start` for one."""
-    launch = problem.launch
-    angles = Angles(
-        launch.tilt, launch.tilt_rate, launch.azimuth, launch.precession, launch.spin, launch.slip
-    )
-    touching = on_table(state_from_angles(angles, top, _PoleExact()), top)
-    x, y, height = touching.position
-    velocity = touching.velocity if launch.velocity is None else launch.velocity
-    state = touching._replace(position=(x, y, height + launch.gap), velocity=velocity)
+def launch_state(problem: Problem, count: int) -> State:
+    """The states at launch in SI of a problem with arrays for fields, every number of shape (count,)."""
+    state = problem.start(_PoleExact())
     return State.unpack([spread(number, count).copy() for number in state.pack()])
 
 
