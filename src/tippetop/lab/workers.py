@@ -8,7 +8,6 @@ import logging
 import multiprocessing
 import os
 import queue
-import signal
 import tempfile
 import threading
 import time
@@ -19,6 +18,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from tippetop.errors import InvalidInput, TippetopError, Unavailable, one_of
+from tippetop.interrupts import follow_parent
 from tippetop.lab import jobs
 from tippetop.lab.map_job import MapPart, map_parts, warm_up_map
 from tippetop.lab.setup import Setup
@@ -273,9 +273,8 @@ def _too_long(setup: Setup, patience: float, what: str = "a run") -> InvalidInpu
 
 def _work(end: Connection, warm_up: Callable[[], None]) -> None:
     """The life of a worker: jobs from the other end of the pipe, until it closes."""
-    # Ctrl-C is for the server, which ends its workers.
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    threading.Thread(target=_follow_parent, daemon=True, name="follow the server").start()
+    # A job does not look at its pipe until it is done.
+    follow_parent()
     with suppress(KeyboardInterrupt, EOFError, BrokenPipeError):
         warm_up()
         end.send("ready")
@@ -293,11 +292,3 @@ def _work(end: Connection, warm_up: Callable[[], None]) -> None:
                 logging.getLogger(__name__).exception("a job failed: %s", arguments)
                 result = InvalidInput("launch", "this one", f"one that can be computed ({error!r})")
             end.send((True, result))
-
-
-def _follow_parent() -> None:
-    """End with the server even if it is killed: a job does not look at its pipe until it is done."""
-    parent = multiprocessing.parent_process()
-    if parent is not None:
-        parent.join()
-        os._exit(1)

@@ -1,7 +1,6 @@
 """Who computes the tasks of a sweep: this process, processes beside it, or a Dask cluster."""
 
 import json
-import multiprocessing
 import os
 import signal
 import sys
@@ -20,7 +19,7 @@ from numpy.typing import NDArray
 
 from tippetop import __version__
 from tippetop.errors import InvalidInput, Unavailable
-from tippetop.interrupts import deferred
+from tippetop.interrupts import deferred, follow_parent
 from tippetop.sweep.definition import Sweep, sweep_from
 from tippetop.sweep.ensemble import follow_cells
 
@@ -206,7 +205,7 @@ def _pool(workers: int) -> Iterator[Executor]:
     before = {name: os.environ.get(name) for name in THREADS}
     os.environ.update(dict.fromkeys(THREADS, "1"))
     try:
-        executor = ProcessPoolExecutor(workers, mp_context=_Context(), initializer=_begin_work)
+        executor = ProcessPoolExecutor(workers, mp_context=_Context(), initializer=follow_parent)
         try:
             # Ctrl-C between two of them would take from one what it is about to open.
             with deferred():
@@ -225,19 +224,6 @@ def _pool(workers: int) -> Iterator[Executor]:
                 os.environ.pop(name, None)
             else:
                 os.environ[name] = value
-
-
-def _begin_work() -> None:
-    """Leave Ctrl-C to the parent, and end with it even if it is killed."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    parent = multiprocessing.parent_process()
-    if parent is not None:
-
-        def follow() -> None:
-            parent.join()
-            os._exit(1)
-
-        threading.Thread(target=follow, daemon=True).start()
 
 
 def _share_with_cluster(address: str, calls: Mapping[Task, Call]) -> Iterator[tuple[Task, Found]]:
