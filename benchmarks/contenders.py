@@ -86,8 +86,7 @@ def starts(spins: Array) -> Starts:
 
 def sliding_state(y: Any) -> SlidingState:
     """The state of eight numbers: axis, angular momentum and horizontal velocity."""
-    still = ((0.0, 0.0), (0.0, 0.0, 0.0), 0.0)
-    return SlidingState((y[0], y[1], y[2]), (y[3], y[4], y[5]), (y[6], y[7]), *still)
+    return SlidingState.unpack(y)
 
 
 def eight(rate: SlidingState) -> list[Any]:

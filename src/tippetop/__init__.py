@@ -12,9 +12,9 @@ __version__ = "0.1.0"
 
 if TYPE_CHECKING:
     from tippetop import presets
+    from tippetop.contact.mode import Outcome
     from tippetop.dataset import read_run, write_run
     from tippetop.errors import FileTrouble, InvalidInput, TippetopError, Unavailable
-    from tippetop.phases import Outcome
     from tippetop.problem import (
         Body,
         Contact,
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
         Spheroid,
         ViscousFriction,
     )
-    from tippetop.simulate import simulate
+    from tippetop.run import simulate
 
 __all__ = [
     "Body",
@@ -51,7 +51,7 @@ __all__ = [
 _HOMES = {
     "dataset": ("read_run", "write_run"),
     "errors": ("FileTrouble", "InvalidInput", "TippetopError", "Unavailable"),
-    "phases": ("Outcome",),
+    "contact.mode": ("Outcome",),
     "problem": (
         "Body",
         "Contact",
@@ -62,7 +62,7 @@ _HOMES = {
         "Spheroid",
         "ViscousFriction",
     ),
-    "simulate": ("simulate",),
+    "run": ("simulate",),
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
 

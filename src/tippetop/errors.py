@@ -5,7 +5,7 @@
     |-- FileTrouble (OSError)          a file that cannot be read, or may not be overwritten
     `-- Unavailable (RuntimeError)     something optional that is not installed here
 
-How a run ends is not an error: see `tippetop.simulate.Outcome`.
+How a run ends is not an error: see `tippetop.contact.mode.Outcome`.
 """
 
 import math

@@ -1,46 +1,214 @@
-"""What is read off a run: the report's variables, forces and invariants at every sample."""
+"""What is read off a run at its samples: the report's variables, forces and invariants."""
+
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tippetop.contact.block import NODES, WEIGHTS, Block
+from tippetop.contact.flight import Flight
+from tippetop.contact.sliding import Sliding
 from tippetop.integrators.base import Array
+from tippetop.integrators.dense import powers
 from tippetop.mechanics.invariants import energy, jellett
-from tippetop.mechanics.motion import along_table, angular_velocity, axial_spin, contact, point_velocity
+from tippetop.mechanics.motion import along_table, angular_velocity, axial_spin, point_velocity
+from tippetop.mechanics.quadratures import orientation, quadrature_rates
 from tippetop.mechanics.shape import contact_vector
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top, Units
+from tippetop.mechanics.vectors import Vector, length
 from tippetop.mechanics.view import axis_sine, precession_rate, slip_along_tilt, tilt_rate
 
+_INTEGRALS = np.array(
+    [
+        np.polynomial.Legendre.fit(NODES, unit, len(NODES) - 1, domain=[0.0, 1.0])
+        .integ(lbnd=0.0)
+        .convert(kind=np.polynomial.Polynomial)
+        .coef
+        for unit in np.eye(len(NODES))
+    ]
+)
+"""Coefficients of the integrals of Lagrange's polynomials on Gauss's points, from 0."""
 
-def si_factors(units: Units) -> Array:
-    """The SI values of the units of the 16 numbers of a state."""
-    vectors = (1.0, units.angular_momentum, units.speed, units.length, 1.0)
-    return np.array([*np.repeat(vectors, 3), units.energy])
+
+class Samples(NamedTuple):
+    """A launch at its samples, in natural units; every number of shape (k,).
+
+    Attributes
+    ----------
+    times
+        When.
+    state
+        The states.
+    force, torque
+        Force of the table, and its torque about the contact point.
+    x, y
+        Horizontal position of the centre of mass.
+    turn, pole
+        Angle psi about the axis, and the pole of its chart (see `tippetop.mechanics.quadratures`).
+    work
+        Work of the contact force since launch.
+    mode
+        Number of the contact mode, among the names that the recorder has met.
+    """
+
+    times: Array
+    state: State
+    force: Vector
+    torque: Vector
+    x: Array
+    y: Array
+    turn: Array
+    work: Array
+    pole: Array
+    mode: NDArray[np.int8]
 
 
-def in_si(states: Array, units: Units) -> State:
-    """The states of a run, shape (k, 16) in natural units, as arrays of shape (k,) in SI."""
-    return State.unpack(tuple((states * si_factors(units)).T))
-
-
-def observe(state: State, touching: NDArray[np.bool_], top: Top) -> dict[str, Array]:
-    """Every variable of a result but the phase, by name.
+class Recorder:
+    """Takes the samples of a launch on its way, and what is integrated along it; all in natural units.
 
     Parameters
     ----------
-    state
-        States in SI, each number an array of shape (k,).
-    touching
-        Where the top is in contact with the table, shape (k,).
     top
-        The body and the table, SI.
+        The top.
+    start
+        The state at launch.
+    azimuth
+        Direction into which the axis leans at launch, rad: the marker lies in the plane of axis and vertical.
+    times
+        Increasing sample times, shape (k,).
     """
-    axis, momentum = state.axis, state.momentum
-    sliding = along_table(state)
-    omega = angular_velocity(axis, momentum, top)
-    arm = contact_vector(axis, top.shape)
+
+    def __init__(self, top: Top, start: State, azimuth: float, times: Array) -> None:
+        self.top, self.times = top, times
+        self._parts: list[Array] = []
+        self.modes = [Sliding.name, Flight.name]
+        self._taken = 0
+        self._last: tuple[Block, tuple[Array, Array, Array]] | None = None
+        self._pole = 1.0 if start.axis[2] >= 0.0 else -1.0
+        self._sums = np.array([0.0, 0.0, self._pole * azimuth, 0.0])
+        self._energy, self._jellett = float(energy(start, top)), float(jellett(start, top))
+        self._moment = float(length(start.momentum) * top.shape.height(start.axis[2]))
+        self._imbalance, self._least, self._most = 0.0, self._jellett, self._jellett
+
+    @property
+    def energy_error(self) -> float:
+        """Largest error so far of the balance of energy and work, relative to the energy."""
+        return self._imbalance / abs(self._energy)
+
+    @property
+    def jellett_drift(self) -> float:
+        """Range so far of Jellett's integral, relative to |L| h at launch; nan where that is 0."""
+        return (self._most - self._least) / self._moment if self._moment else float(np.nan)
+
+    def take(self, block: Block) -> None:
+        """Take the samples in a block."""
+        if not len(block.starts):
+            return
+        integrals = self._integrate(block)
+        until = int(np.searchsorted(self.times, block.ends[-1], side="right"))
+        times = self.times[self._taken : until]
+        self._taken = until
+        self._last = block, integrals
+        if len(times):
+            self._sample(block, times, *integrals)
+
+    def finish(self, end: float, state: State) -> Samples:
+        """All samples of a launch that ended; where it did so early, its end is the last of them."""
+        if not self._parts or self._parts[-1][0, -1] < end < self.times[-1]:
+            if self._last is None:
+                self._parts.append(self._single(state))
+            else:
+                block, integrals = self._last
+                self._sample(block, np.array([end]), *integrals)
+        rows = np.concatenate(self._parts, axis=1)
+        force, torque = (rows[11], rows[12], rows[13]), (rows[14], rows[15], rows[16])
+        x, y, turn, work, pole = rows[17:22]
+        mode = rows[22].astype(np.int8)
+        return Samples(rows[0], State.unpack(rows[1:11]), force, torque, x, y, turn, work, pole, mode)
+
+    def _sample(self, block: Block, times: Array, rates: Array, values: Array, poles: Array) -> None:
+        """Take the samples of a block at some times."""
+        step = block.step_at(times)
+        part = (times - block.starts[step]) / block.spans[step]
+        integrals = _INTEGRALS @ powers(part, _INTEGRALS.shape[1]).T * block.spans[step]
+        x, y, turn, work = values[:, step] + np.einsum("ik,qik->qk", integrals, rates[:, :, step])
+        rows = np.empty((23, len(times)))
+        rows[0], rows[17:22] = times, (x, y, turn, work, poles[step])
+        for mode, here, state, reaction in block.sampled(times, step):
+            for row, number in zip(
+                rows[1:17], (*state.pack(), *reaction.force, *reaction.torque), strict=True
+            ):
+                row[here] = number
+            if mode.name not in self.modes:
+                self.modes.append(mode.name)
+            rows[22, here] = self.modes.index(mode.name)
+        self._parts.append(rows)
+
+    def _single(self, state: State) -> Array:
+        """The sample of a launch that ended as it began."""
+        reaction = Sliding(self.top, None).reaction(along_table(state).pack())
+        sums = [*self._sums, self._pole, 0.0]
+        return np.array([[0.0, *state.pack(), *reaction.force, *reaction.torque, *sums]]).T
+
+    def _integrate(self, block: Block) -> tuple[Array, Array, Array]:
+        """Integrate along the steps of a block.
+
+        Returns
+        -------
+        tuple
+            Rates of the quadratures at Gauss's points, shape (4, 6, k), their values where the steps begin,
+            shape (4, k), and the charts of the angle, shape (k,).
+        """
+        count = len(block.starts)
+        rates, axis = np.empty((4, len(NODES), count)), np.empty((3, count))
+        poles = np.empty(count)
+        for group in block.groups:
+            state, reaction = group.nodes
+            pole = np.where(state.axis[2][len(NODES) // 2] >= 0.0, 1.0, -1.0)
+            for row, rate in zip(rates, quadrature_rates(state, reaction.power, pole, self.top), strict=True):
+                row[:, group.which] = rate
+            axis[:, group.which], poles[group.which] = group.terms[:, :3, 0].T, pole
+        gains = np.einsum("i,qik->qk", WEIGHTS, rates) * block.spans
+        changes = poles - np.concatenate([[self._pole], poles[:-1]])
+        values = np.cumsum(np.concatenate([self._sums[:, None], gains], axis=1), axis=1)
+        turned = np.where(changes == 0.0, 0.0, changes * np.arctan2(axis[1], axis[0]))
+        values[2, :-1] += np.cumsum(turned)
+        values[2, -1] += turned.sum()
+        lost = np.zeros(count + 1)
+        for place, segment in zip(np.cumsum(block.lengths), block.segments, strict=True):
+            if segment.transition is not None:
+                lost[place] += sum(event.energy_lost for event in segment.transition.events)
+        values[3] -= np.cumsum(lost)
+        self._sums, self._pole = values[:, -1], float(poles[-1])
+        self._monitor(block, values[3])
+        return rates, values[:, :-1], poles
+
+    def _monitor(self, block: Block, work: Array) -> None:
+        """See that energy and work balance, and how far Jellett's integral goes, where steps begin."""
+        for group in block.groups:
+            state = group.mode.state(group.terms[:, :, 0].T)
+            errors = energy(state, self.top) - self._energy - work[group.which]
+            integral = jellett(state, self.top)
+            self._imbalance = max(self._imbalance, float(np.abs(errors).max()))
+            self._least = min(self._least, float(np.min(integral)))
+            self._most = max(self._most, float(np.max(integral)))
+
+
+def observe(samples: Samples, top: Top, units: Units) -> dict[str, Array]:
+    """Every variable of `tippetop.catalogue.SAMPLED` in SI, by name.
+
+    Parameters
+    ----------
+    samples
+        A launch at its samples.
+    top, units
+        The top in natural units, and those units.
+    """
+    state, axis = samples.state, samples.state.axis
+    momentum = state.momentum
+    omega, arm = angular_velocity(axis, momentum, top), contact_vector(axis, top.shape)
     point = point_velocity(state.velocity, omega, arm)
-    touch = contact(axis, momentum, sliding.velocity, top)
     sine = axis_sine(axis)
     upright = sine == 0.0
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -53,54 +221,34 @@ def observe(state: State, touching: NDArray[np.bool_], top: Top) -> dict[str, Ar
         slip_x, slip_y = np.where(upright, point[0], slip_x), np.where(upright, point[1], slip_y)
         leaving = np.hypot(momentum[0], momentum[1]) / top.transverse_inertia
         tilting = np.where(upright, np.copysign(leaving, axis[2]), tilting)
+    force = units.energy / units.length
     return {
         "theta": np.arctan2(sine, axis[2]),
-        "theta_dot": tilting,
+        "theta_dot": tilting / units.time,
         "phi": np.arctan2(axis[1], axis[0]),
-        "phi_dot": precession,
-        "omega3": axial_spin(axis, momentum, top),
-        "slip_x": slip_x,
-        "slip_y": slip_y,
-        "normal_force": np.where(touching, touch.normal_force, 0.0),
-        "energy": energy(state, top),
-        "work": np.asarray(state.work),
-        "jellett": jellett(state, top),
-        "height": np.asarray(state.position[2]),
-        "gap": state.position[2] + arm[2],
-        "x": np.asarray(state.position[0]),
-        "y": np.asarray(state.position[1]),
+        "phi_dot": precession / units.time,
+        "omega3": axial_spin(axis, momentum, top) / units.time,
+        "slip_x": slip_x * units.speed,
+        "slip_y": slip_y * units.speed,
+        "normal_force": samples.force[2] * force,
+        "contact_force": np.stack(samples.force, axis=1) * force,
+        "contact_torque": np.stack(samples.torque, axis=1) * units.energy,
+        "energy": energy(state, top) * units.energy,
+        "work": samples.work * units.energy,
+        "jellett": jellett(state, top) * units.angular_momentum * units.length,
+        "height": state.height * units.length,
+        "gap": (state.height + arm[2]) * units.length,
+        "x": samples.x * units.length,
+        "y": samples.y * units.length,
         "axis": np.stack(axis, axis=1),
-        "velocity": np.stack(state.velocity, axis=1),
-        "angular_momentum": np.stack(momentum, axis=1),
-        "orientation": orientation(state),
+        "velocity": np.stack(state.velocity, axis=1) * units.speed,
+        "angular_momentum": np.stack(momentum, axis=1) * units.angular_momentum,
+        "orientation": continuous(np.stack(orientation(axis, samples.turn, samples.pole, np), axis=1)),
     }
 
 
-def orientation(state: State) -> Array:
-    """Unit quaternions that turn the body from axis up and marker along x to where it is, shape (k, 4).
-
-    Scalar first, and without jumps of sign from sample to sample.
-    """
-    axis, marker = np.stack(state.axis, axis=1), np.stack(state.marker, axis=1)
-    frames = np.stack((marker, np.cross(axis, marker), axis), axis=2)
-    quaternions = _quaternions(frames)
+def continuous(quaternions: Array) -> Array:
+    """Quaternions, shape (k, 4), with the signs that let none jump from the one before."""
     jumps = np.einsum("ij,ij->i", quaternions[1:], quaternions[:-1]) < 0
     signs = np.concatenate(([1.0], np.cumprod(np.where(jumps, -1.0, 1.0))))
     return np.asarray(quaternions * signs[:, None])
-
-
-def _quaternions(frames: Array) -> Array:
-    """Unit quaternions, scalar first, of rotation matrices of shape (k, 3, 3)."""
-    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = np.moveaxis(frames, 0, 2)
-    # Four times the products of every two components; the row of the largest loses no digits.
-    products = np.array(
-        [
-            [1.0 + xx + yy + zz, zy - yz, xz - zx, yx - xy],
-            [zy - yz, 1.0 + xx - yy - zz, yx + xy, zx + xz],
-            [xz - zx, yx + xy, 1.0 - xx + yy - zz, zy + yz],
-            [yx - xy, zx + xz, zy + yz, 1.0 - xx - yy + zz],
-        ]
-    )
-    largest = np.argmax(np.einsum("iik->ik", products), axis=0)
-    rows = products[largest, :, np.arange(len(largest))]
-    return np.asarray(rows / np.linalg.norm(rows, axis=1, keepdims=True))

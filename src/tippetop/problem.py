@@ -248,7 +248,7 @@ class Problem(Part):
         try:
             start = along_table(self.start())
             touch = contact(start.axis, start.momentum, start.velocity, self.top)
-            return float(touch.resistance + 0.0 * touch.push)
+            return float(touch.delassus + 0.0 * touch.free_acceleration)
         except ArithmeticError:
             return math.nan
 
@@ -273,9 +273,8 @@ class Problem(Part):
             launch.tilt, launch.tilt_rate, launch.azimuth, launch.precession, launch.spin, launch.slip
         )
         touching = on_table(state_from_angles(angles, top, functions), top)
-        x, y, height = touching.position
         return touching._replace(
-            position=(x, y, height + launch.gap),
+            height=touching.height + launch.gap,
             velocity=touching.velocity if launch.velocity is None else launch.velocity,
         )
 

@@ -14,7 +14,7 @@ from tippetop.report.experiments import EXPERIMENTS
 from tippetop.report.experiments.flights import first_onset, followed, leaves_at
 from tippetop.report.experiments.runs import FLIGHT_READINGS, comparison
 from tippetop.report.gallery import PLATES
-from tippetop.simulate import simulate
+from tippetop.run import simulate
 
 
 @pytest.fixture(scope="module")

@@ -8,7 +8,7 @@ import pytest
 from tippetop.presets import report_problem
 from tippetop.report.listing import CONTROLS, launch_state, listing_rates, listing_run
 from tippetop.report.ode45 import REFINE, dormand_prince_step, ode45
-from tippetop.simulate import simulate
+from tippetop.run import simulate
 
 
 def circle(y: np.ndarray) -> np.ndarray:

@@ -3,7 +3,7 @@
 import numpy as np
 
 from tippetop.presets import report_problem
-from tippetop.simulate import simulate
+from tippetop.run import simulate
 from tippetop.sweep import Axis, Product, Sweep
 
 FIELDS = ("final_theta", "final_omega3", "energy_lost", "airborne_time", "first_lift_off", "end_time")

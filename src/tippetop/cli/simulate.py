@@ -70,7 +70,7 @@ def simulate(
     """Simulate one launch and say what becomes of the top."""
     from tippetop.dataset import write_run  # noqa: PLC0415 - slow to import
     from tippetop.files import refuse_overwriting, written_beside  # noqa: PLC0415
-    from tippetop.simulate import simulate as run_problem  # noqa: PLC0415
+    from tippetop.run import simulate as run_problem  # noqa: PLC0415
     from tippetop.summary import summarize  # noqa: PLC0415
 
     settings = {"launch.spin": spin, "launch.tilt": tilt, "friction.mu": mu, "contact.liftoff": liftoff}

@@ -13,10 +13,9 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from tippetop.dataset import LABELS
+from tippetop.catalogue import SAMPLED
 from tippetop.export.geometry import size, toy_parts
 from tippetop.export.words import Story, tell
-from tippetop.mechanics.motion import contact
 from tippetop.mechanics.shape import contact_vector
 from tippetop.problem import Problem
 
@@ -124,7 +123,7 @@ def _columns(run: xr.Dataset, problem: Problem) -> dict[str, Array]:
         "position": run[["x", "y", "height"]].to_array().values.T,
         "velocity": run["velocity"].values,
         "point": np.stack([run["x"].values + arm[0], run["y"].values + arm[1]], axis=1),
-        "friction": friction_force(run, problem),
+        "friction": run["contact_force"].values[:, :2],
         "touching": (run["normal_force"].values != 0.0).astype(float),
         "theta": run["theta"].values,
         "omega3": run["omega3"].values,
@@ -134,17 +133,6 @@ def _columns(run: xr.Dataset, problem: Problem) -> dict[str, Array]:
         "normal_force": run["normal_force"].values,
         "jellett_error": (jellett - jellett[0]) / moment if moment else 0.0 * jellett,
     }
-
-
-def friction_force(run: xr.Dataset, problem: Problem) -> Array:
-    """Friction force of the table at every sample, N, shape (k, 2): none in flight."""
-    axis, momentum = run["axis"].values.T, run["angular_momentum"].values.T
-    velocity = run["velocity"].values.T
-    touch = contact(tuple(axis), tuple(momentum), (velocity[0], velocity[1]), problem.top)
-    normal = run["normal_force"].values
-    per_normal = [np.broadcast_to(force, normal.shape) for force in touch.traction.force]
-    force: Array = np.stack(per_normal, axis=1) * normal[:, None]
-    return force
 
 
 def _range(values: Array, name: str) -> list[float]:
@@ -159,4 +147,4 @@ def _range(values: Array, name: str) -> list[float]:
     return [float(low - margin * (name != "theta")), float(high + margin * (name != "theta"))]
 
 
-assert set(PLOTTED) - set(LABELS) == {"slip", "jellett_error"}, "plots are of variables of a run"
+assert set(PLOTTED) - set(SAMPLED) == {"slip", "jellett_error"}, "plots are of variables of a run"

@@ -7,11 +7,11 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from tippetop.catalogue import NEAR_FINAL
+from tippetop.contact.mode import EventKind, Outcome
 from tippetop.errors import InvalidInput
 from tippetop.mechanics.top import natural_units
-from tippetop.phases.base import EventKind, Outcome
 from tippetop.problem import EccentricSphere, Problem
-from tippetop.summary import NEAR_FINAL
 from tippetop.theory.prediction import Prediction, predict
 from tippetop.theory.steady import Kind, SteadyState
 from tippetop.theory.thresholds import CriticalSpins, critical_spins

@@ -1,12 +1,13 @@
-"""The seam behind which every integrator stands: equations and guards in, an arc of the solution out."""
+"""The seam behind which every integrator stands: equations and guards in, arcs of the solution out."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tippetop.integrators.dense import DenseSolution
 from tippetop.mechanics.vectors import Scalar
 
 Array: TypeAlias = NDArray[np.float64]
@@ -15,27 +16,8 @@ Function: TypeAlias = Callable[[Sequence[Scalar], Sequence[Scalar]], Scalar]
 
 
 @dataclass(frozen=True)
-class Motion:
-    """Autonomous equations of motion y' = rates(y, parameters).
-
-    Attributes
-    ----------
-    rates
-        Time derivative of the state, in plain operators where a compiled integrator is to take it.
-    size
-        How many numbers the state has.
-    parameters
-        How many parameters there are.
-    """
-
-    rates: Callable[[Sequence[Scalar], Sequence[Scalar]], Sequence[Scalar]]
-    size: int
-    parameters: int
-
-
-@dataclass(frozen=True)
 class Guard:
-    """A condition that ends the motion: the first time its value falls through zero from above.
+    """A condition that ends a motion: the first time its value falls through zero from above.
 
     Attributes
     ----------
@@ -50,28 +32,48 @@ class Guard:
 
 
 @dataclass(frozen=True)
+class Motion:
+    """Autonomous equations of motion y' = rates(y, parameters), and what ends them.
+
+    Attributes
+    ----------
+    rates
+        Time derivative of the state, in plain operators where a compiled integrator is to take it.
+    size
+        How many numbers the state has.
+    parameters
+        How many parameters there are.
+    guards
+        Conditions that end the motion.
+    """
+
+    rates: Callable[[Sequence[Scalar], Sequence[Scalar]], Sequence[Scalar]]
+    size: int
+    parameters: int
+    guards: tuple[Guard, ...] = ()
+
+
+@dataclass(frozen=True)
 class Arc:
     """A piece of a solution.
 
     Attributes
     ----------
-    times, states
-        The sample times reached, shape (k,), and the states there, shape (k, size).
-    end_time, end_state
-        Where the arc ends, state of shape (size,).
+    solution
+        The state as a function of time, from the start of the arc to its end.
+    end_state
+        The state at its end, shape (size,).
     guard
-        Index of the guard that ended it, or None when it reached the end asked for.
+        Name of the guard that ended the motion there, or None.
     failure
-        Why the integrator gave up, or None.
+        Why the integrator gave up there, or None.
     steps, evaluations
         Steps accepted, and evaluations of the right-hand side (for the Taylor method: expansions).
     """
 
-    times: Array
-    states: Array
-    end_time: float
+    solution: DenseSolution
     end_state: Array
-    guard: int | None = None
+    guard: str | None = None
     failure: str | None = None
     steps: int = 0
     evaluations: int = 0
@@ -85,26 +87,22 @@ class Integrator(Protocol):
         """What users call it."""
 
     def integrate(
-        self,
-        motion: Motion,
-        parameters: Sequence[float],
-        start: tuple[float, Array],
-        end: float,
-        times: Array,
-        guards: Sequence[Guard] = (),
-    ) -> Arc:
+        self, motion: Motion, parameters: Sequence[float], start: tuple[float, Array], end: float
+    ) -> Iterator[Arc]:
         """Follow the motion until a guard falls through zero or the end is reached.
 
         Parameters
         ----------
         motion, parameters
-            The equations and the numbers in them.
+            The equations and guards, which are positive at the start, and the numbers in them.
         start
             Initial time and state, shape (size,).
         end
             Final time, after the initial one.
-        times
-            Increasing sample times from the initial to the final time, shape (k,).
-        guards
-            Conditions that end the motion, positive at the start; located to the integrator's tolerance.
+
+        Yields
+        ------
+        Arc
+            Arcs that join, none longer than fits in memory; the last reaches the end, or names the guard that
+            ended the motion, located to the integrator's tolerance, or says why there is no more.
         """

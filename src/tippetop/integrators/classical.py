@@ -1,12 +1,18 @@
 """The classical Runge-Kutta method of fourth order with fixed step, as in the report's Appendix B."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from tippetop.integrators.base import Arc, Array, Guard, Motion
-from tippetop.integrators.sampling import RightHandSide, Samples, first_fall, polish
+from tippetop.integrators.base import Arc, Array, Motion
+from tippetop.integrators.sampling import RightHandSide, Steps, first_fall, polish
+
+DEGREE = 5
+"""Degree of the polynomials that stand for its steps: their error is of higher order than the method's."""
+
+MANY = 512
+"""Steps in an arc."""
 
 
 @dataclass(frozen=True)
@@ -23,47 +29,36 @@ class ClassicalRK4:
     name: str = field(default="rk4", init=False)
 
     def integrate(
-        self,
-        motion: Motion,
-        parameters: Sequence[float],
-        start: tuple[float, Array],
-        end: float,
-        times: Array,
-        guards: Sequence[Guard] = (),
-    ) -> Arc:
+        self, motion: Motion, parameters: Sequence[float], start: tuple[float, Array], end: float
+    ) -> Iterator[Arc]:
         """Follow the motion; see `tippetop.integrators.base.Integrator`."""
         rates = RightHandSide(motion, parameters)
-
-        def advance(state: Array, step: float) -> Array:
-            return _step(rates, state, step)
-
         time, state = start
-        samples = Samples(times, start)
+        taken, counted = Steps(time, motion.size, DEGREE), 0
         steps = max(1, int(np.ceil((end - start[0]) / self.step - 1e-9)))
         for count in range(1, steps + 1):
             reach = end if count == steps else start[0] + count * self.step
             before, base = time, state
-            state = advance(base, reach - before)
+            time, state = reach, _step(rates, base, reach - before)
             if not np.all(np.isfinite(state)):
-                grid, states = samples.result(motion.size)
                 failure = "the solution is no longer finite"
-                return Arc(grid, states, before, base, None, failure, count - 1, rates.calls)
+                yield Arc(taken.solution(), base, None, failure, len(taken), rates.calls - counted)
+                return
 
             def dense(at: float, before: float = before, base: Array = base) -> Array:
-                return advance(base, at - before)
+                return _step(rates, base, at - before)
 
-            if guards:
-                fall = first_fall(guards, parameters, dense, dense, (before, reach))
-                if fall is not None:
-                    index, guess = fall
-                    at, last = polish(guards[index], parameters, dense, (before, reach), guess)
-                    samples.take(at, dense)
-                    grid, states = samples.result(motion.size)
-                    return Arc(grid, states, at, last, index, None, count, rates.calls)
-            time = reach
-            samples.take(time, dense)
-        grid, states = samples.result(motion.size)
-        return Arc(grid, states, time, state, None, None, steps, rates.calls)
+            fall = first_fall(motion.guards, parameters, dense, dense, (before, reach))
+            if fall is not None:
+                guard = motion.guards[fall[0]]
+                at, last = polish(guard, parameters, dense, (before, reach), fall[1])
+                taken.take(at, dense)
+                yield Arc(taken.solution(), last, guard.name, None, len(taken), rates.calls - counted)
+                return
+            taken.take(reach, dense)
+            if len(taken) == MANY or count == steps:
+                yield Arc(taken.solution(), state, None, None, len(taken), rates.calls - counted)
+                taken, counted = Steps(reach, motion.size, DEGREE), rates.calls
 
 
 def _step(rates: RightHandSide, state: Array, step: float) -> Array:

@@ -1,4 +1,4 @@
-"""What the step-by-step integrators share: taking samples, and finding where a guard falls through zero."""
+"""What the step-by-step integrators share: steps as polynomials, and where a guard falls through zero."""
 
 from collections.abc import Callable, Sequence
 
@@ -6,6 +6,7 @@ import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
 from tippetop.integrators.base import Array, Guard, Motion
+from tippetop.integrators.dense import DenseSolution, chebyshev
 
 Dense = Callable[[float], Array]
 """The solution within a step as a function of time."""
@@ -35,29 +36,37 @@ class RightHandSide:
             return np.full(self.motion.size, np.nan)
 
 
-class Samples:
-    """Collects the solution at the sample times as the steps pass them."""
+class Steps:
+    """Collects the steps of an arc, each by the values of its solution at Chebyshev's points.
 
-    def __init__(self, times: Array, start: tuple[float, Array]) -> None:
-        self.times = times
-        self.states: list[Array] = []
-        self._record_until(start[0], lambda _: start[1])
+    Parameters
+    ----------
+    start
+        Time at which the arc begins.
+    size
+        How many numbers the state has.
+    degree
+        Of the polynomials that are to stand for the solution.
+    """
 
-    def _record_until(self, time: float, dense: Dense) -> None:
-        while len(self.states) < len(self.times) and self.times[len(self.states)] <= time:
-            self.states.append(dense(float(self.times[len(self.states)])))
+    def __init__(self, start: float, size: int, degree: int) -> None:
+        self.size, self.degree = size, degree
+        self.knots, self.values = [start], list[Array]()
 
-    def wanted_before(self, time: float) -> bool:
-        """Whether some sample not yet taken lies at or before this time."""
-        return len(self.states) < len(self.times) and bool(self.times[len(self.states)] <= time)
+    def __len__(self) -> int:
+        return len(self.values)
 
-    def take(self, time: float, dense: Dense) -> None:
-        """Take the samples up to this time from a step's solution."""
-        self._record_until(time, dense)
+    def take(self, end: float, dense: Dense) -> None:
+        """Take in a step up to a time."""
+        start = self.knots[-1]
+        places = chebyshev(self.degree)[0]
+        self.values.append(np.array([dense(start + place * (end - start)) for place in places.tolist()]))
+        self.knots.append(end)
 
-    def result(self, size: int) -> tuple[Array, Array]:
-        """Sample times reached, shape (k,), and states there, shape (k, size)."""
-        return self.times[: len(self.states)], np.array(self.states).reshape(-1, size)
+    def solution(self) -> DenseSolution:
+        """The steps as polynomials."""
+        values = np.array(self.values).reshape(-1, self.size)
+        return DenseSolution.fitted(lambda _: values, np.array(self.knots), self.degree)
 
 
 def first_fall(

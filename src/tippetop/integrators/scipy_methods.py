@@ -1,15 +1,15 @@
 """SciPy's integrators behind the seam."""
 
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from scipy.integrate import BDF, DOP853, LSODA, RK45, Radau
 
-from tippetop.integrators.base import Arc, Array, Guard, Motion
-from tippetop.integrators.sampling import RightHandSide, Samples, first_fall, polish
+from tippetop.integrators.base import Arc, Array, Motion
+from tippetop.integrators.sampling import RightHandSide, Steps, first_fall, polish
 
 METHODS: dict[str, Any] = {
     "dop853": DOP853,
@@ -18,6 +18,12 @@ METHODS: dict[str, Any] = {
     "bdf": BDF,
     "lsoda": LSODA,
 }
+
+DEGREES = {"dop853": 7, "rk45": 4, "radau": 3, "bdf": 5, "lsoda": 12}
+"""Degrees of the polynomials by which they interpolate."""
+
+MANY = 512
+"""Steps in an arc."""
 
 LEAST_STEP = 1e-15
 """A step shorter than this part of the time gets nowhere."""
@@ -42,47 +48,43 @@ class SciPy:
     absolute: float | None = None
 
     def integrate(
-        self,
-        motion: Motion,
-        parameters: Sequence[float],
-        start: tuple[float, Array],
-        end: float,
-        times: Array,
-        guards: Sequence[Guard] = (),
-    ) -> Arc:
+        self, motion: Motion, parameters: Sequence[float], start: tuple[float, Array], end: float
+    ) -> Iterator[Arc]:
         """Follow the motion; see `tippetop.integrators.base.Integrator`."""
         rates = RightHandSide(motion, parameters)
-        samples = Samples(times, start)
+        steps = Steps(start[0], motion.size, DEGREES[self.name])
         if not np.all(np.isfinite(rates(*start))):
-            return Arc(*samples.result(motion.size), *start, None, "the motion is singular from the start")
-        solver = self._solver(rates, start, end)
-        steps, failure = 0, None
+            yield Arc(steps.solution(), start[1], None, "the motion is singular from the start")
+            return
+        solver, failure, counted = self._solver(rates, start, end), None, 0
         while solver.status == "running":
             before, base = float(solver.t), solver.y.copy()
             failure = _take_step(solver)
             if failure is not None:
                 break
-            steps += 1
             reach = float(solver.t)
             if reach - before <= LEAST_STEP * max(1.0, abs(reach)) and reach < end:
                 failure = "the step size fell to nothing"
                 break
-            if not guards and not samples.wanted_before(reach):
-                continue
             dense = solver.dense_output()
 
             def advance(at: float, before: float = before, base: Array = base) -> Array:
                 return self._land(rates, (before, base), at)
 
-            fall = first_fall(guards, parameters, dense, advance, (before, reach))
+            fall = first_fall(motion.guards, parameters, dense, advance, (before, reach))
             if fall is not None:
-                index, guess = fall
-                at, last = polish(guards[index], parameters, advance, (before, reach), guess)
-                samples.take(at, dense)
-                return Arc(*samples.result(motion.size), at, last, index, None, steps, rates.calls)
-            samples.take(reach, dense)
-        grid, states = samples.result(motion.size)
-        return Arc(grid, states, float(solver.t), solver.y.copy(), None, failure, steps, rates.calls)
+                guard = motion.guards[fall[0]]
+                at, last = polish(guard, parameters, advance, (before, reach), fall[1])
+                steps.take(at, dense)
+                yield Arc(steps.solution(), last, guard.name, None, len(steps), rates.calls - counted)
+                return
+            steps.take(reach, dense)
+            if len(steps) == MANY:
+                yield Arc(steps.solution(), solver.y.copy(), None, None, MANY, rates.calls - counted)
+                steps, counted = Steps(reach, motion.size, DEGREES[self.name]), rates.calls
+        if len(steps) or failure is not None:
+            state = base if failure is not None else solver.y.copy()
+            yield Arc(steps.solution(), state, None, failure, len(steps), rates.calls - counted)
 
     def _solver(self, rates: RightHandSide, start: tuple[float, Array], end: float) -> Any:
         absolute = self.tolerance if self.absolute is None else self.absolute

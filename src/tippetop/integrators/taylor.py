@@ -1,7 +1,7 @@
 """Taylor's method of high order, compiled by heyoka once for all values of the parameters."""
 
 import threading
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Any
@@ -9,11 +9,15 @@ from typing import Any
 import heyoka as hy
 import numpy as np
 
-from tippetop.integrators.base import Arc, Array, Guard, Motion
+from tippetop.integrators.base import Arc, Array, Motion
 from tippetop.integrators.compile_cache import use_compile_cache
+from tippetop.integrators.dense import DenseSolution
 
-CHUNK = 20_000.0
-"""Span of time followed in one call into compiled code, so that Ctrl-C is heard between calls."""
+SHORT = 24
+"""Steps that are taken one by one: a solution made by the compiler costs as much as a few hundred of them."""
+
+LONG = 4096
+"""Steps in one call into compiled code, so that Ctrl-C is heard between calls."""
 
 
 @dataclass(frozen=True)
@@ -30,46 +34,34 @@ class Taylor:
     name: str = field(default="taylor", init=False)
 
     def integrate(
-        self,
-        motion: Motion,
-        parameters: Sequence[float],
-        start: tuple[float, Array],
-        end: float,
-        times: Array,
-        guards: Sequence[Guard] = (),
-    ) -> Arc:
+        self, motion: Motion, parameters: Sequence[float], start: tuple[float, Array], end: float
+    ) -> Iterator[Arc]:
         """Follow the motion; see `tippetop.integrators.base.Integrator`."""
-        compiled = _compiled(motion, tuple(guards), self.tolerance)
-        grid = np.union1d(times, (start[0], end))
-        with compiled.lock:
-            run = compiled.integrator
-            run.time = start[0]
-            run.state[:] = start[1]
-            run.pars[:] = parameters
-            if guards:
-                run.reset_cooldowns()
-            pieces, steps, outcome = _propagate(run, grid)
-            end_time, end_state = float(run.time), np.array(run.state)
-        states = np.concatenate(pieces)
-        stopped = outcome != hy.taylor_outcome.time_limit
-        failure = None
-        if outcome == hy.taylor_outcome.err_nf_state:
-            # The last step led nowhere; what is known ends with the last sample before it.
-            failure = "the solution is no longer finite"
-            states = states[np.isfinite(states).all(axis=1)] if len(states) else start[1][None]
-            end_time, end_state = float(grid[len(states) - 1]), states[-1]
-        wanted = np.searchsorted(grid, times)
-        wanted = wanted[wanted < len(states)]
-        return Arc(
-            grid[wanted],
-            states[wanted],
-            end_time,
-            end_state,
-            guard=-int(outcome) - 1 if stopped and failure is None else None,
-            failure=failure,
-            steps=steps,
-            evaluations=steps,
-        )
+        compiled = _compiled(motion, self.tolerance)
+        advance = _few_steps
+        while start[0] < end:
+            with compiled.lock:
+                run = compiled.integrator
+                run.time = start[0]
+                run.state[:] = start[1]
+                run.pars[:] = parameters
+                if motion.guards:
+                    run.reset_cooldowns()
+                solution, outcome = advance(run, end)
+                state = np.array(run.state)
+            advance, steps = _many_steps, len(solution.terms)
+            if outcome == hy.taylor_outcome.err_nf_state:
+                # The last step led nowhere; what is known ends with the one before it.
+                state = solution(solution.knots[-1:])[0] if steps else start[1]
+                yield Arc(solution, state, None, "the solution is no longer finite", steps, steps)
+                return
+            guard = None
+            if outcome not in (hy.taylor_outcome.step_limit, hy.taylor_outcome.time_limit):
+                guard = motion.guards[-int(outcome) - 1].name
+            yield Arc(solution, state, guard, None, steps, steps)
+            if guard is not None:
+                return
+            start = solution.end, state
 
 
 @dataclass
@@ -79,36 +71,47 @@ class _Compiled:
 
 
 @lru_cache(maxsize=32)
-def _compiled(motion: Motion, guards: tuple[Guard, ...], tolerance: float) -> _Compiled:
+def _compiled(motion: Motion, tolerance: float) -> _Compiled:
     """Compile the equations and the guards, or fetch them from the cache across processes."""
     use_compile_cache()
     state = [hy.make_vars(f"y{i}") for i in range(motion.size)]
     parameters = [hy.par[i] for i in range(motion.parameters)]
     rates = [hy.expression(rate) for rate in motion.rates(state, parameters)]
-    events = [
-        hy.t_event(guard.value(state, parameters), direction=hy.event_direction.negative) for guard in guards
-    ]
+    guards = [guard.value(state, parameters) for guard in motion.guards]
     integrator = hy.taylor_adaptive(
         list(zip(state, rates, strict=True)),
         [0.0] * motion.size,
         pars=[1.0] * motion.parameters,
         tol=tolerance,
-        t_events=events,
+        t_events=[hy.t_event(guard, direction=hy.event_direction.negative) for guard in guards],
     )
     return _Compiled(integrator)
 
 
-def _propagate(run: Any, grid: Array) -> tuple[list[Array], int, Any]:
-    """Propagate over the grid, chunk by chunk; return states at grid points, steps and the outcome."""
-    pieces: list[Array] = []
-    steps, first = 0, 0
-    while True:
-        last = int(np.searchsorted(grid, grid[first] + CHUNK, side="right"))
-        last = max(last, first + 2)
-        outcome, _, _, taken, _, states = run.propagate_grid(grid[first:last])
-        steps += taken
-        finished = last >= len(grid) or outcome != hy.taylor_outcome.time_limit
-        pieces.append(states if finished else states[:-1])
-        if finished:
-            return pieces, steps, outcome
-        first = last - 1
+def _few_steps(run: Any, end: float) -> tuple[DenseSolution, Any]:
+    """Take some steps one by one."""
+    knots, terms = [float(run.time)], []
+    outcome = hy.taylor_outcome.step_limit
+    for _ in range(SHORT):
+        taken, _ = run.step(end - run.time, write_tc=True)
+        if taken == hy.taylor_outcome.err_nf_state:
+            outcome = taken
+            break
+        terms.append(run.tc.copy())
+        knots.append(float(run.time))
+        if taken != hy.taylor_outcome.success:
+            outcome = taken
+            break
+    if outcome == hy.taylor_outcome.time_limit:
+        knots[-1] = end
+    return DenseSolution(np.array(knots), np.array(terms).reshape(-1, *run.tc.shape)), outcome
+
+
+def _many_steps(run: Any, end: float) -> tuple[DenseSolution, Any]:
+    """Take many steps in one call."""
+    outcome, *_, output, _ = run.propagate_until(end, max_steps=LONG, c_output=True)
+    if output is None:
+        return DenseSolution(np.array([run.time]), np.empty((0, *run.tc.shape))), outcome
+    knots = np.array(output.times)
+    knots[-1] = end if outcome == hy.taylor_outcome.time_limit else output.bounds[1]
+    return DenseSolution(knots, output.tcs), outcome

@@ -10,7 +10,7 @@ from tippetop.export.glb import write_glb
 from tippetop.export.html import write_html
 from tippetop.export.track import pack_run, sample_count
 from tippetop.lab.setup import Setup, first_setup
-from tippetop.simulate import simulate
+from tippetop.run import simulate
 
 PHASES = 4000
 """Slides and flights a run on the page may go through."""

@@ -19,7 +19,7 @@ def view(run: xr.Dataset, height: int = 480, theme: str = "auto") -> Any:
     Parameters
     ----------
     run
-        The run, as from `tippetop.simulate`.
+        The run, as from `tippetop.run.simulate`.
     height
         Height of the widget, pixels.
     theme

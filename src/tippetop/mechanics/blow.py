@@ -80,7 +80,7 @@ class Striking(NamedTuple):
         return here._replace(answer=(nudged[0], nudged[1], nudged[2]))
 
     def after(self, blow: Blow) -> State:
-        """The state after a blow, its work left out."""
+        """The state after a blow."""
         return struck(self.state, self.arm, (*blow.rub, blow.push), blow.twist, self.top)
 
     def response(self, blow: Blow) -> Vector:

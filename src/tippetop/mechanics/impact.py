@@ -46,7 +46,7 @@ class Impact(NamedTuple):
     Attributes
     ----------
     state
-        The state after: same configuration, other velocities, with the work of the impact added to `work`.
+        The state after: same configuration, other velocities.
     impulse
         Normal impulse p, N s.
     energy_lost
@@ -92,7 +92,7 @@ def impact(state: State, restitution: float, top: Top) -> Impact:
         blow = course.until(compressed, restitution_goal(body, compressed, restitution))
     after = body.after(blow)
     lost = max(0.0, -work_of(blow, state, after, body))
-    return Impact(after._replace(work=state.work - lost), blow.push, lost, compressed.push)
+    return Impact(after, blow.push, lost, compressed.push)
 
 
 def restitution_goal(body: Striking, compressed: Blow, restitution: float) -> Goal:

@@ -1,8 +1,8 @@
 """What is conserved, and what friction takes: the quantities every run is checked by."""
 
-from tippetop.mechanics.motion import angular_velocity, contact, power_per_normal_force
+from tippetop.mechanics.motion import angular_velocity
 from tippetop.mechanics.shape import contact_vector
-from tippetop.mechanics.state import SlidingState, State
+from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Scalar, dot
 
@@ -11,7 +11,7 @@ def energy(state: State, top: Top) -> Scalar:
     """Kinetic and potential energy, (m |r'|^2 + omega.L)/2 + m g z, J; zero at rest with z = 0."""
     omega = angular_velocity(state.axis, state.momentum, top)
     translation = top.mass * dot(state.velocity, state.velocity)
-    return 0.5 * (translation + dot(omega, state.momentum)) + top.mass * top.gravity * state.position[2]
+    return 0.5 * (translation + dot(omega, state.momentum)) + top.mass * top.gravity * state.height
 
 
 def jellett(state: State, top: Top) -> Scalar:
@@ -22,13 +22,3 @@ def jellett(state: State, top: Top) -> Scalar:
     shapes.
     """
     return -dot(state.momentum, contact_vector(state.axis, top.shape))
-
-
-def friction_power(state: SlidingState, top: Top) -> Scalar:
-    """Power of friction, N (f.v + t.omega), W: the rate of change of the energy.
-
-    Never positive while the table pushes; a table that pulls (N < 0) makes it positive.
-    """
-    touch = contact(state.axis, state.momentum, state.velocity, top)
-    omega = angular_velocity(state.axis, state.momentum, top)
-    return touch.normal_force * power_per_normal_force(touch.slip, omega, touch.traction)

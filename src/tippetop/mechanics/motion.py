@@ -24,26 +24,45 @@ class Contact(NamedTuple):
         Contact vector a, from the centre of mass to the contact point, m.
     slip
         Slip velocity: horizontal velocity of the body's point of contact, m/s.
+    spin
+        Angular velocity omega, rad/s.
     traction
         Friction force and torque per unit normal force.
-    push
-        Normal force there would be if friction and gyroscopic reaction could not change it, N: the numerator
-        of the normal force, which has its sign.
-    resistance
-        How much of a unit normal force reaches the acceleration of the gap, dimensionless: the denominator
-        of the normal force. Where it is not positive, no contact force is consistent (Painleve's paradox).
+    free_acceleration
+        Acceleration b of the gap there would be without a contact force, m/s^2.
+    delassus
+        Acceleration A of the gap per unit normal force with the friction that goes with it, 1/kg. Where it
+        is not positive, no contact force is consistent (Painleve's paradox).
     """
 
     arm: Vector
     slip: Horizontal
+    spin: Vector
     traction: Traction
-    push: Scalar
-    resistance: Scalar
+    free_acceleration: Scalar
+    delassus: Scalar
 
     @property
     def normal_force(self) -> Scalar:
-        """Normal force N of the table, N."""
-        return self.push / self.resistance
+        """Normal force of the table that keeps the gap closed, -b / A, N."""
+        return -self.free_acceleration / self.delassus
+
+    @property
+    def force(self) -> Vector:
+        """Force of the table, N."""
+        normal, (x, y) = self.normal_force, self.traction.force
+        return (normal * x, normal * y, normal)
+
+    @property
+    def torque(self) -> Vector:
+        """Torque of the table about the contact point, N m."""
+        return scale(self.normal_force, self.traction.torque)
+
+    @property
+    def power(self) -> Scalar:
+        """Power of friction, N (f.v + t.omega), W: never positive while the table pushes."""
+        (x, y), torque = self.traction.force, self.traction.torque
+        return self.normal_force * (x * self.slip[0] + y * self.slip[1] + dot(torque, self.spin))
 
 
 def axial_spin(axis: Vector, momentum: Vector, top: Top) -> Scalar:
@@ -80,8 +99,8 @@ def contact(axis: Vector, momentum: Vector, velocity: Horizontal, top: Top) -> C
 
     Notes
     -----
-    N = m (g + h'' c'^2 + h' [L x n']_z / I1) / (1 - (m h'/I1) [(a x (z + f) + t) x n]_z), from the second
-    derivative of the constraint z = h(c), c = n_z.
+    The second derivative of the gap z - h(c), c = n_z, is A N + b with
+    A = 1/m - (h'/I1) [(a x (z + f) + t) x n]_z and b = -(g + h'' c'^2 + h' [L x n']_z / I1).
     """
     c = axis[2]
     slope = top.shape.slope(c)
@@ -93,11 +112,11 @@ def contact(axis: Vector, momentum: Vector, velocity: Horizontal, top: Top) -> C
 
     turning = axis_rate(axis, momentum, top)
     lever = slope / top.transverse_inertia
-    free_acceleration = top.gravity + (
+    falling = top.gravity + (
         top.shape.curvature(c) * turning[2] * turning[2] + lever * cross(momentum, turning)[2]
     )
     reaction = cross(moment_per_normal_force(arm, traction), axis)[2]
-    return Contact(arm, slip, traction, top.mass * free_acceleration, 1.0 - top.mass * lever * reaction)
+    return Contact(arm, slip, omega, traction, -falling, 1.0 / top.mass - lever * reaction)
 
 
 def moment_per_normal_force(arm: Vector, traction: Traction) -> Vector:
@@ -109,40 +128,21 @@ def moment_per_normal_force(arm: Vector, traction: Traction) -> Vector:
 def sliding_rates(state: SlidingState, top: Top) -> SlidingState:
     """Time derivative of the state of a sliding body."""
     touch = contact(state.axis, state.momentum, state.velocity, top)
-    normal = touch.normal_force
-    friction = (normal * touch.traction.force[0], normal * touch.traction.force[1])
-    omega = angular_velocity(state.axis, state.momentum, top)
+    normal, (x, y) = touch.normal_force, touch.traction.force
     return SlidingState(
         axis=axis_rate(state.axis, state.momentum, top),
         momentum=scale(normal, moment_per_normal_force(touch.arm, touch.traction)),
-        velocity=(friction[0] / top.mass, friction[1] / top.mass),
-        position=state.velocity,
-        marker=cross(omega, state.marker),
-        work=normal * power_per_normal_force(touch.slip, omega, touch.traction),
+        velocity=(normal * x / top.mass, normal * y / top.mass),
     )
-
-
-def power_per_normal_force(slip: Horizontal, omega: Vector, traction: Traction) -> Scalar:
-    """Power of friction per unit normal force, f.v + t.omega, m/s: never positive."""
-    return traction.force[0] * slip[0] + traction.force[1] * slip[1] + dot(traction.torque, omega)
 
 
 def on_table(state: SlidingState, top: Top) -> State:
     """The whole state of a body that touches the table: height h(c) and vertical velocity h'(c) c' added."""
     c = state.axis[2]
     sinking = top.shape.slope(c) * axis_rate(state.axis, state.momentum, top)[2]
-    return State(
-        state.axis,
-        state.momentum,
-        (*state.velocity, sinking),
-        (*state.position, top.shape.height(c)),
-        state.marker,
-        state.work,
-    )
+    return State(state.axis, state.momentum, (*state.velocity, sinking), top.shape.height(c))
 
 
 def along_table(state: State) -> SlidingState:
     """The part of the state that is free while the body touches the table."""
-    return SlidingState(
-        state.axis, state.momentum, state.velocity[:2], state.position[:2], state.marker, state.work
-    )
+    return SlidingState(state.axis, state.momentum, state.velocity[:2])

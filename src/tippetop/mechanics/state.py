@@ -1,13 +1,16 @@
-"""The state of the body: no angle, no pole, nothing periodic."""
+"""The state of the body: no angle, no pole, nothing periodic.
 
-from collections.abc import Sequence
+Position along the table, orientation about the axis and the work of the table move nothing: they are
+quadratures of the motion, found from its solution (see `tippetop.mechanics.quadratures`).
+"""
+
 from typing import NamedTuple, Self
 
-from tippetop.mechanics.vectors import Horizontal, Scalar, Vector
+from tippetop.mechanics.vectors import Horizontal, Row, Scalar, Vector
 
 
 class State(NamedTuple):
-    """Everything about the body at an instant, whether it touches the table or not.
+    """What the motion of the body depends on, whether it touches the table or not.
 
     Attributes
     ----------
@@ -17,61 +20,37 @@ class State(NamedTuple):
         Angular momentum L about the centre of mass, kg m^2/s.
     velocity
         Velocity of the centre of mass, m/s.
-    position
-        Position of the centre of mass, m; the table is z = 0.
-    marker
-        Unit vector fixed in the body and perpendicular to the axis; with the axis it gives the orientation.
-    work
-        Work of the contact force since the start, J (friction only takes, as long as the table
-        only pushes).
+    height
+        Height of the centre of mass above the table, m.
     """
 
     axis: Vector
     momentum: Vector
     velocity: Vector
-    position: Vector
-    marker: Vector
-    work: Scalar
+    height: Scalar
 
     def pack(self) -> tuple[Scalar, ...]:
-        """The 16 numbers of the state in the order of its attributes."""
-        return (*self.axis, *self.momentum, *self.velocity, *self.position, *self.marker, self.work)
+        """The 10 numbers of the state in the order of its attributes."""
+        return (*self.axis, *self.momentum, *self.velocity, self.height)
 
     @classmethod
-    def unpack(cls, y: Sequence[Scalar]) -> Self:
-        """Read a state from its 16 numbers."""
-        return cls(
-            (y[0], y[1], y[2]),
-            (y[3], y[4], y[5]),
-            (y[6], y[7], y[8]),
-            (y[9], y[10], y[11]),
-            (y[12], y[13], y[14]),
-            y[15],
-        )
+    def unpack(cls, y: Row) -> Self:
+        """Read a state from its 10 numbers."""
+        return cls((y[0], y[1], y[2]), (y[3], y[4], y[5]), (y[6], y[7], y[8]), y[9])
 
 
 class SlidingState(NamedTuple):
-    """The part of a `State` that is free while the body touches the table: its height is not."""
+    """The part of a `State` that is free while the body touches the table: height and sinking are not."""
 
     axis: Vector
     momentum: Vector
     velocity: Horizontal
-    position: Horizontal
-    marker: Vector
-    work: Scalar
 
     def pack(self) -> tuple[Scalar, ...]:
-        """The 14 numbers of the state in the order of its attributes."""
-        return (*self.axis, *self.momentum, *self.velocity, *self.position, *self.marker, self.work)
+        """The 8 numbers of the state in the order of its attributes."""
+        return (*self.axis, *self.momentum, *self.velocity)
 
     @classmethod
-    def unpack(cls, y: Sequence[Scalar]) -> Self:
-        """Read a state from its 14 numbers."""
-        return cls(
-            (y[0], y[1], y[2]),
-            (y[3], y[4], y[5]),
-            (y[6], y[7]),
-            (y[8], y[9]),
-            (y[10], y[11], y[12]),
-            y[13],
-        )
+    def unpack(cls, y: Row) -> Self:
+        """Read a state from its 8 numbers."""
+        return cls((y[0], y[1], y[2]), (y[3], y[4], y[5]), (y[6], y[7]))

@@ -4,7 +4,8 @@ from typing import NamedTuple
 
 from tippetop.mechanics.friction import FrictionLaw
 from tippetop.mechanics.shape import Shape
-from tippetop.mechanics.vectors import Scalar
+from tippetop.mechanics.state import State
+from tippetop.mechanics.vectors import Scalar, scale
 
 
 class Top(NamedTuple):
@@ -16,6 +17,16 @@ class Top(NamedTuple):
     shape: Shape
     friction: FrictionLaw
     gravity: Scalar
+
+    @property
+    def kind(self) -> "Kind":
+        """What remains when the numbers are taken away."""
+        return kind_of(self)
+
+    @property
+    def numbers(self) -> tuple[Scalar, ...]:
+        """The dimensionless numbers."""
+        return dimensionless_numbers(self)
 
 
 class Units(NamedTuple):
@@ -56,6 +67,21 @@ def dimensionless_numbers(top: Top) -> tuple[Scalar, ...]:
         top.axial_inertia / inertia,
         *top.shape.proportions,
         *top.friction.coefficients(units.speed),
+    )
+
+
+def natural(top: Top) -> Top:
+    """The top in its natural units."""
+    return top.kind.top(top.numbers)
+
+
+def natural_state(state: State, units: Units) -> State:
+    """A state in natural units from one in SI."""
+    return State(
+        state.axis,
+        scale(1.0 / units.angular_momentum, state.momentum),
+        scale(1.0 / units.speed, state.velocity),
+        state.height / units.length,
     )
 
 

@@ -83,7 +83,7 @@ def touchdown(state: State, top: Top, horizon: float, start: Start = Start.AIRBO
         axis_rate(turning, state.momentum, top)[2],
         length(scale(1.0 / top.transverse_inertia, state.momentum)) + SMALL,
     )
-    ballistic = (state.position[2], state.velocity[2], -0.5 * top.gravity)
+    ballistic = (state.height, state.velocity[2], -0.5 * top.gravity)
     horizon = min(horizon, 2.0 * falling_time(*ballistic))
     time = 0.0
     if start != Start.AIRBORNE:

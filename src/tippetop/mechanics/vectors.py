@@ -5,6 +5,9 @@ from typing import Any, Protocol, TypeAlias
 Scalar: TypeAlias = Any
 """A float, a NumPy array, a compiled expression or an algebraic symbol: whatever has + - * / and **."""
 
+Row: TypeAlias = Any
+"""Several of them: a sequence, or an array whose rows they are."""
+
 Vector: TypeAlias = tuple[Scalar, Scalar, Scalar]
 """Components along the space axes x, y and z (up)."""
 

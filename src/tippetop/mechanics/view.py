@@ -65,7 +65,7 @@ def slip_along_tilt(axis: Vector, slip: Horizontal) -> Horizontal:
 
 
 def state_from_angles(angles: Angles, top: Top, functions: Functions) -> SlidingState:
-    """The state of a sliding body at the origin with no work done, from Euler angles.
+    """The state of a sliding body from Euler angles.
 
     Parameters
     ----------
@@ -94,4 +94,4 @@ def state_from_angles(angles: Angles, top: Top, functions: Functions) -> Sliding
         angles.slip[0] * cos_azimuth - angles.slip[1] * sin_azimuth - swing[0],
         angles.slip[0] * sin_azimuth + angles.slip[1] * cos_azimuth - swing[1],
     )
-    return SlidingState(axis, momentum, velocity, (0.0, 0.0), first, 0.0)
+    return SlidingState(axis, momentum, velocity)

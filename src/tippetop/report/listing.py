@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 
 from tippetop.integrators.base import Array, Motion
+from tippetop.integrators.dense import DenseSolution
 from tippetop.integrators.scipy_methods import SciPy
 from tippetop.mechanics.euler import published_energy, published_normal_force, published_rates
 from tippetop.problem import Problem
@@ -76,5 +77,9 @@ def _integrate(problem: Problem, duration: float, control: str, samples: int) ->
     if control == "ode45":
         return ode45(lambda y: np.array(motion.rates(y.tolist(), ())), duration, start)
     method = SciPy("rk45", RELATIVE, ABSOLUTE)
-    arc = method.integrate(motion, (), (0.0, start), duration, np.linspace(0.0, duration, samples))
-    return Solution(arc.times, arc.states, arc.steps, arc.evaluations, arc.failure)
+    arcs = list(method.integrate(motion, (), (0.0, start), duration))
+    solution = DenseSolution.joined([arc.solution for arc in arcs])
+    times = np.linspace(0.0, duration, samples)
+    times = times[times <= solution.end]
+    steps, evaluations = sum(arc.steps for arc in arcs), sum(arc.evaluations for arc in arcs)
+    return Solution(times, solution(times), steps, evaluations, arcs[-1].failure)

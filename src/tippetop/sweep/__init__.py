@@ -4,15 +4,14 @@
 happens to the program.
 """
 
-from tippetop.sweep.cells import Fault
+from tippetop.catalogue import SWEPT, Ending, Fault
 from tippetop.sweep.definition import Sweep
 from tippetop.sweep.grid import Axis, Draws, Product, Range
-from tippetop.sweep.observe import VARIABLES, Ending
 from tippetop.sweep.run import Progress, compute, fill, run_sweep
 from tippetop.sweep.store import Status, Store
 
 __all__ = [
-    "VARIABLES",
+    "SWEPT",
     "Axis",
     "Draws",
     "Ending",

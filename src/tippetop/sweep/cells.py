@@ -7,32 +7,22 @@ mechanics makes arrays of them. What a problem would refuse is refused here by t
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from enum import IntEnum
 from typing import Any, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tippetop.catalogue import Fault
 from tippetop.errors import InvalidInput, one_of
 from tippetop.integrators.base import Array
 from tippetop.mechanics.motion import along_table, contact
 from tippetop.mechanics.state import State
-from tippetop.mechanics.top import Top, Units, dimensionless_numbers, kind_of, natural_units
-from tippetop.mechanics.vectors import scale
+from tippetop.mechanics.top import Top, Units, natural_state, natural_units
 from tippetop.problem import Problem
-from tippetop.sweep.courses import Launches
+from tippetop.sweep.launches import Launches
 from tippetop.validation import Part
 
 PartType = TypeVar("PartType", bound=Part)
-
-
-class Fault(IntEnum):
-    """Why there is no such problem as a cell asks for."""
-
-    NONE = 0
-    VALUE_OUT_OF_RANGE = 1
-    NO_SUCH_BODY = 2
-    NO_CONTACT_FORCE = 3
 
 
 @dataclass(frozen=True)
@@ -60,10 +50,10 @@ class Cells:
     def launches(self, which: NDArray[np.intp], duration: float) -> Launches:
         """Some of the cells as launches."""
         count = len(self.fault)
-        numbers = [spread(number, count)[which] for number in dimensionless_numbers(self.top)]
+        numbers = [spread(number, count)[which] for number in self.top.numbers]
         contact_rule = self.problem.contact
         return Launches(
-            kind_of(self.top),
+            self.top.kind,
             np.array(numbers),
             State.unpack([number[which] for number in self.start.pack()]),
             (duration / spread(self.units.time, count))[which],
@@ -98,7 +88,7 @@ def cells_of(problem: Problem, values: Mapping[str, Array]) -> Cells:
             sliding = along_table(start)
             touch = contact(sliding.axis, sliding.momentum, sliding.velocity, top)
             lifted = spread(filled.launch.gap, count) > 0.0
-            fault[~(touch.resistance > 0.0) | lifted] = Fault.NO_CONTACT_FORCE
+            fault[~(touch.delassus > 0.0) | lifted] = Fault.NO_CONTACT_FORCE
         fault[~(spread(filled.body.I3, count) <= 2.0 * spread(filled.body.I1, count))] = Fault.NO_SUCH_BODY
         for field, numbers in values.items():
             fault[~allowed(numbers, known[field])] = Fault.VALUE_OUT_OF_RANGE
@@ -160,18 +150,6 @@ def launch_state(problem: Problem, count: int) -> State:
     """The states at launch in SI of a problem with arrays for fields, every number of shape (count,)."""
     state = problem.start(_PoleExact())
     return State.unpack([spread(number, count).copy() for number in state.pack()])
-
-
-def natural_state(state: State, units: Units) -> State:
-    """States in natural units from those in SI."""
-    return State(
-        state.axis,
-        scale(1.0 / units.angular_momentum, state.momentum),
-        scale(1.0 / units.speed, state.velocity),
-        scale(1.0 / units.length, state.position),
-        state.marker,
-        state.work / units.energy,
-    )
 
 
 def spread(number: Any, count: int) -> Array:

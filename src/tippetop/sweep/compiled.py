@@ -6,10 +6,9 @@ from typing import Any
 import heyoka as hy
 import numpy as np
 
-from tippetop.integrators.base import Array
+from tippetop.integrators.base import Array, Motion
 from tippetop.integrators.compile_cache import use_compile_cache
-from tippetop.mechanics.top import Kind
-from tippetop.sweep.stepper import CARES, KEPT, LANES, SIZE, Jet, sliding_jet, stride
+from tippetop.sweep.stride import LANES, Jet, Layout, motion_series, stride
 
 
 class ExpressionArithmetic:
@@ -37,36 +36,37 @@ class ExpressionArithmetic:
 
 
 class CompiledStepper:
-    """Taylor's method as a pair of compiled functions; see `tippetop.sweep.stepper.Stepper`."""
+    """Taylor's method as a pair of compiled functions; see `tippetop.sweep.stride.Stepper`."""
 
-    def __init__(self, kind: Kind, order: int) -> None:
+    def __init__(self, motion: Motion, order: int) -> None:
         use_compile_cache()
         # Launches are spread over processes; threads would only get in each other's way.
         hy.set_nthreads(1)
-        self.kind, self.order = kind, order
-        self._state = hy.make_vars(*(f"y{i}" for i in range(SIZE)))
-        self._numbers = [hy.par[i] for i in range(kind.numbers + CARES)]
-        others = hy.make_vars(*(f"k{i}" for i in range(SIZE, KEPT)))
-        kept = [*self._state, *others]
-        rows = stride(kind, order, kept, self._numbers, ExpressionArithmetic())
-        self._step = hy.cfunc([hy.expression(row) for row in rows], vars=kept)
+        self.motion, self.order, self.layout = motion, order, Layout.of(motion)
+        self._kept = list(hy.make_vars(*(f"y{i}" for i in range(self.layout.kept))))
+        self._numbers = [hy.par[i] for i in range(self.layout.numbers)]
+        rows = stride(motion, order, self._kept, self._numbers, ExpressionArithmetic())
+        self._step = hy.cfunc([hy.expression(row) for row in rows], vars=self._kept)
         self._jet: Any = None
 
     def step(self, before: Array, after: Array, numbers: Array) -> None:
         """Take a step."""
-        self._step(before[:KEPT], outputs=after, pars=numbers)
+        self._step(before[: self.layout.kept], outputs=after, pars=numbers)
 
     def jet(self, before: Array, numbers: Array) -> Jet:
         """The polynomials of the steps."""
+        size, parameters, order = self.layout.size, self.layout.parameters, self.order
         if self._jet is None:
-            y, normal = sliding_jet(self.kind, self._state, self._numbers, ExpressionArithmetic())
-            rows = [series[k] for series in y for k in range(self.order + 1)]
-            rows += [normal[k] for k in range(self.order)]
-            self._jet = hy.cfunc([hy.expression(row) for row in rows], vars=list(self._state))
+            start = self._kept[:size]
+            y, guards = motion_series(self.motion, start, self._numbers, ExpressionArithmetic())
+            rows = [series[k] for series in y for k in range(order + 1)]
+            rows += [guard[k] for guard in guards for k in range(order)]
+            self._jet = hy.cfunc([hy.expression(row) for row in rows], vars=start)
         count = before.shape[1]
-        values = self._jet(padded(before[:SIZE]), pars=padded(numbers[: self.kind.numbers]))[:, :count]
-        cut = SIZE * (self.order + 1)
-        return Jet(values[:cut].reshape(SIZE, self.order + 1, count), values[cut:])
+        values = self._jet(padded(before[:size]), pars=padded(numbers[:parameters]))[:, :count]
+        cut = size * (order + 1)
+        guards = values[cut:].reshape(self.layout.guards, order, count)
+        return Jet(values[:cut].reshape(size, order + 1, count), guards)
 
 
 def padded(rows: Array) -> Array:

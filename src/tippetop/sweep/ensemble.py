@@ -3,14 +3,17 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from tippetop.catalogue import SWEPT, Ending, Fault
+from tippetop.contact.sliding import sliding_motion
 from tippetop.integrators.base import Array
+from tippetop.mechanics.top import Units
 from tippetop.mechanics.vectors import length
-from tippetop.sweep.cells import Fault, cells_of
-from tippetop.sweep.courses import Launches
+from tippetop.metrics import ending, final_band, metrics
+from tippetop.sweep.cells import cells_of, spread
 from tippetop.sweep.definition import Sweep
 from tippetop.sweep.grid import Flat
 from tippetop.sweep.lanes import Lanes, arrivals
-from tippetop.sweep.observe import VARIABLES, final_band, nothing_known, observed
+from tippetop.sweep.launches import Launches
 from tippetop.sweep.stepper import stepper
 
 LANES_AT_ONCE = 2048
@@ -18,7 +21,7 @@ LANES_AT_ONCE = 2048
 
 
 def follow_cells(sweep: Sweep, numbers: Flat) -> dict[str, NDArray[np.generic]]:
-    """Every variable of `VARIABLES` for some cells of a sweep, each of shape (n,).
+    """Every variable of `tippetop.catalogue.SWEPT` for some cells of a sweep, each of shape (n,).
 
     Parameters
     ----------
@@ -28,22 +31,27 @@ def follow_cells(sweep: Sweep, numbers: Flat) -> dict[str, NDArray[np.generic]]:
         Which cells, counted row by row.
     """
     cells = cells_of(sweep.problem, sweep.grid.values(numbers))
-    found = nothing_known(len(numbers))
+    count = len(numbers)
+    found = {name: np.full(count, kind.missing, dtype=kind.dtype) for name, kind in SWEPT.items()}
+    found["outcome"][:] = Ending.BAD
     found["fault"][:] = cells.fault
     good = np.flatnonzero(cells.fault == Fault.NONE)
     if not len(good):
         return found
     launches = cells.launches(good, sweep.duration)
+    method = stepper(sliding_motion(launches.kind, guarded=True), sweep.tolerance)
     alike = np.argsort(expected_cost(launches), kind="stable")
     for first in range(0, len(alike), LANES_AT_ONCE):
         block = alike[first : first + LANES_AT_ONCE]
         some, which = launches.some(block), good[block]
-        method = stepper(some.kind, sweep.tolerance)
-        lanes = Lanes(some, method, settled=sweep.settled)
+        lanes = Lanes(some, method, sweep.tolerance, settled=sweep.settled)
         ends = lanes.run()
-        arrives = arrivals(some, method, lanes.notes, final_band(ends))
-        for name, values in observed(cells, which, some, ends, arrives).items():
-            found[name][which] = values.astype(VARIABLES[name].dtype)
+        again = arrivals(lanes, final_band(ends.state))
+        ends.arrived = np.where(np.isnan(again), ends.arrived, again)
+        units = Units(*(spread(unit, count)[which] for unit in cells.units))
+        values = metrics(ends, some.state, some.top, units) | {"outcome": ending(ends)}
+        for name, numbers_found in values.items():
+            found[name][which] = numbers_found.astype(SWEPT[name].dtype)
     return found
 
 

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
+from tippetop.catalogue import SWEPT
 from tippetop.sweep.definition import Sweep
-from tippetop.sweep.observe import VARIABLES
 from tippetop.sweep.store import STATUS, Status, Store, coordinate_attributes, layout_attributes
 from tippetop.sweep.tasks import need_workers, results
 
@@ -121,7 +121,7 @@ def run_sweep(
     Returns
     -------
     xarray.Dataset
-        The variables of `tippetop.sweep.observe.VARIABLES` and `status` over the grid, read when used.
+        The variables of `tippetop.catalogue.SWEPT` and `status` over the grid, read when used.
 
     Raises
     ------
@@ -149,7 +149,7 @@ def compute(
         As from `run_sweep`.
     """
     shape, grid = sweep.grid.shape, sweep.grid
-    arrays = {name: np.full(shape, kind.missing, dtype=kind.dtype) for name, kind in VARIABLES.items()}
+    arrays = {name: np.full(shape, kind.missing, dtype=kind.dtype) for name, kind in SWEPT.items()}
     done, began = 0, time.monotonic()
     for task, found in results(sweep, sweep.tasks, workers, scheduler):
         region = sweep.region(task)
@@ -160,7 +160,7 @@ def compute(
             watcher(Progress(sweep.cells, 0, done, time.monotonic() - began))
     status = np.full(shape, Status.DONE, dtype=np.int8)
     data = {"status": (grid.dimensions, status, STATUS.attributes)}
-    for name, kind in VARIABLES.items():
+    for name, kind in SWEPT.items():
         data[name] = (grid.dimensions, arrays[name], kind.attributes)
     coordinates = {
         name: ((along,), values, coordinate_attributes(name))

@@ -22,12 +22,12 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from tippetop import __version__
+from tippetop.catalogue import SWEPT, Variable, meanings
 from tippetop.dataset import CONVENTIONS
 from tippetop.errors import FileTrouble, InvalidInput, Unavailable, short
 from tippetop.files import refuse_overwriting
 from tippetop.interrupts import deferred
 from tippetop.sweep.definition import Sweep, sweep_from
-from tippetop.sweep.observe import VARIABLES, Variable
 
 FORMAT = "tippetop sweep 1"
 """Name and version of the layout; a store of another is refused."""
@@ -40,7 +40,7 @@ class Status(IntEnum):
     DONE = 1
 
 
-STATUS = Variable("whether the cell is computed", "", "int8", tuple(flag.name.lower() for flag in Status))
+STATUS = Variable("whether the cell is computed", dtype="int8", flags=meanings(Status))
 
 
 class Store:
@@ -293,7 +293,7 @@ def _lay_out(path: Path, sweep: Sweep) -> None:
             attributes=coordinate_attributes(name),
         )
         kept[...] = values
-    for name, kind in {"status": STATUS, **VARIABLES}.items():
+    for name, kind in {"status": STATUS, **SWEPT}.items():
         attributes = kind.attributes | _coordinates(sweep)
         group.create_array(
             name,

@@ -3,12 +3,11 @@
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tippetop.integrators.base import Array
-from tippetop.sweep.polynomials import Polynomials
-
-Indices = NDArray[np.intp]
+from tippetop.integrators.polynomials import Polynomials
+from tippetop.metrics import arrival_time, turning_time
+from tippetop.sweep.launches import Indices
 
 
 @dataclass
@@ -56,18 +55,13 @@ class Watch:
     def see(self, launches: Indices, time: Array, tip: Polynomials) -> None:
         """Take in n_z as polynomials in time since `time`, shape (n,)."""
         self.spread(launches, tip.least(), tip.greatest())
-        start = tip.values[0]
         some = np.flatnonzero(np.isnan(self.turned[launches]) & (tip.values.min(axis=0) < 0.0))
         if len(some):
-            self.turned[launches[some]] = time[some] + tip.some(some).first_fall(from_above=True)
+            self.turned[launches[some]] = time[some] + turning_time(tip.some(some))
         some = np.flatnonzero(np.isnan(self.reached[launches]) & ~np.isnan(self.low[launches]))
         if len(some):
             low, high = self.low[launches[some]], self.high[launches[some]]
-            here = start[some]
-            falls = tip.some(some, shift=-high).first_fall()
-            rises = tip.some(some, sign=-1.0, shift=low).first_fall()
-            after = np.where(here > high, falls, np.where(here < low, rises, 0.0))
-            self.reached[launches[some]] = time[some] + after
+            self.reached[launches[some]] = time[some] + arrival_time(tip.some(some), low, high)
 
     def some(self, which: Indices) -> "Watch":
         """The watch of some of the launches."""

@@ -65,7 +65,7 @@ def smooth_constants(axis: Array, momentum: Array, top: Top) -> Constants:
     """
     n, L = _vector(axis), _vector(momentum)
     zero = np.zeros_like(n[0])
-    state = SlidingState(n, L, (zero, zero), (zero, zero), (zero, zero, zero), zero)
+    state = SlidingState(n, L, (zero, zero))
     return constants(state, top)
 
 

@@ -208,9 +208,7 @@ def _rates_in_frame(top: Top, frame: Array) -> Callable[[Sequence[Any]], list[An
     """Rates of the 8 numbers n, L, u seen from a frame that turns about the vertical."""
 
     def rates(y: Sequence[Any]) -> list[Any]:
-        rest = ((0.0, 0.0), (1.0, 0.0, 0.0), 0.0)
-        still = sliding_rates(SlidingState((y[0], y[1], y[2]), (y[3], y[4], y[5]), (y[6], y[7]), *rest), top)
-        seen = [*still.axis, *still.momentum, *still.velocity]
+        seen = list(sliding_rates(SlidingState.unpack(y), top).pack())
         for i, turned in enumerate(_turned(y)):
             seen[i] = seen[i] - frame * turned
         return seen

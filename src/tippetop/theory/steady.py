@@ -218,7 +218,7 @@ def state_of(steady: SteadyState, top: Top) -> SlidingState:
 def _at_rest(axis: Vector, momentum: Vector, top: Top) -> State:
     """The body on the table with its centre of mass at rest."""
     zero = (0.0, 0.0, 0.0)
-    return State(axis, momentum, zero, (0.0, 0.0, top.shape.height(axis[2])), zero, 0.0)
+    return State(axis, momentum, zero, top.shape.height(axis[2]))
 
 
 def _tilt_of(kind: Kind) -> float:

@@ -13,7 +13,7 @@ from tippetop.presets import REPORT, report_problem
 from tippetop.problem import Body, EccentricSphere, Problem, ViscousFriction
 from tippetop.report.experiment import Experiment, variable
 from tippetop.report.experiments.runs import on_table
-from tippetop.simulate import simulate
+from tippetop.run import simulate
 
 _INSTANT = 5.0
 _LONG = 400.0

@@ -17,7 +17,7 @@ from tippetop.report.experiments.runs import (
     pushing,
     stopping,
 )
-from tippetop.simulate import simulate
+from tippetop.run import simulate
 
 LONG_WINDOW = 200.0
 """Length of the longer runs in which a lift-off is looked for, s."""

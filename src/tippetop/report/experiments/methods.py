@@ -14,7 +14,7 @@ from tippetop.report.experiment import Experiment, variable
 from tippetop.report.experiments.runs import on_table
 from tippetop.report.listing import launch_state, listing_rates
 from tippetop.report.ode45 import ABSOLUTE, RELATIVE, dormand_prince_step, ode45
-from tippetop.simulate import simulate
+from tippetop.run import simulate
 
 EXPLICIT, IMPLICIT = ("ode45", "dop853"), ("radau", "bdf", "lsoda")
 
@@ -92,7 +92,8 @@ def evaluations(problem: Problem, method: str, span: float) -> int:
     else:
         motion = Motion(rates, size=7, parameters=0)
         scipy = SciPy(method, RELATIVE, ABSOLUTE)
-        failure = scipy.integrate(motion, (), (0.0, start), span, np.array([span])).failure
+        *_, last = scipy.integrate(motion, (), (0.0, start), span)
+        failure = last.failure
     return rates.count if failure is None else -1
 
 

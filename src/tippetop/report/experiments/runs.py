@@ -13,7 +13,7 @@ from tippetop.problem import Problem
 from tippetop.report.experiment import Experiment, variable
 from tippetop.report.listing import CONTROLS, listing_run
 from tippetop.report.readings import crossings, first_below_zero, flip_time, longest_quiet
-from tippetop.simulate import simulate
+from tippetop.run import simulate
 from tippetop.sweep import Axis, Ending, Product, Sweep, compute
 
 WINDOW = 20.0

@@ -11,7 +11,7 @@ from tippetop.report.experiment import Experiment, variable
 from tippetop.report.experiments.runs import WINDOW, lift_off_time, on_table, pushing, stopping, swept
 from tippetop.report.listing import listing_run
 from tippetop.report.readings import SETTLED
-from tippetop.simulate import simulate
+from tippetop.run import simulate
 
 MARGINS = (0.001, SETTLED, 0.1)
 """Tilts that may count as upright, and distances from pi that may count as turned over, rad."""

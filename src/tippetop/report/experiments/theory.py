@@ -10,7 +10,7 @@ from tippetop.presets import REPORT, REPORT_TABLE_1, report_problem
 from tippetop.problem import Body, EccentricSphere, Problem
 from tippetop.report.experiment import Experiment, variable
 from tippetop.report.experiments.runs import WINDOW
-from tippetop.simulate import simulate
+from tippetop.run import simulate
 from tippetop.theory.groups import (
     classify,
     classify_top,

@@ -10,7 +10,7 @@ from tippetop.presets import report_problem
 from tippetop.report.experiment import Experiment, variable
 from tippetop.report.experiments.runs import WINDOW, on_table
 from tippetop.report.readings import SETTLED, flip_time
-from tippetop.simulate import simulate
+from tippetop.run import simulate
 from tippetop.theory.averaging import averaged_flow, flip_time_limit, local_exponent
 from tippetop.theory.diagnostics import (
     gyroscopic_balance,

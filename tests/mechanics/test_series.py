@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tippetop.mechanics.algebra import Series as FlightSeries
-from tippetop.sweep.series import Series, horner, solution
+from tippetop.mechanics.series import Series, horner, solution
 from tippetop.sweep.stepper import NumPyArithmetic
 
 PLAIN = NumPyArithmetic()

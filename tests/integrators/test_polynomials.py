@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tippetop.sweep.polynomials import LOOKS, Polynomials
+from tippetop.integrators.polynomials import LOOKS, Polynomials
 
 
 def with_roots(roots, factor=1.0):

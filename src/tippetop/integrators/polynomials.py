@@ -1,12 +1,12 @@
 """First zeros and extremes of many polynomials at once, each on its own interval from zero."""
 
 from copy import copy
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tippetop.integrators.base import Array
+from tippetop.integrators.dense import Array, powers
 
 LOOKS = 32
 """Intervals at whose ends a polynomial is looked at; between them its second derivative bounds it."""
@@ -14,7 +14,11 @@ LOOKS = 32
 TURNS = 60
 """Improvements of a zero at most: Newton's where they stay in the bracket, halvings where they do not."""
 
-_PLACES = np.linspace(0.0, 1.0, LOOKS + 1)
+
+@lru_cache
+def _places(count: int) -> Array:
+    """The first powers of the places of the looks, shape (LOOKS + 1, count)."""
+    return powers(np.linspace(0.0, 1.0, LOOKS + 1), count)
 
 
 class Polynomials:
@@ -29,35 +33,48 @@ class Polynomials:
     """
 
     def __init__(self, terms: Array, span: Array) -> None:
-        powers = np.arange(len(terms))
         self.span = span
-        self.unit = terms * span ** powers[:, None]
-        self._places = _PLACES[:, None] ** powers
+        self.unit = terms * powers(span, len(terms)).T
+
+    @cached_property
+    def bounds(self) -> tuple[Array, Array]:
+        """Numbers below and above which no polynomial goes, each of shape (n,)."""
+        reach = np.abs(self.unit[1:]).sum(axis=0)
+        return self.unit[0] - reach, self.unit[0] + reach
+
+    @cached_property
+    def sag(self) -> Array:
+        """How far a polynomial can go beyond its values at Gauss's six points, shape (n,)."""
+        k = np.arange(len(self.unit))
+        found: Array = (k * (k - 1)) @ np.abs(self.unit) * (0.25**2 / 8.0) + 0.034 * np.abs(
+            self.unit[1:]
+        ).sum(axis=0)
+        return found
 
     @cached_property
     def values(self) -> Array:
         """Values at the looks, shape (LOOKS + 1, n)."""
-        found: Array = self._places @ self.unit
+        found: Array = _places(len(self.unit)) @ self.unit
         return found
 
     @property
     def slopes(self) -> Array:
         """First derivatives at the looks, over the interval, shape (LOOKS + 1, n)."""
-        found: Array = self._places[:, :-1] @ (self.unit[1:] * np.arange(1, len(self.unit))[:, None])
+        found: Array = _places(len(self.unit) - 1) @ (self.unit[1:] * np.arange(1, len(self.unit))[:, None])
         return found
 
     @cached_property
     def bending(self) -> Array:
         """How far a polynomial can lie below two neighbouring looks: interval^2 / 8 max |f''|, shape (n,)."""
-        powers = np.arange(len(self.unit))
-        found: Array = (powers * (powers - 1)) @ np.abs(self.unit) / (8.0 * LOOKS**2)
+        k = np.arange(len(self.unit))
+        found: Array = (k * (k - 1)) @ np.abs(self.unit) / (8.0 * LOOKS**2)
         return found
 
     def some(self, which: NDArray[np.intp], sign: float = 1.0, shift: Array | float = 0.0) -> "Polynomials":
         """Some of the polynomials, times a sign and plus numbers."""
         chosen = copy(self)
-        chosen.__dict__.pop("values", None)
-        chosen.__dict__.pop("bending", None)
+        for known in ("values", "bending", "bounds", "sag"):
+            chosen.__dict__.pop(known, None)
         chosen.span, chosen.unit = self.span[which], sign * self.unit[:, which]
         chosen.unit[0] += shift
         return chosen

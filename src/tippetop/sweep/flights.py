@@ -13,9 +13,9 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tippetop.integrators.base import Array
+from tippetop.integrators.polynomials import Polynomials
 from tippetop.mechanics.blow import contact_velocity
 from tippetop.mechanics.flight import fly
 from tippetop.mechanics.motion import (
@@ -26,15 +26,16 @@ from tippetop.mechanics.motion import (
     moment_per_normal_force,
     on_table,
 )
+from tippetop.mechanics.series import Series, horner, solution
 from tippetop.mechanics.shape import contact_vector
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.touchdown import Tip
 from tippetop.mechanics.vectors import length, scale
-from tippetop.sweep.polynomials import Polynomials
-from tippetop.sweep.series import Series, horner, solution
-from tippetop.sweep.stepper import NumPyArithmetic, step_size
-from tippetop.sweep.watch import Indices, Watch
+from tippetop.sweep.launches import Flags, Indices, picked
+from tippetop.sweep.stepper import NumPyArithmetic
+from tippetop.sweep.stride import step_size
+from tippetop.sweep.watch import Watch
 
 PLAIN = NumPyArithmetic()
 
@@ -50,10 +51,8 @@ DEGREE = 12
 TINY = 1e-150
 """Added to a frequency that may be zero."""
 
-Flags = NDArray[np.bool_]
 
-
-class Hops(NamedTuple):
+class Flown(NamedTuple):
     """What became of flights: all of shape (n,).
 
     Attributes
@@ -75,11 +74,6 @@ class Hops(NamedTuple):
     highest: Array
 
 
-def picked(state: State, launches: Indices | Flags) -> State:
-    """Some of many states."""
-    return State.unpack([np.asarray(number)[launches] for number in state.pack()])
-
-
 def tip_of(state: State, top: Top) -> Tip:
     """Motion of the tip of the axis in free flight."""
     turning = axis_rate(state.axis, state.momentum, top)
@@ -91,14 +85,14 @@ def tip_of(state: State, top: Top) -> Tip:
     )
 
 
-def hop(
+def fly_all(
     state: State,
     kind: Kind,
     numbers: Array,
     horizon: Array,
     vanishing: Indices,
     watched: tuple[Watch, Indices, Array],
-) -> Hops:
+) -> Flown:
     """Fly until the table is touched.
 
     Parameters
@@ -134,15 +128,14 @@ def hop(
         landed[active] = touches
     top = kind.top(tuple(numbers))
     last = fly(state, time, top, np)
-    ground = on_table(along_table(last), top).position[2]
-    x, y, z = last.position
+    ground = on_table(along_table(last), top).height
     summit = np.clip(state.velocity[2] / top.gravity, 0.0, time)
-    return Hops(
+    return Flown(
         time,
         landed,
-        last._replace(position=(x, y, np.where(landed, ground, z))),
+        last._replace(height=np.where(landed, ground, last.height)),
         highest,
-        fly(state, summit, top, np).position[2],
+        fly(state, summit, top, np).height,
     )
 
 
@@ -153,7 +146,7 @@ def flight_terms(state: State, top: Top) -> tuple[Array, Array, Array]:
     support = top.shape.height(Series(lambda k: terms[k], PLAIN))
     height = np.array([np.broadcast_to(support[k], count) for k in range(len(terms))])
     gap = -height
-    gap[0] += state.position[2]
+    gap[0] += state.height
     gap[1] += state.velocity[2]
     gap[2] -= 0.5 * top.gravity
     tip = np.array([np.broadcast_to(term, count) for term in terms])
@@ -218,5 +211,5 @@ def slides(state: State, top: Top) -> Flags:
     """Whether tops in contact, whose contact point is at rest vertically, go on sliding."""
     sliding = along_table(state)
     touch = contact(sliding.axis, sliding.momentum, sliding.velocity, top)
-    found: Flags = (touch.resistance > 0.0) & (touch.push > 0.0)
+    found: Flags = (touch.delassus > 0.0) & (touch.free_acceleration < 0.0)
     return found

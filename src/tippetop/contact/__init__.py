@@ -1,0 +1,1 @@
+"""Contact modes: how the top moves in each, what ends it, and what follows."""

@@ -1,0 +1,133 @@
+"""Steps of a trajectory, whatever their modes, put together so that arrays do the work."""
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tippetop.contact.mode import Mode, Reaction, Segment
+from tippetop.integrators.base import Array
+from tippetop.integrators.dense import at_fractions, evaluated
+from tippetop.mechanics.state import State
+
+STEPS = 4096
+"""Steps in a block, about."""
+
+NODES, WEIGHTS = (
+    0.5 * (1.0 + np.polynomial.legendre.leggauss(6)[0]),
+    0.5 * np.polynomial.legendre.leggauss(6)[1],
+)
+"""Gauss's points and weights in [0, 1]. A step is short beside the radius of convergence: six are exact."""
+
+
+@dataclass(frozen=True)
+class Group:
+    """The steps of a block that were taken in one mode.
+
+    Attributes
+    ----------
+    mode
+        The mode.
+    which
+        Which steps of the block, shape (k,).
+    terms
+        Their polynomials, shape (k, size, degree + 1).
+    spans
+        How long they are, shape (k,).
+    """
+
+    mode: Mode
+    which: NDArray[np.intp]
+    terms: Array
+    spans: Array
+
+    @cached_property
+    def nodes(self) -> tuple[State, Reaction]:
+        """States, and what the table does, at Gauss's points, every number of shape (6, k) or one for all."""
+        return self.at(NODES)
+
+    def at(self, fractions: Array) -> tuple[State, Reaction]:
+        """States, and what the table does, at fractions of the steps, shape (m,), every number (m, k)."""
+        y = at_fractions(self.terms, self.spans, fractions)
+        return self.mode.state(y), self.mode.reaction(y)
+
+
+@dataclass(frozen=True)
+class Block:
+    """Segments that follow one another.
+
+    Attributes
+    ----------
+    segments
+        In order.
+    """
+
+    segments: Sequence[Segment]
+
+    @cached_property
+    def lengths(self) -> NDArray[np.intp]:
+        """How many steps each segment has."""
+        return np.array([len(segment.solution.terms) for segment in self.segments])
+
+    @cached_property
+    def starts(self) -> Array:
+        """Where the steps begin, shape (k,)."""
+        return np.concatenate([segment.solution.knots[:-1] for segment in self.segments])
+
+    @cached_property
+    def ends(self) -> Array:
+        """Where the steps end, shape (k,)."""
+        return np.concatenate([segment.solution.knots[1:] for segment in self.segments])
+
+    @property
+    def spans(self) -> Array:
+        """How long they are, shape (k,)."""
+        return self.ends - self.starts
+
+    @cached_property
+    def groups(self) -> list[Group]:
+        """The steps by mode."""
+        kinds: dict[tuple[str, int], list[int]] = {}
+        for number, segment in enumerate(self.segments):
+            if len(segment.solution.terms):
+                kinds.setdefault((segment.mode.name, segment.solution.terms.shape[2]), []).append(number)
+        first = np.concatenate([[0], np.cumsum(self.lengths)])
+        spans = self.spans
+        found = []
+        for numbers in kinds.values():
+            which = np.concatenate([np.arange(first[n], first[n + 1]) for n in numbers])
+            terms = np.concatenate([self.segments[n].solution.terms for n in numbers])
+            found.append(Group(self.segments[numbers[0]].mode, which, terms, spans[which]))
+        return found
+
+    def step_at(self, times: Array) -> NDArray[np.intp]:
+        """Which step some times lie in, the earlier one where two meet, shape (m,)."""
+        return np.minimum(np.searchsorted(self.ends, times, side="left"), len(self.ends) - 1)
+
+    def sampled(
+        self, times: Array, step: NDArray[np.intp]
+    ) -> Iterator[tuple[Mode, NDArray[np.intp], State, Reaction]]:
+        """For every mode, which of some times lie in it, and the states and what the table does there."""
+        for group in self.groups:
+            place = np.full(len(self.ends), -1)
+            place[group.which] = np.arange(len(group.which))
+            here = np.flatnonzero(place[step] >= 0)
+            if len(here):
+                y = evaluated(group.terms[place[step[here]]], times[here] - self.starts[step[here]])
+                yield group.mode, here, group.mode.state(y.T), group.mode.reaction(y.T)
+
+
+def in_blocks(segments: Iterable[Segment]) -> Iterator[Block]:
+    """Segments as blocks of some thousand steps."""
+    waiting: list[Segment] = []
+    steps = 0
+    for segment in segments:
+        waiting.append(segment)
+        steps += len(segment.solution.terms)
+        if steps >= STEPS:
+            yield Block(waiting)
+            waiting, steps = [], 0
+    if waiting:
+        yield Block(waiting)

@@ -1,0 +1,223 @@
+"""Contact modes as data: what a mode of motion states, and what runs it.
+
+All is in natural units (see `tippetop.mechanics.top`). A mode states how its numbers change, the guards that
+end it by name, and what follows each. `tippetop.contact.trajectory` follows one launch from mode to mode, and
+the engine of sweeps many; neither knows mechanics.
+"""
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import ClassVar, NamedTuple, Protocol
+
+import numpy as np
+
+from tippetop.integrators.base import Integrator, Motion
+from tippetop.integrators.dense import DenseSolution
+from tippetop.mechanics.state import State
+from tippetop.mechanics.top import Top
+from tippetop.mechanics.vectors import Row, Scalar, Vector
+
+
+class Outcome(Enum):
+    """How a run ended; the value is advice."""
+
+    COMPLETED = "The run reached its end."
+    LIFTED_OFF = (
+        "The table would have to pull from here on; "
+        "with liftoff = ignore it does, and with fly the top leaves it."
+    )
+    TOO_MANY_PHASES = (
+        "The top bounced and slid more often than the run allows; "
+        "shorten the duration, lower the restitution, or raise the limit on phases."
+    )
+    FAILED = (
+        "The integrator could not go on: the motion became singular or too stiff for it; "
+        "try another integrator, or less friction."
+    )
+
+
+class EventKind(Enum):
+    """What can happen to a top; the value is its name in a result."""
+
+    LIFT_OFF = "lift-off"
+    TOUCHDOWN = "touchdown"
+    IMPACT = "impact"
+
+
+@dataclass(frozen=True)
+class Event:
+    """Something that happened at an instant.
+
+    Attributes
+    ----------
+    kind
+        What happened.
+    time
+        When.
+    impulse, energy_lost
+        Normal impulse of the table, and energy that went with it.
+    """
+
+    kind: EventKind
+    time: float
+    impulse: float = 0.0
+    energy_lost: float = 0.0
+
+
+@dataclass(frozen=True)
+class Transition:
+    """What follows the end of a mode.
+
+    Attributes
+    ----------
+    events
+        What happened, in order.
+    then
+        The next mode, or the outcome of the run.
+    state
+        The state in which it begins, floats.
+    detail
+        More about the outcome, where there is more to say.
+    """
+
+    events: tuple[Event, ...]
+    then: "Mode | Outcome"
+    state: State
+    detail: str = ""
+
+
+class Reaction(NamedTuple):
+    """What the table does to the top at an instant.
+
+    Attributes
+    ----------
+    force
+        Contact force.
+    torque
+        Torque about the contact point.
+    power
+        Power of the contact force and torque.
+    """
+
+    force: Vector
+    torque: Vector
+    power: Scalar
+
+
+NO_REACTION = Reaction((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.0)
+
+
+@dataclass(frozen=True)
+class Segment:
+    """A piece of a trajectory within one mode.
+
+    Attributes
+    ----------
+    mode
+        What the top was doing.
+    solution
+        The numbers of the mode as functions of time.
+    end_state
+        The state at its end, floats.
+    transition
+        What follows where the mode ended, None where it goes on.
+    steps, evaluations
+        Work done by the integrator.
+    highest_gap
+        How high the lowest point rose above the table.
+    """
+
+    mode: "Mode"
+    solution: DenseSolution
+    end_state: State
+    transition: Transition | None
+    steps: int = 0
+    evaluations: int = 0
+    highest_gap: float = 0.0
+
+    @property
+    def end_time(self) -> float:
+        """When it ended."""
+        return self.solution.end
+
+
+class Rules(Protocol):
+    """What follows where contact begins or ends."""
+
+    def launch(self, state: State) -> Transition:
+        """How a run begins."""
+
+    def lift_off(self, time: float, state: State) -> Transition:
+        """What follows when the normal force falls to zero."""
+
+    def touchdown(self, time: float, state: State) -> Transition:
+        """What follows when the top reaches the table."""
+
+
+@dataclass(frozen=True)
+class Mode(ABC):
+    """A way to move.
+
+    Attributes
+    ----------
+    top
+        The top in natural units.
+    rules
+        What follows where contact begins or ends; None where the table may pull.
+    name
+        Its name in a result.
+    touching
+        Whether the top is in contact with the table.
+    """
+
+    top: Top
+    rules: Rules | None = field(repr=False)
+
+    name: ClassVar[str]
+    touching: ClassVar[bool] = True
+
+    @abstractmethod
+    def segments(self, time: float, state: State, end: float, integrator: Integrator) -> Iterator[Segment]:
+        """Move from a time and state until a guard ends the mode, or until `end`, piece by piece."""
+
+    @abstractmethod
+    def state(self, y: Row) -> State:
+        """The state from the numbers of the mode, in plain operators."""
+
+    def reaction(self, y: Row) -> Reaction:
+        """What the table does, from the numbers of the mode, in plain operators; nothing by default."""
+        return NO_REACTION
+
+
+@dataclass(frozen=True)
+class IntegratedMode(Mode):
+    """A mode stated by its equations of motion and guards."""
+
+    @property
+    @abstractmethod
+    def motion(self) -> Motion:
+        """Equations of motion and guards; the same object for all tops of one kind."""
+
+    @abstractmethod
+    def numbers(self, state: State) -> tuple[Scalar, ...]:
+        """The numbers that the equations move, from a state, in plain operators."""
+
+    @abstractmethod
+    def follow(self, guard: str, time: float, state: State) -> Transition:
+        """What follows when a guard falls through zero."""
+
+    def segments(self, time: float, state: State, end: float, integrator: Integrator) -> Iterator[Segment]:
+        """Integrate the equations of motion."""
+        begin = np.array(self.numbers(state), dtype=float)
+        for arc in integrator.integrate(self.motion, self.top.numbers, (time, begin), end):
+            last = self.state(arc.end_state.tolist())
+            transition = None
+            if arc.failure is not None:
+                transition = Transition((), Outcome.FAILED, last, arc.failure)
+            elif arc.guard is not None:
+                transition = self.follow(arc.guard, arc.solution.end, last)
+            elif arc.solution.end >= end:
+                transition = Transition((), Outcome.COMPLETED, last)
+            yield Segment(self, arc.solution, last, transition, arc.steps, arc.evaluations)

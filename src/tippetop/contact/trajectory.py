@@ -1,0 +1,72 @@
+"""One launch, followed from mode to mode: the executor of single launches."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from tippetop.contact.mode import Event, Mode, Outcome, Segment, Transition
+from tippetop.integrators.base import Integrator
+from tippetop.mechanics.state import State
+
+PHASE_LIMIT = 100_000
+"""How many modes a run goes through at most unless told otherwise."""
+
+
+@dataclass
+class Trajectory:
+    """A launch under way; iterate over `segments` to follow it.
+
+    Attributes
+    ----------
+    start
+        How the run begins.
+    end
+        When it ends at the latest.
+    integrator
+        The method for modes that need one.
+    limit
+        How many modes to go through at most.
+    time, state
+        Where it is.
+    outcome, detail
+        How it ended, once it has, and more about that.
+    events
+        Everything that happened so far, in order.
+    """
+
+    start: Transition
+    end: float
+    integrator: Integrator
+    limit: int = PHASE_LIMIT
+    time: float = 0.0
+    outcome: Outcome | None = None
+    detail: str = ""
+    events: list[Event] = field(default_factory=list)
+
+    @property
+    def state(self) -> State:
+        """The state where the trajectory is."""
+        return self._state
+
+    def __post_init__(self) -> None:
+        self._state = self.start.state
+
+    def segments(self) -> Iterator[Segment]:
+        """Follow the launch, mode by mode and piece by piece."""
+        transition, modes = self._enter(self.start), 0
+        while isinstance(transition.then, Mode):
+            if self.time >= self.end or modes == self.limit:
+                self.outcome = Outcome.COMPLETED if self.time >= self.end else Outcome.TOO_MANY_PHASES
+                return
+            modes += 1
+            for segment in transition.then.segments(self.time, self._state, self.end, self.integrator):
+                self.time, self._state = segment.end_time, segment.end_state
+                if segment.transition is not None:
+                    transition = self._enter(segment.transition)
+                yield segment
+
+    def _enter(self, transition: Transition) -> Transition:
+        self.events += transition.events
+        self._state = transition.state
+        if isinstance(transition.then, Outcome):
+            self.outcome, self.detail = transition.then, transition.detail
+        return transition

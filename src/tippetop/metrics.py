@@ -1,0 +1,287 @@
+"""Each number of a launch, defined once: for one launch and for arrays of them.
+
+A number is an event or an extreme of the motion itself, never of its samples. `Ends` is what an executor
+finds on its way, in natural units; `metrics` makes every number of `tippetop.catalogue.METRICS` of it.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tippetop.catalogue import NEAR_FINAL, NEAR_POLE, Ending
+from tippetop.contact.block import Block, Group
+from tippetop.contact.mode import Event, EventKind, Outcome, Segment
+from tippetop.integrators.base import Array
+from tippetop.integrators.dense import at_fractions, chebyshev
+from tippetop.integrators.polynomials import Polynomials
+from tippetop.mechanics.invariants import energy, jellett
+from tippetop.mechanics.motion import axial_spin
+from tippetop.mechanics.state import State
+from tippetop.mechanics.top import Top, Units
+from tippetop.mechanics.vectors import length
+from tippetop.mechanics.view import axis_sine, precession_rate
+
+OUTCOMES = tuple(Outcome)
+"""How a launch can end, by number."""
+
+FORCE_DEGREE = 20
+"""Degree of the polynomials in which the least normal force is looked for."""
+
+HEIGHT_LOOKS = 65
+"""Tilts at which the height of the centre of mass is looked at, over the range that a launch went through."""
+
+
+@dataclass
+class Ends:
+    """What was found of launches, in natural units; all of shape (n,).
+
+    Attributes
+    ----------
+    state
+        The states at the end.
+    time
+        When that was.
+    outcome
+        Numbers of `OUTCOMES`.
+    steps, flights
+        Steps taken, and flights made.
+    least_force
+        Least normal force; 0 where the top left the table.
+    lift_off
+        First time the table let go; nan if it never did.
+    airborne, highest_gap, highest
+        Time spent in the air, and there the largest gap and the largest height of the centre of mass.
+    down, up
+        Least and largest n_z.
+    turned
+        First time n_z fell through 0; nan if it never did.
+    arrived
+        First time n_z was in the band of `final_band`; nan if it never was.
+    """
+
+    state: State
+    time: Array
+    outcome: NDArray[np.int8]
+    steps: NDArray[np.int64]
+    flights: NDArray[np.int64]
+    least_force: Array
+    lift_off: Array
+    airborne: Array
+    highest_gap: Array
+    highest: Array
+    down: Array
+    up: Array
+    turned: Array
+    arrived: Array
+
+    @classmethod
+    def unknown(cls, count: int) -> "Ends":
+        """Ends that nothing is known of yet."""
+        unknown: dict[str, Any] = {field.name: np.full(count, np.nan) for field in fields(cls)}
+        none = {name: np.zeros(count) for name in ("airborne", "highest_gap", "highest")}
+        counts = {name: np.zeros(count, dtype=np.int64) for name in ("steps", "flights")}
+        outcome = np.full(count, OUTCOMES.index(Outcome.FAILED), dtype=np.int8)
+        state = State.unpack([np.full(count, np.nan) for _ in range(10)])
+        return cls(**{**unknown, **none, **counts, "outcome": outcome, "state": state})
+
+    def put(self, where: NDArray[np.intp], found: "Ends") -> None:
+        """Put what was found of some launches in its places."""
+        for field in fields(self):
+            mine, theirs = getattr(self, field.name), getattr(found, field.name)
+            if field.name == "state":
+                for kept, number in zip(mine.pack(), theirs.pack(), strict=True):
+                    kept[where] = number
+            else:
+                mine[where] = theirs
+
+
+def turning_time(tip: Polynomials) -> Array:
+    """First times at which n_z falls through 0 from above, nan where it does not, shape (n,).
+
+    A top that starts beyond a right angle turns over when it passes it from below.
+    """
+    return tip.first_fall(from_above=True)
+
+
+def arrival_time(tip: Polynomials, low: Array, high: Array) -> Array:
+    """First times at which n_z is between `low` and `high`, shape (n,); nan where it is not."""
+    everything = np.arange(len(tip.span))
+    start = tip.unit[0]
+    falls = tip.some(everything, shift=-high).first_fall()
+    rises = tip.some(everything, sign=-1.0, shift=low).first_fall()
+    found: Array = np.where(start > high, falls, np.where(start < low, rises, 0.0))
+    return found
+
+
+def final_band(state: State) -> tuple[Array, Array]:
+    """Least and largest n_z for which the tilt is near its final value, each of shape (n,)."""
+    final = tilt(state)
+    low = np.cos(np.minimum(final + NEAR_FINAL, np.pi))
+    high = np.cos(np.maximum(final - NEAR_FINAL, 0.0))
+    return low, high
+
+
+def tilt(state: State) -> Array:
+    """Tilts, rad."""
+    found: Array = np.arctan2(axis_sine(state.axis), state.axis[2])
+    return found
+
+
+def metrics(ends: Ends, start: State, top: Top, units: Units) -> dict[str, NDArray[Any]]:
+    """Every number of `tippetop.catalogue.METRICS` in SI, by name, each of shape (n,).
+
+    Parameters
+    ----------
+    ends
+        What was found.
+    start
+        States at launch in natural units, every number of shape (n,).
+    top, units
+        The tops in natural units, and those units: numbers, or arrays of shape (n,).
+    """
+    end = ends.state
+    force = units.mass * units.length / units.time**2
+    with np.errstate(all="ignore"):
+        moment = length(start.momentum) * top.shape.height(start.axis[2])
+        change = np.abs(jellett(end, top) - jellett(start, top))
+        drift = change / np.where(moment > 0, moment, np.nan)
+        lost = energy(start, top) - energy(end, top)
+        precession = np.where(axis_sine(end.axis) > 0, precession_rate(end.axis, end.momentum, top), np.nan)
+        swept = np.linspace(0.0, 1.0, HEIGHT_LOOKS)[:, None] * (ends.up - ends.down) + ends.down
+        highest = np.fmax(np.max(top.shape.height(swept), axis=0), ends.highest)
+    found = {
+        "final_theta": tilt(end),
+        "final_omega3": axial_spin(end.axis, end.momentum, top) / units.time,
+        "final_phi_dot": precession / units.time,
+        "turns_over": ends.turned * units.time,
+        "arrives": ends.arrived * units.time,
+        "least_normal_force": ends.least_force * force,
+        "first_lift_off": ends.lift_off * units.time,
+        "flights": ends.flights,
+        "airborne_time": ends.airborne * units.time,
+        "energy_lost": lost * units.energy,
+        "highest": highest * units.length,
+        "highest_gap": ends.highest_gap * units.length,
+        "jellett_error": drift,
+        "end_time": ends.time * units.time,
+        "steps": ends.steps,
+    }
+    return {name: np.broadcast_to(values, ends.time.shape) for name, values in found.items()}
+
+
+def ending(ends: Ends) -> NDArray[np.int8]:
+    """Numbers of `tippetop.catalogue.Ending`, shape (n,)."""
+    final = tilt(ends.state)
+    near = [final <= NEAR_POLE, final >= np.pi - NEAR_POLE]
+    found = np.select(near, [Ending.UPRIGHT, Ending.INVERTED], Ending.TILTED)
+    found[ends.outcome == OUTCOMES.index(Outcome.LIFTED_OFF)] = Ending.LIFTED_OFF
+    completed = [OUTCOMES.index(outcome) for outcome in (Outcome.COMPLETED, Outcome.LIFTED_OFF)]
+    found[~np.isin(ends.outcome, completed)] = Ending.FAILED
+    return found.astype(np.int8)
+
+
+class Tally:
+    """What is found on the way of one launch, block by block."""
+
+    def __init__(self) -> None:
+        self._tips: list[tuple[Polynomials, Array]] = []
+        self._airborne: list[tuple[float, float, float]] = []
+        self._least_force, self._down, self._up, self._highest = np.inf, np.inf, -np.inf, 0.0
+        self._turned, self._landed = np.nan, True
+        self.steps = self.evaluations = 0
+
+    @property
+    def flights(self) -> Array:
+        """Begin, end and highest gap of every flight, shape (k, 3)."""
+        return np.array(self._airborne).reshape(-1, 3)
+
+    def take(self, block: Block) -> None:
+        """Take in the steps of a block."""
+        self.steps += sum(segment.steps for segment in block.segments)
+        self.evaluations += sum(segment.evaluations for segment in block.segments)
+        for segment in block.segments:
+            if not segment.mode.touching:
+                self._fly(segment)
+        for group in block.groups:
+            self._see(group, block.starts[group.which])
+            if not group.mode.touching:
+                self._highest = max(self._highest, float(np.max(group.nodes[0].height)))
+            elif not self._airborne:
+                self._press(group)
+
+    def _fly(self, segment: Segment) -> None:
+        """Take in a flight, or one more piece of it."""
+        begin, end = float(segment.solution.knots[0]), segment.end_time
+        if self._airborne and not self._landed:
+            begin = self._airborne.pop()[0]
+        self._airborne.append((begin, end, segment.highest_gap))
+        self._landed = segment.transition is not None
+
+    def _see(self, group: Group, starts: Array) -> None:
+        """Take in the motion of the tip of the axis."""
+        tip, seen = Polynomials(group.terms[:, 2].T, group.spans), group.nodes[0].axis[2]
+        self._tips.append((tip, starts))
+        least, most = seen.min(axis=0), seen.max(axis=0)
+        lower = tip.some(np.flatnonzero(least - tip.sag <= least.min()))
+        upper = tip.some(np.flatnonzero(most + tip.sag >= most.max()), sign=-1.0)
+        self._down = min(self._down, float(lower.refined_least()[1].min()))
+        self._up = max(self._up, float(-upper.refined_least()[1].min()))
+        near = np.flatnonzero((least - tip.sag <= 0.0) & (most + tip.sag >= 0.0) & ~(starts > self._turned))
+        self._turned = _first([self._turned, *(turning_time(tip.some(near)) + starts[near])])
+
+    def _press(self, group: Group) -> None:
+        """Take in the normal force."""
+        force = group.nodes[1].force[2]
+        least = force.min(axis=0)
+        # Between Gauss's points, and beyond them, it is lower by a small part of what it varies by there.
+        near = np.flatnonzero(least - 0.2 * (force.max(axis=0) - least) <= least.min())
+        places, transform, to_powers = chebyshev(FORCE_DEGREE)
+        y = at_fractions(group.terms[near], group.spans[near], places)
+        unit = to_powers @ (transform @ group.mode.reaction(y).force[2])
+        lowest = Polynomials(unit, np.ones(len(near))).refined_least()[1]
+        self._least_force = min(self._least_force, float(lowest.min()))
+
+    def ends(self, state: State, time: float, outcome: Outcome, events: Sequence[Event]) -> Ends:
+        """All that was found, as of one launch, given how and where it ended."""
+        found = Ends.unknown(1)
+        last = State.unpack([np.array([number], dtype=float) for number in state.pack()])
+        lift_offs = [event.time for event in events if event.kind is EventKind.LIFT_OFF]
+        flights = self.flights
+        found.put(
+            np.arange(1),
+            replace(
+                found,
+                state=last,
+                time=np.array([time]),
+                outcome=np.array([OUTCOMES.index(outcome)]),
+                steps=np.array([self.steps]),
+                flights=np.array([len(flights)]),
+                least_force=np.array([0.0 if lift_offs or len(flights) else self._least_force]),
+                lift_off=np.array([min(lift_offs, default=np.nan)]),
+                airborne=np.array([(flights[:, 1] - flights[:, 0]).sum()]),
+                highest_gap=np.array([flights[:, 2].max(initial=0.0)]),
+                highest=np.array([self._highest]),
+                down=np.array([self._down]),
+                up=np.array([self._up]),
+                turned=np.array([self._turned]),
+                arrived=np.array([self.arrival(*final_band(last))]),
+            ),
+        )
+        return found
+
+    def arrival(self, low: Array, high: Array) -> float:
+        """First time at which n_z is between `low` and `high`, each of shape (1,); nan if it never is."""
+        found = float(np.nan)
+        for tip, starts in self._tips:
+            least, most = tip.bounds
+            near = np.flatnonzero((least <= high) & (most >= low) & ~(starts > found))
+            found = _first([found, *(arrival_time(tip.some(near), low, high) + starts[near])])
+        return found
+
+
+def _first(times: Sequence[float]) -> float:
+    """The least of some times that are numbers, nan where none is."""
+    return float(np.fmin.reduce(times))

@@ -1,0 +1,198 @@
+"""Run a problem: follow its launch from mode to mode, and label what came of it."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import psutil
+import xarray as xr
+from numpy.typing import ArrayLike, NDArray
+
+from tippetop import __version__
+from tippetop.contact.block import in_blocks
+from tippetop.contact.mode import Event
+from tippetop.contact.rules import rules_for
+from tippetop.contact.trajectory import PHASE_LIMIT, Trajectory
+from tippetop.dataset import assemble
+from tippetop.errors import InvalidInput, is_number
+from tippetop.integrators import Integrator, make_integrator
+from tippetop.integrators.base import Array
+from tippetop.mechanics.invariants import energy
+from tippetop.mechanics.state import State
+from tippetop.mechanics.top import Units, natural, natural_state, natural_units
+from tippetop.metrics import Tally, metrics
+from tippetop.observables import Recorder, observe
+from tippetop.problem import Problem
+
+BYTES_PER_SAMPLE = 1600
+"""Memory that a sample takes at most while a result is being made."""
+
+SURELY_FIT = 10_000
+"""Samples for which nobody needs to ask how much memory there is."""
+
+
+def simulate(
+    problem: Problem,
+    duration: float,
+    *,
+    samples: int = 2001,
+    times: ArrayLike | None = None,
+    integrator: str | Integrator | None = None,
+    tolerance: float | None = None,
+    step: float | None = None,
+    phase_limit: int = PHASE_LIMIT,
+) -> xr.Dataset:
+    """Simulate a problem.
+
+    Parameters
+    ----------
+    problem
+        The physics.
+    duration
+        Length of the run, s.
+    samples
+        Number of equally spaced samples from launch to end.
+    times
+        Sample times instead, s: increasing, from 0 to `duration`.
+    integrator
+        "taylor", "dop853", "rk45", "radau", "bdf", "lsoda" or "rk4"; None for the best installed; or an
+        object of one's own, which follows motions as `tippetop.integrators.base.Integrator` does.
+    tolerance
+        Relative error per step; None for the integrator's own default. Only with an integrator by name.
+    step
+        Step size of "rk4", s; for no other.
+    phase_limit
+        How many modes (slides and flights) the run may go through before it ends early.
+
+    Returns
+    -------
+    xarray.Dataset
+        The variables of `tippetop.catalogue` with their SI units. Over `time`: those of `SAMPLED`, and the
+        contact mode. Over `event` and `flight`: those of `LISTED`. Single numbers: those of `METRICS`, which
+        are events and extremes of the motion and do not depend on the samples, and of `MONITORS`. Attributes:
+        problem (JSON), outcome, outcome_advice, integrator, tolerance or step, evaluations, tippetop_version,
+        Conventions. When the run ends before `duration`, the last sample is its end.
+
+    Raises
+    ------
+    InvalidInput
+        If the duration, samples, integrator, tolerance or step cannot be.
+    Unavailable
+        If the integrator is not installed.
+    """
+    grid = sample_times(duration, samples, times)
+    units = natural_units(problem.top)
+    top = natural(problem.top)
+    method = integrator_of(integrator, tolerance, step, units)
+    state, contact = natural_state(problem.start(), units), problem.contact
+    launch = rules_for(top, contact.liftoff, contact.restitution).launch(state)
+    trajectory = Trajectory(launch, duration / units.time, method, phase_limit)
+    recorder, tally = Recorder(top, state, problem.launch.azimuth, grid / units.time), Tally()
+    for block in in_blocks(trajectory.segments()):
+        recorder.take(block)
+        tally.take(block)
+    found = recorder.finish(trajectory.time, trajectory.state)
+    outcome = trajectory.outcome
+    assert outcome is not None, "a trajectory that has no more segments has ended"
+    ends = tally.ends(trajectory.state, trajectory.time, outcome, trajectory.events)
+    numbers = metrics(ends, State.unpack([np.array([number]) for number in state.pack()]), top, units)
+    scalars = {name: values[0] for name, values in numbers.items()} | {
+        "energy_start": float(energy(state, top)) * units.energy,
+        "impact_energy_lost": sum(event.energy_lost for event in trajectory.events) * units.energy,
+        "energy_error": recorder.energy_error,
+        "jellett_drift": recorder.jellett_drift,
+    }
+    attributes = {
+        "title": "Motion of a spinning top on a table",
+        "problem": problem.to_json(),
+        "outcome": outcome.name.lower(),
+        "outcome_advice": " ".join(filter(None, (outcome.value, trajectory.detail))),
+        **_method_attributes(method, units),
+        "evaluations": tally.evaluations,
+        "tippetop_version": __version__,
+    }
+    lists = _event_arrays(trajectory.events, units) | _flight_arrays(tally.flights, units)
+    times, variables = _reached(grid, found.times * units.time), observe(found, top, units)
+    return assemble(times, variables, (found.mode, recorder.modes), scalars, lists, attributes)
+
+
+def _reached(grid: Array, times: Array) -> Array:
+    """The sample times asked for that were reached, and the end of a run that ended early."""
+    reached = min(len(times), len(grid))
+    if len(times) <= len(grid) and np.isclose(times[-1], grid[reached - 1], rtol=1e-14, atol=0.0):
+        return grid[:reached]
+    return np.append(grid[: len(times) - 1], times[-1])
+
+
+def sample_times(duration: float, samples: int, times: ArrayLike | None) -> Array:
+    """Sample times, s, checked; see `simulate`."""
+    if not (is_number(duration) and duration > 0):
+        raise InvalidInput("duration", duration, "a finite number of seconds greater than 0")
+    if times is None:
+        if isinstance(samples, bool) or not isinstance(samples, (int, np.integer)) or samples < 2:
+            raise InvalidInput("samples", samples, "a whole number, at least 2")
+        _check_memory(samples)
+        return np.linspace(0.0, duration, int(samples))
+    try:
+        grid = np.array(times, dtype=float)
+    except (TypeError, ValueError):
+        raise InvalidInput("times", times, "a list of increasing finite numbers") from None
+    if grid.ndim != 1 or not len(grid) or not np.all(np.isfinite(grid)) or np.any(np.diff(grid) <= 0):
+        raise InvalidInput("times", times, "a list of increasing finite numbers")
+    if grid[0] < 0 or grid[-1] > duration:
+        raise InvalidInput("times", times, f"times from 0 to the duration, {duration:g} s")
+    _check_memory(len(grid))
+    return grid
+
+
+def integrator_of(
+    integrator: str | Integrator | None, tolerance: float | None, step: float | None, units: Units
+) -> Integrator:
+    """The integrator asked for, with its step in natural units."""
+    if integrator is None or isinstance(integrator, str) or not hasattr(integrator, "integrate"):
+        return make_integrator(integrator, tolerance, step, units.time)
+    for setting, value in {"tolerance": tolerance, "step": step}.items():
+        if value is not None:
+            raise InvalidInput(setting, value, "none with an integrator object, which has its own")
+    return integrator
+
+
+def _check_memory(samples: int) -> None:
+    if samples <= SURELY_FIT:
+        return
+    free = psutil.virtual_memory().available
+    if samples * BYTES_PER_SAMPLE > free:
+        limit = free // BYTES_PER_SAMPLE
+        raise InvalidInput("samples", samples, f"at most {limit}, for which there is memory")
+
+
+def _event_arrays(events: Sequence[Event], units: Units) -> dict[str, NDArray[Any]]:
+    """Values over the events, in SI."""
+    numbers = [(event.time, event.impulse, event.energy_lost) for event in events]
+    times, impulses, losses = np.array(numbers, dtype=float).reshape(-1, 3).T
+    return {
+        "event_time": times * units.time,
+        "event_kind": np.array([event.kind.value for event in events], dtype=str),
+        "event_impulse": impulses * units.mass * units.speed,
+        "event_energy_lost": losses * units.energy,
+    }
+
+
+def _flight_arrays(flights: Array, units: Units) -> dict[str, NDArray[Any]]:
+    """Values over the flights, in SI."""
+    starts, ends, gaps = flights.T
+    return {
+        "flight_start": starts * units.time,
+        "flight_end": ends * units.time,
+        "flight_highest_gap": gaps * units.length,
+    }
+
+
+def _method_attributes(method: Integrator, units: Units) -> dict[str, str | float]:
+    """The method and its one setting."""
+    settings: dict[str, str | float] = {"integrator": method.name}
+    if hasattr(method, "step"):
+        settings["step"] = float(method.step) * units.time
+    elif hasattr(method, "tolerance"):
+        settings["tolerance"] = float(method.tolerance)
+    return settings

@@ -1,0 +1,165 @@
+"""What follows on lanes where a guard falls through zero, a flight ends or a launch begins.
+
+Lift-off, flights and impacts without restitution, the bulk of it, are done for all lanes at once, with the
+equations of a single launch. Everything else goes through the transitions of a single launch, lane by lane; a
+lane that enters a mode which only a single launch knows is followed alone to its end.
+"""
+
+import numpy as np
+
+from tippetop.contact.block import in_blocks
+from tippetop.contact.flight import Flight
+from tippetop.contact.mode import EventKind, Outcome, Transition
+from tippetop.contact.rules import TOUCHING
+from tippetop.contact.sliding import Sliding
+from tippetop.contact.trajectory import Trajectory
+from tippetop.integrators import default_name, make_integrator
+from tippetop.integrators.base import Array
+from tippetop.mechanics.flight import gap, gap_rate
+from tippetop.mechanics.state import State
+from tippetop.mechanics.touchdown import Start
+from tippetop.metrics import Tally
+from tippetop.sweep.flights import collide, fly_all, slides
+from tippetop.sweep.launches import Indices, picked, single
+from tippetop.sweep.slots import Slots
+
+LEAST_SCIPY = 1e-12
+"""Least tolerance of the integrator of single launches where heyoka is not installed."""
+
+FLIGHT_LIMIT = 50_000
+"""Flights after which a launch is given up."""
+
+
+class Crossings:
+    """Transitions of launches under way.
+
+    Parameters
+    ----------
+    slots
+        The launches.
+    tolerance
+        Relative error per step, of the integrator of launches that are followed alone.
+    banded
+        Whether launches end when they reach a band of n_z.
+    """
+
+    def __init__(self, slots: Slots, tolerance: float, banded: bool) -> None:
+        self.slots, self.tolerance, self.banded = slots, tolerance, banded
+
+    def launch(self, lanes: Indices, state: State) -> None:
+        """Sort the launches out that do not simply slide from the start."""
+        launches = self.slots.launches
+        if launches.liftoff == "ignore":
+            return
+        plain = slides(state, launches.top)
+        if launches.liftoff == "fly":
+            plain &= gap(state, launches.top) <= TOUCHING
+            plain &= np.abs(gap_rate(state, launches.top)) <= TOUCHING
+        others = np.flatnonzero(~plain)
+        transitions = [launches.rules(i).launch(single(state, i)) for i in others.tolist()]
+        self._enter(lanes[others], np.zeros(len(others)), transitions)
+
+    def fall(self, lanes: Indices, time: Array, guards: Indices) -> None:
+        """What follows where guards fall through zero."""
+        slots = self.slots
+        launches, cells, state = slots.launches, slots.cell[lanes], slots.whole(lanes)
+        slots.ends.lift_off[cells] = np.fmin(slots.ends.lift_off[cells], time)
+        if launches.liftoff == "stop":
+            slots.retire(lanes, state, time, Outcome.LIFTED_OFF)
+        else:
+            self._fly(lanes, state, time, np.full(len(lanes), int(Start.LIFT_OFF), dtype=np.intp))
+
+    def _fly(self, lanes: Indices, state: State, time: Array, vanishing: Indices) -> None:
+        """Fly, collide, and fly again, until the tops slide or their runs end."""
+        slots = self.slots
+        ends, launches = slots.ends, slots.launches
+        while len(lanes):
+            cells = slots.cell[lanes]
+            horizon = slots.end[lanes] - time
+            numbers = launches.numbers[:, cells]
+            flown = fly_all(state, launches.kind, numbers, horizon, vanishing, (slots.watch, lanes, time))
+            ends.flights[cells] += 1
+            ends.airborne[cells] += flown.duration
+            ends.highest_gap[cells] = np.fmax(ends.highest_gap[cells], flown.highest_gap)
+            ends.highest[cells] = np.fmax(ends.highest[cells], flown.highest)
+            over = ~flown.landed & (flown.duration >= horizon)
+            time = np.where(over, slots.end[lanes], time + flown.duration)
+            slots.retire(lanes[over], picked(flown.state, over), time[over], Outcome.COMPLETED)
+            spent = ~over & (~flown.landed | (ends.flights[cells] >= FLIGHT_LIMIT))
+            slots.retire(lanes[spent], picked(flown.state, spent), time[spent], Outcome.TOO_MANY_PHASES)
+            landed = flown.landed & ~spent
+            lanes, time, state = lanes[landed], time[landed], picked(flown.state, landed)
+            lanes, state, time, vanishing = self._land(lanes, state, time)
+
+    def _land(self, lanes: Indices, state: State, time: Array) -> tuple[Indices, State, Array, Indices]:
+        """Collide with the table; return the lanes that fly again, as `_fly` takes them."""
+        slots = self.slots
+        cells, launches = slots.cell[lanes], slots.launches
+        top = launches.tops(cells)
+        after, struck = collide(state, top)
+        sliding = struck & (launches.restitution[cells] == 0.0) & slides(after, top)
+        slots.place(lanes[sliding], picked(after, sliding), time[sliding])
+        others = np.flatnonzero(~sliding)
+        transitions = [launches.rules(cells[i]).touchdown(float(time[i]), single(state, i)) for i in others]
+        return self._enter(lanes[others], time[others], transitions, fly=False)
+
+    def _enter(
+        self, lanes: Indices, time: Array, transitions: list[Transition], fly: bool = True
+    ) -> tuple[Indices, State, Array, Indices]:
+        """Put lanes where transitions lead; those that fly do so, or are returned as `_fly` takes them."""
+        again, starts, states = [], [], []
+        for i, transition in enumerate(transitions):
+            self._note(lanes[i], float(time[i]), transition)
+            if isinstance(transition.then, Flight):
+                again.append(i)
+                starts.append(int(transition.then.start))
+                states.append(transition.state.pack())
+            elif isinstance(transition.then, Sliding | Outcome):
+                self._settle(lanes[i : i + 1], transition, time[i : i + 1])
+            else:
+                self._follow_alone(int(lanes[i]), float(time[i]), transition)
+        which = np.array(again, dtype=np.intp)
+        thrown = State.unpack(list(np.array(states, dtype=float).reshape(-1, 10).T.copy()))
+        flying = lanes[which], thrown, time[which], np.array(starts, dtype=np.intp)
+        if fly:
+            self._fly(*flying)
+        return flying
+
+    def _note(self, lane: int, time: float, transition: Transition) -> None:
+        """Note a lift-off."""
+        if any(event.kind is EventKind.LIFT_OFF for event in transition.events):
+            ends, cell = self.slots.ends, self.slots.cell[lane]
+            ends.lift_off[cell] = np.fmin(ends.lift_off[cell], time)
+
+    def _settle(self, lane: Indices, transition: Transition, time: Array) -> None:
+        """Let a top slide, or end its run."""
+        state = State.unpack([np.array([number], dtype=float) for number in transition.state.pack()])
+        if isinstance(transition.then, Outcome):
+            self.slots.retire(lane, state, time, transition.then)
+        else:
+            self.slots.place(lane, state, time)
+
+    def _follow_alone(self, lane: int, time: float, transition: Transition) -> None:
+        """Follow one launch to its end as a single launch is."""
+        name = default_name()
+        method = make_integrator(
+            name, self.tolerance if name == "taylor" else max(self.tolerance, LEAST_SCIPY)
+        )
+        slots, ends, cell, where = self.slots, self.slots.ends, self.slots.cell[[lane]], np.array([lane])
+        trajectory, tally = Trajectory(transition, float(slots.end[lane]), method, time=time), Tally()
+        for block in in_blocks(trajectory.segments()):
+            tally.take(block)
+        assert trajectory.outcome is not None, "a trajectory that has no more segments has ended"
+        found = tally.ends(trajectory.state, trajectory.time, trajectory.outcome, trajectory.events)
+        ends.flights[cell] += found.flights
+        ends.airborne[cell] += found.airborne
+        for name in ("highest_gap", "highest", "up"):
+            getattr(ends, name)[cell] = np.fmax(getattr(ends, name)[cell], getattr(found, name))
+        for name in ("lift_off", "least_force", "down"):
+            getattr(ends, name)[cell] = np.fmin(getattr(ends, name)[cell], getattr(found, name))
+        watch = slots.watch
+        watch.turned[where] = np.fmin(watch.turned[where], found.turned)
+        arrived = tally.arrival(watch.low[where], watch.high[where]) if self.banded else found.arrived[0]
+        watch.reached[where] = np.fmin(watch.reached[where], arrived)
+        slots.rows[slots.layout.steps, where] += found.steps
+        slots.retire(where, found.state, found.time, trajectory.outcome)

@@ -1,0 +1,94 @@
+"""Launches as arrays, and where they were on the way."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tippetop.contact.mode import Rules
+from tippetop.contact.rules import rules_for
+from tippetop.integrators.base import Array
+from tippetop.mechanics.state import State
+from tippetop.mechanics.top import Kind, Top
+
+Indices = NDArray[np.intp]
+Flags = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Launches:
+    """Launches of tops of one kind, in natural units.
+
+    Attributes
+    ----------
+    kind, numbers
+        The tops: their dimensionless numbers, shape (kind.numbers, n).
+    state
+        The states at launch, every number of shape (n,).
+    end
+        When the runs end, shape (n,).
+    liftoff
+        "ignore", "stop" or "fly".
+    restitution
+        Ratio of the normal impulses of restitution and compression, shape (n,).
+    """
+
+    kind: Kind
+    numbers: Array
+    state: State
+    end: Array
+    liftoff: str
+    restitution: Array
+
+    def __len__(self) -> int:
+        return len(self.end)
+
+    def some(self, which: Indices) -> "Launches":
+        """Some of the launches."""
+        state = picked(self.state, which)
+        numbers, end, restitution = self.numbers[:, which], self.end[which], self.restitution[which]
+        return Launches(self.kind, numbers, state, end, self.liftoff, restitution)
+
+    @property
+    def top(self) -> Top:
+        """The tops, with arrays for numbers."""
+        return self.tops(slice(None))
+
+    def tops(self, which: Indices | Flags | slice) -> Top:
+        """Some of the tops, with arrays for numbers."""
+        return self.kind.top(tuple(self.numbers[:, which]))
+
+    def rules(self, launch: int) -> Rules:
+        """What follows where the contact of one launch begins or ends."""
+        top = self.kind.top(tuple(self.numbers[:, launch].tolist()))
+        return rules_for(top, self.liftoff, float(self.restitution[launch]))
+
+
+@dataclass(frozen=True)
+class Note:
+    """A window of steps of some launches: where they were at its start, and how far n_z went in it.
+
+    Attributes
+    ----------
+    cells
+        Which launches, shape (n,).
+    rows
+        Their numbers and the time left, shape (size + 1, n).
+    down, up
+        Least and largest n_z in the window, shape (n,).
+    """
+
+    cells: Indices
+    rows: Array
+    down: Array
+    up: Array
+
+
+def picked(state: State, launches: Indices | Flags) -> State:
+    """Some of many states."""
+    return State.unpack([np.asarray(number)[launches] for number in state.pack()])
+
+
+def single(state: State, launch: int) -> State:
+    """One of many states, in floats."""
+    return State.unpack([float(number[launch]) for number in state.pack()])

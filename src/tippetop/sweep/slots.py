@@ -1,0 +1,160 @@
+"""The arrays of launches under way: one lane a launch."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tippetop.contact.mode import Outcome
+from tippetop.integrators.base import Array
+from tippetop.integrators.polynomials import Polynomials
+from tippetop.mechanics.motion import along_table, on_table
+from tippetop.mechanics.state import SlidingState, State
+from tippetop.metrics import OUTCOMES, Ends
+from tippetop.sweep.launches import Flags, Indices, Launches
+from tippetop.sweep.stride import LANES, Layout, Stepper
+from tippetop.sweep.watch import Watch
+
+
+@dataclass
+class Slots:
+    """Lanes, and what is kept of each; all of shape (n,) or (rows, n).
+
+    Attributes
+    ----------
+    launches
+        What is launched.
+    stepper
+        Taylor's method for sliding tops of their kind.
+    ends
+        How the launches ended.
+    cell
+        Which launch is on the lane.
+    alive
+        Whether it is under way: lanes beyond the launches only fill up.
+    end
+        When its run ends.
+    numbers
+        The parameters of the motion and what to pause for.
+    rows, spare
+        What a step brings up to date, and room for the next.
+    held, before
+        The step that a lane waits before, 0 if it does not wait, and the time left before it.
+    low_step, low_from
+        The step in which the first guard was least so far, and the numbers of the motion at its start.
+    watch
+        What is watched of the axis.
+    """
+
+    launches: Launches
+    stepper: Stepper
+    ends: Ends
+    cell: Indices
+    alive: Flags
+    end: Array
+    numbers: Array
+    rows: Array
+    spare: Array
+    held: Array
+    before: Array
+    low_step: Array
+    low_from: Array
+    watch: Watch
+
+    @classmethod
+    def of(cls, launches: Launches, stepper: Stepper, band: tuple[Array, Array] | None) -> "Slots":
+        """Lanes for launches; each waits for its own band of n_z if there is one."""
+        count, layout = len(launches), stepper.layout
+        lanes = count + -count % LANES
+        filled = np.minimum(np.arange(lanes), count - 1)
+        watch = Watch.of(lanes)
+        numbers = np.concatenate(
+            (launches.numbers[:, filled], np.zeros((layout.numbers - layout.parameters, lanes)))
+        )
+        numbers[layout.counts], numbers[layout.turns] = float(launches.liftoff != "ignore"), 1.0
+        numbers[layout.band] = np.array([[np.inf], [-np.inf]])
+        if band is not None:
+            watch.low, watch.high = band[0][filled], band[1][filled]
+            numbers[layout.band] = watch.low, watch.high
+        rows = np.zeros((layout.rows, lanes))
+        rows[layout.down], rows[layout.up], rows[layout.low : layout.kept] = np.inf, -np.inf, np.inf
+        return cls(
+            launches,
+            stepper,
+            Ends.unknown(count),
+            cell=filled,
+            alive=np.arange(lanes) < count,
+            end=launches.end[filled],
+            numbers=numbers,
+            rows=rows,
+            spare=np.zeros_like(rows),
+            held=np.zeros(lanes),
+            before=np.zeros(lanes),
+            low_step=np.zeros(lanes),
+            low_from=np.zeros((layout.size, lanes)),
+            watch=watch,
+        )
+
+    @property
+    def layout(self) -> Layout:
+        """Which row holds what."""
+        return self.stepper.layout
+
+    @property
+    def left(self) -> Array:
+        """The time left."""
+        found: Array = self.rows[self.layout.left]
+        return found
+
+    def time(self, lanes: Indices | Flags) -> Array:
+        """Where some lanes are."""
+        found: Array = self.end[lanes] - self.left[lanes]
+        return found
+
+    def keep(self, working: Indices) -> None:
+        """Keep the lanes at work, and as many others as fill them up."""
+        missing = -len(working) % LANES
+        kept = np.concatenate((working, np.full(missing, working[-1], dtype=np.intp)))
+        self.alive = np.arange(len(kept)) < len(working)
+        for name in ("cell", "end", "held", "before", "low_step"):
+            setattr(self, name, getattr(self, name)[kept])
+        for name in ("low_from", "numbers", "rows"):
+            setattr(self, name, np.ascontiguousarray(getattr(self, name)[:, kept]))
+        self.rows[self.layout.left] *= self.alive
+        self.spare = np.zeros_like(self.rows)
+        self.watch = self.watch.some(kept)
+
+    def whole(self, lanes: Indices | Flags) -> State:
+        """Whole states of sliding tops."""
+        numbers = self.rows[: self.layout.size, lanes]
+        return on_table(SlidingState.unpack(numbers), self.launches.tops(self.cell[lanes]))
+
+    def place(self, lanes: Indices, state: State, time: Array) -> None:
+        """Let tops slide from these states on."""
+        for row, number in enumerate(along_table(state).pack()):
+            self.rows[row, lanes] = number
+        self.rows[self.layout.left, lanes] = self.end[lanes] - time
+        self.rows[self.layout.taken, lanes] = np.inf
+
+    def retire(self, lanes: Indices, state: State, time: Array, outcome: Outcome) -> None:
+        """Put down how launches ended."""
+        if not len(lanes):
+            return
+        ends, cells = self.ends, self.cell[lanes]
+        for kept, number in zip(ends.state.pack(), state.pack(), strict=True):
+            kept[cells] = number
+        fine = np.all(np.isfinite(np.array(np.broadcast_arrays(*state.pack()))), axis=0)
+        ends.time[cells] = time
+        ends.outcome[cells] = np.where(fine, OUTCOMES.index(outcome), OUTCOMES.index(Outcome.FAILED))
+        ends.steps[cells] = self.rows[self.layout.steps, lanes]
+        ends.turned[cells], ends.arrived[cells] = self.watch.turned[lanes], self.watch.reached[lanes]
+        self.rows[self.layout.left, lanes] = 0.0
+        self.alive[lanes] = False
+        stayed = np.isnan(ends.lift_off[cells]) & (ends.flights[cells] == 0)
+        ends.least_force[cells] = np.where(stayed, np.fmin(ends.least_force[cells], self._least(lanes)), 0.0)
+
+    def _least(self, lanes: Indices) -> Array:
+        """Least normal force, refined within the step in which it was seen."""
+        rows = np.zeros((self.layout.rows, len(lanes)))
+        rows[: self.layout.size] = self.low_from[:, lanes]
+        jet = self.stepper.jet(rows, self.numbers[:, lanes])
+        return Polynomials(jet.guards[0], self.low_step[lanes]).refined_least()[1]

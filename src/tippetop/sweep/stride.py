@@ -1,0 +1,233 @@
+"""One step of Taylor's method for many launches at once, with what happens inside it.
+
+The equations of motion and guards of a contact mode, in plain operators, are evaluated on power series.
+heyoka compiles the whole step, with its dense output, into one function that works on eight launches an
+instruction; without heyoka NumPy makes the same step, much slower. Order and step size are chosen as by
+heyoka's own integrators (Biscani and Izzo 2021, MNRAS 504; Jorba and Zou 2005, Experimental Mathematics 14):
+the order p from the tolerance, and the step from the last two coefficients, so that what is left out is below
+the tolerance.
+
+A launch's step depends on nothing but its own numbers: arrays are filled up to a multiple of `LANES`, so that
+every launch is computed by the same instructions wherever it stands in them.
+"""
+
+import math
+from collections.abc import Sequence
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+
+from tippetop.integrators.base import Array, Motion
+from tippetop.mechanics.series import Arithmetic, horner, solution
+from tippetop.mechanics.vectors import Scalar
+
+GUARD_LOOKS, TIP_LOOKS = 32, 12
+"""Intervals of a step at whose ends the guards, and n_z, are looked at."""
+
+TINY = 1e-300
+"""Stands for zero where a number that is zero is to count as below it."""
+
+LANES = 16
+"""Arrays are filled up to a multiple of this many launches."""
+
+
+class Layout(NamedTuple):
+    """Which row holds what, for a motion of some size with some guards.
+
+    A step brings the first rows up to date: the numbers of the motion, the time that is left to go, the least
+    and the largest n_z so far, the steps taken, and the least value so far of every guard. The last two tell
+    of the step: the time it took, and whether something may happen in it. Then it was not taken, and no time
+    is left, so that the launch waits.
+
+    What to pause for is in rows after the parameters: whether each guard counts, whether the top is yet to
+    turn over, and the least and the largest n_z of a band (inf and -inf for none).
+    """
+
+    size: int
+    guards: int
+    parameters: int
+
+    @classmethod
+    def of(cls, motion: Motion) -> "Layout":
+        """The layout for a motion."""
+        return cls(motion.size, len(motion.guards), motion.parameters)
+
+    @property
+    def left(self) -> int:
+        """Row of the time left."""
+        return self.size
+
+    @property
+    def down(self) -> int:
+        """Row of the least n_z."""
+        return self.size + 1
+
+    @property
+    def up(self) -> int:
+        """Row of the largest n_z."""
+        return self.size + 2
+
+    @property
+    def steps(self) -> int:
+        """Row of the number of steps."""
+        return self.size + 3
+
+    @property
+    def low(self) -> int:
+        """First row of the least values of the guards."""
+        return self.size + 4
+
+    @property
+    def kept(self) -> int:
+        """How many rows a step brings up to date."""
+        return self.low + self.guards
+
+    @property
+    def taken(self) -> int:
+        """Row of the time that a step took."""
+        return self.kept
+
+    @property
+    def pause(self) -> int:
+        """Row that says whether something may happen in a step."""
+        return self.kept + 1
+
+    @property
+    def rows(self) -> int:
+        """How many rows there are."""
+        return self.kept + 2
+
+    @property
+    def counts(self) -> slice:
+        """Rows, after the parameters, of which guards count."""
+        return slice(self.parameters, self.parameters + self.guards)
+
+    @property
+    def turns(self) -> int:
+        """Row, after the parameters, of whether the top is yet to turn over."""
+        return self.parameters + self.guards
+
+    @property
+    def band(self) -> slice:
+        """Rows, after the parameters, of the band."""
+        return slice(self.turns + 1, self.turns + 3)
+
+    @property
+    def numbers(self) -> int:
+        """How many rows of parameters and of what to pause for there are."""
+        return self.turns + 3
+
+
+class Stepper(Protocol):
+    """Taylor's method for one motion and one tolerance."""
+
+    @property
+    def layout(self) -> Layout:
+        """Which row holds what."""
+
+    def step(self, before: Array, after: Array, numbers: Array) -> None:
+        """Take a step from the rows of `before` to those of `after`, both of shape (layout.rows, n).
+
+        The numbers have shape (layout.numbers, n). A launch with no time left stays as it is.
+        """
+
+    def jet(self, before: Array, numbers: Array) -> "Jet":
+        """The polynomials in time of the steps that start from `before`."""
+
+
+class Jet(NamedTuple):
+    """Coefficients of polynomials in time, in increasing order, for n launches.
+
+    Attributes
+    ----------
+    state
+        Those of the state, shape (size, order + 1, n).
+    guards
+        Those of the guards, shape (guards, order, n).
+    """
+
+    state: Array
+    guards: Array
+
+    def at(self, time: Array) -> Array:
+        """The states at one time for every launch, shape (size, n)."""
+        return np.array([horner(series, time) for series in self.state])
+
+
+def motion_series(
+    motion: Motion, start: Sequence[Scalar], numbers: Sequence[Scalar], plain: Arithmetic
+) -> Any:
+    """Series of the solution and of the guards."""
+    parameters = numbers[: motion.parameters]
+    y = solution(start, lambda y: motion.rates(y, parameters), plain)
+    return y, [guard.value(y, parameters) for guard in motion.guards]
+
+
+def stride(
+    motion: Motion, order: int, before: Sequence[Scalar], numbers: Sequence[Scalar], plain: Arithmetic
+) -> list[Scalar]:
+    """What `Stepper.step` makes of the rows that are kept: all rows."""
+    layout = Layout.of(motion)
+    start, (left, down, up, steps, *least) = before[: layout.size], before[layout.size :]
+    counts, turns, (band_low, band_high) = numbers[layout.counts], numbers[layout.turns], numbers[layout.band]
+    y, guards = motion_series(motion, start, numbers, plain)
+    state = [[series[k] for k in range(order + 1)] for series in y]
+    taken = step_size(state, left, plain)
+    heights = [horner(state[2], taken * (look / TIP_LOOKS)) for look in range(TIP_LOOKS + 1)]
+    floor, ceiling = lowest(heights, plain), -lowest([-height for height in heights], plain)
+
+    events = plain.below(floor, 0.0) * plain.below(0.0, ceiling) * turns
+    events += (1.0 - plain.below(band_high, floor)) * (1.0 - plain.below(ceiling, band_low))
+    lows = []
+    for guard, known, count in zip(guards, least, counts, strict=True):
+        low, slack = floor_of([guard[k] for k in range(order)], taken, plain)
+        events += plain.below(low - slack, TINY) * count
+        lows.append(plain.least(low, known))
+    moves = plain.below(0.0, taken)
+    pause = events * moves
+    after = [
+        *(horner(series, taken) for series in state),
+        left - taken,
+        plain.least(floor, down),
+        -plain.least(-ceiling, -up),
+        steps + moves,
+        *lows,
+    ]
+    stays = [plain.choose(pause, old, new) for old, new in zip(before, after, strict=True)]
+    stays[layout.left] = plain.choose(pause, 0.0 * left, after[layout.left])
+    return [*stays, taken, pause]
+
+
+def floor_of(terms: Sequence[Scalar], taken: Scalar, plain: Arithmetic) -> tuple[Scalar, Scalar]:
+    """Least value of a polynomial at the looks of a step, and how far below it may lie between them."""
+    part = taken * (1.0 / GUARD_LOOKS)
+    values = [horner(terms, part * float(look)) for look in range(GUARD_LOOKS + 1)]
+    # Between two looks a function lies at most (interval)^2 / 8 max |f''| below both of them.
+    bends = [float(k * (k - 1)) * plain.size(terms[k]) for k in range(2, len(terms))]
+    return lowest(values, plain), part * part * (1.0 / 8.0) * horner(bends, taken)
+
+
+def step_size(state: Sequence[Sequence[Scalar]], left: Scalar, plain: Arithmetic) -> Scalar:
+    """Step for which the last terms of the polynomials are below the tolerance, or all that is left."""
+    order = len(state[0]) - 1
+
+    def square(k: int) -> Scalar:
+        return plain.total([series[k] * series[k] for series in state])
+
+    whole = square(0)
+    radii = [(whole / square(k)) ** (0.5 / k) for k in (order - 1, order)]
+    safety = math.exp(-2.0 - 0.7 / (order - 1))
+    return plain.least(safety * plain.least(*radii), left)
+
+
+def lowest(values: Sequence[Scalar], plain: Arithmetic) -> Scalar:
+    """The least of many."""
+    least = values[0]
+    for value in values[1:]:
+        least = plain.least(value, least)
+    return least
+
+
+def order_for(tolerance: float) -> int:
+    """Degree of the polynomials for a tolerance, as heyoka chooses it."""
+    return max(2, math.ceil(1.0 - 0.5 * math.log(tolerance)))
