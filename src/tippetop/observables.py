@@ -6,9 +6,10 @@ from numpy.typing import NDArray
 from tippetop.integrators.base import Array
 from tippetop.mechanics.invariants import energy, jellett
 from tippetop.mechanics.motion import along_table, angular_velocity, axial_spin, contact, point_velocity
-from tippetop.mechanics.shape import contact_vector
 from tippetop.mechanics.state import State
-from tippetop.mechanics.top import Top, Units
+from tippetop.mechanics.surface import contact_vector
+from tippetop.mechanics.top import Top
+from tippetop.mechanics.units import Units
 from tippetop.mechanics.view import axis_sine, precession_rate, slip_along_tilt, tilt_rate
 
 
@@ -38,7 +39,7 @@ def observe(state: State, touching: NDArray[np.bool_], top: Top) -> dict[str, Ar
     axis, momentum = state.axis, state.momentum
     sliding = along_table(state)
     omega = angular_velocity(axis, momentum, top)
-    arm = contact_vector(axis, top.shape)
+    arm = contact_vector(axis, top.surface)
     point = point_velocity(state.velocity, omega, arm)
     touch = contact(axis, momentum, sliding.velocity, top)
     sine = axis_sine(axis)

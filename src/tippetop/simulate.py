@@ -14,7 +14,8 @@ from tippetop.errors import InvalidInput, is_number
 from tippetop.integrators import Integrator, make_integrator
 from tippetop.integrators.base import Array
 from tippetop.mechanics.state import State
-from tippetop.mechanics.top import Units, dimensionless_numbers, kind_of, natural_units
+from tippetop.mechanics.top import natural_units
+from tippetop.mechanics.units import Units
 from tippetop.observables import in_si, observe, si_factors
 from tippetop.phases import Event, Outcome, PhaseKind, Stretch, Transition, first_phase
 from tippetop.problem import Problem
@@ -111,7 +112,7 @@ def simulate(
     method = integrator_of(integrator, tolerance, step, units)
     state = to_natural(problem.start(), units)
     contact = problem.contact
-    start = first_phase(kind_of(top), dimensionless_numbers(top), state, contact.liftoff, contact.restitution)
+    start = first_phase(top.kind, top.numbers, state, contact.liftoff, contact.restitution)
     course = follow_phases(start, duration / units.time, grid / units.time, method, phase_limit)
     return _label(problem, course, grid, units, _method_attributes(method, units))
 

@@ -7,10 +7,10 @@ import pytest
 from hypothesis import assume, given
 
 from strategies import slides, spheres, tops
-from tippetop.mechanics.friction import ViscousFriction
+from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.invariants import energy, friction_power, jellett
 from tippetop.mechanics.motion import angular_velocity, contact, on_table, sliding_rates
-from tippetop.mechanics.shape import EccentricSphere
+from tippetop.mechanics.surface import SphereSurface
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import dot, length
 from tippetop.mechanics.view import Angles, state_from_angles
@@ -31,7 +31,7 @@ def test_friction_takes_energy_while_the_table_pushes_and_gives_it_while_the_tab
 
 def test_a_fast_tilted_spin_would_have_to_be_pulled_down():
     """Energy gain does occur: at 45 degrees and 300 rad/s, precessing at 100 rad/s and slipping."""
-    top = Top(0.02, 3.0e-6, 3.2e-6, EccentricSphere(0.02, 0.3), ViscousFriction(0.3), 9.8)
+    top = Top(0.02, 3.0e-6, 3.2e-6, SphereSurface(0.02, 0.006), ViscousLaw(0.3), 9.8)
     state = state_from_angles(Angles(math.pi / 4, 0.0, 0.0, 100.0, 300.0, (0.0, 0.1)), top, math)
     assert normal_force(state, top) < 0.0
     assert friction_power(state, top) > 0.0
@@ -63,7 +63,8 @@ def test_energy_is_the_sum_over_six_point_masses_that_make_up_the_body(slide):
 def test_jelletts_integral_is_the_angular_momentum_against_the_contact_vector(slide):
     """For the eccentric sphere lambda = R (L_z - alpha L.n)."""
     top, state = slide
-    radius, alpha = top.shape
+    radius, center = top.surface
+    alpha = center / radius
     expected = radius * (state.momentum[2] - alpha * dot(state.momentum, state.axis))
     assert jellett(on_table(state, top), top) == pytest.approx(
         expected, abs=1e-14 * radius * length(state.momentum)
@@ -73,9 +74,9 @@ def test_jelletts_integral_is_the_angular_momentum_against_the_contact_vector(sl
 @given(slides())
 def test_without_friction_the_vertical_and_the_axial_angular_momentum_are_constant(slide):
     top, state = slide
-    rates = sliding_rates(state, top._replace(friction=ViscousFriction(0.0)))
+    rates = sliding_rates(state, top._replace(friction=ViscousLaw(0.0)))
     turning = dot(state.momentum, rates.axis)
     axial = dot(rates.momentum, state.axis) + turning
-    moment = (abs(normal_force(state, top)) + top.mass * top.gravity) * top.shape.size
+    moment = (abs(normal_force(state, top)) + top.mass * top.gravity) * top.surface.size
     assert rates.momentum[2] == pytest.approx(0.0, abs=1e-13 * moment)
     assert axial == pytest.approx(0.0, abs=1e-12 * (moment + length(state.momentum) * length(rates.axis)))

@@ -1,8 +1,8 @@
 """What is conserved, and what friction takes: the quantities every run is checked by."""
 
 from tippetop.mechanics.motion import angular_velocity, contact, power_per_normal_force
-from tippetop.mechanics.shape import contact_vector
 from tippetop.mechanics.state import SlidingState, State
+from tippetop.mechanics.surface import contact_vector
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Scalar, dot
 
@@ -21,7 +21,7 @@ def jellett(state: State, top: Top) -> Scalar:
     the contact force is perpendicular to a, and the rate of a to L (Jellett 1872). Not constant for other
     shapes.
     """
-    return -dot(state.momentum, contact_vector(state.axis, top.shape))
+    return -dot(state.momentum, contact_vector(state.axis, top.surface))
 
 
 def friction_power(state: SlidingState, top: Top) -> Scalar:

@@ -9,8 +9,8 @@ singularity, and the right-hand side is algebraic.
 from typing import NamedTuple
 
 from tippetop.mechanics.friction import Traction
-from tippetop.mechanics.shape import contact_vector
 from tippetop.mechanics.state import SlidingState, State
+from tippetop.mechanics.surface import contact_vector
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import VERTICAL, Horizontal, Scalar, Vector, add, cross, dot, scale
 
@@ -84,8 +84,8 @@ def contact(axis: Vector, momentum: Vector, velocity: Horizontal, top: Top) -> C
     derivative of the constraint z = h(c), c = n_z.
     """
     c = axis[2]
-    slope = top.shape.slope(c)
-    arm = contact_vector(axis, top.shape)
+    slope = top.surface.slope(c)
+    arm = contact_vector(axis, top.surface)
     omega = angular_velocity(axis, momentum, top)
     point = point_velocity((velocity[0], velocity[1], 0.0), omega, arm)
     slip = (point[0], point[1])
@@ -94,7 +94,7 @@ def contact(axis: Vector, momentum: Vector, velocity: Horizontal, top: Top) -> C
     turning = axis_rate(axis, momentum, top)
     lever = slope / top.transverse_inertia
     free_acceleration = top.gravity + (
-        top.shape.curvature(c) * turning[2] * turning[2] + lever * cross(momentum, turning)[2]
+        top.surface.curvature(c) * turning[2] * turning[2] + lever * cross(momentum, turning)[2]
     )
     reaction = cross(moment_per_normal_force(arm, traction), axis)[2]
     return Contact(arm, slip, traction, top.mass * free_acceleration, 1.0 - top.mass * lever * reaction)
@@ -130,12 +130,12 @@ def power_per_normal_force(slip: Horizontal, omega: Vector, traction: Traction) 
 def on_table(state: SlidingState, top: Top) -> State:
     """The whole state of a body that touches the table: height h(c) and vertical velocity h'(c) c' added."""
     c = state.axis[2]
-    sinking = top.shape.slope(c) * axis_rate(state.axis, state.momentum, top)[2]
+    sinking = top.surface.slope(c) * axis_rate(state.axis, state.momentum, top)[2]
     return State(
         state.axis,
         state.momentum,
         (*state.velocity, sinking),
-        (*state.position, top.shape.height(c)),
+        (*state.position, top.surface.height(c)),
         state.marker,
         state.work,
     )

@@ -17,7 +17,8 @@ from tippetop.errors import InvalidInput, one_of
 from tippetop.integrators.base import Array
 from tippetop.mechanics.motion import along_table, contact
 from tippetop.mechanics.state import State
-from tippetop.mechanics.top import Top, Units, dimensionless_numbers, kind_of, natural_units
+from tippetop.mechanics.top import Top, natural_units
+from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import scale
 from tippetop.problem import Problem
 from tippetop.sweep.courses import Launches
@@ -60,10 +61,10 @@ class Cells:
     def launches(self, which: NDArray[np.intp], duration: float) -> Launches:
         """Some of the cells as launches."""
         count = len(self.fault)
-        numbers = [spread(number, count)[which] for number in dimensionless_numbers(self.top)]
+        numbers = [spread(number, count)[which] for number in self.top.numbers]
         contact_rule = self.problem.contact
         return Launches(
-            kind_of(self.top),
+            self.top.kind,
             np.array(numbers),
             State.unpack([number[which] for number in self.start.pack()]),
             (duration / spread(self.units.time, count))[which],

@@ -131,7 +131,7 @@ def observed(cells: Cells, which: NDArray[np.intp], launches: Launches, ends: En
     mass, size, time = (np.broadcast_to(unit, len(cells.fault))[which] for unit in cells.units)
     force = mass * size / time**2
     with np.errstate(all="ignore"):
-        moment = length(launches.state.momentum) * top.shape.height(launches.state.axis[2])
+        moment = length(launches.state.momentum) * top.surface.height(launches.state.axis[2])
         change = np.abs(jellett(end, top) - jellett(launches.state, top))
         drift = change / np.where(moment > 0, moment, np.nan)
         lost = energy(launches.state, top) - energy(end, top)
@@ -171,7 +171,7 @@ def ending(ends: Ends) -> NDArray[np.int8]:
 def sliding_height(ends: Ends, top: Top) -> Array:
     """Largest support function over the tilts that were gone through, in natural units."""
     shares = np.linspace(0.0, 1.0, HEIGHT_LOOKS)[:, None]
-    looks = top.shape.height(ends.down + shares * (ends.up - ends.down))
+    looks = top.surface.height(ends.down + shares * (ends.up - ends.down))
     found: Array = np.max(looks, axis=0)
     return found
 

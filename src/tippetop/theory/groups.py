@@ -21,7 +21,6 @@ from typing import NamedTuple
 import numpy as np
 
 from tippetop.errors import InvalidInput
-from tippetop.mechanics.shape import EccentricSphere
 from tippetop.mechanics.top import Top
 from tippetop.theory.steady import precession_branch
 from tippetop.theory.thresholds import lambda_down, lambda_up
@@ -133,18 +132,18 @@ def inertia_ratio(top: Top) -> float:
 
 
 def eccentricity(top: Top) -> float:
-    """Alpha of an eccentric sphere.
+    """Alpha of an eccentric sphere: how far its centre is above the centre of mass, in radii.
 
     Raises
     ------
     InvalidInput
         If the top is of another shape.
     """
-    if not isinstance(top.shape, EccentricSphere):
+    if not top.surface.spherical:
         raise InvalidInput(
-            "body.shape", top.shape, "an eccentric sphere; Jellett's integral holds for no other"
+            "body.shape", top.surface, "an eccentric sphere; Jellett's integral holds for no other"
         )
-    return float(top.shape.eccentricity)
+    return float(-top.surface.slope(0.0) / top.surface.size)
 
 
 def upright_boundary(alpha: float) -> float:

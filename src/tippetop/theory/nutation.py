@@ -25,7 +25,7 @@ import numpy as np
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import axial_spin, on_table
 from tippetop.mechanics.state import SlidingState
-from tippetop.mechanics.top import Top, dimensionless_numbers, natural_units
+from tippetop.mechanics.top import Top, natural_units
 from tippetop.mechanics.vectors import Functions, Scalar
 from tippetop.theory.groups import eccentricity
 
@@ -109,7 +109,7 @@ def numbers_of(top: Top) -> Numbers:
         If the top is of another shape.
     """
     eccentricity(top)
-    transverse, axial, alpha = dimensionless_numbers(top)[:3]
+    transverse, axial, alpha = top.numbers[:3]
     return Numbers(float(transverse), float(axial), float(alpha))
 
 
@@ -121,7 +121,7 @@ def effective_potential(tilt: Scalar, values: Constants, top: Top, functions: Fu
     s, c = functions.sin(tilt), functions.cos(tilt)
     turning = (values.vertical - values.axial * c) ** 2 / (2.0 * top.transverse_inertia * s**2)
     spinning = values.axial**2 / (2.0 * top.axial_inertia)
-    return turning + spinning + top.mass * top.gravity * top.shape.height(c)
+    return turning + spinning + top.mass * top.gravity * top.surface.height(c)
 
 
 _NEWTON_STEPS = 40

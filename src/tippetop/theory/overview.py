@@ -3,13 +3,13 @@
 import math
 from dataclasses import dataclass
 
-from tippetop.mechanics.friction import ViscousFriction
+from tippetop.mechanics.friction import ViscousLaw
 from tippetop.problem import EccentricSphere, Problem
 from tippetop.theory.averaging import flip_time_limit
 from tippetop.theory.groups import Group, classify_top, eccentricity, inertia_ratio
 from tippetop.theory.prediction import Prediction, predict
 from tippetop.theory.stability import Spectrum, spectrum
-from tippetop.theory.steady import Kind, SteadyState, jellett_of_launch, steady_states, vertical_spin
+from tippetop.theory.steady import SteadyKind, SteadyState, jellett_of_launch, steady_states, vertical_spin
 from tippetop.theory.thresholds import CriticalSpins, critical_spins, lambda_down, lambda_up
 
 
@@ -70,7 +70,10 @@ def outlook(problem: Problem) -> Outlook:
     states = (
         steady_states(top, jellett)
         if sphere
-        else [vertical_spin(kind, top, problem.launch.spin) for kind in (Kind.UPRIGHT, Kind.INVERTED)]
+        else [
+            vertical_spin(kind, top, problem.launch.spin)
+            for kind in (SteadyKind.UPRIGHT, SteadyKind.INVERTED)
+        ]
     )
     limit = _flip_time_limit(problem) if sphere else None
     mu = problem.friction.mu
@@ -93,7 +96,7 @@ def _flip_time_limit(problem: Problem) -> float | None:
     """Limit of mu times the flip time, where friction is viscous and the launch is not itself steady."""
     launch = problem.launch
     vertical = launch.tilt in (0.0, math.pi) and launch.tilt_rate == 0.0
-    if vertical or not isinstance(problem.top.friction, ViscousFriction):
+    if vertical or not isinstance(problem.top.friction, ViscousLaw):
         return None
     limit = flip_time_limit(problem)
     return limit if math.isfinite(limit) else None
