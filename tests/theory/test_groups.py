@@ -10,6 +10,7 @@ from hypothesis import assume, given, settings
 from strategies import numbers
 from tippetop import presets
 from tippetop.errors import InvalidInput
+from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.surface import SpheroidSurface
 from tippetop.theory.groups import (
     Group,
@@ -174,3 +175,16 @@ def test_tops_that_cannot_be_are_refused(gamma, alpha):
 def test_other_shapes_are_refused():
     with pytest.raises(InvalidInput, match="eccentric sphere"):
         classify_top(sphere(1.0, 0.3)._replace(surface=SpheroidSurface(0.02, 0.03)))
+
+
+class Drilling(ViscousLaw):
+    """Viscous friction that would have a torque as well."""
+
+    torque_free = False
+
+
+def test_friction_with_a_torque_is_refused():
+    top = sphere(1.0, 0.3)._replace(friction=Drilling(0.3))
+    for asked in (classify_top, fold, coexistence, lambda top: final_states(top, 1e-5)):
+        with pytest.raises(InvalidInput, match="torque"):
+            asked(top)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from tippetop.errors import InvalidInput
 from tippetop.mechanics.top import natural_units
 from tippetop.phases.base import EventKind, Outcome
-from tippetop.problem import EccentricSphere, Problem
+from tippetop.problem import Problem
 from tippetop.summary import NEAR_FINAL
 from tippetop.theory.prediction import Prediction, predict
 from tippetop.theory.steady import SteadyKind, SteadyState
@@ -62,8 +62,8 @@ def tell(run: xr.Dataset) -> Story:
 
 
 def known_spins(problem: Problem) -> CriticalSpins | None:
-    """The critical spins of a launch of a tippe top; None for other shapes, or where there are none."""
-    if not isinstance(problem.body.shape, EccentricSphere):
+    """The critical spins of a launch; None where Jellett's integral is not conserved, or there are none."""
+    if not problem.top.conserves_jellett:
         return None
     try:
         return critical_spins(problem)

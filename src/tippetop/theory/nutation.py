@@ -28,6 +28,7 @@ from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.top import Top, natural_units
 from tippetop.mechanics.vectors import Functions, Scalar
 from tippetop.theory.groups import eccentricity
+from tippetop.theory.steady import require_sphere
 
 
 class Constants(NamedTuple):
@@ -108,9 +109,9 @@ def numbers_of(top: Top) -> Numbers:
     InvalidInput
         If the top is of another shape.
     """
-    eccentricity(top)
-    transverse, axial, alpha = top.numbers[:3]
-    return Numbers(float(transverse), float(axial), float(alpha))
+    require_sphere(top)
+    transverse, axial = top.numbers[:2]
+    return Numbers(float(transverse), float(axial), eccentricity(top))
 
 
 def effective_potential(tilt: Scalar, values: Constants, top: Top, functions: Functions) -> Scalar:

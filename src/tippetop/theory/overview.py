@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 
 from tippetop.mechanics.friction import ViscousLaw
-from tippetop.problem import EccentricSphere, Problem
+from tippetop.problem import Problem
 from tippetop.theory.averaging import flip_time_limit
 from tippetop.theory.groups import Group, classify_top, eccentricity, inertia_ratio
 from tippetop.theory.prediction import Prediction, predict
@@ -32,11 +32,11 @@ class Outlook:
     group
         How such tops behave, or None.
     lambda_up, lambda_down
-        Jellett's integrals, kg m^2/s, at which the upright spin loses and the inverted spin gains stability.
+        Jellett's integrals, kg m^3/s, at which the upright spin loses and the inverted spin gains stability.
     critical_spins
         The spins of launches like this one, rad/s, that have those integrals.
     jellett
-        lambda of this launch, kg m^2/s.
+        lambda of this launch, kg m^3/s.
     prediction
         Where it can end, or None where nothing conserved says so.
     steady
@@ -66,7 +66,7 @@ def outlook(problem: Problem) -> Outlook:
     """What the theory says of a launch."""
     top = problem.top
     jellett = jellett_of_launch(problem)
-    sphere = isinstance(problem.body.shape, EccentricSphere)
+    sphere = top.conserves_jellett
     states = (
         steady_states(top, jellett)
         if sphere

@@ -17,6 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from tippetop.errors import InvalidInput
 from tippetop.mechanics.invariants import energy, jellett
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.surface import Surface, contact_vector
@@ -52,7 +53,7 @@ class SteadyState:
     spin
         Axial spin omega3, rad/s.
     jellett
-        Jellett's integral lambda, kg m^2/s.
+        Jellett's integral lambda, kg m^3/s.
     energy
         Energy, J, in the convention of `tippetop.mechanics.invariants.energy`.
     """
@@ -90,7 +91,7 @@ class RollingPrecession(NamedTuple):
     momentum
         L / phi', kg m^2.
     jellett
-        lambda / phi', kg m^2.
+        lambda / phi', kg m^3.
     """
 
     axis: Vector
@@ -167,7 +168,7 @@ def steady_states(top: Top, jellett: float) -> list[SteadyState]:
     top
         The body on its table; its friction does not matter.
     jellett
-        lambda, kg m^2/s. For an eccentric sphere it is conserved, and these are all the states a motion can
+        lambda, kg m^3/s. For an eccentric sphere it is conserved, and these are all the states a motion can
         end in; for other shapes it only labels them.
 
     Notes
@@ -192,13 +193,42 @@ def has_level_spin(top: Top) -> bool:
     return bool(top.surface.slope(0.0) == 0.0)
 
 
+def require_sphere(top: Top) -> None:
+    """Refuse a body that is no eccentric sphere.
+
+    Raises
+    ------
+    InvalidInput
+        If it is none.
+    """
+    if not top.surface.spherical:
+        raise InvalidInput(
+            "body.shape", top.surface, "an eccentric sphere; Jellett's integral holds for no other"
+        )
+
+
+def require_jellett(top: Top) -> None:
+    """Refuse a top that does not conserve Jellett's integral.
+
+    Raises
+    ------
+    InvalidInput
+        If its body or its friction does not.
+    """
+    require_sphere(top)
+    if not top.conserves_jellett:
+        raise InvalidInput(
+            "friction", top.friction, "friction without torque, which conserves Jellett's integral"
+        )
+
+
 def jellett_of_launch(problem: Problem) -> float:
-    """Jellett's integral of a launch, kg m^2/s."""
+    """Jellett's integral of a launch, kg m^3/s."""
     return float(jellett(problem.start(), problem.top))
 
 
 def least_energy(tilt: Scalar, jellett: Scalar, top: Top, functions: Functions) -> Scalar:
-    """Least energy, J, that a body with this tilt (rad) and this Jellett's integral (kg m^2/s) can have.
+    """Least energy, J, that a body with this tilt (rad) and this Jellett's integral (kg m^3/s) can have.
 
     lambda^2 / (2 a.I a) + m g h: its minima over the tilt are the stable steady states, because friction only
     takes energy and leaves lambda alone (Bou-Rabee, Marsden and Romero 2004; Ebenfeld and Scheck 1995).

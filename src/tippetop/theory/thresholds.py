@@ -50,18 +50,18 @@ class CriticalSpins:
 
 
 def critical_jellett(kind: SteadyKind, top: Top) -> float:
-    """Jellett's integral at which a vertical spin changes stability, kg m^2/s: inf where it never does."""
+    """Jellett's integral at which a vertical spin changes stability, kg m^3/s: inf where it never does."""
     limit = float(precession_branch(top, np.array([vertical_spin(kind, top, 0.0).tilt])).jellett[0])
     return abs(limit) if math.isfinite(limit) else math.inf
 
 
 def lambda_up(top: Top) -> float:
-    """Jellett's integral below which the upright spin of an eccentric sphere is stable, kg m^2/s, or inf."""
+    """Jellett's integral below which the upright spin of an eccentric sphere is stable, kg m^3/s, or inf."""
     return critical_jellett(SteadyKind.UPRIGHT, top)
 
 
 def lambda_down(top: Top) -> float:
-    """Jellett's integral above which the inverted spin of an eccentric sphere is stable, kg m^2/s, or inf."""
+    """Jellett's integral above which the inverted spin of an eccentric sphere is stable, kg m^3/s, or inf."""
     return critical_jellett(SteadyKind.INVERTED, top)
 
 
