@@ -19,10 +19,10 @@ import heyoka as hy
 
 import tippetop as tt
 from benchmarks.surroundings import COMMAND_LINE, markdown
-from tippetop.mechanics.friction import ViscousFriction
+from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.motion import axis_rate, contact, moment_per_normal_force
-from tippetop.mechanics.shape import EccentricSphere
-from tippetop.mechanics.top import Top, dimensionless_numbers, natural_units
+from tippetop.mechanics.surface import SphereSurface
+from tippetop.mechanics.top import Top, natural_units
 from tippetop.presets import report_problem
 
 SPIN, DURATION, SAMPLES = 155.0, 20.0, 2001
@@ -36,11 +36,11 @@ def bare_integration(problem: tt.Problem, duration: float) -> Callable[[], tuple
 
     Returns a function that integrates and returns the final tilt's cosine and the steps.
     """
-    numbers, units = dimensionless_numbers(problem.top), natural_units(problem.top)
+    numbers, units = problem.top.numbers, natural_units(problem.top)
     variables = hy.make_vars(*(f"n{i}" for i in "xyz"), *(f"L{i}" for i in "xyz"), "ux", "uy")
     axis, momentum, velocity = tuple(variables[:3]), tuple(variables[3:6]), tuple(variables[6:])
     par = hy.par
-    top = Top(1.0, par[0], par[1], EccentricSphere(1.0, par[2]), ViscousFriction(par[3]), 1.0)
+    top = Top(1.0, par[0], par[1], SphereSurface(1.0, par[2]), ViscousLaw(par[3]), 1.0)
     touch = contact(axis, momentum, (velocity[0], velocity[1]), top)
     normal = touch.normal_force
     moment = moment_per_normal_force(touch.arm, touch.traction)

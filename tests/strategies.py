@@ -6,10 +6,10 @@ from hypothesis import assume, reject
 from hypothesis import strategies as st
 
 from tippetop.errors import InvalidInput
-from tippetop.mechanics.friction import RegularizedCoulombFriction, ViscousFriction
+from tippetop.mechanics.friction import RegularizedCoulombLaw, ViscousLaw
 from tippetop.mechanics.motion import contact
-from tippetop.mechanics.shape import EccentricSphere, Spheroid
 from tippetop.mechanics.state import SlidingState
+from tippetop.mechanics.surface import SphereSurface, SpheroidSurface
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import cross
 from tippetop.mechanics.view import Angles
@@ -23,18 +23,20 @@ def numbers(low, high):
 
 def spheres():
     """Eccentric spheres from a bead to a melon."""
-    return st.builds(EccentricSphere, numbers(0.005, 0.1), numbers(0.05, 0.6))
+    return st.builds(
+        lambda radius, alpha: SphereSurface(radius, alpha * radius), numbers(0.005, 0.1), numbers(0.05, 0.6)
+    )
 
 
 def spheroids():
     """Spheroids from a lentil to an egg."""
     return st.builds(
-        lambda across, ratio: Spheroid(across, ratio * across), numbers(0.005, 0.1), numbers(0.5, 2.0)
+        lambda across, ratio: SpheroidSurface(across, ratio * across), numbers(0.005, 0.1), numbers(0.5, 2.0)
     )
 
 
 @st.composite
-def tops(draw, shapes=None, friction_laws=(ViscousFriction, RegularizedCoulombFriction)):
+def tops(draw, shapes=None, friction_laws=(ViscousLaw, RegularizedCoulombLaw)):
     """Bodies of revolution on a rough table, with inertias that a body can have."""
     shape = draw(shapes if shapes is not None else st.one_of(spheres(), spheroids()))
     mass, gravity = draw(numbers(0.001, 1.0)), draw(numbers(1.6, 25.0))
@@ -43,7 +45,7 @@ def tops(draw, shapes=None, friction_laws=(ViscousFriction, RegularizedCoulombFr
     axial = draw(numbers(0.2, 2.0)) * transverse
     law = draw(st.sampled_from(friction_laws))
     mu = draw(numbers(0.0, 1.0))
-    friction = law(mu / speed) if law is ViscousFriction else law(mu, draw(numbers(1e-3, 1.0)) * speed)
+    friction = law(mu / speed) if law is ViscousLaw else law(mu, draw(numbers(1e-3, 1.0)) * speed)
     return Top(mass, transverse, axial, shape, friction, gravity)
 
 
@@ -63,8 +65,8 @@ def sliding_states(draw, top):
     second = (-math.sin(azimuth), math.cos(azimuth), 0.0)
     first = cross(second, third)
     marker = tuple(math.cos(turn) * a + math.sin(turn) * b for a, b in zip(first, second, strict=True))
-    speed = math.sqrt(top.gravity * top.shape.size)
-    spin = 10.0 * top.axial_inertia * speed / top.shape.size
+    speed = math.sqrt(top.gravity * top.surface.size)
+    spin = 10.0 * top.axial_inertia * speed / top.surface.size
     momentum = tuple(spin * draw(numbers(-1.0, 1.0)) for _ in range(3))
     velocity = tuple(speed * draw(numbers(-1.0, 1.0)) for _ in range(2))
     position = tuple(draw(numbers(-1.0, 1.0)) for _ in range(2))
@@ -82,8 +84,8 @@ def slides(draw, top_strategy=None):
 @st.composite
 def angles(draw, top, lowest_tilt=0.01):
     """Motions of this top in Euler angles, no closer to the vertical than this tilt."""
-    speed = math.sqrt(top.gravity * top.shape.size)
-    rate = 10.0 * speed / top.shape.size
+    speed = math.sqrt(top.gravity * top.surface.size)
+    rate = 10.0 * speed / top.surface.size
     return Angles(
         tilt=draw(numbers(lowest_tilt, math.pi - lowest_tilt)),
         tilt_rate=rate * draw(numbers(-1.0, 1.0)),

@@ -13,12 +13,9 @@ from pydantic import BaseModel, ValidationError
 from strategies import problems
 from tippetop import presets, problem
 from tippetop.errors import FileTrouble, InvalidInput, TippetopError
-from tippetop.mechanics.friction import RegularizedCoulombFriction as CoulombLaw
-from tippetop.mechanics.friction import ViscousFriction as ViscousLaw
+from tippetop.mechanics.friction import RegularizedCoulombLaw, ViscousLaw
 from tippetop.mechanics.motion import angular_velocity, contact, point_velocity
-from tippetop.mechanics.shape import EccentricSphere as EccentricSphereLaw
-from tippetop.mechanics.shape import Spheroid as SpheroidLaw
-from tippetop.mechanics.shape import contact_vector
+from tippetop.mechanics.surface import SphereSurface, SpheroidSurface, contact_vector
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import length
 from tippetop.problem import (
@@ -618,10 +615,12 @@ class TestValues:
     def test_a_problem_is_the_numbers_of_its_parts(self):
         sphere = top_problem(launch__tilt=0.5)
         assert sphere.top == Top(
-            0.02, sphere.body.I1, sphere.body.I3, EccentricSphereLaw(0.02, 0.3), ViscousLaw(0.3), 9.8
+            0.02, sphere.body.I1, sphere.body.I3, SphereSurface(0.02, 0.006), ViscousLaw(0.3), 9.8
         )
         egg = top_problem(body=EGG, friction=COULOMB, gravity=1.62)
-        assert egg.top == Top(0.05, 1.3e-5, 8e-6, SpheroidLaw(0.02, 0.03), CoulombLaw(0.3, 1e-3), 1.62)
+        assert egg.top == Top(
+            0.05, 1.3e-5, 8e-6, SpheroidSurface(0.02, 0.03), RegularizedCoulombLaw(0.3, 1e-3), 1.62
+        )
 
     @given(problems())
     def test_the_start_leans_spins_and_slips_as_the_launch_says(self, original):
@@ -635,7 +634,7 @@ class TestValues:
             return
         touch = contact(start.axis, start.momentum, start.velocity[:2], original.top)
         leaning = complex(math.cos(launch.azimuth), math.sin(launch.azimuth))
-        size = 10.0 * body.shape.law.size
+        size = 10.0 * body.shape.surface.size
         error = abs(complex(*touch.slip) - complex(*launch.slip) * leaning)
         assert error <= 1e-12 * (math.hypot(*launch.slip) + size * (abs(launch.spin) + swing))
 
@@ -643,8 +642,8 @@ class TestValues:
     def test_the_start_is_as_far_above_the_table_as_the_launch_says(self, original):
         """Without a velocity of its own the lowest point moves sideways only."""
         launch, start, top = original.launch, original.start(), original.top
-        arm = contact_vector(start.axis, top.shape)
-        size = 10.0 * top.shape.size
+        arm = contact_vector(start.axis, top.surface)
+        size = 10.0 * top.surface.size
         assert start.position[2] + arm[2] == pytest.approx(launch.gap, abs=1e-14 * (size + launch.gap))
         if launch.velocity is None:
             omega = angular_velocity(start.axis, start.momentum, top)

@@ -13,9 +13,10 @@ from tippetop.integrators.dense import powers
 from tippetop.mechanics.invariants import energy, jellett
 from tippetop.mechanics.motion import along_table, angular_velocity, axial_spin, point_velocity
 from tippetop.mechanics.quadratures import orientation, quadrature_rates
-from tippetop.mechanics.shape import contact_vector
 from tippetop.mechanics.state import State
-from tippetop.mechanics.top import Top, Units
+from tippetop.mechanics.surface import contact_vector
+from tippetop.mechanics.top import Top
+from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Vector, length
 from tippetop.mechanics.view import axis_sine, precession_rate, slip_along_tilt, tilt_rate
 
@@ -88,7 +89,7 @@ class Recorder:
         self._pole = 1.0 if start.axis[2] >= 0.0 else -1.0
         self._sums = np.array([0.0, 0.0, self._pole * azimuth, 0.0])
         self._energy, self._jellett = float(energy(start, top)), float(jellett(start, top))
-        self._moment = float(length(start.momentum) * top.shape.height(start.axis[2]))
+        self._moment = float(length(start.momentum) * top.surface.height(start.axis[2]))
         self._imbalance, self._least, self._most = 0.0, self._jellett, self._jellett
 
     @property
@@ -207,7 +208,7 @@ def observe(samples: Samples, top: Top, units: Units) -> dict[str, Array]:
     """
     state, axis = samples.state, samples.state.axis
     momentum = state.momentum
-    omega, arm = angular_velocity(axis, momentum, top), contact_vector(axis, top.shape)
+    omega, arm = angular_velocity(axis, momentum, top), contact_vector(axis, top.surface)
     point = point_velocity(state.velocity, omega, arm)
     sine = axis_sine(axis)
     upright = sine == 0.0

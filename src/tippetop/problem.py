@@ -14,10 +14,10 @@ import tomli_w
 from pydantic import Field, model_validator
 
 from tippetop.errors import FileTrouble, InvalidInput, one_of
-from tippetop.mechanics import friction as friction_laws
-from tippetop.mechanics import shape as shapes
+from tippetop.mechanics.friction import FrictionLaw, RegularizedCoulombLaw, ViscousLaw
 from tippetop.mechanics.motion import along_table, contact, on_table
 from tippetop.mechanics.state import State
+from tippetop.mechanics.surface import SphereSurface, SpheroidSurface, Surface
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Functions
 from tippetop.mechanics.view import Angles, state_from_angles
@@ -45,9 +45,9 @@ class EccentricSphere(Part):
     eccentricity: Annotated[float, Field(gt=0, lt=1), NO_WORD]
 
     @property
-    def law(self) -> shapes.Shape:
-        """The shape as the mechanics takes it."""
-        return shapes.EccentricSphere(self.radius, self.eccentricity)
+    def surface(self) -> Surface:
+        """The outer surface, from the centre of mass, as the mechanics takes it."""
+        return SphereSurface(self.radius, self.eccentricity * self.radius)
 
 
 class Spheroid(Part):
@@ -64,9 +64,9 @@ class Spheroid(Part):
     along: Positive
 
     @property
-    def law(self) -> shapes.Shape:
-        """The shape as the mechanics takes it."""
-        return shapes.Spheroid(self.across, self.along)
+    def surface(self) -> Surface:
+        """The outer surface, from the centre of mass, as the mechanics takes it."""
+        return SpheroidSurface(self.across, self.along)
 
 
 class ViscousFriction(Part):
@@ -82,9 +82,9 @@ class ViscousFriction(Part):
     mu: NotNegative
 
     @property
-    def law(self) -> friction_laws.FrictionLaw:
+    def law(self) -> FrictionLaw:
         """The law as the mechanics takes it."""
-        return friction_laws.ViscousFriction(self.mu)
+        return ViscousLaw(self.mu)
 
 
 class RegularizedCoulombFriction(Part):
@@ -103,9 +103,9 @@ class RegularizedCoulombFriction(Part):
     eps: Positive = 1e-3
 
     @property
-    def law(self) -> friction_laws.FrictionLaw:
+    def law(self) -> FrictionLaw:
         """The law as the mechanics takes it."""
-        return friction_laws.RegularizedCoulombFriction(self.mu, self.eps)
+        return RegularizedCoulombLaw(self.mu, self.eps)
 
 
 Shape: TypeAlias = Annotated[EccentricSphere | Spheroid, Field(discriminator="kind")]
@@ -264,7 +264,7 @@ class Problem(Part):
     def top(self) -> Top:
         """The problem's numbers as the mechanics takes them, SI."""
         body = self.body
-        return Top(body.mass, body.I1, body.I3, body.shape.law, self.friction.law, self.gravity)
+        return Top(body.mass, body.I1, body.I3, body.shape.surface, self.friction.law, self.gravity)
 
     def start(self, functions: Functions = _EXACT) -> State:
         """The state at launch, SI; with sine and cosine for whatever the fields are, such as arrays."""

@@ -19,7 +19,8 @@ from tippetop.integrators import Integrator, make_integrator
 from tippetop.integrators.base import Array
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.state import State
-from tippetop.mechanics.top import Units, natural, natural_state, natural_units
+from tippetop.mechanics.top import natural, natural_state, natural_units
+from tippetop.mechanics.units import Units
 from tippetop.metrics import Tally, metrics
 from tippetop.observables import Recorder, observe
 from tippetop.problem import Problem

@@ -3,7 +3,7 @@ import pytest
 
 import tippetop as tt
 from tippetop.export import geometry
-from tippetop.mechanics.shape import contact_vector
+from tippetop.mechanics.surface import contact_vector
 
 EGG = tt.Body(mass=0.02, shape=tt.Spheroid(across=0.015, along=0.025), I1=4e-6, I3=2e-6)
 BODIES = [tt.presets.REPORT, EGG]
@@ -17,7 +17,7 @@ def test_the_toy_touches_the_table_where_the_model_does(body: tt.Body) -> None:
         # The lowest point of a circle of the body with radius r at height z along the axis.
         lowest = (points[:, 1] * np.cos(tilt) - points[:, 0] * np.sin(tilt)).min()
         assert lowest == pytest.approx(
-            contact_vector(axis, body.shape.law)[2], abs=0.004 * geometry.size(body)
+            contact_vector(axis, body.shape.surface)[2], abs=0.004 * geometry.size(body)
         )
 
 

@@ -9,7 +9,7 @@ from tippetop.lab.launches import launches
 from tippetop.lab.setup import LONGEST, Setup, first_setup, read_query
 from tippetop.theory.groups import classify
 from tippetop.theory.prediction import predict
-from tippetop.theory.steady import Kind
+from tippetop.theory.steady import SteadyKind
 from tippetop.theory.thresholds import critical_spins
 
 
@@ -106,7 +106,7 @@ def test_tops_of_the_literature_turn_over_as_theory_says_of_theirs() -> None:
     run = tt.simulate(problem, setup.duration)
     assert run["theta"][0] < 0.2
     assert run["theta"][-1] > 2.0
-    assert predict(problem).reachable[0].kind is Kind.INVERTED
+    assert predict(problem).reachable[0].kind is SteadyKind.INVERTED
 
 
 @pytest.mark.parametrize("name", ["gravty", "Duration", "launch.spn"])

@@ -15,9 +15,9 @@ import sympy as sp
 from sympy.physics.mechanics import ReferenceFrame, dynamicsymbols
 
 from tippetop.mechanics.euler import published_normal_force, published_rates
-from tippetop.mechanics.friction import ViscousFriction
+from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.motion import contact, sliding_rates
-from tippetop.mechanics.shape import EccentricSphere
+from tippetop.mechanics.surface import SphereSurface
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.view import Angles, state_from_angles
 
@@ -119,8 +119,8 @@ def numbers_of(top: Top):
         top.mass,
         top.transverse_inertia,
         top.axial_inertia,
-        top.shape.radius,
-        top.shape.eccentricity,
+        top.surface.radius,
+        top.surface.center / top.surface.radius,
         top.friction.mu,
         top.gravity,
     )
@@ -142,8 +142,8 @@ def random_motions(count: int):
         )
         transverse = random.uniform(0.2, 1.0) * mass * radius**2
         axial = random.uniform(0.3, 2.0) * transverse
-        shape = EccentricSphere(radius, random.uniform(0.05, 0.6))
-        top = Top(mass, transverse, axial, shape, ViscousFriction(random.uniform(0.0, 2.0)), gravity)
+        shape = SphereSurface(radius, radius * random.uniform(0.05, 0.6))
+        top = Top(mass, transverse, axial, shape, ViscousLaw(random.uniform(0.0, 2.0)), gravity)
         motion = tuple(
             float(number)
             for number in (

@@ -10,15 +10,15 @@ from scipy.integrate import solve_ivp
 
 from strategies import angles, numbers, spheres, tops
 from tippetop.mechanics.euler import published_energy, published_normal_force, published_rates
-from tippetop.mechanics.friction import RegularizedCoulombFriction, ViscousFriction
+from tippetop.mechanics.friction import RegularizedCoulombLaw, ViscousLaw
 from tippetop.mechanics.invariants import energy, jellett
 from tippetop.mechanics.motion import on_table, sliding_rates
-from tippetop.mechanics.shape import EccentricSphere, Spheroid
 from tippetop.mechanics.state import SlidingState
+from tippetop.mechanics.surface import SphereSurface, SpheroidSurface
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.view import Angles, state_from_angles
 
-VISCOUS_SPHERES = tops(shapes=spheres(), friction_laws=(ViscousFriction,))
+VISCOUS_SPHERES = tops(shapes=spheres(), friction_laws=(ViscousLaw,))
 LAUNCHES = VISCOUS_SPHERES.flatmap(lambda top: st.tuples(st.just(top), angles(top)))
 
 MASS, RADIUS = 0.02, 0.02
@@ -26,8 +26,8 @@ TIPPE_TOP = Top(
     MASS,
     131 / 350 * MASS * RADIUS**2,
     2 / 5 * MASS * RADIUS**2,
-    EccentricSphere(RADIUS, 0.3),
-    ViscousFriction(0.3),
+    SphereSurface(RADIUS, 0.3 * RADIUS),
+    ViscousLaw(0.3),
     9.8,
 )
 
@@ -127,7 +127,8 @@ def test_the_published_energy_is_the_energy_without_slip(case):
 def test_the_published_energy_leaves_out_the_energy_of_slipping(case):
     """What (4.1) lacks is m (v^2 / 2 + R theta' (1 - alpha c) v_x - R s (omega3 + phi' (alpha - c)) v_y)."""
     top, motion = case
-    radius, alpha = top.shape
+    radius, center = top.surface
+    alpha = center / radius
     s, c = math.sin(motion.tilt), math.cos(motion.tilt)
     slip_x, slip_y = motion.slip
     lacking = top.mass * (
@@ -143,12 +144,13 @@ def test_the_published_energy_leaves_out_the_energy_of_slipping(case):
 def test_a_sphere_that_nods_without_spin_or_friction_presses_by_weight_and_swing(case):
     """z = R (1 - alpha c), I1 theta'' = -N R alpha s and m (z'' + g) = N, solved for N."""
     top, motion = case
-    radius, alpha = top.shape
+    radius, center = top.surface
+    alpha = center / radius
     s, c = math.sin(motion.tilt), math.cos(motion.tilt)
     swing = top.mass * radius * alpha * c * motion.tilt_rate**2
     compliance = top.mass * (radius * alpha * s) ** 2 / top.transverse_inertia
     expected = (top.mass * top.gravity + swing) / (1.0 + compliance)
-    smooth = top._replace(friction=ViscousFriction(0.0))
+    smooth = top._replace(friction=ViscousLaw(0.0))
     y = (motion.tilt, motion.tilt_rate, 0.0, 0.0, 0.0, 0.0, 0.0)
     assert published_normal_force(y, smooth, math) == pytest.approx(
         expected, rel=1e-12, abs=1e-12 * abs(swing)
@@ -158,7 +160,8 @@ def test_a_sphere_that_nods_without_spin_or_friction_presses_by_weight_and_swing
 @given(VISCOUS_SPHERES, numbers(-1.0, 1.0))
 def test_taking_the_tilt_modulo_pi_makes_the_equations_jump_at_the_inverted_pole(top, slip_x):
     """theta'' is m g R mu v_x (1 + alpha) / I1 before theta = pi, and that with 1 - alpha after it."""
-    radius, alpha = top.shape
+    radius, center = top.surface
+    alpha = center / radius
     lever = top.mass * top.gravity * radius * top.friction.mu * slip_x / top.transverse_inertia
     unit = 1e-6 * (abs(lever) + top.mass * top.gravity * radius / top.transverse_inertia)
 
@@ -174,8 +177,8 @@ def test_taking_the_tilt_modulo_pi_makes_the_equations_jump_at_the_inverted_pole
 @pytest.mark.parametrize(
     "top",
     [
-        TIPPE_TOP._replace(shape=Spheroid(0.02, 0.03)),
-        TIPPE_TOP._replace(friction=RegularizedCoulombFriction(0.3, 0.01)),
+        TIPPE_TOP._replace(surface=SpheroidSurface(0.02, 0.03)),
+        TIPPE_TOP._replace(friction=RegularizedCoulombLaw(0.3, 0.01)),
     ],
     ids=["spheroid", "Coulomb friction"],
 )

@@ -12,11 +12,11 @@ from scipy.integrate import solve_ivp
 
 from strategies import numbers, slides, spheres, spheroids, tops
 from tippetop.mechanics.flight import fly, gap, gap_rate
-from tippetop.mechanics.friction import ViscousFriction
+from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import angular_velocity, axis_rate, on_table, point_velocity
-from tippetop.mechanics.shape import EccentricSphere, Spheroid, contact_vector
 from tippetop.mechanics.state import State
+from tippetop.mechanics.surface import SphereSurface, SpheroidSurface, contact_vector
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.touchdown import Start, touchdown
 from tippetop.mechanics.vectors import cross, dot, length, scale
@@ -24,9 +24,9 @@ from tippetop.mechanics.view import Angles, state_from_angles
 
 DIGITS = 50
 SHAPES = {
-    "tippe top": EccentricSphere(0.02, 0.3),
-    "lentil": Spheroid(0.02, 0.011),
-    "egg": Spheroid(0.02, 0.034),
+    "tippe top": SphereSurface(0.02, 0.006),
+    "lentil": SpheroidSurface(0.02, 0.011),
+    "egg": SpheroidSurface(0.02, 0.034),
 }
 
 
@@ -53,11 +53,11 @@ class Bead(NamedTuple):
 
 
 def time_unit(top):
-    return math.sqrt(top.shape.size / top.gravity)
+    return math.sqrt(top.surface.size / top.gravity)
 
 
 def speed_unit(top):
-    return math.sqrt(top.shape.size * top.gravity)
+    return math.sqrt(top.surface.size * top.gravity)
 
 
 @st.composite
@@ -65,7 +65,7 @@ def flights(draw, top_strategy=None):
     """A top in the air: some way up, or on the table, with any velocity."""
     top, sliding = draw(slides(top_strategy))
     state = on_table(sliding, top)
-    up = draw(numbers(0.0, 3.0)) * top.shape.size
+    up = draw(numbers(0.0, 3.0)) * top.surface.size
     rising = draw(numbers(-2.0, 2.0)) * speed_unit(top)
     return top, state._replace(
         position=(*state.position[:2], state.position[2] + up), velocity=(*state.velocity[:2], rising)
@@ -74,7 +74,7 @@ def flights(draw, top_strategy=None):
 
 def tipping(shape, tilt_rate, tilt=0.8, precession=150.0, spin=300.0):
     """A body of this shape on the table, at a tilt that changes at this rate."""
-    top = Top(0.02, 3.0e-6, 3.3e-6, shape, ViscousFriction(0.3), 9.8)
+    top = Top(0.02, 3.0e-6, 3.3e-6, shape, ViscousLaw(0.3), 9.8)
     return top, on_table(
         state_from_angles(Angles(tilt, tilt_rate, 0.3, precession, spin, (0.1, 0.2)), top, math), top
     )
@@ -85,7 +85,7 @@ class ExactGap:
 
     def __init__(self, state, top, start):
         n, momentum = ([mp.mpf(x) for x in v] for v in (state.axis, state.momentum))
-        self.shape = type(top.shape)(*map(mp.mpf, top.shape))
+        self.shape = type(top.surface)(*map(mp.mpf, top.surface))
         square = sum(x * x for x in momentum)
         self.w = mp.sqrt(square) / mp.mpf(top.transverse_inertia)
         square = square or mp.mpf(1)
@@ -116,16 +116,16 @@ def check_touchdown(state, top, start, horizon, precision=1e-7):
         exact = ExactGap(state, top, start)
         leading = next(exact.derivative(order) for order in range(start, 5) if exact.derivative(order))
         if time == 0.0:
-            assert leading <= 0 or (start == Start.AIRBORNE and leading <= 1e-15 * top.shape.size)
+            assert leading <= 0 or (start == Start.AIRBORNE and leading <= 1e-15 * top.surface.size)
             return time
         assert leading > 0
         end = horizon if time is None else time
         fraction = [k / 300 for k in range(1, 300)] + [10 ** (-k / 15) for k in range(1, 120)]
         gaps = [exact(end * f) for f in fraction]
         peak = max(abs(g) for g in gaps)
-        fuzz = precision * peak + 1e-15 * (top.shape.size + abs(state.position[2]))
+        fuzz = precision * peak + 1e-15 * (top.surface.size + abs(state.position[2]))
         assert min(gaps) > 0 or min(gaps) > -fuzz
-        assert min(gaps[: int(299 * 0.98)]) > -1e-15 * top.shape.size
+        assert min(gaps[: int(299 * 0.98)]) > -1e-15 * top.surface.size
         if time is not None:
             assert abs(exact(time)) < fuzz
     return time
@@ -166,13 +166,15 @@ def test_flights_add_up_and_conserve(case, first, second):
     top, state = case
     t1, t2 = first * time_unit(top), second * time_unit(top)
     there, stopover = fly(state, t1 + t2, top, math), fly(fly(state, t1, top, math), t2, top, math)
-    scales = State(1.0, length(state.momentum) + 1e-300, 10 * speed_unit(top), 60 * top.shape.size, 1.0, 1.0)
+    scales = State(
+        1.0, length(state.momentum) + 1e-300, 10 * speed_unit(top), 60 * top.surface.size, 1.0, 1.0
+    )
     for name, size in zip(State._fields[:5], scales[:5], strict=True):
         here = getattr(there, name)
         assert here == pytest.approx(getattr(stopover, name), rel=1e-12, abs=1e-12 * max(1.0, size))
     assert length(there.axis) == pytest.approx(1.0, rel=1e-14)
     assert dot(there.axis, there.marker) == pytest.approx(0.0, abs=1e-13)
-    fuzz = 1e-13 * top.mass * (top.gravity * 100 * top.shape.size + 100 * speed_unit(top) ** 2)
+    fuzz = 1e-13 * top.mass * (top.gravity * 100 * top.surface.size + 100 * speed_unit(top) ** 2)
     assert energy(there, top) == pytest.approx(energy(state, top), rel=1e-13, abs=fuzz)
 
 
@@ -208,7 +210,7 @@ def test_slow_turning_is_exact_to_the_last_digit(tiny):
 @given(flights())
 def test_the_gap_opens_at_the_vertical_velocity_of_the_lowest_point(case):
     top, state = case
-    arm = contact_vector(state.axis, top.shape)
+    arm = contact_vector(state.axis, top.surface)
     omega = angular_velocity(state.axis, state.momentum, top)
     assert gap(state, top) == pytest.approx(state.position[2] + arm[2], rel=1e-12, abs=1e-15)
     swing = length(omega) * length(arm) + length(state.velocity)
@@ -232,7 +234,7 @@ class TestUprightBodies:
     """A body with a vertical axis that spins about it, or not at all, flies like a point."""
 
     def upright(self, shape, spin, up=0.0, rising=0.0):
-        top = Top(0.02, 3.0e-6, 3.3e-6, shape, ViscousFriction(0.3), 9.8)
+        top = Top(0.02, 3.0e-6, 3.3e-6, shape, ViscousLaw(0.3), 9.8)
         momentum = (0.0, 0.0, top.axial_inertia * spin)
         position = (0.0, 0.0, shape.height(1.0) + up)
         return top, State((0.0, 0.0, 1.0), momentum, (0.0, 0.0, rising), position, (1.0, 0.0, 0.0), 0.0)
@@ -400,7 +402,7 @@ def test_a_graze_is_told_from_a_miss(shape, miss):
 @example(tipping(SHAPES["egg"], 20.0), 1.0)
 def test_the_horizon_hides_what_lies_beyond_it_and_nothing_else(case, part):
     top, state = case
-    assume(gap(state, top) > 1e-6 * top.shape.size)
+    assume(gap(state, top) > 1e-6 * top.surface.size)
     time = touchdown(state, top, math.inf)
     assume(abs(part - 1.0) > 1e-9)
     seen = touchdown(state, top, part * time)

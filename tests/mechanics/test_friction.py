@@ -7,13 +7,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from strategies import numbers
-from tippetop.mechanics.friction import RegularizedCoulombFriction, ViscousFriction
+from tippetop.mechanics.friction import RegularizedCoulombLaw, ViscousLaw
+from tippetop.mechanics.units import Units
 
 COEFFICIENTS = numbers(0.01, 2.0)
 SLIPS = st.tuples(numbers(-2.0, 2.0), numbers(-2.0, 2.0)).filter(lambda slip: math.hypot(*slip) > 1e-3)
 ANY_LAW = st.one_of(
-    st.builds(ViscousFriction, COEFFICIENTS),
-    st.builds(RegularizedCoulombFriction, COEFFICIENTS, numbers(1e-3, 1.0)),
+    st.builds(ViscousLaw, COEFFICIENTS),
+    st.builds(RegularizedCoulombLaw, COEFFICIENTS, numbers(1e-3, 1.0)),
 )
 AT_REST = (0.0, 0.0, 0.0)
 
@@ -25,6 +26,7 @@ def test_friction_opposes_slip_and_exerts_no_torque(law, slip):
     assert force[0] * slip[0] + force[1] * slip[1] == pytest.approx(-size * speed, rel=1e-12)
     assert size > 0.0
     assert torque == AT_REST
+    assert law.torque_free
 
 
 @given(ANY_LAW)
@@ -34,15 +36,13 @@ def test_there_is_no_friction_without_slip(law):
 
 @given(COEFFICIENTS, SLIPS)
 def test_viscous_friction_is_mu_times_the_slip_speed(mu, slip):
-    assert math.hypot(*ViscousFriction(mu).traction(slip, AT_REST).force) == pytest.approx(
-        mu * math.hypot(*slip)
-    )
+    assert math.hypot(*ViscousLaw(mu).traction(slip, AT_REST).force) == pytest.approx(mu * math.hypot(*slip))
 
 
 @given(COEFFICIENTS, SLIPS, numbers(1.0, 1e4))
 def test_regularized_coulomb_friction_approaches_mu_for_fast_slip(mu, slip, ratio):
     """The force falls short of mu by (eps/v)^2 / 2, and by less than that."""
-    law = RegularizedCoulombFriction(mu, math.hypot(*slip) / ratio)
+    law = RegularizedCoulombLaw(mu, math.hypot(*slip) / ratio)
     size = math.hypot(*law.traction(slip, AT_REST).force)
     shortfall = 1.0 - size / mu
     assert 0.5 / ratio**2 - 0.375 / ratio**4 - 1e-14 <= shortfall <= 0.5 / ratio**2 + 1e-14
@@ -52,14 +52,15 @@ def test_regularized_coulomb_friction_approaches_mu_for_fast_slip(mu, slip, rati
 def test_regularized_coulomb_friction_is_viscous_for_slow_slip(mu, slip, ratio):
     """Its viscous coefficient there is mu / eps; it falls short of that by (v/eps)^2 / 2, and by less."""
     eps = math.hypot(*slip) * ratio
-    size = math.hypot(*RegularizedCoulombFriction(mu, eps).traction(slip, AT_REST).force)
-    viscous = math.hypot(*ViscousFriction(mu / eps).traction(slip, AT_REST).force)
+    size = math.hypot(*RegularizedCoulombLaw(mu, eps).traction(slip, AT_REST).force)
+    viscous = math.hypot(*ViscousLaw(mu / eps).traction(slip, AT_REST).force)
     shortfall = 1.0 - size / viscous
     assert 0.5 / ratio**2 - 0.375 / ratio**4 - 1e-14 <= shortfall <= 0.5 / ratio**2 + 1e-14
 
 
-@given(ANY_LAW, SLIPS, numbers(0.1, 10.0))
-def test_friction_is_the_same_force_whatever_the_unit_of_speed(law, slip, unit):
-    there = type(law).from_coefficients(law.coefficients(unit))
-    force = there.traction((slip[0] / unit, slip[1] / unit), AT_REST).force
+@given(ANY_LAW, SLIPS, numbers(0.1, 10.0), numbers(0.1, 10.0))
+def test_friction_is_the_same_force_whatever_the_units(law, slip, long, slow):
+    units = Units(1.0, long, slow)
+    there = type(law).from_coefficients(law.coefficients(units))
+    force = there.traction((slip[0] / units.speed, slip[1] / units.speed), AT_REST).force
     assert force == pytest.approx(law.traction(slip, AT_REST).force, rel=1e-13)

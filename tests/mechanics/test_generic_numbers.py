@@ -12,15 +12,15 @@ import pytest
 import sympy as sp
 
 from tippetop.mechanics import euler, invariants, view
-from tippetop.mechanics.friction import NO_TORQUE, RegularizedCoulombFriction, Traction, ViscousFriction
+from tippetop.mechanics.friction import NO_TORQUE, RegularizedCoulombLaw, Traction, ViscousLaw
 from tippetop.mechanics.motion import along_table, axial_spin, contact, on_table, sliding_rates
-from tippetop.mechanics.shape import EccentricSphere, Spheroid
 from tippetop.mechanics.state import SlidingState, State
-from tippetop.mechanics.top import Top, dimensionless_numbers, kind_of, natural_units
+from tippetop.mechanics.surface import SphereSurface, SpheroidSurface
+from tippetop.mechanics.top import Top, natural_units
 from tippetop.mechanics.vectors import cross, dot
 
-SHAPES = {"eccentric sphere": EccentricSphere(0.02, 0.3), "spheroid": Spheroid(0.02, 0.031)}
-FRICTION_LAWS = {"viscous": ViscousFriction(0.3), "Coulomb": RegularizedCoulombFriction(0.4, 0.01)}
+SHAPES = {"eccentric sphere": SphereSurface(0.02, 0.006), "spheroid": SpheroidSurface(0.02, 0.031)}
+FRICTION_LAWS = {"viscous": ViscousLaw(0.3), "Coulomb": RegularizedCoulombLaw(0.4, 0.01)}
 TOPS = [
     pytest.param(Top(0.02, 3.0e-6, 3.2e-6, shape, law, 9.8), id=f"{shape_name}, {law_name}")
     for shape_name, shape in SHAPES.items()
@@ -56,7 +56,7 @@ def mechanics_outputs(y, top):
         *natural_units(top),
         natural_units(top).energy,
         natural_units(top).angular_momentum,
-        *dimensionless_numbers(top),
+        *top.numbers,
     )
 
 
@@ -151,7 +151,7 @@ def test_compiled_expressions_move_as_floats_do(top, heyoka):
 @pytest.mark.parametrize("top", TOPS)
 def test_a_compiled_top_takes_its_dimensionless_numbers_at_run_time(top, heyoka):
     """One compiled right-hand side serves every top of a kind."""
-    numbers, kind = dimensionless_numbers(top), kind_of(top)
+    numbers, kind = top.numbers, top.kind
     parametric = kind.top(tuple(heyoka.par[i] for i in range(len(numbers))))
     variables = heyoka.make_vars(*names_of(14).split())
     rates = sliding_rates(SlidingState.unpack(variables), parametric).pack()
@@ -260,7 +260,7 @@ def vanishes_identically(expression):
     return sp.expand(numerator) == 0
 
 
-SPHERE = EccentricSphere(RADIUS, ALPHA)
+SPHERE = SphereSurface(RADIUS, ALPHA)
 ANY_SHAPE = ArbitraryShape(sp.Function("h"))
 
 
@@ -290,7 +290,7 @@ def test_jelletts_integral_changes_where_the_surface_is_not_a_sphere():
 
 
 def test_jelletts_integral_of_a_spheroid_is_not_constant():
-    top = symbolic_top(Spheroid(sp.Integer(1), sp.Rational(3, 2)), ArbitraryFriction(FORCE))
+    top = symbolic_top(SpheroidSurface(sp.Integer(1), sp.Rational(3, 2)), ArbitraryFriction(FORCE))
     change = along_motion(invariants.jellett(on_table(SYMBOLS, top), top), top)
     values = {MASS: 1, I1: sp.Rational(1, 2), I3: sp.Rational(1, 3), GRAVITY: 1, FORCE[0]: 0, FORCE[1]: 0}
     values |= dict(zip(SYMBOLS.axis, (sp.Rational(3, 5), 0, sp.Rational(4, 5)), strict=True))

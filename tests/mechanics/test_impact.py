@@ -11,19 +11,19 @@ from scipy.integrate import solve_ivp
 
 from strategies import numbers, slides, spheres, tops
 from tippetop.mechanics.flight import gap, gap_rate
-from tippetop.mechanics.friction import RegularizedCoulombFriction, Traction, ViscousFriction
+from tippetop.mechanics.friction import RegularizedCoulombLaw, Traction, ViscousLaw
 from tippetop.mechanics.impact import impact
 from tippetop.mechanics.invariants import energy, jellett
 from tippetop.mechanics.motion import on_table
-from tippetop.mechanics.shape import EccentricSphere, Spheroid, contact_vector
 from tippetop.mechanics.state import State
+from tippetop.mechanics.surface import SphereSurface, SpheroidSurface, contact_vector
 from tippetop.mechanics.top import Top
 
 RESTITUTIONS = st.sampled_from([0.0, 0.3, 0.8, 1.0])
 
 
 def speed_unit(top):
-    return math.sqrt(top.gravity * top.shape.size)
+    return math.sqrt(top.gravity * top.surface.size)
 
 
 @st.composite
@@ -31,8 +31,8 @@ def collisions(draw, top_strategy=None, roughest=100.0):
     """A top that comes down on the table, and a coefficient of restitution."""
     top, sliding = draw(slides(top_strategy))
     mu = 10.0 ** draw(numbers(-4.0, math.log10(roughest))) / speed_unit(top)
-    if isinstance(top.friction, ViscousFriction) and top.friction.mu:
-        top = top._replace(friction=ViscousFriction(mu))
+    if isinstance(top.friction, ViscousLaw) and top.friction.mu:
+        top = top._replace(friction=ViscousLaw(mu))
     state = on_table(sliding, top)
     falling = 10.0 ** draw(numbers(-4.0, 0.5)) * speed_unit(top)
     velocity = (*state.velocity[:2], state.velocity[2] - falling)
@@ -40,11 +40,11 @@ def collisions(draw, top_strategy=None, roughest=100.0):
 
 
 def viscous():
-    return tops(friction_laws=(ViscousFriction,))
+    return tops(friction_laws=(ViscousLaw,))
 
 
 def coulomb():
-    return tops(friction_laws=(RegularizedCoulombFriction,))
+    return tops(friction_laws=(RegularizedCoulombLaw,))
 
 
 class Rigid:
@@ -55,7 +55,7 @@ class Rigid:
         I1, I3 = top.transverse_inertia, top.axial_inertia
         self.mass, self.momentum = top.mass, np.array(state.momentum)
         self.inverse_inertia = np.linalg.inv(I1 * np.eye(3) + (I3 - I1) * np.outer(n, n))
-        self.arm = np.array(contact_vector(state.axis, top.shape))
+        self.arm = np.array(contact_vector(state.axis, top.surface))
         x, y, z = self.arm
         self.lever = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
         self.answer = np.eye(3) / top.mass - self.lever @ self.inverse_inertia @ self.lever
@@ -106,7 +106,7 @@ def check_laws_of_impact(state, restitution, top):
     fuzz = 1e-13 * (np.linalg.norm(impulse) + top.mass * rigid.speed)
     assert impulse[2] == pytest.approx(result.impulse, rel=1e-12, abs=fuzz)
     turned = np.array(after.momentum) - rigid.momentum
-    assert turned == pytest.approx(np.cross(rigid.arm, impulse), rel=1e-11, abs=fuzz * top.shape.size * 10)
+    assert turned == pytest.approx(np.cross(rigid.arm, impulse), rel=1e-11, abs=fuzz * top.surface.size * 10)
 
     sinking = gap_rate(after, top)
     assert sinking > -1e-13 * rigid.speed
@@ -132,15 +132,15 @@ def test_impacts_obey_the_laws_of_mechanics_with_coulomb_friction(collision):
 @given(collisions(tops(spheres())))
 def test_impacts_conserve_jelletts_integral(collision):
     state, restitution, top = collision
-    size = math.hypot(*state.momentum) * math.hypot(*contact_vector(state.axis, top.shape))
+    size = math.hypot(*state.momentum) * math.hypot(*contact_vector(state.axis, top.surface))
     after = impact(state, restitution, top).state
-    size += math.hypot(*after.momentum) * math.hypot(*contact_vector(state.axis, top.shape))
+    size += math.hypot(*after.momentum) * math.hypot(*contact_vector(state.axis, top.surface))
     assert jellett(after, top) == pytest.approx(jellett(state, top), rel=1e-13, abs=1e-15 * size)
 
 
 @pytest.mark.parametrize("restitution", [-0.1, 1.1, math.nan])
 def test_restitution_outside_of_zero_and_one_is_refused(restitution):
-    top = Top(0.02, 3e-6, 3.2e-6, EccentricSphere(0.02, 0.3), ViscousFriction(0.3), 9.8)
+    top = Top(0.02, 3e-6, 3.2e-6, SphereSurface(0.02, 0.006), ViscousLaw(0.3), 9.8)
     state = State((0.0, 0.0, 1.0), (0.0,) * 3, (0.0, 0.0, -1.0), (0.0, 0.0, 0.014), (1.0, 0.0, 0.0), 0.0)
     with pytest.raises(ValueError, match="restitution must lie between 0 and 1"):
         impact(state, restitution, top)
@@ -157,7 +157,7 @@ def test_a_body_that_does_not_approach_is_not_struck(slide, rising):
 # Exact answers ------------------------------------------------------------------------------------------
 
 
-@given(collisions(tops()), st.sampled_from([ViscousFriction(0.0), RegularizedCoulombFriction(0.0, 1e-3)]))
+@given(collisions(tops()), st.sampled_from([ViscousLaw(0.0), RegularizedCoulombLaw(0.0, 1e-3)]))
 def test_without_friction_the_normal_velocity_is_reversed_and_nothing_else_happens(collision, law):
     """v_n+ = -e v_n-, p = -(1 + e) v_n- / M_nn, and the energy lost is (1 - e^2) v_n-^2 / (2 M_nn)."""
     state, restitution, top = collision
@@ -177,7 +177,7 @@ def test_without_friction_the_normal_velocity_is_reversed_and_nothing_else_happe
 def test_very_rough_bodies_stick(collision):
     """With mu -> infinity slip ends at once; what is left is a bounce of a body held at its contact point."""
     state, restitution, top = collision
-    top = top._replace(friction=ViscousFriction(1e12 / speed_unit(top)))
+    top = top._replace(friction=ViscousLaw(1e12 / speed_unit(top)))
     rigid = Rigid(state, top)
     grip, coupling = rigid.answer[:2, :2], rigid.answer[:2, 2]
     stopping = -np.linalg.solve(grip, rigid.point[:2])
@@ -196,7 +196,7 @@ def test_very_rough_bodies_stick(collision):
 
 def planar(slip, falling, law, tilt=0.9):
     """A body that moves in a vertical plane, x z, with this velocity of its contact point."""
-    shape = EccentricSphere(0.02, 0.3)
+    shape = SphereSurface(0.02, 0.006)
     top = Top(0.02, 3.0e-6, 3.3e-6, shape, law, 9.8)
     axis = (math.sin(tilt), 0.0, math.cos(tilt))
     momentum = (0.0, 2e-4, 0.0)
@@ -210,7 +210,7 @@ def planar(slip, falling, law, tilt=0.9):
 def test_coulomb_friction_in_a_plane_slides_all_through_at_high_slip(slip, restitution):
     """dP_t = -mu sign(slip) dp throughout (Whittaker), so that p_c = -v_n / (M_nn - mu sign(slip) M_tn)."""
     mu = 0.2
-    state, top = planar(slip, -0.3, RegularizedCoulombFriction(mu, 1e-6))
+    state, top = planar(slip, -0.3, RegularizedCoulombLaw(mu, 1e-6))
     answer = Rigid(state, top).answer
     push = math.copysign(mu, -slip)
     compression = 0.3 / (answer[2, 2] + push * answer[0, 2])
@@ -226,7 +226,7 @@ def test_coulomb_friction_in_a_plane_slides_all_through_at_high_slip(slip, resti
 def test_coulomb_friction_in_a_plane_sticks_once_slip_has_ended(eps, restitution):
     """Slip ends at p_s = slip / (mu M_tt - M_tn); then f = -M_tn / M_tt, but for errors of order eps."""
     mu, slip, falling = 0.9, 0.3, -1.0
-    state, top = planar(slip, falling, RegularizedCoulombFriction(mu, eps))
+    state, top = planar(slip, falling, RegularizedCoulombLaw(mu, eps))
     answer = Rigid(state, top).answer
     m_tt, m_tn, m_nn = answer[0, 0], answer[0, 2], answer[2, 2]
     assert abs(m_tn) < mu * m_tt
@@ -273,9 +273,11 @@ def test_viscous_friction_against_integration(collision):
 @pytest.mark.parametrize("eps", [1e-3, 1e-5])
 @pytest.mark.parametrize("restitution", [0.0, 0.8, 1.0])
 @pytest.mark.parametrize("mu", [0.2, 0.7])
-@pytest.mark.parametrize("shape", [EccentricSphere(0.02, 0.3), Spheroid(0.02, 0.034)], ids=["sphere", "egg"])
+@pytest.mark.parametrize(
+    "shape", [SphereSurface(0.02, 0.006), SpheroidSurface(0.02, 0.034)], ids=["sphere", "egg"]
+)
 def test_steep_coulomb_friction_against_integration(shape, mu, restitution, eps):
-    top = Top(0.02, 3.0e-6, 3.3e-6, shape, RegularizedCoulombFriction(mu, eps), 9.8)
+    top = Top(0.02, 3.0e-6, 3.3e-6, shape, RegularizedCoulombLaw(mu, eps), 9.8)
     axis = (0.6, 0.48, 0.64)
     for velocity in ((0.3, -0.2, -0.7), (0.0, 0.5, -0.3), (-0.4, 0.1, -1.5)):
         state = State(axis, (2e-4, -1e-4, 3e-4), velocity, (0.0, 0.0, 0.02), (0.8, -0.36, -0.48), 0.0)
@@ -289,7 +291,7 @@ class Unnamed(NamedTuple):
     mu: float
 
     def traction(self, slip, angular_velocity):
-        return ViscousFriction(self.mu).traction(slip, angular_velocity)
+        return ViscousLaw(self.mu).traction(slip, angular_velocity)
 
 
 @settings(max_examples=40)
@@ -319,7 +321,7 @@ class Drilling(NamedTuple):
 @pytest.mark.parametrize("restitution", [0.0, 0.7])
 @pytest.mark.parametrize("spin", [1e-4, 5e-4])
 def test_a_law_with_torque_against_integration(spin, restitution):
-    top = Top(0.02, 3.0e-6, 3.3e-6, EccentricSphere(0.02, 0.3), Drilling(0.3, 0.002, 0.02), 9.8)
+    top = Top(0.02, 3.0e-6, 3.3e-6, SphereSurface(0.02, 0.006), Drilling(0.3, 0.002, 0.02), 9.8)
     state = State(
         (0.6, 0.0, 0.8), (0.0, 1e-5, spin), (0.3, 0.1, -0.5), (0.0, 0.0, 0.02), (0.0, 1.0, 0.0), 0.0
     )
@@ -341,7 +343,7 @@ class SteadyDrilling(NamedTuple):
 
     def traction(self, slip, angular_velocity):
         self.evaluations.append(slip)
-        force = RegularizedCoulombFriction(self.mu, self.eps).traction(slip, angular_velocity).force
+        force = RegularizedCoulombLaw(self.mu, self.eps).traction(slip, angular_velocity).force
         return Traction(force, (0.0, 0.0, -math.copysign(self.lever, angular_velocity[2])))
 
 
@@ -352,7 +354,7 @@ def test_slip_that_is_held_against_a_torque_stays_held(restitution):
     The straight rest of the course costs next to nothing: step by step it would take some 50 000 evaluations.
     """
     law = SteadyDrilling(0.9, 1e-4, 1e-4, [])
-    top = Top(0.02, 3.0e-6, 3.3e-6, EccentricSphere(0.02, 0.3), law, 9.8)
+    top = Top(0.02, 3.0e-6, 3.3e-6, SphereSurface(0.02, 0.006), law, 9.8)
     state = State(
         (0.6, 0.0, 0.8), (0.0, 1e-5, 2e-4), (0.1, 0.1, -0.5), (0.0, 0.0, 0.02), (0.0, 1.0, 0.0), 0.0
     )
@@ -376,7 +378,7 @@ def test_slip_that_is_held_against_a_torque_stays_held(restitution):
 
 def jammed(law):
     """A slender egg on its side edge that slides into its own lean: friction presses it onto the table."""
-    shape = Spheroid(0.01, 0.03)
+    shape = SpheroidSurface(0.01, 0.03)
     top = Top(0.02, 3.0e-7, 3.0e-7, shape, law, 9.8)
     axis = (math.sin(0.5), 0.0, math.cos(0.5))
     arm = np.array(contact_vector(axis, shape))
@@ -384,7 +386,7 @@ def jammed(law):
     return State(axis, (0.0,) * 3, (-slip, 0.0, 0.0), (0.0, 0.0, 0.02), (0.0, 1.0, 0.0), 0.0), top
 
 
-@pytest.mark.parametrize("law", [ViscousFriction(3.0), RegularizedCoulombFriction(2.0, 1e-4)])
+@pytest.mark.parametrize("law", [ViscousLaw(3.0), RegularizedCoulombLaw(2.0, 1e-4)])
 @pytest.mark.parametrize("approach", [0.0, 1e-17, -1e-17, -1e-3])
 def test_a_jam_is_an_impact_even_without_approach(law, approach):
     """The normal velocity sinks before it rises; the impact ends when it is zero again, with energy lost."""
@@ -405,7 +407,7 @@ def test_restitution_ends_before_it_gives_back_more_than_compression_took():
     Compression takes S p_c^2 / 2, restitution over q gives S' q^2 / 2: it must end at q = p_c (S / S')^1/2.
     """
     mu, slip = 0.9, 0.3
-    law = RegularizedCoulombFriction(mu, 1e-6)
+    law = RegularizedCoulombLaw(mu, 1e-6)
     answer = Rigid(*planar(slip, -1.0, law)).answer
     m_tt, m_tn, m_nn = answer[0, 0], answer[0, 2], answer[2, 2]
     sliding, sticking = m_nn - mu * m_tn, m_nn - m_tn**2 / m_tt

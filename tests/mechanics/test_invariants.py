@@ -1,18 +1,21 @@
 """Energy, Jellett's integral and the power of friction: their meaning, and what cannot change them."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 import pytest
 from hypothesis import assume, given
+from hypothesis import strategies as st
 
 from strategies import slides, spheres, tops
-from tippetop.mechanics.friction import ViscousFriction
+from tippetop.mechanics.friction import NO_TORQUE, Traction, ViscousLaw
 from tippetop.mechanics.invariants import energy, friction_power, jellett
 from tippetop.mechanics.motion import angular_velocity, contact, on_table, sliding_rates
-from tippetop.mechanics.shape import EccentricSphere
+from tippetop.mechanics.state import SlidingState
+from tippetop.mechanics.surface import SphereSurface
 from tippetop.mechanics.top import Top
-from tippetop.mechanics.vectors import dot, length
+from tippetop.mechanics.vectors import Vector, dot, length
 from tippetop.mechanics.view import Angles, state_from_angles
 
 
@@ -31,7 +34,7 @@ def test_friction_takes_energy_while_the_table_pushes_and_gives_it_while_the_tab
 
 def test_a_fast_tilted_spin_would_have_to_be_pulled_down():
     """Energy gain does occur: at 45 degrees and 300 rad/s, precessing at 100 rad/s and slipping."""
-    top = Top(0.02, 3.0e-6, 3.2e-6, EccentricSphere(0.02, 0.3), ViscousFriction(0.3), 9.8)
+    top = Top(0.02, 3.0e-6, 3.2e-6, SphereSurface(0.02, 0.006), ViscousLaw(0.3), 9.8)
     state = state_from_angles(Angles(math.pi / 4, 0.0, 0.0, 100.0, 300.0, (0.0, 0.1)), top, math)
     assert normal_force(state, top) < 0.0
     assert friction_power(state, top) > 0.0
@@ -63,19 +66,61 @@ def test_energy_is_the_sum_over_six_point_masses_that_make_up_the_body(slide):
 def test_jelletts_integral_is_the_angular_momentum_against_the_contact_vector(slide):
     """For the eccentric sphere lambda = R (L_z - alpha L.n)."""
     top, state = slide
-    radius, alpha = top.shape
+    radius, center = top.surface
+    alpha = center / radius
     expected = radius * (state.momentum[2] - alpha * dot(state.momentum, state.axis))
     assert jellett(on_table(state, top), top) == pytest.approx(
         expected, abs=1e-14 * radius * length(state.momentum)
     )
 
 
+class Twist(NamedTuple):
+    """A torque that the table exerts on whatever slides on it, per unit normal force."""
+
+    torque: Vector
+
+    @property
+    def torque_free(self):
+        return self.torque == NO_TORQUE
+
+    def traction(self, slip, angular_velocity):
+        return Traction((-slip[0], -slip[1]), self.torque)
+
+
+def jellett_rate(state, top):
+    """Rate of Jellett's integral, from -L'.a - L.a', a' by a complex step along the motion."""
+    rates = sliding_rates(state, top)
+    step = 1e-30j
+    moved = SlidingState.unpack([y + step * r for y, r in zip(state.pack(), rates.pack(), strict=True)])
+    return complex(jellett(on_table(moved, top), top)).imag / 1e-30
+
+
+@given(slides(), st.sampled_from([NO_TORQUE, (0.0, 0.0, 1e-3), (2e-3, -1e-3, 0.0)]), st.booleans())
+def test_a_top_conserves_jelletts_integral_where_its_body_and_its_friction_say_so(slide, torque, twists):
+    top, state = slide
+    top = top._replace(friction=Twist(torque)) if twists else top
+    moment = (abs(normal_force(state, top)) + top.mass * top.gravity) * top.surface.size
+    turning = length(state.momentum) ** 2 / top.transverse_inertia
+    unit = (moment + turning) * top.surface.size
+    rate = jellett_rate(state, top)
+    if top.conserves_jellett:
+        assert rate == pytest.approx(0.0, abs=1e-12 * unit)
+    assert top.conserves_jellett == (top.surface.spherical and (not twists or torque == NO_TORQUE))
+
+
+def test_drilling_takes_from_jelletts_integral_at_the_rate_of_its_moment_times_the_height():
+    top = Top(0.02, 3.0e-6, 3.2e-6, SphereSurface(0.02, 0.006), Twist((0.0, 0.0, -1e-3)), 9.8)
+    state = state_from_angles(Angles(0.7, 0.0, 0.0, 5.0, 100.0, (0.0, 0.1)), top, math)
+    moment = 1e-3 * normal_force(state, top)
+    assert jellett_rate(state, top) == pytest.approx(-moment * top.surface.height(math.cos(0.7)), rel=1e-10)
+
+
 @given(slides())
 def test_without_friction_the_vertical_and_the_axial_angular_momentum_are_constant(slide):
     top, state = slide
-    rates = sliding_rates(state, top._replace(friction=ViscousFriction(0.0)))
+    rates = sliding_rates(state, top._replace(friction=ViscousLaw(0.0)))
     turning = dot(state.momentum, rates.axis)
     axial = dot(rates.momentum, state.axis) + turning
-    moment = (abs(normal_force(state, top)) + top.mass * top.gravity) * top.shape.size
+    moment = (abs(normal_force(state, top)) + top.mass * top.gravity) * top.surface.size
     assert rates.momentum[2] == pytest.approx(0.0, abs=1e-13 * moment)
     assert axial == pytest.approx(0.0, abs=1e-12 * (moment + length(state.momentum) * length(rates.axis)))

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from strategies import numbers, slides, tops
-from tippetop.mechanics.friction import ViscousFriction
+from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.motion import (
     along_table,
     angular_velocity,
@@ -29,11 +29,11 @@ def normal_force(state, top):
 
 def force_unit(state, top):
     """A force large enough to compare rounding with: weight, and what the spin can do."""
-    return top.mass * top.gravity + length(state.momentum) ** 2 / (top.transverse_inertia * top.shape.size)
+    return top.mass * top.gravity + length(state.momentum) ** 2 / (top.transverse_inertia * top.surface.size)
 
 
 def frictionless(top):
-    return top._replace(friction=ViscousFriction(0.0))
+    return top._replace(friction=ViscousLaw(0.0))
 
 
 @st.composite
@@ -69,7 +69,7 @@ def test_friction_brakes_a_sliding_vertical_spin_and_tips_it_with_the_lever_of_i
     top, state = case
     rates = sliding_rates(state, top)
     force = top.friction.traction(state.velocity, (0.0, 0.0, 0.0)).force
-    height, weight = top.shape.height(state.axis[2]), top.mass * top.gravity
+    height, weight = top.surface.height(state.axis[2]), top.mass * top.gravity
     assert rates.velocity == pytest.approx((top.gravity * force[0], top.gravity * force[1]), rel=1e-12)
     moment = (height * weight * force[1], -height * weight * force[0], 0.0)
     assert rates.momentum == pytest.approx(moment, rel=1e-12, abs=0.0)
@@ -102,7 +102,7 @@ def test_the_normal_force_is_what_accelerates_the_centre_of_mass_along_its_suppo
     top, state = slide
     rates = sliding_rates(state, top)
     omega = angular_velocity(state.axis, state.momentum, top)
-    quickest = length(omega) + math.sqrt(top.gravity / top.shape.size)
+    quickest = length(omega) + math.sqrt(top.gravity / top.surface.size)
     quickest += length(rates.momentum) * quickest / (length(state.momentum) + top.axial_inertia * quickest)
     step = 1e-5 / quickest
 
@@ -156,7 +156,7 @@ def assert_same_rates(actual, expected, state, top):
     force = force_unit(state, top) + abs(touch.normal_force) * (1.0 + rubbing)
     omega = length(angular_velocity(state.axis, state.momentum, top))
     speed = length((*state.velocity, 0.0)) + omega * length(touch.arm)
-    scales = SlidingState(omega, force * top.shape.size, force / top.mass, speed, omega, force * speed)
+    scales = SlidingState(omega, force * top.surface.size, force / top.mass, speed, omega, force * speed)
     for a, b, scale in zip(actual, expected, scales, strict=True):
         assert a == pytest.approx(b, abs=1e-11 * scale)
 

@@ -9,21 +9,22 @@ from scipy.optimize import brentq
 
 from strategies import numbers, spheres, tops
 from tippetop.mechanics.euler import published_rates
-from tippetop.mechanics.friction import ViscousFriction
+from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.invariants import jellett
 from tippetop.mechanics.motion import contact, on_table, sliding_rates
-from tippetop.mechanics.shape import EccentricSphere
+from tippetop.mechanics.surface import SphereSurface
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import cross, length
 from tippetop.mechanics.view import Angles, state_from_angles
 
 ORIGIN = (0.0, 0.0)
-VISCOUS_SPHERES = tops(shapes=spheres(), friction_laws=(ViscousFriction,))
+VISCOUS_SPHERES = tops(shapes=spheres(), friction_laws=(ViscousLaw,))
 
 
 def steady_precession(top, tilt):
     """phi' = sqrt(m g R alpha / (I1 c + I3 (alpha - c))), where that is not too fast to be told from none."""
-    radius, alpha = top.shape
+    radius, center = top.surface
+    alpha = center / radius
     cosine = math.cos(tilt)
     inertia = top.transverse_inertia * cosine + top.axial_inertia * (alpha - cosine)
     if inertia < 0.02 * top.transverse_inertia:
@@ -40,7 +41,7 @@ def steady_precessions(draw):
     assume(precession is not None)
     precession *= draw(st.sampled_from([1.0, -1.0]))
     azimuth = draw(numbers(-math.pi, math.pi))
-    spin = precession * (math.cos(tilt) - top.shape.eccentricity)
+    spin = precession * (math.cos(tilt) - top.surface.center / top.surface.radius)
     return top, Angles(tilt, 0.0, azimuth, precession, spin, (0.0, 0.0))
 
 
@@ -50,10 +51,10 @@ def test_steady_precession_is_an_equilibrium_of_the_published_equations(case):
     top, motion = case
     y = (motion.tilt, 0.0, motion.azimuth, motion.precession, motion.spin, 0.0, 0.0)
     tilt_rate, nodding, _, precessing, spinning, *slipping = published_rates(y, top, math)
-    unit = motion.precession**2 + top.gravity / top.shape.radius
+    unit = motion.precession**2 + top.gravity / top.surface.radius
     assert tilt_rate == precessing == spinning == 0.0
     assert nodding == pytest.approx(0.0, abs=1e-12 * unit)
-    assert slipping == pytest.approx([0.0, 0.0], abs=1e-12 * unit * top.shape.radius)
+    assert slipping == pytest.approx([0.0, 0.0], abs=1e-12 * unit * top.surface.radius)
 
 
 @given(steady_precessions())
@@ -65,12 +66,12 @@ def test_steady_precession_only_turns_about_the_vertical(case):
     rates = sliding_rates(state, top)
     weight = top.mass * top.gravity
     momentum_rate = abs(motion.precession) * length(state.momentum)
-    assert state.velocity == pytest.approx(ORIGIN, abs=1e-13 * abs(motion.precession) * top.shape.radius)
+    assert state.velocity == pytest.approx(ORIGIN, abs=1e-13 * abs(motion.precession) * top.surface.radius)
     touch = contact(state.axis, state.momentum, state.velocity, top)
     assert touch.normal_force == pytest.approx(weight, rel=1e-11)
     assert rates.axis == pytest.approx(cross(turning, state.axis), abs=1e-13 * abs(motion.precession))
     assert rates.momentum == pytest.approx(
-        cross(turning, state.momentum), abs=1e-11 * (weight * top.shape.radius + momentum_rate)
+        cross(turning, state.momentum), abs=1e-11 * (weight * top.surface.radius + momentum_rate)
     )
     assert rates.velocity == pytest.approx(ORIGIN, abs=1e-12 * top.gravity)
 
@@ -79,7 +80,8 @@ def test_steady_precession_only_turns_about_the_vertical(case):
 def test_jelletts_integral_of_a_steady_precession(case):
     """lambda = R phi' (I1 s^2 + I3 (c - alpha)^2)."""
     top, motion = case
-    radius, alpha = top.shape
+    radius, center = top.surface
+    alpha = center / radius
     s, c = math.sin(motion.tilt), math.cos(motion.tilt)
     inertia = top.transverse_inertia * s**2 + top.axial_inertia * (c - alpha) ** 2
     whole = on_table(state_from_angles(motion, top, math), top)
@@ -89,8 +91,8 @@ def test_jelletts_integral_of_a_steady_precession(case):
 def test_the_half_inverted_end_state_is_the_steady_precession_with_the_launchs_jellett_integral():
     """The tippe top launched at rest in tilt at 0.1 rad with 50 rad/s; the converged end state is known."""
     mass, radius = 0.02, 0.02
-    shape = EccentricSphere(radius, 0.3)
-    top = Top(mass, 131 / 350 * mass * radius**2, 2 / 5 * mass * radius**2, shape, ViscousFriction(0.3), 9.8)
+    shape = SphereSurface(radius, 0.3 * radius)
+    top = Top(mass, 131 / 350 * mass * radius**2, 2 / 5 * mass * radius**2, shape, ViscousLaw(0.3), 9.8)
     launch = Angles(0.1, 0.0, 0.0, 0.0, 50.0, (0.0, 0.0))
     kept = jellett(on_table(state_from_angles(launch, top, math), top), top)
     assert kept == pytest.approx(radius * top.axial_inertia * 50.0 * (math.cos(0.1) - 0.3), rel=1e-13)

@@ -10,7 +10,8 @@ from strategies import angles, numbers, slides, tops
 from tippetop.mechanics.invariants import energy, friction_power, jellett
 from tippetop.mechanics.motion import contact, on_table, sliding_rates
 from tippetop.mechanics.state import SlidingState
-from tippetop.mechanics.top import dimensionless_numbers, kind_of, natural_units
+from tippetop.mechanics.top import natural, natural_units
+from tippetop.mechanics.units import Units
 from tippetop.mechanics.view import state_from_angles
 
 
@@ -35,39 +36,40 @@ def in_natural_time(rates, units):
 def test_natural_units_make_mass_size_and_gravity_one(top):
     units = natural_units(top)
     assert top.mass / units.mass == 1.0
-    assert top.shape.size / units.length == 1.0
+    assert top.surface.size / units.length == 1.0
     assert top.gravity * units.time**2 / units.length == pytest.approx(1.0, rel=1e-14)
-    natural = kind_of(top).top(dimensionless_numbers(top))
-    assert (natural.mass, natural.shape.size, natural.gravity) == (1.0, 1.0, 1.0)
+    there = natural(top)
+    assert (there.mass, there.surface.size, there.gravity) == (1.0, 1.0, 1.0)
 
 
 @given(tops())
 def test_derived_units_are_products_of_the_basic_ones(top):
     units = natural_units(top)
-    assert units.speed == pytest.approx(math.sqrt(top.gravity * top.shape.size), rel=1e-14)
-    assert units.energy == pytest.approx(top.mass * top.gravity * top.shape.size, rel=1e-14)
+    assert units.speed == pytest.approx(math.sqrt(top.gravity * top.surface.size), rel=1e-14)
+    assert units.energy == pytest.approx(top.mass * top.gravity * top.surface.size, rel=1e-14)
     assert units.angular_momentum == pytest.approx(units.energy * units.time, rel=1e-14)
 
 
 @given(tops())
 def test_a_top_in_natural_units_has_the_numbers_it_was_made_from(top):
-    numbers_of_top = dimensionless_numbers(top)
-    natural = kind_of(top).top(numbers_of_top)
-    assert kind_of(natural) == kind_of(top)
-    assert dimensionless_numbers(natural) == pytest.approx(numbers_of_top, rel=1e-14)
+    numbers_of_top = top.numbers
+    there = natural(top)
+    assert there.kind == top.kind
+    assert there.numbers == pytest.approx(numbers_of_top, rel=1e-14)
+    assert there.kind.top(there.numbers) == there
 
 
 @given(slides())
 def test_a_top_moves_the_same_in_its_natural_units(slide):
     top, state = slide
-    units, natural = natural_units(top), kind_of(top).top(dimensionless_numbers(top))
+    units, small = natural_units(top), natural(top)
     scaled = in_natural_units(state, units)
     expected = in_natural_time(sliding_rates(state, top), units)
-    rates = sliding_rates(scaled, natural)
+    rates = sliding_rates(scaled, small)
     for actual, there in zip(rates, expected, strict=True):
         assert actual == pytest.approx(there, rel=1e-10, abs=1e-10)
     touch, touch_there = (
-        contact(s.axis, s.momentum, s.velocity, t) for s, t in ((scaled, natural), (state, top))
+        contact(s.axis, s.momentum, s.velocity, t) for s, t in ((scaled, small), (state, top))
     )
     weight = units.energy / units.length
     assert touch.normal_force == pytest.approx(touch_there.normal_force / weight, rel=1e-10, abs=1e-10)
@@ -77,14 +79,14 @@ def test_a_top_moves_the_same_in_its_natural_units(slide):
 @given(slides())
 def test_energy_jellett_and_power_scale_with_their_units(slide):
     top, state = slide
-    units, natural = natural_units(top), kind_of(top).top(dimensionless_numbers(top))
+    units, small = natural_units(top), natural(top)
     scaled, whole = in_natural_units(state, units), on_table(state, top)
-    there = on_table(scaled, natural)
-    assert energy(there, natural) == pytest.approx(energy(whole, top) / units.energy, rel=1e-12)
+    there = on_table(scaled, small)
+    assert energy(there, small) == pytest.approx(energy(whole, top) / units.energy, rel=1e-12)
     expected = jellett(whole, top) / (units.angular_momentum * units.length)
-    assert jellett(there, natural) == pytest.approx(expected, rel=1e-10, abs=1e-12)
+    assert jellett(there, small) == pytest.approx(expected, rel=1e-10, abs=1e-12)
     power = friction_power(state, top) * units.time / units.energy
-    assert friction_power(scaled, natural) == pytest.approx(power, rel=1e-10, abs=1e-12)
+    assert friction_power(scaled, small) == pytest.approx(power, rel=1e-10, abs=1e-12)
 
 
 @given(
@@ -97,10 +99,10 @@ def test_a_larger_top_under_other_gravity_moves_alike_in_slower_time(launch, lar
     giant = top._replace(
         transverse_inertia=top.transverse_inertia * larger**2,
         axial_inertia=top.axial_inertia * larger**2,
-        shape=type(top.shape)(
-            top.shape[0] * larger, top.shape[1] * (larger if hasattr(top.shape, "along") else 1.0)
+        surface=type(top.surface)(*(length * larger for length in top.surface)),
+        friction=type(top.friction).from_coefficients(
+            top.friction.coefficients(Units(1.0, 1.0 / larger, 1.0 / slower))
         ),
-        friction=type(top.friction).from_coefficients(top.friction.coefficients(slower / larger)),
         gravity=top.gravity * stronger,
     )
     far = motion._replace(
@@ -120,4 +122,4 @@ def test_a_larger_top_under_other_gravity_moves_alike_in_slower_time(launch, lar
     assert far_touch.push == pytest.approx(
         near_touch.push * stronger, rel=1e-10, abs=1e-10 * top.mass * top.gravity * stronger
     )
-    assert dimensionless_numbers(giant) == pytest.approx(dimensionless_numbers(top), rel=1e-12)
+    assert giant.numbers == pytest.approx(top.numbers, rel=1e-12)

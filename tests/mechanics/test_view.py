@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 
 from strategies import angles, numbers, slides, tops, unit_vectors
 from tippetop.mechanics import view
-from tippetop.mechanics.friction import ViscousFriction
+from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.motion import angular_velocity, axial_spin, axis_rate, contact
-from tippetop.mechanics.shape import EccentricSphere
+from tippetop.mechanics.surface import SphereSurface
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import cross, dot, length
 from tippetop.mechanics.view import Angles, state_from_angles
@@ -41,7 +41,7 @@ def launches(draw, tilts):
     return top, draw(angles(top))._replace(tilt=draw(tilts))
 
 
-SMALL_TOP = Top(0.02, 3.0e-6, 3.2e-6, EccentricSphere(0.02, 0.3), ViscousFriction(0.3), 9.8)
+SMALL_TOP = Top(0.02, 3.0e-6, 3.2e-6, SphereSurface(0.02, 0.006), ViscousLaw(0.3), 9.8)
 POLES = (1e-9, 1e-5, 0.01, math.pi - 0.01, math.pi - 1e-5, math.pi - 1e-9)
 
 
@@ -53,7 +53,7 @@ def test_angles_survive_the_way_to_the_state_and_back(launch):
     sine = math.sin(given_angles.tilt)
     fastest = max(map(abs, (given_angles.tilt_rate, given_angles.precession, given_angles.spin)))
     swing = abs(given_angles.tilt_rate) + (abs(given_angles.precession) + abs(given_angles.spin)) * sine
-    reach = 2.0 * max(map(top.shape.height, (-1.0, 0.0, 1.0)))
+    reach = 2.0 * max(map(top.surface.height, (-1.0, 0.0, 1.0)))
     assert back.tilt == pytest.approx(given_angles.tilt, rel=1e-14)
     assert close(back.azimuth, given_angles.azimuth, 1e-14)
     assert close(
@@ -96,7 +96,7 @@ def test_angles_are_what_they_say(launch):
     inclined = np.array([math.cos(azimuth), math.sin(azimuth), 0.0])
     slip = given_angles.slip[0] * inclined + given_angles.slip[1] * around
     touch = contact(state.axis, state.momentum, state.velocity, top)
-    reach = 2.0 * max(map(top.shape.height, (-1.0, 0.0, 1.0)))
+    reach = 2.0 * max(map(top.surface.height, (-1.0, 0.0, 1.0)))
     assert touch.slip == pytest.approx(
         slip[:2], abs=1e-13 * (reach * fastest + math.hypot(*given_angles.slip))
     )

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from strategies import problems
 from tippetop.errors import InvalidInput
-from tippetop.mechanics.top import dimensionless_numbers, natural_units
+from tippetop.mechanics.top import natural_units
 from tippetop.presets import report_problem
 from tippetop.simulate import to_natural
 from tippetop.sweep.cells import Fault, cells_of, numeric_fields
@@ -53,7 +53,7 @@ def test_cells_start_as_their_problems_do(problem, field):
             continue
         launches = cells.launches(np.array([index]), 3.0)
         units = natural_units(one.top)
-        numbers = np.array(dimensionless_numbers(one.top))
+        numbers = np.array(one.top.numbers)
         assert launches.numbers[:, 0] == pytest.approx(numbers, rel=1e-14)
         start = np.array(launches.state.pack())[:, 0]
         wanted = to_natural(one.start(), units)

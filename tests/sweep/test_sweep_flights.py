@@ -9,19 +9,19 @@ from hypothesis import strategies as st
 
 from strategies import slides, spheres, spheroids, tops
 from tippetop.mechanics.flight import fly, gap_rate
-from tippetop.mechanics.friction import ViscousFriction
+from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.impact import impact
 from tippetop.mechanics.invariants import energy, jellett
 from tippetop.mechanics.motion import contact, on_table
 from tippetop.mechanics.state import State
-from tippetop.mechanics.top import dimensionless_numbers, kind_of, natural_units
+from tippetop.mechanics.top import natural_units
 from tippetop.mechanics.touchdown import Start, touchdown
 from tippetop.sweep.cells import natural_state
 from tippetop.sweep.hops import collide, hop
 from tippetop.sweep.hops import slides as goes_on
 from tippetop.sweep.watch import Watch
 
-VISCOUS = tops(friction_laws=(ViscousFriction,))
+VISCOUS = tops(friction_laws=(ViscousLaw,))
 
 
 def many(state, count=2):
@@ -29,7 +29,7 @@ def many(state, count=2):
 
 
 def natural(top, sliding):
-    kind, numbers = kind_of(top), tuple(float(n) for n in dimensionless_numbers(top))
+    kind, numbers = top.kind, tuple(float(n) for n in top.numbers)
     return kind, numbers, natural_state(on_table(sliding, top), natural_units(top))
 
 
@@ -73,7 +73,7 @@ def test_a_rebound_lands_when_a_single_one_does(slide, rise):
 
 
 @settings(max_examples=60)
-@given(slides(tops(st.one_of(spheres(), spheroids()), (ViscousFriction,))), st.floats(0.01, 5.0))
+@given(slides(tops(st.one_of(spheres(), spheroids()), (ViscousLaw,))), st.floats(0.01, 5.0))
 def test_an_impact_is_the_single_one(slide, speed):
     kind, numbers, state = natural(*slide)
     u, v, w = state.velocity
@@ -105,7 +105,7 @@ def test_impacts_are_rarely_left_out():
 
 
 @settings(max_examples=30)
-@given(slides(tops(spheres(), (ViscousFriction,))))
+@given(slides(tops(spheres(), (ViscousLaw,))))
 def test_flights_and_impacts_keep_what_must_be_kept(slide):
     kind, numbers, state = natural(*slide)
     x, y, z = state.position

@@ -8,11 +8,11 @@ from hypothesis import strategies as st
 
 from strategies import numbers
 from tippetop.integrators import Motion, make_integrator
-from tippetop.mechanics.friction import ViscousFriction
+from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.motion import along_table, sliding_rates
-from tippetop.mechanics.shape import EccentricSphere
 from tippetop.mechanics.state import SlidingState
-from tippetop.mechanics.top import Top, dimensionless_numbers, kind_of, natural_units
+from tippetop.mechanics.surface import SphereSurface
+from tippetop.mechanics.top import Top, natural_units
 from tippetop.problem import Problem
 
 RADIUS, MASS, GRAVITY, AXIAL_INERTIA = 0.02, 0.02, 9.8, 3.2e-6
@@ -32,7 +32,7 @@ def full_run(problem, times, smooth=False):
     """Axis, angular momentum and horizontal velocity of a sliding top, SI, in rows."""
     top = problem.top
     if smooth:
-        top = top._replace(friction=ViscousFriction(0.0))
+        top = top._replace(friction=ViscousLaw(0.0))
     units = natural_units(top)
     start = along_table(problem.start())
     begin = np.array(
@@ -48,9 +48,7 @@ def full_run(problem, times, smooth=False):
     if smooth:
         begin[6:8] = 0.0
     natural = np.asarray(times, dtype=float) / units.time
-    arc = make_integrator().integrate(
-        sliding(kind_of(top)), dimensionless_numbers(top), (0.0, begin), natural[-1], natural
-    )
+    arc = make_integrator().integrate(sliding(top.kind), top.numbers, (0.0, begin), natural[-1], natural)
     assert arc.failure is None
     states = arc.states
     return states[:, :3], states[:, 3:6] * units.angular_momentum, states[:, 6:8] * units.speed
@@ -63,8 +61,8 @@ def tilts_of(axis):
 
 def sphere(gamma, alpha, mu=0.3):
     """An eccentric sphere with this inertia ratio and eccentricity."""
-    shape = EccentricSphere(RADIUS, alpha)
-    return Top(MASS, gamma * AXIAL_INERTIA, AXIAL_INERTIA, shape, ViscousFriction(mu), GRAVITY)
+    shape = SphereSurface(RADIUS, alpha * RADIUS)
+    return Top(MASS, gamma * AXIAL_INERTIA, AXIAL_INERTIA, shape, ViscousLaw(mu), GRAVITY)
 
 
 def sphere_problem(gamma, alpha, tilt, spin, mu=0.3):
@@ -85,7 +83,8 @@ def sphere_problem(gamma, alpha, tilt, spin, mu=0.3):
 
 def jellett_unit(top):
     """sqrt(m g R^3 I3 alpha), in which the thresholds are numbers of gamma and alpha."""
-    radius, alpha = top.shape
+    radius, center = top.surface
+    alpha = center / radius
     return math.sqrt(top.mass * top.gravity * radius**3 * top.axial_inertia * alpha)
 
 

@@ -9,7 +9,7 @@ from full_runs import full_run, sphere_problem, tilts_of
 from tippetop import presets
 from tippetop.errors import InvalidInput
 from tippetop.integrators import has_taylor
-from tippetop.mechanics.shape import EccentricSphere
+from tippetop.mechanics.surface import SphereSurface
 from tippetop.mechanics.top import natural_units
 from tippetop.theory import whirling
 from tippetop.theory.averaging import averaged_flow, flip_time_limit, local_exponent
@@ -210,5 +210,5 @@ def test_the_flow_needs_no_units():
             "gravity": 1.5 * REPORT.gravity,
         }
     )
-    assert isinstance(larger.top.shape, EccentricSphere)
+    assert isinstance(larger.top.surface, SphereSurface)
     assert flip_time_limit(larger) == pytest.approx(flip_time_limit(REPORT) / 1.5, rel=1e-9)

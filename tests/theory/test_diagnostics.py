@@ -8,8 +8,8 @@ from full_runs import full_run, tilts_of
 
 from tippetop import presets
 from tippetop.errors import InvalidInput
-from tippetop.mechanics.friction import ViscousFriction
-from tippetop.mechanics.shape import Spheroid
+from tippetop.mechanics.friction import ViscousLaw
+from tippetop.mechanics.surface import SpheroidSurface
 from tippetop.mechanics.view import Angles, state_from_angles
 from tippetop.theory.diagnostics import gyroscopic_balance, nutation_envelope, potential_at, smooth_constants
 from tippetop.theory.steady import precession_branch
@@ -51,7 +51,7 @@ def test_the_envelope_encloses_every_run_and_is_constant_on_a_smooth_table():
     assert np.all(tilts < envelope.high + 1e-6)
 
     axis, momentum, _ = full_run(PROBLEM, times, smooth=True)
-    envelope = nutation_envelope(axis, momentum, PROBLEM.top._replace(friction=ViscousFriction(0.0)))
+    envelope = nutation_envelope(axis, momentum, PROBLEM.top._replace(friction=ViscousLaw(0.0)))
     assert np.ptp(envelope.low) < 1e-9
     assert np.ptp(envelope.high) < 1e-9
 
@@ -71,6 +71,6 @@ def test_a_steady_precession_has_no_nutation_and_is_the_bottom_of_its_potential(
 
 
 def test_other_shapes_have_no_envelope():
-    top = PROBLEM.top._replace(shape=Spheroid(0.02, 0.03))
+    top = PROBLEM.top._replace(surface=SpheroidSurface(0.02, 0.03))
     with pytest.raises(InvalidInput):
         nutation_envelope(np.array([[0.1, 0.0, 0.99]]), np.array([[0.0, 0.0, 1e-4]]), top)

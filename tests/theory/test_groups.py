@@ -10,7 +10,8 @@ from hypothesis import assume, given, settings
 from strategies import numbers
 from tippetop import presets
 from tippetop.errors import InvalidInput
-from tippetop.mechanics.shape import Spheroid
+from tippetop.mechanics.friction import ViscousLaw
+from tippetop.mechanics.surface import SpheroidSurface
 from tippetop.theory.groups import (
     Group,
     classify,
@@ -26,7 +27,7 @@ from tippetop.theory.groups import (
     upright_boundary,
 )
 from tippetop.theory.prediction import final_states
-from tippetop.theory.steady import Kind, least_energy, precession_branch
+from tippetop.theory.steady import SteadyKind, least_energy, precession_branch
 from tippetop.theory.thresholds import lambda_down, lambda_up
 
 TILTS = np.linspace(0.0, math.pi, 4001)
@@ -162,7 +163,7 @@ def test_the_top_of_group_iic_has_two_vertical_spins_at_once():
     top = sphere(0.97, 0.04)
     both = coexistence(top)
     middle = 0.5 * (both.low + both.high)
-    assert {state.kind for state in final_states(top, middle)} == {Kind.UPRIGHT, Kind.INVERTED}
+    assert {state.kind for state in final_states(top, middle)} == {SteadyKind.UPRIGHT, SteadyKind.INVERTED}
 
 
 @pytest.mark.parametrize(("gamma", "alpha"), [(0.4, 0.3), (1.0, 0.0), (1.0, 1.0), (math.nan, 0.3)])
@@ -173,4 +174,17 @@ def test_tops_that_cannot_be_are_refused(gamma, alpha):
 
 def test_other_shapes_are_refused():
     with pytest.raises(InvalidInput, match="eccentric sphere"):
-        classify_top(sphere(1.0, 0.3)._replace(shape=Spheroid(0.02, 0.03)))
+        classify_top(sphere(1.0, 0.3)._replace(surface=SpheroidSurface(0.02, 0.03)))
+
+
+class Drilling(ViscousLaw):
+    """Viscous friction that would have a torque as well."""
+
+    torque_free = False
+
+
+def test_friction_with_a_torque_is_refused():
+    top = sphere(1.0, 0.3)._replace(friction=Drilling(0.3))
+    for asked in (classify_top, fold, coexistence, lambda top: final_states(top, 1e-5)):
+        with pytest.raises(InvalidInput, match="torque"):
+            asked(top)

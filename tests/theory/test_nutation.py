@@ -10,10 +10,10 @@ from hypothesis import assume, given
 from strategies import numbers
 from tippetop import presets
 from tippetop.errors import InvalidInput
-from tippetop.mechanics.friction import ViscousFriction
+from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.motion import along_table, sliding_rates
-from tippetop.mechanics.shape import Spheroid
 from tippetop.mechanics.state import SlidingState
+from tippetop.mechanics.surface import SpheroidSurface
 from tippetop.mechanics.top import natural_units
 from tippetop.theory import dual
 from tippetop.theory.diagnostics import smooth_constants
@@ -85,7 +85,7 @@ def test_friction_takes_from_a_nutation_what_the_mechanics_says_on_average(probl
     state = SlidingState(
         tuple(axis.T), tuple(momentum.T), (zero, zero), (zero, zero), (zero, zero, zero), zero
     )
-    rates = sliding_rates(state, top._replace(friction=ViscousFriction(mu)))
+    rates = sliding_rates(state, top._replace(friction=ViscousLaw(mu)))
     torque = sum(rate.gradient[0] * n for rate, n in zip(rates.momentum, axis.T, strict=True))
     power = rates.work.gradient[0]
     units = natural_units(top)
@@ -185,4 +185,4 @@ def test_the_whirls_change_as_the_constants_do(problem, turned):
 
 def test_other_shapes_are_refused():
     with pytest.raises(InvalidInput, match="eccentric sphere"):
-        numbers_of(LAUNCHES[0].top._replace(shape=Spheroid(0.02, 0.03)))
+        numbers_of(LAUNCHES[0].top._replace(surface=SpheroidSurface(0.02, 0.03)))

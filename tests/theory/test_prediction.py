@@ -9,7 +9,7 @@ from full_runs import full_run, sphere_problem, tilts_of
 from tippetop import presets
 from tippetop.errors import InvalidInput
 from tippetop.theory.prediction import predict
-from tippetop.theory.steady import Kind, jellett_of_launch, precession_branch
+from tippetop.theory.steady import SteadyKind, jellett_of_launch, precession_branch
 
 SETTLING = [
     (0.6, 0.3, 0.1, 70.0, 100.0),
@@ -47,7 +47,7 @@ def test_where_two_states_are_stable_energy_bars_one_from_a_gentle_launch():
     upright = predict(sphere_problem(0.6, 0.3, 0.05, 60.0))
     assert len(upright.stable) == 2
     assert upright.certain
-    assert upright.final.kind is Kind.UPRIGHT
+    assert upright.final.kind is SteadyKind.UPRIGHT
     assert upright.stable[0].energy <= upright.stable[1].energy
 
 

@@ -10,7 +10,7 @@ from hypothesis import assume, given
 from strategies import numbers, spheroids, tops
 from tippetop import presets
 from tippetop.mechanics.euler import published_rates
-from tippetop.mechanics.friction import ViscousFriction
+from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.motion import along_table
 from tippetop.theory import dual
 from tippetop.theory.dual import jacobian
@@ -23,7 +23,7 @@ from tippetop.theory.stability import (
     vertical_growth_rates,
 )
 from tippetop.theory.steady import (
-    Kind,
+    SteadyKind,
     level_spin,
     precession_branch,
     steady_states,
@@ -44,7 +44,7 @@ def assert_same_numbers(one, other, tolerance):
 def test_the_upright_spin_at_100_rad_per_s():
     """Known to six digits, in a frame at rest."""
     top = presets.report_problem(mu=0.3).top
-    found = spectrum(vertical_spin(Kind.UPRIGHT, top, 100.0), top)
+    found = spectrum(vertical_spin(SteadyKind.UPRIGHT, top, 100.0), top)
     assert found.frame_rate == 0.0
     assert found.unstable
     assert found.growth_rate == pytest.approx(1.089027, abs=5e-7)
@@ -85,15 +85,15 @@ def test_stable_is_what_has_least_energy(top, size):
 
 
 def test_without_friction_nothing_decays():
-    top = presets.report_problem().top._replace(friction=ViscousFriction(0.0))
+    top = presets.report_problem().top._replace(friction=ViscousLaw(0.0))
     for steady in steady_states(top, 1.8 * jellett_unit(top)):
         assert not spectrum(steady, top).stable
 
 
-@given(tops(friction_laws=(ViscousFriction,)), numbers(-5.0, 5.0), numbers(-5.0, 5.0))
+@given(tops(friction_laws=(ViscousLaw,)), numbers(-5.0, 5.0), numbers(-5.0, 5.0))
 def test_a_turning_frame_shifts_the_frequencies_of_a_vertical_spin(top, spin, frame):
-    unit = math.sqrt(top.gravity / top.shape.size)
-    steady = vertical_spin(Kind.INVERTED, top, spin * unit)
+    unit = math.sqrt(top.gravity / top.surface.size)
+    steady = vertical_spin(SteadyKind.INVERTED, top, spin * unit)
     still = spectrum(steady, top).eigenvalues
     turning = spectrum(steady, top, frame_rate=frame * unit)
     shift = 1j * frame * unit
@@ -113,14 +113,14 @@ def test_mirrored_precessions_have_the_same_spectrum():
     assert_same_numbers(first, second, 1e-9 * np.abs(first).max())
 
 
-@given(tops(shapes=spheroids(), friction_laws=(ViscousFriction,)), numbers(0.5, 20.0))
+@given(tops(shapes=spheroids(), friction_laws=(ViscousLaw,)), numbers(0.5, 20.0))
 def test_a_level_spin_has_two_neutral_directions(top, rate):
-    steady = level_spin(top, rate * math.sqrt(top.gravity / top.shape.size))
+    steady = level_spin(top, rate * math.sqrt(top.gravity / top.surface.size))
     found = spectrum(steady, top)
     assert len(found.eigenvalues) + len(found.neutral) == 7
 
 
-@pytest.mark.parametrize("kind", [Kind.UPRIGHT, Kind.INVERTED])
+@pytest.mark.parametrize("kind", [SteadyKind.UPRIGHT, SteadyKind.INVERTED])
 def test_many_spins_give_the_spectra_of_each(kind):
     top = sphere(0.9, 0.3)
     spins = np.array([-20.0, 5.0, 60.0])
@@ -137,5 +137,7 @@ def test_the_spin_of_a_real_run_grows_as_the_linear_motion_says():
     top = problem.top
     times = np.array([0.0, 0.5, 2.0, 4.0, 6.0])
     axis, _, _ = full_run(problem, times)
-    linear = linear_tilts(vertical_spin(Kind.UPRIGHT, top, 100.0), top, along_table(problem.start()), times)
+    linear = linear_tilts(
+        vertical_spin(SteadyKind.UPRIGHT, top, 100.0), top, along_table(problem.start()), times
+    )
     assert linear == pytest.approx(tilts_of(axis), rel=1e-6)

@@ -15,7 +15,7 @@ from tippetop.mechanics.vectors import cross, length
 from tippetop.mechanics.view import Angles, state_from_angles
 from tippetop.theory import dual
 from tippetop.theory.steady import (
-    Kind,
+    SteadyKind,
     has_level_spin,
     jellett_of_launch,
     least_energy,
@@ -34,11 +34,11 @@ def assert_steady(steady, top):
     touch = contact(state.axis, state.momentum, state.velocity, top)
     weight = top.mass * top.gravity
     turning = (0.0, 0.0, steady.precession)
-    unit = abs(steady.precession) + abs(steady.spin) + math.sqrt(top.gravity / top.shape.size)
-    assert touch.slip == pytest.approx((0.0, 0.0), abs=1e-12 * unit * top.shape.size)
+    unit = abs(steady.precession) + abs(steady.spin) + math.sqrt(top.gravity / top.surface.size)
+    assert touch.slip == pytest.approx((0.0, 0.0), abs=1e-12 * unit * top.surface.size)
     assert touch.normal_force == pytest.approx(weight, rel=1e-9)
     assert rates.axis == pytest.approx(cross(turning, state.axis), abs=1e-11 * unit)
-    moment = weight * top.shape.size + unit * length(state.momentum)
+    moment = weight * top.surface.size + unit * length(state.momentum)
     assert rates.momentum == pytest.approx(cross(turning, state.momentum), abs=1e-9 * moment)
     assert rates.velocity == pytest.approx((0.0, 0.0), abs=1e-9 * top.gravity)
 
@@ -55,10 +55,10 @@ def test_all_steady_states_of_a_sphere_are_steady_and_have_the_integral_asked_fo
 
 @given(tops(shapes=spheroids()), numbers(0.2, 20.0))
 def test_all_steady_states_of_a_spheroid_are_steady(top, size):
-    assume(abs(top.shape.along / top.shape.across - 1.0) > 1e-3)
-    unit = top.mass * math.sqrt(top.gravity * top.shape.size) * top.shape.size**2
+    assume(abs(top.surface.along / top.surface.across - 1.0) > 1e-3)
+    unit = top.mass * math.sqrt(top.gravity * top.surface.size) * top.surface.size**2
     states = steady_states(top, size * unit)
-    assert Kind.LEVEL in {steady.kind for steady in states}
+    assert SteadyKind.LEVEL in {steady.kind for steady in states}
     for steady in states:
         assert_steady(steady, top)
         assert steady.jellett == pytest.approx(size * unit, rel=1e-9)
@@ -67,7 +67,8 @@ def test_all_steady_states_of_a_spheroid_are_steady(top, size):
 @given(all_spheres, numbers(0.05, 3.09))
 def test_branch_of_a_sphere_is_the_closed_form(top, tilt):
     """phi'^2 = m g R alpha / (I1 c + I3 (alpha - c)), omega3 = phi' (c - alpha), lambda = ..."""
-    radius, alpha = top.shape
+    radius, center = top.surface
+    alpha = center / radius
     s, c = math.sin(tilt), math.cos(tilt)
     inertia = top.transverse_inertia * c + top.axial_inertia * (alpha - c)
     branch = precession_branch(top, np.array([tilt]))
@@ -86,8 +87,8 @@ def test_branch_of_a_sphere_is_the_closed_form(top, tilt):
 def test_every_precession_of_the_branch_is_found_from_its_integral(top, tilt):
     branch = precession_branch(top, np.array([tilt]))
     assume(np.isfinite(branch.jellett[0]) and abs(tilt - math.pi / 2) > 0.05)
-    assume(not has_level_spin(top) or abs(top.shape.along / top.shape.across - 1.0) > 1e-3)
-    unit = top.mass * math.sqrt(top.gravity * top.shape.size) * top.shape.size**2
+    assume(not has_level_spin(top) or abs(top.surface.along / top.surface.across - 1.0) > 1e-3)
+    unit = top.mass * math.sqrt(top.gravity * top.surface.size) * top.surface.size**2
     assume(1e-3 * unit < abs(branch.jellett[0]) < 1e3 * unit)
     found = [steady.tilt for steady in steady_states(top, float(branch.jellett[0]))]
     assert min(abs(other - tilt) for other in found) < 1e-5
@@ -97,7 +98,11 @@ def test_the_half_inverted_end_state_of_the_report():
     """Converged values of the final state of 50 rad/s, which the report quotes to four digits."""
     problem = presets.report_problem(spin=50.0)
     upright, half, inverted = steady_states(problem.top, jellett_of_launch(problem))
-    assert (upright.kind, half.kind, inverted.kind) == (Kind.UPRIGHT, Kind.PRECESSION, Kind.INVERTED)
+    assert (upright.kind, half.kind, inverted.kind) == (
+        SteadyKind.UPRIGHT,
+        SteadyKind.PRECESSION,
+        SteadyKind.INVERTED,
+    )
     assert half.tilt == pytest.approx(1.503553858228, abs=1e-11)
     assert half.precession == pytest.approx(35.254723275, abs=1e-8)
     assert half.spin == pytest.approx(-8.207588432, abs=1e-8)
@@ -114,16 +119,16 @@ def test_a_launch_at_rest_in_tilt_has_the_integral_of_its_spin():
 def test_without_jellett_integral_only_the_vertical_states_at_rest_are_left():
     top = presets.report_problem().top
     assert [(steady.kind, steady.spin) for steady in steady_states(top, 0.0)] == [
-        (Kind.UPRIGHT, 0.0),
-        (Kind.INVERTED, 0.0),
+        (SteadyKind.UPRIGHT, 0.0),
+        (SteadyKind.INVERTED, 0.0),
     ]
 
 
 @given(tops(), numbers(-3.0, 3.0))
 def test_named_spins_are_steady(top, rate):
-    spin = rate * math.sqrt(top.gravity / top.shape.size)
-    assert_steady(vertical_spin(Kind.UPRIGHT, top, spin), top)
-    assert_steady(vertical_spin(Kind.INVERTED, top, spin), top)
+    spin = rate * math.sqrt(top.gravity / top.surface.size)
+    assert_steady(vertical_spin(SteadyKind.UPRIGHT, top, spin), top)
+    assert_steady(vertical_spin(SteadyKind.INVERTED, top, spin), top)
     if has_level_spin(top):
         assert_steady(level_spin(top, spin), top)
 

@@ -10,8 +10,8 @@ from hypothesis import assume, given
 from strategies import numbers, spheroids, tops
 from tippetop import presets
 from tippetop.errors import InvalidInput
-from tippetop.mechanics.friction import ViscousFriction
-from tippetop.theory.steady import Kind, jellett_of_launch
+from tippetop.mechanics.friction import ViscousLaw
+from tippetop.theory.steady import SteadyKind, jellett_of_launch
 from tippetop.theory.thresholds import (
     apparent_critical_spins,
     critical_spin,
@@ -23,7 +23,7 @@ from tippetop.theory.thresholds import (
     vertical_spins_of_launches,
 )
 
-VERTICAL = [Kind.UPRIGHT, Kind.INVERTED]
+VERTICAL = [SteadyKind.UPRIGHT, SteadyKind.INVERTED]
 
 
 def test_the_critical_spins_of_the_report():
@@ -57,14 +57,14 @@ def test_the_spectrum_of_a_sphere_changes_sign_at_the_threshold_whatever_the_fri
     assert critical_spin_from_spectrum(kind, top) == pytest.approx(critical_spin(kind, top), rel=1e-9)
 
 
-@given(tops(shapes=spheroids(), friction_laws=(ViscousFriction,)))
+@given(tops(shapes=spheroids(), friction_laws=(ViscousLaw,)))
 def test_the_spectrum_of_a_spheroid_changes_sign_at_the_threshold(top):
-    unit = math.sqrt(top.gravity / top.shape.size)
-    assume(abs(top.shape.along / top.shape.across - 1.0) > 0.05)
-    assume(top.friction.mu * unit * top.shape.size > 1e-3)
-    by_formula = critical_spin(Kind.UPRIGHT, top)
+    unit = math.sqrt(top.gravity / top.surface.size)
+    assume(abs(top.surface.along / top.surface.across - 1.0) > 0.05)
+    assume(top.friction.mu * unit * top.surface.size > 1e-3)
+    by_formula = critical_spin(SteadyKind.UPRIGHT, top)
     assume(by_formula == math.inf or by_formula < 1e3 * unit)
-    assert critical_spin_from_spectrum(Kind.UPRIGHT, top) == pytest.approx(by_formula, rel=1e-7)
+    assert critical_spin_from_spectrum(SteadyKind.UPRIGHT, top) == pytest.approx(by_formula, rel=1e-7)
 
 
 def test_a_launch_with_a_precession_has_its_own_critical_spins():
@@ -89,9 +89,9 @@ def test_growth_rates_of_launches_vanish_at_their_critical_spins():
         below, at, above = growth_rates_of_launches(kind, problem, spin * np.array([0.99, 1.0, 1.01]))
         assert abs(at) < 1e-10
         assert below * above < 0.0
-        assert (below < 0.0) == (kind is Kind.UPRIGHT)
-    vertical = vertical_spins_of_launches(Kind.UPRIGHT, problem, np.array([spins.upright]))
-    assert vertical[0] == pytest.approx(critical_spin(Kind.UPRIGHT, problem.top), rel=1e-13)
+        assert (below < 0.0) == (kind is SteadyKind.UPRIGHT)
+    vertical = vertical_spins_of_launches(SteadyKind.UPRIGHT, problem, np.array([spins.upright]))
+    assert vertical[0] == pytest.approx(critical_spin(SteadyKind.UPRIGHT, problem.top), rel=1e-13)
 
 
 def test_a_finite_window_shows_the_upright_threshold_too_low_and_by_how_much():

@@ -112,9 +112,9 @@ def _rows(found: "Outlook") -> list[tuple[str, str, str]]:
     rows = [
         ("upright spin is left above ω_c1" if sphere else "upright changes at", _shown(upright), "rad/s"),
         ("inverted spin holds above ω_c2" if sphere else "inverted changes at", _shown(inverted), "rad/s"),
-        ("λ_up", _shown(found.lambda_up), "kg m²/s"),
-        ("λ_down", _shown(found.lambda_down), "kg m²/s"),
-        ("λ of this launch", _shown(found.jellett), "kg m²/s"),
+        ("λ_up", _shown(found.lambda_up), "kg m³/s"),
+        ("λ_down", _shown(found.lambda_down), "kg m³/s"),
+        ("λ of this launch", _shown(found.jellett), "kg m³/s"),
     ]
     if found.inertia_ratio is not None and found.eccentricity is not None:
         rows.insert(0, ("γ = I1/I3, α", f"{found.inertia_ratio:.6g}, {found.eccentricity:.6g}", ""))

@@ -17,7 +17,7 @@ from tippetop.export.poses import poses_at, turned
 from tippetop.export.raycast import CAPTION, Toy, fine_path, picture
 from tippetop.export.words import tell
 from tippetop.files import refuse_overwriting, written_beside
-from tippetop.mechanics.shape import contact_vector
+from tippetop.mechanics.surface import contact_vector
 from tippetop.problem import Problem
 
 Frame = NDArray[np.uint8]
@@ -144,7 +144,7 @@ def frames(run: xr.Dataset, fps: float, speed: float, pixels: tuple[int, int]) -
     times = np.arange(count) * speed / fps
     poses = poses_at(run, times)
     axes = [turned(poses.quaternions, np.tile(unit, (count, 1))) for unit in np.eye(3)]
-    arm = contact_vector(tuple(run["axis"].values.T), problem.top.shape)
+    arm = contact_vector(tuple(run["axis"].values.T), problem.top.surface)
     trace = np.stack([run["x"].values + arm[0], run["y"].values + arm[1]], axis=1) / toy.size
     path, reached = fine_path(trace, run["normal_force"].values != 0.0)
     seen = reached[np.searchsorted(run["time"].values, times, side="right") - 1]

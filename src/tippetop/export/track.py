@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from tippetop.catalogue import SAMPLED
 from tippetop.export.geometry import size, toy_parts
 from tippetop.export.words import Story, tell
-from tippetop.mechanics.shape import contact_vector
+from tippetop.mechanics.surface import contact_vector
 from tippetop.problem import Problem
 
 Array = NDArray[np.float64]
@@ -116,7 +116,7 @@ def _told(run: xr.Dataset) -> dict[str, Any]:
 def _columns(run: xr.Dataset, problem: Problem) -> dict[str, Array]:
     moment = np.linalg.norm(run["angular_momentum"].values[0]) * float(run["height"].values[0])
     jellett = run["jellett"].values
-    arm = contact_vector(tuple(run["axis"].values.T), problem.top.shape)
+    arm = contact_vector(tuple(run["axis"].values.T), problem.top.surface)
     return {
         "orientation": run["orientation"].values,
         "momentum": run["angular_momentum"].values,

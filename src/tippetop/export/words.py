@@ -11,9 +11,9 @@ from tippetop.catalogue import NEAR_FINAL
 from tippetop.contact.mode import EventKind, Outcome
 from tippetop.errors import InvalidInput
 from tippetop.mechanics.top import natural_units
-from tippetop.problem import EccentricSphere, Problem
+from tippetop.problem import Problem
 from tippetop.theory.prediction import Prediction, predict
-from tippetop.theory.steady import Kind, SteadyState
+from tippetop.theory.steady import SteadyKind, SteadyState
 from tippetop.theory.thresholds import CriticalSpins, critical_spins
 
 NEAR = 0.05
@@ -62,8 +62,8 @@ def tell(run: xr.Dataset) -> Story:
 
 
 def known_spins(problem: Problem) -> CriticalSpins | None:
-    """The critical spins of a launch of a tippe top; None for other shapes, or where there are none."""
-    if not isinstance(problem.body.shape, EccentricSphere):
+    """The critical spins of a launch; None where Jellett's integral is not conserved, or there are none."""
+    if not problem.top.conserves_jellett:
         return None
     try:
         return critical_spins(problem)
@@ -91,12 +91,12 @@ def end_in_words(prediction: Prediction) -> str:
 def steady_in_words(state: SteadyState) -> str:
     """A steady state as a phrase."""
     precession, spin = (number_in_words(value, 2) for value in (state.precession, state.spin))
-    if state.kind is Kind.PRECESSION:
+    if state.kind is SteadyKind.PRECESSION:
         return (
             f"precession at {math.degrees(state.tilt):.1f}° (θ = {state.tilt:.3f} rad) "
             f"with φ′ = {precession} and ω₃ = {spin} rad/s"
         )
-    if state.kind is Kind.LEVEL:
+    if state.kind is SteadyKind.LEVEL:
         return f"level spin with φ′ = {precession} rad/s"
     return f"{state.kind.value} spin with ω₃ = {spin} rad/s"
 
@@ -130,11 +130,11 @@ def _end(run: xr.Dataset, problem: Problem, end: Prediction | None) -> str:
     if theta[-1] > math.pi - NEAR and np.all(theta > math.pi - AROUND):
         return "stays inverted"
     swings = _late(run, problem, 0.0)
-    unstable = end is not None and all(state.kind is not Kind.UPRIGHT for state in end.reachable)
+    unstable = end is not None and all(state.kind is not SteadyKind.UPRIGHT for state in end.reachable)
     if np.all(theta[swings] < NEAR) and not unstable:
         return f"{'falls back' if upside_down else 'comes'} upright at {_since(run, theta >= NEAR):.2f} s"
     # Where it can end nowhere else, being there once is enough.
-    foretold = end is not None and end.certain and end.final.kind is Kind.INVERTED
+    foretold = end is not None and end.certain and end.final.kind is SteadyKind.INVERTED
     if theta[-1] > math.pi - NEAR and (foretold or np.all(theta[swings] > math.pi - NEAR)):
         return f"inverts at {arrival(run):.2f} s"
     angle = f"{math.degrees(theta[-1]):.1f}°"

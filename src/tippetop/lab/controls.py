@@ -78,7 +78,7 @@ def _inertia(name: str, label: str) -> Dial:
 
     def unit(setup: Setup) -> float:
         body = setup.problem.body
-        return body.mass * float(body.shape.law.size) ** 2
+        return body.mass * float(body.shape.surface.size) ** 2
 
     def read(setup: Setup) -> float | None:
         return float(getattr(setup.problem.body, name)) / unit(setup)

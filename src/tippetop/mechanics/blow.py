@@ -6,8 +6,8 @@ from typing import NamedTuple, Protocol, TypeAlias
 from tippetop.mechanics.friction import NO_TORQUE, Traction
 from tippetop.mechanics.motion import angular_velocity, point_velocity
 from tippetop.mechanics.roots import crossing
-from tippetop.mechanics.shape import contact_vector
 from tippetop.mechanics.state import State
+from tippetop.mechanics.surface import contact_vector
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Horizontal, Vector, add, cross, length, scale
 
@@ -66,7 +66,7 @@ class Striking(NamedTuple):
     @classmethod
     def of(cls, state: State, top: Top) -> "Striking":
         """The body in this state."""
-        arm = contact_vector(state.axis, top.shape)
+        arm = contact_vector(state.axis, top.surface)
         at_rest = state._replace(momentum=NO_TORQUE, velocity=NO_TORQUE)
         point = contact_velocity(state, arm, top)
         omega = angular_velocity(state.axis, state.momentum, top)

@@ -6,8 +6,8 @@ with viscous friction only.
 
 from collections.abc import Sequence
 
-from tippetop.mechanics.friction import ViscousFriction
-from tippetop.mechanics.shape import EccentricSphere
+from tippetop.mechanics.friction import ViscousLaw
+from tippetop.mechanics.surface import SphereSurface
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Functions, Scalar
 
@@ -93,14 +93,14 @@ def published_parameters(top: Top) -> tuple[Scalar, ...]:
     TypeError
         If the top is not an eccentric sphere with viscous friction.
     """
-    if not (isinstance(top.shape, EccentricSphere) and isinstance(top.friction, ViscousFriction)):
+    if not (isinstance(top.surface, SphereSurface) and isinstance(top.friction, ViscousLaw)):
         raise TypeError("the published equations hold for an eccentric sphere with viscous friction only")
     return (
         top.mass,
         top.transverse_inertia,
         top.axial_inertia,
-        top.shape.radius,
-        top.shape.eccentricity,
+        top.surface.radius,
+        top.surface.center / top.surface.radius,
         top.friction.mu,
         top.gravity,
     )

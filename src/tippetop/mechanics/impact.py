@@ -31,7 +31,7 @@ Jellett's integral is conserved: P acts at the fixed arm, and a.(a x P) = 0.
 from typing import NamedTuple
 
 from tippetop.mechanics.blow import NO_BLOW, Blow, Course, Goal, Striking, contact_velocity
-from tippetop.mechanics.friction import ViscousFriction
+from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.integrated_impact import LawfulCourse
 from tippetop.mechanics.motion import angular_velocity
 from tippetop.mechanics.state import State
@@ -84,7 +84,7 @@ def impact(state: State, restitution: float, top: Top) -> Impact:
     if not is_struck(body):
         return Impact(state, 0.0, 0.0, 0.0)
     law = top.friction
-    course: Course = ViscousCourse.of(body, law) if isinstance(law, ViscousFriction) else LawfulCourse(body)
+    course: Course = ViscousCourse.of(body, law) if isinstance(law, ViscousLaw) else LawfulCourse(body)
 
     compressed = course.until(NO_BLOW, body.approach)
     blow = compressed

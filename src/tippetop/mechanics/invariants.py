@@ -1,8 +1,8 @@
 """What is conserved, and what friction takes: the quantities every run is checked by."""
 
 from tippetop.mechanics.motion import angular_velocity
-from tippetop.mechanics.shape import contact_vector
 from tippetop.mechanics.state import State
+from tippetop.mechanics.surface import contact_vector
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Scalar, dot
 
@@ -17,8 +17,8 @@ def energy(state: State, top: Top) -> Scalar:
 def jellett(state: State, top: Top) -> Scalar:
     """Jellett's integral lambda = -L.a, kg m^3/s.
 
-    Constant for an eccentric sphere under any friction without drilling torque, because the moment a x F of
-    the contact force is perpendicular to a, and the rate of a to L (Jellett 1872). Not constant for other
-    shapes.
+    Constant for a top that conserves it (`Top.conserves_jellett`), an eccentric sphere under friction without
+    torque, because the moment a x F of the contact force is perpendicular to a, and the rate of a to L
+    (Jellett 1872). A torque M of the table changes it at the rate -M.a.
     """
-    return -dot(state.momentum, contact_vector(state.axis, top.shape))
+    return -dot(state.momentum, contact_vector(state.axis, top.surface))

@@ -9,8 +9,8 @@ singularity, and the right-hand side is algebraic.
 from typing import NamedTuple
 
 from tippetop.mechanics.friction import Traction
-from tippetop.mechanics.shape import contact_vector
 from tippetop.mechanics.state import SlidingState, State
+from tippetop.mechanics.surface import contact_vector
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import VERTICAL, Horizontal, Scalar, Vector, add, cross, dot, scale
 
@@ -103,8 +103,8 @@ def contact(axis: Vector, momentum: Vector, velocity: Horizontal, top: Top) -> C
     A = 1/m - (h'/I1) [(a x (z + f) + t) x n]_z and b = -(g + h'' c'^2 + h' [L x n']_z / I1).
     """
     c = axis[2]
-    slope = top.shape.slope(c)
-    arm = contact_vector(axis, top.shape)
+    slope = top.surface.slope(c)
+    arm = contact_vector(axis, top.surface)
     omega = angular_velocity(axis, momentum, top)
     point = point_velocity((velocity[0], velocity[1], 0.0), omega, arm)
     slip = (point[0], point[1])
@@ -113,7 +113,7 @@ def contact(axis: Vector, momentum: Vector, velocity: Horizontal, top: Top) -> C
     turning = axis_rate(axis, momentum, top)
     lever = slope / top.transverse_inertia
     falling = top.gravity + (
-        top.shape.curvature(c) * turning[2] * turning[2] + lever * cross(momentum, turning)[2]
+        top.surface.curvature(c) * turning[2] * turning[2] + lever * cross(momentum, turning)[2]
     )
     reaction = cross(moment_per_normal_force(arm, traction), axis)[2]
     return Contact(arm, slip, omega, traction, -falling, 1.0 / top.mass - lever * reaction)
@@ -139,8 +139,8 @@ def sliding_rates(state: SlidingState, top: Top) -> SlidingState:
 def on_table(state: SlidingState, top: Top) -> State:
     """The whole state of a body that touches the table: height h(c) and vertical velocity h'(c) c' added."""
     c = state.axis[2]
-    sinking = top.shape.slope(c) * axis_rate(state.axis, state.momentum, top)[2]
-    return State(state.axis, state.momentum, (*state.velocity, sinking), top.shape.height(c))
+    sinking = top.surface.slope(c) * axis_rate(state.axis, state.momentum, top)[2]
+    return State(state.axis, state.momentum, (*state.velocity, sinking), top.surface.height(c))
 
 
 def along_table(state: State) -> SlidingState:

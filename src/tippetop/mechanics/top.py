@@ -3,8 +3,9 @@
 from typing import NamedTuple
 
 from tippetop.mechanics.friction import FrictionLaw
-from tippetop.mechanics.shape import Shape
 from tippetop.mechanics.state import State
+from tippetop.mechanics.surface import Surface
+from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Scalar, scale
 
 
@@ -14,81 +15,41 @@ class Top(NamedTuple):
     mass: Scalar
     transverse_inertia: Scalar
     axial_inertia: Scalar
-    shape: Shape
+    surface: Surface
     friction: FrictionLaw
     gravity: Scalar
 
     @property
+    def conserves_jellett(self) -> bool:
+        """Whether Jellett's integral -L.a is constant on one contact, whatever the motion.
+
+        The contact force has no part in it on a sphere, because both its moment a x F and the change of a are
+        perpendicular to the other; a torque of the table has.
+        """
+        return self.surface.spherical and self.friction.torque_free
+
+    @property
     def kind(self) -> "Kind":
-        """What remains when the numbers are taken away."""
-        return kind_of(self)
+        """What remains of it without its numbers."""
+        coefficients = len(self.friction.coefficients(Units(1.0, 1.0, 1.0)))
+        return Kind(type(self.surface), type(self.friction), len(self.surface.proportions), coefficients)
 
     @property
     def numbers(self) -> tuple[Scalar, ...]:
-        """The dimensionless numbers."""
-        return dimensionless_numbers(self)
-
-
-class Units(NamedTuple):
-    """Units of mass (kg), length (m) and time (s) in which a top is simulated."""
-
-    mass: Scalar
-    length: Scalar
-    time: Scalar
-
-    @property
-    def speed(self) -> Scalar:
-        """Unit of velocity, m/s."""
-        return self.length / self.time
-
-    @property
-    def energy(self) -> Scalar:
-        """Unit of energy, J."""
-        return self.mass * self.speed**2
-
-    @property
-    def angular_momentum(self) -> Scalar:
-        """Unit of angular momentum, kg m^2/s."""
-        return self.mass * self.length * self.speed
-
-
-def natural_units(top: Top) -> Units:
-    """Units in which the top's mass, its size and gravity are all 1."""
-    size = top.shape.size
-    return Units(top.mass, size, (size / top.gravity) ** 0.5)
-
-
-def dimensionless_numbers(top: Top) -> tuple[Scalar, ...]:
-    """The numbers that remain in natural units: inertias, proportions of the shape, friction law."""
-    units = natural_units(top)
-    inertia = units.mass * units.length**2
-    return (
-        top.transverse_inertia / inertia,
-        top.axial_inertia / inertia,
-        *top.shape.proportions,
-        *top.friction.coefficients(units.speed),
-    )
-
-
-def natural(top: Top) -> Top:
-    """The top in its natural units."""
-    return top.kind.top(top.numbers)
-
-
-def natural_state(state: State, units: Units) -> State:
-    """A state in natural units from one in SI."""
-    return State(
-        state.axis,
-        scale(1.0 / units.angular_momentum, state.momentum),
-        scale(1.0 / units.speed, state.velocity),
-        state.height / units.length,
-    )
+        """The numbers that remain in natural units: inertias, proportions of the surface, friction law."""
+        units = natural_units(self)
+        return (
+            self.transverse_inertia / units.inertia,
+            self.axial_inertia / units.inertia,
+            *self.surface.proportions,
+            *self.friction.coefficients(units),
+        )
 
 
 class Kind(NamedTuple):
     """What remains of a top when its numbers are taken away: how it is shaped and how it rubs."""
 
-    shape: type[Shape]
+    surface: type[Surface]
     friction: type[FrictionLaw]
     proportions: int
     coefficients: int
@@ -101,12 +62,27 @@ class Kind(NamedTuple):
     def top(self, numbers: tuple[Scalar, ...]) -> Top:
         """Make the top of this kind, in natural units, with these dimensionless numbers."""
         cut = 2 + self.proportions
-        shape = self.shape.from_proportions(tuple(numbers[2:cut]))
+        surface = self.surface.from_proportions(tuple(numbers[2:cut]))
         friction = self.friction.from_coefficients(tuple(numbers[cut:]))
-        return Top(1.0, numbers[0], numbers[1], shape, friction, 1.0)
+        return Top(1.0, numbers[0], numbers[1], surface, friction, 1.0)
 
 
-def kind_of(top: Top) -> Kind:
-    """The kind of a top."""
-    coefficients = top.friction.coefficients(1.0)
-    return Kind(type(top.shape), type(top.friction), len(top.shape.proportions), len(coefficients))
+def natural_units(top: Top) -> Units:
+    """Units in which the top's mass, its size and gravity are all 1."""
+    size = top.surface.size
+    return Units(top.mass, size, (size / top.gravity) ** 0.5)
+
+
+def natural(top: Top) -> Top:
+    """The same top in its natural units."""
+    return top.kind.top(top.numbers)
+
+
+def natural_state(state: State, units: Units) -> State:
+    """A state in natural units from one in SI."""
+    return State(
+        state.axis,
+        scale(1.0 / units.angular_momentum, state.momentum),
+        scale(1.0 / units.speed, state.velocity),
+        state.height / units.length,
+    )

@@ -8,8 +8,8 @@ from tippetop.mechanics.algebra import Disc, Series
 from tippetop.mechanics.flight import SMALL
 from tippetop.mechanics.motion import axis_rate
 from tippetop.mechanics.roots import Triple, first_root
-from tippetop.mechanics.shape import Shape
 from tippetop.mechanics.state import State
+from tippetop.mechanics.surface import Surface
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import length, scale
 
@@ -87,20 +87,20 @@ def touchdown(state: State, top: Top, horizon: float, start: Start = Start.AIRBO
     horizon = min(horizon, 2.0 * falling_time(*ballistic))
     time = 0.0
     if start != Start.AIRBORNE:
-        support = (top.shape.height(tip.series()) + 0.0 * tip.series()).terms
+        support = (top.surface.height(tip.series()) + 0.0 * tip.series()).terms
         ballistic = (*support[:start], *ballistic[start:])
         terms = [-term for term in support]
         terms[start:3] = [b - s for b, s in zip(ballistic[start:], support[start:3], strict=True)]
         opening = Opening(terms[next((j for j in range(start, DEGREE) if terms[j]), DEGREE) :])
-        time = min(horizon, START * analytic_disc(tip, top.shape, 0.0, 0.0, WIDEST)[0])
+        time = min(horizon, START * analytic_disc(tip, top.surface, 0.0, 0.0, WIDEST)[0])
         root = first_root(opening.at, 0.0, time, opening.jerk_bound(time))
         if root is not None:
             return root
 
-    separation = Separation(tip, top.shape, ballistic)
+    separation = Separation(tip, top.surface, ballistic)
     angle = WIDEST
     while time < horizon:
-        radius, spread = analytic_disc(tip, top.shape, time, 0.25, angle)
+        radius, spread = analytic_disc(tip, top.surface, time, 0.25, angle)
         angle = min(WIDEST, 2.0 * radius * tip.frequency)
         end = min(horizon, time + 0.5 * radius)
         root = first_root(separation.at, time, end, 6.0 * spread / (0.75**4 * radius**3))
@@ -153,7 +153,7 @@ class Separation(NamedTuple):
     """The gap as a function of time: a parabola less the support function at the tip's height."""
 
     tip: Tip
-    shape: Shape
+    shape: Surface
     parabola: Triple
 
     def at(self, time: float) -> Triple:
@@ -190,7 +190,7 @@ class Opening(NamedTuple):
         return bound
 
 
-def analytic_disc(tip: Tip, shape: Shape, time: float, ahead: float, angle: float) -> tuple[float, float]:
+def analytic_disc(tip: Tip, shape: Surface, time: float, ahead: float, angle: float) -> tuple[float, float]:
     """Radius of a disc of time centred `ahead` radii after `time` where h(c) is analytic, and of h(c)."""
     while True:
         radius = angle / tip.frequency

@@ -6,8 +6,8 @@ velocity is -phi' sin(theta) 1 + theta' 2 + omega3 3, where theta is the tilt an
 
 from typing import NamedTuple
 
-from tippetop.mechanics.shape import contact_vector
 from tippetop.mechanics.state import SlidingState
+from tippetop.mechanics.surface import contact_vector
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Functions, Horizontal, Scalar, Vector, add, cross, scale
 
@@ -89,7 +89,7 @@ def state_from_angles(angles: Angles, top: Top, functions: Functions) -> Sliding
         scale(top.transverse_inertia, omega),
         scale((top.axial_inertia - top.transverse_inertia) * angles.spin, axis),
     )
-    swing = cross(omega, contact_vector(axis, top.shape))
+    swing = cross(omega, contact_vector(axis, top.surface))
     velocity = (
         angles.slip[0] * cos_azimuth - angles.slip[1] * sin_azimuth - swing[0],
         angles.slip[0] * sin_azimuth + angles.slip[1] * cos_azimuth - swing[1],

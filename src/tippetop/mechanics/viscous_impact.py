@@ -4,7 +4,7 @@ import math
 from typing import NamedTuple
 
 from tippetop.mechanics.blow import Blow, Goal, Striking, first_reach
-from tippetop.mechanics.friction import NO_TORQUE, ViscousFriction
+from tippetop.mechanics.friction import NO_TORQUE, ViscousLaw
 from tippetop.mechanics.vectors import Horizontal, length
 
 
@@ -44,7 +44,7 @@ class ViscousCourse(NamedTuple):
     modes: tuple[Mode, Mode]
 
     @classmethod
-    def of(cls, body: Striking, law: ViscousFriction) -> "ViscousCourse":
+    def of(cls, body: Striking, law: ViscousLaw) -> "ViscousCourse":
         """The course of this body's impact, from the principal directions of its tangential answer."""
         east, north, up = body.answer
         angle = 0.5 * math.atan2(2.0 * east[1], east[0] - north[1])

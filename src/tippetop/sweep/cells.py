@@ -17,7 +17,8 @@ from tippetop.errors import InvalidInput, one_of
 from tippetop.integrators.base import Array
 from tippetop.mechanics.motion import along_table, contact
 from tippetop.mechanics.state import State
-from tippetop.mechanics.top import Top, Units, natural_state, natural_units
+from tippetop.mechanics.top import Top, natural_state, natural_units
+from tippetop.mechanics.units import Units
 from tippetop.problem import Problem
 from tippetop.sweep.launches import Launches
 from tippetop.validation import Part

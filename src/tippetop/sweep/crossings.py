@@ -100,7 +100,9 @@ class Crossings:
         sliding = struck & (launches.restitution[cells] == 0.0) & slides(after, top)
         slots.place(lanes[sliding], picked(after, sliding), time[sliding])
         others = np.flatnonzero(~sliding)
-        transitions = [launches.rules(cells[i]).touchdown(float(time[i]), single(state, i)) for i in others]
+        transitions = [
+            launches.rules(int(cells[i])).touchdown(float(time[i]), single(state, i)) for i in others.tolist()
+        ]
         return self._enter(lanes[others], time[others], transitions, fly=False)
 
     def _enter(

@@ -24,7 +24,7 @@ from tippetop.sweep.grid import (
     Range,
     grid_from,
 )
-from tippetop.theory.groups import eccentricity
+from tippetop.theory.steady import require_jellett
 
 DEFAULT_TOLERANCE = 1e-9
 SETTLED_RANGE = (1e-6, 1e-2)
@@ -59,7 +59,7 @@ class Sweep:
     ------
     InvalidInput
         If a field is none, the duration is not positive, or the tolerance is out of range; or if runs are to
-        end when they have settled, and the tops are not eccentric spheres.
+        end when they have settled, and the tops do not conserve Jellett's integral.
     """
 
     problem: Problem
@@ -77,7 +77,7 @@ class Sweep:
             least, most = SETTLED_RANGE
             if not least <= self.settled <= most:
                 raise InvalidInput("settled", self.settled, f"a tilt from {least:g} to {most:g} rad")
-            eccentricity(self.problem.top)
+            require_jellett(self.problem.top)
         cells_of(self.problem, self.grid.values(np.arange(1)))
 
     @property

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from tippetop.catalogue import SWEPT, Ending, Fault
 from tippetop.contact.sliding import sliding_motion
 from tippetop.integrators.base import Array
-from tippetop.mechanics.top import Units
+from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import length
 from tippetop.metrics import ending, final_band, metrics
 from tippetop.sweep.cells import cells_of, spread

@@ -27,8 +27,8 @@ from tippetop.mechanics.motion import (
     on_table,
 )
 from tippetop.mechanics.series import Series, horner, solution
-from tippetop.mechanics.shape import contact_vector
 from tippetop.mechanics.state import State
+from tippetop.mechanics.surface import contact_vector
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.touchdown import Tip
 from tippetop.mechanics.vectors import length, scale
@@ -143,7 +143,7 @@ def flight_terms(state: State, top: Top) -> tuple[Array, Array, Array]:
     """Polynomials of n_z and of the gap in flight, shape (degree + 1, n), and how far they serve."""
     count = len(state.axis[2])
     terms = tip_of(state, top).series().terms
-    support = top.shape.height(Series(lambda k: terms[k], PLAIN))
+    support = top.surface.height(Series(lambda k: terms[k], PLAIN))
     height = np.array([np.broadcast_to(support[k], count) for k in range(len(terms))])
     gap = -height
     gap[0] += state.height
@@ -168,7 +168,7 @@ def collide(state: State, top: Top) -> tuple[State, Flags]:
 
     Left out are tops whose contact point does not sink, and impacts too stiff for this method.
     """
-    arm = contact_vector(state.axis, top.shape)
+    arm = contact_vector(state.axis, top.surface)
     point = contact_velocity(state, arm, top)
     sinking = point[2] < 0.0
     stopping = top.mass * length(point) + TINY

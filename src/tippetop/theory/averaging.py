@@ -16,7 +16,7 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from tippetop.errors import InvalidInput
-from tippetop.mechanics.friction import ViscousFriction
+from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.motion import along_table
 from tippetop.problem import Problem
 from tippetop.theory.dual import Array
@@ -85,7 +85,7 @@ def averaged_flow(
     """
     top = problem.top
     numbers = numbers_of(top)
-    if not isinstance(top.friction, ViscousFriction):
+    if not isinstance(top.friction, ViscousLaw):
         raise InvalidInput("friction", top.friction, "viscous friction; no other slip averages out")
     launch = natural_constants(constants(along_table(problem.start()), top), top)
     path = Orbit(*(float(number) for number in orbit(launch, numbers)))

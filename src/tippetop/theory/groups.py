@@ -21,9 +21,8 @@ from typing import NamedTuple
 import numpy as np
 
 from tippetop.errors import InvalidInput
-from tippetop.mechanics.shape import EccentricSphere
 from tippetop.mechanics.top import Top
-from tippetop.theory.steady import precession_branch
+from tippetop.theory.steady import precession_branch, require_jellett
 from tippetop.theory.thresholds import lambda_down, lambda_up
 
 
@@ -80,7 +79,7 @@ class Fold(NamedTuple):
     tilt
         theta, rad.
     jellett
-        lambda, kg m^2/s.
+        lambda, kg m^3/s.
     """
 
     tilt: float
@@ -88,7 +87,7 @@ class Fold(NamedTuple):
 
 
 class JellettRange(NamedTuple):
-    """Range of the size of Jellett's integral, kg m^2/s."""
+    """Range of the size of Jellett's integral, kg m^3/s."""
 
     low: float
     high: float
@@ -122,8 +121,9 @@ def classify_top(top: Top) -> Group:
     Raises
     ------
     InvalidInput
-        If the top is of another shape.
+        If the top does not conserve Jellett's integral.
     """
+    require_jellett(top)
     return classify(inertia_ratio(top), eccentricity(top))
 
 
@@ -133,18 +133,8 @@ def inertia_ratio(top: Top) -> float:
 
 
 def eccentricity(top: Top) -> float:
-    """Alpha of an eccentric sphere.
-
-    Raises
-    ------
-    InvalidInput
-        If the top is of another shape.
-    """
-    if not isinstance(top.shape, EccentricSphere):
-        raise InvalidInput(
-            "body.shape", top.shape, "an eccentric sphere; Jellett's integral holds for no other"
-        )
-    return float(top.shape.eccentricity)
+    """Alpha of an eccentric sphere: how far its centre is above the centre of mass, in radii."""
+    return float(-top.surface.slope(0.0) / top.surface.size)
 
 
 def upright_boundary(alpha: float) -> float:
@@ -193,11 +183,11 @@ def fold(top: Top) -> Fold | None:
     Raises
     ------
     InvalidInput
-        If the top is of another shape.
+        If the top does not conserve Jellett's integral.
     """
-    gamma, alpha = inertia_ratio(top), eccentricity(top)
-    if classify(gamma, alpha) not in (Group.IA, Group.IIB):
+    if classify_top(top) not in (Group.IA, Group.IIB):
         return None
+    gamma, alpha = inertia_ratio(top), eccentricity(top)
     cosine = (alpha - _fold_measure(gamma, alpha)) / (1.0 - gamma)
     tilt = math.acos(cosine)
     return Fold(tilt, float(precession_branch(top, np.array([tilt])).jellett[0]))
@@ -209,7 +199,7 @@ def coexistence(top: Top) -> JellettRange | None:
     Raises
     ------
     InvalidInput
-        If the top is of another shape.
+        If the top does not conserve Jellett's integral.
     """
     if not classify_top(top).coexistence:
         return None

@@ -25,9 +25,10 @@ import numpy as np
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import axial_spin, on_table
 from tippetop.mechanics.state import SlidingState
-from tippetop.mechanics.top import Top, dimensionless_numbers, natural_units
+from tippetop.mechanics.top import Top, natural_units
 from tippetop.mechanics.vectors import Functions, Scalar
 from tippetop.theory.groups import eccentricity
+from tippetop.theory.steady import require_sphere
 
 
 class Constants(NamedTuple):
@@ -108,9 +109,9 @@ def numbers_of(top: Top) -> Numbers:
     InvalidInput
         If the top is of another shape.
     """
-    eccentricity(top)
-    transverse, axial, alpha = dimensionless_numbers(top)[:3]
-    return Numbers(float(transverse), float(axial), float(alpha))
+    require_sphere(top)
+    transverse, axial = top.numbers[:2]
+    return Numbers(float(transverse), float(axial), eccentricity(top))
 
 
 def effective_potential(tilt: Scalar, values: Constants, top: Top, functions: Functions) -> Scalar:
@@ -121,7 +122,7 @@ def effective_potential(tilt: Scalar, values: Constants, top: Top, functions: Fu
     s, c = functions.sin(tilt), functions.cos(tilt)
     turning = (values.vertical - values.axial * c) ** 2 / (2.0 * top.transverse_inertia * s**2)
     spinning = values.axial**2 / (2.0 * top.axial_inertia)
-    return turning + spinning + top.mass * top.gravity * top.shape.height(c)
+    return turning + spinning + top.mass * top.gravity * top.surface.height(c)
 
 
 _NEWTON_STEPS = 40

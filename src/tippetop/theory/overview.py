@@ -3,13 +3,13 @@
 import math
 from dataclasses import dataclass
 
-from tippetop.mechanics.friction import ViscousFriction
-from tippetop.problem import EccentricSphere, Problem
+from tippetop.mechanics.friction import ViscousLaw
+from tippetop.problem import Problem
 from tippetop.theory.averaging import flip_time_limit
 from tippetop.theory.groups import Group, classify_top, eccentricity, inertia_ratio
 from tippetop.theory.prediction import Prediction, predict
 from tippetop.theory.stability import Spectrum, spectrum
-from tippetop.theory.steady import Kind, SteadyState, jellett_of_launch, steady_states, vertical_spin
+from tippetop.theory.steady import SteadyKind, SteadyState, jellett_of_launch, steady_states, vertical_spin
 from tippetop.theory.thresholds import CriticalSpins, critical_spins, lambda_down, lambda_up
 
 
@@ -32,11 +32,11 @@ class Outlook:
     group
         How such tops behave, or None.
     lambda_up, lambda_down
-        Jellett's integrals, kg m^2/s, at which the upright spin loses and the inverted spin gains stability.
+        Jellett's integrals, kg m^3/s, at which the upright spin loses and the inverted spin gains stability.
     critical_spins
         The spins of launches like this one, rad/s, that have those integrals.
     jellett
-        lambda of this launch, kg m^2/s.
+        lambda of this launch, kg m^3/s.
     prediction
         Where it can end, or None where nothing conserved says so.
     steady
@@ -66,11 +66,14 @@ def outlook(problem: Problem) -> Outlook:
     """What the theory says of a launch."""
     top = problem.top
     jellett = jellett_of_launch(problem)
-    sphere = isinstance(problem.body.shape, EccentricSphere)
+    sphere = top.conserves_jellett
     states = (
         steady_states(top, jellett)
         if sphere
-        else [vertical_spin(kind, top, problem.launch.spin) for kind in (Kind.UPRIGHT, Kind.INVERTED)]
+        else [
+            vertical_spin(kind, top, problem.launch.spin)
+            for kind in (SteadyKind.UPRIGHT, SteadyKind.INVERTED)
+        ]
     )
     limit = _flip_time_limit(problem) if sphere else None
     mu = problem.friction.mu
@@ -93,7 +96,7 @@ def _flip_time_limit(problem: Problem) -> float | None:
     """Limit of mu times the flip time, where friction is viscous and the launch is not itself steady."""
     launch = problem.launch
     vertical = launch.tilt in (0.0, math.pi) and launch.tilt_rate == 0.0
-    if vertical or not isinstance(problem.top.friction, ViscousFriction):
+    if vertical or not isinstance(problem.top.friction, ViscousLaw):
         return None
     limit = flip_time_limit(problem)
     return limit if math.isfinite(limit) else None

@@ -20,8 +20,13 @@ from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.view import axis_sine
 from tippetop.problem import Problem
-from tippetop.theory.groups import eccentricity
-from tippetop.theory.steady import SteadyState, jellett_of_launch, least_energy, steady_states
+from tippetop.theory.steady import (
+    SteadyState,
+    jellett_of_launch,
+    least_energy,
+    require_jellett,
+    steady_states,
+)
 
 
 @dataclass(frozen=True)
@@ -31,7 +36,7 @@ class Prediction:
     Attributes
     ----------
     jellett
-        lambda of the launch, kg m^2/s.
+        lambda of the launch, kg m^3/s.
     stable
         All stable steady states with this lambda, the one of least energy first.
     reachable
@@ -62,10 +67,10 @@ def predict(problem: Problem) -> Prediction:
     Raises
     ------
     InvalidInput
-        If the body is not an eccentric sphere: for no other shape is Jellett's integral conserved.
+        If Jellett's integral is not conserved.
     """
     top = problem.top
-    eccentricity(top)
+    require_jellett(top)
     jellett = jellett_of_launch(problem)
     states = steady_states(top, jellett)
     minima = stable_by_energy(states)
@@ -82,9 +87,9 @@ def final_states(top: Top, jellett: float) -> tuple[SteadyState, ...]:
     Raises
     ------
     InvalidInput
-        If the top is of another shape.
+        If Jellett's integral is not conserved.
     """
-    eccentricity(top)
+    require_jellett(top)
     return _by_energy(stable_by_energy(steady_states(top, jellett)))
 
 

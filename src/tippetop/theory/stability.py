@@ -20,14 +20,15 @@ from scipy.linalg import expm
 
 from tippetop.mechanics.motion import sliding_rates
 from tippetop.mechanics.state import SlidingState
-from tippetop.mechanics.top import Top, Units, dimensionless_numbers, kind_of, natural_units
+from tippetop.mechanics.top import Top, natural, natural_units
+from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Scalar
 from tippetop.mechanics.view import Angles, state_from_angles
 from tippetop.theory import dual
 from tippetop.theory.dual import Array, derivative, jacobian, variable
 from tippetop.theory.steady import (
     Branch,
-    Kind,
+    SteadyKind,
     SteadyState,
     precession_rate_squared,
     rolling_spin,
@@ -40,10 +41,10 @@ TURNED = "the same state turned about the vertical"
 NEIGHBOUR = "the neighbouring steady state, of another Jellett's integral"
 
 NEUTRAL = {
-    Kind.UPRIGHT: (NEIGHBOUR,),
-    Kind.INVERTED: (NEIGHBOUR,),
-    Kind.PRECESSION: (TURNED, NEIGHBOUR),
-    Kind.LEVEL: (TURNED, NEIGHBOUR),
+    SteadyKind.UPRIGHT: (NEIGHBOUR,),
+    SteadyKind.INVERTED: (NEIGHBOUR,),
+    SteadyKind.PRECESSION: (TURNED, NEIGHBOUR),
+    SteadyKind.LEVEL: (TURNED, NEIGHBOUR),
 }
 """The zero eigenvalues of each kind of steady state, by their motion: not counted in a `Spectrum`."""
 
@@ -104,7 +105,7 @@ def spectrum(steady: SteadyState, top: Top, frame_rate: float | None = None) -> 
         for a vertical spin. Only a vertical spin is steady in other frames.
     """
     rate = steady.precession
-    if frame_rate is not None and steady.kind in (Kind.UPRIGHT, Kind.INVERTED):
+    if frame_rate is not None and steady.kind in (SteadyKind.UPRIGHT, SteadyKind.INVERTED):
         rate = frame_rate
     point = (np.array([steady.tilt]), np.array([steady.precession]), np.array([steady.spin]))
     eigenvalues = _eigenvalues(steady.kind, *point, np.array([rate]), top)
@@ -117,19 +118,19 @@ def branch_eigenvalues(branch: Branch, top: Top) -> Complex:
     exists = np.isfinite(branch.precession)
     if exists.any():
         tilt, rate, spin = branch.tilt[exists], branch.precession[exists], branch.spin[exists]
-        found[exists] = _eigenvalues(Kind.PRECESSION, tilt, rate, spin, rate, top)
+        found[exists] = _eigenvalues(SteadyKind.PRECESSION, tilt, rate, spin, rate, top)
     return found
 
 
-def vertical_eigenvalues(kind: Kind, top: Top, spins: Array) -> Complex:
+def vertical_eigenvalues(kind: SteadyKind, top: Top, spins: Array) -> Complex:
     """Eigenvalues of vertical spins at these axial spins (rad/s), in a frame at rest, 1/s, shape (n, 6)."""
     spins = np.atleast_1d(np.asarray(spins, dtype=float))
     zero = np.zeros_like(spins)
-    tilt = np.full_like(spins, 0.0 if kind is Kind.UPRIGHT else math.pi)
+    tilt = np.full_like(spins, 0.0 if kind is SteadyKind.UPRIGHT else math.pi)
     return _eigenvalues(kind, tilt, zero, spins, zero, top)
 
 
-def vertical_growth_rates(kind: Kind, top: Top, spins: Array) -> Array:
+def vertical_growth_rates(kind: SteadyKind, top: Top, spins: Array) -> Array:
     """Growth rates of the vertical spin at these axial spins (rad/s), 1/s, shape (n,)."""
     growth: Array = vertical_eigenvalues(kind, top, spins)[:, 0].real
     return growth
@@ -178,19 +179,21 @@ class _Linear(NamedTuple):
     units: Units
 
 
-def _linear(kind: Kind, tilt: Array, precession: Array, spin: Array, frame: Array, top: Top) -> _Linear:
+def _linear(kind: SteadyKind, tilt: Array, precession: Array, spin: Array, frame: Array, top: Top) -> _Linear:
     """Linear motion about n steady states of one kind, shapes (n, 8, k) and (n, k, k)."""
     units = Units(*(float(unit) for unit in natural_units(top)))
-    natural = kind_of(top).top(tuple(float(number) for number in dimensionless_numbers(top)))
+    scaled = natural(top)
     angles = Angles(tilt, 0.0, 0.0, precession * units.time, spin * units.time, (0.0, 0.0))
-    point = _coordinates(state_from_angles(angles, natural, np), tilt)
+    point = _coordinates(state_from_angles(angles, scaled, np), tilt)
 
-    matrix = jacobian(_rates_in_frame(natural, frame * units.time), point)
-    basis = _complement(_meaningless(kind, angles, point, natural))
+    matrix = jacobian(_rates_in_frame(scaled, frame * units.time), point)
+    basis = _complement(_meaningless(kind, angles, point, scaled))
     return _Linear(basis, np.swapaxes(basis, -1, -2) @ matrix @ basis, units)
 
 
-def _eigenvalues(kind: Kind, tilt: Array, precession: Array, spin: Array, frame: Array, top: Top) -> Complex:
+def _eigenvalues(
+    kind: SteadyKind, tilt: Array, precession: Array, spin: Array, frame: Array, top: Top
+) -> Complex:
     """Eigenvalues of n steady states of one kind, 1/s, by decreasing real part, shape (n, 5 or 6)."""
     linear = _linear(kind, tilt, precession, spin, frame, top)
     values: Complex = np.linalg.eigvals(linear.matrix).astype(complex) / linear.units.time
@@ -221,13 +224,13 @@ def _turned(y: Sequence[Scalar]) -> tuple[Scalar, ...]:
     return (-y[1], y[0], 0.0, -y[4], y[3], 0.0, -y[7], y[6])
 
 
-def _meaningless(kind: Kind, angles: Angles, point: list[Array], top: Top) -> Array:
+def _meaningless(kind: SteadyKind, angles: Angles, point: list[Array], top: Top) -> Array:
     """The directions to divide out, shape (n, 8, 2 or 3): off the unit sphere, and the neutral ones."""
     zero = np.zeros_like(point[0])
     off_sphere = [*point[:3], *[zero] * 5]
-    if kind in (Kind.UPRIGHT, Kind.INVERTED):
+    if kind in (SteadyKind.UPRIGHT, SteadyKind.INVERTED):
         directions = [off_sphere, [*[zero] * 3, *point[:3], zero, zero]]
-    elif kind is Kind.LEVEL:
+    elif kind is SteadyKind.LEVEL:
         directions = [off_sphere, list(_turned(point)), [*[zero] * 5, zero + 1.0, zero, zero]]
     else:
         directions = [off_sphere, list(_turned(point)), _along_branch(angles, top)]
@@ -241,7 +244,7 @@ def _along_branch(angles: Angles, top: Top) -> list[Array]:
     c = dual.cos(tilt)
     mirrored = np.where(np.asarray(angles.precession) < 0, -1.0, 1.0)
     rate = mirrored * precession_rate_squared(c, top) ** 0.5
-    moved = Angles(tilt, 0.0, 0.0, rate, rate * rolling_spin(c, top.shape), (0.0, 0.0))
+    moved = Angles(tilt, 0.0, 0.0, rate, rate * rolling_spin(c, top.surface), (0.0, 0.0))
     state = state_from_angles(moved, top, dual)
     return [derivative(number, tilt)[0] for number in (*state.axis, *state.momentum, *state.velocity)]
 

@@ -17,9 +17,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from tippetop.errors import InvalidInput
 from tippetop.mechanics.invariants import energy, jellett
-from tippetop.mechanics.shape import Shape, contact_vector
 from tippetop.mechanics.state import SlidingState, State
+from tippetop.mechanics.surface import Surface, contact_vector
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import VERTICAL, Functions, Scalar, Vector, add, dot, scale
 from tippetop.mechanics.view import Angles, state_from_angles
@@ -27,7 +28,7 @@ from tippetop.problem import Problem
 from tippetop.theory.dual import Array
 
 
-class Kind(StrEnum):
+class SteadyKind(StrEnum):
     """What a steady state looks like."""
 
     UPRIGHT = "upright"
@@ -52,12 +53,12 @@ class SteadyState:
     spin
         Axial spin omega3, rad/s.
     jellett
-        Jellett's integral lambda, kg m^2/s.
+        Jellett's integral lambda, kg m^3/s.
     energy
         Energy, J, in the convention of `tippetop.mechanics.invariants.energy`.
     """
 
-    kind: Kind
+    kind: SteadyKind
     tilt: float
     precession: float
     spin: float
@@ -90,7 +91,7 @@ class RollingPrecession(NamedTuple):
     momentum
         L / phi', kg m^2.
     jellett
-        lambda / phi', kg m^2.
+        lambda / phi', kg m^3.
     """
 
     axis: Vector
@@ -106,20 +107,20 @@ def rolling_precession(tilt: Scalar, top: Top, functions: Functions) -> RollingP
     return RollingPrecession(axis, momentum, jellett(_at_rest(axis, momentum, top), top))
 
 
-def rolling_spin(c: Scalar, shape: Shape) -> Scalar:
+def rolling_spin(c: Scalar, surface: Surface) -> Scalar:
     """Ratio omega3 / phi' of a precession without slip, c + h' / (h - h' c): (2.17) for the sphere."""
-    slope = shape.slope(c)
-    return c + slope / (shape.height(c) - slope * c)
+    slope = surface.slope(c)
+    return c + slope / (surface.height(c) - slope * c)
 
 
 def gyroscopic_reaction(c: Scalar, top: Top) -> Scalar:
     """Gyroscopic moment of a precession without slip, I3 omega3 / phi' - I1 c, in phi'^2 sin(theta)."""
-    return top.axial_inertia * rolling_spin(c, top.shape) - top.transverse_inertia * c
+    return top.axial_inertia * rolling_spin(c, top.surface) - top.transverse_inertia * c
 
 
 def weight_moment(c: Scalar, top: Top) -> Scalar:
     """Moment of the table's support over sin(theta), m g h', J: what the gyroscopic moment balances."""
-    return top.mass * top.gravity * top.shape.slope(c)
+    return top.mass * top.gravity * top.surface.slope(c)
 
 
 def precession_rate_squared(c: Scalar, top: Top) -> Scalar:
@@ -138,15 +139,15 @@ def precession_branch(top: Top, tilts: Array) -> Branch:
     return Branch(
         tilts,
         rate,
-        rate * rolling_spin(rolling.axis[2], top.shape),
+        rate * rolling_spin(rolling.axis[2], top.surface),
         rate * rolling.jellett,
         energy(whole, top),
     )
 
 
-def vertical_spin(kind: Kind, top: Top, spin: float) -> SteadyState:
+def vertical_spin(kind: SteadyKind, top: Top, spin: float) -> SteadyState:
     """The vertical spin at theta = 0 or pi with this axial spin omega3, rad/s."""
-    c = 1.0 if kind is Kind.UPRIGHT else -1.0
+    c = 1.0 if kind is SteadyKind.UPRIGHT else -1.0
     whole = _at_rest((0.0, 0.0, c), (0.0, 0.0, c * top.axial_inertia * spin), top)
     return SteadyState(kind, _tilt_of(kind), 0.0, spin, jellett(whole, top), energy(whole, top))
 
@@ -154,7 +155,9 @@ def vertical_spin(kind: Kind, top: Top, spin: float) -> SteadyState:
 def level_spin(top: Top, precession: float) -> SteadyState:
     """The spin with horizontal axis at this precession, rad/s, of a shape that has one."""
     whole = _at_rest((1.0, 0.0, 0.0), (0.0, 0.0, top.transverse_inertia * precession), top)
-    return SteadyState(Kind.LEVEL, math.pi / 2, precession, 0.0, jellett(whole, top), energy(whole, top))
+    return SteadyState(
+        SteadyKind.LEVEL, math.pi / 2, precession, 0.0, jellett(whole, top), energy(whole, top)
+    )
 
 
 def steady_states(top: Top, jellett: float) -> list[SteadyState]:
@@ -165,7 +168,7 @@ def steady_states(top: Top, jellett: float) -> list[SteadyState]:
     top
         The body on its table; its friction does not matter.
     jellett
-        lambda, kg m^2/s. For an eccentric sphere it is conserved, and these are all the states a motion can
+        lambda, kg m^3/s. For an eccentric sphere it is conserved, and these are all the states a motion can
         end in; for other shapes it only labels them.
 
     Notes
@@ -173,8 +176,12 @@ def steady_states(top: Top, jellett: float) -> list[SteadyState]:
     With lambda = phi' Lambda(theta), a steady precession is a root of lambda^2 (I3 omega3/phi' - I1 c) -
     m g h' Lambda^2, which is regular everywhere (a polynomial of degree 4 in c for the eccentric sphere).
     """
-    upright = vertical_spin(Kind.UPRIGHT, top, jellett / vertical_spin(Kind.UPRIGHT, top, 1.0).jellett)
-    inverted = vertical_spin(Kind.INVERTED, top, jellett / vertical_spin(Kind.INVERTED, top, 1.0).jellett)
+    upright = vertical_spin(
+        SteadyKind.UPRIGHT, top, jellett / vertical_spin(SteadyKind.UPRIGHT, top, 1.0).jellett
+    )
+    inverted = vertical_spin(
+        SteadyKind.INVERTED, top, jellett / vertical_spin(SteadyKind.INVERTED, top, 1.0).jellett
+    )
     between = [_precession_at(tilt, jellett, top) for tilt in _precession_tilts(top, jellett)]
     if has_level_spin(top):
         between.append(level_spin(top, jellett / level_spin(top, 1.0).jellett))
@@ -183,16 +190,45 @@ def steady_states(top: Top, jellett: float) -> list[SteadyState]:
 
 def has_level_spin(top: Top) -> bool:
     """Whether the body can spin with its axis horizontal at any rate."""
-    return bool(top.shape.slope(0.0) == 0.0)
+    return bool(top.surface.slope(0.0) == 0.0)
+
+
+def require_sphere(top: Top) -> None:
+    """Refuse a body that is no eccentric sphere.
+
+    Raises
+    ------
+    InvalidInput
+        If it is none.
+    """
+    if not top.surface.spherical:
+        raise InvalidInput(
+            "body.shape", top.surface, "an eccentric sphere; Jellett's integral holds for no other"
+        )
+
+
+def require_jellett(top: Top) -> None:
+    """Refuse a top that does not conserve Jellett's integral.
+
+    Raises
+    ------
+    InvalidInput
+        If its body or its friction does not.
+    """
+    require_sphere(top)
+    if not top.conserves_jellett:
+        raise InvalidInput(
+            "friction", top.friction, "friction without torque, which conserves Jellett's integral"
+        )
 
 
 def jellett_of_launch(problem: Problem) -> float:
-    """Jellett's integral of a launch, kg m^2/s."""
+    """Jellett's integral of a launch, kg m^3/s."""
     return float(jellett(problem.start(), problem.top))
 
 
 def least_energy(tilt: Scalar, jellett: Scalar, top: Top, functions: Functions) -> Scalar:
-    """Least energy, J, that a body with this tilt (rad) and this Jellett's integral (kg m^2/s) can have.
+    """Least energy, J, that a body with this tilt (rad) and this Jellett's integral (kg m^3/s) can have.
 
     lambda^2 / (2 a.I a) + m g h: its minima over the tilt are the stable steady states, because friction only
     takes energy and leaves lambda alone (Bou-Rabee, Marsden and Romero 2004; Ebenfeld and Scheck 1995).
@@ -204,7 +240,7 @@ def least_energy(tilt: Scalar, jellett: Scalar, top: Top, functions: Functions) 
 
 def inertia_about_contact(axis: Vector, top: Top) -> Scalar:
     """Inertia a.I a about the contact vector, kg m^4: lambda^2 / (2 a.I a) is the least kinetic energy."""
-    arm = contact_vector(axis, top.shape)
+    arm = contact_vector(axis, top.surface)
     along = dot(arm, axis)
     return top.transverse_inertia * (dot(arm, arm) - along**2) + top.axial_inertia * along**2
 
@@ -218,11 +254,11 @@ def state_of(steady: SteadyState, top: Top) -> SlidingState:
 def _at_rest(axis: Vector, momentum: Vector, top: Top) -> State:
     """The body on the table with its centre of mass at rest."""
     zero = (0.0, 0.0, 0.0)
-    return State(axis, momentum, zero, top.shape.height(axis[2]))
+    return State(axis, momentum, zero, top.surface.height(axis[2]))
 
 
-def _tilt_of(kind: Kind) -> float:
-    return 0.0 if kind is Kind.UPRIGHT else math.pi
+def _tilt_of(kind: SteadyKind) -> float:
+    return 0.0 if kind is SteadyKind.UPRIGHT else math.pi
 
 
 def _precession_at(tilt: float, jellett: float, top: Top) -> SteadyState:
@@ -230,8 +266,10 @@ def _precession_at(tilt: float, jellett: float, top: Top) -> SteadyState:
     rolling = rolling_precession(tilt, top, math)
     rate = jellett / rolling.jellett
     whole = _at_rest(rolling.axis, scale(rate, rolling.momentum), top)
-    spin = rate * rolling_spin(rolling.axis[2], top.shape)
-    return SteadyState(Kind.PRECESSION, tilt, float(rate), float(spin), jellett, float(energy(whole, top)))
+    spin = rate * rolling_spin(rolling.axis[2], top.surface)
+    return SteadyState(
+        SteadyKind.PRECESSION, tilt, float(rate), float(spin), jellett, float(energy(whole, top))
+    )
 
 
 _DEGREES = (8, 32, 128, 512)
@@ -261,5 +299,5 @@ def _precession_tilts(top: Top, jellett: float) -> list[float]:
             break
     roots = chebyshev.chebroots(chebyshev.chebtrim(series, _ROUNDING * np.abs(series).max()))
     cosines = np.sort(roots[np.isreal(roots)].real)[::-1]
-    level = 1e-9 * top.shape.size
-    return [math.acos(c) for c in cosines if -1.0 < c < 1.0 and abs(top.shape.slope(c)) > level]
+    level = 1e-9 * top.surface.size
+    return [math.acos(c) for c in cosines if -1.0 < c < 1.0 and abs(top.surface.slope(c)) > level]

@@ -26,7 +26,7 @@ from tippetop.problem import Problem
 from tippetop.theory.dual import Array
 from tippetop.theory.stability import linear_tilts, vertical_growth_rates
 from tippetop.theory.steady import (
-    Kind,
+    SteadyKind,
     jellett_of_launch,
     precession_branch,
     vertical_spin,
@@ -49,28 +49,28 @@ class CriticalSpins:
     inverted: float
 
 
-def critical_jellett(kind: Kind, top: Top) -> float:
-    """Jellett's integral at which a vertical spin changes stability, kg m^2/s: inf where it never does."""
+def critical_jellett(kind: SteadyKind, top: Top) -> float:
+    """Jellett's integral at which a vertical spin changes stability, kg m^3/s: inf where it never does."""
     limit = float(precession_branch(top, np.array([vertical_spin(kind, top, 0.0).tilt])).jellett[0])
     return abs(limit) if math.isfinite(limit) else math.inf
 
 
 def lambda_up(top: Top) -> float:
-    """Jellett's integral below which the upright spin of an eccentric sphere is stable, kg m^2/s, or inf."""
-    return critical_jellett(Kind.UPRIGHT, top)
+    """Jellett's integral below which the upright spin of an eccentric sphere is stable, kg m^3/s, or inf."""
+    return critical_jellett(SteadyKind.UPRIGHT, top)
 
 
 def lambda_down(top: Top) -> float:
-    """Jellett's integral above which the inverted spin of an eccentric sphere is stable, kg m^2/s, or inf."""
-    return critical_jellett(Kind.INVERTED, top)
+    """Jellett's integral above which the inverted spin of an eccentric sphere is stable, kg m^3/s, or inf."""
+    return critical_jellett(SteadyKind.INVERTED, top)
 
 
-def critical_spin(kind: Kind, top: Top) -> float:
+def critical_spin(kind: SteadyKind, top: Top) -> float:
     """Axial spin at which a vertical spin changes stability, by formula, rad/s; inf where it never does."""
     return critical_jellett(kind, top) / abs(vertical_spin(kind, top, 1.0).jellett)
 
 
-def critical_spin_from_spectrum(kind: Kind, top: Top) -> float:
+def critical_spin_from_spectrum(kind: SteadyKind, top: Top) -> float:
     """Axial spin at which the growth rate of a vertical spin vanishes, rad/s; inf where it never does.
 
     Nothing but the equations of motion and their derivatives enters: no energy, no Jellett's integral. The
@@ -101,14 +101,14 @@ def critical_spins(problem: Problem) -> CriticalSpins:
     return CriticalSpins(*(line.spin_at(critical_jellett(kind, problem.top)) for kind in _VERTICAL))
 
 
-def vertical_spins_of_launches(kind: Kind, problem: Problem, spins: Array) -> Array:
+def vertical_spins_of_launches(kind: SteadyKind, problem: Problem, spins: Array) -> Array:
     """Axial spins, rad/s, of the vertical spins with the Jellett's integrals of launches with these spins."""
     line = _jellett_line(problem)
     found: Array = line.at(np.asarray(spins)) / vertical_spin(kind, problem.top, 1.0).jellett
     return found
 
 
-def growth_rates_of_launches(kind: Kind, problem: Problem, spins: Array) -> Array:
+def growth_rates_of_launches(kind: SteadyKind, problem: Problem, spins: Array) -> Array:
     """Growth rates, 1/s, of the vertical spins with the Jellett's integrals of launches with these spins."""
     return vertical_growth_rates(kind, problem.top, vertical_spins_of_launches(kind, problem, spins))
 
@@ -150,13 +150,13 @@ def apparent_critical_spins(problem: Problem, window: float, visible: float) -> 
 
     def tilt_left(spin: float) -> float:
         upright = vertical_spin(
-            Kind.UPRIGHT, top, line.at(spin) / vertical_spin(Kind.UPRIGHT, top, 1.0).jellett
+            SteadyKind.UPRIGHT, top, line.at(spin) / vertical_spin(SteadyKind.UPRIGHT, top, 1.0).jellett
         )
         start = along_table(problem.replace({"launch.spin": spin}).start())
         return math.log(float(linear_tilts(upright, top, start, np.array([window]))[0]) / visible)
 
     def distance_left(spin: float) -> float:
-        rate = growth_rates_of_launches(Kind.INVERTED, problem, np.array([spin]))
+        rate = growth_rates_of_launches(SteadyKind.INVERTED, problem, np.array([spin]))
         return float(rate[0]) * window - math.log(visible)
 
     # Where even the threshold's own slow motion has come within `visible`, the bias is upward.
@@ -181,7 +181,7 @@ class _JellettLine(NamedTuple):
         return critical / abs(self.per_spin) - self.at_rest / self.per_spin
 
 
-_VERTICAL = (Kind.UPRIGHT, Kind.INVERTED)
+_VERTICAL = (SteadyKind.UPRIGHT, SteadyKind.INVERTED)
 _SEARCH = 1.05
 
 

@@ -52,7 +52,7 @@ def _(data: Data) -> Finding:
 def _(data: Data) -> Finding:
     run = data["run-50"]
 
-    eccentricity = Problem.from_json(run.attrs["problem"]).body.shape.law.proportions[0]
+    eccentricity = Problem.from_json(run.attrs["problem"]).body.shape.surface.proportions[0]
 
     def left(theta: float, turning: float, spin: float) -> float:
         return spin - turning * (math.cos(theta) - float(eccentricity))

@@ -74,7 +74,7 @@ def _(data: Data) -> Finding:
 def _(data: Data) -> Finding:
     run = data["run-175"]
     problem = Problem.from_json(run.attrs["problem"])
-    weight = problem.body.mass * problem.gravity * problem.top.shape.size
+    weight = problem.body.mass * problem.gravity * problem.top.surface.size
     launch, reached = float(run["launch_energy"]), float(ENERGY)
     return Finding(
         reached / weight,

@@ -228,7 +228,7 @@ def _(data: Data) -> Finding:
     figure="fig05",
 )
 def _(data: Data) -> Finding:
-    unit = REPORT.mass * float(REPORT.shape.law.size) ** 2
+    unit = REPORT.mass * float(REPORT.shape.surface.size) ** 2
     runs = {"listing": (data["run-50"], REPORT), "table": (data["run-50-table-1"], REPORT_TABLE_1)}
     misses = {
         name: max(abs(float(run[f"end_{key}"]) - value) for key, value in END_OF_FIG_5.items())

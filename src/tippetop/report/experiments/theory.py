@@ -24,7 +24,7 @@ from tippetop.theory.groups import (
 )
 from tippetop.theory.prediction import predict
 from tippetop.theory.stability import branch_eigenvalues
-from tippetop.theory.steady import Kind, jellett_of_launch, precession_branch
+from tippetop.theory.steady import SteadyKind, jellett_of_launch, precession_branch
 from tippetop.theory.thresholds import (
     apparent_critical_spins,
     critical_spin,
@@ -45,7 +45,7 @@ JUMP_RATIO = 0.75
 LEINE_GLOCKER = Body(mass=0.006, shape=EccentricSphere(radius=0.015, eccentricity=0.2), I1=8e-7, I3=7e-7)
 """The tippe top of Leine and Glocker, Eur. J. Mech. A/Solids 22 (2003) 193."""
 
-_KINDS = (Kind.UPRIGHT, Kind.INVERTED)
+_KINDS = (SteadyKind.UPRIGHT, SteadyKind.INVERTED)
 
 LONG_RUN = 400.0
 """Length of the runs whose end is compared with the steady states, s."""

@@ -19,7 +19,7 @@ from tippetop.theory.diagnostics import (
     smooth_constants,
 )
 from tippetop.theory.prediction import predict
-from tippetop.theory.steady import Kind
+from tippetop.theory.steady import SteadyKind
 from tippetop.theory.thresholds import growth_rates_of_launches
 
 SPIN = 100.0
@@ -136,7 +136,9 @@ def _times(mu: float, final: float) -> tuple[float, float, float, float]:
 
 def _decay_rate(mu: float) -> float:
     """Decay rate of the inverted spin that the launch leads to, 1/s."""
-    return -float(growth_rates_of_launches(Kind.INVERTED, report_problem(SPIN, mu=mu), np.array([SPIN]))[0])
+    return -float(
+        growth_rates_of_launches(SteadyKind.INVERTED, report_problem(SPIN, mu=mu), np.array([SPIN]))[0]
+    )
 
 
 def _rising(values: Array, times: Array) -> tuple[Array, Array]:

@@ -1,0 +1,134 @@
+"""Surfaces of revolution, each given by its support function.
+
+The support function h(c) is the height of the centre of mass above the table while the surface touches it, as
+a function of c = cos(tilt). It determines the contact point: see `contact_vector`.
+"""
+
+from typing import NamedTuple, Protocol, Self
+
+from tippetop.mechanics.vectors import Scalar, Vector
+
+
+class Surface(Protocol):
+    """What the mechanics asks of a body's outer surface, seen from its centre of mass."""
+
+    def height(self, c: Scalar) -> Scalar:
+        """Support function h(c), m."""
+
+    def slope(self, c: Scalar) -> Scalar:
+        """First derivative h'(c), m."""
+
+    def curvature(self, c: Scalar) -> Scalar:
+        """Second derivative h''(c), m."""
+
+    @property
+    def spherical(self) -> bool:
+        """Whether it is a sphere, wherever its centre."""
+
+    @property
+    def size(self) -> Scalar:
+        """The length that serves as unit, m."""
+
+    @property
+    def proportions(self) -> tuple[Scalar, ...]:
+        """The dimensionless numbers that remain when lengths are measured in `size`."""
+
+    @classmethod
+    def from_proportions(cls, proportions: tuple[Scalar, ...]) -> Self:
+        """Make the surface of unit size with these proportions."""
+
+
+class SphereSurface(NamedTuple):
+    """A sphere whose centre is `center` above the centre of mass along the axis: the tippe top.
+
+    Then h = radius - center c, and the contact vector is center n - radius z.
+    """
+
+    radius: Scalar
+    center: Scalar
+
+    def height(self, c: Scalar) -> Scalar:
+        """Support function h(c), m."""
+        return self.radius - self.center * c
+
+    def slope(self, c: Scalar) -> Scalar:
+        """First derivative h'(c), m."""
+        return -self.center
+
+    def curvature(self, c: Scalar) -> Scalar:
+        """Second derivative h''(c), m: none."""
+        return 0.0
+
+    @property
+    def spherical(self) -> bool:
+        """It is a sphere."""
+        return True
+
+    @property
+    def size(self) -> Scalar:
+        """The radius, m."""
+        return self.radius
+
+    @property
+    def proportions(self) -> tuple[Scalar, ...]:
+        """The height of the centre, in radii: the eccentricity of a tippe top."""
+        return (self.center / self.radius,)
+
+    @classmethod
+    def from_proportions(cls, proportions: tuple[Scalar, ...]) -> Self:
+        """Make the sphere of radius 1 with its centre at this height."""
+        return cls(1.0, *proportions)
+
+
+class SpheroidSurface(NamedTuple):
+    """A spheroid whose centre is `center` above the centre of mass along the axis: the spinning egg.
+
+    With semi-axes `across` and `along` the axis, h = sqrt(across^2 (1 - c^2) + along^2 c^2) - center c.
+    """
+
+    across: Scalar
+    along: Scalar
+    center: Scalar = 0.0
+
+    def height(self, c: Scalar) -> Scalar:
+        """Support function h(c), m."""
+        return self._central_height(c) - self.center * c
+
+    def slope(self, c: Scalar) -> Scalar:
+        """First derivative h'(c), m."""
+        return (self.along**2 - self.across**2) * c / self._central_height(c) - self.center
+
+    def curvature(self, c: Scalar) -> Scalar:
+        """Second derivative h''(c), m."""
+        return (self.along**2 - self.across**2) * self.across**2 / self._central_height(c) ** 3
+
+    @property
+    def spherical(self) -> bool:
+        """It is none, though its semi-axes be equal."""
+        return False
+
+    @property
+    def size(self) -> Scalar:
+        """The semi-axis across, m."""
+        return self.across
+
+    @property
+    def proportions(self) -> tuple[Scalar, ...]:
+        """The semi-axis along the axis and the height of the centre, in units of the semi-axis across."""
+        return (self.along / self.across, self.center / self.across)
+
+    @classmethod
+    def from_proportions(cls, proportions: tuple[Scalar, ...]) -> Self:
+        """Make the spheroid with unit semi-axis across and these proportions."""
+        return cls(1.0, *proportions)
+
+    def _central_height(self, c: Scalar) -> Scalar:
+        """Height of the spheroid's centre above the table, m."""
+        return (self.across**2 * (1.0 - c * c) + self.along**2 * c * c) ** 0.5
+
+
+def contact_vector(axis: Vector, surface: Surface) -> Vector:
+    """Vector from the centre of mass to the lowest point of the body, m: -h'(c) (n - c z) - h(c) z."""
+    c = axis[2]
+    slope = surface.slope(c)
+    return (-slope * axis[0], -slope * axis[1], -slope * (axis[2] - c) - surface.height(c))

@@ -1,0 +1,33 @@
+"""The units in which the numbers of a top are few."""
+
+from typing import NamedTuple
+
+from tippetop.mechanics.vectors import Scalar
+
+
+class Units(NamedTuple):
+    """Units of mass (kg), length (m) and time (s) in which a top is simulated."""
+
+    mass: Scalar
+    length: Scalar
+    time: Scalar
+
+    @property
+    def speed(self) -> Scalar:
+        """Unit of velocity, m/s."""
+        return self.length / self.time
+
+    @property
+    def inertia(self) -> Scalar:
+        """Unit of moment of inertia, kg m^2."""
+        return self.mass * self.length**2
+
+    @property
+    def energy(self) -> Scalar:
+        """Unit of energy, J."""
+        return self.mass * self.speed**2
+
+    @property
+    def angular_momentum(self) -> Scalar:
+        """Unit of angular momentum, kg m^2/s."""
+        return self.mass * self.length * self.speed
