@@ -128,10 +128,10 @@ def test_file_is_one_that_others_can_read_by_the_conventions(lifted_off, tmp_pat
     path = tt.write_run(lifted_off, tmp_path / "run.nc")
     with xr.open_dataset(path, engine="h5netcdf", decode_cf=False) as raw:
         assert raw.attrs["Conventions"].startswith("CF-1.")
-        flags, meanings = raw.phase.attrs["flag_values"], raw.phase.attrs["flag_meanings"].split()
+        flags, meanings = raw.mode.attrs["flag_values"], raw.mode.attrs["flag_meanings"].split()
         assert np.size(flags) == len(meanings)
-        assert np.asarray(flags).dtype == raw.phase.dtype == np.int8
-        assert set(raw.phase.values) <= set(np.atleast_1d(flags))
+        assert np.asarray(flags).dtype == raw.mode.dtype == np.int8
+        assert set(raw.mode.values) <= set(np.atleast_1d(flags))
         assert meanings[0] == "sliding"
         for name, variable in raw.data_vars.items():
             if variable.dtype == np.float64:

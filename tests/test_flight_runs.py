@@ -111,7 +111,7 @@ def test_what_must_hold_through_slides_flights_and_impacts(body, launch):
     assert (losses >= 0).all()
     assert (np.diff(run.work.values) <= 1e-13 * energy[0]).all()
     assert run.gap.values.min() > -1e-12
-    sliding = run.phase.values == 0
+    sliding = run.mode.values == 0
     assert (run.normal_force.values[sliding] > -1e-12).all()
     if isinstance(body.shape, tt.EccentricSphere):
         moment = np.linalg.norm(run.angular_momentum.values[0]) * 2 * body.shape.radius
@@ -123,7 +123,7 @@ def test_samples_inside_a_flight_lie_on_the_flight():
         {"launch.gap": 0.05, "launch.velocity": (0.1, -0.2, 0.3)}
     )
     run = tt.simulate(problem, 0.1, samples=50)
-    assert (run.phase == 1).all()
+    assert (run.mode == 1).all()
     t = run.time.values
     np.testing.assert_allclose(run.height, run.height[0].item() + 0.3 * t - 4.9 * t**2, rtol=1e-12)
     np.testing.assert_allclose(run.x, 0.1 * t, atol=1e-15)
@@ -142,7 +142,7 @@ def test_a_dropped_top_falls_and_bounces_back_by_its_restitution():
     assert touchdowns[2] - touchdowns[1] == pytest.approx(2 * restitution**2 * falls, rel=1e-9)
     rest = falls * (1 + 2 * restitution / (1 - restitution))
     assert touchdowns[-1] == pytest.approx(rest, abs=1e-5)
-    assert run.phase.values[-1] == 0
+    assert run.mode.values[-1] == 0
     weight = 0.02 * 9.8
     assert run.event_energy_lost.values.sum() == pytest.approx(weight * drop, rel=1e-9)
     assert float(run.flight_highest_gap[1]) == pytest.approx(drop * restitution**2, rel=1e-6)

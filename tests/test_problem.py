@@ -644,7 +644,7 @@ class TestValues:
         launch, start, top = original.launch, original.start(), original.top
         arm = contact_vector(start.axis, top.surface)
         size = 10.0 * top.surface.size
-        assert start.position[2] + arm[2] == pytest.approx(launch.gap, abs=1e-14 * (size + launch.gap))
+        assert start.height + arm[2] == pytest.approx(launch.gap, abs=1e-14 * (size + launch.gap))
         if launch.velocity is None:
             omega = angular_velocity(start.axis, start.momentum, top)
             point = point_velocity(start.velocity, omega, arm)

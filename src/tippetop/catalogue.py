@@ -158,6 +158,7 @@ MONITORS: Mapping[str, Variable] = {
     "energy_start": Variable("energy at launch", "J"),
     "impact_energy_lost": Variable("energy lost in impacts", "J"),
     "energy_error": Variable("largest error of the balance of energy and work, relative to the energy", "1"),
+    "evaluations": Variable("evaluations of the equations of motion", "1", dtype="int64"),
     "jellett_drift": Variable("range of Jellett's integral over the run, relative to |L| h at launch", "1"),
 }
 """What is monitored in a run beside them."""

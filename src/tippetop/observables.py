@@ -114,9 +114,9 @@ class Recorder:
         if len(times):
             self._sample(block, times, *integrals)
 
-    def finish(self, end: float, state: State) -> Samples:
+    def finish(self, end: float, state: State, early: bool) -> Samples:
         """All samples of a launch that ended; where it did so early, its end is the last of them."""
-        if not self._parts or self._parts[-1][0, -1] < end < self.times[-1]:
+        if early and not (self._parts and self._parts[-1][0, -1] >= end):
             if self._last is None:
                 self._parts.append(self._single(state))
             else:
@@ -158,7 +158,7 @@ class Recorder:
         Returns
         -------
         tuple
-            Rates of the quadratures at Gauss's points, shape (4, 6, k), their values where the steps begin,
+            Rates of the quadratures at Gauss's points, shape (4, 8, k), their values where the steps begin,
             shape (4, k), and the charts of the angle, shape (k,).
         """
         count = len(block.starts)
@@ -174,8 +174,7 @@ class Recorder:
         changes = poles - np.concatenate([[self._pole], poles[:-1]])
         values = np.cumsum(np.concatenate([self._sums[:, None], gains], axis=1), axis=1)
         turned = np.where(changes == 0.0, 0.0, changes * np.arctan2(axis[1], axis[0]))
-        values[2, :-1] += np.cumsum(turned)
-        values[2, -1] += turned.sum()
+        values[2] = self._sums[2] + evenly_summed(gains[2]) + np.append(np.cumsum(turned), turned.sum())
         lost = np.zeros(count + 1)
         for place, segment in zip(np.cumsum(block.lengths), block.segments, strict=True):
             if segment.transition is not None:
@@ -246,6 +245,14 @@ def observe(samples: Samples, top: Top, units: Units) -> dict[str, Array]:
         "angular_momentum": np.stack(momentum, axis=1) * units.angular_momentum,
         "orientation": continuous(np.stack(orientation(axis, samples.turn, samples.pole, np), axis=1)),
     }
+
+
+def evenly_summed(gains: Array) -> Array:
+    """Sums of the first gains, from none to all, for many that are alike: without adding up their rounding."""
+    mean = np.mean(gains)
+    found: Array = mean * np.arange(len(gains) + 1.0)
+    found[1:] += np.cumsum(gains - mean)
+    return found
 
 
 def continuous(quaternions: Array) -> Array:

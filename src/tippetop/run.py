@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from tippetop import __version__
 from tippetop.contact.block import in_blocks
-from tippetop.contact.mode import Event
+from tippetop.contact.mode import Event, Outcome
 from tippetop.contact.rules import rules_for
 from tippetop.contact.trajectory import PHASE_LIMIT, Trajectory
 from tippetop.dataset import assemble
@@ -71,7 +71,7 @@ def simulate(
         The variables of `tippetop.catalogue` with their SI units. Over `time`: those of `SAMPLED`, and the
         contact mode. Over `event` and `flight`: those of `LISTED`. Single numbers: those of `METRICS`, which
         are events and extremes of the motion and do not depend on the samples, and of `MONITORS`. Attributes:
-        problem (JSON), outcome, outcome_advice, integrator, tolerance or step, evaluations, tippetop_version,
+        problem (JSON), outcome, outcome_advice, integrator, tolerance or step, tippetop_version,
         Conventions. When the run ends before `duration`, the last sample is its end.
 
     Raises
@@ -92,14 +92,15 @@ def simulate(
     for block in in_blocks(trajectory.segments()):
         recorder.take(block)
         tally.take(block)
-    found = recorder.finish(trajectory.time, trajectory.state)
     outcome = trajectory.outcome
     assert outcome is not None, "a trajectory that has no more segments has ended"
+    found = recorder.finish(trajectory.time, trajectory.state, outcome is not Outcome.COMPLETED)
     ends = tally.ends(trajectory.state, trajectory.time, outcome, trajectory.events)
     numbers = metrics(ends, State.unpack([np.array([number]) for number in state.pack()]), top, units)
     scalars = {name: values[0] for name, values in numbers.items()} | {
         "energy_start": float(energy(state, top)) * units.energy,
         "impact_energy_lost": sum(event.energy_lost for event in trajectory.events) * units.energy,
+        "evaluations": tally.evaluations,
         "energy_error": recorder.energy_error,
         "jellett_drift": recorder.jellett_drift,
     }
@@ -109,20 +110,14 @@ def simulate(
         "outcome": outcome.name.lower(),
         "outcome_advice": " ".join(filter(None, (outcome.value, trajectory.detail))),
         **_method_attributes(method, units),
-        "evaluations": tally.evaluations,
         "tippetop_version": __version__,
     }
     lists = _event_arrays(trajectory.events, units) | _flight_arrays(tally.flights, units)
-    times, variables = _reached(grid, found.times * units.time), observe(found, top, units)
+    times = np.append(grid, trajectory.time * units.time)[: len(found.times)]
+    if len(found.times) <= len(grid) and outcome is not Outcome.COMPLETED:
+        times[-1] = trajectory.time * units.time
+    variables = observe(found, top, units)
     return assemble(times, variables, (found.mode, recorder.modes), scalars, lists, attributes)
-
-
-def _reached(grid: Array, times: Array) -> Array:
-    """The sample times asked for that were reached, and the end of a run that ended early."""
-    reached = min(len(times), len(grid))
-    if len(times) <= len(grid) and np.isclose(times[-1], grid[reached - 1], rtol=1e-14, atol=0.0):
-        return grid[:reached]
-    return np.append(grid[: len(times) - 1], times[-1])
 
 
 def sample_times(duration: float, samples: int, times: ArrayLike | None) -> Array:

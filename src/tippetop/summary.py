@@ -32,7 +32,7 @@ def summarize(run: xr.Dataset) -> dict[str, Any]:
         ],
         "integrator": run.attrs["integrator"],
         "steps": int(run["steps"]),
-        "evaluations": int(run.attrs["evaluations"]),
+        "evaluations": int(run["evaluations"]),
     }
 
 

@@ -38,7 +38,7 @@ def test_csv_holds_every_number_with_its_unit(flying: xr.Dataset, tmp_path: Path
     assert len(rows) == flying.sizes["time"]
     assert [float(row["theta (rad)"]) for row in rows] == flying["theta"].values.tolist()
     assert [float(row["velocity_z (m s-1)"]) for row in rows] == flying["velocity"].values[:, 2].tolist()
-    assert {row["phase"] for row in rows} == {"sliding", "flight"}
+    assert {row["mode"] for row in rows} == {"sliding", "flight"}
 
 
 def test_csv_leaves_what_is_not_a_number_empty(tmp_path: Path) -> None:

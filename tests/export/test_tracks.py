@@ -39,7 +39,7 @@ def test_every_flight_is_shaded_and_neighbours_are_joined_when_there_are_too_man
 def test_friction_takes_the_energy_that_slides_away() -> None:
     problem = tt.presets.report_problem(spin=155.0)
     run = tt.simulate(problem, 5.0, samples=20001)
-    force = track.friction_force(run, problem)
+    force = run["contact_force"].values[:, :2]
     phi = run["phi"].values
     slip_x, slip_y = run["slip_x"].values, run["slip_y"].values
     slip = np.stack(

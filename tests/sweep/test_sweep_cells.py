@@ -8,11 +8,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from strategies import problems
+from tippetop.catalogue import Fault
 from tippetop.errors import InvalidInput
-from tippetop.mechanics.top import natural_units
+from tippetop.mechanics.top import natural_state, natural_units
 from tippetop.presets import report_problem
-from tippetop.simulate import to_natural
-from tippetop.sweep.cells import Fault, cells_of, numeric_fields
+from tippetop.sweep.cells import cells_of, numeric_fields
 
 EDGES = {
     "launch.tilt": [-0.1, 0.0, 1.0, math.pi, 3.2, math.nan],
@@ -56,7 +56,7 @@ def test_cells_start_as_their_problems_do(problem, field):
         numbers = np.array(one.top.numbers)
         assert launches.numbers[:, 0] == pytest.approx(numbers, rel=1e-14)
         start = np.array(launches.state.pack())[:, 0]
-        wanted = to_natural(one.start(), units)
+        wanted = np.array(natural_state(one.start(), units).pack())
         assert start == pytest.approx(wanted, rel=1e-12, abs=1e-13 * max(1.0, np.abs(wanted).max()))
         assert launches.end[0] == pytest.approx(3.0 / units.time, rel=1e-14)
 

@@ -9,17 +9,31 @@ import numpy as np
 import pytest
 from sweeps import lively, problem_of, same, thrown, truth
 
+from tippetop.catalogue import METRICS
+from tippetop.contact.sliding import sliding_motion
 from tippetop.errors import InvalidInput
 from tippetop.integrators import has_taylor
 from tippetop.presets import report_problem
 from tippetop.problem import Body, Problem, RegularizedCoulombFriction, Spheroid
 from tippetop.summary import summarize
-from tippetop.sweep import VARIABLES, Axis, Ending, Fault, Product, Sweep, compute, ensemble, hops, lanes
-from tippetop.sweep import stepper as stepping
+from tippetop.sweep import (
+    SWEPT,
+    Axis,
+    Ending,
+    Fault,
+    Product,
+    Sweep,
+    compute,
+    crossings,
+    ensemble,
+    flights,
+    lanes,
+)
+from tippetop.sweep import stride as striding
 from tippetop.sweep.cells import cells_of
 from tippetop.sweep.ensemble import follow_cells
-from tippetop.sweep.observe import nothing_known
-from tippetop.sweep.stepper import DOWN, LEFT, LOW, ROWS, TAKEN, UP, NumPyStepper, order_for, stepper
+from tippetop.sweep.stepper import NumPyStepper, stepper
+from tippetop.sweep.stride import Layout, order_for
 
 EGG = Body(mass=0.05, shape=Spheroid(across=0.02, along=0.03), I1=9e-6, I3=5e-6)
 
@@ -139,28 +153,30 @@ def test_numpy_makes_the_steps_that_heyoka_compiles():
     cells = cells_of(sweep.problem, sweep.grid.values(np.arange(16)))
     launches = cells.launches(np.arange(16), 1.0)
     state = launches.state
-    before = np.zeros((ROWS, 16))
+    motion = sliding_motion(launches.kind, guarded=True)
+    layout = Layout.of(motion)
+    before = np.zeros((layout.rows, 16))
     for row, number in enumerate((*state.axis, *state.momentum, *state.velocity[:2])):
         before[row] = number
-    before[LEFT] = launches.end
-    before[LOW], before[DOWN], before[UP] = np.inf, np.inf, -np.inf
+    before[layout.left] = launches.end
+    before[layout.low], before[layout.down], before[layout.up] = np.inf, np.inf, -np.inf
     cares = np.tile([[1.0], [1.0], [np.inf], [-np.inf]], 16)
     numbers = np.concatenate((launches.numbers, cares))
-    compiled, plain = stepper(launches.kind, 1e-9), NumPyStepper(launches.kind, order_for(1e-9))
+    compiled, plain = stepper(motion, 1e-9), NumPyStepper(motion, order_for(1e-9))
     one, other = np.empty_like(before), np.empty_like(before)
     compiled.step(before, one, numbers)
     plain.step(before, other, numbers)
     assert one == pytest.approx(other, rel=1e-11, abs=1e-13)
     for ours, theirs in zip(compiled.jet(before, numbers), plain.jet(before, numbers), strict=True):
         assert ours == pytest.approx(theirs, rel=1e-9, abs=1e-9 * np.abs(theirs).max())
-    assert np.all(one[TAKEN] > 0)
+    assert np.all(one[layout.taken] > 0)
 
 
 def test_lift_off_is_not_left_to_looks(monkeypatch):
     """Seen at its ends only, a step in which the force dips below zero often shows nothing of it."""
     sweep = lively("stop", 8, 4, tolerance=1e-9)
     usual = follow_cells(sweep, np.arange(32))
-    monkeypatch.setattr(stepping, "FORCE_LOOKS", 1)
+    monkeypatch.setattr(striding, "GUARD_LOOKS", 1)
     stepper.cache_clear()
     found = follow_cells(sweep, np.arange(32))
     stepper.cache_clear()
@@ -190,7 +206,7 @@ def test_a_launch_that_ends_in_its_first_flight_has_arrived():
 
 
 def test_a_flight_that_cannot_be_followed_is_said_to_have_failed(monkeypatch):
-    monkeypatch.setattr(hops, "PIECES", 1)
+    monkeypatch.setattr(flights, "PIECES", 1)
     problem = report_problem(spin=2000.0, tilt=1.0).replace({"launch.precession": 3000.0})
     axis = Axis.listed("launch.gap", [1.0])
     found = follow_cells(Sweep(problem, Product((axis,)), 0.3, 1e-9), np.arange(1))
@@ -285,9 +301,10 @@ def test_bad_cells_are_labelled_and_harm_no_other():
     good, alone = follow_cells(sweep, np.array([0])), follow_cells(one, np.array([0]))
     assert same(good, alone)
     bad = follow_cells(sweep, np.array([1, 2]))
-    unknown = nothing_known(2)
-    unknown["fault"][:] = [Fault.VALUE_OUT_OF_RANGE, Fault.NO_SUCH_BODY]
-    assert same(bad, unknown)
+    assert bad["fault"].tolist() == [Fault.VALUE_OUT_OF_RANGE, Fault.NO_SUCH_BODY]
+    assert bad["outcome"].tolist() == [Ending.BAD] * 2
+    for name in METRICS:
+        assert np.array_equal(bad[name], [METRICS[name].missing] * 2, equal_nan=True), name
 
 
 def test_a_motion_that_becomes_singular_is_labelled():
@@ -308,7 +325,7 @@ def test_a_launch_that_takes_too_long_is_given_up(monkeypatch):
     found = follow_cells(lively("ignore", 2, 2), np.arange(4))
     assert np.all(found["outcome"] == Ending.FAILED)
     monkeypatch.undo()
-    monkeypatch.setattr(lanes, "FLIGHT_LIMIT", 2)
+    monkeypatch.setattr(crossings, "FLIGHT_LIMIT", 2)
     found = follow_cells(lively("fly", 2, 2), np.arange(4))
     assert np.array_equal(found["outcome"] == Ending.FAILED, found["flights"] == 2)
     assert (found["outcome"] == Ending.FAILED).any()
@@ -336,7 +353,7 @@ def test_upright_launches_stay_where_they_are():
 
 def test_every_variable_is_described():
     dataset = compute(lively(duration=0.1))
-    for name, kind in VARIABLES.items():
+    for name, kind in SWEPT.items():
         variable = dataset[name]
         assert variable.attrs["long_name"]
         assert "units" in variable.attrs or "flag_meanings" in variable.attrs

@@ -10,7 +10,7 @@ from sweeps import lively
 from tippetop.figures.maps import MAPPED, phase_map
 from tippetop.figures.style import save
 from tippetop.presets import report_problem
-from tippetop.sweep import VARIABLES, Axis, Draws, Ending, Product, Range, Sweep, compute
+from tippetop.sweep import SWEPT, Axis, Draws, Ending, Product, Range, Sweep, compute
 
 
 @pytest.fixture(scope="module")
@@ -19,7 +19,7 @@ def plane():
     return compute(Sweep(report_problem(tilt=1.0), Product(axes), 0.2))
 
 
-@pytest.mark.parametrize("name", [name for name in VARIABLES if name != "steps"])
+@pytest.mark.parametrize("name", [name for name in SWEPT if name != "steps"])
 def test_a_map_holds_every_cell(plane, name, tmp_path):
     figure = phase_map(plane, name)
     axes, bar = figure.axes

@@ -16,10 +16,10 @@ STEPS = 4096
 """Steps in a block, about."""
 
 NODES, WEIGHTS = (
-    0.5 * (1.0 + np.polynomial.legendre.leggauss(6)[0]),
-    0.5 * np.polynomial.legendre.leggauss(6)[1],
+    0.5 * (1.0 + np.polynomial.legendre.leggauss(8)[0]),
+    0.5 * np.polynomial.legendre.leggauss(8)[1],
 )
-"""Gauss's points and weights in [0, 1]. A step is short beside the radius of convergence: six are exact."""
+"""Gauss's points and weights in [0, 1]. A step is short beside the radius of convergence: eight are exact."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class Group:
 
     @cached_property
     def nodes(self) -> tuple[State, Reaction]:
-        """States, and what the table does, at Gauss's points, every number of shape (6, k) or one for all."""
+        """States, and what the table does, at Gauss's points, every number of shape (8, k) or one for all."""
         return self.at(NODES)
 
     def at(self, fractions: Array) -> tuple[State, Reaction]:
@@ -115,7 +115,7 @@ class Block:
             place[group.which] = np.arange(len(group.which))
             here = np.flatnonzero(place[step] >= 0)
             if len(here):
-                y = evaluated(group.terms[place[step[here]]], times[here] - self.starts[step[here]])
+                y = evaluated(group.terms, place[step[here]], times[here] - self.starts[step[here]])
                 yield group.mode, here, group.mode.state(y.T), group.mode.reaction(y.T)
 
 

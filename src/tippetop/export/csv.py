@@ -35,7 +35,7 @@ def _columns(run: xr.Dataset) -> tuple[list[str], list[list[str]]]:
     for name, variable in run.data_vars.items():
         if variable.dims == ("time",):
             names.append(_header(str(name), variable))
-            columns.append(_words(variable) if name == "phase" else _texts(variable.values))
+            columns.append(_words(variable) if name == "mode" else _texts(variable.values))
         elif variable.dims[:1] == ("time",):
             (along,) = variable.dims[1:]
             for number, label in enumerate(run[along].values):
@@ -46,7 +46,7 @@ def _columns(run: xr.Dataset) -> tuple[list[str], list[list[str]]]:
 
 def _header(name: str, variable: xr.DataArray) -> str:
     units = variable.attrs.get("units", "1")
-    return name if units == "1" or name.startswith("phase") else f"{name} ({units})"
+    return name if units == "1" or name.startswith("mode") else f"{name} ({units})"
 
 
 def _texts(values: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> list[str]:

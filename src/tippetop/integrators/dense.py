@@ -10,6 +10,9 @@ from numpy.typing import NDArray
 
 Array: TypeAlias = NDArray[np.float64]
 
+MANY = 4096
+"""Polynomials that are evaluated at a time."""
+
 
 @dataclass(frozen=True)
 class DenseSolution:
@@ -33,8 +36,8 @@ class DenseSolution:
 
     def __call__(self, times: Array) -> Array:
         """The solution at times between the first and the last knot, shape (m, size)."""
-        step = np.searchsorted(self.knots[1:-1], times, side="left")
-        return evaluated(self.terms[step], times - self.knots[step])
+        step = np.minimum(np.searchsorted(self.knots[1:], times, side="left"), len(self.terms) - 1)
+        return evaluated(self.terms, step, times - self.knots[step])
 
     def until(self, time: float) -> "DenseSolution":
         """The solution up to a time in its last step."""
@@ -70,9 +73,12 @@ class DenseSolution:
         return cls(knots, unit / powers(spans, degree + 1)[:, None, :])
 
 
-def evaluated(terms: Array, times: Array) -> Array:
-    """Values of m polynomials, terms of shape (m, size, degree + 1), at one time each, shape (m, size)."""
-    found: Array = (terms @ powers(times, terms.shape[2])[:, :, None])[:, :, 0]
+def evaluated(terms: Array, which: NDArray[np.intp], times: Array) -> Array:
+    """Values of polynomials, terms of shape (k, size, degree + 1), some at one time each, shape (m, size)."""
+    found = np.empty((len(times), terms.shape[1]))
+    for first in range(0, len(times), MANY):
+        here = slice(first, first + MANY)
+        found[here] = np.einsum("msk,mk->ms", terms[which[here]], powers(times[here], terms.shape[2]))
     return found
 
 

@@ -44,9 +44,9 @@ class Polynomials:
 
     @cached_property
     def sag(self) -> Array:
-        """How far a polynomial can go beyond its values at Gauss's six points, shape (n,)."""
+        """How far a polynomial can go beyond its values at Gauss's eight points, shape (n,)."""
         k = np.arange(len(self.unit))
-        found: Array = (k * (k - 1)) @ np.abs(self.unit) * (0.25**2 / 8.0) + 0.034 * np.abs(
+        found: Array = (k * (k - 1)) @ np.abs(self.unit) * (0.19**2 / 8.0) + 0.02 * np.abs(
             self.unit[1:]
         ).sum(axis=0)
         return found

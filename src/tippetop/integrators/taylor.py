@@ -16,6 +16,9 @@ from tippetop.integrators.dense import DenseSolution
 SHORT = 24
 """Steps that are taken one by one: a solution made by the compiler costs as much as a few hundred of them."""
 
+GROWTH = 2.0
+"""Factor by which a solution can grow in a step that resolves it."""
+
 LONG = 4096
 """Steps in one call into compiled code, so that Ctrl-C is heard between calls."""
 
@@ -51,8 +54,8 @@ class Taylor:
                 state = np.array(run.state)
             advance, steps = _many_steps, len(solution.terms)
             if outcome == hy.taylor_outcome.err_nf_state:
-                # The last step led nowhere; what is known ends with the one before it.
-                state = solution(solution.knots[-1:])[0] if steps else start[1]
+                solution = _before_blow_up(solution)
+                state = solution(solution.knots[-1:])[0] if len(solution.terms) else start[1]
                 yield Arc(solution, state, None, "the solution is no longer finite", steps, steps)
                 return
             guard = None
@@ -86,6 +89,15 @@ def _compiled(motion: Motion, tolerance: float) -> _Compiled:
         t_events=[hy.t_event(guard, direction=hy.event_direction.negative) for guard in guards],
     )
     return _Compiled(integrator)
+
+
+def _before_blow_up(solution: DenseSolution) -> DenseSolution:
+    """A solution that ended in numbers that are none, without the steps in which they grew out of measure."""
+    steps = len(solution.terms)
+    sizes = np.abs(solution.terms[:, :, 0]).max(axis=1)
+    while steps and np.abs(solution(solution.knots[steps : steps + 1])).max() > GROWTH * sizes[steps - 1]:
+        steps -= 1
+    return DenseSolution(solution.knots[: steps + 1], solution.terms[:steps])
 
 
 def _few_steps(run: Any, end: float) -> tuple[DenseSolution, Any]:
