@@ -9,7 +9,6 @@ from tippetop.contact.block import NODES, WEIGHTS, Block
 from tippetop.contact.flight import Flight
 from tippetop.contact.sliding import Sliding
 from tippetop.integrators.base import Array
-from tippetop.integrators.dense import powers
 from tippetop.mechanics.invariants import energy, jellett
 from tippetop.mechanics.motion import along_table, angular_velocity, axial_spin, point_velocity
 from tippetop.mechanics.quadratures import orientation, quadrature_rates
@@ -22,14 +21,11 @@ from tippetop.mechanics.view import axis_sine, precession_rate, slip_along_tilt,
 
 _INTEGRALS = np.array(
     [
-        np.polynomial.Legendre.fit(NODES, unit, len(NODES) - 1, domain=[0.0, 1.0])
-        .integ(lbnd=0.0)
-        .convert(kind=np.polynomial.Polynomial)
-        .coef
+        np.polynomial.Legendre.fit(NODES, unit, len(NODES) - 1, domain=[0.0, 1.0]).integ(lbnd=0.0).coef
         for unit in np.eye(len(NODES))
     ]
 )
-"""Coefficients of the integrals of Lagrange's polynomials on Gauss's points, from 0."""
+"""The integrals of Lagrange's polynomials on Gauss's points, from 0, in Legendre's polynomials."""
 
 
 class Samples(NamedTuple):
@@ -132,7 +128,8 @@ class Recorder:
         """Take the samples of a block at some times."""
         step = block.step_at(times)
         part = (times - block.starts[step]) / block.spans[step]
-        integrals = _INTEGRALS @ powers(part, _INTEGRALS.shape[1]).T * block.spans[step]
+        basis = np.polynomial.legendre.legvander(2.0 * part - 1.0, len(NODES))
+        integrals = _INTEGRALS @ basis.T * block.spans[step]
         x, y, turn, work = values[:, step] + np.einsum("ik,qik->qk", integrals, rates[:, :, step])
         rows = np.empty((23, len(times)))
         rows[0], rows[17:22] = times, (x, y, turn, work, poles[step])

@@ -16,8 +16,8 @@ from tippetop.integrators.dense import DenseSolution
 SHORT = 24
 """Steps that are taken one by one: a solution made by the compiler costs as much as a few hundred of them."""
 
-GROWTH = 2.0
-"""Factor by which a solution can grow in a step that resolves it."""
+SHORTEST = 1e-13
+"""Step, relative to the time, below which times do not tell its ends apart well enough."""
 
 LONG = 4096
 """Steps in one call into compiled code, so that Ctrl-C is heard between calls."""
@@ -92,12 +92,11 @@ def _compiled(motion: Motion, tolerance: float) -> _Compiled:
 
 
 def _before_blow_up(solution: DenseSolution) -> DenseSolution:
-    """A solution that ended in numbers that are none, without the steps in which they grew out of measure."""
-    steps = len(solution.terms)
-    sizes = np.abs(solution.terms[:, :, 0]).max(axis=1)
-    while steps and np.abs(solution(solution.knots[steps : steps + 1])).max() > GROWTH * sizes[steps - 1]:
-        steps -= 1
-    return DenseSolution(solution.knots[: steps + 1], solution.terms[:steps])
+    """A solution that ended in numbers that are none, without the steps that are too short for its times."""
+    knots = solution.knots
+    fine = np.flatnonzero(np.diff(knots) > SHORTEST * np.maximum(1.0, np.abs(knots[1:])))
+    steps = fine[-1] + 1 if len(fine) else 0
+    return DenseSolution(knots[: steps + 1], solution.terms[:steps])
 
 
 def _few_steps(run: Any, end: float) -> tuple[DenseSolution, Any]:
