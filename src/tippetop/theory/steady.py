@@ -21,7 +21,7 @@ from tippetop.errors import InvalidInput
 from tippetop.mechanics.invariants import energy, jellett
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.surface import Surface, contact_vector
-from tippetop.mechanics.top import Top
+from tippetop.mechanics.top import Top, natural, natural_units
 from tippetop.mechanics.vectors import VERTICAL, Functions, Scalar, Vector, add, dot, scale
 from tippetop.mechanics.view import Angles, state_from_angles
 from tippetop.problem import Problem
@@ -182,7 +182,7 @@ def steady_states(top: Top, jellett: float) -> list[SteadyState]:
     inverted = vertical_spin(
         SteadyKind.INVERTED, top, jellett / vertical_spin(SteadyKind.INVERTED, top, 1.0).jellett
     )
-    between = [_precession_at(tilt, jellett, top) for tilt in _precession_tilts(top, jellett)]
+    between = [precession_at(tilt, jellett, top) for tilt in _precession_tilts(top, jellett)]
     if has_level_spin(top):
         between.append(level_spin(top, jellett / level_spin(top, 1.0).jellett))
     return [upright, *sorted(between, key=lambda state: state.tilt), inverted]
@@ -223,7 +223,18 @@ def require_jellett(top: Top) -> None:
 
 
 def jellett_of_launch(problem: Problem) -> float:
-    """Jellett's integral of a launch, kg m^3/s."""
+    """Jellett's integral of a launch, kg m^3/s.
+
+    Raises
+    ------
+    InvalidInput
+        If it turns so fast that rounding hides what the weight does.
+    """
+    fastest = FASTEST / float(natural_units(problem.top).time)
+    for name in ("spin", "tilt_rate", "precession"):
+        rate = getattr(problem.launch, name)
+        if abs(rate) > fastest:
+            raise InvalidInput(f"launch.{name}", rate, f"at most {fastest:.3g} rad/s, for the theory to tell")
     return float(jellett(problem.start(), problem.top))
 
 
@@ -261,7 +272,7 @@ def _tilt_of(kind: SteadyKind) -> float:
     return 0.0 if kind is SteadyKind.UPRIGHT else math.pi
 
 
-def _precession_at(tilt: float, jellett: float, top: Top) -> SteadyState:
+def precession_at(tilt: float, jellett: float, top: Top) -> SteadyState:
     """The steady precession at a tilt known to be one for this Jellett's integral."""
     rolling = rolling_precession(tilt, top, math)
     rate = jellett / rolling.jellett
@@ -271,6 +282,9 @@ def _precession_at(tilt: float, jellett: float, top: Top) -> SteadyState:
         SteadyKind.PRECESSION, tilt, float(rate), float(spin), jellett, float(energy(whole, top))
     )
 
+
+FASTEST = 1e8
+"""Angular velocity in natural units beyond which the theory says nothing: beside it, weight is rounding."""
 
 _DEGREES = (8, 32, 128, 512)
 _ROUNDING = 1e-13
@@ -282,22 +296,22 @@ def _precession_tilts(top: Top, jellett: float) -> list[float]:
     The balance is smooth in c, so it is its Chebyshev series, whose roots are the eigenvalues of a matrix:
     none is missed, however close two of them are.
     """
-    if jellett == 0.0:
-        return []
+    scaled, square = natural(top), (jellett / float(natural_units(top).jellett)) ** 2
 
     def balance(c: Array) -> Array:
-        rolling = rolling_precession(np.arccos(c), top, np)
-        supported = weight_moment(c, top) * (rolling.jellett / jellett) ** 2
-        balanced: Array = (gyroscopic_reaction(c, top) - supported) / top.axial_inertia
+        supported = weight_moment(c, scaled) * rolling_precession(np.arccos(c), scaled, np).jellett ** 2
+        balanced: Array = (square * gyroscopic_reaction(c, scaled) - supported) / (1.0 + square)
         return balanced
 
+    inertias = scaled.transverse_inertia + scaled.axial_inertia
+    negligible = noise = 1e-15 * inertias * square / (1.0 + square)
     series = np.zeros(1)
     for degree in _DEGREES:
         series = chebyshev.chebinterpolate(balance, degree)  # type: ignore[arg-type]  # its stub knows no arrays
-        size = np.abs(series)
-        if size[-2:].max() <= _ROUNDING * size.max():
+        negligible = max(noise, _ROUNDING * np.abs(series).max())
+        if np.abs(series[-2:]).max() <= negligible:
             break
-    roots = chebyshev.chebroots(chebyshev.chebtrim(series, _ROUNDING * np.abs(series).max()))
+    roots = chebyshev.chebroots(chebyshev.chebtrim(series, negligible))
     cosines = np.sort(roots[np.isreal(roots)].real)[::-1]
     level = 1e-9 * top.surface.size
     return [math.acos(c) for c in cosines if -1.0 < c < 1.0 and abs(top.surface.slope(c)) > level]

@@ -95,8 +95,10 @@ def critical_spins(problem: Problem) -> CriticalSpins:
 
     The Jellett's integral of a launch is linear in its spin; for one at rest in tilt it is
     R I3 spin (cos(tilt) - alpha). Its sign does not matter, and the larger of
-    the two spins is returned.
+    the two spins is returned. Where it is not conserved, they are those of the vertical spins themselves.
     """
+    if not problem.top.conserves_jellett:
+        return CriticalSpins(*(critical_spin(kind, problem.top) for kind in _VERTICAL))
     line = _jellett_line(problem)
     return CriticalSpins(*(line.spin_at(critical_jellett(kind, problem.top)) for kind in _VERTICAL))
 
@@ -186,8 +188,12 @@ _SEARCH = 1.05
 
 
 def _jellett_line(problem: Problem) -> _JellettLine:
-    at_rest = jellett_of_launch(problem.replace({"launch.spin": 0.0}))
-    return _JellettLine(at_rest, jellett_of_launch(problem.replace({"launch.spin": 1.0})) - at_rest)
+    still = {"spin": 0.0, "tilt_rate": 0.0, "precession": 0.0}
+    at_rest, per_spin = (
+        jellett_of_launch(problem.model_copy(update={"launch": problem.launch.model_copy(update=changes)}))
+        for changes in ({"spin": 0.0}, {**still, "spin": 1.0})
+    )
+    return _JellettLine(at_rest, per_spin)
 
 
 def _toward_rest(function: Callable[[float], float], start: float) -> float:
