@@ -9,7 +9,13 @@ from tippetop.theory.averaging import flip_time_limit, nutation_of_launch
 from tippetop.theory.groups import Group, classify_top, eccentricity, inertia_ratio
 from tippetop.theory.prediction import Prediction, predict, steady_launch
 from tippetop.theory.stability import Spectrum, spectrum
-from tippetop.theory.steady import SteadyKind, SteadyState, jellett_of_launch, steady_states, vertical_spin
+from tippetop.theory.steady import (
+    VERTICAL_SPINS,
+    SteadyState,
+    jellett_of_launch,
+    steady_states,
+    vertical_spin,
+)
 from tippetop.theory.thresholds import CriticalSpins, critical_spins, lambda_down, lambda_up
 
 
@@ -87,10 +93,7 @@ def outlook(problem: Problem) -> Outlook:
     states = (
         steady_states(top, jellett)
         if sphere
-        else [
-            vertical_spin(kind, top, problem.launch.spin)
-            for kind in (SteadyKind.UPRIGHT, SteadyKind.INVERTED)
-        ]
+        else [vertical_spin(kind, top, problem.launch.spin) for kind in VERTICAL_SPINS]
     )
     stays, mu = steady_launch(problem), problem.friction.mu
     limit = _flip_time_limit(problem) if sphere and stays is None else None

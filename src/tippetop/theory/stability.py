@@ -27,6 +27,7 @@ from tippetop.mechanics.view import Angles, state_from_angles
 from tippetop.theory import dual
 from tippetop.theory.dual import Array, Dual, derivative, jacobian, variable
 from tippetop.theory.steady import (
+    VERTICAL_SPINS,
     Branch,
     SteadyKind,
     SteadyState,
@@ -106,7 +107,7 @@ def spectrum(steady: SteadyState, top: Top, frame_rate: float | None = None) -> 
         for a vertical spin. Only a vertical spin is steady in other frames.
     """
     rate = steady.precession
-    if frame_rate is not None and steady.kind in (SteadyKind.UPRIGHT, SteadyKind.INVERTED):
+    if frame_rate is not None and steady.kind in VERTICAL_SPINS:
         rate = frame_rate
     point = (np.array([steady.tilt]), np.array([steady.precession]), np.array([steady.spin]))
     eigenvalues = _eigenvalues(steady.kind, *point, np.array([rate]), top)
@@ -231,7 +232,7 @@ def _meaningless(kind: SteadyKind, angles: Angles, point: list[Array], top: Top)
     """The directions to divide out, shape (n, 8, 2 or 3): off the unit sphere, and the neutral ones."""
     zero = np.zeros_like(point[0])
     off_sphere = [*point[:3], *[zero] * 5]
-    if kind in (SteadyKind.UPRIGHT, SteadyKind.INVERTED):
+    if kind in VERTICAL_SPINS:
         directions = [off_sphere, [*[zero] * 3, *point[:3], zero, zero]]
     elif kind is SteadyKind.LEVEL:
         directions = [off_sphere, list(_turned(point)), [*[zero] * 5, zero + 1.0, zero, zero]]

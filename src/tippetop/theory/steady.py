@@ -38,6 +38,9 @@ class SteadyKind(StrEnum):
     """Axis horizontal, no axial spin, any precession: for shapes that are the same at both ends."""
 
 
+VERTICAL_SPINS = (SteadyKind.UPRIGHT, SteadyKind.INVERTED)
+
+
 @dataclass(frozen=True)
 class SteadyState:
     """A motion that friction leaves alone.
@@ -149,7 +152,8 @@ def vertical_spin(kind: SteadyKind, top: Top, spin: float) -> SteadyState:
     """The vertical spin at theta = 0 or pi with this axial spin omega3, rad/s."""
     c = 1.0 if kind is SteadyKind.UPRIGHT else -1.0
     whole = _at_rest((0.0, 0.0, c), (0.0, 0.0, c * top.axial_inertia * spin), top)
-    return SteadyState(kind, _tilt_of(kind), 0.0, spin, jellett(whole, top), energy(whole, top))
+    tilt = 0.0 if kind is SteadyKind.UPRIGHT else math.pi
+    return SteadyState(kind, tilt, 0.0, spin, jellett(whole, top), energy(whole, top))
 
 
 def level_spin(top: Top, precession: float) -> SteadyState:
@@ -176,11 +180,8 @@ def steady_states(top: Top, jellett: float) -> list[SteadyState]:
     With lambda = phi' Lambda(theta), a steady precession is a root of lambda^2 (I3 omega3/phi' - I1 c) -
     m g h' Lambda^2, which is regular everywhere (a polynomial of degree 4 in c for the eccentric sphere).
     """
-    upright = vertical_spin(
-        SteadyKind.UPRIGHT, top, jellett / vertical_spin(SteadyKind.UPRIGHT, top, 1.0).jellett
-    )
-    inverted = vertical_spin(
-        SteadyKind.INVERTED, top, jellett / vertical_spin(SteadyKind.INVERTED, top, 1.0).jellett
+    upright, inverted = (
+        vertical_spin(kind, top, jellett / vertical_spin(kind, top, 1.0).jellett) for kind in VERTICAL_SPINS
     )
     between = [precession_at(tilt, jellett, top) for tilt in _precession_tilts(top, jellett)]
     if has_level_spin(top):
@@ -194,13 +195,7 @@ def has_level_spin(top: Top) -> bool:
 
 
 def require_sphere(top: Top) -> None:
-    """Refuse a body that is no eccentric sphere.
-
-    Raises
-    ------
-    InvalidInput
-        If it is none.
-    """
+    """Refuse a body that is no eccentric sphere, with `InvalidInput`."""
     if not top.surface.spherical:
         raise InvalidInput(
             "body.shape", top.surface, "an eccentric sphere; Jellett's integral holds for no other"
@@ -208,13 +203,7 @@ def require_sphere(top: Top) -> None:
 
 
 def require_jellett(top: Top) -> None:
-    """Refuse a top that does not conserve Jellett's integral.
-
-    Raises
-    ------
-    InvalidInput
-        If its body or its friction does not.
-    """
+    """Refuse a top that does not conserve Jellett's integral, with `InvalidInput`."""
     require_sphere(top)
     if not top.conserves_jellett:
         raise InvalidInput(
@@ -246,14 +235,10 @@ def least_energy(tilt: Scalar, jellett: Scalar, top: Top, functions: Functions) 
     """
     axis = (functions.sin(tilt), 0.0, functions.cos(tilt))
     potential = energy(_at_rest(axis, (0.0, 0.0, 0.0), top), top)
-    return potential + 0.5 * jellett**2 / inertia_about_contact(axis, top)
-
-
-def inertia_about_contact(axis: Vector, top: Top) -> Scalar:
-    """Inertia a.I a about the contact vector, kg m^4: lambda^2 / (2 a.I a) is the least kinetic energy."""
     arm = contact_vector(axis, top.surface)
     along = dot(arm, axis)
-    return top.transverse_inertia * (dot(arm, arm) - along**2) + top.axial_inertia * along**2
+    inertia = top.transverse_inertia * (dot(arm, arm) - along**2) + top.axial_inertia * along**2
+    return potential + 0.5 * jellett**2 / inertia
 
 
 def state_of(steady: SteadyState, top: Top) -> SlidingState:
@@ -266,10 +251,6 @@ def _at_rest(axis: Vector, momentum: Vector, top: Top) -> State:
     """The body on the table with its centre of mass at rest."""
     zero = (0.0, 0.0, 0.0)
     return State(axis, momentum, zero, (0.0, 0.0, top.surface.height(axis[2])), zero, 0.0)
-
-
-def _tilt_of(kind: SteadyKind) -> float:
-    return 0.0 if kind is SteadyKind.UPRIGHT else math.pi
 
 
 def precession_at(tilt: float, jellett: float, top: Top) -> SteadyState:

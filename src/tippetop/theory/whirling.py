@@ -45,6 +45,14 @@ class Nutation(NamedTuple):
     turned: bool
     log_scale: float = 0.0
 
+    @property
+    def point(self) -> Array:
+        """Logarithms of its whirls, and sqrt(|p3|): what is followed."""
+        pair = whirls(self.orbit)
+        least = _NO_WHIRL * (pair.fast + pair.slow)
+        logs = [math.log(max(whirl, least)) + self.log_scale for whirl in pair]
+        return np.array([*logs, math.sqrt(abs(self.orbit.far))])
+
     def turn(self, numbers: Numbers) -> "Nutation":
         """The same seen from the other pole."""
         return Nutation(upside_down(self.orbit, numbers.turned if self.turned else numbers), not self.turned)
@@ -136,10 +144,7 @@ def follow_nutation(
     """
     turned, seen = begin.turned, begin.orbit
     seen_numbers = numbers.turned if turned else numbers
-    pair = whirls(seen)
-    least = _NO_WHIRL * (pair.fast + pair.slow)
-    logs = [math.log(max(whirl, least)) + begin.log_scale for whirl in pair]
-    point = np.array([*logs, math.sqrt(abs(seen.far))])
+    point = begin.point
 
     def rates(_: float, y: Array) -> Array:
         return np.array(_rates(_whirls_of(y), float(y[2]), jellett, seen_numbers))
