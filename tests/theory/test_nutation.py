@@ -126,7 +126,7 @@ def test_the_orbit_is_that_of_its_constants(gamma, alpha, tilt, spin, tilt_rate,
     low, high = turning_tilts(whirls(path))
     assert low - 1e-6 <= tilt <= high + 1e-6
 
-    for seen, view in ((path, numbers_), upside_down(path, numbers_)):
+    for seen, view in ((path, numbers_), (upside_down(path, numbers_), numbers_.turned)):
         pair = Whirls(*map(float, whirls(seen)))
         again = orbit_of_whirls(pair, math.sqrt(abs(seen.far)), kept, view)
         assert tuple(again) == pytest.approx(tuple(seen), rel=1e-6, abs=1e-6)
@@ -135,13 +135,13 @@ def test_the_orbit_is_that_of_its_constants(gamma, alpha, tilt, spin, tilt_rate,
 @pytest.mark.parametrize("problem", LAUNCHES)
 def test_upside_down_the_nutation_is_the_same(problem):
     path, numbers_ = path_of(problem)
-    turned, view = upside_down(path, numbers_)
+    turned, view = upside_down(path, numbers_), numbers_.turned
     low, high = turning_tilts(whirls(path))
     low_seen, high_seen = turning_tilts(whirls(turned))
     assert (math.pi - high_seen, math.pi - low_seen) == pytest.approx((low, high), abs=1e-9)
     taken, seen = drain(path, numbers_), drain(turned, view)
     assert (-seen.axial, seen.energy) == pytest.approx(tuple(taken), rel=1e-9)
-    back, _ = upside_down(turned, view)
+    back = upside_down(turned, view)
     assert tuple(back) == pytest.approx(tuple(path), rel=1e-12)
 
 
@@ -151,7 +151,7 @@ def test_a_root_that_is_a_little_wrong_is_put_right(problem, turned):
     values, numbers_ = natural(problem)
     kept = values.vertical - numbers_.alpha * values.axial
     path = orbit(values, numbers_)
-    seen, view = upside_down(path, numbers_) if turned else (path, numbers_)
+    seen, view = (upside_down(path, numbers_), numbers_.turned) if turned else (path, numbers_)
     pair, root = Whirls(*map(float, whirls(seen))), math.sqrt(abs(seen.far))
     again = orbit_of_whirls(pair, root * (1.0 + 1e-4), kept, view)
     assert tuple(again) == pytest.approx(tuple(seen), rel=1e-8)
@@ -170,7 +170,7 @@ def test_the_whirls_change_as_the_constants_do(problem, turned):
         axial = values.axial + time * taken.axial
         later = Constants(kept + numbers_.alpha * axial, axial, values.energy + time * taken.energy)
         path = orbit(later, numbers_)
-        seen, view = upside_down(path, numbers_) if turned else (path, numbers_)
+        seen, view = (upside_down(path, numbers_), numbers_.turned) if turned else (path, numbers_)
         return [*map(float, whirls(seen)), math.sqrt(abs(seen.far))], view
 
     before, view = whirls_after(-step)

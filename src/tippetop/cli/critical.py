@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from tippetop.theory.overview import Judged, Outlook
+    from tippetop.theory.steady import SteadyState
 
 
 def critical(
@@ -31,7 +32,16 @@ def critical(
     problem = chosen_problem(file, preset, settings, changes)
     found = outlook(problem)
     if as_json:
-        typer.echo(json.dumps({**_plain(found), "problem": problem.model_dump()}, indent=2))
+        typer.echo(
+            json.dumps(
+                {
+                    **_plain(found),
+                    "critical_spins_tilt": problem.launch.tilt,
+                    "problem": problem.model_dump(),
+                },
+                indent=2,
+            )
+        )
     else:
         from rich.console import Console  # noqa: PLC0415
 
@@ -40,7 +50,9 @@ def critical(
 
 def _plain(found: "Outlook") -> dict[str, Any]:
     """The record as JSON takes it: what is infinite or undefined is null."""
-    prediction = found.prediction
+    prediction, stays = found.prediction, found.stays
+    final = stays.state if stays else prediction and prediction.final
+    possible = [stays.state] if stays else prediction and list(prediction.reachable)
     return {
         "inertia_ratio": found.inertia_ratio,
         "eccentricity": found.eccentricity,
@@ -50,10 +62,13 @@ def _plain(found: "Outlook") -> dict[str, Any]:
         "lambda_down": _finite(found.lambda_down),
         "omega_c1": _finite(found.critical_spins.upright),
         "omega_c2": _finite(found.critical_spins.inverted),
+        "omega_c_tilt": found.tilt,
         "jellett": found.jellett,
-        "final": prediction and _plain_state(prediction.final),
-        "final_certain": prediction and prediction.certain,
-        "final_possible": prediction and [_plain_state(state) for state in prediction.reachable],
+        "stays": None if stays is None else "stable" if stays.spectrum.stable else "until disturbed",
+        "swings": found.swings,
+        "final": final and _plain_state(final),
+        "final_certain": possible and len(possible) == 1,
+        "final_possible": possible and [_plain_state(state) for state in possible],
         "steady_states": [
             {
                 **_plain_state(judged.state),
@@ -91,6 +106,11 @@ def _print(found: "Outlook", console: "Console") -> None:
     if found.group is not None:
         console.print(f"[bold]Group {found.group.value}[/]: {found.group.description}.", highlight=False)
     console.print(table)
+    if found.group is not None:
+        console.print(
+            f"[dim]ω_c1, ω_c2: spins of launches with this one's tilt, {found.tilt:.6g} rad, and rates.[/]",
+            highlight=False,
+        )
     states = Table(title="Steady states of this launch", title_justify="left", title_style="bold", box=None)
     for heading in ("kind", "tilt", "precession", "axial spin", "energy", "", "growth rate"):
         states.add_column(heading, justify="left" if heading in ("kind", "") else "right")
@@ -118,15 +138,33 @@ def _rows(found: "Outlook") -> list[tuple[str, str, str]]:
     ]
     if found.inertia_ratio is not None and found.eccentricity is not None:
         rows.insert(0, ("γ = I1/I3, α", f"{found.inertia_ratio:.6g}, {found.eccentricity:.6g}", ""))
-    if found.prediction is not None:
-        final, certain = found.prediction.final, found.prediction.certain
-        doubt = "" if certain else " (least energy of several within reach)"
-        rows.append(("ends as", f"{final.kind.value} at θ = {final.tilt:.9g}", f"rad{doubt}"))
+    rows += _end_rows(found)
     if found.mu_flip_time is not None:
         rows.append(("μ t until 0.01 rad from there, μ → 0", _shown(found.mu_flip_time), "s²/m"))
     if found.flip_time is not None:
         rows.append(("so at this friction about", _shown(found.flip_time), "s"))
     return rows
+
+
+def _end_rows(found: "Outlook") -> list[tuple[str, str, str]]:
+    """Where the launch ends: nowhere, where it is, or where friction takes it."""
+    rows = []
+    if found.swings is not None:
+        low, high = found.swings
+        rows.append(("swings for ever in θ", f"{low:.9g} to {high:.9g}", "rad"))
+    if found.stays is not None:
+        state, stable = found.stays.state, found.stays.spectrum.stable
+        until = "" if stable else " until disturbed"
+        rows.append(("stays exactly on", _told(state), f"rad{until}"))
+    if found.prediction is not None and not (found.stays and found.stays.spectrum.stable):
+        final, certain = found.prediction.final, found.prediction.certain
+        doubt = "" if certain else " (least energy of several within reach)"
+        rows.append(("and then ends as" if found.stays else "ends as", _told(final), f"rad{doubt}"))
+    return rows
+
+
+def _told(state: "SteadyState") -> str:
+    return f"{state.kind.value} at θ = {state.tilt:.9g}"
 
 
 def _state_row(judged: "Judged") -> tuple[str, ...]:

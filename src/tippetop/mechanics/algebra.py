@@ -1,11 +1,11 @@
-"""What a shape may be evaluated on besides numbers: power series in time, and discs of complex numbers."""
+"""What a surface may be evaluated on besides numbers: power series in time, and discs of complex numbers."""
 
 from operator import mul
 from typing import Any, Self
 
 
 class Algebra:
-    """Arithmetic that follows from a sum, a product and a power, for whatever a shape may be evaluated on."""
+    """Arithmetic that follows from a sum, a product and a power, for what the mechanics may run on."""
 
     def __add__(self, other: Any) -> Self:
         raise NotImplementedError

@@ -31,3 +31,8 @@ class Units(NamedTuple):
     def angular_momentum(self) -> Scalar:
         """Unit of angular momentum, kg m^2/s."""
         return self.mass * self.length * self.speed
+
+    @property
+    def jellett(self) -> Scalar:
+        """Unit of Jellett's integral, kg m^3/s."""
+        return self.angular_momentum * self.length

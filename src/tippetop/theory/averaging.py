@@ -17,20 +17,14 @@ from scipy.interpolate import PchipInterpolator
 
 from tippetop.errors import InvalidInput
 from tippetop.mechanics.friction import ViscousLaw
-from tippetop.mechanics.motion import along_table
+from tippetop.mechanics.top import natural_units
+from tippetop.mechanics.view import Angles
 from tippetop.problem import Problem
 from tippetop.theory.dual import Array
-from tippetop.theory.nutation import (
-    Numbers,
-    Orbit,
-    constants,
-    natural_constants,
-    numbers_of,
-    orbit,
-)
+from tippetop.theory.nutation import Numbers, numbers_of
 from tippetop.theory.prediction import stable_by_energy
 from tippetop.theory.steady import jellett_of_launch, steady_states
-from tippetop.theory.whirling import Goals, Stage, follow_nutation
+from tippetop.theory.whirling import Goals, Nutation, Stage, follow_nutation, launched
 
 
 @dataclass(frozen=True)
@@ -87,16 +81,29 @@ def averaged_flow(
     numbers = numbers_of(top)
     if not isinstance(top.friction, ViscousLaw):
         raise InvalidInput("friction", top.friction, "viscous friction; no other slip averages out")
-    launch = natural_constants(constants(along_table(problem.start()), top), top)
-    path = Orbit(*(float(number) for number in orbit(launch, numbers)))
     if problem.launch.tilt in (0.0, math.pi) and problem.launch.tilt_rate == 0.0:
         raise InvalidInput("launch.tilt", problem.launch.tilt, "a tilted launch: a vertical spin is steady")
-    jellett = float(launch.vertical - numbers.alpha * launch.axial)
-    states = steady_states(top, jellett_of_launch(problem))
+    jellett = jellett_of_launch(problem)
+    states = steady_states(top, jellett)
     goals = Goals(
         [state.tilt for state in states], [state.tilt for state in stable_by_energy(states)], distance
     )
-    return _follow(path, jellett, numbers, goals, samples, tolerance, 1.0 / float(top.gravity))
+    jellett /= float(natural_units(top).jellett)
+    begin = nutation_of_launch(problem)
+    return _follow(begin, jellett, numbers, goals, samples, tolerance, 1.0 / float(top.gravity))
+
+
+def nutation_of_launch(problem: Problem) -> Nutation:
+    """The nutation that a launch of an eccentric sphere would keep on a smooth table, in natural units.
+
+    Raises
+    ------
+    InvalidInput
+        If the body is of another shape.
+    """
+    launch, time = problem.launch, float(natural_units(problem.top).time)
+    rates = (launch.tilt_rate * time, 0.0, launch.precession * time, launch.spin * time)
+    return launched(Angles(launch.tilt, *rates, (0.0, 0.0)), numbers_of(problem.top))
 
 
 def flip_time_limit(problem: Problem, distance: float = 0.01) -> float:
@@ -142,7 +149,7 @@ def _distances(flow: SlowFlow) -> Array:
 
 
 def _follow(
-    path: Orbit,
+    nutation: Nutation,
     jellett: float,
     numbers: Numbers,
     goals: Goals,
@@ -157,9 +164,9 @@ def _follow(
     stages: list[Stage] = []
     begin = 0.0
     while not (stages and stages[-1].done) and len(stages) < _MOST_STAGES:
-        stage = follow_nutation(path, jellett, numbers, goals, samples, tolerance)
+        stage = follow_nutation(nutation, jellett, numbers, goals, samples, tolerance)
         stages.append(stage._replace(time=begin + stage.time))
-        begin, path = float(stages[-1].time[-1]), stage.end
+        begin, nutation = float(stages[-1].time[-1]), stage.end.turn(numbers)
     last = stages[-1]
     time, low, high = (
         np.concatenate([first, *(array[1:] for array in rest)])

@@ -41,8 +41,9 @@ class Drift(NamedTuple):
 def smooth_precession(c: Scalar, jellett: float, fast: bool, numbers: Numbers) -> Scalar:
     """Rate phi' of the fast or the slow precession on a smooth table with this Jellett's integral."""
     square = numbers.transverse * (1.0 - numbers.alpha * c)
-    room = jellett**2 + 4.0 * numbers.alpha * square * (c - numbers.alpha)
-    return (jellett + (1.0 if fast else -1.0) * room**0.5) / (2.0 * square)
+    weight = 2.0 * numbers.alpha * (c - numbers.alpha)
+    larger = jellett + math.copysign(1.0, jellett) * (jellett**2 + 2.0 * weight * square) ** 0.5
+    return larger / (2.0 * square) if fast == (jellett >= 0.0) else -weight / larger
 
 
 def axial_momentum(c: Scalar, precession: Scalar, numbers: Numbers) -> Scalar:
@@ -140,7 +141,7 @@ def _is_steady(tilt: float, jellett: float, fast: bool, numbers: Numbers) -> boo
     """Whether a steady state's tilt is a steady state of these precessions, and not of the others."""
     if tilt in (0.0, math.pi):
         return True
-    with np.errstate(invalid="ignore"):
+    with np.errstate(invalid="ignore", divide="ignore"):
         c = np.float64(math.cos(tilt))
         rate = smooth_precession(c, jellett, fast, numbers)
         return bool(abs(slip_per_sine(c, rate, numbers)) < _NO_SLIP * abs(rate))

@@ -11,10 +11,12 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from tippetop.mechanics.algebra import Algebra
+
 Array: TypeAlias = NDArray[np.float64]
 
 
-class Dual:
+class Dual(Algebra):
     """A number, or an array of numbers, with its derivatives along k directions.
 
     Parameters
@@ -25,7 +27,6 @@ class Dual:
         Its derivatives, shape (k, *value.shape).
     """
 
-    __slots__ = ("gradient", "value")
     __array_ufunc__ = None  # so that an array on the left leaves the operation to this class
 
     def __init__(self, value: Any, gradient: Any) -> None:
@@ -35,21 +36,10 @@ class Dual:
     def __repr__(self) -> str:
         return f"Dual({self.value!r}, {self.gradient!r})"
 
-    def __neg__(self) -> "Dual":
-        return Dual(-self.value, -self.gradient)
-
     def __add__(self, other: Any) -> "Dual":
         if isinstance(other, Dual):
             return Dual(self.value + other.value, self.gradient + other.gradient)
         return Dual(self.value + other, self.gradient)
-
-    __radd__ = __add__
-
-    def __sub__(self, other: Any) -> "Dual":
-        return self.__add__(-other)
-
-    def __rsub__(self, other: Any) -> "Dual":
-        return (-self).__add__(other)
 
     def __mul__(self, other: Any) -> "Dual":
         if isinstance(other, Dual):
@@ -57,21 +47,9 @@ class Dual:
             return Dual(self.value * other.value, gradient)
         return Dual(self.value * other, self.gradient * other)
 
-    __rmul__ = __mul__
-
-    def __truediv__(self, other: Any) -> "Dual":
-        if isinstance(other, Dual):
-            quotient = self.value / other.value
-            return Dual(quotient, (self.gradient - quotient * other.gradient) / other.value)
-        return Dual(self.value / other, self.gradient / other)
-
-    def __rtruediv__(self, other: Any) -> "Dual":
-        quotient = other / self.value
-        return Dual(quotient, -quotient / self.value * self.gradient)
-
-    def __pow__(self, exponent: float) -> "Dual":
-        slope = exponent * self.value ** (exponent - 1)
-        return Dual(self.value**exponent, slope * self.gradient)
+    def power(self, exponent: float) -> "Dual":
+        """A real power."""
+        return Dual(self.value**exponent, exponent * self.value ** (exponent - 1.0) * self.gradient)
 
 
 def sin(angle: Any) -> Any:

@@ -18,7 +18,7 @@ exponentially.
 """
 
 import math
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 
@@ -27,6 +27,7 @@ from tippetop.mechanics.motion import axial_spin, on_table
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.top import Top, natural_units
 from tippetop.mechanics.vectors import Functions, Scalar
+from tippetop.mechanics.view import Angles
 from tippetop.theory.groups import eccentricity
 from tippetop.theory.steady import require_sphere
 
@@ -53,6 +54,11 @@ class Numbers(NamedTuple):
     transverse: float
     axial: float
     alpha: float
+
+    @property
+    def turned(self) -> Self:
+        """Those of the same top with its axis drawn the other way: -alpha for alpha."""
+        return self._replace(alpha=-self.alpha)
 
 
 class Orbit(NamedTuple):
@@ -129,19 +135,36 @@ _NEWTON_STEPS = 40
 
 
 def orbit(values: Constants, numbers: Numbers) -> Orbit:
-    """The nutation with these constants, both in natural units; arrays of them too.
-
-    Newton's method from above the largest root of the cubic converges to it monotonically, and the other two
-    follow without cancellation. Constants that rounding has put beyond those of a steady precession give it.
-    """
-    I1, I3, alpha = numbers
+    """The nutation with these constants, both in natural units; arrays of them too."""
     axial = values.axial
-    excess = values.vertical - axial
-    swing = values.energy - axial**2 / (2.0 * I3) - (1.0 - alpha)
+    swing = values.energy - axial**2 / (2.0 * numbers.axial) - (1.0 - numbers.alpha)
+    return _orbit(values.vertical - axial, axial, swing, numbers)
+
+
+def orbit_of_angles(angles: Angles, numbers: Numbers) -> Orbit:
+    """The nutation that a motion belongs to, both in natural units: without cancellation near theta = 0."""
+    I1, I3, alpha = numbers
+    sine_squared = math.sin(angles.tilt) ** 2
+    p = 2.0 * math.sin(0.5 * angles.tilt) ** 2
+    axial = I3 * angles.spin
+    excess = I1 * sine_squared * angles.precession - axial * p
+    nodding = (I1 + alpha**2 * sine_squared) * angles.tilt_rate**2
+    swing = 0.5 * (nodding + I1 * sine_squared * angles.precession**2) + alpha * p
+    return _orbit(excess, axial, swing, numbers)
+
+
+def _orbit(excess: Scalar, axial: Scalar, swing: Scalar, numbers: Numbers) -> Orbit:
+    """The nutation with these constants of `Orbit`.
+
+    Newton's method from beyond the root that is off the others converges to it monotonically, and the other
+    two follow without cancellation. Constants that rounding has put beyond those of a steady precession give
+    it.
+    """
+    I1, _, alpha = numbers
     total = (swing + axial**2 / (2.0 * I1)) / alpha + 2.0
     pairs = (2.0 * swing - excess * axial / I1) / alpha
     product = excess**2 / (2.0 * I1 * alpha)
-    far = total + 0.0
+    far = total + min(0.0, math.copysign(4.0, alpha))
     for _ in range(_NEWTON_STEPS):
         value = ((far - total) * far + pairs) * far - product
         slope = (3.0 * far - 2.0 * total) * far + pairs
@@ -161,7 +184,8 @@ def whirls(path: Orbit) -> Whirls:
 def turning_tilts(pair: Whirls) -> tuple[Scalar, Scalar]:
     """Least and largest tilt of a nutation with these whirls, rad; arrays of them too."""
     fast, slow = np.sqrt(pair.fast), np.sqrt(pair.slow)
-    return 2.0 * np.arcsin(abs(fast - slow)), 2.0 * np.arcsin(np.minimum(fast + slow, 1.0))
+    low, high = np.minimum(abs(fast - slow), 1.0), np.minimum(fast + slow, 1.0)
+    return 2.0 * np.arcsin(low), 2.0 * np.arcsin(high)
 
 
 def orbit_of_whirls(pair: Whirls, root: float, jellett: float, numbers: Numbers) -> Orbit:
@@ -199,12 +223,9 @@ def excess_slope(numbers: Numbers) -> float:
 _CLOSE = 1e-2
 
 
-def upside_down(path: Orbit, numbers: Numbers) -> tuple[Orbit, Numbers]:
-    """The same nutation and top with the axis drawn the other way: p = 1 + cos(theta), -alpha for alpha.
-
-    Near theta = pi the whirls of this one stay good.
-    """
-    turned = Orbit(
+def upside_down(path: Orbit, numbers: Numbers) -> Orbit:
+    """The same nutation of the turned top: p = 1 + cos(theta). Near theta = pi its whirls stay good."""
+    return Orbit(
         2.0 - path.middle,
         path.half,
         2.0 - path.far,
@@ -212,4 +233,3 @@ def upside_down(path: Orbit, numbers: Numbers) -> tuple[Orbit, Numbers]:
         -path.axial,
         path.swing - 2.0 * numbers.alpha,
     )
-    return turned, numbers._replace(alpha=-numbers.alpha)

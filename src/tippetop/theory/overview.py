@@ -5,11 +5,17 @@ from dataclasses import dataclass
 
 from tippetop.mechanics.friction import ViscousLaw
 from tippetop.problem import Problem
-from tippetop.theory.averaging import flip_time_limit
+from tippetop.theory.averaging import flip_time_limit, nutation_of_launch
 from tippetop.theory.groups import Group, classify_top, eccentricity, inertia_ratio
-from tippetop.theory.prediction import Prediction, predict
+from tippetop.theory.prediction import Prediction, predict, steady_launch
 from tippetop.theory.stability import Spectrum, spectrum
-from tippetop.theory.steady import SteadyKind, SteadyState, jellett_of_launch, steady_states, vertical_spin
+from tippetop.theory.steady import (
+    VERTICAL_SPINS,
+    SteadyState,
+    jellett_of_launch,
+    steady_states,
+    vertical_spin,
+)
 from tippetop.theory.thresholds import CriticalSpins, critical_spins, lambda_down, lambda_up
 
 
@@ -34,17 +40,25 @@ class Outlook:
     lambda_up, lambda_down
         Jellett's integrals, kg m^3/s, at which the upright spin loses and the inverted spin gains stability.
     critical_spins
-        The spins of launches like this one, rad/s, that have those integrals.
+        The spins of launches with this one's tilt and rates, rad/s, that have those integrals.
+    tilt
+        Tilt of this launch, rad.
     jellett
         lambda of this launch, kg m^3/s.
+    stays
+        The steady state that it is exactly on, and so stays in until it is disturbed, or None.
+    swings
+        Without friction, the least and the largest tilt between which it swings for ever, rad, if it is of an
+        eccentric sphere; None with friction.
     prediction
-        Where it can end, or None where nothing conserved says so.
+        Where it can end, from beside a steady state if it is on one; None where nothing conserved says so, or
+        nothing takes energy.
     steady
         Steady states, by tilt: all with the launch's lambda, or for a shape that does not conserve it, the
         two vertical spins at the launch's axial spin.
     mu_flip_time
         mu times the time (s^2/m) until within 0.01 rad of the end, in the limit of small friction; None
-        where there is none.
+        where there is none, or no friction.
     flip_time
         The same divided by the problem's mu, s.
     """
@@ -55,7 +69,10 @@ class Outlook:
     lambda_up: float
     lambda_down: float
     critical_spins: CriticalSpins
+    tilt: float
     jellett: float
+    stays: Judged | None
+    swings: tuple[float, float] | None
     prediction: Prediction | None
     steady: tuple[Judged, ...]
     mu_flip_time: float | None
@@ -63,20 +80,23 @@ class Outlook:
 
 
 def outlook(problem: Problem) -> Outlook:
-    """What the theory says of a launch."""
+    """What the theory says of a launch.
+
+    Raises
+    ------
+    InvalidInput
+        If it turns so fast that the theory cannot tell.
+    """
     top = problem.top
     jellett = jellett_of_launch(problem)
     sphere = top.conserves_jellett
     states = (
         steady_states(top, jellett)
         if sphere
-        else [
-            vertical_spin(kind, top, problem.launch.spin)
-            for kind in (SteadyKind.UPRIGHT, SteadyKind.INVERTED)
-        ]
+        else [vertical_spin(kind, top, problem.launch.spin) for kind in VERTICAL_SPINS]
     )
-    limit = _flip_time_limit(problem) if sphere else None
-    mu = problem.friction.mu
+    stays, mu = steady_launch(problem), problem.friction.mu
+    limit = _flip_time_limit(problem) if sphere and stays is None else None
     return Outlook(
         inertia_ratio=inertia_ratio(top) if sphere else None,
         eccentricity=eccentricity(top) if sphere else None,
@@ -84,19 +104,28 @@ def outlook(problem: Problem) -> Outlook:
         lambda_up=lambda_up(top),
         lambda_down=lambda_down(top),
         critical_spins=critical_spins(problem),
+        tilt=problem.launch.tilt,
         jellett=jellett,
-        prediction=predict(problem) if sphere else None,
+        stays=None if stays is None else Judged(stays, spectrum(stays, top)),
+        swings=_swings(problem) if top.surface.spherical and mu == 0.0 else None,
+        prediction=predict(problem) if sphere and mu > 0.0 else None,
         steady=tuple(Judged(state, spectrum(state, top)) for state in states),
         mu_flip_time=limit,
-        flip_time=limit / mu if limit is not None and mu > 0 else None,
+        flip_time=limit / mu if limit is not None else None,
     )
 
 
+def _swings(problem: Problem) -> tuple[float, float]:
+    """Turning tilts on a smooth table, rad; that of the launch is between them, whatever rounding says."""
+    low, high = nutation_of_launch(problem).tilts
+    return min(low, problem.launch.tilt), max(high, problem.launch.tilt)
+
+
 def _flip_time_limit(problem: Problem) -> float | None:
-    """Limit of mu times the flip time, where friction is viscous and the launch is not itself steady."""
+    """Limit of mu times the flip time, where friction is viscous and the axis moves."""
     launch = problem.launch
     vertical = launch.tilt in (0.0, math.pi) and launch.tilt_rate == 0.0
-    if vertical or not isinstance(problem.top.friction, ViscousLaw):
+    if vertical or problem.friction.mu == 0.0 or not isinstance(problem.top.friction, ViscousLaw):
         return None
     limit = flip_time_limit(problem)
     return limit if math.isfinite(limit) else None

@@ -15,17 +15,24 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from tippetop.errors import InvalidInput
 from tippetop.mechanics.invariants import energy, jellett
 from tippetop.mechanics.state import State
-from tippetop.mechanics.top import Top
+from tippetop.mechanics.top import Top, natural_units
 from tippetop.mechanics.view import axis_sine
 from tippetop.problem import Problem
 from tippetop.theory.steady import (
+    SteadyKind,
     SteadyState,
+    gyroscopic_reaction,
     jellett_of_launch,
     least_energy,
+    level_spin,
+    precession_at,
     require_jellett,
     steady_states,
+    vertical_spin,
+    weight_moment,
 )
 
 
@@ -67,18 +74,51 @@ def predict(problem: Problem) -> Prediction:
     Raises
     ------
     InvalidInput
-        If Jellett's integral is not conserved.
+        If Jellett's integral is not conserved, or there is no friction.
     """
     top = problem.top
     require_jellett(top)
+    if problem.friction.mu == 0.0:
+        raise InvalidInput("friction.mu", 0.0, "more than 0: without friction no launch settles")
     jellett = jellett_of_launch(problem)
     states = steady_states(top, jellett)
     minima = stable_by_energy(states)
     available = float(energy(problem.start(), top))
     low, high = _reach(states, problem.launch.tilt, available)
-    return Prediction(
-        jellett, _by_energy(minima), _by_energy([state for state in minima if low <= state.tilt <= high])
-    )
+    within = [state for state in minima if low <= state.tilt <= high]
+    return Prediction(jellett, _by_energy(minima), _by_energy(within or minima))
+
+
+def steady_launch(problem: Problem) -> SteadyState | None:
+    """The steady state that a launch is exactly on, to rounding, or None: nothing but its azimuth changes.
+
+    Raises
+    ------
+    InvalidInput
+        If it turns too fast for the theory.
+    """
+    top, launch, start = problem.top, problem.launch, problem.start()
+    jellett, units = jellett_of_launch(problem), natural_units(top)
+    if launch.tilt in (0.0, math.pi):
+        steady = vertical_spin(SteadyKind.INVERTED if launch.tilt else SteadyKind.UPRIGHT, top, launch.spin)
+        rates = [launch.tilt_rate]
+    else:
+        c = start.axis[2]
+        level = abs(top.surface.slope(c)) <= ROUNDING * units.length
+        steady = level_spin(top, launch.precession) if level else precession_at(launch.tilt, jellett, top)
+        gyroscopic = gyroscopic_reaction(c, top) * steady.precession**2
+        unbalanced = 0.0 if level else (gyroscopic - weight_moment(c, top)) / units.inertia
+        rates = [
+            launch.tilt_rate,
+            launch.precession - steady.precession,
+            launch.spin - steady.spin,
+            unbalanced * units.time / (1.0 + abs(steady.precession) * units.time),
+        ]
+    off = [rate * units.time for rate in rates]
+    off += [speed / units.speed for speed in start.velocity]
+    off.append((start.position[2] - top.surface.height(start.axis[2])) / units.length)
+    quickest = 1.0 + units.time * max(abs(steady.spin), abs(steady.precession))
+    return steady if max(map(abs, off)) <= ROUNDING * quickest else None
 
 
 def final_states(top: Top, jellett: float) -> tuple[SteadyState, ...]:
@@ -127,11 +167,16 @@ def stable_by_energy(states: list[SteadyState]) -> list[SteadyState]:
         least energy over the tilt, which are minima and maxima in turn.
     """
     energies = [math.inf, *(state.energy for state in states), math.inf]
-    return [
+    minima = [
         state
         for state, before, after in zip(states, energies, energies[2:], strict=False)
         if before > state.energy < after
     ]
+    return minima or [min(states, key=lambda state: state.energy)]
+
+
+ROUNDING = 1e-12
+"""What counts as the same number, relative to the largest it is made of."""
 
 
 def _by_energy(states: list[SteadyState]) -> tuple[SteadyState, ...]:
@@ -139,8 +184,12 @@ def _by_energy(states: list[SteadyState]) -> tuple[SteadyState, ...]:
 
 
 def _reach(states: list[SteadyState], tilt: float, available: float) -> tuple[float, float]:
-    """Tilts between the nearest barriers on both sides: steady states with more energy than is available."""
-    barriers = [state.tilt for state in states if state.energy > available]
+    """Tilts between the nearest barriers on both sides: steady states with more energy than is available.
+
+    A minimum of the energy is between them, the lowest if nothing else.
+    """
+    rounding = ROUNDING * max(abs(state.energy) for state in states)
+    barriers = [state.tilt for state in states if state.energy > available + rounding]
     below = [barrier for barrier in barriers if barrier <= tilt]
     above = [barrier for barrier in barriers if barrier >= tilt]
     return max(below, default=0.0), min(above, default=math.pi)

@@ -25,14 +25,16 @@ from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Scalar
 from tippetop.mechanics.view import Angles, state_from_angles
 from tippetop.theory import dual
-from tippetop.theory.dual import Array, derivative, jacobian, variable
+from tippetop.theory.dual import Array, Dual, derivative, jacobian, variable
 from tippetop.theory.steady import (
+    VERTICAL_SPINS,
     Branch,
     SteadyKind,
     SteadyState,
-    precession_rate_squared,
+    gyroscopic_reaction,
     rolling_spin,
     state_of,
+    weight_moment,
 )
 
 Complex: TypeAlias = NDArray[np.complex128]
@@ -105,7 +107,7 @@ def spectrum(steady: SteadyState, top: Top, frame_rate: float | None = None) -> 
         for a vertical spin. Only a vertical spin is steady in other frames.
     """
     rate = steady.precession
-    if frame_rate is not None and steady.kind in (SteadyKind.UPRIGHT, SteadyKind.INVERTED):
+    if frame_rate is not None and steady.kind in VERTICAL_SPINS:
         rate = frame_rate
     point = (np.array([steady.tilt]), np.array([steady.precession]), np.array([steady.spin]))
     eigenvalues = _eigenvalues(steady.kind, *point, np.array([rate]), top)
@@ -228,7 +230,7 @@ def _meaningless(kind: SteadyKind, angles: Angles, point: list[Array], top: Top)
     """The directions to divide out, shape (n, 8, 2 or 3): off the unit sphere, and the neutral ones."""
     zero = np.zeros_like(point[0])
     off_sphere = [*point[:3], *[zero] * 5]
-    if kind in (SteadyKind.UPRIGHT, SteadyKind.INVERTED):
+    if kind in VERTICAL_SPINS:
         directions = [off_sphere, [*[zero] * 3, *point[:3], zero, zero]]
     elif kind is SteadyKind.LEVEL:
         directions = [off_sphere, list(_turned(point)), [*[zero] * 5, zero + 1.0, zero, zero]]
@@ -239,11 +241,12 @@ def _meaningless(kind: SteadyKind, angles: Angles, point: list[Array], top: Top)
 
 
 def _along_branch(angles: Angles, top: Top) -> list[Array]:
-    """Derivative of the steady precession by its tilt."""
+    """Derivative of the steady precession by its tilt, that of its rate from the balance of the moments."""
     tilt = variable(angles.tilt)
     c = dual.cos(tilt)
-    mirrored = np.where(np.asarray(angles.precession) < 0, -1.0, 1.0)
-    rate = mirrored * precession_rate_squared(c, top) ** 0.5
+    unbalanced = weight_moment(c, top) - gyroscopic_reaction(c, top) * angles.precession**2
+    steepness = 2.0 * weight_moment(c.value, top) / angles.precession
+    rate = Dual(angles.precession, derivative(unbalanced, tilt) / steepness)
     moved = Angles(tilt, 0.0, 0.0, rate, rate * rolling_spin(c, top.surface), (0.0, 0.0))
     state = state_from_angles(moved, top, dual)
     return [derivative(number, tilt)[0] for number in (*state.axis, *state.momentum, *state.velocity)]

@@ -21,7 +21,7 @@ from tippetop.errors import InvalidInput
 from tippetop.mechanics.invariants import energy, jellett
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.surface import Surface, contact_vector
-from tippetop.mechanics.top import Top
+from tippetop.mechanics.top import Top, natural, natural_units
 from tippetop.mechanics.vectors import VERTICAL, Functions, Scalar, Vector, add, dot, scale
 from tippetop.mechanics.view import Angles, state_from_angles
 from tippetop.problem import Problem
@@ -36,6 +36,9 @@ class SteadyKind(StrEnum):
     PRECESSION = "precession"
     LEVEL = "level"
     """Axis horizontal, no axial spin, any precession: for shapes that are the same at both ends."""
+
+
+VERTICAL_SPINS = (SteadyKind.UPRIGHT, SteadyKind.INVERTED)
 
 
 @dataclass(frozen=True)
@@ -149,7 +152,8 @@ def vertical_spin(kind: SteadyKind, top: Top, spin: float) -> SteadyState:
     """The vertical spin at theta = 0 or pi with this axial spin omega3, rad/s."""
     c = 1.0 if kind is SteadyKind.UPRIGHT else -1.0
     whole = _at_rest((0.0, 0.0, c), (0.0, 0.0, c * top.axial_inertia * spin), top)
-    return SteadyState(kind, _tilt_of(kind), 0.0, spin, jellett(whole, top), energy(whole, top))
+    tilt = 0.0 if kind is SteadyKind.UPRIGHT else math.pi
+    return SteadyState(kind, tilt, 0.0, spin, jellett(whole, top), energy(whole, top))
 
 
 def level_spin(top: Top, precession: float) -> SteadyState:
@@ -176,13 +180,10 @@ def steady_states(top: Top, jellett: float) -> list[SteadyState]:
     With lambda = phi' Lambda(theta), a steady precession is a root of lambda^2 (I3 omega3/phi' - I1 c) -
     m g h' Lambda^2, which is regular everywhere (a polynomial of degree 4 in c for the eccentric sphere).
     """
-    upright = vertical_spin(
-        SteadyKind.UPRIGHT, top, jellett / vertical_spin(SteadyKind.UPRIGHT, top, 1.0).jellett
+    upright, inverted = (
+        vertical_spin(kind, top, jellett / vertical_spin(kind, top, 1.0).jellett) for kind in VERTICAL_SPINS
     )
-    inverted = vertical_spin(
-        SteadyKind.INVERTED, top, jellett / vertical_spin(SteadyKind.INVERTED, top, 1.0).jellett
-    )
-    between = [_precession_at(tilt, jellett, top) for tilt in _precession_tilts(top, jellett)]
+    between = [precession_at(tilt, jellett, top) for tilt in _precession_tilts(top, jellett)]
     if has_level_spin(top):
         between.append(level_spin(top, jellett / level_spin(top, 1.0).jellett))
     return [upright, *sorted(between, key=lambda state: state.tilt), inverted]
@@ -194,13 +195,7 @@ def has_level_spin(top: Top) -> bool:
 
 
 def require_sphere(top: Top) -> None:
-    """Refuse a body that is no eccentric sphere.
-
-    Raises
-    ------
-    InvalidInput
-        If it is none.
-    """
+    """Refuse a body that is no eccentric sphere, with `InvalidInput`."""
     if not top.surface.spherical:
         raise InvalidInput(
             "body.shape", top.surface, "an eccentric sphere; Jellett's integral holds for no other"
@@ -208,13 +203,7 @@ def require_sphere(top: Top) -> None:
 
 
 def require_jellett(top: Top) -> None:
-    """Refuse a top that does not conserve Jellett's integral.
-
-    Raises
-    ------
-    InvalidInput
-        If its body or its friction does not.
-    """
+    """Refuse a top that does not conserve Jellett's integral, with `InvalidInput`."""
     require_sphere(top)
     if not top.conserves_jellett:
         raise InvalidInput(
@@ -223,7 +212,18 @@ def require_jellett(top: Top) -> None:
 
 
 def jellett_of_launch(problem: Problem) -> float:
-    """Jellett's integral of a launch, kg m^3/s."""
+    """Jellett's integral of a launch, kg m^3/s.
+
+    Raises
+    ------
+    InvalidInput
+        If it turns so fast that rounding hides what the weight does.
+    """
+    fastest = FASTEST / float(natural_units(problem.top).time)
+    for name in ("spin", "tilt_rate", "precession"):
+        rate = getattr(problem.launch, name)
+        if abs(rate) > fastest:
+            raise InvalidInput(f"launch.{name}", rate, f"at most {fastest:.3g} rad/s, for the theory to tell")
     return float(jellett(problem.start(), problem.top))
 
 
@@ -235,14 +235,10 @@ def least_energy(tilt: Scalar, jellett: Scalar, top: Top, functions: Functions) 
     """
     axis = (functions.sin(tilt), 0.0, functions.cos(tilt))
     potential = energy(_at_rest(axis, (0.0, 0.0, 0.0), top), top)
-    return potential + 0.5 * jellett**2 / inertia_about_contact(axis, top)
-
-
-def inertia_about_contact(axis: Vector, top: Top) -> Scalar:
-    """Inertia a.I a about the contact vector, kg m^4: lambda^2 / (2 a.I a) is the least kinetic energy."""
     arm = contact_vector(axis, top.surface)
     along = dot(arm, axis)
-    return top.transverse_inertia * (dot(arm, arm) - along**2) + top.axial_inertia * along**2
+    inertia = top.transverse_inertia * (dot(arm, arm) - along**2) + top.axial_inertia * along**2
+    return potential + 0.5 * jellett**2 / inertia
 
 
 def state_of(steady: SteadyState, top: Top) -> SlidingState:
@@ -257,11 +253,7 @@ def _at_rest(axis: Vector, momentum: Vector, top: Top) -> State:
     return State(axis, momentum, zero, top.surface.height(axis[2]))
 
 
-def _tilt_of(kind: SteadyKind) -> float:
-    return 0.0 if kind is SteadyKind.UPRIGHT else math.pi
-
-
-def _precession_at(tilt: float, jellett: float, top: Top) -> SteadyState:
+def precession_at(tilt: float, jellett: float, top: Top) -> SteadyState:
     """The steady precession at a tilt known to be one for this Jellett's integral."""
     rolling = rolling_precession(tilt, top, math)
     rate = jellett / rolling.jellett
@@ -271,6 +263,9 @@ def _precession_at(tilt: float, jellett: float, top: Top) -> SteadyState:
         SteadyKind.PRECESSION, tilt, float(rate), float(spin), jellett, float(energy(whole, top))
     )
 
+
+FASTEST = 1e8
+"""Angular velocity in natural units beyond which the theory says nothing: beside it, weight is rounding."""
 
 _DEGREES = (8, 32, 128, 512)
 _ROUNDING = 1e-13
@@ -282,22 +277,22 @@ def _precession_tilts(top: Top, jellett: float) -> list[float]:
     The balance is smooth in c, so it is its Chebyshev series, whose roots are the eigenvalues of a matrix:
     none is missed, however close two of them are.
     """
-    if jellett == 0.0:
-        return []
+    scaled, square = natural(top), (jellett / float(natural_units(top).jellett)) ** 2
 
     def balance(c: Array) -> Array:
-        rolling = rolling_precession(np.arccos(c), top, np)
-        supported = weight_moment(c, top) * (rolling.jellett / jellett) ** 2
-        balanced: Array = (gyroscopic_reaction(c, top) - supported) / top.axial_inertia
+        supported = weight_moment(c, scaled) * rolling_precession(np.arccos(c), scaled, np).jellett ** 2
+        balanced: Array = (square * gyroscopic_reaction(c, scaled) - supported) / (1.0 + square)
         return balanced
 
+    inertias = scaled.transverse_inertia + scaled.axial_inertia
+    negligible = noise = 1e-15 * inertias * square / (1.0 + square)
     series = np.zeros(1)
     for degree in _DEGREES:
         series = chebyshev.chebinterpolate(balance, degree)  # type: ignore[arg-type]  # its stub knows no arrays
-        size = np.abs(series)
-        if size[-2:].max() <= _ROUNDING * size.max():
+        negligible = max(noise, _ROUNDING * np.abs(series).max())
+        if np.abs(series[-2:]).max() <= negligible:
             break
-    roots = chebyshev.chebroots(chebyshev.chebtrim(series, _ROUNDING * np.abs(series).max()))
+    roots = chebyshev.chebroots(chebyshev.chebtrim(series, negligible))
     cosines = np.sort(roots[np.isreal(roots)].real)[::-1]
     level = 1e-9 * top.surface.size
     return [math.acos(c) for c in cosines if -1.0 < c < 1.0 and abs(top.surface.slope(c)) > level]

@@ -26,6 +26,7 @@ from tippetop.problem import Problem
 from tippetop.theory.dual import Array
 from tippetop.theory.stability import linear_tilts, vertical_growth_rates
 from tippetop.theory.steady import (
+    VERTICAL_SPINS,
     SteadyKind,
     jellett_of_launch,
     precession_branch,
@@ -95,10 +96,12 @@ def critical_spins(problem: Problem) -> CriticalSpins:
 
     The Jellett's integral of a launch is linear in its spin; for one at rest in tilt it is
     R I3 spin (cos(tilt) - alpha). Its sign does not matter, and the larger of
-    the two spins is returned.
+    the two spins is returned. Where it is not conserved, they are those of the vertical spins themselves.
     """
+    if not problem.top.conserves_jellett:
+        return CriticalSpins(*(critical_spin(kind, problem.top) for kind in VERTICAL_SPINS))
     line = _jellett_line(problem)
-    return CriticalSpins(*(line.spin_at(critical_jellett(kind, problem.top)) for kind in _VERTICAL))
+    return CriticalSpins(*(line.spin_at(critical_jellett(kind, problem.top)) for kind in VERTICAL_SPINS))
 
 
 def vertical_spins_of_launches(kind: SteadyKind, problem: Problem, spins: Array) -> Array:
@@ -161,8 +164,8 @@ def apparent_critical_spins(problem: Problem, window: float, visible: float) -> 
 
     # Where even the threshold's own slow motion has come within `visible`, the bias is upward.
     settles = math.isfinite(real.upright) and tilt_left(real.upright) < 0.0
-    search = _away_from_rest if settles else _toward_rest
-    return CriticalSpins(search(tilt_left, real.upright), _away_from_rest(distance_left, real.inverted))
+    upright = _walk(tilt_left, real.upright, outward=settles)
+    return CriticalSpins(upright, _walk(distance_left, real.inverted, outward=True))
 
 
 class _JellettLine(NamedTuple):
@@ -181,33 +184,26 @@ class _JellettLine(NamedTuple):
         return critical / abs(self.per_spin) - self.at_rest / self.per_spin
 
 
-_VERTICAL = (SteadyKind.UPRIGHT, SteadyKind.INVERTED)
 _SEARCH = 1.05
 
 
 def _jellett_line(problem: Problem) -> _JellettLine:
-    at_rest = jellett_of_launch(problem.replace({"launch.spin": 0.0}))
-    return _JellettLine(at_rest, jellett_of_launch(problem.replace({"launch.spin": 1.0})) - at_rest)
+    still = {"spin": 0.0, "tilt_rate": 0.0, "precession": 0.0}
+    at_rest, per_spin = (
+        jellett_of_launch(problem.model_copy(update={"launch": problem.launch.model_copy(update=changes)}))
+        for changes in ({"spin": 0.0}, {**still, "spin": 1.0})
+    )
+    return _JellettLine(at_rest, per_spin)
 
 
-def _toward_rest(function: Callable[[float], float], start: float) -> float:
-    """First root below `start`; 0 if there is none, inf if the search starts there."""
-    return _walk(function, start, 1.0 / _SEARCH, 0.0)
-
-
-def _away_from_rest(function: Callable[[float], float], start: float) -> float:
-    """First root above `start`; inf if there is none."""
-    return _walk(function, start, _SEARCH, math.inf)
-
-
-def _walk(function: Callable[[float], float], start: float, factor: float, otherwise: float) -> float:
-    """First root on the way from `start` in steps of a factor, up to a factor 100."""
+def _walk(function: Callable[[float], float], start: float, outward: bool) -> float:
+    """First root above `start`, or below it, up to a factor 100: inf or 0 if there is none."""
     if math.isinf(start):
         return start
-    near = start
+    near, factor = start, _SEARCH if outward else 1.0 / _SEARCH
     for _ in range(95):
         far = near * factor
         if function(near) * function(far) <= 0.0:
             return float(brentq(function, near, far, rtol=1e-12))
         near = far
-    return otherwise
+    return math.inf if outward else 0.0

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.integrate import DOP853, OdeSolution
 
+from tippetop.mechanics.view import Angles
 from tippetop.theory.drain import WhirlRates, whirl_rates
 from tippetop.theory.drift import Drift, drift, smooth_precession
 from tippetop.theory.dual import Array
@@ -18,11 +19,71 @@ from tippetop.theory.nutation import (
     Numbers,
     Orbit,
     Whirls,
+    orbit_of_angles,
     orbit_of_whirls,
     turning_tilts,
     upside_down,
     whirls,
 )
+
+
+class Nutation(NamedTuple):
+    """A nutation at an instant, in natural units, seen from the pole that it is nearer to.
+
+    Attributes
+    ----------
+    orbit
+        As if that pole were theta = 0.
+    turned
+        Whether it is theta = pi.
+    log_scale
+        Logarithm of what the whirls are of those of `orbit`: for nutations so narrow that their squares are
+        no numbers. They are linear.
+    """
+
+    orbit: Orbit
+    turned: bool
+    log_scale: float = 0.0
+
+    @property
+    def point(self) -> Array:
+        """Logarithms of its whirls, and sqrt(|p3|): what is followed."""
+        pair = whirls(self.orbit)
+        least = _NO_WHIRL * (pair.fast + pair.slow)
+        logs = [math.log(max(whirl, least)) + self.log_scale for whirl in pair]
+        return np.array([*logs, math.sqrt(abs(self.orbit.far))])
+
+    def turn(self, numbers: Numbers) -> "Nutation":
+        """The same seen from the other pole."""
+        return Nutation(upside_down(self.orbit, numbers.turned if self.turned else numbers), not self.turned)
+
+    @property
+    def tilts(self) -> tuple[float, float]:
+        """Its turning tilts, rad."""
+        near, far = max(self.orbit.middle - self.orbit.half, 0.0), self.orbit.middle + self.orbit.half
+        scale = math.exp(0.5 * self.log_scale)
+        low, high = (2.0 * scale * math.asin(math.sqrt(min(0.5 * p, 1.0))) for p in (near, far))
+        return (math.pi - high, math.pi - low) if self.turned else (low, high)
+
+
+def launched(angles: Angles, numbers: Numbers) -> Nutation:
+    """The nutation of a launch, both in natural units."""
+    upright = orbit_of_angles(angles, numbers)
+    turned = upright.middle > 1.0
+    if turned:
+        seen = upside_down(upright, numbers)
+        numbers, tilt = numbers.turned, math.pi - angles.tilt
+        if angles.tilt > 0.5 * math.pi:  # as exact as the tilt, but for pi itself, which is vertical
+            tilt = math.asin(math.sin(angles.tilt)) if angles.tilt < math.pi else 0.0
+        angles = angles._replace(tilt=tilt, spin=-angles.spin)
+    width = max(angles.tilt, abs(angles.tilt_rate), abs(angles.tilt * angles.precession))
+    wider = _NARROW / width if 0.0 < width < _NARROW else 1.0
+    wide = angles._replace(tilt=wider * angles.tilt, tilt_rate=wider * angles.tilt_rate)
+    orbit = orbit_of_angles(wide, numbers)
+    if turned and not orbit.far < -_APART:  # where it just passes or just reaches the pole
+        middle = max(seen.middle, seen.half, _APART)
+        return Nutation(seen._replace(middle=middle, far=min(seen.far, -(_APART**2))), turned)
+    return Nutation(orbit, turned, -2.0 * math.log(wider))
 
 
 class Goals(NamedTuple):
@@ -55,21 +116,21 @@ class Stage(NamedTuple):
     time: Array
     low: Array
     high: Array
-    end: Orbit
+    end: Nutation
     tail: Drift | None
     final_tilt: float
     done: bool
 
 
 def follow_nutation(
-    path: Orbit, jellett: float, numbers: Numbers, goals: Goals, samples: int, tolerance: float
+    begin: Nutation, jellett: float, numbers: Numbers, goals: Goals, samples: int, tolerance: float
 ) -> Stage:
     """Follow the whirls until the nutation has died away, is steady, or is nearer to the other pole.
 
     Parameters
     ----------
-    path
-        The nutation at the beginning, in natural units.
+    begin
+        The nutation at the beginning.
     jellett
         Jellett's integral.
     numbers
@@ -81,18 +142,14 @@ def follow_nutation(
     tolerance
         Error in a step, of the logarithms.
     """
-    turned = path.middle > 1.0
-    seen, seen_numbers = upside_down(path, numbers) if turned else (path, numbers)
-    pair = Whirls(*(float(whirl) for whirl in whirls(seen)))
-    least = _NO_WHIRL * (pair.fast + pair.slow)
-    point = np.array(
-        [math.log(max(pair.fast, least)), math.log(max(pair.slow, least)), math.sqrt(abs(seen.far))]
-    )
+    turned, seen = begin.turned, begin.orbit
+    seen_numbers = numbers.turned if turned else numbers
+    point = begin.point
 
     def rates(_: float, y: Array) -> Array:
         return np.array(_rates(_whirls_of(y), float(y[2]), jellett, seen_numbers))
 
-    first = _FIRST_STEP / np.abs(rates(0.0, point)).max()
+    first = _LONGEST / max(1.0, _LONGEST * np.abs(rates(0.0, point)).max())
     solver = DOP853(rates, 0.0, point, _LONGEST, first_step=first, rtol=tolerance, atol=tolerance)
     times, points, pieces = [0.0], [point], []
     tail: Drift | None = None
@@ -100,11 +157,11 @@ def follow_nutation(
     for _ in range(_MOST_STEPS):
         pair = _whirls_of(solver.y)
         seen = orbit_of_whirls(pair, float(solver.y[2]), jellett, seen_numbers)
-        path = upside_down(seen, seen_numbers)[0] if turned else seen
         final = _reached(_seen_tilts(pair, turned), goals)
         if math.isfinite(final):
             break
         if _dies(seen, pair, WhirlRates(*solver.f)):
+            path = upside_down(seen, seen_numbers) if turned else seen
             tail = _drift_from(path, jellett, numbers, goals)
             if tail is not None:
                 final = tail.final_tilt
@@ -112,7 +169,7 @@ def follow_nutation(
         if seen.middle > _FAR_FROM_POLE:
             done = False
             break
-        if solver.step() is not None:
+        if solver.status == "finished" or solver.step() is not None:
             break
         times.append(float(solver.t))
         points.append(solver.y)
@@ -123,17 +180,28 @@ def follow_nutation(
         times = list(np.linspace(times[0], times[-1], samples))
         points = list(solution(times).T)
     low, high = _seen_tilts(Whirls(*np.exp(np.array(points)[:, :2]).T), turned)
-    return Stage(np.array(times), low, high, path, tail, final, done)
+    return Stage(np.array(times), low, high, Nutation(seen, turned), tail, final, done)
 
 
 _DEAD = 1e-3
 """Half-width of the nutation over sin^2(theta) below which the tilt alone is followed."""
 
+_NEAR_POLE = 1e-10
+"""sin^2(theta) below which the whirls are followed all the same: a tilt so near to pi is no number."""
+
 _FAR_FROM_POLE = 1.3
 """Middle of the nutation, 1 - cos(theta), beyond which the other pole is clearly nearer."""
 
+_NARROW = 1e-6
+"""Amplitude of a nutation, rad, below which it is linear."""
+
+_APART = 1e-6
+"""Third root, 1 + cos(theta), that is told from the turning point at theta = pi."""
+
+_NARROWEST = -55.0
+"""Logarithm of whirls that are as good as any smaller ones."""
+
 _LONGEST = 1e5
-_FIRST_STEP = 1.0
 _MOST_STEPS = 400
 _LEAST_WHIRL = 1e-7
 _NO_WHIRL = 1e-16
@@ -151,9 +219,10 @@ def _rates(pair: Whirls, root: float, jellett: float, numbers: Numbers) -> Whirl
 def _whirls_of(y: Array) -> Whirls:
     """The whirls with these logarithms, neither taken so small that its rate would be lost in rounding.
 
-    The logarithmic rate of a small whirl does not depend on its size.
+    The logarithmic rate of a small whirl does not depend on its size, nor do those of two small ones.
     """
-    fast, slow = math.exp(min(y[0], 0.0)), math.exp(min(y[1], 0.0))
+    lift = max(0.0, _NARROWEST - max(y[0], y[1]))
+    fast, slow = math.exp(min(y[0] + lift, 0.0)), math.exp(min(y[1] + lift, 0.0))
     return Whirls(max(fast, _LEAST_WHIRL * slow), max(slow, _LEAST_WHIRL * fast))
 
 
@@ -175,7 +244,7 @@ def _reached(tilts: tuple[Array, Array], goals: Goals) -> float:
 def _dies(path: Orbit, pair: Whirls, rates: WhirlRates) -> bool:
     """Whether the nutation is small, and getting smaller, relative to the distance from the vertical."""
     sine_squared = path.middle * (2.0 - path.middle)
-    if path.half > _DEAD * sine_squared:
+    if path.half > _DEAD * sine_squared or sine_squared < _NEAR_POLE:
         return False
     middle_rate = 2.0 * (pair.fast * rates.fast + pair.slow * rates.slow)
     widening = 0.5 * (rates.fast + rates.slow) - middle_rate * 2.0 * (1.0 - path.middle) / sine_squared
@@ -188,7 +257,7 @@ def _drift_from(path: Orbit, jellett: float, numbers: Numbers, goals: Goals) -> 
     sine_squared = path.middle * (2.0 - path.middle)
     turning = (path.excess + path.axial * path.middle) / (numbers.transverse * sine_squared)
     c = np.float64(1.0 - path.middle)
-    with np.errstate(invalid="ignore"):
+    with np.errstate(invalid="ignore", divide="ignore"):
         fast, slow = (smooth_precession(c, jellett, which, numbers) for which in (True, False))
     if not math.isfinite(fast):
         return None
