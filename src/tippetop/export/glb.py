@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 
 from tippetop import __version__
 from tippetop.errors import InvalidInput
-from tippetop.export.geometry import Mesh, lathe, size, toy_parts
+from tippetop.export.geometry import Mesh, lathe, linear
 from tippetop.export.poses import poses_at
 from tippetop.export.words import tell
+from tippetop.figures.looks import SCENES, size, toy_parts
 from tippetop.files import refuse_overwriting, written_beside
 from tippetop.problem import Body, Problem
 
@@ -26,7 +27,6 @@ MOST_KEYS = 100_000
 _FLOAT, _UNSIGNED = 5126, 5125
 _VERTICES, _INDICES = 34962, 34963
 _TABLE_RADII = 8.0
-_TABLE_COLOUR = (0.74, 0.68, 0.56, 1.0)
 
 
 def write_glb(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Path:
@@ -57,8 +57,9 @@ def glb_bytes(run: xr.Dataset) -> bytes:
     quaternions[1:] *= flips[:, None]
 
     model = _Model()
-    toy = model.mesh("toy", [(lathe(part), part.opacity) for part in toy_parts(problem.body)])
-    table = model.mesh("table", [(_disc(_TABLE_RADII * size(problem.body)), 1.0)])
+    unit = size(problem.body)
+    toy = model.mesh("toy", [(lathe(part, unit), part.opacity) for part in toy_parts(problem.body)])
+    table = model.mesh("table", [(_disc(_TABLE_RADII * unit), 1.0)])
     start = {"translation": poses.positions[0].tolist(), "rotation": quaternions[0, [1, 2, 3, 0]].tolist()}
     # glTF has y up; the root turns z up into it.
     half = 0.5**0.5
@@ -116,7 +117,7 @@ def _disc(radius: float) -> Mesh:
     points = np.concatenate([np.zeros((1, 3)), rim])
     number = np.arange(64)
     triangles = np.stack([0 * number, 1 + number, 1 + (number + 1) % 64], axis=1)
-    colours = np.tile(_TABLE_COLOUR[:3], (65, 1))
+    colours = np.tile(linear(str(SCENES["light"]["table"])), (65, 1))
     return Mesh(points, np.tile([0.0, 0.0, 1.0], (65, 1)), colours, triangles.astype(np.uint32))
 
 

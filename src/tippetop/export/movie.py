@@ -14,8 +14,9 @@ from PIL import Image, ImageDraw, ImageFont
 from tippetop.errors import FileTrouble, InvalidInput, Unavailable
 from tippetop.export.camera import view_of
 from tippetop.export.poses import poses_at, turned
-from tippetop.export.raycast import CAPTION, Toy, fine_path, picture
+from tippetop.export.raycast import CAPTION, fine_path, picture
 from tippetop.export.words import tell
+from tippetop.figures.toy import Toy
 from tippetop.files import refuse_overwriting, written_beside
 from tippetop.mechanics.shape import contact_vector
 from tippetop.problem import Problem

@@ -14,8 +14,8 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from tippetop.dataset import LABELS
-from tippetop.export.geometry import size, toy_parts
 from tippetop.export.words import Story, tell
+from tippetop.figures.looks import SCENES, size, toy_parts
 from tippetop.mechanics.motion import contact
 from tippetop.mechanics.shape import contact_vector
 from tippetop.problem import Problem
@@ -68,15 +68,11 @@ def pack_run(run: xr.Dataset, story: Story | None = None) -> bytes:
             "I3": problem.body.I3,
             "size": size(problem.body),
             "parts": [
-                {
-                    "name": part.name,
-                    "profile": np.round(part.profile, 9).tolist(),
-                    "colours": part.colours,
-                    "opacity": part.opacity,
-                }
+                part._replace(profile=part.profile.round(9).tolist())._asdict()
                 for part in toy_parts(problem.body)
             ],
         },
+        "scenes": SCENES,
         "story": {"headline": story.headline, "details": story.details} if story else _told(run),
         "problem": json.loads(run.attrs["problem"]),
     }
