@@ -21,12 +21,12 @@ export default {
     this.map?.dispose();
   },
   methods: {
-    begin(map) {
+    begin(...map) {
       this.$el.classList.add("lab-map-begun");
-      this.map.begin(map);
+      this.map.begin(...map);
     },
-    put(cells, tilts, flights, fates) {
-      this.map.put(cells, tilts, flights, fates);
+    put(...cells) {
+      this.map.put(...cells);
     },
     here(place) {
       this.map.here(place);

@@ -25,9 +25,9 @@ export class PhaseMap extends EventTarget {
     canvas.addEventListener("keydown", (event) => this.key(event));
   }
 
-  // Begin a map: its spins, friction coefficients, the unit of the latter, spins to mark, and what fates mean.
-  begin({ spins, frictions, unit, marks, fates }) {
-    Object.assign(this, { spins, frictions, unit, marks, fates });
+  // Begin a map: its spins, friction coefficients, the unit of the latter, and spins to mark.
+  begin(spins, frictions, unit, marks) {
+    Object.assign(this, { spins, frictions, unit, marks });
     this.cells = new Array(spins.length * frictions.length).fill(null);
     this.paint();
     this.point(null);
@@ -95,7 +95,7 @@ export class PhaseMap extends EventTarget {
     this.chosen = cell;
     if (cell) {
       const where = `spin ${this.spins[cell.column]} rad/s, μ ${this.frictions[cell.row]}${this.unit}`;
-      this.tip.textContent = `${where}: ${this.fates[cell.fate] || ended(cell)}`;
+      this.tip.textContent = `${where}: ${cell.fate || ended(cell)}`;
     } else this.tip.textContent = this.cells ? "Point at a cell, click to launch it." : "";
     this.draw();
   }
