@@ -41,7 +41,7 @@ _BOWL = (CONVERGED, CONVERGED, _PALE) * 2
 _BAND = (_CREAM, _CREAM, _CREAM, _CREAM, REPORT, REPORT)
 
 
-class Part(NamedTuple):
+class ToyPart(NamedTuple):
     """A surface of revolution.
 
     Attributes
@@ -68,7 +68,7 @@ def size(body: Body) -> float:
     return shape.radius if isinstance(shape, EccentricSphere) else max(shape.across, shape.along)
 
 
-def toy_parts(body: Body) -> tuple[Part, ...]:
+def toy_parts(body: Body) -> tuple[ToyPart, ...]:
     """The parts of the toy for this body: of a tippe top, or the belts of an egg."""
     shape = body.shape
     if isinstance(shape, EccentricSphere):
@@ -76,23 +76,23 @@ def toy_parts(body: Body) -> tuple[Part, ...]:
     belts = pairwise((-np.pi / 2, -0.12, 0.12, np.pi / 2))
     semi_axes = np.array([shape.across, shape.along]) / size(body)
     return tuple(
-        Part(f"egg {number}", _arc(low, high) * semi_axes, colours)
+        ToyPart(f"egg {number}", _arc(low, high) * semi_axes, colours)
         for number, ((low, high), colours) in enumerate(zip(belts, (_BOWL, _BAND, _BOWL), strict=True))
     )
 
 
-def _tippe_top(eccentricity: float) -> tuple[Part, ...]:
+def _tippe_top(eccentricity: float) -> tuple[ToyPart, ...]:
     edge = float(np.arcsin(FACE))
     rim = float(np.cos(edge)) - 0.04
     knob = _arc(0.0, np.pi / 2, 9) * KNOB + (0.0, STEM_TOP)
     parts = (
-        Part("stem", np.array([(STEM, FACE), *knob]), _WOOD),
-        Part("bowl", _arc(-np.pi / 2, edge - 0.30, 22), _BOWL),
-        Part("band", _arc(edge - 0.30, edge - 0.18, 4), _BAND),
-        Part("collar", _arc(edge - 0.18, edge, 4), _BOWL),
-        Part("rim", np.array([(np.cos(edge), FACE), (rim, FACE)]), (_CREAM,)),
-        Part("face", np.array([(rim, FACE), (STEM, FACE)]), (_CREAM, _CREAM, _SAND)),
-        Part("glass", _arc(edge, np.pi / 2), ("#BFD8EA",), opacity=0.16),
+        ToyPart("stem", np.array([(STEM, FACE), *knob]), _WOOD),
+        ToyPart("bowl", _arc(-np.pi / 2, edge - 0.30, 22), _BOWL),
+        ToyPart("band", _arc(edge - 0.30, edge - 0.18, 4), _BAND),
+        ToyPart("collar", _arc(edge - 0.18, edge, 4), _BOWL),
+        ToyPart("rim", np.array([(np.cos(edge), FACE), (rim, FACE)]), (_CREAM,)),
+        ToyPart("face", np.array([(rim, FACE), (STEM, FACE)]), (_CREAM, _CREAM, _SAND)),
+        ToyPart("glass", _arc(edge, np.pi / 2), ("#BFD8EA",), opacity=0.16),
     )
     shift = np.array([0.0, eccentricity])
     return tuple(part._replace(profile=part.profile + shift) for part in parts)
