@@ -5,13 +5,13 @@ import { PhaseMap } from "tippetop-lab/map.js";
 
 export default {
   template: `<div class="lab-map">
-    <canvas tabindex="0" role="application" aria-label="Map of final tilts over spin and friction.
-      Arrow keys choose a cell, Enter launches it."></canvas>
+    <div class="lab-map-chart" tabindex="0" role="application" aria-label="Map of final tilts over spin and friction.
+      Arrow keys choose a cell, Enter launches it."></div>
     <div class="lab-map-key" aria-hidden="true"><span>upright <i></i> inverted</span>
       <span><b></b> leaves the table</span><span><u></u> no final tilt; point to see why</span></div>
     <p class="lab-map-tip" aria-live="polite"></p></div>`,
   mounted() {
-    this.map = new PhaseMap(this.$el.querySelector("canvas"), this.$el.querySelector(".lab-map-tip"));
+    this.map = new PhaseMap(this.$el.querySelector(".lab-map-chart"), this.$el.querySelector(".lab-map-tip"));
     lab.map = this.map;
     this.map.addEventListener("launch", ({ detail }) => this.$emit("launch", detail));
     this.observer = watchTheme((dark) => this.map.setTheme(dark));
