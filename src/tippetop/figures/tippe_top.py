@@ -17,7 +17,7 @@ _REACH = 1.05
 """Half the width of the picture of a toy, in radii."""
 _STAGES = (
     (0.0, "Upright, $\\theta = 0$", "as it rests, and as it is launched"),
-    (75.0, "Turning over, $\\theta = 75°$", "the sphere rubs on the table"),
+    (75.0, "Turning over, $\\theta = 75°$", "the sphere slides on the table"),
     (180.0, "Inverted, $\\theta = 180°$", "it spins on its stem, higher up"),
 )
 

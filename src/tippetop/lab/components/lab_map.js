@@ -1,6 +1,6 @@
 // The phase map on the page.
 
-import { lab, watchTheme } from "tippetop-lab";
+import { lab, followTheme } from "tippetop-lab";
 import { PhaseMap } from "tippetop-lab/map.js";
 
 export default {
@@ -14,7 +14,7 @@ export default {
     this.map = new PhaseMap(this.$el.querySelector(".lab-map-chart"), this.$el.querySelector(".lab-map-tip"));
     lab.map = this.map;
     this.map.addEventListener("launch", ({ detail }) => this.$emit("launch", detail));
-    this.observer = watchTheme((dark) => this.map.setTheme(dark));
+    this.observer = followTheme((dark) => this.map.setTheme(dark));
   },
   unmounted() {
     this.observer?.disconnect();
