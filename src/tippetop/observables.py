@@ -1,5 +1,6 @@
 """What is read off a run at its samples: the report's variables, forces and invariants."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -240,7 +241,7 @@ def observe(samples: Samples, top: Top, units: Units) -> dict[str, Array]:
         "axis": np.stack(axis, axis=1),
         "velocity": np.stack(state.velocity, axis=1) * units.speed,
         "angular_momentum": np.stack(momentum, axis=1) * units.angular_momentum,
-        "orientation": continuous(np.stack(orientation(axis, samples.turn, samples.pole, np), axis=1)),
+        "orientation": continuous(orientation(axis, samples.turn, samples.pole, np)),
     }
 
 
@@ -252,8 +253,9 @@ def evenly_summed(gains: Array) -> Array:
     return found
 
 
-def continuous(quaternions: Array) -> Array:
-    """Quaternions, shape (k, 4), with the signs that let none jump from the one before."""
+def continuous(components: Sequence[Array]) -> Array:
+    """Quaternions, shape (k, 4), from components of shape (k,), with the signs that let none jump."""
+    quaternions = np.stack(components, axis=1)
     jumps = np.einsum("ij,ij->i", quaternions[1:], quaternions[:-1]) < 0
     signs = np.concatenate(([1.0], np.cumprod(np.where(jumps, -1.0, 1.0))))
     return np.asarray(quaternions * signs[:, None])

@@ -1,8 +1,11 @@
 import numpy as np
 import pytest
+from matplotlib.colors import to_rgb
 
 import tippetop as tt
-from tippetop.export import geometry
+from tippetop.export.geometry import lathe
+from tippetop.figures.looks import size, toy_parts
+from tippetop.figures.toy import FAR, Toy
 from tippetop.mechanics.surface import contact_vector
 
 EGG = tt.Body(mass=0.02, shape=tt.Spheroid(across=0.015, along=0.025), I1=4e-6, I3=2e-6)
@@ -11,34 +14,61 @@ BODIES = [tt.presets.REPORT, EGG]
 
 @pytest.mark.parametrize("body", BODIES, ids=["top", "egg"])
 def test_the_toy_touches_the_table_where_the_model_does(body: tt.Body) -> None:
-    points = np.concatenate([part.profile for part in geometry.toy_parts(body)])
+    points = np.concatenate([part.profile for part in toy_parts(body)])
     for tilt in np.linspace(0.0, np.pi, 61):
         axis = (np.sin(tilt), 0.0, np.cos(tilt))
         # The lowest point of a circle of the body with radius r at height z along the axis.
         lowest = (points[:, 1] * np.cos(tilt) - points[:, 0] * np.sin(tilt)).min()
-        assert lowest == pytest.approx(
-            contact_vector(axis, body.shape.surface)[2], abs=0.004 * geometry.size(body)
-        )
+        assert lowest == pytest.approx(contact_vector(axis, body.shape.surface)[2] / size(body), abs=0.004)
 
 
 @pytest.mark.parametrize("body", BODIES, ids=["top", "egg"])
 def test_triangles_and_normals_point_outwards(body: tt.Body) -> None:
-    for part in geometry.toy_parts(body):
-        mesh = geometry.lathe(part)
+    for part in toy_parts(body):
+        mesh = lathe(part, size(body))
         a, b, c = (mesh.points[mesh.triangles[:, k]] for k in range(3))
         across = np.cross(b - a, c - a)
         assert np.linalg.norm(mesh.normals, axis=1) == pytest.approx(1.0)
         assert (np.einsum("ij,ij->i", across, mesh.normals[mesh.triangles[:, 0]]) > 0).all()
 
 
+@pytest.mark.parametrize("body", BODIES, ids=["top", "egg"])
+def test_rays_meet_the_toy_where_the_triangles_are(body: tt.Body) -> None:
+    """From outside through the middle of a triangle, a ray ends there, or at one that hides it."""
+    toy = Toy(body)
+    for part in toy_parts(body):
+        if part.opacity < 1:
+            continue
+        mesh = lathe(part, 1.0, 240)
+        middles, normals = mesh.points[mesh.triangles].mean(axis=1), mesh.normals[mesh.triangles].mean(axis=1)
+        start = middles + 3 * normals
+        distance, normal = toy.meet(start, -normals)
+        assert distance.max() < FAR
+        seen = np.abs(distance - 3) < 0.01
+        assert seen.mean() > 0.5
+        assert (np.einsum("ij,ij->i", normal, normals)[seen] > 0.9 * (normals**2).sum(axis=1)[seen]).all()
+        # Near the borders of a part and of its sectors, facets and surface differ.
+        colours = toy.paint(start - distance[:, None] * normals)[seen]
+        assert (np.isin(colours, [to_rgb(colour) for colour in part.colours])).mean() > 0.9
+        first = np.arctan2(middles[:, 1], middles[:, 0]) % (2 * np.pi) < 2 * np.pi / len(part.colours)
+        sector = (colours == to_rgb(part.colours[0])).all(axis=1)
+        assert sector[first[seen]].mean() > 0.8
+
+
+def test_rays_that_pass_the_toy_by_miss_it() -> None:
+    toy = Toy(tt.presets.REPORT)
+    beside = toy.middle + np.array([[-5.0, 1.01, 0.0], [-5.0, 0.3, 0.6], [-5.0, 0.0, 1.01]])
+    ahead = np.tile([1.0, 0.0, 0.0], (3, 1))
+    assert (toy.meet(beside, ahead)[0] == FAR).all(), "beside the sphere, the stem, and above it"
+    through = toy.middle + np.array([[-5.0, 0.0, 0.6], [-5.0, 0.0, 0.99]])
+    assert (toy.meet(through, ahead[:2])[0] < 5).all(), "the stem is there"
+
+
 def test_the_solid_is_closed_and_holds_what_the_formulas_say() -> None:
-    parts = [part for part in geometry.toy_parts(EGG) if part.opacity == 1]
-    mesh = geometry.joined([geometry.lathe(part, 480) for part in parts])
-    a, b, c = (mesh.points[mesh.triangles[:, k]] for k in range(3))
-    volume = np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6
+    parts = [part for part in toy_parts(EGG) if part.opacity == 1]
+    volume = 0.0
+    for part in parts:
+        mesh = lathe(part, size(EGG), 480)
+        a, b, c = (mesh.points[mesh.triangles[:, k]] for k in range(3))
+        volume += np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6
     assert volume == pytest.approx(4 / 3 * np.pi * 0.015**2 * 0.025, rel=0.01)
-
-
-def test_reach_is_the_farthest_point_of_the_surface() -> None:
-    radius, eccentricity = tt.presets.REPORT.shape.radius, tt.presets.REPORT.shape.eccentricity
-    assert geometry.reach(tt.presets.REPORT) == pytest.approx(radius * (1 + eccentricity))

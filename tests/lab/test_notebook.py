@@ -74,8 +74,10 @@ def test_the_notebook_runs_from_top_to_bottom(tmp_path: Path, monkeypatch: pytes
     monkeypatch.chdir(tmp_path)
     cells = json.loads(NOTEBOOK.read_text(encoding="utf-8"))["cells"]
     names: dict[str, object] = {}
-    for cell in cells:
-        if cell["cell_type"] == "code":
-            assert cell["outputs"] == [], "it is kept without outputs"
-            exec("".join(cell["source"]), names)
-    assert set(os.listdir(tmp_path)) == {"flying.html", "flying.glb", "flying.csv"}
+    code = ["".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"]
+    imports = [line for text in code for line in text.splitlines() if "import" in line]
+    assert imports == ["import tippetop as tt"]
+    assert not any(cell.get("outputs") for cell in cells), "it is kept without outputs"
+    for text in code:
+        exec(text, names)
+    assert set(os.listdir(tmp_path)) == {f"flying.{suffix}" for suffix in ("html", "glb", "csv", "nc")}

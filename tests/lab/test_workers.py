@@ -1,4 +1,5 @@
 import asyncio
+import math
 import os
 import subprocess
 import sys
@@ -134,12 +135,11 @@ def test_a_cell_without_a_final_tilt_says_why() -> None:
     slipping = slipping.changed({"launch.slip": (1.0, 0.0)})
     known = known_of(map_parts(slipping, [20.0], [0.3, 10.0]))
     assert [fate for _, _, fate in known.values()] == [Fate.FOLLOWED, Fate.IMPOSSIBLE]
-    assert len({fate.sentence for fate in Fate}) == len(Fate)
 
 
 def test_a_map_is_told_from_coarse_to_fine_and_flights_last() -> None:
     plan = plan_map(first_setup().changed({"duration": 8.0}), 250.0)
-    parts = list(map_parts(plan.setup, plan.spins, plan.frictions))
+    parts = list(map_parts(plan.setup, plan.spins, plan.frictions, haste=math.inf))
     cells = [cell for part in parts[:4] for cell in part.cells]
     assert {cell % COLUMNS % 4 for cell in cells} == {cell // COLUMNS % 4 for cell in cells} == {0}
     assert len(cells) == COLUMNS * ROWS // 16

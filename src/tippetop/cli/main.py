@@ -48,6 +48,9 @@ app.command()(problem)
 GARBAGE = 50_000
 """Objects made between two looks for garbage: importing the libraries makes many, and drops hardly one."""
 
+UNUSED = ("dask", "sympy")
+"""What xarray and heyoka load wherever it is installed, and no command but `sweep` uses."""
+
 
 def _print_version(asked: bool) -> None:
     if asked:
@@ -67,6 +70,9 @@ def tippetop(
 def main() -> None:
     """Run the command line; misuse ends with one sentence and exit code 2, Ctrl-C with 130."""
     gc.set_threshold(GARBAGE)
+    if sys.argv[1:2] != ["sweep"]:
+        for name in UNUSED:
+            sys.modules.setdefault(name, None)  # type: ignore[arg-type]  # as if it were not installed
     try:
         app()
     except TippetopError as error:

@@ -22,22 +22,39 @@ from tippetop.cli.options import (
     Tilt,
     chosen_problem,
 )
+from tippetop.errors import InvalidInput
+from tippetop.files import refuse_overwriting, written_beside
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from tippetop.problem import Problem
-
 DEFAULT_SAMPLES = 2001
-ENDINGS = {
-    "plot": [".png", ".svg", ".pdf"],
-    "csv": [".csv"],
-    "glb": [".glb"],
-    "html": [".html", ".htm"],
-    "mp4": [".mp4"],
-    "gif": [".gif"],
-}
-"""How the names of the files of each kind may end."""
+MOVING = ("glb", "html", "mp4", "gif")
+ENDINGS = {"plot": (".png", ".svg", ".pdf"), "html": (".html", ".htm")}
+"""How the names of files may end; of the other kinds but `out`, as the kind is called."""
+
+ROWS = (
+    ("simulated", "duration", "s", ".6g", ""),
+    ("final tilt", "theta", "rad", ".7g", ""),
+    ("final axial spin", "omega3", "rad/s", ".7g", ""),
+    ("final precession", "phi_dot", "rad/s", ".7g", "undefined"),
+    ("turns over at", "turns_over", "s", ".7g", "never"),
+    ("within 0.01 rad of its final tilt at", "arrives", "s", ".7g", "never"),
+    ("least normal force", "least_normal_force", "N", ".7g", ""),
+    ("energy at launch", "energy_start", "J", ".6g", ""),
+    ("energy lost", "energy_lost", "J", ".7g", ""),
+    ("drift of Jellett's integral", "jellett_drift", "relative", ".1e", "undefined"),
+    ("error of the energy balance", "energy_error", "relative", ".1e", "undefined"),
+    ("leaves the table first at", "first_lift_off", "s", ".7g", ""),
+)
+"""What is printed of a run: text, key of the summary, unit, format, and what stands for what there is not."""
+
+FLIGHT_ROWS = (
+    ("flights", "flights", ""),
+    ("airborne for", "airborne_time", "s"),
+    ("highest above the table", "highest_gap", "m"),
+    ("energy lost in impacts", "impact_energy_lost", "J"),
+)
 
 
 def simulate(
@@ -68,40 +85,27 @@ def simulate(
     force: Force = False,
 ) -> None:
     """Simulate one launch and say what becomes of the top."""
-    from tippetop.dataset import write_run  # noqa: PLC0415 - slow to import
-    from tippetop.files import refuse_overwriting, written_beside  # noqa: PLC0415
-    from tippetop.run import simulate as run_problem  # noqa: PLC0415
+    from tippetop.run import simulate as run_problem  # noqa: PLC0415 - slow to import
     from tippetop.summary import summarize  # noqa: PLC0415
 
     settings = {"launch.spin": spin, "launch.tilt": tilt, "friction.mu": mu, "contact.liftoff": liftoff}
     chosen = chosen_problem(file, preset, settings, changes)
-    moving = {"glb": glb, "html": html, "mp4": mp4, "gif": gif}
-    files = {"out": out, "plot": plot, "csv": csv, **moving}
+    files = {"out": out, "plot": plot, "csv": csv, "glb": glb, "html": html, "mp4": mp4, "gif": gif}
     wanted = {kind: path for kind, path in files.items() if path is not None}
-    _check_names(wanted)
-    for path in wanted.values():
-        refuse_overwriting(path, force)
-    if mp4 is not None:
-        from tippetop.export.movie import ffmpeg  # noqa: PLC0415 - slow to import
-
-        ffmpeg()
+    _check_files(wanted, force)
     if samples is None:
-        samples = _samples(chosen, duration) if any(moving.values()) else DEFAULT_SAMPLES
+        samples = DEFAULT_SAMPLES
+        if wanted.keys() & MOVING:
+            from tippetop.export.track import sample_count  # noqa: PLC0415
+
+            samples = max(samples, sample_count(chosen, duration))
     began = time.perf_counter()
     run = run_problem(
         chosen, duration, samples=samples, integrator=integrator, tolerance=tolerance, step=step
     )
     elapsed = time.perf_counter() - began
-    if out is not None:
-        write_run(run, out, overwrite=force)
-    if plot is not None:
-        from tippetop.figures.overview import overview  # noqa: PLC0415 - slow to import
-        from tippetop.figures.style import save  # noqa: PLC0415
-
-        with written_beside(plot) as beside:
-            save(overview(run), beside)
-    for kind in wanted:
-        _export(run, kind, wanted[kind], force)
+    for kind, path in wanted.items():
+        _write(run, kind, path, force)
     summary = summarize(run)
     if as_json:
         written = {kind: path and str(path) for kind, path in files.items()}
@@ -110,61 +114,66 @@ def simulate(
         _print_summary(summary, elapsed, list(wanted.values()))
 
 
-def _samples(problem: "Problem", duration: float) -> int:
-    """How many samples a run that is to be played is given where nobody says."""
-    from tippetop.export.track import sample_count  # noqa: PLC0415 - slow to import
-
-    return max(DEFAULT_SAMPLES, sample_count(problem, duration))
-
-
-def _export(run: "xr.Dataset", kind: str, path: Path, force: bool) -> None:
-    """Write one of the moving pictures or the table of a run."""
+def _write(run: "xr.Dataset", kind: str, path: Path, force: bool) -> None:
+    """Write one of the files of a run."""
     match kind:
+        case "out":
+            from tippetop.dataset import write_run  # noqa: PLC0415 - slow to import, like what follows
+
+            write_run(run, path, force)
+        case "plot":
+            from tippetop.figures.overview import overview  # noqa: PLC0415
+            from tippetop.figures.style import save  # noqa: PLC0415
+
+            with written_beside(path) as beside:
+                save(overview(run), beside)
         case "csv":
             from tippetop.export.csv import write_csv  # noqa: PLC0415
 
-            write_csv(run, path, overwrite=force)
+            write_csv(run, path, force)
         case "glb":
             from tippetop.export.glb import write_glb  # noqa: PLC0415
 
-            write_glb(run, path, overwrite=force)
+            write_glb(run, path, force)
         case "html":
             from tippetop.export.html import write_html  # noqa: PLC0415
 
-            write_html(run, path, overwrite=force)
-        case "mp4" | "gif":
+            write_html(run, path, force)
+        case _:
             from tippetop.export.movie import write_movie  # noqa: PLC0415
 
-            with _progress(f"drawing {path.name}") as watcher:
-                write_movie(run, path, overwrite=force, watcher=watcher)
+            with _bar(f"drawing {path.name}") as progress:
+                write_movie(run, path, force, progress=progress)
 
 
 @contextmanager
-def _progress(what: str) -> Iterator[Callable[[int, int], None]]:
-    """A watcher that shows on a terminal how far something is, and how long it still takes."""
+def _bar(what: str) -> Iterator[Callable[[int, int], None]]:
+    """Shows on a terminal how far something is, and how long it still takes, as it is told."""
     from rich.console import Console  # noqa: PLC0415
-    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn  # noqa: PLC0415
-    from rich.progress import TimeRemainingColumn as TimeLeft  # noqa: PLC0415
+    from rich.progress import Progress  # noqa: PLC0415
 
-    columns = (TextColumn(what), BarColumn(), TaskProgressColumn(), TimeLeft())
     silent = not sys.stderr.isatty()
-    with Progress(*columns, console=Console(stderr=True), disable=silent, transient=True) as bar:
+    with Progress(console=Console(stderr=True), disable=silent, transient=True) as bar:
         shown = bar.add_task(what)
         yield lambda done, count: bar.update(shown, total=count, completed=done)
 
 
-def _check_names(wanted: dict[str, Path]) -> None:
-    """Refuse names that promise another kind of file, or that are given twice."""
-    from tippetop.errors import InvalidInput  # noqa: PLC0415
-
+def _check_files(wanted: dict[str, Path], force: bool) -> None:
+    """Refuse names that promise another kind of file, are given twice or taken, and films without ffmpeg."""
     taken: dict[Path, str] = {}
     for kind, path in wanted.items():
-        endings = ENDINGS.get(kind)
-        if endings and path.suffix.lower() not in endings:
+        endings = ENDINGS.get(kind, (f".{kind}",))
+        if kind != "out" and path.suffix.lower() not in endings:
             raise InvalidInput(f"--{kind}", str(path), f"a file name that ends in {' or '.join(endings)}")
         if path.resolve() in taken:
             raise InvalidInput(f"--{kind}", str(path), f"a file other than that of --{taken[path.resolve()]}")
         taken[path.resolve()] = kind
+    for path in wanted.values():
+        refuse_overwriting(path, force)
+    if "mp4" in wanted:
+        from tippetop.export.movie import ffmpeg  # noqa: PLC0415 - slow to import
+
+        ffmpeg()
 
 
 def _print_summary(summary: dict[str, Any], elapsed: float, files: list[Path]) -> None:
@@ -176,8 +185,8 @@ def _print_summary(summary: dict[str, Any], elapsed: float, files: list[Path]) -
     table.add_column(style="dim")
     table.add_column(justify="right", style="bold")
     table.add_column()
-    for name, value, unit in _rows(summary):
-        table.add_row(name, value, unit)
+    for row in _rows(summary):
+        table.add_row(*row)
     console.print(f"[bold]{summary['outcome'].replace('_', ' ')}[/]: {summary['advice']}")
     console.print(table)
     console.print(
@@ -188,31 +197,15 @@ def _print_summary(summary: dict[str, Any], elapsed: float, files: list[Path]) -
 
 
 def _rows(summary: dict[str, Any]) -> list[tuple[str, str, str]]:
-    final = summary["final"]
-    rows = [
-        ("simulated", f"{summary['duration']:.6g}", "s"),
-        ("final tilt", _shown(final["theta"]), "rad"),
-        ("final axial spin", _shown(final["omega3"]), "rad/s"),
-        ("final precession", _shown(final["phi_dot"]), "rad/s"),
-        ("turns over at", _shown(summary["turns_over"], "never"), "s" if summary["turns_over"] else ""),
-        ("within 0.01 rad of its final tilt at", _shown(summary["arrives"]), "s"),
-        ("least normal force", _shown(summary["least_normal_force"]), "N"),
-        ("energy lost", _shown(summary["energy_lost"]), f"J of {summary['energy_start']:.6g}"),
-        ("drift of Jellett's integral", f"{summary['jellett_drift']:.1e}", "relative"),
-        ("error of the energy balance", f"{summary['energy_error']:.1e}", "relative"),
-    ]
-    lift_offs = [event["time"] for event in summary["events"] if event["kind"] == "lift-off"]
-    if lift_offs:
-        rows.append(("leaves the table first at", _shown(lift_offs[0]), "s"))
+    lift_off = next((event["time"] for event in summary["events"] if event["kind"] == "lift-off"), None)
+    numbers = {**summary, **summary["final"], "first_lift_off": lift_off}
+    rows = []
+    for text, key, unit, form, otherwise in ROWS:
+        value = numbers[key]
+        if value is not None:
+            rows.append((text, format(value, form), unit))
+        elif otherwise:
+            rows.append((text, otherwise, ""))
     if summary["flights"]:
-        rows += [
-            ("flights", str(summary["flights"]), ""),
-            ("airborne for", _shown(summary["airborne_time"]), "s"),
-            ("highest above the table", _shown(summary["highest_gap"]), "m"),
-            ("energy lost in impacts", _shown(summary["impact_energy_lost"]), "J"),
-        ]
+        rows += [(text, format(summary[key], ".7g"), unit) for text, key, unit in FLIGHT_ROWS]
     return rows
-
-
-def _shown(value: float | None, otherwise: str = "undefined") -> str:
-    return otherwise if value is None else f"{value:.7g}"

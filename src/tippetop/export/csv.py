@@ -1,7 +1,7 @@
 """A run as a table of numbers that any spreadsheet reads."""
 
-import csv
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -21,40 +21,23 @@ def write_csv(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Pat
     """
     path = Path(path)
     refuse_overwriting(path, overwrite)
-    names, columns = _columns(run)
-    with written_beside(path) as beside, beside.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(names)
-        for row in zip(*columns, strict=True):
-            writer.writerow(row)
+    columns: dict[str, Any] = {}
+    for name, variable in {"time": run["time"], **run.data_vars}.items():
+        units = variable.attrs.get("units", "1")
+        unit = "" if units == "1" else f" ({units})"
+        if variable.dims == ("time",):
+            columns[f"{name}{unit}"] = ("time", _words(variable))
+        elif variable.dims[:1] == ("time",):
+            for number, label in enumerate(run[variable.dims[1]].values):
+                columns[f"{name}_{label}{unit}"] = ("time", variable.values[:, number])
+    with written_beside(path) as beside:
+        xr.Dataset(columns).to_dataframe().to_csv(beside, index=False)
     return path
 
 
-def _columns(run: xr.Dataset) -> tuple[list[str], list[list[str]]]:
-    names, columns = [_header("time", run["time"])], [_texts(run["time"].values)]
-    for name, variable in run.data_vars.items():
-        if variable.dims == ("time",):
-            names.append(_header(str(name), variable))
-            columns.append(_words(variable) if name == "mode" else _texts(variable.values))
-        elif variable.dims[:1] == ("time",):
-            (along,) = variable.dims[1:]
-            for number, label in enumerate(run[along].values):
-                names.append(_header(f"{name}_{label}", variable))
-                columns.append(_texts(variable.values[:, number]))
-    return names, columns
-
-
-def _header(name: str, variable: xr.DataArray) -> str:
-    units = variable.attrs.get("units", "1")
-    return name if units == "1" or name.startswith("mode") else f"{name} ({units})"
-
-
-def _texts(values: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> list[str]:
-    return [repr(value) if value == value else "" for value in values.tolist()]
-
-
-def _words(phase: xr.DataArray) -> list[str]:
-    meanings = dict(
-        zip(phase.attrs["flag_values"].tolist(), phase.attrs["flag_meanings"].split(), strict=True)
-    )
-    return [meanings[value] for value in phase.values.tolist()]
+def _words(variable: xr.DataArray) -> np.ndarray[Any, Any]:
+    """The values, or what they stand for where they are flags."""
+    if "flag_meanings" not in variable.attrs:
+        return variable.values
+    words = np.array(variable.attrs["flag_meanings"].split())
+    return np.asarray(words[np.searchsorted(variable.attrs["flag_values"], variable.values)])

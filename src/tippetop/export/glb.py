@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 
 from tippetop import __version__
 from tippetop.errors import InvalidInput
-from tippetop.export.geometry import Mesh, lathe, size, toy_parts
+from tippetop.export.geometry import Mesh, lathe
 from tippetop.export.poses import poses_at
 from tippetop.export.words import tell
+from tippetop.figures.looks import SCENES, ToyPart, size, toy_parts
 from tippetop.files import refuse_overwriting, written_beside
 from tippetop.problem import Body, Problem
 
@@ -23,10 +24,8 @@ LEAST_KEYS = 60.0
 """Keys per second at least."""
 MOST_KEYS = 100_000
 
-_FLOAT, _UNSIGNED = 5126, 5125
-_VERTICES, _INDICES = 34962, 34963
+_TYPES = {1: "SCALAR", 3: "VEC3", 4: "VEC4"}
 _TABLE_RADII = 8.0
-_TABLE_COLOUR = (0.74, 0.68, 0.56, 1.0)
 
 
 def write_glb(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Path:
@@ -52,44 +51,33 @@ def glb_bytes(run: xr.Dataset) -> bytes:
     problem = Problem.from_json(run.attrs["problem"])
     times = key_times(run, problem.body)
     poses = poses_at(run, times)
-    quaternions = poses.quaternions / np.linalg.norm(poses.quaternions, axis=1)[:, None]
-    flips = np.cumprod(np.where(np.einsum("ij,ij->i", quaternions[1:], quaternions[:-1]) < 0, -1.0, 1.0))
-    quaternions[1:] *= flips[:, None]
+    turns = poses.turns.as_quat()
+    turns[1:] *= np.cumprod(np.where(np.einsum("ij,ij->i", turns[1:], turns[:-1]) < 0, -1.0, 1.0))[:, None]
 
-    model = _Model()
-    toy = model.mesh("toy", [(lathe(part), part.opacity) for part in toy_parts(problem.body)])
-    table = model.mesh("table", [(_disc(_TABLE_RADII * size(problem.body)), 1.0)])
-    start = {"translation": poses.positions[0].tolist(), "rotation": quaternions[0, [1, 2, 3, 0]].tolist()}
+    model = _Gltf()
+    unit = size(problem.body)
+    toy = model.mesh("toy", [(lathe(part, unit), part.opacity) for part in toy_parts(problem.body)])
+    table = ToyPart("table", np.array([(_TABLE_RADII, 0.0), (0.0, 0.0)]), (SCENES["light"]["table"],))
+    start = {"translation": poses.positions[0].tolist(), "rotation": turns[0].tolist()}
     # glTF has y up; the root turns z up into it.
     half = 0.5**0.5
     model.json["nodes"] = [
         {"name": "z up", "rotation": [-half, 0.0, 0.0, half], "children": [1, 2]},
         {"name": "toy", "mesh": toy, **start},
-        {"name": "table", "mesh": table},
+        {"name": "table", "mesh": model.mesh("table", [(lathe(table, unit), 1.0)])},
     ]
     # A run that ended at its launch stands still.
     if len(times) > 1:
-        key = model.accessor(times.astype("<f4"), "SCALAR", bounds=True)
-        moves = model.accessor(poses.positions.astype("<f4"), "VEC3")
-        turns = model.accessor(quaternions[:, [1, 2, 3, 0]].astype("<f4"), "VEC4")
-        model.json["animations"] = [_animation(tell(run).headline, key, moves, turns)]
+        keys = model.accessor(times)
+        outputs = {"translation": poses.positions, "rotation": turns}
+        samplers = [
+            {"input": keys, "output": model.accessor(values), "interpolation": "LINEAR"}
+            for values in outputs.values()
+        ]
+        channels = [{"sampler": k, "target": {"node": 1, "path": path}} for k, path in enumerate(outputs)]
+        model.json["animations"] = [{"name": tell(run).headline, "samplers": samplers, "channels": channels}]
     model.json["asset"]["extras"] = {"problem": json.loads(run.attrs["problem"])}
     return model.bytes()
-
-
-def _animation(name: str, key: int, moves: int, turns: int) -> dict[str, Any]:
-    """An animation of the toy, by the numbers of its accessors."""
-    return {
-        "name": name,
-        "samplers": [
-            {"input": key, "output": moves, "interpolation": "LINEAR"},
-            {"input": key, "output": turns, "interpolation": "LINEAR"},
-        ],
-        "channels": [
-            {"sampler": 0, "target": {"node": 1, "path": "translation"}},
-            {"sampler": 1, "target": {"node": 1, "path": "rotation"}},
-        ],
-    }
 
 
 def key_times(run: xr.Dataset, body: Body) -> NDArray[np.float64]:
@@ -110,17 +98,7 @@ def key_times(run: xr.Dataset, body: Body) -> NDArray[np.float64]:
     return np.linspace(0.0, duration, keys)
 
 
-def _disc(radius: float) -> Mesh:
-    turn = np.linspace(0, 2 * np.pi, 65)[:-1]
-    rim = np.stack([np.cos(turn), np.sin(turn), 0 * turn], axis=1) * radius
-    points = np.concatenate([np.zeros((1, 3)), rim])
-    number = np.arange(64)
-    triangles = np.stack([0 * number, 1 + number, 1 + (number + 1) % 64], axis=1)
-    colours = np.tile(_TABLE_COLOUR[:3], (65, 1))
-    return Mesh(points, np.tile([0.0, 0.0, 1.0], (65, 1)), colours, triangles.astype(np.uint32))
-
-
-class _Model:
+class _Gltf:
     """A glTF document and its one buffer, as they grow."""
 
     def __init__(self) -> None:
@@ -135,39 +113,35 @@ class _Model:
             "bufferViews": [],
         }
 
-    def accessor(
-        self, values: NDArray[Any], kind: str, target: int | None = None, bounds: bool = False
-    ) -> int:
-        """Add an array to the buffer; its number."""
-        view: dict[str, int] = {"buffer": 0, "byteOffset": len(self.buffer), "byteLength": values.nbytes}
-        if target is not None:
-            view["target"] = target
-        self.buffer += values.tobytes()
-        accessor = {
-            "bufferView": len(self.json["bufferViews"]),
-            "componentType": _UNSIGNED if values.dtype == np.uint32 else _FLOAT,
-            "count": len(values),
-            "type": kind,
-        }
-        if bounds:
-            flat = values.reshape(len(values), -1)
-            accessor["min"], accessor["max"] = flat.min(axis=0).tolist(), flat.max(axis=0).tolist()
+    def accessor(self, values: NDArray[Any]) -> int:
+        """Add an array to the buffer, whole numbers as such and others in single precision; its number."""
+        whole = values.dtype == np.uint32
+        rows = values.reshape(len(values), -1).astype("<u4" if whole else "<f4")
+        view = {"buffer": 0, "byteOffset": len(self.buffer), "byteLength": rows.nbytes}
+        self.buffer += rows.tobytes()
         self.json["bufferViews"].append(view)
+        accessor = {
+            "bufferView": len(self.json["bufferViews"]) - 1,
+            "componentType": 5125 if whole else 5126,
+            "count": len(rows),
+            "type": _TYPES[rows.shape[1]],
+            "min": rows.min(axis=0).tolist(),
+            "max": rows.max(axis=0).tolist(),
+        }
         self.json["accessors"].append(accessor)
         return len(self.json["accessors"]) - 1
 
     def mesh(self, name: str, surfaces: list[tuple[Mesh, float]]) -> int:
         """Add a mesh of surfaces with their opacities; its number."""
         primitives = []
-        for surface, opacity in surfaces:
-            attributes = {
-                "POSITION": self.accessor(surface.points.astype("<f4"), "VEC3", _VERTICES, bounds=True),
-                "NORMAL": self.accessor(surface.normals.astype("<f4"), "VEC3", _VERTICES),
-                "COLOR_0": self.accessor(surface.colours.astype("<f4"), "VEC3", _VERTICES),
+        for (points, normals, colours, triangles), opacity in surfaces:
+            attributes = {"POSITION": points, "NORMAL": normals, "COLOR_0": colours}
+            primitive = {
+                "attributes": {key: self.accessor(values) for key, values in attributes.items()},
+                "indices": self.accessor(triangles.ravel()),
+                "material": self._material(opacity),
             }
-            indices = self.accessor(surface.triangles.ravel().astype("<u4"), "SCALAR", _INDICES)
-            material = self._material(opacity)
-            primitives.append({"attributes": attributes, "indices": indices, "material": material})
+            primitives.append(primitive)
         self.json["meshes"].append({"name": name, "primitives": primitives})
         return len(self.json["meshes"]) - 1
 

@@ -7,8 +7,7 @@ import xarray as xr
 
 from tippetop import __version__
 from tippetop.export.bundle import packed, player_code, three_packed
-from tippetop.export.track import pack_run
-from tippetop.export.words import tell
+from tippetop.export.track import pack_run, unpack_header
 from tippetop.files import refuse_overwriting, written_beside
 
 _PAGE = """<!doctype html>
@@ -51,12 +50,12 @@ def html_page(run: xr.Dataset) -> str:
     Unavailable
         If three.js is not installed: it comes with NiceGUI.
     """
-    story = tell(run)
+    block = pack_run(run)
     return _PAGE.format(
         version=__version__,
-        title=html.escape(f"Tippe top: {story.headline}"),
+        title=html.escape(f"Tippe top: {unpack_header(block)['story']['headline']}"),
         three=three_packed(),
-        run=packed(pack_run(run, story)),
+        run=packed(block),
         player=player_code(),
     )
 

@@ -12,16 +12,15 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
 from tippetop.errors import FileTrouble, InvalidInput, Unavailable
-from tippetop.export.camera import view_of
-from tippetop.export.poses import poses_at, turned
-from tippetop.export.raycast import CAPTION, Toy, fine_path, picture
+from tippetop.export.poses import contact_path, poses_at
+from tippetop.export.raycast import fine_path, picture, view_of
 from tippetop.export.words import tell
+from tippetop.figures.style import INK
+from tippetop.figures.toy import Toy
 from tippetop.files import refuse_overwriting, written_beside
-from tippetop.mechanics.surface import contact_vector
 from tippetop.problem import Problem
 
 Frame = NDArray[np.uint8]
-Watcher = Callable[[int, int], None]
 
 MOST_FRAMES = 20_000
 _EYE = np.array([2.6, -6.0, 3.0])
@@ -36,7 +35,7 @@ def write_movie(
     fps: float | None = None,
     speed: float = 1.0,
     pixels: tuple[int, int] | None = None,
-    watcher: Watcher | None = None,
+    progress: Callable[[int, int], None] = lambda drawn, count: None,
 ) -> Path:
     """Write a run as a film, .mp4 or .gif by the path's suffix.
 
@@ -51,7 +50,7 @@ def write_movie(
         Seconds of the run per second of film: less than 1 for slow motion.
     pixels
         Width and height, even numbers; None for 640 x 480 in an .mp4 and 360 x 270 in a .gif.
-    watcher
+    progress
         Told after every picture how many there are so far, and how many there will be.
 
     Raises
@@ -74,9 +73,7 @@ def write_movie(
     _check(rate, speed, extent)
     if not encoder:
         rate = gif_rate(rate)
-    pictures = frames(run, rate, speed, extent)
-    if watcher is not None:
-        pictures = _told(pictures, frame_count(run, rate, speed), watcher)
+    pictures = frames(run, rate, speed, extent, progress)
     with written_beside(path) as beside:
         if encoder:
             _encode(encoder, pictures, beside, rate, extent)
@@ -106,15 +103,14 @@ def ffmpeg() -> str:
     return found
 
 
-def _told(pictures: Iterator[Frame], count: int, watcher: Watcher) -> Iterator[Frame]:
-    """The same pictures, each of them reported once it is done with."""
-    for number, drawn in enumerate(pictures, start=1):
-        yield drawn
-        watcher(number, count)
-
-
-def frame_count(run: xr.Dataset, fps: float, speed: float) -> int:
-    """How many pictures a film has.
+def frames(
+    run: xr.Dataset,
+    fps: float,
+    speed: float,
+    pixels: tuple[int, int],
+    progress: Callable[[int, int], None] = lambda drawn, count: None,
+) -> Iterator[Frame]:
+    """The pictures of a film, shape (height, width, 3) each.
 
     Raises
     ------
@@ -124,38 +120,21 @@ def frame_count(run: xr.Dataset, fps: float, speed: float) -> int:
     duration = float(run["time"].values[-1])
     count = math.floor(duration * fps / speed) + 1
     if count > MOST_FRAMES:
-        raise InvalidInput(
-            "speed", speed, f"at least {speed * count / MOST_FRAMES:.2g} for a run of {duration:g} s"
-        )
-    return count
-
-
-def frames(run: xr.Dataset, fps: float, speed: float, pixels: tuple[int, int]) -> Iterator[Frame]:
-    """The pictures of a film, shape (height, width, 3) each.
-
-    Raises
-    ------
-    InvalidInput
-        If there would be too many.
-    """
-    count = frame_count(run, fps, speed)
-    problem = Problem.from_json(run.attrs["problem"])
-    toy = Toy(problem.body)
+        least = speed * count / MOST_FRAMES
+        raise InvalidInput("speed", speed, f"at least {least:.2g} for a run of {duration:g} s")
+    toy = Toy(Problem.from_json(run.attrs["problem"]).body)
     times = np.arange(count) * speed / fps
     poses = poses_at(run, times)
-    axes = [turned(poses.quaternions, np.tile(unit, (count, 1))) for unit in np.eye(3)]
-    arm = contact_vector(tuple(run["axis"].values.T), problem.top.surface)
-    trace = np.stack([run["x"].values + arm[0], run["y"].values + arm[1]], axis=1) / toy.size
-    path, reached = fine_path(trace, run["normal_force"].values != 0.0)
+    positions, turns = poses.positions / toy.size, poses.turns.as_matrix()
+    path, reached = fine_path(contact_path(run) / toy.size, run["normal_force"].values != 0.0)
     seen = reached[np.searchsorted(run["time"].values, times, side="right") - 1]
     headline = tell(run).headline
     cell = 10 ** round(math.log10(toy.size / 2)) / toy.size
-    for number in range(count):
-        position = poses.positions[number] / toy.size
-        view = view_of(np.array([position[0], position[1], 0.85]), _EYE)
-        frame = np.stack([axis[number] for axis in axes], axis=1)
-        drawn = picture(toy, view, position, frame, path[: seen[number]], cell, pixels)
+    for number, (position, frame) in enumerate(zip(positions, turns, strict=True)):
+        view = view_of(np.array([position[0], position[1], 0.85]), _EYE, pixels)
+        drawn = picture(toy, view, position, frame, path[: seen[number]], cell)
         yield _captioned(drawn, f"{headline[:1].upper()}{headline[1:]}", f"t = {times[number]:.3f} s", speed)
+        progress(number + 1, count)
 
 
 def _captioned(drawn: Frame, headline: str, clock: str, speed: float) -> Frame:
@@ -165,8 +144,8 @@ def _captioned(drawn: Frame, headline: str, clock: str, speed: float) -> Frame:
     font = ImageFont.load_default(size=size)
     if speed != 1.0:
         clock += f"   (speed {speed:g})"
-    pen.text((10, 8), headline, fill=CAPTION, font=font)
-    pen.text((10, 8 + 1.4 * size), clock, fill=CAPTION, font=font)
+    pen.text((10, 8), headline, fill=INK, font=font)
+    pen.text((10, 8 + 1.4 * size), clock, fill=INK, font=font)
     return np.asarray(image)
 
 

@@ -11,105 +11,71 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
+from scipy.spatial.transform import Rotation
 
+from tippetop.mechanics.surface import contact_vector
 from tippetop.problem import Problem
 
 Array = NDArray[np.float64]
 
 
 class Poses(NamedTuple):
-    """Positions of the centre of mass, m, shape (k, 3), and unit quaternions, scalar first, shape (k, 4)."""
+    """Positions of the centre of mass, m, shape (k, 3), and k turns from axis up and marker along x."""
 
     positions: Array
-    quaternions: Array
-
-
-class _Ends(NamedTuple):
-    """The two samples around every time, the fraction of the way between them, and their distance, s."""
-
-    before: NDArray[np.intp]
-    fraction: Array
-    step: Array
+    turns: Rotation
 
 
 def poses_at(run: xr.Dataset, times: ArrayLike) -> Poses:
     """The poses of a run at any times within it, s, shape (k,)."""
-    ends = _ends(run["time"].values, np.asarray(times, dtype=float))
-    position = _hermite(run[["x", "y", "height"]].to_array().values.T, run["velocity"].values, ends)
-    return Poses(position, _orientation(run, ends))
+    samples, at = run["time"].values, np.asarray(times, dtype=float)
+    i = np.clip(np.searchsorted(samples, at, side="right") - 1, 0, max(len(samples) - 2, 0))
+    j = np.minimum(i + 1, len(samples) - 1)
+    h = samples[j] - samples[i]
+    u = np.clip(np.divide(at - samples[i], h, out=np.zeros_like(at), where=h > 0), 0.0, 1.0)
 
+    def between(values: Array, rates: Array) -> Array:
+        return _cubic(u[:, None], h[:, None], values[i], values[j], rates[i], rates[j])
 
-def _ends(samples: Array, times: Array) -> _Ends:
-    before = np.clip(np.searchsorted(samples, times, side="right") - 1, 0, max(len(samples) - 2, 0))
-    after = np.minimum(before + 1, len(samples) - 1)
-    step = samples[after] - samples[before]
-    fraction = np.divide(times - samples[before], step, out=np.zeros_like(times), where=step > 0)
-    return _Ends(before, np.clip(fraction, 0.0, 1.0), step)
-
-
-def _hermite(values: Array, rates: Array, ends: _Ends) -> Array:
-    """Cubic through the values with the rates at both ends, shape (k, m)."""
-    u, h = ends.fraction[:, None], ends.step[:, None]
-    after = np.minimum(ends.before + 1, len(values) - 1)
-    v = 1.0 - u
-    by_value = v * v * (1 + 2 * u) * values[ends.before] + u * u * (3 - 2 * u) * values[after]
-    by_rate = u * v * h * (v * rates[ends.before] - u * rates[after])
-    return np.asarray(by_value + by_rate)
-
-
-def _orientation(run: xr.Dataset, ends: _Ends) -> Array:
     body = Problem.from_json(run.attrs["problem"]).body
-    axes, momenta, turns = run["axis"].values, run["angular_momentum"].values, run["orientation"].values
+    axes, momenta = run["axis"].values, run["angular_momentum"].values
     rates = np.cross(momenta, axes) / body.I1
     spins = np.einsum("ij,ij->i", momenta, axes) / body.I3
-    axis = _hermite(axes, rates, ends)
+    axis = between(axes, rates)
     axis /= np.linalg.norm(axis, axis=1)[:, None]
-    before, after = ends.before, np.minimum(ends.before + 1, len(axes) - 1)
-    carried = multiply(shortest(axes[before], axes[after]), turns[before])
-    left = multiply(conjugate(carried), turns[after])
-    twist = 2 * np.arctan2(left[:, 3], left[:, 0])
-    first, last = spins[before], spins[after] - _carrying_spin(axes[before], axes[after], rates[after])
-    expected = 0.5 * ends.step * (first + last)
-    twist += 2 * np.pi * np.round((expected - twist) / (2 * np.pi))
-    u, h = ends.fraction, ends.step
+    turns = Rotation.from_quat(run["orientation"].values, scalar_first=True)
+    left = (shortest(axes[i], axes[j]) * turns[i]).inv() * turns[j]
+    _, _, z, w = left.as_quat().T
+    first, last = spins[i], spins[j] + _carrying_spin(axes[i], axes[j], rates[j])
+    twist = 2 * np.arctan2(z, w)
+    twist += 2 * np.pi * np.round((0.5 * h * (first + last) - twist) / (2 * np.pi))
+    about_axis = _cubic(u, h, 0.0 * twist, twist, first, last)[:, None] * np.array([0.0, 0.0, 1.0])
+    turned = shortest(axes[i], axis) * turns[i] * Rotation.from_rotvec(about_axis)
+    return Poses(between(run[["x", "y", "height"]].to_array().values.T, run["velocity"].values), turned)
+
+
+def contact_path(run: xr.Dataset) -> Array:
+    """Where the lowest point of the body is on the table at every sample, m, shape (k, 2)."""
+    arm = contact_vector(tuple(run["axis"].values.T), Problem.from_json(run.attrs["problem"]).top.surface)
+    return np.stack([run["x"].values + arm[0], run["y"].values + arm[1]], axis=1)
+
+
+def _cubic(u: Array, h: Array, a: Array, b: Array, rate_a: Array, rate_b: Array) -> Array:
+    """The cubic through two values with the rates at both ends, at a share u of the time h between them."""
     v = 1.0 - u
-    turned = u * u * (3 - 2 * u) * twist + u * v * h * (v * first - u * last)
-    about_axis = np.stack([np.cos(turned / 2), 0 * turned, 0 * turned, np.sin(turned / 2)], axis=1)
-    return multiply(multiply(shortest(axes[before], axis), turns[before]), about_axis)
+    by_value = v * v * (1 + 2 * u) * a + u * u * (3 - 2 * u) * b
+    return np.asarray(by_value + u * v * h * (v * rate_a - u * rate_b))
 
 
 def _carrying_spin(start: Array, axis: Array, rate: Array) -> Array:
-    """How fast the shortest rotation from `start` to a moving axis turns about that axis, rad/s."""
+    """How fast the shortest rotation from `start` to a moving axis turns backwards about it, rad/s."""
     turning = np.einsum("ij,ij->i", np.cross(start, axis), rate)
-    return np.asarray(-turning / np.maximum(1.0 + np.einsum("ij,ij->i", start, axis), 1e-9))
+    return np.asarray(turning / np.maximum(1.0 + np.einsum("ij,ij->i", start, axis), 1e-9))
 
 
-def shortest(start: Array, end: Array) -> Array:
-    """The shortest rotation from one unit vector to another, as a quaternion."""
+def shortest(start: Array, end: Array) -> Rotation:
+    """The shortest rotations from unit vectors to others."""
     cosine = np.einsum("ij,ij->i", start, end)
-    quaternion = np.concatenate([1 + cosine[:, None], np.cross(start, end)], axis=1)
-    length = np.linalg.norm(quaternion, axis=1)
-    opposite = length < 1e-9
-    quaternion[opposite] = (0.0, 1.0, 0.0, 0.0)
-    length[opposite] = 1.0
-    return np.asarray(quaternion / length[:, None])
-
-
-def multiply(a: Array, b: Array) -> Array:
-    """The quaternion of turning by b, then by a."""
-    scalar = a[:, :1] * b[:, :1] - np.einsum("ij,ij->i", a[:, 1:], b[:, 1:])[:, None]
-    vector = a[:, :1] * b[:, 1:] + b[:, :1] * a[:, 1:] + np.cross(a[:, 1:], b[:, 1:])
-    return np.concatenate([scalar, vector], axis=1)
-
-
-def conjugate(a: Array) -> Array:
-    """The opposite turn."""
-    opposite: Array = a * np.array([1.0, -1.0, -1.0, -1.0])
-    return opposite
-
-
-def turned(quaternions: Array, vectors: Array) -> Array:
-    """Vectors turned by quaternions, both of shape (k, ...)."""
-    axis = quaternions[:, 1:]
-    twice = 2 * np.cross(axis, vectors)
-    return np.asarray(vectors + quaternions[:, :1] * twice + np.cross(axis, twice))
+    quaternion = np.concatenate([np.cross(start, end), 1 + cosine[:, None]], axis=1)
+    quaternion[np.linalg.norm(quaternion, axis=1) < 1e-9] = (1.0, 0.0, 0.0, 0.0)
+    return Rotation.from_quat(quaternion)

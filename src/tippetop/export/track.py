@@ -14,9 +14,9 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from tippetop.catalogue import SAMPLED
-from tippetop.export.geometry import size, toy_parts
-from tippetop.export.words import Story, tell
-from tippetop.mechanics.surface import contact_vector
+from tippetop.export.poses import contact_path
+from tippetop.export.words import tell
+from tippetop.figures.looks import SCENES, size, toy_parts
 from tippetop.problem import Problem
 
 Array = NDArray[np.float64]
@@ -50,8 +50,8 @@ def sample_count(problem: Problem, duration: float) -> int:
     return int(min(duration * rate, MOST_SAMPLES - 1)) + 2
 
 
-def pack_run(run: xr.Dataset, story: Story | None = None) -> bytes:
-    """The block of bytes of a run; its `story` is told here unless it is given."""
+def pack_run(run: xr.Dataset) -> bytes:
+    """The block of bytes of a run."""
     problem = Problem.from_json(run.attrs["problem"])
     columns = _columns(run, problem)
     header = {
@@ -67,16 +67,12 @@ def pack_run(run: xr.Dataset, story: Story | None = None) -> bytes:
             "I3": problem.body.I3,
             "size": size(problem.body),
             "parts": [
-                {
-                    "name": part.name,
-                    "profile": np.round(part.profile, 9).tolist(),
-                    "colours": part.colours,
-                    "opacity": part.opacity,
-                }
+                part._replace(profile=part.profile.round(9).tolist())._asdict()
                 for part in toy_parts(problem.body)
             ],
         },
-        "story": {"headline": story.headline, "details": story.details} if story else _told(run),
+        "scenes": SCENES,
+        "story": tell(run)._asdict(),
         "problem": json.loads(run.attrs["problem"]),
     }
     text = json.dumps(header, separators=(",", ":")).encode()
@@ -93,36 +89,24 @@ def unpack_header(block: bytes) -> dict[str, Any]:
     return header
 
 
-def flights(run: xr.Dataset) -> list[list[float]]:
+def flights(run: xr.Dataset) -> Any:
     """Begin and end of every flight, s, those too near each other to be told apart as one."""
-    spans = np.stack([run["flight_start"].values, run["flight_end"].values], axis=1)
-    if len(spans) <= SHADINGS:
-        return [[float(begin), float(end)] for begin, end in spans]
-    near = float(run["time"].values[-1]) / SHADINGS
-    merged: list[list[float]] = []
-    for begin, end in spans:
-        if merged and begin - merged[-1][1] < near:
-            merged[-1][1] = float(end)
-        else:
-            merged.append([float(begin), float(end)])
-    return merged
-
-
-def _told(run: xr.Dataset) -> dict[str, Any]:
-    story = tell(run)
-    return {"headline": story.headline, "details": story.details}
+    starts, ends = run["flight_start"].values, run["flight_end"].values
+    if len(starts) > SHADINGS:
+        apart = starts[1:] - ends[:-1] >= float(run["time"].values[-1]) / SHADINGS
+        starts, ends = starts[np.append(True, apart)], ends[np.append(apart, True)]
+    return np.stack([starts, ends], axis=1).tolist()
 
 
 def _columns(run: xr.Dataset, problem: Problem) -> dict[str, Array]:
     moment = np.linalg.norm(run["angular_momentum"].values[0]) * float(run["height"].values[0])
     jellett = run["jellett"].values
-    arm = contact_vector(tuple(run["axis"].values.T), problem.top.surface)
     return {
         "orientation": run["orientation"].values,
         "momentum": run["angular_momentum"].values,
         "position": run[["x", "y", "height"]].to_array().values.T,
         "velocity": run["velocity"].values,
-        "point": np.stack([run["x"].values + arm[0], run["y"].values + arm[1]], axis=1),
+        "point": contact_path(run),
         "friction": run["contact_force"].values[:, :2],
         "touching": (run["normal_force"].values != 0.0).astype(float),
         "theta": run["theta"].values,

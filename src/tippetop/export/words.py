@@ -1,14 +1,12 @@
 """What became of a launch, in words: what it did, and what it heads for."""
 
 import math
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from tippetop.catalogue import NEAR_FINAL
-from tippetop.contact.mode import EventKind, Outcome
 from tippetop.errors import InvalidInput
 from tippetop.mechanics.top import natural_units
 from tippetop.problem import Problem
@@ -32,17 +30,8 @@ SWINGS = 20.0
 """How long the end must be at least, in natural units of time: a few swings of the tilt."""
 
 
-@dataclass(frozen=True)
-class Story:
-    """A run in words.
-
-    Attributes
-    ----------
-    headline
-        What became of the top, as a clause: "inverts at 7.56 s".
-    details
-        Sentences that say more.
-    """
+class Story(NamedTuple):
+    """A run in words: what became of the top, as a clause ("inverts at 7.56 s"), and sentences beside it."""
 
     headline: str
     details: tuple[str, ...]
@@ -71,6 +60,13 @@ def known_spins(problem: Problem) -> CriticalSpins | None:
         return None
 
 
+def spin_marks(problem: Problem) -> dict[str, float]:
+    """The critical spins that a launch has, rad/s, by their names."""
+    spins = known_spins(problem)
+    marks = {"ωc₁": spins.upright, "ωc₂": spins.inverted} if spins else {}
+    return {name: spin for name, spin in marks.items() if math.isfinite(spin)}
+
+
 def known_end(problem: Problem) -> Prediction | None:
     """The steady states a launch heads for; None where the theory does not hold, or nothing takes energy."""
     if _is_frictionless(problem):
@@ -90,7 +86,7 @@ def end_in_words(prediction: Prediction) -> str:
 
 def steady_in_words(state: SteadyState) -> str:
     """A steady state as a phrase."""
-    precession, spin = (number_in_words(value, 2) for value in (state.precession, state.spin))
+    precession, spin = (_number(value) for value in (state.precession, state.spin))
     if state.kind is SteadyKind.PRECESSION:
         return (
             f"precession at {math.degrees(state.tilt):.1f}° (θ = {state.tilt:.3f} rad) "
@@ -101,21 +97,10 @@ def steady_in_words(state: SteadyState) -> str:
     return f"{state.kind.value} spin with ω₃ = {spin} rad/s"
 
 
-def number_in_words(value: float, places: int) -> str:
-    """A number as it is printed: with a true minus sign, and none before zero."""
-    text = f"{value:.{places}f}"
+def _number(value: float) -> str:
+    """A number with a true minus sign, and none before zero."""
+    text = f"{value:.2f}"
     return text.replace("-", "−") if float(text) else text.lstrip("-")
-
-
-def arrival(run: xr.Dataset) -> float:
-    """When the tilt is first within 0.01 rad of its last value, s, between samples too."""
-    time, theta = run["time"].values, run["theta"].values
-    beyond = np.abs(theta - theta[-1]) - NEAR_FINAL
-    first = int(np.argmax(beyond < 0))
-    if first == 0:
-        return float(time[0])
-    share = beyond[first - 1] / (beyond[first - 1] - beyond[first])
-    return float(time[first - 1] + share * (time[first] - time[first - 1]))
 
 
 def _is_frictionless(problem: Problem) -> bool:
@@ -124,7 +109,6 @@ def _is_frictionless(problem: Problem) -> bool:
 
 def _end(run: xr.Dataset, problem: Problem, end: Prediction | None) -> str:
     theta = run["theta"].values
-    upside_down = problem.launch.tilt > math.pi / 2
     if theta[-1] < NEAR and np.all(theta < AROUND):
         return _upright(problem)
     if theta[-1] > math.pi - NEAR and np.all(theta > math.pi - AROUND):
@@ -132,11 +116,12 @@ def _end(run: xr.Dataset, problem: Problem, end: Prediction | None) -> str:
     swings = _late(run, problem, 0.0)
     unstable = end is not None and all(state.kind is not SteadyKind.UPRIGHT for state in end.reachable)
     if np.all(theta[swings] < NEAR) and not unstable:
-        return f"{'falls back' if upside_down else 'comes'} upright at {_since(run, theta >= NEAR):.2f} s"
+        comes = "falls back" if problem.launch.tilt > math.pi / 2 else "comes"
+        return f"{comes} upright at {_since(run, theta >= NEAR):.2f} s"
     # Where it can end nowhere else, being there once is enough.
     foretold = end is not None and end.certain and end.final.kind is SteadyKind.INVERTED
     if theta[-1] > math.pi - NEAR and (foretold or np.all(theta[swings] > math.pi - NEAR)):
-        return f"inverts at {arrival(run):.2f} s"
+        return f"inverts at {float(run['arrives']):.2f} s"
     angle = f"{math.degrees(theta[-1]):.1f}°"
     since = _settled(run, problem, end)
     if since is None:
@@ -159,18 +144,16 @@ def _late(run: xr.Dataset, problem: Problem, share: float) -> NDArray[np.bool_]:
     """The samples of the end of a run: a share of it, and a few swings at least."""
     time = run["time"].values
     swings = SWINGS * float(natural_units(problem.top).time)
-    late: NDArray[np.bool_] = time >= time[-1] - max(share * time[-1], swings)
-    return late
+    return np.asarray(time >= time[-1] - max(share * time[-1], swings))
 
 
 def _settled(run: xr.Dataset, problem: Problem, end: Prediction | None) -> float | None:
     """Since when the tilt is at a steady state, s: at a foretold one, or, where none is, at any."""
     theta = run["theta"].values
     late = _late(run, problem, LATE)
-    if run.attrs["outcome"] != Outcome.COMPLETED.name.lower() or late[0]:
+    if run.attrs["outcome"] != "completed" or late[0]:
         return None
-    tilts = [state.tilt for state in end.reachable] if end else [float(theta[-1])]
-    for tilt in tilts:
+    for tilt in [state.tilt for state in end.reachable] if end else [theta[-1]]:
         off = np.abs(theta - tilt) > SETTLED
         if not np.any(off & late):
             return _since(run, off) if np.any(off) else 0.0
@@ -179,22 +162,21 @@ def _settled(run: xr.Dataset, problem: Problem, end: Prediction | None) -> float
 
 def _since(run: xr.Dataset, off: NDArray[np.bool_]) -> float:
     """When the tilt arrives for good, s: one that swings passes its last value before."""
-    return max(arrival(run), float(run["time"].values[off][-1]))
+    return max(float(run["arrives"]), float(run["time"].values[off][-1]))
 
 
 def _flights(run: xr.Dataset) -> list[str]:
-    kinds, times = run["event_kind"].values, run["event_time"].values
-    starts, ends = run["flight_start"].values, run["flight_end"].values
-    lift_offs = times[kinds == EventKind.LIFT_OFF.value]
+    times, starts = run["event_time"].values, run["flight_start"].values
+    lift_offs = times[run["event_kind"].values == "lift-off"]
     clauses = []
     if len(starts) and starts[0] == 0 and not np.any(lift_offs == 0):  # let go above the table
         if not len(times):
             return ["never touches the table"]
-        clauses.append(f"comes down on the table at {ends[0]:.2f} s")
+        clauses.append(f"comes down on the table at {run['flight_end'].values[0]:.2f} s")
         starts = starts[1:]
     if len(starts):
         often = "once, at" if len(starts) == 1 else f"{len(starts)} times from"
         clauses.append(f"leaves the table {often} {starts[0]:.2f} s")
-    if run.attrs["outcome"] == Outcome.LIFTED_OFF.name.lower():
+    if run.attrs["outcome"] == "lifted_off":
         clauses.append(f"the table would have to pull from {lift_offs[-1]:.2f} s on")
     return clauses

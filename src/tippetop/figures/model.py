@@ -9,8 +9,8 @@ from matplotlib.figure import Figure
 
 from tippetop.figures import drawing as draw
 from tippetop.figures.drawing import Array
+from tippetop.figures.looks import FACE, KNOB, STEM, STEM_TOP
 from tippetop.figures.style import ACCENT, CONVERGED, INK, MUTED, TABLE, house_style
-from tippetop.figures.toy import FACE, STEM_END
 
 _AXIS = 1.62
 
@@ -54,17 +54,13 @@ def _model_body(axes: Axes, model: _Model) -> None:
     rim = np.arccos(FACE)
     cut = draw.arc(model.n, model.one, 2 * np.pi - rim, rim) + model.centre
     cap = draw.arc(model.n, model.one, rim, -rim) + model.centre
-    half = 0.12
-    stem = np.array([(FACE, -half), (STEM_END - half, -half), *_round_end(half), (FACE, half)])
+    end = draw.arc([0, -1], [1, 0], np.pi) * KNOB + [STEM_TOP, 0]
+    stem = np.array([(FACE, -STEM), *end, (FACE, STEM)])
     stem = model.centre + stem @ np.array([model.n, model.one])
     draw.filled(axes, draw.outline(stem), "#F3E8D8", MUTED, 1.0, z=0.8)
     body = draw.filled(axes, draw.outline(cut), "none", MUTED, 1.2, z=1.2)
     draw.picture(axes, _gradient(), (-1, 1, 0, 2), z=1, clip=body)
     draw.line(axes, cap, MUTED, 1.0, dashed=True)
-
-
-def _round_end(half: float) -> Array:
-    return draw.arc([0, -1], [1, 0], np.pi) * half + [STEM_END - half, 0]
 
 
 def _gradient(pixels: int = 200) -> Array:

@@ -1,4 +1,4 @@
-"""The toy itself, in three stages of turning over (the report's Fig. 1)."""
+"""The toy itself, in three stages of turning over (the report's Fig. 1), seen along parallel rays."""
 
 from __future__ import annotations
 
@@ -9,13 +9,31 @@ from matplotlib.figure import Figure
 from tippetop.figures import drawing as draw
 from tippetop.figures.drawing import Array
 from tippetop.figures.style import ACCENT, MUTED, TABLE, TABLE_EDGE, house_style
-from tippetop.figures.toy import Camera, centre_height, shadow_image, toy_image
+from tippetop.figures.toy import FAR, Toy
+from tippetop.presets import REPORT
 
+_LIGHT = draw.unit([-0.55, -0.6, 1.0])
+_REACH = 1.05
+"""Half the width of the picture of a toy, in radii."""
 _STAGES = (
     (0.0, "Upright, $\\theta = 0$", "as it rests, and as it is launched"),
-    (75.0, "Turning over, $\\theta = 75°$", "the sphere rubs on the table"),
+    (75.0, "Turning over, $\\theta = 75°$", "the sphere slides on the table"),
     (180.0, "Inverted, $\\theta = 180°$", "it spins on its stem, higher up"),
 )
+
+
+class Camera:
+    """Parallel projection of space (x right, y away, z up) from an elevation in radians."""
+
+    def __init__(self, elevation: float) -> None:
+        sine, cosine = np.sin(elevation), np.cos(elevation)
+        self.right = np.array([1.0, 0.0, 0.0])
+        self.up = np.array([0.0, sine, cosine])
+        self.towards = np.array([0.0, -cosine, sine])
+
+    def project(self, points: Array) -> Array:
+        """Return the picture coordinates of points given as rows."""
+        return np.stack([points @ self.right, points @ self.up], axis=-1)
 
 
 def tippe_top_drawing() -> Figure:
@@ -33,7 +51,7 @@ def tippe_top_drawing() -> Figure:
             draw.label(axes, (x, -1.1), title, size=10.5)
             draw.label(axes, (x, -1.44), text, color=MUTED, size=9)
         draw.label(axes, (0.55, 2.94), "spin", color=ACCENT, size=9.5, ha="left")
-        draw.label(axes, (0.27, 2.1), "stem", size=9.5, ha="left")
+        draw.label(axes, (0.27, 1.8), "stem", size=9.5, ha="left")
     return figure
 
 
@@ -45,18 +63,17 @@ def _table(axes: Axes, ends: tuple[float, float], camera: Camera) -> None:
     draw.line(axes, [(left, far), (right, far)], TABLE_EDGE, 1.0, z=0)
 
 
-def _stage(axes: Axes, x: float, tilt: float, camera: Camera, eccentricity: float = 0.3) -> None:
+def _stage(axes: Axes, x: float, tilt: float, camera: Camera) -> None:
     """Draw one toy: its shadow, its picture, its spin, and how high its centre of mass is."""
-    azimuth = np.radians(-35)
-    axis = np.array([np.sin(tilt) * np.cos(azimuth), np.sin(tilt) * np.sin(azimuth), np.cos(tilt)])
-    centre = np.array([x, 0.0, centre_height(axis)])
-    o, mass = camera.project(centre), camera.project(centre - eccentricity * axis)
+    toy, frame = Toy(REPORT), _frame(tilt, np.radians(-35))
+    centre = np.array([x, 0.0, 1.0])
+    o, mass = camera.project(centre), camera.project(centre - frame @ toy.middle)
     flat = 2 * camera.up[1]
     for offset, spread, strength in ((0.3, 0.95, 0.24), (0.06, 0.36, 0.45)):
-        draw.picture(axes, shadow_image(offset, spread, strength), (x - 2, x + 2, -flat, flat), z=0.5)
-    image, reach = toy_image(axis, camera)
+        draw.picture(axes, _shadow(offset, spread, strength), (x - 2, x + 2, -flat, flat), z=0.5)
     _spin(axes, centre, camera)
-    draw.picture(axes, image, (o[0] - reach, o[0] + reach, o[1] - reach, o[1] + reach), z=3)
+    place = (o[0] - _REACH, o[0] + _REACH, o[1] - _REACH, o[1] + _REACH)
+    draw.picture(axes, _picture(toy, frame, camera), place, z=3)
     draw.mass_centre(axes, mass, radius=0.085)
     draw.line(axes, [(x - 1.38, mass[1]), (x - 1.04, mass[1])], MUTED, 0.9)
     draw.dimension(axes, (x - 1.25, 0), (x - 1.25, mass[1]))
@@ -71,3 +88,48 @@ def _spin(axes: Axes, centre: Array, camera: Camera, height: float = 3.0, radius
     draw.arrow(axes, camera.project(ring), ACCENT, width=1.8, head=0.2, z=2.5)
     back, front = camera.project(ends)
     draw.line(axes, [back, front], MUTED, 1.0, dashed=True, z=2.4)
+
+
+def _frame(tilt: float, azimuth: float) -> Array:
+    """Return the body's axes in space as columns, shape (3, 3), the third leaning towards an azimuth."""
+    (s, c), (sine, cosine) = (np.sin(tilt), np.cos(tilt)), (np.sin(azimuth), np.cos(azimuth))
+    return np.array([[c * cosine, -sine, s * cosine], [c * sine, cosine, s * sine], [-s, 0.0, c]])
+
+
+def _picture(toy: Toy, frame: Array, camera: Camera, pixels: int = 300, oversample: int = 3) -> Array:
+    """Return the toy's picture about the sphere's centre: RGBA, rows from the bottom up."""
+    n = pixels * oversample
+    grid = ((np.arange(n) + 0.5) / n * 2 - 1) * _REACH
+    across, upward = np.meshgrid(grid, grid)
+    start = across[..., None] * camera.right + upward[..., None] * camera.up + 2 * camera.towards
+    start, ahead, light = start @ frame + toy.middle, -camera.towards @ frame, _LIGHT @ frame
+    distance, normal = toy.meet(start, np.broadcast_to(ahead, start.shape))
+    hit = distance < FAR
+    rgba = np.zeros((n, n, 4))
+    point = start[hit] + distance[hit][:, None] * ahead
+    rgba[hit, :3] = np.clip(toy.lit(point, normal[hit], light, -ahead, frame[2]), 0, 1)
+    rgba[hit, 3] = 1.0
+    return _bled(rgba.reshape(pixels, oversample, pixels, oversample, 4).mean(axis=(1, 3)))
+
+
+def _bled(blocks: Array) -> Array:
+    """Undo the averaging of colour with empty space, and spread the edge's colour one pixel outwards.
+
+    Without it, a viewer that interpolates the picture draws a dark fringe around it.
+    """
+    around = sum(
+        (np.roll(blocks, shift, axis) for axis in (0, 1) for shift in (-1, 1)), np.zeros_like(blocks)
+    )
+    source = np.where(blocks[..., 3:] > 0, blocks, around)
+    blocks[..., :3] = source[..., :3] / np.maximum(source[..., 3:], 1e-9)
+    return blocks
+
+
+def _shadow(offset: float, spread: float, strength: float, pixels: int = 160) -> Array:
+    """Return a soft round shadow (RGBA) on the square of half width 2, darkest `offset` to the right."""
+    grid = np.linspace(-2, 2, pixels)
+    x, y = np.meshgrid(grid, grid)
+    rgba = np.zeros((pixels, pixels, 4))
+    fade = np.clip(1 - (x**2 + y**2) / 4, 0, 1)
+    rgba[..., 3] = strength * fade * np.exp(-(((x - offset) ** 2 + y**2) / spread**2))
+    return rgba

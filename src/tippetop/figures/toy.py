@@ -1,151 +1,139 @@
-"""A shaded picture of the tippe top, seen along parallel rays from a little above the table.
+"""The toy met by rays, and lit: what pictures of it made without a browser are drawn with.
 
-The toy is a solid of revolution given by its signed distance; each pixel's ray is followed to the surface
-by steps of that distance, and the surface is lit from above on the left. Lengths are in sphere radii.
+Lengths are in sizes of the toy; points and directions are in the body's frame, about its centre of mass.
 """
 
-from __future__ import annotations
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.colors import to_rgb
+from numpy.typing import NDArray
 
-from tippetop.figures.drawing import Array, unit
-from tippetop.figures.style import CONVERGED
+from tippetop.figures.looks import FACE, KNOB, STEM, STEM_TOP, size, toy_parts
+from tippetop.problem import Body, EccentricSphere
 
-FACE = 0.42
-"""Distance from the sphere's centre to the flat face, along the axis."""
-STEM_END = 1.42
-"""Distance from the sphere's centre to the end of the stem."""
+Array = NDArray[np.floating[Any]]
 
-_STEM_RADIUS, _KNOB_RADIUS = 0.12, 0.165
-_REACH = 1.5
-_LIGHT = unit([-0.55, -0.6, 1.0])
-_WOOD, _CREAM, _PAINT = (np.array(to_rgb(c)) for c in ("#D9AE78", "#F4E7CF", CONVERGED))
+FAR = 1e9
+"""How far along a ray that misses it the toy is."""
 
 
-class Camera:
-    """Parallel projection of space (x right, y away, z up) from an elevation in radians."""
+class _Quadric(NamedTuple):
+    """Where w (x^2 + y^2) = p + q z + s z^2, between two heights and within a distance from the axis."""
 
-    def __init__(self, elevation: float) -> None:
-        sine, cosine = np.sin(elevation), np.cos(elevation)
-        self.right = np.array([1.0, 0.0, 0.0])
-        self.up = np.array([0.0, sine, cosine])
-        self.towards = np.array([0.0, -cosine, sine])
+    w: float
+    p: float
+    q: float
+    s: float
+    low: float = -np.inf
+    high: float = np.inf
+    widest: float = np.inf
 
-    def project(self, points: Array) -> Array:
-        """Return the picture coordinates of points given as rows."""
-        return np.stack([points @ self.right, points @ self.up], axis=-1)
+    def meet(self, o: Array, d: Array) -> tuple[Array, ...]:
+        """How far along rays its two places are; far where there is none."""
+        ox, oy, oz = np.moveaxis(o, -1, 0)
+        dx, dy, dz = np.moveaxis(d, -1, 0)
+        a = self.w * (dx * dx + dy * dy) - self.s * dz * dz
+        b = self.w * (ox * dx + oy * dy) - (self.q / 2 + self.s * oz) * dz
+        c = self.w * (ox * ox + oy * oy) - self.p - (self.q + self.s * oz) * oz
+        inside = b * b - a * c
+        # Either root by the form that loses no digits, and that holds for planes, where a is zero.
+        lesser = -(b + np.copysign(np.sqrt(np.maximum(inside, 0.0)), b))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            roots = c / lesser, lesser / a
+            return tuple(self._kept(o, d, np.where(inside < 0, FAR, root)) for root in roots)
+
+    def _kept(self, o: Array, d: Array, distance: Array) -> Array:
+        z = o[..., 2] + distance * d[..., 2]
+        away = (o[..., 0] + distance * d[..., 0]) ** 2 + (o[..., 1] + distance * d[..., 1]) ** 2
+        kept = (distance > 1e-6) & (z >= self.low) & (z <= self.high) & (away <= self.widest**2)
+        return np.where(kept, distance, FAR)
+
+    def normal(self, point: Array) -> Array:
+        """Vectors along its normals at points of it, outwards."""
+        outward = self.w * point
+        outward[..., 2] = -self.q / 2 - self.s * point[..., 2]
+        return outward
 
 
-def centre_height(axis: Array) -> float:
-    """Return the height of the sphere's centre when the toy touches the table, by its sphere or its stem."""
-    knob = STEM_END - _KNOB_RADIUS
-    return float(max(1.0, _KNOB_RADIUS - knob * axis[2]))
+class Toy:
+    """The toy of a body.
 
-
-def toy_image(axis: Array, camera: Camera, pixels: int = 420, oversample: int = 2) -> tuple[Array, float]:
-    """Return the toy's picture (RGBA, rows from the bottom up) about the sphere's centre, and its half width.
-
-    `axis` is the unit vector from the sphere's centre to the stem, in space.
+    Attributes
+    ----------
+    size
+        The length by which it is measured, m.
+    middle
+        The middle of its surface.
     """
-    n = pixels * oversample
-    grid = (np.arange(n) + 0.5) / n * 2 * _REACH - _REACH
-    across, upward = np.meshgrid(grid, grid)
-    origins = across.reshape(-1, 1) * camera.right + upward.reshape(-1, 1) * camera.up
-    hit, points = _trace(origins, camera.towards, axis)
-    rgba = np.zeros((n * n, 4))
-    rgba[hit, :3] = _lit(points[hit], axis, camera.towards)
-    rgba[hit, 3] = 1.0
-    blocks = rgba.reshape(pixels, oversample, pixels, oversample, 4).mean(axis=(1, 3))
-    return _bled(blocks), _REACH
+
+    def __init__(self, body: Body) -> None:
+        shape = body.shape
+        self.size = size(body)
+        self._parts = [part for part in toy_parts(body) if part.opacity == 1]
+        if isinstance(shape, EccentricSphere):
+            self.middle = np.array([0.0, 0.0, shape.eccentricity])
+            self._surfaces = _tippe_top()
+        else:
+            self.middle = np.zeros(3)
+            across = shape.across / self.size
+            self._surfaces = (_Quadric(1.0, across**2, 0.0, -((shape.across / shape.along) ** 2)),)
+
+    def meet(self, start: Array, direction: Array) -> tuple[Array, Array]:
+        """How far along each ray the toy is, and its normal there; far if missed."""
+        o = start - self.middle.astype(start.dtype)
+        distances, normals = np.full(o.shape[:-1], FAR, o.dtype), np.zeros_like(o)
+        near = np.nonzero(_passes(o, direction))
+        if len(near[0]):
+            distances[near], normals[near] = self._meet(o[near], direction[near])
+        return distances, normals
+
+    def _meet(self, o: Array, d: Array) -> tuple[Array, Array]:
+        """The same for rays that pass through the sphere in which all of the toy is."""
+        nearest, normals = np.full(o.shape[:-1], FAR, o.dtype), np.zeros_like(o)
+        for surface in self._surfaces:
+            for distance in surface.meet(o, d):
+                nearer = np.nonzero(distance < nearest)
+                nearest[nearer] = distance[nearer]
+                normals[nearer] = surface.normal(o[nearer] + distance[nearer][..., None] * d[nearer])
+        return nearest, normals / np.maximum(np.linalg.norm(normals, axis=-1, keepdims=True), 1e-12)
+
+    def paint(self, point: Array) -> Array:
+        """The colours of surface points."""
+        along, away = point[..., 2], np.hypot(point[..., 0], point[..., 1])
+        turn = np.arctan2(point[..., 1], point[..., 0]) / (2 * np.pi) % 1.0
+        colours = np.zeros_like(point)
+        for part in self._parts:
+            (narrow, low), (wide, high) = part.profile.min(axis=0), part.profile.max(axis=0)
+            at = (along > low - 1e-3) & (along < high + 1e-3) & (away > narrow - 0.01) & (away < wide + 0.01)
+            sectors = np.array([to_rgb(colour) for colour in part.colours])
+            colours[at] = sectors[(turn[at] * len(sectors)).astype(int) % len(sectors)]
+        return colours
+
+    def lit(self, point: Array, normal: Array, light: Array, eye: Array, upward: Array) -> Array:
+        """The colours of surface points under one light and a bright sky, given unit vectors to all three."""
+        sun = np.clip(normal @ light, 0, None)
+        sky = 0.5 + 0.5 * (normal @ upward)
+        half = light + eye
+        half /= np.linalg.norm(half, axis=-1, keepdims=True)
+        gloss = 0.4 * np.clip(np.einsum("...i,...i", normal, half), 0, 1) ** 40
+        return np.asarray(self.paint(point) * (0.42 + 0.28 * sky + 0.42 * sun)[..., None] + gloss[..., None])
 
 
-def _bled(blocks: Array) -> Array:
-    """Undo the averaging of colour with empty space, and spread the edge's colour one pixel outwards.
-
-    Without it, a viewer that interpolates the picture draws a dark fringe around it.
-    """
-    around = sum(
-        (np.roll(blocks, shift, axis) for axis in (0, 1) for shift in (-1, 1)), np.zeros_like(blocks)
+def _tippe_top() -> tuple[_Quadric, ...]:
+    """The cut sphere, the face, the stem and the ball at its end, about the sphere's centre."""
+    slope = (KNOB - STEM) / (STEM_TOP - FACE)
+    start = STEM - slope * FACE
+    return (
+        _Quadric(1.0, 1.0, 0.0, -1.0, high=FACE),
+        _Quadric(0.0, FACE, -1.0, 0.0, widest=float(np.sqrt(1 - FACE**2))),
+        _Quadric(1.0, start**2, 2 * slope * start, slope**2, FACE, STEM_TOP),
+        _Quadric(1.0, KNOB**2 - STEM_TOP**2, 2 * STEM_TOP, -1.0, low=STEM_TOP),
     )
-    source = np.where(blocks[..., 3:] > 0, blocks, around)
-    blocks[..., :3] = source[..., :3] / np.maximum(source[..., 3:], 1e-9)
-    return blocks
 
 
-def shadow_image(offset: float, spread: float, strength: float, pixels: int = 160) -> Array:
-    """Return a soft round shadow (RGBA) on the square of half width 2, darkest `offset` to the right."""
-    grid = np.linspace(-2, 2, pixels)
-    x, y = np.meshgrid(grid, grid)
-    rgba = np.zeros((pixels, pixels, 4))
-    fade = np.clip(1 - (x**2 + y**2) / 4, 0, 1)
-    rgba[..., 3] = strength * fade * np.exp(-(((x - offset) ** 2 + y**2) / spread**2))
-    return rgba
-
-
-def _trace(origins: Array, towards: Array, axis: Array) -> tuple[Array, Array]:
-    """Follow each ray to the surface; return which rays arrive, and where."""
-    depth = np.full(len(origins), _REACH)
-    hit = np.zeros(len(origins), dtype=bool)
-    seen = axis - (axis @ towards) * towards
-    along_stem = np.clip(origins @ seen / max(float(seen @ seen), 1e-9), 0, STEM_END)[:, None] * seen
-    near_stem = ((origins - along_stem) ** 2).sum(axis=1) < (1.1 * _KNOB_RADIUS) ** 2
-    active = np.flatnonzero(near_stem | ((origins**2).sum(axis=1) < 1.01))
-    for _ in range(80):
-        distance = _distance(*_profile(origins[active] + depth[active, None] * towards, axis))
-        depth[active] -= 0.9 * distance
-        hit[active[distance < 2e-3]] = True
-        active = active[(distance >= 2e-3) & (depth[active] > -_REACH)]
-    return hit, origins + depth[:, None] * towards
-
-
-def _profile(points: Array, axis: Array) -> tuple[Array, Array]:
-    """Return the coordinates of points along the axis and away from it."""
-    along = points @ axis
-    return along, np.sqrt(np.maximum((points**2).sum(axis=1) - along**2, 1e-12))
-
-
-def _distance(along: Array, away: Array) -> Array:
-    return -_smooth_max(-_bowl(along, away), -_stem(along, away), 0.10)
-
-
-def _bowl(along: Array, away: Array) -> Array:
-    return _smooth_max(np.hypot(along, away) - 1.0, along - FACE, 0.05)
-
-
-def _stem(along: Array, away: Array) -> Array:
-    knob = STEM_END - _KNOB_RADIUS
-    beyond = along - np.clip(along, 0.0, knob)
-    swell = _STEM_RADIUS + (_KNOB_RADIUS - _STEM_RADIUS) * np.clip((along - FACE) / (knob - FACE), 0, 1) ** 2
-    return np.hypot(away, beyond) - swell
-
-
-def _smooth_max(a: Array, b: Array, radius: float) -> Array:
-    """Return the larger of two distances, the edge where they meet rounded off over `radius`."""
-    overlap = np.maximum(radius - np.abs(a - b), 0.0) / radius
-    return np.maximum(a, b) + overlap**2 * radius / 4
-
-
-def _lit(points: Array, axis: Array, towards: Array) -> Array:
-    """Return the colours of surface points under one light and a bright sky."""
-    along, away = _profile(points, axis)
-    step = 1e-4
-    slope_along = _distance(along + step, away) - _distance(along - step, away)
-    slope_away = _distance(along, away + step) - _distance(along, away - step)
-    radial = (points - along[:, None] * axis) / away[:, None]
-    normal = slope_along[:, None] * axis + slope_away[:, None] * radial
-    normal /= np.linalg.norm(normal, axis=1)[:, None]
-    sun = np.clip(normal @ _LIGHT, 0, None)
-    sky = 0.5 + 0.5 * normal[:, 2]
-    rim = 1 - np.clip(normal @ towards, 0, 1)
-    shade = 0.46 + 0.30 * sky + 0.40 * sun - 0.14 * rim**3
-    gloss = 0.45 * np.clip(normal @ unit(_LIGHT + towards), 0, 1) ** 45
-    return np.clip(_paint(along, away) * shade[:, None] + gloss[:, None], 0, 1)
-
-
-def _paint(along: Array, away: Array) -> Array:
-    colours = np.tile(_PAINT, (len(along), 1))
-    colours[(along > FACE - 0.26) & (along < FACE - 0.17)] = _CREAM
-    colours[along > FACE - 0.035] = _CREAM
-    colours[_stem(along, away) < _bowl(along, away)] = _WOOD
-    return colours
+def _passes(o: Array, d: Array) -> NDArray[np.bool_]:
+    """Whether rays pass through the unit sphere."""
+    b = np.einsum("...i,...i", o, d)
+    a, c = np.einsum("...i,...i", d, d), np.einsum("...i,...i", o, o)
+    return np.asarray(b * b > a * (c - 1.0))

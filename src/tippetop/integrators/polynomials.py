@@ -46,9 +46,9 @@ class Polynomials:
     def sag(self) -> Array:
         """How far a polynomial can go beyond its values at Gauss's eight points, shape (n,)."""
         k = np.arange(len(self.unit))
-        found: Array = (k * (k - 1)) @ np.abs(self.unit) * (0.19**2 / 8.0) + 0.02 * np.abs(
-            self.unit[1:]
-        ).sum(axis=0)
+        found: Array = (k * (k - 1)) @ np.abs(self.unit) * (0.19**2 / 8.0) + 0.02 * np.abs(self.unit[1:]).sum(
+            axis=0
+        )
         return found
 
     @cached_property

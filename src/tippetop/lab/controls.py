@@ -2,114 +2,88 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any, get_args
+from typing import Any, NamedTuple, get_args
 
 from nicegui import events, ui
 
+from tippetop.figures.looks import size
 from tippetop.lab.setup import Setup
 from tippetop.problem import Friction
-from tippetop.validation import Part
 
 Change = Callable[[dict[str, Any], bool], None]
 """Is told what to change, and whether the browser has asked for the new run already."""
 
-LAWS: dict[str, type[Part]] = {
-    law.model_fields["kind"].default: law for law in get_args(get_args(Friction)[0])
+_LAW_NAMES = {"viscous": "viscous, −μNv", "regularized_coulomb": "Coulomb, smoothed"}
+LAWS = {
+    word: _LAW_NAMES.get(word, word.replace("_", " "))
+    for word in (law.model_fields["kind"].default for law in get_args(get_args(Friction)[0]))
 }
-"""The friction laws by the word that tells them apart in a problem."""
-
-LAW_NUMBERS = {"eps": "Smoothed below a slip of (m/s)"}
-"""What the numbers of a friction law other than mu are, to read."""
-
-_NAMES = {"viscous": "viscous, −μNv", "regularized_coulomb": "Coulomb, smoothed"}
+"""The friction laws by the word that tells them apart in a problem, with names to read."""
 
 
-@dataclass(frozen=True)
-class Dial:
+class Dial(NamedTuple):
     """A number to set by a slider or by typing.
 
     Attributes
     ----------
+    field
+        The field of the launch that it sets, named with dots; hidden where there is none.
     label, unit
-        What it is.
+        What it is. Inertias are in units of mass times size squared.
     low, high, step
         Bounds and step of the slider; a number beyond them can be typed.
-    read
-        Its value in a setup; None where it has no meaning.
-    write
-        The changes that set it.
     logarithmic
         Whether the slider goes by powers of ten.
-    name
-        The field it sets, if it sets just that: the browser then asks for the new run by itself.
     """
 
+    field: str
     label: str
     unit: str
     low: float
     high: float
     step: float
-    read: Callable[[Setup], float | None]
-    write: Callable[[Setup, float], dict[str, Any]]
     logarithmic: bool = False
-    name: str = ""
 
+    @property
+    def plain(self) -> bool:
+        """Whether the field is set to the dial's own number: the browser then asks for the run by itself."""
+        return self.unit != "mR²"
 
-def _field(
-    name: str, label: str, unit: str, low: float, high: float, step: float, logarithmic: bool = False
-) -> Dial:
-    """The dial of a field of a problem, named with dots."""
-
-    def read(setup: Setup) -> float | None:
-        value: Any = setup.problem
-        for part in name.split("."):
+    def read(self, setup: Setup) -> float | None:
+        """Its value in a launch; None where it has no meaning."""
+        value: Any = setup if self.field == "duration" else setup.problem
+        for part in self.field.split("."):
             value = getattr(value, part, None)
-        return None if value is None else float(value)
+        return None if value is None else float(value) / self._scale(setup)
 
-    def write(_setup: Setup, value: float) -> dict[str, Any]:
-        return {name: value}
+    def write(self, setup: Setup, value: float) -> dict[str, float]:
+        """The change of a launch that sets it."""
+        return {self.field: value * self._scale(setup)}
 
-    return Dial(label, unit, low, high, step, read, write, logarithmic, name)
-
-
-def _inertia(name: str, label: str) -> Dial:
-    """The dial of an inertia, in units of mass times size squared."""
-
-    def unit(setup: Setup) -> float:
+    def _scale(self, setup: Setup) -> float:
         body = setup.problem.body
-        return body.mass * float(body.shape.surface.size) ** 2
-
-    def read(setup: Setup) -> float | None:
-        return float(getattr(setup.problem.body, name)) / unit(setup)
-
-    def write(setup: Setup, value: float) -> dict[str, Any]:
-        return {f"body.{name}": value * unit(setup)}
-
-    return Dial(label, "mR²", 0.2, 0.7, 0.005, read, write)
+        return 1.0 if self.plain else body.mass * size(body) ** 2
 
 
-SPIN = _field("launch.spin", "Spin ω₃", "rad/s", 0.0, 250.0, 0.5)
-MU = _field("friction.mu", "Friction μ", "", 0.01, 10.0, 0.01, logarithmic=True)
-MAIN = (SPIN, _field("launch.tilt", "Tilt θ", "rad", 0.0, math.pi, 0.01), MU)
+SPIN = Dial("launch.spin", "Spin ω₃", "rad/s", 0.0, 250.0, 0.5)
+MU = Dial("friction.mu", "Friction μ", "", 0.01, 10.0, 0.01, logarithmic=True)
+TILT = Dial("launch.tilt", "Tilt θ", "rad", 0.0, math.pi, 0.01)
+SMOOTHED = Dial("friction.eps", "Smoothed below a slip of", "m/s", 1e-5, 0.1, 0.01, logarithmic=True)
 TABLE = (
-    _field("contact.restitution", "Restitution", "", 0.0, 1.0, 0.01),
-    _field("gravity", "Gravity", "m/s²", 0.1, 25.0, 0.1),
-    Dial(
-        "Duration", "s", 1.0, 60.0, 1.0, lambda setup: setup.duration, lambda _, value: {"duration": value},
-        name="duration",
-    ),
-)  # fmt: skip
+    Dial("contact.restitution", "Restitution", "", 0.0, 1.0, 0.01),
+    Dial("gravity", "Gravity", "m/s²", 0.1, 25.0, 0.1),
+    Dial("duration", "Duration", "s", 1.0, 60.0, 1.0),
+)
 TOP = (
-    _field("body.shape.eccentricity", "Eccentricity α", "", 0.02, 0.6, 0.01),
-    _inertia("I1", "Inertia I₁"),
-    _inertia("I3", "Inertia I₃"),
-    _field("body.mass", "Mass m", "kg", 0.002, 0.5, 0.001, logarithmic=True),
+    Dial("body.shape.eccentricity", "Eccentricity α", "", 0.02, 0.6, 0.01),
+    Dial("body.I1", "Inertia I₁", "mR²", 0.2, 0.7, 0.005),
+    Dial("body.I3", "Inertia I₃", "mR²", 0.2, 0.7, 0.005),
+    Dial("body.mass", "Mass m", "kg", 0.002, 0.5, 0.001, logarithmic=True),
 )
 START = (
-    _field("launch.tilt_rate", "Tilt rate θ′", "rad/s", -50.0, 50.0, 0.5),
-    _field("launch.precession", "Precession φ′", "rad/s", -100.0, 100.0, 0.5),
-    _field("launch.gap", "Gap below", "m", 0.0, 0.1, 0.001),
+    Dial("launch.tilt_rate", "Tilt rate θ′", "rad/s", -50.0, 50.0, 0.5),
+    Dial("launch.precession", "Precession φ′", "rad/s", -100.0, 100.0, 0.5),
+    Dial("launch.gap", "Gap below", "m", 0.0, 0.1, 0.001),
 )
 
 
@@ -122,7 +96,7 @@ class _Slider(ui.slider):
 def _moved(dial: Dial) -> str:
     """What the browser does when a slider moves: move it, and ask for the new run."""
     value = "Number((10 ** at).toPrecision(3))" if dial.logarithmic else "at"
-    asked = f"tippetopLab.tune({dial.name!r}, {value});" if dial.name else ""
+    asked = f"tippetopLab.tune({dial.field!r}, {value});" if dial.plain else ""
     return f'(at) => {{ element.props["model-value"] = at; {asked} }}'
 
 
@@ -191,20 +165,10 @@ class DialRow:
         self._quiet = True
         self.number.value = float(f"{value:.6g}")
         self._quiet = False
-        self._change(self._dial.write(self._current(), value), bool(self._dial.name))
+        self._change(self._dial.write(self._current(), value), self._dial.plain)
 
     def _typed(self) -> None:
         if self.number.value is None:
             self.show(self._current())
         else:
             self._change(self._dial.write(self._current(), float(self.number.value)), False)
-
-
-def law_choices() -> dict[str, str]:
-    """The friction laws by their word, with names to read."""
-    return {word: _NAMES.get(word, word.replace("_", " ")) for word in LAWS}
-
-
-def law_fields(word: str) -> list[str]:
-    """The numbers of a friction law other than mu."""
-    return [name for name, info in LAWS[word].model_fields.items() if name not in ("kind", "mu") and info]

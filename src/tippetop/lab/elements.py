@@ -1,6 +1,6 @@
 """The page's own elements: the player, the plots and the map. What they do is in `components`."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from pathlib import Path
 
 # The first two make ECharts and three.js importable on the page.
@@ -10,7 +10,6 @@ from nicegui import events
 from nicegui.element import Element
 
 from tippetop.export.bundle import PLAYER
-from tippetop.lab.map_job import Fate, MapPart
 
 _COMPONENTS = Path(__file__).parent / "components"
 
@@ -49,19 +48,3 @@ class PhaseMap(Element, component=_COMPONENTS / "lab_map.js"):
             on_launch(float(event.args["spin"]), float(event.args["mu"]))
 
         self.on("launch", chosen)
-
-    def begin(
-        self, spins: Sequence[float], frictions: Sequence[float], unit: str, marks: Sequence[float]
-    ) -> None:
-        """Begin a map of these spins (rad/s) and friction coefficients, with some spins marked."""
-        fates = [fate.sentence for fate in Fate]
-        axes = {"spins": [*spins], "frictions": [*frictions], "unit": unit, "marks": [*marks]}
-        self.run_method("begin", axes | {"fates": fates})
-
-    def put(self, part: MapPart) -> None:
-        """Draw what has become known."""
-        self.run_method("put", part.cells, part.tilts, part.flights, part.fates)
-
-    def here(self, place: tuple[float, float] | None) -> None:
-        """Mark a spin and friction as those of the launch that is shown; None if it is not on the map."""
-        self.run_method("here", place)

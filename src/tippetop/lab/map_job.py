@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Iterator, Sequence
-from enum import IntEnum
+from enum import StrEnum
 from typing import NamedTuple
 
 import numpy as np
@@ -23,28 +23,14 @@ HASTE = 10.0
 """A finer stride is left out if it would take longer than this, s."""
 
 
-class Fate(IntEnum):
-    """What is known of a cell."""
+class Fate(StrEnum):
+    """What is known of a cell, as a visitor reads it; nothing where the tilt says it all."""
 
-    FOLLOWED = 0
-    IN_THE_AIR = 1
-    STOPPED = 2
-    FAILED = 3
-    IMPOSSIBLE = 4
-
-    @property
-    def sentence(self) -> str:
-        """What a visitor reads of it, after "spin 155 rad/s, μ 0.3: "; empty where the tilt says it all."""
-        return _SENTENCES[self]
-
-
-_SENTENCES = {
-    Fate.FOLLOWED: "",
-    Fate.IN_THE_AIR: "leaves the table; its flights are not followed yet",
-    Fate.STOPPED: "leaves the table, where the run stops",
-    Fate.FAILED: "cannot be followed to the end",
-    Fate.IMPOSSIBLE: "cannot be launched: any push of the table would drag it further in",
-}
+    FOLLOWED = ""
+    IN_THE_AIR = "leaves the table; its flights are not followed yet"
+    STOPPED = "leaves the table, where the run stops"
+    FAILED = "cannot be followed to the end"
+    IMPOSSIBLE = "cannot be launched: any impulse of the table would drag it further in"
 
 
 class MapPart(NamedTuple):
@@ -59,7 +45,7 @@ class MapPart(NamedTuple):
     flights
         How many times each left the table.
     fates
-        Numbers of `Fate`.
+        What is known of each.
     share
         Share of the finest map that is done.
     """
@@ -67,7 +53,7 @@ class MapPart(NamedTuple):
     cells: list[int]
     tilts: list[float | None]
     flights: list[int]
-    fates: list[int]
+    fates: list[str]
     share: float
 
 

@@ -58,7 +58,7 @@ def serve(
     _check_free(host, port)
     pool = Workers(workers)
     _add_routes(app, pool)
-    register_page(pool)
+    register_page(pool, TRACK_PATH, FILE_PATH)
     app.on_startup(lambda: announce(f"the laboratory is at http://{_shown(host)}:{port}/ (Ctrl-C ends it)"))
     try:
         ui.run(

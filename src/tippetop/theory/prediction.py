@@ -116,7 +116,7 @@ def steady_launch(problem: Problem) -> SteadyState | None:
         ]
     off = [rate * units.time for rate in rates]
     off += [speed / units.speed for speed in start.velocity]
-    off.append((start.position[2] - top.surface.height(start.axis[2])) / units.length)
+    off.append((start.height - top.surface.height(start.axis[2])) / units.length)
     quickest = 1.0 + units.time * max(abs(steady.spin), abs(steady.precession))
     return steady if max(map(abs, off)) <= ROUNDING * quickest else None
 

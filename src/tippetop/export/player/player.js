@@ -187,7 +187,7 @@ export class Player extends EventTarget {
       const passed = this.last === undefined ? 0 : Math.min((now - this.last) / 1000, 0.25);
       this.last = now;
       this.time += passed * this.speed;
-      this.watch(passed);
+      this.pace(passed);
       if (this.time >= this.duration) {
         this.time = this.duration;
         this.toggle(false);
@@ -225,7 +225,7 @@ export class Player extends EventTarget {
   }
 
   // Where frames come late, draw fewer pixels.
-  watch(passed) {
+  pace(passed) {
     if (!this.scene || !passed) return;
     this.slow = 0.9 * this.slow + 0.1 * passed;
     this.seen = (this.seen ?? 0) + 1;

@@ -2,16 +2,6 @@
 
 import { cutTrace, makeArrow, makeRuler, makeTable, makeToy, makeTrace, paintGrid, pointArrow, traceMaterial } from "./toy.js";
 
-const THEMES = {
-  light: {
-    background: "#eef1f4", table: "#e3d9c8", line: "#b7a98f", ruler: "#f3d27a", trace: "#9e1f54",
-    sky: "#ffffff", ground: "#e5d9c4", sun: 2.4, ambient: 1.7,
-  },
-  dark: {
-    background: "#14181d", table: "#3b3832", line: "#5f594e", ruler: "#c9a84f", trace: "#ff6fa5",
-    sky: "#c4d3e6", ground: "#5a4d3d", sun: 2.3, ambient: 1.4,
-  },
-};
 export const ARROWS = { axis: "#109b60", momentum: "#7b4fd0", friction: "#e03c31" };
 
 const VIEWS = { orbit: [3.6, -5.6, 3.1], side: [0, -6.6, 0.7], above: [0, -0.05, 7.5] };
@@ -45,7 +35,6 @@ export class Scene {
     }
     this.shown = { axis: false, momentum: false, friction: false, trace: true, glass: true };
     this.following = true;
-    this.setTheme("light");
     this.look("orbit");
   }
 
@@ -65,7 +54,9 @@ export class Scene {
 
   setTheme(name) {
     const { THREE } = this;
-    const theme = (this.theme = THEMES[name] || THEMES.light);
+    this.themed = name;
+    const theme = (this.theme = this.track?.header.scenes[name]);
+    if (!theme) return;
     this.world.background = new THREE.Color(theme.background);
     this.world.fog = new THREE.Fog(theme.background, 14, 34);
     this.sky.color.set(theme.sky);
@@ -84,11 +75,12 @@ export class Scene {
     this.track = track;
     const { THREE, world } = this;
     const { body } = track.header;
+    this.setTheme(this.themed);
     const shape = JSON.stringify(body);
     if (shape !== this.shape) {
       this.shape = shape;
       this.remove(this.toy, this.table, this.ruler);
-      this.toy = makeToy(THREE, body);
+      this.toy = makeToy(THREE, body.parts);
       const { metres, label } = roundLength(body.size / 2);
       const cell = metres / body.size;
       this.cell = 5 * cell;

@@ -2,66 +2,28 @@
 
 const SEGMENTS = 48;
 
-// A solid of revolution about z, with equal sectors in its colours; lengths in `unit` metres.
-export function lathe(THREE, part, unit) {
-  const profile = part.profile.map(([r, z]) => [r / unit, z / unit]);
-  const last = profile.length - 1;
-  const normals = profile.map((_, k) => {
-    const [r0, z0] = profile[Math.max(k - 1, 0)];
-    const [r1, z1] = profile[Math.min(k + 1, last)];
-    const length = Math.hypot(z1 - z0, r1 - r0) || 1;
-    return [(z1 - z0) / length, (r0 - r1) / length];
-  });
-  const sectors = part.colours.length;
-  const steps = Math.max(1, Math.round(SEGMENTS / sectors));
-  const points = [];
-  const directions = [];
-  const colours = [];
-  const triangles = [];
-  part.colours.forEach((name, sector) => {
-    const colour = new THREE.Color(name);
-    for (let s = 0; s <= steps; s++) {
-      const turn = (2 * Math.PI * (sector + s / steps)) / sectors;
-      const x = Math.cos(turn);
-      const y = Math.sin(turn);
-      for (let k = 0; k <= last; k++) {
-        if (s < steps && k < last) {
-          const a = points.length / 3;
-          const b = a + last + 1;
-          triangles.push(a, b, b + 1, a, b + 1, a + 1);
-        }
-        points.push(profile[k][0] * x, profile[k][0] * y, profile[k][1]);
-        directions.push(normals[k][0] * x, normals[k][0] * y, normals[k][1]);
-        colours.push(colour.r, colour.g, colour.b);
-      }
-    }
-  });
-  const geometry = new THREE.BufferGeometry();
-  geometry.setAttribute("position", new THREE.Float32BufferAttribute(points, 3));
-  geometry.setAttribute("normal", new THREE.Float32BufferAttribute(directions, 3));
-  geometry.setAttribute("color", new THREE.Float32BufferAttribute(colours, 3));
-  geometry.setIndex(triangles);
-  return geometry;
-}
-
-export function makeToy(THREE, body) {
+// The toy of parts turned on a lathe, in sizes of the toy, each with equal sectors in its colours.
+export function makeToy(THREE, parts) {
   const toy = new THREE.Group();
-  for (const part of body.parts) {
-    const glass = part.opacity < 1;
-    const material = new THREE.MeshStandardMaterial({
-      vertexColors: true,
-      roughness: glass ? 0.08 : 0.42,
-      metalness: 0,
-      transparent: glass,
-      opacity: part.opacity,
-      depthWrite: !glass,
+  for (const { name, profile, colours, opacity } of parts) {
+    const glass = opacity < 1;
+    const points = profile.map(([r, z]) => new THREE.Vector2(r, z));
+    const angle = (2 * Math.PI) / colours.length;
+    const part = new THREE.Group();
+    part.name = name;
+    colours.forEach((color, k) => {
+      const steps = Math.max(1, Math.round(SEGMENTS / colours.length));
+      // three.js turns profiles about y, from z towards x.
+      const geometry = new THREE.LatheGeometry(points, steps, k * angle + Math.PI / 2, angle).rotateX(Math.PI / 2);
+      const material = new THREE.MeshStandardMaterial({
+        color, opacity, transparent: glass, depthWrite: !glass, roughness: glass ? 0.08 : 0.42, metalness: 0,
+      });
+      const mesh = new THREE.Mesh(geometry, material);
+      mesh.castShadow = mesh.receiveShadow = !glass;
+      mesh.renderOrder = glass ? 2 : 0;
+      part.add(mesh);
     });
-    const mesh = new THREE.Mesh(lathe(THREE, part, body.size), material);
-    mesh.name = part.name;
-    mesh.castShadow = !glass;
-    mesh.receiveShadow = !glass;
-    mesh.renderOrder = glass ? 2 : 0;
-    toy.add(mesh);
+    toy.add(part);
   }
   return toy;
 }

@@ -5,7 +5,7 @@ lab.player = null;
 lab.map = null;
 
 // Whether the page is dark, and a call whenever that changes.
-export function watchTheme(call) {
+export function followTheme(call) {
   let known;
   const look = () => {
     const dark = document.body.classList.contains("body--dark");

@@ -1,7 +1,7 @@
 // The player on the page: fetches the launch it is told, shows it, and keeps links and address in step.
 
 import { OrbitControls, THREE } from "nicegui-scene";
-import { lab, readPowers, watchTheme } from "tippetop-lab";
+import { lab, readPowers, followTheme } from "tippetop-lab";
 import { createPlayer, stillness } from "tippetop-player";
 
 // How long a run may be on its way before that is shown, ms.
@@ -19,7 +19,7 @@ export default {
     lab.player = this.player;
     this.player.addEventListener("run", () => lab.dispatchEvent(new Event("run")));
     this.player.addEventListener("time", () => this.moved());
-    this.observer = watchTheme((dark) => this.player.setTheme(dark ? "dark" : "light"));
+    this.observer = followTheme((dark) => this.player.setTheme(dark ? "dark" : "light"));
     lab.tune = (name, value) => this.tune(name, value);
     lab.copy = () => this.copy();
     this.powers = readPowers();

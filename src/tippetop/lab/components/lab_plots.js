@@ -1,6 +1,6 @@
 // The plots on the page: they show the player's run, follow its time, and set it.
 
-import { lab, watchTheme } from "tippetop-lab";
+import { lab, followTheme } from "tippetop-lab";
 import { Plots } from "tippetop-lab/plots.js";
 
 export default {
@@ -23,7 +23,7 @@ export default {
     this.onTime = () => this.plots.move(lab.player.time);
     lab.addEventListener("run", this.onRun);
     lab.addEventListener("time", this.onTime);
-    this.observer = watchTheme((dark) => this.plots.setTheme(dark));
+    this.observer = followTheme((dark) => this.plots.setTheme(dark));
     if (lab.player?.track) this.onRun();
   },
   unmounted() {

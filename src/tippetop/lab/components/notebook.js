@@ -7,8 +7,8 @@ async function three() {
 
 async function render({ model, el }) {
   const host = document.createElement("div");
-  const stretch = () => (host.style.height = `${model.get("height")}px`);
-  stretch();
+  const resize = () => (host.style.height = `${model.get("height")}px`);
+  resize();
   el.append(host);
   const player = createPlayer(await three(), host, { theme: model.get("theme") });
   const show = () => {
@@ -16,7 +16,7 @@ async function render({ model, el }) {
     player.load(new Uint8Array(view.buffer, view.byteOffset, view.byteLength).slice().buffer);
   };
   const paint = () => player.setTheme(model.get("theme"));
-  const changes = { "change:track": show, "change:height": stretch, "change:theme": paint };
+  const changes = { "change:track": show, "change:height": resize, "change:theme": paint };
   for (const [change, call] of Object.entries(changes)) model.on(change, call);
   show();
   return () => {

@@ -1,0 +1,65 @@
+"""What `tippetop simulate` prints and writes."""
+
+import json
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+import tippetop as tt
+from tippetop.cli.main import app
+from tippetop.summary import summarize
+
+
+def said(*words: str) -> str:
+    done = CliRunner().invoke(app, ["simulate", *words], env={"COLUMNS": "200", "TERM": "dumb"})
+    assert done.exit_code == 0, done.output
+    return done.stdout
+
+
+def test_people_and_programs_are_told_what_summarize_returns() -> None:
+    run = tt.simulate(tt.presets.report_problem(spin=175.0), 8.0)
+    summary = json.loads(json.dumps(summarize(run)))
+    told = json.loads(said("--spin", "175", "--duration", "8", "--json"))
+    assert {name: told[name] for name in summary} == summary
+    lines = said("--spin", "175", "--duration", "8").splitlines()
+    found = {line.rsplit(maxsplit=2)[0] for line in lines[1:]}
+    assert {"turns over at", "within 0.01 rad of its final tilt at", "energy lost in impacts"} <= found
+    (line,) = [line for line in lines if line.startswith("turns over at")]
+    assert float(line.split()[-2]) == pytest.approx(summary["turns_over"], rel=1e-6)
+
+
+def test_what_there_is_not_is_said_in_words(monkeypatch: pytest.MonkeyPatch) -> None:
+    without = ("turns_over", "arrives", "jellett_drift", "energy_error")
+    monkeypatch.setattr(
+        "tippetop.summary.summarize", lambda run: summarize(run) | dict.fromkeys(without, None)
+    )
+    lines = said("--spin", "20", "--duration", "0.1")
+    assert lines.count("never") == 2
+    assert lines.count("undefined") == 2
+    assert "leaves the table" not in lines
+
+
+def test_every_file_asked_for_is_written(tmp_path: Path) -> None:
+    pytest.importorskip("nicegui", reason="NiceGUI brings three.js; it comes with the lab extra")
+    kinds = {"out": "nc", "plot": "png", "csv": "csv", "glb": "glb", "html": "html", "gif": "gif"}
+    options = [word for kind, end in kinds.items() for word in (f"--{kind}", str(tmp_path / f"run.{end}"))]
+    told = said("--duration", "0.1", *options)
+    assert {path.suffix[1:] for path in tmp_path.iterdir()} == set(kinds.values())
+    assert told.count("wrote ") == len(kinds)
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (["--csv", "run.txt"], "--csv = 'run.txt' is not possible; accepted: a file name that ends in .csv"),
+        (
+            ["--html", "a.html", "--out", "a.html"],
+            "--html = 'a.html' is not possible; accepted: a file other",
+        ),
+    ],
+)
+def test_names_that_cannot_be_are_refused(words: list[str], sentence: str) -> None:
+    done = CliRunner().invoke(app, ["simulate", *words])
+    assert isinstance(done.exception, tt.InvalidInput)
+    assert sentence in str(done.exception)
