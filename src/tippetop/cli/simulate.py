@@ -122,11 +122,11 @@ def _write(run: "xr.Dataset", kind: str, path: Path, force: bool) -> None:
 
             write_run(run, path, force)
         case "plot":
-            from tippetop.figures.overview import overview  # noqa: PLC0415
+            from tippetop.figures.overview import plot as draw  # noqa: PLC0415
             from tippetop.figures.style import save  # noqa: PLC0415
 
             with written_beside(path) as beside:
-                save(overview(run), beside)
+                save(draw(run), beside)
         case "csv":
             from tippetop.export.csv import write_csv  # noqa: PLC0415
 

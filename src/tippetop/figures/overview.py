@@ -20,7 +20,7 @@ class Panel(NamedTuple):
     values: np.ndarray[Any, Any]
 
 
-def overview(run: xr.Dataset) -> Figure:
+def plot(run: xr.Dataset) -> Figure:
     """Draw tilt, axial spin, precession, slip, normal force and energy of a run against time."""
     panels = [
         Panel("Tilt θ (rad)", run["theta"].values),
