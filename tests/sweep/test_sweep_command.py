@@ -93,12 +93,24 @@ def test_a_problem_and_a_sweep_are_read_from_files(tmp_path):
     assert sweep.duration == 0.1
 
 
+UNREADABLE = {
+    "--axis": ["launch.spin", "launch.spin=", "launch.spin=1:2", "launch.spin=1:2:x", "launch.spin=1,b"],
+    "--draw": ["launch.spin", "launch.spin=1", "launch.spin=1:2:lin", "launch.spin=1:x"],
+}
+
+
 @pytest.mark.parametrize(
     ("arguments", "field"),
     [
         ([], "--axis"),
         (["--axis", "launch.spn=1,2"], "axis"),
-        (["--axis", "launch.spin"], "--axis"),
+        *(([word, text], word) for word, texts in UNREADABLE.items() for text in texts),
+        (["--axis", "launch.spin=1:2:3:log"], "launch.spin.spacing"),
+        (["--axis", "launch.spin=1:2:0"], "launch.spin.count"),
+        (["--axis", "launch.spin=nan,1"], "launch.spin.values.0"),
+        (["--axis", "launch.spin=1:1:3"], "launch.spin"),
+        (["--axis", "launch.spin=1,2", "--axis", "launch.spin=3,4"], "axes"),
+        (["--draw", "launch.spin=0:1:log", "--count", "3"], "fields.launch.spin"),
         (["--draw", "launch.spin=1:2"], "--count"),
         (["--draw", "launch.spin=1:2", "--axis", "friction.mu=1,2"], "--draw"),
         ([*AXES, "--resume", "--force"], "--force"),
@@ -111,8 +123,9 @@ def test_a_problem_and_a_sweep_are_read_from_files(tmp_path):
     ],
 )
 def test_misuse_is_refused_by_what_is_wrong(tmp_path, arguments, field):
+    count = ["--count", "3"] if arguments and arguments[0] == "--draw" and field == "--draw" else []
     with pytest.raises(InvalidInput) as refusal:
-        run(*arguments, "--out", tmp_path / "a.zarr")
+        run(*arguments, *count, "--out", tmp_path / "a.zarr")
     assert refusal.value.field == field
 
 

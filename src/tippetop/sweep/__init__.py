@@ -4,9 +4,10 @@
 happens to the program.
 """
 
+from tippetop.sweep.axes import Axis
 from tippetop.sweep.cells import Fault
 from tippetop.sweep.definition import Sweep
-from tippetop.sweep.grid import Axis, Draws, Product, Range
+from tippetop.sweep.grid import Draws, Product, Range
 from tippetop.sweep.observe import VARIABLES, Ending
 from tippetop.sweep.run import Progress, compute, fill, run_sweep
 from tippetop.sweep.store import Status, Store

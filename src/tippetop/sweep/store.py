@@ -26,7 +26,7 @@ from tippetop.dataset import CONVENTIONS
 from tippetop.errors import FileTrouble, InvalidInput, Unavailable, short
 from tippetop.files import refuse_overwriting
 from tippetop.interrupts import deferred
-from tippetop.sweep.definition import Sweep, sweep_from
+from tippetop.sweep.definition import Sweep
 from tippetop.sweep.observe import VARIABLES, Variable
 
 FORMAT = "tippetop sweep 1"
@@ -239,7 +239,7 @@ def read_sweep(path: Path | str) -> Sweep:
             "differ; finish it with that version, or start afresh with --force"
         )
     try:
-        return sweep_from(json.loads(attributes["sweep"]))
+        return Sweep(**json.loads(attributes["sweep"]))
     except (ValueError, KeyError, TypeError, InvalidInput) as error:
         raise FileTrouble(f"{path} is damaged: its sweep cannot be read ({error})") from None
 

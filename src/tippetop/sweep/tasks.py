@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from tippetop import __version__
 from tippetop.errors import InvalidInput, Unavailable
 from tippetop.processes import RESTARTS, Job, shared
-from tippetop.sweep.definition import Sweep, sweep_from
+from tippetop.sweep.definition import Sweep
 from tippetop.sweep.ensemble import follow_cells
 
 Task: TypeAlias = tuple[int, ...]
@@ -54,7 +54,7 @@ def compute_block(description: str, version: str, block: Block) -> Found:
 
 @lru_cache(maxsize=4)
 def _sweep(description: str) -> Sweep:
-    return sweep_from(json.loads(description))
+    return Sweep(**json.loads(description))
 
 
 def results(
