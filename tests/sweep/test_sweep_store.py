@@ -119,7 +119,8 @@ def test_a_chunk_cut_short_is_done_again(tmp_path, small_tasks, damage):
         ),
         (Sweep(quick().problem, quick().grid, 0.2, 1e-9), "duration"),
         (Sweep(quick().problem, quick().grid, 0.1, 1e-8), "tolerance"),
-        (lively("fly", 7, 4, 0.1, 1e-9), r"grid\.axes\.0\.count"),
+        (lively("fly", 7, 4, 0.1, 1e-9), r"axes\.launch\.spin\.count"),
+        (Sweep(quick().problem, Product(quick().grid.axes[::-1]), 0.1, 1e-9), "axes"),
         (lively("stop", 6, 4, 0.1, 1e-9), "problem.contact.liftoff"),
     ],
 )

@@ -39,7 +39,7 @@ class Product(Entry):
     @classmethod
     def of(cls, table: Any) -> "Product":
         """The product of a table of axes by their fields, or of pairs."""
-        return table if isinstance(table, cls) else cls(_read(table, Axis.of))
+        return table if isinstance(table, cls) else cls(_read("axes", table, Axis.of))
 
     @model_serializer
     def _written(self) -> dict[str, Any]:
@@ -111,8 +111,8 @@ class Draws(Entry):
         What the draws follow from; a draw does not depend on how many there are.
     """
 
-    ranges: Annotated[tuple[Range, ...], BeforeValidator(lambda given: _read(given, Range.of))] = Field(
-        alias="fields"
+    ranges: Annotated[tuple[Range, ...], BeforeValidator(lambda given: _read("fields", given, Range.of))] = (
+        Field(alias="fields")
     )
     count: Count
     seed: Annotated[Whole, Field(ge=0)] = 0
@@ -171,19 +171,19 @@ def _table(entries: Iterable[Axis | Range]) -> dict[str, Any]:
     return {entry.field: entry.model_dump(by_alias=True, exclude={"field"}) for entry in entries}
 
 
-def _read(table: Any, of: Callable[[str, Any], _Kind]) -> tuple[_Kind, ...]:
+def _read(name: str, table: Any, of: Callable[[str, Any], _Kind]) -> tuple[_Kind, ...]:
     """The axes, or ranges, of a table, or of pairs of a field and what stands there."""
     if isinstance(table, tuple):
         return table
     if not isinstance(table, Mapping | list):
-        raise InvalidInput("", table, "a table of fields")
+        raise InvalidInput(name, table, "a table of fields")
     found = []
     for field, entry in _flattened(table) if isinstance(table, Mapping) else table:
         try:
             found.append(of(field, entry))
         except InvalidInput as fault:
-            name = f"{field}.{fault.field}".rstrip(".")
-            raise InvalidInput(name, fault.value, fault.accepted, fault.others) from None
+            where = f"{field}.{fault.field}".rstrip(".")
+            raise InvalidInput(where, fault.value, fault.accepted, fault.others) from None
     return tuple(found)
 
 

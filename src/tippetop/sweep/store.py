@@ -28,6 +28,7 @@ from tippetop.files import refuse_overwriting
 from tippetop.interrupts import deferred
 from tippetop.sweep.definition import Sweep
 from tippetop.sweep.observe import VARIABLES, Variable
+from tippetop.validation import Quantity
 
 FORMAT = "tippetop sweep 1"
 """Name and version of the layout; a store of another is refused."""
@@ -247,6 +248,8 @@ def read_sweep(path: Path | str) -> Sweep:
 def first_difference(one: Any, other: Any, name: str = "") -> tuple[str, Any, Any] | None:
     """The name of the first field in which two descriptions differ, and what is there."""
     if isinstance(one, dict) and isinstance(other, dict):
+        if set(one) == set(other) and list(one) != list(other):
+            return name, list(one), list(other)
         for key in [*one, *(key for key in other if key not in one)]:
             inner = f"{name}.{key}" if name else str(key)
             found = first_difference(one.get(key), other.get(key), inner)
@@ -272,9 +275,10 @@ def layout_attributes(sweep: Sweep) -> dict[str, Any]:
     }
 
 
-def coordinate_attributes(name: str) -> dict[str, Any]:
-    """The attributes of a coordinate."""
-    return {"long_name": "number of the draw" if name == "draw" else f"{name} of the problem"}
+def coordinate_attributes(sweep: Sweep, name: str) -> dict[str, Any]:
+    """The attributes of a coordinate by the CF conventions."""
+    kind = Quantity("1", "number of the draw") if name == "draw" else sweep.problem.quantity(name)
+    return {"long_name": kind.long_name} | ({"units": kind.units} if kind.units else {})
 
 
 def _lay_out(path: Path, sweep: Sweep) -> None:
@@ -290,7 +294,7 @@ def _lay_out(path: Path, sweep: Sweep) -> None:
             chunks=values.shape,
             dtype=values.dtype.name,
             dimension_names=(dimension,),
-            attributes=coordinate_attributes(name),
+            attributes=coordinate_attributes(sweep, name),
         )
         kept[...] = values
     for name, kind in {"status": STATUS, **VARIABLES}.items():
