@@ -149,6 +149,32 @@ def test_a_store_is_not_overwritten_or_mixed_with_another(tmp_path):
     run(*AXES, *SHORT, "--mu", 0.9, "--force", "--out", out, "--no-maps")
 
 
+@pytest.mark.parametrize("name", ["x" * 300, "x" * 250])
+@pytest.mark.parametrize("options", [AXES, [*AXES, "--no-maps"], [*AXES, "--force"], ["--resume"]])
+def test_names_that_no_file_can_have_are_told_in_a_sentence(tmp_path, name, options):
+    with pytest.raises(FileTrouble, match=r"cannot be (written|read)"):
+        run(*options, *SHORT, "--out", tmp_path / name)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "[axes]\nself = [1]",
+        "self = 1\nduration = 1.0",
+        "[axes]\n" + 1000 * "a." + "b = [1]",
+        "a = " + 5000 * "[",
+    ],
+)
+def test_files_that_hold_no_sweep_are_refused_in_a_sentence(tmp_path, text):
+    (tmp_path / "sweep.toml").write_text('problem = "top.toml"\n' + text)
+    (tmp_path / "top.toml").write_text(report_problem().to_toml())
+    with pytest.raises(InvalidInput) as refusal:
+        run(tmp_path / "sweep.toml", "--out", tmp_path / "a.zarr")
+    assert len(str(refusal.value)) < 1000
+    assert not (tmp_path / "a.zarr").exists()
+
+
 INTERRUPTED = """
 import typer
 from tippetop.cli.sweep import sweep

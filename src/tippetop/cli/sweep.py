@@ -87,20 +87,23 @@ def sweep(
 ) -> None:
     """See what becomes of many launches: over axes that cross, or draws at random."""
     from tippetop.sweep import Store, fill  # noqa: PLC0415 - slow to import
-    from tippetop.sweep.store import read_sweep  # noqa: PLC0415
+    from tippetop.sweep.disk import in_words  # noqa: PLC0415
+    from tippetop.sweep.layout import kept_sweep  # noqa: PLC0415
     from tippetop.sweep.tasks import need_workers  # noqa: PLC0415
 
     if resume and force:
         raise InvalidInput("--force", "with --resume", "one of the two")
     settings = {"launch.spin": spin, "launch.tilt": tilt, "friction.mu": mu, "contact.liftoff": liftoff}
     over = (axis, draw, count, seed)
-    kept = read_sweep(out) if resume and file is None else None
+    with in_words(out, "read"):
+        kept = kept_sweep(out) if resume and file is None else None
     limits = {"duration": duration, "tolerance": tolerance, "settled": settled}
     chosen = _chosen_sweep(file, kept, preset, settings, changes, over, limits)
     need_workers(workers, scheduler)
     pictures = _map_files(out) if maps else {}
     for path in pictures.values():
-        refuse_overwriting(path, force or resume)
+        with in_words(path, "written"):
+            refuse_overwriting(path, force or resume)
     store = Store.resume(out, chosen) if resume else Store.create(out, chosen, force)
     began = time.perf_counter()
     progress: list[Progress] = []

@@ -8,9 +8,10 @@ from tippetop.sweep.axes import Axis
 from tippetop.sweep.cells import Fault
 from tippetop.sweep.definition import Sweep
 from tippetop.sweep.grid import Draws, Product, Range
+from tippetop.sweep.layout import Status
 from tippetop.sweep.observe import VARIABLES, Ending
 from tippetop.sweep.run import Progress, compute, fill, run_sweep
-from tippetop.sweep.store import Status, Store
+from tippetop.sweep.store import Store, read_sweep
 
 __all__ = [
     "VARIABLES",
@@ -26,5 +27,6 @@ __all__ = [
     "Sweep",
     "compute",
     "fill",
+    "read_sweep",
     "run_sweep",
 ]

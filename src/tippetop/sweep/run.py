@@ -12,8 +12,9 @@ import xarray as xr
 from tippetop.problem import Problem
 from tippetop.sweep.definition import DEFAULT_TOLERANCE, Sweep
 from tippetop.sweep.grid import Draws, Product
+from tippetop.sweep.layout import STATUS, Status, coordinate_attributes, layout_attributes
 from tippetop.sweep.observe import VARIABLES
-from tippetop.sweep.store import STATUS, Status, Store, coordinate_attributes, layout_attributes
+from tippetop.sweep.store import Store
 from tippetop.sweep.tasks import need_workers, results
 
 

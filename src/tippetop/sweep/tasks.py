@@ -1,11 +1,13 @@
 """Who computes the tasks of a sweep: this process, processes beside it, or a Dask cluster."""
 
 import json
+import logging
 import os
 import threading
+import time
 from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, wait
+from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
 from contextlib import contextmanager
 from functools import lru_cache
 from importlib.util import find_spec
@@ -30,6 +32,10 @@ AHEAD = 2
 
 PATIENCE = 10.0
 """How long a scheduler may take to answer, s."""
+LONELY = 60.0
+"""How long a cluster may be without workers before the sweep is given up, s."""
+GLANCE = 1.0
+"""How often it is looked whether it has some, if no task is done meanwhile, s."""
 
 KEPT = "what is done is kept, and --resume goes on"
 
@@ -120,50 +126,72 @@ def processors() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def _share(executor: Executor, workers: int, calls: Mapping[Task, Call]) -> Iterator[tuple[Task, Found]]:
-    """Hand tasks out, a few ahead of every worker, and give back what comes."""
+def _share_with_cluster(address: str, calls: Mapping[Task, Call]) -> Iterator[tuple[Task, Found]]:
+    """Hand tasks to a cluster, a few ahead of every worker; it does those of workers that died again."""
     waiting = deque(calls)
     running: dict[Future[Found], Task] = {}
-    try:
-        while waiting or running:
-            while waiting and len(running) < AHEAD * workers:
-                task = waiting.popleft()
-                running[executor.submit(compute_block, *calls[task])] = task
-            done, _ = wait(running, return_when=FIRST_COMPLETED)
-            for future in done:
-                task = running.pop(future)
-                yield task, future.result()
-    finally:
-        for future in running:
-            future.cancel()
-
-
-def _share_with_cluster(address: str, calls: Mapping[Task, Call]) -> Iterator[tuple[Task, Found]]:
-    """Hand tasks to a cluster, which does those of workers that died again."""
-    with _cluster(address) as (executor, size):
+    with _cluster(address) as client:
+        executor = client.get_executor(retries=RESTARTS)
+        most = AHEAD * _workers(client)
         try:
-            yield from _share(executor, size, calls)
+            while waiting or running:
+                while waiting and len(running) < most:
+                    task = waiting.popleft()
+                    running[executor.submit(compute_block, *calls[task])] = task
+                for future in _first_done(client, address, running):
+                    task = running.pop(future)
+                    yield task, future.result()
         except Exception as error:
             if isinstance(error, CancelledError) or type(error).__module__.startswith("distributed"):
                 raise Unavailable(
                     f"the cluster at {address} was lost ({type(error).__name__}); {KEPT}"
                 ) from None
             raise
+        finally:
+            for future in running:
+                future.cancel()
+
+
+def _first_done(client: Any, address: str, running: Mapping[Future[Found], Task]) -> set[Future[Found]]:
+    """Wait until one is done, as long as there is somebody to do it."""
+    alone = 0.0
+    while True:
+        done, _ = wait(running, timeout=GLANCE, return_when=FIRST_COMPLETED)
+        if done:
+            return done
+        if _workers(client):
+            alone = 0.0
+            continue
+        if not alone:
+            alone = time.monotonic()
+            logging.getLogger(__name__).warning(
+                "the cluster at %s has no workers; the sweep waits for some, %g s", address, LONELY
+            )
+        if time.monotonic() - alone >= LONELY:
+            raise Unavailable(f"the cluster at {address} has had no workers for {LONELY:g} s; {KEPT}")
+
+
+def _workers(client: Any) -> int:
+    return len(client.scheduler_info(n_workers=-1)["workers"])
 
 
 @contextmanager
-def _cluster(address: str) -> Iterator[tuple[Executor, int]]:
-    """A running cluster, and how many workers it has."""
+def _cluster(address: str) -> Iterator[Any]:
+    """A client of a running cluster that has workers."""
     if find_spec("distributed") is None:
         raise Unavailable("a scheduler needs dask.distributed: pip install 'tippetop[sweep]'")
     from distributed import Client  # noqa: PLC0415 - optional, and slow to import
+    from distributed.utils import silence_logging_cmgr  # noqa: PLC0415
 
-    try:
-        client: Any = Client(address, timeout=PATIENCE, set_as_default=False)  # type: ignore[no-untyped-call]
-    except (OSError, ValueError) as error:
-        raise InvalidInput("scheduler", address, f"the address of a running scheduler ({error})") from None
-    with client:
-        size = len(client.scheduler_info(n_workers=-1)["workers"])
-        if not size:
-            raise InvalidInput("scheduler", address, "a scheduler that has workers")
-        yield client.get_executor(retries=RESTARTS), size
+    # What goes wrong is said here, in a sentence.
+    with silence_logging_cmgr(logging.CRITICAL):
+        try:
+            client: Any = Client(address, timeout=PATIENCE, set_as_default=False)  # type: ignore[no-untyped-call]
+        except (OSError, ValueError) as error:
+            raise InvalidInput(
+                "scheduler", address, f"the address of a running scheduler ({error})"
+            ) from None
+        with client:
+            if not _workers(client):
+                raise InvalidInput("scheduler", address, "a scheduler that has workers")
+            yield client
