@@ -15,9 +15,8 @@ from tippetop.problem import (
     Spheroid,
     ViscousFriction,
 )
-from tippetop.sweep import Axis, Draws, Product, Range, Sweep, compute
+from tippetop.sweep import Axis, Draws, Product, Range, Sweep, compute, sweep
 from tippetop.sweep.cells import numeric_fields
-from tippetop.sweep.run import sweep
 
 OVER = {"launch.spin": np.linspace(50, 200, 3), "friction.mu": [0.1, 0.3]}
 

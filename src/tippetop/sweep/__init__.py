@@ -1,7 +1,7 @@
 """Sweeps: what becomes of many launches, over grids or random draws of any of a problem's numbers.
 
-`Sweep` says what to compute, `compute` does it in memory, and `run_sweep` into a store that survives whatever
-happens to the program.
+`sweep` sweeps fields of a problem over values. `Sweep` says what to compute, `compute` does it in memory, and
+`run_sweep` into a store that survives whatever happens to the program.
 """
 
 from tippetop.sweep.axes import Axis
@@ -10,7 +10,7 @@ from tippetop.sweep.definition import Sweep
 from tippetop.sweep.grid import Draws, Product, Range
 from tippetop.sweep.layout import Status
 from tippetop.sweep.observe import VARIABLES, Ending
-from tippetop.sweep.run import Progress, compute, fill, run_sweep
+from tippetop.sweep.run import Progress, compute, fill, run_sweep, sweep
 from tippetop.sweep.store import Store, read_sweep
 
 __all__ = [
@@ -29,4 +29,5 @@ __all__ = [
     "fill",
     "read_sweep",
     "run_sweep",
+    "sweep",
 ]
