@@ -70,7 +70,10 @@ def is_number(value: object) -> bool:
 
 def short(value: object, limit: int = 60) -> str:
     """A value as it would be typed, cut to at most `limit` characters."""
-    text = repr(value)
+    try:
+        text = repr(value)
+    except (RecursionError, ValueError):  # too deeply nested, or a number of too many digits
+        text = f"a {type(value).__name__} too long to tell"
     return text if len(text) <= limit else text[: limit - 3] + "..."
 
 

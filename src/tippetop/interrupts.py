@@ -1,7 +1,5 @@
-"""Ctrl-C that waits while something must not be cut short, and processes that leave it to their parent."""
+"""Ctrl-C that waits while something must not be cut short."""
 
-import multiprocessing
-import os
 import signal
 import threading
 from collections.abc import Iterator
@@ -28,17 +26,3 @@ def deferred() -> Iterator[None]:
         signal.signal(signal.SIGINT, before or signal.SIG_DFL)
         if pressed:
             signal.raise_signal(signal.SIGINT)
-
-
-def follow_parent() -> None:
-    """In a process that works for another: leave Ctrl-C to the parent, and end even if it is killed."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    parent = multiprocessing.parent_process()
-    if parent is None:
-        return
-
-    def follow() -> None:
-        parent.join()
-        os._exit(1)
-
-    threading.Thread(target=follow, daemon=True, name="follow the parent").start()

@@ -21,12 +21,17 @@ from tippetop.mechanics.surface import SphereSurface, SpheroidSurface, Surface
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Functions
 from tippetop.mechanics.view import Angles, state_from_angles
-from tippetop.validation import NO_WORD, Number, Part
+from tippetop.validation import NO_WORD, Number, Part, Quantity
 
 Positive = Annotated[float, Field(gt=0), NO_WORD]
 Fraction = Annotated[float, Field(ge=0, le=1), NO_WORD]
 Tilt = Annotated[float, Field(ge=0, le=math.pi), NO_WORD]
 NotNegative = Annotated[float, Field(ge=0), NO_WORD]
+
+LEANING = (
+    "along the direction into which the axis leans",
+    "90 degrees to the left of the direction into which the axis leans",
+)
 
 
 class EccentricSphere(Part):
@@ -41,8 +46,13 @@ class EccentricSphere(Part):
     """
 
     kind: Literal["eccentric_sphere"] = "eccentric_sphere"
-    radius: Positive
-    eccentricity: Annotated[float, Field(gt=0, lt=1), NO_WORD]
+    radius: Annotated[Positive, Quantity("m", "radius of the sphere")]
+    eccentricity: Annotated[
+        float,
+        Field(gt=0, lt=1),
+        NO_WORD,
+        Quantity("1", "distance of the centre of mass from the centre, in radii"),
+    ]
 
     @property
     def surface(self) -> Surface:
@@ -60,8 +70,8 @@ class Spheroid(Part):
     """
 
     kind: Literal["spheroid"] = "spheroid"
-    across: Positive
-    along: Positive
+    across: Annotated[Positive, Quantity("m", "semi-axis across the axis of symmetry")]
+    along: Annotated[Positive, Quantity("m", "semi-axis along the axis of symmetry")]
 
     @property
     def surface(self) -> Surface:
@@ -79,7 +89,7 @@ class ViscousFriction(Part):
     """
 
     kind: Literal["viscous"] = "viscous"
-    mu: NotNegative
+    mu: Annotated[NotNegative, Quantity("s m-1", "friction coefficient")]
 
     @property
     def law(self) -> FrictionLaw:
@@ -99,8 +109,8 @@ class RegularizedCoulombFriction(Part):
     """
 
     kind: Literal["regularized_coulomb"] = "regularized_coulomb"
-    mu: NotNegative
-    eps: Positive = 1e-3
+    mu: Annotated[NotNegative, Quantity("1", "friction coefficient")]
+    eps: Annotated[Positive, Quantity("m s-1", "slip speed below which friction falls to zero")] = 1e-3
 
     @property
     def law(self) -> FrictionLaw:
@@ -126,10 +136,10 @@ class Body(Part):
         symmetry. No body has I3 > 2 I1.
     """
 
-    mass: Positive
+    mass: Annotated[Positive, Quantity("kg", "mass of the body")]
     shape: Shape
-    I1: Positive
-    I3: Positive
+    I1: Annotated[Positive, Quantity("kg m2", "moment of inertia transverse to the axis of symmetry")]
+    I3: Annotated[Positive, Quantity("kg m2", "moment of inertia along the axis of symmetry")]
 
     @model_validator(mode="after")
     def _can_exist(self) -> Self:
@@ -161,14 +171,17 @@ class Launch(Part):
         lowest point moves with the slip velocity and neither up nor down.
     """
 
-    tilt: Tilt
-    spin: Number
-    azimuth: Number = 0.0
-    tilt_rate: Number = 0.0
-    precession: Number = 0.0
-    slip: tuple[Number, Number] = (0.0, 0.0)
-    gap: NotNegative = 0.0
-    velocity: tuple[Number, Number, Number] | None = None
+    tilt: Annotated[Tilt, Quantity("rad", "tilt of the axis at launch")]
+    spin: Annotated[Number, Quantity("rad s-1", "axial spin at launch")]
+    azimuth: Annotated[Number, Quantity("rad", "azimuth of the axis at launch")] = 0.0
+    tilt_rate: Annotated[Number, Quantity("rad s-1", "rate of the tilt at launch")] = 0.0
+    precession: Annotated[Number, Quantity("rad s-1", "precession at launch")] = 0.0
+    slip: Annotated[tuple[Number, Number], Quantity("m s-1", "slip velocity at launch", LEANING)] = (0.0, 0.0)
+    gap: Annotated[NotNegative, Quantity("m", "height of the lowest point at launch")] = 0.0
+    velocity: Annotated[
+        tuple[Number, Number, Number] | None,
+        Quantity("m s-1", "velocity of the centre of mass at launch", ("along x", "along y", "along z")),
+    ] = None
 
     @model_validator(mode="after")
     def _moves_one_way(self) -> Self:
@@ -190,7 +203,7 @@ class Contact(Part):
     """
 
     liftoff: Literal["fly", "stop", "ignore"] = "fly"
-    restitution: Fraction = 0.0
+    restitution: Annotated[Fraction, Quantity("1", "coefficient of restitution")] = 0.0
 
 
 class _PoleExact:
@@ -221,7 +234,7 @@ class Problem(Part):
     friction: Friction
     launch: Launch
     contact: Contact = Contact()
-    gravity: Positive = 9.8
+    gravity: Annotated[Positive, Quantity("m s-2", "acceleration of gravity")] = 9.8
 
     @model_validator(mode="after")
     def _contact_is_possible(self) -> Self:

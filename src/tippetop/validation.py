@@ -2,9 +2,11 @@
 
 import math
 from collections.abc import Mapping
-from typing import Annotated, Any, Self, TypeAlias
+from numbers import Integral
+from typing import Annotated, Any, NamedTuple, Self, TypeAlias
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError
+from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails, PydanticCustomError
 
 from tippetop.errors import MISSING, InvalidInput, one_of
@@ -24,6 +26,34 @@ Number: TypeAlias = Annotated[float, NO_WORD]
 """A number, and nothing that only looks like one."""
 
 
+def _whole(value: Any) -> int:
+    if isinstance(value, bool) or not isinstance(value, Integral):
+        raise PydanticCustomError("int_type", "a whole number")
+    return int(value)
+
+
+Whole: TypeAlias = Annotated[int, BeforeValidator(_whole)]
+"""A whole number, and nothing that only looks like one."""
+
+
+class Quantity(NamedTuple):
+    """What a field of numbers measures.
+
+    Attributes
+    ----------
+    units
+        Its SI unit, as in CF: ``rad s-1``; "1" for a pure number.
+    long_name
+        What it is.
+    places
+        What each number is, of a field of several.
+    """
+
+    units: str
+    long_name: str
+    places: tuple[str, ...] = ()
+
+
 class Part(BaseModel):
     """A frozen, validated piece of a problem.
 
@@ -35,7 +65,7 @@ class Part(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, validate_default=True)
 
-    def __init__(self, **fields: Any) -> None:
+    def __init__(self, /, **fields: Any) -> None:
         try:
             super().__init__(**fields)
         except ValidationError as error:
@@ -43,17 +73,28 @@ class Part(BaseModel):
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
         """Copy with some fields replaced, and validated like any other."""
-        return type(self)(**{**dict(self), **(update or {})})
+        fields = {name: getattr(self, name) for name in type(self).model_fields}
+        return type(self)(**{**fields, **(update or {})})
+
+    def quantity(self, field: str) -> Quantity:
+        """What a field measures, named with dots; without a unit if it was declared with none."""
+        first, _, rest = field.partition(".")
+        info, value = type(self).model_fields[first], getattr(self, first)
+        if isinstance(value, Part):
+            return value.quantity(rest)
+        found = next((item for item in info.metadata if isinstance(item, Quantity)), Quantity("", field))
+        return found._replace(long_name=f"{found.long_name} {found.places[int(rest)]}") if rest else found
 
 
 def _as_invalid_input(error: ValidationError, part: type[Part]) -> InvalidInput:
     """Turn a validation error into the one sentence a user reads, about the most telling of its details."""
     details = sorted(error.errors(), key=lambda detail: detail["type"] != "extra_forbidden")
     first, others = details[0], len(details) - 1
-    field = ".".join(str(step) for step in first["loc"] if step not in _UNION_TAGS)
+    field = ".".join(str(step) for step in _steps(first["loc"], part))
     cause = first.get("ctx", {}).get("error")
     if isinstance(cause, InvalidInput):
-        inner = cause.field if not field or cause.field.startswith(f"{field}.") else f"{field}.{cause.field}"
+        within = not f"{cause.field}.".startswith(f"{field}.")
+        inner = f"{field}.{cause.field}".strip(".") if within else cause.field
         return InvalidInput(inner, cause.value, cause.accepted, cause.others + others)
     match first["type"]:
         case "missing":
@@ -67,20 +108,29 @@ def _as_invalid_input(error: ValidationError, part: type[Part]) -> InvalidInput:
     return InvalidInput(field, value, _accepted(first, part), others)
 
 
-_UNION_TAGS = {"eccentric_sphere", "spheroid", "viscous", "regularized_coulomb"}
+def _steps(location: tuple[int | str, ...], part: type[Part]) -> tuple[int | str, ...]:
+    """Where a value stands, without the kind that pydantic names after a field of several kinds."""
+    name, *rest = location or ("",)
+    info = _written(part).get(str(name))
+    return (name, *rest[1:]) if info is not None and info.discriminator else location
+
+
+def _written(part: type[Part]) -> dict[str, FieldInfo]:
+    """The fields of a part by the names they are written with."""
+    return {info.alias or name: info for name, info in part.model_fields.items()}
 
 
 def _accepted(detail: ErrorDetails, part: type[Part]) -> str:
     """What would be accepted instead, from the kind of validation error."""
     match detail["type"]:
         case "greater_than" | "greater_than_equal" | "less_than" | "less_than_equal":
-            return _range(part.model_fields[str(detail["loc"][0])].metadata)
+            return _range(_written(part)[str(detail["loc"][0])])
         case "finite_number" | "float_type" | "float_parsing":
             return "a finite number"
         case "missing":
             return "a value; it has no default"
         case "extra_forbidden":
-            return "one of the keys " + one_of(detail["loc"][-1], list(part.model_fields))
+            return "one of the keys " + one_of(detail["loc"][-1], list(_written(part)))
         case "union_tag_invalid" | "literal_error":
             context = detail["ctx"]
             return str(context.get("expected_tags") or context["expected"])
@@ -90,13 +140,13 @@ def _accepted(detail: ErrorDetails, part: type[Part]) -> str:
             return detail["msg"][0].lower() + detail["msg"][1:]
 
 
-def _range(constraints: list[Any]) -> str:
+def _range(info: FieldInfo) -> str:
     """The constraints of a number in words: "a number greater than 0 and less than 1"."""
     words = {"gt": "greater than", "ge": "at least", "lt": "less than", "le": "at most"}
     bounds = [
         f"{phrase} {'pi' if bound == math.pi else format(bound, 'g')}"
-        for constraint in constraints
+        for constraint in info.metadata
         for name, phrase in words.items()
         if (bound := getattr(constraint, name, None)) is not None
     ]
-    return "a number " + " and ".join(bounds)
+    return f"a {'whole ' if info.annotation is int else ''}number {' and '.join(bounds)}"

@@ -1,6 +1,4 @@
 import asyncio
-import math
-import os
 import subprocess
 import sys
 import tempfile
@@ -16,12 +14,13 @@ import pytest
 
 import tippetop as tt
 from tippetop.export.track import MAGIC, unpack_header
-from tippetop.lab import workers
+from tippetop.lab import jobs, workers
 from tippetop.lab.map_job import Fate, MapPart, map_parts
 from tippetop.lab.phase_map import COLUMNS, ROWS, MapPlan, parts_of, plan_map
 from tippetop.lab.setup import Setup, first_setup
 from tippetop.lab.turns import Turns
-from tippetop.lab.workers import Worker, Workers
+from tippetop.lab.workers import Workers
+from tippetop.processes import Worker
 
 Result = TypeVar("Result")
 
@@ -78,14 +77,6 @@ def test_a_fault_in_a_job_is_a_sentence_and_the_worker_goes_on(pool: Workers) ->
     with pytest.raises(tt.InvalidInput, match="can be computed"):
         pool.track(None)  # type: ignore[arg-type]
     assert pool.track(first_setup().changed({"duration": 0.1})).startswith(MAGIC)
-
-
-def test_a_worker_that_ends_is_replaced() -> None:
-    worker = Worker()
-    with pytest.raises(tt.Unavailable, match="try again"):
-        list(worker.results(os._exit, 1, patience=60))
-    assert list(worker.results(len, "abc", patience=60)) == [3]
-    worker.close()
 
 
 def known_of(parts: Iterable[MapPart]) -> dict[int, tuple[float | None, int, Fate]]:
@@ -196,7 +187,7 @@ def test_a_page_that_goes_away_stops_its_map(pool: Workers) -> None:
 
 
 def test_a_stopped_map_that_waits_is_not_begun() -> None:
-    worker, stopped = Worker(), threading.Event()
+    worker, stopped = Worker(jobs.warm_up), threading.Event()
     process = worker._process.pid
     stopped.set()
     assert list(worker.results(time.sleep, 60, patience=1, stopped=stopped)) == []
@@ -254,7 +245,7 @@ def test_a_worker_ends_with_its_server_even_if_that_is_killed() -> None:
     pytest.importorskip("resource", reason="this reads /proc")
     program = """
 import threading, time
-from tippetop.lab.workers import Worker
+from tippetop.processes import Worker
 worker = Worker(int)
 list(worker.results(int, patience=60))
 threading.Thread(target=lambda: list(worker.results(time.sleep, 60, patience=90)), daemon=True).start()

@@ -43,5 +43,5 @@ def test_error_of_a_task_is_raised() -> None:
 
 
 def test_killed_worker_is_reported_in_a_sentence() -> None:
-    with pytest.raises(TippetopError, match="killed during exit"):
+    with pytest.raises(TippetopError, match="killed 4 times during exit"):
         carry_out([Task("exit", 1.0, os._exit, given(1))], 2)

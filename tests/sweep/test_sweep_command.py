@@ -93,12 +93,24 @@ def test_a_problem_and_a_sweep_are_read_from_files(tmp_path):
     assert sweep.duration == 0.1
 
 
+UNREADABLE = {
+    "--axis": ["launch.spin", "launch.spin=", "launch.spin=1:2", "launch.spin=1:2:x", "launch.spin=1,b"],
+    "--draw": ["launch.spin", "launch.spin=1", "launch.spin=1:2:lin", "launch.spin=1:x"],
+}
+
+
 @pytest.mark.parametrize(
     ("arguments", "field"),
     [
         ([], "--axis"),
         (["--axis", "launch.spn=1,2"], "axis"),
-        (["--axis", "launch.spin"], "--axis"),
+        *(([word, text], word) for word, texts in UNREADABLE.items() for text in texts),
+        (["--axis", "launch.spin=1:2:3:log"], "launch.spin.spacing"),
+        (["--axis", "launch.spin=1:2:0"], "launch.spin.count"),
+        (["--axis", "launch.spin=nan,1"], "launch.spin.values.0"),
+        (["--axis", "launch.spin=1:1:3"], "launch.spin"),
+        (["--axis", "launch.spin=1,2", "--axis", "launch.spin=3,4"], "axes"),
+        (["--draw", "launch.spin=0:1:log", "--count", "3"], "fields.launch.spin"),
         (["--draw", "launch.spin=1:2"], "--count"),
         (["--draw", "launch.spin=1:2", "--axis", "friction.mu=1,2"], "--draw"),
         ([*AXES, "--resume", "--force"], "--force"),
@@ -111,8 +123,9 @@ def test_a_problem_and_a_sweep_are_read_from_files(tmp_path):
     ],
 )
 def test_misuse_is_refused_by_what_is_wrong(tmp_path, arguments, field):
+    count = ["--count", "3"] if arguments and arguments[0] == "--draw" and field == "--draw" else []
     with pytest.raises(InvalidInput) as refusal:
-        run(*arguments, "--out", tmp_path / "a.zarr")
+        run(*arguments, *count, "--out", tmp_path / "a.zarr")
     assert refusal.value.field == field
 
 
@@ -134,6 +147,32 @@ def test_a_store_is_not_overwritten_or_mixed_with_another(tmp_path):
     with pytest.raises(FileTrouble, match=r"problem\.friction\.mu is 0\.3 in it, and 0\.9 here"):
         run("--mu", 0.9, "--resume", "--out", out)
     run(*AXES, *SHORT, "--mu", 0.9, "--force", "--out", out, "--no-maps")
+
+
+@pytest.mark.parametrize("name", ["x" * 300, "x" * 250])
+@pytest.mark.parametrize("options", [AXES, [*AXES, "--no-maps"], [*AXES, "--force"], ["--resume"]])
+def test_names_that_no_file_can_have_are_told_in_a_sentence(tmp_path, name, options):
+    with pytest.raises(FileTrouble, match=r"cannot be (written|read)"):
+        run(*options, *SHORT, "--out", tmp_path / name)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "[axes]\nself = [1]",
+        "self = 1\nduration = 1.0",
+        "[axes]\n" + 1000 * "a." + "b = [1]",
+        "a = " + 5000 * "[",
+    ],
+)
+def test_files_that_hold_no_sweep_are_refused_in_a_sentence(tmp_path, text):
+    (tmp_path / "sweep.toml").write_text('problem = "top.toml"\n' + text)
+    (tmp_path / "top.toml").write_text(report_problem().to_toml())
+    with pytest.raises(InvalidInput) as refusal:
+        run(tmp_path / "sweep.toml", "--out", tmp_path / "a.zarr")
+    assert len(str(refusal.value)) < 1000
+    assert not (tmp_path / "a.zarr").exists()
 
 
 INTERRUPTED = """

@@ -1,11 +1,13 @@
 """The same sweep by one process, by several, and by a Dask cluster some of whose workers are killed."""
 
+import json
 import os
 import signal
 import subprocess
 import sys
 import threading
 import time
+from pathlib import Path
 
 import numpy as np
 import psutil
@@ -13,7 +15,7 @@ import pytest
 from sweeps import lively, same
 
 from tippetop.errors import InvalidInput, Unavailable
-from tippetop.sweep import VARIABLES, compute, definition
+from tippetop.sweep import VARIABLES, Store, compute, definition, fill, read_sweep
 from tippetop.sweep import tasks as scheduling
 
 
@@ -155,3 +157,69 @@ def test_a_cluster_without_workers_is_refused_and_one_that_is_lost_is_told_of(sm
     cluster.close()
     with pytest.raises(Unavailable, match="was lost"):
         list(found)
+
+
+LOST = """
+import sys, time
+sys.path[:0] = {paths!r}
+from sweeps import lively
+from tippetop.errors import Unavailable
+from tippetop.sweep import definition, run_sweep, tasks
+definition.LEAST_CELLS_A_TASK, definition.TASKS, tasks.LONELY = 4, 1000, 2.0
+import os, signal
+def kill(progress):
+    if 8 <= progress.done < 12:
+        os.kill({victim}, signal.SIGKILL)
+try:
+    run_sweep(lively("fly", 6, 4, 0.3, 1e-9), {out!r}, scheduler={address!r}, watcher=kill)
+except Unavailable as error:
+    print(error)
+"""
+
+
+@pytest.fixture
+def cluster(tmp_path):
+    """A scheduler and a worker as they are started from a shell, and the scheduler's address."""
+    file = tmp_path / "scheduler.json"
+    started = []
+
+    def start(*arguments):
+        command = [sys.executable, "-m", "dask", *arguments, "--scheduler-file", file]
+        quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "cwd": tmp_path}
+        started.append(subprocess.Popen(command, **quiet))
+
+    start("scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard")
+    while not file.exists():
+        assert started[0].poll() is None
+        time.sleep(0.05)
+    start("worker", "--no-nanny", "--nthreads", "1", "--no-dashboard")
+    yield *started, json.loads(file.read_text())["address"]
+    for process in started:
+        process.kill()
+        process.wait()
+
+
+@pytest.mark.parametrize(
+    ("lost", "sentence", "warnings"),
+    [("scheduler", "was lost (CancelledError)", 0), ("worker", "has had no workers for 2 s", 1)],
+)
+def test_a_cluster_that_is_gone_is_told_of_in_a_sentence_and_what_is_done_is_kept(
+    cluster, small_tasks, tmp_path, lost, sentence, warnings
+):
+    distributed = pytest.importorskip("distributed")
+    scheduler, worker, address = cluster
+    with distributed.Client(address, set_as_default=False) as client:
+        client.wait_for_workers(1, timeout=60)
+    paths = [str(Path(__file__).parent), str(Path(__file__).parents[1])]
+    out, victim = tmp_path / "a.zarr", scheduler.pid if lost == "scheduler" else worker.pid
+    script = LOST.format(paths=paths, victim=victim, out=str(out), address=address)
+    ran = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, timeout=60, check=True
+    )
+    assert ran.stdout == f"the cluster at {address} {sentence}; what is done is kept, and --resume goes on\n"
+    assert (
+        ran.stderr == warnings * f"the cluster at {address} has no workers; the sweep waits for some, 2 s\n"
+    )
+    progress = fill(Store.resume(out), workers=1)
+    assert 8 <= progress.before < progress.done == 24
+    assert same(arrays(read_sweep(out)), arrays(compute(lively("fly", 6, 4, 0.3, 1e-9))))

@@ -87,20 +87,23 @@ def sweep(
 ) -> None:
     """See what becomes of many launches: over axes that cross, or draws at random."""
     from tippetop.sweep import Store, fill  # noqa: PLC0415 - slow to import
-    from tippetop.sweep.store import read_sweep  # noqa: PLC0415
+    from tippetop.sweep.disk import in_words  # noqa: PLC0415
+    from tippetop.sweep.layout import kept_sweep  # noqa: PLC0415
     from tippetop.sweep.tasks import need_workers  # noqa: PLC0415
 
     if resume and force:
         raise InvalidInput("--force", "with --resume", "one of the two")
     settings = {"launch.spin": spin, "launch.tilt": tilt, "friction.mu": mu, "contact.liftoff": liftoff}
     over = (axis, draw, count, seed)
-    kept = read_sweep(out) if resume and file is None else None
+    with in_words(out, "read"):
+        kept = kept_sweep(out) if resume and file is None else None
     limits = {"duration": duration, "tolerance": tolerance, "settled": settled}
     chosen = _chosen_sweep(file, kept, preset, settings, changes, over, limits)
     need_workers(workers, scheduler)
     pictures = _map_files(out) if maps else {}
     for path in pictures.values():
-        refuse_overwriting(path, force or resume)
+        with in_words(path, "written"):
+            refuse_overwriting(path, force or resume)
     store = Store.resume(out, chosen) if resume else Store.create(out, chosen, force)
     began = time.perf_counter()
     progress: list[Progress] = []
@@ -131,16 +134,14 @@ def _chosen_sweep(
     limits: dict[str, float | None],
 ) -> "Sweep":
     """The sweep that the file, or the store to be resumed, and the options ask for."""
-    from dataclasses import replace  # noqa: PLC0415
-
-    from tippetop.sweep import Sweep  # noqa: PLC0415
+    from tippetop.sweep import Sweep  # noqa: PLC0415 - slow to import
 
     base = Sweep.read(file) if file is not None and _holds_sweep(file) else kept
     grid = _chosen_grid(*over)
     given = {name: limit for name, limit in limits.items() if limit is not None}
     if base is not None:
         problem = changed_problem(base.problem, preset, settings, changes)
-        return replace(base, problem=problem, grid=grid or base.grid, **given)
+        return base.model_copy(update={"problem": problem, "grid": grid or base.grid, **given})
     problem = chosen_problem(file, preset, settings, changes)
     if grid is None:
         raise InvalidInput("--axis", MISSING, "at least one axis, or --draw, or a sweep's file")
@@ -151,7 +152,7 @@ def _chosen_grid(
     axis: list[str] | None, draw: list[str] | None, count: int | None, seed: int | None
 ) -> "Product | Draws | None":
     """The grid that the options ask for, if they do."""
-    from tippetop.sweep import Axis, Draws, Product, Range  # noqa: PLC0415
+    from tippetop.sweep import Draws, Product  # noqa: PLC0415 - slow to import
 
     if axis and draw:
         raise InvalidInput("--draw", draw[0], "axes or draws, not both")
@@ -159,12 +160,40 @@ def _chosen_grid(
         if number is not None and not draw:
             raise InvalidInput(name, number, "only with --draw")
     if axis:
-        return Product(tuple(Axis.parse(text) for text in axis))
+        return Product.of([_axis(text) for text in axis])
     if draw:
         if count is None:
             raise InvalidInput("--count", MISSING, "the number of draws")
-        return Draws(tuple(Range.parse(text) for text in draw), count, seed or 0)
+        return Draws(**{"fields": [_range(text) for text in draw], "count": count, "seed": seed or 0})
     return None
+
+
+def _axis(text: str) -> tuple[str, Any]:
+    """An axis of the command line as it stands in a file."""
+    field, equals, values = text.partition("=")
+    try:
+        match values.split(":"):
+            case [listed] if equals:
+                return field.strip(), [float(value) for value in listed.split(",")]
+            case [first, last, count, *rest] if equals and len(rest) < 2:
+                ends = {"from": float(first), "to": float(last), "count": int(count)}
+                return field.strip(), ends | ({"spacing": rest[0].strip()} if rest else {})
+    except ValueError:
+        pass
+    raise InvalidInput("--axis", text, "FIELD=FIRST:LAST:COUNT, FIELD=FIRST:LAST:COUNT:geo, or FIELD=A,B,C")
+
+
+def _range(text: str) -> tuple[str, Any]:
+    """A draw of the command line as it stands in a file."""
+    field, equals, rest = text.partition("=")
+    low, _, high = rest.removesuffix(":log").partition(":")
+    law = "log-uniform" if rest.endswith(":log") else "uniform"
+    try:
+        if equals:
+            return field.strip(), {"from": float(low), "to": float(high), "law": law}
+    except ValueError:
+        pass
+    raise InvalidInput("--draw", text, "FIELD=LOW:HIGH, or FIELD=LOW:HIGH:log")
 
 
 def _holds_sweep(file: Path) -> bool:
@@ -173,7 +202,7 @@ def _holds_sweep(file: Path) -> bool:
 
     try:
         return file.suffix != ".json" and is_sweep(tomllib.loads(file.read_text(encoding="utf-8-sig")))
-    except (OSError, ValueError):
+    except (OSError, ValueError, RecursionError):
         return False
 
 

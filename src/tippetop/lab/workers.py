@@ -1,27 +1,24 @@
 """Processes that simulate for the page, so that it never waits for a run and can give up on one.
 
-Each worker does one job at a time; a job that takes too long is ended with its process, and a new one takes
-its place. So a launch that would never finish costs others nothing but its deadline.
+A job that takes too long is ended with its process, and a new one takes its place. So a launch that would
+never finish costs others nothing but its deadline.
 """
 
 import logging
-import multiprocessing
 import os
 import queue
 import tempfile
 import threading
-import time
 from collections.abc import Callable, Iterator
-from contextlib import suppress
-from multiprocessing.connection import Connection
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, TypeVar
 
 from tippetop.errors import InvalidInput, TippetopError, Unavailable, one_of
-from tippetop.interrupts import follow_parent
 from tippetop.lab import jobs
 from tippetop.lab.map_job import MapPart, map_parts, warm_up_map
 from tippetop.lab.setup import Setup
+from tippetop.processes import GLANCE, Worker
 
 PATIENCE = 6.0
 """How long a run on the page may take to compute, s."""
@@ -29,121 +26,7 @@ FILE_PATIENCE = 30.0
 """How long making a file may take, s."""
 MAP_PATIENCE = 120.0
 """How long a map may take, s."""
-GLANCE = 0.2
-"""How often work that can be stopped looks whether it is, s."""
-
 _Result = TypeVar("_Result")
-_CONTEXT = multiprocessing.get_context("spawn")
-
-
-class Worker:
-    """A process that does one job at a time, once it has warmed up."""
-
-    def __init__(self, warm_up: Callable[[], None] = jobs.warm_up) -> None:
-        self._warm_up = warm_up
-        self._closed = False
-        self._changing = threading.Lock()
-        self._start()
-
-    def _start(self) -> None:
-        self._end, theirs = _CONTEXT.Pipe()
-        self._process = _CONTEXT.Process(
-            target=_work, args=(theirs, self._warm_up), daemon=True, name="tippetop lab worker"
-        )
-        self._process.start()
-        theirs.close()
-        self._ready = False
-
-    def results(
-        self,
-        job: Callable[..., Any],
-        *arguments: Any,
-        patience: float,
-        stopped: threading.Event | None = None,
-    ) -> Iterator[Any]:
-        """What a job yields, one after the other, or the one thing it returns, until it is `stopped`.
-
-        Raises
-        ------
-        TimeoutError
-            If it takes longer than `patience` seconds; its process is then replaced.
-        Unavailable
-            If its process ends meanwhile; it is then replaced, too.
-        TippetopError
-            What the job raises.
-        """
-        if not self._await_ready(stopped):
-            return
-        finished = False
-        try:
-            self._end.send((job, arguments))
-            deadline = time.monotonic() + patience
-            while True:
-                if not self._heard(deadline, stopped):
-                    return
-                done, result = self._end.recv()
-                finished = done
-                if isinstance(result, TippetopError):
-                    raise result
-                if done and result is None:
-                    return
-                yield result
-                if done:
-                    return
-        except (EOFError, OSError) as error:
-            if isinstance(error, TippetopError | TimeoutError):
-                raise
-            raise self._ended() from error
-        finally:
-            if not finished:
-                self._restart()
-
-    def _heard(self, deadline: float, stopped: threading.Event | None) -> bool:
-        """Wait for a result; False when stopped before there is one."""
-        while not (stopped and stopped.is_set()):
-            left = deadline - time.monotonic()
-            if self._end.poll(max(0.0, left if stopped is None else min(left, GLANCE))):
-                return True
-            if left <= 0:
-                raise TimeoutError
-        return False
-
-    def _await_ready(self, stopped: threading.Event | None) -> bool:
-        """Wait until the process has warmed up; False when stopped, and nothing is to be sent."""
-        try:
-            while not (stopped and stopped.is_set()):
-                if self._ready:
-                    return True
-                if self._end.poll(GLANCE):
-                    self._end.recv()
-                    self._ready = True
-        except (EOFError, OSError) as error:
-            self._restart()
-            raise self._ended() from error
-        return False
-
-    def _ended(self) -> Unavailable:
-        if self._closed:
-            return Unavailable("the laboratory is being closed")
-        return Unavailable("the process that computed this has ended, and another takes its place: try again")
-
-    def _restart(self) -> None:
-        """Put another process in the place of this one, unless it is closed."""
-        with self._changing:
-            if not self._closed:
-                self._kill()
-                self._end.close()
-                self._start()
-
-    def close(self) -> None:
-        """End the process, whatever it does, for good; another thread that waits for it hears so."""
-        with self._changing:
-            self._closed = True
-            self._kill()
-
-    def _kill(self) -> None:
-        self._process.kill()
-        self._process.join()
 
 
 class Workers:
@@ -154,7 +37,7 @@ class Workers:
         """How many runs can be under way at once."""
         self._closed = threading.Event()
         self._changing = threading.Lock()
-        self._all = [Worker() for _ in range(self.count)]
+        self._all = [Worker(jobs.warm_up) for _ in range(self.count)]
         self._runners = _queue_of(self._all)
         self._filers: queue.SimpleQueue[Worker] | None = None
         self._mapping = threading.Lock()
@@ -192,7 +75,7 @@ class Workers:
         with self._changing:
             if self._filers is None:
                 self._check_open()
-                worker = Worker()
+                worker = Worker(jobs.warm_up)
                 self._all.append(worker)
                 self._filers = _queue_of([worker])
             return self._filers
@@ -212,11 +95,10 @@ class Workers:
                 return
             self._check_open()
         try:
-            yield from self._mapper.results(
-                map_parts, setup, spins, frictions, patience=MAP_PATIENCE, stopped=stopped
-            )
-        except TimeoutError:
-            raise _too_long(setup, MAP_PATIENCE, "a map") from None
+            with self._answered(setup, MAP_PATIENCE, "a map"):
+                yield from self._mapper.results(
+                    map_parts, setup, spins, frictions, patience=MAP_PATIENCE, stopped=stopped
+                )
         finally:
             self._mapping.release()
 
@@ -230,12 +112,27 @@ class Workers:
     ) -> _Result:
         worker = self._wait_for(workers)
         try:
-            (result,) = worker.results(job, *arguments, patience=patience)
-        except TimeoutError:
-            raise _too_long(setup, patience) from None
+            with self._answered(setup, patience):
+                (result,) = worker.results(job, *arguments, patience=patience)
         finally:
             workers.put(worker)
         return result  # type: ignore[no-any-return]
+
+    @contextmanager
+    def _answered(self, setup: Setup, patience: float, what: str = "a run") -> Iterator[None]:
+        """Say in a sentence why there is no result."""
+        try:
+            yield
+        except TimeoutError:
+            raise _too_long(setup, patience, what) from None
+        except Unavailable:
+            self._check_open()
+            raise
+        except TippetopError:
+            raise
+        except Exception as error:
+            logging.getLogger(__name__).exception("a job failed: %s", setup)
+            raise InvalidInput("launch", "this one", f"one that can be computed ({error!r})") from None
 
     def _wait_for(self, workers: queue.SimpleQueue[Worker]) -> Worker:
         while True:
@@ -262,33 +159,10 @@ def _queue_of(workers: list[Worker]) -> queue.SimpleQueue[Worker]:
     return waiting
 
 
-def _too_long(setup: Setup, patience: float, what: str = "a run") -> InvalidInput:
+def _too_long(setup: Setup, patience: float, what: str) -> InvalidInput:
     return InvalidInput(
         "duration",
         setup.duration,
         f"{what} that is computed within {patience:g} s, and this one is not: make it shorter, "
         "or take less spin, friction or restitution",
     )
-
-
-def _work(end: Connection, warm_up: Callable[[], None]) -> None:
-    """The life of a worker: jobs from the other end of the pipe, until it closes."""
-    # A job does not look at its pipe until it is done.
-    follow_parent()
-    with suppress(KeyboardInterrupt, EOFError, BrokenPipeError):
-        warm_up()
-        end.send("ready")
-        while True:
-            job, arguments = end.recv()
-            try:
-                result = job(*arguments)
-                if isinstance(result, Iterator):
-                    for item in result:
-                        end.send((False, item))
-                    result = None
-            except TippetopError as error:
-                result = error
-            except Exception as error:
-                logging.getLogger(__name__).exception("a job failed: %s", arguments)
-                result = InvalidInput("launch", "this one", f"one that can be computed ({error!r})")
-            end.send((True, result))

@@ -85,8 +85,7 @@ def reproduce(
     force
         Overwrite files of an earlier run.
     workers
-        Number of processes; None for one per processor, at most 2. A script that asks for more than one must
-        be importable (``if __name__ == "__main__":``).
+        Number of processes; None for one per processor, at most 2.
     progress
         Told how far it is.
 

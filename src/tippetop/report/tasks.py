@@ -1,15 +1,10 @@
 """Work for several processes: experiments and drawings, handed out as soon as what they need is there."""
 
-import multiprocessing
-import signal
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
-from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from tippetop.errors import TippetopError
+from tippetop.processes import Job, shared
 
 
 @dataclass
@@ -53,68 +48,25 @@ def carry_out(
 
     Raises
     ------
-    TippetopError
-        If a process was killed.
+    Unavailable
+        If the process of a task was killed again and again.
     """
     total, done = sum(task.cost for task in tasks), 0.0
+    costs = {task.name: task.cost for task in tasks}
     waiting = sorted(tasks, key=lambda task: -task.cost)
     results: dict[str, Any] = {}
-    running: dict[Future[Any], Task] = {}
-    with _executor(workers) as executor:
-        while waiting or running:
-            for task in [task for task in waiting if all(name in results for name in task.after)]:
-                if len(running) >= workers:
-                    break
+
+    def longest() -> Job | None:
+        """The longest task that has all it needs."""
+        for task in waiting:
+            if all(name in results for name in task.after):
                 waiting.remove(task)
-                running[executor.submit(task.call, *task.arguments(results))] = task
-            finished, _ = wait(running, return_when=FIRST_COMPLETED)
-            for future in finished:
-                task = running.pop(future)
-                try:
-                    results[task.name] = future.result()
-                except BrokenProcessPool:
-                    raise TippetopError(
-                        f"a worker process was killed during {task.name}, perhaps for want of memory; "
-                        "run it again, or with one worker"
-                    ) from None
-                done += task.cost
-                if progress is not None:
-                    progress(done, total, task.name)
+                return Job(task.name, task.call, task.arguments(results))
+        return None
+
+    for name, result in shared(longest, workers):
+        results[name] = result
+        done += costs[name]
+        if progress is not None:
+            progress(done, total, name)
     return results
-
-
-@contextmanager
-def _executor(workers: int) -> Iterator[Executor]:
-    """Processes to work in; they are stopped at once when anything goes wrong, Ctrl-C included."""
-    if workers == 1:
-        yield _Here()
-        return
-    others = set(multiprocessing.active_children())
-    # A fresh interpreter is the one way to start that is the same on every system and safe beside threads.
-    executor = ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"), _ignore_interrupts)
-    try:
-        yield executor
-    except BaseException:
-        for process in set(multiprocessing.active_children()) - others:
-            process.terminate()
-        executor.shutdown(cancel_futures=True)
-        raise
-    executor.shutdown()
-
-
-def _ignore_interrupts() -> None:
-    """Leave Ctrl-C to the parent, which stops its workers."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-
-
-class _Here(Executor):
-    """Does what it is given in this process."""
-
-    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """Call the function and return what came of it."""
-        future: Future[Any] = Future()
-        try:
-            future.set_result(fn(*args, **kwargs))
-        except Exception as error:  # noqa: BLE001 - handed over, not swallowed
-            future.set_exception(error)
-        return future

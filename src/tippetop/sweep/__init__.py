@@ -1,14 +1,16 @@
 """Sweeps: what becomes of many launches, over grids or random draws of any of a problem's numbers.
 
-`Sweep` says what to compute, `compute` does it in memory, and `run_sweep` into a store that survives whatever
-happens to the program.
+`sweep` sweeps fields of a problem over values. `Sweep` says what to compute, `compute` does it in memory, and
+`run_sweep` into a store that survives whatever happens to the program.
 """
 
 from tippetop.catalogue import SWEPT, Ending, Fault
+from tippetop.sweep.axes import Axis
 from tippetop.sweep.definition import Sweep
-from tippetop.sweep.grid import Axis, Draws, Product, Range
-from tippetop.sweep.run import Progress, compute, fill, run_sweep
-from tippetop.sweep.store import Status, Store
+from tippetop.sweep.grid import Draws, Product, Range
+from tippetop.sweep.layout import Status
+from tippetop.sweep.run import Progress, compute, fill, run_sweep, sweep
+from tippetop.sweep.store import Store, read_sweep
 
 __all__ = [
     "SWEPT",
@@ -24,5 +26,7 @@ __all__ = [
     "Sweep",
     "compute",
     "fill",
+    "read_sweep",
     "run_sweep",
+    "sweep",
 ]

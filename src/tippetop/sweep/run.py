@@ -1,16 +1,20 @@
 """Carry out a sweep, into a store or into memory."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from tippetop.catalogue import SWEPT
-from tippetop.sweep.definition import Sweep
-from tippetop.sweep.store import STATUS, Status, Store, coordinate_attributes, layout_attributes
+from tippetop.problem import Problem
+from tippetop.sweep.definition import DEFAULT_TOLERANCE, Sweep
+from tippetop.sweep.grid import Draws, Product
+from tippetop.sweep.layout import STATUS, Status, coordinate_attributes, layout_attributes
+from tippetop.sweep.store import Store
 from tippetop.sweep.tasks import need_workers, results
 
 
@@ -163,7 +167,58 @@ def compute(
     for name, kind in SWEPT.items():
         data[name] = (grid.dimensions, arrays[name], kind.attributes)
     coordinates = {
-        name: ((along,), values, coordinate_attributes(name))
+        name: ((along,), values, coordinate_attributes(sweep, name))
         for name, (along, values) in grid.coordinates().items()
     }
     return xr.Dataset(data, coordinates, layout_attributes(sweep))
+
+
+def sweep(
+    problem: Problem,
+    over: Mapping[str, Any] | Product | Draws,
+    *,
+    duration: float = 20.0,
+    tolerance: float = DEFAULT_TOLERANCE,
+    settled: float | None = None,
+    out: Path | str | None = None,
+    overwrite: bool = False,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    watcher: Watcher | None = None,
+) -> xr.Dataset:
+    """See what becomes of many launches: ``sweep(problem, {"launch.spin": np.linspace(0, 250, 200)})``.
+
+    Parameters
+    ----------
+    problem
+        The problem whose fields are changed.
+    over
+        Fields, named with dots, and their values in SI units: arrays, lists, or tables such as
+        ``{"from": 0.05, "to": 1, "count": 40, "spacing": "geometric"}``, of which all combinations are
+        launched; or `Draws`.
+    duration, tolerance, settled
+        See `Sweep`.
+    out
+        Folder of a Zarr store to keep the sweep in; in memory if left out.
+    overwrite
+        Replace a sweep that is there.
+    workers, scheduler, watcher
+        See `fill`.
+
+    Returns
+    -------
+    xarray.Dataset
+        See `run_sweep`.
+
+    Raises
+    ------
+    InvalidInput
+        If there is no such field, or it cannot have such values.
+    FileTrouble
+        If there is something at `out` already, or it cannot be written.
+    """
+    grid = over if isinstance(over, Draws) else Product.of(over)
+    chosen = Sweep(problem, grid, duration, tolerance, settled)
+    if out is None:
+        return compute(chosen, workers=workers, scheduler=scheduler, watcher=watcher)
+    return run_sweep(chosen, out, overwrite=overwrite, workers=workers, scheduler=scheduler, watcher=watcher)

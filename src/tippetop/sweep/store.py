@@ -1,18 +1,15 @@
 """Where a sweep is kept: a Zarr store that is always whole, whatever becomes of the program that fills it.
 
-The grid's values are coordinates, every variable is an array over the grid, and a task is one chunk of each.
-The array `status` alone says what is done: its chunk is written last, and every chunk is written beside its
-place and then moved there. So a program that dies, even in the middle of a write, loses only the tasks under
-way.
+The array `status` alone says what is done: its chunk is written last, once the others are on disk, and every
+chunk is written beside its place and then moved there. So a program that dies, or a machine, even in the
+middle of a write, loses only the tasks under way. What is lost or damaged later is found, and done again.
 """
 
 import json
 import shutil
 import tempfile
-import warnings
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
-from enum import IntEnum
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from contextlib import ExitStack, contextmanager
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -21,26 +18,24 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from tippetop import __version__
-from tippetop.catalogue import SWEPT, Variable, meanings
-from tippetop.dataset import CONVENTIONS
-from tippetop.errors import FileTrouble, InvalidInput, Unavailable, short
+from tippetop.catalogue import SWEPT
+from tippetop.errors import FileTrouble, Unavailable, short
 from tippetop.files import refuse_overwriting
 from tippetop.interrupts import deferred
-from tippetop.sweep.definition import Sweep, sweep_from
+from tippetop.sweep.definition import Sweep
+from tippetop.sweep.disk import bring_to_disk, clear_away, identity, in_words, locked
+from tippetop.sweep.layout import (
+    DIGEST,
+    METADATA,
+    Status,
+    first_difference,
+    kept_sweep,
+    lay_out,
+    may_be_replaced,
+    read_metadata,
+)
 
-FORMAT = "tippetop sweep 1"
-"""Name and version of the layout; a store of another is refused."""
-
-
-class Status(IntEnum):
-    """Whether a cell is computed."""
-
-    PENDING = 0
-    DONE = 1
-
-
-STATUS = Variable("whether the cell is computed", dtype="int8", flags=meanings(Status))
+Task = tuple[int, ...]
 
 
 class Store:
@@ -59,7 +54,10 @@ class Store:
 
         self.path, self.sweep = path, sweep
         with in_words(path, "opened"):
-            self._group = zarr.open_group(path, mode="r+")
+            # What is nowhere but where nothing is known has to be written too, to be seen to be there.
+            with zarr.config.set({"array.write_empty_chunks": True}):
+                self._arrays = dict(zarr.open_group(path, mode="r+").arrays())
+            self._identity = identity(path)
 
     @classmethod
     def create(cls, path: Path | str, sweep: Sweep, overwrite: bool = False) -> "Store":
@@ -68,28 +66,34 @@ class Store:
         Raises
         ------
         FileTrouble
-            If something is there already and `overwrite` is false or it is no sweep, or it cannot be written.
+            If something is there already and `overwrite` is false, or it is no sweep or being filled, or it
+            cannot be written.
         Unavailable
             If zarr is not installed.
         """
         need_zarr()
         path = Path(path)
-        refuse_overwriting(path, overwrite)
-        if path.is_symlink() or (path.exists() and not _may_be_replaced(path)):
-            raise FileTrouble(
-                f"{path} exists and is no sweep, so it is not overwritten; choose another --out"
-            )
         # Zarr writes in a thread of its own, which Ctrl-C does not stop.
-        with in_words(path, "written"), deferred():
+        with in_words(path, "written"), deferred(), ExitStack() as stack:
+            refuse_overwriting(path, overwrite)
+            there = path.exists()
+            if path.is_symlink() or (there and not may_be_replaced(path)):
+                raise FileTrouble(
+                    f"{path} exists and is no sweep, so it is not overwritten; choose another --out"
+                )
+            clear_away(path)
             beside = Path(tempfile.mkdtemp(dir=path.parent, prefix=f".{path.name}."))
-            try:
-                fresh = beside / path.name
-                _lay_out(fresh, sweep)
-                if path.exists():
-                    path.rename(beside / "replaced")
-                fresh.rename(path)
-            finally:
-                shutil.rmtree(beside, ignore_errors=True)
+            stack.callback(shutil.rmtree, beside, ignore_errors=True)
+            stack.enter_context(locked(beside))
+            if there:
+                stack.enter_context(locked(path))
+            fresh = beside / path.name
+            lay_out(fresh, sweep)
+            bring_to_disk([fresh, *fresh.rglob("*")])
+            if there:
+                path.rename(beside / "replaced")
+            fresh.rename(path)
+            bring_to_disk([path.parent])
         return cls(path, sweep)
 
     @classmethod
@@ -103,7 +107,8 @@ class Store:
         """
         need_zarr()
         path = Path(path)
-        kept = read_sweep(path)
+        with in_words(path, "read"):
+            kept = kept_sweep(path)
         if sweep is not None:
             difference = first_difference(kept.describe(), sweep.describe())
             if difference is not None:
@@ -113,91 +118,168 @@ class Store:
                     f"{short(here)} here; choose another --out, or start afresh with --force"
                 )
         store = cls(path, kept)
-        if tuple(store._array("status").chunks) != kept.chunk:
+        if tuple(store._arrays["status"].chunks) != kept.chunk:
             raise FileTrouble(f"{path} has other chunks than this version makes; start afresh with --force")
         return store
 
     @contextmanager
     def held(self) -> Iterator[None]:
-        """Keep other processes from filling the store meanwhile, and clear away what a killed one left.
+        """Keep other processes from filling the store meanwhile, and mend what is around its results.
 
         Raises
         ------
         FileTrouble
-            If another process fills it, or it cannot be written.
+            If another process fills it or has replaced it, or it cannot be written.
         """
-        from filelock import FileLock, Timeout  # noqa: PLC0415 - optional
-
-        lock = FileLock(self.path / ".lock", blocking=False)
-        with in_words(self.path, "written"):
-            try:
-                lock.acquire()
-            except Timeout:
-                raise FileTrouble(f"{self.path} is being filled by another process") from None
-        try:
+        self._check_identity()
+        with locked(self.path):
+            self._check_identity()
             with in_words(self.path, "written"):
                 for partial in self.path.rglob("*.partial"):
                     partial.unlink(missing_ok=True)
+                self._mend()
             yield
-        finally:
-            lock.release()
+
+    def _check_identity(self) -> None:
+        with in_words(self.path, "written"):
+            if identity(self.path) != self._identity:
+                raise FileTrouble(
+                    f"{self.path} was replaced by another sweep meanwhile; that is left as it is"
+                )
+
+    def _mend(self) -> None:
+        """Write again what is missing or damaged of the arrays' own metadata, and of the coordinates."""
+        arrays = read_metadata(self.path)["consolidated_metadata"]["metadata"]
+        for name, metadata in arrays.items():
+            file = self.path / name / METADATA
+            try:
+                whole = json.loads(file.read_text(encoding="utf-8")) == metadata
+            except (OSError, ValueError, RecursionError):
+                whole = False
+            if not whole:
+                file.parent.mkdir(exist_ok=True)
+                file.write_text(json.dumps(metadata), encoding="utf-8")
+        for name, (_, values) in self.sweep.grid.coordinates().items():
+            if self._lost(name, [(0,)]):
+                self._arrays[name][...] = values
 
     def status(self) -> NDArray[np.int8]:
         """Numbers of `Status` over the grid; what cannot be read counts as pending."""
+        array = self._arrays["status"]
+        if _can_be_read(array, ...):
+            return np.asarray(array[...])
         found = np.full(self.sweep.grid.shape, Status.PENDING, dtype=np.int8)
-        for task in self.sweep.tasks:
-            region = self.sweep.region(task)
-            try:
-                found[region] = self._array("status")[region]
-            except Exception:  # noqa: BLE001 - whatever a damaged chunk raises, it is done again
-                continue
+        for region in map(self.sweep.region, self.sweep.tasks):
+            if _can_be_read(array, region):
+                found[region] = array[region]
         return found
 
-    def remaining(self) -> list[tuple[int, ...]]:
-        """The tasks that are not done."""
-        status = self.status()
-        return [
-            task for task in self.sweep.tasks if not np.all(status[self.sweep.region(task)] == Status.DONE)
-        ]
+    def remaining(self) -> list[Task]:
+        """The tasks that are not done, or whose results are missing or damaged."""
+        done = self._done(self.status())
+        lost = {task for name in SWEPT for task in self._lost(name, done)}
+        return [task for task in self.sweep.tasks if task not in done or task in lost]
 
-    def write(self, task: tuple[int, ...], variables: Mapping[str, NDArray[Any]]) -> None:
-        """Keep what a task found, and then note that it is done.
+    def _done(self, status: NDArray[np.int8]) -> set[Task]:
+        sweep = self.sweep
+        return {task for task in sweep.tasks if np.all(status[sweep.region(task)] == Status.DONE)}
+
+    def _lost(self, name: str, tasks: Collection[Task]) -> set[Task]:
+        """Those of some tasks whose chunk of an array is missing or damaged."""
+        array = self._arrays[name]
+        lost = {task for task in tasks if not self._chunk(name, task).is_file()}
+        if not _can_be_read(array, ...):
+            for task in tasks:
+                places = zip(task, array.chunks, strict=True)
+                if not _can_be_read(array, tuple(slice(k * size, (k + 1) * size) for k, size in places)):
+                    lost.add(task)
+        return lost
+
+    def write(self, task: Task, variables: Mapping[str, NDArray[Any]]) -> None:
+        """Keep what a task found, and, once that is on disk, note that it is done.
 
         Raises
         ------
         FileTrouble
-            If it cannot be written; the store stays good.
+            If it cannot be written, and then the store stays good; or if it was replaced meanwhile.
         """
         region = self.sweep.region(task)
         shape = tuple(part.stop - part.start for part in region)
+        self._check_identity()
         with in_words(self.path, "written"):
             for name, values in variables.items():
-                self._array(name)[region] = values.reshape(shape)
-            self._array("status")[region] = np.full(shape, Status.DONE, dtype=np.int8)
+                self._arrays[name][region] = values.reshape(shape)
+            self._bring_chunks_to_disk(variables, task)
+            self._arrays["status"][region] = np.full(shape, Status.DONE, dtype=np.int8)
+            self._bring_chunks_to_disk(["status"], task)
+
+    def _bring_chunks_to_disk(self, names: Iterable[str], task: Task) -> None:
+        chunks = [self._chunk(name, task) for name in names]
+        folders = {folder for chunk in chunks for folder in chunk.parents if self.path in folder.parents}
+        bring_to_disk([*chunks, *folders])
 
     def dataset(self) -> xr.Dataset:
-        """The store as a dataset, read when it is used."""
-        opened: xr.Dataset = xr.open_zarr(self.path)
-        return opened
+        """The store as a dataset, read when it is used; what is damaged then raises an error of Zarr's.
 
-    def load(self, names: list[str]) -> xr.Dataset:
+        Raises
+        ------
+        FileTrouble
+            If something is missing.
+        """
+        return self._opened(SWEPT)
+
+    def load(self, names: Collection[str]) -> xr.Dataset:
         """Some of the variables, read now.
 
         Raises
         ------
         FileTrouble
-            If they cannot be read.
+            If they are damaged, or something is missing of them.
         """
-        try:
-            loaded: xr.Dataset = self.dataset()[names].load()
-        except (OSError, ValueError, RuntimeError) as error:
-            raise FileTrouble(
-                f"{self.path} is damaged and cannot be read ({error}); start afresh with --force"
-            ) from None
-        return loaded
+        with self._damage_in_words():
+            return self._opened(names)[list(names)].load()
 
-    def _array(self, name: str) -> Any:
-        return self._group[name]
+    def _opened(self, names: Collection[str]) -> xr.Dataset:
+        with self._damage_in_words():
+            read_metadata(self.path)
+            done = self._done(np.asarray(self._arrays["status"][...]))
+            needed = [(name, task) for name in names if name in SWEPT for task in done]
+            needed += [(name, (0,)) for name in self.sweep.grid.coordinates()]
+            for name, task in needed:
+                if not self._chunk(name, task).is_file():
+                    raise OSError(f"a chunk of {name} is missing")
+            opened: xr.Dataset = xr.open_zarr(self.path)
+            del opened.attrs[DIGEST]
+        return opened
+
+    @contextmanager
+    def _damage_in_words(self) -> Iterator[None]:
+        try:
+            yield
+        except FileTrouble:
+            raise
+        except (OSError, ValueError, RuntimeError, KeyError, TypeError) as error:
+            raise FileTrouble(
+                f"{self.path} is damaged and cannot be read ({error}); --resume mends it"
+            ) from None
+
+    def _chunk(self, name: str, task: Task) -> Path:
+        return self.path.joinpath(name, "c", *map(str, task))
+
+
+def read_sweep(path: Path | str, names: Collection[str] | None = None) -> xr.Dataset:
+    """Read a sweep, or some of its variables.
+
+    Raises
+    ------
+    FileTrouble
+        If it cannot be read, is damaged or is no sweep.
+    """
+    need_zarr()
+    path = Path(path)
+    with in_words(path, "read"):
+        sweep = Sweep(**json.loads(read_metadata(path)["attributes"]["sweep"]))
+    return Store(path, sweep).load([*SWEPT, "status"] if names is None else names)
 
 
 def need_zarr() -> None:
@@ -206,122 +288,9 @@ def need_zarr() -> None:
         raise Unavailable("a sweep is kept in a Zarr store; install it with: pip install 'tippetop[sweep]'")
 
 
-def _may_be_replaced(path: Path) -> bool:
-    """Whether a folder is empty or holds a sweep, of whatever version."""
-    if not path.is_dir() or not any(path.iterdir()):
-        return path.is_dir()
+def _can_be_read(array: Any, region: Any) -> bool:
     try:
-        layout = json.loads((path / "zarr.json").read_text(encoding="utf-8"))["attributes"]["format"]
-    except (OSError, ValueError, KeyError, TypeError):
+        array[region]
+    except Exception:  # noqa: BLE001 - whatever a damaged chunk raises
         return False
-    return str(layout).startswith(FORMAT.rstrip("0123456789"))
-
-
-def read_sweep(path: Path | str) -> Sweep:
-    """The sweep that a store holds.
-
-    Raises
-    ------
-    FileTrouble
-        If there is no store, or it was made by another version.
-    """
-    path = Path(path)
-    try:
-        attributes = json.loads((path / "zarr.json").read_text(encoding="utf-8"))["attributes"]
-        layout, version = attributes["format"], attributes["tippetop_version"]
-    except OSError as error:
-        raise FileTrouble(f"{path} cannot be read: {error.strerror}; there is no sweep to resume") from None
-    except (ValueError, KeyError):
-        raise FileTrouble(f"{path} is not a sweep of this program") from None
-    if layout != FORMAT or version != __version__:
-        raise FileTrouble(
-            f"{path} was made by version {version} of tippetop, and this is {__version__}, whose results may "
-            "differ; finish it with that version, or start afresh with --force"
-        )
-    try:
-        return sweep_from(json.loads(attributes["sweep"]))
-    except (ValueError, KeyError, TypeError, InvalidInput) as error:
-        raise FileTrouble(f"{path} is damaged: its sweep cannot be read ({error})") from None
-
-
-def first_difference(one: Any, other: Any, name: str = "") -> tuple[str, Any, Any] | None:
-    """The name of the first field in which two descriptions differ, and what is there."""
-    if isinstance(one, dict) and isinstance(other, dict):
-        for key in [*one, *(key for key in other if key not in one)]:
-            inner = f"{name}.{key}" if name else str(key)
-            found = first_difference(one.get(key), other.get(key), inner)
-            if found is not None:
-                return found
-        return None
-    if isinstance(one, list) and isinstance(other, list) and len(one) == len(other):
-        return first_difference(dict(enumerate(one)), dict(enumerate(other)), name)
-    return None if one == other else (name, one, other)
-
-
-def layout_attributes(sweep: Sweep) -> dict[str, Any]:
-    """The attributes of a sweep's dataset."""
-    return {
-        "Conventions": CONVENTIONS,
-        "title": "What becomes of many launches of a spinning top",
-        "format": FORMAT,
-        "sweep": json.dumps(sweep.describe()),
-        "problem": sweep.problem.to_json(),
-        "duration": sweep.duration,
-        "tolerance": sweep.tolerance,
-        "tippetop_version": __version__,
-    }
-
-
-def coordinate_attributes(name: str) -> dict[str, Any]:
-    """The attributes of a coordinate."""
-    return {"long_name": "number of the draw" if name == "draw" else f"{name} of the problem"}
-
-
-def _lay_out(path: Path, sweep: Sweep) -> None:
-    """Write a store without results."""
-    import zarr  # noqa: PLC0415 - optional
-
-    grid = sweep.grid
-    group = zarr.create_group(path, attributes=layout_attributes(sweep), zarr_format=3)
-    for name, (dimension, values) in grid.coordinates().items():
-        kept = group.create_array(
-            name,
-            shape=values.shape,
-            chunks=values.shape,
-            dtype=values.dtype.name,
-            dimension_names=(dimension,),
-            attributes=coordinate_attributes(name),
-        )
-        kept[...] = values
-    for name, kind in {"status": STATUS, **SWEPT}.items():
-        attributes = kind.attributes | _coordinates(sweep)
-        group.create_array(
-            name,
-            shape=grid.shape,
-            chunks=sweep.chunk,
-            dtype=kind.dtype,
-            fill_value=Status.PENDING if name == "status" else kind.missing,
-            dimension_names=grid.dimensions,
-            attributes=attributes,
-        )
-    with warnings.catch_warnings():
-        # Zarr warns that readers other than Python's may pass over this; they then read every array's own.
-        warnings.simplefilter("ignore")
-        zarr.consolidate_metadata(path)
-
-
-def _coordinates(sweep: Sweep) -> dict[str, str]:
-    """Coordinates that are not dimensions are named by the CF attribute."""
-    others = [name for name, (dimension, _) in sweep.grid.coordinates().items() if name != dimension]
-    return {"coordinates": " ".join(others)} if others else {}
-
-
-@contextmanager
-def in_words(path: Path, done: str) -> Iterator[None]:
-    """Turn what the file system says into one sentence."""
-    try:
-        yield
-    except FileTrouble:
-        raise
-    except OSError as error:
-        raise FileTrouble(f"{path} cannot be {done}: {error.strerror or error}") from None
+    return True

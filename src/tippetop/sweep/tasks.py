@@ -1,26 +1,24 @@
 """Who computes the tasks of a sweep: this process, processes beside it, or a Dask cluster."""
 
 import json
+import logging
 import os
-import signal
-import sys
 import threading
+import time
 from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, ProcessPoolExecutor, wait
-from concurrent.futures.process import BrokenProcessPool
+from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
 from contextlib import contextmanager
 from functools import lru_cache
 from importlib.util import find_spec
-from multiprocessing.context import SpawnContext, SpawnProcess
 from typing import Any, TypeAlias
 
 from numpy.typing import NDArray
 
 from tippetop import __version__
 from tippetop.errors import InvalidInput, Unavailable
-from tippetop.interrupts import deferred, follow_parent
-from tippetop.sweep.definition import Sweep, sweep_from
+from tippetop.processes import RESTARTS, Job, shared
+from tippetop.sweep.definition import Sweep
 from tippetop.sweep.ensemble import follow_cells
 
 Task: TypeAlias = tuple[int, ...]
@@ -29,16 +27,17 @@ Block: TypeAlias = tuple[tuple[int, int], ...]
 Call: TypeAlias = tuple[str, str, Block]
 """What `compute_block` is called with."""
 
-RESTARTS = 3
-"""How often processes that died are started again before the sweep is given up."""
-
 AHEAD = 2
-"""Tasks handed out for every worker, so that none waits."""
+"""Tasks handed out for every worker of a cluster, so that none waits."""
 
 PATIENCE = 10.0
 """How long a scheduler may take to answer, s."""
+LONELY = 60.0
+"""How long a cluster may be without workers before the sweep is given up, s."""
+GLANCE = 1.0
+"""How often it is looked whether it has some, if no task is done meanwhile, s."""
 
-THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
+KEPT = "what is done is kept, and --resume goes on"
 
 _turn = threading.Lock()
 
@@ -61,7 +60,7 @@ def compute_block(description: str, version: str, block: Block) -> Found:
 
 @lru_cache(maxsize=4)
 def _sweep(description: str) -> Sweep:
-    return sweep_from(json.loads(description))
+    return Sweep(**json.loads(description))
 
 
 def results(
@@ -91,12 +90,11 @@ def results(
     if scheduler is not None:
         yield from _share_with_cluster(scheduler, calls)
         return
-    count = min(workers or processors(), max(len(tasks), 1))
-    if count == 1:
-        for task, call in calls.items():
-            yield task, compute_block(*call)
-        return
-    yield from _share_locally(count, calls)
+    jobs = (Job(task, compute_block, call) for task, call in calls.items())
+    try:
+        yield from shared(lambda: next(jobs, None), min(workers or processors(), max(len(tasks), 1)))
+    except Unavailable as error:
+        raise Unavailable(f"{error}; {KEPT}") from None
 
 
 def need_workers(workers: int | None, scheduler: str | None) -> None:
@@ -128,131 +126,72 @@ def processors() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def _share(executor: Executor, workers: int, calls: Mapping[Task, Call]) -> Iterator[tuple[Task, Found]]:
-    """Hand tasks out, a few ahead of every worker, and give back what comes."""
+def _share_with_cluster(address: str, calls: Mapping[Task, Call]) -> Iterator[tuple[Task, Found]]:
+    """Hand tasks to a cluster, a few ahead of every worker; it does those of workers that died again."""
     waiting = deque(calls)
     running: dict[Future[Found], Task] = {}
-    try:
-        while waiting or running:
-            while waiting and len(running) < AHEAD * workers:
-                task = waiting.popleft()
-                running[executor.submit(compute_block, *calls[task])] = task
-            done, _ = wait(running, return_when=FIRST_COMPLETED)
-            for future in done:
-                task = running.pop(future)
-                yield task, future.result()
-    finally:
-        for future in running:
-            future.cancel()
-
-
-def _share_locally(workers: int, calls: Mapping[Task, Call]) -> Iterator[tuple[Task, Found]]:
-    """Share tasks among processes; those of processes that died are done again."""
-    left = dict(calls)
-    for attempt in range(RESTARTS + 1):
+    with _cluster(address) as client:
+        executor = client.get_executor(retries=RESTARTS)
+        most = AHEAD * _workers(client)
         try:
-            with _pool(workers) as executor:
-                for task, found in _share(executor, workers, dict(left)):
-                    del left[task]
-                    yield task, found
-            return
-        except BrokenProcessPool:
-            if attempt == RESTARTS:
-                raise Unavailable(
-                    f"processes that compute the sweep were killed {RESTARTS + 1} times (is there enough "
-                    "memory?); what is done is kept, and --resume goes on"
-                ) from None
-
-
-@contextmanager
-def _ctrl_c_blocked() -> Iterator[None]:
-    """Keep Ctrl-C from processes that are started meanwhile, which inherit what is blocked."""
-    if not hasattr(signal, "pthread_sigmask"):
-        yield
-        return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
-class _Process(SpawnProcess):
-    """A process that does not run the caller's script again: a worker needs this package alone."""
-
-    def start(self) -> None:
-        main = sys.modules["__main__"]
-        spec, main.__spec__ = getattr(main, "__spec__", None), None
-        file = vars(main).pop("__file__", None)
-        try:
-            with _ctrl_c_blocked():
-                super().start()
-        finally:
-            main.__spec__ = spec
-            if file is not None:
-                main.__file__ = file
-
-
-class _Context(SpawnContext):
-    """How such processes are started."""
-
-    Process = _Process
-
-
-@contextmanager
-def _pool(workers: int) -> Iterator[Executor]:
-    """Processes of one thread each, which end when they are no longer needed, or this one ends."""
-    before = {name: os.environ.get(name) for name in THREADS}
-    os.environ.update(dict.fromkeys(THREADS, "1"))
-    try:
-        executor = ProcessPoolExecutor(workers, mp_context=_Context(), initializer=follow_parent)
-        try:
-            # Ctrl-C between two of them would take from one what it is about to open.
-            with deferred():
-                executor.submit(processors)
-            yield executor
-        finally:
-            processes = list((executor._processes or {}).values())
-            executor.shutdown(wait=False, cancel_futures=True)
-            for process in processes:
-                process.terminate()
-            for process in processes:
-                process.join()
-    finally:
-        for name, value in before.items():
-            if value is None:
-                os.environ.pop(name, None)
-            else:
-                os.environ[name] = value
-
-
-def _share_with_cluster(address: str, calls: Mapping[Task, Call]) -> Iterator[tuple[Task, Found]]:
-    """Hand tasks to a cluster, which does those of workers that died again."""
-    with _cluster(address) as (executor, size):
-        try:
-            yield from _share(executor, size, calls)
+            while waiting or running:
+                while waiting and len(running) < most:
+                    task = waiting.popleft()
+                    running[executor.submit(compute_block, *calls[task])] = task
+                for future in _first_done(client, address, running):
+                    task = running.pop(future)
+                    yield task, future.result()
         except Exception as error:
             if isinstance(error, CancelledError) or type(error).__module__.startswith("distributed"):
                 raise Unavailable(
-                    f"the cluster at {address} was lost ({type(error).__name__}); what is done is kept, and "
-                    "--resume goes on"
+                    f"the cluster at {address} was lost ({type(error).__name__}); {KEPT}"
                 ) from None
             raise
+        finally:
+            for future in running:
+                future.cancel()
+
+
+def _first_done(client: Any, address: str, running: Mapping[Future[Found], Task]) -> set[Future[Found]]:
+    """Wait until one is done, as long as there is somebody to do it."""
+    alone = 0.0
+    while True:
+        done, _ = wait(running, timeout=GLANCE, return_when=FIRST_COMPLETED)
+        if done:
+            return done
+        if _workers(client):
+            alone = 0.0
+            continue
+        if not alone:
+            alone = time.monotonic()
+            logging.getLogger(__name__).warning(
+                "the cluster at %s has no workers; the sweep waits for some, %g s", address, LONELY
+            )
+        if time.monotonic() - alone >= LONELY:
+            raise Unavailable(f"the cluster at {address} has had no workers for {LONELY:g} s; {KEPT}")
+
+
+def _workers(client: Any) -> int:
+    return len(client.scheduler_info(n_workers=-1)["workers"])
 
 
 @contextmanager
-def _cluster(address: str) -> Iterator[tuple[Executor, int]]:
-    """A running cluster, and how many workers it has."""
+def _cluster(address: str) -> Iterator[Any]:
+    """A client of a running cluster that has workers."""
     if find_spec("distributed") is None:
         raise Unavailable("a scheduler needs dask.distributed: pip install 'tippetop[sweep]'")
     from distributed import Client  # noqa: PLC0415 - optional, and slow to import
+    from distributed.utils import silence_logging_cmgr  # noqa: PLC0415
 
-    try:
-        client: Any = Client(address, timeout=PATIENCE, set_as_default=False)  # type: ignore[no-untyped-call]
-    except (OSError, ValueError) as error:
-        raise InvalidInput("scheduler", address, f"the address of a running scheduler ({error})") from None
-    with client:
-        size = len(client.scheduler_info(n_workers=-1)["workers"])
-        if not size:
-            raise InvalidInput("scheduler", address, "a scheduler that has workers")
-        yield client.get_executor(retries=RESTARTS), size
+    # What goes wrong is said here, in a sentence.
+    with silence_logging_cmgr(logging.CRITICAL):
+        try:
+            client: Any = Client(address, timeout=PATIENCE, set_as_default=False)  # type: ignore[no-untyped-call]
+        except (OSError, ValueError) as error:
+            raise InvalidInput(
+                "scheduler", address, f"the address of a running scheduler ({error})"
+            ) from None
+        with client:
+            if not _workers(client):
+                raise InvalidInput("scheduler", address, "a scheduler that has workers")
+            yield client

@@ -1,0 +1,141 @@
+"""The values of one field that a sweep goes over: in equal steps, in equal ratios, or one by one.
+
+An axis is written as a list of values or as a table ``{ from, to, count, spacing }``.
+"""
+
+from collections.abc import Iterable, Mapping
+from typing import Annotated, Any, Literal, Self
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BeforeValidator, ConfigDict, Field, model_validator
+
+from tippetop.errors import InvalidInput
+from tippetop.integrators.base import Array
+from tippetop.validation import Number, Part, Whole
+
+MOST_CELLS = 10**8
+"""Cells a sweep may have."""
+
+Flat = NDArray[np.int64]
+Count = Annotated[Whole, Field(ge=1, le=MOST_CELLS)]
+
+
+def _in_full(word: Any) -> Any:
+    return {"geo": "geometric", "lin": "linear"}.get(word, word) if isinstance(word, str) else word
+
+
+class Entry(Part):
+    """A part of a grid: its fields may also be given in their order, and by the names they have in Python."""
+
+    model_config = ConfigDict(populate_by_name=True)
+
+    def __init__(self, /, *values: Any, **fields: Any) -> None:
+        super().__init__(**dict(zip(type(self).model_fields, values, strict=False)), **fields)
+
+
+class Axis(Entry):
+    """Values of one field, named with dots: ``launch.spin``."""
+
+    field: str
+
+    @classmethod
+    def linear(cls, field: str, first: float, last: float, count: int) -> "Axis":
+        """Equally spaced values, both ends among them."""
+        return Spaced(field=field, first=first, last=last, count=count)
+
+    @classmethod
+    def geometric(cls, field: str, first: float, last: float, count: int) -> "Axis":
+        """Values in equal ratios, both ends among them."""
+        return Spaced(field=field, first=first, last=last, count=count, spacing="geometric")
+
+    @classmethod
+    def listed(cls, field: str, values: Iterable[float]) -> "Axis":
+        """These values."""
+        return cls.of(field, {"values": tuple(values)})
+
+    @classmethod
+    def of(cls, field: str, entry: Any) -> "Axis":
+        """The axis that is written as a list, or an array, or a table."""
+        if isinstance(entry, np.ndarray | list | tuple | range):
+            entry = {"values": tuple(entry)}
+        if not isinstance(entry, Mapping):
+            raise InvalidInput("", entry, "a list of values, or { from, to, count, spacing }")
+        return (Listed if "values" in entry else Spaced)(**{"field": field} | dict(entry))
+
+    @property
+    def size(self) -> int:
+        """How many values there are."""
+        raise NotImplementedError
+
+    def at(self, places: Flat) -> Array:
+        """Some of the values, by their places, without making the others."""
+        raise NotImplementedError
+
+    @property
+    def values(self) -> Array:
+        """All values, shape (size,)."""
+        return self.at(np.arange(self.size))
+
+
+class Spaced(Axis):
+    """Values from a first to a last, in equal steps or in equal ratios.
+
+    Attributes
+    ----------
+    first, last
+        The ends, both among the values; "from" and "to" where they are written.
+    count
+        How many values there are.
+    spacing
+        "linear" or "geometric".
+    """
+
+    first: Number = Field(alias="from")
+    last: Number = Field(alias="to")
+    count: Count
+    spacing: Annotated[Literal["linear", "geometric"], BeforeValidator(_in_full)] = "linear"
+
+    @model_validator(mode="after")
+    def _has_values(self) -> Self:
+        given = f"{self.first:g} to {self.last:g}"
+        if self.count > 1 and self.first == self.last:
+            raise InvalidInput("", given, "a first and a last value that differ")
+        if self.spacing == "geometric" and not self.first * self.last > 0:
+            raise InvalidInput("", given, "ends of one sign, neither 0, if geometric")
+        return self
+
+    @property
+    def size(self) -> int:
+        """How many values there are."""
+        return self.count
+
+    def at(self, places: Flat) -> Array:
+        """Some of the values, by their places, without making the others."""
+        first, last = self.first, self.last
+        share = places / max(self.count - 1, 1)
+        inner = (
+            first + (last - first) * share if self.spacing == "linear" else first * (last / first) ** share
+        )
+        return np.where(places == self.count - 1, last if self.count > 1 else first, inner)
+
+
+class Listed(Axis):
+    """These values: "values" where they are written."""
+
+    numbers: tuple[Number, ...] = Field(alias="values", min_length=1)
+
+    @model_validator(mode="after")
+    def _differ(self) -> Self:
+        if len(set(self.numbers)) < len(self.numbers):
+            raise InvalidInput("", list(self.numbers), "values that differ from one another")
+        return self
+
+    @property
+    def size(self) -> int:
+        """How many values there are."""
+        return len(self.numbers)
+
+    def at(self, places: Flat) -> Array:
+        """Some of the values, by their places."""
+        return np.array(self.numbers)[places]

@@ -1,0 +1,182 @@
+"""How a sweep is laid out on disk: a Zarr group that says what it holds, with a checksum over all of it.
+
+The grid's values are coordinates, every variable is an array over the grid, and a task is one chunk of each.
+Every chunk ends in a checksum, and the group's metadata, in which those of all arrays are repeated, hold a
+digest of themselves: what is damaged is seen when it is read.
+"""
+
+import hashlib
+import json
+import warnings
+from enum import IntEnum
+from pathlib import Path
+from typing import Any
+
+from tippetop import __version__
+from tippetop.dataset import CONVENTIONS
+from tippetop.errors import FileTrouble, short
+from tippetop.sweep.definition import Sweep
+from tippetop.catalogue import SWEPT, Variable, meanings
+from tippetop.validation import Quantity
+
+FORMAT = "tippetop sweep 2"
+"""Name and version of the layout; a store of another is refused."""
+METADATA = "zarr.json"
+DIGEST = "digest"
+"""The attribute of the group that holds the digest of its metadata without it."""
+
+
+class Status(IntEnum):
+    """Whether a cell is computed."""
+
+    PENDING = 0
+    DONE = 1
+
+
+STATUS = Variable("whether the cell is computed", dtype="int8", flags=meanings(Status))
+
+
+def lay_out(path: Path, sweep: Sweep) -> None:
+    """Write a store without results."""
+    import zarr  # noqa: PLC0415 - optional
+    from zarr.codecs import Crc32cCodec, ZstdCodec  # noqa: PLC0415 - optional
+
+    checked = ZstdCodec(level=0), Crc32cCodec()
+    grid = sweep.grid
+    group = zarr.create_group(path, attributes=layout_attributes(sweep), zarr_format=3)
+    for name, (dimension, values) in grid.coordinates().items():
+        coordinate = group.create_array(
+            name,
+            shape=values.shape,
+            chunks=values.shape,
+            dtype=values.dtype.name,
+            dimension_names=(dimension,),
+            attributes=coordinate_attributes(sweep, name),
+            config={"write_empty_chunks": True},
+            compressors=checked,
+        )
+        coordinate[...] = values
+    for name, kind in {"status": STATUS, **SWEPT}.items():
+        group.create_array(
+            name,
+            shape=grid.shape,
+            chunks=sweep.chunk,
+            dtype=kind.dtype,
+            fill_value=Status.PENDING if name == "status" else kind.missing,
+            dimension_names=grid.dimensions,
+            attributes=kind.attributes | _coordinates(sweep),
+            compressors=checked,
+        )
+    with warnings.catch_warnings():
+        # Zarr warns that readers other than Python's may pass over this; they then read every array's own.
+        warnings.simplefilter("ignore")
+        zarr.consolidate_metadata(path)
+    metadata = json.loads((path / METADATA).read_text(encoding="utf-8"))
+    metadata["attributes"][DIGEST] = _digest(metadata)
+    (path / METADATA).write_text(json.dumps(metadata, indent=2), encoding="utf-8")
+
+
+def layout_attributes(sweep: Sweep) -> dict[str, Any]:
+    """The attributes of a sweep's dataset."""
+    return {
+        "Conventions": CONVENTIONS,
+        "title": "What becomes of many launches of a spinning top",
+        "format": FORMAT,
+        "sweep": json.dumps(sweep.describe()),
+        "problem": sweep.problem.to_json(),
+        "duration": sweep.duration,
+        "tolerance": sweep.tolerance,
+        "tippetop_version": __version__,
+    }
+
+
+def coordinate_attributes(sweep: Sweep, name: str) -> dict[str, Any]:
+    """The attributes of a coordinate by the CF conventions."""
+    kind = Quantity("1", "number of the draw") if name == "draw" else sweep.problem.quantity(name)
+    return {"long_name": kind.long_name} | ({"units": kind.units} if kind.units else {})
+
+
+def _coordinates(sweep: Sweep) -> dict[str, str]:
+    """Coordinates that are not dimensions are named by the CF attribute."""
+    others = [name for name, (dimension, _) in sweep.grid.coordinates().items() if name != dimension]
+    return {"coordinates": " ".join(others)} if others else {}
+
+
+def _digest(metadata: dict[str, Any]) -> str:
+    attributes = {name: value for name, value in metadata["attributes"].items() if name != DIGEST}
+    text = json.dumps({**metadata, "attributes": attributes}, sort_keys=True)
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def read_metadata(path: Path) -> dict[str, Any]:
+    """The metadata of a store that this version can read.
+
+    Raises
+    ------
+    FileTrouble
+        If there is no store, or it is of another layout, or damaged.
+    """
+    try:
+        data = (path / METADATA).read_bytes()
+    except OSError as error:
+        raise FileTrouble(f"{path} cannot be read: {error.strerror}; there is no sweep in it") from None
+    try:
+        metadata = json.loads(data)
+        layout, whole = metadata["attributes"]["format"], metadata["attributes"].get(DIGEST)
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
+        raise FileTrouble(f"{path} is not a sweep of this program, or its {METADATA} is damaged") from None
+    if layout != FORMAT:
+        raise FileTrouble(
+            f"{path} is laid out as {short(layout)}, and this version reads {FORMAT!r}; "
+            "start afresh with --force"
+        )
+    if whole != _digest(metadata):
+        raise FileTrouble(
+            f"{path} is damaged: its {METADATA} is not as it was written; start afresh with --force"
+        )
+    return dict(metadata)
+
+
+def kept_sweep(path: Path) -> Sweep:
+    """The sweep that a store holds, to go on with it.
+
+    Raises
+    ------
+    FileTrouble
+        As from `read_metadata`, and if it was made by another version.
+    """
+    attributes = read_metadata(path)["attributes"]
+    version = attributes["tippetop_version"]
+    if version != __version__:
+        raise FileTrouble(
+            f"{path} was made by version {version} of tippetop, and this is {__version__}, whose results may "
+            "differ; finish it with that version, or start afresh with --force"
+        )
+    return Sweep(**json.loads(attributes["sweep"]))
+
+
+def may_be_replaced(path: Path) -> bool:
+    """Whether a folder is empty or holds a sweep, of whatever version."""
+    if not path.is_dir() or not any(path.iterdir()):
+        return path.is_dir()
+    try:
+        layout = json.loads((path / METADATA).read_text(encoding="utf-8"))["attributes"]["format"]
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
+        return False
+    return str(layout).startswith(FORMAT.rstrip("0123456789"))
+
+
+def first_difference(one: Any, other: Any, name: str = "") -> tuple[str, Any, Any] | None:
+    """The name of the first field in which two descriptions differ, and what is there."""
+    if isinstance(one, dict) and isinstance(other, dict):
+        if set(one) == set(other) and list(one) != list(other):
+            return name, list(one), list(other)
+        for key in [*one, *(key for key in other if key not in one)]:
+            inner = f"{name}.{key}" if name else str(key)
+            found = first_difference(one.get(key), other.get(key), inner)
+            if found is not None:
+                return found
+        return None
+    if isinstance(one, list) and isinstance(other, list) and len(one) == len(other):
+        return first_difference(dict(enumerate(one)), dict(enumerate(other)), name)
+    return None if one == other else (name, one, other)

@@ -1,0 +1,174 @@
+"""Work in processes beside this one: what they do, what they survive, and what they leave alone."""
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import psutil
+import pytest
+
+from tippetop.errors import InvalidInput, Unavailable
+from tippetop.processes import RESTARTS, Job, Worker, shared
+
+
+def jobs(*calls: tuple[Any, ...]) -> Callable[[], Job | None]:
+    waiting = (Job(k, call, arguments) for k, (call, *arguments) in enumerate(calls))
+    return lambda: next(waiting, None)
+
+
+@pytest.fixture(scope="module")
+def worker() -> Iterator[Worker]:
+    worker = Worker()
+    yield worker
+    worker.close()
+
+
+class Odd(Exception):
+    """An error that can be sent, but not be read."""
+
+    def __init__(self, one: int, other: int) -> None:
+        super().__init__("odd")
+
+
+def be_odd() -> None:
+    raise Odd(1, 2)
+
+
+def refuse() -> None:
+    raise InvalidInput("spin", -1, "more")
+
+
+def die_once(path: str) -> str:
+    """End the first process that does this."""
+    if not Path(path).exists():
+        Path(path).touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+    return "done"
+
+
+@pytest.mark.parametrize("count", [1, 2, 3])
+def test_results_come_with_the_names_of_their_jobs(count: int) -> None:
+    found = dict(shared(jobs(*((pow, 2, k) for k in range(7))), count))
+    assert found == {k: 2**k for k in range(7)}
+
+
+def test_what_is_larger_than_a_pipe_goes_through() -> None:
+    block = bytes(10**7)
+    found = dict(shared(jobs(*((bytes, block) for _ in range(5))), 2))
+    assert set(found.values()) == {block}
+
+
+def test_a_job_may_wait_for_the_result_of_another() -> None:
+    waiting, found = [Job("second", abs, (-2,)), Job("first", abs, (-1,))], []
+
+    def next_job() -> Job | None:
+        return waiting.pop() if len(waiting) == 2 or (waiting and found) else None
+
+    for name, result in shared(next_job, 2):
+        found.append((name, result))
+    assert found == [("first", 1), ("second", 2)]
+
+
+def test_a_job_whose_process_is_killed_is_done_again(tmp_path: Path) -> None:
+    found = dict(shared(jobs((abs, -1), (die_once, str(tmp_path / "tried")), (abs, -2)), 2))
+    assert found == {0: 1, 1: "done", 2: 2}
+
+
+def test_a_job_that_kills_every_process_is_given_up() -> None:
+    with pytest.raises(
+        Unavailable, match=f"killed {RESTARTS + 1} times during 1, perhaps for want of memory"
+    ):
+        list(shared(jobs((abs, -1), (os._exit, 1)), 2))
+
+
+@pytest.mark.parametrize(
+    ("call", "kind", "match"),
+    [(refuse, InvalidInput, "spin = -1"), (be_odd, RuntimeError, "Odd"), (divmod, TypeError, "divmod")],
+)
+def test_what_a_job_raises_is_raised_here(
+    worker: Worker, call: Callable[[], Any], kind: type[Exception], match: str
+) -> None:
+    before = worker._process.pid
+    with pytest.raises(kind, match=match):
+        list(worker.results(call, patience=60))
+    assert list(worker.results(len, "abc", patience=60)) == [3]
+    assert worker._process.pid == before, "which goes on"
+
+
+def test_an_error_that_is_none_of_ours_says_where_it_was_raised(worker: Worker) -> None:
+    with pytest.raises(TypeError) as raised:
+        list(worker.results(sorted, 3, patience=60))
+    assert any("in _work" in note for note in raised.value.__notes__)
+
+
+def test_processes_have_one_thread_each_and_do_not_hear_ctrl_c(worker: Worker) -> None:
+    assert list(worker.results(os.getenv, "OMP_NUM_THREADS", patience=60)) == ["1"]
+    assert list(worker.results(signal.getsignal, signal.SIGINT, patience=60)) == [signal.SIG_IGN]
+    pid = worker._process.pid
+    assert pid is not None
+    os.kill(pid, signal.SIGINT)
+    assert list(worker.results(abs, -3, patience=60)) == [3]
+
+
+def test_a_job_that_takes_too_long_costs_its_process(worker: Worker) -> None:
+    before = worker._process.pid
+    began = time.monotonic()
+    with pytest.raises(TimeoutError):
+        list(worker.results(time.sleep, 60, patience=0.1))
+    assert time.monotonic() - began < 5
+    assert worker._process.pid != before
+    assert list(worker.results(abs, -3, patience=60)) == [3]
+
+
+def test_processes_are_gone_when_they_are_no_longer_asked_for() -> None:
+    before = set(psutil.Process().children())
+    results = shared(jobs(*((abs, -k) for k in range(9))), 2)
+    next(results)
+    started = set(psutil.Process().children()) - before
+    started = {child for child in started if "resource_tracker" not in " ".join(child.cmdline())}
+    assert len(started) == 2
+    results.close()
+    assert psutil.wait_procs(started, timeout=10)[1] == []
+
+
+INTERRUPTED = """
+import time
+from tippetop.processes import Job, shared
+waiting = (Job(k, time.sleep, (0.2,)) for k in range(10**6))
+print("begun", flush=True)
+try:
+    for _ in shared(lambda: next(waiting, None), 2):
+        pass
+except KeyboardInterrupt:
+    print("interrupted", flush=True)
+"""
+
+
+@pytest.mark.parametrize("wait", [0.01, 0.1, 0.2, 1.0])
+def test_ctrl_c_ends_all_of_it_without_a_traceback(wait: float) -> None:
+    """Whenever it is pressed: processes that start just then hear it no more than others."""
+    command = [sys.executable, "-c", INTERRUPTED]
+    process = subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True
+    )
+    assert process.stdout is not None
+    assert process.stdout.readline() == "begun\n"
+    time.sleep(wait)
+    os.killpg(process.pid, signal.SIGINT)
+    assert process.communicate(timeout=20) == ("interrupted\n", "")
+
+
+def test_a_closed_worker_is_not_started_again() -> None:
+    worker = Worker()
+    closing = threading.Timer(0.5, worker.close)
+    closing.start()
+    with pytest.raises(Unavailable, match="has ended"):
+        list(worker.results(time.sleep, 60, patience=60))
+    closing.join()
+    assert not worker._process.is_alive()
