@@ -19,8 +19,8 @@ import psutil
 
 from benchmarks.surroundings import COMMAND_LINE, PROCESSORS, markdown, memory_of, rounded
 from tippetop.presets import report_problem
-from tippetop.sweep import Axis, Product, Sweep
-from tippetop.sweep.ensemble import follow_cells
+from tippetop.sweeps import Axis, Product, Sweep
+from tippetop.sweeps.ensemble import follow_cells
 
 DURATION = 20.0
 QUICK_SIDES, SIDES, WHOLE = (30, 60), (30, 100, 300), 1000

@@ -24,9 +24,9 @@ from tippetop.mechanics.motion import contact, sliding_rates
 from tippetop.mechanics.state import SlidingState
 from tippetop.presets import report_problem
 from tippetop.problem import Problem
-from tippetop.sweep import Axis, Product, Sweep, stepper
-from tippetop.sweep.cells import cells_of
-from tippetop.sweep.ensemble import follow_cells
+from tippetop.sweeps import Axis, Product, Sweep, stepper
+from tippetop.sweeps.cells import cells_of
+from tippetop.sweeps.ensemble import follow_cells
 
 Array = NDArray[np.float64]
 Method = Callable[[Array, float], Array]

@@ -16,7 +16,7 @@ MODULES = {
     for path in SOURCE.rglob("*.py")
 }
 
-KNOWN_CIRCLES = [{"tippetop.sweep.compiled", "tippetop.sweep.stepper"}]
+KNOWN_CIRCLES = [{"tippetop.sweeps.compiled", "tippetop.sweeps.stepper"}]
 KNOWN_NAMESAKES = {
     "Contact",
     "Course",

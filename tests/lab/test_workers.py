@@ -1,4 +1,5 @@
 import asyncio
+import math
 import subprocess
 import sys
 import tempfile

@@ -7,7 +7,7 @@ import pytest
 
 from tippetop.mechanics.algebra import Series as FlightSeries
 from tippetop.mechanics.series import Series, horner, solution
-from tippetop.sweep.stepper import NumPyArithmetic
+from tippetop.sweeps.stepper import NumPyArithmetic
 
 PLAIN = NumPyArithmetic()
 DEGREE = 12

@@ -4,7 +4,7 @@ import numpy as np
 
 from tippetop.presets import report_problem
 from tippetop.run import simulate
-from tippetop.sweep import Axis, Product, Sweep
+from tippetop.sweeps import Axis, Product, Sweep
 
 FIELDS = ("final_theta", "final_omega3", "energy_lost", "airborne_time", "first_lift_off", "end_time")
 

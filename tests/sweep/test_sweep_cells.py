@@ -12,7 +12,7 @@ from tippetop.catalogue import Fault
 from tippetop.errors import InvalidInput
 from tippetop.mechanics.top import natural_state, natural_units
 from tippetop.presets import report_problem
-from tippetop.sweep.cells import cells_of, numeric_fields
+from tippetop.sweeps.cells import cells_of, numeric_fields
 
 EDGES = {
     "launch.tilt": [-0.1, 0.0, 1.0, math.pi, 3.2, math.nan],

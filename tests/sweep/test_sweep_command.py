@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 from tippetop.cli.sweep import sweep as command
 from tippetop.errors import FileTrouble, InvalidInput
 from tippetop.presets import report_problem
-from tippetop.sweep import Store
+from tippetop.sweeps import Store
 
 AXES = ["--axis", "launch.spin=50:200:3", "--axis", "friction.mu=0.1:1:2:geo"]
 SHORT = ["--tilt", "1.0", "--duration", "0.1", "--workers", "1"]

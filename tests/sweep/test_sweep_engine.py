@@ -16,7 +16,7 @@ from tippetop.integrators import has_taylor
 from tippetop.presets import report_problem
 from tippetop.problem import Body, Problem, RegularizedCoulombFriction, Spheroid
 from tippetop.summary import summarize
-from tippetop.sweep import (
+from tippetop.sweeps import (
     SWEPT,
     Axis,
     Ending,
@@ -29,11 +29,11 @@ from tippetop.sweep import (
     flights,
     lanes,
 )
-from tippetop.sweep import stride as striding
-from tippetop.sweep.cells import cells_of
-from tippetop.sweep.ensemble import follow_cells
-from tippetop.sweep.stepper import NumPyStepper, stepper
-from tippetop.sweep.stride import Layout, order_for
+from tippetop.sweeps import stride as striding
+from tippetop.sweeps.cells import cells_of
+from tippetop.sweeps.ensemble import follow_cells
+from tippetop.sweeps.stepper import NumPyStepper, stepper
+from tippetop.sweeps.stride import Layout, order_for
 
 EGG = Body(mass=0.05, shape=Spheroid(across=0.02, along=0.03), I1=9e-6, I3=5e-6)
 
@@ -267,7 +267,7 @@ sys.modules["heyoka"] = None
 import numpy as np
 sys.path.insert(0, {folder!r})
 from sweeps import thrown
-from tippetop.sweep.ensemble import follow_cells
+from tippetop.sweeps.ensemble import follow_cells
 found = follow_cells(thrown(), np.arange(4))
 np.savez({out!r}, **found)
 """

@@ -18,7 +18,7 @@ from sweeps import lively
 
 from tippetop.errors import FileTrouble
 from tippetop.presets import report_problem
-from tippetop.sweep import (
+from tippetop.sweeps import (
     VARIABLES,
     Draws,
     Range,
@@ -189,7 +189,7 @@ SLOW = """
 import sys, time
 sys.path.insert(0, {folder!r})
 from test_sweep_faults import quick, definition
-from tippetop.sweep import Store, fill
+from tippetop.sweeps import Store, fill
 definition.LEAST_CELLS_A_TASK, definition.TASKS = 4, 1000
 store = Store.create({path!r}, quick())
 print("filling", flush=True)
@@ -264,7 +264,7 @@ KILLED = """
 import os, signal, sys
 sys.path.insert(0, {folder!r})
 from test_sweep_faults import quick
-from tippetop.sweep import Store, store
+from tippetop.sweeps import Store, store
 store.bring_to_disk = lambda paths: os.kill(os.getpid(), signal.SIGKILL)
 Store.create({path!r}, quick())
 """

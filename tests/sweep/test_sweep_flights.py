@@ -16,9 +16,9 @@ from tippetop.mechanics.motion import contact, on_table
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import natural_state, natural_units
 from tippetop.mechanics.touchdown import Start, touchdown
-from tippetop.sweep.flights import collide, fly_all
-from tippetop.sweep.flights import slides as goes_on
-from tippetop.sweep.watch import Watch
+from tippetop.sweeps.flights import collide, fly_all
+from tippetop.sweeps.flights import slides as goes_on
+from tippetop.sweeps.watch import Watch
 
 VISCOUS = tops(friction_laws=(ViscousLaw,))
 

@@ -15,8 +15,8 @@ from tippetop.problem import (
     Spheroid,
     ViscousFriction,
 )
-from tippetop.sweep import Axis, Draws, Product, Range, Sweep, compute, sweep
-from tippetop.sweep.cells import numeric_fields
+from tippetop.sweeps import Axis, Draws, Product, Range, Sweep, compute, sweep
+from tippetop.sweeps.cells import numeric_fields
 
 OVER = {"launch.spin": np.linspace(50, 200, 3), "friction.mu": [0.1, 0.3]}
 

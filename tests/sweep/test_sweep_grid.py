@@ -9,8 +9,8 @@ import pytest
 
 from tippetop.errors import FileTrouble, InvalidInput
 from tippetop.presets import report_problem
-from tippetop.sweep import Axis, Draws, Product, Range, Sweep
-from tippetop.sweep.definition import is_sweep
+from tippetop.sweeps import Axis, Draws, Product, Range, Sweep
+from tippetop.sweeps.definition import is_sweep
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from sweeps import lively
 from tippetop.figures.maps import MAPPED, phase_map
 from tippetop.figures.style import save
 from tippetop.presets import report_problem
-from tippetop.sweep import SWEPT, Axis, Draws, Ending, Product, Range, Sweep, compute
+from tippetop.sweeps import SWEPT, Axis, Draws, Ending, Product, Range, Sweep, compute
 
 
 @pytest.fixture(scope="module")

@@ -15,8 +15,8 @@ import pytest
 from sweeps import lively, same
 
 from tippetop.errors import InvalidInput, Unavailable
-from tippetop.sweep import VARIABLES, Store, compute, definition, fill, read_sweep
-from tippetop.sweep import tasks as scheduling
+from tippetop.sweeps import VARIABLES, Store, compute, definition, fill, read_sweep
+from tippetop.sweeps import tasks as scheduling
 
 
 def arrays(dataset):
@@ -69,7 +69,7 @@ def test_no_process_outlives_its_use(small_tasks):
 
 UNGUARDED = """
 from tippetop.presets import report_problem
-from tippetop.sweep import Axis, Product, Sweep, compute
+from tippetop.sweeps import Axis, Product, Sweep, compute
 print("once")
 axis = Axis.linear("launch.spin", 10, 100, 600)
 print(compute(Sweep(report_problem(), Product((axis,)), 0.01), workers=2).sizes["launch.spin"])
@@ -164,7 +164,7 @@ import sys, time
 sys.path[:0] = {paths!r}
 from sweeps import lively
 from tippetop.errors import Unavailable
-from tippetop.sweep import definition, run_sweep, tasks
+from tippetop.sweeps import definition, run_sweep, tasks
 definition.LEAST_CELLS_A_TASK, definition.TASKS, tasks.LONELY = 4, 1000, 2.0
 import os, signal
 def kill(progress):

@@ -16,7 +16,7 @@ from sweeps import lively, same
 
 from tippetop.errors import FileTrouble, InvalidInput
 from tippetop.presets import report_problem
-from tippetop.sweep import (
+from tippetop.sweeps import (
     VARIABLES,
     Axis,
     Draws,
@@ -253,7 +253,7 @@ import sys
 sys.path.insert(0, {folder!r})
 from test_sweep_store import quick, definition
 definition.LEAST_CELLS_A_TASK, definition.TASKS = 4, 1000
-from tippetop.sweep import Store, fill
+from tippetop.sweeps import Store, fill
 from pathlib import Path
 if __name__ == "__main__":
     path = Path({path!r})

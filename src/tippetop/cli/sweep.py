@@ -31,8 +31,8 @@ from tippetop.files import refuse_overwriting, written_beside
 if TYPE_CHECKING:
     import xarray as xr
 
-    from tippetop.sweep import Draws, Product, Progress, Sweep
-    from tippetop.sweep.run import Watcher
+    from tippetop.sweeps import Draws, Product, Progress, Sweep
+    from tippetop.sweeps.run import Watcher
 
 
 def sweep(
@@ -86,10 +86,10 @@ def sweep(
     force: Force = False,
 ) -> None:
     """See what becomes of many launches: over axes that cross, or draws at random."""
-    from tippetop.sweep import Store, fill  # noqa: PLC0415 - slow to import
-    from tippetop.sweep.disk import in_words  # noqa: PLC0415
-    from tippetop.sweep.layout import kept_sweep  # noqa: PLC0415
-    from tippetop.sweep.tasks import need_workers  # noqa: PLC0415
+    from tippetop.sweeps import Store, fill  # noqa: PLC0415 - slow to import
+    from tippetop.sweeps.disk import in_words  # noqa: PLC0415
+    from tippetop.sweeps.layout import kept_sweep  # noqa: PLC0415
+    from tippetop.sweeps.tasks import need_workers  # noqa: PLC0415
 
     if resume and force:
         raise InvalidInput("--force", "with --resume", "one of the two")
@@ -134,7 +134,7 @@ def _chosen_sweep(
     limits: dict[str, float | None],
 ) -> "Sweep":
     """The sweep that the file, or the store to be resumed, and the options ask for."""
-    from tippetop.sweep import Sweep  # noqa: PLC0415 - slow to import
+    from tippetop.sweeps import Sweep  # noqa: PLC0415 - slow to import
 
     base = Sweep.read(file) if file is not None and _holds_sweep(file) else kept
     grid = _chosen_grid(*over)
@@ -152,7 +152,7 @@ def _chosen_grid(
     axis: list[str] | None, draw: list[str] | None, count: int | None, seed: int | None
 ) -> "Product | Draws | None":
     """The grid that the options ask for, if they do."""
-    from tippetop.sweep import Draws, Product  # noqa: PLC0415 - slow to import
+    from tippetop.sweeps import Draws, Product  # noqa: PLC0415 - slow to import
 
     if axis and draw:
         raise InvalidInput("--draw", draw[0], "axes or draws, not both")
@@ -198,7 +198,7 @@ def _range(text: str) -> tuple[str, Any]:
 
 def _holds_sweep(file: Path) -> bool:
     """Whether a file is a sweep's rather than a problem's."""
-    from tippetop.sweep.definition import is_sweep  # noqa: PLC0415 - slow to import
+    from tippetop.sweeps.definition import is_sweep  # noqa: PLC0415 - slow to import
 
     try:
         return file.suffix != ".json" and is_sweep(tomllib.loads(file.read_text(encoding="utf-8-sig")))

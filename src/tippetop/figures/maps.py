@@ -19,7 +19,7 @@ from tippetop.figures.style import (
     house_style,
     pi_ticks,
 )
-from tippetop.sweep import Ending
+from tippetop.sweeps import Ending
 
 MAPPED = ("final_theta", "turns_over", "flights")
 """The maps that are drawn of every sweep."""

@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from tippetop.catalogue import Ending
 from tippetop.lab.setup import Setup, first_setup
 from tippetop.problem import Problem
-from tippetop.sweep.axes import Axis, Flat
-from tippetop.sweep.definition import Sweep
-from tippetop.sweep.ensemble import follow_cells
-from tippetop.sweep.grid import Product
+from tippetop.sweeps.axes import Axis, Flat
+from tippetop.sweeps.definition import Sweep
+from tippetop.sweeps.ensemble import follow_cells
+from tippetop.sweeps.grid import Product
 
 STRIDES = (4, 2, 1)
 """Every fourth row and column comes first, then every second, then all."""

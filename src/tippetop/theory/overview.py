@@ -13,7 +13,7 @@ from tippetop.theory.steady import (
     VERTICAL_SPINS,
     SteadyState,
     jellett_of_launch,
-    steady_states,
+    steady_states as all_steady_states,
     vertical_spin,
 )
 from tippetop.theory.thresholds import CriticalSpins, critical_spins, lambda_down, lambda_up
@@ -90,11 +90,6 @@ def outlook(problem: Problem) -> Outlook:
     top = problem.top
     jellett = jellett_of_launch(problem)
     sphere = top.conserves_jellett
-    states = (
-        steady_states(top, jellett)
-        if sphere
-        else [vertical_spin(kind, top, problem.launch.spin) for kind in VERTICAL_SPINS]
-    )
     stays, mu = steady_launch(problem), problem.friction.mu
     limit = _flip_time_limit(problem) if sphere and stays is None else None
     return Outlook(
@@ -109,10 +104,25 @@ def outlook(problem: Problem) -> Outlook:
         stays=None if stays is None else Judged(stays, spectrum(stays, top)),
         swings=_swings(problem) if top.surface.spherical and mu == 0.0 else None,
         prediction=predict(problem) if sphere and mu > 0.0 else None,
-        steady=tuple(Judged(state, spectrum(state, top)) for state in states),
+        steady=tuple(Judged(state, spectrum(state, top)) for state in steady_states(problem)),
         mu_flip_time=limit,
         flip_time=limit / mu if limit is not None else None,
     )
+
+
+def steady_states(problem: Problem) -> list[SteadyState]:
+    """Steady states that a launch might end in, by increasing tilt.
+
+    All that have its Jellett's integral; where that is not conserved, the two vertical spins at its axial spin.
+
+    Raises
+    ------
+    InvalidInput
+        If it turns so fast that the theory cannot tell.
+    """
+    if problem.top.conserves_jellett:
+        return all_steady_states(problem.top, jellett_of_launch(problem))
+    return [vertical_spin(kind, problem.top, problem.launch.spin) for kind in VERTICAL_SPINS]
 
 
 def _swings(problem: Problem) -> tuple[float, float]:

@@ -14,7 +14,7 @@ from tippetop.report.experiment import Experiment, variable
 from tippetop.report.listing import CONTROLS, listing_run
 from tippetop.report.readings import crossings, first_below_zero, flip_time, longest_quiet
 from tippetop.run import simulate
-from tippetop.sweep import Axis, Ending, Product, Sweep, compute
+from tippetop.sweeps import Axis, Ending, Product, Sweep, compute
 
 WINDOW = 20.0
 """Length of the report's runs, s (its listing, line 13)."""

@@ -13,10 +13,10 @@ from pathlib import Path
 from typing import Any
 
 from tippetop import __version__
+from tippetop.catalogue import SWEPT, Variable, meanings
 from tippetop.dataset import CONVENTIONS
 from tippetop.errors import FileTrouble, short
-from tippetop.sweep.definition import Sweep
-from tippetop.catalogue import SWEPT, Variable, meanings
+from tippetop.sweeps.definition import Sweep
 from tippetop.validation import Quantity
 
 FORMAT = "tippetop sweep 2"

@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 from tippetop import __version__
 from tippetop.errors import InvalidInput, Unavailable
 from tippetop.processes import RESTARTS, Job, shared
-from tippetop.sweep.definition import Sweep
-from tippetop.sweep.ensemble import follow_cells
+from tippetop.sweeps.definition import Sweep
+from tippetop.sweeps.ensemble import follow_cells
 
 Task: TypeAlias = tuple[int, ...]
 Found: TypeAlias = dict[str, NDArray[Any]]

@@ -12,8 +12,8 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from tippetop.errors import MISSING, FileTrouble, InvalidInput
 from tippetop.problem import Positive, Problem
-from tippetop.sweep.cells import cells_of
-from tippetop.sweep.grid import Draws, Product
+from tippetop.sweeps.cells import cells_of
+from tippetop.sweeps.grid import Draws, Product
 from tippetop.theory.steady import require_jellett
 from tippetop.validation import Number, Part
 

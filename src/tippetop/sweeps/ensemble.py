@@ -9,12 +9,12 @@ from tippetop.integrators.base import Array
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import length
 from tippetop.metrics import ending, final_band, metrics
-from tippetop.sweep.cells import cells_of, spread
-from tippetop.sweep.definition import Sweep
-from tippetop.sweep.grid import Flat
-from tippetop.sweep.lanes import Lanes, arrivals
-from tippetop.sweep.launches import Launches
-from tippetop.sweep.stepper import stepper
+from tippetop.sweeps.cells import cells_of, spread
+from tippetop.sweeps.definition import Sweep
+from tippetop.sweeps.grid import Flat
+from tippetop.sweeps.lanes import Lanes, arrivals
+from tippetop.sweeps.launches import Launches
+from tippetop.sweeps.stepper import stepper
 
 LANES_AT_ONCE = 2048
 """Launches that are followed together: enough to make little of Python's part, few enough for the cache."""

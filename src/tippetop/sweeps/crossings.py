@@ -19,9 +19,9 @@ from tippetop.mechanics.flight import gap, gap_rate
 from tippetop.mechanics.state import State
 from tippetop.mechanics.touchdown import Start
 from tippetop.metrics import Tally
-from tippetop.sweep.flights import collide, fly_all, slides
-from tippetop.sweep.launches import Indices, picked, single
-from tippetop.sweep.slots import Slots
+from tippetop.sweeps.flights import collide, fly_all, slides
+from tippetop.sweeps.launches import Indices, picked, single
+from tippetop.sweeps.slots import Slots
 
 LEAST_SCIPY = 1e-12
 """Least tolerance of the integrator of single launches where heyoka is not installed."""

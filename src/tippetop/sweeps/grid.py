@@ -14,8 +14,8 @@ from pydantic import BeforeValidator, Field, field_serializer, model_serializer,
 
 from tippetop.errors import InvalidInput
 from tippetop.integrators.base import Array
-from tippetop.sweep.axes import MOST_CELLS, Axis, Count, Entry
-from tippetop.sweep.axes import Flat as Flat
+from tippetop.sweeps.axes import MOST_CELLS, Axis, Count, Entry
+from tippetop.sweeps.axes import Flat as Flat
 from tippetop.validation import Number, Whole
 
 _Kind = TypeVar("_Kind")

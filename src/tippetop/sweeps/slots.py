@@ -10,9 +10,9 @@ from tippetop.integrators.polynomials import Polynomials
 from tippetop.mechanics.motion import along_table, on_table
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.metrics import OUTCOMES, Ends
-from tippetop.sweep.launches import Flags, Indices, Launches
-from tippetop.sweep.stride import LANES, Layout, Stepper
-from tippetop.sweep.watch import Watch
+from tippetop.sweeps.launches import Flags, Indices, Launches
+from tippetop.sweeps.stride import LANES, Layout, Stepper
+from tippetop.sweeps.watch import Watch
 
 
 @dataclass

@@ -2,7 +2,7 @@
 
 A lane waits before a step in which something may happen: a guard may fall through zero, the top may turn
 over, a band of tilts may be reached. Every few steps the lanes that wait are looked at together, exactly, and
-go on: after that step if nothing came of it, else where `tippetop.sweep.crossings` leads. Lanes at their end
+go on: after that step if nothing came of it, else where `tippetop.sweeps.crossings` leads. Lanes at their end
 are taken out.
 """
 
@@ -12,10 +12,10 @@ from tippetop.contact.mode import Outcome
 from tippetop.integrators.base import Array
 from tippetop.integrators.polynomials import Polynomials
 from tippetop.metrics import Ends
-from tippetop.sweep.crossings import Crossings
-from tippetop.sweep.launches import Flags, Launches, Note, picked
-from tippetop.sweep.slots import Slots
-from tippetop.sweep.stride import LANES, Stepper
+from tippetop.sweeps.crossings import Crossings
+from tippetop.sweeps.launches import Flags, Launches, Note, picked
+from tippetop.sweeps.slots import Slots
+from tippetop.sweeps.stride import LANES, Stepper
 from tippetop.theory.prediction import is_held
 
 WAVE = 8

@@ -10,7 +10,7 @@ import numpy as np
 from tippetop.integrators import has_taylor
 from tippetop.integrators.base import Array, Motion
 from tippetop.interrupts import deferred
-from tippetop.sweep.stride import Jet, Layout, Stepper, motion_series, order_for, stride
+from tippetop.sweeps.stride import Jet, Layout, Stepper, motion_series, order_for, stride
 
 
 class NumPyArithmetic:
@@ -75,6 +75,6 @@ def stepper(motion: Motion, tolerance: float) -> Stepper:
         return NumPyStepper(motion, order)
     # An interrupted import of heyoka leaves it in pieces.
     with deferred():
-        from tippetop.sweep.compiled import CompiledStepper  # noqa: PLC0415 - optional, and slow to import
+        from tippetop.sweeps.compiled import CompiledStepper  # noqa: PLC0415 - optional, and slow to import
 
     return CompiledStepper(motion, order)

@@ -22,9 +22,9 @@ from tippetop.catalogue import SWEPT
 from tippetop.errors import FileTrouble, Unavailable, short
 from tippetop.files import refuse_overwriting
 from tippetop.interrupts import deferred
-from tippetop.sweep.definition import Sweep
-from tippetop.sweep.disk import bring_to_disk, clear_away, identity, in_words, locked
-from tippetop.sweep.layout import (
+from tippetop.sweeps.definition import Sweep
+from tippetop.sweeps.disk import bring_to_disk, clear_away, identity, in_words, locked
+from tippetop.sweeps.layout import (
     DIGEST,
     METADATA,
     Status,

@@ -32,10 +32,10 @@ from tippetop.mechanics.surface import contact_vector
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.touchdown import Tip
 from tippetop.mechanics.vectors import length, scale
-from tippetop.sweep.launches import Flags, Indices, picked
-from tippetop.sweep.stepper import NumPyArithmetic
-from tippetop.sweep.stride import step_size
-from tippetop.sweep.watch import Watch
+from tippetop.sweeps.launches import Flags, Indices, picked
+from tippetop.sweeps.stepper import NumPyArithmetic
+from tippetop.sweeps.stride import step_size
+from tippetop.sweeps.watch import Watch
 
 PLAIN = NumPyArithmetic()
 

@@ -11,11 +11,11 @@ import xarray as xr
 
 from tippetop.catalogue import SWEPT
 from tippetop.problem import Problem
-from tippetop.sweep.definition import DEFAULT_TOLERANCE, Sweep
-from tippetop.sweep.grid import Draws, Product
-from tippetop.sweep.layout import STATUS, Status, coordinate_attributes, layout_attributes
-from tippetop.sweep.store import Store
-from tippetop.sweep.tasks import need_workers, results
+from tippetop.sweeps.definition import DEFAULT_TOLERANCE, Sweep
+from tippetop.sweeps.grid import Draws, Product
+from tippetop.sweeps.layout import STATUS, Status, coordinate_attributes, layout_attributes
+from tippetop.sweeps.store import Store
+from tippetop.sweeps.tasks import need_workers, results
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ import numpy as np
 from tippetop.integrators.base import Array
 from tippetop.integrators.polynomials import Polynomials
 from tippetop.metrics import arrival_time, turning_time
-from tippetop.sweep.launches import Indices
+from tippetop.sweeps.launches import Indices
 
 
 @dataclass

@@ -20,7 +20,7 @@ from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top, natural_state, natural_units
 from tippetop.mechanics.units import Units
 from tippetop.problem import Problem
-from tippetop.sweep.launches import Launches
+from tippetop.sweeps.launches import Launches
 from tippetop.validation import Part
 
 PartType = TypeVar("PartType", bound=Part)

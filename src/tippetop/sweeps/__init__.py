@@ -5,12 +5,12 @@
 """
 
 from tippetop.catalogue import SWEPT, Ending, Fault
-from tippetop.sweep.axes import Axis
-from tippetop.sweep.definition import Sweep
-from tippetop.sweep.grid import Draws, Product, Range
-from tippetop.sweep.layout import Status
-from tippetop.sweep.run import Progress, compute, fill, run_sweep, sweep
-from tippetop.sweep.store import Store, read_sweep
+from tippetop.sweeps.axes import Axis
+from tippetop.sweeps.definition import Sweep
+from tippetop.sweeps.grid import Draws, Product, Range
+from tippetop.sweeps.layout import Status
+from tippetop.sweeps.run import Progress, compute, fill, run_sweep, sweep
+from tippetop.sweeps.store import Store, read_sweep
 
 __all__ = [
     "SWEPT",

@@ -8,7 +8,7 @@ import numpy as np
 
 from tippetop.integrators.base import Array, Motion
 from tippetop.integrators.compile_cache import use_compile_cache
-from tippetop.sweep.stride import LANES, Jet, Layout, motion_series, stride
+from tippetop.sweeps.stride import LANES, Jet, Layout, motion_series, stride
 
 
 class ExpressionArithmetic:
@@ -36,7 +36,7 @@ class ExpressionArithmetic:
 
 
 class CompiledStepper:
-    """Taylor's method as a pair of compiled functions; see `tippetop.sweep.stride.Stepper`."""
+    """Taylor's method as a pair of compiled functions; see `tippetop.sweeps.stride.Stepper`."""
 
     def __init__(self, motion: Motion, order: int) -> None:
         use_compile_cache()
