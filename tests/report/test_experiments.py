@@ -7,10 +7,10 @@ import pytest
 import xarray as xr
 
 from tippetop.presets import report_problem
-from tippetop.report.claim import Judgement, Verdict
-from tippetop.report.claims import CLAIMS
-from tippetop.report.experiments import EXPERIMENTS
+from tippetop.report.claim import Verdict
+from tippetop.report.claims.registry import CLAIMS
 from tippetop.report.experiments.methods import evaluations
+from tippetop.report.experiments.registry import EXPERIMENTS
 
 
 @pytest.fixture(scope="module")
@@ -20,8 +20,7 @@ def computed() -> dict[str, xr.Dataset]:
 
 
 def verdict(computed: dict[str, xr.Dataset], name: str) -> Verdict:
-    claim = CLAIMS[name]
-    return Judgement(claim, claim.examine({need: computed[need] for need in claim.needs}), True).verdict
+    return CLAIMS[name].judge(computed, quick=True).verdict
 
 
 def test_torque_of_2_7_has_the_wrong_sign(computed: dict[str, xr.Dataset]) -> None:

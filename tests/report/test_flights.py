@@ -8,10 +8,10 @@ import xarray as xr
 
 from tippetop.presets import report_problem
 from tippetop.report.claim import Judgement, Verdict
-from tippetop.report.claims import CLAIMS
+from tippetop.report.claims.registry import CLAIMS
 from tippetop.report.experiment import variable
-from tippetop.report.experiments import EXPERIMENTS
 from tippetop.report.experiments.flights import first_onset, followed, leaves_at
+from tippetop.report.experiments.registry import EXPERIMENTS
 from tippetop.report.experiments.runs import FLIGHT_READINGS, comparison
 from tippetop.report.gallery import PLATES
 from tippetop.simulate import simulate
@@ -50,8 +50,7 @@ def onset_data(name: str, least: float) -> xr.Dataset:
 
 
 def judge(data: dict[str, xr.Dataset], name: str) -> Judgement:
-    claim = CLAIMS[name]
-    return Judgement(claim, claim.examine({need: data[need] for need in claim.needs}), True)
+    return CLAIMS[name].judge(data, quick=True)
 
 
 def test_onset_is_where_the_first_scanned_spin_that_lifts_says() -> None:

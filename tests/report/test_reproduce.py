@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 from tippetop.cli.reproduce import reproduce as command
 from tippetop.dataset import read_run
 from tippetop.errors import FileTrouble, InvalidInput
-from tippetop.report.claims import CLAIMS
+from tippetop.report.claims.registry import CLAIMS
 from tippetop.report.gallery import PLATES
 from tippetop.report.reproduce import reproduce
 

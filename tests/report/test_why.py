@@ -7,10 +7,10 @@ import pytest
 import xarray as xr
 
 from tippetop.presets import REPORT
-from tippetop.report.claim import Judgement, Verdict
-from tippetop.report.claims import CLAIMS
+from tippetop.report.claim import Verdict
+from tippetop.report.claims.registry import CLAIMS
 from tippetop.report.experiment import variable
-from tippetop.report.experiments import EXPERIMENTS
+from tippetop.report.experiments.registry import EXPERIMENTS
 from tippetop.report.gallery import PLATES
 from tippetop.report.gallery_why import PLATES as WHY
 from tippetop.report.page import render
@@ -139,7 +139,7 @@ def test_nutation_stays_between_its_turning_points(computed: dict[str, xr.Datase
 )
 def test_verdicts(computed: dict[str, xr.Dataset], name: str, verdict: Verdict) -> None:
     claim = CLAIMS[name]
-    found = Judgement(claim, claim.examine({need: computed[need] for need in claim.needs}), True)
+    found = claim.judge(computed, quick=True)
     assert found.verdict is verdict
     assert claim.figure in PLATES
     assert "nan" not in found.finding.note
@@ -148,11 +148,9 @@ def test_verdicts(computed: dict[str, xr.Dataset], name: str, verdict: Verdict) 
 def test_claims_follow_the_data(computed: dict[str, xr.Dataset]) -> None:
     states = computed["why-bifurcation"].copy()
     states["run_end"] = states["run_end"] + 0.02
-    claim = CLAIMS["why-final-tilt"]
-    assert Judgement(claim, claim.examine({"why-bifurcation": states}), True).verdict is Verdict.CORRECTED
-    regimes = CLAIMS["why-regimes"]
-    given = {"why-bifurcation": states, "why-groups": computed["why-groups"]}
-    assert Judgement(regimes, regimes.examine(given), True).verdict is Verdict.CORRECTED
+    spoilt = computed | {"why-bifurcation": states}
+    for name in ("why-final-tilt", "why-regimes"):
+        assert CLAIMS[name].judge(spoilt, quick=True).verdict is Verdict.CORRECTED
 
 
 @pytest.mark.parametrize("plate", WHY, ids=lambda plate: plate.id)

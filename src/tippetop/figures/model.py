@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
-from tippetop.figures import drawing as draw
+import tippetop.figures.drawing as draw
 from tippetop.figures.drawing import Array
 from tippetop.figures.style import ACCENT, CONVERGED, INK, MUTED, TABLE, house_style
 from tippetop.figures.toy import FACE, STEM_END
@@ -15,6 +15,7 @@ from tippetop.figures.toy import FACE, STEM_END
 _AXIS = 1.62
 
 
+@house_style()
 def model_drawing(eccentricity: float = 0.3, tilt: float = np.radians(50.0)) -> Figure:
     """Return the model seen from the side: an eccentric sphere on the table.
 
@@ -24,13 +25,12 @@ def model_drawing(eccentricity: float = 0.3, tilt: float = np.radians(50.0)) -> 
     """
     if not 0 < eccentricity < 1 or not 0 < tilt < np.pi / 2:
         raise ValueError(f"no drawing for eccentricity {eccentricity} and tilt {tilt} rad")
-    with house_style():
-        figure, axes = draw.canvas((-2.0, 2.15), (-0.7, max(2.5, 1.25 + _AXIS * np.cos(tilt))))
-        points = _Model(eccentricity, tilt)
-        _model_body(axes, points)
-        _model_axes(axes, points)
-        _model_vectors(axes, points)
-        _model_measures(axes, points)
+    figure, axes = draw.canvas((-2.0, 2.15), (-0.7, max(2.5, 1.25 + _AXIS * np.cos(tilt))))
+    points = _Model(eccentricity, tilt)
+    _model_body(axes, points)
+    _model_axes(axes, points)
+    _model_vectors(axes, points)
+    _model_measures(axes, points)
     return figure
 
 

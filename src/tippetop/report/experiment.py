@@ -2,10 +2,9 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from importlib.metadata import version
 
 import xarray as xr
-
-from tippetop import __version__
 
 
 @dataclass(frozen=True)
@@ -36,7 +35,7 @@ class Experiment:
             "title": self.title,
             "experiment": self.id,
             "quick": int(quick),
-            "tippetop_version": __version__,
+            "tippetop_version": version("tippetop"),
             "Conventions": "CF-1.11",
             **data.attrs,
         }

@@ -6,19 +6,18 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from tippetop.figures import flights, methods, runs, schematics, sweeps
-from tippetop.report import gallery_why
+from tippetop.figures import flights, methods, runs, sweeps
+from tippetop.figures.euler_angles import euler_angles_drawing
+from tippetop.figures.model import model_drawing
+from tippetop.figures.tippe_top import tippe_top_drawing
 from tippetop.report.experiments.flights import HOPS_WINDOW, MU, TILT
-from tippetop.report.plate import Draw, Plate
+from tippetop.report.gallery_why import PLATES as WHY
+from tippetop.report.plate import Plate
 from tippetop.report.quoted import ABNORMAL_SPIN, CRITICAL_SPINS, ENERGY, ENERGY_TIME, STOP
 
 __all__ = ["PLATES", "Plate"]
 
 _CRITICAL = (float(CRITICAL_SPINS[0]), float(CRITICAL_SPINS[1]))
-
-
-def _drawing(make: Callable[..., Figure]) -> Draw:
-    return lambda _: make()
 
 
 def _run(
@@ -42,7 +41,7 @@ PLATES: dict[str, Plate] = {
             "ball while the toy is upright, and higher when it spins on its stem: the spin pays for the "
             "climb.",
             (),
-            _drawing(schematics.tippe_top_drawing),
+            lambda _: tippe_top_drawing(),
         ),
         Plate(
             "fig02",
@@ -50,7 +49,7 @@ PLATES: dict[str, Plate] = {
             "The three turns that take the space axes x, y, z to the body axes X, Y, Z: about z, about the "
             "line of nodes N, and about Z.",
             (),
-            _drawing(schematics.euler_angles_drawing),
+            lambda _: euler_angles_drawing(),
         ),
         Plate(
             "fig03",
@@ -58,7 +57,7 @@ PLATES: dict[str, Plate] = {
             "A sphere whose centre of mass is off its centre O by alpha R along the axis 3. A is the point "
             "that touches the table, a the vector from the centre of mass to it.",
             (),
-            _drawing(schematics.model_drawing),
+            lambda _: model_drawing(),
         ),
         _run(
             "fig04",
@@ -237,7 +236,7 @@ PLATES: dict[str, Plate] = {
             ("stiffness",),
             methods.stiffness_figure,
         ),
-        *gallery_why.PLATES,
+        *WHY,
     )
 }
 """Every figure by its name, in the order of the page."""

@@ -3,10 +3,10 @@
 import base64
 from collections import Counter
 from collections.abc import Mapping, Sequence, Set
+from importlib.metadata import version
 
 import jinja2
 
-from tippetop import __version__
 from tippetop.integrators import default_name
 from tippetop.report.claim import RULE, Judgement, Value, Verdict
 from tippetop.report.gallery import PLATES, Plate
@@ -63,7 +63,7 @@ def render(
         rule=RULE,
         quick=quick,
         partial=partial,
-        version=__version__,
+        version=version("tippetop"),
         integrator=default_name(),
     )
 
@@ -84,22 +84,22 @@ def _shown(
 
 def worded(judgement: Judgement, shown: Set[str] = frozenset()) -> dict[str, str | None]:
     """A claim in words, for people; `shown` are the figures that it may refer to."""
-    statement, finding = judgement.claim.statement, judgement.finding
-    unit = "" if statement.unit == "1" else f" {statement.unit}"
-    reported = statement.printed.replace("pi", "π") or _number(judgement.reported)
+    claim, finding, tolerance = judgement.claim, judgement.finding, judgement.tolerance
+    unit = "" if claim.units == "1" else f" {claim.units}"
+    reported = claim.number.replace("pi", "π") or _number(judgement.reported)
     span = finding.listing_range
-    figure = judgement.claim.figure
+    figure = claim.figure
     return {
-        "id": judgement.claim.id,
-        "place": statement.source.place,
-        "text": statement.text,
-        "reported": f"{reported}{unit}" if statement.holds is None else reported,
+        "id": claim.id,
+        "place": claim.source.place,
+        "text": claim.text,
+        "reported": reported + unit,
         "listing": "–" if finding.listing is None else _number(finding.listing) + unit,
         "range": f"{_number(span[0])} to {_number(span[1])}{unit}" if span else None,
         "range_over": finding.range_over,
         "converged": _number(finding.converged) + unit,
-        "tolerance": None if judgement.tolerance is None else f"± {judgement.tolerance:g}{unit}",
-        "tolerance_from": statement.tolerance_from,
+        "tolerance": f"± {tolerance.value:g}{unit}" if tolerance else None,
+        "tolerance_from": tolerance.reason if claim.tolerance and tolerance else "",
         "verdict": judgement.verdict.name.lower(),
         "note": finding.note,
         "figure": figure if figure in shown else None,

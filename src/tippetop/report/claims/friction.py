@@ -1,9 +1,9 @@
 """Claims about friction: Fig. 7, Fig. 8, and what is said of other values of mu."""
 
 import numpy as np
+import xarray as xr
 
-from tippetop.report.claim import Chapter, Data, Finding, Source, Statement
-from tippetop.report.readings import SETTLED
+from tippetop.report.claim import ARRIVED, Chapter, Finding, Source, Tolerance
 
 CHAPTER = Chapter()
 
@@ -11,80 +11,65 @@ _LOST = 0.1
 
 
 @CHAPTER.claim(
-    Statement(
-        "fig07-exponent",
-        Source("3.3", "Fig. 7"),
-        "For mu from 0.2 to 1 the flip time goes as mu^-0.985.",
-        "-0.985",
-        "1",
-    ),
+    "fig07-exponent",
+    Source("3.3", "Fig. 7"),
+    "For mu from 0.2 to 1 the flip time goes as mu^-0.985.",
+    "-0.985",
     needs=("flip-times", "flip-times-spins"),
     figure="fig07",
 )
-def _(data: Data) -> Finding:
-    times, others = data["flip-times"], data["flip-times-spins"]
+def _(times: xr.Dataset, others: xr.Dataset) -> Finding:
     exponents = np.append(others["exponent_listing"].values, float(times["exponent_listing"]))
     listed = ", ".join(
-        f"{float(b):.3f} at {float(spin):g}"
-        for spin, b in zip(others["spin"], others["exponent"], strict=True)
+        f"{b:.3f} at {spin:g}" for spin, b in zip(others["spin"], others["exponent"], strict=True)
     )
     return Finding(
         float(times["exponent_listing"]),
         float(times["exponent"]),
         f"The report does not say at which spin; here {times.attrs['spin_rad_per_s']:g} rad/s, fitted as a "
-        f"curve (a straight line through the logarithms has {float(times['exponent_of_logarithms']):.3f}; "
-        f"correlation {float(times['correlation']):.4f}). Converged at other spins (rad/s): {listed}. The "
+        f"curve (a straight line through the logarithms has {times['exponent_of_logarithms']:.3f}; "
+        f"correlation {times['correlation']:.4f}). Converged at other spins (rad/s): {listed}. The "
         "exponent depends on the spin and jumps where the last swings of the nutation cross the 0.01 rad of "
         "the definition.",
         (float(np.nanmin(exponents)), float(np.nanmax(exponents))),
-        f"the spin, {float(others['spin'].min()):g} to {float(others['spin'].max()):g} rad/s",
+        f"the spin, {others['spin'].min():g} to {others['spin'].max():g} rad/s",
     )
 
 
 @CHAPTER.claim(
-    Statement(
-        "fig07-correlation",
-        Source("3.3", "Fig. 7"),
-        "Flip time and friction are strongly correlated on a power law (Pearson's r of the logarithms near "
-        "-1).",
-        "-1",
-        "1",
-        tolerance=0.01,
-        tolerance_from="near: within 0.01, since the value in the figure is not in the text",
-    ),
+    "fig07-correlation",
+    Source("3.3", "Fig. 7"),
+    "Flip time and friction are strongly correlated on a power law (Pearson's r of the logarithms near -1).",
+    "-1",
+    tolerance=Tolerance(0.01, "near: within 0.01, since the value in the figure is not in the text"),
     needs=("flip-times",),
     figure="fig07",
 )
-def _(data: Data) -> Finding:
-    times = data["flip-times"]
+def _(times: xr.Dataset) -> Finding:
     return Finding(
         float(times["correlation_listing"]),
         float(times["correlation"]),
-        f"Fit: {float(times['factor']):.3f} s x (mu m/s)^{float(times['exponent']):.3f} converged, "
-        f"{float(times['factor_listing']):.3f} s x (mu m/s)^{float(times['exponent_listing']):.3f} by the "
+        f"Fit: {times['factor']:.3f} s x (mu m/s)^{times['exponent']:.3f} converged, "
+        f"{times['factor_listing']:.3f} s x (mu m/s)^{times['exponent_listing']:.3f} by the "
         "report's method.",
     )
 
 
 @CHAPTER.claim(
-    Statement(
-        "summary-large-mu",
-        Source("3.3", "summary, point 6"),
-        "For mu beyond 1 s/m the relation t ~ 1/mu no longer holds.",
-        holds=True,
-    ),
+    "summary-large-mu",
+    Source("3.3", "summary, point 6"),
+    "For mu beyond 1 s/m the relation t ~ 1/mu no longer holds.",
     needs=("flip-times-wide",),
     figure="fig07",
 )
-def _(data: Data) -> Finding:
-    wide = data["flip-times-wide"]
+def _(wide: xr.Dataset) -> Finding:
     product = wide["mu_wide"] * wide["flip_time_wide"]
     law = product.sel(mu_wide=wide["mu_wide"] <= 0.1001).mean("mu_wide")
     off = abs(product / law - 1.0).transpose("spin_wide", "mu_wide")
     beyond = off.sel(mu_wide=wide["mu_wide"] > 1.0)
     first = [float(wide["mu_wide"][int(np.argmax(row > _LOST))]) for row in off.values]
     named = " and ".join(
-        f"{mu:.2f} s/m at {float(spin):g} rad/s" for mu, spin in zip(first, wide["spin_wide"], strict=True)
+        f"{mu:.2f} s/m at {spin:g} rad/s" for mu, spin in zip(first, wide["spin_wide"], strict=True)
     )
     return Finding(
         None,
@@ -95,23 +80,18 @@ def _(data: Data) -> Finding:
 
 
 @CHAPTER.claim(
-    Statement(
-        "section-5-small-mu",
-        Source("5"),
-        "The dependence t ~ mu^-1 is true even for mu = 0.01 s/m (exponent over 0.01 to 0.1 s/m).",
-        "-1",
-        "1",
-        tolerance=0.005,
-        tolerance_from="the precision of the exponent quoted for Fig. 7, half a per cent",
-    ),
+    "section-5-small-mu",
+    Source("5"),
+    "The dependence t ~ mu^-1 is true even for mu = 0.01 s/m (exponent over 0.01 to 0.1 s/m).",
+    "-1",
+    tolerance=Tolerance(0.005, "the precision of the exponent quoted for Fig. 7, half a per cent"),
     needs=("flip-times-wide",),
     figure="fig07",
 )
-def _(data: Data) -> Finding:
-    wide = data["flip-times-wide"]
+def _(wide: xr.Dataset) -> Finding:
     exponents = wide["small_exponent"].values
     limits = ", ".join(
-        f"{0.01 * float(t):.4f} s²/m at {float(spin):g} rad/s"
+        f"{0.01 * float(t):.4f} s²/m at {spin:g} rad/s"
         for spin, t in zip(wide["spin_wide"], wide["flip_time_wide"].isel(mu_wide=0), strict=True)
     )
     worst = exponents[int(np.argmax(np.abs(exponents + 1.0)))]
@@ -124,89 +104,72 @@ def _(data: Data) -> Finding:
 
 
 @CHAPTER.claim(
-    Statement(
-        "fig08-around-pi",
-        Source("3.3", "Fig. 8"),
-        "At mu = 100 s/m the top nutates around theta = pi (mean tilt over the second half of the run).",
-        "pi",
-        "rad",
-        tolerance=SETTLED,
-        tolerance_from="the report's own measure of having arrived, 0.01 rad",
-    ),
+    "fig08-around-pi",
+    Source("3.3", "Fig. 8"),
+    "At mu = 100 s/m the top nutates around theta = pi (mean tilt over the second half of the run).",
+    "pi rad",
+    tolerance=ARRIVED,
     needs=("run-mu-100",),
     figure="fig08",
 )
-def _(data: Data) -> Finding:
-    run = data["run-mu-100"]
+def _(run: xr.Dataset) -> Finding:
     ours = run["theta"].sel(time=slice(10.0, None))
     theirs = run["theta_listing"].sel(time_listing=slice(10.0, None))
     return Finding(
         float(theirs.mean()),
         float(ours.mean()),
-        f"The spin of Fig. 8 is not given; at 155 rad/s the tilt swings between {float(ours.min()):.3f} and "
-        f"{float(ours.max()):.3f} rad after 10 s: below pi, which it touches, not around it.",
+        f"The spin of Fig. 8 is not given; at 155 rad/s the tilt swings between {ours.min():.3f} and "
+        f"{ours.max():.3f} rad after 10 s: below pi, which it touches, not around it.",
     )
 
 
 @CHAPTER.claim(
-    Statement(
-        "fig08-settles",
-        Source("3.3", "Fig. 8"),
-        "At mu = 100 s/m the top finally stops nutating (swing of the tilt in the last second).",
-        "0",
-        "rad",
-        tolerance=SETTLED,
-        tolerance_from="the report's own measure of having arrived, 0.01 rad",
-    ),
+    "fig08-settles",
+    Source("3.3", "Fig. 8"),
+    "At mu = 100 s/m the top finally stops nutating (swing of the tilt in the last second).",
+    "0 rad",
+    tolerance=ARRIVED,
     needs=("run-mu-100", "settling-mu-100"),
     figure="fig08",
 )
-def _(data: Data) -> Finding:
-    run, later = data["run-mu-100"], data["settling-mu-100"]
+def _(run: xr.Dataset, later: xr.Dataset) -> Finding:
     swing = later["swing"]
     return Finding(
         float(np.ptp(run["theta_listing"].sel(time_listing=slice(19.0, None)).values)),
         float(swing[-1]),
         "Converged swings in the second before: "
-        + ", ".join(f"{float(s):.4f} rad at {float(t):g} s" for t, s in zip(swing["end"], swing, strict=True))
+        + ", ".join(f"{s:.4f} rad at {t:g} s" for t, s in zip(swing["end"], swing, strict=True))
         + ".",
     )
 
 
 @CHAPTER.claim(
-    Statement(
-        "fig08-block",
-        Source("3.3", "Fig. 8"),
-        "At mu = 100 s/m a block started with 1 m/s travels only 0.001 m.",
-        "0.001",
-        "m",
-    ),
+    "fig08-block",
+    Source("3.3", "Fig. 8"),
+    "At mu = 100 s/m a block started with 1 m/s travels only 0.001 m.",
+    "0.001 m",
     needs=("block",),
     figure="fig08",
 )
-def _(data: Data) -> Finding:
-    distance = float(data["block"]["distance"])
+def _(block: xr.Dataset) -> Finding:
+    distance = float(block["distance"])
     return Finding(None, distance, f"It comes to rest after {1e3 * distance:.3f} mm.")
 
 
 @CHAPTER.claim(
-    Statement(
-        "table-1-mu-unit",
-        Source("3", "Table 1"),
-        "Table 1: the unit of mu is m/s (the value is the power of length in it).",
-        "1",
-        "1",
-    ),
+    "table-1-mu-unit",
+    Source("3", "Table 1"),
+    "Table 1: the unit of mu is m/s (the value is the power of length in it).",
+    "1",
     needs=("unit-of-mu",),
 )
-def _(data: Data) -> Finding:
-    check = data["unit-of-mu"]
+def _(check: xr.Dataset) -> Finding:
     misses = abs(check["theta_in_centimetres"] - check["theta_in_metres"])
     right = int(misses.idxmin("power"))
     return Finding(
         right,
         right,
         "A launch computed in centimetres must give the same tilt as in metres. With mu converted as s/m it "
-        f"differs by {float(misses.sel(power=-1)):.1e} rad after 2 s, as m/s by "
-        f"{float(misses.sel(power=1)):.1e} rad. Section 2.2 of the report has it right.",
+        f"differs by {misses.sel(power=-1):.1e} rad after 2 s, as m/s by "
+        f"{misses.sel(power=1):.1e} rad. Section 2.2 of the report has it right.",
     )

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from tippetop.presets import REPORT, REPORT_TABLE_1
-from tippetop.report.claim import Chapter, Data, Finding, Source, Statement
+from tippetop.report.claim import ARRIVED, Chapter, Finding, Source, Tolerance
 from tippetop.report.experiments.runs import ARRIVALS
 from tippetop.report.quoted import END_OF_FIG_5
 from tippetop.report.readings import SETTLED
@@ -41,33 +41,26 @@ def _arrival(run: xr.Dataset) -> Finding:
 
 
 @CHAPTER.claim(
-    Statement(
-        "fig04-flip-time",
-        Source("3.1", "Fig. 4"),
-        "At 155 rad/s the top has turned over completely around t = 7.4 s.",
-        "7.4",
-        "s",
-    ),
+    "fig04-flip-time",
+    Source("3.1", "Fig. 4"),
+    "At 155 rad/s the top has turned over completely around t = 7.4 s.",
+    "7.4 s",
     needs=("run-155",),
     figure="fig04",
 )
-def _(data: Data) -> Finding:
-    return _arrival(data["run-155"])
+def _(run: xr.Dataset) -> Finding:
+    return _arrival(run)
 
 
 @CHAPTER.claim(
-    Statement(
-        "fig04-first-reversal",
-        Source("3.1", "Fig. 4"),
-        "At 155 rad/s the precession reverses at t = 3.3 s.",
-        "3.3",
-        "s",
-    ),
+    "fig04-first-reversal",
+    Source("3.1", "Fig. 4"),
+    "At 155 rad/s the precession reverses at t = 3.3 s.",
+    "3.3 s",
     needs=("run-155",),
     figure="fig04",
 )
-def _(data: Data) -> Finding:
-    run = data["run-155"]
+def _(run: xr.Dataset) -> Finding:
     ours = float(run["quiet_start"])
     return Finding(
         float(run["quiet_start_listing"]),
@@ -80,43 +73,34 @@ def _(data: Data) -> Finding:
 
 
 @CHAPTER.claim(
-    Statement(
-        "fig04-second-reversal",
-        Source("3.1", "Fig. 4"),
-        "At 155 rad/s the precession reverses again at t = 7.9 s.",
-        "7.9",
-        "s",
-    ),
+    "fig04-second-reversal",
+    Source("3.1", "Fig. 4"),
+    "At 155 rad/s the precession reverses again at t = 7.9 s.",
+    "7.9 s",
     needs=("run-155",),
     figure="fig04",
 )
-def _(data: Data) -> Finding:
-    run = data["run-155"]
+def _(run: xr.Dataset) -> Finding:
     return Finding(
         float(run["quiet_end_listing"]),
         float(run["quiet_end"]),
         "This is the first reversal after the long calm; the last of all is at "
-        f"{float(run['last_reversal']):.2f} s.",
+        f"{run['last_reversal']:.2f} s.",
         both_controls(run, "quiet_end"),
         _STEP_CONTROL,
     )
 
 
 @CHAPTER.claim(
-    Statement(
-        "fig04-inverts",
-        Source("3.1", "Fig. 4"),
-        "At 155 rad/s the top turns around completely, to theta = pi.",
-        "pi",
-        "rad",
-        tolerance=SETTLED,
-        tolerance_from="the report's own measure of having arrived, 0.01 rad",
-    ),
+    "fig04-inverts",
+    Source("3.1", "Fig. 4"),
+    "At 155 rad/s the top turns around completely, to theta = pi.",
+    "pi rad",
+    tolerance=ARRIVED,
     needs=("run-155",),
     figure="fig04",
 )
-def _(data: Data) -> Finding:
-    run = data["run-155"]
+def _(run: xr.Dataset) -> Finding:
     left = math.pi - float(run["end_theta"])
     return Finding(
         float(run["end_theta_listing"]),
@@ -126,27 +110,22 @@ def _(data: Data) -> Finding:
 
 
 @CHAPTER.claim(
-    Statement(
-        "fig04-slip",
-        Source("2.3", "Fig. 4"),
-        "The slip velocity tends to 0 (as a part of its largest value, at 155 rad/s).",
-        "0",
-        "1",
-        tolerance=0.01,
-        tolerance_from="1 % of the largest slip: what a plot can show",
-    ),
+    "fig04-slip",
+    Source("2.3", "Fig. 4"),
+    "The slip velocity tends to 0 (as a part of its largest value, at 155 rad/s).",
+    "0",
+    tolerance=Tolerance(0.01, "1 % of the largest slip: what a plot can show"),
     needs=("run-155",),
     figure="fig04",
 )
-def _(data: Data) -> Finding:
-    run = data["run-155"]
+def _(run: xr.Dataset) -> Finding:
     ours = float(run["end_slip"]) / float(run["largest_slip"])
     theirs = float(run["end_slip_listing"]) / float(run["largest_slip_listing"])
     return Finding(
         theirs,
         ours,
-        f"The slip speed falls from at most {float(run['largest_slip']):.3f} m/s "
-        f"to {float(run['end_slip']):.1e} m/s after 20 s.",
+        f"The slip speed falls from at most {run['largest_slip']:.3f} m/s "
+        f"to {run['end_slip']:.1e} m/s after 20 s.",
     )
 
 
@@ -155,12 +134,14 @@ def _end_of_run_50(name: str, symbol: str, unit: str) -> None:
     text = f"Launched at 50 rad/s the top ends with {symbol} = {printed}."
 
     @CHAPTER.claim(
-        Statement(f"fig05-end-{short}", Source("3.1", "Fig. 5"), text, printed, unit),
+        f"fig05-end-{short}",
+        Source("3.1", "Fig. 5"),
+        text,
+        f"{printed} {unit}",
         needs=("run-50", "run-50-table-1"),
         figure="fig05",
     )
-    def _(data: Data) -> Finding:
-        run, other = data["run-50"], data["run-50-table-1"]
+    def _(run: xr.Dataset, other: xr.Dataset) -> Finding:
         ours, swapped = float(run[f"end_{name}"]), float(other[f"end_{name}"])
         return Finding(
             float(run[f"end_{name}_listing"]),
@@ -179,33 +160,26 @@ _end_of_run_50("omega3", "omega", "rad/s")
 
 
 @CHAPTER.claim(
-    Statement(
-        "fig05-flip-time",
-        Source("3.1", "Fig. 5"),
-        "At 50 rad/s the top has turned over half around t = 8.9 s.",
-        "8.9",
-        "s",
-    ),
+    "fig05-flip-time",
+    Source("3.1", "Fig. 5"),
+    "At 50 rad/s the top has turned over half around t = 8.9 s.",
+    "8.9 s",
     needs=("run-50",),
     figure="fig05",
 )
-def _(data: Data) -> Finding:
-    return _arrival(data["run-50"])
+def _(run: xr.Dataset) -> Finding:
+    return _arrival(run)
 
 
 @CHAPTER.claim(
-    Statement(
-        "fig05-reversal",
-        Source("3.1", "Fig. 5"),
-        "At 50 rad/s the precession reverses at t = 1.1 s.",
-        "1.1",
-        "s",
-    ),
+    "fig05-reversal",
+    Source("3.1", "Fig. 5"),
+    "At 50 rad/s the precession reverses at t = 1.1 s.",
+    "1.1 s",
     needs=("run-50",),
     figure="fig05",
 )
-def _(data: Data) -> Finding:
-    run = data["run-50"]
+def _(run: xr.Dataset) -> Finding:
     return Finding(
         float(run["last_reversal_listing"]),
         float(run["last_reversal"]),
@@ -216,20 +190,17 @@ def _(data: Data) -> Finding:
 
 
 @CHAPTER.claim(
-    Statement(
-        "table-1-inertia",
-        Source("3", "Table 1"),
-        "Table 1: I1 = 2/5 m R^2 and I3 = 131/350 m R^2 (the value is I1 / (m R^2)).",
-        unit="1",
-        tolerance=1e-6,
-        tolerance_from="fractions are exact",
-    ),
+    "table-1-inertia",
+    Source("3", "Table 1"),
+    "Table 1: I1 = 2/5 m R^2 and I3 = 131/350 m R^2 (the value is I1 / (m R^2)).",
+    unit="1",
+    tolerance=Tolerance(1e-6, "fractions are exact"),
     needs=("run-50", "run-50-table-1"),
     figure="fig05",
 )
-def _(data: Data) -> Finding:
+def _(run: xr.Dataset, other: xr.Dataset) -> Finding:
     unit = REPORT.mass * float(REPORT.shape.law.size) ** 2
-    runs = {"listing": (data["run-50"], REPORT), "table": (data["run-50-table-1"], REPORT_TABLE_1)}
+    runs = {"listing": (run, REPORT), "table": (other, REPORT_TABLE_1)}
     misses = {
         name: max(abs(float(run[f"end_{key}"]) - value) for key, value in END_OF_FIG_5.items())
         for name, (run, _) in runs.items()
@@ -246,48 +217,37 @@ def _(data: Data) -> Finding:
 
 
 @CHAPTER.claim(
-    Statement(
-        "fig13-upright",
-        Source("Appendix C", "Fig. 13"),
-        "At 10 rad/s the top stays upright (tilt after 20 s).",
-        "0",
-        "rad",
-        tolerance=SETTLED,
-        tolerance_from="the report's own measure of having arrived, 0.01 rad",
-    ),
+    "fig13-upright",
+    Source("Appendix C", "Fig. 13"),
+    "At 10 rad/s the top stays upright (tilt after 20 s).",
+    "0 rad",
+    tolerance=ARRIVED,
     needs=("run-10",),
     figure="fig13",
 )
-def _(data: Data) -> Finding:
-    run = data["run-10"]
+def _(run: xr.Dataset) -> Finding:
     return Finding(
         float(run["end_theta_listing"]),
         float(run["end_theta"]),
-        f"The launch tilt is forgotten: within {SETTLED:g} rad from {float(run['arrival_time'][0]):.2f} s on "
-        "first.",
+        f"The launch tilt is forgotten: within {SETTLED:g} rad from {run['arrival_time'][0]:.2f} s on first.",
     )
 
 
 def _turns_over(number: int, spin: int) -> None:
     @CHAPTER.claim(
-        Statement(
-            f"fig{number}-inverts",
-            Source("Appendix C", f"Fig. {number}"),
-            f"At {spin} rad/s the top turns over completely (tilt after 20 s).",
-            "pi",
-            "rad",
-            tolerance=SETTLED,
-            tolerance_from="the report's own measure of having arrived, 0.01 rad",
-        ),
+        f"fig{number}-inverts",
+        Source("Appendix C", f"Fig. {number}"),
+        f"At {spin} rad/s the top turns over completely (tilt after 20 s).",
+        "pi rad",
+        tolerance=ARRIVED,
         needs=(f"run-{spin}",),
         figure=f"fig{number}",
     )
-    def _(data: Data) -> Finding:
-        run = data[f"run-{spin}"]
+    def _(run: xr.Dataset) -> Finding:
         return Finding(
             float(run["end_theta_listing"]),
             float(run["end_theta"]),
-            f"It arrives within {SETTLED:g} rad after {float(run['arrival_time'][0]):.2f} s.",
+            f"It arrives within {SETTLED:g} rad after {run['arrival_time'][0]:.2f} s.",
         )
 
 

@@ -1,6 +1,8 @@
 """Claims about the final tilt as a function of the spin: Fig. 6."""
 
-from tippetop.report.claim import Chapter, Data, Finding, Source, Statement
+import xarray as xr
+
+from tippetop.report.claim import Chapter, Finding, Source
 from tippetop.report.experiments.spins import MARGINS, TURNED
 from tippetop.report.quoted import ABNORMAL_SPIN, CRITICAL_SPINS
 
@@ -11,16 +13,18 @@ _NEEDS = ("final-tilt-listing", "critical-spins")
 
 def _critical(symbol: str, name: str, printed: str, text: str) -> None:
     @CHAPTER.claim(
-        Statement(f"fig06-{symbol}", Source("3.2", "Fig. 6"), text, printed, "rad/s"),
+        f"fig06-{symbol}",
+        Source("3.2", "Fig. 6"),
+        text,
+        f"{printed} rad/s",
         needs=_NEEDS,
         figure="fig06",
     )
-    def _(data: Data) -> Finding:
-        listing, sweep = data["final-tilt-listing"], data["critical-spins"]
+    def _(listing: xr.Dataset, sweep: xr.Dataset) -> Finding:
         theirs = listing[f"critical_{name}_listing"].values
         by_window = sweep[f"{name}_by_window"]
         windows = ", ".join(
-            f"{float(value):.2f} in {float(window):g} s"
+            f"{value:.2f} in {window:g} s"
             for window, value in zip(by_window["window"], by_window, strict=True)
         )
         return Finding(
@@ -44,23 +48,19 @@ _critical("c2", "inverted", _SECOND, f"Above omega_c2 = {_SECOND} rad/s the top 
 
 
 @CHAPTER.claim(
-    Statement(
-        "fig06-a",
-        Source("3.2", "Fig. 6"),
-        f"An abnormal point occurs around omega_a = {ABNORMAL_SPIN} rad/s.",
-        ABNORMAL_SPIN,
-        "rad/s",
-    ),
+    "fig06-a",
+    Source("3.2", "Fig. 6"),
+    f"An abnormal point occurs around omega_a = {ABNORMAL_SPIN} rad/s.",
+    f"{ABNORMAL_SPIN} rad/s",
     needs=("final-tilt-listing", "final-tilt"),
     figure="fig06",
 )
-def _(data: Data) -> Finding:
-    listing, sweep = data["final-tilt-listing"], data["final-tilt"]
+def _(listing: xr.Dataset, sweep: xr.Dataset) -> Finding:
     onset, lost = float(sweep["lift_off_onset"]), float(sweep["lost"])
     return Finding(
         float(listing["lost_listing"]),
         onset,
         "The value is the spin from which the table would have to pull within 20 s. If it does pull, "
         f"launches still end within {TURNED:g} rad of pi below {lost:g} rad/s, and by the report's method "
-        f"below {float(listing['lost_listing']):g} rad/s: what Fig. 6 shows begins later than its cause.",
+        f"below {listing['lost_listing']:g} rad/s: what Fig. 6 shows begins later than its cause.",
     )
