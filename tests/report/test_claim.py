@@ -26,7 +26,7 @@ FIELDS = {"id", "source", "statement", "reported", "listing", "converged", "unit
 def judged(finding: Finding, printed: str = "", tolerance: Tolerance | None = None) -> Judgement:
     source = Source("1", "Fig. 1", "(1)")
     unit = "s" if tolerance else None
-    claim = Claim("a-claim", source, "It is so.", printed, unit, tolerance, (), None, lambda: finding)
+    claim = Claim("a-claim", source, "It is so.", printed, unit, tolerance, (), None, False, lambda: finding)
     return claim.judge({}, quick=False)
 
 
@@ -39,27 +39,35 @@ def test_tolerance_is_half_of_the_last_printed_digit(printed: str, half: float) 
 
 
 @pytest.mark.parametrize(
-    ("listing", "converged", "span", "verdict"),
+    ("listing", "converged", "chosen", "verdict"),
     [
-        (9.0, 7.44, None, Verdict.REPRODUCED),
-        (9.0, 7.36, None, Verdict.REPRODUCED),
+        (None, 7.44, None, Verdict.REPRODUCED),
+        (7.41, 7.36, None, Verdict.REPRODUCED),
+        (9.0, 7.36, 7.41, Verdict.REPRODUCED),
+        (9.0, 7.36, None, Verdict.UPHELD),
+        (9.0, 7.36, 8.0, Verdict.UPHELD),
         (7.41, 7.5, None, Verdict.EXPLAINED),
-        (9.0, 8.0, (7.0, 7.5), Verdict.EXPLAINED),
-        (None, 8.0, (7.44, 9.0), Verdict.EXPLAINED),
-        (9.0, 8.0, (7.5, 9.0), Verdict.CORRECTED),
+        (9.0, 8.0, 7.43, Verdict.EXPLAINED),
+        (None, 8.0, 7.44, Verdict.EXPLAINED),
+        (9.0, 8.0, 7.5, Verdict.CORRECTED),
         (None, 8.0, None, Verdict.CORRECTED),
         (math.nan, math.nan, None, Verdict.CORRECTED),
     ],
 )
 def test_rule_for_numbers(
-    listing: float | None, converged: float, span: tuple[float, float] | None, verdict: Verdict
+    listing: float | None, converged: float, chosen: float | None, verdict: Verdict
 ) -> None:
-    assert decide(7.4, listing, converged, 0.05, span) is verdict
+    assert decide(7.4, listing, converged, 0.05, chosen) is verdict
 
 
 @pytest.mark.parametrize(
     ("listing", "converged", "verdict"),
-    [(None, True, Verdict.REPRODUCED), (True, False, Verdict.EXPLAINED), (False, False, Verdict.CORRECTED)],
+    [
+        (None, True, Verdict.REPRODUCED),
+        (False, True, Verdict.UPHELD),
+        (True, False, Verdict.EXPLAINED),
+        (False, False, Verdict.CORRECTED),
+    ],
 )
 def test_rule_for_what_is_true_or_false(listing: bool | None, converged: bool, verdict: Verdict) -> None:
     assert decide(True, listing, converged, None) is verdict
@@ -71,7 +79,7 @@ def test_half_a_digit_is_still_agreement_in_binary() -> None:
 
 
 def test_record_is_json_and_says_all() -> None:
-    finding = Finding(math.nan, 7.42, "A note.", (7.0, 8.0), "what is left open")
+    finding = Finding(math.nan, 7.42, "A note.", 7.0, "what is left open")
     record = judged(finding, "7.4 s").record()
     assert set(record) >= FIELDS
     again = json.loads(json.dumps(record, allow_nan=False))
@@ -79,8 +87,8 @@ def test_record_is_json_and_says_all() -> None:
     assert again["reported"] == 7.4
     assert again["reported_as"] == "7.4"
     assert again["listing"] is None
-    assert again["listing_range"] == [7.0, 8.0]
-    assert again["verdict"] == "reproduced"
+    assert (again["listing_chosen"], again["listing_choice"]) == (7.0, "what is left open")
+    assert again["verdict"] == "upheld"
 
 
 def test_formula_is_compared_by_what_it_evaluates_to() -> None:

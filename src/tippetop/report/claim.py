@@ -18,16 +18,17 @@ Data: TypeAlias = Mapping[str, xr.Dataset]
 class Verdict(Enum):
     """What became of a claim; the value says when."""
 
-    REPRODUCED = "the converged value agrees with the reported one"
-    EXPLAINED = "the converged value does not, but the report's own method gives the reported one"
-    CORRECTED = "neither the converged value nor the report's own method gives the reported one"
+    REPRODUCED = "true, and what the report's own method gives"
+    UPHELD = "true, although the report's own method does not give it"
+    EXPLAINED = "not true, but what the report's own method gives"
+    CORRECTED = "neither true nor what the report's own method gives"
 
 
 RULE = (
-    "A claim is reproduced if the converged value agrees with the reported one within the tolerance; "
-    "explained if it does not, but the report's own method does (directly, or for some choice that the "
-    "report leaves open); corrected otherwise. The tolerance is half a unit of the last printed digit unless "
-    "the record says otherwise."
+    "Every claim is compared with the converged value, which says whether it is true, and with what the "
+    "report's own method gives, where it gives anything: directly, or for one stated choice of what the "
+    "report leaves open. They agree within half a unit of the last printed digit unless the record says "
+    "otherwise. What the report does not say in words, but draws or codes, is marked as implied."
 )
 
 
@@ -55,6 +56,7 @@ class Tolerance(NamedTuple):
 
 
 ARRIVED = Tolerance(SETTLED, f"the report's own measure of having arrived, {SETTLED:g} rad")
+PLOTTED = Tolerance(0.01, "1 %: what a plot can show")
 STEADY = Tolerance(1e-5, "far below the 1e-3 of the report's method, far above rounding")
 ROUNDING = Tolerance(1e-6, "far above rounding")
 
@@ -71,8 +73,8 @@ class Finding:
         What is true.
     note
         What else there is to know.
-    listing_range, range_over
-        What the report's method gives over the choices that the report leaves open, and which they are.
+    chosen, choice
+        What the report's method gives for one choice of what the report leaves open, and which choice.
     reported
         What the report's printed formula evaluates to, where the claim is a formula.
     """
@@ -80,8 +82,8 @@ class Finding:
     listing: Value | None
     converged: Value
     note: str
-    listing_range: tuple[float, float] | None = None
-    range_over: str = ""
+    chosen: float | None = None
+    choice: str = ""
     reported: float | None = None
 
 
@@ -111,6 +113,8 @@ class Claim:
         Names of the experiments that decide it.
     figure
         Name of our figure that shows it, or None.
+    implied
+        Whether the report does not say it in words.
     examine
         Computes the finding from the experiments' datasets, given in the order of `needs`.
     """
@@ -123,6 +127,7 @@ class Claim:
     tolerance: Tolerance | None
     needs: tuple[str, ...]
     figure: str | None
+    implied: bool
     examine: Examine
 
     @property
@@ -172,21 +177,22 @@ class Judgement:
         """What the values say."""
         finding = self.finding
         allowed = self.tolerance and self.tolerance.value
-        return decide(self.reported, finding.listing, finding.converged, allowed, finding.listing_range)
+        return decide(self.reported, finding.listing, finding.converged, allowed, finding.chosen)
 
     def record(self) -> dict[str, object]:
         """The claim as plain data."""
         claim, finding = self.claim, self.finding
-        span, tolerance = finding.listing_range, self.tolerance
+        tolerance = self.tolerance
         return {
             "id": claim.id,
             "source": asdict(claim.source),
             "statement": claim.text,
+            "implied": claim.implied,
             "reported": _plain(self.reported),
             "reported_as": claim.number or None,
             "listing": _plain(finding.listing),
-            "listing_range": [_plain(bound) for bound in span] if span else None,
-            "listing_range_over": finding.range_over or None,
+            "listing_chosen": _plain(finding.chosen),
+            "listing_choice": finding.choice or None,
             "converged": _plain(finding.converged),
             "unit": claim.units,
             "tolerance": tolerance and tolerance.value,
@@ -216,11 +222,12 @@ class Chapter:
         unit: str | None = None,
         tolerance: Tolerance | None = None,
         figure: str | None = None,
+        implied: bool = False,
     ) -> Callable[[Examine], Examine]:
         """Register the decorated function as what examines a claim; see `Claim`."""
 
         def register(examine: Examine) -> Examine:
-            claim = Claim(name, source, text, printed, unit, tolerance, needs, figure, examine)
+            claim = Claim(name, source, text, printed, unit, tolerance, needs, figure, implied, examine)
             self.claims.append(claim)
             return examine
 
@@ -232,7 +239,7 @@ def decide(
     listing: Value | None,
     converged: Value,
     tolerance: float | None,
-    listing_range: tuple[float, float] | None = None,
+    chosen: Value | None = None,
 ) -> Verdict:
     """The verdict on a claim; see `RULE`.
 
@@ -242,18 +249,14 @@ def decide(
         What the report says, what its method gives (None: nothing) and what is true.
     tolerance
         Largest difference that counts as agreement; None for values that are true or false.
-    listing_range
-        Least and greatest value of the report's method over the choices it leaves open.
+    chosen
+        What its method gives for one choice of what it leaves open.
     """
+    given = [value for value in (listing, chosen) if value is not None]
+    theirs = any(_agree(reported, value, tolerance) for value in given)
     if _agree(reported, converged, tolerance):
-        return Verdict.REPRODUCED
-    if listing is not None and _agree(reported, listing, tolerance):
-        return Verdict.EXPLAINED
-    if listing_range is not None and tolerance is not None:
-        low, high = listing_range
-        if low - tolerance <= reported <= high + tolerance:
-            return Verdict.EXPLAINED
-    return Verdict.CORRECTED
+        return Verdict.REPRODUCED if theirs or not given else Verdict.UPHELD
+    return Verdict.EXPLAINED if theirs else Verdict.CORRECTED
 
 
 def _agree(reported: Value, found: Value, tolerance: float | None) -> bool:

@@ -42,8 +42,9 @@ class Experiment:
         return data
 
 
-def variable(
-    values: object, units: str, long_name: str, dimensions: tuple[str, ...] = ()
-) -> tuple[tuple[str, ...], object, dict[str, str]]:
+Variable = tuple[tuple[str, ...], object, dict[str, str]]
+
+
+def variable(values: object, units: str, long_name: str, dimensions: tuple[str, ...] = ()) -> Variable:
     """A variable of a dataset with its unit and its meaning."""
     return (dimensions, values, {"units": units, "long_name": long_name})

@@ -87,16 +87,15 @@ def worded(judgement: Judgement, shown: Set[str] = frozenset()) -> dict[str, str
     claim, finding, tolerance = judgement.claim, judgement.finding, judgement.tolerance
     unit = "" if claim.units == "1" else f" {claim.units}"
     reported = claim.number.replace("pi", "π") or _number(judgement.reported)
-    span = finding.listing_range
     figure = claim.figure
     return {
         "id": claim.id,
         "place": claim.source.place,
-        "text": claim.text,
+        "text": claim.text + (" (implied)" if claim.implied else ""),
         "reported": reported + unit,
         "listing": "–" if finding.listing is None else _number(finding.listing) + unit,
-        "range": f"{_number(span[0])} to {_number(span[1])}{unit}" if span else None,
-        "range_over": finding.range_over,
+        "chosen": None if finding.chosen is None else _number(finding.chosen) + unit,
+        "choice": finding.choice,
         "converged": _number(finding.converged) + unit,
         "tolerance": f"± {tolerance.value:g}{unit}" if tolerance else None,
         "tolerance_from": tolerance.reason if claim.tolerance and tolerance else "",

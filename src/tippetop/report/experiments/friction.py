@@ -111,7 +111,19 @@ def _wide(quick: bool) -> xr.Dataset:
     )
 
 
+def _extremes(quick: bool) -> xr.Dataset:
+    """When the report's main launch turns half over, from no friction to far too much."""
+    mu = np.array([0.0, 0.3, 1.0, 100.0, 300.0, 1000.0])
+    found = swept(on_table(report_problem(SPIN)), {"friction.mu": mu})
+    return xr.Dataset(
+        {"turning_time": variable(found["turns_over"].values, "s", "first tilt of more than pi/2", ("mu",))},
+        {"mu": variable(mu, "s m-1", "friction coefficient", ("mu",))},
+        {"spin_rad_per_s": SPIN, "window_s": WINDOW},
+    )
+
+
 EXPERIMENTS = [
+    Experiment("friction-extremes", "turning over from no friction to far too much", 5.0, _extremes),
     Experiment("flip-times", "flip time against friction, at 155 rad/s", 2.0, _flip_times),
     Experiment("flip-times-spins", "the same at other spins", 7.0, _other_spins),
     Experiment("flip-times-wide", "flip time over three decades of friction", 2.5, _wide),
