@@ -26,7 +26,9 @@ FIELDS = {"id", "source", "statement", "reported", "listing", "converged", "unit
 def judged(finding: Finding, printed: str = "", tolerance: Tolerance | None = None) -> Judgement:
     source = Source("1", "Fig. 1", "(1)")
     unit = "s" if tolerance else None
-    claim = Claim("a-claim", source, "It is so.", printed, unit, tolerance, (), None, False, lambda: finding)
+    claim = Claim(
+        "a-claim", source, "It is so.", printed, unit, tolerance, (), None, False, "", lambda: finding
+    )
     return claim.judge({}, quick=False)
 
 

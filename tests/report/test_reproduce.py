@@ -75,6 +75,16 @@ def test_page_stands_alone(fig13: Path) -> None:
     check_page(fig13)
 
 
+def test_page_opens_with_what_is_wrong_and_what_is_right(fig13: Path) -> None:
+    text = (fig13 / "index.html").read_text(encoding="utf-8")
+    wrong, right, rest = (text.index(f'id="{name}"') for name in ("errors", "sound", "figures"))
+    assert wrong < right < rest
+    assert "it nutates, and the nutation dies away" in text[wrong:right]
+    assert 'href="#claim-fig13-upright"' in text[right:rest]
+    assert "(what is left of it" not in text[wrong:right]
+    assert "(what is left of it" in text[rest:]
+
+
 def test_quick_run_says_so(fig13: Path) -> None:
     assert "Quick run" in (fig13 / "index.html").read_text(encoding="utf-8")
     assert all(record["quick"] for record in json.loads((fig13 / "claims.json").read_text(encoding="utf-8")))

@@ -22,8 +22,8 @@ _LABELS = {
 def order_figure(errors: xr.Dataset) -> Figure:
     """Return errors against the length of a step, in all and in one step.
 
-    `errors` has rk4_in_all, rk4_in_a_step and ode45_in_all over step, printed_in_all and printed_mended_in_all
-    over step_printed, and the orders order_... of each.
+    `errors` has rk4_in_all, rk4_in_a_step and ode45_in_all over step, printed_in_all and
+    printed_mended_in_all over step_printed, and the orders order_... of each.
     """
     series = (
         ("printed_in_all", "(B.1) as printed, time in f", ACCENT, "^-"),
@@ -36,11 +36,11 @@ def order_figure(errors: xr.Dataset) -> Figure:
     axes = figure.subplots()
     for name, label, color, marker in series:
         values, order = errors[name], float(errors[f"order_{name}"])
-        label = f"{label}: order {order:.2f}"
-        axes.loglog(1e3 * errors[values.dims[0]], values, marker, color=color, label=label)
+        named = f"{label}: order {order:.2f}"
+        axes.loglog(1e3 * errors[values.dims[0]], values, marker, color=color, label=named)
     axes.set(xlabel="length of a step (ms)", ylabel="error (rad; of a value near 1)")
     mark.plain_ticks(axes.xaxis, [0.25, 1, 5, 25, 100])
-    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    mark.legend_above(axes, 2)
     return figure
 
 

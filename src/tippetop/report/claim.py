@@ -115,6 +115,8 @@ class Claim:
         Name of our figure that shows it, or None.
     implied
         Whether the report does not say it in words.
+    right
+        What is right where the claim is not, in a few words; "" where the converged value says it.
     examine
         Computes the finding from the experiments' datasets, given in the order of `needs`.
     """
@@ -128,6 +130,7 @@ class Claim:
     needs: tuple[str, ...]
     figure: str | None
     implied: bool
+    right: str
     examine: Examine
 
     @property
@@ -223,11 +226,14 @@ class Chapter:
         tolerance: Tolerance | None = None,
         figure: str | None = None,
         implied: bool = False,
+        right: str = "",
     ) -> Callable[[Examine], Examine]:
         """Register the decorated function as what examines a claim; see `Claim`."""
 
         def register(examine: Examine) -> Examine:
-            claim = Claim(name, source, text, printed, unit, tolerance, needs, figure, implied, examine)
+            claim = Claim(
+                name, source, text, printed, unit, tolerance, needs, figure, implied, right, examine
+            )
             self.claims.append(claim)
             return examine
 

@@ -223,8 +223,10 @@ PLATES: dict[str, Plate] = {
         Plate(
             "order",
             "Order of accuracy",
-            "Error against the length of the step, for the method of Appendix B and for the formula inside "
-            "ode45. The order is the slope, here between the two shortest steps.",
+            "Error against the length of the step, on the top for the method of Appendix B and for the "
+            "formula inside ode45, and on an equation that depends on time for (B.1) as printed, which takes "
+            "its last stage at the wrong time, and mended. The order is the slope, here between the two "
+            "shortest steps.",
             ("order",),
             methods.order_figure,
         ),

@@ -10,8 +10,23 @@ import jinja2
 from tippetop.integrators import default_name
 from tippetop.report.claim import RULE, Judgement, Value, Verdict
 from tippetop.report.gallery import PLATES, Plate
+from tippetop.report.typeset import typeset
+from tippetop.report.unchecked import UNCHECKED
 
 _TEMPLATE = "page.html.j2"
+
+_PARTS = (
+    ("1", "Introduction"),
+    ("2", "The model"),
+    ("3", "Results"),
+    ("4", "Discussion: flight"),
+    ("5", "Critique and summary"),
+    ("A", "Appendices"),
+)
+"""The report's sections by the beginning of their numbers, for the order of the claims."""
+
+_WRONG = (Verdict.CORRECTED, Verdict.EXPLAINED)
+"""Verdicts on what is not true."""
 
 
 def render(
@@ -44,9 +59,11 @@ def render(
         lstrip_blocks=True,
         undefined=jinja2.StrictUndefined,
     )
+    environment.filters["typeset"] = typeset
     shown = {plate.id for plate in plates}
     claims = [worded(judgement, shown) for judgement in judgements]
     counts = Counter(claim["verdict"] for claim in claims)
+    wrong = [verdict.name.lower() for verdict in _WRONG]
     return environment.get_template(_TEMPLATE).render(
         sections=[
             {
@@ -56,6 +73,10 @@ def render(
             for section in dict.fromkeys(plate.section for plate in plates)
         ],
         claims=claims,
+        errors=[claim for name in wrong for claim in claims if claim["verdict"] == name],
+        sound=[claim for claim in claims if claim["verdict"] not in wrong],
+        parts=[part for part in (_part(*named, claims) for named in _PARTS) if part["claims"]],
+        unchecked=UNCHECKED,
         verdicts=[
             {"name": verdict.name.lower(), "count": counts[verdict.name.lower()], "meaning": verdict.value}
             for verdict in Verdict
@@ -78,8 +99,15 @@ def _shown(
         "caption": plate.caption,
         "image": _embedded(pictures[plate.id]),
         "has_data": bool(plate.needs),
+        "experiments": ", ".join(plate.needs),
         "claims": [claim for claim in claims if claim["figure"] == plate.id],
     }
+
+
+def _part(number: str, title: str, claims: Sequence[dict[str, str | None]]) -> dict[str, object]:
+    """A section of the report with its claims."""
+    inside = [claim for claim in claims if (claim["section"] or "")[0] == number]
+    return {"id": f"section-{number}", "number": number, "title": title, "claims": inside}
 
 
 def worded(judgement: Judgement, shown: Set[str] = frozenset()) -> dict[str, str | None]:
@@ -90,7 +118,11 @@ def worded(judgement: Judgement, shown: Set[str] = frozenset()) -> dict[str, str
     figure = claim.figure
     return {
         "id": claim.id,
+        "short": _without_measure(claim.text),
         "place": claim.source.place,
+        "section": claim.source.section,
+        "experiments": ", ".join(claim.needs),
+        "right": claim.right or (_number(finding.converged) + unit),
         "text": claim.text + (" (implied)" if claim.implied else ""),
         "reported": reported + unit,
         "listing": "–" if finding.listing is None else _number(finding.listing) + unit,
@@ -104,6 +136,19 @@ def worded(judgement: Judgement, shown: Set[str] = frozenset()) -> dict[str, str
         "figure": figure if figure in shown else None,
         "figure_title": PLATES[figure].title.partition(":")[0] if figure in shown and figure else None,
     }
+
+
+def _without_measure(text: str) -> str:
+    """What is claimed, without the last parenthesis, which says what the value is."""
+    if not text.endswith(")."):
+        return text
+    depth, start = 0, len(text) - 1
+    while start > 0:
+        start -= 1
+        depth += {")": 1, "(": -1}.get(text[start], 0)
+        if depth == 0:
+            break
+    return text[:start].rstrip() + "."
 
 
 def _number(value: Value) -> str:

@@ -94,6 +94,7 @@ def _(sweep: xr.Dataset, hops: xr.Dataset, bouncing: xr.Dataset, capped: xr.Data
     needs=("listing-capped", "final-tilt"),
     figure="fig06",
     implied=True,
+    right="they would have cured the abnormal region",
 )
 def _(capped: xr.Dataset, sweep: xr.Dataset) -> Finding:
     on_table, pushed = capped["final_theta"], capped["final_theta_capped"]

@@ -79,6 +79,7 @@ def _(run: xr.Dataset) -> Finding:
     tolerance=STEADY,
     needs=("run-10",),
     figure="fig13",
+    right="if theta is neither 0 nor pi",
 )
 def _(run: xr.Dataset) -> Finding:
     late = run.sel(time=slice(15.0, None))
@@ -135,6 +136,7 @@ def _(steady: xr.Dataset) -> Finding:
     "0 rad/s",
     needs=("steady-bodies",),
     figure="fig05",
+    right="omega3' = 0",
 )
 def _(steady: xr.Dataset) -> Finding:
     precession, spin = steady["phi_dot"], steady["omega3"]
@@ -208,6 +210,7 @@ def _largest_miss(check: xr.Dataset, words: str) -> Finding:
     tolerance=Tolerance(1e-9, "far below the torque, far above rounding"),
     needs=("printed-equations",),
     figure="fig03",
+    right="M = a x (g_n z + f)",
 )
 def _(check: xr.Dataset) -> Finding:
     return Finding(
@@ -229,6 +232,8 @@ def _(check: xr.Dataset) -> Finding:
     unit="rad/s²",
     tolerance=Tolerance(1e-3, "the accuracy of the derivative taken of the run"),
     needs=("printed-equations",),
+    right="phi'' = (I3 theta' omega3 - 2 I1 theta' phi' cos theta - mu g_n v_y R (alpha - "
+    "cos theta)) / (I1 sin theta)",
 )
 def _(check: xr.Dataset) -> Finding:
     return Finding(
@@ -251,6 +256,7 @@ def _(check: xr.Dataset) -> Finding:
     tolerance=ROUNDING,
     needs=("run-155",),
     figure="fig04",
+    right="add m (v_A . w + v_A^2 / 2), with w the velocity that the centre of mass has without slip",
 )
 def _(run: xr.Dataset) -> Finding:
     launch = float(run["launch_energy"])

@@ -132,6 +132,7 @@ ROUNDED = 1e-12
     f"t = {STOP} s is before the critical time, at which the normal force becomes negative.",
     needs=("run-175",),
     figure="fig12",
+    right="it is after the critical time, by the report's own method too",
 )
 def _(run: xr.Dataset) -> Finding:
     theirs, ours = float(run["zero_of_force_listing"]), float(run["lift_off_time"])
@@ -208,6 +209,7 @@ def _numerator(run: xr.Dataset, suffix: str) -> tuple[float, float, float]:
     needs=("run-150-pi-4",),
     figure="fig16",
     implied=True,
+    right="it leaves the table",
 )
 def _(run: xr.Dataset) -> Finding:
     return Finding(

@@ -41,6 +41,7 @@ def _(data: xr.Dataset) -> Finding:
     "-0.985",
     needs=("flip-times", "flip-times-spins", "why-exponent"),
     figure="fig07",
+    right="no one power: the time jumps with the last swings",
 )
 def _(times: xr.Dataset, others: xr.Dataset, limits: xr.Dataset) -> Finding:
     spin, step, exponent = _nearest_fit(times, others, float("-0.985"))
@@ -111,6 +112,7 @@ def _(wide: xr.Dataset) -> Finding:
     tolerance=ARRIVED,
     needs=("run-mu-100",),
     figure="fig08",
+    right="it nutates below pi and touches it",
 )
 def _(run: xr.Dataset) -> Finding:
     ours = run["theta"].sel(time=slice(10.0, None))
@@ -163,6 +165,7 @@ def _(block: xr.Dataset) -> Finding:
     "Table 1: the unit of mu is m/s (the value is the power of length in it).",
     "1",
     needs=("units",),
+    right="s/m, as in section 2.2",
 )
 def _(check: xr.Dataset) -> Finding:
     return _unit(check, "centimetres", "length", "s/m, which section 2.2 has right,", "m/s")
@@ -174,6 +177,7 @@ def _(check: xr.Dataset) -> Finding:
     "Table 1: the unit of g is m s^2 (the value is the power of time in it).",
     "2",
     needs=("units",),
+    right="m s^-2",
 )
 def _(check: xr.Dataset) -> Finding:
     return _unit(check, "tenths", "time", "m s^-2", "m s^2")

@@ -204,6 +204,7 @@ def _(run: xr.Dataset) -> Finding:
     tolerance=Tolerance(1e-6, "fractions are exact"),
     needs=("run-50", "run-50-table-1"),
     figure="fig05",
+    right="I1 = 131/350 m R^2 and I3 = 2/5 m R^2, as in the listing",
 )
 def _(run: xr.Dataset, other: xr.Dataset) -> Finding:
     unit = REPORT.mass * float(REPORT.shape.law.size) ** 2
@@ -270,6 +271,7 @@ _turns_over(15, 120)
     "If the spin is too small the top can not even nutate.",
     needs=("run-10",),
     figure="fig13",
+    right="it nutates, and the nutation dies away",
 )
 def _(run: xr.Dataset) -> Finding:
     theirs, ours = (_swings(run[name].values) for name in ("theta_listing", "theta"))

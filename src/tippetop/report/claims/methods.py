@@ -16,6 +16,7 @@ CHAPTER = Chapter()
     "5",
     needs=("order",),
     figure="order",
+    right="f(Y4, t_n + dt) at the end; then a step is of order 5, a run of order 4",
 )
 def _(order: xr.Dataset) -> Finding:
     return Finding(
@@ -37,6 +38,7 @@ def _(order: xr.Dataset) -> Finding:
     "4",
     needs=("order",),
     figure="order",
+    right="ode45, of order 5, at a relative tolerance of 1e-3",
 )
 def _(data: xr.Dataset) -> Finding:
     order = float(data["order_ode45_in_all"])
@@ -84,6 +86,7 @@ def _name(run: xr.Dataset) -> str:
     "is not.",
     needs=("stiffness",),
     figure="stiffness",
+    right="large friction makes them stiff, no initial condition does",
 )
 def _(counts: xr.Dataset) -> Finding:
     own = counts["launch_mu"].values == MU
@@ -113,6 +116,7 @@ def _(counts: xr.Dataset) -> Finding:
     tolerance=ROUNDING,
     implied=True,
     needs=("theta-mod-pi", "run-mu-100", "run-155", "run-175"),
+    right="no modulo",
 )
 def _(check: xr.Dataset, *runs: xr.Dataset) -> Finding:
     size = float(check["size"])

@@ -131,6 +131,7 @@ def _(times: xr.Dataset, wide: xr.Dataset) -> Finding:
     "The equations can not be solved analytically: the only possible approach is numerical simulation.",
     needs=("why-critical", "why-bifurcation", "why-exponent"),
     figure="why-bifurcation",
+    right="critical spins, final tilts and the law of weak friction follow without one",
 )
 def _(theory: xr.Dataset, states: xr.Dataset, times: xr.Dataset) -> Finding:
     tilt, law = _tilt_miss(states), max(_law_misses(times))

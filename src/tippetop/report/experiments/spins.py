@@ -37,14 +37,12 @@ def final_tilt(spin: float, window: float = WINDOW) -> float:
 
 
 def _listing_spins(quick: bool) -> np.ndarray:
-    low = np.arange(24.0, 32.0, 2.0 if quick else 1.0)
-    high = np.arange(76.5, 80.6, 1.0 if quick else 0.5)
-    top = np.arange(164.0, 178.0, 2.0 if quick else 1.0)
+    low = np.arange(24.0, 29.0, 2.0 if quick else 1.0)
+    high = np.arange(77.5, 80.1, 1.0 if quick else 0.5)
+    top = np.arange(166.0, 174.0, 2.0 if quick else 1.0)
     between = np.concatenate([np.arange(5, 24, 6), np.arange(35, 76, 8), np.arange(85, 164, 10)])
     coarse = between[::3] if quick else between
-    return np.unique(
-        np.concatenate([coarse, low, high, top, [180.0] if quick else [184, 190, 196, 203, 210]])
-    )
+    return np.unique(np.concatenate([coarse, low, high, top, [180.0] if quick else [180, 190, 200, 210]]))
 
 
 def _by_listing(quick: bool) -> xr.Dataset:
