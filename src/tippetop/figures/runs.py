@@ -25,6 +25,8 @@ def motion_figure(
     precession_limit: float = 200.0,
     zoom: tuple[float, float] | None = None,
     inset: mark.Box = (0.5, 0.13, 0.48, 0.56),
+    reported_turn: float | None = None,
+    reported_reversals: tuple[float, ...] = (),
 ) -> Figure:
     """Return tilt, axial spin, precession and slip of a launch, by both methods.
 
@@ -33,7 +35,8 @@ def motion_figure(
     the vertical. `zoom` is a span of time, s, whose tilt is also drawn large, in the box
     `inset` (left, bottom, width, height in parts of the panel). The reversals of the
     precession are marked: `quiet_start` and `quiet_end` where they enclose a calm that comes later than 1 s,
-    otherwise `last_reversal`.
+    otherwise `last_reversal`. The times that the report prints, s, get squares: when the top has turned over,
+    and when the precession reverses.
     """
     figure = Figure(figsize=(WIDTH, 5.0))
     panels = figure.subplots(2, 2, sharex=True)
@@ -45,6 +48,12 @@ def motion_figure(
     _pair(spin, run, "omega3")
     spin.set_ylabel(r"axial spin $\omega_3$ (rad/s)")
     _precession(turning, run, precession_limit)
+    square = {"color": REPORT, "ms": 5, "mec": INK, "mew": 0.6, "zorder": 6}
+    turning.plot(reported_reversals, np.zeros(len(reported_reversals)), "s", **square)
+    if reported_turn is not None:
+        height = float(np.interp(reported_turn, run["time_listing"], run["theta_listing"]))
+        tilt.plot(reported_turn, height, "s", **square)
+        mark.note(tilt, f"report: {reported_turn:g} s", (reported_turn, height), (6, -8), REPORT, halo=True)
     _slip(slip, run)
     for axes in panels[1]:
         axes.set_xlabel("time (s)")
@@ -131,24 +140,29 @@ def force_figure(run: xr.Dataset) -> Figure:
 
 @house_style()
 def stopped_figure(run: xr.Dataset, reported_stop: float) -> Figure:
-    """Return the tilt up to where the report stopped, s, up to the lift-off, and from there on in flight."""
-    figure, axes = _wide_panel(run)
+    """Return tilt and force to where the report stopped, s, to the lift-off, and from there in flight."""
+    figure = Figure(figsize=(WIDTH, 4.6))
+    panels = figure.subplots(2, 1, sharex=True, height_ratios=[1.3, 1])
+    tilt, force = panels
     stop = float(run["lift_off_time"])
     before = run.sel(time=run["time"] <= stop)
     other = run.sel(time_listing=run["time_listing"] <= reported_stop)
-    axes.plot(other["time_listing"], other["theta_listing"], color=REPORT, lw=_WIDE, label=_NAME_REPORT)
-    axes.plot(before["time"], before["theta"], color=CONVERGED, lw=_THIN + 0.3, label=_NAME)
-    continue_pushing(axes, run, "theta")
-    shade_flights(axes, run)
-    _tilt_axis(axes)
-    axes.set_xlim(0, 8)
+    for axes, name in ((tilt, "theta"), (force, "normal_force")):
+        axes.plot(other["time_listing"], other[f"{name}_listing"], color=REPORT, lw=_WIDE, label=_NAME_REPORT)
+        axes.plot(before["time"], before[name], color=CONVERGED, lw=_THIN + 0.3, label=_NAME)
+        continue_pushing(axes, run, name)
+        shade_flights(axes, run)
+    _tilt_axis(tilt)
+    force.axhline(0, color=ACCENT, lw=1.0)
+    force.set(xlabel="time (s)", ylabel="normal force $g_n$ (N)", xlim=(0, 8))
     end = float(np.interp(stop, run["time"], run["theta"]))
     last = float(other["theta_listing"][-1])
-    axes.plot([stop], [end], "o", color=ACCENT, ms=6, zorder=5)
-    axes.plot([reported_stop], [last], "s", color=REPORT, ms=6, zorder=5, mec=INK, mew=0.6)
-    _callout(axes, f"the top leaves the table\nat {stop:.3f} s", (stop, end), (-44, 22), ACCENT, "right")
-    _callout(axes, f"the report stops\nat {reported_stop:g} s", (reported_stop, last), (38, -34), INK, "left")
-    axes.legend(loc="upper left")
+    tilt.plot([stop], [end], "o", color=ACCENT, ms=6, zorder=5)
+    tilt.plot([reported_stop], [last], "s", color=REPORT, ms=6, zorder=5, mec=INK, mew=0.6)
+    _callout(tilt, f"the top leaves the table\nat {stop:.3f} s", (stop, end), (-44, 22), ACCENT, "right")
+    _callout(tilt, f"the report stops\nat {reported_stop:g} s", (reported_stop, last), (38, -34), INK, "left")
+    tilt.legend(loc="upper left")
+    mark.letters(panels)
     return figure
 
 

@@ -87,11 +87,12 @@ def _abnormal(axes: Axes, theirs: float, onset: float) -> None:
 
 
 @house_style()
-def flip_time_figure(times: xr.Dataset) -> Figure:
+def flip_time_figure(times: xr.Dataset, reported: float) -> Figure:
     """Return flip times against friction: the report's range with fits, and three decades of it.
 
     `times` has flip_time, factor, exponent and correlation, and the same with suffix _listing, over mu,
-    and flip_time_wide over spin_wide and mu_wide.
+    and flip_time_wide over spin_wide and mu_wide. `reported` is the power of mu that the report prints; its
+    line goes through the middle of the points of its method.
     """
     figure = Figure(figsize=(WIDTH, 3.9))
     left, right = figure.subplots(1, 2)
@@ -105,6 +106,9 @@ def flip_time_figure(times: xr.Dataset) -> Figure:
         label = f"{name}\n$t = {a:.2f}\\,\\mu^{{{b:.3f}}}$,  $r = {r:.4f}$"
         size = 6 if marker == "o" else 7
         left.plot(mu, times[f"flip_time{suffix}"], marker, color=color, ms=size, label=label)
+    middle = np.exp(np.nanmean(np.log(times["flip_time_listing"] * mu**-reported)))
+    label = rf"the report: $\mu^{{{reported:g}}}$"
+    left.plot(fine, float(middle) * fine**reported, color=INK, lw=1.0, ls=DASHED, label=label)
     left.legend(loc="upper right", labelspacing=0.9)
     left.set(xlabel=r"friction $\mu$ (s/m)", ylabel="flip time (s)")
     left.set_ylim(0, 1.15 * float(times["flip_time_listing"].max()))

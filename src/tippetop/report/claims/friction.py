@@ -5,6 +5,7 @@ import xarray as xr
 
 from tippetop.report.claim import ARRIVED, Chapter, Finding, Source
 from tippetop.report.experiments.friction import power_law
+from tippetop.report.quoted import EXPONENT, NORMAL_FRICTION
 
 CHAPTER = Chapter()
 
@@ -37,15 +38,16 @@ def _(data: xr.Dataset) -> Finding:
 @CHAPTER.claim(
     "fig07-exponent",
     Source("3.3", "Fig. 7, and summary, point 5"),
-    "For mu from 0.2 to 1 the flip time goes as mu^-0.985, nearly as 1/mu.",
-    "-0.985",
+    f"For mu from {NORMAL_FRICTION[0]:g} to {NORMAL_FRICTION[1]:g} the flip time goes as mu^{EXPONENT}, "
+    "nearly as 1/mu.",
+    EXPONENT,
     needs=("flip-times", "flip-times-spins", "why-exponent"),
     figure="fig07",
     right="no one power: the time jumps with the last swings",
 )
 def _(times: xr.Dataset, others: xr.Dataset, limits: xr.Dataset) -> Finding:
-    spin, step, exponent = _nearest_fit(times, others, float("-0.985"))
-    inside = limits.sel(mu_flip=slice(0.2 * 0.999, 1.001))
+    spin, step, exponent = _nearest_fit(times, others, float(EXPONENT))
+    inside = limits.sel(mu_flip=slice(NORMAL_FRICTION[0] * 0.999, NORMAL_FRICTION[1] * 1.001))
     arrival = inside["mu_flip"] * inside["arrival_time_end"] / limits["limit_arrival"]
     crossing = inside["mu_flip"] * inside["crossing_time"] / limits["limit_crossing"]
     return Finding(
