@@ -12,8 +12,6 @@ from tippetop.report.readings import SETTLED
 
 CHAPTER = Chapter()
 
-(_FIRST, _SECOND), (_ONLY,) = REVERSALS["fig04"], REVERSALS["fig05"]
-
 
 def _turned(figure: str, spin: int, how_far: str) -> None:
     printed = TURNED_AT[figure]
@@ -45,39 +43,30 @@ _turned("fig04", 155, "completely")
 _turned("fig05", 50, "half")
 
 
-@CHAPTER.claim(
-    "fig04-first-reversal",
-    Source("3.1", "Fig. 4"),
-    f"At 155 rad/s the precession reverses at t = {_FIRST} s.",
-    f"{_FIRST} s",
-    needs=("run-155",),
-    figure="fig04",
-)
-def _(run: xr.Dataset) -> Finding:
-    ours = float(run["quiet_start"])
-    return Finding(
-        float(run["quiet_start_listing"]),
-        ours,
-        f"The precession changes sign {int(run['reversals'])} times in 20 s, with every nutation; "
-        f"the one meant is the last before the long calm, at {ours:.3f} s.",
+def _reversal(name: str, spin: int, printed: str, reading: str, meant: str) -> None:
+    figure = name.partition("-")[0]
+
+    @CHAPTER.claim(
+        name,
+        Source("3.1", f"Fig. {int(figure[3:])}"),
+        f"At {spin} rad/s the precession reverses at t = {printed} s.",
+        f"{printed} s",
+        needs=(f"run-{spin}",),
+        figure=figure,
     )
+    def _(run: xr.Dataset) -> Finding:
+        return Finding(
+            float(run[f"{reading}_listing"]),
+            float(run[reading]),
+            f"The precession changes sign {run['reversals']:.0f} times in 20 s, with the nutation, last at "
+            f"{run['last_reversal']:.2f} s; the one meant is {meant}.",
+        )
 
 
-@CHAPTER.claim(
-    "fig04-second-reversal",
-    Source("3.1", "Fig. 4"),
-    f"At 155 rad/s the precession reverses again at t = {_SECOND} s.",
-    f"{_SECOND} s",
-    needs=("run-155",),
-    figure="fig04",
-)
-def _(run: xr.Dataset) -> Finding:
-    return Finding(
-        float(run["quiet_end_listing"]),
-        float(run["quiet_end"]),
-        "This is the first reversal after the long calm; the last of all is at "
-        f"{run['last_reversal']:.2f} s.",
-    )
+_FIRST, _SECOND = REVERSALS["fig04"]
+_reversal("fig04-first-reversal", 155, _FIRST, "quiet_start", "the last before the long calm")
+_reversal("fig04-second-reversal", 155, _SECOND, "quiet_end", "the first after the long calm")
+_reversal("fig05-reversal", 50, REVERSALS["fig05"][0], "last_reversal", "the last")
 
 
 @CHAPTER.claim(
@@ -182,22 +171,6 @@ def _end_of_run_50(name: str, symbol: str, unit: str) -> None:
 _end_of_run_50("theta", "theta", "rad")
 _end_of_run_50("phi_dot", "phi'", "rad/s")
 _end_of_run_50("omega3", "omega", "rad/s")
-
-
-@CHAPTER.claim(
-    "fig05-reversal",
-    Source("3.1", "Fig. 5"),
-    f"At 50 rad/s the precession reverses at t = {_ONLY} s.",
-    f"{_ONLY} s",
-    needs=("run-50",),
-    figure="fig05",
-)
-def _(run: xr.Dataset) -> Finding:
-    return Finding(
-        float(run["last_reversal_listing"]),
-        float(run["last_reversal"]),
-        f"This is the last of {int(run['reversals'])} changes of sign.",
-    )
 
 
 @CHAPTER.claim(
