@@ -246,7 +246,7 @@ def observe(samples: Samples, top: Top, units: Units) -> dict[str, Array]:
 
 
 def evenly_summed(gains: Array) -> Array:
-    """Sums of the first gains, from none to all: for many that are alike, without adding up their rounding."""
+    """Sums of the first gains, from none to all, without adding up the rounding of many that are alike."""
     mean = np.mean(gains)
     found: Array = mean * np.arange(len(gains) + 1.0)
     found[1:] += np.cumsum(gains - mean)

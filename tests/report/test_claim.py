@@ -10,54 +10,66 @@ from tippetop.report.claim import (
     Finding,
     Judgement,
     Source,
-    Statement,
+    Tolerance,
     Verdict,
     decide,
     half_last_digit,
     number,
 )
-from tippetop.report.claims import CLAIMS
-from tippetop.report.experiments import EXPERIMENTS
+from tippetop.report.claims.registry import CLAIMS
+from tippetop.report.experiments.registry import EXPERIMENTS
 from tippetop.report.gallery import PLATES
 
 FIELDS = {"id", "source", "statement", "reported", "listing", "converged", "unit", "verdict", "note"}
 
 
-def judged(finding: Finding, **statement: object) -> Judgement:
-    said = Statement("a-claim", Source("1", "Fig. 1", "(1)"), "It is so.", **statement)  # type: ignore[arg-type]
-    return Judgement(Claim(said, (), None, lambda _: finding), finding, quick=False)
+def judged(finding: Finding, printed: str = "", tolerance: Tolerance | None = None) -> Judgement:
+    source = Source("1", "Fig. 1", "(1)")
+    unit = "s" if tolerance else None
+    claim = Claim(
+        "a-claim", source, "It is so.", printed, unit, tolerance, (), None, False, "", lambda: finding
+    )
+    return claim.judge({}, quick=False)
 
 
 @pytest.mark.parametrize(
     ("printed", "half"), [("7.4", 0.05), ("170", 0.5), ("-0.985", 0.0005), ("5.62", 0.005), ("0", 0.5)]
 )
 def test_tolerance_is_half_of_the_last_printed_digit(printed: str, half: float) -> None:
-    assert half_last_digit(printed) == pytest.approx(half)
-    assert judged(Finding(None, 0.0, ""), printed=printed).tolerance == pytest.approx(half)
+    assert half_last_digit(printed).value == pytest.approx(half)
+    assert judged(Finding(None, 0.0, ""), printed).tolerance == half_last_digit(printed)
 
 
 @pytest.mark.parametrize(
-    ("listing", "converged", "span", "verdict"),
+    ("listing", "converged", "chosen", "verdict"),
     [
-        (9.0, 7.44, None, Verdict.REPRODUCED),
-        (9.0, 7.36, None, Verdict.REPRODUCED),
+        (None, 7.44, None, Verdict.REPRODUCED),
+        (7.41, 7.36, None, Verdict.REPRODUCED),
+        (9.0, 7.36, 7.41, Verdict.REPRODUCED),
+        (9.0, 7.36, None, Verdict.UPHELD),
+        (9.0, 7.36, 8.0, Verdict.UPHELD),
         (7.41, 7.5, None, Verdict.EXPLAINED),
-        (9.0, 8.0, (7.0, 7.5), Verdict.EXPLAINED),
-        (None, 8.0, (7.44, 9.0), Verdict.EXPLAINED),
-        (9.0, 8.0, (7.5, 9.0), Verdict.CORRECTED),
+        (9.0, 8.0, 7.43, Verdict.EXPLAINED),
+        (None, 8.0, 7.44, Verdict.EXPLAINED),
+        (9.0, 8.0, 7.5, Verdict.CORRECTED),
         (None, 8.0, None, Verdict.CORRECTED),
         (math.nan, math.nan, None, Verdict.CORRECTED),
     ],
 )
 def test_rule_for_numbers(
-    listing: float | None, converged: float, span: tuple[float, float] | None, verdict: Verdict
+    listing: float | None, converged: float, chosen: float | None, verdict: Verdict
 ) -> None:
-    assert decide(7.4, listing, converged, 0.05, span) is verdict
+    assert decide(7.4, listing, converged, 0.05, chosen) is verdict
 
 
 @pytest.mark.parametrize(
     ("listing", "converged", "verdict"),
-    [(None, True, Verdict.REPRODUCED), (True, False, Verdict.EXPLAINED), (False, False, Verdict.CORRECTED)],
+    [
+        (None, True, Verdict.REPRODUCED),
+        (False, True, Verdict.UPHELD),
+        (True, False, Verdict.EXPLAINED),
+        (False, False, Verdict.CORRECTED),
+    ],
 )
 def test_rule_for_what_is_true_or_false(listing: bool | None, converged: bool, verdict: Verdict) -> None:
     assert decide(True, listing, converged, None) is verdict
@@ -65,42 +77,40 @@ def test_rule_for_what_is_true_or_false(listing: bool | None, converged: bool, v
 
 def test_half_a_digit_is_still_agreement_in_binary() -> None:
     # 7.45 - 7.4 is a little more than 0.05 in floating point.
-    assert decide(7.4, None, 7.45, half_last_digit("7.4")) is Verdict.REPRODUCED
+    assert decide(7.4, None, 7.45, half_last_digit("7.4").value) is Verdict.REPRODUCED
 
 
 def test_record_is_json_and_says_all() -> None:
-    finding = Finding(math.nan, 7.42, "A note.", (7.0, 8.0), "what is left open")
-    record = judged(finding, printed="7.4", unit="s").record()
+    finding = Finding(math.nan, 7.42, "A note.", 7.0, "what is left open")
+    record = judged(finding, "7.4 s").record()
     assert set(record) >= FIELDS
     again = json.loads(json.dumps(record, allow_nan=False))
     assert again["source"] == {"figure": "Fig. 1", "equation": "(1)", "section": "1"}
     assert again["reported"] == 7.4
     assert again["reported_as"] == "7.4"
     assert again["listing"] is None
-    assert again["listing_range"] == [7.0, 8.0]
-    assert again["verdict"] == "reproduced"
+    assert (again["listing_chosen"], again["listing_choice"]) == (7.0, "what is left open")
+    assert again["verdict"] == "upheld"
 
 
 def test_formula_is_compared_by_what_it_evaluates_to() -> None:
     finding = Finding(1.0, 1.0, "", reported=2.0)
-    judgement = judged(finding, tolerance=1e-3)
+    judgement = judged(finding, tolerance=Tolerance(1e-3, "small"))
     assert judgement.reported == 2.0
     assert judgement.verdict is Verdict.CORRECTED
 
 
 @pytest.mark.parametrize("claim", CLAIMS.values(), ids=CLAIMS)
 def test_claims_are_complete(claim: Claim) -> None:
-    statement = claim.statement
     assert claim.needs
     assert set(claim.needs) <= set(EXPERIMENTS)
     assert claim.figure is None or claim.figure in PLATES
-    assert statement.source.section
-    if statement.holds is None:
-        assert statement.printed or statement.tolerance is not None
-    if statement.printed:
-        assert math.isfinite(number(statement.printed))
-    if statement.tolerance is not None:
-        assert statement.tolerance_from
+    assert claim.source.section
+    assert claim.printed or not claim.unit or claim.tolerance
+    if claim.printed:
+        assert math.isfinite(number(claim.number))
+    if claim.tolerance is not None:
+        assert claim.tolerance.reason
 
 
 def test_every_figure_of_the_report_is_there() -> None:

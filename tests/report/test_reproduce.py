@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 from tippetop.cli.reproduce import reproduce as command
 from tippetop.dataset import read_run
 from tippetop.errors import FileTrouble, InvalidInput
-from tippetop.report.claims import CLAIMS
+from tippetop.report.claims.registry import CLAIMS
 from tippetop.report.gallery import PLATES
 from tippetop.report.reproduce import reproduce
 
@@ -64,7 +64,7 @@ def test_one_figure_with_its_data_and_claims(fig13: Path) -> None:
     files = sorted(str(path.relative_to(fig13)) for path in fig13.rglob("*") if path.is_file())
     assert files == ["claims.json", "data/fig13.nc", "figures/fig13.png", "figures/fig13.svg", "index.html"]
     records = json.loads((fig13 / "claims.json").read_text(encoding="utf-8"))
-    assert [record["id"] for record in records] == ["fig13-upright"]
+    assert [record["id"] for record in records] == ["fig13-upright", "sec3-no-nutation", "eq-2.17-exception"]
     assert (fig13 / "figures/fig13.png").read_bytes().startswith(b"\x89PNG")
     data = read_run(fig13 / "data/fig13.nc")
     assert {"theta", "theta_listing"} <= set(data.data_vars)
@@ -73,6 +73,16 @@ def test_one_figure_with_its_data_and_claims(fig13: Path) -> None:
 
 def test_page_stands_alone(fig13: Path) -> None:
     check_page(fig13)
+
+
+def test_page_opens_with_what_is_wrong_and_what_is_right(fig13: Path) -> None:
+    text = (fig13 / "index.html").read_text(encoding="utf-8")
+    wrong, right, rest = (text.index(f'id="{name}"') for name in ("errors", "sound", "figures"))
+    assert wrong < right < rest
+    assert "it nutates, and the nutation dies away" in text[wrong:right]
+    assert 'href="#claim-fig13-upright"' in text[right:rest]
+    assert "(what is left of it" not in text[wrong:right]
+    assert "(what is left of it" in text[rest:]
 
 
 def test_quick_run_says_so(fig13: Path) -> None:
@@ -137,7 +147,7 @@ def test_whole_report_in_its_quick_version(tmp_path: Path) -> None:
     assert [record["id"] for record in records] == list(CLAIMS)
     for record in records:
         assert set(record) >= FIELDS
-        assert record["verdict"] in {"reproduced", "corrected", "explained"}
+        assert record["verdict"] in {"reproduced", "upheld", "explained", "corrected"}
         assert record["converged"] is not None
         assert record["reported"] is not None
         assert record["note"]

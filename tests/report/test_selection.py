@@ -3,8 +3,8 @@
 import pytest
 
 from tippetop.errors import InvalidInput
-from tippetop.report.claims import CLAIMS
-from tippetop.report.experiments import EXPERIMENTS
+from tippetop.report.claims.registry import CLAIMS
+from tippetop.report.experiments.registry import EXPERIMENTS
 from tippetop.report.gallery import PLATES
 from tippetop.report.selection import select
 

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
     from tippetop.report.reproduce import Reproduction
 
-_STYLES = {"reproduced": "green", "explained": "blue", "corrected": "magenta"}
+_STYLES = {"reproduced": "green", "upheld": "yellow", "explained": "blue", "corrected": "magenta"}
 
 
 def reproduce(

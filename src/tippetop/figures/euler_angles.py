@@ -6,29 +6,29 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from tippetop.figures import drawing as draw
+import tippetop.figures.drawing as draw
 from tippetop.figures.drawing import Array
 from tippetop.figures.style import ACCENT, CONVERGED, INK, MUTED, house_style
 
 _PRECESSION, _NUTATION, _ROTATION = np.radians((60.0, 34.0, 45.0))
 
 
+@house_style()
 def euler_angles_drawing() -> Figure:
     """Return the Euler angles: alpha about z, beta about the line of nodes N, gamma about Z.
 
     Space axes x, y, z are grey, body axes X, Y, Z blue; everything is drawn by one parallel projection.
     """
-    with house_style():
-        figure, axes = draw.canvas((-1.22, 1.98), (-0.9, 1.32))
-        view = _view(azimuth=np.radians(35), elevation=np.radians(22))
-        space, body = np.eye(3), _body_axes()
-        nodes = np.array([np.cos(_PRECESSION), np.sin(_PRECESSION), 0.0])
-        _discs(axes, view, space, body, nodes)
-        _frame(axes, view, space, ("x", "y", "z"), MUTED)
-        _frame(axes, view, body, ("X", "Y", "Z"), CONVERGED)
-        _line_of_nodes(axes, view, nodes)
-        _euler_arcs(axes, view, space, body, nodes)
-        _euler_key(axes, (1.08, 1.2))
+    figure, axes = draw.canvas((-1.22, 1.98), (-0.9, 1.32))
+    view = _view(azimuth=np.radians(35), elevation=np.radians(22))
+    space, body = np.eye(3), _body_axes()
+    nodes = np.array([np.cos(_PRECESSION), np.sin(_PRECESSION), 0.0])
+    _discs(axes, view, space, body, nodes)
+    _frame(axes, view, space, ("x", "y", "z"), MUTED)
+    _frame(axes, view, body, ("X", "Y", "Z"), CONVERGED)
+    _line_of_nodes(axes, view, nodes)
+    _euler_arcs(axes, view, space, body, nodes)
+    _euler_key(axes, (1.08, 1.2))
     return figure
 
 

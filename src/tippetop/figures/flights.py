@@ -7,23 +7,22 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
-from matplotlib.ticker import FixedLocator, NullFormatter, ScalarFormatter
+from matplotlib.ticker import NullFormatter, ScalarFormatter
 
+import tippetop.figures.annotation as mark
 from tippetop.figures.style import (
     ACCENT,
     CYCLE,
+    DASHED,
     FAINT,
     INK,
     MUTED,
+    PUSHES,
     REPORT,
     WIDTH,
     house_style,
-    panel_letter,
     pi_ticks,
 )
-
-PUSHES = CYCLE[2]
-"""Color of what happens on a table that only pushes."""
 
 _BOUNCES = CYCLE[5]
 
@@ -37,84 +36,81 @@ def continue_pushing(axes: Axes, run: xr.Dataset, name: str, scale: float = 1.0)
     axes.plot(after["time"], scale * after, color=PUSHES, lw=1.3, zorder=4, label="table only pushes")
 
 
+@house_style()
 def onset_figure(sweep: xr.Dataset, over: str, reported: float) -> Figure:
     """Return the least spin that leaves the table against "mu" or "tilt", with the launches of the scan.
 
     `sweep` has first_lift_off over the parameter and spin, and onset over window and the parameter.
     `reported` is the spin of the report's abnormal point, rad/s.
     """
-    with house_style():
-        figure = Figure(figsize=(WIDTH, 3.9))
-        axes = figure.subplots()
-        values, spins = np.meshgrid(sweep[over].values, sweep["spin"].values, indexing="ij")
-        times = sweep["first_lift_off"].values
-        stays = ~np.isfinite(times)
-        axes.plot(values[stays], spins[stays], "o", color=FAINT, ms=3.5, mec=MUTED, mew=0.5, zorder=2)
-        dots = axes.scatter(
-            values[~stays], spins[~stays], c=times[~stays], s=22, norm=LogNorm(), zorder=2, edgecolors="none"
-        )
-        bar = figure.colorbar(dots, ax=axes, label="first lift-off (s)", pad=0.02)
-        first, last = np.nanmin(times), np.nanmax(times)
-        bar.set_ticks([tick for tick in (1, 2, 5, 10, 20, 50, 100, 200) if first <= tick <= last])
-        bar.ax.yaxis.set_major_formatter(ScalarFormatter())
-        bar.ax.yaxis.set_minor_formatter(NullFormatter())
-        for k, (window, style) in enumerate(zip(sweep["window"].values, ("-", (0, (4, 2))), strict=False)):
-            axes.plot(
-                sweep[over], sweep["onset"].sel(window=window), color=ACCENT, ls=style, lw=1.8, zorder=4 - k,
-                label=f"onset within {window:g} s",
-            )  # fmt: skip
-        name = rf"report: $\omega_a$ = {reported:g}"
-        axes.axhline(reported, color=REPORT, lw=1.1, ls=(0, (4, 3)), label=name)
-        own = 0.3 if over == "mu" else 0.1
-        axes.plot(own, reported, "s", color=REPORT, ms=6, mec=INK, mew=0.6, zorder=5)
-        axes.set_ylabel(r"spin at launch $\omega_0$ (rad/s)")
-        axes.set_ylim(40, 1.03 * float(sweep["spin"][-1]))
-        if over == "mu":
-            axes.set(xscale="log", xlabel=r"friction $\mu$ (s/m)")
-            axes.xaxis.set_major_locator(FixedLocator([0.03, 0.1, 0.3, 1, 3, 10]))
-            axes.xaxis.set_major_formatter(ScalarFormatter())
-            axes.xaxis.set_minor_formatter(NullFormatter())
-        else:
-            axes.set_xlabel(r"tilt at launch $\theta_0$ (rad)")
-        axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, borderaxespad=0.2)
+    figure = Figure(figsize=(WIDTH, 3.9))
+    axes = figure.subplots()
+    values, spins = np.meshgrid(sweep[over].values, sweep["spin"].values, indexing="ij")
+    times = sweep["first_lift_off"].values
+    stays = ~np.isfinite(times)
+    axes.plot(values[stays], spins[stays], "o", color=FAINT, ms=3.5, mec=MUTED, mew=0.5, zorder=2)
+    dots = axes.scatter(
+        values[~stays], spins[~stays], c=times[~stays], s=22, norm=LogNorm(), zorder=2, edgecolors="none"
+    )
+    bar = figure.colorbar(dots, ax=axes, label="first lift-off (s)", pad=0.02)
+    first, last = np.nanmin(times), np.nanmax(times)
+    bar.set_ticks([tick for tick in (1, 2, 5, 10, 20, 50, 100, 200) if first <= tick <= last])
+    bar.ax.yaxis.set_major_formatter(ScalarFormatter())
+    bar.ax.yaxis.set_minor_formatter(NullFormatter())
+    for k, (window, style) in enumerate(zip(sweep["window"].values, ("-", (0, (4, 2))), strict=False)):
+        axes.plot(
+            sweep[over], sweep["onset"].sel(window=window), color=ACCENT, ls=style, lw=1.8, zorder=4 - k,
+            label=f"onset within {window:g} s",
+        )  # fmt: skip
+    name = rf"report: $\omega_a$ = {reported:g}"
+    axes.axhline(reported, color=REPORT, lw=1.1, ls=DASHED, label=name)
+    own = 0.3 if over == "mu" else 0.1
+    axes.plot(own, reported, "s", color=REPORT, ms=6, mec=INK, mew=0.6, zorder=5)
+    axes.set_ylabel(r"spin at launch $\omega_0$ (rad/s)")
+    axes.set_ylim(40, 1.03 * float(sweep["spin"][-1]))
+    if over == "mu":
+        axes.set(xscale="log", xlabel=r"friction $\mu$ (s/m)")
+        mark.plain_ticks(axes.xaxis, [0.03, 0.1, 0.3, 1, 3, 10])
+    else:
+        axes.set_xlabel(r"tilt at launch $\theta_0$ (rad)")
+    mark.legend_above(axes, 3)
     return figure
 
 
+@house_style()
 def hops_figure(sweep: xr.Dataset) -> Figure:
     """Return how launches go on after lift-off, against the spin.
 
     `sweep` has airborne_time, last_touchdown, first_lift_off, flights, turning_time and final_theta_flight
     over restitution and spin.
     """
-    with house_style():
-        figure = Figure(figsize=(WIDTH, 5.2))
-        panels = figure.subplots(2, 2, sharex=True)
-        share, turning, count, tilt = panels.flat
-        for restitution, color, marker in zip(
-            sweep["restitution"].values, (PUSHES, _BOUNCES), ("o", "s"), strict=False
-        ):
-            runs = sweep.sel(restitution=restitution).dropna("spin", subset=["airborne_time"])
-            spins, air = runs["spin"], runs["airborne_time"]
-            hollow = {"color": color, "marker": marker, "ms": 4}
-            between = runs["last_touchdown"] - runs["first_lift_off"]
-            share.plot(spins, 100 * air / between, ls=(0, (4, 2)), mfc="white", **hollow)
-            share.plot(spins, 100 * air / runs["last_touchdown"].where(runs["flights"] > 0), **hollow)
-            turning.plot(spins, runs["turning_time"], label=f"restitution {restitution:g}", **hollow)
-            flying = runs.sel(spin=runs["flights"] > 0)
-            count.plot(flying["spin"], flying["flights"], **hollow)
-            tilt.plot(spins, runs["final_theta_flight"], **hollow)
-        _words(share, sweep)
-        share.set(ylabel="airborne share (%)", ylim=(0, 100))
-        turning.set(ylabel=r"$\theta$ first passes π/2 (s)")
-        turning.set_ylim(bottom=0)
-        turning.legend(loc="upper left")
-        count.set(ylabel="number of flights", yscale="log")
-        tilt.set(ylabel=r"tilt after 60 s (rad)", ylim=(-0.1, np.pi + 0.25))
-        pi_ticks(tilt.yaxis)
-        for axes in panels[1]:
-            axes.set_xlabel(r"spin at launch $\omega_0$ (rad/s)")
-        for axes, letter in zip(panels.flat, "abcd", strict=True):
-            panel_letter(axes, letter)
+    figure = Figure(figsize=(WIDTH, 5.2))
+    panels = figure.subplots(2, 2, sharex=True)
+    share, turning, count, tilt = panels.flat
+    for restitution, color, marker in zip(
+        sweep["restitution"].values, (PUSHES, _BOUNCES), ("o", "s"), strict=False
+    ):
+        runs = sweep.sel(restitution=restitution).dropna("spin", subset=["airborne_time"])
+        spins, air = runs["spin"], runs["airborne_time"]
+        hollow = {"color": color, "marker": marker, "ms": 4}
+        between = runs["last_touchdown"] - runs["first_lift_off"]
+        share.plot(spins, 100 * air / between, ls=(0, (4, 2)), mfc="white", **hollow)
+        share.plot(spins, 100 * air / runs["last_touchdown"].where(runs["flights"] > 0), **hollow)
+        turning.plot(spins, runs["turning_time"], label=f"restitution {restitution:g}", **hollow)
+        flying = runs.sel(spin=runs["flights"] > 0)
+        count.plot(flying["spin"], flying["flights"], **hollow)
+        tilt.plot(spins, runs["final_theta_flight"], **hollow)
+    _words(share, sweep)
+    share.set(ylabel="airborne share (%)", ylim=(0, 100))
+    turning.set(ylabel=r"$\theta$ first passes π/2 (s)")
+    turning.set_ylim(bottom=0)
+    turning.legend(loc="upper left")
+    count.set(ylabel="number of flights", yscale="log")
+    tilt.set(ylabel=r"tilt after 60 s (rad)", ylim=(-0.1, np.pi + 0.25))
+    pi_ticks(tilt.yaxis)
+    for axes in panels[1]:
+        axes.set_xlabel(r"spin at launch $\omega_0$ (rad/s)")
+    mark.letters(panels.flat)
     return figure
 
 
@@ -126,7 +122,13 @@ def _words(axes: Axes, sweep: xr.Dataset) -> None:
         ("from first lift-off\nto last touchdown", air / (end - float(last["first_lift_off"])), 14),
         ("from launch\nto last touchdown", air / end, -32),
     ):
-        axes.annotate(
-            text, (float(last["spin"]), 100 * share), (0, offset), textcoords="offset points", ha="right",
-            va="center", size=8.5, color=PUSHES,
-        )  # fmt: skip
+        mark.note(
+            axes,
+            text,
+            (float(last["spin"]), 100 * share),
+            (0, offset),
+            PUSHES,
+            ha="right",
+            va="center",
+            size=8.5,
+        )

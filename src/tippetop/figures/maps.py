@@ -66,6 +66,7 @@ class Shade(NamedTuple):
     none: str
 
 
+@house_style()
 def phase_map(sweep: xr.Dataset, variable: str = "final_theta") -> Figure:
     """Draw a variable of a sweep: over axes as colours, over one axis as a curve, of draws as points.
 
@@ -73,21 +74,20 @@ def phase_map(sweep: xr.Dataset, variable: str = "final_theta") -> Figure:
     three, those after the third stay at the middle one of their values.
     """
     values = sweep[variable]
-    with house_style():
-        if values.ndim > 2:
-            return _panels(sweep, variable)
-        figure = Figure(figsize=(WIDTH, 4.6))
-        axes = figure.subplots()
-        axes.set_title(_title(sweep, variable))
-        if values.dims == ("draw",):
-            _scatter(figure, axes, sweep, variable)
-        elif values.ndim == 1:
-            _curve(axes, sweep, variable)
-        else:
-            shade = _shade(sweep, variable, _shown(sweep, variable))
-            image = _colours(axes, sweep, variable, shade)
-            _bar(figure, [axes], image, sweep, variable)
-        return figure
+    if values.ndim > 2:
+        return _panels(sweep, variable)
+    figure = Figure(figsize=(WIDTH, 4.6))
+    axes = figure.subplots()
+    axes.set_title(_title(sweep, variable))
+    if values.dims == ("draw",):
+        _scatter(figure, axes, sweep, variable)
+    elif values.ndim == 1:
+        _curve(axes, sweep, variable)
+    else:
+        shade = _shade(sweep, variable, _shown(sweep, variable))
+        image = _colours(axes, sweep, variable, shade)
+        _bar(figure, [axes], image, sweep, variable)
+    return figure
 
 
 def _panels(sweep: xr.Dataset, variable: str) -> Figure:

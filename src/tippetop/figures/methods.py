@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
-from matplotlib.ticker import FixedLocator, NullFormatter, ScalarFormatter
 
-from tippetop.figures.style import ACCENT, CONVERGED, CYCLE, REPORT, WIDTH, house_style
+import tippetop.figures.annotation as mark
+from tippetop.figures.style import ACCENT, CONVERGED, CYCLE, PUSHES, REPORT, WIDTH, house_style
 
 _LABELS = {
     "ode45": "ode45 (explicit)",
@@ -18,58 +18,59 @@ _LABELS = {
 }
 
 
+@house_style()
 def order_figure(errors: xr.Dataset) -> Figure:
     """Return errors against the length of a step, in all and in one step.
 
-    `errors` has rk4_in_all, rk4_in_a_step and ode45_in_all over step, and the orders order_... of each.
+    `errors` has rk4_in_all, rk4_in_a_step and ode45_in_all over step, printed_in_all and
+    printed_mended_in_all over step_printed, and the orders order_... of each.
     """
     series = (
-        ("rk4_in_all", "Appendix B, after 0.1 s", CONVERGED, "o-"),
+        ("printed_in_all", "(B.1) as printed, time in f", ACCENT, "^-"),
+        ("printed_mended_in_all", "(B.1) mended, time in f", PUSHES, "v-"),
+        ("rk4_in_all", "Appendix B, the top", CONVERGED, "o-"),
         ("rk4_in_a_step", "Appendix B, one step", CONVERGED, "o--"),
-        ("ode45_in_all", "the formula of ode45, after 0.1 s", REPORT, "s-"),
+        ("ode45_in_all", "the formula of ode45", REPORT, "s-"),
     )
-    with house_style():
-        figure = Figure(figsize=(WIDTH, 3.4))
-        axes = figure.subplots()
-        step = 1e3 * errors["step"]
-        for name, label, color, marker in series:
-            order = float(errors[f"order_{name}"])
-            axes.loglog(step, errors[name], marker, color=color, label=f"{label}: order {order:.2f}")
-        axes.set(xlabel="length of a step (ms)", ylabel="error (rad)")
-        axes.xaxis.set_major_locator(FixedLocator(list(step.values)))
-        axes.xaxis.set_major_formatter(ScalarFormatter())
-        axes.xaxis.set_minor_formatter(NullFormatter())
-        axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    figure = Figure(figsize=(WIDTH, 3.4))
+    axes = figure.subplots()
+    for name, label, color, marker in series:
+        values, order = errors[name], float(errors[f"order_{name}"])
+        named = f"{label}: order {order:.2f}"
+        axes.loglog(1e3 * errors[values.dims[0]], values, marker, color=color, label=named)
+    axes.set(xlabel="length of a step (ms)", ylabel="error (rad; of a value near 1)")
+    mark.plain_ticks(axes.xaxis, [0.25, 1, 5, 25, 100])
+    mark.legend_above(axes, 2)
     return figure
 
 
+@house_style()
 def stiffness_figure(counts: xr.Dataset) -> Figure:
     """Return how often every method evaluates the right-hand side, launch by launch.
 
     `counts` has evaluations over launch and integrator, and launch_spin and launch_mu over launch.
     """
-    with house_style():
-        figure = Figure(figsize=(WIDTH, 3.7))
-        axes = figure.subplots()
-        methods = [str(name) for name in counts["integrator"].values]
-        launches = np.arange(counts.sizes["launch"])
-        width = 0.8 / len(methods)
-        colors = (REPORT, CYCLE[6], CONVERGED, CYCLE[4], CYCLE[2])
-        for k, (method, color) in enumerate(zip(methods, colors, strict=True)):
-            height = counts["evaluations"].sel(integrator=method).values / 1e3
-            place = launches + (k - (len(methods) - 1) / 2) * width
-            axes.bar(
-                place, np.maximum(height, 0), 0.9 * width, color=color, label=_LABELS.get(method, method)
-            )
-            for x in place[height < 0]:
-                axes.annotate("gave up", (x, 0), rotation=90, size=8, color=ACCENT, ha="center")
-        names = [
-            f"{spin:g} rad/s\n$\\mu$ = {mu:g} s/m"
-            for spin, mu in zip(counts["launch_spin"].values, counts["launch_mu"].values, strict=True)
-        ]
-        axes.set_xticks(launches, names)
-        axes.tick_params(axis="x", length=0)
-        axes.grid(visible=False, axis="x")
-        axes.set_ylabel("evaluations (thousands)")
-        axes.legend(loc="upper left")
+    figure = Figure(figsize=(WIDTH, 3.7))
+    axes = figure.subplots()
+    methods = [str(name) for name in counts["integrator"].values]
+    launches = np.arange(counts.sizes["launch"])
+    width = 0.8 / len(methods)
+    colors = (REPORT, CYCLE[6], CONVERGED, CYCLE[4], CYCLE[2])
+    for k, (method, color) in enumerate(zip(methods, colors, strict=True)):
+        height = counts["evaluations"].sel(integrator=method).values / 1e3
+        place = launches + (k - (len(methods) - 1) / 2) * width
+        axes.bar(place, np.maximum(height, 0), 0.9 * width, color=color, label=_LABELS.get(method, method))
+        for x in place[height < 0]:
+            axes.annotate("gave up", (x, 0), rotation=90, size=8, color=ACCENT, ha="center")
+    names = [
+        f"{spin:g} rad/s\n{tilt:g} rad\n$\\mu$ = {mu:g} s/m"
+        for spin, tilt, mu in zip(
+            *(counts[f"launch_{name}"].values for name in ("spin", "tilt", "mu")), strict=True
+        )
+    ]
+    axes.set_xticks(launches, names)
+    axes.tick_params(axis="x", length=0)
+    axes.grid(visible=False, axis="x")
+    axes.set_ylabel("evaluations (thousands)")
+    axes.legend(loc="upper left")
     return figure

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
-from tippetop.figures import drawing as draw
+import tippetop.figures.drawing as draw
 from tippetop.figures.drawing import Array
 from tippetop.figures.looks import FACE, KNOB, STEM, STEM_TOP
 from tippetop.figures.style import ACCENT, CONVERGED, INK, MUTED, TABLE, house_style
@@ -15,6 +15,7 @@ from tippetop.figures.style import ACCENT, CONVERGED, INK, MUTED, TABLE, house_s
 _AXIS = 1.62
 
 
+@house_style()
 def model_drawing(eccentricity: float = 0.3, tilt: float = np.radians(50.0)) -> Figure:
     """Return the model seen from the side: an eccentric sphere on the table.
 
@@ -24,13 +25,12 @@ def model_drawing(eccentricity: float = 0.3, tilt: float = np.radians(50.0)) -> 
     """
     if not 0 < eccentricity < 1 or not 0 < tilt < np.pi / 2:
         raise ValueError(f"no drawing for eccentricity {eccentricity} and tilt {tilt} rad")
-    with house_style():
-        figure, axes = draw.canvas((-2.0, 2.15), (-0.7, max(2.5, 1.25 + _AXIS * np.cos(tilt))))
-        points = _Model(eccentricity, tilt)
-        _model_body(axes, points)
-        _model_axes(axes, points)
-        _model_vectors(axes, points)
-        _model_measures(axes, points)
+    figure, axes = draw.canvas((-2.0, 2.15), (-0.7, max(2.5, 1.25 + _AXIS * np.cos(tilt))))
+    points = _Model(eccentricity, tilt)
+    _model_body(axes, points)
+    _model_axes(axes, points)
+    _model_vectors(axes, points)
+    _model_measures(axes, points)
     return figure
 
 
@@ -119,3 +119,5 @@ def _model_measures(axes: Axes, model: _Model) -> None:
     draw.label(axes, (1.12, 0.45), formula, size=12, ha="left")
     note = "$\\mathbf{2}$ points out of the page"
     draw.label(axes, (1.12, 0.25), note, color=CONVERGED, size=9.5, ha="left")
+    note = "the model is\nthe whole sphere:\nno stem, no cut"
+    draw.label(axes, (1.3, 1.95), note, color=MUTED, size=9.5, ha="left")

@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from tippetop.figures.style import ACCENT, CONVERGED, MUTED, WIDTH, house_style, pi_ticks
+from tippetop.figures.style import ACCENT, CONVERGED, DASHED, MUTED, WIDTH, house_style, pi_ticks
 
 TALLEST_PRECESSION = 400.0
 """Precession beyond which a curve is cut off, rad/s: it peaks without bound where the axis is vertical."""
@@ -20,6 +20,7 @@ class Panel(NamedTuple):
     values: np.ndarray[Any, Any]
 
 
+@house_style()
 def plot(run: xr.Dataset) -> Figure:
     """Draw tilt, axial spin, precession, slip, normal force and energy of a run against time."""
     panels = [
@@ -30,20 +31,19 @@ def plot(run: xr.Dataset) -> Figure:
         Panel("Normal force (N)", run["normal_force"].values),
         Panel("Energy (J)", run["energy"].values),
     ]
-    with house_style():
-        figure = Figure(figsize=(WIDTH, 6.2))
-        grid = figure.subplots(3, 2, sharex=True)
-        for axes, panel in zip(grid.flat, panels, strict=True):
-            axes.plot(run["time"].values, panel.values, color=CONVERGED, linewidth=1.1)
-            axes.set_title(panel.title)
-            shade_flights(axes, run)
-        pi_ticks(grid[0, 0].yaxis)
-        grid[0, 0].set_ylim(-0.1, np.pi + 0.1)
-        _cut(grid[1, 0], run["phi_dot"].values)
-        grid[2, 0].axhline(0.0, color=MUTED, linewidth=0.8)
-        for axes in grid[2]:
-            axes.set_xlabel("Time (s)")
-        return figure
+    figure = Figure(figsize=(WIDTH, 6.2))
+    grid = figure.subplots(3, 2, sharex=True)
+    for axes, panel in zip(grid.flat, panels, strict=True):
+        axes.plot(run["time"].values, panel.values, color=CONVERGED, linewidth=1.1)
+        axes.set_title(panel.title)
+        shade_flights(axes, run)
+    pi_ticks(grid[0, 0].yaxis)
+    grid[0, 0].set_ylim(-0.1, np.pi + 0.1)
+    _cut(grid[1, 0], run["phi_dot"].values)
+    grid[2, 0].axhline(0.0, color=MUTED, linewidth=0.8)
+    for axes in grid[2]:
+        axes.set_xlabel("Time (s)")
+    return figure
 
 
 def shade_flights(axes: Axes, run: xr.Dataset) -> None:
@@ -51,7 +51,7 @@ def shade_flights(axes: Axes, run: xr.Dataset) -> None:
     for begin, end in zip(run["flight_start"].values, run["flight_end"].values, strict=True):
         axes.axvspan(begin, end, color=ACCENT, alpha=0.15, linewidth=0.4)
     if run.attrs["outcome"] == "lifted_off":
-        axes.axvline(float(run["time"][-1]), color=ACCENT, linewidth=0.8, linestyle=(0, (4, 3)))
+        axes.axvline(float(run["time"][-1]), color=ACCENT, linewidth=0.8, linestyle=DASHED)
 
 
 def _cut(axes: Axes, values: np.ndarray[Any, Any]) -> None:

@@ -8,21 +8,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MultipleLocator
 
+import tippetop.figures.annotation as mark
 from tippetop.figures.flights import continue_pushing
 from tippetop.figures.overview import shade_flights
-from tippetop.figures.style import (
-    ACCENT,
-    CONVERGED,
-    INK,
-    MUTED,
-    REPORT,
-    WIDTH,
-    house_style,
-    panel_letter,
-    pi_ticks,
-)
-
-Box = tuple[float, float, float, float]
+from tippetop.figures.style import ACCENT, CONVERGED, DASHED, INK, MUTED, REPORT, WIDTH, house_style, pi_ticks
 
 _NAME, _NAME_REPORT = "converged", "report's method"
 _PULLS = "converged, table pulls"
@@ -30,11 +19,14 @@ _WIDE, _THIN = 2.6, 1.0
 _LINES = (("_listing", "time_listing", REPORT, _WIDE), ("", "time", CONVERGED, _THIN))
 
 
+@house_style()
 def motion_figure(
     run: xr.Dataset,
     precession_limit: float = 200.0,
     zoom: tuple[float, float] | None = None,
-    inset: Box = (0.5, 0.13, 0.48, 0.56),
+    inset: mark.Box = (0.5, 0.13, 0.48, 0.56),
+    reported_turn: float | None = None,
+    reported_reversals: tuple[float, ...] = (),
 ) -> Figure:
     """Return tilt, axial spin, precession and slip of a launch, by both methods.
 
@@ -43,32 +35,39 @@ def motion_figure(
     the vertical. `zoom` is a span of time, s, whose tilt is also drawn large, in the box
     `inset` (left, bottom, width, height in parts of the panel). The reversals of the
     precession are marked: `quiet_start` and `quiet_end` where they enclose a calm that comes later than 1 s,
-    otherwise `last_reversal`.
+    otherwise `last_reversal`. The times that the report prints, s, get squares: when the top has turned over,
+    and when the precession reverses.
     """
-    with house_style():
-        figure = Figure(figsize=(WIDTH, 5.0))
-        panels = figure.subplots(2, 2, sharex=True)
-        tilt, spin, turning, slip = panels.flat
-        _pair(tilt, run, "theta", legend=True)
-        _tilt_axis(tilt)
-        if zoom:
-            _zoom(tilt, run, zoom, inset)
-        _pair(spin, run, "omega3")
-        spin.set_ylabel(r"axial spin $\omega_3$ (rad/s)")
-        _precession(turning, run, precession_limit)
-        _slip(slip, run)
-        for axes in panels[1]:
-            axes.set_xlabel("time (s)")
-        for axes, letter in zip(panels.flat, "abcd", strict=True):
-            panel_letter(axes, letter)
-            axes.set_xlim(0, float(run["time"][-1]))
+    figure = Figure(figsize=(WIDTH, 5.0))
+    panels = figure.subplots(2, 2, sharex=True)
+    tilt, spin, turning, slip = panels.flat
+    _pair(tilt, run, "theta", legend=True)
+    _tilt_axis(tilt)
+    if zoom:
+        _zoom(tilt, run, zoom, inset)
+    _pair(spin, run, "omega3")
+    spin.set_ylabel(r"axial spin $\omega_3$ (rad/s)")
+    _precession(turning, run, precession_limit)
+    square = {"color": REPORT, "ms": 5, "mec": INK, "mew": 0.6, "zorder": 6}
+    turning.plot(reported_reversals, np.zeros(len(reported_reversals)), "s", **square)
+    if reported_turn is not None:
+        height = float(np.interp(reported_turn, run["time_listing"], run["theta_listing"]))
+        tilt.plot(reported_turn, height, "s", **square)
+        mark.note(tilt, f"report: {reported_turn:g} s", (reported_turn, height), (6, -8), REPORT, halo=True)
+    _slip(slip, run)
+    for axes in panels[1]:
+        axes.set_xlabel("time (s)")
+    mark.letters(panels.flat)
+    for axes in panels.flat:
+        axes.set_xlim(0, float(run["time"][-1]))
     return figure
 
 
+@house_style()
 def tilt_figure(
     run: xr.Dataset,
     zoom: tuple[float, float] | None = None,
-    inset: Box = (0.56, 0.14, 0.42, 0.56),
+    inset: mark.Box = (0.56, 0.14, 0.42, 0.56),
 ) -> Figure:
     """Return the tilt of a launch over time by both methods, with the lift-off (`lift_off_time`) marked.
 
@@ -78,94 +77,92 @@ def tilt_figure(
     `zoom` is a span of time, s, that is also drawn large, in the box `inset` (left, bottom, width, height in
     parts of the panel).
     """
-    with house_style():
-        figure, axes = _wide_panel(run)
-        _trio(axes, run, "theta")
-        _tilt_axis(axes)
-        if zoom:
-            _zoom(axes, run, zoom, inset)
-        _mark_lift_off(axes, float(run["lift_off_time"]), "left")
+    figure, axes = _wide_panel(run)
+    _trio(axes, run, "theta")
+    _tilt_axis(axes)
+    if zoom:
+        _zoom(axes, run, zoom, inset)
+    _mark_lift_off(axes, float(run["lift_off_time"]))
     return figure
 
 
+@house_style()
 def upright_figure(run: xr.Dataset, until: float = 3.0) -> Figure:
     """Return the tilt of a launch that stays near the vertical, up to a time, s, on a scale of its own."""
-    with house_style():
-        figure, axes = _wide_panel(run)
-        _pair(axes, run, "theta", legend=True)
-        axes.set_xlim(0, until)
-        axes.xaxis.set_major_locator(MultipleLocator(0.5))
-        axes.set_ylim(0, 1.12 * float(run["theta"].max()))
-        axes.set_ylabel(r"tilt $\theta$ (rad)")
+    figure, axes = _wide_panel(run)
+    _pair(axes, run, "theta", legend=True)
+    axes.set_xlim(0, until)
+    axes.xaxis.set_major_locator(MultipleLocator(0.5))
+    axes.set_ylim(0, 1.12 * float(run["theta"].max()))
+    axes.set_ylabel(r"tilt $\theta$ (rad)")
     return figure
 
 
+@house_style()
 def energy_figure(run: xr.Dataset, reported: tuple[float, float]) -> Figure:
     """Return the energy over time: the report's (4.1) by its method, and the converged one on both tables.
 
     `run` has energy and energy_flight over time, energy_listing over time_listing, launch_energy, J,
     lift_off_time, s, and the flights. `reported` is the time, s, and energy, J, that the report names.
     """
-    with house_style():
-        figure, axes = _wide_panel(run)
-        start = 1e3 * float(run["launch_energy"])
-        axes.axhline(start, color=MUTED, lw=0.9, ls=(0, (4, 3)))
-        axes.annotate(
-            "energy at launch", (0, start), (2, -3), textcoords="offset points", va="top", color=MUTED, size=9
-        )
-        names = ("(4.1), report's method", "full energy, table pulls")
-        _trio(axes, run, "energy", scale=1e3, names=names)
-        axes.set_ylabel("energy (mJ)")
-        axes.set_ylim(bottom=0)
-        at = (reported[0], 1e3 * reported[1])
-        axes.plot(*at, "s", color=REPORT, ms=6, mec=INK, mew=0.6, zorder=5)
-        _callout(axes, f"the report's\n{reported[1]:g} J at {reported[0]:g} s", at, (34, 34), INK, "left")
-        _mark_lift_off(axes, float(run["lift_off_time"]), "left")
+    figure, axes = _wide_panel(run)
+    start = 1e3 * float(run["launch_energy"])
+    axes.axhline(start, color=MUTED, lw=0.9, ls=DASHED)
+    mark.note(axes, "energy at launch", (0, start), (2, -3), MUTED)
+    names = ("(4.1), report's method", "full energy, table pulls")
+    _trio(axes, run, "energy", scale=1e3, names=names)
+    axes.set_ylabel("energy (mJ)")
+    axes.set_ylim(bottom=0)
+    at = (reported[0], 1e3 * reported[1])
+    axes.plot(*at, "s", color=REPORT, ms=6, mec=INK, mew=0.6, zorder=5)
+    _callout(axes, f"the report's\n{reported[1]:g} J at {reported[0]:g} s", at, (34, 34), INK, "left")
+    _mark_lift_off(axes, float(run["lift_off_time"]))
     return figure
 
 
+@house_style()
 def force_figure(run: xr.Dataset) -> Figure:
     """Return the normal force over time; below zero the table would have to pull.
 
     `run` also has lift_off_time, s.
     """
-    with house_style():
-        figure, axes = _wide_panel(run)
-        low = 1.12 * min(float(run["normal_force"].min()), float(run["normal_force_listing"].min()))
-        axes.axhspan(low, 0, color=ACCENT, alpha=0.07, lw=0)
-        axes.axhline(0, color=ACCENT, lw=1.0)
-        _trio(axes, run, "normal_force")
-        axes.annotate(
-            "the table pulls", (0, low), (6, 5), textcoords="offset points", color=ACCENT, size=9, va="bottom"
-        )
-        axes.set_ylabel("normal force $g_n$ (N)")
-        axes.set_ylim(bottom=low)
-        _mark_lift_off(axes, float(run["lift_off_time"]), "left")
+    figure, axes = _wide_panel(run)
+    low = 1.12 * min(float(run["normal_force"].min()), float(run["normal_force_listing"].min()))
+    axes.axhspan(low, 0, color=ACCENT, alpha=0.07, lw=0)
+    axes.axhline(0, color=ACCENT, lw=1.0)
+    _trio(axes, run, "normal_force")
+    mark.note(axes, "the table pulls", (0, low), (6, 5), ACCENT)
+    axes.set_ylabel("normal force $g_n$ (N)")
+    axes.set_ylim(bottom=low)
+    _mark_lift_off(axes, float(run["lift_off_time"]))
     return figure
 
 
+@house_style()
 def stopped_figure(run: xr.Dataset, reported_stop: float) -> Figure:
-    """Return the tilt up to where the report stopped, s, up to the lift-off, and from there on in flight."""
-    with house_style():
-        figure, axes = _wide_panel(run)
-        stop = float(run["lift_off_time"])
-        before = run.sel(time=run["time"] <= stop)
-        other = run.sel(time_listing=run["time_listing"] <= reported_stop)
-        axes.plot(other["time_listing"], other["theta_listing"], color=REPORT, lw=_WIDE, label=_NAME_REPORT)
-        axes.plot(before["time"], before["theta"], color=CONVERGED, lw=_THIN + 0.3, label=_NAME)
-        continue_pushing(axes, run, "theta")
+    """Return tilt and force to where the report stopped, s, to the lift-off, and from there in flight."""
+    figure = Figure(figsize=(WIDTH, 4.6))
+    panels = figure.subplots(2, 1, sharex=True, height_ratios=[1.3, 1])
+    tilt, force = panels
+    stop = float(run["lift_off_time"])
+    before = run.sel(time=run["time"] <= stop)
+    other = run.sel(time_listing=run["time_listing"] <= reported_stop)
+    for axes, name in ((tilt, "theta"), (force, "normal_force")):
+        axes.plot(other["time_listing"], other[f"{name}_listing"], color=REPORT, lw=_WIDE, label=_NAME_REPORT)
+        axes.plot(before["time"], before[name], color=CONVERGED, lw=_THIN + 0.3, label=_NAME)
+        continue_pushing(axes, run, name)
         shade_flights(axes, run)
-        _tilt_axis(axes)
-        axes.set_xlim(0, 8)
-        end = float(np.interp(stop, run["time"], run["theta"]))
-        last = float(other["theta_listing"][-1])
-        axes.plot([stop], [end], "o", color=ACCENT, ms=6, zorder=5)
-        axes.plot([reported_stop], [last], "s", color=REPORT, ms=6, zorder=5, mec=INK, mew=0.6)
-        _callout(axes, f"the top leaves the table\nat {stop:.3f} s", (stop, end), (-44, 22), ACCENT, "right")
-        _callout(
-            axes, f"the report stops\nat {reported_stop:g} s", (reported_stop, last), (38, -34), INK, "left"
-        )
-        axes.legend(loc="upper left")
+    _tilt_axis(tilt)
+    force.axhline(0, color=ACCENT, lw=1.0)
+    force.set(xlabel="time (s)", ylabel="normal force $g_n$ (N)", xlim=(0, 8))
+    end = float(np.interp(stop, run["time"], run["theta"]))
+    last = float(other["theta_listing"][-1])
+    tilt.plot([stop], [end], "o", color=ACCENT, ms=6, zorder=5)
+    tilt.plot([reported_stop], [last], "s", color=REPORT, ms=6, zorder=5, mec=INK, mew=0.6)
+    _callout(tilt, f"the top leaves the table\nat {stop:.3f} s", (stop, end), (-44, 22), ACCENT, "right")
+    _callout(tilt, f"the report stops\nat {reported_stop:g} s", (reported_stop, last), (38, -34), INK, "left")
+    tilt.legend(loc="upper left")
+    mark.letters(panels)
     return figure
 
 
@@ -201,7 +198,7 @@ def _pair(
     axes.plot(run["time_listing"], scale * theirs, color=REPORT, lw=_WIDE, label=names[0])
     axes.plot(run["time"], scale * ours, color=CONVERGED, lw=_THIN, label=names[1])
     if legend:
-        axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.2)
+        mark.legend_above(axes, 2)
 
 
 def _trio(
@@ -213,7 +210,7 @@ def _trio(
     if flies:
         shade_flights(axes, run)
         continue_pushing(axes, run, name, scale=scale)
-    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, borderaxespad=0.2, columnspacing=1.4)
+    mark.legend_above(axes, 3)
 
 
 def _tilt_axis(axes: Axes) -> None:
@@ -231,10 +228,7 @@ def _precession(axes: Axes, run: xr.Dataset, limit: float) -> None:
     marks = [time for time in (quiet if quiet[0] > 1.0 else [last]) if np.isfinite(time)]
     axes.plot(marks, np.zeros(len(marks)), "o", color=ACCENT, ms=5, zorder=5)
     for time in marks:
-        axes.annotate(
-            f"{time:.2f} s", (time, 0), (7, 5), textcoords="offset points", color=ACCENT, size=9, va="bottom",
-            bbox={"fc": "white", "ec": "none", "pad": 0.8, "alpha": 0.85},
-        )  # fmt: skip
+        mark.note(axes, f"{time:.2f} s", (time, 0), (7, 5), ACCENT, halo=True)
     axes.set_ylabel(r"precession $\dot\varphi$ (rad/s)")
 
 
@@ -246,21 +240,17 @@ def _slip(axes: Axes, run: xr.Dataset) -> None:
     axes.set_ylim(bottom=0)
 
 
-def _mark_lift_off(axes: Axes, time: float, side: str = "right") -> None:
+def _mark_lift_off(axes: Axes, time: float) -> None:
     """Mark the instant after which the table would have to pull; nothing where there is none."""
     if not np.isfinite(time):
         return
-    axes.axvline(time, color=ACCENT, lw=1.0, ls=(0, (4, 3)))
-    axes.annotate(
-        f"lift-off, {time:.2f} s", (time, 1.0), (4 if side == "right" else -4, -2),
-        xycoords=("data", "axes fraction"), textcoords="offset points", color=ACCENT, size=9,
-        ha="left" if side == "right" else "right", va="top",
-    )  # fmt: skip
+    axes.axvline(time, color=ACCENT, lw=1.0, ls=DASHED)
+    mark.note(axes, f"lift-off, {time:.2f} s", (time, 1.0), (-4, -2), ACCENT, xycoords=mark.ALONG_X)
 
 
-def _zoom(axes: Axes, run: xr.Dataset, span: tuple[float, float], box: Box) -> None:
+def _zoom(axes: Axes, run: xr.Dataset, span: tuple[float, float], box: mark.Box) -> None:
     """Draw a span of time of the tilt large inside the panel, and show where it is taken from."""
-    inset = axes.inset_axes(box)
+    inset = mark.inset(axes, box)
     drawn = []
     for suffix, time, color, width in _LINES:
         part = run.sel({time: slice(*span)})
@@ -272,8 +262,5 @@ def _zoom(axes: Axes, run: xr.Dataset, span: tuple[float, float], box: Box) -> N
     low, high = min(part.min() for part in drawn), max(part.max() for part in drawn)
     inset.set_xlim(*span)
     inset.set_ylim(low - 0.08 * (high - low), high + 0.08 * (high - low))
-    inset.tick_params(labelsize=7.5, length=2, pad=2)
     inset.locator_params(nbins=4)
-    inset.grid(visible=False)
-    inset.spines[["top", "right"]].set_visible(True)
-    axes.indicate_inset_zoom(inset, edgecolor=INK, alpha=0.45, lw=0.8)
+    mark.source(axes, inset)

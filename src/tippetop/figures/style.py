@@ -6,14 +6,14 @@ nothing to close. Both making and saving a figure must happen inside `house_styl
 
 from __future__ import annotations
 
-from contextlib import AbstractContextManager
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
 import numpy as np
 from cycler import cycler
-from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 
@@ -30,8 +30,13 @@ ACCENT = "#9E1F54"
 """The one thing a figure wants looked at: an event, a force, a threshold."""
 
 CYCLE = (CONVERGED, REPORT, "#109B60", ACCENT, "#66C5F0", "#4A2410", "#EACF36")
+PUSHES = CYCLE[2]
+"""What happens on a table that only pushes; the second of two true results."""
+
 SEQUENTIAL = "cividis"
 DIVERGING = "PuOr"
+
+DASHED = (0, (4, 3))
 
 WIDTH = 7.0
 """Full figure width in inches: 700 px on a page at 100 dpi."""
@@ -86,9 +91,11 @@ _STYLE: dict[Any, Any] = {
 }
 
 
-def house_style() -> AbstractContextManager[None]:
-    """Return the context in which every figure of the project is made."""
-    return mpl.rc_context(_STYLE)
+@contextmanager
+def house_style() -> Iterator[None]:
+    """Return the context in which every figure of the project is made; it also decorates what makes one."""
+    with mpl.rc_context(_STYLE):
+        yield
 
 
 def save(figure: Figure, path: Path | str, **options: Any) -> None:
@@ -110,11 +117,3 @@ def _quarters_of_pi(count: int) -> str:
     over = {0: 1, 2: 2}.get(count % 4, 4)
     times = count * over // 4
     return ("" if times == 1 else str(times)) + "π" + ("" if over == 1 else f"/{over}")
-
-
-def panel_letter(axes: Axes, letter: str) -> None:
-    """Mark a panel of a figure with a bold letter above its top left corner."""
-    axes.annotate(
-        letter, (0, 1), (-6, 6), xycoords="axes fraction", textcoords="offset points",
-        ha="right", va="bottom", fontweight="bold", annotation_clip=False,
-    )  # fmt: skip

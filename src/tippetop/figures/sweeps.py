@@ -6,23 +6,25 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FixedLocator, NullFormatter, ScalarFormatter
+from matplotlib.ticker import FixedLocator, ScalarFormatter
 
-from tippetop.figures.flights import PUSHES
+import tippetop.figures.annotation as mark
 from tippetop.figures.style import (
     ACCENT,
     CONVERGED,
+    DASHED,
     FAINT,
     INK,
     MUTED,
+    PUSHES,
     REPORT,
     WIDTH,
     house_style,
-    panel_letter,
     pi_ticks,
 )
 
 
+@house_style()
 def final_tilt_figure(sweep: xr.Dataset, reported: tuple[float, float, float]) -> Figure:
     """Return the final tilt against the spin at launch, with the critical points.
 
@@ -31,106 +33,96 @@ def final_tilt_figure(sweep: xr.Dataset, reported: tuple[float, float, float]) -
     lift_off_onset. `reported` are the report's two critical spins and the
     spin of its abnormal point, rad/s.
     """
-    with house_style():
-        figure = Figure(figsize=(WIDTH, 4.3))
-        axes = figure.subplots()
-        longest = sweep.isel(window=-1)
-        ours = (float(longest["upright_by_window"]), float(longest["inverted_by_window"]))
-        onset = float(sweep["lift_off_onset"])
-        right = 1.01 * float(sweep["spin"][-1])
-        axes.axvspan(onset, right, color=ACCENT, alpha=0.07, lw=0)
-        below = sweep.sel(spin=sweep["spin"] <= onset)
-        above = sweep.sel(spin=sweep["spin"] > onset)
-        axes.plot(below["spin"], below["final_theta"], color=CONVERGED, lw=1.8, label="converged")
-        axes.plot(above["spin"], above["final_theta"], ".", color=MUTED, ms=3, label="converged, table pulls")
-        flying = sweep.sel(spin_flight=sweep["spin_flight"] > onset)
-        axes.plot(
-            flying["spin_flight"], flying["final_theta_flight"], "-D", color=PUSHES, ms=3.5, lw=1.4, zorder=5,
-            label="table only pushes",
-        )  # fmt: skip
-        axes.plot(
-            sweep["spin_listing"], sweep["final_theta_listing"], "o", color=REPORT, label="report's method",
-            ms=5, mec="white", mew=0.5, zorder=4,
-        )  # fmt: skip
-        for spin in reported[:2]:
-            axes.axvline(spin, color=REPORT, lw=1.1, ls=(0, (4, 3)))
-        for spin in ours:
-            axes.axvline(spin, color=CONVERGED, lw=1.1, ls=(0, (4, 3)))
-        names = (r"$\omega_{c1}$", r"$\omega_{c2}$")
-        for name, theirs, spin in zip(names, reported, ours, strict=False):
-            _two_values(axes, name, theirs, spin)
-        _abnormal(axes, reported[2], onset)
-        axes.set_xlabel(r"spin at launch $\omega_0$ (rad/s)")
-        axes.set_ylabel(r"tilt after 20 s, $\theta_{\mathrm{end}}$ (rad)")
-        axes.set_xlim(0, right)
-        axes.set_ylim(-0.08, np.pi + 0.62)
-        pi_ticks(axes.yaxis)
-        axes.legend(loc="center right", bbox_to_anchor=(0.77, 0.3))
+    figure = Figure(figsize=(WIDTH, 4.3))
+    axes = figure.subplots()
+    longest = sweep.isel(window=-1)
+    ours = (float(longest["upright_by_window"]), float(longest["inverted_by_window"]))
+    onset = float(sweep["lift_off_onset"])
+    right = 1.01 * float(sweep["spin"][-1])
+    axes.axvspan(onset, right, color=ACCENT, alpha=0.07, lw=0)
+    below = sweep.sel(spin=sweep["spin"] <= onset)
+    above = sweep.sel(spin=sweep["spin"] > onset)
+    axes.plot(below["spin"], below["final_theta"], color=CONVERGED, lw=1.8, label="converged")
+    axes.plot(above["spin"], above["final_theta"], ".", color=MUTED, ms=3, label="converged, table pulls")
+    flying = sweep.sel(spin_flight=sweep["spin_flight"] > onset)
+    axes.plot(
+        flying["spin_flight"], flying["final_theta_flight"], "-D", color=PUSHES, ms=3.5, lw=1.4, zorder=5,
+        label="table only pushes",
+    )  # fmt: skip
+    axes.plot(
+        sweep["spin_listing"], sweep["final_theta_listing"], "o", color=REPORT, label="report's method",
+        ms=5, mec="white", mew=0.5, zorder=4,
+    )  # fmt: skip
+    for spin in reported[:2]:
+        axes.axvline(spin, color=REPORT, lw=1.1, ls=DASHED)
+    for spin in ours:
+        axes.axvline(spin, color=CONVERGED, lw=1.1, ls=DASHED)
+    names = (r"$\omega_{c1}$", r"$\omega_{c2}$")
+    for name, theirs, spin in zip(names, reported, ours, strict=False):
+        _two_values(axes, name, theirs, spin)
+    _abnormal(axes, reported[2], onset)
+    axes.set_xlabel(r"spin at launch $\omega_0$ (rad/s)")
+    axes.set_ylabel(r"tilt after 20 s, $\theta_{\mathrm{end}}$ (rad)")
+    axes.set_xlim(0, right)
+    axes.set_ylim(-0.08, np.pi + 0.62)
+    pi_ticks(axes.yaxis)
+    axes.legend(loc="center right", bbox_to_anchor=(0.77, 0.3))
     return figure
 
 
 def _two_values(axes: Axes, name: str, theirs: float, ours: float) -> None:
     """Write a threshold as the report has it and as it is, above the line."""
-    axes.annotate(
-        f"{name} = {ours:.1f}", (ours, np.pi + 0.56), (5, 0), textcoords="offset points", color=CONVERGED,
-        size=9, va="top",
-    )  # fmt: skip
-    axes.annotate(
-        f"report: {theirs:g}", (ours, np.pi + 0.36), (5, 0), textcoords="offset points", color=REPORT,
-        size=9, va="top",
-    )  # fmt: skip
+    mark.note(axes, f"{name} = {ours:.1f}", (ours, np.pi + 0.56), (5, 0), CONVERGED, va="top")
+    mark.note(axes, f"report: {theirs:g}", (ours, np.pi + 0.36), (5, 0), REPORT, va="top")
 
 
 def _abnormal(axes: Axes, theirs: float, onset: float) -> None:
     axes.axvline(onset, color=ACCENT, lw=1.0)
-    axes.axvline(theirs, color=REPORT, lw=1.1, ls=(0, (4, 3)))
+    axes.axvline(theirs, color=REPORT, lw=1.1, ls=DASHED)
     for text, color, height in (
         (f"lift-off from {onset:.1f}", ACCENT, 0.56),
         (rf"report: $\omega_a$ = {theirs:g}", REPORT, 0.36),
     ):
-        axes.annotate(
-            text, (onset, np.pi + height), (-4, 0), textcoords="offset points", color=color, size=9, va="top",
-            ha="right",
-        )  # fmt: skip
+        mark.note(axes, text, (onset, np.pi + height), (-4, 0), color, va="top")
 
 
-def flip_time_figure(times: xr.Dataset) -> Figure:
+@house_style()
+def flip_time_figure(times: xr.Dataset, reported: float) -> Figure:
     """Return flip times against friction: the report's range with fits, and three decades of it.
 
     `times` has flip_time, factor, exponent and correlation, and the same with suffix _listing, over mu,
-    and flip_time_wide over spin_wide and mu_wide.
+    and flip_time_wide over spin_wide and mu_wide. `reported` is the power of mu that the report prints; its
+    line goes through the middle of the points of its method.
     """
-    with house_style():
-        figure = Figure(figsize=(WIDTH, 3.9))
-        left, right = figure.subplots(1, 2)
-        mu = times["mu"].values
-        fine = np.linspace(mu[0], mu[-1], 200)
-        series = (("_listing", REPORT, "o", "report's method"), ("", CONVERGED, ".", "converged"))
-        for suffix, color, marker, name in series:
-            a, b = float(times[f"factor{suffix}"]), float(times[f"exponent{suffix}"])
-            r = float(times[f"correlation{suffix}"])
-            left.plot(fine, a * fine**b, color=color, lw=1.2)
-            label = f"{name}\n$t = {a:.2f}\\,\\mu^{{{b:.3f}}}$,  $r = {r:.4f}$"
-            size = 6 if marker == "o" else 7
-            left.plot(mu, times[f"flip_time{suffix}"], marker, color=color, ms=size, label=label)
-        left.legend(loc="upper right", labelspacing=0.9)
-        left.set(xlabel=r"friction $\mu$ (s/m)", ylabel="flip time (s)")
-        left.set_ylim(0, 1.15 * float(times["flip_time_listing"].max()))
-        left.set_title(f"{times.attrs['spin_rad_per_s']:g} rad/s", size=10)
-        _products(right, times)
-        for axes, letter in zip((left, right), "ab", strict=True):
-            panel_letter(axes, letter)
+    figure = Figure(figsize=(WIDTH, 3.9))
+    left, right = figure.subplots(1, 2)
+    mu = times["mu"].values
+    fine = np.linspace(mu[0], mu[-1], 200)
+    series = (("_listing", REPORT, "o", "report's method"), ("", CONVERGED, ".", "converged"))
+    for suffix, color, marker, name in series:
+        a, b = float(times[f"factor{suffix}"]), float(times[f"exponent{suffix}"])
+        r = float(times[f"correlation{suffix}"])
+        left.plot(fine, a * fine**b, color=color, lw=1.2)
+        label = f"{name}\n$t = {a:.2f}\\,\\mu^{{{b:.3f}}}$,  $r = {r:.4f}$"
+        size = 6 if marker == "o" else 7
+        left.plot(mu, times[f"flip_time{suffix}"], marker, color=color, ms=size, label=label)
+    middle = np.exp(np.nanmean(np.log(times["flip_time_listing"] * mu**-reported)))
+    label = rf"the report: $\mu^{{{reported:g}}}$"
+    left.plot(fine, float(middle) * fine**reported, color=INK, lw=1.0, ls=DASHED, label=label)
+    left.legend(loc="upper right", labelspacing=0.9)
+    left.set(xlabel=r"friction $\mu$ (s/m)", ylabel="flip time (s)")
+    left.set_ylim(0, 1.15 * float(times["flip_time_listing"].max()))
+    left.set_title(f"{times.attrs['spin_rad_per_s']:g} rad/s", size=10)
+    _products(right, times)
+    mark.letters((left, right))
     return figure
 
 
 def _products(axes: Axes, wide: xr.Dataset) -> None:
     """Draw mu times the flip time: level where the law t ~ 1/mu holds."""
     axes.axvspan(0.2, 1.0, color=REPORT, alpha=0.10, lw=0)
-    axes.annotate(
-        "the report's\nrange", (0.447, 1.0), (0, -4), xycoords=("data", "axes fraction"),
-        textcoords="offset points", ha="center", va="top", size=8.5, color=REPORT,
-    )  # fmt: skip
-    colors = (CONVERGED, "#109B60")
+    mark.note(axes, "the report's\nrange", (0.447, 1.0), (0, -4), REPORT, size=8.5, xycoords=mark.ALONG_X)
+    colors = (CONVERGED, PUSHES)
     for spin, color in zip(wide["spin_wide"].values, colors, strict=False):
         product = wide["mu_wide"] * wide["flip_time_wide"].sel(spin_wide=spin)
         axes.plot(wide["mu_wide"], product, "-o", color=color, ms=3, lw=1.2, label=f"{spin:g} rad/s")
@@ -139,46 +131,37 @@ def _products(axes: Axes, wide: xr.Dataset) -> None:
     )
     axes.xaxis.set_major_locator(FixedLocator([0.01, 0.1, 1, 10]))
     axes.xaxis.set_major_formatter(ScalarFormatter())
-    axes.yaxis.set_major_locator(FixedLocator([1, 2, 5, 10, 20, 50, 100]))
-    axes.yaxis.set_major_formatter(ScalarFormatter())
-    axes.yaxis.set_minor_formatter(NullFormatter())
+    mark.plain_ticks(axes.yaxis, [1, 2, 5, 10, 20, 50, 100])
     axes.legend(loc="upper left")
     axes.set_title("converged", size=10)
 
 
+@house_style()
 def windows_figure(sweep: xr.Dataset, reported: tuple[float, float]) -> Figure:
     """Return the two critical spins against the length of the runs they are read from.
 
     `sweep` has upright_by_window and inverted_by_window over window, and upright_by_margin and
     inverted_by_margin over margin. `reported` are the report's two critical spins, rad/s.
     """
-    with house_style():
-        figure = Figure(figsize=(WIDTH, 3.3))
-        panels = figure.subplots(1, 2)
-        names = (("upright", r"$\omega_{c1}$"), ("inverted", r"$\omega_{c2}$"))
-        for axes, (name, symbol), theirs in zip(panels, names, reported, strict=True):
-            window = sweep["window"].values
-            span = sweep[f"{name}_by_margin"]
-            axes.axhline(theirs, color=REPORT, lw=1.2, ls=(0, (4, 3)))
-            axes.plot([window[0]] * 2, [float(span.min()), float(span.max())], color=FAINT, lw=7, zorder=1)
-            axes.plot(window, sweep[f"{name}_by_window"], "-o", color=CONVERGED)
-            axes.annotate(
-                f"report: {theirs:g}", (1.0, theirs), (0, 3), xycoords=("axes fraction", "data"),
-                textcoords="offset points", ha="right", va="bottom", color=REPORT, size=9,
-            )  # fmt: skip
-            last = float(sweep[f"{name}_by_window"][-1])
-            axes.annotate(
-                f"{last:.2f}", (window[-1], last), (0, -8 if name == "inverted" else 7),
-                textcoords="offset points", ha="center", va="top" if name == "inverted" else "bottom",
-                color=CONVERGED, size=9,
-            )  # fmt: skip
-            axes.set_xscale("log")
-            axes.set_xlim(0.8 * window[0], 1.5 * window[-1])
-            axes.xaxis.set_major_locator(FixedLocator(list(window)))
-            axes.xaxis.set_major_formatter(ScalarFormatter())
-            axes.xaxis.set_minor_formatter(NullFormatter())
-            axes.set_xlabel("length of the runs (s)")
-            axes.set_title(f"{symbol} (rad/s)", weight="normal", color=INK)
-            low, high = axes.get_ylim()
-            axes.set_ylim(low - 0.06 * (high - low), high + 0.06 * (high - low))
+    figure = Figure(figsize=(WIDTH, 3.3))
+    panels = figure.subplots(1, 2)
+    names = (("upright", r"$\omega_{c1}$"), ("inverted", r"$\omega_{c2}$"))
+    for axes, (name, symbol), theirs in zip(panels, names, reported, strict=True):
+        window = sweep["window"].values
+        span = sweep[f"{name}_by_margin"]
+        axes.axhline(theirs, color=REPORT, lw=1.2, ls=DASHED)
+        axes.plot([window[0]] * 2, [float(span.min()), float(span.max())], color=FAINT, lw=7, zorder=1)
+        axes.plot(window, sweep[f"{name}_by_window"], "-o", color=CONVERGED)
+        mark.note(
+            axes, f"report: {theirs:g}", (1.0, theirs), (0, 3), REPORT, xycoords=mark.ALONG_Y, ha="right"
+        )
+        last = float(sweep[f"{name}_by_window"][-1])
+        mark.note(axes, f"{last:.2f}", (window[-1], last), (0, -8 if name == "inverted" else 7), CONVERGED)
+        axes.set_xscale("log")
+        axes.set_xlim(0.8 * window[0], 1.5 * window[-1])
+        mark.plain_ticks(axes.xaxis, list(window))
+        axes.set_xlabel("length of the runs (s)")
+        axes.set_title(f"{symbol} (rad/s)", weight="normal", color=INK)
+        low, high = axes.get_ylim()
+        axes.set_ylim(low - 0.06 * (high - low), high + 0.06 * (high - low))
     return figure

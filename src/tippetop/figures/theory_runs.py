@@ -6,55 +6,51 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FixedLocator, MultipleLocator, NullFormatter, NullLocator, ScalarFormatter
+from matplotlib.ticker import FixedLocator, MultipleLocator, NullLocator, ScalarFormatter
 
+import tippetop.figures.annotation as mark
 from tippetop.figures.style import (
     ACCENT,
     CONVERGED,
-    CYCLE,
+    DASHED,
     FAINT,
     INK,
     MUTED,
+    PUSHES,
     REPORT,
     WIDTH,
     house_style,
-    panel_letter,
     pi_ticks,
 )
 
-_DASHED = (0, (4, 3))
-_GREEN = CYCLE[2]
 _SPAN = 3.0
 """Range of energies that every panel of the potential shows above its least value, mJ."""
 
 
+@house_style()
 def collapse_figure(flow: xr.Dataset) -> Figure:
     """Return the tilt against mu t of runs at several frictions, with the averaged flow, on two scales.
 
     `flow` has flow_low and flow_high over mu_time, run_low and run_high over friction and mu_time,
     theta_swing over mu_time_swing, the run with most friction, and flip_limit.
     """
-    with house_style():
-        figure = Figure(figsize=(WIDTH, 5.6))
-        panels = figure.subplots(2, 1, sharex=True, height_ratios=[1.2, 1])
-        limit = float(flow["flip_limit"])
-        for axes, letter in zip(panels, "ab", strict=True):
-            _runs_and_flow(axes, flow)
-            axes.axvline(limit, color=MUTED, lw=0.9, ls=_DASHED)
-            axes.set_ylabel(r"tilt $\theta$ (rad)")
-            panel_letter(axes, letter)
-        linear, logarithmic = panels
-        linear.set_ylim(-0.08, np.pi + 0.12)
-        pi_ticks(linear.yaxis)
-        linear.legend(loc="upper left")
-        linear.annotate(
-            f"limit of $\\mu\\,t_{{flip}}$\n{limit:.4f} s²/m", (limit, 0.2), (-6, 0), ha="right",
-            textcoords="offset points", size=9, color=INK,
-        )  # fmt: skip
-        logarithmic.set_yscale("log")
-        logarithmic.set_ylim(1e-3, 5.0)
-        logarithmic.set_xlabel(r"$\mu\,t$ (s²/m)")
-        logarithmic.set_xlim(0, float(flow["mu_time"][-1]))
+    figure = Figure(figsize=(WIDTH, 5.6))
+    panels = figure.subplots(2, 1, sharex=True, height_ratios=[1.2, 1])
+    limit = float(flow["flip_limit"])
+    mark.letters(panels)
+    for axes in panels:
+        _runs_and_flow(axes, flow)
+        axes.axvline(limit, color=MUTED, lw=0.9, ls=DASHED)
+        axes.set_ylabel(r"tilt $\theta$ (rad)")
+    linear, logarithmic = panels
+    linear.set_ylim(-0.08, np.pi + 0.12)
+    pi_ticks(linear.yaxis)
+    linear.legend(loc="upper left")
+    mark.note(linear, f"limit of $\\mu\\,t_{{flip}}$\n{limit:.4f} s²/m", (limit, 0.2), (-6, 0), INK)
+    logarithmic.set_yscale("log")
+    logarithmic.set_ylim(1e-3, 5.0)
+    logarithmic.set_xlabel(r"$\mu\,t$ (s²/m)")
+    logarithmic.set_xlim(0, float(flow["mu_time"][-1]))
     return figure
 
 
@@ -64,7 +60,7 @@ def _runs_and_flow(axes: Axes, flow: xr.Dataset) -> None:
         flow["mu_time_swing"], flow["theta_swing"], color=REPORT, lw=0.8,
         label=rf"run, $\mu$ = {float(flow['friction'][0]):g} s/m",
     )  # fmt: skip
-    for k, color in zip(range(1, flow.sizes["friction"]), (_GREEN, CONVERGED), strict=False):
+    for k, color in zip(range(1, flow.sizes["friction"]), (PUSHES, CONVERGED), strict=False):
         mu = float(flow["friction"][k])
         axes.fill_between(
             flow["mu_time"], flow["run_low"][k], flow["run_high"][k], color=color, alpha=0.4, lw=0.9,
@@ -74,52 +70,45 @@ def _runs_and_flow(axes: Axes, flow: xr.Dataset) -> None:
         axes.plot(flow["mu_time"], flow[bound], color=INK, lw=1.1, ls=(0, (5, 3)), label=name)
 
 
+@house_style()
 def exponent_figure(times: xr.Dataset) -> Figure:
     """Return mu times the time to turn over against friction, in several senses, and the local exponent.
 
     `times` has crossing_time, arrival_time_end, settling_time and arrival_time_window, and exponent_ of the
     first two, over mu_flip, and limit_crossing and limit_arrival.
     """
-    with house_style():
-        figure = Figure(figsize=(WIDTH, 5.6))
-        above, below = figure.subplots(2, 1, sharex=True, height_ratios=[1.45, 1])
-        mu = times["mu_flip"].values
-        limits = (float(times["limit_arrival"]), float(times["limit_crossing"]))
-        for limit, color in zip(limits, (CONVERGED, _GREEN), strict=True):
-            above.axhline(limit, color=color, lw=0.9, ls=_DASHED)
-            above.annotate(
-                f"limit {limit:.4f}", (mu[0], limit), (0, -3 if limit == limits[1] else 3), size=9,
-                textcoords="offset points", color=color, va="top" if limit == limits[1] else "bottom",
-            )  # fmt: skip
-        for name, color, mark, size, label in (
-            ("settling_time", "#B4BDC6", "-o", 6.5, "stays within 0.01 rad of the end"),
-            ("arrival_time_window", REPORT, "s", 5.5, "the report's: within 0.01 rad of the tilt at 20 s"),
-            ("arrival_time_end", CONVERGED, "-o", 3.5, "first within 0.01 rad of the end"),
-            ("crossing_time", _GREEN, "-o", 3.5, r"first tilt of more than $\pi/2$"),
-        ):
-            above.plot(mu, mu * times[name], mark, color=color, ms=size, lw=1.4, label=label)
-        above.set_yscale("log")
-        above.yaxis.set_major_locator(FixedLocator([1, 2, 5, 10, 20, 50, 100]))
-        above.yaxis.set_major_formatter(ScalarFormatter())
-        above.yaxis.set_minor_formatter(NullFormatter())
-        above.set_ylim(1.25, 1.3 * float((times["mu_flip"] * times["settling_time"]).max()))
-        above.set_ylabel(r"$\mu\,\times$ time (s²/m)")
-        above.legend(loc="upper left")
-        _exponents(below, times)
-        for axes, letter in ((above, "a"), (below, "b")):
-            axes.axvspan(0.2, 1.0, color=REPORT, alpha=0.09, lw=0)
-            panel_letter(axes, letter)
-        below.annotate(
-            "the report's\nrange", (0.447, 1.0), (0, -4), xycoords=("data", "axes fraction"),
-            textcoords="offset points", ha="center", va="top", size=8.5, color=REPORT,
-        )  # fmt: skip
+    figure = Figure(figsize=(WIDTH, 5.6))
+    above, below = figure.subplots(2, 1, sharex=True, height_ratios=[1.45, 1])
+    mu = times["mu_flip"].values
+    limits = (float(times["limit_arrival"]), float(times["limit_crossing"]))
+    for limit, color in zip(limits, (CONVERGED, PUSHES), strict=True):
+        above.axhline(limit, color=color, lw=0.9, ls=DASHED)
+        aside = (0, -3 if limit == limits[1] else 3)
+        mark.note(above, f"limit {limit:.4f}", (mu[0], limit), aside, color, ha="left")
+    for name, color, line, size, label in (
+        ("settling_time", "#B4BDC6", "-o", 6.5, "stays within 0.01 rad of the end"),
+        ("arrival_time_window", REPORT, "s", 5.5, "the report's: within 0.01 rad of the tilt at 20 s"),
+        ("arrival_time_end", CONVERGED, "-o", 3.5, "first within 0.01 rad of the end"),
+        ("crossing_time", PUSHES, "-o", 3.5, r"first tilt of more than $\pi/2$"),
+    ):
+        above.plot(mu, mu * times[name], line, color=color, ms=size, lw=1.4, label=label)
+    above.set_yscale("log")
+    mark.plain_ticks(above.yaxis, [1, 2, 5, 10, 20, 50, 100])
+    above.set_ylim(1.25, 1.3 * float((times["mu_flip"] * times["settling_time"]).max()))
+    above.set_ylabel(r"$\mu\,\times$ time (s²/m)")
+    above.legend(loc="upper left")
+    _exponents(below, times)
+    mark.letters((above, below))
+    for axes in (above, below):
+        axes.axvspan(0.2, 1.0, color=REPORT, alpha=0.09, lw=0)
+    mark.note(below, "the report's\nrange", (0.447, 1.0), (0, -4), REPORT, size=8.5, xycoords=mark.ALONG_X)
     return figure
 
 
 def _exponents(axes: Axes, times: xr.Dataset) -> None:
     mu = times["mu_flip"].values
-    axes.axhline(-1, color=MUTED, lw=0.9, ls=_DASHED)
-    for name, color, width in (("arrival_time_end", CONVERGED, 0.7), ("crossing_time", _GREEN, 1.6)):
+    axes.axhline(-1, color=MUTED, lw=0.9, ls=DASHED)
+    for name, color, width in (("arrival_time_end", CONVERGED, 0.7), ("crossing_time", PUSHES, 1.6)):
         axes.plot(mu, times[f"exponent_{name}"], "-o", color=color, ms=3.5, lw=width)
     axes.set_xscale("log")
     axes.set_xlim(mu[0] / 1.12, mu[-1] * 1.12)
@@ -130,40 +119,33 @@ def _exponents(axes: Axes, times: xr.Dataset) -> None:
     axes.set(xlabel=r"friction $\mu$ (s/m)", ylabel=r"exponent $d\ln t\,/\,d\ln\mu$")
 
 
+@house_style()
 def balance_figure(run: xr.Dataset) -> Figure:
     """Return how near a run is to gyroscopic balance, and its tilt within the envelope of its nutation.
 
     `run` has balance_ratio, theta_diagnosed, envelope_low and envelope_high over time_diagnosed.
     """
-    with house_style():
-        figure = Figure(figsize=(WIDTH, 5.0))
-        tilt, ratio = figure.subplots(2, 1, sharex=True)
-        time = run["time_diagnosed"].values
-        _within_envelope(tilt, run, 0.9)
-        inset = tilt.inset_axes((0.71, 0.13, 0.28, 0.66))
-        part = run.sel(time_diagnosed=slice(4.8, 5.3))
-        _within_envelope(inset, part, 1.3)
-        inset.set_xlim(4.8, 5.3)
-        inset.tick_params(labelsize=7.5, length=2, pad=2)
-        inset.grid(visible=False)
-        inset.spines[["top", "right"]].set_visible(True)
-        tilt.indicate_inset_zoom(inset, edgecolor=INK, alpha=0.45, lw=0.8)
-        tilt.set_ylabel(r"tilt $\theta$ (rad)")
-        tilt.set_ylim(-0.06, np.pi + 0.1)
-        pi_ticks(tilt.yaxis)
-        tilt.legend(loc="upper left")
-        ratio.axhspan(-0.1, 0.1, color=FAINT, alpha=0.7, lw=0)
-        ratio.axhline(0, color=MUTED, lw=0.9)
-        ratio.plot(time, run["balance_ratio"], color=ACCENT, lw=0.8)
-        ratio.set_ylim(-1.35, 1.35)
-        ratio.annotate(
-            "within a tenth", (time[-1], -0.1), (-3, -3), textcoords="offset points", ha="right", va="top",
-            size=9, color=MUTED,
-        )  # fmt: skip
-        ratio.set(xlabel="time (s)", ylabel=r"$\xi\,/\,|I_3\omega_3|$ at launch")
-        ratio.set_xlim(0, time[-1])
-        for axes, letter in ((tilt, "a"), (ratio, "b")):
-            panel_letter(axes, letter)
+    figure = Figure(figsize=(WIDTH, 5.0))
+    tilt, ratio = figure.subplots(2, 1, sharex=True)
+    time = run["time_diagnosed"].values
+    _within_envelope(tilt, run, 0.9)
+    inset = mark.inset(tilt, (0.71, 0.13, 0.28, 0.66))
+    part = run.sel(time_diagnosed=slice(4.8, 5.3))
+    _within_envelope(inset, part, 1.3)
+    inset.set_xlim(4.8, 5.3)
+    mark.source(tilt, inset)
+    tilt.set_ylabel(r"tilt $\theta$ (rad)")
+    tilt.set_ylim(-0.06, np.pi + 0.1)
+    pi_ticks(tilt.yaxis)
+    tilt.legend(loc="upper left")
+    ratio.axhspan(-0.1, 0.1, color=FAINT, alpha=0.7, lw=0)
+    ratio.axhline(0, color=MUTED, lw=0.9)
+    ratio.plot(time, run["balance_ratio"], color=ACCENT, lw=0.8)
+    ratio.set_ylim(-1.35, 1.35)
+    mark.note(ratio, "within a tenth", (time[-1], -0.1), (-3, -3), MUTED)
+    ratio.set(xlabel="time (s)", ylabel=r"$\xi\,/\,|I_3\omega_3|$ at launch")
+    ratio.set_xlim(0, time[-1])
+    mark.letters((tilt, ratio))
     return figure
 
 
@@ -176,30 +158,30 @@ def _within_envelope(axes: Axes, run: xr.Dataset, width: float) -> None:
     axes.plot(time, run["theta_diagnosed"], color=CONVERGED, lw=width, label="run")
 
 
+@house_style()
 def potential_figure(run: xr.Dataset) -> Figure:
     """Return the effective potential of the tilt at several instants of a run, with the energy level.
 
     `run` has potential over instant and well_theta, and level and instant_theta over instant.
     """
-    with house_style():
-        figure = Figure(figsize=(WIDTH, 4.9))
-        panels = figure.subplots(2, 3, sharex=True)
-        tilt = run["well_theta"].values
-        for k, axes in enumerate(panels.flat):
-            well, level = 1e3 * run["potential"][k].values, 1e3 * float(run["level"][k])
-            at = float(run["instant_theta"][k])
-            low = float(well.min())
-            axes.fill_between(tilt, well, level, where=well <= level, color=REPORT, alpha=0.3, lw=0)
-            axes.plot(tilt, well, color=CONVERGED, lw=1.6)
-            axes.axhline(level, color=REPORT, lw=1.1)
-            axes.plot(at, level, "o", color=ACCENT, ms=5, zorder=5)
-            axes.set_ylim(low - 0.1 * _SPAN, low + _SPAN)
-            axes.set_xlim(-0.05, np.pi + 0.05)
-            axes.xaxis.set_major_locator(MultipleLocator(np.pi / 2))
-            axes.set_title(f"t = {float(run['instant'][k]):g} s", weight="normal", size=10)
-        for axes in panels[1]:
-            axes.set_xlabel(r"tilt $\theta$ (rad)")
-            axes.xaxis.set_ticks([0, np.pi / 4, np.pi / 2, 3 * np.pi / 4, np.pi], ["0", "", "π/2", "", "π"])
-        for axes in panels[:, 0]:
-            axes.set_ylabel("effective potential (mJ)")
+    figure = Figure(figsize=(WIDTH, 4.9))
+    panels = figure.subplots(2, 3, sharex=True)
+    tilt = run["well_theta"].values
+    for k, axes in enumerate(panels.flat):
+        well, level = 1e3 * run["potential"][k].values, 1e3 * float(run["level"][k])
+        at = float(run["instant_theta"][k])
+        low = float(well.min())
+        axes.fill_between(tilt, well, level, where=well <= level, color=REPORT, alpha=0.3, lw=0)
+        axes.plot(tilt, well, color=CONVERGED, lw=1.6)
+        axes.axhline(level, color=REPORT, lw=1.1)
+        axes.plot(at, level, "o", color=ACCENT, ms=5, zorder=5)
+        axes.set_ylim(low - 0.1 * _SPAN, low + _SPAN)
+        axes.set_xlim(-0.05, np.pi + 0.05)
+        axes.xaxis.set_major_locator(MultipleLocator(np.pi / 2))
+        axes.set_title(f"t = {float(run['instant'][k]):g} s", weight="normal", size=10)
+    for axes in panels[1]:
+        axes.set_xlabel(r"tilt $\theta$ (rad)")
+        axes.xaxis.set_ticks([0, np.pi / 4, np.pi / 2, 3 * np.pi / 4, np.pi], ["0", "", "π/2", "", "π"])
+    for axes in panels[:, 0]:
+        axes.set_ylabel("effective potential (mJ)")
     return figure

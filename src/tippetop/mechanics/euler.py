@@ -23,7 +23,7 @@ def published_normal_force(y: Sequence[Scalar], top: Top, functions: Functions) 
 
 
 def published_rates(
-    y: Sequence[Scalar], top: Top, functions: Functions, wrap: float | None = None
+    y: Sequence[Scalar], top: Top, functions: Functions, wrap: float | None = None, *, pushing: bool = False
 ) -> tuple[Scalar, ...]:
     """Time derivative of y = (theta, theta', phi, phi', omega3, v_x, v_y) by equations (2.8)-(2.15).
 
@@ -38,6 +38,9 @@ def published_rates(
     wrap
         When given, theta is replaced by theta modulo this number first, as the report's listing does with pi;
         the right-hand side then jumps wherever theta crosses a multiple of it.
+    pushing
+        Whether a negative normal force is set to zero, as lines that the listing has commented out would (for
+        numbers that can be compared).
 
     Notes
     -----
@@ -49,6 +52,8 @@ def published_rates(
     m, I1, I3, R, alpha, mu, _ = published_parameters(top)
     s, c = functions.sin(tilt), functions.cos(tilt)
     normal = published_normal_force(y, top, functions)
+    if pushing and normal < 0:
+        normal = 0.0
     rub_x, rub_y = mu * normal * slip_x, mu * normal * slip_y
     reach, offset = 1.0 - alpha * c, alpha - c
     return (

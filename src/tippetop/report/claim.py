@@ -2,11 +2,13 @@
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from enum import Enum
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import xarray as xr
+
+from tippetop.report.readings import SETTLED
 
 Value: TypeAlias = float | bool
 Data: TypeAlias = Mapping[str, xr.Dataset]
@@ -16,16 +18,17 @@ Data: TypeAlias = Mapping[str, xr.Dataset]
 class Verdict(Enum):
     """What became of a claim; the value says when."""
 
-    REPRODUCED = "the converged value agrees with the reported one"
-    EXPLAINED = "the converged value does not, but the report's own method gives the reported one"
-    CORRECTED = "neither the converged value nor the report's own method gives the reported one"
+    REPRODUCED = "true, and what the report's own method gives"
+    UPHELD = "true, although the report's own method does not give it"
+    EXPLAINED = "not true, but what the report's own method gives"
+    CORRECTED = "neither true nor what the report's own method gives"
 
 
 RULE = (
-    "A claim is reproduced if the converged value agrees with the reported one within the tolerance; "
-    "explained if it does not, but the report's own method does (directly, or for some choice that the "
-    "report leaves open); corrected otherwise. The tolerance is half a unit of the last printed digit unless "
-    "the record says otherwise."
+    "Every claim is compared with the converged value, which says whether it is true, and with what the "
+    "report's own method gives, where it gives anything: directly, or for one stated choice of what the "
+    "report leaves open. They agree within half a unit of the last printed digit unless the record says "
+    "otherwise. What the report does not say in words, but draws or codes, is marked as implied."
 )
 
 
@@ -45,36 +48,17 @@ class Source:
         return ", ".join(part for part in parts if part)
 
 
-@dataclass(frozen=True)
-class Statement:
-    """What the report says.
+class Tolerance(NamedTuple):
+    """What counts as agreement, and why that."""
 
-    Attributes
-    ----------
-    id
-        Name of the claim.
-    source
-        Where it stands.
-    text
-        What is claimed.
-    printed
-        The number as printed, or "" where the claim is not a number or `Finding.reported` has it.
-    unit
-        Its unit.
-    holds
-        For a claim that is true or false: what the report says. None for a number.
-    tolerance, tolerance_from
-        What counts as agreement where the printed digits do not say it, and why that.
-    """
+    value: float
+    reason: str
 
-    id: str
-    source: Source
-    text: str
-    printed: str = ""
-    unit: str = "1"
-    holds: bool | None = None
-    tolerance: float | None = None
-    tolerance_from: str = ""
+
+ARRIVED = Tolerance(SETTLED, f"the report's own measure of having arrived, {SETTLED:g} rad")
+PLOTTED = Tolerance(0.01, "1 %: what a plot can show")
+STEADY = Tolerance(1e-5, "far below the 1e-3 of the report's method, far above rounding")
+ROUNDING = Tolerance(1e-6, "far above rounding")
 
 
 @dataclass(frozen=True)
@@ -89,8 +73,8 @@ class Finding:
         What is true.
     note
         What else there is to know.
-    listing_range, range_over
-        What the report's method gives over the choices that the report leaves open, and which they are.
+    chosen, choice
+        What the report's method gives for one choice of what the report leaves open, and which choice.
     reported
         What the report's printed formula evaluates to, where the claim is a formula.
     """
@@ -98,36 +82,75 @@ class Finding:
     listing: Value | None
     converged: Value
     note: str
-    listing_range: tuple[float, float] | None = None
-    range_over: str = ""
+    chosen: float | None = None
+    choice: str = ""
     reported: float | None = None
+
+
+Examine: TypeAlias = Callable[..., Finding]
+"""Computes a finding from the datasets of the experiments that a claim needs, in that order."""
 
 
 @dataclass(frozen=True)
 class Claim:
-    """A statement, how to examine it, and which figure shows it.
+    """What the report says, how to examine it, and which figure shows it.
 
     Attributes
     ----------
-    statement
-        What the report says.
+    id
+        Its name.
+    source
+        Where it stands.
+    text
+        What is claimed.
+    printed
+        The number as printed, with its unit; "" where the claim is not a number or `Finding.reported` has it.
+    unit
+        Unit of a number that is not printed; None if there is none.
+    tolerance
+        What counts as agreement where the printed digits do not say it.
     needs
         Names of the experiments that decide it.
     figure
         Name of our figure that shows it, or None.
+    implied
+        Whether the report does not say it in words.
+    right
+        What is right where the claim is not, in a few words; "" where the converged value says it.
     examine
-        Computes the finding from the experiments' datasets.
+        Computes the finding from the experiments' datasets, given in the order of `needs`.
     """
 
-    statement: Statement
+    id: str
+    source: Source
+    text: str
+    printed: str
+    unit: str | None
+    tolerance: Tolerance | None
     needs: tuple[str, ...]
     figure: str | None
-    examine: Callable[[Data], Finding]
+    implied: bool
+    right: str
+    examine: Examine
 
     @property
-    def id(self) -> str:
-        """Name of the claim."""
-        return self.statement.id
+    def is_number(self) -> bool:
+        """Whether it is a number; otherwise it is true or false, and the report says true."""
+        return bool(self.printed) or self.unit is not None
+
+    @property
+    def number(self) -> str:
+        """The number as printed, without its unit."""
+        return self.printed.partition(" ")[0]
+
+    @property
+    def units(self) -> str:
+        """The unit of the values; "1" for plain numbers and for what is true or false."""
+        return self.unit or self.printed.partition(" ")[2] or "1"
+
+    def judge(self, data: Data, quick: bool) -> "Judgement":
+        """Examine the claim by the experiments it needs."""
+        return Judgement(self, self.examine(*(data[name] for name in self.needs)), quick)
 
 
 @dataclass(frozen=True)
@@ -141,52 +164,46 @@ class Judgement:
     @property
     def reported(self) -> Value:
         """What the report says, as a value."""
-        statement = self.claim.statement
-        if statement.holds is not None:
-            return statement.holds
-        return number(statement.printed) if self.finding.reported is None else self.finding.reported
+        if not self.claim.is_number:
+            return True
+        return number(self.claim.number) if self.finding.reported is None else self.finding.reported
 
     @property
-    def tolerance(self) -> float | None:
+    def tolerance(self) -> Tolerance | None:
         """What counts as agreement; None for claims that are true or false."""
-        statement = self.claim.statement
-        if statement.holds is not None:
+        if not self.claim.is_number:
             return None
-        if statement.tolerance is not None:
-            return statement.tolerance
-        return half_last_digit(statement.printed)
+        return self.claim.tolerance or half_last_digit(self.claim.number)
 
     @property
     def verdict(self) -> Verdict:
         """What the values say."""
         finding = self.finding
-        return decide(
-            self.reported, finding.listing, finding.converged, self.tolerance, finding.listing_range
-        )
+        allowed = self.tolerance and self.tolerance.value
+        return decide(self.reported, finding.listing, finding.converged, allowed, finding.chosen)
 
     def record(self) -> dict[str, object]:
         """The claim as plain data."""
-        statement, finding = self.claim.statement, self.finding
-        source = statement.source
-        span = finding.listing_range
+        claim, finding = self.claim, self.finding
+        tolerance = self.tolerance
         return {
-            "id": self.claim.id,
-            "source": {"figure": source.figure, "equation": source.equation, "section": source.section},
-            "statement": statement.text,
+            "id": claim.id,
+            "source": asdict(claim.source),
+            "statement": claim.text,
+            "implied": claim.implied,
             "reported": _plain(self.reported),
-            "reported_as": statement.printed or None,
+            "reported_as": claim.number or None,
             "listing": _plain(finding.listing),
-            "listing_range": [_plain(bound) for bound in span] if span else None,
-            "listing_range_over": finding.range_over or None,
+            "listing_chosen": _plain(finding.chosen),
+            "listing_choice": finding.choice or None,
             "converged": _plain(finding.converged),
-            "unit": statement.unit,
-            "tolerance": self.tolerance,
-            "tolerance_from": statement.tolerance_from
-            or (None if self.tolerance is None else "half a unit of the last printed digit"),
+            "unit": claim.units,
+            "tolerance": tolerance and tolerance.value,
+            "tolerance_from": tolerance and tolerance.reason,
             "verdict": self.verdict.name.lower(),
             "note": finding.note,
-            "shown_in": self.claim.figure,
-            "experiments": list(self.claim.needs),
+            "shown_in": claim.figure,
+            "experiments": list(claim.needs),
             "quick": self.quick,
         }
 
@@ -198,12 +215,26 @@ class Chapter:
         self.claims: list[Claim] = []
 
     def claim(
-        self, statement: Statement, *, needs: tuple[str, ...], figure: str | None = None
-    ) -> Callable[[Callable[[Data], Finding]], Callable[[Data], Finding]]:
-        """Register the decorated function as what examines a statement."""
+        self,
+        name: str,
+        source: Source,
+        text: str,
+        printed: str = "",
+        *,
+        needs: tuple[str, ...],
+        unit: str | None = None,
+        tolerance: Tolerance | None = None,
+        figure: str | None = None,
+        implied: bool = False,
+        right: str = "",
+    ) -> Callable[[Examine], Examine]:
+        """Register the decorated function as what examines a claim; see `Claim`."""
 
-        def register(examine: Callable[[Data], Finding]) -> Callable[[Data], Finding]:
-            self.claims.append(Claim(statement, needs, figure, examine))
+        def register(examine: Examine) -> Examine:
+            claim = Claim(
+                name, source, text, printed, unit, tolerance, needs, figure, implied, right, examine
+            )
+            self.claims.append(claim)
             return examine
 
         return register
@@ -214,7 +245,7 @@ def decide(
     listing: Value | None,
     converged: Value,
     tolerance: float | None,
-    listing_range: tuple[float, float] | None = None,
+    chosen: Value | None = None,
 ) -> Verdict:
     """The verdict on a claim; see `RULE`.
 
@@ -224,18 +255,14 @@ def decide(
         What the report says, what its method gives (None: nothing) and what is true.
     tolerance
         Largest difference that counts as agreement; None for values that are true or false.
-    listing_range
-        Least and greatest value of the report's method over the choices it leaves open.
+    chosen
+        What its method gives for one choice of what it leaves open.
     """
+    given = [value for value in (listing, chosen) if value is not None]
+    theirs = any(_agree(reported, value, tolerance) for value in given)
     if _agree(reported, converged, tolerance):
-        return Verdict.REPRODUCED
-    if listing is not None and _agree(reported, listing, tolerance):
-        return Verdict.EXPLAINED
-    if listing_range is not None and tolerance is not None:
-        low, high = listing_range
-        if low - tolerance <= reported <= high + tolerance:
-            return Verdict.EXPLAINED
-    return Verdict.CORRECTED
+        return Verdict.REPRODUCED if theirs or not given else Verdict.UPHELD
+    return Verdict.EXPLAINED if theirs else Verdict.CORRECTED
 
 
 def _agree(reported: Value, found: Value, tolerance: float | None) -> bool:
@@ -250,10 +277,10 @@ def number(printed: str) -> float:
     return math.pi if printed == "pi" else float(printed)
 
 
-def half_last_digit(printed: str) -> float:
+def half_last_digit(printed: str) -> Tolerance:
     """Half a unit of the last digit of a printed number: 0.05 for "7.4", 0.5 for "170"."""
     decimals = len(printed.partition(".")[2])
-    return 0.5 * 10.0**-decimals
+    return Tolerance(0.5 * 10.0**-decimals, "half a unit of the last printed digit")
 
 
 def _plain(value: Value | None) -> float | bool | None:

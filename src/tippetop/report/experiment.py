@@ -2,10 +2,9 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from importlib.metadata import version
 
 import xarray as xr
-
-from tippetop import __version__
 
 
 @dataclass(frozen=True)
@@ -36,15 +35,16 @@ class Experiment:
             "title": self.title,
             "experiment": self.id,
             "quick": int(quick),
-            "tippetop_version": __version__,
+            "tippetop_version": version("tippetop"),
             "Conventions": "CF-1.11",
             **data.attrs,
         }
         return data
 
 
-def variable(
-    values: object, units: str, long_name: str, dimensions: tuple[str, ...] = ()
-) -> tuple[tuple[str, ...], object, dict[str, str]]:
+Variable = tuple[tuple[str, ...], object, dict[str, str]]
+
+
+def variable(values: object, units: str, long_name: str, dimensions: tuple[str, ...] = ()) -> Variable:
     """A variable of a dataset with its unit and its meaning."""
     return (dimensions, values, {"units": units, "long_name": long_name})

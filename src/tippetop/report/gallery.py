@@ -6,25 +6,39 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from tippetop.figures import flights, methods, runs, schematics, sweeps
-from tippetop.report import gallery_why
+from tippetop.figures import flights, methods, runs, sweeps
+from tippetop.figures.euler_angles import euler_angles_drawing
+from tippetop.figures.model import model_drawing
+from tippetop.figures.tippe_top import tippe_top_drawing
 from tippetop.report.experiments.flights import HOPS_WINDOW, MU, TILT
-from tippetop.report.plate import Draw, Plate
-from tippetop.report.quoted import ABNORMAL_SPIN, CRITICAL_SPINS, ENERGY, ENERGY_TIME, STOP
+from tippetop.report.gallery_why import PLATES as WHY
+from tippetop.report.plate import Plate
+from tippetop.report.quoted import (
+    ABNORMAL_SPIN,
+    CRITICAL_SPINS,
+    ENERGY,
+    ENERGY_TIME,
+    EXPONENT,
+    REVERSALS,
+    STOP,
+    TURNED_AT,
+)
 
 __all__ = ["PLATES", "Plate"]
 
 _CRITICAL = (float(CRITICAL_SPINS[0]), float(CRITICAL_SPINS[1]))
 
 
-def _drawing(make: Callable[..., Figure]) -> Draw:
-    return lambda _: make()
-
-
 def _run(
     id_: str, title: str, caption: str, experiment: str, draw: Callable[..., Figure], **options: Any
 ) -> Plate:
     return Plate(id_, title, caption, (experiment,), partial(draw, **options))
+
+
+def _printed_times(figure: str) -> dict[str, Any]:
+    """The times that the report prints for a figure, for its drawing."""
+    times = tuple(float(time) for time in REVERSALS[figure])
+    return {"reported_turn": float(TURNED_AT[figure]), "reported_reversals": times}
 
 
 _BOTH = (
@@ -42,7 +56,7 @@ PLATES: dict[str, Plate] = {
             "ball while the toy is upright, and higher when it spins on its stem: the spin pays for the "
             "climb.",
             (),
-            _drawing(schematics.tippe_top_drawing),
+            lambda _: tippe_top_drawing(),
         ),
         Plate(
             "fig02",
@@ -50,7 +64,7 @@ PLATES: dict[str, Plate] = {
             "The three turns that take the space axes x, y, z to the body axes X, Y, Z: about z, about the "
             "line of nodes N, and about Z.",
             (),
-            _drawing(schematics.euler_angles_drawing),
+            lambda _: euler_angles_drawing(),
         ),
         Plate(
             "fig03",
@@ -58,7 +72,7 @@ PLATES: dict[str, Plate] = {
             "A sphere whose centre of mass is off its centre O by alpha R along the axis 3. A is the point "
             "that touches the table, a the vector from the centre of mass to it.",
             (),
-            _drawing(schematics.model_drawing),
+            lambda _: model_drawing(),
         ),
         _run(
             "fig04",
@@ -66,20 +80,25 @@ PLATES: dict[str, Plate] = {
             _BOTH
             + "a, tilt, with 0.4 s drawn large. b, spin about the body's axis. c, precession, cut off: it "
             "has a peak whenever the axis passes close to the vertical; dots mark the two reversals between "
-            "which it keeps its sense. d, slip speed of the point of contact.",
+            "which it keeps its sense. d, slip speed of the point of contact. Squares: the times that the "
+            "report prints.",
             "run-155",
             runs.motion_figure,
             zoom=(5.2, 5.6),
+            **_printed_times("fig04"),
         ),
         _run(
             "fig05",
             "Figure 5: launch at 50 rad/s",
-            _BOTH + "Panels as in Figure 4; the dot marks the last reversal of the precession.",
+            _BOTH
+            + "Panels as in Figure 4; the dot marks the last reversal of the precession. Squares: the times "
+            "that the report prints.",
             "run-50",
             runs.motion_figure,
             precession_limit=80.0,
+            **_printed_times("fig05"),
             zoom=(0.0, 1.6),
-            inset=(0.36, 0.66, 0.6, 0.32),
+            inset=(0.12, 0.57, 0.34, 0.38),
         ),
         Plate(
             "fig06",
@@ -107,7 +126,7 @@ PLATES: dict[str, Plate] = {
             "level where the time goes as 1/mu. The jumps come from the definition of the flip time, the "
             "gaps from runs on a table that pulls that became singular.",
             ("flip-times", "flip-times-wide"),
-            sweeps.flip_time_figure,
+            partial(sweeps.flip_time_figure, reported=float(EXPONENT)),
         ),
         _run(
             "fig08",
@@ -153,8 +172,9 @@ PLATES: dict[str, Plate] = {
             "fig12",
             "Figure 12: 175 rad/s, stopped before flight",
             _BOTH
-            + "The converged run ends where the normal force falls through zero; the report's, where it "
-            "chose to stop. Green: there is no need to stop; the top hops (shaded) and turns over.",
+            + "a, tilt; b, normal force. The converged run ends where the force falls through zero; the "
+            "report's, where it chose to stop, after its own force had fallen through zero. Green: there is "
+            "no need to stop; the top hops (shaded) and turns over.",
             "run-175",
             runs.stopped_figure,
             reported_stop=float(STOP),
@@ -224,8 +244,10 @@ PLATES: dict[str, Plate] = {
         Plate(
             "order",
             "Order of accuracy",
-            "Error against the length of the step, for the method of Appendix B and for the formula inside "
-            "ode45. The order is the slope, here between the two shortest steps.",
+            "Error against the length of the step, on the top for the method of Appendix B and for the "
+            "formula inside ode45, and on an equation that depends on time for (B.1) as printed, which takes "
+            "its last stage at the wrong time, and mended. The order is the slope, here between the two "
+            "shortest steps.",
             ("order",),
             methods.order_figure,
         ),
@@ -237,7 +259,7 @@ PLATES: dict[str, Plate] = {
             ("stiffness",),
             methods.stiffness_figure,
         ),
-        *gallery_why.PLATES,
+        *WHY,
     )
 }
 """Every figure by its name, in the order of the page."""

@@ -3,15 +3,30 @@
 import base64
 from collections import Counter
 from collections.abc import Mapping, Sequence, Set
+from importlib.metadata import version
 
 import jinja2
 
-from tippetop import __version__
 from tippetop.integrators import default_name
 from tippetop.report.claim import RULE, Judgement, Value, Verdict
 from tippetop.report.gallery import PLATES, Plate
+from tippetop.report.typeset import typeset
+from tippetop.report.unchecked import UNCHECKED
 
 _TEMPLATE = "page.html.j2"
+
+_PARTS = (
+    ("1", "Introduction"),
+    ("2", "The model"),
+    ("3", "Results"),
+    ("4", "Discussion: flight"),
+    ("5", "Critique and summary"),
+    ("A", "Appendices"),
+)
+"""The report's sections by the beginning of their numbers, for the order of the claims."""
+
+_WRONG = (Verdict.CORRECTED, Verdict.EXPLAINED)
+"""Verdicts on what is not true."""
 
 
 def render(
@@ -44,9 +59,11 @@ def render(
         lstrip_blocks=True,
         undefined=jinja2.StrictUndefined,
     )
+    environment.filters["typeset"] = typeset
     shown = {plate.id for plate in plates}
     claims = [worded(judgement, shown) for judgement in judgements]
     counts = Counter(claim["verdict"] for claim in claims)
+    wrong = [verdict.name.lower() for verdict in _WRONG]
     return environment.get_template(_TEMPLATE).render(
         sections=[
             {
@@ -56,6 +73,10 @@ def render(
             for section in dict.fromkeys(plate.section for plate in plates)
         ],
         claims=claims,
+        errors=[claim for name in wrong for claim in claims if claim["verdict"] == name],
+        sound=[claim for claim in claims if claim["verdict"] not in wrong],
+        parts=[part for part in (_part(*named, claims) for named in _PARTS) if part["claims"]],
+        unchecked=UNCHECKED,
         verdicts=[
             {"name": verdict.name.lower(), "count": counts[verdict.name.lower()], "meaning": verdict.value}
             for verdict in Verdict
@@ -63,7 +84,7 @@ def render(
         rule=RULE,
         quick=quick,
         partial=partial,
-        version=__version__,
+        version=version("tippetop"),
         integrator=default_name(),
     )
 
@@ -78,33 +99,56 @@ def _shown(
         "caption": plate.caption,
         "image": _embedded(pictures[plate.id]),
         "has_data": bool(plate.needs),
+        "experiments": ", ".join(plate.needs),
         "claims": [claim for claim in claims if claim["figure"] == plate.id],
     }
 
 
+def _part(number: str, title: str, claims: Sequence[dict[str, str | None]]) -> dict[str, object]:
+    """A section of the report with its claims."""
+    inside = [claim for claim in claims if (claim["section"] or "")[0] == number]
+    return {"id": f"section-{number}", "number": number, "title": title, "claims": inside}
+
+
 def worded(judgement: Judgement, shown: Set[str] = frozenset()) -> dict[str, str | None]:
     """A claim in words, for people; `shown` are the figures that it may refer to."""
-    statement, finding = judgement.claim.statement, judgement.finding
-    unit = "" if statement.unit == "1" else f" {statement.unit}"
-    reported = statement.printed.replace("pi", "π") or _number(judgement.reported)
-    span = finding.listing_range
-    figure = judgement.claim.figure
+    claim, finding, tolerance = judgement.claim, judgement.finding, judgement.tolerance
+    unit = "" if claim.units == "1" else f" {claim.units}"
+    reported = claim.number.replace("pi", "π") or _number(judgement.reported)
+    figure = claim.figure
     return {
-        "id": judgement.claim.id,
-        "place": statement.source.place,
-        "text": statement.text,
-        "reported": f"{reported}{unit}" if statement.holds is None else reported,
+        "id": claim.id,
+        "short": _without_measure(claim.text),
+        "place": claim.source.place,
+        "section": claim.source.section,
+        "experiments": ", ".join(claim.needs),
+        "right": claim.right or (_number(finding.converged) + unit),
+        "text": claim.text + (" (implied)" if claim.implied else ""),
+        "reported": reported + unit,
         "listing": "–" if finding.listing is None else _number(finding.listing) + unit,
-        "range": f"{_number(span[0])} to {_number(span[1])}{unit}" if span else None,
-        "range_over": finding.range_over,
+        "chosen": None if finding.chosen is None else _number(finding.chosen) + unit,
+        "choice": finding.choice,
         "converged": _number(finding.converged) + unit,
-        "tolerance": None if judgement.tolerance is None else f"± {judgement.tolerance:g}{unit}",
-        "tolerance_from": statement.tolerance_from,
+        "tolerance": f"± {tolerance.value:g}{unit}" if tolerance else None,
+        "tolerance_from": tolerance.reason if claim.tolerance and tolerance else "",
         "verdict": judgement.verdict.name.lower(),
         "note": finding.note,
         "figure": figure if figure in shown else None,
         "figure_title": PLATES[figure].title.partition(":")[0] if figure in shown and figure else None,
     }
+
+
+def _without_measure(text: str) -> str:
+    """What is claimed, without the last parenthesis, which says what the value is."""
+    if not text.endswith(")."):
+        return text
+    depth, start = 0, len(text) - 1
+    while start > 0:
+        start -= 1
+        depth += {")": 1, "(": -1}.get(text[start], 0)
+        if depth == 0:
+            break
+    return text[:start].rstrip() + "."
 
 
 def _number(value: Value) -> str:

@@ -1,5 +1,11 @@
 """Numbers that the report prints and that more than one figure or claim needs, each with its place."""
 
+TURNED_AT = {"fig04": "7.4", "fig05": "8.9"}
+"""When the top has turned over completely and half, s (captions of Figs. 4 and 5)."""
+
+REVERSALS = {"fig04": ("3.3", "7.9"), "fig05": ("1.1",)}
+"""When the precession reverses, s (captions of Figs. 4 and 5)."""
+
 END_OF_FIG_5 = {"theta": 1.503, "phi_dot": 35.257, "omega3": -8.201}
 """The end state of the run at 50 rad/s, rad and rad/s (section 3.1, below Fig. 5)."""
 
@@ -8,6 +14,9 @@ CRITICAL_SPINS = ("26.3", "78.6")
 
 ABNORMAL_SPIN = "170"
 """omega_a, rad/s (section 3.2)."""
+
+EXPONENT, NORMAL_FRICTION = "-0.985", (0.2, 1.0)
+"""The power of mu in the flip time, and the range of mu, s/m, that it is for (section 3.3, Fig. 7)."""
 
 ENERGY, ENERGY_TIME, FALL = "0.06", "6", "15"
 """The energy at 175 rad/s, J, when it is reached, s, and the fall to compare, R (section 4, Fig. 10)."""

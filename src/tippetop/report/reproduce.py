@@ -19,7 +19,7 @@ from tippetop.errors import FileTrouble
 from tippetop.figures.style import save
 from tippetop.files import refuse_overwriting
 from tippetop.report.claim import Data, Judgement
-from tippetop.report.experiments import EXPERIMENTS
+from tippetop.report.experiments.registry import EXPERIMENTS
 from tippetop.report.gallery import PLATES
 from tippetop.report.page import render
 from tippetop.report.selection import Selection, select
@@ -105,10 +105,7 @@ def reproduce(
     with _staging(folder) as stage:
         results = carry_out(_tasks(chosen, quick, stage), _processes(workers), progress)
         data = {experiment.id: results[experiment.id] for experiment in chosen.experiments}
-        judgements = tuple(
-            Judgement(claim, claim.examine({name: data[name] for name in claim.needs}), quick)
-            for claim in chosen.claims
-        )
+        judgements = tuple(claim.judge(data, quick) for claim in chosen.claims)
         _write_data(chosen, data, stage)
         records = [judgement.record() for judgement in judgements]
         text = json.dumps(records, indent=2, ensure_ascii=False)

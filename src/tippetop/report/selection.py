@@ -6,9 +6,9 @@ from difflib import get_close_matches
 
 from tippetop.errors import InvalidInput
 from tippetop.report.claim import Claim
-from tippetop.report.claims import CLAIMS
+from tippetop.report.claims.registry import CLAIMS
 from tippetop.report.experiment import Experiment
-from tippetop.report.experiments import EXPERIMENTS
+from tippetop.report.experiments.registry import EXPERIMENTS
 from tippetop.report.gallery import PLATES, Plate
 
 

@@ -13,8 +13,10 @@ from tippetop.theory.steady import (
     VERTICAL_SPINS,
     SteadyState,
     jellett_of_launch,
-    steady_states as all_steady_states,
     vertical_spin,
+)
+from tippetop.theory.steady import (
+    steady_states as all_steady_states,
 )
 from tippetop.theory.thresholds import CriticalSpins, critical_spins, lambda_down, lambda_up
 
@@ -113,7 +115,7 @@ def outlook(problem: Problem) -> Outlook:
 def steady_states(problem: Problem) -> list[SteadyState]:
     """Steady states that a launch might end in, by increasing tilt.
 
-    All that have its Jellett's integral; where that is not conserved, the two vertical spins at its axial spin.
+    All with its Jellett's integral, or where that is not conserved, both vertical spins at its axial spin.
 
     Raises
     ------

@@ -1,11 +1,1 @@
-"""All experiments by name."""
-
-from tippetop.report.experiment import Experiment
-from tippetop.report.experiments import checks, flights, friction, methods, runs, spins, theory, theory_runs
-
-EXPERIMENTS: dict[str, Experiment] = {
-    experiment.id: experiment
-    for module in (runs, spins, friction, flights, methods, checks, theory, theory_runs)
-    for experiment in module.EXPERIMENTS
-}
-"""Every experiment by its name."""
+"""The computations behind the figures and claims, a file for each subject."""

@@ -125,7 +125,7 @@ def _over_mu(quick: bool) -> xr.Dataset:
 def _over_tilt(quick: bool) -> xr.Dataset:
     data = _onsets(
         "tilt",
-        np.linspace(0.05, 1.4, 6 if quick else 16),
+        np.sort([TILT, *np.linspace(0.05, 1.4, 6 if quick else 16)]),
         ("rad", "tilt at launch"),
         lambda spin, tilt: report_problem(spin, tilt, MU),
         (WINDOW,),

@@ -11,6 +11,7 @@ from tippetop.presets import report_problem
 from tippetop.report.experiment import Experiment, variable
 from tippetop.report.experiments.runs import WINDOW, on_table, swept
 from tippetop.report.listing import listing_run
+from tippetop.report.quoted import NORMAL_FRICTION
 from tippetop.report.readings import SETTLED, flip_time
 
 SPIN = 155.0
@@ -55,7 +56,7 @@ def power_law(mu: Array, times: Array) -> tuple[float, float, float, float]:
 
 
 def _flip_times(quick: bool) -> xr.Dataset:
-    mu = np.linspace(0.2, 1.0, 9 if quick else 17)
+    mu = np.linspace(*NORMAL_FRICTION, 9 if quick else 17)
     spins = np.array([SPIN])
     columns = {"": converged_flip_times(spins, mu)[0], "_listing": listing_flip_times(spins, mu)[0]}
     data = xr.Dataset(
@@ -74,7 +75,7 @@ def _flip_times(quick: bool) -> xr.Dataset:
 
 def _other_spins(quick: bool) -> xr.Dataset:
     spins = np.array(OTHER_SPINS[::3] if quick else OTHER_SPINS)
-    mu = np.linspace(0.2, 1.0, 5 if quick else 9)
+    mu = np.linspace(*NORMAL_FRICTION, 5 if quick else 9)
     data = xr.Dataset(
         coords={
             "spin": variable(spins, "rad s-1", "spin at launch", ("spin",)),
@@ -111,7 +112,19 @@ def _wide(quick: bool) -> xr.Dataset:
     )
 
 
+def _extremes(quick: bool) -> xr.Dataset:
+    """When the report's main launch turns half over, from no friction to far too much."""
+    mu = np.array([0.0, 0.3, 1.0, 100.0, 300.0, 1000.0])
+    found = swept(on_table(report_problem(SPIN)), {"friction.mu": mu})
+    return xr.Dataset(
+        {"turning_time": variable(found["turns_over"].values, "s", "first tilt of more than pi/2", ("mu",))},
+        {"mu": variable(mu, "s m-1", "friction coefficient", ("mu",))},
+        {"spin_rad_per_s": SPIN, "window_s": WINDOW},
+    )
+
+
 EXPERIMENTS = [
+    Experiment("friction-extremes", "turning over from no friction to far too much", 5.0, _extremes),
     Experiment("flip-times", "flip time against friction, at 155 rad/s", 2.0, _flip_times),
     Experiment("flip-times-spins", "the same at other spins", 7.0, _other_spins),
     Experiment("flip-times-wide", "flip time over three decades of friction", 2.5, _wide),

@@ -1,5 +1,6 @@
 """The numerical methods: their order, and what a stiff launch costs them."""
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -10,7 +11,7 @@ from tippetop.integrators.scipy_methods import SciPy
 from tippetop.mechanics.vectors import Scalar
 from tippetop.presets import report_problem
 from tippetop.problem import Problem
-from tippetop.report.experiment import Experiment, variable
+from tippetop.report.experiment import Experiment, Variable, variable
 from tippetop.report.experiments.runs import on_table
 from tippetop.report.listing import launch_state, listing_rates
 from tippetop.report.ode45 import ABSOLUTE, RELATIVE, dormand_prince_step, ode45
@@ -18,8 +19,15 @@ from tippetop.run import simulate
 
 EXPLICIT, IMPLICIT = ("ode45", "dop853"), ("radau", "bdf", "lsoda")
 
-LAUNCHES = ((10.0, 0.3), (155.0, 0.3), (155.0, 10.0), (10.0, 100.0), (155.0, 100.0))
-"""Spins (rad/s) and friction coefficients (s/m) on which the methods are compared."""
+LAUNCHES = (
+    (10.0, 0.1, 0.3),
+    (155.0, 0.1, 0.3),
+    (155.0, 1.4, 0.3),
+    (155.0, 0.1, 10.0),
+    (10.0, 0.1, 100.0),
+    (155.0, 0.1, 100.0),
+)
+"""Spins (rad/s), tilts (rad) and friction coefficients (s/m) of the launches the methods are compared on."""
 
 _SPAN = 5.0
 
@@ -60,11 +68,42 @@ def _order(quick: bool) -> xr.Dataset:
     data = xr.Dataset(coords={"step": variable(steps, "s", "length of a step", ("step",))})
     for name, values in errors.items():
         data[name] = variable(np.array(values), "rad", f"error of the axis or tilt: {name}", ("step",))
-        slope = float(np.log(values[-1] / values[-2]) / np.log(steps[-1] / steps[-2]))
-        data[f"order_{name}"] = variable(
-            slope, "1", f"power of the step in the error, between the two finest: {name}"
-        )
+        data[f"order_{name}"] = _order_of(steps, np.array(values), name)
+    coarse = 2.0 / np.array([20.0, 40.0, 80.0, 160.0])
+    data["step_printed"] = variable(coarse, "s", "length of a step", ("step_printed",))
+    for suffix, last in (("", 0.0), ("_mended", 1.0)):
+        table = np.array([_printed_errors(step, last) for step in coarse])
+        for k, part in enumerate(("in_all", "in_a_step")):
+            name = f"printed{suffix}_{part}"
+            data[name] = variable(table[:, k], "1", f"error of (B.1): {name}", ("step_printed",))
+            data[f"order_{name}"] = _order_of(coarse, table[:, k], name)
     return data
+
+
+def _order_of(steps: Array, errors: Array, name: str) -> Variable:
+    slope = float(np.log(errors[-1] / errors[-2]) / np.log(steps[-1] / steps[-2]))
+    return variable(slope, "1", f"power of the step in the error, between the two finest: {name}")
+
+
+def _printed_errors(step: float, last: float) -> tuple[float, float]:
+    """Errors of (B.1) on y' = y cos(1 + t), y(0) = 1, after 2 s and in one step.
+
+    Its last stage is taken at this part of the step: 0 as printed, 1 as it should be.
+    """
+
+    def rate(y: float, t: float) -> float:
+        return y * math.cos(1.0 + t)
+
+    y, errors = 1.0, []
+    for k in range(round(2.0 / step)):
+        t = k * step
+        first = rate(y, t)
+        second = rate(y + 0.5 * step * first, t + 0.5 * step)
+        third = rate(y + 0.5 * step * second, t + 0.5 * step)
+        fourth = rate(y + step * third, t + last * step)
+        y += step / 6.0 * (first + 2.0 * second + 2.0 * third + fourth)
+        errors.append(abs(y - math.exp(math.sin(1.0 + t + step) - math.sin(1.0))))
+    return errors[-1], errors[0]
 
 
 def _distance(axis: Array, run: xr.Dataset) -> float:
@@ -101,10 +140,7 @@ def _stiffness(quick: bool) -> xr.Dataset:
     span = 1.5 if quick else _SPAN
     methods = (*EXPLICIT, *IMPLICIT)
     counts = np.array(
-        [
-            [evaluations(report_problem(spin, mu=mu), method, span) for method in methods]
-            for spin, mu in LAUNCHES
-        ]
+        [[evaluations(report_problem(*launch), method, span) for method in methods] for launch in LAUNCHES]
     )
     counted = np.where(counts < 0, np.nan, counts)
     explicit = np.nanmin(counted[:, : len(EXPLICIT)], axis=1)
@@ -116,8 +152,9 @@ def _stiffness(quick: bool) -> xr.Dataset:
                 counts, "1", "evaluations of the right-hand side", ("launch", "integrator")
             ),
             "stiffness": variable(explicit / implicit, "1", name, ("launch",)),
-            "launch_spin": variable([spin for spin, _ in LAUNCHES], "rad s-1", "spin", ("launch",)),
-            "launch_mu": variable([mu for _, mu in LAUNCHES], "s m-1", "friction coefficient", ("launch",)),
+            "launch_spin": variable(np.array(LAUNCHES)[:, 0], "rad s-1", "spin", ("launch",)),
+            "launch_tilt": variable(np.array(LAUNCHES)[:, 1], "rad", "tilt", ("launch",)),
+            "launch_mu": variable(np.array(LAUNCHES)[:, 2], "s m-1", "friction coefficient", ("launch",)),
         },
         {"integrator": list(methods)},
         {"span_s": span, "relative_tolerance": RELATIVE, "absolute_tolerance": ABSOLUTE},

@@ -11,16 +11,22 @@ from tippetop.mechanics.euler import published_energy
 from tippetop.presets import REPORT_TABLE_1, report_problem
 from tippetop.problem import Problem
 from tippetop.report.experiment import Experiment, variable
-from tippetop.report.listing import CONTROLS, listing_run
-from tippetop.report.readings import crossings, first_below_zero, flip_time, longest_quiet
+from tippetop.report.listing import listing_run
+from tippetop.report.readings import SETTLED, crossings, first_below_zero, flip_time, longest_quiet
 from tippetop.run import simulate
 from tippetop.sweeps import Axis, Ending, Product, Sweep, compute
 
 WINDOW = 20.0
 """Length of the report's runs, s (its listing, line 13)."""
 
-ARRIVALS = (0.01, 0.02, 0.05, 0.1)
+ARRIVALS = np.linspace(SETTLED, 0.1, 46)
 """Distances from the last tilt at which a top may be said to have arrived, rad; the report's is the first."""
+
+WINDOWS = np.arange(9.0, WINDOW + 0.5)
+"""Lengths of the runs that may have given the end of the report's Fig. 5, s: from its time of arrival on."""
+
+CAPPED_SPINS = (165.0, 175.0, 200.0)
+"""Spins of launches on which the lines that the listing has commented out are tried, rad/s."""
 
 SERIES = ("theta", "theta_dot", "phi_dot", "omega3", "slip_x", "slip_y", "normal_force", "energy")
 _DRAWN = 10_000
@@ -87,25 +93,20 @@ def flight_readings(run: xr.Dataset) -> dict[str, float]:
     }
 
 
-def comparison(problem: Problem, quick: bool, *, both_controls: bool = False) -> xr.Dataset:
+def comparison(problem: Problem, quick: bool) -> xr.Dataset:
     """One launch by the report's method and converged, on a table that pulls, with what is read off both.
 
     Variables over `time` are converged; those over `time_listing`, named ``..._listing``, are the report's
-    method at its own points of output. With both controls, ``..._scipy`` is read off the same method with
-    SciPy's control of the step. If the table would have to pull, there are also variables over `time` named
-    ``..._flight``, converged for a table that only pushes, and what is read off them.
+    method at its own points of output. If the table would have to pull, there are also variables over `time`
+    named ``..._flight``, converged for a table that only pushes, and what is read off them.
     """
     problem = on_table(problem)
     true = simulate(problem, WINDOW, samples=20_001 if quick else 40_001)
-    controls = CONTROLS if both_controls else CONTROLS[:1]
-    listings = {control: listing_run(problem, WINDOW, control) for control in controls}
+    listing = listing_run(problem, WINDOW)
     with np.errstate(all="ignore"):
         published = _published_energy(true, problem)
     true = true.assign(energy_published=("time", published))
-    data = _series(true, listings["ode45"])
-    data = data.assign(_readings(true, ""))
-    for suffix, run in zip(("_listing", "_scipy"), listings.values(), strict=False):
-        data = data.assign(_readings(run, suffix))
+    data = _series(true, listing).assign(_readings(true, "")).assign(_readings(listing, "_listing"))
     stopped = lift_off_time(simulate(stopping(problem), WINDOW, samples=2))
     data["lift_off_time"] = variable(stopped, "s", "when the table would first have to pull")
     if math.isfinite(stopped):
@@ -114,7 +115,7 @@ def comparison(problem: Problem, quick: bool, *, both_controls: bool = False) ->
         "problem": problem.to_json(),
         "outcome": true.attrs["outcome"],
         "outcome_advice": true.attrs["outcome_advice"],
-        "failure_listing": listings["ode45"].attrs["failure"],
+        "failure_listing": listing.attrs["failure"],
     }
     return data
 
@@ -190,18 +191,12 @@ def _readings(run: xr.Dataset, suffix: str) -> dict[str, object]:
         "largest_energy": variable(energy.max(), "J", "largest energy"),
     }
     readings: dict[str, object] = {f"{name}{suffix}": value for name, value in values.items()}
-    readings["within"] = variable(list(ARRIVALS), "rad", "distance from the last tilt", ("within",))
+    readings["within"] = variable(ARRIVALS, "rad", "distance from the last tilt", ("within",))
     return readings
 
 
-def _experiment(
-    name: str, cost: float, problem: Callable[[], Problem], title: str, both_controls: bool = False
-) -> Experiment:
-    return Experiment(name, title, cost, partial(_compare, problem, both_controls))
-
-
-def _compare(problem: Callable[[], Problem], both_controls: bool, quick: bool) -> xr.Dataset:
-    return comparison(problem(), quick, both_controls=both_controls)
+def _experiment(name: str, cost: float, problem: Callable[[], Problem], title: str) -> Experiment:
+    return Experiment(name, title, cost, lambda quick: comparison(problem(), quick))
 
 
 def _table_1() -> Problem:
@@ -221,13 +216,42 @@ def _settling(quick: bool) -> xr.Dataset:
     )
 
 
+def _windows(quick: bool) -> xr.Dataset:
+    """The end of the launch at 50 rad/s by the report's method, against the length of the run."""
+    windows = WINDOWS[1::2] if quick else WINDOWS
+    ends = [listing_run(report_problem(50.0), float(window)).isel(time=-1) for window in windows]
+    data = {
+        f"{name}_listing": variable([float(end[name]) for end in ends], units, "at the end", ("window",))
+        for name, units in (("theta", "rad"), ("phi_dot", "rad s-1"), ("omega3", "rad s-1"))
+    }
+    return xr.Dataset(data, {"window": variable(windows, "s", "length of the run", ("window",))})
+
+
+def _capped(quick: bool) -> xr.Dataset:
+    """Where launches end by the report's method, and if a negative normal force is set to zero in it."""
+
+    def ends(pushing: bool) -> list[float]:
+        runs = [listing_run(report_problem(spin), WINDOW, pushing=pushing) for spin in CAPPED_SPINS]
+        return [float(run["theta"][-1]) for run in runs]
+
+    return xr.Dataset(
+        {
+            "final_theta": variable(ends(pushing=False), "rad", "tilt at the end", ("spin",)),
+            "final_theta_capped": variable(ends(pushing=True), "rad", "the same, g_n >= 0", ("spin",)),
+        },
+        {"spin": variable(list(CAPPED_SPINS), "rad s-1", "spin at launch", ("spin",))},
+    )
+
+
 EXPERIMENTS = [
+    Experiment("run-50-windows", "the end of Fig. 5 against the length of the run", 1.5, _windows),
+    Experiment("listing-capped", "the listing with what it has commented out", 2.5, _capped),
     Experiment("settling-mu-100", "how the nutation of Fig. 8 dies away", 0.8, _settling),
-    _experiment("run-155", 1.4, report_problem, "launch at 155 rad/s", both_controls=True),
-    _experiment("run-50", 0.8, partial(report_problem, 50.0), "launch at 50 rad/s", both_controls=True),
+    _experiment("run-155", 1.4, report_problem, "launch at 155 rad/s"),
+    _experiment("run-50", 0.8, partial(report_problem, 50.0), "launch at 50 rad/s"),
     _experiment("run-50-table-1", 0.8, _table_1, "launch at 50 rad/s of the body that Table 1 prints"),
     _experiment("run-mu-100", 4.0, partial(report_problem, 155.0, mu=100.0), "launch on an impossible table"),
-    _experiment("run-175", 2.0, partial(report_problem, 175.0), "launch at 175 rad/s", both_controls=True),
+    _experiment("run-175", 2.0, partial(report_problem, 175.0), "launch at 175 rad/s"),
     _experiment("run-10", 0.5, partial(report_problem, 10.0), "launch at 10 rad/s"),
     _experiment("run-90", 1.0, partial(report_problem, 90.0), "launch at 90 rad/s"),
     _experiment("run-120", 1.1, partial(report_problem, 120.0), "launch at 120 rad/s"),

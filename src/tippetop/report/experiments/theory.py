@@ -26,6 +26,7 @@ from tippetop.theory.prediction import predict
 from tippetop.theory.stability import branch_eigenvalues
 from tippetop.theory.steady import SteadyKind, jellett_of_launch, precession_branch
 from tippetop.theory.thresholds import (
+    CriticalSpins,
     apparent_critical_spins,
     critical_spin,
     critical_spin_from_spectrum,
@@ -62,30 +63,20 @@ def _critical(quick: bool) -> xr.Dataset:
     formula = [critical_spin(kind, top) for kind in _KINDS]
     spectrum = [critical_spin_from_spectrum(kind, top) for kind in _KINDS]
     rates = [growth_rates_of_launches(kind, problem, spins) for kind in _KINDS]
+    each = ("vertical",)
+    data = {
+        "critical_launch": variable(_pair(launches), "rad s-1", "critical spin at launch", each),
+        "critical_formula": variable(formula, "rad s-1", "critical axial spin, by formula", each),
+        "critical_spectrum": variable(
+            spectrum, "rad s-1", "critical axial spin, where the growth rate vanishes", each
+        ),
+        "growth_rate": variable(rates, "s-1", "growth rate of the vertical spin", (*each, "growth_spin")),
+    }
+    for name, shown in zip(("upright", "inverted"), zip(*map(_pair, seen), strict=True), strict=True):
+        words = f"critical spin of the {name} spin as the window shows it"
+        data[f"apparent_{name}"] = variable(list(shown), "rad s-1", words, ("visible",))
     return xr.Dataset(
-        {
-            "critical_launch": variable(
-                [launches.upright, launches.inverted], "rad s-1", "critical spin at launch", ("vertical",)
-            ),
-            "critical_formula": variable(
-                formula, "rad s-1", "critical axial spin of the vertical spin, by formula", ("vertical",)
-            ),
-            "critical_spectrum": variable(
-                spectrum,
-                "rad s-1",
-                "critical axial spin of the vertical spin, where its growth rate vanishes",
-                ("vertical",),
-            ),
-            "growth_rate": variable(
-                rates, "s-1", "growth rate of the vertical spin", ("vertical", "growth_spin")
-            ),
-            "apparent_upright": variable(
-                [pair.upright for pair in seen], "rad s-1", "omega_c1 as the window shows it", ("visible",)
-            ),
-            "apparent_inverted": variable(
-                [pair.inverted for pair in seen], "rad s-1", "omega_c2 as the window shows it", ("visible",)
-            ),
-        },
+        data,
         {
             "vertical": [kind.value for kind in _KINDS],
             "growth_spin": variable(spins, "rad s-1", "spin at launch", ("growth_spin",)),
@@ -93,6 +84,10 @@ def _critical(quick: bool) -> xr.Dataset:
         },
         {"apparent_window_s": WINDOW},
     )
+
+
+def _pair(spins: CriticalSpins) -> list[float]:
+    return [spins.upright, spins.inverted]
 
 
 def _bifurcation(quick: bool) -> xr.Dataset:
@@ -112,6 +107,16 @@ def _bifurcation(quick: bool) -> xr.Dataset:
     return whole
 
 
+_OF_RUNS = {
+    "spin": ("rad s-1", "spin near theta = 0 of the same lambda"),
+    "tilt": ("rad", "tilt at launch"),
+    "end": ("rad", "tilt at the end of a long run"),
+    "predicted": ("rad", "reachable stable steady tilt of least energy"),
+    "certain": ("1", "whether it is the only one in reach"),
+    "stable": ("1", "number of stable steady states"),
+}
+
+
 def _diagram(suffix: str, body: Body, tilts: Array, launches: list[tuple[float, float]]) -> xr.Dataset:
     """Steady states of a body against the spin of a launch near theta = 0, and runs.
 
@@ -123,6 +128,14 @@ def _diagram(suffix: str, body: Body, tilts: Array, launches: list[tuple[float, 
     found = [_launched(base, spin, tilt) for spin, tilt in launches]
     ends = [float(simulate(problem, LONG_RUN, samples=2)["theta"].values[-1]) for problem in found]
     predicted = [predict(problem) for problem in found]
+    of_runs = {
+        "spin": [spin for spin, _ in launches],
+        "tilt": [tilt for _, tilt in launches],
+        "end": ends,
+        "predicted": [one.final.tilt for one in predicted],
+        "certain": [int(one.certain) for one in predicted],
+        "stable": [len(one.stable) for one in predicted],
+    }
     limits = critical_spins(base)
     run, over = f"run{suffix}", f"branch_theta{suffix}"
     return xr.Dataset(
@@ -133,26 +146,11 @@ def _diagram(suffix: str, body: Body, tilts: Array, launches: list[tuple[float, 
             f"branch_growth{suffix}": variable(
                 np.max(eigenvalues.real, axis=1), "s-1", "growth rate of the steady precession", (over,)
             ),
-            f"run_spin{suffix}": variable(
-                [spin for spin, _ in launches], "rad s-1", "spin near theta = 0 of the same lambda", (run,)
-            ),
-            f"run_tilt{suffix}": variable([tilt for _, tilt in launches], "rad", "tilt at launch", (run,)),
-            f"run_end{suffix}": variable(ends, "rad", "tilt at the end of a long run", (run,)),
-            f"run_predicted{suffix}": variable(
-                [one.final.tilt for one in predicted],
-                "rad",
-                "reachable stable steady tilt of least energy",
-                (run,),
-            ),
-            f"run_certain{suffix}": variable(
-                [int(one.certain) for one in predicted], "1", "whether it is the only one in reach", (run,)
-            ),
-            f"run_stable{suffix}": variable(
-                [len(one.stable) for one in predicted], "1", "number of stable steady states", (run,)
-            ),
-            f"limits{suffix}": variable(
-                [limits.upright, limits.inverted], "rad s-1", "critical spins at launch", ("vertical",)
-            ),
+            **{
+                f"run_{name}{suffix}": variable(values, *_OF_RUNS[name], (run,))
+                for name, values in of_runs.items()
+            },
+            f"limits{suffix}": variable(_pair(limits), "rad s-1", "critical spins at launch", ("vertical",)),
         },
         {
             over: variable(branch.tilt, "rad", "tilt of the steady precession", (over,)),

@@ -1,0 +1,78 @@
+"""What is written on figures: notes beside points, letters of panels, ticks, legends and insets."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.axis import Axis
+from matplotlib.patheffects import withStroke
+from matplotlib.ticker import FixedLocator, NullFormatter, ScalarFormatter
+
+from tippetop.figures.style import INK
+
+Box = tuple[float, float, float, float]
+
+
+def plain_ticks(axis: Axis, ticks: Iterable[float]) -> None:
+    """Put ticks on a logarithmic axis, and label them with plain numbers."""
+    axis.set_major_locator(FixedLocator(list(ticks)))
+    axis.set_major_formatter(ScalarFormatter())
+    axis.set_minor_formatter(NullFormatter())
+
+
+def letters(panels: Iterable[Axes]) -> None:
+    """Mark the panels of a figure with bold letters above their top left corners."""
+    for axes, letter in zip(panels, "abcdefgh", strict=False):
+        axes.annotate(
+            letter, (0, 1), (-6, 6), xycoords="axes fraction", textcoords="offset points",
+            ha="right", va="bottom", fontweight="bold", annotation_clip=False,
+        )  # fmt: skip
+
+
+ALONG_X, ALONG_Y = ("data", "axes fraction"), ("axes fraction", "data")
+"""Coordinates of notes that belong to a value of one axis and to a height or width of the panel."""
+
+
+def note(
+    axes: Axes,
+    text: str,
+    at: tuple[float, float],
+    offset: tuple[float, float],
+    color: str,
+    *,
+    halo: bool = False,
+    **options: Any,
+) -> None:
+    """Write a note beside a point, on the side to which the offset, in points, leads.
+
+    A halo keeps it legible over lines.
+    """
+    side = {-1: "right", 0: "center", 1: "left"}[int(np.sign(offset[0]))]
+    height = {-1: "top", 0: "center", 1: "bottom"}[int(np.sign(offset[1]))]
+    effects = [withStroke(linewidth=2.5, foreground="white")] if halo else None
+    placed = {"ha": side, "va": height, "size": 9, "color": color, "path_effects": effects, **options}
+    axes.annotate(text, at, offset, textcoords="offset points", **placed)
+
+
+def legend_above(axes: Axes, columns: int) -> None:
+    """Put the legend on top of a panel, outside of it."""
+    axes.legend(
+        loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, borderaxespad=0.2, columnspacing=1.4
+    )
+
+
+def inset(axes: Axes, box: Box) -> Axes:
+    """Return a panel within a panel, in the box (left, bottom, width, height) in parts of it."""
+    panel = axes.inset_axes(box)
+    panel.tick_params(labelsize=7.5, length=2, pad=2)
+    panel.grid(visible=False)
+    panel.spines[["top", "right"]].set_visible(True)
+    return panel
+
+
+def source(axes: Axes, panel: Axes) -> None:
+    """Show where an inset is taken from."""
+    axes.indicate_inset_zoom(panel, edgecolor=INK, alpha=0.45, lw=0.8)

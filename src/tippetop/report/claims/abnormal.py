@@ -1,0 +1,156 @@
+"""Claims about what the report calls abnormal: launches faster than omega_a, and what becomes of them."""
+
+import numpy as np
+import xarray as xr
+
+from tippetop.report.claim import Chapter, Finding, Source
+from tippetop.report.claims.flight import ROUNDED
+from tippetop.report.experiments.flights import TILT
+from tippetop.report.experiments.spins import TURNED
+from tippetop.report.quoted import ABNORMAL_SPIN, CRITICAL_SPINS
+
+CHAPTER = Chapter()
+
+
+@CHAPTER.claim(
+    "sec4-energy-falls",
+    Source("4", "Fig. 10"),
+    "The top loses energy during its motion; nothing adds to it.",
+    needs=("run-175", "hops", "hops-bouncing"),
+    figure="fig10",
+)
+def _(run: xr.Dataset, hops: xr.Dataset, bouncing: xr.Dataset) -> Finding:
+    rises = [float(data["energy_rise"].max()) for data in (run, hops, bouncing)]
+    launch, impacts = float(run["launch_energy"]), float(run["energy_in_impacts"])
+    return Finding(
+        not float(run["largest_energy_listing"]) > launch,
+        max(rises) <= ROUNDED * launch,
+        "On a table that only pushes it never rises, neither here nor in any launch of the figure hops: the "
+        f"largest change from sample to sample is {max(rises):.0e} J. At 175 rad/s the top loses "
+        f"{1e3 * (launch - float(run['energy_flight'][-1])):.1f} mJ of {1e3 * launch:.1f} mJ, "
+        f"{1e3 * impacts:.2f} mJ of them in impacts. By the report's method and (4.1) it exceeds that of the "
+        "launch: that is how the report knows that something is wrong.",
+    )
+
+
+@CHAPTER.claim(
+    "sec4-huge-spin",
+    Source("4"),
+    f"The top can not be held on the surface at huge spins, above {ABNORMAL_SPIN} rad/s.",
+    needs=("onset-tilt", "onset-mu", "run-175"),
+    figure="onset-tilt",
+)
+def _(over_tilt: xr.Dataset, over_mu: xr.Dataset, run: xr.Dataset) -> Finding:
+    own = over_tilt.sel(tilt=TILT)
+    huge = own["first_lift_off"].sel(spin=own["spin"] > float(ABNORMAL_SPIN))
+    slippery, steep = over_mu["onset"].isel(window=-1), over_tilt["onset"].isel(window=0)
+    at_mu = slippery.isel(mu=int(np.nanargmin(slippery.values)))
+    at_tilt = steep.isel(tilt=int(np.nanargmin(steep.values)))
+    stays = over_tilt["tilt"].values[~np.isfinite(over_tilt["first_lift_off"].values).any(axis=1)]
+    never = (
+        f" From a tilt of {stays.min():.2f} rad on no launch of the scan leaves the table."
+        if len(stays)
+        else ""
+    )
+    return Finding(
+        bool(np.isfinite(run["zero_of_force_listing"])),
+        bool(np.isfinite(huge).all()),
+        f"At the report's tilt and friction every launch of the scan above {ABNORMAL_SPIN} rad/s, up to "
+        f"{own['spin'][-1]:g} rad/s, leaves the table within 20 s; the onset is "
+        f"{own['onset'].isel(window=0):.0f} rad/s. For other launches it is lower: {at_tilt:.0f} rad/s at a "
+        f"tilt of {at_tilt['tilt']:.2f} rad, {at_mu:.0f} rad/s at mu = {at_mu['mu']:.2g} s/m in longer "
+        f"runs.{never}",
+    )
+
+
+@CHAPTER.claim(
+    "sum-abnormal",
+    Source("3.3", "Fig. 6"),
+    f"Above {ABNORMAL_SPIN} rad/s the top behaves abnormally; a negative normal force causes that, and "
+    "it is not physical.",
+    needs=("final-tilt", "hops", "hops-bouncing", "listing-capped"),
+    figure="hops",
+)
+def _(sweep: xr.Dataset, hops: xr.Dataset, bouncing: xr.Dataset, capped: xr.Dataset) -> Finding:
+    true, spins = sweep["final_theta_flight"].values, sweep["spin_flight"].values
+    turned = all(_turned(data["final_theta_flight"]) for data in (sweep, hops, bouncing))
+    lost = float(sweep["lost"])
+    return Finding(
+        not _turned(capped["final_theta"]) and _turned(capped["final_theta_capped"]),
+        turned and float(sweep["lift_off_onset"]) <= lost,
+        f"The abnormal point is {'no' if turned else 'still a'} property of the top. On a table that pulls, "
+        f"launches from {lost:g} rad/s on end anywhere; on one that only pushes, those from {spins[0]:g} to "
+        f"{spins[-1]:g} rad/s end within {np.abs(true - np.pi).max():.1g} rad of pi after "
+        f"{sweep.attrs['window_s']:g} s, and those up to {hops['spin'][-1]:g} rad/s within "
+        f"{np.abs(hops['final_theta_flight'].values - np.pi).max():.1g} rad after "
+        f"{hops.attrs['window_s']:g} s.",
+    )
+
+
+@CHAPTER.claim(
+    "listing-commented-out",
+    Source("Appendix A.1, function tip, lines 33 to 35"),
+    "The lines that set a negative normal force to zero make no difference (they are commented out).",
+    needs=("listing-capped", "final-tilt"),
+    figure="fig06",
+    implied=True,
+    right="they would have cured the abnormal region",
+)
+def _(capped: xr.Dataset, sweep: xr.Dataset) -> Finding:
+    on_table, pushed = capped["final_theta"], capped["final_theta_capped"]
+    listed = ", ".join(
+        f"{spin:g} rad/s {one:.2f} and {other:.2f} rad"
+        for spin, one, other in zip(capped["spin"], on_table, pushed, strict=True)
+    )
+    true = sweep.sel(spin=sweep["spin_flight"].values)["final_theta"].values
+    return Finding(
+        bool((abs(pushed - on_table) < TURNED).all()),
+        bool((np.abs(true - sweep["final_theta_flight"].values) < TURNED).all()),
+        f"Without and with them the report's method ends, by spin, at {listed}. They would have cured its "
+        "abnormal point: a table that pushes with no force while the top stays at its height is close to one "
+        "that lets it hop, for the hops are low.",
+    )
+
+
+@CHAPTER.claim(
+    "sum-turns-over",
+    Source("3.3"),
+    "Above omega_c2 the top turns over completely (the report excepts the spins above "
+    f"{ABNORMAL_SPIN} rad/s).",
+    needs=("final-tilt-listing", "final-tilt", "hops", "hops-bouncing"),
+    figure="hops",
+)
+def _(listing: xr.Dataset, sweep: xr.Dataset, hops: xr.Dataset, bouncing: xr.Dataset) -> Finding:
+    theirs = _inverting(listing, "_listing", float(ABNORMAL_SPIN))
+    ours = _inverting(sweep, "", float(sweep["lift_off_onset"]))
+    turned = _turned(ours) and all(_turned(run["final_theta_flight"]) for run in (hops, bouncing))
+    hops = hops.isel(restitution=0)
+    flying = hops.sel(spin=hops["flights"] > 0)
+    share = 100 * flying["airborne_time"] / flying["last_touchdown"]
+    columns = (flying["spin"], flying["flights"], share, flying["turning_time"])
+    described = "; ".join(
+        f"{spin:g}: {count:.0f}, {part:.0f} %, {passed:.1f} s"
+        for spin, count, part, passed in zip(*(column.values for column in columns), strict=True)
+    )
+    return Finding(
+        _turned(theirs),
+        turned,
+        "The model is a whole sphere: it has no stem to spin on. "
+        f"On a table that only pushes {'all' if turned else 'not all'} launches tried up to "
+        f"{hops['spin'][-1]:g} rad/s turn over. Without rebound, by spin in rad/s, the number of "
+        "flights, the part of the time until the last touchdown that is spent in the air, and when the axis "
+        f"passes the horizontal: {described}.",
+    )
+
+
+def _inverting(sweep: xr.Dataset, suffix: str, limit: float) -> np.ndarray:
+    """Final tilts of the launches between omega_c2 and a limit, rad."""
+    spins = sweep[f"spin{suffix}"].values
+    return np.asarray(
+        sweep[f"final_theta{suffix}"].values[(spins > float(CRITICAL_SPINS[1])) & (spins < limit)]
+    )
+
+
+def _turned(tilts: xr.DataArray | np.ndarray) -> bool:
+    """Whether all of the tilts count as turned over."""
+    return bool((np.abs(tilts - np.pi) < TURNED).all())

@@ -1,0 +1,236 @@
+"""The report's printed equations, put to numbers: of motion, of rotation, and of the steady state."""
+
+import math
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from scipy.spatial.transform import Rotation
+
+from tippetop.integrators.base import Array
+from tippetop.mechanics.euler import published_normal_force, published_parameters, published_rates
+from tippetop.mechanics.motion import angular_velocity, contact
+from tippetop.mechanics.top import Top
+from tippetop.mechanics.vectors import VERTICAL, Vector, cross, dot, scale
+from tippetop.presets import REPORT, report_problem
+from tippetop.problem import EccentricSphere, Problem
+from tippetop.report.experiment import Experiment, variable
+from tippetop.report.experiments.runs import on_table
+from tippetop.run import simulate
+
+_INSTANT = 5.0
+_INSTANTS = np.array([1.0, 3.0, _INSTANT, 6.0, 8.0])
+_LONG = 400.0
+_NAMES = ("theta", "theta_dot", "phi", "phi_dot", "omega3", "slip_x", "slip_y")
+_STEP = 3e-5
+_STENCIL = np.array([1.0, -8.0, 0.0, 8.0, -1.0]) / (12.0 * _STEP)
+
+
+def _printed(quick: bool) -> xr.Dataset:
+    """The equations of section 2.2 as printed, as listed and as they are, at instants of the main run."""
+    problem = on_table(report_problem())
+    top = problem.top
+    times = (_INSTANTS[:, None] + _STEP * np.arange(-2, 3)).ravel()
+    run = simulate(problem, float(_INSTANTS[-1]) + 1.0, times=times)
+    now = run.isel(time=slice(2, None, 5))
+    states = np.array([now[name].values for name in _NAMES])
+    published = np.array(published_rates(tuple(states), top, np))
+    rates = np.array([_STENCIL @ run[name].values.reshape(-1, 5).T for name in _NAMES])
+    rows = {"(2.8)": 1, "(2.10)": 4, "(2.12)": 5, "(2.14)": 6}
+    misses = {
+        name: np.abs(published[row] - rates[row]).max() / np.abs(rates[row]).max()
+        for name, row in rows.items()
+    }
+    force = published_normal_force(tuple(states), top, np)
+    misses["(2.15)"] = np.abs(force / now["normal_force"].values - 1.0).max()
+    misses["a"] = max(_arm_miss(now.isel(time=k), top) for k in range(len(_INSTANTS)))
+    data = {
+        "miss": variable(
+            list(misses.values()), "1", "largest relative difference from the run", ("equation",)
+        ),
+        **_at_one_instant(run, states, published, rates, problem),
+    }
+    return xr.Dataset(data, {"equation": list(misses)}, {"problem": problem.to_json(), "instant_s": _INSTANT})
+
+
+def _at_one_instant(
+    run: xr.Dataset, states: Array, published: Array, rates: Array, problem: Problem
+) -> dict[str, object]:
+    """The two misprinted equations at the instant that stands for all."""
+    k, body = int(np.argmax(_INSTANTS == _INSTANT)), problem.body
+    y, listed = states[:, k], published[:, k]
+    c, s = math.cos(y[0]), math.sin(y[0])
+    torque = _torques(run.isel(time=5 * k + 2), problem.top)
+    turning = np.array(torque["second_axis"])
+    momentum = run["angular_momentum"].values[5 * k : 5 * k + 5]
+    bracket = body.I1 * listed[3] * s
+    by_listing = body.I1 * listed[1] - body.I1 * y[3] ** 2 * s * c + body.I3 * y[4] * y[3] * s
+    read = "rate of phi' by (2.9) as printed, read as I1"
+    return {
+        "torque_printed": variable(torque["printed"], "N m", "second component of F x a, as (2.7) has it"),
+        "torque_listing": variable(by_listing, "N m", "second component of L' by (2.8)"),
+        "torque": variable(float(_STENCIL @ momentum @ turning), "N m", "second component of L' of the run"),
+        "torque_turned": variable(torque["turned"], "N m", "second component of a x F, F with the weight"),
+        "torque_corrected": variable(torque["corrected"], "N m", "second component of a x F without it"),
+        "power_printed": variable(torque["power_printed"], "W", "power of the contact force with F x a"),
+        "power": variable(torque["power"], "W", "power of the contact force with a x F"),
+        "precession_printed": variable(
+            body.I1 / bracket / (body.I1 * s), "rad s-2", f"{read} over the bracket over I1 sin(theta)"
+        ),
+        "precession_printed_product": variable(
+            body.I1 * listed[3], "rad s-2", f"{read} times the bracket over I1 sin(theta)"
+        ),
+        "precession_listing": variable(listed[3], "rad s-2", "rate of phi' by the listing"),
+        "precession": variable(rates[3, k], "rad s-2", "d phi'/dt of the converged run"),
+    }
+
+
+def _arm_miss(now: xr.Dataset, top: Top) -> float:
+    """How far the report's a = R (sin(theta) 1 + (alpha - cos(theta)) 3) is from the contact vector, in R."""
+    axis, momentum, velocity = (_vector(now, name) for name in ("axis", "angular_momentum", "velocity"))
+    _, _, _, R, alpha, _, _ = published_parameters(top)
+    three = np.array(axis)
+    c, s = three[2], math.hypot(*axis[:2])
+    one = (c * three - np.array(VERTICAL)) / s
+    printed = R * (s * one + (alpha - c) * three)
+    arm = contact(axis, momentum, (velocity[0], velocity[1]), top).arm
+    return float(np.abs(printed - np.array(arm)).max() / R)
+
+
+def _torques(now: xr.Dataset, top: Top) -> dict[str, Any]:
+    """The contact torque about axis 2 by (2.7) and corrected, and the power that either order of it has."""
+    axis, momentum, velocity = (_vector(now, name) for name in ("axis", "angular_momentum", "velocity"))
+    touch = contact(axis, momentum, (velocity[0], velocity[1]), top)
+    normal = touch.normal_force
+    push: Vector = (normal * touch.traction.force[0], normal * touch.traction.force[1], normal)
+    whole: Vector = (push[0], push[1], normal - top.mass * top.gravity)
+    second = scale(1.0 / math.hypot(*axis[:2]), cross(VERTICAL, axis))
+    omega = angular_velocity(axis, momentum, top)
+    pushing = dot(push, velocity)
+    return {
+        "second_axis": second,
+        "printed": dot(cross(whole, touch.arm), second),
+        "turned": dot(cross(touch.arm, whole), second),
+        "corrected": dot(cross(touch.arm, push), second),
+        "power_printed": pushing + dot(cross(push, touch.arm), omega),
+        "power": pushing + dot(cross(touch.arm, push), omega),
+    }
+
+
+def _vector(now: xr.Dataset, name: str) -> Vector:
+    x, y, z = (float(value) for value in now[name].values)
+    return (x, y, z)
+
+
+def _steady(quick: bool) -> xr.Dataset:
+    """Where several bodies end up between upright and inverted, and how well (2.16) and (2.17) hold there."""
+    m, R = REPORT.mass, float(REPORT.shape.surface.size)
+    tops = [
+        ("the report's", REPORT, 50.0),
+        ("three times as heavy", REPORT.model_copy(update={"mass": 3 * m}), 50.0),
+        ("I1 larger by a tenth", REPORT.model_copy(update={"I1": 1.1 * REPORT.I1}), 60.0),
+        ("I3 smaller by a tenth", REPORT.model_copy(update={"I3": 0.9 * REPORT.I3}), 60.0),
+        (
+            "less eccentric",
+            REPORT.model_copy(update={"shape": EccentricSphere(radius=R, eccentricity=0.2)}),
+            45.0,
+        ),
+    ]
+    rows = []
+    for _, body, spin in tops:
+        problem = on_table(report_problem(spin).replace({"body": body.model_dump()}))
+        end = simulate(problem, _LONG, samples=2).isel(time=-1)
+        y = [float(end[name]) for name in _NAMES]
+        rates = published_rates(y, problem.top, math)
+        rows.append((y[0], y[3], y[4], *_residuals(y, problem.top), abs(rates[4])))
+    table = np.array(rows).T
+    names = {
+        "theta": ("rad", "tilt"),
+        "phi_dot": ("rad s-1", "precession"),
+        "omega3": ("rad s-1", "axial spin"),
+        "residual_217": ("rad s-1", "omega3 - phi' (cos theta - alpha), equation (2.17)"),
+        "residual_216": ("1", "largest of the lines of (2.16), each over the largest of its terms"),
+        "omega3_rate": ("rad s-2", "rate of the axial spin"),
+    }
+    data = {
+        name: variable(table[i], units, long_name, ("body",))
+        for i, (name, (units, long_name)) in enumerate(names.items())
+    }
+    return xr.Dataset(data, {"body": [name for name, _, _ in tops]}, {"duration_s": _LONG})
+
+
+def _residuals(y: list[float], top: Top) -> tuple[float, float]:
+    """What is left of (2.17), rad/s, and of (2.16), relative to its terms, in this state."""
+    theta, _, _, precession, spin, _, _ = y
+    _, I1, I3, R, alpha, _, _ = published_parameters(top)
+    c, s = math.cos(theta), math.sin(theta)
+    normal = published_normal_force(y, top, math)
+    first = (I1 * precession**2 * c, -I3 * spin * precession, -R * alpha * normal)
+    fourth = (
+        precession * spin * (I3 * (1 - alpha * c) - I1),
+        normal * R * alpha * (1 - alpha * c),
+        -I1 * alpha * precession**2 * s**2,
+    )
+    left = max(abs(sum(line)) / max(abs(term) for term in line) for line in (first, fourth))
+    return spin - precession * (c - alpha), left
+
+
+def _rotation(quick: bool) -> xr.Dataset:
+    """Section 2.1 at random states: the angular velocity by (2.1) and (2.2), and Euler's equations (2.6)."""
+    random = np.random.default_rng(1)
+    misses = [
+        _rotation_misses(random.uniform(0.3, 1.3, 3), random.normal(size=3), random.normal(size=3))
+        for _ in range(20)
+    ]
+    return xr.Dataset(
+        {"miss": variable(np.max(misses, axis=0), "1", "largest relative difference", ("equation",))},
+        {"equation": ["(2.1)", "(2.2)", "(2.6)"]},
+    )
+
+
+def _rotation_misses(angles: Array, rates: Array, torque: Array) -> tuple[float, float, float]:
+    """Relative errors of (2.1), (2.2) and (2.6) for these Euler angles, their rates and a torque."""
+    h, inertia = 1e-4, np.array([2.0, 3.0, 4.0])
+
+    def turned(time: float) -> Rotation:
+        return Rotation.from_euler("ZXZ", angles + time * rates)
+
+    omega = (turned(-h).inv() * turned(h)).as_rotvec() / (2.0 * h)
+    z, nodes = np.eye(3)[2], Rotation.from_euler("Z", angles[0]).apply(np.eye(3)[0])
+    by_axes = turned(0.0).inv().apply(rates[0] * z + rates[1] * nodes + rates[2] * turned(0.0).apply(z))
+    (_, sb, sc), (_, cb, cc) = np.sin(angles), np.cos(angles)
+    by_components = (
+        rates[1] * cc + rates[0] * sb * sc,
+        -rates[1] * sc + rates[0] * sb * cc,
+        rates[2] + rates[0] * cb,
+    )
+    one, two, three = inertia
+    couplings = (
+        (two - three) * omega[1] * omega[2],
+        (three - one) * omega[2] * omega[0],
+        (one - two) * omega[0] * omega[1],
+    )
+    faster = (torque + np.array(couplings)) / inertia
+
+    def momentum(time: float) -> Array:
+        turn = Rotation.from_rotvec(time * (omega + 0.5 * time * faster))
+        return np.asarray(turn.apply(inertia * (omega + time * faster)))
+
+    gained = (momentum(h) - momentum(-h)) / (2.0 * h)
+    return (
+        _part(by_axes - omega, omega),
+        _part(np.array(by_components) - omega, omega),
+        _part(gained - torque, torque),
+    )
+
+
+def _part(difference: Array, whole: Array) -> float:
+    return float(np.abs(difference).max() / np.abs(whole).max())
+
+
+EXPERIMENTS = [
+    Experiment("printed-equations", "the equations of section 2.2 along a run", 0.3, _printed),
+    Experiment("rotation", "the equations of section 2.1 at random states", 0.1, _rotation),
+    Experiment("steady-bodies", "steady states of several bodies", 0.5, _steady),
+]
+"""What the report's printed equations are checked by."""

@@ -1,0 +1,21 @@
+"""All experiments by name."""
+
+from tippetop.report.experiment import Experiment
+from tippetop.report.experiments import (
+    checks,
+    equations,
+    flights,
+    friction,
+    methods,
+    runs,
+    spins,
+    theory,
+    theory_runs,
+)
+
+EXPERIMENTS: dict[str, Experiment] = {
+    experiment.id: experiment
+    for module in (runs, spins, friction, flights, methods, equations, checks, theory, theory_runs)
+    for experiment in module.EXPERIMENTS
+}
+"""Every experiment by its name."""

@@ -1,0 +1,48 @@
+"""What the report says that is not judged here, and why not."""
+
+from typing import NamedTuple
+
+
+class Unchecked(NamedTuple):
+    """A statement of the report, its place, and why it has no verdict."""
+
+    place: str
+    statement: str
+    reason: str
+
+
+_OTHERS = "a statement about other people's work, which no computation here can judge"
+
+UNCHECKED = (
+    Unchecked("Abstract", "Critical behaviour is missing in preceding works.", _OTHERS),
+    Unchecked("section 1", "That the top may fly was neglected in the literature.", _OTHERS),
+    Unchecked(
+        "section 1",
+        "The top has 5 degrees of freedom: two of translation on the surface and three angles.",
+        "a count, and right: six of a rigid body less one for the contact, while it lasts",
+    ),
+    Unchecked(
+        "section 1",
+        "In the end the top loses its balance and falls.",
+        "nothing in the report's model, viscous friction at a point, slows an inverted top down",
+    ),
+    Unchecked(
+        "section 1",
+        "To get the exact friction term is impossible.",
+        "a statement about materials, not about it",
+    ),
+    Unchecked(
+        "section 3.3",
+        "The top spins on its stem.",
+        "the model is a whole sphere and has none; what is judged is that it turns over",
+    ),
+    Unchecked(
+        "section 3.3, Fig. 8",
+        "No real surface has mu = 100 s/m.",
+        "a statement about surfaces; how far a block slides on one is judged",
+    ),
+    Unchecked(
+        "section 5", "Tricks of programming make the listing faster.", "a statement about its author's time"
+    ),
+)
+"""The statements without a verdict, in the order of the report."""
