@@ -219,7 +219,7 @@ def test_laws_run_on_arrays_and_power_series(law):
 
 @pytest.mark.parametrize("name", sorted(MATERIALS))
 def test_the_patch_carries_its_load_and_has_the_shape_of_the_sphere(name):
-    """Pressure p0 (1 - r^2/a^2)^(1/2) sinks a half-space by pi p0 (2 a^2 - r^2) / (4 a E*): r^2 / (2 radius)."""
+    """Pressure p0 (1 - r^2/a^2)^(1/2) sinks a half-space by pi p0 (2 a^2 - r^2) / (4 a E*)."""
     load, radius, material = 0.2, 0.015, MATERIALS[name]
     a = hertz_patch_radius(load, radius, material)
     peak = 1.5 * load / (math.pi * a**2)

@@ -30,7 +30,7 @@ REPORT = Top(M, 131 / 350 * M * R**2, 2 / 5 * M * R**2, EccentricSphere(R, 0.3),
 
 
 def newton_euler(top, n, omega, wrench):
-    """Rates of the contact point's velocity and of omega, by matrices: omega' = I^-1 (M - omega x I omega)."""
+    """Rates of the contact point's velocity and of omega, omega' = I^-1 (M - omega x I omega)."""
     n, omega = np.array(n), np.array(omega)
     inertia = top.transverse_inertia * np.eye(3) + (top.axial_inertia - top.transverse_inertia) * np.outer(
         n, n

@@ -1,7 +1,8 @@
 """Contensou friction of a patch with Hertz's pressure, exact, in two analytic branches.
 
 See `contensou`. The law has two derivatives where the branches meet, kappa = 1: there the point of the patch
-that stands still is on its rim."""
+that stands still is on its rim.
+"""
 
 from typing import NamedTuple
 
@@ -247,7 +248,7 @@ class HertzLaw(NamedTuple):
         return self.branch(slip, angular_velocity).traction(slip, angular_velocity)
 
     def reserve(self, normal: Scalar, force: Horizontal, drilling: Scalar) -> Scalar:
-        """(mu N F)^2 - T^2 where the limit surface has this drilling torque, or less where it has not, N^2."""
+        """(mu N F)^2 - T^2 where the limit surface has this drilling torque, N^2; else less than zero."""
         return self.limit_branch(normal, drilling).reserve(normal, force, drilling)
 
     def coefficients(self, units: Units) -> tuple[Scalar, ...]:
