@@ -97,13 +97,8 @@ class ContactPoint(NamedTuple):
         """Moment of a wrench about the centre of mass, N m."""
         return add(cross(self.arm, wrench.force), wrench.torque)
 
-    def under(self, wrench: Wrench) -> Acceleration:
-        """Acceleration under a wrench and the rest."""
-        point, turning = self.response(wrench)
-        return Acceleration(add(self.free.point, point), add(self.free.turning, turning))
-
-    def holding(self, unit: Sequence[Wrench], held: Sequence[int]) -> Wrench:
-        """The combination of wrenches that keeps as many components of the motion from changing.
+    def holding(self, unit: Sequence[Wrench], held: Sequence[int]) -> tuple[Wrench, Acceleration]:
+        """The combination of wrenches that keeps as many velocities constant, and the acceleration then.
 
         Parameters
         ----------
@@ -112,15 +107,18 @@ class ContactPoint(NamedTuple):
         held
             Components: 0 to 2 of the contact point's velocity, 3 to 5 of the angular velocity.
         """
-        columns = [flat(self.response(wrench)) for wrench in unit]
-        free = flat(self.free)
+        responses = [self.response(wrench) for wrench in unit]
+        columns, free = [flat(response) for response in responses], flat(self.free)
         sizes = solve([[column[i] for column in columns] for i in held], [-free[i] for i in held])
-        total = Wrench(NO_TORQUE, NO_TORQUE)
-        for size, wrench in zip(sizes, unit, strict=True):
-            total = Wrench(
-                add(total.force, scale(size, wrench.force)), add(total.torque, scale(size, wrench.torque))
+        force = torque = NO_TORQUE
+        point, turning = self.free
+        for size, wrench, response in zip(sizes, unit, responses, strict=True):
+            force, torque = add(force, scale(size, wrench.force)), add(torque, scale(size, wrench.torque))
+            point, turning = (
+                add(point, scale(size, response.point)),
+                add(turning, scale(size, response.turning)),
             )
-        return total
+        return Wrench(force, torque), Acceleration(point, turning)
 
 
 def arm_rate(axis: Vector, tilting: Vector, top: Top) -> Vector:
@@ -132,7 +130,14 @@ def arm_rate(axis: Vector, tilting: Vector, top: Top) -> Vector:
 
 
 def contact_wrench(point: ContactPoint, slip: Slip | None, rolling: Horizontal | None = None) -> Wrench:
-    """What the table does to a body in contact.
+    """What the table does to a body in contact; see `contact_motion`."""
+    return contact_motion(point, slip, rolling)[0]
+
+
+def contact_motion(
+    point: ContactPoint, slip: Slip | None, rolling: Horizontal | None = None
+) -> tuple[Wrench, Acceleration]:
+    """What the table does to a body in contact, and how that accelerates.
 
     Parameters
     ----------

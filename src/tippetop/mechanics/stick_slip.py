@@ -23,6 +23,7 @@ from tippetop.mechanics.rolling import (
     ContactPoint,
     Slip,
     Wrench,
+    contact_motion,
     contact_wrench,
     flat,
     set_valued,
@@ -88,8 +89,8 @@ def creep_rates(
 ) -> CreepRates:
     """Rates of a slipping body; `slip` may be its direction only."""
     point = ContactPoint.of(axis, momentum, top)
-    wrench = contact_wrench(point, slip, None if rolling_held else point.turning[:2])
-    rate = slip_part(flat(point.under(wrench)), set_valued(top.friction).slip_length)
+    wrench, acceleration = contact_motion(point, slip, None if rolling_held else point.turning[:2])
+    rate = slip_part(flat(acceleration), set_valued(top.friction).slip_length)
     return CreepRates(axis_rate(axis, momentum, top), point.moment(wrench), rate, wrench)
 
 
@@ -191,8 +192,8 @@ def direction_of_slip(axis: Vector, momentum: Vector, top: Top) -> tuple[Slip, f
         for i, wrench in enumerate((*FORCES[:2], DRILLING)[: len(direction)])
     )
     for _ in range(ITERATIONS):
-        wrench = contact_wrench(point, direction, rolling)
-        rate = slip_part(flat(point.under(wrench)), reach)
+        wrench, acceleration = contact_motion(point, direction, rolling)
+        rate = slip_part(flat(acceleration), reach)
         hold = share * size(wrench.force[:2]) + size(rate)
         ahead = tuple(hold * e + a for e, a in zip(direction, rate, strict=True))
         new = scaled(1.0 / size(ahead), ahead)

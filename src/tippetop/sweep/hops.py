@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tippetop.integrators.base import Array
-from tippetop.mechanics.blow import contact_velocity
+from tippetop.mechanics.impulse import contact_velocity
 from tippetop.mechanics.flight import fly
 from tippetop.mechanics.motion import (
     along_table,
