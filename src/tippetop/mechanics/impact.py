@@ -30,14 +30,14 @@ Jellett's integral is conserved: P acts at the fixed arm, and a.(a x P) = 0.
 
 from typing import NamedTuple
 
-from tippetop.mechanics.blow import NO_BLOW, Blow, Course, Goal, Striking, contact_velocity
 from tippetop.mechanics.friction import ViscousLaw
-from tippetop.mechanics.integrated_impact import LawfulCourse
+from tippetop.mechanics.impulse import NO_IMPULSE, Goal, Impulse, Process, Striking, contact_velocity
+from tippetop.mechanics.integrated_impact import IntegratedProcess
 from tippetop.mechanics.motion import angular_velocity
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Scalar, add, dot, length
-from tippetop.mechanics.viscous_impact import ViscousCourse
+from tippetop.mechanics.viscous_impact import ViscousProcess
 
 
 class Impact(NamedTuple):
@@ -84,25 +84,27 @@ def impact(state: State, restitution: float, top: Top) -> Impact:
     if not is_struck(body):
         return Impact(state, 0.0, 0.0, 0.0)
     law = top.friction
-    course: Course = ViscousCourse.of(body, law) if isinstance(law, ViscousLaw) else LawfulCourse(body)
+    process: Process = (
+        ViscousProcess.of(body, law) if isinstance(law, ViscousLaw) else IntegratedProcess(body)
+    )
 
-    compressed = course.until(NO_BLOW, body.approach)
-    blow = compressed
+    compressed = process.until(NO_IMPULSE, body.approach)
+    impulse = compressed
     if restitution > 0.0:
-        blow = course.until(compressed, restitution_goal(body, compressed, restitution))
-    after = body.after(blow)
-    lost = max(0.0, -work_of(blow, state, after, body))
-    return Impact(after, blow.push, lost, compressed.push)
+        impulse = process.until(compressed, restitution_goal(body, compressed, restitution))
+    after = body.after(impulse)
+    lost = max(0.0, -work_of(impulse, state, after, body))
+    return Impact(after, impulse.normal, lost, compressed.normal)
 
 
-def restitution_goal(body: Striking, compressed: Blow, restitution: float) -> Goal:
+def restitution_goal(body: Striking, compressed: Impulse, restitution: float) -> Goal:
     """Poisson's end of restitution, or that of the energy stored, but not before the body has stopped."""
-    full = (1.0 + restitution) * compressed.push
+    full = (1.0 + restitution) * compressed.normal
 
-    def goal(blow: Blow) -> float:
-        spent = (blow.push - full) / compressed.push
-        returned = -blow.normal_work / compressed.normal_work
-        return float(min(max(spent, returned), body.approach(blow) / length(body.point)))
+    def goal(impulse: Impulse) -> float:
+        spent = (impulse.normal - full) / compressed.normal
+        returned = -impulse.normal_work / compressed.normal_work
+        return float(min(max(spent, returned), body.approach(impulse) / length(body.point)))
 
     return goal
 
@@ -111,12 +113,12 @@ def is_struck(body: Striking) -> bool:
     """Whether the contact point sinks into the table, or would, if the impact did not begin."""
     if body.point[2] != 0.0:
         return bool(body.point[2] < 0.0)
-    traction = body.friction(NO_BLOW)[2]
-    return body.approach(Blow(1.0, traction.force, traction.torque, 0.0)) < 0.0
+    traction = body.friction(NO_IMPULSE)[2]
+    return body.approach(Impulse(1.0, traction.force, traction.torque, 0.0)) < 0.0
 
 
-def work_of(blow: Blow, before: State, after: State, body: Striking) -> float:
-    """Work of a blow, J: impulse times mean velocity (Thomson and Tait), as velocities are linear in it."""
+def work_of(impulse: Impulse, before: State, after: State, body: Striking) -> float:
+    """Work of an impulse, J: its product with the mean velocity (Thomson and Tait), as that is linear in it."""
     omega = add(*(angular_velocity(state.axis, state.momentum, body.top) for state in (before, after)))
     point = add(body.point, contact_velocity(after, body.arm, body.top))
-    return float(0.5 * (dot((*blow.rub, blow.push), point) + dot(blow.twist, omega)))
+    return float(0.5 * (dot((*impulse.tangential, impulse.normal), point) + dot(impulse.angular, omega)))

@@ -1,11 +1,11 @@
-"""The course of an impact under any friction law, integrated."""
+"""An impact under any friction law, integrated."""
 
 import math
 from collections.abc import Sequence
 from operator import mul
 from typing import NamedTuple, TypeAlias
 
-from tippetop.mechanics.blow import FUZZ, Blow, Goal, Striking, first_reach
+from tippetop.mechanics.impulse import FUZZ, Goal, Impulse, Striking, first_reach
 from tippetop.mechanics.roots import crossing
 from tippetop.mechanics.vectors import add, length, scale
 
@@ -19,7 +19,7 @@ SHORTEST = 1e-12
 """Step, relative to the longest, that is taken whatever its error: at a jump of the law."""
 
 Point: TypeAlias = tuple[float, ...]
-"""The numbers of a blow in a row: p, impulse of friction, impulse of torque, normal work."""
+"""The numbers of an impulse in a row: p, impulse of friction, impulse of torque, normal work."""
 
 NODES: tuple[tuple[float, ...], ...] = (
     (1 / 5,),
@@ -35,24 +35,24 @@ DOUBT = (71 / 57600, 0.0, -71 / 16695, 71 / 1920, -17253 / 339200, 22 / 525, -1 
 """Weights of the stages in the error of a step of that method."""
 
 
-class LawfulCourse(NamedTuple):
+class IntegratedProcess(NamedTuple):
     """An impact under any friction law, integrated with slip as the clock.
 
     A law that is steep at small slip makes the equations stiff in p, as slip then changes fast. They are
     integrated over s instead, dp = ds / (|f|/|v| + 1/v_0) with v_0 the initial speed of the contact point:
     slip then decays at the rate of M however steep the law, and needs no more than some tens of units of s
     to fall by twenty orders of magnitude. Once friction has come to hold the slip constant, f = -M_tt^-1
-    M_tn (less what a torque does), it stays so, and the rest of the course is a straight line; it is checked
+    M_tn (less what a torque does), it stays so, and the rest is a straight line; it is checked
     that the law agrees.
     """
 
     body: Striking
 
-    def until(self, blow: Blow, goal: Goal) -> Blow:
-        """The first blow from a given one on at which the goal is not negative."""
-        waiting = goal(blow) >= 0.0
-        here, slope = pack(blow), self.slope(pack(blow))
-        longest = 2.0 / (self.body.answer[0][0] + self.body.answer[1][1])
+    def until(self, impulse: Impulse, goal: Goal) -> Impulse:
+        """The first impulse from a given one on at which the goal is not negative."""
+        waiting = goal(impulse) >= 0.0
+        here, slope = pack(impulse), self.slope(pack(impulse))
+        longest = 2.0 / (self.body.inverse_mass[0][0] + self.body.inverse_mass[1][1])
         step = 0.05 * longest
         while True:
             held = self.held(unpack(here), goal)
@@ -68,16 +68,16 @@ class LawfulCourse(NamedTuple):
             here, slope, waiting = there, new_slope, False
             step = min(longest, step * min(5.0, 0.9 * max(doubt, 1e-10) ** -0.2))
 
-    def landing(self, here: Point, slope: Point, step: float, goal: Goal) -> Blow:
-        """The blow within a step at which the goal is reached."""
+    def landing(self, here: Point, slope: Point, step: float, goal: Goal) -> Impulse:
+        """The impulse within a step at which the goal is reached."""
 
-        def along(part: float) -> Blow:
+        def along(part: float) -> Impulse:
             return unpack(self.step(here, slope, part)[0])
 
         return along(crossing(lambda part: goal(along(part)), 0.0, step))
 
     def slope(self, here: Point) -> Point:
-        """Rate of the blow's numbers with the clock s."""
+        """Rate of the impulse's numbers with the clock s."""
         point, omega, (force, torque) = self.body.friction(unpack(here))
         slip, grip = math.hypot(point[0], point[1]), math.hypot(*force)
         if slip == 0.0:
@@ -104,26 +104,26 @@ class LawfulCourse(NamedTuple):
         change = self.body.response(unpack(here))
         return math.hypot(self.body.point[0] + change[0], self.body.point[1] + change[1])
 
-    def held(self, blow: Blow, goal: Goal) -> Blow | None:
-        """The rest of the course if friction holds the slip constant, if it does so all along."""
-        (a, b, _), (_, d, _), _ = self.body.answer
-        point, _, traction = self.body.friction(blow)
-        x, y, _ = self.body.response(Blow(1.0, (0.0, 0.0), traction.torque, 0.0))
+    def held(self, impulse: Impulse, goal: Goal) -> Impulse | None:
+        """The rest if friction holds the slip constant, if it does so all along."""
+        (a, b, _), (_, d, _), _ = self.body.inverse_mass
+        point, _, traction = self.body.friction(impulse)
+        x, y, _ = self.body.response(Impulse(1.0, (0.0, 0.0), traction.torque, 0.0))
         holding = ((b * y - d * x) / (a * d - b * b), (b * x - a * y) / (a * d - b * b))
         fuzz = FUZZ * length(self.body.point) * math.hypot(*traction.force) / (math.hypot(*point[:2]) or 1.0)
         if math.dist(traction.force, holding) > STUCK + fuzz:
             return None
-        rise = self.body.approach(Blow(1.0, holding, traction.torque, 0.0)) - self.body.point[2]
+        rise = self.body.approach(Impulse(1.0, holding, traction.torque, 0.0)) - self.body.point[2]
 
-        def along(q: float) -> Blow:
-            return Blow(
-                blow.push + q,
-                (blow.rub[0] + q * holding[0], blow.rub[1] + q * holding[1]),
-                add(blow.twist, scale(q, traction.torque)),
-                blow.normal_work + q * (point[2] + 0.5 * q * rise),
+        def along(q: float) -> Impulse:
+            return Impulse(
+                impulse.normal + q,
+                (impulse.tangential[0] + q * holding[0], impulse.tangential[1] + q * holding[1]),
+                add(impulse.angular, scale(q, traction.torque)),
+                impulse.normal_work + q * (point[2] + 0.5 * q * rise),
             )
 
-        end = first_reach(along, goal, length(self.body.point) / self.body.answer[2][2])
+        end = first_reach(along, goal, length(self.body.point) / self.body.inverse_mass[2][2])
         later = self.body.friction(end)[2]
         drift = math.dist((*later.force, *later.torque), (*traction.force, *traction.torque))
         return end if drift <= 2.0 * (STUCK + fuzz) else None
@@ -137,11 +137,11 @@ def combined(here: Point, step: float, weights: Sequence[float], slopes: Sequenc
     )
 
 
-def pack(blow: Blow) -> Point:
-    """The numbers of a blow in a row."""
-    return (blow.push, *blow.rub, *blow.twist, blow.normal_work)
+def pack(impulse: Impulse) -> Point:
+    """The numbers of an impulse in a row."""
+    return (impulse.normal, *impulse.tangential, *impulse.angular, impulse.normal_work)
 
 
-def unpack(y: Point) -> Blow:
-    """The blow that has these numbers."""
-    return Blow(y[0], (y[1], y[2]), (y[3], y[4], y[5]), y[6])
+def unpack(y: Point) -> Impulse:
+    """The impulse that has these numbers."""
+    return Impulse(y[0], (y[1], y[2]), (y[3], y[4], y[5]), y[6])

@@ -1,15 +1,15 @@
-"""The course of an impact with viscous friction, in closed form."""
+"""An impact with viscous friction, in closed form."""
 
 import math
 from typing import NamedTuple
 
-from tippetop.mechanics.blow import Blow, Goal, Striking, first_reach
 from tippetop.mechanics.friction import NO_TORQUE, ViscousLaw
+from tippetop.mechanics.impulse import Goal, Impulse, Striking, first_reach
 from tippetop.mechanics.vectors import Horizontal, length
 
 
 class Mode(NamedTuple):
-    """A direction in which slip, v' = coupling - mu stiffness v, answers to friction along itself only.
+    """A direction in which slip, v' = coupling - mu stiffness v, is driven by friction along itself only.
 
     Attributes
     ----------
@@ -27,7 +27,7 @@ class Mode(NamedTuple):
     slip: float
 
 
-class ViscousCourse(NamedTuple):
+class ViscousProcess(NamedTuple):
     """An impact with viscous friction, in closed form.
 
     With phi_1(x) = (1 - exp(-x)) / x and phi_(k+1) = (1/k! - phi_k) / x at x = mu stiffness p, the slip of a
@@ -44,9 +44,9 @@ class ViscousCourse(NamedTuple):
     modes: tuple[Mode, Mode]
 
     @classmethod
-    def of(cls, body: Striking, law: ViscousLaw) -> "ViscousCourse":
-        """The course of this body's impact, from the principal directions of its tangential answer."""
-        east, north, up = body.answer
+    def of(cls, body: Striking, law: ViscousLaw) -> "ViscousProcess":
+        """The process of this impact, from the principal directions of its tangential part of M."""
+        east, north, up = body.inverse_mass
         angle = 0.5 * math.atan2(2.0 * east[1], east[0] - north[1])
         cosine, sine = math.cos(angle), math.sin(angle)
 
@@ -56,21 +56,21 @@ class ViscousCourse(NamedTuple):
 
         return cls(body, law.mu, (mode(cosine, sine), mode(-sine, cosine)))
 
-    def until(self, blow: Blow, goal: Goal) -> Blow:
-        """The first blow from a given one on at which the goal is not negative."""
-        guess = length(self.body.point) / self.body.answer[2][2]
-        return first_reach(lambda q: self.blow(blow.push + q), goal, guess)
+    def until(self, impulse: Impulse, goal: Goal) -> Impulse:
+        """The first impulse from a given one on at which the goal is not negative."""
+        guess = length(self.body.point) / self.body.inverse_mass[2][2]
+        return first_reach(lambda q: self.at(impulse.normal + q), goal, guess)
 
-    def blow(self, p: float) -> Blow:
-        """The blow when the normal impulse is p."""
-        rub = (0.0, 0.0)
-        work = p * (self.body.point[2] + 0.5 * p * self.body.answer[2][2])
+    def at(self, p: float) -> Impulse:
+        """The impulse when the normal impulse is p."""
+        tangential = (0.0, 0.0)
+        work = p * (self.body.point[2] + 0.5 * p * self.body.inverse_mass[2][2])
         for (x, y), stiffness, coupling, slip in self.modes:
             phi_1, phi_2, phi_3 = phis(self.mu * stiffness * p)
-            impulse = -self.mu * p * (slip * phi_1 + coupling * p * phi_2)
-            rub = (rub[0] + impulse * x, rub[1] + impulse * y)
+            along = -self.mu * p * (slip * phi_1 + coupling * p * phi_2)
+            tangential = (tangential[0] + along * x, tangential[1] + along * y)
             work -= self.mu * p * p * coupling * (slip * phi_2 + coupling * p * phi_3)
-        return Blow(p, rub, NO_TORQUE, work)
+        return Impulse(p, tangential, NO_TORQUE, work)
 
 
 def phis(x: float) -> tuple[float, float, float]:

@@ -16,8 +16,8 @@ import numpy as np
 
 from tippetop.integrators.base import Array
 from tippetop.integrators.polynomials import Polynomials
-from tippetop.mechanics.blow import contact_velocity
 from tippetop.mechanics.flight import fly
+from tippetop.mechanics.impulse import contact_velocity
 from tippetop.mechanics.motion import (
     along_table,
     angular_velocity,

@@ -1,4 +1,4 @@
-"""A body that is struck at its contact point: what the table has done to it, and how it answers."""
+"""A body that is struck at its contact point: the impulses of the table, and its inverse effective mass."""
 
 from collections.abc import Callable
 from typing import NamedTuple, Protocol, TypeAlias
@@ -15,35 +15,35 @@ FUZZ = 1e-14
 """Round-off in the velocity of the contact point, relative to what it is made of."""
 
 
-class Blow(NamedTuple):
-    """What the table has done to the body so far.
+class Impulse(NamedTuple):
+    """Impulses of the table on the body so far.
 
     Attributes
     ----------
-    push
+    normal
         Normal impulse p, N s.
-    rub
+    tangential
         Impulse of friction, N s.
-    twist
+    angular
         Impulse of the torque, N m s.
     normal_work
         Work of the normal impulse, J.
     """
 
-    push: float
-    rub: Horizontal
-    twist: Vector
+    normal: float
+    tangential: Horizontal
+    angular: Vector
     normal_work: float
 
 
-NO_BLOW = Blow(0.0, (0.0, 0.0), NO_TORQUE, 0.0)
+NO_IMPULSE = Impulse(0.0, (0.0, 0.0), NO_TORQUE, 0.0)
 
-Goal: TypeAlias = Callable[[Blow], float]
+Goal: TypeAlias = Callable[[Impulse], float]
 """Negative as long as a phase of the impact lasts."""
 
 
 class Striking(NamedTuple):
-    """A body at the start of an impact, and how its contact point answers to an impulse.
+    """A body at the start of an impact, and what an impulse does to its contact point.
 
     Attributes
     ----------
@@ -53,15 +53,16 @@ class Striking(NamedTuple):
         Contact vector a, m.
     point
         Velocity of the contact point, m/s; a normal part that is but round-off is zero.
-    answer
-        Columns of M: velocity of the contact point per unit impulse along x, y and z, 1/kg.
+    inverse_mass
+        Columns of M, the inverse effective mass (Delassus matrix): velocity of the contact point per unit
+        impulse along x, y and z, 1/kg.
     """
 
     state: State
     top: Top
     arm: Vector
     point: Vector
-    answer: tuple[Vector, Vector, Vector]
+    inverse_mass: tuple[Vector, Vector, Vector]
 
     @classmethod
     def of(cls, state: State, top: Top) -> "Striking":
@@ -77,47 +78,47 @@ class Striking(NamedTuple):
             contact_velocity(struck(at_rest, arm, unit, NO_TORQUE, top), arm, top)
             for unit in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
         ]
-        return here._replace(answer=(nudged[0], nudged[1], nudged[2]))
+        return here._replace(inverse_mass=(nudged[0], nudged[1], nudged[2]))
 
-    def after(self, blow: Blow) -> State:
-        """The state after a blow."""
-        return struck(self.state, self.arm, (*blow.rub, blow.push), blow.twist, self.top)
+    def after(self, impulse: Impulse) -> State:
+        """The state after an impulse."""
+        return struck(self.state, self.arm, (*impulse.tangential, impulse.normal), impulse.angular, self.top)
 
-    def response(self, blow: Blow) -> Vector:
-        """Change of the velocity of the contact point by a blow, m/s."""
-        (x, y), p, (east, north, up) = blow.rub, blow.push, self.answer
+    def response(self, impulse: Impulse) -> Vector:
+        """Change of the velocity of the contact point by an impulse, m/s."""
+        (x, y), p, (east, north, up) = impulse.tangential, impulse.normal, self.inverse_mass
         change = (
             x * east[0] + y * north[0] + p * up[0],
             x * east[1] + y * north[1] + p * up[1],
             x * east[2] + y * north[2] + p * up[2],
         )
-        if blow.twist == NO_TORQUE:
+        if impulse.angular == NO_TORQUE:
             return change
-        return add(change, cross(angular_velocity(self.state.axis, blow.twist, self.top), self.arm))
+        return add(change, cross(angular_velocity(self.state.axis, impulse.angular, self.top), self.arm))
 
-    def approach(self, blow: Blow) -> float:
-        """Normal velocity of the contact point after a blow, m/s."""
-        return float(self.point[2] + self.response(blow)[2])
+    def approach(self, impulse: Impulse) -> float:
+        """Normal velocity of the contact point after an impulse, m/s."""
+        return float(self.point[2] + self.response(impulse)[2])
 
-    def friction(self, blow: Blow) -> tuple[Vector, Vector, Traction]:
-        """Velocity of the contact point, angular velocity and traction after a blow."""
-        omega = angular_velocity(self.state.axis, self.after(blow).momentum, self.top)
-        point = add(self.point, self.response(blow))
+    def friction(self, impulse: Impulse) -> tuple[Vector, Vector, Traction]:
+        """Velocity of the contact point, angular velocity and traction after an impulse."""
+        omega = angular_velocity(self.state.axis, self.after(impulse).momentum, self.top)
+        point = add(self.point, self.response(impulse))
         return point, omega, self.top.friction.traction((point[0], point[1]), omega)
 
 
-class Course(Protocol):
-    """How an impact runs under some friction law."""
+class Process(Protocol):
+    """How an impact goes on under some friction law."""
 
-    def until(self, blow: Blow, goal: Goal) -> Blow:
-        """The first blow from a given one on at which the goal is not negative."""
+    def until(self, impulse: Impulse, goal: Goal) -> Impulse:
+        """The first impulse from a given one on at which the goal is not negative."""
 
 
-def struck(state: State, arm: Vector, impulse: Vector, twist: Vector, top: Top) -> State:
+def struck(state: State, arm: Vector, linear: Vector, angular: Vector, top: Top) -> State:
     """The state after an impulse at the contact and an impulse of torque."""
     return state._replace(
-        momentum=add(state.momentum, add(cross(arm, impulse), twist)),
-        velocity=add(state.velocity, scale(1.0 / top.mass, impulse)),
+        momentum=add(state.momentum, add(cross(arm, linear), angular)),
+        velocity=add(state.velocity, scale(1.0 / top.mass, linear)),
     )
 
 
@@ -126,8 +127,8 @@ def contact_velocity(state: State, arm: Vector, top: Top) -> Vector:
     return point_velocity(state.velocity, angular_velocity(state.axis, state.momentum, top), arm)
 
 
-def first_reach(along: Callable[[float], Blow], goal: Goal, guess: float) -> Blow:
-    """The blow at which the goal stops being negative, on a course where it does so once.
+def first_reach(along: Callable[[float], Impulse], goal: Goal, guess: float) -> Impulse:
+    """The impulse at which the goal stops being negative, on a way where it does so once.
 
     Where the goal is zero at the start, it is about to become negative: that start is passed over.
     """

@@ -1,0 +1,269 @@
+"""Contensou friction of a patch with Hertz's pressure, exact, in two analytic branches.
+
+See `contensou`. The law has two derivatives where the branches meet, kappa = 1: there the point of the patch
+that stands still is on its rim.
+"""
+
+from typing import NamedTuple
+
+from tippetop.mechanics.contensou import PI
+from tippetop.mechanics.friction import Traction
+from tippetop.mechanics.units import Units
+from tippetop.mechanics.vectors import Horizontal, Scalar, Vector
+
+FORCE: tuple[tuple[float, ...], ...] = (
+    (
+        1.0,
+        2.0379589900224446,
+        1.7454503606464322,
+        0.748871602371356,
+        0.1272777587571475,
+        -0.0027191903426678006,
+        -0.0016068785745065434,
+        -2.585824983858782e-05,
+    ),
+    (
+        1.0,
+        2.437958990022489,
+        2.0920625280814025,
+        0.7580271532705276,
+        0.10811738333537868,
+        0.004218755819955418,
+    ),
+)
+"""Numerator and denominator of F(w) of a sliding Hertz patch, see `HertzSlidingLaw`; relative error 2e-16."""
+
+TORQUE: tuple[tuple[float, ...], ...] = (
+    (
+        0.4,
+        0.822105487763007,
+        0.5189122287774408,
+        0.08174030474884943,
+        -0.007570333630208161,
+        0.004741971472147535,
+        0.001852985148541204,
+        8.943122718983565e-05,
+    ),
+    (
+        1.0,
+        2.7695494336932254,
+        2.8469587388677655,
+        1.3323282422825315,
+        0.2778032550943552,
+        0.020859716514356943,
+        0.00025020282491132825,
+    ),
+)
+"""Numerator and denominator of T(w) / w^(1/2) of such a patch; relative error 1e-16."""
+
+
+LIMIT: tuple[tuple[float, ...], ...] = (
+    (
+        0.8835729338221404,
+        2.2731818541919386,
+        -0.6654494323418829,
+        -1.2232537511378219,
+        1.0505598178854334,
+        -1.0785660226494278,
+        0.40949639000943494,
+        0.021230319903240265,
+        -0.012851025891112585,
+        0.0047692111039012094,
+        -0.0035357509640233558,
+    ),
+    (
+        1.0,
+        2.572715581457611,
+        -1.0031346960905119,
+        -2.027618909220897,
+        1.533523500187717,
+        -0.47258078898511674,
+        0.05624985658302286,
+    ),
+)
+"""The same of F on its limit surface, in (1 - T / T(kappa = 1))^(1/2); relative error 1e-14."""
+
+BRANCH_TORQUE = 9.0 * PI / 128.0
+"""T at kappa = 1."""
+
+
+class HertzDrillingLaw(NamedTuple):
+    """Contensou friction with Hertz's pressure where drilling prevails, kappa < 1.
+
+    f = -mu (3 pi/32) (4 - kappa^2) v / (R |w|), |t| = mu R (3 pi/16) (1 - kappa^2 + 3/8 kappa^4).
+
+    Attributes
+    ----------
+    mu
+        Friction coefficient.
+    patch_radius
+        Radius R of the contact patch, m.
+    """
+
+    mu: Scalar
+    patch_radius: Scalar
+
+    @property
+    def slip_length(self) -> Scalar:
+        """The patch radius, m."""
+        return self.patch_radius
+
+    def traction(self, slip: Horizontal, angular_velocity: Vector) -> Traction:
+        """Force and torque per unit normal force; drilling must not be zero."""
+        drilling = self.patch_radius * angular_velocity[2]
+        rate = (drilling * drilling) ** -0.5
+        kappa2 = (slip[0] * slip[0] + slip[1] * slip[1]) * rate * rate
+        force = -self.mu * (3.0 * PI / 32.0) * (4.0 - kappa2) * rate
+        torque = -self.mu * (3.0 * PI / 16.0) * (1.0 - kappa2 * (1.0 - 0.375 * kappa2)) * rate
+        return Traction((force * slip[0], force * slip[1]), (0.0, 0.0, torque * drilling * self.patch_radius))
+
+    def reserve(self, normal: Scalar, force: Horizontal, drilling: Scalar) -> Scalar:
+        """(mu N F)^2 - T^2 where the limit surface has this drilling torque, N^2; |M| >= mu N R T(1)."""
+        limit, torque = self.mu * normal, drilling / self.patch_radius
+        share = (torque * torque) ** 0.5 * (16.0 / (3.0 * PI)) / limit
+        kappa2 = (4.0 / 3.0) * (1.0 - (1.0 - 1.5 * (1.0 - share)) ** 0.5)
+        size = (3.0 * PI / 32.0) * (4.0 - kappa2) * limit
+        return size * size * kappa2 - force[0] * force[0] - force[1] * force[1]
+
+    def branch_guard(self, slip: Horizontal, angular_velocity: Vector) -> Scalar:
+        """(R w)^2 - v^2, positive as long as this branch holds, m^2/s^2."""
+        drilling = self.patch_radius * angular_velocity[2]
+        return drilling * drilling - slip[0] * slip[0] - slip[1] * slip[1]
+
+    def other_branch(self) -> "HertzSlidingLaw":
+        """The law where this one does not hold."""
+        return HertzSlidingLaw(self.mu, self.patch_radius)
+
+    def coefficients(self, units: Units) -> tuple[Scalar, ...]:
+        """Friction coefficient, and patch radius in units of length."""
+        return (self.mu, self.patch_radius / units.length)
+
+    @classmethod
+    def from_coefficients(cls, coefficients: tuple[Scalar, ...]) -> "HertzDrillingLaw":
+        """Make the law with this coefficient and patch radius."""
+        return cls(*coefficients)
+
+
+class HertzSlidingLaw(NamedTuple):
+    """Contensou friction with Hertz's pressure where slip prevails, kappa > 1, drilling or not.
+
+    With sig = asin(1 / kappa) and q = sqrt(kappa^2 - 1),
+
+        F = (3/16) [kappa (4 - kappa^2) sig + q (kappa^2 + 2) / kappa],
+        T = (3/8) [(1 - kappa^2 + 3/8 kappa^4) sig + q (3/4 - 3/8 kappa^2)],
+
+    f = -mu F along the slip and |t| = mu R T. The terms cancel for large kappa. In w = tan(sig / 2)^2, where
+    tan(sig / 2) = 1 / (kappa + q), F and T / w^(1/2) are analytic on [0, 1] with the nearest singularity at
+    -1, and ratios of polynomials give them to rounding, with plain operators only.
+
+    Attributes
+    ----------
+    mu
+        Friction coefficient.
+    patch_radius
+        Radius R of the contact patch, m.
+
+    Notes
+    -----
+    Beyond its branch, q is the root of |kappa^2 - 1|: there is a number there for an integrator that looks
+    ahead, but not the law.
+    """
+
+    mu: Scalar
+    patch_radius: Scalar
+
+    @property
+    def slip_length(self) -> Scalar:
+        """The patch radius, m."""
+        return self.patch_radius
+
+    def traction(self, slip: Horizontal, angular_velocity: Vector) -> Traction:
+        """Force and torque per unit normal force; the slip must not be zero."""
+        drilling = self.patch_radius * angular_velocity[2]
+        square = slip[0] * slip[0] + slip[1] * slip[1]
+        excess = square - drilling * drilling
+        speed = square**0.5
+        tangent = drilling / (speed + (excess * excess) ** 0.25)
+        w = tangent * tangent
+        force = -self.mu * horner(FORCE[0], w) / (horner(FORCE[1], w) * speed)
+        torque = -self.mu * self.patch_radius * tangent * horner(TORQUE[0], w) / horner(TORQUE[1], w)
+        return Traction((force * slip[0], force * slip[1]), (0.0, 0.0, torque))
+
+    def reserve(self, normal: Scalar, force: Horizontal, drilling: Scalar) -> Scalar:
+        """(mu N F)^2 - T^2 where the limit surface has this drilling torque, N^2; |M| <= mu N R T(1)."""
+        limit, torque = self.mu * normal, drilling / self.patch_radius
+        y = (1.0 - (torque * torque) ** 0.5 / (BRANCH_TORQUE * limit)) ** 0.5
+        size = limit * horner(LIMIT[0], y) / horner(LIMIT[1], y)
+        return size * size - force[0] * force[0] - force[1] * force[1]
+
+    def branch_guard(self, slip: Horizontal, angular_velocity: Vector) -> Scalar:
+        """v^2 - (R w)^2, positive as long as this branch holds, m^2/s^2."""
+        return -self.other_branch().branch_guard(slip, angular_velocity)
+
+    def other_branch(self) -> HertzDrillingLaw:
+        """The law where this one does not hold."""
+        return HertzDrillingLaw(self.mu, self.patch_radius)
+
+    def coefficients(self, units: Units) -> tuple[Scalar, ...]:
+        """Friction coefficient, and patch radius in units of length."""
+        return (self.mu, self.patch_radius / units.length)
+
+    @classmethod
+    def from_coefficients(cls, coefficients: tuple[Scalar, ...]) -> "HertzSlidingLaw":
+        """Make the law with this coefficient and patch radius."""
+        return cls(*coefficients)
+
+
+class HertzLaw(NamedTuple):
+    """Contensou friction with Hertz's pressure, whichever branch holds: for floats.
+
+    Attributes
+    ----------
+    mu
+        Friction coefficient.
+    patch_radius
+        Radius R of the contact patch, m.
+    """
+
+    mu: Scalar
+    patch_radius: Scalar
+
+    @property
+    def slip_length(self) -> Scalar:
+        """The patch radius, m."""
+        return self.patch_radius
+
+    def branch(self, slip: Horizontal, angular_velocity: Vector) -> HertzDrillingLaw | HertzSlidingLaw:
+        """The law that holds here, in plain operators."""
+        drilling = HertzDrillingLaw(*self)
+        return drilling if drilling.branch_guard(slip, angular_velocity) > 0.0 else HertzSlidingLaw(*self)
+
+    def limit_branch(self, normal: float, drilling: float) -> HertzDrillingLaw | HertzSlidingLaw:
+        """The law whose piece of the limit surface has this drilling torque, N m."""
+        sliding = abs(drilling) <= BRANCH_TORQUE * self.mu * normal * self.patch_radius
+        return HertzSlidingLaw(*self) if sliding else HertzDrillingLaw(*self)
+
+    def traction(self, slip: Horizontal, angular_velocity: Vector) -> Traction:
+        """Force and torque per unit normal force; slip and drilling must not both be zero."""
+        return self.branch(slip, angular_velocity).traction(slip, angular_velocity)
+
+    def reserve(self, normal: Scalar, force: Horizontal, drilling: Scalar) -> Scalar:
+        """(mu N F)^2 - T^2 where the limit surface has this drilling torque, N^2; else less than zero."""
+        return self.limit_branch(normal, drilling).reserve(normal, force, drilling)
+
+    def coefficients(self, units: Units) -> tuple[Scalar, ...]:
+        """Friction coefficient, and patch radius in units of length."""
+        return (self.mu, self.patch_radius / units.length)
+
+    @classmethod
+    def from_coefficients(cls, coefficients: tuple[Scalar, ...]) -> "HertzLaw":
+        """Make the law with this coefficient and patch radius."""
+        return cls(*coefficients)
+
+
+def horner(coefficients: tuple[float, ...], x: Scalar) -> Scalar:
+    """Value of a polynomial, its coefficients in increasing order."""
+    value: Scalar = coefficients[-1]
+    for coefficient in coefficients[-2::-1]:
+        value = coefficient + value * x
+    return value

@@ -1,0 +1,90 @@
+"""Dry friction: a sliding body feels all of it, and one that sticks no more than it takes."""
+
+from typing import Any, NamedTuple, Protocol
+
+from tippetop.mechanics.friction import NO_TORQUE, FrictionLaw, Traction
+from tippetop.mechanics.units import Units
+from tippetop.mechanics.vectors import Horizontal, Scalar, Vector, add
+
+
+class SetValuedLaw(FrictionLaw, Protocol):
+    """A law that says less than the force where slip, and drilling if it resists that, are zero.
+
+    Elsewhere the traction depends on the direction of (slip, slip_length * drilling rate) alone.
+    """
+
+    @property
+    def slip_length(self) -> Scalar | None:
+        """Length by which a drilling rate compares with a slip speed, m; None if drilling is free."""
+
+    def reserve(self, normal: Scalar, force: Horizontal, drilling: Scalar) -> Scalar:
+        """Positive inside of the limit surface, zero on it, N^2: for normal and friction force and torque."""
+
+
+class CoulombLaw(NamedTuple):
+    """Coulomb's friction: f = -mu v / |v| in sliding, and at v = 0 any force up to mu N. No torque."""
+
+    mu: Scalar
+
+    @property
+    def slip_length(self) -> None:
+        """Drilling is free."""
+        return
+
+    def traction(self, slip: Horizontal, angular_velocity: Vector) -> Traction:
+        """Force and torque per unit normal force; the slip must not be zero."""
+        factor = -self.mu * (slip[0] * slip[0] + slip[1] * slip[1]) ** -0.5
+        return Traction((factor * slip[0], factor * slip[1]), NO_TORQUE)
+
+    def reserve(self, normal: Scalar, force: Horizontal, drilling: Scalar) -> Scalar:
+        """(mu N)^2 - T^2, N^2."""
+        limit = self.mu * normal
+        return limit * limit - force[0] * force[0] - force[1] * force[1]
+
+    def coefficients(self, units: Units) -> tuple[Scalar, ...]:
+        """Friction coefficient mu."""
+        return (self.mu,)
+
+    @classmethod
+    def from_coefficients(cls, coefficients: tuple[Scalar, ...]) -> "CoulombLaw":
+        """Make the law with this mu."""
+        return cls(*coefficients)
+
+
+class RollingResistance(NamedTuple):
+    """Another law, and a torque -length w_t / |w_t| against rolling, w_t the horizontal angular velocity.
+
+    Attributes
+    ----------
+    law
+        The law of slip and drilling.
+    length
+        Arm of the normal force's couple, m. At w_t = 0 it is any horizontal torque up to length N.
+    """
+
+    law: Any
+    length: Scalar
+
+    def traction(self, slip: Horizontal, angular_velocity: Vector) -> Traction:
+        """Force and torque per unit normal force; the horizontal angular velocity must not be zero."""
+        force, torque = self.law.traction(slip, angular_velocity)
+        return Traction(force, add(torque, self.couple(angular_velocity)))
+
+    def couple(self, angular_velocity: Vector) -> Vector:
+        """Torque against rolling per unit normal force, m."""
+        x, y, _ = angular_velocity
+        factor = -self.length * (x * x + y * y) ** -0.5
+        return (factor * x, factor * y, 0.0)
+
+    def reserve(self, normal: Scalar, couple: Horizontal) -> Scalar:
+        """Positive while the contact can exert this horizontal couple at rest, (N m)^2."""
+        limit = self.length * normal
+        return limit * limit - couple[0] * couple[0] - couple[1] * couple[1]
+
+    def coefficients(self, units: Units) -> tuple[Scalar, ...]:
+        """The numbers of the law beside, and the arm in units of length."""
+        return (*self.law.coefficients(units), self.length / units.length)
+
+    def from_coefficients(self, coefficients: tuple[Scalar, ...]) -> "RollingResistance":
+        """Make a law of the same make with these numbers."""
+        return RollingResistance(self.law.from_coefficients(coefficients[:-1]), coefficients[-1])

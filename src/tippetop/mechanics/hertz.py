@@ -1,0 +1,44 @@
+"""The patch of two elastic bodies pressed together (Hertz 1882; Johnson, Contact Mechanics, chapter 4)."""
+
+from typing import NamedTuple
+
+
+class Material(NamedTuple):
+    """An isotropic elastic material.
+
+    Attributes
+    ----------
+    modulus
+        Young's modulus, Pa.
+    poisson
+        Poisson's ratio.
+    """
+
+    modulus: float
+    poisson: float
+
+
+GLASS = Material(69e9, 0.23)
+STEEL = Material(207e9, 0.30)
+WOOD = Material(12e9, 0.29)
+PLASTIC = Material(2.8e9, 0.33)
+MATERIALS = {"glass": GLASS, "steel": STEEL, "wood": WOOD, "plastic": PLASTIC}
+"""Soda-lime glass, plain carbon steel, Douglas fir along its grain and polystyrene (Callister, Materials
+Science and Engineering, 7th edition, appendix B). Wood is not isotropic: for it the patch is an order of
+magnitude."""
+
+
+def hertz_patch_radius(load: float, radius: float, body: Material, table: Material | None = None) -> float:
+    """Radius of the contact patch of a sphere on a plane, (3 P r / (4 E*))^(1/3), m.
+
+    Parameters
+    ----------
+    load
+        Normal force P, N: m g for a top at rest.
+    radius
+        Radius r of the sphere at the contact, m.
+    body, table
+        Their materials; a table of None is rigid. 1/E* = (1 - nu^2)/E of both added up.
+    """
+    compliance = sum((1.0 - m.poisson**2) / m.modulus for m in (body, table) if m is not None)
+    return float((0.75 * load * radius * compliance) ** (1.0 / 3.0))

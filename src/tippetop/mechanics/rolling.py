@@ -1,0 +1,225 @@
+"""How the contact point answers to forces, and the forces that hold it: rolling without slipping.
+
+The body's point of contact, with velocity v = r' + omega x a, and its angular velocity change at the rates
+
+    v' = F / m + (J (a x F + t)) x a + beta,        omega' = J (a x F + t) + k omega3 n',
+
+for a contact force F and torque t, where J is the inverse inertia, k = (I1 - I3) / I1, and beta = -g z + (k
+omega3 n') x a + omega x a' is what it does without them. Slip does not enter: axis and angular momentum are
+enough. The response to F and t is symmetric and positive definite (Delassus), and every mode of contact is a
+linear equation: slip needs v_z' = 0 with the law's F = N (f, 1), and rolling v' = 0. A contact that sticks
+under Contensou's friction does not drill either, omega_z' = 0, and rolling that is held has omega_x' =
+omega_y' = 0.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple, TypeAlias
+
+from tippetop.mechanics.coulomb import RollingResistance, SetValuedLaw
+from tippetop.mechanics.friction import NO_TORQUE, FrictionLaw
+from tippetop.mechanics.motion import angular_velocity, axial_spin, axis_rate
+from tippetop.mechanics.surface import contact_vector
+from tippetop.mechanics.top import Top
+from tippetop.mechanics.vectors import VERTICAL, Horizontal, Scalar, Vector, add, cross, dot, scale
+
+Slip: TypeAlias = tuple[Scalar, ...]
+"""The velocity zeta, m/s, or its direction: two components, or three where drilling is resisted."""
+
+EAST: Vector = (1.0, 0.0, 0.0)
+NORTH: Vector = (0.0, 1.0, 0.0)
+
+
+class Wrench(NamedTuple):
+    """A force at the contact point, N, and a torque, N m; or both per unit of something."""
+
+    force: Vector
+    torque: Vector
+
+
+FORCES = (Wrench(EAST, NO_TORQUE), Wrench(NORTH, NO_TORQUE), Wrench(VERTICAL, NO_TORQUE))
+DRILLING = Wrench(NO_TORQUE, VERTICAL)
+COUPLES = (Wrench(NO_TORQUE, EAST), Wrench(NO_TORQUE, NORTH))
+
+
+class Acceleration(NamedTuple):
+    """Rate of change of the contact point's velocity, m/s^2, and of the angular velocity, rad/s^2."""
+
+    point: Vector
+    turning: Vector
+
+
+class ContactPoint(NamedTuple):
+    """The contact point of a body in some configuration, and how it accelerates.
+
+    Attributes
+    ----------
+    axis
+        Unit vector n.
+    arm
+        Contact vector a, m.
+    turning
+        Angular velocity omega, rad/s.
+    free
+        Acceleration without contact force.
+    top
+        The body.
+    """
+
+    axis: Vector
+    arm: Vector
+    turning: Vector
+    free: Acceleration
+    top: Top
+
+    @classmethod
+    def of(cls, axis: Vector, momentum: Vector, top: Top) -> "ContactPoint":
+        """The contact point for this axis and angular momentum (kg m^2/s)."""
+        arm = contact_vector(axis, top.surface)
+        turning = angular_velocity(axis, momentum, top)
+        excess = (top.transverse_inertia - top.axial_inertia) / top.transverse_inertia
+        tilting = axis_rate(axis, momentum, top)
+        gyration = scale(excess * axial_spin(axis, momentum, top), tilting)
+        carried = cross(turning, arm_rate(axis, tilting, top))
+        falling = (0.0, 0.0, -top.gravity)
+        free = Acceleration(add(add(falling, cross(gyration, arm)), carried), gyration)
+        return cls(axis, arm, turning, free, top)
+
+    def response(self, wrench: Wrench) -> Acceleration:
+        """Acceleration that a wrench adds."""
+        transverse, axial = 1.0 / self.top.transverse_inertia, 1.0 / self.top.axial_inertia
+        moment = self.moment(wrench)
+        along = (axial - transverse) * dot(self.axis, moment)
+        turning = add(scale(transverse, moment), scale(along, self.axis))
+        point = add(scale(1.0 / self.top.mass, wrench.force), cross(turning, self.arm))
+        return Acceleration(point, turning)
+
+    def moment(self, wrench: Wrench) -> Vector:
+        """Moment of a wrench about the centre of mass, N m."""
+        return add(cross(self.arm, wrench.force), wrench.torque)
+
+    def holding(self, unit: Sequence[Wrench], held: Sequence[int]) -> tuple[Wrench, Acceleration]:
+        """The combination of wrenches that keeps as many velocities constant, and the acceleration then.
+
+        Parameters
+        ----------
+        unit
+            Wrenches, one to each component; that to component 2 may be a normal force with what goes with it.
+        held
+            Components: 0 to 2 of the contact point's velocity, 3 to 5 of the angular velocity.
+        """
+        responses = [self.response(wrench) for wrench in unit]
+        columns, free = [flat(response) for response in responses], flat(self.free)
+        sizes = solve([[column[i] for column in columns] for i in held], [-free[i] for i in held])
+        force = torque = NO_TORQUE
+        point, turning = self.free
+        for size, wrench, response in zip(sizes, unit, responses, strict=True):
+            force, torque = add(force, scale(size, wrench.force)), add(torque, scale(size, wrench.torque))
+            point, turning = (
+                add(point, scale(size, response.point)),
+                add(turning, scale(size, response.turning)),
+            )
+        return Wrench(force, torque), Acceleration(point, turning)
+
+
+def arm_rate(axis: Vector, tilting: Vector, top: Top) -> Vector:
+    """Rate of the contact vector for this rate of the axis (1/s): -h' n' - h'' c' (n - c z), m/s."""
+    c = axis[2]
+    bend = -top.surface.curvature(c) * tilting[2]
+    outward = (bend * axis[0], bend * axis[1], bend * (axis[2] - c))
+    return add(scale(-top.surface.slope(c), tilting), outward)
+
+
+def contact_wrench(point: ContactPoint, slip: Slip | None, rolling: Horizontal | None = None) -> Wrench:
+    """What the table does to a body in contact; see `contact_motion`."""
+    return contact_motion(point, slip, rolling)[0]
+
+
+def contact_motion(
+    point: ContactPoint, slip: Slip | None, rolling: Horizontal | None = None
+) -> tuple[Wrench, Acceleration]:
+    """What the table does to a body in contact, and how that accelerates.
+
+    Parameters
+    ----------
+    point
+        The contact point.
+    slip
+        The slip, of which a law that is set-valued takes the direction only: two components, or three with
+        the drilling rate times the law's slip length; or None where it is held at zero (both, if the law
+        resists drilling).
+    rolling
+        The horizontal angular velocity, of which only the direction counts, or None where it is held at zero;
+        without rolling resistance it does not matter.
+    """
+    law = point.top.friction
+    resistance = law if isinstance(law, RollingResistance) else None
+    held: list[tuple[int, Wrench]] = []
+    force, torque = (0.0, 0.0), NO_TORQUE
+    if slip is None:
+        held += [(0, FORCES[0]), (1, FORCES[1])]
+        held += [] if set_valued(law).slip_length is None else [(5, DRILLING)]
+    else:
+        w = point.turning[2] if len(slip) == 2 else slip[2] / set_valued(law).slip_length
+        force, torque = sliding_law(law).traction((slip[0], slip[1]), (*point.turning[:2], w))
+    if resistance is not None and rolling is not None:
+        torque = add(torque, resistance.couple((*rolling, 0.0)))
+    held.append((2, Wrench((*force, 1.0), torque)))
+    if resistance is not None and rolling is None:
+        held += [(3, COUPLES[0]), (4, COUPLES[1])]
+    return point.holding([wrench for _, wrench in held], [component for component, _ in held])
+
+
+def velocity_without_slip(axis: Vector, momentum: Vector, top: Top) -> Horizontal:
+    """Horizontal velocity of the centre of mass of a body whose contact point is at rest, m/s."""
+    turning = angular_velocity(axis, momentum, top)
+    moving = cross(contact_vector(axis, top.surface), turning)
+    return (moving[0], moving[1])
+
+
+def without_drilling(axis: Vector, momentum: Vector, top: Top) -> Vector:
+    """The angular momentum nearest to this one for which the body does not turn about the vertical, kg m^2/s.
+
+    What changes is the angular velocity's vertical component, which becomes zero.
+    """
+    turning = angular_velocity(axis, momentum, top)
+    along = (top.axial_inertia - top.transverse_inertia) * axis[2] * turning[2]
+    return (
+        momentum[0] - along * axis[0],
+        momentum[1] - along * axis[1],
+        momentum[2] - along * axis[2] - top.transverse_inertia * turning[2],
+    )
+
+
+def sliding_law(law: FrictionLaw) -> FrictionLaw:
+    """The law of slip and drilling of a law with or without rolling resistance."""
+    inner: FrictionLaw = law.law if isinstance(law, RollingResistance) else law
+    return inner
+
+
+def set_valued(law: FrictionLaw) -> SetValuedLaw:
+    """The law of slip and drilling of one that lets slip end."""
+    inner: SetValuedLaw = sliding_law(law)  # type: ignore[assignment]
+    return inner
+
+
+def flat(motion: Acceleration) -> tuple[Scalar, ...]:
+    """Six numbers in a row."""
+    return (*motion.point, *motion.turning)
+
+
+def solve(matrix: list[list[Scalar]], right: list[Scalar]) -> list[Scalar]:
+    """Solution of a few linear equations, by elimination without pivots: nearly symmetric and definite."""
+    rows = [[*row, b] for row, b in zip(matrix, right, strict=True)]
+    count = len(rows)
+    for i, pivot in enumerate(rows):
+        inverse = 1.0 / pivot[i]
+        for row in rows[i + 1 :]:
+            factor = row[i] * inverse
+            for j in range(i + 1, count + 1):
+                row[j] = row[j] - factor * pivot[j]
+    for i in reversed(range(count)):
+        known = rows[i][count]
+        for j in range(i + 1, count):
+            known = known - rows[i][j] * rows[j][count]
+        rows[i][count] = known / rows[i][i]
+    return [row[count] for row in rows]

@@ -1,0 +1,289 @@
+"""How slip begins under a law that leaves the force at rest open: power series in time since the onset.
+
+In the words of `stick_slip`, slip begins as zeta = t^p (s_0 + s_1 t + ...) e(t) along e(0) = e_0. Where
+sticking has just reached the limit surface, A(e_0) = 0 and p = 2; where it is inadmissible from the start, A
+= R e_0 and p = 1. For p = 2 the equation for e is stiff with the rate 1/s and has an irregular singular point
+at t = 0: the series of the slow solution is asymptotic, with coefficients that grow like k!, and is used up
+to a time at which its last terms are small. Solutions nearby decay to it like exp(-1/t), and an ordinary
+integrator goes on.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple, Protocol
+
+from tippetop.mechanics.algebra import Series
+from tippetop.mechanics.coulomb import RollingResistance
+from tippetop.mechanics.motion import axis_rate
+from tippetop.mechanics.rolling import (
+    DRILLING,
+    FORCES,
+    ContactPoint,
+    Slip,
+    Wrench,
+    flat,
+    set_valued,
+    solve,
+)
+from tippetop.mechanics.stick_slip import inner, plus, scaled, slip_part
+from tippetop.mechanics.top import Top
+from tippetop.mechanics.vectors import Scalar, Vector, add, scale
+
+
+class Indexed(Protocol):
+    """A power series that gives its coefficients."""
+
+    def __getitem__(self, k: int) -> Scalar:
+        """The coefficient of t^k."""
+
+
+class Onset(NamedTuple):
+    """The beginning of slip as polynomials in time: lists of coefficients, in increasing order.
+
+    Attributes
+    ----------
+    axis, momentum, direction
+        n, L and e.
+    speed
+        s / t^power.
+    power
+        2 where slip starts from the limit of sticking, 1 where it starts beyond it.
+    """
+
+    axis: tuple[list[Scalar], ...]
+    momentum: tuple[list[Scalar], ...]
+    direction: tuple[list[Scalar], ...]
+    speed: list[Scalar]
+    power: int
+
+    def valid_until(self, error: float) -> float:
+        """Time up to which the last two terms of each series are below an error relative to the first."""
+        vectors = [self.axis, self.momentum, self.direction, (self.speed,)]
+        times = [1e300]
+        for rows in vectors:
+            whole = error * math.hypot(*(row[0] for row in rows))
+            for k in range(len(rows[0]) - 2, len(rows[0])):
+                term = math.hypot(*(row[k] for row in rows))
+                if k > 0 and term > 0.0:
+                    times.append((whole / term) ** (1.0 / k))
+        return min(times)
+
+    def at(self, time: Scalar) -> tuple[Vector, Vector, Slip]:
+        """Axis, angular momentum and slip zeta at a time since the onset."""
+        n, L, e = (
+            tuple(value(row, time) for row in rows) for rows in (self.axis, self.momentum, self.direction)
+        )
+        speed = time**self.power * value(self.speed, time)
+        return (n[0], n[1], n[2]), (L[0], L[1], L[2]), scaled(speed, e)
+
+
+def value(terms: Sequence[Scalar], time: Scalar) -> Scalar:
+    """Value of a polynomial, its coefficients in increasing order."""
+    total = terms[-1]
+    for term in terms[-2::-1]:
+        total = term + total * time
+    return total
+
+
+def onset(
+    start: tuple[Vector, Vector, Slip],
+    power: int,
+    top: Top,
+    order: int,
+    series: Callable[[Callable[[int], Scalar]], Any],
+) -> Onset:
+    """The beginning of slip, order by order.
+
+    Parameters
+    ----------
+    start
+        Axis, angular momentum, and the direction e_0 in which slip begins: along it A = R e_0, with R = 0 and
+        power 2, or R > 0 and power 1.
+    power
+        How slip grows with time, 1 or 2.
+    top
+        The body.
+    order
+        Degree of the polynomials.
+    series
+        From a rule for the k-th coefficient, called once for each k in order, to a series with operators.
+
+    Notes
+    -----
+    The k-th coefficients of y follow from those before. With j = k + power - 1 the unknowns in zeta' = A at
+    t^j are s_k and the part of e_j across e_0 (|e| = 1 gives the other); A is linear in e_j, with the
+    derivative G.
+    """
+    known = Growing.of(start, top, series)
+    across = tangents(start[2])
+    slopes = [known.slope(b) for b in across]
+    e, s = known.direction, known.speed
+    if power == 1:
+        s.append(inner(known.accelerations(0), start[2]))
+    for j in range(1, order + power):
+        k = j - power + 1
+        along = -0.5 * sum((inner(e[i], e[j - i]) for i in range(1, j)), 0.0 * start[2][0])
+        e.append(scaled(along, start[2]))
+        # (k + power) zeta_k = A_j, where zeta_k has s_k e_0, known terms, and for power 1 also s_0 e_j.
+        rest = known.accelerations(j)
+        for i in range(k):
+            rest = plus(rest, scaled(-(k + power) * s[i], e[k - i]))
+        lag = (k + power) * s[0] if power == 1 else 0.0
+        columns = [plus(g, scaled(-lag, b)) for g, b in zip(slopes, across, strict=True)]
+        columns.append(scaled(-float(k + power), start[2]))
+        basis = (*across, start[2])
+        found = solve([[inner(b, c) for c in columns] for b in basis], [-inner(b, rest) for b in basis])
+        for part, b in zip(found[:-1], across, strict=True):
+            e[j] = plus(e[j], scaled(part, b))
+        s.append(found[-1])
+    rows = [[y[k] for k in range(order + 1)] for y in (*known.axis, *known.momentum)]
+    turning = tuple([e[k][i] for k in range(order + 1)] for i in range(len(start[2])))
+    return Onset(tuple(rows[:3]), tuple(rows[3:]), turning, s[: order + 1], power)
+
+
+class Growing(NamedTuple):
+    """Series that are being made: axis, angular momentum, directions and speeds known so far.
+
+    `free` and `responses` hold the rates of zeta and the normal acceleration without force, and per unit of
+    each wrench: series that depend on axis and angular momentum alone.
+    """
+
+    axis: tuple[Indexed, ...]
+    momentum: tuple[Indexed, ...]
+    direction: list[Slip]
+    speed: list[Scalar]
+    point: ContactPoint
+    top: Top
+    free: tuple[Any, ...]
+    responses: tuple[tuple[Any, ...], ...]
+
+    @classmethod
+    def of(
+        cls, start: tuple[Vector, Vector, Slip], top: Top, series: Callable[[Callable[[int], Scalar]], Any]
+    ) -> "Growing":
+        """Series that start here."""
+        rules: list[Callable[[int], Scalar]] = []
+
+        def later(i: int) -> Any:
+            def rule(k: int) -> Scalar:
+                return rules[i](k)
+
+            return series(rule)
+
+        n, L = (later(0), later(1), later(2)), (later(3), later(4), later(5))
+        point = ContactPoint.of(n, L, top)
+        reach = set_valued(top.friction).slip_length
+        wrenches = basis_wrenches(top)
+        normal = Wrench(FORCES[2].force, resistance(top, point.turning))
+        parts = [contact_part(flat(point.response(w)), reach) for w in (*wrenches, normal)]
+        known = cls(n, L, [start[2]], [], point, top, contact_part(flat(point.free), reach), tuple(parts))
+        table: list[Slip] = []
+
+        def amount(i: int) -> Any:
+            def rule(k: int) -> Scalar:
+                while len(table) <= k:
+                    table.append(known.wrench(len(table)))
+                return table[k][i]
+
+            return series(rule)
+
+        def integral(first: Scalar, slope: Any) -> Callable[[int], Scalar]:
+            return lambda k: slope[k - 1] * (1.0 / k) if k else first
+
+        moment: Any = (0.0, 0.0, 0.0)
+        for i, unit in enumerate((*wrenches, normal)):
+            moment = add(moment, scale(amount(i), point.moment(unit)))
+        slopes = (*axis_rate(n, L, top), *moment)
+        rules += [integral(*pair) for pair in zip((*start[0], *start[1]), slopes, strict=True)]
+        return known
+
+    def wrench(self, j: int) -> Slip:
+        """Coefficients of order j of the amounts of the wrenches, the normal force last."""
+        return tuple(amount.terms[j] for amount in self.amounts(self.directions(j), j))
+
+    def directions(self, j: int) -> tuple[Series, ...]:
+        """The direction up to order j."""
+        return tuple(Series([e[i] for e in self.direction[: j + 1]]) for i in range(len(self.direction[0])))
+
+    def amounts(self, direction: tuple[Series, ...], j: int) -> tuple[Series, ...]:
+        """Amounts of the wrenches up to order j, the normal force last."""
+        reach = set_valued(self.top.friction).slip_length
+        w = 0.0 * direction[0] if reach is None else direction[2] * (1.0 / reach)
+        (fx, fy), torque = set_valued(self.top.friction).traction((direction[0], direction[1]), (0.0, 0.0, w))
+        shares = (fx, fy) if reach is None else (fx, fy, torque[2])
+        denominator = self.upto(self.responses[-1][-1], j)
+        for share, column in zip(shares, self.responses, strict=False):
+            denominator = denominator + share * self.upto(column[-1], j)
+        normal = -self.upto(self.free[-1], j) / denominator
+        return (*(normal * share for share in shares), normal)
+
+    def accelerations(self, j: int) -> Slip:
+        """Coefficient of order j of A."""
+        return tuple(a.terms[j] for a in self.rates(self.directions(j), j))
+
+    def slope(self, across: Slip) -> Slip:
+        """Derivative of A along a direction across e_0, at the start."""
+        direction = tuple(Series([e, b]) for e, b in zip(self.direction[0], across, strict=True))
+        frozen = self._replace(
+            free=tuple(constant(x) for x in self.free),
+            responses=tuple(tuple(constant(x) for x in column) for column in self.responses),
+        )
+        return tuple(a.terms[1] for a in frozen.rates(direction, 1))
+
+    def rates(self, direction: tuple[Series, ...], j: int) -> tuple[Series, ...]:
+        """A up to order j."""
+        amounts = self.amounts(direction, j)
+        rates = []
+        for i in range(len(direction)):
+            rate = self.upto(self.free[i], j)
+            for amount, column in zip(amounts, self.responses, strict=True):
+                rate = rate + amount * self.upto(column[i], j)
+            rates.append(rate)
+        return tuple(rates)
+
+    @staticmethod
+    def upto(a: Any, j: int) -> Series:
+        """A series, or a number, up to order j."""
+        if isinstance(a, (float, int)):
+            return Series([a, *[0.0] * j])
+        return Series([a[k] for k in range(j + 1)])
+
+
+class Constant(NamedTuple):
+    """A series that is its first term."""
+
+    first: Scalar
+
+    def __getitem__(self, k: Any) -> Any:
+        return 0.0 * self.first if k else self.first
+
+
+def constant(a: Any) -> Any:
+    """A series without its other terms."""
+    return a if isinstance(a, (float, int)) else Constant(a[0])
+
+
+def contact_part(accelerations: Sequence[Any], reach: Scalar | None) -> tuple[Any, ...]:
+    """Rate of zeta, and the normal acceleration, among the six accelerations of the contact."""
+    return (*slip_part(accelerations, reach), accelerations[2])
+
+
+def basis_wrenches(top: Top) -> tuple[Wrench, ...]:
+    """The wrenches of friction: two forces, and the drilling torque if there is one."""
+    return FORCES[:2] if set_valued(top.friction).slip_length is None else (*FORCES[:2], DRILLING)
+
+
+def resistance(top: Top, turning: Vector) -> Vector:
+    """Torque of rolling resistance per unit normal force, m."""
+    law = top.friction
+    return law.couple(turning) if isinstance(law, RollingResistance) else (0.0, 0.0, 0.0)
+
+
+def tangents(e: Slip) -> list[Slip]:
+    """Unit vectors across a unit vector and across each other; in space, of floats."""
+    if len(e) == 2:
+        return [(-e[1], e[0])]
+    x, y, z = e
+    sign = 1.0 if z >= 0.0 else -1.0
+    a = 1.0 / (1.0 + sign * z)
+    return [(1.0 - x * x * a, -x * y * a, -sign * x), (-x * y * a, 1.0 - y * y * a, -sign * y)]

@@ -1,0 +1,270 @@
+"""Stick and slip against an independent solver, motions known exactly, and orders of convergence."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from dry_runs import DryRun, launched, series
+from tippetop.integrators.scipy_methods import SciPy
+from tippetop.mechanics.contensou import ELLIPSOIDAL_RADIUS, EllipsoidalLaw
+from tippetop.mechanics.contensou_hertz import HertzLaw
+from tippetop.mechanics.coulomb import CoulombLaw, RollingResistance
+from tippetop.mechanics.friction import NO_TORQUE, Traction
+from tippetop.mechanics.motion import angular_velocity, sliding_rates
+from tippetop.mechanics.rolling import ContactPoint, contact_wrench, velocity_without_slip, without_drilling
+from tippetop.mechanics.slip_onset import onset
+from tippetop.mechanics.state import SlidingState
+from tippetop.mechanics.stick_slip import (
+    creep_rates,
+    direction_of_slip,
+    plus,
+    scaled,
+    size,
+    slip_guard,
+    slip_of,
+    velocity_of,
+)
+from tippetop.mechanics.surface import EccentricSphere, Spheroid
+from tippetop.mechanics.top import Top
+
+SECOND = math.sqrt(9.8 / 0.02)
+"""A second in units of (radius / gravity)^(1/2), for the report's top."""
+
+DOP853 = SciPy("dop853", 1e-13)
+
+
+def report(law):
+    return Top(1.0, 131 / 350, 2 / 5, EccentricSphere(1.0, 0.3), law, 1.0)
+
+
+def tilt(run):
+    return math.acos(run.axis[2])
+
+
+def spin(run):
+    return sum(a * b for a, b in zip(run.axis, run.momentum, strict=True)) / run.top.axial_inertia
+
+
+# Against an independent solver, to the 1e-9 s and 1e-8 rad that its authors vouch for ---------------------
+
+
+@pytest.mark.parametrize("integrator", [None, DOP853], ids=["taylor", "dop853"])
+def test_a_top_whose_centre_of_mass_rests_at_first_sticks(integrator):
+    run = DryRun(*launched(report(CoulombLaw(0.3)), 0.1, 155.0 / SECOND, rests=True), integrator)
+    run.follow(0.1 * SECOND)
+    (stuck,) = run.times("stick")
+    assert stuck / SECOND == pytest.approx(0.039324496801456346, abs=1e-11)
+    assert tilt(run) == pytest.approx(0.041055632226041285, abs=1e-10)
+    assert spin(run) * SECOND == pytest.approx(154.03191608427147, abs=1e-8)
+    assert len(run.events) == 1
+
+
+SLIPS = np.array([0.009376570544231876, 0.04206575876996948, 0.07499098425096684, 0.10814670305977013])
+STICKS = np.array([0.0, 0.031285582730557274, 0.06521018588056923, 0.09932965633952427])
+
+
+def test_slips_and_sticks():
+    run = DryRun(*launched(report(CoulombLaw(0.028)), 0.1, 155.0 / SECOND), DOP853).follow(0.05 * SECOND)
+    assert np.array(run.times("slip")) / SECOND == pytest.approx(SLIPS[:2], abs=1e-11)
+    assert np.array(run.times("stick")) / SECOND == pytest.approx(STICKS[:2], abs=1e-11)
+
+
+@pytest.mark.slow
+def test_slips_and_sticks_up_to_lift_off():
+    run = DryRun(*launched(report(CoulombLaw(0.028)), 0.1, 155.0 / SECOND)).follow(8.0 * SECOND)
+    assert np.array(run.times("slip")[:4]) / SECOND == pytest.approx(SLIPS, abs=1e-11)
+    assert np.array(run.times("stick")[:4]) / SECOND == pytest.approx(STICKS, abs=1e-11)
+    assert run.times("lift-off")[0] / SECOND == pytest.approx(7.858113898308634, abs=1e-9)
+    assert tilt(run) == pytest.approx(1.0658142580452235, abs=1e-8)
+
+
+@pytest.mark.slow
+def test_slip_and_drilling_end_together_with_contensou_friction():
+    law = EllipsoidalLaw(0.3, 0.05 / ELLIPSOIDAL_RADIUS)
+    run = DryRun(*launched(report(law), 0.1, 100.0 / SECOND)).follow(5.0 * SECOND)
+    (stuck,) = run.times("stick")
+    assert stuck / SECOND == pytest.approx(4.33828884528525, abs=1e-9)
+    assert tilt(run) == pytest.approx(1.7088925994636652, abs=1e-8)
+    assert spin(run) * SECOND == pytest.approx(-6.842385539695942, abs=1e-7)
+    assert angular_velocity(run.axis, run.momentum, run.top)[2] == pytest.approx(0.0, abs=1e-13)
+
+
+# Known exactly ------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("turning", [(0.0, 0.0, 0.0), (3.0, -2.0, 5.0)])
+def test_a_uniform_ball_stops_slipping_after_two_sevenths_of_its_slip_over_mu_g(turning):
+    """Its slip keeps its direction, v' = -(7/2) mu g; it sticks for good."""
+    mu, velocity = 0.25, (0.8, 0.3)
+    ball = Top(1.0, 0.4, 0.4, EccentricSphere(1.0, 0.0), CoulombLaw(mu), 1.0)
+    axis, momentum = (0.6, 0.0, 0.8), tuple(0.4 * w for w in turning)
+    slip = slip_of(axis, momentum, velocity, ball)
+    run = DryRun(ball, axis, momentum, velocity, DOP853).follow(6.0)
+    (stuck,) = run.times("stick")
+    assert stuck == pytest.approx(size(slip) / (3.5 * mu), abs=1e-13)
+    after = plus(velocity, scaled(-2.0 / 7.0, slip))
+    assert velocity_of(run.axis, run.momentum, run.slip, ball) == pytest.approx(after, abs=1e-12)
+
+
+class OneWay(CoulombLaw):
+    """Coulomb friction of a slip that stays on one side of zero along x."""
+
+    def traction(self, slip, angular_velocity):
+        return Traction((-self.mu, 0.0), NO_TORQUE)
+
+
+def test_slip_passes_through_zero_in_a_plane_where_it_cannot_stick():
+    """The body falls over in the plane x z while it slips forward, stops, and slips back at once."""
+    mu = 0.05
+    top = report(CoulombLaw(mu))
+    axis, momentum = (math.sin(1.2), 0.0, math.cos(1.2)), (0.0, 0.1, 0.0)
+    passed = 0
+    for start in (0.05, -0.05):
+        velocity = plus(velocity_without_slip(axis, momentum, top), (start, 0.0))
+        run = DryRun(top, axis, momentum, velocity, DOP853).follow(0.6)
+        state = SlidingState(axis, momentum, velocity, (0.0, 0.0), (0.0, 1.0, 0.0), 0.0)
+        y, time, way = np.array(state.pack()), 0.0, math.copysign(1.0, start)
+        turns = 0
+        while time < 0.6:
+            planar = top._replace(friction=OneWay(way * mu))
+
+            def slip(_, y):
+                s = SlidingState.unpack(y.tolist())
+                return slip_of(s.axis, s.momentum, s.velocity, top)[0] + (1e-14 * way if turns else 0.0)  # noqa: B023
+
+            slip.terminal, slip.direction = True, -way
+
+            def rates(_, y):
+                return sliding_rates(SlidingState.unpack(y.tolist()), planar).pack()  # noqa: B023
+
+            part = solve_ivp(rates, (time, 0.6), y, "DOP853", events=slip, rtol=1e-12, atol=1e-14)
+            time, y = part.t[-1], part.y[:, -1]
+            if part.status == 1:
+                turns, way = turns + 1, -way
+        assert turns in (0, 1)
+        passed += turns
+        assert run.axis == pytest.approx(tuple(y[:3]), abs=1e-9)
+        assert run.momentum == pytest.approx(tuple(y[3:6]), abs=1e-9)
+        assert velocity_of(run.axis, run.momentum, run.slip, top) == pytest.approx(tuple(y[6:8]), abs=1e-9)
+    assert passed == 1
+
+
+# Where slip goes on -------------------------------------------------------------------------------------
+
+
+def swinging(law, shape=None):
+    """A body at rest at its contact point that will not stick if friction is weak."""
+    top = report(law)._replace(shape=shape or EccentricSphere(1.0, 0.3))
+    axis, momentum = (0.48, 0.64, 0.6), (0.2, -0.1, 0.4)
+    if len(slip_of(axis, momentum, (0.0, 0.0), top)) == 3:
+        momentum = without_drilling(axis, momentum, top)
+    return top, axis, momentum
+
+
+WEAK = [
+    CoulombLaw(0.02),
+    EllipsoidalLaw(0.02, 0.1),
+    HertzLaw(0.02, 0.1),
+    RollingResistance(CoulombLaw(0.02), 0.01),
+    RollingResistance(EllipsoidalLaw(0.02, 0.1), 0.01),
+]
+
+
+@pytest.mark.parametrize("law", WEAK, ids=repr)
+def test_what_cannot_stick_slips_the_way_it_is_accelerated(law):
+    top, axis, momentum = swinging(law)
+    assert slip_guard(axis, momentum, top) < 0.0
+    direction, rate = direction_of_slip(axis, momentum, top)
+    acceleration = creep_rates(axis, momentum, direction, top).slip
+    assert rate > 0.01
+    assert acceleration == pytest.approx(scaled(rate, direction), abs=1e-12)
+
+
+def at_the_limit(law, shape=None):
+    """That body, with as much friction as it needs to stick at this instant, and less than it needs later."""
+    for sign in (1.0, -1.0):
+        top, axis, momentum = swinging(law(1.0), shape)
+        momentum = scaled(sign, momentum)
+        low, high = 0.0, 1.0
+        for _ in range(200):
+            middle = 0.5 * (low + high)
+            held = slip_guard(axis, momentum, top._replace(friction=law(middle))) >= 0.0
+            low, high = (low, middle) if held else (middle, high)
+        top = top._replace(friction=law(high))
+        direction, _ = direction_of_slip(axis, momentum, top)
+        if onset((axis, momentum, direction), 2, top, 1, series).speed[0] > 0.0:
+            return top, axis, momentum
+    raise AssertionError("it comes to its limit, and does not leave it")
+
+
+FAMILIES = {
+    "coulomb": CoulombLaw,
+    "ellipsoidal": lambda mu: EllipsoidalLaw(mu, 0.5),
+    "resisted": lambda mu: RollingResistance(CoulombLaw(mu), 0.01),
+    "resisted ellipsoidal": lambda mu: RollingResistance(EllipsoidalLaw(mu, 0.5), 0.01),
+}
+
+
+@pytest.mark.parametrize("shape", [EccentricSphere(1.0, 0.3), Spheroid(1.0, 1.4)], ids=["sphere", "egg"])
+@pytest.mark.parametrize("power", [1, 2])
+@pytest.mark.parametrize("family", FAMILIES)
+def test_the_beginning_of_slip_solves_the_equations_to_its_order(family, power, shape):
+    """The defect of zeta' = A and y' = Y falls like the power of time that is left out."""
+    law = FAMILIES[family]
+    if power == 2:
+        top, axis, momentum = at_the_limit(law, shape)
+    else:
+        top, axis, momentum = swinging(law(0.02), shape)
+    direction, rate = direction_of_slip(axis, momentum, top)
+    assert (rate < 1e-12) is (power == 2)
+    order = 6
+    begin = onset((axis, momentum, direction), power, top, order, series)
+    assert begin.speed[0] > 0.0
+
+    def defect(time):
+        def state(t):
+            n, L, zeta = begin.at(t)
+            return np.array([*n, *L, *zeta])
+
+        step = 0.02 * time
+        weights = ((-3, -1 / 60), (-2, 3 / 20), (-1, -3 / 4), (1, 3 / 4), (2, -3 / 20), (3, 1 / 60))
+        slope = sum(w * state(time + i * step) for i, w in weights) / step
+        n, L, zeta = begin.at(time)
+        true = creep_rates(n, L, zeta, top)
+        return np.abs(slope - np.array([*true.axis, *true.momentum, *true.slip])).max()
+
+    time = begin.valid_until(1e-5)
+    assert defect(time) < 1e-3
+    assert defect(time) / defect(0.5 * time) > 0.8 * 2.0**order
+
+
+def test_slip_starts_against_the_force_that_held_it():
+    top, axis, momentum = at_the_limit(CoulombLaw)
+    direction, _ = direction_of_slip(axis, momentum, top)
+    force = contact_wrench(ContactPoint.of(axis, momentum, top), None).force[:2]
+    assert direction == pytest.approx(scaled(-1.0 / size(force), force), abs=1e-12)
+    begin = onset((axis, momentum, direction), 2, top, 8, series)
+    # s = s_0 t^2: the doubling of time quadruples the slip
+    short, long = (size(begin.at(t)[2]) for t in (1e-6, 2e-6))
+    assert long / short == pytest.approx(4.0, rel=1e-5)
+
+
+def test_where_the_series_is_left_does_not_matter():
+    """Two orders, and two times at which an integrator takes over, lead to the same slip."""
+    top, axis, momentum = at_the_limit(CoulombLaw)
+    direction, _ = direction_of_slip(axis, momentum, top)
+    ends = []
+    for order, error in ((12, 1e-13), (12, 1e-15), (9, 1e-13)):
+        begin = onset((axis, momentum, direction), 2, top, order, series)
+        time = begin.valid_until(error)
+        n, L, zeta = begin.at(time)
+
+        def rates(_, y):
+            r = creep_rates(tuple(y[:3]), tuple(y[3:6]), tuple(y[6:]), top)
+            return [*r.axis, *r.momentum, *r.slip]
+
+        ends.append(solve_ivp(rates, (time, 0.2), [*n, *L, *zeta], "DOP853", rtol=1e-12, atol=1e-15).y[:, -1])
+    assert ends[1] == pytest.approx(ends[0], abs=1e-11)
+    assert ends[2] == pytest.approx(ends[0], abs=1e-11)
