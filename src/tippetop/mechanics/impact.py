@@ -118,7 +118,7 @@ def is_struck(body: Striking) -> bool:
 
 
 def work_of(impulse: Impulse, before: State, after: State, body: Striking) -> float:
-    """Work of an impulse, J: its product with the mean velocity (Thomson and Tait), as that is linear in it."""
+    """Work of an impulse, J: times the mean velocity (Thomson and Tait), as velocities are linear in it."""
     omega = add(*(angular_velocity(state.axis, state.momentum, body.top) for state in (before, after)))
     point = add(body.point, contact_velocity(after, body.arm, body.top))
     return float(0.5 * (dot((*impulse.tangential, impulse.normal), point) + dot(impulse.angular, omega)))
