@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from tippetop.contact.block import NODES, WEIGHTS, Block
 from tippetop.contact.flight import Flight
+from tippetop.contact.rules import Bilateral
 from tippetop.contact.sliding import Sliding
 from tippetop.integrators.base import Array
 from tippetop.mechanics.invariants import energy, jellett
@@ -146,7 +147,7 @@ class Recorder:
 
     def _single(self, state: State) -> Array:
         """The sample of a launch that ended as it began."""
-        reaction = Sliding(self.top, None).reaction(along_table(state).pack())
+        reaction = Sliding(self.top, Bilateral(self.top)).reaction(along_table(state).pack())
         sums = [*self._sums, self._pole, 0.0]
         return np.array([[0.0, *state.pack(), *reaction.force, *reaction.torque, *sums]]).T
 

@@ -79,7 +79,6 @@ class Flight(Mode):
     def _transition(self, time: float, state: State, landed: bool) -> Transition:
         if not landed:
             return Transition((), Outcome.COMPLETED, state)
-        assert self.rules is not None, "a table that may pull lets nothing fly"
         return self.rules.touchdown(
             time, state._replace(height=on_table(along_table(state), self.top).height)
         )

@@ -43,6 +43,8 @@ class EventKind(Enum):
 
     LIFT_OFF = "lift-off"
     TOUCHDOWN = "touchdown"
+    STICK = "stick"
+    SLIP = "slip"
     IMPACT = "impact"
 
 
@@ -144,7 +146,11 @@ class Segment:
 
 
 class Rules(Protocol):
-    """What follows where contact begins or ends."""
+    """What follows where contact, or slip, begins or ends."""
+
+    @property
+    def pulls(self) -> bool:
+        """Whether the table may pull, so that contact does not end."""
 
     def launch(self, state: State) -> Transition:
         """How a run begins."""
@@ -154,6 +160,12 @@ class Rules(Protocol):
 
     def touchdown(self, time: float, state: State) -> Transition:
         """What follows when the top reaches the table."""
+
+    def stopping(self, time: float, state: State) -> Transition:
+        """What follows when slip is about to end."""
+
+    def without_slip(self, time: float, state: State) -> Transition:
+        """What follows when the contact point is at rest."""
 
 
 @dataclass(frozen=True)
@@ -165,7 +177,7 @@ class Mode(ABC):
     top
         The top in natural units.
     rules
-        What follows where contact begins or ends; None where the table may pull.
+        What follows where contact begins or ends.
     name
         Its name in a result.
     touching
@@ -173,7 +185,7 @@ class Mode(ABC):
     """
 
     top: Top
-    rules: Rules | None = field(repr=False)
+    rules: Rules = field(repr=False)
 
     name: ClassVar[str]
     touching: ClassVar[bool] = True

@@ -1,14 +1,18 @@
 """What follows when contact begins or ends, for each way of treating lift-off."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import ClassVar
 
 from tippetop.contact.flight import Flight
 from tippetop.contact.mode import Event, EventKind, Outcome, Rules, Transition
-from tippetop.contact.sliding import Sliding
+from tippetop.contact.sliding import Sliding, is_slipping
+from tippetop.contact.sticking import SlipEnd, SlipOnset, Sticking
 from tippetop.mechanics.flight import gap, gap_rate
 from tippetop.mechanics.impact import impact
 from tippetop.mechanics.motion import along_table, contact
+from tippetop.mechanics.rolling import is_set_valued
 from tippetop.mechanics.state import State
+from tippetop.mechanics.stick_slip import slip_guard
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.touchdown import Start
 
@@ -24,8 +28,8 @@ TOUCHING = 1e-12
 
 
 @dataclass(frozen=True)
-class Bilateral:
-    """The table may pull: the top slides all the time.
+class ContactRules:
+    """What all rules have in common: the resolver of a contact that is closed and has no normal velocity.
 
     Attributes
     ----------
@@ -35,60 +39,83 @@ class Bilateral:
 
     top: Top
 
+    pulls: ClassVar[bool] = False
+
     def launch(self, state: State) -> Transition:
-        """Slide."""
-        return Transition((), Sliding(self.top, None), state)
+        """Go on from contact."""
+        return self.resting(0.0, state)
 
     def lift_off(self, time: float, state: State) -> Transition:
-        """Never happens."""
+        """Never happens: the table may pull."""
         raise NotImplementedError
 
     def touchdown(self, time: float, state: State) -> Transition:
-        """Never happens."""
+        """Never happens: there are no flights."""
         raise NotImplementedError
+
+    def stopping(self, time: float, state: State) -> Transition:
+        """Follow slip to its end."""
+        return Transition((), SlipEnd(self.top, self), state)
+
+    def without_slip(self, time: float, state: State) -> Transition:
+        """Stick, if the limit surface admits the forces that needs, or slip from rest."""
+        if slip_guard(state.axis, state.momentum, self.top) < 0.0:
+            return Transition((), SlipOnset(self.top, self, 1), state)
+        mode = Sticking(self.top, self)
+        numbers = mode.numbers(state)
+        if mode.reaction(numbers).force[2] <= 0.0 and not self.pulls:
+            return self.lift_off(time, state)
+        return Transition((Event(EventKind.STICK, time),), mode, mode.state(numbers))
+
+    def resting(self, time: float, state: State, events: tuple[Event, ...] = ()) -> Transition:
+        """Go on from contact without normal velocity: slide, stick, or leave a table that would have to pull.
+
+        Where no normal force is consistent with the friction (Painleve's paradox), an impact without approach
+        takes as much slip away as it needs to: Darboux's and Keller's way out.
+        """
+        if is_set_valued(self.top.friction) and not is_slipping(state, self.top):
+            found = self.without_slip(time, state)
+            return replace(found, events=(*events, *found.events))
+        sliding = along_table(state)
+        touch = contact(sliding.axis, sliding.momentum, sliding.velocity, self.top)
+        if touch.delassus <= 0 and not self.pulls:
+            return self.inconsistent(time, state, events)
+        if touch.free_acceleration < 0 or self.pulls:
+            return Transition(events, Sliding(self.top, self), state)
+        found = self.lift_off(time, state)
+        return replace(found, events=(*events, *found.events))
+
+    def inconsistent(self, time: float, state: State, events: tuple[Event, ...]) -> Transition:
+        """What follows where no contact force is consistent with the friction."""
+        return Transition(events, Outcome.FAILED, state, "no contact force is consistent with the friction")
 
 
 @dataclass(frozen=True)
-class StopAtLiftOff:
-    """The run ends where the table would have to pull.
+class Bilateral(ContactRules):
+    """The table may pull: the top never leaves it."""
 
-    Attributes
-    ----------
-    top
-        The top in natural units.
-    """
+    pulls: ClassVar[bool] = True
 
-    top: Top
 
-    def launch(self, state: State) -> Transition:
-        """Slide, if the table need not pull."""
-        sliding = along_table(state)
-        if contact(sliding.axis, sliding.momentum, sliding.velocity, self.top).free_acceleration >= 0:
-            return self.lift_off(0.0, state)
-        return Transition((), Sliding(self.top, self), state)
+@dataclass(frozen=True)
+class StopAtLiftOff(ContactRules):
+    """The run ends where the table would have to pull."""
 
     def lift_off(self, time: float, state: State) -> Transition:
         """End the run."""
         return Transition((Event(EventKind.LIFT_OFF, time),), Outcome.LIFTED_OFF, state)
 
-    def touchdown(self, time: float, state: State) -> Transition:
-        """Never happens: a run that stops at lift-off has no flights."""
-        raise NotImplementedError
-
 
 @dataclass(frozen=True)
-class FreeToFly:
+class FreeToFly(ContactRules):
     """The top leaves the table where that would have to pull, flies, and comes back with an impact.
 
     Attributes
     ----------
-    top
-        The top in natural units.
     restitution
         Ratio of the normal impulses of restitution and compression.
     """
 
-    top: Top
     restitution: float
 
     def launch(self, state: State) -> Transition:
@@ -100,7 +127,7 @@ class FreeToFly:
             return Transition((), self._flight(Start.REBOUND), state)
         if rate < -TOUCHING:
             return self.touchdown(0.0, state)
-        return self._resting(0.0, state)
+        return self.resting(0.0, state)
 
     def lift_off(self, time: float, state: State) -> Transition:
         """Fly from where the normal force reached zero."""
@@ -110,20 +137,16 @@ class FreeToFly:
         """Collide, and go on as the impact leaves the top."""
         return self._collide(time, state, (Event(EventKind.TOUCHDOWN, time),), self.restitution)
 
-    def _resting(self, time: float, state: State, events: tuple[Event, ...] = ()) -> Transition:
-        """Go on from contact without normal velocity: slide, or leave a table that would have to pull.
+    def resting(self, time: float, state: State, events: tuple[Event, ...] = ()) -> Transition:
+        """As for all, but where the table would have to pull from now on, not from zero force, it lets go."""
+        found = super().resting(time, state, events)
+        if isinstance(found.then, Flight) and found.then.start is Start.LIFT_OFF:
+            return replace(found, then=self._flight(Start.RELEASE))
+        return found
 
-        Where no normal force is consistent with the friction (Painleve's paradox), an impact without approach
-        takes as much slip away as it needs to: Darboux's and Keller's way out.
-        """
-        sliding = along_table(state)
-        touch = contact(sliding.axis, sliding.momentum, sliding.velocity, self.top)
-        if touch.delassus <= 0:
-            return self._collide(time, state, events, 0.0)
-        if touch.free_acceleration < 0:
-            return Transition(events, Sliding(self.top, self), state)
-        lift_off = Event(EventKind.LIFT_OFF, time)
-        return Transition((*events, lift_off), self._flight(Start.RELEASE), state)
+    def inconsistent(self, time: float, state: State, events: tuple[Event, ...]) -> Transition:
+        """Collide without approach."""
+        return self._collide(time, state, events, 0.0)
 
     def _collide(
         self, time: float, state: State, events: tuple[Event, ...], restitution: float
@@ -139,7 +162,7 @@ class FreeToFly:
             return Transition(events, Sliding(self.top, self), after)
         if rebounds:
             return Transition((*events, hit), self._flight(Start.REBOUND), after)
-        return self._resting(time, after, (*events, hit))
+        return self.resting(time, after, (*events, hit))
 
     def _flight(self, start: Start) -> Flight:
         return Flight(self.top, self, start)

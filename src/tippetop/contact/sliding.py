@@ -8,23 +8,25 @@ from typing import ClassVar
 from tippetop.contact.mode import IntegratedMode, Reaction, Transition
 from tippetop.integrators.base import Function, Guard, Motion
 from tippetop.mechanics.motion import along_table, contact, on_table, sliding_rates
+from tippetop.mechanics.rolling import is_set_valued
 from tippetop.mechanics.state import SlidingState, State
-from tippetop.mechanics.top import Kind
+from tippetop.mechanics.stick_slip import HORIZON, slip_of, stopping_guard
+from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import Row, Scalar
 
-LIFT_OFF = "lift-off"
+LIFT_OFF, STOPPING = "lift-off", "stopping"
 
 
 @dataclass(frozen=True)
 class Sliding(IntegratedMode):
-    """Sliding, as long as the normal force is positive or the table may pull."""
+    """Sliding, as long as the normal force is positive or the table may pull, and slip does not end."""
 
     name: ClassVar[str] = "sliding"
 
     @property
     def motion(self) -> Motion:
-        """Equations of motion, and the lift-off guard where the table cannot pull."""
-        return sliding_motion(self.top.kind, self.rules is not None)
+        """Equations of motion, with the guards of lift-off and of the end of slip where there are such."""
+        return sliding_motion(self.top.kind, not self.rules.pulls)
 
     def numbers(self, state: State) -> tuple[Scalar, ...]:
         """The 8 numbers of a sliding state."""
@@ -41,20 +43,28 @@ class Sliding(IntegratedMode):
         return Reaction(touch.force, touch.torque, touch.power)
 
     def follow(self, guard: str, time: float, state: State) -> Transition:
-        """What the rules say of lift-off."""
-        assert self.rules is not None, "a table that may pull has no guard"
-        return self.rules.lift_off(time, state)
+        """What the rules say of lift-off, or of slip that is about to end."""
+        if guard == LIFT_OFF:
+            return self.rules.lift_off(time, state)
+        return self.rules.stopping(time, state)
 
 
 @lru_cache
 def sliding_motion(kind: Kind, guarded: bool) -> Motion:
-    """Equations of motion of a sliding top of this kind, with the lift-off guard if wanted."""
+    """Equations of motion of a sliding top of this kind; if `guarded`, the first guard is of lift-off."""
 
     def rates(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[Scalar, ...]:
         return sliding_rates(SlidingState.unpack(y), kind.top(tuple(numbers))).pack()
 
-    guards = (Guard(LIFT_OFF, normal_force(kind)),) if guarded else ()
-    return Motion(rates, size=8, parameters=kind.numbers, guards=guards)
+    def stops(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
+        state, top = SlidingState.unpack(y), kind.top(tuple(numbers))
+        slip = slip_of(state.axis, state.momentum, state.velocity, top)
+        return stopping_guard(state.axis, state.momentum, slip, top, HORIZON)
+
+    guards = [Guard(LIFT_OFF, normal_force(kind))] if guarded else []
+    if is_set_valued(kind.example.friction):
+        guards.append(Guard(STOPPING, stops))
+    return Motion(rates, size=8, parameters=kind.numbers, guards=tuple(guards))
 
 
 @lru_cache
@@ -66,3 +76,14 @@ def normal_force(kind: Kind) -> Function:
         return contact(state.axis, state.momentum, state.velocity, kind.top(tuple(numbers))).normal_force
 
     return value
+
+
+def is_slipping(state: State, top: Top) -> bool:
+    """Whether the contact of a body on the table slips, or drills where its law resists that."""
+    slip = slip_of(state.axis, state.momentum, state.velocity[:2], top)
+    scale = sum(abs(number) for number in (*state.momentum, *state.velocity))
+    return any(abs(number) > ROUNDING * scale for number in slip)
+
+
+ROUNDING = 1e-14
+"""Slip, relative to the velocities it is made of, that is rounding."""

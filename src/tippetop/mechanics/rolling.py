@@ -202,6 +202,16 @@ def set_valued(law: FrictionLaw) -> SetValuedLaw:
     return inner
 
 
+def is_set_valued(law: FrictionLaw) -> bool:
+    """Whether a law lets slip end."""
+    return hasattr(sliding_law(law), "reserve")
+
+
+def slip_dimension(law: FrictionLaw) -> int:
+    """How many components the slip zeta has under a law that lets slip end: 3 where it resists drilling."""
+    return 2 if set_valued(law).slip_length is None else 3
+
+
 def flat(motion: Acceleration) -> tuple[Scalar, ...]:
     """Six numbers in a row."""
     return (*motion.point, *motion.turning)

@@ -12,11 +12,15 @@ from typing import Any, Protocol
 from tippetop.mechanics.vectors import Scalar
 
 
-class Arithmetic(Protocol):
-    """What is done to coefficients beside plain operators."""
+class Sums(Protocol):
+    """How coefficients are added up."""
 
     def total(self, terms: Sequence[Scalar]) -> Scalar:
         """Sum of terms."""
+
+
+class Arithmetic(Sums, Protocol):
+    """What else is done to coefficients beside plain operators."""
 
     def least(self, a: Scalar, b: Scalar) -> Scalar:
         """The smaller of two, element by element; the second where one is not a number."""
@@ -29,6 +33,17 @@ class Arithmetic(Protocol):
 
     def choose(self, condition: Scalar, a: Scalar, b: Scalar) -> Scalar:
         """The first where a condition is not 0, else the second."""
+
+
+class PlainArithmetic:
+    """Coefficients that have plain operators, such as floats."""
+
+    def total(self, terms: Sequence[Scalar]) -> Scalar:
+        """Sum of terms."""
+        return sum(terms[1:], terms[0])
+
+
+PLAIN = PlainArithmetic()
 
 
 class Series:
@@ -46,7 +61,7 @@ class Series:
     __array_ufunc__ = None
     """Keeps NumPy from taking a series for an element of an array."""
 
-    def __init__(self, rule: Callable[[int], Scalar], arithmetic: Arithmetic) -> None:
+    def __init__(self, rule: Callable[[int], Scalar], arithmetic: Sums) -> None:
         self.rule = rule
         self.arithmetic = arithmetic
         self.known: list[Scalar] = []
@@ -145,7 +160,7 @@ def is_number(value: object, number: float) -> bool:
 def solution(
     start: Sequence[Scalar],
     rates: Callable[[Sequence[Series]], Sequence[Any]],
-    arithmetic: Arithmetic,
+    arithmetic: Sums,
 ) -> list[Series]:
     """The series of the solution of y' = rates(y) that starts at y = start."""
     unknown = [Series(lambda _: None, arithmetic) for _ in start]

@@ -59,6 +59,11 @@ class Kind(NamedTuple):
         """How many dimensionless numbers a top of this kind has."""
         return 2 + self.proportions + self.coefficients
 
+    @property
+    def example(self) -> "Top":
+        """Some top of this kind, to ask what is common to all."""
+        return self.top((1.0,) * self.numbers)
+
     def top(self, numbers: tuple[Scalar, ...]) -> Top:
         """Make the top of this kind, in natural units, with these dimensionless numbers."""
         cut = 2 + self.proportions
