@@ -58,8 +58,7 @@ def sliding_motion(kind: Kind, guarded: bool) -> Motion:
 
     def stops(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
         state, top = SlidingState.unpack(y), kind.top(tuple(numbers))
-        slip = slip_of(state.axis, state.momentum, state.velocity, top)
-        return stopping_guard(state.axis, state.momentum, slip, top, HORIZON)
+        return stopping_guard(state, sliding_rates(state, top), top, HORIZON)
 
     guards = [Guard(LIFT_OFF, normal_force(kind))] if guarded else []
     if is_set_valued(kind.example.friction):

@@ -168,9 +168,9 @@ class SlipEnd(Mode):
         slip = slip_of(state.axis, state.momentum, state.velocity[:2], self.top)
         speed = size(slip)
         begin = np.array([*state.axis, *state.momentum, *scaled(1.0 / speed, slip), speed, 0.0])
-        steps, parameters = 0, (*self.top.numbers, end - time)
+        motion, steps = closing_motion(self.top.kind, not self.rules.pulls), 0
         for horizon in LANDING:
-            motion = closing_motion(self.top.kind, not self.rules.pulls, horizon)
+            parameters = (*self.top.numbers, end - time, horizon)
             arcs = list(integrator.integrate(motion, parameters, (0.0, begin), LONGEST))
             steps += sum(arc.steps for arc in arcs)
             here = closing_of(arcs[-1].end_state.tolist())
@@ -224,14 +224,14 @@ def sticking_motion(kind: Kind) -> Motion:
     def reserve(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
         return slip_guard(*split(y), kind.top(tuple(numbers)))
 
-    return Motion(rates, size=6, parameters=kind.numbers, guards=(Guard(SLIP, reserve),))
+    return Motion(rates, size=6, parameters=kind.numbers, guards=(Guard(SLIP, reserve),), lasting=False)
 
 
 @lru_cache
-def closing_motion(kind: Kind, guarded: bool, horizon: float) -> Motion:
+def closing_motion(kind: Kind, guarded: bool) -> Motion:
     """Equations of motion in the clock -ln s of a top whose slip is about to end; time is the last number.
 
-    The last parameter is the time at which the run ends.
+    The last parameters are when the run ends, and how long before its end slip is left to `landed`.
     """
 
     def top_of(numbers: Sequence[Scalar]) -> Top:
@@ -247,12 +247,14 @@ def closing_motion(kind: Kind, guarded: bool, horizon: float) -> Motion:
 
     guards = [
         Guard(REOPENING, lambda y, numbers: reopening_guard(closing_of(y), top_of(numbers), HORIZON)),
-        Guard(LANDED, lambda y, numbers: landing_guard(closing_of(y), top_of(numbers), horizon)),
-        Guard(TIME, lambda y, numbers: numbers[kind.numbers] - y[len(y) - 1]),
+        Guard(LANDED, lambda y, numbers: landing_guard(closing_of(y), top_of(numbers), numbers[-1])),
+        Guard(TIME, lambda y, numbers: numbers[-2] - y[len(y) - 1]),
     ]
     if guarded:
         guards.append(Guard(LIFT_OFF, normal))
-    return Motion(rates, 8 + slip_dimension(kind.example.friction), kind.numbers + 1, tuple(guards))
+    return Motion(
+        rates, 8 + slip_dimension(kind.example.friction), kind.numbers + 2, tuple(guards), lasting=False
+    )
 
 
 def closing_of(y: Row) -> Closing:

@@ -45,12 +45,15 @@ class Motion:
         How many parameters there are.
     guards
         Conditions that end the motion.
+    lasting
+        Whether runs may spend most of their steps in it: worth compiling for speed.
     """
 
     rates: Callable[[Sequence[Scalar], Sequence[Scalar]], Sequence[Scalar]]
     size: int
     parameters: int
     guards: tuple[Guard, ...] = ()
+    lasting: bool = True
 
 
 @dataclass(frozen=True)

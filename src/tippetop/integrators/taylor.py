@@ -87,6 +87,7 @@ def _compiled(motion: Motion, tolerance: float) -> _Compiled:
         pars=[1.0] * motion.parameters,
         tol=tolerance,
         t_events=[hy.t_event(guard, direction=hy.event_direction.negative) for guard in guards],
+        compact_mode=not motion.lasting,
     )
     return _Compiled(integrator)
 

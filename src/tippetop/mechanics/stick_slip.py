@@ -16,22 +16,24 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from tippetop.mechanics.motion import angular_velocity, axis_rate, point_velocity
+from tippetop.mechanics.motion import angular_velocity, axial_spin, axis_rate, point_velocity
 from tippetop.mechanics.rolling import (
     DRILLING,
     FORCES,
     ContactPoint,
     Slip,
     Wrench,
+    arm_rate,
     contact_motion,
     contact_wrench,
     flat,
     set_valued,
     velocity_without_slip,
 )
+from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.surface import contact_vector
 from tippetop.mechanics.top import Top
-from tippetop.mechanics.vectors import Horizontal, Scalar, Vector, add, scale
+from tippetop.mechanics.vectors import Horizontal, Scalar, Vector, add, cross, dot, scale
 
 HORIZON = 0.05
 """How long before its end slip is followed in the clock -ln s, in natural units of time."""
@@ -130,10 +132,31 @@ def closing_rates(state: Closing, top: Top) -> Closing:
     return Closing(scale(step, rates.axis), scale(step, rates.momentum), turn, -state.speed, step)
 
 
-def stopping_guard(axis: Vector, momentum: Vector, slip: Slip, top: Top, horizon: Scalar) -> Scalar:
-    """Falls through zero where slip, at its present rate, ends within the horizon (s): s (s + horizon R)."""
-    rates = creep_rates(axis, momentum, slip, top)
-    return inner(slip, slip) + horizon * inner(rates.slip, slip)
+def stopping_guard(state: SlidingState, rate: SlidingState, top: Top, horizon: Scalar) -> Scalar:
+    """Falls through zero where slip, at its present rate, ends within the horizon (s): s (s + horizon R).
+
+    Parameters
+    ----------
+    state, rate
+        A sliding state and its time derivative.
+    top
+        The body.
+    horizon
+        How far ahead the end may be, s.
+    """
+    turning, tilting = angular_velocity(state.axis, state.momentum, top), rate.axis
+    excess = (top.transverse_inertia - top.axial_inertia) / top.transverse_inertia
+    spin = axial_spin(state.axis, state.momentum, top)
+    spinning = (dot(rate.momentum, state.axis) + dot(state.momentum, tilting)) / top.axial_inertia
+    turned = scale(1.0 / top.transverse_inertia, rate.momentum)
+    turned = add(turned, scale(excess, add(scale(spinning, state.axis), scale(spin, tilting))))
+    arm = contact_vector(state.axis, top.surface)
+    carried = add(cross(turned, arm), cross(turning, arm_rate(state.axis, tilting, top)))
+    slip = slip_of(state.axis, state.momentum, state.velocity, top)
+    reach = set_valued(top.friction).slip_length
+    change: Slip = (rate.velocity[0] + carried[0], rate.velocity[1] + carried[1])
+    change = change if reach is None else (*change, reach * turned[2])
+    return inner(slip, slip) + horizon * inner(change, slip)
 
 
 def reopening_guard(state: Closing, top: Top, horizon: Scalar) -> Scalar:
