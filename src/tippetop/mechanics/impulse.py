@@ -54,8 +54,8 @@ class Striking(NamedTuple):
     point
         Velocity of the contact point, m/s; a normal part that is but round-off is zero.
     inverse_mass
-        Columns of M, the inverse effective mass (Delassus matrix): velocity of the contact point per unit impulse
-        along x, y and z, 1/kg.
+        Columns of M, the inverse effective mass (Delassus matrix): velocity of the contact point per unit
+        impulse along x, y and z, 1/kg.
     """
 
     state: State

@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tippetop.integrators.base import Array
-from tippetop.mechanics.impulse import contact_velocity
 from tippetop.mechanics.flight import fly
+from tippetop.mechanics.impulse import contact_velocity
 from tippetop.mechanics.motion import (
     along_table,
     angular_velocity,
