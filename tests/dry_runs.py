@@ -3,7 +3,7 @@
 import math
 
 import numpy as np
-from tippetop.sweep.series import Series
+from tippetop.sweeps.series import Series
 
 from tippetop.integrators.base import Guard, Motion
 from tippetop.integrators.taylor import Taylor

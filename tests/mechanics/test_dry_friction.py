@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
-from tippetop.sweep.series import solution
+from tippetop.sweeps.series import solution
 
 from strategies import numbers
 from tippetop.mechanics.contensou import EllipsoidalLaw

@@ -19,6 +19,7 @@ from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.stick_slip import (
     creep_rates,
     direction_of_slip,
+    inner,
     plus,
     scaled,
     size,
@@ -222,6 +223,9 @@ def test_the_beginning_of_slip_solves_the_equations_to_its_order(family, power, 
     order = 6
     begin = onset((axis, momentum, direction), power, top, order, series)
     assert begin.speed[0] > 0.0
+    first, second, third = (tuple(row[k] for row in begin.direction) for k in range(3))
+    assert inner(first, second) == pytest.approx(0.0, abs=1e-9 * size(second))
+    assert 2.0 * inner(first, third) == pytest.approx(-inner(second, second), rel=1e-9)
 
     def defect(time):
         def state(t):

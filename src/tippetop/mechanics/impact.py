@@ -30,6 +30,7 @@ Jellett's integral is conserved: P acts at the fixed arm, and a.(a x P) = 0.
 
 from typing import NamedTuple
 
+from tippetop.mechanics.dry_impact import DryContact, is_dry
 from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.impulse import NO_IMPULSE, Goal, Impulse, Process, Striking, contact_velocity
 from tippetop.mechanics.integrated_impact import IntegratedProcess
@@ -81,11 +82,12 @@ def impact(state: State, restitution: float, top: Top) -> Impact:
     if not 0.0 <= restitution <= 1.0:
         raise ValueError(f"the coefficient of restitution must lie between 0 and 1, but is {restitution}")
     body = Striking.of(state, top)
-    if not is_struck(body):
-        return Impact(state, 0.0, 0.0, 0.0)
     law = top.friction
+    dry = DryContact.of(body) if is_dry(law) else None
+    if not is_struck(body, dry):
+        return Impact(state, 0.0, 0.0, 0.0)
     process: Process = (
-        ViscousProcess.of(body, law) if isinstance(law, ViscousLaw) else IntegratedProcess(body)
+        ViscousProcess.of(body, law) if isinstance(law, ViscousLaw) else IntegratedProcess(body, dry)
     )
 
     compressed = process.until(NO_IMPULSE, body.approach)
@@ -93,6 +95,8 @@ def impact(state: State, restitution: float, top: Top) -> Impact:
     if restitution > 0.0:
         impulse = process.until(compressed, restitution_goal(body, compressed, restitution))
     after = body.after(impulse)
+    if dry is not None:
+        after = dry.at_rest(impulse, after)
     lost = max(0.0, -work_of(impulse, state, after, body))
     return Impact(after, impulse.normal, lost, compressed.normal)
 
@@ -109,16 +113,16 @@ def restitution_goal(body: Striking, compressed: Impulse, restitution: float) ->
     return goal
 
 
-def is_struck(body: Striking) -> bool:
+def is_struck(body: Striking, dry: DryContact | None) -> bool:
     """Whether the contact point sinks into the table, or would, if the impact did not begin."""
     if body.point[2] != 0.0:
         return bool(body.point[2] < 0.0)
-    traction = body.friction(NO_IMPULSE)[2]
+    traction = body.friction(NO_IMPULSE)[2] if dry is None else dry.settled(NO_IMPULSE).friction(NO_IMPULSE)
     return body.approach(Impulse(1.0, traction.force, traction.torque, 0.0)) < 0.0
 
 
 def work_of(impulse: Impulse, before: State, after: State, body: Striking) -> float:
-    """Work of an impulse, J: times the mean velocity (Thomson and Tait), as velocities are linear in it."""
+    """Work of an impulse, J: times the mean velocity, as velocities are linear in it (Thomson and Tait)."""
     omega = add(*(angular_velocity(state.axis, state.momentum, body.top) for state in (before, after)))
     point = add(body.point, contact_velocity(after, body.arm, body.top))
     return float(0.5 * (dot((*impulse.tangential, impulse.normal), point) + dot(impulse.angular, omega)))

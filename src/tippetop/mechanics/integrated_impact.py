@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from operator import mul
 from typing import NamedTuple, TypeAlias
 
+from tippetop.mechanics.dry_impact import DryContact
 from tippetop.mechanics.impulse import FUZZ, Goal, Impulse, Striking, first_reach
 from tippetop.mechanics.roots import crossing
 from tippetop.mechanics.vectors import add, length, scale
@@ -43,13 +44,16 @@ class IntegratedProcess(NamedTuple):
     slip then decays at the rate of M however steep the law, and needs no more than some tens of units of s
     to fall by twenty orders of magnitude. Once friction has come to hold the slip constant, f = -M_tt^-1
     M_tn (less what a torque does), it stays so, and the rest is a straight line; it is checked
-    that the law agrees.
+    that the law agrees. Dry friction has its own clock and its own rest: see `dry_impact`.
     """
 
     body: Striking
+    dry: DryContact | None = None
 
     def until(self, impulse: Impulse, goal: Goal) -> Impulse:
         """The first impulse from a given one on at which the goal is not negative."""
+        if self.dry is not None:
+            self = self._replace(dry=self.dry.settled(impulse))  # noqa: PLW0642
         waiting = goal(impulse) >= 0.0
         here, slope = pack(impulse), self.slope(pack(impulse))
         longest = 2.0 / (self.body.inverse_mass[0][0] + self.body.inverse_mass[1][1])
@@ -66,6 +70,9 @@ class IntegratedProcess(NamedTuple):
             if reached:
                 return self.landing(here, slope, step, goal)
             here, slope, waiting = there, new_slope, False
+            if self.dry is not None:
+                self = self._replace(dry=self.dry.settled(unpack(here)))  # noqa: PLW0642
+                slope = self.slope(here)
             step = min(longest, step * min(5.0, 0.9 * max(doubt, 1e-10) ** -0.2))
 
     def landing(self, here: Point, slope: Point, step: float, goal: Goal) -> Impulse:
@@ -78,6 +85,11 @@ class IntegratedProcess(NamedTuple):
 
     def slope(self, here: Point) -> Point:
         """Rate of the impulse's numbers with the clock s."""
+        if self.dry is not None:
+            traction = self.dry.friction(unpack(here))
+            pace = self.dry.pace(unpack(here), traction)
+            rise = pace * self.body.approach(unpack(here))
+            return (pace, *(pace * f for f in traction.force), *scale(pace, traction.torque), rise)
         point, omega, (force, torque) = self.body.friction(unpack(here))
         slip, grip = math.hypot(point[0], point[1]), math.hypot(*force)
         if slip == 0.0:
@@ -97,6 +109,9 @@ class IntegratedProcess(NamedTuple):
         speed = length(self.body.point)
         slip = max(self.slip(here), self.slip(there), 1e-9 * speed)
         doubt = max(math.hypot(error[0], error[1]) / slip, abs(error[2]) / speed)
+        if self.dry is not None:
+            error_impulse = unpack(combined((0.0,) * len(here), step, DOUBT, slopes))
+            doubt = max(self.dry.doubt(unpack(here), unpack(there), error_impulse), abs(error[2]) / speed)
         return there, slopes[-1], doubt / TOLERANCE
 
     def slip(self, here: Point) -> float:
@@ -106,6 +121,8 @@ class IntegratedProcess(NamedTuple):
 
     def held(self, impulse: Impulse, goal: Goal) -> Impulse | None:
         """The rest if friction holds the slip constant, if it does so all along."""
+        if self.dry is not None:
+            return None
         (a, b, _), (_, d, _), _ = self.body.inverse_mass
         point, _, traction = self.body.friction(impulse)
         x, y, _ = self.body.response(Impulse(1.0, (0.0, 0.0), traction.torque, 0.0))

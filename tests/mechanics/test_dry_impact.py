@@ -1,0 +1,92 @@
+"""Impacts with dry friction: known exactly in a plane, and what no impact can do."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from test_impact import RESTITUTIONS, Rigid, check_laws_of_impact, planar
+
+from strategies import numbers, slides
+from tippetop.mechanics.contensou import EllipsoidalLaw
+from tippetop.mechanics.contensou_hertz import HertzLaw
+from tippetop.mechanics.coulomb import CoulombLaw, RollingResistance
+from tippetop.mechanics.friction import RegularizedCoulombFriction
+from tippetop.mechanics.impact import impact
+from tippetop.mechanics.motion import on_table
+from tippetop.mechanics.stick_slip import slip_of
+
+
+@pytest.mark.parametrize("restitution", [0.0, 0.4])
+def test_slip_that_ends_in_compression_stays_ended(restitution):
+    """It ends at p_s = slip / (mu M_tt - M_tn); then friction is -M_tn / M_tt, within the cone."""
+    mu, slip, falling = 0.9, 0.3, -1.0
+    state, top = planar(slip, falling, CoulombLaw(mu))
+    M = Rigid(state, top).answer
+    stop = slip / (mu * M[0, 0] - M[0, 2])
+    left = falling + stop * (M[2, 2] - mu * M[0, 2])
+    compression = stop - left / (M[2, 2] - M[0, 2] ** 2 / M[0, 0])
+    result = impact(state, restitution, top)
+    assert left < 0.0
+    assert result.compression == pytest.approx(compression, rel=1e-9)
+    returned = 0.5 * (compression - stop) * -left + 0.5 * stop * (-falling - left)
+    stuck = M[2, 2] - M[0, 2] ** 2 / M[0, 0]
+    full = min(restitution * compression, math.sqrt(2.0 * returned / stuck))
+    assert result.impulse == pytest.approx(compression + full, rel=1e-9)
+    assert slip_of(result.state.axis, result.state.momentum, result.state.velocity[:2], top) == pytest.approx(
+        (0.0, 0.0), abs=1e-15
+    )
+
+
+def test_slip_that_cannot_end_turns_back():
+    """Below mu = |M_tn| / M_tt slip comes to zero and goes on the other way, friction with it."""
+    mu, falling = 0.02, -1.0
+    M = Rigid(*planar(-0.05, falling, CoulombLaw(mu))).answer
+    assert M[0, 2] > mu * M[0, 0]
+    state, top = planar(-0.05, falling, CoulombLaw(mu))
+    stop = 0.05 / (M[0, 2] + mu * M[0, 0])
+    left = falling + stop * (M[2, 2] + mu * M[0, 2])
+    compression = stop - left / (M[2, 2] - mu * M[0, 2])
+    result = impact(state, 0.0, top)
+    assert left < 0.0
+    assert result.impulse == pytest.approx(compression, rel=1e-9)
+    after = Rigid(state, top).velocity_of_point(result.state)
+    assert after[0] == pytest.approx((compression - stop) * (M[0, 2] - mu * M[0, 0]), rel=1e-8)
+
+
+@pytest.mark.parametrize("velocity", [(0.3, -0.2, -0.7), (-0.4, 0.1, -1.5)])
+def test_regularized_friction_comes_to_it_as_its_speed_goes_to_zero(velocity):
+    ends = []
+    for law in (CoulombLaw(0.7), RegularizedCoulombFriction(0.7, 1e-6)):
+        state, top = planar(0.0, -1.0, law)
+        state = state._replace(velocity=velocity, momentum=(1e-4, 2e-4, -3e-4))
+        ends.append(impact(state, 0.5, top))
+    assert ends[0].impulse == pytest.approx(ends[1].impulse, rel=1e-5)
+    assert ends[0].state.momentum == pytest.approx(ends[1].state.momentum, abs=1e-5 * 3e-4)
+
+
+DRY = {
+    "coulomb": lambda mu, size: CoulombLaw(mu),
+    "ellipsoidal": lambda mu, size: EllipsoidalLaw(mu, 0.05 * size),
+    "hertz": lambda mu, size: HertzLaw(mu, 0.05 * size),
+    "rolling": lambda mu, size: RollingResistance(CoulombLaw(mu), 0.01 * size),
+}
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.sampled_from(sorted(DRY)), slides(), numbers(0.05, 0.9), numbers(-3.0, 0.5), RESTITUTIONS)
+def test_dry_impacts_obey_the_laws_of_mechanics(name, slide, mu, fall, restitution):
+    """No energy is gained, momentum is balanced, and the friction impulse stays inside of the cone."""
+    top, sliding = slide
+    top = top._replace(friction=DRY[name](mu, top.surface.size))
+    state = on_table(sliding, top)
+    falling = 10.0**fall * math.sqrt(top.gravity * top.surface.size)
+    state = state._replace(velocity=(*state.velocity[:2], state.velocity[2] - falling))
+    if name == "coulomb":
+        result = check_laws_of_impact(state, restitution, top)
+    else:
+        result = impact(state, restitution, top)
+        assert result.energy_lost >= 0.0
+    gained = top.mass * (np.array(result.state.velocity) - np.array(state.velocity))
+    assert math.hypot(gained[0], gained[1]) <= mu * gained[2] * (1.0 + 1e-9)
