@@ -40,6 +40,11 @@ class EllipsoidalLaw(NamedTuple):
         """The semi-axis rho, m."""
         return ELLIPSOIDAL_RADIUS * self.patch_radius
 
+    @property
+    def torque_free(self) -> bool:
+        """It resists drilling."""
+        return False
+
     def traction(self, slip: Horizontal, angular_velocity: Vector) -> Traction:
         """Force and torque per unit normal force; slip and drilling must not both be zero."""
         drilling = self.slip_length * angular_velocity[2]

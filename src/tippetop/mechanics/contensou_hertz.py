@@ -108,6 +108,11 @@ class HertzDrillingLaw(NamedTuple):
         """The patch radius, m."""
         return self.patch_radius
 
+    @property
+    def torque_free(self) -> bool:
+        """It resists drilling."""
+        return False
+
     def traction(self, slip: Horizontal, angular_velocity: Vector) -> Traction:
         """Force and torque per unit normal force; drilling must not be zero."""
         drilling = self.patch_radius * angular_velocity[2]
@@ -177,6 +182,11 @@ class HertzSlidingLaw(NamedTuple):
         """The patch radius, m."""
         return self.patch_radius
 
+    @property
+    def torque_free(self) -> bool:
+        """It resists drilling."""
+        return False
+
     def traction(self, slip: Horizontal, angular_velocity: Vector) -> Traction:
         """Force and torque per unit normal force; the slip must not be zero."""
         drilling = self.patch_radius * angular_velocity[2]
@@ -242,6 +252,11 @@ class HertzLaw(NamedTuple):
         """The law whose piece of the limit surface has this drilling torque, N m."""
         sliding = abs(drilling) <= BRANCH_TORQUE * self.mu * normal * self.patch_radius
         return HertzSlidingLaw(*self) if sliding else HertzDrillingLaw(*self)
+
+    @property
+    def torque_free(self) -> bool:
+        """It resists drilling."""
+        return False
 
     def traction(self, slip: Horizontal, angular_velocity: Vector) -> Traction:
         """Force and torque per unit normal force; slip and drilling must not both be zero."""

@@ -31,6 +31,11 @@ class CoulombLaw(NamedTuple):
         """Drilling is free."""
         return
 
+    @property
+    def torque_free(self) -> bool:
+        """It has no torque."""
+        return True
+
     def traction(self, slip: Horizontal, angular_velocity: Vector) -> Traction:
         """Force and torque per unit normal force; the slip must not be zero."""
         factor = -self.mu * (slip[0] * slip[0] + slip[1] * slip[1]) ** -0.5
@@ -84,6 +89,16 @@ class RollingResistance(NamedTuple):
     def coefficients(self, units: Units) -> tuple[Scalar, ...]:
         """The numbers of the law beside, and the arm in units of length."""
         return (*self.law.coefficients(units), self.length / units.length)
+
+    @property
+    def make(self) -> "RollingResistance":
+        """What is left of it without its numbers: it makes laws like it."""
+        return RollingResistance(getattr(self.law, "make", type(self.law)), 0.0)
+
+    @property
+    def torque_free(self) -> bool:
+        """It is a torque."""
+        return False
 
     def from_coefficients(self, coefficients: tuple[Scalar, ...]) -> "RollingResistance":
         """Make a law of the same make with these numbers."""

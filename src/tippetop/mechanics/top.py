@@ -1,6 +1,6 @@
 """The numbers of a top on its table, and the units in which they are few."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from tippetop.mechanics.friction import FrictionLaw
 from tippetop.mechanics.state import State
@@ -32,7 +32,8 @@ class Top(NamedTuple):
     def kind(self) -> "Kind":
         """What remains of it without its numbers."""
         coefficients = len(self.friction.coefficients(Units(1.0, 1.0, 1.0)))
-        return Kind(type(self.surface), type(self.friction), len(self.surface.proportions), coefficients)
+        make = getattr(self.friction, "make", type(self.friction))
+        return Kind(type(self.surface), make, len(self.surface.proportions), coefficients)
 
     @property
     def numbers(self) -> tuple[Scalar, ...]:
@@ -50,7 +51,7 @@ class Kind(NamedTuple):
     """What remains of a top when its numbers are taken away: how it is shaped and how it rubs."""
 
     surface: type[Surface]
-    friction: type[FrictionLaw]
+    friction: Any
     proportions: int
     coefficients: int
 
