@@ -209,7 +209,7 @@ class Tally:
         for group in block.groups:
             self._see(group, block.starts[group.which])
             if not group.mode.touching:
-                self._highest = max(self._highest, float(np.max(group.nodes[0].height)))
+                self._rise(group)
             elif not self._airborne:
                 self._press(group)
 
@@ -232,6 +232,11 @@ class Tally:
         self._up = max(self._up, float(-upper.refined_least()[1].min()))
         near = np.flatnonzero((least - tip.sag <= 0.0) & (most + tip.sag >= 0.0) & ~(starts > self._turned))
         self._turned = _first([self._turned, *(turning_time(tip.some(near)) + starts[near])])
+
+    def _rise(self, group: Group) -> None:
+        """Take in the height of the centre of mass in flights."""
+        depth = Polynomials(-group.terms[:, 9].T, group.spans)
+        self._highest = max(self._highest, float(-depth.refined_least()[1].min()))
 
     def _press(self, group: Group) -> None:
         """Take in the normal force."""

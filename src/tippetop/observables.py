@@ -78,16 +78,18 @@ class Recorder:
         Direction into which the axis leans at launch, rad: the marker lies in the plane of axis and vertical.
     times
         Increasing sample times, shape (k,).
+    lost
+        Energy that an impact took at launch.
     """
 
-    def __init__(self, top: Top, start: State, azimuth: float, times: Array) -> None:
+    def __init__(self, top: Top, start: State, azimuth: float, times: Array, lost: float = 0.0) -> None:
         self.top, self.times = top, times
         self._parts: list[Array] = []
         self.modes = [Sliding.name, Flight.name]
         self._taken = 0
         self._last: tuple[Block, tuple[Array, Array, Array]] | None = None
         self._pole = 1.0 if start.axis[2] >= 0.0 else -1.0
-        self._sums = np.array([0.0, 0.0, self._pole * azimuth, 0.0])
+        self._sums = np.array([0.0, 0.0, self._pole * azimuth, -lost])
         self._energy, self._jellett = float(energy(start, top)), float(jellett(start, top))
         self._moment = float(length(start.momentum) * top.surface.height(start.axis[2]))
         self._imbalance, self._least, self._most = 0.0, self._jellett, self._jellett
@@ -131,8 +133,9 @@ class Recorder:
     def _sample(self, block: Block, times: Array, rates: Array, values: Array, poles: Array) -> None:
         """Take the samples of a block at some times."""
         step = block.step_at(times)
-        part = (times - block.starts[step]) / block.spans[step]
-        integrals = _INTEGRALS @ powers(part, _INTEGRALS.shape[1]).T * block.spans[step]
+        spans = block.spans[step]
+        part = (times - block.starts[step]) / np.where(spans > 0.0, spans, 1.0)
+        integrals = _INTEGRALS @ powers(part, _INTEGRALS.shape[1]).T * spans
         x, y, turn, work = values[:, step] + np.einsum("ik,qik->qk", integrals, rates[:, :, step])
         rows = np.empty((23, len(times)))
         rows[0], rows[17:22] = times, (x, y, turn, work, poles[step])

@@ -10,6 +10,9 @@ from numpy.typing import NDArray
 
 Array: TypeAlias = NDArray[np.float64]
 
+LEAST = 1e-280
+"""Power of the length of a step that is as good as none: a very short step gets fewer terms, an empty one 1."""
+
 
 @dataclass(frozen=True)
 class DenseSolution:
@@ -65,9 +68,12 @@ class DenseSolution:
         spans = np.diff(knots)
         values = function((knots[:-1, None] + places * spans[:, None]).ravel())
         values = values.reshape(len(spans), degree + 1, values.shape[-1])
+        scales = powers(spans, degree + 1)
+        kept = scales > LEAST
         # Through Chebyshev's polynomials, whose coefficients fall off, so that no digits are lost.
-        unit = np.swapaxes(to_powers @ (transform @ values), 1, 2)
-        return cls(knots, unit / powers(spans, degree + 1)[:, None, :])
+        waves = np.where(kept[:, :, None], transform @ values, 0.0)
+        unit = np.swapaxes(to_powers @ waves, 1, 2)
+        return cls(knots, unit / np.where(kept, scales, 1.0)[:, None, :])
 
 
 def evaluated(terms: Array, times: Array) -> Array:

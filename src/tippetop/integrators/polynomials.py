@@ -45,10 +45,9 @@ class Polynomials:
     @cached_property
     def sag(self) -> Array:
         """How far a polynomial can go beyond its values at Gauss's six points, shape (n,)."""
-        k = np.arange(len(self.unit))
-        found: Array = (k * (k - 1)) @ np.abs(self.unit) * (0.25**2 / 8.0) + 0.034 * np.abs(
-            self.unit[1:]
-        ).sum(axis=0)
+        k, size = np.arange(len(self.unit)), np.abs(self.unit)
+        # Between two of them by interval^2 / 8 max |f''|, and beyond the outer ones by distance max |f'|.
+        found: Array = np.maximum((k * (k - 1)) @ size * (0.25**2 / 8.0), k @ size * 0.034)
         return found
 
     @cached_property
