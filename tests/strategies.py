@@ -11,7 +11,6 @@ from tippetop.mechanics.motion import contact
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.surface import SphereSurface, SpheroidSurface
 from tippetop.mechanics.top import Top
-from tippetop.mechanics.vectors import cross
 from tippetop.mechanics.view import Angles
 from tippetop.problem import Problem
 
@@ -60,18 +59,13 @@ def unit_vectors(draw, shortest_sine=0.0):
 @st.composite
 def sliding_states(draw, top):
     """Motions of this top on its table, brisk but consistent with a contact force."""
-    tilt, azimuth, turn = (draw(numbers(0.0, math.pi)) for _ in range(3))
-    third = (math.sin(tilt) * math.cos(azimuth), math.sin(tilt) * math.sin(azimuth), math.cos(tilt))
-    second = (-math.sin(azimuth), math.cos(azimuth), 0.0)
-    first = cross(second, third)
-    marker = tuple(math.cos(turn) * a + math.sin(turn) * b for a, b in zip(first, second, strict=True))
+    axis = draw(unit_vectors())
     speed = math.sqrt(top.gravity * top.surface.size)
     spin = 10.0 * top.axial_inertia * speed / top.surface.size
     momentum = tuple(spin * draw(numbers(-1.0, 1.0)) for _ in range(3))
     velocity = tuple(speed * draw(numbers(-1.0, 1.0)) for _ in range(2))
-    position = tuple(draw(numbers(-1.0, 1.0)) for _ in range(2))
-    assume(contact(third, momentum, velocity, top).resistance > 0.05)
-    return SlidingState(third, momentum, velocity, position, marker, draw(numbers(-0.1, 0.0)))
+    assume(top.mass * contact(axis, momentum, velocity, top).delassus > 0.05)
+    return SlidingState(axis, momentum, velocity)
 
 
 @st.composite

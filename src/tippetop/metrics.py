@@ -4,7 +4,7 @@ A number is an event or an extreme of the motion itself, never of its samples. `
 finds on its way, in natural units; `metrics` makes every number of `tippetop.catalogue.METRICS` of it.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
@@ -16,7 +16,7 @@ from tippetop.contact.block import Block, Group
 from tippetop.contact.mode import Event, EventKind, Outcome, Segment
 from tippetop.integrators.base import Array
 from tippetop.integrators.dense import at_fractions, chebyshev
-from tippetop.integrators.polynomials import Polynomials
+from tippetop.integrators.polynomials import Polynomials, least_of_all
 from tippetop.mechanics.invariants import energy, jellett
 from tippetop.mechanics.motion import axial_spin
 from tippetop.mechanics.state import State
@@ -27,6 +27,11 @@ from tippetop.mechanics.view import axis_sine, precession_rate
 
 OUTCOMES = tuple(Outcome)
 """How a launch can end, by number."""
+
+Flags = NDArray[np.bool_]
+
+AT_ONCE = 64
+"""Steps that are searched together for the first time at which something happens."""
 
 FORCE_DEGREE = 20
 """Degree of the polynomials in which the least normal force is looked for."""
@@ -209,7 +214,7 @@ class Tally:
         for group in block.groups:
             self._see(group, block.starts[group.which])
             if not group.mode.touching:
-                self._highest = max(self._highest, float(np.max(group.nodes[0].height)))
+                self._rise(group)
             elif not self._airborne:
                 self._press(group)
 
@@ -223,15 +228,20 @@ class Tally:
 
     def _see(self, group: Group, starts: Array) -> None:
         """Take in the motion of the tip of the axis."""
-        tip, seen = Polynomials(group.terms[:, 2].T, group.spans), group.nodes[0].axis[2]
+        tip, seen = Polynomials.of_unit(group.terms[:, 2].T, group.spans), group.nodes[0].axis[2]
         self._tips.append((tip, starts))
         least, most = seen.min(axis=0), seen.max(axis=0)
         lower = tip.some(np.flatnonzero(least - tip.sag <= least.min()))
         upper = tip.some(np.flatnonzero(most + tip.sag >= most.max()), sign=-1.0)
-        self._down = min(self._down, float(lower.refined_least()[1].min()))
-        self._up = max(self._up, float(-upper.refined_least()[1].min()))
-        near = np.flatnonzero((least - tip.sag <= 0.0) & (most + tip.sag >= 0.0) & ~(starts > self._turned))
-        self._turned = _first([self._turned, *(turning_time(tip.some(near)) + starts[near])])
+        self._down = min(self._down, least_of_all(lower))
+        self._up = max(self._up, -least_of_all(upper))
+        near = (least - tip.sag <= 0.0) & (most + tip.sag >= 0.0)
+        self._turned = _first(self._turned, tip, starts, near, turning_time)
+
+    def _rise(self, group: Group) -> None:
+        """Take in the height of the centre of mass in flights."""
+        depth = Polynomials.of_unit(-group.terms[:, 9].T, group.spans)
+        self._highest = max(self._highest, -least_of_all(depth))
 
     def _press(self, group: Group) -> None:
         """Take in the normal force."""
@@ -240,10 +250,9 @@ class Tally:
         # Between Gauss's points, and beyond them, it is lower by a small part of what it varies by there.
         near = np.flatnonzero(least - 0.2 * (force.max(axis=0) - least) <= least.min())
         places, transform, to_powers = chebyshev(FORCE_DEGREE)
-        y = at_fractions(group.terms[near], group.spans[near], places)
+        y = at_fractions(group.terms[near], places)
         unit = to_powers @ (transform @ group.mode.reaction(y).force[2])
-        lowest = Polynomials(unit, np.ones(len(near))).refined_least()[1]
-        self._least_force = min(self._least_force, float(lowest.min()))
+        self._least_force = min(self._least_force, least_of_all(Polynomials.of_unit(unit, group.spans[near])))
 
     def ends(self, state: State, time: float, outcome: Outcome, events: Sequence[Event]) -> Ends:
         """All that was found, as of one launch, given how and where it ended."""
@@ -278,11 +287,19 @@ class Tally:
         found = float(np.nan)
         for tip, starts in self._tips:
             least, most = tip.bounds
-            near = np.flatnonzero((least <= high) & (most >= low) & ~(starts > found))
-            found = _first([found, *(arrival_time(tip.some(near), low, high) + starts[near])])
+            near = (least <= high) & (most >= low)
+            found = _first(found, tip, starts, near, lambda some: arrival_time(some, low, high))
         return found
 
 
-def _first(times: Sequence[float]) -> float:
-    """The least of some times that are numbers, nan where none is."""
-    return float(np.fmin.reduce(times))
+def _first(
+    known: float, tip: Polynomials, starts: Array, near: Flags, find: Callable[[Polynomials], Array]
+) -> float:
+    """The first time that is found on steps where it may be, or the one that is known if that is earlier."""
+    which = np.flatnonzero(near & ~(starts > known))
+    for first in range(0, len(which), AT_ONCE):
+        some = which[first : first + AT_ONCE]
+        times = find(tip.some(some)) + starts[some]
+        if not np.all(np.isnan(times)):
+            return float(np.fmin(known, np.fmin.reduce(times)))
+    return known

@@ -11,6 +11,7 @@ from tippetop.contact.flight import Flight
 from tippetop.contact.rules import Bilateral
 from tippetop.contact.sliding import Sliding
 from tippetop.integrators.base import Array
+from tippetop.integrators.dense import parts_of
 from tippetop.mechanics.invariants import energy, jellett
 from tippetop.mechanics.motion import along_table, angular_velocity, axial_spin, point_velocity
 from tippetop.mechanics.quadratures import orientation, quadrature_rates
@@ -76,16 +77,18 @@ class Recorder:
         Direction into which the axis leans at launch, rad: the marker lies in the plane of axis and vertical.
     times
         Increasing sample times, shape (k,).
+    lost
+        Energy that an impact took at launch.
     """
 
-    def __init__(self, top: Top, start: State, azimuth: float, times: Array) -> None:
+    def __init__(self, top: Top, start: State, azimuth: float, times: Array, lost: float = 0.0) -> None:
         self.top, self.times = top, times
         self._parts: list[Array] = []
         self.modes = [Sliding.name, Flight.name]
         self._taken = 0
         self._last: tuple[Block, tuple[Array, Array, Array]] | None = None
         self._pole = 1.0 if start.axis[2] >= 0.0 else -1.0
-        self._sums = np.array([0.0, 0.0, self._pole * azimuth, 0.0])
+        self._sums = np.array([0.0, 0.0, self._pole * azimuth, -lost])
         self._energy, self._jellett = float(energy(start, top)), float(jellett(start, top))
         self._moment = float(length(start.momentum) * top.surface.height(start.axis[2]))
         self._imbalance, self._least, self._most = 0.0, self._jellett, self._jellett
@@ -129,7 +132,7 @@ class Recorder:
     def _sample(self, block: Block, times: Array, rates: Array, values: Array, poles: Array) -> None:
         """Take the samples of a block at some times."""
         step = block.step_at(times)
-        part = (times - block.starts[step]) / block.spans[step]
+        part = parts_of(times, block.starts[step], block.ends[step])
         basis = np.polynomial.legendre.legvander(2.0 * part - 1.0, len(NODES))
         integrals = _INTEGRALS @ basis.T * block.spans[step]
         x, y, turn, work = values[:, step] + np.einsum("ik,qik->qk", integrals, rates[:, :, step])

@@ -88,7 +88,8 @@ def simulate(
     state, contact = natural_state(problem.start(), units), problem.contact
     launch = rules_for(top, contact.liftoff, contact.restitution).launch(state)
     trajectory = Trajectory(launch, duration / units.time, method, phase_limit)
-    recorder, tally = Recorder(top, state, problem.launch.azimuth, grid / units.time), Tally()
+    lost = sum(event.energy_lost for event in launch.events)
+    recorder, tally = Recorder(top, state, problem.launch.azimuth, grid / units.time, lost), Tally()
     for block in in_blocks(trajectory.segments()):
         recorder.take(block)
         tally.take(block)

@@ -1,12 +1,13 @@
 """Motions whose solutions are known in closed form, and every integrator with the error it may make."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.optimize import brentq
 
-from tippetop.integrators import Integrator, Motion, has_taylor, make_integrator
+from tippetop.integrators import Arc, Integrator, Motion, has_taylor, make_integrator
+from tippetop.integrators.dense import DenseSolution
 from tippetop.mechanics.vectors import cross
 
 
@@ -45,6 +46,29 @@ DEFAULTS = [
     Method("rk4", make_integrator("rk4", step=STEP), step=STEP),
 ]
 LOOSE = [_adaptive(method.label.split("-")[0], 1e-6) for method in DEFAULTS if method.tolerance]
+
+
+def whole(arcs):
+    """Arcs that follow one another, put together."""
+    arcs = list(arcs)
+    for before, after in zip(arcs, arcs[1:], strict=False):
+        assert (before.guard, before.failure) == (None, None)
+        assert after.solution.knots[0] == before.solution.end
+    return Arc(
+        DenseSolution.joined([arc.solution for arc in arcs]),
+        arcs[-1].end_state,
+        arcs[-1].guard,
+        arcs[-1].failure,
+        sum(arc.steps for arc in arcs),
+        sum(arc.evaluations for arc in arcs),
+    )
+
+
+def follow(method, exact, guards=(), **changes):
+    """Follow an exact motion, or a variant of it, to its end or a guard; return the whole of it as one arc."""
+    exact = replace(exact, **changes)
+    motion = replace(exact.motion, guards=tuple(guards))
+    return whole(method.integrator.integrate(motion, exact.parameters, exact.start, exact.end))
 
 
 @dataclass(frozen=True)

@@ -5,11 +5,12 @@ import sqlite3
 import subprocess
 import sys
 import threading
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-from exact_motions import DEFAULTS, FREQUENCY, KEPLER, OSCILLATOR
+from exact_motions import DEFAULTS, FREQUENCY, KEPLER, OSCILLATOR, follow, whole
 
 from tippetop.integrators import Guard, Motion, has_taylor
 
@@ -22,7 +23,6 @@ from tippetop.integrators import taylor
 from tippetop.integrators.compile_cache import VARIABLE
 
 TAYLOR = DEFAULTS[0]
-NO_TIMES = np.array([])
 
 
 @pytest.fixture
@@ -42,7 +42,8 @@ def compilations(monkeypatch):
 def swing(motion, frequency, guards=(), tolerance=None):
     """Follow an oscillator of this frequency for a second; return the arc."""
     integrator = taylor.Taylor(tolerance) if tolerance else taylor.Taylor()
-    return integrator.integrate(motion, (frequency,), (0.0, np.array([1.0, 0.0])), 1.0, NO_TIMES, guards)
+    motion = replace(motion, guards=tuple(guards))
+    return whole(integrator.integrate(motion, (frequency,), (0.0, np.array([1.0, 0.0])), 1.0))
 
 
 def oscillator():
@@ -57,8 +58,8 @@ def test_one_compilation_serves_all_values_of_the_parameters(compilations):
         arc = swing(motion, frequency, guards)
         quarter = np.pi / 2 / frequency
         assert (arc.guard is not None) == (quarter < 1.0)
-        assert arc.end_time == pytest.approx(min(quarter, 1.0), rel=1e-14)
-        assert arc.end_state[0] == pytest.approx(np.cos(frequency * arc.end_time), abs=1e-14)
+        assert arc.solution.end == pytest.approx(min(quarter, 1.0), rel=1e-14)
+        assert arc.end_state[0] == pytest.approx(np.cos(frequency * arc.solution.end), abs=1e-14)
     assert len(compilations) == 1
 
 
@@ -78,35 +79,36 @@ def test_an_arc_that_hit_a_guard_leaves_nothing_behind_for_the_next():
     first = swing(motion, 2.0, guards)
     swing(motion, 2.5, guards)
     again = swing(motion, 2.0, guards)
-    assert first.guard == again.guard == 0
-    assert again.end_time == first.end_time
+    assert first.guard == again.guard == "position"
+    assert again.solution.end == first.solution.end
     np.testing.assert_array_equal(again.end_state, first.end_state)
 
 
-@pytest.mark.parametrize("chunk", [0.01, 0.5, 1.0, 6.999, 7.0])
-@pytest.mark.parametrize("count", [0, 1, 2, 8, 200])
-def test_long_motions_are_followed_in_chunks_that_do_not_show(monkeypatch, chunk, count):
-    times = np.linspace(0.0, KEPLER.end, count)
-    whole = TAYLOR.integrator.integrate(KEPLER.motion, KEPLER.parameters, KEPLER.start, KEPLER.end, times)
-    monkeypatch.setattr(taylor, "CHUNK", chunk)
-    arc = TAYLOR.integrator.integrate(KEPLER.motion, KEPLER.parameters, KEPLER.start, KEPLER.end, times)
-    np.testing.assert_array_equal(arc.times, times)
-    np.testing.assert_allclose(arc.states, KEPLER.states(times), rtol=0, atol=1e-12)
-    np.testing.assert_allclose(arc.end_state, whole.end_state, rtol=0, atol=1e-13)
+@pytest.mark.parametrize("short", [1, 3, 24])
+@pytest.mark.parametrize("long", [1, 2, 5, 4096])
+def test_long_motions_are_followed_in_arcs_that_do_not_show(monkeypatch, short, long):
+    times = np.linspace(0.0, KEPLER.end, 200)
+    uncut = follow(TAYLOR, KEPLER)
+    monkeypatch.setattr(taylor, "SHORT", short)
+    monkeypatch.setattr(taylor, "LONG", long)
+    arc = follow(TAYLOR, KEPLER)
+    assert arc.solution.end == KEPLER.end
+    assert arc.steps == uncut.steps > 10
+    np.testing.assert_allclose(arc.solution.knots, uncut.solution.knots, rtol=1e-9)
+    np.testing.assert_allclose(arc.solution(times), KEPLER.states(times), rtol=0, atol=1e-12)
+    np.testing.assert_allclose(arc.end_state, uncut.end_state, rtol=0, atol=1e-13)
 
 
-@pytest.mark.parametrize("chunk", [0.1, 0.9239, 100.0])
-def test_guard_is_found_in_whichever_chunk_it_falls(monkeypatch, chunk):
-    monkeypatch.setattr(taylor, "CHUNK", chunk)
-    times = np.linspace(0.0, OSCILLATOR.end, 501)
-    guards = [Guard("position", lambda y, _: y[0])]
-    arc = TAYLOR.integrator.integrate(
-        OSCILLATOR.motion, OSCILLATOR.parameters, OSCILLATOR.start, OSCILLATOR.end, times, guards
-    )
+@pytest.mark.parametrize(("short", "long"), [(1, 1), (1, 4096), (2, 1), (24, 4096)])
+def test_guard_is_found_in_whichever_arc_it_falls(monkeypatch, short, long):
+    monkeypatch.setattr(taylor, "SHORT", short)
+    monkeypatch.setattr(taylor, "LONG", long)
+    arc = follow(TAYLOR, OSCILLATOR, [Guard("position", lambda y, _: y[0])])
     when = np.pi / 2 / FREQUENCY
-    assert arc.guard == 0
-    assert arc.end_time == pytest.approx(when, rel=1e-14)
-    np.testing.assert_array_equal(arc.times, times[times <= when])
+    assert arc.guard == "position"
+    assert arc.solution.end == pytest.approx(when, rel=1e-14)
+    times = np.linspace(0.0, arc.solution.end, 50)
+    np.testing.assert_allclose(arc.solution(times), OSCILLATOR.states(times), rtol=0, atol=1e-14)
 
 
 def test_threads_that_share_a_compilation_do_not_mix_their_motions():
@@ -117,7 +119,7 @@ def test_threads_that_share_a_compilation_do_not_mix_their_motions():
     def run(frequency):
         start = 0.0, np.array([1.0, 0.0])
         for _ in range(5):
-            results[frequency] = taylor.Taylor().integrate(motion, (frequency,), start, 50.0, times)
+            results[frequency] = whole(taylor.Taylor().integrate(motion, (frequency,), start, 50.0))
 
     threads = [threading.Thread(target=run, args=(frequency,)) for frequency in frequencies]
     for thread in threads:
@@ -125,7 +127,7 @@ def test_threads_that_share_a_compilation_do_not_mix_their_motions():
     for thread in threads:
         thread.join()
     for frequency in frequencies:
-        np.testing.assert_allclose(results[frequency].states[:, 0], np.cos(frequency * times), atol=1e-11)
+        np.testing.assert_allclose(results[frequency].solution(times)[:, 0], np.cos(frequency * times), atol=1e-11)
 
 
 # --- between processes --------------------------------------------------------------------------------------
@@ -135,7 +137,7 @@ import numpy as np
 from tippetop.integrators import Motion, make_integrator
 motion = Motion(lambda y, p: (y[1], -p[0] ** 2 * y[0]), size=2, parameters=1)
 start = 0.0, np.array([1.0, 0.0])
-arc = make_integrator("taylor").integrate(motion, (np.pi,), start, 1.0, np.array([]))
+[arc] = make_integrator("taylor").integrate(motion, (np.pi,), start, 1.0)
 assert abs(arc.end_state[0] + 1.0) < 1e-14, arc
 assert abs(arc.end_state[1]) < 1e-14, arc
 """

@@ -17,28 +17,20 @@ from exact_motions import (
     LOOSE,
     MOMENTUM,
     OSCILLATOR,
+    follow,
+    whole,
 )
 
 from tippetop.errors import InvalidInput
-from tippetop.integrators import NAMES, Guard, Motion, has_taylor, make_integrator
+from tippetop.integrators import NAMES, Guard, Motion, classical, has_taylor, make_integrator, scipy_methods
+
+if has_taylor():
+    from tippetop.integrators import taylor
 
 every_method = pytest.mark.parametrize("method", DEFAULTS, ids=lambda method: method.label)
 every_method_also_loose = pytest.mark.parametrize(
     "method", [*DEFAULTS, *LOOSE], ids=lambda method: method.label
 )
-NO_TIMES = np.array([])
-
-
-def follow(method, exact, times=NO_TIMES, guards=(), parameters=None, end=None):
-    return method.integrator.integrate(
-        exact.motion,
-        exact.parameters if parameters is None else parameters,
-        exact.start,
-        exact.end if end is None else end,
-        np.asarray(times, dtype=float),
-        guards,
-    )
-
 
 def test_every_integrator_is_tested():
     assert [method.integrator.name for method in DEFAULTS] == NAMES if has_taylor() else NAMES[1:]
@@ -53,25 +45,25 @@ def test_motion_ends_where_the_exact_solution_does(method, exact):
     arc = follow(method, exact)
     assert arc.failure is None
     assert arc.guard is None
-    assert arc.end_time == exact.end
+    assert arc.solution.end == exact.end
     np.testing.assert_allclose(arc.end_state, exact.state(exact.end), rtol=0, atol=method.allowed(arc, exact))
 
 
 @every_method
 @pytest.mark.parametrize("exact", EXACT, ids=lambda exact: exact.label)
-def test_samples_lie_on_the_exact_solution(method, exact):
-    times = np.linspace(0.0, exact.end, 57)
-    arc = follow(method, exact, times)
-    np.testing.assert_array_equal(arc.times, times)
-    error = np.abs(arc.states - exact.states(times)).max()
+def test_solution_is_the_exact_one_at_any_time(method, exact):
+    """At times within the steps, whatever these are, and at their ends."""
+    arc = follow(method, exact)
+    times = np.union1d(np.linspace(0.0, exact.end, 997), arc.solution.knots)
     # Within a step the solution is interpolated, for which an order of accuracy may be lost.
-    assert error <= 10 * method.allowed(arc, exact)
+    allowed = 10 * method.allowed(arc, exact)
+    np.testing.assert_allclose(arc.solution(times), exact.states(times), rtol=0, atol=allowed)
 
 
 @every_method
 def test_energy_angular_momentum_and_perihelion_are_conserved(method):
-    arc = follow(method, KEPLER, np.linspace(0.0, KEPLER.end, 57))
-    x, y, u, v = arc.states.T
+    arc = follow(method, KEPLER)
+    x, y, u, v = arc.solution(np.linspace(0.0, KEPLER.end, 57)).T
     allowed = 10 * method.allowed(arc, KEPLER)
     e = ECCENTRICITY
     np.testing.assert_allclose((u**2 + v**2) / 2 - 1 / np.hypot(x, y), -0.5, rtol=0, atol=allowed)
@@ -81,22 +73,21 @@ def test_energy_angular_momentum_and_perihelion_are_conserved(method):
 
 @every_method
 def test_free_top_keeps_its_length_and_its_angle_to_the_momentum(method):
-    arc = follow(method, FREE_TOP, np.linspace(0.0, FREE_TOP.end, 57))
+    arc = follow(method, FREE_TOP)
+    axes = arc.solution(np.linspace(0.0, FREE_TOP.end, 57))
     allowed = 10 * method.allowed(arc, FREE_TOP)
-    np.testing.assert_allclose(np.linalg.norm(arc.states, axis=1), 1.0, rtol=0, atol=allowed)
-    np.testing.assert_allclose(arc.states @ MOMENTUM, AXIS @ MOMENTUM, rtol=0, atol=allowed)
+    np.testing.assert_allclose(np.linalg.norm(axes, axis=1), 1.0, rtol=0, atol=allowed)
+    np.testing.assert_allclose(axes @ MOMENTUM, AXIS @ MOMENTUM, rtol=0, atol=allowed)
 
 
 @every_method
 def test_clock_may_start_anywhere(method):
-    times = np.array([3.0, 3.5, 4.0])
-    arc = method.integrator.integrate(
-        OSCILLATOR.motion, OSCILLATOR.parameters, (3.0, OSCILLATOR.state(0.0)), 4.0, times, ()
-    )
-    np.testing.assert_array_equal(arc.times, times)
+    times = np.linspace(3.0, 4.0, 11)
+    start = (3.0, OSCILLATOR.state(0.0))
+    arc = whole(method.integrator.integrate(OSCILLATOR.motion, OSCILLATOR.parameters, start, 4.0))
     allowed = 10 * method.allowed(arc, OSCILLATOR)
-    np.testing.assert_allclose(arc.states, OSCILLATOR.states(times - 3.0), rtol=0, atol=allowed)
-    assert arc.end_time == 4.0
+    np.testing.assert_allclose(arc.solution(times), OSCILLATOR.states(times - 3.0), rtol=0, atol=allowed)
+    assert (arc.solution.knots[0], arc.solution.end) == (3.0, 4.0)
 
 
 @every_method
@@ -107,43 +98,61 @@ def test_classical_or_adaptive_work_is_counted(method):
     assert long.evaluations >= long.steps
 
 
-# --- sample times -------------------------------------------------------------------------------------------
+# --- steps and arcs -----------------------------------------------------------------------------------------
 
 
 @every_method
-@pytest.mark.parametrize(
-    "times",
-    [
-        [],
-        [0.0],
-        [5.0],
-        [2.0],
-        [0.0, 5.0],
-        [1e-12, 1e-6, 0.1, 0.1 + 1e-12, 4.999999999999],
-        [4.9, 5.0],
-    ],
-    ids=str,
-)
-def test_samples_are_taken_at_exactly_the_times_asked_for(method, times):
-    arc = follow(method, OSCILLATOR, times)
-    assert arc.times.tolist() == times
-    assert arc.states.shape == (len(times), 2)
-    allowed = 10 * method.allowed(arc, OSCILLATOR)
-    np.testing.assert_allclose(arc.states, OSCILLATOR.states(times), rtol=0, atol=allowed)
+@pytest.mark.parametrize("exact", [OSCILLATOR, KEPLER], ids=lambda exact: exact.label)
+def test_solution_goes_from_start_to_end_step_by_step(method, exact):
+    arc = follow(method, exact)
+    knots, terms = arc.solution.knots, arc.solution.terms
+    assert (knots[0], knots[-1]) == (0.0, exact.end)
+    assert np.all(np.diff(knots) > 0)
+    assert terms.shape[:2] == (len(knots) - 1, exact.motion.size)
+    assert arc.steps == len(terms)
+    np.testing.assert_allclose(terms[0, :, 0], exact.start[1], rtol=0, atol=joint(method, exact))
+    np.testing.assert_allclose(arc.solution(knots[-1:])[0], arc.end_state, rtol=0, atol=joint(method, exact))
+
+
+def joint(method, exact):
+    """How far apart a step may begin from where the one before it ended, numbers of the size 1.
+
+    Methods that use several steps put their polynomial through all of them, and none of them exactly; steps
+    of the classical method are polynomials but for the terms of the series from (rate h)^6 / 6! on.
+    """
+    if method.step:
+        return (exact.rate * method.step) ** 6 / 720
+    return method.tolerance if method.integrator.name in ("bdf", "lsoda") else 1e-14
 
 
 @every_method
-def test_first_sample_is_the_start_and_the_last_is_the_end(method):
-    arc = follow(method, KEPLER, [0.0, KEPLER.end])
-    np.testing.assert_array_equal(arc.states[0], KEPLER.start[1])
-    np.testing.assert_allclose(arc.states[1], arc.end_state, rtol=1e-13)
+def test_steps_join(method):
+    """Each begins where the one before it ended, however inexact both are."""
+    solution = follow(method, OSCILLATOR).solution
+    ends, starts = solution(solution.knots[1:-1]), solution.terms[1:, :, 0]
+    np.testing.assert_allclose(ends, starts, rtol=0, atol=joint(method, OSCILLATOR))
+
+
+CUTS = {"taylor": (taylor, {"SHORT": 3, "LONG": 4}) if has_taylor() else None}
+"""What decides into how many arcs a solution is cut, and smaller numbers of it."""
 
 
 @every_method
-def test_samples_do_not_change_the_motion(method):
-    sparse, dense = follow(method, KEPLER), follow(method, KEPLER, np.linspace(0.0, KEPLER.end, 1001))
-    allowed = method.allowed(sparse, KEPLER)
-    np.testing.assert_allclose(sparse.end_state, dense.end_state, rtol=0, atol=allowed)
+def test_how_a_solution_is_cut_into_arcs_does_not_show(method, monkeypatch):
+    uncut = follow(method, KEPLER)
+    module, smaller = CUTS.get(method.integrator.name) or (
+        (classical if method.step else scipy_methods), {"MANY": 7}
+    )
+    for name, number in smaller.items():
+        monkeypatch.setattr(module, name, number)
+    arcs = list(method.integrator.integrate(KEPLER.motion, KEPLER.parameters, KEPLER.start, KEPLER.end))
+    assert len(arcs) > 3
+    assert max(arc.steps for arc in arcs) == max(smaller.values())
+    cut, allowed = whole(arcs), method.allowed(uncut, KEPLER)
+    assert cut.steps == uncut.steps
+    assert cut.evaluations == uncut.evaluations
+    times = np.linspace(0.0, KEPLER.end, 57)
+    np.testing.assert_allclose(cut.solution(times), uncut.solution(times), rtol=0, atol=min(allowed, 1e-12))
 
 
 # --- guards -------------------------------------------------------------------------------------------------
@@ -166,35 +175,33 @@ CROSSINGS = [
 @every_method_also_loose
 @pytest.mark.parametrize(("exact", "guard", "when", "slope"), CROSSINGS)
 def test_guard_is_located_to_the_accuracy_of_the_motion(method, exact, guard, when, slope):
-    arc = follow(method, exact, guards=[guard])
+    arc = follow(method, exact, [guard])
     allowed = method.allowed(arc, exact)
-    assert arc.guard == 0
+    assert arc.guard == guard.name
     assert arc.failure is None
-    assert abs(arc.end_time - when) <= allowed / slope + 4e-16 * when
+    assert abs(arc.solution.end - when) <= allowed / slope + 4e-16 * when
     np.testing.assert_allclose(arc.end_state, exact.state(when), rtol=0, atol=2 * allowed)
     # Where the arc ends, the guard is zero, however good the motion up to there is.
     assert abs(guard.value(arc.end_state, exact.parameters)) <= 1e-13
 
 
 @every_method
-def test_samples_stop_at_the_guard(method):
-    times = np.arange(0.0, OSCILLATOR.end, QUARTER_TURN / 7.5)
-    arc = follow(method, OSCILLATOR, times, [POSITION])
-    np.testing.assert_array_equal(arc.times, times[times <= QUARTER_TURN])
+def test_solution_stops_at_the_guard(method):
+    arc = follow(method, OSCILLATOR, [POSITION])
+    times = np.union1d(np.linspace(0.0, arc.solution.end, 201), arc.solution.knots)
     allowed = 10 * method.allowed(arc, OSCILLATOR)
-    np.testing.assert_allclose(arc.states, OSCILLATOR.states(arc.times), rtol=0, atol=allowed)
+    np.testing.assert_allclose(arc.solution(times), OSCILLATOR.states(times), rtol=0, atol=allowed)
+    np.testing.assert_allclose(arc.solution(times[-1:])[0], arc.end_state, rtol=0, atol=allowed)
 
 
 @every_method
 def test_rising_through_zero_is_no_end(method):
     """The speed of the oscillator starts by falling, so that it rises through zero half a turn later."""
     speed = Guard("speed", lambda y, _: y[1])
-    begin = OSCILLATOR.state(QUARTER_TURN)
-    arc = method.integrator.integrate(
-        OSCILLATOR.motion, OSCILLATOR.parameters, (0.0, begin), 2 * QUARTER_TURN, NO_TIMES, [speed]
-    )
+    later = OSCILLATOR.state(QUARTER_TURN)
+    arc = follow(method, OSCILLATOR, [speed], state=lambda _: later, end=2 * QUARTER_TURN)
     assert arc.guard is None
-    assert arc.end_time == 2 * QUARTER_TURN
+    assert arc.solution.end == 2 * QUARTER_TURN
 
 
 @every_method
@@ -204,21 +211,21 @@ def test_earliest_of_several_guards_ends_the_motion(method, first):
     levels = [0.30, 0.25, 0.20]
     levels.insert(first, levels.pop(0))
     guards = [Guard(f"below {level}", lambda y, _, level=level: y[0] - level) for level in levels]
-    arc = follow(method, OSCILLATOR, guards=guards)
-    assert arc.guard == first
+    arc = follow(method, OSCILLATOR, guards)
+    assert arc.guard == "below 0.3"
     allowed = method.allowed(arc, OSCILLATOR)
-    assert abs(arc.end_time - math.acos(0.30) / FREQUENCY) <= allowed
+    assert abs(arc.solution.end - math.acos(0.30) / FREQUENCY) <= allowed
 
 
-CLEARANCE = Motion(OSCILLATOR.motion.rates, size=2, parameters=2)
 DIP = Guard("dip", lambda y, p: y[0] + p[1])
+CLEARANCE = Motion(OSCILLATOR.motion.rates, size=2, parameters=2, guards=(DIP,))
 """Falls through zero where the oscillator is lower than minus the second parameter."""
 
 
 def dive(method, depth, phase):
     """Follow a swing through a dip of this depth, begun at this phase; return the arc and the true time."""
     begin = np.array([math.cos(phase), -math.sin(phase)])
-    arc = method.integrator.integrate(CLEARANCE, (1.0, 1.0 - depth), (0.0, begin), 5.0, NO_TIMES, [DIP])
+    arc = whole(method.integrator.integrate(CLEARANCE, (1.0, 1.0 - depth), (0.0, begin), 5.0))
     return arc, math.acos(depth - 1.0) - phase
 
 
@@ -227,10 +234,10 @@ def test_shallow_dip_below_zero_is_found_wherever_in_a_step_it_is(method):
     depth = 1e-3
     for phase in np.linspace(0.0, 2.9, 30):
         arc, when = dive(method, depth, phase)
-        assert arc.guard == 0, f"missed the dip begun at phase {phase}"
+        assert arc.guard == "dip", f"missed the dip begun at phase {phase}"
         # At the edge of the dip the guard falls at the rate sqrt(2 depth).
         allowed = method.allowed(arc, OSCILLATOR) / math.sqrt(2 * depth)
-        assert abs(arc.end_time - when) <= allowed
+        assert abs(arc.solution.end - when) <= allowed
 
 
 @pytest.mark.parametrize("method", LOOSE, ids=lambda method: method.label)
@@ -243,9 +250,9 @@ def test_shallow_dip_is_found_in_the_long_steps_of_a_loose_tolerance(method):
 @pytest.mark.parametrize("phase", np.linspace(0.0, 2.9, 10).round(2))
 def test_guard_that_comes_close_to_zero_and_turns_back_ends_nothing(method, phase):
     begin = np.array([math.cos(phase), -math.sin(phase)])
-    arc = method.integrator.integrate(CLEARANCE, (1.0, 1.0 + 1e-3), (0.0, begin), 5.0, NO_TIMES, [DIP])
+    arc = whole(method.integrator.integrate(CLEARANCE, (1.0, 1.0 + 1e-3), (0.0, begin), 5.0))
     assert arc.guard is None
-    assert arc.end_time == 5.0
+    assert arc.solution.end == 5.0
 
 
 # --- motions that cannot go on ------------------------------------------------------------------------------
@@ -283,47 +290,53 @@ SINGULAR = [
 def test_motion_that_ceases_to_exist_is_a_failure_and_no_exception(method, rates, begin, last):
     if method.step and rates((1.0, 0.0), ())[0] < 0:
         pytest.skip("fixed steps leap over the singularity")
-    times = np.linspace(0.0, 2.0, 41)
-    arc = method.integrator.integrate(
-        Motion(limited(rates), 2, 0), (), (0.0, np.array(begin)), 2.0, times, ()
-    )
+    arc = whole(method.integrator.integrate(Motion(limited(rates), 2, 0), (), (0.0, np.array(begin)), 2.0))
     assert arc.failure
     assert "\n" not in arc.failure
     assert arc.guard is None
     # What was computed before stays, and ends with something finite.
-    assert np.all(np.isfinite(arc.states))
+    times = np.union1d(np.linspace(0.0, arc.solution.end, 41), arc.solution.knots)
+    assert np.all(np.isfinite(arc.solution(times)))
     assert np.all(np.isfinite(arc.end_state))
-    assert abs(arc.end_time - last) <= 0.1
-    before = times < last - 0.05
-    np.testing.assert_array_equal(arc.times[: before.sum()], times[before])
-    assert len(arc.states) == len(arc.times)
+    assert abs(arc.solution.end - last) <= 0.1
 
 
 @every_method
 def test_motion_that_is_singular_from_the_start_is_a_failure_and_no_exception(method):
     motion = Motion(limited(lambda y, _: (1.0 / y[0], y[0])), 2, 0)
     begin = np.array([0.0, 1.0])
-    arc = method.integrator.integrate(motion, (), (0.0, begin), 1.0, np.array([0.0, 0.5]), ())
+    arc = whole(method.integrator.integrate(motion, (), (0.0, begin), 1.0))
     assert arc.failure
     assert arc.guard is None
-    assert arc.end_time == 0.0
+    assert arc.solution.end == 0.0
     np.testing.assert_array_equal(arc.end_state, begin)
-    np.testing.assert_array_equal(arc.times, [0.0])
-    np.testing.assert_array_equal(arc.states, [begin])
+    np.testing.assert_array_equal(arc.solution.knots, [0.0])
+    assert arc.solution.terms.shape[:2] == (0, 2)
+    assert arc.steps == 0
 
 
 # --- the order of the classical method ----------------------------------------------------------------------
 
 
+def classical_run(exact, step, end):
+    method = make_integrator("rk4", step=step)
+    return whole(method.integrate(exact.motion, exact.parameters, exact.start, end))
+
+
 def errors_of_classical_method(end, steps):
     errors = []
     for count in steps:
-        arc = make_integrator("rk4", step=end / count).integrate(
-            KEPLER.motion, KEPLER.parameters, KEPLER.start, end, NO_TIMES
-        )
+        arc = classical_run(KEPLER, end / count, end)
         assert arc.steps == count
         errors.append(np.linalg.norm(arc.end_state - KEPLER.state(end)))
     return np.array(errors)
+
+
+def test_classical_method_converges_as_fast_between_its_steps():
+    times = np.linspace(0.0, 3.0, 333)
+    arcs = [classical_run(KEPLER, 3.0 / count, 3.0) for count in (400, 800, 1600)]
+    errors = np.array([np.linalg.norm(arc.solution(times) - KEPLER.states(times)) for arc in arcs])
+    assert np.log2(errors[:-1] / errors[1:]) == pytest.approx(4.0, abs=0.1)
 
 
 def test_classical_method_converges_with_the_fourth_power_of_its_step():
@@ -339,11 +352,9 @@ def test_one_step_of_the_classical_method_errs_by_the_fifth_power_of_its_length(
 
 
 def test_step_that_does_not_divide_the_time_is_shortened_at_the_end():
-    arc = make_integrator("rk4", step=0.3).integrate(
-        OSCILLATOR.motion, OSCILLATOR.parameters, OSCILLATOR.start, 1.0, NO_TIMES
-    )
+    arc = classical_run(OSCILLATOR, 0.3, 1.0)
     assert arc.steps == 4
-    assert arc.end_time == 1.0
+    assert arc.solution.end == 1.0
     np.testing.assert_allclose(arc.end_state, OSCILLATOR.state(1.0), atol=1e-2)
 
 

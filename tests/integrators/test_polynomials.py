@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tippetop.contact.block import NODES
 from tippetop.integrators.polynomials import LOOKS, Polynomials
 
 
@@ -94,3 +95,74 @@ def test_an_extreme_at_an_end_is_the_end():
     rising = Polynomials(np.array([[1.0], [2.0]]), ones(3.0))
     assert rising.least()[0] == 1.0
     assert rising.greatest()[0] == 7.0
+
+
+# --- bounds -------------------------------------------------------------------------------------------------
+
+ANY_TERMS = st.lists(st.floats(-1.0, 1.0, allow_subnormal=False), min_size=1, max_size=22)
+PLACES = np.linspace(0.0, 1.0, 1001)
+
+
+def values_of(terms, span):
+    """Values all over the interval, and rounding in them."""
+    values = np.polynomial.polynomial.polyval(PLACES * span, terms)
+    return values, 1e-14 * np.abs(np.array(terms) * span ** np.arange(len(terms))).sum()
+
+
+@given(ANY_TERMS, st.floats(0.1, 1.5))
+def test_no_polynomial_crosses_its_bounds(terms, span):
+    low, high = Polynomials(np.array(terms)[:, None], ones(span)).bounds
+    values, fuzz = values_of(terms, span)
+    assert low[0] - fuzz <= values.min() <= values.max() <= high[0] + fuzz
+
+
+@pytest.mark.parametrize("signs", [(1, 1, 1), (1, -1, -1)])
+def test_bounds_are_reached_where_all_terms_pull_the_same_way(signs):
+    low, high = Polynomials(np.array(signs, dtype=float)[:, None], ones()).bounds
+    assert (low[0], high[0]) == (-1.0, 3.0)
+
+
+def assert_within_sag(terms, span=1.0):
+    one = Polynomials(np.array(terms, dtype=float)[:, None], ones(span))
+    seen = np.polynomial.polynomial.polyval(NODES * span, terms)
+    values, fuzz = values_of(terms, span)
+    assert values.min() >= seen.min() - one.sag[0] - fuzz
+    assert values.max() <= seen.max() + one.sag[0] + fuzz
+
+
+@given(ANY_TERMS, st.floats(0.1, 1.5))
+def test_no_polynomial_goes_further_beyond_gausss_points_than_its_sag(terms, span):
+    assert_within_sag(terms, span)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize("degree", range(22))
+def test_powers_stay_within_their_sag(degree, sign):
+    """They rise most beyond the last of the points."""
+    assert_within_sag([0.0] * degree + [sign])
+
+
+@pytest.mark.parametrize("degree", range(2, 12))
+@pytest.mark.parametrize("side", [0.0, 0.5])
+def test_waves_between_gausss_points_stay_within_their_sag(degree, side):
+    """Chebyshev's polynomials on the interval, and their squares, turn near its ends and all over it."""
+    wave = np.polynomial.Chebyshev.basis(degree, domain=[0.0, 1.0]).convert(kind=np.polynomial.Polynomial)
+    terms = wave.convert(domain=[-1.0, 1.0], window=[-1.0, 1.0]).coef
+    assert_within_sag(terms)
+    assert_within_sag(-terms)
+    assert_within_sag(np.polynomial.polynomial.polymul(terms, terms) - side * 1.0)
+
+
+def test_sag_of_a_line_is_what_lies_beyond_the_points():
+    sag = Polynomials(np.array([[0.0], [1.0]]), ones()).sag[0]
+    assert NODES[0] <= sag <= 1.02 * NODES[0]
+
+
+def test_some_polynomials_have_bounds_of_their_own():
+    terms = np.array([[1.0, 2.0, 3.0], [0.5, -0.5, 0.25]])
+    every = Polynomials(terms, np.array([1.0, 2.0, 4.0]))
+    assert every.bounds[0].tolist() == [0.5, 1.0, 2.0]
+    assert every.sag.shape == (3,)
+    some = every.some(np.array([2, 0]), sign=-1.0, shift=5.0)
+    assert [bound.tolist() for bound in some.bounds] == [[1.0, 3.5], [3.0, 4.5]]
+    assert some.sag.tolist() == every.sag[[2, 0]].tolist()

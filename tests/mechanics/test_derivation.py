@@ -155,7 +155,7 @@ def random_motions(count: int):
             )
         )
         state = state_from_angles(as_angles(motion), top, math)
-        if contact(state.axis, state.momentum, state.velocity, top).resistance > 0.1:
+        if top.mass * contact(state.axis, state.momentum, state.velocity, top).delassus > 0.1:
             count -= 1
             yield top, motion
 

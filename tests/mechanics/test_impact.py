@@ -98,8 +98,7 @@ def check_laws_of_impact(state, restitution, top):
 
     assert result.energy_lost >= 0.0
     assert result.energy_lost == pytest.approx(lose(state, after, top), rel=1e-11, abs=1e-13 * scale)
-    assert after.work == pytest.approx(state.work - result.energy_lost, rel=1e-14)
-    assert (after.axis, after.position, after.marker) == (state.axis, state.position, state.marker)
+    assert (after.axis, after.height) == (state.axis, state.height)
     assert gap(after, top) == gap(state, top)
 
     impulse = top.mass * (np.array(after.velocity) - np.array(state.velocity))
@@ -141,7 +140,7 @@ def test_impacts_conserve_jelletts_integral(collision):
 @pytest.mark.parametrize("restitution", [-0.1, 1.1, math.nan])
 def test_restitution_outside_of_zero_and_one_is_refused(restitution):
     top = Top(0.02, 3e-6, 3.2e-6, SphereSurface(0.02, 0.006), ViscousLaw(0.3), 9.8)
-    state = State((0.0, 0.0, 1.0), (0.0,) * 3, (0.0, 0.0, -1.0), (0.0, 0.0, 0.014), (1.0, 0.0, 0.0), 0.0)
+    state = State((0.0, 0.0, 1.0), (0.0,) * 3, (0.0, 0.0, -1.0), 0.014)
     with pytest.raises(ValueError, match="restitution must lie between 0 and 1"):
         impact(state, restitution, top)
 
@@ -202,7 +201,7 @@ def planar(slip, falling, law, tilt=0.9):
     momentum = (0.0, 2e-4, 0.0)
     arm = np.array(contact_vector(axis, shape))
     velocity = np.array([slip, 0.0, falling]) - np.cross(np.array(momentum) / top.transverse_inertia, arm)
-    return State(axis, momentum, tuple(velocity.tolist()), (0.0, 0.0, 0.02), (0.0, 1.0, 0.0), 0.0), top
+    return State(axis, momentum, tuple(velocity.tolist()), 0.02), top
 
 
 @pytest.mark.parametrize("restitution", [0.0, 0.4])
@@ -280,7 +279,7 @@ def test_steep_coulomb_friction_against_integration(shape, mu, restitution, eps)
     top = Top(0.02, 3.0e-6, 3.3e-6, shape, RegularizedCoulombLaw(mu, eps), 9.8)
     axis = (0.6, 0.48, 0.64)
     for velocity in ((0.3, -0.2, -0.7), (0.0, 0.5, -0.3), (-0.4, 0.1, -1.5)):
-        state = State(axis, (2e-4, -1e-4, 3e-4), velocity, (0.0, 0.0, 0.02), (0.8, -0.36, -0.48), 0.0)
+        state = State(axis, (2e-4, -1e-4, 3e-4), velocity, 0.02)
         if gap_rate(state, top) < 0.0:
             check_against_integration(state, restitution, top, "Radau", 1e-9, 1e-6)
 
@@ -322,9 +321,7 @@ class Drilling(NamedTuple):
 @pytest.mark.parametrize("spin", [1e-4, 5e-4])
 def test_a_law_with_torque_against_integration(spin, restitution):
     top = Top(0.02, 3.0e-6, 3.3e-6, SphereSurface(0.02, 0.006), Drilling(0.3, 0.002, 0.02), 9.8)
-    state = State(
-        (0.6, 0.0, 0.8), (0.0, 1e-5, spin), (0.3, 0.1, -0.5), (0.0, 0.0, 0.02), (0.0, 1.0, 0.0), 0.0
-    )
+    state = State((0.6, 0.0, 0.8), (0.0, 1e-5, spin), (0.3, 0.1, -0.5), 0.02)
     result, end = check_against_integration(state, restitution, top, "DOP853", 1e-12, 1e-7)
     rigid = Rigid(state, top)
     turned = np.array(result.state.momentum) - rigid.momentum
@@ -355,9 +352,7 @@ def test_slip_that_is_held_against_a_torque_stays_held(restitution):
     """
     law = SteadyDrilling(0.9, 1e-4, 1e-4, [])
     top = Top(0.02, 3.0e-6, 3.3e-6, SphereSurface(0.02, 0.006), law, 9.8)
-    state = State(
-        (0.6, 0.0, 0.8), (0.0, 1e-5, 2e-4), (0.1, 0.1, -0.5), (0.0, 0.0, 0.02), (0.0, 1.0, 0.0), 0.0
-    )
+    state = State((0.6, 0.0, 0.8), (0.0, 1e-5, 2e-4), (0.1, 0.1, -0.5), 0.02)
     impact(state, restitution, top)
     assert len(law.evaluations) < 5000
     result, end = check_against_integration(state, restitution, top, "Radau", 1e-9, 1e-6)
@@ -383,7 +378,7 @@ def jammed(law):
     axis = (math.sin(0.5), 0.0, math.cos(0.5))
     arm = np.array(contact_vector(axis, shape))
     slip = math.copysign(1.0, arm[0] * arm[2])
-    return State(axis, (0.0,) * 3, (-slip, 0.0, 0.0), (0.0, 0.0, 0.02), (0.0, 1.0, 0.0), 0.0), top
+    return State(axis, (0.0,) * 3, (-slip, 0.0, 0.0), 0.02), top
 
 
 @pytest.mark.parametrize("law", [ViscousLaw(3.0), RegularizedCoulombLaw(2.0, 1e-4)])

@@ -102,16 +102,6 @@ def test_angles_are_what_they_say(launch):
     )
 
 
-@given(launches(numbers(0.0, math.pi)))
-def test_a_launch_is_at_the_origin_with_a_marker_square_to_the_axis(launch):
-    top, given_angles = launch
-    state = state_from_angles(given_angles, top, math)
-    assert state.position == (0.0, 0.0)
-    assert state.work == 0.0
-    assert dot(state.marker, state.axis) == pytest.approx(0.0, abs=1e-15)
-    assert length(state.marker) == pytest.approx(1.0, rel=1e-15)
-
-
 @given(slides())
 def test_momentum_is_inertia_times_angular_velocity(slide):
     top, state = slide

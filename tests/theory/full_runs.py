@@ -1,31 +1,21 @@
 """Full runs on a table that may pull, to hold the theory against, and random tops for it."""
 
 import math
-from functools import lru_cache
 
 import numpy as np
 from hypothesis import strategies as st
 
 from strategies import numbers
-from tippetop.integrators import Motion, make_integrator
+from tippetop.contact.sliding import sliding_motion
+from tippetop.integrators import make_integrator
+from tippetop.integrators.dense import DenseSolution
 from tippetop.mechanics.friction import ViscousLaw
-from tippetop.mechanics.motion import along_table, sliding_rates
-from tippetop.mechanics.state import SlidingState
+from tippetop.mechanics.motion import along_table
 from tippetop.mechanics.surface import SphereSurface
 from tippetop.mechanics.top import Top, natural_units
 from tippetop.problem import Problem
 
 RADIUS, MASS, GRAVITY, AXIAL_INERTIA = 0.02, 0.02, 9.8, 3.2e-6
-
-
-@lru_cache
-def sliding(kind):
-    """Equations of motion of a sliding top, as the integrators take them."""
-
-    def rates(y, parameters):
-        return sliding_rates(SlidingState.unpack(y), kind.top(tuple(parameters))).pack()
-
-    return Motion(rates, size=14, parameters=kind.numbers)
 
 
 def full_run(problem, times, smooth=False):
@@ -35,22 +25,14 @@ def full_run(problem, times, smooth=False):
         top = top._replace(friction=ViscousLaw(0.0))
     units = natural_units(top)
     start = along_table(problem.start())
-    begin = np.array(
-        [
-            *start.axis,
-            *(number / units.angular_momentum for number in start.momentum),
-            *(number / units.speed for number in start.velocity),
-            *(0.0, 0.0),
-            *start.marker,
-            0.0,
-        ]
-    )
+    momentum = [number / units.angular_momentum for number in start.momentum]
+    begin = np.array([*start.axis, *momentum, *(number / units.speed for number in start.velocity)])
     if smooth:
         begin[6:8] = 0.0
     natural = np.asarray(times, dtype=float) / units.time
-    arc = make_integrator().integrate(sliding(top.kind), top.numbers, (0.0, begin), natural[-1], natural)
-    assert arc.failure is None
-    states = arc.states
+    arcs = list(make_integrator().integrate(sliding_motion(top.kind, False), top.numbers, (0.0, begin), natural[-1]))
+    assert arcs[-1].failure is None
+    states = DenseSolution.joined([arc.solution for arc in arcs])(natural)
     return states[:, :3], states[:, 3:6] * units.angular_momentum, states[:, 6:8] * units.speed
 
 

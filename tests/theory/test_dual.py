@@ -16,13 +16,7 @@ from tippetop.theory.dual import Dual, derivative, jacobian, variable, variables
 
 
 def rates_of_eight(y, top):
-    rest = ((0.0, 0.0), (1.0, 0.0, 0.0), 0.0)
-    rates = sliding_rates(SlidingState(tuple(y[:3]), tuple(y[3:6]), tuple(y[6:8]), *rest), top)
-    return [*rates.axis, *rates.momentum, *rates.velocity]
-
-
-def eight_numbers(state):
-    return [*state.axis, *state.momentum, *state.velocity]
+    return sliding_rates(SlidingState.unpack(y), top).pack()
 
 
 @given(numbers(0.1, 3.0))
@@ -75,7 +69,7 @@ def test_variables_are_independent():
 def test_the_jacobian_of_the_mechanics_is_that_of_computer_algebra(case, direction):
     """Along a direction, sliding_rates(y + s v) is a function of s alone, which SymPy differentiates."""
     top, state = case
-    y = eight_numbers(state)
+    y = state.pack()
     along = [number * max(abs(entry), 1e-6) for number, entry in zip(direction, y, strict=True)]
     s = sympy.Symbol("s")
     moved = [entry + s * step for entry, step in zip(y, along, strict=True)]

@@ -11,7 +11,7 @@ from strategies import numbers
 from tippetop import presets
 from tippetop.errors import InvalidInput
 from tippetop.mechanics.friction import ViscousLaw
-from tippetop.mechanics.motion import along_table, sliding_rates
+from tippetop.mechanics.motion import along_table, contact, sliding_rates
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.surface import SpheroidSurface
 from tippetop.mechanics.top import natural_units
@@ -82,12 +82,11 @@ def test_friction_takes_from_a_nutation_what_the_mechanics_says_on_average(probl
     axis, momentum, _ = full_run(problem, times, smooth=True)
     mu = dual.variable(np.zeros_like(times))
     zero = np.zeros_like(times)
-    state = SlidingState(
-        tuple(axis.T), tuple(momentum.T), (zero, zero), (zero, zero), (zero, zero, zero), zero
-    )
-    rates = sliding_rates(state, top._replace(friction=ViscousLaw(mu)))
+    state = SlidingState(tuple(axis.T), tuple(momentum.T), (zero, zero))
+    rough = top._replace(friction=ViscousLaw(mu))
+    rates, touch = sliding_rates(state, rough), contact(*state, rough)
     torque = sum(rate.gradient[0] * n for rate, n in zip(rates.momentum, axis.T, strict=True))
-    power = rates.work.gradient[0]
+    power = touch.power.gradient[0]
     units = natural_units(top)
     taken = drain(*path_of(problem))
     expected = np.array([torque @ window, power @ window]) / window.sum()

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from tippetop.contact.mode import Mode, Reaction, Segment
 from tippetop.integrators.base import Array
-from tippetop.integrators.dense import at_fractions, evaluated
+from tippetop.integrators.dense import at_fractions, evaluated, parts_of
 from tippetop.mechanics.state import State
 
 STEPS = 4096
@@ -50,7 +50,7 @@ class Group:
 
     def at(self, fractions: Array) -> tuple[State, Reaction]:
         """States, and what the table does, at fractions of the steps, shape (m,), every number (m, k)."""
-        y = at_fractions(self.terms, self.spans, fractions)
+        y = at_fractions(self.terms, fractions)
         return self.mode.state(y), self.mode.reaction(y)
 
 
@@ -110,12 +110,13 @@ class Block:
         self, times: Array, step: NDArray[np.intp]
     ) -> Iterator[tuple[Mode, NDArray[np.intp], State, Reaction]]:
         """For every mode, which of some times lie in it, and the states and what the table does there."""
+        parts = parts_of(times, self.starts[step], self.ends[step])
         for group in self.groups:
             place = np.full(len(self.ends), -1)
             place[group.which] = np.arange(len(group.which))
             here = np.flatnonzero(place[step] >= 0)
             if len(here):
-                y = evaluated(group.terms, place[step[here]], times[here] - self.starts[step[here]])
+                y = evaluated(group.terms, place[step[here]], parts[here])
                 yield group.mode, here, group.mode.state(y.T), group.mode.reaction(y.T)
 
 

@@ -275,9 +275,10 @@ def clock_at(clock: DenseSolution, elapsed: int, times: Array) -> Array:
     slopes = clock.terms[:, [elapsed], 1:] * np.arange(1, clock.terms.shape[2])
     for _ in range(NEWTON):
         step = np.minimum(np.searchsorted(clock.knots[1:], guess, side="left"), len(clock.terms) - 1)
-        here = guess - clock.knots[step]
+        span = clock.knots[step + 1] - clock.knots[step]
+        here = (guess - clock.knots[step]) / span
         error = times - evaluated(clock.terms[:, [elapsed]], step, here)[:, 0]
-        pace = evaluated(slopes, step, here)[:, 0]
+        pace = evaluated(slopes, step, here)[:, 0] / span
         guess = np.clip(guess + error / pace, clock.knots[0], clock.knots[-1])
     return guess
 

@@ -23,7 +23,7 @@ class DenseSolution:
     knots
         Ends of the steps, increasing, shape (k + 1,).
     terms
-        Coefficients in increasing powers of the time since the start of a step, shape (k, size, degree + 1).
+        Coefficients in increasing powers of the part of a step that has passed, shape (k, size, degree + 1).
     """
 
     knots: Array
@@ -37,11 +37,7 @@ class DenseSolution:
     def __call__(self, times: Array) -> Array:
         """The solution at times between the first and the last knot, shape (m, size)."""
         step = np.minimum(np.searchsorted(self.knots[1:], times, side="left"), len(self.terms) - 1)
-        return evaluated(self.terms, step, times - self.knots[step])
-
-    def until(self, time: float) -> "DenseSolution":
-        """The solution up to a time in its last step."""
-        return DenseSolution(np.append(self.knots[:-1], time), self.terms)
+        return evaluated(self.terms, step, parts_of(times, self.knots[step], self.knots[step + 1]))
 
     @classmethod
     def joined(cls, parts: Sequence["DenseSolution"]) -> "DenseSolution":
@@ -50,6 +46,11 @@ class DenseSolution:
             return parts[0]
         knots = np.concatenate([parts[0].knots, *(part.knots[1:] for part in parts[1:])])
         return cls(knots, np.concatenate([part.terms for part in parts]))
+
+    @classmethod
+    def in_time(cls, knots: Array, terms: Array) -> "DenseSolution":
+        """The solution whose coefficients are in powers of the time since the start of a step."""
+        return cls(knots, terms * powers(np.diff(knots), terms.shape[2])[:, None, :])
 
     @classmethod
     def fitted(cls, function: Callable[[Array], Array], knots: Array, degree: int) -> "DenseSolution":
@@ -65,28 +66,35 @@ class DenseSolution:
             Of the polynomials.
         """
         places, transform, to_powers = chebyshev(degree)
-        spans = np.diff(knots)
-        values = function((knots[:-1, None] + places * spans[:, None]).ravel())
-        values = values.reshape(len(spans), degree + 1, values.shape[-1])
+        values = function((knots[:-1, None] + places * np.diff(knots)[:, None]).ravel())
+        values = values.reshape(len(knots) - 1, degree + 1, values.shape[-1])
         # Through Chebyshev's polynomials, whose coefficients fall off, so that no digits are lost.
-        unit = np.swapaxes(to_powers @ (transform @ values), 1, 2)
-        return cls(knots, unit / powers(spans, degree + 1)[:, None, :])
+        return cls(knots, np.swapaxes(to_powers @ (transform @ values), 1, 2))
 
 
-def evaluated(terms: Array, which: NDArray[np.intp], times: Array) -> Array:
-    """Values of polynomials, terms of shape (k, size, degree + 1), some at one time each, shape (m, size)."""
-    found = np.empty((len(times), terms.shape[1]))
-    for first in range(0, len(times), MANY):
-        here = slice(first, first + MANY)
-        found[here] = np.einsum("msk,mk->ms", terms[which[here]], powers(times[here], terms.shape[2]))
+def parts_of(times: Array, starts: Array, ends: Array) -> Array:
+    """Which part of their steps has passed at some times; 0 in steps of no length."""
+    spans = ends - starts
+    found: Array = (times - starts) / np.where(spans > 0.0, spans, 1.0)
     return found
 
 
-def at_fractions(terms: Array, spans: Array, fractions: Array) -> Array:
-    """Values of k polynomials at fractions, shape (m,), of their spans, shape (k,); of shape (size, m, k)."""
-    unit = terms * powers(spans, terms.shape[2])[:, None, :]
-    values = unit.reshape(-1, terms.shape[2]) @ powers(fractions, terms.shape[2]).T
-    return np.ascontiguousarray(values.reshape(*terms.shape[:2], len(fractions)).transpose(1, 2, 0))
+def evaluated(terms: Array, which: NDArray[np.intp], parts: Array) -> Array:
+    """Values of polynomials, terms of shape (k, size, degree + 1), at one place each, shape (m, size)."""
+    found = np.empty((len(parts), terms.shape[1]))
+    for first in range(0, len(parts), MANY):
+        here = slice(first, first + MANY)
+        found[here] = np.einsum("msk,mk->ms", terms[which[here]], powers(parts[here], terms.shape[2]))
+    return found
+
+
+def at_fractions(terms: Array, fractions: Array) -> Array:
+    """Values of k polynomials at fractions of their steps, shape (m,); of shape (size, m, k)."""
+    found = np.empty((terms.shape[1], len(fractions), len(terms)))
+    places = powers(fractions, terms.shape[2])
+    for number, values in enumerate(found):
+        np.matmul(places, terms[:, number].T, out=values)
+    return found
 
 
 def powers(numbers: Array, count: int) -> Array:

@@ -36,6 +36,13 @@ class Polynomials:
         self.span = span
         self.unit = terms * powers(span, len(terms)).T
 
+    @classmethod
+    def of_unit(cls, unit: Array, span: Array) -> "Polynomials":
+        """Polynomials whose coefficients are in powers of the part of their intervals that has passed."""
+        found = cls.__new__(cls)
+        found.span, found.unit = span, unit
+        return found
+
     @cached_property
     def bounds(self) -> tuple[Array, Array]:
         """Numbers below and above which no polynomial goes, each of shape (n,)."""
@@ -45,10 +52,9 @@ class Polynomials:
     @cached_property
     def sag(self) -> Array:
         """How far a polynomial can go beyond its values at Gauss's eight points, shape (n,)."""
-        k = np.arange(len(self.unit))
-        found: Array = (k * (k - 1)) @ np.abs(self.unit) * (0.19**2 / 8.0) + 0.02 * np.abs(self.unit[1:]).sum(
-            axis=0
-        )
+        k, size = np.arange(len(self.unit)), np.abs(self.unit)
+        # Between two of them by interval^2 / 8 max |f''|, and beyond the outer ones by distance max |f'|.
+        found: Array = np.maximum((k * (k - 1)) @ size * (0.19**2 / 8.0), k @ size * 0.02)
         return found
 
     @cached_property
@@ -124,6 +130,13 @@ class Polynomials:
         at_look = np.take_along_axis(self.values, best[None], axis=0)[0]
         better = (place >= 0.0) & (place <= 1.0) & (value < at_look)
         return np.where(better, place, best / LOOKS) * self.span, np.where(better, value, at_look)
+
+
+def least_of_all(polynomials: "Polynomials") -> float:
+    """The least value of many polynomials."""
+    looks = polynomials.values.min(axis=0)
+    lowest = polynomials.some(np.flatnonzero(looks - polynomials.bending <= looks.min()))
+    return float(lowest.refined_least()[1].min())
 
 
 def vertices(values: Array) -> Array:

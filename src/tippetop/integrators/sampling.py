@@ -92,6 +92,8 @@ def first_fall(
     step
         Where it begins and ends.
     """
+    if not guards:
+        return None
     first: tuple[int, float] | None = None
     start, end = step
     probes = [start + fraction * (end - start) for fraction in PROBES]

@@ -116,7 +116,7 @@ def _few_steps(run: Any, end: float) -> tuple[DenseSolution, Any]:
             break
     if outcome == hy.taylor_outcome.time_limit:
         knots[-1] = end
-    return DenseSolution(np.array(knots), np.array(terms).reshape(-1, *run.tc.shape)), outcome
+    return DenseSolution.in_time(np.array(knots), np.array(terms).reshape(-1, *run.tc.shape)), outcome
 
 
 def _many_steps(run: Any, end: float) -> tuple[DenseSolution, Any]:
@@ -126,4 +126,4 @@ def _many_steps(run: Any, end: float) -> tuple[DenseSolution, Any]:
         return DenseSolution(np.array([run.time]), np.empty((0, *run.tc.shape))), outcome
     knots = np.array(output.times)
     knots[-1] = end if outcome == hy.taylor_outcome.time_limit else output.bounds[1]
-    return DenseSolution(knots, output.tcs), outcome
+    return DenseSolution.in_time(knots, output.tcs), outcome
