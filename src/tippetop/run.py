@@ -16,7 +16,7 @@ from tippetop.contact.trajectory import PHASE_LIMIT, Trajectory
 from tippetop.dataset import assemble
 from tippetop.errors import InvalidInput, is_number
 from tippetop.integrators import Integrator, make_integrator
-from tippetop.integrators.base import Array
+from tippetop.integrators.base import NOT_FINITE, Array
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import natural, natural_state, natural_units
@@ -72,7 +72,8 @@ def simulate(
         contact mode. Over `event` and `flight`: those of `LISTED`. Single numbers: those of `METRICS`, which
         are events and extremes of the motion and do not depend on the samples, and of `MONITORS`. Attributes:
         problem (JSON), outcome, outcome_advice, integrator, tolerance or step, tippetop_version,
-        Conventions. When the run ends before `duration`, the last sample is its end.
+        Conventions. When the run ends before `duration`, the last sample is its end, unless
+        its numbers grew beyond all bounds.
 
     Raises
     ------
@@ -95,7 +96,8 @@ def simulate(
         tally.take(block)
     outcome = trajectory.outcome
     assert outcome is not None, "a trajectory that has no more segments has ended"
-    found = recorder.finish(trajectory.time, trajectory.state, outcome is not Outcome.COMPLETED)
+    early = outcome is not Outcome.COMPLETED and trajectory.detail != NOT_FINITE
+    found = recorder.finish(trajectory.time, trajectory.state, early)
     ends = tally.ends(trajectory.state, trajectory.time, outcome, trajectory.events)
     numbers = metrics(ends, State.unpack([np.array([number]) for number in state.pack()]), top, units)
     scalars = {name: values[0] for name, values in numbers.items()} | {
@@ -115,7 +117,7 @@ def simulate(
     }
     lists = _event_arrays(trajectory.events, units) | _flight_arrays(tally.flights, units)
     times = np.append(grid, trajectory.time * units.time)[: len(found.times)]
-    if len(found.times) <= len(grid) and outcome is not Outcome.COMPLETED:
+    if early:
         times[-1] = trajectory.time * units.time
     variables = observe(found, top, units)
     return assemble(times, variables, (found.mode, recorder.modes), scalars, lists, attributes)

@@ -19,7 +19,7 @@ from tippetop.mechanics.vectors import Row, length
 DEGREE = 14
 """Degree of the polynomials that stand for a flight in a solution."""
 
-TURN = 0.5
+TURN = 0.25
 """Angle through which the axis turns in each of them, rad: what they leave out is below rounding."""
 
 MOST_STEPS = 4096

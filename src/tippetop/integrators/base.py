@@ -15,6 +15,10 @@ Function: TypeAlias = Callable[[Sequence[Scalar], Sequence[Scalar]], Scalar]
 """A function of the state and the parameters, in plain operators."""
 
 
+NOT_FINITE = "the solution is no longer finite"
+"""Why an integrator gives up where numbers grow beyond all bounds: its last state then means nothing."""
+
+
 @dataclass(frozen=True)
 class Guard:
     """A condition that ends a motion: the first time its value falls through zero from above.

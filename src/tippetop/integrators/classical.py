@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from tippetop.integrators.base import Arc, Array, Motion
+from tippetop.integrators.base import NOT_FINITE, Arc, Array, Motion
 from tippetop.integrators.sampling import RightHandSide, Steps, first_fall, polish
 
 DEGREE = 5
@@ -41,7 +41,7 @@ class ClassicalRK4:
             before, base = time, state
             time, state = reach, _step(rates, base, reach - before)
             if not np.all(np.isfinite(state)):
-                failure = "the solution is no longer finite"
+                failure = NOT_FINITE
                 yield Arc(taken.solution(), base, None, failure, len(taken), rates.calls - counted)
                 return
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from scipy.integrate import BDF, DOP853, LSODA, RK45, Radau
 
-from tippetop.integrators.base import Arc, Array, Motion
+from tippetop.integrators.base import NOT_FINITE, Arc, Array, Motion
 from tippetop.integrators.sampling import RightHandSide, Steps, first_fall, polish
 
 METHODS: dict[str, Any] = {
@@ -108,8 +108,8 @@ def _take_step(solver: Any) -> str | None:
         warnings.simplefilter("ignore")
         try:
             message = solver.step()
-        except (ValueError, OverflowError, ZeroDivisionError, np.linalg.LinAlgError) as error:
-            return f"the solution is no longer finite ({error})"
+        except (ValueError, OverflowError, ZeroDivisionError, np.linalg.LinAlgError):
+            return NOT_FINITE
     if solver.status == "failed":
         return str(message) if message else "the step size fell to nothing"
-    return None if np.all(np.isfinite(solver.y)) else "the solution is no longer finite"
+    return None if np.all(np.isfinite(solver.y)) else NOT_FINITE

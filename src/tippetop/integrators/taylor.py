@@ -9,15 +9,15 @@ from typing import Any
 import heyoka as hy
 import numpy as np
 
-from tippetop.integrators.base import Arc, Array, Motion
+from tippetop.integrators.base import NOT_FINITE, Arc, Array, Motion
 from tippetop.integrators.compile_cache import use_compile_cache
 from tippetop.integrators.dense import DenseSolution
 
 SHORT = 24
 """Steps that are taken one by one: a solution made by the compiler costs as much as a few hundred of them."""
 
-SHORTEST = 1e-13
-"""Step, relative to the time, below which times do not tell its ends apart well enough."""
+SHORTEST = 1e-6
+"""Step, relative to the longest, that only a solution that blows up takes; rounding of time matters in it."""
 
 LONG = 4096
 """Steps in one call into compiled code, so that Ctrl-C is heard between calls."""
@@ -56,7 +56,7 @@ class Taylor:
             if outcome == hy.taylor_outcome.err_nf_state:
                 solution = _before_blow_up(solution)
                 state = solution(solution.knots[-1:])[0] if len(solution.terms) else start[1]
-                yield Arc(solution, state, None, "the solution is no longer finite", steps, steps)
+                yield Arc(solution, state, None, NOT_FINITE, steps, steps)
                 return
             guard = None
             if outcome not in (hy.taylor_outcome.step_limit, hy.taylor_outcome.time_limit):
@@ -93,9 +93,10 @@ def _compiled(motion: Motion, tolerance: float) -> _Compiled:
 
 
 def _before_blow_up(solution: DenseSolution) -> DenseSolution:
-    """A solution that ended in numbers that are none, without the steps that are too short for its times."""
+    """A solution that ended in numbers that are none, without its last steps, too short to be told."""
     knots = solution.knots
-    fine = np.flatnonzero(np.diff(knots) > SHORTEST * np.maximum(1.0, np.abs(knots[1:])))
+    spans = np.diff(knots)
+    fine = np.flatnonzero(spans > SHORTEST * spans.max(initial=0.0))
     steps = fine[-1] + 1 if len(fine) else 0
     return DenseSolution(knots[: steps + 1], solution.terms[:steps])
 
