@@ -103,7 +103,7 @@ def energy_figure(run: xr.Dataset, reported: tuple[float, float]) -> Figure:
     """Return the energy over time: the report's (4.1) by its method, and the converged one on both tables.
 
     `run` has energy and energy_flight over time, energy_listing over time_listing, launch_energy, J,
-    lift_off_time, s, and the flights. `reported` is the time, s, and energy, J, that the report names.
+    lift_off_time, s, and the flights. `reported` is the time, s, and the gain, J, that the report names.
     """
     figure, axes = _wide_panel(run)
     start = 1e3 * float(run["launch_energy"])
@@ -113,9 +113,12 @@ def energy_figure(run: xr.Dataset, reported: tuple[float, float]) -> Figure:
     _trio(axes, run, "energy", scale=1e3, names=names)
     axes.set_ylabel("energy (mJ)")
     axes.set_ylim(bottom=0)
-    at = (reported[0], 1e3 * reported[1])
-    axes.plot(*at, "s", color=REPORT, ms=6, mec=INK, mew=0.6, zorder=5)
-    _callout(axes, f"the report's\n{reported[1]:g} J at {reported[0]:g} s", at, (34, 34), INK, "left")
+    low = 1e3 * float(np.interp(reported[0], run["time_listing"], run["energy_listing"]))
+    high = low + 1e3 * reported[1]
+    ends = {"arrowstyle": "|-|", "color": INK, "lw": 1.2, "mutation_scale": 3, "shrinkA": 0, "shrinkB": 0}
+    axes.annotate("", (reported[0], low), (reported[0], high), arrowprops=ends, zorder=6)
+    text = f"the report's gain\nof {reported[1]:g} J at {reported[0]:g} s"
+    mark.note(axes, text, (reported[0], high), (-22, -14), INK, halo=True)
     _mark_lift_off(axes, float(run["lift_off_time"]))
     return figure
 

@@ -22,6 +22,8 @@ REFINE = 4
 """Points of output for every step taken."""
 
 _A, _B, _E, _P = RK45.A, RK45.B, RK45.E, RK45.P
+_PARTS = np.arange(1, REFINE) / REFINE
+_POWERS = _PARTS[:, None] ** np.arange(1, 5)
 _STAGES = 7
 
 
@@ -119,10 +121,8 @@ def ode45(
             shrink = 0.5 if failed else max(0.1, 0.8 * (relative / error_size) ** 0.2)
             step, failed = max(shortest, step * shrink), True
         steps += 1
-        between = stages.T @ _P
-        for part in np.arange(1, REFINE) / REFINE:
-            times.append(time + step * part)
-            states.append(state + step * (between @ part ** np.arange(1, 5)))
+        times.extend(time + step * _PARTS)
+        states.extend(state + step * (_POWERS @ (stages.T @ _P).T))
         time = duration if step == duration - time else time + step
         state, slope = end, stages[-1]
         times.append(time)

@@ -37,7 +37,7 @@ def final_tilt(spin: float, window: float = WINDOW) -> float:
 
 
 def _listing_spins(quick: bool) -> np.ndarray:
-    low = np.arange(24.0, 29.0, 2.0 if quick else 1.0)
+    low = np.arange(24.0, 29.0)
     high = np.arange(77.5, 80.1, 1.0 if quick else 0.5)
     top = np.arange(166.0, 174.0, 2.0 if quick else 1.0)
     between = np.concatenate([np.arange(5, 24, 6), np.arange(35, 76, 8), np.arange(85, 164, 10)])
