@@ -20,7 +20,7 @@ NEARLY_HALF_TURNS = np.hstack((np.full((100, 1), 1e-9), RANDOM[:100, 1:]))
 
 
 def seen(turned):
-    """The quaternions, made from axis and angle, of bodies that are turned so, in the charts of their poles."""
+    """The quaternions, made from axis and angle, of bodies turned so, each in the chart of its pole."""
     axis, marker = turned.apply([0.0, 0.0, 1.0]), turned.apply([1.0, 0.0, 0.0])
     pole = np.where(axis[:, 2] >= 0.0, 1.0, -1.0)
     normal = np.cross(np.stack([0.0 * pole, 0.0 * pole, pole], axis=1), axis)
