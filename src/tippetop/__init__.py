@@ -12,8 +12,8 @@ __version__ = "0.1.0"
 
 if TYPE_CHECKING:
     from tippetop import presets
-    from tippetop.dataset import read_run, write_run
     from tippetop.errors import FileTrouble, InvalidInput, TippetopError, Unavailable
+    from tippetop.netcdf import read_run, write_run
     from tippetop.phases import Outcome
     from tippetop.problem import (
         Body,
@@ -49,8 +49,8 @@ __all__ = [
 ]
 
 _HOMES = {
-    "dataset": ("read_run", "write_run"),
     "errors": ("FileTrouble", "InvalidInput", "TippetopError", "Unavailable"),
+    "netcdf": ("read_run", "write_run"),
     "phases": ("Outcome",),
     "problem": (
         "Body",

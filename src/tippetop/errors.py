@@ -56,7 +56,27 @@ class InvalidInput(TippetopError, ValueError):
 
 
 class FileTrouble(TippetopError, OSError):
-    """A file that cannot be read or written, or that exists and may not be overwritten."""
+    """A file that cannot be read or written, or that exists and may not be overwritten.
+
+    Parameters
+    ----------
+    sentence
+        What is the trouble, beginning with the file's name.
+    replaceable
+        Whether overwriting the file is the way out; the sentence then ends with how that is asked for.
+    """
+
+    def __init__(self, sentence: str, replaceable: bool = False) -> None:
+        self.sentence, self.replaceable = sentence, replaceable
+        super().__init__(self.told("overwrite=True"))
+
+    def told(self, permission: str) -> str:
+        """The sentence where overwriting is asked for in these words."""
+        ending = f"; it is overwritten only with {permission}" if self.replaceable else ""
+        return self.sentence + ending
+
+    def __reduce__(self) -> tuple[type["FileTrouble"], tuple[str, bool]]:
+        return type(self), (self.sentence, self.replaceable)
 
 
 class Unavailable(TippetopError, RuntimeError):

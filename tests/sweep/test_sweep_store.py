@@ -138,7 +138,7 @@ def test_another_version_is_refused(tmp_path, monkeypatch):
 
 def test_what_is_there_is_not_overwritten_unasked(tmp_path):
     run_sweep(quick(), tmp_path / "a.zarr", workers=1)
-    with pytest.raises(FileTrouble, match="--force"):
+    with pytest.raises(FileTrouble, match="overwrite=True"):
         Store.create(tmp_path / "a.zarr", quick())
     assert Store.resume(tmp_path / "a.zarr").remaining() == []
     Store.create(tmp_path / "a.zarr", quick(), overwrite=True)

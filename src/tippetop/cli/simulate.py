@@ -68,8 +68,8 @@ def simulate(
     force: Force = False,
 ) -> None:
     """Simulate one launch and say what becomes of the top."""
-    from tippetop.dataset import write_run  # noqa: PLC0415 - slow to import
-    from tippetop.files import refuse_overwriting, written_beside  # noqa: PLC0415
+    from tippetop.files import place_for, written_beside  # noqa: PLC0415
+    from tippetop.netcdf import write_run  # noqa: PLC0415 - slow to import
     from tippetop.simulate import simulate as run_problem  # noqa: PLC0415
     from tippetop.summary import summarize  # noqa: PLC0415
 
@@ -80,7 +80,7 @@ def simulate(
     wanted = {kind: path for kind, path in files.items() if path is not None}
     _check_names(wanted)
     for path in wanted.values():
-        refuse_overwriting(path, force)
+        place_for(path, force)
     if mp4 is not None:
         from tippetop.export.movie import ffmpeg  # noqa: PLC0415 - slow to import
 
@@ -98,7 +98,7 @@ def simulate(
         from tippetop.figures.overview import overview  # noqa: PLC0415 - slow to import
         from tippetop.figures.style import save  # noqa: PLC0415
 
-        with written_beside(plot) as beside:
+        with written_beside(plot, force) as beside:
             save(overview(run), beside)
     for kind in wanted:
         _export(run, kind, wanted[kind], force)

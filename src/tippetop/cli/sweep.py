@@ -26,7 +26,7 @@ from tippetop.cli.options import (
     chosen_problem,
 )
 from tippetop.errors import MISSING, InvalidInput
-from tippetop.files import refuse_overwriting, written_beside
+from tippetop.files import place_for, written_beside
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -100,7 +100,7 @@ def sweep(
     need_workers(workers, scheduler)
     pictures = _map_files(out) if maps else {}
     for path in pictures.values():
-        refuse_overwriting(path, force or resume)
+        place_for(path, force or resume)
     store = Store.resume(out, chosen) if resume else Store.create(out, chosen, force)
     began = time.perf_counter()
     progress: list[Progress] = []
@@ -108,7 +108,7 @@ def sweep(
         with _shown(progress, silent=as_json or not sys.stderr.isatty()) as watcher:
             fill(store, workers=workers, scheduler=scheduler, watcher=watcher)
         dataset = store.load(["status", "outcome", *dict.fromkeys(["flights", *pictures])])
-        _draw_maps(dataset, pictures)
+        _draw_maps(dataset, pictures, force or resume)
     except KeyboardInterrupt:
         done = f"{progress[-1].done:,} of {progress[-1].cells:,}" if progress else "none"
         typer.echo(f"tippetop: interrupted; {done} cells are in {out}: go on with --resume", err=True)
@@ -215,13 +215,13 @@ def _map_files(out: Path) -> dict[str, Path]:
     return {name: out.with_name(f"{out.name.removesuffix('.zarr')}.{name}.png") for name in MAPPED}
 
 
-def _draw_maps(dataset: "xr.Dataset", files: dict[str, Path]) -> None:
+def _draw_maps(dataset: "xr.Dataset", files: dict[str, Path], overwrite: bool) -> None:
     """Draw maps beside the store."""
     from tippetop.figures.maps import phase_map  # noqa: PLC0415 - slow to import
     from tippetop.figures.style import save  # noqa: PLC0415
 
     for name, path in files.items():
-        with written_beside(path) as beside:
+        with written_beside(path, overwrite) as beside:
             save(phase_map(dataset, name), beside)
 
 

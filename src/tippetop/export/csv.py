@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from tippetop.files import refuse_overwriting, written_beside
+from tippetop.files import place_for, written_beside
 
 
 def write_csv(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Path:
@@ -20,9 +20,9 @@ def write_csv(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Pat
         If the file exists and `overwrite` is false, or cannot be written.
     """
     path = Path(path)
-    refuse_overwriting(path, overwrite)
+    place_for(path, overwrite)
     names, columns = _columns(run)
-    with written_beside(path) as beside, beside.open("w", newline="", encoding="utf-8") as file:
+    with written_beside(path, overwrite) as beside, beside.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(names)
         for row in zip(*columns, strict=True):

@@ -16,7 +16,7 @@ from tippetop.export.camera import view_of
 from tippetop.export.poses import poses_at, turned
 from tippetop.export.raycast import CAPTION, Toy, fine_path, picture
 from tippetop.export.words import tell
-from tippetop.files import refuse_overwriting, written_beside
+from tippetop.files import place_for, written_beside
 from tippetop.mechanics.shape import contact_vector
 from tippetop.problem import Problem
 
@@ -68,7 +68,7 @@ def write_movie(
     if kind not in (".mp4", ".gif"):
         raise InvalidInput("path", str(path), "a file name that ends in .mp4 or .gif")
     encoder = ffmpeg() if kind == ".mp4" else ""
-    refuse_overwriting(path, overwrite)
+    place_for(path, overwrite)
     rate = fps if fps is not None else 30.0 if encoder else 20.0
     extent = pixels or ((640, 480) if encoder else (360, 270))
     _check(rate, speed, extent)
@@ -77,7 +77,7 @@ def write_movie(
     pictures = frames(run, rate, speed, extent)
     if watcher is not None:
         pictures = _told(pictures, frame_count(run, rate, speed), watcher)
-    with written_beside(path) as beside:
+    with written_beside(path, overwrite) as beside:
         if encoder:
             _encode(encoder, pictures, beside, rate, extent)
         else:
