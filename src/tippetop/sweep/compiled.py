@@ -7,7 +7,7 @@ import heyoka as hy
 import numpy as np
 
 from tippetop.integrators.base import Array
-from tippetop.integrators.compile_cache import use_compile_cache
+from tippetop.integrators.compile_cache import compiling
 from tippetop.mechanics.top import Kind
 from tippetop.sweep.stepper import CARES, KEPT, LANES, SIZE, Jet, sliding_jet, stride
 
@@ -40,7 +40,6 @@ class CompiledStepper:
     """Taylor's method as a pair of compiled functions; see `tippetop.sweep.stepper.Stepper`."""
 
     def __init__(self, kind: Kind, order: int) -> None:
-        use_compile_cache()
         # Launches are spread over processes; threads would only get in each other's way.
         hy.set_nthreads(1)
         self.kind, self.order = kind, order
@@ -49,7 +48,8 @@ class CompiledStepper:
         others = hy.make_vars(*(f"k{i}" for i in range(SIZE, KEPT)))
         kept = [*self._state, *others]
         rows = stride(kind, order, kept, self._numbers, ExpressionArithmetic())
-        self._step = hy.cfunc([hy.expression(row) for row in rows], vars=kept)
+        with compiling():
+            self._step = hy.cfunc([hy.expression(row) for row in rows], vars=kept)
         self._jet: Any = None
 
     def step(self, before: Array, after: Array, numbers: Array) -> None:
@@ -62,7 +62,8 @@ class CompiledStepper:
             y, normal = sliding_jet(self.kind, self._state, self._numbers, ExpressionArithmetic())
             rows = [series[k] for series in y for k in range(self.order + 1)]
             rows += [normal[k] for k in range(self.order)]
-            self._jet = hy.cfunc([hy.expression(row) for row in rows], vars=list(self._state))
+            with compiling():
+                self._jet = hy.cfunc([hy.expression(row) for row in rows], vars=list(self._state))
         count = before.shape[1]
         values = self._jet(padded(before[:SIZE]), pars=padded(numbers[: self.kind.numbers]))[:, :count]
         cut = SIZE * (self.order + 1)
