@@ -90,7 +90,12 @@ def is_number(value: object) -> bool:
 
 def short(value: object, limit: int = 60) -> str:
     """A value as it would be typed, cut to at most `limit` characters."""
-    text = repr(value)
+    try:
+        text = repr(value)
+    except RecursionError:
+        text = f"({type(value).__name__}, nested too deep to be shown)"
+    except ValueError:  # Python refuses to write down whole numbers of thousands of digits.
+        text = f"({type(value).__name__}, too long to be shown)"
     return text if len(text) <= limit else text[: limit - 3] + "..."
 
 

@@ -22,6 +22,9 @@ MARK = ".tippetop-"
 LONGEST_TEXT = 2**24
 """Largest file of text that is read, bytes: no problem and no sweep comes near it."""
 
+LONGEST_NAME = 300
+"""How much of a path a sentence shows, letters."""
+
 
 def refuse_overwriting(path: Path, overwrite: bool) -> None:
     """Raise `FileTrouble` if something is there, even a link to nothing, and may not be overwritten."""
@@ -121,8 +124,9 @@ def read_text(path: Path | str, accepted: str) -> str:
 
 
 def named(path: Path | str) -> str:
-    """A path as it stands in a sentence, on one line."""
-    return str(path) if str(path).isprintable() else repr(str(path))
+    """A path as it stands in a sentence: on one line, and no longer than one reads."""
+    text = str(path) if str(path).isprintable() else repr(str(path))
+    return text if len(text) <= LONGEST_NAME else f"...{text[-LONGEST_NAME:]}"
 
 
 @contextmanager
@@ -135,9 +139,17 @@ def in_words(path: Path | str, done: str) -> Iterator[None]:
     except OSError as error:
         raise FileTrouble(f"{named(path)} cannot be {done}: {error.strerror or error}") from None
     except ValueError:
-        if "\0" not in str(path):
+        if _may_be(path):
             raise
-        raise FileTrouble(f"{named(path)} cannot be {done}: no name has a null character") from None
+        raise FileTrouble(f"{named(path)} cannot be {done}: no file has such a name") from None
+
+
+def _may_be(path: Path | str) -> bool:
+    """Whether the system could have a file of this name."""
+    try:
+        return b"\0" not in os.fsencode(path)
+    except UnicodeEncodeError:
+        return False
 
 
 def _status(path: Path) -> os.stat_result | None:

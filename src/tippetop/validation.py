@@ -1,6 +1,8 @@
 """The base of every part of a problem: frozen, validated, and clear about what it refuses."""
 
+import json
 import math
+import tomllib
 from collections.abc import Mapping
 from typing import Annotated, Any, Self, TypeAlias
 
@@ -23,6 +25,9 @@ NO_WORD = BeforeValidator(_no_word)
 Number: TypeAlias = Annotated[float, NO_WORD]
 """A number, and nothing that only looks like one."""
 
+DEEPEST = 20
+"""How deep tables and lists may be nested in a text; a problem's are three deep."""
+
 
 class Part(BaseModel):
     """A frozen, validated piece of a problem.
@@ -35,7 +40,7 @@ class Part(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, validate_default=True)
 
-    def __init__(self, **fields: Any) -> None:
+    def __init__(self, /, **fields: Any) -> None:
         try:
             super().__init__(**fields)
         except ValidationError as error:
@@ -44,6 +49,47 @@ class Part(BaseModel):
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
         """Copy with some fields replaced, and validated like any other."""
         return type(self)(**{**dict(self), **(update or {})})
+
+
+def parse_json(text: str) -> Any:
+    """What a JSON text says.
+
+    Raises
+    ------
+    ValueError
+        If it is no JSON, is nested deeper than `DEEPEST`, or holds whole numbers of thousands of digits.
+    """
+    try:
+        return _not_deep(json.loads(text))
+    except RecursionError:
+        raise ValueError(_TOO_DEEP) from None
+
+
+def parse_toml(text: str) -> dict[str, Any]:
+    """What a TOML text says; see `parse_json`."""
+    try:
+        fields = tomllib.loads(text)
+    except RecursionError:
+        raise ValueError(_TOO_DEEP) from None
+    _not_deep(fields)
+    return fields
+
+
+_TOO_DEEP = f"tables and lists at most {DEEPEST} deep"
+
+
+def _not_deep(value: Any) -> Any:
+    layer = [value]
+    for _ in range(DEEPEST):
+        layer = [
+            inner
+            for outer in layer
+            if isinstance(outer, dict | list)
+            for inner in (outer.values() if isinstance(outer, dict) else outer)
+        ]
+    if layer:
+        raise ValueError(_TOO_DEEP)
+    return value
 
 
 def _as_invalid_input(error: ValidationError, part: type[Part]) -> InvalidInput:

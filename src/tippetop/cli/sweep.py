@@ -3,7 +3,6 @@
 import json
 import sys
 import time
-import tomllib
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -25,7 +24,7 @@ from tippetop.cli.options import (
     changed_problem,
     chosen_problem,
 )
-from tippetop.errors import MISSING, InvalidInput
+from tippetop.errors import MISSING, FileTrouble, InvalidInput
 from tippetop.files import place_for, written_beside
 
 if TYPE_CHECKING:
@@ -169,11 +168,13 @@ def _chosen_grid(
 
 def _holds_sweep(file: Path) -> bool:
     """Whether a file is a sweep's rather than a problem's."""
+    from tippetop.files import read_text  # noqa: PLC0415
     from tippetop.sweep.definition import is_sweep  # noqa: PLC0415 - slow to import
+    from tippetop.validation import parse_toml  # noqa: PLC0415
 
     try:
-        return file.suffix != ".json" and is_sweep(tomllib.loads(file.read_text(encoding="utf-8-sig")))
-    except (OSError, ValueError):
+        return file.suffix != ".json" and is_sweep(parse_toml(read_text(file, "a sweep or a problem")))
+    except (FileTrouble, ValueError):
         return False
 
 

@@ -23,7 +23,7 @@ DATABASE = "cache.db"
 PATIENCE = 1.0
 """How long to wait for another process that holds the cache, s; compiling takes no longer."""
 
-LIMIT = 64 * 2**20
+LIMIT = 32 * 2**20
 """Size in bytes past which the oldest compiled code is dropped; a process that begins reads all of it."""
 
 _CODE = "SELECT hash, bitcode, comp_flag, env_fingerprint, opt_bc, opt_ir, obj FROM cache"

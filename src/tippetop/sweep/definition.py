@@ -2,7 +2,6 @@
 
 import json
 import math
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -11,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from tippetop.errors import MISSING, FileTrouble, InvalidInput, one_of
+from tippetop.errors import MISSING, InvalidInput, one_of
+from tippetop.files import read_text
 from tippetop.problem import Problem
 from tippetop.sweep.cells import cells_of
 from tippetop.sweep.grid import (
@@ -25,6 +25,7 @@ from tippetop.sweep.grid import (
     grid_from,
 )
 from tippetop.theory.groups import eccentricity
+from tippetop.validation import parse_toml
 
 DEFAULT_TOLERANCE = 1e-9
 SETTLED_RANGE = (1e-6, 1e-2)
@@ -136,16 +137,12 @@ class Sweep:
         InvalidInput
             If it does not hold a sweep.
         """
-        path = Path(path)
+        text = read_text(path, "a sweep in TOML")
         try:
-            fields = tomllib.loads(path.read_text(encoding="utf-8-sig"))
-        except UnicodeDecodeError:
-            raise FileTrouble(f"{path} is not a text file; accepted: a sweep in TOML") from None
-        except OSError as error:
-            raise FileTrouble(f"{path} cannot be read: {error.strerror}") from None
-        except (ValueError, RecursionError) as error:
+            fields = parse_toml(text)
+        except ValueError as error:
             raise InvalidInput("sweep", str(path), f"TOML; {error}") from None
-        return sweep_from_tables(fields, path.parent)
+        return sweep_from_tables(fields, Path(path).parent)
 
 
 def sweep_from(description: Mapping[str, Any]) -> Sweep:
