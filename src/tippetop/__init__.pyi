@@ -3,8 +3,6 @@
 from . import presets as presets
 from .catalogue import Ending as Ending
 from .contact.mode import Outcome as Outcome
-from .dataset import read_run as read_run
-from .dataset import write_run as write_run
 from .errors import FileTrouble as FileTrouble
 from .errors import InvalidInput as InvalidInput
 from .errors import TippetopError as TippetopError
@@ -15,6 +13,8 @@ from .export.html import write_html as write_html
 from .export.movie import write_movie as write_movie
 from .figures.overview import plot as plot
 from .lab.notebook import view as view
+from .netcdf import read_run as read_run
+from .netcdf import write_run as write_run
 from .problem import Body as Body
 from .problem import Contact as Contact
 from .problem import EccentricSphere as EccentricSphere

@@ -1,8 +1,6 @@
-"""Results as labelled datasets: names, units, provenance, and files that keep all of it."""
+"""Results as labelled datasets: names, units, provenance."""
 
-import os
-from collections.abc import Hashable, Mapping, Sequence
-from pathlib import Path
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,8 +8,6 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from tippetop.catalogue import LISTED, METRICS, MONITORS, SAMPLED, Variable
-from tippetop.errors import FileTrouble
-from tippetop.files import refuse_overwriting, written_beside
 
 SPACE = ["x", "y", "z"]
 QUATERNION = ["w", "x", "y", "z"]
@@ -60,53 +56,3 @@ def assemble(
         "quaternion": QUATERNION,
     }
     return xr.Dataset(data, coordinates, {"Conventions": CONVENTIONS, **attributes})
-
-
-def write_run(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Path:
-    """Write a result as NetCDF, beside its place first, so that no half-written file is ever left there.
-
-    Raises
-    ------
-    FileTrouble
-        If the file exists and `overwrite` is false, or cannot be written.
-    """
-    path = Path(path)
-    refuse_overwriting(path, overwrite)
-    with written_beside(path) as beside:
-        run.to_netcdf(beside, engine="h5netcdf", encoding=_encoding(run))
-    return path
-
-
-def _encoding(run: xr.Dataset) -> dict[Hashable, dict[str, Any]]:
-    """How each variable is kept: with a checksum, so that damage is seen when it is read."""
-    encoding: dict[Hashable, dict[str, Any]] = {}
-    for name, variable in run.variables.items():
-        # HDF5 keeps no checksum of a single number.
-        if variable.ndim:
-            encoding[name] = {"fletcher32": True}
-            if variable.dtype.kind == "U":
-                # Nor of strings of any length, only of where they are; of letters it does.
-                encoding[name]["dtype"] = "S1"
-    return encoding
-
-
-def read_run(path: Path | str) -> xr.Dataset:
-    """Read a result written by `write_run`.
-
-    Raises
-    ------
-    FileTrouble
-        If the file cannot be read, is damaged or is not a result.
-    """
-    path = Path(path)
-    try:
-        with xr.open_dataset(path, engine="h5netcdf", decode_times=False) as file:
-            run = file.load()
-    except (OSError, ValueError, KeyError, RuntimeError) as error:
-        number = error.errno if isinstance(error, OSError) else None
-        reason = os.strerror(number) if number else "it is damaged or no NetCDF"
-        raise FileTrouble(f"{path} cannot be read: {reason}") from None
-    if "tippetop_version" not in run.attrs:
-        raise FileTrouble(f"{path} is not a result of this program")
-    words = {name: run[name].astype(str) for name in run.variables if run[name].dtype == object}
-    return run.assign(words)

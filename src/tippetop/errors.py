@@ -56,7 +56,27 @@ class InvalidInput(TippetopError, ValueError):
 
 
 class FileTrouble(TippetopError, OSError):
-    """A file that cannot be read or written, or that exists and may not be overwritten."""
+    """A file that cannot be read or written, or that exists and may not be overwritten.
+
+    Parameters
+    ----------
+    sentence
+        What is the trouble, beginning with the file's name.
+    replaceable
+        Whether overwriting the file is the way out; the sentence then ends with how that is asked for.
+    """
+
+    def __init__(self, sentence: str, replaceable: bool = False) -> None:
+        self.sentence, self.replaceable = sentence, replaceable
+        super().__init__(self.told("overwrite=True"))
+
+    def told(self, permission: str) -> str:
+        """The sentence where overwriting is asked for in these words."""
+        ending = f"; it is overwritten only with {permission}" if self.replaceable else ""
+        return self.sentence + ending
+
+    def __reduce__(self) -> tuple[type["FileTrouble"], tuple[str, bool]]:
+        return type(self), (self.sentence, self.replaceable)
 
 
 class Unavailable(TippetopError, RuntimeError):
@@ -72,8 +92,10 @@ def short(value: object, limit: int = 60) -> str:
     """A value as it would be typed, cut to at most `limit` characters."""
     try:
         text = repr(value)
-    except (RecursionError, ValueError):  # too deeply nested, or a number of too many digits
-        text = f"a {type(value).__name__} too long to tell"
+    except RecursionError:
+        text = f"({type(value).__name__}, nested too deep to be shown)"
+    except ValueError:  # Python refuses to write down whole numbers of thousands of digits.
+        text = f"({type(value).__name__}, too long to be shown)"
     return text if len(text) <= limit else text[: limit - 3] + "..."
 
 

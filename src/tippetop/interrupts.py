@@ -1,4 +1,4 @@
-"""Ctrl-C that waits while something must not be cut short."""
+"""Ctrl-C and its like, which wait while something must not be cut short."""
 
 import signal
 import threading
@@ -6,23 +6,26 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
 
+ENDINGS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
+"""The signals that ask a program to end: Ctrl-C, the system's, and that of a terminal that is closed."""
+
 
 @contextmanager
 def deferred() -> Iterator[None]:
-    """Let Ctrl-C wait until the block ends; it arrives in the main thread, and in others nothing is done."""
+    """Let signals to end wait until the block ends; they come to the main thread alone."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    pressed = False
+    arrived: list[int] = []
 
     def note(number: int, frame: FrameType | None) -> None:
-        nonlocal pressed
-        pressed = True
+        arrived.append(number)
 
-    before = signal.signal(signal.SIGINT, note)
+    before = {number: signal.signal(number, note) for number in ENDINGS}
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, before or signal.SIG_DFL)
-        if pressed:
-            signal.raise_signal(signal.SIGINT)
+        for number, handler in before.items():
+            signal.signal(number, handler or signal.SIG_DFL)
+        if arrived:
+            signal.raise_signal(arrived[0])

@@ -5,7 +5,6 @@ Every part is frozen, refuses what cannot be, and reads and writes TOML and JSON
 
 import json
 import math
-import tomllib
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self, TypeAlias
@@ -13,15 +12,16 @@ from typing import Annotated, Any, Literal, Self, TypeAlias
 import tomli_w
 from pydantic import Field, model_validator
 
-from tippetop.errors import FileTrouble, InvalidInput, one_of
+from tippetop.errors import InvalidInput, one_of
+from tippetop.files import read_text
 from tippetop.mechanics.friction import FrictionLaw, RegularizedCoulombLaw, ViscousLaw
 from tippetop.mechanics.motion import along_table, contact, on_table
 from tippetop.mechanics.state import State
 from tippetop.mechanics.surface import SphereSurface, SpheroidSurface, Surface
-from tippetop.mechanics.top import Top
+from tippetop.mechanics.top import Top, natural_state, natural_units
 from tippetop.mechanics.vectors import Functions
 from tippetop.mechanics.view import Angles, state_from_angles
-from tippetop.validation import NO_WORD, Number, Part, Quantity
+from tippetop.validation import NO_WORD, Number, Part, Quantity, parse_json, parse_toml
 
 Positive = Annotated[float, Field(gt=0), NO_WORD]
 Fraction = Annotated[float, Field(ge=0, le=1), NO_WORD]
@@ -238,7 +238,7 @@ class Problem(Part):
 
     @model_validator(mode="after")
     def _contact_is_possible(self) -> Self:
-        if not math.isfinite(self._resistance()):
+        if not (math.isfinite(self._resistance()) and math.isfinite(self._largest_square())):
             raise self._out_of_reach()
         if self.contact.liftoff == "fly":
             return self
@@ -262,6 +262,14 @@ class Problem(Part):
             start = along_table(self.start())
             touch = contact(start.axis, start.momentum, start.velocity, self.top)
             return float(touch.delassus + 0.0 * touch.free_acceleration)
+        except ArithmeticError:
+            return math.nan
+
+    def _largest_square(self) -> float:
+        """The largest square among the numbers of the launch in natural units; nan where there is none."""
+        try:
+            start = natural_state(self.start(), natural_units(self.top))
+            return float(max(map(abs, (*start.momentum, *start.velocity, start.height)))) ** 2
         except ArithmeticError:
             return math.nan
 
@@ -328,8 +336,8 @@ class Problem(Part):
             If the text is not TOML, or not a problem.
         """
         try:
-            fields = tomllib.loads(text)
-        except (ValueError, RecursionError) as error:
+            fields = parse_toml(text)
+        except ValueError as error:
             raise InvalidInput("problem", text.strip(), f"TOML; {error}") from None
         return cls(**fields)
 
@@ -343,8 +351,8 @@ class Problem(Part):
             If the text is not JSON, or not a problem.
         """
         try:
-            fields = json.loads(text)
-        except (ValueError, RecursionError) as error:
+            fields = parse_json(text)
+        except ValueError as error:
             raise InvalidInput("problem", text.strip(), f"JSON; {error}") from None
         if not isinstance(fields, dict):
             raise InvalidInput("problem", fields, "a JSON object")
@@ -361,16 +369,8 @@ class Problem(Part):
         InvalidInput
             If it does not hold a problem.
         """
-        path = Path(path)
-        try:
-            text = path.read_text(encoding="utf-8-sig")
-        except UnicodeDecodeError:
-            raise FileTrouble(f"{path} is not a text file; accepted: a problem in TOML or JSON") from None
-        except OSError as error:
-            raise FileTrouble(f"{path} cannot be read: {error.strerror}") from None
-        except ValueError as error:
-            raise FileTrouble(f"{str(path)!r} cannot be read: {error}") from None
-        return cls.from_json(text) if path.suffix.lower() == ".json" else cls.from_toml(text)
+        text = read_text(path, "a problem in TOML or JSON")
+        return cls.from_json(text) if Path(path).suffix.lower() == ".json" else cls.from_toml(text)
 
 
 def _numbers(value: Any, name: str = "") -> Iterator[tuple[str, float]]:

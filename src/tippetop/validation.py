@@ -1,6 +1,8 @@
 """The base of every part of a problem: frozen, validated, and clear about what it refuses."""
 
+import json
 import math
+import tomllib
 from collections.abc import Mapping
 from numbers import Integral
 from typing import Annotated, Any, NamedTuple, Self, TypeAlias
@@ -24,6 +26,9 @@ NO_WORD = BeforeValidator(_no_word)
 
 Number: TypeAlias = Annotated[float, NO_WORD]
 """A number, and nothing that only looks like one."""
+
+DEEPEST = 20
+"""How deep tables and lists may be nested in a text; a problem's are three deep."""
 
 
 def _whole(value: Any) -> int:
@@ -84,6 +89,47 @@ class Part(BaseModel):
             return value.quantity(rest)
         found = next((item for item in info.metadata if isinstance(item, Quantity)), Quantity("", field))
         return found._replace(long_name=f"{found.long_name} {found.places[int(rest)]}") if rest else found
+
+
+def parse_json(text: str) -> Any:
+    """What a JSON text says.
+
+    Raises
+    ------
+    ValueError
+        If it is no JSON, is nested deeper than `DEEPEST`, or holds whole numbers of thousands of digits.
+    """
+    try:
+        return _not_deep(json.loads(text))
+    except RecursionError:
+        raise ValueError(_TOO_DEEP) from None
+
+
+def parse_toml(text: str) -> dict[str, Any]:
+    """What a TOML text says; see `parse_json`."""
+    try:
+        fields = tomllib.loads(text)
+    except RecursionError:
+        raise ValueError(_TOO_DEEP) from None
+    _not_deep(fields)
+    return fields
+
+
+_TOO_DEEP = f"tables and lists at most {DEEPEST} deep"
+
+
+def _not_deep(value: Any) -> Any:
+    layer = [value]
+    for _ in range(DEEPEST):
+        layer = [
+            inner
+            for outer in layer
+            if isinstance(outer, dict | list)
+            for inner in (outer.values() if isinstance(outer, dict) else outer)
+        ]
+    if layer:
+        raise ValueError(_TOO_DEEP)
+    return value
 
 
 def _as_invalid_input(error: ValidationError, part: type[Part]) -> InvalidInput:

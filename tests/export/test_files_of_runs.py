@@ -167,7 +167,7 @@ def test_a_file_that_exists_is_kept_unless_told_otherwise(short: xr.Dataset, tmp
     suffix = "gif" if write is write_movie else write.__name__.removeprefix("write_")
     path = tmp_path / f"run.{suffix}"
     path.write_text("mine")
-    with pytest.raises(tt.FileTrouble, match="--force"):
+    with pytest.raises(tt.FileTrouble, match="overwrite=True"):
         write(short, path)
     assert path.read_text() == "mine"
     options = {"fps": 2.0, "pixels": (32, 32)} if write is write_movie else {}

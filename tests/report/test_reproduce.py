@@ -9,8 +9,8 @@ from typer import Typer
 from typer.testing import CliRunner
 
 from tippetop.cli.reproduce import reproduce as command
-from tippetop.dataset import read_run
 from tippetop.errors import FileTrouble, InvalidInput
+from tippetop.netcdf import read_run
 from tippetop.report.claims.registry import CLAIMS
 from tippetop.report.gallery import PLATES
 from tippetop.report.reproduce import reproduce
@@ -94,10 +94,10 @@ def test_results_are_not_overwritten_unasked(tmp_path: Path) -> None:
     out = tmp_path / "out"
     reproduce(out, only="fig08-block", workers=1)
     (out / "claims.json").write_text("mine", encoding="utf-8")
-    with pytest.raises(FileTrouble, match="--force"):
+    with pytest.raises(FileTrouble, match="overwrite=True"):
         reproduce(out, only="fig08-block", workers=1)
     assert (out / "claims.json").read_text(encoding="utf-8") == "mine"
-    reproduce(out, only="fig08-block", workers=1, force=True)
+    reproduce(out, only="fig08-block", workers=1, overwrite=True)
     assert json.loads((out / "claims.json").read_text(encoding="utf-8"))[0]["id"] == "fig08-block"
 
 

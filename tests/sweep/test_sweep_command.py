@@ -142,7 +142,7 @@ def test_a_picture_of_somebody_else_is_not_overwritten(tmp_path):
 def test_a_store_is_not_overwritten_or_mixed_with_another(tmp_path):
     out = tmp_path / "a.zarr"
     run(*AXES, *SHORT, "--out", out, "--no-maps")
-    with pytest.raises(FileTrouble, match="--force"):
+    with pytest.raises(FileTrouble, match="overwrite"):
         run(*AXES, *SHORT, "--out", out)
     with pytest.raises(FileTrouble, match=r"problem\.friction\.mu is 0\.3 in it, and 0\.9 here"):
         run("--mu", 0.9, "--resume", "--out", out)

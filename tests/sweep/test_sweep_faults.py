@@ -19,7 +19,7 @@ from sweeps import lively
 from tippetop.errors import FileTrouble
 from tippetop.presets import report_problem
 from tippetop.sweeps import (
-    VARIABLES,
+    SWEPT,
     Draws,
     Range,
     Store,
@@ -73,7 +73,7 @@ def test_nothing_damaged_is_read_and_what_can_be_mended_is(tmp_path, monkeypatch
     path, random = tmp_path / "a.zarr", np.random.default_rng(7)
     truth = compute(quick())
     run_sweep(quick(), path, workers=1)
-    names = ["status", *VARIABLES]
+    names = ["status", *SWEPT]
     xr.testing.assert_identical(read_sweep(path)[names], truth[names])
     files = sorted(file for file in path.rglob("*") if file.is_file() and file.name != ".lock")
     sizes = np.array([file.stat().st_size for file in files])
@@ -160,7 +160,7 @@ def test_draws_are_mended_too(tmp_path):
     with pytest.raises(FileTrouble, match=r"a chunk of friction\.mu is missing"):
         read_sweep(tmp_path / "a.zarr")
     run_sweep(sweep, tmp_path / "a.zarr", resume=True, workers=1)
-    names = list(VARIABLES)
+    names = list(SWEPT)
     xr.testing.assert_identical(read_sweep(tmp_path / "a.zarr", names), compute(sweep)[names])
 
 
@@ -168,7 +168,7 @@ def test_results_are_on_disk_before_they_are_said_to_be(tmp_path, small_tasks, m
     """What would be left if the power were cut after any step: files whose content was brought to disk."""
     store = Store.create(tmp_path / "a.zarr", quick())
     synced, task = set(), quick().tasks[0]
-    chunks = {store.path.joinpath(name, "c", *map(str, task)) for name in ("status", *VARIABLES)}
+    chunks = {store.path.joinpath(name, "c", *map(str, task)) for name in ("status", *SWEPT)}
     status = store.path.joinpath("status", "c", *map(str, task))
     sync = disk._sync
 
@@ -190,7 +190,7 @@ def test_results_are_on_disk_before_they_are_said_to_be(tmp_path, small_tasks, m
 
     monkeypatch.setattr(zarr.storage.LocalStore, "set", after_the_others)
     numbers = store.sweep.numbers(task)
-    store.write(task, {name: np.zeros(numbers.size, dtype=kind.dtype) for name, kind in VARIABLES.items()})
+    store.write(task, {name: np.zeros(numbers.size, dtype=kind.dtype) for name, kind in SWEPT.items()})
     assert chunks <= synced
 
 
@@ -236,7 +236,7 @@ def test_a_sweep_that_is_being_filled_is_not_replaced(tmp_path, small_tasks):
     assert [item.name for item in tmp_path.iterdir()] == ["a.zarr"]
     assert 0 < len(Store.resume(path, quick()).remaining()) < len(quick().tasks)
     run_sweep(other, path, overwrite=True, workers=1)
-    xr.testing.assert_identical(read_sweep(path, list(VARIABLES)), compute(other)[list(VARIABLES)])
+    xr.testing.assert_identical(read_sweep(path, list(SWEPT)), compute(other)[list(SWEPT)])
 
 
 def test_a_writer_notices_that_its_store_was_replaced(tmp_path, small_tasks):
@@ -250,7 +250,7 @@ def test_a_writer_notices_that_its_store_was_replaced(tmp_path, small_tasks):
     store = Store.create(path, quick())
     with pytest.raises(FileTrouble, match="replaced by another sweep"):
         fill(store, workers=1, watcher=replace)
-    xr.testing.assert_identical(read_sweep(path, list(VARIABLES)), compute(other)[list(VARIABLES)])
+    xr.testing.assert_identical(read_sweep(path, list(SWEPT)), compute(other)[list(SWEPT)])
     late = Store.resume(path)
     Store.create(path, quick(), overwrite=True)
     with pytest.raises(FileTrouble, match="replaced by another sweep"):

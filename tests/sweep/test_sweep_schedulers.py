@@ -15,12 +15,12 @@ import pytest
 from sweeps import lively, same
 
 from tippetop.errors import InvalidInput, Unavailable
-from tippetop.sweeps import VARIABLES, Store, compute, definition, fill, read_sweep
+from tippetop.sweeps import SWEPT, Store, compute, definition, fill, read_sweep
 from tippetop.sweeps import tasks as scheduling
 
 
 def arrays(dataset):
-    return {name: dataset[name].values for name in VARIABLES}
+    return {name: dataset[name].values for name in SWEPT}
 
 
 @pytest.fixture

@@ -17,7 +17,7 @@ from sweeps import lively, same
 from tippetop.errors import FileTrouble, InvalidInput
 from tippetop.presets import report_problem
 from tippetop.sweeps import (
-    VARIABLES,
+    SWEPT,
     Axis,
     Draws,
     Product,
@@ -68,7 +68,7 @@ def test_a_store_opens_with_plain_xarray(tmp_path):
     opened = xr.open_zarr(tmp_path / "a.zarr")
     assert opened["final_theta"].dims == ("launch.spin", "friction.mu")
     assert opened["friction.mu"].values == pytest.approx(np.geomspace(0.2, 1, 4))
-    assert set(VARIABLES) < set(opened)
+    assert set(SWEPT) < set(opened)
     assert json.loads(opened.attrs["problem"])["launch"]["tilt"] == 1.0
     assert opened["status"].attrs["flag_meanings"] == "pending done"
     assert opened.sel({"launch.spin": 240.0}).sizes == {"friction.mu": 4}
@@ -77,7 +77,7 @@ def test_a_store_opens_with_plain_xarray(tmp_path):
 def test_a_task_is_a_chunk_and_there_are_no_shards(tmp_path, small_tasks):
     sweep = quick()
     run_sweep(sweep, tmp_path / "a.zarr", workers=1)
-    for name in ("status", *VARIABLES):
+    for name in ("status", *SWEPT):
         array = zarr.open_array(tmp_path / "a.zarr" / name, mode="r")
         assert array.chunks == sweep.chunk
         assert array.shards is None
@@ -140,7 +140,7 @@ def test_another_version_is_refused(tmp_path, monkeypatch):
 
 def test_what_is_there_is_not_overwritten_unasked(tmp_path):
     run_sweep(quick(), tmp_path / "a.zarr", workers=1)
-    with pytest.raises(FileTrouble, match="--force"):
+    with pytest.raises(FileTrouble, match="overwrite=True"):
         Store.create(tmp_path / "a.zarr", quick())
     assert Store.resume(tmp_path / "a.zarr").remaining() == []
     Store.create(tmp_path / "a.zarr", quick(), overwrite=True)
@@ -282,9 +282,7 @@ def test_a_sweep_killed_at_random_moments_loses_nothing(tmp_path, small_tasks):
     found, whole = read_sweep(path), compute(quick(80))
     xr.testing.assert_identical(found, whole)
     assert not list(path.rglob("*.partial"))
-    assert same(
-        {name: found[name].values for name in VARIABLES}, {name: whole[name].values for name in VARIABLES}
-    )
+    assert same({name: found[name].values for name in SWEPT}, {name: whole[name].values for name in SWEPT})
 
 
 def test_progress_is_told_and_counts_what_was_there(tmp_path, small_tasks):

@@ -1,6 +1,7 @@
 """The command line: collects the commands and turns what goes wrong into one sentence and an exit code."""
 
 import gc
+import signal
 import sys
 from typing import Annotated, Any
 
@@ -15,7 +16,8 @@ from tippetop.cli.problem import problem
 from tippetop.cli.reproduce import reproduce
 from tippetop.cli.simulate import simulate
 from tippetop.cli.sweep import sweep
-from tippetop.errors import TippetopError
+from tippetop.errors import FileTrouble, TippetopError
+from tippetop.interrupts import ENDINGS
 
 MISUSE = 2
 
@@ -68,15 +70,20 @@ def tippetop(
 
 
 def main() -> None:
-    """Run the command line; misuse ends with one sentence and exit code 2, Ctrl-C with 130."""
+    """Run the command line; misuse ends with one sentence and exit code 2, Ctrl-C and its like with 130."""
     gc.set_threshold(GARBAGE)
     if sys.argv[1:2] != ["sweep"]:
         for name in UNUSED:
             sys.modules.setdefault(name, None)  # type: ignore[arg-type]  # as if it were not installed
+    for number in ENDINGS:
+        # What is not heard at all, as Ctrl-C by programs in the background, stays so.
+        if signal.getsignal(number) == signal.SIG_DFL:
+            signal.signal(number, signal.default_int_handler)
     try:
         app()
     except TippetopError as error:
-        typer.echo(f"tippetop: {error}", err=True)
+        sentence = error.told("--force") if isinstance(error, FileTrouble) else error
+        typer.echo(f"tippetop: {sentence}", err=True)
         sys.exit(MISUSE)
     except BrokenPipeError:
         # Whoever was reading has read enough (`tippetop ... | head`).

@@ -76,5 +76,5 @@ def _parsed(change: str) -> tuple[str, Any]:
         raise InvalidInput("--set", change, "FIELD=VALUE")
     try:
         return field, json.loads(value)
-    except json.JSONDecodeError:
+    except (ValueError, RecursionError):
         return field, value

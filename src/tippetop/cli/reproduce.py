@@ -39,7 +39,7 @@ def reproduce(
         def advance(done: float, total: float, what: str) -> None:
             bar.update(work, completed=done, total=total, description=what)
 
-        result = report.reproduce(out, only=only, quick=quick, force=force, progress=advance)
+        result = report.reproduce(out, only=only, quick=quick, overwrite=force, progress=advance)
     if as_json:
         typer.echo(json.dumps(_plain(result), ensure_ascii=False, indent=2))
     else:

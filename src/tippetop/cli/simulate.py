@@ -23,7 +23,7 @@ from tippetop.cli.options import (
     chosen_problem,
 )
 from tippetop.errors import InvalidInput
-from tippetop.files import refuse_overwriting, written_beside
+from tippetop.files import place_for, written_beside
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -118,14 +118,14 @@ def _write(run: "xr.Dataset", kind: str, path: Path, force: bool) -> None:
     """Write one of the files of a run."""
     match kind:
         case "out":
-            from tippetop.dataset import write_run  # noqa: PLC0415 - slow to import, like what follows
+            from tippetop.netcdf import write_run  # noqa: PLC0415 - slow to import, like what follows
 
             write_run(run, path, force)
         case "plot":
             from tippetop.figures.overview import plot as draw  # noqa: PLC0415
             from tippetop.figures.style import save  # noqa: PLC0415
 
-            with written_beside(path) as beside:
+            with written_beside(path, force) as beside:
                 save(draw(run), beside)
         case "csv":
             from tippetop.export.csv import write_csv  # noqa: PLC0415
@@ -169,7 +169,7 @@ def _check_files(wanted: dict[str, Path], force: bool) -> None:
             raise InvalidInput(f"--{kind}", str(path), f"a file other than that of --{taken[path.resolve()]}")
         taken[path.resolve()] = kind
     for path in wanted.values():
-        refuse_overwriting(path, force)
+        place_for(path, force)
     if "mp4" in wanted:
         from tippetop.export.movie import ffmpeg  # noqa: PLC0415 - slow to import
 

@@ -3,7 +3,6 @@
 import json
 import sys
 import time
-import tomllib
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -25,8 +24,8 @@ from tippetop.cli.options import (
     changed_problem,
     chosen_problem,
 )
-from tippetop.errors import MISSING, InvalidInput
-from tippetop.files import refuse_overwriting, written_beside
+from tippetop.errors import MISSING, FileTrouble, InvalidInput
+from tippetop.files import in_words, place_for, read_text, written_beside
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -87,7 +86,6 @@ def sweep(
 ) -> None:
     """See what becomes of many launches: over axes that cross, or draws at random."""
     from tippetop.sweeps import Store, fill  # noqa: PLC0415 - slow to import
-    from tippetop.sweeps.disk import in_words  # noqa: PLC0415
     from tippetop.sweeps.layout import kept_sweep  # noqa: PLC0415
     from tippetop.sweeps.tasks import need_workers  # noqa: PLC0415
 
@@ -102,8 +100,7 @@ def sweep(
     need_workers(workers, scheduler)
     pictures = _map_files(out) if maps else {}
     for path in pictures.values():
-        with in_words(path, "written"):
-            refuse_overwriting(path, force or resume)
+        place_for(path, force or resume)
     store = Store.resume(out, chosen) if resume else Store.create(out, chosen, force)
     began = time.perf_counter()
     progress: list[Progress] = []
@@ -111,7 +108,7 @@ def sweep(
         with _shown(progress, silent=as_json or not sys.stderr.isatty()) as watcher:
             fill(store, workers=workers, scheduler=scheduler, watcher=watcher)
         dataset = store.load(["status", "outcome", *dict.fromkeys(["flights", *pictures])])
-        _draw_maps(dataset, pictures)
+        _draw_maps(dataset, pictures, force or resume)
     except KeyboardInterrupt:
         done = f"{progress[-1].done:,} of {progress[-1].cells:,}" if progress else "none"
         typer.echo(f"tippetop: interrupted; {done} cells are in {out}: go on with --resume", err=True)
@@ -199,10 +196,11 @@ def _range(text: str) -> tuple[str, Any]:
 def _holds_sweep(file: Path) -> bool:
     """Whether a file is a sweep's rather than a problem's."""
     from tippetop.sweeps.definition import is_sweep  # noqa: PLC0415 - slow to import
+    from tippetop.validation import parse_toml  # noqa: PLC0415
 
     try:
-        return file.suffix != ".json" and is_sweep(tomllib.loads(file.read_text(encoding="utf-8-sig")))
-    except (OSError, ValueError, RecursionError):
+        return file.suffix != ".json" and is_sweep(parse_toml(read_text(file, "a sweep or a problem")))
+    except (FileTrouble, ValueError):
         return False
 
 
@@ -244,13 +242,13 @@ def _map_files(out: Path) -> dict[str, Path]:
     return {name: out.with_name(f"{out.name.removesuffix('.zarr')}.{name}.png") for name in MAPPED}
 
 
-def _draw_maps(dataset: "xr.Dataset", files: dict[str, Path]) -> None:
+def _draw_maps(dataset: "xr.Dataset", files: dict[str, Path], overwrite: bool) -> None:
     """Draw maps beside the store."""
     from tippetop.figures.maps import phase_map  # noqa: PLC0415 - slow to import
     from tippetop.figures.style import save  # noqa: PLC0415
 
     for name, path in files.items():
-        with written_beside(path) as beside:
+        with written_beside(path, overwrite) as beside:
             save(phase_map(dataset, name), beside)
 
 

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from tippetop.files import refuse_overwriting, written_beside
+from tippetop.files import place_for, written_beside
 
 
 def write_csv(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Path:
@@ -20,7 +20,7 @@ def write_csv(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Pat
         If the file exists and `overwrite` is false, or cannot be written.
     """
     path = Path(path)
-    refuse_overwriting(path, overwrite)
+    place_for(path, overwrite)
     columns: dict[str, Any] = {}
     for name, variable in {"time": run["time"], **run.data_vars}.items():
         units = variable.attrs.get("units", "1")
@@ -30,7 +30,7 @@ def write_csv(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Pat
         elif variable.dims[:1] == ("time",):
             for number, label in enumerate(run[variable.dims[1]].values):
                 columns[f"{name}_{label}{unit}"] = ("time", variable.values[:, number])
-    with written_beside(path) as beside:
+    with written_beside(path, overwrite) as beside:
         xr.Dataset(columns).to_dataframe().to_csv(beside, index=False)
     return path
 

@@ -15,7 +15,7 @@ from tippetop.export.geometry import Mesh, lathe
 from tippetop.export.poses import poses_at
 from tippetop.export.words import tell
 from tippetop.figures.looks import SCENES, ToyPart, size, toy_parts
-from tippetop.files import refuse_overwriting, written_beside
+from tippetop.files import place_for, written_beside
 from tippetop.problem import Body, Problem
 
 TURN_PER_KEY = 0.5
@@ -39,9 +39,9 @@ def write_glb(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Pat
         If the run would need too many keys.
     """
     path = Path(path)
-    refuse_overwriting(path, overwrite)
+    place_for(path, overwrite)
     content = glb_bytes(run)
-    with written_beside(path) as beside:
+    with written_beside(path, overwrite) as beside:
         beside.write_bytes(content)
     return path
 

@@ -8,7 +8,7 @@ import xarray as xr
 from tippetop import __version__
 from tippetop.export.bundle import packed, player_code, three_packed
 from tippetop.export.track import pack_run, unpack_header
-from tippetop.files import refuse_overwriting, written_beside
+from tippetop.files import place_for, written_beside
 
 _PAGE = """<!doctype html>
 <html lang="en">
@@ -71,8 +71,8 @@ def write_html(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Pa
         If three.js is not installed: it comes with NiceGUI.
     """
     path = Path(path)
-    refuse_overwriting(path, overwrite)
+    place_for(path, overwrite)
     page = html_page(run)
-    with written_beside(path) as beside:
+    with written_beside(path, overwrite) as beside:
         beside.write_text(page, encoding="utf-8")
     return path

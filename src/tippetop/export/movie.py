@@ -17,7 +17,7 @@ from tippetop.export.raycast import fine_path, picture, view_of
 from tippetop.export.words import tell
 from tippetop.figures.style import INK
 from tippetop.figures.toy import Toy
-from tippetop.files import refuse_overwriting, written_beside
+from tippetop.files import place_for, written_beside
 from tippetop.problem import Problem
 
 Frame = NDArray[np.uint8]
@@ -67,14 +67,14 @@ def write_movie(
     if kind not in (".mp4", ".gif"):
         raise InvalidInput("path", str(path), "a file name that ends in .mp4 or .gif")
     encoder = ffmpeg() if kind == ".mp4" else ""
-    refuse_overwriting(path, overwrite)
+    place_for(path, overwrite)
     rate = fps if fps is not None else 30.0 if encoder else 20.0
     extent = pixels or ((640, 480) if encoder else (360, 270))
     _check(rate, speed, extent)
     if not encoder:
         rate = gif_rate(rate)
     pictures = frames(run, rate, speed, extent, progress)
-    with written_beside(path) as beside:
+    with written_beside(path, overwrite) as beside:
         if encoder:
             _encode(encoder, pictures, beside, rate, extent)
         else:

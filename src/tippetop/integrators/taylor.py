@@ -10,7 +10,7 @@ import heyoka as hy
 import numpy as np
 
 from tippetop.integrators.base import NOT_FINITE, Arc, Array, Motion
-from tippetop.integrators.compile_cache import use_compile_cache
+from tippetop.integrators.compile_cache import compiling
 from tippetop.integrators.dense import DenseSolution
 
 SHORT = 24
@@ -76,19 +76,22 @@ class _Compiled:
 @lru_cache(maxsize=32)
 def _compiled(motion: Motion, tolerance: float) -> _Compiled:
     """Compile the equations and the guards, or fetch them from the cache across processes."""
-    use_compile_cache()
     state = [hy.make_vars(f"y{i}") for i in range(motion.size)]
     parameters = [hy.par[i] for i in range(motion.parameters)]
     rates = [hy.expression(rate) for rate in motion.rates(state, parameters)]
-    guards = [guard.value(state, parameters) for guard in motion.guards]
-    integrator = hy.taylor_adaptive(
-        list(zip(state, rates, strict=True)),
-        [0.0] * motion.size,
-        pars=[1.0] * motion.parameters,
-        tol=tolerance,
-        t_events=[hy.t_event(guard, direction=hy.event_direction.negative) for guard in guards],
-        compact_mode=not motion.lasting,
-    )
+    events = [
+        hy.t_event(guard.value(state, parameters), direction=hy.event_direction.negative)
+        for guard in motion.guards
+    ]
+    with compiling():
+        integrator = hy.taylor_adaptive(
+            list(zip(state, rates, strict=True)),
+            [0.0] * motion.size,
+            pars=[1.0] * motion.parameters,
+            tol=tolerance,
+            t_events=events,
+            compact_mode=not motion.lasting,
+        )
     return _Compiled(integrator)
 
 

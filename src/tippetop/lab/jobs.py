@@ -4,12 +4,12 @@ from pathlib import Path
 
 import xarray as xr
 
-from tippetop.dataset import write_run
 from tippetop.export.csv import write_csv
 from tippetop.export.glb import write_glb
 from tippetop.export.html import write_html
 from tippetop.export.track import pack_run, sample_count
 from tippetop.lab.setup import Setup, first_setup
+from tippetop.netcdf import write_run
 from tippetop.run import simulate
 
 PHASES = 4000

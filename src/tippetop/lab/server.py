@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from tippetop.errors import TippetopError, Unavailable
+from tippetop.lab.guard import Guard, log_malformed_once
 from tippetop.lab.setup import Setup, read_query
 from tippetop.lab.turns import Turns
 from tippetop.lab.workers import Workers
@@ -50,7 +51,7 @@ def serve(
         If NiceGUI is not installed, or the port is taken.
     """
     try:
-        from nicegui import app, ui  # noqa: PLC0415 - optional
+        from nicegui import app, core, ui  # noqa: PLC0415 - optional
     except ImportError:
         raise Unavailable("the laboratory needs NiceGUI: pip install 'tippetop[lab]'") from None
     from tippetop.lab.page import register_page  # noqa: PLC0415 - needs NiceGUI
@@ -58,6 +59,8 @@ def serve(
     _check_free(host, port)
     pool = Workers(workers)
     _add_routes(app, pool)
+    app.add_middleware(Guard, host=host)
+    log_malformed_once(core.sio.handlers["/"], core.sio.eio.logger)
     register_page(pool, TRACK_PATH, FILE_PATH)
     app.on_startup(lambda: announce(f"the laboratory is at http://{_shown(host)}:{port}/ (Ctrl-C ends it)"))
     try:
@@ -89,11 +92,9 @@ def _check_free(host: str, port: int) -> None:
             trial.bind((host, port))
         except OSError as error:
             if error.errno == errno.EADDRNOTAVAIL:
-                raise Unavailable(
-                    f"{host} is no address of this machine; choose another with --host"
-                ) from None
+                raise Unavailable(f"{host} is no address of this machine; choose another") from None
             raise Unavailable(
-                f"port {port} of {host} cannot be listened at ({error.strerror}); choose another with --port"
+                f"port {port} of {host} cannot be listened at ({error.strerror}); choose another"
             ) from None
 
 

@@ -15,7 +15,7 @@ from tippetop.problem import Problem
 LONGEST = 120.0
 """Longest run on the page, s."""
 LONGEST_VALUE = 200
-"""Longest value of a field in a link, letters."""
+"""Longest value or name of a field in a link, letters."""
 
 _PLAIN = {"duration", *Problem.model_fields}
 _ALTERNATIVES = {"friction": "kind", "body.shape": "kind"}
@@ -75,8 +75,13 @@ def read_query(query: Mapping[str, str]) -> Setup:
         If the link names a field that does not exist, or a value that cannot be. A name unlike those of
         fields is passed over: others add utm_source and the like to links that they pass on.
     """
-    fields = {name: value for name, value in query.items() if "." in name or get_close_matches(name, _PLAIN)}
+    fields = {name: value for name, value in query.items() if _may_be_meant(name)}
     return first_setup().changed({name: _parsed(name, value) for name, value in fields.items()})
+
+
+def _may_be_meant(name: str) -> bool:
+    """Whether a name in a link is, or is like, a field's."""
+    return len(name) <= LONGEST_VALUE and ("." in name or bool(get_close_matches(name, _PLAIN)))
 
 
 def _merged(problem: Problem, changes: Mapping[str, Any]) -> Problem:
@@ -115,7 +120,7 @@ def _parsed(name: str, value: str) -> Any:
         raise InvalidInput(name, value, f"at most {LONGEST_VALUE} letters")
     try:
         return json.loads(value)
-    except json.JSONDecodeError:
+    except (ValueError, RecursionError):
         return value
 
 

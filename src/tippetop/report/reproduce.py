@@ -14,10 +14,10 @@ from typing import Any
 
 import xarray as xr
 
-from tippetop.dataset import write_run
 from tippetop.errors import FileTrouble
 from tippetop.figures.style import save
-from tippetop.files import refuse_overwriting
+from tippetop.files import put_in_place, refuse_overwriting
+from tippetop.netcdf import write_run
 from tippetop.report.claim import Data, Judgement
 from tippetop.report.experiments.registry import EXPERIMENTS
 from tippetop.report.gallery import PLATES
@@ -68,7 +68,7 @@ def reproduce(
     *,
     only: str | None = None,
     quick: bool = False,
-    force: bool = False,
+    overwrite: bool = False,
     workers: int | None = None,
     progress: Progress | None = None,
 ) -> Reproduction:
@@ -82,7 +82,7 @@ def reproduce(
         Name of one figure or claim; see `tippetop.report.selection.select`.
     quick
         Use coarser sweeps and fewer samples; the results say so.
-    force
+    overwrite
         Overwrite files of an earlier run.
     workers
         Number of processes; None for one per processor, at most 2.
@@ -101,7 +101,7 @@ def reproduce(
     chosen = select(only)
     names = _files(chosen)
     for name in names:
-        refuse_overwriting(folder / name, force)
+        refuse_overwriting(folder / name, overwrite)
     with _staging(folder) as stage:
         results = carry_out(_tasks(chosen, quick, stage), _processes(workers), progress)
         data = {experiment.id: results[experiment.id] for experiment in chosen.experiments}
@@ -115,7 +115,7 @@ def reproduce(
         pictures = {name: (stage / FIGURES / f"{name}.svg").read_bytes() for name in figures}
         page = render(chosen.plates, judgements, pictures, quick=quick, partial=only)
         (stage / PAGE).write_text(page, encoding="utf-8")
-        _move(stage, folder, names)
+        _move(stage, folder, names, overwrite)
     return Reproduction(folder, judgements, figures, quick, seconds)
 
 
@@ -195,11 +195,11 @@ def _staging(folder: Path) -> Iterator[Path]:
         shutil.rmtree(stage, ignore_errors=True)
 
 
-def _move(stage: Path, folder: Path, names: list[str]) -> None:
+def _move(stage: Path, folder: Path, names: list[str], overwrite: bool) -> None:
     """Put the finished files in their places."""
     try:
         for name in names:
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
-            (stage / name).replace(folder / name)
+            put_in_place(stage / name, folder / name, overwrite)
     except OSError as error:
         raise FileTrouble(f"{folder} cannot be written: {error.strerror or error}") from None

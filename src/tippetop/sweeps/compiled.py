@@ -7,7 +7,7 @@ import heyoka as hy
 import numpy as np
 
 from tippetop.integrators.base import Array, Motion
-from tippetop.integrators.compile_cache import use_compile_cache
+from tippetop.integrators.compile_cache import compiling
 from tippetop.sweeps.stride import LANES, Jet, Layout, motion_series, stride
 
 
@@ -39,14 +39,14 @@ class CompiledStepper:
     """Taylor's method as a pair of compiled functions; see `tippetop.sweeps.stride.Stepper`."""
 
     def __init__(self, motion: Motion, order: int) -> None:
-        use_compile_cache()
         # Launches are spread over processes; threads would only get in each other's way.
         hy.set_nthreads(1)
         self.motion, self.order, self.layout = motion, order, Layout.of(motion)
         self._kept = list(hy.make_vars(*(f"y{i}" for i in range(self.layout.kept))))
         self._numbers = [hy.par[i] for i in range(self.layout.numbers)]
         rows = stride(motion, order, self._kept, self._numbers, ExpressionArithmetic())
-        self._step = hy.cfunc([hy.expression(row) for row in rows], vars=self._kept)
+        with compiling():
+            self._step = hy.cfunc([hy.expression(row) for row in rows], vars=self._kept)
         self._jet: Any = None
 
     def step(self, before: Array, after: Array, numbers: Array) -> None:
@@ -61,7 +61,8 @@ class CompiledStepper:
             y, guards = motion_series(self.motion, start, self._numbers, ExpressionArithmetic())
             rows = [series[k] for series in y for k in range(order + 1)]
             rows += [guard[k] for guard in guards for k in range(order)]
-            self._jet = hy.cfunc([hy.expression(row) for row in rows], vars=start)
+            with compiling():
+                self._jet = hy.cfunc([hy.expression(row) for row in rows], vars=start)
         count = before.shape[1]
         values = self._jet(padded(before[:size]), pars=padded(numbers[:parameters]))[:, :count]
         cut = size * (order + 1)

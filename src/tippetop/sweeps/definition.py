@@ -1,7 +1,6 @@
 """A sweep: a base problem, the cells over it, and how they are computed."""
 
 import math
-import tomllib
 from collections.abc import Mapping
 from functools import cached_property
 from pathlib import Path
@@ -10,12 +9,13 @@ from typing import Annotated, Any, Self
 import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
-from tippetop.errors import MISSING, FileTrouble, InvalidInput
+from tippetop.errors import MISSING, InvalidInput
+from tippetop.files import read_text
 from tippetop.problem import Positive, Problem
 from tippetop.sweeps.cells import cells_of
 from tippetop.sweeps.grid import Draws, Product
 from tippetop.theory.steady import require_jellett
-from tippetop.validation import Number, Part
+from tippetop.validation import Number, Part, parse_toml
 
 DEFAULT_TOLERANCE = 1e-9
 SETTLED_RANGE = (1e-6, 1e-2)
@@ -138,17 +138,13 @@ class Sweep(Part):
         InvalidInput
             If it does not hold a sweep.
         """
-        path = Path(path)
+        text = read_text(path, "a sweep in TOML")
         try:
-            fields = tomllib.loads(path.read_text(encoding="utf-8-sig"))
-        except UnicodeDecodeError:
-            raise FileTrouble(f"{path} is not a text file; accepted: a sweep in TOML") from None
-        except OSError as error:
-            raise FileTrouble(f"{path} cannot be read: {error.strerror}") from None
-        except (ValueError, RecursionError) as error:
+            fields = parse_toml(text)
+        except ValueError as error:
             raise InvalidInput("sweep", str(path), f"TOML; {error}") from None
         if isinstance(fields.get("problem"), str):
-            fields["problem"] = Problem.read(path.parent / fields["problem"])
+            fields["problem"] = Problem.read(Path(path).parent / fields["problem"])
         return cls(**fields)
 
 

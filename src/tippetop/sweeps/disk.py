@@ -1,4 +1,4 @@
-"""What a store needs of the file system: one holder at a time, results that last, sentences."""
+"""What a store needs of the file system: one holder at a time, and results that last."""
 
 import os
 import re
@@ -9,6 +9,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from tippetop.errors import FileTrouble
+from tippetop.files import in_words
 
 SYNCS = 32
 """Files that are brought to disk side by side, which costs hardly more than one."""
@@ -59,16 +60,3 @@ def _sync(path: Path) -> None:
         os.fsync(handle)
     finally:
         os.close(handle)
-
-
-@contextmanager
-def in_words(path: Path, done: str) -> Iterator[None]:
-    """Turn what the file system says into one sentence."""
-    try:
-        yield
-    except FileTrouble:
-        raise
-    except OSError as error:
-        raise FileTrouble(f"{path} cannot be {done}: {error.strerror or error}") from None
-    except ValueError as error:  # a name that no file can have
-        raise FileTrouble(f"{str(path)!r} cannot be {done}: {error}") from None

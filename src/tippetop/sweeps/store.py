@@ -20,10 +20,10 @@ from numpy.typing import NDArray
 
 from tippetop.catalogue import SWEPT
 from tippetop.errors import FileTrouble, Unavailable, short
-from tippetop.files import refuse_overwriting
+from tippetop.files import in_words, refuse_overwriting
 from tippetop.interrupts import deferred
 from tippetop.sweeps.definition import Sweep
-from tippetop.sweeps.disk import bring_to_disk, clear_away, identity, in_words, locked
+from tippetop.sweeps.disk import bring_to_disk, clear_away, identity, locked
 from tippetop.sweeps.layout import (
     DIGEST,
     METADATA,
