@@ -105,7 +105,7 @@ def test_what_users_are_shown_is_public():
 
 
 def test_unknown_name_is_an_attribute_error_that_names_it():
-    with pytest.raises(AttributeError, match="no attribute 'simulation'"):
+    with pytest.raises(AttributeError, match="simulation"):
         tt.simulation  # noqa: B018
     with pytest.raises(ImportError):
         from tippetop import simulation  # noqa: F401, PLC0415

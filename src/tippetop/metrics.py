@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tippetop.catalogue import NEAR_FINAL, NEAR_POLE, Ending
-from tippetop.contact.block import Block, Group
+from tippetop.contact.block import Block, ModeSteps
 from tippetop.contact.mode import Event, EventKind, Outcome, Segment
 from tippetop.integrators.base import Array
 from tippetop.integrators.dense import at_fractions, chebyshev
@@ -226,9 +226,10 @@ class Tally:
         self._airborne.append((begin, end, segment.highest_gap))
         self._landed = segment.transition is not None
 
-    def _see(self, group: Group, starts: Array) -> None:
+    def _see(self, group: ModeSteps, starts: Array) -> None:
         """Take in the motion of the tip of the axis."""
-        tip, seen = Polynomials.of_unit(group.terms[:, 2].T, group.spans), group.nodes[0].axis[2]
+        tip = Polynomials.of_unit(np.ascontiguousarray(group.terms[:, 2].T), group.spans)
+        seen = group.nodes[0].axis[2]
         self._tips.append((tip, starts))
         least, most = seen.min(axis=0), seen.max(axis=0)
         lower = tip.some(np.flatnonzero(least - tip.sag <= least.min()))
@@ -238,12 +239,12 @@ class Tally:
         near = (least - tip.sag <= 0.0) & (most + tip.sag >= 0.0)
         self._turned = _first(self._turned, tip, starts, near, turning_time)
 
-    def _rise(self, group: Group) -> None:
+    def _rise(self, group: ModeSteps) -> None:
         """Take in the height of the centre of mass in flights."""
         depth = Polynomials.of_unit(-group.terms[:, 9].T, group.spans)
         self._highest = max(self._highest, -least_of_all(depth))
 
-    def _press(self, group: Group) -> None:
+    def _press(self, group: ModeSteps) -> None:
         """Take in the normal force."""
         force = group.nodes[1].force[2]
         least = force.min(axis=0)

@@ -31,6 +31,10 @@ _INTEGRALS = np.array(
 """The integrals of Lagrange's polynomials on Gauss's points, from 0, in Legendre's polynomials."""
 
 
+LEAST_MOMENT = 1e-6
+"""Size |L| h of Jellett's integral at launch, in natural units, below which its drift says nothing."""
+
+
 class Samples(NamedTuple):
     """A launch at its samples, in natural units; every number of shape (k,).
 
@@ -92,6 +96,7 @@ class Recorder:
         self._energy, self._jellett = float(energy(start, top)), float(jellett(start, top))
         self._moment = float(length(start.momentum) * top.surface.height(start.axis[2]))
         self._imbalance, self._least, self._most = 0.0, self._jellett, self._jellett
+        self._largest, self._stretch = abs(self._energy), 0.0
 
     @property
     def energy_error(self) -> float:
@@ -102,6 +107,12 @@ class Recorder:
     def jellett_drift(self) -> float:
         """Range so far of Jellett's integral, relative to |L| h at launch; nan where that is 0."""
         return (self._most - self._least) / self._moment if self._moment else float(np.nan)
+
+    @property
+    def inaccuracy(self) -> float:
+        """How far, relatively, the run is off what every motion keeps: energy and work, |n|, and lambda."""
+        drift = self.jellett_drift if self.top.conserves_jellett and self._moment > LEAST_MOMENT else 0.0
+        return float(np.nanmax([self._imbalance / self._largest, self._stretch, drift]))
 
     def take(self, block: Block) -> None:
         """Take the samples in a block."""
@@ -193,6 +204,8 @@ class Recorder:
             errors = energy(state, self.top) - self._energy - work[group.which]
             integral = jellett(state, self.top)
             self._imbalance = max(self._imbalance, float(np.abs(errors).max()))
+            self._largest = max(self._largest, float(np.max(energy(state, self.top))))
+            self._stretch = max(self._stretch, float(np.abs(length(state.axis) - 1.0).max()))
             self._least = min(self._least, float(np.min(integral)))
             self._most = max(self._most, float(np.max(integral)))
 

@@ -1,6 +1,6 @@
 """Run a problem: follow its launch from mode to mode, and label what came of it."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -12,7 +12,7 @@ from tippetop import __version__
 from tippetop.contact.block import in_blocks
 from tippetop.contact.mode import Event, Outcome
 from tippetop.contact.rules import rules_for
-from tippetop.contact.trajectory import PHASE_LIMIT, Trajectory
+from tippetop.contact.trajectory import PHASE_LIMIT, STEP_LIMIT, Trajectory
 from tippetop.dataset import assemble
 from tippetop.errors import InvalidInput, is_number
 from tippetop.integrators import Integrator, make_integrator
@@ -28,6 +28,9 @@ from tippetop.problem import Problem
 BYTES_PER_SAMPLE = 1600
 """Memory that a sample takes at most while a result is being made."""
 
+WORST, ACCUMULATED = 1e-6, 1e4
+"""How far, relatively, a run may be off what every motion keeps: this, or this many times its tolerance."""
+
 SURELY_FIT = 10_000
 """Samples for which nobody needs to ask how much memory there is."""
 
@@ -42,6 +45,8 @@ def simulate(
     tolerance: float | None = None,
     step: float | None = None,
     phase_limit: int = PHASE_LIMIT,
+    step_limit: int = STEP_LIMIT,
+    watcher: Callable[[float], None] | None = None,
 ) -> xr.Dataset:
     """Simulate a problem.
 
@@ -64,6 +69,10 @@ def simulate(
         Step size of "rk4", s; for no other.
     phase_limit
         How many modes (slides and flights) the run may go through before it ends early.
+    step_limit
+        How many steps of the integrator it may take before it ends early.
+    watcher
+        Told now and then which part of the run is done, between 0 and 1.
 
     Returns
     -------
@@ -88,14 +97,18 @@ def simulate(
     method = integrator_of(integrator, tolerance, step, units)
     state, contact = natural_state(problem.start(), units), problem.contact
     launch = rules_for(top, contact.liftoff, contact.restitution).launch(state)
-    trajectory = Trajectory(launch, duration / units.time, method, phase_limit)
+    trajectory = Trajectory(launch, duration / units.time, method, phase_limit, step_limit)
     lost = sum(event.energy_lost for event in launch.events)
     recorder, tally = Recorder(top, state, problem.launch.azimuth, grid / units.time, lost), Tally()
     for block in in_blocks(trajectory.segments()):
         recorder.take(block)
         tally.take(block)
+        if watcher is not None:
+            watcher(trajectory.time / trajectory.end)
     outcome = trajectory.outcome
     assert outcome is not None, "a trajectory that has no more segments has ended"
+    if outcome is Outcome.COMPLETED and recorder.inaccuracy > tolerated(method):
+        outcome = Outcome.INACCURATE
     early = outcome is not Outcome.COMPLETED and trajectory.detail != NOT_FINITE
     found = recorder.finish(trajectory.time, trajectory.state, early)
     ends = tally.ends(trajectory.state, trajectory.time, outcome, trajectory.events)
@@ -154,6 +167,11 @@ def integrator_of(
         if value is not None:
             raise InvalidInput(setting, value, "none with an integrator object, which has its own")
     return integrator
+
+
+def tolerated(method: Integrator) -> float:
+    """How far a run may be off what every motion keeps and still count as completed."""
+    return max(WORST, ACCUMULATED * float(getattr(method, "tolerance", 0.0)))
 
 
 def _check_memory(samples: int) -> None:

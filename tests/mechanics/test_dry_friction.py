@@ -7,14 +7,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
-from tippetop.sweeps.series import solution
 
 from strategies import numbers
 from tippetop.mechanics.contensou import EllipsoidalLaw
 from tippetop.mechanics.contensou_hertz import HertzDrillingLaw, HertzLaw, HertzSlidingLaw
 from tippetop.mechanics.coulomb import CoulombLaw, RollingResistance
-from tippetop.mechanics.friction import ViscousFriction
+from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.hertz import MATERIALS, Material, hertz_patch_radius
+from tippetop.mechanics.series import solution
 from tippetop.mechanics.top import Units
 from tippetop.theory.dual import jacobian
 
@@ -78,7 +78,7 @@ def test_hertz_friction_keeps_its_digits_in_fast_slip(kappa):
 def test_hertz_friction_in_slow_slip_is_viscous_with_3_pi_mu_over_8_w_r():
     slip, turning, mu, radius = (2e-9, -1e-9), (3.0, 4.0, 50.0), 0.3, 5e-4
     force, torque = HertzDrillingLaw(mu, radius).traction(slip, turning)
-    viscous = ViscousFriction(3.0 * math.pi * mu / (8.0 * turning[2] * radius)).traction(slip, turning)
+    viscous = ViscousLaw(3.0 * math.pi * mu / (8.0 * turning[2] * radius)).traction(slip, turning)
     assert force == pytest.approx(viscous.force, rel=1e-12)
     assert torque == pytest.approx((0.0, 0.0, -3.0 * math.pi / 16.0 * mu * radius), rel=1e-12)
 

@@ -12,7 +12,7 @@ from strategies import numbers, slides
 from tippetop.mechanics.contensou import EllipsoidalLaw
 from tippetop.mechanics.contensou_hertz import HertzLaw
 from tippetop.mechanics.coulomb import CoulombLaw, RollingResistance
-from tippetop.mechanics.friction import RegularizedCoulombFriction
+from tippetop.mechanics.friction import RegularizedCoulombLaw
 from tippetop.mechanics.impact import impact
 from tippetop.mechanics.motion import on_table
 from tippetop.mechanics.stick_slip import slip_of
@@ -58,7 +58,7 @@ def test_slip_that_cannot_end_turns_back():
 @pytest.mark.parametrize("velocity", [(0.3, -0.2, -0.7), (-0.4, 0.1, -1.5)])
 def test_regularized_friction_comes_to_it_as_its_speed_goes_to_zero(velocity):
     ends = []
-    for law in (CoulombLaw(0.7), RegularizedCoulombFriction(0.7, 1e-6)):
+    for law in (CoulombLaw(0.7), RegularizedCoulombLaw(0.7, 1e-6)):
         state, top = planar(0.0, -1.0, law)
         state = state._replace(velocity=velocity, momentum=(1e-4, 2e-4, -3e-4))
         ends.append(impact(state, 0.5, top))

@@ -9,7 +9,7 @@ from dry_runs import DryRun, launched
 from tippetop.integrators.scipy_methods import SciPy
 from tippetop.mechanics.contensou import ELLIPSOIDAL_RADIUS, EllipsoidalLaw
 from tippetop.mechanics.coulomb import CoulombLaw
-from tippetop.mechanics.surface import EccentricSphere
+from tippetop.mechanics.surface import SphereSurface
 from tippetop.mechanics.top import Top
 
 MASS, RADIUS, GRAVITY = 0.02, 0.02, 9.8
@@ -26,7 +26,7 @@ CASES = {
 @pytest.mark.parametrize("case", CASES)
 def test_time_stepping_converges_to_our_runs_at_first_order(case):
     law, rho, spin, rests, end = CASES[case]
-    top = Top(1.0, 131 / 350, 0.4, EccentricSphere(1.0, 0.3), law, 1.0)
+    top = Top(1.0, 131 / 350, 0.4, SphereSurface(1.0, 0.3), law, 1.0)
     run = DryRun(*launched(top, 0.1, spin / SECOND, rests=rests), SciPy("dop853", 1e-12)).follow(end * SECOND)
     tilt = math.acos(run.axis[2])
     errors = []

@@ -21,12 +21,12 @@ from tippetop.mechanics.rolling import (
     without_drilling,
 )
 from tippetop.mechanics.state import SlidingState
-from tippetop.mechanics.surface import EccentricSphere, contact_vector
+from tippetop.mechanics.surface import SphereSurface, contact_vector
 from tippetop.mechanics.top import Top
 from tippetop.theory.dual import jacobian
 
 M, R = 0.02, 0.02
-REPORT = Top(M, 131 / 350 * M * R**2, 2 / 5 * M * R**2, EccentricSphere(R, 0.3), CoulombLaw(0.3), 9.8)
+REPORT = Top(M, 131 / 350 * M * R**2, 2 / 5 * M * R**2, SphereSurface(R, 0.3), CoulombLaw(0.3), 9.8)
 
 
 def newton_euler(top, n, omega, wrench):

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from tippetop.mechanics.algebra import Series as FlightSeries
+from tippetop.mechanics.algebra import TruncatedSeries as FlightSeries
 from tippetop.mechanics.series import Series, horner, solution
 from tippetop.sweeps.stepper import NumPyArithmetic
 

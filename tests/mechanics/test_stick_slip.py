@@ -27,7 +27,7 @@ from tippetop.mechanics.stick_slip import (
     slip_of,
     velocity_of,
 )
-from tippetop.mechanics.surface import EccentricSphere, Spheroid
+from tippetop.mechanics.surface import SphereSurface, SpheroidSurface
 from tippetop.mechanics.top import Top
 
 SECOND = math.sqrt(9.8 / 0.02)
@@ -37,7 +37,7 @@ DOP853 = SciPy("dop853", 1e-13)
 
 
 def report(law):
-    return Top(1.0, 131 / 350, 2 / 5, EccentricSphere(1.0, 0.3), law, 1.0)
+    return Top(1.0, 131 / 350, 2 / 5, SphereSurface(1.0, 0.3), law, 1.0)
 
 
 def tilt(run):
@@ -99,7 +99,7 @@ def test_slip_and_drilling_end_together_with_contensou_friction():
 def test_a_uniform_ball_stops_slipping_after_two_sevenths_of_its_slip_over_mu_g(turning):
     """Its slip keeps its direction, v' = -(7/2) mu g; it sticks for good."""
     mu, velocity = 0.25, (0.8, 0.3)
-    ball = Top(1.0, 0.4, 0.4, EccentricSphere(1.0, 0.0), CoulombLaw(mu), 1.0)
+    ball = Top(1.0, 0.4, 0.4, SphereSurface(1.0, 0.0), CoulombLaw(mu), 1.0)
     axis, momentum = (0.6, 0.0, 0.8), tuple(0.4 * w for w in turning)
     slip = slip_of(axis, momentum, velocity, ball)
     run = DryRun(ball, axis, momentum, velocity, DOP853).follow(6.0)
@@ -157,7 +157,7 @@ def test_slip_passes_through_zero_in_a_plane_where_it_cannot_stick():
 
 def swinging(law, shape=None):
     """A body at rest at its contact point that will not stick if friction is weak."""
-    top = report(law)._replace(shape=shape or EccentricSphere(1.0, 0.3))
+    top = report(law)._replace(shape=shape or SphereSurface(1.0, 0.3))
     axis, momentum = (0.48, 0.64, 0.6), (0.2, -0.1, 0.4)
     if len(slip_of(axis, momentum, (0.0, 0.0), top)) == 3:
         momentum = without_drilling(axis, momentum, top)
@@ -208,7 +208,7 @@ FAMILIES = {
 }
 
 
-@pytest.mark.parametrize("shape", [EccentricSphere(1.0, 0.3), Spheroid(1.0, 1.4)], ids=["sphere", "egg"])
+@pytest.mark.parametrize("shape", [SphereSurface(1.0, 0.3), SpheroidSurface(1.0, 1.4)], ids=["sphere", "egg"])
 @pytest.mark.parametrize("power", [1, 2])
 @pytest.mark.parametrize("family", FAMILIES)
 def test_the_beginning_of_slip_solves_the_equations_to_its_order(family, power, shape):

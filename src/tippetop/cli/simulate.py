@@ -100,9 +100,16 @@ def simulate(
 
             samples = max(samples, sample_count(chosen, duration))
     began = time.perf_counter()
-    run = run_problem(
-        chosen, duration, samples=samples, integrator=integrator, tolerance=tolerance, step=step
-    )
+    with _bar("simulating") as progress:
+        run = run_problem(
+            chosen,
+            duration,
+            samples=samples,
+            integrator=integrator,
+            tolerance=tolerance,
+            step=step,
+            watcher=lambda part: progress(part, 1.0),
+        )
     elapsed = time.perf_counter() - began
     for kind, path in wanted.items():
         _write(run, kind, path, force)
@@ -147,13 +154,15 @@ def _write(run: "xr.Dataset", kind: str, path: Path, force: bool) -> None:
 
 
 @contextmanager
-def _bar(what: str) -> Iterator[Callable[[int, int], None]]:
+def _bar(what: str) -> Iterator[Callable[[float, float], None]]:
     """Shows on a terminal how far something is, and how long it still takes, as it is told."""
+    if not sys.stderr.isatty():
+        yield lambda _done, _count: None
+        return
     from rich.console import Console  # noqa: PLC0415
     from rich.progress import Progress  # noqa: PLC0415
 
-    silent = not sys.stderr.isatty()
-    with Progress(console=Console(stderr=True), disable=silent, transient=True) as bar:
+    with Progress(console=Console(stderr=True), transient=True) as bar:
         shown = bar.add_task(what)
         yield lambda done, count: bar.update(shown, total=count, completed=done)
 

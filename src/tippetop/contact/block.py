@@ -23,7 +23,7 @@ NODES, WEIGHTS = (
 
 
 @dataclass(frozen=True)
-class Group:
+class ModeSteps:
     """The steps of a block that were taken in one mode.
 
     Attributes
@@ -87,7 +87,7 @@ class Block:
         return self.ends - self.starts
 
     @cached_property
-    def groups(self) -> list[Group]:
+    def groups(self) -> list[ModeSteps]:
         """The steps by mode."""
         kinds: dict[tuple[str, int], list[int]] = {}
         for number, segment in enumerate(self.segments):
@@ -99,7 +99,7 @@ class Block:
         for numbers in kinds.values():
             which = np.concatenate([np.arange(first[n], first[n + 1]) for n in numbers])
             terms = np.concatenate([self.segments[n].solution.terms for n in numbers])
-            found.append(Group(self.segments[numbers[0]].mode, which, terms, spans[which]))
+            found.append(ModeSteps(self.segments[numbers[0]].mode, which, terms, spans[which]))
         return found
 
     def step_at(self, times: Array) -> NDArray[np.intp]:

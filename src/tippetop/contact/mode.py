@@ -32,6 +32,15 @@ class Outcome(Enum):
         "The top bounced and slid more often than the run allows; "
         "shorten the duration, lower the restitution, or raise the limit on phases."
     )
+    TOO_MANY_STEPS = (
+        "The motion took more steps than the run allows: it is very fast, or stiff; shorten the duration, "
+        "lessen the friction, try the integrator radau, which is made for stiff friction, or raise the limit "
+        "on steps."
+    )
+    INACCURATE = (
+        "The numbers do not keep what the motion keeps: do not trust them; "
+        "try another integrator or a smaller tolerance."
+    )
     FAILED = (
         "The integrator could not go on: the motion became singular or too stiff for it; "
         "try another integrator, or less friction."

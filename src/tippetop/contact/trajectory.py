@@ -10,6 +10,9 @@ from tippetop.mechanics.state import State
 PHASE_LIMIT = 100_000
 """How many modes a run goes through at most unless told otherwise."""
 
+STEP_LIMIT = 500_000
+"""How many steps a run takes at most unless told otherwise: more than an hour of a tippe top's spinning."""
+
 
 @dataclass
 class Trajectory:
@@ -23,8 +26,8 @@ class Trajectory:
         When it ends at the latest.
     integrator
         The method for modes that need one.
-    limit
-        How many modes to go through at most.
+    limit, step_limit
+        How many modes to go through, and how many steps to take, at most.
     time, state
         Where it is.
     outcome, detail
@@ -37,6 +40,7 @@ class Trajectory:
     end: float
     integrator: Integrator
     limit: int = PHASE_LIMIT
+    step_limit: int = STEP_LIMIT
     time: float = 0.0
     outcome: Outcome | None = None
     detail: str = ""
@@ -52,7 +56,7 @@ class Trajectory:
 
     def segments(self) -> Iterator[Segment]:
         """Follow the launch, mode by mode and piece by piece."""
-        transition, modes = self._enter(self.start), 0
+        transition, modes, steps = self._enter(self.start), 0, 0
         while isinstance(transition.then, Mode):
             if self.time >= self.end or modes == self.limit:
                 self.outcome = Outcome.COMPLETED if self.time >= self.end else Outcome.TOO_MANY_PHASES
@@ -63,6 +67,10 @@ class Trajectory:
                 if segment.transition is not None:
                     transition = self._enter(segment.transition)
                 yield segment
+                steps += segment.steps
+                if steps >= self.step_limit and self.outcome is None:
+                    self.outcome = Outcome.TOO_MANY_STEPS
+                    return
 
     def _enter(self, transition: Transition) -> Transition:
         self.events += transition.events

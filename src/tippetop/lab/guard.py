@@ -31,7 +31,7 @@ HEADERS = {
 _LOG = logging.getLogger(__name__)
 
 
-class Guard:
+class OwnPagesOnly:
     """An application in front of another, which lets through what this machine was asked by its own pages.
 
     Parameters

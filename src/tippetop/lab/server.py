@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from tippetop.errors import TippetopError, Unavailable
-from tippetop.lab.guard import Guard, log_malformed_once
+from tippetop.lab.guard import OwnPagesOnly, log_malformed_once
 from tippetop.lab.setup import Setup, read_query
 from tippetop.lab.turns import Turns
 from tippetop.lab.workers import Workers
@@ -59,7 +59,7 @@ def serve(
     _check_free(host, port)
     pool = Workers(workers)
     _add_routes(app, pool)
-    app.add_middleware(Guard, host=host)
+    app.add_middleware(OwnPagesOnly, host=host)
     log_malformed_once(core.sio.handlers["/"], core.sio.eio.logger)
     register_page(pool, TRACK_PATH, FILE_PATH)
     app.on_startup(lambda: announce(f"the laboratory is at http://{_shown(host)}:{port}/ (Ctrl-C ends it)"))

@@ -44,32 +44,32 @@ class Algebra:
         return self**-1.0 * other
 
 
-class Series(Algebra):
+class TruncatedSeries(Algebra):
     """A power series in time, truncated after the degree of all others."""
 
     def __init__(self, terms: list[float]) -> None:
         self.terms = terms
 
-    def __add__(self, other: Any) -> "Series":
-        if isinstance(other, Series):
-            return Series([a + b for a, b in zip(self.terms, other.terms, strict=True)])
-        return Series([self.terms[0] + other, *self.terms[1:]])
+    def __add__(self, other: Any) -> "TruncatedSeries":
+        if isinstance(other, TruncatedSeries):
+            return TruncatedSeries([a + b for a, b in zip(self.terms, other.terms, strict=True)])
+        return TruncatedSeries([self.terms[0] + other, *self.terms[1:]])
 
-    def __mul__(self, other: Any) -> "Series":
+    def __mul__(self, other: Any) -> "TruncatedSeries":
         a = self.terms
-        if isinstance(other, Series):
+        if isinstance(other, TruncatedSeries):
             b = other.terms[::-1]
             last = len(a) - 1
-            return Series([sum(map(mul, a, b[last - k :])) for k in range(last + 1)])
-        return Series([other * term for term in a])
+            return TruncatedSeries([sum(map(mul, a, b[last - k :])) for k in range(last + 1)])
+        return TruncatedSeries([other * term for term in a])
 
-    def power(self, exponent: float) -> "Series":
+    def power(self, exponent: float) -> "TruncatedSeries":
         """A real power, term by term from y' a = exponent a' y."""
         a, y = self.terms, [self.terms[0] ** exponent]
         for k in range(1, len(a)):
             total = sum(((exponent + 1.0) * j - k) * a[j] * y[k - j] for j in range(1, k + 1))
             y.append(total / (k * a[0]))
-        return Series(y)
+        return TruncatedSeries(y)
 
 
 class Disc(Algebra):

@@ -15,7 +15,7 @@ from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import VERTICAL, Horizontal, Scalar, Vector, add, cross, dot, scale
 
 
-class Contact(NamedTuple):
+class SlidingContact(NamedTuple):
     """The geometry, kinematics and forces of the contact at an instant.
 
     Attributes
@@ -87,7 +87,7 @@ def point_velocity(velocity: Vector, omega: Vector, arm: Vector) -> Vector:
     return add(velocity, cross(omega, arm))
 
 
-def contact(axis: Vector, momentum: Vector, velocity: Horizontal, top: Top) -> Contact:
+def contact(axis: Vector, momentum: Vector, velocity: Horizontal, top: Top) -> SlidingContact:
     """Geometry, slip and contact force of the body on the table.
 
     Parameters
@@ -116,7 +116,7 @@ def contact(axis: Vector, momentum: Vector, velocity: Horizontal, top: Top) -> C
         top.surface.curvature(c) * turning[2] * turning[2] + lever * cross(momentum, turning)[2]
     )
     reaction = cross(moment_per_normal_force(arm, traction), axis)[2]
-    return Contact(arm, slip, omega, traction, -falling, 1.0 / top.mass - lever * reaction)
+    return SlidingContact(arm, slip, omega, traction, -falling, 1.0 / top.mass - lever * reaction)
 
 
 def moment_per_normal_force(arm: Vector, traction: Traction) -> Vector:

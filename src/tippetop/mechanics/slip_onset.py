@@ -12,7 +12,7 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple, Protocol
 
-from tippetop.mechanics.algebra import Series
+from tippetop.mechanics.algebra import TruncatedSeries
 from tippetop.mechanics.coulomb import RollingResistance
 from tippetop.mechanics.motion import axis_rate
 from tippetop.mechanics.rolling import (
@@ -142,7 +142,7 @@ def onset(
 
 
 class Growing(NamedTuple):
-    """Series that are being made: axis, angular momentum, directions and speeds known so far.
+    """TruncatedSeries that are being made: axis, angular momentum, directions and speeds known so far.
 
     `free` and `responses` hold the rates of zeta and the normal acceleration without force, and per unit of
     each wrench: series that depend on axis and angular momentum alone.
@@ -161,7 +161,7 @@ class Growing(NamedTuple):
     def of(
         cls, start: tuple[Vector, Vector, Slip], top: Top, series: Callable[[Callable[[int], Scalar]], Any]
     ) -> "Growing":
-        """Series that start here."""
+        """TruncatedSeries that start here."""
         rules: list[Callable[[int], Scalar]] = []
 
         def later(i: int) -> Any:
@@ -201,11 +201,13 @@ class Growing(NamedTuple):
         """Coefficients of order j of the amounts of the wrenches, the normal force last."""
         return tuple(amount.terms[j] for amount in self.amounts(self.directions(j), j))
 
-    def directions(self, j: int) -> tuple[Series, ...]:
+    def directions(self, j: int) -> tuple[TruncatedSeries, ...]:
         """The direction up to order j."""
-        return tuple(Series([e[i] for e in self.direction[: j + 1]]) for i in range(len(self.direction[0])))
+        return tuple(
+            TruncatedSeries([e[i] for e in self.direction[: j + 1]]) for i in range(len(self.direction[0]))
+        )
 
-    def amounts(self, direction: tuple[Series, ...], j: int) -> tuple[Series, ...]:
+    def amounts(self, direction: tuple[TruncatedSeries, ...], j: int) -> tuple[TruncatedSeries, ...]:
         """Amounts of the wrenches up to order j, the normal force last."""
         reach = set_valued(self.top.friction).slip_length
         w = 0.0 * direction[0] if reach is None else direction[2] * (1.0 / reach)
@@ -223,14 +225,14 @@ class Growing(NamedTuple):
 
     def slope(self, across: Slip) -> Slip:
         """Derivative of A along a direction across e_0, at the start."""
-        direction = tuple(Series([e, b]) for e, b in zip(self.direction[0], across, strict=True))
+        direction = tuple(TruncatedSeries([e, b]) for e, b in zip(self.direction[0], across, strict=True))
         frozen = self._replace(
             free=tuple(constant(x) for x in self.free),
             responses=tuple(tuple(constant(x) for x in column) for column in self.responses),
         )
         return tuple(a.terms[1] for a in frozen.rates(direction, 1))
 
-    def rates(self, direction: tuple[Series, ...], j: int) -> tuple[Series, ...]:
+    def rates(self, direction: tuple[TruncatedSeries, ...], j: int) -> tuple[TruncatedSeries, ...]:
         """A up to order j."""
         amounts = self.amounts(direction, j)
         rates = []
@@ -242,11 +244,11 @@ class Growing(NamedTuple):
         return tuple(rates)
 
     @staticmethod
-    def upto(a: Any, j: int) -> Series:
+    def upto(a: Any, j: int) -> TruncatedSeries:
         """A series, or a number, up to order j."""
         if isinstance(a, (float, int)):
-            return Series([a, *[0.0] * j])
-        return Series([a[k] for k in range(j + 1)])
+            return TruncatedSeries([a, *[0.0] * j])
+        return TruncatedSeries([a[k] for k in range(j + 1)])
 
 
 class Constant(NamedTuple):

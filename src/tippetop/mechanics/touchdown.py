@@ -4,7 +4,7 @@ import math
 from enum import IntEnum
 from typing import NamedTuple
 
-from tippetop.mechanics.algebra import Disc, Series
+from tippetop.mechanics.algebra import Disc, TruncatedSeries
 from tippetop.mechanics.flight import SMALL
 from tippetop.mechanics.motion import axis_rate
 from tippetop.mechanics.roots import Triple, first_root
@@ -135,12 +135,12 @@ class Tip(NamedTuple):
             self.acceleration * cosine - self.rate * w * w * sine,
         )
 
-    def series(self) -> "Series":
+    def series(self) -> "TruncatedSeries":
         """Height as a power series in time."""
         terms = [self.height, self.rate, 0.5 * self.acceleration]
         for j in range(1, DEGREE - 1):
             terms.append(-(self.frequency**2) * terms[j] / ((j + 1) * (j + 2)))
-        return Series(terms)
+        return TruncatedSeries(terms)
 
     def spread(self, time: float, angle: float) -> float:
         """Largest |c - c(time)| for complex times within angle / frequency of a real one."""

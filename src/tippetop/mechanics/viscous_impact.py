@@ -8,7 +8,7 @@ from tippetop.mechanics.impulse import Goal, Impulse, Striking, first_reach
 from tippetop.mechanics.vectors import Horizontal, length
 
 
-class Mode(NamedTuple):
+class PrincipalDirection(NamedTuple):
     """A direction in which slip, v' = coupling - mu stiffness v, is driven by friction along itself only.
 
     Attributes
@@ -41,7 +41,7 @@ class ViscousProcess(NamedTuple):
 
     body: Striking
     mu: float
-    modes: tuple[Mode, Mode]
+    modes: tuple[PrincipalDirection, PrincipalDirection]
 
     @classmethod
     def of(cls, body: Striking, law: ViscousLaw) -> "ViscousProcess":
@@ -50,9 +50,10 @@ class ViscousProcess(NamedTuple):
         angle = 0.5 * math.atan2(2.0 * east[1], east[0] - north[1])
         cosine, sine = math.cos(angle), math.sin(angle)
 
-        def mode(x: float, y: float) -> Mode:
+        def mode(x: float, y: float) -> PrincipalDirection:
             stiffness = x * x * east[0] + 2.0 * x * y * east[1] + y * y * north[1]
-            return Mode((x, y), stiffness, x * up[0] + y * up[1], x * body.point[0] + y * body.point[1])
+            coupling, slip = x * up[0] + y * up[1], x * body.point[0] + y * body.point[1]
+            return PrincipalDirection((x, y), stiffness, coupling, slip)
 
         return cls(body, law.mu, (mode(cosine, sine), mode(-sine, cosine)))
 

@@ -64,7 +64,7 @@ def lay_out(path: Path, sweep: Sweep) -> None:
             dtype=kind.dtype,
             fill_value=Status.PENDING if name == "status" else kind.missing,
             dimension_names=grid.dimensions,
-            attributes=kind.attributes | _coordinates(sweep),
+            attributes=_plain(kind.attributes) | _coordinates(sweep),
             compressors=checked,
         )
     with warnings.catch_warnings():
@@ -74,6 +74,11 @@ def lay_out(path: Path, sweep: Sweep) -> None:
     metadata = json.loads((path / METADATA).read_text(encoding="utf-8"))
     metadata["attributes"][DIGEST] = _digest(metadata)
     (path / METADATA).write_text(json.dumps(metadata, indent=2), encoding="utf-8")
+
+
+def _plain(attributes: dict[str, Any]) -> dict[str, Any]:
+    """Attributes with lists for arrays, as JSON has them."""
+    return {name: value.tolist() if hasattr(value, "tolist") else value for name, value in attributes.items()}
 
 
 def layout_attributes(sweep: Sweep) -> dict[str, Any]:

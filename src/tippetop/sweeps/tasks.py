@@ -172,7 +172,7 @@ def _first_done(client: Any, address: str, running: Mapping[Future[Found], Task]
 
 
 def _workers(client: Any) -> int:
-    return len(client.scheduler_info(n_workers=-1)["workers"])
+    return len(client.scheduler_info(n_workers=-1).get("workers", ()))
 
 
 @contextmanager
