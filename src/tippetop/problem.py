@@ -16,7 +16,9 @@ from tippetop.errors import InvalidInput, one_of
 from tippetop.files import read_text
 from tippetop.mechanics.friction import FrictionLaw, RegularizedCoulombLaw, ViscousLaw
 from tippetop.mechanics.motion import along_table, contact, on_table
+from tippetop.mechanics.rolling import is_set_valued
 from tippetop.mechanics.state import State
+from tippetop.mechanics.stick_slip import is_slipping, size
 from tippetop.mechanics.surface import SphereSurface, SpheroidSurface, Surface
 from tippetop.mechanics.top import Top, natural_state, natural_units
 from tippetop.mechanics.vectors import Functions
@@ -260,6 +262,8 @@ class Problem(Part):
         """The resistance of the contact at launch; nan where its arithmetic breaks down."""
         try:
             start = along_table(self.start())
+            if is_set_valued(self.friction.law) and not is_slipping(*start, self.top):
+                return 1.0 + 0.0 * size(start.momentum)
             touch = contact(start.axis, start.momentum, start.velocity, self.top)
             return float(touch.delassus + 0.0 * touch.free_acceleration)
         except ArithmeticError:

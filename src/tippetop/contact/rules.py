@@ -5,14 +5,14 @@ from typing import ClassVar
 
 from tippetop.contact.flight import Flight
 from tippetop.contact.mode import Event, EventKind, Outcome, Rules, Transition
-from tippetop.contact.sliding import Sliding, is_slipping
+from tippetop.contact.sliding import Sliding
 from tippetop.contact.sticking import SlipEnd, SlipOnset, Sticking
 from tippetop.mechanics.flight import gap, gap_rate
 from tippetop.mechanics.impact import impact
 from tippetop.mechanics.motion import along_table, contact
 from tippetop.mechanics.rolling import is_set_valued
 from tippetop.mechanics.state import State
-from tippetop.mechanics.stick_slip import slip_guard
+from tippetop.mechanics.stick_slip import is_slipping, slip_guard
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.touchdown import Start
 
@@ -73,10 +73,10 @@ class ContactRules:
         Where no normal force is consistent with the friction (Painleve's paradox), an impact without approach
         takes as much slip away as it needs to: Darboux's and Keller's way out.
         """
-        if is_set_valued(self.top.friction) and not is_slipping(state, self.top):
+        sliding = along_table(state)
+        if is_set_valued(self.top.friction) and not is_slipping(*sliding, self.top):
             found = self.without_slip(time, state)
             return replace(found, events=(*events, *found.events))
-        sliding = along_table(state)
         touch = contact(sliding.axis, sliding.momentum, sliding.velocity, self.top)
         if touch.delassus <= 0 and not self.pulls:
             return self.inconsistent(time, state, events)

@@ -10,8 +10,8 @@ from tippetop.integrators.base import Function, Guard, Motion
 from tippetop.mechanics.motion import along_table, contact, on_table, sliding_rates
 from tippetop.mechanics.rolling import is_set_valued
 from tippetop.mechanics.state import SlidingState, State
-from tippetop.mechanics.stick_slip import HORIZON, slip_of, stopping_guard
-from tippetop.mechanics.top import Kind, Top
+from tippetop.mechanics.stick_slip import HORIZON, stopping_guard
+from tippetop.mechanics.top import Kind
 from tippetop.mechanics.vectors import Row, Scalar
 
 LIFT_OFF, STOPPING = "lift-off", "stopping"
@@ -75,14 +75,3 @@ def normal_force(kind: Kind) -> Function:
         return contact(state.axis, state.momentum, state.velocity, kind.top(tuple(numbers))).normal_force
 
     return value
-
-
-def is_slipping(state: State, top: Top) -> bool:
-    """Whether the contact of a body on the table slips, or drills where its law resists that."""
-    slip = slip_of(state.axis, state.momentum, state.velocity[:2], top)
-    scale = sum(abs(number) for number in (*state.momentum, *state.velocity))
-    return any(abs(number) > ROUNDING * scale for number in slip)
-
-
-ROUNDING = 1e-14
-"""Slip, relative to the velocities it is made of, that is rounding."""

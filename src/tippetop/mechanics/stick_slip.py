@@ -42,6 +42,9 @@ LANDING = (3e-9, 1e-16)
 """How long before its end the rest of slip may be taken in one step, in natural units of time: if the
 direction of slip has come to rest by then, and in any case."""
 
+ROUNDING = 1e-14
+"""Slip, relative to the momenta and velocities it is made of in natural units, that is rounding."""
+
 ITERATIONS = 5000
 """Most iterations in search of a direction in which slip can go on; a hundred are usual."""
 
@@ -77,6 +80,18 @@ def velocity_of(axis: Vector, momentum: Vector, slip: Slip, top: Top) -> Horizon
     """Horizontal velocity of the centre of mass with this slip, m/s."""
     rolling = velocity_without_slip(axis, momentum, top)
     return (rolling[0] + slip[0], rolling[1] + slip[1])
+
+
+def is_slipping(axis: Vector, momentum: Vector, velocity: Horizontal, top: Top) -> Scalar:
+    """Whether the contact slips, or drills where its law resists that, by more than rounding.
+
+    A truth value of floats, or an array of them.
+    """
+    scale = sum(abs(number) for number in (*momentum, *velocity))
+    found = False
+    for number in slip_of(axis, momentum, velocity, top):
+        found = found | (abs(number) > ROUNDING * scale)
+    return found
 
 
 def slip_part(accelerations: Sequence[Scalar], reach: Scalar | None) -> Slip:

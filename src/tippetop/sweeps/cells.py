@@ -20,6 +20,7 @@ from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top, natural_state, natural_units
 from tippetop.mechanics.units import Units
 from tippetop.problem import Problem
+from tippetop.sweeps.flights import slips
 from tippetop.sweeps.launches import Launches
 from tippetop.validation import Part
 
@@ -89,7 +90,7 @@ def cells_of(problem: Problem, values: Mapping[str, Array]) -> Cells:
             sliding = along_table(start)
             touch = contact(sliding.axis, sliding.momentum, sliding.velocity, top)
             lifted = spread(filled.launch.gap, count) > 0.0
-            fault[~(touch.delassus > 0.0) | lifted] = Fault.NO_CONTACT_FORCE
+            fault[(~(touch.delassus > 0.0) & slips(start, top)) | lifted] = Fault.NO_CONTACT_FORCE
         fault[~(spread(filled.body.I3, count) <= 2.0 * spread(filled.body.I1, count))] = Fault.NO_SUCH_BODY
         for field, numbers in values.items():
             fault[~allowed(numbers, known[field])] = Fault.VALUE_OUT_OF_RANGE

@@ -19,7 +19,7 @@ from tippetop.mechanics.flight import gap, gap_rate
 from tippetop.mechanics.state import State
 from tippetop.mechanics.touchdown import Start
 from tippetop.metrics import Tally
-from tippetop.sweeps.flights import collide, fly_all, slides
+from tippetop.sweeps.flights import collide, fly_all, slides, slips
 from tippetop.sweeps.launches import Indices, picked, single
 from tippetop.sweeps.slots import Slots
 
@@ -49,9 +49,9 @@ class Crossings:
     def launch(self, lanes: Indices, state: State) -> None:
         """Sort the launches out that do not simply slide from the start."""
         launches = self.slots.launches
-        if launches.liftoff == "ignore":
-            return
-        plain = slides(state, launches.top)
+        plain = slips(state, launches.top)
+        if launches.liftoff != "ignore":
+            plain &= slides(state, launches.top)
         if launches.liftoff == "fly":
             plain &= gap(state, launches.top) <= TOUCHING
             plain &= np.abs(gap_rate(state, launches.top)) <= TOUCHING
@@ -61,10 +61,22 @@ class Crossings:
 
     def fall(self, lanes: Indices, time: Array, guards: Indices) -> None:
         """What follows where guards fall through zero."""
+        others = guards > 0
+        if others.any():
+            cells, state = self.slots.cell[lanes[others]], self.slots.whole(lanes[others])
+            transitions = [
+                self.slots.launches.rules(int(cell)).stopping(float(time[others][i]), single(state, i))
+                for i, cell in enumerate(cells)
+            ]
+            self._enter(lanes[others], time[others], transitions)
+        self._let_go(lanes[~others], time[~others])
+
+    def _let_go(self, lanes: Indices, time: Array) -> None:
+        """What follows where the normal force falls to zero."""
         slots = self.slots
-        launches, cells, state = slots.launches, slots.cell[lanes], slots.whole(lanes)
+        cells, state = slots.cell[lanes], slots.whole(lanes)
         slots.ends.lift_off[cells] = np.fmin(slots.ends.lift_off[cells], time)
-        if launches.liftoff == "stop":
+        if slots.launches.liftoff == "stop":
             slots.retire(lanes, state, time, Outcome.LIFTED_OFF)
         else:
             self._fly(lanes, state, time, np.full(len(lanes), int(Start.LIFT_OFF), dtype=np.intp))

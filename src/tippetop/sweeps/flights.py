@@ -26,8 +26,10 @@ from tippetop.mechanics.motion import (
     moment_per_normal_force,
     on_table,
 )
+from tippetop.mechanics.rolling import is_set_valued
 from tippetop.mechanics.series import Series, horner, solution
 from tippetop.mechanics.state import State
+from tippetop.mechanics.stick_slip import is_slipping
 from tippetop.mechanics.surface import contact_vector
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.touchdown import Tip
@@ -210,6 +212,13 @@ def collide(state: State, top: Top) -> tuple[State, Flags]:
 def slides(state: State, top: Top) -> Flags:
     """Whether tops in contact, whose contact point is at rest vertically, go on sliding."""
     sliding = along_table(state)
-    touch = contact(sliding.axis, sliding.momentum, sliding.velocity, top)
+    with np.errstate(all="ignore"):
+        touch = contact(sliding.axis, sliding.momentum, sliding.velocity, top)
     found: Flags = (touch.delassus > 0.0) & (touch.free_acceleration < 0.0)
     return found
+
+
+def slips(state: State, top: Top) -> Flags:
+    """Whether tops in contact slip, or drill, as they must where their law would otherwise let them stick."""
+    count = np.ones(len(np.atleast_1d(state.height)), dtype=bool)
+    return count & is_slipping(*along_table(state), top) if is_set_valued(top.friction) else count

@@ -70,7 +70,9 @@ class Slots:
         numbers = np.concatenate(
             (launches.numbers[:, filled], np.zeros((layout.numbers - layout.parameters, lanes)))
         )
-        numbers[layout.counts], numbers[layout.turns] = float(launches.liftoff != "ignore"), 1.0
+        numbers[layout.counts], numbers[layout.turns] = 1.0, 1.0
+        # The first guard is of lift-off.
+        numbers[layout.counts.start] = float(launches.liftoff != "ignore")
         numbers[layout.band] = np.array([[np.inf], [-np.inf]])
         if band is not None:
             watch.low, watch.high = band[0][filled], band[1][filled]
