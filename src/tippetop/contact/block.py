@@ -11,6 +11,7 @@ from tippetop.contact.mode import Mode, Reaction, Segment
 from tippetop.integrators.base import Array
 from tippetop.integrators.dense import at_fractions, evaluated, parts_of
 from tippetop.mechanics.state import State
+from tippetop.mechanics.top import Kind, Top
 
 STEPS = 4096
 """Steps in a block, about."""
@@ -89,10 +90,13 @@ class Block:
     @cached_property
     def groups(self) -> list[ModeSteps]:
         """The steps by mode."""
-        kinds: dict[tuple[str, int], list[int]] = {}
+        # Laws of different makes with the same numbers are equal as tuples.
+        kinds: dict[tuple[str, Top, Kind, int], list[int]] = {}
         for number, segment in enumerate(self.segments):
             if len(segment.solution.terms):
-                kinds.setdefault((segment.mode.name, segment.solution.terms.shape[2]), []).append(number)
+                mode = segment.mode
+                key = mode.name, mode.top, mode.top.kind, segment.solution.terms.shape[2]
+                kinds.setdefault(key, []).append(number)
         first = np.concatenate([[0], np.cumsum(self.lengths)])
         spans = self.spans
         found = []

@@ -170,6 +170,9 @@ class Rules(Protocol):
     def touchdown(self, time: float, state: State) -> Transition:
         """What follows when the top reaches the table."""
 
+    def sliding(self, state: State) -> "Mode":
+        """The mode of a contact that slips."""
+
     def stopping(self, time: float, state: State) -> Transition:
         """What follows when slip is about to end."""
 

@@ -4,15 +4,21 @@ from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from tippetop.contact.flight import Flight
-from tippetop.contact.mode import Event, EventKind, Outcome, Rules, Transition
+from tippetop.contact.mode import Event, EventKind, Mode, Outcome, Rules, Transition
 from tippetop.contact.sliding import Sliding
 from tippetop.contact.sticking import SlipEnd, SlipOnset, Sticking
 from tippetop.mechanics.flight import gap, gap_rate
 from tippetop.mechanics.impact import impact
-from tippetop.mechanics.motion import along_table, contact
-from tippetop.mechanics.rolling import is_set_valued
+from tippetop.mechanics.motion import along_table, contact, sliding_rates
+from tippetop.mechanics.rolling import (
+    ContactPoint,
+    contact_wrench,
+    is_set_valued,
+    on_branch,
+    on_limit_branch,
+)
 from tippetop.mechanics.state import State
-from tippetop.mechanics.stick_slip import is_slipping, slip_guard
+from tippetop.mechanics.stick_slip import HORIZON, is_slipping, slip_guard, slip_of, stopping_guard
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.touchdown import Start
 
@@ -53,15 +59,26 @@ class ContactRules:
         """Never happens: there are no flights."""
         raise NotImplementedError
 
+    def sliding(self, state: State) -> Mode:
+        """Slide, or follow slip to its end where that is near already."""
+        if not is_set_valued(self.top.friction):
+            return Sliding(self.top, self)
+        y = along_table(state)
+        top = on_branch(self.top, slip_of(*y, self.top))
+        near = stopping_guard(y, sliding_rates(y, top), top, HORIZON) <= 0.0
+        return SlipEnd(top, self) if near else Sliding(top, self)
+
     def stopping(self, time: float, state: State) -> Transition:
         """Follow slip to its end."""
-        return Transition((), SlipEnd(self.top, self), state)
+        top = on_branch(self.top, slip_of(*along_table(state), self.top))
+        return Transition((), SlipEnd(top, self), state)
 
     def without_slip(self, time: float, state: State) -> Transition:
         """Stick, if the limit surface admits the forces that needs, or slip from rest."""
         if slip_guard(state.axis, state.momentum, self.top) < 0.0:
             return Transition((), SlipOnset(self.top, self, 1), state)
-        mode = Sticking(self.top, self)
+        point = ContactPoint.of(state.axis, state.momentum, self.top)
+        mode = Sticking(on_limit_branch(self.top, contact_wrench(point, None, point.turning[:2])), self)
         numbers = mode.numbers(state)
         if mode.reaction(numbers).force[2] <= 0.0 and not self.pulls:
             return self.lift_off(time, state)
@@ -81,7 +98,7 @@ class ContactRules:
         if touch.delassus <= 0 and not self.pulls:
             return self.inconsistent(time, state, events)
         if touch.free_acceleration < 0 or self.pulls:
-            return Transition(events, Sliding(self.top, self), state)
+            return Transition(events, self.sliding(state), state)
         found = self.lift_off(time, state)
         return replace(found, events=(*events, *found.events))
 
@@ -159,7 +176,7 @@ class FreeToFly(ContactRules):
         after = collision.state
         if not collision.impulse:
             # Nothing but rounding kept the contact from being a resting one.
-            return Transition(events, Sliding(self.top, self), after)
+            return Transition(events, self.sliding(after), after)
         if rebounds:
             return Transition((*events, hit), self._flight(Start.REBOUND), after)
         return self.resting(time, after, (*events, hit))

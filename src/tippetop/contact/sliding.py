@@ -1,20 +1,20 @@
 """The top touches the table and slides."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from tippetop.contact.mode import IntegratedMode, Reaction, Transition
 from tippetop.integrators.base import Function, Guard, Motion
-from tippetop.mechanics.motion import along_table, contact, on_table, sliding_rates
-from tippetop.mechanics.rolling import is_set_valued
+from tippetop.mechanics.motion import along_table, angular_velocity, contact, on_table, sliding_rates
+from tippetop.mechanics.rolling import is_set_valued, sliding_law, with_sliding_law
 from tippetop.mechanics.state import SlidingState, State
-from tippetop.mechanics.stick_slip import HORIZON, stopping_guard
+from tippetop.mechanics.stick_slip import HORIZON, slip_of, stopping_guard
 from tippetop.mechanics.top import Kind
 from tippetop.mechanics.vectors import Row, Scalar
 
-LIFT_OFF, STOPPING = "lift-off", "stopping"
+LIFT_OFF, STOPPING, BRANCH = "lift-off", "stopping", "branch"
 
 
 @dataclass(frozen=True)
@@ -43,10 +43,13 @@ class Sliding(IntegratedMode):
         return Reaction(touch.force, touch.torque, touch.power)
 
     def follow(self, guard: str, time: float, state: State) -> Transition:
-        """What the rules say of lift-off, or of slip that is about to end."""
+        """What the rules say of lift-off, or of slip that is about to end; or the law's other branch."""
         if guard == LIFT_OFF:
             return self.rules.lift_off(time, state)
-        return self.rules.stopping(time, state)
+        if guard == STOPPING:
+            return self.rules.stopping(time, state)
+        law: Any = sliding_law(self.top.friction)
+        return Transition((), replace(self, top=with_sliding_law(self.top, law.other_branch())), state)
 
 
 @lru_cache
@@ -60,9 +63,18 @@ def sliding_motion(kind: Kind, guarded: bool) -> Motion:
         state, top = SlidingState.unpack(y), kind.top(tuple(numbers))
         return stopping_guard(state, sliding_rates(state, top), top, HORIZON)
 
+    def on_branch(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
+        state, top = SlidingState.unpack(y), kind.top(tuple(numbers))
+        law: Any = sliding_law(top.friction)
+        slip = slip_of(state.axis, state.momentum, state.velocity, top)
+        return law.branch_guard(slip[:2], angular_velocity(state.axis, state.momentum, top))
+
     guards = [Guard(LIFT_OFF, normal_force(kind))] if guarded else []
-    if is_set_valued(kind.example.friction):
+    law = kind.example.friction
+    if is_set_valued(law):
         guards.append(Guard(STOPPING, stops))
+    if hasattr(sliding_law(law), "branch_guard"):
+        guards.append(Guard(BRANCH, on_branch))
     return Motion(rates, size=8, parameters=kind.numbers, guards=tuple(guards))
 
 

@@ -24,6 +24,7 @@ from tippetop.mechanics.motion import axis_rate, on_table
 from tippetop.mechanics.rolling import (
     ContactPoint,
     contact_wrench,
+    on_branch,
     slip_dimension,
     velocity_without_slip,
 )
@@ -118,16 +119,22 @@ class SlipOnset(Mode):
 
     def state(self, y: Row) -> State:
         """As in sliding."""
-        return self._sliding.state(y)
+        return Sliding(self.top, self.rules).state(y)
 
     def segments(self, time: float, state: State, end: float, integrator: Integrator) -> Iterator[Segment]:
         """Evaluate the series, which need no integrator."""
         try:
             direction, _ = direction_of_slip(state.axis, state.momentum, self.top)
-            begin = onset((state.axis, state.momentum, direction), self.power, self.top, ORDER, series)
+            top = on_branch(self.top, direction)
+            begin = onset((state.axis, state.momentum, direction), self.power, top, ORDER, series)
         except ArithmeticError as error:
             nothing = DenseSolution(np.array([time]), np.empty((0, 8, 1)))
-            yield Segment(self._sliding, nothing, state, Transition((), Outcome.FAILED, state, str(error)))
+            yield Segment(
+                Sliding(self.top, self.rules),
+                nothing,
+                state,
+                Transition((), Outcome.FAILED, state, str(error)),
+            )
             return
         duration = min(begin.valid_until(ACCURACY), end - time)
 
@@ -139,14 +146,11 @@ class SlipOnset(Mode):
         solution = DenseSolution.fitted(numbers, np.array([0.0, duration]), DEGREE)
         knots = np.array([time, min(time + duration, end)])
         last = self.state(numbers(np.array([duration]))[0].tolist())
-        then = Outcome.COMPLETED if knots[-1] >= end else self._sliding
+        sliding = Sliding(top, self.rules)
+        then = Outcome.COMPLETED if knots[-1] >= end else sliding
         yield Segment(
-            self._sliding, DenseSolution(knots, solution.terms), last, Transition((), then, last), steps=1
+            sliding, DenseSolution(knots, solution.terms), last, Transition((), then, last), steps=1
         )
-
-    @property
-    def _sliding(self) -> Sliding:
-        return Sliding(self.top, self.rules)
 
 
 @dataclass(frozen=True)
@@ -193,7 +197,7 @@ class SlipEnd(Mode):
         if arc.guard == LIFT_OFF:
             return self.rules.lift_off(time, state)
         if arc.guard == REOPENING:
-            return Transition((), self._sliding, state)
+            return Transition((), self.rules.sliding(state), state)
         return self.rules.without_slip(time, state)
 
     def _in_time(self, clock: DenseSolution, time: float, duration: float) -> DenseSolution:

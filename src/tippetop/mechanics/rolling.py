@@ -13,7 +13,7 @@ omega_y' = 0.
 """
 
 from collections.abc import Sequence
-from typing import NamedTuple, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 from tippetop.mechanics.coulomb import RollingResistance, SetValuedLaw
 from tippetop.mechanics.friction import NO_TORQUE, FrictionLaw
@@ -205,6 +205,33 @@ def set_valued(law: FrictionLaw) -> SetValuedLaw:
 def is_set_valued(law: FrictionLaw) -> bool:
     """Whether a law lets slip end."""
     return hasattr(sliding_law(law), "reserve")
+
+
+def is_branched(law: FrictionLaw) -> bool:
+    """Whether a law is made of branches, and knows itself which holds."""
+    return hasattr(sliding_law(law), "branch")
+
+
+def with_sliding_law(top: Top, law: FrictionLaw) -> Top:
+    """A top with another law of slip and drilling, and the same rolling resistance."""
+    outer = top.friction
+    return top._replace(friction=outer._replace(law=law) if isinstance(outer, RollingResistance) else law)
+
+
+def on_branch(top: Top, slip: Slip) -> Top:
+    """A top with the branch of its law that holds where it slips, or in that direction; of floats."""
+    law: Any = sliding_law(top.friction)
+    if not is_branched(law):
+        return top
+    return with_sliding_law(top, law.branch(slip[:2], (0.0, 0.0, slip[2] / law.slip_length)))
+
+
+def on_limit_branch(top: Top, wrench: Wrench) -> Top:
+    """A top with the branch of its law's limit surface that belongs to what holds it at rest; of floats."""
+    law: Any = set_valued(top.friction)
+    if not is_branched(law):
+        return top
+    return with_sliding_law(top, law.limit_branch(wrench.force[2], wrench.torque[2]))
 
 
 def slip_dimension(law: FrictionLaw) -> int:

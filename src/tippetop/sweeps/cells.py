@@ -16,6 +16,7 @@ from tippetop.catalogue import Fault
 from tippetop.errors import InvalidInput, one_of
 from tippetop.integrators.base import Array
 from tippetop.mechanics.motion import along_table, contact
+from tippetop.mechanics.rolling import on_branch
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top, natural_state, natural_units
 from tippetop.mechanics.units import Units
@@ -88,7 +89,7 @@ def cells_of(problem: Problem, values: Mapping[str, Array]) -> Cells:
         start = launch_state(filled, count)
         if filled.contact.liftoff != "fly":
             sliding = along_table(start)
-            touch = contact(sliding.axis, sliding.momentum, sliding.velocity, top)
+            touch = contact(*sliding, on_branch(top, (1.0, 0.0, 0.0)))
             lifted = spread(filled.launch.gap, count) > 0.0
             fault[(~(touch.delassus > 0.0) & slips(start, top)) | lifted] = Fault.NO_CONTACT_FORCE
         fault[~(spread(filled.body.I3, count) <= 2.0 * spread(filled.body.I1, count))] = Fault.NO_SUCH_BODY

@@ -25,11 +25,12 @@ from tippetop.mechanics.motion import (
     contact,
     moment_per_normal_force,
     on_table,
+    sliding_rates,
 )
-from tippetop.mechanics.rolling import is_set_valued
+from tippetop.mechanics.rolling import is_branched, is_set_valued
 from tippetop.mechanics.series import Series, horner, solution
 from tippetop.mechanics.state import State
-from tippetop.mechanics.stick_slip import is_slipping
+from tippetop.mechanics.stick_slip import HORIZON, is_slipping, stopping_guard
 from tippetop.mechanics.surface import contact_vector
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.touchdown import Tip
@@ -211,6 +212,8 @@ def collide(state: State, top: Top) -> tuple[State, Flags]:
 
 def slides(state: State, top: Top) -> Flags:
     """Whether tops in contact, whose contact point is at rest vertically, go on sliding."""
+    if is_branched(top.friction):
+        return np.zeros(len(state.height), dtype=bool)
     sliding = along_table(state)
     with np.errstate(all="ignore"):
         touch = contact(sliding.axis, sliding.momentum, sliding.velocity, top)
@@ -219,6 +222,14 @@ def slides(state: State, top: Top) -> Flags:
 
 
 def slips(state: State, top: Top) -> Flags:
-    """Whether tops in contact slip, or drill, as they must where their law would otherwise let them stick."""
+    """Whether tops in contact slip on for a while, for all that their law says of the end of slip."""
     count = np.ones(len(np.atleast_1d(state.height)), dtype=bool)
-    return count & is_slipping(*along_table(state), top) if is_set_valued(top.friction) else count
+    if not is_set_valued(top.friction):
+        return count
+    if is_branched(top.friction):
+        return ~count
+    y = along_table(state)
+    with np.errstate(all="ignore"):
+        lasting = stopping_guard(y, sliding_rates(y, top), top, HORIZON) > 0.0
+    found: Flags = count & is_slipping(*y, top) & lasting
+    return found
