@@ -216,10 +216,11 @@ def test_files_do_not_wait_for_pictures_nor_leave_anything_behind(
     long = first_setup().changed({"launch.spin": 20_000.0, "friction.mu": 50.0, "duration": 120})
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     pool.track(short)  # the worker is ready
+    monkeypatch.setattr(workers, "PATIENCE", 2.0)
     with ThreadPoolExecutor(1) as thread:
         refused = thread.submit(pool.track, long)
         assert pool.file(short, "csv").startswith(b"time")
-        with pytest.raises(tt.InvalidInput, match="within 6 s"):
+        with pytest.raises(tt.InvalidInput, match="within 2 s"):
             refused.result()
     with monkeypatch.context() as patch:
         patch.setattr(workers, "FILE_PATIENCE", 0.3)
