@@ -5,7 +5,7 @@ from typing import ClassVar
 
 from tippetop.contact.flight import Flight
 from tippetop.contact.mode import Event, EventKind, Outcome, Rules, Transition
-from tippetop.contact.sliding import Sliding, is_slipping
+from tippetop.contact.sliding import Sliding, is_slipping, is_stopping
 from tippetop.contact.sticking import SlipEnd, SlipOnset, Sticking
 from tippetop.mechanics.flight import gap, gap_rate
 from tippetop.mechanics.impact import impact
@@ -81,9 +81,15 @@ class ContactRules:
         if touch.delassus <= 0 and not self.pulls:
             return self.inconsistent(time, state, events)
         if touch.free_acceleration < 0 or self.pulls:
-            return Transition(events, Sliding(self.top, self), state)
+            return self.slipping(time, state, events)
         found = self.lift_off(time, state)
         return replace(found, events=(*events, *found.events))
+
+    def slipping(self, time: float, state: State, events: tuple[Event, ...]) -> Transition:
+        """Slide, or follow slip to its end where that is near from the start."""
+        if is_set_valued(self.top.friction) and is_stopping(state, self.top):
+            return replace(self.stopping(time, state), events=events)
+        return Transition(events, Sliding(self.top, self), state)
 
     def inconsistent(self, time: float, state: State, events: tuple[Event, ...]) -> Transition:
         """What follows where no contact force is consistent with the friction."""
@@ -159,7 +165,7 @@ class FreeToFly(ContactRules):
         after = collision.state
         if not collision.impulse:
             # Nothing but rounding kept the contact from being a resting one.
-            return Transition(events, Sliding(self.top, self), after)
+            return self.slipping(time, after, events)
         if rebounds:
             return Transition((*events, hit), self._flight(Start.REBOUND), after)
         return self.resting(time, after, (*events, hit))

@@ -84,5 +84,11 @@ def is_slipping(state: State, top: Top) -> bool:
     return any(abs(number) > ROUNDING * scale for number in slip)
 
 
+def is_stopping(state: State, top: Top) -> bool:
+    """Whether slip is so near to its end that the guard of that has already fallen through zero."""
+    sliding = along_table(state)
+    return bool(stopping_guard(sliding, sliding_rates(sliding, top), top, HORIZON) < 0.0)
+
+
 ROUNDING = 1e-14
 """Slip, relative to the velocities it is made of, that is rounding."""
