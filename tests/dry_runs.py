@@ -2,7 +2,7 @@
 
 import math
 
-from tippetop.contact.mode import EventKind
+from tippetop.contact.mode import EventKind, Outcome
 from tippetop.contact.rules import FreeToFly
 from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators.taylor import Taylor
@@ -31,6 +31,8 @@ class DryRun:
             if not segment.mode.touching:
                 break
             self.state = segment.end_state
+        else:
+            assert trajectory.outcome is Outcome.COMPLETED, trajectory.detail
         self.events = [(event.kind.value, event.time) for event in trajectory.events]
         self.axis, self.momentum = self.state.axis, self.state.momentum
         self.slip = slip_of(self.axis, self.momentum, self.state.velocity[:2], self.top)

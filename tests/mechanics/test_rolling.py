@@ -26,7 +26,7 @@ from tippetop.mechanics.top import Top
 from tippetop.theory.dual import jacobian
 
 M, R = 0.02, 0.02
-REPORT = Top(M, 131 / 350 * M * R**2, 2 / 5 * M * R**2, SphereSurface(R, 0.3), CoulombLaw(0.3), 9.8)
+REPORT = Top(M, 131 / 350 * M * R**2, 2 / 5 * M * R**2, SphereSurface(R, 0.3 * R), CoulombLaw(0.3), 9.8)
 
 
 def newton_euler(top, n, omega, wrench):
@@ -137,7 +137,7 @@ def energies(top, states):
     for y in states:
         axis, momentum = tuple(y[:3]), tuple(y[3:])
         velocity = velocity_without_slip(axis, momentum, top)
-        sliding = SlidingState(axis, momentum, velocity, (0.0, 0.0), (1.0, 0.0, 0.0), 0.0)
+        sliding = SlidingState(axis, momentum, velocity)
         yield energy(on_table(sliding, top), top)
 
 
