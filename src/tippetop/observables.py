@@ -161,7 +161,7 @@ class Recorder:
         Returns
         -------
         tuple
-            Rates of the quadratures at Gauss's points, shape (4, 6, k), their values where the steps begin,
+            Rates of the quadratures at Gauss's points, shape (4, 8, k), their values where the steps begin,
             shape (4, k), and the charts of the angle, shape (k,).
         """
         count = len(block.starts)

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 from scipy.optimize import brentq
@@ -51,7 +52,7 @@ LOOSE = [_adaptive(method.label.split("-")[0], 1e-6) for method in DEFAULTS if m
 def whole(arcs):
     """Arcs that follow one another, put together."""
     arcs = list(arcs)
-    for before, after in zip(arcs, arcs[1:], strict=False):
+    for before, after in pairwise(arcs):
         assert (before.guard, before.failure) == (None, None)
         assert after.solution.knots[0] == before.solution.end
     return Arc(
@@ -65,7 +66,7 @@ def whole(arcs):
 
 
 def follow(method, exact, guards=(), **changes):
-    """Follow an exact motion, or a variant of it, to its end or a guard; return the whole of it as one arc."""
+    """Follow an exact motion, or a variant of it, to its end or a guard: all of it as one arc."""
     exact = replace(exact, **changes)
     motion = replace(exact.motion, guards=tuple(guards))
     return whole(method.integrator.integrate(motion, exact.parameters, exact.start, exact.end))

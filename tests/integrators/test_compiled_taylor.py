@@ -127,7 +127,9 @@ def test_threads_that_share_a_compilation_do_not_mix_their_motions():
     for thread in threads:
         thread.join()
     for frequency in frequencies:
-        np.testing.assert_allclose(results[frequency].solution(times)[:, 0], np.cos(frequency * times), atol=1e-11)
+        np.testing.assert_allclose(
+            results[frequency].solution(times)[:, 0], np.cos(frequency * times), atol=1e-11
+        )
 
 
 # --- between processes --------------------------------------------------------------------------------------

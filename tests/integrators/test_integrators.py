@@ -32,6 +32,7 @@ every_method_also_loose = pytest.mark.parametrize(
     "method", [*DEFAULTS, *LOOSE], ids=lambda method: method.label
 )
 
+
 def test_every_integrator_is_tested():
     assert [method.integrator.name for method in DEFAULTS] == NAMES if has_taylor() else NAMES[1:]
 
@@ -141,7 +142,8 @@ CUTS = {"taylor": (taylor, {"SHORT": 3, "LONG": 4}) if has_taylor() else None}
 def test_how_a_solution_is_cut_into_arcs_does_not_show(method, monkeypatch):
     uncut = follow(method, KEPLER)
     module, smaller = CUTS.get(method.integrator.name) or (
-        (classical if method.step else scipy_methods), {"MANY": 7}
+        (classical if method.step else scipy_methods),
+        {"MANY": 7},
     )
     for name, number in smaller.items():
         monkeypatch.setattr(module, name, number)

@@ -87,8 +87,8 @@ def sliding_run(spin):
         (*start.pack(), 0.0),
         method="DOP853",
         t_eval=TIMES,
-        rtol=1e-12,
-        atol=1e-12 * size,
+        rtol=1e-13,
+        atol=1e-13 * size,
     )
     return [(0.0, start), *((y[8], SlidingState.unpack(y)) for y in run.y.T.tolist())]
 

@@ -124,7 +124,9 @@ def test_drilling_takes_from_jelletts_integral_at_the_rate_of_its_moment_times_t
     top = Top(0.02, 3.0e-6, 3.2e-6, SphereSurface(0.02, 0.006), Twist((0.0, 0.0, -1e-3)), 9.8)
     state = state_from_angles(Angles(0.7, 0.0, 0.0, 5.0, 100.0, (0.0, 0.1)), top, math)
     moment = 1e-3 * normal_force(state, top)
-    assert rate_along_motion(jellett, state, top) == pytest.approx(-moment * top.surface.height(math.cos(0.7)), rel=1e-10)
+    assert rate_along_motion(jellett, state, top) == pytest.approx(
+        -moment * top.surface.height(math.cos(0.7)), rel=1e-10
+    )
 
 
 @given(slides())

@@ -1,4 +1,4 @@
-"""Orientation and place as quadratures: against the angular velocity, and a marker that moves with the body."""
+"""Orientation and place as quadratures, against the angular velocity and a marker on the body."""
 
 import cmath
 import math

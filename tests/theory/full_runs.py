@@ -30,7 +30,9 @@ def full_run(problem, times, smooth=False):
     if smooth:
         begin[6:8] = 0.0
     natural = np.asarray(times, dtype=float) / units.time
-    arcs = list(make_integrator().integrate(sliding_motion(top.kind, False), top.numbers, (0.0, begin), natural[-1]))
+    arcs = list(
+        make_integrator().integrate(sliding_motion(top.kind, False), top.numbers, (0.0, begin), natural[-1])
+    )
     assert arcs[-1].failure is None
     states = DenseSolution.joined([arc.solution for arc in arcs])(natural)
     return states[:, :3], states[:, 3:6] * units.angular_momentum, states[:, 6:8] * units.speed

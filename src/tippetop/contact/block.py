@@ -16,10 +16,10 @@ STEPS = 4096
 """Steps in a block, about."""
 
 NODES, WEIGHTS = (
-    0.5 * (1.0 + np.polynomial.legendre.leggauss(6)[0]),
-    0.5 * np.polynomial.legendre.leggauss(6)[1],
+    0.5 * (1.0 + np.polynomial.legendre.leggauss(8)[0]),
+    0.5 * np.polynomial.legendre.leggauss(8)[1],
 )
-"""Gauss's points and weights in [0, 1]. A step is short beside the radius of convergence: six are exact."""
+"""Gauss's points and weights in [0, 1]. A step is short beside the radius of convergence: eight are exact."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class Group:
 
     @cached_property
     def nodes(self) -> tuple[State, Reaction]:
-        """States, and what the table does, at Gauss's points, every number of shape (6, k) or one for all."""
+        """States, and what the table does, at Gauss's points, every number of shape (8, k) or one for all."""
         return self.at(NODES)
 
     def at(self, fractions: Array) -> tuple[State, Reaction]:

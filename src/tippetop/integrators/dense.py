@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 Array: TypeAlias = NDArray[np.float64]
 
 LEAST = 1e-280
-"""Power of the length of a step that is as good as none: a very short step gets fewer terms, an empty one 1."""
+"""Power of the length of a step that is as good as none: a very short step gets fewer terms."""
 
 
 @dataclass(frozen=True)

@@ -44,10 +44,10 @@ class Polynomials:
 
     @cached_property
     def sag(self) -> Array:
-        """How far a polynomial can go beyond its values at Gauss's six points, shape (n,)."""
+        """How far a polynomial can go beyond its values at Gauss's eight points, shape (n,)."""
         k, size = np.arange(len(self.unit)), np.abs(self.unit)
         # Between two of them by interval^2 / 8 max |f''|, and beyond the outer ones by distance max |f'|.
-        found: Array = np.maximum((k * (k - 1)) @ size * (0.25**2 / 8.0), k @ size * 0.034)
+        found: Array = np.maximum((k * (k - 1)) @ size * (0.19**2 / 8.0), k @ size * 0.02)
         return found
 
     @cached_property
