@@ -54,7 +54,7 @@ def test_orientation_does_not_jump_from_sample_to_sample():
 
 
 ACROSS_THE_EQUATOR = report_problem(spin=100.0, tilt=1.5).replace(
-    {"launch.tilt_rate": 60.0, "launch.azimuth": 0.7, "launch.slip": (0.1, -0.2), "contact.liftoff": "ignore"}
+    {"launch.tilt_rate": 30.0, "launch.azimuth": 0.7, "launch.slip": (0.1, -0.2), "contact.liftoff": "ignore"}
 )
 
 
@@ -63,6 +63,7 @@ def test_place_orientation_and_work_of_a_run_are_those_of_an_integration_beside_
     problem, top = ACROSS_THE_EQUATOR, ACROSS_THE_EQUATOR.top
     times = np.linspace(0.0, 0.3, 61)
     run = tt.simulate(problem, 0.3, times=times)
+    assert run.attrs["outcome"] == "completed"
     assert run.axis.values[:, 2].min() < -0.05 < 0.05 < run.axis.values[:, 2].max()
 
     def rates(_, y):
@@ -111,7 +112,8 @@ def test_a_flying_body_turns_as_a_free_symmetric_top_does():
         * Rotation.from_rotvec(times[:, None] * np.array([0.0, 0.0, along]))
     )
     found = Rotation.from_quat(run.orientation.values, scalar_first=True)
-    np.testing.assert_allclose(found.as_matrix(), expected.as_matrix(), rtol=0, atol=1e-11)
+    # Within a step the rate of the angle is interpolated: steps are half a radian, Gauss's points eight.
+    np.testing.assert_allclose(found.as_matrix(), expected.as_matrix(), rtol=0, atol=1e-10)
     np.testing.assert_allclose(run.x, 0.3 * times, rtol=0, atol=1e-14)
     np.testing.assert_allclose(run.y, -0.2 * times, rtol=0, atol=1e-14)
     assert not run.work.values.any()
