@@ -1,7 +1,7 @@
 """What the laboratory's server lets in, and what it lets its pages do: theirs is one machine, this one.
 
 A page of any other site may send requests here from a visitor's browser. Those that were asked for under a
-name that is not this machine's, or by a page of another origin, are refused; the pages of the laboratory itself
+name that is not this machine's, or by a page of another origin, are refused; those of the laboratory itself
 are told to load nothing from elsewhere.
 """
 
