@@ -7,6 +7,7 @@ itself takes damaged numbers and words for good ones, and may crash where a file
 
 import hashlib
 import os
+from io import BytesIO
 from pathlib import Path
 from typing import BinaryIO
 
@@ -33,7 +34,9 @@ def write_run(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Pat
     """
     place_for(path, overwrite)
     # In memory first: where a disk is full HDF5 takes the whole process with it.
-    content: memoryview[int] = run.to_netcdf(engine="h5netcdf")
+    memory = BytesIO()
+    run.to_netcdf(memory, engine="h5netcdf")
+    content = memory.getvalue()
     with written_beside(path, overwrite) as beside, beside.open("wb") as file:
         file.write(content)
         file.write(_seal(hashlib.sha256(content)))

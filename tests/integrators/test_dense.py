@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from tippetop.integrators.dense import DenseSolution, at_fractions, chebyshev
+from tippetop.integrators.dense import DenseSolution, at_fractions, chebyshev, evaluated
 
 KNOTS = st.lists(st.floats(0.01, 2.0), min_size=1, max_size=6).map(lambda s: np.cumsum([-1.0, *s]))
 

@@ -66,7 +66,7 @@ def test_requests_are_checked_like_any_problem(server: str) -> None:
 
 def answer_to(server: str, path: str = "/", **headers: str) -> tuple[int, http.client.HTTPMessage]:
     """Status and headers of an answer, for headers as a browser would send them."""
-    line = http.client.HTTPConnection(urlsplit(server).netloc, timeout=30)
+    line = http.client.HTTPConnection(urlsplit(server).netloc, timeout=120)
     line.request("GET", path, headers=headers)
     answer = line.getresponse()
     answer.read()
@@ -150,7 +150,7 @@ def test_malformed_messages_are_told_of_once(caplog: pytest.LogCaptureFixture) -
 
 def test_messages_of_strangers_are_one_line_in_the_log(server: str) -> None:
     """The log of the server is looked at in the end: no traceback may be in it."""
-    line = http.client.HTTPConnection(urlsplit(server).netloc, timeout=30)
+    line = http.client.HTTPConnection(urlsplit(server).netloc, timeout=120)
 
     def ask(method: str, path: str, body: str | None = None) -> str:
         line.request(method, path, body)
