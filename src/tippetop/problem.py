@@ -22,7 +22,7 @@ from tippetop.mechanics.stick_slip import is_slipping, size
 from tippetop.mechanics.surface import SphereSurface, SpheroidSurface, Surface
 from tippetop.mechanics.top import Top, natural_state, natural_units
 from tippetop.mechanics.vectors import Functions
-from tippetop.mechanics.view import Angles, state_from_angles
+from tippetop.mechanics.view import Angles, PoleExact, state_from_angles
 from tippetop.validation import NO_WORD, Number, Part, Quantity, parse_json, parse_toml
 
 Positive = Annotated[float, Field(gt=0), NO_WORD]
@@ -208,19 +208,6 @@ class Contact(Part):
     restitution: Annotated[Fraction, Quantity("1", "coefficient of restitution")] = 0.0
 
 
-class _PoleExact:
-    """Sine and cosine with sin(pi) = 0, so that a launch at tilt pi is exactly vertical."""
-
-    def sin(self, angle: float) -> float:
-        return 0.0 if abs(angle) == math.pi else math.sin(angle)
-
-    def cos(self, angle: float) -> float:
-        return math.cos(angle)
-
-
-_EXACT = _PoleExact()
-
-
 class Problem(Part):
     """Everything physical about a run.
 
@@ -291,13 +278,13 @@ class Problem(Part):
         body = self.body
         return Top(body.mass, body.I1, body.I3, body.shape.surface, self.friction.law, self.gravity)
 
-    def start(self, functions: Functions = _EXACT) -> State:
+    def start(self, functions: Functions = math) -> State:
         """The state at launch, SI; with sine and cosine for whatever the fields are, such as arrays."""
         launch, top = self.launch, self.top
         angles = Angles(
             launch.tilt, launch.tilt_rate, launch.azimuth, launch.precession, launch.spin, launch.slip
         )
-        touching = on_table(state_from_angles(angles, top, functions), top)
+        touching = on_table(state_from_angles(angles, top, PoleExact(functions)), top)
         return touching._replace(
             height=touching.height + launch.gap,
             velocity=touching.velocity if launch.velocity is None else launch.velocity,

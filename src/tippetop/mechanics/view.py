@@ -4,6 +4,7 @@ With X the horizontal direction into which the axis leans, Y = z x X, 3 = n, 2 =
 velocity is -phi' sin(theta) 1 + theta' 2 + omega3 3, where theta is the tilt and phi the azimuth of the axis.
 """
 
+import math
 from typing import NamedTuple
 
 from tippetop.mechanics.state import SlidingState
@@ -62,6 +63,26 @@ def slip_along_tilt(axis: Vector, slip: Horizontal) -> Horizontal:
         (slip[0] * axis[0] + slip[1] * axis[1]) / sine,
         (slip[1] * axis[0] - slip[0] * axis[1]) / sine,
     )
+
+
+class PoleExact(NamedTuple):
+    """Sine and cosine with sin(pi) = 0, so that a launch at tilt pi is exactly vertical.
+
+    Attributes
+    ----------
+    functions
+        Where sin and cos come from: `math` for floats, `numpy` for arrays.
+    """
+
+    functions: Functions
+
+    def sin(self, angle: Scalar) -> Scalar:
+        """Sine of an angle in radians, zero at the floating-point numbers nearest to pi and -pi."""
+        return self.functions.sin(angle) * (abs(angle) != math.pi)
+
+    def cos(self, angle: Scalar) -> Scalar:
+        """Cosine of an angle in radians."""
+        return self.functions.cos(angle)
 
 
 def state_from_angles(angles: Angles, top: Top, functions: Functions) -> SlidingState:

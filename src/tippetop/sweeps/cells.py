@@ -4,7 +4,6 @@ No problem is built for a cell: the fields that change are put into the base pro
 mechanics makes arrays of them. What a problem would refuse is refused here by the same limits, cell by cell.
 """
 
-import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, TypeVar, cast
@@ -139,19 +138,9 @@ def allowed(values: Array, limits: list[Any]) -> NDArray[np.bool_]:
 _LIMITS = {"gt": np.greater, "ge": np.greater_equal, "lt": np.less, "le": np.less_equal}
 
 
-class _PoleExact:
-    """Sine and cosine of arrays with sin(pi) = 0, so that a launch at tilt pi is exactly vertical."""
-
-    def sin(self, angle: Any) -> Any:
-        return np.where(np.abs(angle) == math.pi, 0.0, np.sin(angle))
-
-    def cos(self, angle: Any) -> Any:
-        return np.cos(angle)
-
-
 def launch_state(problem: Problem, count: int) -> State:
     """The states at launch in SI of a problem with arrays for fields, every number of shape (count,)."""
-    state = problem.start(_PoleExact())
+    state = problem.start(np)
     return State.unpack([spread(number, count).copy() for number in state.pack()])
 
 
