@@ -231,7 +231,8 @@ class TestRefusals:
             Problem(**fields_with(name, "cubic"))
         message = the_one_line_of(caught.value)
         assert "'cubic'" in message
-        assert message.endswith(f"accepted: {kinds}")
+        # Those that others define come after them.
+        assert f"accepted: {kinds}" in message
 
     @pytest.mark.parametrize("name", ["body.shape.kind", "friction.kind"])
     def test_an_unknown_kind_is_named_by_its_field(self, name):

@@ -5,9 +5,10 @@ Every part is frozen, refuses what cannot be, and reads and writes TOML and JSON
 
 import json
 import math
+from abc import abstractmethod
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Annotated, Any, Literal, Self, TypeAlias
+from typing import Annotated, Any, Literal, Self
 
 import tomli_w
 from pydantic import Field, model_validator
@@ -21,9 +22,19 @@ from tippetop.mechanics.state import State
 from tippetop.mechanics.stick_slip import is_slipping, size
 from tippetop.mechanics.surface import SphereSurface, SpheroidSurface, Surface
 from tippetop.mechanics.top import Top, natural_state, natural_units
+from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Functions
 from tippetop.mechanics.view import Angles, PoleExact, state_from_angles
-from tippetop.validation import NO_WORD, Number, Part, Quantity, parse_json, parse_toml
+from tippetop.validation import (
+    NO_WORD,
+    OF_ITS_KIND,
+    Number,
+    Part,
+    Quantity,
+    Variant,
+    parse_json,
+    parse_toml,
+)
 
 Positive = Annotated[float, Field(gt=0), NO_WORD]
 Fraction = Annotated[float, Field(ge=0, le=1), NO_WORD]
@@ -36,7 +47,24 @@ LEANING = (
 )
 
 
-class EccentricSphere(Part):
+class Shape(Variant):
+    """The outer surface of a body, and where the centre of mass is in it; a kind of it is a subclass.
+
+    Attributes
+    ----------
+    kind
+        The word for the kind, in a subclass with a default: ``kind: Literal["cone"] = "cone"``.
+    """
+
+    kind: str
+
+    @property
+    @abstractmethod
+    def surface(self) -> Surface:
+        """The outer surface, from the centre of mass, as the mechanics takes it."""
+
+
+class EccentricSphere(Shape):
     """A sphere whose centre of mass is off its centre: the tippe top.
 
     Attributes
@@ -62,7 +90,7 @@ class EccentricSphere(Part):
         return SphereSurface(self.radius, self.eccentricity * self.radius)
 
 
-class Spheroid(Part):
+class Spheroid(Shape):
     """A spheroid with its centre of mass at its centre: the spinning egg.
 
     Attributes
@@ -81,7 +109,29 @@ class Spheroid(Part):
         return SpheroidSurface(self.across, self.along)
 
 
-class ViscousFriction(Part):
+class Friction(Variant):
+    """The friction of the table; a kind of it is a subclass.
+
+    Attributes
+    ----------
+    kind
+        The word for the kind, in a subclass with a default: ``kind: Literal["wet"] = "wet"``.
+    """
+
+    kind: str
+
+    @property
+    @abstractmethod
+    def law(self) -> FrictionLaw:
+        """The law as the mechanics takes it."""
+
+    @property
+    def vanishes(self) -> bool:
+        """Whether the table is smooth: there is a coefficient mu, and it is 0."""
+        return getattr(self, "mu", None) == 0.0
+
+
+class ViscousFriction(Friction):
     """Friction force -mu N v for slip velocity v and normal force N.
 
     Attributes
@@ -99,7 +149,7 @@ class ViscousFriction(Part):
         return ViscousLaw(self.mu)
 
 
-class RegularizedCoulombFriction(Part):
+class RegularizedCoulombFriction(Friction):
     """Friction force -mu N v / sqrt(v^2 + eps^2) for slip velocity v and normal force N.
 
     Attributes
@@ -120,10 +170,6 @@ class RegularizedCoulombFriction(Part):
         return RegularizedCoulombLaw(self.mu, self.eps)
 
 
-Shape: TypeAlias = Annotated[EccentricSphere | Spheroid, Field(discriminator="kind")]
-Friction: TypeAlias = Annotated[ViscousFriction | RegularizedCoulombFriction, Field(discriminator="kind")]
-
-
 class Body(Part):
     """A rigid body of revolution.
 
@@ -139,7 +185,7 @@ class Body(Part):
     """
 
     mass: Annotated[Positive, Quantity("kg", "mass of the body")]
-    shape: Shape
+    shape: Annotated[Shape, OF_ITS_KIND]
     I1: Annotated[Positive, Quantity("kg m2", "moment of inertia transverse to the axis of symmetry")]
     I3: Annotated[Positive, Quantity("kg m2", "moment of inertia along the axis of symmetry")]
 
@@ -192,8 +238,10 @@ class Launch(Part):
         return self
 
 
-class Contact(Part):
+class Contact(Variant):
     """What happens when the table would have to pull.
+
+    A subclass with a field `kind` is a contact of its own, if it has rules.
 
     Attributes
     ----------
@@ -206,6 +254,23 @@ class Contact(Part):
 
     liftoff: Literal["fly", "stop", "ignore"] = "fly"
     restitution: Annotated[Fraction, Quantity("1", "coefficient of restitution")] = 0.0
+
+    def rules(self, top: Top, units: Units) -> Any:
+        """What follows where contact begins or ends, in natural units, where that is not as described here.
+
+        Parameters
+        ----------
+        top
+            The top in natural units.
+        units
+            Those units.
+
+        Returns
+        -------
+        tippetop.contact.mode.Rules or None
+            None, unless a subclass has rules of its own.
+        """
+        return None
 
 
 class Problem(Part):
@@ -220,9 +285,9 @@ class Problem(Part):
     """
 
     body: Body
-    friction: Friction
+    friction: Annotated[Friction, OF_ITS_KIND]
     launch: Launch
-    contact: Contact = Contact()
+    contact: Annotated[Contact, OF_ITS_KIND] = Contact()
     gravity: Annotated[Positive, Quantity("m s-2", "acceleration of gravity")] = 9.8
 
     @model_validator(mode="after")

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from tippetop import __version__
 from tippetop.contact.block import in_blocks
 from tippetop.contact.mode import Event, Outcome
-from tippetop.contact.rules import rules_for
+from tippetop.contact.rules import rules_of
 from tippetop.contact.trajectory import PHASE_LIMIT, STEP_LIMIT, Trajectory
 from tippetop.dataset import assemble
 from tippetop.errors import InvalidInput, is_number
@@ -95,8 +95,8 @@ def simulate(
     units = natural_units(problem.top)
     top = natural(problem.top)
     method = integrator_of(integrator, tolerance, step, units)
-    state, contact = natural_state(problem.start(), units), problem.contact
-    launch = rules_for(top, contact.liftoff, contact.restitution).launch(state)
+    state = natural_state(problem.start(), units)
+    launch = rules_of(problem.contact, top, units).launch(state)
     trajectory = Trajectory(launch, duration / units.time, method, phase_limit, step_limit)
     lost = sum(event.energy_lost for event in launch.events)
     recorder, tally = Recorder(top, state, problem.launch.azimuth, grid / units.time, lost), Tally()

@@ -1,15 +1,16 @@
 """The base of every part of a problem: frozen, validated, and clear about what it refuses."""
 
+import inspect
 import json
 import math
 import tomllib
 from collections.abc import Mapping
 from numbers import Integral
-from typing import Annotated, Any, NamedTuple, Self, TypeAlias
+from typing import Annotated, Any, ClassVar, NamedTuple, Self, TypeAlias
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError
+from pydantic import BaseModel, BeforeValidator, ConfigDict, GetCoreSchemaHandler, ValidationError
 from pydantic.fields import FieldInfo
-from pydantic_core import ErrorDetails, PydanticCustomError
+from pydantic_core import CoreSchema, ErrorDetails, PydanticCustomError, core_schema
 
 from tippetop.errors import MISSING, InvalidInput, one_of
 
@@ -90,6 +91,71 @@ class Part(BaseModel):
         found = next((item for item in info.metadata if isinstance(item, Quantity)), Quantity("", field))
         return found._replace(long_name=f"{found.long_name} {found.places[int(rest)]}") if rest else found
 
+    def modules(self) -> set[str]:
+        """The modules outside this package in which the kinds of this part, and of the parts in it, are."""
+        here = {type(self).__module__} if type(self).__module__.partition(".")[0] != _PACKAGE else set()
+        values = [getattr(self, name) for name in type(self).model_fields]
+        return here.union(*(value.modules() for value in values if isinstance(value, Part)))
+
+
+_PACKAGE = __name__.partition(".")[0]
+
+
+class Variant(Part):
+    """A part of which there are several kinds: its subclasses, told apart by their field `kind`.
+
+    A ``class Mine(Shape)`` with a field ``kind: Literal["mine"] = "mine"`` is a kind of `Shape` wherever it
+    is defined, and whatever has a `Shape` takes it. One that is defined again, as in a notebook, replaces its
+    former self.
+
+    Attributes
+    ----------
+    kinds
+        Those that are known, by their words.
+    """
+
+    kinds: ClassVar[dict[str, type[Part]]]
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **keywords: Any) -> None:
+        super().__pydantic_init_subclass__(**keywords)
+        if Variant in cls.__bases__:
+            cls.kinds = {}
+            return
+        info = cls.model_fields.get("kind")
+        if info is None or not isinstance(info.default, str):
+            raise TypeError(f'{cls.__name__} needs a word: kind: Literal["word"] = "word"')
+        known = cls.kinds.get(info.default)
+        if known and (known.__module__, known.__qualname__) != (cls.__module__, cls.__qualname__):
+            raise TypeError(f"{cls.__name__} needs another word: {info.default!r} is {known.__name__}")
+        cls.kinds[info.default] = cls
+
+
+class _OfItsKind:
+    """Makes a field take all kinds of a variant, and keep what each has of its own."""
+
+    def __get_pydantic_core_schema__(self, base: type[Variant], handler: GetCoreSchemaHandler) -> CoreSchema:
+        def chosen(value: Any) -> Variant:
+            if isinstance(value, base):
+                return value
+            if not isinstance(value, Mapping):
+                raise PydanticCustomError("model_type", "a table of its fields")
+            kind = value.get("kind", MISSING)
+            if not inspect.isabstract(base) and (kind is MISSING or not base.kinds):
+                return base(**value)
+            if kind is MISSING:
+                raise InvalidInput("kind", kind, "a kind of it")
+            if not isinstance(kind, str) or kind not in base.kinds:
+                raise InvalidInput("kind", kind, ", ".join(map(repr, base.kinds)))
+            found = base.kinds[kind](**value)
+            assert isinstance(found, base)
+            return found
+
+        return core_schema.no_info_plain_validator_function(chosen)
+
+
+OF_ITS_KIND = _OfItsKind()
+
 
 def parse_json(text: str) -> Any:
     """What a JSON text says.
@@ -136,29 +202,14 @@ def _as_invalid_input(error: ValidationError, part: type[Part]) -> InvalidInput:
     """Turn a validation error into the one sentence a user reads, about the most telling of its details."""
     details = sorted(error.errors(), key=lambda detail: detail["type"] != "extra_forbidden")
     first, others = details[0], len(details) - 1
-    field = ".".join(str(step) for step in _steps(first["loc"], part))
+    field = ".".join(str(step) for step in first["loc"])
     cause = first.get("ctx", {}).get("error")
     if isinstance(cause, InvalidInput):
         within = not f"{cause.field}.".startswith(f"{field}.")
         inner = f"{field}.{cause.field}".strip(".") if within else cause.field
         return InvalidInput(inner, cause.value, cause.accepted, cause.others + others)
-    match first["type"]:
-        case "missing":
-            value = MISSING
-        case "union_tag_not_found" if isinstance(first["input"], Mapping):
-            return InvalidInput(f"{field}.kind", MISSING, "a kind of it", others)
-        case "union_tag_invalid":
-            field, value = f"{field}.kind", first["input"].get("kind")
-        case _:
-            value = first["input"]
+    value = MISSING if first["type"] == "missing" else first["input"]
     return InvalidInput(field, value, _accepted(first, part), others)
-
-
-def _steps(location: tuple[int | str, ...], part: type[Part]) -> tuple[int | str, ...]:
-    """Where a value stands, without the kind that pydantic names after a field of several kinds."""
-    name, *rest = location or ("",)
-    info = _written(part).get(str(name))
-    return (name, *rest[1:]) if info is not None and info.discriminator else location
 
 
 def _written(part: type[Part]) -> dict[str, FieldInfo]:
@@ -177,10 +228,9 @@ def _accepted(detail: ErrorDetails, part: type[Part]) -> str:
             return "a value; it has no default"
         case "extra_forbidden":
             return "one of the keys " + one_of(detail["loc"][-1], list(_written(part)))
-        case "union_tag_invalid" | "literal_error":
-            context = detail["ctx"]
-            return str(context.get("expected_tags") or context["expected"])
-        case "union_tag_not_found" | "model_type" | "model_attributes_type":
+        case "literal_error":
+            return str(detail["ctx"]["expected"])
+        case "model_type" | "model_attributes_type":
             return "a table of its fields"
         case _:
             return detail["msg"][0].lower() + detail["msg"][1:]

@@ -21,6 +21,8 @@ from tippetop.mechanics.state import State
 from tippetop.mechanics.stick_slip import HORIZON, is_slipping, slip_guard, slip_of, stopping_guard
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.touchdown import Start
+from tippetop.mechanics.units import Units
+from tippetop.problem import Contact
 
 SLOWEST_REBOUND = 1e-6
 """Rebound velocity, in units of sqrt(g R), below which a rebound is none and the top stays on the table.
@@ -200,3 +202,9 @@ def rules_for(top: Top, liftoff: str, restitution: float) -> Rules:
     if liftoff == "fly":
         return FreeToFly(top, restitution)
     return StopAtLiftOff(top) if liftoff == "stop" else Bilateral(top)
+
+
+def rules_of(way: Contact, top: Top, units: Units) -> Rules:
+    """The rules of a top in natural units: those that its problem's contact brings, or the usual."""
+    own: Rules | None = way.rules(top, units)
+    return rules_for(top, way.liftoff, way.restitution) if own is None else own

@@ -43,7 +43,7 @@ def tell(run: xr.Dataset) -> Story:
     prediction = known_end(problem)
     clauses = [_end(run, problem, prediction), *_flights(run)]
     details = [f"It heads for {end_in_words(prediction)}."] if prediction else []
-    if _is_frictionless(problem):
+    if problem.friction.vanishes:
         details.append("There is no friction: nothing makes it settle.")
     if run.attrs["outcome"] != "completed":
         details.insert(0, run.attrs["outcome_advice"])
@@ -69,7 +69,7 @@ def spin_marks(problem: Problem) -> dict[str, float]:
 
 def known_end(problem: Problem) -> Prediction | None:
     """The steady states a launch heads for; None where the theory does not hold, or nothing takes energy."""
-    if _is_frictionless(problem):
+    if problem.friction.vanishes:
         return None
     try:
         prediction = predict(problem)
@@ -103,10 +103,6 @@ def _number(value: float) -> str:
     return text.replace("-", "−") if float(text) else text.lstrip("-")
 
 
-def _is_frictionless(problem: Problem) -> bool:
-    return getattr(problem.friction, "mu", None) == 0
-
-
 def _end(run: xr.Dataset, problem: Problem, end: Prediction | None) -> str:
     theta = run["theta"].values
     if theta[-1] < NEAR and np.all(theta < AROUND):
@@ -131,7 +127,7 @@ def _end(run: xr.Dataset, problem: Problem, end: Prediction | None) -> str:
 
 def _upright(problem: Problem) -> str:
     spin, spins = abs(problem.launch.spin), known_spins(problem)
-    if spins is None or _is_frictionless(problem):
+    if spins is None or problem.friction.vanishes:
         return "stays upright"
     if spins.upright == math.inf:
         return "stays upright, as at any spin"

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tippetop.figures.style import ACCENT, CONVERGED, REPORT
-from tippetop.problem import Body, EccentricSphere
+from tippetop.problem import Body, EccentricSphere, Shape, Spheroid
 
 Array = NDArray[np.float64]
 
@@ -23,6 +23,9 @@ STEM, KNOB = 0.12, 0.165
 """Radii of the stem where it leaves the face, and of the ball at its end."""
 STEM_TOP = 1.0 - KNOB
 """Distance from the sphere's centre to that ball's."""
+
+OUTLINE = 49
+"""Points on the outline of a body that is no tippe top."""
 
 SCENES: Mapping[str, Mapping[str, Any]] = {
     "light": {
@@ -65,20 +68,39 @@ class ToyPart(NamedTuple):
 def size(body: Body) -> float:
     """The length by which the toy is measured when it is drawn, m."""
     shape = body.shape
-    return shape.radius if isinstance(shape, EccentricSphere) else max(shape.across, shape.along)
+    if isinstance(shape, EccentricSphere):
+        return shape.radius
+    points = outline(shape)
+    return float(max(points[:, 0].max(), np.ptp(points[:, 1]) / 2))
+
+
+def outline(shape: Shape) -> Array:
+    """Points (distance from the axis, height along it from the centre of mass), m, from below, shape (k, 2).
+
+    They are where the body touches the table at evenly spaced tilts.
+    """
+    tilts = np.linspace(0.0, np.pi, OUTLINE)
+    sine, c = np.sin(tilts), np.cos(tilts)
+    sine[-1] = 0.0
+    slope = shape.surface.slope(c)
+    across = shape.surface.height(c) - c * slope
+    return np.stack([sine * across, -slope - c * across], axis=1)
 
 
 def toy_parts(body: Body) -> tuple[ToyPart, ...]:
-    """The parts of the toy for this body: of a tippe top, or the belts of an egg."""
+    """The parts of the toy for this body: of a tippe top, or the belts of an egg or of any other."""
     shape = body.shape
     if isinstance(shape, EccentricSphere):
         return _tippe_top(shape.eccentricity)
-    belts = pairwise((-np.pi / 2, -0.12, 0.12, np.pi / 2))
-    semi_axes = np.array([shape.across, shape.along]) / size(body)
-    return tuple(
-        ToyPart(f"egg {number}", _arc(low, high) * semi_axes, colours)
-        for number, ((low, high), colours) in enumerate(zip(belts, (_BOWL, _BAND, _BOWL), strict=True))
-    )
+    if isinstance(shape, Spheroid):
+        semi_axes = np.array([shape.across, shape.along]) / size(body)
+        arcs = [_arc(*ends) * semi_axes for ends in pairwise((-np.pi / 2, -0.12, 0.12, np.pi / 2))]
+    else:
+        points = outline(shape) / size(body)
+        middle = OUTLINE // 2
+        arcs = [points[: middle - 1], points[middle - 2 : middle + 3], points[middle + 2 :]]
+    belts = enumerate(zip(arcs, (_BOWL, _BAND, _BOWL), strict=True))
+    return tuple(ToyPart(f"egg {number}", arc, colours) for number, (arc, colours) in belts)
 
 
 def _tippe_top(eccentricity: float) -> tuple[ToyPart, ...]:

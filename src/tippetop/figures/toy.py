@@ -9,10 +9,13 @@ import numpy as np
 from matplotlib.colors import to_rgb
 from numpy.typing import NDArray
 
-from tippetop.figures.looks import FACE, KNOB, STEM, STEM_TOP, size, toy_parts
+from tippetop.figures.looks import FACE, KNOB, STEM, STEM_TOP, outline, size, toy_parts
 from tippetop.problem import Body, EccentricSphere
 
 Array = NDArray[np.floating[Any]]
+
+PIECE = 4
+"""Steps along an outline that are drawn as one piece: an even number."""
 
 FAR = 1e9
 """How far along a ray that misses it the toy is."""
@@ -75,9 +78,9 @@ class Toy:
             self.middle = np.array([0.0, 0.0, shape.eccentricity])
             self._surfaces = _tippe_top()
         else:
-            self.middle = np.zeros(3)
-            across = shape.across / self.size
-            self._surfaces = (_Quadric(1.0, across**2, 0.0, -((shape.across / shape.along) ** 2)),)
+            points = outline(shape) / self.size
+            self.middle = np.array([0.0, 0.0, points[[0, -1], 1].mean()])
+            self._surfaces = _turned(points - (0.0, self.middle[2]))
 
     def meet(self, start: Array, direction: Array) -> tuple[Array, Array]:
         """How far along each ray the toy is, and its normal there; far if missed."""
@@ -130,6 +133,16 @@ def _tippe_top() -> tuple[_Quadric, ...]:
         _Quadric(1.0, start**2, 2 * slope * start, slope**2, FACE, STEM_TOP),
         _Quadric(1.0, KNOB**2 - STEM_TOP**2, 2 * STEM_TOP, -1.0, low=STEM_TOP),
     )
+
+
+def _turned(outline: NDArray[np.float64]) -> tuple[_Quadric, ...]:
+    """The surface of an outline turned about the axis, a quadric through each three points."""
+    found = []
+    for first in range(0, len(outline) - 2, PIECE):
+        away, along = outline[[first, first + PIECE // 2, first + PIECE]].T
+        s, q, p = np.polyfit(along, away**2, 2)
+        found.append(_Quadric(1.0, float(p), float(q), float(s), float(along[0]), float(along[-1])))
+    return tuple(found)
 
 
 def _passes(o: Array, d: Array) -> NDArray[np.bool_]:

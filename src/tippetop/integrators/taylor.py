@@ -47,7 +47,8 @@ class Taylor:
                 run = compiled.integrator
                 run.time = start[0]
                 run.state[:] = start[1]
-                run.pars[:] = parameters
+                # Those that appear in no equation, beyond the last that does, it has no room for.
+                run.pars[:] = parameters[: len(run.pars)]
                 if motion.guards:
                     run.reset_cooldowns()
                 solution, outcome = advance(run, end)
@@ -87,7 +88,6 @@ def _compiled(motion: Motion, tolerance: float) -> _Compiled:
         integrator = hy.taylor_adaptive(
             list(zip(state, rates, strict=True)),
             [0.0] * motion.size,
-            pars=[1.0] * motion.parameters,
             tol=tolerance,
             t_events=events,
             compact_mode=not motion.lasting,

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable
-from typing import Any, NamedTuple, get_args
+from typing import Any, NamedTuple
 
 from nicegui import events, ui
 
@@ -14,10 +14,7 @@ Change = Callable[[dict[str, Any], bool], None]
 """Is told what to change, and whether the browser has asked for the new run already."""
 
 _LAW_NAMES = {"viscous": "viscous, −μNv", "regularized_coulomb": "Coulomb, smoothed"}
-LAWS = {
-    word: _LAW_NAMES.get(word, word.replace("_", " "))
-    for word in (law.model_fields["kind"].default for law in get_args(get_args(Friction)[0]))
-}
+LAWS = {word: _LAW_NAMES.get(word, word.replace("_", " ")) for word in Friction.kinds}
 """The friction laws by the word that tells them apart in a problem, with names to read."""
 
 

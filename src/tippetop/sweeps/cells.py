@@ -6,12 +6,14 @@ mechanics makes arrays of them. What a problem would refuse is refused here by t
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tippetop.catalogue import Fault
+from tippetop.contact.rules import rules_of
 from tippetop.errors import InvalidInput, one_of
 from tippetop.integrators.base import Array
 from tippetop.mechanics.motion import along_table, contact
@@ -19,9 +21,9 @@ from tippetop.mechanics.rolling import on_branch
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top, natural_state, natural_units
 from tippetop.mechanics.units import Units
-from tippetop.problem import Problem
+from tippetop.problem import Contact, Problem
 from tippetop.sweeps.flights import slips
-from tippetop.sweeps.launches import Launches
+from tippetop.sweeps.launches import Launches, Own
 from tippetop.validation import Part
 
 PartType = TypeVar("PartType", bound=Part)
@@ -61,7 +63,20 @@ class Cells:
             (duration / spread(self.units.time, count))[which],
             contact_rule.liftoff,
             spread(contact_rule.restitution, count)[which],
+            self._own_rules(which),
         )
+
+    def _own_rules(self, which: NDArray[np.intp]) -> Own | None:
+        """What makes the rules of some of the cells, if their contact brings its own."""
+        contact_rule = self.problem.contact
+        if type(contact_rule).rules is Contact.rules:
+            return None
+        units = [spread(unit, len(self.fault)) for unit in self.units]
+        found = np.empty(len(which), dtype=object)
+        for place, cell in enumerate(which.tolist()):
+            here = Units(*(float(unit[cell]) for unit in units))
+            found[place] = partial(rules_of, single_part(contact_rule, cell), units=here)
+        return found
 
 
 def cells_of(problem: Problem, values: Mapping[str, Array]) -> Cells:
@@ -94,6 +109,8 @@ def cells_of(problem: Problem, values: Mapping[str, Array]) -> Cells:
         fault[~(spread(filled.body.I3, count) <= 2.0 * spread(filled.body.I1, count))] = Fault.NO_SUCH_BODY
         for field, numbers in values.items():
             fault[~allowed(numbers, known[field])] = Fault.VALUE_OUT_OF_RANGE
+        for part in (filled.body.shape, filled.friction, filled.contact):
+            fault[refused(part, count)] = Fault.VALUE_OUT_OF_RANGE
         units = natural_units(top)
         return Cells(fault, top, units, natural_state(start, units), filled)
 
@@ -122,6 +139,42 @@ def put(part: PartType, values: Mapping[str, Array], prefix: str = "") -> PartTy
         else:
             fields[name] = values.get(path, value)
     return cast(PartType, type(part).model_construct(**fields))
+
+
+def single_part(part: PartType, cell: int) -> PartType:
+    """The part of one cell, from one with arrays for some of its numbers.
+
+    Raises
+    ------
+    InvalidInput
+        If there is no such part.
+    """
+
+    def single(value: Any) -> Any:
+        match value:
+            case Part():
+                return single_part(value, cell)
+            case tuple():
+                return tuple(map(single, value))
+            case np.ndarray():
+                return float(value[cell])
+        return value
+
+    return type(part)(**{name: single(getattr(part, name)) for name in type(part).model_fields})
+
+
+def refused(part: Part, count: int) -> NDArray[np.bool_]:
+    """The cells that a part refuses by rules of its own, beyond its numbers' limits, shape (count,)."""
+    found = np.zeros(count, dtype=bool)
+    rules = type(part).__pydantic_decorators__
+    changes = any(isinstance(getattr(part, name), np.ndarray) for name in type(part).model_fields)
+    if changes and (rules.model_validators or rules.field_validators):
+        for cell in range(count):
+            try:
+                single_part(part, cell)
+            except InvalidInput:
+                found[cell] = True
+    return found
 
 
 def allowed(values: Array, limits: list[Any]) -> NDArray[np.bool_]:

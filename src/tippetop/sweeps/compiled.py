@@ -55,7 +55,7 @@ class CompiledStepper:
 
     def jet(self, before: Array, numbers: Array) -> Jet:
         """The polynomials of the steps."""
-        size, parameters, order = self.layout.size, self.layout.parameters, self.order
+        size, order = self.layout.size, self.order
         if self._jet is None:
             start = self._kept[:size]
             y, guards = motion_series(self.motion, start, self._numbers, ExpressionArithmetic())
@@ -64,7 +64,7 @@ class CompiledStepper:
             with compiling():
                 self._jet = hy.cfunc([hy.expression(row) for row in rows], vars=start)
         count = before.shape[1]
-        values = self._jet(padded(before[:size]), pars=padded(numbers[:parameters]))[:, :count]
+        values = self._jet(padded(before[:size]), pars=padded(numbers[: self._jet.nparams]))[:, :count]
         cut = size * (order + 1)
         guards = values[cut:].reshape(self.layout.guards, order, count)
         return Jet(values[:cut].reshape(size, order + 1, count), guards)

@@ -49,6 +49,10 @@ class Crossings:
     def launch(self, lanes: Indices, state: State) -> None:
         """Sort the launches out that do not simply slide from the start."""
         launches = self.slots.launches
+        if launches.own is not None:
+            for i, lane in enumerate(lanes.tolist()):
+                self._follow_alone(lane, 0.0, launches.rules(i).launch(single(state, i)))
+            return
         plain = slips(state, launches.top)
         if launches.liftoff != "ignore":
             plain &= slides(state, launches.top)

@@ -13,6 +13,8 @@ from tippetop.mechanics.top import Kind, Top
 
 Indices = NDArray[np.intp]
 Flags = NDArray[np.bool_]
+Own = NDArray[np.object_]
+"""What makes the rules of tops, for launches whose contact brings its own; see `Contact.rules`."""
 
 
 @dataclass(frozen=True)
@@ -31,6 +33,8 @@ class Launches:
         "ignore", "stop" or "fly".
     restitution
         Ratio of the normal impulses of restitution and compression, shape (n,).
+    own
+        For contacts that bring their own rules, what makes them of a top, shape (n,).
     """
 
     kind: Kind
@@ -39,6 +43,7 @@ class Launches:
     end: Array
     liftoff: str
     restitution: Array
+    own: Own | None = None
 
     def __len__(self) -> int:
         return len(self.end)
@@ -47,7 +52,8 @@ class Launches:
         """Some of the launches."""
         state = picked(self.state, which)
         numbers, end, restitution = self.numbers[:, which], self.end[which], self.restitution[which]
-        return Launches(self.kind, numbers, state, end, self.liftoff, restitution)
+        own = None if self.own is None else self.own[which]
+        return Launches(self.kind, numbers, state, end, self.liftoff, restitution, own)
 
     @property
     def top(self) -> Top:
@@ -61,6 +67,9 @@ class Launches:
     def rules(self, launch: int) -> Rules:
         """What follows where the contact of one launch begins or ends."""
         top = self.kind.top(tuple(self.numbers[:, launch].tolist()))
+        if self.own is not None:
+            rules: Rules = self.own[launch](top)
+            return rules
         return rules_for(top, self.liftoff, float(self.restitution[launch]))
 
 

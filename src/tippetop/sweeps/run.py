@@ -132,7 +132,7 @@ def run_sweep(
     FileTrouble
         If something is there already, or it is of another sweep, or cannot be written.
     """
-    need_workers(workers, scheduler)
+    need_workers(workers, scheduler, sweep)
     store = Store.resume(out, sweep) if resume or sweep is None else Store.create(out, sweep, overwrite)
     fill(store, workers=workers, scheduler=scheduler, watcher=watcher)
     return store.dataset()

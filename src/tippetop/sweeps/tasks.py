@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
 from contextlib import contextmanager
 from functools import lru_cache
+from importlib import import_module
 from importlib.util import find_spec
 from typing import Any, TypeAlias
 
@@ -24,7 +25,7 @@ from tippetop.sweeps.ensemble import follow_cells
 Task: TypeAlias = tuple[int, ...]
 Found: TypeAlias = dict[str, NDArray[Any]]
 Block: TypeAlias = tuple[tuple[int, int], ...]
-Call: TypeAlias = tuple[str, str, Block]
+Call: TypeAlias = tuple[str, str, tuple[str, ...], Block]
 """What `compute_block` is called with."""
 
 AHEAD = 2
@@ -39,19 +40,29 @@ GLANCE = 1.0
 
 KEPT = "what is done is kept, and --resume goes on"
 
+HERE = "__main__"
+"""Where what a script or notebook defines is, which no other process can import."""
+
 _turn = threading.Lock()
 
 
-def compute_block(description: str, version: str, block: Block) -> Found:
+def compute_block(description: str, version: str, modules: tuple[str, ...], block: Block) -> Found:
     """Compute a block of cells from parameters: this is all that a worker is sent.
+
+    The modules are those in which the sweep's own kinds of parts are defined, in whoever asks for the block.
 
     Raises
     ------
     Unavailable
-        If the worker has another version of this package.
+        If the worker has another version of this package, or lacks a module.
     """
     if version != __version__:
         raise Unavailable(f"a worker has tippetop {__version__}, and the sweep is run by {version}")
+    try:
+        for name in modules:
+            import_module(name)
+    except ImportError as error:
+        raise Unavailable(f"a worker cannot import the module of a part of the problem: {error}") from None
     sweep = _sweep(description)
     # Compiled functions have one set of buffers; a worker with several threads takes turns.
     with _turn:
@@ -85,8 +96,11 @@ def results(
         If dask.distributed is needed and not installed.
     """
     _check_number(workers)
+    modules = _modules(sweep, workers, scheduler)
+    if HERE in modules:
+        workers = 1
     description = json.dumps(sweep.describe())
-    calls = {task: (description, __version__, _block(sweep, task)) for task in tasks}
+    calls = {task: (description, __version__, modules, _block(sweep, task)) for task in tasks}
     if scheduler is not None:
         yield from _share_with_cluster(scheduler, calls)
         return
@@ -97,7 +111,7 @@ def results(
         raise Unavailable(f"{error}; {KEPT}") from None
 
 
-def need_workers(workers: int | None, scheduler: str | None) -> None:
+def need_workers(workers: int | None, scheduler: str | None, sweep: Sweep | None = None) -> None:
     """See that there is someone to compute, before anything is written.
 
     Raises
@@ -106,6 +120,8 @@ def need_workers(workers: int | None, scheduler: str | None) -> None:
         As from `results`.
     """
     _check_number(workers)
+    if sweep is not None:
+        _modules(sweep, workers, scheduler)
     if scheduler is not None:
         with _cluster(scheduler):
             pass
@@ -114,6 +130,19 @@ def need_workers(workers: int | None, scheduler: str | None) -> None:
 def _check_number(workers: int | None) -> None:
     if workers is not None and workers < 1:
         raise InvalidInput("workers", workers, "a whole number, at least 1")
+
+
+def _modules(sweep: Sweep, workers: int | None, scheduler: str | None) -> tuple[str, ...]:
+    """The modules that a worker has to import, for kinds of parts that are not of this package."""
+    modules = sweep.problem.modules()
+    if HERE in modules and (scheduler is not None or workers not in (None, 1)):
+        raise InvalidInput(
+            "workers" if scheduler is None else "scheduler",
+            workers if scheduler is None else scheduler,
+            "this process alone, with workers = 1: the problem has parts that the script itself defines, and "
+            "that other processes can import only from a module",
+        )
+    return tuple(sorted(modules))
 
 
 def _block(sweep: Sweep, task: Task) -> Block:

@@ -3,8 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from tippetop.mechanics.friction import ViscousLaw
-from tippetop.problem import Problem
+from tippetop.problem import Problem, ViscousFriction
 from tippetop.theory.averaging import flip_time_limit, nutation_of_launch
 from tippetop.theory.groups import Group, classify_top, eccentricity, inertia_ratio
 from tippetop.theory.prediction import Prediction, predict, steady_launch
@@ -92,7 +91,7 @@ def outlook(problem: Problem) -> Outlook:
     top = problem.top
     jellett = jellett_of_launch(problem)
     sphere = top.conserves_jellett
-    stays, mu = steady_launch(problem), problem.friction.mu
+    stays, smooth = steady_launch(problem), problem.friction.vanishes
     limit = _flip_time_limit(problem) if sphere and stays is None else None
     return Outlook(
         inertia_ratio=inertia_ratio(top) if sphere else None,
@@ -104,11 +103,11 @@ def outlook(problem: Problem) -> Outlook:
         tilt=problem.launch.tilt,
         jellett=jellett,
         stays=None if stays is None else Judged(stays, spectrum(stays, top)),
-        swings=_swings(problem) if top.surface.spherical and mu == 0.0 else None,
-        prediction=predict(problem) if sphere and mu > 0.0 else None,
+        swings=_swings(problem) if top.surface.spherical and smooth else None,
+        prediction=predict(problem) if sphere and not smooth else None,
         steady=tuple(Judged(state, spectrum(state, top)) for state in steady_states(problem)),
         mu_flip_time=limit,
-        flip_time=limit / mu if limit is not None else None,
+        flip_time=None if limit is None else limit / _mu(problem),
     )
 
 
@@ -133,11 +132,17 @@ def _swings(problem: Problem) -> tuple[float, float]:
     return min(low, problem.launch.tilt), max(high, problem.launch.tilt)
 
 
+def _mu(problem: Problem) -> float:
+    """The coefficient of viscous friction, s/m."""
+    assert isinstance(problem.friction, ViscousFriction)
+    return problem.friction.mu
+
+
 def _flip_time_limit(problem: Problem) -> float | None:
     """Limit of mu times the flip time, where friction is viscous and the axis moves."""
     launch = problem.launch
     vertical = launch.tilt in (0.0, math.pi) and launch.tilt_rate == 0.0
-    if vertical or problem.friction.mu == 0.0 or not isinstance(problem.top.friction, ViscousLaw):
+    if vertical or problem.friction.vanishes or not isinstance(problem.friction, ViscousFriction):
         return None
     limit = flip_time_limit(problem)
     return limit if math.isfinite(limit) else None

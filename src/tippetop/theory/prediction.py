@@ -78,7 +78,7 @@ def predict(problem: Problem) -> Prediction:
     """
     top = problem.top
     require_jellett(top)
-    if problem.friction.mu == 0.0:
+    if problem.friction.vanishes:
         raise InvalidInput("friction.mu", 0.0, "more than 0: without friction no launch settles")
     jellett = jellett_of_launch(problem)
     states = steady_states(top, jellett)

@@ -32,7 +32,7 @@ def _in_tenths(problem: Problem, power: int) -> Problem:
     unit = 10.0
     return problem.replace(
         {
-            "friction.mu": problem.friction.mu * unit,
+            "friction.mu": _mu(problem) * unit,
             "launch.spin": problem.launch.spin / unit,
             "gravity": problem.gravity * unit**power,
         }
@@ -47,10 +47,16 @@ def _in_centimetres(problem: Problem, power: int) -> Problem:
             "body.shape.radius": float(body.shape.surface.size) * unit,
             "body.I1": body.I1 * unit**2,
             "body.I3": body.I3 * unit**2,
-            "friction.mu": problem.friction.mu * unit**power,
+            "friction.mu": _mu(problem) * unit**power,
             "gravity": problem.gravity * unit,
         }
     )
+
+
+def _mu(problem: Problem) -> float:
+    """The friction coefficient of the report's law, s/m."""
+    assert isinstance(problem.friction, ViscousFriction)
+    return problem.friction.mu
 
 
 def _tilt_after(problem: Problem, duration: float) -> float:

@@ -1,0 +1,337 @@
+"""A friction law, a surface and a contact mode of a user's own, defined here: in runs and in sweeps."""
+
+import subprocess
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Self
+
+import numpy as np
+import pytest
+from pydantic import Field, model_validator
+
+import tippetop as tt
+from tippetop.catalogue import SWEPT, Fault
+from tippetop.contact.mode import IntegratedMode, Reaction, Transition
+from tippetop.contact.rules import FreeToFly
+from tippetop.errors import InvalidInput
+from tippetop.integrators.base import Guard, Motion
+from tippetop.mechanics.friction import NO_TORQUE, FrictionLaw, Traction
+from tippetop.mechanics.motion import axis_rate, on_table
+from tippetop.mechanics.rolling import FORCES, ContactPoint, Wrench, velocity_without_slip
+from tippetop.mechanics.state import SlidingState, State
+from tippetop.mechanics.surface import Surface
+from tippetop.mechanics.top import Kind, Top
+from tippetop.mechanics.units import Units
+from tippetop.mechanics.vectors import Horizontal, Row, Scalar, Vector
+from tippetop.problem import Contact, Friction, Positive, Shape
+from tippetop.validation import Quantity
+
+DURATION = 1.0
+
+
+class StribeckLaw(NamedTuple):
+    """Smoothed Coulomb friction that is stronger while slip is slow: mu (1 + more / (1 + v^2 / slow^2))."""
+
+    mu: Scalar
+    more: Scalar
+    slow: Scalar
+
+    @property
+    def torque_free(self) -> bool:
+        return True
+
+    def traction(self, slip: Horizontal, angular_velocity: Vector) -> Traction:
+        speed = (slip[0] ** 2 + slip[1] ** 2) / self.slow**2
+        factor = -self.mu / self.slow * (1.0 + self.more / (1.0 + speed)) * (1.0 + speed) ** -0.5
+        return Traction((factor * slip[0], factor * slip[1]), NO_TORQUE)
+
+    def coefficients(self, units: Units) -> tuple[Scalar, ...]:
+        return (self.mu, self.more, self.slow / units.speed)
+
+    @classmethod
+    def from_coefficients(cls, coefficients: tuple[Scalar, ...]) -> Self:
+        return cls(*coefficients)
+
+
+class StribeckFriction(Friction):
+    kind: Literal["stribeck"] = "stribeck"
+    mu: Annotated[Positive, Quantity("1", "friction coefficient of fast slip")]
+    more: Annotated[Positive, Quantity("1", "how much more it is of slow slip")]
+    slow: Annotated[Positive, Quantity("m s-1", "speed of slow slip")]
+
+    @property
+    def law(self) -> FrictionLaw:
+        return StribeckLaw(self.mu, self.more, self.slow)
+
+
+class SquashedSurface(NamedTuple):
+    """A sphere squashed along its axis: h = r - center c - squash c^2."""
+
+    radius: Scalar
+    center: Scalar
+    squash: Scalar
+
+    def height(self, c: Scalar) -> Scalar:
+        return self.radius - self.center * c - self.squash * c * c
+
+    def slope(self, c: Scalar) -> Scalar:
+        return -self.center - 2.0 * self.squash * c
+
+    def curvature(self, c: Scalar) -> Scalar:
+        return -2.0 * self.squash + 0.0 * c
+
+    @property
+    def spherical(self) -> bool:
+        return False
+
+    @property
+    def size(self) -> Scalar:
+        return self.radius
+
+    @property
+    def proportions(self) -> tuple[Scalar, ...]:
+        return (self.center / self.radius, self.squash / self.radius)
+
+    @classmethod
+    def from_proportions(cls, proportions: tuple[Scalar, ...]) -> Self:
+        return cls(1.0, *proportions)
+
+
+class SquashedSphere(Shape):
+    kind: Literal["squashed_sphere"] = "squashed_sphere"
+    radius: Positive
+    center: float
+    squash: Annotated[float, Field(ge=0)]
+
+    @model_validator(mode="after")
+    def _is_convex(self) -> Self:
+        if self.squash > self.radius / 3.0:
+            raise InvalidInput("squash", self.squash, f"at most a third of the radius, {self.radius / 3.0:g}")
+        return self
+
+    @property
+    def surface(self) -> Surface:
+        return SquashedSurface(self.radius, self.center, self.squash)
+
+
+@dataclass(frozen=True)
+class Pinned(IntegratedMode):
+    """The contact point is held at rest, whatever force that needs, until the time of release."""
+
+    left: float
+
+    name: ClassVar[str] = "pinned"
+
+    @property
+    def motion(self) -> Motion:
+        return pinned_motion(self.top.kind)
+
+    def numbers(self, state: State) -> tuple[Scalar, ...]:
+        return (*state.axis, *state.momentum, self.left)
+
+    def state(self, y: Row) -> State:
+        axis, momentum = (y[0], y[1], y[2]), (y[3], y[4], y[5])
+        velocity = velocity_without_slip(axis, momentum, self.top)
+        return on_table(SlidingState(axis, momentum, velocity), self.top)
+
+    def reaction(self, y: Row) -> Reaction:
+        wrench, _ = pin(y, self.top)
+        return Reaction(wrench.force, NO_TORQUE, 0.0)
+
+    def follow(self, guard: str, time: float, state: State) -> Transition:
+        return FreeToFly(self.top, self.rules.restitution).launch(state)
+
+
+def pin(y: Row, top: Top) -> tuple[Wrench, ContactPoint]:
+    """The force that holds the contact point."""
+    point = ContactPoint.of((y[0], y[1], y[2]), (y[3], y[4], y[5]), top)
+    return point.holding(FORCES, (0, 1, 2))[0], point
+
+
+@lru_cache
+def pinned_motion(kind: Kind) -> Motion:
+    def rates(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[Scalar, ...]:
+        top = kind.top(tuple(numbers))
+        wrench, point = pin(y, top)
+        return (*axis_rate(point.axis, (y[3], y[4], y[5]), top), *point.moment(wrench), -1.0 + 0.0 * y[6])
+
+    return Motion(rates, 7, kind.numbers, (Guard("released", lambda y, numbers: y[6]),))
+
+
+@dataclass(frozen=True)
+class PinRules(FreeToFly):
+    """As for any top that may fly, once it is released."""
+
+    left: float
+
+    def launch(self, state: State) -> Transition:
+        return Transition((), Pinned(self.top, self, self.left), state)
+
+
+class PinnedAtFirst(Contact):
+    kind: Literal["pinned_at_first"] = "pinned_at_first"
+    until: Annotated[Positive, Quantity("s", "when the pin is drawn")]
+
+    def rules(self, top: Top, units: Units) -> PinRules:
+        return PinRules(top, self.restitution, self.until / units.time)
+
+
+REPORT = tt.presets.report_problem(spin=155.0, tilt=0.6)
+SQUASHED = tt.Body(
+    mass=0.02, shape=SquashedSphere(radius=0.02, center=0.005, squash=0.002), I1=3.5e-6, I3=3.2e-6
+)
+PROBLEMS = {
+    "law": REPORT.model_copy(update={"friction": StribeckFriction(mu=0.2, more=0.5, slow=0.05)}),
+    "surface": REPORT.model_copy(update={"body": SQUASHED}),
+    "mode": REPORT.model_copy(update={"contact": PinnedAtFirst(until=0.2)}),
+}
+OVER = {
+    "law": {"friction.more": [0.1, 0.6], "launch.spin": [90.0, 155.0]},
+    "surface": {"body.shape.squash": [1e-3, 2e-3], "launch.spin": [90.0, 155.0]},
+    "mode": {"contact.until": [0.1, 0.3], "launch.spin": [90.0, 155.0]},
+}
+EACH = pytest.mark.parametrize("what", PROBLEMS)
+
+
+@EACH
+def test_integrators_agree_and_energy_balances(what: str) -> None:
+    runs = [
+        tt.simulate(PROBLEMS[what], DURATION, integrator=name, tolerance=tolerance, samples=101)
+        for name, tolerance in (("taylor", None), ("dop853", 1e-12))
+    ]
+    for name in ("theta", "omega3", "x", "normal_force", "work"):
+        one, other = (run[name].values for run in runs)
+        np.testing.assert_allclose(one, other, rtol=0, atol=1e-8 * np.abs(one).max(), err_msg=name)
+    for run in runs:
+        assert run.attrs["outcome"] == "completed"
+        assert float(run["energy_error"]) < 1e-10
+    assert float(runs[0]["energy_lost"]) > 0.01 * float(runs[0]["energy_start"])
+
+
+def test_the_law_is_the_one_defined() -> None:
+    run = tt.simulate(PROBLEMS["law"], 0.2, samples=51)
+    slip = np.hypot(run["slip_x"], run["slip_y"]).values
+    force = np.hypot(*run["contact_force"].values[:, :2].T) / run["normal_force"].values
+    expected = 0.2 * (1 + 0.5 / (1 + (slip / 0.05) ** 2)) * slip / np.hypot(slip, 0.05)
+    np.testing.assert_allclose(force, expected, rtol=1e-9, atol=1e-15)
+
+
+def test_the_surface_is_the_one_defined() -> None:
+    run = tt.simulate(PROBLEMS["surface"], DURATION, samples=51)
+    c = np.cos(run["theta"].values)
+    np.testing.assert_allclose(run["height"], 0.02 - 0.005 * c - 0.002 * c * c, rtol=1e-12)
+
+
+def test_the_mode_is_the_one_defined() -> None:
+    run = tt.simulate(PROBLEMS["mode"], DURATION, samples=501)
+    pinned = run["time"].values < 0.2
+    names = np.array(run["mode"].attrs["flag_meanings"].split())[run["mode"].values]
+    assert set(names[pinned]) == {"pinned"}
+    assert "pinned" not in names[run["time"].values > 0.2]
+    energy, slip = run["energy"].values, np.hypot(run["slip_x"], run["slip_y"]).values
+    assert np.ptp(energy[pinned]) < 1e-12 * energy[0], "a force on a point at rest does no work"
+    assert slip[pinned].max() < 1e-12 < 1e-3 < slip[~pinned].max()
+    assert energy[-1] < 0.99 * energy[0]
+
+
+@EACH
+def test_sweeps_find_what_runs_find(what: str) -> None:
+    found = tt.sweep(PROBLEMS[what], OVER[what], duration=DURATION, tolerance=1e-14, workers=1)
+    dimensions = list(OVER[what])
+    cells = found.stack(cell=dimensions)
+    for place in range(cells.sizes["cell"]):
+        here = cells.isel(cell=place)
+        changes = {name: float(here[name]) for name in dimensions}
+        run = tt.simulate(PROBLEMS[what].replace(changes), DURATION, samples=11)
+        # Of the tilt between samples a sweep keeps bounds, and so of the greatest height.
+        for name in set(SWEPT) & set(run.variables) - {"steps", "highest"}:
+            one, other = float(here[name]), float(run[name])
+            assert one == pytest.approx(other, rel=1e-9, abs=1e-9, nan_ok=True), (name, changes)
+    assert np.unique(found["final_theta"].values).size == cells.sizes["cell"]
+
+
+@EACH
+def test_worker_processes_find_the_same(what: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tippetop.sweeps.definition.LEAST_CELLS_A_TASK", 1)
+    alone, shared = (
+        tt.sweep(PROBLEMS[what], OVER[what], duration=DURATION, workers=count) for count in (1, 2)
+    )
+    for name in SWEPT:
+        np.testing.assert_allclose(alone[name], shared[name], rtol=1e-12)
+
+
+@EACH
+def test_they_go_into_text_and_come_back(what: str) -> None:
+    problem = PROBLEMS[what]
+    assert tt.Problem.from_toml(problem.to_toml()) == problem
+    assert tt.Problem.from_json(problem.to_json()) == problem
+    assert tt.Problem(**problem.model_dump()) == problem
+
+
+@pytest.mark.parametrize(
+    ("changes", "field"),
+    [
+        ({"friction.mu": -1.0}, "friction.mu"),
+        ({"body.shape.squash": 0.1}, "body.shape.squash"),
+        ({"contact.until": 0.0}, "contact.until"),
+        ({"contact.kind": "glued"}, "contact.kind"),
+    ],
+)
+def test_what_cannot_be_is_refused_by_its_field(changes: dict[str, Any], field: str) -> None:
+    everything = REPORT.model_copy(
+        update={what.split(".")[0]: getattr(PROBLEMS[kind], what) for kind, what in PARTS.items()}
+    )
+    with pytest.raises(InvalidInput) as caught:
+        everything.replace(changes)
+    assert caught.value.field == field
+
+
+PARTS = {"law": "friction", "surface": "body", "mode": "contact"}
+
+
+def test_cells_that_a_part_refuses_are_refused() -> None:
+    found = tt.sweep(PROBLEMS["surface"], {"body.shape.squash": [1e-3, 8e-3]}, duration=0.01, workers=1)
+    assert found["fault"].values.tolist() == [Fault.NONE, Fault.VALUE_OUT_OF_RANGE]
+
+
+def test_a_kind_needs_a_word_of_its_own() -> None:
+    with pytest.raises(TypeError, match="Wordless needs a word"):
+
+        class Wordless(Friction):
+            mu: float
+
+    with pytest.raises(TypeError, match="Taken needs another word: 'viscous' is ViscousFriction"):
+
+        class Taken(Friction):
+            kind: Literal["viscous"] = "viscous"
+
+    assert Friction.kinds["viscous"] is tt.ViscousFriction
+
+
+SCRIPT = """
+import tippetop as tt
+from typing import Literal
+from tippetop.mechanics.friction import ViscousLaw
+class Mine(tt.Friction):
+    kind: Literal["mine"] = "mine"
+    mu: float
+    @property
+    def law(self):
+        return ViscousLaw(self.mu)
+problem = tt.presets.report_problem().model_copy(update={"friction": Mine(mu=0.3)})
+found = tt.sweep(problem, {"launch.spin": [100.0]}, duration=0.01, workers=None)
+print(found["outcome"].values)
+try:
+    tt.sweep(problem, {"launch.spin": [100.0]}, duration=0.01, workers=2)
+except tt.InvalidInput as error:
+    print(error)
+"""
+
+
+def test_what_a_script_defines_is_computed_in_its_own_process() -> None:
+    done = subprocess.run([sys.executable, "-c", SCRIPT], capture_output=True, text=True, check=True)
+    first, second = done.stdout.splitlines()
+    assert first.startswith("[")
+    assert second.startswith("workers = 2 is not possible; accepted: this process alone")
