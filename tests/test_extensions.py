@@ -12,10 +12,12 @@ import pytest
 from pydantic import Field, model_validator
 
 import tippetop as tt
+from tippetop.bodies import Shape
 from tippetop.catalogue import SWEPT, Fault
 from tippetop.contact.mode import IntegratedMode, Reaction, Transition
 from tippetop.contact.rules import FreeToFly
 from tippetop.errors import InvalidInput
+from tippetop.frictions import Friction
 from tippetop.integrators.base import Guard, Motion
 from tippetop.mechanics.friction import NO_TORQUE, FrictionLaw, Traction
 from tippetop.mechanics.motion import axis_rate, on_table
@@ -25,8 +27,8 @@ from tippetop.mechanics.surface import Surface
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Horizontal, Row, Scalar, Vector
-from tippetop.problem import Contact, Friction, Positive, Shape
-from tippetop.validation import Quantity
+from tippetop.problem import Contact
+from tippetop.validation import Positive, Quantity
 
 DURATION = 1.0
 

@@ -78,7 +78,7 @@ def test_a_circle_is_found_wherever_it_hides() -> None:
     """Inside functions and classes, but not where only type checkers look."""
     hidden = """
 if TYPE_CHECKING:
-    from tippetop.problem import Body
+    from tippetop.bodies import Body
 else:
     import tippetop.presets
 class Deep:

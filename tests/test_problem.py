@@ -12,22 +12,15 @@ from pydantic import BaseModel, ValidationError
 
 from strategies import problems
 from tippetop import presets, problem
+from tippetop.bodies import Body, EccentricSphere, Spheroid
 from tippetop.errors import FileTrouble, InvalidInput, TippetopError
+from tippetop.frictions import RegularizedCoulombFriction, ViscousFriction
 from tippetop.mechanics.friction import RegularizedCoulombLaw, ViscousLaw
 from tippetop.mechanics.motion import angular_velocity, contact, point_velocity
 from tippetop.mechanics.surface import SphereSurface, SpheroidSurface, contact_vector
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import length
-from tippetop.problem import (
-    Body,
-    Contact,
-    EccentricSphere,
-    Launch,
-    Problem,
-    RegularizedCoulombFriction,
-    Spheroid,
-    ViscousFriction,
-)
+from tippetop.problem import Contact, Launch, Problem
 
 EGG = {"mass": 0.05, "shape": {"kind": "spheroid", "across": 0.02, "along": 0.03}, "I1": 1.3e-5, "I3": 8e-6}
 COULOMB = {"kind": "regularized_coulomb", "mu": 0.3, "eps": 1e-3}

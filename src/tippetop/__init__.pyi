@@ -1,6 +1,9 @@
 """The public names, and where they live: the package loads them from here."""
 
 from . import presets as presets
+from .bodies import Body as Body
+from .bodies import EccentricSphere as EccentricSphere
+from .bodies import Spheroid as Spheroid
 from .catalogue import Ending as Ending
 from .contact.mode import Outcome as Outcome
 from .errors import FileTrouble as FileTrouble
@@ -12,17 +15,19 @@ from .export.glb import write_glb as write_glb
 from .export.html import write_html as write_html
 from .export.movie import write_movie as write_movie
 from .figures.overview import plot as plot
+from .frictions import ContensouFriction as ContensouFriction
+from .frictions import CoulombFriction as CoulombFriction
+from .frictions import RegularizedCoulombFriction as RegularizedCoulombFriction
+from .frictions import ViscousFriction as ViscousFriction
 from .lab.notebook import view as view
+from .mechanics.hertz import MATERIALS as MATERIALS
+from .mechanics.hertz import Material as Material
+from .mechanics.hertz import hertz_patch_radius as hertz_patch_radius
 from .netcdf import read_run as read_run
 from .netcdf import write_run as write_run
-from .problem import Body as Body
 from .problem import Contact as Contact
-from .problem import EccentricSphere as EccentricSphere
 from .problem import Launch as Launch
 from .problem import Problem as Problem
-from .problem import RegularizedCoulombFriction as RegularizedCoulombFriction
-from .problem import Spheroid as Spheroid
-from .problem import ViscousFriction as ViscousFriction
 from .run import simulate as simulate
 from .summary import summarize as summarize
 from .sweeps.run import sweep as sweep

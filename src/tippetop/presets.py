@@ -1,14 +1,9 @@
 """Bodies and problems known by name."""
 
+from tippetop.bodies import Body, EccentricSphere
 from tippetop.errors import InvalidInput, one_of
-from tippetop.problem import (
-    Body,
-    EccentricSphere,
-    Launch,
-    Problem,
-    RegularizedCoulombFriction,
-    ViscousFriction,
-)
+from tippetop.frictions import RegularizedCoulombFriction, ViscousFriction
+from tippetop.problem import Launch, Problem
 
 _MASS, _RADIUS = 0.02, 0.02
 _TWO_FIFTHS = 2 / 5 * _MASS * _RADIUS**2

@@ -5,7 +5,6 @@ Every part is frozen, refuses what cannot be, and reads and writes TOML and JSON
 
 import json
 import math
-from abc import abstractmethod
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
@@ -13,14 +12,14 @@ from typing import Annotated, Any, Literal, Self
 import tomli_w
 from pydantic import Field, model_validator
 
+from tippetop.bodies import Body
 from tippetop.errors import InvalidInput, one_of
 from tippetop.files import read_text
-from tippetop.mechanics.friction import FrictionLaw, RegularizedCoulombLaw, ViscousLaw
+from tippetop.frictions import Friction
 from tippetop.mechanics.motion import along_table, contact, on_table
 from tippetop.mechanics.rolling import is_set_valued
 from tippetop.mechanics.state import State
 from tippetop.mechanics.stick_slip import is_slipping, size
-from tippetop.mechanics.surface import SphereSurface, SpheroidSurface, Surface
 from tippetop.mechanics.top import Top, natural_state, natural_units
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Functions
@@ -28,172 +27,23 @@ from tippetop.mechanics.view import Angles, PoleExact, state_from_angles
 from tippetop.validation import (
     NO_WORD,
     OF_ITS_KIND,
+    NotNegative,
     Number,
     Part,
+    Positive,
     Quantity,
     Variant,
     parse_json,
     parse_toml,
 )
 
-Positive = Annotated[float, Field(gt=0), NO_WORD]
 Fraction = Annotated[float, Field(ge=0, le=1), NO_WORD]
 Tilt = Annotated[float, Field(ge=0, le=math.pi), NO_WORD]
-NotNegative = Annotated[float, Field(ge=0), NO_WORD]
 
 LEANING = (
     "along the direction into which the axis leans",
     "90 degrees to the left of the direction into which the axis leans",
 )
-
-
-class Shape(Variant):
-    """The outer surface of a body, and where the centre of mass is in it; a kind of it is a subclass.
-
-    Attributes
-    ----------
-    kind
-        The word for the kind, in a subclass with a default: ``kind: Literal["cone"] = "cone"``.
-    """
-
-    kind: str
-
-    @property
-    @abstractmethod
-    def surface(self) -> Surface:
-        """The outer surface, from the centre of mass, as the mechanics takes it."""
-
-
-class EccentricSphere(Shape):
-    """A sphere whose centre of mass is off its centre: the tippe top.
-
-    Attributes
-    ----------
-    radius
-        Radius of the sphere, m.
-    eccentricity
-        Distance of the centre of mass from the centre, in radii, between 0 and 1.
-    """
-
-    kind: Literal["eccentric_sphere"] = "eccentric_sphere"
-    radius: Annotated[Positive, Quantity("m", "radius of the sphere")]
-    eccentricity: Annotated[
-        float,
-        Field(gt=0, lt=1),
-        NO_WORD,
-        Quantity("1", "distance of the centre of mass from the centre, in radii"),
-    ]
-
-    @property
-    def surface(self) -> Surface:
-        """The outer surface, from the centre of mass, as the mechanics takes it."""
-        return SphereSurface(self.radius, self.eccentricity * self.radius)
-
-
-class Spheroid(Shape):
-    """A spheroid with its centre of mass at its centre: the spinning egg.
-
-    Attributes
-    ----------
-    across, along
-        Semi-axes across and along the axis of symmetry, m.
-    """
-
-    kind: Literal["spheroid"] = "spheroid"
-    across: Annotated[Positive, Quantity("m", "semi-axis across the axis of symmetry")]
-    along: Annotated[Positive, Quantity("m", "semi-axis along the axis of symmetry")]
-
-    @property
-    def surface(self) -> Surface:
-        """The outer surface, from the centre of mass, as the mechanics takes it."""
-        return SpheroidSurface(self.across, self.along)
-
-
-class Friction(Variant):
-    """The friction of the table; a kind of it is a subclass.
-
-    Attributes
-    ----------
-    kind
-        The word for the kind, in a subclass with a default: ``kind: Literal["wet"] = "wet"``.
-    """
-
-    kind: str
-
-    @property
-    @abstractmethod
-    def law(self) -> FrictionLaw:
-        """The law as the mechanics takes it."""
-
-    @property
-    def vanishes(self) -> bool:
-        """Whether the table is smooth: there is a coefficient mu, and it is 0."""
-        return getattr(self, "mu", None) == 0.0
-
-
-class ViscousFriction(Friction):
-    """Friction force -mu N v for slip velocity v and normal force N.
-
-    Attributes
-    ----------
-    mu
-        Friction coefficient, s/m.
-    """
-
-    kind: Literal["viscous"] = "viscous"
-    mu: Annotated[NotNegative, Quantity("s m-1", "friction coefficient")]
-
-    @property
-    def law(self) -> FrictionLaw:
-        """The law as the mechanics takes it."""
-        return ViscousLaw(self.mu)
-
-
-class RegularizedCoulombFriction(Friction):
-    """Friction force -mu N v / sqrt(v^2 + eps^2) for slip velocity v and normal force N.
-
-    Attributes
-    ----------
-    mu
-        Friction coefficient, dimensionless.
-    eps
-        Slip speed below which the force falls to zero, m/s.
-    """
-
-    kind: Literal["regularized_coulomb"] = "regularized_coulomb"
-    mu: Annotated[NotNegative, Quantity("1", "friction coefficient")]
-    eps: Annotated[Positive, Quantity("m s-1", "slip speed below which friction falls to zero")] = 1e-3
-
-    @property
-    def law(self) -> FrictionLaw:
-        """The law as the mechanics takes it."""
-        return RegularizedCoulombLaw(self.mu, self.eps)
-
-
-class Body(Part):
-    """A rigid body of revolution.
-
-    Attributes
-    ----------
-    mass
-        Mass, kg.
-    shape
-        Outer surface, and where the centre of mass is in it.
-    I1, I3
-        Principal moments of inertia about the centre of mass, kg m^2: transverse to and along the axis of
-        symmetry. No body has I3 > 2 I1.
-    """
-
-    mass: Annotated[Positive, Quantity("kg", "mass of the body")]
-    shape: Annotated[Shape, OF_ITS_KIND]
-    I1: Annotated[Positive, Quantity("kg m2", "moment of inertia transverse to the axis of symmetry")]
-    I3: Annotated[Positive, Quantity("kg m2", "moment of inertia along the axis of symmetry")]
-
-    @model_validator(mode="after")
-    def _can_exist(self) -> Self:
-        if self.I3 > 2 * self.I1:
-            raise InvalidInput("I3", self.I3, f"at most 2 I1 = {2 * self.I1:g}, as for any body")
-        return self
 
 
 class Launch(Part):

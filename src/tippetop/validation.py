@@ -8,7 +8,15 @@ from collections.abc import Mapping
 from numbers import Integral
 from typing import Annotated, Any, ClassVar, NamedTuple, Self, TypeAlias
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, GetCoreSchemaHandler, ValidationError
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    GetCoreSchemaHandler,
+    GetJsonSchemaHandler,
+    ValidationError,
+)
 from pydantic.fields import FieldInfo
 from pydantic_core import CoreSchema, ErrorDetails, PydanticCustomError, core_schema
 
@@ -27,6 +35,9 @@ NO_WORD = BeforeValidator(_no_word)
 
 Number: TypeAlias = Annotated[float, NO_WORD]
 """A number, and nothing that only looks like one."""
+
+Positive: TypeAlias = Annotated[float, Field(gt=0), NO_WORD]
+NotNegative: TypeAlias = Annotated[float, Field(ge=0), NO_WORD]
 
 DEEPEST = 20
 """How deep tables and lists may be nested in a text; a problem's are three deep."""
@@ -151,7 +162,15 @@ class _OfItsKind:
             assert isinstance(found, base)
             return found
 
-        return core_schema.no_info_plain_validator_function(chosen)
+        return core_schema.no_info_plain_validator_function(chosen, metadata={"base": base})
+
+    def __get_pydantic_json_schema__(
+        self, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        base: Any = schema["metadata"]["base"]
+        plain = [] if inspect.isabstract(base) else [base]
+        kinds = [handler(kind.__pydantic_core_schema__) for kind in (*plain, *base.kinds.values())]
+        return {"oneOf": kinds} if len(kinds) > 1 else kinds[0]
 
 
 OF_ITS_KIND = _OfItsKind()

@@ -9,12 +9,14 @@ import numpy as np
 import pytest
 from sweeps import lively, problem_of, same, thrown, truth
 
+from tippetop.bodies import Body, Spheroid
 from tippetop.catalogue import METRICS
 from tippetop.contact.sliding import sliding_motion
 from tippetop.errors import InvalidInput
+from tippetop.frictions import RegularizedCoulombFriction
 from tippetop.integrators import has_taylor
 from tippetop.presets import report_problem
-from tippetop.problem import Body, Problem, RegularizedCoulombFriction, Spheroid
+from tippetop.problem import Problem
 from tippetop.summary import summarize
 from tippetop.sweeps import (
     SWEPT,

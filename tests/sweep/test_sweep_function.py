@@ -4,17 +4,11 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from tippetop.bodies import Body, EccentricSphere, Spheroid
 from tippetop.errors import FileTrouble, InvalidInput
+from tippetop.frictions import RegularizedCoulombFriction, ViscousFriction
 from tippetop.presets import report_problem
-from tippetop.problem import (
-    Body,
-    EccentricSphere,
-    Launch,
-    Problem,
-    RegularizedCoulombFriction,
-    Spheroid,
-    ViscousFriction,
-)
+from tippetop.problem import Launch, Problem
 from tippetop.sweeps import Axis, Draws, Product, Range, Sweep, compute, sweep
 from tippetop.sweeps.cells import numeric_fields
 

@@ -28,6 +28,9 @@ MOST_STEPS = 4096
 LOOKS = 64
 """Looks at the gap in search of its highest value; the search is repeated around the best one."""
 
+SEARCHES = 4
+"""Searches, each about 30 times finer than the one before: the last resolves the gap to rounding."""
+
 
 @dataclass(frozen=True)
 class Flight(Mode):
@@ -86,7 +89,7 @@ class Flight(Mode):
     def _highest_gap(self, state: State, duration: float) -> float:
         """The highest gap of the flight."""
         low, high = 0.0, duration
-        for _ in range(2):
+        for _ in range(SEARCHES):
             looks = np.linspace(low, high, LOOKS)
             gaps = np.broadcast_to(gap(fly(state, looks, self.top, np), self.top), looks.shape)
             best = int(np.argmax(gaps))

@@ -10,13 +10,14 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from tippetop import __version__
+from tippetop.bodies import Body
 from tippetop.errors import InvalidInput
 from tippetop.export.geometry import Mesh, lathe
 from tippetop.export.poses import poses_at
 from tippetop.export.words import tell
 from tippetop.figures.looks import SCENES, ToyPart, size, toy_parts
 from tippetop.files import place_for, written_beside
-from tippetop.problem import Body, Problem
+from tippetop.problem import Problem
 
 TURN_PER_KEY = 0.5
 """Angle by which the body may turn between two keys, rad; a viewer goes the shortest way between them."""

@@ -12,8 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from tippetop.bodies import Body, EccentricSphere, Shape, Spheroid
 from tippetop.figures.style import ACCENT, CONVERGED, REPORT
-from tippetop.problem import Body, EccentricSphere, Shape, Spheroid
 
 Array = NDArray[np.float64]
 

@@ -9,8 +9,8 @@ import numpy as np
 from matplotlib.colors import to_rgb
 from numpy.typing import NDArray
 
+from tippetop.bodies import Body, EccentricSphere
 from tippetop.figures.looks import FACE, KNOB, STEM, STEM_TOP, outline, size, toy_parts
-from tippetop.problem import Body, EccentricSphere
 
 Array = NDArray[np.floating[Any]]
 

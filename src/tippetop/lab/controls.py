@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 from nicegui import events, ui
 
 from tippetop.figures.looks import size
+from tippetop.frictions import Friction
 from tippetop.lab.setup import Setup
-from tippetop.problem import Friction
 
 Change = Callable[[dict[str, Any], bool], None]
 """Is told what to change, and whether the browser has asked for the new run already."""

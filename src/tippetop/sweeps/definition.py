@@ -11,11 +11,11 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from tippetop.errors import MISSING, InvalidInput
 from tippetop.files import read_text
-from tippetop.problem import Positive, Problem
+from tippetop.problem import Problem
 from tippetop.sweeps.cells import cells_of
 from tippetop.sweeps.grid import Draws, Product
 from tippetop.theory.steady import require_jellett
-from tippetop.validation import Number, Part, parse_toml
+from tippetop.validation import Number, Part, Positive, parse_toml
 
 DEFAULT_TOLERANCE = 1e-9
 SETTLED_RANGE = (1e-6, 1e-2)

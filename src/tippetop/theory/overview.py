@@ -3,7 +3,8 @@
 import math
 from dataclasses import dataclass
 
-from tippetop.problem import Problem, ViscousFriction
+from tippetop.frictions import ViscousFriction
+from tippetop.problem import Problem
 from tippetop.theory.averaging import flip_time_limit, nutation_of_launch
 from tippetop.theory.groups import Group, classify_top, eccentricity, inertia_ratio
 from tippetop.theory.prediction import Prediction, predict, steady_launch

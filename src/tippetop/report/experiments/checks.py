@@ -3,8 +3,9 @@
 import numpy as np
 import xarray as xr
 
+from tippetop.frictions import ViscousFriction
 from tippetop.presets import report_problem
-from tippetop.problem import Problem, ViscousFriction
+from tippetop.problem import Problem
 from tippetop.report.experiment import Experiment, variable
 from tippetop.report.experiments.runs import on_table
 from tippetop.run import simulate

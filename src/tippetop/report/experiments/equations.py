@@ -7,13 +7,14 @@ import numpy as np
 import xarray as xr
 from scipy.spatial.transform import Rotation
 
+from tippetop.bodies import EccentricSphere
 from tippetop.integrators.base import Array
 from tippetop.mechanics.euler import published_normal_force, published_parameters, published_rates
 from tippetop.mechanics.motion import angular_velocity, contact
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import VERTICAL, Vector, cross, dot, scale
 from tippetop.presets import REPORT, report_problem
-from tippetop.problem import EccentricSphere, Problem
+from tippetop.problem import Problem
 from tippetop.report.experiment import Experiment, variable
 from tippetop.report.experiments.runs import on_table
 from tippetop.run import simulate

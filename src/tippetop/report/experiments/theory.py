@@ -5,9 +5,10 @@ import math
 import numpy as np
 import xarray as xr
 
+from tippetop.bodies import Body, EccentricSphere
 from tippetop.integrators.base import Array
 from tippetop.presets import REPORT, REPORT_TABLE_1, report_problem
-from tippetop.problem import Body, EccentricSphere, Problem
+from tippetop.problem import Problem
 from tippetop.report.experiment import Experiment, variable
 from tippetop.report.experiments.runs import WINDOW
 from tippetop.run import simulate

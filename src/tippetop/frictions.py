@@ -1,0 +1,120 @@
+"""The friction of the table: its laws as users state them, validated."""
+
+from abc import abstractmethod
+from typing import Annotated, Literal
+
+from tippetop.mechanics.contensou import EllipsoidalLaw
+from tippetop.mechanics.contensou_hertz import HertzLaw
+from tippetop.mechanics.coulomb import CoulombLaw
+from tippetop.mechanics.friction import FrictionLaw, RegularizedCoulombLaw, ViscousLaw
+from tippetop.validation import NotNegative, Positive, Quantity, Variant
+
+
+class Friction(Variant):
+    """The friction of the table; a kind of it is a subclass.
+
+    Attributes
+    ----------
+    kind
+        The word for the kind, in a subclass with a default: ``kind: Literal["wet"] = "wet"``.
+    """
+
+    kind: str
+
+    @property
+    @abstractmethod
+    def law(self) -> FrictionLaw:
+        """The law as the mechanics takes it."""
+
+    @property
+    def vanishes(self) -> bool:
+        """Whether the table is smooth: there is a coefficient mu, and it is 0."""
+        return getattr(self, "mu", None) == 0.0
+
+
+class ViscousFriction(Friction):
+    """Friction force -mu N v for slip velocity v and normal force N.
+
+    Attributes
+    ----------
+    mu
+        Friction coefficient, s/m.
+    """
+
+    kind: Literal["viscous"] = "viscous"
+    mu: Annotated[NotNegative, Quantity("s m-1", "friction coefficient")]
+
+    @property
+    def law(self) -> FrictionLaw:
+        """The law as the mechanics takes it."""
+        return ViscousLaw(self.mu)
+
+
+class RegularizedCoulombFriction(Friction):
+    """Friction force -mu N v / sqrt(v^2 + eps^2) for slip velocity v and normal force N.
+
+    Attributes
+    ----------
+    mu
+        Friction coefficient, dimensionless.
+    eps
+        Slip speed below which the force falls to zero, m/s.
+    """
+
+    kind: Literal["regularized_coulomb"] = "regularized_coulomb"
+    mu: Annotated[NotNegative, Quantity("1", "friction coefficient")]
+    eps: Annotated[Positive, Quantity("m s-1", "slip speed below which friction falls to zero")] = 1e-3
+
+    @property
+    def law(self) -> FrictionLaw:
+        """The law as the mechanics takes it."""
+        return RegularizedCoulombLaw(self.mu, self.eps)
+
+
+class CoulombFriction(Friction):
+    """Dry friction, Coulomb's law as it is: -mu N v / |v| for slip velocity v and normal force N.
+
+    Where v = 0 the force is what keeps it so, up to mu N: the top sticks, and rolls. Drilling, which is
+    turning about the vertical on the spot, is not resisted.
+
+    Attributes
+    ----------
+    mu
+        Friction coefficient.
+    """
+
+    kind: Literal["coulomb"] = "coulomb"
+    mu: Annotated[Positive, Quantity("1", "Coulomb friction coefficient")]
+
+    @property
+    def law(self) -> FrictionLaw:
+        """The law as the mechanics takes it."""
+        return CoulombLaw(self.mu)
+
+
+class ContensouFriction(Friction):
+    """Dry friction of a round patch that slides and drills at once (Contensou 1963).
+
+    Every part of the patch rubs by Coulomb's law against its own velocity: drilling makes sliding easier, and
+    sliding makes drilling easier. The top sticks while neither is needed to hold it.
+
+    Attributes
+    ----------
+    mu
+        Friction coefficient.
+    patch_radius
+        Radius R of the patch, m; see `hertz_patch_radius`.
+    pressure
+        "hertz": the pressure of Hertz's contact, its law exact; "ellipsoidal": the approximation of its limit
+        surface by an ellipsoid that drills as hard, semi-axis (3 pi/16) R (Leine and Glocker 2003).
+    """
+
+    kind: Literal["contensou"] = "contensou"
+    mu: Annotated[Positive, Quantity("1", "Coulomb friction coefficient")]
+    patch_radius: Annotated[Positive, Quantity("m", "radius of the contact patch")]
+    pressure: Literal["hertz", "ellipsoidal"] = "hertz"
+
+    @property
+    def law(self) -> FrictionLaw:
+        """The law as the mechanics takes it."""
+        return (HertzLaw if self.pressure == "hertz" else EllipsoidalLaw)(self.mu, self.patch_radius)
