@@ -18,9 +18,11 @@ from .netcdf import write_run as write_run
 from .problem import Body as Body
 from .problem import Contact as Contact
 from .problem import EccentricSphere as EccentricSphere
+from .problem import Friction as Friction
 from .problem import Launch as Launch
 from .problem import Problem as Problem
 from .problem import RegularizedCoulombFriction as RegularizedCoulombFriction
+from .problem import Shape as Shape
 from .problem import Spheroid as Spheroid
 from .problem import ViscousFriction as ViscousFriction
 from .run import simulate as simulate
