@@ -1,6 +1,7 @@
 """Problems: what they refuse and how they say so, that they are values, and that writing loses nothing."""
 
 import copy
+import inspect
 import json
 import math
 import pickle
@@ -11,10 +12,15 @@ from hypothesis import strategies as st
 from pydantic import BaseModel, ValidationError
 
 from strategies import problems
-from tippetop import presets, problem
+from tippetop import bodies, frictions, presets, problem
 from tippetop.bodies import Body, EccentricSphere, Spheroid
 from tippetop.errors import FileTrouble, InvalidInput, TippetopError
-from tippetop.frictions import RegularizedCoulombFriction, ViscousFriction
+from tippetop.frictions import (
+    ContensouFriction,
+    CoulombFriction,
+    RegularizedCoulombFriction,
+    ViscousFriction,
+)
 from tippetop.mechanics.friction import RegularizedCoulombLaw, ViscousLaw
 from tippetop.mechanics.motion import angular_velocity, contact, point_velocity
 from tippetop.mechanics.surface import SphereSurface, SpheroidSurface, contact_vector
@@ -27,6 +33,8 @@ COULOMB = {"kind": "regularized_coulomb", "mu": 0.3, "eps": 1e-3}
 PARTS = [
     Body,
     Contact,
+    ContensouFriction,
+    CoulombFriction,
     EccentricSphere,
     Launch,
     Problem,
@@ -727,11 +735,22 @@ def conforms(value, schema, root):
     raise AssertionError(f"unknown schema: {schema}")
 
 
+def objects_in(schema):
+    """The schemas of objects in a JSON Schema, with their titles."""
+    if isinstance(schema, dict):
+        if schema.get("type") == "object":
+            yield schema["title"], schema
+        schema = list(schema.values())
+    if isinstance(schema, list):
+        for part in schema:
+            yield from objects_in(part)
+
+
 class TestSchema:
     SCHEMA = Problem.model_json_schema()
 
     def test_it_has_every_field_of_every_part(self):
-        definitions = {**self.SCHEMA["$defs"], "Problem": self.SCHEMA}
+        definitions = dict(objects_in(self.SCHEMA))
         assert set(definitions) == {part.__name__ for part in PARTS}
         for part in PARTS:
             assert set(definitions[part.__name__]["properties"]) == set(part.model_fields)
@@ -739,16 +758,18 @@ class TestSchema:
     def test_the_parts_are_all_the_models_there_are(self):
         defined = {
             model
-            for model in vars(problem).values()
+            for module in (bodies, frictions, problem)
+            for model in vars(module).values()
             if isinstance(model, type)
             and issubclass(model, BaseModel)
-            and model.__module__ == problem.__name__
+            and model.__module__ == module.__name__
+            and not inspect.isabstract(model)
         }
         assert defined == set(PARTS)
 
     def test_every_number_says_what_it_is_in_a_docstring_with_units(self):
         for part in PARTS:
-            description = {**self.SCHEMA["$defs"], "Problem": self.SCHEMA}[part.__name__]["description"]
+            description = dict(objects_in(self.SCHEMA))[part.__name__]["description"]
             for name in part.model_fields:
                 assert name in description or name == "kind"
 

@@ -3,6 +3,7 @@
 from . import presets as presets
 from .bodies import Body as Body
 from .bodies import EccentricSphere as EccentricSphere
+from .bodies import Shape as Shape
 from .bodies import Spheroid as Spheroid
 from .catalogue import Ending as Ending
 from .contact.mode import Outcome as Outcome
@@ -17,6 +18,7 @@ from .export.movie import write_movie as write_movie
 from .figures.overview import plot as plot
 from .frictions import ContensouFriction as ContensouFriction
 from .frictions import CoulombFriction as CoulombFriction
+from .frictions import Friction as Friction
 from .frictions import RegularizedCoulombFriction as RegularizedCoulombFriction
 from .frictions import ViscousFriction as ViscousFriction
 from .lab.notebook import view as view

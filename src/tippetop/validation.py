@@ -168,9 +168,8 @@ class _OfItsKind:
         self, schema: CoreSchema, handler: GetJsonSchemaHandler
     ) -> dict[str, Any]:
         base: Any = schema["metadata"]["base"]
-        plain = [] if inspect.isabstract(base) else [base]
-        kinds = [handler(kind.__pydantic_core_schema__) for kind in (*plain, *base.kinds.values())]
-        return {"oneOf": kinds} if len(kinds) > 1 else kinds[0]
+        known = [*([] if inspect.isabstract(base) else [base]), *base.kinds.values()]
+        return {"oneOf": [handler(kind.__pydantic_core_schema__) for kind in known]}
 
 
 OF_ITS_KIND = _OfItsKind()
