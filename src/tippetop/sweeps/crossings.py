@@ -16,6 +16,7 @@ from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators import default_name, make_integrator
 from tippetop.integrators.base import Array
 from tippetop.mechanics.flight import gap, gap_rate
+from tippetop.mechanics.rolling import is_branched
 from tippetop.mechanics.state import State
 from tippetop.mechanics.touchdown import Start
 from tippetop.metrics import Tally
@@ -49,7 +50,7 @@ class Crossings:
     def launch(self, lanes: Indices, state: State) -> None:
         """Sort the launches out that do not simply slide from the start."""
         launches = self.slots.launches
-        if launches.own is not None:
+        if launches.own is not None or is_branched(launches.kind.example.friction):
             for i, lane in enumerate(lanes.tolist()):
                 self._follow_alone(lane, 0.0, launches.rules(i).launch(single(state, i)))
             return

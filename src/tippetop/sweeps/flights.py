@@ -27,7 +27,7 @@ from tippetop.mechanics.motion import (
     on_table,
     sliding_rates,
 )
-from tippetop.mechanics.rolling import is_branched, is_set_valued
+from tippetop.mechanics.rolling import is_set_valued
 from tippetop.mechanics.series import Series, horner, solution
 from tippetop.mechanics.state import State
 from tippetop.mechanics.stick_slip import HORIZON, is_slipping, stopping_guard
@@ -212,8 +212,6 @@ def collide(state: State, top: Top) -> tuple[State, Flags]:
 
 def slides(state: State, top: Top) -> Flags:
     """Whether tops in contact, whose contact point is at rest vertically, go on sliding."""
-    if is_branched(top.friction):
-        return np.zeros(len(state.height), dtype=bool)
     sliding = along_table(state)
     with np.errstate(all="ignore"):
         touch = contact(sliding.axis, sliding.momentum, sliding.velocity, top)
@@ -226,8 +224,6 @@ def slips(state: State, top: Top) -> Flags:
     count = np.ones(len(np.atleast_1d(state.height)), dtype=bool)
     if not is_set_valued(top.friction):
         return count
-    if is_branched(top.friction):
-        return ~count
     y = along_table(state)
     with np.errstate(all="ignore"):
         lasting = stopping_guard(y, sliding_rates(y, top), top, HORIZON) > 0.0

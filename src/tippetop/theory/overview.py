@@ -13,6 +13,7 @@ from tippetop.theory.steady import (
     VERTICAL_SPINS,
     SteadyState,
     jellett_of_launch,
+    require_lasting_slip,
     vertical_spin,
 )
 from tippetop.theory.steady import (
@@ -87,9 +88,10 @@ def outlook(problem: Problem) -> Outlook:
     Raises
     ------
     InvalidInput
-        If it turns so fast that the theory cannot tell.
+        If it turns so fast that the theory cannot tell, or friction is dry.
     """
     top = problem.top
+    require_lasting_slip(top)
     jellett = jellett_of_launch(problem)
     sphere = top.conserves_jellett
     stays, smooth = steady_launch(problem), problem.friction.vanishes
@@ -120,8 +122,9 @@ def steady_states(problem: Problem) -> list[SteadyState]:
     Raises
     ------
     InvalidInput
-        If it turns so fast that the theory cannot tell.
+        If it turns so fast that the theory cannot tell, or friction is dry.
     """
+    require_lasting_slip(problem.top)
     if problem.top.conserves_jellett:
         return all_steady_states(problem.top, jellett_of_launch(problem))
     return [vertical_spin(kind, problem.top, problem.launch.spin) for kind in VERTICAL_SPINS]

@@ -30,6 +30,7 @@ from tippetop.theory.steady import (
     level_spin,
     precession_at,
     require_jellett,
+    require_lasting_slip,
     steady_states,
     vertical_spin,
     weight_moment,
@@ -74,10 +75,11 @@ def predict(problem: Problem) -> Prediction:
     Raises
     ------
     InvalidInput
-        If Jellett's integral is not conserved, or there is no friction.
+        If Jellett's integral is not conserved, friction is dry, or there is none.
     """
     top = problem.top
     require_jellett(top)
+    require_lasting_slip(top)
     if problem.friction.vanishes:
         raise InvalidInput("friction.mu", 0.0, "more than 0: without friction no launch settles")
     jellett = jellett_of_launch(problem)

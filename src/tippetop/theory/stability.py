@@ -32,6 +32,7 @@ from tippetop.theory.steady import (
     SteadyKind,
     SteadyState,
     gyroscopic_reaction,
+    require_lasting_slip,
     rolling_spin,
     state_of,
     weight_moment,
@@ -106,6 +107,7 @@ def spectrum(steady: SteadyState, top: Top, frame_rate: float | None = None) -> 
         Angular velocity of the frame, rad/s. Default: the state's precession, which is 0, a frame at rest,
         for a vertical spin. Only a vertical spin is steady in other frames.
     """
+    require_lasting_slip(top)
     rate = steady.precession
     if frame_rate is not None and steady.kind in VERTICAL_SPINS:
         rate = frame_rate

@@ -19,6 +19,7 @@ from numpy.polynomial import chebyshev
 
 from tippetop.errors import InvalidInput
 from tippetop.mechanics.invariants import energy, jellett
+from tippetop.mechanics.rolling import is_set_valued
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.surface import Surface, contact_vector
 from tippetop.mechanics.top import Top, natural, natural_units
@@ -208,6 +209,17 @@ def require_jellett(top: Top) -> None:
     if not top.conserves_jellett:
         raise InvalidInput(
             "friction", top.friction, "friction without torque, which conserves Jellett's integral"
+        )
+
+
+def require_lasting_slip(top: Top) -> None:
+    """Refuse dry friction, with `InvalidInput`: a top that sticks may roll for ever, whatever is stable.
+
+    There is no linear motion about sticking either.
+    """
+    if is_set_valued(top.friction):
+        raise InvalidInput(
+            "friction", top.friction, "friction under which slip never ends; the theory knows no sticking"
         )
 
 

@@ -30,6 +30,7 @@ from tippetop.theory.steady import (
     SteadyKind,
     jellett_of_launch,
     precession_branch,
+    require_lasting_slip,
     vertical_spin,
 )
 
@@ -97,7 +98,13 @@ def critical_spins(problem: Problem) -> CriticalSpins:
     The Jellett's integral of a launch is linear in its spin; for one at rest in tilt it is
     R I3 spin (cos(tilt) - alpha). Its sign does not matter, and the larger of
     the two spins is returned. Where it is not conserved, they are those of the vertical spins themselves.
+
+    Raises
+    ------
+    InvalidInput
+        If friction is dry.
     """
+    require_lasting_slip(problem.top)
     if not problem.top.conserves_jellett:
         return CriticalSpins(*(critical_spin(kind, problem.top) for kind in VERTICAL_SPINS))
     line = _jellett_line(problem)

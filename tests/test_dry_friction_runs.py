@@ -1,0 +1,142 @@
+"""Runs and sweeps of problems with dry friction: sticking, limits, and one answer wherever it is asked."""
+
+import json
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import tippetop as tt
+from tippetop.cli.main import app
+from tippetop.integrators import has_taylor
+
+INTEGRATORS = [
+    pytest.param("taylor", marks=pytest.mark.skipif(not has_taylor(), reason="no heyoka")),
+    "dop853",
+]
+LAWS = {
+    "coulomb": {"kind": "coulomb", "mu": 0.3},
+    "ellipsoidal": {"kind": "contensou", "mu": 0.3, "patch_radius": 1e-3, "pressure": "ellipsoidal"},
+    "hertz": {"kind": "contensou", "mu": 0.3, "patch_radius": 1e-3},
+}
+
+
+def dry(law, spin=100.0, **launch):
+    """The report's top with dry friction."""
+    fields = json.loads(tt.presets.report_problem(spin=spin).to_json())
+    fields["launch"] |= launch
+    return tt.Problem.from_json(json.dumps(fields | {"friction": LAWS[law] if isinstance(law, str) else law}))
+
+
+def last(run):
+    """The direction of the axis at the end, and the axial spin."""
+    return np.array([float(run["theta"][-1]), float(run["omega3"][-1]) / 100.0])
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_problems_are_written_and_read_again(law):
+    problem = dry(law)
+    assert tt.Problem.from_toml(problem.to_toml()) == problem
+    assert tt.Problem.from_json(problem.to_json()) == problem
+
+
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+def test_a_top_that_rolls_sticks_for_ever_and_loses_nothing(integrator):
+    """At rest in tilt without slip, the force that keeps it so stays below mu N."""
+    run = tt.simulate(dry("coulomb"), 2.0, integrator=integrator)
+    assert set(run["mode"].values) == {2}
+    assert abs(float(run["energy_lost"])) < 1e-12 * float(run["energy"][0])
+    force = run["contact_force"].values
+    assert (np.hypot(force[:, 0], force[:, 1]) < 0.3 * force[:, 2]).all()
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_two_integrators_agree(law):
+    if not has_taylor():
+        pytest.skip("heyoka is not installed")
+    problem = dry(law, slip=[0.3, 0.0])
+    runs = [tt.simulate(problem, 0.4, integrator=name) for name in ("taylor", "dop853")]
+    assert last(runs[0]) == pytest.approx(last(runs[1]), abs=1e-9)
+    assert float(runs[0]["energy_lost"]) == pytest.approx(float(runs[1]["energy_lost"]), rel=1e-9)
+
+
+def test_smoothed_friction_tends_to_dry_friction():
+    """The slip that smoothing leaves where a top sticks is proportional to eps, and so is what it changes."""
+    launch = {"slip": [0.3, 0.0]}
+    exact = last(tt.simulate(dry("coulomb", **launch), 0.3))
+    off = []
+    for eps in (4e-3, 2e-3, 1e-3):
+        law = {"kind": "regularized_coulomb", "mu": 0.3, "eps": eps}
+        off.append(np.abs(last(tt.simulate(dry(law, **launch), 0.3)) - exact).max())
+    assert 1e-6 < off[-1] < 1e-2
+    assert off[0] / off[1] == pytest.approx(2.0, rel=0.25)
+    assert off[1] / off[2] == pytest.approx(2.0, rel=0.25)
+
+
+@pytest.mark.parametrize("law", ["ellipsoidal", "hertz"])
+def test_a_small_patch_tends_to_a_point(law):
+    """Drilling speeds of R w beside the slip matter in proportion to their square while the top slides."""
+    launch = {"slip": [0.5, 0.0], "spin": 20.0}
+    exact = last(tt.simulate(dry("coulomb", **launch), 0.02))
+    off = []
+    for radius in (2e-4, 1e-4):
+        friction = LAWS[law] | {"patch_radius": radius}
+        off.append(np.abs(last(tt.simulate(dry(friction, **launch), 0.02)) - exact).max())
+    assert off[1] < 0.6 * off[0]
+    assert off[0] < 1e-2
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_what_friction_takes_is_what_the_energy_loses(law):
+    run = tt.simulate(dry(law, slip=[0.3, 0.1]), 0.4)
+    energy = run["energy"].values
+    assert energy[0] - energy[-1] > 1e-3 * energy[0]
+    assert float(run["energy_lost"]) == pytest.approx(energy[0] - energy[-1], rel=1e-10)
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_sweeps_find_what_runs_find(law):
+    problem = dry(law, slip=[0.3, 0.0])
+    spins = [60.0, 120.0]
+    found = tt.sweep(problem, {"launch.spin": spins}, duration=0.4, workers=1)
+    for spin in spins:
+        run = tt.simulate(problem.replace({"launch.spin": spin}), 0.4)
+        here = found.sel({"launch.spin": spin})
+        for name in ("energy_lost", "least_normal_force"):
+            assert float(here[name]) == pytest.approx(float(run[name]), rel=1e-9), (spin, name)
+
+
+def test_the_command_line_finds_the_same():
+    changes = [
+        "--set",
+        "friction.kind=coulomb",
+        "--mu",
+        "0.3",
+        "--spin",
+        "100",
+        "--set",
+        "launch.slip=[0.3,0]",
+    ]
+    told = CliRunner().invoke(app, ["simulate", *changes, "--duration", "0.4", "--json"])
+    assert told.exit_code == 0, told.output
+    run = tt.simulate(dry("coulomb", slip=[0.3, 0.0]), 0.4)
+    assert json.loads(told.stdout)["energy_lost"] == float(run["energy_lost"])
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_theory_that_knows_no_sticking_says_so(law):
+    for ask in (tt.predict, tt.critical_spins, tt.steady_states):
+        with pytest.raises(tt.InvalidInput, match="friction"):
+            ask(dry(law))
+
+
+def test_a_patch_needs_a_radius():
+    with pytest.raises(tt.InvalidInput, match="patch_radius is missing"):
+        tt.ContensouFriction(mu=0.3)
+
+
+def test_hertz_gives_the_radius():
+    """A glass marble of 15 mm on steel under its weight: (3 P r / 4 E*)^(1/3), reckoned by hand."""
+    stiffness = 1.0 / ((1 - 0.23**2) / 69e9 + (1 - 0.30**2) / 207e9)
+    radius = tt.hertz_patch_radius(0.06, 0.015, tt.MATERIALS["glass"], tt.MATERIALS["steel"])
+    assert radius**3 * 4.0 * stiffness == pytest.approx(3.0 * 0.06 * 0.015)
