@@ -27,7 +27,7 @@ from tippetop.presets import report_problem
 
 SPIN, DURATION, SAMPLES = 155.0, 20.0, 2001
 TOLERANCE = 2e-16
-TARGET_RATIO = 4.0
+TARGET_RATIO = 2.2
 """A run may take this many times the bare integration."""
 
 

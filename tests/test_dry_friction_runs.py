@@ -130,6 +130,21 @@ def test_theory_that_knows_no_sticking_says_so(law):
             ask(dry(law))
 
 
+def test_another_law_keeps_what_it_has_in_common_and_takes_the_rest():
+    viscous = tt.presets.report_problem(mu=0.2)
+    changes = {"friction.patch_radius": 1e-4, "friction.kind": "contensou"}
+    changed = viscous.replace(changes)
+    assert changed.friction == tt.ContensouFriction(mu=0.2, patch_radius=1e-4)
+    assert changed.replace({"friction.kind": "viscous"}) == viscous
+    for wrong in ({"friction.kind": "contensou"}, changes | {"friction.eps": 1.0}, {"friction.kind": "wet"}):
+        with pytest.raises(tt.InvalidInput, match="friction"):
+            viscous.replace(wrong)
+    told = CliRunner().invoke(
+        app, ["problem", "--mu", "0.2", *(f"--set={k}={v}" for k, v in changes.items())]
+    )
+    assert tt.Problem.from_toml(told.stdout) == changed
+
+
 def test_a_patch_needs_a_radius():
     with pytest.raises(tt.InvalidInput, match="patch_radius is missing"):
         tt.ContensouFriction(mu=0.3)

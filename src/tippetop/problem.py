@@ -208,18 +208,27 @@ class Problem(Part):
     def replace(self, changes: Mapping[str, Any]) -> Self:
         """Copy with some fields replaced, named with dots: ``problem.replace({"launch.spin": 100.0})``.
 
+        Another `kind` of a part keeps the fields that the new one has too, and may be given the rest.
+
         Raises
         ------
         InvalidInput
             If there is no such field, or it cannot have such a value.
         """
         fields = self.model_dump()
+        renewed = set()
         for name, value in changes.items():
-            *parents, last = name.split(".")
-            table = fields
-            for parent in parents:
-                table = table[parent] if isinstance(table.get(parent), dict) else {}
-            if last not in table:
+            where, _, last = name.rpartition(".")
+            part = _part(self, where) if last == "kind" else None
+            if isinstance(part, Variant) and value != getattr(part, "kind", None):
+                renewed.add(where)
+                table, kept = _table(fields, where), part.fields_of(value)
+                for field in table.keys() - kept:
+                    del table[field]
+        for name, value in changes.items():
+            where, _, last = name.rpartition(".")
+            table = _table(fields, where)
+            if last not in table and where not in renewed:
                 raise InvalidInput("field", name, "one of " + one_of(name, list(_dotted_names(fields))))
             table[last] = value
         return type(self)(**fields)
@@ -290,6 +299,22 @@ def _numbers(value: Any, name: str = "") -> Iterator[tuple[str, float]]:
                 yield from _numbers(inner, f"{name}.{index}")
         case float():
             yield name, value
+
+
+def _table(fields: dict[str, Any], where: str) -> dict[str, Any]:
+    """The table of this name, with dots; an empty one where there is none."""
+    for name in where.split(".") if where else ():
+        found = fields.get(name)
+        fields = found if isinstance(found, dict) else {}
+    return fields
+
+
+def _part(problem: Part, where: str) -> Any:
+    """The part of this name, with dots; None where there is none."""
+    found: Any = problem
+    for name in where.split("."):
+        found = getattr(found, name, None)
+    return found
 
 
 def _dotted_names(fields: Mapping[str, Any], prefix: str = "") -> Iterator[str]:

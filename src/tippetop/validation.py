@@ -141,6 +141,13 @@ class Variant(Part):
             raise TypeError(f"{cls.__name__} needs another word: {info.default!r} is {known.__name__}")
         cls.kinds[info.default] = cls
 
+    @classmethod
+    def fields_of(cls, kind: Any) -> set[str]:
+        """The names of the fields of another kind of the same part; those of this one if there is none."""
+        base = next(part for part in cls.__mro__ if Variant in part.__bases__)
+        known: Any = base.kinds  # type: ignore[attr-defined]
+        return set(known.get(kind, cls).model_fields) if isinstance(kind, str) else set(cls.model_fields)
+
 
 class _OfItsKind:
     """Makes a field take all kinds of a variant, and keep what each has of its own."""

@@ -13,9 +13,17 @@ from tippetop.lab.setup import Setup
 Change = Callable[[dict[str, Any], bool], None]
 """Is told what to change, and whether the browser has asked for the new run already."""
 
-_LAW_NAMES = {"viscous": "viscous, −μNv", "regularized_coulomb": "Coulomb, smoothed"}
+_LAW_NAMES = {
+    "viscous": "viscous, −μNv",
+    "regularized_coulomb": "Coulomb, smoothed",
+    "coulomb": "Coulomb, dry",
+    "contensou": "Contensou, dry patch",
+}
 LAWS = {word: _LAW_NAMES.get(word, word.replace("_", " ")) for word in Friction.kinds}
 """The friction laws by the word that tells them apart in a problem, with names to read."""
+
+PATCH = 1e-4
+"""Radius of the contact patch of a law that is chosen, m: about that of a plastic top on a hard table."""
 
 
 class Dial(NamedTuple):

@@ -201,7 +201,8 @@ class Laboratory:
     def _law(self, event: events.ValueChangeEventArguments[str | None]) -> None:
         if not self.quiet and event.value is not None:
             mu = getattr(self.setup.problem.friction, "mu", 0.3)
-            self.change({"friction.kind": event.value, "friction.mu": mu})
+            patch = {"friction.patch_radius": controls.PATCH} if event.value == "contensou" else {}
+            self.change({"friction.kind": event.value, "friction.mu": mu, **patch})
 
     def _liftoff(self, event: events.ValueChangeEventArguments[str | None]) -> None:
         if not self.quiet and event.value is not None:

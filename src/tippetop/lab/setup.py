@@ -18,7 +18,6 @@ LONGEST_VALUE = 200
 """Longest value or name of a field in a link, letters."""
 
 _PLAIN = {"duration", *Problem.model_fields}
-_ALTERNATIVES = {"friction": "kind", "body.shape": "kind"}
 
 
 @dataclass(frozen=True)
@@ -49,7 +48,7 @@ class Setup:
             If there is no such field, or it cannot have such a value.
         """
         others = {name: value for name, value in changes.items() if name != "duration"}
-        problem = _merged(self.problem, others) if others else self.problem
+        problem = self.problem.replace(others) if others else self.problem
         return replace(
             self, problem=problem, duration=_number("duration", changes.get("duration", self.duration))
         )
@@ -82,28 +81,6 @@ def read_query(query: Mapping[str, str]) -> Setup:
 def _may_be_meant(name: str) -> bool:
     """Whether a name in a link is, or is like, a field's."""
     return len(name) <= LONGEST_VALUE and ("." in name or bool(get_close_matches(name, _PLAIN)))
-
-
-def _merged(problem: Problem, changes: Mapping[str, Any]) -> Problem:
-    """The problem with fields replaced; choosing another law or shape drops the fields of the old one."""
-    fields: dict[str, Any] = json.loads(problem.to_json())
-    for table, tag in _ALTERNATIVES.items():
-        kind = changes.get(f"{table}.{tag}")
-        *parents, last = table.split(".")
-        home = fields
-        for parent in parents:
-            home = home[parent]
-        if kind is not None and kind != home[last][tag]:
-            home[last] = {}
-    for name, value in changes.items():
-        *parents, last = name.split(".")
-        home = fields
-        for parent in parents:
-            if not isinstance(home.setdefault(parent, {}), dict):
-                raise InvalidInput("field", name, "a field of a problem, or duration")
-            home = home[parent]
-        home[last] = value
-    return Problem(**fields)
 
 
 def _leaves(fields: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, str]]:
