@@ -91,7 +91,7 @@ def test_a_number_of_workers_that_cannot_be_is_refused():
 
 def test_workers_of_another_version_are_refused():
     with pytest.raises(Unavailable, match=r"the sweep is run by 99\.0"):
-        scheduling.compute_block("{}", "99.0", ((0, 1),))
+        scheduling.compute_block("{}", "99.0", (), ((0, 1),))
 
 
 @pytest.mark.filterwarnings("ignore")
