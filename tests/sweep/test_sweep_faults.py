@@ -39,12 +39,6 @@ DAMAGES = int(os.environ.get("TIPPETOP_DAMAGES", "40"))
 """In how many places a store is damaged; more takes longer, and shows more."""
 
 
-@pytest.fixture
-def small_tasks(monkeypatch):
-    monkeypatch.setattr(definition, "LEAST_CELLS_A_TASK", 4)
-    monkeypatch.setattr(definition, "TASKS", 1000)
-
-
 def quick():
     """Seven rows, so that the chunks at the edge are cut."""
     return lively("fly", 7, 3, 0.05, 1e-9)
@@ -210,7 +204,8 @@ def test_a_disk_that_does_not_take_it_leaves_the_task_undone(tmp_path, small_tas
 SLOW = """
 import sys, time
 sys.path.insert(0, {folder!r})
-from test_sweep_faults import quick, definition
+from test_sweep_faults import quick
+from tippetop.sweeps import definition
 from tippetop.sweeps import Store, fill
 definition.LEAST_CELLS_A_TASK, definition.TASKS = 4, 1000
 store = Store.create({path!r}, quick())

@@ -15,18 +15,12 @@ import pytest
 from sweeps import lively, same
 
 from tippetop.errors import InvalidInput, Unavailable
-from tippetop.sweeps import SWEPT, Store, compute, definition, fill, read_sweep
+from tippetop.sweeps import SWEPT, Store, compute, fill, read_sweep
 from tippetop.sweeps import tasks as scheduling
 
 
 def arrays(dataset):
     return {name: dataset[name].values for name in SWEPT}
-
-
-@pytest.fixture
-def small_tasks(monkeypatch):
-    monkeypatch.setattr(definition, "LEAST_CELLS_A_TASK", 4)
-    monkeypatch.setattr(definition, "TASKS", 1000)
 
 
 def quick():

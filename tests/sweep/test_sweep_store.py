@@ -26,7 +26,6 @@ from tippetop.sweeps import (
     Store,
     Sweep,
     compute,
-    definition,
     fill,
     layout,
     read_sweep,
@@ -37,12 +36,6 @@ zarr = pytest.importorskip("zarr")
 
 KILLS = int(os.environ.get("TIPPETOP_KILLS", "3"))
 """How often the sweep is killed; more often takes longer, and shows more."""
-
-
-@pytest.fixture
-def small_tasks(monkeypatch):
-    monkeypatch.setattr(definition, "LEAST_CELLS_A_TASK", 4)
-    monkeypatch.setattr(definition, "TASKS", 1000)
 
 
 def quick(cells=24, **options):
@@ -251,7 +244,8 @@ def test_a_folder_in_which_nothing_can_be_written_is_said_to_be(tmp_path):
 FILL = """
 import sys
 sys.path.insert(0, {folder!r})
-from test_sweep_store import quick, definition
+from test_sweep_store import quick
+from tippetop.sweeps import definition
 definition.LEAST_CELLS_A_TASK, definition.TASKS = 4, 1000
 from tippetop.sweeps import Store, fill
 from pathlib import Path

@@ -5,11 +5,11 @@ from typing import ClassVar
 
 from tippetop.contact.flight import Flight
 from tippetop.contact.mode import Event, EventKind, Mode, Outcome, Rules, Transition
-from tippetop.contact.sliding import Sliding
+from tippetop.contact.sliding import Sliding, stopping
 from tippetop.contact.sticking import SlipEnd, SlipOnset, Sticking
 from tippetop.mechanics.flight import gap, gap_rate
 from tippetop.mechanics.impact import impact
-from tippetop.mechanics.motion import along_table, contact, sliding_rates
+from tippetop.mechanics.motion import along_table, contact
 from tippetop.mechanics.rolling import (
     ContactPoint,
     contact_wrench,
@@ -18,7 +18,7 @@ from tippetop.mechanics.rolling import (
     on_limit_branch,
 )
 from tippetop.mechanics.state import State
-from tippetop.mechanics.stick_slip import HORIZON, is_slipping, slip_guard, slip_of, stopping_guard
+from tippetop.mechanics.stick_slip import is_slipping, slip_guard, slip_of
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.touchdown import Start
 from tippetop.mechanics.units import Units
@@ -67,7 +67,7 @@ class ContactRules:
             return Sliding(self.top, self)
         y = along_table(state)
         top = on_branch(self.top, slip_of(*y, self.top))
-        near = stopping_guard(y, sliding_rates(y, top), top, HORIZON) <= 0.0
+        near = stopping(y, top) <= 0.0
         return SlipEnd(top, self) if near else Sliding(top, self)
 
     def stopping(self, time: float, state: State) -> Transition:

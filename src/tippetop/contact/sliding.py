@@ -11,7 +11,7 @@ from tippetop.mechanics.motion import along_table, angular_velocity, contact, on
 from tippetop.mechanics.rolling import is_set_valued, sliding_law, with_sliding_law
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.stick_slip import HORIZON, slip_of, stopping_guard
-from tippetop.mechanics.top import Kind
+from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import Row, Scalar
 
 LIFT_OFF, STOPPING, BRANCH = "lift-off", "stopping", "branch"
@@ -61,7 +61,7 @@ def sliding_motion(kind: Kind, guarded: bool) -> Motion:
 
     def stops(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
         state, top = SlidingState.unpack(y), kind.top(tuple(numbers))
-        return stopping_guard(state, sliding_rates(state, top), top, HORIZON)
+        return stopping(state, top)
 
     def on_branch(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
         state, top = SlidingState.unpack(y), kind.top(tuple(numbers))
@@ -76,6 +76,11 @@ def sliding_motion(kind: Kind, guarded: bool) -> Motion:
     if hasattr(sliding_law(law), "branch_guard"):
         guards.append(Guard(BRANCH, on_branch))
     return Motion(rates, size=8, parameters=kind.numbers, guards=tuple(guards))
+
+
+def stopping(state: SlidingState, top: Top) -> Scalar:
+    """Value of the guard of slip that is about to end: positive as long as it goes on."""
+    return stopping_guard(state, sliding_rates(state, top), top, HORIZON)
 
 
 @lru_cache

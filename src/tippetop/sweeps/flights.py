@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from tippetop.contact.sliding import stopping
 from tippetop.integrators.base import Array
 from tippetop.integrators.polynomials import Polynomials
 from tippetop.mechanics.flight import fly
@@ -25,12 +26,11 @@ from tippetop.mechanics.motion import (
     contact,
     moment_per_normal_force,
     on_table,
-    sliding_rates,
 )
 from tippetop.mechanics.rolling import is_set_valued
 from tippetop.mechanics.series import Series, horner, solution
 from tippetop.mechanics.state import State
-from tippetop.mechanics.stick_slip import HORIZON, is_slipping, stopping_guard
+from tippetop.mechanics.stick_slip import is_slipping
 from tippetop.mechanics.surface import contact_vector
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.touchdown import Tip
@@ -226,6 +226,6 @@ def slips(state: State, top: Top) -> Flags:
         return count
     y = along_table(state)
     with np.errstate(all="ignore"):
-        lasting = stopping_guard(y, sliding_rates(y, top), top, HORIZON) > 0.0
+        lasting = stopping(y, top) > 0.0
     found: Flags = count & is_slipping(*y, top) & lasting
     return found
