@@ -231,6 +231,6 @@ def test_a_greedy_visitor_stops_neither_the_others_nor_the_end(tmp_path: Path) -
         process.wait(timeout=15)
         assert time.monotonic() - began < 10
         answers = sorted(each.result() for each in greedy)
-    assert set(answers) <= {422, 503}
+    assert set(answers) <= {200, 422, 503}, "ended by its budget of steps, by the page's patience, or refused"
     assert answers.count(503) >= 39
     assert log.read_text() == ""
