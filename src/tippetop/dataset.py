@@ -42,14 +42,14 @@ def assemble(
     data: dict[str, Any] = {}
     for name, values in samples.items():
         variable = SAMPLED[name]
-        data[name] = xr.Variable(("time", *variable.dimensions), values, variable.attributes)
+        data[name] = ("time", *variable.dimensions), values, variable.attributes
     described = Variable("contact mode", dtype="int8", flags=tuple(modes[1]))
-    data["mode"] = xr.Variable(("time",), modes[0], described.attributes)
+    data["mode"] = "time", modes[0], described.attributes
     for name, value in numbers.items():
-        variable = {**METRICS, **MONITORS}[name]
-        data[name] = xr.Variable((), np.asarray(value, dtype=variable.dtype), variable.attributes)
+        variable = METRICS.get(name) or MONITORS[name]
+        data[name] = (), np.asarray(value, dtype=variable.dtype), variable.attributes
     for name, values in lists.items():
-        data[name] = xr.Variable((name.partition("_")[0],), values, LISTED[name].attributes)
+        data[name] = name.partition("_")[0], values, LISTED[name].attributes
     coordinates = {
         "time": (("time",), times, {"long_name": "time since launch", "units": "s", "standard_name": "time"}),
         "space": SPACE,

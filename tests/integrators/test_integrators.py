@@ -134,7 +134,7 @@ def test_steps_join(method):
     np.testing.assert_allclose(ends, starts, rtol=0, atol=joint(method, OSCILLATOR))
 
 
-CUTS = {"taylor": (taylor, {"SHORT": 3, "LONG": 4}) if has_taylor() else None}
+CUTS = {"taylor": (taylor, {"LONG": 4}) if has_taylor() else None}
 """What decides into how many arcs a solution is cut, and smaller numbers of it."""
 
 

@@ -102,7 +102,8 @@ class Block:
         found = []
         for numbers in kinds.values():
             which = np.concatenate([np.arange(first[n], first[n + 1]) for n in numbers])
-            terms = np.concatenate([self.segments[n].solution.terms for n in numbers])
+            pieces = [self.segments[n].solution.terms for n in numbers]
+            terms = pieces[0] if len(pieces) == 1 else np.concatenate(pieces)
             found.append(ModeSteps(self.segments[numbers[0]].mode, which, terms, spans[which]))
         return found
 

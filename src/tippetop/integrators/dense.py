@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 Array: TypeAlias = NDArray[np.float64]
 
-MANY = 4096
-"""Polynomials that are evaluated at a time."""
+MANY = 256
+"""Polynomials that are evaluated at a time, so that their coefficients stay in the processor's cache."""
 
 
 @dataclass(frozen=True)

@@ -169,6 +169,8 @@ def least_near(unit: Array, guess: Array) -> tuple[Array, Array]:
         rising = bend > 0.0
         move = np.where(rising, -slope / np.where(rising, bend, 1.0), 0.0)
         place = np.clip(place + move, guess - 1.0 / LOOKS, guess + 1.0 / LOOKS)
+        if np.all(np.abs(move) <= 1e-9):
+            break
     return place, value_and_slope(unit, place)[0]
 
 

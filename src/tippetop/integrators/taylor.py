@@ -13,14 +13,11 @@ from tippetop.integrators.base import NOT_FINITE, Arc, Array, Motion
 from tippetop.integrators.compile_cache import compiling
 from tippetop.integrators.dense import DenseSolution
 
-SHORT = 24
-"""Steps that are taken one by one: a solution made by the compiler costs as much as a few hundred of them."""
-
 SHORTEST = 1e-6
 """Step, relative to the longest, that only a solution that blows up takes; rounding of time matters in it."""
 
 LONG = 4096
-"""Steps in one call into compiled code, so that Ctrl-C is heard between calls."""
+"""Steps in an arc at most."""
 
 
 @dataclass(frozen=True)
@@ -40,8 +37,7 @@ class Taylor:
         self, motion: Motion, parameters: Sequence[float], start: tuple[float, Array], end: float
     ) -> Iterator[Arc]:
         """Follow the motion; see `tippetop.integrators.base.Integrator`."""
-        compiled = _compiled(motion, self.tolerance)
-        advance = _few_steps
+        compiled = _compiled(motion, self.tolerance, LONG)
         while start[0] < end:
             with compiled.lock:
                 run = compiled.integrator
@@ -51,9 +47,9 @@ class Taylor:
                 run.pars[:] = parameters[: len(run.pars)]
                 if motion.guards:
                     run.reset_cooldowns()
-                solution, outcome = advance(run, end)
+                solution, outcome = compiled.advance(end)
                 state = np.array(run.state)
-            advance, steps = _many_steps, len(solution.terms)
+            steps = len(solution.terms)
             if outcome == hy.taylor_outcome.err_nf_state:
                 solution = _before_blow_up(solution)
                 state = solution(solution.knots[-1:])[0] if len(solution.terms) else start[1]
@@ -68,14 +64,31 @@ class Taylor:
             start = solution.end, state
 
 
-@dataclass
 class _Compiled:
-    integrator: Any
-    lock: threading.Lock = field(default_factory=threading.Lock)
+    """An integrator, room for the coefficients of some steps, and a lock that both are used under."""
+
+    def __init__(self, integrator: Any, room: int) -> None:
+        self.integrator, self.lock = integrator, threading.Lock()
+        self._coefficients = integrator.tc
+        self._terms = np.empty((room, *self._coefficients.shape))
+
+    def advance(self, end: float) -> tuple[DenseSolution, Any]:
+        """Take as many steps as there is room for: for half the price of heyoka's continuous output."""
+        terms, coefficients, knots = self._terms, self._coefficients, [float(self.integrator.time)]
+
+        def take(run: Any) -> bool:
+            terms[len(knots) - 1] = coefficients
+            knots.append(run.time)
+            return True
+
+        outcome, *_ = self.integrator.propagate_until(end, max_steps=len(terms), write_tc=True, callback=take)
+        if outcome == hy.taylor_outcome.time_limit:
+            knots[-1] = end
+        return DenseSolution.in_time(np.array(knots), terms[: len(knots) - 1]), outcome
 
 
 @lru_cache(maxsize=32)
-def _compiled(motion: Motion, tolerance: float) -> _Compiled:
+def _compiled(motion: Motion, tolerance: float, room: int) -> _Compiled:
     """Compile the equations and the guards, or fetch them from the cache across processes."""
     state = [hy.make_vars(f"y{i}") for i in range(motion.size)]
     parameters = [hy.par[i] for i in range(motion.parameters)]
@@ -92,7 +105,7 @@ def _compiled(motion: Motion, tolerance: float) -> _Compiled:
             t_events=events,
             compact_mode=not motion.lasting,
         )
-    return _Compiled(integrator)
+    return _Compiled(integrator, room)
 
 
 def _before_blow_up(solution: DenseSolution) -> DenseSolution:
@@ -102,32 +115,3 @@ def _before_blow_up(solution: DenseSolution) -> DenseSolution:
     fine = np.flatnonzero(spans > SHORTEST * spans.max(initial=0.0))
     steps = fine[-1] + 1 if len(fine) else 0
     return DenseSolution(knots[: steps + 1], solution.terms[:steps])
-
-
-def _few_steps(run: Any, end: float) -> tuple[DenseSolution, Any]:
-    """Take some steps one by one."""
-    knots, terms = [float(run.time)], []
-    outcome = hy.taylor_outcome.step_limit
-    for _ in range(SHORT):
-        taken, _ = run.step(end - run.time, write_tc=True)
-        if taken == hy.taylor_outcome.err_nf_state:
-            outcome = taken
-            break
-        terms.append(run.tc.copy())
-        knots.append(float(run.time))
-        if taken != hy.taylor_outcome.success:
-            outcome = taken
-            break
-    if outcome == hy.taylor_outcome.time_limit:
-        knots[-1] = end
-    return DenseSolution.in_time(np.array(knots), np.array(terms).reshape(-1, *run.tc.shape)), outcome
-
-
-def _many_steps(run: Any, end: float) -> tuple[DenseSolution, Any]:
-    """Take many steps in one call."""
-    outcome, *_, output, _ = run.propagate_until(end, max_steps=LONG, c_output=True)
-    if output is None:
-        return DenseSolution(np.array([run.time]), np.empty((0, *run.tc.shape))), outcome
-    knots = np.array(output.times)
-    knots[-1] = end if outcome == hy.taylor_outcome.time_limit else output.bounds[1]
-    return DenseSolution.in_time(knots, output.tcs), outcome

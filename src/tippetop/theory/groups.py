@@ -189,7 +189,7 @@ def fold(top: Top) -> Fold | None:
         return None
     gamma, alpha = inertia_ratio(top), eccentricity(top)
     cosine = (alpha - _fold_measure(gamma, alpha)) / (1.0 - gamma)
-    tilt = math.acos(cosine)
+    tilt = math.acos(max(-1.0, min(1.0, cosine)))
     return Fold(tilt, float(precession_branch(top, np.array([tilt])).jellett[0]))
 
 
