@@ -14,10 +14,8 @@ from tippetop.export.words import tell
 from tippetop.integrators import has_taylor
 from tippetop.presets import report_problem
 
-SAME = ("turns_over", "arrives", "first_lift_off", "least_normal_force", "energy_lost", "airborne_time")
-"""What an executor finds on its way: events, extremes and losses."""
-COARSER = {"highest": 1e-6, "highest_gap": 1e-5}
-"""What is looked at between steps, by how far two executors may differ, relatively."""
+SAME = sorted(set(METRICS) - {"steps", "jellett_error", "final_phi_dot"})
+"""What is the same for every executor: events, extremes and losses; not how many steps, or their rounding."""
 EXACT = 2.3e-16
 LAUNCHES = {"turns over": 155.0, "hops and turns over": 175.0, "stops half-way": 50.0}
 
@@ -58,11 +56,21 @@ def test_the_command_line_says_what_python_says(problem, run):
 def test_a_sweep_says_what_a_run_says(problem, run):
     found = tt.sweep(problem, {"launch.tilt": [problem.launch.tilt]}, duration=20.0, tolerance=EXACT)
     cell = found.isel({"launch.tilt": 0})
-    for name in (*SAME, "flights", "final_theta", "end_time"):
+    for name in SAME:
         assert float(cell[name]) == pytest.approx(float(run[name]), abs=1e-9, rel=1e-9, nan_ok=True), name
-    for name, closeness in COARSER.items():
-        assert float(cell[name]) == pytest.approx(float(run[name]), rel=closeness, abs=1e-12), name
     assert found["turns_over"].attrs == run["turns_over"].attrs
+
+
+@pytest.mark.skipif(not has_taylor(), reason="sweeps and runs then use methods of different orders")
+@pytest.mark.parametrize("tilt", [1.1, 1.44])
+def test_extremes_agree_where_many_dips_come_close(tilt):
+    """Of dips that nearly tie, looks alone would take the wrong one."""
+    problem, spins = report_problem(155.0).replace({"launch.tilt": tilt}), np.linspace(140.0, 210.0, 8)
+    found = tt.sweep(problem, {"launch.spin": spins}, duration=8.0, tolerance=EXACT)
+    for place, spin in enumerate(spins):
+        run = tt.simulate(problem.replace({"launch.spin": spin}), 8.0, samples=3)
+        for name in ("least_normal_force", "highest", "highest_gap"):
+            assert float(found[name][place]) == pytest.approx(float(run[name]), rel=1e-9, abs=1e-12), name
 
 
 def test_the_laboratory_tells_the_time_of_the_run(run):

@@ -83,18 +83,26 @@ def test_starting_at_zero_and_sinking_falls_at_once_and_rising_does_not():
 @given(st.floats(0.1, 0.9))
 def test_extremes_of_a_parabola_are_exact(vertex):
     terms = np.array([[vertex**2], [-2.0 * vertex], [1.0]])
-    below, above = Polynomials(terms, ones()), Polynomials(-terms, ones())
-    assert below.least()[0] == pytest.approx(0.0, abs=1e-15)
-    assert above.greatest()[0] == pytest.approx(0.0, abs=1e-15)
-    place, value = below.refined_least()
+    place, value = Polynomials(terms, ones()).refined_least()
+    assert place[0] == pytest.approx(vertex, abs=1e-12)
+    assert value[0] == pytest.approx(0.0, abs=1e-15)
+    place, value = Polynomials(-terms, ones()).negative().refined_least()
     assert place[0] == pytest.approx(vertex, abs=1e-12)
     assert value[0] == pytest.approx(0.0, abs=1e-15)
 
 
 def test_an_extreme_at_an_end_is_the_end():
     rising = Polynomials(np.array([[1.0], [2.0]]), ones(3.0))
-    assert rising.least()[0] == 1.0
-    assert rising.greatest()[0] == 7.0
+    for course, where, what in ((rising, 0.0, 1.0), (rising.negative(), 3.0, -7.0)):
+        place, value = course.refined_least()
+        assert place[0] == where
+        assert value[0] == what
+
+
+def test_a_dip_between_an_end_and_the_next_look_is_found():
+    terms = np.array([[0.0], [-0.02], [1.0]])
+    for course in (terms, np.array([[0.98], [-1.98], [1.0]])):
+        assert Polynomials(course, ones()).refined_least()[1][0] == pytest.approx(-1e-4, rel=1e-12)
 
 
 # --- bounds -------------------------------------------------------------------------------------------------

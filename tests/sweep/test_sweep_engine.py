@@ -161,7 +161,6 @@ def test_numpy_makes_the_steps_that_heyoka_compiles():
     for row, number in enumerate((*state.axis, *state.momentum, *state.velocity[:2])):
         before[row] = number
     before[layout.left] = launches.end
-    before[layout.low], before[layout.down], before[layout.up] = np.inf, np.inf, -np.inf
     cares = np.tile([[1.0], [1.0], [np.inf], [-np.inf]], 16)
     numbers = np.concatenate((launches.numbers, cares))
     compiled, plain = stepper(motion, 1e-9), NumPyStepper(motion, order_for(1e-9))

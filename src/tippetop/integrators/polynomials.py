@@ -115,21 +115,26 @@ class Polynomials:
         zeros[starts & (values[1] <= 0.0)] = 0.0
         return zeros * self.span
 
-    def least(self) -> Array:
-        """Least values, from a parabola through the lowest look and its neighbours, shape (n,)."""
-        return -vertices(-self.values)
-
-    def greatest(self) -> Array:
-        """Greatest values, from a parabola through the highest look and its neighbours, shape (n,)."""
-        return vertices(self.values)
-
     def refined_least(self) -> tuple[Array, Array]:
         """Times at which the least values are taken, and those values, by Newton's method; of shape (n,)."""
         best = self.values.argmin(axis=0)
-        place, value = least_near(self.unit, best / LOOKS)
-        at_look = np.take_along_axis(self.values, best[None], axis=0)[0]
-        better = (place >= 0.0) & (place <= 1.0) & (value < at_look)
-        return np.where(better, place, best / LOOKS) * self.span, np.where(better, value, at_look)
+        place = best / LOOKS
+        value = np.take_along_axis(self.values, best[None], axis=0)[0]
+        # At an end away from which it rises there is nothing to find.
+        rises = (best == 0) & (self.unit[1] >= 0.0)
+        rises |= (best == LOOKS) & (np.arange(len(self.unit)) @ self.unit <= 0.0)
+        dips = np.flatnonzero(~rises)
+        if len(dips):
+            there, low = least_near(self.unit[:, dips], place[dips])
+            better = (there >= 0.0) & (there <= 1.0) & (low < value[dips])
+            place[dips[better]], value[dips[better]] = there[better], low[better]
+        return place * self.span, value
+
+    def negative(self) -> "Polynomials":
+        """The polynomials times -1."""
+        found = Polynomials.of_unit(-self.unit, self.span)
+        found.values, found.bending = -self.values, self.bending
+        return found
 
 
 def least_of_all(polynomials: "Polynomials") -> float:
@@ -137,18 +142,6 @@ def least_of_all(polynomials: "Polynomials") -> float:
     looks = polynomials.values.min(axis=0)
     lowest = polynomials.some(np.flatnonzero(looks - polynomials.bending <= looks.min()))
     return float(lowest.refined_least()[1].min())
-
-
-def vertices(values: Array) -> Array:
-    """Greatest values of what was looked at, shape (LOOKS + 1, n)."""
-    best = values.argmax(axis=0)
-    inside = np.clip(best, 1, LOOKS - 1)
-    before, here, after = (np.take_along_axis(values, (inside + k)[None], axis=0)[0] for k in (-1, 0, 1))
-    bend = 2.0 * here - before - after
-    rise = (after - before) ** 2 / np.where(bend > 0.0, 8.0 * bend, np.inf)
-    highest = np.take_along_axis(values, best[None], axis=0)[0]
-    found: Array = np.where(inside == best, here + rise, highest)
-    return found
 
 
 def value_and_slope(terms: Array, place: Array) -> tuple[Array, Array]:

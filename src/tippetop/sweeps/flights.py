@@ -125,7 +125,10 @@ def fly_all(
         zero = Polynomials(divided(gap, vanishing[active]) if piece == 0 else gap, reach).first_fall()
         touches = ~np.isnan(zero)
         span = np.where(touches, zero, reach)
-        highest[active] = np.maximum(highest[active], Polynomials(gap, span).greatest())
+        depth = Polynomials(-gap, span)
+        higher = np.flatnonzero(depth.values.min(axis=0) - depth.bending < -highest[active])
+        rise = -depth.some(higher).refined_least()[1]
+        highest[active[higher]] = np.maximum(highest[active[higher]], rise)
         watch.see(launches[active], begun[active] + time[active], Polynomials(tip, span))
         time[active] = np.where(span == horizon[active] - time[active], horizon[active], time[active] + span)
         landed[active] = touches

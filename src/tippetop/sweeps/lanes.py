@@ -13,6 +13,7 @@ from tippetop.integrators.base import Array
 from tippetop.integrators.polynomials import Polynomials
 from tippetop.metrics import Ends
 from tippetop.sweeps.crossings import Crossings
+from tippetop.sweeps.extremes import FORCE
 from tippetop.sweeps.launches import Flags, Launches, Note, picked
 from tippetop.sweeps.slots import Slots
 from tippetop.sweeps.stride import LANES, Stepper
@@ -74,7 +75,6 @@ class Lanes:
         else:
             slots.rows[: stepper.layout.left + 1] = resumed[:, slots.cell]
             slots.left[~slots.alive] = 0.0
-        slots.low_from[:] = slots.rows[: stepper.layout.size]
         slots.numbers[stepper.layout.turns] = np.isnan(slots.watch.turned)
 
     def run(self) -> Ends:
@@ -100,10 +100,9 @@ class Lanes:
         if len(waiting):
             slots.held[waiting] = after[layout.taken, waiting]
             slots.before[waiting] = before[layout.left, waiting]
-        lower = (after[layout.low] < before[layout.low]).nonzero()[0]
-        if len(lower):
-            slots.low_step[lower] = after[layout.taken, lower]
-            slots.low_from[:, lower] = before[: layout.size, lower]
+        slots.watch.extremes.look(
+            after[layout.looks], after[layout.slack], after[layout.taken], before[: layout.size]
+        )
         slots.rows, slots.spare = after, before
 
     def _look(self) -> None:
@@ -120,10 +119,7 @@ class Lanes:
             fall = Polynomials(terms, slots.held[lanes]).first_fall()
             earlier = (slots.numbers[layout.counts][number, lanes] != 0.0) & (fall <= span)
             fallen[earlier], span = number, np.where(earlier, fall, span)
-        least = Polynomials(jet.guards[0], span).least()
-        lower = least < slots.rows[layout.low, lanes]
-        slots.rows[layout.low, lanes[lower]], slots.low_step[lanes[lower]] = least[lower], span[lower]
-        slots.low_from[:, lanes[lower]] = slots.rows[: layout.size, lanes[lower]]
+        slots.watch.extremes.take(FORCE, lanes, Polynomials(jet.guards[0], span))
         slots.watch.see(lanes, begun, Polynomials(jet.state[2], span))
         slots.rows[: layout.size, lanes] = jet.at(span)
         slots.rows[layout.left, lanes], slots.rows[layout.taken, lanes] = left - span, slots.held[lanes]
@@ -139,15 +135,11 @@ class Lanes:
     def _close(self, noted: Flags, begun: Array) -> None:
         """End a window: note it, take out what has ended, and close ranks."""
         slots, layout = self.slots, self.slots.layout
-        down = np.fmin(slots.rows[layout.down], slots.watch.down)[noted]
-        up = np.fmax(slots.rows[layout.up], slots.watch.up)[noted]
-        cells = slots.cell[noted]
-        slots.ends.down[cells] = np.fmin(slots.ends.down[cells], down)
-        slots.ends.up[cells] = np.fmax(slots.ends.up[cells], up)
+        slots.search()
+        cells, (_, down, up) = slots.cell[noted], slots.watch.extremes.lately[:, noted]
         if not self.banded:
-            self.notes.append(Note(cells, begun[:, noted], down, up))
-        slots.watch.set_back()
-        slots.rows[layout.down], slots.rows[layout.up] = np.inf, -np.inf
+            self.notes.append(Note(cells, begun[:, noted], down, -up))
+        slots.watch.extremes.forget()
         ended = np.flatnonzero(slots.alive & (slots.left <= 0.0))
         if len(ended):
             slots.retire(ended, slots.whole(ended), slots.end[ended], Outcome.COMPLETED)

@@ -6,12 +6,11 @@ import numpy as np
 
 from tippetop.contact.mode import Outcome
 from tippetop.integrators.base import Array
-from tippetop.integrators.polynomials import Polynomials
 from tippetop.mechanics.motion import along_table, on_table
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.metrics import OUTCOMES, Ends
 from tippetop.sweeps.launches import Flags, Indices, Launches
-from tippetop.sweeps.stride import LANES, Layout, Stepper
+from tippetop.sweeps.stride import LANES, Jet, Layout, Stepper
 from tippetop.sweeps.watch import Watch
 
 
@@ -39,8 +38,6 @@ class Slots:
         What a step brings up to date, and room for the next.
     held, before
         The step that a lane waits before, 0 if it does not wait, and the time left before it.
-    low_step, low_from
-        The step in which the first guard was least so far, and the numbers of the motion at its start.
     watch
         What is watched of the axis.
     """
@@ -56,8 +53,6 @@ class Slots:
     spare: Array
     held: Array
     before: Array
-    low_step: Array
-    low_from: Array
     watch: Watch
 
     @classmethod
@@ -78,7 +73,6 @@ class Slots:
             watch.low, watch.high = band[0][filled], band[1][filled]
             numbers[layout.band] = watch.low, watch.high
         rows = np.zeros((layout.rows, lanes))
-        rows[layout.down], rows[layout.up], rows[layout.low : layout.kept] = np.inf, -np.inf, np.inf
         return cls(
             launches,
             stepper,
@@ -91,8 +85,6 @@ class Slots:
             spare=np.zeros_like(rows),
             held=np.zeros(lanes),
             before=np.zeros(lanes),
-            low_step=np.zeros(lanes),
-            low_from=np.zeros((layout.size, lanes)),
             watch=watch,
         )
 
@@ -117,9 +109,9 @@ class Slots:
         missing = -len(working) % LANES
         kept = np.concatenate((working, np.full(missing, working[-1], dtype=np.intp)))
         self.alive = np.arange(len(kept)) < len(working)
-        for name in ("cell", "end", "held", "before", "low_step"):
+        for name in ("cell", "end", "held", "before"):
             setattr(self, name, getattr(self, name)[kept])
-        for name in ("low_from", "numbers", "rows"):
+        for name in ("numbers", "rows"):
             setattr(self, name, np.ascontiguousarray(getattr(self, name)[:, kept]))
         self.rows[self.layout.left] *= self.alive
         self.spare = np.zeros_like(self.rows)
@@ -152,11 +144,18 @@ class Slots:
         self.rows[self.layout.left, lanes] = 0.0
         self.alive[lanes] = False
         stayed = np.isnan(ends.lift_off[cells]) & (ends.flights[cells] == 0)
-        ends.least_force[cells] = np.where(stayed, np.fmin(ends.least_force[cells], self._least(lanes)), 0.0)
+        self.search()
+        force, down, up = self.watch.extremes.found[:, lanes]
+        ends.least_force[cells] = np.where(stayed, np.fmin(ends.least_force[cells], force), 0.0)
+        ends.down[cells] = np.fmin(ends.down[cells], down)
+        ends.up[cells] = np.fmax(ends.up[cells], -up)
 
-    def _least(self, lanes: Indices) -> Array:
-        """Least normal force, refined within the step in which it was seen."""
-        rows = np.zeros((self.layout.rows, len(lanes)))
-        rows[: self.layout.size] = self.low_from[:, lanes]
-        jet = self.stepper.jet(rows, self.numbers[:, lanes])
-        return Polynomials(jet.guards[0], self.low_step[lanes]).refined_least()[1]
+    def search(self) -> None:
+        """Search the steps in which something may have been extreme."""
+
+        def jet(start: Array, lanes: Indices) -> Jet:
+            rows = np.zeros((self.layout.rows, len(lanes)))
+            rows[: self.layout.size] = start
+            return self.stepper.jet(rows, self.numbers[:, lanes])
+
+        self.watch.extremes.search(jet)

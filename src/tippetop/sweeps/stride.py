@@ -34,10 +34,10 @@ LANES = 16
 class Layout(NamedTuple):
     """Which row holds what, for a motion of some size with some guards.
 
-    A step brings the first rows up to date: the numbers of the motion, the time that is left to go, the least
-    and the largest n_z so far, the steps taken, and the least value so far of every guard. The last two tell
-    of the step: the time it took, and whether something may happen in it. Then it was not taken, and no time
-    is left, so that the launch waits.
+    A step brings the first rows up to date: the numbers of the motion, the time that is left to go and the
+    steps taken. The others tell of the step: the time it took, whether something may happen in it, the least
+    values that were looked at of the first guard, of n_z and of -n_z, and how far below them it may go.
+    Where something may happen it was not taken, those values are inf, and no time is left: the launch waits.
 
     What to pause for is in rows after the parameters: whether each guard counts, whether the top is yet to
     turn over, and the least and the largest n_z of a band (inf and -inf for none).
@@ -58,29 +58,14 @@ class Layout(NamedTuple):
         return self.size
 
     @property
-    def down(self) -> int:
-        """Row of the least n_z."""
-        return self.size + 1
-
-    @property
-    def up(self) -> int:
-        """Row of the largest n_z."""
-        return self.size + 2
-
-    @property
     def steps(self) -> int:
         """Row of the number of steps."""
-        return self.size + 3
-
-    @property
-    def low(self) -> int:
-        """First row of the least values of the guards."""
-        return self.size + 4
+        return self.size + 1
 
     @property
     def kept(self) -> int:
         """How many rows a step brings up to date."""
-        return self.low + self.guards
+        return self.size + 2
 
     @property
     def taken(self) -> int:
@@ -93,9 +78,19 @@ class Layout(NamedTuple):
         return self.kept + 1
 
     @property
+    def looks(self) -> slice:
+        """Rows of the least values of the first guard, n_z and -n_z that were looked at in a step."""
+        return slice(self.kept + 2, self.kept + 5)
+
+    @property
+    def slack(self) -> slice:
+        """Rows of how far below them the step may go."""
+        return slice(self.kept + 5, self.kept + 8)
+
+    @property
     def rows(self) -> int:
         """How many rows there are."""
-        return self.kept + 2
+        return self.kept + 8
 
     @property
     def counts(self) -> slice:
@@ -168,43 +163,39 @@ def stride(
 ) -> list[Scalar]:
     """What `Stepper.step` makes of the rows that are kept: all rows."""
     layout = Layout.of(motion)
-    start, (left, down, up, steps, *least) = before[: layout.size], before[layout.size :]
+    start, (left, steps) = before[: layout.size], before[layout.size :]
     counts, turns, (band_low, band_high) = numbers[layout.counts], numbers[layout.turns], numbers[layout.band]
     y, guards = motion_series(motion, start, numbers, plain)
     state = [[series[k] for k in range(order + 1)] for series in y]
     taken = step_size(state, left, plain)
-    heights = [horner(state[2], taken * (look / TIP_LOOKS)) for look in range(TIP_LOOKS + 1)]
+    heights, bend = looked_at(state[2], taken, TIP_LOOKS, plain)
     floor, ceiling = lowest(heights, plain), -lowest([-height for height in heights], plain)
 
     events = plain.below(floor, 0.0) * plain.below(0.0, ceiling) * turns
     events += (1.0 - plain.below(band_high, floor)) * (1.0 - plain.below(ceiling, band_low))
     lows = []
-    for guard, known, count in zip(guards, least, counts, strict=True):
-        low, slack = floor_of([guard[k] for k in range(order)], taken, plain)
-        events += plain.below(low - slack, TINY) * count
-        lows.append(plain.least(low, known))
+    for guard, count in zip(guards, counts, strict=True):
+        values, slack = looked_at([guard[k] for k in range(order)], taken, GUARD_LOOKS, plain)
+        lows.append((lowest(values, plain), slack))
+        events += plain.below(lows[-1][0] - slack, TINY) * count
     moves = plain.below(0.0, taken)
     pause = events * moves
-    after = [
-        *(horner(series, taken) for series in state),
-        left - taken,
-        plain.least(floor, down),
-        -plain.least(-ceiling, -up),
-        steps + moves,
-        *lows,
-    ]
+    after = [*(horner(series, taken) for series in state), left - taken, steps + moves]
     stays = [plain.choose(pause, old, new) for old, new in zip(before, after, strict=True)]
     stays[layout.left] = plain.choose(pause, 0.0 * left, after[layout.left])
-    return [*stays, taken, pause]
+    looks = [plain.choose(pause, math.inf + 0.0 * look, look) for look in (lows[0][0], floor, -ceiling)]
+    return [*stays, taken, pause, *looks, lows[0][1], bend, bend]
 
 
-def floor_of(terms: Sequence[Scalar], taken: Scalar, plain: Arithmetic) -> tuple[Scalar, Scalar]:
-    """Least value of a polynomial at the looks of a step, and how far below it may lie between them."""
-    part = taken * (1.0 / GUARD_LOOKS)
-    values = [horner(terms, part * float(look)) for look in range(GUARD_LOOKS + 1)]
-    # Between two looks a function lies at most (interval)^2 / 8 max |f''| below both of them.
+def looked_at(
+    terms: Sequence[Scalar], taken: Scalar, looks: int, plain: Arithmetic
+) -> tuple[list[Scalar], Scalar]:
+    """Values of a polynomial at the looks of a step, and how far beyond them it may go in between."""
+    part = taken * (1.0 / looks)
+    values = [horner(terms, part * float(look)) for look in range(looks + 1)]
+    # Between two looks a function lies at most (interval)^2 / 8 max |f''| beyond both of them.
     bends = [float(k * (k - 1)) * plain.size(terms[k]) for k in range(2, len(terms))]
-    return lowest(values, plain), part * part * (1.0 / 8.0) * horner(bends, taken)
+    return values, part * part * (1.0 / 8.0) * horner(bends, taken)
 
 
 def step_size(state: Sequence[Sequence[Scalar]], left: Scalar, plain: Arithmetic) -> Scalar:

@@ -7,6 +7,7 @@ import numpy as np
 from tippetop.integrators.base import Array
 from tippetop.integrators.polynomials import Polynomials
 from tippetop.metrics import arrival_time, turning_time
+from tippetop.sweeps.extremes import DOWN, UP, Extremes
 from tippetop.sweeps.launches import Indices
 
 
@@ -16,8 +17,6 @@ class Watch:
 
     Attributes
     ----------
-    down, up
-        Least and largest n_z since they were last set back.
     turned
         First time at which n_z falls through zero, which is when the top turns over; nan before. A top that
         starts beyond a right angle turns over when it passes it from below.
@@ -25,36 +24,30 @@ class Watch:
         A band of n_z that is waited for, or nan.
     reached
         First time at which n_z is in the band; nan before.
+    extremes
+        Least normal force, and least and largest n_z, exactly.
     """
 
-    down: Array
-    up: Array
     turned: Array
     low: Array
     high: Array
     reached: Array = field(init=False)
+    extremes: Extremes = field(init=False)
 
     def __post_init__(self) -> None:
         self.reached = np.full(self.low.shape, np.nan)
+        self.extremes = Extremes.of(len(self.low))
 
     @classmethod
     def of(cls, count: int) -> "Watch":
         """The watch of launches that wait for no band."""
         nothing = np.full(count, np.nan)
-        return cls(np.full(count, np.inf), np.full(count, -np.inf), *(nothing.copy() for _ in range(3)))
-
-    def set_back(self) -> None:
-        """Forget the extremes."""
-        self.down[:], self.up[:] = np.inf, -np.inf
-
-    def spread(self, launches: Indices, down: Array, up: Array) -> None:
-        """Take in extremes of n_z."""
-        self.down[launches] = np.fmin(self.down[launches], down)
-        self.up[launches] = np.fmax(self.up[launches], up)
+        return cls(*(nothing.copy() for _ in range(3)))
 
     def see(self, launches: Indices, time: Array, tip: Polynomials) -> None:
         """Take in n_z as polynomials in time since `time`, shape (n,)."""
-        self.spread(launches, tip.least(), tip.greatest())
+        self.extremes.take(DOWN, launches, tip)
+        self.extremes.take(UP, launches, tip.negative())
         some = np.flatnonzero(np.isnan(self.turned[launches]) & (tip.values.min(axis=0) < 0.0))
         if len(some):
             self.turned[launches[some]] = time[some] + turning_time(tip.some(some))
@@ -65,7 +58,7 @@ class Watch:
 
     def some(self, which: Indices) -> "Watch":
         """The watch of some of the launches."""
-        arrays = (self.down, self.up, self.turned, self.low, self.high)
+        arrays = (self.turned, self.low, self.high)
         watch = Watch(*(array[which] for array in arrays))
-        watch.reached = self.reached[which]
+        watch.reached, watch.extremes = self.reached[which], self.extremes.some(which)
         return watch
