@@ -5,7 +5,7 @@ Every part is frozen, refuses what cannot be, and reads and writes TOML and JSON
 
 import json
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
@@ -14,6 +14,7 @@ from pydantic import Field, model_validator
 
 from tippetop.bodies import Body
 from tippetop.errors import InvalidInput, one_of
+from tippetop.fields import dotted_names, numbers_of, part_at, table_at
 from tippetop.files import read_text
 from tippetop.frictions import Friction
 from tippetop.mechanics.motion import along_table, contact, on_table
@@ -181,7 +182,7 @@ class Problem(Part):
 
     def _out_of_reach(self) -> InvalidInput:
         """The refusal of numbers with which no computer can reckon, about the one furthest from 1."""
-        numbers = {name: value for name, value in _numbers(self.model_dump()) if value}
+        numbers = {name: value for name, value in numbers_of(self.model_dump()) if value}
         distance = {name: abs(math.log(abs(value))) for name, value in numbers.items()}
         worst = max(distance, key=distance.__getitem__)
         others = sum(2 * other > distance[worst] for other in distance.values()) - 1
@@ -219,17 +220,17 @@ class Problem(Part):
         renewed = set()
         for name, value in changes.items():
             where, _, last = name.rpartition(".")
-            part = _part(self, where) if last == "kind" else None
+            part = part_at(self, where) if last == "kind" else None
             if isinstance(part, Variant) and value != getattr(part, "kind", None):
                 renewed.add(where)
-                table, kept = _table(fields, where), part.fields_of(value)
+                table, kept = table_at(fields, where), part.fields_of(value)
                 for field in table.keys() - kept:
                     del table[field]
         for name, value in changes.items():
             where, _, last = name.rpartition(".")
-            table = _table(fields, where)
+            table = table_at(fields, where)
             if last not in table and where not in renewed:
-                raise InvalidInput("field", name, "one of " + one_of(name, list(_dotted_names(fields))))
+                raise InvalidInput("field", name, "one of " + one_of(name, list(dotted_names(fields))))
             table[last] = value
         return type(self)(**fields)
 
@@ -286,41 +287,3 @@ class Problem(Part):
         """
         text = read_text(path, "a problem in TOML or JSON")
         return cls.from_json(text) if Path(path).suffix.lower() == ".json" else cls.from_toml(text)
-
-
-def _numbers(value: Any, name: str = "") -> Iterator[tuple[str, float]]:
-    """Every number in the fields, with its name with dots."""
-    match value:
-        case dict():
-            for field, inner in value.items():
-                yield from _numbers(inner, f"{name}.{field}" if name else field)
-        case tuple():
-            for index, inner in enumerate(value):
-                yield from _numbers(inner, f"{name}.{index}")
-        case float():
-            yield name, value
-
-
-def _table(fields: dict[str, Any], where: str) -> dict[str, Any]:
-    """The table of this name, with dots; an empty one where there is none."""
-    for name in where.split(".") if where else ():
-        found = fields.get(name)
-        fields = found if isinstance(found, dict) else {}
-    return fields
-
-
-def _part(problem: Part, where: str) -> Any:
-    """The part of this name, with dots; None where there is none."""
-    found: Any = problem
-    for name in where.split("."):
-        found = getattr(found, name, None)
-    return found
-
-
-def _dotted_names(fields: Mapping[str, Any], prefix: str = "") -> Iterator[str]:
-    """Every field's name with dots, depth first."""
-    for name, value in fields.items():
-        if isinstance(value, dict):
-            yield from _dotted_names(value, f"{prefix}{name}.")
-        else:
-            yield f"{prefix}{name}"

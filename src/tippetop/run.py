@@ -21,9 +21,10 @@ from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import natural, natural_state, natural_units
 from tippetop.mechanics.units import Units
-from tippetop.metrics import Tally, metrics
+from tippetop.metrics import metrics
 from tippetop.observables import Recorder, observe
 from tippetop.problem import Problem
+from tippetop.tally import Tally
 
 BYTES_PER_SAMPLE = 1600
 """Memory that a sample takes at most while a result is being made."""

@@ -3,7 +3,7 @@
 import json
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -27,6 +27,8 @@ from tippetop.files import place_for, written_beside
 
 if TYPE_CHECKING:
     import xarray as xr
+
+    from tippetop.problem import Problem
 
 DEFAULT_SAMPLES = 2001
 MOVING = ("glb", "html", "mp4", "gif")
@@ -94,11 +96,7 @@ def simulate(
     wanted = {kind: path for kind, path in files.items() if path is not None}
     _check_files(wanted, force)
     if samples is None:
-        samples = DEFAULT_SAMPLES
-        if wanted.keys() & MOVING:
-            from tippetop.export.track import sample_count  # noqa: PLC0415
-
-            samples = max(samples, sample_count(chosen, duration))
+        samples = _enough_samples(chosen, duration, wanted)
     began = time.perf_counter()
     with _bar("simulating") as progress:
         run = run_problem(
@@ -119,6 +117,15 @@ def simulate(
         typer.echo(json.dumps({**summary, **written, "problem": chosen.model_dump()}, indent=2))
     else:
         _print_summary(summary, elapsed, list(wanted.values()))
+
+
+def _enough_samples(problem: "Problem", duration: float, wanted: Iterable[str]) -> int:
+    """As many samples as the files that are wanted need, and no fewer than usual."""
+    if not set(MOVING) & set(wanted):
+        return DEFAULT_SAMPLES
+    from tippetop.export.track import sample_count  # noqa: PLC0415 - slow to import
+
+    return max(DEFAULT_SAMPLES, sample_count(problem, duration))
 
 
 def _write(run: "xr.Dataset", kind: str, path: Path, force: bool) -> None:

@@ -19,10 +19,10 @@ from tippetop.mechanics.flight import gap, gap_rate
 from tippetop.mechanics.rolling import is_branched
 from tippetop.mechanics.state import State
 from tippetop.mechanics.touchdown import Start
-from tippetop.metrics import Tally
 from tippetop.sweeps.flights import collide, fly_all, slides, slips
 from tippetop.sweeps.launches import Indices, picked, single
 from tippetop.sweeps.slots import Slots
+from tippetop.tally import Tally
 
 LEAST_SCIPY = 1e-12
 """Least tolerance of the integrator of single launches where heyoka is not installed."""

@@ -14,7 +14,7 @@ from tippetop.files import read_text
 from tippetop.problem import Problem
 from tippetop.sweeps.cells import cells_of
 from tippetop.sweeps.grid import Draws, Product
-from tippetop.theory.steady import require_jellett
+from tippetop.theory.requirements import require_jellett
 from tippetop.validation import Number, Part, Positive, parse_toml
 
 DEFAULT_TOLERANCE = 1e-9

@@ -142,6 +142,19 @@ def read_metadata(path: Path) -> dict[str, Any]:
     return dict(metadata)
 
 
+def mend_metadata(path: Path) -> None:
+    """Write again what is missing or damaged of the arrays' own metadata in a store."""
+    for name, metadata in read_metadata(path)["consolidated_metadata"]["metadata"].items():
+        file = path / name / METADATA
+        try:
+            whole = json.loads(file.read_text(encoding="utf-8")) == metadata
+        except (OSError, ValueError, RecursionError):
+            whole = False
+        if not whole:
+            file.parent.mkdir(exist_ok=True)
+            file.write_text(json.dumps(metadata), encoding="utf-8")
+
+
 def kept_sweep(path: Path) -> Sweep:
     """The sweep that a store holds, to go on with it.
 
@@ -169,6 +182,17 @@ def may_be_replaced(path: Path) -> bool:
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return False
     return str(layout).startswith(FORMAT.rstrip("0123456789"))
+
+
+def refuse_another(path: Path, kept: Sweep, sweep: Sweep) -> None:
+    """Refuse, with `FileTrouble`, to resume a store that holds another sweep."""
+    difference = first_difference(kept.describe(), sweep.describe())
+    if difference is not None:
+        name, there, here = difference
+        raise FileTrouble(
+            f"{path} holds another sweep and cannot be resumed: {name} is {short(there)} in it, and "
+            f"{short(here)} here; choose another --out, or start afresh with --force"
+        )
 
 
 def first_difference(one: Any, other: Any, name: str = "") -> tuple[str, Any, Any] | None:

@@ -19,20 +19,20 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from tippetop.catalogue import SWEPT
-from tippetop.errors import FileTrouble, Unavailable, short
+from tippetop.errors import FileTrouble, Unavailable
 from tippetop.files import in_words, refuse_overwriting
 from tippetop.interrupts import deferred
 from tippetop.sweeps.definition import Sweep
 from tippetop.sweeps.disk import bring_to_disk, clear_away, identity, locked
 from tippetop.sweeps.layout import (
     DIGEST,
-    METADATA,
     Status,
-    first_difference,
     kept_sweep,
     lay_out,
     may_be_replaced,
+    mend_metadata,
     read_metadata,
+    refuse_another,
 )
 
 Task = tuple[int, ...]
@@ -110,13 +110,7 @@ class Store:
         with in_words(path, "read"):
             kept = kept_sweep(path)
         if sweep is not None:
-            difference = first_difference(kept.describe(), sweep.describe())
-            if difference is not None:
-                name, there, here = difference
-                raise FileTrouble(
-                    f"{path} holds another sweep and cannot be resumed: {name} is {short(there)} in it, and "
-                    f"{short(here)} here; choose another --out, or start afresh with --force"
-                )
+            refuse_another(path, kept, sweep)
         store = cls(path, kept)
         if tuple(store._arrays["status"].chunks) != kept.chunk:
             raise FileTrouble(f"{path} has other chunks than this version makes; start afresh with --force")
@@ -149,16 +143,7 @@ class Store:
 
     def _mend(self) -> None:
         """Write again what is missing or damaged of the arrays' own metadata, and of the coordinates."""
-        arrays = read_metadata(self.path)["consolidated_metadata"]["metadata"]
-        for name, metadata in arrays.items():
-            file = self.path / name / METADATA
-            try:
-                whole = json.loads(file.read_text(encoding="utf-8")) == metadata
-            except (OSError, ValueError, RecursionError):
-                whole = False
-            if not whole:
-                file.parent.mkdir(exist_ok=True)
-                file.write_text(json.dumps(metadata), encoding="utf-8")
+        mend_metadata(self.path)
         for name, (_, values) in self.sweep.grid.coordinates().items():
             if self._lost(name, [(0,)]):
                 self._arrays[name][...] = values
@@ -236,11 +221,11 @@ class Store:
         FileTrouble
             If they are damaged, or something is missing of them.
         """
-        with self._damage_in_words():
+        with _damage_in_words(self.path):
             return self._opened(names)[list(names)].load()
 
     def _opened(self, names: Collection[str]) -> xr.Dataset:
-        with self._damage_in_words():
+        with _damage_in_words(self.path):
             read_metadata(self.path)
             done = self._done(np.asarray(self._arrays["status"][...]))
             needed = [(name, task) for name in names if name in SWEPT for task in done]
@@ -251,17 +236,6 @@ class Store:
             opened: xr.Dataset = xr.open_zarr(self.path)
             del opened.attrs[DIGEST]
         return opened
-
-    @contextmanager
-    def _damage_in_words(self) -> Iterator[None]:
-        try:
-            yield
-        except FileTrouble:
-            raise
-        except (OSError, ValueError, RuntimeError, KeyError, TypeError) as error:
-            raise FileTrouble(
-                f"{self.path} is damaged and cannot be read ({error}); --resume mends it"
-            ) from None
 
     def _chunk(self, name: str, task: Task) -> Path:
         return self.path.joinpath(name, "c", *map(str, task))
@@ -294,3 +268,14 @@ def _can_be_read(array: Any, region: Any) -> bool:
     except Exception:  # noqa: BLE001 - whatever a damaged chunk raises
         return False
     return True
+
+
+@contextmanager
+def _damage_in_words(path: Path) -> Iterator[None]:
+    """Say of whatever reading a damaged store raises that it is damaged."""
+    try:
+        yield
+    except FileTrouble:
+        raise
+    except (OSError, ValueError, RuntimeError, KeyError, TypeError) as error:
+        raise FileTrouble(f"{path} is damaged and cannot be read ({error}); --resume mends it") from None

@@ -22,7 +22,8 @@ import numpy as np
 
 from tippetop.errors import InvalidInput
 from tippetop.mechanics.top import Top
-from tippetop.theory.steady import precession_branch, require_jellett
+from tippetop.theory.requirements import require_jellett
+from tippetop.theory.steady import precession_branch
 from tippetop.theory.thresholds import lambda_down, lambda_up
 
 

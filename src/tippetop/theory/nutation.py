@@ -29,7 +29,7 @@ from tippetop.mechanics.top import Top, natural_units
 from tippetop.mechanics.vectors import Functions, Scalar
 from tippetop.mechanics.view import Angles
 from tippetop.theory.groups import eccentricity
-from tippetop.theory.steady import require_sphere
+from tippetop.theory.requirements import require_sphere
 
 
 class Constants(NamedTuple):

@@ -8,14 +8,9 @@ from tippetop.problem import Problem
 from tippetop.theory.averaging import flip_time_limit, nutation_of_launch
 from tippetop.theory.groups import Group, classify_top, eccentricity, inertia_ratio
 from tippetop.theory.prediction import Prediction, predict, steady_launch
+from tippetop.theory.requirements import require_lasting_slip
 from tippetop.theory.stability import Spectrum, spectrum
-from tippetop.theory.steady import (
-    VERTICAL_SPINS,
-    SteadyState,
-    jellett_of_launch,
-    require_lasting_slip,
-    vertical_spin,
-)
+from tippetop.theory.steady import VERTICAL_SPINS, SteadyState, jellett_of_launch, vertical_spin
 from tippetop.theory.steady import (
     steady_states as all_steady_states,
 )

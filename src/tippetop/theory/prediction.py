@@ -21,6 +21,7 @@ from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top, natural_units
 from tippetop.mechanics.view import axis_sine
 from tippetop.problem import Problem
+from tippetop.theory.requirements import require_jellett, require_lasting_slip
 from tippetop.theory.steady import (
     SteadyKind,
     SteadyState,
@@ -29,8 +30,6 @@ from tippetop.theory.steady import (
     least_energy,
     level_spin,
     precession_at,
-    require_jellett,
-    require_lasting_slip,
     steady_states,
     vertical_spin,
     weight_moment,

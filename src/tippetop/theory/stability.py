@@ -26,13 +26,13 @@ from tippetop.mechanics.vectors import Scalar
 from tippetop.mechanics.view import Angles, state_from_angles
 from tippetop.theory import dual
 from tippetop.theory.dual import Array, Dual, derivative, jacobian, variable
+from tippetop.theory.requirements import require_lasting_slip
 from tippetop.theory.steady import (
     VERTICAL_SPINS,
     Branch,
     SteadyKind,
     SteadyState,
     gyroscopic_reaction,
-    require_lasting_slip,
     rolling_spin,
     state_of,
     weight_moment,

@@ -19,7 +19,6 @@ from numpy.polynomial import chebyshev
 
 from tippetop.errors import InvalidInput
 from tippetop.mechanics.invariants import energy, jellett
-from tippetop.mechanics.rolling import is_set_valued
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.surface import Surface, contact_vector
 from tippetop.mechanics.top import Top, natural, natural_units
@@ -193,34 +192,6 @@ def steady_states(top: Top, jellett: float) -> list[SteadyState]:
 def has_level_spin(top: Top) -> bool:
     """Whether the body can spin with its axis horizontal at any rate."""
     return bool(top.surface.slope(0.0) == 0.0)
-
-
-def require_sphere(top: Top) -> None:
-    """Refuse a body that is no eccentric sphere, with `InvalidInput`."""
-    if not top.surface.spherical:
-        raise InvalidInput(
-            "body.shape", top.surface, "an eccentric sphere; Jellett's integral holds for no other"
-        )
-
-
-def require_jellett(top: Top) -> None:
-    """Refuse a top that does not conserve Jellett's integral, with `InvalidInput`."""
-    require_sphere(top)
-    if not top.conserves_jellett:
-        raise InvalidInput(
-            "friction", top.friction, "friction without torque, which conserves Jellett's integral"
-        )
-
-
-def require_lasting_slip(top: Top) -> None:
-    """Refuse dry friction, with `InvalidInput`: a top that sticks may roll for ever, whatever is stable.
-
-    There is no linear motion about sticking either.
-    """
-    if is_set_valued(top.friction):
-        raise InvalidInput(
-            "friction", top.friction, "friction under which slip never ends; the theory knows no sticking"
-        )
 
 
 def jellett_of_launch(problem: Problem) -> float:

@@ -24,13 +24,13 @@ from tippetop.mechanics.top import Top, natural_units
 from tippetop.mechanics.vectors import Scalar
 from tippetop.problem import Problem
 from tippetop.theory.dual import Array
+from tippetop.theory.requirements import require_lasting_slip
 from tippetop.theory.stability import linear_tilts, vertical_growth_rates
 from tippetop.theory.steady import (
     VERTICAL_SPINS,
     SteadyKind,
     jellett_of_launch,
     precession_branch,
-    require_lasting_slip,
     vertical_spin,
 )
 

@@ -1,0 +1,137 @@
+"""What is found on the way of one launch, block by block: events and extremes of the dense solution."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from tippetop.contact.block import Block, ModeSteps
+from tippetop.contact.mode import Event, EventKind, Outcome, Segment
+from tippetop.integrators.base import Array
+from tippetop.integrators.dense import at_fractions, chebyshev
+from tippetop.integrators.polynomials import Polynomials, least_of_all
+from tippetop.mechanics.state import State
+from tippetop.metrics import OUTCOMES, Ends, Flags, arrival_time, final_band, turning_time
+
+AT_ONCE = 64
+"""Steps that are searched together for the first time at which something happens."""
+
+FORCE_DEGREE = 20
+"""Degree of the polynomials in which the least normal force is looked for."""
+
+
+class Tally:
+    """What is found on the way of one launch, block by block."""
+
+    def __init__(self) -> None:
+        self._tips: list[tuple[Polynomials, Array]] = []
+        self._airborne: list[tuple[float, float, float]] = []
+        self._least_force, self._down, self._up, self._highest = np.inf, np.inf, -np.inf, 0.0
+        self._turned, self._landed = np.nan, True
+        self.steps = self.evaluations = 0
+
+    @property
+    def flights(self) -> Array:
+        """Begin, end and highest gap of every flight, shape (k, 3)."""
+        return np.array(self._airborne).reshape(-1, 3)
+
+    def take(self, block: Block) -> None:
+        """Take in the steps of a block."""
+        self.steps += sum(segment.steps for segment in block.segments)
+        self.evaluations += sum(segment.evaluations for segment in block.segments)
+        for segment in block.segments:
+            if not segment.mode.touching:
+                self._fly(segment)
+        for group in block.groups:
+            self._see(group, block.starts[group.which])
+            if not group.mode.touching:
+                self._rise(group)
+            elif not self._airborne:
+                self._press(group)
+
+    def _fly(self, segment: Segment) -> None:
+        """Take in a flight, or one more piece of it."""
+        begin, end = float(segment.solution.knots[0]), segment.end_time
+        if self._airborne and not self._landed:
+            begin = self._airborne.pop()[0]
+        self._airborne.append((begin, end, segment.highest_gap))
+        self._landed = segment.transition is not None
+
+    def _see(self, group: ModeSteps, starts: Array) -> None:
+        """Take in the motion of the tip of the axis."""
+        tip = Polynomials.of_unit(np.ascontiguousarray(group.terms[:, 2].T), group.spans)
+        seen = group.nodes[0].axis[2]
+        self._tips.append((tip, starts))
+        least, most = seen.min(axis=0), seen.max(axis=0)
+        lower = tip.some(np.flatnonzero(least - tip.sag <= least.min()))
+        upper = tip.some(np.flatnonzero(most + tip.sag >= most.max()), sign=-1.0)
+        self._down = min(self._down, least_of_all(lower))
+        self._up = max(self._up, -least_of_all(upper))
+        near = (least - tip.sag <= 0.0) & (most + tip.sag >= 0.0)
+        self._turned = _first(self._turned, tip, starts, near, turning_time)
+
+    def _rise(self, group: ModeSteps) -> None:
+        """Take in the height of the centre of mass in flights."""
+        depth = Polynomials.of_unit(-group.terms[:, 9].T, group.spans)
+        self._highest = max(self._highest, -least_of_all(depth))
+
+    def _press(self, group: ModeSteps) -> None:
+        """Take in the normal force."""
+        force = group.nodes[1].force[2]
+        least = force.min(axis=0)
+        # Between Gauss's points, and beyond them, it is lower by a small part of what it varies by there.
+        near = np.flatnonzero(least - 0.2 * (force.max(axis=0) - least) <= least.min())
+        places, transform, to_powers = chebyshev(FORCE_DEGREE)
+        y = at_fractions(group.terms[near], places)
+        unit = to_powers @ (transform @ group.mode.reaction(y).force[2])
+        self._least_force = min(self._least_force, least_of_all(Polynomials.of_unit(unit, group.spans[near])))
+
+    def ends(self, state: State, time: float, outcome: Outcome, events: Sequence[Event]) -> Ends:
+        """All that was found, as of one launch, given how and where it ended."""
+        found = Ends.unknown(1)
+        last = State.unpack([np.array([number], dtype=float) for number in state.pack()])
+        lift_offs = [event.time for event in events if event.kind is EventKind.LIFT_OFF]
+        flights = self.flights
+        found.put(
+            np.arange(1),
+            replace(
+                found,
+                state=last,
+                time=np.array([time]),
+                outcome=np.array([OUTCOMES.index(outcome)]),
+                steps=np.array([self.steps]),
+                flights=np.array([len(flights)]),
+                least_force=np.array([0.0 if lift_offs or len(flights) else self._least_force]),
+                lift_off=np.array([min(lift_offs, default=np.nan)]),
+                airborne=np.array([(flights[:, 1] - flights[:, 0]).sum()]),
+                highest_gap=np.array([flights[:, 2].max(initial=0.0)]),
+                highest=np.array([self._highest]),
+                down=np.array([self._down]),
+                up=np.array([self._up]),
+                turned=np.array([self._turned]),
+                arrived=np.array([self.arrival(*final_band(last))]),
+            ),
+        )
+        return found
+
+    def arrival(self, low: Array, high: Array) -> float:
+        """First time at which n_z is between `low` and `high`, each of shape (1,); nan if it never is."""
+        found = float(np.nan)
+        for tip, starts in self._tips:
+            least, most = tip.bounds
+            near = (least <= high) & (most >= low)
+            found = _first(found, tip, starts, near, lambda some: arrival_time(some, low, high))
+        return found
+
+
+def _first(
+    known: float, tip: Polynomials, starts: Array, near: Flags, find: Callable[[Polynomials], Array]
+) -> float:
+    """The first time that is found on steps where it may be, or the one that is known if that is earlier."""
+    which = np.flatnonzero(near & ~(starts > known))
+    for first in range(0, len(which), AT_ONCE):
+        some = which[first : first + AT_ONCE]
+        times = find(tip.some(some)) + starts[some]
+        if not np.all(np.isnan(times)):
+            return float(np.fmin(known, np.fmin.reduce(times)))
+    return known
