@@ -125,7 +125,13 @@ class Polynomials:
         rises |= (best == LOOKS) & (np.arange(len(self.unit)) @ self.unit <= 0.0)
         dips = np.flatnonzero(~rises)
         if len(dips):
-            there, low = least_near(self.unit[:, dips], place[dips])
+            # The parabola through the least look and its neighbours is near it.
+            inside = np.clip(best[dips], 1, LOOKS - 1)
+            before, here, after = (self.values[inside + k, dips] for k in (-1, 0, 1))
+            bend = before - 2.0 * here + after
+            vertex = inside + 0.5 * (before - after) / np.where(bend > 0.0, bend, np.inf)
+            guess = np.where(np.abs(vertex - best[dips]) <= 1.0, vertex, best[dips]) / LOOKS
+            there, low = least_near(self.unit[:, dips], guess)
             better = (there >= 0.0) & (there <= 1.0) & (low < value[dips])
             place[dips[better]], value[dips[better]] = there[better], low[better]
         return place * self.span, value

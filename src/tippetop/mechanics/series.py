@@ -67,9 +67,14 @@ class Series:
         self.known: list[Scalar] = []
 
     def __getitem__(self, k: int) -> Scalar:
-        while len(self.known) <= k:
-            self.known.append(self.rule(len(self.known)))
-        return self.known[k]
+        return self.up_to(k)[k]
+
+    def up_to(self, k: int) -> list[Scalar]:
+        """Coefficients, at least as many as up to the k-th."""
+        known = self.known
+        while len(known) <= k:
+            known.append(self.rule(len(known)))
+        return known
 
     def _made(self, rule: Callable[[int], Scalar]) -> "Series":
         return Series(rule, self.arithmetic)
@@ -85,18 +90,23 @@ class Series:
         if isinstance(other, Series):
             if other is self:
                 return self._squared()
-            return self._made(lambda k: self.arithmetic.total([self[j] * other[k - j] for j in range(k + 1)]))
+            return self._made(lambda k: self._product(other, k))
         if is_number(other, 0.0):
             return 0.0
         if is_number(other, 1.0):
             return self
         return self._made(lambda k: other * self[k])
 
+    def _product(self, other: "Series", k: int) -> Scalar:
+        ours, theirs = self.up_to(k), other.up_to(k)
+        return self.arithmetic.total([ours[j] * theirs[k - j] for j in range(k + 1)])
+
     def _squared(self) -> "Series":
         def rule(k: int) -> Scalar:
-            terms = [2.0 * (self[j] * self[k - j]) for j in range((k + 1) // 2)]
+            known = self.up_to(k)
+            terms = [2.0 * (known[j] * known[k - j]) for j in range((k + 1) // 2)]
             if k % 2 == 0:
-                terms.append(self[k // 2] * self[k // 2])
+                terms.append(known[k // 2] * known[k // 2])
             return self.arithmetic.total(terms)
 
         return self._made(rule)
@@ -110,7 +120,8 @@ class Series:
             if k == 0:
                 inverse.append(1.0 / other[0])
                 return self[0] * inverse[0]
-            known = self.arithmetic.total([quotient[j] * other[k - j] for j in range(k)])
+            divisor = other.up_to(k)
+            known = self.arithmetic.total([quotient.known[j] * divisor[k - j] for j in range(k)])
             return (self[k] - known) * inverse[0]
 
         quotient = self._made(rule)
@@ -126,8 +137,9 @@ class Series:
             if k == 0:
                 inverse.append(1.0 / self[0])
                 return self[0] ** exponent
+            base, found = self.up_to(k), power.known
             factors = [((exponent + 1.0) * j - k) / k for j in range(1, k + 1)]
-            terms = [f * (self[j] * power[k - j]) for j, f in enumerate(factors, start=1)]
+            terms = [f * (base[j] * found[k - j]) for j, f in enumerate(factors, start=1)]
             return self.arithmetic.total(terms) * inverse[0]
 
         power = self._made(rule)
