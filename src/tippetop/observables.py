@@ -134,6 +134,8 @@ class Recorder:
             else:
                 block, integrals = self._last
                 self._sample(block, np.array([end]), *integrals)
+        if not self._parts:
+            self._parts.append(self._single(state))
         rows = np.concatenate(self._parts, axis=1)
         force, torque = (rows[11], rows[12], rows[13]), (rows[14], rows[15], rows[16])
         x, y, turn, work, pole = rows[17:22]

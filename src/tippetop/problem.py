@@ -173,10 +173,12 @@ class Problem(Part):
             return math.nan
 
     def _largest_square(self) -> float:
-        """The largest square among the numbers of the launch in natural units; nan where there is none."""
+        """The largest square among the numbers of the launch in natural units, and in SI; nan without one."""
         try:
-            start = natural_state(self.start(), natural_units(self.top))
-            return float(max(map(abs, (*start.momentum, *start.velocity, start.height)))) ** 2
+            units = natural_units(self.top)
+            start = natural_state(self.start(), units)
+            largest = float(max(map(abs, (*start.momentum, *start.velocity, start.height))))
+            return largest**2 * max(1.0, float(units.energy))
         except ArithmeticError:
             return math.nan
 

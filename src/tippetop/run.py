@@ -12,7 +12,7 @@ from tippetop import __version__
 from tippetop.contact.block import in_blocks
 from tippetop.contact.mode import Event, Outcome
 from tippetop.contact.rules import rules_of
-from tippetop.contact.trajectory import PHASE_LIMIT, STEP_LIMIT, Trajectory
+from tippetop.contact.trajectory import LONGEST, PHASE_LIMIT, STEP_LIMIT, Trajectory
 from tippetop.dataset import assemble
 from tippetop.errors import InvalidInput, is_number
 from tippetop.integrators import Integrator, make_integrator
@@ -92,8 +92,8 @@ def simulate(
     Unavailable
         If the integrator is not installed.
     """
-    grid = sample_times(duration, samples, times)
     units = natural_units(problem.top)
+    grid = sample_times(duration, samples, times, LONGEST * min(1.0, units.time))
     top = natural(problem.top)
     method = integrator_of(integrator, tolerance, step, units)
     state = natural_state(problem.start(), units)
@@ -137,10 +137,10 @@ def simulate(
     return assemble(times, variables, (found.mode, recorder.modes), scalars, lists, attributes)
 
 
-def sample_times(duration: float, samples: int, times: ArrayLike | None) -> Array:
-    """Sample times, s, checked; see `simulate`."""
-    if not (is_number(duration) and duration > 0):
-        raise InvalidInput("duration", duration, "a finite number of seconds greater than 0")
+def sample_times(duration: float, samples: int, times: ArrayLike | None, longest: float = LONGEST) -> Array:
+    """Sample times, s, checked; see `simulate`. No run may last longer than `longest`."""
+    if not (is_number(duration) and 0 < duration <= longest):
+        raise InvalidInput("duration", duration, f"a number of seconds greater than 0, at most {longest:.3g}")
     if times is None:
         if isinstance(samples, bool) or not isinstance(samples, (int, np.integer)) or samples < 2:
             raise InvalidInput("samples", samples, "a whole number, at least 2")

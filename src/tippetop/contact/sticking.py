@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import islice
 from typing import ClassVar
 
 import numpy as np
@@ -54,6 +55,9 @@ SLIP, REOPENING, LANDED, TIME = "slip", "reopening", "landed", "time"
 
 LONGEST = 100.0
 """More of the clock -ln s than lies between any two speeds."""
+
+ARCS = 4
+"""Arcs, of some thousand steps each, in which slip must end or go on: it takes some hundred steps."""
 
 SETTLED = 1e-14
 """Error of the instant at which slip ends, in natural units, that counts as none."""
@@ -175,7 +179,7 @@ class SlipEnd(Mode):
         motion, steps = closing_motion(self.top.kind, not self.rules.pulls), 0
         for horizon in LANDING:
             parameters = (*self.top.numbers, end - time, horizon)
-            arcs = list(integrator.integrate(motion, parameters, (0.0, begin), LONGEST))
+            arcs = list(islice(integrator.integrate(motion, parameters, (0.0, begin), LONGEST), ARCS))
             steps += sum(arc.steps for arc in arcs)
             here = closing_of(arcs[-1].end_state.tolist())
             rest, doubt = landed(here, self.top)

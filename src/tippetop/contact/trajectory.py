@@ -10,6 +10,9 @@ from tippetop.mechanics.state import State
 PHASE_LIMIT = 100_000
 """How many modes a run goes through at most unless told otherwise."""
 
+LONGEST = 1e300
+"""Seconds, and natural units of time, that a run may last at most, so that it is a number in both."""
+
 STEP_LIMIT = 500_000
 """How many steps a run takes at most unless told otherwise: more than an hour of a tippe top's spinning."""
 

@@ -264,7 +264,11 @@ class HertzLaw(NamedTuple):
 
     def reserve(self, normal: Scalar, force: Horizontal, drilling: Scalar) -> Scalar:
         """(mu N F)^2 - T^2 where the limit surface has this drilling torque, N^2; else less than zero."""
-        return self.limit_branch(normal, drilling).reserve(normal, force, drilling)
+        # A table that may pull holds as much as one that pushes; without a normal force there is no friction.
+        pressed = abs(normal)
+        if pressed == 0.0:
+            return -(force[0] ** 2) - force[1] ** 2 - (drilling / self.patch_radius) ** 2
+        return self.limit_branch(pressed, drilling).reserve(pressed, force, drilling)
 
     def coefficients(self, units: Units) -> tuple[Scalar, ...]:
         """Friction coefficient, and patch radius in units of length."""

@@ -19,6 +19,9 @@ STUCK = 1e-8
 SHORTEST = 1e-12
 """Step, relative to the longest, that is taken whatever its error: at a jump of the law."""
 
+MOST = 5_000
+"""Steps after which an impact is given up; it takes some hundred."""
+
 Point: TypeAlias = tuple[float, ...]
 """The numbers of an impulse in a row: p, impulse of friction, impulse of torque, normal work."""
 
@@ -51,14 +54,20 @@ class IntegratedProcess(NamedTuple):
     dry: DryContact | None = None
 
     def until(self, impulse: Impulse, goal: Goal) -> Impulse:
-        """The first impulse from a given one on at which the goal is not negative."""
+        """The first impulse from a given one on at which the goal is not negative.
+
+        Raises
+        ------
+        ArithmeticError
+            If it takes too many steps.
+        """
         if self.dry is not None:
             self = self._replace(dry=self.dry.settled(impulse))  # noqa: PLW0642
         waiting = goal(impulse) >= 0.0
         here, slope = pack(impulse), self.slope(pack(impulse))
         longest = 2.0 / (self.body.inverse_mass[0][0] + self.body.inverse_mass[1][1])
         step = 0.05 * longest
-        while True:
+        for _ in range(MOST):
             held = self.held(unpack(here), goal)
             if held is not None:
                 return held
@@ -74,6 +83,7 @@ class IntegratedProcess(NamedTuple):
                 self = self._replace(dry=self.dry.settled(unpack(here)))  # noqa: PLW0642
                 slope = self.slope(here)
             step = min(longest, step * min(5.0, 0.9 * max(doubt, 1e-10) ** -0.2))
+        raise ArithmeticError("an impact does not come to its end")
 
     def landing(self, here: Point, slope: Point, step: float, goal: Goal) -> Impulse:
         """The impulse within a step at which the goal is reached."""

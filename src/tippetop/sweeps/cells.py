@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from tippetop.catalogue import Fault
 from tippetop.contact.rules import rules_of
+from tippetop.contact.trajectory import LONGEST
 from tippetop.errors import InvalidInput, one_of
 from tippetop.integrators.base import Array
 from tippetop.mechanics.motion import along_table, contact
@@ -60,7 +61,7 @@ class Cells:
             self.top.kind,
             np.array(numbers),
             State.unpack([number[which] for number in self.start.pack()]),
-            (duration / spread(self.units.time, count))[which],
+            np.minimum(duration / spread(self.units.time, count), LONGEST)[which],
             contact_rule.liftoff,
             spread(contact_rule.restitution, count)[which],
             self._own_rules(which),

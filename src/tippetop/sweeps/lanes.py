@@ -9,6 +9,7 @@ are taken out.
 import numpy as np
 
 from tippetop.contact.mode import Outcome
+from tippetop.contact.trajectory import STEP_LIMIT
 from tippetop.integrators.base import Array
 from tippetop.integrators.polynomials import Polynomials
 from tippetop.metrics import Ends
@@ -24,9 +25,6 @@ WAVE = 8
 
 WINDOW = 64
 """Steps between notes of the states, from which a part of the run can be done again."""
-
-STEP_LIMIT = 2_000_000
-"""Steps after which a launch is given up."""
 
 SHORTEST = 1e-13
 """Step, in natural units, below which a motion counts as singular."""
@@ -143,10 +141,10 @@ class Lanes:
         ended = np.flatnonzero(slots.alive & (slots.left <= 0.0))
         if len(ended):
             slots.retire(ended, slots.whole(ended), slots.end[ended], Outcome.COMPLETED)
-        stuck = (slots.rows[layout.taken] < SHORTEST) | (slots.rows[layout.steps] > STEP_LIMIT)
-        lost = np.flatnonzero(slots.alive & stuck)
-        if len(lost):
-            slots.retire(lost, slots.whole(lost), slots.time(lost), Outcome.FAILED)
+        singular, many = slots.rows[layout.taken] < SHORTEST, slots.rows[layout.steps] >= STEP_LIMIT
+        for lost, outcome in ((singular, Outcome.FAILED), (~singular & many, Outcome.TOO_MANY_STEPS)):
+            which = np.flatnonzero(slots.alive & lost)
+            slots.retire(which, slots.whole(which), slots.time(which), outcome)
         if self.settled is not None:
             self._end_the_settled(self.settled)
         working = np.flatnonzero(slots.alive)

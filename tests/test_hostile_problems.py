@@ -1,0 +1,134 @@
+"""Problems that nobody would ask for: each ends with an outcome within its budget, or with a sentence.
+
+TIPPETOP_HOSTILE=10000 asks for as many of them instead of the few that every check takes.
+"""
+
+import os
+import warnings
+from typing import Any
+
+import numpy as np
+import pytest
+
+import tippetop as tt
+from tippetop.errors import TippetopError
+from tippetop.integrators import has_taylor
+
+COUNT, PARTS = int(os.environ.get("TIPPETOP_HOSTILE", "80")), 8
+STEPS, MODES = 2_000, 200
+CLOSE = 1e-6
+"""How far a completed run may be off what its motion keeps, relatively: what is promised of the outcome."""
+
+
+def hostile(random: np.random.Generator) -> dict[str, Any]:
+    """Fields of a problem: mostly ordinary numbers, some of them tiny, huge, zero, negative or none."""
+
+    def number(low: float, high: float, signed: bool = False) -> float:
+        kind = random.random()
+        if kind < 0.02:
+            return float(random.choice([0.0, -0.0, np.nan, np.inf, -1.0, 1e308, 5e-324]))
+        reach = 12.0 if kind < 0.12 else 0.0
+        size = float(
+            np.exp(random.uniform(np.log(low), np.log(high))) * 10.0 ** random.uniform(-reach, reach)
+        )
+        return size * (float(random.choice([-1.0, 1.0])) if signed else 1.0)
+
+    def some(*choices: Any) -> Any:
+        return choices[random.integers(len(choices))]
+
+    radius, mass = number(1e-2, 1e-1), number(1e-3, 1.0)
+    transverse = number(0.2, 0.6) * mass * radius**2
+    shape = some(
+        {"kind": "eccentric_sphere", "radius": radius, "eccentricity": number(1e-3, 0.9)},
+        {"kind": "spheroid", "across": radius, "along": radius * number(0.3, 3.0)},
+    )
+    friction = some(
+        {"kind": "viscous", "mu": number(1e-3, 10.0)},
+        {"kind": "regularized_coulomb", "mu": number(1e-2, 1.0), "eps": number(1e-4, 1e-1)},
+        {"kind": "coulomb", "mu": number(1e-2, 1.0)},
+        {
+            "kind": "contensou",
+            "mu": number(1e-2, 1.0),
+            "patch_radius": number(1e-5, 1e-3),
+            "pressure": some("hertz", "ellipsoidal"),
+        },
+    )
+    launch = {
+        "tilt": some(0.0, np.pi, random.uniform(0.0, np.pi), number(1e-9, 3.0)),
+        "spin": number(1.0, 300.0, signed=True),
+        "tilt_rate": some(0.0, number(1e-2, 100.0, signed=True)),
+        "precession": some(0.0, number(1e-2, 100.0, signed=True)),
+        "slip": [some(0.0, number(1e-4, 1.0, signed=True)), some(0.0, number(1e-4, 1.0, signed=True))],
+    }
+    contact = {
+        "liftoff": some("ignore", "stop", "fly"),
+        "restitution": some(0.0, random.uniform(0.0, 1.0), 1.0),
+    }
+    if contact["liftoff"] == "fly" and random.random() < 0.3:
+        launch["gap"] = number(1e-4, 1.0)
+    body = {"mass": mass, "shape": shape, "I1": transverse, "I3": number(0.2, 1.8) * transverse}
+    return {
+        "body": body,
+        "friction": friction,
+        "launch": launch,
+        "contact": contact,
+        "gravity": some(9.81, number(0.1, 30.0)),
+    }
+
+
+def broken(problem: tt.Problem, run: Any) -> list[str]:
+    """What a completed run does not keep."""
+    size = float(np.abs(run["energy"]).max()) + float(np.abs(run["work"]).max())
+    off = run["energy"] - run["energy"][0] - run["work"]
+    found = {"energy and work": float(np.abs(off).max()) / size if size else 0.0}
+    found["unit axis"] = float(np.abs(np.linalg.norm(run["axis"].values, axis=1) - 1.0).max())
+    found["no depth"] = -float(run["gap"].min()) / float(problem.body.shape.surface.size)
+    if problem.contact.liftoff != "ignore":
+        most = float(run["normal_force"].max())
+        found["no pull"] = -float(run["normal_force"].min()) / most if most > 0.0 else 0.0
+    return [f"{name}: {value:.1e}" for name, value in found.items() if not value <= CLOSE]
+
+
+@pytest.mark.skipif(not has_taylor(), reason="the other integrators take minutes")
+@pytest.mark.parametrize("part", range(PARTS))
+def test_hostile_problems_end_with_an_outcome_or_a_sentence(part: int) -> None:
+    outcomes: dict[str, int] = {}
+    for seed in range(part, COUNT, PARTS):
+        fields = hostile(np.random.default_rng(seed))
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            try:
+                problem = tt.Problem(**fields)
+                run = tt.simulate(problem, 2.0, samples=51, step_limit=STEPS, phase_limit=MODES)
+            except TippetopError:
+                outcomes["refused"] = outcomes.get("refused", 0) + 1
+                continue
+        outcome = run.attrs["outcome"]
+        outcomes[outcome] = outcomes.get(outcome, 0) + 1
+        assert outcome in {member.name.lower() for member in tt.Outcome}, fields
+        if outcome == "completed":
+            assert not broken(problem, run), (seed, fields)
+    assert outcomes["completed"] > 0.2 * COUNT / PARTS, outcomes
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"launch.spin": 1e150},
+        {"friction.mu": 1e300},
+        {"launch.slip": (1e120, 0.0), "contact.liftoff": "fly"},
+        {"launch.slip": (0.0, -1e120), "contact.liftoff": "fly", "contact.restitution": 1.0},
+    ],
+)
+def test_what_breaks_down_at_once_has_the_launch_for_a_result(changes: dict[str, Any]) -> None:
+    problem = tt.presets.report_problem(spin=155.0).replace(changes)
+    run = tt.simulate(problem, 2.0, samples=51)
+    assert run.attrs["outcome"] == "failed"
+    assert float(run["time"][0]) == 0.0
+    assert float(run["theta"][0]) == pytest.approx(problem.launch.tilt)
+
+
+@pytest.mark.parametrize("duration", [1e308, 1e300, np.inf, np.nan, 0.0])
+def test_a_duration_that_is_no_number_in_natural_units_is_refused(duration: float) -> None:
+    with pytest.raises(tt.InvalidInput, match="duration"):
+        tt.simulate(tt.presets.report_problem(spin=155.0), duration)
