@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from dry_runs import DryRun, launched, series
+from dry_runs import DryRun, launched
 from tippetop.integrators.scipy_methods import SciPy
 from tippetop.mechanics.contensou import ELLIPSOIDAL_RADIUS, EllipsoidalLaw
 from tippetop.mechanics.contensou_hertz import HertzLaw
@@ -200,7 +200,7 @@ def at_the_limit(law, shape=None):
             low, high = (low, middle) if held else (middle, high)
         top = top._replace(friction=law(high))
         direction, _ = direction_of_slip(axis, momentum, top)
-        if onset((axis, momentum, direction), 2, top, 1, series).speed[0] > 0.0:
+        if onset((axis, momentum, direction), 2, top, 1).speed[0] > 0.0:
             return top, axis, momentum
     raise AssertionError("it comes to its limit, and does not leave it")
 
@@ -226,7 +226,7 @@ def test_the_beginning_of_slip_solves_the_equations_to_its_order(family, power, 
     direction, rate = direction_of_slip(axis, momentum, top)
     assert (rate < 1e-12) is (power == 2)
     order = 6
-    begin = onset((axis, momentum, direction), power, top, order, series)
+    begin = onset((axis, momentum, direction), power, top, order)
     assert begin.speed[0] > 0.0
     first, second, third = (tuple(row[k] for row in begin.direction) for k in range(3))
     assert inner(first, second) == pytest.approx(0.0, abs=1e-9 * size(second))
@@ -254,7 +254,7 @@ def test_slip_starts_against_the_force_that_held_it():
     direction, _ = direction_of_slip(axis, momentum, top)
     force = contact_wrench(ContactPoint.of(axis, momentum, top), None).force[:2]
     assert direction == pytest.approx(scaled(-1.0 / size(force), force), abs=1e-12)
-    begin = onset((axis, momentum, direction), 2, top, 8, series)
+    begin = onset((axis, momentum, direction), 2, top, 8)
     # s = s_0 t^2: the doubling of time quadruples the slip
     short, long = (size(begin.at(t)[2]) for t in (1e-6, 2e-6))
     assert long / short == pytest.approx(4.0, rel=1e-5)
@@ -266,7 +266,7 @@ def test_where_the_series_is_left_does_not_matter():
     direction, _ = direction_of_slip(axis, momentum, top)
     ends = []
     for order, error in ((12, 1e-13), (12, 1e-15), (9, 1e-13)):
-        begin = onset((axis, momentum, direction), 2, top, order, series)
+        begin = onset((axis, momentum, direction), 2, top, order)
         time = begin.valid_until(error)
         n, L, zeta = begin.at(time)
 

@@ -1,6 +1,6 @@
 """Slip ends, the contact sticks, and slip begins again: the modes of friction that is set-valued."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import islice
@@ -29,7 +29,6 @@ from tippetop.mechanics.rolling import (
     slip_dimension,
     velocity_without_slip,
 )
-from tippetop.mechanics.series import PLAIN, Series
 from tippetop.mechanics.slip_onset import onset
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.stick_slip import (
@@ -130,7 +129,7 @@ class SlipOnset(Mode):
         try:
             direction, _ = direction_of_slip(state.axis, state.momentum, self.top)
             top = on_branch(self.top, direction)
-            begin = onset((state.axis, state.momentum, direction), self.power, top, ORDER, series)
+            begin = onset((state.axis, state.momentum, direction), self.power, top, ORDER)
         except ArithmeticError as error:
             nothing = DenseSolution(np.array([time]), np.empty((0, 8, 1)))
             yield Segment(
@@ -289,8 +288,3 @@ def clock_at(clock: DenseSolution, elapsed: int, times: Array) -> Array:
         pace = evaluated(slopes, step, here)[:, 0] / span
         guess = np.clip(guess + error / pace, clock.knots[0], clock.knots[-1])
     return guess
-
-
-def series(rule: Callable[[int], Scalar]) -> Series:
-    """A power series whose coefficients are floats."""
-    return Series(rule, PLAIN)

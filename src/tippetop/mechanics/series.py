@@ -7,6 +7,7 @@ that are compiled for such arrays.
 """
 
 from collections.abc import Callable, Sequence
+from operator import mul
 from typing import Any, Protocol
 
 from tippetop.mechanics.vectors import Scalar
@@ -99,7 +100,7 @@ class Series:
 
     def _product(self, other: "Series", k: int) -> Scalar:
         ours, theirs = self.up_to(k), other.up_to(k)
-        return self.arithmetic.total([ours[j] * theirs[k - j] for j in range(k + 1)])
+        return self.arithmetic.total(list(map(mul, ours, theirs[k::-1])))
 
     def _squared(self) -> "Series":
         def rule(k: int) -> Scalar:
@@ -121,7 +122,7 @@ class Series:
                 inverse.append(1.0 / other[0])
                 return self[0] * inverse[0]
             divisor = other.up_to(k)
-            known = self.arithmetic.total([quotient.known[j] * divisor[k - j] for j in range(k)])
+            known = self.arithmetic.total(list(map(mul, quotient.known, divisor[k:0:-1])))
             return (self[k] - known) * inverse[0]
 
         quotient = self._made(rule)
@@ -139,7 +140,7 @@ class Series:
                 return self[0] ** exponent
             base, found = self.up_to(k), power.known
             factors = [((exponent + 1.0) * j - k) / k for j in range(1, k + 1)]
-            terms = [f * (base[j] * found[k - j]) for j, f in enumerate(factors, start=1)]
+            terms = list(map(mul, factors, map(mul, base[1:], found[k - 1 :: -1])))
             return self.arithmetic.total(terms) * inverse[0]
 
         power = self._made(rule)

@@ -10,7 +10,7 @@ integrator goes on.
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 from tippetop.mechanics.algebra import TruncatedSeries
 from tippetop.mechanics.coulomb import RollingResistance
@@ -25,16 +25,10 @@ from tippetop.mechanics.rolling import (
     set_valued,
     solve,
 )
+from tippetop.mechanics.series import PLAIN, Series
 from tippetop.mechanics.stick_slip import inner, plus, scaled, slip_part
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Scalar, Vector, add, scale
-
-
-class Indexed(Protocol):
-    """A power series that gives its coefficients."""
-
-    def __getitem__(self, k: int) -> Scalar:
-        """The coefficient of t^k."""
 
 
 class Onset(NamedTuple):
@@ -85,13 +79,7 @@ def value(terms: Sequence[Scalar], time: Scalar) -> Scalar:
     return total
 
 
-def onset(
-    start: tuple[Vector, Vector, Slip],
-    power: int,
-    top: Top,
-    order: int,
-    series: Callable[[Callable[[int], Scalar]], Any],
-) -> Onset:
+def onset(start: tuple[Vector, Vector, Slip], power: int, top: Top, order: int) -> Onset:
     """The beginning of slip, order by order.
 
     Parameters
@@ -105,8 +93,6 @@ def onset(
         The body.
     order
         Degree of the polynomials.
-    series
-        From a rule for the k-th coefficient, called once for each k in order, to a series with operators.
 
     Notes
     -----
@@ -114,10 +100,10 @@ def onset(
     t^j are s_k and the part of e_j across e_0 (|e| = 1 gives the other); A is linear in e_j, with the
     derivative G.
     """
-    known = Growing.of(start, top, series)
+    known = Growing(start, top)
     across = tangents(start[2])
     slopes = [known.slope(b) for b in across]
-    e, s = known.direction, known.speed
+    e, s = [start[2]], list[Scalar]()
     if power == 1:
         s.append(inner(known.accelerations(0), start[2]))
     for j in range(1, order + power):
@@ -125,6 +111,7 @@ def onset(
         along = -0.5 * sum((inner(e[i], e[j - i]) for i in range(1, j)), 0.0 * start[2][0])
         e.append(scaled(along, start[2]))
         # (k + power) zeta_k = A_j, where zeta_k has s_k e_0, known terms, and for power 1 also s_0 e_j.
+        known.turn(j, e[j])
         rest = known.accelerations(j)
         for i in range(k):
             rest = plus(rest, scaled(-(k + power) * s[i], e[k - i]))
@@ -135,134 +122,130 @@ def onset(
         found = solve([[inner(b, c) for c in columns] for b in basis], [-inner(b, rest) for b in basis])
         for part, b in zip(found[:-1], across, strict=True):
             e[j] = plus(e[j], scaled(part, b))
+        known.turn(j, e[j])
         s.append(found[-1])
     rows = [[y[k] for k in range(order + 1)] for y in (*known.axis, *known.momentum)]
     turning = tuple([e[k][i] for k in range(order + 1)] for i in range(len(start[2])))
     return Onset(tuple(rows[:3]), tuple(rows[3:]), turning, s[: order + 1], power)
 
 
-class Growing(NamedTuple):
-    """TruncatedSeries that are being made: axis, angular momentum, directions and speeds known so far.
+class Growing:
+    """Series that are being made: axis and angular momentum follow from the directions known so far.
 
     `free` and `responses` hold the rates of zeta and the normal acceleration without force, and per unit of
-    each wrench: series that depend on axis and angular momentum alone.
+    each wrench, the normal force last: series that depend on axis and angular momentum alone.
     """
 
-    axis: tuple[Indexed, ...]
-    momentum: tuple[Indexed, ...]
-    direction: list[Slip]
-    speed: list[Scalar]
-    point: ContactPoint
-    top: Top
-    free: tuple[Any, ...]
-    responses: tuple[tuple[Any, ...], ...]
-
-    @classmethod
-    def of(
-        cls, start: tuple[Vector, Vector, Slip], top: Top, series: Callable[[Callable[[int], Scalar]], Any]
-    ) -> "Growing":
-        """TruncatedSeries that start here."""
+    def __init__(self, start: tuple[Vector, Vector, Slip], top: Top) -> None:
+        self.top, self.first = top, start[2]
         rules: list[Callable[[int], Scalar]] = []
 
         def later(i: int) -> Any:
             def rule(k: int) -> Scalar:
                 return rules[i](k)
 
-            return series(rule)
+            return Series(rule, PLAIN)
 
         n, L = (later(0), later(1), later(2)), (later(3), later(4), later(5))
+        self.axis, self.momentum = n, L
         point = ContactPoint.of(n, L, top)
         reach = set_valued(top.friction).slip_length
-        wrenches = basis_wrenches(top)
-        normal = Wrench(FORCES[2].force, resistance(top, point.turning))
-        parts = [contact_part(flat(point.response(w)), reach) for w in (*wrenches, normal)]
-        known = cls(n, L, [start[2]], [], point, top, contact_part(flat(point.free), reach), tuple(parts))
-        table: list[Slip] = []
-
-        def amount(i: int) -> Any:
-            def rule(k: int) -> Scalar:
-                while len(table) <= k:
-                    table.append(known.wrench(len(table)))
-                return table[k][i]
-
-            return series(rule)
+        wrenches = (*basis_wrenches(top), Wrench(FORCES[2].force, resistance(top, point.turning)))
+        self.free = contact_part(flat(point.free), reach)
+        self.responses = tuple(contact_part(flat(point.response(w)), reach) for w in wrenches)
+        self._revisable: list[Revisable] = []
+        self.direction = tuple(Revisable(_unknown, self._revisable) for _ in start[2])
+        for series, first in zip(self.direction, start[2], strict=True):
+            series.known.append(first)
+        amounts = self._amounts(self.direction, self.free, self.responses)
+        self._rates = self._all_rates(amounts, self.free, self.responses)
 
         def integral(first: Scalar, slope: Any) -> Callable[[int], Scalar]:
             return lambda k: slope[k - 1] * (1.0 / k) if k else first
 
         moment: Any = (0.0, 0.0, 0.0)
-        for i, unit in enumerate((*wrenches, normal)):
-            moment = add(moment, scale(amount(i), point.moment(unit)))
+        for amount, unit in zip(amounts, wrenches, strict=True):
+            moment = add(moment, scale(amount, point.moment(unit)))
         slopes = (*axis_rate(n, L, top), *moment)
         rules += [integral(*pair) for pair in zip((*start[0], *start[1]), slopes, strict=True)]
-        return known
 
-    def wrench(self, j: int) -> Slip:
-        """Coefficients of order j of the amounts of the wrenches, the normal force last."""
-        return tuple(amount.terms[j] for amount in self.amounts(self.directions(j), j))
-
-    def directions(self, j: int) -> tuple[TruncatedSeries, ...]:
-        """The direction up to order j."""
-        return tuple(
-            TruncatedSeries([e[i] for e in self.direction[: j + 1]]) for i in range(len(self.direction[0]))
-        )
-
-    def amounts(self, direction: tuple[TruncatedSeries, ...], j: int) -> tuple[TruncatedSeries, ...]:
-        """Amounts of the wrenches up to order j, the normal force last."""
-        reach = set_valued(self.top.friction).slip_length
-        w = 0.0 * direction[0] if reach is None else direction[2] * (1.0 / reach)
-        (fx, fy), torque = set_valued(self.top.friction).traction((direction[0], direction[1]), (0.0, 0.0, w))
-        shares = (fx, fy) if reach is None else (fx, fy, torque[2])
-        denominator = self.upto(self.responses[-1][-1], j)
-        for share, column in zip(shares, self.responses, strict=False):
-            denominator = denominator + share * self.upto(column[-1], j)
-        normal = -self.upto(self.free[-1], j) / denominator
-        return (*(normal * share for share in shares), normal)
+    def turn(self, j: int, direction: Slip) -> None:
+        """Set the j-th coefficient of the direction, and forget what was made of another."""
+        for series in self._revisable:
+            del series.known[j:]
+        for series, number in zip(self.direction, direction, strict=True):
+            series.known.append(number)
 
     def accelerations(self, j: int) -> Slip:
         """Coefficient of order j of A."""
-        return tuple(a.terms[j] for a in self.rates(self.directions(j), j))
+        return tuple(rate[j] for rate in self._rates)
 
     def slope(self, across: Slip) -> Slip:
         """Derivative of A along a direction across e_0, at the start."""
-        direction = tuple(TruncatedSeries([e, b]) for e, b in zip(self.direction[0], across, strict=True))
-        frozen = self._replace(
-            free=tuple(constant(x) for x in self.free),
-            responses=tuple(tuple(constant(x) for x in column) for column in self.responses),
-        )
-        return tuple(a.terms[1] for a in frozen.rates(direction, 1))
+        direction = tuple(TruncatedSeries([e, b]) for e, b in zip(self.first, across, strict=True))
+        free, responses = at_start(self.free), tuple(at_start(column) for column in self.responses)
+        rates = self._all_rates(self._amounts(direction, free, responses), free, responses)
+        return tuple(rate.terms[1] for rate in rates)
 
-    def rates(self, direction: tuple[TruncatedSeries, ...], j: int) -> tuple[TruncatedSeries, ...]:
-        """A up to order j."""
-        amounts = self.amounts(direction, j)
+    def _amounts(
+        self, direction: Sequence[Any], free: Sequence[Any], responses: Sequence[Sequence[Any]]
+    ) -> tuple[Any, ...]:
+        """Amounts of the wrenches for slip in a direction, the normal force last."""
+        law = set_valued(self.top.friction)
+        reach = law.slip_length
+        w = 0.0 * direction[0] if reach is None else direction[2] * (1.0 / reach)
+        (fx, fy), torque = law.traction((direction[0], direction[1]), (0.0, 0.0, w))
+        shares = (fx, fy) if reach is None else (fx, fy, torque[2])
+        denominator = responses[-1][-1]
+        for share, column in zip(shares, responses, strict=False):
+            denominator = share * column[-1] + denominator
+        normal = -free[-1] / denominator
+        return (*(normal * share for share in shares), normal)
+
+    def _all_rates(
+        self, amounts: Sequence[Any], free: Sequence[Any], responses: Sequence[Sequence[Any]]
+    ) -> tuple[Any, ...]:
+        """A for amounts of the wrenches."""
         rates = []
-        for i in range(len(direction)):
-            rate = self.upto(self.free[i], j)
-            for amount, column in zip(amounts, self.responses, strict=True):
-                rate = rate + amount * self.upto(column[i], j)
+        for i in range(len(self.first)):
+            rate = free[i]
+            for amount, column in zip(amounts, responses, strict=True):
+                rate = amount * column[i] + rate
             rates.append(rate)
         return tuple(rates)
 
-    @staticmethod
-    def upto(a: Any, j: int) -> TruncatedSeries:
-        """A series, or a number, up to order j."""
-        if isinstance(a, (float, int)):
-            return TruncatedSeries([a, *[0.0] * j])
-        return TruncatedSeries([a[k] for k in range(j + 1)])
+
+class Revisable(Series):
+    """A series, and all that are made of it, whose last coefficients can be forgotten."""
+
+    def __init__(self, rule: Callable[[int], Scalar], made: "list[Revisable]") -> None:
+        super().__init__(rule, PLAIN)
+        self.made = made
+        made.append(self)
+
+    def _made(self, rule: Callable[[int], Scalar]) -> "Revisable":
+        return Revisable(rule, self.made)
+
+    def __radd__(self, other: Any) -> Series:
+        return self.__add__(other)
+
+    def __rmul__(self, other: Any) -> Any:
+        return self.__mul__(other)
+
+    def __rsub__(self, other: Any) -> Series:
+        return (-self).__add__(other)
+
+    def __rtruediv__(self, other: Any) -> Any:
+        return self**-1.0 * other
 
 
-class Constant(NamedTuple):
-    """A series that is its first term."""
-
-    first: Scalar
-
-    def __getitem__(self, k: Any) -> Any:
-        return 0.0 * self.first if k else self.first
+def _unknown(k: int) -> Scalar:
+    raise AssertionError(f"the direction is asked for its coefficient {k} before that is known")
 
 
-def constant(a: Any) -> Any:
-    """A series without its other terms."""
-    return a if isinstance(a, (float, int)) else Constant(a[0])
+def at_start(parts: Sequence[Any]) -> tuple[Any, ...]:
+    """Series, or numbers, at the start."""
+    return tuple(part if isinstance(part, (float, int)) else part[0] for part in parts)
 
 
 def contact_part(accelerations: Sequence[Any], reach: Scalar | None) -> tuple[Any, ...]:
