@@ -3,7 +3,6 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from itertools import islice
 from typing import ClassVar
 
 import numpy as np
@@ -19,6 +18,7 @@ from tippetop.contact.mode import (
     Transition,
 )
 from tippetop.contact.sliding import LIFT_OFF, Sliding
+from tippetop.integrators import make_integrator
 from tippetop.integrators.base import Arc, Array, Guard, Integrator, Motion
 from tippetop.integrators.dense import DenseSolution, evaluated
 from tippetop.mechanics.motion import axis_rate, on_table
@@ -55,8 +55,8 @@ SLIP, REOPENING, LANDED, TIME = "slip", "reopening", "landed", "time"
 LONGEST = 100.0
 """More of the clock -ln s than lies between any two speeds."""
 
-ARCS = 4
-"""Arcs, of some thousand steps each, in which slip must end or go on: it takes some hundred steps."""
+STIFF_TOLERANCE = 1e-12
+"""Relative error per step of the implicit method that takes over where slip ends in many steps."""
 
 SETTLED = 1e-14
 """Error of the instant at which slip ends, in natural units, that counts as none."""
@@ -67,8 +67,8 @@ ORDER, ACCURACY = 12, 1e-13
 NEWTON = 6
 """Improvements of a time of the clock."""
 
-SHRINKING, DEGREE = 2.5, 14
-"""Ratio of the steps that stand for the end of slip in a solution, and the degree of their polynomials."""
+SHORTEST, DEGREE = 1e-8, 14
+"""The last of the steps that stand for the end of slip in a solution, relatively, and their degree."""
 
 
 @dataclass(frozen=True)
@@ -178,7 +178,7 @@ class SlipEnd(Mode):
         motion, steps = closing_motion(self.top.kind, not self.rules.pulls), 0
         for horizon in LANDING:
             parameters = (*self.top.numbers, end - time, horizon)
-            arcs = list(islice(integrator.integrate(motion, parameters, (0.0, begin), LONGEST), ARCS))
+            arcs = _followed(integrator, motion, parameters, begin)
             steps += sum(arc.steps for arc in arcs)
             here = closing_of(arcs[-1].end_state.tolist())
             rest, doubt = landed(here, self.top)
@@ -205,9 +205,9 @@ class SlipEnd(Mode):
 
     def _in_time(self, clock: DenseSolution, time: float, duration: float) -> DenseSolution:
         """The numbers of sliding as polynomials in time, from their solution in the clock."""
-        count = max(1, min(20, int(np.log(max(duration, 1e-8) / 1e-8) / np.log(SHRINKING))))
-        knots = np.append(duration * (1.0 - SHRINKING ** -np.arange(count + 0.0)), duration)
         elapsed, sizes = clock.terms.shape[1] - 1, clock.terms.shape[1] - 8
+        shown = clock.terms[:, elapsed, 0]
+        knots = np.append(shown[shown < duration * (1.0 - SHORTEST)], duration)
 
         def numbers(times: Array) -> Array:
             y = clock(clock_at(clock, elapsed, times))
@@ -216,6 +216,19 @@ class SlipEnd(Mode):
             return np.stack((*n, *L, *velocity_of(n, L, slip, self.top)), axis=-1)
 
         return DenseSolution(time + knots, DenseSolution.fitted(numbers, knots, DEGREE).terms)
+
+
+def _followed(integrator: Integrator, motion: Motion, parameters: Sequence[float], begin: Array) -> list[Arc]:
+    """The end of slip in its clock.
+
+    On a small patch the direction of slip follows the friction much faster than slip ends: where that takes
+    more steps than there are in an arc, an implicit method takes them instead.
+    """
+    first = next(iter(integrator.integrate(motion, parameters, (0.0, begin), LONGEST)))
+    if first.guard is not None or first.failure is not None or first.solution.end >= LONGEST:
+        return [first]
+    implicit = make_integrator("radau", STIFF_TOLERANCE)
+    return list(implicit.integrate(motion, parameters, (0.0, begin), LONGEST))
 
 
 @lru_cache

@@ -83,6 +83,9 @@ LIMIT: tuple[tuple[float, ...], ...] = (
 )
 """The same of F on its limit surface, in (1 - T / T(kappa = 1))^(1/2); relative error 1e-14."""
 
+NEAR_BRANCH = 1e-20
+"""Square of how near kappa^2 comes to 1, for what has a root there."""
+
 BRANCH_TORQUE = 9.0 * PI / 128.0
 """T at kappa = 1."""
 
@@ -171,7 +174,8 @@ class HertzSlidingLaw(NamedTuple):
     Notes
     -----
     Beyond its branch, q is the root of |kappa^2 - 1|: there is a number there for an integrator that looks
-    ahead, but not the law.
+    ahead, but not the law. So that it has derivatives at kappa = 1 too, q is 1e-5 there; as F and T depend
+    on q^2 alone there, they are off by 1e-10 where kappa^2 is within 1e-10 of 1, and nowhere else.
     """
 
     mu: Scalar
@@ -193,7 +197,7 @@ class HertzSlidingLaw(NamedTuple):
         square = slip[0] * slip[0] + slip[1] * slip[1]
         excess = square - drilling * drilling
         speed = square**0.5
-        tangent = drilling / (speed + (excess * excess) ** 0.25)
+        tangent = drilling / (speed + (excess * excess + NEAR_BRANCH * square * square) ** 0.25)
         w = tangent * tangent
         force = -self.mu * horner(FORCE[0], w) / (horner(FORCE[1], w) * speed)
         torque = -self.mu * self.patch_radius * tangent * horner(TORQUE[0], w) / horner(TORQUE[1], w)

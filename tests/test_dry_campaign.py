@@ -1,0 +1,88 @@
+"""Random tops and launches under dry friction keep what every one of them must keep, to rounding.
+
+TIPPETOP_DRY=300 asks for as many a law instead of the few that every check takes.
+"""
+
+import os
+from typing import Any
+
+import numpy as np
+import pytest
+
+import tippetop as tt
+from tippetop.integrators import has_taylor
+
+COUNT = int(os.environ.get("TIPPETOP_DRY", "12"))
+DURATION = 1.0
+LAWS: dict[str, dict[str, Any]] = {
+    "coulomb": {"kind": "coulomb"},
+    "ellipsoidal": {"kind": "contensou", "pressure": "ellipsoidal"},
+    "hertz": {"kind": "contensou", "pressure": "hertz"},
+}
+
+GAVE_UP = {"coulomb": (), "ellipsoidal": ("too_many_steps", "failed"), "hertz": ("too_many_steps", "failed")}
+"""On a small patch the last moments of drilling are stiff, and not all are followed to their end."""
+
+
+def ordinary(law: dict[str, Any], random: np.random.Generator) -> tt.Problem:
+    """A top on a table, of any build, spun and slipping or not."""
+    radius, mass = random.uniform(0.005, 0.05), random.uniform(0.002, 0.1)
+    transverse = random.uniform(0.2, 0.6) * mass * radius**2
+    shapes = (
+        {"kind": "eccentric_sphere", "radius": radius, "eccentricity": random.uniform(0.05, 0.6)},
+        {"kind": "spheroid", "across": radius, "along": radius * random.uniform(0.6, 1.7)},
+    )
+    friction = {**law, "mu": random.uniform(0.02, 0.6)}
+    if law["kind"] == "contensou":
+        friction["patch_radius"] = radius * 10.0 ** random.uniform(-3.0, -0.5)
+    launch: dict[str, Any] = {
+        "tilt": random.uniform(0.02, 3.1),
+        "spin": random.choice([-1.0, 1.0]) * 10.0 ** random.uniform(-1.0, 2.3),
+        "precession": random.choice([0.0, random.uniform(-30.0, 30.0)]),
+        "tilt_rate": random.choice([0.0, random.uniform(-5.0, 5.0)]),
+    }
+    if random.random() < 0.5:
+        launch["slip"] = tuple(random.uniform(-0.3, 0.3, 2) * random.choice([0.0, 1.0]))
+    body = {
+        "mass": mass,
+        "shape": shapes[random.integers(2)],
+        "I1": transverse,
+        "I3": random.uniform(0.4, 1.7) * transverse,
+    }
+    liftoff = str(random.choice(["fly", "stop"]))
+    return tt.Problem(body=body, friction=friction, launch=launch, contact={"liftoff": liftoff})
+
+
+@pytest.mark.skipif(not has_taylor(), reason="the other integrators are not exact to rounding")
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("part", range(2))
+def test_dry_tops_keep_energy_the_limit_of_friction_and_jelletts_integral(law: str, part: int) -> None:
+    given_up = stuck_for = 0
+    for seed in range(part, COUNT, 2):
+        problem = ordinary(LAWS[law], np.random.default_rng(seed))
+        run = tt.simulate(problem, DURATION, samples=201)
+        said = law, seed, problem.to_json()
+        if run.attrs["outcome"] in GAVE_UP[law]:
+            given_up += 1
+            continue
+        assert run.attrs["outcome"] in ("completed", "lifted_off"), (run.attrs["outcome_advice"], *said)
+        scale = float(np.abs(run["energy"]).max())
+        off = run["energy"].values - run["energy"].values[0] - run["work"].values
+        assert np.abs(off).max() < 1e-10 * scale, said
+        assert np.all(np.diff(run["energy"].values) < 1e-12 * scale), said
+        force = run["contact_force"].values
+        assert force[:, 2].min() > -1e-12 * force[:, 2].max(), said
+        grip = np.hypot(force[:, 0], force[:, 1])
+        assert np.all(grip <= problem.friction.mu * force[:, 2] * (1 + 1e-12) + 1e-15), said
+        names = np.array(run["mode"].attrs["flag_meanings"].split())[run["mode"].values]
+        stuck = names == "sticking"
+        stuck_for += int(stuck.sum())
+        speed = float(
+            np.hypot(*run["velocity"].values[:, :2].T).max()
+        ) + problem.body.shape.surface.size * abs(problem.launch.spin)
+        slip = np.hypot(run["slip_x"].values, run["slip_y"].values)
+        assert slip[stuck].max(initial=0.0) < 1e-12 * speed, said
+        if problem.top.conserves_jellett:
+            assert float(run["jellett_drift"]) < 1e-11, said
+    assert given_up <= 0.2 * COUNT / 2, "few tops may be too stiff"
+    assert stuck_for > 0, "some of them should come to stick"
