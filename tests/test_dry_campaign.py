@@ -12,7 +12,7 @@ import pytest
 import tippetop as tt
 from tippetop.integrators import has_taylor
 
-COUNT = int(os.environ.get("TIPPETOP_DRY", "12"))
+COUNT = int(os.environ.get("TIPPETOP_DRY", "24"))
 DURATION = 1.0
 LAWS: dict[str, dict[str, Any]] = {
     "coulomb": {"kind": "coulomb"},
