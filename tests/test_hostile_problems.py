@@ -14,7 +14,7 @@ import tippetop as tt
 from tippetop.errors import TippetopError
 from tippetop.integrators import has_taylor
 
-COUNT, PARTS = int(os.environ.get("TIPPETOP_HOSTILE", "80")), 8
+COUNT, PARTS = int(os.environ.get("TIPPETOP_HOSTILE", "64")), 8
 STEPS, MODES = 2_000, 200
 CLOSE = 1e-6
 """How far a completed run may be off what its motion keeps, relatively: what is promised of the outcome."""
