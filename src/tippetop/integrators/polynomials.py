@@ -76,10 +76,21 @@ class Polynomials:
         found: Array = (k * (k - 1)) @ np.abs(self.unit) / (8.0 * LOOKS**2)
         return found
 
+    @cached_property
+    def lowest(self) -> Array:
+        """Least values at the looks, shape (n,)."""
+        found: Array = self.values.min(axis=0)
+        return found
+
+    @property
+    def floor(self) -> Array:
+        """Numbers below which no polynomial goes, a little below its looks, shape (n,)."""
+        return self.lowest - self.bending
+
     def some(self, which: NDArray[np.intp], sign: float = 1.0, shift: Array | float = 0.0) -> "Polynomials":
         """Some of the polynomials, times a sign and plus numbers."""
         chosen = copy(self)
-        for known in ("values", "bending", "bounds", "sag"):
+        for known in ("values", "lowest", "bending", "bounds", "sag"):
             chosen.__dict__.pop(known, None)
         chosen.span, chosen.unit = self.span[which], sign * self.unit[:, which]
         chosen.unit[0] += shift
@@ -145,8 +156,7 @@ class Polynomials:
 
 def least_of_all(polynomials: "Polynomials") -> float:
     """The least value of many polynomials."""
-    looks = polynomials.values.min(axis=0)
-    lowest = polynomials.some(np.flatnonzero(looks - polynomials.bending <= looks.min()))
+    lowest = polynomials.some(np.flatnonzero(polynomials.floor <= polynomials.lowest.min()))
     return float(lowest.refined_least()[1].min())
 
 

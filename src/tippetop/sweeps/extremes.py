@@ -67,10 +67,9 @@ class Extremes:
 
     def take(self, which: int, lanes: Indices, course: Polynomials) -> None:
         """Take in the course of what may be least on some lanes; a lane may be there several times."""
-        looks = course.values.min(axis=0)
         for known in (self.seen, self.lately):
-            np.fmin.at(known[which], lanes, looks)
-        lower = np.flatnonzero(looks - course.bending <= self.seen[which, lanes])
+            np.fmin.at(known[which], lanes, course.lowest)
+        lower = np.flatnonzero(course.floor <= self.seen[which, lanes])
         if len(lower):
             least = course.some(lower).refined_least()[1]
             np.fmin.at(self.found[which], lanes[lower], least)

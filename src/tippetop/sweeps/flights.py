@@ -126,7 +126,7 @@ def fly_all(
         touches = ~np.isnan(zero)
         span = np.where(touches, zero, reach)
         depth = Polynomials(-gap, span)
-        higher = np.flatnonzero(depth.values.min(axis=0) - depth.bending < -highest[active])
+        higher = np.flatnonzero(depth.floor < -highest[active])
         rise = -depth.some(higher).refined_least()[1]
         highest[active[higher]] = np.maximum(highest[active[higher]], rise)
         watch.see(launches[active], begun[active] + time[active], Polynomials(tip, span))
