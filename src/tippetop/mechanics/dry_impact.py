@@ -6,19 +6,19 @@ the impulse that keeps it so; else it goes on along a direction with A = R e, R 
 """
 
 import math
+from collections.abc import Sequence
+from operator import mul
 from typing import NamedTuple
 
 from tippetop.mechanics.coulomb import RollingResistance
-from tippetop.mechanics.friction import NO_TORQUE, FrictionLaw, Traction
+from tippetop.mechanics.friction import NO_TORQUE, FrictionLaw
 from tippetop.mechanics.impulse import FUZZ, Impulse, Striking
-from tippetop.mechanics.motion import angular_velocity
 from tippetop.mechanics.rolling import (
     COUPLES,
     DRILLING,
     FORCES,
     ContactPoint,
     Slip,
-    Wrench,
     flat,
     set_valued,
     sliding_law,
@@ -49,10 +49,12 @@ class DryContact(NamedTuple):
     ----------
     body
         The body at the start of the impact.
-    point
-        Its contact point.
     speed
         Speed of the body's material, m/s: the measure of what is no slip.
+    before
+        Velocity of the contact point, m/s, and angular velocity, rad/s, at the start.
+    response
+        What an impulse adds to each of these six, per component of the impulse and of that of the torque.
     ended, stopped
         Whether slip, and rolling, have ended.
     way, rolling_way
@@ -60,8 +62,9 @@ class DryContact(NamedTuple):
     """
 
     body: Striking
-    point: ContactPoint
     speed: float
+    before: Slip
+    response: tuple[Slip, ...]
     ended: bool = False
     stopped: bool = False
     way: Slip | None = None
@@ -71,85 +74,98 @@ class DryContact(NamedTuple):
     def of(cls, body: Striking) -> "DryContact":
         """The contact of this body."""
         point = ContactPoint.of(body.state.axis, body.state.momentum, body.top)
-        return cls(body, point, length(body.state.velocity) + length(point.turning) * length(point.arm))
+        speed = length(body.state.velocity) + length(point.turning) * length(point.arm)
+        columns = [flat(point.response(wrench)) for wrench in (*FORCES, *COUPLES, DRILLING)]
+        return cls(body, speed, (*body.point, *point.turning), tuple(zip(*columns, strict=True)))
 
     @property
-    def reach(self) -> float | None:
-        """Slip length of the law; None if drilling is free."""
-        length: float | None = getattr(sliding_law(self.body.top.friction), "slip_length", None)
-        return length
+    def law(self) -> FrictionLaw:
+        """The law of friction."""
+        law: FrictionLaw = self.body.top.friction
+        return law
 
-    def velocities(self, impulse: Impulse) -> tuple[Slip, Slip]:
-        """Slip zeta and horizontal angular velocity (times the arm's length) after an impulse, m/s."""
-        omega = angular_velocity(self.body.state.axis, self.body.after(impulse).momentum, self.body.top)
-        point = add(self.body.point, self.body.response(impulse))
-        slip = slip_part((*point, *omega), self.reach)
-        return slip, scaled(length(self.point.arm), omega[:2])
-
-    def settled(self, impulse: Impulse) -> "DryContact":
-        """The contact with what has ended after an impulse, and where that goes on if it cannot stay so."""
-        slip, rolling = self.velocities(impulse)
-        law = self.body.top.friction
-        ended = self.is_set_valued and size(slip) <= ENDED * self.speed
-        stopped = isinstance(law, RollingResistance) and size(rolling) <= ENDED * self.speed
-        if not (ended or stopped):
-            return self._replace(ended=False, stopped=False)
-        first, second = None if ended else slip, None if stopped else rolling
-        unit = self.unit(first, second)
-        if ended and set_valued(law).reserve(1.0, unit.force[:2], unit.torque[2]) < 0.0:
-            first = self.way_on(unit, second, slipping=True)
-            unit = self.unit(first, second)
-        if isinstance(law, RollingResistance) and stopped and law.reserve(1.0, unit.torque[:2]) < 0.0:
-            second = self.way_on(unit, first, slipping=False)
-        return self._replace(ended=ended, stopped=stopped, way=first, rolling_way=second)
+    @property
+    def resistance(self) -> RollingResistance | None:
+        """The resistance to rolling, if there is any."""
+        return self.law if isinstance(self.law, RollingResistance) else None
 
     @property
     def is_set_valued(self) -> bool:
         """Whether slip can end under the law."""
-        return hasattr(sliding_law(self.body.top.friction), "slip_length")
+        return hasattr(sliding_law(self.law), "slip_length")
 
-    def friction(self, impulse: Impulse) -> Traction:
-        """Force and torque per unit normal impulse."""
+    @property
+    def reach(self) -> float | None:
+        """Slip length of the law; None if drilling is free."""
+        reach: float | None = getattr(sliding_law(self.law), "slip_length", None)
+        return reach
+
+    def change(self, impulse: Sequence[float]) -> Slip:
+        """What an impulse and that of a torque, six numbers, add to the six velocities."""
+        return tuple(sum(map(mul, row, impulse)) for row in self.response)
+
+    def velocities(self, impulse: Impulse) -> tuple[Slip, Slip]:
+        """Slip zeta and horizontal angular velocity (times the arm's length) after an impulse, m/s."""
+        return self.parts(plus(self.before, self.change(components(impulse))))
+
+    def parts(self, velocity: Slip) -> tuple[Slip, Slip]:
+        """Slip zeta and horizontal angular velocity (times the arm's length) of six velocities, m/s."""
+        return slip_part(velocity, self.reach), scaled(length(self.body.arm), velocity[3:5])
+
+    def settled(self, impulse: Impulse) -> "DryContact":
+        """The contact with what has ended after an impulse, and where that goes on if it cannot stay so."""
         slip, rolling = self.velocities(impulse)
-        unit = self.unit(self.way if self.ended else slip, self.rolling_way if self.stopped else rolling)
-        return Traction((unit.force[0], unit.force[1]), unit.torque)
+        resistance = self.resistance
+        ended = self.is_set_valued and size(slip) <= ENDED * self.speed
+        stopped = resistance is not None and size(rolling) <= ENDED * self.speed
+        if not (ended or stopped):
+            return self._replace(ended=False, stopped=False) if self.ended or self.stopped else self
+        first, second = None if ended else slip, None if stopped else rolling
+        unit = self.unit(first, second)
+        if ended and set_valued(self.law).reserve(1.0, unit[:2], unit[5]) < 0.0:
+            first = self.way_on(unit, second, slipping=True)
+            unit = self.unit(first, second)
+        if resistance is not None and stopped and resistance.reserve(1.0, (unit[3], unit[4])) < 0.0:
+            second = self.way_on(unit, first, slipping=False)
+        return self._replace(ended=ended, stopped=stopped, way=first, rolling_way=second)
 
-    def unit(self, slip: Slip | None, rolling: Slip | None) -> Wrench:
-        """The wrench per unit normal impulse; None is held."""
-        law = self.body.top.friction
+    def friction(self, slip: Slip, rolling: Slip) -> Slip:
+        """Force and torque per unit normal impulse at these velocities."""
+        return self.unit(self.way if self.ended else slip, self.rolling_way if self.stopped else rolling)
+
+    def unit(self, slip: Slip | None, rolling: Slip | None) -> Slip:
+        """Force and torque per unit normal impulse, six numbers; a velocity that is None is held."""
         force, torque = (0.0, 0.0), NO_TORQUE
-        held: list[tuple[int, Wrench]] = []
+        held: list[int] = []
         if slip is None:
-            held += [(0, FORCES[0]), (1, FORCES[1])]
-            held += [] if self.reach is None else [(5, DRILLING)]
+            held += [0, 1] if self.reach is None else [0, 1, 5]
         else:
-            w = self.point.turning[2] if self.reach is None else slip[2] / self.reach
-            force, torque = sliding_law(law).traction((slip[0], slip[1]), (*self.point.turning[:2], w))
-        if isinstance(law, RollingResistance):
+            w = self.before[5] if self.reach is None else slip[2] / self.reach
+            force, torque = sliding_law(self.law).traction((slip[0], slip[1]), (*self.before[3:5], w))
+        if self.resistance is not None:
             if rolling is None:
-                held += [(3, COUPLES[0]), (4, COUPLES[1])]
+                held += [3, 4]
             else:
-                torque = add(torque, law.couple((rolling[0], rolling[1], 0.0)))
-        unit = Wrench((force[0], force[1], 1.0), torque)
-        columns = [flat(self.point.response(wrench)) for _, wrench in held]
-        driven = flat(self.point.response(unit))
-        parts = solve([[column[i] for column in columns] for i, _ in held], [-driven[i] for i, _ in held])
-        total: Slip = (*unit.force, *unit.torque)
-        for part, (_, wrench) in zip(parts, held, strict=True):
-            total = plus(total, scaled(part, (*wrench.force, *wrench.torque)))
-        return Wrench((total[0], total[1], 1.0), (total[3], total[4], total[5]))
+                torque = add(torque, self.resistance.couple((rolling[0], rolling[1], 0.0)))
+        unit = [*force, 1.0, *torque]
+        if held:
+            rows = [self.response[i] for i in held]
+            right = [-sum(map(mul, row, unit)) for row in rows]
+            for i, part in zip(held, solve([[row[j] for j in held] for row in rows], right), strict=True):
+                unit[i] += part
+        return tuple(unit)
 
-    def way_on(self, holding: Wrench, other: Slip | None, *, slipping: bool) -> Slip:
+    def way_on(self, holding: Slip, other: Slip | None, *, slipping: bool) -> Slip:
         """Direction in which slip, or rolling, goes on where it cannot be held."""
-        start: Slip = holding.force[:2] if slipping else holding.torque[:2]
+        start = holding[:2] if slipping else holding[3:5]
         if slipping and self.reach is not None:
-            start = (*start, holding.torque[2] / self.reach)
+            start = (*start, holding[5] / self.reach)
         direction = scaled(-1.0 / size(start), start)
         for _ in range(ITERATIONS):
             unit = self.unit(direction, other) if slipping else self.unit(other, direction)
-            rates = flat(self.point.response(unit))
+            rates = self.change(unit)
             rate = slip_part(rates, self.reach) if slipping else rates[3:5]
-            strength = size(unit.force[:2]) / self.body.top.mass * 8.0 if slipping else 2.0 * size(rate)
+            strength = size(unit[:2]) / self.body.top.mass * 8.0 if slipping else 2.0 * size(rate)
             ahead = plus(scaled(strength + size(rate), direction), rate)
             new = scaled(1.0 / size(ahead), ahead)
             moved = size(plus(new, scaled(-1.0, direction)))
@@ -158,16 +174,21 @@ class DryContact(NamedTuple):
                 break
         return direction
 
-    def pace(self, impulse: Impulse, traction: Traction) -> float:
-        """Normal impulse per unit of a clock in which slip that ends decays exponentially, m/s."""
-        slip, rolling = self.velocities(impulse)
+    def rates(self, impulse: Impulse) -> Slip:
+        """Rates of the impulse and its normal work, in a clock in which slip that ends decays exponentially.
+
+        The normal impulse grows by dp = ds / (1/v_0 + traction / slip), with both slip and rolling.
+        """
+        velocity = plus(self.before, self.change(components(impulse)))
+        slip, rolling = self.parts(velocity)
+        east, north, _, *torque = self.friction(slip, rolling)
         rate = 1.0 / length(self.body.point)
-        drilled = 0.0 if self.reach is None else traction.torque[2] / self.reach
+        drilled = 0.0 if self.reach is None else torque[2] / self.reach
         if not self.ended and size(slip) > 0.0:
-            rate += math.hypot(*traction.force, drilled) / size(slip)
-        if isinstance(self.body.top.friction, RollingResistance) and not self.stopped and size(rolling) > 0.0:
-            rate += math.hypot(*traction.torque[:2]) / (length(self.point.arm) * size(rolling))
-        return float(1.0 / rate)
+            rate += math.hypot(east, north, drilled) / size(slip)
+        if self.resistance is not None and not self.stopped and size(rolling) > 0.0:
+            rate += math.hypot(torque[0], torque[1]) / (length(self.body.arm) * size(rolling))
+        return scaled(1.0 / rate, (1.0, east, north, *torque, velocity[2]))
 
     def at_rest(self, impulse: Impulse, after: State) -> State:
         """The state after an impulse, in which slip that has ended is exactly zero."""
@@ -180,14 +201,13 @@ class DryContact(NamedTuple):
 
     def doubt(self, here: Impulse, there: Impulse, error: Impulse) -> float:
         """Error of a step in slip and rolling, relative to them or to a millionth of the body's speed."""
-        doubts = []
-        still = self._replace(body=self.body._replace(point=NO_TORQUE, state=self.at_standstill()))
-        for before, after, off in zip(
-            self.velocities(here), self.velocities(there), still.velocities(error), strict=True
-        ):
-            doubts.append(size(off) / max(size(before), size(after), 1e-6 * self.speed))
-        return max(doubts)
+        off = self.parts(self.change(components(error)))
+        return max(
+            size(wrong) / max(size(before), size(after), 1e-6 * self.speed)
+            for before, after, wrong in zip(self.velocities(here), self.velocities(there), off, strict=True)
+        )
 
-    def at_standstill(self) -> State:
-        """The body without any motion."""
-        return self.body.state._replace(momentum=NO_TORQUE, velocity=NO_TORQUE)
+
+def components(impulse: Impulse) -> Slip:
+    """Impulse along x, y and z, and that of the torque."""
+    return (*impulse.tangential, impulse.normal, *impulse.angular)

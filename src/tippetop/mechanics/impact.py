@@ -117,7 +117,10 @@ def is_struck(body: Striking, dry: DryContact | None) -> bool:
     """Whether the contact point sinks into the table, or would, if the impact did not begin."""
     if body.point[2] != 0.0:
         return bool(body.point[2] < 0.0)
-    traction = body.friction(NO_IMPULSE)[2] if dry is None else dry.settled(NO_IMPULSE).friction(NO_IMPULSE)
+    if dry is not None:
+        now = dry.settled(NO_IMPULSE)
+        return bool(now.change(now.friction(*now.velocities(NO_IMPULSE)))[2] < 0.0)
+    traction = body.friction(NO_IMPULSE)[2]
     return body.approach(Impulse(1.0, traction.force, traction.torque, 0.0)) < 0.0
 
 

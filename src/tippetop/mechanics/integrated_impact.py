@@ -96,10 +96,7 @@ class IntegratedProcess(NamedTuple):
     def slope(self, here: Point) -> Point:
         """Rate of the impulse's numbers with the clock s."""
         if self.dry is not None:
-            traction = self.dry.friction(unpack(here))
-            pace = self.dry.pace(unpack(here), traction)
-            rise = pace * self.body.approach(unpack(here))
-            return (pace, *(pace * f for f in traction.force), *scale(pace, traction.torque), rise)
+            return self.dry.rates(unpack(here))
         point, omega, (force, torque) = self.body.friction(unpack(here))
         slip, grip = math.hypot(point[0], point[1]), math.hypot(*force)
         if slip == 0.0:
@@ -115,14 +112,14 @@ class IntegratedProcess(NamedTuple):
         for weights in NODES:
             there = combined(here, step, weights, slopes)
             slopes.append(self.slope(there))
-        error = self.body.response(unpack(combined((0.0,) * len(here), step, DOUBT, slopes)))
-        speed = length(self.body.point)
-        slip = max(self.slip(here), self.slip(there), 1e-9 * speed)
-        doubt = max(math.hypot(error[0], error[1]) / slip, abs(error[2]) / speed)
+        off = unpack(combined((0.0,) * len(here), step, DOUBT, slopes))
+        error, speed = self.body.response(off), length(self.body.point)
         if self.dry is not None:
-            error_impulse = unpack(combined((0.0,) * len(here), step, DOUBT, slopes))
-            doubt = max(self.dry.doubt(unpack(here), unpack(there), error_impulse), abs(error[2]) / speed)
-        return there, slopes[-1], doubt / TOLERANCE
+            doubt = self.dry.doubt(unpack(here), unpack(there), off)
+        else:
+            slip = max(self.slip(here), self.slip(there), 1e-9 * speed)
+            doubt = math.hypot(error[0], error[1]) / slip
+        return there, slopes[-1], max(doubt, abs(error[2]) / speed) / TOLERANCE
 
     def slip(self, here: Point) -> float:
         """Slip speed, m/s."""
