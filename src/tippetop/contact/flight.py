@@ -10,10 +10,10 @@ import numpy as np
 from tippetop.contact.mode import Mode, Outcome, Segment, Transition
 from tippetop.integrators.base import Array, Integrator
 from tippetop.integrators.dense import DenseSolution
-from tippetop.mechanics.flight import fly, gap
+from tippetop.mechanics.flight import fly
 from tippetop.mechanics.motion import along_table, on_table
 from tippetop.mechanics.state import State
-from tippetop.mechanics.touchdown import Start, touchdown
+from tippetop.mechanics.touchdown import Start, highest_gap, touchdown
 from tippetop.mechanics.vectors import Row, length
 
 DEGREE = 14
@@ -24,12 +24,6 @@ TURN = 0.25
 
 MOST_STEPS = 4096
 """Polynomials in a segment at most."""
-
-LOOKS = 64
-"""Looks at the gap in search of its highest value; the search is repeated around the best one."""
-
-SEARCHES = 4
-"""Searches, each about 30 times finer than the one before: the last resolves the gap to rounding."""
 
 
 @dataclass(frozen=True)
@@ -57,7 +51,7 @@ class Flight(Mode):
         duration = end - time if landing is None else landing
         rate = length(state.momentum) / self.top.transverse_inertia
         count = 1 + int(duration * rate / TURN)
-        highest = self._highest_gap(state, duration)
+        highest = highest_gap(state, self.top, duration)
         for first in range(0, count, MOST_STEPS):
             last = min(first + MOST_STEPS, count)
             elapsed: Array = duration / count * np.arange(first, last + 1.0)
@@ -85,13 +79,3 @@ class Flight(Mode):
         return self.rules.touchdown(
             time, state._replace(height=on_table(along_table(state), self.top).height)
         )
-
-    def _highest_gap(self, state: State, duration: float) -> float:
-        """The highest gap of the flight."""
-        low, high = 0.0, duration
-        for _ in range(SEARCHES):
-            looks = np.linspace(low, high, LOOKS)
-            gaps = np.broadcast_to(gap(fly(state, looks, self.top, np), self.top), looks.shape)
-            best = int(np.argmax(gaps))
-            low, high = looks[max(best - 1, 0)], looks[min(best + 1, LOOKS - 1)]
-        return float(gaps[best])

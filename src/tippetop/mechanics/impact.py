@@ -90,10 +90,12 @@ def impact(state: State, restitution: float, top: Top) -> Impact:
         ViscousProcess.of(body, law) if isinstance(law, ViscousLaw) else IntegratedProcess(body, dry)
     )
 
-    compressed = process.until(NO_IMPULSE, body.approach)
+    frictionless = (-2.0 * body.point[2] or length(body.point)) / body.inverse_mass[2][2]
+    compressed = process.until(NO_IMPULSE, body.approach, frictionless)
     impulse = compressed
     if restitution > 0.0:
-        impulse = process.until(compressed, restitution_goal(body, compressed, restitution))
+        goal = restitution_goal(body, compressed, restitution)
+        impulse = process.until(compressed, goal, restitution * compressed.normal)
     after = body.after(impulse)
     if dry is not None:
         after = dry.at_rest(impulse, after)
@@ -103,7 +105,7 @@ def impact(state: State, restitution: float, top: Top) -> Impact:
 
 def restitution_goal(body: Striking, compressed: Impulse, restitution: float) -> Goal:
     """Poisson's end of restitution, or that of the energy stored, but not before the body has stopped."""
-    full = (1.0 + restitution) * compressed.normal
+    full = compressed.normal + restitution * compressed.normal
 
     def goal(impulse: Impulse) -> float:
         spent = (impulse.normal - full) / compressed.normal

@@ -110,8 +110,11 @@ class Striking(NamedTuple):
 class Process(Protocol):
     """How an impact goes on under some friction law."""
 
-    def until(self, impulse: Impulse, goal: Goal) -> Impulse:
-        """The first impulse from a given one on at which the goal is not negative."""
+    def until(self, impulse: Impulse, goal: Goal, guess: float) -> Impulse:
+        """The first impulse from a given one on at which the goal is not negative.
+
+        The guess, positive, is how much the normal impulse may have to grow.
+        """
 
 
 def struck(state: State, arm: Vector, linear: Vector, angular: Vector, top: Top) -> State:
@@ -133,8 +136,10 @@ def first_reach(along: Callable[[float], Impulse], goal: Goal, guess: float) -> 
     Where the goal is zero at the start, it is about to become negative: that start is passed over.
     """
     high = guess
-    while goal(along(high)) < 0.0:
+    while (there := goal(along(high))) < 0.0:
         high *= 2.0
+    if there == 0.0:
+        return along(high)
     low = 0.0 if goal(along(0.0)) < 0.0 else 0.5 * high
     while goal(along(low)) >= 0.0:
         low, high = 0.5 * low, low

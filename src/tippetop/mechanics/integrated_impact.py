@@ -53,7 +53,7 @@ class IntegratedProcess(NamedTuple):
     body: Striking
     dry: DryContact | None = None
 
-    def until(self, impulse: Impulse, goal: Goal) -> Impulse:
+    def until(self, impulse: Impulse, goal: Goal, guess: float) -> Impulse:
         """The first impulse from a given one on at which the goal is not negative.
 
         Raises
@@ -68,7 +68,7 @@ class IntegratedProcess(NamedTuple):
         longest = 2.0 / (self.body.inverse_mass[0][0] + self.body.inverse_mass[1][1])
         step = 0.05 * longest
         for _ in range(MOST):
-            held = self.held(unpack(here), goal)
+            held = self.held(unpack(here), goal, guess)
             if held is not None:
                 return held
             there, new_slope, doubt = self.step(here, slope, step)
@@ -126,7 +126,7 @@ class IntegratedProcess(NamedTuple):
         change = self.body.response(unpack(here))
         return math.hypot(self.body.point[0] + change[0], self.body.point[1] + change[1])
 
-    def held(self, impulse: Impulse, goal: Goal) -> Impulse | None:
+    def held(self, impulse: Impulse, goal: Goal, guess: float) -> Impulse | None:
         """The rest if friction holds the slip constant, if it does so all along."""
         if self.dry is not None:
             return None
@@ -147,7 +147,7 @@ class IntegratedProcess(NamedTuple):
                 impulse.normal_work + q * (point[2] + 0.5 * q * rise),
             )
 
-        end = first_reach(along, goal, length(self.body.point) / self.body.inverse_mass[2][2])
+        end = first_reach(along, goal, guess)
         later = self.body.friction(end)[2]
         drift = math.dist((*later.force, *later.torque), (*traction.force, *traction.torque))
         return end if drift <= 2.0 * (STUCK + fuzz) else None

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from tippetop.mechanics.algebra import Disc, TruncatedSeries
 from tippetop.mechanics.flight import SMALL
 from tippetop.mechanics.motion import axis_rate
-from tippetop.mechanics.roots import Triple, first_root
+from tippetop.mechanics.roots import Triple, crossing, first_root
 from tippetop.mechanics.state import State
 from tippetop.mechanics.surface import Surface
 from tippetop.mechanics.top import Top
@@ -24,6 +24,12 @@ WIDEST = 4.0
 
 NARROWEST = 1e-9
 """Smallest such radius that is tried, rad."""
+
+LOOKS = 10.0
+"""Looks for the highest gap per radian that the axis turns; between them, its rate is searched for a zero."""
+
+MOST_LOOKS = 1000
+"""Such looks at most."""
 
 
 class Start(IntEnum):
@@ -76,14 +82,7 @@ def touchdown(state: State, top: Top, horizon: float, start: Start = Start.AIRBO
     round-off: the gap is known within about 1e-16 of h, and a graze nearer than that counts as a touch. Any
     shape will do that is written in plain operators and is analytic on [-1, 1].
     """
-    turning = axis_rate(state.axis, state.momentum, top)
-    tip = Tip(
-        state.axis[2],
-        turning[2],
-        axis_rate(turning, state.momentum, top)[2],
-        length(scale(1.0 / top.transverse_inertia, state.momentum)) + SMALL,
-    )
-    ballistic = (state.height, state.velocity[2], -0.5 * top.gravity)
+    tip, _, ballistic = Separation.of(state, top)
     horizon = min(horizon, 2.0 * falling_time(*ballistic))
     time = 0.0
     if start != Start.AIRBORNE:
@@ -117,6 +116,19 @@ def falling_time(height: float, rate: float, half: float) -> float:
     return -(rate + math.sqrt(max(rate * rate - 4.0 * half * height, 0.0))) / (2.0 * half)
 
 
+def highest_gap(state: State, top: Top, duration: float) -> float:
+    """The highest gap of a free flight that lasts some time, s; floats."""
+    gap = Separation.of(state, top).at
+    count = min(MOST_LOOKS, 2 + int(LOOKS * duration * length(state.momentum) / top.transverse_inertia))
+    times = [duration * j / count for j in range(count + 1)]
+    gaps = [gap(time)[0] for time in times]
+    best = max(range(count + 1), key=gaps.__getitem__)
+    low, high = times[max(best - 1, 0)], times[min(best + 1, count)]
+    if not gap(low)[1] > 0.0 > gap(high)[1]:
+        return gaps[best]
+    return max(gaps[best], gap(crossing(lambda time: gap(time)[1], low, high))[0])
+
+
 class Tip(NamedTuple):
     """Height c = n_z of the tip of the axis in free flight: its value, two derivatives, and frequency."""
 
@@ -135,7 +147,7 @@ class Tip(NamedTuple):
             self.acceleration * cosine - self.rate * w * w * sine,
         )
 
-    def series(self) -> "TruncatedSeries":
+    def series(self) -> TruncatedSeries:
         """Height as a power series in time."""
         terms = [self.height, self.rate, 0.5 * self.acceleration]
         for j in range(1, DEGREE - 1):
@@ -155,6 +167,18 @@ class Separation(NamedTuple):
     tip: Tip
     shape: Surface
     parabola: Triple
+
+    @classmethod
+    def of(cls, state: State, top: Top) -> "Separation":
+        """The gap of a free flight from a state on."""
+        turning = axis_rate(state.axis, state.momentum, top)
+        tip = Tip(
+            state.axis[2],
+            turning[2],
+            axis_rate(turning, state.momentum, top)[2],
+            length(scale(1.0 / top.transverse_inertia, state.momentum)) + SMALL,
+        )
+        return cls(tip, top.surface, (state.height, state.velocity[2], -0.5 * top.gravity))
 
     def at(self, time: float) -> Triple:
         """Gap, its rate and its acceleration."""

@@ -5,7 +5,10 @@ from typing import NamedTuple
 
 from tippetop.mechanics.friction import NO_TORQUE, ViscousLaw
 from tippetop.mechanics.impulse import Goal, Impulse, Striking, first_reach
-from tippetop.mechanics.vectors import Horizontal, length
+from tippetop.mechanics.vectors import Horizontal
+
+ROUNDING = 1e-17
+"""A term of a series of about 1/6 that changes it no more."""
 
 
 class PrincipalDirection(NamedTuple):
@@ -57,9 +60,8 @@ class ViscousProcess(NamedTuple):
 
         return cls(body, law.mu, (mode(cosine, sine), mode(-sine, cosine)))
 
-    def until(self, impulse: Impulse, goal: Goal) -> Impulse:
+    def until(self, impulse: Impulse, goal: Goal, guess: float) -> Impulse:
         """The first impulse from a given one on at which the goal is not negative."""
-        guess = length(self.body.point) / self.body.inverse_mass[2][2]
         return first_reach(lambda q: self.at(impulse.normal + q), goal, guess)
 
     def at(self, p: float) -> Impulse:
@@ -81,6 +83,8 @@ def phis(x: float) -> tuple[float, float, float]:
         for j in range(4, 20):
             term *= -x / j
             phi_3 += term
+            if abs(term) < ROUNDING:
+                break
         phi_2 = 0.5 - x * phi_3
         return 1.0 - x * phi_2, phi_2, phi_3
     phi_1 = -math.expm1(-x) / x
