@@ -155,3 +155,18 @@ def test_hertz_gives_the_radius():
     stiffness = 1.0 / ((1 - 0.23**2) / 69e9 + (1 - 0.30**2) / 207e9)
     radius = tt.hertz_patch_radius(0.06, 0.015, tt.MATERIALS["glass"], tt.MATERIALS["steel"])
     assert radius**3 * 4.0 * stiffness == pytest.approx(3.0 * 0.06 * 0.015)
+
+
+@pytest.mark.parametrize("liftoff", ["stop", "ignore", "fly"])
+def test_a_sweep_changes_between_the_branches_of_hertz_as_a_run_does(liftoff):
+    problem = dry("hertz").replace({"contact.liftoff": liftoff, "launch.tilt": 0.1})
+    spins = [100.0, 172.0, 185.0]
+    found = tt.sweep(problem, {"launch.spin": spins}, duration=1.0, workers=1, tolerance=1e-13)
+    for spin in spins:
+        run = tt.simulate(problem.replace({"launch.spin": spin}), 1.0)
+        here = found.sel({"launch.spin": spin})
+        turning = run.phi_dot * np.sin(run.theta) ** 2 + run.omega3 * np.cos(run.theta)
+        drilling = np.abs(turning) * problem.friction.patch_radius > np.hypot(run.slip_x, run.slip_y)
+        assert 0.0 < float(drilling.mean()) < 1.0
+        for name in ("energy_lost", "least_normal_force", "highest", "flights", "airborne_time"):
+            assert float(here[name]) == pytest.approx(float(run[name]), rel=1e-8, abs=1e-12), (spin, name)

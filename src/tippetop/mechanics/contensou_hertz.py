@@ -86,6 +86,16 @@ LIMIT: tuple[tuple[float, ...], ...] = (
 NEAR_BRANCH = 1e-20
 """Square of how near kappa^2 comes to 1, for what has a root there."""
 
+EDGE = 1e-5
+"""How far beyond kappa^2 = 1 the law of drilling serves, off by kappa^2 - 1 to the power of 5/2 over 5.
+
+Slip's law has a singularity there that power series feel: they come no nearer to it than half of this, and no
+launch is on both branches, or on neither, by rounding.
+"""
+
+BEYOND = 1e-20
+"""Share of drilling in slip, and of slip in drilling, that keeps a branch finite far from where it holds."""
+
 BRANCH_TORQUE = 9.0 * PI / 128.0
 """T at kappa = 1."""
 
@@ -117,10 +127,11 @@ class HertzDrillingLaw(NamedTuple):
         return False
 
     def traction(self, slip: Horizontal, angular_velocity: Vector) -> Traction:
-        """Force and torque per unit normal force; drilling must not be zero."""
+        """Force and torque per unit normal force; drilling must not be zero, or there is only a number."""
         drilling = self.patch_radius * angular_velocity[2]
-        rate = (drilling * drilling) ** -0.5
-        kappa2 = (slip[0] * slip[0] + slip[1] * slip[1]) * rate * rate
+        square = slip[0] * slip[0] + slip[1] * slip[1]
+        rate = (drilling * drilling + BEYOND * square) ** -0.5
+        kappa2 = square * rate * rate
         force = -self.mu * (3.0 * PI / 32.0) * (4.0 - kappa2) * rate
         torque = -self.mu * (3.0 * PI / 16.0) * (1.0 - kappa2 * (1.0 - 0.375 * kappa2)) * rate
         return Traction((force * slip[0], force * slip[1]), (0.0, 0.0, torque * drilling * self.patch_radius))
@@ -132,15 +143,6 @@ class HertzDrillingLaw(NamedTuple):
         kappa2 = (4.0 / 3.0) * (1.0 - (1.0 - 1.5 * (1.0 - share)) ** 0.5)
         size = (3.0 * PI / 32.0) * (4.0 - kappa2) * limit
         return size * size * kappa2 - force[0] * force[0] - force[1] * force[1]
-
-    def branch_guard(self, slip: Horizontal, angular_velocity: Vector) -> Scalar:
-        """(R w)^2 - v^2, positive as long as this branch holds, m^2/s^2."""
-        drilling = self.patch_radius * angular_velocity[2]
-        return drilling * drilling - slip[0] * slip[0] - slip[1] * slip[1]
-
-    def other_branch(self) -> "HertzSlidingLaw":
-        """The law where this one does not hold."""
-        return HertzSlidingLaw(self.mu, self.patch_radius)
 
     def coefficients(self, units: Units) -> tuple[Scalar, ...]:
         """Friction coefficient, and patch radius in units of length."""
@@ -192,9 +194,9 @@ class HertzSlidingLaw(NamedTuple):
         return False
 
     def traction(self, slip: Horizontal, angular_velocity: Vector) -> Traction:
-        """Force and torque per unit normal force; the slip must not be zero."""
+        """Force and torque per unit normal force; the slip must not be zero, or there is only a number."""
         drilling = self.patch_radius * angular_velocity[2]
-        square = slip[0] * slip[0] + slip[1] * slip[1]
+        square = slip[0] * slip[0] + slip[1] * slip[1] + BEYOND * drilling * drilling
         excess = square - drilling * drilling
         speed = square**0.5
         tangent = drilling / (speed + (excess * excess + NEAR_BRANCH * square * square) ** 0.25)
@@ -210,14 +212,6 @@ class HertzSlidingLaw(NamedTuple):
         size = limit * horner(LIMIT[0], y) / horner(LIMIT[1], y)
         return size * size - force[0] * force[0] - force[1] * force[1]
 
-    def branch_guard(self, slip: Horizontal, angular_velocity: Vector) -> Scalar:
-        """v^2 - (R w)^2, positive as long as this branch holds, m^2/s^2."""
-        return -self.other_branch().branch_guard(slip, angular_velocity)
-
-    def other_branch(self) -> HertzDrillingLaw:
-        """The law where this one does not hold."""
-        return HertzDrillingLaw(self.mu, self.patch_radius)
-
     def coefficients(self, units: Units) -> tuple[Scalar, ...]:
         """Friction coefficient, and patch radius in units of length."""
         return (self.mu, self.patch_radius / units.length)
@@ -228,8 +222,84 @@ class HertzSlidingLaw(NamedTuple):
         return cls(*coefficients)
 
 
+class HertzBranch(NamedTuple):
+    """The branch of Hertz's law that a number tells: the other one has no part in it.
+
+    Both have a number wherever the patch moves, so that the same equations follow launches on either.
+
+    Attributes
+    ----------
+    mu
+        Friction coefficient.
+    patch_radius
+        Radius R of the contact patch, m.
+    drills
+        1 where drilling prevails, 0 where slip does.
+    """
+
+    mu: Scalar
+    patch_radius: Scalar
+    drills: Scalar
+
+    @property
+    def whole(self) -> "HertzLaw":
+        """The law of which it is a branch."""
+        return HertzLaw(self.mu, self.patch_radius)
+
+    @property
+    def slip_length(self) -> Scalar:
+        """The patch radius, m."""
+        return self.patch_radius
+
+    @property
+    def torque_free(self) -> bool:
+        """It resists drilling."""
+        return False
+
+    def branch(self, slip: Horizontal, angular_velocity: Vector) -> "HertzBranch":
+        """The branch that holds here, in plain operators."""
+        return self.whole.branch(slip, angular_velocity)
+
+    def limit_branch(self, normal: float, drilling: float) -> HertzDrillingLaw | HertzSlidingLaw:
+        """The law whose piece of the limit surface has this drilling torque, N m."""
+        return self.whole.limit_branch(normal, drilling)
+
+    def traction(self, slip: Horizontal, angular_velocity: Vector) -> Traction:
+        """Force and torque per unit normal force; slip and drilling must not both be zero."""
+        drilling = HertzDrillingLaw(self.mu, self.patch_radius).traction(slip, angular_velocity)
+        sliding = HertzSlidingLaw(self.mu, self.patch_radius).traction(slip, angular_velocity)
+
+        def mixed(a: Scalar, b: Scalar) -> Scalar:
+            return self.drills * a + (1.0 - self.drills) * b
+
+        force = (mixed(drilling.force[0], sliding.force[0]), mixed(drilling.force[1], sliding.force[1]))
+        return Traction(force, (0.0, 0.0, mixed(drilling.torque[2], sliding.torque[2])))
+
+    def reserve(self, normal: Scalar, force: Horizontal, drilling: Scalar) -> Scalar:
+        """That of the whole law."""
+        return self.whole.reserve(normal, force, drilling)
+
+    def branch_guard(self, slip: Horizontal, angular_velocity: Vector) -> Scalar:
+        """Positive as long as this branch is followed, up to `EDGE` or down to half of it, m^2/s^2."""
+        drilling = self.patch_radius * angular_velocity[2]
+        return (2.0 * self.drills - 1.0) * prevalence(slip, drilling, 0.5 * EDGE * (1.0 + self.drills))
+
+    def other_branch(self) -> "HertzBranch":
+        """The law where this one does not hold."""
+        return self._replace(drills=1.0 - self.drills)
+
+    def coefficients(self, units: Units) -> tuple[Scalar, ...]:
+        """Friction coefficient, patch radius in units of length, and which branch it is."""
+        return (self.mu, self.patch_radius / units.length, self.drills)
+
+    @classmethod
+    def from_coefficients(cls, coefficients: tuple[Scalar, ...]) -> "HertzBranch":
+        """Make the branch of these numbers."""
+        return cls(*coefficients)
+
+
 class HertzLaw(NamedTuple):
-    """Contensou friction with Hertz's pressure, whichever branch holds: for floats.
+    """Contensou friction with Hertz's pressure, whichever branch holds: for numbers, or arrays of them.
 
     Attributes
     ----------
@@ -247,13 +317,13 @@ class HertzLaw(NamedTuple):
         """The patch radius, m."""
         return self.patch_radius
 
-    def branch(self, slip: Horizontal, angular_velocity: Vector) -> HertzDrillingLaw | HertzSlidingLaw:
-        """The law that holds here, in plain operators."""
-        drilling = HertzDrillingLaw(*self)
-        return drilling if drilling.branch_guard(slip, angular_velocity) > 0.0 else HertzSlidingLaw(*self)
+    def branch(self, slip: Horizontal, angular_velocity: Vector) -> HertzBranch:
+        """The branch that holds here, in plain operators."""
+        drills = prevalence(slip, self.patch_radius * angular_velocity[2], 0.75 * EDGE) > 0.0
+        return HertzBranch(*self, drills=1.0 * drills)
 
     def limit_branch(self, normal: float, drilling: float) -> HertzDrillingLaw | HertzSlidingLaw:
-        """The law whose piece of the limit surface has this drilling torque, N m."""
+        """The law whose piece of the limit surface has this drilling torque, N m; of floats."""
         sliding = abs(drilling) <= BRANCH_TORQUE * self.mu * normal * self.patch_radius
         return HertzSlidingLaw(*self) if sliding else HertzDrillingLaw(*self)
 
@@ -282,6 +352,11 @@ class HertzLaw(NamedTuple):
     def from_coefficients(cls, coefficients: tuple[Scalar, ...]) -> "HertzLaw":
         """Make the law with this coefficient and patch radius."""
         return cls(*coefficients)
+
+
+def prevalence(slip: Horizontal, drilling: Scalar, edge: Scalar) -> Scalar:
+    """(1 + edge) (R w)^2 - v^2, of the slip v and drilling R w: positive where drilling prevails, m^2/s^2."""
+    return (1.0 + edge) * drilling * drilling - slip[0] * slip[0] - slip[1] * slip[1]
 
 
 def horner(coefficients: tuple[float, ...], x: Scalar) -> Scalar:

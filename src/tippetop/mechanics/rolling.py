@@ -219,11 +219,17 @@ def with_sliding_law(top: Top, law: FrictionLaw) -> Top:
 
 
 def on_branch(top: Top, slip: Slip) -> Top:
-    """A top with the branch of its law that holds where it slips, or in that direction; of floats."""
+    """A top with the branch of its law that holds where it slips, or in that direction."""
     law: Any = sliding_law(top.friction)
     if not is_branched(law):
         return top
     return with_sliding_law(top, law.branch(slip[:2], (0.0, 0.0, slip[2] / law.slip_length)))
+
+
+def off_branch(top: Top) -> Top:
+    """A top with the whole of its law, if it has but a branch of it."""
+    law: Any = sliding_law(top.friction)
+    return with_sliding_law(top, law.whole) if hasattr(law, "whole") else top
 
 
 def on_limit_branch(top: Top, wrench: Wrench) -> Top:

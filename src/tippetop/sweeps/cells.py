@@ -18,13 +18,12 @@ from tippetop.contact.trajectory import LONGEST
 from tippetop.errors import InvalidInput, one_of
 from tippetop.integrators.base import Array
 from tippetop.mechanics.motion import along_table, contact
-from tippetop.mechanics.rolling import on_branch
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top, natural_state, natural_units
 from tippetop.mechanics.units import Units
 from tippetop.problem import Contact, Problem
 from tippetop.sweeps.flights import slips
-from tippetop.sweeps.launches import Launches, Own
+from tippetop.sweeps.launches import Launches, Own, branched
 from tippetop.validation import Part
 
 PartType = TypeVar("PartType", bound=Part)
@@ -100,11 +99,11 @@ def cells_of(problem: Problem, values: Mapping[str, Array]) -> Cells:
     filled = put(problem, values)
     fault = np.full(count, Fault.NONE, dtype=np.int8)
     with np.errstate(all="ignore"):
-        top = filled.top
         start = launch_state(filled, count)
+        top = branched(filled.top, start)
         if filled.contact.liftoff != "fly":
             sliding = along_table(start)
-            touch = contact(*sliding, on_branch(top, (1.0, 0.0, 0.0)))
+            touch = contact(*sliding, top)
             lifted = spread(filled.launch.gap, count) > 0.0
             fault[(~(touch.delassus > 0.0) & slips(start, top)) | lifted] = Fault.NO_CONTACT_FORCE
         fault[~(spread(filled.body.I3, count) <= 2.0 * spread(filled.body.I1, count))] = Fault.NO_SUCH_BODY

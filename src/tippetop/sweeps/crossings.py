@@ -11,16 +11,15 @@ from tippetop.contact.block import in_blocks
 from tippetop.contact.flight import Flight
 from tippetop.contact.mode import EventKind, Outcome, Transition
 from tippetop.contact.rules import TOUCHING
-from tippetop.contact.sliding import Sliding
+from tippetop.contact.sliding import BRANCH, LIFT_OFF, STOPPING, Sliding, sliding_motion
 from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators import default_name, make_integrator
 from tippetop.integrators.base import Array
 from tippetop.mechanics.flight import gap, gap_rate
-from tippetop.mechanics.rolling import is_branched
 from tippetop.mechanics.state import State
 from tippetop.mechanics.touchdown import Start
 from tippetop.sweeps.flights import collide, fly_all, slides, slips
-from tippetop.sweeps.launches import Indices, picked, single
+from tippetop.sweeps.launches import Indices, branched, picked, single
 from tippetop.sweeps.slots import Slots
 from tippetop.tally import Tally
 
@@ -50,7 +49,7 @@ class Crossings:
     def launch(self, lanes: Indices, state: State) -> None:
         """Sort the launches out that do not simply slide from the start."""
         launches = self.slots.launches
-        if launches.own is not None or is_branched(launches.kind.example.friction):
+        if launches.own is not None:
             for i, lane in enumerate(lanes.tolist()):
                 self._follow_alone(lane, 0.0, launches.rules(i).launch(single(state, i)))
             return
@@ -66,15 +65,19 @@ class Crossings:
 
     def fall(self, lanes: Indices, time: Array, guards: Indices) -> None:
         """What follows where guards fall through zero."""
-        others = guards > 0
-        if others.any():
-            cells, state = self.slots.cell[lanes[others]], self.slots.whole(lanes[others])
+        known = sliding_motion(self.slots.launches.kind, guarded=True).guards
+        names = np.array([guard.name for guard in known])[guards]
+        stopping, other, free = (names == name for name in (STOPPING, BRANCH, LIFT_OFF))
+        if stopping.any():
+            cells, state = self.slots.cell[lanes[stopping]], self.slots.whole(lanes[stopping])
             transitions = [
-                self.slots.launches.rules(int(cell)).stopping(float(time[others][i]), single(state, i))
+                self.slots.launches.rules(int(cell)).stopping(float(time[stopping][i]), single(state, i))
                 for i, cell in enumerate(cells)
             ]
-            self._enter(lanes[others], time[others], transitions)
-        self._let_go(lanes[~others], time[~others])
+            self._enter(lanes[stopping], time[stopping], transitions)
+        if other.any():
+            self.slots.change_branch(lanes[other])
+        self._let_go(lanes[free], time[free])
 
     def _let_go(self, lanes: Indices, time: Array) -> None:
         """What follows where the normal force falls to zero."""
@@ -112,7 +115,7 @@ class Crossings:
         """Collide with the table; return the lanes that fly again, as `_fly` takes them."""
         slots = self.slots
         cells, launches = slots.cell[lanes], slots.launches
-        top = launches.tops(cells)
+        top = branched(launches.tops(cells), state)
         after, struck = collide(state, top)
         sliding = struck & (launches.restitution[cells] == 0.0) & slides(after, top)
         slots.place(lanes[sliding], picked(after, sliding), time[sliding])

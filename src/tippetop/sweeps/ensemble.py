@@ -6,7 +6,6 @@ from numpy.typing import NDArray
 from tippetop.catalogue import SWEPT, Ending, Fault
 from tippetop.contact.sliding import sliding_motion
 from tippetop.integrators.base import Array
-from tippetop.mechanics.rolling import on_branch
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import length
 from tippetop.metrics import ending, final_band, metrics
@@ -40,9 +39,7 @@ def follow_cells(sweep: Sweep, numbers: Flat) -> dict[str, NDArray[np.generic]]:
     if not len(good):
         return found
     launches = cells.launches(good, sweep.duration)
-    # Launches under a law of branches are followed alone; one branch serves to compile a step.
-    kind = on_branch(launches.kind.example, (1.0, 0.0, 0.0)).kind
-    method = stepper(sliding_motion(kind, guarded=True), sweep.tolerance)
+    method = stepper(sliding_motion(launches.kind, guarded=True), sweep.tolerance)
     alike = np.argsort(expected_cost(launches), kind="stable")
     for first in range(0, len(alike), LANES_AT_ONCE):
         block = alike[first : first + LANES_AT_ONCE]

@@ -27,7 +27,7 @@ from tippetop.mechanics.motion import (
     moment_per_normal_force,
     on_table,
 )
-from tippetop.mechanics.rolling import is_set_valued
+from tippetop.mechanics.rolling import is_branched, is_set_valued
 from tippetop.mechanics.series import Series, horner, solution
 from tippetop.mechanics.state import State
 from tippetop.mechanics.stick_slip import is_slipping
@@ -172,7 +172,8 @@ def divided(terms: Array, vanishing: Indices) -> Array:
 def collide(state: State, top: Top) -> tuple[State, Flags]:
     """States after impacts without restitution, and which of them are to be had; the others are unchanged.
 
-    Left out are tops whose contact point does not sink, and impacts too stiff for this method.
+    Left out are tops whose contact point does not sink, impacts too stiff for this method, and those under a
+    law of branches.
     """
     arm = contact_vector(state.axis, top.surface)
     point = contact_velocity(state, arm, top)
@@ -180,7 +181,7 @@ def collide(state: State, top: Top) -> tuple[State, Flags]:
     stopping = top.mass * length(point) + TINY
     moving = np.array(np.broadcast_arrays(*state.momentum, *state.velocity))
     struck = np.zeros(sinking.shape, dtype=bool)
-    waiting = sinking.copy()
+    waiting = sinking & (not is_branched(top.friction))
 
     def read(y: Sequence[Any]) -> State:
         return state._replace(momentum=(y[0], y[1], y[2]), velocity=(y[3], y[4], y[5]))

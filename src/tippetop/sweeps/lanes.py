@@ -72,6 +72,7 @@ class Lanes:
             self.crossings.launch(lanes[: len(launches)], launches.state)
         else:
             slots.rows[: stepper.layout.left + 1] = resumed[:, slots.cell]
+            slots.choose_branch()
             slots.left[~slots.alive] = 0.0
         slots.numbers[stepper.layout.turns] = np.isnan(slots.watch.turned)
 

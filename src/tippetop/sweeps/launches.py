@@ -8,7 +8,10 @@ from numpy.typing import NDArray
 from tippetop.contact.mode import Rules
 from tippetop.contact.rules import rules_for
 from tippetop.integrators.base import Array
+from tippetop.mechanics.motion import along_table
+from tippetop.mechanics.rolling import is_branched, off_branch, on_branch
 from tippetop.mechanics.state import State
+from tippetop.mechanics.stick_slip import slip_of
 from tippetop.mechanics.top import Kind, Top
 
 Indices = NDArray[np.intp]
@@ -66,11 +69,18 @@ class Launches:
 
     def rules(self, launch: int) -> Rules:
         """What follows where the contact of one launch begins or ends."""
-        top = self.kind.top(tuple(self.numbers[:, launch].tolist()))
+        top = off_branch(self.kind.top(tuple(self.numbers[:, launch].tolist())))
         if self.own is not None:
             rules: Rules = self.own[launch](top)
             return rules
         return rules_for(top, self.liftoff, float(self.restitution[launch]))
+
+
+def branched(top: Top, state: State) -> Top:
+    """Tops in these states with the branch of their law that holds there, where it is made of branches."""
+    if not is_branched(top.friction):
+        return top
+    return on_branch(top, slip_of(*along_table(state), top))
 
 
 @dataclass(frozen=True)

@@ -1,15 +1,18 @@
 """The arrays of launches under way: one lane a launch."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from tippetop.contact.mode import Outcome
 from tippetop.integrators.base import Array
 from tippetop.mechanics.motion import along_table, on_table
+from tippetop.mechanics.rolling import is_branched, sliding_law, with_sliding_law
 from tippetop.mechanics.state import SlidingState, State
+from tippetop.mechanics.top import Top
 from tippetop.metrics import OUTCOMES, Ends
-from tippetop.sweeps.launches import Flags, Indices, Launches
+from tippetop.sweeps.launches import Flags, Indices, Launches, branched
 from tippetop.sweeps.stride import LANES, Jet, Layout, Stepper
 from tippetop.sweeps.watch import Watch
 
@@ -117,10 +120,14 @@ class Slots:
         self.spare = np.zeros_like(self.rows)
         self.watch = self.watch.some(kept)
 
+    def tops(self, lanes: Indices | Flags) -> Top:
+        """Some of the tops, with arrays for numbers."""
+        return self.launches.kind.top(tuple(self.numbers[: self.layout.parameters, lanes]))
+
     def whole(self, lanes: Indices | Flags) -> State:
         """Whole states of sliding tops."""
         numbers = self.rows[: self.layout.size, lanes]
-        return on_table(SlidingState.unpack(numbers), self.launches.tops(self.cell[lanes]))
+        return on_table(SlidingState.unpack(numbers), self.tops(lanes))
 
     def place(self, lanes: Indices, state: State, time: Array) -> None:
         """Let tops slide from these states on."""
@@ -128,6 +135,27 @@ class Slots:
             self.rows[row, lanes] = number
         self.rows[self.layout.left, lanes] = self.end[lanes] - time
         self.rows[self.layout.taken, lanes] = np.inf
+        if is_branched(self.launches.kind.example.friction):
+            self._put(lanes, branched(self.tops(lanes), state))
+
+    def choose_branch(self) -> None:
+        """Let tops that slide on somewhere on their way follow the branch of their law that holds there."""
+        if is_branched(self.launches.kind.example.friction):
+            lanes = np.arange(len(self.cell))
+            self._put(lanes, branched(self.tops(lanes), self.whole(lanes)))
+
+    def change_branch(self, lanes: Indices) -> None:
+        """Let tops slide on along the other branch of their law."""
+        top = self.tops(lanes)
+        law: Any = sliding_law(top.friction)
+        self._put(lanes, with_sliding_law(top, law.other_branch()))
+
+    def _put(self, lanes: Indices, top: Top) -> None:
+        """Let these be the tops on some lanes."""
+        # What was kept to be searched is of the tops as they were.
+        self.search()
+        for row, number in enumerate(top.numbers):
+            self.numbers[row, lanes] = number
 
     def retire(self, lanes: Indices, state: State, time: Array, outcome: Outcome) -> None:
         """Put down how launches ended."""
