@@ -22,6 +22,7 @@ class Ending(IntEnum):
     LIFTED_OFF = 3
     FAILED = 4
     BAD = 5
+    AT_REST = 6
 
 
 class Fault(IntEnum):

@@ -17,6 +17,8 @@ from tippetop.errors import InvalidInput, one_of
 from tippetop.fields import dotted_names, numbers_of, part_at, table_at
 from tippetop.files import read_text
 from tippetop.frictions import Friction
+from tippetop.mechanics.coulomb import RollingResistance
+from tippetop.mechanics.friction import FrictionLaw
 from tippetop.mechanics.motion import along_table, contact, on_table
 from tippetop.mechanics.rolling import is_set_valued
 from tippetop.mechanics.state import State
@@ -133,6 +135,10 @@ class Problem(Part):
         The parts; see their own pages.
     gravity
         Acceleration of gravity, m/s^2.
+    rolling_resistance
+        Arm of the normal force's couple against rolling beside any law of friction, m: the table resists the
+        horizontal angular velocity w_t with the torque N rolling_resistance, and holds it at zero where less
+        is enough for that.
     """
 
     body: Body
@@ -140,6 +146,7 @@ class Problem(Part):
     launch: Launch
     contact: Annotated[Contact, OF_ITS_KIND] = Contact()
     gravity: Annotated[Positive, Quantity("m s-2", "acceleration of gravity")] = 9.8
+    rolling_resistance: Annotated[NotNegative, Quantity("m", "rolling resistance")] = 0.0
 
     @model_validator(mode="after")
     def _contact_is_possible(self) -> Self:
@@ -194,7 +201,17 @@ class Problem(Part):
     def top(self) -> Top:
         """The problem's numbers as the mechanics takes them, SI."""
         body = self.body
-        return Top(body.mass, body.I1, body.I3, body.shape.surface, self.friction.law, self.gravity)
+        return Top(body.mass, body.I1, body.I3, body.shape.surface, self._law, self.gravity)
+
+    @property
+    def _law(self) -> FrictionLaw:
+        """The law of friction with the rolling resistance beside it, if there is any."""
+        arm, law = self.rolling_resistance, self.friction.law
+        if isinstance(arm, float) and not arm:
+            return law
+        resisted: Any = RollingResistance(law, arm)
+        found: FrictionLaw = resisted
+        return found
 
     def start(self, functions: Functions = math) -> State:
         """The state at launch, SI; with sine and cosine for whatever the fields are, such as arrays."""

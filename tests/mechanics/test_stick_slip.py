@@ -8,6 +8,7 @@ from scipy.integrate import solve_ivp
 
 from dry_runs import DryRun, launched
 from tippetop.integrators.scipy_methods import SciPy
+from tippetop.mechanics.beginning import direction_of_slip
 from tippetop.mechanics.contensou import ELLIPSOIDAL_RADIUS, EllipsoidalLaw
 from tippetop.mechanics.contensou_hertz import HertzLaw
 from tippetop.mechanics.coulomb import CoulombLaw, RollingResistance
@@ -18,7 +19,6 @@ from tippetop.mechanics.slip_onset import onset
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.stick_slip import (
     creep_rates,
-    direction_of_slip,
     inner,
     plus,
     scaled,

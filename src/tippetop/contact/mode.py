@@ -15,6 +15,7 @@ import numpy as np
 
 from tippetop.integrators.base import Integrator, Motion
 from tippetop.integrators.dense import DenseSolution
+from tippetop.mechanics.ending import Ending
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Row, Scalar, Vector
@@ -28,6 +29,7 @@ class Outcome(Enum):
         "The table would have to pull from here on; "
         "with liftoff = ignore it does, and with fly the top leaves it."
     )
+    AT_REST = "The top came to rest, and the table holds it so: nothing happens any more."
     TOO_MANY_PHASES = (
         "The top bounced and slid more often than the run allows; "
         "shorten the duration, lower the restitution, or raise the limit on phases."
@@ -54,6 +56,8 @@ class EventKind(Enum):
     TOUCHDOWN = "touchdown"
     STICK = "stick"
     SLIP = "slip"
+    HALT = "rolling stops"
+    ROLL = "rolling starts"
     IMPACT = "impact"
 
 
@@ -170,14 +174,17 @@ class Rules(Protocol):
     def touchdown(self, time: float, state: State) -> Transition:
         """What follows when the top reaches the table."""
 
-    def sliding(self, state: State) -> "Mode":
-        """The mode of a contact that slips."""
+    def going_on(self, state: State, *, slips: bool) -> "Mode":
+        """The mode of a contact whose velocities go on, or stay held; it sticks or slips."""
 
-    def stopping(self, time: float, state: State) -> Transition:
-        """What follows when slip is about to end."""
+    def stopping(self, time: float, state: State, *, slips: bool = True) -> Transition:
+        """What follows when slip, or rolling, is about to end; the contact sticks or slips."""
 
-    def without_slip(self, time: float, state: State) -> Transition:
-        """What follows when the contact point is at rest."""
+    def settled(self, time: float, state: State, new: tuple[bool, bool], *, held: bool) -> Transition:
+        """What follows when slip, or rolling (new), has ended, and whether the other was held already."""
+
+    def giving_way(self, state: State, events: tuple[Event, ...], beginning: Ending) -> Transition:
+        """What follows when slip, or rolling, can be held no longer."""
 
 
 @dataclass(frozen=True)

@@ -4,21 +4,31 @@ from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from tippetop.contact.flight import Flight
-from tippetop.contact.mode import Event, EventKind, Mode, Outcome, Rules, Transition
-from tippetop.contact.sliding import Sliding, stopping
-from tippetop.contact.sticking import SlipEnd, SlipOnset, Sticking
+from tippetop.contact.mode import Event, EventKind, IntegratedMode, Mode, Outcome, Rules, Transition
+from tippetop.contact.passing import BothLoosening, Loosening, Resting, Stopping
+from tippetop.contact.sliding import Sliding, SlidingWithoutRolling
+from tippetop.contact.sticking import Sticking, StickingWithoutRolling
+from tippetop.mechanics.beginning import Beginning, beginning
+from tippetop.mechanics.coulomb import RollingResistance
+from tippetop.mechanics.ending import Ending
 from tippetop.mechanics.flight import gap, gap_rate
 from tippetop.mechanics.impact import impact
-from tippetop.mechanics.motion import along_table, contact
+from tippetop.mechanics.motion import along_table, contact, on_table
 from tippetop.mechanics.rolling import (
     ContactPoint,
-    contact_wrench,
+    contact_motion,
     is_set_valued,
     on_branch,
     on_limit_branch,
+    rolling_reserve,
+    set_valued,
+    slip_length,
+    velocity_without_slip,
+    without_drilling,
+    without_rolling,
 )
-from tippetop.mechanics.state import State
-from tippetop.mechanics.stick_slip import is_slipping, slip_guard, slip_of
+from tippetop.mechanics.state import SlidingState, State
+from tippetop.mechanics.stick_slip import HORIZON, inner, is_rolling, is_slipping, size, slip_of
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.touchdown import Start
 from tippetop.mechanics.units import Units
@@ -33,6 +43,9 @@ restitution between 0 and 1 would be infinitely many in a finite time.
 
 TOUCHING = 1e-12
 """Gap, and gap rate, in natural units, up to which a launch is one from rest on the table."""
+
+REST = 1e-13
+"""Velocities and accelerations, in natural units, that are rounding in a body at rest."""
 
 
 @dataclass(frozen=True)
@@ -61,30 +74,137 @@ class ContactRules:
         """Never happens: there are no flights."""
         raise NotImplementedError
 
-    def sliding(self, state: State) -> Mode:
-        """Slide, or follow slip to its end where that is near already."""
-        if not is_set_valued(self.top.friction):
-            return Sliding(self.top, self)
-        y = along_table(state)
-        top = on_branch(self.top, slip_of(*y, self.top))
-        near = stopping(y, top) <= 0.0
-        return SlipEnd(top, self) if near else Sliding(top, self)
+    def going_on(self, state: State, *, slips: bool) -> Mode:
+        """Slide, or stick; or follow slip, or rolling, to its end where that is near already."""
+        ending, left = self._next_to_end(state, slips)
+        if ending is not None and left <= HORIZON:
+            return Stopping(self._branched(state, slips), self, ending)
+        rolls = self._rolls(state)
+        if slips:
+            return (Sliding if rolls else SlidingWithoutRolling)(self._branched(state, slips), self)
+        return (Sticking if rolls else StickingWithoutRolling)(self._branched(state, slips), self)
 
-    def stopping(self, time: float, state: State) -> Transition:
-        """Follow slip to its end."""
-        top = on_branch(self.top, slip_of(*along_table(state), self.top))
-        return Transition((), SlipEnd(top, self), state)
+    def stopping(self, time: float, state: State, *, slips: bool = True) -> Transition:
+        """Follow what ends first to its end."""
+        ending, _ = self._next_to_end(state, slips)
+        assert ending is not None, "a guard has seen that something ends"
+        return Transition((), Stopping(self._branched(state, slips), self, ending), state)
 
-    def without_slip(self, time: float, state: State) -> Transition:
-        """Stick, if the limit surface admits the forces that needs, or slip from rest."""
-        if slip_guard(state.axis, state.momentum, self.top) < 0.0:
-            return Transition((), SlipOnset(self.top, self, 1), state)
+    def settled(
+        self,
+        time: float,
+        state: State,
+        new: tuple[bool, bool],
+        *,
+        held: bool = False,
+        events: tuple[Event, ...] = (),
+    ) -> Transition:
+        """Hold what has ended, slip or rolling (new) or what was held already, if the table can; or let go.
+
+        What is tried first is to hold everything, then to let slip begin, rolling, and both.
+        """
+        ended = (new[0] or (held and new[1]), new[1] or (held and new[0]))
+        state = self._at_rest(state, *ended)
         point = ContactPoint.of(state.axis, state.momentum, self.top)
-        mode = Sticking(on_limit_branch(self.top, contact_wrench(point, None, point.turning[:2])), self)
-        numbers = mode.numbers(state)
-        if mode.reaction(numbers).force[2] <= 0.0 and not self.pulls:
-            return self.lift_off(time, state)
-        return Transition((Event(EventKind.STICK, time),), mode, mode.state(numbers))
+        slip = None if ended[0] else slip_of(*along_table(state), self.top)
+        rolling = None if ended[1] else point.turning[:2]
+        for begins in ((False, False), (True, False), (False, True), (True, True)):
+            if begins[0] > ended[0] or begins[1] > ended[1]:
+                continue
+            try:
+                found = beginning(point, slip, rolling, begins)
+            except ArithmeticError:
+                continue
+            if self._admits(point, found, ended, begins):
+                return self._settle(time, state, found, begins, ended, (*events, *_marks(time, new, begins)))
+        why = "nothing can hold the contact, and there is no direction in which it can go on"
+        return Transition(events, Outcome.FAILED, state, why)
+
+    def giving_way(self, state: State, events: tuple[Event, ...], beginning: Ending) -> Transition:
+        """Slip, or rolling, begins from the limit of what the table can hold."""
+        return Transition(events, Loosening(self.top, self, beginning, 2), state)
+
+    def _settle(
+        self,
+        time: float,
+        state: State,
+        found: Beginning,
+        begins: tuple[bool, bool],
+        ended: tuple[bool, bool],
+        events: tuple[Event, ...],
+    ) -> Transition:
+        """The mode that follows where it is known what is held and what begins."""
+        if found.wrench.force[2] <= 0.0 and not self.pulls:
+            return self._let_go(time, state, events)
+        if all(begins):
+            return Transition(events, BothLoosening(self.top, self), state)
+        if any(begins):
+            ending = Ending(begins[0], held=ended[1] if begins[0] else ended[0])
+            return Transition(events, Loosening(self.top, self, ending, 1), state)
+        mode = self.going_on(state, slips=not ended[0])
+        if isinstance(mode, IntegratedMode) and _rests(found, state):
+            return Transition(events, Resting(self.top, self, mode), state)
+        return Transition(events, mode, state)
+
+    def _admits(
+        self, point: ContactPoint, found: Beginning, ended: tuple[bool, bool], begins: tuple[bool, bool]
+    ) -> bool:
+        """Whether the table can hold what has ended and does not begin."""
+        (x, y, normal), torque = found.wrench
+        if ended[0] and not begins[0]:
+            reserve = set_valued(self.top.friction).reserve(normal, (x, y), torque[2])
+            if reserve < 0.0:
+                return False
+        if ended[1] and not begins[1]:
+            return bool(rolling_reserve(point, found.wrench, found.slip) >= 0.0)
+        return True
+
+    def _at_rest(self, state: State, slip: bool, rolling: bool) -> State:
+        """The state in which slip, or rolling, that has ended is exactly zero."""
+        axis, momentum, velocity = along_table(state)
+        if slip and slip_length(self.top.friction) is not None:
+            momentum = without_drilling(axis, momentum, self.top)
+        if rolling:
+            momentum = without_rolling(axis, momentum, self.top)
+        if slip:
+            velocity = velocity_without_slip(axis, momentum, self.top)
+        return on_table(SlidingState(axis, momentum, velocity), self.top)
+
+    def _rolls(self, state: State) -> bool:
+        """Whether nothing holds rolling."""
+        resisted = isinstance(self.top.friction, RollingResistance)
+        return not resisted or bool(is_rolling(state.axis, state.momentum, self.top))
+
+    def _branched(self, state: State, slips: bool) -> Top:
+        """The top with the branch of its law that holds."""
+        if not is_set_valued(self.top.friction):
+            return self.top
+        if slips:
+            return on_branch(self.top, slip_of(*along_table(state), self.top))
+        point = ContactPoint.of(state.axis, state.momentum, self.top)
+        rolling = point.turning[:2] if self._rolls(state) else None
+        return on_limit_branch(self.top, contact_motion(point, None, rolling)[0])
+
+    def _next_to_end(self, state: State, slips: bool) -> tuple[Ending | None, float]:
+        """Which velocity ends first at present rates, and the time left; none if all grow or none can end."""
+        rolls, law = self._rolls(state), self.top.friction
+        resisted = isinstance(law, RollingResistance)
+        possible = [Ending(slip=True, held=not rolls)] if slips and is_set_valued(law) else []
+        possible += [Ending(slip=False, held=not slips)] if rolls and resisted else []
+        if not possible:
+            return None, float("inf")
+        sliding, top = along_table(state), self._branched(state, slips)
+        point = ContactPoint.of(state.axis, state.momentum, top)
+        slip = slip_of(*sliding, top) if slips else None
+        acceleration = contact_motion(point, slip, point.turning[:2] if rolls else None)[1]
+        found, least = None, float("inf")
+        for ending in possible:
+            xi = ending.of(*sliding, top)
+            change = inner(xi, ending.rate(acceleration, top))
+            left = size(xi) ** 2 / -change if change < 0.0 else float("inf")
+            if left < least:
+                found, least = ending, left
+        return found, least
 
     def resting(self, time: float, state: State, events: tuple[Event, ...] = ()) -> Transition:
         """Go on from contact without normal velocity: slide, stick, or leave a table that would have to pull.
@@ -93,14 +213,19 @@ class ContactRules:
         takes as much slip away as it needs to: Darboux's and Keller's way out.
         """
         sliding = along_table(state)
-        if is_set_valued(self.top.friction) and not is_slipping(*sliding, self.top):
-            found = self.without_slip(time, state)
-            return replace(found, events=(*events, *found.events))
+        stuck = is_set_valued(self.top.friction) and not is_slipping(*sliding, self.top)
+        held = not self._rolls(state)
+        if stuck or held:
+            return self.settled(time, state, (stuck, held), events=events)
         touch = contact(sliding.axis, sliding.momentum, sliding.velocity, self.top)
         if touch.delassus <= 0 and not self.pulls:
             return self.inconsistent(time, state, events)
         if touch.free_acceleration < 0 or self.pulls:
-            return Transition(events, self.sliding(state), state)
+            return Transition(events, self.going_on(state, slips=True), state)
+        return self._let_go(time, state, events)
+
+    def _let_go(self, time: float, state: State, events: tuple[Event, ...]) -> Transition:
+        """Lift-off after some events."""
         found = self.lift_off(time, state)
         return replace(found, events=(*events, *found.events))
 
@@ -183,13 +308,33 @@ class FreeToFly(ContactRules):
         after = collision.state
         if not collision.impulse:
             # Nothing but rounding kept the contact from being a resting one.
-            return Transition(events, self.sliding(after), after)
+            return Transition(events, self.going_on(after, slips=True), after)
         if rebounds:
             return Transition((*events, hit), self._flight(Start.REBOUND), after)
         return self.resting(time, after, (*events, hit))
 
     def _flight(self, start: Start) -> Flight:
         return Flight(self.top, self, start)
+
+
+def _marks(time: float, new: tuple[bool, bool], begins: tuple[bool, bool]) -> tuple[Event, ...]:
+    """What is told where slip, or rolling, has newly ended and is held, or was held and begins."""
+    told = []
+    for ended, starts, stop, start in zip(
+        new, begins, (EventKind.STICK, EventKind.HALT), (EventKind.SLIP, EventKind.ROLL), strict=True
+    ):
+        if ended and not starts:
+            told.append(Event(stop, time))
+        elif starts and not ended:
+            told.append(Event(start, time))
+    return tuple(told)
+
+
+def _rests(found: Beginning, state: State) -> bool:
+    """Whether a body in contact neither moves nor begins to."""
+    point, turning = found.acceleration
+    rates = (*turning, *point[:2], *state.momentum, *state.velocity)
+    return bool(max(map(abs, rates)) <= REST)
 
 
 def rules_for(top: Top, liftoff: str, restitution: float) -> Rules:

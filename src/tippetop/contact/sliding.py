@@ -1,20 +1,44 @@
-"""The top touches the table and slides."""
+"""The top touches the table and slides, rolling or not."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, ClassVar
 
-from tippetop.contact.mode import IntegratedMode, Reaction, Transition
+from tippetop.contact.mode import Event, EventKind, IntegratedMode, Reaction, Transition
 from tippetop.integrators.base import Function, Guard, Motion
-from tippetop.mechanics.motion import along_table, angular_velocity, contact, on_table, sliding_rates
-from tippetop.mechanics.rolling import is_set_valued, sliding_law, with_sliding_law
+from tippetop.mechanics.coulomb import RollingResistance
+from tippetop.mechanics.ending import Ending
+from tippetop.mechanics.motion import (
+    along_table,
+    angular_velocity,
+    axis_rate,
+    contact,
+    on_table,
+    sliding_rates,
+)
+from tippetop.mechanics.rolling import (
+    ContactPoint,
+    Wrench,
+    contact_wrench,
+    is_set_valued,
+    rolling_reserve,
+    sliding_law,
+    with_sliding_law,
+    without_rolling,
+)
 from tippetop.mechanics.state import SlidingState, State
-from tippetop.mechanics.stick_slip import HORIZON, slip_of, stopping_guard
+from tippetop.mechanics.stick_slip import HORIZON, rolling_stopping_guard, scaled, slip_of, stopping_guard
 from tippetop.mechanics.top import Kind, Top
-from tippetop.mechanics.vectors import Row, Scalar
+from tippetop.mechanics.vectors import Row, Scalar, dot
 
-LIFT_OFF, STOPPING, BRANCH = "lift-off", "stopping", "branch"
+LIFT_OFF, STOPPING, ROLLING_STOPPING, ROLLING, BRANCH = (
+    "lift-off",
+    "stopping",
+    "rolling stopping",
+    "rolling",
+    "branch",
+)
 
 
 @dataclass(frozen=True)
@@ -25,7 +49,7 @@ class Sliding(IntegratedMode):
 
     @property
     def motion(self) -> Motion:
-        """Equations of motion, with the guards of lift-off and of the end of slip where there are such."""
+        """Equations of motion, with the guards of lift-off and of ending velocities where there are such."""
         return sliding_motion(self.top.kind, not self.rules.pulls)
 
     def numbers(self, state: State) -> tuple[Scalar, ...]:
@@ -46,10 +70,57 @@ class Sliding(IntegratedMode):
         """What the rules say of lift-off, or of slip that is about to end; or the law's other branch."""
         if guard == LIFT_OFF:
             return self.rules.lift_off(time, state)
-        if guard == STOPPING:
+        if guard in (STOPPING, ROLLING_STOPPING):
             return self.rules.stopping(time, state)
         law: Any = sliding_law(self.top.friction)
         return Transition((), replace(self, top=with_sliding_law(self.top, law.other_branch())), state)
+
+
+@dataclass(frozen=True)
+class SlidingWithoutRolling(Sliding):
+    """Sliding while rolling resistance holds the top: it turns about the vertical, or not at all."""
+
+    name: ClassVar[str] = "sliding_without_rolling"
+
+    @property
+    def motion(self) -> Motion:
+        """Equations of motion, with the guard of what holds the top beside those of sliding."""
+        return held_motion(self.top.kind, not self.rules.pulls)
+
+    def state(self, y: Row) -> State:
+        """The state, with its height and sinking, and without rolling."""
+        sliding = SlidingState.unpack(y)
+        momentum = without_rolling(sliding.axis, sliding.momentum, self.top)
+        return on_table(sliding._replace(momentum=momentum), self.top)
+
+    def reaction(self, y: Row) -> Reaction:
+        """The contact force and torque."""
+        state = SlidingState.unpack(y)
+        point, wrench = holding(state, self.top)
+        slip = slip_of(*state, self.top)
+        power = wrench.force[0] * slip[0] + wrench.force[1] * slip[1] + dot(wrench.torque, point.turning)
+        return Reaction(wrench.force, wrench.torque, power)
+
+    def follow(self, guard: str, time: float, state: State) -> Transition:
+        """Rolling begins; or what follows sliding."""
+        if guard == ROLLING:
+            if self.reaction(self.numbers(state)).force[2] <= 0.0 and not self.rules.pulls:
+                return self.rules.lift_off(time, state)
+            return self.rules.giving_way(state, (Event(EventKind.ROLL, time),), Ending(slip=False))
+        return super().follow(guard, time, state)
+
+
+def holding(state: SlidingState, top: Top) -> tuple[ContactPoint, Wrench]:
+    """The contact point of a sliding body whose rolling is held, and what the table does."""
+    point = ContactPoint.of(state.axis, state.momentum, top)
+    return point, contact_wrench(point, slip_of(*state, top), None)
+
+
+def held_rates(state: SlidingState, top: Top) -> SlidingState:
+    """Time derivative of the state of a sliding body whose rolling is held."""
+    point, wrench = holding(state, top)
+    x, y = scaled(1.0 / top.mass, wrench.force[:2])
+    return SlidingState(axis_rate(state.axis, state.momentum, top), point.moment(wrench), (x, y))
 
 
 @lru_cache
@@ -59,9 +130,42 @@ def sliding_motion(kind: Kind, guarded: bool) -> Motion:
     def rates(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[Scalar, ...]:
         return sliding_rates(SlidingState.unpack(y), kind.top(tuple(numbers))).pack()
 
+    def rolls(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
+        state, top = SlidingState.unpack(y), kind.top(tuple(numbers))
+        return rolling_stopping_guard(state, sliding_rates(state, top), top, HORIZON)
+
+    guards = [Guard(LIFT_OFF, normal_force(kind))] if guarded else []
+    guards += slip_guards(kind, sliding_rates)
+    if isinstance(kind.example.friction, RollingResistance):
+        guards.append(Guard(ROLLING_STOPPING, rolls))
+    return Motion(rates, size=8, parameters=kind.numbers, guards=tuple(guards))
+
+
+@lru_cache
+def held_motion(kind: Kind, guarded: bool) -> Motion:
+    """The same while rolling is held."""
+
+    def rates(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[Scalar, ...]:
+        return held_rates(SlidingState.unpack(y), kind.top(tuple(numbers))).pack()
+
+    def reserve(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
+        state, top = SlidingState.unpack(y), kind.top(tuple(numbers))
+        return rolling_reserve(*holding(state, top), slip_of(*state, top))
+
+    def force(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
+        return holding(SlidingState.unpack(y), kind.top(tuple(numbers)))[1].force[2]
+
+    guards = [Guard(LIFT_OFF, force)] if guarded else []
+    guards += [*slip_guards(kind, held_rates), Guard(ROLLING, reserve)]
+    return Motion(rates, size=8, parameters=kind.numbers, guards=tuple(guards), lasting=False)
+
+
+def slip_guards(kind: Kind, rate: Callable[[SlidingState, Top], SlidingState]) -> list[Guard]:
+    """The guards of slip that is about to end, and of a law's branch, where there are such."""
+
     def stops(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
         state, top = SlidingState.unpack(y), kind.top(tuple(numbers))
-        return stopping(state, top)
+        return stopping_guard(state, rate(state, top), top, HORIZON)
 
     def on_branch(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
         state, top = SlidingState.unpack(y), kind.top(tuple(numbers))
@@ -69,13 +173,11 @@ def sliding_motion(kind: Kind, guarded: bool) -> Motion:
         slip = slip_of(state.axis, state.momentum, state.velocity, top)
         return law.branch_guard(slip[:2], angular_velocity(state.axis, state.momentum, top))
 
-    guards = [Guard(LIFT_OFF, normal_force(kind))] if guarded else []
     law = kind.example.friction
-    if is_set_valued(law):
-        guards.append(Guard(STOPPING, stops))
+    guards = [Guard(STOPPING, stops)] if is_set_valued(law) else []
     if hasattr(sliding_law(law), "branch_guard"):
         guards.append(Guard(BRANCH, on_branch))
-    return Motion(rates, size=8, parameters=kind.numbers, guards=tuple(guards))
+    return guards
 
 
 def stopping(state: SlidingState, top: Top) -> Scalar:

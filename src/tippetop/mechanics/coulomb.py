@@ -6,6 +6,9 @@ from tippetop.mechanics.friction import NO_TORQUE, FrictionLaw, Traction
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Horizontal, Scalar, Vector, add
 
+TINY = 1e-300
+"""Square of an angular velocity that is none, so that no direction of it is asked for."""
+
 
 class SetValuedLaw(FrictionLaw, Protocol):
     """A law that says less than the force where slip, and drilling if it resists that, are zero.
@@ -71,14 +74,14 @@ class RollingResistance(NamedTuple):
     length: Scalar
 
     def traction(self, slip: Horizontal, angular_velocity: Vector) -> Traction:
-        """Force and torque per unit normal force; the horizontal angular velocity must not be zero."""
+        """Force and torque per unit normal force."""
         force, torque = self.law.traction(slip, angular_velocity)
         return Traction(force, add(torque, self.couple(angular_velocity)))
 
     def couple(self, angular_velocity: Vector) -> Vector:
-        """Torque against rolling per unit normal force, m."""
+        """Torque against rolling per unit normal force, m; nothing where there is none at all."""
         x, y, _ = angular_velocity
-        factor = -self.length * (x * x + y * y) ** -0.5
+        factor = -self.length * (x * x + y * y + TINY) ** -0.5
         return (factor * x, factor * y, 0.0)
 
     def reserve(self, normal: Scalar, couple: Horizontal) -> Scalar:

@@ -25,6 +25,7 @@ from tippetop.mechanics.rolling import (
     solve,
     velocity_without_slip,
     without_drilling,
+    without_rolling,
 )
 from tippetop.mechanics.state import State
 from tippetop.mechanics.stick_slip import plus, scaled, size, slip_part
@@ -191,9 +192,12 @@ class DryContact(NamedTuple):
         return scaled(1.0 / rate, (1.0, east, north, *torque, velocity[2]))
 
     def at_rest(self, impulse: Impulse, after: State) -> State:
-        """The state after an impulse, in which slip that has ended is exactly zero."""
+        """The state after an impulse, in which slip and rolling that have ended are exactly zero."""
         top = self.body.top
-        if not self.is_set_valued or size(self.velocities(impulse)[0]) > ENDED * self.speed:
+        slip, rolling = self.velocities(impulse)
+        if isinstance(top.friction, RollingResistance) and size(rolling) <= ENDED * self.speed:
+            after = after._replace(momentum=without_rolling(after.axis, after.momentum, top))
+        if not self.is_set_valued or size(slip) > ENDED * self.speed:
             return after
         momentum = after.momentum if self.reach is None else without_drilling(after.axis, after.momentum, top)
         velocity = velocity_without_slip(after.axis, momentum, top)

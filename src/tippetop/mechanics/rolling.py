@@ -53,8 +53,8 @@ class ContactPoint(NamedTuple):
 
     Attributes
     ----------
-    axis
-        Unit vector n.
+    axis, momentum
+        Unit vector n, and angular momentum L, kg m^2/s.
     arm
         Contact vector a, m.
     turning
@@ -66,6 +66,7 @@ class ContactPoint(NamedTuple):
     """
 
     axis: Vector
+    momentum: Vector
     arm: Vector
     turning: Vector
     free: Acceleration
@@ -82,7 +83,7 @@ class ContactPoint(NamedTuple):
         carried = cross(turning, arm_rate(axis, tilting, top))
         falling = (0.0, 0.0, -top.gravity)
         free = Acceleration(add(add(falling, cross(gyration, arm)), carried), gyration)
-        return cls(axis, arm, turning, free, top)
+        return cls(axis, momentum, arm, turning, free, top)
 
     def response(self, wrench: Wrench) -> Acceleration:
         """Acceleration that a wrench adds."""
@@ -157,16 +158,41 @@ def contact_motion(
     force, torque = (0.0, 0.0), NO_TORQUE
     if slip is None:
         held += [(0, FORCES[0]), (1, FORCES[1])]
-        held += [] if set_valued(law).slip_length is None else [(5, DRILLING)]
+        held += [] if slip_length(law) is None else [(5, DRILLING)]
     else:
-        w = point.turning[2] if len(slip) == 2 else slip[2] / set_valued(law).slip_length
-        force, torque = sliding_law(law).traction((slip[0], slip[1]), (*point.turning[:2], w))
+        force, torque = sliding_law(law).traction((slip[0], slip[1]), turning_with(point, slip))
     if resistance is not None and rolling is not None:
         torque = add(torque, resistance.couple((*rolling, 0.0)))
     held.append((2, Wrench((*force, 1.0), torque)))
     if resistance is not None and rolling is None:
         held += [(3, COUPLES[0]), (4, COUPLES[1])]
     return point.holding([wrench for _, wrench in held], [component for component, _ in held])
+
+
+def slip_wrenches(law: FrictionLaw) -> tuple[Wrench, ...]:
+    """The wrenches that resist slip: two forces, and the drilling torque if the law resists that."""
+    return FORCES[:2] if slip_length(law) is None else (*FORCES[:2], DRILLING)
+
+
+def slip_length(law: FrictionLaw) -> Scalar | None:
+    """Length by which drilling compares with slip under a law with or without rolling resistance, m."""
+    return getattr(sliding_law(law), "slip_length", None)
+
+
+def rolling_reserve(point: "ContactPoint", wrench: Wrench, slip: Slip | None) -> Scalar:
+    """Positive while the table can exert the couple in a wrench that holds rolling, (N m)^2."""
+    law: Any = point.top.friction
+    couple, normal = (wrench.torque[0], wrench.torque[1]), wrench.force[2]
+    if slip is not None:
+        torque = sliding_law(law).traction((slip[0], slip[1]), turning_with(point, slip)).torque
+        couple = (couple[0] - normal * torque[0], couple[1] - normal * torque[1])
+    return law.reserve(normal, couple)
+
+
+def turning_with(point: "ContactPoint", slip: Slip) -> Vector:
+    """The angular velocity as a law takes it, drilling as the slip has it, rad/s."""
+    w = point.turning[2] if len(slip) == 2 else slip[2] / slip_length(point.top.friction)
+    return (point.turning[0], point.turning[1], w)
 
 
 def velocity_without_slip(axis: Vector, momentum: Vector, top: Top) -> Horizontal:
@@ -177,17 +203,24 @@ def velocity_without_slip(axis: Vector, momentum: Vector, top: Top) -> Horizonta
 
 
 def without_drilling(axis: Vector, momentum: Vector, top: Top) -> Vector:
-    """The angular momentum nearest to this one for which the body does not turn about the vertical, kg m^2/s.
+    """The angular momentum for which the body does not turn about the vertical, kg m^2/s.
 
     What changes is the angular velocity's vertical component, which becomes zero.
     """
     turning = angular_velocity(axis, momentum, top)
-    along = (top.axial_inertia - top.transverse_inertia) * axis[2] * turning[2]
-    return (
-        momentum[0] - along * axis[0],
-        momentum[1] - along * axis[1],
-        momentum[2] - along * axis[2] - top.transverse_inertia * turning[2],
-    )
+    return spun_up(axis, momentum, (0.0, 0.0, -turning[2]), top)
+
+
+def without_rolling(axis: Vector, momentum: Vector, top: Top) -> Vector:
+    """The angular momentum for which the body turns about the vertical alone, kg m^2/s."""
+    turning = angular_velocity(axis, momentum, top)
+    return spun_up(axis, momentum, (-turning[0], -turning[1], 0.0), top)
+
+
+def spun_up(axis: Vector, momentum: Vector, change: Vector, top: Top) -> Vector:
+    """The angular momentum after a change of the angular velocity (rad/s), kg m^2/s."""
+    along = (top.axial_inertia - top.transverse_inertia) * dot(axis, change)
+    return add(momentum, add(scale(top.transverse_inertia, change), scale(along, axis)))
 
 
 def sliding_law(law: FrictionLaw) -> FrictionLaw:

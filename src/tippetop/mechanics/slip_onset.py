@@ -1,11 +1,11 @@
-"""How slip begins under a law that leaves the force at rest open: power series in time since the onset.
+"""How slip, or rolling, begins where the table cannot hold it: power series in time since the onset.
 
-In the words of `stick_slip`, slip begins as zeta = t^p (s_0 + s_1 t + ...) e(t) along e(0) = e_0. Where
-sticking has just reached the limit surface, A(e_0) = 0 and p = 2; where it is inadmissible from the start, A
-= R e_0 and p = 1. For p = 2 the equation for e is stiff with the rate 1/s and has an irregular singular point
-at t = 0: the series of the slow solution is asymptotic, with coefficients that grow like k!, and is used up
-to a time at which its last terms are small. Solutions nearby decay to it like exp(-1/t), and an ordinary
-integrator goes on.
+In the words of `ending`, with zeta for the velocity that begins, it does so as zeta = t^p (s_0 + s_1 t +
+...) e(t) along e(0) = e_0. Where holding it has just reached the limit of what the table can, A(e_0) = 0 and
+p = 2; where that is inadmissible from the start, A = R e_0 and p = 1. For p = 2 the equation for e is stiff
+with the rate 1/s and has an irregular singular point at t = 0: the series of the slow solution is asymptotic,
+with coefficients that grow like k!, and is used up to a time at which its last terms are small. Solutions
+nearby decay to it like exp(-1/t), and an ordinary integrator goes on.
 """
 
 import math
@@ -14,61 +14,70 @@ from typing import Any, NamedTuple
 
 from tippetop.mechanics.algebra import TruncatedSeries
 from tippetop.mechanics.coulomb import RollingResistance
+from tippetop.mechanics.ending import Ending
+from tippetop.mechanics.friction import NO_TORQUE
 from tippetop.mechanics.motion import axis_rate
 from tippetop.mechanics.rolling import (
-    DRILLING,
     FORCES,
+    Acceleration,
     ContactPoint,
     Slip,
     Wrench,
-    flat,
-    set_valued,
+    sliding_law,
     solve,
+    turning_with,
 )
 from tippetop.mechanics.series import PLAIN, Series
-from tippetop.mechanics.stick_slip import inner, plus, scaled, slip_part
+from tippetop.mechanics.stick_slip import inner, plus, scaled, slip_of
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Scalar, Vector, add, scale
 
 
 class Onset(NamedTuple):
-    """The beginning of slip as polynomials in time: lists of coefficients, in increasing order.
+    """The beginning of slip, or rolling, as polynomials in time: lists of coefficients, in increasing order.
 
     Attributes
     ----------
-    axis, momentum, direction
-        n, L and e.
+    axis, momentum, velocity, direction
+        n, L, u where that is free beside what begins (else nothing), and e.
     speed
         s / t^power.
     power
-        2 where slip starts from the limit of sticking, 1 where it starts beyond it.
+        2 where it starts from the limit of being held, 1 where it starts beyond it.
     """
 
     axis: tuple[list[Scalar], ...]
     momentum: tuple[list[Scalar], ...]
+    velocity: tuple[list[Scalar], ...]
     direction: tuple[list[Scalar], ...]
     speed: list[Scalar]
     power: int
 
     def valid_until(self, error: float) -> float:
         """Time up to which the last two terms of each series are below an error relative to the first."""
-        vectors = [self.axis, self.momentum, self.direction, (self.speed,)]
+        vectors = [self.axis, self.momentum, self.velocity, self.direction, (self.speed,)]
         times = [1e300]
         for rows in vectors:
             whole = error * math.hypot(*(row[0] for row in rows))
-            for k in range(len(rows[0]) - 2, len(rows[0])):
+            if not whole:
+                continue
+            for k in range(len(self.speed) - 2, len(self.speed)):
                 term = math.hypot(*(row[k] for row in rows))
                 if k > 0 and term > 0.0:
                     times.append((whole / term) ** (1.0 / k))
         return min(times)
 
     def at(self, time: Scalar) -> tuple[Vector, Vector, Slip]:
-        """Axis, angular momentum and slip zeta at a time since the onset."""
+        """Axis, angular momentum and zeta at a time since the onset."""
         n, L, e = (
             tuple(value(row, time) for row in rows) for rows in (self.axis, self.momentum, self.direction)
         )
         speed = time**self.power * value(self.speed, time)
         return (n[0], n[1], n[2]), (L[0], L[1], L[2]), scaled(speed, e)
+
+    def velocity_at(self, time: Scalar) -> Slip:
+        """Horizontal velocity of the centre of mass at a time since the onset, where that is free."""
+        return tuple(value(row, time) for row in self.velocity)
 
 
 def value(terms: Sequence[Scalar], time: Scalar) -> Scalar:
@@ -79,20 +88,31 @@ def value(terms: Sequence[Scalar], time: Scalar) -> Scalar:
     return total
 
 
-def onset(start: tuple[Vector, Vector, Slip], power: int, top: Top, order: int) -> Onset:
-    """The beginning of slip, order by order.
+def onset(
+    start: tuple[Vector, Vector, Slip],
+    power: int,
+    top: Top,
+    order: int,
+    ending: Ending = Ending(slip=True),  # noqa: B008
+    velocity: Slip = (),
+) -> Onset:
+    """The beginning of slip, or rolling, order by order.
 
     Parameters
     ----------
     start
-        Axis, angular momentum, and the direction e_0 in which slip begins: along it A = R e_0, with R = 0 and
+        Axis, angular momentum, and the direction e_0 in which it begins: along it A = R e_0, with R = 0 and
         power 2, or R > 0 and power 1.
     power
-        How slip grows with time, 1 or 2.
+        How it grows with time, 1 or 2.
     top
         The body.
     order
         Degree of the polynomials.
+    ending
+        Which velocity begins, and whether the other is held.
+    velocity
+        Horizontal velocity of the centre of mass where that is free beside it, m/s.
 
     Notes
     -----
@@ -100,7 +120,7 @@ def onset(start: tuple[Vector, Vector, Slip], power: int, top: Top, order: int) 
     t^j are s_k and the part of e_j across e_0 (|e| = 1 gives the other); A is linear in e_j, with the
     derivative G.
     """
-    known = Growing(start, top)
+    known = Growing(start, top, ending, velocity)
     across = tangents(start[2])
     slopes = [known.slope(b) for b in across]
     e, s = [start[2]], list[Scalar]()
@@ -124,20 +144,20 @@ def onset(start: tuple[Vector, Vector, Slip], power: int, top: Top, order: int) 
             e[j] = plus(e[j], scaled(part, b))
         known.turn(j, e[j])
         s.append(found[-1])
-    rows = [[y[k] for k in range(order + 1)] for y in (*known.axis, *known.momentum)]
+    rows = [[y[k] for k in range(order + 1)] for y in known.state]
     turning = tuple([e[k][i] for k in range(order + 1)] for i in range(len(start[2])))
-    return Onset(tuple(rows[:3]), tuple(rows[3:]), turning, s[: order + 1], power)
+    return Onset(tuple(rows[:3]), tuple(rows[3:6]), tuple(rows[6:]), turning, s[: order + 1], power)
 
 
 class Growing:
-    """Series that are being made: axis and angular momentum follow from the directions known so far.
+    """Series that are being made: the state follows from the directions known so far.
 
-    `free` and `responses` hold the rates of zeta and the normal acceleration without force, and per unit of
-    each wrench, the normal force last: series that depend on axis and angular momentum alone.
+    `free` and `responses` hold the rates of zeta and the normal acceleration without what begins, and per
+    unit of each wrench, the normal force last: series that depend on the state alone.
     """
 
-    def __init__(self, start: tuple[Vector, Vector, Slip], top: Top) -> None:
-        self.top, self.first = top, start[2]
+    def __init__(self, start: tuple[Vector, Vector, Slip], top: Top, ending: Ending, velocity: Slip) -> None:
+        self.top, self.first, self.ending = top, start[2], ending
         rules: list[Callable[[int], Scalar]] = []
 
         def later(i: int) -> Any:
@@ -146,13 +166,14 @@ class Growing:
 
             return Series(rule, PLAIN)
 
-        n, L = (later(0), later(1), later(2)), (later(3), later(4), later(5))
-        self.axis, self.momentum = n, L
+        begin = (*start[0], *start[1], *velocity)
+        self.state = tuple(later(i) for i in range(len(begin)))
+        n, L = self.state[:3], self.state[3:6]
         point = ContactPoint.of(n, L, top)
-        reach = set_valued(top.friction).slip_length
-        wrenches = (*basis_wrenches(top), Wrench(FORCES[2].force, resistance(top, point.turning)))
-        self.free = contact_part(flat(point.free), reach)
-        self.responses = tuple(contact_part(flat(point.response(w)), reach) for w in wrenches)
+        push = _normal_wrench(point, ending, self.state[6:])
+        holding, free, pushes = _beside((*ending.wrenches(top), push), point, ending)
+        self.free = self._part(free)
+        self.responses = tuple(self._part(response) for _, response in pushes)
         self._revisable: list[Revisable] = []
         self.direction = tuple(Revisable(_unknown, self._revisable) for _ in start[2])
         for series, first in zip(self.direction, start[2], strict=True):
@@ -163,11 +184,16 @@ class Growing:
         def integral(first: Scalar, slope: Any) -> Callable[[int], Scalar]:
             return lambda k: slope[k - 1] * (1.0 / k) if k else first
 
-        moment: Any = (0.0, 0.0, 0.0)
-        for amount, unit in zip(amounts, wrenches, strict=True):
+        force, moment = holding.force, point.moment(holding)
+        for amount, (unit, _) in zip(amounts, pushes, strict=True):
+            force = add(force, scale(amount, unit.force))
             moment = add(moment, scale(amount, point.moment(unit)))
-        slopes = (*axis_rate(n, L, top), *moment)
-        rules += [integral(*pair) for pair in zip((*start[0], *start[1]), slopes, strict=True)]
+        slopes = (*axis_rate(n, L, top), *moment, *scaled(1.0 / top.mass, force[: len(velocity)]))
+        rules += [integral(*pair) for pair in zip(begin, slopes, strict=True)]
+
+    def _part(self, acceleration: Acceleration) -> tuple[Any, ...]:
+        """Rate of zeta, and the normal acceleration, among the accelerations of the contact."""
+        return (*self.ending.rate(acceleration, self.top), acceleration.point[2])
 
     def turn(self, j: int, direction: Slip) -> None:
         """Set the j-th coefficient of the direction, and forget what was made of another."""
@@ -190,12 +216,8 @@ class Growing:
     def _amounts(
         self, direction: Sequence[Any], free: Sequence[Any], responses: Sequence[Sequence[Any]]
     ) -> tuple[Any, ...]:
-        """Amounts of the wrenches for slip in a direction, the normal force last."""
-        law = set_valued(self.top.friction)
-        reach = law.slip_length
-        w = 0.0 * direction[0] if reach is None else direction[2] * (1.0 / reach)
-        (fx, fy), torque = law.traction((direction[0], direction[1]), (0.0, 0.0, w))
-        shares = (fx, fy) if reach is None else (fx, fy, torque[2])
+        """Amounts of the wrenches for a direction of what begins, the normal force last."""
+        shares = self.ending.shares(tuple(direction), self.top)
         denominator = responses[-1][-1]
         for share, column in zip(shares, responses, strict=False):
             denominator = share * column[-1] + denominator
@@ -213,6 +235,41 @@ class Growing:
                 rate = amount * column[i] + rate
             rates.append(rate)
         return tuple(rates)
+
+
+def _normal_wrench(point: ContactPoint, ending: Ending, velocity: Slip) -> Wrench:
+    """A unit normal force with the friction that goes with it beside what begins."""
+    law: Any = point.top.friction
+    if ending.slip:
+        moves = isinstance(law, RollingResistance) and not ending.held
+        return Wrench(FORCES[2].force, law.couple(point.turning) if moves else NO_TORQUE)
+    if ending.held:
+        return FORCES[2]
+    slip = slip_of(point.axis, point.momentum, (velocity[0], velocity[1]), point.top)
+    force, torque = sliding_law(law).traction((slip[0], slip[1]), turning_with(point, slip))
+    return Wrench((*force, 1.0), torque)
+
+
+def _beside(
+    units: Sequence[Wrench], point: ContactPoint, ending: Ending
+) -> tuple[Wrench, Acceleration, list[tuple[Wrench, Acceleration]]]:
+    """Wrenches with what holds the other velocity beside them: without any, and beside one unit of each."""
+    nothing = Wrench(NO_TORQUE, NO_TORQUE)
+    alone = [(unit, point.response(unit)) for unit in units]
+    if not ending.held:
+        return nothing, point.free, alone
+    other = Ending(not ending.slip)
+    holds = [(unit, point.response(unit)) for unit in other.wrenches(point.top)]
+    rows = [[other.rate(response, point.top)[i] for _, response in holds] for i in range(len(holds))]
+
+    def held(wrench: Wrench, response: Acceleration) -> tuple[Wrench, Acceleration]:
+        sizes = solve(rows, [-rate for rate in other.rate(response, point.top)])
+        for size, (unit, answer) in zip(sizes, holds, strict=True):
+            wrench = Wrench(*(add(a, scale(size, b)) for a, b in zip(wrench, unit, strict=True)))
+            response = Acceleration(*(add(a, scale(size, b)) for a, b in zip(response, answer, strict=True)))
+        return wrench, response
+
+    return *held(nothing, point.free), [held(*pair) for pair in alone]
 
 
 class Revisable(Series):
@@ -246,22 +303,6 @@ def _unknown(k: int) -> Scalar:
 def at_start(parts: Sequence[Any]) -> tuple[Any, ...]:
     """Series, or numbers, at the start."""
     return tuple(part if isinstance(part, (float, int)) else part[0] for part in parts)
-
-
-def contact_part(accelerations: Sequence[Any], reach: Scalar | None) -> tuple[Any, ...]:
-    """Rate of zeta, and the normal acceleration, among the six accelerations of the contact."""
-    return (*slip_part(accelerations, reach), accelerations[2])
-
-
-def basis_wrenches(top: Top) -> tuple[Wrench, ...]:
-    """The wrenches of friction: two forces, and the drilling torque if there is one."""
-    return FORCES[:2] if set_valued(top.friction).slip_length is None else (*FORCES[:2], DRILLING)
-
-
-def resistance(top: Top, turning: Vector) -> Vector:
-    """Torque of rolling resistance per unit normal force, m."""
-    law = top.friction
-    return law.couple(turning) if isinstance(law, RollingResistance) else (0.0, 0.0, 0.0)
 
 
 def tangents(e: Slip) -> list[Slip]:

@@ -11,14 +11,14 @@ from tippetop.contact.block import in_blocks
 from tippetop.contact.flight import Flight
 from tippetop.contact.mode import EventKind, Outcome, Transition
 from tippetop.contact.rules import TOUCHING
-from tippetop.contact.sliding import BRANCH, LIFT_OFF, STOPPING, Sliding, sliding_motion
+from tippetop.contact.sliding import BRANCH, LIFT_OFF, ROLLING_STOPPING, STOPPING, Sliding, sliding_motion
 from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators import default_name, make_integrator
 from tippetop.integrators.base import Array
 from tippetop.mechanics.flight import gap, gap_rate
 from tippetop.mechanics.state import State
 from tippetop.mechanics.touchdown import Start
-from tippetop.sweeps.flights import collide, fly_all, slides, slips
+from tippetop.sweeps.flights import collide, fly_all, rolls, slides, slips
 from tippetop.sweeps.launches import Indices, branched, picked, single
 from tippetop.sweeps.slots import Slots
 from tippetop.tally import Tally
@@ -49,17 +49,18 @@ class Crossings:
     def launch(self, lanes: Indices, state: State) -> None:
         """Sort the launches out that do not simply slide from the start."""
         launches = self.slots.launches
-        if launches.own is not None:
-            for i, lane in enumerate(lanes.tolist()):
-                self._follow_alone(lane, 0.0, launches.rules(i).launch(single(state, i)))
+        alone = launches.alone
+        for i in np.flatnonzero(alone).tolist():
+            self._follow_alone(int(lanes[i]), 0.0, launches.rules(i).launch(single(state, i)))
+        if alone.all():
             return
-        plain = slips(state, launches.top)
+        plain = slips(state, launches.top) & rolls(state, launches.top)
         if launches.liftoff != "ignore":
             plain &= slides(state, launches.top)
         if launches.liftoff == "fly":
             plain &= gap(state, launches.top) <= TOUCHING
             plain &= np.abs(gap_rate(state, launches.top)) <= TOUCHING
-        others = np.flatnonzero(~plain)
+        others = np.flatnonzero(~plain & ~alone)
         transitions = [launches.rules(i).launch(single(state, i)) for i in others.tolist()]
         self._enter(lanes[others], np.zeros(len(others)), transitions)
 
@@ -67,7 +68,8 @@ class Crossings:
         """What follows where guards fall through zero."""
         known = sliding_motion(self.slots.launches.kind, guarded=True).guards
         names = np.array([guard.name for guard in known])[guards]
-        stopping, other, free = (names == name for name in (STOPPING, BRANCH, LIFT_OFF))
+        stopping = np.isin(names, (STOPPING, ROLLING_STOPPING))
+        other, free = names == BRANCH, names == LIFT_OFF
         if stopping.any():
             cells, state = self.slots.cell[lanes[stopping]], self.slots.whole(lanes[stopping])
             transitions = [
@@ -136,7 +138,7 @@ class Crossings:
                 again.append(i)
                 starts.append(int(transition.then.start))
                 states.append(transition.state.pack())
-            elif isinstance(transition.then, Sliding | Outcome):
+            elif isinstance(transition.then, Outcome) or type(transition.then) is Sliding:
                 self._settle(lanes[i : i + 1], transition, time[i : i + 1])
             else:
                 self._follow_alone(int(lanes[i]), float(time[i]), transition)

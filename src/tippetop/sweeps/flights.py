@@ -17,6 +17,7 @@ import numpy as np
 from tippetop.contact.sliding import stopping
 from tippetop.integrators.base import Array
 from tippetop.integrators.polynomials import Polynomials
+from tippetop.mechanics.coulomb import RollingResistance
 from tippetop.mechanics.flight import fly
 from tippetop.mechanics.impulse import contact_velocity
 from tippetop.mechanics.motion import (
@@ -26,11 +27,12 @@ from tippetop.mechanics.motion import (
     contact,
     moment_per_normal_force,
     on_table,
+    sliding_rates,
 )
 from tippetop.mechanics.rolling import is_branched, is_set_valued
 from tippetop.mechanics.series import Series, horner, solution
 from tippetop.mechanics.state import State
-from tippetop.mechanics.stick_slip import is_slipping
+from tippetop.mechanics.stick_slip import HORIZON, is_rolling, is_slipping, rolling_stopping_guard
 from tippetop.mechanics.surface import contact_vector
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.touchdown import Tip
@@ -220,6 +222,18 @@ def slides(state: State, top: Top) -> Flags:
     with np.errstate(all="ignore"):
         touch = contact(sliding.axis, sliding.momentum, sliding.velocity, top)
     found: Flags = (touch.delassus > 0.0) & (touch.free_acceleration < 0.0)
+    return found
+
+
+def rolls(state: State, top: Top) -> Flags:
+    """Whether tops in contact roll on for a while, or nothing resists that."""
+    count = np.ones(len(np.atleast_1d(state.height)), dtype=bool)
+    if not isinstance(top.friction, RollingResistance):
+        return count
+    y = along_table(state)
+    with np.errstate(all="ignore"):
+        lasting = rolling_stopping_guard(y, sliding_rates(y, top), top, HORIZON) > 0.0
+    found: Flags = count & is_rolling(y.axis, y.momentum, top) & lasting
     return found
 
 

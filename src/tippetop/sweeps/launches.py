@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from tippetop.contact.mode import Rules
 from tippetop.contact.rules import rules_for
 from tippetop.integrators.base import Array
+from tippetop.mechanics.coulomb import RollingResistance
 from tippetop.mechanics.motion import along_table
 from tippetop.mechanics.rolling import is_branched, off_branch, on_branch
 from tippetop.mechanics.state import State
@@ -67,9 +68,19 @@ class Launches:
         """Some of the tops, with arrays for numbers."""
         return self.kind.top(tuple(self.numbers[:, which]))
 
+    @property
+    def alone(self) -> Flags:
+        """Which are followed alone, for rules of their own or as nothing resists their rolling, shape (n,)."""
+        law = self.top.friction
+        unresisted = isinstance(law, RollingResistance) and law.length == 0.0
+        found: Flags = np.full(len(self), self.own is not None) | unresisted
+        return found
+
     def rules(self, launch: int) -> Rules:
         """What follows where the contact of one launch begins or ends."""
         top = off_branch(self.kind.top(tuple(self.numbers[:, launch].tolist())))
+        if isinstance(top.friction, RollingResistance) and top.friction.length == 0.0:
+            top = top._replace(friction=top.friction.law)
         if self.own is not None:
             rules: Rules = self.own[launch](top)
             return rules

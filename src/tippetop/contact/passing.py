@@ -1,0 +1,399 @@
+"""The moments in which slip, or rolling, ends or begins, under friction that is set-valued."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import Any, ClassVar
+
+import numpy as np
+
+from tippetop.contact.mode import Event, EventKind, IntegratedMode, Mode, Outcome, Segment, Transition
+from tippetop.contact.sliding import BRANCH, LIFT_OFF, ROLLING, Sliding, SlidingWithoutRolling
+from tippetop.contact.sticking import SLIP, Sticking, split
+from tippetop.integrators import make_integrator
+from tippetop.integrators.base import Arc, Array, Guard, Integrator, Motion
+from tippetop.integrators.dense import DenseSolution, evaluated
+from tippetop.mechanics.beginning import beginning
+from tippetop.mechanics.coulomb import RollingResistance
+from tippetop.mechanics.ending import (
+    Closing,
+    Ending,
+    closing_rates,
+    landed,
+    landing_guard,
+    overtaking_guard,
+    rates_in_time,
+    reopening_guard,
+)
+from tippetop.mechanics.motion import angular_velocity, on_table
+from tippetop.mechanics.rolling import (
+    ContactPoint,
+    is_set_valued,
+    on_branch,
+    rolling_reserve,
+    set_valued,
+    sliding_law,
+    slip_dimension,
+    velocity_without_slip,
+    with_sliding_law,
+)
+from tippetop.mechanics.slip_onset import onset
+from tippetop.mechanics.state import SlidingState, State
+from tippetop.mechanics.stick_slip import HORIZON, scaled, size, slip_of, velocity_of
+from tippetop.mechanics.top import Kind, Top
+from tippetop.mechanics.vectors import Row, Scalar, add, scale
+
+REOPENING, LANDED, TIME, OVERTAKEN = "reopening", "landed", "time", "overtaken"
+
+LANDING = (3e-9, 1e-16)
+"""How long before its end the rest of a velocity may be taken in one step, in natural units of time: if its
+direction has come to rest by then, and in any case."""
+
+LONGEST = 100.0
+"""More of the clock -ln s than lies between any two speeds."""
+
+STIFF_TOLERANCE = 1e-12
+"""Relative error per step of the implicit method that takes over where slip ends in many steps."""
+
+SETTLED = 1e-14
+"""Error of the instant at which slip ends, in natural units, that counts as none."""
+
+ORDER, ACCURACY = 12, 1e-13
+"""Degree of the series with which slip begins, and the size of its last terms relative to the first."""
+
+INSTANT = 1e-9
+"""How long slip and rolling that begin at once go on at their first rates, in natural units of time."""
+
+PART = 0.25
+"""Part of the time in which another velocity could end at its first rate that such a beginning lasts."""
+
+SHORT = 1e-14
+"""How long a top at rest is followed, in natural units of time or relative to the time."""
+
+NEWTON = 6
+"""Improvements of a time of the clock."""
+
+SHORTEST, DEGREE = 1e-8, 14
+"""The last of the steps that stand for the end of slip in a solution, relatively, and their degree."""
+
+
+@dataclass(frozen=True)
+class Passing(Mode):
+    """A moment between two modes, which is told as the one of them in which something moves.
+
+    Attributes
+    ----------
+    ending
+        Which velocity ends or begins, and whether the other is held.
+    """
+
+    ending: Ending
+
+    name: ClassVar[str] = "sliding"
+
+    @property
+    def told(self) -> Sliding | Sticking:
+        """The mode as which it is told."""
+        if self.ending.slip:
+            return (SlidingWithoutRolling if self.ending.held else Sliding)(self.top, self.rules)
+        return (Sticking if self.ending.held else Sliding)(self.top, self.rules)
+
+    def state(self, y: Row) -> State:
+        """As in the mode as which it is told."""
+        return self.told.state(y)
+
+    def numbers(self, axis: Row, momentum: Row, velocity: Row, xi: Row) -> tuple[Scalar, ...]:
+        """The numbers of that mode, where the velocity is asked for only if it is free."""
+        if self.ending.slip:
+            velocity = velocity_of(axis, momentum, tuple(xi), self.top)
+        return (*axis, *momentum, *velocity)
+
+
+@dataclass(frozen=True)
+class Loosening(Passing):
+    """The first moments of slip, or of rolling, as a power series in time.
+
+    Attributes
+    ----------
+    power
+        How it grows with time: 2 from the limit of what can be held, 1 from beyond it.
+    """
+
+    power: int = 1
+
+    def segments(self, time: float, state: State, end: float, integrator: Integrator) -> Iterator[Segment]:
+        """Evaluate the series, which need no integrator."""
+        try:
+            passing, direction, longest = self._directed(state)
+            velocity = state.velocity[:2] if self.ending.moves else ()
+            start = (state.axis, state.momentum, direction)
+            begin = onset(start, self.power, passing.top, ORDER, self.ending, velocity)
+        except ArithmeticError as error:
+            yield _nothing(self.told, time, state, str(error))
+            return
+        duration = min(begin.valid_until(ACCURACY), longest, end - time)
+
+        def numbers(elapsed: Array) -> Array:
+            axis, momentum, xi = begin.at(elapsed)
+            rows = passing.numbers(axis, momentum, begin.velocity_at(elapsed), xi)
+            return np.stack(np.broadcast_arrays(*rows), axis=-1)
+
+        yield passing.piece(numbers, time, duration, end)
+
+    def _directed(self, state: State) -> "tuple[Loosening, tuple[float, ...], float]":
+        """The mode on its law's branch, the direction of what begins, and how long it lasts at most.
+
+        In planar motion what ends meanwhile passes through zero, which series do not see.
+        """
+        ending, other = self.ending, Ending(not self.ending.slip)
+        point = ContactPoint.of(state.axis, state.momentum, self.top)
+        slip, rolling = None, None
+        if ending.moves:
+            slip = slip_of(state.axis, state.momentum, state.velocity[:2], self.top)
+        if ending.slip and not ending.held:
+            rolling = point.turning[:2]
+        found = beginning(point, slip, rolling, (ending.slip, not ending.slip))
+        top = on_branch(self.top, found.slip) if found.slip is not None else self.top
+        way = found.slip if ending.slip else found.rolling
+        assert way is not None
+        beside = slip if ending.moves else rolling
+        longest = PART * size(beside) / size(other.rate(found.acceleration, top)) if beside else np.inf
+        return replace(self, top=top), way, longest
+
+    def piece(self, numbers: Any, time: float, duration: float, end: float) -> Segment:
+        """The segment in which the numbers are a function of the time since its start."""
+        solution = DenseSolution.fitted(numbers, np.array([0.0, duration]), DEGREE)
+        knots = np.array([time, min(time + duration, end)])
+        last = self.state(numbers(np.array([duration]))[0].tolist())
+        then = Outcome.COMPLETED if knots[-1] >= end else self.rules.going_on(last, slips=not self.stuck)
+        terms = DenseSolution(knots, solution.terms)
+        return Segment(self.told, terms, last, Transition((), then, last), steps=1)
+
+    @property
+    def stuck(self) -> bool:
+        """Whether the contact sticks meanwhile."""
+        return not self.ending.slip and self.ending.held
+
+
+@dataclass(frozen=True)
+class BothLoosening(Loosening):
+    """Slip and rolling begin at once: an instant at their first rates, to which what follows settles."""
+
+    ending: Ending = Ending(slip=True)  # noqa: RUF009
+
+    def segments(self, time: float, state: State, end: float, integrator: Integrator) -> Iterator[Segment]:
+        """Go on at the first rates."""
+        point = ContactPoint.of(state.axis, state.momentum, self.top)
+        try:
+            found = beginning(point, None, None, (True, True))
+        except ArithmeticError as error:
+            yield _nothing(self.told, time, state, str(error))
+            return
+        assert found.slip is not None
+        passing, way = replace(self, top=on_branch(self.top, found.slip)), scaled(found.rates[0], found.slip)
+        moment = point.moment(found.wrench)
+
+        def numbers(elapsed: Array) -> Array:
+            momentum = add(state.momentum, scale(elapsed, moment))
+            rows = passing.numbers(state.axis, momentum, (), scaled(elapsed, way))
+            return np.stack(np.broadcast_arrays(*rows), axis=-1)
+
+        yield passing.piece(numbers, time, min(INSTANT, end - time), end)
+
+
+@dataclass(frozen=True)
+class Resting(Mode):
+    """Every velocity has ended: an instant, so that a result has it, and then the run is over.
+
+    Attributes
+    ----------
+    told
+        The mode as which it is told.
+    """
+
+    told: IntegratedMode
+
+    name: ClassVar[str] = "resting"
+
+    def state(self, y: Row) -> State:
+        """As in the mode as which it is told."""
+        return self.told.state(y)
+
+    def segments(self, time: float, state: State, end: float, integrator: Integrator) -> Iterator[Segment]:
+        """Stay as it is."""
+        numbers = np.array(self.told.numbers(state), dtype=float)
+        knots = np.array([time, time + SHORT * max(1.0, time)])
+        terms = np.stack([numbers, np.zeros_like(numbers)], axis=1)[None]
+        over = Transition((), Outcome.AT_REST, state)
+        yield Segment(self.told, DenseSolution(knots, terms), state, over)
+
+
+@dataclass(frozen=True)
+class Stopping(Passing):
+    """The last moments of slip, or of rolling, in the clock -ln s (see `tippetop.mechanics.ending`)."""
+
+    def segments(self, time: float, state: State, end: float, integrator: Integrator) -> Iterator[Segment]:
+        """Follow it to its end, or to where it is no longer about to end."""
+        ending, velocity = self.ending, state.velocity[:2]
+        xi = ending.of(state.axis, state.momentum, velocity, self.top)
+        speed, free = size(xi), velocity if ending.moves else ()
+        begin = np.array([*state.axis, *state.momentum, *free, *scaled(1.0 / speed, xi), speed, 0.0])
+        motion, steps = closing_motion(self.top.kind, ending, not self.rules.pulls), 0
+        for horizon in LANDING:
+            parameters = (*self.top.numbers, end - time, horizon)
+            arcs = _followed(integrator, motion, parameters, begin)
+            steps += sum(arc.steps for arc in arcs)
+            here = closing_of(arcs[-1].end_state.tolist(), ending)
+            rest, doubt = landed(here, ending, self.top)
+            if arcs[-1].guard != LANDED or doubt < SETTLED:
+                break
+        if arcs[-1].guard == LANDED:
+            here = rest
+        last = self._state_at(here)
+        clock = DenseSolution.joined([arc.solution for arc in arcs])
+        solution = self._in_time(clock, time, float(here.time))
+        then = self._next(arcs[-1], solution.end, last)
+        yield Segment(self.told, solution, last, then, steps, steps)
+
+    def _state_at(self, here: Closing) -> State:
+        """The whole state."""
+        velocity: Any = here.velocity
+        if self.ending.slip:
+            velocity = velocity_of(here.axis, here.momentum, scaled(here.speed, here.direction), self.top)
+        elif self.ending.held:
+            velocity = velocity_without_slip(here.axis, here.momentum, self.top)
+        return on_table(SlidingState(here.axis, here.momentum, velocity), self.top)
+
+    def _next(self, arc: Arc, time: float, state: State) -> Transition:
+        if arc.failure is not None or arc.guard is None:
+            return Transition((), Outcome.FAILED, state, arc.failure or "the slip neither ends nor goes on")
+        ending, stuck = self.ending, not self.ending.slip and self.ending.held
+        match arc.guard:
+            case "time":
+                return Transition((), Outcome.COMPLETED, state)
+            case "lift-off":
+                return self.rules.lift_off(time, state)
+            case "reopening":
+                return Transition((), self.rules.going_on(state, slips=not stuck), state)
+            case "overtaken":
+                return Transition((), replace(self, ending=Ending(not ending.slip)), state)
+            case "branch":
+                law: Any = sliding_law(self.top.friction)
+                return Transition(
+                    (), replace(self, top=with_sliding_law(self.top, law.other_branch())), state
+                )
+            case "slip":
+                return self.rules.giving_way(state, (Event(EventKind.SLIP, time),), Ending(slip=True))
+            case "rolling":
+                return self.rules.giving_way(state, (Event(EventKind.ROLL, time),), Ending(slip=False))
+        return self.rules.settled(time, state, new=(ending.slip, not ending.slip), held=ending.held)
+
+    def _in_time(self, clock: DenseSolution, time: float, duration: float) -> DenseSolution:
+        """The numbers of the mode as polynomials in time, from their solution in the clock."""
+        elapsed = clock.terms.shape[1] - 1
+        shown = clock.terms[:, elapsed, 0]
+        knots = np.append(shown[shown < duration * (1.0 - SHORTEST)], duration)
+
+        def numbers(times: Array) -> Array:
+            here = closing_of(clock(clock_at(clock, elapsed, times)).T, self.ending)
+            xi = scaled(here.speed, here.direction)
+            return np.stack(self.numbers(here.axis, here.momentum, here.velocity, xi), axis=-1)
+
+        return DenseSolution(time + knots, DenseSolution.fitted(numbers, knots, DEGREE).terms)
+
+
+def _nothing(mode: Mode, time: float, state: State, why: str) -> Segment:
+    """No motion at all, and why."""
+    nothing = DenseSolution(np.array([time]), np.empty((0, 8, 1)))
+    return Segment(mode, nothing, state, Transition((), Outcome.FAILED, state, why))
+
+
+def _followed(integrator: Integrator, motion: Motion, parameters: Sequence[float], begin: Array) -> list[Arc]:
+    """The end of slip, or of rolling, in its clock.
+
+    On a small patch the direction of slip follows the friction much faster than slip ends: where that takes
+    more steps than there are in an arc, an implicit method takes them instead.
+    """
+    first = next(iter(integrator.integrate(motion, parameters, (0.0, begin), LONGEST)))
+    if first.guard is not None or first.failure is not None or first.solution.end >= LONGEST:
+        return [first]
+    implicit = make_integrator("radau", STIFF_TOLERANCE)
+    return list(implicit.integrate(motion, parameters, (0.0, begin), LONGEST))
+
+
+@lru_cache
+def closing_motion(kind: Kind, ending: Ending, guarded: bool) -> Motion:
+    """Equations of motion in the clock -ln s where a velocity is about to end; time is the last number.
+
+    The last parameters are when the run ends, and how long before its end the velocity is left to `landed`.
+    """
+
+    def top_of(numbers: Sequence[Scalar]) -> Top:
+        return kind.top(tuple(numbers[: kind.numbers]))
+
+    def rates(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[Scalar, ...]:
+        rate = closing_rates(closing_of(y, ending), ending, top_of(numbers))
+        return (*rate.axis, *rate.momentum, *rate.velocity, *rate.direction, rate.speed, rate.time)
+
+    def guard(name: str, value: Callable[[Closing, Top, Sequence[Scalar]], Scalar]) -> Guard:
+        return Guard(name, lambda y, numbers: value(closing_of(y, ending), top_of(numbers), numbers))
+
+    guards = [
+        guard(REOPENING, lambda state, top, _: reopening_guard(state, ending, top, HORIZON)),
+        guard(LANDED, lambda state, top, numbers: landing_guard(state, ending, top, numbers[-1])),
+        guard(TIME, lambda state, _, numbers: numbers[-2] - state.time),
+    ]
+    law = kind.example.friction
+    resisted = isinstance(law, RollingResistance)
+    if guarded:
+        guards.append(
+            guard(LIFT_OFF, lambda state, top, _: rates_in_time(state, ending, top).wrench.force[2])
+        )
+    if not ending.held and resisted and is_set_valued(law):
+        guards.append(guard(OVERTAKEN, lambda state, top, _: overtaking_guard(state, ending, top)))
+    if ending.held:
+        guards.append(
+            guard(ROLLING if ending.slip else SLIP, lambda state, top, _: spared(state, ending, top))
+        )
+    if ending.moves and hasattr(sliding_law(law), "branch_guard"):
+        guards.append(guard(BRANCH, lambda state, top, _: branch_guard(state, top)))
+    free = 2 if ending.moves else 0
+    components = slip_dimension(law) if ending.slip else 2
+    return Motion(rates, 8 + free + components, kind.numbers + 2, tuple(guards), lasting=False)
+
+
+def spared(state: Closing, ending: Ending, top: Top) -> Scalar:
+    """Positive while the table can hold what is held beside a velocity that ends."""
+    wrench = rates_in_time(state, ending, top).wrench
+    if ending.slip:
+        point = ContactPoint.of(state.axis, state.momentum, top)
+        return rolling_reserve(point, wrench, state.direction)
+    return set_valued(top.friction).reserve(wrench.force[2], wrench.force[:2], wrench.torque[2])
+
+
+def branch_guard(state: Closing, top: Top) -> Scalar:
+    """Positive as long as the branch of the law holds while rolling ends."""
+    law: Any = sliding_law(top.friction)
+    slip = slip_of(state.axis, state.momentum, (state.velocity[0], state.velocity[1]), top)
+    return law.branch_guard(slip[:2], angular_velocity(state.axis, state.momentum, top))
+
+
+def closing_of(y: Row, ending: Ending) -> Closing:
+    """The state of a velocity that is about to end, from its numbers."""
+    count, free = len(y), 8 if ending.moves else 6
+    return Closing(*split(y), tuple(y[6:free]), tuple(y[free : count - 2]), y[count - 2], y[count - 1])
+
+
+def clock_at(clock: DenseSolution, elapsed: int, times: Array) -> Array:
+    """When the clock shows some times, its component of number `elapsed`, by Newton's method, shape (m,)."""
+    shown = np.append(clock.terms[:, elapsed, 0], clock(clock.knots[-1:])[0, elapsed])
+    guess = np.interp(times, shown, clock.knots)
+    slopes = clock.terms[:, [elapsed], 1:] * np.arange(1, clock.terms.shape[2])
+    for _ in range(NEWTON):
+        step = np.minimum(np.searchsorted(clock.knots[1:], guess, side="left"), len(clock.terms) - 1)
+        span = clock.knots[step + 1] - clock.knots[step]
+        here = (guess - clock.knots[step]) / span
+        error = times - evaluated(clock.terms[:, [elapsed]], step, here)[:, 0]
+        pace = evaluated(slopes, step, here)[:, 0] / span
+        guess = np.clip(guess + error / pace, clock.knots[0], clock.knots[-1])
+    return guess

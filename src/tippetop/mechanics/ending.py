@@ -1,0 +1,195 @@
+"""How slip, or rolling, ends: the velocities that dry friction can bring to zero, and their last moments.
+
+What ends is a velocity xi: the slip zeta (see `stick_slip`), or rolling, which is the horizontal angular
+velocity w_t under rolling resistance. Away from xi = 0 the table's wrench depends on the direction e = xi / s
+alone, s = |xi|, and on numbers that do not end with it: with y = (n, L), and u where the contact slips,
+
+    y' = Y(y, e),        xi' = A(y, e) = R e + V,        s' = R,        s e' = V,        V.e = 0.
+
+With xi itself as a variable beside y nothing cancels as it goes to zero. Where R < 0, s reaches zero in
+finite time while e turns ever faster. In the clock -ln s it does not: de = -V/R, dy = -s Y/R, dt = -s/R, ds =
+-s.
+"""
+
+from typing import NamedTuple
+
+from tippetop.mechanics.coulomb import RollingResistance
+from tippetop.mechanics.motion import angular_velocity, axis_rate
+from tippetop.mechanics.rolling import (
+    COUPLES,
+    Acceleration,
+    ContactPoint,
+    Slip,
+    Wrench,
+    contact_motion,
+    flat,
+    sliding_law,
+    slip_length,
+    slip_wrenches,
+)
+from tippetop.mechanics.stick_slip import inner, plus, scaled, size, slip_of, slip_part
+from tippetop.mechanics.top import Top
+from tippetop.mechanics.vectors import Scalar, Vector, add, scale
+
+
+class Ending(NamedTuple):
+    """A velocity that ends or begins, and what the other does meanwhile.
+
+    Attributes
+    ----------
+    slip
+        Whether it is the slip; else it is rolling.
+    held
+        Whether the other is held at zero; else it goes on, or is not resisted.
+    """
+
+    slip: bool
+    held: bool = False
+
+    @property
+    def moves(self) -> bool:
+        """Whether the velocity of the centre of mass is free beside it."""
+        return not self.slip and not self.held
+
+    def of(self, axis: Vector, momentum: Vector, velocity: Slip, top: Top) -> Slip:
+        """The velocity xi, from axis, angular momentum and horizontal velocity of the centre of mass."""
+        if self.slip:
+            return slip_of(axis, momentum, (velocity[0], velocity[1]), top)
+        return angular_velocity(axis, momentum, top)[:2]
+
+    def rate(self, acceleration: Acceleration, top: Top) -> Slip:
+        """The rate of xi as the contact accelerates."""
+        if self.slip:
+            return slip_part(flat(acceleration), slip_length(top.friction))
+        return acceleration.turning[:2]
+
+    def reach(self, top: Top) -> Scalar | None:
+        """Length by which drilling compares with slip, m; None where it is not resisted."""
+        return slip_length(top.friction)
+
+    def wrenches(self, top: Top) -> tuple[Wrench, ...]:
+        """The wrenches that resist its components."""
+        return slip_wrenches(top.friction) if self.slip else COUPLES
+
+    def shares(self, direction: Slip, top: Top) -> tuple[Scalar, ...]:
+        """How much of each there is per unit normal force when it goes in a direction."""
+        law = top.friction
+        if not self.slip:
+            assert isinstance(law, RollingResistance)
+            return law.couple((direction[0], direction[1], 0.0))[:2]
+        reach = slip_length(law)
+        w = 0.0 * direction[0] if reach is None else direction[2] * (1.0 / reach)
+        force, torque = sliding_law(law).traction((direction[0], direction[1]), (0.0, 0.0, w))
+        return force if reach is None else (*force, torque[2])
+
+    def contact(self, point: ContactPoint, xi: Slip | None, slip: Slip | None) -> tuple[Wrench, Acceleration]:
+        """What the table does, and how the contact accelerates, for a direction of xi; None is held.
+
+        The slip is asked for only where rolling ends or begins and the contact slips meanwhile.
+        """
+        if self.slip:
+            return contact_motion(point, xi, None if self.held else point.turning[:2])
+        return contact_motion(point, slip if self.moves else None, None if xi is None else (xi[0], xi[1]))
+
+
+class Closing(NamedTuple):
+    """A body one of whose velocities is about to end: the state in the clock -ln s.
+
+    Attributes
+    ----------
+    axis, momentum
+        Axis n, and angular momentum L, kg m^2/s.
+    velocity
+        Horizontal velocity of the centre of mass, m/s, where that is free; else nothing.
+    direction
+        Direction e of xi, a unit vector.
+    speed
+        Its size s, m/s or rad/s.
+    time
+        Time, s.
+    """
+
+    axis: Vector
+    momentum: Vector
+    velocity: Slip
+    direction: Slip
+    speed: Scalar
+    time: Scalar
+
+
+class ClosingRates(NamedTuple):
+    """What follows from a state: rates of axis, angular momentum, velocity and xi, and the table's wrench."""
+
+    axis: Vector
+    momentum: Vector
+    velocity: Slip
+    xi: Slip
+    wrench: Wrench
+    acceleration: Acceleration
+
+
+def rates_in_time(state: Closing, ending: Ending, top: Top) -> ClosingRates:
+    """Rates in time."""
+    point = ContactPoint.of(state.axis, state.momentum, top)
+    slip, pushed = None, scaled(1.0, ())
+    if ending.moves:
+        slip = slip_of(state.axis, state.momentum, (state.velocity[0], state.velocity[1]), top)
+    wrench, acceleration = ending.contact(point, state.direction, slip)
+    if ending.moves:
+        pushed = scaled(1.0 / top.mass, wrench.force[:2])
+    tilting = axis_rate(state.axis, state.momentum, top)
+    xi = ending.rate(acceleration, top)
+    return ClosingRates(tilting, point.moment(wrench), pushed, xi, wrench, acceleration)
+
+
+def closing_rates(state: Closing, ending: Ending, top: Top) -> Closing:
+    """Rates in the clock -ln s; xi must be slowing down."""
+    rates = rates_in_time(state, ending, top)
+    pace = -1.0 / inner(rates.xi, state.direction)
+    step = pace * state.speed
+    # 1 where e is a unit vector, and such that it stays one: 1 itself would let it grow like exp(2 clock).
+    unit = 3.0 - 2.0 * inner(state.direction, state.direction)
+    turn = tuple(pace * a + unit * e for a, e in zip(rates.xi, state.direction, strict=True))
+    moved = scaled(step, rates.velocity)
+    return Closing(scale(step, rates.axis), scale(step, rates.momentum), moved, turn, -state.speed, step)
+
+
+def slowing(state: Closing, ending: Ending, top: Top) -> Scalar:
+    """R, the rate of s."""
+    return inner(rates_in_time(state, ending, top).xi, state.direction)
+
+
+def reopening_guard(state: Closing, ending: Ending, top: Top, horizon: Scalar) -> Scalar:
+    """-(s + 2 horizon R): falls through zero where the end is twice as far as the horizon (s) again."""
+    return -2.0 * horizon * slowing(state, ending, top) - state.speed
+
+
+def landing_guard(state: Closing, ending: Ending, top: Top, horizon: Scalar) -> Scalar:
+    """Falls through zero where xi, at its present rate, ends within the horizon (s): s + horizon R."""
+    return state.speed + horizon * slowing(state, ending, top)
+
+
+def overtaking_guard(state: Closing, ending: Ending, top: Top) -> Scalar:
+    """Falls through zero where the other velocity, at present rates, ends in half the time left to this."""
+    rates = rates_in_time(state, ending, top)
+    other = Ending(not ending.slip)
+    xi = other.of(state.axis, state.momentum, state.velocity, top)
+    ahead = -2.0 * inner(xi, xi) * inner(rates.xi, state.direction)
+    return ahead + state.speed * inner(xi, other.rate(rates.acceleration, top))
+
+
+def landed(state: Closing, ending: Ending, top: Top) -> tuple[Closing, float]:
+    """The state where xi has ended, in one step at the present rates, and an estimate of its error, s."""
+    rates = rates_in_time(state, ending, top)
+    along = inner(rates.xi, state.direction)
+    left = -state.speed / along
+    across = plus(rates.xi, scaled(-along, state.direction))
+    rest = Closing(
+        add(state.axis, scale(left, rates.axis)),
+        add(state.momentum, scale(left, rates.momentum)),
+        plus(state.velocity, scaled(left, rates.velocity)),
+        state.direction,
+        0.0,
+        state.time + left,
+    )
+    return rest, left * size(across) / -along
