@@ -19,6 +19,7 @@ LAWS: dict[str, dict[str, Any]] = {
     "ellipsoidal": {"kind": "contensou", "pressure": "ellipsoidal"},
     "hertz": {"kind": "contensou", "pressure": "hertz"},
 }
+RESISTED = {"viscous": {"kind": "viscous"}, "coulomb": LAWS["coulomb"], "ellipsoidal": LAWS["ellipsoidal"]}
 
 GAVE_UP = {"coulomb": (), "ellipsoidal": ("too_many_steps", "failed"), "hertz": ("too_many_steps", "failed")}
 """On a small patch the last moments of drilling are stiff, and not all are followed to their end."""
@@ -51,6 +52,40 @@ def ordinary(law: dict[str, Any], random: np.random.Generator) -> tt.Problem:
     }
     liftoff = str(random.choice(["fly", "stop"]))
     return tt.Problem(body=body, friction=friction, launch=launch, contact={"liftoff": liftoff})
+
+
+@pytest.mark.skipif(not has_taylor(), reason="the other integrators are not exact to rounding")
+@pytest.mark.parametrize("law", RESISTED)
+def test_tops_that_are_resisted_keep_energy_with_all_losses_and_the_cone_of_the_couple(law: str) -> None:
+    given_up = rested = held_for = 0
+    for seed in range(COUNT // 2):
+        random = np.random.default_rng(1000 + seed)
+        problem = ordinary(RESISTED[law], random)
+        arm = problem.body.shape.surface.size * 10.0 ** random.uniform(-4.0, -1.5)
+        problem = problem.replace({"rolling_resistance": arm})
+        run = tt.simulate(problem, DURATION, samples=201)
+        said = law, seed, problem.to_json()
+        if run.attrs["outcome"] in ("too_many_steps", "failed"):
+            given_up += 1
+            continue
+        assert run.attrs["outcome"] in ("completed", "lifted_off", "at_rest"), said
+        rested += run.attrs["outcome"] == "at_rest"
+        scale = float(np.abs(run["energy"]).max())
+        lost = sum(run[f"{name}_loss"].values for name in ("sliding", "drilling", "rolling"))
+        for at, taken in zip(run["event_time"].values, run["event_energy_lost"].values, strict=True):
+            lost = lost + np.where(run["time"].values > at, taken, 0.0)
+        off = run["energy"].values - run["energy"].values[0] + lost
+        assert np.abs(off).max() < 1e-10 * scale, said
+        force, torque = run["contact_force"].values, run["contact_torque"].values
+        if not float(run["end_time"]):
+            continue  # the table would have to pull from the start
+        assert force[:, 2].min() > -1e-12 * force[:, 2].max(), said
+        couple = np.hypot(torque[:, 0], torque[:, 1])
+        assert np.all(couple <= arm * force[:, 2] * (1 + 1e-12) + 1e-18), said
+        names = np.array(run["mode"].attrs["flag_meanings"].split())[run["mode"].values]
+        held_for += int(np.char.endswith(names, "without_rolling").sum())
+    assert given_up <= 0.2 * COUNT / 2, "few tops may be too stiff"
+    assert held_for > 0, "some of them should come to be held"
 
 
 @pytest.mark.skipif(not has_taylor(), reason="the other integrators are not exact to rounding")

@@ -105,6 +105,9 @@ SAMPLED: Mapping[str, Variable] = {
         "kinetic and potential energy; zero at rest with the centre of mass on the table", "J", r"energy $E$"
     ),
     "work": Variable("work of the contact force since launch", "J", r"work $W$"),
+    "sliding_loss": Variable("energy lost to sliding since launch", "J", "lost to sliding"),
+    "drilling_loss": Variable("energy lost to drilling since launch", "J", "lost to drilling"),
+    "rolling_loss": Variable("energy lost to rolling resistance since launch", "J", "lost to rolling"),
     "jellett": Variable("Jellett's integral", "kg m3 s-1", r"Jellett's integral $\lambda$"),
     "height": Variable("height of the centre of mass above the table", "m", r"height $z$"),
     "gap": Variable("height of the lowest point above the table", "m", "gap"),
@@ -140,6 +143,11 @@ METRICS: Mapping[str, Variable] = {
     "flights": Variable("number of flights", "1", "flights", dtype="int32"),
     "airborne_time": Variable("time spent in the air", "s", "time in the air"),
     "energy_lost": Variable("energy lost from launch to end", "J", "energy lost"),
+    "energy_lost_sliding": Variable("energy lost to sliding from launch to end", "J", "lost to sliding"),
+    "energy_lost_drilling": Variable("energy lost to drilling from launch to end", "J", "lost to drilling"),
+    "energy_lost_rolling": Variable(
+        "energy lost to rolling resistance from launch to end", "J", "lost to rolling"
+    ),
     "highest": Variable(
         "largest height of the centre of mass above the table", "m", "largest height of the centre of mass"
     ),

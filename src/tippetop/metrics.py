@@ -49,6 +49,8 @@ class Ends:
         Least normal force; 0 where the top left the table.
     lift_off
         First time the table let go; nan if it never did.
+    struck, drilled, rolled
+        Energy lost in impacts, to drilling and to rolling.
     airborne, highest_gap, highest
         Time spent in the air, and there the largest gap and the largest height of the centre of mass.
     down, up
@@ -66,6 +68,9 @@ class Ends:
     flights: NDArray[np.int64]
     least_force: Array
     lift_off: Array
+    struck: Array
+    drilled: Array
+    rolled: Array
     airborne: Array
     highest_gap: Array
     highest: Array
@@ -78,7 +83,10 @@ class Ends:
     def unknown(cls, count: int) -> "Ends":
         """Ends that nothing is known of yet."""
         unknown: dict[str, Any] = {field.name: np.full(count, np.nan) for field in fields(cls)}
-        none = {name: np.zeros(count) for name in ("airborne", "highest_gap", "highest")}
+        none = {
+            name: np.zeros(count)
+            for name in ("struck", "drilled", "rolled", "airborne", "highest_gap", "highest")
+        }
         counts = {name: np.zeros(count, dtype=np.int64) for name in ("steps", "flights")}
         outcome = np.full(count, OUTCOMES.index(Outcome.FAILED), dtype=np.int8)
         state = State.unpack([np.full(count, np.nan) for _ in range(10)])
@@ -160,6 +168,9 @@ def metrics(ends: Ends, start: State, top: Top, units: Units) -> dict[str, NDArr
         "flights": ends.flights,
         "airborne_time": ends.airborne * units.time,
         "energy_lost": lost * units.energy,
+        "energy_lost_sliding": (lost - ends.struck - ends.drilled - ends.rolled) * units.energy,
+        "energy_lost_drilling": ends.drilled * units.energy,
+        "energy_lost_rolling": ends.rolled * units.energy,
         "highest": highest * units.length,
         "highest_gap": ends.highest_gap * units.length,
         "jellett_error": drift,

@@ -1,20 +1,21 @@
 """What is read off a run at its samples: the report's variables, forces and invariants."""
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tippetop.contact.block import NODES, WEIGHTS, Block
 from tippetop.contact.flight import Flight
+from tippetop.contact.mode import NO_REACTION
 from tippetop.contact.rules import Bilateral
 from tippetop.contact.sliding import Sliding
 from tippetop.integrators.base import Array
 from tippetop.integrators.dense import parts_of
 from tippetop.mechanics.invariants import energy, jellett
 from tippetop.mechanics.motion import along_table, angular_velocity, axial_spin, point_velocity
-from tippetop.mechanics.quadratures import orientation, quadrature_rates
+from tippetop.mechanics.quadratures import orientation, quadrature_rates, twisting_powers
 from tippetop.mechanics.state import State
 from tippetop.mechanics.surface import contact_vector
 from tippetop.mechanics.top import Top
@@ -52,6 +53,8 @@ class Samples(NamedTuple):
         Angle psi about the axis, and the pole of its chart (see `tippetop.mechanics.quadratures`).
     work
         Work of the contact force since launch.
+    struck, drilled, rolled
+        Energy lost since launch in impacts, to drilling and to rolling.
     mode
         Number of the contact mode, among the names that the recorder has met.
     """
@@ -64,6 +67,9 @@ class Samples(NamedTuple):
     y: Array
     turn: Array
     work: Array
+    struck: Array
+    drilled: Array
+    rolled: Array
     pole: Array
     mode: NDArray[np.int8]
 
@@ -90,9 +96,12 @@ class Recorder:
         self._parts: list[Array] = []
         self.modes = [Sliding.name, Flight.name]
         self._taken = 0
-        self._last: tuple[Block, tuple[Array, Array, Array]] | None = None
+        self._last: tuple[Block, tuple[Array, Array, Array, Array]] | None = None
         self._pole = 1.0 if start.axis[2] >= 0.0 else -1.0
-        self._sums = np.array([0.0, 0.0, self._pole * azimuth, -lost])
+        # A law without torque has nothing to lose by drilling or rolling.
+        self._twists = not top.friction.torque_free
+        self._sums = np.array([0.0, 0.0, self._pole * azimuth, -lost] + [0.0, 0.0] * self._twists)
+        self._struck = lost
         self._energy, self._jellett = float(energy(start, top)), float(jellett(start, top))
         self._moment = float(length(start.momentum) * top.surface.height(start.axis[2]))
         self._imbalance, self._least, self._most = 0.0, self._jellett, self._jellett
@@ -138,19 +147,23 @@ class Recorder:
             self._parts.append(self._single(state))
         rows = np.concatenate(self._parts, axis=1)
         force, torque = (rows[11], rows[12], rows[13]), (rows[14], rows[15], rows[16])
-        x, y, turn, work, pole = rows[17:22]
-        mode = rows[22].astype(np.int8)
-        return Samples(rows[0], State.unpack(rows[1:11]), force, torque, x, y, turn, work, pole, mode)
+        x, y, turn, work, drilled, rolled, struck, pole = rows[17:25]
+        mode = rows[25].astype(np.int8)
+        lost = (struck, drilled, rolled)
+        return Samples(rows[0], State.unpack(rows[1:11]), force, torque, x, y, turn, work, *lost, pole, mode)
 
-    def _sample(self, block: Block, times: Array, rates: Array, values: Array, poles: Array) -> None:
+    def _sample(
+        self, block: Block, times: Array, rates: Array, values: Array, poles: Array, struck: Array
+    ) -> None:
         """Take the samples of a block at some times."""
         step = block.step_at(times)
         part = parts_of(times, block.starts[step], block.ends[step])
         basis = np.polynomial.legendre.legvander(2.0 * part - 1.0, len(NODES))
         integrals = _INTEGRALS @ basis.T * block.spans[step]
-        x, y, turn, work = values[:, step] + np.einsum("ik,qik->qk", integrals, rates[:, :, step])
-        rows = np.empty((23, len(times)))
-        rows[0], rows[17:22] = times, (x, y, turn, work, poles[step])
+        sums = values[:, step] + np.einsum("ik,qik->qk", integrals, rates[:, :, step])
+        rows = np.empty((26, len(times)))
+        rows[0], rows[17:21], rows[21:23] = times, sums[:4], -sums[4:] if self._twists else 0.0
+        rows[23], rows[24] = struck[step], poles[step]
         for mode, here, state, reaction in block.sampled(times, step):
             for row, number in zip(
                 rows[1:17], (*state.pack(), *reaction.force, *reaction.torque), strict=True
@@ -158,31 +171,39 @@ class Recorder:
                 row[here] = number
             if mode.name not in self.modes:
                 self.modes.append(mode.name)
-            rows[22, here] = self.modes.index(mode.name)
+            rows[25, here] = self.modes.index(mode.name)
         self._parts.append(rows)
 
     def _single(self, state: State) -> Array:
         """The sample of a launch that ended as it began."""
-        reaction = Sliding(self.top, Bilateral(self.top)).reaction(along_table(state).pack())
-        sums = [*self._sums, self._pole, 0.0]
+        try:
+            reaction = Sliding(self.top, Bilateral(self.top)).reaction(along_table(state).pack())
+        except ZeroDivisionError:  # Without slip dry friction says nothing, and the table lets go at once.
+            reaction = NO_REACTION
+        sums = [*self._sums[:4], 0.0, 0.0, self._struck, self._pole, 0.0]
         return np.array([[0.0, *state.pack(), *reaction.force, *reaction.torque, *sums]]).T
 
-    def _integrate(self, block: Block) -> tuple[Array, Array, Array]:
+    def _integrate(self, block: Block) -> tuple[Array, Array, Array, Array]:
         """Integrate along the steps of a block.
 
         Returns
         -------
         tuple
-            Rates of the quadratures at Gauss's points, shape (4, 8, k), their values where the steps begin,
-            shape (4, k), and the charts of the angle, shape (k,).
+            Rates of the quadratures at Gauss's points, shape (q, 8, k), their values where the steps begin,
+            shape (q, k), the charts of the angle, and what impacts took before, both of shape (k,). The
+            quadratures are x, y, the angle and the work, and beside them, for a law with a torque, the work
+            of drilling and of rolling.
         """
         count = len(block.starts)
-        rates, axis = np.empty((4, len(NODES), count)), np.empty((3, count))
+        rates, axis = np.empty((len(self._sums), len(NODES), count)), np.empty((3, count))
         poles = np.empty(count)
         for group in block.groups:
             state, reaction = group.nodes
             pole = np.where(state.axis[2][len(NODES) // 2] >= 0.0, 1.0, -1.0)
-            for row, rate in zip(rates, quadrature_rates(state, reaction.power, pole, self.top), strict=True):
+            found: tuple[Any, ...] = quadrature_rates(state, reaction.power, pole, self.top)
+            if self._twists:
+                found += twisting_powers(state, reaction.torque, self.top)
+            for row, rate in zip(rates, found, strict=True):
                 row[:, group.which] = rate
             axis[:, group.which], poles[group.which] = group.terms[:, :3, 0].T, pole
         gains = np.einsum("i,qik->qk", WEIGHTS, rates) * block.spans
@@ -194,10 +215,13 @@ class Recorder:
         for place, segment in zip(np.cumsum(block.lengths), block.segments, strict=True):
             if segment.transition is not None:
                 lost[place] += sum(event.energy_lost for event in segment.transition.events)
-        values[3] -= np.cumsum(lost)
+        struck = np.cumsum(lost)
+        values[3] -= struck
+        struck += self._struck
+        self._struck = float(struck[-1])
         self._sums, self._pole = values[:, -1], float(poles[-1])
         self._monitor(block, values[3])
-        return rates, values[:, :-1], poles
+        return rates, values[:, :-1], poles, struck[:-1]
 
     def _monitor(self, block: Block, work: Array) -> None:
         """See that energy and work balance, and how far Jellett's integral goes, where steps begin."""
@@ -252,6 +276,9 @@ def observe(samples: Samples, top: Top, units: Units) -> dict[str, Array]:
         "contact_torque": np.stack(samples.torque, axis=1) * units.energy,
         "energy": energy(state, top) * units.energy,
         "work": samples.work * units.energy,
+        "sliding_loss": (-samples.work - samples.struck - samples.drilled - samples.rolled) * units.energy,
+        "drilling_loss": samples.drilled * units.energy,
+        "rolling_loss": samples.rolled * units.energy,
         "jellett": jellett(state, top) * units.angular_momentum * units.length,
         "height": state.height * units.length,
         "gap": (state.height + arm[2]) * units.length,

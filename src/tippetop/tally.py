@@ -5,11 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from tippetop.contact.block import Block, ModeSteps
+from tippetop.contact.block import WEIGHTS, Block, ModeSteps
 from tippetop.contact.mode import Event, EventKind, Outcome, Segment
 from tippetop.integrators.base import Array
 from tippetop.integrators.dense import at_fractions, chebyshev
 from tippetop.integrators.polynomials import Polynomials, least_of_all
+from tippetop.mechanics.quadratures import twisting_powers
 from tippetop.mechanics.state import State
 from tippetop.metrics import OUTCOMES, Ends, Flags, arrival_time, final_band, turning_time
 
@@ -28,6 +29,7 @@ class Tally:
         self._airborne: list[tuple[float, float, float]] = []
         self._least_force, self._down, self._up, self._highest = np.inf, np.inf, -np.inf, 0.0
         self._turned, self._landed = np.nan, True
+        self._drilled = self._rolled = 0.0
         self.steps = self.evaluations = 0
 
     @property
@@ -46,8 +48,11 @@ class Tally:
             self._see(group, block.starts[group.which])
             if not group.mode.touching:
                 self._rise(group)
-            elif not self._airborne:
+                continue
+            if not self._airborne:
                 self._press(group)
+            if not group.mode.top.friction.torque_free:
+                self._twist(group)
 
     def _fly(self, segment: Segment) -> None:
         """Take in a flight, or one more piece of it."""
@@ -86,6 +91,14 @@ class Tally:
         unit = to_powers @ (transform @ group.mode.reaction(y).force[2])
         self._least_force = min(self._least_force, least_of_all(Polynomials.of_unit(unit, group.spans[near])))
 
+    def _twist(self, group: ModeSteps) -> None:
+        """Take in the work of drilling and of rolling."""
+        state, reaction = group.nodes
+        drilling, rolling = twisting_powers(state, reaction.torque, group.mode.top)
+        shares = WEIGHTS[:, None] * group.spans
+        self._drilled -= float(np.sum(shares * drilling))
+        self._rolled -= float(np.sum(shares * rolling))
+
     def ends(self, state: State, time: float, outcome: Outcome, events: Sequence[Event]) -> Ends:
         """All that was found, as of one launch, given how and where it ended."""
         found = Ends.unknown(1)
@@ -103,6 +116,9 @@ class Tally:
                 flights=np.array([len(flights)]),
                 least_force=np.array([0.0 if lift_offs or len(flights) else self._least_force]),
                 lift_off=np.array([min(lift_offs, default=np.nan)]),
+                struck=np.array([sum(event.energy_lost for event in events)]),
+                drilled=np.array([self._drilled]),
+                rolled=np.array([self._rolled]),
                 airborne=np.array([(flights[:, 1] - flights[:, 0]).sum()]),
                 highest_gap=np.array([flights[:, 2].max(initial=0.0)]),
                 highest=np.array([self._highest]),

@@ -51,6 +51,13 @@ ROWS = (
 )
 """What is printed of a run: text, key of the summary, unit, format, and what stands for what there is not."""
 
+LOSS_ROWS = (
+    ("of it to sliding", "energy_lost_sliding", "J"),
+    ("of it to drilling", "energy_lost_drilling", "J"),
+    ("of it to rolling resistance", "energy_lost_rolling", "J"),
+)
+"""What is printed of a run that loses energy in more ways than by sliding."""
+
 FLIGHT_ROWS = (
     ("flights", "flights", ""),
     ("airborne for", "airborne_time", "s"),
@@ -222,6 +229,8 @@ def _rows(summary: dict[str, Any]) -> list[tuple[str, str, str]]:
             rows.append((text, format(value, form), unit))
         elif otherwise:
             rows.append((text, otherwise, ""))
+    if summary["energy_lost_drilling"] or summary["energy_lost_rolling"]:
+        rows += [(text, format(summary[key], ".7g"), unit) for text, key, unit in LOSS_ROWS]
     if summary["flights"]:
         rows += [(text, format(summary[key], ".7g"), unit) for text, key, unit in FLIGHT_ROWS]
     return rows

@@ -15,7 +15,7 @@ import numpy as np
 
 from tippetop.integrators.base import Integrator, Motion
 from tippetop.integrators.dense import DenseSolution
-from tippetop.mechanics.ending import Ending
+from tippetop.mechanics.ending import Vanishing
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Row, Scalar, Vector
@@ -183,7 +183,7 @@ class Rules(Protocol):
     def settled(self, time: float, state: State, new: tuple[bool, bool], *, held: bool) -> Transition:
         """What follows when slip, or rolling (new), has ended, and whether the other was held already."""
 
-    def giving_way(self, state: State, events: tuple[Event, ...], beginning: Ending) -> Transition:
+    def giving_way(self, state: State, events: tuple[Event, ...], beginning: Vanishing) -> Transition:
         """What follows when slip, or rolling, can be held no longer."""
 
 

@@ -17,7 +17,7 @@ from tippetop.mechanics.beginning import beginning
 from tippetop.mechanics.coulomb import RollingResistance
 from tippetop.mechanics.ending import (
     Closing,
-    Ending,
+    Vanishing,
     closing_rates,
     landed,
     landing_guard,
@@ -87,7 +87,7 @@ class Passing(Mode):
         Which velocity ends or begins, and whether the other is held.
     """
 
-    ending: Ending
+    ending: Vanishing
 
     name: ClassVar[str] = "sliding"
 
@@ -145,7 +145,7 @@ class Loosening(Passing):
 
         In planar motion what ends meanwhile passes through zero, which series do not see.
         """
-        ending, other = self.ending, Ending(not self.ending.slip)
+        ending, other = self.ending, Vanishing(not self.ending.slip)
         point = ContactPoint.of(state.axis, state.momentum, self.top)
         slip, rolling = None, None
         if ending.moves:
@@ -179,7 +179,7 @@ class Loosening(Passing):
 class BothLoosening(Loosening):
     """Slip and rolling begin at once: an instant at their first rates, to which what follows settles."""
 
-    ending: Ending = Ending(slip=True)  # noqa: RUF009
+    ending: Vanishing = Vanishing(slip=True)  # noqa: RUF009
 
     def segments(self, time: float, state: State, end: float, integrator: Integrator) -> Iterator[Segment]:
         """Go on at the first rates."""
@@ -276,16 +276,16 @@ class Stopping(Passing):
             case "reopening":
                 return Transition((), self.rules.going_on(state, slips=not stuck), state)
             case "overtaken":
-                return Transition((), replace(self, ending=Ending(not ending.slip)), state)
+                return Transition((), replace(self, ending=Vanishing(not ending.slip)), state)
             case "branch":
                 law: Any = sliding_law(self.top.friction)
                 return Transition(
                     (), replace(self, top=with_sliding_law(self.top, law.other_branch())), state
                 )
             case "slip":
-                return self.rules.giving_way(state, (Event(EventKind.SLIP, time),), Ending(slip=True))
+                return self.rules.giving_way(state, (Event(EventKind.SLIP, time),), Vanishing(slip=True))
             case "rolling":
-                return self.rules.giving_way(state, (Event(EventKind.ROLL, time),), Ending(slip=False))
+                return self.rules.giving_way(state, (Event(EventKind.ROLL, time),), Vanishing(slip=False))
         return self.rules.settled(time, state, new=(ending.slip, not ending.slip), held=ending.held)
 
     def _in_time(self, clock: DenseSolution, time: float, duration: float) -> DenseSolution:
@@ -322,7 +322,7 @@ def _followed(integrator: Integrator, motion: Motion, parameters: Sequence[float
 
 
 @lru_cache
-def closing_motion(kind: Kind, ending: Ending, guarded: bool) -> Motion:
+def closing_motion(kind: Kind, ending: Vanishing, guarded: bool) -> Motion:
     """Equations of motion in the clock -ln s where a velocity is about to end; time is the last number.
 
     The last parameters are when the run ends, and how long before its end the velocity is left to `landed`.
@@ -362,7 +362,7 @@ def closing_motion(kind: Kind, ending: Ending, guarded: bool) -> Motion:
     return Motion(rates, 8 + free + components, kind.numbers + 2, tuple(guards), lasting=False)
 
 
-def spared(state: Closing, ending: Ending, top: Top) -> Scalar:
+def spared(state: Closing, ending: Vanishing, top: Top) -> Scalar:
     """Positive while the table can hold what is held beside a velocity that ends."""
     wrench = rates_in_time(state, ending, top).wrench
     if ending.slip:
@@ -378,7 +378,7 @@ def branch_guard(state: Closing, top: Top) -> Scalar:
     return law.branch_guard(slip[:2], angular_velocity(state.axis, state.momentum, top))
 
 
-def closing_of(y: Row, ending: Ending) -> Closing:
+def closing_of(y: Row, ending: Vanishing) -> Closing:
     """The state of a velocity that is about to end, from its numbers."""
     count, free = len(y), 8 if ending.moves else 6
     return Closing(*split(y), tuple(y[6:free]), tuple(y[free : count - 2]), y[count - 2], y[count - 1])

@@ -10,7 +10,7 @@ from tippetop.contact.sliding import Sliding, SlidingWithoutRolling
 from tippetop.contact.sticking import Sticking, StickingWithoutRolling
 from tippetop.mechanics.beginning import Beginning, beginning
 from tippetop.mechanics.coulomb import RollingResistance
-from tippetop.mechanics.ending import Ending
+from tippetop.mechanics.ending import Vanishing
 from tippetop.mechanics.flight import gap, gap_rate
 from tippetop.mechanics.impact import impact
 from tippetop.mechanics.motion import along_table, contact, on_table
@@ -120,7 +120,7 @@ class ContactRules:
         why = "nothing can hold the contact, and there is no direction in which it can go on"
         return Transition(events, Outcome.FAILED, state, why)
 
-    def giving_way(self, state: State, events: tuple[Event, ...], beginning: Ending) -> Transition:
+    def giving_way(self, state: State, events: tuple[Event, ...], beginning: Vanishing) -> Transition:
         """Slip, or rolling, begins from the limit of what the table can hold."""
         return Transition(events, Loosening(self.top, self, beginning, 2), state)
 
@@ -139,7 +139,7 @@ class ContactRules:
         if all(begins):
             return Transition(events, BothLoosening(self.top, self), state)
         if any(begins):
-            ending = Ending(begins[0], held=ended[1] if begins[0] else ended[0])
+            ending = Vanishing(begins[0], held=ended[1] if begins[0] else ended[0])
             return Transition(events, Loosening(self.top, self, ending, 1), state)
         mode = self.going_on(state, slips=not ended[0])
         if isinstance(mode, IntegratedMode) and _rests(found, state):
@@ -185,12 +185,12 @@ class ContactRules:
         rolling = point.turning[:2] if self._rolls(state) else None
         return on_limit_branch(self.top, contact_motion(point, None, rolling)[0])
 
-    def _next_to_end(self, state: State, slips: bool) -> tuple[Ending | None, float]:
+    def _next_to_end(self, state: State, slips: bool) -> tuple[Vanishing | None, float]:
         """Which velocity ends first at present rates, and the time left; none if all grow or none can end."""
         rolls, law = self._rolls(state), self.top.friction
         resisted = isinstance(law, RollingResistance)
-        possible = [Ending(slip=True, held=not rolls)] if slips and is_set_valued(law) else []
-        possible += [Ending(slip=False, held=not slips)] if rolls and resisted else []
+        possible = [Vanishing(slip=True, held=not rolls)] if slips and is_set_valued(law) else []
+        possible += [Vanishing(slip=False, held=not slips)] if rolls and resisted else []
         if not possible:
             return None, float("inf")
         sliding, top = along_table(state), self._branched(state, slips)

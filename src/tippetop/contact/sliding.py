@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 from tippetop.contact.mode import Event, EventKind, IntegratedMode, Reaction, Transition
 from tippetop.integrators.base import Function, Guard, Motion
 from tippetop.mechanics.coulomb import RollingResistance
-from tippetop.mechanics.ending import Ending
+from tippetop.mechanics.ending import Vanishing
 from tippetop.mechanics.motion import (
     along_table,
     angular_velocity,
@@ -106,7 +106,7 @@ class SlidingWithoutRolling(Sliding):
         if guard == ROLLING:
             if self.reaction(self.numbers(state)).force[2] <= 0.0 and not self.rules.pulls:
                 return self.rules.lift_off(time, state)
-            return self.rules.giving_way(state, (Event(EventKind.ROLL, time),), Ending(slip=False))
+            return self.rules.giving_way(state, (Event(EventKind.ROLL, time),), Vanishing(slip=False))
         return super().follow(guard, time, state)
 
 

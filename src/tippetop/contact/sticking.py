@@ -9,7 +9,7 @@ from tippetop.contact.mode import Event, EventKind, IntegratedMode, Reaction, Tr
 from tippetop.contact.sliding import ROLLING, ROLLING_STOPPING
 from tippetop.integrators.base import Guard, Motion
 from tippetop.mechanics.coulomb import RollingResistance
-from tippetop.mechanics.ending import Ending
+from tippetop.mechanics.ending import Vanishing
 from tippetop.mechanics.motion import axis_rate, on_table
 from tippetop.mechanics.rolling import (
     ContactPoint,
@@ -62,7 +62,9 @@ class Sticking(IntegratedMode):
         if self.reaction(self.numbers(state)).force[2] <= 0.0 and not self.rules.pulls:
             return self.rules.lift_off(time, state)
         kind = EventKind.ROLL if guard == ROLLING else EventKind.SLIP
-        beginning = Ending(slip=False, held=True) if guard == ROLLING else Ending(slip=True, held=self.held)
+        beginning = (
+            Vanishing(slip=False, held=True) if guard == ROLLING else Vanishing(slip=True, held=self.held)
+        )
         return self.rules.giving_way(state, (Event(kind, time),), beginning)
 
 

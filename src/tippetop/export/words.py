@@ -119,6 +119,8 @@ def _end(run: xr.Dataset, problem: Problem, end: Prediction | None) -> str:
     if theta[-1] > math.pi - NEAR and (foretold or np.all(theta[swings] > math.pi - NEAR)):
         return f"inverts at {float(run['arrives']):.2f} s"
     angle = f"{math.degrees(theta[-1]):.1f}°"
+    if run.attrs["outcome"] == "at_rest":
+        return f"comes to rest at {angle} after {float(run['end_time']):.2f} s"
     since = _settled(run, problem, end)
     if since is None:
         return f"is at {angle} when the run ends, and still moving"

@@ -33,6 +33,7 @@ NAMES = {
     "body.I1": "I₁ (kg m²)",
     "body.I3": "I₃ (kg m²)",
     "gravity": "Gravity (m/s²)",
+    "rolling_resistance": "Rolling resistance (m)",
     "draw": "Draw",
 }
 """What the axes of maps are called; others by their field."""

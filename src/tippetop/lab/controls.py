@@ -77,6 +77,7 @@ SMOOTHED = Dial("friction.eps", "Smoothed below a slip of", "m/s", 1e-5, 0.1, 0.
 TABLE = (
     Dial("contact.restitution", "Restitution", "", 0.0, 1.0, 0.01),
     Dial("gravity", "Gravity", "m/s²", 0.1, 25.0, 0.1),
+    Dial("rolling_resistance", "Rolling resistance", "m", 0.0, 1e-3, 1e-5),
     Dial("duration", "Duration", "s", 1.0, 60.0, 1.0),
 )
 TOP = (

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from tippetop.mechanics.ending import Ending
+from tippetop.mechanics.ending import Vanishing
 from tippetop.mechanics.rolling import Acceleration, ContactPoint, Slip, Wrench, contact_motion, flat
 from tippetop.mechanics.stick_slip import inner, plus, scaled, size
 from tippetop.mechanics.top import Top
@@ -51,12 +51,12 @@ def beginning(
     ArithmeticError
         If no such direction is found: more than one contact force may be consistent, or none.
     """
-    parts = [Ending(which) for which, wanted in zip((True, False), begins, strict=True) if wanted]
+    parts = [Vanishing(which) for which, wanted in zip((True, False), begins, strict=True) if wanted]
     held, acceleration = contact_motion(point, slip, rolling)
     found = {part: _start(part, held, point.top) for part in parts}
     moved = 0.0
     for _ in range(ITERATIONS):
-        ways = found.get(Ending(True), slip), found.get(Ending(False), rolling)
+        ways = found.get(Vanishing(True), slip), found.get(Vanishing(False), rolling)
         wrench, acceleration = contact_motion(point, *ways)
         moved = 0.0
         for part, direction in found.items():
@@ -67,7 +67,7 @@ def beginning(
             moved = max(moved, size(plus(found[part], scaled(-1.0, direction))))
         if moved < 4e-16:
             break
-    ways = found.get(Ending(True), slip), found.get(Ending(False), rolling)
+    ways = found.get(Vanishing(True), slip), found.get(Vanishing(False), rolling)
     wrench, acceleration = contact_motion(point, *ways)
     along = [inner(part.rate(acceleration, point.top), direction) for part, direction in found.items()]
     if moved > 1e-9 or min(along, default=0.0) < -1e-9 * size(flat(point.free)):
@@ -83,12 +83,12 @@ def direction_of_slip(axis: Vector, momentum: Vector, top: Top) -> tuple[Slip, f
     return found.slip, found.rates[0]
 
 
-def _resisting(part: Ending, wrench: Wrench) -> Slip:
+def _resisting(part: Vanishing, wrench: Wrench) -> Slip:
     """The force, or couple, of a wrench that resists slip, or rolling."""
     return wrench.force[:2] if part.slip else wrench.torque[:2]
 
 
-def _start(part: Ending, held: Wrench, top: Top) -> Slip:
+def _start(part: Vanishing, held: Wrench, top: Top) -> Slip:
     """A direction to begin the search with: against what would have held it."""
     pushed: Slip = scaled(-1.0, _resisting(part, held))
     units = part.wrenches(top)
@@ -97,7 +97,7 @@ def _start(part: Ending, held: Wrench, top: Top) -> Slip:
     return scaled(1.0 / size(pushed), pushed)
 
 
-def _stiffness(part: Ending, point: ContactPoint) -> float:
+def _stiffness(part: Vanishing, point: ContactPoint) -> float:
     """How strongly the contact answers to what resists slip, or rolling, 1/kg or 1/(kg m^2)."""
     answers = [part.rate(point.response(unit), point.top) for unit in part.wrenches(point.top)]
     return float(sum(abs(answer[i]) for i, answer in enumerate(answers)))

@@ -32,7 +32,7 @@ from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Scalar, Vector, add, scale
 
 
-class Ending(NamedTuple):
+class Vanishing(NamedTuple):
     """A velocity that ends or begins, and what the other does meanwhile.
 
     Attributes
@@ -128,7 +128,7 @@ class ClosingRates(NamedTuple):
     acceleration: Acceleration
 
 
-def rates_in_time(state: Closing, ending: Ending, top: Top) -> ClosingRates:
+def rates_in_time(state: Closing, ending: Vanishing, top: Top) -> ClosingRates:
     """Rates in time."""
     point = ContactPoint.of(state.axis, state.momentum, top)
     slip, pushed = None, scaled(1.0, ())
@@ -142,7 +142,7 @@ def rates_in_time(state: Closing, ending: Ending, top: Top) -> ClosingRates:
     return ClosingRates(tilting, point.moment(wrench), pushed, xi, wrench, acceleration)
 
 
-def closing_rates(state: Closing, ending: Ending, top: Top) -> Closing:
+def closing_rates(state: Closing, ending: Vanishing, top: Top) -> Closing:
     """Rates in the clock -ln s; xi must be slowing down."""
     rates = rates_in_time(state, ending, top)
     pace = -1.0 / inner(rates.xi, state.direction)
@@ -154,31 +154,31 @@ def closing_rates(state: Closing, ending: Ending, top: Top) -> Closing:
     return Closing(scale(step, rates.axis), scale(step, rates.momentum), moved, turn, -state.speed, step)
 
 
-def slowing(state: Closing, ending: Ending, top: Top) -> Scalar:
+def slowing(state: Closing, ending: Vanishing, top: Top) -> Scalar:
     """R, the rate of s."""
     return inner(rates_in_time(state, ending, top).xi, state.direction)
 
 
-def reopening_guard(state: Closing, ending: Ending, top: Top, horizon: Scalar) -> Scalar:
+def reopening_guard(state: Closing, ending: Vanishing, top: Top, horizon: Scalar) -> Scalar:
     """-(s + 2 horizon R): falls through zero where the end is twice as far as the horizon (s) again."""
     return -2.0 * horizon * slowing(state, ending, top) - state.speed
 
 
-def landing_guard(state: Closing, ending: Ending, top: Top, horizon: Scalar) -> Scalar:
+def landing_guard(state: Closing, ending: Vanishing, top: Top, horizon: Scalar) -> Scalar:
     """Falls through zero where xi, at its present rate, ends within the horizon (s): s + horizon R."""
     return state.speed + horizon * slowing(state, ending, top)
 
 
-def overtaking_guard(state: Closing, ending: Ending, top: Top) -> Scalar:
+def overtaking_guard(state: Closing, ending: Vanishing, top: Top) -> Scalar:
     """Falls through zero where the other velocity, at present rates, ends in half the time left to this."""
     rates = rates_in_time(state, ending, top)
-    other = Ending(not ending.slip)
+    other = Vanishing(not ending.slip)
     xi = other.of(state.axis, state.momentum, state.velocity, top)
     ahead = -2.0 * inner(xi, xi) * inner(rates.xi, state.direction)
     return ahead + state.speed * inner(xi, other.rate(rates.acceleration, top))
 
 
-def landed(state: Closing, ending: Ending, top: Top) -> tuple[Closing, float]:
+def landed(state: Closing, ending: Vanishing, top: Top) -> tuple[Closing, float]:
     """The state where xi has ended, in one step at the present rates, and an estimate of its error, s."""
     rates = rates_in_time(state, ending, top)
     along = inner(rates.xi, state.direction)

@@ -8,7 +8,7 @@ where the body is first turned over about y. The rate of psi is omega3 less that
 
 from typing import NamedTuple
 
-from tippetop.mechanics.motion import axial_spin, axis_rate
+from tippetop.mechanics.motion import angular_velocity, axial_spin, axis_rate
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Functions, Scalar, Vector
@@ -44,6 +44,12 @@ def quadrature_rates(state: State, power: Scalar, pole: Scalar, top: Top) -> Qua
     """Rates of the quadratures, given the power of friction (W) and the chart of psi."""
     turning = turn_rate(state.axis, state.momentum, pole, top)
     return Quadratures(state.velocity[0], state.velocity[1], turning, power)
+
+
+def twisting_powers(state: State, torque: Vector, top: Top) -> tuple[Scalar, Scalar]:
+    """Powers of drilling and of rolling friction, W, for the table's torque, N m."""
+    turning = angular_velocity(state.axis, state.momentum, top)
+    return torque[2] * turning[2], torque[0] * turning[0] + torque[1] * turning[1]
 
 
 def orientation(axis: Vector, turn: Scalar, pole: Scalar, functions: Functions) -> tuple[Scalar, ...]:

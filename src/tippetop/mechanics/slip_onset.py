@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 from tippetop.mechanics.algebra import TruncatedSeries
 from tippetop.mechanics.coulomb import RollingResistance
-from tippetop.mechanics.ending import Ending
+from tippetop.mechanics.ending import Vanishing
 from tippetop.mechanics.friction import NO_TORQUE
 from tippetop.mechanics.motion import axis_rate
 from tippetop.mechanics.rolling import (
@@ -93,7 +93,7 @@ def onset(
     power: int,
     top: Top,
     order: int,
-    ending: Ending = Ending(slip=True),  # noqa: B008
+    ending: Vanishing = Vanishing(slip=True),  # noqa: B008
     velocity: Slip = (),
 ) -> Onset:
     """The beginning of slip, or rolling, order by order.
@@ -156,7 +156,9 @@ class Growing:
     unit of each wrench, the normal force last: series that depend on the state alone.
     """
 
-    def __init__(self, start: tuple[Vector, Vector, Slip], top: Top, ending: Ending, velocity: Slip) -> None:
+    def __init__(
+        self, start: tuple[Vector, Vector, Slip], top: Top, ending: Vanishing, velocity: Slip
+    ) -> None:
         self.top, self.first, self.ending = top, start[2], ending
         rules: list[Callable[[int], Scalar]] = []
 
@@ -237,7 +239,7 @@ class Growing:
         return tuple(rates)
 
 
-def _normal_wrench(point: ContactPoint, ending: Ending, velocity: Slip) -> Wrench:
+def _normal_wrench(point: ContactPoint, ending: Vanishing, velocity: Slip) -> Wrench:
     """A unit normal force with the friction that goes with it beside what begins."""
     law: Any = point.top.friction
     if ending.slip:
@@ -251,14 +253,14 @@ def _normal_wrench(point: ContactPoint, ending: Ending, velocity: Slip) -> Wrenc
 
 
 def _beside(
-    units: Sequence[Wrench], point: ContactPoint, ending: Ending
+    units: Sequence[Wrench], point: ContactPoint, ending: Vanishing
 ) -> tuple[Wrench, Acceleration, list[tuple[Wrench, Acceleration]]]:
     """Wrenches with what holds the other velocity beside them: without any, and beside one unit of each."""
     nothing = Wrench(NO_TORQUE, NO_TORQUE)
     alone = [(unit, point.response(unit)) for unit in units]
     if not ending.held:
         return nothing, point.free, alone
-    other = Ending(not ending.slip)
+    other = Vanishing(not ending.slip)
     holds = [(unit, point.response(unit)) for unit in other.wrenches(point.top)]
     rows = [[other.rate(response, point.top)[i] for _, response in holds] for i in range(len(holds))]
 

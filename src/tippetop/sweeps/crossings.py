@@ -16,6 +16,7 @@ from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators import default_name, make_integrator
 from tippetop.integrators.base import Array
 from tippetop.mechanics.flight import gap, gap_rate
+from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.state import State
 from tippetop.mechanics.touchdown import Start
 from tippetop.sweeps.flights import collide, fly_all, rolls, slides, slips
@@ -121,6 +122,8 @@ class Crossings:
         after, struck = collide(state, top)
         sliding = struck & (launches.restitution[cells] == 0.0) & slides(after, top)
         slots.place(lanes[sliding], picked(after, sliding), time[sliding])
+        taken = energy(state, top) - energy(after, top)
+        slots.ends.struck[cells[sliding]] += np.broadcast_to(taken, sliding.shape)[sliding]
         others = np.flatnonzero(~sliding)
         transitions = [
             launches.rules(int(cells[i])).touchdown(float(time[i]), single(state, i)) for i in others.tolist()
@@ -134,14 +137,17 @@ class Crossings:
         again, starts, states = [], [], []
         for i, transition in enumerate(transitions):
             self._note(lanes[i], float(time[i]), transition)
+            if not isinstance(transition.then, Flight | Outcome) and type(transition.then) is not Sliding:
+                self._follow_alone(int(lanes[i]), float(time[i]), transition)
+                continue
+            lost = sum(event.energy_lost for event in transition.events)
+            self.slots.ends.struck[self.slots.cell[lanes[i]]] += lost
             if isinstance(transition.then, Flight):
                 again.append(i)
                 starts.append(int(transition.then.start))
                 states.append(transition.state.pack())
-            elif isinstance(transition.then, Outcome) or type(transition.then) is Sliding:
-                self._settle(lanes[i : i + 1], transition, time[i : i + 1])
             else:
-                self._follow_alone(int(lanes[i]), float(time[i]), transition)
+                self._settle(lanes[i : i + 1], transition, time[i : i + 1])
         which = np.array(again, dtype=np.intp)
         thrown = State.unpack(list(np.array(states, dtype=float).reshape(-1, 10).T.copy()))
         flying = lanes[which], thrown, time[which], np.array(starts, dtype=np.intp)
@@ -175,8 +181,8 @@ class Crossings:
             tally.take(block)
         assert trajectory.outcome is not None, "a trajectory that has no more segments has ended"
         found = tally.ends(trajectory.state, trajectory.time, trajectory.outcome, trajectory.events)
-        ends.flights[cell] += found.flights
-        ends.airborne[cell] += found.airborne
+        for name in ("flights", "airborne", "struck", "drilled", "rolled"):
+            getattr(ends, name)[cell] += getattr(found, name)
         for name in ("highest_gap", "highest", "up"):
             getattr(ends, name)[cell] = np.fmax(getattr(ends, name)[cell], getattr(found, name))
         for name in ("lift_off", "least_force", "down"):

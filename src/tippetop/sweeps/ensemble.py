@@ -1,13 +1,21 @@
 """The engine: cells in, observables out."""
 
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import NDArray
 
 from tippetop.catalogue import SWEPT, Ending, Fault
 from tippetop.contact.sliding import sliding_motion
-from tippetop.integrators.base import Array
+from tippetop.integrators.base import Array, Motion
+from tippetop.mechanics.motion import contact, on_table
+from tippetop.mechanics.quadratures import twisting_powers
+from tippetop.mechanics.state import SlidingState
+from tippetop.mechanics.top import Kind
 from tippetop.mechanics.units import Units
-from tippetop.mechanics.vectors import length
+from tippetop.mechanics.vectors import Scalar, length
 from tippetop.metrics import ending, final_band, metrics
 from tippetop.sweeps.cells import cells_of, spread
 from tippetop.sweeps.definition import Sweep
@@ -39,7 +47,7 @@ def follow_cells(sweep: Sweep, numbers: Flat) -> dict[str, NDArray[np.generic]]:
     if not len(good):
         return found
     launches = cells.launches(good, sweep.duration)
-    method = stepper(sliding_motion(launches.kind, guarded=True), sweep.tolerance)
+    method = stepper(swept_motion(launches.kind), sweep.tolerance)
     alike = np.argsort(expected_cost(launches), kind="stable")
     for first in range(0, len(alike), LANES_AT_ONCE):
         block = alike[first : first + LANES_AT_ONCE]
@@ -53,6 +61,21 @@ def follow_cells(sweep: Sweep, numbers: Flat) -> dict[str, NDArray[np.generic]]:
         for name, numbers_found in values.items():
             found[name][which] = numbers_found.astype(SWEPT[name].dtype)
     return found
+
+
+@lru_cache
+def swept_motion(kind: Kind) -> Motion:
+    """Equations of motion of sliding, and the work of drilling and of rolling if the law has a torque."""
+    sliding = sliding_motion(kind, guarded=True)
+    if kind.example.friction.torque_free:
+        return sliding
+
+    def rates(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[Scalar, ...]:
+        top, state = kind.top(tuple(numbers)), SlidingState.unpack(y)
+        torque = contact(state.axis, state.momentum, state.velocity, top).torque
+        return (*sliding.rates(y, numbers), *twisting_powers(on_table(state, top), torque, top))
+
+    return replace(sliding, rates=rates, size=10)
 
 
 def expected_cost(launches: Launches) -> Array:

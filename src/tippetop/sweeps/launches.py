@@ -70,7 +70,7 @@ class Launches:
 
     @property
     def alone(self) -> Flags:
-        """Which are followed alone, for rules of their own or as nothing resists their rolling, shape (n,)."""
+        """Which are followed alone, for rules of their own or as nothing resists rolling, shape (n,)."""
         law = self.top.friction
         unresisted = isinstance(law, RollingResistance) and law.length == 0.0
         found: Flags = np.full(len(self), self.own is not None) | unresisted

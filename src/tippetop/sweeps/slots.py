@@ -16,6 +16,9 @@ from tippetop.sweeps.launches import Flags, Indices, Launches, branched
 from tippetop.sweeps.stride import LANES, Jet, Layout, Stepper
 from tippetop.sweeps.watch import Watch
 
+LOSSES = slice(8, 10)
+"""Rows of the work of drilling and of rolling, where a law has a torque."""
+
 
 @dataclass
 class Slots:
@@ -168,6 +171,10 @@ class Slots:
         ends.time[cells] = time
         ends.outcome[cells] = np.where(fine, OUTCOMES.index(outcome), OUTCOMES.index(Outcome.FAILED))
         ends.steps[cells] = self.rows[self.layout.steps, lanes]
+        if self.layout.size == LOSSES.stop:
+            drilled, rolled = -self.rows[LOSSES][:, lanes]
+            ends.drilled[cells] += drilled
+            ends.rolled[cells] += rolled
         ends.turned[cells], ends.arrived[cells] = self.watch.turned[lanes], self.watch.reached[lanes]
         self.rows[self.layout.left, lanes] = 0.0
         self.alive[lanes] = False

@@ -1,6 +1,7 @@
 """What the theory asks of a top, with a sentence for those it does not hold for."""
 
 from tippetop.errors import InvalidInput
+from tippetop.mechanics.coulomb import RollingResistance
 from tippetop.mechanics.rolling import is_set_valued
 from tippetop.mechanics.top import Top
 
@@ -16,6 +17,10 @@ def require_sphere(top: Top) -> None:
 def require_jellett(top: Top) -> None:
     """Refuse a top that does not conserve Jellett's integral, with `InvalidInput`."""
     require_sphere(top)
+    if isinstance(top.friction, RollingResistance):
+        raise InvalidInput(
+            "rolling_resistance", top.friction.length, "0: with it Jellett's integral is not conserved"
+        )
     if not top.conserves_jellett:
         raise InvalidInput(
             "friction", top.friction, "friction without torque, which conserves Jellett's integral"
@@ -27,6 +32,12 @@ def require_lasting_slip(top: Top) -> None:
 
     There is no linear motion about sticking either.
     """
+    if isinstance(top.friction, RollingResistance):
+        raise InvalidInput(
+            "rolling_resistance",
+            top.friction.length,
+            "0: with it a top is held where it stands, and the theory knows no such rest",
+        )
     if is_set_valued(top.friction):
         raise InvalidInput(
             "friction", top.friction, "friction under which slip never ends; the theory knows no sticking"

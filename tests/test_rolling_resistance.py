@@ -1,0 +1,192 @@
+"""Rolling resistance and rest: motions known exactly, what must hold, and where it is refused."""
+
+import math
+
+import numpy as np
+import pytest
+
+import tippetop as tt
+
+G = 9.8
+R, M, ARM = 0.02, 0.015, 1e-4
+BALL = tt.Body(
+    mass=M, shape={"kind": "spheroid", "across": R, "along": R}, I1=0.4 * M * R * R, I3=0.4 * M * R * R
+)
+COULOMB = tt.CoulombFriction(mu=0.3)
+PATCHES = [
+    tt.ContensouFriction(mu=0.3, patch_radius=1e-3, pressure=word) for word in ("hertz", "ellipsoidal")
+]
+REPORT = tt.presets.report_problem(spin=100.0, tilt=0.1)
+
+
+def modes(run):
+    return np.array(run["mode"].attrs["flag_meanings"].split())[run["mode"].values]
+
+
+def events(run, kind):
+    return run["event_time"].values[run["event_kind"].values == kind]
+
+
+@pytest.mark.parametrize("friction", [COULOMB, *PATCHES], ids=["coulomb", "hertz", "ellipsoidal"])
+@pytest.mark.parametrize("integrator", ["taylor", "dop853"])
+def test_a_rolling_ball_slows_down_evenly_and_stays_where_it_stops(friction, integrator):
+    """About the contact point, (I + m R^2) w' = -N arm: w falls evenly to zero."""
+    spin = 10.0
+    launch = tt.Launch(tilt=1.0, spin=0.0, tilt_rate=spin)
+    problem = tt.Problem(body=BALL, friction=friction, launch=launch, rolling_resistance=ARM)
+    slowing = G * ARM / (1.4 * R * R)
+    run = tt.simulate(problem, 20.0, samples=201, integrator=integrator)
+    assert run.attrs["outcome"] == "at_rest"
+    assert float(run["end_time"]) == pytest.approx(spin / slowing, abs=1e-9)
+    assert events(run, "rolling stops") == pytest.approx([spin / slowing], abs=1e-9)
+    # The tilt is turned back at each pole that the axis passes.
+    rate = np.abs(run["theta_dot"].values[:30])
+    np.testing.assert_allclose(rate, spin - slowing * run["time"].values[:30], atol=1e-9 * spin)
+    assert float(run["x"][-1]) == pytest.approx(R * spin**2 / (2 * slowing), rel=1e-9)
+    kinetic = 0.5 * 1.4 * M * R * R * spin**2
+    assert float(run["energy_lost_rolling"]) == pytest.approx(kinetic, rel=1e-10)
+    assert abs(float(run["energy_lost_sliding"])) < 1e-12 * kinetic
+    assert np.abs(run["angular_momentum"].values[-1]).max() < 1e-20
+
+
+@pytest.mark.parametrize("pressure", ["hertz", "ellipsoidal"])
+@pytest.mark.parametrize("arm", [0.0, 1e-5])
+@pytest.mark.parametrize("tilt", [0.0, math.pi])
+def test_a_standing_top_loses_its_spin_by_drilling_and_comes_to_rest(pressure, arm, tilt):
+    """I3 w' = -(3 pi / 16) mu N patch, whether it stands stably or not."""
+    mu, patch, spin = 0.3, 2e-3, 100.0
+    problem = REPORT.model_copy(
+        update={
+            "friction": tt.ContensouFriction(mu=mu, patch_radius=patch, pressure=pressure),
+            "launch": tt.Launch(tilt=tilt, spin=spin),
+            "rolling_resistance": arm,
+        }
+    )
+    body = problem.body
+    slowing = 3 * math.pi / 16 * mu * body.mass * problem.gravity * patch / body.I3
+    run = tt.simulate(problem, 60.0, samples=61)
+    assert run.attrs["outcome"] == "at_rest"
+    assert float(run["end_time"]) == pytest.approx(spin / slowing, rel=1e-11)
+    early = run["time"].values < spin / slowing
+    spins = run["omega3"].values[early]
+    np.testing.assert_allclose(spins, spin - slowing * run["time"].values[early], atol=1e-9 * spin)
+    assert float(run["energy_lost_drilling"]) == pytest.approx(0.5 * body.I3 * spin**2, rel=1e-11)
+    assert float(run["final_theta"]) == pytest.approx(tilt, abs=1e-15)
+
+
+def test_a_rocking_top_comes_to_rest_where_the_table_holds_it():
+    """At rest m g a sin(theta) <= N arm, and its energy is what it lost by rolling alone."""
+    problem = REPORT.replace({"launch.spin": 0.0, "launch.tilt": 1.0}).model_copy(
+        update={"friction": COULOMB, "rolling_resistance": ARM}
+    )
+    run = tt.simulate(problem, 60.0, samples=601)
+    assert run.attrs["outcome"] == "at_rest"
+    shape = problem.body.shape
+    offset = shape.radius * shape.eccentricity
+    assert offset * math.sin(float(run["final_theta"])) <= ARM
+    assert float(run["energy_error"]) < 1e-12
+    lost = float(run["energy_lost_rolling"])
+    assert lost == pytest.approx(float(run["energy_lost"]), rel=1e-11)
+    couple = np.hypot(*run["contact_torque"].values[:, :2].T)
+    assert np.all(couple <= ARM * run["normal_force"].values * (1 + 1e-12))
+
+
+@pytest.mark.parametrize(("tilt", "rests"), [(0.99, True), (1.01, False)])
+def test_a_tilted_top_set_down_rests_up_to_the_tilt_that_the_resistance_holds(tilt, rests):
+    shape = REPORT.body.shape
+    limit = math.asin(ARM / (shape.radius * shape.eccentricity))
+    problem = REPORT.replace({"launch.spin": 0.0, "launch.tilt": tilt * limit}).model_copy(
+        update={"friction": COULOMB, "rolling_resistance": ARM}
+    )
+    run = tt.simulate(problem, 0.05, samples=11)
+    assert run.attrs["outcome"] == ("at_rest" if rests else "completed")
+    assert (float(run["end_time"]) < 1e-9) is rests
+
+
+@pytest.mark.parametrize(
+    "friction",
+    [tt.ViscousFriction(mu=0.3), tt.RegularizedCoulombFriction(mu=0.3)],
+    ids=["viscous", "smoothed"],
+)
+def test_an_inverted_top_under_a_smooth_law_stops_rolling_and_stands(friction):
+    problem = REPORT.replace({"launch.spin": 155.0}).model_copy(
+        update={"friction": friction, "rolling_resistance": 1e-5}
+    )
+    runs = [
+        tt.simulate(problem, 8.0, samples=161, integrator=name, tolerance=tolerance)
+        for name, tolerance in (("taylor", None), ("dop853", 1e-13))
+    ]
+    for run in runs:
+        assert run.attrs["outcome"] == "completed"
+        assert float(run["energy_error"]) < 1e-10
+        couple = np.hypot(*run["contact_torque"].values[:, :2].T)
+        assert np.all(couple <= 1e-5 * run["normal_force"].values * (1 + 1e-12))
+    one, other = runs
+    np.testing.assert_allclose(one["theta"], other["theta"], atol=1e-7)
+    np.testing.assert_allclose(events(one, "rolling stops"), events(other, "rolling stops"), rtol=1e-6)
+
+
+def test_losses_add_up_to_the_energy_lost():
+    problem = REPORT.replace({"launch.spin": 60.0, "launch.tilt": 0.8, "launch.gap": 0.005}).model_copy(
+        update={"friction": PATCHES[1], "rolling_resistance": ARM}
+    )
+    run = tt.simulate(problem, 2.0, samples=201)
+    parts = [run[f"energy_lost_{name}"].item() for name in ("sliding", "drilling", "rolling")]
+    assert min(parts) > 0.0
+    struck = float(run["impact_energy_lost"])
+    assert struck > 0.0
+    assert sum(parts) + struck == pytest.approx(float(run["energy_lost"]), rel=1e-12)
+    sampled = sum(run[f"{name}_loss"].values for name in ("sliding", "drilling", "rolling"))
+    impacts = sum(
+        np.where(run["time"].values > at, lost, 0.0)
+        for at, lost in zip(run["event_time"].values, run["event_energy_lost"].values, strict=True)
+    )
+    np.testing.assert_allclose(sampled + impacts, -run["work"].values, atol=1e-12 * struck)
+    for name, value in zip(("sliding", "drilling", "rolling"), parts, strict=True):
+        assert float(run[f"{name}_loss"][-1]) == pytest.approx(value, rel=1e-9)
+        assert np.all(np.diff(run[f"{name}_loss"].values) > -1e-12 * sum(parts))
+
+
+def test_sweeps_find_what_runs_find():
+    problem = REPORT.model_copy(update={"friction": PATCHES[1], "rolling_resistance": ARM})
+    arms, spins = [0.0, 2e-4], [0.0, 60.0]
+    problem = problem.replace({"launch.tilt": 0.5})
+    found = tt.sweep(
+        problem, {"rolling_resistance": arms, "launch.spin": spins}, duration=3.0, tolerance=1e-15
+    )
+    names = ("final_theta", "end_time", *(f"energy_lost_{how}" for how in ("sliding", "drilling", "rolling")))
+    words = found["outcome"].attrs["flag_meanings"].split()
+    outcomes = set()
+    for i, arm in enumerate(arms):
+        for j, spin in enumerate(spins):
+            run = tt.simulate(
+                problem.replace({"rolling_resistance": arm, "launch.spin": spin}), 3.0, samples=3
+            )
+            cell = found.isel({"rolling_resistance": i, "launch.spin": j})
+            scale = float(run["energy_start"])
+            for name in names:
+                assert float(cell[name]) == pytest.approx(float(run[name]), rel=1e-9, abs=1e-11 * scale), name
+            rested = words[int(cell["outcome"])] == "at_rest"
+            assert rested == (run.attrs["outcome"] == "at_rest")
+            outcomes.add(rested)
+    assert outcomes == {True, False}
+
+
+def test_jelletts_integral_and_the_theory_know_of_it():
+    problem = REPORT.model_copy(update={"rolling_resistance": 1e-5})
+    assert REPORT.top.conserves_jellett
+    assert not problem.top.conserves_jellett
+    run = tt.simulate(problem, 0.5, samples=11)
+    assert float(run["jellett_drift"]) > 1e-6
+    for ask in (tt.predict, tt.critical_spins):
+        with pytest.raises(tt.InvalidInput, match="rolling_resistance = 1e-05"):
+            ask(problem)
+
+
+def test_wrong_arms_are_refused_and_right_ones_are_written():
+    with pytest.raises(tt.InvalidInput, match=r"rolling_resistance = -0.1 .* at least 0"):
+        REPORT.replace({"rolling_resistance": -0.1})
+    problem = REPORT.replace({"rolling_resistance": 1e-5})
+    assert tt.Problem.from_toml(problem.to_toml()) == problem
+    assert tt.Problem.from_json(problem.to_json()) == problem
+    assert "rolling_resistance = 1e-05" in problem.to_toml()
