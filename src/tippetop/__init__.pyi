@@ -33,6 +33,7 @@ from .problem import Problem as Problem
 from .run import simulate as simulate
 from .summary import summarize as summarize
 from .sweeps.run import sweep as sweep
+from .theory.drilling import standing_time as standing_time
 from .theory.overview import steady_states as steady_states
 from .theory.prediction import predict as predict
 from .theory.thresholds import critical_spins as critical_spins

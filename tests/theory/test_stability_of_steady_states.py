@@ -1,7 +1,6 @@
 """Spectra of the steady states against the published equations, the energy, and full runs."""
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -11,7 +10,7 @@ from hypothesis import assume, given
 from strategies import numbers, spheroids, tops
 from tippetop import presets
 from tippetop.mechanics.euler import published_rates
-from tippetop.mechanics.friction import Traction, ViscousLaw
+from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.motion import along_table
 from tippetop.theory import dual
 from tippetop.theory.dual import jacobian
@@ -24,7 +23,6 @@ from tippetop.theory.stability import (
     vertical_growth_rates,
 )
 from tippetop.theory.steady import (
-    VERTICAL_SPINS,
     SteadyKind,
     level_spin,
     precession_branch,
@@ -143,35 +141,3 @@ def test_the_spin_of_a_real_run_grows_as_the_linear_motion_says():
         vertical_spin(SteadyKind.UPRIGHT, top, 100.0), top, along_table(problem.start()), times
     )
     assert linear == pytest.approx(tilts_of(axis), rel=1e-6)
-
-
-class DrillingPatch(NamedTuple):
-    """Dry friction of a patch that slips and drills at once, with an ellipsoidal limit surface."""
-
-    mu: float
-    radius: float
-    torque_free = False
-
-    def traction(self, slip, omega):
-        drill = self.radius * omega[2]
-        factor = -self.mu * (slip[0] ** 2 + slip[1] ** 2 + drill**2) ** -0.5
-        return Traction((factor * slip[0], factor * slip[1]), (0.0, 0.0, factor * drill * self.radius))
-
-    def coefficients(self, units):
-        return (self.mu, self.radius / units.length)
-
-    @classmethod
-    def from_coefficients(cls, coefficients):
-        return cls(*coefficients)
-
-
-@pytest.mark.parametrize("kind", VERTICAL_SPINS)
-def test_about_a_vertical_spin_drilling_makes_dry_friction_viscous(kind):
-    """With the coefficient mu / (radius |omega|)."""
-    top = presets.report_problem().top
-    for spin in (30.0, 150.0, -80.0):
-        dry, viscous = (
-            vertical_eigenvalues(kind, top._replace(friction=law), np.array([spin]))
-            for law in (DrillingPatch(0.3, 5e-4), ViscousLaw(0.3 / (5e-4 * abs(spin))))
-        )
-        assert dry == pytest.approx(viscous, abs=1e-13 * np.abs(viscous).max())

@@ -82,6 +82,8 @@ def _plain(found: "Outlook") -> dict[str, Any]:
         ],
         "mu_flip_time": found.mu_flip_time,
         "flip_time": found.flip_time,
+        "jellett_conserved": found.conserved,
+        "standing_time": _finite(found.standing_time) if found.standing_time is not None else None,
     }
 
 
@@ -134,11 +136,22 @@ def _rows(found: "Outlook") -> list[tuple[str, str, str]]:
         ("inverted spin holds above ω_c2" if sphere else "inverted changes at", _shown(inverted), "rad/s"),
         ("λ_up", _shown(found.lambda_up), "kg m³/s"),
         ("λ_down", _shown(found.lambda_down), "kg m³/s"),
-        ("λ of this launch", _shown(found.jellett), "kg m³/s"),
+        (
+            "λ of this launch",
+            _shown(found.jellett),
+            "kg m³/s" + ("" if found.conserved else ", not conserved"),
+        ),
     ]
     if found.inertia_ratio is not None and found.eccentricity is not None:
         rows.insert(0, ("γ = I1/I3, α", f"{found.inertia_ratio:.6g}, {found.eccentricity:.6g}", ""))
     rows += _end_rows(found)
+    if found.standing_time is not None:
+        what = (
+            "drilling lets it stand"
+            if found.tilt in (0.0, math.pi)
+            else "inverted with this λ it would stand"
+        )
+        rows.append((what, _shown(found.standing_time), "s"))
     if found.mu_flip_time is not None:
         rows.append(("μ t until 0.01 rad from there, μ → 0", _shown(found.mu_flip_time), "s²/m"))
     if found.flip_time is not None:

@@ -6,9 +6,10 @@ from dataclasses import dataclass
 from tippetop.frictions import ViscousFriction
 from tippetop.problem import Problem
 from tippetop.theory.averaging import flip_time_limit, nutation_of_launch
+from tippetop.theory.drilling import standing_time
 from tippetop.theory.groups import Group, classify_top, eccentricity, inertia_ratio
 from tippetop.theory.prediction import Prediction, predict, steady_launch
-from tippetop.theory.requirements import require_lasting_slip
+from tippetop.theory.requirements import require_creep
 from tippetop.theory.stability import Spectrum, spectrum
 from tippetop.theory.steady import VERTICAL_SPINS, SteadyState, jellett_of_launch, vertical_spin
 from tippetop.theory.steady import (
@@ -59,6 +60,11 @@ class Outlook:
         where there is none, or no friction.
     flip_time
         The same divided by the problem's mu, s.
+    conserved
+        Whether Jellett's integral is constant: for an eccentric sphere under friction without torque.
+    standing_time
+        Under friction that drills, how long a vertical spin stands, s: that of the launch, or else the
+        inverted one with its lambda; None without drilling, and for a body that leans and is no sphere.
     """
 
     inertia_ratio: float | None
@@ -75,6 +81,8 @@ class Outlook:
     steady: tuple[Judged, ...]
     mu_flip_time: float | None
     flip_time: float | None
+    conserved: bool
+    standing_time: float | None
 
 
 def outlook(problem: Problem) -> Outlook:
@@ -83,13 +91,15 @@ def outlook(problem: Problem) -> Outlook:
     Raises
     ------
     InvalidInput
-        If it turns so fast that the theory cannot tell, or friction is dry.
+        If it turns so fast that the theory cannot tell, or hardly on dry friction; if a dry point rubs, or
+        rolling is resisted.
     """
     top = problem.top
-    require_lasting_slip(top)
+    require_creep(top)
     jellett = jellett_of_launch(problem)
-    sphere = top.conserves_jellett
-    stays, smooth = steady_launch(problem), problem.friction.vanishes
+    sphere, vertical = top.conserves_jellett, problem.launch.tilt in (0.0, math.pi)
+    drills, smooth = not top.friction.torque_free, problem.friction.vanishes
+    stays = None if drills else steady_launch(problem)
     limit = _flip_time_limit(problem) if sphere and stays is None else None
     return Outlook(
         inertia_ratio=inertia_ratio(top) if sphere else None,
@@ -106,6 +116,8 @@ def outlook(problem: Problem) -> Outlook:
         steady=tuple(Judged(state, spectrum(state, top)) for state in steady_states(problem)),
         mu_flip_time=limit,
         flip_time=None if limit is None else limit / _mu(problem),
+        conserved=sphere,
+        standing_time=standing_time(problem) if drills and (vertical or top.surface.spherical) else None,
     )
 
 
@@ -117,9 +129,10 @@ def steady_states(problem: Problem) -> list[SteadyState]:
     Raises
     ------
     InvalidInput
-        If it turns so fast that the theory cannot tell, or friction is dry.
+        If it turns so fast that the theory cannot tell, or hardly on dry friction; if a dry point rubs, or
+        rolling is resisted.
     """
-    require_lasting_slip(problem.top)
+    require_creep(problem.top)
     if problem.top.conserves_jellett:
         return all_steady_states(problem.top, jellett_of_launch(problem))
     return [vertical_spin(kind, problem.top, problem.launch.spin) for kind in VERTICAL_SPINS]

@@ -21,7 +21,7 @@ from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top, natural_units
 from tippetop.mechanics.view import axis_sine
 from tippetop.problem import Problem
-from tippetop.theory.requirements import require_jellett, require_lasting_slip
+from tippetop.theory.requirements import require_creep, require_jellett
 from tippetop.theory.steady import (
     SteadyKind,
     SteadyState,
@@ -74,11 +74,11 @@ def predict(problem: Problem) -> Prediction:
     Raises
     ------
     InvalidInput
-        If Jellett's integral is not conserved, friction is dry, or there is none.
+        If Jellett's integral is not conserved, a dry point rubs, or there is no friction.
     """
     top = problem.top
     require_jellett(top)
-    require_lasting_slip(top)
+    require_creep(top)
     if problem.friction.vanishes:
         raise InvalidInput("friction.mu", 0.0, "more than 0: without friction no launch settles")
     jellett = jellett_of_launch(problem)

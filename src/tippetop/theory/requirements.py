@@ -2,7 +2,7 @@
 
 from tippetop.errors import InvalidInput
 from tippetop.mechanics.coulomb import RollingResistance
-from tippetop.mechanics.rolling import is_set_valued
+from tippetop.mechanics.rolling import is_set_valued, slip_dimension
 from tippetop.mechanics.top import Top
 
 
@@ -27,18 +27,20 @@ def require_jellett(top: Top) -> None:
         )
 
 
-def require_lasting_slip(top: Top) -> None:
-    """Refuse dry friction, with `InvalidInput`: a top that sticks may roll for ever, whatever is stable.
+def require_creep(top: Top) -> None:
+    """Refuse friction that is not proportional to small slip about a vertical spin, with `InvalidInput`.
 
-    There is no linear motion about sticking either.
+    There is no linear motion then: a point on dry friction sticks, and rolls for ever whatever is stable, and
+    resistance to rolling holds an axis that hardly moves. A patch on dry friction does creep, by drilling.
     """
     if isinstance(top.friction, RollingResistance):
         raise InvalidInput(
-            "rolling_resistance",
-            top.friction.length,
-            "0: with it a top is held where it stands, and the theory knows no such rest",
+            "rolling_resistance", top.friction.length, "0: with it a spin about the vertical has no linear motion"
         )
-    if is_set_valued(top.friction):
+    if is_set_valued(top.friction) and slip_dimension(top.friction) == 2:
         raise InvalidInput(
-            "friction", top.friction, "friction under which slip never ends; the theory knows no sticking"
+            "friction",
+            top.friction,
+            "viscous, regularized or Contensou friction, by which slip never ends while the top spins; on "
+            "this one it sticks, and may roll for ever in a state that is not stable",
         )

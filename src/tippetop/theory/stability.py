@@ -7,6 +7,10 @@ parameters, those of the turned and of the neighbouring steady states. They are 
 together they form a Jordan block, whose eigenvalues rounding would spread over 1e-8 of the others.
 
 The Jacobian is that of `tippetop.mechanics.motion.sliding_rates` itself, differentiated exactly.
+
+A vertical spin that drills loses spin, but no more to first order when it is disturbed: its spectrum is that
+of the spin it has, and drilling makes dry friction viscous there, with mu_viscous = (3 pi / 8) mu / (R omega)
+for a patch of radius R with Hertz's pressure and mu / (rho omega) for an ellipsoidal limit surface.
 """
 
 import math
@@ -18,7 +22,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import expm
 
+from tippetop.errors import InvalidInput
 from tippetop.mechanics.motion import sliding_rates
+from tippetop.mechanics.rolling import is_set_valued, on_branch
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.top import Top, natural, natural_units
 from tippetop.mechanics.units import Units
@@ -26,7 +32,7 @@ from tippetop.mechanics.vectors import Scalar
 from tippetop.mechanics.view import Angles, state_from_angles
 from tippetop.theory import dual
 from tippetop.theory.dual import Array, Dual, derivative, jacobian, variable
-from tippetop.theory.requirements import require_lasting_slip
+from tippetop.theory.requirements import require_creep
 from tippetop.theory.steady import (
     VERTICAL_SPINS,
     Branch,
@@ -53,6 +59,9 @@ NEUTRAL = {
 
 ROUNDING = 1e-12
 """Growth rates below this fraction of the largest eigenvalue are taken for zero."""
+
+SLOWEST = 1e-6
+"""Spin in natural units from which on a dry patch drills; with less, all but friction is rounding."""
 
 
 @dataclass(frozen=True)
@@ -106,8 +115,13 @@ def spectrum(steady: SteadyState, top: Top, frame_rate: float | None = None) -> 
     frame_rate
         Angular velocity of the frame, rad/s. Default: the state's precession, which is 0, a frame at rest,
         for a vertical spin. Only a vertical spin is steady in other frames.
+
+    Raises
+    ------
+    InvalidInput
+        If there is no linear motion: friction of a point is dry, rolling is resisted, or the top drills on
+        anything but a vertical spin, or on one that hardly turns.
     """
-    require_lasting_slip(top)
     rate = steady.precession
     if frame_rate is not None and steady.kind in VERTICAL_SPINS:
         rate = frame_rate
@@ -186,13 +200,35 @@ class _Linear(NamedTuple):
 def _linear(kind: SteadyKind, tilt: Array, precession: Array, spin: Array, frame: Array, top: Top) -> _Linear:
     """Linear motion about n steady states of one kind, shapes (n, 8, k) and (n, k, k)."""
     units = Units(*(float(unit) for unit in natural_units(top)))
-    scaled = natural(top)
+    if kind not in VERTICAL_SPINS and not top.friction.torque_free:
+        raise InvalidInput(
+            "friction", top.friction, "friction without torque; no precession is steady under it"
+        )
+    scaled = natural(drilling(top, spin))
     angles = Angles(tilt, 0.0, 0.0, precession * units.time, spin * units.time, (0.0, 0.0))
     point = _coordinates(state_from_angles(angles, scaled, np), tilt)
 
     matrix = jacobian(_rates_in_frame(scaled, frame * units.time), point)
     basis = _complement(_meaningless(kind, angles, point, scaled))
     return _Linear(basis, np.swapaxes(basis, -1, -2) @ matrix @ basis, units)
+
+
+def drilling(top: Top, turning: Array) -> Top:
+    """The top with the branch of its law that holds where it hardly slips and turns at these rates, rad/s.
+
+    Raises
+    ------
+    InvalidInput
+        If friction has no linear motion about a vertical spin, or it hardly turns on dry friction.
+    """
+    require_creep(top)
+    if not is_set_valued(top.friction):
+        return top
+    slowest, time = float(np.min(np.abs(turning))), float(natural_units(top).time)
+    if slowest * time < SLOWEST:
+        accepted = f"at least {SLOWEST / time:.2g} rad/s: without drilling dry friction lets it stick"
+        raise InvalidInput("spin", slowest, accepted)
+    return on_branch(top, (0.0, 0.0, 1.0))
 
 
 def _eigenvalues(

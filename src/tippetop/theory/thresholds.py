@@ -24,7 +24,7 @@ from tippetop.mechanics.top import Top, natural_units
 from tippetop.mechanics.vectors import Scalar
 from tippetop.problem import Problem
 from tippetop.theory.dual import Array
-from tippetop.theory.requirements import require_lasting_slip
+from tippetop.theory.requirements import require_creep
 from tippetop.theory.stability import linear_tilts, vertical_growth_rates
 from tippetop.theory.steady import (
     VERTICAL_SPINS,
@@ -97,14 +97,15 @@ def critical_spins(problem: Problem) -> CriticalSpins:
 
     The Jellett's integral of a launch is linear in its spin; for one at rest in tilt it is
     R I3 spin (cos(tilt) - alpha). Its sign does not matter, and the larger of
-    the two spins is returned. Where it is not conserved, they are those of the vertical spins themselves.
+    the two spins is returned. Where it is not conserved, they are those of the vertical spins themselves:
+    under Contensou's friction, which takes spin from them, they change stability when that is left.
 
     Raises
     ------
     InvalidInput
-        If friction is dry.
+        If a dry point rubs, or rolling is resisted: nothing is linear there.
     """
-    require_lasting_slip(problem.top)
+    require_creep(problem.top)
     if not problem.top.conserves_jellett:
         return CriticalSpins(*(critical_spin(kind, problem.top) for kind in VERTICAL_SPINS))
     line = _jellett_line(problem)

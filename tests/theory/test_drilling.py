@@ -1,0 +1,227 @@
+"""What drilling does to vertical spins: creep, a slow clock, and how long a top stands, against runs."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from scipy.integrate import cumulative_simpson
+from test_stability_of_steady_states import assert_same_numbers
+from typer.testing import CliRunner
+
+import tippetop as tt
+from strategies import numbers
+from tippetop import presets
+from tippetop.cli.main import app
+from tippetop.mechanics.coulomb import CoulombLaw, RollingResistance
+from tippetop.mechanics.friction import ViscousLaw
+from tippetop.mechanics.invariants import jellett
+from tippetop.mechanics.motion import along_table
+from tippetop.mechanics.state import State
+from tippetop.theory.drilling import jellett_rate, spin_rate, standing_time, time_to_stand
+from tippetop.theory.overview import outlook
+from tippetop.theory.stability import branch_eigenvalues, linear_tilts, spectrum, vertical_eigenvalues
+from tippetop.theory.steady import (
+    VERTICAL_SPINS,
+    SteadyKind,
+    precession_branch,
+    steady_states,
+    vertical_spin,
+)
+from tippetop.theory.thresholds import critical_spin, critical_spin_from_spectrum, critical_spins
+
+PRESSURES = ["hertz", "ellipsoidal"]
+CREEP = {"hertz": 3.0 * math.pi / 8.0, "ellipsoidal": 16.0 / (3.0 * math.pi)}
+"""Force per unit mu N of a patch that drills, over kappa = v / (R omega), for little slip."""
+
+
+def patch(pressure="hertz", mu=0.3, radius=5e-4, tilt=math.pi, spin=100.0):
+    """The report's top with a patch, on a table that may pull."""
+    problem = presets.report_problem(spin=spin, tilt=tilt).replace({"contact.liftoff": "ignore"})
+    friction = {"kind": "contensou", "mu": mu, "patch_radius": radius, "pressure": pressure}
+    return problem.replace({f"friction.{name}": value for name, value in friction.items()})
+
+
+def poles_of(run):
+    """Distance of the axis from the vertical, rad."""
+    return np.hypot(run["axis"].values[:, 0], run["axis"].values[:, 1])
+
+
+@pytest.mark.parametrize("pressure", PRESSURES)
+@pytest.mark.parametrize("kind", VERTICAL_SPINS)
+def test_about_a_vertical_spin_drilling_makes_dry_friction_viscous(pressure, kind):
+    top = patch(pressure).top
+    for spin in (30.0, 150.0, -80.0):
+        mu = 0.3 * CREEP[pressure] / (5e-4 * abs(spin))
+        dry, viscous = (
+            vertical_eigenvalues(kind, some, np.array([spin]))
+            for some in (top, top._replace(friction=ViscousLaw(mu)))
+        )
+        assert dry == pytest.approx(viscous, abs=1e-13 * np.abs(viscous).max())
+        assert_same_numbers(spectrum(vertical_spin(kind, top, spin), top).eigenvalues, dry[0], 1e-9)
+
+
+@pytest.mark.parametrize("pressure", PRESSURES)
+@pytest.mark.parametrize("kind", VERTICAL_SPINS)
+def test_the_spectrum_changes_sign_where_jelletts_integral_says(pressure, kind):
+    top = patch(pressure).top
+    assert critical_spin_from_spectrum(kind, top) == pytest.approx(critical_spin(kind, top), rel=1e-9)
+    viscous = critical_spins(presets.report_problem(tilt=0.0))
+    found = critical_spins(patch(pressure, tilt=0.1))
+    assert found.upright == pytest.approx(viscous.upright, rel=1e-12)
+    assert found.inverted == pytest.approx(critical_spin(SteadyKind.INVERTED, top), rel=1e-12)
+
+
+@pytest.mark.parametrize("pressure", PRESSURES)
+def test_a_small_tilt_grows_as_the_spectrum_says(pressure):
+    """With so small a patch and so little friction that drilling takes next to no spin meanwhile."""
+    problem = patch(pressure, mu=1e-5, radius=1e-6, tilt=1e-9)
+    top, times = problem.top, np.linspace(0.0, 10.0, 2001)
+    steady = vertical_spin(SteadyKind.UPRIGHT, top, 100.0)
+    run = tt.simulate(problem, 10.0, times=times)
+    lost = 100.0 - float(run["omega3"][-1])
+    assert 0.0 < lost < 1e-5
+    linear = linear_tilts(steady, top, along_table(problem.start()), times[::200])
+    assert poles_of(run)[::200] == pytest.approx(linear, rel=1e-5)
+    late = times > 6.0
+    rate = np.polyfit(times[late], np.log(poles_of(run)[late]), 1)[0]
+    assert rate == pytest.approx(spectrum(steady, top).growth_rate, rel=1e-3)
+
+
+@pytest.mark.parametrize("pressure", PRESSURES)
+def test_jelletts_integral_changes_by_the_torque_times_the_height_whatever_the_motion(pressure):
+    problem = patch(pressure, tilt=0.1).replace({"launch.slip": (0.2, 0.1)})
+    run = tt.simulate(problem, 2.0, samples=40_001)
+    rows = [*run["axis"].values.T, *run["angular_momentum"].values.T]
+    integral = jellett(State.unpack([*rows, 0.0, 0.0, 0.0, 0.0]), problem.top)
+    rate = run["contact_torque"].values[:, 2] * run["height"].values
+    taken = cumulative_simpson(rate, x=run["time"].values, initial=0.0)
+    assert integral[-1] < 0.9 * integral[0]
+    assert integral - integral[0] == pytest.approx(taken, abs=1e-7 * integral[0])
+
+
+@pytest.mark.parametrize("pressure", PRESSURES)
+def test_a_steady_state_loses_jelletts_integral_at_one_rate_per_height(pressure):
+    """(3 pi / 16) mu m g R, whatever turns."""
+    top = patch(pressure).top
+    for integral in (4e-6, -1.9e-6):
+        for steady in steady_states(top, integral):
+            height = top.surface.height(math.cos(steady.tilt))
+            torque = 3.0 * math.pi / 16.0 * 0.3 * 0.02 * 9.8 * 5e-4
+            expected = -math.copysign(torque * height, integral)
+            assert jellett_rate(steady, top) == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.parametrize("pressure", PRESSURES)
+@pytest.mark.parametrize("tilt", [0.0, math.pi])
+def test_a_vertical_spin_loses_spin_at_a_constant_rate_until_it_stops(pressure, tilt):
+    problem = patch(pressure, radius=2e-3, tilt=tilt, spin=20.0)
+    kind = SteadyKind.INVERTED if tilt else SteadyKind.UPRIGHT
+    rate = spin_rate(vertical_spin(kind, problem.top, 20.0), problem.top)
+    run = tt.simulate(problem, 2.0, samples=501)
+    spinning = run["time"].values < 20.0 / -rate
+    assert 0.2 < spinning.mean() < 0.9
+    expected = np.where(spinning, 20.0 + rate * run["time"].values, 0.0)
+    assert run["omega3"].values == pytest.approx(expected, abs=1e-9)
+    stop = run["event_time"].values[run["event_kind"].values == "stick"]
+    assert stop == pytest.approx([20.0 / -rate], rel=1e-9)
+
+
+@pytest.mark.parametrize("pressure", PRESSURES)
+def test_a_top_stands_until_it_has_too_little_spin(pressure):
+    """Launched beside it in the motion that is to grow, it comes closer until then, and leaves from then on.
+
+    The patch is so small that the spin changes by little while that motion decays or grows.
+    """
+    problem = patch(pressure, mu=6e-3, radius=6e-5, tilt=math.pi - 1e-8, spin=42.3)
+    top, standing = problem.top, standing_time(problem.replace({"launch.tilt": math.pi}))
+    limit = critical_spin(SteadyKind.INVERTED, top)
+    rate = spin_rate(vertical_spin(SteadyKind.INVERTED, top, 42.3), top)
+    assert standing == pytest.approx((42.3 - limit) / abs(rate), rel=1e-12)
+    turning = vertical_eigenvalues(SteadyKind.INVERTED, top, np.array([limit]))[0, 0].imag
+    launch = problem.replace({"launch.precession": -abs(turning)})
+    run = tt.simulate(launch, 2.0 * standing, samples=8001)
+    late = run["time"].values > 0.2 * standing
+    bend, slope, _ = np.polyfit(run["time"].values[late], np.log(poles_of(run)[late]), 2)
+    assert bend > 0.0
+    assert -slope / (2.0 * bend) == pytest.approx(standing, rel=0.01)
+
+
+def test_half_the_friction_takes_twice_the_time():
+    times = [standing_time(patch(mu=mu)) for mu in (0.3, 0.15)]
+    radii = [standing_time(patch(radius=radius)) for radius in (5e-4, 2.5e-4)]
+    assert times[1] == pytest.approx(2.0 * times[0], rel=1e-12)
+    assert radii == pytest.approx(times, rel=1e-12)
+
+
+@given(numbers(1.0, 500.0), numbers(0.05, 1.0))
+def test_a_launch_that_leans_is_told_the_time_of_the_inverted_spin_with_its_integral(spin, tilt):
+    problem = patch(spin=spin, tilt=tilt)
+    inverted = -spin * (math.cos(tilt) - 0.3) / 1.3
+    here, there = standing_time(problem), standing_time(patch(spin=inverted))
+    assert here == pytest.approx(there, rel=1e-9)
+    assert (here == 0.0) == (abs(inverted) < critical_spin(SteadyKind.INVERTED, problem.top))
+
+
+def test_a_slow_upright_spin_stands_until_it_stops_and_a_fast_one_not_at_all():
+    slow, fast = (patch(tilt=0.0, spin=spin) for spin in (20.0, 40.0))
+    rate = spin_rate(vertical_spin(SteadyKind.UPRIGHT, slow.top, 20.0), slow.top)
+    assert standing_time(slow) == pytest.approx(20.0 / abs(rate), rel=1e-12)
+    assert standing_time(fast) == 0.0
+
+
+def test_what_does_not_drill_stands_for_ever_or_not_at_all():
+    for spin, time in ((100.0, math.inf), (30.0, 0.0)):
+        assert standing_time(presets.report_problem(spin=spin, tilt=math.pi)) == time
+
+
+def test_what_the_theory_cannot_tell_is_refused_in_a_sentence():
+    problem, top = patch(), patch().top
+    still = vertical_spin(SteadyKind.INVERTED, top, 0.0)
+    leaning = steady_states(top, 4e-6)[0]
+    branch = precession_branch(top, np.array([1.5]))
+    egg = problem.replace(
+        {"body.shape.kind": "spheroid", "body.shape.across": 0.02, "body.shape.along": 0.03}
+    )
+    asks = [
+        ("spin = 0.0 .* without drilling", lambda: time_to_stand(still, top)),
+        ("spin = 0.0 .* without drilling", lambda: outlook(problem.replace({"launch.spin": 0.0}))),
+        ("friction = .* without torque", lambda: branch_eigenvalues(branch, top)),
+        ("friction = .* without torque", lambda: tt.predict(problem)),
+        ("friction = CoulombLaw.* may roll for ever", lambda: spectrum(leaning, _on(CoulombLaw(0.3)))),
+        (
+            "rolling_resistance = 1e-05",
+            lambda: spectrum(leaning, _on(RollingResistance(ViscousLaw(0.3), 1e-5))),
+        ),
+        ("body.shape", lambda: standing_time(egg.replace({"launch.tilt": 0.1}))),
+        ("body.shape", lambda: jellett_rate(still, egg.top)),
+        ("kind = 'precession'", lambda: time_to_stand(steady_states(top, 1.9e-6)[1], top)),
+    ]
+    for sentence, ask in asks:
+        with pytest.raises(tt.InvalidInput, match=sentence):
+            ask()
+
+
+def _on(law):
+    return patch().top._replace(friction=law)
+
+
+def test_the_outlook_of_a_top_that_drills_ends_nowhere_and_stands_a_while():
+    for tilt in (0.0, 0.1, math.pi):
+        found = outlook(patch(tilt=tilt))
+        assert not found.conserved
+        assert (found.stays, found.prediction, found.flip_time, found.group) == (None, None, None, None)
+        assert found.standing_time == standing_time(patch(tilt=tilt))
+        assert [judged.state.kind for judged in found.steady] == list(VERTICAL_SPINS)
+    assert outlook(presets.report_problem()).conserved
+    assert outlook(presets.report_problem()).standing_time is None
+
+
+def test_the_command_line_says_how_long_it_stands():
+    changes = ["--set", "friction.kind=contensou", "--set", "friction.patch_radius=5e-4", "--tilt"]
+    told = CliRunner().invoke(app, ["critical", *changes, str(math.pi), "--spin", "100"])
+    assert f"drilling lets it stand {standing_time(patch()):16.10g} s".split() == next(
+        line.split() for line in told.stdout.splitlines() if "lets it stand" in line
+    )
+    assert "not conserved" in told.stdout
+    assert "would stand" in CliRunner().invoke(app, ["critical", *changes, "0.1"]).stdout
