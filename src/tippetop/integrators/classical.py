@@ -39,14 +39,14 @@ class ClassicalRK4:
         for count in range(1, steps + 1):
             reach = end if count == steps else start[0] + count * self.step
             before, base = time, state
-            time, state = reach, _step(rates, base, reach - before)
+            time, state = reach, classical_step(rates, base, reach - before)
             if not np.all(np.isfinite(state)):
                 failure = NOT_FINITE
                 yield Arc(taken.solution(), base, None, failure, len(taken), rates.calls - counted)
                 return
 
             def dense(at: float, before: float = before, base: Array = base) -> Array:
-                return _step(rates, base, at - before)
+                return classical_step(rates, base, at - before)
 
             fall = first_fall(motion.guards, parameters, dense, dense, (before, reach))
             if fall is not None:
@@ -61,7 +61,7 @@ class ClassicalRK4:
                 taken, counted = Steps(reach, motion.size, DEGREE), rates.calls
 
 
-def _step(rates: RightHandSide, state: Array, step: float) -> Array:
+def classical_step(rates: RightHandSide, state: Array, step: float) -> Array:
     """One step of the classical method, for a motion that does not depend on the time."""
     k1 = rates(0.0, state)
     k2 = rates(0.0, state + 0.5 * step * k1)

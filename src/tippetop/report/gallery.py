@@ -11,6 +11,7 @@ from tippetop.figures.euler_angles import euler_angles_drawing
 from tippetop.figures.model import model_drawing
 from tippetop.figures.tippe_top import tippe_top_drawing
 from tippetop.report.experiments.flights import HOPS_WINDOW, MU, TILT
+from tippetop.report.gallery_friction import PLATES as FRICTION
 from tippetop.report.gallery_why import PLATES as WHY
 from tippetop.report.plate import Plate
 from tippetop.report.quoted import (
@@ -260,6 +261,7 @@ PLATES: dict[str, Plate] = {
             methods.stiffness_figure,
         ),
         *WHY,
+        *FRICTION,
     )
 }
 """Every figure by its name, in the order of the page."""

@@ -3,10 +3,12 @@
 from tippetop.report.experiment import Experiment
 from tippetop.report.experiments import (
     checks,
+    dry,
     equations,
     flights,
     friction,
     methods,
+    patches,
     runs,
     spins,
     theory,
@@ -15,7 +17,19 @@ from tippetop.report.experiments import (
 
 EXPERIMENTS: dict[str, Experiment] = {
     experiment.id: experiment
-    for module in (runs, spins, friction, flights, methods, equations, checks, theory, theory_runs)
+    for module in (
+        runs,
+        spins,
+        friction,
+        flights,
+        methods,
+        equations,
+        checks,
+        theory,
+        theory_runs,
+        dry,
+        patches,
+    )
     for experiment in module.EXPERIMENTS
 }
 """Every experiment by its name."""

@@ -1,0 +1,142 @@
+"""Dry friction: the friction that rolling needs, steps against the exact motion, smoothing, and patches."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+import tippetop.figures.annotation as mark
+from tippetop.figures.style import (
+    ACCENT,
+    CONVERGED,
+    CYCLE,
+    DASHED,
+    FAINT,
+    INK,
+    MUTED,
+    REPORT,
+    WIDTH,
+    house_style,
+    pi_ticks,
+)
+
+
+@house_style()
+def rolling_figure(data: xr.Dataset) -> Figure:
+    """Return the friction that rolling needs over the spin, and tilts with more and with less than that.
+
+    `data` has friction_needed over tilt and spin, needed_main, theta_held over held and time, theta_slips
+    over time_slips, and the attributes spin_rad_per_s, tilt_rad and slippery_mu.
+    """
+    figure = Figure(figsize=(WIDTH, 5.6))
+    above, below = figure.subplots(2, 1, height_ratios=[1.25, 1])
+    mark.letters((above, below))
+    for tilt, row in zip(data["tilt"], data["friction_needed"], strict=True):
+        main = float(tilt) == data.attrs["tilt_rad"]
+        above.plot(data["spin"], row, color=CONVERGED if main else MUTED)
+        end = (float(data["spin"][-1]), float(row[-1]))
+        mark.note(above, f"tilt {float(tilt):g}", end, (4, 0), CONVERGED if main else INK)
+    needed, spin = float(data["needed_main"]), data.attrs["spin_rad_per_s"]
+    above.plot(spin, needed, "o", color=ACCENT)
+    mark.note(above, f"{needed:.4f}", (spin, needed), (0, -6), ACCENT)
+    above.set_yscale("log")
+    mark.plain_ticks(above.yaxis, (0.01, 0.02, 0.05, 0.1, 0.2))
+    above.set_xlim(0, 1.12 * float(data["spin"][-1]))
+    above.set(xlabel="spin at launch (rad/s)", ylabel=r"least $\mu$ for rolling")
+    shown = float(data["time_slips"][-1])
+    below.plot(
+        data["time_slips"], data["theta_slips"], color=REPORT, label=rf"$\mu$ = {data.attrs['slippery_mu']:g}"
+    )
+    rolls = data.isel(held=0)
+    below.plot(
+        rolls["time"], rolls["theta_held"], color=CONVERGED, label=rf"$\mu$ = {float(rolls['held']):.4f}"
+    )
+    below.set_xlim(0, shown)
+    below.set_ylim(0, 1.25 * max(float(data["theta_slips"].max()), data.attrs["tilt_rad"]))
+    below.set(xlabel="time (s)", ylabel=r"tilt $\theta$ (rad)")
+    below.legend(loc="upper left", ncols=2)
+    return figure
+
+
+@house_style()
+def cohen_figure(data: xr.Dataset) -> Figure:
+    """Return the tilt of Cohen's top by steps of several lengths, and exactly.
+
+    `data` has theta_stepped over step and time, theta over time, and sticks.
+    """
+    figure = Figure(figsize=(WIDTH, 4.4))
+    axes = figure.subplots()
+    colors = (REPORT, *(CYCLE[k] for k in (3, 4, 2, 6, 5)))
+    for step, tilt, color in zip(data["step"], data["theta_stepped"], colors, strict=False):
+        axes.plot(data["time"], tilt, color=color, lw=1.1, label=f"{1e3 * float(step):g} ms")
+    axes.plot(data["time"], data["theta"], color=CONVERGED, lw=2.2, label="exact")
+    axes.set_xlim(0, float(data["time"][-1]))
+    axes.set_ylim(-0.05, np.pi + 0.1)
+    pi_ticks(axes.yaxis)
+    axes.set(xlabel="time (s)", ylabel=r"tilt $\theta$ (rad)")
+    mark.legend_above(axes, 7)
+    return figure
+
+
+@house_style()
+def smoothed_figure(data: xr.Dataset) -> Figure:
+    """Return the time of turning over on smoothed Coulomb friction against the smoothing.
+
+    `data` has turning_time over eps, and last_exponent.
+    """
+    figure = Figure(figsize=(WIDTH, 3.8))
+    axes = figure.subplots()
+    eps, time = data["eps"].values, data["turning_time"].values
+    axes.loglog(eps, time, "o-", color=CONVERGED)
+    line = time[-1] * eps[-1] / eps
+    near = line > 0.6 * time.min()
+    axes.loglog(eps[near], line[near], color=MUTED, ls=DASHED)
+    mark.note(axes, r"as $1/\varepsilon$", (eps[near][0], line[near][0]), (6, 0), INK)
+    mark.plain_ticks(axes.yaxis, [tick for tick in (1, 2, 5, 10, 20) if tick < 1.6 * time.max()])
+    axes.set(xlabel=r"$\varepsilon$ (m/s)", ylabel="turns over after (s)")
+    return figure
+
+
+@house_style()
+def patch_figure(data: xr.Dataset) -> Figure:
+    """Return the map of the time of turning over, over patch radius and spin; grey where it does not.
+
+    `data` has turning_time over radius and spin, and upright_limit.
+    """
+    figure = Figure(figsize=(WIDTH, 4.2))
+    axes = figure.subplots()
+    axes.set_facecolor(FAINT)
+    axes.grid(visible=False)
+    times = np.ma.masked_invalid(data["turning_time"].values.T)
+    image = axes.pcolormesh(1e3 * data["radius"], data["spin"], times, shading="nearest", rasterized=True)
+    axes.set_xscale("log")
+    mark.plain_ticks(axes.xaxis, (0.1, 0.2, 0.5, 1, 2, 5))
+    axes.axhline(float(data["upright_limit"]), color=ACCENT, ls=DASHED, lw=1.2)
+    axes.set(xlabel="radius of the contact patch (mm)", ylabel="spin at launch (rad/s)")
+    bar = figure.colorbar(image, pad=0.02, label="turns over after (s)")
+    bar.outline.set_visible(False)
+    return figure
+
+
+@house_style()
+def viscous_figure(data: xr.Dataset) -> Figure:
+    """Return times of turning over against the viscous coefficient, of patches that have it and of itself.
+
+    `data` has patch_time over mu and coefficient, viscous_time over coefficient.
+    """
+    figure = Figure(figsize=(WIDTH, 5.2))
+    above, below = figure.subplots(2, 1, sharex=True, height_ratios=[1.4, 1])
+    mark.letters((above, below))
+    coefficient = data["coefficient"].values
+    above.loglog(coefficient, data["viscous_time"], "--", color=INK, label="viscous")
+    below.axhline(1.0, color=INK, ls="--")
+    for mu, times, color in zip(data["mu"], data["patch_time"], (CYCLE[2], CONVERGED, ACCENT), strict=True):
+        above.loglog(coefficient, times, "o-", color=color, label=rf"patch, $\mu$ = {float(mu):g}")
+        below.semilogx(coefficient, times / data["viscous_time"], "o-", color=color)
+    mark.plain_ticks(above.yaxis, (1, 2, 3))
+    mark.plain_ticks(below.xaxis, (1, 2, 5, 10, 20, 40))
+    above.set_ylabel("turns over after (s)")
+    below.set(xlabel="viscous coefficient at launch (s/m)", ylabel="patch / viscous")
+    mark.legend_above(above, 4)
+    return figure

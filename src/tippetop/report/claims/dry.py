@@ -1,0 +1,185 @@
+"""What was published of tippe tops on dry friction, against exact runs."""
+
+import numpy as np
+import xarray as xr
+
+from tippetop.report.claim import ROUNDING, Chapter, Finding, Source
+from tippetop.report.experiments.dry import COHEN_STEP, COHEN_WINDOW
+from tippetop.report.experiments.patches import SPIN_OF_REPORT
+from tippetop.report.quoted import NORMAL_FRICTION
+
+CHAPTER = Chapter()
+
+_SAME = 1e-6
+"""Difference of tilts, rad, and of energies, relative, far above rounding and far below any motion."""
+
+_OVER = np.pi / 2
+
+
+@CHAPTER.claim(
+    "dry-tilting-rate",
+    Source("Pliskin 1954", "Am. J. Phys. 22, 28"),
+    "The rate at which a tippe top tilts is proportional to the coefficient of friction.",
+    needs=("dry-rolling",),
+    figure="dry-rolling",
+    right="set down without slip it rolls, and does not tilt at all, on any friction above a small bound",
+)
+def _(data: xr.Dataset) -> Finding:
+    held = data["theta_held"]
+    same = float(abs(held - held.isel(held=0)).max()) < _SAME
+    rolls = same and int(data["slips_held"].sum()) == 0 and float(data["lost_held"].max()) < _SAME
+    needed, shown = float(data["needed_main"]), data["held"].values
+    return Finding(
+        None,
+        not rolls,
+        f"At {data.attrs['spin_rad_per_s']:g} rad/s and {data.attrs['tilt_rad']:g} rad the report's top "
+        f"needs mu = {needed:.5f} to roll. On mu = {shown.min():.5f} to {shown.max():g} it does the same "
+        f"for {float(data['time'][-1]):g} s: it never slips, its tilt is at most {float(held.max()):.4f} "
+        f"rad and its energy is kept to {float(data['lost_held'].max()):.0e}. On 0.1 % less than it needs "
+        f"it slips after {1e3 * float(data['held_below']):.1f} ms.",
+    )
+
+
+@CHAPTER.claim(
+    "dry-cohen-inversion",
+    Source("Cohen 1977", "Am. J. Phys. 45, 12, Fig. 5"),
+    "A tippe top on Coulomb friction of mu = 0.3 turns over within 2 s (100 rad/s, 0.1 rad).",
+    needs=("dry-cohen",),
+    figure="dry-cohen",
+    right="it sticks and rolls; the inversion comes from the length of the steps",
+)
+def _(data: xr.Dataset) -> Finding:
+    window = data.sel(time=slice(0.0, COHEN_WINDOW + 1e-9))
+    highest = data["theta_stepped"].max("time")
+    listed = ", ".join(
+        f"{1e3 * step:g} ms {tilt:.2f}"
+        for step, tilt in zip(data["step"].values, highest.values, strict=True)
+    )
+    ends = [
+        float(window["theta_stepped"].isel(step=0).sel(time=t, method="nearest")) for t in (1.0, 1.5, 2.0)
+    ]
+    return Finding(
+        bool(window["theta_stepped"].sel(step=COHEN_STEP, method="nearest").max() > _OVER),
+        bool(data["theta"].max() > _OVER),
+        f"With steps of {1e3 * COHEN_STEP:g} ms the classical Runge-Kutta method gives {ends[0]:.2f}, "
+        f"{ends[1]:.2f} and {ends[2]:.2f} rad at 1, 1.5 and 2 s. Largest tilts within "
+        f"{float(data['time'][-1]):g} s by the step (rad): {listed}. Exactly, slip ends after "
+        f"{float(data['sticks']):.6f} s, the top rolls from then on, and its tilt is at most "
+        f"{float(data['theta'].max()):.3f} rad.",
+    )
+
+
+@CHAPTER.claim(
+    "dry-cohen-sliding",
+    Source("Cohen 1977", "Am. J. Phys. 45, 12"),
+    "The top always slides on its way.",
+    needs=("dry-cohen",),
+    figure="dry-cohen",
+    right="it sticks after 0.03 s, and slips no more",
+)
+def _(data: xr.Dataset) -> Finding:
+    least = float(data["slowest"].sel(step=COHEN_STEP, method="nearest"))
+    return Finding(
+        least > 0.0,
+        bool(not np.isfinite(data["sticks"]) or data["slips_again"] > 0),
+        f"Steps of {1e3 * COHEN_STEP:g} ms jump over the end of slip: the least slip speed at any of them "
+        f"is {1e3 * least:.1f} mm/s. Exactly it is zero from {float(data['sticks']):.6f} s on, where the "
+        f"energy is kept to {float(data['energy_kept']):.0e}.",
+    )
+
+
+@CHAPTER.claim(
+    "dry-coulomb-weaker",
+    Source("Or 1994", "SIAM J. Appl. Math. 54, 597"),
+    "Coulomb friction contributes to the inversion, more weakly than viscous friction.",
+    needs=("dry-smoothed",),
+    figure="dry-smoothed",
+    right="it does so while it is smoothed; on the law itself a top set down without slip rolls",
+)
+def _(data: xr.Dataset) -> Finding:
+    eps, times = data["eps"].values, data["turning_time"].values
+    return Finding(
+        bool(np.isfinite(times).all()),
+        bool(np.isfinite(data["exact_turns"])),
+        f"Smoothed below eps = {eps[0]:g} m/s, friction of mu = {data.attrs['mu']:g} turns the top over "
+        f"in {times[0]:.2f} s, below {eps[-1]:g} m/s in {times[-1]:.2f} s; there the time goes as eps to "
+        f"the power {float(data['last_exponent']):.2f}. On the law itself the tilt is at most "
+        f"{float(data['highest']):.4f} rad for {float(data['followed']):g} s: to let eps go to zero and "
+        "to wait are not to be exchanged.",
+    )
+
+
+@CHAPTER.claim(
+    "dry-patch-inversion",
+    Source("Leine and Glocker 2003", "Eur. J. Mech. A/Solids 22, 193"),
+    "With Coulomb-Contensou friction of a patch of 0.5 mm the tippe top turns over (180 rad/s).",
+    needs=("dry-patch",),
+    figure="dry-patch",
+)
+def _(data: xr.Dataset) -> Finding:
+    turned = data["turning_time"].notnull()
+    fast = data.isel(spin=-1)
+    quickest = fast.isel(radius=int(fast["turning_time"].argmin("radius")))
+    never = fast["radius"].where(fast["turning_time"].isnull() & (fast["radius"] > quickest["radius"]))
+    slowest = float(data["spin"].where(turned.any("radius")).min())
+    return Finding(
+        None,
+        bool(np.isfinite(data["theirs_turns"])),
+        f"Their top passes the horizontal after {float(data['theirs_turns']):.5f} s (ellipsoidal limit "
+        f"surface). The report's, on mu = {data.attrs['mu']:g} at {float(fast['spin']):g} rad/s, is "
+        f"quickest of those tried with a patch of {1e3 * float(quickest['radius']):.2g} mm, "
+        f"{float(quickest['turning_time']):.2f} s, and does not turn over with one of "
+        f"{1e3 * float(never.min()):.2g} mm or more: drilling takes the spin first. Within "
+        f"{data.attrs['window_s']:g} s it takes at least {slowest:.0f} rad/s at the spins tried.",
+    )
+
+
+@CHAPTER.claim(
+    "dry-viscous-limit",
+    Source("Contensou 1963"),
+    "Fast drilling makes dry friction viscous for little slip (growth rates of small tilts, patch over "
+    "viscous).",
+    "1",
+    tolerance=ROUNDING,
+    needs=("dry-viscous",),
+    figure="dry-viscous",
+)
+def _(data: xr.Dataset) -> Finding:
+    ratio = data["patch_time"] / data["viscous_time"]
+    listed = "; ".join(
+        f"mu = {float(mu):g}: {float(row.min()):.2f} to {float(row.max()):.2f}"
+        for mu, row in zip(data["mu"], ratio, strict=True)
+    )
+    worst = data["growth_ratio"].values.ravel()
+    return Finding(
+        None,
+        float(worst[np.abs(worst - 1.0).argmax()]),
+        "The coefficient is (3 pi / 8) mu / (R omega) with Hertz's pressure and mu / (rho omega) with an "
+        "ellipsoidal limit surface. How well it stands for the whole way, by the ratio of the times to "
+        f"the horizontal, over {float(data['coefficient'][0]):g} to {float(data['coefficient'][-1]):g} "
+        f"s/m: {listed}. On little friction the slip outgrows the limit; on much, drilling takes spin.",
+    )
+
+
+@CHAPTER.claim(
+    "dry-normal-mu",
+    Source("3.3"),
+    f"Friction coefficients of {NORMAL_FRICTION[0]:g} to {NORMAL_FRICTION[1]:g} s/m are normal.",
+    needs=("dry-viscous",),
+    figure="dry-viscous",
+    right="patches of common materials creep with tens of s/m",
+)
+def _(data: xr.Dataset) -> Finding:
+    low, high = NORMAL_FRICTION
+    found = data["hertz_coefficient"].values
+    listed = ", ".join(
+        f"{name} {1e6 * radius:.0f} µm and {mu:.0f} s/m"
+        for name, radius, mu in zip(data["material"].values, data["hertz_radius"].values, found, strict=True)
+    )
+    return Finding(
+        None,
+        bool(((found >= low) & (found <= high)).any()),
+        "Dry friction of mu = 0.3 on the elastic patch under the weight of the report's top, table of "
+        f"the same material, creeps at {SPIN_OF_REPORT:g} rad/s as viscous friction would with this "
+        f"coefficient: {listed}.",
+    )

@@ -1,0 +1,227 @@
+"""Dry friction of a point: tops that roll, Cohen's top step by step, and what smoothing makes of it."""
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from tippetop.bodies import Body, EccentricSphere
+from tippetop.contact.sliding import sliding_motion
+from tippetop.frictions import CoulombFriction, RegularizedCoulombFriction
+from tippetop.integrators.base import Array
+from tippetop.integrators.classical import classical_step
+from tippetop.integrators.sampling import RightHandSide
+from tippetop.mechanics.motion import along_table
+from tippetop.mechanics.rolling import velocity_without_slip
+from tippetop.mechanics.state import SlidingState
+from tippetop.mechanics.top import natural, natural_state, natural_units
+from tippetop.presets import report_problem
+from tippetop.problem import Contact, Launch, Problem
+from tippetop.report.experiment import Experiment, variable
+from tippetop.report.experiments.runs import stopping
+from tippetop.run import simulate
+
+SPIN, TILT = 155.0, 0.1
+"""The report's main launch, rad/s and rad."""
+
+STICKY = 1.4
+"""A friction coefficient that holds every top of the map, and lets no contact force be inconsistent."""
+
+SLIPPERY = 0.028
+"""One that does not quite hold the report's top at its main launch."""
+
+ROLLED = 1.5
+"""How long tops are followed to find the most friction they need, s: several periods of their nutation."""
+
+NUTATION = 0.1
+"""More than a period of the nutation of a top that rolls at the main launch, s."""
+
+WITHOUT_COMPILING: Any = {"integrator": "dop853", "tolerance": 1e-11}
+"""How single runs are followed: compiling what a top that slips and sticks takes would cost more."""
+
+_INERTIA = 0.4 * 0.015 * 0.025**2
+
+COHEN = Problem(
+    body=Body(mass=0.015, shape=EccentricSphere(radius=0.025, eccentricity=0.2), I1=_INERTIA, I3=_INERTIA),
+    friction=CoulombFriction(mu=0.3),
+    launch=Launch(tilt=0.1, spin=100.0, slip=(0.0, 2.5 * math.sin(0.1))),
+    contact=Contact(liftoff="stop"),
+    gravity=9.81,
+)
+"""Cohen's top, set down with its centre of mass at rest; Am. J. Phys. 45 (1977) 12."""
+
+COHEN_STEP, COHEN_WINDOW = 0.01, 2.0
+"""His step, and how long his figure 5 is, s."""
+
+WATCHED = 4.0
+"""How long his top is followed here, s."""
+
+SMOOTHED, SMOOTHED_SPIN = 0.3, 100.0
+"""Friction coefficient and spin of the tops on smoothed Coulomb friction."""
+
+
+def with_friction(problem: Problem, friction: object) -> Problem:
+    """The problem with another friction; its run ends where the top leaves the table."""
+    return stopping(problem.model_copy(update={"friction": friction}))
+
+
+def friction_needed(spin: float, tilt: float) -> float:
+    """The least mu on which the report's top, set down without slip, rolls for ever; nan where none does.
+
+    The largest ratio of friction and normal force on the way, a parabola through the sample nearest to it.
+    """
+    problem = with_friction(report_problem(spin, tilt), CoulombFriction(mu=STICKY))
+    run = simulate(problem, ROLLED, samples=3001)
+    force = run["contact_force"].values
+    if list(run["event_kind"].values) != ["stick"] or force[:, 2].min() <= 0.0:
+        return math.nan
+    ratio = np.hypot(force[:, 0], force[:, 1]) / force[:, 2]
+    k = min(max(int(ratio.argmax()), 1), len(ratio) - 2)
+    before, here, after = ratio[k - 1 : k + 2]
+    return float(here + (after - before) ** 2 / (8.0 * (2.0 * here - before - after)))
+
+
+def _rolling(quick: bool) -> xr.Dataset:
+    """How much friction rolling needs, and what a launch does with a little more and with a little less."""
+    spins = np.linspace(10.0, 250.0, 5 if quick else 17)
+    tilts = np.array([0.1, 0.2, 0.8] if quick else [0.05, 0.1, 0.2, 0.4, 0.8])
+    least = np.array([[friction_needed(float(s), float(t)) for s in spins] for t in tilts])
+    needed = friction_needed(SPIN, TILT)
+    main = report_problem(SPIN, TILT)
+    times = np.linspace(0.0, 20.0, 2001)
+    coefficients = [1.001 * needed, *((1.0,) if quick else (0.3, 1.0))]
+    held = [simulate(with_friction(main, CoulombFriction(mu=mu)), 20.0, times=times) for mu in coefficients]
+    below = simulate(
+        with_friction(main, CoulombFriction(mu=0.999 * needed)), NUTATION, samples=2, phase_limit=1
+    )
+    slipping = with_friction(main, CoulombFriction(mu=SLIPPERY))
+    slips = simulate(slipping, 0.3 if quick else 3.0, **WITHOUT_COMPILING)
+    return xr.Dataset(
+        {
+            "friction_needed": variable(least, "1", "least mu for rolling", ("tilt", "spin")),
+            "needed_main": variable(needed, "1", "least mu for rolling, main launch"),
+            "theta_held": variable([run["theta"].values for run in held], "rad", "tilt", ("held", "time")),
+            "slips_held": variable(
+                [_count(run, "slip") for run in held], "1", "times of slipping", ("held",)
+            ),
+            "lost_held": variable(
+                [float(abs(run["energy_lost"] / run["energy_start"])) for run in held],
+                "1",
+                "energy lost, relative",
+                ("held",),
+            ),
+            "held_below": variable(float(below["end_time"]), "s", "how long a little less holds it"),
+            "theta_slips": variable(slips["theta"].values, "rad", "tilt", ("time_slips",)),
+        },
+        {
+            "tilt": variable(tilts, "rad", "tilt at launch", ("tilt",)),
+            "spin": variable(spins, "rad s-1", "spin at launch", ("spin",)),
+            "held": variable(coefficients, "1", "friction coefficient", ("held",)),
+            "time": variable(times, "s", "time", ("time",)),
+            "time_slips": variable(slips["time"].values, "s", "time", ("time_slips",)),
+        },
+        {"spin_rad_per_s": SPIN, "tilt_rad": TILT, "slippery_mu": SLIPPERY},
+    )
+
+
+def _count(run: xr.Dataset, kind: str) -> int:
+    return int((run["event_kind"].values == kind).sum())
+
+
+def stepped(problem: Problem, step: float, duration: float) -> SlidingState:
+    """A sliding top followed by the classical Runge-Kutta method with fixed step, whatever its slip does.
+
+    Returns
+    -------
+    SlidingState
+        In natural units, every number of shape (steps + 1,).
+    """
+    units, top = natural_units(problem.top), natural(problem.top)
+    rates = RightHandSide(replace(sliding_motion(top.kind, False), guards=()), top.numbers)
+    y = np.array(along_table(natural_state(problem.start(), units)).pack(), dtype=float)
+    rows = [y]
+    for _ in range(round(duration / step)):
+        y = classical_step(rates, y, step / units.time)
+        rows.append(y)
+    return SlidingState.unpack(np.array(rows).T)
+
+
+def _cohen(quick: bool) -> xr.Dataset:
+    """Cohen's top with his method at several steps, and exactly."""
+    steps = np.array([10.0, 5.0, 2.0, 1.0, 0.5] + ([] if quick else [0.2])) * 1e-3
+    times = np.linspace(0.0, WATCHED, round(WATCHED / COHEN_STEP) + 1)
+    tilts, slowest = [], []
+    top, units = natural(COHEN.top), natural_units(COHEN.top)
+    for step in steps:
+        state = stepped(COHEN, float(step), WATCHED)
+        tilt = np.arctan2(np.hypot(state.axis[0], state.axis[1]), state.axis[2])
+        tilts.append(tilt[:: round(COHEN_STEP / step)])
+        rolling = velocity_without_slip(state.axis, state.momentum, top)
+        slip = np.hypot(*(u - v for u, v in zip(state.velocity, rolling, strict=True)))
+        slowest.append(float(slip.min()) * units.speed)
+    exact = simulate(COHEN, WATCHED, times=times, **WITHOUT_COMPILING)
+    stick = exact["event_time"].values[exact["event_kind"].values == "stick"]
+    of_steps = ("step", "time")
+    return xr.Dataset(
+        {
+            "theta_stepped": variable(tilts, "rad", "tilt, stepped", of_steps),
+            "slowest": variable(slowest, "m s-1", "least slip speed at a step", ("step",)),
+            "theta": variable(exact["theta"].values, "rad", "tilt, exact", ("time",)),
+            "sticks": variable(float(stick[0]), "s", "when slip ends"),
+            "slips_again": variable(_count(exact, "slip"), "1", "how often it slips again"),
+            "energy_kept": variable(
+                float(np.ptp(exact["energy"].values[times > float(stick[0])]) / exact["energy"].values[-1]),
+                "1",
+                "largest relative change of the energy while it sticks",
+            ),
+        },
+        {
+            "step": variable(steps, "s", "length of a step", ("step",)),
+            "time": variable(times, "s", "time", ("time",)),
+        },
+    )
+
+
+def turning_time(problem: Problem, window: float) -> float:
+    """When the axis first passes the horizontal, s; nan if it has not in the window, or until it sticks."""
+    return float(simulate(problem, window, samples=2, phase_limit=1)["turns_over"])
+
+
+def _smoothed(quick: bool) -> xr.Dataset:
+    """How long a top on smoothed Coulomb friction takes to turn over, as the smoothing goes away."""
+    eps = np.geomspace(0.1, 5e-3, 5) if quick else np.geomspace(0.1, 1e-3, 11)
+    windows = np.maximum(4.0, 0.02 / eps)
+    base = report_problem(SMOOTHED_SPIN)
+    times = [
+        turning_time(with_friction(base, RegularizedCoulombFriction(mu=SMOOTHED, eps=float(e))), float(w))
+        for e, w in zip(eps, windows, strict=True)
+    ]
+    exact = simulate(with_friction(base, CoulombFriction(mu=SMOOTHED)), float(windows.max()), samples=2001)
+    slopes = np.diff(np.log(times)) / np.diff(np.log(eps))
+    return xr.Dataset(
+        {
+            "turning_time": variable(times, "s", "first tilt of more than pi/2", ("eps",)),
+            "last_exponent": variable(_last(slopes), "1", "d ln t / d ln eps at the least eps"),
+            "highest": variable(float(exact["theta"].max()), "rad", "largest tilt on exact Coulomb friction"),
+            "followed": variable(float(exact["end_time"]), "s", "how long that top was followed"),
+            "exact_turns": variable(
+                float(exact["turns_over"]), "s", "when that top turns over; nan if never"
+            ),
+        },
+        {"eps": variable(eps, "m s-1", "slip speed below which friction falls to zero", ("eps",))},
+        {"mu": SMOOTHED, "spin_rad_per_s": SMOOTHED_SPIN},
+    )
+
+
+def _last(values: Array) -> float:
+    return float(values[-1])
+
+
+EXPERIMENTS = [
+    Experiment("dry-rolling", "the friction that rolling needs", 3.0, _rolling),
+    Experiment("dry-cohen", "Cohen's top by his method and exactly", 4.0, _cohen),
+    Experiment("dry-smoothed", "smoothed Coulomb friction as the smoothing goes away", 4.0, _smoothed),
+]
+"""What is found about dry friction of a point."""

@@ -1,0 +1,182 @@
+"""Patches that slip and drill at once: when the top turns over, and which viscous friction they stand for."""
+
+import math
+
+import numpy as np
+import xarray as xr
+
+from tippetop.frictions import ContensouFriction, ViscousFriction
+from tippetop.mechanics.contensou import ELLIPSOIDAL_RADIUS
+from tippetop.mechanics.hertz import MATERIALS, hertz_patch_radius
+from tippetop.presets import LEINE_GLOCKER, report_problem
+from tippetop.problem import Contact, Launch, Problem
+from tippetop.report.experiment import Experiment, variable
+from tippetop.report.experiments.dry import turning_time, with_friction
+from tippetop.run import simulate
+from tippetop.theory.stability import vertical_growth_rates
+from tippetop.theory.steady import VERTICAL_SPINS, SteadyKind
+from tippetop.theory.thresholds import critical_spin
+
+MU = 0.3
+"""Friction coefficient of the map."""
+
+SPIN_OF_REPORT = 155.0
+"""Spin of the report's main run, rad/s."""
+
+CREEP = {"hertz": 3.0 * math.pi / 8.0, "ellipsoidal": 1.0 / ELLIPSOIDAL_RADIUS}
+"""Viscous coefficient of a patch that drills, in mu / (R omega), by its pressure."""
+
+MAP_WINDOW = 6.0
+"""How long the tops of the map are followed, s."""
+
+SPIN = 100.0
+"""Spin of the launches that are compared with viscous friction, rad/s."""
+
+FRICTIONS = (0.1, 0.2, 0.4)
+"""Friction coefficients of the patches that are compared with viscous friction."""
+
+LEINE = Problem(
+    body=LEINE_GLOCKER,
+    friction=ContensouFriction(mu=0.3, patch_radius=5e-4, pressure="ellipsoidal"),
+    launch=Launch(tilt=0.1, spin=180.0, slip=(0.0, 180.0 * 0.015 * math.sin(0.1))),
+    contact=Contact(liftoff="stop"),
+    gravity=9.81,
+)
+"""The launch of Leine and Glocker (2003): centre of mass at rest; their stem is left out."""
+
+
+def patch(mu: float, radius: float) -> ContensouFriction:
+    """Friction of a patch whose limit surface is an ellipsoid."""
+    return ContensouFriction(mu=mu, patch_radius=radius, pressure="ellipsoidal")
+
+
+def viscous_coefficient(mu: float, radius: float, spin: float) -> float:
+    """Viscous coefficient, s/m, of such a patch that drills at this rate: mu / (rho omega)."""
+    return CREEP["ellipsoidal"] * mu / (radius * spin)
+
+
+def _map(quick: bool) -> xr.Dataset:
+    """When the report's top turns over, if it does, by the radius of its patch and its spin."""
+    radii = np.geomspace(2e-4, 6e-3, 5) if quick else np.geomspace(1e-4, 6e-3, 12)
+    spins = np.linspace(25.0, 115.0, 4) if quick else np.linspace(34.0, 115.0, 10)
+    runs = [
+        [
+            simulate(
+                with_friction(report_problem(float(s)), patch(MU, float(r))),
+                MAP_WINDOW,
+                samples=2,
+                phase_limit=1,
+            )
+            for s in spins
+        ]
+        for r in radii
+    ]
+    over = ("radius", "spin")
+    theirs = simulate(LEINE, 3.0, samples=2)
+    top = report_problem().top
+    return xr.Dataset(
+        {
+            "turning_time": variable(
+                [[float(run["turns_over"]) for run in row] for row in runs],
+                "s",
+                "first tilt of more than pi/2",
+                over,
+            ),
+            "least_force": variable(
+                min(float(run["least_normal_force"]) for row in runs for run in row),
+                "N",
+                "least normal force of all",
+            ),
+            "upright_limit": variable(
+                critical_spin(SteadyKind.UPRIGHT, top),
+                "rad s-1",
+                "spin below which the upright spin is stable",
+            ),
+            "theirs_turns": variable(
+                float(theirs["turns_over"]), "s", "when Leine and Glocker's top turns over"
+            ),
+        },
+        {
+            "radius": variable(radii, "m", "radius of the contact patch", ("radius",)),
+            "spin": variable(spins, "rad s-1", "spin at launch", ("spin",)),
+        },
+        {"mu": MU, "window_s": MAP_WINDOW, "tilt_rad": 0.1},
+    )
+
+
+def _viscous(quick: bool) -> xr.Dataset:
+    """When patches turn the top over, and viscous friction with their coefficient for small slip."""
+    coefficients = np.geomspace(1.0, 40.0, 4 if quick else 10)
+    base = report_problem(SPIN)
+    times = [
+        [
+            turning_time(with_friction(base, patch(mu, viscous_coefficient(mu, float(c), SPIN))), MAP_WINDOW)
+            for c in coefficients
+        ]
+        for mu in FRICTIONS
+    ]
+    smooth = [
+        turning_time(with_friction(base, ViscousFriction(mu=float(c))), MAP_WINDOW) for c in coefficients
+    ]
+    top = report_problem().body
+    load = top.mass * base.gravity
+    radii = [
+        hertz_patch_radius(load, float(base.top.surface.size), material, material)
+        for material in MATERIALS.values()
+    ]
+    return xr.Dataset(
+        {
+            "patch_time": variable(times, "s", "first tilt of more than pi/2, patch", ("mu", "coefficient")),
+            "viscous_time": variable(smooth, "s", "first tilt of more than pi/2, viscous", ("coefficient",)),
+            "growth_ratio": variable(
+                _growth_ratios(),
+                "1",
+                "growth rate of a patch over that of viscous friction",
+                ("pressure", "pole"),
+            ),
+            "hertz_radius": variable(
+                radii, "m", "patch of the report's top on its own material", ("material",)
+            ),
+            "hertz_coefficient": variable(
+                [CREEP["hertz"] * MU / (r * SPIN_OF_REPORT) for r in radii],
+                "s m-1",
+                "viscous coefficient of that patch at 155 rad/s",
+                ("material",),
+            ),
+        },
+        {
+            "mu": variable(list(FRICTIONS), "1", "friction coefficient of the patch", ("mu",)),
+            "coefficient": variable(coefficients, "s m-1", "viscous coefficient at launch", ("coefficient",)),
+            "material": list(MATERIALS),
+            "pressure": list(CREEP),
+        },
+        {"spin_rad_per_s": SPIN, "window_s": MAP_WINDOW},
+    )
+
+
+def _growth_ratios() -> list[list[float]]:
+    """Growth rates of the vertical spins on a patch of 0.5 mm, over those with its viscous coefficient."""
+    found = []
+    for pressure, creep in CREEP.items():
+        frictions = (
+            ContensouFriction(mu=MU, patch_radius=5e-4, pressure=pressure),
+            ViscousFriction(mu=creep * MU / (5e-4 * SPIN)),
+        )
+        dry, viscous = (
+            [
+                float(
+                    vertical_growth_rates(kind, with_friction(report_problem(), law).top, np.array([SPIN]))[0]
+                )
+                for kind in VERTICAL_SPINS
+            ]
+            for law in frictions
+        )
+        found.append([one / other for one, other in zip(dry, viscous, strict=True)])
+    return found
+
+
+EXPERIMENTS = [
+    Experiment("dry-patch", "turning over by patch radius and spin", 6.0, _map),
+    Experiment("dry-viscous", "patches against viscous friction", 4.0, _viscous),
+]
+"""What is found about patches."""
