@@ -22,6 +22,7 @@ _PARTS = (
     ("4", "Discussion: flight"),
     ("5", "Critique and summary"),
     ("A", "Appendices"),
+    ("F", "Friction"),
 )
 """The report's sections by the beginning of their numbers, for the order of the claims."""
 

@@ -18,7 +18,7 @@ _OVER = np.pi / 2
 
 @CHAPTER.claim(
     "dry-tilting-rate",
-    Source("Pliskin 1954", "Am. J. Phys. 22, 28"),
+    Source("Friction: Pliskin, Am. J. Phys. 22 (1954) 28"),
     "The rate at which a tippe top tilts is proportional to the coefficient of friction.",
     needs=("dry-rolling",),
     figure="dry-rolling",
@@ -42,7 +42,7 @@ def _(data: xr.Dataset) -> Finding:
 
 @CHAPTER.claim(
     "dry-cohen-inversion",
-    Source("Cohen 1977", "Am. J. Phys. 45, 12, Fig. 5"),
+    Source("Friction: Cohen, Am. J. Phys. 45 (1977) 12", "Fig. 5"),
     "A tippe top on Coulomb friction of mu = 0.3 turns over within 2 s (100 rad/s, 0.1 rad).",
     needs=("dry-cohen",),
     figure="dry-cohen",
@@ -71,7 +71,7 @@ def _(data: xr.Dataset) -> Finding:
 
 @CHAPTER.claim(
     "dry-cohen-sliding",
-    Source("Cohen 1977", "Am. J. Phys. 45, 12"),
+    Source("Friction: Cohen, Am. J. Phys. 45 (1977) 12"),
     "The top always slides on its way.",
     needs=("dry-cohen",),
     figure="dry-cohen",
@@ -90,7 +90,7 @@ def _(data: xr.Dataset) -> Finding:
 
 @CHAPTER.claim(
     "dry-coulomb-weaker",
-    Source("Or 1994", "SIAM J. Appl. Math. 54, 597"),
+    Source("Friction: Or, SIAM J. Appl. Math. 54 (1994) 597"),
     "Coulomb friction contributes to the inversion, more weakly than viscous friction.",
     needs=("dry-smoothed",),
     figure="dry-smoothed",
@@ -111,7 +111,7 @@ def _(data: xr.Dataset) -> Finding:
 
 @CHAPTER.claim(
     "dry-patch-inversion",
-    Source("Leine and Glocker 2003", "Eur. J. Mech. A/Solids 22, 193"),
+    Source("Friction: Leine and Glocker, Eur. J. Mech. A/Solids 22 (2003) 193"),
     "With Coulomb-Contensou friction of a patch of 0.5 mm the tippe top turns over (180 rad/s).",
     needs=("dry-patch",),
     figure="dry-patch",
@@ -136,7 +136,7 @@ def _(data: xr.Dataset) -> Finding:
 
 @CHAPTER.claim(
     "dry-viscous-limit",
-    Source("Contensou 1963"),
+    Source("Friction: Contensou 1963"),
     "Fast drilling makes dry friction viscous for little slip (growth rates of small tilts, patch over "
     "viscous).",
     "1",
@@ -163,7 +163,7 @@ def _(data: xr.Dataset) -> Finding:
 
 @CHAPTER.claim(
     "dry-normal-mu",
-    Source("3.3"),
+    Source("Friction: the report, section 3.3"),
     f"Friction coefficients of {NORMAL_FRICTION[0]:g} to {NORMAL_FRICTION[1]:g} s/m are normal.",
     needs=("dry-viscous",),
     figure="dry-viscous",

@@ -220,7 +220,7 @@ def _last(values: Array) -> float:
 
 
 EXPERIMENTS = [
-    Experiment("dry-rolling", "the friction that rolling needs", 3.0, _rolling),
+    Experiment("dry-rolling", "the friction that rolling needs", 4.0, _rolling),
     Experiment("dry-cohen", "Cohen's top by his method and exactly", 4.0, _cohen),
     Experiment("dry-smoothed", "smoothed Coulomb friction as the smoothing goes away", 4.0, _smoothed),
 ]

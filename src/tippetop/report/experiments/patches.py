@@ -176,7 +176,7 @@ def _growth_ratios() -> list[list[float]]:
 
 
 EXPERIMENTS = [
-    Experiment("dry-patch", "turning over by patch radius and spin", 6.0, _map),
-    Experiment("dry-viscous", "patches against viscous friction", 4.0, _viscous),
+    Experiment("dry-patch", "turning over by patch radius and spin", 5.0, _map),
+    Experiment("dry-viscous", "patches against viscous friction", 2.0, _viscous),
 ]
 """What is found about patches."""
