@@ -35,7 +35,9 @@ def require_creep(top: Top) -> None:
     """
     if isinstance(top.friction, RollingResistance):
         raise InvalidInput(
-            "rolling_resistance", top.friction.length, "0: with it a spin about the vertical has no linear motion"
+            "rolling_resistance",
+            top.friction.length,
+            "0: with it a spin about the vertical has no linear motion",
         )
     if is_set_valued(top.friction) and slip_dimension(top.friction) == 2:
         raise InvalidInput(
