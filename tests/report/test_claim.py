@@ -18,7 +18,10 @@ from tippetop.report.claim import (
 )
 from tippetop.report.claims.registry import CLAIMS
 from tippetop.report.experiments.registry import EXPERIMENTS
+from tippetop.report.formulas import FORMULAS
 from tippetop.report.gallery import PLATES
+from tippetop.report.outline import OWN, PICTURES, SECTIONS, section_of
+from tippetop.report.sentences import SENTENCES
 
 FIELDS = {"id", "source", "statement", "reported", "listing", "converged", "unit", "verdict", "note"}
 
@@ -111,6 +114,31 @@ def test_claims_are_complete(claim: Claim) -> None:
         assert math.isfinite(number(claim.number))
     if claim.tolerance is not None:
         assert claim.tolerance.reason
+    assert section_of(claim.source.section)
+
+
+def test_every_statement_of_the_report_is_quoted() -> None:
+    """Claims of the page's own sections quote nothing, for the report has no such section."""
+    ours = {name for name, claim in CLAIMS.items() if section_of(claim.source.section) in OWN}
+    assert set(CLAIMS) - ours == set(SENTENCES)
+    assert all(0 < len(quote) < 160 for quote in SENTENCES.values())
+
+
+def test_formulas_belong_to_claims() -> None:
+    assert set(FORMULAS) <= set(CLAIMS)
+
+
+def test_figures_stand_in_sections_of_the_page() -> None:
+    order = list(SECTIONS)
+    assert order[-3:] == list(OWN)
+    for plate in PLATES.values():
+        assert section_of(plate.section) == plate.section
+        assert plate.finding or plate.id.startswith("fig") or plate.section not in ("Why",)
+    assert all(PLATES[name].finding for name in PICTURES)
+    assert section_of("Appendix A.1, line 22") == "Appendix A"
+    assert section_of("3.1") == "3.1"
+    with pytest.raises(LookupError):
+        section_of("Elsewhere")
 
 
 def test_every_figure_of_the_report_is_there() -> None:

@@ -11,7 +11,9 @@ from typer.testing import CliRunner
 from tippetop.cli.reproduce import reproduce as command
 from tippetop.errors import FileTrouble, InvalidInput
 from tippetop.netcdf import read_run
+from tippetop.report.claim import Verdict
 from tippetop.report.claims.registry import CLAIMS
+from tippetop.report.experiments.registry import EXPERIMENTS
 from tippetop.report.gallery import PLATES
 from tippetop.report.reproduce import reproduce
 
@@ -19,7 +21,7 @@ FIELDS = {"id", "source", "statement", "reported", "listing", "converged", "unit
 
 
 class Links(HTMLParser):
-    """Everything a page loads, links to, and can be linked at."""
+    """Everything a page loads, links to, and can be linked at, and what it says of its pictures."""
 
     def __init__(self, page: str) -> None:
         super().__init__()
@@ -27,6 +29,7 @@ class Links(HTMLParser):
         self.links: list[str] = []
         self.names: list[str] = []
         self.tags: set[str] = set()
+        self.silent: list[str] = []
         self.feed(page)
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
@@ -35,22 +38,26 @@ class Links(HTMLParser):
         self.loaded += [values["src"]] if values.get("src") else []
         self.links += [values["href"]] if values.get("href") else []
         self.names += [values["id"]] if values.get("id") else []
+        if (tag == "img" and values.get("alt") is None) or (tag == "svg" and not values.get("aria-label")):
+            self.silent.append(str(values))
 
 
-def check_page(folder: Path) -> None:
+def check_page(folder: Path) -> Links:
     """The page is whole by itself, and none of its links leads nowhere."""
     text = (folder / "index.html").read_text(encoding="utf-8")
     page = Links(text)
-    assert all(source.startswith("data:image/svg+xml;base64,") for source in page.loaded)
-    assert not page.tags & {"script", "link", "iframe"}
+    assert all(source.startswith(("data:image/svg+xml;", "data:image/webp;")) for source in page.loaded)
+    assert not page.tags & {"link", "iframe"}
     assert "@import" not in text
     assert "url(" not in text
+    assert page.silent == []
     assert len(page.names) == len(set(page.names))
     for link in page.links:
         if link.startswith("#"):
-            assert link[1:] in page.names
+            assert link[1:] in page.names, link
         else:
-            assert (folder / link).is_file()
+            assert (folder / link).is_file(), link
+    return page
 
 
 @pytest.fixture(scope="module")
@@ -72,17 +79,42 @@ def test_one_figure_with_its_data_and_claims(fig13: Path) -> None:
 
 
 def test_page_stands_alone(fig13: Path) -> None:
-    check_page(fig13)
+    assert "script" not in check_page(fig13).tags
 
 
 def test_page_opens_with_what_is_wrong_and_what_is_right(fig13: Path) -> None:
     text = (fig13 / "index.html").read_text(encoding="utf-8")
-    wrong, right, rest = (text.index(f'id="{name}"') for name in ("errors", "sound", "figures"))
+    wrong, right, rest = (text.index(f'<h2 id="{name}"') for name in ("errors", "sound", "section-2.3"))
     assert wrong < right < rest
     assert "it nutates, and the nutation dies away" in text[wrong:right]
     assert 'href="#claim-fig13-upright"' in text[right:rest]
     assert "(what is left of it" not in text[wrong:right]
     assert "(what is left of it" in text[rest:]
+
+
+def test_claim_and_figure_and_experiment_link_to_each_other(fig13: Path) -> None:
+    text = (fig13 / "index.html").read_text(encoding="utf-8")
+    claim = text[text.index('id="claim-eq-2.17-exception"') :]
+    claim = claim[: claim.index("</article>")]
+    assert 'href="#fig13"' in claim
+    assert 'href="#experiment-run-10"' in claim
+    assert "--only eq-2.17-exception" in claim
+    assert 'aria-label="\\omega_3=' in claim
+    figure = text[text.index('<figure id="fig13"') : text.index("</figure>")]
+    assert 'href="#claim-eq-2.17-exception"' in figure, "it stands in another section"
+    assert 'href="#experiment-run-10"' in figure
+    row = text[text.index('<tr id="experiment-run-10"') :]
+    row = row[: row.index("</tr>")]
+    assert 'href="#fig13"' in row
+    assert 'href="#claim-fig13-upright"' in row
+
+
+def test_every_verdict_has_a_filter(fig13: Path) -> None:
+    text = (fig13 / "index.html").read_text(encoding="utf-8")
+    for verdict in Verdict:
+        name = verdict.name.lower()
+        assert f'type="radio" name="only" id="only-{name}"' in text
+        assert f"#only-{name}:checked) :is(.claim:not(.is-{name})" in text
 
 
 def test_quick_run_says_so(fig13: Path) -> None:
@@ -154,4 +186,6 @@ def test_whole_report_in_its_quick_version(tmp_path: Path) -> None:
         assert "nan" not in record["note"]
     assert sum(result.counts.values()) == len(CLAIMS)
     assert {path.stem for path in (tmp_path / "out/figures").glob("*.png")} == set(PLATES)
-    check_page(tmp_path / "out")
+    page = check_page(tmp_path / "out")
+    assert {f"claim-{name}" for name in CLAIMS} | set(PLATES) <= set(page.names)
+    assert {f"experiment-{name}" for name in EXPERIMENTS} <= set(page.names)

@@ -1,8 +1,11 @@
 """Formulas in the words of claims."""
 
+import re
+
 import pytest
 
-from tippetop.report.typeset import typeset
+from tippetop.report.formulas import FORMULAS, Formula
+from tippetop.report.typeset import formula, typeset
 
 
 @pytest.mark.parametrize(
@@ -20,3 +23,25 @@ from tippetop.report.typeset import typeset
 )
 def test_formulas_get_letters_indices_and_powers(plain: str, page: str) -> None:
     assert typeset(plain) == page
+
+
+@pytest.mark.parametrize("pair", FORMULAS.values(), ids=FORMULAS)
+def test_formulas_are_drawn_in_the_color_of_the_text_with_their_source_as_words(pair: Formula) -> None:
+    drawn = formula(pair.printed + pair.right)
+    assert drawn.count("<svg") == drawn.count('role="img"') == len(pair.printed + pair.right)
+    assert "fill=" not in drawn
+    assert set("".join(re.findall(r' d="([^"]*)"', drawn))) <= set("MLQCZ0123456789.e- ")
+    assert pair.printed != pair.right
+
+
+def test_formula_fills_its_box() -> None:
+    left, top, width, height = (
+        float(v) for v in re.findall(r'viewBox="([^"]*)"', formula(("x^2",)))[0].split()
+    )
+    path = re.findall(r' d="([^"]*)"', formula(("x^2",)))[0]
+    numbers = [float(number) for number in re.findall(r"-?[\d.]+(?:e-?\d+)?", path)]
+    x, y = numbers[::2], numbers[1::2]
+    assert left + 1 == pytest.approx(min(x), abs=0.1)
+    assert left + width - 1 == pytest.approx(max(x), abs=0.1)
+    assert top + 1 == pytest.approx(min(y), abs=0.1)
+    assert top + height - 1 == pytest.approx(max(y), abs=0.1)

@@ -31,9 +31,16 @@ _CRITICAL = (float(CRITICAL_SPINS[0]), float(CRITICAL_SPINS[1]))
 
 
 def _run(
-    id_: str, title: str, caption: str, experiment: str, draw: Callable[..., Figure], **options: Any
+    id_: str,
+    title: str,
+    caption: str,
+    experiment: str,
+    draw: Callable[..., Figure],
+    section: str,
+    finding: str = "",
+    **options: Any,
 ) -> Plate:
-    return Plate(id_, title, caption, (experiment,), partial(draw, **options))
+    return Plate(id_, title, caption, (experiment,), partial(draw, **options), section, finding)
 
 
 def _printed_times(figure: str) -> dict[str, Any]:
@@ -58,6 +65,7 @@ PLATES: dict[str, Plate] = {
             "climb.",
             (),
             lambda _: tippe_top_drawing(),
+            section="1",
         ),
         Plate(
             "fig02",
@@ -66,6 +74,7 @@ PLATES: dict[str, Plate] = {
             "line of nodes N, and about Z.",
             (),
             lambda _: euler_angles_drawing(),
+            section="2.1",
         ),
         Plate(
             "fig03",
@@ -74,6 +83,7 @@ PLATES: dict[str, Plate] = {
             "that touches the table, a the vector from the centre of mass to it.",
             (),
             lambda _: model_drawing(),
+            section="2.2",
         ),
         _run(
             "fig04",
@@ -87,6 +97,8 @@ PLATES: dict[str, Plate] = {
             runs.motion_figure,
             zoom=(5.2, 5.6),
             **_printed_times("fig04"),
+            section="3.1",
+            finding="The main launch turns over: the report's method, and the converged motion.",
         ),
         _run(
             "fig05",
@@ -100,6 +112,7 @@ PLATES: dict[str, Plate] = {
             **_printed_times("fig05"),
             zoom=(0.0, 1.6),
             inset=(0.12, 0.57, 0.34, 0.38),
+            section="3.1",
         ),
         Plate(
             "fig06",
@@ -110,6 +123,8 @@ PLATES: dict[str, Plate] = {
             "at times and falls back without rebound (green). Figure hops follows it to higher spins.",
             ("final-tilt-listing", "final-tilt", "critical-spins"),
             partial(sweeps.final_tilt_figure, reported=(*_CRITICAL, float(ABNORMAL_SPIN))),
+            section="3.2",
+            finding="Where launches end by their spin, with the two thresholds and the abnormal point.",
         ),
         Plate(
             "windows",
@@ -118,6 +133,8 @@ PLATES: dict[str, Plate] = {
             "at 20 s spans what other meanings of settled give there, 0.001 to 0.1 rad. Dashed: the report.",
             ("critical-spins",),
             partial(sweeps.windows_figure, reported=_CRITICAL),
+            section="3.2",
+            finding="What the length of a run does to the critical spins that one reads from it.",
         ),
         Plate(
             "fig07",
@@ -128,6 +145,7 @@ PLATES: dict[str, Plate] = {
             "gaps from runs on a table that pulls that became singular.",
             ("flip-times", "flip-times-wide"),
             partial(sweeps.flip_time_figure, reported=float(EXPONENT)),
+            section="3.3",
         ),
         _run(
             "fig08",
@@ -136,6 +154,7 @@ PLATES: dict[str, Plate] = {
             "run-mu-100",
             runs.tilt_figure,
             zoom=(12.8, 13.8),
+            section="3.3",
         ),
         _run(
             "fig09",
@@ -148,6 +167,7 @@ PLATES: dict[str, Plate] = {
             runs.tilt_figure,
             zoom=(5.3, 5.8),
             inset=(0.6, 0.52, 0.38, 0.44),
+            section="4",
         ),
         _run(
             "fig10",
@@ -159,6 +179,7 @@ PLATES: dict[str, Plate] = {
             "run-175",
             runs.energy_figure,
             reported=(float(ENERGY_TIME), float(ENERGY)),
+            section="4",
         ),
         _run(
             "fig11",
@@ -168,6 +189,7 @@ PLATES: dict[str, Plate] = {
             "pushes the force is zero in flight and never negative; impulses of impacts are not drawn.",
             "run-175",
             runs.force_figure,
+            section="4",
         ),
         _run(
             "fig12",
@@ -179,6 +201,8 @@ PLATES: dict[str, Plate] = {
             "run-175",
             runs.stopped_figure,
             reported_stop=float(STOP),
+            section="4",
+            finding="Where the report stops, where the top leaves the table, and how it goes on.",
         ),
         _run(
             "fig13",
@@ -186,6 +210,7 @@ PLATES: dict[str, Plate] = {
             _BOTH + "The first 3 s of 20 s, on a scale of their own.",
             "run-10",
             runs.upright_figure,
+            section="Appendix C",
         ),
         _run(
             "fig14",
@@ -194,6 +219,7 @@ PLATES: dict[str, Plate] = {
             "run-90",
             runs.tilt_figure,
             zoom=(5.5, 6.0),
+            section="Appendix C",
         ),
         _run(
             "fig15",
@@ -202,6 +228,7 @@ PLATES: dict[str, Plate] = {
             "run-120",
             runs.tilt_figure,
             zoom=(5.5, 6.0),
+            section="Appendix C",
         ),
         _run(
             "fig16",
@@ -212,6 +239,7 @@ PLATES: dict[str, Plate] = {
             "run-150-pi-4",
             runs.tilt_figure,
             zoom=(5.5, 6.0),
+            section="Appendix C",
         ),
         Plate(
             "onset-mu",
@@ -222,6 +250,8 @@ PLATES: dict[str, Plate] = {
             "table all takes longer, and 20 s are too short to see the lift-off. Square: the report's.",
             ("onset-mu",),
             partial(flights.onset_figure, over="mu", reported=float(ABNORMAL_SPIN)),
+            section="4",
+            finding="From which spin on a launch leaves the table, whatever the friction.",
         ),
         Plate(
             "onset-tilt",
@@ -230,6 +260,8 @@ PLATES: dict[str, Plate] = {
             "down none of the scan leaves the table.",
             ("onset-tilt",),
             partial(flights.onset_figure, over="tilt", reported=float(ABNORMAL_SPIN)),
+            section="4",
+            finding="The same for launches at any tilt.",
         ),
         Plate(
             "hops",
@@ -241,6 +273,8 @@ PLATES: dict[str, Plate] = {
             "does turn over.",
             ("hops", "hops-bouncing"),
             flights.hops_figure,
+            section="4",
+            finding="What the top does beyond the abnormal point: it hops, and the faster it spins the more.",
         ),
         Plate(
             "order",
@@ -251,6 +285,7 @@ PLATES: dict[str, Plate] = {
             "shortest steps.",
             ("order",),
             methods.order_figure,
+            section="Appendix B",
         ),
         Plate(
             "stiffness",
@@ -259,6 +294,7 @@ PLATES: dict[str, Plate] = {
             "motion at the report's tolerances.",
             ("stiffness",),
             methods.stiffness_figure,
+            section="5",
         ),
         *WHY,
         *FRICTION,

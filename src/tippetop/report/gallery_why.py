@@ -25,6 +25,7 @@ PLATES = (
         "upright and near inverted; the spin is that of a launch at 0.1 rad with the same lambda.",
         ("why-bifurcation",),
         theory.bifurcation_figure,
+        finding="Where every launch ends, from one conserved number and without a run.",
     ),
     _plate(
         "why-growth",
@@ -36,6 +37,7 @@ PLATES = (
         "that the top takes to turn over is not counted.",
         ("why-critical", "critical-spins"),
         partial(theory.growth_figure, reported=(float(CRITICAL_SPINS[0]), float(CRITICAL_SPINS[1]))),
+        finding="Why 20 s show other critical spins than there are, from growth rates.",
     ),
     _plate(
         "why-groups",
@@ -48,6 +50,7 @@ PLATES = (
         "Appl. Dyn. Syst. 4 (2005) 1159.",
         ("why-groups",),
         theory.groups_figure,
+        finding="Which tops turn over at all, by their eccentricity and inertias.",
     ),
     _plate(
         "why-collapse",
@@ -58,6 +61,7 @@ PLATES = (
         "full run.",
         ("why-collapse",),
         theory_runs.collapse_figure,
+        finding="Why the time goes as 1/mu: without friction as a scale, only mu t is left.",
     ),
     _plate(
         "why-exponent",
@@ -69,6 +73,7 @@ PLATES = (
         "definition. b, the local exponents.",
         ("why-exponent",),
         theory_runs.exponent_figure,
+        finding="Where that law ends, and what its definition of the flip time hides.",
     ),
     _plate(
         "why-balance",
@@ -79,6 +84,7 @@ PLATES = (
         "balance. The peaks are passages of the axis close to the vertical.",
         ("why-diagnostics",),
         theory_runs.balance_figure,
+        finding="How the top climbs: nutation between turning points, in gyroscopic balance.",
     ),
     _plate(
         "why-potential",
@@ -88,6 +94,7 @@ PLATES = (
         "inverted, and the tilt goes along at its bottom. Every panel shows the same range of energies.",
         ("why-diagnostics",),
         theory_runs.potential_figure,
+        finding="The well that carries the tilt from upright to inverted.",
     ),
 )
 """The figures in the order of the page."""

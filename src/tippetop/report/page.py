@@ -1,40 +1,44 @@
-"""The page: every figure and every claim in one file that opens without a network."""
+"""The page: what was found, every figure and every claim, in one file that opens without a network."""
 
 import base64
+import io
 from collections import Counter
 from collections.abc import Mapping, Sequence, Set
 from importlib.metadata import version
+from pathlib import Path
+from typing import Any
 
 import jinja2
+from PIL import Image
 
 from tippetop.integrators import default_name
 from tippetop.report.claim import RULE, Judgement, Value, Verdict
+from tippetop.report.experiments.registry import EXPERIMENTS
+from tippetop.report.formulas import FORMULAS
 from tippetop.report.gallery import PLATES, Plate
-from tippetop.report.typeset import typeset
+from tippetop.report.outline import PICTURES, SECTIONS, section_of
+from tippetop.report.sentences import SENTENCES
+from tippetop.report.typeset import formula, typeset
 from tippetop.report.unchecked import UNCHECKED
 
 _TEMPLATE = "page.html.j2"
 
-_PARTS = (
-    ("1", "Introduction"),
-    ("2", "The model"),
-    ("3", "Results"),
-    ("4", "Discussion: flight"),
-    ("5", "Critique and summary"),
-    ("A", "Appendices"),
-    ("F", "Friction"),
-)
-"""The report's sections by the beginning of their numbers, for the order of the claims."""
-
 _WRONG = (Verdict.CORRECTED, Verdict.EXPLAINED)
 """Verdicts on what is not true."""
+
+_THUMBNAIL = (640, 420)
+"""Largest size of the pictures that the page opens with, pixels."""
+
+Worded = dict[str, Any]
+"""A claim in words."""
 
 
 def render(
     plates: Sequence[Plate],
     judgements: Sequence[Judgement],
-    pictures: Mapping[str, bytes],
+    figures: Path,
     *,
+    player: Mapping[str, str] | None = None,
     quick: bool,
     partial: str | None = None,
 ) -> str:
@@ -46,8 +50,10 @@ def render(
         The figures on it.
     judgements
         The claims on it.
-    pictures
-        The figures' SVG by name; they become part of the page.
+    figures
+        The folder with the figures' SVG and PNG by name; they become part of the page.
+    player
+        A run and what plays it, as `tippetop.report.playable` packs them; None for a page without.
     quick
         Whether to say that the computations were coarse.
     partial
@@ -60,24 +66,25 @@ def render(
         lstrip_blocks=True,
         undefined=jinja2.StrictUndefined,
     )
-    environment.filters["typeset"] = typeset
+    environment.filters |= {"typeset": typeset, "formula": formula}
     shown = {plate.id for plate in plates}
     claims = [worded(judgement, shown) for judgement in judgements]
     counts = Counter(claim["verdict"] for claim in claims)
     wrong = [verdict.name.lower() for verdict in _WRONG]
+    parts: dict[str, Any] = {
+        "errors": [claim for name in wrong for claim in claims if claim["verdict"] == name],
+        "sound": [claim for claim in claims if claim["verdict"] not in wrong],
+        "unknown": [plate for plate in plates if _is_new(plate) and not partial],
+        "player": player,
+        "sections": _sections(plates, claims, figures),
+        "experiments_done": _experiments(plates, judgements),
+        "unchecked": [] if partial else UNCHECKED,
+    }
     return environment.get_template(_TEMPLATE).render(
-        sections=[
-            {
-                "title": section,
-                "figures": [_shown(plate, pictures, claims) for plate in plates if plate.section == section],
-            }
-            for section in dict.fromkeys(plate.section for plate in plates)
-        ],
+        **parts,
+        contents=_contents(parts),
         claims=claims,
-        errors=[claim for name in wrong for claim in claims if claim["verdict"] == name],
-        sound=[claim for claim in claims if claim["verdict"] not in wrong],
-        parts=[part for part in (_part(*named, claims) for named in _PARTS) if part["claims"]],
-        unchecked=UNCHECKED,
+        pictures=[] if partial else [_picture(PLATES[name], figures) for name in PICTURES if name in shown],
         verdicts=[
             {"name": verdict.name.lower(), "count": counts[verdict.name.lower()], "meaning": verdict.value}
             for verdict in Verdict
@@ -90,28 +97,91 @@ def render(
     )
 
 
-def _shown(
-    plate: Plate, pictures: Mapping[str, bytes], claims: Sequence[dict[str, str | None]]
-) -> dict[str, object]:
-    """A figure for the page."""
+_OPENING = {
+    "errors": "What the report has wrong",
+    "sound": "What it has right",
+    "unknown": "What it could not know",
+    "player": "A run to play",
+}
+_CLOSING = {"experiments_done": "The experiments behind it", "unchecked": "What is not judged"}
+
+
+def _contents(parts: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """What there is on the page, in its order: the names to link at, and the titles."""
+    return [
+        ("found", "What was found"),
+        *((name, title) for name, title in _OPENING.items() if parts[name]),
+        *((section["id"], section["title"]) for section in parts["sections"]),
+        *((name, title) for name, title in _CLOSING.items() if parts[name]),
+    ]
+
+
+def _is_new(plate: Plate) -> bool:
+    """Whether a figure shows what the report could not know."""
+    return bool(plate.finding) and not plate.id.startswith("fig")
+
+
+def _sections(plates: Sequence[Plate], claims: Sequence[Worded], figures: Path) -> list[dict[str, Any]]:
+    """The report's sections and ours that there is something in, each with its figures and claims.
+
+    A claim stands beside its figure if that is in the same section, else after all figures.
+    """
+    found = []
+    for key, (title, words) in SECTIONS.items():
+        inside = [claim for claim in claims if claim["section"] == key]
+        drawn = [plate for plate in plates if section_of(plate.section) == key]
+        names = {plate.id for plate in drawn}
+        rest = [claim for claim in inside if claim["figure"] not in names]
+        if drawn or rest:
+            found.append(
+                {
+                    "id": "section-" + key.replace(" ", "-").lower(),
+                    "title": title,
+                    "words": words,
+                    "figures": [_shown(plate, figures, claims, key) for plate in drawn],
+                    "claims": rest,
+                }
+            )
+    return found
+
+
+def _shown(plate: Plate, figures: Path, claims: Sequence[Worded], section: str) -> dict[str, Any]:
+    """A figure for the page, with the claims beside it and those elsewhere that it shows, too."""
+    svg = (figures / f"{plate.id}.svg").read_bytes()
+    own = [claim for claim in claims if claim["figure"] == plate.id]
     return {
         "id": plate.id,
         "title": plate.title,
         "caption": plate.caption,
-        "image": _embedded(pictures[plate.id]),
-        "has_data": bool(plate.needs),
-        "experiments": ", ".join(plate.needs),
-        "claims": [claim for claim in claims if claim["figure"] == plate.id],
+        "image": _embedded(svg, "svg+xml"),
+        "needs": plate.needs,
+        "claims": [claim for claim in own if claim["section"] == section],
+        "elsewhere": [claim for claim in own if claim["section"] != section],
     }
 
 
-def _part(number: str, title: str, claims: Sequence[dict[str, str | None]]) -> dict[str, object]:
-    """A section of the report with its claims."""
-    inside = [claim for claim in claims if (claim["section"] or "")[0] == number]
-    return {"id": f"section-{number}", "number": number, "title": title, "claims": inside}
+def _picture(plate: Plate, figures: Path) -> dict[str, str]:
+    """One of the pictures that the page opens with, small."""
+    with Image.open(figures / f"{plate.id}.png") as whole:
+        small = whole.convert("RGB")
+    small.thumbnail(_THUMBNAIL, Image.Resampling.LANCZOS)
+    file = io.BytesIO()
+    small.save(file, "webp", quality=82)
+    return {"id": plate.id, "finding": plate.finding, "image": _embedded(file.getvalue(), "webp")}
 
 
-def worded(judgement: Judgement, shown: Set[str] = frozenset()) -> dict[str, str | None]:
+def _experiments(plates: Sequence[Plate], judgements: Sequence[Judgement]) -> list[dict[str, Any]]:
+    """The experiments with the figures drawn from each, and the claims decided by it."""
+    found = []
+    for name, experiment in EXPERIMENTS.items():
+        drawn = [plate.id for plate in plates if name in plate.needs]
+        decided = [judgement.claim.id for judgement in judgements if name in judgement.claim.needs]
+        if drawn or decided:
+            found.append({"id": name, "title": experiment.title, "figures": drawn, "claims": decided})
+    return found
+
+
+def worded(judgement: Judgement, shown: Set[str] = frozenset()) -> Worded:
     """A claim in words, for people; `shown` are the figures that it may refer to."""
     claim, finding, tolerance = judgement.claim, judgement.finding, judgement.tolerance
     unit = "" if claim.units == "1" else f" {claim.units}"
@@ -120,9 +190,12 @@ def worded(judgement: Judgement, shown: Set[str] = frozenset()) -> dict[str, str
     return {
         "id": claim.id,
         "short": _without_measure(claim.text),
+        "quote": SENTENCES.get(claim.id, ""),
+        "is_code": claim.id.startswith("listing"),
+        "formula": FORMULAS.get(claim.id),
         "place": claim.source.place,
-        "section": claim.source.section,
-        "experiments": ", ".join(claim.needs),
+        "section": section_of(claim.source.section),
+        "needs": claim.needs,
         "right": claim.right or (_number(finding.converged) + unit),
         "text": claim.text + (" (implied)" if claim.implied else ""),
         "reported": reported + unit,
@@ -161,5 +234,5 @@ def _number(value: Value) -> str:
     return f"{value:.2e}" if abs(value) < 1e-3 else f"{value:.5g}"
 
 
-def _embedded(svg: bytes) -> str:
-    return "data:image/svg+xml;base64," + base64.b64encode(svg).decode("ascii")
+def _embedded(content: bytes, kind: str) -> str:
+    return f"data:image/{kind};base64," + base64.b64encode(content).decode("ascii")

@@ -28,7 +28,9 @@ class Plate:
     draw
         Makes the figure from their merged dataset (empty for a drawing that needs none).
     section
-        Heading of the part of the page that it belongs to.
+        The section of the page that it belongs to; see `tippetop.report.outline`.
+    finding
+        What it finds out, in a few words, where that is news or one of the pictures that the page opens with.
     """
 
     id: str
@@ -36,7 +38,8 @@ class Plate:
     caption: str
     needs: tuple[str, ...]
     draw: Draw
-    section: str = "Figures"
+    section: str
+    finding: str = ""
 
     def dataset(self, data: Data) -> xr.Dataset:
         """The data behind the figure."""

@@ -22,12 +22,14 @@ from tippetop.report.claim import Data, Judgement
 from tippetop.report.experiments.registry import EXPERIMENTS
 from tippetop.report.gallery import PLATES
 from tippetop.report.page import render
+from tippetop.report.playable import playable
 from tippetop.report.selection import Selection, select
 from tippetop.report.tasks import Task, carry_out
 
 PAGE, CLAIMS_FILE, FIGURES, DATA = "index.html", "claims.json", "figures", "data"
 
 _DRAWING_COST = 0.8
+_PLAYER, _PLAYER_COST = "run to play", 1.0
 
 Progress = Callable[[float, float, str], None]
 """Told the work done, all the work (both in about seconds), and what was done last."""
@@ -103,7 +105,10 @@ def reproduce(
     for name in names:
         refuse_overwriting(folder / name, overwrite)
     with _staging(folder) as stage:
-        results = carry_out(_tasks(chosen, quick, stage), _processes(workers), progress)
+        tasks = _tasks(chosen, quick, stage)
+        if only is None:
+            tasks.append(Task(_PLAYER, _PLAYER_COST, playable, lambda _: (quick,)))
+        results = carry_out(tasks, _processes(workers), progress)
         data = {experiment.id: results[experiment.id] for experiment in chosen.experiments}
         judgements = tuple(claim.judge(data, quick) for claim in chosen.claims)
         _write_data(chosen, data, stage)
@@ -112,8 +117,14 @@ def reproduce(
         (stage / CLAIMS_FILE).write_text(text + "\n", encoding="utf-8")
         figures = tuple(plate.id for plate in chosen.plates)
         seconds = time.monotonic() - began
-        pictures = {name: (stage / FIGURES / f"{name}.svg").read_bytes() for name in figures}
-        page = render(chosen.plates, judgements, pictures, quick=quick, partial=only)
+        page = render(
+            chosen.plates,
+            judgements,
+            stage / FIGURES,
+            player=results.get(_PLAYER),
+            quick=quick,
+            partial=only,
+        )
         (stage / PAGE).write_text(page, encoding="utf-8")
         _move(stage, folder, names, overwrite)
     return Reproduction(folder, judgements, figures, quick, seconds)

@@ -1,8 +1,15 @@
-"""Formulas in the plain words of claims and captions, set for a page: letters, indices and powers."""
+"""Formulas set for a page: those in the plain words of claims and captions, and those that stand apart."""
 
 import re
+from collections.abc import Sequence
+from functools import cache
 
+import numpy as np
 from markupsafe import Markup, escape
+from matplotlib.path import Path
+from matplotlib.textpath import TextPath
+
+from tippetop.figures.style import house_style
 
 _LETTERS = {
     "alpha": "α",
@@ -40,3 +47,36 @@ def _symbol(found: re.Match[str]) -> str:
     below = f"<sub>{index.removeprefix('_')}</sub>" if index else ""
     above = f"<sup>{power.replace('-', '−')}</sup>" if power else ""
     return f"{letter}{mark}{below}{above}"
+
+
+_SIZE = 16.0
+"""Size at which formulas are outlined, in units of their drawing."""
+
+_PENS = {
+    int(Path.MOVETO): "M",
+    int(Path.LINETO): "L",
+    int(Path.CURVE3): "Q",
+    int(Path.CURVE4): "C",
+    int(Path.CLOSEPOLY): "Z",
+}
+
+
+def formula(lines: Sequence[str]) -> Markup:
+    """Lines of TeX, as far as matplotlib sets it, as drawings in the color of the text around them."""
+    return Markup("").join(_line(line) for line in lines)
+
+
+@cache
+def _line(tex: str) -> Markup:
+    with house_style():
+        outline = TextPath((0, 0), f"${tex}$", size=_SIZE)
+    box = outline.get_extents()
+    left, bottom, width, height = box.x0 - 1, box.y0 - 1, box.width + 2, box.height + 2
+    pieces = []
+    for points, code in outline.iter_segments(simplify=False):
+        numbers = " ".join(f"{value:.4g}" for value in points * np.resize([1.0, -1.0], len(points)))
+        pieces.append(_PENS[int(code)] + (numbers if int(code) != Path.CLOSEPOLY else ""))
+    return Markup(
+        '<svg class="formula" role="img" aria-label="{}" viewBox="{:.1f} {:.1f} {:.1f} {:.1f}" '
+        'style="width:{:.2f}em"><path d="{}"/></svg>'
+    ).format(tex, left, -bottom - height, width, height, width / _SIZE, "".join(pieces))

@@ -91,7 +91,7 @@ def _slip_vanishes(figure: str, spin: int) -> None:
     @CHAPTER.claim(
         f"{figure}-slip",
         Source("2.3", f"Fig. {int(figure[3:])}d"),
-        f"The slip velocity tends to 0 (as a part of its largest value, at {spin} rad/s).",
+        f"At {spin} rad/s the slip velocity tends to 0 (as a part of its largest value).",
         "0",
         tolerance=PLOTTED,
         needs=(f"run-{spin}",),

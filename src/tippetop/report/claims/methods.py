@@ -45,8 +45,8 @@ def _(data: xr.Dataset) -> Finding:
     return Finding(
         order,
         order,
-        "The listing calls ode45, which goes on with the fifth-order formula of Dormand and Prince in steps "
-        "of its own choice; the method of Appendix B is used nowhere.",
+        "The listing calls ode45, as Appendix B says too; it goes on with the fifth-order formula of Dormand "
+        "and Prince in steps of its own choice. (B.1) is used nowhere.",
     )
 
 

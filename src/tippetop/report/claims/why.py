@@ -127,7 +127,7 @@ def _(times: xr.Dataset, wide: xr.Dataset) -> Finding:
 
 @CHAPTER.claim(
     "why-only-simulation",
-    Source("1", "and section 3, first sentence"),
+    Source("1 and 3"),
     "The equations can not be solved analytically: the only possible approach is numerical simulation.",
     needs=("why-critical", "why-bifurcation", "why-exponent"),
     figure="why-bifurcation",

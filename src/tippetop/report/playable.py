@@ -1,0 +1,30 @@
+"""A run to be played on the page itself: the launch that the report calls abnormal."""
+
+from tippetop.errors import Unavailable
+from tippetop.export.bundle import packed, player_code, three_packed
+from tippetop.export.track import pack_run, sample_count
+from tippetop.export.words import tell
+from tippetop.presets import report_problem
+from tippetop.report.experiments.runs import pushing
+from tippetop.run import simulate
+
+SPIN, DURATION = 175.0, 9.0
+"""The launch, rad/s, and how long it is followed, s: until it spins inverted."""
+
+
+def playable(quick: bool) -> dict[str, str] | None:
+    """The run, three.js and the player for the page; None where three.js is not installed."""
+    try:
+        three = three_packed()
+    except Unavailable:
+        return None
+    problem = pushing(report_problem(SPIN))
+    samples = sample_count(problem, DURATION)
+    run = simulate(problem, DURATION, samples=samples // 2 if quick else samples)
+    return {
+        "headline": tell(run).headline,
+        "spin": f"{SPIN:g}",
+        "three": three,
+        "run": packed(pack_run(run)),
+        "code": player_code(),
+    }
