@@ -8,8 +8,10 @@ from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter, ScalarFormatter
+from numpy.typing import ArrayLike
 
 import tippetop.figures.annotation as mark
+from tippetop.figures.envelope import band
 from tippetop.figures.style import (
     ACCENT,
     CYCLE,
@@ -27,13 +29,21 @@ from tippetop.figures.style import (
 _BOUNCES = CYCLE[5]
 
 
-def continue_pushing(axes: Axes, run: xr.Dataset, name: str, scale: float = 1.0) -> None:
+def continue_pushing(
+    axes: Axes, run: xr.Dataset, name: str, scale: float = 1.0, *, whole: bool = False
+) -> None:
     """Draw how a variable goes on from lift-off when the table only pushes.
 
-    `run` has the variable with the suffix _flight over time, and lift_off_time.
+    `run` has the variable with the suffix _flight over time, and lift_off_time. If `whole`, the axis is too
+    long for its oscillations to be seen, and they are drawn as a band.
     """
     after = run[f"{name}_flight"].sel(time=slice(float(run["lift_off_time"]), None))
-    axes.plot(after["time"], scale * after, color=PUSHES, lw=1.3, zorder=4, label="table only pushes")
+    draw = band if whole else _line
+    draw(axes, after["time"], scale * after, PUSHES, 1.1, "table only pushes")
+
+
+def _line(axes: Axes, times: ArrayLike, values: ArrayLike, color: str, width: float, label: str) -> None:
+    axes.plot(times, values, color=color, lw=width, zorder=4, label=label)
 
 
 @house_style()

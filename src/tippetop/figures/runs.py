@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MultipleLocator
 
 import tippetop.figures.annotation as mark
+from tippetop.figures.envelope import band
 from tippetop.figures.flights import continue_pushing
 from tippetop.figures.overview import shade_flights
 from tippetop.figures.style import ACCENT, CONVERGED, DASHED, INK, MUTED, REPORT, WIDTH, house_style, pi_ticks
@@ -16,6 +17,7 @@ from tippetop.figures.style import ACCENT, CONVERGED, DASHED, INK, MUTED, REPORT
 _NAME, _NAME_REPORT = "converged", "report's method"
 _PULLS = "converged, table pulls"
 _WIDE, _THIN = 2.6, 1.0
+_EDGES = {_WIDE: 1.8, _THIN: 0.8}
 _LINES = (("_listing", "time_listing", REPORT, _WIDE), ("", "time", CONVERGED, _THIN))
 
 
@@ -27,6 +29,7 @@ def motion_figure(
     inset: mark.Box = (0.5, 0.13, 0.48, 0.56),
     reported_turn: float | None = None,
     reported_reversals: tuple[float, ...] = (),
+    reported_end: dict[str, float] | None = None,
 ) -> Figure:
     """Return tilt, axial spin, precession and slip of a launch, by both methods.
 
@@ -35,8 +38,8 @@ def motion_figure(
     the vertical. `zoom` is a span of time, s, whose tilt is also drawn large, in the box
     `inset` (left, bottom, width, height in parts of the panel). The reversals of the
     precession are marked: `quiet_start` and `quiet_end` where they enclose a calm that comes later than 1 s,
-    otherwise `last_reversal`. The times that the report prints, s, get squares: when the top has turned over,
-    and when the precession reverses.
+    otherwise `last_reversal`. What the report prints gets squares: when the top has turned over and when the
+    precession reverses, s, and theta, omega3 and phi_dot at the end.
     """
     figure = Figure(figsize=(WIDTH, 5.0))
     panels = figure.subplots(2, 2, sharex=True)
@@ -50,11 +53,18 @@ def motion_figure(
     _precession(turning, run, precession_limit)
     square = {"color": REPORT, "ms": 5, "mec": INK, "mew": 0.6, "zorder": 6}
     turning.plot(reported_reversals, np.zeros(len(reported_reversals)), "s", **square)
+    for time, below in zip(reversed(reported_reversals), (-6, -20), strict=False):
+        mark.note(turning, f"report: {time:g} s", (time, 0), (7, below), REPORT, halo=True)
     if reported_turn is not None:
         height = float(np.interp(reported_turn, run["time_listing"], run["theta_listing"]))
         tilt.plot(reported_turn, height, "s", **square)
         mark.note(tilt, f"report: {reported_turn:g} s", (reported_turn, height), (6, -8), REPORT, halo=True)
     _slip(slip, run)
+    for axes, name in ((tilt, "theta"), (spin, "omega3"), (turning, "phi_dot")):
+        if reported_end:
+            end = float(run["time"][-1]), reported_end[name]
+            axes.plot(*end, "s", clip_on=False, **square)
+            mark.note(axes, f"report: {reported_end[name]:g}", end, (-4, 8), REPORT, halo=True)
     for axes in panels[1]:
         axes.set_xlabel("time (s)")
     mark.letters(panels.flat)
@@ -90,7 +100,8 @@ def tilt_figure(
 def upright_figure(run: xr.Dataset, until: float = 3.0) -> Figure:
     """Return the tilt of a launch that stays near the vertical, up to a time, s, on a scale of its own."""
     figure, axes = _wide_panel(run)
-    _pair(axes, run, "theta", legend=True)
+    start = run.sel(time=slice(None, until), time_listing=slice(None, until))
+    _pair(axes, start, "theta", legend=True)
     axes.set_xlim(0, until)
     axes.xaxis.set_major_locator(MultipleLocator(0.5))
     axes.set_ylim(0, 1.12 * float(run["theta"].max()))
@@ -145,7 +156,7 @@ def force_figure(run: xr.Dataset) -> Figure:
 def stopped_figure(run: xr.Dataset, reported_stop: float) -> Figure:
     """Return tilt and force to where the report stopped, s, to the lift-off, and from there in flight."""
     figure = Figure(figsize=(WIDTH, 4.6))
-    panels = figure.subplots(2, 1, sharex=True, height_ratios=[1.3, 1])
+    panels = figure.subplots(2, 1, height_ratios=[1.3, 1])
     tilt, force = panels
     stop = float(run["lift_off_time"])
     before = run.sel(time=run["time"] <= stop)
@@ -157,13 +168,16 @@ def stopped_figure(run: xr.Dataset, reported_stop: float) -> Figure:
         shade_flights(axes, run)
     _tilt_axis(tilt)
     force.axhline(0, color=ACCENT, lw=1.0)
-    force.set(xlabel="time (s)", ylabel="normal force $g_n$ (N)", xlim=(0, 8))
+    force.set(xlabel="time (s)", ylabel="normal force $g_n$ (N)", xlim=(stop - 0.55, reported_stop + 1.25))
+    tilt.set_xlim(0, 8)
+    for time, color in ((stop, ACCENT), (reported_stop, REPORT)):
+        force.axvline(time, color=color, lw=1.0, ls=DASHED)
     end = float(np.interp(stop, run["time"], run["theta"]))
     last = float(other["theta_listing"][-1])
     tilt.plot([stop], [end], "o", color=ACCENT, ms=6, zorder=5)
     tilt.plot([reported_stop], [last], "s", color=REPORT, ms=6, zorder=5, mec=INK, mew=0.6)
     _callout(tilt, f"the top leaves the table\nat {stop:.3f} s", (stop, end), (-44, 22), ACCENT, "right")
-    _callout(tilt, f"the report stops\nat {reported_stop:g} s", (reported_stop, last), (38, -34), INK, "left")
+    _callout(tilt, f"the report stops\nat {reported_stop:g} s", (reported_stop, last), (52, -12), INK, "left")
     tilt.legend(loc="upper left")
     mark.letters(panels)
     return figure
@@ -197,9 +211,8 @@ def _pair(
     names: tuple[str, str] = (_NAME_REPORT, _NAME),
 ) -> None:
     """Draw a variable by both methods: the report's below and wide, so that it shows where they differ."""
-    theirs, ours = run[f"{name}_listing"], run[name]
-    axes.plot(run["time_listing"], scale * theirs, color=REPORT, lw=_WIDE, label=names[0])
-    axes.plot(run["time"], scale * ours, color=CONVERGED, lw=_THIN, label=names[1])
+    for (suffix, time, color, width), label in zip(_LINES, names, strict=True):
+        band(axes, run[time], scale * run[f"{name}{suffix}"], color, _EDGES[width], label)
     if legend:
         mark.legend_above(axes, 2)
 
@@ -212,7 +225,7 @@ def _trio(
     _pair(axes, run, name, scale=scale, names=names or (_NAME_REPORT, _PULLS if flies else _NAME))
     if flies:
         shade_flights(axes, run)
-        continue_pushing(axes, run, name, scale=scale)
+        continue_pushing(axes, run, name, scale=scale, whole=True)
     mark.legend_above(axes, 3)
 
 
@@ -238,7 +251,7 @@ def _precession(axes: Axes, run: xr.Dataset, limit: float) -> None:
 def _slip(axes: Axes, run: xr.Dataset) -> None:
     for suffix, time, color, width in _LINES:
         speed = np.hypot(run[f"slip_x{suffix}"], run[f"slip_y{suffix}"])
-        axes.plot(run[time], speed, color=color, lw=width)
+        band(axes, run[time], speed, color, _EDGES[width])
     axes.set_ylabel("slip speed $|v_A|$ (m/s)")
     axes.set_ylim(bottom=0)
 

@@ -74,7 +74,6 @@ _STYLE: dict[Any, Any] = {
     "axes.axisbelow": True,
     "grid.color": FAINT,
     "grid.linewidth": 0.6,
-    "axes.formatter.use_mathtext": True,
     "axes.formatter.limits": (-4, 5),
     "axes.xmargin": 0.02,
     "legend.frameon": False,

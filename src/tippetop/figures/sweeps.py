@@ -66,8 +66,32 @@ def final_tilt_figure(sweep: xr.Dataset, reported: tuple[float, float, float]) -
     axes.set_xlim(0, right)
     axes.set_ylim(-0.08, np.pi + 0.62)
     pi_ticks(axes.yaxis)
-    axes.legend(loc="center right", bbox_to_anchor=(0.77, 0.3))
+    mark.legend_above(axes, 4)
+    for box, spin, tilts in (
+        ((0.42, 0.11, 0.15, 0.4), (23.5, 30.5), (-0.006, 0.06)),
+        ((0.615, 0.11, 0.15, 0.4), (76.0, 80.5), (np.pi - 0.06, np.pi + 0.006)),
+    ):
+        _threshold(axes, mark.inset(axes, box), sweep, (spin, tilts), (*reported[:2], *ours))
     return figure
+
+
+def _threshold(
+    axes: Axes,
+    panel: Axes,
+    sweep: xr.Dataset,
+    limits: tuple[tuple[float, float], tuple[float, float]],
+    spins: tuple[float, float, float, float],
+) -> None:
+    """Draw one of the thresholds large: the critical spins are the report's two, then the converged ones."""
+    for spin, color in zip(spins, (REPORT, REPORT, CONVERGED, CONVERGED), strict=True):
+        panel.axvline(spin, color=color, lw=1.0, ls=DASHED)
+    panel.plot(sweep["spin"], sweep["final_theta"], ".-", color=CONVERGED, lw=1.2, ms=3)
+    panel.plot(
+        sweep["spin_listing"], sweep["final_theta_listing"], "o", color=REPORT, ms=4, mec="white", mew=0.4
+    )
+    panel.set(xlim=limits[0], ylim=limits[1])
+    panel.locator_params(nbins=4)
+    mark.source(axes, panel)
 
 
 def _two_values(axes: Axes, name: str, theirs: float, ours: float) -> None:

@@ -17,6 +17,7 @@ from tippetop.report.plate import Plate
 from tippetop.report.quoted import (
     ABNORMAL_SPIN,
     CRITICAL_SPINS,
+    END_OF_FIG_5,
     ENERGY,
     ENERGY_TIME,
     EXPONENT,
@@ -51,7 +52,7 @@ def _printed_times(figure: str) -> dict[str, Any]:
 
 _BOTH = (
     "Orange, wide: the report's method, its equations with theta modulo pi by ode45 at default tolerances. "
-    "Blue, thin: converged. "
+    "Blue, thin: converged. Where swings are too fast to be seen, a band shows from where to where they go. "
 )
 
 PLATES: dict[str, Plate] = {
@@ -105,11 +106,12 @@ PLATES: dict[str, Plate] = {
             "Figure 5: launch at 50 rad/s",
             _BOTH
             + "Panels as in Figure 4; the dot marks the last reversal of the precession. Squares: the times "
-            "that the report prints.",
+            "and the end that the report prints.",
             "run-50",
             runs.motion_figure,
             precession_limit=80.0,
             **_printed_times("fig05"),
+            reported_end=END_OF_FIG_5,
             zoom=(0.0, 1.6),
             inset=(0.12, 0.57, 0.34, 0.38),
             section="3.1",
@@ -120,7 +122,8 @@ PLATES: dict[str, Plate] = {
             "Tilt after 20 s. Dashed: the critical spins, the report's in orange, converged ones from the "
             "longest runs in blue. In the shaded range the table would have to pull within 20 s. If it does, "
             "as in the report, the launches end anywhere (grey); on a table that only pushes the top flies "
-            "at times and falls back without rebound (green). Figure hops follows it to higher spins.",
+            "at times and falls back without rebound (green); the figure hops follows it to higher spins. "
+            "The insets show the framed ends of the slope.",
             ("final-tilt-listing", "final-tilt", "critical-spins"),
             partial(sweeps.final_tilt_figure, reported=(*_CRITICAL, float(ABNORMAL_SPIN))),
             section="3.2",
@@ -195,9 +198,9 @@ PLATES: dict[str, Plate] = {
             "fig12",
             "Figure 12: 175 rad/s, stopped before flight",
             _BOTH
-            + "a, tilt; b, normal force. The converged run ends where the force falls through zero; the "
-            "report's, where it chose to stop, after its own force had fallen through zero. Green: there is "
-            "no need to stop; the top hops (shaded) and turns over.",
+            + "a, tilt; b, normal force about the lift-off; both instants are dashed. The converged run ends "
+            "where the force falls through zero; the report's, where it chose to stop, after its own force "
+            "had. Green: there is no need to stop; the top hops (shaded) and turns over.",
             "run-175",
             runs.stopped_figure,
             reported_stop=float(STOP),

@@ -172,6 +172,7 @@ def _draw(name: str, data: Data, folder: Path) -> None:
     figure = plate.draw(plate.dataset(data))
     for kind in ("png", "svg"):
         save(figure, folder / f"{name}.{kind}")
+        figure.set_layout_engine("none")  # all is in its place by now
 
 
 def _processes(workers: int | None) -> int:

@@ -16,10 +16,11 @@ from tippetop.report.experiments.runs import (
     lift_off_time,
     pushing,
     stopping,
+    swept,
 )
 from tippetop.run import simulate
 
-LONG_WINDOW = 200.0
+LONG_WINDOW = 100.0
 """Length of the longer runs in which a lift-off is looked for, s."""
 
 HOPS_WINDOW = 60.0
@@ -78,19 +79,20 @@ def _onsets(
     name: str,
     values: np.ndarray,
     described: tuple[str, str],
-    problem: Callable[[float, float], Problem],
+    field: str,
     windows: tuple[float, ...],
     quick: bool,
 ) -> xr.Dataset:
     """Times of the first lift-off over spin and another parameter, and the onset for each of its values."""
-    spins = np.arange(60.0, 600.1, 60.0 if quick else 30.0)
-    times = np.array([[leaves_at(problem(spin, value), windows[-1]) for spin in spins] for value in values])
+    spins = np.arange(60.0, 600.1, 120.0 if quick else 30.0)
+    base = stopping(report_problem(tilt=TILT, mu=MU))
+    times = swept(base, {field: values, "launch.spin": spins}, windows[-1])["first_lift_off"].values
 
     def onset(window: float, value: float, row: np.ndarray) -> float:
         def leaves(spin: float) -> float:
-            return leaves_at(problem(spin, value), window)
+            return leaves_at(base.replace({field: value, "launch.spin": spin}), window)
 
-        return first_onset(leaves, spins, row, window, 0.5 if quick else 0.05)
+        return first_onset(leaves, spins, row, window, 2.0 if quick else 0.25)
 
     onsets = [
         [onset(window, value, row) for value, row in zip(values, times, strict=True)] for window in windows
@@ -112,10 +114,10 @@ def _onsets(
 def _over_mu(quick: bool) -> xr.Dataset:
     data = _onsets(
         "mu",
-        np.geomspace(0.03, 10.0, 4 if quick else 10),
+        np.geomspace(0.05, 10.0, 3 if quick else 8),
         ("s m-1", "friction"),
-        lambda spin, mu: report_problem(spin, TILT, mu),
-        (WINDOW, 0.5 * LONG_WINDOW if quick else LONG_WINDOW),
+        "friction.mu",
+        (WINDOW, LONG_WINDOW),
         quick,
     )
     data.attrs["tilt_rad"] = TILT
@@ -125,9 +127,9 @@ def _over_mu(quick: bool) -> xr.Dataset:
 def _over_tilt(quick: bool) -> xr.Dataset:
     data = _onsets(
         "tilt",
-        np.sort([TILT, *np.linspace(0.05, 1.4, 6 if quick else 16)]),
+        np.sort([TILT, *np.linspace(0.05, 1.4, 4 if quick else 12)]),
         ("rad", "tilt at launch"),
-        lambda spin, tilt: report_problem(spin, tilt, MU),
+        "launch.tilt",
         (WINDOW,),
         quick,
     )

@@ -17,7 +17,7 @@ from tippetop.report.readings import SETTLED, flip_time
 SPIN = 155.0
 """The report does not say at which spin its Fig. 7 was made; this is that of its main run, rad/s."""
 
-OTHER_SPINS = (100.0, 110.0, 120.0, 130.0, 140.0, 150.0, 160.0)
+OTHER_SPINS = (100.0, 115.0, 130.0, 145.0, 160.0)
 """Other spins it may have used, rad/s: all of them turn the top over without lifting it at mu = 0.3 s/m."""
 
 
@@ -56,7 +56,7 @@ def power_law(mu: Array, times: Array) -> tuple[float, float, float, float]:
 
 
 def _flip_times(quick: bool) -> xr.Dataset:
-    mu = np.linspace(*NORMAL_FRICTION, 9 if quick else 17)
+    mu = np.linspace(*NORMAL_FRICTION, 7 if quick else 17)
     spins = np.array([SPIN])
     columns = {"": converged_flip_times(spins, mu)[0], "_listing": listing_flip_times(spins, mu)[0]}
     data = xr.Dataset(
@@ -74,7 +74,7 @@ def _flip_times(quick: bool) -> xr.Dataset:
 
 
 def _other_spins(quick: bool) -> xr.Dataset:
-    spins = np.array(OTHER_SPINS[::3] if quick else OTHER_SPINS)
+    spins = np.array(OTHER_SPINS[::2] if quick else OTHER_SPINS)
     mu = np.linspace(*NORMAL_FRICTION, 5 if quick else 9)
     data = xr.Dataset(
         coords={
@@ -91,9 +91,10 @@ def _other_spins(quick: bool) -> xr.Dataset:
 
 
 def _wide(quick: bool) -> xr.Dataset:
-    mu = np.geomspace(0.01, 10.0, 13 if quick else 37)
+    mu = np.geomspace(0.01, 10.0, 10 if quick else 28)
     spins = np.array([100.0, 155.0])
-    windows = np.maximum(WINDOW, 4.0 / mu + 4.0)
+    # Long enough to turn over, and the same for neighbours, so that they can be followed together.
+    windows = WINDOW * 2.0 ** np.ceil(np.log2(np.maximum(1.0, (4.0 / mu + 4.0) / WINDOW)))
     times = np.empty((len(spins), len(mu)))
     for window in np.unique(windows):
         times[:, windows == window] = converged_flip_times(spins, mu[windows == window], float(window))
@@ -108,13 +109,13 @@ def _wide(quick: bool) -> xr.Dataset:
             "spin_wide": variable(spins, "rad s-1", "spin at launch", ("spin_wide",)),
             "mu_wide": variable(mu, "s m-1", "friction coefficient", ("mu_wide",)),
         },
-        {"window_wide": "the longer of 20 s and 4 / mu + 4 s"},
+        {"window_wide": "20 s, doubled until it is no less than 4 / mu + 4 s"},
     )
 
 
 def _extremes(quick: bool) -> xr.Dataset:
     """When the report's main launch turns half over, from no friction to far too much."""
-    mu = np.array([0.0, 0.3, 1.0, 100.0, 300.0, 1000.0])
+    mu = np.array([0.0, 0.3, 1.0, 100.0, *([] if quick else [300.0]), 1000.0])
     found = swept(on_table(report_problem(SPIN)), {"friction.mu": mu})
     return xr.Dataset(
         {"turning_time": variable(found["turns_over"].values, "s", "first tilt of more than pi/2", ("mu",))},

@@ -29,7 +29,7 @@ LAUNCHES = (
 )
 """Spins (rad/s), tilts (rad) and friction coefficients (s/m) of the launches the methods are compared on."""
 
-_SPAN = 5.0
+_SPAN = 3.0
 
 
 def _generic() -> Problem:
@@ -137,7 +137,7 @@ def evaluations(problem: Problem, method: str, span: float) -> int:
 
 
 def _stiffness(quick: bool) -> xr.Dataset:
-    span = 1.5 if quick else _SPAN
+    span = 1.0 if quick else _SPAN
     methods = (*EXPLICIT, *IMPLICIT)
     counts = np.array(
         [[evaluations(report_problem(*launch), method, span) for method in methods] for launch in LAUNCHES]

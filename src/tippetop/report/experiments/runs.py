@@ -205,7 +205,7 @@ def _table_1() -> Problem:
 
 def _settling(quick: bool) -> xr.Dataset:
     """How far the tilt still swings, in the second before several times, on the table of Fig. 8."""
-    ends = np.array([20.0, 40.0, 80.0] if quick else [20.0, 40.0, 80.0, 160.0])
+    ends = np.array([20.0, 40.0] if quick else [20.0, 40.0, 80.0])
     run = simulate(
         on_table(report_problem(155.0, mu=100.0)), float(ends[-1]), samples=int(200 * ends[-1]) + 1
     )
@@ -218,7 +218,7 @@ def _settling(quick: bool) -> xr.Dataset:
 
 def _windows(quick: bool) -> xr.Dataset:
     """The end of the launch at 50 rad/s by the report's method, against the length of the run."""
-    windows = WINDOWS[1::2] if quick else WINDOWS
+    windows = WINDOWS[1::4] if quick else WINDOWS
     ends = [listing_run(report_problem(50.0), float(window)).isel(time=-1) for window in windows]
     data = {
         f"{name}_listing": variable([float(end[name]) for end in ends], units, "at the end", ("window",))
@@ -229,9 +229,10 @@ def _windows(quick: bool) -> xr.Dataset:
 
 def _capped(quick: bool) -> xr.Dataset:
     """Where launches end by the report's method, and if a negative normal force is set to zero in it."""
+    spins = CAPPED_SPINS[1:2] if quick else CAPPED_SPINS
 
     def ends(pushing: bool) -> list[float]:
-        runs = [listing_run(report_problem(spin), WINDOW, pushing=pushing) for spin in CAPPED_SPINS]
+        runs = [listing_run(report_problem(spin), WINDOW, pushing=pushing) for spin in spins]
         return [float(run["theta"][-1]) for run in runs]
 
     return xr.Dataset(
@@ -239,7 +240,7 @@ def _capped(quick: bool) -> xr.Dataset:
             "final_theta": variable(ends(pushing=False), "rad", "tilt at the end", ("spin",)),
             "final_theta_capped": variable(ends(pushing=True), "rad", "the same, g_n >= 0", ("spin",)),
         },
-        {"spin": variable(list(CAPPED_SPINS), "rad s-1", "spin at launch", ("spin",))},
+        {"spin": variable(list(spins), "rad s-1", "spin at launch", ("spin",))},
     )
 
 

@@ -22,7 +22,7 @@ LISTED_MARGINS = np.linspace(0.001, 0.01, 91)
 TURNED = 0.1
 """How far from pi a final tilt must be for a launch to count as not turned over, rad."""
 
-LONG_WINDOWS = (20.0, 60.0, 200.0, 1000.0)
+LONG_WINDOWS = (20.0, 60.0, 200.0, 600.0)
 
 FLYING = (165.0, 210.0)
 """Spins between which Fig. 6 also has the final tilt on a table that only pushes, rad/s."""
@@ -123,7 +123,13 @@ def _lift_off_onset(accuracy: float) -> float:
     return 0.5 * (low + high)
 
 
-def critical_spins(window: float, margin: float) -> tuple[float, float]:
+_BETWEEN = ((22.0, 34.0), (72.0, 84.0))
+"""Where to look for the critical spins, rad/s."""
+
+
+def critical_spins(
+    window: float, margin: float, between: tuple[tuple[float, float], tuple[float, float]] = _BETWEEN
+) -> tuple[float, float]:
     """Spins between which a launch ends neither upright nor turned over, rad/s.
 
     Parameters
@@ -132,6 +138,8 @@ def critical_spins(window: float, margin: float) -> tuple[float, float]:
         Length of the runs, s.
     margin
         Tilt at the end that counts as upright, and distance from pi that counts as turned over, rad.
+    between
+        Spins between which each of them lies, rad/s.
     """
 
     def upright(spin: float) -> float:
@@ -141,14 +149,19 @@ def critical_spins(window: float, margin: float) -> tuple[float, float]:
         return -math.log(max(math.pi - final_tilt(spin, window), 1e-12) / margin)
 
     return (
-        float(brentq(upright, 22.0, 34.0, xtol=2e-3)),
-        float(brentq(inverted, 72.0, 84.0, xtol=2e-3)),
+        float(brentq(upright, *between[0], xtol=2e-3)),
+        float(brentq(inverted, *between[1], xtol=2e-3)),
     )
 
 
 def _thresholds(quick: bool) -> xr.Dataset:
-    windows = (20.0, 200.0) if quick else LONG_WINDOWS
-    by_window = np.array([critical_spins(window, SETTLED) for window in windows])
+    windows = LONG_WINDOWS[:2] if quick else LONG_WINDOWS
+    found = [critical_spins(windows[0], SETTLED)]
+    for window in windows[1:]:
+        # With more patience they are farther in, and near the last ones.
+        upright, inverted = found[-1]
+        found.append(critical_spins(window, SETTLED, ((upright, upright + 1.0), (inverted - 1.2, inverted))))
+    by_window = np.array(found)
     by_margin = np.array([critical_spins(WINDOW, margin) for margin in MARGINS])
     names = ("spin above which the final tilt is no longer 0", "spin above which the final tilt is pi")
     return xr.Dataset(

@@ -85,8 +85,8 @@ def _band(mu: float, edges: Array) -> tuple[Array, Array]:
 
 def _exponent(quick: bool) -> xr.Dataset:
     """The time to turn over against friction, by several definitions, and its limit."""
-    small = np.geomspace(0.01 if quick else 0.003, 0.3, 4 if quick else 13)
-    mu = np.concatenate([small[:-1], np.geomspace(0.3, 3.0, 25)])
+    small = np.geomspace(0.01 if quick else 0.003, 0.3, 4 if quick else 10)
+    mu = np.concatenate([small[:-1], np.geomspace(0.3, 3.0, 13 if quick else 25)])
     problem = report_problem(SPIN)
     final = predict(problem).final.tilt
     times = np.array([_times(float(one), final) for one in mu]).T
