@@ -67,11 +67,11 @@ def final_tilt_figure(sweep: xr.Dataset, reported: tuple[float, float, float]) -
     axes.set_ylim(-0.08, np.pi + 0.62)
     pi_ticks(axes.yaxis)
     mark.legend_above(axes, 4)
-    for box, spin, tilts in (
-        ((0.42, 0.11, 0.15, 0.4), (23.5, 30.5), (-0.006, 0.06)),
-        ((0.615, 0.11, 0.15, 0.4), (76.0, 80.5), (np.pi - 0.06, np.pi + 0.006)),
+    for box, around, tilts in (
+        ((0.455, 0.11, 0.13, 0.4), (23.5, 30.5), (-0.006, 0.06)),
+        ((0.635, 0.11, 0.125, 0.4), (76.0, 80.5), (np.pi - 0.06, np.pi + 0.006)),
     ):
-        _threshold(axes, mark.inset(axes, box), sweep, (spin, tilts), (*reported[:2], *ours))
+        _threshold(axes, mark.inset(axes, box), sweep, (around, tilts), (*reported[:2], *ours))
     return figure
 
 

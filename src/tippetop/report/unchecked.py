@@ -24,12 +24,19 @@ UNCHECKED = (
     Unchecked(
         "section 1",
         "In the end the top loses its balance and falls.",
-        "nothing in the report's model, viscous friction at a point, slows an inverted top down",
+        "nothing in the report's model, viscous friction at a point, slows an inverted top down; it takes "
+        "friction against drilling",
     ),
     Unchecked(
         "section 1",
         "To get the exact friction term is impossible.",
         "a statement about materials, not about it",
+    ),
+    Unchecked("section 3, Table 1", "The parameters are those of reference [3].", _OTHERS),
+    Unchecked(
+        "section 3.1",
+        "Too slow a launch does not turn over completely.",
+        "the report says it again, with numbers, in section 3.3, and there it is judged",
     ),
     Unchecked(
         "section 3.3",

@@ -1,0 +1,3 @@
+from browsing import browser, visit
+
+__all__ = ["browser", "visit"]
