@@ -111,7 +111,8 @@ def reproduce(
         results = carry_out(tasks, _processes(workers), progress)
         data = {experiment.id: results[experiment.id] for experiment in chosen.experiments}
         judgements = tuple(claim.judge(data, quick) for claim in chosen.claims)
-        _write_data(chosen, data, stage)
+        for name in _unseen(chosen):
+            write_run(data[name], stage / DATA / f"{name}.nc")
         records = [judgement.record() for judgement in judgements]
         text = json.dumps(records, indent=2, ensure_ascii=False)
         (stage / CLAIMS_FILE).write_text(text + "\n", encoding="utf-8")
@@ -155,7 +156,7 @@ def _tasks(chosen: Selection, quick: bool, stage: Path) -> list[Task]:
     for plate in chosen.plates:
 
         def inputs(results: dict[str, Any], id_: str = plate.id) -> tuple[Any, ...]:
-            return id_, {name: results[name] for name in PLATES[id_].needs}, stage / FIGURES
+            return id_, {name: results[name] for name in PLATES[id_].needs}, stage
 
         tasks.append(Task(f"figure {plate.id}", _DRAWING_COST, _draw, inputs, plate.needs))
     return tasks
@@ -166,25 +167,20 @@ def _compute(name: str, quick: bool) -> xr.Dataset:
     return EXPERIMENTS[name].run(quick)
 
 
-def _draw(name: str, data: Data, folder: Path) -> None:
-    """Draw a figure (in a process of its own)."""
+def _draw(name: str, data: Data, stage: Path) -> None:
+    """Draw a figure, and write the data behind it (in a process of its own)."""
     plate = PLATES[name]
-    figure = plate.draw(plate.dataset(data))
+    dataset = plate.dataset(data)
+    if plate.needs:
+        write_run(dataset, stage / DATA / f"{name}.nc")
+    figure = plate.draw(dataset)
     for kind in ("png", "svg"):
-        save(figure, folder / f"{name}.{kind}")
+        save(figure, stage / FIGURES / f"{name}.{kind}")
         figure.set_layout_engine("none")  # all is in its place by now
 
 
 def _processes(workers: int | None) -> int:
     return min(2, os.cpu_count() or 1) if workers is None else max(1, workers)
-
-
-def _write_data(chosen: Selection, data: Data, stage: Path) -> None:
-    for plate in chosen.plates:
-        if plate.needs:
-            write_run(plate.dataset(data), stage / DATA / f"{plate.id}.nc")
-    for name in _unseen(chosen):
-        write_run(data[name], stage / DATA / f"{name}.nc")
 
 
 @contextmanager

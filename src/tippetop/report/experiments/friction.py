@@ -74,7 +74,7 @@ def _flip_times(quick: bool) -> xr.Dataset:
 
 
 def _other_spins(quick: bool) -> xr.Dataset:
-    spins = np.array(OTHER_SPINS[::2] if quick else OTHER_SPINS)
+    spins = np.array(OTHER_SPINS[::3] if quick else OTHER_SPINS)
     mu = np.linspace(*NORMAL_FRICTION, 5 if quick else 9)
     data = xr.Dataset(
         coords={
@@ -94,7 +94,7 @@ def _wide(quick: bool) -> xr.Dataset:
     mu = np.geomspace(0.01, 10.0, 10 if quick else 28)
     spins = np.array([100.0, 155.0])
     # Long enough to turn over, and the same for neighbours, so that they can be followed together.
-    windows = WINDOW * 2.0 ** np.ceil(np.log2(np.maximum(1.0, (4.0 / mu + 4.0) / WINDOW)))
+    windows = WINDOW * 2.0 ** np.ceil(np.log2(np.maximum(1.0, (3.0 / mu + 4.0) / WINDOW)))
     times = np.empty((len(spins), len(mu)))
     for window in np.unique(windows):
         times[:, windows == window] = converged_flip_times(spins, mu[windows == window], float(window))
@@ -109,7 +109,7 @@ def _wide(quick: bool) -> xr.Dataset:
             "spin_wide": variable(spins, "rad s-1", "spin at launch", ("spin_wide",)),
             "mu_wide": variable(mu, "s m-1", "friction coefficient", ("mu_wide",)),
         },
-        {"window_wide": "20 s, doubled until it is no less than 4 / mu + 4 s"},
+        {"window_wide": "20 s, doubled until it is no less than 3 / mu + 4 s"},
     )
 
 

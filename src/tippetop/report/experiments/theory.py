@@ -94,9 +94,9 @@ def _pair(spins: CriticalSpins) -> list[float]:
 def _bifurcation(quick: bool) -> xr.Dataset:
     """Steady states against spin with their stability, and where long runs end, for two bodies."""
     jumping = REPORT.model_copy(update={"I1": JUMP_RATIO * REPORT.I3})
-    gradual = [10.0, 24.0, 35.0, *QUOTED_SPINS, 70.0, 120.0]
+    gradual = [10.0, 24.0, 35.0, *QUOTED_SPINS]
     if not quick:
-        gradual = sorted([*gradual, 17.0, 31.0, 42.0, 74.0, 110.0])
+        gradual = sorted([*gradual, 17.0, 31.0, 42.0, 70.0, 74.0, 110.0, 120.0])
     sudden = [20.0, 50.0, 110.0] if quick else [10.0, 30.0, 42.0, 49.0, 56.0, 70.0, 105.0]
     tilts = np.linspace(0.0, math.pi, 181 if quick else 721)
     parts = [
