@@ -170,9 +170,12 @@ def test_the_page_has_a_section_of_its_own(tmp_path: Path) -> None:
     plates = [PLATES["fig01"], PLATES["why-groups"], PLATES["order"]]
     for plate in plates:
         (tmp_path / f"{plate.id}.svg").write_bytes(b"<svg/>")
-    page = render(plates, [], tmp_path, quick=False, partial="three")
+    page = render(plates, [], tmp_path, quick=False)
     marks = ("section-1", "fig01", "section-appendix-b", "order", "section-why", "why-groups")
     places = [page.index(f'id="{mark}"') for mark in marks]
     assert places == sorted(places)
+    assert "Which tops turn over</a>" in page[: page.index('id="section-1"')], (
+        "what the report could not know"
+    )
     assert "section-2.1" not in page
     assert "section-friction" not in page

@@ -16,7 +16,7 @@ from tippetop.report.claim import RULE, Judgement, Value, Verdict
 from tippetop.report.experiments.registry import EXPERIMENTS
 from tippetop.report.formulas import FORMULAS
 from tippetop.report.gallery import PLATES, Plate
-from tippetop.report.outline import PICTURES, SECTIONS, section_of
+from tippetop.report.outline import OWN, PICTURES, SECTIONS, section_of
 from tippetop.report.sentences import SENTENCES
 from tippetop.report.typeset import formula, typeset
 from tippetop.report.unchecked import UNCHECKED
@@ -71,9 +71,10 @@ def render(
     claims = [worded(judgement, shown) for judgement in judgements]
     counts = Counter(claim["verdict"] for claim in claims)
     wrong = [verdict.name.lower() for verdict in _WRONG]
+    theirs = [claim for claim in claims if claim["section"] not in OWN]
     parts: dict[str, Any] = {
-        "errors": [claim for name in wrong for claim in claims if claim["verdict"] == name],
-        "sound": [claim for claim in claims if claim["verdict"] not in wrong],
+        "errors": [claim for name in wrong for claim in theirs if claim["verdict"] == name],
+        "sound": [claim for claim in theirs if claim["verdict"] not in wrong],
         "unknown": [plate for plate in plates if _is_new(plate) and not partial],
         "player": player,
         "sections": _sections(plates, claims, figures),
@@ -84,6 +85,7 @@ def render(
         **parts,
         contents=_contents(parts),
         claims=claims,
+        statements=len(theirs),
         pictures=[] if partial else [_picture(PLATES[name], figures) for name in PICTURES if name in shown],
         verdicts=[
             {"name": verdict.name.lower(), "count": counts[verdict.name.lower()], "meaning": verdict.value}
@@ -118,7 +120,7 @@ def _contents(parts: Mapping[str, Any]) -> list[tuple[str, str]]:
 
 def _is_new(plate: Plate) -> bool:
     """Whether a figure shows what the report could not know."""
-    return bool(plate.finding) and not plate.id.startswith("fig")
+    return plate.section in OWN or (bool(plate.finding) and not plate.id.startswith("fig"))
 
 
 def _sections(plates: Sequence[Plate], claims: Sequence[Worded], figures: Path) -> list[dict[str, Any]]:
