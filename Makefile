@@ -4,7 +4,7 @@ VENV ?= .venv
 BIN = $(VENV)/bin
 OUT ?= tippetop-report
 
-.PHONY: reproduce test test-browser chromium check lint types contract bench quick clean
+.PHONY: reproduce test test-browser test-docs doctest chromium check lint types contract docs bench quick dist review clean
 
 reproduce: $(VENV)/.installed ## Redo the whole report into $(OUT)
 	$(BIN)/tippetop reproduce --out $(OUT) --force
@@ -15,6 +15,15 @@ test: $(VENV)/.installed-dev ## Run the tests
 test-browser: $(VENV)/.installed-dev ## Run the tests of the laboratory's page; they need Debian's chromium
 	$(BIN)/python -m pytest -m browser
 
+doctest: $(VENV)/.installed-dev ## Run the examples of the docstrings and every block of code of the pages
+	$(BIN)/python -m pytest -q tests/test_documents.py
+
+docs: $(VENV)/.installed-docs ## Build the documentation into docs/_build/html, with every notebook run
+	$(BIN)/python -m sphinx -W --keep-going -q -j auto -b html docs docs/_build/html
+
+test-docs: $(VENV)/.installed-docs ## Look at every page of the documentation that is built, in a browser
+	DOCS=docs/_build/html $(BIN)/python -m pytest -m browser tests/test_site.py
+
 chromium: ## Install Debian's chromium, as root, unless it is there
 	command -v chromium >/dev/null || { apt-get update -qq && \
 	  DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends chromium >/dev/null; }
@@ -24,6 +33,7 @@ check: lint types contract test ## All that a change must pass
 lint: $(VENV)/.installed-dev
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
+	$(BIN)/codespell
 
 types: $(VENV)/.installed-dev
 	$(BIN)/mypy
@@ -37,6 +47,14 @@ quick: $(VENV)/.installed ## A coarse report in half a minute
 bench: $(VENV)/.installed-bench ## Measure what is promised of speed and memory; takes half an hour
 	$(BIN)/python -m benchmarks --json benchmarks.json
 
+dist: $(VENV)/.installed-release ## Build the sdist, and the wheel from it, into dist/
+	rm -rf dist
+	$(BIN)/python -m build
+	$(BIN)/twine check --strict dist/*
+
+review: $(VENV)/.installed-release ## Review the repository as the Scientific Python guide asks
+	$(BIN)/repo-review .
+
 $(VENV)/bin/python:
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --upgrade pip
@@ -49,9 +67,17 @@ $(VENV)/.installed-dev: pyproject.toml | $(VENV)/bin/python
 	$(BIN)/python -m pip install --quiet --editable '.[test,lint]'
 	touch $@ $(VENV)/.installed
 
+$(VENV)/.installed-docs: pyproject.toml | $(VENV)/bin/python
+	$(BIN)/python -m pip install --quiet --editable '.[test,docs]'
+	touch $@ $(VENV)/.installed
+
+$(VENV)/.installed-release: pyproject.toml | $(VENV)/bin/python
+	$(BIN)/python -m pip install --quiet --group release
+	touch $@
+
 $(VENV)/.installed-bench: pyproject.toml | $(VENV)/bin/python
 	$(BIN)/python -m pip install --quiet --editable '.[bench]'
 	touch $@
 
 clean:
-	rm -rf $(VENV) $(OUT)
+	rm -rf $(VENV) $(OUT) dist docs/_build

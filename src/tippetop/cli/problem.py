@@ -1,11 +1,19 @@
 """`tippetop problem`: write a problem file, or the schema of one."""
 
 import json
-from typing import Annotated
+import re
+from typing import TYPE_CHECKING, Annotated, Literal, get_args, get_origin
 
 import typer
 
 from tippetop.cli.options import Changes, Json, LiftOff, Mu, Preset, ProblemFile, Spin, Tilt, chosen_problem
+from tippetop.fields import part_at
+
+if TYPE_CHECKING:
+    from tippetop.problem import Problem
+
+TABLE, FIELD, ITEM = re.compile(r"\[(.+)]"), re.compile(r"([\w-]+) = "), re.compile(r"    \S")
+"""Lines of TOML: that begin a table, a field, or hold an item of a list."""
 
 
 def problem(
@@ -19,7 +27,7 @@ def problem(
     as_json: Json = False,
     schema: Annotated[bool, typer.Option("--schema", help="Print the JSON Schema of problems.")] = False,
 ) -> None:
-    """Print a problem as TOML, to be edited and given to the other commands."""
+    """Print a problem as TOML with its units, to be edited and given to the other commands."""
     from tippetop.problem import Problem  # noqa: PLC0415 - slow to import
 
     if schema:
@@ -27,4 +35,53 @@ def problem(
         return
     settings = {"launch.spin": spin, "launch.tilt": tilt, "friction.mu": mu, "contact.liftoff": liftoff}
     chosen = chosen_problem(file, preset, settings, changes)
-    typer.echo(chosen.to_json() if as_json else chosen.to_toml().rstrip())
+    typer.echo(chosen.to_json() if as_json else commented_toml(chosen).rstrip())
+
+
+def commented_toml(problem: "Problem") -> str:
+    """The problem as TOML, with the unit and the meaning of every number beside it."""
+    table = name = ""
+    place = 0
+    lines = []
+    for line in problem.to_toml().splitlines():
+        if begun := TABLE.fullmatch(line):
+            table = f"{begun[1]}."
+        if begun := FIELD.match(line):
+            name, place = table + begun[1], 0
+        if line.endswith(" = ["):
+            remark = ""
+        elif ITEM.match(line):
+            remark, place = _remark(problem, f"{name}.{place}"), place + 1
+        else:
+            remark = _remark(problem, name) if begun else ""
+        lines.append(f"{line}  # {remark}" if remark else line)
+    return "\n".join(lines) + "\n"
+
+
+def _remark(problem: "Problem", name: str) -> str:
+    """What is said beside a field: unit and meaning of a number, or the words that are possible."""
+    where, _, field = name.rpartition(".")
+    part = part_at(problem, where) if where else problem
+    known = getattr(type(part), "model_fields", {})
+    if field in known:
+        kinds = getattr(part, "kinds", {}) if field == "kind" else {}
+        choice = known[field].annotation
+        words = list(kinds) or (list(get_args(choice)) if get_origin(choice) is Literal else [])
+        if words:
+            return " or ".join(map(repr, words)).replace("'", '"')
+    try:
+        units, meaning, _ = problem.quantity(name)
+    except (KeyError, AttributeError):
+        return ""
+    unit = "" if units == "1" else f"{_written(units)}: "
+    return unit + meaning if units else ""
+
+
+def _written(units: str) -> str:
+    """A unit of CF as people write it: rad/s for rad s-1."""
+    powers = [re.fullmatch(r"([A-Za-z]+)(-?\d*)", unit) for unit in units.split()]
+    sides: dict[bool, list[str]] = {False: [], True: []}
+    for found in filter(None, powers):
+        power = found[2].lstrip("-")
+        sides[found[2].startswith("-")].append(found[1] + (f"^{power}" if power not in ("", "1") else ""))
+    return "/".join([" ".join(sides[False]) or "1", *sides[True]])

@@ -1,0 +1,59 @@
+"""How the documentation is built; `make docs` does it."""
+
+import sys
+from importlib.metadata import version as installed_version
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent / "_extensions"))
+
+project = "tippetop"
+author = "The tippetop authors"
+project_copyright = author
+version = release = installed_version("tippetop")
+
+extensions = [
+    "myst_nb",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.napoleon",
+    "mathml",
+    "players",
+]
+exclude_patterns = ["_build", "jupyter_execute"]
+nitpicky = False
+
+html_theme = "pydata_sphinx_theme"
+html_title = "tippetop"
+html_static_path = ["_static"]
+html_css_files = ["site.css"]
+html_favicon = html_logo = "_static/top.svg"
+html_baseurl = "https://tippetop.github.io/tippetop/"
+html_copy_source = html_show_sourcelink = False
+html_context = {"default_mode": "auto"}
+html_theme_options = {
+    "logo": {"text": "tippetop"},
+    "github_url": "https://github.com/tippetop/tippetop",
+    "header_links_before_dropdown": 6,
+    "navigation_with_keys": True,
+    "show_toc_level": 2,
+    "footer_start": ["copyright"],
+    "footer_end": [],
+}
+html_sidebars = {"index": []}
+
+html_math_renderer = "mathml"
+math_numfig = False
+
+myst_enable_extensions = ["dollarmath", "amsmath", "deflist", "colon_fence", "fieldlist", "attrs_inline"]
+myst_heading_anchors = 3
+nb_execution_mode = "auto"
+nb_execution_raise_on_error = True
+nb_execution_timeout = 120
+nb_execution_show_tb = True
+nb_merge_streams = True
+nb_mime_priority_overrides = [("html", "image/svg+xml", 0)]
+
+autodoc_typehints = "none"
+autodoc_member_order = "bysource"
+napoleon_google_docstring = False
+napoleon_use_ivar = True
+napoleon_use_rtype = False
