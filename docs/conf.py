@@ -1,9 +1,11 @@
 """How the documentation is built; `make docs` does it."""
 
+import os
 import sys
 from importlib.metadata import version as installed_version
 from pathlib import Path
 
+os.environ["MATPLOTLIBRC"] = str(Path(__file__).parent / "matplotlibrc")  # read by the notebooks' kernels
 sys.path.insert(0, str(Path(__file__).parent / "_extensions"))
 
 project = "tippetop"

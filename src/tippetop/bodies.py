@@ -17,6 +17,14 @@ class Shape(Variant):
     ----------
     kind
         The word for the kind, in a subclass with a default: ``kind: Literal["cone"] = "cone"``.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> isinstance(tt.Spheroid(across=0.02, along=0.03), tt.Shape)
+    True
+    >>> sorted(tt.Shape.kinds)[:1]
+    ['eccentric_sphere']
     """
 
     kind: str
@@ -36,6 +44,12 @@ class EccentricSphere(Shape):
         Radius of the sphere, m.
     eccentricity
         Distance of the centre of mass from the centre, in radii, between 0 and 1.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> tt.EccentricSphere(radius=0.02, eccentricity=0.3)
+    EccentricSphere(kind='eccentric_sphere', radius=0.02, eccentricity=0.3)
     """
 
     kind: Literal["eccentric_sphere"] = "eccentric_sphere"
@@ -60,6 +74,13 @@ class Spheroid(Shape):
     ----------
     across, along
         Semi-axes across and along the axis of symmetry, m.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> egg = tt.Spheroid(across=0.02, along=0.03)
+    >>> egg.surface.height(1.0), egg.surface.height(0.0)  # of the centre, standing and lying
+    (0.03, 0.02)
     """
 
     kind: Literal["spheroid"] = "spheroid"
@@ -84,6 +105,15 @@ class Body(Part):
     I1, I3
         Principal moments of inertia about the centre of mass, kg m^2: transverse to and along the axis of
         symmetry. No body has I3 > 2 I1.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> sphere = tt.EccentricSphere(radius=0.02, eccentricity=0.3)
+    >>> top = tt.Body(mass=0.02, shape=sphere, I1=3.0e-6, I3=3.2e-6)
+    >>> tt.Body(mass=0.02, shape=sphere, I1=3.0e-6, I3=7e-6)
+    Traceback (most recent call last):
+    tippetop.errors.InvalidInput: I3 = 7e-06 is not possible; accepted: at most 2 I1 = 6e-06, as for any body
     """
 
     mass: Annotated[Positive, Quantity("kg", "mass of the body")]

@@ -14,7 +14,15 @@ NEAR_FINAL = 0.01
 
 
 class Ending(IntEnum):
-    """What became of a launch."""
+    """What became of a launch.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> swept = tt.sweep(tt.presets.report_problem(), {"launch.spin": [10.0, 155.0]}, duration=20.0)
+    >>> [tt.Ending(number).name for number in swept["outcome"].values]
+    ['UPRIGHT', 'INVERTED']
+    """
 
     UPRIGHT = 0
     INVERTED = 1

@@ -23,7 +23,17 @@ MISSING = _Missing()
 
 
 class TippetopError(Exception):
-    """Base of every error this package raises on purpose."""
+    """Base of every error this package raises on purpose.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> try:
+    ...     tt.ViscousFriction(mu=-1.0)
+    ... except tt.TippetopError as error:
+    ...     print(error)
+    mu = -1.0 is not possible; accepted: a number at least 0
+    """
 
 
 class InvalidInput(TippetopError, ValueError):
@@ -39,6 +49,15 @@ class InvalidInput(TippetopError, ValueError):
         What would be accepted, as the end of the sentence "accepted: ...".
     others
         How many more values of the same input cannot be.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> try:
+    ...     tt.Launch(tilt=4.0, spin=100.0)
+    ... except tt.InvalidInput as error:
+    ...     error.field, error.value, error.accepted
+    ('tilt', 4.0, 'a number at least 0 and at most pi')
     """
 
     def __init__(self, field: str, value: object, accepted: str, others: int = 0) -> None:
@@ -64,6 +83,15 @@ class FileTrouble(TippetopError, OSError):
         What is the trouble, beginning with the file's name.
     replaceable
         Whether overwriting the file is the way out; the sentence then ends with how that is asked for.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> try:
+    ...     tt.Problem.read("none.toml")
+    ... except tt.FileTrouble as error:
+    ...     print(error)
+    none.toml cannot be read: No such file or directory
     """
 
     def __init__(self, sentence: str, replaceable: bool = False) -> None:
@@ -80,7 +108,14 @@ class FileTrouble(TippetopError, OSError):
 
 
 class Unavailable(TippetopError, RuntimeError):
-    """Something optional that is asked for and not installed."""
+    """Something optional that is asked for and not installed.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> issubclass(tt.Unavailable, RuntimeError)
+    True
+    """
 
 
 def is_number(value: object) -> bool:

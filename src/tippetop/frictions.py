@@ -17,6 +17,12 @@ class Friction(Variant):
     ----------
     kind
         The word for the kind, in a subclass with a default: ``kind: Literal["wet"] = "wet"``.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> isinstance(tt.CoulombFriction(mu=0.3), tt.Friction)
+    True
     """
 
     kind: str
@@ -39,6 +45,12 @@ class ViscousFriction(Friction):
     ----------
     mu
         Friction coefficient, s/m.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> tt.ViscousFriction(mu=0.3).law.traction((0.1, 0.0), (0.0, 0.0, 0.0)).force  # at 0.1 m/s
+    (-0.03, -0.0)
     """
 
     kind: Literal["viscous"] = "viscous"
@@ -59,6 +71,13 @@ class RegularizedCoulombFriction(Friction):
         Friction coefficient, dimensionless.
     eps
         Slip speed below which the force falls to zero, m/s.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> law = tt.RegularizedCoulombFriction(mu=0.3, eps=1e-3).law
+    >>> [round(law.traction((slip, 0.0), (0.0, 0.0, 0.0)).force[0], 3) for slip in (1e-3, 0.1)]
+    [-0.212, -0.3]
     """
 
     kind: Literal["regularized_coulomb"] = "regularized_coulomb"
@@ -72,7 +91,7 @@ class RegularizedCoulombFriction(Friction):
 
 
 class CoulombFriction(Friction):
-    """Dry friction, Coulomb's law as it is: -mu N v / |v| for slip velocity v and normal force N.
+    """Dry friction, Coulomb's law as it is: ``-mu N v / |v|`` for slip velocity v and normal force N.
 
     Where v = 0 the force is what keeps it so, up to mu N: the top sticks, and rolls. Drilling, which is
     turning about the vertical on the spot, is not resisted.
@@ -81,6 +100,13 @@ class CoulombFriction(Friction):
     ----------
     mu
         Friction coefficient.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> run = tt.simulate(tt.presets.report_problem().replace({"friction.kind": "coulomb"}), duration=1.0)
+    >>> str(run["event_kind"].values[0]), bool(run["turns_over"].isnull())  # it sticks at once, and rolls
+    ('stick', True)
     """
 
     kind: Literal["coulomb"] = "coulomb"
@@ -107,6 +133,14 @@ class ContensouFriction(Friction):
     pressure
         "hertz": the pressure of Hertz's contact, its law exact; "ellipsoidal": the approximation of its limit
         surface by an ellipsoid that drills as hard, semi-axis (3 pi/16) R (Leine and Glocker 2003).
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> law = tt.ContensouFriction(mu=0.3, patch_radius=1e-3).law
+    >>> slow, fast = (law.traction((0.001, 0.0), (0.0, 0.0, spin)).force[0] for spin in (0.0, 100.0))
+    >>> round(slow, 4), round(fast, 4)  # drilling makes sliding easier
+    (-0.3, -0.0035)
     """
 
     kind: Literal["contensou"] = "contensou"

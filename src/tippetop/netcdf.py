@@ -31,6 +31,13 @@ def write_run(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Pat
     ------
     FileTrouble
         If the file exists and `overwrite` is false, or cannot be written.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> run = tt.simulate(tt.presets.report_problem(), duration=1.0, samples=11)
+    >>> tt.write_run(run, "run.nc").name
+    'run.nc'
     """
     place_for(path, overwrite)
     # In memory first: where a disk is full HDF5 takes the whole process with it.
@@ -52,6 +59,16 @@ def read_run(path: Path | str) -> xr.Dataset:
     ------
     FileTrouble
         If the file cannot be read, is damaged or is not a result.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> run = tt.simulate(tt.presets.report_problem(), duration=1.0, samples=11)
+    >>> again = tt.read_run(tt.write_run(run, "read.nc"))
+    >>> again.equals(run)
+    True
+    >>> tt.Problem.from_json(again.attrs["problem"]) == tt.presets.report_problem()
+    True
     """
     with in_words(path, "read"):
         if not Path(path).is_file():

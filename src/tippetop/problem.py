@@ -70,6 +70,13 @@ class Launch(Part):
     velocity
         Velocity of the centre of mass along x, y and z, m/s; it takes the place of `slip`. Without it the
         lowest point moves with the slip velocity and neither up nor down.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> tt.Launch(tilt=0.1, spin=155.0).slip
+    (0.0, 0.0)
+    >>> dropped = tt.Launch(tilt=0.1, spin=155.0, gap=0.01)  # from 1 cm
     """
 
     tilt: Annotated[Tilt, Quantity("rad", "tilt of the axis at launch")]
@@ -103,6 +110,12 @@ class Contact(Variant):
         contact).
     restitution
         Ratio of the normal impulses of restitution and compression in an impact (Poisson), in [0, 1].
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> tt.Contact()  # it may leave the table, and does not bounce
+    Contact(liftoff='fly', restitution=0.0)
     """
 
     liftoff: Literal["fly", "stop", "ignore"] = "fly"
@@ -139,6 +152,18 @@ class Problem(Part):
         Arm of the normal force's couple against rolling beside any law of friction, m: the table resists the
         horizontal angular velocity w_t with the torque N rolling_resistance, and holds it at zero where less
         is enough for that.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> problem = tt.Problem(
+    ...     body=tt.presets.REPORT,
+    ...     friction=tt.ViscousFriction(mu=0.3),
+    ...     launch=tt.Launch(tilt=0.1, spin=155.0),
+    ... )
+    >>> faster = problem.replace({"launch.spin": 175.0})
+    >>> tt.Problem.from_toml(faster.to_toml()) == faster
+    True
     """
 
     body: Body

@@ -18,6 +18,13 @@ def summarize(run: xr.Dataset) -> dict[str, Any]:
         energy_lost_drilling, energy_lost_rolling (J), jellett_drift and energy_error (relative), flights (how
         many), airborne_time (s), highest_gap (m), impact_energy_lost (J), events (kind and time, s),
         integrator, steps, evaluations. What is not a number is None.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> summary = tt.summarize(tt.simulate(tt.presets.report_problem(spin=155.0), duration=20.0))
+    >>> summary["outcome"], round(summary["turns_over"], 2), summary["flights"]
+    ('completed', 5.88, 0)
     """
     last = run.isel(time=-1)
     names = ("theta", "theta_dot", "omega3", "phi_dot")

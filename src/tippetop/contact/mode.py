@@ -22,7 +22,17 @@ from tippetop.mechanics.vectors import Row, Scalar, Vector
 
 
 class Outcome(Enum):
-    """How a run ended; the value is advice."""
+    """How a run ended; the value is advice.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> run = tt.simulate(tt.presets.report_problem(), duration=0.1)
+    >>> tt.Outcome[run.attrs["outcome"].upper()] is tt.Outcome.COMPLETED
+    True
+    >>> tt.Outcome.COMPLETED.value
+    'The run reached its end.'
+    """
 
     COMPLETED = "The run reached its end."
     LIFTED_OFF = (

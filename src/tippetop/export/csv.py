@@ -18,6 +18,14 @@ def write_csv(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Pat
     ------
     FileTrouble
         If the file exists and `overwrite` is false, or cannot be written.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> run = tt.simulate(tt.presets.report_problem(), duration=1.0, samples=11)
+    >>> path = tt.write_csv(run, "run.csv")
+    >>> path.read_text().splitlines()[0][:40]
+    'time (s),theta (rad),theta_dot (rad s-1)'
     """
     path = Path(path)
     place_for(path, overwrite)

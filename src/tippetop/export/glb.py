@@ -38,6 +38,13 @@ def write_glb(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Pat
         If the file exists and `overwrite` is false, or cannot be written.
     InvalidInput
         If the run would need too many keys.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> run = tt.simulate(tt.presets.report_problem(), duration=1.0, samples=501)
+    >>> tt.write_glb(run, "run.glb").read_bytes()[:4]
+    b'glTF'
     """
     path = Path(path)
     place_for(path, overwrite)

@@ -69,6 +69,13 @@ def write_html(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Pa
         If the file exists and `overwrite` is false, or cannot be written.
     Unavailable
         If three.js is not installed: it comes with NiceGUI.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> run = tt.simulate(tt.presets.report_problem(), duration=1.0, samples=501)
+    >>> tt.write_html(run, "run.html").name  # open it in any browser, on any machine
+    'run.html'
     """
     path = Path(path)
     place_for(path, overwrite)

@@ -61,6 +61,13 @@ def write_movie(
         If there is no ffmpeg for an .mp4.
     FileTrouble
         If the file exists and `overwrite` is false, or cannot be written.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> run = tt.simulate(tt.presets.report_problem(), duration=0.5, samples=501)
+    >>> tt.write_movie(run, "run.gif", fps=10, pixels=(120, 90)).name
+    'run.gif'
     """
     path = Path(path)
     kind = path.suffix.lower()

@@ -22,7 +22,14 @@ class Panel(NamedTuple):
 
 @house_style()
 def plot(run: xr.Dataset) -> Figure:
-    """Draw tilt, axial spin, precession, slip, normal force and energy of a run against time."""
+    """Draw tilt, axial spin, precession, slip, normal force and energy of a run against time.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> figure = tt.plot(tt.simulate(tt.presets.report_problem(), duration=10.0))
+    >>> figure.savefig("run.svg")
+    """
     panels = [
         Panel("Tilt θ (rad)", run["theta"].values),
         Panel("Axial spin ω₃ (rad/s)", run["omega3"].values),

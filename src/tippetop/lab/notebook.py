@@ -31,6 +31,12 @@ def view(run: xr.Dataset, height: int = 480, theme: str = "auto") -> Any:
         If there is no such theme, or the height is not positive.
     Unavailable
         If anywidget or NiceGUI (which brings three.js) is not installed.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> player = tt.view(tt.simulate(tt.presets.report_problem(), duration=1.0, samples=501))
+    >>> player.show(tt.simulate(tt.presets.report_problem(spin=50.0), duration=1.0, samples=501))
     """
     if theme not in THEMES:
         raise InvalidInput("theme", theme, ", ".join(THEMES))

@@ -12,6 +12,13 @@ class Material(NamedTuple):
         Young's modulus, Pa.
     poisson
         Poisson's ratio.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> beech = tt.Material(modulus=14e9, poisson=0.3)
+    >>> tt.MATERIALS["steel"]
+    Material(modulus=207000000000.0, poisson=0.3)
     """
 
     modulus: float
@@ -39,6 +46,14 @@ def hertz_patch_radius(load: float, radius: float, body: Material, table: Materi
         Radius r of the sphere at the contact, m.
     body, table
         Their materials; a table of None is rigid. 1/E* = (1 - nu^2)/E of both added up.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> wood, glass = tt.MATERIALS["wood"], tt.MATERIALS["glass"]
+    >>> radius = tt.hertz_patch_radius(load=0.02 * 9.8, radius=0.02, body=wood, table=glass)
+    >>> round(1e6 * radius, 1)  # micrometres
+    64.2
     """
     compliance = sum((1.0 - m.poisson**2) / m.modulus for m in (body, table) if m is not None)
     return float((0.75 * load * radius * compliance) ** (1.0 / 3.0))

@@ -216,6 +216,13 @@ def sweep(
         If there is no such field, or it cannot have such values.
     FileTrouble
         If there is something at `out` already, or it cannot be written.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> found = tt.sweep(tt.presets.report_problem(), {"launch.spin": [10.0, 50.0, 155.0]}, duration=20.0)
+    >>> [round(float(tilt), 2) for tilt in found["final_theta"]]
+    [0.0, 1.5, 3.14]
     """
     grid = over if isinstance(over, Draws) else Product.of(over)
     chosen = Sweep(problem, grid, duration, tolerance, settled)

@@ -131,6 +131,15 @@ def steady_states(problem: Problem) -> list[SteadyState]:
     InvalidInput
         If it turns so fast that the theory cannot tell, or hardly on dry friction; if a dry point rubs, or
         rolling is resisted.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> for state in tt.steady_states(tt.presets.report_problem(spin=50.0)):
+    ...     print(state.kind, round(state.tilt, 3), round(state.spin, 1))
+    upright 0.0 49.6
+    precession 1.504 -8.2
+    inverted 3.142 -26.7
     """
     require_creep(problem.top)
     if problem.top.conserves_jellett:

@@ -75,6 +75,13 @@ def predict(problem: Problem) -> Prediction:
     ------
     InvalidInput
         If Jellett's integral is not conserved, a dry point rubs, or there is no friction.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> ahead = tt.predict(tt.presets.report_problem(spin=155.0))
+    >>> str(ahead.final.kind), round(ahead.final.spin, 2), ahead.certain
+    ('inverted', -82.87, True)
     """
     top = problem.top
     require_jellett(top)

@@ -104,6 +104,13 @@ def critical_spins(problem: Problem) -> CriticalSpins:
     ------
     InvalidInput
         If a dry point rubs, or rolling is resisted: nothing is linear there.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> spins = tt.critical_spins(tt.presets.report_problem())
+    >>> round(spins.upright, 2), round(spins.inverted, 2)  # rad/s
+    (27.84, 77.23)
     """
     require_creep(problem.top)
     if not problem.top.conserves_jellett:

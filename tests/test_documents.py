@@ -1,0 +1,79 @@
+"""What the docstrings, the README and the pages of the documentation show, run."""
+
+import doctest
+import importlib
+import re
+import shlex
+import sys
+from pathlib import Path
+
+import matplotlib as mpl
+import pytest
+from typer.testing import CliRunner
+
+import tippetop as tt
+from tippetop.cli.main import app
+
+ROOT = Path(__file__).parents[1]
+PAGES = [
+    path
+    for path in [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+    if "_build" not in path.parts and "jupyter_execute" not in path.parts
+]
+HOMES = sorted({home for name in tt.__all__ if (home := getattr(getattr(tt, name), "__module__", ""))})
+BLOCK = re.compile(
+    r"^(?P<fence>`{3,}|:{3,})(?:(?P<python>python|\{code-cell\} python|\{player\}[^\n]*)|(?P<console>console))\n"
+    r"(?P<code>.*?)^(?P=fence)$",
+    re.MULTILINE | re.DOTALL,
+)
+OPTIONS = re.compile(r"^(:[\w-]+:[^\n]*\n)+|^---\n.*?^---\n", re.MULTILINE | re.DOTALL)
+FLAGS = doctest.NORMALIZE_WHITESPACE | doctest.ELLIPSIS
+WITHOUT_DOCSTRING = {"MATERIALS", "presets"}
+
+
+@pytest.fixture(autouse=True)
+def _elsewhere(tmp_path, monkeypatch):
+    """What examples write is written into an empty folder."""
+    monkeypatch.chdir(tmp_path)
+    with mpl.rc_context():
+        mpl.use("agg")
+        yield
+
+
+@pytest.mark.parametrize("home", HOMES)
+def test_the_examples_of_docstrings_are_true(home):
+    found = doctest.testmod(importlib.import_module(home), optionflags=FLAGS)
+    assert found.failed == 0
+
+
+@pytest.mark.parametrize("name", sorted(set(tt.__all__) - WITHOUT_DOCSTRING))
+def test_every_public_name_has_an_example(name):
+    assert ">>> " in getattr(tt, name).__doc__
+
+
+@pytest.mark.parametrize("name", tt.__all__)
+def test_every_public_name_has_an_entry(name):
+    entries = "\n".join(path.read_text(encoding="utf-8") for path in (ROOT / "docs" / "api").glob("*.md"))
+    assert re.search(rf"^\.\. (auto|py:)\w+:: tippetop\.{name}$", entries, re.MULTILINE)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
+def test_the_blocks_of_a_page_run(page):
+    """In order, in one namespace, as a reader would type them."""
+    names = {"__name__": "__main__", "tt": tt} if page.parent.name == "docs" else {"__name__": "__main__"}
+    before = set(sys.modules)
+    for block in BLOCK.finditer(page.read_text(encoding="utf-8")):
+        code = OPTIONS.sub("", block["code"], count=1)
+        if block["console"]:
+            for line in re.findall(r"^\$ tippetop (.*)$", code, re.MULTILINE):
+                told = CliRunner().invoke(app, shlex.split(line, comments=True))
+                assert told.exit_code == 0, (line, told.output)
+        else:
+            exec(compile(code, str(page), "exec"), names)
+    assert "IPython.core.pylabtools" not in set(sys.modules) - before
+
+
+def test_blocks_are_found():
+    """The README has both kinds."""
+    found = list(BLOCK.finditer((ROOT / "README.md").read_text(encoding="utf-8")))
+    assert any(block["python"] for block in found)
