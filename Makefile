@@ -16,7 +16,7 @@ test-browser: $(VENV)/.installed-dev ## Run the tests of the laboratory's page; 
 	$(BIN)/python -m pytest -m browser
 
 doctest: $(VENV)/.installed-dev ## Run the examples of the docstrings and every block of code of the pages
-	$(BIN)/python -m pytest -q tests/test_documents.py
+	NOTEBOOKS=1 $(BIN)/python -m pytest -n auto tests/test_documents.py
 
 docs: $(VENV)/.installed-docs ## Build the documentation into docs/_build/html, with every notebook run
 	$(BIN)/python -m sphinx -W --keep-going -q -j auto -b html docs docs/_build/html

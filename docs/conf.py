@@ -34,13 +34,14 @@ html_context = {"default_mode": "auto"}
 html_theme_options = {
     "logo": {"text": "tippetop"},
     "github_url": "https://github.com/tippetop/tippetop",
-    "header_links_before_dropdown": 6,
+    "header_links_before_dropdown": 9,
     "navigation_with_keys": True,
+    "navbar_persistent": ["search-button"],
     "show_toc_level": 2,
     "footer_start": ["copyright"],
     "footer_end": [],
 }
-html_sidebars = {"index": []}
+html_sidebars = {page: [] for page in ("index", "start", "gallery", "validation")}
 
 html_math_renderer = "mathml"
 math_numfig = False

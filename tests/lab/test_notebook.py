@@ -70,6 +70,11 @@ def test_the_widget_refuses_what_it_cannot_be() -> None:
         view(run, height=0)
 
 
+def test_a_notebook_shows_the_figure_of_a_run_without_pyplot() -> None:
+    figure = tt.plot(tt.simulate(tt.presets.report_problem(), 0.1, samples=5))
+    assert figure._repr_png_().startswith(b"\x89PNG")
+
+
 def test_the_notebook_runs_from_top_to_bottom(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     cells = json.loads(NOTEBOOK.read_text(encoding="utf-8"))["cells"]

@@ -1,5 +1,6 @@
 """One run at a glance: the report's four variables, the normal force and the energy."""
 
+from io import BytesIO
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -11,6 +12,16 @@ from tippetop.figures.style import ACCENT, CONVERGED, DASHED, MUTED, WIDTH, hous
 
 TALLEST_PRECESSION = 400.0
 """Precession beyond which a curve is cut off, rad/s: it peaks without bound where the axis is vertical."""
+
+
+class ShownFigure(Figure):
+    """A figure that notebooks show, though it is none of pyplot's."""
+
+    @house_style()
+    def _repr_png_(self) -> bytes:
+        picture = BytesIO()
+        self.savefig(picture, format="png")
+        return picture.getvalue()
 
 
 class Panel(NamedTuple):
@@ -38,7 +49,7 @@ def plot(run: xr.Dataset) -> Figure:
         Panel("Normal force (N)", run["normal_force"].values),
         Panel("Energy (J)", run["energy"].values),
     ]
-    figure = Figure(figsize=(WIDTH, 6.2))
+    figure = ShownFigure(figsize=(WIDTH, 6.2))
     grid = figure.subplots(3, 2, sharex=True)
     for axes, panel in zip(grid.flat, panels, strict=True):
         axes.plot(run["time"].values, panel.values, color=CONVERGED, linewidth=1.1)
