@@ -64,6 +64,15 @@ def standing_time(problem: Problem) -> float:
     InvalidInput
         If there is no linear motion about a vertical spin: a dry point rubs, rolling is resisted, or nothing
         spins. If a body other than an eccentric sphere is not launched at tilt 0 or pi.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> patch = {"friction.kind": "contensou", "friction.patch_radius": 1e-3}
+    >>> round(tt.standing_time(tt.presets.report_problem().replace(patch)), 2)  # s, upside down
+    3.84
+    >>> tt.standing_time(tt.presets.report_problem())  # viscous friction does not drill
+    inf
     """
     top, tilt = problem.top, problem.launch.tilt
     if tilt not in (0.0, math.pi):
