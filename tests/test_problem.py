@@ -223,7 +223,7 @@ class TestRefusals:
     @pytest.mark.parametrize(
         ("name", "kinds"),
         [
-            ("body.shape.kind", "'eccentric_sphere', 'spheroid'"),
+            ("body.shape.kind", "'eccentric_sphere', 'sphere', 'ring', 'spheroid'"),
             ("friction.kind", "'viscous', 'regularized_coulomb'"),
         ],
     )

@@ -3,7 +3,9 @@
 from . import presets as presets
 from .bodies import Body as Body
 from .bodies import EccentricSphere as EccentricSphere
+from .bodies import Ring as Ring
 from .bodies import Shape as Shape
+from .bodies import Sphere as Sphere
 from .bodies import Spheroid as Spheroid
 from .catalogue import Ending as Ending
 from .contact.mode import Outcome as Outcome

@@ -6,8 +6,10 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from tippetop.errors import InvalidInput
-from tippetop.mechanics.surface import SphereSurface, SpheroidSurface, Surface
-from tippetop.validation import NO_WORD, OF_ITS_KIND, Part, Positive, Quantity, Variant
+from tippetop.mechanics.surface import RingSurface, SphereSurface, SpheroidSurface, Surface
+from tippetop.validation import NO_WORD, OF_ITS_KIND, NotNegative, Number, Part, Positive, Quantity, Variant
+
+Center = Annotated[Number, Quantity("m", "height of the surface's middle above the centre of mass")]
 
 
 class Shape(Variant):
@@ -53,23 +55,71 @@ class EccentricSphere(Shape):
         return SphereSurface(self.radius, self.eccentricity * self.radius)
 
 
+class Sphere(Shape):
+    """A sphere whose centre is anywhere on the axis: the tip of a stem, or one of two hurricane balls.
+
+    Attributes
+    ----------
+    radius
+        Radius of the sphere, m.
+    center
+        Height of its centre above the centre of mass, along the axis, m.
+    """
+
+    kind: Literal["sphere"] = "sphere"
+    radius: Annotated[Positive, Quantity("m", "radius of the sphere")]
+    center: Center
+
+    @property
+    def surface(self) -> Surface:
+        """The outer surface, from the centre of mass, as the mechanics takes it."""
+        return SphereSurface(self.radius, self.center)
+
+
+class Ring(Shape):
+    """A ring about the axis, sharp or round: the edge of a disk or a coin.
+
+    Attributes
+    ----------
+    radius
+        Radius of the circle in the middle of the ring, m.
+    center
+        Height of its plane above the centre of mass, along the axis, m.
+    tube
+        Radius by which the ring is thick, m; 0 for a sharp edge.
+    """
+
+    kind: Literal["ring"] = "ring"
+    radius: Annotated[Positive, Quantity("m", "radius of the ring's circle")]
+    center: Center = 0.0
+    tube: Annotated[NotNegative, Quantity("m", "radius of the ring's tube")] = 0.0
+
+    @property
+    def surface(self) -> Surface:
+        """The outer surface, from the centre of mass, as the mechanics takes it."""
+        return RingSurface(self.radius, self.center, self.tube)
+
+
 class Spheroid(Shape):
-    """A spheroid with its centre of mass at its centre: the spinning egg.
+    """A spheroid: the spinning egg.
 
     Attributes
     ----------
     across, along
         Semi-axes across and along the axis of symmetry, m.
+    center
+        Height of its centre above the centre of mass, along the axis, m.
     """
 
     kind: Literal["spheroid"] = "spheroid"
     across: Annotated[Positive, Quantity("m", "semi-axis across the axis of symmetry")]
     along: Annotated[Positive, Quantity("m", "semi-axis along the axis of symmetry")]
+    center: Center = 0.0
 
     @property
     def surface(self) -> Surface:
         """The outer surface, from the centre of mass, as the mechanics takes it."""
-        return SpheroidSurface(self.across, self.along)
+        return SpheroidSurface(self.across, self.along, self.center)
 
 
 class Body(Part):

@@ -175,6 +175,8 @@ def ending(ends: Ends) -> NDArray[np.int8]:
     near = [final <= NEAR_POLE, final >= np.pi - NEAR_POLE]
     found = np.select(near, [Ending.UPRIGHT, Ending.INVERTED], Ending.TILTED)
     found[ends.outcome == OUTCOMES.index(Outcome.LIFTED_OFF)] = Ending.LIFTED_OFF
-    completed = [OUTCOMES.index(outcome) for outcome in (Outcome.COMPLETED, Outcome.LIFTED_OFF)]
+    completed = [
+        OUTCOMES.index(outcome) for outcome in (Outcome.COMPLETED, Outcome.LIFTED_OFF, Outcome.LYING_FLAT)
+    ]
     found[~np.isin(ends.outcome, completed)] = Ending.FAILED
     return found.astype(np.int8)

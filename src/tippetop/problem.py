@@ -143,6 +143,12 @@ class Problem(Part):
 
     @model_validator(mode="after")
     def _contact_is_possible(self) -> Self:
+        try:
+            self.top.surface.slope(math.cos(self.launch.tilt))
+        except ZeroDivisionError:
+            raise InvalidInput(
+                "launch.tilt", self.launch.tilt, "a tilt at which it does not lie flat"
+            ) from None
         if not (math.isfinite(self._resistance()) and math.isfinite(self._largest_square())):
             raise self._out_of_reach()
         if self.contact.liftoff == "fly":

@@ -28,6 +28,10 @@ class Outcome(Enum):
         "The table would have to pull from here on; "
         "with liftoff = ignore it does, and with fly the top leaves it."
     )
+    LYING_FLAT = (
+        "The body came to lie flat: there it touches the table all around, which is not followed further; "
+        "this is the end of its motion, but for what the impact of its face would add."
+    )
     TOO_MANY_PHASES = (
         "The top bounced and slid more often than the run allows; "
         "shorten the duration, lower the restitution, or raise the limit on phases."

@@ -111,6 +111,7 @@ def cells_of(problem: Problem, values: Mapping[str, Array]) -> Cells:
             fault[~allowed(numbers, known[field])] = Fault.VALUE_OUT_OF_RANGE
         for part in (filled.body.shape, filled.friction, filled.contact):
             fault[refused(part, count)] = Fault.VALUE_OUT_OF_RANGE
+        fault[~np.isfinite(top.surface.slope(start.axis[2]))] = Fault.VALUE_OUT_OF_RANGE
         units = natural_units(top)
         return Cells(fault, top, units, natural_state(start, units), filled)
 

@@ -11,7 +11,7 @@ from tippetop.contact.block import in_blocks
 from tippetop.contact.flight import Flight
 from tippetop.contact.mode import EventKind, Outcome, Transition
 from tippetop.contact.rules import TOUCHING
-from tippetop.contact.sliding import BRANCH, LIFT_OFF, STOPPING, Sliding, sliding_motion
+from tippetop.contact.sliding import BRANCH, LIFT_OFF, Sliding, sliding_motion
 from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators import default_name, make_integrator
 from tippetop.integrators.base import Array
@@ -67,14 +67,16 @@ class Crossings:
         """What follows where guards fall through zero."""
         known = sliding_motion(self.slots.launches.kind, guarded=True).guards
         names = np.array([guard.name for guard in known])[guards]
-        stopping, other, free = (names == name for name in (STOPPING, BRANCH, LIFT_OFF))
-        if stopping.any():
-            cells, state = self.slots.cell[lanes[stopping]], self.slots.whole(lanes[stopping])
+        other, free = names == BRANCH, names == LIFT_OFF
+        ending = ~(other | free)
+        if ending.any():
+            cells, state = self.slots.cell[lanes[ending]], self.slots.whole(lanes[ending])
+            modes = [self.slots.launches.sliding(int(cell)) for cell in cells]
             transitions = [
-                self.slots.launches.rules(int(cell)).stopping(float(time[stopping][i]), single(state, i))
-                for i, cell in enumerate(cells)
+                mode.follow(str(name), float(moment), single(state, i))
+                for i, (mode, name, moment) in enumerate(zip(modes, names[ending], time[ending], strict=True))
             ]
-            self._enter(lanes[stopping], time[stopping], transitions)
+            self._enter(lanes[ending], time[ending], transitions)
         if other.any():
             self.slots.change_branch(lanes[other])
         self._let_go(lanes[free], time[free])

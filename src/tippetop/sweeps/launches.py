@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from tippetop.contact.mode import Rules
 from tippetop.contact.rules import rules_for
+from tippetop.contact.sliding import Sliding
 from tippetop.integrators.base import Array
 from tippetop.mechanics.motion import along_table
 from tippetop.mechanics.rolling import is_branched, off_branch, on_branch
@@ -69,11 +70,18 @@ class Launches:
 
     def rules(self, launch: int) -> Rules:
         """What follows where the contact of one launch begins or ends."""
-        top = off_branch(self.kind.top(tuple(self.numbers[:, launch].tolist())))
+        top = off_branch(self._top(launch))
         if self.own is not None:
             rules: Rules = self.own[launch](top)
             return rules
         return rules_for(top, self.liftoff, float(self.restitution[launch]))
+
+    def sliding(self, launch: int) -> Sliding:
+        """The mode of one launch that slides."""
+        return Sliding(self._top(launch), self.rules(launch))
+
+    def _top(self, launch: int) -> Top:
+        return self.kind.top(tuple(self.numbers[:, launch].tolist()))
 
 
 def branched(top: Top, state: State) -> Top:
