@@ -1,13 +1,24 @@
 """Bodies of revolution as users state them, validated: their shapes, masses and moments of inertia."""
 
+import math
 from abc import abstractmethod
 from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
 from tippetop.errors import InvalidInput
+from tippetop.mechanics.hull import Hull
 from tippetop.mechanics.surface import RingSurface, SphereSurface, SpheroidSurface, Surface
-from tippetop.validation import NO_WORD, OF_ITS_KIND, NotNegative, Number, Part, Positive, Quantity, Variant
+from tippetop.validation import (
+    NO_WORD,
+    ONE_OR_SEVERAL,
+    NotNegative,
+    Number,
+    Part,
+    Positive,
+    Quantity,
+    Variant,
+)
 
 Center = Annotated[Number, Quantity("m", "height of the surface's middle above the centre of mass")]
 
@@ -130,14 +141,14 @@ class Body(Part):
     mass
         Mass, kg.
     shape
-        Outer surface, and where the centre of mass is in it.
+        Outer surface, and where the centre of mass is in it; or several, whose convex hull the body is.
     I1, I3
         Principal moments of inertia about the centre of mass, kg m^2: transverse to and along the axis of
         symmetry. No body has I3 > 2 I1.
     """
 
     mass: Annotated[Positive, Quantity("kg", "mass of the body")]
-    shape: Annotated[Shape, OF_ITS_KIND]
+    shape: Annotated[Shape | tuple[Shape, ...], ONE_OR_SEVERAL]
     I1: Annotated[Positive, Quantity("kg m2", "moment of inertia transverse to the axis of symmetry")]
     I3: Annotated[Positive, Quantity("kg m2", "moment of inertia along the axis of symmetry")]
 
@@ -145,4 +156,45 @@ class Body(Part):
     def _can_exist(self) -> Self:
         if self.I3 > 2 * self.I1:
             raise InvalidInput("I3", self.I3, f"at most 2 I1 = {2 * self.I1:g}, as for any body")
+        for number, shape in enumerate(self.shapes):
+            if len(self.shapes) > 1 and not _reaches_out(number, self.shapes):
+                numbers = ", ".join(f"{name} = {value}" for name, value in shape)
+                raise InvalidInput(f"shape.{number}", numbers, "a surface that the others do not enclose")
         return self
+
+    @property
+    def shapes(self) -> tuple[Shape, ...]:
+        """Its surfaces."""
+        return self.shape if isinstance(self.shape, tuple) else (self.shape,)
+
+    @property
+    def surface(self) -> Surface:
+        """Its surface, from the centre of mass, as the mechanics takes it: a `Hull` of several."""
+        if isinstance(self.shape, tuple):
+            return Hull.of(tuple(shape.surface for shape in self.shape))
+        return self.shape.surface
+
+
+LOOKS, SEARCHES = 64, 5
+"""Looks at the tilts where a surface may be outermost, repeated so often around the best of them."""
+
+REACH = 1e-9
+"""How far a surface must reach beyond the others, in its sizes, to be one of the body's."""
+
+
+def _reaches_out(number: int, shapes: tuple[Shape, ...]) -> bool:
+    """Whether a surface touches the table at some tilt; also where no computer can tell."""
+    own = shapes[number].surface
+    others = [shape.surface for place, shape in enumerate(shapes) if place != number]
+    low, high = 0.0, math.pi
+    for _ in range(SEARCHES):
+        looks = [low + (high - low) * k / LOOKS for k in range(LOOKS + 1)]
+        try:
+            ahead = [own.height(c) - max(other.height(c) for other in others) for c in map(math.cos, looks)]
+        except ArithmeticError:
+            return True
+        if max(ahead) > REACH * own.size:
+            return True
+        best = ahead.index(max(ahead))
+        low, high = looks[max(best - 1, 0)], looks[min(best + 1, LOOKS)]
+    return False

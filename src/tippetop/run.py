@@ -193,6 +193,7 @@ def _event_arrays(events: Sequence[Event], units: Units) -> dict[str, NDArray[An
         "event_kind": np.array([event.kind.value for event in events], dtype=str),
         "event_impulse": impulses * units.mass * units.speed,
         "event_energy_lost": losses * units.energy,
+        "event_surface": np.array([event.surface for event in events], dtype=np.int8),
     }
 
 

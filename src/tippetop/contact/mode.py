@@ -15,6 +15,7 @@ import numpy as np
 
 from tippetop.integrators.base import Integrator, Motion
 from tippetop.integrators.dense import DenseSolution
+from tippetop.mechanics.hull import Hull
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Row, Scalar, Vector
@@ -59,6 +60,8 @@ class EventKind(Enum):
     STICK = "stick"
     SLIP = "slip"
     IMPACT = "impact"
+    OPENING = "opening"
+    DOUBLE_CONTACT = "double contact"
 
 
 @dataclass(frozen=True)
@@ -73,12 +76,15 @@ class Event:
         When.
     impulse, energy_lost
         Normal impulse of the table, and energy that went with it.
+    surface
+        Number of the body's surface to which it happened.
     """
 
     kind: EventKind
     time: float
     impulse: float = 0.0
     energy_lost: float = 0.0
+    surface: int = 0
 
 
 @dataclass(frozen=True)
@@ -174,6 +180,12 @@ class Rules(Protocol):
     def touchdown(self, time: float, state: State) -> Transition:
         """What follows when the top reaches the table."""
 
+    def touch(self, surface: int, time: float, state: State) -> Transition:
+        """What follows when another surface of the top, of this number, reaches the table too."""
+
+    def on(self, surface: int) -> "Rules":
+        """The rules of the top with another of its surfaces active."""
+
     def sliding(self, state: State) -> "Mode":
         """The mode of a contact that slips."""
 
@@ -205,6 +217,19 @@ class Mode(ABC):
 
     name: ClassVar[str]
     touching: ClassVar[bool] = True
+
+    @property
+    def tops(self) -> tuple[Top, ...]:
+        """The top with each surface active that touches: one, where a mode does not say otherwise."""
+        return (self.top,)
+
+    @property
+    def label(self) -> str:
+        """Its name, with the numbers of the surfaces that touch if the body has several."""
+        if not self.touching or not isinstance(self.top.surface, Hull):
+            return self.name
+        touching = sorted(getattr(top.surface, "active", 0) for top in self.tops)
+        return f"{self.name}_on_{'_and_'.join(map(str, touching))}"
 
     @abstractmethod
     def segments(self, time: float, state: State, end: float, integrator: Integrator) -> Iterator[Segment]:

@@ -1,14 +1,19 @@
 """What follows when contact begins or ends, for each way of treating lift-off."""
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
+from typing import ClassVar, Self
 
-from tippetop.contact.flight import Flight
+from tippetop.contact.double import on_two
+from tippetop.contact.flight import TOUCHING, Flight
 from tippetop.contact.mode import Event, EventKind, Mode, Outcome, Rules, Transition
 from tippetop.contact.sliding import Sliding, stopping
 from tippetop.contact.sticking import SlipEnd, SlipOnset, Sticking
+from tippetop.contact.surfaces import number_of
+from tippetop.mechanics.double_contact import double_contact, without_tilting
 from tippetop.mechanics.flight import gap, gap_rate
+from tippetop.mechanics.hull import lowest_surface
 from tippetop.mechanics.impact import impact
+from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import along_table, contact
 from tippetop.mechanics.rolling import (
     ContactPoint,
@@ -31,8 +36,13 @@ A rebound of this speed rises by half its square, 5e-13 radii. Without such an e
 restitution between 0 and 1 would be infinitely many in a finite time.
 """
 
-TOUCHING = 1e-12
-"""Gap, and gap rate, in natural units, up to which a launch is one from rest on the table."""
+
+SLOWEST_ROCKING = 1e-7
+"""Velocity, in units of sqrt(g R), below which rocking between two surfaces has come to its end.
+
+Infinitely many impacts, now of one and now of the other, bring both to touch at once in a finite time. Where
+a gap falls back with more than g, this is faster as the square root: hops stay out of reach of rounding.
+"""
 
 
 @dataclass(frozen=True)
@@ -49,6 +59,10 @@ class ContactRules:
 
     pulls: ClassVar[bool] = False
 
+    def on(self, surface: int) -> Self:
+        """The rules with another surface active."""
+        return replace(self, top=self.top.each[surface])
+
     def launch(self, state: State) -> Transition:
         """Go on from contact."""
         return self.resting(0.0, state)
@@ -59,6 +73,10 @@ class ContactRules:
 
     def touchdown(self, time: float, state: State) -> Transition:
         """Never happens: there are no flights."""
+        raise NotImplementedError
+
+    def touch(self, surface: int, time: float, state: State) -> Transition:
+        """Never happens: a body of several surfaces may fly."""
         raise NotImplementedError
 
     def sliding(self, state: State) -> Mode:
@@ -84,7 +102,7 @@ class ContactRules:
         numbers = mode.numbers(state)
         if mode.reaction(numbers).force[2] <= 0.0 and not self.pulls:
             return self.lift_off(time, state)
-        return Transition((Event(EventKind.STICK, time),), mode, mode.state(numbers))
+        return Transition((self.event(EventKind.STICK, time),), mode, mode.state(numbers))
 
     def resting(self, time: float, state: State, events: tuple[Event, ...] = ()) -> Transition:
         """Go on from contact without normal velocity: slide, stick, or leave a table that would have to pull.
@@ -104,6 +122,10 @@ class ContactRules:
         found = self.lift_off(time, state)
         return replace(found, events=(*events, *found.events))
 
+    def event(self, kind: EventKind, time: float, impulse: float = 0.0, lost: float = 0.0) -> Event:
+        """Something that happens to the surface that is active."""
+        return Event(kind, time, impulse, lost, number_of(self.top))
+
     def inconsistent(self, time: float, state: State, events: tuple[Event, ...]) -> Transition:
         """What follows where no contact force is consistent with the friction."""
         return Transition(events, Outcome.FAILED, state, "no contact force is consistent with the friction")
@@ -122,7 +144,7 @@ class StopAtLiftOff(ContactRules):
 
     def lift_off(self, time: float, state: State) -> Transition:
         """End the run."""
-        return Transition((Event(EventKind.LIFT_OFF, time),), Outcome.LIFTED_OFF, state)
+        return Transition((self.event(EventKind.LIFT_OFF, time),), Outcome.LIFTED_OFF, state)
 
 
 @dataclass(frozen=True)
@@ -139,6 +161,9 @@ class FreeToFly(ContactRules):
 
     def launch(self, state: State) -> Transition:
         """Fly from above the table or if thrown up, collide if thrown down, and else go on from contact."""
+        lowest = self.top._replace(surface=lowest_surface(self.top.surface, state.axis[2]))
+        if lowest != self.top:
+            return replace(self, top=lowest).launch(state)
         if gap(state, self.top) > TOUCHING:
             return Transition((), self._flight(Start.AIRBORNE), state)
         rate = gap_rate(state, self.top)
@@ -150,14 +175,32 @@ class FreeToFly(ContactRules):
 
     def lift_off(self, time: float, state: State) -> Transition:
         """Fly from where the normal force reached zero."""
-        return Transition((Event(EventKind.LIFT_OFF, time),), self._flight(Start.LIFT_OFF), state)
+        return Transition((self.event(EventKind.LIFT_OFF, time),), self._flight(Start.LIFT_OFF), state)
 
     def touchdown(self, time: float, state: State) -> Transition:
         """Collide, and go on as the impact leaves the top."""
-        return self._collide(time, state, (Event(EventKind.TOUCHDOWN, time),), self.restitution)
+        return self._collide(time, state, (self.event(EventKind.TOUCHDOWN, time),), self.restitution)
+
+    def touch(self, surface: int, time: float, state: State) -> Transition:
+        """Collide with another surface, and go on as the impact leaves the top."""
+        return self.on(surface).touchdown(time, state)
 
     def resting(self, time: float, state: State, events: tuple[Event, ...] = ()) -> Transition:
-        """As for all, but where the table would have to pull from now on, not from zero force, it lets go."""
+        """As for all, but where the table would have to pull from now on, not from zero force, it lets go.
+
+        Another surface that touches too, and opens no faster than a rebound that is none, is part of it.
+        """
+        for other in self.top.each:
+            if other != self.top and gap(state, other) <= TOUCHING:
+                rate = gap_rate(state, other)
+                if rate < -SLOWEST_ROCKING:
+                    return replace(self, top=other)._collide(time, state, events, 0.0)
+                if rate <= self._slowest(other, state):
+                    return self._resting_on_two(other, time, state, events)
+                events = (*events, Event(EventKind.OPENING, time, surface=number_of(other)))
+        return self._resting_on_one(time, state, events)
+
+    def _resting_on_one(self, time: float, state: State, events: tuple[Event, ...]) -> Transition:
         found = super().resting(time, state, events)
         if isinstance(found.then, Flight) and found.then.start is Start.LIFT_OFF:
             return replace(found, then=self._flight(Start.RELEASE))
@@ -179,14 +222,48 @@ class FreeToFly(ContactRules):
                 collision = impact(state, 0.0, self.top)
         except ArithmeticError as error:
             return Transition(events, Outcome.FAILED, state, str(error))
-        hit = Event(EventKind.IMPACT, time, float(collision.impulse), float(collision.energy_lost))
+        hit = self.event(EventKind.IMPACT, time, float(collision.impulse), float(collision.energy_lost))
         after = collision.state
         if not collision.impulse:
             # Nothing but rounding kept the contact from being a resting one.
+            if len(self.top.each) > 1:
+                return self.resting(time, after, events)
             return Transition(events, self.sliding(after), after)
         if rebounds:
             return Transition((*events, hit), self._flight(Start.REBOUND), after)
         return self.resting(time, after, (*events, hit))
+
+    def _slowest(self, other: Top, state: State) -> float:
+        """Velocity of another surface that touches too below which it stays, or comes back at once."""
+        sliding = along_table(state)
+        if is_set_valued(self.top.friction) and not is_slipping(*sliding, other):
+            return SLOWEST_ROCKING
+        back = abs(double_contact(sliding, (self.top, other)).acceleration[1])
+        return float(SLOWEST_ROCKING * max(1.0, back) ** 0.5)
+
+    def _resting_on_two(self, other: Top, time: float, state: State, events: tuple[Event, ...]) -> Transition:
+        """The resolver of two contacts that are closed and have no normal velocities: who stays closed."""
+        mine = without_tilting(state, self.top)
+        if is_set_valued(self.top.friction):
+            sliding = along_table(mine)
+            if not all(is_slipping(*sliding, top) for top in (self.top, other)):
+                detail = "two surfaces touch, and one does not slip: that is followed no further"
+                return Transition(events, Outcome.FAILED, state, detail)
+        pair = double_contact(along_table(mine), (self.top, other))
+        lost = float(energy(state, self.top) - energy(mine, self.top))
+        here = (pair.normal[0] > 0.0) & (pair.normal[1] > 0.0)
+        alone = (pair.first.free_acceleration < 0.0) & (pair.acceleration[1] >= 0.0)
+        another = (pair.second.free_acceleration < 0.0) & (pair.acceleration[0] >= 0.0)
+        neither = (pair.first.free_acceleration >= 0.0) & (pair.second.free_acceleration >= 0.0)
+        if here + alone + another + neither != 1:
+            detail = "not exactly one set of forces is consistent with two surfaces that touch"
+            return Transition(events, Outcome.FAILED, state, detail)
+        if here:
+            event = self.event(EventKind.DOUBLE_CONTACT, time, 0.0, lost)
+            return Transition((*events, event), on_two(mine, self, other), mine)
+        if another:
+            return replace(self, top=other)._resting_on_one(time, state, events)
+        return self._resting_on_one(time, state, events)
 
     def _flight(self, start: Start) -> Flight:
         return Flight(self.top, self, start)

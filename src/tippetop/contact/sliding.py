@@ -5,7 +5,8 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, ClassVar
 
-from tippetop.contact.mode import IntegratedMode, Outcome, Reaction, Transition
+from tippetop.contact.mode import IntegratedMode, Reaction, Transition
+from tippetop.contact.surfaces import follow_surface, surface_guards
 from tippetop.integrators.base import Function, Guard, Motion
 from tippetop.mechanics.motion import along_table, angular_velocity, contact, on_table, sliding_rates
 from tippetop.mechanics.rolling import is_set_valued, sliding_law, with_sliding_law
@@ -14,7 +15,7 @@ from tippetop.mechanics.stick_slip import HORIZON, slip_of, stopping_guard
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import Row, Scalar
 
-LIFT_OFF, STOPPING, BRANCH, FACE = "lift-off", "stopping", "branch", "face"
+LIFT_OFF, STOPPING, BRANCH = "lift-off", "stopping", "branch"
 
 
 @dataclass(frozen=True)
@@ -48,8 +49,9 @@ class Sliding(IntegratedMode):
             return self.rules.lift_off(time, state)
         if guard == STOPPING:
             return self.rules.stopping(time, state)
-        if guard == FACE:
-            return Transition((), Outcome.LYING_FLAT, state)
+        found = follow_surface(self, guard, time, state)
+        if found is not None:
+            return found
         law: Any = sliding_law(self.top.friction)
         return Transition((), replace(self, top=with_sliding_law(self.top, law.other_branch())), state)
 
@@ -77,25 +79,13 @@ def sliding_motion(kind: Kind, guarded: bool) -> Motion:
         guards.append(Guard(STOPPING, stops))
     if hasattr(sliding_law(law), "branch_guard"):
         guards.append(Guard(BRANCH, on_branch))
-    guards += face_guards(kind)
+    guards += surface_guards(kind)
     return Motion(rates, size=8, parameters=kind.numbers, guards=tuple(guards))
 
 
 def stopping(state: SlidingState, top: Top) -> Scalar:
     """Value of the guard of slip that is about to end: positive as long as it goes on."""
     return stopping_guard(state, sliding_rates(state, top), top, HORIZON)
-
-
-def face_guards(kind: Kind) -> list[Guard]:
-    """The guard of a body that comes to lie flat, if one of this kind can."""
-    if not hasattr(kind.example.surface, "face_guard"):
-        return []
-
-    def rising(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
-        surface: Any = kind.top(tuple(numbers[: kind.numbers])).surface
-        return surface.face_guard((y[0], y[1], y[2]))
-
-    return [Guard(FACE, rising)]
 
 
 @lru_cache

@@ -17,7 +17,8 @@ from tippetop.contact.mode import (
     Segment,
     Transition,
 )
-from tippetop.contact.sliding import FACE, LIFT_OFF, Sliding, face_guards
+from tippetop.contact.sliding import LIFT_OFF, Sliding
+from tippetop.contact.surfaces import follow_surface, number_of, surface_guards
 from tippetop.integrators import make_integrator
 from tippetop.integrators.base import Arc, Array, Guard, Integrator, Motion
 from tippetop.integrators.dense import DenseSolution, evaluated
@@ -99,10 +100,11 @@ class Sticking(IntegratedMode):
         return Reaction(wrench.force, wrench.torque, dot(wrench.torque, point.turning))
 
     def follow(self, guard: str, time: float, state: State) -> Transition:
-        """Slip begins, or the body lies flat."""
-        if guard == FACE:
-            return Transition((), Outcome.LYING_FLAT, state)
-        events = (Event(EventKind.SLIP, time),)
+        """Slip begins, if it is not a surface that touches."""
+        found = follow_surface(self, guard, time, state)
+        if found is not None:
+            return found
+        events = (Event(EventKind.SLIP, time, surface=number_of(self.top)),)
         if self.reaction(self.numbers(state)).force[2] <= 0.0 and not self.rules.pulls:
             return self.rules.lift_off(time, state)
         return Transition(events, SlipOnset(self.top, self.rules, 2), state)
@@ -201,10 +203,11 @@ class SlipEnd(Mode):
             return Transition((), Outcome.COMPLETED, state)
         if arc.guard == LIFT_OFF:
             return self.rules.lift_off(time, state)
-        if arc.guard == FACE:
-            return Transition((), Outcome.LYING_FLAT, state)
         if arc.guard == REOPENING:
             return Transition((), self.rules.sliding(state), state)
+        found = follow_surface(self, arc.guard, time, state)
+        if found is not None:
+            return found
         return self.rules.without_slip(time, state)
 
     def _in_time(self, clock: DenseSolution, time: float, duration: float) -> DenseSolution:
@@ -248,7 +251,7 @@ def sticking_motion(kind: Kind) -> Motion:
     def reserve(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
         return slip_guard(*split(y), kind.top(tuple(numbers)))
 
-    guards = (Guard(SLIP, reserve), *face_guards(kind))
+    guards = (Guard(SLIP, reserve), *surface_guards(kind))
     return Motion(rates, size=6, parameters=kind.numbers, guards=guards, lasting=False)
 
 
@@ -277,7 +280,7 @@ def closing_motion(kind: Kind, guarded: bool) -> Motion:
     ]
     if guarded:
         guards.append(Guard(LIFT_OFF, normal))
-    guards += face_guards(kind)
+    guards += surface_guards(kind)
     return Motion(
         rates, 8 + slip_dimension(kind.example.friction), kind.numbers + 2, tuple(guards), lasting=False
     )

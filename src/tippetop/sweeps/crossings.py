@@ -7,24 +7,17 @@ lane that enters a mode which only a single launch knows is followed alone to it
 
 import numpy as np
 
-from tippetop.contact.block import in_blocks
-from tippetop.contact.flight import Flight
+from tippetop.contact.flight import TOUCHING, Flight
 from tippetop.contact.mode import EventKind, Outcome, Transition
-from tippetop.contact.rules import TOUCHING
 from tippetop.contact.sliding import BRANCH, LIFT_OFF, Sliding, sliding_motion
-from tippetop.contact.trajectory import Trajectory
-from tippetop.integrators import default_name, make_integrator
 from tippetop.integrators.base import Array
 from tippetop.mechanics.flight import gap, gap_rate
 from tippetop.mechanics.state import State
 from tippetop.mechanics.touchdown import Start
+from tippetop.sweeps.alone import follow
 from tippetop.sweeps.flights import collide, fly_all, slides, slips
 from tippetop.sweeps.launches import Indices, branched, picked, single
 from tippetop.sweeps.slots import Slots
-from tippetop.tally import Tally
-
-LEAST_SCIPY = 1e-12
-"""Least tolerance of the integrator of single launches where heyoka is not installed."""
 
 FLIGHT_LIMIT = 50_000
 """Flights after which a launch is given up."""
@@ -49,10 +42,6 @@ class Crossings:
     def launch(self, lanes: Indices, state: State) -> None:
         """Sort the launches out that do not simply slide from the start."""
         launches = self.slots.launches
-        if launches.own is not None:
-            for i, lane in enumerate(lanes.tolist()):
-                self._follow_alone(lane, 0.0, launches.rules(i).launch(single(state, i)))
-            return
         plain = slips(state, launches.top)
         if launches.liftoff != "ignore":
             plain &= slides(state, launches.top)
@@ -165,14 +154,8 @@ class Crossings:
 
     def _follow_alone(self, lane: int, time: float, transition: Transition) -> None:
         """Follow one launch to its end as a single launch is."""
-        name = default_name()
-        method = make_integrator(
-            name, self.tolerance if name == "taylor" else max(self.tolerance, LEAST_SCIPY)
-        )
         slots, ends, cell, where = self.slots, self.slots.ends, self.slots.cell[[lane]], np.array([lane])
-        trajectory, tally = Trajectory(transition, float(slots.end[lane]), method, time=time), Tally()
-        for block in in_blocks(trajectory.segments()):
-            tally.take(block)
+        trajectory, tally = follow(transition, time, float(slots.end[lane]), self.tolerance)
         assert trajectory.outcome is not None, "a trajectory that has no more segments has ended"
         found = tally.ends(trajectory.state, trajectory.time, trajectory.outcome, trajectory.events)
         ends.flights[cell] += found.flights
