@@ -8,7 +8,7 @@ import xarray as xr
 
 import tippetop as tt
 from tippetop.catalogue import SWEPT, Fault
-from tippetop.contact import rules
+from tippetop.contact import several
 from tippetop.mechanics.double_contact import double_contact
 from tippetop.mechanics.state import SlidingState
 
@@ -105,8 +105,8 @@ def test_modes_name_the_surfaces_that_touch(run) -> None:
 def test_the_end_of_rocking_converges_at_first_order(monkeypatch: pytest.MonkeyPatch) -> None:
     bounds = np.array([1e-4, 1e-5, 1e-6])
     ends, tilts = [], []
-    for bound in (*bounds, rules.SLOWEST_ROCKING):
-        monkeypatch.setattr(rules, "SLOWEST_ROCKING", bound)
+    for bound in (*bounds, several.SLOWEST_ROCKING):
+        monkeypatch.setattr(several, "SLOWEST_ROCKING", bound)
         run = tt.simulate(LEINE_GLOCKER, 5.0, samples=11)
         ends.append(times(run, "double contact")[0])
         tilts.append(float(run["final_omega3"]))
@@ -176,3 +176,30 @@ def test_sweeps_follow_stems_as_runs_do() -> None:
                 one, other = float(found[name].sel(changes)), float(run[name])
                 assert one == pytest.approx(other, rel=1e-9, abs=1e-12, nan_ok=True), (name, changes)
     assert found["body.shape.1.center"].attrs["units"] == "m"
+
+
+ROD = tt.Problem(
+    body=tt.Body(
+        mass=0.01,
+        shape=[tt.Sphere(radius=0.005, center=0.02), tt.Sphere(radius=0.005, center=-0.02)],
+        I1=2e-6,
+        I3=1.25e-7,
+    ),
+    friction=tt.ViscousFriction(mu=1.0),
+    launch=tt.Launch(tilt=1.3, spin=5.0, gap=0.01),
+)
+
+
+@pytest.mark.parametrize("restitution", [0.0, 0.5])
+def test_a_rod_falls_on_its_ends_in_turn_and_comes_to_lie(restitution: float) -> None:
+    """Either end presses the other onto the table: both stay, and carry half of the weight each."""
+    run = tt.simulate(ROD.replace({"contact.restitution": restitution}), 1.0, samples=101)
+    assert run.attrs["outcome"] == "completed"
+    assert float(run["energy_error"]) < 1e-12
+    assert float(run["gap"].min()) > -1e-14
+    assert run["event_kind"].values[-1] == "double contact"
+    assert float(run["final_theta"]) == pytest.approx(np.pi / 2, abs=1e-10)
+    assert float(run["normal_force"][-1]) == pytest.approx(0.01 * 9.8, rel=1e-12)
+    touches = surfaces(run, "touchdown")
+    assert set(touches) == {0, 1}
+    assert restitution or touches == [1, 0], "at rest at once, and no rocking"

@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from tippetop import __version__
 from tippetop.contact.block import in_blocks
+from tippetop.contact.choice import rules_of
 from tippetop.contact.mode import Event, Outcome
-from tippetop.contact.rules import rules_of
 from tippetop.contact.trajectory import LONGEST, PHASE_LIMIT, STEP_LIMIT, Trajectory
 from tippetop.dataset import assemble
 from tippetop.errors import InvalidInput, is_number

@@ -209,7 +209,7 @@ class _OfItsKind:
         base: Any = schema["metadata"]["base"]
         known = [*([] if inspect.isabstract(base) else [base]), *base.kinds.values()]
         one = {"oneOf": [handler(kind.__pydantic_core_schema__) for kind in known]}
-        return {"anyOf": [one, {"type": "array", "items": one}]} if self.several else one
+        return {"anyOf": [one, {"type": "array", "items": one, "minItems": 1}]} if self.several else one
 
 
 OF_ITS_KIND = _OfItsKind()

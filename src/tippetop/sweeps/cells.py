@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tippetop.catalogue import Fault
-from tippetop.contact.rules import rules_of
+from tippetop.contact.choice import rules_of
 from tippetop.contact.trajectory import LONGEST
 from tippetop.errors import InvalidInput, one_of
 from tippetop.integrators.base import Array
