@@ -73,8 +73,7 @@ class SlidingOnTwo(IntegratedMode):
             tops[int(number)] = with_sliding_law(tops[int(number)], law.other_branch())
             return Transition((), replace(self, top=tops[0], other=tops[1]), state)
         if f"{kind} " == ENDING:
-            detail = "slip ended on one of two surfaces that touch, and that is followed no further"
-            return Transition((), Outcome.FAILED, state, detail)
+            return Transition((), Outcome.STICKING_ON_TWO, state)
         found = follow_surface(self, guard, time, state)
         assert found is not None, "there are no other guards"
         return found

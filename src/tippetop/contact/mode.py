@@ -33,6 +33,10 @@ class Outcome(Enum):
         "The body came to lie flat: there it touches the table all around, which is not followed further; "
         "this is the end of its motion, but for what the impact of its face would add."
     )
+    STICKING_ON_TWO = (
+        "Two surfaces touch the table and one does not slip: what such a contact does is followed no further; "
+        "viscous friction, or a patch that drills, goes on."
+    )
     TOO_MANY_PHASES = (
         "The top bounced and slid more often than the run allows; "
         "shorten the duration, lower the restitution, or raise the limit on phases."

@@ -94,8 +94,7 @@ class OnSeveral(FreeToFly):
         if is_set_valued(self.top.friction):
             sliding = along_table(mine)
             if not all(is_slipping(*sliding, top) for top in (self.top, other)):
-                detail = "two surfaces touch, and one does not slip: that is followed no further"
-                return Transition(events, Outcome.FAILED, state, detail)
+                return Transition(events, Outcome.STICKING_ON_TWO, state)
         pair = double_contact(along_table(mine), (self.top, other))
         lost = float(energy(state, self.top) - energy(mine, self.top))
         here = (pair.normal[0] > 0.0) & (pair.normal[1] > 0.0)

@@ -11,10 +11,11 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from tippetop.mechanics.double_contact import Tops
+from tippetop.mechanics.dry_impact import is_dry
 from tippetop.mechanics.friction import NO_TORQUE
 from tippetop.mechanics.impact import Impact
 from tippetop.mechanics.impulse import contact_velocity
-from tippetop.mechanics.integrated_impact import DOUBT, MOST, NODES, TOLERANCE, combined
+from tippetop.mechanics.integrated_impact import DOUBT, NODES, TOLERANCE, combined
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import angular_velocity, moment_per_normal_force
 from tippetop.mechanics.roots import crossing
@@ -26,7 +27,10 @@ Point = tuple[float, ...]
 """Change of angular momentum and velocity, the normal impulses of both contacts, and the first one's work."""
 
 OPEN = 1e-9
-"""Normal velocity, in units of the striking one, at which the other contact counts as open."""
+"""Normal velocity of a contact that is closed, and slip that has ended, in units of what strikes."""
+
+MOST = 3000
+"""Steps after which an impact is given up; most take some ten."""
 
 
 class StruckOnTwo(NamedTuple):
@@ -68,6 +72,8 @@ class StruckOnTwo(NamedTuple):
         points, still = self.velocities(state), self.state._replace(momentum=NO_TORQUE, velocity=NO_TORQUE)
         pace, units, answers = 1.0 / self.speed, [], []
         for point, arm in zip(points, self.arms, strict=True):
+            if is_dry(top.friction) and length((*point[:2], 0.0)) < OPEN * self.speed:
+                raise ArithmeticError("slip ends in an impact on two surfaces")
             traction = top.friction.traction((point[0], point[1]), omega)
             slip, grip = length((*point[:2], 0.0)), length((*traction.force, 0.0))
             pace += grip / slip if slip else 0.0
@@ -100,7 +106,7 @@ class StruckOnTwo(NamedTuple):
             If it takes too many steps.
         """
         step = 0.05 * self.tops[0].mass
-        for _ in range(MOST // 100):
+        for _ in range(MOST):
             lifted = self.velocities(self.after(here))[1][2]
             pressed = bool(lifted <= OPEN * self.speed)
             there, doubt = self.step(here, step, pressed=pressed)
