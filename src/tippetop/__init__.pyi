@@ -37,6 +37,7 @@ from .summary import summarize as summarize
 from .sweeps.run import sweep as sweep
 from .theory.overview import steady_states as steady_states
 from .theory.prediction import predict as predict
+from .theory.stem import least_jellett_to_stand as least_jellett_to_stand
 from .theory.thresholds import critical_spins as critical_spins
 
 __version__: str

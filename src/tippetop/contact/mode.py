@@ -34,7 +34,7 @@ class Outcome(Enum):
         "this is the end of its motion, but for what the impact of its face would add."
     )
     STICKING_ON_TWO = (
-        "Two surfaces touch the table and one does not slip: what such a contact does is followed no further; "
+        "Two surfaces touch the table and one does not slip, which is followed no further; "
         "viscous friction, or a patch that drills, goes on."
     )
     TOO_MANY_PHASES = (

@@ -16,7 +16,7 @@ LEAST_SCIPY = 1e-12
 
 
 def is_alone(launches: Launches) -> bool:
-    """Whether the batches know nothing of their bodies, laws or rules."""
+    """Whether the batches know nothing of their bodies or rules."""
     example = launches.kind.example
     return launches.own is not None or isinstance(example.surface, Hull)
 

@@ -117,10 +117,6 @@ class Stepper(Protocol):
     """Taylor's method for one motion and one tolerance."""
 
     @property
-    def motion(self) -> Motion:
-        """What is followed, and the guards that end it."""
-
-    @property
     def layout(self) -> Layout:
         """Which row holds what."""
 
