@@ -13,7 +13,7 @@ from pydantic import BaseModel, ValidationError
 
 from strategies import problems
 from tippetop import bodies, frictions, presets, problem
-from tippetop.bodies import Body, EccentricSphere, Spheroid
+from tippetop.bodies import Body, EccentricSphere, Ring, Sphere, Spheroid
 from tippetop.errors import FileTrouble, InvalidInput, TippetopError
 from tippetop.frictions import (
     ContensouFriction,
@@ -39,6 +39,8 @@ PARTS = [
     Launch,
     Problem,
     RegularizedCoulombFriction,
+    Ring,
+    Sphere,
     Spheroid,
     ViscousFriction,
 ]
@@ -223,7 +225,7 @@ class TestRefusals:
     @pytest.mark.parametrize(
         ("name", "kinds"),
         [
-            ("body.shape.kind", "'eccentric_sphere', 'spheroid'"),
+            ("body.shape.kind", "'eccentric_sphere', 'sphere', 'ring', 'spheroid'"),
             ("friction.kind", "'viscous', 'regularized_coulomb'"),
         ],
     )
@@ -715,6 +717,9 @@ def conforms(value, schema, root):
                 and value < schema.get("exclusiveMaximum", math.inf)
                 and value <= schema.get("maximum", math.inf)
             )
+        case "array" if "items" in schema:
+            several = isinstance(value, list) and len(value) >= schema["minItems"]
+            return several and all(conforms(inner, schema["items"], root) for inner in value)
         case "array":
             items = schema["prefixItems"]
             return (

@@ -3,7 +3,9 @@
 from . import presets as presets
 from .bodies import Body as Body
 from .bodies import EccentricSphere as EccentricSphere
+from .bodies import Ring as Ring
 from .bodies import Shape as Shape
+from .bodies import Sphere as Sphere
 from .bodies import Spheroid as Spheroid
 from .catalogue import Ending as Ending
 from .contact.mode import Outcome as Outcome
@@ -36,6 +38,7 @@ from .sweeps.run import sweep as sweep
 from .theory.drilling import standing_time as standing_time
 from .theory.overview import steady_states as steady_states
 from .theory.prediction import predict as predict
+from .theory.stem import least_jellett_to_stand as least_jellett_to_stand
 from .theory.thresholds import critical_spins as critical_spins
 
 __version__: str

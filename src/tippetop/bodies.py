@@ -1,13 +1,26 @@
 """Bodies of revolution as users state them, validated: their shapes, masses and moments of inertia."""
 
+import math
 from abc import abstractmethod
 from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
 from tippetop.errors import InvalidInput
-from tippetop.mechanics.surface import SphereSurface, SpheroidSurface, Surface
-from tippetop.validation import NO_WORD, OF_ITS_KIND, Part, Positive, Quantity, Variant
+from tippetop.mechanics.hull import Hull
+from tippetop.mechanics.surface import RingSurface, SphereSurface, SpheroidSurface, Surface
+from tippetop.validation import (
+    NO_WORD,
+    ONE_OR_SEVERAL,
+    NotNegative,
+    Number,
+    Part,
+    Positive,
+    Quantity,
+    Variant,
+)
+
+Center = Annotated[Number, Quantity("m", "height of the surface's middle above the centre of mass")]
 
 
 class Shape(Variant):
@@ -67,13 +80,60 @@ class EccentricSphere(Shape):
         return SphereSurface(self.radius, self.eccentricity * self.radius)
 
 
+class Sphere(Shape):
+    """A sphere whose centre is anywhere on the axis: the tip of a stem, or one of two hurricane balls.
+
+    Attributes
+    ----------
+    radius
+        Radius of the sphere, m.
+    center
+        Height of its centre above the centre of mass, along the axis, m.
+    """
+
+    kind: Literal["sphere"] = "sphere"
+    radius: Annotated[Positive, Quantity("m", "radius of the sphere")]
+    center: Center
+
+    @property
+    def surface(self) -> Surface:
+        """The outer surface, from the centre of mass, as the mechanics takes it."""
+        return SphereSurface(self.radius, self.center)
+
+
+class Ring(Shape):
+    """A ring about the axis, sharp or round: the edge of a disk or a coin.
+
+    Attributes
+    ----------
+    radius
+        Radius of the circle in the middle of the ring, m.
+    center
+        Height of its plane above the centre of mass, along the axis, m.
+    tube
+        Radius by which the ring is thick, m; 0 for a sharp edge.
+    """
+
+    kind: Literal["ring"] = "ring"
+    radius: Annotated[Positive, Quantity("m", "radius of the ring's circle")]
+    center: Center = 0.0
+    tube: Annotated[NotNegative, Quantity("m", "radius of the ring's tube")] = 0.0
+
+    @property
+    def surface(self) -> Surface:
+        """The outer surface, from the centre of mass, as the mechanics takes it."""
+        return RingSurface(self.radius, self.center, self.tube)
+
+
 class Spheroid(Shape):
-    """A spheroid with its centre of mass at its centre: the spinning egg.
+    """A spheroid: the spinning egg.
 
     Attributes
     ----------
     across, along
         Semi-axes across and along the axis of symmetry, m.
+    center
+        Height of its centre above the centre of mass, along the axis, m.
 
     Examples
     --------
@@ -86,11 +146,12 @@ class Spheroid(Shape):
     kind: Literal["spheroid"] = "spheroid"
     across: Annotated[Positive, Quantity("m", "semi-axis across the axis of symmetry")]
     along: Annotated[Positive, Quantity("m", "semi-axis along the axis of symmetry")]
+    center: Center = 0.0
 
     @property
     def surface(self) -> Surface:
         """The outer surface, from the centre of mass, as the mechanics takes it."""
-        return SpheroidSurface(self.across, self.along)
+        return SpheroidSurface(self.across, self.along, self.center)
 
 
 class Body(Part):
@@ -101,7 +162,7 @@ class Body(Part):
     mass
         Mass, kg.
     shape
-        Outer surface, and where the centre of mass is in it.
+        Outer surface, and where the centre of mass is in it; or several, whose convex hull the body is.
     I1, I3
         Principal moments of inertia about the centre of mass, kg m^2: transverse to and along the axis of
         symmetry. No body has I3 > 2 I1.
@@ -117,7 +178,7 @@ class Body(Part):
     """
 
     mass: Annotated[Positive, Quantity("kg", "mass of the body")]
-    shape: Annotated[Shape, OF_ITS_KIND]
+    shape: Annotated[Shape | tuple[Shape, ...], ONE_OR_SEVERAL]
     I1: Annotated[Positive, Quantity("kg m2", "moment of inertia transverse to the axis of symmetry")]
     I3: Annotated[Positive, Quantity("kg m2", "moment of inertia along the axis of symmetry")]
 
@@ -125,4 +186,45 @@ class Body(Part):
     def _can_exist(self) -> Self:
         if self.I3 > 2 * self.I1:
             raise InvalidInput("I3", self.I3, f"at most 2 I1 = {2 * self.I1:g}, as for any body")
+        for number, shape in enumerate(self.shapes):
+            if len(self.shapes) > 1 and not _reaches_out(number, self.shapes):
+                numbers = ", ".join(f"{name} = {value}" for name, value in shape)
+                raise InvalidInput(f"shape.{number}", numbers, "a surface that the others do not enclose")
         return self
+
+    @property
+    def shapes(self) -> tuple[Shape, ...]:
+        """Its surfaces."""
+        return self.shape if isinstance(self.shape, tuple) else (self.shape,)
+
+    @property
+    def surface(self) -> Surface:
+        """Its surface, from the centre of mass, as the mechanics takes it: a `Hull` of several."""
+        if isinstance(self.shape, tuple):
+            return Hull.of(tuple(shape.surface for shape in self.shape))
+        return self.shape.surface
+
+
+LOOKS, SEARCHES = 64, 5
+"""Looks at the tilts where a surface may be outermost, repeated so often around the best of them."""
+
+REACH = 1e-9
+"""How far a surface must reach beyond the others, in its sizes, to be one of the body's."""
+
+
+def _reaches_out(number: int, shapes: tuple[Shape, ...]) -> bool:
+    """Whether a surface touches the table at some tilt; also where no computer can tell."""
+    own = shapes[number].surface
+    others = [shape.surface for place, shape in enumerate(shapes) if place != number]
+    low, high = 0.0, math.pi
+    for _ in range(SEARCHES):
+        looks = [low + (high - low) * k / LOOKS for k in range(LOOKS + 1)]
+        try:
+            ahead = [own.height(c) - max(other.height(c) for other in others) for c in map(math.cos, looks)]
+        except ArithmeticError:
+            return True
+        if max(ahead) > REACH * own.size:
+            return True
+        best = ahead.index(max(ahead))
+        low, high = looks[max(best - 1, 0)], looks[min(best + 1, LOOKS)]
+    return False

@@ -197,6 +197,7 @@ LISTED: Mapping[str, Variable] = {
     "event_kind": Variable("what happened"),
     "event_impulse": Variable("normal impulse of the table", "N s"),
     "event_energy_lost": Variable("energy lost in it", "J"),
+    "event_surface": Variable("number of the body's surface to which it happened", "1", dtype="int8"),
     "flight_start": Variable("when the flight began", "s"),
     "flight_end": Variable("when it ended", "s"),
     "flight_highest_gap": Variable("highest gap in it", "m"),

@@ -19,17 +19,26 @@ def numbers_of(value: Any, name: str = "") -> Iterator[tuple[str, float]]:
 
 def table_at(fields: dict[str, Any], where: str) -> dict[str, Any]:
     """The table of this name, with dots; an empty one where there is none."""
+    found: Any = fields
     for name in where.split(".") if where else ():
-        found = fields.get(name)
-        fields = found if isinstance(found, dict) else {}
-    return fields
+        found = _inner(found, name)
+    return found if isinstance(found, dict) else {}
+
+
+def _inner(value: Any, name: str) -> Any:
+    """What a table has by this name, or a tuple at this place; None where it has nothing."""
+    if isinstance(value, dict):
+        return value.get(name)
+    if isinstance(value, tuple) and name.isdecimal() and int(name) < len(value):
+        return value[int(name)]
+    return getattr(value, name, None)
 
 
 def part_at(whole: object, where: str) -> Any:
     """The part of this name, with dots; None where there is none."""
     found: Any = whole
     for name in where.split("."):
-        found = getattr(found, name, None)
+        found = _inner(found, name)
     return found
 
 
@@ -38,5 +47,7 @@ def dotted_names(fields: Mapping[str, Any], prefix: str = "") -> Iterator[str]:
     for name, value in fields.items():
         if isinstance(value, dict):
             yield from dotted_names(value, f"{prefix}{name}.")
+        elif isinstance(value, tuple) and value and isinstance(value[0], dict):
+            yield from dotted_names({str(k): inner for k, inner in enumerate(value)}, f"{prefix}{name}.")
         else:
             yield f"{prefix}{name}"

@@ -14,6 +14,7 @@ from tippetop.catalogue import NEAR_FINAL, NEAR_POLE, Ending
 from tippetop.contact.mode import Outcome
 from tippetop.integrators.base import Array
 from tippetop.integrators.polynomials import Polynomials
+from tippetop.mechanics.hull import outer_height
 from tippetop.mechanics.invariants import energy, jellett
 from tippetop.mechanics.motion import axial_spin
 from tippetop.mechanics.state import State
@@ -150,13 +151,13 @@ def metrics(ends: Ends, start: State, top: Top, units: Units) -> dict[str, NDArr
     end = ends.state
     force = units.mass * units.length / units.time**2
     with np.errstate(all="ignore"):
-        moment = length(start.momentum) * top.surface.height(start.axis[2])
+        moment = length(start.momentum) * outer_height(top.surface, start.axis[2])
         change = np.abs(jellett(end, top) - jellett(start, top))
         drift = change / np.where(moment > 0, moment, np.nan)
         lost = energy(start, top) - energy(end, top)
         precession = np.where(axis_sine(end.axis) > 0, precession_rate(end.axis, end.momentum, top), np.nan)
         swept = np.linspace(0.0, 1.0, HEIGHT_LOOKS)[:, None] * (ends.up - ends.down) + ends.down
-        highest = np.fmax(np.max(top.surface.height(swept), axis=0), ends.highest)
+        highest = np.fmax(np.max(outer_height(top.surface, swept), axis=0), ends.highest)
     found = {
         "final_theta": tilt(end),
         "final_omega3": axial_spin(end.axis, end.momentum, top) / units.time,
@@ -187,7 +188,7 @@ def ending(ends: Ends) -> NDArray[np.int8]:
     found = np.select(near, [Ending.UPRIGHT, Ending.INVERTED], Ending.TILTED)
     found[ends.outcome == OUTCOMES.index(Outcome.LIFTED_OFF)] = Ending.LIFTED_OFF
     found[ends.outcome == OUTCOMES.index(Outcome.AT_REST)] = Ending.AT_REST
-    ended = (Outcome.COMPLETED, Outcome.LIFTED_OFF, Outcome.AT_REST)
+    ended = (Outcome.COMPLETED, Outcome.LIFTED_OFF, Outcome.AT_REST, Outcome.LYING_FLAT)
     completed = [OUTCOMES.index(outcome) for outcome in ended]
     found[~np.isin(ends.outcome, completed)] = Ending.FAILED
     return found.astype(np.int8)

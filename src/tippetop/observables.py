@@ -13,14 +13,14 @@ from tippetop.contact.rules import Bilateral
 from tippetop.contact.sliding import Sliding
 from tippetop.integrators.base import Array
 from tippetop.integrators.dense import parts_of
+from tippetop.lowest import lowest_contact_vector
 from tippetop.mechanics.invariants import energy, jellett
 from tippetop.mechanics.motion import along_table, angular_velocity, axial_spin, point_velocity
 from tippetop.mechanics.quadratures import orientation, quadrature_rates, twisting_powers
 from tippetop.mechanics.state import State
-from tippetop.mechanics.surface import contact_vector
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.units import Units
-from tippetop.mechanics.vectors import Vector, length
+from tippetop.mechanics.vectors import Vector, dot, length
 from tippetop.mechanics.view import axis_sine, precession_rate, slip_along_tilt, tilt_rate
 
 _INTEGRALS = np.array(
@@ -169,9 +169,9 @@ class Recorder:
                 rows[1:17], (*state.pack(), *reaction.force, *reaction.torque), strict=True
             ):
                 row[here] = number
-            if mode.name not in self.modes:
-                self.modes.append(mode.name)
-            rows[25, here] = self.modes.index(mode.name)
+            if mode.label not in self.modes:
+                self.modes.append(mode.label)
+            rows[25, here] = self.modes.index(mode.label)
         self._parts.append(rows)
 
     def _single(self, state: State) -> Array:
@@ -248,7 +248,7 @@ def observe(samples: Samples, top: Top, units: Units) -> dict[str, Array]:
     """
     state, axis = samples.state, samples.state.axis
     momentum = state.momentum
-    omega, arm = angular_velocity(axis, momentum, top), contact_vector(axis, top.surface)
+    omega, arm = angular_velocity(axis, momentum, top), lowest_contact_vector(axis, top.surface)
     point = point_velocity(state.velocity, omega, arm)
     sine = axis_sine(axis)
     upright = sine == 0.0
@@ -279,7 +279,7 @@ def observe(samples: Samples, top: Top, units: Units) -> dict[str, Array]:
         "sliding_loss": (-samples.work - samples.struck - samples.drilled - samples.rolled) * units.energy,
         "drilling_loss": samples.drilled * units.energy,
         "rolling_loss": samples.rolled * units.energy,
-        "jellett": jellett(state, top) * units.angular_momentum * units.length,
+        "jellett": -dot(momentum, arm) * units.angular_momentum * units.length,
         "height": state.height * units.length,
         "gap": (state.height + arm[2]) * units.length,
         "x": samples.x * units.length,

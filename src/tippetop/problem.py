@@ -19,6 +19,7 @@ from tippetop.files import read_text
 from tippetop.frictions import Friction
 from tippetop.mechanics.coulomb import RollingResistance
 from tippetop.mechanics.friction import FrictionLaw
+from tippetop.mechanics.hull import Hull, acting, lowest_surface
 from tippetop.mechanics.motion import along_table, contact, on_table
 from tippetop.mechanics.rolling import is_set_valued
 from tippetop.mechanics.state import State
@@ -176,9 +177,13 @@ class Problem(Part):
     @model_validator(mode="after")
     def _contact_is_possible(self) -> Self:
         if not (math.isfinite(self._resistance()) and math.isfinite(self._largest_square())):
-            raise self._out_of_reach()
+            raise self._lying_flat() or self._out_of_reach()
         if self.contact.liftoff == "fly":
             return self
+        if isinstance(self.top.surface, Hull):
+            raise InvalidInput(
+                "contact.liftoff", self.contact.liftoff, "'fly' for a body of several surfaces"
+            )
         launch = self.launch
         if launch.gap or launch.velocity is not None:
             field = "launch.gap" if launch.gap else "launch.velocity"
@@ -196,10 +201,10 @@ class Problem(Part):
     def _resistance(self) -> float:
         """The resistance of the contact at launch; nan where its arithmetic breaks down."""
         try:
-            start = along_table(self.start())
-            if is_set_valued(self.friction.law) and not is_slipping(*start, self.top):
+            start, top = along_table(self.start()), self.standing()
+            if is_set_valued(self.friction.law) and not is_slipping(*start, top):
                 return 1.0 + 0.0 * size(start.momentum)
-            touch = contact(start.axis, start.momentum, start.velocity, self.top)
+            touch = contact(start.axis, start.momentum, start.velocity, top)
             return float(touch.delassus + 0.0 * touch.free_acceleration)
         except ArithmeticError:
             return math.nan
@@ -214,6 +219,16 @@ class Problem(Part):
         except ArithmeticError:
             return math.nan
 
+    def _lying_flat(self) -> InvalidInput | None:
+        """The refusal of a launch on a face; None where that is not what is wrong."""
+        try:
+            edge = hasattr(acting(self.standing().surface), "face_guard")
+        except ArithmeticError:
+            return None
+        if not edge or math.cos(self.launch.tilt) ** 2 < 1.0:
+            return None
+        return InvalidInput("launch.tilt", self.launch.tilt, "a tilt at which the body does not lie flat")
+
     def _out_of_reach(self) -> InvalidInput:
         """The refusal of numbers with which no computer can reckon, about the one furthest from 1."""
         numbers = {name: value for name, value in numbers_of(self.model_dump()) if value}
@@ -226,7 +241,7 @@ class Problem(Part):
     def top(self) -> Top:
         """The problem's numbers as the mechanics takes them, SI."""
         body = self.body
-        return Top(body.mass, body.I1, body.I3, body.shape.surface, self._law, self.gravity)
+        return Top(body.mass, body.I1, body.I3, body.surface, self._law, self.gravity)
 
     @property
     def _law(self) -> FrictionLaw:
@@ -238,9 +253,16 @@ class Problem(Part):
         found: FrictionLaw = resisted
         return found
 
+    def standing(self, functions: Functions = math) -> Top:
+        """The top on the surface that reaches lowest at launch."""
+        top, cosine = self.top, PoleExact(functions).cos(self.launch.tilt)
+        if not isinstance(top.surface, Hull):
+            return top
+        return top._replace(surface=lowest_surface(top.surface, cosine))
+
     def start(self, functions: Functions = math) -> State:
         """The state at launch, SI; with sine and cosine for whatever the fields are, such as arrays."""
-        launch, top = self.launch, self.top
+        launch, top = self.launch, self.standing(functions)
         angles = Angles(
             launch.tilt, launch.tilt_rate, launch.azimuth, launch.precession, launch.spin, launch.slip
         )

@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from tippetop import __version__
 from tippetop.contact.block import in_blocks
+from tippetop.contact.choice import rules_of
 from tippetop.contact.mode import Event, Outcome
-from tippetop.contact.rules import rules_of
 from tippetop.contact.trajectory import LONGEST, PHASE_LIMIT, STEP_LIMIT, Trajectory
 from tippetop.dataset import assemble
 from tippetop.errors import InvalidInput, is_number
@@ -202,6 +202,7 @@ def _event_arrays(events: Sequence[Event], units: Units) -> dict[str, NDArray[An
         "event_kind": np.array([event.kind.value for event in events], dtype=str),
         "event_impulse": impulses * units.mass * units.speed,
         "event_energy_lost": losses * units.energy,
+        "event_surface": np.array([event.surface for event in events], dtype=np.int8),
     }
 
 

@@ -6,7 +6,7 @@ import math
 import tomllib
 from collections.abc import Mapping
 from numbers import Integral
-from typing import Annotated, Any, ClassVar, NamedTuple, Self, TypeAlias
+from typing import Annotated, Any, ClassVar, NamedTuple, Self, TypeAlias, get_args
 
 from pydantic import (
     BaseModel,
@@ -99,6 +99,10 @@ class Part(BaseModel):
         info, value = type(self).model_fields[first], getattr(self, first)
         if isinstance(value, Part):
             return value.quantity(rest)
+        if isinstance(value, tuple) and value and isinstance(value[0], Part):
+            place, _, inner = rest.partition(".")
+            part: Part = value[int(place)]
+            return part.quantity(inner)
         found = next((item for item in info.metadata if isinstance(item, Quantity)), Quantity("", field))
         return found._replace(long_name=f"{found.long_name} {found.places[int(rest)]}") if rest else found
 
@@ -106,7 +110,8 @@ class Part(BaseModel):
         """The modules outside this package in which the kinds of this part, and of the parts in it, are."""
         here = {type(self).__module__} if type(self).__module__.partition(".")[0] != _PACKAGE else set()
         values = [getattr(self, name) for name in type(self).model_fields]
-        return here.union(*(value.modules() for value in values if isinstance(value, Part)))
+        several = [inner for value in values for inner in (value if isinstance(value, tuple) else (value,))]
+        return here.union(*(value.modules() for value in several if isinstance(value, Part)))
 
 
 _PACKAGE = __name__.partition(".")[0]
@@ -150,10 +155,22 @@ class Variant(Part):
 
 
 class _OfItsKind:
-    """Makes a field take all kinds of a variant, and keep what each has of its own."""
+    """Makes a field take all kinds of a variant, and keep what each has of its own.
 
-    def __get_pydantic_core_schema__(self, base: type[Variant], handler: GetCoreSchemaHandler) -> CoreSchema:
-        def chosen(value: Any) -> Variant:
+    Attributes
+    ----------
+    several
+        Whether a list of them is taken too; of one in a list, the list is forgotten.
+    """
+
+    def __init__(self, *, several: bool = False) -> None:
+        self.several = several
+
+    def __get_pydantic_core_schema__(self, base: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        if self.several:
+            base = next(part for part in get_args(base) if inspect.isclass(part))
+
+        def chosen(value: Any) -> Any:
             if isinstance(value, base):
                 return value
             if not isinstance(value, Mapping):
@@ -169,17 +186,34 @@ class _OfItsKind:
             assert isinstance(found, base)
             return found
 
-        return core_schema.no_info_plain_validator_function(chosen, metadata={"base": base})
+        def chosen_each(value: Any) -> Any:
+            if not isinstance(value, list | tuple):
+                return chosen(value)
+            found = []
+            for place, inner in enumerate(value):
+                try:
+                    found.append(chosen(inner))
+                except InvalidInput as error:
+                    where = f"{place}.{error.field}"
+                    raise InvalidInput(where, error.value, error.accepted, error.others) from None
+            if not found:
+                raise PydanticCustomError("model_type", "a table of its fields")
+            return tuple(found) if len(found) > 1 else found[0]
+
+        taken = chosen_each if self.several else chosen
+        return core_schema.no_info_plain_validator_function(taken, metadata={"base": base})
 
     def __get_pydantic_json_schema__(
         self, schema: CoreSchema, handler: GetJsonSchemaHandler
     ) -> dict[str, Any]:
         base: Any = schema["metadata"]["base"]
         known = [*([] if inspect.isabstract(base) else [base]), *base.kinds.values()]
-        return {"oneOf": [handler(kind.__pydantic_core_schema__) for kind in known]}
+        one = {"oneOf": [handler(kind.__pydantic_core_schema__) for kind in known]}
+        return {"anyOf": [one, {"type": "array", "items": one, "minItems": 1}]} if self.several else one
 
 
 OF_ITS_KIND = _OfItsKind()
+ONE_OR_SEVERAL = _OfItsKind(several=True)
 
 
 def parse_json(text: str) -> Any:

@@ -95,7 +95,8 @@ def test_launches_to_start_from_are_told_apart() -> None:
     offered = launches()
     assert first_setup() in offered.values()
     assert len(set(offered)) == len(offered)
-    assert {setup.problem.body for setup in offered.values()} == set(tt.presets.BODIES.values())
+    tippe_tops = {body for body in tt.presets.BODIES.values() if isinstance(body.shape, tt.EccentricSphere)}
+    assert {setup.problem.body for setup in offered.values()} == tippe_tops
 
 
 def test_tops_of_the_literature_turn_over_as_theory_says_of_theirs() -> None:

@@ -8,12 +8,18 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from strategies import numbers, spheres, spheroids, unit_vectors
-from tippetop.mechanics.surface import SphereSurface, SpheroidSurface, contact_vector
+from tippetop.mechanics.surface import RingSurface, SphereSurface, SpheroidSurface, contact_vector
 
 OFF_CENTRE = st.builds(
     lambda egg, center: egg._replace(center=center * min(egg.across, egg.along)),
     spheroids(),
     numbers(-0.9, 0.9),
+)
+RINGS = st.builds(
+    lambda radius, center, tube: RingSurface(radius, center * radius, tube * radius),
+    numbers(0.005, 0.1),
+    numbers(-1.5, 1.5),
+    numbers(0.0, 1.0),
 )
 SHAPES = st.one_of(spheres(), spheroids(), OFF_CENTRE)
 
@@ -57,6 +63,21 @@ def implicit_surface(shape, axis, point):
     return across @ normal + along * (third @ normal) - 1.0, normal / np.linalg.norm(normal)
 
 
+@given(RINGS, numbers(-0.99, 0.99))
+def test_so_are_those_of_a_ring_on_its_edge(ring, c):
+    assert ring.slope(c) == pytest.approx(derivative(ring.height, c), rel=1e-12, abs=1e-14 * ring.size)
+    assert ring.curvature(c) == pytest.approx(derivative(ring.slope, c), rel=1e-12)
+
+
+@given(RINGS, unit_vectors(shortest_sine=0.05))
+def test_a_ring_touches_at_the_lowest_point_of_its_tube(ring, axis):
+    """Which is straight below the lowest point of its circle."""
+    c, sine = axis[2], math.hypot(*axis[:2])
+    downhill = np.array([axis[0] * c, axis[1] * c, -sine * sine]) / sine
+    lowest = ring.center * np.array(axis) + ring.radius * downhill - [0.0, 0.0, ring.tube]
+    assert contact_vector(axis, ring) == pytest.approx(tuple(lowest), abs=1e-12 * ring.size)
+
+
 @given(SHAPES, numbers(-1.0, 1.0))
 def test_slope_and_curvature_are_the_derivatives_of_the_support_function(shape, c):
     assert shape.slope(c) == pytest.approx(derivative(shape.height, c), rel=1e-12, abs=1e-14 * shape.size)
@@ -98,7 +119,7 @@ def test_an_egg_stands_on_its_long_semi_axis_and_lies_on_its_short_one(tilt, hei
     assert SpheroidSurface(0.02, 0.03).height(math.cos(tilt)) == pytest.approx(height, rel=1e-15)
 
 
-@given(SHAPES)
+@given(st.one_of(SHAPES, RINGS))
 def test_a_shape_is_its_size_and_its_proportions(shape):
     unit = type(shape).from_proportions(shape.proportions)
     assert unit.size == 1.0

@@ -91,11 +91,12 @@ class Block:
     def groups(self) -> list[ModeSteps]:
         """The steps by mode."""
         # Laws of different makes with the same numbers are equal as tuples.
-        kinds: dict[tuple[str, Top, Kind, int], list[int]] = {}
+        kinds: dict[tuple[str, tuple[Top, ...], tuple[Kind, ...], int], list[int]] = {}
         for number, segment in enumerate(self.segments):
             if len(segment.solution.terms):
                 mode = segment.mode
-                key = mode.name, mode.top, mode.top.kind, segment.solution.terms.shape[2]
+                alike = tuple(top.kind for top in mode.tops)
+                key = mode.name, mode.tops, alike, segment.solution.terms.shape[2]
                 kinds.setdefault(key, []).append(number)
         first = np.concatenate([[0], np.cumsum(self.lengths)])
         spans = self.spans

@@ -8,11 +8,13 @@ from typing import ClassVar
 import numpy as np
 
 from tippetop.contact.mode import Mode, Outcome, Segment, Transition
+from tippetop.contact.surfaces import number_of
 from tippetop.integrators.base import Array, Integrator
 from tippetop.integrators.dense import DenseSolution
-from tippetop.mechanics.flight import fly
+from tippetop.mechanics.flight import fly, gap, gap_rate
 from tippetop.mechanics.motion import along_table, on_table
 from tippetop.mechanics.state import State
+from tippetop.mechanics.top import Top
 from tippetop.mechanics.touchdown import Start, highest_gap, touchdown
 from tippetop.mechanics.vectors import Row, length
 
@@ -24,6 +26,9 @@ TURN = 0.25
 
 MOST_STEPS = 4096
 """Polynomials in a segment at most."""
+
+TOUCHING = 1e-12
+"""Gap, and gap rate, in natural units, up to which a surface touches, and neither opens nor closes."""
 
 
 @dataclass(frozen=True)
@@ -47,7 +52,7 @@ class Flight(Mode):
 
     def segments(self, time: float, state: State, end: float, integrator: Integrator) -> Iterator[Segment]:
         """Evaluate the flight, which needs no integrator."""
-        landing = touchdown(state, self.top, end - time, self.start)
+        landing, lowest = self._landing(state, end - time)
         duration = end - time if landing is None else landing
         rate = length(state.momentum) / self.top.transverse_inertia
         count = 1 + int(duration * rate / TURN)
@@ -61,7 +66,7 @@ class Flight(Mode):
             knots: Array = time + elapsed
             if last == count:
                 knots[-1] = end if landing is None else knots[-1]
-                transition = self._transition(float(knots[-1]), here, landing is not None)
+                transition = self._transition(float(knots[-1]), here, None if landing is None else lowest)
             solution = DenseSolution.fitted(self._numbers(state), elapsed, DEGREE)
             yield Segment(self, replace(solution, knots=knots), here, transition, highest_gap=highest)
 
@@ -73,9 +78,30 @@ class Flight(Mode):
 
         return numbers
 
-    def _transition(self, time: float, state: State, landed: bool) -> Transition:
-        if not landed:
+    def _landing(self, state: State, horizon: float) -> tuple[float | None, Top]:
+        """When the first surface touches the table, and the top with that surface active."""
+        found = touchdown(state, self.top, horizon, self.start)
+        lowest = self.top
+        for other in self.top.each:
+            if other != self.top:
+                limit = horizon if found is None else found
+                sooner = touchdown(state, other, limit, start_of(state, other))
+                if sooner is not None and (found is None or sooner < found):
+                    found, lowest = sooner, other
+        return found, lowest
+
+    def _transition(self, time: float, state: State, lowest: Top | None) -> Transition:
+        if lowest is None:
             return Transition((), Outcome.COMPLETED, state)
-        return self.rules.touchdown(
-            time, state._replace(height=on_table(along_table(state), self.top).height)
-        )
+        here = state._replace(height=on_table(along_table(state), lowest).height)
+        if lowest == self.top:
+            return self.rules.touchdown(time, here)
+        return self.rules.touch(number_of(lowest), time, here)
+
+
+def start_of(state: State, top: Top) -> Start:
+    """How a flight starts for a surface that did not decide it: far, or just opened."""
+    rate = gap_rate(state, top)
+    if gap(state, top) > TOUCHING or rate < -TOUCHING:
+        return Start.AIRBORNE
+    return Start.REBOUND if rate > TOUCHING else Start.RELEASE

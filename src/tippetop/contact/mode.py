@@ -16,6 +16,7 @@ import numpy as np
 from tippetop.integrators.base import Integrator, Motion
 from tippetop.integrators.dense import DenseSolution
 from tippetop.mechanics.ending import Vanishing
+from tippetop.mechanics.hull import Hull
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Row, Scalar, Vector
@@ -40,6 +41,14 @@ class Outcome(Enum):
         "with liftoff = ignore it does, and with fly the top leaves it."
     )
     AT_REST = "The top came to rest, and the table holds it so: nothing happens any more."
+    LYING_FLAT = (
+        "The body came to lie flat: there it touches the table all around, which is not followed further; "
+        "this is the end of its motion, but for what the impact of its face would add."
+    )
+    STICKING_ON_TWO = (
+        "Two surfaces touch the table and one does not slip, which is followed no further; "
+        "viscous friction, or a patch that drills, goes on."
+    )
     TOO_MANY_PHASES = (
         "The top bounced and slid more often than the run allows; "
         "shorten the duration, lower the restitution, or raise the limit on phases."
@@ -69,6 +78,8 @@ class EventKind(Enum):
     HALT = "rolling stops"
     ROLL = "rolling starts"
     IMPACT = "impact"
+    OPENING = "opening"
+    DOUBLE_CONTACT = "double contact"
 
 
 @dataclass(frozen=True)
@@ -83,12 +94,15 @@ class Event:
         When.
     impulse, energy_lost
         Normal impulse of the table, and energy that went with it.
+    surface
+        Number of the body's surface to which it happened.
     """
 
     kind: EventKind
     time: float
     impulse: float = 0.0
     energy_lost: float = 0.0
+    surface: int = 0
 
 
 @dataclass(frozen=True)
@@ -184,8 +198,17 @@ class Rules(Protocol):
     def touchdown(self, time: float, state: State) -> Transition:
         """What follows when the top reaches the table."""
 
+    def event(self, kind: EventKind, time: float) -> Event:
+        """Something that happens to the surface that is active."""
+
     def going_on(self, state: State, *, slips: bool) -> "Mode":
         """The mode of a contact whose velocities go on, or stay held; it sticks or slips."""
+
+    def touch(self, surface: int, time: float, state: State) -> Transition:
+        """What follows when another surface of the top, of this number, reaches the table too."""
+
+    def on(self, surface: int) -> "Rules":
+        """The rules of the top with another of its surfaces active."""
 
     def stopping(self, time: float, state: State, *, slips: bool = True) -> Transition:
         """What follows when slip, or rolling, is about to end; the contact sticks or slips."""
@@ -218,6 +241,19 @@ class Mode(ABC):
 
     name: ClassVar[str]
     touching: ClassVar[bool] = True
+
+    @property
+    def tops(self) -> tuple[Top, ...]:
+        """The top with each surface active that touches: one, where a mode does not say otherwise."""
+        return (self.top,)
+
+    @property
+    def label(self) -> str:
+        """Its name, with the numbers of the surfaces that touch if the body has several."""
+        if not self.touching or not isinstance(self.top.surface, Hull):
+            return self.name
+        touching = sorted(getattr(top.surface, "active", 0) for top in self.tops)
+        return f"{self.name}_on_{'_and_'.join(map(str, touching))}"
 
     @abstractmethod
     def segments(self, time: float, state: State, end: float, integrator: Integrator) -> Iterator[Segment]:

@@ -7,9 +7,10 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from tippetop.contact.mode import Event, EventKind, IntegratedMode, Mode, Outcome, Segment, Transition
+from tippetop.contact.mode import EventKind, IntegratedMode, Mode, Outcome, Segment, Transition
 from tippetop.contact.sliding import BRANCH, LIFT_OFF, ROLLING, Sliding, SlidingWithoutRolling
 from tippetop.contact.sticking import SLIP, Sticking, split
+from tippetop.contact.surfaces import follow_surface, surface_guards
 from tippetop.integrators import make_integrator
 from tippetop.integrators.base import Arc, Array, Guard, Integrator, Motion
 from tippetop.integrators.dense import DenseSolution, evaluated
@@ -268,6 +269,9 @@ class Stopping(Passing):
         if arc.failure is not None or arc.guard is None:
             return Transition((), Outcome.FAILED, state, arc.failure or "the slip neither ends nor goes on")
         ending, stuck = self.ending, not self.ending.slip and self.ending.held
+        found = follow_surface(self, arc.guard, time, state)
+        if found is not None:
+            return found
         match arc.guard:
             case "time":
                 return Transition((), Outcome.COMPLETED, state)
@@ -283,9 +287,13 @@ class Stopping(Passing):
                     (), replace(self, top=with_sliding_law(self.top, law.other_branch())), state
                 )
             case "slip":
-                return self.rules.giving_way(state, (Event(EventKind.SLIP, time),), Vanishing(slip=True))
+                return self.rules.giving_way(
+                    state, (self.rules.event(EventKind.SLIP, time),), Vanishing(slip=True)
+                )
             case "rolling":
-                return self.rules.giving_way(state, (Event(EventKind.ROLL, time),), Vanishing(slip=False))
+                return self.rules.giving_way(
+                    state, (self.rules.event(EventKind.ROLL, time),), Vanishing(slip=False)
+                )
         return self.rules.settled(time, state, new=(ending.slip, not ending.slip), held=ending.held)
 
     def _in_time(self, clock: DenseSolution, time: float, duration: float) -> DenseSolution:
@@ -357,6 +365,7 @@ def closing_motion(kind: Kind, ending: Vanishing, guarded: bool) -> Motion:
         )
     if ending.moves and hasattr(sliding_law(law), "branch_guard"):
         guards.append(guard(BRANCH, lambda state, top, _: branch_guard(state, top)))
+    guards += surface_guards(kind)
     free = 2 if ending.moves else 0
     components = slip_dimension(law) if ending.slip else 2
     return Motion(rates, 8 + free + components, kind.numbers + 2, tuple(guards), lasting=False)

@@ -1,18 +1,19 @@
 """What follows when contact begins or ends, for each way of treating lift-off."""
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
+from typing import ClassVar, Self
 
-from tippetop.contact.flight import Flight
-from tippetop.contact.mode import Event, EventKind, IntegratedMode, Mode, Outcome, Rules, Transition
+from tippetop.contact.flight import TOUCHING, Flight
+from tippetop.contact.mode import Event, EventKind, IntegratedMode, Mode, Outcome, Transition
 from tippetop.contact.passing import BothLoosening, Loosening, Resting, Stopping
 from tippetop.contact.sliding import Sliding, SlidingWithoutRolling
 from tippetop.contact.sticking import Sticking, StickingWithoutRolling
+from tippetop.contact.surfaces import number_of
 from tippetop.mechanics.beginning import Beginning, beginning
 from tippetop.mechanics.coulomb import RollingResistance
 from tippetop.mechanics.ending import Vanishing
 from tippetop.mechanics.flight import gap, gap_rate
-from tippetop.mechanics.impact import impact
+from tippetop.mechanics.impact import Impact, impact
 from tippetop.mechanics.motion import along_table, contact, on_table
 from tippetop.mechanics.rolling import (
     ContactPoint,
@@ -31,8 +32,6 @@ from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.stick_slip import HORIZON, inner, is_rolling, is_slipping, size, slip_of
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.touchdown import Start
-from tippetop.mechanics.units import Units
-from tippetop.problem import Contact
 
 SLOWEST_REBOUND = 1e-6
 """Rebound velocity, in units of sqrt(g R), below which a rebound is none and the top stays on the table.
@@ -40,9 +39,6 @@ SLOWEST_REBOUND = 1e-6
 A rebound of this speed rises by half its square, 5e-13 radii. Without such an end, the bounces of a top with
 restitution between 0 and 1 would be infinitely many in a finite time.
 """
-
-TOUCHING = 1e-12
-"""Gap, and gap rate, in natural units, up to which a launch is one from rest on the table."""
 
 REST = 1e-13
 """Velocities and accelerations, in natural units, that are rounding in a body at rest."""
@@ -62,6 +58,10 @@ class ContactRules:
 
     pulls: ClassVar[bool] = False
 
+    def on(self, surface: int) -> Self:
+        """The rules with another surface active."""
+        return replace(self, top=self.top.each[surface])
+
     def launch(self, state: State) -> Transition:
         """Go on from contact."""
         return self.resting(0.0, state)
@@ -73,6 +73,14 @@ class ContactRules:
     def touchdown(self, time: float, state: State) -> Transition:
         """Never happens: there are no flights."""
         raise NotImplementedError
+
+    def touch(self, surface: int, time: float, state: State) -> Transition:
+        """Never happens: a body of several surfaces may fly."""
+        raise NotImplementedError
+
+    def event(self, kind: EventKind, time: float, impulse: float = 0.0, lost: float = 0.0) -> Event:
+        """Something that happens to the surface that is active."""
+        return Event(kind, time, impulse, lost, number_of(self.top))
 
     def going_on(self, state: State, *, slips: bool) -> Mode:
         """Slide, or stick; or follow slip, or rolling, to its end where that is near already."""
@@ -116,7 +124,9 @@ class ContactRules:
             except ArithmeticError:
                 continue
             if self._admits(point, found, ended, begins):
-                return self._settle(time, state, found, begins, ended, (*events, *_marks(time, new, begins)))
+                return self._settle(
+                    time, state, found, begins, ended, (*events, *self._marks(time, new, begins))
+                )
         why = "nothing can hold the contact, and there is no direction in which it can go on"
         return Transition(events, Outcome.FAILED, state, why)
 
@@ -158,6 +168,18 @@ class ContactRules:
         if ended[1] and not begins[1]:
             return bool(rolling_reserve(point, found.wrench, found.slip) >= 0.0)
         return True
+
+    def _marks(self, time: float, new: tuple[bool, bool], begins: tuple[bool, bool]) -> tuple[Event, ...]:
+        """What is told where slip, or rolling, has newly ended and is held, or was held and begins."""
+        told = []
+        for ended, starts, stop, start in zip(
+            new, begins, (EventKind.STICK, EventKind.HALT), (EventKind.SLIP, EventKind.ROLL), strict=True
+        ):
+            if ended and not starts:
+                told.append(self.event(stop, time))
+            elif starts and not ended:
+                told.append(self.event(start, time))
+        return tuple(told)
 
     def _at_rest(self, state: State, slip: bool, rolling: bool) -> State:
         """The state in which slip, or rolling, that has ended is exactly zero."""
@@ -247,7 +269,7 @@ class StopAtLiftOff(ContactRules):
 
     def lift_off(self, time: float, state: State) -> Transition:
         """End the run."""
-        return Transition((Event(EventKind.LIFT_OFF, time),), Outcome.LIFTED_OFF, state)
+        return Transition((self.event(EventKind.LIFT_OFF, time),), Outcome.LIFTED_OFF, state)
 
 
 @dataclass(frozen=True)
@@ -275,11 +297,11 @@ class FreeToFly(ContactRules):
 
     def lift_off(self, time: float, state: State) -> Transition:
         """Fly from where the normal force reached zero."""
-        return Transition((Event(EventKind.LIFT_OFF, time),), self._flight(Start.LIFT_OFF), state)
+        return Transition((self.event(EventKind.LIFT_OFF, time),), self._flight(Start.LIFT_OFF), state)
 
     def touchdown(self, time: float, state: State) -> Transition:
         """Collide, and go on as the impact leaves the top."""
-        return self._collide(time, state, (Event(EventKind.TOUCHDOWN, time),), self.restitution)
+        return self._collide(time, state, (self.event(EventKind.TOUCHDOWN, time),), self.restitution)
 
     def resting(self, time: float, state: State, events: tuple[Event, ...] = ()) -> Transition:
         """As for all, but where the table would have to pull from now on, not from zero force, it lets go."""
@@ -298,36 +320,29 @@ class FreeToFly(ContactRules):
         self, time: float, state: State, events: tuple[Event, ...], restitution: float
     ) -> Transition:
         try:
-            collision = impact(state, restitution, self.top)
+            collision = self._impact(state, restitution)
             rebounds = gap_rate(collision.state, self.top) > SLOWEST_REBOUND
             if restitution and not rebounds:
-                collision = impact(state, 0.0, self.top)
+                collision = self._impact(state, 0.0)
         except ArithmeticError as error:
             return Transition(events, Outcome.FAILED, state, str(error))
-        hit = Event(EventKind.IMPACT, time, float(collision.impulse), float(collision.energy_lost))
+        hit = self.event(EventKind.IMPACT, time, float(collision.impulse), float(collision.energy_lost))
         after = collision.state
         if not collision.impulse:
             # Nothing but rounding kept the contact from being a resting one.
-            return Transition(events, self.going_on(after, slips=True), after)
+            return self._untouched(time, after, events)
         if rebounds:
             return Transition((*events, hit), self._flight(Start.REBOUND), after)
         return self.resting(time, after, (*events, hit))
 
+    def _impact(self, state: State, restitution: float) -> Impact:
+        return impact(state, restitution, self.top)
+
+    def _untouched(self, time: float, state: State, events: tuple[Event, ...]) -> Transition:
+        return Transition(events, self.going_on(state, slips=True), state)
+
     def _flight(self, start: Start) -> Flight:
         return Flight(self.top, self, start)
-
-
-def _marks(time: float, new: tuple[bool, bool], begins: tuple[bool, bool]) -> tuple[Event, ...]:
-    """What is told where slip, or rolling, has newly ended and is held, or was held and begins."""
-    told = []
-    for ended, starts, stop, start in zip(
-        new, begins, (EventKind.STICK, EventKind.HALT), (EventKind.SLIP, EventKind.ROLL), strict=True
-    ):
-        if ended and not starts:
-            told.append(Event(stop, time))
-        elif starts and not ended:
-            told.append(Event(start, time))
-    return tuple(told)
 
 
 def _rests(found: Beginning, state: State) -> bool:
@@ -335,26 +350,3 @@ def _rests(found: Beginning, state: State) -> bool:
     point, turning = found.acceleration
     rates = (*turning, *point[:2], *state.momentum, *state.velocity)
     return bool(max(map(abs, rates)) <= REST)
-
-
-def rules_for(top: Top, liftoff: str, restitution: float) -> Rules:
-    """The rules of a top in natural units.
-
-    Parameters
-    ----------
-    top
-        The top.
-    liftoff
-        "ignore", "stop" or "fly".
-    restitution
-        Ratio of the normal impulses of restitution and compression.
-    """
-    if liftoff == "fly":
-        return FreeToFly(top, restitution)
-    return StopAtLiftOff(top) if liftoff == "stop" else Bilateral(top)
-
-
-def rules_of(way: Contact, top: Top, units: Units) -> Rules:
-    """The rules of a top in natural units: those that its problem's contact brings, or the usual."""
-    own: Rules | None = way.rules(top, units)
-    return rules_for(top, way.liftoff, way.restitution) if own is None else own

@@ -5,7 +5,8 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, ClassVar
 
-from tippetop.contact.mode import Event, EventKind, IntegratedMode, Reaction, Transition
+from tippetop.contact.mode import EventKind, IntegratedMode, Reaction, Transition
+from tippetop.contact.surfaces import follow_surface, surface_guards
 from tippetop.integrators.base import Function, Guard, Motion
 from tippetop.mechanics.coulomb import RollingResistance
 from tippetop.mechanics.ending import Vanishing
@@ -72,6 +73,9 @@ class Sliding(IntegratedMode):
             return self.rules.lift_off(time, state)
         if guard in (STOPPING, ROLLING_STOPPING):
             return self.rules.stopping(time, state)
+        found = follow_surface(self, guard, time, state)
+        if found is not None:
+            return found
         law: Any = sliding_law(self.top.friction)
         return Transition((), replace(self, top=with_sliding_law(self.top, law.other_branch())), state)
 
@@ -106,7 +110,9 @@ class SlidingWithoutRolling(Sliding):
         if guard == ROLLING:
             if self.reaction(self.numbers(state)).force[2] <= 0.0 and not self.rules.pulls:
                 return self.rules.lift_off(time, state)
-            return self.rules.giving_way(state, (Event(EventKind.ROLL, time),), Vanishing(slip=False))
+            return self.rules.giving_way(
+                state, (self.rules.event(EventKind.ROLL, time),), Vanishing(slip=False)
+            )
         return super().follow(guard, time, state)
 
 
@@ -138,6 +144,7 @@ def sliding_motion(kind: Kind, guarded: bool) -> Motion:
     guards += slip_guards(kind, sliding_rates)
     if isinstance(kind.example.friction, RollingResistance):
         guards.append(Guard(ROLLING_STOPPING, rolls))
+    guards += surface_guards(kind)
     return Motion(rates, size=8, parameters=kind.numbers, guards=tuple(guards))
 
 
@@ -156,7 +163,7 @@ def held_motion(kind: Kind, guarded: bool) -> Motion:
         return holding(SlidingState.unpack(y), kind.top(tuple(numbers)))[1].force[2]
 
     guards = [Guard(LIFT_OFF, force)] if guarded else []
-    guards += [*slip_guards(kind, held_rates), Guard(ROLLING, reserve)]
+    guards += [*slip_guards(kind, held_rates), Guard(ROLLING, reserve), *surface_guards(kind)]
     return Motion(rates, size=8, parameters=kind.numbers, guards=tuple(guards), lasting=False)
 
 

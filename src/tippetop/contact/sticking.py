@@ -5,8 +5,9 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import ClassVar
 
-from tippetop.contact.mode import Event, EventKind, IntegratedMode, Reaction, Transition
+from tippetop.contact.mode import EventKind, IntegratedMode, Reaction, Transition
 from tippetop.contact.sliding import ROLLING, ROLLING_STOPPING
+from tippetop.contact.surfaces import follow_surface, surface_guards
 from tippetop.integrators.base import Guard, Motion
 from tippetop.mechanics.coulomb import RollingResistance
 from tippetop.mechanics.ending import Vanishing
@@ -59,13 +60,16 @@ class Sticking(IntegratedMode):
         """Slip begins, or rolling; or rolling is about to end."""
         if guard == ROLLING_STOPPING:
             return self.rules.stopping(time, state, slips=False)
+        found = follow_surface(self, guard, time, state)
+        if found is not None:
+            return found
         if self.reaction(self.numbers(state)).force[2] <= 0.0 and not self.rules.pulls:
             return self.rules.lift_off(time, state)
         kind = EventKind.ROLL if guard == ROLLING else EventKind.SLIP
         beginning = (
             Vanishing(slip=False, held=True) if guard == ROLLING else Vanishing(slip=True, held=self.held)
         )
-        return self.rules.giving_way(state, (Event(kind, time),), beginning)
+        return self.rules.giving_way(state, (self.rules.event(kind, time),), beginning)
 
 
 @dataclass(frozen=True)
@@ -111,6 +115,7 @@ def sticking_motion(kind: Kind, held: bool) -> Motion:
     guards = [Guard(SLIP, reserve)]
     if isinstance(kind.example.friction, RollingResistance):
         guards.append(Guard(ROLLING, couple) if held else Guard(ROLLING_STOPPING, rolls))
+    guards += surface_guards(kind)
     return Motion(rates, size=6, parameters=kind.numbers, guards=tuple(guards), lasting=False)
 
 

@@ -13,7 +13,7 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
-from tippetop.mechanics.surface import contact_vector
+from tippetop.lowest import lowest_contact_vector
 from tippetop.problem import Problem
 
 Array = NDArray[np.float64]
@@ -56,7 +56,9 @@ def poses_at(run: xr.Dataset, times: ArrayLike) -> Poses:
 
 def contact_path(run: xr.Dataset) -> Array:
     """Where the lowest point of the body is on the table at every sample, m, shape (k, 2)."""
-    arm = contact_vector(tuple(run["axis"].values.T), Problem.from_json(run.attrs["problem"]).top.surface)
+    arm = lowest_contact_vector(
+        tuple(run["axis"].values.T), Problem.from_json(run.attrs["problem"]).top.surface
+    )
     return np.stack([run["x"].values + arm[0], run["y"].values + arm[1]], axis=1)
 
 

@@ -12,8 +12,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tippetop.bodies import Body, EccentricSphere, Shape, Spheroid
+from tippetop.bodies import Body, EccentricSphere, Spheroid
 from tippetop.figures.style import ACCENT, CONVERGED, REPORT
+from tippetop.lowest import lowest_number
+from tippetop.mechanics.hull import each_surface
+from tippetop.mechanics.surface import Surface
 
 Array = NDArray[np.float64]
 
@@ -24,8 +27,11 @@ STEM, KNOB = 0.12, 0.165
 STEM_TOP = 1.0 - KNOB
 """Distance from the sphere's centre to that ball's."""
 
-OUTLINE = 49
-"""Points on the outline of a body that is no tippe top."""
+OUTLINE = 97
+"""Tilts at which the outline of a body that is no tippe top is found."""
+
+POLE = 1e-4
+"""The least of them, where the body does not lie flat yet."""
 
 SCENES: Mapping[str, Mapping[str, Any]] = {
     "light": {
@@ -67,24 +73,39 @@ class ToyPart(NamedTuple):
 
 def size(body: Body) -> float:
     """The length by which the toy is measured when it is drawn, m."""
-    shape = body.shape
-    if isinstance(shape, EccentricSphere):
-        return shape.radius
-    points = outline(shape)
+    if isinstance(body.shape, EccentricSphere):
+        return body.shape.radius
+    points = np.concatenate(outline(body.surface))
     return float(max(points[:, 0].max(), np.ptp(points[:, 1]) / 2))
 
 
-def outline(shape: Shape) -> Array:
-    """Points (distance from the axis, height along it from the centre of mass), m, from below, shape (k, 2).
+def outline(surface: Surface) -> list[Array]:
+    """The outline of a body from below, in smooth arcs and the straight lines between them.
 
-    They are where the body touches the table at evenly spaced tilts.
+    Points (distance from the axis, height along it from the centre of mass), m, shape (k, 2): where the body
+    touches the table at evenly spaced tilts, and, on its faces, between.
     """
     tilts = np.linspace(0.0, np.pi, OUTLINE)
+    tilts[[0, -1]] = POLE, np.pi - POLE
     sine, c = np.sin(tilts), np.cos(tilts)
-    sine[-1] = 0.0
-    slope = shape.surface.slope(c)
-    across = shape.surface.height(c) - c * slope
-    return np.stack([sine * across, -slope - c * across], axis=1)
+    number, corner = lowest_number(surface, c), 10.0 * POLE * surface.size
+    surfaces, pieces = each_surface(surface), []
+    for some in np.split(np.arange(OUTLINE), np.flatnonzero(np.diff(number)) + 1):
+        here = surfaces[number[some[0]]]
+        slope = here.slope(c[some])
+        across = here.height(c[some]) - c[some] * slope
+        points = np.stack([sine[some] * across, -slope - c[some] * across], axis=1)
+        points[np.abs(points[:, 0]) < corner, 0] = 0.0
+        apart = np.hypot(*np.diff(points, axis=0).T) > corner
+        pieces.append(points[np.append(True, apart)])
+    first, last = pieces[0][0], pieces[-1][-1]
+    ends = [[(0.0, first[1])] if first[0] else [], [(0.0, last[1])] if last[0] else []]
+    corners = [np.array(end).reshape(-1, 2) for end in ends]
+    pieces = [piece for piece in (corners[0], *pieces, corners[1]) if len(piece)]
+    joined = [pieces[0]]
+    for piece in pieces[1:]:
+        joined += [np.stack([joined[-1][-1], piece[0]]), piece]
+    return [piece for piece in joined if len(piece) > 1]
 
 
 def toy_parts(body: Body) -> tuple[ToyPart, ...]:
@@ -93,14 +114,18 @@ def toy_parts(body: Body) -> tuple[ToyPart, ...]:
     if isinstance(shape, EccentricSphere):
         return _tippe_top(shape.eccentricity)
     if isinstance(shape, Spheroid):
-        semi_axes = np.array([shape.across, shape.along]) / size(body)
-        arcs = [_arc(*ends) * semi_axes for ends in pairwise((-np.pi / 2, -0.12, 0.12, np.pi / 2))]
+        semi_axes, middle = np.array([shape.across, shape.along]) / size(body), shape.center / size(body)
+        latitudes = pairwise((-np.pi / 2, -0.12, 0.12, np.pi / 2))
+        arcs = [_arc(*ends) * semi_axes + (0.0, middle) for ends in latitudes]
+        belts = list(zip(arcs, (_BOWL, _BAND, _BOWL), strict=True))
     else:
-        points = outline(shape) / size(body)
-        middle = OUTLINE // 2
-        arcs = [points[: middle - 1], points[middle - 2 : middle + 3], points[middle + 2 :]]
-    belts = enumerate(zip(arcs, (_BOWL, _BAND, _BOWL), strict=True))
-    return tuple(ToyPart(f"egg {number}", arc, colours) for number, (arc, colours) in belts)
+        pieces = [piece / size(body) for piece in outline(body.surface)]
+        if len(pieces) == 1:
+            middle_one = len(pieces[0]) // 2
+            ends = (0, middle_one - 2, middle_one + 2, len(pieces[0]) - 1)
+            pieces = [pieces[0][low : high + 1] for low, high in pairwise(ends)]
+        belts = [(piece, _BAND if number % 2 else _BOWL) for number, piece in enumerate(pieces)]
+    return tuple(ToyPart(f"egg {number}", arc, colours) for number, (arc, colours) in enumerate(belts))
 
 
 def _tippe_top(eccentricity: float) -> tuple[ToyPart, ...]:

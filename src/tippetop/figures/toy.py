@@ -78,9 +78,12 @@ class Toy:
             self.middle = np.array([0.0, 0.0, shape.eccentricity])
             self._surfaces = _tippe_top()
         else:
-            points = outline(shape) / self.size
-            self.middle = np.array([0.0, 0.0, points[[0, -1], 1].mean()])
-            self._surfaces = _turned(points - (0.0, self.middle[2]))
+            arcs = [arc / self.size for arc in outline(body.surface)]
+            heights = np.concatenate(arcs)[:, 1]
+            self.middle = np.array([0.0, 0.0, (heights.min() + heights.max()) / 2])
+            self._surfaces = tuple(
+                quadric for arc in arcs for quadric in _turned(arc - (0.0, self.middle[2]))
+            )
 
     def meet(self, start: Array, direction: Array) -> tuple[Array, Array]:
         """How far along each ray the toy is, and its normal there; far if missed."""
@@ -136,13 +139,28 @@ def _tippe_top() -> tuple[_Quadric, ...]:
 
 
 def _turned(outline: NDArray[np.float64]) -> tuple[_Quadric, ...]:
-    """The surface of an outline turned about the axis, a quadric through each three points."""
+    """The surface of an arc or a line of an outline turned about the axis, a quadric through three points."""
     found = []
-    for first in range(0, len(outline) - 2, PIECE):
-        away, along = outline[[first, first + PIECE // 2, first + PIECE]].T
+    for first in range(0, len(outline) - 1, PIECE):
+        piece = outline[first : first + PIECE + 1]
+        if len(piece) == 2:
+            found.append(_line(*piece))
+            continue
+        away, along = piece[[0, len(piece) // 2, -1]].T
         s, q, p = np.polyfit(along, away**2, 2)
         found.append(_Quadric(1.0, float(p), float(q), float(s), float(along[0]), float(along[-1])))
     return tuple(found)
+
+
+def _line(start: NDArray[np.float64], end: NDArray[np.float64]) -> _Quadric:
+    """The cone, or the face, that a line from below turns to."""
+    (away, low), (there, high) = start.tolist(), end.tolist()
+    if high - low < 1e-9:
+        up = 1.0 if there < away else -1.0
+        return _Quadric(0.0, up * low, -up, 0.0, widest=max(away, there))
+    slope = (there - away) / (high - low)
+    tip = away - slope * low
+    return _Quadric(1.0, tip * tip, 2 * slope * tip, slope * slope, low, high)
 
 
 def _passes(o: Array, d: Array) -> NDArray[np.bool_]:

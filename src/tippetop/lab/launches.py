@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
+from tippetop.bodies import EccentricSphere
 from tippetop.lab.setup import Setup, first_setup
 from tippetop.presets import BODIES, leine_glocker_problem
 
@@ -27,6 +28,6 @@ def launches() -> dict[str, Setup]:
     found["Leine and Glocker 2003: dry friction (180 rad/s)"] = Setup(leine_glocker_problem())
     known = {setup.problem.body for setup in found.values()}
     for name, body in BODIES.items():
-        if body not in known:
+        if body not in known and isinstance(body.shape, EccentricSphere):
             found[f"Top: {name.replace('-', ' ')}"] = Setup(first.problem.model_copy(update={"body": body}))
     return found

@@ -8,6 +8,9 @@ from typing import NamedTuple, Protocol, Self
 
 from tippetop.mechanics.vectors import Scalar, Vector
 
+FLAT = 1e-3
+"""Sine of the tilt at which a body on its edge lies flat: below it, too few digits of 1 - c^2 remain."""
+
 
 class Surface(Protocol):
     """What the mechanics asks of a body's outer surface, seen from its centre of mass."""
@@ -125,6 +128,54 @@ class SpheroidSurface(NamedTuple):
     def _central_height(self, c: Scalar) -> Scalar:
         """Height of the spheroid's centre above the table, m."""
         return (self.across**2 * (1.0 - c * c) + self.along**2 * c * c) ** 0.5
+
+
+class RingSurface(NamedTuple):
+    """A torus about the axis, whose middle is `center` above the centre of mass: the edge of a disk.
+
+    With a circle of this radius in a tube, h = tube + radius sqrt(1 - c^2) - center c. Its derivatives are
+    infinite where c^2 = 1: there the body lies flat and touches all around.
+    """
+
+    radius: Scalar
+    center: Scalar = 0.0
+    tube: Scalar = 0.0
+
+    def height(self, c: Scalar) -> Scalar:
+        """Support function h(c), m."""
+        return self.tube + self.radius * (1.0 - c * c) ** 0.5 - self.center * c
+
+    def slope(self, c: Scalar) -> Scalar:
+        """First derivative h'(c), m."""
+        return -self.radius * c * (1.0 - c * c) ** -0.5 - self.center
+
+    def curvature(self, c: Scalar) -> Scalar:
+        """Second derivative h''(c), m."""
+        return -self.radius * (1.0 - c * c) ** -1.5
+
+    def face_guard(self, axis: Vector) -> Scalar:
+        """Falls through zero where the body comes to lie flat: s^2 less that of `FLAT`."""
+        return axis[0] * axis[0] + axis[1] * axis[1] - FLAT * FLAT
+
+    @property
+    def spherical(self) -> bool:
+        """It is none."""
+        return False
+
+    @property
+    def size(self) -> Scalar:
+        """The radius of the circle, m."""
+        return self.radius
+
+    @property
+    def proportions(self) -> tuple[Scalar, ...]:
+        """The height of the middle and the radius of the tube, in radii of the circle."""
+        return (self.center / self.radius, self.tube / self.radius)
+
+    @classmethod
+    def from_proportions(cls, proportions: tuple[Scalar, ...]) -> Self:
+        """Make the ring with a circle of radius 1 and these proportions."""
+        return cls(1.0, *proportions)
 
 
 def contact_vector(axis: Vector, surface: Surface) -> Vector:

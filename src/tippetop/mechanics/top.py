@@ -3,6 +3,7 @@
 from typing import Any, NamedTuple
 
 from tippetop.mechanics.friction import FrictionLaw
+from tippetop.mechanics.hull import each_surface
 from tippetop.mechanics.state import State
 from tippetop.mechanics.surface import Surface
 from tippetop.mechanics.units import Units
@@ -33,7 +34,13 @@ class Top(NamedTuple):
         """What remains of it without its numbers."""
         coefficients = len(self.friction.coefficients(Units(1.0, 1.0, 1.0)))
         make = getattr(self.friction, "make", type(self.friction))
-        return Kind(type(self.surface), make, len(self.surface.proportions), coefficients)
+        surface = getattr(self.surface, "make", type(self.surface))
+        return Kind(surface, make, len(self.surface.proportions), coefficients)
+
+    @property
+    def each(self) -> tuple["Top", ...]:
+        """The top with every one of its surfaces active in turn."""
+        return tuple(self._replace(surface=surface) for surface in each_surface(self.surface))
 
     @property
     def numbers(self) -> tuple[Scalar, ...]:
@@ -50,7 +57,7 @@ class Top(NamedTuple):
 class Kind(NamedTuple):
     """What remains of a top when its numbers are taken away: how it is shaped and how it rubs."""
 
-    surface: type[Surface]
+    surface: Any
     friction: Any
     proportions: int
     coefficients: int
@@ -68,7 +75,7 @@ class Kind(NamedTuple):
     def top(self, numbers: tuple[Scalar, ...]) -> Top:
         """Make the top of this kind, in natural units, with these dimensionless numbers."""
         cut = 2 + self.proportions
-        surface = self.surface.from_proportions(tuple(numbers[2:cut]))
+        surface: Surface = self.surface.from_proportions(tuple(numbers[2:cut]))
         friction = self.friction.from_coefficients(tuple(numbers[cut:]))
         return Top(1.0, numbers[0], numbers[1], surface, friction, 1.0)
 

@@ -118,7 +118,13 @@ def falling_time(height: float, rate: float, half: float) -> float:
 
 def highest_gap(state: State, top: Top, duration: float) -> float:
     """The highest gap of a free flight that lasts some time, s; floats."""
-    gap = Separation.of(state, top).at
+    gap, *others = (Separation.of(state, one).at for one in top.each)
+    if others:
+        everywhere = (gap, *others)
+
+        def gap(time: float) -> Triple:
+            return min(at(time) for at in everywhere)
+
     count = min(MOST_LOOKS, 2 + int(LOOKS * duration * length(state.momentum) / top.transverse_inertia))
     times = [duration * j / count for j in range(count + 1)]
     gaps = [gap(time)[0] for time in times]

@@ -13,10 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tippetop.catalogue import Fault
-from tippetop.contact.rules import rules_of
+from tippetop.contact.choice import rules_of
 from tippetop.contact.trajectory import LONGEST
 from tippetop.errors import InvalidInput, one_of
 from tippetop.integrators.base import Array
+from tippetop.mechanics.hull import Hull
 from tippetop.mechanics.motion import along_table, contact
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top, natural_state, natural_units
@@ -99,7 +100,7 @@ def cells_of(problem: Problem, values: Mapping[str, Array]) -> Cells:
     filled = put(problem, values)
     fault = np.full(count, Fault.NONE, dtype=np.int8)
     with np.errstate(all="ignore"):
-        start = launch_state(filled, count)
+        start = launch_state(filled, fault)
         top = branched(filled.top, start)
         if filled.contact.liftoff != "fly":
             sliding = along_table(start)
@@ -109,8 +110,10 @@ def cells_of(problem: Problem, values: Mapping[str, Array]) -> Cells:
         fault[~(spread(filled.body.I3, count) <= 2.0 * spread(filled.body.I1, count))] = Fault.NO_SUCH_BODY
         for field, numbers in values.items():
             fault[~allowed(numbers, known[field])] = Fault.VALUE_OUT_OF_RANGE
-        for part in (filled.body.shape, filled.friction, filled.contact):
+        for part in (*filled.body.shapes, filled.friction, filled.contact):
             fault[refused(part, count)] = Fault.VALUE_OUT_OF_RANGE
+        if not isinstance(top.surface, Hull):
+            fault[~np.isfinite(top.surface.slope(start.axis[2]))] = Fault.VALUE_OUT_OF_RANGE
         units = natural_units(top)
         return Cells(fault, top, units, natural_state(start, units), filled)
 
@@ -122,7 +125,11 @@ def numeric_fields(part: Part, prefix: str = "") -> Iterator[tuple[str, list[Any
         if isinstance(value, Part):
             yield from numeric_fields(value, f"{prefix}{name}.")
         elif isinstance(value, tuple):
-            yield from ((f"{prefix}{name}.{place}", []) for place in range(len(value)))
+            for place, inner in enumerate(value):
+                if isinstance(inner, Part):
+                    yield from numeric_fields(inner, f"{prefix}{name}.{place}.")
+                else:
+                    yield f"{prefix}{name}.{place}", []
         elif isinstance(value, float):
             yield f"{prefix}{name}", list(info.metadata)
 
@@ -135,7 +142,11 @@ def put(part: PartType, values: Mapping[str, Array], prefix: str = "") -> PartTy
         if isinstance(value, Part):
             fields[name] = put(value, values, f"{path}.")
         elif isinstance(value, tuple):
-            fields[name] = tuple(values.get(f"{path}.{k}", number) for k, number in enumerate(value))
+            several = {f"{path}.{place}": inner for place, inner in enumerate(value)}
+            fields[name] = tuple(
+                put(inner, values, f"{where}.") if isinstance(inner, Part) else values.get(where, inner)
+                for where, inner in several.items()
+            )
         else:
             fields[name] = values.get(path, value)
     return cast(PartType, type(part).model_construct(**fields))
@@ -191,10 +202,22 @@ def allowed(values: Array, limits: list[Any]) -> NDArray[np.bool_]:
 _LIMITS = {"gt": np.greater, "ge": np.greater_equal, "lt": np.less, "le": np.less_equal}
 
 
-def launch_state(problem: Problem, count: int) -> State:
-    """The states at launch in SI of a problem with arrays for fields, every number of shape (count,)."""
-    state = problem.start(np)
-    return State.unpack([spread(number, count).copy() for number in state.pack()])
+def launch_state(problem: Problem, fault: NDArray[np.int8]) -> State:
+    """The states at launch in SI of a problem with arrays for fields, every number of shape (count,).
+
+    Of a body of several surfaces, another one may be lowest in every cell: those are launched one by one, and
+    the ones that are refused get a fault.
+    """
+    count = len(fault)
+    if not isinstance(problem.top.surface, Hull):
+        return State.unpack([spread(number, count).copy() for number in problem.start(np).pack()])
+    rows = np.zeros((10, count))
+    for cell in range(count):
+        try:
+            rows[:, cell] = single_part(problem, cell).start().pack()
+        except InvalidInput:
+            fault[cell] = Fault.VALUE_OUT_OF_RANGE
+    return State.unpack(list(rows))
 
 
 def spread(number: Any, count: int) -> Array:

@@ -7,25 +7,18 @@ lane that enters a mode which only a single launch knows is followed alone to it
 
 import numpy as np
 
-from tippetop.contact.block import in_blocks
-from tippetop.contact.flight import Flight
+from tippetop.contact.flight import TOUCHING, Flight
 from tippetop.contact.mode import EventKind, Outcome, Transition
-from tippetop.contact.rules import TOUCHING
-from tippetop.contact.sliding import BRANCH, LIFT_OFF, ROLLING_STOPPING, STOPPING, Sliding, sliding_motion
-from tippetop.contact.trajectory import Trajectory
-from tippetop.integrators import default_name, make_integrator
+from tippetop.contact.sliding import BRANCH, LIFT_OFF, Sliding, sliding_motion
 from tippetop.integrators.base import Array
 from tippetop.mechanics.flight import gap, gap_rate
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.state import State
 from tippetop.mechanics.touchdown import Start
+from tippetop.sweeps.alone import follow
 from tippetop.sweeps.flights import collide, fly_all, rolls, slides, slips
 from tippetop.sweeps.launches import Indices, branched, picked, single
 from tippetop.sweeps.slots import Slots
-from tippetop.tally import Tally
-
-LEAST_SCIPY = 1e-12
-"""Least tolerance of the integrator of single launches where heyoka is not installed."""
 
 FLIGHT_LIMIT = 50_000
 """Flights after which a launch is given up."""
@@ -50,11 +43,9 @@ class Crossings:
     def launch(self, lanes: Indices, state: State) -> None:
         """Sort the launches out that do not simply slide from the start."""
         launches = self.slots.launches
-        alone = launches.alone
+        alone = launches.unresisted
         for i in np.flatnonzero(alone).tolist():
             self._follow_alone(int(lanes[i]), 0.0, launches.rules(i).launch(single(state, i)))
-        if alone.all():
-            return
         plain = slips(state, launches.top) & rolls(state, launches.top)
         if launches.liftoff != "ignore":
             plain &= slides(state, launches.top)
@@ -69,15 +60,16 @@ class Crossings:
         """What follows where guards fall through zero."""
         known = sliding_motion(self.slots.launches.kind, guarded=True).guards
         names = np.array([guard.name for guard in known])[guards]
-        stopping = np.isin(names, (STOPPING, ROLLING_STOPPING))
         other, free = names == BRANCH, names == LIFT_OFF
-        if stopping.any():
-            cells, state = self.slots.cell[lanes[stopping]], self.slots.whole(lanes[stopping])
+        ending = ~(other | free)
+        if ending.any():
+            cells, state = self.slots.cell[lanes[ending]], self.slots.whole(lanes[ending])
+            modes = [self.slots.launches.sliding(int(cell)) for cell in cells]
             transitions = [
-                self.slots.launches.rules(int(cell)).stopping(float(time[stopping][i]), single(state, i))
-                for i, cell in enumerate(cells)
+                mode.follow(str(name), float(moment), single(state, i))
+                for i, (mode, name, moment) in enumerate(zip(modes, names[ending], time[ending], strict=True))
             ]
-            self._enter(lanes[stopping], time[stopping], transitions)
+            self._enter(lanes[ending], time[ending], transitions)
         if other.any():
             self.slots.change_branch(lanes[other])
         self._let_go(lanes[free], time[free])
@@ -171,14 +163,8 @@ class Crossings:
 
     def _follow_alone(self, lane: int, time: float, transition: Transition) -> None:
         """Follow one launch to its end as a single launch is."""
-        name = default_name()
-        method = make_integrator(
-            name, self.tolerance if name == "taylor" else max(self.tolerance, LEAST_SCIPY)
-        )
         slots, ends, cell, where = self.slots, self.slots.ends, self.slots.cell[[lane]], np.array([lane])
-        trajectory, tally = Trajectory(transition, float(slots.end[lane]), method, time=time), Tally()
-        for block in in_blocks(trajectory.segments()):
-            tally.take(block)
+        trajectory, tally = follow(transition, time, float(slots.end[lane]), self.tolerance)
         assert trajectory.outcome is not None, "a trajectory that has no more segments has ended"
         found = tally.ends(trajectory.state, trajectory.time, trajectory.outcome, trajectory.events)
         for name in ("flights", "airborne", "struck", "drilled", "rolled"):

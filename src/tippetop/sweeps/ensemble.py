@@ -17,6 +17,7 @@ from tippetop.mechanics.top import Kind
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Scalar, length
 from tippetop.metrics import ending, final_band, metrics
+from tippetop.sweeps.alone import follow_each, is_alone
 from tippetop.sweeps.cells import cells_of, spread
 from tippetop.sweeps.definition import Sweep
 from tippetop.sweeps.grid import Flat
@@ -47,15 +48,18 @@ def follow_cells(sweep: Sweep, numbers: Flat) -> dict[str, NDArray[np.generic]]:
     if not len(good):
         return found
     launches = cells.launches(good, sweep.duration)
-    method = stepper(swept_motion(launches.kind), sweep.tolerance)
+    method = None if is_alone(launches) else stepper(swept_motion(launches.kind), sweep.tolerance)
     alike = np.argsort(expected_cost(launches), kind="stable")
     for first in range(0, len(alike), LANES_AT_ONCE):
         block = alike[first : first + LANES_AT_ONCE]
         some, which = launches.some(block), good[block]
-        lanes = Lanes(some, method, sweep.tolerance, settled=sweep.settled)
-        ends = lanes.run()
-        again = arrivals(lanes, final_band(ends.state))
-        ends.arrived = np.where(np.isnan(again), ends.arrived, again)
+        if method is None:
+            ends = follow_each(some, sweep.tolerance)
+        else:
+            lanes = Lanes(some, method, sweep.tolerance, settled=sweep.settled)
+            ends = lanes.run()
+            again = arrivals(lanes, final_band(ends.state))
+            ends.arrived = np.where(np.isnan(again), ends.arrived, again)
         units = Units(*(spread(unit, count)[which] for unit in cells.units))
         values = metrics(ends, some.state, some.top, units) | {"outcome": ending(ends)}
         for name, numbers_found in values.items():

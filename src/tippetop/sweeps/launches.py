@@ -5,8 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from tippetop.contact.choice import rules_for
 from tippetop.contact.mode import Rules
-from tippetop.contact.rules import rules_for
+from tippetop.contact.sliding import Sliding
 from tippetop.integrators.base import Array
 from tippetop.mechanics.coulomb import RollingResistance
 from tippetop.mechanics.motion import along_table
@@ -69,22 +70,30 @@ class Launches:
         return self.kind.top(tuple(self.numbers[:, which]))
 
     @property
-    def alone(self) -> Flags:
-        """Which are followed alone, for rules of their own or as nothing resists rolling, shape (n,)."""
+    def unresisted(self) -> Flags:
+        """Which roll without the resistance that the others have, shape (n,)."""
         law = self.top.friction
-        unresisted = isinstance(law, RollingResistance) and law.length == 0.0
-        found: Flags = np.full(len(self), self.own is not None) | unresisted
+        found: Flags = np.zeros(len(self), dtype=bool) | (
+            isinstance(law, RollingResistance) and law.length == 0.0
+        )
         return found
 
     def rules(self, launch: int) -> Rules:
         """What follows where the contact of one launch begins or ends."""
-        top = off_branch(self.kind.top(tuple(self.numbers[:, launch].tolist())))
+        top = off_branch(self._top(launch))
         if isinstance(top.friction, RollingResistance) and top.friction.length == 0.0:
             top = top._replace(friction=top.friction.law)
         if self.own is not None:
             rules: Rules = self.own[launch](top)
             return rules
         return rules_for(top, self.liftoff, float(self.restitution[launch]))
+
+    def sliding(self, launch: int) -> Sliding:
+        """The mode of one launch that slides."""
+        return Sliding(self._top(launch), self.rules(launch))
+
+    def _top(self, launch: int) -> Top:
+        return self.kind.top(tuple(self.numbers[:, launch].tolist()))
 
 
 def branched(top: Top, state: State) -> Top:

@@ -2,12 +2,20 @@
 
 from tippetop.errors import InvalidInput
 from tippetop.mechanics.coulomb import RollingResistance
+from tippetop.mechanics.hull import Hull
 from tippetop.mechanics.rolling import is_set_valued, slip_dimension
 from tippetop.mechanics.top import Top
 
 
+def require_one_surface(top: Top) -> None:
+    """Refuse a body of several surfaces, with `InvalidInput`."""
+    if isinstance(top.surface, Hull):
+        raise InvalidInput("body.shape", "several surfaces", "one of them at a time, for the theory to tell")
+
+
 def require_sphere(top: Top) -> None:
     """Refuse a body that is no eccentric sphere, with `InvalidInput`."""
+    require_one_surface(top)
     if not top.surface.spherical:
         raise InvalidInput(
             "body.shape", top.surface, "an eccentric sphere; Jellett's integral holds for no other"
@@ -32,7 +40,9 @@ def require_creep(top: Top) -> None:
 
     There is no linear motion then: a point on dry friction sticks, and rolls for ever whatever is stable, and
     resistance to rolling holds an axis that hardly moves. A patch on dry friction does creep, by drilling.
+    A body of several surfaces is refused too.
     """
+    require_one_surface(top)
     if isinstance(top.friction, RollingResistance):
         raise InvalidInput(
             "rolling_resistance",

@@ -32,7 +32,7 @@ def _(steady: xr.Dataset) -> Finding:
     )
 
 
-_ALPHA = float(REPORT.shape.surface.proportions[0])
+_ALPHA = float(REPORT.surface.proportions[0])
 
 
 def _left_of_217(theta: float, phi_dot: float, omega3: float) -> float:

@@ -77,7 +77,7 @@ def _listed(gains: dict[str, float], weight: float) -> str:
 def _weight(run: xr.Dataset) -> float:
     """Energy of a fall by one radius, J."""
     problem = Problem.from_json(run.attrs["problem"])
-    return float(problem.body.mass * problem.gravity * float(problem.body.shape.surface.size))
+    return float(problem.body.mass * problem.gravity * float(problem.body.surface.size))
 
 
 @CHAPTER.claim(
@@ -231,7 +231,7 @@ def _(run: xr.Dataset) -> Finding:
 def _(run: xr.Dataset) -> Finding:
     return Finding(
         None,
-        float(run["highest_gap"]) > PLOTTED.value * float(REPORT.shape.surface.size),
+        float(run["highest_gap"]) > PLOTTED.value * float(REPORT.surface.size),
         f"First at {run['lift_off_time']:.6f} s, and higher than the 1 % of its radius that a drawing could "
         f"show. {_hopping(run)} That the motion is hard to discuss, as the report has it, does not keep it "
         "from being computed.",

@@ -184,7 +184,7 @@ _end_of_run_50("omega3", "omega", "rad/s")
     right="I1 = 131/350 m R^2 and I3 = 2/5 m R^2, as in the listing",
 )
 def _(run: xr.Dataset, other: xr.Dataset) -> Finding:
-    unit = REPORT.mass * float(REPORT.shape.surface.size) ** 2
+    unit = REPORT.mass * float(REPORT.surface.size) ** 2
     runs = {"listing": (run, REPORT), "table": (other, REPORT_TABLE_1)}
     misses = {
         name: max(abs(float(run[f"end_{key}"]) - value) for key, value in END_OF_FIG_5.items())

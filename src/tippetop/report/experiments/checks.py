@@ -45,7 +45,7 @@ def _in_centimetres(problem: Problem, power: int) -> Problem:
     body, unit = problem.body, 100.0
     return problem.replace(
         {
-            "body.shape.radius": float(body.shape.surface.size) * unit,
+            "body.shape.radius": float(body.surface.size) * unit,
             "body.I1": body.I1 * unit**2,
             "body.I3": body.I3 * unit**2,
             "friction.mu": _mu(problem) * unit**power,

@@ -124,7 +124,7 @@ def _vector(now: xr.Dataset, name: str) -> Vector:
 
 def _steady(quick: bool) -> xr.Dataset:
     """Where several bodies end up between upright and inverted, and how well (2.16) and (2.17) hold there."""
-    m, R = REPORT.mass, float(REPORT.shape.surface.size)
+    m, R = REPORT.mass, float(REPORT.surface.size)
     tops = [
         ("the report's", REPORT, 50.0),
         ("three times as heavy", REPORT.model_copy(update={"mass": 3 * m}), 50.0),

@@ -1,0 +1,112 @@
+"""What follows when a surface of a body that has several touches the table, or leaves it."""
+
+from dataclasses import dataclass, replace
+from typing import Self
+
+from tippetop.contact.double import on_two
+from tippetop.contact.flight import TOUCHING
+from tippetop.contact.mode import Event, EventKind, Outcome, Transition
+from tippetop.contact.rules import FreeToFly
+from tippetop.contact.surfaces import number_of
+from tippetop.mechanics.double_contact import double_contact, without_tilting
+from tippetop.mechanics.flight import gap, gap_rate
+from tippetop.mechanics.hull import lowest_surface
+from tippetop.mechanics.impact import Impact, impact
+from tippetop.mechanics.impact_on_two import impact_on_two
+from tippetop.mechanics.invariants import energy
+from tippetop.mechanics.motion import along_table
+from tippetop.mechanics.rolling import is_set_valued
+from tippetop.mechanics.state import State
+from tippetop.mechanics.stick_slip import is_slipping
+from tippetop.mechanics.top import Top
+
+SLOWEST_ROCKING = 1e-7
+"""Velocity, in units of sqrt(g R), below which rocking between two surfaces has come to its end.
+
+Infinitely many impacts, now of one and now of the other, bring both to touch at once in a finite time. Where
+a gap falls back with more than g, this is faster as the square root: hops stay out of reach of rounding.
+"""
+
+
+@dataclass(frozen=True)
+class OnSeveral(FreeToFly):
+    """The rules of a body of several surfaces, of which one is active: it may fly, and rock."""
+
+    def launch(self, state: State) -> Transition:
+        """As for one surface: that which reaches lowest."""
+        lowest = self.top._replace(surface=lowest_surface(self.top.surface, state.axis[2]))
+        return self._of(lowest)._launch(state)
+
+    def _launch(self, state: State) -> Transition:
+        return super().launch(state)
+
+    def _of(self, top: Top) -> Self:
+        return replace(self, top=top)
+
+    def _beside(self, state: State) -> list[Top]:
+        """The top with each of the other surfaces active that touch."""
+        return [other for other in self.top.each if other != self.top and gap(state, other) <= TOUCHING]
+
+    def touch(self, surface: int, time: float, state: State) -> Transition:
+        """Collide with another surface, and go on as the impact leaves the top."""
+        return self.on(surface).touchdown(time, state)
+
+    def resting(self, time: float, state: State, events: tuple[Event, ...] = ()) -> Transition:
+        """As for one surface, unless others touch too, and open no faster than rocking that has ended."""
+        for other in self._beside(state):
+            rate = gap_rate(state, other)
+            if rate < -SLOWEST_ROCKING:
+                return self._of(other)._collide(time, state, events, 0.0)
+            if rate <= self._slowest(other, state):
+                return self._resting_on_two(other, time, state, events)
+            events = (*events, Event(EventKind.OPENING, time, surface=number_of(other)))
+        return super().resting(time, state, events)
+
+    def _impact(self, state: State, restitution: float) -> Impact:
+        """That of the active surface alone, unless it presses another that touches onto the table.
+
+        Where slip ends meanwhile, under a law that leaves the force open then, the surfaces strike in turns.
+        """
+        alone = impact(state, restitution, self.top)
+        for other in self._beside(state):
+            pressed = gap_rate(alone.state, other) < -SLOWEST_ROCKING
+            if pressed and abs(gap_rate(state, other)) <= SLOWEST_ROCKING:
+                try:
+                    return impact_on_two(state, restitution, (self.top, other))
+                except ArithmeticError:
+                    return alone
+        return alone
+
+    def _untouched(self, time: float, state: State, events: tuple[Event, ...]) -> Transition:
+        return self.resting(time, state, events)
+
+    def _slowest(self, other: Top, state: State) -> float:
+        """Velocity of another surface that touches too below which it stays, or comes back at once."""
+        sliding = along_table(state)
+        if is_set_valued(self.top.friction) and not is_slipping(*sliding, other):
+            return SLOWEST_ROCKING
+        back = abs(double_contact(sliding, (self.top, other)).acceleration[1])
+        return float(SLOWEST_ROCKING * max(1.0, back) ** 0.5)
+
+    def _resting_on_two(self, other: Top, time: float, state: State, events: tuple[Event, ...]) -> Transition:
+        """The resolver of two contacts that are closed and have no normal velocities: who stays closed."""
+        mine = without_tilting(state, self.top)
+        if is_set_valued(self.top.friction):
+            sliding = along_table(mine)
+            if not all(is_slipping(*sliding, top) for top in (self.top, other)):
+                return Transition(events, Outcome.STICKING_ON_TWO, state)
+        pair = double_contact(along_table(mine), (self.top, other))
+        lost = float(energy(state, self.top) - energy(mine, self.top))
+        here = (pair.normal[0] > 0.0) & (pair.normal[1] > 0.0)
+        alone = (pair.first.free_acceleration < 0.0) & (pair.acceleration[1] >= 0.0)
+        another = (pair.second.free_acceleration < 0.0) & (pair.acceleration[0] >= 0.0)
+        neither = (pair.first.free_acceleration >= 0.0) & (pair.second.free_acceleration >= 0.0)
+        if here + alone + another + neither != 1:
+            detail = "not exactly one set of forces is consistent with two surfaces that touch"
+            return Transition(events, Outcome.FAILED, state, detail)
+        if here:
+            event = self.event(EventKind.DOUBLE_CONTACT, time, 0.0, lost)
+            return Transition((*events, event), on_two(mine, self, other), mine)
+        if another:
+            return super(OnSeveral, self._of(other)).resting(time, state, events)
+        return super().resting(time, state, events)

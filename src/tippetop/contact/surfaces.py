@@ -1,0 +1,68 @@
+"""Guards of what a body's shape makes happen: another surface touches the table, or its face lies on it."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from tippetop.contact.mode import Mode, Outcome, Transition
+from tippetop.integrators.base import Guard
+from tippetop.mechanics.hull import Hull, acting, each_surface
+from tippetop.mechanics.state import State
+from tippetop.mechanics.top import Kind, Top
+from tippetop.mechanics.vectors import Scalar
+
+FACE, TOUCH = "face", "touch "
+
+MARGIN = 1e-15
+"""Gap, in sizes, below zero at which a surface touches: one that just let go is there by rounding."""
+
+
+def number_of(top: Top) -> int:
+    """Number of the surface that is active."""
+    return top.surface.active if isinstance(top.surface, Hull) else 0
+
+
+def surface_guards(kind: Kind, closed: Sequence[int] = ()) -> list[Guard]:
+    """Guards of the open surfaces of bodies of this kind, and of the face that the active one is the edge of.
+
+    Parameters
+    ----------
+    kind
+        The kind of body.
+    closed
+        Numbers of surfaces that touch the table besides the active one.
+    """
+    surface = kind.example.surface
+    closed = (*closed, number_of(kind.example))
+    guards = []
+    if hasattr(acting(surface), "face_guard"):
+        guards.append(Guard(FACE, lambda y, numbers: _face(y, _surface(kind, numbers))))
+    others = [number for number in range(len(each_surface(surface))) if number not in closed]
+    return guards + [Guard(f"{TOUCH}{number}", _gap(kind, number)) for number in others]
+
+
+def follow_surface(mode: Mode, guard: str, time: float, state: State) -> Transition | None:
+    """What follows one of these guards; None for any other."""
+    if guard == FACE:
+        return Transition((), Outcome.LYING_FLAT, state)
+    if guard.startswith(TOUCH):
+        return mode.rules.touch(int(guard.removeprefix(TOUCH)), time, state)
+    return None
+
+
+def _surface(kind: Kind, numbers: Sequence[Scalar]) -> Any:
+    return kind.top(tuple(numbers[: kind.numbers])).surface
+
+
+def _face(y: Sequence[Scalar], surface: Any) -> Scalar:
+    edge: Any = acting(surface)
+    return edge.face_guard((y[0], y[1], y[2]))
+
+
+def _gap(kind: Kind, number: int) -> Any:
+    """Gap of a surface while the active one touches, as a function of a mode's numbers and the top's."""
+
+    def value(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
+        surface = _surface(kind, numbers)
+        return surface.height(y[2]) - surface.each[number].height(y[2]) + MARGIN
+
+    return value

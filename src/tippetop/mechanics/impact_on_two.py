@@ -1,0 +1,169 @@
+"""An impact of one surface while another touches the table, and is pressed onto it.
+
+With the normal impulse p of the striking contact as time (see `impact`), the other contact j has
+
+    0 <= dp_j,    0 <= dv_nj,    dp_j dv_nj = 0    while its normal velocity v_nj is zero,
+
+and none of its own while it is open. At both, friction follows the law along the way.
+"""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+from tippetop.mechanics.double_contact import Tops
+from tippetop.mechanics.dry_impact import is_dry
+from tippetop.mechanics.friction import NO_TORQUE
+from tippetop.mechanics.impact import Impact
+from tippetop.mechanics.impulse import contact_velocity
+from tippetop.mechanics.integrated_impact import DOUBT, NODES, TOLERANCE, combined
+from tippetop.mechanics.invariants import energy
+from tippetop.mechanics.motion import angular_velocity, moment_per_normal_force
+from tippetop.mechanics.roots import crossing
+from tippetop.mechanics.state import State
+from tippetop.mechanics.surface import contact_vector
+from tippetop.mechanics.vectors import Vector, add, length, scale
+
+Point = tuple[float, ...]
+"""Change of angular momentum and velocity, the normal impulses of both contacts, and the first one's work."""
+
+OPEN = 1e-9
+"""Normal velocity of a contact that is closed, and slip that has ended, in units of what strikes."""
+
+MOST = 3000
+"""Steps after which an impact is given up; most take some ten."""
+
+
+class StruckOnTwo(NamedTuple):
+    """A body at the start of such an impact, floats.
+
+    Attributes
+    ----------
+    state
+        Its state.
+    tops
+        The top with the striking surface active, and with the one that touches.
+    arms
+        Their contact vectors, m.
+    speed
+        Speed of what strikes, m/s.
+    """
+
+    state: State
+    tops: Tops
+    arms: tuple[Vector, Vector]
+    speed: float
+
+    def after(self, here: Point) -> State:
+        """The state after these impulses."""
+        momentum = add(self.state.momentum, (here[0], here[1], here[2]))
+        return self.state._replace(
+            momentum=momentum, velocity=add(self.state.velocity, (here[3], here[4], here[5]))
+        )
+
+    def velocities(self, state: State) -> tuple[Vector, Vector]:
+        """Velocities of both contact points."""
+        one, other = (contact_velocity(state, arm, self.tops[0]) for arm in self.arms)
+        return one, other
+
+    def slope(self, here: Point, *, pressed: bool) -> Point:
+        """Rate of the numbers in a clock in which slip that ends decays exponentially."""
+        state, top = self.after(here), self.tops[0]
+        omega = angular_velocity(state.axis, state.momentum, top)
+        points, still = self.velocities(state), self.state._replace(momentum=NO_TORQUE, velocity=NO_TORQUE)
+        pace, units, answers = 1.0 / self.speed, [], []
+        for point, arm in zip(points, self.arms, strict=True):
+            if is_dry(top.friction) and length((*point[:2], 0.0)) < OPEN * self.speed:
+                raise ArithmeticError("slip ends in an impact on two surfaces")
+            traction = top.friction.traction((point[0], point[1]), omega)
+            slip, grip = length((*point[:2], 0.0)), length((*traction.force, 0.0))
+            pace += grip / slip if slip else 0.0
+            moment, force = moment_per_normal_force(arm, traction), (*traction.force, 1.0)
+            moved = still._replace(momentum=moment, velocity=scale(1.0 / top.mass, force))
+            units.append((*moved.momentum, *moved.velocity))
+            answers.append(self.velocities(moved))
+        share = max(0.0, -answers[0][1][2] / answers[1][1][2]) if pressed else 0.0
+        rates = (*(a + share * b for a, b in zip(*units, strict=True)), 1.0, share, points[0][2])
+        return tuple(rate / pace for rate in rates)
+
+    def step(self, here: Point, step: float, *, pressed: bool) -> tuple[Point, float]:
+        """The numbers after a step, and its error over the one allowed."""
+        slopes = [self.slope(here, pressed=pressed)]
+        there = here
+        for weights in NODES:
+            there = combined(here, step, weights, slopes)
+            slopes.append(self.slope(there, pressed=pressed))
+        off = self.after(combined((0.0,) * len(here), step, DOUBT, slopes))
+        errors = zip(self.velocities(off), self.velocities(self.state), strict=True)
+        doubt = max(length(add(one, scale(-1.0, other))) for one, other in errors)
+        return there, float(doubt / (TOLERANCE * self.speed))
+
+    def until(self, here: Point, goal: Callable[[Point], float]) -> Point:
+        """The first numbers from given ones on at which the goal is not negative.
+
+        Raises
+        ------
+        ArithmeticError
+            If it takes too many steps.
+        """
+        step = 0.05 * self.tops[0].mass
+        for _ in range(MOST):
+            lifted = self.velocities(self.after(here))[1][2]
+            pressed = bool(lifted <= OPEN * self.speed)
+            there, doubt = self.step(here, step, pressed=pressed)
+            if doubt > 1.0:
+                step *= max(0.1, 0.9 * doubt**-0.2)
+                continue
+            ends = [goal]
+            if not pressed:
+                ends.append(lambda y: -self.velocities(self.after(y))[1][2])
+            reached = [end for end in ends if end(there) >= 0.0]
+            for end in reached:
+                there = self._landing(here, step, end, there, pressed=pressed)
+            if goal in reached and goal(there) >= -1e-12:
+                return there
+            here, step = there, step * min(5.0, 0.9 * max(doubt, 1e-10) ** -0.2)
+        raise ArithmeticError("an impact on two surfaces does not come to its end")
+
+    def _landing(
+        self, here: Point, step: float, end: Callable[[Point], float], there: Point, *, pressed: bool
+    ) -> Point:
+        """Where within a step an end is reached, unless another one was before."""
+        if end(there) < 0.0:
+            return there
+        part = crossing(lambda part: end(self.step(here, part, pressed=pressed)[0]), 0.0, step)
+        return self.step(here, part, pressed=pressed)[0]
+
+
+def impact_on_two(state: State, restitution: float, tops: Tops) -> Impact:
+    """What an impact does to a body whose other surface touches the table, with no normal velocity.
+
+    Parameters
+    ----------
+    state
+        The state before, floats.
+    restitution
+        Poisson's coefficient e of the striking contact, between 0 and 1.
+    tops
+        The top with the striking surface active, and with the one that touches.
+
+    Raises
+    ------
+    ArithmeticError
+        If it does not come to its end, or slip ends under a law that then leaves the force open.
+    """
+    arms = tuple(contact_vector(state.axis, top.surface) for top in tops)
+    speed = -float(contact_velocity(state, arms[0], tops[0])[2])
+    body = StruckOnTwo(state, tops, (arms[0], arms[1]), speed)
+    compressed = body.until((0.0,) * 9, lambda y: float(body.velocities(body.after(y))[0][2]) / speed)
+    end = compressed
+    if restitution > 0.0:
+        full, stored = (1.0 + restitution) * compressed[6], -compressed[8]
+
+        def goal(here: Point) -> float:
+            spent, left = here[6] / full - 1.0, here[8] / stored
+            return float(max(spent, left))
+
+        end = body.until(compressed, goal)
+    after = body.after(end)
+    lost = max(0.0, float(energy(state, tops[0]) - energy(after, tops[0])))
+    return Impact(after, end[6], lost, compressed[6])

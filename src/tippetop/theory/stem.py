@@ -1,0 +1,64 @@
+"""What it takes to stand on a stem: the least Jellett's integral about its tip."""
+
+import math
+
+from tippetop.bodies import Body
+from tippetop.errors import InvalidInput
+from tippetop.mechanics.hull import each_surface
+from tippetop.mechanics.surface import contact_vector
+from tippetop.mechanics.top import Top
+from tippetop.mechanics.vectors import Vector, dot
+
+
+def least_jellett_to_stand(body: Body, surface: int = 1, gravity: float = 9.8) -> float:
+    """Least size of Jellett's integral about a stem's tip with which a top stands upright on it.
+
+    Parameters
+    ----------
+    body
+        The body.
+    surface
+        Number of the stem's tip, a sphere, among its surfaces.
+    gravity
+        Acceleration of gravity, m/s^2.
+
+    Returns
+    -------
+    float
+        lambda = -L.a, kg m^3/s, with the contact vector a of the tip: 0 where the top stands at rest,
+        infinite where it stands at no spin.
+
+    Raises
+    ------
+    InvalidInput
+        If the body has no such surface, or it is no sphere.
+
+    Notes
+    -----
+    While the tip alone touches, lambda is constant, as for any sphere. With the tip's radius r, and its
+    centre zeta above the centre of mass along the axis, spinning upright is stable under friction where
+
+        lambda > sqrt(m g I3 zeta / (r (zeta + r (1 - I1 / I3)))) (r + zeta)^2,
+
+    which is the condition of an inverted tippe top, whose sphere the tip takes the place of
+    (Rauch-Wojciechowski, Skoldstam and Glad, Regular and Chaotic Dynamics 10 (2005) 333-362).
+    """
+    if surface not in range(len(body.shapes)):
+        raise InvalidInput("surface", surface, f"a number from 0 to {len(body.shapes) - 1}")
+    tip = body.shapes[surface].surface
+    if not tip.spherical:
+        raise InvalidInput("surface", surface, "that of a sphere; Jellett's integral holds for no other")
+    radius = tip.height(0.0)
+    zeta = -float(tip.slope(0.0))
+    if zeta <= 0.0:
+        return 0.0
+    lever = zeta + radius * (1.0 - body.I1 / body.I3)
+    if lever <= 0.0:
+        return math.inf
+    spin = math.sqrt(body.mass * gravity * body.I3 * zeta / (radius * lever))
+    return float(spin * (radius + zeta) ** 2)
+
+
+def jellett_about(surface: int, axis: Vector, momentum: Vector, top: Top) -> float:
+    """Jellett's integral -L.a about one of a top's surfaces, whether it touches or not, kg m^3/s; floats."""
+    return -float(dot(momentum, contact_vector(axis, each_surface(top.surface)[surface])))

@@ -1,0 +1,128 @@
+"""Impacts of one surface while another is pressed onto the table: closed and independent solutions."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import Phase, assume, given, settings
+from hypothesis import strategies as st
+
+from strategies import numbers
+from tippetop.mechanics.flight import gap_rate
+from tippetop.mechanics.friction import RegularizedCoulombLaw, ViscousLaw
+from tippetop.mechanics.hull import Hull
+from tippetop.mechanics.impact_on_two import impact_on_two
+from tippetop.mechanics.invariants import energy
+from tippetop.mechanics.motion import axis_rate, on_table
+from tippetop.mechanics.state import SlidingState
+from tippetop.mechanics.surface import SphereSurface, contact_vector
+from tippetop.mechanics.top import Top
+
+
+def rods(law):
+    """Rods with balls at both ends, which lie on their side: the ends press on one another."""
+    return st.builds(
+        lambda first, second, inertia, axial: Top(
+            1.0,
+            inertia,
+            axial * inertia,
+            Hull.of((SphereSurface(1.0, first), SphereSurface(1.0, -second))),
+            law,
+            1.0,
+        ),
+        numbers(2.0, 4.0),
+        numbers(2.0, 4.0),
+        numbers(0.5, 2.0),
+        numbers(0.2, 1.0),
+    )
+
+
+@st.composite
+def blows(draw, law):
+    """A rod on its side, of which the second end strikes while the first one touches."""
+    top = draw(rods(law))
+    azimuth = draw(numbers(-math.pi, math.pi))
+    axis = (math.cos(azimuth), math.sin(azimuth), 0.0)
+    momentum = tuple(draw(numbers(-1.0, 1.0)) for _ in range(3))
+    velocity = tuple(draw(numbers(-1.0, 1.0)) for _ in range(2))
+    first, second = top.each
+    state = on_table(SlidingState(axis, momentum, velocity), first)
+    assume(gap_rate(state, second) < -0.1)
+    return state, (second, first)
+
+
+@given(blows(ViscousLaw(0.0)), numbers(0.0, 1.0))
+def test_without_friction_it_is_a_linear_complementarity_problem(blow, restitution):
+    """M_ij = 1/m + h_i' h_j' s^2 / I1, and the first contact gives what keeps its velocity zero."""
+    state, tops = blow
+    slopes = np.array([top.surface.slope(state.axis[2]) for top in tops])
+    matrix = 1.0 + np.outer(slopes, slopes) / tops[0].transverse_inertia
+    assert matrix[0, 1] < 0.0
+    approach = gap_rate(state, tops[0])
+    struck = (1.0 + restitution) * -approach / (matrix[0, 0] - matrix[0, 1] ** 2 / matrix[1, 1])
+    found = impact_on_two(state, restitution, tops)
+    assert found.impulse == pytest.approx(struck, rel=1e-12)
+    assert gap_rate(found.state, tops[0]) == pytest.approx(-restitution * approach, abs=1e-12)
+    assert gap_rate(found.state, tops[1]) == pytest.approx(0.0, abs=1e-12)
+    pressed = -matrix[0, 1] * struck / matrix[1, 1]
+    assert found.state.velocity[2] - state.velocity[2] == pytest.approx(struck + pressed, rel=1e-12)
+    lost = 0.5 * (1.0 - restitution**2) * approach**2 * struck / ((1.0 + restitution) * -approach)
+    assert found.energy_lost == pytest.approx(lost, abs=1e-12)
+
+
+def naive(state, tops, steps):
+    """The same impact by matrices, with Heun's method in the normal impulse, until what strikes stops."""
+    top = tops[0]
+    axis = np.array(state.axis)
+    inverse = (np.eye(3) - np.outer(axis, axis)) / top.transverse_inertia
+    inverse += np.outer(axis, axis) / top.axial_inertia
+    arms = [np.array(contact_vector(state.axis, one.surface)) for one in tops]
+
+    def rates(momentum, velocity):
+        omega = inverse @ momentum
+        sums, pushes = [], []
+        for arm in arms:
+            slip = velocity + np.cross(omega, arm)
+            force = np.array([*top.friction.traction(tuple(slip[:2]), tuple(omega)).force, 1.0])
+            turn = inverse @ np.cross(arm, force)
+            sums.append((np.cross(arm, force), force / top.mass))
+            pushes.append([(force / top.mass + np.cross(turn, other))[2] for other in arms])
+        share = max(0.0, -pushes[0][1] / pushes[1][1])
+        return sums[0][0] + share * sums[1][0], sums[0][1] + share * sums[1][1]
+
+    def normal(momentum, velocity):
+        return (velocity + np.cross(inverse @ momentum, arms[0]))[2]
+
+    momentum, velocity = np.array(state.momentum), np.array(state.velocity)
+    step = -normal(momentum, velocity) / steps
+    impulse = 0.0
+    while True:
+        one = rates(momentum, velocity)
+        two = rates(momentum + step * one[0], velocity + step * one[1])
+        mean = [(a + b) / 2 for a, b in zip(one, two, strict=True)]
+        here, there = normal(momentum, velocity), normal(momentum + step * mean[0], velocity + step * mean[1])
+        if there >= 0.0:
+            part = step * here / (here - there)
+            return impulse + part, momentum + part * mean[0], velocity + part * mean[1]
+        momentum, velocity, impulse = momentum + step * mean[0], velocity + step * mean[1], impulse + step
+
+
+@pytest.mark.parametrize("law", [ViscousLaw(0.3), RegularizedCoulombLaw(0.2, 0.3)])
+def test_with_friction_it_is_what_small_steps_find(law):
+    @settings(max_examples=5, phases=(Phase.explicit, Phase.generate))
+    @given(blows(law))
+    def agree(blow):
+        state, tops = blow
+        found = impact_on_two(state, 0.0, tops)
+        impulse, momentum, velocity = naive(state, tops, 1000)
+        assert found.impulse == pytest.approx(impulse, rel=1e-5)
+        assert found.state.momentum == pytest.approx(momentum, abs=1e-5)
+        assert found.state.velocity == pytest.approx(velocity, abs=1e-5)
+        assert gap_rate(found.state, tops[0]) == pytest.approx(0.0, abs=1e-9)
+        assert gap_rate(found.state, tops[1]) > -1e-8
+        change = energy(state, tops[0]) - energy(found.state, tops[0])
+        assert found.energy_lost == pytest.approx(change, abs=1e-12)
+        assert change > 0.0
+        assert axis_rate(state.axis, found.state.momentum, tops[0])[2] == pytest.approx(0.0, abs=1e-8)
+
+    agree()

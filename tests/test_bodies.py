@@ -1,0 +1,102 @@
+"""Bodies that are no tippe tops: a disk on its edge, hurricane balls, eggs off their centre."""
+
+import math
+
+import numpy as np
+import pytest
+
+import tippetop as tt
+from tippetop.catalogue import Fault
+
+DISK_MASS, DISK_RADIUS, THICKNESS = 0.4, 0.0375, 0.0125
+DISK = tt.Body(
+    mass=DISK_MASS,
+    shape=tt.Ring(radius=DISK_RADIUS, center=-THICKNESS / 2),
+    I1=DISK_MASS * (3 * DISK_RADIUS**2 + THICKNESS**2) / 12,
+    I3=DISK_MASS * DISK_RADIUS**2 / 2,
+)
+BALL_MASS, BALL_RADIUS = 0.032, 0.01
+BALLS = tt.Body(
+    mass=2 * BALL_MASS,
+    shape=tt.Sphere(radius=BALL_RADIUS, center=-BALL_RADIUS),
+    I1=2 * (2 / 5 + 1) * BALL_MASS * BALL_RADIUS**2,
+    I3=2 * 2 / 5 * BALL_MASS * BALL_RADIUS**2,
+)
+ROUGH = tt.CoulombFriction(mu=1.0)
+
+
+def steadily_rolling(body: tt.Body, tilt: float, precession: float, spin: float) -> None:
+    """See that a body whose centre is at rest goes on so."""
+    launch = tt.Launch(tilt=tilt, precession=precession, spin=spin)
+    run = tt.simulate(tt.Problem(body=body, friction=ROUGH, launch=launch, gravity=9.81), 0.2, samples=41)
+    assert run.attrs["outcome"] == "completed"
+    np.testing.assert_allclose(run["theta"], tilt, rtol=0, atol=2e-9)
+    np.testing.assert_allclose(run["phi_dot"], precession, rtol=2e-9)
+    assert np.abs(run["velocity"]).max() < 2e-9 * precession * float(body.surface.size)
+    assert float(run["energy_error"]) < 1e-12
+
+
+def test_a_disk_rolls_on_its_edge_with_its_centre_at_rest() -> None:
+    """With the precession and the spin that an independent solver finds for this disk."""
+    steadily_rolling(DISK, 0.3, 59.96600573975, 2.95352773481)
+
+
+@pytest.mark.parametrize("precession", [55.0, 80.0, 200.0])
+def test_hurricane_balls_roll_on_one_ball(precession: float) -> None:
+    """cos(theta) = 2/5 - g / (Omega^2 R), while omega lies along the contact vector."""
+    c = 2 / 5 - 9.81 / (precession**2 * BALL_RADIUS)
+    steadily_rolling(BALLS, math.acos(c), precession, precession * (1 + c))
+
+
+def test_a_disk_that_does_not_spin_falls_flat() -> None:
+    """Without friction its centre falls straight down: energy gives its tilt as a quadrature."""
+    thin = DISK.model_copy(update={"shape": tt.Ring(radius=DISK_RADIUS)})
+    launch = tt.Launch(tilt=1.2, spin=0.0)
+    problem = tt.Problem(body=thin, friction=tt.ViscousFriction(mu=0.0), launch=launch, gravity=9.81)
+    run = tt.simulate(problem, 1.0)
+    assert run.attrs["outcome"] == "lying_flat"
+    assert run["theta"].values[-1] == pytest.approx(1e-3, rel=1e-6)
+    # (I1 + m R^2 cos^2) theta'^2 / 2 = m g R (sin 1.2 - sin theta); theta = 1.2 - u^2 takes the root away.
+    nodes, weights = np.polynomial.legendre.leggauss(60)
+    u = np.sqrt(1.2 - 1e-3) * (nodes + 1) / 2
+    tilt, inertia = 1.2 - u * u, thin.I1
+    fall = DISK_MASS * 9.81 * DISK_RADIUS * (np.sin(1.2) - np.sin(tilt))
+    moving = (inertia + DISK_MASS * (DISK_RADIUS * np.cos(tilt)) ** 2) / 2
+    expected = np.sqrt(1.2 - 1e-3) / 2 * weights @ (2 * u * np.sqrt(moving / fall))
+    assert float(run["end_time"]) == pytest.approx(expected, rel=1e-9)
+    assert float(run["energy_error"]) < 1e-9
+
+
+def test_what_lies_flat_is_not_launched() -> None:
+    with pytest.raises(tt.InvalidInput, match=r"launch\.tilt = 0.* a tilt at which the body does not lie"):
+        tt.Problem(body=DISK, friction=ROUGH, launch=tt.Launch(tilt=0.0, spin=1.0))
+
+
+def test_sweeps_find_disks_lying_flat_as_runs_do() -> None:
+    problem = tt.Problem(
+        body=DISK, friction=tt.ViscousFriction(mu=1.0), launch=tt.Launch(tilt=0.3, spin=0.0), gravity=9.81
+    )
+    found = tt.sweep(
+        problem, {"launch.spin": [0.0, 40.0], "launch.tilt": [0.0, 0.3]}, duration=0.2, workers=1
+    )
+    for spin in (0.0, 40.0):
+        run = tt.simulate(problem.replace({"launch.spin": spin}), 0.2)
+        cell = found.sel({"launch.spin": spin, "launch.tilt": 0.3})
+        assert float(cell["end_time"]) == pytest.approx(float(run["end_time"]), rel=1e-9)
+        assert float(cell["final_theta"]) == pytest.approx(float(run["final_theta"]), rel=1e-7)
+        flat = found.sel({"launch.spin": spin, "launch.tilt": 0.0})
+        assert int(flat["fault"]) == Fault.VALUE_OUT_OF_RANGE
+    assert float(found.sel({"launch.spin": 0.0, "launch.tilt": 0.3})["end_time"]) < 0.1
+
+
+@pytest.mark.parametrize("body", [DISK, BALLS])
+def test_their_shapes_go_into_text_and_come_back(body: tt.Body) -> None:
+    problem = tt.Problem(body=body, friction=ROUGH, launch=tt.Launch(tilt=0.3, spin=1.0))
+    assert tt.Problem.from_toml(problem.to_toml()) == problem
+    assert tt.Problem.from_json(problem.to_json()) == problem
+
+
+def test_an_egg_may_be_heavier_at_one_end() -> None:
+    egg = tt.Body(mass=0.05, shape=tt.Spheroid(across=0.02, along=0.03, center=0.004), I1=9e-6, I3=5e-6)
+    assert egg.surface.height(1.0) == pytest.approx(0.03 - 0.004)
+    assert egg.surface.height(-1.0) == pytest.approx(0.03 + 0.004)

@@ -1,0 +1,205 @@
+"""Tops with a stem: impacts while the sphere touches, rocking, double contact, and what ends it."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import tippetop as tt
+from tippetop.catalogue import SWEPT, Fault
+from tippetop.contact import several
+from tippetop.mechanics.double_contact import double_contact
+from tippetop.mechanics.state import SlidingState
+
+LEINE_GLOCKER = tt.Problem(
+    body=tt.Body(
+        mass=6e-3,
+        shape=[tt.Sphere(radius=1.5e-2, center=3e-3), tt.Sphere(radius=5e-3, center=1.6e-2)],
+        I1=8e-7,
+        I3=7e-7,
+    ),
+    friction=tt.ContensouFriction(mu=0.3, patch_radius=5e-4, pressure="ellipsoidal"),
+    launch=tt.Launch(tilt=0.1, spin=180.0, velocity=(0.0, 0.0, 0.0)),
+    gravity=9.81,
+)
+STEMMED = [tt.Sphere(radius=0.02, center=0.006), tt.Sphere(radius=0.004, center=0.026)]
+REPORT = tt.presets.report_problem().replace({"body.shape": [shape.model_dump() for shape in STEMMED]})
+
+
+@cache
+def leine_glocker() -> xr.Dataset:
+    return tt.simulate(LEINE_GLOCKER, 8.0, samples=801)
+
+
+@cache
+def report() -> xr.Dataset:
+    return tt.simulate(REPORT, 20.0, samples=801)
+
+
+def times(run: xr.Dataset, kind: str) -> np.ndarray:
+    found: np.ndarray = run["event_time"].values[run["event_kind"].values == kind]
+    return found
+
+
+def surfaces(run: xr.Dataset, kind: str) -> list[int]:
+    found: list[int] = run["event_surface"].values[run["event_kind"].values == kind].tolist()
+    return found
+
+
+def test_leine_and_glocker_s_top_to_eight_seconds() -> None:
+    """Against an independent solver of the same equations: Routh's impacts, ellipsoidal limit surface."""
+    run = leine_glocker()
+    touches = times(run, "touchdown")
+    assert touches[0] == pytest.approx(1.37104325139, abs=1e-8)
+    assert touches[1:4] == pytest.approx([4.55045294, 4.56156895, 4.63331496], abs=1e-8)
+    assert surfaces(run, "touchdown")[:4] == [1, 0, 1, 0]
+    assert times(run, "double contact") == pytest.approx([4.67713921], abs=1e-6)
+    assert times(run, "opening")[-1] == pytest.approx(5.4664569, abs=1e-6)
+    assert float(run["final_theta"]) == pytest.approx(1.70243211, abs=1e-6)
+    assert not len(times(run, "lift-off")), "one surface or the other always touches"
+
+
+def test_the_report_s_top_with_a_stem() -> None:
+    """Against the same solver: viscous friction; it touches twice, rocks, and falls back."""
+    run = report()
+    assert times(run, "touchdown")[:2] == pytest.approx([6.34894636, 6.36564926], abs=1e-8)
+    assert times(run, "double contact") == pytest.approx([6.66419077], abs=1e-6)
+    assert times(run, "opening")[-1] == pytest.approx(8.33507784, abs=1e-6)
+    assert float(run["final_theta"]) == pytest.approx(2.481515194, abs=1e-6)
+    assert float(run["final_omega3"]) == pytest.approx(-35.27884, abs=1e-5)
+
+
+@pytest.mark.parametrize("run", [leine_glocker, report], ids=["leine-glocker", "report"])
+def test_energy_balances_and_nothing_sinks_in(run) -> None:
+    found = run()
+    assert found.attrs["outcome"] == "completed"
+    assert float(found["energy_error"]) < 1e-12
+    size = 0.02
+    assert float(found["gap"].min()) > -1e-12 * size
+    assert float(found["gap"].max()) < 1e-12 * size
+    assert float(found["normal_force"].min()) > 0.0
+    lost = found["event_energy_lost"].values
+    assert (lost >= 0.0).all()
+    assert float(found["impact_energy_lost"]) == pytest.approx(lost.sum())
+
+
+@pytest.mark.parametrize("run", [leine_glocker, report], ids=["leine-glocker", "report"])
+def test_modes_name_the_surfaces_that_touch(run) -> None:
+    found = run()
+    words = np.array(found["mode"].attrs["flag_meanings"].split())[found["mode"].values]
+    on_two = words == "sliding_on_0_and_1"
+    time = found["time"].values
+    begin, end = times(found, "double contact")[0], times(found, "opening")[-1]
+    assert (on_two == ((time > begin) & (time < end))).all()
+    # There both spheres touch: r_0 - zeta_0 c = r_1 - zeta_1 c.
+    shapes = tt.Problem.from_json(found.attrs["problem"]).body.shapes
+    (r0, z0), (r1, z1) = ((shape.surface.radius, shape.surface.center) for shape in shapes)
+    both = np.arccos((r1 - r0) / (z1 - z0))
+    assert found["theta"].values[on_two] == pytest.approx(both, abs=1e-12)
+    standing = found["theta"].values > both
+    assert (words[standing & ~on_two] == "sliding_on_1").all()
+    assert (words[~standing & ~on_two] == "sliding_on_0").all()
+
+
+def test_the_end_of_rocking_converges_at_first_order(monkeypatch: pytest.MonkeyPatch) -> None:
+    bounds = np.array([1e-4, 1e-5, 1e-6])
+    ends, tilts = [], []
+    for bound in (*bounds, several.SLOWEST_ROCKING):
+        monkeypatch.setattr(several, "SLOWEST_ROCKING", bound)
+        run = tt.simulate(LEINE_GLOCKER, 5.0, samples=11)
+        ends.append(times(run, "double contact")[0])
+        tilts.append(float(run["final_omega3"]))
+    errors = np.abs(np.array(ends[:-1]) - ends[-1])
+    orders = np.diff(np.log(errors)) / np.diff(np.log(bounds))
+    assert orders == pytest.approx(1.0, abs=0.25)
+    assert np.abs(np.array(tilts[:-1]) - tilts[-1]).max() < 1e-3 * np.abs(tilts[-1])
+
+
+def test_rocking_shrinks_by_what_the_inverse_masses_say() -> None:
+    """Of two plastic impacts, p_i = v_i / A_ii and v_j = A_ji p_i: a cycle is A_12 A_21 / (A_11 A_22)."""
+    run = leine_glocker()
+    hops = np.diff(times(run, "touchdown"))[4:]
+    cycles = hops[:-1:2][:26] + hops[1::2][:26]
+    here = run.sel(time=times(run, "double contact")[0] + 1e-3, method="nearest")
+    vectors = (tuple(here[name].values.tolist()) for name in ("axis", "angular_momentum", "velocity"))
+    axis, momentum, velocity = vectors
+    state = SlidingState(axis, momentum, velocity[:2])
+    both = double_contact(state, LEINE_GLOCKER.top.each)
+    (first, second), (alone, other) = (both.first, both.second), both.acceleration
+    coupled = (first.free_acceleration - alone) / second.free_acceleration * second.delassus
+    back = (second.free_acceleration - other) / first.free_acceleration * first.delassus
+    expected = coupled * back / (first.delassus * second.delassus)
+    assert 0.7 < expected < 0.8
+    assert (cycles[1:] / cycles[:-1])[18:24] == pytest.approx(expected, abs=2e-3)
+
+
+def test_a_body_of_one_surface_in_a_list_is_that_surface() -> None:
+    one = tt.Sphere(radius=0.01, center=0.002)
+    alone, listed = (tt.Body(mass=0.01, shape=shape, I1=4e-7, I3=4e-7) for shape in (one, [one]))
+    assert alone == listed
+
+
+def test_several_surfaces_go_into_text_and_come_back() -> None:
+    assert tt.Problem.from_toml(LEINE_GLOCKER.to_toml()) == LEINE_GLOCKER
+    assert tt.Problem.from_json(LEINE_GLOCKER.to_json()) == LEINE_GLOCKER
+    longer = LEINE_GLOCKER.replace({"body.shape.1.center": 0.017})
+    assert longer.body.shapes[1] == tt.Sphere(radius=5e-3, center=0.017)
+    assert LEINE_GLOCKER.quantity("body.shape.1.center").units == "m"
+
+
+@pytest.mark.parametrize(
+    ("changes", "field", "accepted"),
+    [
+        ({"body.shape.1.center": 0.01}, "body.shape.1", "a surface that the others do not enclose"),
+        ({"body.shape.1.radius": -1.0}, "body.shape.1.radius", "a number greater than 0"),
+        ({"body.shape": []}, "body.shape", "a table of its fields"),
+        ({"contact.liftoff": "ignore"}, "contact.liftoff", "'fly' for a body of several surfaces"),
+    ],
+)
+def test_what_cannot_be_is_refused_in_a_sentence(changes, field, accepted) -> None:
+    with pytest.raises(tt.InvalidInput) as caught:
+        LEINE_GLOCKER.replace(changes)
+    assert caught.value.field == field
+    assert caught.value.accepted == accepted
+
+
+def test_sweeps_follow_stems_as_runs_do() -> None:
+    axes = {"body.shape.1.center": [0.005, 0.026, 0.028], "launch.spin": [120.0, 155.0]}
+    found = tt.sweep(REPORT, axes, duration=7.0, tolerance=1e-14, workers=1)
+    assert (found["fault"].sel({"body.shape.1.center": 0.005}) == Fault.VALUE_OUT_OF_RANGE).all()
+    for center in axes["body.shape.1.center"][1:]:
+        for spin in axes["launch.spin"]:
+            changes = {"body.shape.1.center": center, "launch.spin": spin}
+            run = tt.simulate(REPORT.replace(changes), 7.0, samples=11)
+            for name in set(SWEPT) & set(run.variables) - {"steps"}:
+                one, other = float(found[name].sel(changes)), float(run[name])
+                assert one == pytest.approx(other, rel=1e-9, abs=1e-12, nan_ok=True), (name, changes)
+    assert found["body.shape.1.center"].attrs["units"] == "m"
+
+
+ROD = tt.Problem(
+    body=tt.Body(
+        mass=0.01,
+        shape=[tt.Sphere(radius=0.005, center=0.02), tt.Sphere(radius=0.005, center=-0.02)],
+        I1=2e-6,
+        I3=1.25e-7,
+    ),
+    friction=tt.ViscousFriction(mu=1.0),
+    launch=tt.Launch(tilt=1.3, spin=5.0, gap=0.01),
+)
+
+
+@pytest.mark.parametrize("restitution", [0.0, 0.5])
+def test_a_rod_falls_on_its_ends_in_turn_and_comes_to_lie(restitution: float) -> None:
+    """Either end presses the other onto the table: both stay, and carry half of the weight each."""
+    run = tt.simulate(ROD.replace({"contact.restitution": restitution}), 1.0, samples=101)
+    assert run.attrs["outcome"] == "completed"
+    assert float(run["energy_error"]) < 1e-12
+    assert float(run["gap"].min()) > -1e-14
+    assert run["event_kind"].values[-1] == "double contact"
+    assert float(run["final_theta"]) == pytest.approx(np.pi / 2, abs=1e-10)
+    assert float(run["normal_force"][-1]) == pytest.approx(0.01 * 9.8, rel=1e-12)
+    touches = surfaces(run, "touchdown")
+    assert set(touches) == {0, 1}
+    assert restitution or touches == [1, 0], "at rest at once, and no rocking"
