@@ -18,7 +18,7 @@ from tippetop.contact.mode import (
     Transition,
 )
 from tippetop.contact.sliding import LIFT_OFF, Sliding
-from tippetop.contact.surfaces import follow_surface, number_of, surface_guards
+from tippetop.contact.surfaces import follow_surface, number_of, stays_open, surface_guards
 from tippetop.integrators import make_integrator
 from tippetop.integrators.base import Arc, Array, Guard, Integrator, Motion
 from tippetop.integrators.dense import DenseSolution, evaluated
@@ -64,6 +64,9 @@ SETTLED = 1e-14
 
 ORDER, ACCURACY = 12, 1e-13
 """Degree of the series with which slip begins, and the size of its last terms relative to the first."""
+
+LOOKS = 17
+"""Looks along that series at whether another surface touches: then a mode with a guard takes over sooner."""
 
 NEWTON = 6
 """Improvements of a time of the clock."""
@@ -150,6 +153,10 @@ class SlipOnset(Mode):
             rows = (*axis, *momentum, *velocity_of(axis, momentum, slip, self.top))
             return np.stack(np.broadcast_arrays(*rows), axis=-1)
 
+        while duration > SETTLED and not stays_open(
+            self.top, numbers(np.linspace(0.0, duration, LOOKS)[1:]).T
+        ):
+            duration *= 0.5
         solution = DenseSolution.fitted(numbers, np.array([0.0, duration]), DEGREE)
         knots = np.array([time, min(time + duration, end)])
         last = self.state(numbers(np.array([duration]))[0].tolist())
