@@ -14,6 +14,7 @@ from tippetop.contact.sliding import Sliding
 from tippetop.integrators.base import Array
 from tippetop.integrators.dense import parts_of
 from tippetop.lowest import lowest_contact_vector
+from tippetop.mechanics.hull import Hull, outer_height
 from tippetop.mechanics.invariants import energy, jellett
 from tippetop.mechanics.motion import along_table, angular_velocity, axial_spin, point_velocity
 from tippetop.mechanics.quadratures import orientation, quadrature_rates, twisting_powers
@@ -105,7 +106,7 @@ class Recorder:
         self._energy, self._jellett = float(energy(start, top)), float(jellett(start, top))
         self._moment = float(length(start.momentum) * top.surface.height(start.axis[2]))
         self._imbalance, self._least, self._most = 0.0, self._jellett, self._jellett
-        self._largest, self._stretch = abs(self._energy), 0.0
+        self._largest, self._stretch, self._sunk = abs(self._energy), 0.0, 0.0
 
     @property
     def energy_error(self) -> float:
@@ -119,9 +120,9 @@ class Recorder:
 
     @property
     def inaccuracy(self) -> float:
-        """How far, relatively, the run is off what every motion keeps: energy and work, |n|, and lambda."""
+        """How far, relatively, the run is off what every motion keeps: energy and work, |n|, lambda, gaps."""
         drift = self.jellett_drift if self.top.conserves_jellett and self._moment > LEAST_MOMENT else 0.0
-        return float(np.nanmax([self._imbalance / self._largest, self._stretch, drift]))
+        return float(np.nanmax([self._imbalance / self._largest, self._stretch, drift, self._sunk]))
 
     def take(self, block: Block) -> None:
         """Take the samples in a block."""
@@ -230,6 +231,9 @@ class Recorder:
             errors = energy(state, self.top) - self._energy - work[group.which]
             integral = jellett(state, self.top)
             self._imbalance = max(self._imbalance, float(np.abs(errors).max()))
+            if isinstance(self.top.surface, Hull):
+                depth = outer_height(self.top.surface, state.axis[2]) - state.height
+                self._sunk = max(self._sunk, float(np.max(depth)))
             self._largest = max(self._largest, float(np.max(energy(state, self.top))))
             self._stretch = max(self._stretch, float(np.abs(length(state.axis) - 1.0).max()))
             self._least = min(self._least, float(np.min(integral)))

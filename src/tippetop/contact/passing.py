@@ -10,7 +10,7 @@ import numpy as np
 from tippetop.contact.mode import EventKind, IntegratedMode, Mode, Outcome, Segment, Transition
 from tippetop.contact.sliding import BRANCH, LIFT_OFF, ROLLING, Sliding, SlidingWithoutRolling
 from tippetop.contact.sticking import SLIP, Sticking, split
-from tippetop.contact.surfaces import follow_surface, surface_guards
+from tippetop.contact.surfaces import follow_surface, stays_open, surface_guards
 from tippetop.integrators import make_integrator
 from tippetop.integrators.base import Arc, Array, Guard, Integrator, Motion
 from tippetop.integrators.dense import DenseSolution, evaluated
@@ -58,6 +58,9 @@ STIFF_TOLERANCE = 1e-12
 
 SETTLED = 1e-14
 """Error of the instant at which slip ends, in natural units, that counts as none."""
+
+LOOKS = 17
+"""Looks along a beginning at whether another surface touches: then a mode with a guard takes over sooner."""
 
 ORDER, ACCURACY = 12, 1e-13
 """Degree of the series with which slip begins, and the size of its last terms relative to the first."""
@@ -163,6 +166,10 @@ class Loosening(Passing):
 
     def piece(self, numbers: Any, time: float, duration: float, end: float) -> Segment:
         """The segment in which the numbers are a function of the time since its start."""
+        while duration > SETTLED and not stays_open(
+            self.top, numbers(np.linspace(0.0, duration, LOOKS)[1:]).T
+        ):
+            duration *= 0.5
         solution = DenseSolution.fitted(numbers, np.array([0.0, duration]), DEGREE)
         knots = np.array([time, min(time + duration, end)])
         last = self.state(numbers(np.array([duration]))[0].tolist())

@@ -53,13 +53,19 @@ class OnSeveral(FreeToFly):
 
     def resting(self, time: float, state: State, events: tuple[Event, ...] = ()) -> Transition:
         """As for one surface, unless others touch too, and open no faster than rocking that has ended."""
+        closed = []
         for other in self._beside(state):
             rate = gap_rate(state, other)
             if rate < -SLOWEST_ROCKING:
                 return self._of(other)._collide(time, state, events, 0.0)
             if rate <= self._slowest(other, state):
-                return self._resting_on_two(other, time, state, events)
-            events = (*events, Event(EventKind.OPENING, time, surface=number_of(other)))
+                closed.append(other)
+            else:
+                events = (*events, Event(EventKind.OPENING, time, surface=number_of(other)))
+        if len(closed) > 1:
+            return Transition(events, Outcome.FAILED, state, "three surfaces touch at once")
+        if closed:
+            return self._resting_on_two(closed[0], time, state, events)
         return super().resting(time, state, events)
 
     def _impact(self, state: State, restitution: float) -> Impact:

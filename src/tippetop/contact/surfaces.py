@@ -8,7 +8,7 @@ from tippetop.integrators.base import Guard
 from tippetop.mechanics.hull import Hull, acting, each_surface
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Kind, Top
-from tippetop.mechanics.vectors import Scalar
+from tippetop.mechanics.vectors import Row, Scalar
 
 FACE, TOUCH = "face", "touch "
 
@@ -38,6 +38,12 @@ def surface_guards(kind: Kind, closed: Sequence[int] = ()) -> list[Guard]:
         guards.append(Guard(FACE, lambda y, numbers: _face(y, _surface(kind, numbers))))
     others = [number for number in range(len(each_surface(surface))) if number not in closed]
     return guards + [Guard(f"{TOUCH}{number}", _gap(kind, number)) for number in others]
+
+
+def stays_open(top: Top, y: Row) -> bool:
+    """Whether no other surface touches at these numbers of a mode on the active one, arrays of shape (k,)."""
+    height = top.surface.height(y[2])
+    return all(bool(((height - other.height(y[2])) > -MARGIN).all()) for other in each_surface(top.surface))
 
 
 def follow_surface(mode: Mode, guard: str, time: float, state: State) -> Transition | None:

@@ -73,10 +73,8 @@ class Launches:
     def unresisted(self) -> Flags:
         """Which roll without the resistance that the others have, shape (n,)."""
         law = self.top.friction
-        found: Flags = np.zeros(len(self), dtype=bool) | (
-            isinstance(law, RollingResistance) and law.length == 0.0
-        )
-        return found
+        none: Flags = np.zeros(len(self), dtype=bool)
+        return none | (law.length == 0.0) if isinstance(law, RollingResistance) else none
 
     def rules(self, launch: int) -> Rules:
         """What follows where the contact of one launch begins or ends."""

@@ -1,0 +1,88 @@
+"""Random bodies of several surfaces keep what every one of them must keep, to rounding.
+
+TIPPETOP_BODIES=300 asks for as many instead of the few that every check takes.
+"""
+
+import os
+from typing import Any
+
+import numpy as np
+import pytest
+
+import tippetop as tt
+
+COUNT = int(os.environ.get("TIPPETOP_BODIES", "6"))
+SIZE, MASS = 0.02, 0.02
+NAMED = {"completed", "lying_flat", "sticking_on_two"}
+
+
+def surface_of(random: np.random.Generator) -> tt.Shape:
+    part = SIZE * random.uniform(0.2, 1.0, 2)
+    center = SIZE * random.uniform(-1.0, 1.0)
+    match random.integers(3):
+        case 0:
+            return tt.Sphere(radius=part[0], center=center)
+        case 1:
+            return tt.Ring(radius=part[0], center=center, tube=float(random.choice([0.0, 0.3])) * part[1])
+        case _:
+            return tt.Spheroid(across=part[0], along=part[1], center=0.6 * center)
+
+
+def problem_of(random: np.random.Generator) -> tt.Problem:
+    """A body of two or three surfaces, on the table or above it; another one where that cannot be."""
+    transverse = random.uniform(0.2, 0.6) * MASS * SIZE**2
+    laws: list[dict[str, Any]] = [
+        {"kind": "viscous"},
+        {"kind": "regularized_coulomb", "eps": 0.01},
+        {"kind": "contensou", "patch_radius": 5e-4, "pressure": "ellipsoidal"},
+        {"kind": "coulomb"},
+    ]
+    try:
+        body = tt.Body(
+            mass=MASS,
+            shape=[surface_of(random) for _ in range(random.integers(2, 4))],
+            I1=transverse,
+            I3=random.uniform(0.3, 1.6) * transverse,
+        )
+        friction: Any = laws[random.integers(4)] | {"mu": random.uniform(0.05, 0.6)}
+        launch = tt.Launch(
+            tilt=random.uniform(0.05, 3.0),
+            spin=random.uniform(-150.0, 150.0),
+            precession=random.uniform(-20.0, 20.0),
+            tilt_rate=random.uniform(-10.0, 10.0),
+            gap=float(random.choice([0.0, 0.005])),
+        )
+        contact = tt.Contact(restitution=float(random.choice([0.0, 0.5])))
+        return tt.Problem(body=body, friction=friction, launch=launch, contact=contact)
+    except tt.InvalidInput:
+        return problem_of(random)
+
+
+@pytest.mark.parametrize("seed", range(COUNT))
+def test_random_bodies_keep_what_every_one_must(seed: int) -> None:
+    problem = problem_of(np.random.default_rng(seed))
+    run = tt.simulate(problem, 0.3, samples=201, integrator="dop853", tolerance=3e-14)
+    assert run.attrs["outcome"] in NAMED, problem.to_json()
+    assert float(run["energy_error"]) < 1e-10
+    assert float(run["gap"].min()) > -1e-11 * SIZE, "the least tolerance of the integrator, not rounding"
+    assert float(run["normal_force"].min()) >= 0.0
+
+
+def test_slip_that_begins_goes_no_further_than_to_the_touch_of_another_surface() -> None:
+    """A dry body without slip, leaning towards its second sphere, has it sink in where nothing watches."""
+    body = tt.Body(
+        mass=MASS,
+        shape=[
+            tt.Sphere(radius=0.015402810816983439, center=0.01301293601200161),
+            tt.Sphere(radius=0.018729151119941778, center=-0.015064743428897027),
+            tt.Ring(radius=0.019805945309544538, center=-0.015329740595936468),
+        ],
+        I1=2.8397833513940623e-6,
+        I3=1.360713432297134e-6,
+    )
+    launch = tt.Launch(tilt=1.7461111547956063, spin=-16.118, tilt_rate=-6.18886, precession=10.0157)
+    problem = tt.Problem(body=body, friction=tt.CoulombFriction(mu=0.4682), launch=launch)
+    run = tt.simulate(problem, 0.03, samples=301, integrator="dop853", tolerance=3e-14)
+    assert "touchdown" in run["event_kind"].values
+    assert float(run["gap"].min()) > -1e-11 * SIZE
+    assert float(run["energy_error"]) < 1e-12
