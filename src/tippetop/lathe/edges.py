@@ -1,0 +1,156 @@
+"""The edges of a profile: straight, or arcs of circles, in the half-plane through the axis.
+
+A point is a complex number: its distance from the axis and, times i, its height along it, m.
+"""
+
+import cmath
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Points = NDArray[np.complex128]
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
+_SHARES = (_NODES + 1.0) / 2.0
+
+
+class Edge(NamedTuple):
+    """A straight edge, or an arc of at most half a circle.
+
+    Attributes
+    ----------
+    start, end
+        Where it begins and ends.
+    turn
+        Angle by which it turns to the left along the way, rad, between -pi and pi; 0 where it is straight.
+    """
+
+    start: complex
+    end: complex
+    turn: float = 0.0
+
+    @property
+    def chord(self) -> complex:
+        """From its start to its end."""
+        return self.end - self.start
+
+    @property
+    def radius(self) -> float:
+        """Radius of the arc, m: negative where it turns to the right, infinite where it is straight."""
+        return abs(self.chord) / (2.0 * math.sin(self.turn / 2.0)) if self.turn else math.inf
+
+    @property
+    def center(self) -> complex:
+        """Centre of the arc's circle; there is none where it is straight."""
+        return (self.start + self.end) / 2.0 + 0.5j * self.chord / math.tan(self.turn / 2.0)
+
+    @property
+    def sagitta(self) -> float:
+        """How far the arc is from its chord at most, m."""
+        return 0.5 * abs(self.chord) * math.tan(abs(self.turn) / 4.0)
+
+    @property
+    def backwards(self) -> "Edge":
+        """The same edge from its end to its start."""
+        return Edge(self.end, self.start, -self.turn)
+
+    def direction(self, share: float) -> complex:
+        """Unit vector along it, after this share of it."""
+        return self.chord / abs(self.chord) * cmath.exp(1j * (share - 0.5) * self.turn)
+
+    def points(self, share: ArrayLike) -> Points:
+        """Points after these shares of it, from 0 at its start to 1 at its end."""
+        t = np.asarray(share, dtype=float)
+        half = self.turn / 2.0
+        # The chord of a part of an arc: no digits are lost however straight the arc is.
+        along = t * np.sinc(t * half / math.pi) / np.sinc(half / math.pi)
+        return np.asarray(self.start + self.chord * along * np.exp(1j * (t - 1.0) * half))
+
+    def velocities(self, share: ArrayLike) -> Points:
+        """Derivatives of `points` with respect to the share."""
+        t = np.asarray(share, dtype=float)
+        return np.asarray(self.chord / np.sinc(self.turn / math.tau) * np.exp(1j * (t - 0.5) * self.turn))
+
+    def integral(self, integrand: Callable[[Any, Any], Any]) -> float:
+        """Integral of a polynomial of r and z, of degree 4 at most, over dz along the edge.
+
+        It then is the integral of a polynomial, or of a trigonometric one of degree 5 over an angle of at
+        most pi: Gauss's rule with 20 points is exact for both, but for rounding.
+        """
+        points = self.points(_SHARES)
+        rates = self.velocities(_SHARES).imag * integrand(points.real, points.imag)
+        return float(_WEIGHTS @ rates) / 2.0
+
+    def share(self, point: complex) -> float:
+        """The share of it after which it comes to a point that is on it, or on its line or circle."""
+        if point == self.start:
+            return 0.0
+        if not self.turn:
+            return ((point - self.start) / self.chord).real
+        return 1.0 + 2.0 * cmath.phase((point - self.start) / self.chord) / self.turn
+
+    def distance(self, point: complex) -> float:
+        """Distance of a point from it, m."""
+        ends = min(abs(point - self.start), abs(point - self.end))
+        if not self.turn:
+            away = (point - self.start) / self.chord
+            return abs(away.imag * self.chord) if 0.0 < away.real < 1.0 else ends
+        outward = point - self.center
+        if not outward:
+            return abs(self.radius)
+        on_circle = self.center + outward / abs(outward) * abs(self.radius)
+        return abs(on_circle - point) if 0.0 < self.share(on_circle) < 1.0 else ends
+
+    def angle_seen(self, point: complex) -> float:
+        """Angle by which the direction from a point that is not on it turns along the way, rad."""
+        seen = cmath.phase((self.end - point) / (self.start - point))
+        if not self.turn:
+            return seen
+        # Between the chord and the arc one sees the arc on the other side of the chord.
+        within = abs(point - self.center) < abs(self.radius)
+        beyond = ((point - self.start) / self.chord).imag * self.turn < 0.0
+        return seen + math.copysign(math.tau, self.turn) if within and beyond else seen
+
+
+def meetings(one: Edge, other: Edge, within: float) -> list[complex]:
+    """Where two edges meet to this distance, m; of edges that lie on each other, the ends that they share."""
+    ends = [one.start, one.end, other.start, other.end]
+    if one.turn and other.turn:
+        found = _of_circles(one, other)
+    elif one.turn or other.turn:
+        found = _of_line_and_circle(one, other) if other.turn else _of_line_and_circle(other, one)
+    else:
+        found = _of_lines(one, other)
+    return [
+        point
+        for point in (*ends, *found)
+        if one.distance(point) <= within and other.distance(point) <= within
+    ]
+
+
+def _of_lines(one: Edge, other: Edge) -> list[complex]:
+    across = (one.chord.conjugate() * other.chord).imag
+    if not across:
+        return []
+    share = ((other.start - one.start).conjugate() * other.chord).imag / across
+    return [one.start + share * one.chord]
+
+
+def _of_line_and_circle(line: Edge, arc: Edge) -> list[complex]:
+    along = line.chord / abs(line.chord)
+    center = (arc.center - line.start) / along
+    half = math.sqrt(max(0.0, arc.radius**2 - center.imag**2))
+    return [line.start + along * (center.real + side * half) for side in (-1.0, 1.0)]
+
+
+def _of_circles(one: Edge, other: Edge) -> list[complex]:
+    between = other.center - one.center
+    apart = abs(between)
+    if not apart:
+        return []
+    along = (apart + (one.radius**2 - other.radius**2) / apart) / 2.0
+    half = math.sqrt(max(0.0, one.radius**2 - along**2))
+    return [one.center + between / apart * complex(along, side * half) for side in (-1.0, 1.0)]

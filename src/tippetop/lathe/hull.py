@@ -1,0 +1,198 @@
+"""What a turned body touches the table with: the surfaces that its convex hull is made of.
+
+At tilt theta the table is a line in the half-plane through the axis, whose normal, away from the body, is
+(sin(theta), -cos(theta)). Of a point or the centre of an arc (rho, zeta), tube its radius, the support
+function is rho sin(theta) - zeta cos(theta) + tube. The largest one is that of the body: the surface on which
+it stands.
+"""
+
+import cmath
+import math
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tippetop.lathe.profile import ROUNDING, Profile
+
+ON_AXIS = 1e-4
+"""How far off the axis, in radii of the arc, the centre of a sphere's arc may be: no lathe is better."""
+
+NARROWEST = 1e-9
+"""Least range of tilts of a surface, rad."""
+
+_CLOSE = 1e-7
+"""How far rounding may move a tilt at which one surface follows another that it touches nearly, rad."""
+
+
+class Zone(NamedTuple):
+    """A surface of revolution that a body touches the table with.
+
+    Attributes
+    ----------
+    radius
+        Radius of the circle in the middle of its tube, m: 0 for a sphere, or a tip.
+    height
+        Height of that circle, in the profile's own coordinates, m.
+    tube
+        Radius of the tube, m: 0 for a sharp edge; of a sphere its radius.
+    low, high
+        Tilts between which the body stands on it, rad.
+    """
+
+    radius: float
+    height: float
+    tube: float
+    low: float
+    high: float
+
+    def support(self, tilt: float) -> float:
+        """Height above the table of the origin of the profile's coordinates, m."""
+        return self.radius * math.sin(tilt) - self.height * math.cos(tilt) + self.tube
+
+    @property
+    def name(self) -> str:
+        """What such a surface is called."""
+        if self.radius:
+            return "ring" if self.tube else "edge"
+        return "sphere" if self.tube else "tip"
+
+
+class Hull(NamedTuple):
+    """The convex hull of a body.
+
+    Attributes
+    ----------
+    zones
+        The surfaces it touches the table with, by the tilt.
+    flats
+        Tilts at which it lies on a circle or a line rather than on a point: 0 and pi on a flat end, between
+        them on a cylinder or a cone.
+    """
+
+    zones: tuple[Zone, ...]
+    flats: tuple[float, ...]
+
+    def support(self, tilt: float) -> float:
+        """Height above the table of the origin of the profile's coordinates, m."""
+        return max(zone.support(tilt) for zone in self.zones if zone.low <= tilt <= zone.high)
+
+    def protrusion(self, zone: Zone) -> tuple[float, float]:
+        """How far one of its surfaces, were it whole, would reach out of it at most, m, and at which tilt."""
+        found = [(0.0, zone.low)]
+        for other in self.zones:
+            tilts = [other.low, other.high]
+            steepest = math.atan2(zone.radius - other.radius, other.height - zone.height)
+            tilts += [tilt for tilt in (steepest, steepest + math.pi) if other.low < tilt < other.high]
+            found += [(zone.support(tilt) - other.support(tilt), tilt) for tilt in tilts]
+        return max(found)
+
+
+def hull_of(profile: Profile) -> Hull:
+    """The convex hull of a body of revolution.
+
+    It is followed from tilt 0 to pi: each surface until another is further out, or its arc is at its end.
+    """
+    pieces = _Pieces(profile)
+    within = ROUNDING * profile.size
+    zones, tilt, number = [], 0.0, pieces.lowest()
+    while tilt < math.pi:
+        tilt_next, next_number = pieces.after(number, tilt)
+        zones.append(pieces.zone(number, tilt, tilt_next))
+        tilt, number = tilt_next, next_number
+    kept = _merged([zone for zone in zones if zone.high - zone.low > _narrowest(zone)], within)
+    between = [high.low for low, high in pairwise(kept) if _apart(low, high) > 10.0 * within]
+    flats = [0.0] * bool(kept[0].radius) + between + [math.pi] * bool(kept[-1].radius)
+    return Hull(tuple(kept), tuple(flats))
+
+
+def _narrowest(zone: Zone) -> float:
+    """Least range of a zone, rad: at the end of a sphere a little off the axis there is no tip."""
+    return NARROWEST if zone.radius or zone.tube else 2.0 * ON_AXIS
+
+
+def _apart(low: Zone, high: Zone) -> float:
+    """Distance of the two points that are on the table where one surface follows another, m."""
+    sine, cosine = math.sin(high.low), math.cos(high.low)
+    across = high.radius - low.radius + (high.tube - low.tube) * sine
+    return math.hypot(across, high.height - low.height - (high.tube - low.tube) * cosine)
+
+
+def _merged(zones: list[Zone], within: float) -> list[Zone]:
+    """The zones, with neighbours that are parts of one surface put together."""
+    found: list[Zone] = []
+    for zone in zones:
+        last = found[-1] if found else None
+        if last and max(abs(one - other) for one, other in zip(last[:3], zone[:3], strict=True)) <= within:
+            found[-1] = last._replace(high=zone.high)
+        else:
+            found.append(zone._replace(low=last.high if last else 0.0))
+    return [*found[:-1], found[-1]._replace(high=math.pi)]
+
+
+class _Pieces:
+    """The points and the arcs that are convex of a profile, and between which tilts each can touch."""
+
+    def __init__(self, profile: Profile) -> None:
+        edges = profile.edges
+        closed = edges[0].start == edges[-1].end
+        points = [edge.start for edge in edges] + ([] if closed else [edges[-1].end])
+        arcs = [k for k, edge in enumerate(edges) if edge.turn > 0.0]
+        self.count = len(points)
+        self.ends = {self.count + n: (k, (k + 1) % self.count) for n, k in enumerate(arcs)}
+        middles = np.array(points + [edges[k].center for k in arcs])
+        self.radius, self.height = middles.real, middles.imag
+        self.tube = np.array([0.0] * self.count + [edges[k].radius for k in arcs])
+        # The table is along the edge where it touches it.
+        starts = [cmath.phase(edges[k].direction(0.0)) for k in arcs]
+        self.low = np.array([0.0] * self.count + starts)
+        self.high = np.array(
+            [math.pi] * self.count + [s + edges[k].turn for s, k in zip(starts, arcs, strict=True)]
+        )
+        self.left = np.full(len(self.low), -math.inf)
+        self.starting = [[n for n, ends in self.ends.items() if ends[0] == k] for k in range(self.count)]
+
+    def zone(self, number: int, low: float, high: float) -> Zone:
+        """The surface of a piece."""
+        radius, height, tube = (float(of[number]) for of in (self.radius, self.height, self.tube))
+        return Zone(0.0 if abs(radius) <= ON_AXIS * tube else radius, height, tube, low, high)
+
+    def lowest(self) -> int:
+        """The piece on which the body stands at tilt 0, or just above it."""
+        support = np.where((self.low <= 0.0) & (self.high > 0.0), self.tube - self.height, -math.inf)
+        lowest = np.flatnonzero(support >= support.max() - ROUNDING * np.ptp(self.height))
+        return int(max(lowest, key=lambda number: (self.radius[number], self.tube[number])))
+
+    def after(self, number: int, tilt: float) -> tuple[float, int]:
+        """The tilt up to which the body stands on a piece, and the one after it."""
+        self.left[number] = tilt
+        rises = self._rises(number, tilt)
+        if number in self.ends:
+            rises[self.ends[number][1]] = self.high[number]
+        else:
+            rises[self.starting[number]] = self.low[self.starting[number]]
+        rises[self.left > tilt - _CLOSE] = math.inf
+        rises[(rises < self.low - NARROWEST) | (rises >= self.high) | (rises < tilt - _CLOSE)] = math.inf
+        first = max(tilt, float(rises.min()))
+        if first >= math.pi:
+            return math.pi, number
+        steepness = self.radius * math.cos(first) + self.height * math.sin(first)
+        return first, int(np.argmax(np.where(rises <= first + NARROWEST, steepness, -math.inf)))
+
+    def _rises(self, number: int, tilt: float) -> NDArray[np.float64]:
+        """The tilts at which the circles and points come to be further out than one of them, from a tilt on.
+
+        Where arcs meet their own ends the two are equally far out, and this is not looked for.
+        """
+        across, along = self.radius - self.radius[number], self.height - self.height[number]
+        apart = np.hypot(across, along)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            sine = (self.tube[number] - self.tube) / apart
+        touching = np.abs(sine) <= 1.0 + NARROWEST
+        found = np.arctan2(along, across) + np.arcsin(np.clip(np.where(touching, sine, 0.0), -1.0, 1.0))
+        found = tilt - _CLOSE + np.mod(found - tilt + _CLOSE, math.tau)
+        found[~touching] = math.inf
+        own = self.ends.get(number, ()) or [n for n, ends in self.ends.items() if number in ends]
+        found[list(own)] = math.inf
+        return np.asarray(found)

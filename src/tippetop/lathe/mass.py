@@ -1,0 +1,64 @@
+"""What turned bodies weigh, where their centre of mass is, and how hard they are to turn."""
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
+
+from tippetop.lathe.profile import Profile
+
+
+class MassProperties(NamedTuple):
+    """Mass and what follows from how it lies.
+
+    Attributes
+    ----------
+    mass
+        Mass, kg.
+    center
+        Height of the centre of mass, in the profile's own coordinates, m.
+    I1, I3
+        Moments of inertia about the centre of mass, transverse to and along the axis, kg m^2.
+    """
+
+    mass: float
+    center: float
+    I1: float
+    I3: float
+
+
+class Filling(NamedTuple):
+    """A profile filled with a material.
+
+    Attributes
+    ----------
+    profile
+        The edge of it.
+    density
+        Density, less that of what it takes the place of, kg/m^3.
+    """
+
+    profile: Profile
+    density: float
+
+
+def mass_properties(fillings: Sequence[Filling]) -> MassProperties:
+    """Mass properties of bodies of revolution put together, on one axis; exact but for rounding.
+
+    By Green's theorem the integrals over a profile are integrals along its edges. With r the distance from
+    the axis and z the height along it, that of pi r^2 over dz is the volume, that of pi r^4 / 2 the moment of
+    inertia about the axis, and those of pi r^2 z and pi r^2 z^2 are the moments of the height.
+    """
+    mass = _integral(fillings, lambda r, z: math.pi * r**2)
+    center = _integral(fillings, lambda r, z: math.pi * r**2 * z) / mass
+    axial = _integral(fillings, lambda r, z: math.pi / 2.0 * r**4)
+    polar = _integral(fillings, lambda r, z: math.pi * (r * (z - center)) ** 2)
+    return MassProperties(mass, center, axial / 2.0 + polar, axial)
+
+
+def volume(profile: Profile) -> float:
+    """Volume inside a profile, m^3."""
+    return mass_properties([Filling(profile, 1.0)]).mass
+
+
+def _integral(fillings: Sequence[Filling], integrand: Callable[[Any, Any], Any]) -> float:
+    return sum(density * edge.integral(integrand) for profile, density in fillings for edge in profile.edges)

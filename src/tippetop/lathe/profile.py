@@ -1,0 +1,221 @@
+"""Profiles of bodies of revolution: closed lines of edges beside the axis, checked to enclose a body."""
+
+import math
+from collections.abc import Sequence
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+
+from tippetop.errors import InvalidInput
+from tippetop.lathe.edges import Edge, Points, meetings
+
+ROUNDING = 1e-9
+"""What counts as the same place, in sizes of the profile."""
+
+HALF_CIRCLE = 1e-12
+"""An arc whose radius is this close to half its chord, relative, is half a circle: so its centre is exact."""
+
+SHORT = 1e-6
+"""How much too short the radius of half a circle may be, relative: its ends have few digits."""
+
+MOST = 2000
+"""Most points of a profile."""
+
+LARGEST = 1e6
+"""Largest number of a profile, and the inverse of the smallest size."""
+
+
+class Profile:
+    """The closed line that a plane through the axis cuts out of a body, on one side of the axis.
+
+    Attributes
+    ----------
+    edges
+        Its edges, with the body on their left; without the axis, where the body reaches it.
+    """
+
+    def __init__(self, edges: Sequence[Edge]) -> None:
+        leftwards = area_of(edges) > 0.0
+        self.edges = tuple(edges if leftwards else [edge.backwards for edge in reversed(edges)])
+
+    @cached_property
+    def loop(self) -> tuple[Edge, ...]:
+        """Its edges, and the axis where it closes them."""
+        first, last = self.edges[0].start, self.edges[-1].end
+        return self.edges if first == last else (*self.edges, Edge(last, first))
+
+    @cached_property
+    def size(self) -> float:
+        """Its largest extent, m."""
+        points = self.points(8)
+        return float(max(np.ptp(points.real), np.ptp(points.imag), points.real.max()))
+
+    @property
+    def reaches_axis(self) -> bool:
+        """Whether the body is on the axis, rather than around it."""
+        return len(self.loop) > len(self.edges) or self.edges[0].start.real == 0.0
+
+    def points(self, steps: int) -> Points:
+        """Points along it, `steps` on every arc; the last of a line that closes itself is the first."""
+        shares = [np.arange(steps) / steps if edge.turn else np.zeros(1) for edge in self.edges]
+        found = [edge.points(share) for edge, share in zip(self.edges, shares, strict=True)]
+        return np.concatenate([*found, [self.edges[-1].end]])
+
+    def surrounds(self, point: complex) -> bool:
+        """Whether a point that is not on it is inside."""
+        return abs(sum(edge.angle_seen(point) for edge in self.loop)) > math.pi
+
+    def distance(self, point: complex) -> float:
+        """Distance of a point from its edges, m."""
+        return min(edge.distance(point) for edge in self.edges)
+
+    def sides(self, other: "Profile") -> set[str]:
+        """Where the parts of its edges are in another: "in" it, "on" its edges or "out" of it."""
+        within = ROUNDING * other.size
+        found = set()
+        for edge in self.edges:
+            met = (point for border in other.edges for point in meetings(edge, border, within))
+            shares = sorted({0.0, 1.0, *(min(1.0, max(0.0, edge.share(point))) for point in met)})
+            for low, high in pairwise(shares):
+                if (high - low) * abs(edge.chord) > 10.0 * within:
+                    middle = complex(edge.points((low + high) / 2.0))
+                    on = other.distance(middle) <= 2.0 * within
+                    found.add("on" if on else "in" if other.surrounds(middle) else "out")
+        return found
+
+
+def profile_of(points: Sequence[Sequence[float]], unit: float = 1.0, field: str = "profile") -> Profile:
+    """The profile through points.
+
+    Parameters
+    ----------
+    points
+        Distance from the axis, height along it and, where an arc ends, its radius: positive if it turns to
+        the left. In a row either way round, from the axis to the axis or from one to itself.
+    unit
+        What their numbers are in, m.
+    field
+        What they are called in sentences.
+
+    Raises
+    ------
+    InvalidInput
+        If they are not the edge of a body: an open line, one that meets itself or crosses the axis, an arc
+        too tight for its ends, or nothing inside.
+    """
+    _refuse_points(points, field)
+    size = max(max(abs(point[0]), abs(point[1] - points[0][1])) for point in points)
+    if not 1.0 / LARGEST <= size <= LARGEST:
+        raise InvalidInput(
+            field, f"a body of size {size:g}", f"a size between {1 / LARGEST:g} and {LARGEST:g}"
+        )
+    edges = [_edge(points, number, size, field) for number in range(1, len(points))]
+    edges = _closed(edges, ROUNDING * size, field)
+    _refuse_meetings(edges, ROUNDING * size, field)
+    if not abs(area_of(edges)) > ROUNDING * size**2:
+        raise InvalidInput(field, [list(point) for point in points], "a line around some volume")
+    return Profile([Edge(unit * edge.start, unit * edge.end, edge.turn) for edge in edges])
+
+
+def area_of(edges: Sequence[Edge]) -> float:
+    """Area between edges and the axis, m^2: positive to the left of them, by Green's theorem."""
+    return sum(edge.integral(lambda r, z: r) for edge in edges)
+
+
+def _refuse_points(points: Sequence[Sequence[float]], field: str) -> None:
+    """Refuse too few or too many points, and what is no point beside the axis."""
+    if not 2 <= len(points) <= MOST:
+        raise InvalidInput(field, f"{len(points)} points", f"2 to {MOST} points")
+    for number, point in enumerate(points):
+        if len(point) not in (2, 3):
+            wanted = "distance from the axis, height and, at the end of an arc, its radius"
+            raise InvalidInput(f"{field}.{number}", list(point), wanted)
+        if max(map(abs, point)) > LARGEST:
+            raise InvalidInput(f"{field}.{number}", list(point), f"numbers of at most {LARGEST:g}")
+        if point[0] < 0.0:
+            raise InvalidInput(f"{field}.{number}.0", point[0], "a distance from the axis, at least 0")
+    if len(points[0]) == 3 and points[0][2]:
+        raise InvalidInput(f"{field}.0.2", points[0][2], "no radius: at the first point no arc ends")
+
+
+def _edge(points: Sequence[Sequence[float]], number: int, size: float, field: str) -> Edge:
+    """The edge that ends at a point; refuses none, an arc that is too tight, and one across the axis."""
+    start, end = (complex(*point[:2]) for point in points[number - 1 : number + 1])
+    if abs(end - start) <= ROUNDING * size:
+        raise InvalidInput(f"{field}.{number}", list(points[number][:2]), "a point away from the one before")
+    radius = points[number][2] if len(points[number]) == 3 else 0.0
+    if not radius:
+        return Edge(start, end)
+    share = abs(end - start) / (2.0 * abs(radius))
+    if share > 1.0 + SHORT:
+        least = f"0 for a straight edge, or a size of at least half the distance, {abs(end - start) / 2:g}"
+        raise InvalidInput(f"{field}.{number}.2", radius, least)
+    half = math.pi / 2.0 if share > 1.0 - HALF_CIRCLE else math.asin(share)
+    edge = Edge(start, end, math.copysign(2.0 * half, radius))
+    innermost = edge.center - abs(edge.radius)
+    if innermost.real < -ROUNDING * size and 0.0 < edge.share(innermost) < 1.0:
+        raise InvalidInput(f"{field}.{number}", list(points[number]), "an arc that stays beside the axis")
+    return edge
+
+
+def _closed(edges: list[Edge], within: float, field: str) -> list[Edge]:
+    """The edges from the axis to the axis, or round to where they began; refuses others."""
+    first, last = edges[0].start, edges[-1].end
+    closes = abs(last - first) <= within
+    if closes:
+        edges[-1] = edges[-1]._replace(end=first)
+    elif first.real > within or last.real > within:
+        ends = f"an open line from ({first.real:g}, {first.imag:g}) to ({last.real:g}, {last.imag:g})"
+        raise InvalidInput(field, ends, "a line that ends where it began, or one from the axis to the axis")
+    edges = [
+        edge._replace(start=_on_axis(edge.start, within), end=_on_axis(edge.end, within)) for edge in edges
+    ]
+    on_axis = [k for k, edge in enumerate(edges) if not edge.turn and edge.start.real == edge.end.real == 0.0]
+    if closes and len(on_axis) == 1:
+        edges = edges[on_axis[0] + 1 :] + edges[: on_axis[0]]
+    for point in [edge.end for edge in edges[:-1]] + [_innermost(edge) for edge in edges]:
+        if point.real <= within:
+            place = f"a line through the axis at a height of {point.imag:g}"
+            raise InvalidInput(field, place, "a line that is on the axis at its ends only")
+    return edges
+
+
+def _on_axis(point: complex, within: float) -> complex:
+    return complex(0.0, point.imag) if point.real <= within else point
+
+
+def _innermost(edge: Edge) -> complex:
+    """The point of an arc closest to the axis between its ends; its middle where that is at an end."""
+    if edge.turn:
+        point = edge.center - abs(edge.radius)
+        if 1e-6 < edge.share(point) < 1.0 - 1e-6:
+            return point
+    return complex(edge.points(0.5))
+
+
+def _refuse_meetings(edges: list[Edge], within: float, field: str) -> None:
+    """Refuse a line that meets itself elsewhere than where an edge follows another."""
+    reach = np.array([edge.sagitta + within for edge in edges])
+    ends = np.array([[edge.start, edge.end] for edge in edges])
+    low = [part.min(axis=1) - reach for part in (ends.real, ends.imag)]
+    high = [part.max(axis=1) + reach for part in (ends.real, ends.imag)]
+    near = np.triu(np.ones((len(edges), len(edges)), dtype=bool), 1)
+    for least, most in zip(low, high, strict=True):
+        near &= (least[:, None] <= most) & (least <= most[:, None])
+    for one, other in np.argwhere(near).tolist():
+        shared = _shared_ends(edges, one, other)
+        for point in meetings(edges[one], edges[other], within):
+            if all(abs(point - end) > 10.0 * within for end in shared):
+                place = (
+                    f"a line whose edges {one + 1} and {other + 1} meet at ({point.real:g}, {point.imag:g})"
+                )
+                raise InvalidInput(field, place, "a line that does not meet itself")
+
+
+def _shared_ends(edges: list[Edge], one: int, other: int) -> list[complex]:
+    """Where the second of two edges follows the first, or the first the second."""
+    ends = [edges[one].end] if other == one + 1 else []
+    if one == 0 and other == len(edges) - 1 and edges[0].start == edges[-1].end:
+        ends.append(edges[0].start)
+    return ends

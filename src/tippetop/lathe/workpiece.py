@@ -1,0 +1,128 @@
+"""Bodies turned on a lathe, as users state them: a profile, a density, and what is let into them."""
+
+from functools import cached_property
+from typing import Annotated, Any, Literal, Self, TypeAlias
+
+from pydantic import BeforeValidator, Field, model_validator
+from pydantic_core import PydanticCustomError
+
+from tippetop.errors import InvalidInput
+from tippetop.lathe.hull import Hull, hull_of
+from tippetop.lathe.mass import Filling, MassProperties, mass_properties
+from tippetop.lathe.profile import Profile, area_of, profile_of
+from tippetop.validation import NotNegative, Number, Part, Positive, Quantity
+
+UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254}
+"""The units of profiles, m."""
+
+DENSEST = 1e6
+"""Largest density, kg/m^3: far above that of any metal."""
+
+
+def _listed(value: Any) -> Any:
+    if not isinstance(value, list | tuple) or not all(isinstance(point, list | tuple) for point in value):
+        raise PydanticCustomError("points", "a list of points [distance from the axis, height, radius]")
+    return value
+
+
+Points: TypeAlias = Annotated[tuple[tuple[Number, ...], ...], BeforeValidator(_listed)]
+"""Points of a profile: distance from the axis, height along it and, at the end of an arc, its radius."""
+
+
+class Insert(Part):
+    """Something let into a body, in the place of what is there otherwise.
+
+    Attributes
+    ----------
+    profile
+        Its points, as those of the body.
+    density
+        Its density, kg/m^3: 0 for a cavity.
+    """
+
+    profile: Points
+    density: Annotated[NotNegative, Field(le=DENSEST), Quantity("kg m-3", "density of the insert")]
+
+
+class Workpiece(Part):
+    """A body turned on a lathe: what a profile sweeps out about the axis.
+
+    Attributes
+    ----------
+    profile
+        Points (distance from the axis, height along it) in a row: from the axis to the axis, or from one to
+        itself. The edge to a point is straight, or with a third number an arc of this radius: positive where
+        it turns to the left, as the outside of a ball does on the way up. No arc is more than half a circle.
+    density
+        Density, kg/m^3.
+    inserts
+        Cavities and weights in it; one may be in another.
+    unit
+        What the numbers of profiles are in: "m", "cm", "mm" or "in".
+    """
+
+    profile: Points
+    density: Annotated[Positive, Field(le=DENSEST), Quantity("kg m-3", "density of the body")]
+    inserts: tuple[Insert, ...] = ()
+    unit: Literal["m", "cm", "mm", "in"] = "m"
+
+    @model_validator(mode="after")
+    def _is_a_body(self) -> Self:
+        outline = self.outline
+        for number, inner in enumerate(self.insides):
+            field = f"inserts.{number}.profile"
+            if "out" in inner.sides(outline):
+                raise InvalidInput(field, "a line that leaves the body", "one inside the body's profile")
+            for other in self.insides[:number]:
+                if not (_apart(inner, other) or _within(inner, other) or _within(other, inner)):
+                    raise InvalidInput(field, "a line across another insert's", "one beside or inside it")
+        return self
+
+    @cached_property
+    def outline(self) -> Profile:
+        """The profile of the body, m."""
+        return profile_of(self.profile, UNITS[self.unit])
+
+    @cached_property
+    def insides(self) -> tuple[Profile, ...]:
+        """The profiles of the inserts, m."""
+        return tuple(
+            profile_of(insert.profile, UNITS[self.unit], f"inserts.{number}.profile")
+            for number, insert in enumerate(self.inserts)
+        )
+
+    @cached_property
+    def around(self) -> tuple[int | None, ...]:
+        """The number of the insert in which each insert is, the innermost; None in the body itself."""
+        found = []
+        for inner in self.insides:
+            others = [
+                k for k, other in enumerate(self.insides) if other is not inner and _within(inner, other)
+            ]
+            found.append(min(others, key=lambda k: area_of(self.insides[k].edges), default=None))
+        return tuple(found)
+
+    @cached_property
+    def mass_properties(self) -> MassProperties:
+        """What it weighs, and how: exact but for rounding."""
+        fillings = [Filling(self.outline, self.density)]
+        for inner, insert, outer in zip(self.insides, self.inserts, self.around, strict=True):
+            replaced = self.density if outer is None else self.inserts[outer].density
+            fillings.append(Filling(inner, insert.density - replaced))
+        return mass_properties(fillings)
+
+    @cached_property
+    def hull(self) -> Hull:
+        """What it touches the table with."""
+        return hull_of(self.outline)
+
+
+def _within(inner: Profile, outer: Profile) -> bool:
+    """Whether a profile is inside another, though it may touch it."""
+    sides = inner.sides(outer)
+    return "in" in sides and "out" not in sides
+
+
+def _apart(one: Profile, other: Profile) -> bool:
+    """Whether neither of two profiles has a part inside the other, though they may touch."""
+    return "out" in one.sides(other) and "in" not in one.sides(other) | other.sides(one)
