@@ -17,6 +17,7 @@ from .export.csv import write_csv as write_csv
 from .export.glb import write_glb as write_glb
 from .export.html import write_html as write_html
 from .export.movie import write_movie as write_movie
+from .export.solid import write_solid as write_solid
 from .figures.overview import plot as plot
 from .frictions import ContensouFriction as ContensouFriction
 from .frictions import CoulombFriction as CoulombFriction
@@ -24,6 +25,8 @@ from .frictions import Friction as Friction
 from .frictions import RegularizedCoulombFriction as RegularizedCoulombFriction
 from .frictions import ViscousFriction as ViscousFriction
 from .lab.notebook import view as view
+from .lathe.workpiece import Insert as Insert
+from .lathe.workpiece import Workpiece as Workpiece
 from .mechanics.hertz import MATERIALS as MATERIALS
 from .mechanics.hertz import Material as Material
 from .mechanics.hertz import hertz_patch_radius as hertz_patch_radius

@@ -2,7 +2,9 @@
 
 import math
 from abc import abstractmethod
-from typing import Annotated, Literal, Self
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -19,6 +21,10 @@ from tippetop.validation import (
     Quantity,
     Variant,
 )
+
+if TYPE_CHECKING:
+    from tippetop.lathe.hull import Zone
+    from tippetop.lathe.workpiece import Insert, Workpiece
 
 Center = Annotated[Number, Quantity("m", "height of the surface's middle above the centre of mass")]
 
@@ -204,6 +210,96 @@ class Body(Part):
             return Hull.of(tuple(shape.surface for shape in self.shape))
         return self.shape.surface
 
+    @classmethod
+    def turned(
+        cls,
+        profile: "Sequence[Sequence[float]] | Path | str | Workpiece",
+        density: float | None = None,
+        *,
+        inserts: "Sequence[Insert | Mapping[str, Any]] | None" = None,
+        unit: Literal["m", "cm", "mm", "in"] | None = None,
+        whole: bool = False,
+    ) -> Self:
+        """The body that a lathe makes: mass, moments of inertia and the surfaces it touches the table with.
+
+        They are exact for the profile, whose edges are straight or arcs of circles.
+
+        Parameters
+        ----------
+        profile
+            Points (distance from the axis, height) or, at the end of an arc, (distance, height, radius), as
+            in `tippetop.lathe.workpiece.Workpiece`; or such a workpiece; or a .toml, .csv or .svg file, as in
+            `tippetop.lathe.files.read_workpiece`.
+        density
+            Density, kg/m^3.
+        inserts
+            Cavities and weights: `tippetop.lathe.workpiece.Insert` or their fields, profile and density.
+        unit
+            What the numbers of the profile are in: "m" if left out.
+        whole
+            Take spheres and rings that the body has only a part of as whole. Otherwise it is refused if it
+            does not stay within them.
+
+        Raises
+        ------
+        InvalidInput
+            If the profile is no body's, or if no surfaces that are known make up what it touches with.
+        FileTrouble
+            If a file cannot be read.
+        """
+        from tippetop.lathe.files import read_workpiece  # noqa: PLC0415 - slow to import
+        from tippetop.lathe.workpiece import Workpiece  # noqa: PLC0415
+
+        given = {"density": density, "inserts": inserts, "unit": unit}
+        fields = {name: value for name, value in given.items() if value is not None}
+        match profile:
+            case Workpiece():
+                piece = profile.model_copy(update=fields)
+            case str() | Path():
+                piece = read_workpiece(profile, **fields)
+            case _:
+                piece = Workpiece(**{"profile": profile, **fields})
+        mass, _, I1, I3 = piece.mass_properties
+        shapes = touching(piece, whole)
+        return cls(mass=mass, shape=shapes[0] if len(shapes) == 1 else shapes, I1=I1, I3=I3)
+
+
+def touching(piece: "Workpiece", whole: bool = False) -> list[Shape]:
+    """The surfaces that a turned body touches the table with, as seen from its centre of mass.
+
+    Raises
+    ------
+    InvalidInput
+        If there are others than spheres and rings; or, unless they may be taken as whole, if one of these,
+        were it whole, would be outside of the body.
+    """
+    center, hull, reach = piece.mass_properties.center, piece.hull, PROTRUDING * piece.outline.size
+    found = {zone: _shape(zone, zone.height - center) for zone in hull.zones}
+    for zone in hull.zones:
+        if hull.protrusion(zone)[0] > reach and not whole:
+            part = f"a {zone.name} cut off, left from tilt {zone.low:.6g} to {zone.high:.6g}"
+            wanted = (
+                "surfaces that stay inside the body where it does not stand on them, or to take them as whole"
+            )
+            raise InvalidInput("profile", part, wanted)
+    shapes = [found[zone] for zone in hull.whole(reach)]
+    match shapes:
+        case [Sphere(radius=radius, center=above)] if 0.0 < above < radius:
+            return [EccentricSphere(radius=radius, eccentricity=above / radius)]
+    return shapes
+
+
+def _shape(zone: "Zone", center: float) -> Shape:
+    if zone.radius == 0.0 and zone.tube:
+        return Sphere(radius=zone.tube, center=center)
+    if zone.radius > 0.0:
+        return Ring(radius=zone.radius, center=center, tube=zone.tube)
+    part = "a sharp tip" if zone.name == "tip" else "an arc around a point beyond the axis"
+    raise InvalidInput("profile", part, "a body that stands on spheres and rings")
+
+
+PROTRUDING = 1e-6
+"""How far a surface taken as whole may reach out of the body, in sizes of this."""
 
 LOOKS, SEARCHES = 64, 5
 """Looks at the tilts where a surface may be outermost, repeated so often around the best of them."""

@@ -17,7 +17,7 @@ def hull(*points):
     return hull_of(profile_of(points))
 
 
-@settings(max_examples=200)
+@settings(max_examples=80)
 @given(profile=profiles())
 def test_the_hull_is_that_of_all_points_of_the_profile(profile):
     found = hull_of(profile)
@@ -32,7 +32,7 @@ def test_the_hull_is_that_of_all_points_of_the_profile(profile):
     assert (support - brute_support(profile, tilts) <= abs(missed) + within).all()
 
 
-@settings(max_examples=100)
+@settings(max_examples=40)
 @given(profile=profiles())
 def test_its_surfaces_follow_each_other_from_tilt_to_tilt(profile):
     found = hull_of(profile)
@@ -43,7 +43,7 @@ def test_its_surfaces_follow_each_other_from_tilt_to_tilt(profile):
         assert low[:3] != high[:3]
 
 
-@settings(max_examples=100)
+@settings(max_examples=40)
 @given(profile=profiles())
 def test_how_far_a_whole_surface_would_reach_out(profile):
     found = hull_of(profile)

@@ -6,7 +6,18 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from tippetop.cli.options import Changes, Json, LiftOff, Mu, Preset, ProblemFile, Spin, Tilt, chosen_problem
+from tippetop.cli.options import (
+    Changes,
+    Json,
+    LiftOff,
+    Mu,
+    Preset,
+    ProblemFile,
+    Spin,
+    Tilt,
+    chosen_problem,
+    finite,
+)
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -58,10 +69,10 @@ def _plain(found: "Outlook") -> dict[str, Any]:
         "eccentricity": found.eccentricity,
         "group": found.group and found.group.value,
         "group_description": found.group and found.group.description,
-        "lambda_up": _finite(found.lambda_up),
-        "lambda_down": _finite(found.lambda_down),
-        "omega_c1": _finite(found.critical_spins.upright),
-        "omega_c2": _finite(found.critical_spins.inverted),
+        "lambda_up": finite(found.lambda_up),
+        "lambda_down": finite(found.lambda_down),
+        "omega_c1": finite(found.critical_spins.upright),
+        "omega_c2": finite(found.critical_spins.inverted),
         "omega_c_tilt": found.tilt,
         "jellett": found.jellett,
         "stays": None if stays is None else "stable" if stays.spectrum.stable else "until disturbed",
@@ -89,11 +100,7 @@ def _plain(found: "Outlook") -> dict[str, Any]:
 
 def _plain_state(state: Any) -> dict[str, Any]:
     names = ("tilt", "precession", "spin", "jellett", "energy")
-    return {"kind": state.kind.value, **{name: _finite(getattr(state, name)) for name in names}}
-
-
-def _finite(value: float) -> float | None:
-    return value if math.isfinite(value) else None
+    return {"kind": state.kind.value, **{name: finite(getattr(state, name)) for name in names}}
 
 
 def _print(found: "Outlook", console: "Console") -> None:

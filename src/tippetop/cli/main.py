@@ -9,6 +9,7 @@ import typer
 from typer.core import TyperGroup
 
 from tippetop import __version__
+from tippetop.cli.body import body
 from tippetop.cli.critical import critical
 from tippetop.cli.lab import lab
 from tippetop.cli.options import INTERRUPTED
@@ -46,6 +47,7 @@ app.command()(critical)
 app.command()(sweep)
 app.command()(lab)
 app.command()(problem)
+app.command()(body)
 
 GARBAGE = 50_000
 """Objects made between two looks for garbage: importing the libraries makes many, and drops hardly one."""

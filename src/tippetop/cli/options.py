@@ -1,6 +1,7 @@
 """The options that several commands share: how a problem is put together on the command line."""
 
 import json
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -67,6 +68,11 @@ def changed_problem(
     given = {field: value for field, value in settings.items() if value is not None}
     given.update(_parsed(change) for change in changes or [])
     return problem.replace(given)
+
+
+def finite(value: float) -> float | None:
+    """The number as JSON takes it: None where it is infinite or undefined."""
+    return value if math.isfinite(value) else None
 
 
 def _parsed(change: str) -> tuple[str, Any]:

@@ -59,7 +59,7 @@ class Zone(NamedTuple):
         return "sphere" if self.tube else "tip"
 
 
-class Hull(NamedTuple):
+class ConvexHull(NamedTuple):
     """The convex hull of a body.
 
     Attributes
@@ -88,8 +88,24 @@ class Hull(NamedTuple):
             found += [(zone.support(tilt) - other.support(tilt), tilt) for tilt in tilts]
         return max(found)
 
+    def whole(self, reach: float) -> list[Zone]:
+        """Its surfaces, each once, as they make up the body if they are whole.
 
-def hull_of(profile: Profile) -> Hull:
+        Left out are those that then reach out of the others by less than a length, m, wherever it stands.
+        """
+        kept = list({zone[:3]: zone for zone in self.zones}.values())
+        for zone in list(kept):
+            others = [other for other in kept if other is not zone]
+            tilts = np.concatenate(
+                [np.linspace(*part[3:], 33) for part in self.zones if part[:3] == zone[:3]]
+            )
+            beyond = [zone.support(t) - max(other.support(t) for other in others) for t in tilts if others]
+            if max(beyond, default=math.inf) <= reach:
+                kept.remove(zone)
+        return kept
+
+
+def hull_of(profile: Profile) -> ConvexHull:
     """The convex hull of a body of revolution.
 
     It is followed from tilt 0 to pi: each surface until another is further out, or its arc is at its end.
@@ -104,7 +120,7 @@ def hull_of(profile: Profile) -> Hull:
     kept = _merged([zone for zone in zones if zone.high - zone.low > _narrowest(zone)], within)
     between = [high.low for low, high in pairwise(kept) if _apart(low, high) > 10.0 * within]
     flats = [0.0] * bool(kept[0].radius) + between + [math.pi] * bool(kept[-1].radius)
-    return Hull(tuple(kept), tuple(flats))
+    return ConvexHull(tuple(kept), tuple(flats))
 
 
 def _narrowest(zone: Zone) -> float:

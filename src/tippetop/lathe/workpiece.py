@@ -7,9 +7,9 @@ from pydantic import BeforeValidator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from tippetop.errors import InvalidInput
-from tippetop.lathe.hull import Hull, hull_of
-from tippetop.lathe.mass import Filling, MassProperties, mass_properties
-from tippetop.lathe.profile import Profile, area_of, profile_of
+from tippetop.lathe.hull import ConvexHull, hull_of
+from tippetop.lathe.mass import Filling, MassProperties, mass_properties, volume
+from tippetop.lathe.profile import ROUNDING, Profile, area_of, profile_of
 from tippetop.validation import NotNegative, Number, Part, Positive, Quantity
 
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254}
@@ -70,12 +70,18 @@ class Workpiece(Part):
     def _is_a_body(self) -> Self:
         outline = self.outline
         for number, inner in enumerate(self.insides):
-            field = f"inserts.{number}.profile"
-            if "out" in inner.sides(outline):
+            field, sides = f"inserts.{number}.profile", inner.sides(outline)
+            if "out" in sides:
                 raise InvalidInput(field, "a line that leaves the body", "one inside the body's profile")
+            if "on" in sides and not self.inserts[number].density:
+                raise InvalidInput(
+                    field, "an open cavity", "one inside; what is open is the body's own profile"
+                )
             for other in self.insides[:number]:
                 if not (_apart(inner, other) or _within(inner, other) or _within(other, inner)):
                     raise InvalidInput(field, "a line across another insert's", "one beside or inside it")
+        if not self.mass_properties.mass > ROUNDING * self.density * volume(outline):
+            raise InvalidInput("inserts", f"{len(self.inserts)} cavities", "some that leave a body")
         return self
 
     @cached_property
@@ -112,7 +118,7 @@ class Workpiece(Part):
         return mass_properties(fillings)
 
     @cached_property
-    def hull(self) -> Hull:
+    def hull(self) -> ConvexHull:
         """What it touches the table with."""
         return hull_of(self.outline)
 

@@ -1,0 +1,97 @@
+"""A turned body cut along its axis: what it is made of, and the surfaces it stands on."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+import tippetop.figures.drawing as draw
+from tippetop.figures.drawing import Array
+from tippetop.figures.style import ACCENT, CONVERGED, CYCLE, INK, MUTED, REPORT, WIDTH, house_style
+from tippetop.lathe.hull import Zone
+from tippetop.lathe.profile import Profile
+from tippetop.lathe.workpiece import Workpiece
+
+BODY, WEIGHT, CAVITY = "#E9D8B8", "#9AA5B1", "white"
+ZONES = (CONVERGED, REPORT, CYCLE[2], ACCENT, CYCLE[5])
+"""The colours of the surfaces, in turn."""
+
+STEPS = 96
+"""Points on an arc."""
+
+MM = 1e3
+
+
+@house_style()
+def section(piece: Workpiece) -> Figure:
+    """Draw the section of a turned body, to scale, with its centre of mass and the surfaces it stands on."""
+    points = MM * piece.outline.points(STEPS)
+    reach, low, high = points.real.max(), points.imag.min(), points.imag.max()
+    room = 0.12 * max(reach, (high - low) / 2.0)
+    tall = (high - low + 2.0 * room) / (2.0 * reach + 2.0 * room)
+    figure = Figure(figsize=(WIDTH, min(8.0, max(2.4, 0.62 * WIDTH * tall))))
+    axes = figure.subplots()
+    axes.set(xlim=(-reach - room, reach + room), ylim=(low - room, high + room), aspect="equal")
+    axes.set(xlabel="Distance from the axis (mm)", ylabel="Height (mm)")
+    axes.set_xticks([tick for tick in axes.get_xticks() if abs(tick) <= reach + room])
+    axes.xaxis.set_major_formatter(lambda value, _: f"{abs(value):g}")
+    _cut(axes, piece.outline, BODY, 1.2)
+    for inner, insert in zip(piece.insides, piece.inserts, strict=True):
+        _cut(axes, inner, WEIGHT if insert.density else CAVITY, 0.9)
+    draw.line(axes, [(0.0, low - room), (0.0, high + room)], MUTED, 0.8, dashed=True, z=3)
+    _zones(axes, piece)
+    draw.mass_centre(axes, (0.0, MM * piece.mass_properties.center), radius=0.35 * room)
+    figure.legend(loc="outside right upper")
+    return figure
+
+
+def _cut(axes: Axes, profile: Profile, face: str, width: float) -> None:
+    """Draw what is cut, on both sides of the axis."""
+    points = MM * profile.points(STEPS)
+    right = np.stack([points.real, points.imag], axis=-1)
+    left = right[::-1] * (-1.0, 1.0)
+    for part in [np.concatenate([right, left])] if profile.reaches_axis else [right, left]:
+        draw.filled(axes, draw.outline(part), face, INK, width, z=2)
+
+
+def _zones(axes: Axes, piece: Workpiece) -> None:
+    """Draw each surface where it is touched, and faintly as a whole."""
+    surfaces = list(dict.fromkeys(zone[:3] for zone in piece.hull.zones))
+    for number, zone in enumerate(piece.hull.zones):
+        color = ZONES[surfaces.index(zone[:3]) % len(ZONES)]
+        tilts = np.linspace(zone.low, zone.high, STEPS)
+        text = f"{_told(zone)},\ntilt {np.degrees(zone.low):.4g}° to {np.degrees(zone.high):.4g}°"
+        touched = _touched(zone, tilts)
+        for side in (1.0, -1.0):
+            label = text if side > 0 else None
+            if zone.tube:
+                axes.plot(side * touched[:, 0], touched[:, 1], color=color, lw=3.0, label=label, zorder=4)
+            else:
+                dot: dict[str, Any] = {"marker": "o", "ls": "", "markersize": 6, "markeredgecolor": "white"}
+                axes.plot(side * touched[:1, 0], touched[:1, 1], color=color, label=label, zorder=5, **dot)
+        if zone.tube and number == surfaces.index(zone[:3]):
+            whole = _touched(zone, np.linspace(0.0, 2.0 * np.pi, 4 * STEPS))
+            for side in (1.0, -1.0) if zone.radius else (1.0,):
+                axes.plot(side * whole[:, 0], whole[:, 1], color=color, lw=0.8, ls=":", zorder=3)
+
+
+def _touched(zone: Zone, tilts: Array) -> Array:
+    """The points of a surface that are on the table at these tilts, mm."""
+    across = zone.radius + zone.tube * np.sin(tilts)
+    return np.asarray(MM * np.stack([across, zone.height - zone.tube * np.cos(tilts)], axis=-1))
+
+
+def _told(zone: Zone) -> str:
+    """A surface in words, in millimetres."""
+    radius, tube = MM * zone.radius, MM * zone.tube
+    match zone.name:
+        case "sphere":
+            return f"sphere, radius {tube:.4g} mm"
+        case "ring":
+            return f"ring, radius {radius:.4g} mm,\ntube {tube:.4g} mm"
+        case "edge":
+            return f"edge, radius {radius:.4g} mm"
+    return "tip"

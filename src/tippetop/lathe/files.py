@@ -1,0 +1,118 @@
+"""Workpieces read from files: whole from TOML, or their profile from CSV or SVG."""
+
+import csv
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+from typing import Any
+
+from tippetop.errors import InvalidInput, Unavailable
+from tippetop.files import named, read_text
+from tippetop.lathe.workpiece import Workpiece
+from tippetop.validation import parse_toml
+
+ACCEPTED = "a workpiece in TOML, or a profile in CSV or SVG"
+
+
+def read_workpiece(path: Path | str, **fields: Any) -> Workpiece:
+    """Read a workpiece from a .toml file, or its profile from a .csv or .svg file.
+
+    In TOML a profile may be the name of such a file, beside this one. A CSV file has two or three columns,
+    with or without a heading: distance from the axis, height and radius of the arc that ends there. An SVG
+    file has one path, of lines and circular arcs, in no moved or turned group, with the axis at x = 0.
+
+    Parameters
+    ----------
+    path
+        The file.
+    **fields
+        Fields of the workpiece to be set, or to be other than in the file.
+
+    Raises
+    ------
+    FileTrouble
+        If a file cannot be read.
+    InvalidInput
+        If it does not hold what it should.
+    Unavailable
+        If SVG cannot be read here.
+    """
+    path = Path(path)
+    if path.suffix.lower() != ".toml":
+        return Workpiece(**{"profile": read_points(path), **fields})
+    text = read_text(path, ACCEPTED)
+    try:
+        found = {**parse_toml(text), **fields}
+    except ValueError as error:
+        raise InvalidInput("workpiece", text.strip(), f"TOML; {error}") from None
+    inserts = found.get("inserts")
+    for part in [found, *(inserts if isinstance(inserts, list) else [])]:
+        if isinstance(part, dict) and isinstance(part.get("profile"), str):
+            part["profile"] = read_points(path.parent / part["profile"])
+    return Workpiece(**found)
+
+
+def read_points(path: Path) -> list[list[float]]:
+    """The points of the profile in a .csv or .svg file; see `read_workpiece`."""
+    text = read_text(path, ACCEPTED)
+    match path.suffix.lower():
+        case ".csv":
+            return _from_csv(text, path)
+        case ".svg":
+            return _from_svg(text, path)
+    raise InvalidInput("file", named(path), "one whose name ends in .toml, .csv or .svg")
+
+
+def _from_csv(text: str, path: Path) -> list[list[float]]:
+    rows = [row for row in csv.reader(text.splitlines()) if any(cell.strip() for cell in row)]
+    found = []
+    for number, row in enumerate(rows):
+        try:
+            found.append([float(cell) for cell in row if cell.strip()])
+        except ValueError:
+            if number:
+                line = f"{','.join(row)} in {named(path)}"
+                raise InvalidInput(f"row {number + 1}", line, "two or three numbers") from None
+    return found
+
+
+def _from_svg(text: str, path: Path) -> list[list[float]]:
+    try:
+        from svg.path import parse_path  # noqa: PLC0415 - optional
+    except ImportError:
+        raise Unavailable(
+            'SVG files are read with svg.path, which is not installed: pip install "tippetop[lathe]"'
+        ) from None
+    try:
+        elements = list(ElementTree.fromstring(text).iter())
+    except ElementTree.ParseError as error:
+        raise InvalidInput("SVG", named(path), f"XML; {error}") from None
+    lines = [element.get("d", "") for element in elements if element.tag.rpartition("}")[2] == "path"]
+    if len(lines) != 1 or any("transform" in element.attrib for element in elements):
+        raise InvalidInput("SVG", f"{len(lines)} paths in {named(path)}", "one path, without transformations")
+    try:
+        return _drawn(parse_path(lines[0]))
+    except InvalidInput:
+        raise
+    except (ValueError, IndexError, TypeError):
+        raise InvalidInput("path", lines[0], "a path of SVG") from None
+
+
+def _drawn(line: Any) -> list[list[float]]:
+    """The points of a line; up is less y there, so that arcs turn the other way."""
+    found: list[list[float]] = []
+    for segment in line:
+        match type(segment).__name__:
+            case "Move" if not found:
+                ends = [(segment.end, 0.0)]
+            case "Line" | "Close":
+                ends = [(segment.end, 0.0)] if segment.end != segment.start else []
+            case "Arc" if abs(segment.radius.real - segment.radius.imag) <= 1e-9 * abs(segment.radius):
+                radius = -segment.radius.real if segment.sweep else segment.radius.real
+                halves = (0.5, 1.0) if segment.arc else (1.0,)
+                ends = [(segment.point(share), radius) for share in halves]
+            case kind:
+                raise InvalidInput(
+                    "path", kind, "one line of straight pieces and circular arcs (M L H V A Z)"
+                )
+        found += [[end.real, -end.imag, radius] for end, radius in ends]
+    return found

@@ -1,0 +1,130 @@
+"""What `tippetop body` prints, writes and refuses."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+from typer.testing import CliRunner
+
+import tippetop as tt
+from tippetop.cli.main import app
+from tippetop.figures.section import section
+
+TOP = """
+unit = "mm"
+density = 700
+profile = [[0, -15], [15, 0, 15], [9, 12, 15], [2.5, 12], [2.5, 16], [0, 18.5, 2.5]]
+inserts = [{profile = [[0, 2], [11, 3], [7, 10.5], [0, 10.5]], density = 0}]
+"""
+BALL = (
+    'unit = "mm"\ndensity = 700\nprofile = [[0, -20], [0, 20, 20]]\n'
+    "inserts = [{profile = [[0, 2], [0, 18, 8]], density = 0}]"
+)
+
+
+MAIN = "from tippetop.cli.main import main; main()"
+
+
+@pytest.fixture
+def files(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "top.toml").write_text(TOP)
+    (tmp_path / "ball.toml").write_text(BALL)
+    (tmp_path / "bowl.csv").write_text("0,-20\n20,0,20\n0,0\n")
+    return tmp_path
+
+
+def said(*words):
+    done = CliRunner().invoke(app, ["body", *words], env={"COLUMNS": "200", "TERM": "dumb"})
+    assert done.exit_code == 0, done.output
+    return done.stdout
+
+
+def test_programs_are_told_what_the_theory_and_the_profile_say(files):
+    told = json.loads(said("ball.toml", "--json"))
+    body = tt.Body.turned(files / "ball.toml")
+    assert [told["mass"], told["I1"], told["I3"]] == [body.mass, body.I1, body.I3]
+    assert told["eccentricity"] == pytest.approx(body.shape.eccentricity, rel=1e-12)
+    launch = tt.Launch(tilt=told["omega_c_tilt"], spin=1.0)
+    spins = tt.critical_spins(tt.Problem(body=body, friction=tt.ViscousFriction(mu=0.1), launch=launch))
+    assert told["omega_c1"] == (None if spins.upright == float("inf") else pytest.approx(spins.upright))
+    assert told["omega_c2"] == pytest.approx(spins.inverted)
+    assert told["trouble"] is None
+    assert told["stem"] is None
+    (surface,) = told["surfaces"]
+    assert surface["kind"] == "sphere"
+
+
+def test_people_are_told_too(files):
+    lines = said("top.toml")
+    assert lines.startswith("Group ")
+    for text in ("mass", "stands on its stem above", "touches in two points or a line at tilt", "2.46746"):
+        assert text in lines
+    cut_off = said("bowl.csv", "--density", "700", "--unit", "mm")
+    assert "Cannot be simulated: profile = 'a sphere cut off" in cut_off
+    assert "lies flat" in cut_off
+    assert "up to a tilt of 1.5708" in cut_off
+    assert "Cannot be simulated" not in said("bowl.csv", "--density", "700", "--unit", "mm", "--whole")
+
+
+def test_the_problem_is_one_that_is_simulated(files):
+    (files / "problem.toml").write_text(said("ball.toml", "--toml"))
+    assert tt.Problem.read(files / "problem.toml").body == tt.Body.turned(files / "ball.toml")
+
+
+def test_files_are_written_once(files):
+    pytest.importorskip("trimesh", reason="solids are written with trimesh; it comes with the lathe extra")
+    names = ["--plot", "a.png", "--stl", "a.stl", "--3mf", "a.3mf"]
+    assert said("top.toml", *names).count("wrote ") == 3
+    sizes = {path.name: path.stat().st_size for path in files.glob("a.*")}
+    assert set(sizes) == {"a.png", "a.stl", "a.3mf"}
+    assert min(sizes.values()) > 1000
+    assert json.loads(said("top.toml", *names, "--json", "--force"))["files"]["3mf"] == "a.3mf"
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        ("top.toml --plot a.txt", "--plot = 'a.txt'"),
+        ("top.toml --stl a.3mf", "--stl = 'a.3mf'"),
+        ("top.toml --stl ball.toml.stl --json --toml", "--toml = 'with --json'"),
+        ("bowl.csv", "density is missing"),
+        ("bowl.csv --density 700 --unit ft", "unit = 'ft'"),
+        ("bowl.csv --density -1", "density = -1.0"),
+        ("bowl.csv --density 700 --toml", "profile = 'a sphere cut off"),
+        ("none.toml", "none.toml cannot be read"),
+        ("top.toml --plot taken.png", "taken.png exists"),
+    ],
+)
+def test_misuse_is_refused_in_one_sentence_and_nothing_is_written(files, words, sentence):
+    (files / "taken.png").write_text("mine")
+    before = sorted(files.iterdir())
+    done = CliRunner().invoke(app, ["body", *words.split()])
+    assert isinstance(done.exception, tt.TippetopError)
+    assert str(done.exception).startswith(sentence)
+    assert "\n" not in str(done.exception)
+    assert done.stdout == ""
+    assert sorted(files.iterdir()) == before
+
+
+def test_misuse_ends_with_exit_code_2(files):
+    (files / "taken.png").write_text("mine")
+    done = subprocess.run(
+        [sys.executable, "-c", MAIN, "body", "top.toml", "--plot", "taken.png"],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    sentence = "tippetop: taken.png exists; it is overwritten only with --force\n"
+    assert (done.stdout, done.stderr, done.returncode) == ("", sentence, 2)
+
+
+def test_a_section_shows_every_surface(files):
+    piece = tt.Workpiece(unit="mm", density=1.0, profile=[(0, 0), (18, 0), (20, 2, 2), (20, 10), (0, 10)])
+    (legend,) = section(piece).legends
+    assert [text.get_text().split(",")[0] for text in legend.get_texts()] == ["ring", "edge"]
+    axes = section(piece).axes[0]
+    low, high = axes.get_xlim()
+    assert low < -20 < 20 < high

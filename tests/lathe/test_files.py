@@ -1,0 +1,94 @@
+"""Workpieces in TOML, and profiles in CSV and SVG."""
+
+import math
+
+import pytest
+
+import tippetop as tt
+from tippetop.lathe.files import read_workpiece
+
+SVG = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="-1 -1 2 2"><g><path d="{}"/></g></svg>'
+MASS = 700.0 * 4 / 3 * math.pi * 0.02**3
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("ball.csv", "r, z, radius\n0,-20\n20,0,20\n\n0,20,20\n"),
+        ("ball.csv", "0,20,\n0,-20,-20"),
+        ("ball.svg", SVG.format("M 0 20 A 20 20 0 0 0 0 -20 z")),
+        ("ball.svg", SVG.format("M0,-20 a20,20 0 1 1 0,40")),
+        ("ball.svg", SVG.format("M0-20A20 20 0 0 1 20 0 20 20 0 0 1 0 20")),
+        ("ball.toml", 'density = 700\nunit = "mm"\nprofile = [[0, -20], [0, 20, 20]]'),
+    ],
+)
+def test_a_ball_is_read(tmp_path, name, text):
+    if name.endswith("svg"):
+        pytest.importorskip("svg.path", reason="SVG is read with svg.path; it comes with the lathe extra")
+    (tmp_path / name).write_text(text)
+    fields = {} if name.endswith("toml") else {"density": 700.0, "unit": "mm"}
+    piece = read_workpiece(tmp_path / name, **fields)
+    assert piece.mass_properties.mass == pytest.approx(MASS, rel=1e-12)
+    assert piece.hull.zones[0][:3] == pytest.approx((0.0, 0.0, 0.02), abs=1e-12)
+    assert tt.Body.turned(tmp_path / name, **fields).mass == piece.mass_properties.mass
+
+
+def test_up_is_up_and_large_arcs_are_large(tmp_path):
+    pytest.importorskip("svg.path", reason="SVG is read with svg.path; it comes with the lathe extra")
+    (tmp_path / "ring.svg").write_text(SVG.format("M 20 0 A 5 5 0 1 1 25 -5 L 20 -5 Z"))
+    ring = read_workpiece(tmp_path / "ring.svg", density=1.0).mass_properties
+    # Three quarters of a disk: by Pappus, with the moment of the quarter below and outside that is missing.
+    assert ring.mass == pytest.approx(2 * math.pi * (20 * 75 / 4 * math.pi - 5**3 / 3), rel=1e-12)
+    assert ring.center > 5.0
+    (tmp_path / "cone.svg").write_text(SVG.format("M 0 0 L 10 -10 H 0"))
+    assert read_workpiece(tmp_path / "cone.svg", density=1.0).mass_properties.center == pytest.approx(7.5)
+
+
+def test_profiles_may_be_in_files_beside(tmp_path):
+    (tmp_path / "ball.csv").write_text("0,-20\n0,20,20\n")
+    (tmp_path / "hole.csv").write_text("0,-10\n0,10,10\n")
+    (tmp_path / "mine.toml").write_text(
+        'density = 700\nunit = "mm"\nprofile = "ball.csv"\n[[inserts]]\nprofile = "hole.csv"\ndensity = 0\n'
+    )
+    found = read_workpiece(tmp_path / "mine.toml", density=1400.0)
+    assert found.mass_properties.mass == pytest.approx(2 * 7 / 8 * MASS, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "sentence"),
+    [
+        ("a.csv", "0,0\n1,x\n0,1\n", "row 2 = '1,x in "),
+        ("a.csv", "", "0 points"),
+        ("a.svg", "<svg", "accepted: XML"),
+        ("a.svg", "<svg/>", "0 paths"),
+        ("a.svg", SVG.format("M 0 0 C 1 2 3 4 0 5"), "path = 'CubicBezier'"),
+        ("a.svg", SVG.format("M 0 0 A 1 2 0 0 0 0 2"), "path = 'Arc'"),
+        ("a.svg", SVG.format("M 0 0 L 1 1 M 2 2 L 0 2"), "path = 'Move'"),
+        ("a.svg", SVG.format("rubbish"), "accepted: a path of SVG"),
+        (
+            "a.svg",
+            SVG.format("M 0 0 L 1 1 L 0 1").replace("<g>", '<g transform="scale(2)">'),
+            "transformations",
+        ),
+        ("a.toml", "profile = [", "accepted: TOML"),
+        ("a.toml", "profile = 'b.csv'", "b.csv cannot be read"),
+        ("a.toml", "density = 700", "profile is missing"),
+        ("a.toml", "density = 700\nprofile = [[0, 0], [1, 1], [0, 1]]\ncolour = 'red'", "colour = 'red'"),
+        ("a.txt", "0,0", "accepted: one whose name ends in .toml, .csv or .svg"),
+    ],
+)
+def test_what_cannot_be_read_is_refused(tmp_path, name, text, sentence):
+    if name.endswith("svg"):
+        pytest.importorskip("svg.path", reason="SVG is read with svg.path; it comes with the lathe extra")
+    (tmp_path / name).write_text(text)
+    fields = {} if name.endswith("toml") else {"density": 700.0}
+    with pytest.raises(tt.TippetopError) as refusal:
+        read_workpiece(tmp_path / name, **fields)
+    assert sentence in str(refusal.value)
+
+
+def test_what_is_not_installed_is_said(tmp_path, monkeypatch):
+    monkeypatch.setitem(__import__("sys").modules, "svg.path", None)
+    (tmp_path / "a.svg").write_text(SVG.format("M 0 0 L 1 1 L 0 1"))
+    with pytest.raises(tt.Unavailable, match=r"tippetop\[lathe\]"):
+        read_workpiece(tmp_path / "a.svg", density=1.0)
