@@ -25,6 +25,8 @@ from .frictions import Friction as Friction
 from .frictions import RegularizedCoulombFriction as RegularizedCoulombFriction
 from .frictions import ViscousFriction as ViscousFriction
 from .lab.notebook import view as view
+from .lathe.design import design_bowl as design_bowl
+from .lathe.design import design_insert as design_insert
 from .lathe.workpiece import Insert as Insert
 from .lathe.workpiece import Workpiece as Workpiece
 from .mechanics.hertz import MATERIALS as MATERIALS

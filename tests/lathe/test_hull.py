@@ -78,6 +78,12 @@ def test_bodies_that_are_known():
     assert named(torus) == ["ring"]
 
 
+def test_points_along_straight_edges_are_no_surfaces():
+    sides = [(R * k / 7, R * k / 21) for k in range(1, 8)]
+    cone = hull((0, 0), *sides, *((R, R / 3 + 0.001 * k) for k in range(1, 5)), (0, R))
+    assert [zone[:2] for zone in cone.zones] == [(0.0, 0.0), (R, R / 3), (R, R / 3 + 0.004), (0.0, R)]
+
+
 def test_a_stem_takes_over_where_its_tip_and_the_sphere_touch_one_line():
     """Leine and Glocker's top: spheres of 15 and 5 mm, 13 mm apart."""
     big, tip, apart = 0.015, 0.005, 0.013

@@ -5,8 +5,7 @@ A point is a complex number: its distance from the axis and, times i, its height
 
 import cmath
 import math
-from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -74,15 +73,13 @@ class Edge(NamedTuple):
         t = np.asarray(share, dtype=float)
         return np.asarray(self.chord / np.sinc(self.turn / math.tau) * np.exp(1j * (t - 0.5) * self.turn))
 
-    def integral(self, integrand: Callable[[Any, Any], Any]) -> float:
-        """Integral of a polynomial of r and z, of degree 4 at most, over dz along the edge.
+    def nodes(self) -> tuple[Points, NDArray[np.float64]]:
+        """Points on it, and what to weigh a polynomial of r and z there with, for its integral over dz.
 
-        It then is the integral of a polynomial, or of a trigonometric one of degree 5 over an angle of at
-        most pi: Gauss's rule with 20 points is exact for both, but for rounding.
+        Of degree 4 at most it is a polynomial along the edge, or a trigonometric one of degree 5 over an
+        angle of at most pi: Gauss's rule with 20 points is exact for both, but for rounding.
         """
-        points = self.points(_SHARES)
-        rates = self.velocities(_SHARES).imag * integrand(points.real, points.imag)
-        return float(_WEIGHTS @ rates) / 2.0
+        return self.points(_SHARES), _WEIGHTS / 2.0 * self.velocities(_SHARES).imag
 
     def share(self, point: complex) -> float:
         """The share of it after which it comes to a point that is on it, or on its line or circle."""

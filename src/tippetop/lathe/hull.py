@@ -190,11 +190,8 @@ class _Pieces:
             rises[self.starting[number]] = self.low[self.starting[number]]
         rises[self.left > tilt - _CLOSE] = math.inf
         rises[(rises < self.low - NARROWEST) | (rises >= self.high) | (rises < tilt - _CLOSE)] = math.inf
-        first = max(tilt, float(rises.min()))
-        if first >= math.pi:
-            return math.pi, number
-        steepness = self.radius * math.cos(first) + self.height * math.sin(first)
-        return first, int(np.argmax(np.where(rises <= first + NARROWEST, steepness, -math.inf)))
+        first = int(np.argmin(rises))
+        return (max(tilt, float(rises[first])), first) if rises[first] < math.pi else (math.pi, number)
 
     def _rises(self, number: int, tilt: float) -> NDArray[np.float64]:
         """The tilts at which the circles and points come to be further out than one of them, from a tilt on.

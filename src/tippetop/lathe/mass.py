@@ -61,4 +61,7 @@ def volume(profile: Profile) -> float:
 
 
 def _integral(fillings: Sequence[Filling], integrand: Callable[[Any, Any], Any]) -> float:
-    return sum(density * edge.integral(integrand) for profile, density in fillings for edge in profile.edges)
+    nodes = [(density, *profile.nodes) for profile, density in fillings]
+    return sum(
+        density * float(integrand(points.real, points.imag) @ weights) for density, points, weights in nodes
+    )

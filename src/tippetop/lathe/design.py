@@ -1,0 +1,213 @@
+"""Bodies to order: the cavity, weight, or bowl and stem that give a wanted eccentricity and I1 / I3."""
+
+import math
+from collections.abc import Callable
+from itertools import groupby, pairwise
+
+import numpy as np
+from scipy.optimize import brentq
+
+from tippetop.errors import InvalidInput
+from tippetop.lathe.profile import ROUNDING
+from tippetop.lathe.workpiece import UNITS, Insert, Workpiece
+
+LOOKS = 96
+"""Sizes that are tried before the one that is wanted is looked for between two of them."""
+
+LONGEST = 3.0
+"""How far a stem may reach from the centre of the sphere, in radii."""
+
+
+def design_insert(
+    piece: Workpiece,
+    eccentricity: float,
+    inertia_ratio: float,
+    *,
+    density: float = 0.0,
+    wall: float | None = None,
+) -> Workpiece:
+    """A turned body with a round cavity or weight more, on its axis, that makes it stand as wanted.
+
+    Parameters
+    ----------
+    piece
+        The body: a ball, or one with a stem, or anything else that stands on a sphere.
+    eccentricity
+        alpha: how far the centre of mass is to be below the centre of that sphere, in its radii.
+    inertia_ratio
+        gamma = I1 / I3.
+    density
+        Density of what is let in, kg/m^3: 0 for a cavity.
+    wall
+        Least thickness of the body around it, m; a twentieth of the sphere's radius if left out.
+
+    Raises
+    ------
+    InvalidInput
+        If there is none such; the sentence says what there is.
+    """
+    sphere = piece.hull.zones[0]
+    if sphere.name != "sphere":
+        raise InvalidInput("piece", f"a body that stands on a {sphere.name}", "one that stands on a sphere")
+    if density < 0.0:
+        raise InvalidInput("density", density, "a number at least 0")
+    if density == piece.density:
+        raise InvalidInput("density", density, "another density than the body's")
+    radius, base = sphere.tube, piece.mass_properties
+    least = _wall(radius, wall)
+    points = piece.outline.points(2)
+    heights = np.linspace(points.imag.min(), points.imag.max(), 16 * LOOKS + 1)
+    room = np.array([_room(piece, height) for height in heights]) - least
+
+    def made(size: float, height: float) -> Workpiece:
+        ball = ((0.0, height - size), (0.0, height + size, size))
+        unit = UNITS[piece.unit]
+        profile = tuple(tuple(number / unit for number in point) for point in ball)
+        inserts = (*piece.inserts, Insert(profile=profile, density=density))
+        return piece.model_copy(update={"inserts": inserts})
+
+    def mass(size: float) -> float:
+        return (density - piece.density) * 4.0 / 3.0 * math.pi * size**3
+
+    def height(size: float) -> float | None:
+        wanted = sphere.height - eccentricity * radius
+        found = wanted + (wanted - base.center) * base.mass / mass(size)
+        return found if _room(piece, found) - least >= size else None
+
+    def extremes(size: float) -> list[float]:
+        within = heights[room >= size]
+        centers = (base.mass * base.center + mass(size) * within) / (base.mass + mass(size))
+        return [float(sphere.height - center) / radius for center in centers]
+
+    sizes = np.linspace(0.0, room.max(), LOOKS + 2)[1:-1].tolist()
+    return _found(sizes, height, extremes, made, eccentricity, inertia_ratio)
+
+
+def _room(piece: Workpiece, height: float) -> float:
+    """Distance of a point of the axis from all surfaces, m; 0 outside of the body, and in what is let in."""
+    point, profiles = 1j * height, (piece.outline, *piece.insides)
+    away = min(profile.distance(point) for profile in profiles)
+    if away <= ROUNDING * piece.outline.size:
+        return 0.0
+    # From the axis one sees half of what is around.
+    around = [abs(sum(edge.angle_seen(point) for edge in profile.edges)) > 1.0 for profile in profiles]
+    return away if around == [True] + [False] * len(piece.insides) else 0.0
+
+
+def design_bowl(
+    radius: float,
+    density: float,
+    eccentricity: float,
+    inertia_ratio: float,
+    *,
+    stem: float | None = None,
+    wall: float | None = None,
+) -> Workpiece:
+    """The bowl with a stem inside, of one material, that stands on its sphere as wanted, and on its stem.
+
+    The sphere is cut off just where the stem takes over. The thickness of the bowl and the length of the
+    stem, which is round at its end, are found.
+
+    Parameters
+    ----------
+    radius
+        Radius of the sphere, m.
+    density
+        Density, kg/m^3.
+    eccentricity
+        alpha: how far the centre of mass is below the centre of the sphere, in radii.
+    inertia_ratio
+        gamma = I1 / I3.
+    stem
+        Radius of the stem, m; a tenth of the sphere's if left out.
+    wall
+        Least thickness of the bowl, m; a twentieth of the radius if left out.
+
+    Raises
+    ------
+    InvalidInput
+        If there is none such; the sentence says what there is.
+    """
+    least = _wall(radius, wall)
+    thick = radius / 10.0 if stem is None else stem
+    if not 0.0 < thick < radius / 2.0:
+        raise InvalidInput("stem", thick, "a radius greater than 0 and less than half the sphere's")
+
+    def rim(tip: float) -> float:
+        return radius * (radius - thick) / (tip - thick)
+
+    def ends(tip: float) -> tuple[float, float]:
+        return math.hypot(rim(tip), thick + least), radius - least
+
+    def piece(tip: float, hollow: float) -> Workpiece:
+        face = rim(tip)
+        outer, inner = math.sqrt(radius**2 - face**2), math.sqrt(hollow**2 - face**2)
+        floor = -math.sqrt(hollow**2 - thick**2)
+        bowl = ((0.0, -radius), (radius, 0.0, radius), (outer, face, radius), (inner, face))
+        inside = ((thick, floor, -hollow), (thick, tip - thick), (0.0, tip, thick))
+        return Workpiece(profile=(*bowl, *inside), density=density)
+
+    def extremes(tip: float) -> list[float]:
+        return [_alpha(piece(tip, hollow), radius) for hollow in ends(tip)]
+
+    def hollow(tip: float) -> float | None:
+        low, high = extremes(tip)
+        if not min(low, high) <= eccentricity <= max(low, high):
+            return None
+        return _root(lambda size: _alpha(piece(tip, size), radius) - eccentricity, *ends(tip))
+
+    tips = np.linspace(radius, LONGEST * radius, LOOKS // 2 + 1)[1:].tolist()
+    possible = [tip for tip in tips if ends(tip)[0] < ends(tip)[1]]
+    return _found(possible, hollow, extremes, piece, eccentricity, inertia_ratio)
+
+
+def _wall(radius: float, wall: float | None) -> float:
+    if not radius > 0.0:
+        raise InvalidInput("radius", radius, "a number greater than 0")
+    least = radius / 20.0 if wall is None else wall
+    if not 0.0 < least < radius / 2.0:
+        raise InvalidInput("wall", least, "a thickness greater than 0 and less than half the radius")
+    return least
+
+
+def _alpha(piece: Workpiece, radius: float) -> float:
+    """How far the centre of mass is below the origin, in radii."""
+    return -piece.mass_properties.center / radius
+
+
+def _found(
+    sizes: list[float],
+    partner: Callable[[float], float | None],
+    extremes: Callable[[float], list[float]],
+    piece: Callable[[float, float], Workpiece],
+    eccentricity: float,
+    inertia_ratio: float,
+) -> Workpiece:
+    """The body with the wanted ratio, among those with the wanted eccentricity: one a size, or none."""
+
+    def ratio(size: float) -> float:
+        other = partner(size)
+        if other is None:
+            return math.nan
+        properties = piece(size, other).mass_properties
+        return properties.I1 / properties.I3
+
+    ratios = [ratio(size) for size in sizes]
+    if not np.isfinite(ratios).any():
+        alphas = [alpha for size in sizes for alpha in extremes(size)]
+        between = f"one from {min(alphas):.3f} to {max(alphas):.3f}" if alphas else "none"
+        raise InvalidInput("eccentricity", eccentricity, f"{between}, for bodies of this kind")
+    for (low, below), (high, above) in pairwise(zip(sizes, ratios, strict=True)):
+        if min(below, above) <= inertia_ratio <= max(below, above):
+            size = _root(lambda size: ratio(size) - inertia_ratio, low, high)
+            other = partner(size)
+            assert other is not None
+            return piece(size, other)
+    runs = [list(run) for finite, run in groupby(ratios, math.isfinite) if finite]
+    longer = [run for run in runs if len(run) > 1] or runs
+    between = " or ".join(f"{min(run):.5g} to {max(run):.5g}" for run in longer)
+    raise InvalidInput("inertia_ratio", inertia_ratio, f"one from {between}, with this eccentricity")
+
+
+def _root(function: Callable[[float], float], low: float, high: float) -> float:
+    return float(brentq(function, low, high, xtol=1e-15, rtol=1e-15))
