@@ -58,6 +58,7 @@ def test_programs_are_told_what_the_theory_and_the_profile_say(files):
 
 def test_people_are_told_too(files):
     lines = said("top.toml")
+    assert "Cannot be simulated" not in lines
     assert lines.startswith("Group ")
     for text in ("mass", "stands on its stem above", "touches in two points or a line at tilt", "2.46746"):
         assert text in lines

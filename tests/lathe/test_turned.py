@@ -3,9 +3,12 @@
 import math
 
 import pytest
-from profiles import BALL
+from hypothesis import given, reject, settings
+from hypothesis import strategies as st
+from profiles import BALL, lines
 
 import tippetop as tt
+from strategies import numbers
 
 R = 0.02
 
@@ -73,3 +76,46 @@ def test_what_is_given_to_a_workpiece_takes_the_place_of_its_own():
     assert tt.Body.turned(piece, unit="mm").mass == pytest.approx(1e-9 * tt.Body.turned(piece).mass)
     with pytest.raises(tt.InvalidInput, match="density is missing"):
         tt.Body.turned(BALL)
+
+
+LEINE_GLOCKER = [(0, -15), (15, 0, 15), (9, 12, 15), (5, 12), (5, 13), (0, 18, 5)]
+"""Spheres of 15 and 5 mm, 13 mm apart."""
+
+
+def test_a_top_with_a_stem_stands_on_two_spheres():
+    piece = tt.Workpiece(profile=LEINE_GLOCKER, density=400.0, unit="mm")
+    body, center = tt.Body.turned(piece), piece.mass_properties.center
+    bowl, tip = body.shapes
+    assert (bowl.radius, bowl.center) == pytest.approx((0.015, -center), rel=1e-9)
+    assert (tip.radius, tip.center) == pytest.approx((0.005, 0.013 - center), rel=1e-9)
+
+
+@settings(max_examples=60)
+@given(points=lines(), low=numbers(0.005, 0.04), high=numbers(0.005, 0.04), straight=st.booleans())
+def test_the_body_is_as_high_over_the_table_as_its_hull(points, low, high, straight):
+    """What the mechanics makes of the surfaces, against the hull of the profile, between flat ends."""
+    side = [point[:2] if straight else point for point in points[1:-1]]
+    try:
+        piece = tt.Workpiece(
+            profile=[(0, -0.04), (low, -0.04), *side, (high, 0.04), (0, 0.04)], density=500.0
+        )
+        body = tt.Body.turned(piece)
+    except tt.InvalidInput:
+        reject()
+    for tilt in [k * math.pi / 60 for k in range(61)]:
+        height = max(shape.surface.height(math.cos(tilt)) for shape in body.shapes)
+        above = piece.hull.support(tilt) + piece.mass_properties.center * math.cos(tilt)
+        assert height == pytest.approx(above, abs=2e-6 * piece.outline.size)
+
+
+def test_a_turned_top_comes_to_lie_on_sphere_and_stem_where_the_hull_says():
+    """It turns over, its stem strikes the table, and it rocks until both stay on it."""
+    weight = {"profile": [(0, -10), (0, 5, 7.5)], "density": 7800.0}
+    top = [(0, -15), (15, 0, 15), (9, 12, 15), (2.5, 12), (2.5, 16), (0, 18.5, 2.5)]
+    piece = tt.Workpiece(profile=top, density=700.0, unit="mm", inserts=[weight])
+    launch = tt.Launch(tilt=0.1, spin=120.0)
+    problem = tt.Problem(body=tt.Body.turned(piece), friction=tt.ViscousFriction(mu=0.3), launch=launch)
+    run = tt.simulate(problem, 9.0)
+    (both,) = (tilt for tilt in piece.hull.flats)
+    assert run["theta"].values[-1] == pytest.approx(both, abs=1e-9)
+    assert piece.hull.zones[0].high == both
