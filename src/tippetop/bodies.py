@@ -274,6 +274,9 @@ def touching(piece: "Workpiece", whole: bool = False) -> list[Shape]:
         were it whole, would be outside of the body.
     """
     center, hull, reach = piece.mass_properties.center, piece.hull, PROTRUDING * piece.outline.size
+    if len(hull.zones) > MOST:
+        many = f"a body that stands on {len(hull.zones)} surfaces"
+        raise InvalidInput("profile", many, f"at most {MOST}: arcs rather than many short edges")
     found = {zone: _shape(zone, zone.height - center) for zone in hull.zones}
     for zone in hull.zones:
         if hull.protrusion(zone)[0] > reach and not whole:
@@ -297,6 +300,9 @@ def _shape(zone: "Zone", center: float) -> Shape:
     part = "a sharp tip" if zone.name == "tip" else "an arc around a point beyond the axis"
     raise InvalidInput("profile", part, "a body that stands on spheres and rings")
 
+
+MOST = 12
+"""Most surfaces of a turned body."""
 
 PROTRUDING = 1e-6
 """How far a surface taken as whole may reach out of the body, in sizes of this."""

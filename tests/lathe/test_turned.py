@@ -28,11 +28,6 @@ def test_a_ball_with_a_cavity_is_an_eccentric_sphere():
     transverse = axial - mass * share * up**2 - body.mass * below**2
     inertias = body.I1, body.I3
     assert inertias == pytest.approx((transverse, axial), rel=1e-12)
-    run = tt.simulate(
-        tt.Problem(body=body, friction=tt.ViscousFriction(mu=0.3), launch=tt.Launch(tilt=0.1, spin=100.0)),
-        0.1,
-    )
-    assert run.attrs["outcome"] == "completed"
 
 
 def test_a_ball_upside_down_stands_on_its_other_side():
@@ -62,6 +57,18 @@ def test_bodies_that_stand_on_something_else_are_refused(profile, sentence):
     with pytest.raises(tt.InvalidInput) as refusal:
         tt.Body.turned(profile, 700.0)
     assert sentence in str(refusal.value)
+
+
+def test_a_ball_of_many_edges_is_weighed_but_stands_on_too_many():
+    angles = [math.pi * (k / 500 - 0.5) for k in range(501)]
+    line = [(R * max(0.0, math.cos(angle)), R * math.sin(angle)) for angle in angles]
+    line[0], line[-1] = (0.0, -R), (0.0, R)
+    piece = tt.Workpiece(profile=line, density=700.0)
+    about = 2 / 5 * 700.0 * 4 / 3 * math.pi * R**5
+    assert piece.mass_properties.I3 / about == pytest.approx(1.0, rel=1e-4)
+    assert len(piece.hull.zones) == 501
+    with pytest.raises(tt.InvalidInput, match="stands on 501 surfaces"):
+        tt.Body.turned(piece)
 
 
 def test_a_sphere_cut_off_may_be_taken_as_whole():

@@ -201,8 +201,8 @@ def _found(
         if min(below, above) <= inertia_ratio <= max(below, above):
             size = _root(lambda size: ratio(size) - inertia_ratio, low, high)
             other = partner(size)
-            assert other is not None
-            return piece(size, other)
+            if other is not None:
+                return piece(size, other)
     runs = [list(run) for finite, run in groupby(ratios, math.isfinite) if finite]
     longer = [run for run in runs if len(run) > 1] or runs
     between = " or ".join(f"{min(run):.5g} to {max(run):.5g}" for run in longer)

@@ -55,11 +55,6 @@ def mass_properties(fillings: Sequence[Filling]) -> MassProperties:
     return MassProperties(mass, center, axial / 2.0 + polar, axial)
 
 
-def volume(profile: Profile) -> float:
-    """Volume inside a profile, m^3."""
-    return mass_properties([Filling(profile, 1.0)]).mass
-
-
 def _integral(fillings: Sequence[Filling], integrand: Callable[[Any, Any], Any]) -> float:
     nodes = [(density, *profile.nodes) for profile, density in fillings]
     return sum(

@@ -8,8 +8,8 @@ from pydantic_core import PydanticCustomError
 
 from tippetop.errors import InvalidInput
 from tippetop.lathe.hull import ConvexHull, hull_of
-from tippetop.lathe.mass import Filling, MassProperties, mass_properties, volume
-from tippetop.lathe.profile import ROUNDING, Profile, area_of, profile_of
+from tippetop.lathe.mass import Filling, MassProperties, mass_properties
+from tippetop.lathe.profile import Profile, area_of, profile_of
 from tippetop.validation import NotNegative, Number, Part, Positive, Quantity
 
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254}
@@ -80,8 +80,6 @@ class Workpiece(Part):
             for other in self.insides[:number]:
                 if not (_apart(inner, other) or _within(inner, other) or _within(other, inner)):
                     raise InvalidInput(field, "a line across another insert's", "one beside or inside it")
-        if not self.mass_properties.mass > ROUNDING * self.density * volume(outline):
-            raise InvalidInput("inserts", f"{len(self.inserts)} cavities", "some that leave a body")
         return self
 
     @cached_property

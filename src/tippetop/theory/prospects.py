@@ -82,12 +82,12 @@ def prospects(body: Body, shapes: list[Shape], gravity: float = 9.8, tilt: float
     )
     group = classify(body.I1 / body.I3, sphere.eccentricity)
     spins = critical_spins(problem)
-    return Prospects(sphere.eccentricity, group, spins, tilt, _stem(body, shapes[-1], gravity))
+    return Prospects(sphere.eccentricity, group, spins, tilt, _stem(body, shapes[1:], gravity))
 
 
-def _stem(body: Body, tip: Shape, gravity: float) -> StemTest | None:
-    if not isinstance(tip, Sphere):
+def _stem(body: Body, others: list[Shape], gravity: float) -> StemTest | None:
+    if not others or not isinstance(others[-1], Sphere):
         return None
-    top = Top(body.mass, body.I1, body.I3, tip.surface, ViscousLaw(1.0), gravity)
+    top = Top(body.mass, body.I1, body.I3, others[-1].surface, ViscousLaw(1.0), gravity)
     inverted = SteadyKind.INVERTED
     return StemTest(critical_jellett(inverted, top), critical_spin(inverted, top))
