@@ -97,6 +97,12 @@ def test_a_stem_takes_over_where_its_tip_and_the_sphere_touch_one_line():
     assert all(top.protrusion(zone)[0] < 1e-15 for zone in top.zones)
 
 
+def test_arcs_that_are_nearly_straight_are_no_spheres():
+    dish = hull((0, 0), (2, 0, 4e4), (2, 1), (0, 1))
+    assert named(dish) == ["ring", "edge", "edge"]
+    assert dish.support(0.0) == pytest.approx(1 / 8e4, rel=1e-6)
+
+
 def test_a_bowl_is_no_whole_sphere():
     bowl = hull((0, -R), (R, 0, R), (0, 0))
     assert named(bowl) == ["sphere", "edge"]

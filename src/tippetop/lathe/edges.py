@@ -12,6 +12,12 @@ from numpy.typing import ArrayLike, NDArray
 
 Points = NDArray[np.complex128]
 
+NEWTON = 3
+"""Steps of Newton's method for where two edges meet."""
+
+TANGENT = 1e-12
+"""Sine of the angle below which edges that meet are not told from edges that touch."""
+
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
 _SHARES = (_NODES + 1.0) / 2.0
 
@@ -116,16 +122,27 @@ def meetings(one: Edge, other: Edge, within: float) -> list[complex]:
     """Where two edges meet to this distance, m; of edges that lie on each other, the ends that they share."""
     ends = [one.start, one.end, other.start, other.end]
     if one.turn and other.turn:
-        found = _of_circles(one, other)
+        found = [_polished(one, other, point) for point in _of_circles(one, other)]
     elif one.turn or other.turn:
         found = _of_line_and_circle(one, other) if other.turn else _of_line_and_circle(other, one)
+        found = [_polished(one, other, point) for point in found]
     else:
         found = _of_lines(one, other)
-    return [
-        point
-        for point in (*ends, *found)
-        if one.distance(point) <= within and other.distance(point) <= within
-    ]
+    return [point for point in ends + found if max(one.distance(point), other.distance(point)) <= within]
+
+
+def _polished(one: Edge, other: Edge, point: complex) -> complex:
+    """A meeting as found along the edges: seen from the centres of arcs nearly straight it is far off."""
+    t, u = one.share(point), other.share(point)
+    for _ in range(NEWTON):
+        along, across = complex(one.velocities(t)), complex(other.velocities(u))
+        gap = complex(other.points(u)) - complex(one.points(t))
+        area = (along.conjugate() * across).imag
+        if abs(area) <= TANGENT * abs(along) * abs(across):
+            return point
+        t += (gap.conjugate() * across).imag / area
+        u += (gap.conjugate() * along).imag / area
+    return complex(one.points(t))
 
 
 def _of_lines(one: Edge, other: Edge) -> list[complex]:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from tippetop.lathe.profile import ROUNDING, Profile
 
 ON_AXIS = 1e-4
-"""How far off the axis, in radii of the arc, the centre of a sphere's arc may be: no lathe is better."""
+"""How far off the axis the centre of a sphere's arc may be, in radii of it and in sizes of the body."""
 
 NARROWEST = 1e-9
 """Least range of tilts of a surface, rad."""
@@ -117,15 +117,19 @@ def hull_of(profile: Profile) -> ConvexHull:
         tilt_next, next_number = pieces.after(number, tilt)
         zones.append(pieces.zone(number, tilt, tilt_next))
         tilt, number = tilt_next, next_number
-    kept = _merged([zone for zone in zones if zone.high - zone.low > _narrowest(zone)], within)
+    wide = [zone for zone in zones if zone.high - zone.low > NARROWEST]
+    kept = _merged([zone for zone in wide if not _is_end_of_sphere(zone, wide)], within)
     between = [high.low for low, high in pairwise(kept) if _apart(low, high) > 10.0 * within]
     flats = [0.0] * bool(kept[0].radius) + between + [math.pi] * bool(kept[-1].radius)
     return ConvexHull(tuple(kept), tuple(flats))
 
 
-def _narrowest(zone: Zone) -> float:
-    """Least range of a zone, rad: at the end of a sphere a little off the axis there is no tip."""
-    return NARROWEST if zone.radius or zone.tube else 2.0 * ON_AXIS
+def _is_end_of_sphere(zone: Zone, zones: list[Zone]) -> bool:
+    """Whether it only seems to be a tip, because the arc of the sphere beside it is a little off the axis."""
+    beside = any(
+        other.name == "sphere" and {zone.low, zone.high} & {other.low, other.high} for other in zones
+    )
+    return zone.name == "tip" and zone.high - zone.low < 2.0 * ON_AXIS and beside
 
 
 def _apart(low: Zone, high: Zone) -> float:
@@ -155,7 +159,7 @@ class _Pieces:
         closed = edges[0].start == edges[-1].end
         points = [edge.start for edge in edges] + ([] if closed else [edges[-1].end])
         arcs = [k for k, edge in enumerate(edges) if edge.turn > 0.0]
-        self.count = len(points)
+        self.count, self.size = len(points), profile.size
         self.ends = {self.count + n: (k, (k + 1) % self.count) for n, k in enumerate(arcs)}
         middles = np.array(points + [edges[k].center for k in arcs])
         self.radius, self.height = middles.real, middles.imag
@@ -172,12 +176,13 @@ class _Pieces:
     def zone(self, number: int, low: float, high: float) -> Zone:
         """The surface of a piece."""
         radius, height, tube = (float(of[number]) for of in (self.radius, self.height, self.tube))
-        return Zone(0.0 if abs(radius) <= ON_AXIS * tube else radius, height, tube, low, high)
+        on_axis = abs(radius) <= ON_AXIS * min(tube, self.size)
+        return Zone(0.0 if on_axis else radius, height, tube, low, high)
 
     def lowest(self) -> int:
         """The piece on which the body stands at tilt 0, or just above it."""
         support = np.where((self.low <= 0.0) & (self.high > 0.0), self.tube - self.height, -math.inf)
-        lowest = np.flatnonzero(support >= support.max() - ROUNDING * np.ptp(self.height))
+        lowest = np.flatnonzero(support >= support.max() - ROUNDING * self.size)
         return int(max(lowest, key=lambda number: (self.radius[number], self.tube[number])))
 
     def after(self, number: int, tilt: float) -> tuple[float, int]:
