@@ -103,6 +103,11 @@ def test_arcs_that_are_nearly_straight_are_no_spheres():
     assert dish.support(0.0) == pytest.approx(1 / 8e4, rel=1e-6)
 
 
+def test_a_point_just_inside_an_arc_does_not_take_over():
+    sliver = hull((0, 8.4e-8), (0.525, 4.666, -1e4), (0, 0, -60))
+    assert named(sliver) == ["tip", "ring", "edge"]
+
+
 def test_a_bowl_is_no_whole_sphere():
     bowl = hull((0, -R), (R, 0, R), (0, 0))
     assert named(bowl) == ["sphere", "edge"]

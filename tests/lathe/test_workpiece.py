@@ -27,6 +27,7 @@ def insert(*points, density=0.0):
         ([(0, 0), (3, 0), (3, 2, 2), (2, 2), (4, 1), (0, 3)], "meet"),
         ([(0, 0.3), (1.6, 0), (4.7, 0, 2e4), (0.3, 3, -3), (0, 2.5)], "edges 2 and 3 meet"),
         ([(0, 0), (3, 0), (3, 1, 1e5), (1, -1, -1e5), (0, 2)], "edges 1 and 3 meet"),
+        ([(0, 0), (4.8, 0), (3, 2), (2, 1e-7), (3, -3, -5e3), (0, 0)], "edges 1 and 4 meet"),
         ([(0, 0), (0, 1)], "a line through the axis"),
         ([(1, 0), (2, 0), (1, 0)], "accepted: a line around some volume"),
         ([(1, 0), (2, 0, 1), (1, 0, -1)], "accepted: a line around some volume"),

@@ -89,11 +89,13 @@ class Edge(NamedTuple):
 
     def share(self, point: complex) -> float:
         """The share of it after which it comes to a point that is on it, or on its line or circle."""
-        if point == self.start:
-            return 0.0
+        gone, left = point - self.start, self.end - point
         if not self.turn:
-            return ((point - self.start) / self.chord).real
-        return 1.0 + 2.0 * cmath.phase((point - self.start) / self.chord) / self.turn
+            return (gone / self.chord).real
+        # The angle at the end that is further away: the other is less exact.
+        if abs(gone) < abs(left):
+            return 2.0 * cmath.phase(left / self.chord) / self.turn
+        return 1.0 + 2.0 * cmath.phase(gone / self.chord) / self.turn
 
     def distance(self, point: complex) -> float:
         """Distance of a point from it, m."""

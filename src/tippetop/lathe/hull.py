@@ -207,8 +207,8 @@ class _Pieces:
         apart = np.hypot(across, along)
         with np.errstate(divide="ignore", invalid="ignore"):
             sine = (self.tube[number] - self.tube) / apart
-        touching = np.abs(sine) <= 1.0 + NARROWEST
-        found = np.arctan2(along, across) + np.arcsin(np.clip(np.where(touching, sine, 0.0), -1.0, 1.0))
+        touching = np.abs(sine) <= 1.0
+        found = np.arctan2(along, across) + np.arcsin(np.where(touching, sine, 0.0))
         found = tilt - _CLOSE + np.mod(found - tilt + _CLOSE, math.tau)
         found[~touching] = math.inf
         own = self.ends.get(number, ()) or [n for n, ends in self.ends.items() if number in ends]
