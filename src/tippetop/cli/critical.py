@@ -94,7 +94,7 @@ def _plain(found: "Outlook") -> dict[str, Any]:
         "mu_flip_time": found.mu_flip_time,
         "flip_time": found.flip_time,
         "jellett_conserved": found.conserved,
-        "standing_time": _finite(found.standing_time) if found.standing_time is not None else None,
+        "standing_time": finite(found.standing_time) if found.standing_time is not None else None,
     }
 
 
