@@ -95,6 +95,14 @@ class Sphere(Shape):
         Radius of the sphere, m.
     center
         Height of its centre above the centre of mass, along the axis, m.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> bowl, tip = tt.Sphere(radius=0.02, center=0.006), tt.Sphere(radius=0.003, center=0.025)
+    >>> top = tt.Body(mass=0.02, shape=[bowl, tip], I1=3.0e-6, I3=3.2e-6)
+    >>> [shape.kind for shape in top.shapes]
+    ['sphere', 'sphere']
     """
 
     kind: Literal["sphere"] = "sphere"
@@ -118,6 +126,12 @@ class Ring(Shape):
         Height of its plane above the centre of mass, along the axis, m.
     tube
         Radius by which the ring is thick, m; 0 for a sharp edge.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> tt.Ring(radius=0.0125, center=0.0).surface.height(0.0)  # of the centre, where it stands on its edge
+    0.0125
     """
 
     kind: Literal["ring"] = "ring"

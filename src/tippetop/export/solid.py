@@ -40,6 +40,12 @@ def write_solid(piece: Workpiece, path: Path | str, overwrite: bool = False, *, 
         If the file exists or cannot be written.
     Unavailable
         If trimesh is not installed.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> ball = tt.Workpiece(profile=[(0, -20), (0, 20, 20)], density=700, unit="mm")
+    >>> tt.write_solid(ball, "ball.stl")
     """
     suffix = Path(path).suffix.lower()
     if suffix not in (".stl", ".3mf"):

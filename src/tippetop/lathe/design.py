@@ -45,6 +45,15 @@ def design_insert(
     ------
     InvalidInput
         If there is none such; the sentence says what there is.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> ball = tt.Workpiece(profile=[(0, -20), (0, 20, 20)], density=700, unit="mm")
+    >>> hollow = tt.design_insert(ball, eccentricity=0.1, inertia_ratio=0.95)
+    >>> found = hollow.mass_properties
+    >>> round(-found.center / 0.02, 9), round(found.I1 / found.I3, 9)
+    (0.1, 0.95)
     """
     sphere = piece.hull.zones[0]
     if sphere.name != "sphere":
@@ -127,6 +136,13 @@ def design_bowl(
     ------
     InvalidInput
         If there is none such; the sentence says what there is.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> top = tt.design_bowl(radius=0.02, density=700.0, eccentricity=0.15, inertia_ratio=1.2)
+    >>> round(top.mass_properties.I1 / top.mass_properties.I3, 9)
+    1.2
     """
     least = _wall(radius, wall)
     thick = radius / 10.0 if stem is None else stem

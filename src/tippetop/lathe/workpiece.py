@@ -38,6 +38,14 @@ class Insert(Part):
         Its points, as those of the body.
     density
         Its density, kg/m^3: 0 for a cavity.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> steel = tt.Insert(profile=[(0, -15), (0, -5, 5)], density=7800)
+    >>> ball = tt.Workpiece(profile=[(0, -20), (0, 20, 20)], density=700, unit="mm", inserts=[steel])
+    >>> round(1e3 * ball.mass_properties.center, 3)  # mm
+    -1.368
     """
 
     profile: Points
@@ -59,6 +67,13 @@ class Workpiece(Part):
         Cavities and weights in it; one may be in another.
     unit
         What the numbers of profiles are in: "m", "cm", "mm" or "in".
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> ball = tt.Workpiece(profile=[(0, -20), (0, 20, 20)], density=700, unit="mm")
+    >>> round(1e3 * ball.mass_properties.mass, 3)  # g
+    23.457
     """
 
     profile: Points

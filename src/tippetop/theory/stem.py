@@ -42,6 +42,14 @@ def least_jellett_to_stand(body: Body, surface: int = 1, gravity: float = 9.8) -
 
     which is the condition of an inverted tippe top, whose sphere the tip takes the place of
     (Rauch-Wojciechowski, Skoldstam and Glad, Regular and Chaotic Dynamics 10 (2005) 333-362).
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> bowl, tip = tt.Sphere(radius=0.02, center=0.006), tt.Sphere(radius=0.003, center=0.025)
+    >>> top = tt.Body(mass=0.02, shape=[bowl, tip], I1=3.0e-6, I3=3.2e-6)
+    >>> f"{tt.least_jellett_to_stand(top):.3e}"
+    '1.129e-05'
     """
     if surface not in range(len(body.shapes)):
         raise InvalidInput("surface", surface, f"a number from 0 to {len(body.shapes) - 1}")
