@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
@@ -156,6 +156,15 @@ def test_a_body_that_does_not_approach_is_not_struck(slide, rising):
 # Exact answers ------------------------------------------------------------------------------------------
 
 
+ON_THE_POLE = (
+    State((5.66553889764798e-16, 0.0, -1.0), (0.0, 0.0, 0.0), (0.0, 0.0, -0.3535533905932738), 0.09375),
+    0.0,
+    Top(1.0, 0.00390625, 0.00390625, SphereSurface(0.0625, 0.03125), ViscousLaw(0.0), 2.0),
+)
+"""A fall onto a point that is off the axis by rounding."""
+
+
+@example(ON_THE_POLE, RegularizedCoulombLaw(0.0, 1e-3))
 @given(collisions(tops()), st.sampled_from([ViscousLaw(0.0), RegularizedCoulombLaw(0.0, 1e-3)]))
 def test_without_friction_the_normal_velocity_is_reversed_and_nothing_else_happens(collision, law):
     """v_n+ = -e v_n-, p = -(1 + e) v_n- / M_nn, and the energy lost is (1 - e^2) v_n-^2 / (2 M_nn)."""

@@ -137,6 +137,9 @@ class IntegratedProcess(NamedTuple):
         fuzz = FUZZ * length(self.body.point) * math.hypot(*traction.force) / (math.hypot(*point[:2]) or 1.0)
         if math.dist(traction.force, holding) > STUCK + fuzz:
             return None
+        if not any(traction.force):
+            # What is held without friction needs none, but for rounding.
+            holding = (0.0, 0.0)
         rise = self.body.approach(Impulse(1.0, holding, traction.torque, 0.0)) - self.body.point[2]
 
         def along(q: float) -> Impulse:
