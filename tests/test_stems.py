@@ -9,8 +9,12 @@ import xarray as xr
 import tippetop as tt
 from tippetop.catalogue import SWEPT, Fault
 from tippetop.contact import several
-from tippetop.mechanics.double_contact import double_contact
+from tippetop.contact.double import SlidingOnTwo
+from tippetop.mechanics.double_contact import double_contact, double_rates
+from tippetop.mechanics.motion import along_table
+from tippetop.mechanics.rolling import sliding_law, with_sliding_law
 from tippetop.mechanics.state import SlidingState
+from tippetop.mechanics.top import natural, natural_state, natural_units
 
 LEINE_GLOCKER = tt.Problem(
     body=tt.Body(
@@ -132,6 +136,24 @@ def test_rocking_shrinks_by_what_the_inverse_masses_say() -> None:
     expected = coupled * back / (first.delassus * second.delassus)
     assert 0.7 < expected < 0.8
     assert (cycles[1:] / cycles[:-1])[18:24] == pytest.approx(expected, abs=2e-3)
+
+
+def test_two_contacts_of_a_patch_may_each_drill_or_slide() -> None:
+    """The equations that are integrated are those of both tops as they are, whatever the branch of each."""
+    problem = LEINE_GLOCKER.replace({"friction.pressure": "hertz"})
+    both = tuple(natural(problem.top).each)
+    state = problem.start()
+    y = along_table(natural_state(state, natural_units(problem.top))).pack()
+    for drills in ((1.0, 0.0), (0.0, 1.0), (1.0, 1.0)):
+        first, second = (
+            with_sliding_law(
+                top, sliding_law(top.friction).branch((1.0, 0.0), (0.0, 0.0, 1.0))._replace(drills=d)
+            )
+            for top, d in zip(both, drills, strict=True)
+        )
+        mode = SlidingOnTwo(first, None, second)
+        rates = mode.motion.rates(y, mode.parameters)
+        assert rates == pytest.approx(double_rates(SlidingState.unpack(y), (first, second)).pack(), rel=1e-14)
 
 
 def test_a_body_of_one_surface_in_a_list_is_that_surface() -> None:

@@ -203,7 +203,7 @@ class Recorder:
             pole = np.where(state.axis[2][len(NODES) // 2] >= 0.0, 1.0, -1.0)
             found: tuple[Any, ...] = quadrature_rates(state, reaction.power, pole, self.top)
             if self._twists:
-                found += twisting_powers(state, reaction.torque, self.top)
+                found += twisting_powers(state, reaction.resistance, self.top)
             for row, rate in zip(rates, found, strict=True):
                 row[:, group.which] = rate
             axis[:, group.which], poles[group.which] = group.terms[:, :3, 0].T, pole

@@ -94,7 +94,7 @@ class Tally:
     def _twist(self, group: ModeSteps) -> None:
         """Take in the work of drilling and of rolling."""
         state, reaction = group.nodes
-        drilling, rolling = twisting_powers(state, reaction.torque, group.mode.top)
+        drilling, rolling = twisting_powers(state, reaction.resistance, group.mode.top)
         shares = WEIGHTS[:, None] * group.spans
         self._drilled -= float(np.sum(shares * drilling))
         self._rolled -= float(np.sum(shares * rolling))

@@ -18,7 +18,7 @@ from tippetop.mechanics.motion import along_table, angular_velocity, axis_rate, 
 from tippetop.mechanics.state import State
 from tippetop.mechanics.surface import SphereSurface, SpheroidSurface, contact_vector
 from tippetop.mechanics.top import Top
-from tippetop.mechanics.touchdown import Start, touchdown
+from tippetop.mechanics.touchdown import Start, highest_gap, touchdown
 from tippetop.mechanics.vectors import dot, length, scale
 from tippetop.mechanics.view import Angles, state_from_angles
 
@@ -394,3 +394,21 @@ def test_the_horizon_hides_what_lies_beyond_it_and_nothing_else(case, part):
     seen = touchdown(state, top, part * time)
     assert (seen is None) == (part < 1.0)
     assert seen is None or seen == pytest.approx(time, rel=1e-9)
+
+
+@given(slides(), numbers(-6.0, 0.5))
+def test_no_look_at_a_hop_is_higher_than_its_highest_gap(slide, decades):
+    """Hops of tops that are let go on the table, where gap and rate are zero at first, however short."""
+    top, sliding = slide
+    state = on_table(sliding, top)
+    duration = 10.0**decades * math.sqrt(top.surface.size / top.gravity)
+    landing = touchdown(state, top, duration, Start.RELEASE)
+    assume(landing != 0.0)
+    duration = duration if landing is None else landing
+    highest = highest_gap(state, top, duration)
+    times = np.linspace(0.0, duration, 4001)
+    gaps = gap(fly(state, times, top, np), top) + 0.0 * times
+    fuzz = 1e-14 * (top.surface.size + abs(state.height) + duration * length(state.velocity))
+    assert gaps.max() - fuzz <= highest
+    bend = np.abs(np.diff(gaps, 2)).max()
+    assert highest <= max(gaps.max(), 0.0) + bend + fuzz

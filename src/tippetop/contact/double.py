@@ -46,6 +46,11 @@ class SlidingOnTwo(IntegratedMode):
         """Equations of motion, with the guards of both contacts and of further surfaces."""
         return motion_on_two(self.top.kind, self.other.kind)
 
+    @property
+    def parameters(self) -> tuple[Scalar, ...]:
+        """The numbers of the top on either surface: the branches of their laws may differ."""
+        return (*self.top.numbers, *self.other.numbers)
+
     def numbers(self, state: State) -> tuple[Scalar, ...]:
         """The 8 numbers of a sliding state."""
         return along_table(state).pack()
@@ -57,7 +62,7 @@ class SlidingOnTwo(IntegratedMode):
     def reaction(self, y: Row) -> Reaction:
         """Force of both contacts, and their torque about the first contact point."""
         both = double_contact(SlidingState.unpack(y), self.tops)
-        return Reaction(both.force, both.torque, both.power)
+        return Reaction(both.force, both.torque, both.power, both.couple)
 
     def follow(self, guard: str, time: float, state: State) -> Transition:
         """One surface opens, while the other goes on; or slip ends on one; or a further one touches."""
@@ -93,7 +98,8 @@ def motion_on_two(first: Kind, second: Kind) -> Motion:
     """Equations of motion of a top of these kinds: of another active surface and branch of the law each."""
 
     def tops(numbers: Sequence[Scalar]) -> Tops:
-        return first.top(tuple(numbers)), second.top(tuple(numbers))
+        cut = first.numbers
+        return first.top(tuple(numbers[:cut])), second.top(tuple(numbers[cut : 2 * cut]))
 
     def rates(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[Scalar, ...]:
         return double_rates(SlidingState.unpack(y), tops(numbers)).pack()
@@ -123,4 +129,4 @@ def motion_on_two(first: Kind, second: Kind) -> Motion:
     if is_branched(first.example.friction):
         guards += [Guard(f"{BRANCHING}{number}", branch(number)) for number in (0, 1)]
     guards += surface_guards(first, (number_of(second.example),))
-    return Motion(rates, size=8, parameters=first.numbers, guards=tuple(guards), lasting=False)
+    return Motion(rates, size=8, parameters=2 * first.numbers, guards=tuple(guards), lasting=False)

@@ -138,11 +138,19 @@ class Reaction(NamedTuple):
         Torque about the contact point.
     power
         Power of the contact force and torque.
+    couple
+        Torque of drilling and rolling friction alone; None if that is all of the torque.
     """
 
     force: Vector
     torque: Vector
     power: Scalar
+    couple: Vector | None = None
+
+    @property
+    def resistance(self) -> Vector:
+        """Torque of drilling and rolling friction."""
+        return self.torque if self.couple is None else self.couple
 
 
 NO_REACTION = Reaction((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.0)
@@ -277,6 +285,11 @@ class IntegratedMode(Mode):
     def motion(self) -> Motion:
         """Equations of motion and guards; the same object for all tops of one kind."""
 
+    @property
+    def parameters(self) -> tuple[Scalar, ...]:
+        """The parameters of the equations of motion."""
+        return self.top.numbers
+
     @abstractmethod
     def numbers(self, state: State) -> tuple[Scalar, ...]:
         """The numbers that the equations move, from a state, in plain operators."""
@@ -288,7 +301,7 @@ class IntegratedMode(Mode):
     def segments(self, time: float, state: State, end: float, integrator: Integrator) -> Iterator[Segment]:
         """Integrate the equations of motion."""
         begin = np.array(self.numbers(state), dtype=float)
-        for arc in integrator.integrate(self.motion, self.top.numbers, (time, begin), end):
+        for arc in integrator.integrate(self.motion, self.parameters, (time, begin), end):
             last = self.state(arc.end_state.tolist())
             transition = None
             if arc.failure is not None:

@@ -303,12 +303,10 @@ class FreeToFly(ContactRules):
         """Collide, and go on as the impact leaves the top."""
         return self._collide(time, state, (self.event(EventKind.TOUCHDOWN, time),), self.restitution)
 
-    def resting(self, time: float, state: State, events: tuple[Event, ...] = ()) -> Transition:
-        """As for all, but where the table would have to pull from now on, not from zero force, it lets go."""
-        found = super().resting(time, state, events)
-        if isinstance(found.then, Flight) and found.then.start is Start.LIFT_OFF:
-            return replace(found, then=self._flight(Start.RELEASE))
-        return found
+    def _let_go(self, time: float, state: State, events: tuple[Event, ...]) -> Transition:
+        """Fly from where the table would have to pull from now on, not from zero force."""
+        found = self.lift_off(time, state)
+        return replace(found, events=(*events, *found.events), then=self._flight(Start.RELEASE))
 
     def inconsistent(self, time: float, state: State, events: tuple[Event, ...]) -> Transition:
         """Collide without approach, unless that has just left it so: then rounding decides, not friction."""

@@ -27,6 +27,9 @@ Infinitely many impacts, now of one and now of the other, bring both to touch at
 a gap falls back with more than g, this is faster as the square root: hops stay out of reach of rounding.
 """
 
+MOST_IN_TURNS = 200
+"""Impacts at one instant, now of one surface and now of another, after which a run is given up."""
+
 
 @dataclass(frozen=True)
 class OnSeveral(FreeToFly):
@@ -57,6 +60,8 @@ class OnSeveral(FreeToFly):
         for other in self._beside(state):
             rate = gap_rate(state, other)
             if rate < -SLOWEST_ROCKING:
+                if sum(event.kind is EventKind.IMPACT for event in events) >= MOST_IN_TURNS:
+                    return Transition(events, Outcome.FAILED, state, "surfaces strike in turns for ever")
                 return self._of(other)._collide(time, state, events, 0.0)
             if rate <= self._slowest(other, state):
                 closed.append(other)
@@ -89,7 +94,8 @@ class OnSeveral(FreeToFly):
     def _slowest(self, other: Top, state: State) -> float:
         """Velocity of another surface that touches too below which it stays, or comes back at once."""
         sliding = along_table(state)
-        if is_set_valued(self.top.friction) and not is_slipping(*sliding, other):
+        tops = (self.top, other)
+        if is_set_valued(self.top.friction) and not all(is_slipping(*sliding, top) for top in tops):
             return SLOWEST_ROCKING
         back = abs(double_contact(sliding, (self.top, other)).acceleration[1])
         return float(SLOWEST_ROCKING * max(1.0, back) ** 0.5)

@@ -54,6 +54,13 @@ class DoubleContact(NamedTuple):
         return add(one, other)
 
     @property
+    def couple(self) -> Vector:
+        """Torque of drilling friction at both contacts, N m."""
+        pairs = zip(self.normal, (self.first, self.second), strict=True)
+        one, other = (scale(n, touch.traction.torque) for n, touch in pairs)
+        return add(one, other)
+
+    @property
     def torque(self) -> Vector:
         """Torque of the table about the first contact point, N m."""
         return add(self.moment, scale(-1.0, cross(self.first.arm, self.force)))

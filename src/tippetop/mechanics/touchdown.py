@@ -129,7 +129,11 @@ def highest_gap(state: State, top: Top, duration: float) -> float:
     times = [duration * j / count for j in range(count + 1)]
     gaps = [gap(time)[0] for time in times]
     best = max(range(count + 1), key=gaps.__getitem__)
-    low, high = times[max(best - 1, 0)], times[min(best + 1, count)]
+    if gap(times[best])[1] > 0.0:
+        low, high = times[best], times[min(best + 1, count)]
+    else:
+        # At the start of a hop the rate may vanish too.
+        low, high = max(times[max(best - 1, 0)], 1e-3 * times[1]), times[best]
     if not gap(low)[1] > 0.0 > gap(high)[1]:
         return gaps[best]
     return max(gaps[best], gap(crossing(lambda time: gap(time)[1], low, high))[0])

@@ -69,9 +69,9 @@ def render(
     environment.filters |= {"typeset": typeset, "formula": formula}
     shown = {plate.id for plate in plates}
     claims = [worded(judgement, shown) for judgement in judgements]
-    counts = Counter(claim["verdict"] for claim in claims)
     wrong = [verdict.name.lower() for verdict in _WRONG]
     theirs = [claim for claim in claims if claim["section"] not in OWN]
+    counts, shown_counts = (Counter(claim["verdict"] for claim in some) for some in (theirs, claims))
     parts: dict[str, Any] = {
         "errors": [claim for name in wrong for claim in theirs if claim["verdict"] == name],
         "sound": [claim for claim in theirs if claim["verdict"] not in wrong],
@@ -88,8 +88,9 @@ def render(
         statements=len(theirs),
         pictures=[] if partial else [_picture(PLATES[name], figures) for name in PICTURES if name in shown],
         verdicts=[
-            {"name": verdict.name.lower(), "count": counts[verdict.name.lower()], "meaning": verdict.value}
+            {"name": name, "count": counts[name], "shown": shown_counts[name], "meaning": verdict.value}
             for verdict in Verdict
+            for name in (verdict.name.lower(),)
         ],
         rule=RULE,
         quick=quick,

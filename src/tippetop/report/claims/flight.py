@@ -232,9 +232,9 @@ def _(run: xr.Dataset) -> Finding:
     return Finding(
         None,
         float(run["highest_gap"]) > PLOTTED.value * float(REPORT.surface.size),
-        f"First at {run['lift_off_time']:.6f} s, and higher than the 1 % of its radius that a drawing could "
-        f"show. {_hopping(run)} That the motion is hard to discuss, as the report has it, does not keep it "
-        "from being computed.",
+        f"It leaves the table first after {run['lift_off_time']:.2f} s, and rises higher than the 1 % of its "
+        f"radius that a drawing could show. {_hopping(run)} That the motion is hard to discuss, as the "
+        "report has it, does not keep it from being computed.",
     )
 
 

@@ -102,7 +102,7 @@ def _(wide: xr.Dataset) -> Finding:
         None,
         bool(float(beyond.max()) > _LOST),
         f"mu t departs by up to a factor {1 + float(beyond.max()):.1f} between 1 and 10 s/m. It is first off "
-        f"by more than {100 * _LOST:.0f} % at {named}: the law is already lost below 1 s/m.",
+        f"by more than {100 * _LOST:.0f} % at {named}, before what is strong friction.",
     )
 
 

@@ -215,7 +215,8 @@ def _(run: xr.Dataset) -> Finding:
     return Finding(
         float(run["end_theta_listing"]),
         float(run["end_theta"]),
-        f"The launch tilt is forgotten: within {SETTLED:g} rad from {run['arrival_time'][0]:.2f} s on first.",
+        f"The launch tilt is forgotten: within {SETTLED:g} rad for the first time after "
+        f"{run['arrival_time'][0]:.2f} s.",
     )
 
 
