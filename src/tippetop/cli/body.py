@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tippetop.cli.options import Force, Json, finite
+from tippetop.cli.options import Force, Json, facts, finite
 from tippetop.errors import InvalidInput
 from tippetop.files import place_for, written_beside
 
@@ -141,12 +141,7 @@ def _print(told: dict[str, Any], files: list[Path]) -> None:
     from rich.table import Table  # noqa: PLC0415
 
     console = Console()
-    table = Table(box=None, show_header=False, padding=(0, 2, 0, 0))
-    table.add_column(style="dim")
-    table.add_column(justify="right", style="bold")
-    table.add_column()
-    for row in _rows(told):
-        table.add_row(*row)
+    table = facts(_rows(told))
     if told["group"]:
         upto = told["surfaces"][0]["to_tilt"]
         within = f" That is on its sphere, up to a tilt of {upto:.6g} rad." if upto < math.pi else ""

@@ -16,6 +16,7 @@ from tippetop.cli.options import (
     Spin,
     Tilt,
     chosen_problem,
+    facts,
     finite,
 )
 
@@ -106,12 +107,7 @@ def _plain_state(state: Any) -> dict[str, Any]:
 def _print(found: "Outlook", console: "Console") -> None:
     from rich.table import Table  # noqa: PLC0415
 
-    table = Table(box=None, show_header=False, padding=(0, 2, 0, 0))
-    table.add_column(style="dim")
-    table.add_column(justify="right", style="bold")
-    table.add_column()
-    for row in _rows(found):
-        table.add_row(*row)
+    table = facts(_rows(found))
     if found.group is not None:
         console.print(f"[bold]Group {found.group.value}[/]: {found.group.description}.", highlight=False)
     console.print(table)

@@ -2,6 +2,7 @@
 
 import json
 import math
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -10,6 +11,8 @@ import typer
 from tippetop.errors import InvalidInput
 
 if TYPE_CHECKING:
+    from rich.table import Table
+
     from tippetop.problem import Problem
 
 INTERRUPTED = 130
@@ -68,6 +71,19 @@ def changed_problem(
     given = {field: value for field, value in settings.items() if value is not None}
     given.update(_parsed(change) for change in changes or [])
     return problem.replace(given)
+
+
+def facts(rows: Iterable[Sequence[str]]) -> "Table":
+    """What is told, a name, a number and perhaps a remark to a row, as a table."""
+    from rich.table import Table  # noqa: PLC0415 - slow to import
+
+    table = Table(box=None, show_header=False, padding=(0, 2, 0, 0))
+    table.add_column(style="dim")
+    table.add_column(justify="right", style="bold")
+    table.add_column()
+    for row in rows:
+        table.add_row(*row)
+    return table
 
 
 def finite(value: float) -> float | None:

@@ -21,6 +21,7 @@ from tippetop.cli.options import (
     Spin,
     Tilt,
     chosen_problem,
+    facts,
 )
 from tippetop.errors import InvalidInput
 from tippetop.files import place_for, written_beside
@@ -201,15 +202,9 @@ def _check_files(wanted: dict[str, Path], force: bool) -> None:
 
 def _print_summary(summary: dict[str, Any], elapsed: float, files: list[Path]) -> None:
     from rich.console import Console  # noqa: PLC0415
-    from rich.table import Table  # noqa: PLC0415
 
     console = Console()
-    table = Table(box=None, show_header=False, padding=(0, 2, 0, 0))
-    table.add_column(style="dim")
-    table.add_column(justify="right", style="bold")
-    table.add_column()
-    for row in _rows(summary):
-        table.add_row(*row)
+    table = facts(_rows(summary))
     console.print(f"[bold]{summary['outcome'].replace('_', ' ')}[/]: {summary['advice']}")
     console.print(table)
     console.print(

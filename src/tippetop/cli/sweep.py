@@ -23,6 +23,7 @@ from tippetop.cli.options import (
     Tilt,
     changed_problem,
     chosen_problem,
+    facts,
 )
 from tippetop.errors import MISSING, FileTrouble, InvalidInput
 from tippetop.files import in_words, place_for, read_text, written_beside
@@ -274,18 +275,13 @@ def _summary(dataset: "xr.Dataset", progress: "Progress", elapsed: float) -> dic
 
 def _print_summary(summary: dict[str, Any], files: list[Path]) -> None:
     from rich.console import Console  # noqa: PLC0415
-    from rich.table import Table  # noqa: PLC0415
 
     console = Console()
-    table = Table(box=None, show_header=False, padding=(0, 2, 0, 0))
-    table.add_column(style="dim")
-    table.add_column(justify="right", style="bold")
-    for name, number in summary["outcomes"].items():
-        table.add_row(name.replace("_", " "), f"{number:,}")
+    rows = [(name.replace("_", " "), f"{number:,}") for name, number in summary["outcomes"].items()]
     if summary["flights"]:
-        table.add_row("flights", f"{summary['flights']:,}")
+        rows.append(("flights", f"{summary['flights']:,}"))
     console.print(f"[bold]{summary['cells']:,} launches[/]")
-    console.print(table)
+    console.print(facts(rows))
     console.print(
         f"[dim]{summary['computed']:,} computed in {summary['seconds']:.3g} s, "
         f"{summary['launches_per_second']:,.0f} a second[/]",

@@ -9,10 +9,10 @@ from tippetop.contact.mode import Event, EventKind, IntegratedMode, Outcome, Rea
 from tippetop.contact.surfaces import follow_surface, number_of, surface_guards
 from tippetop.integrators.base import Function, Guard, Motion
 from tippetop.mechanics.double_contact import Tops, double_contact, double_rates
-from tippetop.mechanics.motion import along_table, angular_velocity, on_table
-from tippetop.mechanics.rolling import is_branched, is_set_valued, on_branch, sliding_law, with_sliding_law
+from tippetop.mechanics.motion import along_table, on_table
+from tippetop.mechanics.rolling import is_branched, is_set_valued, on_branch, on_other_branch
 from tippetop.mechanics.state import SlidingState, State
-from tippetop.mechanics.stick_slip import inner, slip_of
+from tippetop.mechanics.stick_slip import branch_guard, inner, slip_of
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import Row, Scalar
 
@@ -74,8 +74,7 @@ class SlidingOnTwo(IntegratedMode):
             return Transition((event,), rules.going_on(state, slips=True), state)
         if f"{kind} " == BRANCHING:
             tops = list(self.tops)
-            law: Any = sliding_law(tops[int(number)].friction)
-            tops[int(number)] = with_sliding_law(tops[int(number)], law.other_branch())
+            tops[int(number)] = on_other_branch(tops[int(number)])
             return Transition((), replace(self, top=tops[0], other=tops[1]), state)
         if f"{kind} " == ENDING:
             return Transition((), Outcome.STICKING_ON_TWO, state)
@@ -116,10 +115,7 @@ def motion_on_two(first: Kind, second: Kind) -> Motion:
 
     def branch(number: int) -> Function:
         def value(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
-            state, top = SlidingState.unpack(y), tops(numbers)[number]
-            law: Any = sliding_law(top.friction)
-            slip = slip_of(*state, top)
-            return law.branch_guard(slip[:2], angular_velocity(state.axis, state.momentum, top))
+            return branch_guard(*SlidingState.unpack(y), tops(numbers)[number])
 
         return value
 

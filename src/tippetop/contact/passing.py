@@ -26,21 +26,21 @@ from tippetop.mechanics.ending import (
     rates_in_time,
     reopening_guard,
 )
-from tippetop.mechanics.motion import angular_velocity, on_table
+from tippetop.mechanics.motion import on_table
 from tippetop.mechanics.rolling import (
     ContactPoint,
     is_set_valued,
     on_branch,
+    on_other_branch,
     rolling_reserve,
     set_valued,
     sliding_law,
     slip_dimension,
     velocity_without_slip,
-    with_sliding_law,
 )
 from tippetop.mechanics.slip_onset import onset
 from tippetop.mechanics.state import SlidingState, State
-from tippetop.mechanics.stick_slip import HORIZON, scaled, size, slip_of, velocity_of
+from tippetop.mechanics.stick_slip import HORIZON, branch_guard, scaled, size, slip_of, velocity_of
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import Row, Scalar, add, scale
 
@@ -289,10 +289,7 @@ class Stopping(Passing):
             case "overtaken":
                 return Transition((), replace(self, ending=Vanishing(not ending.slip)), state)
             case "branch":
-                law: Any = sliding_law(self.top.friction)
-                return Transition(
-                    (), replace(self, top=with_sliding_law(self.top, law.other_branch())), state
-                )
+                return Transition((), replace(self, top=on_other_branch(self.top)), state)
             case "slip":
                 return self.rules.giving_way(
                     state, (self.rules.event(EventKind.SLIP, time),), Vanishing(slip=True)
@@ -353,6 +350,9 @@ def closing_motion(kind: Kind, ending: Vanishing, guarded: bool) -> Motion:
     def guard(name: str, value: Callable[[Closing, Top, Sequence[Scalar]], Scalar]) -> Guard:
         return Guard(name, lambda y, numbers: value(closing_of(y, ending), top_of(numbers), numbers))
 
+    def on_branch_still(state: Closing, top: Top, _: Sequence[Scalar]) -> Scalar:
+        return branch_guard(state.axis, state.momentum, (state.velocity[0], state.velocity[1]), top)
+
     guards = [
         guard(REOPENING, lambda state, top, _: reopening_guard(state, ending, top, HORIZON)),
         guard(LANDED, lambda state, top, numbers: landing_guard(state, ending, top, numbers[-1])),
@@ -371,7 +371,7 @@ def closing_motion(kind: Kind, ending: Vanishing, guarded: bool) -> Motion:
             guard(ROLLING if ending.slip else SLIP, lambda state, top, _: spared(state, ending, top))
         )
     if ending.moves and hasattr(sliding_law(law), "branch_guard"):
-        guards.append(guard(BRANCH, lambda state, top, _: branch_guard(state, top)))
+        guards.append(guard(BRANCH, on_branch_still))
     guards += surface_guards(kind)
     free = 2 if ending.moves else 0
     components = slip_dimension(law) if ending.slip else 2
@@ -385,13 +385,6 @@ def spared(state: Closing, ending: Vanishing, top: Top) -> Scalar:
         point = ContactPoint.of(state.axis, state.momentum, top)
         return rolling_reserve(point, wrench, state.direction)
     return set_valued(top.friction).reserve(wrench.force[2], wrench.force[:2], wrench.torque[2])
-
-
-def branch_guard(state: Closing, top: Top) -> Scalar:
-    """Positive as long as the branch of the law holds while rolling ends."""
-    law: Any = sliding_law(top.friction)
-    slip = slip_of(state.axis, state.momentum, (state.velocity[0], state.velocity[1]), top)
-    return law.branch_guard(slip[:2], angular_velocity(state.axis, state.momentum, top))
 
 
 def closing_of(y: Row, ending: Vanishing) -> Closing:

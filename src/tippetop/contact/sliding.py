@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from tippetop.contact.mode import EventKind, IntegratedMode, Reaction, Transition
 from tippetop.contact.surfaces import follow_surface, surface_guards
@@ -12,7 +12,6 @@ from tippetop.mechanics.coulomb import RollingResistance
 from tippetop.mechanics.ending import Vanishing
 from tippetop.mechanics.motion import (
     along_table,
-    angular_velocity,
     axis_rate,
     contact,
     on_table,
@@ -23,13 +22,20 @@ from tippetop.mechanics.rolling import (
     Wrench,
     contact_wrench,
     is_set_valued,
+    on_other_branch,
     rolling_reserve,
     sliding_law,
-    with_sliding_law,
     without_rolling,
 )
 from tippetop.mechanics.state import SlidingState, State
-from tippetop.mechanics.stick_slip import HORIZON, rolling_stopping_guard, scaled, slip_of, stopping_guard
+from tippetop.mechanics.stick_slip import (
+    HORIZON,
+    branch_guard,
+    rolling_stopping_guard,
+    scaled,
+    slip_of,
+    stopping_guard,
+)
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import Row, Scalar, dot
 
@@ -76,8 +82,7 @@ class Sliding(IntegratedMode):
         found = follow_surface(self, guard, time, state)
         if found is not None:
             return found
-        law: Any = sliding_law(self.top.friction)
-        return Transition((), replace(self, top=with_sliding_law(self.top, law.other_branch())), state)
+        return Transition((), replace(self, top=on_other_branch(self.top)), state)
 
 
 @dataclass(frozen=True)
@@ -175,10 +180,7 @@ def slip_guards(kind: Kind, rate: Callable[[SlidingState, Top], SlidingState]) -
         return stopping_guard(state, rate(state, top), top, HORIZON)
 
     def on_branch(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
-        state, top = SlidingState.unpack(y), kind.top(tuple(numbers))
-        law: Any = sliding_law(top.friction)
-        slip = slip_of(state.axis, state.momentum, state.velocity, top)
-        return law.branch_guard(slip[:2], angular_velocity(state.axis, state.momentum, top))
+        return branch_guard(*SlidingState.unpack(y), kind.top(tuple(numbers)))
 
     law = kind.example.friction
     guards = [Guard(STOPPING, stops)] if is_set_valued(law) else []

@@ -22,7 +22,7 @@ from tippetop.mechanics.rolling import (
     without_rolling,
 )
 from tippetop.mechanics.state import SlidingState, State
-from tippetop.mechanics.stick_slip import HORIZON, inner, slip_guard
+from tippetop.mechanics.stick_slip import HORIZON, remaining, slip_guard
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import Row, Scalar, Vector, dot
 
@@ -110,7 +110,7 @@ def sticking_motion(kind: Kind, held: bool) -> Motion:
         point = ContactPoint.of(*split(y), kind.top(tuple(numbers)))
         rolling = point.turning[:2]
         change = contact_motion(point, None, rolling)[1].turning[:2]
-        return inner(rolling, rolling) + HORIZON * inner(change, rolling)
+        return remaining(rolling, change, HORIZON)
 
     guards = [Guard(SLIP, reserve)]
     if isinstance(kind.example.friction, RollingResistance):

@@ -20,8 +20,10 @@ from tippetop.mechanics.rolling import (
     ContactPoint,
     Slip,
     flat,
+    is_set_valued,
     set_valued,
     sliding_law,
+    slip_length,
     solve,
     velocity_without_slip,
     without_drilling,
@@ -40,7 +42,7 @@ ITERATIONS = 5000
 
 def is_dry(law: FrictionLaw) -> bool:
     """Whether slip or rolling can end under this law."""
-    return isinstance(law, RollingResistance) or hasattr(law, "slip_length")
+    return isinstance(law, RollingResistance) or is_set_valued(law)
 
 
 class DryContact(NamedTuple):
@@ -93,13 +95,12 @@ class DryContact(NamedTuple):
     @property
     def is_set_valued(self) -> bool:
         """Whether slip can end under the law."""
-        return hasattr(sliding_law(self.law), "slip_length")
+        return is_set_valued(self.law)
 
     @property
     def reach(self) -> float | None:
         """Slip length of the law; None if drilling is free."""
-        reach: float | None = getattr(sliding_law(self.law), "slip_length", None)
-        return reach
+        return slip_length(self.law)
 
     def change(self, impulse: Sequence[float]) -> Slip:
         """What an impulse and that of a torque, six numbers, add to the six velocities."""

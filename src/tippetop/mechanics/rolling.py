@@ -259,6 +259,12 @@ def on_branch(top: Top, slip: Slip) -> Top:
     return with_sliding_law(top, law.branch(slip[:2], (0.0, 0.0, slip[2] / law.slip_length)))
 
 
+def on_other_branch(top: Top) -> Top:
+    """A top with the branch of its law that takes over where its own ends."""
+    law: Any = sliding_law(top.friction)
+    return with_sliding_law(top, law.other_branch())
+
+
 def off_branch(top: Top) -> Top:
     """A top with the whole of its law, if it has but a branch of it."""
     law: Any = sliding_law(top.friction)

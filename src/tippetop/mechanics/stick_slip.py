@@ -13,7 +13,7 @@ if the limit surface admits it. Otherwise slip goes on in a direction in which i
 
 import math
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from tippetop.mechanics.motion import angular_velocity, axial_spin, axis_rate, point_velocity
 from tippetop.mechanics.rolling import (
@@ -25,6 +25,7 @@ from tippetop.mechanics.rolling import (
     contact_wrench,
     flat,
     set_valued,
+    sliding_law,
     slip_length,
     velocity_without_slip,
 )
@@ -133,14 +134,26 @@ def stopping_guard(state: SlidingState, rate: SlidingState, top: Top, horizon: S
     reach = slip_length(top.friction)
     change: Slip = (rate.velocity[0] + carried[0], rate.velocity[1] + carried[1])
     change = change if reach is None else (*change, reach * turned[2])
-    return inner(slip, slip) + horizon * inner(change, slip)
+    return remaining(slip, change, horizon)
 
 
 def rolling_stopping_guard(state: SlidingState, rate: SlidingState, top: Top, horizon: Scalar) -> Scalar:
     """The same of rolling, (rad/s)^2; velocities are not asked for."""
     rolling = angular_velocity(state.axis, state.momentum, top)[:2]
     change = angular_acceleration(state, rate, top)[:2]
-    return inner(rolling, rolling) + horizon * inner(change, rolling)
+    return remaining(rolling, change, horizon)
+
+
+def remaining(velocity: Slip, change: Slip, horizon: Scalar) -> Scalar:
+    """Positive while a velocity, at its present rate of change, lasts longer than the horizon (s)."""
+    return inner(velocity, velocity) + horizon * inner(change, velocity)
+
+
+def branch_guard(axis: Vector, momentum: Vector, velocity: Horizontal, top: Top) -> Scalar:
+    """Positive as long as the branch of the law that a body in contact is on holds, m^2/s^2."""
+    law: Any = sliding_law(top.friction)
+    slip = slip_of(axis, momentum, velocity, top)
+    return law.branch_guard(slip[:2], angular_velocity(axis, momentum, top))
 
 
 def angular_acceleration(state: SlidingState, rate: SlidingState, top: Top) -> Vector:

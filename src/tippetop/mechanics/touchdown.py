@@ -147,6 +147,17 @@ class Tip(NamedTuple):
     acceleration: float
     frequency: float
 
+    @classmethod
+    def of(cls, state: State, top: Top) -> "Tip":
+        """The tip in a free flight from a state on; of numbers, or arrays of them."""
+        turning = axis_rate(state.axis, state.momentum, top)
+        return cls(
+            state.axis[2],
+            turning[2],
+            axis_rate(turning, state.momentum, top)[2],
+            length(scale(1.0 / top.transverse_inertia, state.momentum)) + SMALL,
+        )
+
     def at(self, time: float) -> Triple:
         """Height, rate and acceleration at a time: c'' turns into -w^2 c' and back."""
         w = self.frequency
@@ -181,14 +192,7 @@ class Separation(NamedTuple):
     @classmethod
     def of(cls, state: State, top: Top) -> "Separation":
         """The gap of a free flight from a state on."""
-        turning = axis_rate(state.axis, state.momentum, top)
-        tip = Tip(
-            state.axis[2],
-            turning[2],
-            axis_rate(turning, state.momentum, top)[2],
-            length(scale(1.0 / top.transverse_inertia, state.momentum)) + SMALL,
-        )
-        return cls(tip, top.surface, (state.height, state.velocity[2], -0.5 * top.gravity))
+        return cls(Tip.of(state, top), top.surface, (state.height, state.velocity[2], -0.5 * top.gravity))
 
     def at(self, time: float) -> Triple:
         """Gap, its rate and its acceleration."""

@@ -23,7 +23,6 @@ from tippetop.mechanics.impulse import contact_velocity
 from tippetop.mechanics.motion import (
     along_table,
     angular_velocity,
-    axis_rate,
     contact,
     moment_per_normal_force,
     on_table,
@@ -77,17 +76,6 @@ class Flown(NamedTuple):
     state: State
     highest_gap: Array
     highest: Array
-
-
-def tip_of(state: State, top: Top) -> Tip:
-    """Motion of the tip of the axis in free flight."""
-    turning = axis_rate(state.axis, state.momentum, top)
-    return Tip(
-        state.axis[2],
-        turning[2],
-        axis_rate(turning, state.momentum, top)[2],
-        length(scale(1.0 / top.transverse_inertia, state.momentum)) + TINY,
-    )
 
 
 def fly_all(
@@ -150,7 +138,7 @@ def fly_all(
 def flight_terms(state: State, top: Top) -> tuple[Array, Array, Array]:
     """Polynomials of n_z and of the gap in flight, shape (degree + 1, n), and how far they serve."""
     count = len(state.axis[2])
-    terms = tip_of(state, top).series().terms
+    terms = Tip.of(state, top).series().terms
     support = top.surface.height(Series(lambda k: terms[k], PLAIN))
     height = np.array([np.broadcast_to(support[k], count) for k in range(len(terms))])
     gap = -height

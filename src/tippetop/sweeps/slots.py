@@ -1,14 +1,13 @@
 """The arrays of launches under way: one lane a launch."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from tippetop.contact.mode import Outcome
 from tippetop.integrators.base import Array
 from tippetop.mechanics.motion import along_table, on_table
-from tippetop.mechanics.rolling import is_branched, sliding_law, with_sliding_law
+from tippetop.mechanics.rolling import is_branched, on_other_branch
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.top import Top
 from tippetop.metrics import OUTCOMES, Ends
@@ -149,9 +148,7 @@ class Slots:
 
     def change_branch(self, lanes: Indices) -> None:
         """Let tops slide on along the other branch of their law."""
-        top = self.tops(lanes)
-        law: Any = sliding_law(top.friction)
-        self._put(lanes, with_sliding_law(top, law.other_branch()))
+        self._put(lanes, on_other_branch(self.tops(lanes)))
 
     def _put(self, lanes: Indices, top: Top) -> None:
         """Let these be the tops on some lanes."""
