@@ -1,0 +1,164 @@
+"""What is printed of the mechanics computes what the mechanics does: in Python, and in JavaScript."""
+
+import json
+import math
+import subprocess
+
+import numpy as np
+import pytest
+
+from every_motion import CASES, SURFACES, everything, states
+from node import NODE
+from tippetop.contact.sliding import sliding_motion
+from tippetop.emit.graph import Elementary, NotRecordable, record
+from tippetop.emit.javascript import javascript_source
+from tippetop.emit.python import python_source
+from tippetop.mechanics.contensou_hertz import HertzLaw
+from tippetop.mechanics.euler import published_rates
+from tippetop.mechanics.surface import SphereSurface
+from tippetop.mechanics.top import Top
+from tippetop.presets import report_problem
+
+POINTS = 6
+REPORT = report_problem().standing()
+
+
+def by_floats(function, rows, parameters):
+    """What a function makes of floats; None where it makes nothing."""
+    found = []
+    for row in rows.tolist():
+        try:
+            found.append([complex(number) for number in function(row, parameters)])
+        except ArithmeticError:
+            found.append(None)
+    return found
+
+
+def assert_same(found, expected):
+    """Equal to rounding of the largest number, where floats have one that is real; and they often have."""
+    compared = 0
+    for row, right in zip(found, expected, strict=True):
+        if right is None:
+            continue
+        size = max(abs(number) for number in right)
+        for number, exact in zip(row, right, strict=True):
+            if exact.imag == 0.0:
+                compared += 1
+                assert abs(number - exact.real) <= 1e-13 * size
+    assert compared > len(expected)
+
+
+def recorded(case):
+    return record(everything(case.motion), case.motion.size, case.motion.parameters)
+
+
+class Machine:
+    """Functions as machines have them: the root of a negative number is no number."""
+
+    sin, cos, pow = math.sin, math.cos, math.pow
+
+    @staticmethod
+    def sqrt(x):
+        return math.sqrt(x) if x >= 0.0 else math.nan
+
+
+def compiled(source, name):
+    """The function of Python code."""
+    place = {"math": Machine}
+    exec(source, place)
+    return place[name]
+
+
+def by_python(function, rows, parameters, count):
+    found = []
+    for row in rows.tolist():
+        out = [math.nan] * count
+        try:
+            function(row, parameters, out)
+        except ArithmeticError:
+            out = [math.nan] * count
+        found.append(out)
+    return found
+
+
+@pytest.fixture(scope="module")
+def by_javascript():
+    """What the JavaScript of every case makes of its points, by one run of Node."""
+    lines = ["const found = {};"]
+    for number, case in enumerate(CASES):
+        count = case.motion.size + len(case.motion.guards)
+        rows = json.dumps(states(case.motion, POINTS).tolist())
+        lines += [
+            javascript_source(recorded(case), f"f{number}"),
+            f"found[{json.dumps(case.name)}] = {rows}.map((y) => {{",
+            f"  const out = new Array({count});",
+            f"  f{number}(y, {json.dumps(case.parameters)}, out);",
+            "  return out.map(String);",
+            "});",
+        ]
+    lines.append("process.stdout.write(JSON.stringify(found));")
+    script = "\n".join(lines)
+    done = subprocess.run([NODE, "-"], input=script, capture_output=True, text=True, timeout=60, check=False)
+    assert done.stderr == ""
+    return json.loads(done.stdout)
+
+
+@pytest.mark.parametrize("shape", SURFACES)
+def test_printed_code_computes_what_the_mechanics_does(shape, by_javascript):
+    for case in CASES:
+        if not case.name.startswith(shape):
+            continue
+        rows, function = states(case.motion, POINTS), everything(case.motion)
+        expected = by_floats(function, rows, case.parameters)
+        code = compiled(python_source(recorded(case), "code"), "code")
+        count = case.motion.size + len(case.motion.guards)
+        assert_same(by_python(code, rows, case.parameters, count), expected)
+        assert_same([[float(text) for text in row] for row in by_javascript[case.name]], expected)
+
+
+def test_the_reports_sliding_equations_are_few_operations():
+    motion = sliding_motion(REPORT.kind, True)
+    assert 50 < record(motion.rates, motion.size, motion.parameters).operations <= 110
+
+
+def test_a_choice_that_depends_on_numbers_is_refused():
+    law = HertzLaw(0.3, 0.02)
+    kind = Top(1.0, 0.45, 0.38, SphereSurface(1.0, 0.3), law, 1.0).kind
+    with pytest.raises(NotRecordable, match="select"):
+        record(lambda y, p: kind.top(tuple(p)).friction.reserve(y[0], (y[1], y[2]), y[3]), 8, kind.numbers)
+    assert record(lambda y, p: (1.0 * (y[0] > 0.0),), 1, 0).operations == 1
+
+
+def test_elementary_functions_and_selections_are_printed():
+    def function(y, p):
+        rates = published_rates(y, REPORT, Elementary())
+        return (*rates, y[0].graph.select(y[0] < y[1], y[0], abs(-y[1])), y[2] ** 1.3, y[2] ** -2.25)
+
+    y = [0.3, 1.2, 0.7, 2.0, 90.0, 0.01, -0.02]
+    out = [0.0] * 10
+    compiled(python_source(record(function, 7, 0), "f"), "f")(y, [], out)
+    expected = (*published_rates(y, REPORT, math), 0.3, 0.7**1.3, 0.7**-2.25)
+    np.testing.assert_allclose(out, expected, rtol=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("function", "operations"),
+    [
+        (lambda x: x * 0.0 + 0.0 * x, 0),
+        (lambda x: 1.0 * x - 0.0, 0),
+        (lambda x: -(x * -1.0), 0),
+        (lambda x: (x + 2.0) - (2.0 + x), 0),
+        (lambda x: x**2 + x * x, 2),
+        (lambda x: x**0.5 * x**-0.5, 3),
+        (lambda x: (-x * 3.0) + 3.0 * x, 0),
+        (lambda x: x**3, 2),
+        (lambda x: x / 1.0, 0),
+        (lambda x: abs(-x) - abs(x), 0),
+    ],
+)
+def test_nothing_is_computed_twice_or_for_nothing(function, operations):
+    found = record(lambda y, p: (function(y[0]),), 1, 0)
+    assert found.operations == operations
+    out = [0.0]
+    compiled(python_source(found, "f"), "f")([0.7], [], out)
+    assert out[0] == pytest.approx(function(0.7), abs=1e-15)

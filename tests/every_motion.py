@@ -1,0 +1,103 @@
+"""Every motion of every mode, for every surface and friction law there is, and states to look at it in."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tippetop.contact.double import motion_on_two
+from tippetop.contact.passing import closing_motion
+from tippetop.contact.sliding import held_motion, sliding_motion
+from tippetop.contact.sticking import sticking_motion
+from tippetop.integrators.base import Motion
+from tippetop.mechanics.contensou import EllipsoidalLaw
+from tippetop.mechanics.contensou_hertz import HertzBranch, HertzDrillingLaw, HertzSlidingLaw
+from tippetop.mechanics.coulomb import CoulombLaw, RollingResistance
+from tippetop.mechanics.ending import Vanishing
+from tippetop.mechanics.friction import RegularizedCoulombLaw, ViscousLaw
+from tippetop.mechanics.hull import Hull
+from tippetop.mechanics.rolling import is_set_valued
+from tippetop.mechanics.surface import RingSurface, SphereSurface, SpheroidSurface
+from tippetop.mechanics.top import Top
+
+BALL = SphereSurface(1.0, 0.3)
+SURFACES = {
+    "sphere": BALL,
+    "spheroid": SpheroidSurface(1.0, 1.4, 0.1),
+    "ring": RingSurface(1.0, 0.2, 0.1),
+    "hull": Hull.of((BALL, SphereSurface(0.2, 1.5), RingSurface(0.5, -0.4, 0.1))),
+}
+SLIDING = {
+    "viscous": ViscousLaw(0.7),
+    "regularized": RegularizedCoulombLaw(0.4, 0.01),
+    "coulomb": CoulombLaw(0.3),
+    "ellipsoidal": EllipsoidalLaw(0.3, 0.02),
+    "drilling": HertzBranch(0.3, 0.9, 1.0),
+    "slipping": HertzBranch(0.3, 0.9, 0.0),
+}
+STICKING = {
+    "coulomb": CoulombLaw(0.3),
+    "ellipsoidal": EllipsoidalLaw(0.3, 0.02),
+    "drilling": HertzDrillingLaw(0.3, 0.9),
+    "slipping": HertzSlidingLaw(0.3, 0.9),
+}
+
+
+class Case(NamedTuple):
+    """A motion, and parameters for it."""
+
+    name: str
+    motion: Motion
+    parameters: tuple[float, ...]
+
+
+def top_of(surface, law):
+    return Top(1.0, 0.45, 0.38, surface, law, 1.0)
+
+
+def sliding_motions(surface, law):
+    """Every motion of a top with this surface and law in which it slips."""
+    top = top_of(surface, law)
+    kind, numbers, rolls = top.kind, top.numbers, isinstance(law, RollingResistance)
+    yield "sliding", sliding_motion(kind, True), numbers
+    endings = [Vanishing(slip=False)] if rolls else []
+    if rolls:
+        yield "held", held_motion(kind, True), numbers
+    if is_set_valued(law):
+        endings += [Vanishing(slip=True, held=held) for held in (False, True)[: 1 + rolls]]
+    for ending in endings:
+        yield f"closing {ending}", closing_motion(kind, ending, True), (*numbers, 1e9, 1e-3)
+    if isinstance(surface, Hull):
+        other = top._replace(surface=surface._replace(active=1))
+        yield "two", motion_on_two(kind, other.kind), (*numbers, *other.numbers)
+
+
+def sticking_motions(surface, law):
+    """Every motion of a top with this surface and law in which it sticks."""
+    top = top_of(surface, law)
+    kind, numbers, rolls = top.kind, top.numbers, isinstance(law, RollingResistance)
+    for held in (False, True)[: 1 + rolls]:
+        yield f"sticking {held}", sticking_motion(kind, held), numbers
+    if rolls:
+        yield "sticking closing", closing_motion(kind, Vanishing(False, True), True), (*numbers, 1e9, 1e-3)
+
+
+CASES = [
+    Case(f"{shape} {name} {mode}", motion, tuple(map(float, parameters)))
+    for laws, motions in ((SLIDING, sliding_motions), (STICKING, sticking_motions))
+    for shape, surface in SURFACES.items()
+    for name, plain in laws.items()
+    for name, law in ((name, plain), (f"{name} and rolling", RollingResistance(plain, 1e-3)))
+    for mode, motion, parameters in motions(surface, law)
+]
+
+
+def states(motion, count):
+    """Random numbers for a motion, the axis a unit vector, shape (count, size)."""
+    found = np.random.default_rng(motion.size).normal(size=(count, motion.size))
+    found[:, :3] /= np.linalg.norm(found[:, :3], axis=1, keepdims=True)
+    return found
+
+
+def everything(motion):
+    """The rates of a motion and its guards as one function."""
+    return lambda y, p: (*motion.rates(y, p), *[guard.value(y, p) for guard in motion.guards])
