@@ -10,10 +10,8 @@ from tippetop.report.claim import (
     Finding,
     Judgement,
     Source,
-    Tolerance,
     Verdict,
     decide,
-    half_last_digit,
     number,
 )
 from tippetop.report.claims.registry import CLAIMS
@@ -22,6 +20,7 @@ from tippetop.report.formulas import FORMULAS
 from tippetop.report.gallery import PLATES
 from tippetop.report.outline import OWN, PICTURES, SECTIONS, section_of
 from tippetop.report.sentences import SENTENCES
+from tippetop.report.tolerance import Tolerance, half_last_digit
 
 FIELDS = {"id", "source", "statement", "reported", "listing", "converged", "unit", "verdict", "note"}
 

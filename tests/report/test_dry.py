@@ -115,6 +115,7 @@ def test_a_patch_creeps_as_viscous_friction_and_turns_over_nearly_so(computed: d
         ("dry-patch-inversion", Verdict.REPRODUCED),
         ("dry-viscous-limit", Verdict.REPRODUCED),
         ("dry-normal-mu", Verdict.CORRECTED),
+        ("dry-rough-mu", Verdict.REPRODUCED),
     ],
 )
 def test_verdicts(computed: dict[str, xr.Dataset], name: str, verdict: Verdict) -> None:
@@ -136,6 +137,7 @@ def test_verdicts(computed: dict[str, xr.Dataset], name: str, verdict: Verdict) 
         ("dry-patch-inversion", "dry-patch", {"theirs_turns": math.nan}, Verdict.CORRECTED),
         ("dry-viscous-limit", "dry-viscous", {"growth_ratio": 1.001}, Verdict.CORRECTED),
         ("dry-normal-mu", "dry-viscous", {"hertz_coefficient": 0.5}, Verdict.REPRODUCED),
+        ("dry-rough-mu", "dry-viscous", {"hertz_coefficient": 150.0}, Verdict.CORRECTED),
     ],
 )
 def test_verdicts_follow_the_data(

@@ -125,8 +125,7 @@ def test_the_abnormal_point_is_not_one_of_the_top(computed: dict[str, xr.Dataset
         "fig10-fall": Verdict.REPRODUCED,
         "fig10-gain": Verdict.EXPLAINED,
         "fig10-impossible": Verdict.REPRODUCED,
-        "fig12-stop-time": Verdict.CORRECTED,
-        "listing-commented-out": Verdict.CORRECTED,
+        "fig12-stop-time": Verdict.EXPLAINED,
         "sec2-large-spin": Verdict.REPRODUCED,
         "sec4-may-fly": Verdict.REPRODUCED,
         "sec4-energy-falls": Verdict.UPHELD,
@@ -152,6 +151,13 @@ def test_one_launch_that_does_not_turn_over_would_be_seen(
     assert "still" in judged.finding.note
 
 
+def test_what_the_listing_leaves_out_is_told_as_news_if_it_cures(computed: dict[str, xr.Dataset]) -> None:
+    assert "commented out" in judge(computed, "sum-abnormal").finding.news
+    lines = computed["listing-capped"]
+    useless = computed | {"listing-capped": lines.assign(final_theta_capped=lines["final_theta"])}
+    assert judge(useless, "sum-abnormal").finding.news == ""
+
+
 def test_a_rise_of_the_energy_would_be_seen(computed: dict[str, xr.Dataset]) -> None:
     spoilt = computed | {"hops": computed["hops"].copy(deep=True)}
     spoilt["hops"]["energy_rise"][..., 1] = 1e-9
@@ -166,6 +172,13 @@ def test_a_stop_before_lift_off_would_be_accepted(computed: dict[str, xr.Dataset
     assert judge(computed | {"run-175": later}, "fig12-stop-time").verdict is Verdict.REPRODUCED
 
 
+def test_a_pull_that_a_plot_shows_before_the_stop_would_be_seen(computed: dict[str, xr.Dataset]) -> None:
+    run = computed["run-175"]
+    assert float(run["zero_of_force_listing"]) < 5.62 < float(run["visible_pull_listing"])
+    plain = run.assign(visible_pull_listing=5.6)
+    assert judge(computed | {"run-175": plain}, "fig12-stop-time").verdict is Verdict.CORRECTED
+
+
 def test_a_top_that_hardly_rises_does_not_fly(computed: dict[str, xr.Dataset]) -> None:
     low = computed["run-175"].assign(highest_gap=1e-6)
     assert judge(computed | {"run-175": low}, "sec4-may-fly").verdict is Verdict.CORRECTED
@@ -176,7 +189,7 @@ def test_huge_spins_are_judged_at_the_reports_own_launch(
 ) -> None:
     judged = judge(computed | onsets, "sec4-huge-spin")
     assert judged.verdict is Verdict.REPRODUCED
-    for words in ("120 rad/s", "132 rad/s", "From a tilt of 1.30 rad on"):
+    for words in ("165.10 rad/s", "120 rad/s", "132 rad/s", "From a tilt of 1.30 rad on"):
         assert words in judged.finding.note
     scan = onsets["onset-tilt"].copy(deep=True)
     scan["first_lift_off"][0, 1] = math.nan

@@ -86,7 +86,7 @@ def test_page_opens_with_what_is_wrong_and_what_is_right(fig13: Path) -> None:
     text = (fig13 / "index.html").read_text(encoding="utf-8")
     wrong, right, rest = (text.index(f'<h2 id="{name}"') for name in ("errors", "sound", "section-2.3"))
     assert wrong < right < rest
-    assert "it nutates, and the nutation dies away" in text[wrong:right]
+    assert "0\\neq\\theta\\neq\\pi" in text[wrong:right]
     assert 'href="#claim-fig13-upright"' in text[right:rest]
     assert "(what is left of it" not in text[wrong:right]
     assert "(what is left of it" in text[rest:]

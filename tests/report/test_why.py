@@ -137,6 +137,7 @@ def test_nutation_stays_between_its_turning_points(computed: dict[str, xr.Datase
         ("why-flip-law", Verdict.REPRODUCED),
         ("section-5-small-mu", Verdict.REPRODUCED),
         ("why-only-simulation", Verdict.CORRECTED),
+        ("eq-2.17-range", Verdict.REPRODUCED),
     ],
 )
 def test_verdicts(computed: dict[str, xr.Dataset], name: str, verdict: Verdict) -> None:
@@ -152,6 +153,8 @@ def test_claims_follow_the_data(computed: dict[str, xr.Dataset]) -> None:
     states["run_end"] = states["run_end"] + 0.02
     spoilt = computed | {"why-bifurcation": states}
     assert CLAIMS["why-final-tilt"].judge(spoilt, quick=True).verdict is Verdict.CORRECTED
+    off = computed["why-bifurcation"].assign(run_left=computed["why-bifurcation"]["run_left"] + 1e-4)
+    assert CLAIMS["eq-2.17-range"].judge({"why-bifurcation": off}, quick=True).verdict is Verdict.CORRECTED
     assert CLAIMS["why-regimes"].judge(spoilt, quick=True).verdict is Verdict.EXPLAINED
     other = computed["final-tilt-listing"].copy(deep=True)
     other["final_theta_listing"][0] = 0.5

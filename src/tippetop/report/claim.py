@@ -4,11 +4,11 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
 from enum import Enum
-from typing import NamedTuple, TypeAlias
+from typing import TypeAlias
 
 import xarray as xr
 
-from tippetop.report.readings import SETTLED
+from tippetop.report.tolerance import Tolerance, half_last_digit
 
 Value: TypeAlias = float | bool
 Data: TypeAlias = Mapping[str, xr.Dataset]
@@ -27,8 +27,9 @@ class Verdict(Enum):
 RULE = (
     "Every claim is compared with the converged value, which says whether it is true, and with what the "
     "report's own method gives, where it gives anything: directly, or for one stated choice of what the "
-    "report leaves open. They agree within half a unit of the last printed digit unless the record says "
-    "otherwise. What the report does not say in words, but draws or codes, is marked as implied."
+    "report leaves open; what is true is taken for the same choice. They agree within half a unit of the "
+    "last printed digit unless the record says otherwise. What the report does not say in words, but draws "
+    "or codes, is marked as implied."
 )
 
 
@@ -48,19 +49,6 @@ class Source:
         return ", ".join(part for part in parts if part)
 
 
-class Tolerance(NamedTuple):
-    """What counts as agreement, and why that."""
-
-    value: float
-    reason: str
-
-
-ARRIVED = Tolerance(SETTLED, f"the report's own measure of having arrived, {SETTLED:g} rad")
-PLOTTED = Tolerance(0.01, "1 %: what a plot can show")
-STEADY = Tolerance(1e-5, "far below the 1e-3 of the report's method, far above rounding")
-ROUNDING = Tolerance(1e-6, "far above rounding")
-
-
 @dataclass(frozen=True)
 class Finding:
     """What a run finds about a claim.
@@ -77,14 +65,17 @@ class Finding:
         What the report's method gives for one choice of what the report leaves open, and which choice.
     reported
         What the report's printed formula evaluates to, where the claim is a formula.
+    news
+        What else is found that the report could not know, in a sentence; "" for nothing.
     """
 
     listing: Value | None
     converged: Value
     note: str
-    chosen: float | None = None
+    chosen: Value | None = None
     choice: str = ""
     reported: float | None = None
+    news: str = ""
 
 
 Examine: TypeAlias = Callable[..., Finding]
@@ -275,12 +266,6 @@ def _agree(reported: Value, found: Value, tolerance: float | None) -> bool:
 def number(printed: str) -> float:
     """A number as printed, pi included."""
     return math.pi if printed == "pi" else float(printed)
-
-
-def half_last_digit(printed: str) -> Tolerance:
-    """Half a unit of the last digit of a printed number: 0.05 for "7.4", 0.5 for "170"."""
-    decimals = len(printed.partition(".")[2])
-    return Tolerance(0.5 * 10.0**-decimals, "half a unit of the last printed digit")
 
 
 def _plain(value: Value | None) -> float | bool | None:

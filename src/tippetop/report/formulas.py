@@ -62,10 +62,10 @@ FORMULAS: dict[str, Formula] = {
         ),
         (r"E_{\mathrm{as\ printed}}+m\,(\mathbf{v_A}\cdot\mathbf{w}+\frac{1}{2}v_A^2)",),
     ),
-    "appendix-b-order": Formula(
+    "eq-b.1": Formula(
         (_STAGES, r"\quad+2f(Y_3,t_n+\frac{\Delta t}{2})+f(Y_4,t_n)\,]"),
         (_STAGES, r"\quad+2f(Y_3,t_n+\frac{\Delta t}{2})+f(Y_4,t_n+\Delta t)\,]"),
     ),
-    "fig07-exponent": Formula((r"t\propto\mu^{-0.985}\approx\mu^{-1}",)),
+    "fig07-exponent": Formula((r"t\propto\mu^{-0.985}",)),
 }
 """By claim; w in the energy is the velocity that the centre of mass has without slip."""

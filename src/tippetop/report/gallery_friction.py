@@ -22,6 +22,7 @@ PLATES = (
         f"little more than that, and on mu = {SLIPPERY:g}: there it slips and sticks by turns, and rises.",
         ("dry-rolling",),
         dry.rolling_figure,
+        finding="On dry friction of a point a top that is set down rolls for ever, and never turns over.",
     ),
     _plate(
         "dry-cohen",
@@ -32,6 +33,7 @@ PLATES = (
         "steps the top stays up for longer; exactly, it sticks and rolls.",
         ("dry-cohen",),
         dry.cohen_figure,
+        finding="The inversion published for Coulomb friction in 1977 came from the length of the steps.",
     ),
     _plate(
         "dry-smoothed",
@@ -41,6 +43,7 @@ PLATES = (
         "the top turns over if one waits, and on Coulomb's law itself it never does.",
         ("dry-smoothed",),
         dry.smoothed_figure,
+        finding="Dry friction turns a top over at any smoothing, and without it never: the limit misleads.",
     ),
     _plate(
         "dry-patch",
@@ -51,6 +54,7 @@ PLATES = (
         "slowly; a large one drills the spin away before the top is over.",
         ("dry-patch",),
         dry.patch_figure,
+        finding="On dry friction a patch that drills turns a top over, if it is neither too small nor too large.",
     ),
     _plate(
         "dry-viscous",
@@ -62,6 +66,7 @@ PLATES = (
         "does not turn over.",
         ("dry-viscous",),
         dry.viscous_figure,
+        finding="The report's friction in s/m is what a drilling patch amounts to, with tens of s/m.",
     ),
 )
 """The figures in the order of the page."""

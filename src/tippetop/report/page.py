@@ -75,7 +75,8 @@ def render(
     parts: dict[str, Any] = {
         "errors": [claim for name in wrong for claim in theirs if claim["verdict"] == name],
         "sound": [claim for claim in theirs if claim["verdict"] not in wrong],
-        "unknown": [plate for plate in plates if _is_new(plate) and not partial],
+        "unknown": [] if partial else [plate for plate in plates if _is_new(plate)],
+        "news": [claim for claim in claims if claim["news"]],
         "player": player,
         "sections": _sections(plates, claims, figures),
         "experiments_done": _experiments(plates, judgements),
@@ -86,6 +87,7 @@ def render(
         contents=_contents(parts),
         claims=claims,
         statements=len(theirs),
+        others=len(claims) - len(theirs),
         pictures=[] if partial else [_picture(PLATES[name], figures) for name in PICTURES if name in shown],
         verdicts=[
             {"name": name, "count": counts[name], "shown": shown_counts[name], "meaning": verdict.value}
@@ -210,6 +212,7 @@ def worded(judgement: Judgement, shown: Set[str] = frozenset()) -> Worded:
         "tolerance_from": tolerance.reason if claim.tolerance and tolerance else "",
         "verdict": judgement.verdict.name.lower(),
         "note": finding.note,
+        "news": finding.news,
         "figure": figure if figure in shown else None,
         "figure_title": PLATES[figure].title.partition(":")[0] if figure in shown and figure else None,
     }

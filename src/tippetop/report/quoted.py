@@ -18,6 +18,9 @@ ABNORMAL_SPIN = "170"
 EXPONENT, NORMAL_FRICTION = "-0.985", (0.2, 1.0)
 """The power of mu in the flip time, and the range of mu, s/m, that it is for (section 3.3, Fig. 7)."""
 
+ROUGH_FRICTION = 100.0
+"""The friction of Fig. 8, s/m."""
+
 ENERGY, ENERGY_TIME, FALL = "0.06", "6", "15"
 """The energy at 175 rad/s, J, when it is reached, s, and the fall to compare, R (section 4, Fig. 10)."""
 

@@ -12,6 +12,10 @@ SETTLED = 0.01
 """How near the tilt must be to its last value to have arrived, rad: the report's own measure."""
 
 
+SHOWN = 0.01
+"""What a plot can show, as a part of its range."""
+
+
 def flip_time(times: Array, theta: Array, within: float = SETTLED) -> float:
     """The first time at which theta is within this of its last value (the report's section 3.3), s."""
     return float(times[np.argmax(np.abs(theta - theta[-1]) < within)])

@@ -23,6 +23,8 @@ SENTENCES: dict[str, str] = {
     ),
     "fig04-slip": "The translation velocity which converges to 0",
     "fig05-slip": "The translation velocity which converges to 0",
+    "sec2-no-slip": "in the end of evolution, v_x, v_y, v_x', v_y' must vanished.",
+    "eq-2.7-mu-unit": "Where mu has dimension of s/m.",
     "eq-2.14-no-nutation": "leads to theta' = 0.",
     "eq-2.16": "to other equations we conclude",
     "eq-2.16-third": "to other equations we conclude",
@@ -56,6 +58,11 @@ SENTENCES: dict[str, str] = {
     ),
     "fig07-exponent": "We conclude that t ∝ mu^-0.985, which is approach t ∝ mu^-1",
     "summary-large-mu": "Out of the normal range, the relation mentioned in 5 is lose efficacy.",
+    "fig07-inverse": (
+        "when mu is in the normal range (0.2 1), the flip time is inversely proportional to the mu."
+    ),
+    "eq-2.17-range": "the TT will keep a constant nutation angle and the final angle velocity holds (2.17)",
+    "fig08-rapid": "it notate around theta = pi rapidly and finally stop notate.",
     "fig08-around-pi": "it notate around theta = pi rapidly and finally stop notate.",
     "fig08-settles": "it notate around theta = pi rapidly and finally stop notate.",
     "fig08-block": "a wedge with initial velocity 1m/s can just travel for 0.001m.",
@@ -67,25 +74,24 @@ SENTENCES: dict[str, str] = {
     "fig09-two-motions": "The nutation of the TT is quite complex, which mix rapid and smooth nutation.",
     "eq-4.1": "we calculate the energy of this TT, the energy function is given",
     "sec4-energy-falls": "the system is lossing it energy during the motion",
-    "fig10-impossible": (
-        "This is IMPOSSIBLE because the system is lossing it energy during the motion, the only force "
-        "can do positive work is the gravity."
-    ),
+    "fig10-impossible": "the only force can do positive work is the gravity.",
     "fig10-gain": "to gain such a big energy(0.06J). at t=6s.",
     "fig10-fall": "However, the TT would have felled down for 15R to gain such a big energy(0.06J).",
     "fig11-negative": "the constrain force g_n can never be negative. However, in this system we point that",
     "sec4-huge-spin": "So, we can't constrain our Tipper Top on the surface in huge omega.",
     "sec4-may-fly": "the TT may fly from the surface and make a complex situation which is hard to discuss.",
     "fig12-stop-time": "At t=5.62s, before the critical time, the motion is",
-    "section-5-stiff": (
-        "In some bad initial condition, the ODE equation is stiff and ode45 function is unbearably slow."
+    "section-5-stiff": "the ODE equation is stiff and ode45 function is unbearably slow.",
+    "section-5-cause": "In some bad initial condition, the ODE equation is stiff",
+    "section-5-ode15s": (
+        "I try the ode15s which is a build-in function for stiff ode and get a reliable solution."
     ),
     "section-5-small-mu": (
         "the conclusion which shows this dependence is true even for mu=0.01 may surprise them."
     ),
     "why-flip-law": "I believe that there is a more fundamental ruler guarantees the correctness.",
     "listing-theta-mod-pi": "the = mod(y(1), pi);",
-    "listing-commented-out": "% if gn < 0",
+    "eq-b.1": "for equation y = f(t, y), we have",
     "appendix-b-order": "One can proof that this method has an accuracy of order (Δt)^5.",
     "fig13-upright": "This is the theta - t relation under the omega0 = 10 rad/s",
     "fig14-inverts": "This is the theta-t relation under the omega0=90 rad/s",

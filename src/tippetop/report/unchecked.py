@@ -32,6 +32,11 @@ UNCHECKED = (
         "To get the exact friction term is impossible.",
         "a statement about materials, not about it",
     ),
+    Unchecked(
+        "section 3",
+        "To solve (2.8) to (2.15) analytically is impossible.",
+        "no solution in closed form is known, and no computation can show that there is none",
+    ),
     Unchecked("section 3, Table 1", "The parameters are those of reference [3].", _OTHERS),
     Unchecked(
         "section 3.1",
@@ -42,11 +47,6 @@ UNCHECKED = (
         "section 3.3",
         "The top spins on its stem.",
         "the model is a whole sphere and has none; what is judged is that it turns over",
-    ),
-    Unchecked(
-        "section 3.3, Fig. 8",
-        "No real surface has mu = 100 s/m.",
-        "a statement about surfaces; how far a block slides on one is judged",
     ),
     Unchecked(
         "section 5", "Tricks of programming make the listing faster.", "a statement about its author's time"

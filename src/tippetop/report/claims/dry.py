@@ -3,10 +3,11 @@
 import numpy as np
 import xarray as xr
 
-from tippetop.report.claim import ROUNDING, Chapter, Finding, Source
+from tippetop.report.claim import Chapter, Finding, Source
 from tippetop.report.experiments.dry import COHEN_STEP, COHEN_WINDOW
 from tippetop.report.experiments.patches import SPIN_OF_REPORT
-from tippetop.report.quoted import NORMAL_FRICTION
+from tippetop.report.quoted import NORMAL_FRICTION, ROUGH_FRICTION
+from tippetop.report.tolerance import ROUNDING
 
 CHAPTER = Chapter()
 
@@ -172,14 +173,36 @@ def _(data: xr.Dataset) -> Finding:
 def _(data: xr.Dataset) -> Finding:
     low, high = NORMAL_FRICTION
     found = data["hertz_coefficient"].values
-    listed = ", ".join(
-        f"{name} {1e6 * radius:.0f} µm and {mu:.0f} s/m"
-        for name, radius, mu in zip(data["material"].values, data["hertz_radius"].values, found, strict=True)
-    )
+    return Finding(None, bool(((found >= low) & (found <= high)).any()), _surfaces(data))
+
+
+@CHAPTER.claim(
+    "dry-rough-mu",
+    Source("Friction: the report, Fig. 8"),
+    f"No surface is as rough as mu = {ROUGH_FRICTION:g} s/m.",
+    needs=("dry-viscous",),
+    figure="dry-viscous",
+)
+def _(data: xr.Dataset) -> Finding:
+    slowest = float((data["hertz_coefficient"].max() / ROUGH_FRICTION) * SPIN_OF_REPORT)
     return Finding(
         None,
-        bool(((found >= low) & (found <= high)).any()),
-        "Dry friction of mu = 0.3 on the elastic patch under the weight of the report's top, table of "
-        f"the same material, creeps at {SPIN_OF_REPORT:g} rad/s as viscous friction would with this "
-        f"coefficient: {listed}.",
+        bool((data["hertz_coefficient"] < ROUGH_FRICTION).all()),
+        f"{_surfaces(data)} None reaches {ROUGH_FRICTION:g} s/m there, but the coefficient goes as one over "
+        f"the spin: below {slowest:.0f} rad/s the hardest of these does.",
+    )
+
+
+def _surfaces(data: xr.Dataset) -> str:
+    """Which viscous friction patches of common materials stand for."""
+    listed = ", ".join(
+        f"{name} {1e6 * radius:.0f} µm and {mu:.0f} s/m"
+        for name, radius, mu in zip(
+            *(data[name].values for name in ("material", "hertz_radius", "hertz_coefficient")), strict=True
+        )
+    )
+    return (
+        "Dry friction of mu = 0.3 on the elastic patch under the weight of the report's top, table of the "
+        f"same material, creeps at {SPIN_OF_REPORT:g} rad/s as viscous friction would with this "
+        f"coefficient: {listed}."
     )

@@ -1,154 +1,12 @@
 """Claims that are equations: those that hold, and those that are misprinted."""
 
-import math
-
 import numpy as np
 import xarray as xr
 
-from tippetop.presets import REPORT
-from tippetop.report.claim import ROUNDING, STEADY, Chapter, Finding, Source, Tolerance
-from tippetop.report.quoted import END_OF_FIG_5
+from tippetop.report.claim import Chapter, Finding, Source
+from tippetop.report.tolerance import ROUNDING, TRANSCRIBED, Tolerance, rounded
 
 CHAPTER = Chapter()
-
-
-@CHAPTER.claim(
-    "eq-2.16",
-    Source("2.3", equation="(2.16)"),
-    "In the steady state the first and fourth lines of (2.16) vanish (what is left, as a part of their "
-    "terms).",
-    "0",
-    tolerance=STEADY,
-    needs=("steady-bodies",),
-    figure="fig05",
-)
-def _(steady: xr.Dataset) -> Finding:
-    left = steady["residual_216"].values
-    return Finding(
-        None,
-        float(left.max()),
-        f"The largest of {len(left)} bodies after {steady.attrs['duration_s']:g} s; "
-        f"{left[0]:.1e} for the report's.",
-    )
-
-
-_ALPHA = float(REPORT.surface.proportions[0])
-
-
-def _left_of_217(theta: float, phi_dot: float, omega3: float) -> float:
-    """What is left of (2.17), rad/s."""
-    return omega3 - phi_dot * (math.cos(theta) - _ALPHA)
-
-
-def _rounding_of_217(theta: float, phi_dot: float, omega3: float) -> float:
-    """How far three numbers that satisfy (2.17) may miss it when each is rounded to three decimals, rad/s."""
-    return 0.0005 * (abs(phi_dot * math.sin(theta)) + abs(math.cos(theta) - _ALPHA) + 1.0)
-
-
-@CHAPTER.claim(
-    "eq-2.17",
-    Source("3.1", "Fig. 5", "(2.17)"),
-    "The end state of Fig. 5 satisfies omega3 = phi' (cos theta - alpha) (the value is the difference).",
-    "0 rad/s",
-    tolerance=Tolerance(
-        _rounding_of_217(**END_OF_FIG_5),
-        "what rounding the three quoted numbers to their last digit makes of it",
-    ),
-    needs=("run-50",),
-    figure="fig05",
-)
-def _(run: xr.Dataset) -> Finding:
-    listed, ours = (
-        _left_of_217(*(float(run[f"end_{name}{suffix}"]) for name in END_OF_FIG_5))
-        for suffix in ("_listing", "")
-    )
-    return Finding(
-        _left_of_217(**END_OF_FIG_5),
-        ours,
-        "The report's value is that of the three numbers it quotes; almost all of it is the rounding of "
-        f"theta and phi'. Its method leaves {listed:+.4f} rad/s after 20 s.",
-    )
-
-
-@CHAPTER.claim(
-    "eq-2.17-exception",
-    Source("2.3", equation="(2.17)"),
-    "In a steady state (2.17) holds if theta is not pi (what is left of it for a top that spins upright, as "
-    "a part of omega3).",
-    "0",
-    tolerance=STEADY,
-    needs=("run-10",),
-    figure="fig13",
-    right="if theta is neither 0 nor pi",
-)
-def _(run: xr.Dataset) -> Finding:
-    late = run.sel(time=slice(15.0, None))
-    left = late["omega3"] - late["phi_dot"] * (np.cos(late["theta"]) - _ALPHA)
-    return Finding(
-        None,
-        float((abs(left) / abs(late["omega3"])).max()),
-        "theta = 0 is an exception too: the derivation divides by sin(theta). An upright top spins steadily "
-        f"at any omega3, and what is left of its nutation turns at {late['phi_dot'].mean():.2f} rad/s where "
-        f"(2.17) would have {float(late['omega3'].mean()) / (1.0 - _ALPHA):.2f} rad/s.",
-    )
-
-
-@CHAPTER.claim(
-    "eq-2.14-no-nutation",
-    Source("2.3", equation="(2.14)"),
-    "Without slip (2.14) leads to theta' = 0.",
-    needs=("why-groups",),
-)
-def _(chart: xr.Dataset) -> Finding:
-    # The bracket over I3 is alpha + (gamma - 1) cos(theta): it has a zero where |gamma - 1| reaches alpha.
-    bracket = chart["top_alpha"] - abs(chart["top_gamma"] - 1.0)
-    listed = float(bracket[0])
-    return Finding(
-        None,
-        listed > 0,
-        "It leads to omega3 theta' times a bracket being zero, and so leaves out two other ways: omega3 = 0, "
-        "and a zero of the bracket, at cos(theta) = alpha / (1 - I1/I3). The latter exists for tops with "
-        f"|I1/I3 - 1| of alpha or more only; for the report's top the bracket is "
-        f"at least {listed:.2f} I3.",
-    )
-
-
-@CHAPTER.claim(
-    "eq-2.17-any-body",
-    Source("2.3", equation="(2.17)"),
-    "(2.17) holds whatever the mass and the moments of inertia (largest relative difference).",
-    "0",
-    tolerance=STEADY,
-    needs=("steady-bodies",),
-)
-def _(steady: xr.Dataset) -> Finding:
-    left = abs(steady["residual_217"]) / abs(steady["phi_dot"])
-    listed = ", ".join(
-        f"{name!s} {value:.0e}" for name, value in zip(steady["body"].values, left, strict=True)
-    )
-    return Finding(None, float(left.max()), f"Differences over phi': {listed}.")
-
-
-@CHAPTER.claim(
-    "eq-2.16-third",
-    Source("2.3", equation="(2.16)"),
-    "The third line of (2.16) makes the rate of an angle phi_3 zero in the steady state.",
-    "0 rad/s",
-    needs=("steady-bodies",),
-    figure="fig05",
-    right="omega3' = 0",
-)
-def _(steady: xr.Dataset) -> Finding:
-    precession, spin = steady["phi_dot"], steady["omega3"]
-    rotation = spin - precession * np.cos(steady["theta"])
-    slowest = min(float(abs(rate).min()) for rate in (precession, rotation))
-    return Finding(
-        None,
-        slowest,
-        "No angle of that name is introduced. The precession and the rotation about the axis both go on, in "
-        f"the steady states of {steady.sizes['body']} bodies at {slowest:.2f} rad/s and more; what vanishes "
-        f"is the rate of omega3 (at most {steady['omega3_rate'].max():.0e} rad/s²).",
-    )
 
 
 @CHAPTER.claim(
@@ -179,9 +37,9 @@ def _(check: xr.Dataset) -> Finding:
 
 @CHAPTER.claim(
     "eq-2.8",
-    Source("2.2", equation="(2.8), (2.10) to (2.15), and a"),
-    "a, (2.8) and (2.10) to (2.15) are the equations of motion (largest relative difference from a run by "
-    "others).",
+    Source("2.2", equation="(2.8), (2.10) to (2.15), a, and the constraint"),
+    "a, the constraint (s + a).z = 0, (2.8) and (2.10) to (2.15) are the equations of motion (largest "
+    "relative difference from a run by others).",
     "0",
     tolerance=ROUNDING,
     needs=("printed-equations",),
@@ -196,7 +54,7 @@ def _(check: xr.Dataset) -> Finding:
 def _largest_miss(check: xr.Dataset, words: str) -> Finding:
     miss = check["miss"]
     listed = ", ".join(
-        f"{name} {value:.0e}" for name, value in zip(miss["equation"].values, miss, strict=True)
+        f"{name} {rounded(value)}" for name, value in zip(miss["equation"].values, miss, strict=True)
     )
     return Finding(None, float(miss.max()), f"Differences {words}: {listed}.")
 
@@ -242,7 +100,7 @@ def _(check: xr.Dataset) -> Finding:
         "An I1 stands too much in the numerator. Read as I1 over the bracket it gives "
         f"{check['precession_printed']:.4g}, read as a factor "
         f"{check['precession_printed_product']:.4g} (in wrong units either way); the listing has the "
-        "right equation.",
+        f"right equation. {TRANSCRIBED}",
         reported=float(check["precession_printed"]),
     )
 

@@ -3,10 +3,11 @@
 import numpy as np
 import xarray as xr
 
-from tippetop.report.claim import Chapter, Finding, Source, Tolerance
+from tippetop.report.claim import Chapter, Finding, Source
 from tippetop.report.experiments.theory import QUOTED_SPINS
 from tippetop.report.quoted import ABNORMAL_SPIN, CRITICAL_SPINS
 from tippetop.report.readings import SETTLED
+from tippetop.report.tolerance import Tolerance, rounded
 
 CHAPTER = Chapter()
 
@@ -28,7 +29,7 @@ def _(states: xr.Dataset) -> Finding:
     quoted = [states.isel(run=int(np.argmin(abs(states["run_spin"].values - s)))) for s in QUOTED_SPINS]
     listed = "; ".join(
         f"{one['run_spin']:g} rad/s: {one['run_predicted']:.6f} rad "
-        f"({abs(one['run_end'] - one['run_predicted']):.0e} off)"
+        f"({rounded(float(one['run_end'] - one['run_predicted']))} off)"
         for one in quoted
     )
     return Finding(
@@ -127,8 +128,8 @@ def _(times: xr.Dataset, wide: xr.Dataset) -> Finding:
 
 @CHAPTER.claim(
     "why-only-simulation",
-    Source("1 and 3"),
-    "The equations can not be solved analytically: the only possible approach is numerical simulation.",
+    Source("1"),
+    "The only possible approach to the dynamics is numerical simulation.",
     needs=("why-critical", "why-bifurcation", "why-exponent"),
     figure="why-bifurcation",
     right="critical spins, final tilts and the law of weak friction follow without one",

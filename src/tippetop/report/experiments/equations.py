@@ -1,6 +1,7 @@
 """The report's printed equations, put to numbers: of motion, of rotation, and of the steady state."""
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -44,6 +45,9 @@ def _printed(quick: bool) -> xr.Dataset:
     force = published_normal_force(tuple(states), top, np)
     misses["(2.15)"] = np.abs(force / now["normal_force"].values - 1.0).max()
     misses["a"] = max(_arm_miss(now.isel(time=k), top) for k in range(len(_INSTANTS)))
+    falling = now["velocity"].values[:, 2]
+    rising = _STENCIL @ _arm_height(run["theta"].values, top).reshape(-1, 5).T
+    misses["(s + a).z = 0"] = np.abs(falling + rising).max() / np.abs(falling).max()
     data = {
         "miss": variable(
             list(misses.values()), "1", "largest relative difference from the run", ("equation",)
@@ -97,6 +101,14 @@ def _arm_miss(now: xr.Dataset, top: Top) -> float:
     return float(np.abs(printed - np.array(arm)).max() / R)
 
 
+def _arm_height(theta: Array, top: Top) -> Array:
+    """The vertical part of the report's a, m."""
+    _, _, _, R, alpha, _, _ = published_parameters(top)
+    s, c = np.sin(theta), np.cos(theta)
+    # Axis 1 is a right angle from the body's axis, in its vertical plane: its height is -sin(theta).
+    return np.asarray(R * (-s * s + (alpha - c) * c))
+
+
 def _torques(now: xr.Dataset, top: Top) -> dict[str, Any]:
     """The contact torque about axis 2 by (2.7) and corrected, and the power that either order of it has."""
     axis, momentum, velocity = (_vector(now, name) for name in ("axis", "angular_momentum", "velocity"))
@@ -143,7 +155,11 @@ def _steady(quick: bool) -> xr.Dataset:
         end = simulate(problem, duration, samples=2).isel(time=-1)
         y = [float(end[name]) for name in _NAMES]
         rates = published_rates(y, problem.top, math)
-        rows.append((y[0], y[3], y[4], *_residuals(y, problem.top), abs(rates[4])))
+        speed = float(body.surface.size) * abs(y[4])
+        slip = [math.hypot(*pair) / size for pair, size in ((y[5:], speed), (rates[5:], speed * abs(y[3])))]
+        rows.append(
+            (y[0], y[3], y[4], *_residuals(y, problem.top), abs(rates[4]), *_turning(y, rates), *slip)
+        )
     table = np.array(rows).T
     names = {
         "theta": ("rad", "tilt"),
@@ -152,12 +168,21 @@ def _steady(quick: bool) -> xr.Dataset:
         "residual_217": ("rad s-1", "omega3 - phi' (cos theta - alpha), equation (2.17)"),
         "residual_216": ("1", "largest of the lines of (2.16), each over the largest of its terms"),
         "omega3_rate": ("rad s-2", "rate of the axial spin"),
+        "phi_ddot": ("1", "rate of the precession, over its square"),
+        "theta_dot": ("1", "rate of the tilt, over the precession"),
+        "slip": ("1", "slip speed, over R omega3"),
+        "slip_rate": ("1", "rates of its components, over R omega3 phi'"),
     }
     data = {
         name: variable(table[i], units, long_name, ("body",))
         for i, (name, (units, long_name)) in enumerate(names.items())
     }
     return xr.Dataset(data, {"body": [name for name, _, _ in tops]}, {"duration_s": duration})
+
+
+def _turning(y: list[float], rates: Sequence[float]) -> tuple[float, float]:
+    """The rates of precession and tilt in this state, in units of the precession."""
+    return abs(rates[3]) / y[3] ** 2, abs(y[1] / y[3])
 
 
 def _residuals(y: list[float], top: Top) -> tuple[float, float]:

@@ -13,7 +13,6 @@ from tippetop.report.experiments.runs import (
     FLIGHT_READINGS,
     WINDOW,
     flight_readings,
-    lift_off_time,
     pushing,
     stopping,
     swept,
@@ -41,7 +40,7 @@ BOUNCING_SPINS_QUICK = (175.0, 200.0)
 
 def leaves_at(problem: Problem, window: float) -> float:
     """When a launch first leaves the table, s; nan if it does not within the window."""
-    return lift_off_time(simulate(stopping(problem), window, samples=2))
+    return float(simulate(stopping(problem), window, samples=2)["first_lift_off"])
 
 
 def first_onset(
@@ -68,7 +67,13 @@ def first_onset(
     lifting = np.flatnonzero(scanned <= window)
     if not len(lifting) or lifting[0] == 0:
         return math.nan
-    low, high = float(spins[lifting[0] - 1]), float(spins[lifting[0]])
+    return onset_between(times, float(spins[lifting[0] - 1]), float(spins[lifting[0]]), window, accuracy)
+
+
+def onset_between(
+    times: Callable[[float], float], low: float, high: float, window: float, accuracy: float
+) -> float:
+    """The onset between a spin that stays on the table and one that leaves it, by halving, rad/s."""
     while high - low > 2.0 * accuracy:
         middle = 0.5 * (low + high)
         low, high = (low, middle) if times(middle) <= window else (middle, high)
@@ -153,7 +158,7 @@ def followed(spins: tuple[float, ...], restitution: float) -> xr.Dataset:
     columns: dict[str, list[float]] = {name: [] for name in (*FLIGHT_READINGS, "first_lift_off")}
     for spin in spins:
         run = simulate(pushing(report_problem(spin), restitution), HOPS_WINDOW, samples=samples)
-        readings = flight_readings(run) | {"first_lift_off": lift_off_time(run)}
+        readings = flight_readings(run) | {"first_lift_off": float(run["first_lift_off"])}
         for name, column in columns.items():
             column.append(readings[name])
     meanings = FLIGHT_READINGS | {"first_lift_off": ("s", "when the top first leaves the table")}

@@ -1,6 +1,7 @@
 """How long the top takes to turn over, as a function of friction: Fig. 7 and what is said around it."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -12,7 +13,7 @@ from tippetop.report.experiment import Experiment, variable
 from tippetop.report.experiments.runs import WINDOW, on_table, swept
 from tippetop.report.listing import listing_run
 from tippetop.report.quoted import NORMAL_FRICTION
-from tippetop.report.readings import SETTLED, flip_time
+from tippetop.report.readings import SETTLED, crossings, flip_time
 
 SPIN = 155.0
 """The report does not say at which spin its Fig. 7 was made; this is that of its main run, rad/s."""
@@ -21,24 +22,44 @@ OTHER_SPINS = (100.0, 115.0, 130.0, 145.0, 160.0)
 """Other spins it may have used, rad/s: all of them turn the top over without lifting it at mu = 0.3 s/m."""
 
 
-def converged_flip_times(spins: Array, mu: Array, window: float = WINDOW) -> Array:
-    """Flip times on a table that pulls, s, of every spin with every friction coefficient, shape (spins, mu).
+class Times(NamedTuple):
+    """When tops turn over, s, of every spin with every friction coefficient, shape (spins, mu).
 
-    They are nan where a run became singular or did not turn the top over.
+    Attributes
+    ----------
+    flip
+        By the report's definition; nan where a run became singular or did not turn the top over.
+    turning
+        When the axis first passes the horizontal; nan where it does not.
     """
+
+    flip: Array
+    turning: Array
+
+
+def converged_times(spins: Array, mu: Array, window: float = WINDOW) -> Times:
+    """Converged times, on a table that pulls."""
     found = swept(on_table(report_problem()), {"launch.spin": spins, "friction.mu": mu}, window)
-    times: Array = found["arrives"].where(found["final_theta"] > math.pi / 2).values
-    return times
+    over = found["final_theta"] > math.pi / 2
+    return Times(found["arrives"].where(over).values, found["turns_over"].values)
 
 
-def listing_flip_times(spins: Array, mu: Array) -> Array:
-    """The same by the report's method and definition; nan if the method gave up."""
-    return np.array([[_listing_flip_time(float(spin), float(m)) for m in mu] for spin in spins])
+def listing_times(spins: Array, mu: Array) -> Times:
+    """The same by the report's method; nan if it gave up."""
+    found = [[_listing_times(float(spin), float(m)) for m in mu] for spin in spins]
+    return Times(*np.moveaxis(np.array(found), 2, 0))
 
 
-def _listing_flip_time(spin: float, mu: float) -> float:
+def _listing_times(spin: float, mu: float) -> tuple[float, float]:
     run = listing_run(report_problem(spin, mu=mu), WINDOW)
-    return math.nan if run.attrs["failure"] else flip_time(run["time"].values, run["theta"].values)
+    if run.attrs["failure"]:
+        return math.nan, math.nan
+    times, theta = run["time"].values, run["theta"].values
+    passed = crossings(times, theta - 0.5 * math.pi)
+    return flip_time(times, theta), float(passed[0]) if len(passed) else math.nan
+
+
+_TURNING = ("s", "first tilt of more than pi/2")
 
 
 def power_law(mu: Array, times: Array) -> tuple[float, float, float, float]:
@@ -58,14 +79,16 @@ def power_law(mu: Array, times: Array) -> tuple[float, float, float, float]:
 def _flip_times(quick: bool) -> xr.Dataset:
     mu = np.linspace(*NORMAL_FRICTION, 7 if quick else 17)
     spins = np.array([SPIN])
-    columns = {"": converged_flip_times(spins, mu)[0], "_listing": listing_flip_times(spins, mu)[0]}
+    columns = {"": converged_times(spins, mu), "_listing": listing_times(spins, mu)}
     data = xr.Dataset(
         coords={"mu": variable(mu, "s m-1", "friction coefficient", ("mu",))},
         attrs={"spin_rad_per_s": SPIN, "within_rad": SETTLED, "window_s": WINDOW},
     )
-    for suffix, times in columns.items():
+    for suffix, found in columns.items():
+        times = found.flip[0]
         a, b, straight, correlation = power_law(mu, times)
         data[f"flip_time{suffix}"] = variable(times, "s", "flip time", ("mu",))
+        data[f"turning_time{suffix}"] = variable(found.turning[0], *_TURNING, ("mu",))
         data[f"factor{suffix}"] = variable(a, "s", "a of the fit a mu^b (mu in s/m)")
         data[f"exponent{suffix}"] = variable(b, "1", "b of the fit a mu^b")
         data[f"exponent_of_logarithms{suffix}"] = variable(straight, "1", "slope of log t over log mu")
@@ -74,7 +97,7 @@ def _flip_times(quick: bool) -> xr.Dataset:
 
 
 def _other_spins(quick: bool) -> xr.Dataset:
-    spins = np.array(OTHER_SPINS[::3] if quick else OTHER_SPINS)
+    spins = np.array(OTHER_SPINS[:3:2] if quick else OTHER_SPINS)
     mu = np.linspace(*NORMAL_FRICTION, 5 if quick else 9)
     data = xr.Dataset(
         coords={
@@ -82,10 +105,11 @@ def _other_spins(quick: bool) -> xr.Dataset:
             "mu": variable(mu, "s m-1", "friction coefficient", ("mu",)),
         }
     )
-    for suffix, measure in (("", converged_flip_times), ("_listing", listing_flip_times)):
+    for suffix, measure in (("", converged_times), ("_listing", listing_times)):
         times = measure(spins, mu)
-        exponents = [power_law(mu, row)[1] for row in times]
-        data[f"flip_time{suffix}"] = variable(times, "s", "flip time", ("spin", "mu"))
+        exponents = [power_law(mu, row)[1] for row in times.flip]
+        data[f"flip_time{suffix}"] = variable(times.flip, "s", "flip time", ("spin", "mu"))
+        data[f"turning_time{suffix}"] = variable(times.turning, *_TURNING, ("spin", "mu"))
         data[f"exponent{suffix}"] = variable(exponents, "1", "b of the fit a mu^b", ("spin",))
     return data
 
@@ -97,7 +121,7 @@ def _wide(quick: bool) -> xr.Dataset:
     windows = WINDOW * 2.0 ** np.ceil(np.log2(np.maximum(1.0, (3.0 / mu + 4.0) / WINDOW)))
     times = np.empty((len(spins), len(mu)))
     for window in np.unique(windows):
-        times[:, windows == window] = converged_flip_times(spins, mu[windows == window], float(window))
+        times[:, windows == window] = converged_times(spins, mu[windows == window], float(window)).flip
     small = mu <= 0.1001
     slopes = [float(np.polyfit(np.log(mu[small]), np.log(row[small]), 1)[0]) for row in times]
     return xr.Dataset(
@@ -118,7 +142,7 @@ def _extremes(quick: bool) -> xr.Dataset:
     mu = np.array([0.0, 0.3, 1.0, 100.0, *([] if quick else [300.0]), 1000.0])
     found = swept(on_table(report_problem(SPIN)), {"friction.mu": mu})
     return xr.Dataset(
-        {"turning_time": variable(found["turns_over"].values, "s", "first tilt of more than pi/2", ("mu",))},
+        {"turning_time": variable(found["turns_over"].values, *_TURNING, ("mu",))},
         {"mu": variable(mu, "s m-1", "friction coefficient", ("mu",))},
         {"spin_rad_per_s": SPIN, "window_s": WINDOW},
     )

@@ -2,9 +2,11 @@
 
 import math
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
+from scipy.integrate import RK45
 
 from tippetop.integrators.base import Array, Motion
 from tippetop.integrators.scipy_methods import SciPy
@@ -23,6 +25,8 @@ LAUNCHES = (
     (10.0, 0.1, 0.3),
     (155.0, 0.1, 0.3),
     (155.0, 1.4, 0.3),
+    (155.0, 1e-6, 0.3),
+    (155.0, math.pi - 1e-3, 0.3),
     (155.0, 0.1, 10.0),
     (10.0, 0.1, 100.0),
     (155.0, 0.1, 100.0),
@@ -53,10 +57,12 @@ def _order(quick: bool) -> xr.Dataset:
     def by_taylor(duration: float) -> xr.Dataset:
         return simulate(problem, duration, times=[duration])
 
-    def by_dormand_prince(duration: float, step: float) -> float:
+    def by_dormand_prince(duration: float, step: float, companion: bool = False) -> float:
         state = start
         for _ in range(round(duration / step)):
-            state, _stages = dormand_prince_step(rates, state, rates(state), step)
+            state, stages = dormand_prince_step(rates, state, rates(state), step)
+            if companion:
+                state = state + step * (RK45.E @ stages)
         return float(state[0])
 
     final = by_taylor(span)
@@ -64,6 +70,9 @@ def _order(quick: bool) -> xr.Dataset:
         "rk4_in_all": [_distance(by_rk4(span, h), final) for h in steps],
         "rk4_in_a_step": [_distance(by_rk4(h, h), by_taylor(float(h))) for h in steps],
         "ode45_in_all": [abs(by_dormand_prince(span, h) - float(final["theta"][-1])) for h in steps],
+        "companion_in_all": [
+            abs(by_dormand_prince(span, h, companion=True) - float(final["theta"][-1])) for h in steps
+        ],
     }
     data = xr.Dataset(coords={"step": variable(steps, "s", "length of a step", ("step",))})
     for name, values in errors.items():
@@ -122,26 +131,45 @@ class _Counted:
         return self.motion.rates(y, parameters)
 
 
-def evaluations(problem: Problem, method: str, span: float) -> int:
-    """Evaluations of the right-hand side at the report's tolerances; -1 where the method gives up."""
+class Effort(NamedTuple):
+    """What a method needs and gives at the report's tolerances.
+
+    Attributes
+    ----------
+    evaluations
+        Evaluations of the right-hand side; -1 where the method gives up.
+    tilt
+        The tilt that it ends at, rad.
+    """
+
+    evaluations: int
+    tilt: float
+
+
+def effort(problem: Problem, method: str, span: float) -> Effort:
+    """What a method makes of a launch."""
     rates = _Counted(problem)
     start = launch_state(problem)
     if method == "ode45":
-        failure = ode45(lambda y: np.array(rates(y.tolist(), ())), span, start).failure
+        solution = ode45(lambda y: np.array(rates(y.tolist(), ())), span, start)
+        failure, end = solution.failure, solution.states[-1]
     else:
         motion = Motion(rates, size=7, parameters=0)
-        scipy = SciPy(method, RELATIVE, ABSOLUTE)
-        *_, last = scipy.integrate(motion, (), (0.0, start), span)
-        failure = last.failure
-    return rates.count if failure is None else -1
+        *_, last = SciPy(method, RELATIVE, ABSOLUTE).integrate(motion, (), (0.0, start), span)
+        failure, end = last.failure, last.end_state
+    return Effort(rates.count if failure is None else -1, float(end[0] % math.pi))
 
 
 def _stiffness(quick: bool) -> xr.Dataset:
     span = 1.0 if quick else _SPAN
     methods = (*EXPLICIT, *IMPLICIT)
-    counts = np.array(
-        [[evaluations(report_problem(*launch), method, span) for method in methods] for launch in LAUNCHES]
-    )
+    made = [[effort(report_problem(*launch), method, span) for method in methods] for launch in LAUNCHES]
+    counts = np.array([[one.evaluations for one in row] for row in made])
+    true = [
+        float(simulate(on_table(report_problem(*launch)), span, samples=2)["final_theta"])
+        for launch in LAUNCHES
+    ]
+    bdf = np.array([row[methods.index("bdf")].tilt for row in made])
     counted = np.where(counts < 0, np.nan, counts)
     explicit = np.nanmin(counted[:, : len(EXPLICIT)], axis=1)
     implicit = np.nanmin(counted[:, len(EXPLICIT) :], axis=1)
@@ -151,6 +179,7 @@ def _stiffness(quick: bool) -> xr.Dataset:
             "evaluations": variable(
                 counts, "1", "evaluations of the right-hand side", ("launch", "integrator")
             ),
+            "bdf_miss": variable(abs(bdf - true), "rad", "difference of bdf's tilt at the end", ("launch",)),
             "stiffness": variable(explicit / implicit, "1", name, ("launch",)),
             "launch_spin": variable(np.array(LAUNCHES)[:, 0], "rad s-1", "spin", ("launch",)),
             "launch_tilt": variable(np.array(LAUNCHES)[:, 1], "rad", "tilt", ("launch",)),

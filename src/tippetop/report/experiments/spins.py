@@ -8,7 +8,8 @@ from scipy.optimize import brentq
 
 from tippetop.presets import report_problem
 from tippetop.report.experiment import Experiment, variable
-from tippetop.report.experiments.runs import WINDOW, lift_off_time, on_table, pushing, stopping, swept
+from tippetop.report.experiments.flights import leaves_at, onset_between
+from tippetop.report.experiments.runs import WINDOW, on_table, pushing, swept
 from tippetop.report.listing import listing_run
 from tippetop.report.readings import SETTLED
 from tippetop.run import simulate
@@ -26,6 +27,9 @@ LONG_WINDOWS = (20.0, 60.0, 200.0, 600.0)
 
 FLYING = (165.0, 210.0)
 """Spins between which Fig. 6 also has the final tilt on a table that only pushes, rad/s."""
+
+_LIFTING = (120.0, 200.0)
+"""Spins of which the first stays on the table and the second does not, rad/s."""
 
 _TILT = ("rad", "tilt at the end of the run")
 
@@ -85,7 +89,9 @@ def _converged(quick: bool) -> xr.Dataset:
     spins = np.arange(5.0, 210.1, 2.5 if quick else 0.5)
     tilts = swept(on_table(report_problem()), {"launch.spin": spins})["final_theta"].values
     lost = spins[(spins > 100) & ~(np.abs(tilts - math.pi) < TURNED)]
-    onset = _lift_off_onset(0.5 if quick else 0.01)
+    onset = onset_between(
+        lambda spin: leaves_at(report_problem(spin), WINDOW), *_LIFTING, window=WINDOW, accuracy=0.005
+    )
     flying = np.arange(FLYING[0], FLYING[1] + 0.1, 7.5 if quick else 2.5)
     true_tilts = swept(pushing(report_problem()), {"launch.spin": flying})["final_theta"].values
     return xr.Dataset(
@@ -109,18 +115,6 @@ def _converged(quick: bool) -> xr.Dataset:
         },
         {"window_s": WINDOW},
     )
-
-
-def _lift_off_onset(accuracy: float) -> float:
-    def lifts(spin: float) -> bool:
-        run = simulate(stopping(report_problem(spin)), WINDOW, samples=2)
-        return not math.isnan(lift_off_time(run))
-
-    low, high = 120.0, 200.0
-    while high - low > accuracy:
-        middle = 0.5 * (low + high)
-        low, high = (low, middle) if lifts(middle) else (middle, high)
-    return 0.5 * (low + high)
 
 
 _BETWEEN = ((22.0, 34.0), (72.0, 84.0))

@@ -112,6 +112,7 @@ _OF_RUNS = {
     "spin": ("rad s-1", "spin near theta = 0 of the same lambda"),
     "tilt": ("rad", "tilt at launch"),
     "end": ("rad", "tilt at the end of a long run"),
+    "left": ("1", "what is left there of the report's (2.17), over the precession"),
     "predicted": ("rad", "reachable stable steady tilt of least energy"),
     "certain": ("1", "whether it is the only one in reach"),
     "stable": ("1", "number of stable steady states"),
@@ -127,12 +128,14 @@ def _diagram(suffix: str, body: Body, tilts: Array, launches: list[tuple[float, 
     branch = precession_branch(base.top, tilts)
     eigenvalues = branch_eigenvalues(branch, base.top)
     found = [_launched(base, spin, tilt) for spin, tilt in launches]
-    ends = [float(simulate(problem, LONG_RUN, samples=2)["theta"].values[-1]) for problem in found]
+    runs = [simulate(problem, LONG_RUN, samples=2).isel(time=-1) for problem in found]
+    ends = [float(run["theta"]) for run in runs]
     predicted = [predict(problem) for problem in found]
     of_runs = {
         "spin": [spin for spin, _ in launches],
         "tilt": [tilt for _, tilt in launches],
         "end": ends,
+        "left": [_left_of_217(run, base) for run in runs],
         "predicted": [one.final.tilt for one in predicted],
         "certain": [int(one.certain) for one in predicted],
         "stable": [len(one.stable) for one in predicted],
@@ -158,6 +161,12 @@ def _diagram(suffix: str, body: Body, tilts: Array, launches: list[tuple[float, 
             "vertical": [kind.value for kind in _KINDS],
         },
     )
+
+
+def _left_of_217(end: xr.Dataset, problem: Problem) -> float:
+    """What is left of omega3 = phi' (cos(theta) - alpha) at the end of a run, over phi'."""
+    ratio = float(end["omega3"]) / float(end["phi_dot"])
+    return abs(ratio - math.cos(float(end["theta"])) + eccentricity(problem.top))
 
 
 def _per_spin(problem: Problem) -> float:

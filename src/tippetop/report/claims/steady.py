@@ -1,0 +1,201 @@
+"""Claims about the steady state: section 2.3, and the end of Fig. 5."""
+
+import math
+
+import numpy as np
+import xarray as xr
+
+from tippetop.presets import REPORT
+from tippetop.report.claim import Chapter, Finding, Source
+from tippetop.report.quoted import END_OF_FIG_5
+from tippetop.report.tolerance import STEADY, TRANSCRIBED, Tolerance, rounded
+
+CHAPTER = Chapter()
+
+
+@CHAPTER.claim(
+    "sec2-no-slip",
+    Source("2.3"),
+    "In the end v_x, v_y and their rates must vanish (largest of them, over R omega3 and R omega3 phi').",
+    "0",
+    tolerance=STEADY,
+    needs=("steady-bodies", "run-155", "run-50"),
+    figure="fig05",
+)
+def _(steady: xr.Dataset, *runs: xr.Dataset) -> Finding:
+    left = np.maximum(steady["slip"], steady["slip_rate"])
+    theirs = max(float(run["end_slip_listing"] / run["largest_slip_listing"]) for run in runs)
+    return Finding(
+        None,
+        float(left.max()),
+        f"After {steady.attrs['duration_s']:g} s, for {steady.sizes['body']} bodies. After the 20 s of "
+        f"Figs. 4 and 5 the report's method has at most {theirs:.0e} of the largest slip left. That "
+        "friction would otherwise slow the top down is the reason, and the right one: it takes energy "
+        "wherever there is slip.",
+    )
+
+
+@CHAPTER.claim(
+    "eq-2.16",
+    Source("2.3", equation="(2.16)"),
+    "In the steady state the first, second and fourth lines of (2.16) vanish (what is left, as a part of "
+    "their terms).",
+    "0",
+    tolerance=STEADY,
+    needs=("steady-bodies",),
+    figure="fig05",
+)
+def _(steady: xr.Dataset) -> Finding:
+    left = np.maximum(steady["residual_216"].values, steady["phi_ddot"].values)
+    return Finding(
+        None,
+        float(left.max()),
+        f"The largest of {len(left)} bodies after {steady.attrs['duration_s']:g} s; "
+        f"{left[0]:.1e} for the report's. The second line, phi'' = 0, is counted in parts of phi'^2.",
+    )
+
+
+_ALPHA = float(REPORT.surface.proportions[0])
+
+
+def _left_of_217(theta: float, phi_dot: float, omega3: float) -> float:
+    """What is left of (2.17), rad/s."""
+    return omega3 - phi_dot * (math.cos(theta) - _ALPHA)
+
+
+def _rounding_of_217(theta: float, phi_dot: float, omega3: float) -> float:
+    """How far three numbers that satisfy (2.17) may miss it when each is rounded to three decimals, rad/s."""
+    return 0.0005 * (abs(phi_dot * math.sin(theta)) + abs(math.cos(theta) - _ALPHA) + 1.0)
+
+
+@CHAPTER.claim(
+    "eq-2.17",
+    Source("3.1", "Fig. 5", "(2.17)"),
+    "The end state of Fig. 5 satisfies omega3 = phi' (cos theta - alpha) (the value is the difference).",
+    "0 rad/s",
+    tolerance=Tolerance(
+        _rounding_of_217(**END_OF_FIG_5),
+        "what rounding the three quoted numbers to their last digit makes of it",
+    ),
+    needs=("run-50",),
+    figure="fig05",
+)
+def _(run: xr.Dataset) -> Finding:
+    listed, ours = (
+        _left_of_217(*(float(run[f"end_{name}{suffix}"]) for name in END_OF_FIG_5))
+        for suffix in ("_listing", "")
+    )
+    quoted = _left_of_217(**END_OF_FIG_5)
+    return Finding(
+        listed,
+        ours,
+        f"The three numbers that the report quotes leave {quoted:+.4f} rad/s, almost all of it the rounding "
+        "of theta and phi'. Its method and the converged motion are taken after 20 s.",
+        reported=quoted,
+    )
+
+
+@CHAPTER.claim(
+    "eq-2.17-range",
+    Source("3.3", "summary, point 2", "(2.17)"),
+    "Between omega_c1 and omega_c2 the final angular velocity satisfies (2.17) (what is left of it, as a "
+    "part of phi').",
+    "0",
+    tolerance=STEADY,
+    needs=("why-bifurcation",),
+    figure="why-bifurcation",
+)
+def _(states: xr.Dataset) -> Finding:
+    low, high = (float(limit) for limit in states["limits"])
+    inside = states.isel(run=((states["run_spin"] > low) & (states["run_spin"] < high)).values)
+    left = inside["run_left"]
+    shown = ", ".join(f"{spin:g}" for spin in inside["run_spin"].values)
+    return Finding(
+        None,
+        float(left.max()),
+        f"In runs of {states.attrs['long_run_s']:g} s launched at {shown} rad/s, which end at tilts from "
+        f"{inside['run_end'].min():.2f} to {inside['run_end'].max():.2f} rad.",
+    )
+
+
+@CHAPTER.claim(
+    "eq-2.17-exception",
+    Source("2.3", equation="(2.17)"),
+    "In a steady state (2.17) holds if theta is not pi (what is left of it for a top that spins upright, as "
+    "a part of omega3).",
+    "0",
+    tolerance=STEADY,
+    needs=("run-10",),
+    figure="fig13",
+    right="if theta is neither 0 nor pi",
+)
+def _(run: xr.Dataset) -> Finding:
+    late = run.sel(time=slice(15.0, None))
+    left = late["omega3"] - late["phi_dot"] * (np.cos(late["theta"]) - _ALPHA)
+    return Finding(
+        None,
+        float((abs(left) / abs(late["omega3"])).max()),
+        "Judged, as (2.14) is, over all the states in which the report's top can end. theta = 0 is one, and "
+        "an exception too: the derivation divides by sin(theta). An upright top spins steadily at any "
+        f"omega3, and what is left of its nutation turns at {late['phi_dot'].mean():.2f} rad/s where (2.17) "
+        f"would have {float(late['omega3'].mean()) / (1.0 - _ALPHA):.2f} rad/s.",
+    )
+
+
+@CHAPTER.claim(
+    "eq-2.14-no-nutation",
+    Source("2.3", equation="(2.14)"),
+    "Without slip (2.14) leads to theta' = 0.",
+    needs=("why-groups", "steady-bodies"),
+)
+def _(chart: xr.Dataset, steady: xr.Dataset) -> Finding:
+    # The bracket over I3 is alpha + (gamma - 1) cos(theta): it has a zero where |gamma - 1| reaches alpha.
+    bracket = chart["top_alpha"] - abs(chart["top_gamma"] - 1.0)
+    listed, tilting = float(bracket[0]), float(steady["theta_dot"].max())
+    return Finding(
+        None,
+        listed > 0 and tilting < STEADY.value,
+        "Judged, as (2.17) is, over all the states in which the report's top can end: there the bracket is "
+        f"at least {listed:.2f} I3, and theta' is at most {rounded(tilting)} phi'. In general (2.14) leaves "
+        "two other ways: omega3 = 0, and a zero of the bracket, at cos(theta) = alpha / (1 - I1/I3), for "
+        "tops with |I1/I3 - 1| of alpha or more.",
+    )
+
+
+@CHAPTER.claim(
+    "eq-2.17-any-body",
+    Source("2.3", equation="(2.17)"),
+    "(2.17) holds whatever the mass and the moments of inertia (largest relative difference).",
+    "0",
+    tolerance=STEADY,
+    needs=("steady-bodies",),
+)
+def _(steady: xr.Dataset) -> Finding:
+    left = abs(steady["residual_217"]) / abs(steady["phi_dot"])
+    listed = ", ".join(
+        f"{name!s} {rounded(value)}" for name, value in zip(steady["body"].values, left, strict=True)
+    )
+    return Finding(None, float(left.max()), f"Differences over phi': {listed}.")
+
+
+@CHAPTER.claim(
+    "eq-2.16-third",
+    Source("2.3", equation="(2.16)"),
+    "The third line of (2.16) makes the rate of an angle phi_3 zero in the steady state.",
+    "0 rad/s",
+    needs=("steady-bodies",),
+    figure="fig05",
+    right="omega3' = 0",
+)
+def _(steady: xr.Dataset) -> Finding:
+    precession, spin = steady["phi_dot"], steady["omega3"]
+    rotation = spin - precession * np.cos(steady["theta"])
+    slowest = min(float(abs(rate).min()) for rate in (precession, rotation))
+    return Finding(
+        None,
+        slowest,
+        "No angle of that name is introduced. The precession and the rotation about the axis both go on, in "
+        f"the steady states of {steady.sizes['body']} bodies at {slowest:.2f} rad/s and more; what vanishes "
+        f"is the rate of omega3 (at most {steady['omega3_rate'].max():.0e} rad/s²), which must be what is "
+        f"meant. {TRANSCRIBED}",
+    )
