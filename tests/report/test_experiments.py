@@ -218,7 +218,7 @@ def times_over_mu(power: float, other: float) -> dict[str, xr.Dataset]:
     def of(exponent: float) -> dict[str, object]:
         row = mu**exponent
         names = ("flip_time", "flip_time_listing", "turning_time", "turning_time_listing")
-        return {name: ("mu", row) for name in names}
+        return dict.fromkeys(names, ("mu", row))
 
     main = xr.Dataset(
         {**of(power), "exponent": power, "exponent_listing": power},

@@ -54,7 +54,7 @@ PLATES = (
         "slowly; a large one drills the spin away before the top is over.",
         ("dry-patch",),
         dry.patch_figure,
-        finding="On dry friction a patch that drills turns a top over, if it is neither too small nor too large.",
+        finding="On dry friction a patch that drills turns a top over: not too small, not too large.",
     ),
     _plate(
         "dry-viscous",

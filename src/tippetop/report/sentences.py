@@ -83,9 +83,7 @@ SENTENCES: dict[str, str] = {
     "fig12-stop-time": "At t=5.62s, before the critical time, the motion is",
     "section-5-stiff": "the ODE equation is stiff and ode45 function is unbearably slow.",
     "section-5-cause": "In some bad initial condition, the ODE equation is stiff",
-    "section-5-ode15s": (
-        "I try the ode15s which is a build-in function for stiff ode and get a reliable solution."
-    ),
+    "section-5-ode15s": "function for stiff ode and get a reliable solution.",
     "section-5-small-mu": (
         "the conclusion which shows this dependence is true even for mu=0.01 may surprise them."
     ),
