@@ -58,7 +58,11 @@ def problem_of(random: np.random.Generator) -> tt.Problem:
         return problem_of(random)
 
 
-@pytest.mark.parametrize("seed", range(COUNT))
+CLOSE_CALLS = {72, 186}
+"""Bodies that rock in hops much shorter than a step, and whose last impacts are slow."""
+
+
+@pytest.mark.parametrize("seed", sorted({*range(COUNT), *CLOSE_CALLS}))
 def test_random_bodies_keep_what_every_one_must(seed: int) -> None:
     problem = problem_of(np.random.default_rng(seed))
     run = tt.simulate(problem, 0.3, samples=201, integrator="dop853", tolerance=3e-14)

@@ -257,6 +257,17 @@ def test_guard_that_comes_close_to_zero_and_turns_back_ends_nothing(method, phas
     assert arc.solution.end == 5.0
 
 
+@every_method
+@pytest.mark.parametrize("speed", [1e-1, 1e-3])
+def test_throw_much_shorter_than_a_step_ends_though_it_starts_below_zero_by_rounding(method, speed):
+    """A throw upwards from just below the ground comes back after 2 v / g."""
+    ground = Guard("ground", lambda y, _: y[0])
+    arc = follow(method, FALL, [ground], state=lambda _: np.array([-1e-16, speed]))
+    assert arc.guard == "ground"
+    allowed = method.allowed(arc, FALL) / speed
+    assert arc.solution.end == pytest.approx(2.0 * speed / GRAVITY, abs=allowed)
+
+
 # --- motions that cannot go on ------------------------------------------------------------------------------
 
 

@@ -70,6 +70,23 @@ def test_without_friction_it_is_a_linear_complementarity_problem(blow, restituti
     assert found.energy_lost == pytest.approx(lost, abs=1e-12)
 
 
+def test_slow_impact_of_a_fast_body_is_no_harder_than_a_quick_one():
+    """Its velocities have fewer digits left than its changes of velocity, which decide when it is over."""
+    slow, turned = 1e-7, 0.3
+    hull = Hull.of((SphereSurface(1.0, 2.0), SphereSurface(1.0, -3.0)))
+    first, second = Top(1.0, 1.0, 0.5, hull, ViscousLaw(0.3), 1.0).each
+    axis, across = (math.cos(turned), math.sin(turned), 0.0), (-math.sin(turned), math.cos(turned), 0.0)
+    # What lies across the axis tilts the rod, of which the second end sinks at 5 times its rate.
+    parts = zip(axis, across, (0.0, 0.0, 30.0), strict=True)
+    momentum = tuple(20.0 * along - slow / 5.0 * over + up for along, over, up in parts)
+    state = on_table(SlidingState(axis, momentum, (7.0, -3.0)), first)
+    assert gap_rate(state, second) == pytest.approx(-slow, rel=1e-6)
+    found = impact_on_two(state, 0.0, (second, first))
+    impulse, _, _ = naive(state, (second, first), 100)
+    assert found.impulse == pytest.approx(impulse, rel=1e-4)
+    assert gap_rate(found.state, second) == pytest.approx(0.0, abs=1e-15)
+
+
 def naive(state, tops, steps):
     """The same impact by matrices, with Heun's method in the normal impulse, until what strikes stops."""
     top = tops[0]

@@ -23,6 +23,8 @@ NOT_FINITE = "the solution is no longer finite"
 class Guard:
     """A condition that ends a motion: the first time its value falls through zero from above.
 
+    It may start at zero, or below by rounding, and rise: however soon it falls again, that ends the motion.
+
     Attributes
     ----------
     name

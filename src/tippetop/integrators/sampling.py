@@ -1,6 +1,7 @@
 """What the step-by-step integrators share: steps as polynomials, and where a guard falls through zero."""
 
 from collections.abc import Callable, Sequence
+from itertools import pairwise
 
 import numpy as np
 from scipy.optimize import brentq, minimize_scalar
@@ -16,6 +17,12 @@ PROBES = tuple(np.linspace(0.0, 1.0, 9).tolist())
 
 INEXACT = 0.05
 """How near zero a dip must come, as a part of its depth, for the interpolation not to be trusted about it."""
+
+EARLY = tuple(0.5**k for k in range(40, 2, -1))
+"""Where else a guard is looked at that starts at zero, or by rounding below: one is within any rebound."""
+
+RISEN = 1e-15
+"""What such a guard must reach to have risen: less is rounding."""
 
 
 class RightHandSide:
@@ -79,7 +86,8 @@ def first_fall(
     """The guard that first falls through zero within a step, and when.
 
     A guard that dips below zero and returns within the step is found by minimising it between the probes
-    where its probed values bend that way.
+    where its probed values bend that way; one that starts at zero, rises, and is back before the first probe,
+    by looking earlier.
 
     Parameters
     ----------
@@ -107,7 +115,8 @@ def first_fall(
             return value(time, advance)
 
         values = [float(guard.value(state.tolist(), parameters)) for state in states]
-        found = _bracket(probes, values, value, exact)
+        found = _early_bracket(step, value) if max(values[:2]) <= 0 else None
+        found = found or _bracket(probes, values, value, exact)
         if found is None:
             continue
         low, high, function = found
@@ -118,6 +127,16 @@ def first_fall(
 
 
 Value = Callable[[float], float]
+
+
+def _early_bracket(step: tuple[float, float], value: Value) -> tuple[float, float, Value] | None:
+    """The interval before the first probe over which a guard falls that starts at zero and rises."""
+    start, end = step
+    probes = [start + fraction * (end - start) for fraction in EARLY]
+    for low, high in pairwise(probes):
+        if value(low) > RISEN and value(high) <= 0:
+            return low, high, value
+    return None
 
 
 def _bracket(
@@ -154,7 +173,7 @@ def polish(
     `advance(time)`, until the secant no longer moves.
     """
     start, end = step
-    shift = 1e-4 * (end - start)
+    shift = min(1e-4 * (end - start), 0.1 * (guess - start))
     times = [guess, guess - shift if guess - shift > start else guess + shift]
     states = [advance(time) for time in times]
     values = [float(guard.value(state.tolist(), parameters)) for state in states]

@@ -12,7 +12,6 @@ from typing import NamedTuple
 
 from tippetop.mechanics.double_contact import Tops
 from tippetop.mechanics.dry_impact import is_dry
-from tippetop.mechanics.friction import NO_TORQUE
 from tippetop.mechanics.impact import Impact
 from tippetop.mechanics.impulse import contact_velocity
 from tippetop.mechanics.integrated_impact import DOUBT, NODES, TOLERANCE, combined
@@ -44,14 +43,19 @@ class StruckOnTwo(NamedTuple):
         The top with the striking surface active, and with the one that touches.
     arms
         Their contact vectors, m.
-    speed
-        Speed of what strikes, m/s.
+    points
+        Velocities of both contact points, m/s.
     """
 
     state: State
     tops: Tops
     arms: tuple[Vector, Vector]
-    speed: float
+    points: tuple[Vector, Vector]
+
+    @property
+    def speed(self) -> float:
+        """Speed of what strikes, m/s."""
+        return -float(self.points[0][2])
 
     def after(self, here: Point) -> State:
         """The state after these impulses."""
@@ -60,17 +64,25 @@ class StruckOnTwo(NamedTuple):
             momentum=momentum, velocity=add(self.state.velocity, (here[3], here[4], here[5]))
         )
 
-    def velocities(self, state: State) -> tuple[Vector, Vector]:
-        """Velocities of both contact points."""
-        one, other = (contact_velocity(state, arm, self.tops[0]) for arm in self.arms)
+    def change(self, here: Point) -> tuple[Vector, Vector]:
+        """Change of the velocities of both contact points by these impulses, whose digits it keeps."""
+        moved = self.state._replace(
+            momentum=(here[0], here[1], here[2]), velocity=(here[3], here[4], here[5])
+        )
+        one, other = (contact_velocity(moved, arm, self.tops[0]) for arm in self.arms)
+        return one, other
+
+    def velocities(self, here: Point) -> tuple[Vector, Vector]:
+        """Velocities of both contact points after these impulses."""
+        one, other = map(add, self.points, self.change(here))
         return one, other
 
     def slope(self, here: Point, *, pressed: bool) -> Point:
         """Rate of the numbers in a clock in which slip that ends decays exponentially."""
         state, top = self.after(here), self.tops[0]
         omega = angular_velocity(state.axis, state.momentum, top)
-        points, still = self.velocities(state), self.state._replace(momentum=NO_TORQUE, velocity=NO_TORQUE)
-        pace, units, answers = 1.0 / self.speed, [], []
+        points = self.velocities(here)
+        pace, units, responses = 1.0 / self.speed, [], []
         for point, arm in zip(points, self.arms, strict=True):
             if is_dry(top.friction) and length((*point[:2], 0.0)) < OPEN * self.speed:
                 raise ArithmeticError("slip ends in an impact on two surfaces")
@@ -78,10 +90,9 @@ class StruckOnTwo(NamedTuple):
             slip, grip = length((*point[:2], 0.0)), length((*traction.force, 0.0))
             pace += grip / slip if slip else 0.0
             moment, force = moment_per_normal_force(arm, traction), (*traction.force, 1.0)
-            moved = still._replace(momentum=moment, velocity=scale(1.0 / top.mass, force))
-            units.append((*moved.momentum, *moved.velocity))
-            answers.append(self.velocities(moved))
-        share = max(0.0, -answers[0][1][2] / answers[1][1][2]) if pressed else 0.0
+            units.append((*moment, *scale(1.0 / top.mass, force)))
+            responses.append(self.change(units[-1]))
+        share = max(0.0, -responses[0][1][2] / responses[1][1][2]) if pressed else 0.0
         rates = (*(a + share * b for a, b in zip(*units, strict=True)), 1.0, share, points[0][2])
         return tuple(rate / pace for rate in rates)
 
@@ -92,9 +103,7 @@ class StruckOnTwo(NamedTuple):
         for weights in NODES:
             there = combined(here, step, weights, slopes)
             slopes.append(self.slope(there, pressed=pressed))
-        off = self.after(combined((0.0,) * len(here), step, DOUBT, slopes))
-        errors = zip(self.velocities(off), self.velocities(self.state), strict=True)
-        doubt = max(length(add(one, scale(-1.0, other))) for one, other in errors)
+        doubt = max(map(length, self.change(combined((0.0,) * len(here), step, DOUBT, slopes))))
         return there, float(doubt / (TOLERANCE * self.speed))
 
     def until(self, here: Point, goal: Callable[[Point], float]) -> Point:
@@ -107,7 +116,7 @@ class StruckOnTwo(NamedTuple):
         """
         step = 0.05 * self.tops[0].mass
         for _ in range(MOST):
-            lifted = self.velocities(self.after(here))[1][2]
+            lifted = self.velocities(here)[1][2]
             pressed = bool(lifted <= OPEN * self.speed)
             there, doubt = self.step(here, step, pressed=pressed)
             if doubt > 1.0:
@@ -115,7 +124,7 @@ class StruckOnTwo(NamedTuple):
                 continue
             ends = [goal]
             if not pressed:
-                ends.append(lambda y: -self.velocities(self.after(y))[1][2])
+                ends.append(lambda y: -self.velocities(y)[1][2])
             reached = [end for end in ends if end(there) >= 0.0]
             for end in reached:
                 there = self._landing(here, step, end, there, pressed=pressed)
@@ -152,9 +161,9 @@ def impact_on_two(state: State, restitution: float, tops: Tops) -> Impact:
         If it does not come to its end, or slip ends under a law that then leaves the force open.
     """
     arms = tuple(contact_vector(state.axis, top.surface) for top in tops)
-    speed = -float(contact_velocity(state, arms[0], tops[0])[2])
-    body = StruckOnTwo(state, tops, (arms[0], arms[1]), speed)
-    compressed = body.until((0.0,) * 9, lambda y: float(body.velocities(body.after(y))[0][2]) / speed)
+    points = tuple(contact_velocity(state, arm, tops[0]) for arm in arms)
+    body = StruckOnTwo(state, tops, (arms[0], arms[1]), (points[0], points[1]))
+    compressed = body.until((0.0,) * 9, lambda y: float(body.velocities(y)[0][2]) / body.speed)
     end = compressed
     if restitution > 0.0:
         full, stored = (1.0 + restitution) * compressed[6], -compressed[8]
