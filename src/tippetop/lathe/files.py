@@ -64,15 +64,28 @@ def read_points(path: Path) -> list[list[float]]:
 
 def _from_csv(text: str, path: Path) -> list[list[float]]:
     rows = [row for row in csv.reader(text.splitlines()) if any(cell.strip() for cell in row)]
-    found = []
-    for number, row in enumerate(rows):
-        try:
-            found.append([float(cell) for cell in row if cell.strip()])
-        except ValueError:
-            if number:
-                line = f"{','.join(row)} in {named(path)}"
-                raise InvalidInput(f"row {number + 1}", line, "two or three numbers") from None
-    return found
+    if rows and not any(_is_number(cell) for cell in rows[0]):
+        rows = [[], *rows[1:]]
+    return [_numbers(number, row, path) for number, row in enumerate(rows, 1) if row]
+
+
+def _is_number(cell: str) -> bool:
+    try:
+        float(cell)
+    except ValueError:
+        return False
+    return True
+
+
+def _numbers(number: int, row: list[str], path: Path) -> list[float]:
+    """The numbers of a row, which may end in empty cells, but has none between others."""
+    cells = [cell.strip() for cell in row]
+    while not cells[-1]:
+        cells.pop()
+    if not all(_is_number(cell) for cell in cells):
+        line = f"{','.join(row)} in {named(path)}"
+        raise InvalidInput(f"row {number}", line, "two or three numbers, one in each cell")
+    return [float(cell) for cell in cells]
 
 
 def _from_svg(text: str, path: Path) -> list[list[float]]:
