@@ -186,6 +186,17 @@ def test_what_cannot_be_is_refused_in_a_sentence(changes, field, accepted) -> No
     assert caught.value.accepted == accepted
 
 
+def test_jellett_s_integral_is_that_of_the_surface_that_touches_in_whatever_order_they_are() -> None:
+    """The sphere of the report's top does not let its stem touch before 0.9 s."""
+    shapes = list(REPORT.body.shape)
+    for order in (shapes, shapes[::-1]):
+        problem = REPORT.replace({"body.shape": order})
+        run = tt.simulate(problem, 0.3, samples=31)
+        assert set(run["event_kind"].values) == set()
+        assert float(run["jellett_drift"]) < 1e-13
+        assert float(run["jellett_error"]) < 1e-13
+
+
 def test_sweeps_follow_stems_as_runs_do() -> None:
     axes = {"body.shape.1.center": [0.005, 0.026, 0.028], "launch.spin": [120.0, 155.0]}
     found = tt.sweep(REPORT, axes, duration=7.0, tolerance=1e-14, workers=1)

@@ -6,8 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tippetop.mechanics.hull import Hull, each_surface
+from tippetop.mechanics.state import State
 from tippetop.mechanics.surface import Surface, contact_vector
-from tippetop.mechanics.vectors import Vector
+from tippetop.mechanics.top import Top
+from tippetop.mechanics.vectors import Scalar, Vector, dot
 
 LEVEL = 1e-9
 """Difference of height, in sizes, up to which two surfaces are equally low: then the first of them counts."""
@@ -29,3 +31,8 @@ def lowest_contact_vector(axis: Vector, surface: Surface) -> Vector:
         arms = np.array([np.broadcast_arrays(*contact_vector(axis, one)) for one in surface.each])
     x, y, z = np.take_along_axis(arms, number[None, None], axis=0)[0]
     return (x, y, z)
+
+
+def lowest_jellett(state: State, top: Top) -> Scalar:
+    """Jellett's integral -L.a about the lowest point of the body, whichever surface that is on, kg m^3/s."""
+    return -dot(state.momentum, lowest_contact_vector(state.axis, top.surface))

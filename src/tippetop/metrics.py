@@ -14,8 +14,9 @@ from tippetop.catalogue import NEAR_FINAL, NEAR_POLE, Ending
 from tippetop.contact.mode import Outcome
 from tippetop.integrators.base import Array
 from tippetop.integrators.polynomials import Polynomials
+from tippetop.lowest import lowest_jellett
 from tippetop.mechanics.hull import outer_height
-from tippetop.mechanics.invariants import energy, jellett
+from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import axial_spin
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
@@ -152,7 +153,7 @@ def metrics(ends: Ends, start: State, top: Top, units: Units) -> dict[str, NDArr
     force = units.mass * units.length / units.time**2
     with np.errstate(all="ignore"):
         moment = length(start.momentum) * outer_height(top.surface, start.axis[2])
-        change = np.abs(jellett(end, top) - jellett(start, top))
+        change = np.abs(lowest_jellett(end, top) - lowest_jellett(start, top))
         drift = change / np.where(moment > 0, moment, np.nan)
         lost = energy(start, top) - energy(end, top)
         precession = np.where(axis_sine(end.axis) > 0, precession_rate(end.axis, end.momentum, top), np.nan)

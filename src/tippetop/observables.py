@@ -13,15 +13,15 @@ from tippetop.contact.rules import Bilateral
 from tippetop.contact.sliding import Sliding
 from tippetop.integrators.base import Array
 from tippetop.integrators.dense import parts_of
-from tippetop.lowest import lowest_contact_vector
-from tippetop.mechanics.hull import Hull, outer_height
-from tippetop.mechanics.invariants import energy, jellett
+from tippetop.lowest import lowest_contact_vector, lowest_jellett
+from tippetop.mechanics.hull import Hull, lowest_surface, outer_height
+from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import along_table, angular_velocity, axial_spin, point_velocity
 from tippetop.mechanics.quadratures import orientation, quadrature_rates, twisting_powers
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.units import Units
-from tippetop.mechanics.vectors import Vector, dot, length
+from tippetop.mechanics.vectors import Vector, length
 from tippetop.mechanics.view import axis_sine, precession_rate, slip_along_tilt, tilt_rate
 
 _INTEGRALS = np.array(
@@ -103,8 +103,8 @@ class Recorder:
         self._twists = not top.friction.torque_free
         self._sums = np.array([0.0, 0.0, self._pole * azimuth, -lost] + [0.0, 0.0] * self._twists)
         self._struck = lost
-        self._energy, self._jellett = float(energy(start, top)), float(jellett(start, top))
-        self._moment = float(length(start.momentum) * top.surface.height(start.axis[2]))
+        self._energy, self._jellett = float(energy(start, top)), float(lowest_jellett(start, top))
+        self._moment = float(length(start.momentum) * outer_height(top.surface, start.axis[2]))
         self._imbalance, self._least, self._most = 0.0, self._jellett, self._jellett
         self._largest, self._stretch, self._sunk = abs(self._energy), 0.0, 0.0
 
@@ -178,7 +178,8 @@ class Recorder:
     def _single(self, state: State) -> Array:
         """The sample of a launch that ended as it began."""
         try:
-            reaction = Sliding(self.top, Bilateral(self.top)).reaction(along_table(state).pack())
+            lowest = self.top._replace(surface=lowest_surface(self.top.surface, state.axis[2]))
+            reaction = Sliding(lowest, Bilateral(lowest)).reaction(along_table(state).pack())
         except ZeroDivisionError:  # Without slip dry friction says nothing, and the table lets go at once.
             reaction = NO_REACTION
         sums = [*self._sums[:4], 0.0, 0.0, self._struck, self._pole, 0.0]
@@ -229,7 +230,7 @@ class Recorder:
         for group in block.groups:
             state = group.mode.state(group.terms[:, :, 0].T)
             errors = energy(state, self.top) - self._energy - work[group.which]
-            integral = jellett(state, self.top)
+            integral = lowest_jellett(state, self.top)
             self._imbalance = max(self._imbalance, float(np.abs(errors).max()))
             if isinstance(self.top.surface, Hull):
                 depth = outer_height(self.top.surface, state.axis[2]) - state.height
@@ -283,7 +284,7 @@ def observe(samples: Samples, top: Top, units: Units) -> dict[str, Array]:
         "sliding_loss": (-samples.work - samples.struck - samples.drilled - samples.rolled) * units.energy,
         "drilling_loss": samples.drilled * units.energy,
         "rolling_loss": samples.rolled * units.energy,
-        "jellett": -dot(momentum, arm) * units.angular_momentum * units.length,
+        "jellett": lowest_jellett(state, top) * units.angular_momentum * units.length,
         "height": state.height * units.length,
         "gap": (state.height + arm[2]) * units.length,
         "x": samples.x * units.length,
