@@ -27,7 +27,7 @@ def size_of(coefficients, knots):
 @given(arrays(float, (3, 6), elements=st.floats(-1.0, 1.0, allow_subnormal=False)), KNOTS, st.integers(5, 15))
 def test_polynomials_are_fitted_exactly(coefficients, knots, degree):
     exact = polynomial(coefficients)
-    solution = DenseSolution.fitted(exact, knots, degree)
+    solution = DenseSolution.fitted(lambda t: exact(t).T, knots, degree)
     times = np.union1d(np.linspace(knots[0], knots[-1], 101), knots)
     fuzz = 1e-13 * size_of(coefficients, knots)
     np.testing.assert_allclose(solution(times), exact(times), rtol=0, atol=fuzz)
@@ -45,7 +45,7 @@ def test_polynomials_are_fitted_exactly(coefficients, knots, degree):
 def test_what_is_no_polynomial_is_fitted_as_well_as_chebyshevs_points_allow(degree, span):
     """The error of exp is at most 2 (span / 4)^(d + 1) / (d + 1)! times its largest derivative."""
     knots = span * np.arange(3.0)
-    solution = DenseSolution.fitted(lambda t: np.exp(t)[:, None], knots, degree)
+    solution = DenseSolution.fitted(lambda t: [np.exp(t)], knots, degree)
     for start, end in itertools.pairwise(knots):
         times = np.linspace(start, end, 201)
         error = np.abs(solution(times)[:, 0] - np.exp(times)).max()
@@ -67,7 +67,7 @@ def test_a_time_where_two_steps_meet_belongs_to_the_earlier():
 
 def test_at_its_knots_a_solution_has_the_values_at_the_ends_of_its_steps():
     knots = np.array([0.0, 0.3, 1.1])
-    solution = DenseSolution.fitted(lambda t: np.stack([np.sin(t), np.cos(t)], axis=1), knots, 14)
+    solution = DenseSolution.fitted(lambda t: (np.sin(t), np.cos(t)), knots, 14)
     np.testing.assert_array_equal(solution(knots[:1])[0], solution.terms[0, :, 0])
     np.testing.assert_allclose(solution(knots), np.stack([np.sin(knots), np.cos(knots)], axis=1), atol=1e-15)
     np.testing.assert_allclose(solution.terms[1, :, 0], solution(knots[1:2])[0], rtol=0, atol=1e-15)
@@ -76,7 +76,7 @@ def test_at_its_knots_a_solution_has_the_values_at_the_ends_of_its_steps():
 @given(st.integers(1, 4))
 def test_solutions_that_follow_one_another_are_joined(cut):
     knots = np.array([0.0, 0.5, 0.7, 1.5, 1.6, 2.5])
-    whole = DenseSolution.fitted(lambda t: np.exp(-t)[:, None], knots, 8)
+    whole = DenseSolution.fitted(lambda t: [np.exp(-t)], knots, 8)
     parts = [
         DenseSolution(knots[: cut + 1], whole.terms[:cut]),
         DenseSolution(knots[cut : cut + 1], whole.terms[:0]),  # an arc in which no step was taken
@@ -101,11 +101,40 @@ def test_terms_in_time_are_terms_in_parts_of_the_steps(terms):
 def test_steps_of_next_to_no_length_are_fitted_with_numbers(span):
     """Guards may fall at once, and flights end where they began."""
     knots = np.array([0.0, span])
-    solution = DenseSolution.fitted(lambda t: np.stack([1.0 + t, np.cos(t)], axis=1), knots, 14)
+    solution = DenseSolution.fitted(lambda t: (1.0 + t, np.cos(t)), knots, 14)
     assert np.all(np.isfinite(solution.terms))
     np.testing.assert_allclose(solution(knots), [[1.0, 1.0], [1.0 + span, 1.0]], rtol=0, atol=1e-15)
     inside = at_fractions(solution.terms, np.array([0.0, 0.5, 1.0]))
     np.testing.assert_allclose(inside[0, :, 0], 1.0 + span * np.array([0.0, 0.5, 1.0]), rtol=0, atol=1e-15)
+
+
+def test_a_solution_is_asked_when_a_component_that_grows_has_a_value():
+    """Of t + t^3 and of -2 t: the first one's inverse is Cardano's."""
+    knots = np.array([0.0, 0.4, 0.5, 2.0])
+    solution = DenseSolution.fitted(lambda t: (-2.0 * t, t + t**3), knots, 5)
+    values = np.linspace(0.0, 10.0, 41)
+    root = np.sqrt(values**2 / 4.0 + 1.0 / 27.0)
+    exact = np.cbrt(values / 2.0 + root) + np.cbrt(values / 2.0 - root)
+    np.testing.assert_allclose(solution.when(1, values), exact, rtol=0, atol=1e-14)
+    np.testing.assert_allclose(solution.rows(solution.when(1, values))[0], -2.0 * exact, rtol=0, atol=1e-13)
+    reached = solution.knots_of(1, 0.6)
+    np.testing.assert_allclose(reached, [0.0, 0.4 + 0.4**3, 0.6], rtol=1e-14, atol=1e-15)
+
+
+def test_a_solution_is_moved_in_time_to_end_exactly():
+    knots = np.array([0.0, 0.1, 0.3])
+    whole = DenseSolution.fitted(lambda t: (np.exp(t), 1.0), knots, 9)
+    moved = whole.moved(1e3, 1000.3)
+    assert moved.end == 1000.3
+    np.testing.assert_allclose(moved(np.array([1000.2])), whole(np.array([0.2])), rtol=0, atol=1e-12)
+    assert moved.size == 2
+
+
+def test_what_stands_still_and_what_does_not_exist_are_solutions_too():
+    standing = DenseSolution.standing((1.0, -2.0), 3.0, 4.0)
+    np.testing.assert_array_equal(standing(np.array([3.0, 3.7, 4.0])), [[1.0, -2.0]] * 3)
+    assert DenseSolution.nothing(2.0, 8).end == 2.0
+    assert len(DenseSolution.nothing(2.0, 8).terms) == 0
 
 
 @given(arrays(float, (4, 2, 9), elements=st.floats(-1.0, 1.0, allow_subnormal=False)))

@@ -2,21 +2,19 @@
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import ClassVar
-
-import numpy as np
 
 from tippetop.contact.mode import Mode, Outcome, Segment, Transition
 from tippetop.contact.surfaces import number_of
-from tippetop.integrators.base import Array, Integrator
-from tippetop.integrators.dense import DenseSolution
+from tippetop.integrators.base import Integrator
+from tippetop.integrators.dense import ELEMENTARY, DenseSolution
 from tippetop.mechanics.flight import fly, gap, gap_rate
 from tippetop.mechanics.motion import along_table, on_table
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.touchdown import Start, highest_gap, touchdown
-from tippetop.mechanics.vectors import Row, length
+from tippetop.mechanics.vectors import Row, Scalar, length
 
 DEGREE = 14
 """Degree of the polynomials that stand for a flight in a solution."""
@@ -59,24 +57,19 @@ class Flight(Mode):
         highest = highest_gap(state, self.top, duration)
         for first in range(0, count, MOST_STEPS):
             last = min(first + MOST_STEPS, count)
-            elapsed: Array = duration / count * np.arange(first, last + 1.0)
+            elapsed = [duration / count * step for step in range(first, last + 1)]
             elapsed[-1] = duration if last == count else elapsed[-1]
-            here = fly(state, float(elapsed[-1]), self.top, math)
-            transition = None
-            knots: Array = time + elapsed
+            here = fly(state, elapsed[-1], self.top, math)
+            transition, reach = None, time + elapsed[-1]
             if last == count:
-                knots[-1] = end if landing is None else knots[-1]
-                transition = self._transition(float(knots[-1]), here, None if landing is None else lowest)
-            solution = DenseSolution.fitted(self._numbers(state), elapsed, DEGREE)
-            yield Segment(self, replace(solution, knots=knots), here, transition, highest_gap=highest)
+                reach = end if landing is None else reach
+                transition = self._transition(reach, here, None if landing is None else lowest)
+            solution = DenseSolution.fitted(self._numbers(state), elapsed, DEGREE).moved(time, reach)
+            yield Segment(self, solution, here, transition, highest_gap=highest)
 
-    def _numbers(self, state: State) -> Callable[[Array], Array]:
+    def _numbers(self, state: State) -> Callable[[Scalar], tuple[Scalar, ...]]:
         """The numbers of the flight as a function of the time since its start."""
-
-        def numbers(elapsed: Array) -> Array:
-            return np.stack(np.broadcast_arrays(*fly(state, elapsed, self.top, np).pack()), axis=-1)
-
-        return numbers
+        return lambda elapsed: fly(state, elapsed, self.top, ELEMENTARY).pack()
 
     def _landing(self, state: State, horizon: float) -> tuple[float | None, Top]:
         """When the first surface touches the table, and the top with that surface active."""

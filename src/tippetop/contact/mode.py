@@ -11,10 +11,8 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import ClassVar, NamedTuple, Protocol
 
-import numpy as np
-
 from tippetop.integrators.base import Integrator, Motion
-from tippetop.integrators.dense import DenseSolution
+from tippetop.integrators.dense import DenseSolution, as_array
 from tippetop.mechanics.ending import Vanishing
 from tippetop.mechanics.hull import Hull
 from tippetop.mechanics.state import State
@@ -300,8 +298,8 @@ class IntegratedMode(Mode):
 
     def segments(self, time: float, state: State, end: float, integrator: Integrator) -> Iterator[Segment]:
         """Integrate the equations of motion."""
-        begin = np.array(self.numbers(state), dtype=float)
-        for arc in integrator.integrate(self.motion, self.parameters, (time, begin), end):
+        begin = time, as_array(self.numbers(state))
+        for arc in integrator.integrate(self.motion, self.parameters, begin, end):
             last = self.state(arc.end_state.tolist())
             transition = None
             if arc.failure is not None:

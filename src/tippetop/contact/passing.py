@@ -1,11 +1,10 @@
 """The moments in which slip, or rolling, ends or begins, under friction that is set-valued."""
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, ClassVar
-
-import numpy as np
 
 from tippetop.contact.mode import EventKind, IntegratedMode, Mode, Outcome, Segment, Transition
 from tippetop.contact.sliding import BRANCH, LIFT_OFF, ROLLING, Sliding, SlidingWithoutRolling
@@ -13,7 +12,7 @@ from tippetop.contact.sticking import SLIP, Sticking, split
 from tippetop.contact.surfaces import follow_surface, stays_open, surface_guards
 from tippetop.integrators import make_integrator
 from tippetop.integrators.base import Arc, Array, Guard, Integrator, Motion
-from tippetop.integrators.dense import DenseSolution, evaluated
+from tippetop.integrators.dense import DenseSolution, as_array
 from tippetop.mechanics.beginning import beginning
 from tippetop.mechanics.coulomb import RollingResistance
 from tippetop.mechanics.ending import (
@@ -59,7 +58,7 @@ STIFF_TOLERANCE = 1e-12
 SETTLED = 1e-14
 """Error of the instant at which slip ends, in natural units, that counts as none."""
 
-LOOKS = 17
+LOOKS = 16
 """Looks along a beginning at whether another surface touches: then a mode with a guard takes over sooner."""
 
 ORDER, ACCURACY = 12, 1e-13
@@ -74,11 +73,8 @@ PART = 0.25
 SHORT = 1e-14
 """How long a top at rest is followed, in natural units of time or relative to the time."""
 
-NEWTON = 6
-"""Improvements of a time of the clock."""
-
-SHORTEST, DEGREE = 1e-8, 14
-"""The last of the steps that stand for the end of slip in a solution, relatively, and their degree."""
+DEGREE = 14
+"""Degree of the polynomials that stand for these moments in a solution."""
 
 
 @dataclass(frozen=True)
@@ -137,10 +133,9 @@ class Loosening(Passing):
             return
         duration = min(begin.valid_until(ACCURACY), longest, end - time)
 
-        def numbers(elapsed: Array) -> Array:
+        def numbers(elapsed: Scalar) -> tuple[Scalar, ...]:
             axis, momentum, xi = begin.at(elapsed)
-            rows = passing.numbers(axis, momentum, begin.velocity_at(elapsed), xi)
-            return np.stack(np.broadcast_arrays(*rows), axis=-1)
+            return passing.numbers(axis, momentum, begin.velocity_at(elapsed), xi)
 
         yield passing.piece(numbers, time, duration, end)
 
@@ -161,21 +156,24 @@ class Loosening(Passing):
         way = found.slip if ending.slip else found.rolling
         assert way is not None
         beside = slip if ending.moves else rolling
-        longest = PART * size(beside) / size(other.rate(found.acceleration, top)) if beside else np.inf
+        longest = PART * size(beside) / size(other.rate(found.acceleration, top)) if beside else math.inf
         return replace(self, top=top), way, longest
 
-    def piece(self, numbers: Any, time: float, duration: float, end: float) -> Segment:
+    def piece(
+        self, numbers: Callable[[Scalar], tuple[Scalar, ...]], time: float, duration: float, end: float
+    ) -> Segment:
         """The segment in which the numbers are a function of the time since its start."""
-        while duration > SETTLED and not stays_open(
-            self.top, numbers(np.linspace(0.0, duration, LOOKS)[1:]).T
-        ):
+        while duration > SETTLED and not self._stays_open(numbers, duration):
             duration *= 0.5
-        solution = DenseSolution.fitted(numbers, np.array([0.0, duration]), DEGREE)
-        knots = np.array([time, min(time + duration, end)])
-        last = self.state(numbers(np.array([duration]))[0].tolist())
-        then = Outcome.COMPLETED if knots[-1] >= end else self.rules.going_on(last, slips=not self.stuck)
-        terms = DenseSolution(knots, solution.terms)
-        return Segment(self.told, terms, last, Transition((), then, last), steps=1)
+        reach = min(time + duration, end)
+        solution = DenseSolution.fitted(numbers, [0.0, duration], DEGREE).moved(time, reach)
+        last = self.state(numbers(duration))
+        then = Outcome.COMPLETED if reach >= end else self.rules.going_on(last, slips=not self.stuck)
+        return Segment(self.told, solution, last, Transition((), then, last), steps=1)
+
+    def _stays_open(self, numbers: Callable[[float], tuple[float, ...]], duration: float) -> bool:
+        looks = [duration * look / LOOKS for look in range(1, LOOKS + 1)]
+        return all(stays_open(self.top, numbers(look)) for look in looks)
 
     @property
     def stuck(self) -> bool:
@@ -201,10 +199,9 @@ class BothLoosening(Loosening):
         passing, way = replace(self, top=on_branch(self.top, found.slip)), scaled(found.rates[0], found.slip)
         moment = point.moment(found.wrench)
 
-        def numbers(elapsed: Array) -> Array:
+        def numbers(elapsed: Scalar) -> tuple[Scalar, ...]:
             momentum = add(state.momentum, scale(elapsed, moment))
-            rows = passing.numbers(state.axis, momentum, (), scaled(elapsed, way))
-            return np.stack(np.broadcast_arrays(*rows), axis=-1)
+            return passing.numbers(state.axis, momentum, (), scaled(elapsed, way))
 
         yield passing.piece(numbers, time, min(INSTANT, end - time), end)
 
@@ -229,11 +226,8 @@ class Resting(Mode):
 
     def segments(self, time: float, state: State, end: float, integrator: Integrator) -> Iterator[Segment]:
         """Stay as it is."""
-        numbers = np.array(self.told.numbers(state), dtype=float)
-        knots = np.array([time, time + SHORT * max(1.0, time)])
-        terms = np.stack([numbers, np.zeros_like(numbers)], axis=1)[None]
-        over = Transition((), Outcome.AT_REST, state)
-        yield Segment(self.told, DenseSolution(knots, terms), state, over)
+        still = DenseSolution.standing(self.told.numbers(state), time, time + SHORT * max(1.0, time))
+        yield Segment(self.told, still, state, Transition((), Outcome.AT_REST, state))
 
 
 @dataclass(frozen=True)
@@ -245,7 +239,7 @@ class Stopping(Passing):
         ending, velocity = self.ending, state.velocity[:2]
         xi = ending.of(state.axis, state.momentum, velocity, self.top)
         speed, free = size(xi), velocity if ending.moves else ()
-        begin = np.array([*state.axis, *state.momentum, *free, *scaled(1.0 / speed, xi), speed, 0.0])
+        begin = as_array((*state.axis, *state.momentum, *free, *scaled(1.0 / speed, xi), speed, 0.0))
         motion, steps = closing_motion(self.top.kind, ending, not self.rules.pulls), 0
         for horizon in LANDING:
             parameters = (*self.top.numbers, end - time, horizon)
@@ -302,22 +296,20 @@ class Stopping(Passing):
 
     def _in_time(self, clock: DenseSolution, time: float, duration: float) -> DenseSolution:
         """The numbers of the mode as polynomials in time, from their solution in the clock."""
-        elapsed = clock.terms.shape[1] - 1
-        shown = clock.terms[:, elapsed, 0]
-        knots = np.append(shown[shown < duration * (1.0 - SHORTEST)], duration)
+        elapsed = clock.size - 1
 
-        def numbers(times: Array) -> Array:
-            here = closing_of(clock(clock_at(clock, elapsed, times)).T, self.ending)
+        def numbers(times: Array) -> tuple[Scalar, ...]:
+            here = closing_of(clock.rows(clock.when(elapsed, times)), self.ending)
             xi = scaled(here.speed, here.direction)
-            return np.stack(self.numbers(here.axis, here.momentum, here.velocity, xi), axis=-1)
+            return self.numbers(here.axis, here.momentum, here.velocity, xi)
 
-        return DenseSolution(time + knots, DenseSolution.fitted(numbers, knots, DEGREE).terms)
+        solution = DenseSolution.fitted(numbers, clock.knots_of(elapsed, duration), DEGREE)
+        return solution.moved(time, time + duration)
 
 
 def _nothing(mode: Mode, time: float, state: State, why: str) -> Segment:
     """No motion at all, and why."""
-    nothing = DenseSolution(np.array([time]), np.empty((0, 8, 1)))
-    return Segment(mode, nothing, state, Transition((), Outcome.FAILED, state, why))
+    return Segment(mode, DenseSolution.nothing(time, 8), state, Transition((), Outcome.FAILED, state, why))
 
 
 def _followed(integrator: Integrator, motion: Motion, parameters: Sequence[float], begin: Array) -> list[Arc]:
@@ -391,18 +383,3 @@ def closing_of(y: Row, ending: Vanishing) -> Closing:
     """The state of a velocity that is about to end, from its numbers."""
     count, free = len(y), 8 if ending.moves else 6
     return Closing(*split(y), tuple(y[6:free]), tuple(y[free : count - 2]), y[count - 2], y[count - 1])
-
-
-def clock_at(clock: DenseSolution, elapsed: int, times: Array) -> Array:
-    """When the clock shows some times, its component of number `elapsed`, by Newton's method, shape (m,)."""
-    shown = np.append(clock.terms[:, elapsed, 0], clock(clock.knots[-1:])[0, elapsed])
-    guess = np.interp(times, shown, clock.knots)
-    slopes = clock.terms[:, [elapsed], 1:] * np.arange(1, clock.terms.shape[2])
-    for _ in range(NEWTON):
-        step = np.minimum(np.searchsorted(clock.knots[1:], guess, side="left"), len(clock.terms) - 1)
-        span = clock.knots[step + 1] - clock.knots[step]
-        here = (guess - clock.knots[step]) / span
-        error = times - evaluated(clock.terms[:, [elapsed]], step, here)[:, 0]
-        pace = evaluated(slopes, step, here)[:, 0] / span
-        guess = np.clip(guess + error / pace, clock.knots[0], clock.knots[-1])
-    return guess

@@ -41,9 +41,9 @@ def surface_guards(kind: Kind, closed: Sequence[int] = ()) -> list[Guard]:
 
 
 def stays_open(top: Top, y: Row) -> bool:
-    """Whether no other surface touches at these numbers of a mode on the active one, arrays of shape (k,)."""
+    """Whether no other surface touches at these numbers of a mode on the active one, floats."""
     height = top.surface.height(y[2])
-    return all(bool(((height - other.height(y[2])) > -MARGIN).all()) for other in each_surface(top.surface))
+    return all(height - other.height(y[2]) > -MARGIN for other in each_surface(top.surface))
 
 
 def follow_surface(mode: Mode, guard: str, time: float, state: State) -> Transition | None:

@@ -8,7 +8,18 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from tippetop.mechanics.vectors import Functions, Row
+
 Array: TypeAlias = NDArray[np.float64]
+
+ELEMENTARY: Functions = np
+"""Elementary functions of what a function that is fitted takes."""
+
+NEWTON = 6
+"""Improvements of a time at which a component has some value."""
+
+SHORTEST = 1e-8
+"""The last of the steps that such a component's values make, relatively."""
 
 MANY = 256
 """Polynomials that are evaluated at a time, so that their coefficients stay in the processor's cache."""
@@ -30,6 +41,11 @@ class DenseSolution:
     terms: Array
 
     @property
+    def size(self) -> int:
+        """How many numbers it has."""
+        return int(self.terms.shape[1])
+
+    @property
     def end(self) -> float:
         """Where it ends."""
         return float(self.knots[-1])
@@ -38,6 +54,46 @@ class DenseSolution:
         """The solution at times between the first and the last knot, shape (m, size)."""
         step = np.minimum(np.searchsorted(self.knots[1:], times, side="left"), len(self.terms) - 1)
         return evaluated(self.terms, step, parts_of(times, self.knots[step], self.knots[step + 1]))
+
+    def rows(self, times: Array) -> Sequence[Array]:
+        """The numbers of the solution at times, each of shape (m,)."""
+        return tuple(self(times).T)
+
+    def moved(self, start: float, end: float) -> "DenseSolution":
+        """The solution, whose time begins at zero, from `start` on; it ends exactly at `end`."""
+        knots = start + self.knots
+        knots[-1] = end
+        return DenseSolution(knots, self.terms)
+
+    def knots_of(self, number: int, end: float) -> list[float]:
+        """Values of a component that grows, where the steps begin before it reaches `end`; and `end`."""
+        shown = self.terms[:, number, 0]
+        return [*shown[shown < end * (1.0 - SHORTEST)].tolist(), end]
+
+    def when(self, number: int, values: Array) -> Array:
+        """Times at which a component that grows has some values, by Newton's method, shape (m,)."""
+        shown = np.append(self.terms[:, number, 0], self(self.knots[-1:])[0, number])
+        guess = np.interp(values, shown, self.knots)
+        slopes = self.terms[:, [number], 1:] * np.arange(1, self.terms.shape[2])
+        for _ in range(NEWTON):
+            step = np.minimum(np.searchsorted(self.knots[1:], guess, side="left"), len(self.terms) - 1)
+            span = self.knots[step + 1] - self.knots[step]
+            here = (guess - self.knots[step]) / span
+            error = values - evaluated(self.terms[:, [number]], step, here)[:, 0]
+            pace = evaluated(slopes, step, here)[:, 0] / span
+            guess = np.clip(guess + error / pace, self.knots[0], self.knots[-1])
+        return guess
+
+    @classmethod
+    def nothing(cls, time: float, size: int) -> "DenseSolution":
+        """No solution at all."""
+        return cls(np.array([time]), np.empty((0, size, 1)))
+
+    @classmethod
+    def standing(cls, numbers: Sequence[float], start: float, end: float) -> "DenseSolution":
+        """Numbers that stay as they are."""
+        here = np.array(numbers, dtype=float)
+        return cls(np.array([start, end]), np.stack([here, np.zeros_like(here)], axis=1)[None])
 
     @classmethod
     def joined(cls, parts: Sequence["DenseSolution"]) -> "DenseSolution":
@@ -53,23 +109,32 @@ class DenseSolution:
         return cls(knots, terms * powers(np.diff(knots), terms.shape[2])[:, None, :])
 
     @classmethod
-    def fitted(cls, function: Callable[[Array], Array], knots: Array, degree: int) -> "DenseSolution":
+    def fitted(
+        cls, function: Callable[[Array], Row], knots: Sequence[float] | Array, degree: int
+    ) -> "DenseSolution":
         """Polynomials that agree with a function at Chebyshev's points of every step.
 
         Parameters
         ----------
         function
-            Takes times, shape (m,), and returns values, shape (m, size).
+            Takes times, shape (m,), and returns numbers, each of shape (m,), or one for all.
         knots
             Ends of the steps, shape (k + 1,).
         degree
             Of the polynomials.
         """
         places, transform, to_powers = chebyshev(degree)
-        values = function((knots[:-1, None] + places * np.diff(knots)[:, None]).ravel())
+        knots = np.asarray(knots, dtype=float)
+        rows = function((knots[:-1, None] + places * np.diff(knots)[:, None]).ravel())
+        values = np.stack(np.broadcast_arrays(*rows), axis=-1)
         values = values.reshape(len(knots) - 1, degree + 1, values.shape[-1])
         # Through Chebyshev's polynomials, whose coefficients fall off, so that no digits are lost.
         return cls(knots, np.swapaxes(to_powers @ (transform @ values), 1, 2))
+
+
+def as_array(numbers: Sequence[float]) -> Array:
+    """Numbers as integrators take them."""
+    return np.array(numbers, dtype=float)
 
 
 def parts_of(times: Array, starts: Array, ends: Array) -> Array:

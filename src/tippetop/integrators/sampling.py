@@ -73,7 +73,7 @@ class Steps:
     def solution(self) -> DenseSolution:
         """The steps as polynomials."""
         values = np.array(self.values).reshape(-1, self.size)
-        return DenseSolution.fitted(lambda _: values, np.array(self.knots), self.degree)
+        return DenseSolution.fitted(lambda _: values.T, np.array(self.knots), self.degree)
 
 
 def first_fall(
