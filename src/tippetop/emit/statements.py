@@ -1,0 +1,317 @@
+"""Python's statements, functions and classes as JavaScript."""
+
+import ast
+from collections.abc import Iterator, Sequence
+
+from tippetop.emit.expressions import ATOM, LESS, Expressions, Untranslatable
+from tippetop.emit.program import Class, names_in, safe
+from tippetop.emit.scope import Scope, is_range
+
+
+class Statements(Expressions):
+    """Translates the statements of a module."""
+
+    def module_lines(self) -> Iterator[str]:
+        """All of a module, without its imports."""
+        tree = self.program.trees[self.module]
+        for node in tree.body:
+            match node:
+                case ast.FunctionDef(name=name) if name not in self.program.left:
+                    yield from ["", *self._said(node), *self._function(node, f"function {self.name(name)}")]
+                case ast.ClassDef() if (known := self.program.classes.get(self.name(node.name))) is not None:
+                    if known.node is node:
+                        yield from ["", *self._class(known)]
+                case ast.Assign(targets=targets, value=value) if names_in(targets[0]):
+                    if all(self.program.resolve(self.module, name) for name in names_in(targets[0])):
+                        yield f"const {self.pattern(targets[0])} = {self.text(value)};"
+                case ast.AnnAssign(target=ast.Name(id=name), value=value) if value:
+                    if self.program.resolve(self.module, name):
+                        yield f"const {self.name(name)} = {self.text(value)};"
+
+    def _said(self, node: ast.FunctionDef | ast.ClassDef) -> Iterator[str]:
+        text = ast.get_docstring(node)
+        if text:
+            yield f"/** {text.splitlines()[0]} */"
+
+    def _class(self, known: Class) -> Iterator[str]:
+        node = known.node
+        yield from self._said(node)
+        if known.kind in ("enum", "number"):
+            pairs = [
+                (names_in(one.targets[0])[0], self.text(one.value))
+                for one in node.body
+                if isinstance(one, ast.Assign)
+            ]
+            inside = ", ".join(f"{name}: {value}" for name, value in pairs)
+            if known.kind == "number":
+                yield f"const {known.name} = Object.freeze({{ {inside} }});"
+            else:
+                yield f"class {known.name} extends py.Enum {{}}"
+                yield f"py.members({known.name}, {{ {inside} }});"
+            return
+        roots = {"tuple": "py.NamedTuple", "record": "py.Record", "part": "Part", "plain": "py.Thing"}
+        base = known.bases[0] if known.bases else roots[known.kind]
+        yield f"class {known.name} extends {base} {{"
+        yield from indented(self._members(known))
+        yield "}"
+        names = ", ".join(f'"{name}"' for name in known.fields)
+        if known.kind in ("tuple", "record"):
+            yield f"py.fields({known.name}, [{names}]);"
+        if known.kind == "part":
+            yield f'Part.enter("{known.name}", {known.name});'
+
+    def _members(self, known: Class) -> Iterator[str]:
+        if known.kind in ("tuple", "record"):
+            yield from self._constructor(known)
+        for node in known.node.body:
+            match node:
+                case ast.AnnAssign(target=ast.Name(id=name), value=value) if value is not None:
+                    if ast.unparse(node.annotation).startswith("ClassVar") and known.kind == "record":
+                        yield f"get {name}() {{ return {self.text(value)}; }}"
+                case ast.FunctionDef(name=name) if f"{known.name}.{name}" not in self.program.left:
+                    if not is_abstract(node):
+                        yield from self._said(node)
+                        yield from self._method(node)
+
+    def _constructor(self, known: Class) -> Iterator[str]:
+        """The fields of the bases first, by their places."""
+        names = [safe(name) for name in known.fields]
+        pairs = zip(names, known.fields.values(), strict=True)
+        self.hidden.append(set())
+        given = [name if value is None else f"{name} = {self.text(value)}" for name, value in pairs]
+        self.hidden.pop()
+        above = [safe(name) for base in known.bases for name in self.program.classes[base].fields]
+        if not names:
+            return
+        yield f"constructor({', '.join(given)}) {{"
+        yield f"  super({', '.join(above)});"
+        yield from (f"  this.{name} = {safe(name)};" for name in known.fields if safe(name) not in above)
+        if any(
+            isinstance(node, ast.FunctionDef) and node.name == "__post_init__" for node in known.node.body
+        ):
+            yield "  this.__post_init__();"
+        yield "}"
+
+    def _method(self, node: ast.FunctionDef) -> Iterator[str]:
+        marks = {ast.unparse(mark).rpartition(".")[2].partition("(")[0] for mark in node.decorator_list}
+        self.rebound = "self" in [n for one in ast.walk(node) for n in names_in(one) if n == "self"]
+        head = "constructor" if node.name == "__init__" else safe(node.name)
+        if marks & {"property", "cached_property"}:
+            head = f"get {head}"
+        elif marks & {"classmethod", "staticmethod"}:
+            head = f"static {head}"
+        yield from self._function(node, head)
+        self.rebound = False
+
+    def _function(self, node: ast.FunctionDef, head: str) -> Iterator[str]:
+        """A function or method; what it yields makes it a generator."""
+        given = self.function(node)
+        scope = Scope.of(node)
+        generator = any(isinstance(one, (ast.Yield, ast.YieldFrom)) for one in ast.walk(node))
+        if generator:
+            head = head.replace("function ", "function* ") if " " in head else f"*{head}"
+        known = head.startswith("function") and any(
+            "cache" in ast.unparse(mark) for mark in node.decorator_list
+        )
+        if known:
+            yield f"const {head.split()[1]} = py.cached({given} => {{"
+        else:
+            yield f"{head}{given} {{"
+        yield from indented(self._body(node, scope))
+        yield "});" if known else "}"
+
+    def _body(self, node: ast.FunctionDef, scope: Scope) -> Iterator[str]:
+        before = dict(self.locals)
+        scope.floats |= {
+            name
+            for outer in self.scopes
+            for name in outer.floats
+            if name not in scope.bindings and name not in scope.parameters
+        }
+        self.scopes.append(scope)
+        top = [
+            safe(name)
+            for name, where in scope.declared.items()
+            if where is None and name not in ("self", "cls")
+        ]
+        if self.rebound and len(self.scopes) == 1:
+            yield "let self = this;"
+        if node.name == "__init__" and "super().__init__" not in ast.unparse(node):
+            yield "super();"
+        if top:
+            yield f"let {', '.join(top)};"
+        yield from self._block(node.body)
+        self.scopes.pop()
+        self.locals = before
+
+    def _block(self, body: Sequence[ast.stmt]) -> Iterator[str]:
+        for node in body:
+            yield from self._statement(node)
+
+    def _statement(self, node: ast.stmt) -> Iterator[str]:
+        match node:
+            case ast.Expr(value=ast.Constant()) | ast.Pass() | ast.Import() | ast.ImportFrom():
+                return
+            case ast.Expr(value=value):
+                yield f"{self.text(value)};"
+            case ast.Return(value=value):
+                yield "return null;" if value is None else f"return {self.text(value)};"
+            case ast.Assign(targets=targets, value=value):
+                yield from self._assignment(node, targets, self.text(value))
+            case ast.AnnAssign(target=target, value=value):
+                if value is not None:
+                    yield from self._assignment(node, [target], self.text(value))
+                elif isinstance(target, ast.Name) and self.scopes[-1].declared.get(target.id) is node:
+                    yield f"let {self.name(target.id)};"
+            case ast.AugAssign(target=target, op=op, value=value):
+                load = ast.parse(ast.unparse(target), mode="eval").body
+                whole = self.text(ast.BinOp(load, op, value))
+                yield from self._assignment(node, [target], whole)
+            case ast.If(test=test, body=body, orelse=orelse):
+                yield f"if ({self.truth(test)}) {{"
+                yield from indented(self._block(body))
+                if len(orelse) == 1 and isinstance(orelse[0], ast.If):
+                    first, *rest = self._statement(orelse[0])
+                    yield f"}} else {first}"
+                    yield from rest
+                    return
+                if orelse:
+                    yield "} else {"
+                    yield from indented(self._block(orelse))
+                yield "}"
+            case ast.While(test=test, body=body):
+                yield f"while ({self.truth(test)}) {{"
+                yield from indented(self._block(body))
+                yield "}"
+            case ast.For():
+                yield from self._loop(node)
+            case ast.FunctionDef(name=name):
+                yield from self._nested(node, name)
+            case ast.Raise(exc=None):
+                yield "throw error;"
+            case ast.Raise(exc=ast.Name() as error):
+                yield f"throw new {self.text(error)}();"
+            case ast.Raise(exc=ast.expr() as error):
+                yield f"throw {self.text(error)};"
+            case ast.Assert(test=test, msg=msg):
+                yield f"py.assert({self.truth(test)}{', ' + self.text(msg) if msg else ''});"
+            case ast.Break():
+                yield "break;"
+            case ast.Continue():
+                yield "continue;"
+            case ast.Try():
+                yield from self._try(node)
+            case ast.Match():
+                yield from self._match(node)
+            case ast.Delete(targets=[ast.Subscript(value=value, slice=ast.Slice(lower=ast.expr() as low))]):
+                yield f"{self.text(value, ATOM)}.splice({self.text(low)});"
+            case _:
+                raise Untranslatable(f"{self.module}: {ast.unparse(node)}")
+
+    def _assignment(self, node: ast.stmt, targets: Sequence[ast.expr], value: str) -> Iterator[str]:
+        scope = self.scopes[-1]
+        for target in targets:
+            if isinstance(target, ast.Tuple) and any(isinstance(one, ast.Subscript) for one in target.elts):
+                yield "{"
+                yield f"  const parts = {value};"
+                for number, one in enumerate(target.elts):
+                    yield from indented(self._assignment(node, [one], f"parts[{number}]"))
+                yield "}"
+                continue
+            if isinstance(target, ast.Subscript) and isinstance(target.slice, ast.Slice):
+                low, high = (
+                    self.text(one) if one else "null" for one in (target.slice.lower, target.slice.upper)
+                )
+                yield f"py.put_slice({self.text(target.value, ATOM)}, {low}, {high}, {value});"
+                continue
+            if isinstance(target, ast.Subscript):
+                whole, place = self.text(target.value, ATOM), self.text(target.slice)
+                yield f"py.put({whole}, {place}, {value});"
+                continue
+            names = names_in(target)
+            fresh = [
+                name for name in names if scope.declared.get(name) is node and name not in scope.parameters
+            ]
+            pattern = self.pattern(target)
+            if not fresh:
+                yield f"{pattern} = {value};"
+            elif len(fresh) == len(set(names)) or set(names) - set(fresh) <= {"_"}:
+                once = all(len(scope.bindings[name]) == 1 for name in names if name != "_")
+                yield f"{'const' if once else 'let'} {pattern} = {value};"
+            else:
+                yield f"let {', '.join(safe(name) for name in fresh)};"
+                yield f"{pattern} = {value};"
+
+    def _loop(self, node: ast.For) -> Iterator[str]:
+        scope = self.scopes[-1]
+        fresh = all(scope.declared.get(name) is not None or name == "_" for name in names_in(node.target))
+        match node:
+            case ast.For(target=ast.Name(id=name), iter=ast.Call(args=args)) if is_range(node.iter):
+                i = self.name(name) if name != "_" else "turn"
+                word = "let " if fresh else ""
+                start = self.text(args[0]) if len(args) > 1 else "0"
+                stop = self.text(args[1] if len(args) > 1 else args[0], LESS)
+                step = self.text(args[2]) if len(args) > 2 else "1"
+                sign, by = (
+                    ("<", f"{i} += {step}") if not step.startswith("-") else (">", f"{i} -= {step[1:]}")
+                )
+                yield f"for ({word}{i} = {start}; {i} {sign} {stop}; {by}) {{"
+            case _:
+                word = ""
+                if fresh:
+                    once = all(
+                        sum(not isinstance(b.node, ast.For) for b in scope.bindings[name]) == 0
+                        for name in names_in(node.target)
+                    )
+                    word = "const " if once else "let "
+                yield f"for ({word}{self.pattern(node.target)} of {self.text(node.iter)}) {{"
+        yield from indented(self._block(node.body))
+        yield "}"
+
+    def _nested(self, node: ast.FunctionDef, name: str) -> Iterator[str]:
+        scope = self.scopes[-1]
+        self.locals[self.name(name)] = [one.arg for one in (*node.args.args, *node.args.kwonlyargs)]
+        word = "const " if len(scope.bindings[name]) == 1 and scope.declared.get(name) is node else ""
+        if not word and scope.declared.get(name) is node:
+            word = "let "
+        yield f"{word}{self.name(name)} = {self.function(node)} => {{"
+        yield from indented(self._body(node, Scope.of(node)))
+        yield "};"
+
+    def _try(self, node: ast.Try) -> Iterator[str]:
+        yield "try {"
+        yield from indented(self._block(node.body))
+        handler, *others = node.handlers
+        if others or handler.type is None:
+            raise Untranslatable(f"{self.module}: {ast.unparse(node)}")
+        yield "} catch (error) {"
+        yield f"  if (!(error instanceof {self.text(handler.type)})) throw error;"
+        self.hidden.append({handler.name} if handler.name else set())
+        yield from indented(self._block(handler.body))
+        self.hidden.pop()
+        yield "}"
+
+    def _match(self, node: ast.Match) -> Iterator[str]:
+        subject = self.text(node.subject)
+        for case in node.cases:
+            match case.pattern:
+                case ast.MatchValue(value=value):
+                    yield f"if (py.eq({subject}, {self.text(value)})) {{"
+                case ast.MatchAs(pattern=None, name=None):
+                    yield "{"
+                case _:
+                    raise Untranslatable(f"{self.module}: {ast.unparse(case)}")
+            yield from indented(self._block(case.body))
+            yield "}"
+
+
+def indented(lines: Iterator[str]) -> Iterator[str]:
+    """Lines further in."""
+    for line in lines:
+        yield f"  {line}" if line else line
+
+
+def is_abstract(node: ast.FunctionDef) -> bool:
+    """Whether a method says what others do, and does nothing."""
+    marks = {ast.unparse(mark) for mark in node.decorator_list}
+    return "abstractmethod" in marks

@@ -1,0 +1,161 @@
+// Solutions as polynomials in time, one a step, as in tippetop.integrators.dense.
+import { math } from "./runtime.js";
+
+export const ELEMENTARY = math;
+export const as_array = (numbers) => Float64Array.from(numbers);
+
+const NEWTON = 6;
+const SHORTEST = 1e-8;
+const known = new Map();
+
+/** Chebyshev's points in [0, 1], and the matrices from values there to his coefficients and to powers. */
+export function chebyshev(degree) {
+  if (known.has(degree)) return known.get(degree);
+  const count = degree + 1;
+  const angles = Array.from({ length: count }, (_, j) => (Math.PI * (j + 0.5)) / count);
+  const places = angles.map((angle) => 0.5 - 0.5 * Math.cos(angle));
+  const transform = angles.map((_, k) =>
+    angles.map((angle) => ((k ? 2 : 1) / count) * (k % 2 ? -1 : 1) * Math.cos(k * angle)));
+  const powers = [Float64Array.of(1), Float64Array.of(-1, 2)];
+  for (let k = 2; k < count; k += 1) {
+    const next = new Float64Array(k + 1);
+    powers[k - 1].forEach((term, i) => {
+      next[i] -= 2 * term;
+      next[i + 1] += 4 * term;
+    });
+    powers[k - 2].forEach((term, i) => (next[i] -= term));
+    powers.push(next);
+  }
+  known.set(degree, { places, transform, powers });
+  return known.get(degree);
+}
+
+/** Coefficients in powers of a polynomial with some values at Chebyshev's points, put in `out` from `at` on. */
+export function toPowers(values, degree, out, at = 0) {
+  const { transform, powers } = chebyshev(degree);
+  for (let k = 0; k <= degree; k += 1) {
+    const row = transform[k], terms = powers[k];
+    let weight = 0;
+    for (let j = 0; j <= degree; j += 1) weight += row[j] * values[j];
+    for (let i = 0; i <= k; i += 1) out[at + i] += weight * terms[i];
+  }
+}
+
+export class DenseSolution {
+  /** Knots, and coefficients [step][number][power] in powers of the part of a step that has passed. */
+  constructor(knots, terms, size, degree) {
+    this.knots = knots;
+    this.terms = terms;
+    this.size = size;
+    this.degree = degree;
+  }
+
+  get count() {
+    return this.knots.length - 1;
+  }
+
+  get end() {
+    return this.knots[this.count];
+  }
+
+  /** The step in which a time lies, the earlier one where two meet. */
+  step(time) {
+    let low = 0, high = this.count - 1;
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if (this.knots[middle + 1] < time) low = middle + 1;
+      else high = middle;
+    }
+    return low;
+  }
+
+  /** One number, or its rate with the part of the step, at a part of a step. */
+  value(step, number, part) {
+    const first = (step * this.size + number) * (this.degree + 1);
+    let total = 0;
+    for (let k = first + this.degree; k >= first; k -= 1) total = total * part + this.terms[k];
+    return total;
+  }
+
+  slope(step, number, part) {
+    const first = (step * this.size + number) * (this.degree + 1);
+    let total = 0;
+    for (let k = this.degree; k > 0; k -= 1) total = total * part + k * this.terms[first + k];
+    return total;
+  }
+
+  /** All numbers at a part of a step. */
+  numbers(step, part, out = new Array(this.size)) {
+    for (let number = 0; number < this.size; number += 1) out[number] = this.value(step, number, part);
+    return out;
+  }
+
+  rows(time) {
+    const step = this.step(time), span = this.knots[step + 1] - this.knots[step];
+    return this.numbers(step, (time - this.knots[step]) / (span > 0 ? span : 1));
+  }
+
+  moved(start, end) {
+    const knots = this.knots.map((knot) => start + knot);
+    knots[knots.length - 1] = end;
+    return new DenseSolution(knots, this.terms, this.size, this.degree);
+  }
+
+  knots_of(number, end) {
+    const shown = Array.from({ length: this.count }, (_, step) => this.value(step, number, 0));
+    return [...shown.filter((value) => value < end * (1 - SHORTEST)), end];
+  }
+
+  when(number, value) {
+    const shown = Array.from({ length: this.count }, (_, step) => this.value(step, number, 0));
+    shown.push(this.value(this.count - 1, number, 1));
+    let at = shown.findIndex((one) => one >= value);
+    at = at < 0 ? this.count : Math.max(at, 1);
+    const share = (value - shown[at - 1]) / (shown[at] - shown[at - 1] || 1);
+    let time = this.knots[at - 1] + Math.min(Math.max(share, 0), 1) * (this.knots[at] - this.knots[at - 1]);
+    for (let turn = 0; turn < NEWTON; turn += 1) {
+      const step = this.step(time), span = this.knots[step + 1] - this.knots[step];
+      const part = (time - this.knots[step]) / span;
+      time += ((value - this.value(step, number, part)) * span) / this.slope(step, number, part);
+      time = Math.min(Math.max(time, this.knots[0]), this.end);
+    }
+    return time;
+  }
+
+  static nothing(time, size) {
+    return new DenseSolution([time], new Float64Array(0), size, 0);
+  }
+
+  static standing(numbers, start, end) {
+    return new DenseSolution([start, end], Float64Array.from(numbers), numbers.length, 0);
+  }
+
+  static joined(parts) {
+    if (parts.length === 1) return parts[0];
+    const knots = parts.flatMap((part, i) => Array.from(part.knots).slice(i ? 1 : 0));
+    const terms = new Float64Array(parts.reduce((total, part) => total + part.terms.length, 0));
+    let at = 0;
+    for (const part of parts) {
+      terms.set(part.terms, at);
+      at += part.terms.length;
+    }
+    return new DenseSolution(knots, terms, parts[0].size, parts[0].degree);
+  }
+
+  /** Polynomials that agree with a function, from a time to numbers, at Chebyshev's points of every step. */
+  static fitted(function_, knots, degree) {
+    const { places } = chebyshev(degree), count = knots.length - 1;
+    let terms = null, size = 0;
+    for (let step = 0; step < count; step += 1) {
+      const rows = places.map((place) => function_(knots[step] + place * (knots[step + 1] - knots[step])));
+      if (terms === null) {
+        size = rows[0].length;
+        terms = new Float64Array(count * size * (degree + 1));
+      }
+      for (let number = 0; number < size; number += 1) {
+        toPowers(rows.map((row) => row[number]), degree, terms, (step * size + number) * (degree + 1));
+      }
+    }
+    return new DenseSolution(Array.from(knots), terms, size, degree);
+  }
+}

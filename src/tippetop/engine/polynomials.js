@@ -1,0 +1,109 @@
+// First zeros and extremes of a polynomial on [0, 1], as in tippetop.integrators.polynomials.
+
+const LOOKS = 32;
+
+/** A polynomial: coefficients in increasing order, from a place in an array on. */
+export class Polynomial {
+  constructor(terms, from, degree) {
+    this.terms = terms;
+    this.from = from;
+    this.degree = degree;
+    this.reach = 0;
+    for (let k = 1; k <= degree; k += 1) this.reach += Math.abs(terms[from + k]);
+  }
+
+  get start() {
+    return this.terms[this.from];
+  }
+
+  at(x) {
+    let total = 0;
+    for (let k = this.from + this.degree; k >= this.from; k -= 1) total = total * x + this.terms[k];
+    return total;
+  }
+
+  slope(x) {
+    let total = 0;
+    for (let k = this.degree; k > 0; k -= 1) total = total * x + k * this.terms[this.from + k];
+    return total;
+  }
+
+  bend(x) {
+    let total = 0;
+    for (let k = this.degree; k > 1; k -= 1) total = total * x + k * (k - 1) * this.terms[this.from + k];
+    return total;
+  }
+
+  /** The least value of sign times it, with its place; by Newton's method from the least of some looks. */
+  least(sign = 1, low = 0, high = 1, looks = LOOKS) {
+    let place = low, value = sign * this.at(low);
+    for (let look = 1; look <= looks; look += 1) {
+      const there = low + ((high - low) * look) / looks, found = sign * this.at(there);
+      if (found < value) [place, value] = [there, found];
+    }
+    let x = place;
+    const from = Math.max(low, place - (high - low) / looks), to = Math.min(high, place + (high - low) / looks);
+    for (let turn = 0; turn < 8; turn += 1) {
+      const bend = sign * this.bend(x);
+      if (!(bend > 0)) break;
+      const next = Math.min(Math.max(x - (sign * this.slope(x)) / bend, from), to);
+      const done = Math.abs(next - x) < 1e-12;
+      x = next;
+      if (done) break;
+    }
+    const found = sign * this.at(x);
+    return found < value ? [x, found] : [place, value];
+  }
+
+  /** Where sign times it, plus a number, first falls to zero from above; nan where it does not. */
+  firstFall(sign = 1, shift = 0, fromAbove = false) {
+    const value = (x) => sign * this.at(x) + shift;
+    const first = value(0), second = value(1 / LOOKS);
+    if ((fromAbove ? first === 0 : first <= 0) && second <= 0) return 0;
+    let before = first;
+    for (let look = 1; look <= LOOKS; look += 1) {
+      const low = (look - 1) / LOOKS, high = look / LOOKS, after = value(high);
+      if (before > 0 && after <= 0) return this.zero(value, sign, low, high);
+      if (before > 0 && sign * this.slope(low) < 0 && sign * this.slope(high) > 0) {
+        const [place, least] = this.least(sign, low, high, 2);
+        if (least + shift <= 0) return this.zero(value, sign, low, place);
+      }
+      before = after;
+    }
+    return NaN;
+  }
+
+  zero(value, sign, low, high) {
+    let x = 0.5 * (low + high);
+    for (let turn = 0; turn < 80; turn += 1) {
+      const here = value(x);
+      if (here > 0) low = x;
+      else high = x;
+      let next = x - here / (sign * this.slope(x));
+      const arrived = Math.abs(next - x) <= 1e-9 * x;
+      if (arrived) next = Math.min(Math.max(next, low), high);
+      else if (!(next > low && next < high)) next = 0.5 * (low + high);
+      const still = Math.abs(next - x) <= 4e-16 * next;
+      x = next;
+      if (arrived || still) break;
+    }
+    return x;
+  }
+}
+
+/** Gauss's points and weights in [0, 1]. */
+export function gauss(count) {
+  const nodes = [], weights = [];
+  for (let i = count; i >= 1; i -= 1) {
+    let x = Math.cos((Math.PI * (i - 0.25)) / (count + 0.5)), rate = 0;
+    for (let turn = 0; turn < 20; turn += 1) {
+      let [before, now] = [1, x];
+      for (let k = 2; k <= count; k += 1) [before, now] = [now, ((2 * k - 1) * x * now - (k - 1) * before) / k];
+      rate = (count * (x * now - before)) / (x * x - 1);
+      x -= now / rate;
+    }
+    nodes.push(0.5 * (1 + x));
+    weights.push(1 / ((1 - x * x) * rate * rate));
+  }
+  return { nodes, weights };
+}

@@ -1,0 +1,363 @@
+// What Python means where JavaScript means something else: for the translated modules.
+
+export class ArithmeticError extends Error {}
+export class ZeroDivisionError extends ArithmeticError {}
+export class OverflowError extends ArithmeticError {}
+export class ValueError extends Error {}
+export class NotImplementedError extends Error {}
+export class AssertionError extends Error {}
+
+// ---- numbers, and what else has arithmetic: series, discs, nodes of a graph; lists are joined
+
+const takes = (a, word) => a !== null && typeof a === "object" && word in a;
+
+function applied(a, b, word, turned, plain) {
+  if (takes(a, word)) return a[word](b);
+  if (takes(b, turned)) return b[turned](a);
+  if (typeof a === "boolean" || typeof b === "boolean") return plain(Number(a), Number(b));
+  throw new TypeError(`${word} of ${a} and ${b}`);
+}
+
+export function add(a, b) {
+  if (typeof a === "number" && typeof b === "number") return a + b;
+  if (typeof a === "string") return a + b;
+  if (Array.isArray(a)) return [...a, ...b];
+  return applied(a, b, "__add__", "__radd__", add);
+}
+
+export function sub(a, b) {
+  if (typeof a === "number" && typeof b === "number") return a - b;
+  return applied(a, b, "__sub__", "__rsub__", sub);
+}
+
+export function mul(a, b) {
+  if (typeof a === "number" && typeof b === "number") return a * b;
+  if (Array.isArray(a)) return Array.from({ length: b * a.length }, (_, i) => a[i % a.length]);
+  return applied(a, b, "__mul__", "__rmul__", mul);
+}
+
+export function div(a, b) {
+  if (typeof a === "number" && typeof b === "number") {
+    if (b === 0) throw new ZeroDivisionError("division by zero");
+    return a / b;
+  }
+  return applied(a, b, "__truediv__", "__rtruediv__", div);
+}
+
+export function pow(a, b) {
+  if (typeof a !== "number" || typeof b !== "number") return applied(a, b, "__pow__", "__rpow__", pow);
+  if (b === 2) return finite(a * a, a);
+  if (a === 0 && b < 0) throw new ZeroDivisionError("0.0 cannot be raised to a negative power");
+  if (a < 0 && b !== Math.trunc(b)) throw new ArithmeticError("a root of a negative number");
+  if (b === 0.5) return Math.sqrt(a);
+  if (b === -0.5) return 1 / Math.sqrt(a);
+  if (b === 0.25) return Math.sqrt(Math.sqrt(a));
+  return finite(a ** b, a);
+}
+
+function finite(value, ...given) {
+  if (!Number.isFinite(value) && given.every(Number.isFinite)) throw new OverflowError("a result too large");
+  return value;
+}
+
+export const floordiv = (a, b) => Math.floor(a / b);
+export const mod = (a, b) => a - b * Math.floor(a / b);
+export const neg = (a) => (typeof a === "number" ? -a : typeof a === "boolean" ? -Number(a) : a.__neg__());
+export const abs = (a) => (typeof a === "number" ? Math.abs(a) : a.__abs__());
+export const float = (a) => (a === "inf" ? Infinity : Number(a));
+export const int = (a) => Math.trunc(Number(a));
+export const bool = (a) => truth(a);
+export const str = (a) => (a instanceof Error ? a.message : a instanceof Enum ? a.name : repr(a));
+export const repr = (a) => (typeof a === "number" && Object.is(a, -0) ? "-0" : String(a));
+export const sum = (values, start = 0) => {
+  let total = start;
+  for (const value of values) total = add(total, value);
+  return total;
+};
+
+export function truth(a) {
+  if (typeof a === "number") return a !== 0;
+  if (a === null || a === undefined || typeof a !== "object") return Boolean(a);
+  if (typeof a.__bool__ === "function") return a.__bool__();
+  return a instanceof NamedTuple || a.length === undefined ? true : a.length > 0;
+}
+const or_ = (a, other) => (truth(a) ? a : other());
+const and_ = (a, other) => (truth(a) ? other() : a);
+export { or_ as or, and_ as and };
+
+export const math = {
+  pi: Math.PI,
+  inf: Infinity,
+  nan: NaN,
+  sin: Math.sin,
+  cos: Math.cos,
+  atan2: Math.atan2,
+  log: Math.log,
+  expm1: Math.expm1,
+  isfinite: Number.isFinite,
+  exp: (x) => finite(Math.exp(x), x),
+  sinh: (x) => finite(Math.sinh(x), x),
+  cosh: (x) => finite(Math.cosh(x), x),
+  sqrt(x) {
+    if (x < 0) throw new ValueError("math domain error");
+    return Math.sqrt(x);
+  },
+  hypot(...parts) {
+    let largest = 0;
+    for (const part of parts) largest = part !== part ? NaN : Math.max(largest, Math.abs(part));
+    if (largest === 0 || !Number.isFinite(largest)) return largest;
+    let total = 0;
+    for (const part of parts) total += (part / largest) * (part / largest);
+    return largest * Math.sqrt(total);
+  },
+  dist: (a, b) => math.hypot(...Array.from(a, (x, i) => x - b[i])),
+};
+
+// ---- tuples with names, records and enumerations
+
+export class Thing {}
+
+export class NamedTuple {
+  *[Symbol.iterator]() {
+    for (const name of this.constructor.fields) yield this[name];
+  }
+  slice(from, to) {
+    return this.constructor.fields.slice(from, to).map((name) => this[name]);
+  }
+  _replace(changes) {
+    return new this.constructor(...this.constructor.fields.map((name) => (name in changes ? changes[name] : this[name])));
+  }
+  static made(given, named) {
+    return new this(...this.fields.map((name, i) => (name in named ? named[name] : given[i])));
+  }
+}
+
+export class Record {}
+
+export function fields(kind, names) {
+  kind.fields = names;
+  if (!(kind.prototype instanceof NamedTuple)) return;
+  names.forEach((name, place) => {
+    Object.defineProperty(kind.prototype, place, { get() { return this[name]; } });
+  });
+}
+
+export const replace = (one, changes) =>
+  new one.constructor(...one.constructor.fields.map((name) => (name in changes ? changes[name] : one[name])));
+
+export class Enum {
+  constructor(name, value) {
+    this.name = name;
+    this.value = value;
+  }
+}
+
+export function members(kind, values) {
+  for (const [name, value] of Object.entries(values)) kind[name] = Object.freeze(new kind(name, value));
+}
+
+// ---- equality, and what tables and caches are kept by
+
+const isRow = (a) => Array.isArray(a) || a instanceof NamedTuple;
+
+export function eq(a, b) {
+  if (a === b) return true;
+  if (isRow(a) && isRow(b)) {
+    if (len(a) !== len(b)) return false;
+    for (let i = 0; i < len(a); i += 1) if (!eq(a[i], b[i])) return false;
+    return true;
+  }
+  if (a instanceof Record && b instanceof Record && a.constructor === b.constructor) {
+    return a.constructor.fields.every((name) => eq(a[name], b[name]));
+  }
+  return typeof a === "boolean" && typeof b === "number" ? Number(a) === b : false;
+}
+
+export const contains = (all, one) => (all instanceof Dict ? all.has(one) : [...all].some((each) => eq(each, one)));
+
+const known = new WeakMap();
+let counted = 0;
+
+function key(a) {
+  if (typeof a === "string" || typeof a === "number") return a;
+  if (a === null || typeof a === "boolean" || a === undefined) return String(a);
+  if (Array.isArray(a)) return `(${a.map(key).join()})`;
+  if (a instanceof NamedTuple) return `${key(a.constructor)}(${[...a].map(key).join()})`;
+  if (!known.has(a)) known.set(a, `#${(counted += 1)}`);
+  return known.get(a);
+}
+
+export function cached(function_) {
+  const values = new Map();
+  return (...given) => {
+    const place = given.length === 1 && typeof given[0] === "number" ? given[0] : given.map(key).join(";");
+    if (!values.has(place)) values.set(place, function_(...given));
+    return values.get(place);
+  };
+}
+
+export class Dict {
+  constructor(pairs = []) {
+    this.pairs = new Map();
+    for (const pair of pairs) Array.isArray(pair) ? this.put(pair[0], pair[1]) : this.add(pair);
+  }
+  get length() {
+    return this.pairs.size;
+  }
+  get(one, other = null) {
+    const found = this.pairs.get(key(one));
+    return found === undefined ? other : found[1];
+  }
+  put(one, value) {
+    this.pairs.set(key(one), [one, value]);
+  }
+  add(one) {
+    this.put(one, one);
+  }
+  has(one) {
+    return this.pairs.has(key(one));
+  }
+  items() {
+    return [...this.pairs.values()];
+  }
+  keys() {
+    return this.items().map(([one]) => one);
+  }
+  values() {
+    return this.items().map(([, value]) => value);
+  }
+  __getitem__(one) {
+    return this.get(one);
+  }
+  __or__(other) {
+    return new Dict([...this.items(), ...other.items()]);
+  }
+  [Symbol.iterator]() {
+    return this.keys()[Symbol.iterator]();
+  }
+}
+
+// ---- sequences
+
+export function item(all, place) {
+  if (typeof place === "number" && (Array.isArray(all) || all instanceof NamedTuple || ArrayBuffer.isView(all))) {
+    return all[place < 0 ? len(all) + place : place];
+  }
+  if (all instanceof Dict) return all.get(place);
+  return all.__getitem__ === undefined ? all[place] : all.__getitem__(place);
+}
+
+export function put(all, place, value) {
+  if (all instanceof Dict) all.put(place, value);
+  else all[place < 0 ? all.length + place : place] = value;
+}
+
+export function put_slice(all, from, to, values) {
+  all.splice(from ?? 0, (to ?? all.length) - (from ?? 0), ...values);
+}
+
+export function slice(all, from, to, step) {
+  const by = step ?? 1, whole = Array.isArray(all) ? all : [...all];
+  if (by === 1) return whole.slice(from ?? 0, to ?? undefined);
+  const count = whole.length, found = [];
+  const at = (place, otherwise) => (place === null ? otherwise : place < 0 ? place + count : place);
+  const last = at(to, by < 0 ? -1 : count);
+  for (let i = Math.min(at(from, by < 0 ? count - 1 : 0), by < 0 ? count - 1 : count); by < 0 ? i > last : i < last; i += by) {
+    found.push(whole[i]);
+  }
+  return found;
+}
+
+export const len = (all) => (all instanceof NamedTuple ? all.constructor.fields.length : all.length);
+export const tuple = (all = []) => (Array.isArray(all) ? all : [...all]);
+export const list = (all = []) => [...all];
+export const dict = (pairs = []) => new Dict(pairs);
+export const set = (all = []) => new Dict([...all].map((one) => [one, one]));
+export const range = (start, stop, step = 1) => {
+  const [from, to] = stop === undefined ? [0, start] : [start, stop];
+  return Array.from({ length: Math.max(0, Math.ceil((to - from) / step)) }, (_, i) => from + i * step);
+};
+export const enumerate = (all) => Array.from(all, (one, place) => [place, one]);
+export const reversed = (all) => [...all].reverse();
+export const map = (function_, ...rows) => zip(...rows).map((given) => function_(...given));
+export function zip(...rows) {
+  const whole = rows.map((row) => (Array.isArray(row) ? row : [...row]));
+  const count = Math.min(...whole.map((row) => row.length));
+  return Array.from({ length: count }, (_, i) => whole.map((row) => row[i]));
+}
+export const any = (all) => [...all].some(truth);
+export const all = (each) => [...each].every(truth);
+export const iter = (all) => all[Symbol.iterator]();
+export function next(all, otherwise) {
+  const found = (typeof all.next === "function" ? all : iter(all)).next();
+  if (found.done && otherwise === undefined) throw new ValueError("there is no next one");
+  return found.done ? otherwise : found.value;
+}
+
+class How {
+  constructor(given) {
+    Object.assign(this, given);
+  }
+}
+export const how = (given) => new How(given);
+
+function below(a, b) {
+  if (!isRow(a)) return a < b;
+  for (let i = 0; i < a.length; i += 1) if (a[i] !== b[i]) return below(a[i], b[i]);
+  return false;
+}
+
+function most(given, better) {
+  const told = given.at(-1) instanceof How ? given.pop() : {};
+  const choices = given.length === 1 ? [...given[0]] : given;
+  if (!choices.length && "default" in told) return told.default;
+  const worth = told.key ?? ((one) => one);
+  let best = choices[0], value = worth(best);
+  for (const choice of choices.slice(1)) {
+    const other = worth(choice);
+    if (better(other, value)) [best, value] = [choice, other];
+  }
+  return best;
+}
+export function max(...given) {
+  if (given.length === 2 && typeof given[0] === "number" && typeof given[1] === "number") {
+    return given[1] > given[0] ? given[1] : given[0];
+  }
+  return most(given, (a, b) => below(b, a));
+}
+export function min(...given) {
+  if (given.length === 2 && typeof given[0] === "number" && typeof given[1] === "number") {
+    return given[1] < given[0] ? given[1] : given[0];
+  }
+  return most(given, below);
+}
+export const sorted = (all) => [...all].sort((a, b) => (below(a, b) ? -1 : below(b, a) ? 1 : 0));
+
+export const tolist = (all) => Array.from(all);
+export const join = (between, all) => [...all].join(between);
+export const extend = (all, more) => all.push(...more);
+export const pop = (all) => all.pop();
+export const removeprefix = (text, part) => (text.startsWith(part) ? text.slice(part.length) : text);
+export function rpartition(text, part) {
+  const place = text.lastIndexOf(part);
+  return place < 0 ? ["", "", text] : [text.slice(0, place), part, text.slice(place + part.length)];
+}
+export const format = (value, how_) =>
+  how_.endsWith("g") ? String(Number(value.toPrecision(Number(how_.slice(1, -1)) || 6))) : String(value);
+
+// ---- objects
+
+export const hasattr = (one, name) => one !== null && typeof one === "object" && name in one;
+export const getattr = (one, name, otherwise) => (hasattr(one, name) ? one[name] : otherwise);
+export const bound = (one, name) => (Array.isArray(one) ? (place) => item(one, place) : one[name].bind(one));
+export const call = (one, ...given) => (/^class\b/.test(Function.prototype.toString.call(one)) ? new one(...given) : one(...given));
+export function isinstance(one, kind) {
+  if (Array.isArray(kind)) return kind.some((each) => isinstance(one, each));
+  if (kind === float || kind === int) return typeof one === "number" || typeof one === "boolean";
+  if (kind === tuple || kind === list) return Array.isArray(one);
+  return one instanceof kind;
+}
+function assert_(holds, said = "") {
+  if (!holds) throw new AssertionError(said);
+}
+export { assert_ as assert };

@@ -1,0 +1,43 @@
+"""The engine in the page: current, and the same numbers as Python's."""
+
+import os
+
+import pytest
+
+import tippetop as tt
+from launches import TOLERANCE, asked, compared, in_javascript, in_python, launch_of
+from tippetop.engine import COMMAND, HERE
+from tippetop.engine.generate import generated
+
+COUNT, DURATION = int(os.environ.get("TIPPETOP_PARITY", "3")), 0.3
+
+
+def test_what_is_generated_is_current() -> None:
+    for name, text in generated().items():
+        assert (HERE / name).read_text(encoding="utf-8") == text, f"{name} is out of date: run `{COMMAND}`"
+
+
+def test_the_report_s_launch_with_flights_is_the_same() -> None:
+    problem = tt.presets.report_problem(spin=175.0)
+    duration = 6.5
+    run = tt.simulate(problem, duration, samples=41)
+    question = asked(0, duration) | {"problem": problem.model_dump(mode="json"), "tolerance": TOLERANCE}
+    (found,) = in_javascript([question])
+    assert run.sizes["event"] > 10, "it flies"
+    assert not compared(problem.model_dump(), found, run)
+    for name in ("turns_over", "airborne_time", "highest_gap", "energy_lost_sliding", "highest"):
+        assert found["metrics"][name] == pytest.approx(float(run[name]), rel=1e-6), name
+
+
+def test_random_launches_are_the_same() -> None:
+    found = in_javascript([asked(seed, DURATION) for seed in range(COUNT)])
+    wrong = {}
+    for seed, theirs in enumerate(found):
+        run = in_python(launch_of(seed), DURATION)
+        if isinstance(run, str):
+            off = [] if theirs.get("refused") == run else [f"{theirs} instead of {run}"]
+        else:
+            off = compared(launch_of(seed), theirs, run)
+        if off:
+            wrong[seed] = off
+    assert not wrong

@@ -1,0 +1,142 @@
+"""Random launches over every law, surface and ending; and what Python and JavaScript make of them."""
+
+import json
+import math
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import tippetop as tt
+from node import NODE
+from tippetop.engine import HERE
+
+SAMPLES = 41
+TOLERANCE = 1e-12
+
+
+def law_of(random: np.random.Generator, size: float) -> dict[str, Any]:
+    """A law of friction of any kind."""
+    mu = random.uniform(0.05, 0.6)
+    patch = size * 10.0 ** random.uniform(-2.5, -0.7)
+    laws: list[dict[str, Any]] = [
+        {"kind": "viscous", "mu": mu},
+        {"kind": "regularized_coulomb", "mu": mu, "eps": 10.0 ** random.uniform(-2.5, -0.5)},
+        {"kind": "coulomb", "mu": mu},
+        {"kind": "contensou", "mu": mu, "patch_radius": patch, "pressure": "ellipsoidal"},
+        {"kind": "contensou", "mu": mu, "patch_radius": patch, "pressure": "hertz"},
+    ]
+    return laws[random.integers(len(laws))]
+
+
+def surface_of(random: np.random.Generator, size: float, single: bool) -> dict[str, Any]:
+    """A surface of any kind; one that a body has alone is tame."""
+    if single:
+        shapes: list[dict[str, Any]] = [
+            {"kind": "eccentric_sphere", "radius": size, "eccentricity": random.uniform(0.05, 0.6)},
+            {"kind": "sphere", "radius": size, "center": random.uniform(-0.5, 0.5) * size},
+            {"kind": "spheroid", "across": size, "along": size * random.uniform(0.6, 1.7)},
+            {"kind": "ring", "radius": size, "center": 0.0, "tube": 0.2 * size},
+        ]
+        return shapes[random.integers(len(shapes))]
+    part, center = size * random.uniform(0.2, 1.0, 2), size * random.uniform(-1.0, 1.0)
+    parts: list[dict[str, Any]] = [
+        {"kind": "sphere", "radius": part[0], "center": center},
+        {"kind": "ring", "radius": part[0], "center": center, "tube": 0.3 * part[1]},
+        {"kind": "spheroid", "across": part[0], "along": part[1], "center": 0.6 * center},
+    ]
+    return parts[random.integers(len(parts))]
+
+
+def launch_of(seed: int) -> dict[str, Any]:
+    """The fields of a problem; some are refused."""
+    random = np.random.default_rng(seed)
+    size, mass = random.uniform(0.005, 0.05), random.uniform(0.002, 0.1)
+    several = random.random() < 0.25
+    transverse = random.uniform(0.2, 0.6) * mass * size**2
+    single = surface_of(random, size, True)
+    shape: Any = [surface_of(random, size, False) for _ in range(2)] if several else single
+    launch: dict[str, Any] = {
+        "tilt": random.uniform(0.02, 3.1),
+        "spin": random.choice([-1.0, 1.0]) * 10.0 ** random.uniform(0.0, 2.2),
+        "azimuth": random.uniform(-3.0, 3.0),
+        "precession": random.choice([0.0, random.uniform(-20.0, 20.0)]),
+        "tilt_rate": random.choice([0.0, random.uniform(-5.0, 5.0)]),
+    }
+    if random.random() < 0.3:
+        launch["slip"] = random.uniform(-0.3, 0.3, 2).tolist()
+    liftoff = "fly" if several else str(random.choice(["fly", "fly", "stop", "ignore"]))
+    if liftoff == "fly" and random.random() < 0.3:
+        launch["gap"] = size * random.uniform(0.1, 1.0)
+    fields: dict[str, Any] = {
+        "body": {"mass": mass, "shape": shape, "I1": transverse, "I3": random.uniform(0.4, 1.7) * transverse},
+        "friction": law_of(random, size),
+        "launch": launch,
+        "contact": {"liftoff": liftoff, "restitution": float(random.choice([0.0, 0.0, 0.5]))},
+    }
+    if not several and random.random() < 0.2:
+        fields["rolling_resistance"] = size * 10.0 ** random.uniform(-3.5, -1.5)
+    return fields
+
+
+def in_javascript(launches: list[dict[str, Any]]) -> Iterator[dict[str, Any]]:
+    """What the engine makes of launches."""
+    lines = "".join(json.dumps(launch) + "\n" for launch in launches)
+    follow = Path(__file__).with_name("follow.mjs")
+    ran = subprocess.run(
+        [NODE, str(follow), str(HERE / "index.js")], input=lines, capture_output=True, text=True, check=True
+    )
+    for line in ran.stdout.splitlines():
+        yield json.loads(line)
+
+
+def compared(fields: dict[str, Any], found: dict[str, Any], run: Any) -> list[str]:
+    """How what JavaScript made of a launch differs from a run; nothing if it does not."""
+    if "outcome" not in found:
+        return [str(found)]
+    wrong = []
+    if found["outcome"]["name"] != run.attrs["outcome"]:
+        wrong.append(f"outcome {found['outcome']} instead of {run.attrs['outcome_advice']}")
+    kinds = [str(kind) for kind in run["event_kind"].values]
+    theirs = [event["kind"] for event in found["events"]]
+    if theirs != kinds:
+        first = next((i for i, (a, b) in enumerate(zip(theirs, kinds, strict=False)) if a != b), None)
+        wrong.append(f"events {len(theirs)} instead of {len(kinds)}, from number {first} on")
+    times = [event["time"] for event in found["events"]]
+    off = max((abs(a - b) for a, b in zip(times, run["event_time"].values, strict=False)), default=0.0)
+    if off > 1e-7:
+        wrong.append(f"events off by {off:.1e} s")
+    theta = np.array(found["track"]["theta"])
+    count = min(len(theta), len(run["theta"]))
+    tilts = np.abs(theta[:count] - run["theta"].values[:count])
+    if not tilts.max(initial=0.0) <= 1e-7:
+        wrong.append(f"tilt off by {tilts.max():.1e} rad")
+    return wrong
+
+
+def asked(seed: int, duration: float) -> dict[str, Any]:
+    """What is asked of the engine."""
+    times = np.linspace(0.0, duration, SAMPLES)
+    return {
+        "problem": launch_of(seed),
+        "duration": duration,
+        "tolerance": TOLERANCE,
+        "times": times.tolist(),
+    }
+
+
+def in_python(fields: dict[str, Any], duration: float) -> Any:
+    """The same launch in Python; None if it is refused."""
+    try:
+        return tt.simulate(
+            tt.Problem(**fields), duration, samples=SAMPLES, integrator="dop853", tolerance=3e-14
+        )
+    except tt.InvalidInput as refusal:
+        return str(refusal)
+
+
+def is_rounding(a: float, b: float, error: float) -> bool:
+    """Whether two numbers are the same but for an error, or both are none."""
+    return (math.isnan(a) and math.isnan(b)) or abs(a - b) <= error * max(1.0, abs(a))
