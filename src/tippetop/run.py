@@ -62,8 +62,9 @@ def simulate(
     times
         Sample times instead, s: increasing, from 0 to `duration`.
     integrator
-        "taylor", "dop853", "rk45", "radau", "bdf", "lsoda" or "rk4"; None for the best installed; or an
-        object of one's own, which follows motions as `tippetop.integrators.base.Integrator` does.
+        "taylor", "compiled", "dop853", "rk45", "radau", "bdf", "lsoda" or "rk4"; None for the best
+        installed; or an object of one's own, which follows motions as
+        `tippetop.integrators.base.Integrator` does.
     tolerance
         Relative error per step; None for the integrator's own default. Only with an integrator by name.
     step

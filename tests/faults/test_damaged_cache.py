@@ -13,7 +13,8 @@ from tippetop.integrators import has_taylor
 if not has_taylor():
     pytest.skip("heyoka is not installed", allow_module_level=True)
 
-from tippetop.integrators.compile_cache import VARIABLE, compiling, drop_damaged, use_compile_cache
+from tippetop.integrators.cache_folder import VARIABLE
+from tippetop.integrators.compile_cache import compiling, drop_damaged, use_compile_cache
 
 MANY = int(os.environ.get("TIPPETOP_FAULTS", "1"))
 """How many times more faults than in a quick run."""

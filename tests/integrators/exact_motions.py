@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import brentq
 
-from tippetop.integrators import Arc, Integrator, Motion, has_taylor, make_integrator
+from tippetop.integrators import Arc, Integrator, Motion, has_numba, has_taylor, make_integrator
 from tippetop.integrators.dense import DenseSolution
 from tippetop.mechanics.vectors import cross
 
@@ -39,6 +39,7 @@ STEP = 0.01
 EPS = float(np.finfo(float).eps)
 DEFAULTS = [
     *([_adaptive("taylor", EPS)] if has_taylor() else []),
+    *([_adaptive("compiled", 1e-13)] if has_numba() else []),
     _adaptive("dop853", 1e-12),
     _adaptive("rk45", 1e-10),
     _adaptive("radau", 1e-9),

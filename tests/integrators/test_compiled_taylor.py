@@ -20,7 +20,7 @@ if not has_taylor():
 import heyoka as hy
 
 from tippetop.integrators import taylor
-from tippetop.integrators.compile_cache import VARIABLE
+from tippetop.integrators.cache_folder import VARIABLE
 
 TAYLOR = DEFAULTS[0]
 

@@ -22,10 +22,21 @@ from exact_motions import (
 )
 
 from tippetop.errors import InvalidInput
-from tippetop.integrators import NAMES, Guard, Motion, classical, has_taylor, make_integrator, scipy_methods
+from tippetop.integrators import (
+    NAMES,
+    Guard,
+    Motion,
+    classical,
+    has_numba,
+    has_taylor,
+    make_integrator,
+    scipy_methods,
+)
 
 if has_taylor():
     from tippetop.integrators import taylor
+if has_numba():
+    from tippetop.integrators import compiled_runge_kutta
 
 every_method = pytest.mark.parametrize("method", DEFAULTS, ids=lambda method: method.label)
 every_method_also_loose = pytest.mark.parametrize(
@@ -34,7 +45,9 @@ every_method_also_loose = pytest.mark.parametrize(
 
 
 def test_every_integrator_is_tested():
-    assert [method.integrator.name for method in DEFAULTS] == NAMES if has_taylor() else NAMES[1:]
+    missing = {"taylor": not has_taylor(), "compiled": not has_numba()}
+    names = [name for name in NAMES if not missing.get(name)]
+    assert [method.integrator.name for method in DEFAULTS] == names
 
 
 # --- exact solutions ----------------------------------------------------------------------------------------
@@ -134,7 +147,10 @@ def test_steps_join(method):
     np.testing.assert_allclose(ends, starts, rtol=0, atol=joint(method, OSCILLATOR))
 
 
-CUTS = {"taylor": (taylor, {"LONG": 4}) if has_taylor() else None}
+CUTS = {
+    "taylor": (taylor, {"LONG": 4}) if has_taylor() else None,
+    "compiled": (compiled_runge_kutta, {"MANY": 7}) if has_numba() else None,
+}
 """What decides into how many arcs a solution is cut, and smaller numbers of it."""
 
 

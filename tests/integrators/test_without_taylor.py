@@ -1,4 +1,4 @@
-"""Where heyoka is not installed, SciPy's integrators give the same results."""
+"""Where heyoka is not installed, other integrators give the same results: numba's, or else SciPy's."""
 
 import json
 import subprocess
@@ -8,21 +8,21 @@ import numpy as np
 import pytest
 
 import tippetop as tt
-from tippetop.integrators import NAMES, has_taylor
+from tippetop.integrators import NAMES, has_numba, has_taylor
 from tippetop.presets import report_problem
 
-HIDE_HEYOKA = """
+HIDE = """
 import sys
 from importlib.machinery import PathFinder
 
 
-class WithoutHeyoka(PathFinder):
+class Without(PathFinder):
     @classmethod
     def find_spec(cls, name, path=None, target=None):
-        return None if name.partition(".")[0] == "heyoka" else super().find_spec(name, path, target)
+        return None if name.partition(".")[0] in HIDDEN else super().find_spec(name, path, target)
 
 
-sys.meta_path[sys.meta_path.index(PathFinder)] = WithoutHeyoka
+sys.meta_path[sys.meta_path.index(PathFinder)] = Without
 """
 
 RUN = """
@@ -32,13 +32,13 @@ from tippetop.integrators import NAMES, default_name, has_taylor
 from tippetop.presets import report_problem
 
 assert not has_taylor()
-assert default_name() == "dop853"
 run = tt.simulate(report_problem(), 1.0, samples=11)
 try:
     tt.simulate(report_problem(), 1.0, integrator="taylor")
 except tt.Unavailable as refusal:
     told = str(refusal)
 print(json.dumps({
+    "default": default_name(),
     "integrator": run.attrs["integrator"],
     "outcome": run.attrs["outcome"],
     "theta": run.theta.values.tolist(),
@@ -49,22 +49,32 @@ print(json.dumps({
 """
 
 
-@pytest.fixture(scope="module")
-def elsewhere():
+HIDDEN = {"compiled": ["heyoka"], "dop853": ["heyoka", "numba"]}
+"""The default integrators, and what is missing where they are."""
+
+
+@pytest.fixture(
+    scope="module",
+    params=[
+        pytest.param("compiled", marks=pytest.mark.skipif(not has_numba(), reason="numba is not installed")),
+        "dop853",
+    ],
+)
+def elsewhere(request):
     """What a process without heyoka says about a second of the report's run."""
     done = subprocess.run(
-        [sys.executable, "-W", "error", "-c", HIDE_HEYOKA + RUN],
+        [sys.executable, "-W", "error", "-c", f"HIDDEN = {HIDDEN[request.param]}\n{HIDE}{RUN}"],
         capture_output=True,
         text=True,
         timeout=60,
         check=False,
     )
     assert (done.stderr, done.returncode) == ("", 0)
-    return json.loads(done.stdout)
+    return json.loads(done.stdout) | {"expected": request.param}
 
 
-def test_the_default_is_then_dop853(elsewhere):
-    assert elsewhere["integrator"] == "dop853"
+def test_the_default_is_the_best_that_is_there(elsewhere):
+    assert elsewhere["default"] == elsewhere["integrator"] == elsewhere["expected"]
     assert elsewhere["outcome"] == "completed"
 
 

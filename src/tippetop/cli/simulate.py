@@ -80,7 +80,8 @@ def simulate(
         int | None, typer.Option(help="Number of samples; 2001, or what a moving picture needs.")
     ] = None,
     integrator: Annotated[
-        str | None, typer.Option(help="taylor, dop853, rk45, radau, bdf, lsoda or rk4; the best installed.")
+        str | None,
+        typer.Option(help="taylor, compiled, dop853, rk45, radau, bdf, lsoda or rk4; the best installed."),
     ] = None,
     tolerance: Annotated[float | None, typer.Option(help="Relative error per step.")] = None,
     step: Annotated[float | None, typer.Option(help="Step of rk4, s.")] = None,

@@ -1,4 +1,4 @@
-"""Integrators by name: Taylor's method where heyoka is installed, SciPy's, and the classical Runge-Kutta."""
+"""Integrators by name: compiled by heyoka and by numba, SciPy's, and the classical Runge-Kutta."""
 
 from importlib.util import find_spec
 
@@ -7,15 +7,28 @@ import numpy as np
 from tippetop.errors import MISSING, InvalidInput, Unavailable, is_number, one_of
 from tippetop.integrators.base import Arc, Guard, Integrator, Motion
 
-__all__ = ["NAMES", "Arc", "Guard", "Integrator", "Motion", "default_name", "has_taylor", "make_integrator"]
+__all__ = [
+    "NAMES",
+    "Arc",
+    "Guard",
+    "Integrator",
+    "Motion",
+    "default_name",
+    "has_numba",
+    "has_taylor",
+    "make_integrator",
+]
 
 SCIPY_TOLERANCES = {"dop853": 1e-12, "rk45": 1e-10, "radau": 1e-9, "bdf": 1e-9, "lsoda": 1e-11}
 """SciPy's methods, with the relative error per step that each is given where nobody says."""
 
+COMPILED_TOLERANCE = 1e-13
+"""The relative error per step of the method that numba compiles, where nobody says."""
+
 LEAST_SCIPY_TOLERANCE = 2.3e-14
 """Below this SciPy's solvers do not honour a relative tolerance."""
 
-NAMES = ["taylor", *SCIPY_TOLERANCES, "rk4"]
+NAMES = ["taylor", "compiled", *SCIPY_TOLERANCES, "rk4"]
 """The integrators by the names users give."""
 
 
@@ -24,9 +37,16 @@ def has_taylor() -> bool:
     return find_spec("heyoka") is not None
 
 
+def has_numba() -> bool:
+    """Whether numba, which compiles Dormand and Prince's method, is installed."""
+    return find_spec("numba") is not None
+
+
 def default_name() -> str:
     """The best integrator that is installed."""
-    return "taylor" if has_taylor() else "dop853"
+    if has_taylor():
+        return "taylor"
+    return "compiled" if has_numba() else "dop853"
 
 
 def make_integrator(
@@ -75,18 +95,30 @@ def make_integrator(
         raise InvalidInput("tolerance", tolerance, f"a number from {least:.2g} to 1 with {name}")
     if name == "taylor":
         return _taylor(tolerance)
+    if name == "compiled":
+        return _compiled(COMPILED_TOLERANCE if tolerance is None else tolerance)
     return _scipy(name, SCIPY_TOLERANCES[name] if tolerance is None else tolerance)
 
 
 def _taylor(tolerance: float | None) -> Integrator:
     if not has_taylor():
-        raise Unavailable(
-            "the integrator taylor needs heyoka, which is not installed; accepted: "
-            + ", ".join(name for name in NAMES if name != "taylor")
-        )
+        raise _missing("taylor", "heyoka")
     from tippetop.integrators.taylor import Taylor  # noqa: PLC0415 - optional, and slow to import
 
     return Taylor() if tolerance is None else Taylor(tolerance)
+
+
+def _compiled(tolerance: float) -> Integrator:
+    if not has_numba():
+        raise _missing("compiled", "numba")
+    from tippetop.integrators.compiled_runge_kutta import CompiledRungeKutta  # noqa: PLC0415 - optional
+
+    return CompiledRungeKutta(tolerance)
+
+
+def _missing(name: str, package: str) -> Unavailable:
+    others = ", ".join(other for other in NAMES if other != name)
+    return Unavailable(f"the integrator {name} needs {package}, which is not installed; accepted: {others}")
 
 
 def _scipy(name: str, tolerance: float) -> Integrator:

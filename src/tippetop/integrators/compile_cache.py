@@ -2,7 +2,6 @@
 
 import contextlib
 import hashlib
-import os
 import sqlite3
 import threading
 from collections.abc import Iterator
@@ -12,10 +11,8 @@ from pathlib import Path
 from typing import Any
 
 import heyoka as hy
-import platformdirs
 
-VARIABLE = "TIPPETOP_CACHE"
-"""Environment variable that names another folder for the cache, or "off" for none."""
+from tippetop.integrators.cache_folder import cache_folder
 
 DATABASE = "cache.db"
 """The compiler's file in that folder."""
@@ -62,11 +59,10 @@ def use_compile_cache() -> Path | None:
     """
     # Without this the compiler complains on the terminal about a cache that it then does without.
     hy.set_logger_level_critical()
-    place = os.environ.get(VARIABLE, "")
-    if place == "off":
+    folder = cache_folder()
+    if folder is None:
         hy.llvm_state.set_diskcache_enabled(False)
         return None
-    folder = Path(place) if place else platformdirs.user_cache_path("tippetop", appauthor=False)
     with contextlib.suppress(OSError, RuntimeError):
         if drop_damaged(folder / DATABASE):
             hy.llvm_state.set_diskcache_path(folder)

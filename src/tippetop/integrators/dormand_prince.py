@@ -1,0 +1,234 @@
+"""Steps of Dormand and Prince's method of order 8(5,3), in Python that numba compiles.
+
+Hairer, Norsett and Wanner 1993, Solving Ordinary Differential Equations I, section II.10: order, error
+estimate, step sizes and dense output are as in SciPy's DOP853, from which the coefficients are taken. Sums
+are compensated: what rounding takes from the state in a step is given back in the next.
+"""
+
+import math
+from collections.abc import Callable
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.integrate import DOP853
+
+Array: TypeAlias = NDArray[np.float64]
+Compiled: TypeAlias = Callable[[Array, Array, Array], None]
+"""A function of state and parameters that puts what it makes of them into the last argument."""
+
+stages: Any = None
+more_stages: Any = None
+combined: Any = None
+polynomials: Any = None
+"""What `written_out` writes, so that numbers are in it and no loops over them."""
+
+REACHED, FULL, SUSPECT, STUCK, SINGULAR = range(5)
+"""How `advance` ends: at the end, out of room, after a step in which a guard may fall, or unable to go on."""
+
+SAFETY, LEAST_FACTOR, MOST_FACTOR = 0.9, 0.2, 10.0
+"""How much of the step that the error allows is taken, and how much steps may differ."""
+
+LOOKS = 8
+"""Parts of a step at whose ends guards are looked at."""
+
+
+def error_of(h: float, y: Array, new: Array, k: Array, tolerance: Array, room: Array) -> float:
+    """Error of a step: less than 1 is good enough."""
+    combined(y, k, room)
+    fifth, third = 0.0, 0.0
+    for i in range(len(y)):
+        scale = tolerance[1] + tolerance[0] * max(abs(y[i]), abs(new[i]))
+        fifth += (room[0, i] / scale) ** 2
+        third += (room[1, i] / scale) ** 2
+    if fifth == 0.0 and third == 0.0:
+        return 0.0
+    return h * fifth / math.sqrt((fifth + 0.01 * third) * len(y))
+
+
+def factor_for(error: float, tries: int) -> float:
+    """By how much a step of this error may be longer."""
+    if not error < 1.0:
+        # What is no number, after a step too far, is less than the least factor too.
+        factor = SAFETY * error**-0.125
+        return factor if factor > LEAST_FACTOR else LEAST_FACTOR
+    factor = MOST_FACTOR if error == 0.0 else min(MOST_FACTOR, SAFETY * error**-0.125)
+    return factor if tries == 1 else min(1.0, factor)
+
+
+def measure(a: Array, b: Array, y: Array, tolerance: Array) -> float:
+    """How large the difference of two is beside the errors that are allowed: a mean."""
+    total = 0.0
+    for i in range(len(y)):
+        total += ((a[i] - b[i]) / (tolerance[1] + tolerance[0] * abs(y[i]))) ** 2
+    return math.sqrt(total / len(y))
+
+
+def first_step(
+    rates: Compiled, p: Array, y: Array, k: Array, place: Array, span: float, tolerance: Array
+) -> float:
+    """A step to begin with, whose error is about right; k[0] has the rates."""
+    place[:] = 0.0
+    size, slope = measure(y, place, y, tolerance), measure(k[0], place, y, tolerance)
+    trial = min(span, 1e-6 if size < 1e-5 or slope < 1e-5 else 0.01 * size / slope)
+    for i in range(len(y)):
+        place[i] = y[i] + trial * k[0, i]
+    rates(place, p, k[1])
+    steepest = max(slope, measure(k[1], k[0], y, tolerance) / trial)
+    found = max(1e-6, trial * 1e-3) if steepest <= 1e-15 else (0.01 / steepest) ** 0.125
+    return min(100.0 * trial, found, span)
+
+
+def may_fall(values: Array) -> bool:
+    """Whether a guard with these values at the looks falls through zero, or may dip below it in between."""
+    last = len(values) - 1
+    for i in range(last + 1):
+        before, after = max(i - 1, 0), min(i + 1, last)
+        if values[i] > 0.0:
+            if values[after] <= 0.0:
+                return True
+            if values[i] <= min(values[before], values[after]):
+                for j in range(max(i - 2, 0), min(i + 2, last) + 1):
+                    if 2.0 * values[i] < values[j]:
+                        return True
+    return False
+
+
+def suspect(guards: Compiled, p: Array, powers: Array, values: Array) -> bool:
+    """Whether a guard may fall in a step; values has room for them at the looks, a row a guard."""
+    y, found = np.empty(powers.shape[1]), np.empty(len(values))
+    for look in range(LOOKS + 1):
+        part = look / LOOKS
+        for i in range(len(y)):
+            high = powers[4, i] + part * (powers[5, i] + part * (powers[6, i] + part * powers[7, i]))
+            low = powers[2, i] + part * (powers[3, i] + part * high)
+            y[i] = powers[0, i] + part * (powers[1, i] + part * low)
+        guards(y, p, found)
+        for guard in range(len(values)):
+            values[guard, look] = found[guard]
+    for guard in range(len(values)):  # noqa: SIM110 - numba knows no generators here
+        if may_fall(values[guard]):
+            return True
+    return False
+
+
+def advance(
+    rates: Compiled,
+    guards: Compiled,
+    count: int,
+    p: Array,
+    y: Array,
+    lost: Array,
+    k: Array,
+    span: Array,
+    tolerance: Array,
+    knots: Array,
+    terms: Array,
+) -> tuple[int, int, int]:
+    """Take steps from a state, which is brought up to date.
+
+    Parameters
+    ----------
+    rates, guards, count
+        The motion, and how many guards it has.
+    p
+        Its parameters.
+    y, lost
+        The state, and what rounding has taken from it so far.
+    k
+        Room for the rates of the stages, shape (16, size); the first have been found unless all begins here.
+    span
+        Time, the end, and the next step's size, 0 to begin with: time and size are brought up to date.
+    tolerance
+        Relative and absolute error per step.
+    knots, terms
+        Room for the ends of steps, shape (n + 1,), and for their polynomials, shape (n, 8, size).
+
+    Returns
+    -------
+    tuple
+        How many steps were taken, how often the rates were asked for, and how it ended.
+    """
+    size = len(y)
+    moved, new, place = np.empty(size), np.empty(size), np.empty(size)
+    parts, values = np.empty((7, size)), np.empty((count, LOOKS + 1))
+    time, end = span[0], span[1]
+    calls, steps = 0, 0
+    if span[2] == 0.0:
+        rates(y, p, k[0])
+        for i in range(size):
+            if not math.isfinite(k[0, i]):
+                return 0, 1, SINGULAR
+        span[2] = first_step(rates, p, y, k, place, end - time, tolerance)
+        calls += 2
+    while time < end:
+        if steps == len(terms):
+            return steps, calls, FULL
+        error, tries = 2.0, 0
+        while not error < 1.0:
+            # A step shorter than this does not move the time.
+            if not span[2] >= 10.0 * (np.nextafter(time, np.inf) - time):
+                return steps, calls, STUCK
+            reach = min(time + span[2], end)
+            h = reach - time
+            stages(rates, h, p, y, lost, k, moved, new)
+            error = error_of(h, y, new, k, tolerance, parts)
+            tries += 1
+            span[2] = h * factor_for(error, tries)
+        calls += 12 * tries + 3
+        more_stages(rates, h, p, y, lost, k, place)
+        polynomials(h, y, new, k, parts, terms[steps])
+        for i in range(size):
+            lost[i] = moved[i] - (new[i] - y[i])
+            y[i], k[0, i] = new[i], k[12, i]
+        time = reach
+        steps += 1
+        knots[steps], span[0] = time, time
+        if count > 0 and suspect(guards, p, terms[steps - 1], values):
+            return steps, calls, SUSPECT
+    return steps, calls, REACHED
+
+
+def written_out() -> str:
+    """The functions in which the method's coefficients are, as code."""
+    moved, place = "moved[i] = h * ({}) + lost[i]", "place[i] = y[i] + {}"
+    lines = ["def stages(rates, h, p, y, lost, k, moved, place):"]
+    for number, weights in enumerate([*DOP853.A[1:], DOP853.B], start=1):
+        lines += _for_each(moved.format(_sum(weights, "k")), place.format("moved[i]"))
+        lines.append(f"    rates(place, p, k[{number}])")
+    lines.append("def more_stages(rates, h, p, y, lost, k, place):")
+    for number, weights in enumerate(DOP853.A_EXTRA, start=13):
+        lines += _for_each(place.format(f"(h * ({_sum(weights, 'k')}) + lost[i])"))
+        lines.append(f"    rates(place, p, k[{number}])")
+    lines.append("def combined(y, k, found):")
+    lines += _for_each(*(f"found[{n}, i] = {_sum(row, 'k')}" for n, row in enumerate((DOP853.E5, DOP853.E3))))
+    # Of the polynomials x, x (1 - x), x^2 (1 - x), ... the ends of the step give the first three.
+    lines.append("def polynomials(h, y, new, k, parts, powers):")
+    lines += _for_each(
+        "parts[0, i] = new[i] - y[i]",
+        "parts[1, i] = h * k[0, i] - parts[0, i]",
+        "parts[2, i] = 2.0 * parts[0, i] - h * (k[0, i] + k[12, i])",
+        *(f"parts[{n}, i] = h * ({_sum(row, 'k')})" for n, row in enumerate(DOP853.D, start=3)),
+        "powers[0, i] = y[i]",
+    )
+    rows = enumerate(_powers()[1:], start=1)
+    lines += _for_each(*(f"powers[{n}, i] = {_sum(row, 'parts')}" for n, row in rows))
+    return "\n".join(lines)
+
+
+def _for_each(*assignments: str) -> list[str]:
+    return ["    for i in range(len(y)):", *(f"        {line}" for line in assignments)]
+
+
+def _sum(weights: Array, name: str) -> str:
+    return " + ".join(f"{weight!r} * {name}[{j}, i]" for j, weight in enumerate(weights.tolist()) if weight)
+
+
+def _powers() -> Array:
+    """Powers of x, shape (8, 7), in the polynomials of the dense output."""
+    found = np.zeros((8, 7))
+    for row in range(7):
+        polynomial = np.polynomial.Polynomial([0.0, 1.0]) ** (row // 2 + 1)
+        polynomial *= np.polynomial.Polynomial([1.0, -1.0]) ** ((row + 1) // 2)
+        found[: len(polynomial.coef), row] = polynomial.coef
+    return found

@@ -1,0 +1,131 @@
+"""The method that numba compiles takes SciPy's steps, on every motion, and is compiled once."""
+
+import math
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from exact_motions import KEPLER, whole
+
+from every_motion import CASES, states
+from tippetop.integrators import Motion, has_numba, make_integrator
+from tippetop.integrators.cache_folder import VARIABLE
+from tippetop.presets import report_problem
+
+if not has_numba():
+    pytest.skip("numba is not installed", allow_module_level=True)
+
+import tippetop as tt
+from tippetop.integrators.numba_cache import SEAL
+
+TOLERANCE = 1e-9
+
+
+def both(motion, parameters, start, end):
+    """The same by SciPy's method and by the compiled one."""
+    return (
+        whole(make_integrator(name, TOLERANCE).integrate(motion, parameters, (0.0, start), end))
+        for name in ("dop853", "compiled")
+    )
+
+
+def test_its_steps_are_those_of_scipys_method():
+    scipys, own = both(KEPLER.motion, KEPLER.parameters, KEPLER.start[1], KEPLER.end)
+    assert own.steps == scipys.steps
+    assert abs(own.evaluations - scipys.evaluations) <= 2
+    # The error of a step is known to few digits, and its eighth root makes the next.
+    np.testing.assert_allclose(own.solution.knots, scipys.solution.knots, rtol=1e-7)
+    np.testing.assert_allclose(own.solution.terms, scipys.solution.terms, rtol=0, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    "name", ["hull coulomb and rolling sliding", "spheroid ellipsoidal sticking", "hull viscous two"]
+)
+def test_motions_of_tops_end_where_scipys_do(name):
+    case = next(case for case in CASES if case.name.startswith(name))
+    for start in states(case.motion, 3):
+        scipys, own = both(case.motion, case.parameters, start, 2.0)
+        assert (own.guard, own.failure is None) == (scipys.guard, scipys.failure is None)
+        assert own.solution.end == pytest.approx(scipys.solution.end, rel=1e-7)
+        if own.failure is None:
+            np.testing.assert_allclose(own.end_state, scipys.end_state, rtol=0, atol=1e-6)
+
+
+def test_rounding_does_not_gather():
+    """A thousand times around."""
+    motion = Motion(lambda y, p: (y[1], -p[0] * y[0]), size=2, parameters=1)
+    arc = whole(
+        make_integrator("compiled", 3e-14).integrate(motion, (1.0,), (0.0, np.array([1.0, 0.0])), 6e3)
+    )
+    assert abs(math.hypot(*arc.end_state) - 1.0) < 1e-11
+    assert arc.steps > 5000
+
+
+def test_what_cannot_be_recorded_is_left_to_scipy():
+    def rates(y, p):
+        return (y[1], -math.sin(float(y[0])))
+
+    motion = Motion(rates, size=2, parameters=0)
+    scipys, own = both(motion, (), np.array([1.0, 0.0]), 3.0)
+    np.testing.assert_array_equal(own.solution.terms, scipys.solution.terms)
+
+
+RUN = """
+import numpy as np
+from tippetop.integrators import make_integrator, Motion
+motion = Motion(lambda y, p: (y[1], -p[0] ** 2 * y[0]), size=2, parameters=1)
+*_, arc = make_integrator("compiled").integrate(motion, (np.pi,), (0.0, np.array([1.0, 0.0])), 1.0)
+assert abs(arc.end_state[0] + 1.0) < 1e-12, arc
+"""
+
+
+def started(folder):
+    environment = {**os.environ, VARIABLE: str(folder)}
+    command = [sys.executable, "-W", "error", "-c", RUN]
+    return subprocess.Popen(
+        command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+    )
+
+
+def ended(process):
+    said, _ = process.communicate(timeout=120)
+    assert (said, process.returncode) == ("", 0)
+
+
+def contents(folder):
+    return {path: path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
+
+
+def test_processes_share_what_they_compile_and_damage_is_thrown_away(tmp_path):
+    for process in [started(tmp_path), started(tmp_path)]:
+        ended(process)
+    whole_ones = contents(tmp_path)
+    assert len(list(tmp_path.glob(f"*/{SEAL}"))) == 2, "the loop, and the motion"
+    assert not list(tmp_path.glob("making-*"))
+    ended(started(tmp_path))
+    assert contents(tmp_path) == whole_ones, "nothing was compiled again"
+    code = [path for path in whole_ones if path.suffix == ".nbc"]
+    for path in code:
+        content = bytearray(whole_ones[path])
+        content[len(content) // 2] ^= 0x40
+        path.write_bytes(content)
+    damaged = contents(tmp_path)
+    ended(started(tmp_path))
+    repaired = contents(tmp_path)
+    assert code
+    assert all(repaired[path] != damaged[path] for path in code)
+
+
+def test_a_cache_that_cannot_be_written_is_done_without(tmp_path):
+    (tmp_path / "file").write_text("no folder")
+    ended(started(tmp_path / "file"))
+
+
+def test_the_reports_run_is_that_of_the_other_integrators():
+    runs = [
+        tt.simulate(report_problem(), 2.0, samples=21, integrator=name) for name in ("compiled", "dop853")
+    ]
+    np.testing.assert_allclose(runs[0].theta, runs[1].theta, rtol=0, atol=1e-9)
+    assert runs[0].attrs["integrator"] == "compiled"
