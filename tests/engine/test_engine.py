@@ -9,7 +9,7 @@ from launches import TOLERANCE, asked, compared, in_javascript, in_python, launc
 from tippetop.engine import COMMAND, HERE
 from tippetop.engine.generate import generated
 
-COUNT, DURATION = int(os.environ.get("TIPPETOP_PARITY", "3")), 0.3
+COUNT, DURATION = int(os.environ.get("TIPPETOP_PARITY", "6")), 0.3
 
 
 def test_what_is_generated_is_current() -> None:

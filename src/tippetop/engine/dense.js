@@ -1,7 +1,9 @@
 // Solutions as polynomials in time, one a step, as in tippetop.integrators.dense.
 import { math } from "./runtime.js";
 
-export const ELEMENTARY = math;
+/** Elementary functions of numbers, and of the nodes of a graph. */
+const of = (name) => (x) => (typeof x === "number" ? math[name](x) : x.graph.call(name, x));
+export const ELEMENTARY = { sin: of("sin"), cos: of("cos") };
 export const as_array = (numbers) => Float64Array.from(numbers);
 
 const NEWTON = 6;
@@ -14,8 +16,10 @@ export function chebyshev(degree) {
   const count = degree + 1;
   const angles = Array.from({ length: count }, (_, j) => (Math.PI * (j + 0.5)) / count);
   const places = angles.map((angle) => 0.5 - 0.5 * Math.cos(angle));
-  const transform = angles.map((_, k) =>
-    angles.map((angle) => ((k ? 2 : 1) / count) * (k % 2 ? -1 : 1) * Math.cos(k * angle)));
+  const transform = Float64Array.from({ length: count * count }, (_, place) => {
+    const k = Math.floor(place / count);
+    return ((k ? 2 : 1) / count) * (k % 2 ? -1 : 1) * Math.cos(k * angles[place % count]);
+  });
   const powers = [Float64Array.of(1), Float64Array.of(-1, 2)];
   for (let k = 2; k < count; k += 1) {
     const next = new Float64Array(k + 1);
@@ -32,11 +36,17 @@ export function chebyshev(degree) {
 
 /** Coefficients in powers of a polynomial with some values at Chebyshev's points, put in `out` from `at` on. */
 export function toPowers(values, degree, out, at = 0) {
-  const { transform, powers } = chebyshev(degree);
-  for (let k = 0; k <= degree; k += 1) {
-    const row = transform[k], terms = powers[k];
+  const { transform, powers } = chebyshev(degree), first = values[0];
+  let same = 1;
+  while (same <= degree && values[same] === first) same += 1;
+  if (same > degree) {
+    out[at] = first;
+    return;
+  }
+  for (let k = 0, place = 0; k <= degree; k += 1) {
+    const terms = powers[k];
     let weight = 0;
-    for (let j = 0; j <= degree; j += 1) weight += row[j] * values[j];
+    for (let j = 0; j <= degree; j += 1, place += 1) weight += transform[place] * values[j];
     for (let i = 0; i <= k; i += 1) out[at + i] += weight * terms[i];
   }
 }
@@ -133,28 +143,30 @@ export class DenseSolution {
   static joined(parts) {
     if (parts.length === 1) return parts[0];
     const knots = parts.flatMap((part, i) => Array.from(part.knots).slice(i ? 1 : 0));
-    const terms = new Float64Array(parts.reduce((total, part) => total + part.terms.length, 0));
+    const wide = parts[0].size * (parts[0].degree + 1), terms = new Float64Array((knots.length - 1) * wide);
     let at = 0;
     for (const part of parts) {
-      terms.set(part.terms, at);
-      at += part.terms.length;
+      terms.set(part.terms.subarray(0, part.count * wide), at);
+      at += part.count * wide;
     }
     return new DenseSolution(knots, terms, parts[0].size, parts[0].degree);
   }
 
   /** Polynomials that agree with a function, from a time to numbers, at Chebyshev's points of every step. */
   static fitted(function_, knots, degree) {
-    const { places } = chebyshev(degree), count = knots.length - 1;
-    let terms = null, size = 0;
+    const { places } = chebyshev(degree), count = knots.length - 1, wide = degree + 1;
+    let terms = null, size = 0, values = null;
     for (let step = 0; step < count; step += 1) {
-      const rows = places.map((place) => function_(knots[step] + place * (knots[step + 1] - knots[step])));
-      if (terms === null) {
-        size = rows[0].length;
-        terms = new Float64Array(count * size * (degree + 1));
+      for (let place = 0; place < wide; place += 1) {
+        const row = function_(knots[step] + places[place] * (knots[step + 1] - knots[step]));
+        if (terms === null) {
+          size = row.length;
+          terms = new Float64Array(count * size * wide);
+          values = Array.from({ length: size }, () => new Float64Array(wide));
+        }
+        for (let number = 0; number < size; number += 1) values[number][place] = row[number];
       }
-      for (let number = 0; number < size; number += 1) {
-        toPowers(rows.map((row) => row[number]), degree, terms, (step * size + number) * (degree + 1));
-      }
+      for (let number = 0; number < size; number += 1) toPowers(values[number], degree, terms, (step * size + number) * wide);
     }
     return new DenseSolution(Array.from(knots), terms, size, degree);
   }

@@ -366,7 +366,7 @@ function _reaches_out(number, shapes) {
     if (py.max(ahead) > py.mul(REACH, own.size)) {
       return true;
     }
-    const best = ahead.index(py.max(ahead));
+    const best = ahead.indexOf(py.max(ahead));
     [low, high] = [py.item(looks, py.max(py.sub(best, 1), 0)), py.item(looks, py.min(py.add(best, 1), LOOKS))];
   }
   return false;

@@ -1,9 +1,10 @@
 // What a mode says of its numbers, and what is read off a state: the mechanics, compiled once a kind.
 import {
-  State, angular_velocity, axial_spin, axis_sine, contact_vector, dot, energy, jellett,
+  Flight, State, angular_velocity, axial_spin, axis_sine, contact_vector, dot, energy, fly, jellett,
   point_velocity, precession_rate, slip_along_tilt, tilt_rate, turn_rate, twisting_powers,
 } from "./mechanics.js";
 import { compiled } from "./compile.js";
+import { ELEMENTARY } from "./dense.js";
 import { cached, replace } from "./runtime.js";
 
 export const STATE = 0, FORCE = 10, TORQUE = 13, POWER = 16, ENERGY = 17, JELLETT = 18, DRILLING = 19, ROLLING = 20,
@@ -37,6 +38,20 @@ function observing(mode, kinds, size) {
   };
   return compiled(values, size, count + 1, OUTPUTS);
 }
+
+const flying = cached((kind) =>
+  compiled((y, p) => fly(State.unpack(p), y[0], kind.top(p.slice(10)), ELEMENTARY).pack(), 1, 10 + kind.numbers, 10));
+
+/** A flight's numbers as a function of its time, compiled. */
+Flight.prototype._numbers = function numbers(state) {
+  const code = flying(this.top.kind), given = Float64Array.of(...state.pack(), ...this.top.numbers);
+  const time = new Float64Array(1), out = new Float64Array(10);
+  return (elapsed) => {
+    time[0] = elapsed;
+    code(time, given, out);
+    return out;
+  };
+};
 
 /** What is seen of a state on the surface that is lowest. */
 export function seen(top) {

@@ -2,14 +2,20 @@
 
 const LOOKS = 32;
 
+/** How far a polynomial goes at most from where it starts. */
+export function reach(terms, from, degree) {
+  let total = 0;
+  for (let k = from + degree; k > from; k -= 1) total += Math.abs(terms[k]);
+  return total;
+}
+
 /** A polynomial: coefficients in increasing order, from a place in an array on. */
 export class Polynomial {
   constructor(terms, from, degree) {
     this.terms = terms;
     this.from = from;
     this.degree = degree;
-    this.reach = 0;
-    for (let k = 1; k <= degree; k += 1) this.reach += Math.abs(terms[from + k]);
+    this.reach = reach(terms, from, degree);
   }
 
   get start() {

@@ -4,7 +4,7 @@ import { make_integrator } from "./integrate.js";
 import { observed, seen } from "./observe.js";
 import * as of from "./observe.js";
 import { InvalidInput } from "./part.js";
-import { Polynomial, gauss } from "./polynomials.js";
+import { Polynomial, gauss, reach } from "./polynomials.js";
 import { math } from "./runtime.js";
 import { CATALOGUE, NEAR_FINAL, NEAR_POLE } from "./tables.js";
 
@@ -45,6 +45,7 @@ export class Run {
     this.trajectory = new m.Trajectory(launch, duration / this.units.time, make_integrator("dop853", tolerance));
     this.pieces = [];
     this.hops = [];
+    [this.pressed, this.tips] = [[], []];
     this.landed = true;
     this.out = new Float64Array(of.OUTPUTS);
     this.sums = new Float64Array(SUMS);
@@ -96,7 +97,7 @@ export class Run {
 
   /** See that energy and work balance where a step begins, and what else the motion keeps. */
   monitor(piece, step) {
-    const out = this.look(piece, step, 0), { off } = this, [x, y, z] = out;
+    const out = this.look(piece, step, 0), { off } = this, x = out[0], y = out[1], z = out[2];
     off.imbalance = Math.max(off.imbalance, Math.abs(out[of.ENERGY] - this.energy - this.sums[WORK]));
     off.largest = Math.max(off.largest, out[of.ENERGY]);
     off.stretch = Math.max(off.stretch, Math.abs(Math.sqrt(x * x + y * y + z * z) - 1));
@@ -113,18 +114,21 @@ export class Run {
       this.sums[TURN] += (pole - this.pole) * Math.atan2(solution.value(step, 1, 0), solution.value(step, 0, 0));
       this.pole = pole;
     }
-    piece.sums.push(this.sums.slice());
+    for (let i = 0; i < SUMS; i += 1) piece.sums.push(this.sums[i]);
     piece.poles.push(pole);
-    const forces = this.along(piece, step, 1, span, pole, this.sums);
-    if (presses) {
-      const least = Math.min(...forces), most = Math.max(...forces);
-      if (least - 0.5 * (most - least) <= this.leastForce) this.press(piece, step);
-    }
+    this.along(piece, step, 1, span, pole, this.sums);
+    if (!presses) return;
+    const { least, most } = this;
+    this.leastForce = Math.min(this.leastForce, least);
+    // Between Gauss's points, and beyond them, it is lower by a part of what it varies by there.
+    const bound = least - 0.5 * (most - least);
+    if (bound <= this.leastForce) this.pressed.push([bound, piece, step]);
   }
 
   /** Add to sums what is gained up to a part of a step; the normal forces on the way. */
   along(piece, step, part, span, pole, sums) {
-    const { nodes, weights } = piece.rule, forces = [];
+    const { nodes, weights } = piece.rule;
+    [this.least, this.most] = [Infinity, -Infinity];
     for (let i = 0; i < nodes.length; i += 1) {
       const out = this.look(piece, step, part * nodes[i], pole), share = weights[i] * part * span;
       sums[X] += share * out[6];
@@ -133,9 +137,9 @@ export class Run {
       sums[WORK] += share * out[of.POWER];
       sums[DRILLED] -= share * out[of.DRILLING];
       sums[ROLLED] -= share * out[of.ROLLING];
-      forces.push(out[of.FORCE + 2]);
+      this.least = Math.min(this.least, out[of.FORCE + 2]);
+      this.most = Math.max(this.most, out[of.FORCE + 2]);
     }
-    return forces;
   }
 
   /** The least normal force in a step. */
@@ -156,20 +160,39 @@ export class Run {
 
   /** Take in the motion of the tip of the axis. */
   tip(solution, step) {
-    const tip = new Polynomial(...polynomialAt(solution, step, 2)), { start, reach } = tip;
-    if (start - reach < this.down) this.down = Math.min(this.down, tip.least()[1]);
-    if (start + reach > this.up) this.up = Math.max(this.up, -tip.least(-1)[1]);
-    if (Number.isNaN(this.turned) && start - reach <= 0 && start + reach >= 0) {
-      this.turned = timeAt(solution, step, tip.firstFall(1, 0, true));
+    const from = (step * solution.size + 2) * (solution.degree + 1), start = solution.terms[from];
+    const far = reach(solution.terms, from, solution.degree), lowest = start - far, highest = start + far;
+    const turns = this.turned !== this.turned && lowest <= 0 && highest >= 0;
+    if (lowest >= this.down && highest <= this.up && !turns) return;
+    if (lowest < this.down || highest > this.up) this.tips.push([lowest, highest, solution, from]);
+    this.down = Math.min(this.down, start);
+    this.up = Math.max(this.up, start);
+    if (turns) this.turned = timeAt(solution, step, new Polynomial(solution.terms, from, solution.degree).firstFall(1, 0, true));
+  }
+
+  /** Look at the steps in which there may be less of something than was seen so far. */
+  refine() {
+    if (!this.hops.length) {
+      for (const [bound, piece, step] of this.pressed) if (bound <= this.leastForce) this.press(piece, step);
     }
+    const last = this.trajectory.state.axis[2];
+    [this.down, this.up] = [Math.min(this.down, last), Math.max(this.up, last)];
+    for (const [lowest, highest, solution, from] of this.tips) {
+      const tip = new Polynomial(solution.terms, from, solution.degree);
+      if (lowest < this.down) this.down = Math.min(this.down, tip.least()[1]);
+      if (highest > this.up) this.up = Math.max(this.up, -tip.least(-1)[1]);
+    }
+    [this.pressed, this.tips] = [null, null];
   }
 
   /** First time at which n_z is in a band. */
   arrival(low, high) {
     for (const { solution } of this.pieces) {
       for (let step = 0; step < solution.count; step += 1) {
-        const tip = new Polynomial(...polynomialAt(solution, step, 2)), { start, reach } = tip;
-        if (start - reach > high || start + reach < low) continue;
+        const from = (step * solution.size + 2) * (solution.degree + 1), start = solution.terms[from];
+        const far = reach(solution.terms, from, solution.degree);
+        if (start - far > high || start + far < low) continue;
+        const tip = new Polynomial(solution.terms, from, solution.degree);
         const part = start > high ? tip.firstFall(1, -high) : start < low ? tip.firstFall(-1, low) : 0;
         if (!Number.isNaN(part)) return timeAt(solution, step, part);
       }
@@ -191,6 +214,7 @@ export class Run {
     }));
     this.flights = this.hops.map(([start, end, gap]) => (
       { start: start * units.time, end: end * units.time, highestGap: gap * units.length }));
+    this.refine();
     this.metrics = this.numbers();
     this.ending = this.ended === undefined || this.ended === null ? "failed" : ending(this.ended, this.metrics.final_theta);
     return this;
@@ -281,7 +305,7 @@ export class Run {
     const piece = this.pieceAt(time), { solution } = piece, step = solution.step(time);
     const from = solution.knots[step], span = solution.knots[step + 1] - from;
     const part = Math.min(Math.max((time - from) / (span > 0 ? span : 1), 0), 1);
-    const sums = piece.sums[step].slice(), pole = piece.poles[step];
+    const sums = piece.sums.slice(step * SUMS, (step + 1) * SUMS), pole = piece.poles[step];
     this.along(piece, step, part, span, pole, sums);
     this.tell(track, i, this.look(piece, step, part, pole), sums, pole);
     track.mode.push(piece.mode.label);
