@@ -22,7 +22,13 @@ ARITHMETIC = {
     ast.BitAnd: ("and", "&", BITS),
 }
 COMPARISONS = {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">="}
-STRINGS = {"startswith": "startsWith", "endswith": "endsWith", "lower": "toLowerCase", "append": "push", "index": "indexOf"}
+STRINGS = {
+    "startswith": "startsWith",
+    "endswith": "endsWith",
+    "lower": "toLowerCase",
+    "append": "push",
+    "index": "indexOf",
+}
 METHODS = {"removeprefix", "rpartition", "partition", "tolist", "join", "extend", "pop", "setdefault"}
 """Methods of Python's own types that are functions of the runtime."""
 
