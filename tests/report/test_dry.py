@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from judging import assert_drawn, assert_judged, assert_judged_otherwise
 from tippetop.frictions import ContensouFriction
 from tippetop.mechanics.motion import angular_velocity
 from tippetop.mechanics.top import natural_units
@@ -119,11 +120,7 @@ def test_a_patch_creeps_as_viscous_friction_and_turns_over_nearly_so(computed: d
     ],
 )
 def test_verdicts(computed: dict[str, xr.Dataset], name: str, verdict: Verdict) -> None:
-    claim = CLAIMS[name]
-    found = claim.judge(computed, quick=True)
-    assert found.verdict is verdict
-    assert claim.figure in PLATES
-    assert "nan" not in found.finding.note
+    assert_judged(computed, name, verdict)
 
 
 @pytest.mark.parametrize(
@@ -143,18 +140,12 @@ def test_verdicts(computed: dict[str, xr.Dataset], name: str, verdict: Verdict) 
 def test_verdicts_follow_the_data(
     computed: dict[str, xr.Dataset], name: str, experiment: str, change: dict[str, float], verdict: Verdict
 ) -> None:
-    data = computed[experiment]
-    other = data.assign(
-        {variable: xr.full_like(data[variable], value, float) for variable, value in change.items()}
-    )
-    assert CLAIMS[name].judge(computed | {experiment: other}, quick=True).verdict is verdict
+    assert_judged_otherwise(computed, name, experiment, change, verdict)
 
 
 @pytest.mark.parametrize("plate", FRICTION, ids=lambda plate: plate.id)
 def test_every_figure_is_drawn_from_quick_data(computed: dict[str, xr.Dataset], plate: Plate) -> None:
-    figure = plate.draw(plate.dataset(computed))
-    assert figure.axes
-    assert all(axes.has_data() for axes in figure.axes)
+    assert_drawn(computed, plate)
 
 
 def test_the_section_comes_after_why_and_has_its_claims() -> None:

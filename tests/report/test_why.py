@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from judging import assert_drawn, assert_judged
 from tippetop.presets import REPORT
 from tippetop.report.claim import Verdict
 from tippetop.report.claims.registry import CLAIMS
@@ -141,11 +142,7 @@ def test_nutation_stays_between_its_turning_points(computed: dict[str, xr.Datase
     ],
 )
 def test_verdicts(computed: dict[str, xr.Dataset], name: str, verdict: Verdict) -> None:
-    claim = CLAIMS[name]
-    found = claim.judge(computed, quick=True)
-    assert found.verdict is verdict
-    assert claim.figure in PLATES
-    assert "nan" not in found.finding.note
+    assert_judged(computed, name, verdict)
 
 
 def test_claims_follow_the_data(computed: dict[str, xr.Dataset]) -> None:
@@ -164,9 +161,7 @@ def test_claims_follow_the_data(computed: dict[str, xr.Dataset]) -> None:
 
 @pytest.mark.parametrize("plate", WHY, ids=lambda plate: plate.id)
 def test_every_figure_is_drawn_from_quick_data(computed: dict[str, xr.Dataset], plate: Plate) -> None:
-    figure = plate.draw(plate.dataset(computed))
-    assert figure.axes
-    assert all(axes.has_data() for axes in figure.axes)
+    assert_drawn(computed, plate)
 
 
 def test_the_page_has_a_section_of_its_own(tmp_path: Path) -> None:

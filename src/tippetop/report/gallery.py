@@ -12,6 +12,7 @@ from tippetop.figures.model import model_drawing
 from tippetop.figures.tippe_top import tippe_top_drawing
 from tippetop.report.experiments.flights import HOPS_WINDOW, MU, TILT
 from tippetop.report.gallery_friction import PLATES as FRICTION
+from tippetop.report.gallery_real import PLATES as REAL
 from tippetop.report.gallery_why import PLATES as WHY
 from tippetop.report.plate import Plate
 from tippetop.report.quoted import (
@@ -301,6 +302,7 @@ PLATES: dict[str, Plate] = {
         ),
         *WHY,
         *FRICTION,
+        *REAL,
     )
 }
 """Every figure by its name, in the order of the page."""

@@ -25,7 +25,11 @@ SECTIONS: dict[str, tuple[str, str]] = {
         "only mu t counts. These figures show what follows.",
     ),
     "Friction": ("Friction", ""),
-    "Real tops": ("Real tops", ""),
+    "Real tops": (
+        "Real tops",
+        "The report's top is a sphere without a stem. Real ones have a stem that strikes the table. Eggs, "
+        "disks and balls that spin are bodies of revolution as well, which the same equations move.",
+    ),
 }
 """Titles and opening words of the page's sections, by what the report calls them; those without a claim or a
 figure are left out."""

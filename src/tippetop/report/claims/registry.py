@@ -10,12 +10,26 @@ from tippetop.report.claims import (
     friction,
     launches,
     methods,
+    real,
     spins,
     steady,
     why,
 )
 
-_CHAPTERS = (launches, end_state, spins, friction, flight, abnormal, equations, steady, methods, why, dry)
+_CHAPTERS = (
+    launches,
+    end_state,
+    spins,
+    friction,
+    flight,
+    abnormal,
+    equations,
+    steady,
+    methods,
+    why,
+    dry,
+    real,
+)
 
 CLAIMS: dict[str, Claim] = {claim.id: claim for module in _CHAPTERS for claim in module.CHAPTER.claims}
 """Every claim by its name, in the order of the report."""

@@ -9,6 +9,7 @@ from tippetop.report.experiments import (
     friction,
     methods,
     patches,
+    real,
     runs,
     spins,
     theory,
@@ -29,6 +30,7 @@ EXPERIMENTS: dict[str, Experiment] = {
         theory_runs,
         dry,
         patches,
+        real,
     )
     for experiment in module.EXPERIMENTS
 }

@@ -1,0 +1,100 @@
+"""Real tops: a stem that strikes, stems that are stood upon, an egg, a disk and two balls."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+import tippetop.figures.annotation as mark
+from tippetop.figures.style import ACCENT, CONVERGED, CYCLE, DASHED, INK, MUTED, WIDTH, house_style, pi_ticks
+
+
+@house_style()
+def leine_figure(data: xr.Dataset) -> Figure:
+    """Return the tilt of Leine and Glocker's top, with what its stem does.
+
+    `data` has theta over pressure and time, and over pressure stem, back, both and apart.
+    """
+    figure = Figure(figsize=(WIDTH, 4.2))
+    axes = figure.subplots()
+    for pressure, tilt, color in zip(
+        data["pressure"].values, data["theta"], (CONVERGED, MUTED), strict=False
+    ):
+        axes.plot(data["time"], tilt, color=color, label=str(pressure))
+    main = data.isel(pressure=0)
+    axes.axvspan(float(main["both"]), float(main["apart"]), color=ACCENT, alpha=0.15, lw=0)
+    for name, text, side in (("stem", "stem touches", 4), ("back", "back on its sphere", -4)):
+        time = float(main[name])
+        axes.axvline(time, color=ACCENT, ls=DASHED, lw=1.0)
+        mark.note(axes, text, (time, 0.06), (side, 0), ACCENT, xycoords=mark.ALONG_X)
+    mark.note(axes, "on both", (float(main["apart"]), 0.06), (4, 0), ACCENT, xycoords=mark.ALONG_X)
+    axes.set_xlim(0, float(data["time"][-1]))
+    axes.set_ylim(0, np.pi + 0.1)
+    pi_ticks(axes.yaxis)
+    axes.set(xlabel="time (s)", ylabel=r"tilt $\theta$ (rad)")
+    mark.legend_above(axes, 2)
+    return figure
+
+
+@house_style()
+def stems_figure(data: xr.Dataset) -> Figure:
+    """Return the final tilt, and Jellett's integral about the tip over what it takes, by the tip's radius.
+
+    `data` has final_theta, jellett and jellett_needed over radius.
+    """
+    figure = Figure(figsize=(WIDTH, 4.8))
+    above, below = figure.subplots(2, 1, sharex=True)
+    mark.letters((above, below))
+    radius = 1e3 * data["radius"].values
+    above.plot(radius, data["final_theta"], "o-", color=CONVERGED)
+    above.set_ylabel(r"tilt at the end (rad)")
+    below.plot(radius, data["jellett"] / data["jellett_needed"], "o-", color=CONVERGED)
+    below.axhline(1.0, color=ACCENT, ls=DASHED, lw=1.2)
+    mark.note(below, "stands above", (radius[0], 1.0), (4, 6), ACCENT)
+    below.set(xlabel="radius of the stem's tip (mm)", ylabel="Jellett's integral / needed")
+    return figure
+
+
+@house_style()
+def egg_figure(data: xr.Dataset) -> Figure:
+    """Return the tilt of eggs that are spun on their sides, with their first lift-offs.
+
+    `data` has theta over rate and time, and lift_off over rate.
+    """
+    figure = Figure(figsize=(WIDTH, 4.0))
+    axes = figure.subplots()
+    for rate, tilt, lift, color in zip(data["rate"], data["theta"], data["lift_off"], CYCLE, strict=False):
+        axes.plot(data["time"], tilt, color=color, lw=1.2, label=f"{float(rate):g} rad/s")
+        if np.isfinite(lift):
+            axes.plot(float(lift), float(np.interp(lift, data["time"], tilt)), "o", color=INK, zorder=5)
+    axes.set_xlim(0, float(data["time"][-1]))
+    axes.set_ylim(np.pi / 2 - 0.2, np.pi + 0.1)
+    pi_ticks(axes.yaxis)
+    axes.set(xlabel="time (s)", ylabel=r"tilt $\theta$ (rad)")
+    axes.set_ylim(np.pi / 2 - 0.2, np.pi + 0.1)
+    mark.legend_above(axes, 4)
+    return figure
+
+
+@house_style()
+def rolling_figure(data: xr.Dataset) -> Figure:
+    """Return precessions of a disk and of two balls that roll with their centres at rest, by their tilts.
+
+    `data` has disk_tilt, disk_measured and disk_precession over disk, the same of balls, and the attributes
+    disk_radius_m and gravity.
+    """
+    figure = Figure(figsize=(WIDTH, 3.8))
+    left, right = figure.subplots(1, 2)
+    mark.letters((left, right))
+    for axes, name in ((left, "disk"), (right, "balls")):
+        tilt = data[f"{name}_tilt"]
+        axes.plot(tilt, data[f"{name}_precession"], color=CONVERGED, label="closed formula")
+        axes.plot(tilt, data[f"{name}_measured"], "o", color=ACCENT, label="runs")
+        axes.set(xlabel=r"tilt $\theta$ (rad)", title=f"{name}")
+    thin = np.sqrt(4 * data.attrs["gravity"] / (data.attrs["disk_radius_m"] * np.sin(data["disk_tilt"])))
+    left.plot(data["disk_tilt"], thin, color=INK, ls=DASHED, lw=1.0, label="thin disk")
+    left.set_ylabel("precession (rad/s)")
+    left.legend()
+    right.legend()
+    return figure

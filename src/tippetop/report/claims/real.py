@@ -1,0 +1,185 @@
+"""What was published of tops with stems, eggs, disks and balls, against exact runs."""
+
+import numpy as np
+import xarray as xr
+
+from tippetop.report.claim import Chapter, Finding, Source
+from tippetop.report.tolerance import ROUNDING, Tolerance
+
+CHAPTER = Chapter()
+
+_READ = Tolerance(0.15, "times are read off a plot of 8 s that is some centimetres wide")
+
+_LEINE = Source("Real tops: Leine and Glocker, Eur. J. Mech. A/Solids 22 (2003) 193")
+
+_THIN = Tolerance(0.02, "2 %: the disk of the toy has a thickness, and the formula is for one that has none")
+
+
+def _leine_note(data: xr.Dataset) -> str:
+    listed = "; ".join(
+        f"{name}: {float(row['stem']):.5f}, {float(row['back']):.5f}, {float(row['both']):.5f} to "
+        f"{float(row['apart']):.5f} s"
+        for name, row in zip(
+            data["pressure"].values,
+            (data.isel(pressure=k) for k in range(data.sizes["pressure"])),
+            strict=True,
+        )
+    )
+    return (
+        "The stem touches, the sphere touches again, and both touch, by the pressure in the patch: "
+        f"{listed}. Energy and work balance to {float(data['energy_error'].max()):.0e} of the energy."
+    )
+
+
+@CHAPTER.claim(
+    "real-leine-stem",
+    _LEINE,
+    "The stem of Leine and Glocker's top touches the table after 1.5 s.",
+    "1.5 s",
+    tolerance=_READ,
+    needs=("real-leine",),
+    figure="real-leine",
+)
+def _(data: xr.Dataset) -> Finding:
+    return Finding(None, float(data["stem"][0]), _leine_note(data))
+
+
+@CHAPTER.claim(
+    "real-leine-back",
+    _LEINE,
+    "It falls back on its sphere after 4.5 s.",
+    "4.5 s",
+    tolerance=_READ,
+    needs=("real-leine",),
+    figure="real-leine",
+)
+def _(data: xr.Dataset) -> Finding:
+    return Finding(None, float(data["back"][0]), _leine_note(data))
+
+
+@CHAPTER.claim(
+    "real-leine-both",
+    _LEINE,
+    "Sphere and stem both touch from 4.6 s on.",
+    "4.6 s",
+    tolerance=_READ,
+    needs=("real-leine",),
+    figure="real-leine",
+)
+def _(data: xr.Dataset) -> Finding:
+    return Finding(None, float(data["both"][0]), _leine_note(data))
+
+
+@CHAPTER.claim(
+    "real-leine-apart",
+    _LEINE,
+    "Sphere and stem both touch until 5.4 s.",
+    "5.4 s",
+    tolerance=_READ,
+    needs=("real-leine",),
+    figure="real-leine",
+)
+def _(data: xr.Dataset) -> Finding:
+    return Finding(None, float(data["apart"][0]), _leine_note(data))
+
+
+@CHAPTER.claim(
+    "real-stem-test",
+    Source("Real tops: Rauch-Wojciechowski, Regular and Chaotic Dynamics 10 (2005) 333"),
+    "A top stands on its stem where Jellett's integral about the tip is large enough for a spin upright to "
+    "be stable.",
+    needs=("real-stems",),
+    figure="real-stems",
+)
+def _(data: xr.Dataset) -> Finding:
+    stands = (data["final_theta"] > np.pi - data.attrs["upright_rad"]).values
+    enough = (data["jellett"] > data["jellett_needed"]).values
+    share = (data["jellett"] / data["jellett_needed"]).values
+    return Finding(
+        None,
+        bool((stands == enough).all()),
+        f"{int(stands.sum())} of {len(stands)} stems of the report's top, whose tips have radii of "
+        f"{1e3 * float(data['radius'].min()):g} to {1e3 * float(data['radius'].max()):g} mm, are stood upon "
+        f"after {data.attrs['window_s']:g} s. Jellett's integral is {share.min():.3f} to {share.max():.3f} "
+        "of the least as they touch. It does not change while the tip alone touches, and a top that lacks it "
+        "falls back.",
+    )
+
+
+@CHAPTER.claim(
+    "real-egg-rises",
+    Source("Real tops: Moffatt and Shimomura, Nature 416 (2002) 385"),
+    "A hard-boiled egg that is spun fast enough on its side rises until it stands on its end.",
+    needs=("real-egg",),
+    figure="real-egg",
+)
+def _(data: xr.Dataset) -> Finding:
+    final = data["theta"].isel(time=-1)
+    listed = "; ".join(
+        f"{float(rate):g} rad/s: {float(tilt):.3f}" for rate, tilt in zip(data["rate"], final, strict=True)
+    )
+    upright = float(final.isel(rate=-1)) > np.pi - 0.1
+    return Finding(
+        None,
+        bool(upright),
+        f"Tilt after {float(data['time'][-1]):g} s, rad, by the rate at launch: {listed}. Viscous friction "
+        f"of {data.attrs['mu_s_per_m']:g} s/m.",
+    )
+
+
+@CHAPTER.claim(
+    "real-egg-jumps",
+    Source("Real tops: Mitsui, Aihara, Terayama, Kobayashi and Shimomura, Proc. R. Soc. A 462 (2006) 2897"),
+    "A spinning egg may leave the table while it rises.",
+    needs=("real-egg",),
+    figure="real-egg",
+)
+def _(data: xr.Dataset) -> Finding:
+    lifts = data["lift_off"].dropna("rate")
+    times = ", ".join(f"{float(t):.3f} s at {float(t['rate']):g} rad/s" for t in lifts)
+    return Finding(None, bool(len(lifts)), f"First lift-offs: {times or 'none'}.")
+
+
+@CHAPTER.claim(
+    "real-disk-rate",
+    Source("Real tops: Moffatt, Nature 404 (2000) 833"),
+    "The contact point of a disk goes round at the rate sqrt(4 g / (R sin(theta))) (least and largest ratio "
+    "to it in runs, the farther from 1).",
+    "1",
+    tolerance=_THIN,
+    needs=("real-rolling",),
+    figure="real-rolling",
+)
+def _(data: xr.Dataset) -> Finding:
+    near = data["disk_tilt"].values < 0.35
+    thin = np.sqrt(
+        4 * data.attrs["gravity"] / (data.attrs["disk_radius_m"] * np.sin(data["disk_tilt"].values))
+    )
+    ratio = (data["disk_measured"].values / thin)[near]
+    return Finding(
+        None,
+        float(ratio[np.abs(ratio - 1.0).argmax()]),
+        "The toy of 75 mm and 12.5 mm thickness, at tilts up to "
+        f"{float(data['disk_tilt'].values[near].max()):g} rad. The tilt keeps to "
+        f"{float(data['disk_drift'].max()):.0e} rad in runs on dry friction.",
+    )
+
+
+@CHAPTER.claim(
+    "real-hurricane-balls",
+    Source("Real tops: Jackson, Mertens and Pearson, Am. J. Phys. 83 (2015) 959"),
+    "Hurricane balls lean at cos(theta) = 2/5 - g / (Omega^2 R) (its residual in runs, largest).",
+    "0",
+    tolerance=ROUNDING,
+    needs=("real-rolling",),
+    figure="real-rolling",
+)
+def _(data: xr.Dataset) -> Finding:
+    rate, tilt = data["balls_measured"].values, data["balls_tilt"].values
+    off = np.cos(tilt) - 2 / 5 + data.attrs["gravity"] / (rate**2 * data.attrs["ball_radius_m"])
+    return Finding(
+        None,
+        float(np.abs(off).max()),
+        f"Runs at {rate.min():.1f} to {rate.max():.1f} rad/s on dry friction, whose tilts keep to "
+        f"{float(data['balls_drift'].max()):.0e} rad. Slower than sqrt(5 g / (2 R)) none is.",
+    )

@@ -1,0 +1,214 @@
+"""Tops and other toys as they are: stems that the table strikes, an egg, a disk, and two balls."""
+
+import math
+
+import numpy as np
+import xarray as xr
+
+from tippetop.bodies import Body, Shape, Sphere
+from tippetop.frictions import ContensouFriction, CoulombFriction, ViscousFriction
+from tippetop.mechanics.top import Top
+from tippetop.presets import EGG, EULER_DISK, HURRICANE_BALLS, LEINE_GLOCKER_STEM, REPORT_STEM, report_problem
+from tippetop.problem import Launch, Problem
+from tippetop.report.experiment import Experiment, variable
+from tippetop.run import simulate
+from tippetop.theory.resting_center import RestingCenter, resting_center
+from tippetop.theory.stem import jellett_about, least_jellett_to_stand
+
+LEINE = Problem(
+    body=LEINE_GLOCKER_STEM,
+    friction=ContensouFriction(mu=0.3, patch_radius=5e-4, pressure="ellipsoidal"),
+    launch=Launch(tilt=0.1, spin=180.0, velocity=(0.0, 0.0, 0.0)),
+    gravity=9.81,
+)
+"""The launch of Leine and Glocker (2003), with their stem."""
+
+LEINE_WINDOW = 8.0
+"""How long they follow it, s."""
+
+REACH = 0.03
+"""Height of the stem's end above the centre of mass, the same for all stems, m."""
+
+STEM_WINDOW = 20.0
+"""How long tops with stems are followed, s."""
+
+UPRIGHT_ON_STEM = 0.1
+"""Tilt short of pi at the end, rad, within which a top stands on its stem."""
+
+EGG_MU = 1.0
+"""Viscous friction under the egg, s/m."""
+
+EGG_WINDOW = 8.0
+"""How long eggs are followed, s."""
+
+ROUGH = CoulombFriction(mu=1.0)
+"""Friction that lets nothing slip here."""
+
+ROLLING_WINDOW = 0.2
+"""How long steady rolling is followed, s: some turns."""
+
+
+def happenings(run: xr.Dataset, kind: str, surface: int | None = None) -> np.ndarray:
+    """Times of all events of a kind, to one surface or to any, s."""
+    which = run["event_kind"].values == kind
+    if surface is not None:
+        which &= run["event_surface"].values == surface
+    found: np.ndarray = run["event_time"].values[which]
+    return found
+
+
+def _first(times: np.ndarray, after: float = 0.0) -> float:
+    later = times[times > after]
+    return float(later[0]) if len(later) else math.nan
+
+
+def _leine(quick: bool) -> xr.Dataset:
+    """Leine and Glocker's top: when the stem strikes, when it falls back, and how long it rests on both."""
+    pressures = ["ellipsoidal"] if quick else ["ellipsoidal", "hertz"]
+    runs = [
+        simulate(LEINE.replace({"friction.pressure": name}), LEINE_WINDOW, samples=801) for name in pressures
+    ]
+    both = [_first(happenings(run, "double contact")) for run in runs]
+    columns = {
+        "stem": ([_first(happenings(run, "touchdown", 1)) for run in runs], "first touch of the stem"),
+        "back": (
+            [_first(happenings(run, "touchdown", 0)) for run in runs],
+            "first touch of the sphere again",
+        ),
+        "both": (both, "beginning of double contact"),
+        "apart": (
+            [_first(happenings(run, "opening"), t) for run, t in zip(runs, both, strict=True)],
+            "end of double contact",
+        ),
+    }
+    return xr.Dataset(
+        {
+            "theta": variable([run["theta"].values for run in runs], "rad", "tilt", ("pressure", "time")),
+            "energy_error": variable(
+                [float(run["energy_error"]) for run in runs], "1", "energy", ("pressure",)
+            ),
+            **{name: variable(values, "s", long, ("pressure",)) for name, (values, long) in columns.items()},
+        },
+        {"pressure": pressures, "time": variable(runs[0]["time"].values, "s", "time", ("time",))},
+    )
+
+
+def with_stem(radius: float) -> Body:
+    """The report's top with a stem that ends in a sphere of this radius, m, at the same height."""
+    bowl, _ = REPORT_STEM.shapes
+    shapes: list[Shape] = [bowl, Sphere(radius=radius, center=REACH - radius)]
+    return REPORT_STEM.model_copy(update={"shape": tuple(shapes)})
+
+
+def _stems(quick: bool) -> xr.Dataset:
+    """Whether the report's top stands on stems of several tips, and Jellett's integral when these strike."""
+    radii = np.array([0.003, 0.006, 0.009, 0.012]) if quick else np.arange(0.002, 0.0141, 0.001)
+    final, needed, brought, struck = [], [], [], []
+    for radius in radii.tolist():
+        problem = report_problem().replace({"body": with_stem(radius)})
+        run = simulate(problem, STEM_WINDOW, samples=2001)
+        touch = _first(happenings(run, "touchdown", 1))
+        before = run.isel(time=int(np.searchsorted(run["time"].values, touch)) - 1)
+        axis, momentum = (tuple(before[name].values.tolist()) for name in ("axis", "angular_momentum"))
+        brought.append(abs(jellett_about(1, axis, momentum, problem.top)))
+        needed.append(least_jellett_to_stand(problem.body))
+        struck.append(touch)
+        final.append(float(run["theta"][-1]))
+    over = ("radius",)
+    return xr.Dataset(
+        {
+            "final_theta": variable(final, "rad", "tilt at the end", over),
+            "jellett": variable(brought, "kg m3 s-1", "Jellett's integral about the tip at its touch", over),
+            "jellett_needed": variable(needed, "kg m3 s-1", "what it takes to stand", over),
+            "touch": variable(struck, "s", "first touch of the stem", over),
+        },
+        {"radius": variable(radii, "m", "radius of the stem's tip", over)},
+        {"window_s": STEM_WINDOW, "upright_rad": UPRIGHT_ON_STEM, "reach_m": REACH},
+    )
+
+
+def _egg(quick: bool) -> xr.Dataset:
+    """A hard-boiled egg that is spun on its side: how far it rises, and whether it leaves the table."""
+    rates = [60.0, 200.0] if quick else [40.0, 60.0, 80.0, 100.0, 120.0, 150.0, 200.0]
+    runs = [
+        simulate(
+            Problem(
+                body=EGG,
+                friction=ViscousFriction(mu=EGG_MU),
+                launch=Launch(tilt=1.5, spin=0.0, precession=rate),
+            ),
+            EGG_WINDOW,
+            samples=401,
+        )
+        for rate in rates
+    ]
+    over = ("rate",)
+    return xr.Dataset(
+        {
+            "theta": variable([run["theta"].values for run in runs], "rad", "tilt", ("rate", "time")),
+            "lift_off": variable(
+                [_first(happenings(run, "lift-off")) for run in runs], "s", "lift-off", over
+            ),
+        },
+        {
+            "rate": variable(rates, "rad s-1", "rate of turning about the vertical at launch", over),
+            "time": variable(runs[0]["time"].values, "s", "time", ("time",)),
+        },
+        {"mu_s_per_m": EGG_MU},
+    )
+
+
+def rolling(body: Body, tilt: float) -> tuple[RestingCenter, xr.Dataset] | None:
+    """How a body rolls with its centre at rest, and a run of it; None where it cannot."""
+    launch = Launch(tilt=tilt, spin=0.0)
+    problem = Problem(body=body, friction=ROUGH, launch=launch, gravity=9.81)
+    top: Top = problem.top
+    found = resting_center(tilt, top)
+    if found is None:
+        return None
+    launch = Launch(tilt=tilt, spin=found.spin, precession=found.precession)
+    return found, simulate(problem.replace({"launch": launch}), ROLLING_WINDOW, samples=41)
+
+
+def _rolling(quick: bool) -> xr.Dataset:
+    """Euler's disk and hurricane balls that roll with their centres at rest."""
+    tilts = {"disk": [0.1, 0.3, 0.5] if quick else np.linspace(0.05, 0.6, 12).tolist()}
+    tilts["balls"] = [1.25, 1.35, 1.45, 1.55] if quick else np.linspace(1.2, 1.6, 12).tolist()
+    bodies = {"disk": EULER_DISK, "balls": HURRICANE_BALLS}
+    found: dict[str, list[tuple[float, float, float, float]]] = {name: [] for name in bodies}
+    for name, body in bodies.items():
+        for tilt in tilts[name]:
+            rolls = rolling(body, tilt)
+            if rolls is not None:
+                motion, run = rolls
+                measured = float(run["phi_dot"].mean())
+                drift = float(np.abs(run["theta"] - tilt).max())
+                found[name].append((tilt, motion.precession, measured, drift))
+    data = {}
+    for name, rows in found.items():
+        for (label, unit, long), values in zip(_COLUMNS, zip(*rows, strict=True), strict=True):
+            data[f"{name}_{label}"] = variable(list(values), unit, long, (name,))
+    return xr.Dataset(
+        data,
+        attrs={
+            "disk_radius_m": float(EULER_DISK.shapes[0].surface.size),
+            "ball_radius_m": float(HURRICANE_BALLS.shapes[0].surface.size),
+            "gravity": 9.81,
+        },
+    )
+
+
+_COLUMNS = (
+    ("tilt", "rad", "tilt"),
+    ("precession", "rad s-1", "precession by the closed formula"),
+    ("measured", "rad s-1", "mean precession of a run"),
+    ("drift", "rad", "how far the tilt of the run goes from that at launch"),
+)
+
+EXPERIMENTS = [
+    Experiment("real-leine", "Leine and Glocker's top, stem and all", 8.0, _leine),
+    Experiment("real-stems", "which stems let the report's top stand", 2.0, _stems),
+    Experiment("real-egg", "a hard-boiled egg that rises", 4.0, _egg),
+    Experiment("real-rolling", "Euler's disk and hurricane balls", 2.0, _rolling),
+]
+"""What is found about real tops and their relatives."""

@@ -1,0 +1,54 @@
+"""Rolling steadily while the centre of mass is at rest: disks, hurricane balls, and any other body."""
+
+import math
+from typing import NamedTuple
+
+from tippetop.mechanics.hull import lowest_surface
+from tippetop.mechanics.surface import contact_vector
+from tippetop.mechanics.top import Top
+
+
+class RestingCenter(NamedTuple):
+    """A way to roll with the centre of mass at rest.
+
+    Attributes
+    ----------
+    precession
+        Rate at which the axis, and the contact point, go round the vertical, rad/s.
+    spin
+        Angular velocity about the axis, omega3, rad/s.
+    """
+
+    precession: float
+    spin: float
+
+
+def resting_center(tilt: float, top: Top) -> RestingCenter | None:
+    """How a body of revolution rolls at this tilt (rad) while its centre of mass is at rest; floats.
+
+    Returns
+    -------
+    RestingCenter or None
+        None where no rate of precession holds the tilt.
+
+    Notes
+    -----
+    The table bears the weight alone, and the angular velocity lies along the contact vector, whose components
+    along the axis n and across it, towards the vertical, are a_n and a_e. With L going round at the rate
+    Omega, Omega z x L = a x m g z gives
+
+        Omega^2 s (I3 s a_n / a_e - I1 c) = m g (a_e c - a_n s),        omega3 = Omega s a_n / a_e.
+
+    For a thin disk of radius R this is Omega^2 = 4 g / (R s), and for two balls that touch, cos(theta) =
+    2/5 - g / (Omega^2 R).
+    """
+    s, c = math.sin(tilt), math.cos(tilt)
+    lowest = lowest_surface(top.surface, c)
+    x, _, z = contact_vector((s, 0.0, c), lowest)
+    along, across = x * s + z * c, -x * c + z * s
+    resisting = s * (top.axial_inertia * s * along / across - top.transverse_inertia * c)
+    turned = top.mass * top.gravity * (across * c - along * s)
+    if resisting * turned <= 0.0:
+        return None
+    precession = math.sqrt(turned / resisting)
+    return RestingCenter(precession, precession * s * along / across)
