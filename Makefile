@@ -4,24 +4,31 @@ VENV ?= .venv
 BIN = $(VENV)/bin
 OUT ?= tippetop-report
 
-.PHONY: reproduce test test-browser test-docs doctest chromium check lint types contract docs bench quick dist review clean
+BUILT = src/tippetop/export/built/lab.html
+
+.PHONY: reproduce page test test-browser test-docs doctest chromium check lint types contract docs bench quick dist review clean
 
 reproduce: $(VENV)/.installed ## Redo the whole report into $(OUT)
 	$(BIN)/tippetop reproduce --out $(OUT) --force
 
+page: $(BUILT) ## Build what runs in browsers; node comes from this machine, or else from a wheel
+
+$(BUILT): $(shell find web src/tippetop/engine -name node_modules -prune -o -name '*.py' -o -type f -print) | $(VENV)/bin/python
+	web/build.sh "$(abspath $(BIN)/python)"
+
 test: $(VENV)/.installed-dev ## Run the tests
 	$(BIN)/python -m pytest -n auto
 
-test-browser: $(VENV)/.installed-dev ## Run the tests of the laboratory's page; they need Debian's chromium
+test-browser: $(BUILT) $(VENV)/.installed-dev ## Run the tests of the laboratory's page; they need Debian's chromium
 	$(BIN)/python -m pytest -m browser
 
 doctest: $(VENV)/.installed-dev ## Run the examples of the docstrings and every block of code of the pages
 	NOTEBOOKS=1 $(BIN)/python -m pytest -n auto tests/test_documents.py
 
-docs: $(VENV)/.installed-docs ## Build the documentation into docs/_build/html, with every notebook run
+docs: $(BUILT) $(VENV)/.installed-docs ## Build the documentation into docs/_build/html, with every notebook run
 	$(BIN)/python -m sphinx -W --keep-going -q -j auto -b html docs docs/_build/html
 
-test-docs: $(VENV)/.installed-docs ## Look at every page of the documentation that is built, in a browser
+test-docs: $(BUILT) $(VENV)/.installed-docs ## Look at every page of the documentation that is built, in a browser
 	DOCS=docs/_build/html $(BIN)/python -m pytest -m browser tests/test_site.py
 
 chromium: ## Install Debian's chromium, as root, unless it is there
@@ -47,9 +54,10 @@ quick: $(VENV)/.installed ## A coarse report in half a minute
 bench: $(VENV)/.installed-bench ## Measure what is promised of speed and memory; takes half an hour
 	$(BIN)/python -m benchmarks --json benchmarks.json
 
-dist: $(VENV)/.installed-release ## Build the sdist, and the wheel from it, into dist/
+dist: $(BUILT) $(VENV)/.installed-release ## Build the sdist, and the wheel from it, into dist/
 	rm -rf dist
 	$(BIN)/python -m build
+	$(BIN)/python -m zipfile -l dist/*.whl | grep -q export/built/lab.html
 	$(BIN)/twine check --strict dist/*
 
 review: $(VENV)/.installed-release ## Review the repository as the Scientific Python guide asks
@@ -80,4 +88,4 @@ $(VENV)/.installed-bench: pyproject.toml | $(VENV)/bin/python
 	touch $@
 
 clean:
-	rm -rf $(VENV) $(OUT) dist docs/_build
+	rm -rf $(VENV) $(OUT) dist docs/_build web/node_modules src/tippetop/export/built

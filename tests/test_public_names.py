@@ -8,7 +8,7 @@ import pytest
 import tippetop as tt
 from tippetop.integrators import has_taylor
 
-NEVER_NEEDED = {"matplotlib", "nicegui", "h5py", "scipy", "sympy", "dask"}
+NEVER_NEEDED = {"matplotlib", "h5py", "scipy", "sympy", "dask"}
 HEAVY = sorted({"xarray", "heyoka", "numpy", "pydantic", "pandas"} | NEVER_NEEDED)
 
 
@@ -38,11 +38,11 @@ def test_looking_at_the_names_loads_no_library():
 
 def test_stating_a_problem_loads_no_library_that_only_running_it_needs():
     code = "import tippetop as tt; tt.Problem; tt.InvalidInput; tt.presets.REPORT"
-    assert set(loaded_after(code)) & {"matplotlib", "xarray", "heyoka", "nicegui", "h5py", "scipy"} == set()
+    assert set(loaded_after(code)) & {"matplotlib", "xarray", "heyoka", "h5py", "scipy"} == set()
 
 
 def test_simulating_loads_neither_matplotlib_nor_the_laboratory():
-    assert set(loaded_after("import tippetop as tt; tt.simulate")) & {"matplotlib", "nicegui"} == set()
+    assert set(loaded_after("import tippetop as tt; tt.simulate")) & {"matplotlib", "anywidget"} == set()
 
 
 @pytest.mark.skipif(not has_taylor(), reason="heyoka is not installed")

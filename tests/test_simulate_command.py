@@ -41,7 +41,6 @@ def test_what_there_is_not_is_said_in_words(monkeypatch: pytest.MonkeyPatch) -> 
 
 
 def test_every_file_asked_for_is_written(tmp_path: Path) -> None:
-    pytest.importorskip("nicegui", reason="NiceGUI brings three.js; it comes with the lab extra")
     kinds = {"out": "nc", "plot": "png", "csv": "csv", "glb": "glb", "html": "html", "gif": "gif"}
     options = [word for kind, end in kinds.items() for word in (f"--{kind}", str(tmp_path / f"run.{end}"))]
     told = said("--duration", "0.1", *options)

@@ -21,7 +21,6 @@ from tippetop.export.raycast import fine_path
 pygltflib = pytest.importorskip(
     "pygltflib", reason="pygltflib opens .glb files; it comes with the test extra"
 )
-pytest.importorskip("nicegui", reason="NiceGUI brings three.js; it comes with the lab extra")
 
 
 def numbers(model: "pygltflib.GLTF2", accessor: int) -> np.ndarray:

@@ -11,9 +11,9 @@ import pytest
 import tippetop as tt
 
 pytest.importorskip("anywidget", reason="anywidget shows runs in notebooks; it comes with the lab extra")
-pytest.importorskip("nicegui", reason="NiceGUI brings three.js; it comes with the lab extra")
 
-from tippetop.lab.notebook import module_code, view
+from tippetop.export.bundle import built
+from tippetop.lab.notebook import view
 
 NOTEBOOK = Path(__file__).parents[2] / "notebooks" / "tippe_top.ipynb"
 
@@ -45,7 +45,7 @@ HOST = """async ([code, first, second]) => {
 }"""
 
 
-def test_the_widget_plays_a_run_and_then_another(visit: Callable) -> None:
+def test_the_widget_plays_a_run_and_then_another(page: Path, visit: Callable) -> None:
     runs = [tt.simulate(tt.presets.report_problem(spin=spin), 1.0, samples=400) for spin in (20.0, 155.0)]
     widget = view(runs[0], height=300)
     first = widget.track
@@ -53,7 +53,7 @@ def test_the_widget_plays_a_run_and_then_another(visit: Callable) -> None:
     visitor = visit()
     visitor.page.goto("about:blank")
     blocks = [base64.b64encode(block).decode() for block in (first, widget.track)]
-    before, after, drawn, changed, left = visitor.ask(HOST, [module_code(), *blocks])
+    before, after, drawn, changed, left = visitor.ask(HOST, [built("player.js"), *blocks])
     assert before.startswith("stays upright")
     assert after != before
     assert drawn > 100
@@ -75,7 +75,9 @@ def test_a_notebook_shows_the_figure_of_a_run_without_pyplot() -> None:
     assert figure._repr_png_().startswith(b"\x89PNG")
 
 
-def test_the_notebook_runs_from_top_to_bottom(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_notebook_runs_from_top_to_bottom(
+    page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.chdir(tmp_path)
     cells = json.loads(NOTEBOOK.read_text(encoding="utf-8"))["cells"]
     names: dict[str, object] = {}

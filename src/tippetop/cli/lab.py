@@ -1,21 +1,48 @@
 """`tippetop lab`: the laboratory in the browser."""
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from tippetop.cli.options import Force
+
 
 def lab(
-    host: Annotated[str, typer.Option(help="Address to listen at; 0.0.0.0 lets others in.")] = "127.0.0.1",
-    port: Annotated[int, typer.Option(min=1, max=65535, help="Port to listen at.")] = 8421,
+    host: Annotated[
+        str | None, typer.Option(help="Serve the page at this address; 0.0.0.0 lets other devices in.")
+    ] = None,
+    port: Annotated[
+        int, typer.Option(min=0, max=65535, help="Port to serve it at; 0 for a free one.")
+    ] = 8421,
+    out: Annotated[Path | None, typer.Option(help="Write the page into this file instead.")] = None,
     browser: Annotated[
         bool, typer.Option(show_default=False, help="Open the page in a browser; opened if left out.")
     ] = True,
-    workers: Annotated[
-        int | None, typer.Option(min=1, help="Processes that simulate; as many as there are cores to spare.")
-    ] = None,
+    force: Force = False,
 ) -> None:
     """Open a page in the browser where anyone can launch the top and see why it turns over."""
-    from tippetop.lab.server import serve  # noqa: PLC0415 - slow to import
+    from tippetop.lab.serve import page_path, serve  # noqa: PLC0415 - slow to import
 
-    serve(host, port, browser, workers, announce=typer.echo)
+    if out is not None:
+        _write(out, force)
+    elif host is not None:
+        serve(host, port, browser, announce=typer.echo)
+    else:
+        path = page_path()
+        typer.echo(f"The laboratory is {path.as_uri()}")
+        if browser:
+            typer.launch(path.as_uri())
+
+
+def _write(path: Path, force: bool) -> None:
+    from tippetop.errors import InvalidInput  # noqa: PLC0415
+    from tippetop.export.bundle import built  # noqa: PLC0415
+    from tippetop.files import written_beside  # noqa: PLC0415
+    from tippetop.lab.serve import PAGE  # noqa: PLC0415
+
+    if path.suffix.lower() not in (".html", ".htm"):
+        raise InvalidInput("--out", str(path), "a file name that ends in .html or .htm")
+    with written_beside(path, force) as beside:
+        beside.write_text(built(PAGE), encoding="utf-8")
+    typer.echo(f"wrote {path}")

@@ -1,52 +1,54 @@
-"""The player as one piece of JavaScript, with three.js beside it, for pages that may load nothing.
-
-three.js comes from NiceGUI's own copy, so that there is one of it.
-"""
+"""What `make page` builds from `web/` for browsers: the player of runs, and the laboratory's page."""
 
 import base64
 import gzip
-import re
 from functools import cache
-from importlib.util import find_spec
 from pathlib import Path
 
 from tippetop.errors import Unavailable
 
-PLAYER = Path(__file__).parent / "player"
-"""Where the player's modules are."""
+BUILT = Path(__file__).parent / "built"
+"""Where the built files are; a released package brings them."""
 
-_MODULES = ("track.js", "toy.js", "scene.js", "strip.js", "style.js", "player.js", "unpack.js")
-_THREE = Path("elements", "scene", "dist", "index.js")
-
-
-@cache
-def player_code() -> str:
-    """The player's modules as one: their imports of each other and their exports left out."""
-    pieces = []
-    for name in _MODULES:
-        text = (PLAYER / name).read_text(encoding="utf-8")
-        text = re.sub(r'^import \{[^}]*\} from "\./[^"]+";\n', "", text, flags=re.MULTILINE)
-        pieces.append(re.sub(r"^export (?=(async )?(class|const|function))", "", text, flags=re.MULTILINE))
-    return "\n".join(pieces)
+LOADER = """\
+const unzip = (id) => {
+  const zipped = Uint8Array.from(atob(document.getElementById(id).textContent), (c) => c.charCodeAt(0));
+  return new Response(new Blob([zipped]).stream().pipeThrough(new DecompressionStream("gzip")));
+};
+const code = new Blob([await unzip("player-code").text()], { type: "text/javascript" });
+const { createPlayer, stillness } = await import(URL.createObjectURL(code));
+"""
+"""JavaScript that takes the player out of a page that has it, packed, in an element called "player-code"."""
 
 
 @cache
-def three_packed() -> str:
-    """three.js with its orbit controls, compressed, as base64.
+def built(name: str) -> str:
+    """A built file.
 
     Raises
     ------
     Unavailable
-        If NiceGUI is not installed, or keeps three.js elsewhere.
+        If it is not built.
     """
-    package = find_spec("nicegui")
-    if package is None or not package.submodule_search_locations:
-        raise Unavailable("three.js comes with NiceGUI, which is not installed: pip install 'tippetop[lab]'")
-    path = Path(package.submodule_search_locations[0]) / _THREE
     try:
-        return packed(path.read_bytes())
-    except OSError:
-        raise Unavailable(f"three.js is not where this version of NiceGUI should keep it: {path}") from None
+        return (BUILT / name).read_text(encoding="utf-8")
+    except FileNotFoundError:
+        raise Unavailable(
+            "what runs in browsers is not built here: run `make page` in the folder of the source "
+            "(packages that are released bring it)"
+        ) from None
+
+
+@cache
+def player_packed() -> str:
+    """The player, compressed, as base64.
+
+    Raises
+    ------
+    Unavailable
+        If it is not built.
+    """
+    return packed(built("player.js").encode())
 
 
 def packed(content: bytes) -> str:

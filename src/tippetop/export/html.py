@@ -6,7 +6,7 @@ from pathlib import Path
 import xarray as xr
 
 from tippetop import __version__
-from tippetop.export.bundle import packed, player_code, three_packed
+from tippetop.export.bundle import LOADER, packed, player_packed
 from tippetop.export.track import pack_run, unpack_header
 from tippetop.files import place_for, written_beside
 
@@ -20,20 +20,18 @@ _PAGE = """<!doctype html>
 <title>{title}</title>
 <style>
   html, body {{ height: 100%; margin: 0; }}
-  #player {{ height: 100%; }}
+  #stage {{ height: 100%; }}
 </style>
 </head>
 <body>
-<div id="player"></div>
+<div id="stage"></div>
 <noscript>This page plays a run of a tippe top; it needs JavaScript.</noscript>
-<script type="text/plain" id="three">{three}</script>
+<script type="text/plain" id="player-code">{player}</script>
 <script type="text/plain" id="run">{run}</script>
 <script type="module">
-{player}
-const text = (id) => document.getElementById(id).textContent;
-const three = await importText(new TextDecoder().decode(await unzip(text("three"))));
-const player = createPlayer(three, document.getElementById("player"), {{ theme: "auto" }});
-player.load(await unzip(text("run")));
+{loader}
+const player = createPlayer(document.getElementById("stage"), {{ theme: "auto" }});
+player.load(await unzip("run").arrayBuffer());
 player.toggle(!stillness());
 globalThis.tippetopPlayer = player;
 </script>
@@ -48,15 +46,15 @@ def html_page(run: xr.Dataset) -> str:
     Raises
     ------
     Unavailable
-        If three.js is not installed: it comes with NiceGUI.
+        If the player is not built: see `tippetop.export.bundle`.
     """
     block = pack_run(run)
     return _PAGE.format(
         version=__version__,
         title=html.escape(f"Tippe top: {unpack_header(block)['story']['headline']}"),
-        three=three_packed(),
         run=packed(block),
-        player=player_code(),
+        player=player_packed(),
+        loader=LOADER,
     )
 
 
@@ -68,7 +66,7 @@ def write_html(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Pa
     FileTrouble
         If the file exists and `overwrite` is false, or cannot be written.
     Unavailable
-        If three.js is not installed: it comes with NiceGUI.
+        If the player is not built: see `tippetop.export.bundle`.
 
     Examples
     --------

@@ -2,7 +2,7 @@
 
 Layout, little-endian: the letters TTRK, the length of the header (uint32), the header (JSON, padded with
 blanks to a multiple of 8), the sample times (float64), then the header's columns (float32), each with all its
-samples before the next. `player/track.js` reads it.
+samples before the next. `web/src/player/track.js` reads it.
 """
 
 import json
@@ -13,7 +13,6 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from tippetop.catalogue import SAMPLED
 from tippetop.export.poses import contact_path
 from tippetop.export.words import tell
 from tippetop.figures.looks import SCENES, size, toy_parts
@@ -30,16 +29,6 @@ MOST_SAMPLES = 40_000
 """Samples of a run at most: some 4 MB."""
 SHADINGS = 200
 """Flights shaded at most; nearer ones are shaded together."""
-PLOTTED = {
-    "theta": "Tilt θ (rad)",
-    "omega3": "Axial spin ω₃ (rad/s)",
-    "phi_dot": "Precession φ′ (rad/s)",
-    "slip": "Slip (m/s)",
-    "energy": "Energy (mJ)",
-    "normal_force": "Normal force N (N)",
-    "jellett_error": "Relative error of Jellett's integral",
-}
-"""The plots by the name of their column, with their titles."""
 
 
 def sample_count(problem: Problem, duration: float) -> int:
@@ -53,15 +42,14 @@ def sample_count(problem: Problem, duration: float) -> int:
 def pack_run(run: xr.Dataset) -> bytes:
     """The block of bytes of a run."""
     problem = Problem.from_json(run.attrs["problem"])
-    columns = _columns(run, problem)
+    columns = _columns(run)
     header = {
         "samples": run.sizes["time"],
         "duration": float(run["time"].values[-1]),
         "columns": [[name, values.shape[1] if values.ndim > 1 else 1] for name, values in columns.items()],
-        "plots": {
-            name: {"title": title, "range": _range(columns[name], name)} for name, title in PLOTTED.items()
-        },
         "flights": flights(run),
+        "turns_over": _time(run["turns_over"]),
+        "modes": [str(word) for word in run["mode"].attrs["flag_meanings"].split()],
         "body": {
             "I1": problem.body.I1,
             "I3": problem.body.I3,
@@ -98,9 +86,7 @@ def flights(run: xr.Dataset) -> Any:
     return np.stack([starts, ends], axis=1).tolist()
 
 
-def _columns(run: xr.Dataset, problem: Problem) -> dict[str, Array]:
-    moment = np.linalg.norm(run["angular_momentum"].values[0]) * float(run["height"].values[0])
-    jellett = run["jellett"].values
+def _columns(run: xr.Dataset) -> dict[str, Array]:
     return {
         "orientation": run["orientation"].values,
         "momentum": run["angular_momentum"].values,
@@ -109,26 +95,12 @@ def _columns(run: xr.Dataset, problem: Problem) -> dict[str, Array]:
         "point": contact_path(run),
         "friction": run["contact_force"].values[:, :2],
         "touching": (run["normal_force"].values != 0.0).astype(float),
+        "mode": run["mode"].values.astype(float),
         "theta": run["theta"].values,
         "omega3": run["omega3"].values,
-        "phi_dot": run["phi_dot"].values,
-        "slip": np.hypot(run["slip_x"].values, run["slip_y"].values),
-        "energy": 1e3 * run["energy"].values,
-        "normal_force": run["normal_force"].values,
-        "jellett_error": (jellett - jellett[0]) / moment if moment else 0.0 * jellett,
     }
 
 
-def _range(values: Array, name: str) -> list[float]:
-    """Lowest and highest value to show: without the peaks of a variable that has no bound at the vertical."""
-    finite = values[np.isfinite(values)]
-    if not len(finite):
-        return [0.0, 1.0]
-    low, high = np.quantile(finite, [0.005, 0.995]) if name == "phi_dot" else (finite.min(), finite.max())
-    if name == "theta":
-        low, high = 0.0, max(np.pi, high)
-    margin = 0.06 * (high - low) or 1e-3 * max(abs(high), 1e-12)
-    return [float(low - margin * (name != "theta")), float(high + margin * (name != "theta"))]
-
-
-assert set(PLOTTED) - set(SAMPLED) == {"slip", "jellett_error"}, "plots are of variables of a run"
+def _time(value: xr.DataArray) -> float | None:
+    """A time that JSON can hold: None where there is none."""
+    return float(value) if np.isfinite(value) else None

@@ -5,6 +5,7 @@ sphere is whole; the toy is that sphere cut by a flat face, with a stem that rea
 would. What is cut away is drawn as glass: so one sees what touches the table when the toy lies on its face.
 """
 
+import json
 from collections.abc import Mapping
 from itertools import pairwise
 from typing import Any, NamedTuple
@@ -143,6 +144,12 @@ def _tippe_top(eccentricity: float) -> tuple[ToyPart, ...]:
     )
     shift = np.array([0.0, eccentricity])
     return tuple(part._replace(profile=part.profile + shift) for part in parts)
+
+
+def as_json() -> str:
+    """What the page draws toys from, its `looks.json`: scenes, a tippe top, the colours of belts."""
+    parts = [part._replace(profile=part.profile.round(9).tolist())._asdict() for part in _tippe_top(0.0)]
+    return json.dumps({"scenes": SCENES, "tippe_top": parts, "bowl": _BOWL, "band": _BAND}) + "\n"
 
 
 def _arc(low: float, high: float, points: int = 16) -> Array:

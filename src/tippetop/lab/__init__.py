@@ -1,1 +1,1 @@
-"""The laboratory: a page where anyone launches the top. Physics stays here; the browser draws."""
+"""The laboratory: a page where anyone launches the top, and the player in a notebook. Browsers compute it."""

@@ -1,13 +1,12 @@
 """A run in a Jupyter notebook: the same player as on the page, as a widget."""
 
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 import xarray as xr
 
 from tippetop.errors import InvalidInput, Unavailable
-from tippetop.export.bundle import player_code, three_packed
+from tippetop.export.bundle import built
 from tippetop.export.track import pack_run
 
 THEMES = ("auto", "light", "dark")
@@ -30,7 +29,7 @@ def view(run: xr.Dataset, height: int = 480, theme: str = "auto") -> Any:
     InvalidInput
         If there is no such theme, or the height is not positive.
     Unavailable
-        If anywidget or NiceGUI (which brings three.js) is not installed.
+        If anywidget is not installed, or the player not built.
 
     Examples
     --------
@@ -43,13 +42,6 @@ def view(run: xr.Dataset, height: int = 480, theme: str = "auto") -> Any:
     if height <= 0:
         raise InvalidInput("height", height, "a number of pixels greater than 0")
     return _widget()(track=pack_run(run), height=height, theme=theme)
-
-
-@cache
-def module_code() -> str:
-    """The widget's module: the player, three.js as text, and what joins them to a notebook."""
-    joint = (Path(__file__).parent / "components" / "notebook.js").read_text(encoding="utf-8")
-    return f'{player_code()}\nconst THREE_PACKED = "{three_packed()}";\n{joint}'
 
 
 @cache
@@ -66,7 +58,7 @@ def _widget() -> Any:
 
     members = {
         "__doc__": "A run that plays.",
-        "_esm": module_code(),
+        "_esm": built("player.js"),
         "track": traitlets.Bytes().tag(sync=True),
         "height": traitlets.Int(480).tag(sync=True),
         "theme": traitlets.Unicode("auto").tag(sync=True),

@@ -1,12 +1,11 @@
-// Plays the run on the page, once a reader comes to it. What stands before this are the player's modules.
+// Plays the run on the page, once a reader comes to it.
 
 const host = document.getElementById("stage");
-const text = (id) => document.getElementById(id).textContent;
 
 async function start() {
-  const three = await importText(new TextDecoder().decode(await unzip(text("three"))));
-  const player = createPlayer(three, host, { theme: "auto" });
-  player.load(await unzip(text("run")));
+  {{ player.loader | safe }}
+  const player = createPlayer(host, { theme: "auto" });
+  player.load(await unzip("run").arrayBuffer());
   globalThis.tippetopPlayer = player;
 }
 

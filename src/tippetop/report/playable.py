@@ -1,7 +1,7 @@
 """A run to be played on the page itself: the launch that the report calls abnormal."""
 
 from tippetop.errors import Unavailable
-from tippetop.export.bundle import packed, player_code, three_packed
+from tippetop.export.bundle import LOADER, packed, player_packed
 from tippetop.export.track import pack_run, sample_count
 from tippetop.export.words import tell
 from tippetop.presets import report_problem
@@ -13,9 +13,9 @@ SPIN, DURATION = 175.0, 9.0
 
 
 def playable(quick: bool) -> dict[str, str] | None:
-    """The run, three.js and the player for the page; None where three.js is not installed."""
+    """The run and its player for the page; None where the player is not built."""
     try:
-        three = three_packed()
+        player = player_packed()
     except Unavailable:
         return None
     problem = pushing(report_problem(SPIN))
@@ -24,7 +24,7 @@ def playable(quick: bool) -> dict[str, str] | None:
     return {
         "headline": tell(run).headline,
         "spin": f"{SPIN:g}",
-        "three": three,
+        "player": player,
         "run": packed(pack_run(run)),
-        "code": player_code(),
+        "loader": LOADER,
     }

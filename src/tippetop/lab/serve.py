@@ -1,0 +1,123 @@
+"""The laboratory's page for other devices: one file over HTTP, read-only."""
+
+import socket
+import webbrowser
+from collections.abc import Callable
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from importlib.util import find_spec
+from io import StringIO
+from pathlib import Path
+
+from tippetop.errors import InvalidInput
+from tippetop.export.bundle import BUILT, built
+
+PAGE = "lab.html"
+
+EVERYWHERE = ("0.0.0.0", "::", "")
+
+PATIENCE = 10.0
+"""How long a device may take over its request, s."""
+
+
+def page_path() -> Path:
+    """Where the page is.
+
+    Raises
+    ------
+    Unavailable
+        If it is not built.
+    """
+    built(PAGE)
+    return BUILT / PAGE
+
+
+class PageHandler(BaseHTTPRequestHandler):
+    """Gives the page to whoever asks for it, and nothing else."""
+
+    timeout = PATIENCE
+    server_version = "tippetop"
+    sys_version = ""
+
+    def do_GET(self) -> None:
+        """Answer with the page."""
+        self._answer(with_content=True)
+
+    def do_HEAD(self) -> None:
+        """Answer with what is said of the page."""
+        self._answer(with_content=False)
+
+    def _answer(self, with_content: bool) -> None:
+        if self.path.partition("?")[0] not in ("/", f"/{PAGE}"):
+            self.send_error(404)
+            return
+        content = built(PAGE).encode()
+        self.send_response(200)
+        self.send_header("Content-Type", "text/html; charset=utf-8")
+        self.send_header("Content-Length", str(len(content)))
+        self.send_header("Cache-Control", "no-cache")
+        self.send_header("X-Content-Type-Options", "nosniff")
+        self.end_headers()
+        if with_content:
+            self.wfile.write(content)
+
+    def log_message(self, format: str, *arguments: object) -> None:  # noqa: A002 - the library's name
+        """Say nothing."""
+
+
+def serve(host: str, port: int, browser: bool, announce: Callable[[str], None]) -> None:
+    """Serve the page until interrupted.
+
+    Parameters
+    ----------
+    host, port
+        Where to listen; 0.0.0.0 lets other devices in.
+    browser
+        Whether to open it here.
+    announce
+        Is told the address, and a code to scan for it.
+
+    Raises
+    ------
+    InvalidInput
+        If nothing can listen there.
+    Unavailable
+        If the page is not built.
+    """
+    page_path()
+    try:
+        server = ThreadingHTTPServer((host, port), PageHandler)
+    except (OSError, OverflowError) as error:
+        raise InvalidInput("host", f"{host}:{port}", f"an address and a free port here ({error})") from None
+    name = _own_address() if host in EVERYWHERE else host
+    address = f"http://{name}:{server.server_port}/"
+    announce(f"The laboratory is at {address} until Ctrl+C.")
+    if host != "127.0.0.1" and (code := qr_code(address)):
+        announce(code)
+    if browser:
+        webbrowser.open(address)
+    with server:
+        try:
+            server.serve_forever()
+        except KeyboardInterrupt:
+            announce("")
+
+
+def qr_code(text: str) -> str:
+    """A text as a code to scan, drawn in letters; empty where segno is not installed."""
+    if find_spec("segno") is None:
+        return ""
+    import segno  # noqa: PLC0415 - optional
+
+    drawing = StringIO()
+    segno.make(text, micro=False).terminal(drawing, compact=True)
+    return drawing.getvalue()
+
+
+def _own_address() -> str:
+    """The address by which other devices reach this one; nothing is sent to find it."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as trial:
+        try:
+            trial.connect(("192.0.2.1", 9))
+        except OSError:
+            return "localhost"
+        return str(trial.getsockname()[0])

@@ -1,0 +1,57 @@
+// Builds what the package ships: the player of runs as one module, and the laboratory as one page.
+
+import { build } from "esbuild";
+import { mkdir, readFile, writeFile } from "node:fs/promises";
+import { fileURLToPath } from "node:url";
+
+const HERE = new URL(".", import.meta.url);
+const OUT = new URL("../src/tippetop/export/built/", HERE);
+const ENGINE = process.env.ENGINE ?? "../src/tippetop/engine/index.js";
+
+const COMMON = {
+  absWorkingDir: fileURLToPath(HERE),
+  bundle: true,
+  minify: true,
+  write: false,
+  outdir: "out",
+  legalComments: "none",
+  target: "es2022",
+  charset: "utf8",
+  logLevel: "warning",
+  jsx: "automatic",
+  jsxImportSource: "preact",
+  alias: {
+    engine: fileURLToPath(new URL(ENGINE, HERE)),
+    "engine-tables": fileURLToPath(new URL("tables.js", new URL(ENGINE, HERE))),
+  },
+};
+
+async function bundled(entry, options) {
+  const { outputFiles } = await build({ ...COMMON, entryPoints: [entry], ...options });
+  const text = (ending) => outputFiles.find(({ path }) => path.endsWith(ending))?.text ?? "";
+  return { script: text(".js"), style: text(".css") };
+}
+
+// Makes the code of the workers, which a page from a file can start from its own text only, a module.
+function workers(code) {
+  return {
+    name: "workers",
+    setup({ onResolve, onLoad }) {
+      onResolve({ filter: /^worker-code$/ }, ({ path }) => ({ path, namespace: "workers" }));
+      onLoad({ filter: /.*/, namespace: "workers" }, () => ({ contents: code, loader: "text" }));
+    },
+  };
+}
+
+async function put(name, text) {
+  await writeFile(new URL(name, OUT), text);
+  console.log(`${name}: ${(Buffer.byteLength(text) / 1024).toFixed(0)} KiB`);
+}
+
+await mkdir(OUT, { recursive: true });
+const player = await bundled("src/player/index.js", { format: "esm" });
+await put("player.js", player.script);
+const worker = await bundled("src/lab/worker.js", { format: "iife" });
+const page = await bundled("src/lab/main.jsx", { format: "esm", plugins: [workers(worker.script)] });
+const template = await readFile(new URL("src/lab/page.html", HERE), "utf8");
+await put("lab.html", template.replace("%STYLE%", () => page.style).replace("%SCRIPT%", () => page.script));

@@ -1,0 +1,183 @@
+// The page: scene and plots beside a panel of things to do.
+
+import { useEffect, useRef, useState } from "preact/hooks";
+
+import { createPlayer } from "../player/player.js";
+import { Compare } from "./compare.jsx";
+import { Launch } from "./controls.jsx";
+import { Help } from "./help.jsx";
+import { LANGUAGES, part, t } from "./i18n.js";
+import { Keep } from "./keep.jsx";
+import { MapPanel } from "./map.jsx";
+import { Own } from "./own.jsx";
+import { Plots, QUANTITIES, USUAL } from "./plots.js";
+import { Story, veiled } from "./story.jsx";
+
+const PANELS = { story: Story, launch: Launch, own: Own, compare: Compare, map: MapPanel, keep: Keep };
+
+export function App({ lab }) {
+  const [, redraw] = useState(0);
+  const [help, turn] = useState(false);
+  useEffect(() => {
+    const call = () => redraw((count) => count + 1);
+    lab.addEventListener("state", call);
+    return () => lab.removeEventListener("state", call);
+  }, []);
+  const { tab, trouble, theme } = lab.state;
+  const language = document.documentElement.lang;
+  useEffect(() => {
+    document.title = t("page.title");
+    document.documentElement.dataset.theme = isDark(theme) ? "dark" : "light";
+  });
+  const Panel = PANELS[tab] ?? Story;
+  return (
+    <>
+      <a class="skip" href="#panel" onClick={(event) => { event.preventDefault(); document.getElementById("panel").focus(); }}>{t("page.skip")}</a>
+      <Header lab={lab} onHelp={() => turn(true)} />
+      <main class={veiled(lab.state) ? "veiled" : ""}>
+        <section class="stage" aria-label={t("page.stage")}>
+          <Stage lab={lab} key={language} dark={isDark(theme)} />
+        </section>
+        <section class="panel" aria-label={t("page.panel")} id="panel" tabIndex={-1}>
+          <Tabs lab={lab} />
+          <div class="panel-body" role="tabpanel" aria-labelledby={`tab-${tab}`} tabIndex={0}>
+            <Busy lab={lab} />
+            {trouble && (!trouble.field || tab !== "launch") && <p class="refused" role="alert">{trouble.sentence}</p>}
+            {tab !== "story" && <h2 class="hidden">{t(`page.${tab}`)}</h2>}
+            <Panel lab={lab} key={tab} />
+          </div>
+        </section>
+        <PlotSection lab={lab} dark={isDark(theme)} />
+      </main>
+      {help && <Help lab={lab} onClose={() => turn(false)} />}
+    </>
+  );
+}
+
+export function isDark(theme) {
+  return theme === "auto" ? matchMedia("(prefers-color-scheme: dark)").matches : theme === "dark";
+}
+
+function Header({ lab, onHelp }) {
+  const [link, show] = useState(null);
+  const copy = async () => {
+    const address = lab.link();
+    try {
+      await navigator.clipboard.writeText(address);
+      show({ copied: true });
+    } catch {
+      show({ address });
+    }
+    setTimeout(() => show((now) => (now?.copied ? null : now)), 4000);
+  };
+  const { theme } = lab.state;
+  return (
+    <header>
+      <h1>{t("page.title")}</h1>
+      <span class="space" />
+      <button type="button" onClick={() => history.back()} title="Ctrl+Z">{t("page.undo")}</button>
+      <button type="button" onClick={copy}>{t("page.link")}</button>
+      <button type="button" onClick={onHelp} aria-haspopup="dialog">{t("page.help")}</button>
+      <button type="button" class="square" aria-label={t("page.theme")} title={t("page.theme")}
+        onClick={() => lab.set({ theme: isDark(theme) ? "light" : "dark" })}>◐</button>
+      <select aria-label={t("page.language")} value={document.documentElement.lang} onChange={(event) => lab.set({ lang: event.target.value })}>
+        {Object.entries(LANGUAGES).map(([key, { name }]) => <option value={key} lang={key}>{name}</option>)}
+      </select>
+      <div class="linked" role="status">
+        {link?.copied && t("page.linked")}
+        {link?.address && <label>{t("page.linkHere")}<input readOnly value={link.address} ref={(field) => field?.select()} /></label>}
+      </div>
+    </header>
+  );
+}
+
+function Stage({ lab, dark }) {
+  const host = useRef();
+  useEffect(() => {
+    const before = lab.player;
+    const player = createPlayer(host.current, { theme: dark ? "dark" : "light", words: part("player"), open: innerWidth > 900 });
+    lab.player = player;
+    player.addEventListener("time", () => lab.dispatchEvent(new Event("time")));
+    player.addEventListener("view", () => lab.share());
+    if (before && lab.track) {
+      player.seek(before.time);
+      lab.show(lab.track, false, false);
+      player.seek(before.time);
+      lab.raise();
+    } else {
+      lab.request(!lab.state.timed && lab.state.tab !== "story");
+      lab.raise();
+    }
+    if (!lab.track) lab.pending = lab.state;
+    return () => player.dispose();
+  }, []);
+  useEffect(() => lab.player?.setTheme(dark ? "dark" : "light"), [dark]);
+  return <div class="player" ref={host} />;
+}
+
+function Tabs({ lab }) {
+  const names = Object.keys(PANELS);
+  const go = (name) => lab.set({ tab: name });
+  const key = (event) => {
+    const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+    if (!step) return;
+    const next = names[(names.indexOf(lab.state.tab) + step + names.length) % names.length];
+    go(next);
+    document.getElementById(`tab-${next}`).focus();
+    event.preventDefault();
+  };
+  return (
+    <div class="tabs" role="tablist" onKeyDown={key}>
+      {names.map((name) => (
+        <button type="button" role="tab" id={`tab-${name}`} aria-selected={lab.state.tab === name}
+          tabIndex={lab.state.tab === name ? 0 : -1} onClick={() => go(name)}>{t(`page.${name}`)}</button>
+      ))}
+    </div>
+  );
+}
+
+function Busy({ lab }) {
+  const { busy } = lab.state;
+  if (busy === null) return null;
+  return (
+    <div class="busy"><label>{t("page.computing")} <progress max="1" value={busy || undefined} /></label>
+      <button type="button" onClick={() => lab.stop()}>{t("page.stop")}</button></div>
+  );
+}
+
+function PlotSection({ lab, dark }) {
+  const host = useRef();
+  const { units } = lab.state;
+  const names = (lab.state.plots ?? USUAL).filter((name) => name in QUANTITIES);
+  useEffect(() => {
+    lab.plots = new Plots(host.current, {
+      seek: (time) => { lab.player.toggle(false); lab.player.seek(time); },
+      time: () => lab.player?.time ?? 0,
+    });
+    lab.addEventListener("time", () => lab.plots.move());
+  }, []);
+  useEffect(() => {
+    const fill = () => lab.track && lab.plots.load(lab.track, lab.pinned(), names, units, dark);
+    fill();
+    lab.say();
+    lab.addEventListener("run", fill);
+    return () => lab.removeEventListener("run", fill);
+  }, [names.join(), units, dark, document.documentElement.lang]);
+  const choose = (name, on) => lab.set({ plots: Object.keys(QUANTITIES).filter((one) => (one === name ? on : names.includes(one))) });
+  return (
+    <section class="plots" aria-label={t("plots.title")}>
+      <div class="plots-bar">
+        <h2>{t("plots.title")}</h2><span class="hint">{t("plots.hint")} {lab.track?.header.flights.length ? t("plots.flights") : ""}</span>
+        <button type="button" onClick={() => lab.plots.zoom(0.5)}>{t("plots.in")}</button>
+        <button type="button" onClick={() => lab.plots.zoom(2)}>{t("plots.out")}</button>
+        <button type="button" onClick={() => lab.plots.zoom(null)}>{t("plots.all")}</button>
+        <details class="curves"><summary>{t("plots.choose")}</summary><div>
+          {Object.keys(QUANTITIES).map((name) => (
+            <label><input type="checkbox" checked={names.includes(name)} onChange={(event) => choose(name, event.target.checked)} /> {t(`quantities.${name}.name`)}</label>
+          ))}</div></details>
+      </div>
+      <p class="veil">{t("plots.veiled")}</p>
+      <div class="plots-host" ref={host} />
+    </section>
+  );
+}

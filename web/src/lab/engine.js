@@ -1,0 +1,123 @@
+// The page's side of its workers: the newest launch wanted is followed next, and what is no longer wanted is ended.
+
+import code from "worker-code";
+import { Track } from "../player/track.js";
+
+// How long a run that nobody waits for any more may go on before its worker is ended, ms.
+const PATIENCE = 400;
+
+class Helper {
+  constructor() {
+    this.address = URL.createObjectURL(new Blob([code], { type: "text/javascript" }));
+    this.jobs = new Map();
+    this.count = 0;
+    this.begin();
+  }
+
+  begin() {
+    this.worker = new Worker(this.address);
+    this.worker.onmessage = ({ data: { id, share, answer, error } }) => {
+      const job = this.jobs.get(id);
+      if (!job) return;
+      if (share !== undefined) return job.onProgress?.(share);
+      this.jobs.delete(id);
+      if (error) job.reject(error);
+      else job.resolve(answer);
+    };
+    this.worker.onerror = (event) => this.end({ message: event.message });
+  }
+
+  ask(job, details, onProgress) {
+    const id = ++this.count;
+    return new Promise((resolve, reject) => {
+      this.jobs.set(id, { resolve, reject, onProgress });
+      this.worker.postMessage({ id, job, ...details });
+    });
+  }
+
+  // End what is under way; who waits for it is told why.
+  end(reason) {
+    this.worker.terminate();
+    for (const { reject } of this.jobs.values()) reject(reason);
+    this.jobs.clear();
+    this.begin();
+  }
+}
+
+export class Engine {
+  constructor() {
+    this.runner = new Helper();
+    this.asides = new Helper();
+  }
+
+  // Follow a launch; one that is wanted later takes its place. Gives null for a run that was overtaken.
+  run(setup, onProgress) {
+    this.wanted?.resolve(null);
+    return new Promise((resolve, reject) => {
+      this.wanted = { setup, onProgress, resolve, reject };
+      if (!this.busy) this.work();
+      else if (performance.now() - this.began > PATIENCE) this.runner.end(null);
+      else this.late ??= setTimeout(() => this.wanted && this.runner.end(null), PATIENCE);
+    });
+  }
+
+  async work() {
+    this.busy = true;
+    while (this.wanted) {
+      const { setup, onProgress, resolve, reject } = this.wanted;
+      this.wanted = null;
+      this.began = performance.now();
+      try {
+        const { track } = await this.runner.ask("run", setup, onProgress);
+        resolve(new Track(track));
+      } catch (error) {
+        if (error) reject(error);
+        else resolve(null);
+      }
+      clearTimeout(this.late);
+      this.late = null;
+    }
+    this.busy = false;
+  }
+
+  // Give up the run that is under way.
+  stop() {
+    this.wanted?.resolve(null);
+    this.wanted = null;
+    this.runner.end(null);
+  }
+
+  // A single run beside the one that is shown.
+  async aside(setup) {
+    return new Track((await this.asides.ask("run", setup)).track);
+  }
+
+  async predict(problem) {
+    return (await this.asides.ask("predict", { problem })).end;
+  }
+}
+
+// Follow many launches in as many workers as there are cores to spare.
+export class Crew {
+  constructor() {
+    this.helpers = Array.from({ length: Math.max(1, Math.min(4, navigator.hardwareConcurrency - 1)) }, () => new Helper());
+  }
+
+  async follow(jobs, tell) {
+    const left = jobs[Symbol.iterator]();
+    await Promise.all(
+      this.helpers.map(async (helper) => {
+        for (const { key, setup } of left) {
+          const answer = await helper.ask("cell", setup).catch((error) => ({ error }));
+          if (this.over) return;
+          tell(key, answer);
+        }
+      }),
+    );
+  }
+
+  stop() {
+    this.over = true;
+    for (const helper of this.helpers) helper.worker.terminate();
+  }
+}

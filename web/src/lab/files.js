@@ -1,0 +1,139 @@
+// Files of a run, made in the page.
+
+import * as THREE from "three";
+import { GLTFExporter } from "three/addons/exporters/GLTFExporter.js";
+import { STLExporter } from "three/addons/exporters/STLExporter.js";
+
+import { makeToy } from "../player/toy.js";
+import { differences, FIRST } from "./setup.js";
+
+// Poses of a film per second, the film's frames per second, and how many facets a printed top has.
+const KEYS = 60;
+const FRAMES = 30;
+const FACETS = 120;
+
+const COLUMNS = {
+  "theta (rad)": ["theta"], "omega3 (rad s-1)": ["omega3"], "phi_dot (rad s-1)": ["phi_dot"],
+  "slip (m s-1)": ["slip"], "normal_force (N)": ["normal_force"], "energy (J)": ["energy"],
+  "x (m)": ["position", 0, 3], "y (m)": ["position", 1, 3], "height (m)": ["position", 2, 3],
+  "velocity_x (m s-1)": ["velocity", 0, 3], "velocity_y (m s-1)": ["velocity", 1, 3], "velocity_z (m s-1)": ["velocity", 2, 3],
+};
+
+export function save(name, content) {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(content instanceof Blob ? content : new Blob([content]));
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+}
+
+export function csv({ time, columns, header }) {
+  const rows = [["time (s)", ...Object.keys(COLUMNS), "mode"].join(",")];
+  const number = (value) => (Number.isFinite(value) ? String(value) : "");
+  for (let i = 0; i < time.length; i++) {
+    const values = Object.values(COLUMNS).map(([name, k = 0, width = 1]) => number(columns[name][i * width + k]));
+    rows.push([time[i], ...values, header.modes[columns.mode[i]]].join(","));
+  }
+  return `${rows.join("\n")}\n`;
+}
+
+// A problem as TOML: plain values, then tables, then lists of tables.
+export function toml(problem) {
+  const lines = [];
+  const write = (table, name) => {
+    const entries = Object.entries(table).filter(([, value]) => value !== null && value !== undefined);
+    const inner = ([, value]) => typeof value === "object" && (!Array.isArray(value) || typeof value[0] === "object");
+    for (const [key, value] of entries.filter((entry) => !inner(entry))) lines.push(`${key} = ${tomlValue(value)}`);
+    for (const [key, value] of entries.filter(inner)) {
+      const full = name ? `${name}.${key}` : key;
+      for (const one of [value].flat()) {
+        lines.push("", Array.isArray(value) ? `[[${full}]]` : `[${full}]`);
+        write(one, full);
+      }
+    }
+  };
+  write(problem, "");
+  return `${lines.join("\n").trimStart()}\n`;
+}
+
+function tomlValue(value) {
+  if (Array.isArray(value)) return `[${value.map(tomlValue).join(", ")}]`;
+  if (typeof value === "number") return Number.isInteger(value) ? `${value}.0` : String(value);
+  return JSON.stringify(value);
+}
+
+// The command that repeats a run.
+export function commandLine({ header: { problem, asked } }) {
+  const lists = Array.isArray(problem.body.shape);
+  const words = lists ? ["tippetop.toml"] : [];
+  for (const [field, , value] of lists ? [] : differences(FIRST, { problem, duration: FIRST.duration })) {
+    if (value !== undefined) words.push(`--set '${field}=${typeof value === "string" ? value : JSON.stringify(value)}'`);
+  }
+  return ["tippetop simulate", ...words, `--duration ${asked}`].join(" \\\n  ");
+}
+
+// The moving top as a .glb, y up as the format wants it.
+export async function glb(track) {
+  const size = track.header.body.size;
+  const toy = makeToy(track.header.body.parts);
+  toy.name = "top";
+  toy.scale.setScalar(size);
+  const scene = new THREE.Scene();
+  scene.rotation.x = -Math.PI / 2;
+  scene.add(toy);
+  const count = Math.max(2, Math.min(Math.ceil(track.duration * KEYS) + 1, 20_000));
+  const times = Float32Array.from({ length: count }, (_, k) => (track.duration * k) / (count - 1));
+  const positions = new Float32Array(3 * count);
+  const turns = new Float32Array(4 * count);
+  times.forEach((time, k) => {
+    const { position, orientation: [w, x, y, z] } = track.at(time);
+    positions.set(position, 3 * k);
+    turns.set([x, y, z, w], 4 * k);
+  });
+  const clip = new THREE.AnimationClip("run", track.duration, [
+    new THREE.VectorKeyframeTrack("top.position", times, positions),
+    new THREE.QuaternionKeyframeTrack("top.quaternion", times, turns),
+  ]);
+  return new GLTFExporter().parseAsync(scene, { binary: true, animations: [clip] });
+}
+
+// The outline turned into a solid, in millimetres.
+export function stl({ parts, size }) {
+  const profile = parts.filter(({ opacity }) => opacity === 1).flatMap((part) => part.profile);
+  profile.sort(([, a], [, b]) => a - b);
+  const points = profile.map(([r, z]) => new THREE.Vector2(Math.max(r, 0) * size * 1e3, z * size * 1e3));
+  const ends = [new THREE.Vector2(0, points[0].y), ...points, new THREE.Vector2(0, points.at(-1).y)];
+  const solid = new THREE.Mesh(new THREE.LatheGeometry(ends, FACETS).rotateX(Math.PI / 2));
+  return new STLExporter().parse(solid, { binary: true });
+}
+
+// The scene as it is drawn now.
+export function picture(player) {
+  player.draw();
+  return new Promise((done) => player.canvas.toBlob(done, "image/png"));
+}
+
+// The run from its start as the scene plays it.
+export async function film(player) {
+  const kind = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm"].find((one) => MediaRecorder.isTypeSupported(one));
+  const recorder = new MediaRecorder(player.canvas.captureStream(FRAMES), { mimeType: kind });
+  const parts = [];
+  recorder.ondataavailable = ({ data }) => parts.push(data);
+  const ended = new Promise((done) => (recorder.onstop = done));
+  const { loop } = player;
+  player.loop = false;
+  player.seek(0);
+  player.toggle(true);
+  recorder.start();
+  await new Promise((done) => {
+    const look = setInterval(() => {
+      if (player.playing) return;
+      clearInterval(look);
+      done();
+    }, 50);
+  });
+  recorder.stop();
+  await ended;
+  player.loop = loop;
+  return new Blob(parts, { type: "video/webm" });
+}

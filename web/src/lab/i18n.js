@@ -1,0 +1,40 @@
+// The page's words, in one catalogue for each language.
+
+import de from "../../texts/de.json";
+import en from "../../texts/en.json";
+
+export const LANGUAGES = { en, de };
+
+let words = en;
+
+export function speak(language) {
+  words = LANGUAGES[language] ?? en;
+}
+
+export function preferred() {
+  return navigator.languages?.map((name) => name.slice(0, 2)).find((name) => name in LANGUAGES) ?? "en";
+}
+
+// A part of the catalogue, by its name with dots; fields of a launch have dots in their own names.
+export function part(name, found = words) {
+  if (found === undefined || name in found) return found?.[name];
+  const [first, ...rest] = name.split(".");
+  return rest.length ? part(rest.join("."), found[first]) : undefined;
+}
+
+// A text with its gaps filled.
+export function t(name, gaps = {}) {
+  const text = part(name);
+  if (typeof text !== "string") return name;
+  return text.replace(/\{(\w+)\}/g, (whole, gap) => gaps[gap] ?? whole);
+}
+
+// What the engine says in English, in the page's language as far as it has words for it.
+export function translated(text) {
+  return (words.patterns ?? []).reduce((found, [pattern, other]) => found.replace(pattern, other), text);
+}
+
+// A number with the language's decimal sign.
+export function decimal(text) {
+  return words === de ? text.replace(".", ",") : text;
+}

@@ -1,0 +1,230 @@
+// The page's state and what changes it. One launch is shown; what is asked for later overtakes what was asked before.
+
+import { stillness } from "../player/player.js";
+import { refusal } from "./controls.jsx";
+import { Engine } from "./engine.js";
+import { LANGUAGES, preferred, speak, t } from "./i18n.js";
+import { readLink, writeLink } from "./link.js";
+import { changed, LONGEST, same } from "./setup.js";
+import { digits, shown } from "./units.js";
+import { tell } from "./words.js";
+
+// More turns than these are not computed, times in ms: until a run is said to be under way, and a link is kept.
+const MOST_TURNS = 10_000;
+const PATIENCE = 250;
+const SHARE = 300;
+export const MOST_PINS = 3;
+
+export class Lab extends EventTarget {
+  constructor() {
+    super();
+    this.engine = new Engine();
+    this.ghosts = new Map();
+    this.state = { ...this.read(location.hash || location.search), busy: null, trouble: null, prospect: null, guess: null };
+    this.good = this.state.setup;
+    addEventListener("popstate", () => this.restore());
+  }
+
+  read(text) {
+    const link = readLink(text);
+    speak(link.lang ?? preferred());
+    document.documentElement.lang = link.lang in LANGUAGES ? link.lang : preferred();
+    return link;
+  }
+
+  set(changes) {
+    this.state = { ...this.state, ...changes };
+    if (changes.lang) {
+      speak(changes.lang);
+      document.documentElement.lang = changes.lang;
+    }
+    this.dispatchEvent(new Event("state"));
+    this.share();
+  }
+
+  // Change fields of the launch; while a slider is dragged, history waits for its end.
+  change(changes, dragged = false) {
+    this.set({ setup: changed(this.state.setup, changes), trouble: null });
+    if (dragged) this.request(false, true);
+    else this.settle();
+  }
+
+  // What is set now can be gone back to; it is followed as exactly as can be.
+  settle() {
+    this.keep(true);
+    this.request(false);
+  }
+
+  // Launch something else and play it.
+  go(setup, { play = true, ...others } = {}) {
+    this.set({ setup, trouble: null, ...others });
+    this.keep(true);
+    this.request(play);
+  }
+
+  refused({ problem: { launch }, duration }) {
+    const turns = (Math.abs(launch.spin) * duration) / (2 * Math.PI);
+    const bounds = t("accepted.duration", { most: LONGEST });
+    if (!(typeof duration === "number" && duration > 0 && duration <= LONGEST)) {
+      return refusal({ field: "duration", value: duration, accepted: bounds }, this.state);
+    }
+    if (turns <= MOST_TURNS || !Number.isFinite(turns)) return null;
+    const value = shown(launch.spin, "spin", this.state.units);
+    const name = t("quantities.launch.spin.name");
+    return { field: "launch.spin", sentence: t("controls.tooLong", { name, value, turns: digits(turns, 2) }) };
+  }
+
+  // Follow the launch that is set: quickly while a slider moves.
+  async request(play, quick = false) {
+    const { setup } = this.state;
+    const asked = (this.asked = (this.asked ?? 0) + 1);
+    const trouble = this.refused(setup);
+    if (trouble) return this.refuse(trouble);
+    const late = setTimeout(() => this.set({ busy: this.state.busy ?? 0 }), PATIENCE);
+    try {
+      const track = await this.engine.run({ ...setup, quick }, (share) => asked === this.asked && this.state.busy !== null && this.set({ busy: share }));
+      clearTimeout(late);
+      if (!track) return;
+      this.good = setup;
+      if (asked === this.asked || !this.playing) this.show(track, play, asked === this.asked);
+    } catch (error) {
+      clearTimeout(late);
+      if (asked === this.asked) this.refuse(refusal(error, this.state));
+    } finally {
+      if (asked === this.asked && this.state.busy !== null) this.set({ busy: null });
+    }
+  }
+
+  refuse(trouble) {
+    this.set({ setup: this.good, trouble, busy: null });
+  }
+
+  // Show a run: the picture first, then what is known without it.
+  show(track, play, last) {
+    this.track = track;
+    this.fresh = true;
+    this.player.load(track);
+    if (play) {
+      this.player.scene?.release();
+      this.player.seek(0);
+      this.player.toggle(!stillness());
+    }
+    if (this.pending) this.look(this.pending);
+    this.pending = null;
+    this.dispatchEvent(new Event("run"));
+    this.say();
+    if (last) this.foresee(track.header.problem);
+  }
+
+  say() {
+    const { prospect, units } = this.state;
+    if (this.track) this.player.say(tell(this.track, prospect, units));
+  }
+
+  async foresee(problem) {
+    const key = JSON.stringify(problem);
+    if (key === this.foreseen) return;
+    this.foreseen = key;
+    const prospect = await this.engine.predict(problem).catch(() => null);
+    if (key !== this.foreseen) return;
+    this.set({ prospect });
+    this.say();
+  }
+
+  stop() {
+    this.engine.stop();
+    this.asked += 1;
+    this.set({ setup: this.good, busy: null, trouble: { field: null, sentence: t("page.stopped") } });
+  }
+
+  pin() {
+    const { pins, setup } = this.state;
+    if (pins.some((one) => same(one, setup))) return;
+    this.set({ pins: [...pins, setup].slice(-MOST_PINS) });
+    this.keep(true);
+    this.raise();
+  }
+
+  unpin(setup) {
+    this.set({ pins: this.state.pins.filter((one) => one !== setup) });
+    this.keep(true);
+    this.raise();
+  }
+
+  // Have a ghost for each pinned launch.
+  async raise() {
+    const { pins } = this.state;
+    for (const pin of pins) {
+      const key = JSON.stringify(pin);
+      if (this.ghosts.has(key)) continue;
+      const known = this.track && same(pin.problem, this.track.header.problem) && pin.duration === this.track.header.asked;
+      this.ghosts.set(key, known ? this.track : await this.engine.aside(pin).catch(() => null));
+    }
+    if (pins !== this.state.pins) return;
+    this.player.compare(this.pinned());
+    this.dispatchEvent(new Event("run"));
+    this.set({});
+  }
+
+  pinned() {
+    return this.state.pins.map((pin) => this.ghosts.get(JSON.stringify(pin))).filter(Boolean);
+  }
+
+  ghostOf(pin) {
+    return this.ghosts.get(JSON.stringify(pin));
+  }
+
+  // What the player shows, as a link keeps it.
+  view() {
+    const { player } = this;
+    if (!player) return this.state.view;
+    const { scene } = player;
+    const on = Object.entries(scene?.shown ?? {}).filter(([, value]) => value).map(([name]) => name);
+    const usual = on.join(" ") === "trace glass";
+    return {
+      time: player.playing ? 0 : player.time, camera: scene?.held ? scene.place : null, shown: usual ? [] : on,
+    };
+  }
+
+  link() {
+    return `${location.href.replace(/[#?].*$/, "")}#${writeLink({ ...this.state, view: this.view() })}`;
+  }
+
+  share() {
+    clearTimeout(this.sharing);
+    this.sharing = setTimeout(() => this.keep(false), SHARE);
+  }
+
+  keep(anew) {
+    clearTimeout(this.sharing);
+    const hash = this.link().replace(/^[^#]*/, "");
+    if (hash === location.hash) return;
+    if (anew) history.pushState(null, "", hash);
+    else history.replaceState(null, "", hash);
+  }
+
+  // Go back to what the address says.
+  restore() {
+    const link = this.read(location.hash);
+    clearTimeout(this.sharing);
+    this.state = { ...this.state, ...link, trouble: null };
+    this.dispatchEvent(new Event("state"));
+    this.request(false);
+    this.raise();
+    this.look(link);
+  }
+
+  // Put the player where a link says.
+  look({ view, timed }) {
+    const { player } = this;
+    if (view.shown.length) {
+      for (const name of ["axis", "momentum", "friction", "trace", "glass"]) player.show({ [name]: view.shown.includes(name) });
+    }
+    if (view.camera && player.scene) {
+      player.scene.place = view.camera;
+      player.scene.held = true;
+      player.scene.controls.update();
+    }
+    if (timed) player.seek(view.time);
+  }
+}

@@ -1,0 +1,93 @@
+// The map: where launches end over spin and friction, computed from coarse to fine; a square is a launch.
+
+import { useEffect, useRef, useState } from "preact/hooks";
+
+import { Crew } from "./engine.js";
+import { t } from "./i18n.js";
+import { Chart, fineness } from "./chart.js";
+import { changed } from "./setup.js";
+import { digits, shown } from "./units.js";
+
+export const COLUMNS = 48;
+export const ROWS = 24;
+const HIGHEST = 250;
+
+// The launches of a map around one: spins to the highest of the slider, friction over a factor of 100.
+export function planOf(setup) {
+  const mu = Math.max(setup.problem.friction.mu, 1e-3);
+  const round = (value, count) => Number(value.toPrecision(count));
+  return {
+    setup,
+    spins: Array.from({ length: COLUMNS }, (_, k) => round(((k + 0.5) / COLUMNS) * HIGHEST, 4)),
+    frictions: Array.from({ length: ROWS }, (_, k) => round(round(mu, 1) * 10 ** (-1 + (2 * k) / (ROWS - 1)), 3)),
+  };
+}
+
+export function cellOf(plan, { row, column }) {
+  return changed(plan.setup, { "launch.spin": plan.spins[column], "friction.mu": plan.frictions[row] });
+}
+
+export function MapPanel({ lab }) {
+  const host = useRef();
+  const [note, say] = useState("");
+  const [tip, point] = useState("");
+  const [crew, work] = useState(null);
+  const { units, setup } = lab.state;
+  const none = setup.problem.friction.mu === undefined;
+  useEffect(() => {
+    const chart = new Chart(host.current, {
+      choose: (cell) => lab.go(cellOf(chart.plan, cell)),
+      point: (cell) => point(cell ? wordsOf(chart.plan, cell, lab.state.units) : ""),
+    });
+    lab.chart = chart;
+    if (lab.map) chart.load(lab.map);
+    return () => chart.dispose();
+  }, []);
+  useEffect(() => lab.chart.paint(lab.state), [units, setup, lab.state.theme]);
+  const begin = async () => {
+    const plan = planOf(setup);
+    lab.map = { plan, cells: new Array(COLUMNS * ROWS).fill(null) };
+    lab.chart.load(lab.map);
+    const helpers = new Crew();
+    work(helpers);
+    let count = 0;
+    await helpers.follow(jobsOf(plan), (key, answer) => {
+      lab.map.cells[key] = answer;
+      count += 1;
+      lab.chart.redraw();
+      if (count % 8 === 0) say(t("map.under", { count, all: COLUMNS * ROWS }));
+    });
+    if (!helpers.over) say(t("map.done", { count }));
+    helpers.stop();
+    work(null);
+  };
+  return (
+    <div class="map">
+      <p>{t("map.intro")}</p>
+      {none ? <p>{t("map.none")}</p> : crew
+        ? <button type="button" onClick={() => { crew.stop(); work(null); }}>{t("map.stop")}</button>
+        : <button type="button" class="strong" onClick={begin}>{t(lab.map ? "map.again" : "map.compute")}</button>}
+      <p class="hint" role="status">{note}</p>
+      <div class="chart"><canvas ref={host} tabIndex={0} role="application" aria-label={t("map.label")} /></div>
+      <div class="key" aria-hidden="true"><span>{t("map.upright")} <i /> {t("map.inverted")}</span><span><b /> {t("map.leaves")}</span></div>
+      <p class="hint tip" aria-live="polite">{tip}</p>
+    </div>
+  );
+}
+
+// The cells from coarse to fine.
+function* jobsOf(plan) {
+  const order = [];
+  for (let row = 0; row < ROWS; row++) {
+    for (let column = 0; column < COLUMNS; column++) order.push({ row, column });
+  }
+  order.sort((a, b) => fineness(a) - fineness(b));
+  for (const cell of order) yield { key: cell.row * COLUMNS + cell.column, setup: cellOf(plan, cell) };
+}
+
+function wordsOf(plan, { row, column, answer }, units) {
+  const gaps = { spin: shown(plan.spins[column], "spin", units), mu: digits(plan.frictions[row]) };
+  if (answer.error || !Number.isFinite(answer.tilt)) return t("map.failed", { ...gaps, message: answer.error?.message ?? answer.outcome?.advice ?? "" });
+  const { tilt, flights } = answer;
+  return t(flights ? "map.cellJumps" : "map.cell", { ...gaps, tilt: shown(tilt, "angle", units, 3), flights });
+}

@@ -1,0 +1,34 @@
+// Launches to start from, by what happens in them; and tables, by what they are made of.
+
+import { PRESETS as GIVEN } from "engine-tables";
+
+import { changed, FIRST } from "./setup.js";
+
+const { bodies, problems } = GIVEN;
+const DRILL = { kind: "contensou", mu: 0.3, patch_radius: 3e-4, pressure: "hertz" };
+
+// Key of its name, what it changes, where it is from.
+export const PRESETS = [
+  ["turns", {}, "Report, Fig. 4"],
+  ["half", { "launch.spin": 50 }, "Report, Fig. 5"],
+  ["slow", { "launch.spin": 20 }, "Report, section 3.2"],
+  ["jumps", { "launch.spin": 175 }, "Report, Fig. 9"],
+  ["much", { "friction.mu": 100 }, "Report, Fig. 8"],
+  ["none", { "friction.mu": 0 }, "no friction"],
+  ["dry", { friction: { kind: "coulomb", mu: 0.3 } }, "Coulomb's law"],
+  ["drill", { friction: DRILL, "launch.spin": 100, duration: 6 }, "Contensou 1963; Leine & Glocker 2003"],
+  ["stem", { body: bodies["report-stem"], duration: 10 }, "a stem on the report's top"],
+  ["thin", { body: bodies["report-thin-stem"], duration: 10 }, "a thin stem on the report's top"],
+  ["leine", problems["leine-glocker"], "Leine & Glocker 2003"],
+].map(([key, changes, source]) => ({ key, source, setup: changed(FIRST, changes) }));
+
+export function preset(key) {
+  return PRESETS.find((one) => one.key === key).setup;
+}
+
+export const TABLES = {
+  glass: { kind: "contensou", mu: 0.2, patch_radius: 1e-4, pressure: "hertz" },
+  wood: { kind: "contensou", mu: 0.3, patch_radius: 3e-4, pressure: "hertz" },
+  felt: { kind: "contensou", mu: 0.5, patch_radius: 2e-3, pressure: "hertz" },
+  oil: { kind: "viscous", mu: 0.3 },
+};

@@ -1,0 +1,65 @@
+// A launch as the page knows it: a problem, as plain data, and how long to follow it, s.
+
+import { PRESETS } from "engine-tables";
+
+export const FIRST = { problem: PRESETS.problems.report, duration: 20 };
+
+export const LONGEST = 120;
+
+// What each law has beside the friction coefficient, and where that starts.
+const LAWS = {
+  viscous: {},
+  coulomb: {},
+  regularized_coulomb: { eps: 1e-3 },
+  contensou: { patch_radius: 3e-4, pressure: "hertz" },
+};
+
+export function valueOf({ problem, duration }, field) {
+  if (field === "duration") return duration;
+  return field.split(".").reduce((found, name) => found?.[name], problem);
+}
+
+// A copy with some fields replaced, named with dots; another law keeps the friction coefficient.
+export function changed(setup, changes) {
+  const copy = structuredClone(setup);
+  for (const [field, value] of Object.entries(changes)) {
+    if (field === "duration") copy.duration = value;
+    else if (field === "friction.kind") {
+      const { mu = 0.3, kind } = copy.problem.friction;
+      if (kind !== value) copy.problem.friction = { kind: value, mu: mu || 0.3, ...LAWS[value] };
+    } else {
+      const names = field.split(".");
+      const last = names.pop();
+      const table = names.reduce((found, name) => (found[name] ??= {}), copy.problem);
+      table[last] = value;
+    }
+  }
+  return copy;
+}
+
+export function same(one, other) {
+  return JSON.stringify(sorted(one)) === JSON.stringify(sorted(other));
+}
+
+function sorted(value) {
+  if (Array.isArray(value) || value === null || typeof value !== "object") return value;
+  return Object.fromEntries(Object.keys(value).sort().map((key) => [key, sorted(value[key])]));
+}
+
+// The fields of a launch by their names with dots; lists, such as several surfaces, are one field.
+export function* fields(value, prefix = "") {
+  for (const [name, inner] of Object.entries(value)) {
+    if (inner === undefined || inner === null) continue;
+    if (typeof inner === "object" && !Array.isArray(inner)) yield* fields(inner, `${prefix}${name}.`);
+    else yield [`${prefix}${name}`, inner];
+  }
+}
+
+// In what two launches differ: field, value in one, value in the other.
+export function differences(one, other) {
+  const flat = (setup) => new Map([...fields(setup.problem), ["duration", setup.duration]]);
+  const [a, b] = [flat(one), flat(other)];
+  return [...new Set([...a.keys(), ...b.keys()])]
+    .map((field) => [field, a.get(field), b.get(field)])
+    .filter(([, x, y]) => JSON.stringify(x) !== JSON.stringify(y));
+}

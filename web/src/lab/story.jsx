@@ -1,0 +1,103 @@
+// The guided story: each step sets a launch, asks for a prediction, shows what happens and says why.
+
+import { part, t } from "./i18n.js";
+import { preset } from "./presets.js";
+import { changed } from "./setup.js";
+
+// Of each step: its launch, the arrows and curves it shows, and from where it is seen.
+const STEPS = [
+  { setup: preset("turns"), show: ["trace", "glass", "axis"], plots: ["theta", "height", "omega3"] },
+  { setup: changed(preset("slow"), { duration: 8 }), show: ["trace", "glass", "axis"], plots: ["theta", "omega3"] },
+  { setup: preset("half"), show: ["trace", "glass", "axis"], plots: ["theta", "slip", "phi_dot"] },
+  { setup: preset("turns"), show: ["trace", "glass", "momentum"], plots: ["theta", "omega3", "energy", "jellett_error"] },
+  { setup: changed(preset("none"), { duration: 8 }), show: ["trace", "glass", "axis"], plots: ["theta", "energy", "slip"] },
+  { setup: changed(preset("turns"), { "friction.mu": 3000, duration: 8 }), show: ["trace", "glass", "friction"], plots: ["theta", "slip", "energy"] },
+  { setup: changed(preset("jumps"), { duration: 9 }), show: ["trace", "glass", "friction"], plots: ["theta", "normal_force", "height"] },
+  { setup: preset("stem"), show: ["trace", "glass", "axis"], plots: ["theta", "height", "normal_force"] },
+  { setup: changed(preset("dry"), { duration: 8 }), show: ["trace", "glass", "friction"], plots: ["theta", "slip", "energy"], extra: "drill" },
+  { setup: preset("turns"), show: ["trace", "glass"], plots: ["theta", "omega3"], extra: "own" },
+];
+STEPS[7].extra = "thin";
+
+export function Story({ lab }) {
+  const { step, guess } = lab.state;
+  const number = Math.min(step, STEPS.length - 1);
+  const words = part("story.steps")[number];
+  const told = guess?.step === number;
+  const go = (next) => {
+    set(lab, next, { step: next, guess: null });
+  };
+  return (
+    <article class="story">
+      <p class="step">{t("story.step", { step: number + 1, all: STEPS.length })}</p>
+      <progress max={STEPS.length} value={number + 1} aria-label={t("story.step", { step: number + 1, all: STEPS.length })} />
+      <h2>{words.title}</h2>
+      <p>{words.text}</p>
+      <Question key={number} words={words} told={told ? guess : null} onGuess={(answer) => spin(lab, number, answer)} />
+      {told && <Why lab={lab} number={number} words={words} guess={guess} />}
+      <nav class="story-nav" aria-label={t("page.story")}>
+        <button type="button" disabled={number === 0} onClick={() => go(number - 1)}>{t("story.before")}</button>
+        <button type="button" class="strong" disabled={number === STEPS.length - 1} onClick={() => go(number + 1)}>{t("story.next")}</button>
+      </nav>
+    </article>
+  );
+}
+
+function Question({ words, told, onGuess }) {
+  const answer = (event) => {
+    event.preventDefault();
+    const chosen = new FormData(event.target).get("guess");
+    if (chosen !== null) onGuess(Number(chosen));
+  };
+  return (
+    <form class="question" onSubmit={answer}>
+      <fieldset disabled={Boolean(told)}>
+        <legend>{words.question}</legend>
+        {words.answers.map((text, k) => (
+          <label class={told && k === words.right ? "right" : ""}>
+            <input type="radio" name="guess" value={k} required checked={told?.answer === k || undefined} /> {text}</label>
+        ))}
+      </fieldset>
+      {!told && <div class="row"><button type="submit" class="strong">{t("story.go")}</button>
+        <button type="button" onClick={() => onGuess(null)}>{t("story.skip")}</button></div>}
+    </form>
+  );
+}
+
+function Why({ lab, number, words, guess }) {
+  const { extra } = STEPS[number];
+  return (
+    <div class="answer" role="status">
+      {guess.answer !== null && <p class="verdict">{t(guess.answer === words.right ? "story.right" : "story.wrong")}</p>}
+      <p>{words.why}</p>
+      <details><summary>{t("story.deeper")}</summary><p class="deeper">{words.deeper}</p></details>
+      {extra && <button type="button" onClick={() => more(lab, extra)}>{t(`story.extra.${extra}`)}</button>}
+    </div>
+  );
+}
+
+function more(lab, extra) {
+  if (extra === "own") lab.set({ tab: "own" });
+  else lab.go(preset(extra));
+}
+
+// Put a step's launch on the table, seen as it is best seen.
+function set(lab, number, others, play = false) {
+  const { setup, show, plots } = STEPS[number];
+  const { player } = lab;
+  for (const name of ["axis", "momentum", "friction", "trace", "glass"]) player.show({ [name]: show.includes(name) });
+  player.look("orbit");
+  player.toggle(false);
+  player.seek(0);
+  lab.go(setup, { play, plots, ...others });
+}
+
+// Show what happens in a step.
+function spin(lab, number, answer) {
+  set(lab, number, { guess: { step: number, answer } }, true);
+}
+
+// Whether what happens is not to be seen yet, as it is still to be guessed.
+export function veiled({ tab, step, guess }) {
+  return tab === "story" && guess?.step !== step;
+}

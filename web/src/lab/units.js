@@ -1,0 +1,36 @@
+// Numbers as a visitor reads them: SI inside, the chosen units outside.
+
+import { decimal, t } from "./i18n.js";
+
+const DEGREE = Math.PI / 180;
+
+const SPINS = { "rad/s": 1, "turns/s": 2 * Math.PI, rpm: (2 * Math.PI) / 60 };
+const ANGLES = { rad: 1, deg: DEGREE };
+
+export const CHOICES = { spin: Object.keys(SPINS), angle: Object.keys(ANGLES) };
+export const FIRST = { spin: "rad/s", angle: "deg" };
+
+// The unit in which a quantity of a kind is shown, and its size in SI.
+export function unitOf(kind, units) {
+  if (kind === "spin") return { name: t(`units.${units.spin}`), size: SPINS[units.spin] };
+  if (kind === "angle") return { name: units.angle === "deg" ? "°" : "rad", size: ANGLES[units.angle] };
+  if (kind === "mm") return { name: "mm", size: 1e-3 };
+  if (kind === "gram") return { name: "g", size: 1e-3 };
+  if (kind === "mJ") return { name: "mJ", size: 1e-3 };
+  return { name: kind ?? "", size: 1 };
+}
+
+// A number to read: so many digits, a true minus sign.
+export function digits(value, count = 4) {
+  if (value === null || value === undefined || !Number.isFinite(value)) return "–";
+  if (value === 0) return "0";
+  const size = Math.abs(value);
+  const text = size < 1e-3 || size >= 1e5 ? value.toExponential(Math.max(count - 2, 0)) : `${+value.toPrecision(count)}`;
+  return decimal(text.replace("-", "−"));
+}
+
+export function shown(value, kind, units, count = 4) {
+  const { name, size } = unitOf(kind, units);
+  const text = digits(value / size, count);
+  return name === "°" ? `${text}°` : name ? `${text} ${name}` : text;
+}

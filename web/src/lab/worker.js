@@ -1,0 +1,38 @@
+// What the page's workers do: runs, predictions, and single launches of a map.
+
+import * as engine from "engine";
+import { buffersOf, pack, samplesFor } from "../run/pack.js";
+
+// How exactly a launch is followed while a slider moves, and how finely it is then sampled; of a map, how exactly.
+const QUICK = { tolerance: 1e-7, samples: 320 };
+const COARSE = 1e-6;
+
+const JOBS = { run: answerRun, predict: ({ problem }) => ({ end: engine["predict"]?.(problem) ?? null }), cell: answerCell };
+
+function answerRun({ id, problem, duration, quick }) {
+  let told = 0;
+  const onProgress = (share) => {
+    if (performance.now() - told < 60) return;
+    told = performance.now();
+    postMessage({ id, share });
+  };
+  const samples = quick ? QUICK.samples : samplesFor(problem, duration);
+  const run = engine.simulate(problem, { duration, onProgress, ...(quick && { tolerance: QUICK.tolerance }) });
+  return { track: pack(problem, run, samples) };
+}
+
+function answerCell({ problem, duration }) {
+  const { metrics, outcome } = engine.simulate(problem, { duration, tolerance: COARSE });
+  return { tilt: metrics.final_theta, flights: metrics.flights, turnsOver: metrics.turns_over, outcome };
+}
+
+self.onmessage = ({ data }) => {
+  const { id, job } = data;
+  try {
+    const answer = JOBS[job](data);
+    postMessage({ id, answer }, answer.track ? buffersOf(answer.track) : []);
+  } catch (error) {
+    const { name, field, value, accepted, message } = error;
+    postMessage({ id, error: { name, field, value, accepted, message: message ?? String(error) } });
+  }
+};

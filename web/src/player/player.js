@@ -1,0 +1,288 @@
+// The player: a scene with a clock, buttons and a strip to scrub on. One host element, one run at a time.
+
+import { player as english } from "../../texts/en.json";
+import { LEAD, nearness, pace } from "./climax.js";
+import { icon, markup } from "./markup.js";
+import { Scene } from "./scene.js";
+import { drawStrip } from "./strip.js";
+import { STYLE } from "./style.js";
+import { Tone } from "./tone.js";
+import { Track } from "./track.js";
+
+export class Player extends EventTarget {
+  constructor(host, { theme = "auto", words = english, open = false } = {}) {
+    super();
+    Object.assign(this, { host, labels: words });
+    host.classList.add("tt-player");
+    host.innerHTML = `<style>${STYLE}</style>${markup(words)}`;
+    this.find = (selector) => host.querySelector(selector);
+    this.find(".tt-more").open = open;
+    this.canvas = this.find(".tt-canvas");
+    this.strip = this.find(".tt-strip");
+    this.range = this.find(".tt-scrub input");
+    this.readout = this.find(".tt-time");
+    this.playButton = this.find("[data-do=play]");
+    this.time = 0;
+    this.speed = 1;
+    this.playing = false;
+    this.dirty = true;
+    this.slow = 0;
+    this.climax = !stillness();
+    this.find("[data-do=climax]").checked = this.climax;
+    this.loop = false;
+    try {
+      this.scene = new Scene(this.canvas);
+      this.scene.controls.addEventListener("change", () => (this.dirty ||= !this.drawing));
+      this.scene.controls.addEventListener("end", () => this.dispatchEvent(new Event("view")));
+    } catch (error) {
+      this.find(".tt-trouble").textContent = words.noGraphics;
+      this.find(".tt-trouble").hidden = false;
+      this.reason = error;
+    }
+    this.listen();
+    this.setTheme(theme);
+    this.resizing = new ResizeObserver(() => this.resize());
+    this.resizing.observe(host);
+    this.tick = this.tick.bind(this);
+    this.frame = requestAnimationFrame(this.tick);
+  }
+
+  listen() {
+    const actions = {
+      play: () => this.toggle(), back: () => this.step(-1), on: () => this.step(1), flip: () => this.flip(),
+    };
+    this.host.addEventListener("click", ({ target }) => actions[target.closest("button")?.dataset.do]?.());
+    this.host.addEventListener("change", ({ target }) => {
+      const { do: what, show } = target.dataset;
+      if (what === "speed") this.speed = Number(target.value);
+      if (what === "view") this.look(target.value);
+      if (what === "climax") this.climax = target.checked;
+      if (what === "loop") this.loop = target.checked;
+      if (what === "tone") this.sing(target.checked);
+      if (what === "follow" && this.scene) this.scene.following = target.checked;
+      if (show) this.show({ [show]: target.checked });
+      this.dirty = true;
+      if (what || show) this.dispatchEvent(new Event("view"));
+    });
+    this.range.addEventListener("input", () => {
+      this.toggle(false);
+      this.seek(Number(this.range.value));
+    });
+    this.canvas.addEventListener("keydown", (event) => this.key(event));
+  }
+
+  key(event) {
+    const turns = { ArrowLeft: [-0.1, 0], ArrowRight: [0.1, 0], ArrowUp: [0, 0.1], ArrowDown: [0, -0.1] };
+    const keys = {
+      " ": () => this.toggle(),
+      ArrowLeft: () => this.step(-1),
+      ArrowRight: () => this.step(1),
+      Home: () => this.seek(0),
+      End: () => this.seek(this.duration),
+      "+": () => this.scene?.zoom(0.9),
+      "-": () => this.scene?.zoom(1 / 0.9),
+    };
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    if (event.shiftKey && turns[event.key]) this.scene?.turn(...turns[event.key]);
+    else if (keys[event.key]) keys[event.key]();
+    else return;
+    this.dirty = true;
+    event.preventDefault();
+  }
+
+  get duration() {
+    return this.track?.duration ?? 0;
+  }
+
+  get turnsOver() {
+    return this.track?.header.turns_over ?? NaN;
+  }
+
+  // Show another run, given as a track or a block of bytes; the time and whether it plays stay as they are.
+  load(run) {
+    this.track = run instanceof Track ? run : new Track(run);
+    this.time = Math.min(this.time, this.duration);
+    this.range.max = this.duration;
+    this.scene?.load(this.track);
+    this.find(".tt-scale").textContent = this.scene?.scaleText(this.labels.squares) ?? "";
+    this.find("[data-do=flip]").disabled = !Number.isFinite(this.turnsOver);
+    if (this.track.header.story) this.say(this.track.header.story);
+    this.stale = true;
+    this.dirty = true;
+    this.dispatchEvent(new Event("run"));
+    return this.track;
+  }
+
+  // Show other runs as ghosts beside the run.
+  compare(tracks) {
+    this.scene?.compare(tracks);
+    this.ghosts = tracks;
+    this.stale = true;
+    this.dirty = true;
+  }
+
+  say({ headline, details }) {
+    const strong = document.createElement("strong");
+    strong.textContent = headline;
+    const rest = document.createElement("span");
+    rest.textContent = details.join(" ");
+    this.find(".tt-words").replaceChildren(strong, rest);
+  }
+
+  toggle(playing = !this.playing) {
+    if (playing && this.time >= this.duration) this.time = 0;
+    const changed = this.playing !== playing;
+    this.playing = playing;
+    this.last = undefined;
+    this.playButton.innerHTML = icon(playing ? "pause" : "play");
+    const name = playing ? this.labels.pause : this.labels.play;
+    this.playButton.setAttribute("aria-label", name);
+    this.playButton.title = name;
+    this.dirty = true;
+    if (changed) this.dispatchEvent(new Event("view"));
+  }
+
+  // One frame of a sixtieth of a second, at the speed of play.
+  step(direction) {
+    this.toggle(false);
+    this.seek(this.time + (direction * this.speed) / 60);
+  }
+
+  seek(time) {
+    this.time = Math.min(Math.max(time, 0), this.duration);
+    this.dirty = true;
+    this.dispatchEvent(new Event("view"));
+  }
+
+  // Play from just before the top turns over, with the camera free to sink.
+  flip() {
+    if (!Number.isFinite(this.turnsOver)) return;
+    this.scene?.release();
+    this.seek(this.turnsOver - LEAD);
+    this.toggle(!stillness());
+  }
+
+  look(view) {
+    this.scene?.look(view);
+    this.find("[data-do=view]").value = view;
+    this.dirty = true;
+  }
+
+  show(shown) {
+    this.scene?.show(shown);
+    for (const [name, on] of Object.entries(shown)) this.find(`[data-show=${name}]`).checked = on;
+    this.dirty = true;
+  }
+
+  sing(on) {
+    this.tone?.close();
+    this.tone = on ? new Tone() : null;
+  }
+
+  setTheme(theme) {
+    const dark = theme === "auto" ? matchMedia("(prefers-color-scheme: dark)").matches : theme === "dark";
+    this.host.classList.toggle("tt-dark", dark);
+    this.dark = dark;
+    this.scene?.setTheme(dark ? "dark" : "light");
+    this.stale = true;
+    this.dirty = true;
+  }
+
+  resize() {
+    this.scene?.resize(this.canvas.clientWidth, this.canvas.clientHeight);
+    this.stale = true;
+    this.dirty = true;
+  }
+
+  tick(now) {
+    this.frame = requestAnimationFrame(this.tick);
+    if (this.playing && this.track) this.advance(now);
+    if (!this.track) return;
+    if (!this.dirty) {
+      this.rest(now);
+      return;
+    }
+    this.dirty = false;
+    this.moved = now;
+    this.draw();
+    this.frames = (this.frames ?? 0) + 1;
+    this.dispatchEvent(new Event("time"));
+  }
+
+  advance(now) {
+    const passed = this.last === undefined ? 0 : Math.min((now - this.last) / 1000, 0.25);
+    this.last = now;
+    this.time += passed * this.speed * (this.climax ? pace(this.time, this.turnsOver) : 1);
+    this.pace(passed);
+    if (this.time >= this.duration) {
+      this.time = this.loop ? 0 : this.duration;
+      if (!this.loop) this.toggle(false);
+    }
+    this.dirty = true;
+  }
+
+  draw() {
+    const sunk = this.climax ? nearness(this.time, this.turnsOver) : 0;
+    this.drawing = true;
+    this.scene?.draw(this.time, sunk);
+    this.drawing = false;
+    if (this.stale) drawStrip(this.strip, this.track, this.dark, this.ghosts);
+    this.stale = false;
+    this.range.value = this.time;
+    this.range.setAttribute("aria-valuetext", `${this.time.toFixed(3)} s`);
+    this.readout.textContent = `${this.time.toFixed(this.speed < 0.02 ? 5 : 3)} s`;
+    this.tellMode();
+    this.tone?.sound(this.track.value("omega3", this.time), this.speed, this.playing);
+  }
+
+  // Whether the top slides, rolls, flies or stands on its stem.
+  tellMode() {
+    const mode = this.track.mode(this.time);
+    if (mode === this.mode) return;
+    this.mode = mode;
+    const badge = this.find(".tt-mode");
+    badge.hidden = !mode;
+    badge.dataset.mode = mode ?? "";
+    badge.textContent = mode ? (this.labels.modes[mode] ?? mode) : "";
+  }
+
+  // When nothing moves any more, draw the moment once more, as sharp as can be.
+  rest(now) {
+    if (!this.scene || this.sharp === this.moved || now - this.moved < 600) return;
+    this.sharp = this.moved;
+    const { quality, best } = this.scene;
+    if (quality >= best) return;
+    this.scene.setQuality(best);
+    this.draw();
+    this.scene.setQuality(quality, false);
+  }
+
+  // Where frames come late, draw fewer pixels.
+  pace(passed) {
+    if (!this.scene || !passed) return;
+    this.slow = 0.9 * this.slow + 0.1 * passed;
+    this.seen = (this.seen ?? 0) + 1;
+    if (this.seen > 12 && this.slow > 0.024 && this.scene.quality > this.scene.least) {
+      this.scene.setQuality(Math.max(this.scene.least, 0.75 * this.scene.quality));
+      this.seen = 0;
+    }
+  }
+
+  dispose() {
+    cancelAnimationFrame(this.frame);
+    this.tone?.close();
+    this.resizing.disconnect();
+    this.scene?.dispose();
+    this.host.replaceChildren();
+    this.host.classList.remove("tt-player", "tt-dark");
+  }
+}
+
+// Whether the visitor asks for no motion that was not asked for.
+export function stillness() {
+  return matchMedia("(prefers-reduced-motion: reduce)").matches;
+}
+
+export function createPlayer(host, options) {
+  return new Player(host, options);
+}

@@ -1,0 +1,340 @@
+// The scene: lights, table, toy, cameras, arrows and trace. It draws a moment of a track; it has no clock.
+
+import * as THREE from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+
+import { cutTrace, makeArrow, makePatch, makeRuler, makeTable, makeToy, makeTrace, paintGrid, pointArrow, traceMaterial } from "./toy.js";
+
+export const ARROWS = { axis: "#109b60", momentum: "#7b4fd0", friction: "#e03c31" };
+
+// How the contact is shown by its mode: it slides, rolls (holds), or is of two surfaces.
+export const MODES = { sliding: "#e8590c", sticking: "#2b8a3e", double: "#7b4fd0", stem: "#7b4fd0" };
+
+// How much of a ghost is seen, and where ghosts stand beside the top, in sizes of it.
+const GHOST = 0.45;
+const BESIDE = [[-1.9, -1.2], [1.9, 1.2], [-2.2, 2.6]];
+// How far down the camera goes, rad from above: nearly to the table.
+const LOWEST = 1.53;
+
+const VIEWS = { orbit: [3.6, -5.6, 3.1], side: [0, -6.6, 0.7], above: [0, -0.05, 7.5] };
+
+export class Scene {
+  constructor(canvas) {
+    const frugal = drawnInSoftware();
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: !frugal });
+    this.renderer.debug.checkShaderErrors = false;
+    this.renderer.shadowMap.enabled = true;
+    this.quality = frugal ? 0.7 : Math.min(globalThis.devicePixelRatio || 1, 2);
+    this.best = Math.max(this.quality, 1);
+    this.least = frugal ? 0.35 : 0.5;
+    this.renderer.shadowMap.type = this.quality < 0.8 ? THREE.BasicShadowMap : THREE.PCFShadowMap;
+    this.world = new THREE.Scene();
+    this.camera = new THREE.PerspectiveCamera(38, 1, 0.05, 200);
+    this.camera.up.set(0, 0, 1);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.enableDamping = true;
+    this.controls.maxPolarAngle = LOWEST;
+    this.controls.minDistance = 2;
+    this.controls.maxDistance = 30;
+    this.light();
+    this.ink = traceMaterial();
+    this.arrows = {};
+    for (const [name, colour] of Object.entries(ARROWS)) {
+      this.arrows[name] = makeArrow(colour);
+      this.arrows[name].visible = false;
+      this.world.add(this.arrows[name]);
+    }
+    this.shown = { axis: false, momentum: false, friction: false, trace: true, glass: true };
+    this.following = true;
+    this.ghosts = [];
+    this.patch = makePatch();
+    this.world.add(this.patch);
+    this.listen(canvas);
+    this.look("orbit");
+  }
+
+  // A swipe up or down and a wheel scroll the page; drags turn, and so do wheels once the scene was clicked.
+  listen(canvas) {
+    canvas.style.touchAction = "pan-y";
+    this.held = false;
+    this.controls.addEventListener("start", () => (this.held = true));
+    const wheel = ({ ctrlKey }) => (this.controls.enableZoom = ctrlKey || document.activeElement === canvas);
+    canvas.addEventListener("wheel", wheel, { capture: true });
+    canvas.addEventListener("pointerdown", () => (this.controls.enableZoom = true), { capture: true });
+  }
+
+  light() {
+    this.sky = new THREE.HemisphereLight("#ffffff", "#c9b799", 1);
+    this.sun = new THREE.DirectionalLight("#fff4e0", 2);
+    this.sun.castShadow = true;
+    this.sun.shadow.mapSize.setScalar(this.quality < 0.8 ? 512 : 1024);
+    this.sun.shadow.radius = 5;
+    this.sun.shadow.bias = -0.0006;
+    this.sun.shadow.normalBias = 0.02;
+    const box = this.sun.shadow.camera;
+    [box.left, box.right, box.bottom, box.top, box.near, box.far] = [-3, 3, -3, 3, 1, 14];
+    this.world.add(this.sky, this.sun, this.sun.target);
+  }
+
+  setTheme(name) {
+    this.themed = name;
+    const theme = (this.theme = this.track?.header.scenes[name]);
+    if (!theme) return;
+    this.world.background = new THREE.Color(theme.background);
+    this.world.fog = new THREE.Fog(theme.background, 14, 34);
+    this.sky.color.set(theme.sky);
+    this.sky.groundColor.set(theme.ground);
+    this.sky.intensity = theme.ambient;
+    this.sun.intensity = theme.sun;
+    if (this.table) {
+      paintGrid(this.table.userData.canvas, theme);
+      this.table.material.map.needsUpdate = true;
+    }
+    this.ink.color.set(theme.trace);
+  }
+
+  // Show another run.
+  load(track) {
+    this.track = track;
+    const { world } = this;
+    const { body } = track.header;
+    this.setTheme(this.themed);
+    const shape = JSON.stringify(body);
+    if (shape !== this.shape) {
+      this.shape = shape;
+      this.remove(this.toy, this.table, this.ruler);
+      this.toy = makeToy(body.parts);
+      const { metres, label } = roundLength(body.size / 2);
+      const cell = metres / body.size;
+      this.cell = 5 * cell;
+      this.table = makeTable(cell, this.theme);
+      this.ruler = makeRuler(cell, label, this.theme);
+      this.ruler.position.x = 3 * cell;
+      this.ruler.position.y = 1.9;
+      this.square = `${label(1)} ${label(10).split(" ")[1]}`;
+      world.add(this.toy, this.table, this.ruler);
+    }
+    this.clearTrace();
+    this.trace = makeTrace(track, body.size, this.ink);
+    world.add(this.trace);
+    const pull = track.columns.friction;
+    let strongest = 0;
+    for (let i = 0; i < pull.length; i += 2) strongest = Math.max(strongest, Math.hypot(pull[i], pull[i + 1]));
+    const L = track.columns.momentum;
+    let largest = 0;
+    for (let i = 0; i < L.length; i += 3) largest = Math.max(largest, Math.hypot(L[i], L[i + 1], L[i + 2]));
+    this.scales = { momentum: 2.6 / (largest || 1), friction: 1.6 / (strongest || 1) };
+    this.show(this.shown);
+  }
+
+  scaleText(words) {
+    return this.square ? `${words} ${this.square}` : "";
+  }
+
+  // Show other runs as ghosts of theirs, at the same time.
+  compare(tracks) {
+    this.remove(...this.ghosts.map(({ toy }) => toy));
+    this.ghosts = tracks.map((track) => {
+      const toy = makeToy(track.header.body.parts, GHOST);
+      this.world.add(toy);
+      return { track, toy };
+    });
+  }
+
+  remove(...things) {
+    for (const thing of things) {
+      if (!thing) continue;
+      this.world.remove(thing);
+      thing.traverse((object) => {
+        object.geometry?.dispose();
+        for (const material of [object.material ?? []].flat()) {
+          material.map?.dispose();
+          material.dispose();
+        }
+      });
+    }
+  }
+
+  clearTrace() {
+    if (!this.trace) return;
+    this.world.remove(this.trace);
+    this.trace.geometry.dispose();
+  }
+
+  show(shown) {
+    Object.assign(this.shown, shown);
+    if (this.trace) this.trace.visible = this.shown.trace;
+    const glass = this.toy?.getObjectByName("glass");
+    if (glass) glass.visible = this.shown.glass;
+  }
+
+  // Put the camera at one of the `VIEWS`.
+  look(name) {
+    const centre = this.controls.target;
+    const [x, y, z] = VIEWS[name] ?? VIEWS.orbit;
+    if (name === "orbit" || centre.lengthSq() === 0) centre.z = 1.05;
+    this.camera.position.set(centre.x + x, centre.y + y, centre.z + z);
+    this.release();
+    this.controls.update();
+  }
+
+  // Where the camera is from what it looks at: distance, angle from above and angle around, rad.
+  get place() {
+    const { x, y, z } = this.camera.position.clone().sub(this.controls.target);
+    const distance = Math.hypot(x, y, z);
+    return [distance, Math.acos(z / distance), Math.atan2(y, x)];
+  }
+
+  set place([distance, down, around]) {
+    const flat = distance * Math.sin(down);
+    const offset = [flat * Math.cos(around), flat * Math.sin(around), distance * Math.cos(down)];
+    this.camera.position.set(...offset).add(this.controls.target);
+  }
+
+  turn(across, up) {
+    const [distance, down, around] = this.place;
+    this.held = true;
+    this.place = [distance, Math.min(Math.max(down - up, 0.02), LOWEST), around + across];
+    this.controls.update();
+  }
+
+  zoom(factor) {
+    const [distance, down, around] = this.place;
+    this.place = [Math.min(Math.max(distance * factor, 2), 30), down, around];
+    this.controls.update();
+  }
+
+  // Let the camera sink and rise by itself again.
+  release() {
+    this.held = false;
+    this.sunk = 0;
+  }
+
+  // Let the camera down to the table by a share of the way, unless the visitor holds it.
+  sink(share) {
+    if (this.held) {
+      this.sunk = 0;
+      return;
+    }
+    if (!share && !this.sunk) return;
+    const [distance, down, around] = this.place;
+    if (!this.sunk) this.high = [distance, down];
+    const [far, above] = this.high;
+    this.sunk = share;
+    this.place = [far * (1 - 0.22 * share), above + Math.max(LOWEST - above, 0) * share, around];
+  }
+
+  resize(width, height) {
+    if (!width || !height) return;
+    this.renderer.setPixelRatio(this.quality);
+    this.renderer.setSize(width, height, false);
+    this.camera.aspect = width / height;
+    this.camera.fov = width < height ? 50 : 38;
+    this.camera.updateProjectionMatrix();
+    this.extent = [width, height];
+  }
+
+  // Trade sharpness for speed: below one pixel per pixel the shadows' edges go, too.
+  setQuality(quality, now = true) {
+    this.quality = quality;
+    this.renderer.shadowMap.type = quality < 0.8 ? THREE.BasicShadowMap : THREE.PCFShadowMap;
+    this.resized = !now;
+    if (now && this.extent) this.resize(...this.extent);
+  }
+
+  // Draw the track at a time.
+  draw(time, sunk = 0) {
+    if (!this.track) return;
+    if (this.resized && this.extent) this.resize(...this.extent);
+    this.resized = false;
+    const unit = this.track.header.body.size;
+    const pose = this.track.at(time);
+    const [x, y, z] = place(this.toy, pose, unit);
+    this.ghosts.forEach(({ track, toy }, k) => {
+      const [, , up] = place(toy, track.at(Math.min(time, track.duration)), unit, track);
+      const away = BESIDE[k % BESIDE.length];
+      toy.position.set(x + away[0], y + away[1], up);
+    });
+    this.sun.position.set(x - 2.2, y - 4.2, 7);
+    this.sun.target.position.set(x, y, 0);
+    if (this.following) this.follow(x, y);
+    this.sink(sunk);
+    // The table reaches as far as one looks: it moves with the camera by whole squares.
+    const { target } = this.controls;
+    this.table.position.x = this.cell * Math.round(target.x / this.cell);
+    this.table.position.y = this.cell * Math.round(target.y / this.cell);
+    if (this.trace.visible) cutTrace(this.trace, time);
+    this.point(pose, [x, y, z], time, unit);
+    this.controls.update();
+    this.renderer.render(this.world, this.camera);
+  }
+
+  follow(x, y) {
+    const { target } = this.controls;
+    const dx = x - target.x;
+    const dy = y - target.y;
+    target.x += dx;
+    target.y += dy;
+    this.camera.position.x += dx;
+    this.camera.position.y += dy;
+  }
+
+  point(pose, centre, time, unit) {
+    const { arrows, shown, track, scales } = this;
+    const place = (name, from, vector) => {
+      if (shown[name]) pointArrow(arrows[name], from, vector);
+      else arrows[name].visible = false;
+    };
+    place("axis", centre, pose.axis.map((v) => 2.2 * v));
+    place("momentum", centre, pose.momentum.map((v) => v * scales.momentum));
+    const [fx, fy] = [0, 1].map((k) => track.value("friction", time, k, 2) * scales.friction);
+    const foot = [0, 1].map((k) => track.value("point", time, k, 2) / unit);
+    place("friction", [foot[0], foot[1], 0.05], [fx, fy, 0]);
+    const mode = track.mode(time);
+    this.patch.visible = Boolean(mode) && mode !== "flight";
+    this.patch.position.set(foot[0], foot[1], 0.006);
+    this.patch.material.color.set(MODES[mode] ?? MODES.sliding);
+  }
+
+  dispose() {
+    this.remove(this.toy, this.table, this.ruler, this.patch, ...this.ghosts.map(({ toy }) => toy));
+    this.clearTrace();
+    this.ink.dispose();
+    this.controls.dispose();
+    this.renderer.dispose();
+    // A browser holds but some sixteen contexts, and frees one of a canvas that is gone when it likes.
+    this.renderer.forceContextLoss();
+  }
+}
+
+// Put a toy where a pose says, in units of the size of the one that is followed.
+function place(toy, { position, orientation }, unit, ghost) {
+  const centre = position.map((v) => v / unit);
+  const [w, i, j, k] = orientation;
+  toy.position.set(...centre);
+  toy.quaternion.set(i, j, k, w);
+  if (ghost) toy.scale.setScalar(ghost.header.body.size / unit);
+  return centre;
+}
+
+// Whether this browser computes its pictures without graphics hardware, so that every pixel counts.
+function drawnInSoftware() {
+  const gl = document.createElement("canvas").getContext("webgl2");
+  const info = gl?.getExtension("WEBGL_debug_renderer_info");
+  const name = info ? String(gl.getParameter(info.UNMASKED_RENDERER_WEBGL)) : "";
+  gl?.getExtension("WEBGL_lose_context")?.loseContext();
+  return /swiftshader|llvmpipe|softpipe|software/i.test(name);
+}
+
+// The round length (1, 2 or 5 times a power of ten) nearest to one, m, and how to number its multiples.
+function roundLength(length) {
+  const power = 10 ** Math.floor(Math.log10(length));
+  const metres = [1, 2, 5, 10].map((k) => k * power).reduce((a, b) =>
+    Math.abs(Math.log(b / length)) < Math.abs(Math.log(a / length)) ? b : a,
+  );
+  const [factor, name] = metres < 0.001 ? [1e6, "µm"] : metres < 0.5 ? [100, "cm"] : [1, "m"];
+  return {
+    metres,
+    label: (count) => `${+(count * metres * factor).toPrecision(3)}${count === 10 ? " " + name : ""}`,
+  };
+}

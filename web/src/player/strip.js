@@ -1,0 +1,31 @@
+// The strip to scrub on: the tilt over the whole run, flights shaded.
+
+export function drawStrip(canvas, track, dark, ghosts = []) {
+  const ratio = globalThis.devicePixelRatio || 1;
+  const width = (canvas.width = Math.max(1, Math.round(canvas.clientWidth * ratio)));
+  const height = (canvas.height = Math.max(1, Math.round(canvas.clientHeight * ratio)));
+  const pen = canvas.getContext("2d");
+  const duration = track.duration || 1;
+  pen.clearRect(0, 0, width, height);
+  pen.fillStyle = dark ? "rgba(102,197,240,.25)" : "rgba(11,95,165,.16)";
+  for (const [begin, end] of track.header.flights) {
+    pen.fillRect((begin / duration) * width, 0, Math.max(1, ((end - begin) / duration) * width), height);
+  }
+  for (const ghost of ghosts) line(pen, ghost, duration, width, height, ratio, dark ? "#8b96a1" : "#9aa5b0");
+  line(pen, track, duration, width, height, ratio, dark ? "#66c5f0" : "#0b5fa5");
+}
+
+function line(pen, { count, time, columns: { theta } }, duration, width, height, ratio, colour) {
+  const stride = Math.max(1, Math.floor(count / (2 * width)));
+  pen.beginPath();
+  for (let i = 0; i < count; i += stride) {
+    const x = (time[i] / duration) * width;
+    const y = height * (0.94 - 0.88 * (theta[i] / Math.PI));
+    if (i) pen.lineTo(x, y);
+    else pen.moveTo(x, y);
+  }
+  pen.lineWidth = 1.5 * ratio;
+  pen.lineJoin = "round";
+  pen.strokeStyle = colour;
+  pen.stroke();
+}

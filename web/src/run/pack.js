@@ -1,0 +1,91 @@
+// A run of the engine as the player and the plots take it: a header, times and columns, all to be transferred.
+
+import { sizeOf, toyParts, SCENES } from "./looks.js";
+import { lowest, surfacesOf } from "./surfaces.js";
+
+// Angle by which the body may turn between samples, rad, samples per second of even the slowest, and at most.
+const TURN = 0.6;
+const RATE = 100;
+const MOST = 24_000;
+
+const PLAIN = ["theta", "omega3", "phi_dot", "energy", "normal_force", "height"];
+const WIDE = { orientation: 4, angular_momentum: 3, velocity: 3, axis: 3, contact_force: 3 };
+
+export function samplesFor(problem, duration) {
+  const { launch, body } = problem;
+  const most = Math.max(Math.abs(launch.spin) * Math.max(1, body.I3 / body.I1), Math.abs(launch.precession ?? 0));
+  return Math.ceil(Math.min(duration * Math.max(RATE, most / TURN), MOST)) + 2;
+}
+
+// Of a launch, a problem as plain data, what the engine found.
+export function pack(problem, run, samples) {
+  const { metrics } = run;
+  const end = Math.min(run.duration, run.endTime);
+  const sampled = run.track(Float64Array.from({ length: samples }, (_, k) => (k === samples - 1 ? end : (end * k) / (samples - 1))));
+  const count = sampled.time.length;
+  const columns = {};
+  for (const name of PLAIN) columns[name] = Float32Array.from(sampled[name]);
+  for (const [name, width] of Object.entries(WIDE)) columns[name] = flat(sampled[name], width, count);
+  columns.momentum = columns.angular_momentum;
+  columns.position = new Float32Array(3 * count);
+  columns.friction = new Float32Array(2 * count);
+  columns.slip = new Float32Array(count);
+  columns.point = contactPath(sampled, columns.axis, problem.body.shape, count);
+  columns.touching = new Float32Array(count);
+  columns.mode = new Float32Array(count);
+  columns.jellett_error = new Float32Array(count);
+  const modes = [...new Set(sampled.mode)];
+  const moment = Math.hypot(...columns.momentum.subarray(0, 3)) * sampled.height[0];
+  for (let i = 0; i < count; i++) {
+    columns.position.set([sampled.x[i], sampled.y[i], sampled.height[i]], 3 * i);
+    columns.friction.set(columns.contact_force.subarray(3 * i, 3 * i + 2), 2 * i);
+    columns.slip[i] = Math.hypot(sampled.slip_x[i], sampled.slip_y[i]);
+    columns.mode[i] = modes.indexOf(sampled.mode[i]);
+    columns.touching[i] = sampled.normal_force[i] ? 1 : 0;
+    columns.jellett_error[i] = moment ? (sampled.jellett[i] - sampled.jellett[0]) / moment : 0;
+  }
+  delete columns.angular_momentum;
+  delete columns.contact_force;
+  delete columns.axis;
+  const header = {
+    duration: sampled.time[count - 1],
+    flights: run.flights.map(({ start, end }) => [start, end]),
+    body: { ...problem.body, size: sizeOf(problem.body), parts: toyParts(problem.body) },
+    scenes: SCENES,
+    problem,
+    asked: run.duration,
+    outcome: run.outcome,
+    metrics,
+    turns_over: metrics.turns_over ?? NaN,
+    events: run.events,
+    modes,
+  };
+  return { header, time: Float64Array.from(sampled.time), columns };
+}
+
+// A vector at every sample in one block, whether it comes as one or as an array of its components.
+function flat(values, width, count) {
+  if (values.length === width * count && typeof values[0] === "number") return Float32Array.from(values);
+  const block = new Float32Array(width * count);
+  const by_component = values.length === width && count !== width;
+  for (let i = 0; i < count; i++) {
+    for (let k = 0; k < width; k++) block[width * i + k] = by_component ? values[k][i] : values[i][k];
+  }
+  return block;
+}
+
+function contactPath({ x, y }, axis, shape, count) {
+  const surfaces = surfacesOf(shape);
+  const path = new Float32Array(2 * count);
+  for (let i = 0; i < count; i++) {
+    const c = axis[3 * i + 2];
+    const slope = surfaces[lowest(surfaces, c)].slope(c);
+    path[2 * i] = x[i] - slope * axis[3 * i];
+    path[2 * i + 1] = y[i] - slope * axis[3 * i + 1];
+  }
+  return path;
+}
+
+export function buffersOf(track) {
+  return [track.time.buffer, ...Object.values(track.columns).map((column) => column.buffer)];
+}
