@@ -1,6 +1,7 @@
 """Measure what is promised of speed and memory; print tables, and keep the figures as JSON.
 
-A measurement is `simulate` (a run against the bare integration inside it), `sweep` (the sweep's engine
+A measurement is `simulate` (a run against the bare integration inside it), `compilers` (the same run by
+heyoka, by numba and by SciPy at the same error), `sweep` (the sweep's engine
 against other programs at the same error) or `scale` (what sweeps cost by size, workers and flights).
 """
 
@@ -12,10 +13,10 @@ from pathlib import Path
 from rich.console import Console
 from rich.markdown import Markdown
 
-from benchmarks import bench_simulate, bench_sweep, bench_sweep_scale
+from benchmarks import bench_compilers, bench_simulate, bench_sweep, bench_sweep_scale
 from benchmarks.surroundings import machine
 
-MEASUREMENTS = ("simulate", "sweep", "scale")
+MEASUREMENTS = ("simulate", "compilers", "sweep", "scale")
 
 
 def main() -> None:
@@ -37,6 +38,9 @@ def main() -> None:
         if name == "simulate":
             found = bench_simulate.measure(options.quick, options.profile)
             table = bench_simulate.tables(found)
+        elif name == "compilers":
+            found = bench_compilers.measure(options.quick)
+            table = bench_compilers.tables(found)
         elif name == "sweep":
             found = bench_sweep.measure(options.quick, progress.print)
             table = bench_sweep.tables(found)

@@ -18,13 +18,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
+from tippetop.integrators import has_numba
 from tippetop.integrators.compile_cache import compiling
 from tippetop.mechanics.euler import published_rates
 from tippetop.mechanics.motion import contact, sliding_rates
 from tippetop.mechanics.state import SlidingState
 from tippetop.presets import report_problem
 from tippetop.problem import Problem
-from tippetop.sweeps import Axis, Product, Sweep, stepper
+from tippetop.sweeps import Axis, Product, Sweep, alone
 from tippetop.sweeps.cells import cells_of
 from tippetop.sweeps.ensemble import follow_cells
 
@@ -47,10 +48,12 @@ def engine(spins: Array, tolerance: float) -> Array:
     return found
 
 
-def engine_on_numpy(spins: Array, tolerance: float) -> Array:
+def engine_on_numba(spins: Array, tolerance: float) -> Array:
     """The same where heyoka is not installed."""
-    stepper.stepper.cache_clear()
-    with patch.object(stepper, "has_taylor", return_value=False):
+    with (
+        patch.object(alone, "has_taylor", return_value=False),
+        patch.object(alone, "default_name", return_value="compiled"),
+    ):
         return engine(spins, tolerance)
 
 
@@ -246,7 +249,7 @@ CONTENDERS = {
     ENGINE: Contender(engine, 8192),
     "heyoka's batch integrator, bare": Contender(bare_batch, 8192),
     "diffrax Dopri8, vmap": Contender(diffrax_vmap, 1024, find_spec("diffrax") is not None),
-    "this engine without heyoka": Contender(engine_on_numpy, 1024),
+    "this engine without heyoka": Contender(engine_on_numba, 1024, has_numba()),
     "SciPy DOP853, published equations": Contender(scipy_published, 4),
     "Octave ode45, the listing's method": Contender(octave, 2, which("octave") is not None),
 }

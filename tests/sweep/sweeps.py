@@ -16,11 +16,11 @@ def lively(liftoff="fly", spins=5, mus=3, duration=1.4, tolerance=1e-12, tilt=1.
     return Sweep(problem, Product(axes), duration, tolerance)
 
 
-def thrown():
+def thrown(tolerance=1e-9):
     """Launches that fall on the table, bounce, and slide on; short."""
     problem = report_problem(spin=150.0, tilt=0.5)
     axes = Axis.listed("launch.gap", [0.0, 0.001]), Axis.listed("contact.restitution", [0.0, 0.4])
-    return Sweep(problem, Product(axes), 0.12, 1e-9)
+    return Sweep(problem, Product(axes), 0.12, tolerance)
 
 
 def problem_of(sweep, cell):

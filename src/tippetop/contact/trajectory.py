@@ -75,6 +75,11 @@ class Trajectory:
                     self.outcome = Outcome.TOO_MANY_STEPS
                     return
 
+    def end_at(self, time: float, state: State) -> None:
+        """Leave the rest of the run out, from a time and state in the last segment on."""
+        self.time, self._state, self.outcome = time, state, Outcome.COMPLETED
+        self.events = [event for event in self.events if event.time <= time]
+
     def _enter(self, transition: Transition) -> Transition:
         self.events += transition.events
         self._state = transition.state

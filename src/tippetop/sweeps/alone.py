@@ -1,43 +1,67 @@
 """Launches of a sweep that are followed one by one, each as a single launch is."""
 
+from collections.abc import Iterator
+from dataclasses import replace
+
 import numpy as np
 
 from tippetop.contact.block import in_blocks
-from tippetop.contact.mode import Transition
+from tippetop.contact.mode import Segment, Transition
 from tippetop.contact.trajectory import Trajectory
-from tippetop.integrators import default_name, make_integrator
+from tippetop.integrators import default_name, has_taylor, make_integrator
+from tippetop.integrators.dense import DenseSolution
 from tippetop.mechanics.hull import Hull
 from tippetop.metrics import Ends
 from tippetop.sweeps.launches import Launches, single
 from tippetop.tally import Tally
+from tippetop.theory.prediction import is_held
 
 LEAST_SCIPY = 1e-12
 """Least tolerance of the integrator of single launches where heyoka is not installed."""
 
 
 def is_alone(launches: Launches) -> bool:
-    """Whether the batches know nothing of their bodies or rules."""
+    """Whether there are no batches, which heyoka compiles, or they know nothing of their bodies or rules."""
     example = launches.kind.example
-    return launches.own is not None or isinstance(example.surface, Hull)
+    return not has_taylor() or launches.own is not None or isinstance(example.surface, Hull)
 
 
-def follow_each(launches: Launches, tolerance: float) -> Ends:
-    """Follow every launch to its end."""
+def follow_each(launches: Launches, tolerance: float, settled: float | None = None) -> Ends:
+    """Follow every launch to its end, or until its tilt is held within `settled`, rad."""
     ends = Ends.unknown(len(launches))
     for i in range(len(launches)):
         start = launches.rules(i).launch(single(launches.state, i))
-        trajectory, tally = follow(start, 0.0, float(launches.end[i]), tolerance)
+        trajectory, tally = follow(start, 0.0, float(launches.end[i]), tolerance, settled)
         assert trajectory.outcome is not None, "a trajectory that has no more segments has ended"
         found = tally.ends(trajectory.state, trajectory.time, trajectory.outcome, trajectory.events)
         ends.put(np.array([i]), found)
     return ends
 
 
-def follow(start: Transition, time: float, end: float, tolerance: float) -> tuple[Trajectory, Tally]:
-    """Follow one launch from a transition to its end."""
+def follow(
+    start: Transition, time: float, end: float, tolerance: float, settled: float | None = None
+) -> tuple[Trajectory, Tally]:
+    """Follow one launch from a transition to its end, or until its tilt is held."""
     name = default_name()
     method = make_integrator(name, tolerance if name == "taylor" else max(tolerance, LEAST_SCIPY))
     trajectory, tally = Trajectory(start, end, method, time=time), Tally()
-    for block in in_blocks(trajectory.segments()):
+    segments = trajectory.segments()
+    for block in in_blocks(segments if settled is None else until_settled(trajectory, segments, settled)):
         tally.take(block)
     return trajectory, tally
+
+
+def until_settled(trajectory: Trajectory, segments: Iterator[Segment], closeness: float) -> Iterator[Segment]:
+    """The segments of a trajectory up to the first step at whose start the tilt is held."""
+    for segment in segments:
+        knots, terms = segment.solution.knots, segment.solution.terms
+        held = is_held(segment.mode.state(terms[:, :, 0].T), segment.mode.top, closeness)
+        if not held.any():
+            yield segment
+            continue
+        count = int(held.argmax())
+        last = segment.mode.state(terms[count, :, 0].tolist())
+        trajectory.end_at(float(knots[count]), last)
+        solution = DenseSolution(knots[: count + 1], terms[:count])
+        yield replace(segment, solution=solution, end_state=last, transition=None, steps=count)
+        return

@@ -54,7 +54,7 @@ def follow_cells(sweep: Sweep, numbers: Flat) -> dict[str, NDArray[np.generic]]:
         block = alike[first : first + LANES_AT_ONCE]
         some, which = launches.some(block), good[block]
         if method is None:
-            ends = follow_each(some, sweep.tolerance)
+            ends = follow_each(some, sweep.tolerance, sweep.settled)
         else:
             lanes = Lanes(some, method, sweep.tolerance, settled=sweep.settled)
             ends = lanes.run()
