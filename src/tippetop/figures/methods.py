@@ -63,13 +63,13 @@ def stiffness_figure(counts: xr.Dataset) -> Figure:
         for x in place[height < 0]:
             axes.annotate("gave up", (x, 0), rotation=90, size=8, color=ACCENT, ha="center")
     names = [
-        f"{spin:g} rad/s\n{tilt:g} rad\n$\\mu$ = {mu:g} s/m"
+        f"{spin:g} rad/s\n{tilt:.5g} rad\n$\\mu$ = {mu:g} s/m"
         for spin, tilt, mu in zip(
             *(counts[f"launch_{name}"].values for name in ("spin", "tilt", "mu")), strict=True
         )
     ]
     axes.set_xticks(launches, names)
-    axes.tick_params(axis="x", length=0)
+    axes.tick_params(axis="x", length=0, labelsize=8)
     axes.grid(visible=False, axis="x")
     axes.set_ylabel("evaluations (thousands)")
     axes.legend(loc="upper left")

@@ -54,7 +54,7 @@ def motion_figure(
     square = {"color": REPORT, "ms": 5, "mec": INK, "mew": 0.6, "zorder": 6}
     turning.plot(reported_reversals, np.zeros(len(reported_reversals)), "s", **square)
     for time, below in zip(reversed(reported_reversals), (-6, -20), strict=False):
-        mark.note(turning, f"report: {time:g} s", (time, 0), (7, below), REPORT, halo=True)
+        mark.note(turning, f"report:\n{time:g} s", (time, 0), (7, below), REPORT, halo=True)
     if reported_turn is not None:
         height = float(np.interp(reported_turn, run["time_listing"], run["theta_listing"]))
         tilt.plot(reported_turn, height, "s", **square)

@@ -96,7 +96,7 @@ def _frame(tilt: float, azimuth: float) -> Array:
     return np.array([[c * cosine, -sine, s * cosine], [c * sine, cosine, s * sine], [-s, 0.0, c]])
 
 
-def _picture(toy: Toy, frame: Array, camera: Camera, pixels: int = 300, oversample: int = 3) -> Array:
+def _picture(toy: Toy, frame: Array, camera: Camera, pixels: int = 300, oversample: int = 2) -> Array:
     """Return the toy's picture about the sphere's centre: RGBA, rows from the bottom up."""
     n = pixels * oversample
     grid = ((np.arange(n) + 0.5) / n * 2 - 1) * _REACH

@@ -24,7 +24,12 @@ SECTIONS: dict[str, tuple[str, str]] = {
         "with the integral it began with; weak friction acts on a nutation that it hardly disturbs, so that "
         "only mu t counts. These figures show what follows.",
     ),
-    "Friction": ("Friction", ""),
+    "Friction": (
+        "Friction",
+        "The report takes friction proportional to the slip velocity, with mu in s/m. Tables are dry. "
+        "These figures ask what a top does on Coulomb's friction, at a point and on a patch that drills, "
+        "what others published of it, and which dry friction that of the report stands for.",
+    ),
     "Real tops": (
         "Real tops",
         "The report's top is a sphere without a stem. Real ones have a stem that strikes the table. Eggs, "

@@ -29,6 +29,7 @@ from tippetop.report.tasks import Task, carry_out
 PAGE, CLAIMS_FILE, FIGURES, DATA = "index.html", "claims.json", "figures", "data"
 
 _DRAWING_COST = 0.8
+_COARSE = {"dpi": 100}
 _PLAYER, _PLAYER_COST = "run to play", 1.0
 
 Progress = Callable[[float, float, str], None]
@@ -156,7 +157,7 @@ def _tasks(chosen: Selection, quick: bool, stage: Path) -> list[Task]:
     for plate in chosen.plates:
 
         def inputs(results: dict[str, Any], id_: str = plate.id) -> tuple[Any, ...]:
-            return id_, {name: results[name] for name in PLATES[id_].needs}, stage
+            return id_, {name: results[name] for name in PLATES[id_].needs}, stage, quick
 
         tasks.append(Task(f"figure {plate.id}", _DRAWING_COST, _draw, inputs, plate.needs))
     return tasks
@@ -167,7 +168,7 @@ def _compute(name: str, quick: bool) -> xr.Dataset:
     return EXPERIMENTS[name].run(quick)
 
 
-def _draw(name: str, data: Data, stage: Path) -> None:
+def _draw(name: str, data: Data, stage: Path, quick: bool) -> None:
     """Draw a figure, and write the data behind it (in a process of its own)."""
     plate = PLATES[name]
     dataset = plate.dataset(data)
@@ -175,7 +176,7 @@ def _draw(name: str, data: Data, stage: Path) -> None:
         write_run(dataset, stage / DATA / f"{name}.nc")
     figure = plate.draw(dataset)
     for kind in ("png", "svg"):
-        save(figure, stage / FIGURES / f"{name}.{kind}")
+        save(figure, stage / FIGURES / f"{name}.{kind}", **(_COARSE if quick else {}))
         figure.set_layout_engine("none")  # all is in its place by now
 
 

@@ -115,13 +115,17 @@ def _nearest_fit(times: xr.Dataset, others: xr.Dataset, printed: float) -> _Fit:
     return min(_fits(times, others), key=lambda fit: abs(fit.exponent - printed))
 
 
+_FITTED = 5
+"""The fewest values of mu that a fit is made of."""
+
+
 def _fits(times: xr.Dataset, others: xr.Dataset) -> list[_Fit]:
     """All fits: that of the main spin, and those of others with every value of mu, and with every second."""
     suffixes = ("_listing", "")
     main = (float(times[f"exponent{suffix}"]) for suffix in suffixes)
     fits = [_Fit(float(times.attrs["spin_rad_per_s"]), _step(times["mu"]), *main)]
     for k, spin in enumerate(others["spin"].values):
-        for every in (1, 2):
+        for every in (1, 2) if others.sizes["mu"] > 2 * _FITTED - 2 else (1,):
             some = others.isel(spin=k, mu=slice(None, None, every))
             rows = (some[f"flip_time{suffix}"].values for suffix in suffixes)
             fits.append(

@@ -15,7 +15,7 @@ CHAPTER = Chapter()
 @CHAPTER.claim(
     "appendix-b-order",
     Source("Appendix B", equation="(B.1)"),
-    "The method has an accuracy of order (dt)^5 (in a step).",
+    "The method has an accuracy of order 5 in the length of a step (in one step).",
     "5",
     needs=("order",),
     figure="order",

@@ -121,8 +121,8 @@ def _(times: xr.Dataset, wide: xr.Dataset) -> Finding:
     return Finding(
         None,
         float(here["exponent_arrival_time_end"]),
-        f"Fitted over 0.01 to 0.1 s/m it is {fitted}. The exponent of the time to the first tilt above pi/2 "
-        f"leaves -1 as mu grows (s/m): {listed}.",
+        f"Fitted up to 0.1 s/m it is {fitted}. The exponent of the time to the "
+        f"first tilt above pi/2 leaves -1 as mu grows (s/m): {listed}.",
     )
 
 

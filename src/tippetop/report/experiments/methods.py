@@ -161,7 +161,7 @@ def effort(problem: Problem, method: str, span: float) -> Effort:
 
 
 def _stiffness(quick: bool) -> xr.Dataset:
-    span = 1.0 if quick else _SPAN
+    span = 0.5 if quick else _SPAN
     methods = (*EXPLICIT, *IMPLICIT)
     made = [[effort(report_problem(*launch), method, span) for method in methods] for launch in LAUNCHES]
     counts = np.array([[one.evaluations for one in row] for row in made])

@@ -45,7 +45,7 @@ def _listing_spins(quick: bool) -> np.ndarray:
     high = np.arange(77.5, 80.1, 1.0 if quick else 0.5)
     top = np.arange(166.0, 174.0, 2.0 if quick else 1.0)
     between = np.concatenate([np.arange(5, 24, 6), np.arange(35, 76, 8), np.arange(85, 164, 10)])
-    coarse = between[::3] if quick else between
+    coarse = between[1::5] if quick else between
     return np.unique(np.concatenate([coarse, low, high, top, [180.0] if quick else [180, 190, 200, 210]]))
 
 
