@@ -59,7 +59,7 @@ def problem_of(random: np.random.Generator) -> tt.Problem:
 
 
 CLOSE_CALLS = {72, 186}
-"""Bodies that rock in hops much shorter than a step, and whose last impacts are slow."""
+"""Bodies that rock in rebounds much shorter than a step, and whose last impacts are slow."""
 
 
 @pytest.mark.parametrize("seed", sorted({*range(COUNT), *CLOSE_CALLS}))

@@ -10,10 +10,12 @@ import tippetop as tt
 from tippetop.catalogue import SWEPT, Fault
 from tippetop.contact import several
 from tippetop.contact.double import SlidingOnTwo
+from tippetop.contact.mode import EventKind, Mode, Outcome
+from tippetop.contact.several import OnSeveral
 from tippetop.mechanics.double_contact import double_contact, double_rates
-from tippetop.mechanics.motion import along_table
+from tippetop.mechanics.motion import along_table, on_table
 from tippetop.mechanics.rolling import sliding_law, with_sliding_law
-from tippetop.mechanics.state import SlidingState
+from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.top import natural, natural_state, natural_units
 
 LEINE_GLOCKER = tt.Problem(
@@ -123,8 +125,8 @@ def test_the_end_of_rocking_converges_at_first_order(monkeypatch: pytest.MonkeyP
 def test_rocking_shrinks_by_what_the_inverse_masses_say() -> None:
     """Of two plastic impacts, p_i = v_i / A_ii and v_j = A_ji p_i: a cycle is A_12 A_21 / (A_11 A_22)."""
     run = leine_glocker()
-    hops = np.diff(times(run, "touchdown"))[4:]
-    cycles = hops[:-1:2][:26] + hops[1::2][:26]
+    rebounds = np.diff(times(run, "touchdown"))[4:]
+    cycles = rebounds[:-1:2][:26] + rebounds[1::2][:26]
     here = run.sel(time=times(run, "double contact")[0] + 1e-3, method="nearest")
     vectors = (tuple(here[name].values.tolist()) for name in ("axis", "angular_momentum", "velocity"))
     axis, momentum, velocity = vectors
@@ -236,3 +238,35 @@ def test_a_rod_falls_on_its_ends_in_turn_and_comes_to_lie(restitution: float) ->
     touches = surfaces(run, "touchdown")
     assert set(touches) == {0, 1}
     assert restitution or touches == [1, 0], "at rest at once, and no rocking"
+
+
+def lying(law: str, centers: tuple[float, float], velocity: float) -> tuple[OnSeveral, State]:
+    """A body on two like spheres, whose axis lies along x and which moves along it, in natural units."""
+    shapes = [tt.Sphere(radius=0.005, center=center) for center in centers]
+    body = tt.Body(mass=0.01, shape=shapes, I1=2e-6, I3=1.25e-7)
+    launch = tt.Launch(tilt=1.3, spin=5.0, gap=0.01)
+    problem = tt.Problem(body=body, friction={"kind": law, "mu": 0.3}, launch=launch)
+    top = natural(problem.top)
+    top = top._replace(surface=top.surface.each[1])
+    state = on_table(SlidingState((1.0, 0.0, 0.0), (0.0, 0.0, 0.0), (velocity, 0.0)), top)
+    return OnSeveral(top, 0.0), state
+
+
+@pytest.mark.parametrize("velocity", [0.0, 1e-12, 1e-10])
+def test_what_hardly_slips_on_two_surfaces_is_told_to_stick(velocity: float) -> None:
+    rules, state = lying("coulomb", (-0.02, 0.02), velocity)
+    assert rules.resting(0.0, state).then is Outcome.STICKING_ON_TWO
+
+
+def test_what_slips_on_two_surfaces_goes_on() -> None:
+    rules, state = lying("coulomb", (-0.02, 0.02), 1e-8)
+    assert isinstance(rules.resting(0.0, state).then, SlidingOnTwo)
+
+
+def test_the_farther_of_two_surfaces_beside_the_centre_of_mass_opens_and_is_named() -> None:
+    """The body is about to tip over the nearer one."""
+    rules, state = lying("viscous", (0.01, 0.02), 0.0)
+    found = rules.resting(0.0, state)
+    assert [(event.kind, event.surface) for event in found.events] == [(EventKind.OPENING, 1)]
+    assert isinstance(found.then, Mode)
+    assert found.then.label == "sliding_on_0"

@@ -67,7 +67,10 @@ EULER_DISK = _cylinder(0.4, 0.0375, 0.0125)
 """Euler's disk, the toy, as large and heavy as in H. K. Moffatt, Nature 404 (2000) 833-834; 12.5 mm thick."""
 
 COIN = _cylinder(7.5e-3, 0.023_25 / 2, 2.33e-3)
-"""A coin of one euro by its specification: 7.5 g, 23.25 mm across, 2.33 mm thick, as if of one metal."""
+"""A coin of one euro by its specification: 7.5 g, 23.25 mm across, 2.33 mm thick, as if of one metal.
+
+Diameter and mass stand in Council Regulation (EC) No 975/98; that it is of one metal all through is assumed.
+"""
 
 _BALL = 0.032
 
@@ -77,7 +80,10 @@ HURRICANE_BALLS = Body(
     I1=2 * (2 / 5 + 1) * _BALL * 0.01**2,
     I3=2 * 2 / 5 * _BALL * 0.01**2,
 )
-"""Two balls of steel, 20 mm across and 32 g each, welded together."""
+"""Two balls of steel, 20 mm across and 32 g each, welded together.
+
+Typical dimensions, assumed: how they roll depends on the radius alone.
+"""
 
 EGG = Body(
     mass=0.057,
@@ -85,7 +91,10 @@ EGG = Body(
     I1=0.057 * (0.022**2 + 0.028**2) / 5,
     I3=2 / 5 * 0.057 * 0.022**2,
 )
-"""A hard-boiled hen's egg of common size, as a spheroid that is the same all through."""
+"""A hard-boiled hen's egg of common size, as a spheroid that is the same all through.
+
+Typical dimensions, assumed: 44 by 56 mm, and a mass within the European class M of 53 to 63 g.
+"""
 
 BODIES = {
     "report": REPORT,

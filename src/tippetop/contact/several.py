@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 from typing import Self
 
-from tippetop.contact.double import on_two
+from tippetop.contact.double import SLOWEST_SLIP, on_two
 from tippetop.contact.flight import TOUCHING
 from tippetop.contact.mode import Event, EventKind, Outcome, Transition
 from tippetop.contact.rules import FreeToFly
@@ -17,14 +17,14 @@ from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import along_table
 from tippetop.mechanics.rolling import is_set_valued
 from tippetop.mechanics.state import State
-from tippetop.mechanics.stick_slip import is_slipping
+from tippetop.mechanics.stick_slip import size, slip_of
 from tippetop.mechanics.top import Top
 
 SLOWEST_ROCKING = 1e-7
 """Velocity, in units of sqrt(g R), below which rocking between two surfaces has come to its end.
 
 Infinitely many impacts, now of one and now of the other, bring both to touch at once in a finite time. Where
-a gap falls back with more than g, this is faster as the square root: hops stay out of reach of rounding.
+a gap falls back with more than g, this is faster as the square root: rebounds stay out of reach of rounding.
 """
 
 MOST_IN_TURNS = 200
@@ -93,20 +93,22 @@ class OnSeveral(FreeToFly):
 
     def _slowest(self, other: Top, state: State) -> float:
         """Velocity of another surface that touches too below which it stays, or comes back at once."""
-        sliding = along_table(state)
-        tops = (self.top, other)
-        if is_set_valued(self.top.friction) and not all(is_slipping(*sliding, top) for top in tops):
+        if not self._slips(other, state):
             return SLOWEST_ROCKING
-        back = abs(double_contact(sliding, (self.top, other)).acceleration[1])
+        back = abs(double_contact(along_table(state), (self.top, other)).acceleration[1])
         return float(SLOWEST_ROCKING * max(1.0, back) ** 0.5)
+
+    def _slips(self, other: Top, state: State) -> bool:
+        """Whether both contacts slip, faster than where slip on two contacts ends, if it can end at all."""
+        if not is_set_valued(self.top.friction):
+            return True
+        return all(size(slip_of(*along_table(state), top)) > SLOWEST_SLIP for top in (self.top, other))
 
     def _resting_on_two(self, other: Top, time: float, state: State, events: tuple[Event, ...]) -> Transition:
         """The resolver of two contacts that are closed and have no normal velocities: who stays closed."""
         mine = without_tilting(state, self.top)
-        if is_set_valued(self.top.friction):
-            sliding = along_table(mine)
-            if not all(is_slipping(*sliding, top) for top in (self.top, other)):
-                return Transition(events, Outcome.STICKING_ON_TWO, state)
+        if not self._slips(other, mine):
+            return Transition(events, Outcome.STICKING_ON_TWO, state)
         pair = double_contact(along_table(mine), (self.top, other))
         lost = float(energy(state, self.top) - energy(mine, self.top))
         here = (pair.normal[0] > 0.0) & (pair.normal[1] > 0.0)
@@ -119,6 +121,6 @@ class OnSeveral(FreeToFly):
         if here:
             event = self.event(EventKind.DOUBLE_CONTACT, time, 0.0, lost)
             return Transition((*events, event), on_two(mine, self, other), mine)
-        if another:
-            return super(OnSeveral, self._of(other)).resting(time, state, events)
-        return super().resting(time, state, events)
+        left, kept = (self.top, other) if another else (other, self.top)
+        events = (*events, Event(EventKind.OPENING, time, surface=number_of(left)))
+        return super(OnSeveral, self._of(kept)).resting(time, state, events)

@@ -40,7 +40,7 @@ PLATES = (
         f"friction of {EGG_MU:g} s/m. Dots: where it first leaves the table.",
         ("real-egg",),
         real.egg_figure,
-        finding="A hard-boiled egg that is spun fast stands up on its end, and hops on its way.",
+        finding="A hard-boiled egg that is spun fast stands up on its end, and leaves the table on its way.",
     ),
     _plate(
         "real-rolling",
