@@ -8,7 +8,8 @@ from full_runs import full_run, sphere_problem, tilts_of
 
 from tippetop import presets
 from tippetop.errors import InvalidInput
-from tippetop.theory.prediction import predict
+from tippetop.run import simulate
+from tippetop.theory.prediction import predict, touching_tilts
 from tippetop.theory.steady import SteadyKind, jellett_of_launch, precession_branch
 
 SETTLING = [
@@ -77,3 +78,27 @@ def test_other_shapes_are_refused():
     with pytest.raises(InvalidInput, match="Jellett"):
         predict(problem)
     assert math.isfinite(jellett_of_launch(problem))
+
+
+STEMMED = presets.report_problem().replace({"body": presets.REPORT_THIN_STEM})
+
+
+@pytest.mark.parametrize("spin", [20.0, 40.0])
+def test_a_stem_out_of_reach_changes_nothing(spin):
+    alone = predict(presets.report_problem(spin=spin))
+    for order in (1, -1):
+        shapes = STEMMED.body.shapes[::order]
+        prediction = predict(STEMMED.replace({"launch.spin": spin, "body.shape": shapes}))
+        assert prediction.final.tilt == pytest.approx(alone.final.tilt, abs=1e-9)
+        assert prediction.stable == prediction.reachable, "what lies beyond the stem's touch is no end"
+    run = simulate(STEMMED.replace({"launch.spin": spin}), 30.0, samples=2)
+    assert set(run["event_kind"].values) == set()
+    assert float(run["theta"][-1]) == pytest.approx(alone.final.tilt, abs=1e-4)
+
+
+def test_what_may_touch_with_its_stem_is_refused_where_the_stem_touches():
+    """Both spheres, 0.02 and 0.004 across their radii, are as low where 0.016 = 0.02 |cos|."""
+    tilt = math.acos(-0.016 / 0.02)
+    assert list(touching_tilts(STEMMED.top.surface, 0.1)) == pytest.approx([tilt], abs=1e-12)
+    with pytest.raises(InvalidInput, match=rf"surface 1 can touch, at a tilt of {tilt:.4g} rad.*run it"):
+        predict(STEMMED)

@@ -52,7 +52,7 @@ def test_what_is_no_tip_is_refused() -> None:
         tt.least_jellett_to_stand(tt.presets.COIN, 1)
 
 
-@pytest.mark.parametrize("ask", [tt.predict, tt.critical_spins, tt.steady_states])
+@pytest.mark.parametrize("ask", [tt.critical_spins, tt.steady_states])
 def test_theory_of_one_surface_is_not_told_of_several(ask) -> None:
     problem = tt.presets.report_problem().model_copy(update={"body": tt.presets.REPORT_STEM})
     with pytest.raises(tt.InvalidInput, match=r"body\.shape = 'several surfaces' is not possible"):

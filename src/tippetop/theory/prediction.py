@@ -10,12 +10,15 @@ This holds while the table only pushes. A bilateral contact that pulls can give 
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import brentq
 
 from tippetop.errors import InvalidInput
+from tippetop.mechanics.hull import Hull
 from tippetop.mechanics.invariants import energy, jellett
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top, natural_units
@@ -68,13 +71,15 @@ class Prediction:
 def predict(problem: Problem) -> Prediction:
     """The steady states a launch of an eccentric sphere can end in.
 
-    A launch exactly on an unstable steady state, such as one at tilt 0 with no perturbation, stays there; the
-    prediction is for one beside it.
+    Of a body of several surfaces it tells the end on the one that it is launched on, if that is a sphere and
+    the energy keeps the others off the table. A launch exactly on an unstable steady state, such as one at
+    tilt 0 with no perturbation, stays there; the prediction is for one beside it.
 
     Raises
     ------
     InvalidInput
-        If Jellett's integral is not conserved, a dry point rubs, or there is no friction.
+        If Jellett's integral is not conserved, a dry point rubs, there is no friction, or another surface of
+        the body can touch.
 
     Examples
     --------
@@ -84,6 +89,8 @@ def predict(problem: Problem) -> Prediction:
     ('inverted', -82.87, True)
     """
     top = problem.top
+    if isinstance(top.surface, Hull):
+        return _on_one_of_several(problem, problem.standing().surface)
     require_jellett(top)
     require_creep(top)
     if problem.friction.vanishes:
@@ -95,6 +102,49 @@ def predict(problem: Problem) -> Prediction:
     low, high = _reach(states, problem.launch.tilt, available)
     within = [state for state in minima if low <= state.tilt <= high]
     return Prediction(jellett, _by_energy(minima), _by_energy(within or minima))
+
+
+def _on_one_of_several(problem: Problem, hull: Any) -> Prediction:
+    """The end on the surface of the launch, where the energy of the launch keeps all others off the table.
+
+    Jellett's integral holds on one surface. When another touches, it begins anew with a number that the
+    whole motion decides.
+    """
+    alone = problem.replace({"body.shape": problem.body.shapes[hull.active]})
+    found = predict(alone)
+    available = float(energy(alone.start(), alone.top))
+    ends = touching_tilts(hull, problem.launch.tilt)
+    for tilt, number in ends.items():
+        if float(least_energy(tilt, found.jellett, alone.top, np)) <= available:
+            shown = f"one whose surface {number} can touch, at a tilt of {tilt:.4g} rad"
+            raise InvalidInput("body.shape", shown, "one surface, or a launch of less energy: run it instead")
+    low, high = min(ends, default=0.0), max(ends, default=math.pi)
+    if len(ends) == 1:
+        low, high = (low, math.pi) if low < problem.launch.tilt else (0.0, high)
+    return replace(found, stable=tuple(state for state in found.stable if low <= state.tilt <= high))
+
+
+def touching_tilts(hull: Hull, tilt: float) -> dict[float, int]:
+    """The tilts next to one, rad, at which another surface touches beside the active one, and its number."""
+    tilts = np.append(np.linspace(0.0, math.pi, TILTS), tilt)
+    found: dict[float, int] = {}
+    for number, other in enumerate(hull.each):
+        if number == hull.active:
+            continue
+
+        def gap(at: float, other: Hull = other) -> float:
+            return float(hull.height(math.cos(at)) - other.height(math.cos(at)))
+
+        places = np.unique(tilts)
+        values = np.array([gap(at) for at in places.tolist()])
+        for k in np.flatnonzero(np.signbit(values[1:]) != np.signbit(values[:-1])).tolist():
+            found[float(brentq(gap, places[k], places[k + 1], xtol=1e-15))] = number
+    below, above = [at for at in found if at <= tilt], [at for at in found if at > tilt]
+    return {at: found[at] for at in (*sorted(below)[-1:], *sorted(above)[:1])}
+
+
+TILTS = 200
+"""Tilts between which the touch of another surface is looked for."""
 
 
 def steady_launch(problem: Problem) -> SteadyState | None:
