@@ -4327,22 +4327,24 @@ class OnSeveral extends FreeToFly {
   }
   /** Velocity of another surface that touches too below which it stays, or comes back at once. */
   _slowest(other, state) {
-    const sliding = along_table(state);
-    const tops = [this.top, other];
-    if (py.truth(is_set_valued(this.top.friction)) && !py.truth(py.all([...tops].map((top) => is_slipping(...sliding, top))))) {
+    if (!py.truth(this._slips(other, state))) {
       return SLOWEST_ROCKING;
     }
-    const back = py.abs(double_contact(sliding, [this.top, other]).acceleration[1]);
+    const back = py.abs(double_contact(along_table(state), [this.top, other]).acceleration[1]);
     return py.float(py.mul(SLOWEST_ROCKING, py.pow(py.max(1.0, back), 0.5)));
+  }
+  /** Whether both contacts slip, faster than where slip on two contacts ends, if it can end at all. */
+  _slips(other, state) {
+    if (!py.truth(is_set_valued(this.top.friction))) {
+      return true;
+    }
+    return py.all([this.top, other].map((top) => size(slip_of(...along_table(state), top)) > SLOWEST_SLIP));
   }
   /** The resolver of two contacts that are closed and have no normal velocities: who stays closed. */
   _resting_on_two(other, time, state, events) {
     const mine = without_tilting(state, this.top);
-    if (py.truth(is_set_valued(this.top.friction))) {
-      const sliding = along_table(mine);
-      if (!py.truth(py.all([this.top, other].map((top) => is_slipping(...sliding, top))))) {
-        return new Transition(events, Outcome.STICKING_ON_TWO, state);
-      }
+    if (!py.truth(this._slips(other, mine))) {
+      return new Transition(events, Outcome.STICKING_ON_TWO, state);
     }
     const pair = double_contact(along_table(mine), [this.top, other]);
     const lost = py.float(py.sub(energy(state, this.top), energy(mine, this.top)));
@@ -4358,10 +4360,9 @@ class OnSeveral extends FreeToFly {
       const event = this.event(EventKind.DOUBLE_CONTACT, time, 0.0, lost);
       return new Transition([...events, event], on_two(mine, this, other), mine);
     }
-    if (py.truth(another)) {
-      return Object.getPrototypeOf(OnSeveral.prototype).resting.call(this._of(other), time, state, events);
-    }
-    return super.resting(time, state, events);
+    const [left, kept] = py.truth(another) ? [this.top, other] : [other, this.top];
+    events = [...events, new Event(EventKind.OPENING, time, undefined, undefined, number_of(left))];
+    return Object.getPrototypeOf(OnSeveral.prototype).resting.call(this._of(kept), time, state, events);
   }
 }
 py.fields(OnSeveral, ["top", "restitution"]);
@@ -4934,6 +4935,11 @@ class Trajectory extends py.Record {
         }
       }
     }
+  }
+  /** Leave the rest of the run out, from a time and state in the last segment on. */
+  end_at(time, state) {
+    [this.time, this._state, this.outcome] = [time, state, Outcome.COMPLETED];
+    this.events = [...this.events].filter((event) => event.time <= time);
   }
   _enter(transition) {
     this.events = py.add(this.events, transition.events);
