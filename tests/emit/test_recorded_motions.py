@@ -10,9 +10,10 @@ import pytest
 from every_motion import CASES, SURFACES, everything, states
 from node import NODE
 from tippetop.contact.sliding import sliding_motion
-from tippetop.emit.graph import Elementary, NotRecordable, record
+from tippetop.emit.graph import NotRecordable
 from tippetop.emit.javascript import javascript_source
 from tippetop.emit.python import python_source
+from tippetop.emit.recording import Elementary, record
 from tippetop.mechanics.contensou_hertz import HertzLaw
 from tippetop.mechanics.euler import published_rates
 from tippetop.mechanics.surface import SphereSurface

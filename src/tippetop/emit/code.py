@@ -2,7 +2,8 @@
 
 from typing import NamedTuple
 
-from tippetop.emit.graph import CONSTANT, PARAMETER, STATE, Node, NotRecordable, Recorded
+from tippetop.emit.graph import CONSTANT, PARAMETER, STATE, Node, NotRecordable
+from tippetop.emit.recording import Recorded
 
 LONGEST = 72
 """Characters of an expression that is written where it is used, rather than given a name."""

@@ -6,11 +6,8 @@ opposite share their work. All of that is exact in floating-point numbers; power
 become products and roots.
 """
 
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
-
-from tippetop.mechanics.vectors import Scalar
+from typing import Any
 
 STATE, PARAMETER, CONSTANT = "state", "parameter", "constant"
 NEGATIVE, SUM, DIFFERENCE, PRODUCT, QUOTIENT = "negative", "sum", "difference", "product", "quotient"
@@ -251,71 +248,3 @@ def positive(value: Any) -> tuple[bool, Any]:
 def in_order(a: Node, b: Node) -> tuple[Node, Node]:
     """Two operands whose order does not matter."""
     return (a, b) if a.place <= b.place else (b, a)
-
-
-class Elementary:
-    """Elementary functions of nodes: a module such as `math`, for what takes one."""
-
-    def sin(self, x: Node) -> Node:
-        """Sine of an angle in radians."""
-        return x.graph.call("sin", x)
-
-    def cos(self, x: Node) -> Node:
-        """Cosine of an angle in radians."""
-        return x.graph.call("cos", x)
-
-
-class Recorded(NamedTuple):
-    """What a function does.
-
-    Attributes
-    ----------
-    nodes
-        What it computes with, operands first, and nothing else.
-    outputs
-        What it returns.
-    size, parameters
-        How many numbers the state has, and how many parameters there are.
-    """
-
-    nodes: tuple[Node, ...]
-    outputs: tuple[Node, ...]
-    size: int
-    parameters: int
-
-    @property
-    def operations(self) -> int:
-        """How many operations it takes."""
-        return len([node for node in self.nodes if node.operands])
-
-
-def record(
-    function: Callable[[Sequence[Scalar], Sequence[Scalar]], Sequence[Scalar]], size: int, parameters: int
-) -> Recorded:
-    """Record what a function of a state and parameters does.
-
-    Parameters
-    ----------
-    function
-        It returns a sequence of numbers, and asks nothing of its arguments but operators.
-    size, parameters
-        How many numbers the state has, and how many parameters there are.
-
-    Raises
-    ------
-    NotRecordable
-        If the function makes a choice that depends on the numbers.
-    """
-    graph = Graph()
-    state = [graph.node(STATE, (), i) for i in range(size)]
-    given = [graph.node(PARAMETER, (), i) for i in range(parameters)]
-    outputs = [graph.taken(output) for output in function(state, given)]
-    needed = set()
-    waiting = list(outputs)
-    while waiting:
-        node = waiting.pop()
-        if node.place not in needed:
-            needed.add(node.place)
-            waiting.extend(node.operands)
-    nodes = [node for node in graph.nodes if node.place in needed]
-    return Recorded(tuple(nodes), tuple(outputs), size, parameters)

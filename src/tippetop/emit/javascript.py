@@ -13,8 +13,8 @@ from tippetop.emit.graph import (
     SELECT,
     SIZE,
     SUM,
-    Recorded,
 )
+from tippetop.emit.recording import Recorded
 
 JAVASCRIPT = Language(
     {

@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numba import types
 
-from tippetop.emit.graph import record
 from tippetop.emit.python import python_source
+from tippetop.emit.recording import record
 from tippetop.integrators import dormand_prince as loop
 from tippetop.integrators.base import Arc, Array, Guard, Motion
 from tippetop.integrators.dense import DenseSolution
@@ -46,7 +46,7 @@ FAILURES = {
 class CompiledRungeKutta:
     """SciPy's DOP853, compiled: the same steps, with compensated sums, and the same guards.
 
-    A motion that cannot be recorded (see `tippetop.emit.graph`) is left to SciPy.
+    A motion that cannot be recorded (see `tippetop.emit.recording`) is left to SciPy.
 
     Attributes
     ----------

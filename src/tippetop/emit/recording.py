@@ -1,0 +1,75 @@
+"""Functions of a state and parameters recorded as graphs."""
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+from tippetop.emit.graph import PARAMETER, STATE, Graph, Node
+from tippetop.mechanics.vectors import Scalar
+
+
+class Elementary:
+    """Elementary functions of nodes: a module such as `math`, for what takes one."""
+
+    def sin(self, x: Node) -> Node:
+        """Sine of an angle in radians."""
+        return x.graph.call("sin", x)
+
+    def cos(self, x: Node) -> Node:
+        """Cosine of an angle in radians."""
+        return x.graph.call("cos", x)
+
+
+class Recorded(NamedTuple):
+    """What a function does.
+
+    Attributes
+    ----------
+    nodes
+        What it computes with, operands first, and nothing else.
+    outputs
+        What it returns.
+    size, parameters
+        How many numbers the state has, and how many parameters there are.
+    """
+
+    nodes: tuple[Node, ...]
+    outputs: tuple[Node, ...]
+    size: int
+    parameters: int
+
+    @property
+    def operations(self) -> int:
+        """How many operations it takes."""
+        return len([node for node in self.nodes if node.operands])
+
+
+def record(
+    function: Callable[[Sequence[Scalar], Sequence[Scalar]], Sequence[Scalar]], size: int, parameters: int
+) -> Recorded:
+    """Record what a function of a state and parameters does.
+
+    Parameters
+    ----------
+    function
+        It returns a sequence of numbers, and asks nothing of its arguments but operators.
+    size, parameters
+        How many numbers the state has, and how many parameters there are.
+
+    Raises
+    ------
+    NotRecordable
+        If the function makes a choice that depends on the numbers.
+    """
+    graph = Graph()
+    state = [graph.node(STATE, (), i) for i in range(size)]
+    given = [graph.node(PARAMETER, (), i) for i in range(parameters)]
+    outputs = [graph.taken(output) for output in function(state, given)]
+    needed = set()
+    waiting = list(outputs)
+    while waiting:
+        node = waiting.pop()
+        if node.place not in needed:
+            needed.add(node.place)
+            waiting.extend(node.operands)
+    nodes = [node for node in graph.nodes if node.place in needed]
+    return Recorded(tuple(nodes), tuple(outputs), size, parameters)
