@@ -323,7 +323,9 @@ class Expressions:
     def _given(self, node: ast.Call) -> str:
         """The arguments of a call in order, those by name in their places."""
         found = [self.text(one) for one in node.args]
-        words = {word.arg: word.value for word in node.keywords if word.arg not in (None, "strict")}
+        words = {word.arg: word.value for word in node.keywords if word.arg != "strict"}
+        if any(word.arg is None for word in node.keywords):
+            raise Untranslatable(f"{self.module}: {ast.unparse(node)}")
         if not words:
             return ", ".join(found)
         if isinstance(node.func, ast.Name) and self.name(node.func.id) in ("py.max", "py.min", "py.sorted"):

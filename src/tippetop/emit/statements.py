@@ -293,16 +293,18 @@ class Statements(Expressions):
 
     def _match(self, node: ast.Match) -> Iterator[str]:
         subject = self.text(node.subject)
+        word = ""
         for case in node.cases:
             match case.pattern:
                 case ast.MatchValue(value=value):
-                    yield f"if (py.eq({subject}, {self.text(value)})) {{"
+                    yield f"{word}if (py.eq({subject}, {self.text(value)})) {{"
                 case ast.MatchAs(pattern=None, name=None):
-                    yield "{"
+                    yield f"{word}{{"
                 case _:
                     raise Untranslatable(f"{self.module}: {ast.unparse(case)}")
             yield from indented(self._block(case.body))
-            yield "}"
+            word = "} else "
+        yield "}"
 
 
 def indented(lines: Iterator[str]) -> Iterator[str]:

@@ -79,6 +79,11 @@ export class DenseSolution {
     return low;
   }
 
+  /** The polynomial of a number in a step: an array, where in it its coefficients begin, and the degree. */
+  polynomial(step, number) {
+    return [this.terms, (step * this.size + number) * (this.degree + 1), this.degree];
+  }
+
   /** One number, or its rate with the part of the step, at a part of a step. */
   value(step, number, part) {
     const first = (step * this.size + number) * (this.degree + 1);
@@ -154,6 +159,7 @@ export class DenseSolution {
 
   /** Polynomials that agree with a function, from a time to numbers, at Chebyshev's points of every step. */
   static fitted(function_, knots, degree) {
+    if (function_.size) return new Evaluated(function_, Array.from(knots), Array.from(knots), degree);
     const { places } = chebyshev(degree), count = knots.length - 1, wide = degree + 1;
     let terms = null, size = 0, values = null;
     for (let step = 0; step < count; step += 1) {
@@ -169,5 +175,43 @@ export class DenseSolution {
       for (let number = 0; number < size; number += 1) toPowers(values[number], degree, terms, (step * size + number) * wide);
     }
     return new DenseSolution(Array.from(knots), terms, size, degree);
+  }
+}
+
+/** A solution whose function takes no time to speak of: it is asked itself, and fitted number by number when asked. */
+class Evaluated extends DenseSolution {
+  constructor(function_, knots, own, degree) {
+    super(knots, null, function_.size, degree);
+    this.function_ = function_;
+    this.own = own;
+    this.fits = new Map();
+  }
+
+  moved(start, end) {
+    const { knots } = DenseSolution.prototype.moved.call(this, start, end);
+    return new Evaluated(this.function_, knots, this.own, this.degree);
+  }
+
+  numbers(step, part, out = new Array(this.size)) {
+    const found = this.function_(this.own[step] + part * (this.own[step + 1] - this.own[step]));
+    for (let number = 0; number < this.size; number += 1) out[number] = found[number];
+    return out;
+  }
+
+  value(step, number, part) {
+    return this.function_(this.own[step] + part * (this.own[step + 1] - this.own[step]))[number];
+  }
+
+  polynomial(step, number) {
+    const wide = this.degree + 1;
+    if (!this.fits.has(number)) {
+      const { places } = chebyshev(this.degree), values = new Float64Array(wide), terms = new Float64Array(wide * this.count);
+      for (let each = 0; each < this.count; each += 1) {
+        for (let place = 0; place < wide; place += 1) values[place] = this.value(each, number, places[place]);
+        toPowers(values, this.degree, terms, each * wide);
+      }
+      this.fits.set(number, terms);
+    }
+    return [this.fits.get(number), step * wide, this.degree];
   }
 }

@@ -2969,23 +2969,17 @@ class Stopping extends Passing {
     }
     if (py.eq(arc.guard, "time")) {
       return new Transition([], Outcome.COMPLETED, state);
-    }
-    if (py.eq(arc.guard, "lift-off")) {
+    } else if (py.eq(arc.guard, "lift-off")) {
       return this.rules.lift_off(time, state);
-    }
-    if (py.eq(arc.guard, "reopening")) {
+    } else if (py.eq(arc.guard, "reopening")) {
       return new Transition([], this.rules.going_on(state, !py.truth(stuck)), state);
-    }
-    if (py.eq(arc.guard, "overtaken")) {
+    } else if (py.eq(arc.guard, "overtaken")) {
       return new Transition([], py.replace(this, { ending: new Vanishing(!py.truth(ending.slip)) }), state);
-    }
-    if (py.eq(arc.guard, "branch")) {
+    } else if (py.eq(arc.guard, "branch")) {
       return new Transition([], py.replace(this, { top: on_other_branch(this.top) }), state);
-    }
-    if (py.eq(arc.guard, "slip")) {
+    } else if (py.eq(arc.guard, "slip")) {
       return this.rules.giving_way(state, [this.rules.event(EventKind.SLIP, time)], new Vanishing(true));
-    }
-    if (py.eq(arc.guard, "rolling")) {
+    } else if (py.eq(arc.guard, "rolling")) {
       return this.rules.giving_way(state, [this.rules.event(EventKind.ROLL, time)], new Vanishing(false));
     }
     return this.rules.settled(time, state, [ending.slip, !py.truth(ending.slip)], ending.held);

@@ -46,11 +46,12 @@ const flying = cached((kind) =>
 Flight.prototype._numbers = function numbers(state) {
   const code = flying(this.top.kind), given = Float64Array.of(...state.pack(), ...this.top.numbers);
   const time = new Float64Array(1), out = new Float64Array(10);
-  return (elapsed) => {
+  const found = (elapsed) => {
     time[0] = elapsed;
     code(time, given, out);
     return out;
   };
+  return Object.assign(found, { size: 10 });
 };
 
 /** What is seen of a state on the surface that is lowest. */

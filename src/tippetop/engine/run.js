@@ -75,17 +75,23 @@ export class Run {
     this.pieces.push(piece);
     this.steps += segment.steps;
     if (!mode.touching) this.fly(segment);
-    const hop = mode.touching ? 0 : 1;
     for (let step = 0; step < solution.count; step += 1) {
       this.monitor(piece, step);
       this.sum(piece, step, mode.touching && !this.hops.length);
       this.tip(solution, step);
-      if (hop) this.highest = Math.max(this.highest, -new Polynomial(...polynomialAt(solution, step, 9)).least(-1)[1]);
+      if (!mode.touching) this.rise(solution, step);
     }
     for (const event of segment.transition?.events ?? []) {
       this.sums[STRUCK] += event.energy_lost;
       this.sums[WORK] -= event.energy_lost;
     }
+  }
+
+  /** Take in the height of the centre of mass in a flight. */
+  rise(solution, step) {
+    const [terms, from, degree] = solution.polynomial(step, 9);
+    if (terms[from] + reach(terms, from, degree) <= this.highest) return;
+    this.highest = Math.max(this.highest, -new Polynomial(terms, from, degree).least(-1)[1]);
   }
 
   fly(segment) {
@@ -160,14 +166,14 @@ export class Run {
 
   /** Take in the motion of the tip of the axis. */
   tip(solution, step) {
-    const from = (step * solution.size + 2) * (solution.degree + 1), start = solution.terms[from];
-    const far = reach(solution.terms, from, solution.degree), lowest = start - far, highest = start + far;
+    const [terms, from, degree] = solution.polynomial(step, 2), start = terms[from];
+    const far = reach(terms, from, degree), lowest = start - far, highest = start + far;
     const turns = this.turned !== this.turned && lowest <= 0 && highest >= 0;
     if (lowest >= this.down && highest <= this.up && !turns) return;
-    if (lowest < this.down || highest > this.up) this.tips.push([lowest, highest, solution, from]);
+    if (lowest < this.down || highest > this.up) this.tips.push([lowest, highest, solution, step]);
     this.down = Math.min(this.down, start);
     this.up = Math.max(this.up, start);
-    if (turns) this.turned = timeAt(solution, step, new Polynomial(solution.terms, from, solution.degree).firstFall(1, 0, true));
+    if (turns) this.turned = timeAt(solution, step, new Polynomial(terms, from, degree).firstFall(1, 0, true));
   }
 
   /** Look at the steps in which there may be less of something than was seen so far. */
@@ -177,8 +183,8 @@ export class Run {
     }
     const last = this.trajectory.state.axis[2];
     [this.down, this.up] = [Math.min(this.down, last), Math.max(this.up, last)];
-    for (const [lowest, highest, solution, from] of this.tips) {
-      const tip = new Polynomial(solution.terms, from, solution.degree);
+    for (const [lowest, highest, solution, step] of this.tips) {
+      const tip = new Polynomial(...solution.polynomial(step, 2));
       if (lowest < this.down) this.down = Math.min(this.down, tip.least()[1]);
       if (highest > this.up) this.up = Math.max(this.up, -tip.least(-1)[1]);
     }
@@ -189,10 +195,10 @@ export class Run {
   arrival(low, high) {
     for (const { solution } of this.pieces) {
       for (let step = 0; step < solution.count; step += 1) {
-        const from = (step * solution.size + 2) * (solution.degree + 1), start = solution.terms[from];
-        const far = reach(solution.terms, from, solution.degree);
+        const [terms, from, degree] = solution.polynomial(step, 2), start = terms[from];
+        const far = reach(terms, from, degree);
         if (start - far > high || start + far < low) continue;
-        const tip = new Polynomial(solution.terms, from, solution.degree);
+        const tip = new Polynomial(terms, from, degree);
         const part = start > high ? tip.firstFall(1, -high) : start < low ? tip.firstFall(-1, low) : 0;
         if (!Number.isNaN(part)) return timeAt(solution, step, part);
       }
@@ -353,9 +359,6 @@ export class Run {
   }
 }
 
-const polynomialAt = (solution, step, number) => [
-  solution.terms, (step * solution.size + number) * (solution.degree + 1), solution.degree,
-];
 const timeAt = (solution, step, part) => solution.knots[step] + part * (solution.knots[step + 1] - solution.knots[step]);
 const lowest = (top, c) => (top.surface instanceof m.Hull ? top._replace({ surface: m.lowest_surface(top.surface, c) }) : top);
 

@@ -32,6 +32,7 @@ export function sub(a, b) {
 
 export function mul(a, b) {
   if (typeof a === "number" && typeof b === "number") return a * b;
+  if (typeof a === "string") return a.repeat(b);
   if (Array.isArray(a)) return Array.from({ length: b * a.length }, (_, i) => a[i % a.length]);
   return applied(a, b, "__mul__", "__rmul__", mul);
 }

@@ -1,0 +1,179 @@
+"""What is translated of Python into JavaScript means there what it meant."""
+
+import json
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from node import NODE
+from tippetop.emit.expressions import Untranslatable
+from tippetop.emit.program import Program
+from tippetop.emit.statements import Statements
+from tippetop.engine import HERE
+
+MODULE = """
+import math
+from dataclasses import dataclass, replace
+from enum import Enum, IntEnum
+from functools import lru_cache
+from typing import Any, ClassVar, NamedTuple
+
+class Colour(Enum):
+    RED = "a colour"
+    BLUE = "another"
+
+class Step(IntEnum):
+    NONE = 0
+    TWO = 2
+
+class Point(NamedTuple):
+    x: Any
+    y: Any = 2.0
+
+    @property
+    def size(self):
+        return math.hypot(*self)
+
+    @classmethod
+    def of(cls, numbers):
+        return cls(*numbers)
+
+@dataclass(frozen=True)
+class Base:
+    name: str
+    place: Point
+
+    loud: ClassVar[bool] = False
+
+    def told(self, *, twice=False):
+        return self.name * (2 if twice else 1)
+
+    def parts(self, count):
+        for number in range(count):
+            yield number, self.told()
+
+@dataclass(frozen=True)
+class Louder(Base):
+    volume: float = 3.0
+
+    loud: ClassVar[bool] = True
+
+    def told(self, *, twice=False):
+        return super().told(twice=twice) + "!"
+
+class Ring:
+    def __init__(self, number):
+        self.number = number % 7
+
+    def __add__(self, other):
+        return Ring(self.number + (other.number if isinstance(other, Ring) else other))
+
+    def __radd__(self, other):
+        return self + other
+
+    def __mul__(self, other):
+        return Ring(self.number * other.number)
+
+CALLS = []
+
+@lru_cache
+def remembered(point, word):
+    CALLS.append(word)
+    return point.x
+
+def tuples():
+    a, *rest = (1.0, 2.0, 3.0, 4.0)
+    (b, _), c = (5.0, 6.0), 7.0
+    point = Point(y=1.0, x=a)
+    x, y = point._replace(x=8.0)
+    return [a, rest, b, c, x, y, point == (1.0, 1.0), point == Point.of([1.0, 1.0]), Point(3.0, 4.0).size,
+            rest[-1], rest[::-1], rest[1:], rest[:-1], [*rest, *point], (0.0,) * 3, point != (1.0, 2.0)]
+
+def records():
+    here = Louder("a", Point(1.0), volume=4.0)
+    there = replace(here, name="b")
+    return [there.told(), there.told(twice=True), there.loud, there == replace(here, name="b"), there == here,
+            list(there.parts(2)), there.place.y, isinstance(there, Base), here.volume]
+
+def arithmetic():
+    found = []
+    for work in (lambda: 1.0 / (2.0 - 2.0), lambda: (1.0 - 1.0) ** -0.5, lambda: 1e200 ** 2):
+        try:
+            found.append(work())
+        except ArithmeticError as error:
+            found.append(str(type(error).__name__) != "")
+    three = Ring(5) + 4
+    return [*found, (2 + three).number, (three * three).number, 7 // 2, -7 // 2, -7 % 3, 2.0**0.5, True + 1,
+            sum([1, 2], 10), max(3, 1, 2), min([4.0, 2.0]), max([], default=-1.0), 1 if not () else 0]
+
+def choices():
+    found = []
+    for number, word in enumerate(["red", "blue", "grey", ""]):
+        match word:
+            case "red":
+                found.append(Colour.RED.value)
+            case "blue":
+                found.append(Colour.BLUE.name.lower())
+            case _:
+                found.append(word or number)
+    if 1.0 <= len(found) < 5.0 and "red" not in found:
+        found.append(f"{len(found)} {Step.TWO + 1}")
+    best = max([Point(1.0, 5.0), Point(2.0, 4.0)], key=lambda one: one.y)
+    table = {word: place for place, word in enumerate("ab")}
+    table["c"] = 5
+    square = next((n for n in range(9) if n * n > 20), None)
+    return [*found, best.x, square, table.get("d", -1), sorted([2, 1]),
+            [a + b for a in (1, 2) for b in (10, 20) if b > 10], table["a"], any([]), all([])]
+
+def closures():
+    total = 0.0
+    count = 3
+    while (left := count) > 0:
+        def more(by, times=2.0):
+            return by * times + left
+        total += more(1.0, times=4.0)
+        count -= 1
+    values = [1.0, 2.0, 3.0, 4.0]
+    del values[2:]
+    values[0], values[1] = values[1], values[0]
+    return [total, count, values, remembered(Point(1.0), "a"), remembered(Point(1.0), "a"), len(CALLS)]
+"""
+
+TESTS = ("tuples", "records", "arithmetic", "choices", "closures")
+
+
+def plain(value):
+    """A value as JSON has it."""
+    return json.loads(json.dumps(value))
+
+
+@pytest.fixture(scope="module")
+def both(tmp_path_factory):
+    """What the functions return in Python, and in JavaScript."""
+    space = {"__name__": "sample"}
+    exec(compile(MODULE, "sample", "exec"), space)
+    program = Program({"sample": MODULE}, {}, ())
+    lines = [f'import * as py from "{(HERE / "runtime.js").as_uri()}";']
+    lines += Statements(program, "sample").module_lines()
+    lines.append(f"console.log(JSON.stringify([{', '.join(f'{name}()' for name in TESTS)}]));")
+    script = tmp_path_factory.mktemp("translated") / "sample.mjs"
+    Path(script).write_text("\n".join(lines), encoding="utf-8")
+    ran = subprocess.run([NODE, str(script)], capture_output=True, text=True, check=False)
+    assert not ran.stderr, ran.stderr
+    return {name: plain(space[name]()) for name in TESTS}, dict(
+        zip(TESTS, json.loads(ran.stdout), strict=True)
+    )
+
+
+@pytest.mark.parametrize("name", TESTS)
+def test_translated_functions_return_the_same(both, name):
+    assert both[1][name] == both[0][name]
+
+
+@pytest.mark.parametrize("statement", ["return f(**k)", "with open(x) as f: pass"])
+def test_what_is_not_known_is_refused(statement):
+    text = f"def some(x, k, f):\n    {statement}\n"
+    program = Program({"sample": text}, {}, ())
+    with pytest.raises(Untranslatable):
+        list(Statements(program, "sample").module_lines())
