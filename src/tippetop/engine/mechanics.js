@@ -5188,6 +5188,8 @@ function in_order(a, b) {
   return a.place <= b.place ? [a, b] : [b, a];
 }
 
+// tippetop.emit.recording
+
 /** Elementary functions of nodes: a module such as `math`, for what takes one. */
 class Elementary extends py.Thing {
   /** Sine of an angle in radians. */
