@@ -24,6 +24,7 @@ from tippetop.mechanics.ending import (
     overtaking_guard,
     rates_in_time,
     reopening_guard,
+    slip_beside,
 )
 from tippetop.mechanics.motion import on_table
 from tippetop.mechanics.rolling import (
@@ -39,7 +40,7 @@ from tippetop.mechanics.rolling import (
 )
 from tippetop.mechanics.slip_onset import onset
 from tippetop.mechanics.state import SlidingState, State
-from tippetop.mechanics.stick_slip import HORIZON, branch_guard, scaled, size, slip_of, velocity_of
+from tippetop.mechanics.stick_slip import HORIZON, scaled, size, slip_branch_guard, slip_of, velocity_of
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import Row, Scalar, add, scale
 
@@ -232,30 +233,45 @@ class Resting(Mode):
 
 @dataclass(frozen=True)
 class Stopping(Passing):
-    """The last moments of slip, or of rolling, in the clock -ln s (see `tippetop.mechanics.ending`)."""
+    """The last moments of slip, or of rolling, in the clock -ln s (see `tippetop.mechanics.ending`).
+
+    Attributes
+    ----------
+    begin
+        The numbers of the clock where another branch of the law has left off; else they are the state's.
+    """
+
+    begin: tuple[float, ...] = ()
 
     def segments(self, time: float, state: State, end: float, integrator: Integrator) -> Iterator[Segment]:
         """Follow it to its end, or to where it is no longer about to end."""
-        ending, velocity = self.ending, state.velocity[:2]
-        xi = ending.of(state.axis, state.momentum, velocity, self.top)
-        speed, free = size(xi), velocity if ending.moves else ()
-        begin = as_array((*state.axis, *state.momentum, *free, *scaled(1.0 / speed, xi), speed, 0.0))
-        motion, steps = closing_motion(self.top.kind, ending, not self.rules.pulls), 0
+        ending, begin = self.ending, self.begin or self._clock(state)
+        here, steps, arc, parts = closing_of(begin, ending), 0, None, list[DenseSolution]()
+        start = 0.0, as_array(begin)
+        motion = closing_motion(self.top.kind, ending, not self.rules.pulls)
         for horizon in LANDING:
-            parameters = (*self.top.numbers, end - time, horizon)
-            arcs = _followed(integrator, motion, parameters, begin)
+            if landing_guard(here, ending, self.top, horizon) <= 0.0:
+                continue
+            arcs = _followed(integrator, motion, (*self.top.numbers, end - time, horizon), start)
             steps += sum(arc.steps for arc in arcs)
-            here = closing_of(arcs[-1].end_state.tolist(), ending)
-            rest, doubt = landed(here, ending, self.top)
-            if arcs[-1].guard != LANDED or doubt < SETTLED:
+            arc, parts = arcs[-1], [*parts, *(arc.solution for arc in arcs)]
+            start = arc.solution.end, arc.end_state
+            here = closing_of(arc.end_state.tolist(), ending)
+            if arc.guard != LANDED or landed(here, ending, self.top)[1] < SETTLED:
                 break
-        if arcs[-1].guard == LANDED:
-            here = rest
+        if arc is None or arc.guard == LANDED:
+            here = landed(here, ending, self.top)[0]
         last = self._state_at(here)
-        clock = DenseSolution.joined([arc.solution for arc in arcs])
-        solution = self._in_time(clock, time, float(here.time))
-        then = self._next(arcs[-1], solution.end, last)
+        solution = self._in_time(parts, begin, time, float(here.time))
+        then = self._next(arc, solution.end, last)
         yield Segment(self.told, solution, last, then, steps, steps)
+
+    def _clock(self, state: State) -> tuple[float, ...]:
+        """The numbers of the clock at a state."""
+        velocity = state.velocity[:2]
+        xi = self.ending.of(state.axis, state.momentum, velocity, self.top)
+        free = velocity if self.ending.moves else ()
+        return (*state.axis, *state.momentum, *free, *scaled(1.0 / size(xi), xi), size(xi), 0.0)
 
     def _state_at(self, here: Closing) -> State:
         """The whole state."""
@@ -266,10 +282,12 @@ class Stopping(Passing):
             velocity = velocity_without_slip(here.axis, here.momentum, self.top)
         return on_table(SlidingState(here.axis, here.momentum, velocity), self.top)
 
-    def _next(self, arc: Arc, time: float, state: State) -> Transition:
+    def _next(self, arc: Arc | None, time: float, state: State) -> Transition:
+        ending, stuck = self.ending, not self.ending.slip and self.ending.held
+        if arc is None:
+            return self.rules.settled(time, state, new=(ending.slip, not ending.slip), held=ending.held)
         if arc.failure is not None or arc.guard is None:
             return Transition((), Outcome.FAILED, state, arc.failure or "the slip neither ends nor goes on")
-        ending, stuck = self.ending, not self.ending.slip and self.ending.held
         found = follow_surface(self, arc.guard, time, state)
         if found is not None:
             return found
@@ -281,9 +299,10 @@ class Stopping(Passing):
             case "reopening":
                 return Transition((), self.rules.going_on(state, slips=not stuck), state)
             case "overtaken":
-                return Transition((), replace(self, ending=Vanishing(not ending.slip)), state)
+                return Transition((), replace(self, ending=Vanishing(not ending.slip), begin=()), state)
             case "branch":
-                return Transition((), replace(self, top=on_other_branch(self.top)), state)
+                begin = (*arc.end_state[:-1].tolist(), 0.0)
+                return Transition((), replace(self, top=on_other_branch(self.top), begin=begin), state)
             case "slip":
                 return self.rules.giving_way(
                     state, (self.rules.event(EventKind.SLIP, time),), Vanishing(slip=True)
@@ -294,14 +313,22 @@ class Stopping(Passing):
                 )
         return self.rules.settled(time, state, new=(ending.slip, not ending.slip), held=ending.held)
 
-    def _in_time(self, clock: DenseSolution, time: float, duration: float) -> DenseSolution:
+    def _in_time(
+        self, parts: Sequence[DenseSolution], begin: Row, time: float, duration: float
+    ) -> DenseSolution:
         """The numbers of the mode as polynomials in time, from their solution in the clock."""
-        elapsed = clock.size - 1
 
-        def numbers(times: Array) -> tuple[Scalar, ...]:
-            here = closing_of(clock.rows(clock.when(elapsed, times)), self.ending)
+        def shown(row: Row) -> tuple[Scalar, ...]:
+            here = closing_of(row, self.ending)
             xi = scaled(here.speed, here.direction)
             return self.numbers(here.axis, here.momentum, here.velocity, xi)
+
+        if not parts:
+            return DenseSolution.standing(shown(begin), time, time + duration)
+        clock, elapsed = DenseSolution.joined(parts), len(begin) - 1
+
+        def numbers(times: Array) -> tuple[Scalar, ...]:
+            return shown(clock.rows(clock.when(elapsed, times)))
 
         solution = DenseSolution.fitted(numbers, clock.knots_of(elapsed, duration), DEGREE)
         return solution.moved(time, time + duration)
@@ -312,17 +339,19 @@ def _nothing(mode: Mode, time: float, state: State, why: str) -> Segment:
     return Segment(mode, DenseSolution.nothing(time, 8), state, Transition((), Outcome.FAILED, state, why))
 
 
-def _followed(integrator: Integrator, motion: Motion, parameters: Sequence[float], begin: Array) -> list[Arc]:
+def _followed(
+    integrator: Integrator, motion: Motion, parameters: Sequence[float], start: tuple[float, Array]
+) -> list[Arc]:
     """The end of slip, or of rolling, in its clock.
 
     On a small patch the direction of slip follows the friction much faster than slip ends: where that takes
     more steps than there are in an arc, an implicit method takes them instead.
     """
-    first = next(iter(integrator.integrate(motion, parameters, (0.0, begin), LONGEST)))
+    first = next(iter(integrator.integrate(motion, parameters, start, LONGEST)))
     if first.guard is not None or first.failure is not None or first.solution.end >= LONGEST:
         return [first]
     implicit = make_integrator("radau", STIFF_TOLERANCE)
-    return list(implicit.integrate(motion, parameters, (0.0, begin), LONGEST))
+    return list(implicit.integrate(motion, parameters, start, LONGEST))
 
 
 @lru_cache
@@ -343,7 +372,7 @@ def closing_motion(kind: Kind, ending: Vanishing, guarded: bool) -> Motion:
         return Guard(name, lambda y, numbers: value(closing_of(y, ending), top_of(numbers), numbers))
 
     def on_branch_still(state: Closing, top: Top, _: Sequence[Scalar]) -> Scalar:
-        return branch_guard(state.axis, state.momentum, (state.velocity[0], state.velocity[1]), top)
+        return slip_branch_guard(slip_beside(state, ending, top) or state.direction, top)
 
     guards = [
         guard(REOPENING, lambda state, top, _: reopening_guard(state, ending, top, HORIZON)),
@@ -362,7 +391,7 @@ def closing_motion(kind: Kind, ending: Vanishing, guarded: bool) -> Motion:
         guards.append(
             guard(ROLLING if ending.slip else SLIP, lambda state, top, _: spared(state, ending, top))
         )
-    if ending.moves and hasattr(sliding_law(law), "branch_guard"):
+    if (ending.slip or ending.moves) and hasattr(sliding_law(law), "branch_guard"):
         guards.append(guard(BRANCH, on_branch_still))
     guards += surface_guards(kind)
     free = 2 if ending.moves else 0

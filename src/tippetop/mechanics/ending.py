@@ -131,15 +131,18 @@ class ClosingRates(NamedTuple):
 def rates_in_time(state: Closing, ending: Vanishing, top: Top) -> ClosingRates:
     """Rates in time."""
     point = ContactPoint.of(state.axis, state.momentum, top)
-    slip, pushed = None, scaled(1.0, ())
-    if ending.moves:
-        slip = slip_of(state.axis, state.momentum, (state.velocity[0], state.velocity[1]), top)
-    wrench, acceleration = ending.contact(point, state.direction, slip)
-    if ending.moves:
-        pushed = scaled(1.0 / top.mass, wrench.force[:2])
+    wrench, acceleration = ending.contact(point, state.direction, slip_beside(state, ending, top))
+    drawn = scaled(1.0 / top.mass, wrench.force[: len(state.velocity)])
     tilting = axis_rate(state.axis, state.momentum, top)
     xi = ending.rate(acceleration, top)
-    return ClosingRates(tilting, point.moment(wrench), pushed, xi, wrench, acceleration)
+    return ClosingRates(tilting, point.moment(wrench), drawn, xi, wrench, acceleration)
+
+
+def slip_beside(state: Closing, ending: Vanishing, top: Top) -> Slip | None:
+    """The slip that goes on while rolling ends; None where there is none."""
+    if not ending.moves:
+        return None
+    return slip_of(state.axis, state.momentum, (state.velocity[0], state.velocity[1]), top)
 
 
 def closing_rates(state: Closing, ending: Vanishing, top: Top) -> Closing:

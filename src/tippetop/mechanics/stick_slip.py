@@ -151,9 +151,13 @@ def remaining(velocity: Slip, change: Slip, horizon: Scalar) -> Scalar:
 
 def branch_guard(axis: Vector, momentum: Vector, velocity: Horizontal, top: Top) -> Scalar:
     """Positive as long as the branch of the law that a body in contact is on holds, m^2/s^2."""
+    return slip_branch_guard(slip_of(axis, momentum, velocity, top), top)
+
+
+def slip_branch_guard(slip: Slip, top: Top) -> Scalar:
+    """The same of zeta, or of its direction alone."""
     law: Any = sliding_law(top.friction)
-    slip = slip_of(axis, momentum, velocity, top)
-    return law.branch_guard(slip[:2], angular_velocity(axis, momentum, top))
+    return law.branch_guard(slip[:2], (0.0, 0.0, slip[2] / law.slip_length))
 
 
 def angular_acceleration(state: SlidingState, rate: SlidingState, top: Top) -> Vector:

@@ -1,0 +1,60 @@
+"""Hertz's law where slip ends and where it is held: on whichever of its two branches the direction is."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from dry_runs import DryRun
+from tippetop.contact.passing import closing_of
+from tippetop.mechanics.contensou_hertz import HertzLaw
+from tippetop.mechanics.coulomb import CoulombLaw
+from tippetop.mechanics.ending import Vanishing, closing_rates
+from tippetop.mechanics.rolling import spun_up, without_drilling
+from tippetop.mechanics.stick_slip import size, velocity_of
+from tippetop.mechanics.surface import SphereSurface
+from tippetop.mechanics.top import Top
+
+SLIP = Vanishing(slip=True)
+
+
+def about_to_stick(random):
+    """A top whose slip, drilling included, is about to end, and that slip zeta."""
+    law = HertzLaw(random.uniform(0.2, 0.8), random.uniform(0.1, 0.5))
+    top = Top(1.0, 131 / 350, 2 / 5, SphereSurface(1.0, 0.3), law, 1.0)
+    tilt = random.uniform(0.3, 2.8)
+    axis = (math.sin(tilt), 0.0, math.cos(tilt))
+    direction = random.normal(size=3)
+    slip = (direction * random.uniform(1e-3, 5e-3) / np.linalg.norm(direction)).tolist()
+    momentum = without_drilling(axis, tuple(0.4 * random.normal(size=3)), top)
+    momentum = spun_up(axis, momentum, (0.0, 0.0, slip[2] / law.patch_radius), top)
+    return top, axis, momentum, slip
+
+
+@pytest.mark.parametrize("seed", [1, 5, 8, 17, 35])
+def test_slip_ends_on_the_branch_its_direction_turns_to(seed):
+    """Against the whole law, which asks at every instant on which branch it is, and an implicit method."""
+    top, axis, momentum, slip = about_to_stick(np.random.default_rng(seed))
+
+    def rates(_, y):
+        rate = closing_rates(closing_of(y.tolist(), SLIP), SLIP, top)
+        return [*rate.axis, *rate.momentum, *rate.direction, rate.speed, rate.time]
+
+    start = [*axis, *momentum, *(x / size(slip) for x in slip), size(slip), 0.0]
+    whole = solve_ivp(rates, (0.0, 25.0), start, "Radau", rtol=1e-8, atol=1e-11).y
+    drills = np.abs(whole[8]) > np.hypot(whole[6], whole[7])
+    assert drills.any(), "it turns from one branch to the other"
+    assert not drills.all(), "it turns from one branch to the other"
+    velocity = velocity_of(axis, momentum, slip, top)
+    run = DryRun(top, axis, momentum, velocity).follow(whole[10, -1] * 1.5)
+    assert run.times("stick")[:1] == pytest.approx([whole[10, -1]], abs=1e-9)
+
+
+@pytest.mark.parametrize("slip", [1e-6, 1e-9, 1e-12])
+def test_slip_that_is_all_but_over_ends_when_it_does(slip):
+    ball = Top(1.0, 0.4, 0.4, SphereSurface(1.0, 0.0), CoulombLaw(0.25), 1.0)
+    axis, momentum = (0.6, 0.0, 0.8), (0.1, 0.2, 0.3)
+    run = DryRun(ball, axis, momentum, velocity_of(axis, momentum, (slip, 0.0), ball)).follow(0.1)
+    (stuck,) = run.times("stick")
+    assert stuck == pytest.approx(slip / (3.5 * 0.25), abs=1e-14)
