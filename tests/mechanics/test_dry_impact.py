@@ -12,10 +12,15 @@ from strategies import numbers, slides
 from tippetop.mechanics.contensou import EllipsoidalLaw
 from tippetop.mechanics.contensou_hertz import HertzLaw
 from tippetop.mechanics.coulomb import CoulombLaw, RollingResistance
+from tippetop.mechanics.dry_impact import DryContact
 from tippetop.mechanics.friction import RegularizedCoulombLaw
 from tippetop.mechanics.impact import impact
+from tippetop.mechanics.impulse import NO_IMPULSE, Striking
 from tippetop.mechanics.motion import on_table
-from tippetop.mechanics.stick_slip import slip_of
+from tippetop.mechanics.state import SlidingState
+from tippetop.mechanics.stick_slip import slip_of, slip_part
+from tippetop.mechanics.surface import SpheroidSurface
+from tippetop.mechanics.top import Top
 
 
 @pytest.mark.parametrize("restitution", [0.0, 0.4])
@@ -90,3 +95,40 @@ def test_dry_impacts_obey_the_laws_of_mechanics(name, slide, mu, fall, restituti
         assert result.energy_lost >= 0.0
     gained = top.mass * (np.array(result.state.velocity) - np.array(state.velocity))
     assert math.hypot(gained[0], gained[1]) <= mu * gained[2] * (1.0 + 1e-9)
+
+
+@pytest.mark.parametrize("patch", [None, 3e-4, 0.1])
+def test_what_has_ended_in_an_impact_is_held_within_friction_or_goes_on_the_way_it_is_driven(patch):
+    """Of a body that falls without turning: both slip and rolling are zero.
+
+    What is zero stays so if mu and the arm admit what holds it, per unit normal impulse,
+    and else changes at a rate A = R e along its direction, R >= 0.
+    """
+    random, kinds = np.random.default_rng(3), set()
+    for _ in range(40):
+        mu, arm = random.uniform(0.0, 0.4), 10.0 ** random.uniform(-3.0, -0.3)
+        law = CoulombLaw(mu) if patch is None else EllipsoidalLaw(mu, patch)
+        inertia = random.uniform(0.2, 0.6)
+        shape = SpheroidSurface(1.0, random.uniform(0.4, 1.8))
+        top = Top(1.0, inertia, random.uniform(0.5, 1.6) * inertia, shape, RollingResistance(law, arm), 1.0)
+        tilt = random.uniform(0.1, 3.0)
+        axis = (math.sin(tilt), 0.0, math.cos(tilt))
+        state = on_table(SlidingState(axis, (0.0, 0.0, 0.0), (0.0, 0.0)), top)
+        body = Striking.of(state._replace(velocity=(0.0, 0.0, -1.0)), top)
+        contact = DryContact.of(body).settled(NO_IMPULSE)
+        unit = contact.unit(contact.way, contact.rolling_way)
+        change = contact.change(unit)
+        slip, rolling = slip_part(change, contact.reach), change[3:5]
+        for way, rate, reserve in (
+            (contact.way, slip, law.reserve(1.0, unit[:2], unit[5])),
+            (contact.rolling_way, rolling, top.friction.reserve(1.0, unit[3:5])),
+        ):
+            if way is None:
+                assert rate == pytest.approx((0.0,) * len(rate), abs=1e-12)
+                assert reserve >= 0.0
+            else:
+                along = sum(a * b for a, b in zip(way, rate, strict=True))
+                assert along >= -1e-12
+                assert rate == pytest.approx(tuple(along * e for e in way), abs=1e-12)
+        kinds.add((contact.way is None, contact.rolling_way is None))
+    assert len(kinds) == 3, "what does not roll has no reason to slip; all else should come about"

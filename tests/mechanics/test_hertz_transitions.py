@@ -8,10 +8,19 @@ from scipy.integrate import solve_ivp
 
 from dry_runs import DryRun
 from tippetop.contact.passing import closing_of
-from tippetop.mechanics.contensou_hertz import HertzLaw
+from tippetop.contact.sticking import split
+from tippetop.integrators.scipy_methods import SciPy
+from tippetop.mechanics.contensou_hertz import BRANCH_TORQUE, HertzLaw
 from tippetop.mechanics.coulomb import CoulombLaw
 from tippetop.mechanics.ending import Vanishing, closing_rates
-from tippetop.mechanics.rolling import spun_up, without_drilling
+from tippetop.mechanics.motion import axis_rate
+from tippetop.mechanics.rolling import (
+    ContactPoint,
+    contact_wrench,
+    spun_up,
+    velocity_without_slip,
+    without_drilling,
+)
 from tippetop.mechanics.stick_slip import size, velocity_of
 from tippetop.mechanics.surface import SphereSurface
 from tippetop.mechanics.top import Top
@@ -58,3 +67,45 @@ def test_slip_that_is_all_but_over_ends_when_it_does(slip):
     run = DryRun(ball, axis, momentum, velocity_of(axis, momentum, (slip, 0.0), ball)).follow(0.1)
     (stuck,) = run.times("stick")
     assert stuck == pytest.approx(slip / (3.5 * 0.25), abs=1e-14)
+
+
+def stuck(random):
+    """A top that sticks, or would, on a patch."""
+    law = HertzLaw(random.uniform(0.2, 0.8), 10.0 ** random.uniform(-2.6, -1.2))
+    top = Top(1.0, 0.5, 0.3, SphereSurface(1.0, 0.3), law, 1.0)
+    tilt = random.uniform(0.3, 2.8)
+    axis = (math.sin(tilt), 0.0, math.cos(tilt))
+    return top, axis, without_drilling(axis, tuple(0.4 * random.normal(size=3)), top)
+
+
+@pytest.mark.parametrize(("seed", "slips"), [(13, False), (38, False), (59, True)])
+@pytest.mark.parametrize("integrator", [None, SciPy("dop853", 1e-12)], ids=["taylor", "dop853"])
+def test_a_patch_sticks_while_its_limit_surface_admits_it_on_either_piece(seed, slips, integrator):
+    """The drilling torque passes the one at kappa = 1 twice; against the whole limit surface."""
+    top, axis, momentum = stuck(np.random.default_rng(seed))
+
+    def held(y):
+        axis, momentum = split([float(x) for x in y])
+        point = ContactPoint.of(axis, momentum, top)
+        return point, contact_wrench(point, None)
+
+    def rates(_, y):
+        point, wrench = held(y)
+        return [*axis_rate(point.axis, point.momentum, top), *point.moment(wrench)]
+
+    def reserve(_, y):
+        (x, z, normal), torque = held(y)[1]
+        return top.friction.reserve(normal, (x, z), torque[2])
+
+    reserve.terminal, reserve.direction = True, -1
+    whole = solve_ivp(rates, (0.0, 3.0), [*axis, *momentum], "DOP853", events=reserve, rtol=1e-12, atol=1e-13)
+    wrenches = [held(y)[1] for y in whole.y.T]
+    law = top.friction
+    shares = [w.torque[2] / (law.mu * law.patch_radius * BRANCH_TORQUE * w.force[2]) for w in wrenches]
+    assert np.count_nonzero(np.diff(np.abs(shares) > 1.0)) == 2
+    assert np.min(shares) < 0.0 < np.max(shares)
+    velocity = velocity_without_slip(axis, momentum, top)
+    run = DryRun(top, axis, momentum, velocity, integrator).follow(whole.t[-1] + 1e-3 * slips)
+    assert run.times("slip") == pytest.approx([whole.t[-1]] * slips, abs=1e-9)
+    if not slips:
+        assert (*run.axis, *run.momentum) == pytest.approx(tuple(whole.y[:, -1]), abs=1e-9)

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 
 from tippetop.contact.mode import EventKind, IntegratedMode, Mode, Outcome, Segment, Transition
 from tippetop.contact.sliding import BRANCH, LIFT_OFF, ROLLING, Sliding, SlidingWithoutRolling
-from tippetop.contact.sticking import SLIP, Sticking, split
+from tippetop.contact.sticking import LIMIT_BRANCH, SLIP, Sticking, split
 from tippetop.contact.surfaces import follow_surface, stays_open, surface_guards
 from tippetop.integrators import make_integrator
 from tippetop.integrators.base import Arc, Array, Guard, Integrator, Motion
@@ -29,9 +29,12 @@ from tippetop.mechanics.ending import (
 from tippetop.mechanics.motion import on_table
 from tippetop.mechanics.rolling import (
     ContactPoint,
+    has_limit_branches,
     is_set_valued,
+    limit_guard,
     on_branch,
     on_other_branch,
+    on_other_limit_branch,
     rolling_reserve,
     set_valued,
     sliding_law,
@@ -300,9 +303,10 @@ class Stopping(Passing):
                 return Transition((), self.rules.going_on(state, slips=not stuck), state)
             case "overtaken":
                 return Transition((), replace(self, ending=Vanishing(not ending.slip), begin=()), state)
-            case "branch":
+            case "branch" | "limit branch":
+                other = on_other_branch if arc.guard == BRANCH else on_other_limit_branch
                 begin = (*arc.end_state[:-1].tolist(), 0.0)
-                return Transition((), replace(self, top=on_other_branch(self.top), begin=begin), state)
+                return Transition((), replace(self, top=other(self.top), begin=begin), state)
             case "slip":
                 return self.rules.giving_way(
                     state, (self.rules.event(EventKind.SLIP, time),), Vanishing(slip=True)
@@ -380,7 +384,7 @@ def closing_motion(kind: Kind, ending: Vanishing, guarded: bool) -> Motion:
         guard(TIME, lambda state, _, numbers: numbers[-2] - state.time),
     ]
     law = kind.example.friction
-    resisted = isinstance(law, RollingResistance)
+    resisted, stuck = isinstance(law, RollingResistance), not ending.slip and ending.held
     if guarded:
         guards.append(
             guard(LIFT_OFF, lambda state, top, _: rates_in_time(state, ending, top).wrench.force[2])
@@ -393,6 +397,12 @@ def closing_motion(kind: Kind, ending: Vanishing, guarded: bool) -> Motion:
         )
     if (ending.slip or ending.moves) and hasattr(sliding_law(law), "branch_guard"):
         guards.append(guard(BRANCH, on_branch_still))
+    if stuck and has_limit_branches(law):
+        guards.append(
+            guard(
+                LIMIT_BRANCH, lambda state, top, _: limit_guard(top, rates_in_time(state, ending, top).wrench)
+            )
+        )
     guards += surface_guards(kind)
     free = 2 if ending.moves else 0
     components = slip_dimension(law) if ending.slip else 2

@@ -1,7 +1,7 @@
 """The contact sticks: the top rolls without slipping, or is held altogether."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import ClassVar
 
@@ -17,6 +17,9 @@ from tippetop.mechanics.rolling import (
     Wrench,
     contact_motion,
     contact_wrench,
+    has_limit_branches,
+    limit_guard,
+    on_other_limit_branch,
     rolling_reserve,
     velocity_without_slip,
     without_rolling,
@@ -26,7 +29,7 @@ from tippetop.mechanics.stick_slip import HORIZON, remaining, slip_guard
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import Row, Scalar, Vector, dot
 
-SLIP = "slip"
+SLIP, LIMIT_BRANCH = "slip", "limit branch"
 
 
 @dataclass(frozen=True)
@@ -57,9 +60,11 @@ class Sticking(IntegratedMode):
         return Reaction(wrench.force, wrench.torque, dot(wrench.torque, point.turning))
 
     def follow(self, guard: str, time: float, state: State) -> Transition:
-        """Slip begins, or rolling; or rolling is about to end."""
+        """Slip begins, or rolling; or rolling is about to end; or the limit surface's other branch holds."""
         if guard == ROLLING_STOPPING:
             return self.rules.stopping(time, state, slips=False)
+        if guard == LIMIT_BRANCH:
+            return Transition((), replace(self, top=on_other_limit_branch(self.top)), state)
         found = follow_surface(self, guard, time, state)
         if found is not None:
             return found
@@ -112,7 +117,13 @@ def sticking_motion(kind: Kind, held: bool) -> Motion:
         change = contact_motion(point, None, rolling)[1].turning[:2]
         return remaining(rolling, change, HORIZON)
 
+    def on_branch(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
+        point, wrench = sticking_wrench(*split(y), kind.top(tuple(numbers)), held)
+        return limit_guard(point.top, wrench)
+
     guards = [Guard(SLIP, reserve)]
+    if has_limit_branches(kind.example.friction):
+        guards.append(Guard(LIMIT_BRANCH, on_branch))
     if isinstance(kind.example.friction, RollingResistance):
         guards.append(Guard(ROLLING, couple) if held else Guard(ROLLING_STOPPING, rolls))
     guards += surface_guards(kind)

@@ -1,15 +1,14 @@
 """In which direction slip, or rolling, begins where the table cannot hold it."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
+from tippetop.mechanics.direction import Resisted, directions
 from tippetop.mechanics.ending import Vanishing
-from tippetop.mechanics.rolling import Acceleration, ContactPoint, Slip, Wrench, contact_motion, flat
-from tippetop.mechanics.stick_slip import inner, plus, scaled, size
+from tippetop.mechanics.rolling import Acceleration, ContactPoint, Slip, Wrench, contact_motion
+from tippetop.mechanics.stick_slip import inner, scaled, size
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Vector
-
-ITERATIONS = 5000
-"""Most iterations in search of a direction in which it can go on; a hundred are usual."""
 
 
 class Beginning(NamedTuple):
@@ -35,7 +34,7 @@ class Beginning(NamedTuple):
 def beginning(
     point: ContactPoint, slip: Slip | None, rolling: Slip | None, begins: tuple[bool, bool]
 ) -> Beginning:
-    """Directions in which slip, or rolling, or both, begin: fixed points of e -> c e + A(e), normalized.
+    """Directions in which slip, or rolling, or both, begin.
 
     Parameters
     ----------
@@ -52,27 +51,29 @@ def beginning(
         If no such direction is found: more than one contact force may be consistent, or none.
     """
     parts = [Vanishing(which) for which, wanted in zip((True, False), begins, strict=True) if wanted]
-    held, acceleration = contact_motion(point, slip, rolling)
-    found = {part: _start(part, held, point.top) for part in parts}
-    moved = 0.0
-    for _ in range(ITERATIONS):
-        ways = found.get(Vanishing(True), slip), found.get(Vanishing(False), rolling)
-        wrench, acceleration = contact_motion(point, *ways)
-        moved = 0.0
-        for part, direction in found.items():
-            rate = part.rate(acceleration, point.top)
-            hold = _stiffness(part, point) * size(_resisting(part, wrench)) + size(rate)
-            ahead = plus(scaled(hold, direction), rate)
-            found[part] = scaled(1.0 / size(ahead), ahead)
-            moved = max(moved, size(plus(found[part], scaled(-1.0, direction))))
-        if moved < 4e-16:
-            break
-    ways = found.get(Vanishing(True), slip), found.get(Vanishing(False), rolling)
-    wrench, acceleration = contact_motion(point, *ways)
-    along = [inner(part.rate(acceleration, point.top), direction) for part, direction in found.items()]
-    if moved > 1e-9 or min(along, default=0.0) < -1e-9 * size(flat(point.free)):
-        raise ArithmeticError("no direction in which the contact can go on, though nothing can hold it")
-    return Beginning(ways[0], ways[1], tuple(max(rate, 0.0) for rate in along), wrench, acceleration)
+    stiffness = [_stiffness(part, point) for part in parts]
+
+    def motion(ways: Sequence[Slip]) -> tuple[Slip | None, Slip | None, Wrench, Acceleration]:
+        found = dict(zip(parts, ways, strict=True))
+        both = found.get(Vanishing(True), slip), found.get(Vanishing(False), rolling)
+        return *both, *contact_motion(point, *both)
+
+    def response(ways: Sequence[Slip]) -> list[Resisted]:
+        *_, wrench, acceleration = motion(ways)
+        return [
+            Resisted(part.rate(acceleration, point.top), stiff * size(_resisting(part, wrench, point.top)))
+            for part, stiff in zip(parts, stiffness, strict=True)
+        ]
+
+    ways: list[Slip] = []
+    if parts:
+        # Against what would have held it; slip, if both begin, against what holds it once rolling goes on.
+        beside = beginning(point, slip, rolling, (False, True)).rolling if all(begins) else rolling
+        held, _ = contact_motion(point, slip, beside)
+        ways = directions(response, [scaled(-1.0, _resisting(part, held, point.top)) for part in parts])
+    found = motion(ways)
+    along = [inner(part.rate(found[3], point.top), e) for part, e in zip(parts, ways, strict=True)]
+    return Beginning(found[0], found[1], tuple(max(rate, 0.0) for rate in along), found[2], found[3])
 
 
 def direction_of_slip(axis: Vector, momentum: Vector, top: Top) -> tuple[Slip, float]:
@@ -83,21 +84,16 @@ def direction_of_slip(axis: Vector, momentum: Vector, top: Top) -> tuple[Slip, f
     return found.slip, found.rates[0]
 
 
-def _resisting(part: Vanishing, wrench: Wrench) -> Slip:
-    """The force, or couple, of a wrench that resists slip, or rolling."""
-    return wrench.force[:2] if part.slip else wrench.torque[:2]
-
-
-def _start(part: Vanishing, held: Wrench, top: Top) -> Slip:
-    """A direction to begin the search with: against what would have held it."""
-    pushed: Slip = scaled(-1.0, _resisting(part, held))
-    units = part.wrenches(top)
-    if part.slip and len(units) == 3:
-        pushed = (*pushed, -held.torque[2] / part.reach(top))
-    return scaled(1.0 / size(pushed), pushed)
+def _resisting(part: Vanishing, wrench: Wrench, top: Top) -> Slip:
+    """What resists slip, a drilling torque over the law's length, or the couple that resists rolling."""
+    if not part.slip:
+        return wrench.torque[:2]
+    reach = part.reach(top)
+    return wrench.force[:2] if reach is None else (*wrench.force[:2], wrench.torque[2] / reach)
 
 
 def _stiffness(part: Vanishing, point: ContactPoint) -> float:
     """How strongly the contact answers to what resists slip, or rolling, 1/kg or 1/(kg m^2)."""
     answers = [part.rate(point.response(unit), point.top) for unit in part.wrenches(point.top)]
-    return float(sum(abs(answer[i]) for i, answer in enumerate(answers)))
+    sizes = [abs(answer[i]) for i, answer in enumerate(answers)]
+    return float(sum(sizes[:2]) + sum(sizes[2:]) * (part.reach(point.top) or 0.0))

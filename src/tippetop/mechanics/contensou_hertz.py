@@ -4,7 +4,7 @@ See `contensou`. The law has two derivatives where the branches meet, kappa = 1:
 that stands still is on its rim.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from tippetop.mechanics.contensou import PI
 from tippetop.mechanics.friction import Traction
@@ -59,29 +59,27 @@ TORQUE: tuple[tuple[float, ...], ...] = (
 
 LIMIT: tuple[tuple[float, ...], ...] = (
     (
-        0.8835729338221404,
-        2.2731818541919386,
-        -0.6654494323418829,
-        -1.2232537511378219,
-        1.0505598178854334,
-        -1.0785660226494278,
-        0.40949639000943494,
-        0.021230319903240265,
-        -0.012851025891112585,
-        0.0047692111039012094,
-        -0.0035357509640233558,
+        0.8835729338221295,
+        3.889778559163314,
+        5.573221706650525,
+        3.0420944615186203,
+        0.7966720357548377,
+        0.26696888590798373,
+        0.05714222546990528,
+        0.0010481676273393747,
+        0.00039135703969367353,
     ),
     (
         1.0,
-        2.572715581457611,
-        -1.0031346960905119,
-        -2.027618909220897,
-        1.533523500187717,
-        -0.47258078898511674,
-        0.05624985658302286,
+        4.402328783813161,
+        6.1825966830889465,
+        2.8926555398109404,
+        0.12101121238237003,
+        -0.09382811272248932,
+        0.006126226581420139,
     ),
 )
-"""The same of F on its limit surface, in (1 - T / T(kappa = 1))^(1/2); relative error 1e-14."""
+"""The same of F on its limit surface, in (1 - (T / T(kappa = 1))^2)^(1/2); relative error 4e-16."""
 
 NEAR_BRANCH = 1e-20
 """Square of how near kappa^2 comes to 1, for what has a root there."""
@@ -137,12 +135,25 @@ class HertzDrillingLaw(NamedTuple):
         return Traction((force * slip[0], force * slip[1]), (0.0, 0.0, torque * drilling * self.patch_radius))
 
     def reserve(self, normal: Scalar, force: Horizontal, drilling: Scalar) -> Scalar:
-        """(mu N F)^2 - T^2 where the limit surface has this drilling torque, N^2; |M| >= mu N R T(1)."""
-        limit, torque = self.mu * normal, drilling / self.patch_radius
-        share = (torque * torque) ** 0.5 * (16.0 / (3.0 * PI)) / limit
-        kappa2 = (4.0 / 3.0) * (1.0 - (1.0 - 1.5 * (1.0 - share)) ** 0.5)
+        """(mu N F)^2 - T^2 where the limit surface has this drilling torque, N^2.
+
+        It is that as long as `limit_guard` is positive, and some number elsewhere.
+        """
+        limit = self.mu * normal
+        torque = (16.0 / (3.0 * PI)) * drilling / (self.patch_radius * limit)
+        under = 1.5 * (torque * torque) ** 0.5 - 0.5
+        kappa2 = (4.0 / 3.0) * (1.0 - (under * under) ** 0.25)
         size = (3.0 * PI / 32.0) * (4.0 - kappa2) * limit
         return size * size * kappa2 - force[0] * force[0] - force[1] * force[1]
+
+    def limit_guard(self, normal: Scalar, drilling: Scalar) -> Scalar:
+        """Positive as long as this piece of the limit surface is followed, (N m)^2."""
+        return heaviness(self, normal, drilling, 4.0 / 3.0 * EDGE)
+
+    @property
+    def other_limit_branch(self) -> "HertzSlidingLaw":
+        """The law whose piece of the limit surface adjoins this one's."""
+        return HertzSlidingLaw(*self)
 
     def coefficients(self, units: Units) -> tuple[Scalar, ...]:
         """Friction coefficient, and patch radius in units of length."""
@@ -176,8 +187,8 @@ class HertzSlidingLaw(NamedTuple):
     Notes
     -----
     Beyond its branch, q is the root of |kappa^2 - 1|: there is a number there for an integrator that looks
-    ahead, but not the law. So that it has derivatives at kappa = 1 too, q is 1e-5 there; as F and T depend
-    on q^2 alone there, they are off by 1e-10 where kappa^2 is within 1e-10 of 1, and nowhere else.
+    ahead, but not the law. It is followed from kappa^2 = 1 + EDGE / 2 on; drilling's branch serves up to 1 +
+    EDGE. So that it has derivatives at kappa = 1 too, q is 1e-5 there.
     """
 
     mu: Scalar
@@ -206,11 +217,25 @@ class HertzSlidingLaw(NamedTuple):
         return Traction((force * slip[0], force * slip[1]), (0.0, 0.0, torque))
 
     def reserve(self, normal: Scalar, force: Horizontal, drilling: Scalar) -> Scalar:
-        """(mu N F)^2 - T^2 where the limit surface has this drilling torque, N^2; |M| <= mu N R T(1)."""
-        limit, torque = self.mu * normal, drilling / self.patch_radius
-        y = (1.0 - (torque * torque) ** 0.5 / (BRANCH_TORQUE * limit)) ** 0.5
+        """(mu N F)^2 - T^2 where the limit surface has this drilling torque, N^2.
+
+        It is that as long as `limit_guard` is positive, and some number elsewhere.
+        """
+        limit = self.mu * normal
+        share = drilling / (BRANCH_TORQUE * self.patch_radius * limit)
+        under = 1.0 - share * share
+        y = (under * under) ** 0.25
         size = limit * horner(LIMIT[0], y) / horner(LIMIT[1], y)
         return size * size - force[0] * force[0] - force[1] * force[1]
+
+    def limit_guard(self, normal: Scalar, drilling: Scalar) -> Scalar:
+        """Positive as long as this piece of the limit surface is followed, (N m)^2."""
+        return -heaviness(self, normal, drilling, 2.0 / 3.0 * EDGE)
+
+    @property
+    def other_limit_branch(self) -> "HertzDrillingLaw":
+        """The law whose piece of the limit surface adjoins this one's."""
+        return HertzDrillingLaw(*self)
 
     def coefficients(self, units: Units) -> tuple[Scalar, ...]:
         """Friction coefficient, and patch radius in units of length."""
@@ -324,8 +349,8 @@ class HertzLaw(NamedTuple):
 
     def limit_branch(self, normal: float, drilling: float) -> HertzDrillingLaw | HertzSlidingLaw:
         """The law whose piece of the limit surface has this drilling torque, N m; of floats."""
-        sliding = abs(drilling) <= BRANCH_TORQUE * self.mu * normal * self.patch_radius
-        return HertzSlidingLaw(*self) if sliding else HertzDrillingLaw(*self)
+        drills = heaviness(self, normal, drilling, EDGE) > 0.0
+        return HertzDrillingLaw(*self) if drills else HertzSlidingLaw(*self)
 
     @property
     def torque_free(self) -> bool:
@@ -338,11 +363,9 @@ class HertzLaw(NamedTuple):
 
     def reserve(self, normal: Scalar, force: Horizontal, drilling: Scalar) -> Scalar:
         """(mu N F)^2 - T^2 where the limit surface has this drilling torque, N^2; else less than zero."""
-        # A table that may pull holds as much as one that pushes; without a normal force there is no friction.
-        pressed = abs(normal)
-        if pressed == 0.0:
+        if normal == 0.0:  # without a normal force there is no friction
             return -(force[0] ** 2) - force[1] ** 2 - (drilling / self.patch_radius) ** 2
-        return self.limit_branch(pressed, drilling).reserve(pressed, force, drilling)
+        return self.limit_branch(normal, drilling).reserve(normal, force, drilling)
 
     def coefficients(self, units: Units) -> tuple[Scalar, ...]:
         """Friction coefficient, and patch radius in units of length."""
@@ -357,6 +380,15 @@ class HertzLaw(NamedTuple):
 def prevalence(slip: Horizontal, drilling: Scalar, edge: Scalar) -> Scalar:
     """(1 + edge) (R w)^2 - v^2, of the slip v and drilling R w: positive where drilling prevails, m^2/s^2."""
     return (1.0 + edge) * drilling * drilling - slip[0] * slip[0] - slip[1] * slip[1]
+
+
+def heaviness(law: Any, normal: Scalar, drilling: Scalar, edge: Scalar) -> Scalar:
+    """M^2 - (1 - edge) (mu N R T(1))^2, (N m)^2: positive where drilling torque M is on drilling's piece.
+
+    T falls by 2/3 of what kappa^2 exceeds 1 by, relatively, and T^2 by 4/3 of it.
+    """
+    limit = BRANCH_TORQUE * law.mu * normal * law.patch_radius
+    return drilling * drilling - (1.0 - edge) * limit * limit
 
 
 def horner(coefficients: tuple[float, ...], x: Scalar) -> Scalar:

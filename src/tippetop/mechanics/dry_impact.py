@@ -11,6 +11,7 @@ from operator import mul
 from typing import NamedTuple
 
 from tippetop.mechanics.coulomb import RollingResistance
+from tippetop.mechanics.direction import Resisted, directions
 from tippetop.mechanics.friction import NO_TORQUE, FrictionLaw
 from tippetop.mechanics.impulse import FUZZ, Impulse, Striking
 from tippetop.mechanics.rolling import (
@@ -36,8 +37,10 @@ from tippetop.mechanics.vectors import add, length
 ENDED = 10.0 * FUZZ
 """Slip, in units of the body's speed, that is none."""
 
-ITERATIONS = 5000
-"""Most iterations in search of a direction in which slip can go on."""
+SLIPPING, ROLLING = "slipping", "rolling"
+
+CHOICES = ((False, False), (True, False), (False, True), (True, True))
+"""What is tried in turn where slip, and rolling, have ended: whether they go on all the same."""
 
 
 def is_dry(law: FrictionLaw) -> bool:
@@ -117,19 +120,32 @@ class DryContact(NamedTuple):
     def settled(self, impulse: Impulse) -> "DryContact":
         """The contact with what has ended after an impulse, and where that goes on if it cannot stay so."""
         slip, rolling = self.velocities(impulse)
-        resistance = self.resistance
         ended = self.is_set_valued and size(slip) <= ENDED * self.speed
-        stopped = resistance is not None and size(rolling) <= ENDED * self.speed
+        stopped = self.resistance is not None and size(rolling) <= ENDED * self.speed
         if not (ended or stopped):
             return self._replace(ended=False, stopped=False) if self.ended or self.stopped else self
-        first, second = None if ended else slip, None if stopped else rolling
-        unit = self.unit(first, second)
-        if ended and set_valued(self.law).reserve(1.0, unit[:2], unit[5]) < 0.0:
-            first = self.way_on(unit, second, slipping=True)
-            unit = self.unit(first, second)
-        if resistance is not None and stopped and resistance.reserve(1.0, (unit[3], unit[4])) < 0.0:
-            second = self.way_on(unit, first, slipping=False)
-        return self._replace(ended=ended, stopped=stopped, way=first, rolling_way=second)
+        go_on = None if ended else slip, None if stopped else rolling
+        for begins in CHOICES:
+            if begins[0] > ended or begins[1] > stopped:
+                continue
+            try:
+                ways = self.ways_on(*go_on, begins)
+            except ArithmeticError:
+                continue
+            if self.admits(*ways):
+                return self._replace(ended=ended, stopped=stopped, way=ways[0], rolling_way=ways[1])
+        raise ArithmeticError(
+            "nothing can hold the contact in an impact, and it cannot go on in any direction"
+        )
+
+    def admits(self, slip: Slip | None, rolling: Slip | None) -> bool:
+        """Whether the table can hold those velocities that are None."""
+        unit, resistance = self.unit(slip, rolling), self.resistance
+        if slip is None and set_valued(self.law).reserve(1.0, unit[:2], unit[5]) < 0.0:
+            return False
+        if rolling is None and resistance is not None:
+            return bool(resistance.reserve(1.0, (unit[3], unit[4])) >= 0.0)
+        return True
 
     def friction(self, slip: Slip, rolling: Slip) -> Slip:
         """Force and torque per unit normal impulse at these velocities."""
@@ -157,24 +173,48 @@ class DryContact(NamedTuple):
                 unit[i] += part
         return tuple(unit)
 
-    def way_on(self, holding: Slip, other: Slip | None, *, slipping: bool) -> Slip:
-        """Direction in which slip, or rolling, goes on where it cannot be held."""
-        start = holding[:2] if slipping else holding[3:5]
-        if slipping and self.reach is not None:
-            start = (*start, holding[5] / self.reach)
-        direction = scaled(-1.0 / size(start), start)
-        for _ in range(ITERATIONS):
-            unit = self.unit(direction, other) if slipping else self.unit(other, direction)
-            rates = self.change(unit)
-            rate = slip_part(rates, self.reach) if slipping else rates[3:5]
-            strength = size(unit[:2]) / self.body.top.mass * 8.0 if slipping else 2.0 * size(rate)
-            ahead = plus(scaled(strength + size(rate), direction), rate)
-            new = scaled(1.0 / size(ahead), ahead)
-            moved = size(plus(new, scaled(-1.0, direction)))
-            direction = new
-            if moved < 1e-15:
-                break
-        return direction
+    def ways_on(
+        self, slip: Slip | None, rolling: Slip | None, begins: tuple[bool, bool]
+    ) -> tuple[Slip | None, Slip | None]:
+        """Slip and rolling, or the directions in which they begin; None where they are held."""
+        parts = [part for part, wanted in zip((SLIPPING, ROLLING), begins, strict=True) if wanted]
+        if not parts:
+            return slip, rolling
+
+        def both(ways: Sequence[Slip]) -> tuple[Slip | None, Slip | None]:
+            found = dict(zip(parts, ways, strict=True))
+            return found.get(SLIPPING, slip), found.get(ROLLING, rolling)
+
+        def response(ways: Sequence[Slip]) -> list[Resisted]:
+            unit = self.unit(*both(ways))
+            velocities = self.change(unit)
+            return [
+                Resisted(self.part(part, velocities), self.stiffness(part) * size(self.resisting(part, unit)))
+                for part in parts
+            ]
+
+        # Against what would have held it; slip, if both begin, against what holds it once rolling goes on.
+        beside = self.ways_on(slip, rolling, (False, True)) if all(begins) else (slip, rolling)
+        holding = self.unit(*beside)
+        start = [scaled(-1.0, self.resisting(part, holding)) for part in parts]
+        return both(directions(response, start))
+
+    def part(self, part: str, velocities: Slip) -> Slip:
+        """Slip zeta, or the horizontal angular velocity, of six velocities."""
+        return slip_part(velocities, self.reach) if part == SLIPPING else velocities[3:5]
+
+    def resisting(self, part: str, unit: Slip) -> Slip:
+        """What resists it, per unit normal impulse: a drilling torque over the law's length."""
+        if part == ROLLING:
+            return unit[3:5]
+        return unit[:2] if self.reach is None else (*unit[:2], unit[5] / self.reach)
+
+    def stiffness(self, part: str) -> float:
+        """How strongly it answers to that."""
+        if part == ROLLING:
+            return float(self.response[3][3] + self.response[4][4])
+        drilling = 0.0 if self.reach is None else self.reach**2 * self.response[5][5]
+        return float(self.response[0][0] + self.response[1][1] + drilling)
 
     def rates(self, impulse: Impulse) -> Slip:
         """Rates of the impulse and its normal work, in a clock in which slip that ends decays exponentially.

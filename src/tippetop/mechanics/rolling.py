@@ -279,6 +279,23 @@ def on_limit_branch(top: Top, wrench: Wrench) -> Top:
     return with_sliding_law(top, law.limit_branch(wrench.force[2], wrench.torque[2]))
 
 
+def has_limit_branches(law: FrictionLaw) -> bool:
+    """Whether a law is one of the branches of a limit surface."""
+    return hasattr(sliding_law(law), "limit_guard")
+
+
+def limit_guard(top: Top, wrench: Wrench) -> Scalar:
+    """Positive as long as the branch of the limit surface that a body at rest has is the one it is on."""
+    law: Any = set_valued(top.friction)
+    return law.limit_guard(wrench.force[2], wrench.torque[2])
+
+
+def on_other_limit_branch(top: Top) -> Top:
+    """A top with the branch of its law's limit surface that takes over where its own ends."""
+    law: Any = set_valued(top.friction)
+    return with_sliding_law(top, law.other_limit_branch)
+
+
 def slip_dimension(law: FrictionLaw) -> int:
     """How many components the slip zeta has under a law that lets slip end: 3 where it resists drilling."""
     return 2 if set_valued(law).slip_length is None else 3

@@ -28,7 +28,7 @@ from tippetop.mechanics.rolling import (
     turning_with,
 )
 from tippetop.mechanics.series import PLAIN, Series
-from tippetop.mechanics.stick_slip import inner, plus, scaled, slip_of
+from tippetop.mechanics.stick_slip import inner, plus, scaled, slip_of, tangents
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Scalar, Vector, add, scale
 
@@ -305,13 +305,3 @@ def _unknown(k: int) -> Scalar:
 def at_start(parts: Sequence[Any]) -> tuple[Any, ...]:
     """Series, or numbers, at the start."""
     return tuple(part if isinstance(part, (float, int)) else part[0] for part in parts)
-
-
-def tangents(e: Slip) -> list[Slip]:
-    """Unit vectors across a unit vector and across each other; in space, of floats."""
-    if len(e) == 2:
-        return [(-e[1], e[0])]
-    x, y, z = e
-    sign = 1.0 if z >= 0.0 else -1.0
-    a = 1.0 / (1.0 + sign * z)
-    return [(1.0 - x * x * a, -x * y * a, -sign * x), (-x * y * a, 1.0 - y * y * a, -sign * y)]

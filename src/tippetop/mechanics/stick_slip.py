@@ -194,3 +194,13 @@ def scaled(factor: Scalar, a: Slip) -> Slip:
 def plus(a: Slip, b: Slip) -> Slip:
     """Sum of two vectors."""
     return tuple(x + y for x, y in zip(a, b, strict=True))
+
+
+def tangents(e: Slip) -> list[Slip]:
+    """Unit vectors across a unit vector and across each other; in space, of floats."""
+    if len(e) == 2:
+        return [(-e[1], e[0])]
+    x, y, z = e
+    sign = 1.0 if z >= 0.0 else -1.0
+    a = 1.0 / (1.0 + sign * z)
+    return [(1.0 - x * x * a, -x * y * a, -sign * x), (-x * y * a, 1.0 - y * y * a, -sign * y)]

@@ -1,0 +1,128 @@
+"""Directions in which velocities begin that cannot be held: along each, A(e) = R e with R >= 0.
+
+Under dry friction the rate A of a velocity xi depends on its direction e = xi / s alone. Friction takes
+energy, so that e -> c e + A(e), normalized, comes to such a direction if c is large enough. It comes there
+slowly where one component of xi answers much less than another to what resists it, such as drilling of a
+small patch: Newton's method ends the search.
+"""
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+from tippetop.mechanics.rolling import Slip, solve
+from tippetop.mechanics.stick_slip import inner, plus, scaled, size, tangents
+
+ROUNDS, ITERATIONS, NEWTON = 100, 50, 12
+"""Rounds of the search, iterations in each, and steps of Newton's method that try to end it."""
+
+EXACT, DIRECTED = 4e-16, 1e-9
+"""Change of a direction that is rounding, and how well one must be known at least."""
+
+APART = 1e-7
+"""Difference of two directions from which a derivative is found; its error costs steps, no digits."""
+
+
+class Resisted(NamedTuple):
+    """How a velocity that begins in a direction changes.
+
+    Attributes
+    ----------
+    rate
+        A.
+    strength
+        Size of what resists it, as large as its share in A at least: the part of c that is not A itself.
+    """
+
+    rate: Slip
+    strength: float
+
+
+Response = Callable[[Sequence[Slip]], Sequence[Resisted]]
+"""From the directions of velocities that begin at once to how they change, all floats."""
+
+
+def directions(response: Response, start: Sequence[Slip]) -> list[Slip]:
+    """Directions in which velocities that cannot be held begin.
+
+    Parameters
+    ----------
+    response
+        How they change.
+    start
+        Unit vectors, or longer ones, in whose directions the search begins.
+
+    Raises
+    ------
+    ArithmeticError
+        If no such directions are found: more than one contact force may be consistent, or none.
+    """
+    ways = [_unit(direction) for direction in start]
+    for _ in range(ROUNDS):
+        for _ in range(ITERATIONS):
+            before, answers = ways, response(ways)
+            ways = [
+                _unit(plus(scaled(answer.strength + size(answer.rate), e), answer.rate))
+                for answer, e in zip(answers, ways, strict=True)
+            ]
+            if _apart(ways, before) < EXACT:
+                break
+        found = _improved(response, ways)
+        if found is not None:
+            return found
+        # Exactly against what drives it, as may be in a plane, a direction stays so: it is turned round.
+        rates = [answer.rate for answer in response(ways)]
+        least, i = min((inner(rate, e), i) for i, (rate, e) in enumerate(zip(rates, ways, strict=True)))
+        if least < 0.0:
+            ways[i] = _unit(rates[i])
+    raise ArithmeticError("no direction in which the contact can go on, though nothing can hold it")
+
+
+def _improved(response: Response, ways: list[Slip]) -> list[Slip] | None:
+    """The directions by Newton's method from near ones; None if that does not lead to any."""
+    last = DIRECTED
+    for _ in range(NEWTON):
+        try:
+            better = _newton(response, ways)
+        except ArithmeticError:
+            return None
+        moved, ways = _apart(better, ways), better
+        if moved < EXACT or last * 0.5 <= moved < DIRECTED:
+            grows = (
+                inner(a.rate, e) >= -DIRECTED * a.strength for a, e in zip(response(ways), ways, strict=True)
+            )
+            return ways if all(grows) else None
+        last = moved
+    return None
+
+
+def _newton(response: Response, ways: Sequence[Slip]) -> list[Slip]:
+    """One step towards directions across which nothing changes."""
+    bases = [tangents(e) for e in ways]
+
+    def across(ways: Sequence[Slip]) -> list[float]:
+        parts: list[float] = []
+        for (rate, _), e, basis in zip(response(ways), ways, bases, strict=True):
+            left = plus(rate, scaled(-inner(rate, e), e))
+            parts += [inner(left, b) for b in basis]
+        return parts
+
+    here, columns = across(ways), []
+    for i, basis in enumerate(bases):
+        for b in basis:
+            near = [_unit(plus(e, scaled(APART, b))) if i == j else e for j, e in enumerate(ways)]
+            columns.append([(there - at) / APART for there, at in zip(across(near), here, strict=True)])
+    parts = iter(solve([list(row) for row in zip(*columns, strict=True)], [-x for x in here]))
+    better = []
+    for e, basis in zip(ways, bases, strict=True):
+        for b in basis:
+            e = plus(e, scaled(next(parts), b))  # noqa: PLW2901
+        better.append(_unit(e))
+    return better
+
+
+def _apart(ways: Sequence[Slip], others: Sequence[Slip]) -> float:
+    return max(size(plus(a, scaled(-1.0, b))) for a, b in zip(ways, others, strict=True))
+
+
+def _unit(a: Slip) -> Slip:
+    return scaled(1.0 / size(a), a)
