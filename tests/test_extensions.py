@@ -183,13 +183,18 @@ REPORT = tt.presets.report_problem(spin=155.0, tilt=0.6)
 SQUASHED = tt.Body(
     mass=0.02, shape=SquashedSphere(radius=0.02, center=0.005, squash=0.002), I1=3.5e-6, I3=3.2e-6
 )
+STRIBECK = StribeckFriction(mu=0.2, more=0.5, slow=0.05)
 PROBLEMS = {
-    "law": REPORT.model_copy(update={"friction": StribeckFriction(mu=0.2, more=0.5, slow=0.05)}),
+    "law": REPORT.model_copy(update={"friction": STRIBECK}),
+    "law with rolling resistance": REPORT.model_copy(
+        update={"friction": STRIBECK, "rolling_resistance": 1e-4}
+    ),
     "surface": REPORT.model_copy(update={"body": SQUASHED}),
     "mode": REPORT.model_copy(update={"contact": PinnedAtFirst(until=DRAWN)}),
 }
 OVER = {
     "law": {"friction.more": [0.1, 0.6], "launch.spin": [90.0, 155.0]},
+    "law with rolling resistance": {"friction.more": [0.1, 0.6], "rolling_resistance": [1e-4, 3e-4]},
     "surface": {"body.shape.squash": [1e-3, 2e-3], "launch.spin": [90.0, 155.0]},
     "mode": {"contact.until": [0.1, 0.3], "launch.spin": [90.0, 155.0]},
 }
@@ -217,6 +222,17 @@ def test_the_law_is_the_one_defined() -> None:
     force = np.hypot(*run["contact_force"].values[:, :2].T) / run["normal_force"].values
     expected = 0.2 * (1 + 0.5 / (1 + (slip / 0.05) ** 2)) * slip / np.hypot(slip, 0.05)
     np.testing.assert_allclose(force, expected, rtol=1e-9, atol=1e-15)
+
+
+def test_rolling_resistance_is_a_torque_beside_the_law_defined() -> None:
+    """Against the horizontal angular velocity w_t, of N times its arm; it takes what the law does not."""
+    run = tt.simulate(PROBLEMS["law with rolling resistance"], 0.2, samples=51)
+    turning, torque = run["angular_velocity"].values[:, :2], run["contact_torque"].values
+    expected = -1e-4 * run["normal_force"].values / np.hypot(*turning.T)
+    np.testing.assert_allclose(torque[:, :2], expected[:, None] * turning, rtol=1e-9)
+    assert 0.0 < float(run["rolling_loss"][-1]) < float(run["energy_lost"])
+    total = float(run["sliding_loss"][-1] + run["rolling_loss"][-1])
+    assert total == pytest.approx(float(run["energy_lost"]), rel=1e-9)
 
 
 def test_the_surface_is_the_one_defined() -> None:
