@@ -60,6 +60,16 @@ def test_two_integrators_agree(law):
     assert float(runs[0]["energy_lost"]) == pytest.approx(float(runs[1]["energy_lost"]), rel=1e-9)
 
 
+def test_friction_is_against_the_slip_that_begins_from_its_first_instant_on():
+    """A top set down without slip on a table too slippery to hold it."""
+    run = tt.simulate(dry({"kind": "coulomb", "mu": 1e-3}, tilt=1.2, tilt_rate=2.0), 1e-4, samples=101)
+    force = run["contact_force"].values
+    assert np.hypot(force[:, 0], force[:, 1]) == pytest.approx(1e-3 * force[:, 2], rel=1e-12)
+    ways = np.arctan2(force[:, 1], force[:, 0])
+    assert ways[0] == pytest.approx(2.0 * ways[1] - ways[2], abs=0.01)
+    assert np.ptp(ways[1:]) < 0.1
+
+
 def test_smoothed_friction_tends_to_dry_friction():
     """The slip that smoothing leaves where a top sticks is proportional to eps, and so is what it changes."""
     launch = {"slip": [0.3, 0.0]}

@@ -227,7 +227,10 @@ def test_the_law_is_the_one_defined() -> None:
 def test_rolling_resistance_is_a_torque_beside_the_law_defined() -> None:
     """Against the horizontal angular velocity w_t, of N times its arm; it takes what the law does not."""
     run = tt.simulate(PROBLEMS["law with rolling resistance"], 0.2, samples=51)
-    turning, torque = run["angular_velocity"].values[:, :2], run["contact_torque"].values
+    body, axis, momentum = REPORT.body, run["axis"].values, run["angular_momentum"].values
+    along = (1.0 / body.I3 - 1.0 / body.I1) * np.sum(axis * momentum, axis=1)
+    turning = (momentum / body.I1 + along[:, None] * axis)[:, :2]
+    torque = run["contact_torque"].values
     expected = -1e-4 * run["normal_force"].values / np.hypot(*turning.T)
     np.testing.assert_allclose(torque[:, :2], expected[:, None] * turning, rtol=1e-9)
     assert 0.0 < float(run["rolling_loss"][-1]) < float(run["energy_lost"])

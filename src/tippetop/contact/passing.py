@@ -43,7 +43,16 @@ from tippetop.mechanics.rolling import (
 )
 from tippetop.mechanics.slip_onset import onset
 from tippetop.mechanics.state import SlidingState, State
-from tippetop.mechanics.stick_slip import HORIZON, scaled, size, slip_branch_guard, slip_of, velocity_of
+from tippetop.mechanics.stick_slip import (
+    HORIZON,
+    least_slip,
+    plus,
+    scaled,
+    size,
+    slip_branch_guard,
+    slip_of,
+    velocity_of,
+)
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import Row, Scalar, add, scale
 
@@ -136,10 +145,12 @@ class Loosening(Passing):
             yield _nothing(self.told, time, state, str(error))
             return
         duration = min(begin.valid_until(ACCURACY), longest, end - time)
+        # Slip that is zero has no direction, and friction none to be against.
+        least = scaled(2.0 * least_slip(state.momentum, state.velocity[:2]), direction)
 
         def numbers(elapsed: Scalar) -> tuple[Scalar, ...]:
             axis, momentum, xi = begin.at(elapsed)
-            return passing.numbers(axis, momentum, begin.velocity_at(elapsed), xi)
+            return passing.numbers(axis, momentum, begin.velocity_at(elapsed), plus(xi, least))
 
         yield passing.piece(numbers, time, duration, end)
 
@@ -201,11 +212,12 @@ class BothLoosening(Loosening):
             return
         assert found.slip is not None
         passing, way = replace(self, top=on_branch(self.top, found.slip)), scaled(found.rates[0], found.slip)
+        least = scaled(2.0 * least_slip(state.momentum, state.velocity[:2]), found.slip)
         moment = point.moment(found.wrench)
 
         def numbers(elapsed: Scalar) -> tuple[Scalar, ...]:
             momentum = add(state.momentum, scale(elapsed, moment))
-            return passing.numbers(state.axis, momentum, (), scaled(elapsed, way))
+            return passing.numbers(state.axis, momentum, (), plus(scaled(elapsed, way), least))
 
         yield passing.piece(numbers, time, min(INSTANT, end - time), end)
 

@@ -83,11 +83,15 @@ def is_slipping(axis: Vector, momentum: Vector, velocity: Horizontal, top: Top) 
 
     A truth value of floats, or an array of them.
     """
-    scale = sum(abs(number) for number in (*momentum, *velocity))
     found = False
     for number in slip_of(axis, momentum, velocity, top):
-        found = found | (abs(number) > ROUNDING * scale)
+        found = found | (abs(number) > least_slip(momentum, velocity))
     return found
+
+
+def least_slip(momentum: Vector, velocity: Horizontal) -> Scalar:
+    """Slip that is more than rounding."""
+    return ROUNDING * sum(abs(number) for number in (*momentum, *velocity))
 
 
 def is_rolling(axis: Vector, momentum: Vector, top: Top) -> Scalar:
