@@ -194,7 +194,7 @@ PROBLEMS = {
 }
 OVER = {
     "law": {"friction.more": [0.1, 0.6], "launch.spin": [90.0, 155.0]},
-    "law with rolling resistance": {"friction.more": [0.1, 0.6], "rolling_resistance": [1e-4, 3e-4]},
+    "law with rolling resistance": {"friction.more": [0.1, 0.6], "rolling_resistance": [1e-5, 3e-4]},
     "surface": {"body.shape.squash": [1e-3, 2e-3], "launch.spin": [90.0, 155.0]},
     "mode": {"contact.until": [0.1, 0.3], "launch.spin": [90.0, 155.0]},
 }
