@@ -315,10 +315,10 @@ class Stopping(Passing):
                 return Transition((), self.rules.going_on(state, slips=not stuck), state)
             case "overtaken":
                 return Transition((), replace(self, ending=Vanishing(not ending.slip), begin=()), state)
-            case "branch" | "limit branch":
-                other = on_other_branch if arc.guard == BRANCH else on_other_limit_branch
-                begin = (*arc.end_state[:-1].tolist(), 0.0)
-                return Transition((), replace(self, top=other(self.top), begin=begin), state)
+            case "branch":
+                return Transition((), self._onwards(arc, on_other_branch(self.top)), state)
+            case "limit branch":
+                return Transition((), self._onwards(arc, on_other_limit_branch(self.top)), state)
             case "slip":
                 return self.rules.giving_way(
                     state, (self.rules.event(EventKind.SLIP, time),), Vanishing(slip=True)
@@ -328,6 +328,10 @@ class Stopping(Passing):
                     state, (self.rules.event(EventKind.ROLL, time),), Vanishing(slip=False)
                 )
         return self.rules.settled(time, state, new=(ending.slip, not ending.slip), held=ending.held)
+
+    def _onwards(self, arc: Arc, top: Top) -> "Stopping":
+        """The mode that takes the clock up where an arc leaves it, on another branch of the law."""
+        return replace(self, top=top, begin=(*arc.end_state.tolist()[:-1], 0.0))
 
     def _in_time(
         self, parts: Sequence[DenseSolution], begin: Row, time: float, duration: float

@@ -1032,6 +1032,23 @@ function on_limit_branch(top, wrench) {
   return with_sliding_law(top, law.limit_branch(wrench.force[2], wrench.torque[2]));
 }
 
+/** Whether a law is one of the branches of a limit surface. */
+function has_limit_branches(law) {
+  return py.hasattr(sliding_law(law), "limit_guard");
+}
+
+/** Positive as long as the branch of the limit surface that a body at rest has is the one it is on. */
+function limit_guard(top, wrench) {
+  const law = set_valued(top.friction);
+  return law.limit_guard(wrench.force[2], wrench.torque[2]);
+}
+
+/** A top with the branch of its law's limit surface that takes over where its own ends. */
+function on_other_limit_branch(top) {
+  const law = set_valued(top.friction);
+  return with_sliding_law(top, law.other_limit_branch);
+}
+
 /** How many components the slip zeta has under a law that lets slip end: 3 where it resists drilling. */
 function slip_dimension(law) {
   return set_valued(law).slip_length === null ? 2 : 3;
@@ -1098,12 +1115,16 @@ function velocity_of(axis, momentum, slip, top) {
 
 /** Whether the contact slips, or drills where its law resists that, by more than rounding. */
 function is_slipping(axis, momentum, velocity, top) {
-  const scale = py.sum([...momentum, ...velocity].map((number) => py.abs(number)));
   let found = false;
   for (const number of slip_of(axis, momentum, velocity, top)) {
-    found = found | py.abs(number) > py.mul(ROUNDING, scale);
+    found = found | py.abs(number) > least_slip(momentum, velocity);
   }
   return found;
+}
+
+/** Slip that is more than rounding. */
+function least_slip(momentum, velocity) {
+  return py.mul(ROUNDING, py.sum([...momentum, ...velocity].map((number) => py.abs(number))));
 }
 
 /** Whether the body turns, by more than rounding, about anything but the vertical; as `is_slipping`. */
@@ -1156,9 +1177,13 @@ function remaining(velocity, change, horizon) {
 
 /** Positive as long as the branch of the law that a body in contact is on holds, m^2/s^2. */
 function branch_guard(axis, momentum, velocity, top) {
+  return slip_branch_guard(slip_of(axis, momentum, velocity, top), top);
+}
+
+/** The same of zeta, or of its direction alone. */
+function slip_branch_guard(slip, top) {
   const law = sliding_law(top.friction);
-  const slip = slip_of(axis, momentum, velocity, top);
-  return law.branch_guard(slip.slice(0, 2), angular_velocity(axis, momentum, top));
+  return law.branch_guard(slip.slice(0, 2), [0.0, 0.0, py.div(slip[2], law.slip_length)]);
 }
 
 /** Rate of the angular velocity, rad/s^2, from a state and its time derivative. */
@@ -1195,6 +1220,17 @@ function scaled(factor, a) {
 /** Sum of two vectors. */
 function plus(a, b) {
   return py.tuple(py.zip(a, b).map(([x, y]) => py.add(x, y)));
+}
+
+/** Unit vectors across a unit vector and across each other; in space, of floats. */
+function tangents(e) {
+  if (py.len(e) === 2) {
+    return [[py.neg(e[1]), e[0]]];
+  }
+  const [x, y, z] = e;
+  const sign = z >= 0.0 ? 1.0 : -1.0;
+  const a = py.div(1.0, py.add(1.0, py.mul(sign, z)));
+  return [[py.sub(1.0, py.mul(py.mul(x, x), a)), py.mul(py.mul(py.neg(x), y), a), py.mul(py.neg(sign), x)], [py.mul(py.mul(py.neg(x), y), a), py.sub(1.0, py.mul(py.mul(y, y), a)), py.mul(py.neg(sign), y)]];
 }
 
 // tippetop.mechanics.ending
@@ -1285,17 +1321,19 @@ py.fields(ClosingRates, ["axis", "momentum", "velocity", "xi", "wrench", "accele
 /** Rates in time. */
 function rates_in_time(state, ending, top) {
   const point = ContactPoint.of(state.axis, state.momentum, top);
-  let [slip, pushed] = [null, scaled(1.0, [])];
-  if (py.truth(ending.moves)) {
-    slip = slip_of(state.axis, state.momentum, [state.velocity[0], state.velocity[1]], top);
-  }
-  const [wrench, acceleration] = ending.contact(point, state.direction, slip);
-  if (py.truth(ending.moves)) {
-    pushed = scaled(py.div(1.0, top.mass), wrench.force.slice(0, 2));
-  }
+  const [wrench, acceleration] = ending.contact(point, state.direction, slip_beside(state, ending, top));
+  const drawn = scaled(py.div(1.0, top.mass), py.slice(wrench.force, null, py.len(state.velocity), null));
   const tilting = axis_rate(state.axis, state.momentum, top);
   const xi = ending.rate(acceleration, top);
-  return new ClosingRates(tilting, point.moment(wrench), pushed, xi, wrench, acceleration);
+  return new ClosingRates(tilting, point.moment(wrench), drawn, xi, wrench, acceleration);
+}
+
+/** The slip that goes on while rolling ends; None where there is none. */
+function slip_beside(state, ending, top) {
+  if (!py.truth(ending.moves)) {
+    return null;
+  }
+  return slip_of(state.axis, state.momentum, [state.velocity[0], state.velocity[1]], top);
 }
 
 /** Rates in the clock -ln s; xi must be slowing down. */
@@ -2173,7 +2211,7 @@ const normal_force = py.cached((kind) => {
 });
 
 // tippetop.contact.sticking
-const SLIP = "slip";
+const [SLIP, LIMIT_BRANCH] = ["slip", "limit branch"];
 
 /** Rolling without slipping, and without drilling where the law resists that. */
 class Sticking extends IntegratedMode {
@@ -2201,10 +2239,13 @@ class Sticking extends IntegratedMode {
     const [point, wrench] = sticking_wrench(...split(y), this.top, this.held);
     return new Reaction(wrench.force, wrench.torque, dot(wrench.torque, point.turning));
   }
-  /** Slip begins, or rolling; or rolling is about to end. */
+  /** Slip begins, or rolling; or rolling is about to end; or the limit surface's other branch holds. */
   follow(guard, time, state) {
     if (py.eq(guard, ROLLING_STOPPING)) {
       return this.rules.stopping(time, state, false);
+    }
+    if (py.eq(guard, LIMIT_BRANCH)) {
+      return new Transition([], py.replace(this, { top: on_other_limit_branch(this.top) }), state);
     }
     const found = follow_surface(this, guard, time, state);
     if (found !== null) {
@@ -2260,7 +2301,14 @@ const sticking_motion = py.cached((kind, held) => {
     const change = contact_motion(point, null, rolling)[1].turning.slice(0, 2);
     return remaining(rolling, change, HORIZON);
   };
+  const on_branch = (y, numbers) => {
+    const [point, wrench] = sticking_wrench(...split(y), kind.top(py.tuple(numbers)), held);
+    return limit_guard(point.top, wrench);
+  };
   let guards = [new Guard(SLIP, reserve)];
+  if (py.truth(has_limit_branches(kind.example.friction))) {
+    guards.push(new Guard(LIMIT_BRANCH, on_branch));
+  }
   if (py.isinstance(kind.example.friction, RollingResistance)) {
     guards.push(py.truth(held) ? new Guard(ROLLING, couple) : new Guard(ROLLING_STOPPING, rolls));
   }
@@ -2273,8 +2321,105 @@ function split(y) {
   return [[y[0], y[1], y[2]], [y[3], y[4], y[5]]];
 }
 
+// tippetop.mechanics.direction
+const [ROUNDS, ITERATIONS, NEWTON] = [100, 50, 12];
+const [EXACT, DIRECTED] = [4e-16, 1e-09];
+const APART = 1e-07;
+
+/** How a velocity that begins in a direction changes. */
+class Resisted extends py.NamedTuple {
+  constructor(rate, strength) {
+    super();
+    this.rate = rate;
+    this.strength = strength;
+  }
+}
+py.fields(Resisted, ["rate", "strength"]);
+
+/** Directions in which velocities that cannot be held begin. */
+function directions(response, start) {
+  let ways = [...start].map((direction) => _unit(direction));
+  for (let turn = 0; turn < ROUNDS; turn += 1) {
+    for (let turn = 0; turn < ITERATIONS; turn += 1) {
+      const [before, answers] = [ways, response(ways)];
+      ways = py.zip(answers, ways).map(([answer, e]) => _unit(plus(scaled(py.add(answer.strength, size(answer.rate)), e), answer.rate)));
+      if (_apart(ways, before) < EXACT) {
+        break;
+      }
+    }
+    const found = _improved(response, ways);
+    if (found !== null) {
+      return found;
+    }
+    const rates = [...response(ways)].map((answer) => answer.rate);
+    const along = py.zip(rates, ways).map(([rate, e]) => inner(rate, e));
+    const against = py.min(0.0, ...along);
+    ways = py.range(py.len(ways)).map((i) => py.item(along, i) < 0.0 && py.eq(py.item(along, i), against) ? _unit(py.item(rates, i)) : py.item(ways, i));
+  }
+  throw new py.ArithmeticError("no direction in which the contact can go on, though nothing can hold it");
+}
+
+/** The directions by Newton's method from near ones; None if that does not lead to any. */
+function _improved(response, ways) {
+  let better;
+  let last = DIRECTED;
+  for (let turn = 0; turn < NEWTON; turn += 1) {
+    try {
+      better = _newton(response, ways);
+    } catch (error) {
+      if (!(error instanceof py.ArithmeticError)) throw error;
+      return null;
+    }
+    let moved;
+    [moved, ways] = [_apart(better, ways), better];
+    if (moved < EXACT || py.mul(last, 0.5) <= moved && moved < DIRECTED) {
+      const grows = py.zip(response(ways), ways).map(([a, e]) => inner(a.rate, e) >= py.mul(py.neg(DIRECTED), a.strength));
+      return py.truth(py.all(grows)) ? ways : null;
+    }
+    last = moved;
+  }
+  return null;
+}
+
+/** One step towards directions across which nothing changes. */
+function _newton(response, ways) {
+  const bases = [...ways].map((e) => tangents(e));
+  const across = (ways) => {
+    const answers = response(ways);
+    const lefts = py.zip(answers, ways).map(([answer, e]) => plus(answer.rate, scaled(py.neg(inner(answer.rate, e)), e)));
+    return py.zip(lefts, bases).flatMap(([left, basis]) => [...basis].map((b) => inner(left, b)));
+  };
+  const moved = (parts) => {
+    let [found, used] = [py.list(), 0];
+    for (const [e, basis] of py.zip(ways, bases)) {
+      let turned = e;
+      for (const b of basis) {
+        turned = plus(turned, scaled(py.item(parts, used), b));
+        used = used + 1;
+      }
+      found.push(_unit(turned));
+    }
+    return found;
+  };
+  const here = across(ways);
+  const count = py.len(here);
+  const columns = [];
+  for (let j = 0; j < count; j += 1) {
+    const there = across(moved(py.range(count).map((i) => py.eq(i, j) ? APART : 0.0)));
+    columns.push(py.range(count).map((i) => py.div(py.sub(py.item(there, i), py.item(here, i)), APART)));
+  }
+  return moved(solve(py.range(count).map((i) => [...columns].map((column) => py.item(column, i))), [...here].map((x) => py.neg(x))));
+}
+
+function _apart(ways, others) {
+  return py.max(py.zip(ways, others).map(([a, b]) => size(plus(a, scaled(-1.0, b)))));
+}
+
+function _unit(a) {
+  return scaled(py.div(1.0, size(a)), a);
+}
+
 // tippetop.mechanics.beginning
-const ITERATIONS = 5000;
 
 /** How the velocities of a contact go on. */
 class Beginning extends py.NamedTuple {
@@ -2289,35 +2434,28 @@ class Beginning extends py.NamedTuple {
 }
 py.fields(Beginning, ["slip", "rolling", "rates", "wrench", "acceleration"]);
 
-/** Directions in which slip, or rolling, or both, begin: fixed points of e -> c e + A(e), normalized. */
+/** Directions in which slip, or rolling, or both, begin. */
 function beginning(point, slip, rolling, begins) {
-  let ways, wrench;
   const parts = py.zip([true, false], begins).filter(([which, wanted]) => py.truth(wanted)).map(([which, wanted]) => new Vanishing(which));
-  let [held, acceleration] = contact_motion(point, slip, rolling);
-  const found = new py.Dict([...parts].map((part) => [part, _start(part, held, point.top)]));
-  let moved = 0.0;
-  for (let turn = 0; turn < ITERATIONS; turn += 1) {
-    ways = [found.get(new Vanishing(true), slip), found.get(new Vanishing(false), rolling)];
-    [wrench, acceleration] = contact_motion(point, ...ways);
-    moved = 0.0;
-    for (const [part, direction] of found.items()) {
-      const rate = part.rate(acceleration, point.top);
-      const hold = py.add(py.mul(_stiffness(part, point), size(_resisting(part, wrench))), size(rate));
-      const ahead = plus(scaled(hold, direction), rate);
-      py.put(found, part, scaled(py.div(1.0, size(ahead)), ahead));
-      moved = py.max(moved, size(plus(py.item(found, part), scaled(-1.0, direction))));
-    }
-    if (moved < 4e-16) {
-      break;
-    }
+  const stiffness = [...parts].map((part) => _stiffness(part, point));
+  const motion = (ways) => {
+    const found = py.dict(py.zip(parts, ways));
+    const both = [found.get(new Vanishing(true), slip), found.get(new Vanishing(false), rolling)];
+    return [...both, ...contact_motion(point, ...both)];
+  };
+  const response = (ways) => {
+    const answer = motion(ways);
+    return py.zip(parts, stiffness).map(([part, stiff]) => new Resisted(part.rate(answer[3], point.top), py.mul(stiff, size(_resisting(part, answer[2], point.top)))));
+  };
+  let ways = [];
+  if (py.truth(parts)) {
+    const beside = py.truth(py.all(begins)) ? beginning(point, slip, rolling, [false, true]).rolling : rolling;
+    const [held] = contact_motion(point, slip, beside);
+    ways = directions(response, [...parts].map((part) => scaled(-1.0, _resisting(part, held, point.top))));
   }
-  ways = [found.get(new Vanishing(true), slip), found.get(new Vanishing(false), rolling)];
-  [wrench, acceleration] = contact_motion(point, ...ways);
-  const along = [...found.items()].map(([part, direction]) => inner(part.rate(acceleration, point.top), direction));
-  if (moved > 1e-09 || py.min(along, py.how({ default: 0.0 })) < py.mul(-1e-09, size(flat(point.free)))) {
-    throw new py.ArithmeticError("no direction in which the contact can go on, though nothing can hold it");
-  }
-  return new Beginning(ways[0], ways[1], py.tuple([...along].map((rate) => py.max(rate, 0.0))), wrench, acceleration);
+  const found = motion(ways);
+  const along = py.zip(parts, ways).map(([part, e]) => inner(part.rate(found[3], point.top), e));
+  return new Beginning(found[0], found[1], py.tuple([...along].map((rate) => py.max(rate, 0.0))), found[2], found[3]);
 }
 
 /** Direction in which a rolling body that cannot stick slips, floats, and the rate of its speed, m/s^2. */
@@ -2328,25 +2466,20 @@ function direction_of_slip(axis, momentum, top) {
   return [found.slip, found.rates[0]];
 }
 
-/** The force, or couple, of a wrench that resists slip, or rolling. */
-function _resisting(part, wrench) {
-  return py.truth(part.slip) ? wrench.force.slice(0, 2) : wrench.torque.slice(0, 2);
-}
-
-/** A direction to begin the search with: against what would have held it. */
-function _start(part, held, top) {
-  let pushed = scaled(-1.0, _resisting(part, held));
-  const units = part.wrenches(top);
-  if (py.truth(part.slip) && py.len(units) === 3) {
-    pushed = [...pushed, py.div(py.neg(held.torque[2]), part.reach(top))];
+/** What resists slip, a drilling torque over the law's length, or the couple that resists rolling. */
+function _resisting(part, wrench, top) {
+  if (!py.truth(part.slip)) {
+    return wrench.torque.slice(0, 2);
   }
-  return scaled(py.div(1.0, size(pushed)), pushed);
+  const reach = part.reach(top);
+  return reach === null ? wrench.force.slice(0, 2) : [...wrench.force.slice(0, 2), py.div(wrench.torque[2], reach)];
 }
 
 /** How strongly the contact answers to what resists slip, or rolling, 1/kg or 1/(kg m^2). */
 function _stiffness(part, point) {
   const answers = [...part.wrenches(point.top)].map((unit) => part.rate(point.response(unit), point.top));
-  return py.float(py.sum(py.enumerate(answers).map(([i, answer]) => py.abs(py.item(answer, i)))));
+  const sizes = py.enumerate(answers).map(([i, answer]) => py.abs(py.item(answer, i)));
+  return py.float(py.add(py.sum(sizes.slice(0, 2)), py.mul(py.sum(sizes.slice(2)), py.or(part.reach(point.top), () => 0.0))));
 }
 
 // tippetop.mechanics.series
@@ -2748,17 +2881,6 @@ function at_start(parts) {
   return py.tuple([...parts].map((part) => py.isinstance(part, [py.float, py.int]) ? part : py.item(part, 0)));
 }
 
-/** Unit vectors across a unit vector and across each other; in space, of floats. */
-function tangents(e) {
-  if (py.len(e) === 2) {
-    return [[py.neg(py.item(e, 1)), py.item(e, 0)]];
-  }
-  const [x, y, z] = e;
-  const sign = z >= 0.0 ? 1.0 : -1.0;
-  const a = py.div(1.0, py.add(1.0, py.mul(sign, z)));
-  return [[py.sub(1.0, py.mul(py.mul(x, x), a)), py.mul(py.mul(py.neg(x), y), a), py.mul(py.neg(sign), x)], [py.mul(py.mul(py.neg(x), y), a), py.sub(1.0, py.mul(py.mul(y, y), a)), py.mul(py.neg(sign), y)]];
-}
-
 // tippetop.contact.passing
 const [REOPENING, LANDED, TIME, OVERTAKEN] = ["reopening", "landed", "time", "overtaken"];
 const LANDING = [3e-09, 1e-16];
@@ -2808,9 +2930,8 @@ class Loosening extends Passing {
   }
   /** Evaluate the series, which need no integrator. */
   *segments(time, state, end, integrator) {
-    let passing, longest, begin;
+    let passing, direction, longest, begin;
     try {
-      let direction;
       [passing, direction, longest] = this._directed(state);
       const velocity = py.truth(this.ending.moves) ? state.velocity.slice(0, 2) : [];
       const start = [state.axis, state.momentum, direction];
@@ -2821,9 +2942,10 @@ class Loosening extends Passing {
       return null;
     }
     const duration = py.min(begin.valid_until(ACCURACY), longest, end - time);
+    const least = scaled(py.mul(2.0, least_slip(state.momentum, state.velocity.slice(0, 2))), direction);
     const numbers = (elapsed) => {
       const [axis, momentum, xi] = begin.at(elapsed);
-      return passing.numbers(axis, momentum, begin.velocity_at(elapsed), xi);
+      return passing.numbers(axis, momentum, begin.velocity_at(elapsed), plus(xi, least));
     };
     yield passing.piece(numbers, time, duration, end);
   }
@@ -2886,10 +3008,11 @@ class BothLoosening extends Loosening {
     }
     py.assert(found.slip !== null);
     const [passing, way] = [py.replace(this, { top: on_branch(this.top, found.slip) }), scaled(found.rates[0], found.slip)];
+    const least = scaled(py.mul(2.0, least_slip(state.momentum, state.velocity.slice(0, 2))), found.slip);
     const moment = point.moment(found.wrench);
     const numbers = (elapsed) => {
       const momentum = add(state.momentum, scale(elapsed, moment));
-      return passing.numbers(state.axis, momentum, [], scaled(elapsed, way));
+      return passing.numbers(state.axis, momentum, [], plus(scaled(elapsed, way), least));
     };
     yield passing.piece(numbers, time, py.min(INSTANT, end - time), end);
   }
@@ -2917,36 +3040,43 @@ py.fields(Resting, ["top", "rules", "told"]);
 
 /** The last moments of slip, or of rolling, in the clock -ln s (see `tippetop.mechanics.ending`). */
 class Stopping extends Passing {
-  constructor(top, rules, ending) {
+  constructor(top, rules, ending, begin = []) {
     super(top, rules, ending);
+    this.begin = begin;
   }
   /** Follow it to its end, or to where it is no longer about to end. */
   *segments(time, state, end, integrator) {
-    let arcs, here, rest;
-    const [ending, velocity] = [this.ending, state.velocity.slice(0, 2)];
-    const xi = ending.of(state.axis, state.momentum, velocity, this.top);
-    const [speed, free] = [size(xi), py.truth(ending.moves) ? velocity : []];
-    const begin = as_array([...state.axis, ...state.momentum, ...free, ...scaled(py.div(1.0, speed), xi), speed, 0.0]);
-    let [motion, steps] = [closing_motion(this.top.kind, ending, !py.truth(this.rules.pulls)), 0];
+    const [ending, begin] = [this.ending, py.or(this.begin, () => this._clock(state))];
+    let [here, steps, arc, parts] = [closing_of(begin, ending), 0, null, py.list()];
+    let start = [0.0, as_array(begin)];
+    const motion = closing_motion(this.top.kind, ending, !py.truth(this.rules.pulls));
     for (const horizon of LANDING) {
-      const parameters = [...this.top.numbers, end - time, horizon];
-      arcs = _followed(integrator, motion, parameters, begin);
+      if (landing_guard(here, ending, this.top, horizon) <= 0.0) {
+        continue;
+      }
+      const arcs = _followed(integrator, motion, [...this.top.numbers, end - time, horizon], start);
       steps = py.add(steps, py.sum([...arcs].map((arc) => arc.steps)));
-      here = closing_of(py.tolist(py.item(arcs, -1).end_state), ending);
-      let doubt;
-      [rest, doubt] = landed(here, ending, this.top);
-      if (!py.eq(py.item(arcs, -1).guard, LANDED) || doubt < SETTLED) {
+      [arc, parts] = [py.item(arcs, -1), [...parts, ...[...arcs].map((arc) => arc.solution)]];
+      start = [arc.solution.end, arc.end_state];
+      here = closing_of(py.tolist(arc.end_state), ending);
+      if (!py.eq(arc.guard, LANDED) || landed(here, ending, this.top)[1] < SETTLED) {
         break;
       }
     }
-    if (py.eq(py.item(arcs, -1).guard, LANDED)) {
-      here = rest;
+    if (arc === null || py.eq(arc.guard, LANDED)) {
+      here = landed(here, ending, this.top)[0];
     }
     const last = this._state_at(here);
-    const clock = DenseSolution.joined([...arcs].map((arc) => arc.solution));
-    const solution = this._in_time(clock, time, py.float(here.time));
-    const then = this._next(py.item(arcs, -1), solution.end, last);
+    const solution = this._in_time(parts, begin, time, py.float(here.time));
+    const then = this._next(arc, solution.end, last);
     yield new Segment(this.told, solution, last, then, steps, steps);
+  }
+  /** The numbers of the clock at a state. */
+  _clock(state) {
+    const velocity = state.velocity.slice(0, 2);
+    const xi = this.ending.of(state.axis, state.momentum, velocity, this.top);
+    const free = py.truth(this.ending.moves) ? velocity : [];
+    return [...state.axis, ...state.momentum, ...free, ...scaled(py.div(1.0, size(xi)), xi), size(xi), 0.0];
   }
   /** The whole state. */
   _state_at(here) {
@@ -2959,10 +3089,13 @@ class Stopping extends Passing {
     return on_table(new SlidingState(here.axis, here.momentum, velocity), this.top);
   }
   _next(arc, time, state) {
+    const [ending, stuck] = [this.ending, py.and(!py.truth(this.ending.slip), () => this.ending.held)];
+    if (arc === null) {
+      return this.rules.settled(time, state, [ending.slip, !py.truth(ending.slip)], ending.held);
+    }
     if (arc.failure !== null || arc.guard === null) {
       return new Transition([], Outcome.FAILED, state, py.or(arc.failure, () => "the slip neither ends nor goes on"));
     }
-    const [ending, stuck] = [this.ending, py.and(!py.truth(this.ending.slip), () => this.ending.held)];
     const found = follow_surface(this, arc.guard, time, state);
     if (found !== null) {
       return found;
@@ -2973,30 +3106,46 @@ class Stopping extends Passing {
       return this.rules.lift_off(time, state);
     } else if (py.eq(arc.guard, "reopening")) {
       return new Transition([], this.rules.going_on(state, !py.truth(stuck)), state);
-    } else if (py.eq(arc.guard, "overtaken")) {
-      return new Transition([], py.replace(this, { ending: new Vanishing(!py.truth(ending.slip)) }), state);
-    } else if (py.eq(arc.guard, "branch")) {
-      return new Transition([], py.replace(this, { top: on_other_branch(this.top) }), state);
-    } else if (py.eq(arc.guard, "slip")) {
+    }
+    if (py.eq(arc.guard, "overtaken")) {
+      return new Transition([], py.replace(this, { ending: new Vanishing(!py.truth(ending.slip)), begin: [] }), state);
+    }
+    if (py.eq(arc.guard, "branch")) {
+      return new Transition([], this._onwards(arc, on_other_branch(this.top)), state);
+    }
+    if (py.eq(arc.guard, "limit branch")) {
+      return new Transition([], this._onwards(arc, on_other_limit_branch(this.top)), state);
+    }
+    if (py.eq(arc.guard, "slip")) {
       return this.rules.giving_way(state, [this.rules.event(EventKind.SLIP, time)], new Vanishing(true));
     } else if (py.eq(arc.guard, "rolling")) {
       return this.rules.giving_way(state, [this.rules.event(EventKind.ROLL, time)], new Vanishing(false));
     }
     return this.rules.settled(time, state, [ending.slip, !py.truth(ending.slip)], ending.held);
   }
+  /** The mode that takes the clock up where an arc leaves it, on another branch of the law. */
+  _onwards(arc, top) {
+    return py.replace(this, { top: top, begin: [...py.slice(py.tolist(arc.end_state), null, -1, null), 0.0] });
+  }
   /** The numbers of the mode as polynomials in time, from their solution in the clock. */
-  _in_time(clock, time, duration) {
-    const elapsed = py.sub(clock.size, 1);
-    const numbers = (times) => {
-      const here = closing_of(clock.rows(clock.when(elapsed, times)), this.ending);
+  _in_time(parts, begin, time, duration) {
+    const shown = (row) => {
+      const here = closing_of(row, this.ending);
       const xi = scaled(here.speed, here.direction);
       return this.numbers(here.axis, here.momentum, here.velocity, xi);
+    };
+    if (!py.truth(parts)) {
+      return DenseSolution.standing(shown(begin), time, time + duration);
+    }
+    const [clock, elapsed] = [DenseSolution.joined(parts), py.len(begin) - 1];
+    const numbers = (times) => {
+      return shown(clock.rows(clock.when(elapsed, times)));
     };
     const solution = DenseSolution.fitted(numbers, clock.knots_of(elapsed, duration), DEGREE_of_passing);
     return solution.moved(time, time + duration);
   }
 }
-py.fields(Stopping, ["top", "rules", "ending"]);
+py.fields(Stopping, ["top", "rules", "ending", "begin"]);
 
 /** No motion at all, and why. */
 function _nothing(mode, time, state, why) {
@@ -3004,13 +3153,13 @@ function _nothing(mode, time, state, why) {
 }
 
 /** The end of slip, or of rolling, in its clock. */
-function _followed(integrator, motion, parameters, begin) {
-  const first = py.next(py.iter(integrator.integrate(motion, parameters, [0.0, begin], LONGEST)));
+function _followed(integrator, motion, parameters, start) {
+  const first = py.next(py.iter(integrator.integrate(motion, parameters, start, LONGEST)));
   if (first.guard !== null || first.failure !== null || first.solution.end >= LONGEST) {
     return [first];
   }
   const implicit = make_integrator("radau", STIFF_TOLERANCE);
-  return py.list(implicit.integrate(motion, parameters, [0.0, begin], LONGEST));
+  return py.list(implicit.integrate(motion, parameters, start, LONGEST));
 }
 
 /** Equations of motion in the clock -ln s where a velocity is about to end; time is the last number. */
@@ -3026,11 +3175,11 @@ const closing_motion = py.cached((kind, ending, guarded) => {
     return new Guard(name, (y, numbers) => value(closing_of(y, ending), top_of(numbers), numbers));
   };
   const on_branch_still = (state, top, _) => {
-    return branch_guard(state.axis, state.momentum, [state.velocity[0], state.velocity[1]], top);
+    return slip_branch_guard(py.or(slip_beside(state, ending, top), () => state.direction), top);
   };
   let guards = [guard(REOPENING, (state, top, _) => reopening_guard(state, ending, top, HORIZON)), guard(LANDED, (state, top, numbers) => landing_guard(state, ending, top, py.item(numbers, -1))), guard(TIME, (state, _, numbers) => py.sub(py.item(numbers, -2), state.time))];
   const law = kind.example.friction;
-  const resisted = py.isinstance(law, RollingResistance);
+  const [resisted, stuck] = [py.isinstance(law, RollingResistance), py.and(!py.truth(ending.slip), () => ending.held)];
   if (py.truth(guarded)) {
     guards.push(guard(LIFT_OFF, (state, top, _) => rates_in_time(state, ending, top).wrench.force[2]));
   }
@@ -3040,8 +3189,11 @@ const closing_motion = py.cached((kind, ending, guarded) => {
   if (py.truth(ending.held)) {
     guards.push(guard(py.truth(ending.slip) ? ROLLING : SLIP, (state, top, _) => spared(state, ending, top)));
   }
-  if (py.truth(ending.moves) && py.truth(py.hasattr(sliding_law(law), "branch_guard"))) {
+  if ((py.truth(ending.slip) || py.truth(ending.moves)) && py.truth(py.hasattr(sliding_law(law), "branch_guard"))) {
     guards.push(guard(BRANCH, on_branch_still));
+  }
+  if (py.truth(stuck) && py.truth(has_limit_branches(law))) {
+    guards.push(guard(LIMIT_BRANCH, (state, top, _) => limit_guard(top, rates_in_time(state, ending, top).wrench)));
   }
   guards = py.add(guards, surface_guards(kind));
   const free = py.truth(ending.moves) ? 2 : 0;
@@ -3159,7 +3311,8 @@ function first_reach(along, goal, guess) {
 
 // tippetop.mechanics.dry_impact
 const ENDED = py.mul(10.0, FUZZ);
-const ITERATIONS_of_dry_impact = 5000;
+const [SLIPPING, ROLLING_of_dry_impact] = ["slipping", "rolling"];
+const CHOICES = [[false, false], [true, false], [false, true], [true, true]];
 
 /** Whether slip or rolling can end under this law. */
 function is_dry(law) {
@@ -3217,23 +3370,40 @@ class DryContact extends py.NamedTuple {
   }
   /** The contact with what has ended after an impulse, and where that goes on if it cannot stay so. */
   settled(impulse) {
+    let ways;
     const [slip, rolling] = this.velocities(impulse);
-    const resistance = this.resistance;
     const ended = py.and(this.is_set_valued, () => size(slip) <= py.mul(ENDED, this.speed));
-    const stopped = py.and(resistance !== null, () => size(rolling) <= py.mul(ENDED, this.speed));
+    const stopped = py.and(this.resistance !== null, () => size(rolling) <= py.mul(ENDED, this.speed));
     if (!(py.truth(ended) || py.truth(stopped))) {
       return py.truth(this.ended) || py.truth(this.stopped) ? this._replace({ ended: false, stopped: false }) : this;
     }
-    let [first, second] = [py.truth(ended) ? null : slip, py.truth(stopped) ? null : rolling];
-    let unit = this.unit(first, second);
-    if (py.truth(ended) && set_valued(this.law).reserve(1.0, unit.slice(0, 2), unit[5]) < 0.0) {
-      first = this.way_on(unit, second, true);
-      unit = this.unit(first, second);
+    const go_on = [py.truth(ended) ? null : slip, py.truth(stopped) ? null : rolling];
+    for (const begins of CHOICES) {
+      if (begins[0] > ended || begins[1] > stopped) {
+        continue;
+      }
+      try {
+        ways = this.ways_on(...go_on, begins);
+      } catch (error) {
+        if (!(error instanceof py.ArithmeticError)) throw error;
+        continue;
+      }
+      if (py.truth(this.admits(...ways))) {
+        return this._replace({ ended: ended, stopped: stopped, way: ways[0], rolling_way: ways[1] });
+      }
     }
-    if (resistance !== null && py.truth(stopped) && resistance.reserve(1.0, [unit[3], unit[4]]) < 0.0) {
-      second = this.way_on(unit, first, false);
+    throw new py.ArithmeticError("nothing can hold the contact in an impact, and it cannot go on in any direction");
+  }
+  /** Whether the table can hold those velocities that are None. */
+  admits(slip, rolling) {
+    const [unit, resistance] = [this.unit(slip, rolling), this.resistance];
+    if (slip === null && set_valued(this.law).reserve(1.0, unit.slice(0, 2), unit[5]) < 0.0) {
+      return false;
     }
-    return this._replace({ ended: ended, stopped: stopped, way: first, rolling_way: second });
+    if (rolling === null && resistance !== null) {
+      return (resistance.reserve(1.0, [unit[3], unit[4]]) >= 0.0);
+    }
+    return true;
   }
   /** Force and torque per unit normal impulse at these velocities. */
   friction(slip, rolling) {
@@ -3266,27 +3436,44 @@ class DryContact extends py.NamedTuple {
     }
     return py.tuple(unit);
   }
-  /** Direction in which slip, or rolling, goes on where it cannot be held. */
-  way_on(holding, other, slipping) {
-    let start = py.truth(slipping) ? holding.slice(0, 2) : holding.slice(3, 5);
-    if (py.truth(slipping) && this.reach !== null) {
-      start = [...start, py.div(holding[5], this.reach)];
+  /** Slip and rolling, or the directions in which they begin; None where they are held. */
+  ways_on(slip, rolling, begins) {
+    const parts = py.zip([SLIPPING, ROLLING_of_dry_impact], begins).filter(([part, wanted]) => py.truth(wanted)).map(([part, wanted]) => part);
+    if (!py.truth(parts)) {
+      return [slip, rolling];
     }
-    let direction = scaled(py.div(-1.0, size(start)), start);
-    for (let turn = 0; turn < ITERATIONS_of_dry_impact; turn += 1) {
-      const unit = py.truth(slipping) ? this.unit(direction, other) : this.unit(other, direction);
-      const rates = this.change(unit);
-      const rate = py.truth(slipping) ? slip_part(rates, this.reach) : rates.slice(3, 5);
-      const strength = py.truth(slipping) ? py.mul(py.div(size(unit.slice(0, 2)), this.body.top.mass), 8.0) : py.mul(2.0, size(rate));
-      const ahead = plus(scaled(py.add(strength, size(rate)), direction), rate);
-      const new_ = scaled(py.div(1.0, size(ahead)), ahead);
-      const moved = size(plus(new_, scaled(-1.0, direction)));
-      direction = new_;
-      if (moved < 1e-15) {
-        break;
-      }
+    const both = (ways) => {
+      const found = py.dict(py.zip(parts, ways));
+      return [found.get(SLIPPING, slip), found.get(ROLLING_of_dry_impact, rolling)];
+    };
+    const response = (ways) => {
+      const unit = this.unit(...both(ways));
+      const velocities = this.change(unit);
+      return [...parts].map((part) => new Resisted(this.part(part, velocities), py.mul(this.stiffness(part), size(this.resisting(part, unit)))));
+    };
+    const beside = py.truth(py.all(begins)) ? this.ways_on(slip, rolling, [false, true]) : [slip, rolling];
+    const holding = this.unit(...beside);
+    const start = [...parts].map((part) => scaled(-1.0, this.resisting(part, holding)));
+    return both(directions(response, start));
+  }
+  /** Slip zeta, or the horizontal angular velocity, of six velocities. */
+  part(part, velocities) {
+    return py.eq(part, SLIPPING) ? slip_part(velocities, this.reach) : velocities.slice(3, 5);
+  }
+  /** What resists it, per unit normal impulse: a drilling torque over the law's length. */
+  resisting(part, unit) {
+    if (py.eq(part, ROLLING_of_dry_impact)) {
+      return unit.slice(3, 5);
     }
-    return direction;
+    return this.reach === null ? unit.slice(0, 2) : [...unit.slice(0, 2), py.div(unit[5], this.reach)];
+  }
+  /** How strongly it answers to that. */
+  stiffness(part) {
+    if (py.eq(part, ROLLING_of_dry_impact)) {
+      return py.float(py.add(this.response[3][3], this.response[4][4]));
+    }
+    const drilling = this.reach === null ? 0.0 : py.mul(py.pow(this.reach, 2), this.response[5][5]);
+    return py.float(py.add(py.add(this.response[0][0], this.response[1][1]), drilling));
   }
   /** Rates of the impulse and its normal work, in a clock in which slip that ends decays exponentially. */
   rates(impulse) {
@@ -4406,7 +4593,7 @@ py.fields(EllipsoidalLaw, ["mu", "patch_radius"]);
 // tippetop.mechanics.contensou_hertz
 const FORCE = [[1.0, 2.0379589900224446, 1.7454503606464322, 0.748871602371356, 0.1272777587571475, -0.0027191903426678006, -0.0016068785745065434, -2.585824983858782e-05], [1.0, 2.437958990022489, 2.0920625280814025, 0.7580271532705276, 0.10811738333537868, 0.004218755819955418]];
 const TORQUE = [[0.4, 0.822105487763007, 0.5189122287774408, 0.08174030474884943, -0.007570333630208161, 0.004741971472147535, 0.001852985148541204, 8.943122718983565e-05], [1.0, 2.7695494336932254, 2.8469587388677655, 1.3323282422825315, 0.2778032550943552, 0.020859716514356943, 0.00025020282491132825]];
-const LIMIT = [[0.8835729338221404, 2.2731818541919386, -0.6654494323418829, -1.2232537511378219, 1.0505598178854334, -1.0785660226494278, 0.40949639000943494, 0.021230319903240265, -0.012851025891112585, 0.0047692111039012094, -0.0035357509640233558], [1.0, 2.572715581457611, -1.0031346960905119, -2.027618909220897, 1.533523500187717, -0.47258078898511674, 0.05624985658302286]];
+const LIMIT = [[0.8835729338221295, 3.889778559163314, 5.573221706650525, 3.0420944615186203, 0.7966720357548377, 0.26696888590798373, 0.05714222546990528, 0.0010481676273393747, 0.00039135703969367353], [1.0, 4.402328783813161, 6.1825966830889465, 2.8926555398109404, 0.12101121238237003, -0.09382811272248932, 0.006126226581420139]];
 const NEAR_BRANCH = 1e-20;
 const EDGE = 1e-05;
 const BEYOND = 1e-20;
@@ -4437,13 +4624,22 @@ class HertzDrillingLaw extends py.NamedTuple {
     const torque = py.mul(py.mul(py.mul(py.neg(this.mu), py.div(py.mul(3.0, PI), 16.0)), py.sub(1.0, py.mul(kappa2, py.sub(1.0, py.mul(0.375, kappa2))))), rate);
     return new Traction([py.mul(force, slip[0]), py.mul(force, slip[1])], [0.0, 0.0, py.mul(py.mul(torque, drilling), this.patch_radius)]);
   }
-  /** (mu N F)^2 - T^2 where the limit surface has this drilling torque, N^2; |M| >= mu N R T(1). */
+  /** (mu N F)^2 - T^2 where the limit surface has this drilling torque, N^2. */
   reserve(normal, force, drilling) {
-    const [limit, torque] = [py.mul(this.mu, normal), py.div(drilling, this.patch_radius)];
-    const share = py.div(py.mul(py.pow(py.mul(torque, torque), 0.5), py.div(16.0, py.mul(3.0, PI))), limit);
-    const kappa2 = py.mul(4.0 / 3.0, py.sub(1.0, py.pow(py.sub(1.0, py.mul(1.5, py.sub(1.0, share))), 0.5)));
+    const limit = py.mul(this.mu, normal);
+    const torque = py.div(py.mul(py.div(16.0, py.mul(3.0, PI)), drilling), py.mul(this.patch_radius, limit));
+    const under = py.sub(py.mul(1.5, py.pow(py.mul(torque, torque), 0.5)), 0.5);
+    const kappa2 = py.mul(4.0 / 3.0, py.sub(1.0, py.pow(py.mul(under, under), 0.25)));
     const size = py.mul(py.mul(py.div(py.mul(3.0, PI), 32.0), py.sub(4.0, kappa2)), limit);
     return py.sub(py.sub(py.mul(py.mul(size, size), kappa2), py.mul(force[0], force[0])), py.mul(force[1], force[1]));
+  }
+  /** Positive as long as this piece of the limit surface is followed, (N m)^2. */
+  limit_guard(normal, drilling) {
+    return heaviness(this, normal, drilling, py.mul(4.0 / 3.0, EDGE));
+  }
+  /** The law whose piece of the limit surface adjoins this one's. */
+  get other_limit_branch() {
+    return new HertzSlidingLaw(...this);
   }
   /** Friction coefficient, and patch radius in units of length. */
   coefficients(units) {
@@ -4483,12 +4679,22 @@ class HertzSlidingLaw extends py.NamedTuple {
     const torque = py.div(py.mul(py.mul(py.mul(py.neg(this.mu), this.patch_radius), tangent), horner_of_contensou_hertz(TORQUE[0], w)), horner_of_contensou_hertz(TORQUE[1], w));
     return new Traction([py.mul(force, slip[0]), py.mul(force, slip[1])], [0.0, 0.0, torque]);
   }
-  /** (mu N F)^2 - T^2 where the limit surface has this drilling torque, N^2; |M| <= mu N R T(1). */
+  /** (mu N F)^2 - T^2 where the limit surface has this drilling torque, N^2. */
   reserve(normal, force, drilling) {
-    const [limit, torque] = [py.mul(this.mu, normal), py.div(drilling, this.patch_radius)];
-    const y = py.pow(py.sub(1.0, py.div(py.pow(py.mul(torque, torque), 0.5), py.mul(BRANCH_TORQUE, limit))), 0.5);
+    const limit = py.mul(this.mu, normal);
+    const share = py.div(drilling, py.mul(py.mul(BRANCH_TORQUE, this.patch_radius), limit));
+    const under = py.sub(1.0, py.mul(share, share));
+    const y = py.pow(py.mul(under, under), 0.25);
     const size = py.div(py.mul(limit, horner_of_contensou_hertz(LIMIT[0], y)), horner_of_contensou_hertz(LIMIT[1], y));
     return py.sub(py.sub(py.mul(size, size), py.mul(force[0], force[0])), py.mul(force[1], force[1]));
+  }
+  /** Positive as long as this piece of the limit surface is followed, (N m)^2. */
+  limit_guard(normal, drilling) {
+    return py.neg(heaviness(this, normal, drilling, py.mul(2.0 / 3.0, EDGE)));
+  }
+  /** The law whose piece of the limit surface adjoins this one's. */
+  get other_limit_branch() {
+    return new HertzDrillingLaw(...this);
   }
   /** Friction coefficient, and patch radius in units of length. */
   coefficients(units) {
@@ -4581,8 +4787,8 @@ class HertzLaw extends py.NamedTuple {
   }
   /** The law whose piece of the limit surface has this drilling torque, N m; of floats. */
   limit_branch(normal, drilling) {
-    const sliding = py.abs(drilling) <= py.mul(py.mul(py.mul(BRANCH_TORQUE, this.mu), normal), this.patch_radius);
-    return py.truth(sliding) ? new HertzSlidingLaw(...this) : new HertzDrillingLaw(...this);
+    const drills = heaviness(this, normal, drilling, EDGE) > 0.0;
+    return py.truth(drills) ? new HertzDrillingLaw(...this) : new HertzSlidingLaw(...this);
   }
   /** It resists drilling. */
   get torque_free() {
@@ -4594,11 +4800,10 @@ class HertzLaw extends py.NamedTuple {
   }
   /** (mu N F)^2 - T^2 where the limit surface has this drilling torque, N^2; else less than zero. */
   reserve(normal, force, drilling) {
-    const pressed = py.abs(normal);
-    if (pressed === 0.0) {
+    if (normal === 0.0) {
       return py.sub(py.sub(py.neg(py.pow(force[0], 2)), py.pow(force[1], 2)), py.pow(py.div(drilling, this.patch_radius), 2));
     }
-    return this.limit_branch(pressed, drilling).reserve(pressed, force, drilling);
+    return this.limit_branch(normal, drilling).reserve(normal, force, drilling);
   }
   /** Friction coefficient, and patch radius in units of length. */
   coefficients(units) {
@@ -4614,6 +4819,12 @@ py.fields(HertzLaw, ["mu", "patch_radius"]);
 /** (1 + edge) (R w)^2 - v^2, of the slip v and drilling R w: positive where drilling prevails, m^2/s^2. */
 function prevalence(slip, drilling, edge) {
   return py.sub(py.sub(py.mul(py.mul(py.add(1.0, edge), drilling), drilling), py.mul(slip[0], slip[0])), py.mul(slip[1], slip[1]));
+}
+
+/** M^2 - (1 - edge) (mu N R T(1))^2, (N m)^2: positive where drilling torque M is on drilling's piece. */
+function heaviness(law, normal, drilling, edge) {
+  const limit = py.mul(py.mul(py.mul(BRANCH_TORQUE, law.mu), normal), law.patch_radius);
+  return py.sub(py.mul(drilling, drilling), py.mul(py.mul(py.sub(1.0, edge), limit), limit));
 }
 
 /** Value of a polynomial, its coefficients in increasing order. */
@@ -5397,6 +5608,7 @@ function orientation(axis, turn, pole, functions) {
 
 export {
   ACCURACY,
+  APART,
   ATOM,
   Acceleration,
   Algebra,
@@ -5410,6 +5622,7 @@ export {
   Bilateral,
   Body,
   BothLoosening,
+  CHOICES,
   CONSTANT,
   COUPLES,
   Closing,
@@ -5425,6 +5638,7 @@ export {
   DEGREE_of_flight,
   DEGREE_of_passing,
   DIFFERENCE,
+  DIRECTED,
   DOUBT,
   DRILLING,
   Disc,
@@ -5435,6 +5649,7 @@ export {
   ELLIPSOIDAL_RADIUS,
   ENDED,
   ENDING,
+  EXACT,
   EccentricSphere,
   Elementary,
   EllipsoidalLaw,
@@ -5462,7 +5677,6 @@ export {
   HullKind,
   INSTANT,
   ITERATIONS,
-  ITERATIONS_of_dry_impact,
   Impact,
   Impulse,
   IntegratedMode,
@@ -5476,6 +5690,7 @@ export {
   LESS,
   LIFT_OFF,
   LIMIT,
+  LIMIT_BRANCH,
   LONGEST,
   LONGEST_of_code,
   LONGEST_of_trajectory,
@@ -5497,6 +5712,7 @@ export {
   NARROWEST,
   NEAR_BRANCH,
   NEGATIVE,
+  NEWTON,
   NODES,
   NORTH,
   NOT_FINITE,
@@ -5534,13 +5750,16 @@ export {
   REST,
   ROLLING,
   ROLLING_STOPPING,
+  ROLLING_of_dry_impact,
   ROOT,
   ROUNDING,
   ROUNDING_of_viscous_impact,
+  ROUNDS,
   Reaction,
   Recorded,
   RegularizedCoulombFriction,
   RegularizedCoulombLaw,
+  Resisted,
   Resting,
   Revisable,
   Ring,
@@ -5553,6 +5772,7 @@ export {
   SHORTEST,
   SIZE,
   SLIP,
+  SLIPPING,
   SLOWEST_REBOUND,
   SLOWEST_ROCKING,
   SLOWEST_SLIP,
@@ -5609,20 +5829,23 @@ export {
   WIDEST,
   Wrench,
   _Lines,
+  _apart,
   _beside,
   _coupling,
   _face,
   _followed,
   _gap,
+  _improved,
+  _newton,
   _normal_wrench,
   _nothing,
   _number,
   _reaches_out,
   _resisting,
   _rests,
-  _start,
   _stiffness,
   _surface,
+  _unit,
   _unknown,
   acting,
   add,
@@ -5651,6 +5874,7 @@ export {
   cross,
   crossing,
   direction_of_slip,
+  directions,
   dot,
   double_contact,
   double_rates,
@@ -5664,6 +5888,8 @@ export {
   follow_surface,
   gap,
   gap_rate,
+  has_limit_branches,
+  heaviness,
   held_motion,
   held_rates,
   highest_gap,
@@ -5688,7 +5914,9 @@ export {
   key_of,
   landed,
   landing_guard,
+  least_slip,
   length,
+  limit_guard,
   lowest_surface,
   moment_per_normal_force,
   motion_on_two,
@@ -5702,6 +5930,7 @@ export {
   on_branch,
   on_limit_branch,
   on_other_branch,
+  on_other_limit_branch,
   on_table,
   on_two,
   onset,
@@ -5732,6 +5961,8 @@ export {
   sliding_motion,
   sliding_rates,
   slip_along_tilt,
+  slip_beside,
+  slip_branch_guard,
   slip_dimension,
   slip_guard,
   slip_guards,

@@ -59,9 +59,9 @@ def beginning(
         return *both, *contact_motion(point, *both)
 
     def response(ways: Sequence[Slip]) -> list[Resisted]:
-        *_, wrench, acceleration = motion(ways)
+        answer = motion(ways)
         return [
-            Resisted(part.rate(acceleration, point.top), stiff * size(_resisting(part, wrench, point.top)))
+            Resisted(part.rate(answer[3], point.top), stiff * size(_resisting(part, answer[2], point.top)))
             for part, stiff in zip(parts, stiffness, strict=True)
         ]
 

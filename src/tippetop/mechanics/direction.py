@@ -71,9 +71,11 @@ def directions(response: Response, start: Sequence[Slip]) -> list[Slip]:
             return found
         # Exactly against what drives it, as may be in a plane, a direction stays so: it is turned round.
         rates = [answer.rate for answer in response(ways)]
-        least, i = min((inner(rate, e), i) for i, (rate, e) in enumerate(zip(rates, ways, strict=True)))
-        if least < 0.0:
-            ways[i] = _unit(rates[i])
+        along = [inner(rate, e) for rate, e in zip(rates, ways, strict=True)]
+        against = min(0.0, *along)
+        ways = [
+            _unit(rates[i]) if along[i] < 0.0 and along[i] == against else ways[i] for i in range(len(ways))
+        ]
     raise ArithmeticError("no direction in which the contact can go on, though nothing can hold it")
 
 
@@ -100,24 +102,30 @@ def _newton(response: Response, ways: Sequence[Slip]) -> list[Slip]:
     bases = [tangents(e) for e in ways]
 
     def across(ways: Sequence[Slip]) -> list[float]:
-        parts: list[float] = []
-        for (rate, _), e, basis in zip(response(ways), ways, bases, strict=True):
-            left = plus(rate, scaled(-inner(rate, e), e))
-            parts += [inner(left, b) for b in basis]
-        return parts
+        answers = response(ways)
+        lefts = [
+            plus(answer.rate, scaled(-inner(answer.rate, e), e))
+            for answer, e in zip(answers, ways, strict=True)
+        ]
+        return [inner(left, b) for left, basis in zip(lefts, bases, strict=True) for b in basis]
 
-    here, columns = across(ways), []
-    for i, basis in enumerate(bases):
-        for b in basis:
-            near = [_unit(plus(e, scaled(APART, b))) if i == j else e for j, e in enumerate(ways)]
-            columns.append([(there - at) / APART for there, at in zip(across(near), here, strict=True)])
-    parts = iter(solve([list(row) for row in zip(*columns, strict=True)], [-x for x in here]))
-    better = []
-    for e, basis in zip(ways, bases, strict=True):
-        for b in basis:
-            e = plus(e, scaled(next(parts), b))  # noqa: PLW2901
-        better.append(_unit(e))
-    return better
+    def moved(parts: Sequence[float]) -> list[Slip]:
+        found, used = list[Slip](), 0
+        for e, basis in zip(ways, bases, strict=True):
+            turned = e
+            for b in basis:
+                turned = plus(turned, scaled(parts[used], b))
+                used += 1
+            found.append(_unit(turned))
+        return found
+
+    here = across(ways)
+    count = len(here)
+    columns = []
+    for j in range(count):
+        there = across(moved([APART if i == j else 0.0 for i in range(count)]))
+        columns.append([(there[i] - here[i]) / APART for i in range(count)])
+    return moved(solve([[column[i] for column in columns] for i in range(count)], [-x for x in here]))
 
 
 def _apart(ways: Sequence[Slip], others: Sequence[Slip]) -> float:
