@@ -3106,17 +3106,13 @@ class Stopping extends Passing {
       return this.rules.lift_off(time, state);
     } else if (py.eq(arc.guard, "reopening")) {
       return new Transition([], this.rules.going_on(state, !py.truth(stuck)), state);
-    }
-    if (py.eq(arc.guard, "overtaken")) {
+    } else if (py.eq(arc.guard, "overtaken")) {
       return new Transition([], py.replace(this, { ending: new Vanishing(!py.truth(ending.slip)), begin: [] }), state);
-    }
-    if (py.eq(arc.guard, "branch")) {
+    } else if (py.eq(arc.guard, "branch")) {
       return new Transition([], this._onwards(arc, on_other_branch(this.top)), state);
-    }
-    if (py.eq(arc.guard, "limit branch")) {
+    } else if (py.eq(arc.guard, "limit branch")) {
       return new Transition([], this._onwards(arc, on_other_limit_branch(this.top)), state);
-    }
-    if (py.eq(arc.guard, "slip")) {
+    } else if (py.eq(arc.guard, "slip")) {
       return this.rules.giving_way(state, [this.rules.event(EventKind.SLIP, time)], new Vanishing(true));
     } else if (py.eq(arc.guard, "rolling")) {
       return this.rules.giving_way(state, [this.rules.event(EventKind.ROLL, time)], new Vanishing(false));
