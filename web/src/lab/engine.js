@@ -91,10 +91,6 @@ export class Engine {
   async aside(setup) {
     return new Track((await this.asides.ask("run", setup)).track);
   }
-
-  async predict(problem) {
-    return (await this.asides.ask("predict", { problem })).end;
-  }
 }
 
 // Follow many launches in as many workers as there are cores to spare.

@@ -1,6 +1,7 @@
 // The page's state and what changes it. One launch is shown; what is asked for later overtakes what was asked before.
 
 import { stillness } from "../player/player.js";
+import { foresee } from "../run/foresee.js";
 import { refusal } from "./controls.jsx";
 import { Engine } from "./engine.js";
 import { LANGUAGES, preferred, speak, t } from "./i18n.js";
@@ -112,23 +113,13 @@ export class Lab extends EventTarget {
     if (this.pending) this.look(this.pending);
     this.pending = null;
     this.dispatchEvent(new Event("run"));
+    if (last) this.set({ prospect: foresee(track.header.problem) });
     this.say();
-    if (last) this.foresee(track.header.problem);
   }
 
   say() {
     const { prospect, units } = this.state;
     if (this.track) this.player.say(tell(this.track, prospect, units));
-  }
-
-  async foresee(problem) {
-    const key = JSON.stringify(problem);
-    if (key === this.foreseen) return;
-    this.foreseen = key;
-    const prospect = await this.engine.predict(problem).catch(() => null);
-    if (key !== this.foreseen) return;
-    this.set({ prospect });
-    this.say();
   }
 
   stop() {

@@ -1,7 +1,8 @@
 // One's own top: its shape with a stem to drag, what it weighs, what it will do.
 
-import { useEffect, useState } from "preact/hooks";
+import { useState } from "preact/hooks";
 
+import { foresee } from "../run/foresee.js";
 import { t } from "./i18n.js";
 import { changed } from "./setup.js";
 import { FIRST, MATERIALS, bodyOf, possible, sectionOf, verdictOf } from "./turning.js";
@@ -15,7 +16,6 @@ const IN_MM = ["radius", "stem", "knob"];
 
 export function Own({ lab }) {
   const [top, make] = useState(lab.own ?? FIRST);
-  const [spins, know] = useState(null);
   const { units } = lab.state;
   const set = (changes) => {
     const next = possible({ ...top, ...changes });
@@ -23,15 +23,10 @@ export function Own({ lab }) {
     make(next);
   };
   const verdict = verdictOf(top);
-  useEffect(() => {
-    if (verdict.word !== "can") return know(null);
-    let current = true;
-    const [ball] = bodyOf(top).shape;
-    const shape = { kind: "eccentric_sphere", radius: ball.radius, eccentricity: ball.center / ball.radius };
-    const problem = changed(lab.state.setup, { body: { ...bodyOf(top), shape }, friction: { kind: "viscous", mu: 0.3 } }).problem;
-    lab.engine.predict(problem).then((found) => current && know(found?.critical ?? null), () => know(null));
-    return () => (current = false);
-  }, [top]);
+  const [ball] = bodyOf(top).shape;
+  const shape = { kind: "eccentric_sphere", radius: ball.radius, eccentricity: ball.center / ball.radius };
+  const sphere = changed(lab.state.setup, { body: { ...bodyOf(top), shape }, friction: { kind: "viscous", mu: 0.3 }, rolling_resistance: 0 });
+  const spins = foresee(sphere.problem)?.critical;
   return (
     <div class="own">
       <p>{t("own.intro")}</p>

@@ -1,13 +1,14 @@
 // What the page's workers do: runs, predictions, and single launches of a map.
 
-import * as engine from "engine";
+import { simulate } from "engine";
+
 import { buffersOf, pack, samplesFor } from "../run/pack.js";
 
 // How exactly a launch is followed while a slider moves, and how finely it is then sampled; of a map, how exactly.
 const QUICK = { tolerance: 1e-7, samples: 320 };
 const COARSE = 1e-6;
 
-const JOBS = { run: answerRun, predict: ({ problem }) => ({ end: engine["predict"]?.(problem) ?? null }), cell: answerCell };
+const JOBS = { run: answerRun, cell: answerCell };
 
 function answerRun({ id, problem, duration, quick }) {
   let told = 0;
@@ -17,12 +18,12 @@ function answerRun({ id, problem, duration, quick }) {
     postMessage({ id, share });
   };
   const samples = quick ? QUICK.samples : samplesFor(problem, duration);
-  const run = engine.simulate(problem, { duration, onProgress, ...(quick && { tolerance: QUICK.tolerance }) });
+  const run = simulate(problem, { duration, onProgress, ...(quick && { tolerance: QUICK.tolerance }) });
   return { track: pack(problem, run, samples) };
 }
 
 function answerCell({ problem, duration }) {
-  const { metrics, outcome } = engine.simulate(problem, { duration, tolerance: COARSE });
+  const { metrics, outcome } = simulate(problem, { duration, tolerance: COARSE });
   return { tilt: metrics.final_theta, flights: metrics.flights, turnsOver: metrics.turns_over, outcome };
 }
 
