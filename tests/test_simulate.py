@@ -16,7 +16,7 @@ from scipy.spatial.transform import Rotation
 import tippetop as tt
 from strategies import numbers
 from tippetop.catalogue import SAMPLED
-from tippetop.integrators import has_taylor, make_integrator
+from tippetop.integrators import has_numba, has_taylor, make_integrator
 from tippetop.presets import REPORT, report_problem
 
 few_and_slow = settings(
@@ -272,6 +272,7 @@ SHORTLY_BEFORE = 5.2
 
 OWN_TOLERANCE = {
     "taylor": 2.3e-16,
+    "compiled": 1e-13,
     "dop853": 1e-12,
     "rk45": 1e-10,
     "radau": 1e-9,
@@ -316,6 +317,8 @@ def launch_shortly_before_lift_off():
 def test_every_integrator_locates_lift_off_to_its_own_tolerance(integrator):
     if integrator == "taylor" and not has_taylor():
         pytest.skip("heyoka is not installed")
+    if integrator == "compiled" and not has_numba():
+        pytest.skip("numba is not installed")
     step = STEP if integrator == "rk4" else None
     run = tt.simulate(launch_shortly_before_lift_off(), 0.2, samples=2, integrator=integrator, step=step)
     when, rounding = FIRST_LIFT_OFF[175.0]

@@ -8,7 +8,13 @@ import numpy as np
 from tippetop.contact.block import in_blocks
 from tippetop.contact.mode import Segment, Transition
 from tippetop.contact.trajectory import Trajectory
-from tippetop.integrators import default_name, has_taylor, make_integrator
+from tippetop.integrators import (
+    COMPILED_TOLERANCE,
+    SCIPY_TOLERANCES,
+    default_name,
+    has_taylor,
+    make_integrator,
+)
 from tippetop.integrators.dense import DenseSolution
 from tippetop.mechanics.hull import Hull
 from tippetop.metrics import Ends
@@ -16,8 +22,8 @@ from tippetop.sweeps.launches import Launches, single
 from tippetop.tally import Tally
 from tippetop.theory.prediction import is_held
 
-LEAST_SCIPY = 1e-12
-"""Least tolerance of the integrator of single launches where heyoka is not installed."""
+LEAST = {"compiled": COMPILED_TOLERANCE, "dop853": SCIPY_TOLERANCES["dop853"]}
+"""Least tolerances where heyoka is not installed: those of single runs."""
 
 
 def is_alone(launches: Launches) -> bool:
@@ -43,7 +49,7 @@ def follow(
 ) -> tuple[Trajectory, Tally]:
     """Follow one launch from a transition to its end, or until its tilt is held."""
     name = default_name()
-    method = make_integrator(name, tolerance if name == "taylor" else max(tolerance, LEAST_SCIPY))
+    method = make_integrator(name, max(tolerance, LEAST.get(name, 0.0)))
     trajectory, tally = Trajectory(start, end, method, time=time), Tally()
     segments = trajectory.segments()
     for block in in_blocks(segments if settled is None else until_settled(trajectory, segments, settled)):
