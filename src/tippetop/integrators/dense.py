@@ -18,6 +18,9 @@ ELEMENTARY: Functions = np
 NEWTON = 6
 """Improvements of a time at which a component has some value."""
 
+EXACT = 1e-15
+"""Such an improvement, relative to the longest time, that is rounding."""
+
 SHORTEST = 1e-8
 """The last of the steps that such a component's values make, relatively."""
 
@@ -66,8 +69,11 @@ class DenseSolution:
         return DenseSolution(knots, self.terms)
 
     def knots_of(self, number: int, end: float) -> list[float]:
-        """Values of a component that grows, where the steps begin before it reaches `end`; and `end`."""
-        shown = self.terms[:, number, 0]
+        """Values of a component that grows, where every other step begins before it reaches `end`; and `end`.
+
+        A step is short beside the radius of convergence, and two still are.
+        """
+        shown = self.terms[::2, number, 0]
         return [*shown[shown < end * (1.0 - SHORTEST)].tolist(), end]
 
     def when(self, number: int, values: Array) -> Array:
@@ -81,7 +87,10 @@ class DenseSolution:
             here = (guess - self.knots[step]) / span
             error = values - evaluated(self.terms[:, [number]], step, here)[:, 0]
             pace = evaluated(slopes, step, here)[:, 0] / span
-            guess = np.clip(guess + error / pace, self.knots[0], self.knots[-1])
+            better = np.clip(guess + error / pace, self.knots[0], self.knots[-1])
+            moved, guess = np.abs(better - guess).max(initial=0.0), better
+            if moved <= EXACT * self.knots[-1]:
+                break
         return guess
 
     @classmethod
