@@ -113,15 +113,15 @@ def test_a_pinned_run_plays_beside_the_next(lab: Lab) -> None:
 
 def test_the_camera_sinks_as_the_top_turns_over_unless_it_is_held(lab: Lab) -> None:
     visitor = lab("launch.spin=155")
-    visitor.ask("() => { tippetopLab.player.toggle(false); tippetopLab.player.scene.release(); }")
+    visitor.ask("() => { tippetopLab.player.toggle(false); tippetopLab.player.scene.eye.release(); }")
     down = """(t) => { const { player } = tippetopLab; player.seek(t); player.draw();
-      return player.scene.place[1]; }"""
+      return player.scene.eye.place[1]; }"""
     turned = visitor.ask("() => tippetopLab.player.turnsOver")
     high, low, after = (visitor.ask(down, time) for time in (1.0, turned, turned + 3.0))
     assert low > 1.45
     assert high == pytest.approx(after)
     assert high < 1.2
-    visitor.ask("() => tippetopLab.player.scene.turn(0.3, 0)")
+    visitor.ask("() => tippetopLab.player.scene.eye.turn(0.3, 0)")
     assert visitor.ask(down, turned) == pytest.approx(high, abs=0.01)
     visitor.page.get_by_role("button", name="Jump to the turning over").click()
     visitor.wait("(t) => tippetopLab.player.time > t - 0.79 && tippetopLab.player.playing", turned)

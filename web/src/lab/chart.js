@@ -7,7 +7,7 @@ const STOPS = ["#00224e", "#3c4e6c", "#7c7b78", "#bbae6c", "#fee838"].map((colou
   [1, 3, 5].map((k) => parseInt(colour.slice(k, k + 2), 16)),
 );
 const REACH = [1, 2, 4];
-const ROOM = { left: 46, right: 8, top: 8, bottom: 34 };
+const ROOM = { left: 46, right: 14, top: 8, bottom: 34 };
 
 // How fine a grid must be to have a cell: 0 for the coarsest.
 export function fineness({ row, column }) {

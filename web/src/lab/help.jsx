@@ -28,7 +28,7 @@ export function Help({ onClose }) {
       })}</dl>
       <p>{t("help.keys")}</p>
       <p>{t("help.link")}</p>
-      <p>{t("help.more")}</p>
+      <p>{t("help.more")} <a href="https://tippetop.github.io/tippetop" rel="noreferrer">{t("help.docs")}</a></p>
     </dialog>
   );
 }

@@ -106,7 +106,7 @@ export class Lab extends EventTarget {
     this.fresh = true;
     this.player.load(track);
     if (play) {
-      this.player.scene?.release();
+      this.player.scene?.eye.release();
       this.player.seek(0);
       this.player.toggle(!stillness());
     }
@@ -173,7 +173,7 @@ export class Lab extends EventTarget {
     const on = Object.entries(scene?.shown ?? {}).filter(([, value]) => value).map(([name]) => name);
     const usual = on.join(" ") === "trace glass";
     return {
-      time: player.playing ? 0 : player.time, camera: scene?.held ? scene.place : null, shown: usual ? [] : on,
+      time: player.playing ? 0 : player.time, camera: scene?.eye.held ? scene.eye.place : null, shown: usual ? [] : on,
     };
   }
 
@@ -212,8 +212,8 @@ export class Lab extends EventTarget {
       for (const name of ["axis", "momentum", "friction", "trace", "glass"]) player.show({ [name]: view.shown.includes(name) });
     }
     if (view.camera && player.scene) {
-      player.scene.place = view.camera;
-      player.scene.held = true;
+      player.scene.eye.place = view.camera;
+      player.scene.eye.held = true;
       player.scene.controls.update();
     }
     if (timed) player.seek(view.time);

@@ -79,11 +79,11 @@ export class Player extends EventTarget {
       ArrowRight: () => this.step(1),
       Home: () => this.seek(0),
       End: () => this.seek(this.duration),
-      "+": () => this.scene?.zoom(0.9),
-      "-": () => this.scene?.zoom(1 / 0.9),
+      "+": () => this.scene?.eye.zoom(0.9),
+      "-": () => this.scene?.eye.zoom(1 / 0.9),
     };
     if (event.ctrlKey || event.metaKey || event.altKey) return;
-    if (event.shiftKey && turns[event.key]) this.scene?.turn(...turns[event.key]);
+    if (event.shiftKey && turns[event.key]) this.scene?.eye.turn(...turns[event.key]);
     else if (keys[event.key]) keys[event.key]();
     else return;
     this.dirty = true;
@@ -157,13 +157,13 @@ export class Player extends EventTarget {
   // Play from just before the top turns over, with the camera free to sink.
   flip() {
     if (!Number.isFinite(this.turnsOver)) return;
-    this.scene?.release();
+    this.scene?.eye.release();
     this.seek(this.turnsOver - LEAD);
     this.toggle(!stillness());
   }
 
   look(view) {
-    this.scene?.look(view);
+    this.scene?.eye.look(view);
     this.find("[data-do=view]").value = view;
     this.dirty = true;
   }

@@ -3,6 +3,7 @@
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 
+import { Eye } from "./eye.js";
 import { cutTrace, makeArrow, makePatch, makeRuler, makeTable, makeToy, makeTrace, paintGrid, pointArrow, traceMaterial } from "./toy.js";
 
 export const ARROWS = { axis: "#109b60", momentum: "#7b4fd0", friction: "#e03c31" };
@@ -13,10 +14,6 @@ export const MODES = { sliding: "#e8590c", sticking: "#2b8a3e", double: "#7b4fd0
 // How much of a ghost is seen, and where ghosts stand beside the top, in sizes of it.
 const GHOST = 0.45;
 const BESIDE = [[-1.9, -1.2], [1.9, 1.2], [-2.2, 2.6]];
-// How far down the camera goes, rad from above: nearly to the table.
-const LOWEST = 1.53;
-
-const VIEWS = { orbit: [3.6, -5.6, 3.1], side: [0, -6.6, 0.7], above: [0, -0.05, 7.5] };
 
 export class Scene {
   constructor(canvas) {
@@ -33,9 +30,7 @@ export class Scene {
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enableDamping = true;
-    this.controls.maxPolarAngle = LOWEST;
-    this.controls.minDistance = 2;
-    this.controls.maxDistance = 30;
+    this.eye = new Eye(this.camera, this.controls);
     this.light();
     this.ink = traceMaterial();
     this.arrows = {};
@@ -50,14 +45,12 @@ export class Scene {
     this.patch = makePatch();
     this.world.add(this.patch);
     this.listen(canvas);
-    this.look("orbit");
+    this.eye.look("orbit");
   }
 
   // A swipe up or down and a wheel scroll the page; drags turn, and so do wheels once the scene was clicked.
   listen(canvas) {
     canvas.style.touchAction = "pan-y";
-    this.held = false;
-    this.controls.addEventListener("start", () => (this.held = true));
     const wheel = ({ ctrlKey }) => (this.controls.enableZoom = ctrlKey || document.activeElement === canvas);
     canvas.addEventListener("wheel", wheel, { capture: true });
     canvas.addEventListener("pointerdown", () => (this.controls.enableZoom = true), { capture: true });
@@ -168,62 +161,6 @@ export class Scene {
     if (glass) glass.visible = this.shown.glass;
   }
 
-  // Put the camera at one of the `VIEWS`.
-  look(name) {
-    const centre = this.controls.target;
-    const [x, y, z] = VIEWS[name] ?? VIEWS.orbit;
-    if (name === "orbit" || centre.lengthSq() === 0) centre.z = 1.05;
-    this.camera.position.set(centre.x + x, centre.y + y, centre.z + z);
-    this.release();
-    this.controls.update();
-  }
-
-  // Where the camera is from what it looks at: distance, angle from above and angle around, rad.
-  get place() {
-    const { x, y, z } = this.camera.position.clone().sub(this.controls.target);
-    const distance = Math.hypot(x, y, z);
-    return [distance, Math.acos(z / distance), Math.atan2(y, x)];
-  }
-
-  set place([distance, down, around]) {
-    const flat = distance * Math.sin(down);
-    const offset = [flat * Math.cos(around), flat * Math.sin(around), distance * Math.cos(down)];
-    this.camera.position.set(...offset).add(this.controls.target);
-  }
-
-  turn(across, up) {
-    const [distance, down, around] = this.place;
-    this.held = true;
-    this.place = [distance, Math.min(Math.max(down - up, 0.02), LOWEST), around + across];
-    this.controls.update();
-  }
-
-  zoom(factor) {
-    const [distance, down, around] = this.place;
-    this.place = [Math.min(Math.max(distance * factor, 2), 30), down, around];
-    this.controls.update();
-  }
-
-  // Let the camera sink and rise by itself again.
-  release() {
-    this.held = false;
-    this.sunk = 0;
-  }
-
-  // Let the camera down to the table by a share of the way, unless the visitor holds it.
-  sink(share) {
-    if (this.held) {
-      this.sunk = 0;
-      return;
-    }
-    if (!share && !this.sunk) return;
-    const [distance, down, around] = this.place;
-    if (!this.sunk) this.high = [distance, down];
-    const [far, above] = this.high;
-    this.sunk = share;
-    this.place = [far * (1 - 0.22 * share), above + Math.max(LOWEST - above, 0) * share, around];
-  }
-
   resize(width, height) {
     if (!width || !height) return;
     this.renderer.setPixelRatio(this.quality);
@@ -258,7 +195,7 @@ export class Scene {
     this.sun.position.set(x - 2.2, y - 4.2, 7);
     this.sun.target.position.set(x, y, 0);
     if (this.following) this.follow(x, y);
-    this.sink(sunk);
+    this.eye.sink(sunk);
     // The table reaches as far as one looks: it moves with the camera by whole squares.
     const { target } = this.controls;
     this.table.position.x = this.cell * Math.round(target.x / this.cell);
