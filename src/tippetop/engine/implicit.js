@@ -3,7 +3,7 @@ import { toPowers, chebyshev } from "./dense.js";
 import { gauss } from "./polynomials.js";
 import { Stepper } from "./stepper.js";
 
-const STAGES = 6, TURNS = 12, ENOUGH = 1e-3;
+const STAGES = 6, TURNS = 12, ENOUGH = 1e-3, MOST = 2048;
 
 /** Radau's points in (0, 1], of which the last is 1. */
 const POINTS = Array.from({ length: STAGES }, (_, j) => {
@@ -34,6 +34,7 @@ const HIGHEST = POINTS.map((_, j) =>
 export class Collocation extends Stepper {
   constructor(motion, parameters, state) {
     super(motion, parameters, state, STAGES, STAGES);
+    this.most = MOST;
     this.jacobian = null;
     this.there = new Float64Array(this.size);
   }
@@ -98,13 +99,21 @@ export class Collocation extends Stepper {
     }
     for (let i = 0; i < size; i += 1) reached[i] = state[i] + moved[count - size + i];
     if (!(error <= 0.1)) return error === error ? 1e3 : NaN;
-    let doubt = 0;
+    return this.doubt(step, tolerance);
+  }
+
+  /** The error of the step over the one allowed, without what stiffness makes of rounding (Hairer's filter). */
+  doubt(step, tolerance) {
+    const { size, state, slopes, jacobian } = this, off = new Float64Array(size), share = WEIGHTS[STAGES - 1][STAGES - 1];
+    const rows = Array.from({ length: size }, (_, i) =>
+      Float64Array.from({ length: size }, (__, j) => (i === j ? 1 : 0) - step * share * jacobian[j][i]));
     for (let i = 0; i < size; i += 1) {
-      let highest = 0;
-      for (let a = 0; a < STAGES; a += 1) highest += HIGHEST[a] * slopes[a + 1][i];
-      doubt = Math.max(doubt, Math.abs(step * highest) / (tolerance * (1 + Math.abs(state[i]))));
+      for (let a = 0; a < STAGES; a += 1) off[i] += step * HIGHEST[a] * slopes[a + 1][i];
     }
-    return 0.1 * doubt;
+    solved(rows, factored(rows), off);
+    let largest = 0;
+    for (let i = 0; i < size; i += 1) largest = Math.max(largest, Math.abs(off[i]) / (tolerance * (1 + Math.abs(state[i]))));
+    return 0.1 * largest;
   }
 
   interpolate(step) {

@@ -51,6 +51,7 @@ export class Adaptive {
       return found;
     };
     guards.begin();
+    let count = 0;
     while (time < end) {
       let reach = time + step;
       if (reach >= end || end - reach < 1e-14 * Math.abs(end)) reach = end;
@@ -80,6 +81,11 @@ export class Adaptive {
       time = reach;
       keep(time, run.terms);
       run.accept();
+      count += 1;
+      if (count === run.most && time < end) {
+        yield arc(null, "it takes too many steps", run.state);
+        return;
+      }
       if (knots.length > MANY) yield arc(null, null, run.state);
       step = span * Math.min(growth, doubt === 0 ? 10 : 0.9 * doubt ** (-1 / run.order));
       if (reach === end && span < step) step = Math.max(step, span);

@@ -24,6 +24,7 @@ export class Stepper {
     this.offs = new Float64Array(this.size);
     this.bends = BENDS.map(() => new Float64Array(this.size));
     this.evaluations = 0;
+    this.most = Infinity;
   }
 
   rates(y, out) {
