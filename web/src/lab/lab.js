@@ -112,6 +112,12 @@ export class Lab extends EventTarget {
     }
     if (this.pending) this.look(this.pending);
     this.pending = null;
+    this.player.addEventListener("time", () => this.tellOf(track, last), { once: true });
+  }
+
+  // What there is of a run beside its picture, once that is drawn.
+  tellOf(track, last) {
+    if (track !== this.track) return;
     this.dispatchEvent(new Event("run"));
     if (last) this.set({ prospect: foresee(track.header.problem) });
     this.say();
