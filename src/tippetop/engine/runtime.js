@@ -12,7 +12,9 @@ export class AssertionError extends Error {}
 const takes = (a, word) => a !== null && typeof a === "object" && word in a;
 
 function applied(a, b, word, turned, plain) {
-  if (takes(a, word)) return a[word](b);
+  // Where the second's class is one of the first's kind, it is asked first.
+  const special = takes(b, turned) && takes(a, word) && b instanceof a.constructor && b.constructor !== a.constructor;
+  if (takes(a, word) && !special) return a[word](b);
   if (takes(b, turned)) return b[turned](a);
   if (typeof a === "boolean" || typeof b === "boolean") return plain(Number(a), Number(b));
   throw new TypeError(`${word} of ${a} and ${b}`);
