@@ -110,8 +110,9 @@ def arithmetic():
     three = Ring(5) + 4
     gold = Ring(1) + Gold(2)
     rings = [gold.number, isinstance(gold, Gold)]
-    return [*found, *rings, (2 + three).number, (three * three).number, 7 // 2, -7 // 2, -7 % 3, 2.0**0.5, True + 1,
-            sum([1, 2], 10), max(3, 1, 2), min([4.0, 2.0]), max([], default=-1.0), 1 if not () else 0]
+    return [*found, *rings, (2 + three).number, (three * three).number, 7 // 2, -7 // 2, -7 % 3, 2.0**0.5,
+            True + 1, sum([1, 2], 10), max(3, 1, 2), min([4.0, 2.0]),
+            max([], default=-1.0), 1 if not () else 0]
 
 def choices():
     found = []
