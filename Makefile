@@ -6,7 +6,7 @@ OUT ?= tippetop-report
 
 BUILT = src/tippetop/export/built/lab.html
 
-.PHONY: reproduce page test test-browser test-docs doctest chromium check lint types contract docs bench quick dist review clean
+.PHONY: engine reproduce page test test-browser test-docs doctest chromium check lint types contract docs bench quick dist review clean
 
 reproduce: $(VENV)/.installed ## Redo the whole report into $(OUT)
 	$(BIN)/tippetop reproduce --out $(OUT) --force
@@ -50,6 +50,9 @@ contract: $(VENV)/.installed-dev
 
 quick: $(VENV)/.installed ## A coarse report in half a minute
 	$(BIN)/tippetop reproduce --quick --out $(OUT) --force
+
+engine: $(VENV)/.installed ## Write the engine in the page anew from the mechanics and contact modes
+	$(BIN)/python -m tippetop.engine
 
 bench: $(VENV)/.installed-bench ## Measure what is promised of speed and memory; takes half an hour
 	$(BIN)/python -m benchmarks --json benchmarks.json
