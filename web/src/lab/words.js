@@ -12,7 +12,7 @@ const LATE = 0.1;
 export function tell(track, prospect, units) {
   const { header } = track;
   const details = [];
-  if (prospect?.ends?.length) details.push(heading(prospect, units));
+  if (prospect?.ends?.length) details.push(far(track, prospect) ? slowly(prospect, units) : heading(prospect, units));
   if (header.problem.friction.mu === 0) details.push(t("words.frictionless"));
   if (header.outcome.name === "lifted_off") details.push(t("words.stopped"));
   else if (!["completed", "at_rest"].includes(header.outcome.name)) {
@@ -26,6 +26,16 @@ export function tell(track, prospect, units) {
 export function heading({ ends, certain }, units) {
   const texts = ends.map((end) => endInWords(end, units));
   return t(certain ? "controls.heads" : "controls.headsMany", { end: texts.join(" / ") });
+}
+
+// Whether a run has hardly moved, though its end is elsewhere.
+function far(track, { ends, certain }) {
+  const [low, high] = range(track.columns.theta, 0);
+  return certain && high - low < 0.1 && Math.abs(ends[0].tilt - high) > 0.5;
+}
+
+function slowly({ ends }, units) {
+  return t("words.slowly", { end: endInWords(ends[0], units) });
 }
 
 export function endInWords({ kind, tilt, spin, precession }, units) {
