@@ -12,7 +12,7 @@ from launches import TOLERANCE, asked, compared, in_javascript, in_python, launc
 from tippetop.engine import COMMAND, HERE
 from tippetop.engine.generate import generated
 
-SEEDS, DURATION = (1, 3, 32, 62, 64), 0.3
+SEEDS, DURATION = (1, 3, 32, 62, 64, 104), 0.3
 if "TIPPETOP_PARITY" in os.environ:
     SEEDS = tuple(range(int(os.environ["TIPPETOP_PARITY"])))
 

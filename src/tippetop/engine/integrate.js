@@ -7,7 +7,7 @@ import { Stepper } from "./stepper.js";
 const MANY = 512, FEW = 32;
 const LEAST_STEP = 1e-15;
 const PARTS = [0, 0.25, 0.5, 0.75, 1];
-const NEAR = 0.1;
+const NEAR = 0.1, RISEN = 1e-15;
 const NOT_FINITE = "the solution is no longer finite";
 
 /** The implicit method by its name in Python, radau; and the explicit one. */
@@ -164,6 +164,10 @@ class Guards {
       most = Math.max(most, looks[i][number]);
     }
     if (least > NEAR * (most - least)) return null;
+    if (looks[0][number] <= 0 && looks[1][number] <= 0) {
+      const early = this.early(number);
+      if (early !== null) return early;
+    }
     for (let i = 0; i + 1 < looks.length; i += 1) {
       const before = looks[i][number], after = looks[i + 1][number];
       if (before > 0 && after <= 0) return [PARTS[i], PARTS[i + 1]];
@@ -171,6 +175,17 @@ class Guards {
       // It may dip between the two: look where its slopes at their ends say so.
       const dip = this.dip(number, PARTS[i], PARTS[i + 1], before, after);
       if (dip !== null) return [PARTS[i], dip];
+    }
+    return null;
+  }
+
+  /** Where a guard that starts at zero, rises, and is back before the first look falls. */
+  early(number) {
+    let low = 2 ** -40, before = this.inside(number, low);
+    for (let high = 2 * low; high <= PARTS[1]; high *= 2) {
+      const after = this.inside(number, high);
+      if (before > RISEN && after <= 0) return [low, high];
+      [low, before] = [high, after];
     }
     return null;
   }
@@ -202,7 +217,7 @@ class Guards {
       run.take(step, 1);
       return this.value(number, run.reached);
     };
-    const shift = 1e-4 * span;
+    const shift = Math.min(1e-4 * span, 0.1 * guess) || 1e-4 * span;
     let [now, before] = [guess, guess > shift ? guess - shift : guess + shift];
     let [at, was] = [value(now), value(before)];
     for (let turn = 0; turn < 8 && at !== was && at !== 0; turn += 1) {
