@@ -62,9 +62,9 @@ def simulate(
     times
         Sample times instead, s: increasing, from 0 to `duration`.
     integrator
-        "taylor", "compiled", "dop853", "rk45", "radau", "bdf", "lsoda" or "rk4"; None for the best
-        installed; or an object of one's own, which follows motions as
-        `tippetop.integrators.base.Integrator` does.
+        "taylor", "collocation", "compiled", "dop853", "rk45", "radau", "bdf", "lsoda" or "rk4"; None for the
+        best installed, which collocation relieves where friction is stiff; or an object of one's own, which
+        follows motions as `tippetop.integrators.base.Integrator` does.
     tolerance
         Relative error per step; None for the integrator's own default. Only with an integrator by name.
     step
@@ -82,9 +82,9 @@ def simulate(
         The variables of `tippetop.catalogue` with their SI units. Over `time`: those of `SAMPLED`, and the
         contact mode. Over `event` and `flight`: those of `LISTED`. Single numbers: those of `METRICS`, which
         are events and extremes of the motion and do not depend on the samples, and of `MONITORS`. Attributes:
-        problem (JSON), outcome, outcome_advice, integrator, tolerance or step, tippetop_version,
-        Conventions. When the run ends before `duration`, the last sample is its end, unless
-        its numbers grew beyond all bounds.
+        problem (JSON), outcome, outcome_advice, integrator (every one that took steps), tolerance (the
+        largest) or step, tippetop_version, Conventions. When the run ends before `duration`, the last sample
+        is its end, unless its numbers grew beyond all bounds.
 
     Raises
     ------
@@ -136,7 +136,7 @@ def simulate(
         "problem": problem.to_json(),
         "outcome": outcome.name.lower(),
         "outcome_advice": " ".join(filter(None, (outcome.value, trajectory.detail))),
-        **_method_attributes(method, units),
+        **_method_attributes([method, *tally.methods.values()], units),
         "tippetop_version": __version__,
     }
     lists = _event_arrays(trajectory.events, units) | _flight_arrays(tally.flights, units)
@@ -217,11 +217,12 @@ def _flight_arrays(flights: Array, units: Units) -> dict[str, NDArray[Any]]:
     }
 
 
-def _method_attributes(method: Integrator, units: Units) -> dict[str, str | float]:
-    """The method and its one setting."""
-    settings: dict[str, str | float] = {"integrator": method.name}
-    if hasattr(method, "step"):
-        settings["step"] = float(method.step) * units.time
-    elif hasattr(method, "tolerance"):
-        settings["tolerance"] = float(method.tolerance)
+def _method_attributes(methods: Sequence[Integrator], units: Units) -> dict[str, str | float]:
+    """The methods that took the steps, and their one setting: of tolerances the largest."""
+    settings: dict[str, str | float] = {"integrator": ", ".join(method.name for method in methods)}
+    if hasattr(methods[0], "step"):
+        settings["step"] = float(methods[0].step) * units.time
+    tolerances = [float(method.tolerance) for method in methods if hasattr(method, "tolerance")]
+    if tolerances:
+        settings["tolerance"] = max(tolerances)
     return settings

@@ -7,7 +7,7 @@ import numpy as np
 
 from tippetop.contact.block import WEIGHTS, Block, ModeSteps
 from tippetop.contact.mode import Event, EventKind, Outcome, Segment
-from tippetop.integrators.base import Array
+from tippetop.integrators.base import Array, Integrator
 from tippetop.integrators.dense import at_fractions, chebyshev
 from tippetop.integrators.polynomials import Polynomials, least_of_all
 from tippetop.mechanics.quadratures import twisting_powers
@@ -31,6 +31,7 @@ class Tally:
         self._turned, self._landed = np.nan, True
         self._drilled = self._rolled = 0.0
         self.steps = self.evaluations = 0
+        self.methods = dict[str, Integrator]()
 
     @property
     def flights(self) -> Array:
@@ -42,6 +43,8 @@ class Tally:
         self.steps += sum(segment.steps for segment in block.segments)
         self.evaluations += sum(segment.evaluations for segment in block.segments)
         for segment in block.segments:
+            if segment.method is not None and segment.method.name not in self.methods:
+                self.methods[segment.method.name] = segment.method
             if not segment.mode.touching:
                 self._fly(segment)
         for group in block.groups:

@@ -39,6 +39,7 @@ STEP = 0.01
 EPS = float(np.finfo(float).eps)
 DEFAULTS = [
     *([_adaptive("taylor", EPS)] if has_taylor() else []),
+    _adaptive("collocation", 1e-13),
     *([_adaptive("compiled", 1e-13)] if has_numba() else []),
     _adaptive("dop853", 1e-12),
     _adaptive("rk45", 1e-10),

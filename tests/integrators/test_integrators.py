@@ -27,6 +27,7 @@ from tippetop.integrators import (
     Guard,
     Motion,
     classical,
+    collocation,
     has_numba,
     has_taylor,
     make_integrator,
@@ -149,6 +150,7 @@ def test_steps_join(method):
 
 CUTS = {
     "taylor": (taylor, {"LONG": 4}) if has_taylor() else None,
+    "collocation": (collocation, {"MANY": 8}),
     "compiled": (compiled_runge_kutta, {"MANY": 7}) if has_numba() else None,
 }
 """What decides into how many arcs a solution is cut, and smaller numbers of it."""

@@ -81,7 +81,9 @@ def simulate(
     ] = None,
     integrator: Annotated[
         str | None,
-        typer.Option(help="taylor, compiled, dop853, rk45, radau, bdf, lsoda or rk4; the best installed."),
+        typer.Option(
+            help="taylor, collocation, compiled, dop853, rk45, radau, bdf, lsoda, rk4; the best installed."
+        ),
     ] = None,
     tolerance: Annotated[float | None, typer.Option(help="Relative error per step.")] = None,
     step: Annotated[float | None, typer.Option(help="Step of rk4, s.")] = None,

@@ -53,8 +53,8 @@ class Outcome(Enum):
     )
     TOO_MANY_STEPS = (
         "The motion took more steps than the run allows: it is very fast, or stiff; shorten the duration, "
-        "lessen the friction, try the integrator radau, which is made for stiff friction, or raise the limit "
-        "on steps."
+        "lessen the friction, try the integrator collocation, which is made for stiff friction, or raise the "
+        "limit on steps."
     )
     INACCURATE = (
         "The numbers do not keep what the motion keeps: do not trust them; "
@@ -172,6 +172,8 @@ class Segment:
         Work done by the integrator.
     highest_gap
         How high the lowest point rose above the table.
+    method
+        The integrator that took the steps, if it is not the one that was asked.
     """
 
     mode: "Mode"
@@ -181,6 +183,7 @@ class Segment:
     steps: int = 0
     evaluations: int = 0
     highest_gap: float = 0.0
+    method: Integrator | None = None
 
     @property
     def end_time(self) -> float:
@@ -308,4 +311,4 @@ class IntegratedMode(Mode):
                 transition = self.follow(arc.guard, arc.solution.end, last)
             elif arc.solution.end >= end:
                 transition = Transition((), Outcome.COMPLETED, last)
-            yield Segment(self, arc.solution, last, transition, arc.steps, arc.evaluations)
+            yield Segment(self, arc.solution, last, transition, arc.steps, arc.evaluations, method=arc.method)

@@ -400,7 +400,7 @@ py.fields(Motion, ["rates", "size", "parameters", "guards", "lasting"]);
 
 /** A piece of a solution. */
 class Arc extends py.Record {
-  constructor(solution, end_state, guard = null, failure = null, steps = 0, evaluations = 0) {
+  constructor(solution, end_state, guard = null, failure = null, steps = 0, evaluations = 0, method = null) {
     super();
     this.solution = solution;
     this.end_state = end_state;
@@ -408,9 +408,10 @@ class Arc extends py.Record {
     this.failure = failure;
     this.steps = steps;
     this.evaluations = evaluations;
+    this.method = method;
   }
 }
-py.fields(Arc, ["solution", "end_state", "guard", "failure", "steps", "evaluations"]);
+py.fields(Arc, ["solution", "end_state", "guard", "failure", "steps", "evaluations", "method"]);
 
 // tippetop.mechanics.units
 
@@ -1385,7 +1386,7 @@ function landed(state, ending, top) {
 
 /** How a run ended; the value is advice. */
 class Outcome extends py.Enum {}
-py.members(Outcome, { COMPLETED: "The run reached its end.", LIFTED_OFF: "The table would have to pull from here on; with liftoff = ignore it does, and with fly the top leaves it.", AT_REST: "The top came to rest, and the table holds it so: nothing happens any more.", LYING_FLAT: "The body came to lie flat: there it touches the table all around, which is not followed further; this is the end of its motion, but for what the impact of its face would add.", STICKING_ON_TWO: "Two surfaces touch the table and one does not slip, which is followed no further; viscous friction, or a patch that drills, goes on.", TOO_MANY_PHASES: "The top bounced and slid more often than the run allows; shorten the duration, lower the restitution, or raise the limit on phases.", TOO_MANY_STEPS: "The motion took more steps than the run allows: it is very fast, or stiff; shorten the duration, lessen the friction, try the integrator radau, which is made for stiff friction, or raise the limit on steps.", INACCURATE: "The numbers do not keep what the motion keeps: do not trust them; try another integrator or a smaller tolerance.", FAILED: "The integrator could not go on: the motion became singular or too stiff for it; try another integrator, or less friction." });
+py.members(Outcome, { COMPLETED: "The run reached its end.", LIFTED_OFF: "The table would have to pull from here on; with liftoff = ignore it does, and with fly the top leaves it.", AT_REST: "The top came to rest, and the table holds it so: nothing happens any more.", LYING_FLAT: "The body came to lie flat: there it touches the table all around, which is not followed further; this is the end of its motion, but for what the impact of its face would add.", STICKING_ON_TWO: "Two surfaces touch the table and one does not slip, which is followed no further; viscous friction, or a patch that drills, goes on.", TOO_MANY_PHASES: "The top bounced and slid more often than the run allows; shorten the duration, lower the restitution, or raise the limit on phases.", TOO_MANY_STEPS: "The motion took more steps than the run allows: it is very fast, or stiff; shorten the duration, lessen the friction, try the integrator collocation, which is made for stiff friction, or raise the limit on steps.", INACCURATE: "The numbers do not keep what the motion keeps: do not trust them; try another integrator or a smaller tolerance.", FAILED: "The integrator could not go on: the motion became singular or too stiff for it; try another integrator, or less friction." });
 
 /** What can happen to a top; the value is its name in a result. */
 class EventKind extends py.Enum {}
@@ -1435,7 +1436,7 @@ const NO_REACTION = new Reaction([0.0, 0.0, 0.0], [0.0, 0.0, 0.0], 0.0);
 
 /** A piece of a trajectory within one mode. */
 class Segment extends py.Record {
-  constructor(mode, solution, end_state, transition, steps = 0, evaluations = 0, highest_gap = 0.0) {
+  constructor(mode, solution, end_state, transition, steps = 0, evaluations = 0, highest_gap = 0.0, method = null) {
     super();
     this.mode = mode;
     this.solution = solution;
@@ -1444,13 +1445,14 @@ class Segment extends py.Record {
     this.steps = steps;
     this.evaluations = evaluations;
     this.highest_gap = highest_gap;
+    this.method = method;
   }
   /** When it ended. */
   get end_time() {
     return this.solution.end;
   }
 }
-py.fields(Segment, ["mode", "solution", "end_state", "transition", "steps", "evaluations", "highest_gap"]);
+py.fields(Segment, ["mode", "solution", "end_state", "transition", "steps", "evaluations", "highest_gap", "method"]);
 
 /** A way to move. */
 class Mode extends py.Record {
@@ -1501,7 +1503,7 @@ class IntegratedMode extends Mode {
       } else if (arc.solution.end >= end) {
         transition = new Transition([], Outcome.COMPLETED, last);
       }
-      yield new Segment(this, arc.solution, last, transition, arc.steps, arc.evaluations);
+      yield new Segment(this, arc.solution, last, transition, arc.steps, arc.evaluations, undefined, arc.method);
     }
   }
 }

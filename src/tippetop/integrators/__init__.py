@@ -1,4 +1,4 @@
-"""Integrators by name: compiled by heyoka and by numba, SciPy's, and the classical Runge-Kutta."""
+"""Integrators by name: compiled by heyoka and by numba, collocation, SciPy's, and Runge and Kutta's."""
 
 from importlib.util import find_spec
 
@@ -17,6 +17,7 @@ __all__ = [
     "has_numba",
     "has_taylor",
     "make_integrator",
+    "relieved",
 ]
 
 SCIPY_TOLERANCES = {"dop853": 1e-12, "rk45": 1e-10, "radau": 1e-9, "bdf": 1e-9, "lsoda": 1e-11}
@@ -28,7 +29,7 @@ COMPILED_TOLERANCE = 1e-13
 LEAST_SCIPY_TOLERANCE = 2.3e-14
 """Below this SciPy's solvers do not honour a relative tolerance."""
 
-NAMES = ["taylor", "compiled", *SCIPY_TOLERANCES, "rk4"]
+NAMES = ["taylor", "collocation", "compiled", *SCIPY_TOLERANCES, "rk4"]
 """The integrators by the names users give."""
 
 
@@ -60,7 +61,7 @@ def make_integrator(
     Parameters
     ----------
     name
-        One of `NAMES`; None for the best installed.
+        One of `NAMES`; None for the best installed, which "collocation" relieves where the motion is stiff.
     tolerance
         Relative error per step; None for the integrator's own default. Not for "rk4".
     step
@@ -75,7 +76,8 @@ def make_integrator(
     Unavailable
         If it is not installed.
     """
-    name = default_name() if name is None else name
+    if name is None:
+        return relieved(make_integrator(default_name(), tolerance, step, time_unit))
     if not isinstance(name, str) or name not in NAMES:
         raise InvalidInput("integrator", name, one_of(name, NAMES))
     if name == "rk4":
@@ -95,9 +97,24 @@ def make_integrator(
         raise InvalidInput("tolerance", tolerance, f"a number from {least:.2g} to 1 with {name}")
     if name == "taylor":
         return _taylor(tolerance)
+    if name == "collocation":
+        return _collocation(tolerance)
     if name == "compiled":
         return _compiled(COMPILED_TOLERANCE if tolerance is None else tolerance)
     return _scipy(name, SCIPY_TOLERANCES[name] if tolerance is None else tolerance)
+
+
+def relieved(integrator: Integrator) -> Integrator:
+    """The method, relieved by "collocation" where the motion is stiff."""
+    from tippetop.integrators.relief import Relieved  # noqa: PLC0415 - it imports from here
+
+    return integrator if isinstance(integrator, Relieved) else Relieved(integrator)
+
+
+def _collocation(tolerance: float | None) -> Integrator:
+    from tippetop.integrators.collocation import Collocation  # noqa: PLC0415 - slow to import
+
+    return Collocation() if tolerance is None else Collocation(tolerance)
 
 
 def _taylor(tolerance: float | None) -> Integrator:

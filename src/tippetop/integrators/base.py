@@ -78,6 +78,8 @@ class Arc:
         Why the integrator gave up there, or None.
     steps, evaluations
         Steps accepted, and evaluations of the right-hand side (for the Taylor method: expansions).
+    method
+        Who took them, if it is not the integrator that was asked.
     """
 
     solution: DenseSolution
@@ -86,6 +88,7 @@ class Arc:
     failure: str | None = None
     steps: int = 0
     evaluations: int = 0
+    method: "Integrator | None" = None
 
 
 class Integrator(Protocol):

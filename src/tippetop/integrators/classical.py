@@ -6,7 +6,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from tippetop.integrators.base import NOT_FINITE, Arc, Array, Motion
-from tippetop.integrators.sampling import RightHandSide, Steps, first_fall, polish
+from tippetop.integrators.rates import RightHandSide
+from tippetop.integrators.sampling import Steps
 
 DEGREE = 5
 """Degree of the polynomials that stand for its steps: their error is of higher order than the method's."""
@@ -34,31 +35,25 @@ class ClassicalRK4:
         """Follow the motion; see `tippetop.integrators.base.Integrator`."""
         rates = RightHandSide(motion, parameters)
         time, state = start
-        taken, counted = Steps(time, motion.size, DEGREE), 0
+        taken = Steps(rates, time, DEGREE)
         steps = max(1, int(np.ceil((end - start[0]) / self.step - 1e-9)))
         for count in range(1, steps + 1):
             reach = end if count == steps else start[0] + count * self.step
             before, base = time, state
             time, state = reach, classical_step(rates, base, reach - before)
             if not np.all(np.isfinite(state)):
-                failure = NOT_FINITE
-                yield Arc(taken.solution(), base, None, failure, len(taken), rates.calls - counted)
+                yield taken.arc(base, failure=NOT_FINITE)
                 return
 
             def dense(at: float, before: float = before, base: Array = base) -> Array:
                 return classical_step(rates, base, at - before)
 
-            fall = first_fall(motion.guards, parameters, dense, dense, (before, reach))
-            if fall is not None:
-                guard = motion.guards[fall[0]]
-                at, last = polish(guard, parameters, dense, (before, reach), fall[1])
-                taken.take(at, dense)
-                yield Arc(taken.solution(), last, guard.name, None, len(taken), rates.calls - counted)
+            last = taken.take(reach, dense, dense)
+            if last is not None:
+                yield last
                 return
-            taken.take(reach, dense)
             if len(taken) == MANY or count == steps:
-                yield Arc(taken.solution(), state, None, None, len(taken), rates.calls - counted)
-                taken, counted = Steps(reach, motion.size, DEGREE), rates.calls
+                yield taken.arc(state)
 
 
 def classical_step(rates: RightHandSide, state: Array, step: float) -> Array:

@@ -68,6 +68,16 @@ class DenseSolution:
         knots[-1] = end
         return DenseSolution(knots, self.terms)
 
+    def refined(self, longest: float) -> "DenseSolution":
+        """The same in steps that are no longer than this."""
+        parts = np.ceil(np.diff(self.knots) / longest).astype(int)
+        if parts.max(initial=1) == 1:
+            return self
+        steps = zip(self.knots[:-1], self.knots[1:], parts, strict=True)
+        begun = [np.linspace(start, end, count, endpoint=False) for start, end, count in steps]
+        knots = np.append(np.concatenate(begun), self.end)
+        return DenseSolution.fitted(self.rows, knots, self.terms.shape[2] - 1)
+
     def knots_of(self, number: int, end: float) -> list[float]:
         """Values of a component that grows, where every other step begins before it reaches `end`; and `end`.
 
@@ -106,11 +116,16 @@ class DenseSolution:
 
     @classmethod
     def joined(cls, parts: Sequence["DenseSolution"]) -> "DenseSolution":
-        """Solutions that follow one another, of one degree, as one."""
+        """Solutions that follow one another as one."""
         if len(parts) == 1:
             return parts[0]
         knots = np.concatenate([parts[0].knots, *(part.knots[1:] for part in parts[1:])])
-        return cls(knots, np.concatenate([part.terms for part in parts]))
+        terms = np.zeros((len(knots) - 1, parts[0].terms.shape[1], max(p.terms.shape[2] for p in parts)))
+        first = 0
+        for part in parts:
+            terms[first : first + len(part.terms), :, : part.terms.shape[2]] = part.terms
+            first += len(part.terms)
+        return cls(knots, terms)
 
     @classmethod
     def in_time(cls, knots: Array, terms: Array) -> "DenseSolution":

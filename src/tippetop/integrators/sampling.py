@@ -6,8 +6,9 @@ from itertools import pairwise
 import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
-from tippetop.integrators.base import Array, Guard, Motion
+from tippetop.integrators.base import Arc, Array, Guard
 from tippetop.integrators.dense import DenseSolution, chebyshev
+from tippetop.integrators.rates import RightHandSide
 
 Dense = Callable[[float], Array]
 """The solution within a step as a function of time."""
@@ -25,55 +26,59 @@ RISEN = 1e-15
 """What such a guard must reach to have risen: less is rounding."""
 
 
-class RightHandSide:
-    """A motion's rates as the step-by-step methods take them, with a count of how often they were asked.
-
-    Where the arithmetic breaks down, the rates are not numbers, and the method finds no step.
-    """
-
-    def __init__(self, motion: Motion, parameters: Sequence[float]) -> None:
-        self.motion, self.parameters, self.calls = motion, parameters, 0
-
-    def __call__(self, _: float, state: Array) -> Array:
-        """The rates at a state, whatever the time."""
-        self.calls += 1
-        try:
-            return np.array(self.motion.rates(state.tolist(), self.parameters))
-        except ArithmeticError:
-            return np.full(self.motion.size, np.nan)
-
-
 class Steps:
     """Collects the steps of an arc, each by the values of its solution at Chebyshev's points.
 
     Parameters
     ----------
+    rates
+        The rates of the motion.
     start
         Time at which the arc begins.
-    size
-        How many numbers the state has.
     degree
         Of the polynomials that are to stand for the solution.
     """
 
-    def __init__(self, start: float, size: int, degree: int) -> None:
-        self.size, self.degree = size, degree
-        self.knots, self.values = [start], list[Array]()
+    def __init__(self, rates: RightHandSide, start: float, degree: int) -> None:
+        self.rates, self.degree = rates, degree
+        self.knots, self.values, self._counted = [start], list[Array](), rates.calls
 
     def __len__(self) -> int:
         return len(self.values)
 
-    def take(self, end: float, dense: Dense) -> None:
-        """Take in a step up to a time."""
+    def take(self, end: float, dense: Dense, advance: Dense) -> Arc | None:
+        """Take in a step up to a time, or the last arc if a guard falls through zero in it.
+
+        Parameters
+        ----------
+        end
+            Where the step ends.
+        dense, advance
+            The solution within it; see `first_fall`.
+        """
+        motion, parameters, step = self.rates.motion, self.rates.parameters, (self.knots[-1], end)
+        fall = first_fall(motion.guards, parameters, dense, advance, step)
+        if fall is None:
+            self._keep(end, dense)
+            return None
+        guard = motion.guards[fall[0]]
+        at, last = polish(guard, parameters, advance, step, fall[1])
+        self._keep(at, dense)
+        return self.arc(last, guard.name)
+
+    def _keep(self, end: float, dense: Dense) -> None:
         start = self.knots[-1]
         places = chebyshev(self.degree)[0]
         self.values.append(np.array([dense(start + place * (end - start)) for place in places.tolist()]))
         self.knots.append(end)
 
-    def solution(self) -> DenseSolution:
-        """The steps as polynomials."""
-        values = np.array(self.values).reshape(-1, self.size)
-        return DenseSolution.fitted(lambda _: values.T, np.array(self.knots), self.degree)
+    def arc(self, state: Array, guard: str | None = None, failure: str | None = None) -> Arc:
+        """The steps as an arc that ends in a state; the next begins there."""
+        values = np.array(self.values).reshape(-1, self.rates.motion.size)
+        solution = DenseSolution.fitted(lambda _: values.T, np.array(self.knots), self.degree)
+        arc = Arc(solution, state, guard, failure, len(self), self.rates.calls - self._counted)
+        self.knots, self.values, self._counted = [self.knots[-1]], [], self.rates.calls
+        return arc
 
 
 def first_fall(

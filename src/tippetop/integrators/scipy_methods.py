@@ -9,7 +9,8 @@ import numpy as np
 from scipy.integrate import BDF, DOP853, LSODA, RK45, Radau
 
 from tippetop.integrators.base import NOT_FINITE, Arc, Array, Motion
-from tippetop.integrators.sampling import RightHandSide, Steps, first_fall, polish
+from tippetop.integrators.rates import RightHandSide
+from tippetop.integrators.sampling import Steps
 
 METHODS: dict[str, Any] = {
     "dop853": DOP853,
@@ -52,11 +53,11 @@ class SciPy:
     ) -> Iterator[Arc]:
         """Follow the motion; see `tippetop.integrators.base.Integrator`."""
         rates = RightHandSide(motion, parameters)
-        steps = Steps(start[0], motion.size, DEGREES[self.name])
+        steps = Steps(rates, start[0], DEGREES[self.name])
         if not np.all(np.isfinite(rates(*start))):
-            yield Arc(steps.solution(), start[1], None, "the motion is singular from the start")
+            yield steps.arc(start[1], failure="the motion is singular from the start")
             return
-        solver, failure, counted = self._solver(rates, start, end), None, 0
+        solver, failure = self._solver(rates, start, end), None
         while solver.status == "running":
             before, base = float(solver.t), solver.y.copy()
             failure = _take_step(solver)
@@ -66,25 +67,18 @@ class SciPy:
             if reach - before <= LEAST_STEP * max(1.0, abs(reach)) and reach < end:
                 failure = "the step size fell to nothing"
                 break
-            dense = solver.dense_output()
 
             def advance(at: float, before: float = before, base: Array = base) -> Array:
                 return self._land(rates, (before, base), at)
 
-            fall = first_fall(motion.guards, parameters, dense, advance, (before, reach))
-            if fall is not None:
-                guard = motion.guards[fall[0]]
-                at, last = polish(guard, parameters, advance, (before, reach), fall[1])
-                steps.take(at, dense)
-                yield Arc(steps.solution(), last, guard.name, None, len(steps), rates.calls - counted)
+            last = steps.take(reach, solver.dense_output(), advance)
+            if last is not None:
+                yield last
                 return
-            steps.take(reach, dense)
             if len(steps) == MANY:
-                yield Arc(steps.solution(), solver.y.copy(), None, None, MANY, rates.calls - counted)
-                steps, counted = Steps(reach, motion.size, DEGREES[self.name]), rates.calls
+                yield steps.arc(solver.y.copy())
         if len(steps) or failure is not None:
-            state = base if failure is not None else solver.y.copy()
-            yield Arc(steps.solution(), state, None, failure, len(steps), rates.calls - counted)
+            yield steps.arc(base if failure is not None else solver.y.copy(), failure=failure)
 
     def _solver(self, rates: RightHandSide, start: tuple[float, Array], end: float) -> Any:
         absolute = self.tolerance if self.absolute is None else self.absolute

@@ -48,7 +48,6 @@ def follow(
     start: Transition, time: float, end: float, tolerance: float, settled: float | None = None
 ) -> tuple[Trajectory, Tally]:
     """Follow one launch from a transition to its end, or until its tilt is held."""
-    name = default_name()
     method = make_integrator(name, max(tolerance, LEAST.get(name, 0.0)))
     trajectory, tally = Trajectory(start, end, method, time=time), Tally()
     segments = trajectory.segments()

@@ -35,10 +35,16 @@ class Crossings:
         Relative error per step, of the integrator of launches that are followed alone.
     banded
         Whether launches end when they reach a band of n_z.
+
+    Attributes
+    ----------
+    motion
+        How a top of their kind slides.
     """
 
     def __init__(self, slots: Slots, tolerance: float, banded: bool) -> None:
         self.slots, self.tolerance, self.banded = slots, tolerance, banded
+        self.motion = sliding_motion(slots.launches.kind, guarded=True)
 
     def launch(self, lanes: Indices, state: State) -> None:
         """Sort the launches out that do not simply slide from the start."""
@@ -58,8 +64,7 @@ class Crossings:
 
     def fall(self, lanes: Indices, time: Array, guards: Indices) -> None:
         """What follows where guards fall through zero."""
-        known = sliding_motion(self.slots.launches.kind, guarded=True).guards
-        names = np.array([guard.name for guard in known])[guards]
+        names = np.array([guard.name for guard in self.motion.guards])[guards]
         other, free = names == BRANCH, names == LIFT_OFF
         ending = ~(other | free)
         if ending.any():
@@ -160,6 +165,14 @@ class Crossings:
             self.slots.retire(lane, state, time, transition.then)
         else:
             self.slots.place(lane, state, time)
+
+    def follow_alone(self, lanes: Indices) -> None:
+        """Follow launches that slide as single launches are, from where they are."""
+        state, time = self.slots.whole(lanes), self.slots.time(lanes)
+        for i, lane in enumerate(lanes.tolist()):
+            here = single(state, i)
+            mode = self.slots.launches.rules(int(self.slots.cell[lane])).going_on(here, slips=True)
+            self._follow_alone(lane, float(time[i]), Transition((), mode, here))
 
     def _follow_alone(self, lane: int, time: float, transition: Transition) -> None:
         """Follow one launch to its end as a single launch is."""

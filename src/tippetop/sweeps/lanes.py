@@ -12,10 +12,11 @@ from tippetop.contact.mode import Outcome
 from tippetop.contact.trajectory import STEP_LIMIT
 from tippetop.integrators.base import Array
 from tippetop.integrators.polynomials import Polynomials
+from tippetop.integrators.relief import PATIENCE, is_stiff
 from tippetop.metrics import Ends
 from tippetop.sweeps.crossings import Crossings
 from tippetop.sweeps.extremes import FORCE
-from tippetop.sweeps.launches import Flags, Launches, Note, picked
+from tippetop.sweeps.launches import Flags, Indices, Launches, Note, picked
 from tippetop.sweeps.slots import Slots
 from tippetop.sweeps.stride import LANES, Stepper
 from tippetop.theory.prediction import is_held
@@ -81,7 +82,7 @@ class Lanes:
         # Launches that ended in the flight they began with are noted in the first window.
         noted, slots = self._launched, self.slots
         while noted.any():
-            begun = slots.rows[: slots.layout.left + 1].copy()
+            begun = slots.rows[: slots.layout.kept].copy()
             for _ in range(WINDOW // WAVE):
                 for _ in range(WAVE):
                     self._stride()
@@ -137,7 +138,7 @@ class Lanes:
         slots.search()
         cells, (_, down, up) = slots.cell[noted], slots.watch.extremes.lately[:, noted]
         if not self.banded:
-            self.notes.append(Note(cells, begun[:, noted], down, -up))
+            self.notes.append(Note(cells, begun[: layout.left + 1, noted], down, -up))
         slots.watch.extremes.forget()
         ended = np.flatnonzero(slots.alive & (slots.left <= 0.0))
         if len(ended):
@@ -148,9 +149,23 @@ class Lanes:
             slots.retire(which, slots.whole(which), slots.time(which), outcome)
         if self.settled is not None:
             self._end_the_settled(self.settled)
+        self._relieve(np.flatnonzero(noted & slots.alive), begun)
         working = np.flatnonzero(slots.alive)
         if len(working) and len(working) + LANES < CROWDED * len(slots.alive):
             slots.keep(working)
+
+    def _relieve(self, lanes: Indices, begun: Array) -> None:
+        """Have launches whose motion is stiff, which is looked at now and then, followed alone."""
+        slots, layout = self.slots, self.slots.layout
+        steps = slots.rows[layout.steps, lanes]
+        taken = steps - begun[layout.steps, lanes]
+        lanes, taken = (some[steps // PATIENCE > (steps - taken) // PATIENCE] for some in (lanes, taken))
+        if not len(lanes):
+            return
+        step = (begun[layout.left, lanes] - slots.left[lanes]) / taken
+        motion, numbers = self.crossings.motion, slots.numbers[: layout.parameters, lanes]
+        stiff = is_stiff(motion, list(numbers), slots.rows[: motion.size, lanes].T, step)
+        self.crossings.follow_alone(lanes[stiff])
 
     def _end_the_settled(self, closeness: float) -> None:
         """End the launches whose tilt is held."""

@@ -12,7 +12,7 @@ from tippetop.contact.sliding import sliding_motion
 from tippetop.frictions import CoulombFriction, RegularizedCoulombFriction
 from tippetop.integrators.base import Array
 from tippetop.integrators.classical import classical_step
-from tippetop.integrators.sampling import RightHandSide
+from tippetop.integrators.rates import RightHandSide
 from tippetop.mechanics.motion import along_table
 from tippetop.mechanics.rolling import velocity_without_slip
 from tippetop.mechanics.state import SlidingState

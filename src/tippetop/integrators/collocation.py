@@ -1,0 +1,221 @@
+"""Collocation at Radau's points: an implicit method of high order, for stiff motions.
+
+A step's solution is the polynomial that starts where the step does and satisfies the equations of motion at
+the points, the last of which is the step's end: Radau IIA, which damps what stiff friction damps however long
+the step (Hairer and Wanner 1996, Solving Ordinary Differential Equations II, IV.5 and IV.8). Its coefficients
+in Chebyshev's polynomials fall off as fast as the motion is smooth, and say how good a solution it is.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.polynomial.chebyshev import chebval
+from scipy.special import roots_jacobi
+
+from tippetop.integrators.base import Arc, Array, Motion
+from tippetop.integrators.rates import RightHandSide
+from tippetop.integrators.sampling import Steps
+
+STAGES = 12
+"""Points in a step: order 23 at its end."""
+
+PARTS, DEGREE = 4, 11
+"""Parts of a step that stand for it in a solution, and the degree of their polynomials."""
+
+MANY = 64 * PARTS
+"""Polynomials in an arc."""
+
+LAST, SMOOTH = 2, 8
+"""How many of the last coefficients tell the error of a step, and how many of the first guess at the next."""
+
+NEWTON, SETTLED, ROUGH = 10, 1e-15, 1e-9
+"""Newton's iterations; the correction, relatively, after which there is none; and the largest correction by
+rounding alone, which does not get smaller any more."""
+
+SLOWER, FASTER, SAFETY = 0.25, 3.0, 0.8
+"""How much shorter or longer the next step may be, and how much shorter it is than it should."""
+
+FIRST = 1e-3
+"""How far the state goes, relatively, in the first step."""
+
+LEAST_TOLERANCE = 1e-13
+"""Tolerance below which the coefficients of a step are rounding."""
+
+LEAST_STEP = 1e-15
+"""A step shorter than this part of the time gets nowhere."""
+
+TINY = 1e-300
+"""Added to an error that may be zero."""
+
+NO_STEP, TOO_SHORT = "the step size fell to nothing", "the step size fell below what it may be"
+"""Why the method gives up, and why where another is to go on."""
+
+
+class Points(NamedTuple):
+    """Radau's points and what belongs to them.
+
+    Attributes
+    ----------
+    places
+        0 and the points, as parts of a step, shape (s + 1,).
+    integrals
+        Integrals, from 0 to each point, of Lagrange's polynomials on the points, shape (s, s).
+    transform
+        From values at the places to coefficients in Chebyshev's polynomials, shape (s + 1, s + 1).
+    """
+
+    places: Array
+    integrals: Array
+    transform: Array
+
+
+@lru_cache
+def radau_points(stages: int = STAGES) -> Points:
+    """Radau's points in (0, 1]."""
+    inner = roots_jacobi(stages - 1, 1.0, 0.0)[0]
+    points = np.append(0.5 + 0.5 * inner, 1.0)
+    legendre = np.polynomial.legendre
+    values = legendre.legvander(2.0 * points - 1.0, stages - 1)
+    sums = [legendre.legval(2.0 * points - 1.0, legendre.legint(row, lbnd=-1)) for row in np.eye(stages)]
+    integrals = np.asarray(0.5 * np.array(sums).T @ np.linalg.inv(values), dtype=float)
+    places = np.append(0.0, points)
+    transform = np.linalg.inv(np.polynomial.chebyshev.chebvander(2.0 * places - 1.0, stages))
+    return Points(places, integrals, np.asarray(transform, dtype=float))
+
+
+@dataclass(frozen=True)
+class Collocation:
+    """Collocation at Radau's points with adaptive steps.
+
+    Attributes
+    ----------
+    tolerance
+        Relative and absolute size of the last coefficients of a step's polynomials, at most.
+    shortest
+        The method gives up where its steps would be shorter than this, and begins with such steps.
+    """
+
+    tolerance: float = LEAST_TOLERANCE
+    shortest: float = 0.0
+    name: str = field(default="collocation", init=False)
+
+    def integrate(
+        self, motion: Motion, parameters: Sequence[float], start: tuple[float, Array], end: float
+    ) -> Iterator[Arc]:
+        """Follow the motion; see `tippetop.integrators.base.Integrator`."""
+        rates = RightHandSide(motion, parameters)
+        taken, (time, state), before = Steps(rates, start[0], DEGREE), start, None
+        slope = rates(*start)
+        if not np.all(np.isfinite(slope)):
+            yield taken.arc(state, failure="the motion is singular from the start")
+            return
+        step = self.shortest or FIRST / float(np.max(np.abs(slope) / scale(state)) + FIRST)
+        while time < end:
+            least = max(self.shortest, LEAST_STEP * max(1.0, abs(time)))
+            if step < least:
+                yield taken.arc(state, failure=TOO_SHORT if self.shortest else NO_STEP)
+                return
+            reach = end if step >= end - time else time + step
+            found, factor = self._step(rates, (time, state), reach, before)
+            step, before = factor * (reach - time), found
+            if found is None:
+                continue
+
+            def advance(at: float, base: Array = state, step: Step = found) -> Array:
+                return _landed(rates, base, step, at)
+
+            for until in np.linspace(time, reach, PARTS + 1)[1:].tolist():
+                last = taken.take(until, found, advance)
+                if last is not None:
+                    yield last
+                    return
+            time, state = reach, found.end_state
+            if len(taken) == MANY or time == end:
+                yield taken.arc(state)
+
+    def _step(
+        self, rates: RightHandSide, start: tuple[float, Array], end: float, before: "Step | None"
+    ) -> "tuple[Step | None, float]":
+        """A step, None if it is not to be had, and how much longer the next should be."""
+        places, _, transform = radau_points()
+        times = start[0] + places[1:] * (end - start[0])
+        guess = np.tile(start[1], (STAGES, 1)) if before is None else before.beyond(times)
+        found = solved(rates, start[1], end - start[0], guess)
+        if found is None:
+            return None, SLOWER
+        step = Step(start[0], end, transform @ np.vstack((start[1], found)), found[-1])
+        error = float(np.max(np.abs(step.terms[-LAST:]) / scale(np.vstack((start[1], found)))))
+        factor = SAFETY * (self.tolerance / (error + TINY)) ** (1.0 / STAGES)
+        return step if error <= self.tolerance else None, min(max(factor, SLOWER), FASTER)
+
+
+@dataclass(frozen=True)
+class Step:
+    """The polynomial of a step, a function of time.
+
+    Attributes
+    ----------
+    start, end
+        Where it begins and ends.
+    terms
+        Coefficients in Chebyshev's polynomials, shape (degree + 1, size).
+    end_state
+        The state at its end.
+    """
+
+    start: float
+    end: float
+    terms: Array
+    end_state: Array
+
+    def __call__(self, time: float) -> Array:
+        """The solution within the step."""
+        return np.asarray(chebval(self._place(time), self.terms))
+
+    def at(self, times: Array) -> Array:
+        """The solution at times within the step, shape (m, size)."""
+        return np.asarray(chebval(self._place(times), self.terms)).T
+
+    def beyond(self, times: Array) -> Array:
+        """What the polynomial, but for its last terms, says of times after the step, shape (m, size)."""
+        return np.asarray(chebval(self._place(times), self.terms[:SMOOTH])).T
+
+    def _place(self, time: Any) -> Any:
+        return 2.0 * (time - self.start) / (self.end - self.start) - 1.0
+
+
+def solved(rates: RightHandSide, start: Array, span: float, guess: Array) -> Array | None:
+    """The states at the points of a step, shape (s, size), by Newton's method; None if it does not settle."""
+    integrals, size, states, last = span * radau_points().integrals, len(start), guess, np.inf
+    for _ in range(NEWTON):
+        values, slopes = rates.linearized(states)
+        if not (np.all(np.isfinite(values)) and np.all(np.isfinite(slopes))):
+            return None
+        matrix = -np.einsum("ij,jab->iajb", integrals, slopes).reshape(STAGES * size, STAGES * size)
+        matrix[np.diag_indices_from(matrix)] += 1.0
+        try:
+            change = np.linalg.solve(matrix, (start + integrals @ values - states).ravel())
+        except np.linalg.LinAlgError:
+            return None
+        states = states + change.reshape(states.shape)
+        moved = float(np.max(np.abs(change.reshape(states.shape)) / scale(states)))
+        if moved <= SETTLED or ROUGH >= moved >= 0.5 * last:
+            return states
+        last = moved
+    return None
+
+
+def _landed(rates: RightHandSide, start: Array, step: Step, end: float) -> Array:
+    """The state after a step that begins as another does, and ends at exactly this time."""
+    span = end - step.start
+    found = solved(rates, start, span, step.at(step.start + span * radau_points().places[1:]))
+    return step(end) if found is None else found[-1]
+
+
+def scale(states: Array) -> Array:
+    """What counts as relative: the size of each number, at least 1, over one or more states."""
+    found: Array = np.maximum(1.0, np.max(np.abs(np.atleast_2d(states)), axis=0))
+    return found

@@ -1,0 +1,218 @@
+"""Stiff motions: the implicit method of high order, and where it relieves the explicit one."""
+
+import math
+
+import numpy as np
+import pytest
+from exact_motions import whole
+
+import tippetop as tt
+from tippetop.integrators import Motion, has_taylor, make_integrator, relieved
+from tippetop.integrators.base import Guard
+from tippetop.integrators.collocation import STAGES, Collocation, Step, solved
+from tippetop.integrators.rates import RightHandSide
+from tippetop.integrators.relief import PATIENCE, Relieved, is_stiff
+
+NEEDS_TAYLOR = pytest.mark.skipif(not has_taylor(), reason="Taylor's method is relieved")
+
+
+def following(y, numbers):
+    """A number that is damped towards a coordinate of a point on a circle (Prothero and Robinson 1974)."""
+    followed, x, z = y
+    return (-numbers[0] * (followed - x) - z, -z, x)
+
+
+FOLLOWING = Motion(following, 3, 1)
+START = 0.0, np.array([1.0, 1.0, 0.0])
+
+
+def exact(times):
+    return np.stack([np.cos(times), np.cos(times), np.sin(times)], axis=1)
+
+
+@pytest.mark.parametrize("damping", [1e3, 1e6, 1e9])
+def test_damping_neither_costs_steps_nor_digits(damping):
+    arc = whole(make_integrator("collocation").integrate(FOLLOWING, (damping,), START, 20.0))
+    times = np.linspace(0.0, 20.0, 1001)
+    assert arc.failure is None
+    assert arc.steps < 200
+    assert np.abs(arc.solution(times) - exact(times)).max() < 1e-12
+
+
+@pytest.mark.parametrize("rate", [-1.0, -1.0 + 5.0j, 3.0j])
+def test_a_step_is_the_approximation_of_pade_that_vanishes_far_left(rate):
+    """For y' = rate y a step of Radau's method is Pade's (s - 1, s), of order 2 s - 1 (Ehle 1969)."""
+    s = STAGES
+
+    def stepped(span):
+        def turning(y, _):
+            return (rate.real * y[0] - rate.imag * y[1], rate.imag * y[0] + rate.real * y[1])
+
+        rates = RightHandSide(Motion(turning, 2, 0), ())
+        end = solved(rates, np.array([1.0, 0.0]), span, np.tile([1.0, 0.0], (s, 1)))[-1]
+        return complex(*end)
+
+    def pade(z):
+        above = below = term = other = 1.0
+        for k in range(1, s + 1):
+            term = term * (s - k) / (2 * s - k) * z / k
+            other = other * (s + 1 - k) / (2 * s - k) * -z / k
+            above, below = above + term, below + other
+        return above / below
+
+    for span in (0.5, 20.0, 300.0):
+        assert stepped(span) == pytest.approx(pade(rate * span), abs=1e-11)
+    if rate.real:
+        assert abs(stepped(1e6)) < 1e-4
+
+
+def test_a_guard_within_a_long_step_is_found_to_rounding():
+    """Steps of the solution are longer than what the guard takes to fall and rise again."""
+    dip = Guard("dip", lambda y, _: y[1] + 0.9)
+    arc = whole(
+        make_integrator("collocation").integrate(Motion(following, 3, 1, guards=(dip,)), (1e6,), START, 20.0)
+    )
+    assert arc.guard == "dip"
+    assert arc.solution.end == pytest.approx(np.arccos(-0.9), abs=1e-13)
+    assert arc.end_state == pytest.approx(exact(np.array([arc.solution.end]))[0], abs=1e-13)
+
+
+def test_a_step_that_does_not_settle_is_not_taken():
+    """A solution that ends in a pole is followed up to it, and no further."""
+    pole = Motion(lambda y, _: (y[0] * y[0],), 1, 0)
+    arc = whole(Collocation().integrate(pole, (), (0.0, np.array([1.0])), 2.0))
+    assert arc.failure is not None
+    assert 0.999 < arc.solution.end < 1.0
+    assert arc.solution(np.array([0.99]))[0, 0] == pytest.approx(100.0, rel=1e-9)
+
+
+class Recorded:
+    """An explicit method that says how often it was asked."""
+
+    def __init__(self):
+        self.method, self.asked = make_integrator("taylor"), []
+
+    name = "recorded"
+    tolerance = 2.3e-16
+
+    def integrate(self, motion, parameters, start, end):
+        self.asked.append(start[0])
+        return self.method.integrate(motion, parameters, start, end)
+
+
+@NEEDS_TAYLOR
+def test_the_explicit_method_follows_what_is_not_stiff_however_fast():
+    quick = Motion(lambda y, n: (n[0] * y[1], -n[0] * y[0]), 2, 1)
+    explicit = Recorded()
+    arcs = list(Relieved(explicit).integrate(quick, (1e4,), (0.0, np.array([1.0, 0.0])), 2.0))
+    assert sum(arc.steps for arc in arcs) > 2 * PATIENCE
+    assert [arc.method for arc in arcs] == [None] * len(arcs)
+    assert explicit.asked == [0.0]
+    assert arcs[-1].end_state == pytest.approx([np.cos(2e4), -np.sin(2e4)], abs=1e-9)
+
+
+@NEEDS_TAYLOR
+def test_the_implicit_method_relieves_what_is_stiff_and_not_the_rest():
+    """Van der Pol's oscillator creeps, stiffly, and leaps, within 1e-5 of the time."""
+
+    def oscillator(y, numbers):
+        return (y[1], ((1.0 - y[0] * y[0]) * y[1] - y[0]) * numbers[0])
+
+    explicit, start = Recorded(), (0.0, np.array([2.0, -2.0 / 3.0]))
+    motion = Motion(oscillator, 2, 1)
+    arcs = list(Relieved(explicit).integrate(motion, (1e5,), start, 2.0))
+    assert {None if arc.method is None else arc.method.name for arc in arcs} == {None, "collocation"}
+    assert len(explicit.asked) > 2
+    found = whole(arcs)
+    assert found.failure is None
+    # By Taylor's method alone it would be 300,000.
+    assert found.steps < 10 * PATIENCE
+    alone = whole(Collocation(1e-12).integrate(motion, (1e5,), start, 2.0))
+    assert found.end_state == pytest.approx(alone.end_state, abs=1e-8)
+
+
+def test_a_law_that_takes_no_complex_numbers_is_left_to_the_explicit_method():
+    """Derivatives are taken along imaginary steps."""
+    motion = Motion(lambda y, _: (-1e6 * math.sin(y[0]),), 1, 0)
+    assert not is_stiff(motion, (), np.ones((1, 1)), np.ones(1))[0]
+    assert np.isnan(RightHandSide(motion, ()).linearized(np.ones((1, 1)))[0]).all()
+
+
+def test_a_relieved_method_is_relieved_once():
+    method = make_integrator()
+    assert relieved(method) is method
+    assert make_integrator("dop853") == relieved(make_integrator("dop853")).explicit
+
+
+def test_what_polynomials_say_beyond_a_step_is_what_they_say_within_it():
+    terms = np.zeros((STAGES + 1, 1))
+    terms[:3, 0] = 1.0, 0.5, 0.25
+    step = Step(1.0, 3.0, terms, np.array([1.75]))
+    assert step.beyond(np.array([3.0, 5.0])).ravel().tolist() == [step(3.0)[0], 1.0 + 1.5 + 0.25 * 17.0]
+
+
+def stiff(mu, **changes):
+    """The report's top on a table of so much viscous friction, which lets it hardly slip."""
+    return tt.presets.report_problem(spin=155.0, mu=mu).replace(changes)
+
+
+@pytest.fixture(scope="module")
+def rolling():
+    """The same top under dry friction that it never overcomes: it rolls."""
+    problem = stiff(0.3, friction=tt.CoulombFriction(mu=50.0))
+    run = tt.simulate(problem, 1.0, samples=101)
+    assert set(run["mode"].values.tolist()) == {run["mode"].attrs["flag_meanings"].split().index("sticking")}
+    return run
+
+
+@NEEDS_TAYLOR
+@pytest.mark.parametrize("mu", [1e5, 1e6])
+def test_strong_friction_ends_within_the_budget_and_is_nearly_rolling(mu, rolling):
+    run = tt.simulate(stiff(mu), 1.0, samples=101)
+    assert run.attrs["outcome"] == "completed"
+    assert run.attrs["integrator"] == "taylor, collocation"
+    assert run.attrs["tolerance"] == Collocation().tolerance
+    assert run["steps"].item() < 2 * PATIENCE
+    assert run["energy_error"].item() < 1e-12
+    assert run["jellett_drift"].item() < 1e-12
+    # Creep takes the top from where it would be if it rolled, in proportion to 1 / mu.
+    twice = tt.simulate(stiff(2.0 * mu), 1.0, samples=101)
+    away = (run["theta"] - rolling["theta"]).values
+    assert 0.0 < np.abs(away).max() < 1.0 / mu
+    assert (twice["theta"] - rolling["theta"]).values == pytest.approx(away / 2.0, abs=1e-3 / mu)
+
+
+@NEEDS_TAYLOR
+def test_strong_friction_is_the_same_by_taylor_alone():
+    problem = stiff(1e4)
+    alone = tt.simulate(problem, 0.5, samples=101, integrator="taylor")
+    usual = tt.simulate(problem, 0.5, samples=101)
+    assert alone.attrs["integrator"] == "taylor"
+    assert alone["steps"].item() > 2 * usual["steps"].item()
+    for name in ("theta", "omega3", "slip_x", "x", "work", "normal_force"):
+        size = np.abs(alone[name].values).max()
+        assert usual[name].values == pytest.approx(alone[name].values, abs=1e-10 * size), name
+
+
+@NEEDS_TAYLOR
+def test_a_sweep_follows_stiff_launches_as_runs_are():
+    values = [0.3, 1e6]
+    swept = tt.sweep(stiff(0.3), {"friction.mu": values}, duration=1.0)
+    for mu, cell in zip(values, range(2), strict=True):
+        run = tt.simulate(stiff(mu), 1.0, samples=11)
+        assert swept["steps"].values[cell] < 4 * PATIENCE
+        for name in ("final_theta", "final_omega3", "least_normal_force", "energy_lost", "arrives"):
+            assert swept[name].values[cell] == pytest.approx(run[name].item(), rel=1e-7, abs=1e-12), name
+
+
+@NEEDS_TAYLOR
+def test_drilling_that_dies_on_a_small_patch_is_followed():
+    friction = tt.ContensouFriction(mu=0.3, patch_radius=1e-7, pressure="ellipsoidal")
+    problem = tt.presets.report_problem(tilt=0.3, spin=20.0).replace({"friction": friction})
+    run = tt.simulate(problem, 1.0, samples=101)
+    assert run.attrs["outcome"] == "completed"
+    assert run["steps"].item() < 4 * PATIENCE
+    assert run["energy_error"].item() < 1e-12
+    # It loses little by drilling, and creeps little: nearly a top that rolls.
+    rolls = tt.simulate(problem.replace({"friction": tt.CoulombFriction(mu=0.3)}), 1.0, samples=101)
+    assert run["theta"].values == pytest.approx(rolls["theta"].values, abs=1e-3)
