@@ -9,6 +9,7 @@ How a run ends is not an error: see `tippetop.contact.mode.Outcome`.
 """
 
 import math
+from collections.abc import Mapping
 from difflib import get_close_matches
 from numbers import Real
 
@@ -20,6 +21,10 @@ class _Missing:
 
 MISSING = _Missing()
 """Stands for a value that was not given."""
+
+
+OVERWRITE, RESUME, OTHER_OUT = "overwrite=True", "resume=True", "another out"
+"""How sentences name what is asked for in Python; a command has its own words for these."""
 
 
 class TippetopError(Exception):
@@ -34,6 +39,13 @@ class TippetopError(Exception):
     ...     print(error)
     mu = -1.0 is not possible; accepted: a number at least 0
     """
+
+    def told(self, words: Mapping[str, str]) -> str:
+        """The sentence with other words for what is asked for, where it ends with such."""
+        sentence = str(self)
+        for python, other in words.items():
+            sentence = other.join(sentence.rsplit(python, 1))
+        return sentence
 
 
 class InvalidInput(TippetopError, ValueError):
@@ -77,13 +89,6 @@ class InvalidInput(TippetopError, ValueError):
 class FileTrouble(TippetopError, OSError):
     """A file that cannot be read or written, or that exists and may not be overwritten.
 
-    Parameters
-    ----------
-    sentence
-        What is the trouble, beginning with the file's name.
-    replaceable
-        Whether overwriting the file is the way out; the sentence then ends with how that is asked for.
-
     Examples
     --------
     >>> import tippetop as tt
@@ -93,18 +98,6 @@ class FileTrouble(TippetopError, OSError):
     ...     print(error)
     none.toml cannot be read: No such file or directory
     """
-
-    def __init__(self, sentence: str, replaceable: bool = False) -> None:
-        self.sentence, self.replaceable = sentence, replaceable
-        super().__init__(self.told("overwrite=True"))
-
-    def told(self, permission: str) -> str:
-        """The sentence where overwriting is asked for in these words."""
-        ending = f"; it is overwritten only with {permission}" if self.replaceable else ""
-        return self.sentence + ending
-
-    def __reduce__(self) -> tuple[type["FileTrouble"], tuple[str, bool]]:
-        return type(self), (self.sentence, self.replaceable)
 
 
 class Unavailable(TippetopError, RuntimeError):

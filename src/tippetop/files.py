@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO
 
-from tippetop.errors import FileTrouble
+from tippetop.errors import OVERWRITE, FileTrouble
 from tippetop.interrupts import deferred
 
 if sys.platform != "win32":
@@ -29,7 +29,7 @@ LONGEST_NAME = 300
 def refuse_overwriting(path: Path, overwrite: bool) -> None:
     """Raise `FileTrouble` if something is there, even a link to nothing, and may not be overwritten."""
     if os.path.lexists(path) and not overwrite:
-        raise FileTrouble(f"{named(path)} exists", replaceable=True)
+        raise FileTrouble(f"{named(path)} exists; it is overwritten only with {OVERWRITE}")
 
 
 def place_for(path: Path | str, overwrite: bool) -> Path:
@@ -211,4 +211,4 @@ def _claim(beside: Path, target: Path, path: Path | str) -> None:
         except OSError:
             os.close(os.open(target, os.O_WRONLY | os.O_CREAT | os.O_EXCL))
     except FileExistsError:
-        raise FileTrouble(f"{named(path)} exists", replaceable=True) from None
+        raise FileTrouble(f"{named(path)} exists; it is overwritten only with {OVERWRITE}") from None

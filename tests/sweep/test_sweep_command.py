@@ -2,16 +2,20 @@
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import pytest
 import typer
 import xarray as xr
 from typer.testing import CliRunner
 
+import tippetop as tt
+from tippetop.cli.main import main
 from tippetop.cli.sweep import sweep as command
 from tippetop.errors import FileTrouble, InvalidInput
 from tippetop.presets import report_problem
@@ -147,6 +151,30 @@ def test_a_store_is_not_overwritten_or_mixed_with_another(tmp_path):
     with pytest.raises(FileTrouble, match=r"problem\.friction\.mu is 0\.3 in it, and 0\.9 here"):
         run("--mu", 0.9, "--resume", "--out", out)
     run(*AXES, *SHORT, "--mu", 0.9, "--force", "--out", out, "--no-maps")
+
+
+def test_sentences_name_options_here_and_arguments_in_python(tmp_path, monkeypatch, capsys):
+    out = tmp_path / "a.zarr"
+    run(*AXES, *SHORT, "--out", out, "--no-maps")
+    problem = report_problem()
+    for options, wanted in (
+        ([*AXES], "exists; it is overwritten only with --force"),
+        (["--mu", "0.9", "--resume"], "choose another --out, or start afresh with --force"),
+    ):
+        monkeypatch.setattr(sys, "argv", ["tippetop", "sweep", *options, *SHORT, "--out", str(out)])
+        with pytest.raises(SystemExit) as ended:
+            main()
+        assert ended.value.code == 2
+        assert wanted in capsys.readouterr().err
+    over = {"launch.spin": [1.0]}
+    with pytest.raises(FileTrouble, match="exists; it is overwritten only with overwrite=True"):
+        tt.sweep(problem, over, out=out)
+    with pytest.raises(FileTrouble, match="choose another out, or start afresh with overwrite=True"):
+        tt.sweep(problem, over, out=out, resume=True)
+    package = Path(tt.__file__).parent
+    for file in package.rglob("*.py"):
+        if "cli" not in file.parts:
+            assert not re.search(r"--(force|resume|out)\b", file.read_text(encoding="utf-8")), file
 
 
 @pytest.mark.parametrize("name", ["x" * 300, "x" * 250])

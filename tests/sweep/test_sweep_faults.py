@@ -136,7 +136,7 @@ def test_resuming_does_again_what_is_missing_and_no_more(tmp_path, small_tasks):
     store = Store.resume(path)
     lost = {task for task in quick().tasks if task[0] == first[0]} | {last}
     assert set(store.remaining()) == lost
-    with pytest.raises(FileTrouble, match="--resume mends it"):
+    with pytest.raises(FileTrouble, match="resume=True mends it"):
         store.load(["final_theta"])
     with pytest.raises(FileTrouble, match=r"a chunk of .* is missing"):
         store.dataset()
@@ -311,6 +311,23 @@ def test_metadata_that_are_none_are_no_sweep(tmp_path, text):
             read(path)
     with pytest.raises(FileTrouble, match="is no sweep"):
         Store.create(path, quick(), overwrite=True)
+
+
+@pytest.mark.parametrize("text", ["[]", "{", "", None])
+def test_a_sweep_whose_own_metadata_are_lost_is_known_by_its_arrays_and_replaced(tmp_path, text):
+    path = tmp_path / "a.zarr"
+    Store.create(path, quick())
+    if text is None:
+        (path / "zarr.json").unlink()
+    else:
+        (path / "zarr.json").write_text(text)
+    for read in (Store.resume, read_sweep):
+        with pytest.raises(
+            FileTrouble, match=r"is damaged: its zarr\.json .* start afresh with overwrite=True"
+        ):
+            read(path)
+    Store.create(path, quick(), overwrite=True)
+    assert len(Store.resume(path).remaining()) == len(quick().tasks)
 
 
 @pytest.mark.parametrize("name", ["x" * 300, "x" * 250, "a\0b"])

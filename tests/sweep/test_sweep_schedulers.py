@@ -210,7 +210,9 @@ def test_a_cluster_that_is_gone_is_told_of_in_a_sentence_and_what_is_done_is_kep
     ran = subprocess.run(
         [sys.executable, "-c", script], capture_output=True, text=True, timeout=60, check=True
     )
-    assert ran.stdout == f"the cluster at {address} {sentence}; what is done is kept, and --resume goes on\n"
+    assert (
+        ran.stdout == f"the cluster at {address} {sentence}; what is done is kept, and resume=True goes on\n"
+    )
     assert (
         ran.stderr == warnings * f"the cluster at {address} has no workers; the sweep waits for some, 2 s\n"
     )

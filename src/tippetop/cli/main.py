@@ -17,10 +17,13 @@ from tippetop.cli.problem import problem
 from tippetop.cli.reproduce import reproduce
 from tippetop.cli.simulate import simulate
 from tippetop.cli.sweep import sweep
-from tippetop.errors import FileTrouble, TippetopError
+from tippetop.errors import OTHER_OUT, OVERWRITE, RESUME, TippetopError
 from tippetop.interrupts import ENDINGS
 
 MISUSE = 2
+
+WORDS = {OVERWRITE: "--force", RESUME: "--resume", OTHER_OUT: "another --out"}
+"""What is asked for here, by how it is asked for in Python."""
 
 
 class Commands(TyperGroup):
@@ -84,8 +87,7 @@ def main() -> None:
     try:
         app()
     except TippetopError as error:
-        sentence = error.told("--force") if isinstance(error, FileTrouble) else error
-        typer.echo(f"tippetop: {sentence}", err=True)
+        typer.echo(f"tippetop: {error.told(WORDS)}", err=True)
         sys.exit(MISUSE)
     except BrokenPipeError:
         # Whoever was reading has read enough (`tippetop ... | head`).

@@ -15,7 +15,7 @@ from typing import Any
 from tippetop import __version__
 from tippetop.catalogue import SWEPT, Variable, meanings
 from tippetop.dataset import CONVENTIONS
-from tippetop.errors import FileTrouble, short
+from tippetop.errors import OTHER_OUT, OVERWRITE, FileTrouble, short
 from tippetop.sweeps.definition import Sweep
 from tippetop.validation import Quantity
 
@@ -124,20 +124,24 @@ def read_metadata(path: Path) -> dict[str, Any]:
     try:
         data = (path / METADATA).read_bytes()
     except OSError as error:
-        raise FileTrouble(f"{path} cannot be read: {error.strerror}; there is no sweep in it") from None
+        if not _has_every_array(path):
+            raise FileTrouble(f"{path} cannot be read: {error.strerror}; there is no sweep in it") from None
+        data = b""
     try:
         metadata = json.loads(data)
         layout, whole = metadata["attributes"]["format"], metadata["attributes"].get(DIGEST)
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
-        raise FileTrouble(f"{path} is not a sweep of this program, or its {METADATA} is damaged") from None
+        if not _has_every_array(path):
+            raise FileTrouble(f"{path} is not a sweep of this program") from None
+        layout, whole, metadata = FORMAT, None, {"attributes": {}}
     if layout != FORMAT:
         raise FileTrouble(
             f"{path} is laid out as {short(layout)}, and this version reads {FORMAT!r}; "
-            "start afresh with --force"
+            f"start afresh with {OVERWRITE}"
         )
     if whole != _digest(metadata):
         raise FileTrouble(
-            f"{path} is damaged: its {METADATA} is not as it was written; start afresh with --force"
+            f"{path} is damaged: its {METADATA} is not as it was written; start afresh with {OVERWRITE}"
         )
     return dict(metadata)
 
@@ -168,20 +172,25 @@ def kept_sweep(path: Path) -> Sweep:
     if version != __version__:
         raise FileTrouble(
             f"{path} was made by version {version} of tippetop, and this is {__version__}, whose results may "
-            "differ; finish it with that version, or start afresh with --force"
+            f"differ; finish it with that version, or start afresh with {OVERWRITE}"
         )
     return Sweep(**json.loads(attributes["sweep"]))
 
 
 def may_be_replaced(path: Path) -> bool:
-    """Whether a folder is empty or holds a sweep, of whatever version."""
+    """Whether a folder is empty or holds a sweep, of whatever version and however damaged."""
     if not path.is_dir() or not any(path.iterdir()):
         return path.is_dir()
     try:
         layout = json.loads((path / METADATA).read_text(encoding="utf-8"))["attributes"]["format"]
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
-        return False
+        return _has_every_array(path)
     return str(layout).startswith(FORMAT.rstrip("0123456789"))
+
+
+def _has_every_array(path: Path) -> bool:
+    """Whether a folder that does not say what it holds is a sweep all the same: it has all that one has."""
+    return all((path / name).is_dir() for name in ("status", *SWEPT))
 
 
 def refuse_another(path: Path, kept: Sweep, sweep: Sweep) -> None:
@@ -191,7 +200,7 @@ def refuse_another(path: Path, kept: Sweep, sweep: Sweep) -> None:
         name, there, here = difference
         raise FileTrouble(
             f"{path} holds another sweep and cannot be resumed: {name} is {short(there)} in it, and "
-            f"{short(here)} here; choose another --out, or start afresh with --force"
+            f"{short(here)} here; choose {OTHER_OUT}, or start afresh with {OVERWRITE}"
         )
 
 

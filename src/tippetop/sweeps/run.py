@@ -182,6 +182,7 @@ def sweep(
     settled: float | None = None,
     out: Path | str | None = None,
     overwrite: bool = False,
+    resume: bool = False,
     workers: int | None = None,
     scheduler: str | None = None,
     watcher: Watcher | None = None,
@@ -200,8 +201,8 @@ def sweep(
         See `Sweep`.
     out
         Folder of a Zarr store to keep the sweep in; in memory if left out.
-    overwrite
-        Replace a sweep that is there.
+    overwrite, resume
+        Replace a sweep that is there, or finish it.
     workers, scheduler, watcher
         See `fill`.
 
@@ -228,4 +229,5 @@ def sweep(
     chosen = Sweep(problem, grid, duration, tolerance, settled)
     if out is None:
         return compute(chosen, workers=workers, scheduler=scheduler, watcher=watcher)
-    return run_sweep(chosen, out, overwrite=overwrite, workers=workers, scheduler=scheduler, watcher=watcher)
+    permission = {"overwrite": overwrite, "resume": resume}
+    return run_sweep(chosen, out, **permission, workers=workers, scheduler=scheduler, watcher=watcher)

@@ -19,7 +19,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from tippetop.catalogue import SWEPT
-from tippetop.errors import FileTrouble, Unavailable
+from tippetop.errors import OTHER_OUT, OVERWRITE, RESUME, FileTrouble, Unavailable
 from tippetop.files import in_words, refuse_overwriting
 from tippetop.interrupts import deferred
 from tippetop.sweeps.definition import Sweep
@@ -79,7 +79,7 @@ class Store:
             there = path.exists()
             if path.is_symlink() or (there and not may_be_replaced(path)):
                 raise FileTrouble(
-                    f"{path} exists and is no sweep, so it is not overwritten; choose another --out"
+                    f"{path} exists and is no sweep, so it is not overwritten; choose {OTHER_OUT}"
                 )
             clear_away(path)
             beside = Path(tempfile.mkdtemp(dir=path.parent, prefix=f".{path.name}."))
@@ -113,7 +113,9 @@ class Store:
             refuse_another(path, kept, sweep)
         store = cls(path, kept)
         if tuple(store._arrays["status"].chunks) != kept.chunk:
-            raise FileTrouble(f"{path} has other chunks than this version makes; start afresh with --force")
+            raise FileTrouble(
+                f"{path} has other chunks than this version makes; start afresh with {OVERWRITE}"
+            )
         return store
 
     @contextmanager
@@ -278,4 +280,4 @@ def _damage_in_words(path: Path) -> Iterator[None]:
     except FileTrouble:
         raise
     except (OSError, ValueError, RuntimeError, KeyError, TypeError) as error:
-        raise FileTrouble(f"{path} is damaged and cannot be read ({error}); --resume mends it") from None
+        raise FileTrouble(f"{path} is damaged and cannot be read ({error}); {RESUME} mends it") from None

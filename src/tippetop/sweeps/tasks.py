@@ -17,7 +17,7 @@ from typing import Any, TypeAlias
 from numpy.typing import NDArray
 
 from tippetop import __version__
-from tippetop.errors import InvalidInput, Unavailable
+from tippetop.errors import RESUME, InvalidInput, Unavailable
 from tippetop.processes import RESTARTS, Job, shared
 from tippetop.sweeps.definition import Sweep
 from tippetop.sweeps.ensemble import follow_cells
@@ -38,7 +38,7 @@ LONELY = 60.0
 GLANCE = 1.0
 """How often it is looked whether it has some, if no task is done meanwhile, s."""
 
-KEPT = "what is done is kept, and --resume goes on"
+KEPT = f"what is done is kept, and {RESUME} goes on"
 
 HERE = "__main__"
 """Where what a script or notebook defines is, which no other process can import."""
