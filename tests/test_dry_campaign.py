@@ -21,7 +21,7 @@ LAWS: dict[str, dict[str, Any]] = {
 }
 RESISTED = {"viscous": {"kind": "viscous"}, "coulomb": LAWS["coulomb"], "ellipsoidal": LAWS["ellipsoidal"]}
 
-GAVE_UP = {"coulomb": (), "ellipsoidal": ("failed",), "hertz": ("failed",)}
+GAVE_UP = {"coulomb": (), "ellipsoidal": ("too_many_steps", "failed"), "hertz": ("too_many_steps", "failed")}
 """On a small patch the last moments of drilling are stiff, and not all are followed to their end."""
 
 
@@ -65,7 +65,7 @@ def test_tops_that_are_resisted_keep_energy_with_all_losses_and_the_cone_of_the_
         problem = problem.replace({"rolling_resistance": arm})
         run = tt.simulate(problem, DURATION, samples=201)
         said = law, seed, problem.to_json()
-        if run.attrs["outcome"] == "failed":
+        if run.attrs["outcome"] in ("too_many_steps", "failed"):
             given_up += 1
             continue
         assert run.attrs["outcome"] in ("completed", "lifted_off", "at_rest"), said
