@@ -48,7 +48,7 @@ def follow(
     start: Transition, time: float, end: float, tolerance: float, settled: float | None = None
 ) -> tuple[Trajectory, Tally]:
     """Follow one launch from a transition to its end, or until its tilt is held."""
-    method = make_integrator(name, max(tolerance, LEAST.get(name, 0.0)))
+    method = make_integrator(None, max(tolerance, LEAST.get(default_name(), 0.0)))
     trajectory, tally = Trajectory(start, end, method, time=time), Tally()
     segments = trajectory.segments()
     for block in in_blocks(segments if settled is None else until_settled(trajectory, segments, settled)):
