@@ -8,6 +8,7 @@ import pytest
 from typer.testing import CliRunner
 
 import tippetop as tt
+from tippetop import integrators
 from tippetop.catalogue import METRICS, NEAR_FINAL
 from tippetop.cli.main import app
 from tippetop.export.words import tell
@@ -65,8 +66,8 @@ def test_a_sweep_says_what_a_run_says(problem, run):
 
 @pytest.mark.skipif(not has_numba(), reason="numba is not installed")
 def test_a_sweep_without_heyoka_says_what_a_run_says(monkeypatch):
-    monkeypatch.setattr(alone, "has_taylor", lambda: False)
-    monkeypatch.setattr(alone, "default_name", lambda: "compiled")
+    for asked in (integrators, alone):
+        monkeypatch.setattr(asked, "has_taylor", lambda: False)
     problem, grid = report_problem(175.0), Product((Axis.listed("launch.spin", [175.0]),))
     found = follow_cells(Sweep(problem, grid, 8.0, EXACT), np.arange(1))
     run = tt.simulate(problem, 8.0, samples=11, integrator="compiled")
