@@ -78,7 +78,7 @@ export function makeRuler(cell, label, colours) {
   canvas.width = 2048;
   canvas.height = 200;
   const pen = canvas.getContext("2d");
-  const margin = 60;
+  const margin = 110;
   const step = (canvas.width - 2 * margin) / 10;
   pen.fillStyle = colours.ruler;
   pen.fillRect(0, 0, canvas.width, canvas.height);
