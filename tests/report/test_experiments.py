@@ -228,18 +228,22 @@ def times_over_mu(power: float, other: float) -> dict[str, xr.Dataset]:
     return {
         "flip-times": main,
         "flip-times-spins": xr.Dataset(of(other), {"mu": mu}).expand_dims(spin=[130.0]),
+        "onset-mu": xr.Dataset(
+            {"onset": (("window", "mu"), [[np.nan, 140.0], [250.0, 140.0]])},
+            {"window": [20.0, 100.0], "mu": [0.05, 1.0]},
+        ),
     }
 
 
 @pytest.mark.parametrize(
     ("main", "other", "exponent", "inverse"),
     [
-        (-0.7, -0.986, Verdict.REPRODUCED, Verdict.REPRODUCED),
-        (-0.985, -0.5, Verdict.REPRODUCED, Verdict.REPRODUCED),
+        (-0.7, -0.986, Verdict.EXPLAINED, Verdict.REPRODUCED),
+        (-0.985, -0.5, Verdict.REPRODUCED, Verdict.CORRECTED),
         (-0.7, -0.8, Verdict.CORRECTED, Verdict.CORRECTED),
     ],
 )
-def test_the_spin_nearest_to_the_printed_exponent_decides(
+def test_a_law_is_judged_at_the_main_spin_and_proportion_where_the_top_stays(
     main: float, other: float, exponent: Verdict, inverse: Verdict
 ) -> None:
     data = times_over_mu(main, other)
