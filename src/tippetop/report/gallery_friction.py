@@ -66,7 +66,7 @@ PLATES = (
         "does not turn over.",
         ("dry-viscous",),
         dry.viscous_figure,
-        finding="The report's friction in s/m is what a drilling patch amounts to, with tens of s/m.",
+        finding="For slow slip a drilling patch amounts to the report's friction, with tens of s/m.",
     ),
 )
 """The figures in the order of the page."""
