@@ -11,7 +11,7 @@ SENTENCES: dict[str, str] = {
     ),
     "eq-2.1": "The angle velocity can be easily obtained",
     "eq-2.6": "which is well known as Euler Dynamic Equations.",
-    "eq-2.8": "Now, we finally give our equations",
+    "eq-2.8": "construct g_n by constraint condition",
     "eq-2.7": "Now, we finally give our equations",
     "eq-2.9": "construct g_n by constraint condition",
     "sec2-large-spin": (

@@ -18,6 +18,11 @@ UNCHECKED = (
     Unchecked("section 1", "That the top may fly was neglected in the literature.", _OTHERS),
     Unchecked(
         "section 1",
+        "The toy is a half sphere with a small leg.",
+        "a description of the toy; what the report computes, and what is judged, is a whole sphere",
+    ),
+    Unchecked(
+        "section 1",
         "The top has 5 degrees of freedom: two of translation on the surface and three angles.",
         "a count, and right: six of a rigid body less one for the contact, while it lasts",
     ),
@@ -25,12 +30,17 @@ UNCHECKED = (
         "section 1",
         "In the end the top loses its balance and falls.",
         "nothing in the report's model, viscous friction at a point, slows an inverted top down; it takes "
-        "friction against drilling",
+        "friction against drilling, as the fall in the section Real tops does",
     ),
     Unchecked(
         "section 1",
         "To get the exact friction term is impossible.",
         "a statement about materials, not about it",
+    ),
+    Unchecked(
+        "section 2.2",
+        "The contact force can be found by Lagrange multipliers, which is much work.",
+        "a way to derive it; its result, (2.15), is judged",
     ),
     Unchecked(
         "section 3",

@@ -47,6 +47,7 @@ def _(order: xr.Dataset) -> Finding:
         f"{order['order_printed_in_a_step']:.2f} and a whole run of order "
         f"{order['order_printed_in_all']:.2f}; at t_n + dt they are of order "
         f"{order['order_printed_mended_in_a_step']:.2f} and {order['order_printed_mended_in_all']:.2f}. "
+        "The equation meant is y' = f(t, y), not y = f(t, y); a step has four stages. "
         f"{TRANSCRIBED}",
     )
 
@@ -154,10 +155,10 @@ def _ratios(counts: xr.Dataset) -> str:
 @CHAPTER.claim(
     "section-5-cause",
     Source("5"),
-    "It is the initial condition that makes them stiff.",
+    "A bad initial condition is enough to make them stiff.",
     needs=("stiffness",),
     figure="stiffness",
-    right="large friction does",
+    right="it takes large friction as well",
 )
 def _(counts: xr.Dataset) -> Finding:
     own = counts["launch_mu"].values == MU
@@ -166,7 +167,8 @@ def _(counts: xr.Dataset) -> Finding:
         None,
         bool((ratio[own] > _STIFF).any()),
         f"At mu = {MU:g} s/m none of {own.sum()} launches is stiff, fast or slow, lying or next to a pole: "
-        f"the ratio is at most {ratio[own].max():.1f}, and {ratio[~own].max():.1f} with more friction.",
+        f"the ratio is at most {ratio[own].max():.1f}. With more friction the launch does matter: the ratio "
+        f"is {ratio[~own].min():.1f} to {ratio[~own].max():.1f}.",
     )
 
 

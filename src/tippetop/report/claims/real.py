@@ -8,7 +8,9 @@ from tippetop.report.tolerance import ROUNDING, Tolerance
 
 CHAPTER = Chapter()
 
-_READ = Tolerance(0.15, "times are read off a plot of 8 s that is some centimetres wide")
+_READ = Tolerance(
+    0.13, "1 % of the 8 s of the plot that the time is read off, and half a unit of the last printed digit"
+)
 
 _LEINE = Source("Real tops: Leine and Glocker, Eur. J. Mech. A/Solids 22 (2003) 193")
 
