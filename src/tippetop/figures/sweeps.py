@@ -156,7 +156,7 @@ def _products(axes: Axes, wide: xr.Dataset) -> None:
     axes.xaxis.set_major_locator(FixedLocator([0.01, 0.1, 1, 10]))
     axes.xaxis.set_major_formatter(ScalarFormatter())
     mark.plain_ticks(axes.yaxis, [1, 2, 5, 10, 20, 50, 100])
-    axes.legend(loc="upper left")
+    axes.legend(loc="upper left", bbox_to_anchor=(0.0, 0.88))
     axes.set_title("converged", size=10)
 
 

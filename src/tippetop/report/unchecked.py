@@ -56,7 +56,8 @@ UNCHECKED = (
     Unchecked(
         "section 3.3",
         "The top spins on its stem.",
-        "the model is a whole sphere and has none; what is judged is that it turns over",
+        "the model is a whole sphere and has none; what is judged is that it turns over, and in the section "
+        "Real tops on which stems it stands",
     ),
     Unchecked(
         "section 5", "Tricks of programming make the listing faster.", "a statement about its author's time"

@@ -123,7 +123,7 @@ def _(listing: xr.Dataset, sweep: xr.Dataset, hops: xr.Dataset, bouncing: xr.Dat
     return Finding(
         _turned(theirs),
         turned,
-        "The model is a whole sphere: it has no stem to spin on. "
+        "The model is a whole sphere: it has no stem to spin on; with one, see the figure real-stems. "
         f"On a table that only pushes {'all' if turned else 'not all'} launches tried up to "
         f"{hops['spin'][-1]:g} rad/s turn over. Without rebound, by spin in rad/s, the number of "
         "flights, the part of the time until the last touchdown that is spent in the air, and when the axis "

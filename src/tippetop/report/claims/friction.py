@@ -58,9 +58,9 @@ def _(times: xr.Dataset, others: xr.Dataset) -> Finding:
     return Finding(
         float(times["exponent_listing"]),
         float(times["exponent"]),
-        "Judged as a law, at the spin of Fig. 4, "
-        f"{times.attrs['spin_rad_per_s']:g} rad/s, in steps of {_step(times['mu']):g} s/m. {len(fits)} fits "
-        f"by the report's method, at this and other spins and steps, have {min(fits):.2f} to "
+        "Judged as a law, at Fig. 4's spin, "
+        f"{times.attrs['spin_rad_per_s']:g} rad/s, in steps of {_step(times['mu']):.2g} s/m. {len(fits)} "
+        f"fits by the report's method, at this and other spins and steps, have {min(fits):.2f} to "
         f"{max(fits):.2f}; the one named comes nearest, with {nearest.converged:.3f} converged. A law it is "
         "not: the time jumps as the last swings about pi miss or meet the 0.01 rad (figure why-exponent).",
         nearest.exponent,
@@ -212,7 +212,7 @@ def _(run: xr.Dataset) -> Finding:
     return Finding(
         theirs < shown,
         ours < shown,
-        f"A nutation takes {ours:.3f} s, {1 / ours:.0f} of them a second; a plot of 20 s shows {shown:g} s.",
+        f"A nutation takes {ours:.3f} s, {1 / ours:.0f} a second; a plot of 20 s shows {shown:.2g} s.",
     )
 
 

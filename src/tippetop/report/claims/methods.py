@@ -15,7 +15,7 @@ CHAPTER = Chapter()
 @CHAPTER.claim(
     "appendix-b-order",
     Source("Appendix B", equation="(B.1)"),
-    "The method has an accuracy of order 5 in the length of a step (in one step).",
+    "The method has an accuracy of order 5 in a single step (order of its error in the length of the step).",
     "5",
     needs=("order",),
     figure="order",
