@@ -145,8 +145,9 @@ class Loosening(Passing):
             yield _nothing(self.told, time, state, str(error))
             return
         duration = min(begin.valid_until(ACCURACY), longest, end - time)
-        # Slip that is zero has no direction, and friction none to be against.
-        least = scaled(2.0 * least_slip(state.momentum, state.velocity[:2]), direction)
+        # Slip that is zero has no direction, and friction none to be against: drilling, beside it, has one.
+        apart = 2.0 * least_slip(state.momentum, state.velocity[:2]) if len(direction) == 2 else 0.0
+        least = scaled(apart, direction)
 
         def numbers(elapsed: Scalar) -> tuple[Scalar, ...]:
             axis, momentum, xi = begin.at(elapsed)

@@ -2944,7 +2944,8 @@ class Loosening extends Passing {
       return null;
     }
     const duration = py.min(begin.valid_until(ACCURACY), longest, end - time);
-    const least = scaled(py.mul(2.0, least_slip(state.momentum, state.velocity.slice(0, 2))), direction);
+    const apart = py.len(direction) === 2 ? py.mul(2.0, least_slip(state.momentum, state.velocity.slice(0, 2))) : 0.0;
+    const least = scaled(apart, direction);
     const numbers = (elapsed) => {
       const [axis, momentum, xi] = begin.at(elapsed);
       return passing.numbers(axis, momentum, begin.velocity_at(elapsed), plus(xi, least));
