@@ -68,16 +68,6 @@ class DenseSolution:
         knots[-1] = end
         return DenseSolution(knots, self.terms)
 
-    def refined(self, longest: float) -> "DenseSolution":
-        """The same in steps that are no longer than this."""
-        parts = np.ceil(np.diff(self.knots) / longest).astype(int)
-        if parts.max(initial=1) == 1:
-            return self
-        steps = zip(self.knots[:-1], self.knots[1:], parts, strict=True)
-        begun = [np.linspace(start, end, count, endpoint=False) for start, end, count in steps]
-        knots = np.append(np.concatenate(begun), self.end)
-        return DenseSolution.fitted(self.rows, knots, self.terms.shape[2] - 1)
-
     def knots_of(self, number: int, end: float) -> list[float]:
         """Values of a component that grows, where every other step begins before it reaches `end`; and `end`.
 
