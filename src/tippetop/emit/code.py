@@ -2,7 +2,21 @@
 
 from typing import NamedTuple
 
-from tippetop.emit.graph import CONSTANT, PARAMETER, STATE, Node, NotRecordable
+from tippetop.emit.graph import (
+    CONSTANT,
+    DIFFERENCE,
+    FUNCTIONS,
+    NEGATIVE,
+    PARAMETER,
+    POWER,
+    PRODUCT,
+    QUOTIENT,
+    ROOT,
+    STATE,
+    SUM,
+    Node,
+    NotRecordable,
+)
 from tippetop.emit.recording import Recorded
 
 LONGEST = 72
@@ -48,6 +62,22 @@ class Language(NamedTuple):
     foot: str
     local: str
     end: str
+
+
+def common_spellings(library: str) -> dict[str, Spelling]:
+    """What languages write alike, with the elementary functions of a library."""
+    return {
+        SUM: Spelling(("", " + ", ""), 1),
+        DIFFERENCE: Spelling(("", " - ", ""), 1),
+        PRODUCT: Spelling(("", " * ", ""), 2),
+        QUOTIENT: Spelling(("", " / ", ""), 2),
+        NEGATIVE: Spelling(("-", ""), 3),
+        POWER: Spelling((f"{library}.pow(", ", ", ")")),
+        ROOT: Spelling((f"{library}.sqrt(", ")")),
+    } | {
+        name: Spelling((f"{library}.{name}(", *[", "] * (count - 1), ")"))
+        for name, count in FUNCTIONS.items()
+    }
 
 
 def written(recorded: Recorded, name: str, language: Language) -> str:

@@ -5475,6 +5475,11 @@ class Language extends py.NamedTuple {
 }
 py.fields(Language, ["spellings", "head", "foot", "local", "end"]);
 
+/** What languages write alike, with the elementary functions of a library. */
+function common_spellings(library) {
+  return new py.Dict([[SUM, new Spelling(["", " + ", ""], 1)], [DIFFERENCE, new Spelling(["", " - ", ""], 1)], [PRODUCT, new Spelling(["", " * ", ""], 2)], [QUOTIENT, new Spelling(["", " / ", ""], 2)], [NEGATIVE, new Spelling(["-", ""], 3)], [POWER, new Spelling([`${py.str(library)}.pow(`, ", ", ")"])], [ROOT, new Spelling([`${py.str(library)}.sqrt(`, ")"])]]).__or__(new py.Dict([...FUNCTIONS.items()].map(([name, count]) => [name, new Spelling([`${py.str(library)}.${py.str(name)}(`, ...py.mul([", "], py.sub(count, 1)), ")"])])));
+}
+
 /** The code of a function `name(y, p, out)` that puts what was recorded of y and p into out. */
 function written(recorded, name, language) {
   const lines = new _Lines(recorded, language);
@@ -5554,7 +5559,7 @@ function _number(value) {
 }
 
 // tippetop.emit.javascript
-const JAVASCRIPT = new Language(new py.Dict([[SUM, new Spelling(["", " + ", ""], 1)], [DIFFERENCE, new Spelling(["", " - ", ""], 1)], [PRODUCT, new Spelling(["", " * ", ""], 2)], [QUOTIENT, new Spelling(["", " / ", ""], 2)], [NEGATIVE, new Spelling(["-", ""], 3)], [POWER, new Spelling(["Math.pow(", ", ", ")"])], [ROOT, new Spelling(["Math.sqrt(", ")"])], [SIZE, new Spelling(["Math.abs(", ")"])], [LESS, new Spelling(["(", " < ", " ? 1 : 0)"])], [SELECT, new Spelling(["(", " !== 0 ? ", " : ", ")"])]]).__or__(new py.Dict([...FUNCTIONS.items()].map(([name, count]) => [name, new Spelling([`Math.${py.str(name)}(`, ...py.mul([", "], py.sub(count, 1)), ")"])]))), ["function ", "(y, p, out) {"], "}\n", "const ", ";");
+const JAVASCRIPT = new Language(new py.Dict([[SIZE, new Spelling(["Math.abs(", ")"])], [LESS, new Spelling(["(", " < ", " ? 1 : 0)"])], [SELECT, new Spelling(["(", " !== 0 ? ", " : ", ")"])]]).__or__(common_spellings("Math")), ["function ", "(y, p, out) {"], "}\n", "const ", ";");
 
 /** A JavaScript function `name(y, p, out)`. */
 function javascript_source(recorded, name) {
@@ -5863,6 +5868,7 @@ export {
   closing_of,
   closing_rates,
   combined,
+  common_spellings,
   components,
   contact,
   contact_motion,
