@@ -63,8 +63,6 @@ export class Part {
   }
 }
 
-export class Variant extends Part {}
-
 function taken(name, value, field, wrong) {
   const refuse = (where, what, accepted, others) => wrong.push([where, what, accepted, others]);
   if (field.parts) {
