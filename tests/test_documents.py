@@ -13,7 +13,7 @@ import pytest
 from typer.testing import CliRunner
 
 import tippetop as tt
-from tippetop.cli.main import app
+from tippetop.cli.commands import app
 
 ROOT = Path(__file__).parents[1]
 PAGES = [

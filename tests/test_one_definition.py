@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 import tippetop as tt
 from tippetop import integrators
 from tippetop.catalogue import METRICS, NEAR_FINAL
-from tippetop.cli.main import app
+from tippetop.cli.commands import app
 from tippetop.export.words import tell
 from tippetop.integrators import has_numba, has_taylor
 from tippetop.presets import report_problem

@@ -7,7 +7,7 @@ from typer.testing import CliRunner
 
 import tippetop as tt
 from strategies import problems
-from tippetop.cli.main import app
+from tippetop.cli.commands import app
 from tippetop.cli.problem import commented_toml
 from tippetop.presets import report_problem
 

@@ -164,6 +164,22 @@ def test_ctrl_c_ends_all_of_it_without_a_traceback(wait: float) -> None:
     assert process.communicate(timeout=20) == ("interrupted\n", "")
 
 
+BLOCKED = """
+import signal
+from tippetop.processes import Job, shared
+waiting = [Job(k, signal.pthread_sigmask, (signal.SIG_BLOCK, ())) for k in range(2)]
+for _, blocked in shared(lambda: waiting.pop() if waiting else None, 2):
+    print(signal.SIGINT in blocked)
+"""
+
+
+@pytest.mark.skipif(not hasattr(signal, "pthread_sigmask"), reason="this system cannot block signals")
+def test_processes_cannot_hear_ctrl_c_from_their_first_moment() -> None:
+    """The very first of them neither, which Python starts together with a process of its own."""
+    done = subprocess.run([sys.executable, "-c", BLOCKED], capture_output=True, text=True, check=True)
+    assert (done.stdout, done.stderr) == ("True\nTrue\n", "")
+
+
 def test_a_closed_worker_is_not_started_again() -> None:
     worker = Worker()
     closing = threading.Timer(0.5, worker.close)

@@ -1,13 +1,48 @@
 """Ctrl-C and its like, which wait while something must not be cut short."""
 
+import os
 import signal
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from types import FrameType
 
 ENDINGS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
 """The signals that ask a program to end: Ctrl-C, the system's, and that of a terminal that is closed."""
+INTERRUPTED = 130
+"""Exit code of a program that they ended."""
+
+
+def let_end(at_first: bool = False) -> None:
+    """Let signals to end do so at once, with a word: for where nothing is begun that would have to be undone.
+
+    Parameters
+    ----------
+    at_first
+        Whether it is asked for the first time; later it undoes `let_raise`.
+    """
+    replaced = (signal.SIG_DFL, signal.default_int_handler) if at_first else (_raise,)
+    for number in ENDINGS:
+        # What is not heard at all, as Ctrl-C by programs in the background, stays so.
+        if signal.getsignal(number) in replaced:
+            signal.signal(number, _end)
+
+
+def let_raise() -> None:
+    """Let signals that would end the process raise a `KeyboardInterrupt` instead."""
+    for number in ENDINGS:
+        if signal.getsignal(number) is _end:
+            signal.signal(number, _raise)
+
+
+def _end(number: int, frame: FrameType | None) -> None:
+    with suppress(OSError):
+        os.write(2, b"tippetop: interrupted\n")
+    os._exit(INTERRUPTED)
+
+
+def _raise(number: int, frame: FrameType | None) -> None:
+    raise KeyboardInterrupt
 
 
 @contextmanager
@@ -25,7 +60,7 @@ def deferred() -> Iterator[None]:
     try:
         yield
     finally:
-        for number, handler in before.items():
+        for number, handler in reversed(before.items()):  # Ctrl-C last: it may raise at once
             signal.signal(number, handler or signal.SIG_DFL)
         if arrived:
             signal.raise_signal(arrived[0])

@@ -15,7 +15,7 @@ import time
 import traceback
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from multiprocessing import connection
+from multiprocessing import connection, resource_tracker
 from typing import Any, NamedTuple
 
 from tippetop.errors import TippetopError, Unavailable
@@ -63,8 +63,14 @@ class Worker:
     def _start(self) -> None:
         self.end, theirs = _SPAWN.Pipe()
         self._process = _SPAWN.Process(target=_work, args=(theirs,), daemon=True, name="tippetop worker")
-        with _apart():
-            self._process.start()
+        try:
+            with _apart():
+                self._process.start()
+        except BaseException:
+            # Ctrl-C that had to wait: nobody else knows of this process.
+            if self._process.pid is not None:
+                self._kill()
+            raise
         theirs.close()
         self._ready = self._warm_up is None
         if self._warm_up is not None:
@@ -230,16 +236,28 @@ def _apart() -> Iterator[None]:
     with _starting, deferred():
         spec, main.__spec__ = getattr(main, "__spec__", None), None
         file = vars(main).pop("__file__", None)
-        # They inherit what is blocked, until they ignore it.
-        mask = getattr(signal, "pthread_sigmask", lambda how, signals: set[int]())
-        before = mask(signal.SIG_BLOCK, {signal.SIGINT})
         try:
-            yield
+            with _unheard():
+                yield
         finally:
-            mask(signal.SIG_SETMASK, before)
             main.__spec__ = spec
             if file is not None:
                 main.__file__ = file
+
+
+@contextmanager
+def _unheard() -> Iterator[None]:
+    """Block Ctrl-C in this thread, where a system can: what is started meanwhile inherits that, for good."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    # Python's tracker of resources would be started with the first process, and unblock it.
+    resource_tracker.ensure_running()
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _work(end: Any) -> None:

@@ -198,7 +198,7 @@ def test_writers_of_many_names_do_not_disturb_each_other(tmp_path):
 
 SLOW = """
 import signal, sys, time
-from tippetop.cli.main import ENDINGS
+from tippetop.interrupts import ENDINGS
 from tippetop.files import written_beside
 for number in ENDINGS:
     signal.signal(number, signal.default_int_handler)

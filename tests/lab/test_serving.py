@@ -10,7 +10,7 @@ import pytest
 from typer.testing import CliRunner
 
 import tippetop as tt
-from tippetop.cli.main import app
+from tippetop.cli.commands import app
 from tippetop.export import bundle
 from tippetop.lab.serve import PageHandler, qr_code, serve
 

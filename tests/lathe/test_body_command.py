@@ -8,7 +8,7 @@ import pytest
 from typer.testing import CliRunner
 
 import tippetop as tt
-from tippetop.cli.main import app
+from tippetop.cli.commands import app
 from tippetop.figures.section import section
 
 TOP = """

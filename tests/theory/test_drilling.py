@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 import tippetop as tt
 from strategies import numbers
 from tippetop import presets
-from tippetop.cli.main import app
+from tippetop.cli.commands import app
 from tippetop.mechanics.coulomb import CoulombLaw, RollingResistance
 from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.invariants import jellett

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from typer.testing import CliRunner
 
 from tippetop import presets
-from tippetop.cli.main import app
+from tippetop.cli.commands import app
 from tippetop.errors import InvalidInput
 from tippetop.problem import Problem
 from tippetop.theory.averaging import flip_time_limit, nutation_of_launch

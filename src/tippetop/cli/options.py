@@ -15,9 +15,6 @@ if TYPE_CHECKING:
 
     from tippetop.problem import Problem
 
-INTERRUPTED = 130
-"""Exit code of a command that Ctrl-C ended."""
-
 ProblemFile = Annotated[
     Path | None, typer.Argument(help="Problem to start from, .toml or .json; the report's top if left out.")
 ]

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from tippetop.cli.options import (
-    INTERRUPTED,
     Changes,
     Force,
     Json,
@@ -27,6 +26,7 @@ from tippetop.cli.options import (
 )
 from tippetop.errors import MISSING, FileTrouble, InvalidInput
 from tippetop.files import in_words, place_for, read_text, written_beside
+from tippetop.interrupts import INTERRUPTED
 
 if TYPE_CHECKING:
     import xarray as xr
