@@ -153,6 +153,7 @@ function PlotSection({ lab, dark }) {
     lab.plots = new Plots(host.current, {
       seek: (time) => { lab.player.toggle(false); lab.player.seek(time); },
       time: () => lab.player?.time ?? 0,
+      playing: () => lab.player?.playing ?? false,
     });
     lab.addEventListener("time", () => lab.plots.move());
   }, []);

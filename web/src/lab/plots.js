@@ -2,6 +2,7 @@
 
 import uPlot from "uplot";
 
+import { READING } from "../player/player.js";
 import { part, t } from "./i18n.js";
 import { digits, unitOf } from "./units.js";
 
@@ -18,8 +19,8 @@ const CONSTANT = 0.02;
 const LEAST = { jellett_error: 1e-6 };
 
 export class Plots {
-  constructor(host, { seek, time }) {
-    Object.assign(this, { host, seek, time, charts: [], window: null, ghosts: [] });
+  constructor(host, { seek, time, playing }) {
+    Object.assign(this, { host, seek, time, playing, charts: [], window: null, ghosts: [], told: -Infinity });
     this.resizing = new ResizeObserver(() => this.lay());
     this.resizing.observe(host);
   }
@@ -199,7 +200,7 @@ export class Plots {
     return [(low - room) / size, (high + room) / size];
   }
 
-  // Show the player's time on every plot.
+  // Show the player's time on every plot: the mark where that moves it, numbers as often as they can be read.
   move() {
     if (!this.track) return;
     const time = this.time();
@@ -211,10 +212,15 @@ export class Plots {
       this.fill();
       return;
     }
-    for (const { name, chart, cursor, value } of this.charts) {
-      const { size } = unitOf(QUANTITIES[name], this.units);
-      cursor.style.transform = `translateX(${((time - begin) / (end - begin)) * chart.over.clientWidth}px)`;
-      value.textContent = digits(this.track.value(name, time) / size, 4);
+    const now = performance.now();
+    const reads = !this.playing() || now - this.told >= READING;
+    if (reads) this.told = now;
+    for (const one of this.charts) {
+      const { name, chart, cursor, value } = one;
+      const place = Math.round((2 * (time - begin) * chart.bbox.width) / devicePixelRatio / (end - begin)) / 2;
+      if (place !== one.place) cursor.style.transform = `translateX(${place}px)`;
+      one.place = place;
+      if (reads) value.textContent = digits(this.track.value(name, time) / unitOf(QUANTITIES[name], this.units).size, 4);
     }
   }
 

@@ -4,10 +4,14 @@ import { player as english } from "../../texts/en.json";
 import { LEAD, nearness, pace } from "./climax.js";
 import { icon, markup } from "./markup.js";
 import { Scene } from "./scene.js";
+import { Sharpness } from "./sharpness.js";
 import { drawStrip } from "./strip.js";
 import { STYLE } from "./style.js";
 import { Tone } from "./tone.js";
 import { Track } from "./track.js";
+
+// How often numbers that change are written anew, ms.
+export const READING = 80;
 
 export class Player extends EventTarget {
   constructor(host, { theme = "auto", words = english, open = false } = {}) {
@@ -26,12 +30,13 @@ export class Player extends EventTarget {
     this.speed = 1;
     this.playing = false;
     this.dirty = true;
-    this.slow = 0;
+    this.told = this.marked = -Infinity;
     this.climax = !stillness();
     this.find("[data-do=climax]").checked = this.climax;
     this.loop = false;
     try {
       this.scene = new Scene(this.canvas);
+      this.sharpness = new Sharpness(this.scene);
       this.scene.controls.addEventListener("change", () => (this.dirty ||= !this.drawing));
       this.scene.controls.addEventListener("end", () => this.dispatchEvent(new Event("view")));
     } catch (error) {
@@ -134,6 +139,7 @@ export class Player extends EventTarget {
     const changed = this.playing !== playing;
     this.playing = playing;
     this.last = undefined;
+    if (changed && playing) this.sharpness?.begin();
     this.playButton.innerHTML = icon(playing ? "pause" : "play");
     const name = playing ? this.labels.pause : this.labels.play;
     this.playButton.setAttribute("aria-label", name);
@@ -199,7 +205,7 @@ export class Player extends EventTarget {
     if (this.playing && this.track) this.advance(now);
     if (!this.track) return;
     if (!this.dirty) {
-      this.rest(now);
+      this.sharpness?.rest(now - this.moved, this.moved, () => this.draw());
       return;
     }
     this.dirty = false;
@@ -213,7 +219,7 @@ export class Player extends EventTarget {
     const passed = this.last === undefined ? 0 : Math.min((now - this.last) / 1000, 0.25);
     this.last = now;
     this.time += passed * this.speed * (this.climax ? pace(this.time, this.turnsOver) : 1);
-    this.pace(passed);
+    this.sharpness?.pace(passed);
     if (this.time >= this.duration) {
       this.time = this.loop ? 0 : this.duration;
       if (!this.loop) this.toggle(false);
@@ -228,11 +234,24 @@ export class Player extends EventTarget {
     this.drawing = false;
     if (this.stale) drawStrip(this.strip, this.track, this.dark, this.ghosts);
     this.stale = false;
-    this.range.value = this.time;
-    this.range.setAttribute("aria-valuetext", `${this.time.toFixed(3)} s`);
-    this.readout.textContent = `${this.time.toFixed(this.speed < 0.02 ? 5 : 3)} s`;
+    this.tellTime();
     this.tellMode();
     this.tone?.sound(this.track.value("omega3", this.time), this.speed, this.playing);
+  }
+
+  // The time in words and on the strip; while it runs, only as often as digits can be read and the mark moves.
+  tellTime() {
+    const { time, strip, duration } = this;
+    const now = performance.now();
+    const pixel = duration / Math.max(strip.width, 1);
+    if (!this.playing || Math.abs(time - this.marked) >= pixel) {
+      this.marked = time;
+      this.range.value = time;
+    }
+    if (this.playing && now - this.told < READING) return;
+    this.told = now;
+    this.range.setAttribute("aria-valuetext", `${time.toFixed(3)} s`);
+    this.readout.textContent = `${time.toFixed(this.speed < 0.02 ? 5 : 3)} s`;
   }
 
   // Whether the top slides, rolls, flies or stands on its stem.
@@ -244,28 +263,6 @@ export class Player extends EventTarget {
     badge.hidden = !mode;
     badge.dataset.mode = mode ?? "";
     badge.textContent = mode ? (this.labels.modes[mode] ?? mode) : "";
-  }
-
-  // When nothing moves any more, draw the moment once more, as sharp as can be.
-  rest(now) {
-    if (!this.scene || this.sharp === this.moved || now - this.moved < 600) return;
-    this.sharp = this.moved;
-    const { quality, best } = this.scene;
-    if (quality >= best) return;
-    this.scene.setQuality(best);
-    this.draw();
-    this.scene.setQuality(quality, false);
-  }
-
-  // Where frames come late, draw fewer pixels.
-  pace(passed) {
-    if (!this.scene || !passed) return;
-    this.slow = 0.9 * this.slow + 0.1 * passed;
-    this.seen = (this.seen ?? 0) + 1;
-    if (this.seen > 12 && this.slow > 0.024 && this.scene.quality > this.scene.least) {
-      this.scene.setQuality(Math.max(this.scene.least, 0.75 * this.scene.quality));
-      this.seen = 0;
-    }
   }
 
   dispose() {

@@ -4,7 +4,9 @@ import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 
 import { Eye } from "./eye.js";
-import { cutTrace, makeArrow, makePatch, makeRuler, makeTable, makeToy, makeTrace, paintGrid, pointArrow, traceMaterial } from "./toy.js";
+import { layShadow, makeRuler, makeShadow, makeTable, paintShadow, paintTable, SUN } from "./table.js";
+import { cutTrace, makeArrow, makePatch, makeToy, makeTrace, pointArrow, traceMaterial } from "./toy.js";
+import { welded } from "./weld.js";
 
 export const ARROWS = { axis: "#109b60", momentum: "#7b4fd0", friction: "#e03c31" };
 
@@ -17,14 +19,14 @@ const BESIDE = [[-1.9, -1.2], [1.9, 1.2], [-2.2, 2.6]];
 
 export class Scene {
   constructor(canvas) {
-    const frugal = drawnInSoftware();
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: !frugal });
+    const frugal = (this.frugal = drawnInSoftware());
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: !frugal, stencil: frugal });
     this.renderer.debug.checkShaderErrors = false;
-    this.renderer.shadowMap.enabled = true;
-    this.quality = frugal ? 0.7 : Math.min(globalThis.devicePixelRatio || 1, 2);
+    this.renderer.shadowMap.enabled = !frugal;
+    this.usual = this.quality = frugal ? 0.7 : Math.min(globalThis.devicePixelRatio || 1, 2);
     this.best = Math.max(this.quality, 1);
-    this.least = frugal ? 0.35 : 0.5;
-    this.renderer.shadowMap.type = this.quality < 0.8 ? THREE.BasicShadowMap : THREE.PCFShadowMap;
+    this.least = 0.5;
+    this.renderer.shadowMap.type = THREE.PCFShadowMap;
     this.world = new THREE.Scene();
     this.camera = new THREE.PerspectiveCamera(38, 1, 0.05, 200);
     this.camera.up.set(0, 0, 1);
@@ -58,9 +60,9 @@ export class Scene {
 
   light() {
     this.sky = new THREE.HemisphereLight("#ffffff", "#c9b799", 1);
-    this.sun = new THREE.DirectionalLight("#fff4e0", 2);
-    this.sun.castShadow = true;
-    this.sun.shadow.mapSize.setScalar(this.quality < 0.8 ? 512 : 1024);
+    this.sun = new THREE.DirectionalLight(SUN.colour, 2);
+    this.sun.castShadow = !this.frugal;
+    this.sun.shadow.mapSize.setScalar(1024);
     this.sun.shadow.radius = 5;
     this.sun.shadow.bias = -0.0006;
     this.sun.shadow.normalBias = 0.02;
@@ -79,10 +81,8 @@ export class Scene {
     this.sky.groundColor.set(theme.ground);
     this.sky.intensity = theme.ambient;
     this.sun.intensity = theme.sun;
-    if (this.table) {
-      paintGrid(this.table.userData.canvas, theme);
-      this.table.material.map.needsUpdate = true;
-    }
+    if (this.table) paintTable(this.table, theme);
+    if (this.shadow) paintShadow(this.shadow, theme);
     this.ink.color.set(theme.trace);
   }
 
@@ -95,17 +95,22 @@ export class Scene {
     const shape = JSON.stringify(body);
     if (shape !== this.shape) {
       this.shape = shape;
-      this.remove(this.toy, this.table, this.ruler);
-      this.toy = makeToy(body.parts);
+      this.remove(this.toy, this.table, this.ruler, this.shadow);
+      this.toy = welded(makeToy(body.parts));
       const { metres, label } = roundLength(body.size / 2);
       const cell = metres / body.size;
       this.cell = 5 * cell;
-      this.table = makeTable(cell, this.theme);
+      this.table = makeTable(cell, this.theme, this.frugal);
       this.ruler = makeRuler(cell, label, this.theme);
       this.ruler.position.x = 3 * cell;
       this.ruler.position.y = 1.9;
       this.square = `${label(1)} ${label(10).split(" ")[1]}`;
       world.add(this.toy, this.table, this.ruler);
+      if (this.frugal) {
+        this.shadow = makeShadow(this.toy);
+        paintShadow(this.shadow, this.theme);
+        world.add(this.shadow);
+      }
     }
     this.clearTrace();
     this.trace = makeTrace(track, body.size, this.ink);
@@ -128,7 +133,7 @@ export class Scene {
   compare(tracks) {
     this.remove(...this.ghosts.map(({ toy }) => toy));
     this.ghosts = tracks.map((track) => {
-      const toy = makeToy(track.header.body.parts, GHOST);
+      const toy = welded(makeToy(track.header.body.parts, GHOST));
       this.world.add(toy);
       return { track, toy };
     });
@@ -171,10 +176,9 @@ export class Scene {
     this.extent = [width, height];
   }
 
-  // Trade sharpness for speed: below one pixel per pixel the shadows' edges go, too.
+  // Trade sharpness for speed.
   setQuality(quality, now = true) {
     this.quality = quality;
-    this.renderer.shadowMap.type = quality < 0.8 ? THREE.BasicShadowMap : THREE.PCFShadowMap;
     this.resized = !now;
     if (now && this.extent) this.resize(...this.extent);
   }
@@ -192,7 +196,8 @@ export class Scene {
       const away = BESIDE[k % BESIDE.length];
       toy.position.set(x + away[0], y + away[1], up);
     });
-    this.sun.position.set(x - 2.2, y - 4.2, 7);
+    if (this.shadow) layShadow(this.shadow, this.toy);
+    this.sun.position.set(x, y, 0).add(SUN.place);
     this.sun.target.position.set(x, y, 0);
     if (this.following) this.follow(x, y);
     this.eye.sink(sunk);
@@ -234,7 +239,7 @@ export class Scene {
   }
 
   dispose() {
-    this.remove(this.toy, this.table, this.ruler, this.patch, ...this.ghosts.map(({ toy }) => toy));
+    this.remove(this.toy, this.table, this.ruler, this.shadow, this.patch, ...this.ghosts.map(({ toy }) => toy));
     this.clearTrace();
     this.ink.dispose();
     this.controls.dispose();
