@@ -5,8 +5,12 @@ import sys
 from importlib.metadata import version as installed_version
 from pathlib import Path
 
+from jupyter_client.manager import KernelManager
+
 os.environ["MATPLOTLIBRC"] = str(Path(__file__).parent / "matplotlibrc")  # read by the notebooks' kernels
 sys.path.insert(0, str(Path(__file__).parent / "_extensions"))
+if encryption := KernelManager.class_traits().get("transport_encryption"):
+    encryption.default_value = "auto"  # kernels warn of channels that anyone on the machine can read
 
 project = "tippetop"
 author = "The tippetop authors"
