@@ -124,7 +124,7 @@ def tables(found: dict[str, Any]) -> str:
     heads += ["launches/s", "memory in all, MiB", "flights"]
     rows = [
         [
-            f"{cost.side} x {cost.side}",
+            f"{cost.side}×{cost.side}",
             cost.liftoff,
             f"{cost.workers}",
             rounded(cost.clock),

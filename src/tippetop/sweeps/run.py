@@ -197,19 +197,31 @@ def sweep(
         Fields, named with dots, and their values in SI units: arrays, lists, or tables such as
         ``{"from": 0.05, "to": 1, "count": 40, "spacing": "geometric"}``, of which all combinations are
         launched; or `Draws`.
-    duration, tolerance, settled
-        See `Sweep`.
+    duration
+        Length of every run, s.
+    tolerance
+        Relative error per step.
+    settled
+        A run ends once its energy holds the tilt within this for good, rad; None to follow every run for its
+        whole duration.
     out
         Folder of a Zarr store to keep the sweep in; in memory if left out.
-    overwrite, resume
-        Replace a sweep that is there, or finish it.
-    workers, scheduler, watcher
-        See `fill`.
+    overwrite
+        Replace a sweep that is there.
+    resume
+        Finish a sweep that is there.
+    workers
+        How many processes; None for as many as there are processors, 1 for this process alone.
+    scheduler
+        Address of a running dask.distributed scheduler, instead of processes.
+    watcher
+        Told of the progress, at the beginning and after every task.
 
     Returns
     -------
     xarray.Dataset
-        See `run_sweep`.
+        What became of every launch, over the grid: its outcome, final tilt, spin and precession, when it
+        turned over, its flights, forces and losses, each with its SI unit.
 
     Raises
     ------
