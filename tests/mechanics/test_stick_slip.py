@@ -7,15 +7,19 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from dry_runs import DryRun, launched
+from tippetop.contact.growth import growth
+from tippetop.integrators import has_taylor, make_integrator
 from tippetop.integrators.scipy_methods import SciPy
 from tippetop.mechanics.beginning import direction_of_slip
 from tippetop.mechanics.contensou import ELLIPSOIDAL_RADIUS, EllipsoidalLaw
 from tippetop.mechanics.contensou_hertz import HertzLaw
 from tippetop.mechanics.coulomb import CoulombLaw, RollingResistance
+from tippetop.mechanics.ending import Vanishing
 from tippetop.mechanics.friction import NO_TORQUE, Traction
 from tippetop.mechanics.motion import angular_velocity, sliding_rates
 from tippetop.mechanics.rolling import ContactPoint, contact_wrench, velocity_without_slip, without_drilling
-from tippetop.mechanics.slip_onset import onset
+from tippetop.mechanics.series import horner
+from tippetop.mechanics.slip_onset import Growing, onset
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.stick_slip import (
     creep_rates,
@@ -200,9 +204,15 @@ def at_the_limit(law, shape=None):
             low, high = (low, middle) if held else (middle, high)
         top = top._replace(friction=law(high))
         direction, _ = direction_of_slip(axis, momentum, top)
-        if onset((axis, momentum, direction), 2, top, 1).speed[0] > 0.0:
+        if onset(Growing((axis, momentum, direction), top), 2, 1).speed[0] > 0.0:
             return top, axis, momentum
     raise AssertionError("it comes to its limit, and does not leave it")
+
+
+def grown(begin, time):
+    """Axis, angular momentum and zeta of an onset at a time since it."""
+    y = [horner(row, time) for row in begin.rows]
+    return y[:3], y[3:6], y[6:]
 
 
 FAMILIES = {
@@ -226,7 +236,7 @@ def test_the_beginning_of_slip_solves_the_equations_to_its_order(family, power, 
     direction, rate = direction_of_slip(axis, momentum, top)
     assert (rate < 1e-12) is (power == 2)
     order = 6
-    begin = onset((axis, momentum, direction), power, top, order)
+    begin = onset(Growing((axis, momentum, direction), top), power, order)
     assert begin.speed[0] > 0.0
     first, second, third = (tuple(row[k] for row in begin.direction) for k in range(3))
     assert inner(first, second) == pytest.approx(0.0, abs=1e-9 * size(second))
@@ -234,13 +244,12 @@ def test_the_beginning_of_slip_solves_the_equations_to_its_order(family, power, 
 
     def defect(time):
         def state(t):
-            n, L, zeta = begin.at(t)
-            return np.array([*n, *L, *zeta])
+            return np.concatenate(grown(begin, t))
 
         step = 0.02 * time
         weights = ((-3, -1 / 60), (-2, 3 / 20), (-1, -3 / 4), (1, 3 / 4), (2, -3 / 20), (3, 1 / 60))
         slope = sum(w * state(time + i * step) for i, w in weights) / step
-        n, L, zeta = begin.at(time)
+        n, L, zeta = grown(begin, time)
         true = creep_rates(n, L, zeta, top)
         return np.abs(slope - np.array([*true.axis, *true.momentum, *true.slip])).max()
 
@@ -249,14 +258,32 @@ def test_the_beginning_of_slip_solves_the_equations_to_its_order(family, power, 
     assert defect(time) / defect(0.5 * time) > 0.8 * 2.0**order
 
 
+@pytest.mark.skipif(not has_taylor(), reason="no other integrator expands its solutions")
+@pytest.mark.parametrize("power", [1, 2])
+@pytest.mark.parametrize("family", FAMILIES)
+def test_a_driven_motion_gives_the_same_beginning(family, power):
+    """Expanded by an integrator, with the direction given order by order, instead of in plain operators."""
+    law, order = FAMILIES[family], 10
+    top, axis, momentum = at_the_limit(law) if power == 2 else swinging(law(0.02))
+    start = axis, momentum, direction_of_slip(axis, momentum, top)[0]
+    degree, integrator = order + power - 1, make_integrator()
+    driven = growth(start, top, Vanishing(slip=True), (), degree, integrator)
+    assert not isinstance(driven, Growing)
+    ends = [onset(known, power, order) for known in (driven, Growing(start, top))]
+    time = ends[1].valid_until(1e-6)
+    for one, other in zip(ends[0].rows, ends[1].rows, strict=True):
+        terms = [[term * time**k for k, term in enumerate(row)] for row in (one, other)]
+        assert terms[0] == pytest.approx(terms[1], rel=1e-9, abs=1e-13)
+
+
 def test_slip_starts_against_the_force_that_held_it():
     top, axis, momentum = at_the_limit(CoulombLaw)
     direction, _ = direction_of_slip(axis, momentum, top)
     force = contact_wrench(ContactPoint.of(axis, momentum, top), None).force[:2]
     assert direction == pytest.approx(scaled(-1.0 / size(force), force), abs=1e-12)
-    begin = onset((axis, momentum, direction), 2, top, 8)
+    begin = onset(Growing((axis, momentum, direction), top), 2, 8)
     # s = s_0 t^2: the doubling of time quadruples the slip
-    short, long = (size(begin.at(t)[2]) for t in (1e-6, 2e-6))
+    short, long = (size(grown(begin, t)[2]) for t in (1e-6, 2e-6))
     assert long / short == pytest.approx(4.0, rel=1e-5)
 
 
@@ -266,9 +293,9 @@ def test_where_the_series_is_left_does_not_matter():
     direction, _ = direction_of_slip(axis, momentum, top)
     ends = []
     for order, error in ((12, 1e-13), (12, 1e-15), (9, 1e-13)):
-        begin = onset((axis, momentum, direction), 2, top, order)
+        begin = onset(Growing((axis, momentum, direction), top), 2, order)
         time = begin.valid_until(error)
-        n, L, zeta = begin.at(time)
+        n, L, zeta = grown(begin, time)
 
         def rates(_, y):
             r = creep_rates(tuple(y[:3]), tuple(y[3:6]), tuple(y[6:]), top)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, ClassVar
 
+from tippetop.contact.growth import growth
 from tippetop.contact.mode import EventKind, IntegratedMode, Mode, Outcome, Segment, Transition
 from tippetop.contact.sliding import BRANCH, LIFT_OFF, ROLLING, Sliding, SlidingWithoutRolling
 from tippetop.contact.sticking import LIMIT_BRANCH, SLIP, Sticking, split
@@ -26,6 +27,7 @@ from tippetop.mechanics.ending import (
     reopening_guard,
     slip_beside,
 )
+from tippetop.mechanics.hull import Hull
 from tippetop.mechanics.motion import on_table
 from tippetop.mechanics.rolling import (
     ContactPoint,
@@ -74,7 +76,7 @@ SETTLED = 1e-14
 LOOKS = 16
 """Looks along a beginning at whether another surface touches: then a mode with a guard takes over sooner."""
 
-ORDER, ACCURACY = 12, 1e-13
+ORDER, ACCURACY = 20, 1e-13
 """Degree of the series with which slip begins, and the size of its last terms relative to the first."""
 
 INSTANT = 1e-9
@@ -87,7 +89,7 @@ SHORT = 1e-14
 """How long a top at rest is followed, in natural units of time or relative to the time."""
 
 DEGREE = 14
-"""Degree of the polynomials that stand for these moments in a solution."""
+"""Degree of the polynomials that stand for the last moments in a solution; the first have `ORDER`."""
 
 
 @dataclass(frozen=True)
@@ -135,23 +137,25 @@ class Loosening(Passing):
     power: int = 1
 
     def segments(self, time: float, state: State, end: float, integrator: Integrator) -> Iterator[Segment]:
-        """Evaluate the series, which need no integrator."""
+        """Evaluate the series."""
         try:
             passing, direction, longest = self._directed(state)
             velocity = state.velocity[:2] if self.ending.moves else ()
-            start = (state.axis, state.momentum, direction)
-            begin = onset(start, self.power, passing.top, ORDER, self.ending, velocity)
+            start, degree = (state.axis, state.momentum, direction), ORDER + self.power - 1
+            known = growth(start, passing.top, self.ending, velocity, degree, integrator)
+            begin = onset(known, self.power, ORDER)
         except ArithmeticError as error:
             yield _nothing(self.told, time, state, str(error))
             return
         duration = min(begin.valid_until(ACCURACY), longest, end - time)
         # Slip that is zero has no direction, and friction none to be against: drilling, beside it, has one.
         apart = 2.0 * least_slip(state.momentum, state.velocity[:2]) if len(direction) == 2 else 0.0
-        least = scaled(apart, direction)
+        least, grown = scaled(apart, direction), DenseSolution.in_time([0.0, duration], [begin.rows])
+        free = grown.size - len(direction)
 
         def numbers(elapsed: Scalar) -> tuple[Scalar, ...]:
-            axis, momentum, xi = begin.at(elapsed)
-            return passing.numbers(axis, momentum, begin.velocity_at(elapsed), plus(xi, least))
+            y = grown.rows(elapsed)
+            return passing.numbers(*split(y), tuple(y[6:free]), plus(tuple(y[free:]), least))
 
         yield passing.piece(numbers, time, duration, end)
 
@@ -179,10 +183,12 @@ class Loosening(Passing):
         self, numbers: Callable[[Scalar], tuple[Scalar, ...]], time: float, duration: float, end: float
     ) -> Segment:
         """The segment in which the numbers are a function of the time since its start."""
-        while duration > SETTLED and not self._stays_open(numbers, duration):
+        while isinstance(self.top.surface, Hull) and duration > SETTLED:
+            if self._stays_open(numbers, duration):
+                break
             duration *= 0.5
         reach = min(time + duration, end)
-        solution = DenseSolution.fitted(numbers, [0.0, duration], DEGREE).moved(time, reach)
+        solution = DenseSolution.fitted(numbers, [0.0, duration], ORDER).moved(time, reach)
         last = self.state(numbers(duration))
         then = Outcome.COMPLETED if reach >= end else self.rules.going_on(last, slips=not self.stuck)
         return Segment(self.told, solution, last, Transition((), then, last), steps=1)

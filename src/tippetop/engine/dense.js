@@ -145,6 +145,13 @@ export class DenseSolution {
     return new DenseSolution([start, end], Float64Array.from(numbers), numbers.length, 0);
   }
 
+  /** Coefficients [step][number][power] in powers of the time since the start of a step. */
+  static in_time(knots, terms) {
+    const size = terms[0].length, degree = terms[0][0].length - 1;
+    const scaled = terms.flatMap((rows, step) => rows.flatMap((row) => row.map((term, k) => term * (knots[step + 1] - knots[step]) ** k)));
+    return new DenseSolution(knots, Float64Array.from(scaled), size, degree);
+  }
+
   static joined(parts) {
     if (parts.length === 1) return parts[0];
     const knots = parts.flatMap((part, i) => Array.from(part.knots).slice(i ? 1 : 0));

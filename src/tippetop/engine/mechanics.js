@@ -2323,167 +2323,6 @@ function split(y) {
   return [[y[0], y[1], y[2]], [y[3], y[4], y[5]]];
 }
 
-// tippetop.mechanics.direction
-const [ROUNDS, ITERATIONS, NEWTON] = [100, 50, 12];
-const [EXACT, DIRECTED] = [4e-16, 1e-09];
-const APART = 1e-07;
-
-/** How a velocity that begins in a direction changes. */
-class Resisted extends py.NamedTuple {
-  constructor(rate, strength) {
-    super();
-    this.rate = rate;
-    this.strength = strength;
-  }
-}
-py.fields(Resisted, ["rate", "strength"]);
-
-/** Directions in which velocities that cannot be held begin. */
-function directions(response, start) {
-  let ways = [...start].map((direction) => _unit(direction));
-  for (let turn = 0; turn < ROUNDS; turn += 1) {
-    for (let turn = 0; turn < ITERATIONS; turn += 1) {
-      const [before, answers] = [ways, response(ways)];
-      ways = py.zip(answers, ways).map(([answer, e]) => _unit(plus(scaled(py.add(answer.strength, size(answer.rate)), e), answer.rate)));
-      if (_apart(ways, before) < EXACT) {
-        break;
-      }
-    }
-    const found = _improved(response, ways);
-    if (found !== null) {
-      return found;
-    }
-    const rates = [...response(ways)].map((answer) => answer.rate);
-    const along = py.zip(rates, ways).map(([rate, e]) => inner(rate, e));
-    const against = py.min(0.0, ...along);
-    ways = py.range(py.len(ways)).map((i) => py.item(along, i) < 0.0 && py.eq(py.item(along, i), against) ? _unit(py.item(rates, i)) : py.item(ways, i));
-  }
-  throw new py.ArithmeticError("no direction in which the contact can go on, though nothing can hold it");
-}
-
-/** The directions by Newton's method from near ones; None if that does not lead to any. */
-function _improved(response, ways) {
-  let better;
-  let last = DIRECTED;
-  for (let turn = 0; turn < NEWTON; turn += 1) {
-    try {
-      better = _newton(response, ways);
-    } catch (error) {
-      if (!(error instanceof py.ArithmeticError)) throw error;
-      return null;
-    }
-    let moved;
-    [moved, ways] = [_apart(better, ways), better];
-    if (moved < EXACT || py.mul(last, 0.5) <= moved && moved < DIRECTED) {
-      const grows = py.zip(response(ways), ways).map(([a, e]) => inner(a.rate, e) >= py.mul(py.neg(DIRECTED), a.strength));
-      return py.truth(py.all(grows)) ? ways : null;
-    }
-    last = moved;
-  }
-  return null;
-}
-
-/** One step towards directions across which nothing changes. */
-function _newton(response, ways) {
-  const bases = [...ways].map((e) => tangents(e));
-  const across = (ways) => {
-    const answers = response(ways);
-    const lefts = py.zip(answers, ways).map(([answer, e]) => plus(answer.rate, scaled(py.neg(inner(answer.rate, e)), e)));
-    return py.zip(lefts, bases).flatMap(([left, basis]) => [...basis].map((b) => inner(left, b)));
-  };
-  const moved = (parts) => {
-    let [found, used] = [py.list(), 0];
-    for (const [e, basis] of py.zip(ways, bases)) {
-      let turned = e;
-      for (const b of basis) {
-        turned = plus(turned, scaled(py.item(parts, used), b));
-        used = used + 1;
-      }
-      found.push(_unit(turned));
-    }
-    return found;
-  };
-  const here = across(ways);
-  const count = py.len(here);
-  const columns = [];
-  for (let j = 0; j < count; j += 1) {
-    const there = across(moved(py.range(count).map((i) => py.eq(i, j) ? APART : 0.0)));
-    columns.push(py.range(count).map((i) => py.div(py.sub(py.item(there, i), py.item(here, i)), APART)));
-  }
-  return moved(solve(py.range(count).map((i) => [...columns].map((column) => py.item(column, i))), [...here].map((x) => py.neg(x))));
-}
-
-function _apart(ways, others) {
-  return py.max(py.zip(ways, others).map(([a, b]) => size(plus(a, scaled(-1.0, b)))));
-}
-
-function _unit(a) {
-  return scaled(py.div(1.0, size(a)), a);
-}
-
-// tippetop.mechanics.beginning
-
-/** How the velocities of a contact go on. */
-class Beginning extends py.NamedTuple {
-  constructor(slip, rolling, rates, wrench, acceleration) {
-    super();
-    this.slip = slip;
-    this.rolling = rolling;
-    this.rates = rates;
-    this.wrench = wrench;
-    this.acceleration = acceleration;
-  }
-}
-py.fields(Beginning, ["slip", "rolling", "rates", "wrench", "acceleration"]);
-
-/** Directions in which slip, or rolling, or both, begin. */
-function beginning(point, slip, rolling, begins) {
-  const parts = py.zip([true, false], begins).filter(([which, wanted]) => py.truth(wanted)).map(([which, wanted]) => new Vanishing(which));
-  const stiffness = [...parts].map((part) => _stiffness(part, point));
-  const motion = (ways) => {
-    const found = py.dict(py.zip(parts, ways));
-    const both = [found.get(new Vanishing(true), slip), found.get(new Vanishing(false), rolling)];
-    return [...both, ...contact_motion(point, ...both)];
-  };
-  const response = (ways) => {
-    const answer = motion(ways);
-    return py.zip(parts, stiffness).map(([part, stiff]) => new Resisted(part.rate(answer[3], point.top), py.mul(stiff, size(_resisting(part, answer[2], point.top)))));
-  };
-  let ways = [];
-  if (py.truth(parts)) {
-    const beside = py.truth(py.all(begins)) ? beginning(point, slip, rolling, [false, true]).rolling : rolling;
-    const [held] = contact_motion(point, slip, beside);
-    ways = directions(response, [...parts].map((part) => scaled(-1.0, _resisting(part, held, point.top))));
-  }
-  const found = motion(ways);
-  const along = py.zip(parts, ways).map(([part, e]) => inner(part.rate(found[3], point.top), e));
-  return new Beginning(found[0], found[1], py.tuple([...along].map((rate) => py.max(rate, 0.0))), found[2], found[3]);
-}
-
-/** Direction in which a rolling body that cannot stick slips, floats, and the rate of its speed, m/s^2. */
-function direction_of_slip(axis, momentum, top) {
-  const point = ContactPoint.of(axis, momentum, top);
-  const found = beginning(point, null, point.turning.slice(0, 2), [true, false]);
-  py.assert(found.slip !== null);
-  return [found.slip, found.rates[0]];
-}
-
-/** What resists slip, a drilling torque over the law's length, or the couple that resists rolling. */
-function _resisting(part, wrench, top) {
-  if (!py.truth(part.slip)) {
-    return wrench.torque.slice(0, 2);
-  }
-  const reach = part.reach(top);
-  return reach === null ? wrench.force.slice(0, 2) : [...wrench.force.slice(0, 2), py.div(wrench.torque[2], reach)];
-}
-
-/** How strongly the contact answers to what resists slip, or rolling, 1/kg or 1/(kg m^2). */
-function _stiffness(part, point) {
-  const answers = [...part.wrenches(point.top)].map((unit) => part.rate(point.response(unit), point.top));
-  const sizes = py.enumerate(answers).map(([i, answer]) => py.abs(py.item(answer, i)));
-  return py.float(py.add(py.sum(sizes.slice(0, 2)), py.mul(py.sum(sizes.slice(2)), py.or(part.reach(point.top), () => 0.0))));
-}
-
 // tippetop.mechanics.series
 
 /** Coefficients that have plain operators, such as floats. */
@@ -2672,65 +2511,54 @@ class Onset extends py.NamedTuple {
     }
     return py.min(times);
   }
-  /** Axis, angular momentum and zeta at a time since the onset. */
-  at(time) {
-    const [n, L, e] = [this.axis, this.momentum, this.direction].map((rows) => py.tuple([...rows].map((row) => value(row, time))));
-    const speed = py.mul(py.pow(time, this.power), value(this.speed, time));
-    return [[py.item(n, 0), py.item(n, 1), py.item(n, 2)], [py.item(L, 0), py.item(L, 1), py.item(L, 2)], scaled(speed, e)];
-  }
-  /** Horizontal velocity of the centre of mass at a time since the onset, where that is free. */
-  velocity_at(time) {
-    return py.tuple([...this.velocity].map((row) => value(row, time)));
+  /** Coefficients of n, L, u where that is free, and zeta. */
+  get rows() {
+    const [begun, count] = [py.mul([0.0], this.power), py.len(this.speed)];
+    const zeta = [...this.direction].map((row) => py.add(begun, py.range(count).map((k) => py.sum(py.map(py.mul, this.speed, py.slice(row, k, null, -1))))));
+    return [...this.axis, ...this.momentum, ...this.velocity, ...zeta];
   }
 }
 py.fields(Onset, ["axis", "momentum", "velocity", "direction", "speed", "power"]);
 
-/** Value of a polynomial, its coefficients in increasing order. */
-function value(terms, time) {
-  let total = py.item(terms, -1);
-  for (const term of py.slice(terms, -2, null, -1)) {
-    total = py.add(term, py.mul(total, time));
-  }
-  return total;
-}
-
 /** The beginning of slip, or rolling, order by order. */
-function onset(start, power, top, order, ending = new Vanishing(true), velocity = []) {
-  const known = new Growing(start, top, ending, velocity);
-  const across = tangents(py.item(start, 2));
+function onset(known, power, order) {
+  const first = known.first;
+  const across = tangents(first);
+  const basis = [...across, first];
   const slopes = [...across].map((b) => known.slope(b));
-  const [e, s] = [[py.item(start, 2)], py.list()];
+  const [e, s] = [[...first].map((number) => [number]), py.list()];
   if (power === 1) {
-    s.push(inner(known.accelerations(0), py.item(start, 2)));
+    s.push(inner(known.accelerations(0), first));
   }
   for (let j = 1; j < order + power; j += 1) {
     const k = j - power + 1;
-    const along = py.mul(-0.5, py.sum(py.range(1, j).map((i) => inner(py.item(e, i), py.item(e, j - i))), py.mul(0.0, py.item(py.item(start, 2), 0))));
-    e.push(scaled(along, py.item(start, 2)));
-    known.turn(j, py.item(e, j));
-    let rest = known.accelerations(j);
-    for (let i = 0; i < k; i += 1) {
-      rest = plus(rest, scaled(py.mul(-(k + power), py.item(s, i)), py.item(e, k - i)));
+    const along = py.mul(-0.5, py.sum([...e].map((row) => py.sum(py.map(py.mul, row.slice(1), py.slice(row, null, 0, -1))))));
+    known.turn(j, scaled(along, first));
+    for (const [row, number] of py.zip(e, first)) {
+      row.push(py.mul(along, number));
     }
+    const behind = py.tuple([...e].map((row) => py.sum(py.map(py.mul, s.slice(0, k), py.slice(row, k, 0, -1)))));
+    const rest = plus(known.accelerations(j), scaled(-(k + power), behind));
     const lag = power === 1 ? py.mul(k + power, py.item(s, 0)) : 0.0;
     const columns = py.zip(slopes, across).map(([g, b]) => plus(g, scaled(py.neg(lag), b)));
-    columns.push(scaled(-py.float(k + power), py.item(start, 2)));
-    const basis = [...across, py.item(start, 2)];
+    columns.push(scaled(-py.float(k + power), first));
     const found = solve([...basis].map((b) => [...columns].map((c) => inner(b, c))), [...basis].map((b) => py.neg(inner(b, rest))));
     for (const [part, b] of py.zip(py.slice(found, null, -1, null), across)) {
-      py.put(e, j, plus(py.item(e, j), scaled(part, b)));
+      for (const [row, number] of py.zip(e, b)) {
+        py.put(row, j, py.add(py.item(row, j), py.mul(part, number)));
+      }
     }
-    known.turn(j, py.item(e, j));
+    known.turn(j, py.tuple([...e].map((row) => py.item(row, j))));
     s.push(py.item(found, -1));
   }
-  const rows = [...known.state].map((y) => py.range(order + 1).map((k) => py.item(y, k)));
-  const turning = py.tuple(py.range(py.len(py.item(start, 2))).map((i) => py.range(order + 1).map((k) => py.item(py.item(e, k), i))));
+  const rows = [...known.state].map((y) => py.range(order + power + 1).map((k) => py.item(y, k)));
+  const turning = py.tuple([...e].map((row) => py.slice(row, null, order + 1, null)));
   return new Onset(py.tuple(rows.slice(0, 3)), py.tuple(rows.slice(3, 6)), py.tuple(rows.slice(6)), turning, py.slice(s, null, order + 1, null), power);
 }
 
-/** Series that are being made: the state follows from the directions known so far. */
+/** Series that are made in plain operators: the state follows from the directions known so far. */
 class Growing extends py.Thing {
-  constructor(start, top, ending, velocity) {
+  constructor(start, top, ending = new Vanishing(true), velocity = []) {
     super();
     [this.top, this.first, this.ending] = [top, py.item(start, 2), ending];
     let rules = [];
@@ -2883,6 +2711,244 @@ function at_start(parts) {
   return py.tuple([...parts].map((part) => py.isinstance(part, [py.float, py.int]) ? part : py.item(part, 0)));
 }
 
+// tippetop.contact.growth
+
+/** Series from the motion of a body whose direction of slip is given, and found order by order. */
+class Driven extends py.Thing {
+  constructor(start, velocity, degree, expand) {
+    super();
+    [this.first, this._expand] = [start[2], expand];
+    this._begin = [...start[0], ...start[1], ...velocity, ...scaled(0.0, start[2])];
+    this._derivatives = [...start[2]].map((e) => [e, ...py.mul([0.0], degree)]);
+    this._known = py.list();
+  }
+  /** Coefficients of the numbers of the motion, without what is given. */
+  get _rows() {
+    if (!py.truth(this._known)) {
+      let numbers = [...this._begin];
+      for (const derivatives of this._derivatives) {
+        numbers = py.add(numbers, derivatives);
+      }
+      this._known = [...this._expand(numbers)];
+    }
+    return this._known;
+  }
+  /** Coefficients of n, L, and u where that is free. */
+  get state() {
+    return py.slice(this._rows, null, py.len(this._begin) - py.len(this.first), null);
+  }
+  /** Set the j-th coefficient of the direction. */
+  turn(j, direction) {
+    this._known = [];
+    for (const [derivatives, number] of py.zip(this._derivatives, direction)) {
+      py.put(derivatives, j, py.mul(number, py.math.factorial(j)));
+    }
+  }
+  /** Coefficient of order j of A. */
+  accelerations(j) {
+    const skipped = py.len(this._begin) - py.len(this.first);
+    return py.tuple([...this._rows.slice(skipped)].map((row) => py.mul(j + 1, py.item(row, j + 1))));
+  }
+  /** Derivative of A along a direction across e_0, at the start: that order is linear in it. */
+  slope(across) {
+    this.turn(1, across);
+    const turned = this.accelerations(1);
+    this.turn(1, scaled(0.0, across));
+    return plus(turned, scaled(-1.0, this.accelerations(1)));
+  }
+}
+
+/** The series where slip, or rolling, begins, by an integrator that expands solutions, or without. */
+function growth(start, top, ending, velocity, degree, integrator) {
+  let expansion;
+  expansion = py.getattr(integrator, "expansion", null);
+  if (expansion === null) {
+    return new Growing(start, top, ending, velocity);
+  }
+  const motion = driven_motion(top.kind, ending, py.len(start[2]), degree);
+  const count = py.sub(motion.size, py.len(start[2]) * (degree + 1));
+  return new Driven(start, velocity, degree, expansion(motion, top.numbers, degree + 1, count));
+}
+
+/** Equations of motion in which a direction is given: it, and its derivatives, are the last numbers. */
+const driven_motion = py.cached((kind, ending, components, degree) => {
+  const free = py.truth(ending.moves) ? 8 : 6;
+  const chain = degree + 1;
+  const rates = (y, numbers) => {
+    const given = py.slice(y, py.add(free, components), null, null);
+    const direction = py.tuple(py.range(components).map((i) => py.item(given, i * chain)));
+    const state = new Closing(...split(y), py.tuple(y.slice(6, free)), direction, 0.0, 0.0);
+    const rate = rates_in_time(state, ending, kind.top(py.tuple(numbers)));
+    let turning = py.list();
+    for (let i = 0; i < components; i += 1) {
+      turning = py.add(turning, [...py.slice(given, i * chain + 1, (i + 1) * chain, null), 0.0]);
+    }
+    return [...rate.axis, ...rate.momentum, ...rate.velocity, ...rate.xi, ...turning];
+  };
+  return new Motion(rates, py.add(free, components * (chain + 1)), kind.numbers, undefined, false);
+});
+
+// tippetop.mechanics.direction
+const [ROUNDS, ITERATIONS, NEWTON] = [100, 50, 12];
+const [EXACT, DIRECTED] = [4e-16, 1e-09];
+const APART = 1e-07;
+
+/** How a velocity that begins in a direction changes. */
+class Resisted extends py.NamedTuple {
+  constructor(rate, strength) {
+    super();
+    this.rate = rate;
+    this.strength = strength;
+  }
+}
+py.fields(Resisted, ["rate", "strength"]);
+
+/** Directions in which velocities that cannot be held begin. */
+function directions(response, start) {
+  let ways = [...start].map((direction) => _unit(direction));
+  for (let turn = 0; turn < ROUNDS; turn += 1) {
+    for (let turn = 0; turn < ITERATIONS; turn += 1) {
+      const [before, answers] = [ways, response(ways)];
+      ways = py.zip(answers, ways).map(([answer, e]) => _unit(plus(scaled(py.add(answer.strength, size(answer.rate)), e), answer.rate)));
+      if (_apart(ways, before) < EXACT) {
+        break;
+      }
+    }
+    const found = _improved(response, ways);
+    if (found !== null) {
+      return found;
+    }
+    const rates = [...response(ways)].map((answer) => answer.rate);
+    const along = py.zip(rates, ways).map(([rate, e]) => inner(rate, e));
+    const against = py.min(0.0, ...along);
+    ways = py.range(py.len(ways)).map((i) => py.item(along, i) < 0.0 && py.eq(py.item(along, i), against) ? _unit(py.item(rates, i)) : py.item(ways, i));
+  }
+  throw new py.ArithmeticError("no direction in which the contact can go on, though nothing can hold it");
+}
+
+/** The directions by Newton's method from near ones; None if that does not lead to any. */
+function _improved(response, ways) {
+  let better;
+  let last = DIRECTED;
+  for (let turn = 0; turn < NEWTON; turn += 1) {
+    try {
+      better = _newton(response, ways);
+    } catch (error) {
+      if (!(error instanceof py.ArithmeticError)) throw error;
+      return null;
+    }
+    let moved;
+    [moved, ways] = [_apart(better, ways), better];
+    if (moved < EXACT || py.mul(last, 0.5) <= moved && moved < DIRECTED) {
+      const grows = py.zip(response(ways), ways).map(([a, e]) => inner(a.rate, e) >= py.mul(py.neg(DIRECTED), a.strength));
+      return py.truth(py.all(grows)) ? ways : null;
+    }
+    last = moved;
+  }
+  return null;
+}
+
+/** One step towards directions across which nothing changes. */
+function _newton(response, ways) {
+  const bases = [...ways].map((e) => tangents(e));
+  const across = (ways) => {
+    const answers = response(ways);
+    const lefts = py.zip(answers, ways).map(([answer, e]) => plus(answer.rate, scaled(py.neg(inner(answer.rate, e)), e)));
+    return py.zip(lefts, bases).flatMap(([left, basis]) => [...basis].map((b) => inner(left, b)));
+  };
+  const moved = (parts) => {
+    let [found, used] = [py.list(), 0];
+    for (const [e, basis] of py.zip(ways, bases)) {
+      let turned = e;
+      for (const b of basis) {
+        turned = plus(turned, scaled(py.item(parts, used), b));
+        used = used + 1;
+      }
+      found.push(_unit(turned));
+    }
+    return found;
+  };
+  const here = across(ways);
+  const count = py.len(here);
+  const columns = [];
+  for (let j = 0; j < count; j += 1) {
+    const there = across(moved(py.range(count).map((i) => py.eq(i, j) ? APART : 0.0)));
+    columns.push(py.range(count).map((i) => py.div(py.sub(py.item(there, i), py.item(here, i)), APART)));
+  }
+  return moved(solve(py.range(count).map((i) => [...columns].map((column) => py.item(column, i))), [...here].map((x) => py.neg(x))));
+}
+
+function _apart(ways, others) {
+  return py.max(py.zip(ways, others).map(([a, b]) => size(plus(a, scaled(-1.0, b)))));
+}
+
+function _unit(a) {
+  return scaled(py.div(1.0, size(a)), a);
+}
+
+// tippetop.mechanics.beginning
+
+/** How the velocities of a contact go on. */
+class Beginning extends py.NamedTuple {
+  constructor(slip, rolling, rates, wrench, acceleration) {
+    super();
+    this.slip = slip;
+    this.rolling = rolling;
+    this.rates = rates;
+    this.wrench = wrench;
+    this.acceleration = acceleration;
+  }
+}
+py.fields(Beginning, ["slip", "rolling", "rates", "wrench", "acceleration"]);
+
+/** Directions in which slip, or rolling, or both, begin. */
+function beginning(point, slip, rolling, begins) {
+  const parts = py.zip([true, false], begins).filter(([which, wanted]) => py.truth(wanted)).map(([which, wanted]) => new Vanishing(which));
+  const stiffness = [...parts].map((part) => _stiffness(part, point));
+  const motion = (ways) => {
+    const found = py.dict(py.zip(parts, ways));
+    const both = [found.get(new Vanishing(true), slip), found.get(new Vanishing(false), rolling)];
+    return [...both, ...contact_motion(point, ...both)];
+  };
+  const response = (ways) => {
+    const answer = motion(ways);
+    return py.zip(parts, stiffness).map(([part, stiff]) => new Resisted(part.rate(answer[3], point.top), py.mul(stiff, size(_resisting(part, answer[2], point.top)))));
+  };
+  let ways = [];
+  if (py.truth(parts)) {
+    const beside = py.truth(py.all(begins)) ? beginning(point, slip, rolling, [false, true]).rolling : rolling;
+    const [held] = contact_motion(point, slip, beside);
+    ways = directions(response, [...parts].map((part) => scaled(-1.0, _resisting(part, held, point.top))));
+  }
+  const found = motion(ways);
+  const along = py.zip(parts, ways).map(([part, e]) => inner(part.rate(found[3], point.top), e));
+  return new Beginning(found[0], found[1], py.tuple([...along].map((rate) => py.max(rate, 0.0))), found[2], found[3]);
+}
+
+/** Direction in which a rolling body that cannot stick slips, floats, and the rate of its speed, m/s^2. */
+function direction_of_slip(axis, momentum, top) {
+  const point = ContactPoint.of(axis, momentum, top);
+  const found = beginning(point, null, point.turning.slice(0, 2), [true, false]);
+  py.assert(found.slip !== null);
+  return [found.slip, found.rates[0]];
+}
+
+/** What resists slip, a drilling torque over the law's length, or the couple that resists rolling. */
+function _resisting(part, wrench, top) {
+  if (!py.truth(part.slip)) {
+    return wrench.torque.slice(0, 2);
+  }
+  const reach = part.reach(top);
+  return reach === null ? wrench.force.slice(0, 2) : [...wrench.force.slice(0, 2), py.div(wrench.torque[2], reach)];
+}
+
+/** How strongly the contact answers to what resists slip, or rolling, 1/kg or 1/(kg m^2). */
+function _stiffness(part, point) {
+  const answers = [...part.wrenches(point.top)].map((unit) => part.rate(point.response(unit), point.top));
+  const sizes = py.enumerate(answers).map(([i, answer]) => py.abs(py.item(answer, i)));
+  return py.float(py.add(py.sum(sizes.slice(0, 2)), py.mul(py.sum(sizes.slice(2)), py.or(part.reach(point.top), () => 0.0))));
+}
+
 // tippetop.contact.passing
 const [REOPENING, LANDED, TIME, OVERTAKEN] = ["reopening", "landed", "time", "overtaken"];
 const LANDING = [3e-09, 1e-16];
@@ -2890,7 +2956,7 @@ const LONGEST = 100.0;
 const STIFF_TOLERANCE = 1e-12;
 const SETTLED = 1e-14;
 const LOOKS_of_passing = 16;
-const [ORDER, ACCURACY] = [12, 1e-13];
+const [ORDER, ACCURACY] = [20, 1e-13];
 const INSTANT = 1e-09;
 const PART = 0.25;
 const SHORT = 1e-14;
@@ -2930,14 +2996,15 @@ class Loosening extends Passing {
     super(top, rules, ending);
     this.power = power;
   }
-  /** Evaluate the series, which need no integrator. */
+  /** Evaluate the series. */
   *segments(time, state, end, integrator) {
     let passing, direction, longest, begin;
     try {
       [passing, direction, longest] = this._directed(state);
       const velocity = py.truth(this.ending.moves) ? state.velocity.slice(0, 2) : [];
-      const start = [state.axis, state.momentum, direction];
-      begin = onset(start, this.power, passing.top, ORDER, this.ending, velocity);
+      const [start, degree] = [[state.axis, state.momentum, direction], py.sub(py.add(ORDER, this.power), 1)];
+      const known = growth(start, passing.top, this.ending, velocity, degree, integrator);
+      begin = onset(known, this.power, ORDER);
     } catch (error) {
       if (!(error instanceof py.ArithmeticError)) throw error;
       yield _nothing(this.told, time, state, py.str(error));
@@ -2945,10 +3012,11 @@ class Loosening extends Passing {
     }
     const duration = py.min(begin.valid_until(ACCURACY), longest, end - time);
     const apart = py.len(direction) === 2 ? py.mul(2.0, least_slip(state.momentum, state.velocity.slice(0, 2))) : 0.0;
-    const least = scaled(apart, direction);
+    const [least, grown] = [scaled(apart, direction), DenseSolution.in_time([0.0, duration], [begin.rows])];
+    const free = py.sub(grown.size, py.len(direction));
     const numbers = (elapsed) => {
-      const [axis, momentum, xi] = begin.at(elapsed);
-      return passing.numbers(axis, momentum, begin.velocity_at(elapsed), plus(xi, least));
+      const y = grown.rows(elapsed);
+      return passing.numbers(...split(y), py.tuple(y.slice(6, free)), plus(py.tuple(y.slice(free)), least));
     };
     yield passing.piece(numbers, time, duration, end);
   }
@@ -2973,11 +3041,14 @@ class Loosening extends Passing {
   }
   /** The segment in which the numbers are a function of the time since its start. */
   piece(numbers, time, duration, end) {
-    while (duration > SETTLED && !py.truth(this._stays_open(numbers, duration))) {
+    while (py.isinstance(this.top.surface, Hull) && duration > SETTLED) {
+      if (py.truth(this._stays_open(numbers, duration))) {
+        break;
+      }
       duration = duration * 0.5;
     }
     const reach = py.min(time + duration, end);
-    const solution = DenseSolution.fitted(numbers, [0.0, duration], DEGREE_of_passing).moved(time, reach);
+    const solution = DenseSolution.fitted(numbers, [0.0, duration], ORDER).moved(time, reach);
     const last = this.state(numbers(duration));
     const then = reach >= end ? Outcome.COMPLETED : this.rules.going_on(last, !py.truth(this.stuck));
     return new Segment(this.told, solution, last, new Transition([], then, last), 1);
@@ -5647,6 +5718,7 @@ export {
   DRILLING,
   Disc,
   DoubleContact,
+  Driven,
   DryContact,
   EAST,
   EDGE,
@@ -5883,6 +5955,7 @@ export {
   dot,
   double_contact,
   double_rates,
+  driven_motion,
   each_surface,
   energy,
   falling_time,
@@ -5893,6 +5966,7 @@ export {
   follow_surface,
   gap,
   gap_rate,
+  growth,
   has_limit_branches,
   heaviness,
   held_motion,
@@ -5999,7 +6073,6 @@ export {
   turning_with,
   twisting_powers,
   unpack,
-  value,
   velocity_of,
   velocity_without_slip,
   with_sliding_law,

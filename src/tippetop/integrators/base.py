@@ -14,6 +14,8 @@ Array: TypeAlias = NDArray[np.float64]
 Function: TypeAlias = Callable[[Sequence[Scalar], Sequence[Scalar]], Scalar]
 """A function of the state and the parameters, in plain operators."""
 
+Expansion: TypeAlias = Callable[[Sequence[float]], Sequence[Sequence[float]]]
+"""From a state to the coefficients of the solution from there, in powers of time, each number's in a row."""
 
 NOT_FINITE = "the solution is no longer finite"
 """Why an integrator gives up where numbers grow beyond all bounds: its last state then means nothing."""

@@ -6,7 +6,7 @@ from functools import lru_cache
 from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from tippetop.mechanics.vectors import Functions, Row
 
@@ -58,8 +58,11 @@ class DenseSolution:
         step = np.minimum(np.searchsorted(self.knots[1:], times, side="left"), len(self.terms) - 1)
         return evaluated(self.terms, step, parts_of(times, self.knots[step], self.knots[step + 1]))
 
-    def rows(self, times: Array) -> Sequence[Array]:
-        """The numbers of the solution at times, each of shape (m,)."""
+    def rows(self, times: Array | float) -> Row:
+        """The numbers of the solution at times, each of shape (m,); or at a time."""
+        if isinstance(times, float):
+            found: list[float] = self(np.array([times]))[0].tolist()
+            return found
         return tuple(self(times).T)
 
     def moved(self, start: float, end: float) -> "DenseSolution":
@@ -118,9 +121,10 @@ class DenseSolution:
         return cls(knots, terms)
 
     @classmethod
-    def in_time(cls, knots: Array, terms: Array) -> "DenseSolution":
+    def in_time(cls, knots: ArrayLike, terms: ArrayLike) -> "DenseSolution":
         """The solution whose coefficients are in powers of the time since the start of a step."""
-        return cls(knots, terms * powers(np.diff(knots), terms.shape[2])[:, None, :])
+        ends, known = np.asarray(knots, dtype=float), np.asarray(terms, dtype=float)
+        return cls(ends, known * powers(np.diff(ends), known.shape[2])[:, None, :])
 
     @classmethod
     def fitted(

@@ -7,13 +7,13 @@ whether they are long beside the fastest damping; if so, the implicit method goe
 longer.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tippetop.integrators.base import Arc, Array, Integrator, Motion
+from tippetop.integrators.base import Arc, Array, Expansion, Integrator, Motion
 from tippetop.integrators.rates import RightHandSide
 from tippetop.mechanics.vectors import Scalar
 
@@ -49,6 +49,11 @@ class Relieved:
     def tolerance(self) -> float:
         """Relative error per step where the motion is not stiff."""
         return float(getattr(self.explicit, "tolerance", 0.0))
+
+    @property
+    def expansion(self) -> Callable[[Motion, Sequence[float], int, int], Expansion] | None:
+        """How the method expands a motion's solutions in powers of time, if it does."""
+        return getattr(self.explicit, "expansion", None)
 
     def _implicit(self, shortest: float) -> Integrator:
         """The method where the motion is stiff."""

@@ -1,5 +1,6 @@
 """Taylor's method of high order, compiled by heyoka once for all values of the parameters."""
 
+import math
 import threading
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
@@ -9,7 +10,7 @@ from typing import Any
 import heyoka as hy
 import numpy as np
 
-from tippetop.integrators.base import NOT_FINITE, Arc, Array, Motion
+from tippetop.integrators.base import NOT_FINITE, Arc, Array, Expansion, Motion
 from tippetop.integrators.compile_cache import compiling
 from tippetop.integrators.dense import DenseSolution
 
@@ -63,6 +64,11 @@ class Taylor:
                 return
             start = solution.end, state
 
+    def expansion(self, motion: Motion, parameters: Sequence[float], degree: int, count: int) -> Expansion:
+        """The coefficients of the first numbers of a motion's solutions in powers of time, compiled."""
+        compiled = _compiled(motion, math.exp(3.0 - 2.0 * degree), 1)
+        return lambda start: compiled.expanded(start, parameters, count)
+
 
 class _Compiled:
     """An integrator, room for the coefficients of some steps, and a lock that both are used under."""
@@ -85,6 +91,18 @@ class _Compiled:
         if outcome == hy.taylor_outcome.time_limit:
             knots[-1] = end
         return DenseSolution.in_time(np.array(knots), terms[: len(knots) - 1]), outcome
+
+    def expanded(self, start: Sequence[float], parameters: Sequence[float], count: int) -> list[list[float]]:
+        """Coefficients of the first numbers of the solution about its start."""
+        with self.lock:
+            run = self.integrator
+            run.state[:], run.pars[:] = start, parameters[: len(run.pars)]
+            run.step(write_tc=True)
+            known = self._coefficients[:count]
+            if not np.isfinite(known).all():
+                raise ArithmeticError(NOT_FINITE)
+            found: list[list[float]] = known.tolist()
+        return found
 
 
 @lru_cache(maxsize=32)

@@ -10,7 +10,8 @@ nearby decay to it like exp(-1/t), and an ordinary integrator goes on.
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple
+from operator import mul
+from typing import Any, NamedTuple, Protocol
 
 from tippetop.mechanics.algebra import TruncatedSeries
 from tippetop.mechanics.coulomb import RollingResistance
@@ -35,6 +36,8 @@ from tippetop.mechanics.vectors import Scalar, Vector, add, scale
 
 class Onset(NamedTuple):
     """The beginning of slip, or rolling, as polynomials in time: lists of coefficients, in increasing order.
+
+    The speed and the direction go up to some order, and the others to as many more as there are powers.
 
     Attributes
     ----------
@@ -67,52 +70,52 @@ class Onset(NamedTuple):
                     times.append((whole / term) ** (1.0 / k))
         return min(times)
 
-    def at(self, time: Scalar) -> tuple[Vector, Vector, Slip]:
-        """Axis, angular momentum and zeta at a time since the onset."""
-        n, L, e = (
-            tuple(value(row, time) for row in rows) for rows in (self.axis, self.momentum, self.direction)
-        )
-        speed = time**self.power * value(self.speed, time)
-        return (n[0], n[1], n[2]), (L[0], L[1], L[2]), scaled(speed, e)
-
-    def velocity_at(self, time: Scalar) -> Slip:
-        """Horizontal velocity of the centre of mass at a time since the onset, where that is free."""
-        return tuple(value(row, time) for row in self.velocity)
+    @property
+    def rows(self) -> list[list[Scalar]]:
+        """Coefficients of n, L, u where that is free, and zeta."""
+        begun, count = [0.0] * self.power, len(self.speed)
+        zeta = [
+            begun + [sum(map(mul, self.speed, row[k::-1])) for k in range(count)] for row in self.direction
+        ]
+        return [*self.axis, *self.momentum, *self.velocity, *zeta]
 
 
-def value(terms: Sequence[Scalar], time: Scalar) -> Scalar:
-    """Value of a polynomial, its coefficients in increasing order."""
-    total = terms[-1]
-    for term in terms[-2::-1]:
-        total = term + total * time
-    return total
+class Growth(Protocol):
+    """Series in time of y and A while the direction e is being found, from the first order on.
+
+    Attributes
+    ----------
+    first
+        The direction e_0 in which slip, or rolling, begins: along it A = R e_0.
+    """
+
+    first: Slip
+
+    @property
+    def state(self) -> Sequence[Any]:
+        """Coefficients of n, L, and u where that is free, each to be indexed."""
+
+    def turn(self, j: int, direction: Slip) -> None:
+        """Set the j-th coefficient of the direction; those after it are not known."""
+
+    def accelerations(self, j: int) -> Slip:
+        """Coefficient of order j of A."""
+
+    def slope(self, across: Slip) -> Slip:
+        """Derivative of A along a direction across e_0, at the start."""
 
 
-def onset(
-    start: tuple[Vector, Vector, Slip],
-    power: int,
-    top: Top,
-    order: int,
-    ending: Vanishing = Vanishing(slip=True),  # noqa: B008
-    velocity: Slip = (),
-) -> Onset:
+def onset(known: Growth, power: int, order: int) -> Onset:
     """The beginning of slip, or rolling, order by order.
 
     Parameters
     ----------
-    start
-        Axis, angular momentum, and the direction e_0 in which it begins: along it A = R e_0, with R = 0 and
-        power 2, or R > 0 and power 1.
+    known
+        The series where it begins.
     power
-        How it grows with time, 1 or 2.
-    top
-        The body.
+        How it grows with time: 2 where R = 0 at the start, 1 where R > 0.
     order
         Degree of the polynomials.
-    ending
-        Which velocity begins, and whether the other is held.
-    velocity
-        Horizontal velocity of the centre of mass where that is free beside it, m/s.
 
     Notes
     -----
@@ -120,44 +123,52 @@ def onset(
     t^j are s_k and the part of e_j across e_0 (|e| = 1 gives the other); A is linear in e_j, with the
     derivative G.
     """
-    known = Growing(start, top, ending, velocity)
-    across = tangents(start[2])
+    first = known.first
+    across = tangents(first)
+    basis = (*across, first)
     slopes = [known.slope(b) for b in across]
-    e, s = [start[2]], list[Scalar]()
+    e, s = [[number] for number in first], list[Scalar]()
     if power == 1:
-        s.append(inner(known.accelerations(0), start[2]))
+        s.append(inner(known.accelerations(0), first))
     for j in range(1, order + power):
         k = j - power + 1
-        along = -0.5 * sum((inner(e[i], e[j - i]) for i in range(1, j)), 0.0 * start[2][0])
-        e.append(scaled(along, start[2]))
+        along = -0.5 * sum(sum(map(mul, row[1:], row[:0:-1])) for row in e)
+        known.turn(j, scaled(along, first))
+        for row, number in zip(e, first, strict=True):
+            row.append(along * number)
         # (k + power) zeta_k = A_j, where zeta_k has s_k e_0, known terms, and for power 1 also s_0 e_j.
-        known.turn(j, e[j])
-        rest = known.accelerations(j)
-        for i in range(k):
-            rest = plus(rest, scaled(-(k + power) * s[i], e[k - i]))
+        behind = tuple(sum(map(mul, s[:k], row[k:0:-1])) for row in e)
+        rest = plus(known.accelerations(j), scaled(-(k + power), behind))
         lag = (k + power) * s[0] if power == 1 else 0.0
         columns = [plus(g, scaled(-lag, b)) for g, b in zip(slopes, across, strict=True)]
-        columns.append(scaled(-float(k + power), start[2]))
-        basis = (*across, start[2])
+        columns.append(scaled(-float(k + power), first))
         found = solve([[inner(b, c) for c in columns] for b in basis], [-inner(b, rest) for b in basis])
         for part, b in zip(found[:-1], across, strict=True):
-            e[j] = plus(e[j], scaled(part, b))
-        known.turn(j, e[j])
+            for row, number in zip(e, b, strict=True):
+                row[j] = row[j] + part * number
+        known.turn(j, tuple(row[j] for row in e))
         s.append(found[-1])
-    rows = [[y[k] for k in range(order + 1)] for y in known.state]
-    turning = tuple([e[k][i] for k in range(order + 1)] for i in range(len(start[2])))
+    rows = [[y[k] for k in range(order + power + 1)] for y in known.state]
+    turning = tuple(row[: order + 1] for row in e)
     return Onset(tuple(rows[:3]), tuple(rows[3:6]), tuple(rows[6:]), turning, s[: order + 1], power)
 
 
 class Growing:
-    """Series that are being made: the state follows from the directions known so far.
+    """Series that are made in plain operators: the state follows from the directions known so far.
+
+    Made of axis, angular momentum and e_0, the body, which velocity begins and whether the other is held, and
+    the horizontal velocity of the centre of mass where that is free beside it, m/s.
 
     `free` and `responses` hold the rates of zeta and the normal acceleration without what begins, and per
     unit of each wrench, the normal force last: series that depend on the state alone.
     """
 
     def __init__(
-        self, start: tuple[Vector, Vector, Slip], top: Top, ending: Vanishing, velocity: Slip
+        self,
+        start: tuple[Vector, Vector, Slip],
+        top: Top,
+        ending: Vanishing = Vanishing(slip=True),  # noqa: B008
+        velocity: Slip = (),
     ) -> None:
         self.top, self.first, self.ending = top, start[2], ending
         rules: list[Callable[[int], Scalar]] = []

@@ -1,0 +1,120 @@
+"""Series of what begins to slip, or to roll, by an integrator that expands solutions in powers of time."""
+
+import math
+from collections.abc import Callable, Sequence
+from functools import lru_cache
+from typing import Any
+
+from tippetop.contact.sticking import split
+from tippetop.integrators.base import Expansion, Integrator, Motion
+from tippetop.mechanics.ending import Closing, Vanishing, rates_in_time
+from tippetop.mechanics.rolling import Slip
+from tippetop.mechanics.slip_onset import Growing, Growth
+from tippetop.mechanics.stick_slip import plus, scaled
+from tippetop.mechanics.top import Kind, Top
+from tippetop.mechanics.vectors import Scalar, Vector
+
+
+class Driven:
+    """Series from the motion of a body whose direction of slip is given, and found order by order.
+
+    Attributes
+    ----------
+    first
+        The direction in which slip, or rolling, begins.
+    """
+
+    def __init__(self, start: tuple[Vector, Vector, Slip], velocity: Slip, degree: int, expand: Expansion):
+        self.first, self._expand = start[2], expand
+        self._begin = (*start[0], *start[1], *velocity, *scaled(0.0, start[2]))
+        self._derivatives = [[e, *[0.0] * degree] for e in start[2]]
+        self._known = list[Sequence[float]]()
+
+    @property
+    def _rows(self) -> Sequence[Sequence[float]]:
+        """Coefficients of the numbers of the motion, without what is given."""
+        if not self._known:
+            numbers = [*self._begin]
+            for derivatives in self._derivatives:
+                numbers += derivatives
+            self._known = [*self._expand(numbers)]
+        return self._known
+
+    @property
+    def state(self) -> Sequence[Sequence[float]]:
+        """Coefficients of n, L, and u where that is free."""
+        return self._rows[: len(self._begin) - len(self.first)]
+
+    def turn(self, j: int, direction: Slip) -> None:
+        """Set the j-th coefficient of the direction."""
+        self._known = []
+        for derivatives, number in zip(self._derivatives, direction, strict=True):
+            derivatives[j] = number * math.factorial(j)
+
+    def accelerations(self, j: int) -> Slip:
+        """Coefficient of order j of A."""
+        skipped = len(self._begin) - len(self.first)
+        return tuple((j + 1) * row[j + 1] for row in self._rows[skipped:])
+
+    def slope(self, across: Slip) -> Slip:
+        """Derivative of A along a direction across e_0, at the start: that order is linear in it."""
+        self.turn(1, across)
+        turned = self.accelerations(1)
+        self.turn(1, scaled(0.0, across))
+        return plus(turned, scaled(-1.0, self.accelerations(1)))
+
+
+def growth(
+    start: tuple[Vector, Vector, Slip],
+    top: Top,
+    ending: Vanishing,
+    velocity: Slip,
+    degree: int,
+    integrator: Integrator,
+) -> Growth:
+    """The series where slip, or rolling, begins, by an integrator that expands solutions, or without.
+
+    Parameters
+    ----------
+    start
+        Axis, angular momentum, and the direction in which it begins.
+    top
+        The body.
+    ending
+        Which velocity begins, and whether the other is held.
+    velocity
+        Horizontal velocity of the centre of mass where that is free beside it.
+    degree
+        Of the accelerations that will be asked for.
+    integrator
+        Who follows the motion.
+    """
+    expansion: Callable[[Motion, Sequence[float], int, int], Expansion] | None
+    expansion = getattr(integrator, "expansion", None)
+    if expansion is None:
+        return Growing(start, top, ending, velocity)
+    motion = driven_motion(top.kind, ending, len(start[2]), degree)
+    count = motion.size - len(start[2]) * (degree + 1)
+    return Driven(start, velocity, degree, expansion(motion, top.numbers, degree + 1, count))
+
+
+@lru_cache
+def driven_motion(kind: Kind, ending: Vanishing, components: int, degree: int) -> Motion:
+    """Equations of motion in which a direction is given: it, and its derivatives, are the last numbers.
+
+    The velocity that begins comes before them: it is what the acceleration adds up to.
+    """
+    free = 8 if ending.moves else 6
+    chain = degree + 1
+
+    def rates(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[Scalar, ...]:
+        given = y[free + components :]
+        direction = tuple(given[i * chain] for i in range(components))
+        state = Closing(*split(y), tuple(y[6:free]), direction, 0.0, 0.0)
+        rate = rates_in_time(state, ending, kind.top(tuple(numbers)))
+        turning = list[Any]()
+        for i in range(components):
+            turning += [*given[i * chain + 1 : (i + 1) * chain], 0.0]
+        return (*rate.axis, *rate.momentum, *rate.velocity, *rate.xi, *turning)
+
+    return Motion(rates, free + components * (chain + 1), kind.numbers, lasting=False)
