@@ -75,7 +75,7 @@ def browser():
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(BUILT).as_posix())
 def test_a_page_is_whole_on_a_phone_and_accessible(page, scheme, browser):
-    """It asks nobody for anything, fits the width of a phone, and axe has no serious finding."""
+    """It asks nobody for anything, fits a phone, equations begin in sight; axe has no serious finding."""
     axe = pytest.importorskip("axe_playwright_python.sync_playwright").Axe()
     tab = browser.new_page(viewport={"width": 390, "height": 800}, color_scheme=scheme)
     asked, wrong = [], []
@@ -84,6 +84,10 @@ def test_a_page_is_whole_on_a_phone_and_accessible(page, scheme, browser):
     tab.route("**/_players/**", lambda route: route.abort())  # tested where they are made
     tab.goto(page.as_uri())
     too_wide = tab.evaluate("document.documentElement.scrollWidth - innerWidth")
+    cut_off = tab.evaluate(
+        """[...document.querySelectorAll('div.math > math')].filter((one) =>
+        one.getBoundingClientRect().left < one.parentElement.getBoundingClientRect().left - 1).length"""
+    )
     serious = [
         (finding["id"], finding["nodes"][0]["html"])
         for finding in axe.run(tab).response["violations"]
@@ -93,4 +97,5 @@ def test_a_page_is_whole_on_a_phone_and_accessible(page, scheme, browser):
     assert [url for url in asked if not url.startswith(("file:", "data:", "blob:"))] == []
     assert wrong == []
     assert too_wide <= 0
+    assert cut_off == 0
     assert serious == []
