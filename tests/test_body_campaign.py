@@ -73,7 +73,7 @@ def test_random_bodies_keep_what_every_one_must(seed: int) -> None:
 
 
 def test_slip_that_begins_goes_no_further_than_to_the_touch_of_another_surface() -> None:
-    """A dry body without slip, leaning towards its second sphere, has it sink in where nothing watches."""
+    """A dry body without slip, leaning towards its second sphere, has it sink in where nothing looks."""
     body = tt.Body(
         mass=MASS,
         shape=[

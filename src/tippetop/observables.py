@@ -17,7 +17,7 @@ from tippetop.lowest import lowest_contact_vector, lowest_jellett
 from tippetop.mechanics.hull import Hull, lowest_surface, outer_height
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import along_table, angular_velocity, axial_spin, point_velocity
-from tippetop.mechanics.quadratures import orientation, quadrature_rates, twisting_powers
+from tippetop.mechanics.quadratures import orientation, quadrature_rates, resistance_powers
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.units import Units
@@ -100,13 +100,13 @@ class Recorder:
         self._last: tuple[Block, tuple[Array, Array, Array, Array]] | None = None
         self._pole = 1.0 if start.axis[2] >= 0.0 else -1.0
         # A law without torque has nothing to lose by drilling or rolling.
-        self._twists = not top.friction.torque_free
-        self._sums = np.array([0.0, 0.0, self._pole * azimuth, -lost] + [0.0, 0.0] * self._twists)
+        self._resisted = not top.friction.torque_free
+        self._sums = np.array([0.0, 0.0, self._pole * azimuth, -lost] + [0.0, 0.0] * self._resisted)
         self._struck = lost
         self._energy, self._jellett = float(energy(start, top)), float(lowest_jellett(start, top))
         self._moment = float(length(start.momentum) * outer_height(top.surface, start.axis[2]))
         self._imbalance, self._least, self._most = 0.0, self._jellett, self._jellett
-        self._largest, self._stretch, self._sunk = abs(self._energy), 0.0, 0.0
+        self._largest, self._off_unit, self._sunk = abs(self._energy), 0.0, 0.0
 
     @property
     def energy_error(self) -> float:
@@ -122,7 +122,7 @@ class Recorder:
     def inaccuracy(self) -> float:
         """How far, relatively, the run is off what every motion keeps: energy and work, |n|, lambda, gaps."""
         drift = self.jellett_drift if self.top.conserves_jellett and self._moment > LEAST_MOMENT else 0.0
-        return float(np.nanmax([self._imbalance / self._largest, self._stretch, drift, self._sunk]))
+        return float(np.nanmax([self._imbalance / self._largest, self._off_unit, drift, self._sunk]))
 
     def take(self, block: Block) -> None:
         """Take the samples in a block."""
@@ -163,7 +163,7 @@ class Recorder:
         integrals = _INTEGRALS @ basis.T * block.spans[step]
         sums = values[:, step] + np.einsum("ik,qik->qk", integrals, rates[:, :, step])
         rows = np.empty((26, len(times)))
-        rows[0], rows[17:21], rows[21:23] = times, sums[:4], -sums[4:] if self._twists else 0.0
+        rows[0], rows[17:21], rows[21:23] = times, sums[:4], -sums[4:] if self._resisted else 0.0
         rows[23], rows[24] = struck[step], poles[step]
         for mode, here, state, reaction in block.sampled(times, step):
             for row, number in zip(
@@ -203,8 +203,8 @@ class Recorder:
             state, reaction = group.nodes
             pole = np.where(state.axis[2][len(NODES) // 2] >= 0.0, 1.0, -1.0)
             found: tuple[Any, ...] = quadrature_rates(state, reaction.power, pole, self.top)
-            if self._twists:
-                found += twisting_powers(state, reaction.resistance, self.top)
+            if self._resisted:
+                found += resistance_powers(state, reaction.resistance, self.top)
             for row, rate in zip(rates, found, strict=True):
                 row[:, group.which] = rate
             axis[:, group.which], poles[group.which] = group.terms[:, :3, 0].T, pole
@@ -236,7 +236,7 @@ class Recorder:
                 depth = outer_height(self.top.surface, state.axis[2]) - state.height
                 self._sunk = max(self._sunk, float(np.max(depth)))
             self._largest = max(self._largest, float(np.max(energy(state, self.top))))
-            self._stretch = max(self._stretch, float(np.abs(length(state.axis) - 1.0).max()))
+            self._off_unit = max(self._off_unit, float(np.abs(length(state.axis) - 1.0).max()))
             self._least = min(self._least, float(np.min(integral)))
             self._most = max(self._most, float(np.max(integral)))
 

@@ -47,7 +47,7 @@ def simulate(
     step: float | None = None,
     phase_limit: int = PHASE_LIMIT,
     step_limit: int = STEP_LIMIT,
-    watcher: Callable[[float], None] | None = None,
+    callback: Callable[[float], None] | None = None,
 ) -> xr.Dataset:
     """Simulate a problem.
 
@@ -73,7 +73,7 @@ def simulate(
         How many modes (slides and flights) the run may go through before it ends early.
     step_limit
         How many steps of the integrator it may take before it ends early.
-    watcher
+    callback
         Told now and then which part of the run is done, between 0 and 1.
 
     Returns
@@ -114,8 +114,8 @@ def simulate(
     for block in in_blocks(trajectory.segments()):
         recorder.take(block)
         tally.take(block)
-        if watcher is not None:
-            watcher(trajectory.time / trajectory.end)
+        if callback is not None:
+            callback(trajectory.time / trajectory.end)
     outcome = trajectory.outcome
     assert outcome is not None, "a trajectory that has no more segments has ended"
     if outcome is Outcome.COMPLETED and recorder.inaccuracy > tolerated(method):

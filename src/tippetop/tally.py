@@ -10,7 +10,7 @@ from tippetop.contact.mode import Event, EventKind, Outcome, Segment
 from tippetop.integrators.base import Array, Integrator
 from tippetop.integrators.dense import at_fractions, chebyshev
 from tippetop.integrators.polynomials import Polynomials, least_of_all
-from tippetop.mechanics.quadratures import twisting_powers
+from tippetop.mechanics.quadratures import resistance_powers
 from tippetop.mechanics.state import State
 from tippetop.metrics import OUTCOMES, Ends, Flags, arrival_time, final_band, turning_time
 
@@ -55,7 +55,7 @@ class Tally:
             if not self._airborne:
                 self._press(group)
             if not group.mode.top.friction.torque_free:
-                self._twist(group)
+                self._resistance(group)
 
     def _fly(self, segment: Segment) -> None:
         """Take in a flight, or one more piece of it."""
@@ -94,10 +94,10 @@ class Tally:
         unit = to_powers @ (transform @ group.mode.reaction(y).force[2])
         self._least_force = min(self._least_force, least_of_all(Polynomials.of_unit(unit, group.spans[near])))
 
-    def _twist(self, group: ModeSteps) -> None:
+    def _resistance(self, group: ModeSteps) -> None:
         """Take in the work of drilling and of rolling."""
         state, reaction = group.nodes
-        drilling, rolling = twisting_powers(state, reaction.resistance, group.mode.top)
+        drilling, rolling = resistance_powers(state, reaction.resistance, group.mode.top)
         shares = WEIGHTS[:, None] * group.spans
         self._drilled -= float(np.sum(shares * drilling))
         self._rolled -= float(np.sum(shares * rolling))

@@ -22,8 +22,8 @@ def computed() -> dict[str, xr.Dataset]:
     tilts = {"final_theta_flight": variable([math.pi, 3.1], "rad", "tilt", ("spin_flight",))}
     return {
         "run-175": EXPERIMENTS["run-175"].run(quick=True),
-        "hops": followed((160.0, 175.0, 200.0), 0.0),
-        "hops-bouncing": followed((175.0,), 0.5),
+        "flights": followed((160.0, 175.0, 200.0), 0.0),
+        "flights-bouncing": followed((175.0,), 0.5),
         "final-tilt": xr.Dataset(
             {
                 **tilts,
@@ -88,7 +88,7 @@ def test_lift_off_at_175_does_not_depend_on_the_window() -> None:
 
 def test_readings_are_those_of_the_flights(computed: dict[str, xr.Dataset]) -> None:
     run = simulate(report_problem(175.0), 20.0, samples=2001)
-    both = computed["hops"].sel(restitution=0.0, spin=175.0)
+    both = computed["flights"].sel(restitution=0.0, spin=175.0)
     assert int(both["flights"]) == run.sizes["flight"]
     assert float(both["airborne_time"]) == pytest.approx(
         float((run["flight_end"] - run["flight_start"]).sum())
@@ -101,7 +101,7 @@ def test_readings_are_those_of_the_flights(computed: dict[str, xr.Dataset]) -> N
 
 
 def test_a_launch_below_the_onset_has_no_flights(computed: dict[str, xr.Dataset]) -> None:
-    slow = computed["hops"].sel(restitution=0.0, spin=160.0)
+    slow = computed["flights"].sel(restitution=0.0, spin=160.0)
     assert int(slow["flights"]) == 0
     assert float(slow["airborne_time"]) == float(slow["last_touchdown"]) == float(slow["highest_gap"]) == 0.0
     assert math.isnan(float(slow["first_lift_off"]))
@@ -139,7 +139,7 @@ def test_the_abnormal_point_is_not_one_of_the_top(computed: dict[str, xr.Dataset
     assert "28 flights" in judge(computed, "sec4-may-fly").finding.note
 
 
-@pytest.mark.parametrize("sweep", ["hops", "hops-bouncing", "final-tilt"])
+@pytest.mark.parametrize("sweep", ["flights", "flights-bouncing", "final-tilt"])
 def test_one_launch_that_does_not_turn_over_would_be_seen(
     computed: dict[str, xr.Dataset], sweep: str
 ) -> None:
@@ -159,8 +159,8 @@ def test_what_the_listing_leaves_out_is_told_as_news_if_it_cures(computed: dict[
 
 
 def test_a_rise_of_the_energy_would_be_seen(computed: dict[str, xr.Dataset]) -> None:
-    spoilt = computed | {"hops": computed["hops"].copy(deep=True)}
-    spoilt["hops"]["energy_rise"][..., 1] = 1e-9
+    spoilt = computed | {"flights": computed["flights"].copy(deep=True)}
+    spoilt["flights"]["energy_rise"][..., 1] = 1e-9
     assert judge(spoilt, "sec4-energy-falls").verdict is Verdict.CORRECTED
     run = computed["run-175"]
     rising = run.assign(energy=run["energy"] + 0.1 * run["time"])
@@ -196,7 +196,7 @@ def test_huge_spins_are_judged_at_the_reports_own_launch(
     assert judge(computed | onsets | {"onset-tilt": scan}, "sec4-huge-spin").verdict is Verdict.EXPLAINED
 
 
-@pytest.mark.parametrize("name", ["fig09", "fig10", "fig11", "fig12", "onset-mu", "onset-tilt", "hops"])
+@pytest.mark.parametrize("name", ["fig09", "fig10", "fig11", "fig12", "onset-mu", "onset-tilt", "flights"])
 def test_figures_can_be_drawn(
     computed: dict[str, xr.Dataset], onsets: dict[str, xr.Dataset], name: str
 ) -> None:

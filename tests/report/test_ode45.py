@@ -68,12 +68,16 @@ def test_lines_that_are_commented_out_keep_the_table_from_pulling() -> None:
     state = (0.7, 0.0, 0.0, 40.0, 300.0, 0.1, 0.1)
     problem = report_problem()
     assert published_normal_force(state, problem.top, math) < 0
-    pulled, pushed = (listing_rates(problem, pushing=pushing).rates(state, ()) for pushing in (False, True))
+    pulled, pushed = (
+        listing_rates(problem, unilateral=unilateral).rates(state, ()) for unilateral in (False, True)
+    )
     assert pulled[4] != pytest.approx(0.0, abs=1e-6)
     assert pushed[4] == 0.0
     gentle = (0.7, 0.0, 0.0, 2.0, 3.0, 0.1, 0.1)
     assert published_normal_force(gentle, problem.top, math) > 0
-    pulled, pushed = (listing_rates(problem, pushing=pushing).rates(gentle, ()) for pushing in (False, True))
+    pulled, pushed = (
+        listing_rates(problem, unilateral=unilateral).rates(gentle, ()) for unilateral in (False, True)
+    )
     assert pulled == pushed
 
 

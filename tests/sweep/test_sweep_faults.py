@@ -210,7 +210,7 @@ from tippetop.sweeps import Store, fill
 definition.LEAST_CELLS_A_TASK, definition.TASKS = 4, 1000
 store = Store.create({path!r}, quick())
 print("filling", flush=True)
-fill(store, workers=1, watcher=lambda progress: time.sleep(1.0))
+fill(store, workers=1, callback=lambda progress: time.sleep(1.0))
 """
 
 
@@ -244,7 +244,7 @@ def test_a_writer_notices_that_its_store_was_replaced(tmp_path, small_tasks):
 
     store = Store.create(path, quick())
     with pytest.raises(FileTrouble, match="replaced by another sweep"):
-        fill(store, workers=1, watcher=replace)
+        fill(store, workers=1, callback=replace)
     xr.testing.assert_identical(read_sweep(path, list(SWEPT)), compute(other)[list(SWEPT)])
     late = Store.resume(path)
     Store.create(path, quick(), overwrite=True)

@@ -18,7 +18,7 @@ from tippetop.mechanics.top import natural_state, natural_units
 from tippetop.mechanics.touchdown import Start, touchdown
 from tippetop.sweeps.flights import collide, fly_all
 from tippetop.sweeps.flights import slides as goes_on
-from tippetop.sweeps.watch import Watch
+from tippetop.sweeps.tip import TipMotion
 
 VISCOUS = tops(friction_laws=(ViscousLaw,))
 
@@ -34,11 +34,11 @@ def natural(top, sliding):
 
 def flown(kind, numbers, state, vanishing, horizon=50.0):
     column = np.repeat(np.array(numbers)[:, None], 2, axis=1)
-    watch = Watch.of(2)
+    tip = TipMotion.of(2)
     here = np.arange(2)
     return fly_all(
-        many(state), kind, column, np.full(2, horizon), np.full(2, vanishing), (watch, here, np.zeros(2))
-    ), watch
+        many(state), kind, column, np.full(2, horizon), np.full(2, vanishing), (tip, here, np.zeros(2))
+    ), tip
 
 
 @settings(max_examples=60)
@@ -109,11 +109,11 @@ def test_flights_and_impacts_keep_what_must_be_kept(slide):
     kind, numbers, state = natural(*slide)
     state = state._replace(height=state.height + 0.5)
     top = kind.top(numbers)
-    found, watch = flown(kind, numbers, state, 0)
+    found, tip = flown(kind, numbers, state, 0)
     size = 1.0 + abs(energy(state, top))
     assert energy(found.state, top)[0] == pytest.approx(energy(state, top), abs=1e-10 * size)
     assert found.highest[0] >= state.height - 1e-12
-    _, down, up = watch.extremes.found[:, 0]
+    _, down, up = tip.extremes.found[:, 0]
     assert down <= min(state.axis[2], found.state.axis[2][0]) + 1e-12
     assert -up >= max(state.axis[2], found.state.axis[2][0]) - 1e-12
     after, struck = collide(found.state, kind.top(tuple(np.full(2, n) for n in numbers)))

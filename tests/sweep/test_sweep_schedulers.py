@@ -111,7 +111,7 @@ def test_a_dask_cluster_finds_the_same_though_a_worker_is_killed(small_tasks):
         killer = threading.Thread(target=kill)
         killer.start()
         try:
-            together = compute(sweep, scheduler=address, watcher=lambda _: began.set())
+            together = compute(sweep, scheduler=address, callback=lambda _: began.set())
         finally:
             done.set()
             killer.join()
@@ -165,7 +165,7 @@ def kill(progress):
     if 8 <= progress.done < 12:
         os.kill({victim}, signal.SIGKILL)
 try:
-    run_sweep(lively("fly", 6, 4, 0.3, 1e-9), {out!r}, scheduler={address!r}, watcher=kill)
+    run_sweep(lively("fly", 6, 4, 0.3, 1e-9), {out!r}, scheduler={address!r}, callback=kill)
 except Unavailable as error:
     print(error)
 """

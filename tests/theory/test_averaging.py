@@ -11,11 +11,11 @@ from tippetop.errors import InvalidInput
 from tippetop.integrators import has_taylor
 from tippetop.mechanics.surface import SphereSurface
 from tippetop.mechanics.top import natural_units
-from tippetop.theory import whirling
+from tippetop.theory import nutation_decay
 from tippetop.theory.averaging import averaged_flow, flip_time_limit, local_exponent
-from tippetop.theory.drain import whirl_rates
+from tippetop.theory.dissipation import amplitude_rates
 from tippetop.theory.drift import drift, smooth_precession
-from tippetop.theory.nutation import Whirls, numbers_of, orbit_of_whirls, turning_tilts
+from tippetop.theory.nutation import Amplitudes, numbers_of, orbit_of_amplitudes, turning_tilts
 from tippetop.theory.prediction import predict
 from tippetop.theory.steady import jellett_of_launch, precession_branch, steady_states
 
@@ -100,7 +100,7 @@ def test_the_flow_ends_in_the_predicted_state(problem):
 @pytest.mark.parametrize("problem", LAUNCHES[:4])
 def test_with_and_without_the_shortcut_for_a_dead_nutation_the_flow_is_the_same(problem, monkeypatch):
     short = averaged_flow(problem, distance=0.01, tolerance=1e-7)
-    monkeypatch.setattr(whirling, "_drift_from", lambda *_: None)
+    monkeypatch.setattr(nutation_decay, "_drift_from", lambda *_: None)
     whole = averaged_flow(problem, distance=0.01, samples=1000)
     assert whole.final_tilt == short.final_tilt
     mu_times = np.linspace(0.4, 1.0, 50)[:-1] * short.mu_time[-1]
@@ -133,7 +133,7 @@ def test_a_nutation_that_dies_on_the_way_to_an_unstable_state_grows_again():
 
 @pytest.mark.parametrize("tilt", [0.3, 1.0, 1.7, 2.6])
 @pytest.mark.parametrize("fast", [True, False])
-def test_the_drift_moves_as_the_whirls_of_a_dying_nutation_do(tilt, fast):
+def test_the_drift_moves_as_the_amplitudes_of_a_dying_nutation_do(tilt, fast):
     """The limit of a nutation of no width is a precession of the smooth table: two ways to its speed."""
     top = REPORT.top
     numbers = numbers_of(top)
@@ -146,17 +146,17 @@ def test_the_drift_moves_as_the_whirls_of_a_dying_nutation_do(tilt, fast):
     middle = 0.5 * (moving.tilt[1] + moving.tilt[0])
 
     rate = smooth_precession(math.cos(middle), kept, fast, numbers)
-    whirl = math.sin(middle / 2.0) ** 2
+    amplitude = math.sin(middle / 2.0) ** 2
     # The fast precession has L_z > L3, the slow one below the equator not necessarily.
     turning = numbers.transverse * math.cos(middle) * rate - numbers.alpha / rate
     excess = kept + (numbers.alpha - 1.0) * turning
-    tiny = 1e-9 * whirl
-    pair = Whirls(whirl, tiny) if excess > 0.0 else Whirls(tiny, whirl)
-    root = abs(excess) / (2.0 * math.sqrt(2.0 * numbers.transverse * numbers.alpha) * whirl)
-    path = orbit_of_whirls(pair, root, kept, numbers)
+    tiny = 1e-9 * amplitude
+    pair = Amplitudes(amplitude, tiny) if excess > 0.0 else Amplitudes(tiny, amplitude)
+    root = abs(excess) / (2.0 * math.sqrt(2.0 * numbers.transverse * numbers.alpha) * amplitude)
+    path = orbit_of_amplitudes(pair, root, kept, numbers)
     assert path.axial == pytest.approx(turning, rel=1e-6)
     assert turning_tilts(pair)[0] == pytest.approx(middle, abs=1e-3)
-    rates = whirl_rates(pair, root, kept, numbers)
+    rates = amplitude_rates(pair, root, kept, numbers)
     growth = rates.fast if excess > 0.0 else rates.slow
     assert math.tan(middle / 2.0) * growth == pytest.approx(speed, rel=2e-2)
 

@@ -17,19 +17,19 @@ from tippetop.mechanics.surface import SpheroidSurface
 from tippetop.mechanics.top import natural_units
 from tippetop.theory import dual
 from tippetop.theory.diagnostics import smooth_constants
-from tippetop.theory.drain import drain, whirl_rates
+from tippetop.theory.dissipation import amplitude_rates, mean_dissipation
 from tippetop.theory.nutation import (
+    Amplitudes,
     Constants,
-    Whirls,
+    amplitudes,
     constants,
     effective_potential,
     natural_constants,
     numbers_of,
     orbit,
-    orbit_of_whirls,
+    orbit_of_amplitudes,
     turning_tilts,
     upside_down,
-    whirls,
 )
 
 LAUNCHES = [
@@ -54,7 +54,7 @@ def path_of(problem):
 def test_turning_tilts_are_the_extremes_of_a_run_on_a_smooth_table(problem):
     axis, momentum, _ = full_run(problem, np.linspace(0.0, 2.0, 40001), smooth=True)
     tilts = tilts_of(axis)
-    low, high = turning_tilts(whirls(path_of(problem)[0]))
+    low, high = turning_tilts(amplitudes(path_of(problem)[0]))
     assert tilts.min() == pytest.approx(low, abs=1e-4)
     assert tilts.max() == pytest.approx(high, abs=1e-4)
     assert tilts.min() > low - 1e-9
@@ -67,7 +67,7 @@ def test_turning_tilts_are_the_extremes_of_a_run_on_a_smooth_table(problem):
 @pytest.mark.parametrize("problem", LAUNCHES)
 def test_at_the_turning_tilts_the_effective_potential_is_the_energy(problem):
     values = constants(along_table(problem.start()), problem.top)
-    for tilt in turning_tilts(whirls(path_of(problem)[0])):
+    for tilt in turning_tilts(amplitudes(path_of(problem)[0])):
         assert effective_potential(tilt, values, problem.top, math) == pytest.approx(values.energy, rel=1e-9)
 
 
@@ -88,7 +88,7 @@ def test_friction_takes_from_a_nutation_what_the_mechanics_says_on_average(probl
     torque = sum(rate.gradient[0] * n for rate, n in zip(rates.momentum, axis.T, strict=True))
     power = touch.power.gradient[0]
     units = natural_units(top)
-    taken = drain(*path_of(problem))
+    taken = mean_dissipation(*path_of(problem))
     expected = np.array([torque @ window, power @ window]) / window.sum()
     per_friction = 1.0 / (units.speed * units.time)
     found = (
@@ -108,7 +108,7 @@ def test_friction_takes_from_a_nutation_what_the_mechanics_says_on_average(probl
     numbers(-5.0, 5.0),
 )
 def test_the_orbit_is_that_of_its_constants(gamma, alpha, tilt, spin, tilt_rate, precession):
-    """The cubic has the three roots, and the whirls give the orbit back."""
+    """The cubic has the three roots, and the amplitudes give the orbit back."""
     unit = math.sqrt(9.8 / 0.02)
     problem = sphere_problem(gamma, alpha, tilt, spin * unit).replace(
         {"launch.tilt_rate": tilt_rate * unit, "launch.precession": precession * unit}
@@ -122,12 +122,12 @@ def test_the_orbit_is_that_of_its_constants(gamma, alpha, tilt, spin, tilt_rate,
         room = p * (2.0 - p) * (path.swing - alpha * p)
         about = (path.excess + path.axial * p) ** 2 / (2.0 * numbers_.transverse)
         assert room - about == pytest.approx(0.0, abs=1e-11 * size)
-    low, high = turning_tilts(whirls(path))
+    low, high = turning_tilts(amplitudes(path))
     assert low - 1e-6 <= tilt <= high + 1e-6
 
     for seen, view in ((path, numbers_), (upside_down(path, numbers_), numbers_.turned)):
-        pair = Whirls(*map(float, whirls(seen)))
-        again = orbit_of_whirls(pair, math.sqrt(abs(seen.far)), kept, view)
+        pair = Amplitudes(*map(float, amplitudes(seen)))
+        again = orbit_of_amplitudes(pair, math.sqrt(abs(seen.far)), kept, view)
         assert tuple(again) == pytest.approx(tuple(seen), rel=1e-6, abs=1e-6)
 
 
@@ -135,10 +135,10 @@ def test_the_orbit_is_that_of_its_constants(gamma, alpha, tilt, spin, tilt_rate,
 def test_upside_down_the_nutation_is_the_same(problem):
     path, numbers_ = path_of(problem)
     turned, view = upside_down(path, numbers_), numbers_.turned
-    low, high = turning_tilts(whirls(path))
-    low_seen, high_seen = turning_tilts(whirls(turned))
+    low, high = turning_tilts(amplitudes(path))
+    low_seen, high_seen = turning_tilts(amplitudes(turned))
     assert (math.pi - high_seen, math.pi - low_seen) == pytest.approx((low, high), abs=1e-9)
-    taken, seen = drain(path, numbers_), drain(turned, view)
+    taken, seen = mean_dissipation(path, numbers_), mean_dissipation(turned, view)
     assert (-seen.axial, seen.energy) == pytest.approx(tuple(taken), rel=1e-9)
     back = upside_down(turned, view)
     assert tuple(back) == pytest.approx(tuple(path), rel=1e-12)
@@ -151,31 +151,31 @@ def test_a_root_that_is_a_little_wrong_is_put_right(problem, turned):
     kept = values.vertical - numbers_.alpha * values.axial
     path = orbit(values, numbers_)
     seen, view = (upside_down(path, numbers_), numbers_.turned) if turned else (path, numbers_)
-    pair, root = Whirls(*map(float, whirls(seen))), math.sqrt(abs(seen.far))
-    again = orbit_of_whirls(pair, root * (1.0 + 1e-4), kept, view)
+    pair, root = Amplitudes(*map(float, amplitudes(seen))), math.sqrt(abs(seen.far))
+    again = orbit_of_amplitudes(pair, root * (1.0 + 1e-4), kept, view)
     assert tuple(again) == pytest.approx(tuple(seen), rel=1e-8)
 
 
 @pytest.mark.parametrize("problem", LAUNCHES)
 @pytest.mark.parametrize("turned", [False, True])
-def test_the_whirls_change_as_the_constants_do(problem, turned):
-    """The rates of the whirls against the whirls of slightly drained constants."""
+def test_the_amplitudes_change_as_the_constants_do(problem, turned):
+    """The rates of the amplitudes against the amplitudes of constants after a little friction."""
     values, numbers_ = natural(problem)
     kept = values.vertical - numbers_.alpha * values.axial
-    taken = drain(orbit(values, numbers_), numbers_)
+    taken = mean_dissipation(orbit(values, numbers_), numbers_)
     step = 1e-5
 
-    def whirls_after(time):
+    def amplitudes_after(time):
         axial = values.axial + time * taken.axial
         later = Constants(kept + numbers_.alpha * axial, axial, values.energy + time * taken.energy)
         path = orbit(later, numbers_)
         seen, view = (upside_down(path, numbers_), numbers_.turned) if turned else (path, numbers_)
-        return [*map(float, whirls(seen)), math.sqrt(abs(seen.far))], view
+        return [*map(float, amplitudes(seen)), math.sqrt(abs(seen.far))], view
 
-    before, view = whirls_after(-step)
-    now, _ = whirls_after(0.0)
-    after, _ = whirls_after(step)
-    rates = whirl_rates(Whirls(*now[:2]), now[2], kept, view)
+    before, view = amplitudes_after(-step)
+    now, _ = amplitudes_after(0.0)
+    after, _ = amplitudes_after(step)
+    rates = amplitude_rates(Amplitudes(*now[:2]), now[2], kept, view)
     slopes = [(b - a) / (2.0 * step) for a, b in zip(before, after, strict=True)]
     assert rates.fast * now[0] == pytest.approx(slopes[0], rel=1e-4, abs=1e-7)
     assert rates.slow * now[1] == pytest.approx(slopes[1], rel=1e-4, abs=1e-7)

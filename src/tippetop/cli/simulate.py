@@ -117,7 +117,7 @@ def simulate(
             integrator=integrator,
             tolerance=tolerance,
             step=step,
-            watcher=lambda part: progress(part, 1.0),
+            callback=lambda part: progress(part, 1.0),
         )
     elapsed = time.perf_counter() - began
     for kind, path in wanted.items():

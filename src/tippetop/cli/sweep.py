@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from tippetop.sweeps import Draws, Product, Progress, Sweep
-    from tippetop.sweeps.run import Watcher
+    from tippetop.sweeps.run import Callback
 
 
 SweepFile = Annotated[
@@ -113,8 +113,8 @@ def sweep(
     began = time.perf_counter()
     progress: list[Progress] = []
     try:
-        with _shown(progress, silent=as_json or not sys.stderr.isatty()) as watcher:
-            fill(store, workers=workers, scheduler=scheduler, watcher=watcher)
+        with _shown(progress, silent=as_json or not sys.stderr.isatty()) as callback:
+            fill(store, workers=workers, scheduler=scheduler, callback=callback)
         dataset = store.load(["status", "outcome", *dict.fromkeys(["flights", *pictures])])
         _draw_maps(dataset, pictures, force or resume)
     except KeyboardInterrupt:
@@ -213,8 +213,8 @@ def _holds_sweep(file: Path) -> bool:
 
 
 @contextmanager
-def _shown(seen: list["Progress"], silent: bool) -> Iterator["Watcher"]:
-    """A watcher that keeps what it is told, and shows it on a terminal."""
+def _shown(seen: list["Progress"], silent: bool) -> Iterator["Callback"]:
+    """A callback that keeps what it is told, and shows it on a terminal."""
     from rich.console import Console  # noqa: PLC0415
     from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn  # noqa: PLC0415
     from rich.progress import Progress as Bar  # noqa: PLC0415
@@ -229,7 +229,7 @@ def _shown(seen: list["Progress"], silent: bool) -> Iterator["Watcher"]:
     with Bar(*columns, console=Console(stderr=True), disable=silent, transient=True) as bar:
         shown = bar.add_task("sweep", total=None, rate="", left="")
 
-        def watcher(progress: "Progress") -> None:
+        def callback(progress: "Progress") -> None:
             seen.append(progress)
             left = progress.time_left
             bar.update(
@@ -240,7 +240,7 @@ def _shown(seen: list["Progress"], silent: bool) -> Iterator["Watcher"]:
                 left="" if left is None else f"{left:,.0f} s left",
             )
 
-        yield watcher
+        yield callback
 
 
 def _map_files(out: Path) -> dict[str, Path]:

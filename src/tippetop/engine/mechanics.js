@@ -5665,7 +5665,7 @@ function quadrature_rates(state, power, pole, top) {
 }
 
 /** Powers of drilling and of rolling friction, W, for the table's torque, N m. */
-function twisting_powers(state, torque, top) {
+function resistance_powers(state, torque, top) {
   const turning = angular_velocity(state.axis, state.momentum, top);
   return [py.mul(torque[2], turning[2]), py.add(py.mul(torque[0], turning[0]), py.mul(torque[1], turning[1]))];
 }
@@ -6028,6 +6028,7 @@ export {
   record,
   remaining,
   reopening_guard,
+  resistance_powers,
   restitution_goal,
   rolling_reserve,
   rolling_stopping_guard,
@@ -6071,7 +6072,6 @@ export {
   turn_rate,
   turned,
   turning_with,
-  twisting_powers,
   unpack,
   velocity_of,
   velocity_without_slip,

@@ -1,7 +1,7 @@
 // What a mode says of its numbers, and what is read off a state: the mechanics, compiled once a kind.
 import {
   Flight, State, angular_velocity, axial_spin, axis_sine, contact_vector, dot, energy, fly, jellett,
-  point_velocity, precession_rate, slip_along_tilt, tilt_rate, turn_rate, twisting_powers,
+  point_velocity, precession_rate, slip_along_tilt, tilt_rate, turn_rate, resistance_powers,
 } from "./mechanics.js";
 import { compiled } from "./compile.js";
 import { ELEMENTARY } from "./dense.js";
@@ -33,7 +33,7 @@ function observing(mode, kinds, size) {
     const state = here.state(y), table = here.reaction(y), [top] = tops;
     return [
       ...state.pack(), ...table.force, ...table.torque, table.power, energy(state, top), jellett(state, top),
-      ...twisting_powers(state, table.resistance, top), turn_rate(state.axis, state.momentum, p[count], top),
+      ...resistance_powers(state, table.resistance, top), turn_rate(state.axis, state.momentum, p[count], top),
     ];
   };
   return compiled(values, size, count + 1, OUTPUTS);

@@ -47,9 +47,9 @@ def poses_at(run: xr.Dataset, times: ArrayLike) -> Poses:
     left = (shortest(axes[i], axes[j]) * turns[i]).inv() * turns[j]
     _, _, z, w = left.as_quat().T
     first, last = spins[i], spins[j] + _carrying_spin(axes[i], axes[j], rates[j])
-    twist = 2 * np.arctan2(z, w)
-    twist += 2 * np.pi * np.round((0.5 * h * (first + last) - twist) / (2 * np.pi))
-    about_axis = _cubic(u, h, 0.0 * twist, twist, first, last)[:, None] * np.array([0.0, 0.0, 1.0])
+    turn = 2 * np.arctan2(z, w)
+    turn += 2 * np.pi * np.round((0.5 * h * (first + last) - turn) / (2 * np.pi))
+    about_axis = _cubic(u, h, 0.0 * turn, turn, first, last)[:, None] * np.array([0.0, 0.0, 1.0])
     turned = shortest(axes[i], axis) * turns[i] * Rotation.from_rotvec(about_axis)
     return Poses(between(run[["x", "y", "height"]].to_array().values.T, run["velocity"].values), turned)
 

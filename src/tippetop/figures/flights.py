@@ -19,8 +19,8 @@ from tippetop.figures.style import (
     FAINT,
     INK,
     MUTED,
-    PUSHES,
     REPORT,
+    UNILATERAL,
     WIDTH,
     house_style,
     pi_ticks,
@@ -29,7 +29,7 @@ from tippetop.figures.style import (
 _BOUNCES = CYCLE[5]
 
 
-def continue_pushing(
+def continue_unilateral(
     axes: Axes, run: xr.Dataset, name: str, scale: float = 1.0, *, whole: bool = False
 ) -> None:
     """Draw how a variable goes on from lift-off when the table only pushes.
@@ -39,7 +39,7 @@ def continue_pushing(
     """
     after = run[f"{name}_flight"].sel(time=slice(float(run["lift_off_time"]), None))
     draw = band if whole else _line
-    draw(axes, after["time"], scale * after, PUSHES, 1.1, "table only pushes")
+    draw(axes, after["time"], scale * after, UNILATERAL, 1.1, "table only pushes")
 
 
 def _line(axes: Axes, times: ArrayLike, values: ArrayLike, color: str, width: float, label: str) -> None:
@@ -88,7 +88,7 @@ def onset_figure(sweep: xr.Dataset, over: str, reported: float) -> Figure:
 
 
 @house_style()
-def hops_figure(sweep: xr.Dataset) -> Figure:
+def flights_figure(sweep: xr.Dataset) -> Figure:
     """Return how launches go on after lift-off, against the spin.
 
     `sweep` has airborne_time, last_touchdown, first_lift_off, flights, turning_time and final_theta_flight
@@ -98,7 +98,7 @@ def hops_figure(sweep: xr.Dataset) -> Figure:
     panels = figure.subplots(2, 2, sharex=True)
     share, turning, count, tilt = panels.flat
     for restitution, color, marker in zip(
-        sweep["restitution"].values, (PUSHES, _BOUNCES), ("o", "s"), strict=False
+        sweep["restitution"].values, (UNILATERAL, _BOUNCES), ("o", "s"), strict=False
     ):
         runs = sweep.sel(restitution=restitution).dropna("spin", subset=["airborne_time"])
         spins, air = runs["spin"], runs["airborne_time"]
@@ -137,7 +137,7 @@ def _words(axes: Axes, sweep: xr.Dataset) -> None:
             text,
             (float(last["spin"]), 100 * share),
             (0, offset),
-            PUSHES,
+            UNILATERAL,
             ha="right",
             va="center",
             size=8.5,

@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 import tippetop.figures.annotation as mark
-from tippetop.figures.style import ACCENT, CONVERGED, CYCLE, PUSHES, REPORT, WIDTH, house_style
+from tippetop.figures.style import ACCENT, CONVERGED, CYCLE, REPORT, UNILATERAL, WIDTH, house_style
 
 _LABELS = {
     "ode45": "ode45 (explicit)",
@@ -27,7 +27,7 @@ def order_figure(errors: xr.Dataset) -> Figure:
     """
     series = (
         ("printed_in_all", "(B.1) as printed, time in f", ACCENT, "^-"),
-        ("printed_mended_in_all", "(B.1) mended, time in f", PUSHES, "v-"),
+        ("printed_mended_in_all", "(B.1) mended, time in f", UNILATERAL, "v-"),
         ("rk4_in_all", "Appendix B, the top", CONVERGED, "o-"),
         ("rk4_in_a_step", "Appendix B, one step", CONVERGED, "o--"),
         ("ode45_in_all", "the formula of ode45", REPORT, "s-"),

@@ -10,7 +10,7 @@ from matplotlib.ticker import MultipleLocator
 
 import tippetop.figures.annotation as mark
 from tippetop.figures.envelope import band
-from tippetop.figures.flights import continue_pushing
+from tippetop.figures.flights import continue_unilateral
 from tippetop.figures.overview import shade_flights
 from tippetop.figures.style import ACCENT, CONVERGED, DASHED, INK, MUTED, REPORT, WIDTH, house_style, pi_ticks
 
@@ -164,7 +164,7 @@ def stopped_figure(run: xr.Dataset, reported_stop: float) -> Figure:
     for axes, name in ((tilt, "theta"), (force, "normal_force")):
         axes.plot(other["time_listing"], other[f"{name}_listing"], color=REPORT, lw=_WIDE, label=_NAME_REPORT)
         axes.plot(before["time"], before[name], color=CONVERGED, lw=_THIN + 0.3, label=_NAME)
-        continue_pushing(axes, run, name)
+        continue_unilateral(axes, run, name)
         shade_flights(axes, run)
     _tilt_axis(tilt)
     force.axhline(0, color=ACCENT, lw=1.0)
@@ -225,7 +225,7 @@ def _trio(
     _pair(axes, run, name, scale=scale, names=names or (_NAME_REPORT, _PULLS if flies else _NAME))
     if flies:
         shade_flights(axes, run)
-        continue_pushing(axes, run, name, scale=scale, whole=True)
+        continue_unilateral(axes, run, name, scale=scale, whole=True)
     mark.legend_above(axes, 3)
 
 
@@ -274,7 +274,7 @@ def _zoom(axes: Axes, run: xr.Dataset, span: tuple[float, float], box: mark.Box)
         drawn.append(part[f"theta{suffix}"].values)
     if "theta_flight" in run:
         shade_flights(inset, run)
-        continue_pushing(inset, run, "theta")
+        continue_unilateral(inset, run, "theta")
     low, high = min(part.min() for part in drawn), max(part.max() for part in drawn)
     inset.set_xlim(*span)
     inset.set_ylim(low - 0.08 * (high - low), high + 0.08 * (high - low))

@@ -30,7 +30,7 @@ ACCENT = "#9E1F54"
 """The one thing a figure wants looked at: an event, a force, a threshold."""
 
 CYCLE = (CONVERGED, REPORT, "#109B60", ACCENT, "#66C5F0", "#4A2410", "#EACF36")
-PUSHES = CYCLE[2]
+UNILATERAL = CYCLE[2]
 """What happens on a table that only pushes; the second of two true results."""
 
 SEQUENTIAL = "cividis"

@@ -16,8 +16,8 @@ from tippetop.figures.style import (
     FAINT,
     INK,
     MUTED,
-    PUSHES,
     REPORT,
+    UNILATERAL,
     WIDTH,
     house_style,
     pi_ticks,
@@ -46,7 +46,7 @@ def final_tilt_figure(sweep: xr.Dataset, reported: tuple[float, float, float]) -
     axes.plot(above["spin"], above["final_theta"], ".", color=MUTED, ms=3, label="converged, table pulls")
     flying = sweep.sel(spin_flight=sweep["spin_flight"] > onset)
     axes.plot(
-        flying["spin_flight"], flying["final_theta_flight"], "-D", color=PUSHES, ms=3.5, lw=1.4, zorder=5,
+        flying["spin_flight"], flying["final_theta_flight"], "-D", color=UNILATERAL, ms=3.5, lw=1.4, zorder=5,
         label="table only pushes",
     )  # fmt: skip
     axes.plot(
@@ -146,7 +146,7 @@ def _products(axes: Axes, wide: xr.Dataset) -> None:
     """Draw mu times the flip time: level where the law t ~ 1/mu holds."""
     axes.axvspan(0.2, 1.0, color=REPORT, alpha=0.10, lw=0)
     mark.note(axes, "the report's\nrange", (0.447, 1.0), (0, -4), REPORT, size=8.5, xycoords=mark.ALONG_X)
-    colors = (CONVERGED, PUSHES)
+    colors = (CONVERGED, UNILATERAL)
     for spin, color in zip(wide["spin_wide"].values, colors, strict=False):
         product = wide["mu_wide"] * wide["flip_time_wide"].sel(spin_wide=spin)
         axes.plot(wide["mu_wide"], product, "-o", color=color, ms=3, lw=1.2, label=f"{spin:g} rad/s")

@@ -17,8 +17,8 @@ from tippetop.figures.style import (
     DASHED,
     INK,
     MUTED,
-    PUSHES,
     REPORT,
+    UNILATERAL,
     WIDTH,
     house_style,
     pi_ticks,
@@ -122,7 +122,7 @@ def _growth(axes: Axes, critical: xr.Dataset, reported: tuple[float, float]) -> 
     axes.axhspan(-slow, slow, color=MUTED, alpha=0.3, lw=0)
     axes.axhline(0, color=MUTED, lw=0.9)
     axes.plot(spins, upright, color=CONVERGED, lw=2, label="upright spin")
-    axes.plot(spins, inverted, color=PUSHES, lw=2, label="inverted spin")
+    axes.plot(spins, inverted, color=UNILATERAL, lw=2, label="inverted spin")
     low = min(float(upright.min()), float(inverted.min()))
     axes.set_ylim(1.6 * low, 2.2 * float(upright.max()))
     for symbol, limit, theirs, side in zip(_SYMBOLS, limits, reported, (1, -1), strict=True):

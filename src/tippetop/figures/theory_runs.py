@@ -16,8 +16,8 @@ from tippetop.figures.style import (
     FAINT,
     INK,
     MUTED,
-    PUSHES,
     REPORT,
+    UNILATERAL,
     WIDTH,
     house_style,
     pi_ticks,
@@ -60,7 +60,7 @@ def _runs_and_flow(axes: Axes, flow: xr.Dataset) -> None:
         flow["mu_time_swing"], flow["theta_swing"], color=REPORT, lw=0.8,
         label=rf"run, $\mu$ = {float(flow['friction'][0]):g} s/m",
     )  # fmt: skip
-    for k, color in zip(range(1, flow.sizes["friction"]), (PUSHES, CONVERGED), strict=False):
+    for k, color in zip(range(1, flow.sizes["friction"]), (UNILATERAL, CONVERGED), strict=False):
         mu = float(flow["friction"][k])
         axes.fill_between(
             flow["mu_time"], flow["run_low"][k], flow["run_high"][k], color=color, alpha=0.4, lw=0.9,
@@ -81,7 +81,7 @@ def exponent_figure(times: xr.Dataset) -> Figure:
     above, below = figure.subplots(2, 1, sharex=True, height_ratios=[1.45, 1])
     mu = times["mu_flip"].values
     limits = (float(times["limit_arrival"]), float(times["limit_crossing"]))
-    for limit, color in zip(limits, (CONVERGED, PUSHES), strict=True):
+    for limit, color in zip(limits, (CONVERGED, UNILATERAL), strict=True):
         above.axhline(limit, color=color, lw=0.9, ls=DASHED)
         aside = (0, -3 if limit == limits[1] else 3)
         mark.note(above, f"limit {limit:.4f}", (mu[0], limit), aside, color, ha="left")
@@ -89,7 +89,7 @@ def exponent_figure(times: xr.Dataset) -> Figure:
         ("settling_time", "#B4BDC6", "-o", 6.5, "stays within 0.01 rad of the end"),
         ("arrival_time_window", REPORT, "s", 5.5, "the report's: within 0.01 rad of the tilt at 20 s"),
         ("arrival_time_end", CONVERGED, "-o", 3.5, "first within 0.01 rad of the end"),
-        ("crossing_time", PUSHES, "-o", 3.5, r"first tilt of more than $\pi/2$"),
+        ("crossing_time", UNILATERAL, "-o", 3.5, r"first tilt of more than $\pi/2$"),
     ):
         above.plot(mu, mu * times[name], line, color=color, ms=size, lw=1.4, label=label)
     above.set_yscale("log")
@@ -108,7 +108,7 @@ def exponent_figure(times: xr.Dataset) -> Figure:
 def _exponents(axes: Axes, times: xr.Dataset) -> None:
     mu = times["mu_flip"].values
     axes.axhline(-1, color=MUTED, lw=0.9, ls=DASHED)
-    for name, color, width in (("arrival_time_end", CONVERGED, 0.7), ("crossing_time", PUSHES, 1.6)):
+    for name, color, width in (("arrival_time_end", CONVERGED, 0.7), ("crossing_time", UNILATERAL, 1.6)):
         axes.plot(mu, times[f"exponent_{name}"], "-o", color=color, ms=3.5, lw=width)
     axes.set_xscale("log")
     axes.set_xlim(mu[0] / 1.12, mu[-1] * 1.12)

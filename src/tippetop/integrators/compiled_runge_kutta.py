@@ -65,18 +65,18 @@ class CompiledRungeKutta:
         if functions is None:
             yield from SciPy("dop853", self.tolerance).integrate(motion, parameters, start, end)
             return
-        course = _Course(functions, np.array(parameters, dtype=float), start, end, self.tolerance)
-        while course.time < end:
-            ended = course.advance()
-            fall = course.fall(motion.guards) if ended == loop.SUSPECT else None
+        integration = _Integration(functions, np.array(parameters, dtype=float), start, end, self.tolerance)
+        while integration.time < end:
+            ended = integration.advance()
+            fall = integration.fall(motion.guards) if ended == loop.SUSPECT else None
             if fall is not None:
-                yield course.arc(guard=course.end_at(*fall))
+                yield integration.arc(guard=integration.end_at(*fall))
                 return
             if ended in FAILURES:
-                yield course.arc(failure=FAILURES[ended])
+                yield integration.arc(failure=FAILURES[ended])
                 return
-            if course.is_full or course.time >= end:
-                yield course.arc()
+            if integration.is_full or integration.time >= end:
+                yield integration.arc()
 
 
 class _Address(types.WrapperAddressProtocol):
@@ -113,7 +113,7 @@ class _Functions(NamedTuple):
         return Guard(guard.name, value)
 
 
-class _Course:
+class _Integration:
     """A motion under way: the state, and the steps of the arc that is being made."""
 
     def __init__(
@@ -190,10 +190,12 @@ class _Course:
         """The state after steps that end at exactly this time."""
         if end <= time:
             return np.array(state)
-        course = _Course(self.functions, self.parameters, (time, state), end, float(self.tolerance[0]))
-        while course.advance(guarded=False) == loop.FULL:
-            course.steps = 0
-        return course.state
+        integration = _Integration(
+            self.functions, self.parameters, (time, state), end, float(self.tolerance[0])
+        )
+        while integration.advance(guarded=False) == loop.FULL:
+            integration.steps = 0
+        return integration.state
 
 
 def _powers(part: float) -> Array:

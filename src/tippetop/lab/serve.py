@@ -39,14 +39,14 @@ class PageHandler(BaseHTTPRequestHandler):
     sys_version = ""
 
     def do_GET(self) -> None:
-        """Answer with the page."""
-        self._answer(with_content=True)
+        """Respond with the page."""
+        self._respond(with_content=True)
 
     def do_HEAD(self) -> None:
-        """Answer with what is said of the page."""
-        self._answer(with_content=False)
+        """Respond with what is said of the page."""
+        self._respond(with_content=False)
 
-    def _answer(self, with_content: bool) -> None:
+    def _respond(self, with_content: bool) -> None:
         if self.path.partition("?")[0] not in ("/", f"/{PAGE}"):
             self.send_error(404)
             return

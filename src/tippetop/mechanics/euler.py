@@ -23,7 +23,12 @@ def published_normal_force(y: Sequence[Scalar], top: Top, functions: Functions) 
 
 
 def published_rates(
-    y: Sequence[Scalar], top: Top, functions: Functions, wrap: float | None = None, *, pushing: bool = False
+    y: Sequence[Scalar],
+    top: Top,
+    functions: Functions,
+    wrap: float | None = None,
+    *,
+    unilateral: bool = False,
 ) -> tuple[Scalar, ...]:
     """Time derivative of y = (theta, theta', phi, phi', omega3, v_x, v_y) by equations (2.8)-(2.15).
 
@@ -38,7 +43,7 @@ def published_rates(
     wrap
         When given, theta is replaced by theta modulo this number first, as the report's listing does with pi;
         the right-hand side then jumps wherever theta crosses a multiple of it.
-    pushing
+    unilateral
         Whether a negative normal force is set to zero, as lines that the listing has commented out would (for
         numbers that can be compared).
 
@@ -52,17 +57,17 @@ def published_rates(
     m, I1, I3, R, alpha, mu, _ = published_parameters(top)
     s, c = functions.sin(tilt), functions.cos(tilt)
     normal = published_normal_force(y, top, functions)
-    if pushing and normal < 0:
+    if unilateral and normal < 0:
         normal = 0.0
-    rub_x, rub_y = mu * normal * slip_x, mu * normal * slip_y
+    friction_x, friction_y = mu * normal * slip_x, mu * normal * slip_y
     reach, offset = 1.0 - alpha * c, alpha - c
     return (
         tilt_rate,
         s / I1 * (I1 * precession**2 * c - I3 * spin * precession - R * alpha * normal)
-        + R * rub_x * reach / I1,
+        + R * friction_x * reach / I1,
         precession,
-        (I3 * tilt_rate * spin - 2.0 * I1 * tilt_rate * precession * c - rub_y * R * offset) / (I1 * s),
-        -rub_y * R * s / I3,
+        (I3 * tilt_rate * spin - 2.0 * I1 * tilt_rate * precession * c - friction_y * R * offset) / (I1 * s),
+        -friction_y * R * s / I3,
         R
         * s
         / I1
@@ -71,9 +76,9 @@ def published_rates(
             + normal * R * alpha * reach
             - I1 * alpha * (tilt_rate**2 + precession**2 * s**2)
         )
-        - rub_x * (I1 + m * R**2 * reach**2) / (m * I1)
+        - friction_x * (I1 + m * R**2 * reach**2) / (m * I1)
         + precession * slip_y,
-        -rub_y * (I1 * I3 + m * R**2 * I3 * offset**2 + m * R**2 * I1 * s**2) / (m * I1 * I3)
+        -friction_y * (I1 * I3 + m * R**2 * I3 * offset**2 + m * R**2 * I1 * s**2) / (m * I1 * I3)
         + spin * tilt_rate * R / I1 * (I3 * offset + I1 * c)
         - precession * slip_x,
     )
@@ -85,9 +90,9 @@ def published_energy(y: Sequence[Scalar], top: Top, functions: Functions) -> Sca
     m, I1, I3, R, alpha, _, g = published_parameters(top)
     s, c = functions.sin(tilt), functions.cos(tilt)
     offset = alpha - c
-    whirl = tilt_rate**2 + precession**2 * s**2
-    rolling = offset**2 * whirl + s**2 * (tilt_rate**2 + spin**2 + 2.0 * spin * precession * offset)
-    return 0.5 * m * R**2 * rolling + 0.5 * (I1 * whirl + I3 * spin**2) + m * g * R * (1.0 - alpha * c)
+    transverse = tilt_rate**2 + precession**2 * s**2
+    rolling = offset**2 * transverse + s**2 * (tilt_rate**2 + spin**2 + 2.0 * spin * precession * offset)
+    return 0.5 * m * R**2 * rolling + 0.5 * (I1 * transverse + I3 * spin**2) + m * g * R * (1.0 - alpha * c)
 
 
 def published_parameters(top: Top) -> tuple[Scalar, ...]:

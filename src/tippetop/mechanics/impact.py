@@ -20,7 +20,7 @@ that friction has stopped leaves dv_n/dp = M_nn - M_nt M_tt^-1 M_tn > 0.
 *Restitution* is Poisson's: it lasts while p grows from the impulse of compression p_c to (1 + e) p_c, with
 friction going on. With friction, that hypothesis may create energy: the slope dv_n/dp can be larger in
 restitution than in compression, and then the normal impulse gives back more work than it took, even for
-e < 1 (Stronge 1990). The work of the normal impulse, the integral of v_n dp, is therefore watched, and
+e < 1 (Stronge 1990). The work of the normal impulse, the integral of v_n dp, is therefore followed, and
 restitution ends at once should it reach zero, which is the most that Stronge's energetic hypothesis allows.
 As friction only takes (f.v + t.omega <= 0), no impact gains energy. Should v_n be negative at the end, which
 friction that turns during restitution might do, the impact goes on until it is zero.

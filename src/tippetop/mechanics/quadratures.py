@@ -46,7 +46,7 @@ def quadrature_rates(state: State, power: Scalar, pole: Scalar, top: Top) -> Qua
     return Quadratures(state.velocity[0], state.velocity[1], turning, power)
 
 
-def twisting_powers(state: State, torque: Vector, top: Top) -> tuple[Scalar, Scalar]:
+def resistance_powers(state: State, torque: Vector, top: Top) -> tuple[Scalar, Scalar]:
     """Powers of drilling and of rolling friction, W, for the table's torque, N m."""
     turning = angular_velocity(state.axis, state.momentum, top)
     return torque[2] * turning[2], torque[0] * turning[0] + torque[1] * turning[1]

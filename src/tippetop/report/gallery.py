@@ -10,7 +10,7 @@ from tippetop.figures import flights, methods, runs, sweeps
 from tippetop.figures.euler_angles import euler_angles_drawing
 from tippetop.figures.model import model_drawing
 from tippetop.figures.tippe_top import tippe_top_drawing
-from tippetop.report.experiments.flights import HOPS_WINDOW, MU, TILT
+from tippetop.report.experiments.flights import FLIGHTS_WINDOW, MU, TILT
 from tippetop.report.gallery_friction import PLATES as FRICTION
 from tippetop.report.gallery_real import PLATES as REAL
 from tippetop.report.gallery_why import PLATES as WHY
@@ -123,7 +123,7 @@ PLATES: dict[str, Plate] = {
             "Tilt after 20 s. Dashed: the critical spins, the report's in orange, converged ones from the "
             "longest runs in blue. In the shaded range the table would have to pull within 20 s. If it does, "
             "as in the report, the launches end anywhere (grey); on a table that only pushes the top flies "
-            "at times and falls back without rebound (green); the figure hops follows it to higher spins. "
+            "at times and falls back without rebound (green); the figure flights follows it to higher spins. "
             "The insets show the framed ends of the slope.",
             ("final-tilt-listing", "final-tilt", "critical-spins"),
             partial(sweeps.final_tilt_figure, reported=(*_CRITICAL, float(ABNORMAL_SPIN))),
@@ -268,15 +268,15 @@ PLATES: dict[str, Plate] = {
             finding="The same for launches at any tilt.",
         ),
         Plate(
-            "hops",
+            "flights",
             "What becomes of the abnormal point",
             "Launches on a table that only pushes, followed through all their flights for "
-            f"{HOPS_WINDOW:g} s. a, share of the time in the air. b, when the axis first passes the "
+            f"{FLIGHTS_WINDOW:g} s. a, share of the time in the air. b, when the axis first passes the "
             "horizontal. c, number of flights. d, tilt at the end. The abnormal point is none of the top's: "
             "beyond it the top hops, for more of the time the faster it spins, and turns over later, but it "
             "does turn over.",
-            ("hops", "hops-bouncing"),
-            flights.hops_figure,
+            ("flights", "flights-bouncing"),
+            flights.flights_figure,
             section="4",
             finding="What the top does beyond the abnormal point: it hops, and the faster it spins the more.",
         ),

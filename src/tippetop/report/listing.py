@@ -13,7 +13,7 @@ from tippetop.report.ode45 import ode45
 _NAMES = ("theta", "theta_dot", "phi", "phi_dot", "omega3", "slip_x", "slip_y")
 
 
-def listing_run(problem: Problem, duration: float, *, pushing: bool = False) -> xr.Dataset:
+def listing_run(problem: Problem, duration: float, *, unilateral: bool = False) -> xr.Dataset:
     """Run a problem as the report's listing does: on the table whatever its force (no lift-off).
 
     Parameters
@@ -22,7 +22,7 @@ def listing_run(problem: Problem, duration: float, *, pushing: bool = False) -> 
         An eccentric sphere with viscous friction.
     duration
         Length of the run, s.
-    pushing
+    unilateral
         Whether to let the lines count that set a negative normal force to zero (commented out in the report).
 
     Returns
@@ -32,7 +32,7 @@ def listing_run(problem: Problem, duration: float, *, pushing: bool = False) -> 
         `theta_integrated` without that, `normal_force` (2.15) and `energy` (4.1). Attributes: steps,
         evaluations, failure (empty if none).
     """
-    motion, start = listing_rates(problem, pushing=pushing), launch_state(problem)
+    motion, start = listing_rates(problem, unilateral=unilateral), launch_state(problem)
     solution = ode45(lambda y: np.array(motion.rates(y.tolist(), ())), duration, start)
     top = problem.top
     y = solution.states.T
@@ -51,10 +51,12 @@ def listing_run(problem: Problem, duration: float, *, pushing: bool = False) -> 
     return xr.Dataset(variables, {"time": solution.times}, attributes)
 
 
-def listing_rates(problem: Problem, wrap: float | None = math.pi, *, pushing: bool = False) -> Motion:
+def listing_rates(problem: Problem, wrap: float | None = math.pi, *, unilateral: bool = False) -> Motion:
     """The right-hand side of the report's listing as a motion without parameters."""
     top = problem.top
-    return Motion(lambda y, _: published_rates(y, top, math, wrap, pushing=pushing), size=7, parameters=0)
+    return Motion(
+        lambda y, _: published_rates(y, top, math, wrap, unilateral=unilateral), size=7, parameters=0
+    )
 
 
 def launch_state(problem: Problem) -> Array:

@@ -1,6 +1,6 @@
 """The order of the page: the report's own sections, then ours, and the pictures that it opens with."""
 
-PICTURES = ("fig04", "fig06", "hops", "fig12", "why-bifurcation")
+PICTURES = ("fig04", "fig06", "flights", "fig12", "why-bifurcation")
 """Names of the five figures that tell what was found."""
 
 SECTIONS: dict[str, tuple[str, str]] = {

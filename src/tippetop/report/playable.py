@@ -5,7 +5,7 @@ from tippetop.export.bundle import LOADER, packed, player_packed
 from tippetop.export.track import pack_run, sample_count
 from tippetop.export.words import tell
 from tippetop.presets import report_problem
-from tippetop.report.experiments.runs import pushing
+from tippetop.report.experiments.runs import unilateral
 from tippetop.run import simulate
 
 SPIN, DURATION = 175.0, 9.0
@@ -18,7 +18,7 @@ def playable(quick: bool) -> dict[str, str] | None:
         player = player_packed()
     except Unavailable:
         return None
-    problem = pushing(report_problem(SPIN))
+    problem = unilateral(report_problem(SPIN))
     samples = sample_count(problem, DURATION)
     run = simulate(problem, DURATION, samples=samples // 2 if quick else samples)
     return {

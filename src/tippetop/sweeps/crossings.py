@@ -97,7 +97,7 @@ class Crossings:
             cells = slots.cell[lanes]
             horizon = slots.end[lanes] - time
             numbers = launches.numbers[:, cells]
-            flown = fly_all(state, launches.kind, numbers, horizon, vanishing, (slots.watch, lanes, time))
+            flown = fly_all(state, launches.kind, numbers, horizon, vanishing, (slots.tip, lanes, time))
             ends.flights[cells] += 1
             ends.airborne[cells] += flown.duration
             ends.highest_gap[cells] = np.fmax(ends.highest_gap[cells], flown.highest_gap)
@@ -186,9 +186,9 @@ class Crossings:
             getattr(ends, name)[cell] = np.fmax(getattr(ends, name)[cell], getattr(found, name))
         for name in ("lift_off", "least_force", "down"):
             getattr(ends, name)[cell] = np.fmin(getattr(ends, name)[cell], getattr(found, name))
-        watch = slots.watch
-        watch.turned[where] = np.fmin(watch.turned[where], found.turned)
-        arrived = tally.arrival(watch.low[where], watch.high[where]) if self.banded else found.arrived[0]
-        watch.reached[where] = np.fmin(watch.reached[where], arrived)
+        tip = slots.tip
+        tip.turned[where] = np.fmin(tip.turned[where], found.turned)
+        arrived = tally.arrival(tip.low[where], tip.high[where]) if self.banded else found.arrived[0]
+        tip.reached[where] = np.fmin(tip.reached[where], arrived)
         slots.rows[slots.layout.steps, where] += found.steps
         slots.retire(where, found.state, found.time, trajectory.outcome)

@@ -11,7 +11,7 @@ from tippetop.catalogue import SWEPT, Ending, Fault
 from tippetop.contact.sliding import sliding_motion
 from tippetop.integrators.base import Array, Motion
 from tippetop.mechanics.motion import contact, on_table
-from tippetop.mechanics.quadratures import twisting_powers
+from tippetop.mechanics.quadratures import resistance_powers
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.top import Kind
 from tippetop.mechanics.units import Units
@@ -77,7 +77,7 @@ def swept_motion(kind: Kind) -> Motion:
     def rates(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[Scalar, ...]:
         top, state = kind.top(tuple(numbers)), SlidingState.unpack(y)
         torque = contact(state.axis, state.momentum, state.velocity, top).torque
-        return (*sliding.rates(y, numbers), *twisting_powers(on_table(state, top), torque, top))
+        return (*sliding.rates(y, numbers), *resistance_powers(on_table(state, top), torque, top))
 
     return replace(sliding, rates=rates, size=10)
 

@@ -65,13 +65,13 @@ class Extremes:
         np.fmin(self.seen, looks, out=self.seen)
         np.fmin(self.lately, looks, out=self.lately)
 
-    def take(self, which: int, lanes: Indices, course: Polynomials) -> None:
-        """Take in the course of what may be least on some lanes; a lane may be there several times."""
+    def take(self, which: int, lanes: Indices, pieces: Polynomials) -> None:
+        """Take in what may be least on some lanes; a lane may be there several times."""
         for known in (self.seen, self.lately):
-            np.fmin.at(known[which], lanes, course.lowest)
-        lower = np.flatnonzero(course.floor <= self.seen[which, lanes])
+            np.fmin.at(known[which], lanes, pieces.lowest)
+        lower = np.flatnonzero(pieces.floor <= self.seen[which, lanes])
         if len(lower):
-            least = course.some(lower).refined_least()[1]
+            least = pieces.some(lower).refined_least()[1]
             np.fmin.at(self.found[which], lanes[lower], least)
 
     def search(self, jet: Callable[[Array, Indices], Jet]) -> None:

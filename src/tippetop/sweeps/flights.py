@@ -39,14 +39,14 @@ from tippetop.mechanics.vectors import length, scale
 from tippetop.sweeps.launches import Flags, Indices, picked
 from tippetop.sweeps.stepper import NumPyArithmetic
 from tippetop.sweeps.stride import step_size
-from tippetop.sweeps.watch import Watch
+from tippetop.sweeps.tip import TipMotion
 
 PLAIN = NumPyArithmetic()
 
 PIECES = 100_000
 """Pieces that a flight may have: each is a fraction of a turn."""
 
-PUSHES = 50
+MOST_PIECES = 50
 """Pieces that an impact may have before it is left to the method that takes stiff friction."""
 
 DEGREE = 12
@@ -84,7 +84,7 @@ def fly_all(
     numbers: Array,
     horizon: Array,
     vanishing: Indices,
-    watched: tuple[Watch, Indices, Array],
+    seen: tuple[TipMotion, Indices, Array],
 ) -> Flown:
     """Fly until the table is touched.
 
@@ -98,10 +98,10 @@ def fly_all(
         How long to fly at most, shape (n,).
     vanishing
         How many of gap, gap rate and gap acceleration vanish at the start, shape (n,).
-    watched
-        Who watches the axis, under which numbers, and the times at the start.
+    seen
+        What follows the tip of the axis, under which numbers, and the times at the start.
     """
-    watch, launches, begun = watched
+    tip, launches, begun = seen
     time, highest = np.zeros_like(horizon), np.zeros_like(horizon)
     landed = np.zeros(horizon.shape, dtype=bool)
     for piece in range(PIECES):
@@ -110,7 +110,7 @@ def fly_all(
             break
         top = kind.top(tuple(numbers[:, active]))
         here = fly(picked(state, active), time[active], top, np)
-        tip, gap, reach = flight_terms(here, top)
+        height, gap, reach = flight_terms(here, top)
         reach = np.minimum(reach, horizon[active] - time[active])
         zero = Polynomials(divided(gap, vanishing[active]) if piece == 0 else gap, reach).first_fall()
         touches = ~np.isnan(zero)
@@ -119,7 +119,7 @@ def fly_all(
         higher = np.flatnonzero(depth.floor < -highest[active])
         rise = -depth.some(higher).refined_least()[1]
         highest[active[higher]] = np.maximum(highest[active[higher]], rise)
-        watch.see(launches[active], begun[active] + time[active], Polynomials(tip, span))
+        tip.see(launches[active], begun[active] + time[active], Polynomials(height, span))
         time[active] = np.where(span == horizon[active] - time[active], horizon[active], time[active] + span)
         landed[active] = touches
     top = kind.top(tuple(numbers))
@@ -183,7 +183,7 @@ def collide(state: State, top: Top) -> tuple[State, Flags]:
         traction = top.friction.traction((point[0], point[1]), omega)
         return (*moment_per_normal_force(arm, traction), *scale(1.0 / top.mass, (*traction.force, 1.0)))
 
-    for _ in range(PUSHES):
+    for _ in range(MOST_PIECES):
         if not waiting.any():
             break
         with np.errstate(all="ignore"):
@@ -195,8 +195,8 @@ def collide(state: State, top: Top) -> tuple[State, Flags]:
         end = np.full(span.shape, np.nan)
         end[waiting] = Polynomials(approach[:, waiting], span[waiting]).first_fall()
         stops = waiting & ~np.isnan(end)
-        push = np.where(stops, end, span)
-        moved = np.array([horner(series, push) for series in terms])
+        taken = np.where(stops, end, span)
+        moved = np.array([horner(series, taken) for series in terms])
         moving = np.where(waiting, moved, moving)
         struck |= stops
         waiting &= ~stops

@@ -75,7 +75,7 @@ class Lanes:
             slots.rows[: stepper.layout.left + 1] = resumed[:, slots.cell]
             slots.choose_branch()
             slots.left[~slots.alive] = 0.0
-        slots.numbers[stepper.layout.turns] = np.isnan(slots.watch.turned)
+        slots.numbers[stepper.layout.turns] = np.isnan(slots.tip.turned)
 
     def run(self) -> Ends:
         """Follow every launch to its end."""
@@ -100,7 +100,7 @@ class Lanes:
         if len(waiting):
             slots.held[waiting] = after[layout.taken, waiting]
             slots.before[waiting] = before[layout.left, waiting]
-        slots.watch.extremes.look(
+        slots.tip.extremes.look(
             after[layout.looks], after[layout.slack], after[layout.taken], before[: layout.size]
         )
         slots.rows, slots.spare = after, before
@@ -119,8 +119,8 @@ class Lanes:
             fall = Polynomials(terms, slots.held[lanes]).first_fall()
             earlier = (slots.numbers[layout.counts][number, lanes] != 0.0) & (fall <= span)
             fallen[earlier], span = number, np.where(earlier, fall, span)
-        slots.watch.extremes.take(FORCE, lanes, Polynomials(jet.guards[0], span))
-        slots.watch.see(lanes, begun, Polynomials(jet.state[2], span))
+        slots.tip.extremes.take(FORCE, lanes, Polynomials(jet.guards[0], span))
+        slots.tip.see(lanes, begun, Polynomials(jet.state[2], span))
         slots.rows[: layout.size, lanes] = jet.at(span)
         slots.rows[layout.left, lanes], slots.rows[layout.taken, lanes] = left - span, slots.held[lanes]
         slots.rows[layout.steps, lanes] += 1
@@ -128,18 +128,18 @@ class Lanes:
         if (fallen >= 0).any():
             some = fallen >= 0
             self.crossings.fall(lanes[some], begun[some] + span[some], fallen[some])
-        slots.numbers[layout.turns, lanes] = np.isnan(slots.watch.turned[lanes])
+        slots.numbers[layout.turns, lanes] = np.isnan(slots.tip.turned[lanes])
         if self.banded:
-            slots.rows[layout.left, ~np.isnan(slots.watch.reached)] = 0.0
+            slots.rows[layout.left, ~np.isnan(slots.tip.reached)] = 0.0
 
     def _close(self, noted: Flags, begun: Array) -> None:
         """End a window: note it, take out what has ended, and close ranks."""
         slots, layout = self.slots, self.slots.layout
         slots.search()
-        cells, (_, down, up) = slots.cell[noted], slots.watch.extremes.lately[:, noted]
+        cells, (_, down, up) = slots.cell[noted], slots.tip.extremes.lately[:, noted]
         if not self.banded:
             self.notes.append(Note(cells, begun[: layout.left + 1, noted], down, -up))
-        slots.watch.extremes.forget()
+        slots.tip.extremes.forget()
         ended = np.flatnonzero(slots.alive & (slots.left <= 0.0))
         if len(ended):
             slots.retire(ended, slots.whole(ended), slots.end[ended], Outcome.COMPLETED)

@@ -50,11 +50,15 @@ class Progress:
         return (self.cells - self.done) / self.rate if self.rate > 0 else None
 
 
-Watcher = Callable[[Progress], None]
+Callback = Callable[[Progress], None]
 
 
 def fill(
-    store: Store, *, workers: int | None = None, scheduler: str | None = None, watcher: Watcher | None = None
+    store: Store,
+    *,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    callback: Callback | None = None,
 ) -> Progress:
     """Compute what is missing in a store.
 
@@ -66,7 +70,7 @@ def fill(
         How many processes; None for as many as there are processors, 1 for this process alone.
     scheduler
         Address of a running dask.distributed scheduler, instead of processes.
-    watcher
+    callback
         Told of the progress, at the beginning and after every task.
 
     Raises
@@ -76,24 +80,24 @@ def fill(
         where this one ended.
     """
     with store.held():
-        return _fill(store, workers, scheduler, watcher)
+        return _fill(store, workers, scheduler, callback)
 
 
-def _fill(store: Store, workers: int | None, scheduler: str | None, watcher: Watcher | None) -> Progress:
+def _fill(store: Store, workers: int | None, scheduler: str | None, callback: Callback | None) -> Progress:
     sweep = store.sweep
     tasks = store.remaining()
     sizes = {task: sweep.numbers(task).size for task in tasks}
     before = sweep.cells - sum(sizes.values())
     began = time.monotonic()
     progress = Progress(sweep.cells, before, before, 0.0)
-    if watcher is not None:
-        watcher(progress)
+    if callback is not None:
+        callback(progress)
     if tasks:
         for task, found in results(sweep, tasks, workers, scheduler):
             store.write(task, found)
             progress = Progress(sweep.cells, before, progress.done + sizes[task], time.monotonic() - began)
-            if watcher is not None:
-                watcher(progress)
+            if callback is not None:
+                callback(progress)
     return progress
 
 
@@ -105,7 +109,7 @@ def run_sweep(
     overwrite: bool = False,
     workers: int | None = None,
     scheduler: str | None = None,
-    watcher: Watcher | None = None,
+    callback: Callback | None = None,
 ) -> xr.Dataset:
     """Carry out a sweep into a store, and open it.
 
@@ -119,7 +123,7 @@ def run_sweep(
         Finish a store that is there.
     overwrite
         Replace what is there.
-    workers, scheduler, watcher
+    workers, scheduler, callback
         See `fill`.
 
     Returns
@@ -134,7 +138,7 @@ def run_sweep(
     """
     need_workers(workers, scheduler, sweep)
     store = Store.resume(out, sweep) if resume or sweep is None else Store.create(out, sweep, overwrite)
-    fill(store, workers=workers, scheduler=scheduler, watcher=watcher)
+    fill(store, workers=workers, scheduler=scheduler, callback=callback)
     return store.dataset()
 
 
@@ -143,7 +147,7 @@ def compute(
     *,
     workers: int | None = 1,
     scheduler: str | None = None,
-    watcher: Watcher | None = None,
+    callback: Callback | None = None,
 ) -> xr.Dataset:
     """Carry out a sweep in memory.
 
@@ -160,8 +164,8 @@ def compute(
         for name, values in found.items():
             arrays[name][region] = values.reshape(arrays[name][region].shape)
         done += found["outcome"].size
-        if watcher is not None:
-            watcher(Progress(sweep.cells, 0, done, time.monotonic() - began))
+        if callback is not None:
+            callback(Progress(sweep.cells, 0, done, time.monotonic() - began))
     status = np.full(shape, Status.DONE, dtype=np.int8)
     data = {"status": (grid.dimensions, status, STATUS.attributes)}
     for name, kind in SWEPT.items():
@@ -185,7 +189,7 @@ def sweep(
     resume: bool = False,
     workers: int | None = None,
     scheduler: str | None = None,
-    watcher: Watcher | None = None,
+    callback: Callback | None = None,
 ) -> xr.Dataset:
     """See what becomes of many launches: ``sweep(problem, {"launch.spin": np.linspace(0, 250, 200)})``.
 
@@ -214,7 +218,7 @@ def sweep(
         How many processes; None for as many as there are processors, 1 for this process alone.
     scheduler
         Address of a running dask.distributed scheduler, instead of processes.
-    watcher
+    callback
         Told of the progress, at the beginning and after every task.
 
     Returns
@@ -240,6 +244,6 @@ def sweep(
     grid = over if isinstance(over, Draws) else Product.of(over)
     chosen = Sweep(problem, grid, duration, tolerance, settled)
     if out is None:
-        return compute(chosen, workers=workers, scheduler=scheduler, watcher=watcher)
+        return compute(chosen, workers=workers, scheduler=scheduler, callback=callback)
     permission = {"overwrite": overwrite, "resume": resume}
-    return run_sweep(chosen, out, **permission, workers=workers, scheduler=scheduler, watcher=watcher)
+    return run_sweep(chosen, out, **permission, workers=workers, scheduler=scheduler, callback=callback)

@@ -13,7 +13,7 @@ from tippetop.mechanics.top import Top
 from tippetop.metrics import OUTCOMES, Ends
 from tippetop.sweeps.launches import Flags, Indices, Launches, branched
 from tippetop.sweeps.stride import LANES, Jet, Layout, Stepper
-from tippetop.sweeps.watch import Watch
+from tippetop.sweeps.tip import TipMotion
 
 LOSSES = slice(8, 10)
 """Rows of the work of drilling and of rolling, where a law has a torque."""
@@ -43,8 +43,8 @@ class Slots:
         What a step brings up to date, and room for the next.
     held, before
         The step that a lane waits before, 0 if it does not wait, and the time left before it.
-    watch
-        What is watched of the axis.
+    tip
+        How the tip of the axis moves.
     """
 
     launches: Launches
@@ -58,7 +58,7 @@ class Slots:
     spare: Array
     held: Array
     before: Array
-    watch: Watch
+    tip: TipMotion
 
     @classmethod
     def of(cls, launches: Launches, stepper: Stepper, band: tuple[Array, Array] | None) -> "Slots":
@@ -66,7 +66,7 @@ class Slots:
         count, layout = len(launches), stepper.layout
         lanes = count + -count % LANES
         filled = np.minimum(np.arange(lanes), count - 1)
-        watch = Watch.of(lanes)
+        tip = TipMotion.of(lanes)
         numbers = np.concatenate(
             (launches.numbers[:, filled], np.zeros((layout.numbers - layout.parameters, lanes)))
         )
@@ -75,8 +75,8 @@ class Slots:
         numbers[layout.counts.start] = float(launches.liftoff != "ignore")
         numbers[layout.band] = np.array([[np.inf], [-np.inf]])
         if band is not None:
-            watch.low, watch.high = band[0][filled], band[1][filled]
-            numbers[layout.band] = watch.low, watch.high
+            tip.low, tip.high = band[0][filled], band[1][filled]
+            numbers[layout.band] = tip.low, tip.high
         rows = np.zeros((layout.rows, lanes))
         return cls(
             launches,
@@ -90,7 +90,7 @@ class Slots:
             spare=np.zeros_like(rows),
             held=np.zeros(lanes),
             before=np.zeros(lanes),
-            watch=watch,
+            tip=tip,
         )
 
     @property
@@ -120,7 +120,7 @@ class Slots:
             setattr(self, name, np.ascontiguousarray(getattr(self, name)[:, kept]))
         self.rows[self.layout.left] *= self.alive
         self.spare = np.zeros_like(self.rows)
-        self.watch = self.watch.some(kept)
+        self.tip = self.tip.some(kept)
 
     def tops(self, lanes: Indices | Flags) -> Top:
         """Some of the tops, with arrays for numbers."""
@@ -172,12 +172,12 @@ class Slots:
             drilled, rolled = -self.rows[LOSSES][:, lanes]
             ends.drilled[cells] += drilled
             ends.rolled[cells] += rolled
-        ends.turned[cells], ends.arrived[cells] = self.watch.turned[lanes], self.watch.reached[lanes]
+        ends.turned[cells], ends.arrived[cells] = self.tip.turned[lanes], self.tip.reached[lanes]
         self.rows[self.layout.left, lanes] = 0.0
         self.alive[lanes] = False
         stayed = np.isnan(ends.lift_off[cells]) & (ends.flights[cells] == 0)
         self.search()
-        force, down, up = self.watch.extremes.found[:, lanes]
+        force, down, up = self.tip.extremes.found[:, lanes]
         ends.least_force[cells] = np.where(stayed, np.fmin(ends.least_force[cells], force), 0.0)
         ends.down[cells] = np.fmin(ends.down[cells], down)
         ends.up[cells] = np.fmax(ends.up[cells], -up)
@@ -190,4 +190,4 @@ class Slots:
             rows[: self.layout.size] = start
             return self.stepper.jet(rows, self.numbers[:, lanes])
 
-        self.watch.extremes.search(jet)
+        self.tip.extremes.search(jet)

@@ -2,8 +2,8 @@
 
 For small mu the tilt nutates as on a smooth table, lambda is constant, and what else the nutation leaves
 alone, L3 and the energy, drifts at a rate proportional to mu: by friction's torque and power averaged over
-one nutation (`tippetop.theory.drain`). Time enters only as mu t, which is why the time to turn over goes
-as 1 / mu.
+one nutation (`tippetop.theory.dissipation`). Time enters only as mu t, which is why the time to turn over
+goes as 1 / mu.
 
 When the nutation has died away, what is left is a drift along the steady precessions of the smooth table,
 in the tilt alone, and time is an integral over the tilt (`tippetop.theory.drift`).
@@ -22,9 +22,9 @@ from tippetop.mechanics.view import Angles
 from tippetop.problem import Problem
 from tippetop.theory.dual import Array
 from tippetop.theory.nutation import Numbers, numbers_of
+from tippetop.theory.nutation_decay import Goals, Nutation, Stage, follow_nutation, launched
 from tippetop.theory.prediction import stable_by_energy
 from tippetop.theory.steady import jellett_of_launch, steady_states
-from tippetop.theory.whirling import Goals, Nutation, Stage, follow_nutation, launched
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ def averaged_flow(
     samples
         At how many times the nutating part is given; 0 for those of the integrator's steps.
     tolerance
-        Error of the logarithms of the whirls in a step of the nutating part.
+        Error of the logarithms of the amplitudes in a step of the nutating part.
 
     Raises
     ------

@@ -16,13 +16,13 @@ from tippetop.mechanics.view import precession_rate
 from tippetop.theory.dual import Array
 from tippetop.theory.nutation import (
     Constants,
+    amplitudes,
     constants,
     effective_potential,
     natural_constants,
     numbers_of,
     orbit,
     turning_tilts,
-    whirls,
 )
 
 
@@ -86,7 +86,7 @@ def nutation_envelope(axis: Array, momentum: Array, top: Top) -> Envelope:
     """
     numbers = numbers_of(top)
     values = natural_constants(smooth_constants(axis, momentum, top), top)
-    return Envelope(*turning_tilts(whirls(orbit(values, numbers))))
+    return Envelope(*turning_tilts(amplitudes(orbit(values, numbers))))
 
 
 def _vector(rows: Array) -> Vector:

@@ -1,4 +1,4 @@
-"""Nutation of an eccentric sphere on a smooth table: its constants, its turning points, its two whirls.
+"""Nutation of an eccentric sphere on a smooth table: its constants, its turning points, its two amplitudes.
 
 Without friction L_z, L3 = L.n and the energy are constant, and the tilt swings between two turning points.
 In units of mass, radius and gravity, with p = 1 - cos(theta), q = L_z - L3 and e the energy above that of
@@ -10,11 +10,11 @@ with s^2 = p (2 - p) and p1 <= p2 <= 2 <= p3. The substitution p = (p1 + p2)/2 +
 time a smooth function of the phase psi down to p1 = p2, and averages over a nutation converge exponentially
 with equidistant phases.
 
-The tilt swings as if the axis were the sum of two whirls, a fast and a slow one, as it is near theta = 0:
-sin(theta/2) at the turning points is the sum and the difference of two amplitudes, whose squares are named
-`fast` and `slow` here. They stay good where one of them vanishes (a steady precession of a smooth table) and
-where they are equal (a nutation through the vertical), and near theta = 0 friction makes them grow or decay
-exponentially.
+The tilt swings as if the axis were the sum of two circular motions, a fast and a slow one, as it is near
+theta = 0: sin(theta/2) at the turning points is the sum and the difference of two amplitudes, whose squares
+are named `fast` and `slow` here. They stay good where one of them vanishes (a steady precession of a smooth
+table) and where they are equal (a nutation through the vertical), and near theta = 0 friction makes them grow
+or decay exponentially.
 """
 
 import math
@@ -86,7 +86,7 @@ class Orbit(NamedTuple):
     swing: Scalar
 
 
-class Whirls(NamedTuple):
+class Amplitudes(NamedTuple):
     """Squares of the amplitudes whose sum and difference are sin(theta/2) at the turning points."""
 
     fast: Scalar
@@ -175,21 +175,21 @@ def _orbit(excess: Scalar, axial: Scalar, swing: Scalar, numbers: Numbers) -> Or
     return Orbit(middle, half, far, excess, axial, swing)
 
 
-def whirls(path: Orbit) -> Whirls:
-    """The two whirls of a nutation, or of arrays of them: the fast one is the larger where L_z > L3."""
+def amplitudes(path: Orbit) -> Amplitudes:
+    """The two amplitudes of a nutation, or of arrays of them: the fast one is the larger where L_z > L3."""
     apart = np.copysign(np.sqrt(np.maximum(path.middle**2 - path.half**2, 0.0)), path.excess)
-    return Whirls((path.middle + apart) / 4.0, (path.middle - apart) / 4.0)
+    return Amplitudes((path.middle + apart) / 4.0, (path.middle - apart) / 4.0)
 
 
-def turning_tilts(pair: Whirls) -> tuple[Scalar, Scalar]:
-    """Least and largest tilt of a nutation with these whirls, rad; arrays of them too."""
+def turning_tilts(pair: Amplitudes) -> tuple[Scalar, Scalar]:
+    """Least and largest tilt of a nutation with these amplitudes, rad; arrays of them too."""
     fast, slow = np.sqrt(pair.fast), np.sqrt(pair.slow)
     low, high = np.minimum(abs(fast - slow), 1.0), np.minimum(fast + slow, 1.0)
     return 2.0 * np.arcsin(low), 2.0 * np.arcsin(high)
 
 
-def orbit_of_whirls(pair: Whirls, root: float, jellett: float, numbers: Numbers) -> Orbit:
-    """The nutation with these whirls, sqrt(|p3|) near `root`, and this Jellett's integral, in natural units.
+def orbit_of_amplitudes(pair: Amplitudes, root: float, jellett: float, numbers: Numbers) -> Orbit:
+    """The nutation with these amplitudes and this Jellett's integral, sqrt(|p3|) near `root`; natural units.
 
     L_z - L3 and L3 are linear in r = sqrt(|p3|), and eliminating the energy from the coefficients of the
     cubic leaves a quadratic equation for r. Newton's method improves the root given, but not where two meet.
@@ -216,7 +216,7 @@ def orbit_of_whirls(pair: Whirls, root: float, jellett: float, numbers: Numbers)
 
 
 def excess_slope(numbers: Numbers) -> float:
-    """What L_z - L3 is of sqrt(|p3|) times the difference of the whirls."""
+    """What L_z - L3 is of sqrt(|p3|) times the difference of the amplitudes."""
     return 2.0 * math.sqrt(2.0 * numbers.transverse * abs(numbers.alpha))
 
 
@@ -224,7 +224,7 @@ _CLOSE = 1e-2
 
 
 def upside_down(path: Orbit, numbers: Numbers) -> Orbit:
-    """The same nutation of the turned top: p = 1 + cos(theta). Near theta = pi its whirls stay good."""
+    """The same nutation of the turned top: p = 1 + cos(theta). Near theta = pi its amplitudes stay good."""
     return Orbit(
         2.0 - path.middle,
         path.half,

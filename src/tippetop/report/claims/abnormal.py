@@ -16,17 +16,17 @@ CHAPTER = Chapter()
     "sec4-energy-falls",
     Source("4", "Fig. 10"),
     "The top loses energy during its motion; nothing adds to it.",
-    needs=("run-175", "hops", "hops-bouncing"),
+    needs=("run-175", "flights", "flights-bouncing"),
     figure="fig10",
 )
-def _(run: xr.Dataset, hops: xr.Dataset, bouncing: xr.Dataset) -> Finding:
-    rises = [float(data["energy_rise"].max()) for data in (run, hops, bouncing)]
+def _(run: xr.Dataset, flights: xr.Dataset, bouncing: xr.Dataset) -> Finding:
+    rises = [float(data["energy_rise"].max()) for data in (run, flights, bouncing)]
     launch, impacts = float(run["launch_energy"]), float(run["energy_in_impacts"])
     return Finding(
         not float(run["largest_energy_listing"]) > launch,
         max(rises) <= ROUNDED * launch,
-        "On a table that only pushes it never rises, neither here nor in any launch of the figure hops: the "
-        f"largest change from sample to sample is {max(rises):.0e} J. At 175 rad/s the top loses "
+        "On a table that only pushes it never rises, neither here nor in any launch of the figure flights: "
+        f"the largest change from sample to sample is {max(rises):.0e} J. At 175 rad/s the top loses "
         f"{1e3 * (launch - float(run['energy_flight'][-1])):.1f} mJ of {1e3 * launch:.1f} mJ, "
         f"{1e3 * impacts:.2f} mJ of them in impacts. By the report's method and (4.1) it exceeds that of the "
         "launch: that is how the report knows that something is wrong.",
@@ -68,17 +68,17 @@ def _(over_tilt: xr.Dataset, over_mu: xr.Dataset, run: xr.Dataset, sweep: xr.Dat
     Source("3.3", "Fig. 6"),
     f"Above {ABNORMAL_SPIN} rad/s the top behaves abnormally; a negative normal force causes that, and "
     "it is not physical.",
-    needs=("final-tilt", "hops", "hops-bouncing", "listing-capped"),
-    figure="hops",
+    needs=("final-tilt", "flights", "flights-bouncing", "listing-capped"),
+    figure="flights",
 )
-def _(sweep: xr.Dataset, hops: xr.Dataset, bouncing: xr.Dataset, capped: xr.Dataset) -> Finding:
+def _(sweep: xr.Dataset, flights: xr.Dataset, bouncing: xr.Dataset, capped: xr.Dataset) -> Finding:
     true, spins = sweep["final_theta_flight"].values, sweep["spin_flight"].values
     cured = not _turned(capped["final_theta"]) and _turned(capped["final_theta_capped"])
     listed = ", ".join(
         f"{spin:g} rad/s {one:.2f} and {other:.2f} rad"
         for spin, one, other in zip(*(capped[name].values for name in _CAPPED), strict=True)
     )
-    turned = all(_turned(data["final_theta_flight"]) for data in (sweep, hops, bouncing))
+    turned = all(_turned(data["final_theta_flight"]) for data in (sweep, flights, bouncing))
     lost = float(sweep["lost"])
     return Finding(
         cured,
@@ -86,9 +86,9 @@ def _(sweep: xr.Dataset, hops: xr.Dataset, bouncing: xr.Dataset, capped: xr.Data
         f"The abnormal point is {'no' if turned else 'still a'} property of the top. On a table that pulls, "
         f"launches from {lost:g} rad/s on end anywhere; on one that only pushes, those from {spins[0]:g} to "
         f"{spins[-1]:g} rad/s end within {np.abs(true - np.pi).max():.1g} rad of pi after "
-        f"{sweep.attrs['window_s']:g} s, and those up to {hops['spin'][-1]:g} rad/s within "
-        f"{np.abs(hops['final_theta_flight'].values - np.pi).max():.1g} rad after "
-        f"{hops.attrs['window_s']:g} s. The report's listing has three lines commented out that set a "
+        f"{sweep.attrs['window_s']:g} s, and those up to {flights['spin'][-1]:g} rad/s within "
+        f"{np.abs(flights['final_theta_flight'].values - np.pi).max():.1g} rad after "
+        f"{flights.attrs['window_s']:g} s. The report's listing has three lines commented out that set a "
         f"negative normal force to zero; without and with them its method ends, by spin, at {listed}.",
         news="Three lines of its own listing, commented out, would have cured the abnormal point: they set a "
         "negative normal force to zero, which is close to letting the top hop, for the hops are low."
@@ -105,15 +105,15 @@ _CAPPED = ("spin", "final_theta", "final_theta_capped")
     Source("3.3"),
     "Above omega_c2 the top turns over completely (the report excepts the spins above "
     f"{ABNORMAL_SPIN} rad/s).",
-    needs=("final-tilt-listing", "final-tilt", "hops", "hops-bouncing"),
-    figure="hops",
+    needs=("final-tilt-listing", "final-tilt", "flights", "flights-bouncing"),
+    figure="flights",
 )
-def _(listing: xr.Dataset, sweep: xr.Dataset, hops: xr.Dataset, bouncing: xr.Dataset) -> Finding:
+def _(listing: xr.Dataset, sweep: xr.Dataset, flights: xr.Dataset, bouncing: xr.Dataset) -> Finding:
     theirs = _inverting(listing, "_listing", float(ABNORMAL_SPIN))
     ours = _inverting(sweep, "", float(sweep["lift_off_onset"]))
-    turned = _turned(ours) and all(_turned(run["final_theta_flight"]) for run in (hops, bouncing))
-    hops = hops.isel(restitution=0)
-    flying = hops.sel(spin=hops["flights"] > 0)
+    turned = _turned(ours) and all(_turned(run["final_theta_flight"]) for run in (flights, bouncing))
+    flights = flights.isel(restitution=0)
+    flying = flights.sel(spin=flights["flights"] > 0)
     share = 100 * flying["airborne_time"] / flying["last_touchdown"]
     columns = (flying["spin"], flying["flights"], share, flying["turning_time"])
     described = "; ".join(
@@ -125,7 +125,7 @@ def _(listing: xr.Dataset, sweep: xr.Dataset, hops: xr.Dataset, bouncing: xr.Dat
         turned,
         "The model is a whole sphere: it has no stem to spin on; with one, see the figure real-stems. "
         f"On a table that only pushes {'all' if turned else 'not all'} launches tried up to "
-        f"{hops['spin'][-1]:g} rad/s turn over. Without rebound, by spin in rad/s, the number of "
+        f"{flights['spin'][-1]:g} rad/s turn over. Without rebound, by spin in rad/s, the number of "
         "flights, the part of the time until the last touchdown that is spent in the air, and when the axis "
         f"passes the horizontal: {described}.",
     )

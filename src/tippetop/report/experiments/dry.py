@@ -55,7 +55,7 @@ COHEN = Problem(
 COHEN_STEP, COHEN_WINDOW = 0.01, 2.0
 """His step, and how long his figure 5 is, s."""
 
-WATCHED = 4.0
+FOLLOWED = 4.0
 """How long his top is followed here, s."""
 
 SMOOTHED, SMOOTHED_SPIN = 0.3, 100.0
@@ -151,17 +151,17 @@ def stepped(problem: Problem, step: float, duration: float) -> SlidingState:
 def _cohen(quick: bool) -> xr.Dataset:
     """Cohen's top with his method at several steps, and exactly."""
     steps = np.array([10.0, 2.0, 0.5] if quick else [10.0, 5.0, 2.0, 1.0, 0.5, 0.2]) * 1e-3
-    times = np.linspace(0.0, WATCHED, round(WATCHED / COHEN_STEP) + 1)
+    times = np.linspace(0.0, FOLLOWED, round(FOLLOWED / COHEN_STEP) + 1)
     tilts, slowest = [], []
     top, units = natural(COHEN.top), natural_units(COHEN.top)
     for step in steps:
-        state = stepped(COHEN, float(step), WATCHED)
+        state = stepped(COHEN, float(step), FOLLOWED)
         tilt = np.arctan2(np.hypot(state.axis[0], state.axis[1]), state.axis[2])
         tilts.append(tilt[:: round(COHEN_STEP / step)])
         rolling = velocity_without_slip(state.axis, state.momentum, top)
         slip = np.hypot(*(u - v for u, v in zip(state.velocity, rolling, strict=True)))
         slowest.append(float(slip.min()) * units.speed)
-    exact = simulate(COHEN, WATCHED, times=times, **WITHOUT_COMPILING)
+    exact = simulate(COHEN, FOLLOWED, times=times, **WITHOUT_COMPILING)
     stick = exact["event_time"].values[exact["event_kind"].values == "stick"]
     of_steps = ("step", "time")
     return xr.Dataset(

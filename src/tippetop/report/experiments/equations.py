@@ -114,18 +114,18 @@ def _torques(now: xr.Dataset, top: Top) -> dict[str, Any]:
     axis, momentum, velocity = (_vector(now, name) for name in ("axis", "angular_momentum", "velocity"))
     touch = contact(axis, momentum, (velocity[0], velocity[1]), top)
     normal = touch.normal_force
-    push: Vector = (normal * touch.traction.force[0], normal * touch.traction.force[1], normal)
-    whole: Vector = (push[0], push[1], normal - top.mass * top.gravity)
+    force: Vector = (normal * touch.traction.force[0], normal * touch.traction.force[1], normal)
+    whole: Vector = (force[0], force[1], normal - top.mass * top.gravity)
     second = scale(1.0 / math.hypot(*axis[:2]), cross(VERTICAL, axis))
     omega = angular_velocity(axis, momentum, top)
-    pushing = dot(push, velocity)
+    driving = dot(force, velocity)
     return {
         "second_axis": second,
         "printed": dot(cross(whole, touch.arm), second),
         "turned": dot(cross(touch.arm, whole), second),
-        "corrected": dot(cross(touch.arm, push), second),
-        "power_printed": pushing + dot(cross(push, touch.arm), omega),
-        "power": pushing + dot(cross(touch.arm, push), omega),
+        "corrected": dot(cross(touch.arm, force), second),
+        "power_printed": driving + dot(cross(force, touch.arm), omega),
+        "power": driving + dot(cross(touch.arm, force), omega),
     }
 
 

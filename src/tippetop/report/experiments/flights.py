@@ -13,26 +13,26 @@ from tippetop.report.experiments.runs import (
     FLIGHT_READINGS,
     WINDOW,
     flight_readings,
-    pushing,
     stopping,
     swept,
+    unilateral,
 )
 from tippetop.run import simulate
 
 LONG_WINDOW = 100.0
 """Length of the longer runs in which a lift-off is looked for, s."""
 
-HOPS_WINDOW = 60.0
+FLIGHTS_WINDOW = 60.0
 """Length of the runs that are followed through all their flights, s."""
 
-HOPS_PER_SECOND = 100
+SAMPLES_PER_SECOND = 100
 """Samples a second of these runs."""
 
 TILT, MU = 0.1, 0.3
 """The tilt, rad, and the friction, s/m, that are kept where the other one varies: the report's."""
 
-HOP_SPINS = (160.0, 168.0, 175.0, 200.0, 250.0, 300.0, 400.0, 500.0, 700.0, 1000.0)
-HOP_SPINS_QUICK = (160.0, 175.0, 300.0, 600.0)
+SPINS = (160.0, 168.0, 175.0, 200.0, 250.0, 300.0, 400.0, 500.0, 700.0, 1000.0)
+SPINS_QUICK = (160.0, 175.0, 300.0, 600.0)
 BOUNCING = 0.5
 BOUNCING_SPINS = (175.0, 200.0, 250.0, 300.0)
 BOUNCING_SPINS_QUICK = (175.0, 200.0)
@@ -154,10 +154,10 @@ def followed(spins: tuple[float, ...], restitution: float) -> xr.Dataset:
     restitution
         Part of the speed of approach with which the top rebounds.
     """
-    samples = int(HOPS_PER_SECOND * HOPS_WINDOW) + 1
+    samples = int(SAMPLES_PER_SECOND * FLIGHTS_WINDOW) + 1
     columns: dict[str, list[float]] = {name: [] for name in (*FLIGHT_READINGS, "first_lift_off")}
     for spin in spins:
-        run = simulate(pushing(report_problem(spin), restitution), HOPS_WINDOW, samples=samples)
+        run = simulate(unilateral(report_problem(spin), restitution), FLIGHTS_WINDOW, samples=samples)
         readings = flight_readings(run) | {"first_lift_off": float(run["first_lift_off"])}
         for name, column in columns.items():
             column.append(readings[name])
@@ -169,12 +169,12 @@ def followed(spins: tuple[float, ...], restitution: float) -> xr.Dataset:
             "spin": variable(list(spins), "rad s-1", "spin at launch", ("spin",)),
             "restitution": variable([restitution], "1", "coefficient of restitution", ("restitution",)),
         },
-        {"window_s": HOPS_WINDOW},
+        {"window_s": FLIGHTS_WINDOW},
     )
 
 
-def _hops(quick: bool) -> xr.Dataset:
-    return followed(HOP_SPINS_QUICK if quick else HOP_SPINS, 0.0)
+def _plastic(quick: bool) -> xr.Dataset:
+    return followed(SPINS_QUICK if quick else SPINS, 0.0)
 
 
 def _bouncing(quick: bool) -> xr.Dataset:
@@ -184,7 +184,7 @@ def _bouncing(quick: bool) -> xr.Dataset:
 EXPERIMENTS = [
     Experiment("onset-mu", "the least spin that leaves the table, against friction", 7.0, _over_mu),
     Experiment("onset-tilt", "the least spin that leaves the table, against tilt", 5.0, _over_tilt),
-    Experiment("hops", "launches followed through their flights", 11.0, _hops),
-    Experiment("hops-bouncing", "the same with impacts that rebound", 5.0, _bouncing),
+    Experiment("flights", "launches followed through their flights", 11.0, _plastic),
+    Experiment("flights-bouncing", "the same with impacts that rebound", 5.0, _bouncing),
 ]
 """What the figures of lift-off and flight are made from."""

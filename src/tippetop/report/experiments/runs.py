@@ -42,7 +42,7 @@ def stopping(problem: Problem) -> Problem:
     return problem.replace({"contact.liftoff": "stop"})
 
 
-def pushing(problem: Problem, restitution: float = 0.0) -> Problem:
+def unilateral(problem: Problem, restitution: float = 0.0) -> Problem:
     """The problem with a table that only pushes: the top flies, falls back and hits it."""
     return problem.replace({"contact.liftoff": "fly", "contact.restitution": restitution})
 
@@ -142,7 +142,7 @@ def _series(true: xr.Dataset, listing: xr.Dataset) -> xr.Dataset:
 
 def _continuation(problem: Problem, times: np.ndarray) -> dict[str, object]:
     """The launch on a table that only pushes: what is drawn of it, its flights and what is read off it."""
-    run = simulate(pushing(problem), WINDOW, times=times)
+    run = simulate(unilateral(problem), WINDOW, times=times)
     drawn: dict[str, object] = {}
     for name in ("theta", "normal_force", "energy"):
         label = f"{run[name].attrs['long_name']}, on a table that only pushes"
@@ -232,14 +232,14 @@ def _capped(quick: bool) -> xr.Dataset:
     """Where launches end by the report's method, and if a negative normal force is set to zero in it."""
     spins = CAPPED_SPINS[1:2] if quick else CAPPED_SPINS
 
-    def ends(pushing: bool) -> list[float]:
-        runs = [listing_run(report_problem(spin), WINDOW, pushing=pushing) for spin in spins]
+    def ends(unilateral: bool) -> list[float]:
+        runs = [listing_run(report_problem(spin), WINDOW, unilateral=unilateral) for spin in spins]
         return [float(run["theta"][-1]) for run in runs]
 
     return xr.Dataset(
         {
-            "final_theta": variable(ends(pushing=False), "rad", "tilt at the end", ("spin",)),
-            "final_theta_capped": variable(ends(pushing=True), "rad", "the same, g_n >= 0", ("spin",)),
+            "final_theta": variable(ends(unilateral=False), "rad", "tilt at the end", ("spin",)),
+            "final_theta_capped": variable(ends(unilateral=True), "rad", "the same, g_n >= 0", ("spin",)),
         },
         {"spin": variable(list(spins), "rad s-1", "spin at launch", ("spin",))},
     )

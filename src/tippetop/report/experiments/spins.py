@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 from tippetop.presets import report_problem
 from tippetop.report.experiment import Experiment, variable
 from tippetop.report.experiments.flights import leaves_at, onset_between
-from tippetop.report.experiments.runs import WINDOW, on_table, pushing, swept
+from tippetop.report.experiments.runs import WINDOW, on_table, swept, unilateral
 from tippetop.report.listing import listing_run
 from tippetop.report.readings import SETTLED
 from tippetop.run import simulate
@@ -93,7 +93,7 @@ def _converged(quick: bool) -> xr.Dataset:
         lambda spin: leaves_at(report_problem(spin), WINDOW), *_LIFTING, window=WINDOW, accuracy=0.005
     )
     flying = np.arange(FLYING[0], FLYING[1] + 0.1, 7.5 if quick else 2.5)
-    true_tilts = swept(pushing(report_problem()), {"launch.spin": flying})["final_theta"].values
+    true_tilts = swept(unilateral(report_problem()), {"launch.spin": flying})["final_theta"].values
     return xr.Dataset(
         {
             "final_theta": variable(tilts, *_TILT, ("spin",)),

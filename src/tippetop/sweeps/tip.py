@@ -1,4 +1,4 @@
-"""What is watched of the axis on the way: how far it moves, when it turns over, when it reaches a band."""
+"""How the tip of the axis moves on the way: how far it moves, when it turns over, when it reaches a band."""
 
 from dataclasses import dataclass, field
 
@@ -12,7 +12,7 @@ from tippetop.sweeps.launches import Indices
 
 
 @dataclass
-class Watch:
+class TipMotion:
     """The motion of the tip of the axis, n_z, for n launches.
 
     Attributes
@@ -39,8 +39,8 @@ class Watch:
         self.extremes = Extremes.of(len(self.low))
 
     @classmethod
-    def of(cls, count: int) -> "Watch":
-        """The watch of launches that wait for no band."""
+    def of(cls, count: int) -> "TipMotion":
+        """That of launches that wait for no band."""
         nothing = np.full(count, np.nan)
         return cls(*(nothing.copy() for _ in range(3)))
 
@@ -56,9 +56,9 @@ class Watch:
             low, high = self.low[launches[some]], self.high[launches[some]]
             self.reached[launches[some]] = time[some] + arrival_time(tip.some(some), low, high)
 
-    def some(self, which: Indices) -> "Watch":
-        """The watch of some of the launches."""
+    def some(self, which: Indices) -> "TipMotion":
+        """That of some of the launches."""
         arrays = (self.turned, self.low, self.high)
-        watch = Watch(*(array[which] for array in arrays))
-        watch.reached, watch.extremes = self.reached[which], self.extremes.some(which)
-        return watch
+        motion = TipMotion(*(array[which] for array in arrays))
+        motion.reached, motion.extremes = self.reached[which], self.extremes.some(which)
+        return motion

@@ -1,7 +1,7 @@
-"""The slow flow while the top nutates: the two whirls of the nutation grow or decay by friction.
+"""The slow flow while the top nutates: the two amplitudes of the nutation grow or decay by friction.
 
-Near a vertical the logarithms of the whirls are linear in time, so that a few large steps of a method of high
-order are enough. The whirls are those about the pole that the nutation is nearer to.
+Near a vertical the logarithms of the amplitudes are linear in time, so that a few large steps of a method of
+high order are enough. The amplitudes are those about the pole that the nutation is nearer to.
 """
 
 import math
@@ -12,18 +12,18 @@ import numpy as np
 from scipy.integrate import DOP853, OdeSolution
 
 from tippetop.mechanics.view import Angles
-from tippetop.theory.drain import WhirlRates, whirl_rates
+from tippetop.theory.dissipation import AmplitudeRates, amplitude_rates
 from tippetop.theory.drift import Drift, drift, smooth_precession
 from tippetop.theory.dual import Array
 from tippetop.theory.nutation import (
+    Amplitudes,
     Numbers,
     Orbit,
-    Whirls,
+    amplitudes,
+    orbit_of_amplitudes,
     orbit_of_angles,
-    orbit_of_whirls,
     turning_tilts,
     upside_down,
-    whirls,
 )
 
 
@@ -37,8 +37,8 @@ class Nutation(NamedTuple):
     turned
         Whether it is theta = pi.
     log_scale
-        Logarithm of what the whirls are of those of `orbit`: for nutations so narrow that their squares are
-        no numbers. They are linear.
+        Logarithm of what the amplitudes are of those of `orbit`: for nutations so narrow that their squares
+        are no numbers. They are linear.
     """
 
     orbit: Orbit
@@ -47,10 +47,10 @@ class Nutation(NamedTuple):
 
     @property
     def point(self) -> Array:
-        """Logarithms of its whirls, and sqrt(|p3|): what is followed."""
-        pair = whirls(self.orbit)
-        least = _NO_WHIRL * (pair.fast + pair.slow)
-        logs = [math.log(max(whirl, least)) + self.log_scale for whirl in pair]
+        """Logarithms of its amplitudes, and sqrt(|p3|): what is followed."""
+        pair = amplitudes(self.orbit)
+        least = _NO_AMPLITUDE * (pair.fast + pair.slow)
+        logs = [math.log(max(amplitude, least)) + self.log_scale for amplitude in pair]
         return np.array([*logs, math.sqrt(abs(self.orbit.far))])
 
     def turn(self, numbers: Numbers) -> "Nutation":
@@ -125,7 +125,7 @@ class Stage(NamedTuple):
 def follow_nutation(
     begin: Nutation, jellett: float, numbers: Numbers, goals: Goals, samples: int, tolerance: float
 ) -> Stage:
-    """Follow the whirls until the nutation has died away, is steady, or is nearer to the other pole.
+    """Follow the amplitudes until the nutation has died away, is steady, or is nearer to the other pole.
 
     Parameters
     ----------
@@ -147,7 +147,7 @@ def follow_nutation(
     point = begin.point
 
     def rates(_: float, y: Array) -> Array:
-        return np.array(_rates(_whirls_of(y), float(y[2]), jellett, seen_numbers))
+        return np.array(_rates(_amplitudes_of(y), float(y[2]), jellett, seen_numbers))
 
     first = _LONGEST / max(1.0, _LONGEST * np.abs(rates(0.0, point)).max())
     solver = DOP853(rates, 0.0, point, _LONGEST, first_step=first, rtol=tolerance, atol=tolerance)
@@ -155,12 +155,12 @@ def follow_nutation(
     tail: Drift | None = None
     final, done = math.nan, True
     for _ in range(_MOST_STEPS):
-        pair = _whirls_of(solver.y)
-        seen = orbit_of_whirls(pair, float(solver.y[2]), jellett, seen_numbers)
+        pair = _amplitudes_of(solver.y)
+        seen = orbit_of_amplitudes(pair, float(solver.y[2]), jellett, seen_numbers)
         final = _reached(_seen_tilts(pair, turned), goals)
         if math.isfinite(final):
             break
-        if _dies(seen, pair, WhirlRates(*solver.f)):
+        if _dies(seen, pair, AmplitudeRates(*solver.f)):
             path = upside_down(seen, seen_numbers) if turned else seen
             tail = _drift_from(path, jellett, numbers, goals)
             if tail is not None:
@@ -179,7 +179,7 @@ def follow_nutation(
         solution = OdeSolution(times, pieces)
         times = list(np.linspace(times[0], times[-1], samples))
         points = list(solution(times).T)
-    low, high = _seen_tilts(Whirls(*np.exp(np.array(points)[:, :2]).T), turned)
+    low, high = _seen_tilts(Amplitudes(*np.exp(np.array(points)[:, :2]).T), turned)
     return Stage(np.array(times), low, high, Nutation(seen, turned), tail, final, done)
 
 
@@ -187,7 +187,7 @@ _DEAD = 1e-3
 """Half-width of the nutation over sin^2(theta) below which the tilt alone is followed."""
 
 _NEAR_POLE = 1e-10
-"""sin^2(theta) below which the whirls are followed all the same: a tilt so near to pi is no number."""
+"""sin^2(theta) below which the amplitudes are followed all the same: a tilt so near to pi is no number."""
 
 _FAR_FROM_POLE = 1.3
 """Middle of the nutation, 1 - cos(theta), beyond which the other pole is clearly nearer."""
@@ -199,34 +199,34 @@ _APART = 1e-6
 """Third root, 1 + cos(theta), that is told from the turning point at theta = pi."""
 
 _NARROWEST = -55.0
-"""Logarithm of whirls that are as good as any smaller ones."""
+"""Logarithm of amplitudes that are as good as any smaller ones."""
 
 _LONGEST = 1e5
 _MOST_STEPS = 400
-_LEAST_WHIRL = 1e-7
-_NO_WHIRL = 1e-16
+_LEAST_AMPLITUDE = 1e-7
+_NO_AMPLITUDE = 1e-16
 _ROUNDING = 1e-12
 
 
-def _rates(pair: Whirls, root: float, jellett: float, numbers: Numbers) -> WhirlRates:
-    """Rates of the whirls; not a number outside what a nutation can be, so that the step is made smaller."""
+def _rates(pair: Amplitudes, root: float, jellett: float, numbers: Numbers) -> AmplitudeRates:
+    """Rates of the amplitudes; not a number where there is no nutation, so that the step is made smaller."""
     if math.sqrt(pair.fast) + math.sqrt(pair.slow) <= 1.0 + _ROUNDING:
         with suppress(ValueError, ZeroDivisionError):
-            return whirl_rates(pair, root, jellett, numbers)
-    return WhirlRates(math.nan, math.nan, math.nan)
+            return amplitude_rates(pair, root, jellett, numbers)
+    return AmplitudeRates(math.nan, math.nan, math.nan)
 
 
-def _whirls_of(y: Array) -> Whirls:
-    """The whirls with these logarithms, neither taken so small that its rate would be lost in rounding.
+def _amplitudes_of(y: Array) -> Amplitudes:
+    """The amplitudes with these logarithms, neither taken so small that its rate would be lost in rounding.
 
-    The logarithmic rate of a small whirl does not depend on its size, nor do those of two small ones.
+    The logarithmic rate of a small amplitude does not depend on its size, nor do those of two small ones.
     """
     lift = max(0.0, _NARROWEST - max(y[0], y[1]))
     fast, slow = math.exp(min(y[0] + lift, 0.0)), math.exp(min(y[1] + lift, 0.0))
-    return Whirls(max(fast, _LEAST_WHIRL * slow), max(slow, _LEAST_WHIRL * fast))
+    return Amplitudes(max(fast, _LEAST_AMPLITUDE * slow), max(slow, _LEAST_AMPLITUDE * fast))
 
 
-def _seen_tilts(pair: Whirls, turned: bool) -> tuple[Array, Array]:
+def _seen_tilts(pair: Amplitudes, turned: bool) -> tuple[Array, Array]:
     """Turning tilts of a nutation seen from theta = 0, or from pi."""
     low, high = turning_tilts(pair)
     return (math.pi - high, math.pi - low) if turned else (low, high)
@@ -241,7 +241,7 @@ def _reached(tilts: tuple[Array, Array], goals: Goals) -> float:
     return math.nan
 
 
-def _dies(path: Orbit, pair: Whirls, rates: WhirlRates) -> bool:
+def _dies(path: Orbit, pair: Amplitudes, rates: AmplitudeRates) -> bool:
     """Whether the nutation is small, and getting smaller, relative to the distance from the vertical."""
     sine_squared = path.middle * (2.0 - path.middle)
     if path.half > _DEAD * sine_squared or sine_squared < _NEAR_POLE:

@@ -1,12 +1,12 @@
-"""What a little friction takes from a nutation, on average: torque, power, and the decay of its whirls."""
+"""What a little friction takes from a nutation, on average: torque, power, decay of its amplitudes."""
 
 import math
 from typing import NamedTuple
 
-from tippetop.theory.nutation import Numbers, Orbit, Whirls, excess_slope, orbit_of_whirls
+from tippetop.theory.nutation import Amplitudes, Numbers, Orbit, excess_slope, orbit_of_amplitudes
 
 
-class Drain(NamedTuple):
+class Dissipation(NamedTuple):
     """What friction takes from a nutation, on average, per unit of friction coefficient, in natural units.
 
     Attributes
@@ -21,15 +21,16 @@ class Drain(NamedTuple):
     energy: float
 
 
-class WhirlRates(NamedTuple):
+class AmplitudeRates(NamedTuple):
     """How friction changes a nutation, on average, per unit of friction coefficient, in natural units.
 
-    Jellett's integral and the whirls leave two choices of the third root, which can meet: it is followed too.
+    Jellett's integral and the amplitudes leave two choices of the third root, which can meet: it is followed
+    too.
 
     Attributes
     ----------
     fast, slow
-        Logarithmic rates of the whirls.
+        Logarithmic rates of the amplitudes.
     root
         Rate of sqrt(|p3|), which goes on to negative values where p3 touches zero.
     """
@@ -59,7 +60,7 @@ _PHASES = tuple(
 )
 
 
-def drain(path: Orbit, numbers: Numbers) -> Drain:
+def mean_dissipation(path: Orbit, numbers: Numbers) -> Dissipation:
     """What friction takes from a nutation on average: torque about the axis and power, per unit of friction.
 
     The centre of mass rests horizontally, as it does on average: its own motion decays as exp(-mu g t) and
@@ -89,18 +90,18 @@ def drain(path: Orbit, numbers: Numbers) -> Drain:
         weights += weight
         torque -= pressed * across
         power -= pressed * (height * height * rate_squared + across * across) / sine_squared
-    return Drain(torque / weights, power / weights)
+    return Dissipation(torque / weights, power / weights)
 
 
-def whirl_rates(pair: Whirls, root: float, jellett: float, numbers: Numbers) -> WhirlRates:
-    """Rates of a nutation's whirls per unit of friction coefficient, in natural units.
+def amplitude_rates(pair: Amplitudes, root: float, jellett: float, numbers: Numbers) -> AmplitudeRates:
+    """Rates of a nutation's amplitudes per unit of friction coefficient, in natural units.
 
     The rates of L3 and of the energy, at constant Jellett's integral, carried over by differentiating the sum
     of the cubic's roots, the sum of their products in pairs, and L_z - L3.
     """
     I1, I3, alpha = numbers
-    path = orbit_of_whirls(pair, root, jellett, numbers)
-    taken = drain(path, numbers)
+    path = orbit_of_amplitudes(pair, root, jellett, numbers)
+    taken = mean_dissipation(path, numbers)
     far, excess, axial = path.far, path.excess, path.axial
     root = math.copysign(math.sqrt(abs(far)), root)
     difference, both = pair.fast - pair.slow, 2.0 * path.middle
@@ -118,7 +119,7 @@ def whirl_rates(pair: Whirls, root: float, jellett: float, numbers: Numbers) -> 
     difference_rate = (first * difference - far_slope * (both - far) * second) / span
     root_rate = (8.0 * difference * second - root * first) / span
     sum_rate = (total_rate - far_slope * root_rate) / 4.0
-    return WhirlRates(
+    return AmplitudeRates(
         0.5 * (sum_rate + difference_rate) / pair.fast,
         0.5 * (sum_rate - difference_rate) / pair.slow,
         root_rate,
