@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
 from tippetop.errors import InvalidInput
 from tippetop.mechanics.hull import Hull
@@ -17,6 +17,7 @@ from tippetop.validation import (
     NotNegative,
     Number,
     Part,
+    Points,
     Positive,
     Quantity,
     Variant,
@@ -174,6 +175,15 @@ class Spheroid(Shape):
         return SpheroidSurface(self.across, self.along, self.center)
 
 
+def _a_profile(points: tuple[tuple[float, ...], ...] | None) -> tuple[tuple[float, ...], ...] | None:
+    """Refuse points of which no body could be turned."""
+    if points is not None:
+        from tippetop.lathe.profile import profile_of  # noqa: PLC0415 - slow to import
+
+        profile_of(points)
+    return points
+
+
 class Body(Part):
     """A rigid body of revolution.
 
@@ -186,6 +196,10 @@ class Body(Part):
     I1, I3
         Principal moments of inertia about the centre of mass, kg m^2: transverse to and along the axis of
         symmetry. No body has I3 > 2 I1.
+    profile
+        What the body looks like, as pictures of it show it where it fits its surfaces: points (distance from
+        the axis, height above the centre of mass) or, at the end of an arc, (distance, height, radius), m, as
+        those of `tippetop.lathe.workpiece.Workpiece`. Without it, pictures show the hull of its surfaces.
 
     Examples
     --------
@@ -201,6 +215,9 @@ class Body(Part):
     shape: Annotated[Shape | tuple[Shape, ...], ONE_OR_SEVERAL]
     I1: Annotated[Positive, Quantity("kg m2", "moment of inertia transverse to the axis of symmetry")]
     I3: Annotated[Positive, Quantity("kg m2", "moment of inertia along the axis of symmetry")]
+    profile: Annotated[
+        Points | None, AfterValidator(_a_profile), Quantity("m", "profile that pictures show")
+    ] = None
 
     @model_validator(mode="after")
     def _can_exist(self) -> Self:
@@ -236,7 +253,7 @@ class Body(Part):
     ) -> Self:
         """The body that a lathe makes: mass, moments of inertia and the surfaces it touches the table with.
 
-        They are exact for the profile, whose edges are straight or arcs of circles.
+        They are exact for the profile, whose edges are straight or arcs of circles, and which pictures show.
 
         Parameters
         ----------
@@ -273,9 +290,10 @@ class Body(Part):
                 piece = read_workpiece(profile, **fields)
             case _:
                 piece = Workpiece(**{"profile": profile, **fields})
-        mass, _, I1, I3 = piece.mass_properties
+        mass, center, I1, I3 = piece.mass_properties
         shapes = touching(piece, whole)
-        return cls(mass=mass, shape=shapes[0] if len(shapes) == 1 else shapes, I1=I1, I3=I3)
+        shown = piece.outline.points_above(center)
+        return cls(mass=mass, shape=shapes[0] if len(shapes) == 1 else shapes, I1=I1, I3=I3, profile=shown)
 
 
 def touching(piece: "Workpiece", whole: bool = False) -> list[Shape]:

@@ -53,6 +53,16 @@ Whole: TypeAlias = Annotated[int, BeforeValidator(_whole)]
 """A whole number, and nothing that only looks like one."""
 
 
+def _listed(value: Any) -> Any:
+    if not isinstance(value, list | tuple) or not all(isinstance(point, list | tuple) for point in value):
+        raise PydanticCustomError("points", "a list of points [distance from the axis, height, radius]")
+    return value
+
+
+Points: TypeAlias = Annotated[tuple[tuple[Number, ...], ...], BeforeValidator(_listed)]
+"""Points of a profile: distance from the axis, height along it and, at the end of an arc, its radius."""
+
+
 class Quantity(NamedTuple):
     """What a field of numbers measures.
 

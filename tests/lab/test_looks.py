@@ -1,12 +1,48 @@
 """The page draws toys as Python describes them."""
 
 import json
+import subprocess
 from pathlib import Path
 
+import numpy as np
+import pytest
+
+import tippetop as tt
+from node import NODE
 from tippetop.figures import looks
 
-GENERATED = Path(__file__).parents[2] / "web" / "src" / "generated" / "looks.json"
+WEB = Path(__file__).parents[2] / "web" / "src"
+GENERATED = WEB / "generated" / "looks.json"
+
+LOOSE = tt.presets.WOODEN.model_copy(update={"shape": tt.presets.REPORT_STEM.shape})
+BACKWARDS = tt.presets.REPORT_STEM.model_copy(
+    update={"profile": [(0.0, 0.029), (0.012, 0.017, -0.012), (0.02, 0.006, -0.06), (0.0, -0.014, -0.02)]}
+)
+BODIES = {**tt.presets.BODIES, "another shape": LOOSE, "from above": BACKWARDS}
 
 
 def test_the_pages_looks_are_those_of_figures() -> None:
     assert json.loads(GENERATED.read_text(encoding="utf-8")) == json.loads(looks.as_json())
+
+
+def test_the_page_draws_each_body_as_films_do(tmp_path: Path) -> None:
+    code = (WEB / "run" / "looks.js").read_text(encoding="utf-8")
+    code = code.replace('import looks from "../generated/looks.json";', f"const looks = {looks.as_json()};")
+    (tmp_path / "looks.mjs").write_text(code.replace("./surfaces.js", "./surfaces.mjs"), encoding="utf-8")
+    surfaces = (WEB / "run" / "surfaces.js").read_text(encoding="utf-8")
+    (tmp_path / "surfaces.mjs").write_text(surfaces, encoding="utf-8")
+    bodies = [body.model_dump(mode="json", exclude_none=True) for body in BODIES.values()]
+    (tmp_path / "told.mjs").write_text(
+        'import { sizeOf, toyParts } from "./looks.mjs";\n'
+        f"const bodies = {json.dumps(bodies)};\n"
+        "console.log(JSON.stringify(bodies.map((body) => [sizeOf(body), toyParts(body)])));\n",
+        encoding="utf-8",
+    )
+    told = json.loads(subprocess.check_output([NODE, "told.mjs"], cwd=tmp_path, text=True, timeout=60))
+    for (name, body), (size, parts) in zip(BODIES.items(), told, strict=True):
+        assert size == pytest.approx(looks.size(body), rel=1e-8), name
+        expected = looks.toy_parts(body)
+        assert [part["name"] for part in parts] == [part.name for part in expected], name
+        for part, other in zip(parts, expected, strict=True):
+            assert part["colours"] == list(other.colours)
+            assert np.array(part["profile"]) == pytest.approx(other.profile, abs=1e-6), name

@@ -60,6 +60,7 @@ def test_profiles_may_be_in_files_beside(tmp_path):
         ("a.csv", "0,0\n1,x\n0,1\n", "row 2 = '1,x in "),
         ("a.csv", "r,z\n0,0\n1,,2\n0,1\n", "row 3 = '1,,2 in "),
         ("a.csv", "0,O\n1,2\n0,1\n", "row 1 = '0,O in "),
+        ("a.csv", "O,-2O\n1,2\n0,1\n", "row 1 = 'O,-2O in "),
         ("a.csv", "", "0 points"),
         ("a.svg", "<svg", "accepted: XML"),
         ("a.svg", "<svg/>", "0 paths"),

@@ -35,6 +35,7 @@ LEFT = {
     "rules_of",
     "touching",
     "_shape",
+    "_a_profile",
     "Body.turned",
     "Contact.rules",
     *(f"Problem.{name}" for name in ("replace", "to_toml", "to_json", "from_toml", "from_json", "read")),

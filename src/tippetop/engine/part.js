@@ -77,6 +77,13 @@ function taken(name, value, field, wrong) {
     if (!field.choices.includes(value)) refuse(name, value, choice(field.choices));
     return value;
   }
+  if (field.points) {
+    if (value === null && field.default === null) return null;
+    const listed = Array.isArray(value) && value.every(Array.isArray);
+    if (!listed) refuse(name, value, "a list of points [distance from the axis, height, radius]");
+    else value.forEach((point, place) => point.forEach((one, k) => number(`${name}.${place}.${k}`, one, field, refuse)));
+    return value;
+  }
   if (field.count) {
     if (value === null && field.default === null) return null;
     if (!Array.isArray(value) || value.length !== field.count) refuse(name, value, `${field.count} numbers`);

@@ -90,6 +90,8 @@ def _field(part: type[Part], name: str, field: dict[str, Any]) -> dict[str, Any]
         found["several"] = len(several) > 1
     elif "$ref" in first or first.get("type") == "object":
         found["parts"] = [first["$ref"].rpartition("/")[2] if "$ref" in first else first["title"]]
+    elif first.get("items", {}).get("type") == "array":
+        found["points"] = True
     elif first.get("type") == "array":
         found["count"] = first["maxItems"]
     else:

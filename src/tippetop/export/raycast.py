@@ -98,8 +98,8 @@ def picture(
     middle = position + frame @ toy.middle
     shadow = middle - _LIGHT * middle[2] / _LIGHT[2]
     for draw, about, reach, fine in (
-        (_cast_shadow, shadow, (1.7, 2.1, 0.02), 1),
-        (_draw_toy, middle, (1.0, 1.0, 1.0), 2),
+        (_cast_shadow, shadow, (1.7 * toy.reach, 2.1 * toy.reach, 0.02), 1),
+        (_draw_toy, middle, 3 * (toy.reach,), 2),
     ):
         left, right, top, bottom = area = view.area(about, np.array(reach))
         if left < right and top < bottom:
@@ -149,12 +149,12 @@ def _draw_path(colours: Array, view: View, path: Array) -> None:
 def _draw_toy(colours: Array, toy: Toy, eye: Array, rays: Array, position: Array, frame: Array) -> None:
     """Draw the toy into an area of the picture, given several rays a pixel."""
     start, ahead = ((eye - position) @ frame).astype(np.float32), rays @ frame
-    distance, normal = toy.meet(np.broadcast_to(start, rays.shape), ahead)
-    hit = np.nonzero(distance < FAR)
-    point = start + distance[hit][..., None] * ahead[hit]
+    hits = toy.meet(np.broadcast_to(start, rays.shape), ahead)
+    hit = np.nonzero(hits.distances < FAR)
+    point = start + hits.distances[hit][..., None] * ahead[hit]
     paint = np.zeros((*rays.shape[:-1], 4), np.float32)
     light = (_LIGHT @ frame).astype(np.float32)
-    lit = toy.lit(point, normal[hit], light, -ahead[hit], frame[2])
+    lit = toy.lit(point, hits.some(hit), light, -ahead[hit], frame[2])
     paint[hit] = np.concatenate([lit, np.ones((len(lit), 1))], axis=1)
     rows, columns, _ = colours.shape
     paint = paint.reshape(rows, len(rays) // rows, columns, len(rays) // rows, 4).mean(axis=(1, 3))
@@ -167,5 +167,5 @@ def _cast_shadow(colours: Array, toy: Toy, eye: Array, rays: Array, position: Ar
     ground = np.where(rays[..., 2] < -1e-3, -eye[2] / np.minimum(rays[..., 2], -1e-3), 1e3)
     foot = (eye + ground[..., None] * rays - position).astype(np.float32) @ frame
     towards = (_LIGHT @ frame).astype(np.float32)
-    dark = toy.meet(foot, np.broadcast_to(towards, foot.shape))[0] < FAR
+    dark = toy.meet(foot, np.broadcast_to(towards, foot.shape)).distances < FAR
     colours[dark] *= 0.58

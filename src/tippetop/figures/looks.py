@@ -1,8 +1,9 @@
 """What the toy and its table look like: read by figures, films, models and, as data, by the player.
 
-Lengths are in sizes of the toy: radii of a tippe top's sphere, or the longer semi-axis of an egg. The model's
-sphere is whole; the toy is that sphere cut by a flat face, with a stem that reaches just as far as the sphere
-would. What is cut away is drawn as glass: so one sees what touches the table when the toy lies on its face.
+Lengths are in sizes of the toy: radii of a tippe top's sphere, or half the height or the width of any other
+body, which is drawn by its outline. Of a tippe top that is known as a sphere only, this sphere is whole; the
+toy is that sphere cut by a flat face, with a stem that reaches just as far as the sphere would. What is cut
+away is drawn as glass: so one sees what touches the table when the toy lies on its face.
 """
 
 import json
@@ -13,11 +14,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tippetop.bodies import Body, EccentricSphere, Spheroid
+import tippetop.figures.meridian as meridians
+from tippetop.bodies import Body, EccentricSphere
+from tippetop.figures.meridian import extent, meridian, own_profile
 from tippetop.figures.style import ACCENT, CONVERGED, REPORT
-from tippetop.lowest import lowest_number
-from tippetop.mechanics.hull import each_surface
-from tippetop.mechanics.surface import Surface
 
 Array = NDArray[np.float64]
 
@@ -27,12 +27,6 @@ STEM, KNOB = 0.12, 0.165
 """Radii of the stem where it leaves the face, and of the ball at its end."""
 STEM_TOP = 1.0 - KNOB
 """Distance from the sphere's centre to that ball's."""
-
-OUTLINE = 97
-"""Tilts at which the outline of a body that is no tippe top is found."""
-
-POLE = 1e-4
-"""The least of them, where the body does not lie flat yet."""
 
 SCENES: Mapping[str, Mapping[str, Any]] = {
     "light": {
@@ -72,61 +66,35 @@ class ToyPart(NamedTuple):
     opacity: float = 1.0
 
 
+BAND = 4
+"""Half the width of the band around an outline without corners, in points of it."""
+
+
 def size(body: Body) -> float:
     """The length by which the toy is measured when it is drawn, m."""
-    if isinstance(body.shape, EccentricSphere):
-        return body.shape.radius
-    points = np.concatenate(outline(body.surface))
-    return float(max(points[:, 0].max(), np.ptp(points[:, 1]) / 2))
-
-
-def outline(surface: Surface) -> list[Array]:
-    """The outline of a body from below, in smooth arcs and the straight lines between them.
-
-    Points (distance from the axis, height along it from the centre of mass), m, shape (k, 2): where the body
-    touches the table at evenly spaced tilts, and, on its faces, between.
-    """
-    tilts = np.linspace(0.0, np.pi, OUTLINE)
-    tilts[[0, -1]] = POLE, np.pi - POLE
-    sine, c = np.sin(tilts), np.cos(tilts)
-    number, corner = lowest_number(surface, c), 10.0 * POLE * surface.size
-    surfaces, pieces = each_surface(surface), []
-    for some in np.split(np.arange(OUTLINE), np.flatnonzero(np.diff(number)) + 1):
-        here = surfaces[number[some[0]]]
-        slope = here.slope(c[some])
-        across = here.height(c[some]) - c[some] * slope
-        points = np.stack([sine[some] * across, -slope - c[some] * across], axis=1)
-        points[np.abs(points[:, 0]) < corner, 0] = 0.0
-        apart = np.hypot(*np.diff(points, axis=0).T) > corner
-        pieces.append(points[np.append(True, apart)])
-    first, last = pieces[0][0], pieces[-1][-1]
-    ends = [[(0.0, first[1])] if first[0] else [], [(0.0, last[1])] if last[0] else []]
-    corners = [np.array(end).reshape(-1, 2) for end in ends]
-    pieces = [piece for piece in (corners[0], *pieces, corners[1]) if len(piece)]
-    joined = [pieces[0]]
-    for piece in pieces[1:]:
-        joined += [np.stack([joined[-1][-1], piece[0]]), piece]
-    return [piece for piece in joined if len(piece) > 1]
+    ball = _plain_ball(body)
+    return ball.radius if ball else extent(meridian(body))
 
 
 def toy_parts(body: Body) -> tuple[ToyPart, ...]:
-    """The parts of the toy for this body: of a tippe top, or the belts of an egg or of any other."""
-    shape = body.shape
-    if isinstance(shape, EccentricSphere):
-        return _tippe_top(shape.eccentricity)
-    if isinstance(shape, Spheroid):
-        semi_axes, middle = np.array([shape.across, shape.along]) / size(body), shape.center / size(body)
-        latitudes = pairwise((-np.pi / 2, -0.12, 0.12, np.pi / 2))
-        arcs = [_arc(*ends) * semi_axes + (0.0, middle) for ends in latitudes]
-        belts = list(zip(arcs, (_BOWL, _BAND, _BOWL), strict=True))
-    else:
-        pieces = [piece / size(body) for piece in outline(body.surface)]
-        if len(pieces) == 1:
-            middle_one = len(pieces[0]) // 2
-            ends = (0, middle_one - 2, middle_one + 2, len(pieces[0]) - 1)
-            pieces = [pieces[0][low : high + 1] for low, high in pairwise(ends)]
-        belts = [(piece, _BAND if number % 2 else _BOWL) for number, piece in enumerate(pieces)]
-    return tuple(ToyPart(f"egg {number}", arc, colours) for number, (arc, colours) in enumerate(belts))
+    """The parts of the toy for this body: of a tippe top, or the belts of any other body's outline."""
+    ball = _plain_ball(body)
+    if ball:
+        return _tippe_top(ball.eccentricity)
+    pieces = meridian(body)
+    pieces = [piece / extent(pieces) for piece in pieces]
+    if len(pieces) == 1:
+        middle, last = len(pieces[0]) // 2, len(pieces[0]) - 1
+        pieces = [pieces[0][i : j + 1] for i, j in pairwise((0, middle - BAND, middle + BAND, last))]
+    return tuple(
+        ToyPart(f"belt {number}", piece, _BAND if number % 2 else _BOWL)
+        for number, piece in enumerate(pieces)
+    )
+
+
+def _plain_ball(body: Body) -> EccentricSphere | None:
+    """The sphere of a body of which nothing else is known."""
+    return body.shape if isinstance(body.shape, EccentricSphere) and own_profile(body) is None else None
 
 
 def _tippe_top(eccentricity: float) -> tuple[ToyPart, ...]:
@@ -147,9 +115,14 @@ def _tippe_top(eccentricity: float) -> tuple[ToyPart, ...]:
 
 
 def as_json() -> str:
-    """What the page draws toys from, its `looks.json`: scenes, a tippe top, the colours of belts."""
+    """What the page draws toys from, its `looks.json`: scenes, a tippe top, the colours of belts, rules."""
     parts = [part._replace(profile=part.profile.round(9).tolist())._asdict() for part in _tippe_top(0.0)]
-    return json.dumps({"scenes": SCENES, "tippe_top": parts, "bowl": _BOWL, "band": _BAND}) + "\n"
+    rules = {
+        "arc_step": meridians.ARC_STEP, "smooth": meridians.SMOOTH, "fits": meridians.FITS,
+        "tilts": meridians.TILTS, "outline": meridians.OUTLINE, "pole": meridians.POLE, "band": BAND,
+    }  # fmt: skip
+    told = {"scenes": SCENES, "tippe_top": parts, "bowl": _BOWL, "band": _BAND, "meridian": rules}
+    return json.dumps(told) + "\n"
 
 
 def _arc(low: float, high: float, points: int = 16) -> Array:

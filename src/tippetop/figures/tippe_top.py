@@ -103,11 +103,11 @@ def _picture(toy: Toy, frame: Array, camera: Camera, pixels: int = 300, oversamp
     across, upward = np.meshgrid(grid, grid)
     start = across[..., None] * camera.right + upward[..., None] * camera.up + 2 * camera.towards
     start, ahead, light = start @ frame + toy.middle, -camera.towards @ frame, _LIGHT @ frame
-    distance, normal = toy.meet(start, np.broadcast_to(ahead, start.shape))
-    hit = distance < FAR
+    hits = toy.meet(start, np.broadcast_to(ahead, start.shape))
+    hit = hits.distances < FAR
     rgba = np.zeros((n, n, 4))
-    point = start[hit] + distance[hit][:, None] * ahead
-    rgba[hit, :3] = np.clip(toy.lit(point, normal[hit], light, -ahead, frame[2]), 0, 1)
+    point = start[hit] + hits.distances[hit][:, None] * ahead
+    rgba[hit, :3] = np.clip(toy.lit(point, hits.some(hit), light, -ahead, frame[2]), 0, 1)
     rgba[hit, 3] = 1.0
     return _bled(rgba.reshape(pixels, oversample, pixels, oversample, 4).mean(axis=(1, 3)))
 

@@ -3,26 +3,34 @@
 Lengths are in sizes of the toy; points and directions are in the body's frame, about its centre of mass.
 """
 
+from collections.abc import Iterator
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.colors import to_rgb
 from numpy.typing import NDArray
 
-from tippetop.bodies import Body, EccentricSphere
-from tippetop.figures.looks import FACE, KNOB, STEM, STEM_TOP, outline, size, toy_parts
+from tippetop.bodies import Body
+from tippetop.figures.looks import size, toy_parts
 
 Array = NDArray[np.floating[Any]]
 
-PIECE = 4
-"""Steps along an outline that are drawn as one piece: an even number."""
+CLOSE = 3e-4
+"""How near to an outline what is drawn for a piece of it must be, in sizes of the toy."""
+
+LEVEL = 1e-9
+"""Height between two points below which they are on one level, in sizes of the toy."""
+
+LAP = 1e-5
+"""How far each piece reaches over its ends, in sizes of the toy: no ray passes between two."""
 
 FAR = 1e9
 """How far along a ray that misses it the toy is."""
 
 
 class _Quadric(NamedTuple):
-    """Where w (x^2 + y^2) = p + q z + s z^2, between two heights and within a distance from the axis."""
+    """Where w (x^2 + y^2) = p + q z + s z^2, between two heights and two distances from the axis."""
 
     w: float
     p: float
@@ -30,7 +38,13 @@ class _Quadric(NamedTuple):
     s: float
     low: float = -np.inf
     high: float = np.inf
+    narrowest: float = 0.0
     widest: float = np.inf
+
+    @property
+    def inwards(self) -> "_Quadric":
+        """The same surface seen from its other side."""
+        return self._replace(w=-self.w, p=-self.p, q=-self.q, s=-self.s)
 
     def meet(self, o: Array, d: Array) -> tuple[Array, ...]:
         """How far along rays its two places are; far where there is none."""
@@ -48,8 +62,10 @@ class _Quadric(NamedTuple):
 
     def _kept(self, o: Array, d: Array, distance: Array) -> Array:
         z = o[..., 2] + distance * d[..., 2]
-        away = (o[..., 0] + distance * d[..., 0]) ** 2 + (o[..., 1] + distance * d[..., 1]) ** 2
-        kept = (distance > 1e-6) & (z >= self.low) & (z <= self.high) & (away <= self.widest**2)
+        kept = (distance > 1e-6) & (z >= self.low) & (z <= self.high)
+        if self.w == 0.0:
+            away = (o[..., 0] + distance * d[..., 0]) ** 2 + (o[..., 1] + distance * d[..., 1]) ** 2
+            kept &= (away >= self.narrowest**2) & (away <= self.widest**2)
         return np.where(kept, distance, FAR)
 
     def normal(self, point: Array) -> Array:
@@ -57,6 +73,28 @@ class _Quadric(NamedTuple):
         outward = self.w * point
         outward[..., 2] = -self.q / 2 - self.s * point[..., 2]
         return outward
+
+
+class Hits(NamedTuple):
+    """Where rays meet the toy.
+
+    Attributes
+    ----------
+    distances
+        How far along each ray; far if it misses.
+    normals
+        Unit normals there.
+    parts
+        Numbers of the solid parts that are met.
+    """
+
+    distances: Array
+    normals: Array
+    parts: NDArray[np.intp]
+
+    def some(self, which: Any) -> "Hits":
+        """Some of them, as an array is indexed."""
+        return Hits(*(values[which] for values in self))
 
 
 class Toy:
@@ -67,104 +105,112 @@ class Toy:
     size
         The length by which it is measured, m.
     middle
-        The middle of its surface.
+        The point halfway along its axis.
+    reach
+        How far from that it reaches.
     """
 
     def __init__(self, body: Body) -> None:
-        shape = body.shape
         self.size = size(body)
-        self._parts = [part for part in toy_parts(body) if part.opacity == 1]
-        if isinstance(shape, EccentricSphere):
-            self.middle = np.array([0.0, 0.0, shape.eccentricity])
-            self._surfaces = _tippe_top()
-        else:
-            arcs = [arc / self.size for arc in outline(body.surface)]
-            heights = np.concatenate(arcs)[:, 1]
-            self.middle = np.array([0.0, 0.0, (heights.min() + heights.max()) / 2])
-            self._surfaces = tuple(
-                quadric for arc in arcs for quadric in _turned(arc - (0.0, self.middle[2]))
-            )
+        parts = [part for part in toy_parts(body) if part.opacity == 1]
+        points = np.concatenate([part.profile for part in parts])
+        self.middle = np.array([0.0, 0.0, (points[:, 1].min() + points[:, 1].max()) / 2])
+        self.reach = float(np.hypot(*(points - (0.0, self.middle[2])).T).max())
+        self._sectors = [np.array([to_rgb(colour) for colour in part.colours]) for part in parts]
+        self._surfaces = [
+            (number, quadric)
+            for number, part in enumerate(parts)
+            for quadric in _turned(part.profile - (0.0, self.middle[2]))
+        ]
 
-    def meet(self, start: Array, direction: Array) -> tuple[Array, Array]:
-        """How far along each ray the toy is, and its normal there; far if missed."""
+    def meet(self, start: Array, direction: Array) -> Hits:
+        """Where rays meet the toy."""
         o = start - self.middle.astype(start.dtype)
-        distances, normals = np.full(o.shape[:-1], FAR, o.dtype), np.zeros_like(o)
-        near = np.nonzero(_passes(o, direction))
+        shape = o.shape[:-1]
+        hits = Hits(np.full(shape, FAR, o.dtype), np.zeros_like(o), np.zeros(shape, np.intp))
+        near = np.nonzero(_passes(o, direction, self.reach))
         if len(near[0]):
-            distances[near], normals[near] = self._meet(o[near], direction[near])
-        return distances, normals
+            for found, those in zip(hits, self._meet(o[near], direction[near]), strict=True):
+                found[near] = those
+        return hits
 
-    def _meet(self, o: Array, d: Array) -> tuple[Array, Array]:
+    def _meet(self, o: Array, d: Array) -> Hits:
         """The same for rays that pass through the sphere in which all of the toy is."""
         nearest, normals = np.full(o.shape[:-1], FAR, o.dtype), np.zeros_like(o)
-        for surface in self._surfaces:
+        parts = np.zeros(o.shape[:-1], np.intp)
+        for part, surface in self._surfaces:
             for distance in surface.meet(o, d):
                 nearer = np.nonzero(distance < nearest)
                 nearest[nearer] = distance[nearer]
                 normals[nearer] = surface.normal(o[nearer] + distance[nearer][..., None] * d[nearer])
-        return nearest, normals / np.maximum(np.linalg.norm(normals, axis=-1, keepdims=True), 1e-12)
+                parts[nearer] = part
+        length = np.maximum(np.linalg.norm(normals, axis=-1, keepdims=True), 1e-12)
+        return Hits(nearest, normals / length, parts)
 
-    def paint(self, point: Array) -> Array:
-        """The colours of surface points."""
-        along, away = point[..., 2], np.hypot(point[..., 0], point[..., 1])
+    def paint(self, point: Array, parts: NDArray[np.intp]) -> Array:
+        """The colours of surface points of its parts."""
         turn = np.arctan2(point[..., 1], point[..., 0]) / (2 * np.pi) % 1.0
         colours = np.zeros_like(point)
-        for part in self._parts:
-            (narrow, low), (wide, high) = part.profile.min(axis=0), part.profile.max(axis=0)
-            at = (along > low - 1e-3) & (along < high + 1e-3) & (away > narrow - 0.01) & (away < wide + 0.01)
-            sectors = np.array([to_rgb(colour) for colour in part.colours])
+        for part, sectors in enumerate(self._sectors):
+            at = parts == part
             colours[at] = sectors[(turn[at] * len(sectors)).astype(int) % len(sectors)]
         return colours
 
-    def lit(self, point: Array, normal: Array, light: Array, eye: Array, upward: Array) -> Array:
-        """The colours of surface points under one light and a bright sky, given unit vectors to all three."""
+    def lit(self, point: Array, hits: Hits, light: Array, eye: Array, upward: Array) -> Array:
+        """The colours of surface points that were hit, lit by one light and a bright sky.
+
+        Given are unit vectors to the light, to the eye and upwards.
+        """
+        normal = hits.normals
         sun = np.clip(normal @ light, 0, None)
         sky = 0.5 + 0.5 * (normal @ upward)
         half = light + eye
         half /= np.linalg.norm(half, axis=-1, keepdims=True)
         gloss = 0.4 * np.clip(np.einsum("...i,...i", normal, half), 0, 1) ** 40
-        return np.asarray(self.paint(point) * (0.42 + 0.28 * sky + 0.42 * sun)[..., None] + gloss[..., None])
+        return np.asarray(
+            self.paint(point, hits.parts) * (0.42 + 0.28 * sky + 0.42 * sun)[..., None] + gloss[..., None]
+        )
 
 
-def _tippe_top() -> tuple[_Quadric, ...]:
-    """The cut sphere, the face, the stem and the ball at its end, about the sphere's centre."""
-    slope = (KNOB - STEM) / (STEM_TOP - FACE)
-    start = STEM - slope * FACE
-    return (
-        _Quadric(1.0, 1.0, 0.0, -1.0, high=FACE),
-        _Quadric(0.0, FACE, -1.0, 0.0, widest=float(np.sqrt(1 - FACE**2))),
-        _Quadric(1.0, start**2, 2 * slope * start, slope**2, FACE, STEM_TOP),
-        _Quadric(1.0, KNOB**2 - STEM_TOP**2, 2 * STEM_TOP, -1.0, low=STEM_TOP),
-    )
+def _turned(curve: NDArray[np.float64]) -> Iterator[_Quadric]:
+    """The surface that a smooth line turns to, with the body on its left: as few quadrics as it takes."""
+    rises = np.sign(np.where(np.abs(np.diff(curve[:, 1])) < LEVEL, 0.0, np.diff(curve[:, 1])))
+    turns = np.flatnonzero(np.diff(rises)) + 1
+    if len(turns):
+        corners = [0, *turns.tolist(), len(curve) - 1]
+        for i, j in pairwise(corners):
+            yield from _turned(curve[i : j + 1])
+    elif rises[0] == 0.0:
+        (start, height), (end, _) = curve[[0, -1]].tolist()
+        narrow, wide = sorted((start, end))
+        face = _Quadric(0.0, height, -1.0, 0.0, narrowest=max(narrow - LAP, 0.0), widest=wide + LAP)
+        yield face if end < start else face.inwards
+    else:
+        yield from _sloping(curve, bool(rises[0] < 0.0))
 
 
-def _turned(outline: NDArray[np.float64]) -> tuple[_Quadric, ...]:
-    """The surface of an arc or a line of an outline turned about the axis, a quadric through three points."""
-    found = []
-    for first in range(0, len(outline) - 1, PIECE):
-        piece = outline[first : first + PIECE + 1]
-        if len(piece) == 2:
-            found.append(_line(*piece))
-            continue
-        away, along = piece[[0, len(piece) // 2, -1]].T
-        s, q, p = np.polyfit(along, away**2, 2)
-        found.append(_Quadric(1.0, float(p), float(q), float(s), float(along[0]), float(along[-1])))
-    return tuple(found)
+def _sloping(curve: NDArray[np.float64], falls: bool) -> Iterator[_Quadric]:
+    """The surface of a line that rises all the way, or falls, and then is seen from inside."""
+    away, along = curve.T
+    some = [0, -1] if len(curve) == 2 else [0, len(curve) // 2, -1]
+    if len(curve) == 2:
+        slope = (away[1] - away[0]) / (along[1] - along[0])
+        tip = away[0] - slope * along[0]
+        s, q, p = slope * slope, 2 * slope * tip, tip * tip
+    else:
+        s, q, p = np.polyfit(along[some], away[some] ** 2, 2)
+    off = np.sqrt(np.maximum(p + (q + s * along) * along, 0.0)) - away
+    if len(curve) > 3 and np.abs(off).max() > CLOSE:
+        for half in (curve[: some[1] + 1], curve[some[1] :]):
+            yield from _sloping(half, falls)
+    else:
+        low, high = sorted((float(along[0]), float(along[-1])))
+        found = _Quadric(1.0, float(p), float(q), float(s), low - LAP, high + LAP)
+        yield found.inwards if falls else found
 
 
-def _line(start: NDArray[np.float64], end: NDArray[np.float64]) -> _Quadric:
-    """The cone, or the face, that a line from below turns to."""
-    (away, low), (there, high) = start.tolist(), end.tolist()
-    if high - low < 1e-9:
-        up = 1.0 if there < away else -1.0
-        return _Quadric(0.0, up * low, -up, 0.0, widest=max(away, there))
-    slope = (there - away) / (high - low)
-    tip = away - slope * low
-    return _Quadric(1.0, tip * tip, 2 * slope * tip, slope * slope, low, high)
-
-
-def _passes(o: Array, d: Array) -> NDArray[np.bool_]:
-    """Whether rays pass through the unit sphere."""
+def _passes(o: Array, d: Array, reach: float) -> NDArray[np.bool_]:
+    """Whether rays pass through the sphere of this radius."""
     b = np.einsum("...i,...i", o, d)
     a, c = np.einsum("...i,...i", d, d), np.einsum("...i,...i", o, o)
-    return np.asarray(b * b > a * (c - 1.0))
+    return np.asarray(b * b > a * (c - reach * reach))

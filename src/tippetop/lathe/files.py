@@ -13,6 +13,10 @@ from tippetop.validation import parse_toml
 ACCEPTED = "a workpiece in TOML, or a profile in CSV or SVG"
 
 
+STARTS = "0123456789+-."
+"""What numbers begin with, also those with a slip further on: no cell of a heading begins so."""
+
+
 def read_workpiece(path: Path | str, **fields: Any) -> Workpiece:
     """Read a workpiece from a .toml file, or its profile from a .csv or .svg file.
 
@@ -64,7 +68,7 @@ def read_points(path: Path) -> list[list[float]]:
 
 def _from_csv(text: str, path: Path) -> list[list[float]]:
     rows = [row for row in csv.reader(text.splitlines()) if any(cell.strip() for cell in row)]
-    if rows and not any(_is_number(cell) for cell in rows[0]):
+    if rows and not any(cell.strip()[:1] in STARTS for cell in rows[0] if cell.strip()):
         rows = [[], *rows[1:]]
     return [_numbers(number, row, path) for number, row in enumerate(rows, 1) if row]
 

@@ -69,6 +69,12 @@ class Profile:
         found = [edge.points(share) for edge, share in zip(self.edges, shares, strict=True)]
         return np.concatenate([*found, [self.edges[-1].end]])
 
+    def points_above(self, height: float) -> list[tuple[float, ...]]:
+        """The points that state it, as `profile_of` takes them, with heights from another origin, m."""
+        start = self.edges[0].start
+        ends = [(edge.end, (edge.radius,) if edge.turn else ()) for edge in self.edges]
+        return [(point.real, point.imag - height, *radius) for point, radius in [(start, ()), *ends]]
+
     def surrounds(self, point: complex) -> bool:
         """Whether a point that is not on it is inside."""
         return abs(sum(edge.angle_seen(point) for edge in self.loop)) > math.pi

@@ -1,32 +1,21 @@
 """Bodies turned on a lathe, as users state them: a profile, a density, and what is let into them."""
 
 from functools import cached_property
-from typing import Annotated, Any, Literal, Self, TypeAlias
+from typing import Annotated, Literal, Self
 
-from pydantic import BeforeValidator, Field, model_validator
-from pydantic_core import PydanticCustomError
+from pydantic import Field, model_validator
 
 from tippetop.errors import InvalidInput
 from tippetop.lathe.hull import ConvexHull, hull_of
 from tippetop.lathe.mass import Filling, MassProperties, mass_properties
 from tippetop.lathe.profile import Profile, area_of, profile_of
-from tippetop.validation import NotNegative, Number, Part, Positive, Quantity
+from tippetop.validation import NotNegative, Part, Points, Positive, Quantity
 
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254}
 """The units of profiles, m."""
 
 DENSEST = 1e6
 """Largest density, kg/m^3: far above that of any metal."""
-
-
-def _listed(value: Any) -> Any:
-    if not isinstance(value, list | tuple) or not all(isinstance(point, list | tuple) for point in value):
-        raise PydanticCustomError("points", "a list of points [distance from the axis, height, radius]")
-    return value
-
-
-Points: TypeAlias = Annotated[tuple[tuple[Number, ...], ...], BeforeValidator(_listed)]
-"""Points of a profile: distance from the axis, height along it and, at the end of an arc, its radius."""
 
 
 class Insert(Part):

@@ -1,40 +1,105 @@
-// What the toy of a body looks like: of a tippe top as Python describes it, of any other body its outline.
+// What the toy of a body looks like: of a tippe top that is known as a sphere as Python describes it, of any
+// other body its own profile where it fits its surfaces, or their hull, as in figures/meridian.py.
 
 import looks from "../generated/looks.json";
 import { lowest, surfacesOf } from "./surfaces.js";
 
-const OUTLINE = 97;
-const POLE = 1e-4;
+const { arc_step: ARC_STEP, smooth: SMOOTH, fits: FITS, tilts: TILTS, outline: OUTLINE, pole: POLE, band: BAND } = looks.meridian;
 
 export const SCENES = looks.scenes;
 
 // The length by which the toy is measured when it is drawn, m.
 export function sizeOf(body) {
+  const profile = ownProfile(body);
+  return isBall(body, profile) ? body.shape.radius : extent(profile ?? outline(body.shape));
+}
+
+export function toyParts(body) {
   const { shape } = body;
-  if (shape.kind === "eccentric_sphere") return shape.radius;
-  if (shape.kind === "spheroid") return Math.max(shape.across, shape.along);
-  const points = outline(shape).flat();
+  const profile = ownProfile(body);
+  if (isBall(body, profile)) {
+    const lift = ([r, z]) => [r, z + shape.eccentricity];
+    return looks.tippe_top.map((part) => ({ ...part, profile: part.profile.map(lift) }));
+  }
+  const whole = profile ?? outline(shape);
+  const size = extent(whole);
+  let pieces = whole.map((piece) => piece.map(([r, z]) => [r / size, z / size]));
+  if (pieces.length === 1) {
+    const [one] = pieces;
+    const middle = one.length >> 1;
+    pieces = [one.slice(0, middle - BAND + 1), one.slice(middle - BAND, middle + BAND + 1), one.slice(middle + BAND)];
+  }
+  return pieces.map((profile, k) => ({
+    name: `belt ${k}`, profile, colours: k % 2 ? looks.band : looks.bowl, opacity: 1,
+  }));
+}
+
+// Whether a body is known to be an eccentric sphere, and nothing else of it.
+function isBall({ shape }, profile) {
+  return shape.kind === "eccentric_sphere" && !profile;
+}
+
+function extent(pieces) {
+  const points = pieces.flat();
   const heights = points.map(([, z]) => z);
   const across = Math.max(...points.map(([r]) => r));
   return Math.max(across, (Math.max(...heights) - Math.min(...heights)) / 2);
 }
 
-export function toyParts(body) {
-  const { shape } = body;
-  if (shape.kind === "eccentric_sphere") {
-    const lift = ([r, z]) => [r, z + shape.eccentricity];
-    return looks.tippe_top.map((part) => ({ ...part, profile: part.profile.map(lift) }));
+// The profile that a body has, in smooth pieces from below; null if it has none, or not this shape.
+function ownProfile({ shape, profile }) {
+  if (!profile) return null;
+  const pieces = smoothPieces(profile);
+  const points = pieces.flat();
+  const surfaces = surfacesOf(shape);
+  const size = extent(pieces);
+  for (let k = 0; k < TILTS; k++) {
+    const tilt = (Math.PI * k) / (TILTS - 1);
+    const [s, c] = [Math.sin(tilt), Math.cos(tilt)];
+    const reach = Math.max(...points.map(([r, z]) => r * s - z * c));
+    if (Math.abs(reach - surfaces[lowest(surfaces, c)].height(c)) > FITS * size) return null;
   }
-  const size = sizeOf(body);
-  let pieces = outline(shape).map((piece) => piece.map(([r, z]) => [r / size, z / size]));
-  if (pieces.length === 1) {
-    const [whole] = pieces;
-    const middle = whole.length >> 1;
-    pieces = [whole.slice(0, middle - 1), whole.slice(middle - 2, middle + 3), whole.slice(middle + 2)];
+  return pieces;
+}
+
+function smoothPieces(profile) {
+  let pieces = [];
+  for (let k = 1; k < profile.length; k++) {
+    const [before, point] = [profile[k - 1], profile[k]];
+    if (!before[0] && !point[0] && !point[2]) continue;
+    const piece = edge(before, point);
+    if (pieces.length && turn(pieces.at(-1), piece) < SMOOTH) pieces.at(-1).push(...piece.slice(1));
+    else pieces.push(piece);
   }
-  return pieces.map((profile, k) => ({
-    name: `belt ${k}`, profile, colours: k % 2 ? looks.band : looks.bowl, opacity: 1,
-  }));
+  let area = 0;
+  const points = pieces.flat();
+  points.forEach(([r, z], k) => {
+    const [next, up] = points[(k + 1) % points.length];
+    area += r * up - next * z;
+  });
+  if (area < 0) pieces = pieces.reverse().map((piece) => piece.reverse());
+  return pieces;
+}
+
+// Points from one of a profile to the next, on the arc of the radius that this has.
+function edge([r, z], [toR, toZ, radius = 0]) {
+  const [across, up] = [toR - r, toZ - z];
+  if (!radius) return [[r, z], [toR, toZ]];
+  const half = Math.asin(Math.max(-1, Math.min(1, Math.hypot(across, up) / (2 * radius))));
+  const steps = Math.max(1, Math.ceil((2 * Math.abs(half)) / ARC_STEP - 1e-9));
+  return Array.from({ length: steps + 1 }, (_, k) => {
+    const along = Math.sin((k / steps) * half) / Math.sin(half);
+    const [x, y] = [Math.cos((k / steps - 1) * half), Math.sin((k / steps - 1) * half)];
+    return [r + along * (across * x - up * y), z + along * (across * y + up * x)];
+  });
+}
+
+// The angle between the end of a piece and the beginning of the next, rad.
+function turn(before, after) {
+  const [[a, b], [c, d]] = before.slice(-2);
+  const [[e, f], [g, h]] = after;
+  const [x, y, u, v] = [c - a, d - b, g - e, h - f];
+  return Math.abs(Math.atan2(x * v - y * u, x * u + y * v));
 }
 
 // The outline of a body from below: points (distance from the axis, height above the centre of mass), m, in
