@@ -75,7 +75,7 @@ function Header({ lab, onHelp }) {
     <header>
       <h1>{t("page.title")}</h1>
       <span class="space" />
-      <button type="button" onClick={() => history.back()} title="Ctrl+Z">{t("page.undo")}</button>
+      <button type="button" disabled={!lab.changed} onClick={() => lab.undo()} title="Ctrl+Z">{t("page.undo")}</button>
       <button type="button" onClick={copy}>{t("page.link")}</button>
       <button type="button" onClick={onHelp} aria-haspopup="dialog">{t("page.help")}</button>
       <button type="button" class="square" aria-label={t("page.theme")} title={t("page.theme")}

@@ -11,6 +11,8 @@ import { differences, FIRST } from "./setup.js";
 const KEYS = 60;
 const FRAMES = 30;
 const FACETS = 120;
+// Pixels of a picture for each of the screen's.
+const FINE = 2;
 
 const COLUMNS = {
   "theta (rad)": ["theta"], "omega3 (rad s-1)": ["omega3"], "phi_dot (rad s-1)": ["phi_dot"],
@@ -109,8 +111,7 @@ export function stl({ parts, size }) {
 
 // The scene as it is drawn now.
 export function picture(player) {
-  player.draw();
-  return new Promise((done) => player.canvas.toBlob(done, "image/png"));
+  return player.finely(FINE, () => new Promise((done) => player.canvas.toBlob(done, "image/png")));
 }
 
 // The run from its start as the scene plays it.

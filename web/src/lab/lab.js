@@ -196,8 +196,18 @@ export class Lab extends EventTarget {
     clearTimeout(this.sharing);
     const hash = this.link().replace(/^[^#]*/, "");
     if (hash === location.hash) return;
-    if (anew) history.pushState(null, "", hash);
-    else history.replaceState(null, "", hash);
+    const { depth = 0 } = history.state ?? {};
+    if (anew) history.pushState({ depth: depth + 1 }, "", hash);
+    else history.replaceState({ depth }, "", hash);
+  }
+
+  // Whether there is anything to take back: what was before this page is no step of it.
+  get changed() {
+    return Boolean(history.state?.depth);
+  }
+
+  undo() {
+    if (this.changed) history.back();
   }
 
   // Go back to what the address says.

@@ -13,7 +13,7 @@ globalThis.tippetopLab = lab;
 document.addEventListener("keydown", (event) => {
   if (!(event.ctrlKey || event.metaKey) || event.key !== "z" || event.target.matches("input[type=text]")) return;
   event.preventDefault();
-  history.back();
+  lab.undo();
 });
 printSheet(lab);
 render(<App lab={lab} />, document.getElementById("lab"));

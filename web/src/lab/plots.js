@@ -49,9 +49,17 @@ export class Plots {
     this.fill();
   }
 
+  // Make every plot so large, pixels, whatever room there is; without a size, as large as there is room.
+  size(width, height) {
+    this.fixed = Boolean(width);
+    for (const { chart } of width ? this.charts : []) chart.setSize({ width, height });
+    this.lay();
+    this.move();
+  }
+
   lay(anew = false) {
     const width = this.host.clientWidth;
-    if (!width || !this.track) return;
+    if (!width || !this.track || this.fixed) return;
     const columns = width < 560 ? 1 : width < 1000 ? 2 : 3;
     const room = Math.floor(width / columns) - 8;
     this.host.style.gridTemplateColumns = `repeat(${columns}, minmax(0, 1fr))`;

@@ -3,23 +3,27 @@
 import { ALL, scaleOf } from "./dials.js";
 import { part, t } from "./i18n.js";
 import { valueOf } from "./setup.js";
-import { shown } from "./units.js";
+import { digits, shown } from "./units.js";
 import { tell } from "./words.js";
 
+// Two plots beside each other on a sheet, and the picture's pixels for each of the screen's.
+const PLOT = [340, 162];
+const FINE = 2;
+
 export function printSheet(lab) {
-  let sheet = null;
   addEventListener("beforeprint", () => {
     if (!lab.track) return;
-    sheet = document.createElement("section");
+    const sheet = document.createElement("section");
     sheet.className = "print";
     const { headline, details } = tell(lab.track, lab.state.prospect, lab.state.units);
     sheet.append(text("h1", t("page.title")), text("h2", headline), text("p", details.join(" ")), table(lab), picture(lab.player));
+    lab.plots.size(...PLOT);
     document.querySelector("main").before(sheet);
     sheet.after(text("p", lab.link(), "print address"));
   });
   addEventListener("afterprint", () => {
     for (const one of document.querySelectorAll(".print")) one.remove();
-    sheet = null;
+    lab.plots?.size();
   });
 }
 
@@ -31,22 +35,28 @@ function text(kind, words, name = "") {
 }
 
 function table({ state: { setup, units } }) {
+  const { kind } = setup.problem.friction;
+  const row = (name, value) => {
+    const line = document.createElement("tr");
+    line.append(text("th", name), text("td", value));
+    return line;
+  };
   const rows = ALL.map((dial) => {
     const value = valueOf(setup, dial.field);
     if (!value) return null;
-    const row = document.createElement("tr");
-    row.append(text("th", part(`quantities.${dial.field}`).name), text("td", shown(value / scaleOf(dial, setup), dial.kind, units)));
-    return row;
+    const unit = dial.field === "friction.mu" && kind === "viscous" ? " s/m" : "";
+    return row(part(`quantities.${dial.field}`).name, shown(value / scaleOf(dial, setup), dial.kind, units) + unit);
   });
   const element = document.createElement("table");
-  element.append(...rows.filter(Boolean));
+  element.append(row(t("controls.law"), t(`laws.${kind}`)), ...rows.filter(Boolean));
   return element;
 }
 
-// What WebGL has drawn is gone after its frame: as an image it stays.
+// The scene as it is now, with the moment that it shows.
 function picture(player) {
-  player.draw();
+  const figure = document.createElement("figure");
   const image = new Image();
-  image.src = player.canvas.toDataURL("image/png");
-  return image;
+  image.src = player.finely(FINE, () => player.canvas.toDataURL("image/png"));
+  figure.append(image, text("figcaption", `${t("plots.time").replace(/ \(s\)$/, "")} ${digits(player.time, 4)} s`));
+  return figure;
 }

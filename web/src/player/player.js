@@ -239,6 +239,18 @@ export class Player extends EventTarget {
     this.tone?.sound(this.track.value("omega3", this.time), this.speed, this.playing);
   }
 
+  // What a use of the canvas gives, drawn with so many pixels for each of the screen's.
+  finely(quality, use) {
+    const { scene } = this;
+    const usual = scene.quality;
+    scene.setQuality(quality);
+    this.draw();
+    const result = use();
+    scene.setQuality(usual, false);
+    this.dirty = true;
+    return result;
+  }
+
   // The time in words and on the strip; while it runs, only as often as digits can be read and the mark moves.
   tellTime() {
     const { time, strip, duration } = this;
