@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tippetop.contact.double import motion_on_two
+from tippetop.contact.double_sticking import beginning_on_two, held_motion_on_two, turning_motion
 from tippetop.contact.passing import closing_motion
 from tippetop.contact.sliding import held_motion, sliding_motion
 from tippetop.contact.sticking import sticking_motion
@@ -68,7 +69,12 @@ def sliding_motions(surface, law):
         yield f"closing {ending}", closing_motion(kind, ending, True), (*numbers, 1e9, 1e-3)
     if isinstance(surface, Hull):
         other = top._replace(surface=surface._replace(active=1))
-        yield "two", motion_on_two(kind, other.kind), (*numbers, *other.numbers)
+        both = kind, other.kind
+        yield "two", motion_on_two(*both), (*numbers, *other.numbers)
+        if isinstance(law, CoulombLaw):
+            yield "two beginning", beginning_on_two(*both), (*numbers, *other.numbers)
+            yield "two turning", turning_motion(*both, -1.0), (*numbers, *other.numbers)
+            yield "two sticking", held_motion_on_two(*both), (*numbers, *other.numbers)
 
 
 def sticking_motions(surface, law):

@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +12,6 @@ from tippetop.contact.mode import Mode, Reaction, Segment
 from tippetop.integrators.base import Array
 from tippetop.integrators.dense import at_fractions, evaluated, parts_of
 from tippetop.mechanics.state import State
-from tippetop.mechanics.top import Kind, Top
 
 STEPS = 4096
 """Steps in a block, about."""
@@ -91,12 +91,12 @@ class Block:
     def groups(self) -> list[ModeSteps]:
         """The steps by mode."""
         # Laws of different makes with the same numbers are equal as tuples.
-        kinds: dict[tuple[str, tuple[Top, ...], tuple[Kind, ...], int], list[int]] = {}
+        kinds: dict[tuple[Any, ...], list[int]] = {}
         for number, segment in enumerate(self.segments):
             if len(segment.solution.terms):
                 mode = segment.mode
                 alike = tuple(top.kind for top in mode.tops)
-                key = mode.name, mode.tops, alike, segment.solution.terms.shape[2]
+                key = mode.name, mode.tops, alike, segment.solution.terms.shape[1:]
                 kinds.setdefault(key, []).append(number)
         first = np.concatenate([[0], np.cumsum(self.lengths)])
         spans = self.spans

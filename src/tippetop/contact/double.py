@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, ClassVar
 
-from tippetop.contact.mode import Event, EventKind, IntegratedMode, Outcome, Reaction, Transition
+from tippetop.contact.mode import Event, EventKind, IntegratedMode, Reaction, Transition
 from tippetop.contact.surfaces import follow_surface, number_of, surface_guards
 from tippetop.integrators.base import Function, Guard, Motion
 from tippetop.mechanics.double_contact import Tops, double_contact, double_rates
@@ -23,8 +23,8 @@ SLOWEST_SLIP = 1e-9
 
 
 @dataclass(frozen=True)
-class SlidingOnTwo(IntegratedMode):
-    """Sliding on two surfaces, as long as both normal forces are positive.
+class OnTwo(IntegratedMode):
+    """Two surfaces touch.
 
     Attributes
     ----------
@@ -34,22 +34,33 @@ class SlidingOnTwo(IntegratedMode):
 
     other: Top
 
-    name: ClassVar[str] = "sliding"
-
     @property
     def tops(self) -> Tops:
         """The top with either surface active."""
         return self.top, self.other
 
     @property
-    def motion(self) -> Motion:
-        """Equations of motion, with the guards of both contacts and of further surfaces."""
-        return motion_on_two(self.top.kind, self.other.kind)
-
-    @property
     def parameters(self) -> tuple[Scalar, ...]:
         """The numbers of the top on either surface: the branches of their laws may differ."""
         return (*self.top.numbers, *self.other.numbers)
+
+    def opening(self, number: int, time: float, state: State, *, slips: bool) -> Transition:
+        """One of both surfaces opens, while the other goes on, slipping or not."""
+        left, kept = (self.tops, self.tops[::-1])[number]
+        event = Event(EventKind.OPENING, time, surface=number_of(left))
+        return Transition((event,), self.rules.on(number_of(kept)).going_on(state, slips=slips), state)
+
+
+@dataclass(frozen=True)
+class SlidingOnTwo(OnTwo):
+    """Sliding on two surfaces, as long as both normal forces are positive."""
+
+    name: ClassVar[str] = "sliding"
+
+    @property
+    def motion(self) -> Motion:
+        """Equations of motion, with the guards of both contacts and of further surfaces."""
+        return motion_on_two(self.top.kind, self.other.kind)
 
     def numbers(self, state: State) -> tuple[Scalar, ...]:
         """The 8 numbers of a sliding state."""
@@ -68,16 +79,13 @@ class SlidingOnTwo(IntegratedMode):
         """One surface opens, while the other goes on; or slip ends on one; or a further one touches."""
         kind, _, number = guard.rpartition(" ")
         if f"{kind} " == OPENING:
-            left, kept = (self.tops, self.tops[::-1])[int(number)]
-            rules = self.rules.on(number_of(kept))
-            event = Event(EventKind.OPENING, time, surface=number_of(left))
-            return Transition((event,), rules.going_on(state, slips=True), state)
+            return self.opening(int(number), time, state, slips=True)
         if f"{kind} " == BRANCHING:
             tops = list(self.tops)
             tops[int(number)] = on_other_branch(tops[int(number)])
             return Transition((), replace(self, top=tops[0], other=tops[1]), state)
         if f"{kind} " == ENDING:
-            return Transition((), Outcome.STICKING_ON_TWO, state)
+            return self.rules.settled_on_two(time, state, self.tops, ())
         found = follow_surface(self, guard, time, state)
         assert found is not None, "there are no other guards"
         return found

@@ -219,6 +219,14 @@ class Rules(Protocol):
     def on(self, surface: int) -> "Rules":
         """The rules of the top with another of its surfaces active."""
 
+    def settled_on_two(
+        self, time: float, state: State, tops: tuple[Top, Top], stuck: tuple[int, ...]
+    ) -> Transition:
+        """What follows when slip ends on a contact beside another one; contacts of these surfaces stuck."""
+
+    def slipping_on_two(self, time: float, state: State, tops: tuple[Top, Top], which: str) -> Transition:
+        """What follows when one of two contacts, or both, can be held no longer."""
+
     def stopping(self, time: float, state: State, *, slips: bool = True) -> Transition:
         """What follows when slip, or rolling, is about to end; the contact sticks or slips."""
 

@@ -78,6 +78,16 @@ class ContactRules:
         """Never happens: a body of several surfaces may fly."""
         raise NotImplementedError
 
+    def settled_on_two(
+        self, time: float, state: State, tops: tuple[Top, Top], stuck: tuple[int, ...]
+    ) -> Transition:
+        """Never happens: as `touch`."""
+        raise NotImplementedError
+
+    def slipping_on_two(self, time: float, state: State, tops: tuple[Top, Top], which: str) -> Transition:
+        """Never happens: as `touch`."""
+        raise NotImplementedError
+
     def event(self, kind: EventKind, time: float, impulse: float = 0.0, lost: float = 0.0) -> Event:
         """Something that happens to the surface that is active."""
         return Event(kind, time, impulse, lost, number_of(self.top))

@@ -3,17 +3,17 @@
 from dataclasses import dataclass, replace
 from typing import Self
 
-from tippetop.contact.double import SLOWEST_SLIP, on_two
+from tippetop.contact.double import SLOWEST_SLIP
 from tippetop.contact.flight import TOUCHING
 from tippetop.contact.mode import Event, EventKind, Outcome, Transition
 from tippetop.contact.rules import FreeToFly
 from tippetop.contact.surfaces import number_of
-from tippetop.mechanics.double_contact import double_contact, without_tilting
+from tippetop.contact.two_closed import settled, slipping
+from tippetop.mechanics.double_contact import Tops, double_contact
 from tippetop.mechanics.flight import gap, gap_rate
 from tippetop.mechanics.hull import lowest_surface
 from tippetop.mechanics.impact import Impact, impact
 from tippetop.mechanics.impact_on_two import impact_on_two
-from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import along_table
 from tippetop.mechanics.rolling import is_set_valued
 from tippetop.mechanics.state import State
@@ -70,8 +70,8 @@ class OnSeveral(FreeToFly):
         if len(closed) > 1:
             return Transition(events, Outcome.FAILED, state, "three surfaces touch at once")
         if closed:
-            return self._resting_on_two(closed[0], time, state, events)
-        return super().resting(time, state, events)
+            return settled(self, time, state, (self.top, closed[0]), (), events, arrived=True)
+        return self.resting_alone(time, state, events)
 
     def _impact(self, state: State, restitution: float) -> Impact:
         """That of the active surface alone, unless it presses another that touches onto the table.
@@ -104,23 +104,14 @@ class OnSeveral(FreeToFly):
             return True
         return all(size(slip_of(*along_table(state), top)) > SLOWEST_SLIP for top in (self.top, other))
 
-    def _resting_on_two(self, other: Top, time: float, state: State, events: tuple[Event, ...]) -> Transition:
-        """The resolver of two contacts that are closed and have no normal velocities: who stays closed."""
-        mine = without_tilting(state, self.top)
-        if not self._slips(other, mine):
-            return Transition(events, Outcome.STICKING_ON_TWO, state)
-        pair = double_contact(along_table(mine), (self.top, other))
-        lost = float(energy(state, self.top) - energy(mine, self.top))
-        here = (pair.normal[0] > 0.0) & (pair.normal[1] > 0.0)
-        alone = (pair.first.free_acceleration < 0.0) & (pair.acceleration[1] >= 0.0)
-        another = (pair.second.free_acceleration < 0.0) & (pair.acceleration[0] >= 0.0)
-        neither = (pair.first.free_acceleration >= 0.0) & (pair.second.free_acceleration >= 0.0)
-        if here + alone + another + neither != 1:
-            detail = "not exactly one set of forces is consistent with two surfaces that touch"
-            return Transition(events, Outcome.FAILED, state, detail)
-        if here:
-            event = self.event(EventKind.DOUBLE_CONTACT, time, 0.0, lost)
-            return Transition((*events, event), on_two(mine, self, other), mine)
-        left, kept = (self.top, other) if another else (other, self.top)
-        events = (*events, Event(EventKind.OPENING, time, surface=number_of(left)))
-        return super(OnSeveral, self._of(kept)).resting(time, state, events)
+    def resting_alone(self, time: float, state: State, events: tuple[Event, ...]) -> Transition:
+        """As for one surface, whatever else touches."""
+        return super().resting(time, state, events)
+
+    def settled_on_two(self, time: float, state: State, tops: Tops, stuck: tuple[int, ...]) -> Transition:
+        """As the resolver of two contacts finds."""
+        return settled(self, time, state, tops, stuck)
+
+    def slipping_on_two(self, time: float, state: State, tops: Tops, which: str) -> Transition:
+        """Slip begins at the limit of what the table can hold."""
+        return slipping(self, time, state, tops, which)

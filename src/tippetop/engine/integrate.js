@@ -10,8 +10,8 @@ const PARTS = [0, 0.25, 0.5, 0.75, 1];
 const NEAR = 0.1, RISEN = 1e-15;
 const NOT_FINITE = "the solution is no longer finite";
 
-/** The implicit method by its name in Python, radau; and the explicit one. */
-export const make_integrator = (name, tolerance) => new Adaptive(name === "radau" ? Collocation : Stepper, tolerance);
+/** The implicit method by its names in Python, and the explicit one. */
+export const make_integrator = (name, tolerance) => new Adaptive(["radau", "collocation"].includes(name) ? Collocation : Stepper, tolerance);
 
 function isFinite_(values) {
   let total = 0;

@@ -3901,6 +3901,14 @@ class ContactRules extends py.Record {
   touch(surface, time, state) {
     throw new py.NotImplementedError();
   }
+  /** Never happens: as `touch`. */
+  settled_on_two(time, state, tops, stuck) {
+    throw new py.NotImplementedError();
+  }
+  /** Never happens: as `touch`. */
+  slipping_on_two(time, state, tops, which) {
+    throw new py.NotImplementedError();
+  }
   /** Something that happens to the surface that is active. */
   event(kind, time, impulse = 0.0, lost = 0.0) {
     return new Event(kind, time, impulse, lost, number_of(this.top));
@@ -4266,24 +4274,38 @@ function without_tilting(state, top) {
 const [OPENING, ENDING, BRANCHING] = ["opening ", "ending ", "branching "];
 const SLOWEST_SLIP = 1e-09;
 
-/** Sliding on two surfaces, as long as both normal forces are positive. */
-class SlidingOnTwo extends IntegratedMode {
+/** Two surfaces touch. */
+class OnTwo extends IntegratedMode {
   constructor(top, rules, other) {
     super(top, rules);
     this.other = other;
   }
-  get name() { return "sliding"; }
   /** The top with either surface active. */
   get tops() {
     return [this.top, this.other];
   }
-  /** Equations of motion, with the guards of both contacts and of further surfaces. */
-  get motion() {
-    return motion_on_two(this.top.kind, this.other.kind);
-  }
   /** The numbers of the top on either surface: the branches of their laws may differ. */
   get parameters() {
     return [...this.top.numbers, ...this.other.numbers];
+  }
+  /** One of both surfaces opens, while the other goes on, slipping or not. */
+  opening(number, time, state, slips) {
+    const [left, kept] = py.item([this.tops, py.slice(this.tops, null, null, -1)], number);
+    const event = new Event(EventKind.OPENING, time, undefined, undefined, number_of(left));
+    return new Transition([event], this.rules.on(number_of(kept)).going_on(state, slips), state);
+  }
+}
+py.fields(OnTwo, ["top", "rules", "other"]);
+
+/** Sliding on two surfaces, as long as both normal forces are positive. */
+class SlidingOnTwo extends OnTwo {
+  constructor(top, rules, other) {
+    super(top, rules, other);
+  }
+  get name() { return "sliding"; }
+  /** Equations of motion, with the guards of both contacts and of further surfaces. */
+  get motion() {
+    return motion_on_two(this.top.kind, this.other.kind);
   }
   /** The 8 numbers of a sliding state. */
   numbers(state) {
@@ -4302,10 +4324,7 @@ class SlidingOnTwo extends IntegratedMode {
   follow(guard, time, state) {
     const [kind, , number] = py.rpartition(guard, " ");
     if (py.eq(`${py.str(kind)} `, OPENING)) {
-      const [left, kept] = py.item([this.tops, py.slice(this.tops, null, null, -1)], py.int(number));
-      const rules = this.rules.on(number_of(kept));
-      const event = new Event(EventKind.OPENING, time, undefined, undefined, number_of(left));
-      return new Transition([event], rules.going_on(state, true), state);
+      return this.opening(py.int(number), time, state, true);
     }
     if (py.eq(`${py.str(kind)} `, BRANCHING)) {
       const tops = py.list(this.tops);
@@ -4313,7 +4332,7 @@ class SlidingOnTwo extends IntegratedMode {
       return new Transition([], py.replace(this, { top: tops[0], other: tops[1] }), state);
     }
     if (py.eq(`${py.str(kind)} `, ENDING)) {
-      return new Transition([], Outcome.STICKING_ON_TWO, state);
+      return this.rules.settled_on_two(time, state, this.tops, []);
     }
     const found = follow_surface(this, guard, time, state);
     py.assert(found !== null, "there are no other guards");
@@ -4368,6 +4387,471 @@ const motion_on_two = py.cached((first, second) => {
   return new Motion(rates, 8, py.mul(2, first.numbers), py.tuple(guards), false);
 });
 
+// tippetop.mechanics.contact_pair
+
+/** The contact points of a body that touches the table with two surfaces. */
+class ContactPair extends py.NamedTuple {
+  constructor(first, second) {
+    super();
+    this.first = first;
+    this.second = second;
+  }
+  /** The contact points for this axis and angular momentum (kg m^2/s). */
+  static of(axis, momentum, tops) {
+    const [first, second] = [...tops].map((top) => ContactPoint.of(axis, momentum, top));
+    return new this(first, second);
+  }
+  /** Accelerations without contact forces. */
+  get free() {
+    return [this.first.free.point, this.second.free.point, this.first.free.turning];
+  }
+  /** Accelerations that a wrench adds; or velocities, if it is one of impulses. */
+  response(at) {
+    const [number, wrench] = at;
+    const [here, there] = py.item([this, py.slice(this, null, null, -1)], number);
+    const [point, turning] = here.response(wrench);
+    const other = add(point, cross(turning, add(there.arm, scale(-1.0, here.arm))));
+    return py.truth(number) ? [other, point, turning] : [point, other, turning];
+  }
+  /** How much of each wrench keeps as many components of something that moves at zero. */
+  holding(units, held, moving) {
+    const responses = [...units].map((unit) => this.response(unit));
+    const rows = [...held].map(([number, way]) => [...responses].map((found) => dot(py.item(found, number), way)));
+    return solve(rows, [...held].map(([number, way]) => py.neg(dot(py.item(moving, number), way))));
+  }
+  /** Moment of some wrenches about the centre of mass, N m. */
+  moment(pushes) {
+    let total = NO_TORQUE;
+    for (const [number, wrench] of pushes) {
+      total = add(total, py.item(this, number).moment(wrench));
+    }
+    return total;
+  }
+  /** Accelerations under some wrenches. */
+  under(pushes) {
+    let [one, other, turning] = this.free;
+    for (const push of pushes) {
+      const more = this.response(push);
+      [one, other, turning] = [add(one, more[0]), add(other, more[1]), add(turning, more[2])];
+    }
+    return [one, other, turning];
+  }
+}
+py.fields(ContactPair, ["first", "second"]);
+
+/** What the table does at both contacts that stay closed, and how they accelerate. */
+class PairMotion extends py.NamedTuple {
+  constructor(pair, wrenches, moving) {
+    super();
+    this.pair = pair;
+    this.wrenches = wrenches;
+    this.moving = moving;
+  }
+  /** Force of the table, N. */
+  get force() {
+    return add(this.wrenches[0].force, this.wrenches[1].force);
+  }
+  /** Torque of the table at both contacts, N m. */
+  get couple() {
+    return add(this.wrenches[0].torque, this.wrenches[1].torque);
+  }
+  /** Moment of the table about the centre of mass, N m. */
+  get moment() {
+    return this.pair.moment(py.tuple(py.enumerate(this.wrenches)));
+  }
+  /** Torque of the table about the first contact point, N m. */
+  get torque() {
+    return add(this.moment, scale(-1.0, cross(this.pair.first.arm, this.force)));
+  }
+  /** Normal forces, N. */
+  get normal() {
+    return [this.wrenches[0].force[2], this.wrenches[1].force[2]];
+  }
+  /** Rate of xi. */
+  get rate() {
+    const [point, , turning] = this.moving;
+    return [point[0], point[1], py.mul(apart(this.pair), turning[2])];
+  }
+  /** Force across e at a contact, N. */
+  needed(number) {
+    return dot(py.item(this.wrenches, number).force, directions_of(this.pair.first.axis)[1]);
+  }
+  /** Positive while the table can exert the horizontal force on a contact that alone sticks, N^2. */
+  reserve(number) {
+    const [x, y, normal] = py.item(this.wrenches, number).force;
+    return set_valued(py.item(this.pair, number).top.friction).reserve(normal, [x, y], 0.0);
+  }
+  /** mu^2 N_i^2 - T_i^2 where both stick, N^2. */
+  left(number) {
+    const [law, normal] = [set_valued(py.item(this.pair, number).top.friction), py.item(this.normal, number)];
+    return law.reserve(normal, [this.needed(number), 0.0], 0.0);
+  }
+  /** S, the force along e at both, N. */
+  get along() {
+    return dot(this.force, directions_of(this.pair.first.axis)[0]);
+  }
+  /** Positive while the table can exert S, N^2: (sqrt(A_1) + sqrt(A_2))^2 - S^2 for positive A_i. */
+  get both_reserve() {
+    const [one, other, along] = [this.left(0), this.left(1), this.along];
+    const product = py.mul(one, other);
+    return py.sub(py.add(py.add(one, other), py.mul(2.0, py.pow(py.add(py.mul(product, product), TINY), 0.25))), py.mul(along, along));
+  }
+}
+py.fields(PairMotion, ["pair", "wrenches", "moving"]);
+
+/** Horizontal unit vectors e along the axis and t across it. */
+function directions_of(axis) {
+  const inverse = py.pow(py.add(py.mul(axis[0], axis[0]), py.mul(axis[1], axis[1])), -0.5);
+  const [x, y] = [py.mul(axis[0], inverse), py.mul(axis[1], inverse)];
+  return [[x, y, py.mul(0.0, x)], [py.neg(y), x, py.mul(0.0, x)]];
+}
+
+/** D, how far the second contact is from the first along e, m. */
+function apart(pair) {
+  const e = directions_of(pair.first.axis)[0];
+  return py.sub(dot(pair.second.arm, e), dot(pair.first.arm, e));
+}
+
+/** D omega_z, m/s. */
+function slip_apart(pair) {
+  return py.mul(apart(pair), pair.first.turning[2]);
+}
+
+/** What the table does to a body whose two contacts stay closed, and how it accelerates. */
+function pair_motion(pair, slips) {
+  let held = [];
+  if (slips[0] === null && slips[1] === null) {
+    const [along, across] = directions_of(pair.first.axis);
+    held = py.add(held, [[0, along], [0, across], [1, across]]);
+  }
+  for (const [number, slip] of py.enumerate(slips)) {
+    if (slip === null && py.len(held) < 2) {
+      held = py.add(held, [[number, EAST], [number, NORTH]]);
+    }
+  }
+  const units = [...held].map(([number, way]) => [number, new Wrench(way, NO_TORQUE)]);
+  for (const [number, slip] of py.enumerate(slips)) {
+    units.push([number, normal_wrench(py.item(pair, number), slip)]);
+    held.push([number, VERTICAL]);
+  }
+  const sizes = pair.holding(units, held, pair.free);
+  const found = [new Wrench(NO_TORQUE, NO_TORQUE), new Wrench(NO_TORQUE, NO_TORQUE)];
+  const pushes = [];
+  for (const [amount, [number, unit]] of py.zip(sizes, units)) {
+    const push = new Wrench(scale(amount, unit.force), scale(amount, unit.torque));
+    py.put(found, number, new Wrench(...py.zip(py.item(found, number), push).map(([a, b]) => add(a, b))));
+    pushes.push([number, push]);
+  }
+  return new PairMotion(pair, [found[0], found[1]], pair.under(pushes));
+}
+
+/** A unit normal force with the friction that goes with it where the contact slips. */
+function normal_wrench(point, slip) {
+  if (slip === null) {
+    return new Wrench(VERTICAL, NO_TORQUE);
+  }
+  const [force, torque] = sliding_law(point.top.friction).traction([slip[0], slip[1]], turning_with(point, slip));
+  return new Wrench([...force, 1.0], torque);
+}
+
+/** How both contacts slip. */
+function slips_of(pair, xi) {
+  const across = directions_of(pair.first.axis)[1];
+  return [[xi[0], xi[1]], [py.add(xi[0], py.mul(xi[2], across[0])), py.add(xi[1], py.mul(xi[2], across[1]))]];
+}
+
+/** Angular momentum and velocity after the impulses that end the slip of one contact, or of both. */
+function without_slips(pair, velocity, ended) {
+  const omega = pair.first.turning;
+  let moving = [...[...pair].map((point) => add(velocity, cross(omega, point.arm))), omega];
+  const [along, across] = directions_of(pair.first.axis);
+  const both = [[0, along], [0, across], [1, across]];
+  const held = py.truth(py.all(ended)) ? both : [[py.int(ended[1]), EAST], [py.int(ended[1]), NORTH]];
+  const units = [...held].map(([number, way]) => [number, new Wrench(way, NO_TORQUE)]);
+  for (const number of [0, 1]) {
+    units.push([number, new Wrench(VERTICAL, NO_TORQUE)]);
+    held.push([number, VERTICAL]);
+  }
+  moving = [moving[0], moving[1], moving[2]];
+  const sizes = pair.holding(units, held, moving);
+  const pushes = py.zip(sizes, units).map(([a, [number, unit]]) => [number, new Wrench(scale(a, unit.force), NO_TORQUE)]);
+  const momentum = add(pair.first.momentum, pair.moment(pushes));
+  for (const [, push] of pushes) {
+    velocity = add(velocity, scale(py.div(1.0, pair.first.top.mass), push.force));
+  }
+  return [momentum, velocity];
+}
+
+/** Direction in which the first contact begins to slip, and the motion then. */
+function way_of_one(pair, slip) {
+  const answers = [EAST, NORTH].map((way) => pair.response([0, new Wrench(way, NO_TORQUE)])[0]);
+  const stiffness = py.float(py.add(py.abs(answers[0][0]), py.abs(answers[1][1])));
+  const response = (ways) => {
+    const found = pair_motion(pair, [ways[0], slip]);
+    return [new Resisted(found.moving[0].slice(0, 2), py.mul(stiffness, size(found.wrenches[0].force.slice(0, 2))))];
+  };
+  const held = pair_motion(pair, [null, slip]).wrenches[0];
+  const way = directions(response, [scaled(-1.0, held.force.slice(0, 2))])[0];
+  return [way, pair_motion(pair, [way, slip])];
+}
+
+/** Direction of xi in which both contacts begin to slip that cannot be held, and the motion then. */
+function way_of_both(pair) {
+  const across = directions_of(pair.first.axis)[1];
+  const lever = py.float(apart(pair));
+  const answers = [EAST, NORTH].map((way) => pair.response([0, new Wrench(way, NO_TORQUE)])[0]);
+  const turned = pair.response([1, new Wrench(across, NO_TORQUE)])[2][2];
+  const stiffness = py.float(py.add(py.add(py.abs(answers[0][0]), py.abs(answers[1][1])), py.abs(py.mul(lever, turned))));
+  const motion = (way) => {
+    return pair_motion(pair, slips_of(pair, way));
+  };
+  const response = (ways) => {
+    const found = motion(ways[0]);
+    const strength = py.sum([...found.wrenches].map((wrench) => size(wrench.force.slice(0, 2))));
+    return [new Resisted(found.rate, py.mul(stiffness, strength))];
+  };
+  const way = directions(response, [against(pair_motion(pair, [null, null]))])[0];
+  return [way, motion(way)];
+}
+
+/** Direction of xi against which friction exerts all it can along e, and what is needed across it. */
+function against(held) {
+  const [along, across] = directions_of(held.pair.first.axis);
+  const sign = held.along >= 0.0 ? -1.0 : 1.0;
+  const ratios = [];
+  for (const number of [0, 1]) {
+    const across_force = held.needed(number);
+    const spare = py.max(held.left(number), py.pow(py.mul(0.001, py.item(held.normal, number)), 2));
+    ratios.push(py.div(across_force, py.pow(spare, 0.5)));
+  }
+  const v = plus(scaled(sign, along.slice(0, 2)), scaled(py.neg(ratios[0]), across.slice(0, 2)));
+  return [...v, py.neg(py.sub(ratios[1], ratios[0]))];
+}
+
+// tippetop.contact.double_sticking
+const [SLIP_of_double_sticking, ENDING_of_double_sticking] = ["slip ", "ending"];
+const BEGINNING = 0.02;
+const TOLERANCE_of_double_sticking = 1e-13;
+
+/** The first contact sticks and the second slips across the axis: along t of `contact_pair`. */
+class StickingAndSliding extends OnTwo {
+  constructor(top, rules, other) {
+    super(top, rules, other);
+  }
+  get name() { return "sticking_and_sliding"; }
+  get sign() { return 1.0; }
+  /** Its name, with the numbers of the surface that sticks, and of that which slips. */
+  get label() {
+    return `sticking_on_${py.str(number_of(this.top))}_sliding_on_${py.str(number_of(this.other))}`;
+  }
+  /** Equations of motion of axis and angular momentum, and guards. */
+  get motion() {
+    return turning_motion(this.top.kind, this.other.kind, this.sign);
+  }
+  /** Axis and angular momentum. */
+  numbers(state) {
+    return [...state.axis, ...state.momentum];
+  }
+  /** The state, whose velocity is that of rolling on the first contact. */
+  state(y) {
+    const [axis, momentum] = split(y);
+    const velocity = velocity_without_slip(axis, momentum, this.top);
+    return on_table(new SlidingState(axis, momentum, velocity), this.top);
+  }
+  /** Force of both contacts, and their torque about the first contact point. */
+  reaction(y) {
+    const pair = ContactPair.of(...split(y), this.tops);
+    return reaction_of(turned_of_double_sticking(pair, this.sign), [0.0, 0.0, slip_apart(pair)]);
+  }
+  /** A contact opens; or slip ends on the second, or begins on the first; or a further one touches. */
+  follow(guard, time, state) {
+    if (py.truth(guard.startsWith(OPENING))) {
+      const number = py.int(py.removeprefix(guard, OPENING));
+      return this.opening(number, time, state, number === 0);
+    }
+    if (py.eq(guard, ENDING_of_double_sticking)) {
+      return this.rules.settled_on_two(time, state, this.tops, [number_of(this.top)]);
+    }
+    if (py.truth(guard.startsWith(SLIP_of_double_sticking))) {
+      return this.rules.slipping_on_two(time, state, this.tops, py.removeprefix(guard, SLIP_of_double_sticking));
+    }
+    const found = follow_surface(this, guard, time, state);
+    py.assert(found !== null, "there are no other guards");
+    return found;
+  }
+}
+py.fields(StickingAndSliding, ["top", "rules", "other"]);
+
+/** The same where the second contact slips the other way. */
+class StickingAndSlidingBack extends StickingAndSliding {
+  constructor(top, rules, other) {
+    super(top, rules, other);
+  }
+  get name() { return "sticking_and_sliding_back"; }
+  get sign() { return -1.0; }
+}
+py.fields(StickingAndSlidingBack, ["top", "rules", "other"]);
+
+/** Both contacts stick: the body rolls about the line that joins them, or is at rest. */
+class StickingOnTwo extends OnTwo {
+  constructor(top, rules, other) {
+    super(top, rules, other);
+  }
+  get name() { return "sticking"; }
+  /** Equations of motion of axis and angular momentum, and the guards of what holds the contacts. */
+  get motion() {
+    return held_motion_on_two(this.top.kind, this.other.kind);
+  }
+  /** Axis and angular momentum. */
+  numbers(state) {
+    return [...state.axis, ...state.momentum];
+  }
+  /** The state, without turning about the vertical, whose velocity is that of rolling. */
+  state(y) {
+    let [axis, momentum] = split(y);
+    momentum = without_drilling(axis, momentum, this.top);
+    const velocity = velocity_without_slip(axis, momentum, this.top);
+    return on_table(new SlidingState(axis, momentum, velocity), this.top);
+  }
+  /** Force of both contacts, and their torque about the first contact point. */
+  reaction(y) {
+    return reaction_of(pair_motion(ContactPair.of(...split(y), this.tops), [null, null]), [0.0, 0.0, 0.0]);
+  }
+  /** A contact opens, or one slips, or both; or a further surface touches. */
+  follow(guard, time, state) {
+    if (py.truth(guard.startsWith(OPENING))) {
+      return this.opening(py.int(py.removeprefix(guard, OPENING)), time, state, false);
+    }
+    if (py.truth(guard.startsWith(SLIP_of_double_sticking))) {
+      return this.rules.slipping_on_two(time, state, this.tops, py.removeprefix(guard, SLIP_of_double_sticking));
+    }
+    const found = follow_surface(this, guard, time, state);
+    py.assert(found !== null, "there are no other guards");
+    return found;
+  }
+}
+py.fields(StickingOnTwo, ["top", "rules", "other"]);
+
+/** The first moments of slip at a contact, or at both: slip itself is what moves, and loses no digits. */
+class SlipBeginningOnTwo extends SlidingOnTwo {
+  constructor(top, rules, other, begin = []) {
+    super(top, rules, other);
+    this.begin = begin;
+  }
+  /** Equations of motion, with the guards of both contacts and of further surfaces. */
+  get motion() {
+    return beginning_on_two(this.top.kind, this.other.kind);
+  }
+  /** Those it begins with. */
+  numbers(state) {
+    return this.begin;
+  }
+  /** The state, with its height. */
+  state(y) {
+    const [axis, momentum] = split(y);
+    const velocity = velocity_of(axis, momentum, [y[6], y[7]], this.top);
+    return on_table(new SlidingState(axis, momentum, velocity), this.top);
+  }
+  /** Force of both contacts, and their torque about the first contact point. */
+  reaction(y) {
+    const [pair, xi] = [ContactPair.of(...split(y), this.tops), [y[6], y[7], y[8]]];
+    return reaction_of(pair_motion(pair, slips_of(pair, xi)), xi);
+  }
+  /** Follow it by an implicit method: its direction is damped the faster the slower it is. */
+  *segments(time, state, end, integrator) {
+    const reach = py.min(py.add(time, BEGINNING), end);
+    for (const segment of super.segments(time, state, reach, make_integrator("collocation", TOLERANCE_of_double_sticking))) {
+      const found = segment.transition;
+      if (found !== null && found.then === Outcome.COMPLETED && reach < end) {
+        const then = new SlidingOnTwo(this.top, this.rules, this.other);
+        yield py.replace(segment, { transition: new Transition([], then, found.state) });
+      } else {
+        yield segment;
+      }
+    }
+  }
+}
+py.fields(SlipBeginningOnTwo, ["top", "rules", "other", "begin"]);
+
+/** What the table does while the first contact sticks, and the second slips so across the axis. */
+function turned_of_double_sticking(pair, sign) {
+  const across = directions_of(pair.first.axis)[1];
+  return pair_motion(pair, [null, [py.mul(sign, across[0]), py.mul(sign, across[1])]]);
+}
+
+/** What the table does to a body that slips so. */
+function reaction_of(found, xi) {
+  let power = 0.0;
+  for (const [slip, wrench] of py.zip(slips_of(found.pair, xi), found.wrenches)) {
+    power = py.add(py.add(power, py.mul(wrench.force[0], slip[0])), py.mul(wrench.force[1], slip[1]));
+  }
+  power = py.add(power, dot(found.couple, found.pair.first.turning));
+  return new Reaction(found.force, found.torque, power, found.couple);
+}
+
+/** The top on either surface. */
+function tops_of(first, second, numbers) {
+  const cut = first.numbers;
+  return [first.top(py.tuple(numbers.slice(0, cut))), second.top(py.tuple(py.slice(numbers, cut, py.add(cut, second.numbers), null)))];
+}
+
+/** Equations of motion while the first contact sticks and the second slips across the axis, as signed. */
+const turning_motion = py.cached((first, second, sign) => {
+  const found = (y, numbers) => {
+    return turned_of_double_sticking(ContactPair.of(...split(y), tops_of(first, second, numbers)), sign);
+  };
+  const slides = (y, numbers) => {
+    return py.mul(sign, slip_apart(ContactPair.of(...split(y), tops_of(first, second, numbers))));
+  };
+  const holds = (y, numbers) => {
+    return found(y, numbers).reserve(0);
+  };
+  const guards = [..._openings(found), new Guard(`${py.str(SLIP_of_double_sticking)}first`, holds), new Guard(ENDING_of_double_sticking, slides)];
+  return _of_momentum(first, second, found, guards);
+});
+
+/** Equations of motion while both contacts stick. */
+const held_motion_on_two = py.cached((first, second) => {
+  const found = (y, numbers) => {
+    return pair_motion(ContactPair.of(...split(y), tops_of(first, second, numbers)), [null, null]);
+  };
+  const guards = [..._openings(found), new Guard(`${py.str(SLIP_of_double_sticking)}0`, (y, numbers) => found(y, numbers).left(0)), new Guard(`${py.str(SLIP_of_double_sticking)}1`, (y, numbers) => found(y, numbers).left(1)), new Guard(`${py.str(SLIP_of_double_sticking)}both`, (y, numbers) => found(y, numbers).both_reserve)];
+  return _of_momentum(first, second, found, guards);
+});
+
+/** Equations of motion while both contacts slip, with xi, of which a part may have just begun. */
+const beginning_on_two = py.cached((first, second) => {
+  const found = (y, numbers) => {
+    const pair = ContactPair.of(...split(y), tops_of(first, second, numbers));
+    return pair_motion(pair, slips_of(pair, [y[6], y[7], y[8]]));
+  };
+  const rates = (y, numbers) => {
+    const now = found(y, numbers);
+    const [axis, momentum] = split(y);
+    return [...axis_rate(axis, momentum, now.pair.first.top), ...now.moment, ...now.rate];
+  };
+  const guards = [..._openings(found), ...surface_guards(first, [number_of(second.example)])];
+  return new Motion(rates, 9, py.add(first.numbers, second.numbers), py.tuple(guards), false);
+});
+
+/** Equations of motion of axis and angular momentum. */
+function _of_momentum(first, second, found, guards) {
+  const rates = (y, numbers) => {
+    const now = found(y, numbers);
+    return [...axis_rate(...split(y), now.pair.first.top), ...now.moment];
+  };
+  guards = [...guards, ...surface_guards(first, [number_of(second.example)])];
+  return new Motion(rates, 6, py.add(first.numbers, second.numbers), py.tuple(guards), false);
+}
+
+/** The guards of the normal forces. */
+function _openings(found) {
+  const normal = (number) => {
+    return (y, numbers) => py.item(found(y, numbers).normal, number);
+  };
+  return [0, 1].map((number) => new Guard(`${py.str(OPENING)}${py.str(number)}`, normal(number)));
+}
+
 // tippetop.mechanics.invariants
 
 /** Kinetic and potential energy, (m |r'|^2 + omega.L)/2 + m g z, J; zero at rest with z = 0. */
@@ -4380,6 +4864,274 @@ function energy(state, top) {
 /** Jellett's integral lambda = -L.a, kg m^3/s. */
 function jellett(state, top) {
   return py.neg(dot(state.momentum, contact_vector(state.axis, top.surface)));
+}
+
+// tippetop.mechanics.pair_resolver
+
+/** How two contacts go on. */
+class Resolution extends py.NamedTuple {
+  constructor(motion, sticks, begins = null) {
+    super();
+    this.motion = motion;
+    this.sticks = sticks;
+    this.begins = begins;
+  }
+}
+py.fields(Resolution, ["motion", "sticks", "begins"]);
+
+/** How two contacts go on that slip so, of which slip has ended on some; if on one, on the first. */
+function resolution(pair, xi, ended) {
+  const [one, other] = slips_of(pair, xi);
+  const slips = [py.truth(ended[0]) ? null : one, py.truth(ended[1]) ? null : other];
+  const held = pair_motion(pair, slips);
+  if (!py.truth(py.any(ended))) {
+    return new Resolution(held, [false, false]);
+  }
+  if (!py.truth(py.all(ended))) {
+    return held.reserve(0) >= 0.0 ? new Resolution(held, [true, false]) : letting_go(pair, xi);
+  }
+  if (py.min(held.left(0), held.left(1)) >= 0.0 && held.both_reserve >= 0.0) {
+    return new Resolution(held, [true, true]);
+  }
+  for (const number of [0, 1]) {
+    for (const sign of [1.0, -1.0]) {
+      const found = turning_about(pair, number, sign);
+      if (py.mul(found.motion.rate[2], sign) >= 0.0 && found.motion.reserve(number) >= 0.0) {
+        return found;
+      }
+    }
+  }
+  return both_letting_go(pair);
+}
+
+/** The first contact, which alone sticks, begins to slip. */
+function letting_go(pair, xi) {
+  const [way, motion] = way_of_one(pair, slips_of(pair, xi)[1]);
+  return new Resolution(motion, [false, false], [...way, 0.0]);
+}
+
+/** Both contacts begin to slip. */
+function both_letting_go(pair) {
+  const [way, motion] = way_of_both(pair);
+  return new Resolution(motion, [false, false], way);
+}
+
+/** The body begins to turn about one of both contacts, and the other slips, xi_3 as signed. */
+function turning_about(pair, number, sign) {
+  const across = scaled(number === 0 ? sign : -sign, directions_of(pair.first.axis)[1].slice(0, 2));
+  const slips = number === 0 ? [null, across] : [across, null];
+  return new Resolution(pair_motion(pair, slips), [number === 0, number === 1], [0.0, 0.0, sign]);
+}
+
+// tippetop.contact.two_closed
+const TOGETHER = 30.0;
+const [FIRST, SECOND, BOTH, NEITHER] = ["first", "second", "both", "neither"];
+
+/** Two contacts that are closed and have no normal velocities. */
+class TwoClosed extends py.Record {
+  constructor(rules, tops, state, ended) {
+    super();
+    this.rules = rules;
+    this.tops = tops;
+    this.state = state;
+    this.ended = ended;
+  }
+  /** The contacts in a state that has slip, or tilts, by no more than what is taken for none. */
+  static of(rules, state, tops, ended = null) {
+    state = without_tilting(state, tops[0]);
+    ended = ended === null ? ended_slips(state, tops) : ended;
+    if (py.eq(ended, [false, true])) {
+      [tops, ended] = [py.slice(tops, null, null, -1), py.slice(ended, null, null, -1)];
+    }
+    if (py.truth(py.any(ended))) {
+      const pair = ContactPair.of(state.axis, state.momentum, tops);
+      const [momentum, velocity] = without_slips(pair, state.velocity, ended);
+      state = state._replace({ momentum: momentum, velocity: velocity });
+    }
+    return new this(rules, tops, state, ended);
+  }
+  /** The contact points. */
+  get pair() {
+    return ContactPair.of(this.state.axis, this.state.momentum, this.tops);
+  }
+  /** How they slip. */
+  get xi() {
+    if (py.truth(this.ended[0])) {
+      return [0.0, 0.0, py.truth(this.ended[1]) ? 0.0 : slip_apart(this.pair)];
+    }
+    const slip = slip_of(...along_table(this.state), this.tops[0]);
+    return [slip[0], slip[1], slip_apart(this.pair)];
+  }
+  /** How both go on while they stay closed. */
+  resolved() {
+    return resolution(this.pair, this.xi, this.ended);
+  }
+  /** Which contacts may stay closed: exactly one answer is expected. */
+  consistent(found) {
+    const [normal, free] = [found.motion.normal, this.pair.free];
+    let answers = normal[0] > 0.0 && normal[1] > 0.0 ? [BOTH] : [];
+    answers = py.add(answers, py.enumerate([FIRST, SECOND]).filter(([number, name]) => py.truth(this._stays_alone(number))).map(([number, name]) => name));
+    return py.add(answers, free[0][2] >= 0.0 && free[1][2] >= 0.0 ? [NEITHER] : []);
+  }
+  /** Whether one contact is pressed onto the table, and the other opens. */
+  _stays_alone(number) {
+    const point = py.item(this.pair, number);
+    if (point.free.point[2] >= 0.0) {
+      return false;
+    }
+    const slip = py.truth(py.item(this.ended, number)) ? null : slip_of(...along_table(this.state), py.item(this.tops, number));
+    const wrench = alone(point, slip);
+    return (wrench.force[2] > 0.0 && py.item(this.pair.under([[number, wrench]]), 1 - number)[2] >= 0.0);
+  }
+  /** The mode in which both go on. */
+  going_on(found) {
+    if (found.begins !== null) {
+      return this.letting_go(found);
+    }
+    if (!py.truth(py.any(found.sticks))) {
+      return new Transition([], on_two(this.state, this.rules.on(number_of(this.tops[0])), this.tops[1]), this.state);
+    }
+    if (py.truth(py.all(found.sticks))) {
+      const mode = new StickingOnTwo(this.tops[0], this.rules, this.tops[1]);
+      const rests = _rests_of_two_closed(this.state, found.motion);
+      return new Transition([], py.truth(rests) ? new Resting(this.tops[0], this.rules, mode) : mode, this.state);
+    }
+    return new Transition([], this._turning(this.tops, this.xi[2]), this.state);
+  }
+  /** The mode in which the first of these contacts sticks, and the second slips so. */
+  _turning(tops, zeta) {
+    return py.call(zeta >= 0.0 ? StickingAndSliding : StickingAndSlidingBack, tops[0], this.rules, tops[1]);
+  }
+  /** The mode in which slip begins. */
+  letting_go(found) {
+    py.assert(found.begins !== null);
+    const least = py.mul(2.0, least_slip(this.state.momentum, this.state.velocity.slice(0, 2)));
+    if (py.truth(py.any(found.sticks))) {
+      const tops = py.truth(found.sticks[0]) ? this.tops : py.slice(this.tops, null, null, -1);
+      const sign = py.truth(found.sticks[0]) ? found.begins[2] : py.neg(found.begins[2]);
+      const change = [0.0, 0.0, py.div(py.mul(found.begins[2], least), apart(this.pair))];
+      const momentum = spun_up(this.state.axis, this.state.momentum, change, this.tops[0]);
+      const turning = this._turning(tops, sign);
+      return new Transition([], turning, turning.state([...this.state.axis, ...momentum]));
+    }
+    let [v_x, v_y, zeta] = scaled(py.div(least, size(found.begins)), found.begins);
+    zeta = py.add(zeta, this.xi[2]);
+    const begin = [...this.state.axis, ...this.state.momentum, v_x, v_y, zeta];
+    const mode = new SlipBeginningOnTwo(this.tops[0], this.rules, this.tops[1], begin);
+    return new Transition([], mode, mode.state(begin));
+  }
+}
+py.fields(TwoClosed, ["rules", "tops", "state", "ended"]);
+
+/** What the table does where one contact alone is closed. */
+function alone(point, slip) {
+  const rolling = point.turning.slice(0, 2);
+  const wrench = contact_motion(point, slip, rolling)[0];
+  if (slip === null && set_valued(point.top.friction).reserve(wrench.force[2], wrench.force.slice(0, 2), wrench.torque[2]) < 0.0) {
+    return beginning(point, null, rolling, [true, false]).wrench;
+  }
+  return wrench;
+}
+
+/** On which contacts slip has ended. */
+function ended_slips(state, tops) {
+  if (!py.truth(is_set_valued(tops[0].friction))) {
+    return [false, false];
+  }
+  const [one, other] = [...tops].map((top) => size(slip_of(...along_table(state), top)));
+  const [least, limit] = [py.min(one, other), py.mul(1.0 + 1e-06, SLOWEST_SLIP)];
+  if (least > limit) {
+    return [false, false];
+  }
+  return [one <= py.mul(TOGETHER, limit), other <= py.mul(TOGETHER, limit)];
+}
+
+/** The resolver of two contacts, of which those of some surfaces have been sticking. */
+function settled(rules, time, state, tops, stuck, events = [], arrived = false) {
+  let found, answers;
+  const here = TwoClosed.of(rules, state, tops);
+  if (py.truth(py.any(here.ended)) && slip_length(tops[0].friction) !== null) {
+    return new Transition(events, Outcome.STICKING_ON_TWO, state);
+  }
+  try {
+    found = here.resolved();
+    answers = here.consistent(found);
+  } catch (error) {
+    if (!(error instanceof py.ArithmeticError)) throw error;
+    return new Transition(events, Outcome.FAILED, state, py.str(error));
+  }
+  if (py.len(answers) !== 1) {
+    const detail = "not exactly one set of forces is consistent with two surfaces that touch";
+    return new Transition(events, Outcome.FAILED, state, detail);
+  }
+  if (py.eq(answers, [BOTH])) {
+    if (py.truth(arrived)) {
+      const lost = py.float(py.sub(energy(state, tops[0]), energy(here.state, tops[0])));
+      events = [...events, rules.event(EventKind.DOUBLE_CONTACT, time, 0.0, lost)];
+    }
+    events = [...events, ..._marks(py.add(time, _left(state, tops)), here, found.sticks, stuck)];
+    return py.replace(here.going_on(found), { events: events });
+  }
+  const numbers = [...here.tops].map((top) => number_of(top));
+  const [left, kept] = py.eq(answers, [SECOND]) ? numbers : py.slice(numbers, null, null, -1);
+  events = [...events, new Event(EventKind.OPENING, time, undefined, undefined, left)];
+  const then = rules.on(kept).resting_alone(time, here.state, events);
+  return then;
+}
+
+/** What follows where what both contacts need, or one of them, reaches the limit of what the table can. */
+function slipping(rules, time, state, tops, which) {
+  let found;
+  const alone = py.eq(which, FIRST);
+  const here = TwoClosed.of(rules, state, tops, [true, !py.truth(alone)]);
+  const pair = here.pair;
+  try {
+    if (py.eq(which, BOTH)) {
+      found = both_letting_go(pair);
+    } else if (py.truth(alone)) {
+      found = letting_go(pair, here.xi);
+    } else {
+      const number = py.int(which);
+      const needed = pair_motion(pair, [null, null]).needed(number);
+      found = turning_about(pair, 1 - number, py.eq(needed > 0.0, (number === 0)) ? 1.0 : -1.0);
+    }
+  } catch (error) {
+    if (!(error instanceof py.ArithmeticError)) throw error;
+    return new Transition([], Outcome.FAILED, state, py.str(error));
+  }
+  const before = py.truth(alone) ? [number_of(tops[0])] : [number_of(tops[0]), number_of(tops[1])];
+  return py.replace(here.letting_go(found), { events: _marks(time, here, found.sticks, before) });
+}
+
+/** What is told where a contact sticks that did not, or slips that stuck. */
+function _marks(time, here, sticks, stuck) {
+  const told = [];
+  for (const [top, held] of py.zip(here.tops, sticks)) {
+    const surface = number_of(top);
+    if (!py.eq(held, py.contains(stuck, surface))) {
+      told.push(new Event(py.truth(held) ? EventKind.STICK : EventKind.SLIP, time, undefined, undefined, surface));
+    }
+  }
+  return py.tuple(told);
+}
+
+/** Time to the end of slip that is followed no further, at its present rate. */
+function _left(state, tops) {
+  const slips = [...tops].map((top) => slip_of(...along_table(state), top));
+  const number = size(slips[0]) <= size(slips[1]) ? 0 : 1;
+  const [slip, speed] = [py.item(slips, number), size(py.item(slips, number))];
+  if (!(0.0 < speed && speed <= py.mul(TOGETHER, SLOWEST_SLIP)) || !py.truth(size(py.item(slips, py.sub(1, number))))) {
+    return 0.0;
+  }
+  const pair = ContactPair.of(state.axis, state.momentum, tops);
+  const rate = inner(slip, py.item(pair_motion(pair, [slips[0], slips[1]]).moving, number).slice(0, 2));
+  return rate < 0.0 ? py.div(py.mul(speed, speed), py.neg(rate)) : 0.0;
+}
+
+/** Whether a body in contact neither moves nor begins to. */
+function _rests_of_two_closed(state, motion) {
+  const rates = [...motion.moving[2], ...state.momentum, ...state.velocity];
+  return (py.max(py.map(py.abs, rates)) <= REST);
 }
 
 // tippetop.mechanics.impact_on_two
@@ -4553,9 +5305,9 @@ class OnSeveral extends FreeToFly {
       return new Transition(events, Outcome.FAILED, state, "three surfaces touch at once");
     }
     if (py.truth(closed)) {
-      return this._resting_on_two(closed[0], time, state, events);
+      return settled(this, time, state, [this.top, closed[0]], [], events, true);
     }
-    return super.resting(time, state, events);
+    return this.resting_alone(time, state, events);
   }
   /** That of the active surface alone, unless it presses another that touches onto the table. */
   _impact(state, restitution) {
@@ -4591,29 +5343,17 @@ class OnSeveral extends FreeToFly {
     }
     return py.all([this.top, other].map((top) => size(slip_of(...along_table(state), top)) > SLOWEST_SLIP));
   }
-  /** The resolver of two contacts that are closed and have no normal velocities: who stays closed. */
-  _resting_on_two(other, time, state, events) {
-    const mine = without_tilting(state, this.top);
-    if (!py.truth(this._slips(other, mine))) {
-      return new Transition(events, Outcome.STICKING_ON_TWO, state);
-    }
-    const pair = double_contact(along_table(mine), [this.top, other]);
-    const lost = py.float(py.sub(energy(state, this.top), energy(mine, this.top)));
-    const here = pair.normal[0] > 0.0 & pair.normal[1] > 0.0;
-    const alone = pair.first.free_acceleration < 0.0 & pair.acceleration[1] >= 0.0;
-    const another = pair.second.free_acceleration < 0.0 & pair.acceleration[0] >= 0.0;
-    const neither = pair.first.free_acceleration >= 0.0 & pair.second.free_acceleration >= 0.0;
-    if (py.add(py.add(py.add(here, alone), another), neither) !== 1) {
-      const detail = "not exactly one set of forces is consistent with two surfaces that touch";
-      return new Transition(events, Outcome.FAILED, state, detail);
-    }
-    if (py.truth(here)) {
-      const event = this.event(EventKind.DOUBLE_CONTACT, time, 0.0, lost);
-      return new Transition([...events, event], on_two(mine, this, other), mine);
-    }
-    const [left, kept] = py.truth(another) ? [this.top, other] : [other, this.top];
-    events = [...events, new Event(EventKind.OPENING, time, undefined, undefined, number_of(left))];
-    return Object.getPrototypeOf(OnSeveral.prototype).resting.call(this._of(kept), time, state, events);
+  /** As for one surface, whatever else touches. */
+  resting_alone(time, state, events) {
+    return super.resting(time, state, events);
+  }
+  /** As the resolver of two contacts finds. */
+  settled_on_two(time, state, tops, stuck) {
+    return settled(this, time, state, tops, stuck);
+  }
+  /** Slip begins at the limit of what the table can hold. */
+  slipping_on_two(time, state, tops, which) {
+    return slipping(this, time, state, tops, which);
   }
 }
 py.fields(OnSeveral, ["top", "restitution"]);
@@ -5665,7 +6405,7 @@ function quadrature_rates(state, power, pole, top) {
 }
 
 /** Powers of drilling and of rolling friction, W, for the table's torque, N m. */
-function resistance_powers(state, torque, top) {
+function twisting_powers(state, torque, top) {
   const turning = angular_velocity(state.axis, state.momentum, top);
   return [py.mul(torque[2], turning[2]), py.add(py.mul(torque[0], turning[0]), py.mul(torque[1], turning[1]))];
 }
@@ -5689,7 +6429,9 @@ export {
   Algebra,
   Angles,
   Arc,
+  BEGINNING,
   BEYOND,
+  BOTH,
   BRANCH,
   BRANCHING,
   BRANCH_TORQUE,
@@ -5703,6 +6445,7 @@ export {
   Closing,
   ClosingRates,
   Contact,
+  ContactPair,
   ContactPoint,
   ContactRules,
   ContensouFriction,
@@ -5725,6 +6468,7 @@ export {
   ELLIPSOIDAL_RADIUS,
   ENDED,
   ENDING,
+  ENDING_of_double_sticking,
   EXACT,
   EccentricSphere,
   Elementary,
@@ -5733,6 +6477,7 @@ export {
   EventKind,
   FACE,
   FINEST,
+  FIRST,
   FLAT,
   FORCE,
   FORCES,
@@ -5788,6 +6533,7 @@ export {
   NARROWEST,
   NEAR_BRANCH,
   NEGATIVE,
+  NEITHER,
   NEWTON,
   NODES,
   NORTH,
@@ -5803,6 +6549,7 @@ export {
   ORDER,
   OVERTAKEN,
   OnSeveral,
+  OnTwo,
   Onset,
   Opening,
   Outcome,
@@ -5814,6 +6561,7 @@ export {
   POWER,
   PRODUCT,
   PROTRUDING,
+  PairMotion,
   Passing,
   PlainArithmetic,
   PoleExact,
@@ -5836,12 +6584,14 @@ export {
   RegularizedCoulombFriction,
   RegularizedCoulombLaw,
   Resisted,
+  Resolution,
   Resting,
   Revisable,
   Ring,
   RingSurface,
   RollingResistance,
   SEARCHES,
+  SECOND,
   SELECT,
   SETTLED,
   SHORT,
@@ -5849,6 +6599,7 @@ export {
   SIZE,
   SLIP,
   SLIPPING,
+  SLIP_of_double_sticking,
   SLOWEST_REBOUND,
   SLOWEST_ROCKING,
   SLOWEST_SLIP,
@@ -5870,6 +6621,7 @@ export {
   SlidingOnTwo,
   SlidingState,
   SlidingWithoutRolling,
+  SlipBeginningOnTwo,
   Spelling,
   Sphere,
   SphereSurface,
@@ -5878,6 +6630,9 @@ export {
   Start,
   State,
   Sticking,
+  StickingAndSliding,
+  StickingAndSlidingBack,
+  StickingOnTwo,
   StickingWithoutRolling,
   StopAtLiftOff,
   Stopping,
@@ -5885,7 +6640,9 @@ export {
   StruckOnTwo,
   TIME,
   TINY,
+  TOGETHER,
   TOLERANCE,
+  TOLERANCE_of_double_sticking,
   TORQUE,
   TOUCH,
   TOUCHING,
@@ -5896,6 +6653,7 @@ export {
   Trajectory,
   Transition,
   TruncatedSeries,
+  TwoClosed,
   Units,
   VERTICAL,
   Vanishing,
@@ -5912,29 +6670,39 @@ export {
   _followed,
   _gap,
   _improved,
+  _left,
+  _marks,
   _newton,
   _normal_wrench,
   _nothing,
   _number,
+  _of_momentum,
+  _openings,
   _reaches_out,
   _resisting,
   _rests,
+  _rests_of_two_closed,
   _stiffness,
   _surface,
   _unit,
   _unknown,
   acting,
   add,
+  against,
+  alone,
   along_table,
   analytic_disc,
   angular_acceleration,
   angular_velocity,
+  apart,
   arm_rate,
   at_start,
   axial_spin,
   axis_rate,
   axis_sine,
   beginning,
+  beginning_on_two,
+  both_letting_go,
   branch_guard,
   closing_motion,
   closing_of,
@@ -5952,11 +6720,13 @@ export {
   crossing,
   direction_of_slip,
   directions,
+  directions_of,
   dot,
   double_contact,
   double_rates,
   driven_motion,
   each_surface,
+  ended_slips,
   energy,
   falling_time,
   first_reach,
@@ -5970,6 +6740,7 @@ export {
   has_limit_branches,
   heaviness,
   held_motion,
+  held_motion_on_two,
   held_rates,
   highest_gap,
   holding,
@@ -5995,6 +6766,7 @@ export {
   landing_guard,
   least_slip,
   length,
+  letting_go,
   limit_guard,
   lowest_surface,
   moment_per_normal_force,
@@ -6004,6 +6776,7 @@ export {
   natural_units,
   negated,
   normal_force,
+  normal_wrench,
   number_of,
   off_branch,
   on_branch,
@@ -6017,6 +6790,7 @@ export {
   outer_height,
   overtaking_guard,
   pack,
+  pair_motion,
   phis,
   plus,
   point_velocity,
@@ -6025,10 +6799,11 @@ export {
   prevalence,
   quadrature_rates,
   rates_in_time,
+  reaction_of,
   record,
   remaining,
   reopening_guard,
-  resistance_powers,
+  resolution,
   restitution_goal,
   rolling_reserve,
   rolling_stopping_guard,
@@ -6036,11 +6811,13 @@ export {
   scale,
   scaled,
   set_valued,
+  settled,
   size,
   sliding_law,
   sliding_motion,
   sliding_rates,
   slip_along_tilt,
+  slip_apart,
   slip_beside,
   slip_branch_guard,
   slip_dimension,
@@ -6050,6 +6827,8 @@ export {
   slip_of,
   slip_part,
   slip_wrenches,
+  slipping,
+  slips_of,
   slowing,
   solution,
   solve,
@@ -6068,16 +6847,24 @@ export {
   surface_guards,
   tangents,
   tilt_rate,
+  tops_of,
   touchdown,
   turn_rate,
   turned,
+  turned_of_double_sticking,
+  turning_about,
+  turning_motion,
   turning_with,
+  twisting_powers,
   unpack,
   velocity_of,
   velocity_without_slip,
+  way_of_both,
+  way_of_one,
   with_sliding_law,
   without_drilling,
   without_rolling,
+  without_slips,
   without_tilting,
   work_of,
   written,

@@ -1,0 +1,263 @@
+"""Two surfaces touch the table at once, and one does not slip, or both; and how slip begins there."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import Any, ClassVar
+
+from tippetop.contact.double import OPENING, OnTwo, SlidingOnTwo
+from tippetop.contact.mode import Outcome, Reaction, Segment, Transition
+from tippetop.contact.sticking import split
+from tippetop.contact.surfaces import follow_surface, number_of, surface_guards
+from tippetop.integrators import make_integrator
+from tippetop.integrators.base import Function, Guard, Integrator, Motion
+from tippetop.mechanics.contact_pair import (
+    ContactPair,
+    PairMotion,
+    directions_of,
+    pair_motion,
+    slip_apart,
+    slips_of,
+)
+from tippetop.mechanics.double_contact import Tops
+from tippetop.mechanics.motion import axis_rate, on_table
+from tippetop.mechanics.rolling import velocity_without_slip, without_drilling
+from tippetop.mechanics.state import SlidingState, State
+from tippetop.mechanics.stick_slip import velocity_of
+from tippetop.mechanics.top import Kind
+from tippetop.mechanics.vectors import Row, Scalar, dot
+
+SLIP, ENDING = "slip ", "ending"
+
+BEGINNING = 0.02
+"""How long slip that begins is followed by the implicit method, in natural units of time: afterwards its
+direction is damped no faster than the body moves."""
+
+TOLERANCE = 1e-13
+"""Relative error per step of that method."""
+
+
+@dataclass(frozen=True)
+class StickingAndSliding(OnTwo):
+    """The first contact sticks and the second slips across the axis: along t of `contact_pair`."""
+
+    name: ClassVar[str] = "sticking_and_sliding"
+    sign: ClassVar[float] = 1.0
+
+    @property
+    def label(self) -> str:
+        """Its name, with the numbers of the surface that sticks, and of that which slips."""
+        return f"sticking_on_{number_of(self.top)}_sliding_on_{number_of(self.other)}"
+
+    @property
+    def motion(self) -> Motion:
+        """Equations of motion of axis and angular momentum, and guards."""
+        return turning_motion(self.top.kind, self.other.kind, self.sign)
+
+    def numbers(self, state: State) -> tuple[Scalar, ...]:
+        """Axis and angular momentum."""
+        return (*state.axis, *state.momentum)
+
+    def state(self, y: Row) -> State:
+        """The state, whose velocity is that of rolling on the first contact."""
+        axis, momentum = split(y)
+        velocity = velocity_without_slip(axis, momentum, self.top)
+        return on_table(SlidingState(axis, momentum, velocity), self.top)
+
+    def reaction(self, y: Row) -> Reaction:
+        """Force of both contacts, and their torque about the first contact point."""
+        pair = ContactPair.of(*split(y), self.tops)
+        return reaction_of(turned(pair, self.sign), (0.0, 0.0, slip_apart(pair)))
+
+    def follow(self, guard: str, time: float, state: State) -> Transition:
+        """A contact opens; or slip ends on the second, or begins on the first; or a further one touches."""
+        if guard.startswith(OPENING):
+            number = int(guard.removeprefix(OPENING))
+            return self.opening(number, time, state, slips=number == 0)
+        if guard == ENDING:
+            return self.rules.settled_on_two(time, state, self.tops, (number_of(self.top),))
+        if guard.startswith(SLIP):
+            return self.rules.slipping_on_two(time, state, self.tops, guard.removeprefix(SLIP))
+        found = follow_surface(self, guard, time, state)
+        assert found is not None, "there are no other guards"
+        return found
+
+
+@dataclass(frozen=True)
+class StickingAndSlidingBack(StickingAndSliding):
+    """The same where the second contact slips the other way."""
+
+    name: ClassVar[str] = "sticking_and_sliding_back"
+    sign: ClassVar[float] = -1.0
+
+
+@dataclass(frozen=True)
+class StickingOnTwo(OnTwo):
+    """Both contacts stick: the body rolls about the line that joins them, or is at rest."""
+
+    name: ClassVar[str] = "sticking"
+
+    @property
+    def motion(self) -> Motion:
+        """Equations of motion of axis and angular momentum, and the guards of what holds the contacts."""
+        return held_motion_on_two(self.top.kind, self.other.kind)
+
+    def numbers(self, state: State) -> tuple[Scalar, ...]:
+        """Axis and angular momentum."""
+        return (*state.axis, *state.momentum)
+
+    def state(self, y: Row) -> State:
+        """The state, without turning about the vertical, whose velocity is that of rolling."""
+        axis, momentum = split(y)
+        momentum = without_drilling(axis, momentum, self.top)
+        velocity = velocity_without_slip(axis, momentum, self.top)
+        return on_table(SlidingState(axis, momentum, velocity), self.top)
+
+    def reaction(self, y: Row) -> Reaction:
+        """Force of both contacts, and their torque about the first contact point."""
+        return reaction_of(pair_motion(ContactPair.of(*split(y), self.tops), (None, None)), (0.0, 0.0, 0.0))
+
+    def follow(self, guard: str, time: float, state: State) -> Transition:
+        """A contact opens, or one slips, or both; or a further surface touches."""
+        if guard.startswith(OPENING):
+            return self.opening(int(guard.removeprefix(OPENING)), time, state, slips=False)
+        if guard.startswith(SLIP):
+            return self.rules.slipping_on_two(time, state, self.tops, guard.removeprefix(SLIP))
+        found = follow_surface(self, guard, time, state)
+        assert found is not None, "there are no other guards"
+        return found
+
+
+@dataclass(frozen=True)
+class SlipBeginningOnTwo(SlidingOnTwo):
+    """The first moments of slip at a contact, or at both: slip itself is what moves, and loses no digits.
+
+    Attributes
+    ----------
+    begin
+        Its numbers at the start: axis, angular momentum, and xi (see `tippetop.mechanics.contact_pair`).
+    """
+
+    begin: tuple[float, ...] = ()
+
+    @property
+    def motion(self) -> Motion:
+        """Equations of motion, with the guards of both contacts and of further surfaces."""
+        return beginning_on_two(self.top.kind, self.other.kind)
+
+    def numbers(self, state: State) -> tuple[Scalar, ...]:
+        """Those it begins with."""
+        return self.begin
+
+    def state(self, y: Row) -> State:
+        """The state, with its height."""
+        axis, momentum = split(y)
+        velocity = velocity_of(axis, momentum, (y[6], y[7]), self.top)
+        return on_table(SlidingState(axis, momentum, velocity), self.top)
+
+    def reaction(self, y: Row) -> Reaction:
+        """Force of both contacts, and their torque about the first contact point."""
+        pair, xi = ContactPair.of(*split(y), self.tops), (y[6], y[7], y[8])
+        return reaction_of(pair_motion(pair, slips_of(pair, xi)), xi)
+
+    def segments(self, time: float, state: State, end: float, integrator: Integrator) -> Iterator[Segment]:
+        """Follow it by an implicit method: its direction is damped the faster the slower it is."""
+        reach = min(time + BEGINNING, end)
+        for segment in super().segments(time, state, reach, make_integrator("collocation", TOLERANCE)):
+            found = segment.transition
+            if found is not None and found.then is Outcome.COMPLETED and reach < end:
+                then = SlidingOnTwo(self.top, self.rules, self.other)
+                yield replace(segment, transition=Transition((), then, found.state))
+            else:
+                yield segment
+
+
+def turned(pair: ContactPair, sign: Scalar) -> PairMotion:
+    """What the table does while the first contact sticks, and the second slips so across the axis."""
+    across = directions_of(pair.first.axis)[1]
+    return pair_motion(pair, (None, (sign * across[0], sign * across[1])))
+
+
+def reaction_of(found: PairMotion, xi: tuple[Scalar, ...]) -> Reaction:
+    """What the table does to a body that slips so."""
+    power: Any = 0.0
+    for slip, wrench in zip(slips_of(found.pair, xi), found.wrenches, strict=True):
+        power = power + wrench.force[0] * slip[0] + wrench.force[1] * slip[1]
+    power = power + dot(found.couple, found.pair.first.turning)
+    return Reaction(found.force, found.torque, power, found.couple)
+
+
+def tops_of(first: Kind, second: Kind, numbers: Sequence[Scalar]) -> Tops:
+    """The top on either surface."""
+    cut = first.numbers
+    return first.top(tuple(numbers[:cut])), second.top(tuple(numbers[cut : cut + second.numbers]))
+
+
+@lru_cache
+def turning_motion(first: Kind, second: Kind, sign: float) -> Motion:
+    """Equations of motion while the first contact sticks and the second slips across the axis, as signed."""
+
+    def found(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> PairMotion:
+        return turned(ContactPair.of(*split(y), tops_of(first, second, numbers)), sign)
+
+    def slides(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
+        return sign * slip_apart(ContactPair.of(*split(y), tops_of(first, second, numbers)))
+
+    def holds(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
+        return found(y, numbers).reserve(0)
+
+    guards = [*_openings(found), Guard(f"{SLIP}first", holds), Guard(ENDING, slides)]
+    return _of_momentum(first, second, found, guards)
+
+
+@lru_cache
+def held_motion_on_two(first: Kind, second: Kind) -> Motion:
+    """Equations of motion while both contacts stick."""
+
+    def found(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> PairMotion:
+        return pair_motion(ContactPair.of(*split(y), tops_of(first, second, numbers)), (None, None))
+
+    guards = [
+        *_openings(found),
+        Guard(f"{SLIP}0", lambda y, numbers: found(y, numbers).left(0)),
+        Guard(f"{SLIP}1", lambda y, numbers: found(y, numbers).left(1)),
+        Guard(f"{SLIP}both", lambda y, numbers: found(y, numbers).both_reserve),
+    ]
+    return _of_momentum(first, second, found, guards)
+
+
+@lru_cache
+def beginning_on_two(first: Kind, second: Kind) -> Motion:
+    """Equations of motion while both contacts slip, with xi, of which a part may have just begun."""
+
+    def found(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> PairMotion:
+        pair = ContactPair.of(*split(y), tops_of(first, second, numbers))
+        return pair_motion(pair, slips_of(pair, (y[6], y[7], y[8])))
+
+    def rates(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[Scalar, ...]:
+        now = found(y, numbers)
+        axis, momentum = split(y)
+        return (*axis_rate(axis, momentum, now.pair.first.top), *now.moment, *now.rate)
+
+    guards = [*_openings(found), *surface_guards(first, (number_of(second.example),))]
+    return Motion(rates, 9, first.numbers + second.numbers, tuple(guards), lasting=False)
+
+
+def _of_momentum(first: Kind, second: Kind, found: Any, guards: Sequence[Guard]) -> Motion:
+    """Equations of motion of axis and angular momentum."""
+
+    def rates(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[Scalar, ...]:
+        now = found(y, numbers)
+        return (*axis_rate(*split(y), now.pair.first.top), *now.moment)
+
+    guards = [*guards, *surface_guards(first, (number_of(second.example),))]
+    return Motion(rates, 6, first.numbers + second.numbers, tuple(guards), lasting=False)
+
+
+def _openings(found: Any) -> list[Guard]:
+    """The guards of the normal forces."""
+
+    def normal(number: int) -> Function:
+        return lambda y, numbers: found(y, numbers).normal[number]
+
+    return [Guard(f"{OPENING}{number}", normal(number)) for number in (0, 1)]

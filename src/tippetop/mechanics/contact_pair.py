@@ -1,0 +1,326 @@
+"""Two closed contacts of one body, of which one sticks, or both: what the table does, and what it can hold.
+
+Both contact points lie in the plane of the axis and the vertical, a_2 - a_1 = D e, with e the horizontal
+direction of the axis and D constant, as the tilt is. While both stay closed the body turns about e and the
+vertical only, so that with t = z x e
+
+    v_2 = v_1 + zeta t,        zeta = D omega_z:
+
+xi = (v_1, zeta) says how both slip. Where both stick, three of its components are held: along e the points
+move as one, and what holds them may act at either; across e each is held by itself. With N_i and the needed
+forces T_i across e and S along it, Coulomb's friction can where |T_i| <= mu N_i and
+
+    |S| <= sqrt(mu^2 N_1^2 - T_1^2) + sqrt(mu^2 N_2^2 - T_2^2).
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from tippetop.mechanics.coulomb import TINY
+from tippetop.mechanics.direction import Resisted, directions
+from tippetop.mechanics.double_contact import Tops
+from tippetop.mechanics.friction import NO_TORQUE
+from tippetop.mechanics.rolling import (
+    EAST,
+    NORTH,
+    ContactPoint,
+    Slip,
+    Wrench,
+    set_valued,
+    sliding_law,
+    solve,
+    turning_with,
+)
+from tippetop.mechanics.stick_slip import plus, scaled, size
+from tippetop.mechanics.vectors import VERTICAL, Scalar, Vector, add, cross, dot, scale
+
+Slips = tuple[Slip | None, Slip | None]
+"""Slip of both contacts, or its direction; None where it is held."""
+
+Moving = tuple[Vector, Vector, Vector]
+"""Velocities, or accelerations, of both contact points, and angular velocity, or acceleration."""
+
+At = tuple[int, Wrench]
+"""A wrench, and the number of the contact at which it acts."""
+
+Held = tuple[int, Vector]
+"""A component that is held: number in `Moving`, and direction."""
+
+
+class ContactPair(NamedTuple):
+    """The contact points of a body that touches the table with two surfaces."""
+
+    first: ContactPoint
+    second: ContactPoint
+
+    @classmethod
+    def of(cls, axis: Vector, momentum: Vector, tops: Tops) -> "ContactPair":
+        """The contact points for this axis and angular momentum (kg m^2/s)."""
+        first, second = (ContactPoint.of(axis, momentum, top) for top in tops)
+        return cls(first, second)
+
+    @property
+    def free(self) -> Moving:
+        """Accelerations without contact forces."""
+        return self.first.free.point, self.second.free.point, self.first.free.turning
+
+    def response(self, at: At) -> Moving:
+        """Accelerations that a wrench adds; or velocities, if it is one of impulses."""
+        number, wrench = at
+        here, there = (self, self[::-1])[number]
+        point, turning = here.response(wrench)
+        other = add(point, cross(turning, add(there.arm, scale(-1.0, here.arm))))
+        return (other, point, turning) if number else (point, other, turning)
+
+    def holding(self, units: Sequence[At], held: Sequence[Held], moving: Moving) -> list[Scalar]:
+        """How much of each wrench keeps as many components of something that moves at zero."""
+        responses = [self.response(unit) for unit in units]
+        rows = [[dot(found[number], way) for found in responses] for number, way in held]
+        return solve(rows, [-dot(moving[number], way) for number, way in held])
+
+    def moment(self, pushes: Sequence[At]) -> Vector:
+        """Moment of some wrenches about the centre of mass, N m."""
+        total = NO_TORQUE
+        for number, wrench in pushes:
+            total = add(total, self[number].moment(wrench))
+        return total
+
+    def under(self, pushes: Sequence[At]) -> Moving:
+        """Accelerations under some wrenches."""
+        one, other, turning = self.free
+        for push in pushes:
+            more = self.response(push)
+            one, other, turning = add(one, more[0]), add(other, more[1]), add(turning, more[2])
+        return one, other, turning
+
+
+class PairMotion(NamedTuple):
+    """What the table does at both contacts that stay closed, and how they accelerate.
+
+    Attributes
+    ----------
+    pair
+        The contact points.
+    wrenches
+        What the table does at each; along e, where both stick, all at the first.
+    moving
+        Accelerations.
+    """
+
+    pair: ContactPair
+    wrenches: tuple[Wrench, Wrench]
+    moving: Moving
+
+    @property
+    def force(self) -> Vector:
+        """Force of the table, N."""
+        return add(self.wrenches[0].force, self.wrenches[1].force)
+
+    @property
+    def couple(self) -> Vector:
+        """Torque of the table at both contacts, N m."""
+        return add(self.wrenches[0].torque, self.wrenches[1].torque)
+
+    @property
+    def moment(self) -> Vector:
+        """Moment of the table about the centre of mass, N m."""
+        return self.pair.moment(tuple(enumerate(self.wrenches)))
+
+    @property
+    def torque(self) -> Vector:
+        """Torque of the table about the first contact point, N m."""
+        return add(self.moment, scale(-1.0, cross(self.pair.first.arm, self.force)))
+
+    @property
+    def normal(self) -> tuple[Scalar, Scalar]:
+        """Normal forces, N."""
+        return self.wrenches[0].force[2], self.wrenches[1].force[2]
+
+    @property
+    def rate(self) -> Slip:
+        """Rate of xi."""
+        point, _, turning = self.moving
+        return (point[0], point[1], apart(self.pair) * turning[2])
+
+    def needed(self, number: int) -> Scalar:
+        """Force across e at a contact, N."""
+        return dot(self.wrenches[number].force, directions_of(self.pair.first.axis)[1])
+
+    def reserve(self, number: int) -> Scalar:
+        """Positive while the table can exert the horizontal force on a contact that alone sticks, N^2."""
+        x, y, normal = self.wrenches[number].force
+        return set_valued(self.pair[number].top.friction).reserve(normal, (x, y), 0.0)
+
+    def left(self, number: int) -> Scalar:
+        """mu^2 N_i^2 - T_i^2 where both stick, N^2."""
+        law, normal = set_valued(self.pair[number].top.friction), self.normal[number]
+        return law.reserve(normal, (self.needed(number), 0.0), 0.0)
+
+    @property
+    def along(self) -> Scalar:
+        """S, the force along e at both, N."""
+        return dot(self.force, directions_of(self.pair.first.axis)[0])
+
+    @property
+    def both_reserve(self) -> Scalar:
+        """Positive while the table can exert S, N^2: (sqrt(A_1) + sqrt(A_2))^2 - S^2 for positive A_i."""
+        one, other, along = self.left(0), self.left(1), self.along
+        product = one * other
+        return one + other + 2.0 * (product * product + TINY) ** 0.25 - along * along
+
+
+def directions_of(axis: Vector) -> tuple[Vector, Vector]:
+    """Horizontal unit vectors e along the axis and t across it."""
+    inverse = (axis[0] * axis[0] + axis[1] * axis[1]) ** -0.5
+    x, y = axis[0] * inverse, axis[1] * inverse
+    return (x, y, 0.0 * x), (-y, x, 0.0 * x)
+
+
+def apart(pair: ContactPair) -> Scalar:
+    """D, how far the second contact is from the first along e, m."""
+    e = directions_of(pair.first.axis)[0]
+    return dot(pair.second.arm, e) - dot(pair.first.arm, e)
+
+
+def slip_apart(pair: ContactPair) -> Scalar:
+    """D omega_z, m/s."""
+    return apart(pair) * pair.first.turning[2]
+
+
+def pair_motion(pair: ContactPair, slips: Slips) -> PairMotion:
+    """What the table does to a body whose two contacts stay closed, and how it accelerates.
+
+    Parameters
+    ----------
+    pair
+        The contact points.
+    slips
+        How they slip.
+    """
+    held: list[Held] = []
+    if slips[0] is None and slips[1] is None:
+        along, across = directions_of(pair.first.axis)
+        held += [(0, along), (0, across), (1, across)]
+    for number, slip in enumerate(slips):
+        if slip is None and len(held) < 2:
+            held += [(number, EAST), (number, NORTH)]
+    units: list[At] = [(number, Wrench(way, NO_TORQUE)) for number, way in held]
+    for number, slip in enumerate(slips):
+        units.append((number, normal_wrench(pair[number], slip)))
+        held.append((number, VERTICAL))
+    sizes = pair.holding(units, held, pair.free)
+    found = [Wrench(NO_TORQUE, NO_TORQUE), Wrench(NO_TORQUE, NO_TORQUE)]
+    pushes: list[At] = []
+    for amount, (number, unit) in zip(sizes, units, strict=True):
+        push = Wrench(scale(amount, unit.force), scale(amount, unit.torque))
+        found[number] = Wrench(*(add(a, b) for a, b in zip(found[number], push, strict=True)))
+        pushes.append((number, push))
+    return PairMotion(pair, (found[0], found[1]), pair.under(pushes))
+
+
+def normal_wrench(point: ContactPoint, slip: Slip | None) -> Wrench:
+    """A unit normal force with the friction that goes with it where the contact slips."""
+    if slip is None:
+        return Wrench(VERTICAL, NO_TORQUE)
+    force, torque = sliding_law(point.top.friction).traction((slip[0], slip[1]), turning_with(point, slip))
+    return Wrench((*force, 1.0), torque)
+
+
+def slips_of(pair: ContactPair, xi: Slip) -> tuple[Slip, Slip]:
+    """How both contacts slip."""
+    across = directions_of(pair.first.axis)[1]
+    return (xi[0], xi[1]), (xi[0] + xi[2] * across[0], xi[1] + xi[2] * across[1])
+
+
+def without_slips(pair: ContactPair, velocity: Vector, ended: tuple[bool, bool]) -> tuple[Vector, Vector]:
+    """Angular momentum and velocity after the impulses that end the slip of one contact, or of both.
+
+    They act at the contacts, and keep the normal velocities: what little slip is left goes as friction takes
+    it.
+    """
+    omega = pair.first.turning
+    moving = (*(add(velocity, cross(omega, point.arm)) for point in pair), omega)
+    along, across = directions_of(pair.first.axis)
+    both: list[Held] = [(0, along), (0, across), (1, across)]
+    held = both if all(ended) else [(int(ended[1]), EAST), (int(ended[1]), NORTH)]
+    units: list[At] = [(number, Wrench(way, NO_TORQUE)) for number, way in held]
+    for number in (0, 1):
+        units.append((number, Wrench(VERTICAL, NO_TORQUE)))
+        held.append((number, VERTICAL))
+    moving = (moving[0], moving[1], moving[2])
+    sizes = pair.holding(units, held, moving)
+    pushes = [
+        (number, Wrench(scale(a, unit.force), NO_TORQUE))
+        for a, (number, unit) in zip(sizes, units, strict=True)
+    ]
+    momentum = add(pair.first.momentum, pair.moment(pushes))
+    for _, push in pushes:
+        velocity = add(velocity, scale(1.0 / pair.first.top.mass, push.force))
+    return momentum, velocity
+
+
+def way_of_one(pair: ContactPair, slip: Slip) -> tuple[Slip, PairMotion]:
+    """Direction in which the first contact begins to slip, and the motion then.
+
+    Parameters
+    ----------
+    pair
+        The contact points.
+    slip
+        How the second contact slips.
+
+    Raises
+    ------
+    ArithmeticError
+        If there is no such direction, or more than one.
+    """
+    answers = [pair.response((0, Wrench(way, NO_TORQUE)))[0] for way in (EAST, NORTH)]
+    stiffness = float(abs(answers[0][0]) + abs(answers[1][1]))
+
+    def response(ways: Sequence[Slip]) -> list[Resisted]:
+        found = pair_motion(pair, (ways[0], slip))
+        return [Resisted(found.moving[0][:2], stiffness * size(found.wrenches[0].force[:2]))]
+
+    held = pair_motion(pair, (None, slip)).wrenches[0]
+    way = directions(response, [scaled(-1.0, held.force[:2])])[0]
+    return way, pair_motion(pair, (way, slip))
+
+
+def way_of_both(pair: ContactPair) -> tuple[Slip, PairMotion]:
+    """Direction of xi in which both contacts begin to slip that cannot be held, and the motion then.
+
+    Raises
+    ------
+    ArithmeticError
+        If there is no such direction, or more than one.
+    """
+    across = directions_of(pair.first.axis)[1]
+    lever = float(apart(pair))
+    answers = [pair.response((0, Wrench(way, NO_TORQUE)))[0] for way in (EAST, NORTH)]
+    turned = pair.response((1, Wrench(across, NO_TORQUE)))[2][2]
+    stiffness = float(abs(answers[0][0]) + abs(answers[1][1]) + abs(lever * turned))
+
+    def motion(way: Slip) -> PairMotion:
+        return pair_motion(pair, slips_of(pair, way))
+
+    def response(ways: Sequence[Slip]) -> list[Resisted]:
+        found = motion(ways[0])
+        strength = sum(size(wrench.force[:2]) for wrench in found.wrenches)
+        return [Resisted(found.rate, stiffness * strength)]
+
+    way = directions(response, [against(pair_motion(pair, (None, None)))])[0]
+    return way, motion(way)
+
+
+def against(held: PairMotion) -> Slip:
+    """Direction of xi against which friction exerts all it can along e, and what is needed across it."""
+    along, across = directions_of(held.pair.first.axis)
+    sign = -1.0 if held.along >= 0.0 else 1.0
+    ratios = []
+    for number in (0, 1):
+        across_force = held.needed(number)
+        spare = max(held.left(number), (1e-3 * held.normal[number]) ** 2)
+        ratios.append(across_force / spare**0.5)
+    # Forces S_i e + T_i t act against v_e (e + T_i / S_i t), where S_i has the sign of S.
+    v = plus(scaled(sign, along[:2]), scaled(-ratios[0], across[:2]))
+    return (*v, -(ratios[1] - ratios[0]))

@@ -1,0 +1,220 @@
+"""Two dry contacts of one body: how slip ends on one or on both, what holds them then, and how it begins."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import tippetop as tt
+from tippetop.contact.choice import rules_of
+from tippetop.contact.double import SlidingOnTwo
+from tippetop.contact.double_sticking import (
+    SlipBeginningOnTwo,
+    StickingAndSliding,
+    StickingAndSlidingBack,
+    StickingOnTwo,
+)
+from tippetop.contact.trajectory import Trajectory
+from tippetop.integrators import make_integrator
+from tippetop.mechanics.contact_pair import ContactPair, pair_motion, slip_apart
+from tippetop.mechanics.flight import gap_rate
+from tippetop.mechanics.friction import NO_TORQUE
+from tippetop.mechanics.motion import angular_velocity
+from tippetop.mechanics.rolling import Wrench
+from tippetop.mechanics.surface import contact_vector
+from tippetop.mechanics.top import natural, natural_state, natural_units
+
+MASS, BALL, HALF, MU, G = 0.01, 0.005, 0.02, 0.3, 9.8
+ACROSS = 2e-6
+DUMBBELL = tt.Problem(
+    body=tt.Body(
+        mass=MASS,
+        shape=[tt.Sphere(radius=BALL, center=HALF), tt.Sphere(radius=BALL, center=-HALF)],
+        I1=ACROSS,
+        I3=1.25e-7,
+    ),
+    friction=tt.CoulombFriction(mu=MU),
+    launch=tt.Launch(tilt=np.pi / 2, spin=0.0),
+)
+
+
+def followed_by_steps(problem: tt.Problem, duration: float, samples: int = 11) -> xr.Dataset:
+    """By a method that needs no compiling."""
+    return tt.simulate(problem, duration, samples=samples, integrator="dop853", tolerance=3e-14)
+
+
+def times(run: xr.Dataset, kind: str) -> list[float]:
+    found: list[float] = run["event_time"].values[run["event_kind"].values == kind].tolist()
+    return found
+
+
+def test_a_dumbbell_that_slides_along_itself_stops_as_a_block() -> None:
+    run = followed_by_steps(DUMBBELL.replace({"launch.velocity": (0.2, 0.0, 0.0)}), 1.0)
+    assert run.attrs["outcome"] == "at_rest"
+    assert times(run, "stick") == pytest.approx([0.2 / (MU * G)] * 2, rel=1e-13)
+    assert float(run["event_time"][-1]) == pytest.approx(float(run["time"][-1]), abs=1e-9)
+    assert float(run["energy_lost_sliding"]) == pytest.approx(0.5 * MASS * 0.2**2, rel=1e-13)
+
+
+def test_a_dumbbell_that_turns_stops_under_the_couple_of_both_ends() -> None:
+    """I_1 w' = -mu m g HALF."""
+    run = tt.simulate(
+        DUMBBELL.replace({"launch.precession": 5.0, "launch.velocity": (0.0, 0.0, 0.0)}), 1.0, samples=11
+    )
+    assert run.attrs["outcome"] == "at_rest"
+    assert times(run, "stick") == pytest.approx([5.0 * ACROSS / (MU * MASS * G * HALF)] * 2, rel=1e-12)
+
+
+def test_a_dumbbell_that_slides_across_comes_to_roll() -> None:
+    """As a cylinder: the slip falls with mu g (1 + m r^2 / I_3), and then it rolls on for ever."""
+    run = followed_by_steps(DUMBBELL.replace({"launch.velocity": (0.0, 0.2, 0.0)}), 1.0)
+    slowing = MU * G * (1.0 + MASS * BALL**2 / 1.25e-7)
+    assert times(run, "stick") == pytest.approx([0.2 / slowing] * 2, rel=1e-12)
+    assert run.attrs["outcome"] == "completed"
+    rolls = 0.2 - MU * G * 0.2 / slowing
+    assert run["velocity"].values[-1] == pytest.approx([0.0, rolls, 0.0], abs=1e-13)
+    assert run["mode"].attrs["flag_meanings"].split()[int(run["mode"][-1])] == "sticking_on_0_and_1"
+
+
+def lying(seed: int) -> tt.Problem:
+    """A body on two unlike spheres that rolls, slides and turns."""
+    random = np.random.default_rng(seed)
+    (r1, r2), z1, z2 = 0.02 * random.uniform(0.3, 1, 2), *(0.02 * random.uniform(0.9, 1.8, 2))
+    I1 = random.uniform(0.3, 1) * 0.02**3
+    body = tt.Body(
+        mass=0.02,
+        shape=[tt.Sphere(radius=r1, center=z1), tt.Sphere(radius=r2, center=-z2)],
+        I1=I1,
+        I3=I1 * random.uniform(0.1, 1.2),
+    )
+    friction = tt.CoulombFriction(mu=random.uniform(0.05, 0.6))
+    launch = tt.Launch(
+        tilt=float(np.arccos((r1 - r2) / (z1 + z2))),
+        spin=random.uniform(-60, 60),
+        precession=random.uniform(-8, 8),
+        velocity=(*random.uniform(-0.3, 0.3, 2).tolist(), 0.0),
+    )
+    return tt.Problem(body=body, friction=friction, launch=launch)
+
+
+ONE_THEN_BOTH, SLIPS_AGAIN = 8, 11
+"""Of the one both contacts stick in turn; of the other one sticks, and slips again."""
+DURATION = {ONE_THEN_BOTH: 0.12, SLIPS_AGAIN: 0.3}
+
+
+@cache
+def followed(seed: int):
+    """The segments of such a body."""
+    problem = lying(seed)
+    units = natural_units(problem.top)
+    rules = rules_of(problem.contact, natural(problem.top), units)
+    start = rules.launch(natural_state(problem.start(), units))
+    run = Trajectory(start, DURATION[seed] / units.time, make_integrator("dop853", 3e-14))
+    return list(run.segments())
+
+
+def states(segment, count=5):
+    """Numbers and states within a segment."""
+    knots = segment.solution.knots
+    for time in np.linspace(knots[0], knots[-1], count):
+        y = [float(number) for number in segment.solution(np.array([time]))[0]]
+        yield y, segment.mode.state(y)
+
+
+@pytest.mark.parametrize("seed", [ONE_THEN_BOTH, SLIPS_AGAIN])
+def test_what_sticks_does_not_slip_and_takes_no_more_than_it_can(seed: int) -> None:
+    seen = set()
+    for segment in followed(seed):
+        mode = segment.mode
+        if not isinstance(mode, (StickingOnTwo, StickingAndSliding)):
+            continue
+        seen.add(type(mode))
+        for y, state in states(segment):
+            omega = np.array(angular_velocity(state.axis, state.momentum, mode.top))
+            slips = [
+                np.array(state.velocity) + np.cross(omega, contact_vector(state.axis, top.surface))
+                for top in mode.tops
+            ]
+            stuck = slips if isinstance(mode, StickingOnTwo) else slips[:1]
+            assert np.abs(stuck).max() < 1e-12
+            assert abs(gap_rate(state, mode.other)) < 1e-12
+            pair = ContactPair.of(state.axis, state.momentum, mode.tops)
+            force = mode.reaction(y).force
+            if isinstance(mode, StickingOnTwo):
+                found = pair_motion(pair, (None, None))
+                assert min(found.normal) > 0.0
+                assert min(found.left(0), found.left(1), found.both_reserve) >= 0.0
+            else:
+                across = mode.sign * np.array([-state.axis[1], state.axis[0]])
+                found = pair_motion(pair, (None, tuple(across)))
+                assert min(found.normal) > 0.0
+                assert found.reserve(0) >= -1e-12
+                assert mode.sign * slip_apart(pair) >= -1e-12
+            assert force == pytest.approx(found.force, abs=1e-12)
+    assert StickingAndSlidingBack in seen
+
+
+def test_force_across_leaves_less_along() -> None:
+    """Against many ways to share the force out between both contacts."""
+    segment = next(s for s in followed(ONE_THEN_BOTH) if isinstance(s.mode, StickingOnTwo))
+    (_, state), *_ = states(segment)
+    held = pair_motion(ContactPair.of(state.axis, state.momentum, segment.mode.tops), (None, None))
+    limits = segment.mode.top.friction.mu * np.array(held.normal)
+    e = np.array([*state.axis[:2], 0.0]) / np.hypot(*state.axis[:2])
+    t, across = np.array([-e[1], e[0], 0.0]), limits * (0.3, -0.7)
+    shares = np.linspace(-2.0, 2.0, 40001)
+    seen = set()
+    for along in np.linspace(0.0, 2.0, 41) * limits.sum():
+        forces = across[0] * t + along * e, across[1] * t
+        wrenches = [Wrench((f[0], f[1], n), NO_TORQUE) for f, n in zip(forces, held.normal, strict=True)]
+        pushed = held._replace(wrenches=tuple(wrenches))
+        fits = np.hypot(shares, across[0]) <= limits[0]
+        fits &= np.hypot(along - shares, across[1]) <= limits[1]
+        assert (pushed.both_reserve >= 0.0) == fits.any(), along
+        seen.add(bool(fits.any()))
+    assert seen == {False, True}
+
+
+@pytest.mark.parametrize(("seed", "near"), [(ONE_THEN_BOTH, 1e-3), (SLIPS_AGAIN, 1e-2)])
+def test_it_is_the_limit_of_friction_that_is_smoothed(seed, near) -> None:
+    """With f = -mu v / sqrt(v^2 + eps^2) both contacts creep, by the equations of sliding on two."""
+    problem, duration, names = lying(seed), DURATION[seed], ["axis", "angular_momentum", "velocity"]
+    dry = followed_by_steps(problem, duration)[names]
+    off = []
+    for eps in (1e-3, 1e-4):
+        friction = {"kind": "regularized_coulomb", "mu": problem.friction.mu, "eps": eps}
+        creeps = problem.replace({"friction": friction})
+        run = tt.simulate(creeps, duration, samples=11, integrator="collocation")[names]
+        off.append(max(float((abs(dry - run).max() / abs(dry).max())[name]) for name in names))
+    assert off[1] < 0.3 * off[0]
+    assert off[1] < near
+
+
+@pytest.mark.parametrize("seed", [ONE_THEN_BOTH, SLIPS_AGAIN])
+def test_energy_balances_over_all_transitions(seed: int) -> None:
+    run = followed_by_steps(lying(seed), DURATION[seed], 101)
+    assert run.attrs["outcome"] == "completed"
+    assert float(run["energy_error"]) < 1e-12
+    assert float(abs(run["gap"]).max()) < 1e-12 * 0.02
+    words = run["mode"].attrs["flag_meanings"].split()
+
+
+def test_what_rolls_on_two_contacts_keeps_its_energy() -> None:
+    run = followed_by_steps(lying(ONE_THEN_BOTH), DURATION[ONE_THEN_BOTH], 101)
+    words = run["mode"].attrs["flag_meanings"].split()
+    stuck = run["mode"].values == words.index("sticking_on_0_and_1")
+    assert stuck.sum() > 10
+    assert np.ptp(run["energy"].values[stuck]) < 1e-12 * float(abs(run["energy"]).max())
+
+
+def test_slip_that_begins_at_the_limit_grows_with_the_square_of_time() -> None:
+    segments = followed(SLIPS_AGAIN)
+    number = next(i for i, s in enumerate(segments) if isinstance(s.mode, SlipBeginningOnTwo))
+    begin, before = segments[number], segments[number - 1]
+    assert isinstance(before.mode, StickingAndSliding)
+    assert isinstance(segments[number + 1].mode, SlidingOnTwo)
+    start = begin.solution.knots[0]
+    after = np.array([2e-3, 4e-3, 8e-3])
+    speeds = np.hypot(*begin.solution(start + after).T[6:8])
+    assert speeds[1:] / speeds[:-1] == pytest.approx([4.0, 4.0], rel=0.02)
