@@ -197,7 +197,6 @@ def test_energy_balances_over_all_transitions(seed: int) -> None:
     assert run.attrs["outcome"] == "completed"
     assert float(run["energy_error"]) < 1e-12
     assert float(abs(run["gap"]).max()) < 1e-12 * 0.02
-    words = run["mode"].attrs["flag_meanings"].split()
 
 
 def test_what_rolls_on_two_contacts_keeps_its_energy() -> None:

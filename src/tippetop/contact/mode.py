@@ -44,8 +44,8 @@ class Outcome(Enum):
         "this is the end of its motion, but for what the impact of its face would add."
     )
     STICKING_ON_TWO = (
-        "Two surfaces touch the table and one does not slip, which is followed no further; "
-        "viscous friction, or a patch that drills, goes on."
+        "Two surfaces touch the table and neither slip nor drill, which is followed no further where a patch "
+        "resists drilling; Coulomb's friction without a patch goes on."
     )
     TOO_MANY_PHASES = (
         "The top bounced and slid more often than the run allows; "
