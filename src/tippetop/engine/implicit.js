@@ -45,11 +45,11 @@ export class Collocation extends Stepper {
     this.jacobian = null;
   }
 
-  /** Derivatives of the rates at the start of the step, by differences. */
-  differentiate() {
-    const { size, state, work, there } = this, found = [];
+  /** Derivatives of the rates at the start of the step, by differences that are small beside what moves in it. */
+  differentiate(step) {
+    const { size, state, slopes, work, there } = this, found = [];
     for (let j = 0; j < size; j += 1) {
-      const shift = 1e-7 * Math.max(1e-5, Math.abs(state[j])), columns = [];
+      const shift = 1e-7 * Math.max(Math.abs(state[j]), step * Math.abs(slopes[0][j]), 1e-3 * step), columns = [];
       for (const sign of [1, -1]) {
         work.set(state);
         work[j] += sign * shift;
@@ -63,7 +63,7 @@ export class Collocation extends Stepper {
 
   take(step, tolerance) {
     const { size, state, slopes, work, reached } = this, count = STAGES * size;
-    this.jacobian ??= this.differentiate();
+    this.jacobian ??= this.differentiate(step);
     const matrix = Array.from({ length: count }, () => new Float64Array(count));
     for (let a = 0; a < STAGES; a += 1) {
       for (let b = 0; b < STAGES; b += 1) {

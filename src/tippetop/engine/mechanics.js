@@ -6405,7 +6405,7 @@ function quadrature_rates(state, power, pole, top) {
 }
 
 /** Powers of drilling and of rolling friction, W, for the table's torque, N m. */
-function twisting_powers(state, torque, top) {
+function resistance_powers(state, torque, top) {
   const turning = angular_velocity(state.axis, state.momentum, top);
   return [py.mul(torque[2], turning[2]), py.add(py.mul(torque[0], turning[0]), py.mul(torque[1], turning[1]))];
 }
@@ -6803,6 +6803,7 @@ export {
   record,
   remaining,
   reopening_guard,
+  resistance_powers,
   resolution,
   restitution_goal,
   rolling_reserve,
@@ -6855,7 +6856,6 @@ export {
   turning_about,
   turning_motion,
   turning_with,
-  twisting_powers,
   unpack,
   velocity_of,
   velocity_without_slip,
