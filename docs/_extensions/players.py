@@ -1,5 +1,7 @@
-"""Runs that play in the page: ``{player}`` with lines of Python that state a `problem`, made at build."""
+"""What moves in a page: ``{player}`` plays the run of a `problem` that its lines state; ``{laboratory}``."""
 
+import shutil
+from pathlib import Path
 from typing import Any, ClassVar
 
 from docutils import nodes
@@ -7,39 +9,63 @@ from docutils.parsers.rst import directives
 from sphinx.util.docutils import SphinxDirective
 
 import tippetop as tt
+from tippetop.lab.serve import page_path
 
 FOLDER = "_players"
 
 
-class Player(SphinxDirective):
-    """A frame that plays the run of the `problem` that its lines of Python state."""
+class Frame(SphinxDirective):
+    """A frame that shows a page of its own, with a caption."""
 
     required_arguments = 1
     final_argument_whitespace = True
-    has_content = True
-    option_spec: ClassVar = {"name": directives.unchanged_required, "duration": float}
 
-    def run(self) -> list[nodes.Node]:
-        """Simulate, write the page, and show it in a frame."""
-        name = self.options["name"]
-        folder = self.env.app.outdir / FOLDER
-        folder.mkdir(parents=True, exist_ok=True)
-        namespace: dict[str, Any] = {"tt": tt}
-        exec("\n".join(self.content), namespace)
-        run = tt.simulate(namespace["problem"], duration=self.options.get("duration", 10.0), samples=4001)
-        tt.write_html(run, folder / f"{name}.html", overwrite=True)
-        depth = self.env.docname.count("/")
+    @property
+    def folder(self) -> Path:
+        """Where such pages are."""
+        found: Path = self.env.app.outdir / FOLDER
+        found.mkdir(parents=True, exist_ok=True)
+        return found
+
+    def frame(self, name: str, kind: str) -> list[nodes.Node]:
+        """The frame with the page of a name."""
         title = self.arguments[0]
-        where = "../" * depth + f"{FOLDER}/{name}.html"
+        where = "../" * self.env.docname.count("/") + f"{FOLDER}/{name}.html"
         frame = (
-            f'<figure class="player"><iframe src="{where}" title="{title}" loading="lazy" '
+            f'<figure class="{kind}"><iframe src="{where}" title="{title}" loading="lazy" '
             f'allowfullscreen></iframe><figcaption>{title} <a href="{where}">Alone on a page</a></figcaption>'
             "</figure>"
         )
         return [nodes.raw("", frame, format="html")]
 
 
+class Laboratory(Frame):
+    """The laboratory, as `tippetop lab` opens it."""
+
+    def run(self) -> list[nodes.Node]:
+        """Copy its page, and show it in a frame."""
+        shutil.copyfile(page_path(), self.folder / "lab.html")
+        return self.frame("lab", "player laboratory")
+
+
+class Player(Frame):
+    """A frame that plays the run of the `problem` that its lines of Python state."""
+
+    has_content = True
+    option_spec: ClassVar = {"name": directives.unchanged_required, "duration": float}
+
+    def run(self) -> list[nodes.Node]:
+        """Simulate, write the page, and show it in a frame."""
+        name = self.options["name"]
+        namespace: dict[str, Any] = {"tt": tt}
+        exec("\n".join(self.content), namespace)
+        run = tt.simulate(namespace["problem"], duration=self.options.get("duration", 10.0), samples=4001)
+        tt.write_html(run, self.folder / f"{name}.html", overwrite=True)
+        return self.frame(name, "player")
+
+
 def setup(app: Any) -> dict[str, Any]:
-    """Register the directive."""
+    """Register the directives."""
     app.add_directive("player", Player)
+    app.add_directive("laboratory", Laboratory)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
