@@ -8,6 +8,10 @@ import pytest
 
 import tippetop as tt
 from browsing import Visit
+from tippetop.lathe.mesh import solids
+
+BEECH = 720.0
+"""Density of the page's first material, kg/m^3."""
 
 Lab = Callable[..., Visit]
 
@@ -144,7 +148,18 @@ def test_a_top_of_ones_own_is_weighed_and_spun(lab: Lab, tmp_path: Path) -> None
     with page.expect_download() as download:
         page.locator("[data-kind=stl]").click()
     download.value.save_as(tmp_path / "top.stl")
-    assert (tmp_path / "top.stl").stat().st_size > 10_000
+    piece = tt.Workpiece(profile=body.profile, density=BEECH)
+    mass, center, across, along = piece.mass_properties
+    assert (body.mass, body.I1, body.I3) == pytest.approx((mass, across, along), rel=1e-6)
+    assert center == pytest.approx(0.0, abs=2e-9)
+    trimesh = pytest.importorskip("trimesh", reason="trimesh reads solids; it comes with the lathe extra")
+    printed = trimesh.load(tmp_path / "top.stl")
+    assert printed.is_watertight
+    ((_, points, triangles),) = solids(piece, 180)
+    expected = trimesh.Trimesh(1e3 * points, triangles)
+    assert printed.volume == pytest.approx(expected.volume, rel=1e-5)
+    assert printed.bounds == pytest.approx(expected.bounds, abs=1e-4)
+    assert BEECH * 1e-9 * printed.volume == pytest.approx(body.mass, rel=2e-3), "but for the facets"
 
 
 def test_downloads_open_again(lab: Lab, tmp_path: Path) -> None:

@@ -2,15 +2,13 @@
 
 import * as THREE from "three";
 import { GLTFExporter } from "three/addons/exporters/GLTFExporter.js";
-import { STLExporter } from "three/addons/exporters/STLExporter.js";
 
 import { makeToy } from "../player/toy.js";
 import { differences, FIRST } from "./setup.js";
 
-// Poses of a film per second, the film's frames per second, and how many facets a printed top has.
+// Poses of a film per second, and the film's frames per second.
 const KEYS = 60;
 const FRAMES = 30;
-const FACETS = 120;
 // Pixels of a picture for each of the screen's.
 const FINE = 2;
 
@@ -97,16 +95,6 @@ export async function glb(track) {
     new THREE.QuaternionKeyframeTrack("top.quaternion", times, turns),
   ]);
   return new GLTFExporter().parseAsync(scene, { binary: true, animations: [clip] });
-}
-
-// The outline turned into a solid, in millimetres.
-export function stl({ parts, size }) {
-  const profile = parts.filter(({ opacity }) => opacity === 1).flatMap((part) => part.profile);
-  profile.sort(([, a], [, b]) => a - b);
-  const points = profile.map(([r, z]) => new THREE.Vector2(Math.max(r, 0) * size * 1e3, z * size * 1e3));
-  const ends = [new THREE.Vector2(0, points[0].y), ...points, new THREE.Vector2(0, points.at(-1).y)];
-  const solid = new THREE.Mesh(new THREE.LatheGeometry(ends, FACETS).rotateX(Math.PI / 2));
-  return new STLExporter().parse(solid, { binary: true });
 }
 
 // The scene as it is drawn now.

@@ -2,8 +2,9 @@
 
 import { useState } from "preact/hooks";
 
-import { commandLine, csv, film, glb, picture, save, stl, toml } from "./files.js";
+import { commandLine, csv, film, glb, picture, save, toml } from "./files.js";
 import { t } from "./i18n.js";
+import { stl } from "./solid.js";
 
 export function Keep({ lab }) {
   const [recording, record] = useState(false);

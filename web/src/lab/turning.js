@@ -1,51 +1,57 @@
 // A top from its shape: a ball cut by a face, hollowed around its stem, of one material; lengths in m.
 
-const SLICES = 1200;
+import { edge } from "../run/looks.js";
 
 export const MATERIALS = { beech: 720, plastic: 1050, cork: 240, aluminium: 2700 };
 
 export const FIRST = { radius: 0.02, face: 0.55, hollow: 0.6, stem: 0.032, knob: 0.0035, material: "beech" };
 
-// Radius of the hollow, in radii of the ball: as wide as leaves a wall.
+// Thickness of the wall around the hollow, in radii of the ball.
 const WALL = 0.12;
 
-function shaft({ knob }) {
-  return 0.75 * knob;
+// Places and weights of Gauss's rule of three points on (0, 1): exact for what an edge adds.
+const GAUSS = [[0.5 - Math.sqrt(0.15), 5 / 18], [0.5, 8 / 18], [0.5 + Math.sqrt(0.15), 5 / 18]];
+
+// The line that is turned, in three parts from below: points (distance from the axis, height above the ball's
+// middle) with their radius where arcs end. All arcs have their centre on the axis.
+function partsOf({ radius, face, hollow, stem, knob }) {
+  const [cut, slim, inner] = [face * radius, 0.75 * knob, (1 - WALL) * radius];
+  const bottom = cut - hollow * (1 + face) * radius + WALL * radius;
+  const across = (ball, z) => Math.sqrt(Math.max(ball ** 2 - z ** 2, 0));
+  // Cut too high there is no way in.
+  const bored = bottom < cut && across(inner, cut) > slim && across(inner, bottom) > slim;
+  return {
+    ball: [[0, -radius], [across(radius, cut), cut, radius]],
+    bore: bored ? [[across(inner, cut), cut], [across(inner, bottom), bottom, -inner], [slim, bottom]] : [],
+    stem: [[slim, bored ? bottom : cut], [slim, stem - across(knob, slim)], [0, stem + knob, knob]].slice(bored ? 1 : 0),
+  };
 }
 
-// The widest the hollow may be at a height, from the ball's middle: nothing where there is none.
-function bore({ radius, face, hollow, knob }, z) {
-  const bottom = (face - hollow * (1 + face)) * radius;
-  if (hollow <= 0 || z < bottom + WALL * radius || z > face * radius) return 0;
-  const inner = (1 - WALL) * radius;
-  return Math.max(Math.sqrt(Math.max(inner ** 2 - z ** 2, 0)), shaft({ knob }));
-}
-
-export function widthAt(top, z) {
-  const { radius, face, stem, knob } = top;
-  if (z < -radius || z > stem + knob) return 0;
-  if (z <= face * radius) return Math.sqrt(Math.max(radius ** 2 - z ** 2, 0));
-  const ball = Math.sqrt(Math.max(knob ** 2 - (z - stem) ** 2, 0));
-  return z < stem ? Math.max(ball, shaft(top)) : ball;
+function profileOf(top) {
+  const { ball, bore, stem } = partsOf(top);
+  return [...ball, ...bore, ...stem];
 }
 
 // Mass, height of its centre above the ball's middle, moments of inertia about it.
 export function weigh(top) {
   const density = MATERIALS[top.material];
-  const [low, high] = [-top.radius, top.stem + top.knob];
-  const step = (high - low) / SLICES;
+  const points = profileOf(top);
   let [mass, moment, along, across] = [0, 0, 0, 0];
-  for (let k = 0; k < SLICES; k++) {
-    const z = low + (k + 0.5) * step;
-    const [outer, hole, inner] = [widthAt(top, z), bore(top, z), shaft(top)];
-    const empty = hole > inner ? [hole ** 2 - inner ** 2, hole ** 4 - inner ** 4] : [0, 0];
-    const area = Math.PI * (outer ** 2 - empty[0]) * density * step;
-    const polar = (Math.PI / 2) * (outer ** 4 - empty[1]) * density * step;
-    mass += area;
-    moment += area * z;
-    along += polar;
-    across += polar / 2 + area * z ** 2;
-  }
+  points.slice(1).forEach(([r, z, arc], k) => {
+    const [before, from] = points[k];
+    if (z === from) return;
+    const middle = (r ** 2 + z ** 2 - before ** 2 - from ** 2) / (2 * (z - from));
+    for (const [place, weight] of GAUSS) {
+      const at = from + place * (z - from);
+      const square = arc ? arc ** 2 - (at - middle) ** 2 : r ** 2;
+      const area = Math.PI * square * density * weight * (z - from);
+      const polar = (area * square) / 2;
+      mass += area;
+      moment += area * at;
+      along += polar;
+      across += polar / 2 + area * at ** 2;
+    }
+  });
   const centre = moment / mass;
   return { mass, centre, I3: along, I1: across - mass * centre ** 2 };
 }
@@ -63,7 +69,8 @@ export function bodyOf(top) {
     { kind: "sphere", radius: top.radius, center: -centre },
     { kind: "sphere", radius: top.knob, center: top.stem - centre },
   ];
-  return { mass, shape, I1, I3 };
+  const above = ([r, z, ...arc]) => [r, z - centre, ...arc].map((value) => Number(value.toFixed(9)));
+  return { mass, shape, I1, I3, profile: profileOf(top).map(above) };
 }
 
 // What it can do at all, whatever its spin: 1 - alpha < I1/I3 < 1 + alpha turns over completely.
@@ -77,11 +84,8 @@ export function verdictOf(top) {
 
 // Half of its section: points from below, and those of its hollow.
 export function sectionOf(top) {
-  const [low, high] = [-top.radius, top.stem + top.knob];
-  const heights = Array.from({ length: 161 }, (_, k) => low + ((high - low) * k) / 160);
-  const holes = heights.filter((z) => bore(top, z) > shaft(top));
-  return {
-    outer: heights.map((z) => [widthAt(top, z), z]),
-    hollow: [...holes.map((z) => [bore(top, z), z]), ...holes.reverse().map((z) => [shaft(top), z])],
-  };
+  const { ball, bore, stem } = partsOf(top);
+  const drawn = (points) => points.slice(1).flatMap((point, k) => edge(points[k], point));
+  const [slim] = stem[0];
+  return { outer: drawn([...ball, [slim, ball[1][1]], ...stem]), hollow: bore.length ? drawn([...bore, [slim, ball[1][1]]]) : [] };
 }
