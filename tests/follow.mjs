@@ -2,7 +2,7 @@
 import { createInterface } from "node:readline";
 import { pathToFileURL } from "node:url";
 
-const { InvalidInput, simulate } = await import(pathToFileURL(process.argv[2]));
+const { InvalidInput, criticalSpins, predict, prospects, simulate } = await import(pathToFileURL(process.argv[2]));
 
 function followed({ problem, duration, tolerance, times }) {
   try {
@@ -18,6 +18,24 @@ function followed({ problem, duration, tolerance, times }) {
   }
 }
 
+// What the theory says of a launch; of what it refuses, the field.
+function foreseen({ problem }) {
+  const asked = { predict: () => predict(problem), critical: () => criticalSpins(problem), prospects: () => prospects(problem.body) };
+  const told = (ask) => {
+    try {
+      return ask();
+    } catch (error) {
+      if (error instanceof InvalidInput) return { refused: error.field };
+      return { broken: `${error.stack}` };
+    }
+  };
+  return Object.fromEntries(Object.entries(asked).map(([name, ask]) => [name, told(ask)]));
+}
+
+// Numbers that JSON does not know, as Python writes them.
+const written = (_, value) => (value === Infinity ? "inf" : value);
+
 for await (const line of createInterface({ input: process.stdin })) {
-  console.log(JSON.stringify(followed(JSON.parse(line))));
+  const asked = JSON.parse(line);
+  console.log(JSON.stringify(asked.theory ? foreseen(asked) : followed(asked), written));
 }

@@ -9,6 +9,7 @@ import pytest
 
 import tippetop as tt
 from node import NODE
+from tippetop.engine import HERE
 from tippetop.figures import looks
 
 WEB = Path(__file__).parents[2] / "web" / "src"
@@ -26,11 +27,11 @@ def test_the_pages_looks_are_those_of_figures() -> None:
 
 
 def test_the_page_draws_each_body_as_films_do(tmp_path: Path) -> None:
-    code = (WEB / "run" / "looks.js").read_text(encoding="utf-8")
-    code = code.replace('import looks from "../generated/looks.json";', f"const looks = {looks.as_json()};")
-    (tmp_path / "looks.mjs").write_text(code.replace("./surfaces.js", "./surfaces.mjs"), encoding="utf-8")
-    surfaces = (WEB / "run" / "surfaces.js").read_text(encoding="utf-8")
-    (tmp_path / "surfaces.mjs").write_text(surfaces, encoding="utf-8")
+    engine = json.dumps((HERE / "index.js").as_uri())
+    for name in ("looks", "arc"):
+        code = (WEB / "run" / f"{name}.js").read_text(encoding="utf-8").replace('"engine"', engine)
+        code = code.replace('import looks from "../generated/looks.json";', f"const looks = {looks.as_json()};")
+        (tmp_path / f"{name}.mjs").write_text(code.replace("./arc.js", "./arc.mjs"), encoding="utf-8")
     bodies = [body.model_dump(mode="json", exclude_none=True) for body in BODIES.values()]
     (tmp_path / "told.mjs").write_text(
         'import { sizeOf, toyParts } from "./looks.mjs";\n'

@@ -139,7 +139,7 @@ def test_a_top_of_ones_own_is_weighed_and_spun(lab: Lab, tmp_path: Path) -> None
     for _ in range(5):
         page.keyboard.press("ArrowLeft")
     assert page.locator(".facts").inner_text() != first
-    assert "turn over" in page.locator(".own-verdict").inner_text()
+    page.locator(".own-verdict", has_text="turn over").wait_for()
     page.get_by_role("button", name="Spin it").click()
     settled(visitor, "Array.isArray(problem.body.shape)")
     body = problem_of(visitor).body

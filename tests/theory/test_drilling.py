@@ -18,6 +18,7 @@ from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.invariants import jellett
 from tippetop.mechanics.motion import along_table
 from tippetop.mechanics.state import State
+from tippetop.theory.apparent import critical_spin_from_spectrum
 from tippetop.theory.drilling import jellett_rate, spin_rate, standing_time, time_to_stand
 from tippetop.theory.overview import outlook
 from tippetop.theory.stability import branch_eigenvalues, linear_tilts, spectrum, vertical_eigenvalues
@@ -28,7 +29,7 @@ from tippetop.theory.steady import (
     steady_states,
     vertical_spin,
 )
-from tippetop.theory.thresholds import critical_spin, critical_spin_from_spectrum, critical_spins
+from tippetop.theory.thresholds import critical_spin, critical_spins
 
 PRESSURES = ["hertz", "ellipsoidal"]
 CREEP = {"hertz": 3.0 * math.pi / 8.0, "ellipsoidal": 16.0 / (3.0 * math.pi)}

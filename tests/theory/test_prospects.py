@@ -46,3 +46,30 @@ def test_the_sphere_decides_whether_it_turns_over():
 def test_who_lies_on_no_sphere_has_no_group():
     assert prospects(REPORT, [tt.Ring(radius=0.02)]) is None
     assert prospects(REPORT, [tt.Sphere(radius=0.02, center=-0.001)]) is None
+
+
+def end_of(problem, spin, duration):
+    return float(tt.simulate(problem.replace({"launch.spin": spin}), duration, samples=11)["theta"][-1])
+
+
+def test_a_stem_touches_and_is_stood_upon_from_the_spins_foreseen():
+    """Runs of a whole top: below one spin its stem stays up, above it touches; so for standing on it."""
+    body = tt.presets.BODIES["report-stem"]
+    found = prospects(body, list(body.shapes))
+    launch = tt.Launch(tilt=found.tilt, spin=0.0)
+    problem = tt.Problem(body=body, friction=tt.ViscousFriction(mu=0.3), launch=launch)
+    gap = [shape.surface.height(math.cos(found.touch.tilt)) for shape in body.shapes]
+    assert gap[0] == pytest.approx(gap[1], rel=1e-12)
+    for factor, touches in ((0.97, False), (1.05, True)):
+        run = tt.simulate(problem.replace({"launch.spin": factor * found.touch.spin}), 9.0, samples=11)
+        assert (run.sizes["event"] > 0) is touches
+    assert found.touch.spin < 0.9 * found.stem.launch
+    assert end_of(problem, 0.9 * found.stem.launch, 9.0) < found.touch.tilt + 0.2
+    assert end_of(problem, 1.1 * found.stem.launch, 9.0) == pytest.approx(math.pi, abs=1e-3)
+
+
+def test_what_never_leaves_upright_brings_no_stem_to_the_table():
+    never = REPORT.model_copy(update={"I1": 0.6 * REPORT.I3})
+    found = prospects(never, [REPORT.shape, STEMS[1][1]])
+    assert found.group in (Group.IA, Group.IB)
+    assert found.touch.spin == found.stem.launch == math.inf

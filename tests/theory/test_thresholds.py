@@ -11,16 +11,18 @@ from strategies import numbers, spheroids, tops
 from tippetop import presets
 from tippetop.errors import InvalidInput
 from tippetop.mechanics.friction import ViscousLaw
+from tippetop.theory.apparent import (
+    apparent_critical_spins,
+    critical_spin_from_spectrum,
+    growth_rates_of_launches,
+    vertical_spins_of_launches,
+)
 from tippetop.theory.steady import SteadyKind, jellett_of_launch
 from tippetop.theory.thresholds import (
-    apparent_critical_spins,
     critical_spin,
-    critical_spin_from_spectrum,
     critical_spins,
-    growth_rates_of_launches,
     lambda_down,
     lambda_up,
-    vertical_spins_of_launches,
 )
 
 VERTICAL = [SteadyKind.UPRIGHT, SteadyKind.INVERTED]

@@ -158,7 +158,10 @@ class Expressions:
                 pair = ast.Tuple([key, value], ast.Load())
                 return f"new py.Dict({self._comprehension(node.generators, pair)})", ATOM
             case ast.Dict(keys=keys, values=values):
-                pairs = [f"[{self.text(k)}, {self.text(v)}]" for k, v in zip(keys, values, strict=True) if k]
+                pairs = [
+                    f"[{self.text(k)}, {self.text(v)}]" if k else f"...{self.text(v, ATOM)}.items()"
+                    for k, v in zip(keys, values, strict=True)
+                ]
                 return f"new py.Dict([{', '.join(pairs)}])", ATOM
             case ast.Call():
                 return self._call(node), ATOM
@@ -286,6 +289,8 @@ class Expressions:
                 return f"{self.text(value, ATOM)}.{STRINGS[attr]}({self.arguments(node.args)})"
             case ast.Attribute(value=value, attr="_replace"):
                 return f"{self.text(value, ATOM)}._replace({self._named(node.keywords)})"
+            case ast.Attribute(value=value, attr="model_copy"):
+                return f"{self.text(value, ATOM)}.model_copy({self.text(node.keywords[0].value)})"
             case ast.Subscript(value=ast.Name(id="list" | "dict" | "set" as word)):
                 return f"py.{word}({self.arguments(node.args)})"
             case ast.Name(id="replace"):

@@ -161,6 +161,7 @@ class Program:
         for word, kind in {
             "NamedTuple": "tuple",
             "Enum": "enum",
+            "StrEnum": "enum",
             "IntEnum": "number",
             "Part": "part",
             "Variant": "part",

@@ -46,7 +46,9 @@ class Statements(Expressions):
             if known.kind == "number":
                 yield f"const {known.name} = Object.freeze({{ {inside} }});"
             else:
-                yield f"class {known.name} extends py.Enum {{}}"
+                yield f"class {known.name} extends py.Enum {{"
+                yield from indented(self._members(known))
+                yield "}"
                 yield f"py.members({known.name}, {{ {inside} }});"
             return
         roots = {"tuple": "py.NamedTuple", "record": "py.Record", "part": "Part", "plain": "py.Thing"}

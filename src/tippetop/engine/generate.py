@@ -15,6 +15,8 @@ ROOTS = (
     "tippetop.contact.choice",
     "tippetop.contact.trajectory",
     "tippetop.problem",
+    "tippetop.theory.prediction",
+    "tippetop.theory.prospects",
     "tippetop.mechanics.view",
     "tippetop.mechanics.quadratures",
     "tippetop.emit.javascript",
@@ -28,6 +30,7 @@ GIVEN = {
     "tippetop.errors": "./part.js",
     "tippetop.fields": "./part.js",
     "tippetop.files": "",
+    "tippetop.theory.dual": "",
 }
 """What is written by hand, and where; nothing is asked of those without a place."""
 
@@ -38,6 +41,7 @@ LEFT = {
     "_a_profile",
     "Body.turned",
     "Contact.rules",
+    *("Branch", "precession_branch", "state_of", "is_held", "steady_launch"),
     *(f"Problem.{name}" for name in ("replace", "to_toml", "to_json", "from_toml", "from_json", "read")),
 }
 """What no page asks for."""

@@ -2,6 +2,7 @@
 import * as m from "./mechanics.js";
 import { CATALOGUE, PRESETS, SCHEMA } from "./tables.js";
 import { InvalidInput } from "./part.js";
+import { plain } from "./runtime.js";
 import { simulate } from "./run.js";
 
 export { InvalidInput, simulate };
@@ -9,6 +10,23 @@ export const catalogue = CATALOGUE, presets = PRESETS, schema = SCHEMA;
 
 /** A problem with every field, checked. */
 export const complete = (problem) => new m.Problem(problem).model_dump();
+
+/** What the theory says without a run: where a launch ends, its critical spins, what a body can do at all. */
+export function predict(problem) {
+  const found = m.predict(new m.Problem(problem));
+  return { ...plain(found), certain: found.certain };
+}
+export const criticalSpins = (problem) => plain(m.critical_spins(new m.Problem(problem)));
+export function prospects(body, gravity, tilt) {
+  const whole = new m.Body(body);
+  return plain(m.prospects(whole, whole.shapes, gravity, tilt));
+}
+
+/** The surface of a body that touches at cos(tilt): `height` and `slope` of its support function, and `active`. */
+export function lowestSurface(body) {
+  const { surface } = new m.Body(body), several = surface instanceof m.Hull;
+  return several ? (c) => m.lowest_surface(surface, c) : () => surface;
+}
 
 /** A problem with some fields replaced, named with dots. */
 export function replace(problem, changes) {

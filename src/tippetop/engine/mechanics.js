@@ -1385,11 +1385,13 @@ function landed(state, ending, top) {
 // tippetop.contact.mode
 
 /** How a run ended; the value is advice. */
-class Outcome extends py.Enum {}
+class Outcome extends py.Enum {
+}
 py.members(Outcome, { COMPLETED: "The run reached its end.", LIFTED_OFF: "The table would have to pull from here on; with liftoff = ignore it does, and with fly the top leaves it.", AT_REST: "The top came to rest, and the table holds it so: nothing happens any more.", LYING_FLAT: "The body came to lie flat: there it touches the table all around, which is not followed further; this is the end of its motion, but for what the impact of its face would add.", STICKING_ON_TWO: "Two surfaces touch the table and neither slip nor drill, which is followed no further where a patch resists drilling; Coulomb's friction without a patch goes on.", TOO_MANY_PHASES: "The top bounced and slid more often than the run allows; shorten the duration, lower the restitution, or raise the limit on phases.", TOO_MANY_STEPS: "The motion took more steps than the run allows: it is very fast, or stiff; shorten the duration, lessen the friction, try the integrator collocation, which is made for stiff friction, or raise the limit on steps.", INACCURATE: "The numbers do not keep what the motion keeps: do not trust them; try another integrator or a smaller tolerance.", FAILED: "The integrator could not go on: the motion became singular or too stiff for it; try another integrator, or less friction." });
 
 /** What can happen to a top; the value is its name in a result. */
-class EventKind extends py.Enum {}
+class EventKind extends py.Enum {
+}
 py.members(EventKind, { LIFT_OFF: "lift-off", TOUCHDOWN: "touchdown", STICK: "stick", SLIP: "slip", HALT: "rolling stops", ROLL: "rolling starts", IMPACT: "impact", OPENING: "opening", DOUBLE_CONTACT: "double contact" });
 
 /** Something that happened at an instant. */
@@ -6421,6 +6423,683 @@ function orientation(axis, turn, pole, functions) {
   return [py.sub(py.mul(w, cosine), py.mul(k, sine)), py.add(py.mul(i, cosine), py.mul(j, sine)), py.sub(py.mul(j, cosine), py.mul(i, sine)), py.add(py.mul(k, cosine), py.mul(w, sine))];
 }
 
+// tippetop.theory.requirements
+
+/** Refuse a body of several surfaces, with `InvalidInput`. */
+function require_one_surface(top) {
+  if (py.isinstance(top.surface, Hull)) {
+    throw new InvalidInput("body.shape", "several surfaces", "one of them at a time, for the theory to tell");
+  }
+}
+
+/** Refuse a body that is no eccentric sphere, with `InvalidInput`. */
+function require_sphere(top) {
+  require_one_surface(top);
+  if (!py.truth(top.surface.spherical)) {
+    throw new InvalidInput("body.shape", top.surface, "an eccentric sphere; Jellett's integral holds for no other");
+  }
+}
+
+/** Refuse a top that does not conserve Jellett's integral, with `InvalidInput`. */
+function require_jellett(top) {
+  require_sphere(top);
+  if (py.isinstance(top.friction, RollingResistance)) {
+    throw new InvalidInput("rolling_resistance", top.friction.length, "0: with it Jellett's integral is not conserved");
+  }
+  if (!py.truth(top.conserves_jellett)) {
+    throw new InvalidInput("friction", top.friction, "friction without torque, which conserves Jellett's integral");
+  }
+}
+
+/** Refuse friction that is not proportional to small slip about a vertical spin, with `InvalidInput`. */
+function require_creep(top) {
+  require_one_surface(top);
+  if (py.truth(py.hasattr(top.surface, "face_guard"))) {
+    throw new InvalidInput("body.shape", top.surface, "a shape that touches in one point when its axis is vertical");
+  }
+  if (py.isinstance(top.friction, RollingResistance)) {
+    throw new InvalidInput("rolling_resistance", top.friction.length, "0: with it a spin about the vertical has no linear motion");
+  }
+  if (py.truth(is_set_valued(top.friction)) && slip_dimension(top.friction) === 2) {
+    throw new InvalidInput("friction", top.friction, "viscous, regularized or Contensou friction, by which slip never ends while the top spins; on this one it sticks, and may roll for ever in a state that is not stable");
+  }
+}
+
+// tippetop.theory.series_roots
+const [DEGREE_of_series_roots, HALVINGS] = [16, 12];
+const ROUNDING_of_series_roots = 1e-13;
+
+/** Roots of a function between two bounds, at which it is not asked, in order; values to `noise` are 0. */
+function roots_between(function_, low, high, noise) {
+  const least = py.max(noise, py.mul(ROUNDING_of_series_roots, largest(series_of(function_, low, high))));
+  let found = [];
+  let waiting = [[low, high, 0]];
+  while (py.truth(waiting)) {
+    const [start, end, depth] = py.pop(waiting);
+    const series = series_of(function_, start, end);
+    if (py.max(py.abs(py.item(series, -1)), py.abs(py.item(series, -2))) > least && depth < HALVINGS) {
+      const middle = py.mul(0.5, py.add(start, end));
+      waiting = py.add(waiting, [[middle, end, py.add(depth, 1)], [start, middle, py.add(depth, 1)]]);
+      continue;
+    }
+    while (py.truth(series) && py.abs(py.item(series, -1)) <= least) {
+      py.pop(series);
+    }
+    found = py.add(found, [...roots_of(series)].map((place) => py.add(start, py.mul(py.mul(0.5, py.sub(end, start)), py.add(1.0, place)))));
+  }
+  return found;
+}
+
+/** Coefficients of the Chebyshev series that is the function at Chebyshev's points of a piece. */
+function series_of(function_, low, high) {
+  const count = py.add(DEGREE_of_series_roots, 1);
+  const angles = py.range(count).map((place) => py.div(py.mul(py.math.pi, py.add(place, 0.5)), count));
+  const values = [...angles].map((angle) => function_(low + 0.5 * (high - low) * (1.0 + py.math.cos(angle))));
+  const found = [];
+  for (let term = 0; term < count; term += 1) {
+    const total = py.sum(py.zip(values, angles).map(([value, angle]) => py.mul(value, py.math.cos(py.mul(term, angle)))));
+    found.push(py.mul(py.div(py.truth(term) ? 2.0 : 1.0, count), total));
+  }
+  return found;
+}
+
+/** Value of a Chebyshev series at a place in [-1, 1], by Clenshaw's recurrence. */
+function value_of(series, place) {
+  let [after, now] = [0.0, 0.0];
+  for (const term of py.reversed(series.slice(1))) {
+    [now, after] = [py.sub(py.add(term, py.mul(2.0 * place, now)), after), now];
+  }
+  return py.sub(py.add(series[0], py.mul(place, now)), after);
+}
+
+/** Coefficients of the derivative of a Chebyshev series of degree 1 or more. */
+function derivative_of(series) {
+  const found = py.mul([0.0], py.len(series) + 1);
+  for (let term = py.len(series) - 1; term > 0; term -= 1) {
+    py.put(found, term - 1, py.add(py.item(found, term + 1), py.mul(2.0 * term, py.item(series, term))));
+  }
+  py.put(found, 0, py.mul(found[0], 0.5));
+  return py.slice(found, null, py.len(series) - 1, null);
+}
+
+/** Places in [-1, 1) at which a Chebyshev series changes its sign, in order. */
+function roots_of(series) {
+  if (py.len(series) < 2) {
+    return [];
+  }
+  const places = [-1.0, ...roots_of(derivative_of(series)), 1.0];
+  const found = [];
+  for (const [start, end] of py.pairwise(places)) {
+    if (!py.eq(value_of(series, start) < 0.0, value_of(series, end) < 0.0)) {
+      found.push(crossing((place) => value_of(series, place), start, end));
+    }
+  }
+  return found;
+}
+
+/** Bound of the values of a Chebyshev series. */
+function largest(series) {
+  return py.sum([...series].map((term) => py.abs(term)));
+}
+
+// tippetop.theory.steady
+
+/** What a steady state looks like. */
+class SteadyKind extends py.Enum {
+}
+py.members(SteadyKind, { UPRIGHT: "upright", INVERTED: "inverted", PRECESSION: "precession", LEVEL: "level" });
+const VERTICAL_SPINS = [SteadyKind.UPRIGHT, SteadyKind.INVERTED];
+
+/** A motion that friction leaves alone. */
+class SteadyState extends py.Record {
+  constructor(kind, tilt, precession, spin, jellett, energy) {
+    super();
+    this.kind = kind;
+    this.tilt = tilt;
+    this.precession = precession;
+    this.spin = spin;
+    this.jellett = jellett;
+    this.energy = energy;
+  }
+}
+py.fields(SteadyState, ["kind", "tilt", "precession", "spin", "jellett", "energy"]);
+
+/** A precession without slip, per unit precession, whether steady or not. */
+class RollingPrecession extends py.NamedTuple {
+  constructor(axis, momentum, jellett) {
+    super();
+    this.axis = axis;
+    this.momentum = momentum;
+    this.jellett = jellett;
+  }
+}
+py.fields(RollingPrecession, ["axis", "momentum", "jellett"]);
+
+/** The precession without slip at a tilt, rad, leaning along x: L = phi' I1 (z - c n) + I3 omega3 n. */
+function rolling_precession(tilt, top, functions) {
+  const axis = [functions.sin(tilt), 0.0, functions.cos(tilt)];
+  const along = scale(gyroscopic_reaction(axis[2], top), axis);
+  const momentum = add(scale(top.transverse_inertia, VERTICAL), along);
+  return new RollingPrecession(axis, momentum, jellett(_at_rest(axis, momentum, top), top));
+}
+
+/** Ratio omega3 / phi' of a precession without slip, c + h' / (h - h' c): (2.17) for the sphere. */
+function rolling_spin(c, surface) {
+  const slope = surface.slope(c);
+  return py.add(c, py.div(slope, py.sub(surface.height(c), py.mul(slope, c))));
+}
+
+/** Gyroscopic moment of a precession without slip, I3 omega3 / phi' - I1 c, in phi'^2 sin(theta). */
+function gyroscopic_reaction(c, top) {
+  return py.sub(py.mul(top.axial_inertia, rolling_spin(c, top.surface)), py.mul(top.transverse_inertia, c));
+}
+
+/** Moment of the table's support over sin(theta), m g h', J: what the gyroscopic moment balances. */
+function weight_moment(c, top) {
+  return py.mul(py.mul(top.mass, top.gravity), top.surface.slope(c));
+}
+
+/** phi'^2 of the steady precession, rad^2/s^2: there is none where it is not positive. */
+function precession_rate_squared(c, top) {
+  return py.div(weight_moment(c, top), gyroscopic_reaction(c, top));
+}
+
+/** Size of Jellett's integral of the steady precession at a tilt, kg m^3/s; inf where there is none. */
+function branch_jellett(tilt, top) {
+  let squared;
+  const rolling = rolling_precession(tilt, top, py.math);
+  try {
+    squared = precession_rate_squared(rolling.axis[2], top);
+  } catch (error) {
+    if (!(error instanceof py.ZeroDivisionError)) throw error;
+    return py.math.inf;
+  }
+  return squared > 0.0 ? py.abs(py.mul(py.pow(squared, 0.5), rolling.jellett)) : py.math.inf;
+}
+
+/** The vertical spin at theta = 0 or pi with this axial spin omega3, rad/s. */
+function vertical_spin(kind, top, spin) {
+  const c = kind === SteadyKind.UPRIGHT ? 1.0 : -1.0;
+  const whole = _at_rest([0.0, 0.0, c], [0.0, 0.0, py.mul(py.mul(c, top.axial_inertia), spin)], top);
+  const tilt = kind === SteadyKind.UPRIGHT ? 0.0 : py.math.pi;
+  return new SteadyState(kind, tilt, 0.0, spin, jellett(whole, top), energy(whole, top));
+}
+
+/** The spin with horizontal axis at this precession, rad/s, of a shape that has one. */
+function level_spin(top, precession) {
+  const whole = _at_rest([1.0, 0.0, 0.0], [0.0, 0.0, py.mul(top.transverse_inertia, precession)], top);
+  return new SteadyState(SteadyKind.LEVEL, py.div(py.math.pi, 2), precession, 0.0, jellett(whole, top), energy(whole, top));
+}
+
+/** All steady states with this Jellett's integral, by increasing tilt. */
+function steady_states(top, jellett) {
+  const [upright, inverted] = [...VERTICAL_SPINS].map((kind) => vertical_spin(kind, top, py.div(jellett, vertical_spin(kind, top, 1.0).jellett)));
+  const between = [..._precession_tilts(top, jellett)].map((tilt) => precession_at(tilt, jellett, top));
+  if (py.truth(has_level_spin(top))) {
+    between.push(level_spin(top, py.div(jellett, level_spin(top, 1.0).jellett)));
+  }
+  return [upright, ...py.sorted(between, py.how({ key: (state) => state.tilt })), inverted];
+}
+
+/** Whether the body can spin with its axis horizontal at any rate. */
+function has_level_spin(top) {
+  return (top.surface.slope(0.0) === 0.0);
+}
+
+/** Jellett's integral of a launch, kg m^3/s. */
+function jellett_of_launch(problem) {
+  const fastest = py.div(FASTEST, py.float(natural_units(problem.top).time));
+  for (const name of ["spin", "tilt_rate", "precession"]) {
+    const rate = py.getattr(problem.launch, name);
+    if (py.abs(rate) > fastest) {
+      throw new InvalidInput(`launch.${py.str(name)}`, rate, `at most ${py.format(fastest, ".3g")} rad/s, for the theory to tell`);
+    }
+  }
+  return py.float(jellett(problem.start(), problem.top));
+}
+
+/** Least energy, J, that a body with this tilt (rad) and this Jellett's integral (kg m^3/s) can have. */
+function least_energy(tilt, jellett, top, functions) {
+  const axis = [functions.sin(tilt), 0.0, functions.cos(tilt)];
+  const potential = energy(_at_rest(axis, [0.0, 0.0, 0.0], top), top);
+  const arm = contact_vector(axis, top.surface);
+  const along = dot(arm, axis);
+  const inertia = py.add(py.mul(top.transverse_inertia, py.sub(dot(arm, arm), py.pow(along, 2))), py.mul(top.axial_inertia, py.pow(along, 2)));
+  return py.add(potential, py.div(py.mul(0.5, py.pow(jellett, 2)), inertia));
+}
+
+/** The body on the table with its centre of mass at rest. */
+function _at_rest(axis, momentum, top) {
+  const zero = [0.0, 0.0, 0.0];
+  return new State(axis, momentum, zero, top.surface.height(axis[2]));
+}
+
+/** The steady precession at a tilt known to be one for this Jellett's integral. */
+function precession_at(tilt, jellett, top) {
+  const rolling = rolling_precession(tilt, top, py.math);
+  const rate = py.div(jellett, rolling.jellett);
+  const whole = _at_rest(rolling.axis, scale(rate, rolling.momentum), top);
+  const spin = py.mul(rate, rolling_spin(rolling.axis[2], top.surface));
+  return new SteadyState(SteadyKind.PRECESSION, tilt, py.float(rate), py.float(spin), jellett, py.float(energy(whole, top)));
+}
+const FASTEST = 100000000.0;
+
+/** Tilts of the steady precessions with this Jellett's integral, roots of a balance smooth in c. */
+function _precession_tilts(top, jellett) {
+  const [scaled, square] = [natural(top), py.pow(py.div(jellett, py.float(natural_units(top).jellett)), 2)];
+  const balance = (c) => {
+    const supported = py.mul(weight_moment(c, scaled), py.pow(rolling_precession(py.math.acos(c), scaled, py.math).jellett, 2));
+    return py.float(py.div(py.sub(py.mul(square, gyroscopic_reaction(c, scaled)), supported), 1.0 + square));
+  };
+  const inertias = py.add(scaled.transverse_inertia, scaled.axial_inertia);
+  const noise = py.div(py.mul(py.mul(1e-15, inertias), square), 1.0 + square);
+  const cosines = roots_between(balance, -1.0, 1.0, noise);
+  const level = py.mul(1e-09, top.surface.size);
+  return [...cosines].filter((c) => py.abs(top.surface.slope(c)) > level).map((c) => py.math.acos(c));
+}
+
+// tippetop.theory.thresholds
+
+/** Spins of a launch, rad/s, at which the two vertical spins change stability. */
+class CriticalSpins extends py.Record {
+  constructor(upright, inverted) {
+    super();
+    this.upright = upright;
+    this.inverted = inverted;
+  }
+}
+py.fields(CriticalSpins, ["upright", "inverted"]);
+
+/** Jellett's integral at which a vertical spin changes stability, kg m^3/s: inf where it never does. */
+function critical_jellett(kind, top) {
+  return branch_jellett(vertical_spin(kind, top, 0.0).tilt, top);
+}
+
+/** Jellett's integral below which the upright spin of an eccentric sphere is stable, kg m^3/s, or inf. */
+function lambda_up(top) {
+  return critical_jellett(SteadyKind.UPRIGHT, top);
+}
+
+/** Jellett's integral above which the inverted spin of an eccentric sphere is stable, kg m^3/s, or inf. */
+function lambda_down(top) {
+  return critical_jellett(SteadyKind.INVERTED, top);
+}
+
+/** Axial spin at which a vertical spin changes stability, by formula, rad/s; inf where it never does. */
+function critical_spin(kind, top) {
+  return py.div(critical_jellett(kind, top), py.abs(vertical_spin(kind, top, 1.0).jellett));
+}
+
+/** Critical spins of a launch: with its tilt and its rates, and any axial spin. */
+function critical_spins(problem) {
+  require_creep(problem.top);
+  if (!py.truth(problem.top.conserves_jellett)) {
+    return new CriticalSpins(...[...VERTICAL_SPINS].map((kind) => critical_spin(kind, problem.top)));
+  }
+  const line = jellett_line(problem);
+  return new CriticalSpins(...[...VERTICAL_SPINS].map((kind) => line.spin_at(critical_jellett(kind, problem.top))));
+}
+
+/** Jellett's integral of a launch as a function of its spin. */
+class JellettLine extends py.NamedTuple {
+  constructor(at_rest, per_spin) {
+    super();
+    this.at_rest = at_rest;
+    this.per_spin = per_spin;
+  }
+  /** The integral at a spin, rad/s. */
+  at(spin) {
+    return py.add(this.at_rest, py.mul(this.per_spin, spin));
+  }
+  /** The larger of the two spins at which the size of the integral is critical. */
+  spin_at(critical) {
+    if (this.per_spin === 0.0 || py.truth(py.math.isinf(critical))) {
+      return py.math.inf;
+    }
+    return py.sub(py.div(critical, py.abs(this.per_spin)), py.div(this.at_rest, this.per_spin));
+  }
+}
+py.fields(JellettLine, ["at_rest", "per_spin"]);
+
+/** Jellett's integral over the spin of a launch whose other numbers are kept. */
+function jellett_line(problem) {
+  const still = new py.Dict([["spin", 0.0], ["tilt_rate", 0.0], ["precession", 0.0]]);
+  const [at_rest, per_spin] = [new py.Dict([["spin", 0.0]]), new py.Dict([...still.items(), ["spin", 1.0]])].map((changes) => jellett_of_launch(problem.model_copy(new py.Dict([["launch", problem.launch.model_copy(changes)]]))));
+  return new JellettLine(at_rest, per_spin);
+}
+
+// tippetop.theory.groups
+
+/** How an eccentric sphere behaves when it is spun ever faster near theta = 0. */
+class Group extends py.Enum {
+  /** What the group does, in a sentence. */
+  get description() {
+    return py.item(_DESCRIPTIONS, this);
+  }
+  /** Whether the top, set upright, turns over completely when it spins fast enough. */
+  get inverts() {
+    return py.contains([Group.IIA, Group.IIB, Group.IIC], this);
+  }
+  /** Whether the upright spin becomes unstable at some spin. */
+  get leaves_upright() {
+    return py.or(this.inverts, () => this === Group.III);
+  }
+  /** Whether two steady states are stable at some spins, so that the launch decides between them. */
+  get coexistence() {
+    return !py.contains([Group.IIA, Group.III], this);
+  }
+}
+py.members(Group, { IA: "Ia", IB: "Ib", IIA: "IIa", IIB: "IIb", IIC: "IIc", III: "III" });
+const _DESCRIPTIONS = new py.Dict([[Group.IA, "never inverts: the upright spin is stable at any spin; from some spin on, a tilted precession or the inverted spin is stable beside it"], [Group.IB, "never inverts: the upright spin is stable at any spin; from some spin on, the inverted spin is stable beside it, and no precession is"], [Group.IIA, "inverts completely, and gradually: one steady state is stable at every spin"], [Group.IIB, "inverts completely, with a jump: over a range of spins, the upright spin and another state are both stable"], [Group.IIC, "inverts completely, in one jump: no precession is stable, and over a range of spins both vertical spins are"], [Group.III, "stops part-way: it leaves the upright spin, but the inverted spin is never stable"]]);
+
+/** Where the Jellett's integral of the steady precessions is least, inside the branch. */
+class Fold extends py.NamedTuple {
+  constructor(tilt, jellett) {
+    super();
+    this.tilt = tilt;
+    this.jellett = jellett;
+  }
+}
+py.fields(Fold, ["tilt", "jellett"]);
+
+/** Range of the size of Jellett's integral, kg m^3/s. */
+class JellettRange extends py.NamedTuple {
+  constructor(low, high) {
+    super();
+    this.low = low;
+    this.high = high;
+  }
+}
+py.fields(JellettRange, ["low", "high"]);
+
+/** Group of the eccentric sphere with inertia ratio gamma = I1 / I3 and eccentricity alpha. */
+function classify(gamma, alpha) {
+  if (!(0.0 < alpha && alpha < 1.0)) {
+    throw new InvalidInput("alpha", alpha, "a number greater than 0 and less than 1");
+  }
+  if (!(gamma >= 0.5)) {
+    throw new InvalidInput("gamma", gamma, "a number at least 0.5, as for any body");
+  }
+  if (gamma >= inverted_boundary(alpha)) {
+    return Group.III;
+  }
+  const no_stable_precession = _fold_measure(gamma, alpha) >= alpha + 1.0 - gamma;
+  if (gamma <= upright_boundary(alpha)) {
+    return py.truth(no_stable_precession) ? Group.IB : Group.IA;
+  }
+  if (py.truth(no_stable_precession)) {
+    return Group.IIC;
+  }
+  return _fold_measure(gamma, alpha) > alpha - 1.0 + gamma ? Group.IIB : Group.IIA;
+}
+
+/** Group of an eccentric sphere. */
+function classify_top(top) {
+  require_jellett(top);
+  return classify(inertia_ratio(top), eccentricity(top));
+}
+
+/** Gamma = I1 / I3. */
+function inertia_ratio(top) {
+  return py.float(py.div(top.transverse_inertia, top.axial_inertia));
+}
+
+/** Alpha of an eccentric sphere: how far its centre is above the centre of mass, in radii. */
+function eccentricity(top) {
+  return py.float(py.div(py.neg(top.surface.slope(0.0)), top.surface.size));
+}
+
+/** Gamma of the boundary between groups I and II: below it the upright spin is stable at any spin. */
+function upright_boundary(alpha) {
+  return 1.0 - alpha;
+}
+
+/** Gamma of the boundary between groups II and III: above it the inverted spin is stable at no spin. */
+function inverted_boundary(alpha) {
+  return 1.0 + alpha;
+}
+
+/** Gamma of the boundary between groups IIb and IIa, where the fold enters at theta = 0. */
+function jump_boundary(alpha) {
+  return (1.0 - alpha) / 8.0 * (7.0 + alpha + py.math.sqrt(1.0 + 14.0 * alpha + py.pow(alpha, 2)));
+}
+
+/** Gammas between which no precession is stable (groups Ib and IIc), where the fold leaves at theta = pi. */
+function precession_boundaries(alpha) {
+  const discriminant = 1.0 - 14.0 * alpha + py.pow(alpha, 2);
+  if (discriminant < 0.0) {
+    return [py.math.nan, py.math.nan];
+  }
+  const [middle, half] = [7.0 - alpha, py.math.sqrt(discriminant)];
+  return [(1.0 + alpha) / 8.0 * (middle - half), (1.0 + alpha) / 8.0 * (middle + half)];
+}
+
+/** Gamma in group II at which both vertical spins change stability together, lambda_up = lambda_down. */
+function equal_thresholds(alpha) {
+  return py.div((1.0 - py.pow(alpha, 2)) * (1.0 + 3.0 * py.pow(alpha, 2)), 1.0 + 6.0 * py.pow(alpha, 2) + py.pow(alpha, 4));
+}
+
+/** The fold of the branch of steady precessions of an eccentric sphere, or None if it has none inside. */
+function fold(top) {
+  if (!py.contains([Group.IA, Group.IIB], classify_top(top))) {
+    return null;
+  }
+  const [gamma, alpha] = [inertia_ratio(top), eccentricity(top)];
+  const cosine = py.div(py.sub(alpha, _fold_measure(gamma, alpha)), py.sub(1.0, gamma));
+  const tilt = py.math.acos(py.max(-1.0, py.min(1.0, cosine)));
+  return new Fold(tilt, branch_jellett(tilt, top));
+}
+
+/** Jellett's integrals for which two steady states of an eccentric sphere are stable, or None. */
+function coexistence(top) {
+  if (!py.truth(classify_top(top).coexistence)) {
+    return null;
+  }
+  const turning = fold(top);
+  return new JellettRange(turning === null ? lambda_down(top) : turning.jellett, lambda_up(top));
+}
+
+/** D at the fold, sqrt(gamma (1 - gamma - alpha^2) / 3); 0 where there is none and every D is larger. */
+function _fold_measure(gamma, alpha) {
+  return py.math.sqrt(py.max(gamma * (1.0 - gamma - py.pow(alpha, 2)) / 3.0, 0.0));
+}
+
+// tippetop.theory.prediction
+
+/** What Jellett's integral and the energy say of the end of a launch. */
+class Prediction extends py.Record {
+  constructor(jellett, stable, reachable) {
+    super();
+    this.jellett = jellett;
+    this.stable = stable;
+    this.reachable = reachable;
+  }
+  /** The reachable stable state of least energy: the end of the launch, if it is `certain`. */
+  get final() {
+    return this.reachable[0];
+  }
+  /** Whether only one stable state is within reach; otherwise the launch's details decide. */
+  get certain() {
+    return py.len(this.reachable) === 1;
+  }
+}
+py.fields(Prediction, ["jellett", "stable", "reachable"]);
+
+/** The steady states a launch of an eccentric sphere can end in. */
+function predict(problem) {
+  const top = problem.top;
+  if (py.isinstance(top.surface, Hull)) {
+    return _on_one_of_several(problem, problem.standing().surface);
+  }
+  require_jellett(top);
+  require_creep(top);
+  if (py.truth(problem.friction.vanishes)) {
+    throw new InvalidInput("friction.mu", 0.0, "more than 0: without friction no launch settles");
+  }
+  const jellett = jellett_of_launch(problem);
+  const states = steady_states(top, jellett);
+  const minima = stable_by_energy(states);
+  const available = py.float(energy(problem.start(), top));
+  const [low, high] = _reach(states, problem.launch.tilt, available);
+  const within = [...minima].filter((state) => low <= state.tilt && state.tilt <= high);
+  return new Prediction(jellett, _by_energy(minima), _by_energy(py.or(within, () => minima)));
+}
+
+/** The end on the surface of the launch, where the energy of the launch keeps all others off the table. */
+function _on_one_of_several(problem, hull) {
+  const body = problem.body.model_copy(new py.Dict([["shape", py.item(problem.body.shapes, hull.active)]]));
+  const alone = problem.model_copy(new py.Dict([["body", body]]));
+  const found = predict(alone);
+  const available = py.float(energy(alone.start(), alone.top));
+  const ends = touching_tilts(hull, problem.launch.tilt);
+  for (const [tilt, number] of ends.items()) {
+    if (py.float(least_energy(tilt, found.jellett, alone.top, py.math)) <= available) {
+      const shown = `one whose surface ${py.str(number)} can touch, at a tilt of ${py.format(tilt, ".4g")} rad`;
+      throw new InvalidInput("body.shape", shown, "one surface, or a launch of less energy: run it instead");
+    }
+  }
+  let [low, high] = [py.min(ends, py.how({ default: 0.0 })), py.max(ends, py.how({ default: py.math.pi }))];
+  if (py.len(ends) === 1) {
+    [low, high] = low < problem.launch.tilt ? [low, py.math.pi] : [0.0, high];
+  }
+  return py.replace(found, { stable: py.tuple([...found.stable].filter((state) => low <= state.tilt && state.tilt <= high)) });
+}
+
+/** The tilts next to one, rad, at which another surface touches beside the active one, and its number. */
+function touching_tilts(hull, tilt) {
+  const tilts = py.sorted([...py.range(py.add(TILTS, 1)).map((k) => py.div(py.mul(py.math.pi, k), TILTS)), tilt]);
+  const found = new py.Dict([]);
+  for (const [number, other] of py.enumerate(hull.each)) {
+    if (!py.eq(number, hull.active)) {
+      found.update([..._meetings(hull, other, tilts)].map((at) => [at, number]));
+    }
+  }
+  const [below, above] = [[...found].filter((at) => at <= tilt), [...found].filter((at) => at > tilt)];
+  return new py.Dict([...py.slice(py.sorted(below), -1, null, null), ...py.sorted(above).slice(0, 1)].map((at) => [at, py.item(found, at)]));
+}
+
+/** The tilts at which two surfaces touch together, rad, where they change places between some others. */
+function _meetings(one, other, tilts) {
+  const gap = (at) => {
+    return py.float(py.sub(one.height(py.math.cos(at)), other.height(py.math.cos(at))));
+  };
+  return [...py.pairwise(tilts)].filter(([low, high]) => !py.eq(gap(low) < 0.0, gap(high) < 0.0)).map(([low, high]) => crossing(gap, low, high));
+}
+const TILTS = 200;
+
+/** The stable steady states of an eccentric sphere with this Jellett's integral, least energy first. */
+function final_states(top, jellett) {
+  require_jellett(top);
+  return _by_energy(stable_by_energy(steady_states(top, jellett)));
+}
+
+/** Those of all steady states with one Jellett's integral that are minima of the energy. */
+function stable_by_energy(states) {
+  const energies = [py.math.inf, ...[...states].map((state) => state.energy), py.math.inf];
+  const minima = py.zip(states, energies, energies.slice(2)).filter(([state, before, after]) => before > state.energy && state.energy < after).map(([state, before, after]) => state);
+  return py.or(minima, () => [py.min(states, py.how({ key: (state) => state.energy }))]);
+}
+const ROUNDING_of_prediction = 1e-12;
+
+function _by_energy(states) {
+  return py.tuple(py.sorted(states, py.how({ key: (state) => state.energy })));
+}
+
+/** Tilts between the nearest barriers on both sides: steady states with more energy than is available. */
+function _reach(states, tilt, available) {
+  const rounding = py.mul(ROUNDING_of_prediction, py.max([...states].map((state) => py.abs(state.energy))));
+  const barriers = [...states].filter((state) => state.energy > py.add(available, rounding)).map((state) => state.tilt);
+  const below = [...barriers].filter((barrier) => barrier <= tilt);
+  const above = [...barriers].filter((barrier) => barrier >= tilt);
+  return [py.max(below, py.how({ default: 0.0 })), py.min(above, py.how({ default: py.math.pi }))];
+}
+
+// tippetop.theory.prospects
+
+/** What it takes to stand on a stem: the inverted spin of the sphere at its tip holds above this. */
+class StemTest extends py.Record {
+  constructor(jellett, spin, launch) {
+    super();
+    this.jellett = jellett;
+    this.spin = spin;
+    this.launch = launch;
+  }
+}
+py.fields(StemTest, ["jellett", "spin", "launch"]);
+
+/** Where another surface first comes to the table, and what it takes to get there. */
+class Touch extends py.Record {
+  constructor(tilt, surface, spin) {
+    super();
+    this.tilt = tilt;
+    this.surface = surface;
+    this.spin = spin;
+  }
+}
+py.fields(Touch, ["tilt", "surface", "spin"]);
+
+/** What is known of a toy that is launched on its sphere. */
+class Prospects extends py.Record {
+  constructor(eccentricity, group, critical_spins, tilt, touch, stem) {
+    super();
+    this.eccentricity = eccentricity;
+    this.group = group;
+    this.critical_spins = critical_spins;
+    this.tilt = tilt;
+    this.touch = touch;
+    this.stem = stem;
+  }
+}
+py.fields(Prospects, ["eccentricity", "group", "critical_spins", "tilt", "touch", "stem"]);
+
+/** What a toy can be expected to do; None if it does not lie on a sphere, below the centre of that. */
+function prospects(body, shapes, gravity = 9.8, tilt = 0.1) {
+  let sphere = shapes[0];
+  if (py.isinstance(sphere, Sphere) && (0.0 < sphere.center && sphere.center < sphere.radius)) {
+    sphere = new EccentricSphere({ radius: sphere.radius, eccentricity: py.div(sphere.center, sphere.radius) });
+  }
+  if (!py.isinstance(sphere, EccentricSphere)) {
+    return null;
+  }
+  const problem = new Problem({ body: body.model_copy(new py.Dict([["shape", sphere]])), friction: new ViscousFriction({ mu: 1.0 }), launch: new Launch({ tilt: tilt, spin: 0.0 }), gravity: gravity });
+  const group = classify(py.div(body.I1, body.I3), sphere.eccentricity);
+  const surfaces = [problem.top.surface, ...[...shapes.slice(1)].map((shape) => shape.surface)];
+  const touch = _touch(problem, surfaces, group);
+  const stem = py.isinstance(py.item(shapes, -1), Sphere) && py.len(shapes) > 1 ? _stem(problem, surfaces, touch) : null;
+  return new Prospects(sphere.eccentricity, group, critical_spins(problem), tilt, touch, stem);
+}
+
+function _touch(problem, surfaces, group) {
+  const ends = touching_tilts(Hull.of(surfaces), problem.launch.tilt);
+  const beyond = [...ends].filter((at) => at > problem.launch.tilt);
+  if (!py.truth(beyond)) {
+    return null;
+  }
+  const needed = py.max(lambda_up(problem.top), branch_jellett(beyond[0], problem.top));
+  const spin = jellett_line(problem).spin_at(py.truth(group.leaves_upright) ? needed : py.math.inf);
+  return new Touch(beyond[0], py.item(ends, beyond[0]), spin);
+}
+
+function _stem(problem, surfaces, touch) {
+  const [body, inverted] = [problem.body, SteadyKind.INVERTED];
+  const top = new Top(body.mass, body.I1, body.I3, py.item(surfaces, -1), new ViscousLaw(1.0), problem.gravity);
+  let [least, launch] = [critical_jellett(inverted, top), py.math.nan];
+  if (touch !== null && py.eq(touch.surface, py.len(surfaces) - 1)) {
+    const share = _handed_over(touch.tilt, problem.top, py.item(surfaces, -1));
+    launch = py.max(touch.spin, share > 0.0 ? jellett_line(problem).spin_at(py.div(least, share)) : py.math.inf);
+  }
+  return new StemTest(least, critical_spin(inverted, top), launch);
+}
+
+/** Jellett's integral about another surface, of the motion that has the least energy with that of one: 1. */
+function _handed_over(tilt, top, other) {
+  const axis = [py.math.sin(tilt), 0.0, py.math.cos(tilt)];
+  const [arm, new_] = [contact_vector(axis, top.surface), contact_vector(axis, other)];
+  const [along, across] = [dot(arm, axis), top.transverse_inertia];
+  const momentum = add(scale(across, arm), scale(py.mul(py.sub(top.axial_inertia, across), along), axis));
+  return py.float(py.div(dot(momentum, new_), dot(momentum, arm)));
+}
+
 export {
   ACCURACY,
   APART,
@@ -6452,9 +7131,11 @@ export {
   CoulombFriction,
   CoulombLaw,
   CreepRates,
+  CriticalSpins,
   DEGREE,
   DEGREE_of_flight,
   DEGREE_of_passing,
+  DEGREE_of_series_roots,
   DIFFERENCE,
   DIRECTED,
   DOUBT,
@@ -6476,6 +7157,7 @@ export {
   Event,
   EventKind,
   FACE,
+  FASTEST,
   FINEST,
   FIRST,
   FLAT,
@@ -6484,11 +7166,14 @@ export {
   FUNCTIONS,
   FUZZ,
   Flight,
+  Fold,
   FreeToFly,
   Friction,
   Graph,
+  Group,
   Growing,
   Guard,
+  HALVINGS,
   HORIZON,
   HertzBranch,
   HertzDrillingLaw,
@@ -6503,6 +7188,8 @@ export {
   IntegratedMode,
   IntegratedProcess,
   JAVASCRIPT,
+  JellettLine,
+  JellettRange,
   Kind,
   LANDED,
   LANDING,
@@ -6565,8 +7252,10 @@ export {
   Passing,
   PlainArithmetic,
   PoleExact,
+  Prediction,
   PrincipalDirection,
   Problem,
+  Prospects,
   QUOTIENT,
   Quadratures,
   REACH,
@@ -6577,6 +7266,8 @@ export {
   ROLLING_of_dry_impact,
   ROOT,
   ROUNDING,
+  ROUNDING_of_prediction,
+  ROUNDING_of_series_roots,
   ROUNDING_of_viscous_impact,
   ROUNDS,
   Reaction,
@@ -6589,6 +7280,7 @@ export {
   Revisable,
   Ring,
   RingSurface,
+  RollingPrecession,
   RollingResistance,
   SEARCHES,
   SECOND,
@@ -6629,6 +7321,9 @@ export {
   SpheroidSurface,
   Start,
   State,
+  SteadyKind,
+  SteadyState,
+  StemTest,
   Sticking,
   StickingAndSliding,
   StickingAndSlidingBack,
@@ -6638,6 +7333,7 @@ export {
   Stopping,
   Striking,
   StruckOnTwo,
+  TILTS,
   TIME,
   TINY,
   TOGETHER,
@@ -6649,6 +7345,7 @@ export {
   TURN,
   Tip,
   Top,
+  Touch,
   Traction,
   Trajectory,
   Transition,
@@ -6656,34 +7353,46 @@ export {
   TwoClosed,
   Units,
   VERTICAL,
+  VERTICAL_SPINS,
   Vanishing,
   ViscousFriction,
   ViscousLaw,
   ViscousProcess,
   WIDEST,
   Wrench,
+  _DESCRIPTIONS,
   _Lines,
   _apart,
+  _at_rest,
   _beside,
+  _by_energy,
   _coupling,
   _face,
+  _fold_measure,
   _followed,
   _gap,
+  _handed_over,
   _improved,
   _left,
   _marks,
+  _meetings,
   _newton,
   _normal_wrench,
   _nothing,
   _number,
   _of_momentum,
+  _on_one_of_several,
   _openings,
+  _precession_tilts,
+  _reach,
   _reaches_out,
   _resisting,
   _rests,
   _rests_of_two_closed,
+  _stem,
   _stiffness,
   _surface,
+  _touch,
   _unit,
   _unknown,
   acting,
@@ -6704,9 +7413,13 @@ export {
   beginning_on_two,
   both_letting_go,
   branch_guard,
+  branch_jellett,
+  classify,
+  classify_top,
   closing_motion,
   closing_of,
   closing_rates,
+  coexistence,
   combined,
   common_spellings,
   components,
@@ -6716,8 +7429,12 @@ export {
   contact_velocity,
   contact_wrench,
   creep_rates,
+  critical_jellett,
+  critical_spin,
+  critical_spins,
   cross,
   crossing,
+  derivative_of,
   direction_of_slip,
   directions,
   directions_of,
@@ -6726,17 +7443,23 @@ export {
   double_rates,
   driven_motion,
   each_surface,
+  eccentricity,
   ended_slips,
   energy,
+  equal_thresholds,
   falling_time,
+  final_states,
   first_reach,
   first_root,
   flat,
   fly,
+  fold,
   follow_surface,
   gap,
   gap_rate,
   growth,
+  gyroscopic_reaction,
+  has_level_spin,
   has_limit_branches,
   heaviness,
   held_motion,
@@ -6749,7 +7472,9 @@ export {
   impact,
   impact_on_two,
   in_order,
+  inertia_ratio,
   inner,
+  inverted_boundary,
   is_branched,
   is_dry,
   is_number,
@@ -6761,12 +7486,20 @@ export {
   is_struck,
   javascript_source,
   jellett,
+  jellett_line,
+  jellett_of_launch,
+  jump_boundary,
   key_of,
+  lambda_down,
+  lambda_up,
   landed,
   landing_guard,
+  largest,
+  least_energy,
   least_slip,
   length,
   letting_go,
+  level_spin,
   limit_guard,
   lowest_surface,
   moment_per_normal_force,
@@ -6795,22 +7528,36 @@ export {
   plus,
   point_velocity,
   positive,
+  precession_at,
+  precession_boundaries,
   precession_rate,
+  precession_rate_squared,
+  predict,
   prevalence,
+  prospects,
   quadrature_rates,
   rates_in_time,
   reaction_of,
   record,
   remaining,
   reopening_guard,
+  require_creep,
+  require_jellett,
+  require_one_surface,
+  require_sphere,
   resistance_powers,
   resolution,
   restitution_goal,
+  rolling_precession,
   rolling_reserve,
+  rolling_spin,
   rolling_stopping_guard,
+  roots_between,
+  roots_of,
   rules_for,
   scale,
   scaled,
+  series_of,
   set_valued,
   settled,
   size,
@@ -6836,10 +7583,12 @@ export {
   spared,
   split,
   spun_up,
+  stable_by_energy,
   start_of,
   state_from_angles,
   stays_open,
   stays_positive,
+  steady_states,
   sticking_motion,
   sticking_wrench,
   stopping,
@@ -6850,6 +7599,7 @@ export {
   tilt_rate,
   tops_of,
   touchdown,
+  touching_tilts,
   turn_rate,
   turned,
   turned_of_double_sticking,
@@ -6857,10 +7607,14 @@ export {
   turning_motion,
   turning_with,
   unpack,
+  upright_boundary,
+  value_of,
   velocity_of,
   velocity_without_slip,
+  vertical_spin,
   way_of_both,
   way_of_one,
+  weight_moment,
   with_sliding_law,
   without_drilling,
   without_rolling,

@@ -58,6 +58,11 @@ export class Part {
     for (const name of Object.keys(SCHEMA[this.constructor.title].fields)) yield [name, this[name]];
   }
 
+  /** A copy with other values, which are not checked. */
+  model_copy(changes) {
+    return Object.assign(Object.create(Object.getPrototypeOf(this)), this, Object.fromEntries(changes.items()));
+  }
+
   model_dump() {
     return JSON.parse(JSON.stringify(this));
   }

@@ -95,9 +95,11 @@ export const math = {
   sin: Math.sin,
   cos: Math.cos,
   atan2: Math.atan2,
+  acos: Math.acos,
   log: Math.log,
   expm1: Math.expm1,
   isfinite: Number.isFinite,
+  isinf: (x) => Math.abs(x) === Infinity,
   exp: (x) => finite(Math.exp(x), x),
   sinh: (x) => finite(Math.sinh(x), x),
   cosh: (x) => finite(Math.cosh(x), x),
@@ -157,6 +159,14 @@ export class Enum {
 
 export function members(kind, values) {
   for (const [name, value] of Object.entries(values)) kind[name] = Object.freeze(new kind(name, value));
+}
+
+/** Records, tuples with names and words of an enumeration as plain objects, arrays and strings. */
+export function plain(one) {
+  if (one instanceof Enum) return one.value;
+  if (Array.isArray(one)) return one.map(plain);
+  if (!(one instanceof Record || one instanceof NamedTuple)) return one;
+  return Object.fromEntries(one.constructor.fields.map((name) => [name, plain(one[name])]));
 }
 
 // ---- equality, and what tables and caches are kept by
@@ -229,6 +239,9 @@ export class Dict {
   values() {
     return this.items().map(([, value]) => value);
   }
+  update(pairs) {
+    for (const [one, value] of pairs) this.put(one, value);
+  }
   __getitem__(one) {
     return this.get(one);
   }
@@ -288,6 +301,7 @@ export function zip(...rows) {
   const count = Math.min(...whole.map((row) => row.length));
   return Array.from({ length: count }, (_, i) => whole.map((row) => row[i]));
 }
+export const pairwise = (all) => zip(all, all.slice(1));
 export const any = (all) => [...all].some(truth);
 export const all = (each) => [...each].every(truth);
 export const iter = (all) => all[Symbol.iterator]();
@@ -334,7 +348,11 @@ export function min(...given) {
   }
   return most(given, below);
 }
-export const sorted = (all) => [...all].sort((a, b) => (below(a, b) ? -1 : below(b, a) ? 1 : 0));
+export function sorted(all, told = {}) {
+  const worth = told.key ?? ((one) => one);
+  const pairs = Array.from(all, (one) => [worth(one), one]).sort(([a], [b]) => (below(a, b) ? -1 : below(b, a) ? 1 : 0));
+  return pairs.map(([, one]) => one);
+}
 
 export const tolist = (all) => Array.from(all);
 export const join = (between, all) => [...all].join(between);

@@ -18,12 +18,10 @@ import math
 from enum import StrEnum
 from typing import NamedTuple
 
-import numpy as np
-
 from tippetop.errors import InvalidInput
 from tippetop.mechanics.top import Top
 from tippetop.theory.requirements import require_jellett
-from tippetop.theory.steady import precession_branch
+from tippetop.theory.steady import branch_jellett
 from tippetop.theory.thresholds import lambda_down, lambda_up
 
 
@@ -191,7 +189,7 @@ def fold(top: Top) -> Fold | None:
     gamma, alpha = inertia_ratio(top), eccentricity(top)
     cosine = (alpha - _fold_measure(gamma, alpha)) / (1.0 - gamma)
     tilt = math.acos(max(-1.0, min(1.0, cosine)))
-    return Fold(tilt, float(precession_branch(top, np.array([tilt])).jellett[0]))
+    return Fold(tilt, branch_jellett(tilt, top))
 
 
 def coexistence(top: Top) -> JellettRange | None:

@@ -11,15 +11,16 @@ This holds while the table only pushes. A bilateral contact that pulls can give 
 
 import math
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from tippetop.errors import InvalidInput
 from tippetop.mechanics.hull import Hull
 from tippetop.mechanics.invariants import energy, jellett
+from tippetop.mechanics.roots import crossing
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top, natural_units
 from tippetop.mechanics.view import axis_sine
@@ -110,12 +111,13 @@ def _on_one_of_several(problem: Problem, hull: Any) -> Prediction:
     Jellett's integral holds on one surface. When another touches, it begins anew with a number that the
     whole motion decides.
     """
-    alone = problem.replace({"body.shape": problem.body.shapes[hull.active]})
+    body = problem.body.model_copy(update={"shape": problem.body.shapes[hull.active]})
+    alone = problem.model_copy(update={"body": body})
     found = predict(alone)
     available = float(energy(alone.start(), alone.top))
     ends = touching_tilts(hull, problem.launch.tilt)
     for tilt, number in ends.items():
-        if float(least_energy(tilt, found.jellett, alone.top, np)) <= available:
+        if float(least_energy(tilt, found.jellett, alone.top, math)) <= available:
             shown = f"one whose surface {number} can touch, at a tilt of {tilt:.4g} rad"
             raise InvalidInput("body.shape", shown, "one surface, or a launch of less energy: run it instead")
     low, high = min(ends, default=0.0), max(ends, default=math.pi)
@@ -126,21 +128,24 @@ def _on_one_of_several(problem: Problem, hull: Any) -> Prediction:
 
 def touching_tilts(hull: Hull, tilt: float) -> dict[float, int]:
     """The tilts next to one, rad, at which another surface touches beside the active one, and its number."""
-    tilts = np.append(np.linspace(0.0, math.pi, TILTS), tilt)
+    tilts = sorted([*(math.pi * k / TILTS for k in range(TILTS + 1)), tilt])
     found: dict[float, int] = {}
     for number, other in enumerate(hull.each):
-        if number == hull.active:
-            continue
-
-        def gap(at: float, other: Hull = other) -> float:
-            return float(hull.height(math.cos(at)) - other.height(math.cos(at)))
-
-        places = np.unique(tilts)
-        values = np.array([gap(at) for at in places.tolist()])
-        for k in np.flatnonzero(np.signbit(values[1:]) != np.signbit(values[:-1])).tolist():
-            found[float(brentq(gap, places[k], places[k + 1], xtol=1e-15))] = number
+        if number != hull.active:
+            found.update((at, number) for at in _meetings(hull, other, tilts))
     below, above = [at for at in found if at <= tilt], [at for at in found if at > tilt]
     return {at: found[at] for at in (*sorted(below)[-1:], *sorted(above)[:1])}
+
+
+def _meetings(one: Hull, other: Hull, tilts: list[float]) -> list[float]:
+    """The tilts at which two surfaces touch together, rad, where they change places between some others."""
+
+    def gap(at: float) -> float:
+        return float(one.height(math.cos(at)) - other.height(math.cos(at)))
+
+    return [
+        crossing(gap, low, high) for low, high in pairwise(tilts) if (gap(low) < 0.0) != (gap(high) < 0.0)
+    ]
 
 
 TILTS = 200

@@ -1,15 +1,27 @@
 """What a toy can be expected to do, from its body alone: does it turn over, and can it stand on its stem."""
 
+import math
 from dataclasses import dataclass
 
 from tippetop.bodies import Body, EccentricSphere, Shape, Sphere
 from tippetop.frictions import ViscousFriction
 from tippetop.mechanics.friction import ViscousLaw
+from tippetop.mechanics.hull import Hull
+from tippetop.mechanics.surface import Surface, contact_vector
 from tippetop.mechanics.top import Top
+from tippetop.mechanics.vectors import Vector, add, dot, scale
 from tippetop.problem import Launch, Problem
 from tippetop.theory.groups import Group, classify
-from tippetop.theory.steady import SteadyKind
-from tippetop.theory.thresholds import CriticalSpins, critical_jellett, critical_spin, critical_spins
+from tippetop.theory.prediction import touching_tilts
+from tippetop.theory.steady import SteadyKind, branch_jellett
+from tippetop.theory.thresholds import (
+    CriticalSpins,
+    critical_jellett,
+    critical_spin,
+    critical_spins,
+    jellett_line,
+    lambda_up,
+)
 
 
 @dataclass(frozen=True)
@@ -22,9 +34,32 @@ class StemTest:
         Jellett's integral about the tip, -L.a, kg m^3/s; inf if nothing is enough.
     spin
         The axial spin that goes with it when the axis is vertical, rad/s.
+    launch
+        Spin of launches, rad/s, that rise slowly on the sphere and have this integral when the tip first
+        touches; nan where something else touches before it. What is lost while both touch comes on top.
     """
 
     jellett: float
+    spin: float
+    launch: float
+
+
+@dataclass(frozen=True)
+class Touch:
+    """Where another surface first comes to the table, and what it takes to get there.
+
+    Attributes
+    ----------
+    tilt
+        theta, rad.
+    surface
+        Number of that surface.
+    spin
+        Least spin of launches, rad/s, whose end on the sphere alone is beyond; inf if there is none.
+    """
+
+    tilt: float
+    surface: int
     spin: float
 
 
@@ -42,6 +77,8 @@ class Prospects:
         For launches at `tilt`, at rest in tilt, rad/s.
     tilt
         That tilt, rad.
+    touch
+        Where another surface first touches; None if there is none.
     stem
         What it takes to stand on the sphere at the other end; None if there is none.
     """
@@ -50,6 +87,7 @@ class Prospects:
     group: Group
     critical_spins: CriticalSpins
     tilt: float
+    touch: Touch | None
     stem: StemTest | None
 
 
@@ -67,13 +105,11 @@ def prospects(body: Body, shapes: list[Shape], gravity: float = 9.8, tilt: float
     tilt
         Tilt of the launches that are spoken of, rad.
     """
-    match shapes[0]:
-        case EccentricSphere() as sphere:
-            pass
-        case Sphere(radius=radius, center=center) if 0.0 < center < radius:
-            sphere = EccentricSphere(radius=radius, eccentricity=center / radius)
-        case _:
-            return None
+    sphere = shapes[0]
+    if isinstance(sphere, Sphere) and 0.0 < sphere.center < sphere.radius:
+        sphere = EccentricSphere(radius=sphere.radius, eccentricity=sphere.center / sphere.radius)
+    if not isinstance(sphere, EccentricSphere):
+        return None
     problem = Problem(
         body=body.model_copy(update={"shape": sphere}),
         friction=ViscousFriction(mu=1.0),
@@ -81,13 +117,40 @@ def prospects(body: Body, shapes: list[Shape], gravity: float = 9.8, tilt: float
         gravity=gravity,
     )
     group = classify(body.I1 / body.I3, sphere.eccentricity)
-    spins = critical_spins(problem)
-    return Prospects(sphere.eccentricity, group, spins, tilt, _stem(body, shapes[1:], gravity))
+    surfaces = (problem.top.surface, *(shape.surface for shape in shapes[1:]))
+    touch = _touch(problem, surfaces, group)
+    stem = _stem(problem, surfaces, touch) if isinstance(shapes[-1], Sphere) and len(shapes) > 1 else None
+    return Prospects(sphere.eccentricity, group, critical_spins(problem), tilt, touch, stem)
 
 
-def _stem(body: Body, others: list[Shape], gravity: float) -> StemTest | None:
-    if not others or not isinstance(others[-1], Sphere):
+def _touch(problem: Problem, surfaces: tuple[Surface, ...], group: Group) -> Touch | None:
+    ends = touching_tilts(Hull.of(surfaces), problem.launch.tilt)
+    beyond = [at for at in ends if at > problem.launch.tilt]
+    if not beyond:
         return None
-    top = Top(body.mass, body.I1, body.I3, others[-1].surface, ViscousLaw(1.0), gravity)
-    inverted = SteadyKind.INVERTED
-    return StemTest(critical_jellett(inverted, top), critical_spin(inverted, top))
+    # From upright it rises along the steady precessions once they have no stable one before this tilt.
+    needed = max(lambda_up(problem.top), branch_jellett(beyond[0], problem.top))
+    spin = jellett_line(problem).spin_at(needed if group.leaves_upright else math.inf)
+    return Touch(beyond[0], ends[beyond[0]], spin)
+
+
+def _stem(problem: Problem, surfaces: tuple[Surface, ...], touch: Touch | None) -> StemTest:
+    body, inverted = problem.body, SteadyKind.INVERTED
+    top = Top(body.mass, body.I1, body.I3, surfaces[-1], ViscousLaw(1.0), problem.gravity)
+    least, launch = critical_jellett(inverted, top), math.nan
+    if touch is not None and touch.surface == len(surfaces) - 1:
+        share = _handed_over(touch.tilt, problem.top, surfaces[-1])
+        launch = max(touch.spin, jellett_line(problem).spin_at(least / share) if share > 0.0 else math.inf)
+    return StemTest(least, critical_spin(inverted, top), launch)
+
+
+def _handed_over(tilt: float, top: Top, other: Surface) -> float:
+    """Jellett's integral about another surface, of the motion that has the least energy with that of one: 1.
+
+    That motion, L along I a, is the precession without slip, to which a rise comes the closer the slower.
+    """
+    axis: Vector = (math.sin(tilt), 0.0, math.cos(tilt))
+    arm, new = contact_vector(axis, top.surface), contact_vector(axis, other)
+    along, across = dot(arm, axis), top.transverse_inertia
+    momentum = add(scale(across, arm), scale((top.axial_inertia - across) * along, axis))
+    return float(dot(momentum, new) / dot(momentum, arm))

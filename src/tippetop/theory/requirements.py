@@ -40,9 +40,13 @@ def require_creep(top: Top) -> None:
 
     There is no linear motion then: a point on dry friction sticks, and rolls for ever whatever is stable, and
     resistance to rolling holds an axis that hardly moves. A patch on dry friction does creep, by drilling.
-    A body of several surfaces is refused too.
+    A body of several surfaces is refused too, and one that lies flat when its axis is vertical.
     """
     require_one_surface(top)
+    if hasattr(top.surface, "face_guard"):
+        raise InvalidInput(
+            "body.shape", top.surface, "a shape that touches in one point when its axis is vertical"
+        )
     if isinstance(top.friction, RollingResistance):
         raise InvalidInput(
             "rolling_resistance",

@@ -15,7 +15,6 @@ from enum import StrEnum
 from typing import NamedTuple
 
 import numpy as np
-from numpy.polynomial import chebyshev
 
 from tippetop.errors import InvalidInput
 from tippetop.mechanics.invariants import energy, jellett
@@ -26,6 +25,7 @@ from tippetop.mechanics.vectors import VERTICAL, Functions, Scalar, Vector, add,
 from tippetop.mechanics.view import Angles, state_from_angles
 from tippetop.problem import Problem
 from tippetop.theory.dual import Array
+from tippetop.theory.series_roots import roots_between
 
 
 class SteadyKind(StrEnum):
@@ -148,6 +148,16 @@ def precession_branch(top: Top, tilts: Array) -> Branch:
     )
 
 
+def branch_jellett(tilt: float, top: Top) -> float:
+    """Size of Jellett's integral of the steady precession at a tilt, kg m^3/s; inf where there is none."""
+    rolling = rolling_precession(tilt, top, math)
+    try:
+        squared = precession_rate_squared(rolling.axis[2], top)
+    except ZeroDivisionError:
+        return math.inf
+    return abs(squared**0.5 * rolling.jellett) if squared > 0.0 else math.inf
+
+
 def vertical_spin(kind: SteadyKind, top: Top, spin: float) -> SteadyState:
     """The vertical spin at theta = 0 or pi with this axial spin omega3, rad/s."""
     c = 1.0 if kind is SteadyKind.UPRIGHT else -1.0
@@ -250,32 +260,17 @@ def precession_at(tilt: float, jellett: float, top: Top) -> SteadyState:
 FASTEST = 1e8
 """Angular velocity in natural units beyond which the theory says nothing: beside it, weight is rounding."""
 
-_DEGREES = (8, 32, 128, 512)
-_ROUNDING = 1e-13
-
 
 def _precession_tilts(top: Top, jellett: float) -> list[float]:
-    """Tilts of the steady precessions with this Jellett's integral.
-
-    The balance is smooth in c, so it is its Chebyshev series, whose roots are the eigenvalues of a matrix:
-    none is missed, however close two of them are.
-    """
+    """Tilts of the steady precessions with this Jellett's integral, roots of a balance smooth in c."""
     scaled, square = natural(top), (jellett / float(natural_units(top).jellett)) ** 2
 
-    def balance(c: Array) -> Array:
-        supported = weight_moment(c, scaled) * rolling_precession(np.arccos(c), scaled, np).jellett ** 2
-        balanced: Array = (square * gyroscopic_reaction(c, scaled) - supported) / (1.0 + square)
-        return balanced
+    def balance(c: float) -> float:
+        supported = weight_moment(c, scaled) * rolling_precession(math.acos(c), scaled, math).jellett ** 2
+        return float((square * gyroscopic_reaction(c, scaled) - supported) / (1.0 + square))
 
     inertias = scaled.transverse_inertia + scaled.axial_inertia
-    negligible = noise = 1e-15 * inertias * square / (1.0 + square)
-    series = np.zeros(1)
-    for degree in _DEGREES:
-        series = chebyshev.chebinterpolate(balance, degree)  # type: ignore[arg-type]  # its stub knows no arrays
-        negligible = max(noise, _ROUNDING * np.abs(series).max())
-        if np.abs(series[-2:]).max() <= negligible:
-            break
-    roots = chebyshev.chebroots(chebyshev.chebtrim(series, negligible))
-    cosines = np.sort(roots[np.isreal(roots)].real)[::-1]
+    noise = 1e-15 * inertias * square / (1.0 + square)
+    cosines = roots_between(balance, -1.0, 1.0, noise)
     level = 1e-9 * top.surface.size
-    return [math.acos(c) for c in cosines if -1.0 < c < 1.0 and abs(top.surface.slope(c)) > level]
+    return [math.acos(c) for c in cosines if abs(top.surface.slope(c)) > level]

@@ -91,6 +91,11 @@ export class Engine {
   async aside(setup) {
     return new Track((await this.asides.ask("run", setup)).track);
   }
+
+  // What a body is good for, without a run.
+  prospects(body, { gravity, launch: { tilt } }) {
+    return this.asides.ask("body", { body, gravity, tilt });
+  }
 }
 
 // Follow many launches in as many workers as there are cores to spare.

@@ -1,7 +1,6 @@
 // The page's state and what changes it. One launch is shown; what is asked for later overtakes what was asked before.
 
 import { stillness } from "../player/player.js";
-import { foresee } from "../run/foresee.js";
 import { refusal } from "./controls.jsx";
 import { Engine } from "./engine.js";
 import { LANGUAGES, preferred, speak, t } from "./i18n.js";
@@ -119,7 +118,7 @@ export class Lab extends EventTarget {
   tellOf(track, last) {
     if (track !== this.track) return;
     this.dispatchEvent(new Event("run"));
-    if (last) this.set({ prospect: foresee(track.header.problem) });
+    if (last) this.set({ prospect: track.header.prospect });
     this.say();
   }
 

@@ -1,11 +1,10 @@
 // One's own top: its shape with a stem to drag, what it weighs, what it will do.
 
-import { useState } from "preact/hooks";
+import { useEffect, useState } from "preact/hooks";
 
-import { foresee } from "../run/foresee.js";
 import { t } from "./i18n.js";
 import { changed } from "./setup.js";
-import { FIRST, MATERIALS, bodyOf, possible, sectionOf, verdictOf } from "./turning.js";
+import { FIRST, MATERIALS, bodyOf, massesOf, possible, sectionOf } from "./turning.js";
 import { digits, shown } from "./units.js";
 
 const DIALS = {
@@ -22,11 +21,9 @@ export function Own({ lab }) {
     lab.own = next;
     make(next);
   };
-  const verdict = verdictOf(top);
-  const [ball] = bodyOf(top).shape;
-  const shape = { kind: "eccentric_sphere", radius: ball.radius, eccentricity: ball.center / ball.radius };
-  const sphere = changed(lab.state.setup, { body: { ...bodyOf(top), shape }, friction: { kind: "viscous", mu: 0.3 }, rolling_resistance: 0 });
-  const spins = foresee(sphere.problem)?.critical;
+  const { mass, alpha, ratio } = massesOf(top);
+  const body = bodyOf(top);
+  const ahead = useProspects(lab, body);
   return (
     <div class="own">
       <p>{t("own.intro")}</p>
@@ -41,24 +38,41 @@ export function Own({ lab }) {
           {Object.keys(MATERIALS).map((name) => <option value={name}>{t(`own.${name}`)}</option>)}
         </select></label>
       <dl class="facts">
-        <dt>{t("own.mass")}</dt><dd>{digits(verdict.mass * 1e3, 3)} g</dd>
-        <dt>{t("own.alpha")}</dt><dd>{digits(verdict.alpha, 3)}</dd>
-        <dt>{t("own.inertia")}</dt><dd>{digits(verdict.ratio, 3)}</dd>
+        <dt>{t("own.mass")}</dt><dd>{digits(mass * 1e3, 3)} g</dd>
+        <dt>{t("own.alpha")}</dt><dd>{digits(alpha, 3)}</dd>
+        <dt>{t("own.inertia")}</dt><dd>{digits(ratio, 3)}</dd>
       </dl>
       <h3>{t("own.before")}</h3>
-      <p class="own-verdict" role="status">{sentence(verdict.word, spins, units)}</p>
-      <button type="button" class="strong" disabled={verdict.word === "high"}
-        onClick={() => lab.go(changed(lab.state.setup, { body: bodyOf(top), rolling_resistance: 0, "contact.liftoff": "fly", duration: 10 }))}>{t("own.spin")}</button>
+      <p class="own-verdict" role="status">{sentence(ahead, units)}</p>
+      <button type="button" class="strong" disabled={alpha <= 0}
+        onClick={() => lab.go(changed(lab.state.setup, { body, rolling_resistance: 0, "contact.liftoff": "fly", duration: 10 }))}>{t("own.spin")}</button>
     </div>
   );
 }
 
-function sentence(word, spins, units) {
-  if (word === "high") return t("own.high");
-  if (word === "never") return t("own.never");
-  if (word === "half") return t("own.half");
-  if (!Number.isFinite(spins?.upright) || !Number.isFinite(spins?.inverted)) return t("own.canSomehow");
-  return t("own.can", { spin: shown(spins.upright, "spin", units, 3), full: shown(spins.inverted, "spin", units, 3) });
+// What a worker says of a body: nothing yet while it thinks, null of one that does not stand on its ball.
+function useProspects(lab, body) {
+  const [ahead, say] = useState(undefined);
+  const { problem } = lab.state.setup;
+  useEffect(() => {
+    let wanted = true;
+    lab.engine.prospects(body, problem).then((found) => wanted && say(found), () => {});
+    return () => {
+      wanted = false;
+    };
+  }, [JSON.stringify(body), problem.gravity, problem.launch.tilt]);
+  return ahead;
+}
+
+function sentence(ahead, units) {
+  if (ahead === undefined) return "";
+  if (ahead === null) return t("own.high");
+  const { critical_spins: { upright }, touch, stem } = ahead;
+  const told = (spin) => shown(spin, "spin", units, 3);
+  if (ahead.group.startsWith("I") && !ahead.group.startsWith("II")) return t("own.never");
+  if (!Number.isFinite(touch?.spin)) return t("own.half", { spin: told(upright) });
+  if (!Number.isFinite(stem?.launch)) return t("own.leans", { spin: told(upright), touch: told(touch.spin) });
+  return t("own.can", { spin: told(upright), touch: told(touch.spin), stand: told(stem.launch) });
 }
 
 function Section({ top, onDrag }) {
@@ -85,7 +99,7 @@ function Section({ top, onDrag }) {
       <polygon points={path(both(outer))} class="wood" />
       <polygon points={path(hollow)} class="empty" /><polygon points={path(hollow.map(([r, z]) => [-r, z]))} class="empty" />
       <circle cx="0" cy="0" r="0.8" class="dot" />
-      <circle cx="0" cy={scale * verdictOf(top).alpha * top.radius} r="1.6" class="mass" />
+      <circle cx="0" cy={scale * massesOf(top).alpha * top.radius} r="1.6" class="mass" />
       <circle class="grip" cx="0" cy={-scale * top.stem} r={Math.max(scale * top.knob, 5)} tabIndex={0} role="slider"
         aria-label={t("own.stem")} aria-valuemin={DIALS.stem[0] * 1e3} aria-valuemax={DIALS.stem[1] * 1e3} aria-valuenow={Math.round(top.stem * 1e3)}
         aria-valuetext={`${digits(top.stem * 1e3, 3)} mm`}

@@ -1,6 +1,6 @@
 // What a printer makes of a top: its profile turned into a closed surface, in millimetres, as lathe/mesh.py does.
 
-import { edge } from "../run/looks.js";
+import { edge } from "../run/arc.js";
 
 // Facets around the axis, and around a circle of the profile.
 const FACETS = 180;

@@ -1,6 +1,6 @@
 // A top from its shape: a ball cut by a face, hollowed around its stem, of one material; lengths in m.
 
-import { edge } from "../run/looks.js";
+import { edge } from "../run/arc.js";
 
 export const MATERIALS = { beech: 720, plastic: 1050, cork: 240, aluminium: 2700 };
 
@@ -73,13 +73,10 @@ export function bodyOf(top) {
   return { mass, shape, I1, I3, profile: profileOf(top).map(above) };
 }
 
-// What it can do at all, whatever its spin: 1 - alpha < I1/I3 < 1 + alpha turns over completely.
-export function verdictOf(top) {
-  const { centre, I1, I3, mass } = weigh(top);
-  const alpha = -centre / top.radius;
-  const ratio = I1 / I3;
-  const word = alpha <= 0 ? "high" : ratio <= 1 - alpha ? "never" : ratio >= 1 + alpha ? "half" : "can";
-  return { word, alpha, ratio: 1 / ratio, mass };
+// Its mass, how far its centre is below the ball's middle, in radii, and its inertia along over that across.
+export function massesOf(top) {
+  const { mass, centre, I1, I3 } = weigh(top);
+  return { mass, alpha: -centre / top.radius, ratio: I3 / I1 };
 }
 
 // Half of its section: points from below, and those of its hollow.

@@ -1,6 +1,6 @@
-// What the page's workers do: runs, predictions, and single launches of a map.
+// What the page's workers do: runs, what a body is good for, and single launches of a map.
 
-import { simulate } from "engine";
+import { prospects, simulate } from "engine";
 
 import { buffersOf, pack, samplesFor } from "../run/pack.js";
 
@@ -8,7 +8,7 @@ import { buffersOf, pack, samplesFor } from "../run/pack.js";
 const QUICK = { tolerance: 1e-7, samples: 320 };
 const COARSE = 1e-6;
 
-const JOBS = { run: answerRun, cell: answerCell };
+const JOBS = { run: answerRun, cell: answerCell, body: answerBody };
 
 function answerRun({ id, problem, duration, quick }) {
   let told = 0;
@@ -27,11 +27,15 @@ function answerCell({ problem, duration }) {
   return { tilt: metrics.final_theta, flights: metrics.flights, turnsOver: metrics.turns_over, outcome };
 }
 
+function answerBody({ body, gravity, tilt }) {
+  return prospects(body, gravity, tilt);
+}
+
 self.onmessage = ({ data }) => {
   const { id, job } = data;
   try {
     const answer = JOBS[job](data);
-    postMessage({ id, answer }, answer.track ? buffersOf(answer.track) : []);
+    postMessage({ id, answer }, answer?.track ? buffersOf(answer.track) : []);
   } catch (error) {
     const { name, field, value, accepted, message } = error;
     postMessage({ id, error: { name, field, value, accepted, message: message ?? String(error) } });

@@ -1,17 +1,19 @@
 // What the toy of a body looks like: of a tippe top that is known as a sphere as Python describes it, of any
 // other body its own profile where it fits its surfaces, or their hull, as in figures/meridian.py.
 
-import looks from "../generated/looks.json";
-import { lowest, surfacesOf } from "./surfaces.js";
+import { lowestSurface } from "engine";
 
-const { arc_step: ARC_STEP, smooth: SMOOTH, fits: FITS, tilts: TILTS, outline: OUTLINE, pole: POLE, band: BAND } = looks.meridian;
+import looks from "../generated/looks.json";
+import { edge } from "./arc.js";
+
+const { smooth: SMOOTH, fits: FITS, tilts: TILTS, outline: OUTLINE, pole: POLE, band: BAND } = looks.meridian;
 
 export const SCENES = looks.scenes;
 
 // The length by which the toy is measured when it is drawn, m.
 export function sizeOf(body) {
   const profile = ownProfile(body);
-  return isBall(body, profile) ? body.shape.radius : extent(profile ?? outline(body.shape));
+  return isBall(body, profile) ? body.shape.radius : extent(profile ?? outline(body));
 }
 
 export function toyParts(body) {
@@ -21,7 +23,7 @@ export function toyParts(body) {
     const lift = ([r, z]) => [r, z + shape.eccentricity];
     return looks.tippe_top.map((part) => ({ ...part, profile: part.profile.map(lift) }));
   }
-  const whole = profile ?? outline(shape);
+  const whole = profile ?? outline(body);
   const size = extent(whole);
   let pieces = whole.map((piece) => piece.map(([r, z]) => [r / size, z / size]));
   if (pieces.length === 1) {
@@ -47,17 +49,18 @@ function extent(pieces) {
 }
 
 // The profile that a body has, in smooth pieces from below; null if it has none, or not this shape.
-function ownProfile({ shape, profile }) {
+function ownProfile(body) {
+  const { profile } = body;
   if (!profile) return null;
   const pieces = smoothPieces(profile);
   const points = pieces.flat();
-  const surfaces = surfacesOf(shape);
+  const lowest = lowestSurface(body);
   const size = extent(pieces);
   for (let k = 0; k < TILTS; k++) {
     const tilt = (Math.PI * k) / (TILTS - 1);
     const [s, c] = [Math.sin(tilt), Math.cos(tilt)];
     const reach = Math.max(...points.map(([r, z]) => r * s - z * c));
-    if (Math.abs(reach - surfaces[lowest(surfaces, c)].height(c)) > FITS * size) return null;
+    if (Math.abs(reach - lowest(c).height(c)) > FITS * size) return null;
   }
   return pieces;
 }
@@ -81,19 +84,6 @@ function smoothPieces(profile) {
   return pieces;
 }
 
-// Points from one of a profile to the next, on the arc of the radius that this has, so far apart, rad, at most.
-export function edge([r, z], [toR, toZ, radius = 0], apart = ARC_STEP) {
-  const [across, up] = [toR - r, toZ - z];
-  if (!radius) return [[r, z], [toR, toZ]];
-  const half = Math.asin(Math.max(-1, Math.min(1, Math.hypot(across, up) / (2 * radius))));
-  const steps = Math.max(1, Math.ceil((2 * Math.abs(half)) / apart - 1e-9));
-  return Array.from({ length: steps + 1 }, (_, k) => {
-    const along = Math.sin((k / steps) * half) / Math.sin(half);
-    const [x, y] = [Math.cos((k / steps - 1) * half), Math.sin((k / steps - 1) * half)];
-    return [r + along * (across * x - up * y), z + along * (across * y + up * x)];
-  });
-}
-
 // The angle between the end of a piece and the beginning of the next, rad.
 function turn(before, after) {
   const [[a, b], [c, d]] = before.slice(-2);
@@ -104,20 +94,20 @@ function turn(before, after) {
 
 // The outline of a body from below: points (distance from the axis, height above the centre of mass), m, in
 // smooth arcs and the straight lines between them.
-export function outline(shape) {
-  const surfaces = surfacesOf(shape);
+export function outline(body) {
+  const lowest = lowestSurface(body);
   const arcs = [];
-  let last = -1;
+  let last = null;
   for (let k = 0; k < OUTLINE; k++) {
     const tilt = Math.min(Math.max((Math.PI * k) / (OUTLINE - 1), POLE), Math.PI - POLE);
     const c = Math.cos(tilt);
-    const number = lowest(surfaces, c);
-    if (number !== last) arcs.push([]);
-    last = number;
-    const { height, slope } = surfaces[number];
-    const across = height(c) - c * slope(c);
+    const surface = lowest(c);
+    const slope = surface.slope(c);
+    if (surface.active !== last) arcs.push([]);
+    last = surface.active;
+    const across = surface.height(c) - c * slope;
     const radius = Math.sin(tilt) * across;
-    const point = [Math.abs(radius) < 1e-3 * Math.abs(across) ? 0 : radius, -slope(c) - c * across];
+    const point = [Math.abs(radius) < 1e-3 * Math.abs(across) ? 0 : radius, -slope - c * across];
     const arc = arcs.at(-1);
     const before = arc.at(-1);
     if (!before || Math.hypot(point[0] - before[0], point[1] - before[1]) > 1e-6) arc.push(point);

@@ -1,7 +1,9 @@
 // A run of the engine as the player and the plots take it: a header, times and columns, all to be transferred.
 
+import { lowestSurface } from "engine";
+
+import { foresee } from "./foresee.js";
 import { sizeOf, toyParts, SCENES } from "./looks.js";
-import { lowest, surfacesOf } from "./surfaces.js";
 
 // Angle by which the body may turn between samples, rad, samples per second of even the slowest, and at most.
 const TURN = 0.6;
@@ -30,7 +32,7 @@ export function pack(problem, run, samples) {
   columns.position = new Float32Array(3 * count);
   columns.friction = new Float32Array(2 * count);
   columns.slip = new Float32Array(count);
-  columns.point = contactPath(sampled, columns.axis, problem.body.shape, count);
+  columns.point = contactPath(sampled, problem.body, count);
   columns.touching = new Float32Array(count);
   columns.mode = new Float32Array(count);
   columns.jellett_error = new Float32Array(count);
@@ -53,6 +55,7 @@ export function pack(problem, run, samples) {
     body: { ...problem.body, size: sizeOf(problem.body), parts: toyParts(problem.body) },
     scenes: SCENES,
     problem,
+    prospect: foresee(problem),
     asked: run.duration,
     outcome: run.outcome,
     metrics,
@@ -74,12 +77,13 @@ function flat(values, width, count) {
   return block;
 }
 
-function contactPath({ x, y }, axis, shape, count) {
-  const surfaces = surfacesOf(shape);
+function contactPath({ x, y, axis }, body, count) {
+  const lowest = lowestSurface(body);
   const path = new Float32Array(2 * count);
   for (let i = 0; i < count; i++) {
-    const c = axis[3 * i + 2];
-    const slope = surfaces[lowest(surfaces, c)].slope(c);
+    // Where a ring lies flat, its point of contact is anywhere.
+    const c = Math.min(Math.max(axis[3 * i + 2], Number.EPSILON - 1), 1 - Number.EPSILON);
+    const slope = lowest(c).slope(c);
     path[2 * i] = x[i] - slope * axis[3 * i];
     path[2 * i + 1] = y[i] - slope * axis[3 * i + 1];
   }

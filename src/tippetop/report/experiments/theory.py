@@ -12,6 +12,11 @@ from tippetop.problem import Problem
 from tippetop.report.experiment import Experiment, variable
 from tippetop.report.experiments.runs import WINDOW
 from tippetop.run import simulate
+from tippetop.theory.apparent import (
+    apparent_critical_spins,
+    critical_spin_from_spectrum,
+    growth_rates_of_launches,
+)
 from tippetop.theory.groups import (
     classify,
     classify_top,
@@ -28,11 +33,8 @@ from tippetop.theory.stability import branch_eigenvalues
 from tippetop.theory.steady import SteadyKind, jellett_of_launch, precession_branch
 from tippetop.theory.thresholds import (
     CriticalSpins,
-    apparent_critical_spins,
     critical_spin,
-    critical_spin_from_spectrum,
     critical_spins,
-    growth_rates_of_launches,
 )
 
 VISIBLE = (0.001, 0.002, 0.005, 0.01)

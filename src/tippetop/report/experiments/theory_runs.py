@@ -11,6 +11,7 @@ from tippetop.report.experiment import Experiment, variable
 from tippetop.report.experiments.runs import WINDOW, on_table
 from tippetop.report.readings import SETTLED, flip_time
 from tippetop.run import simulate
+from tippetop.theory.apparent import growth_rates_of_launches
 from tippetop.theory.averaging import averaged_flow, flip_time_limit, local_exponent
 from tippetop.theory.diagnostics import (
     gyroscopic_balance,
@@ -20,7 +21,6 @@ from tippetop.theory.diagnostics import (
 )
 from tippetop.theory.prediction import predict
 from tippetop.theory.steady import SteadyKind
-from tippetop.theory.thresholds import growth_rates_of_launches
 
 SPIN = 100.0
 """Spin of the launches whose slow flow is shown, rad/s."""

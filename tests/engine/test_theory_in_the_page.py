@@ -1,0 +1,70 @@
+"""What the theory says of launches, in the page: the same as Python's."""
+
+from collections.abc import Callable
+from dataclasses import asdict
+from typing import Any
+
+import pytest
+
+import tippetop as tt
+from launches import in_javascript, launch_of
+from tippetop.theory.prospects import prospects
+
+SEEDS = range(300)
+
+
+def told(ask: Callable[[], Any]) -> Any:
+    """What Python answers as plain data, with words for what JSON does not know; of a refusal the field."""
+    try:
+        found = ask()
+    except tt.InvalidInput as refusal:
+        return {"refused": refusal.field}
+    return plain(asdict(found) if found is not None else None)
+
+
+def plain(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {name: plain(one) for name, one in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(one) for one in value]
+    return "inf" if value == float("inf") else value
+
+
+def assert_alike(theirs: Any, ours: Any, where: str) -> None:
+    """Same numbers to 1e-9, relative or to 1; tilts near a fold or a pole to its square root."""
+    if isinstance(ours, dict):
+        assert theirs.keys() >= ours.keys(), where
+        for name in ours:
+            assert_alike(theirs[name], ours[name], f"{where} {name}")
+    elif isinstance(ours, list):
+        assert len(theirs) == len(ours), where
+        for number, (one, other) in enumerate(zip(theirs, ours, strict=True)):
+            assert_alike(one, other, f"{where} {number}")
+    elif isinstance(ours, float):
+        assert theirs == pytest.approx(ours, rel=1e-9, abs=1e-12), where
+    else:
+        assert theirs == ours, where
+
+
+def test_what_is_foreseen_is_the_same() -> None:
+    launches = [launch_of(seed) for seed in SEEDS]
+    answers = in_javascript([{"problem": fields, "theory": True} for fields in launches])
+    refused = ends = stems = 0
+    for seed, fields, theirs in zip(SEEDS, launches, answers, strict=True):
+        try:
+            problem = tt.Problem(**fields)
+        except tt.InvalidInput:
+            continue
+        body = problem.body
+        ours = {
+            "predict": told(lambda problem=problem: tt.predict(problem)),
+            "critical": told(lambda problem=problem: tt.critical_spins(problem)),
+            "prospects": told(lambda body=body: prospects(body, list(body.shapes))),
+        }
+        assert_alike(theirs, ours, f"seed {seed}:")
+        ends += "stable" in ours["predict"]
+        refused += "refused" in ours["predict"]
+        stems += bool(ours["prospects"] and ours["prospects"].get("stem"))
+    assert ends > 20
+    assert refused > 100
+    assert stems > 0
