@@ -11,21 +11,19 @@ from functools import cache
 from importlib.util import find_spec
 from shutil import which
 from typing import Any, NamedTuple
-from unittest.mock import patch
 
 import heyoka as hy
 import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from tippetop.integrators import has_numba
 from tippetop.integrators.compile_cache import compiling
 from tippetop.mechanics.euler import published_rates
 from tippetop.mechanics.motion import contact, sliding_rates
 from tippetop.mechanics.state import SlidingState
 from tippetop.presets import report_problem
 from tippetop.problem import Problem
-from tippetop.sweeps import Axis, Product, Sweep, alone
+from tippetop.sweeps import Axis, Product, Sweep
 from tippetop.sweeps.cells import cells_of
 from tippetop.sweeps.ensemble import follow_cells
 
@@ -46,15 +44,6 @@ def engine(spins: Array, tolerance: float) -> Array:
     sweep = Sweep(problem(), Product((axis,)), DURATION, tolerance)
     found: Array = follow_cells(sweep, np.arange(len(spins)))["final_theta"].astype(float)
     return found
-
-
-def engine_on_numba(spins: Array, tolerance: float) -> Array:
-    """The same where heyoka is not installed."""
-    with (
-        patch.object(alone, "has_taylor", return_value=False),
-        patch.object(alone, "default_name", return_value="compiled"),
-    ):
-        return engine(spins, tolerance)
 
 
 class Starts(NamedTuple):
@@ -249,7 +238,6 @@ CONTENDERS = {
     ENGINE: Contender(engine, 8192),
     "heyoka's batch integrator, bare": Contender(bare_batch, 8192),
     "diffrax Dopri8, vmap": Contender(diffrax_vmap, 1024, find_spec("diffrax") is not None),
-    "this engine without heyoka": Contender(engine_on_numba, 1024, has_numba()),
     "SciPy DOP853, published equations": Contender(scipy_published, 4),
     "Octave ode45, the listing's method": Contender(octave, 2, which("octave") is not None),
 }

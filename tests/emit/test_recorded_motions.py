@@ -1,4 +1,4 @@
-"""What is printed of the mechanics computes what the mechanics does: in Python, and in JavaScript."""
+"""What is printed of the mechanics computes what the mechanics does: in Python, JavaScript and LLVM's."""
 
 import json
 import math
@@ -10,12 +10,16 @@ import pytest
 from every_motion import CASES, SURFACES, everything, states
 from node import NODE
 from tippetop.contact.sliding import sliding_motion
+from tippetop.emit import llvm
+from tippetop.emit.coefficients import NodeArithmetic, SeriesGraph
 from tippetop.emit.graph import NotRecordable
 from tippetop.emit.javascript import javascript_source
 from tippetop.emit.python import python_source
 from tippetop.emit.recording import Elementary, record
+from tippetop.integrators import has_llvm
 from tippetop.mechanics.contensou_hertz import HertzLaw
 from tippetop.mechanics.euler import published_rates
+from tippetop.mechanics.series import horner, solution
 from tippetop.mechanics.surface import SphereSurface
 from tippetop.mechanics.top import Top
 from tippetop.presets import report_problem
@@ -115,6 +119,56 @@ def test_printed_code_computes_what_the_mechanics_does(shape, by_javascript):
         count = case.motion.size + len(case.motion.guards)
         assert_same(by_python(code, rows, case.parameters, count), expected)
         assert_same([[float(text) for text in row] for row in by_javascript[case.name]], expected)
+
+
+def by_llvm(recorded, rows, parameters):
+    """What LLVM's code makes of rows of states, each a launch."""
+    from tippetop.integrators.machine_code import batch_function  # noqa: PLC0415 - where there is llvmlite
+
+    y = np.ascontiguousarray(np.resize(rows, (8 * math.ceil(len(rows) / 8), rows.shape[1])).T)
+    given = np.repeat(np.array(parameters, dtype=float)[:, None], y.shape[1], axis=1)
+    out = np.full((len(recorded.outputs), y.shape[1]), np.nan)
+    batch_function(recorded)(y, given, out)
+    return out[:, : len(rows)].T
+
+
+@pytest.mark.skipif(not has_llvm(), reason="llvmlite is not installed")
+@pytest.mark.parametrize("shape", SURFACES)
+def test_code_for_many_launches_computes_what_the_mechanics_does(shape, monkeypatch):
+    monkeypatch.setattr(llvm, "ROUNDING", "")  # as Python rounds, so that what cancels is the same too
+    for case in CASES:
+        if case.name.startswith(shape):
+            rows, function = states(case.motion, POINTS), everything(case.motion)
+            found = by_llvm(recorded(case), rows, case.parameters)
+            assert_same(found.tolist(), by_floats(function, rows, case.parameters))
+
+
+@pytest.mark.skipif(not has_llvm(), reason="llvmlite is not installed")
+def test_every_launch_has_its_own_choice_and_its_own_numbers():
+    plain = NodeArithmetic()
+
+    def function(y, p):
+        chosen = plain.choose(plain.below(y[0], p[0]), plain.size(y[0]), y[0] ** 0.3)
+        return chosen, plain.total([y[0] * float(k) for k in range(1, 6)]), plain.least(y[0], 1.5), 1.0
+
+    places = np.linspace(-2.0, 4.0, 24)
+    chosen, total, least, one = by_llvm(record(function, 1, 1), places[:, None], (0.5,)).T
+    np.testing.assert_allclose(chosen, [abs(x) if x < 0.5 else x**0.3 for x in places], rtol=1e-15)
+    np.testing.assert_allclose(total, 15.0 * places, rtol=1e-15)
+    np.testing.assert_array_equal(least, np.minimum(places, 1.5))
+    np.testing.assert_array_equal(one, 1.0)
+    assert by_llvm(record(function, 1, 1), np.empty((0, 1)), (0.5,)).shape == (0, 4)
+
+
+@pytest.mark.skipif(not has_llvm(), reason="llvmlite is not installed")
+def test_series_of_nodes_solve_what_they_are_given():
+    def exponential(y, p):
+        (series,) = solution(y, lambda y: (p[0] * y[0] - y[0] * p[0] + y[0] / p[1],), NodeArithmetic())
+        return (horner([series[k] for k in range(20)], 1.0),)
+
+    starts = np.linspace(1.0, 2.0, 8)
+    found = by_llvm(record(exponential, 1, 2, SeriesGraph()), starts[:, None], (3.0, 2.0))[:, 0]
+    np.testing.assert_allclose(found, starts * math.exp(0.5), rtol=1e-15)
 
 
 def test_the_reports_sliding_equations_are_few_operations():

@@ -18,7 +18,7 @@ if not has_numba():
     pytest.skip("numba is not installed", allow_module_level=True)
 
 import tippetop as tt
-from tippetop.integrators.numba_cache import SEAL
+from tippetop.integrators.sealed_folders import SEAL
 
 TOLERANCE = 1e-9
 

@@ -14,7 +14,7 @@ from tippetop.catalogue import METRICS
 from tippetop.contact.sliding import sliding_motion
 from tippetop.errors import InvalidInput
 from tippetop.frictions import RegularizedCoulombFriction
-from tippetop.integrators import has_taylor
+from tippetop.integrators import has_llvm, has_taylor
 from tippetop.presets import report_problem
 from tippetop.problem import Problem
 from tippetop.summary import summarize
@@ -150,8 +150,8 @@ def test_a_cell_does_not_depend_on_lanes_waves_and_windows(monkeypatch):
         assert values == pytest.approx(usual[name], rel=1e-11, abs=1e-12, nan_ok=True), name
 
 
-@pytest.mark.skipif(not has_taylor(), reason="heyoka is what is compared with")
-def test_arrays_make_the_steps_that_heyoka_compiles():
+@pytest.mark.skipif(not has_llvm(), reason="llvmlite is not installed")
+def test_arrays_make_the_steps_that_are_compiled():
     sweep = lively("ignore", 4, 4)
     cells = cells_of(sweep.problem, sweep.grid.values(np.arange(16)))
     launches = cells.launches(np.arange(16), 1.0)

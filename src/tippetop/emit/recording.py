@@ -44,7 +44,10 @@ class Recorded(NamedTuple):
 
 
 def record(
-    function: Callable[[Sequence[Scalar], Sequence[Scalar]], Sequence[Scalar]], size: int, parameters: int
+    function: Callable[[Sequence[Scalar], Sequence[Scalar]], Sequence[Scalar]],
+    size: int,
+    parameters: int,
+    graph: Graph | None = None,
 ) -> Recorded:
     """Record what a function of a state and parameters does.
 
@@ -54,13 +57,15 @@ def record(
         It returns a sequence of numbers, and asks nothing of its arguments but operators.
     size, parameters
         How many numbers the state has, and how many parameters there are.
+    graph
+        Where to record it: an empty graph of its own unless said.
 
     Raises
     ------
     NotRecordable
         If the function makes a choice that depends on the numbers.
     """
-    graph = Graph()
+    graph = Graph() if graph is None else graph
     state = [graph.node(STATE, (), i) for i in range(size)]
     given = [graph.node(PARAMETER, (), i) for i in range(parameters)]
     outputs = [graph.taken(output) for output in function(state, given)]

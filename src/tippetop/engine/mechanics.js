@@ -6242,8 +6242,8 @@ class Recorded extends py.NamedTuple {
 py.fields(Recorded, ["nodes", "outputs", "size", "parameters"]);
 
 /** Record what a function of a state and parameters does. */
-function record(function_, size, parameters) {
-  const graph = new Graph();
+function record(function_, size, parameters, graph = null) {
+  graph = graph === null ? new Graph() : graph;
   const state = py.range(size).map((i) => graph.node(STATE, [], i));
   const given = py.range(parameters).map((i) => graph.node(PARAMETER, [], i));
   const outputs = [...function_(state, given)].map((output) => graph.taken(output));

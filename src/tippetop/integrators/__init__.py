@@ -14,6 +14,7 @@ __all__ = [
     "Integrator",
     "Motion",
     "default_name",
+    "has_llvm",
     "has_numba",
     "has_taylor",
     "make_integrator",
@@ -41,6 +42,11 @@ def has_taylor() -> bool:
 def has_numba() -> bool:
     """Whether numba, which compiles Dormand and Prince's method, is installed."""
     return find_spec("numba") is not None
+
+
+def has_llvm() -> bool:
+    """Whether llvmlite, which compiles Taylor's method for many launches at once, is installed."""
+    return find_spec("llvmlite") is not None
 
 
 def default_name() -> str:

@@ -12,7 +12,7 @@ from tippetop.integrators import (
     COMPILED_TOLERANCE,
     SCIPY_TOLERANCES,
     default_name,
-    has_taylor,
+    has_llvm,
     make_integrator,
 )
 from tippetop.integrators.dense import DenseSolution
@@ -27,9 +27,9 @@ LEAST = {"compiled": COMPILED_TOLERANCE, "dop853": SCIPY_TOLERANCES["dop853"]}
 
 
 def is_alone(launches: Launches) -> bool:
-    """Whether there are no batches, which heyoka compiles, or they know nothing of their bodies or rules."""
+    """Whether there are no batches, which LLVM compiles, or they know nothing of their bodies or rules."""
     example = launches.kind.example
-    return not has_taylor() or launches.own is not None or isinstance(example.surface, Hull)
+    return not has_llvm() or launches.own is not None or isinstance(example.surface, Hull)
 
 
 def follow_each(launches: Launches, tolerance: float, settled: float | None = None) -> Ends:

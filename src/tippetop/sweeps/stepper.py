@@ -37,8 +37,8 @@ class NumPyArithmetic:
 
 @lru_cache(maxsize=16)
 def stepper(motion: Motion, tolerance: float) -> Stepper:
-    """Taylor's method for a motion, compiled by heyoka."""
-    # An interrupted import of heyoka leaves it in pieces.
+    """Taylor's method for a motion, compiled by LLVM."""
+    # An interrupted import leaves a module in pieces.
     with deferred():
         from tippetop.sweeps.compiled import CompiledStepper  # noqa: PLC0415 - optional, and slow to import
 

@@ -1,9 +1,9 @@
 """One step of Taylor's method for many launches at once, with what happens inside it.
 
 The equations of motion and guards of a contact mode, in plain operators, are evaluated on power series.
-heyoka compiles the whole step, with its dense output, into one function that works on eight launches an
-instruction; without heyoka launches are followed one by one. Order and step size are chosen as by
-heyoka's own integrators (Biscani and Izzo 2021, MNRAS 504; Jorba and Zou 2005, Experimental Mathematics 14):
+LLVM compiles the whole step, with its dense output, into one function that works on eight launches an
+instruction; without it launches are followed one by one. Order and step size are chosen as by heyoka's
+integrators (Biscani and Izzo 2021, MNRAS 504; Jorba and Zou 2005, Experimental Mathematics 14):
 the order p from the tolerance, and the step from the last two coefficients, so that what is left out is below
 the tolerance.
 

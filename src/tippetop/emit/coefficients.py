@@ -1,0 +1,52 @@
+"""Coefficients of power series as nodes: what Taylor's method computes, recorded number by number."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from tippetop.emit.graph import Graph, Node
+from tippetop.mechanics.series import Series
+
+
+class SeriesGraph(Graph):
+    """A graph whose nodes leave it to a series what the two of them make."""
+
+    def sum(self, a: Any, b: Any) -> Any:
+        """Sum of two; see `Graph.sum`."""
+        return NotImplemented if isinstance(b, Series) else super().sum(a, b)
+
+    def product(self, a: Any, b: Any) -> Any:
+        """Product of two; see `Graph.product`."""
+        return NotImplemented if isinstance(b, Series) else super().product(a, b)
+
+    def quotient(self, a: Any, b: Any) -> Any:
+        """Quotient of two; see `Graph.quotient`."""
+        return NotImplemented if isinstance(b, Series) else super().quotient(a, b)
+
+
+class NodeArithmetic:
+    """Coefficients that are nodes, or numbers."""
+
+    def total(self, terms: Sequence[Any]) -> Any:
+        """Sum of terms, of neighbours first: shorter chains, which processors are faster with."""
+        while len(terms) > 1:
+            pairs = zip(terms[::2], terms[1::2], strict=False)
+            terms = [a + b for a, b in pairs] + list(terms[len(terms) & ~1 :])
+        return terms[0]
+
+    def least(self, a: Any, b: Any) -> Any:
+        """The smaller of two; the second where one is not a number."""
+        return self.choose(self.below(a, b), a, b)
+
+    def size(self, a: Any) -> Any:
+        """Absolute value."""
+        return abs(a)
+
+    def below(self, a: Any, b: Any) -> Any:
+        """1 where the first is less than the second, else 0."""
+        return 1.0 * (a < b)
+
+    def choose(self, condition: Any, a: Any, b: Any) -> Any:
+        """The first where a condition is not 0, else the second."""
+        if isinstance(condition, Node):
+            return condition.graph.select(condition, a, b)
+        return a if condition else b
