@@ -71,7 +71,7 @@ def llvm_source(recorded: Recorded, name: str) -> str:
     NotRecordable
         If there is an operation for which LLVM has no name.
     """
-    lines = _Lines()
+    lines = _Instructions()
     for node in recorded.nodes:
         lines.take(node)
     for row, node in enumerate(recorded.outputs):
@@ -80,7 +80,7 @@ def llvm_source(recorded: Recorded, name: str) -> str:
     return FRAME.format(name=name, body="\n".join(lines.lines), v=VECTOR, n=ABREAST)
 
 
-class _Lines:
+class _Instructions:
     """Lines of code, and the names of the nodes that are there so far."""
 
     def __init__(self) -> None:
@@ -115,7 +115,7 @@ class _Lines:
     def _compute(self, node: Node) -> str:
         operands = [self.names[operand.place] for operand in node.operands]
         if node.name == LESS:
-            flags = self.new(f"fcmp olt {VECTOR} {operands[0]}, {operands[1]}")
+            flags = self.new(f"fcmp ogt {VECTOR} {operands[1]}, {operands[0]}")
             self.flags[node.place] = flags
             return self.new(f"uitofp {FLAGS} {flags} to {VECTOR}")
         if node.name == SELECT:

@@ -39,10 +39,14 @@ def _object(source: str, folder: Path | None) -> bytes:
     path = (folder or Path()) / OBJECT
     if folder is not None and path.exists():
         return path.read_bytes()
-    content = _machine().emit_object(llvm.parse_assembly(source))
+    content = _compiled(source)
     if folder is not None:
         path.write_bytes(content)
-    return bytes(content)
+    return content
+
+
+def _compiled(source: str) -> bytes:
+    return bytes(_machine().emit_object(llvm.parse_assembly(source)))
 
 
 def _machine() -> llvm.TargetMachine:
