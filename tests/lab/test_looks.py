@@ -30,7 +30,8 @@ def test_the_page_draws_each_body_as_films_do(tmp_path: Path) -> None:
     engine = json.dumps((HERE / "index.js").as_uri())
     for name in ("looks", "arc"):
         code = (WEB / "run" / f"{name}.js").read_text(encoding="utf-8").replace('"engine"', engine)
-        code = code.replace('import looks from "../generated/looks.json";', f"const looks = {looks.as_json()};")
+        told = f"const looks = {looks.as_json()};"
+        code = code.replace('import looks from "../generated/looks.json";', told)
         (tmp_path / f"{name}.mjs").write_text(code.replace("./arc.js", "./arc.mjs"), encoding="utf-8")
     bodies = [body.model_dump(mode="json", exclude_none=True) for body in BODIES.values()]
     (tmp_path / "told.mjs").write_text(
@@ -39,8 +40,8 @@ def test_the_page_draws_each_body_as_films_do(tmp_path: Path) -> None:
         "console.log(JSON.stringify(bodies.map((body) => [sizeOf(body), toyParts(body)])));\n",
         encoding="utf-8",
     )
-    told = json.loads(subprocess.check_output([NODE, "told.mjs"], cwd=tmp_path, text=True, timeout=60))
-    for (name, body), (size, parts) in zip(BODIES.items(), told, strict=True):
+    found = json.loads(subprocess.check_output([NODE, "told.mjs"], cwd=tmp_path, text=True, timeout=60))
+    for (name, body), (size, parts) in zip(BODIES.items(), found, strict=True):
         assert size == pytest.approx(looks.size(body), rel=1e-8), name
         expected = looks.toy_parts(body)
         assert [part["name"] for part in parts] == [part.name for part in expected], name
