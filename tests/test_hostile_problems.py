@@ -13,6 +13,7 @@ import pytest
 import tippetop as tt
 from tippetop.errors import TippetopError
 from tippetop.integrators import has_taylor
+from tippetop.mechanics import integrated_impact, touchdown
 
 COUNT, PARTS = int(os.environ.get("TIPPETOP_HOSTILE", "64")), 8
 STEPS, MODES = 2_000, 200
@@ -126,6 +127,39 @@ def test_what_breaks_down_at_once_has_the_launch_for_a_result(changes: dict[str,
     assert run.attrs["outcome"] == "failed"
     assert float(run["time"][0]) == 0.0
     assert float(run["theta"][0]) == pytest.approx(problem.launch.tilt)
+
+
+def bouncing(**changes: Any) -> tt.Problem:
+    """A top that is dropped on a patch that drills, and rebounds."""
+    friction = tt.ContensouFriction(mu=0.3, patch_radius=5e-4)
+    launch = {"launch.gap": 0.001, "contact.liftoff": "fly", "contact.restitution": 0.9}
+    return tt.presets.report_problem(spin=20.0).replace({"friction": friction, **launch, **changes})
+
+
+def test_steps_within_impacts_count() -> None:
+    free = tt.simulate(bouncing(), 0.2, samples=11)
+    assert free.attrs["outcome"] == "completed"
+    assert int(free["steps"]) < 50
+    bounded = tt.simulate(bouncing(), 0.2, samples=11, step_limit=300)
+    assert bounded.attrs["outcome"] == "too_many_steps"
+    assert 0.0 < float(bounded["time"][-1]) < 0.2
+
+
+def test_pieces_of_flights_count() -> None:
+    run = tt.simulate(bouncing(**{"launch.spin": 1e6}), 0.2, samples=11, step_limit=1000)
+    assert run.attrs["outcome"] == "too_many_steps"
+    assert int(run["steps"]) == 0
+
+
+def test_a_single_impact_or_flight_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(integrated_impact, "MOST", 20)
+    run = tt.simulate(bouncing(), 0.2, samples=11)
+    assert run.attrs["outcome"] == "failed"
+    assert 0.0 < float(run["time"][-1]) < 0.2
+    monkeypatch.setattr(touchdown, "MOST_DISCS", 100)
+    run = tt.simulate(bouncing(**{"launch.spin": 1e6}), 0.2, samples=11)
+    assert run.attrs["outcome"] == "failed"
+    assert float(run["time"][-1]) == 0.0
 
 
 @pytest.mark.parametrize("duration", [1e308, 1e300, np.inf, np.nan, 0.0])

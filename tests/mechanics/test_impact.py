@@ -12,7 +12,7 @@ from scipy.integrate import solve_ivp
 from strategies import numbers, slides, spheres, tops
 from tippetop.mechanics.flight import gap, gap_rate
 from tippetop.mechanics.friction import RegularizedCoulombLaw, Traction, ViscousLaw
-from tippetop.mechanics.impact import impact
+from tippetop.mechanics.impact import Impact, impact
 from tippetop.mechanics.invariants import energy, jellett
 from tippetop.mechanics.motion import on_table
 from tippetop.mechanics.state import State
@@ -150,7 +150,7 @@ def test_a_body_that_does_not_approach_is_not_struck(slide, rising):
     top, sliding = slide
     state = on_table(sliding, top)
     rising = state._replace(velocity=(*state.velocity[:2], state.velocity[2] + rising * speed_unit(top)))
-    assert impact(rising, 0.5, top) == (rising, 0.0, 0.0, 0.0)
+    assert impact(rising, 0.5, top) == Impact(rising, 0.0, 0.0, 0.0)
 
 
 # Exact answers ------------------------------------------------------------------------------------------

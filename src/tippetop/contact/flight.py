@@ -50,7 +50,12 @@ class Flight(Mode):
 
     def segments(self, time: float, state: State, end: float, integrator: Integrator) -> Iterator[Segment]:
         """Evaluate the flight, which needs no integrator."""
-        landing, lowest = self._landing(state, end - time)
+        try:
+            landing, lowest = self._landing(state, end - time)
+        except ArithmeticError as error:
+            failed = Transition((), Outcome.FAILED, state, str(error))
+            yield Segment(self, DenseSolution.nothing(time, len(state.pack())), state, failed)
+            return
         duration = end - time if landing is None else landing
         rate = length(state.momentum) / self.top.transverse_inertia
         count = 1 + int(duration * rate / TURN)

@@ -94,6 +94,8 @@ class Event:
         Normal impulse of the table, and energy that went with it.
     surface
         Number of the body's surface to which it happened.
+    steps
+        How many steps it took to find what it does.
     """
 
     kind: EventKind
@@ -101,6 +103,7 @@ class Event:
     impulse: float = 0.0
     energy_lost: float = 0.0
     surface: int = 0
+    steps: int = 0
 
 
 @dataclass(frozen=True)

@@ -334,7 +334,10 @@ class FreeToFly(ContactRules):
                 collision = self._impact(state, 0.0)
         except ArithmeticError as error:
             return Transition(events, Outcome.FAILED, state, str(error))
-        hit = self.event(EventKind.IMPACT, time, float(collision.impulse), float(collision.energy_lost))
+        hit = replace(
+            self.event(EventKind.IMPACT, time, float(collision.impulse), float(collision.energy_lost)),
+            steps=collision.steps,
+        )
         after = collision.state
         if not collision.impulse:
             # Nothing but rounding kept the contact from being a resting one.

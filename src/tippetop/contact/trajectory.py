@@ -30,7 +30,8 @@ class Trajectory:
     integrator
         The method for modes that need one.
     limit, step_limit
-        How many modes to go through, and how many steps to take, at most.
+        How many modes to go through, and how many steps to take, at most: those of the integrator and of
+        impacts, and the pieces of flights.
     time, state
         Where it is.
     outcome, detail
@@ -67,10 +68,11 @@ class Trajectory:
             modes += 1
             for segment in transition.then.segments(self.time, self._state, self.end, self.integrator):
                 self.time, self._state = segment.end_time, segment.end_state
+                steps += max(segment.steps, len(segment.solution.knots) - 1)
                 if segment.transition is not None:
                     transition = self._enter(segment.transition)
+                    steps += sum(event.steps for event in transition.events)
                 yield segment
-                steps += segment.steps
                 if steps >= self.step_limit and self.outcome is None:
                     self.outcome = Outcome.TOO_MANY_STEPS
                     return

@@ -1396,16 +1396,17 @@ py.members(EventKind, { LIFT_OFF: "lift-off", TOUCHDOWN: "touchdown", STICK: "st
 
 /** Something that happened at an instant. */
 class Event extends py.Record {
-  constructor(kind, time, impulse = 0.0, energy_lost = 0.0, surface = 0) {
+  constructor(kind, time, impulse = 0.0, energy_lost = 0.0, surface = 0, steps = 0) {
     super();
     this.kind = kind;
     this.time = time;
     this.impulse = impulse;
     this.energy_lost = energy_lost;
     this.surface = surface;
+    this.steps = steps;
   }
 }
-py.fields(Event, ["kind", "time", "impulse", "energy_lost", "surface"]);
+py.fields(Event, ["kind", "time", "impulse", "energy_lost", "surface", "steps"]);
 
 /** What follows the end of a mode. */
 class Transition extends py.Record {
@@ -1798,6 +1799,7 @@ const WIDEST = 4.0;
 const NARROWEST = 1e-09;
 const LOOKS_of_touchdown = 10.0;
 const MOST_LOOKS = 1000;
+const MOST_DISCS = 100000;
 
 /** How a flight starts: how many of gap, gap rate and gap acceleration are then zero by construction. */
 const Start = Object.freeze({ AIRBORNE: 0, REBOUND: 1, RELEASE: 2, LIFT_OFF: 3 });
@@ -1822,7 +1824,10 @@ function touchdown(state, top, horizon, start = Start.AIRBORNE) {
   }
   const separation = new Separation(tip, top.surface, ballistic);
   let angle = WIDEST;
-  while (time < horizon) {
+  for (let turn = 0; turn < MOST_DISCS; turn += 1) {
+    if (time >= horizon) {
+      return null;
+    }
     const [radius, spread] = analytic_disc(tip, top.surface, time, 0.25, angle);
     angle = py.min(WIDEST, py.mul(py.mul(2.0, radius), tip.frequency));
     const end = py.min(horizon, py.add(time, py.mul(0.5, radius)));
@@ -1832,7 +1837,7 @@ function touchdown(state, top, horizon, start = Start.AIRBORNE) {
     }
     time = end;
   }
-  return null;
+  throw new py.ArithmeticError("a flight turns too often for its end to be found");
 }
 
 /** Time after which height + rate t + half t^2 stays negative, infinite if half is not negative. */
@@ -1994,7 +1999,15 @@ class Flight extends Mode {
   }
   /** Evaluate the flight, which needs no integrator. */
   *segments(time, state, end, integrator) {
-    const [landing, lowest] = this._landing(state, end - time);
+    let landing, lowest;
+    try {
+      [landing, lowest] = this._landing(state, end - time);
+    } catch (error) {
+      if (!(error instanceof py.ArithmeticError)) throw error;
+      const failed = new Transition([], Outcome.FAILED, state, py.str(error));
+      yield new Segment(this, DenseSolution.nothing(time, py.len(state.pack())), state, failed);
+      return null;
+    }
     const duration = landing === null ? end - time : landing;
     const rate = py.div(length(state.momentum), this.top.transverse_inertia);
     const count = 1 + py.int(py.div(py.mul(duration, rate), TURN));
@@ -3294,15 +3307,16 @@ const FUZZ = 1e-14;
 
 /** Impulses of the table on the body so far. */
 class Impulse extends py.NamedTuple {
-  constructor(normal, tangential, angular, normal_work) {
+  constructor(normal, tangential, angular, normal_work, steps = 0) {
     super();
     this.normal = normal;
     this.tangential = tangential;
     this.angular = angular;
     this.normal_work = normal_work;
+    this.steps = steps;
   }
 }
-py.fields(Impulse, ["normal", "tangential", "angular", "normal_work"]);
+py.fields(Impulse, ["normal", "tangential", "angular", "normal_work", "steps"]);
 const NO_IMPULSE = new Impulse(0.0, [0.0, 0.0], NO_TORQUE, 0.0);
 
 /** A body at the start of an impact, and what an impulse does to its contact point. */
@@ -3593,7 +3607,7 @@ function components(impulse) {
 const TOLERANCE = 1e-09;
 const STUCK = 1e-08;
 const SHORTEST = 1e-12;
-const MOST_of_integrated_impact = 1000000;
+const MOST_of_integrated_impact = 20000;
 const NODES = [[1 / 5], [3 / 40, 9 / 40], [44 / 45, -56 / 15, 32 / 9], [19372 / 6561, -25360 / 2187, 64448 / 6561, -212 / 729], [9017 / 3168, -355 / 33, 46732 / 5247, 49 / 176, -5103 / 18656], [35 / 384, 0.0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84]];
 const DOUBT = [71 / 57600, 0.0, -71 / 16695, 71 / 1920, -17253 / 339200, 22 / 525, -1 / 40];
 
@@ -3614,10 +3628,10 @@ class IntegratedProcess extends py.NamedTuple {
     let [here, slope] = [pack(impulse), self.slope(pack(impulse))];
     const longest = py.div(2.0, py.add(self.body.inverse_mass[0][0], self.body.inverse_mass[1][1]));
     let step = py.mul(0.05, longest);
-    for (let turn = 0; turn < MOST_of_integrated_impact; turn += 1) {
+    for (let taken = 0; taken < MOST_of_integrated_impact; taken += 1) {
       const held = self.held(unpack(here), goal, guess);
       if (held !== null) {
-        return held;
+        return held._replace({ steps: taken });
       }
       const [there, new_slope, doubt] = self.step(here, slope, step);
       const reached = goal(unpack(there)) >= 0.0;
@@ -3626,7 +3640,7 @@ class IntegratedProcess extends py.NamedTuple {
         continue;
       }
       if (py.truth(reached)) {
-        return self.landing(here, slope, step, goal);
+        return self.landing(here, slope, step, goal)._replace({ steps: taken + 1 });
       }
       [here, slope, waiting] = [there, new_slope, false];
       if (self.dry !== null) {
@@ -3804,15 +3818,16 @@ function phis(x) {
 
 /** What an impact did. */
 class Impact extends py.NamedTuple {
-  constructor(state, impulse, energy_lost, compression) {
+  constructor(state, impulse, energy_lost, compression, steps = 0) {
     super();
     this.state = state;
     this.impulse = impulse;
     this.energy_lost = energy_lost;
     this.compression = compression;
+    this.steps = steps;
   }
 }
-py.fields(Impact, ["state", "impulse", "energy_lost", "compression"]);
+py.fields(Impact, ["state", "impulse", "energy_lost", "compression", "steps"]);
 
 /** What an impact does to a body that touches the table. */
 function impact(state, restitution, top) {
@@ -3828,17 +3843,18 @@ function impact(state, restitution, top) {
   const process = py.isinstance(law, ViscousLaw) ? ViscousProcess.of(body, law) : new IntegratedProcess(body, dry);
   const frictionless = py.div(py.or(py.mul(-2.0, body.point[2]), () => length(body.point)), body.inverse_mass[2][2]);
   const compressed = process.until(NO_IMPULSE, py.bound(body, "approach"), frictionless);
-  let impulse = compressed;
+  let [impulse, steps] = [compressed, compressed.steps];
   if (restitution > 0.0) {
     const goal = restitution_goal(body, compressed, restitution);
     impulse = process.until(compressed, goal, py.mul(restitution, compressed.normal));
+    steps = py.add(steps, impulse.steps);
   }
   let after = body.after(impulse);
   if (dry !== null) {
     after = dry.at_rest(impulse, after);
   }
   const lost = py.max(0.0, py.neg(work_of(impulse, state, after, body)));
-  return new Impact(after, impulse.normal, lost, compressed.normal);
+  return new Impact(after, impulse.normal, lost, compressed.normal, steps);
 }
 
 /** Poisson's end of restitution, or that of the energy stored, but not before the body has stopped. */
@@ -4163,7 +4179,7 @@ class FreeToFly extends ContactRules {
       if (!(error instanceof py.ArithmeticError)) throw error;
       return new Transition(events, Outcome.FAILED, state, py.str(error));
     }
-    const hit = this.event(EventKind.IMPACT, time, py.float(collision.impulse), py.float(collision.energy_lost));
+    const hit = py.replace(this.event(EventKind.IMPACT, time, py.float(collision.impulse), py.float(collision.energy_lost)), { steps: collision.steps });
     const after = collision.state;
     if (!py.truth(collision.impulse)) {
       return this._untouched(time, after, events);
@@ -5941,11 +5957,12 @@ class Trajectory extends py.Record {
       modes = modes + 1;
       for (const segment of transition.then.segments(this.time, this._state, this.end, this.integrator)) {
         [this.time, this._state] = [segment.end_time, segment.end_state];
+        steps = py.add(steps, py.max(segment.steps, py.len(segment.solution.knots) - 1));
         if (segment.transition !== null) {
           transition = this._enter(segment.transition);
+          steps = py.add(steps, py.sum([...transition.events].map((event) => event.steps)));
         }
         yield segment;
-        steps = py.add(steps, segment.steps);
         if (steps >= this.step_limit && this.outcome === null) {
           this.outcome = Outcome.TOO_MANY_STEPS;
           return null;
@@ -7210,6 +7227,7 @@ export {
   Loosening,
   MARGIN,
   MOST,
+  MOST_DISCS,
   MOST_IN_TURNS,
   MOST_LOOKS,
   MOST_STEPS,

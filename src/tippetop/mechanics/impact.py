@@ -54,12 +54,15 @@ class Impact(NamedTuple):
         Energy that the impact took, J: never negative.
     compression
         Normal impulse of compression p_c, N s.
+    steps
+        How many steps it took to find them, where they are integrated.
     """
 
     state: State
     impulse: Scalar
     energy_lost: Scalar
     compression: Scalar
+    steps: int = 0
 
 
 def impact(state: State, restitution: float, top: Top) -> Impact:
@@ -92,15 +95,16 @@ def impact(state: State, restitution: float, top: Top) -> Impact:
 
     frictionless = (-2.0 * body.point[2] or length(body.point)) / body.inverse_mass[2][2]
     compressed = process.until(NO_IMPULSE, body.approach, frictionless)
-    impulse = compressed
+    impulse, steps = compressed, compressed.steps
     if restitution > 0.0:
         goal = restitution_goal(body, compressed, restitution)
         impulse = process.until(compressed, goal, restitution * compressed.normal)
+        steps += impulse.steps
     after = body.after(impulse)
     if dry is not None:
         after = dry.at_rest(impulse, after)
     lost = max(0.0, -work_of(impulse, state, after, body))
-    return Impact(after, impulse.normal, lost, compressed.normal)
+    return Impact(after, impulse.normal, lost, compressed.normal, steps)
 
 
 def restitution_goal(body: Striking, compressed: Impulse, restitution: float) -> Goal:

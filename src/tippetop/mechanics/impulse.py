@@ -28,12 +28,15 @@ class Impulse(NamedTuple):
         Impulse of the torque, N m s.
     normal_work
         Work of the normal impulse, J.
+    steps
+        How many steps it took to find them, where they are integrated.
     """
 
     normal: float
     tangential: Horizontal
     angular: Vector
     normal_work: float
+    steps: int = 0
 
 
 NO_IMPULSE = Impulse(0.0, (0.0, 0.0), NO_TORQUE, 0.0)

@@ -19,8 +19,8 @@ STUCK = 1e-8
 SHORTEST = 1e-12
 """Step, relative to the longest, that is taken whatever its error: at a jump of the law."""
 
-MOST = 1_000_000
-"""Steps after which an impact is given up; most take some hundred."""
+MOST = 20_000
+"""Steps after which an impact is given up, within some seconds; most take some hundred."""
 
 Point: TypeAlias = tuple[float, ...]
 """The numbers of an impulse in a row: p, impulse of friction, impulse of torque, normal work."""
@@ -67,17 +67,17 @@ class IntegratedProcess(NamedTuple):
         here, slope = pack(impulse), self.slope(pack(impulse))
         longest = 2.0 / (self.body.inverse_mass[0][0] + self.body.inverse_mass[1][1])
         step = 0.05 * longest
-        for _ in range(MOST):
+        for taken in range(MOST):
             held = self.held(unpack(here), goal, guess)
             if held is not None:
-                return held
+                return held._replace(steps=taken)
             there, new_slope, doubt = self.step(here, slope, step)
             reached = goal(unpack(there)) >= 0.0
             if (doubt > 1.0 and step > SHORTEST * longest) or (reached and waiting):
                 step *= min(0.5, max(0.1, 0.9 * doubt**-0.2))
                 continue
             if reached:
-                return self.landing(here, slope, step, goal)
+                return self.landing(here, slope, step, goal)._replace(steps=taken + 1)
             here, slope, waiting = there, new_slope, False
             if self.dry is not None:
                 self = self._replace(dry=self.dry.settled(unpack(here)))  # noqa: PLW0642

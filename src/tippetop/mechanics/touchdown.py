@@ -31,6 +31,9 @@ LOOKS = 10.0
 MOST_LOOKS = 1000
 """Such looks at most."""
 
+MOST_DISCS = 100_000
+"""Discs after which the search is given up, within some seconds; most flights take some ten."""
+
 
 class Start(IntEnum):
     """How a flight starts: how many of gap, gap rate and gap acceleration are then zero by construction."""
@@ -62,6 +65,11 @@ def touchdown(state: State, top: Top, horizon: float, start: Start = Start.AIRBO
     -------
     float or None
         The time, 0.0 if the body penetrates the table at once, None if it touches nowhere in (0, horizon].
+
+    Raises
+    ------
+    ArithmeticError
+        If the body turns so often meanwhile that the search would take too long.
 
     Notes
     -----
@@ -98,7 +106,9 @@ def touchdown(state: State, top: Top, horizon: float, start: Start = Start.AIRBO
 
     separation = Separation(tip, top.surface, ballistic)
     angle = WIDEST
-    while time < horizon:
+    for _ in range(MOST_DISCS):
+        if time >= horizon:
+            return None
         radius, spread = analytic_disc(tip, top.surface, time, 0.25, angle)
         angle = min(WIDEST, 2.0 * radius * tip.frequency)
         end = min(horizon, time + 0.5 * radius)
@@ -106,7 +116,7 @@ def touchdown(state: State, top: Top, horizon: float, start: Start = Start.AIRBO
         if root is not None:
             return root
         time = end
-    return None
+    raise ArithmeticError("a flight turns too often for its end to be found")
 
 
 def falling_time(height: float, rate: float, half: float) -> float:
