@@ -302,7 +302,8 @@ export class Run {
 
   grid(count) {
     const all = Array.from({ length: count }, (_, i) => (this.duration * i) / (count - 1));
-    const times = all.filter((time) => time <= this.endTime);
+    // Its end is the last of them but for rounding.
+    const times = this.early ? all.filter((time) => time <= this.endTime) : all;
     if (this.early && times.at(-1) < this.endTime) times.push(this.endTime);
     return Float64Array.from(times);
   }

@@ -96,6 +96,11 @@ export class Engine {
   prospects(body, { gravity, launch: { tilt } }) {
     return this.asides.ask("body", { body, gravity, tilt });
   }
+
+  // All numbers of a launch over time, as a text.
+  async csv(setup) {
+    return (await this.asides.ask("numbers", setup)).csv;
+  }
 }
 
 // Follow many launches in as many workers as there are cores to spare.

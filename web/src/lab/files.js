@@ -12,29 +12,12 @@ const FRAMES = 30;
 // Pixels of a picture for each of the screen's.
 const FINE = 2;
 
-const COLUMNS = {
-  "theta (rad)": ["theta"], "omega3 (rad s-1)": ["omega3"], "phi_dot (rad s-1)": ["phi_dot"],
-  "slip (m s-1)": ["slip"], "normal_force (N)": ["normal_force"], "energy (J)": ["energy"],
-  "x (m)": ["position", 0, 3], "y (m)": ["position", 1, 3], "height (m)": ["position", 2, 3],
-  "velocity_x (m s-1)": ["velocity", 0, 3], "velocity_y (m s-1)": ["velocity", 1, 3], "velocity_z (m s-1)": ["velocity", 2, 3],
-};
-
 export function save(name, content) {
   const link = document.createElement("a");
   link.href = URL.createObjectURL(content instanceof Blob ? content : new Blob([content]));
   link.download = name;
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
-}
-
-export function csv({ time, columns, header }) {
-  const rows = [["time (s)", ...Object.keys(COLUMNS), "mode"].join(",")];
-  const number = (value) => (Number.isFinite(value) ? String(value) : "");
-  for (let i = 0; i < time.length; i++) {
-    const values = Object.values(COLUMNS).map(([name, k = 0, width = 1]) => number(columns[name][i * width + k]));
-    rows.push([time[i], ...values, header.modes[columns.mode[i]]].join(","));
-  }
-  return `${rows.join("\n")}\n`;
 }
 
 // A problem as TOML: plain values, then tables, then lists of tables.

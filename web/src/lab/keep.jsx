@@ -2,7 +2,7 @@
 
 import { useState } from "preact/hooks";
 
-import { commandLine, csv, film, glb, picture, save, toml } from "./files.js";
+import { commandLine, film, glb, picture, save, toml } from "./files.js";
 import { t } from "./i18n.js";
 import { stl } from "./solid.js";
 
@@ -16,7 +16,7 @@ export function Keep({ lab }) {
     if (content) save("tippetop.webm", content);
   };
   const files = {
-    csv: () => save("tippetop.csv", csv(track)),
+    csv: async () => save("tippetop.csv", await lab.engine.csv({ problem: track.header.problem, duration: track.header.asked })),
     toml: () => save("tippetop.toml", toml(track.header.problem)),
     glb: async () => save("tippetop.glb", await glb(track)),
     picture: async () => save("tippetop.png", await picture(player)),

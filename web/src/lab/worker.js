@@ -1,14 +1,15 @@
-// What the page's workers do: runs, what a body is good for, and single launches of a map.
+// What the page's workers do: runs, their numbers, what a body is good for, and single launches of a map.
 
 import { prospects, simulate } from "engine";
 
+import { numbers } from "../run/numbers.js";
 import { buffersOf, pack, samplesFor } from "../run/pack.js";
 
 // How exactly a launch is followed while a slider moves, and how finely it is then sampled; of a map, how exactly.
 const QUICK = { tolerance: 1e-7, samples: 320 };
 const COARSE = 1e-6;
 
-const JOBS = { run: answerRun, cell: answerCell, body: answerBody };
+const JOBS = { run: answerRun, cell: answerCell, body: answerBody, numbers };
 
 function answerRun({ id, problem, duration, quick }) {
   let told = 0;

@@ -1,0 +1,25 @@
+// A run as a table of numbers: every variable of the catalogue over time, as Python's export/csv.py writes it.
+
+import { simulate } from "engine";
+import { CATALOGUE } from "engine-tables";
+
+// Near the vertical the tilt and its rate lose digits: what is kept is followed more exactly than what is shown.
+const TOLERANCE = 1e-12;
+
+const PARTS = { 1: [""], 3: ["_x", "_y", "_z"], 4: ["_w", "_x", "_y", "_z"] };
+
+export function numbers({ problem, duration }) {
+  const track = simulate(problem, { duration, tolerance: TOLERANCE }).track();
+  const columns = [["time (s)", (i) => track.time[i]]];
+  for (const [name, { units, width }] of Object.entries(CATALOGUE.sampled)) {
+    const unit = units && units !== "1" ? ` (${units})` : "";
+    PARTS[width].forEach((part, k) => columns.push([`${name}${part}${unit}`, (i) => track[name][width * i + k]]));
+  }
+  columns.push(["mode", (i) => track.mode[i]]);
+  const rows = Array.from(track.time, (_, i) => columns.map(([, value]) => told(value(i))).join(","));
+  return { csv: `${[columns.map(([name]) => name).join(","), ...rows].join("\n")}\n` };
+}
+
+function told(value) {
+  return Number.isNaN(value) ? "" : value;
+}
