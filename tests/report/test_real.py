@@ -20,7 +20,7 @@ from tippetop.report.plate import Plate
 from tippetop.theory.resting_center import resting_center
 from tippetop.theory.stem import least_jellett_to_stand
 
-NAMES = ("leine", "stems", "egg", "rolling")
+NAMES = ("leine", "stepping", "stems", "egg", "rolling")
 
 
 @pytest.fixture(scope="module")
@@ -35,6 +35,18 @@ def test_the_top_with_a_stem_does_what_an_independent_solver_finds(computed: dic
     assert float(data["both"]) == pytest.approx(4.67713921, abs=1e-6)
     assert float(data["apart"]) == pytest.approx(5.4664569, abs=1e-6)
     assert float(data["energy_error"]) < 1e-12
+
+
+def test_time_stepping_comes_to_our_run_at_first_order(computed: dict[str, xr.Dataset]) -> None:
+    """It shares no equation with the runs; before the rocking its errors are as long as its steps."""
+    data = computed["real-stepping"]
+    for name, most in (("stem", 15.0), ("back", 300.0)):
+        off = np.abs(data[name].values - float(data[f"exact_{name}"]))[1:]
+        assert (off < most * data["step"].values[1:]).all(), name
+        assert off[0] / off[1] == pytest.approx(2.5, rel=0.2), name
+    assert (data["both"] < float(data["exact_both"])).all(), "strikes closer than a step are missed"
+    assert (data["strikes"] < 5).all()
+    assert int(data["exact_strikes"]) > 20
 
 
 def test_stems_are_stood_upon_above_the_least_jellett(computed: dict[str, xr.Dataset]) -> None:
@@ -81,6 +93,7 @@ def test_any_body_rolls_so_in_a_run() -> None:
         ("real-leine-back", Verdict.REPRODUCED),
         ("real-leine-both", Verdict.REPRODUCED),
         ("real-leine-apart", Verdict.REPRODUCED),
+        ("real-leine-stepping", Verdict.REPRODUCED),
         ("real-stem-test", Verdict.REPRODUCED),
         ("real-egg-rises", Verdict.REPRODUCED),
         ("real-egg-jumps", Verdict.REPRODUCED),
@@ -99,6 +112,7 @@ def test_verdicts(computed: dict[str, xr.Dataset], name: str, verdict: Verdict) 
         ("real-leine-back", "real-leine", {"back": 4.8}),
         ("real-leine-both", "real-leine", {"both": 4.3}),
         ("real-leine-apart", "real-leine", {"apart": 5.8}),
+        ("real-leine-stepping", "real-stepping", {"both": 4.2}),
         ("real-stem-test", "real-stems", {"final_theta": 3.1}),
         ("real-egg-rises", "real-egg", {"theta": 2.0}),
         ("real-egg-jumps", "real-egg", {"lift_off": math.nan}),

@@ -102,3 +102,40 @@ def test_what_may_touch_with_its_stem_is_refused_where_the_stem_touches():
     assert list(touching_tilts(STEMMED.top.surface, 0.1)) == pytest.approx([tilt], abs=1e-12)
     with pytest.raises(InvalidInput, match=rf"surface 1 can touch, at a tilt of {tilt:.4g} rad.*run it"):
         predict(STEMMED)
+
+
+@pytest.mark.parametrize(
+    ("name", "tilt", "spin", "surface"),
+    [
+        ("report-stem", 0.1, 30.0, 0),
+        ("report-stem", 3.0, 250.0, 1),
+        ("leine-glocker-stem", 0.1, 30.0, 0),
+        ("leine-glocker-stem", 3.0, 250.0, 1),
+        ("friedl", 0.1, 30.0, 0),
+        ("wooden", 0.1, 40.0, 0),
+        ("wooden", 3.0, 250.0, 1),
+    ],
+)
+def test_runs_end_on_the_predicted_surface(name, tilt, spin, surface):
+    launch = {"launch.tilt": tilt, "launch.spin": spin, "friction.mu": 1.0, "body": presets.body(name)}
+    problem = presets.report_problem().replace(launch)
+    prediction = predict(problem)
+    assert prediction.certain
+    assert prediction.surface == surface
+    run = simulate(problem, 100.0, samples=2)
+    assert float(run["theta"][-1]) == pytest.approx(prediction.final.tilt, abs=1e-4)
+    words = run["mode"].attrs["flag_meanings"].split()
+    assert words[int(run["mode"][-1])] == f"sliding_on_{surface}"
+
+
+@pytest.mark.parametrize(("tilt", "precession"), [(0.1, 0.0), (1.3, 60.0), (1.9, -60.0)])
+def test_balls_whose_other_one_may_touch_are_refused_in_a_sentence(tilt, precession):
+    """Inverted on one ball alone the centre of mass would be on the table, and no spin has any lambda."""
+    launch = {"launch.tilt": tilt, "launch.precession": precession, "body": presets.HURRICANE_BALLS}
+    problem = presets.report_problem().replace(launch)
+    with pytest.raises(InvalidInput, match=r"can touch, at a tilt of 1\.571 rad"):
+        predict(problem)
+    alone = problem.replace({"body.shape": problem.body.shapes[0]})
+    states = predict(alone).stable
+    assert states
+    assert all(math.isfinite(state.energy) for state in states)

@@ -38,6 +38,32 @@ def leine_figure(data: xr.Dataset) -> Figure:
 
 
 @house_style()
+def stepping_figure(data: xr.Dataset) -> Figure:
+    """Return the tilt during the rocking by time-stepping, and how far off it finds what happens.
+
+    `data` has theta over step and time, stem, back, both and apart over step, and all of them as exact_...
+    """
+    figure = Figure(figsize=(WIDTH, 5.4))
+    above, below = figure.subplots(2, 1)
+    mark.letters((above, below))
+    for step, tilt, color in zip(data["step"], data["theta"], CYCLE, strict=False):
+        above.plot(data["time"], tilt, color=color, lw=1.2, label=f"{1e3 * float(step):g} ms")
+    above.plot(data["time"], data["exact_theta"], color=INK, ls=DASHED, lw=1.4, label="exact")
+    above.set(xlim=(float(data["time"][0]), float(data["time"][-1])), xlabel="time (s)")
+    above.set_ylabel(r"tilt $\theta$ (rad)")
+    mark.legend_above(above, 6)
+    words = {"stem": "stem touches", "back": "back on its sphere", "both": "on both", "apart": "apart"}
+    steps = 1e3 * data["step"].values
+    for (name, text), color in zip(words.items(), CYCLE, strict=False):
+        off = np.abs(data[name].values - float(data[f"exact_{name}"]))
+        below.loglog(steps, off, "o-", color=color, label=text)
+    mark.plain_ticks(below.xaxis, steps)
+    below.set(xlabel="step (ms)", ylabel="off by (s)")
+    mark.legend_above(below, 4)
+    return figure
+
+
+@house_style()
 def stems_figure(data: xr.Dataset) -> Figure:
     """Return the final tilt, and Jellett's integral about the tip over what it takes, by the tip's radius.
 

@@ -23,6 +23,16 @@ PLATES = (
         finding="A top with a stem rises onto it, loses its spin by drilling, falls back, and rests on both.",
     ),
     _plate(
+        "real-stepping",
+        "What a time-stepping method misses",
+        "The same top by Moreau's time-stepping, with the friction of an ellipsoidal limit surface, at "
+        "several steps. a, tilt while it rocks: the dashed line is an exact run. b, how far from it four "
+        "instants are.",
+        ("real-stepping",),
+        real.stepping_figure,
+        finding="A fixed step rests on both surfaces too early: it misses the strikes of the rocking.",
+    ),
+    _plate(
         "real-stems",
         "Which stems the report's top can stand on",
         "The report's top, launched as in its Fig. 4, with stems that end in spheres of several radii, their "

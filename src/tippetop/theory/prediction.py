@@ -52,11 +52,14 @@ class Prediction:
         All stable steady states with this lambda, the one of least energy first.
     reachable
         Those among them that the energy of the launch does not bar, in the same order.
+    surface
+        Number of the body's surface that it ends on.
     """
 
     jellett: float
     stable: tuple[SteadyState, ...]
     reachable: tuple[SteadyState, ...]
+    surface: int = 0
 
     @property
     def final(self) -> SteadyState:
@@ -123,7 +126,8 @@ def _on_one_of_several(problem: Problem, hull: Any) -> Prediction:
     low, high = min(ends, default=0.0), max(ends, default=math.pi)
     if len(ends) == 1:
         low, high = (low, math.pi) if low < problem.launch.tilt else (0.0, high)
-    return replace(found, stable=tuple(state for state in found.stable if low <= state.tilt <= high))
+    stable = tuple(state for state in found.stable if low <= state.tilt <= high)
+    return replace(found, stable=stable, surface=hull.active)
 
 
 def touching_tilts(hull: Hull, tilt: float) -> dict[float, int]:

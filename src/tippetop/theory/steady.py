@@ -190,13 +190,17 @@ def steady_states(top: Top, jellett: float) -> list[SteadyState]:
     With lambda = phi' Lambda(theta), a steady precession is a root of lambda^2 (I3 omega3/phi' - I1 c) -
     m g h' Lambda^2, which is regular everywhere (a polynomial of degree 4 in c for the eccentric sphere).
     """
-    upright, inverted = (
-        vertical_spin(kind, top, jellett / vertical_spin(kind, top, 1.0).jellett) for kind in VERTICAL_SPINS
-    )
-    between = [precession_at(tilt, jellett, top) for tilt in _precession_tilts(top, jellett)]
+    vertical = [vertical_spin(kind, top, 1.0) for kind in VERTICAL_SPINS]
+    # Where the centre of mass is on the table, no spin about the vertical has any of it.
+    found = [
+        vertical_spin(unit.kind, top, jellett / unit.jellett)
+        for unit in vertical
+        if abs(unit.jellett) > _ROUNDING * top.axial_inertia * top.surface.size
+    ]
+    found += [precession_at(tilt, jellett, top) for tilt in _precession_tilts(top, jellett)]
     if has_level_spin(top):
-        between.append(level_spin(top, jellett / level_spin(top, 1.0).jellett))
-    return [upright, *sorted(between, key=lambda state: state.tilt), inverted]
+        found.append(level_spin(top, jellett / level_spin(top, 1.0).jellett))
+    return sorted(found, key=lambda state: state.tilt)
 
 
 def has_level_spin(top: Top) -> bool:

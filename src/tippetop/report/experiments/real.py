@@ -57,7 +57,8 @@ def happenings(run: xr.Dataset, kind: str, surface: int | None = None) -> np.nda
     return found
 
 
-def _first(times: np.ndarray, after: float = 0.0) -> float:
+def first_of(times: np.ndarray, after: float = 0.0) -> float:
+    """The first of some times after one, s; nan if there is none."""
     later = times[times > after]
     return float(later[0]) if len(later) else math.nan
 
@@ -68,16 +69,16 @@ def _leine(quick: bool) -> xr.Dataset:
     runs = [
         simulate(LEINE.replace({"friction.pressure": name}), LEINE_WINDOW, samples=801) for name in pressures
     ]
-    both = [_first(happenings(run, "double contact")) for run in runs]
+    both = [first_of(happenings(run, "double contact")) for run in runs]
     columns = {
-        "stem": ([_first(happenings(run, "touchdown", 1)) for run in runs], "first touch of the stem"),
+        "stem": ([first_of(happenings(run, "touchdown", 1)) for run in runs], "first touch of the stem"),
         "back": (
-            [_first(happenings(run, "touchdown", 0)) for run in runs],
+            [first_of(happenings(run, "touchdown", 0)) for run in runs],
             "first touch of the sphere again",
         ),
         "both": (both, "beginning of double contact"),
         "apart": (
-            [_first(happenings(run, "opening"), t) for run, t in zip(runs, both, strict=True)],
+            [first_of(happenings(run, "opening"), t) for run, t in zip(runs, both, strict=True)],
             "end of double contact",
         ),
     }
@@ -107,7 +108,7 @@ def _stems(quick: bool) -> xr.Dataset:
     for radius in radii.tolist():
         problem = report_problem().replace({"body": with_stem(radius)})
         run = simulate(problem, STEM_WINDOW, samples=2001)
-        touch = _first(happenings(run, "touchdown", 1))
+        touch = first_of(happenings(run, "touchdown", 1))
         before = run.isel(time=int(np.searchsorted(run["time"].values, touch)) - 1)
         axis, momentum = (tuple(before[name].values.tolist()) for name in ("axis", "angular_momentum"))
         brought.append(abs(jellett_about(1, axis, momentum, problem.top)))
@@ -147,7 +148,7 @@ def _egg(quick: bool) -> xr.Dataset:
         {
             "theta": variable([run["theta"].values for run in runs], "rad", "tilt", ("rate", "time")),
             "lift_off": variable(
-                [_first(happenings(run, "lift-off")) for run in runs], "s", "lift-off", over
+                [first_of(happenings(run, "lift-off")) for run in runs], "s", "lift-off", over
             ),
         },
         {

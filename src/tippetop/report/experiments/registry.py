@@ -12,6 +12,7 @@ from tippetop.report.experiments import (
     real,
     runs,
     spins,
+    stepping,
     theory,
     theory_runs,
 )
@@ -31,6 +32,7 @@ EXPERIMENTS: dict[str, Experiment] = {
         dry,
         patches,
         real,
+        stepping,
     )
     for experiment in module.EXPERIMENTS
 }

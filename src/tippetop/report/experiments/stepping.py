@@ -1,0 +1,111 @@
+"""Leine and Glocker's top by time-stepping: what a fixed step finds of its impacts and its rocking."""
+
+import math
+from collections.abc import Iterable
+
+import numpy as np
+import xarray as xr
+
+from tippetop.frictions import ContensouFriction
+from tippetop.mechanics.contensou import ELLIPSOIDAL_RADIUS
+from tippetop.report.experiment import Experiment, variable
+from tippetop.report.experiments.real import LEINE, LEINE_WINDOW, first_of, happenings
+from tippetop.report.moreau import Ball, Body, History, follow
+from tippetop.run import simulate
+
+STEPS = (1e-3, 5e-4, 2e-4, 1e-4, 5e-5)
+"""Steps that are tried, s."""
+
+STANDS = 0.5
+"""How long the top stands on its stem at least before it falls back on its sphere, s."""
+
+RESTS = 0.02
+"""How long both touch at least to have come to rest on both, s."""
+
+ROCKING = (4.4, 4.75)
+"""The time around the rocking that is shown, s."""
+
+EVENTS = {
+    "stem": "first touch of the stem",
+    "back": "first touch of the sphere again",
+    "both": "beginning of double contact",
+    "apart": "end of double contact",
+}
+
+
+def stepped(step: float) -> History:
+    """The top followed by time-stepping, with the friction of an ellipsoidal limit surface."""
+    body, friction = LEINE.body, LEINE.friction
+    assert isinstance(friction, ContensouFriction)
+    balls = [Ball(shape.surface.height(0.0), -shape.surface.slope(0.0)) for shape in body.shapes]
+    patch = ELLIPSOIDAL_RADIUS * friction.patch_radius
+    followed = Body(body.mass, body.I1, body.I3, balls, friction.mu, patch, LEINE.gravity)
+    return follow(followed, LEINE.launch.tilt, LEINE.launch.spin, LEINE_WINDOW, step)
+
+
+def found_in(history: History) -> dict[str, float]:
+    """When things happen as far as the steps tell, s, and how many strikes make up the rocking."""
+    step, touching = history.step, np.array(history.touching)
+    times = (np.arange(len(touching)) + 0.5) * step
+    sphere, stem = touching.T
+
+    def first(where: np.ndarray) -> float:
+        return float(times[where.argmax()]) if where.any() else math.nan
+
+    touched = first(stem)
+    back = first(sphere & (times > touched + STANDS))
+    changes = np.diff(np.concatenate([[False], sphere & stem & (times >= back), [False]]).astype(int))
+    begins, ends = np.flatnonzero(changes == 1), np.flatnonzero(changes == -1)
+    rests = np.flatnonzero((ends - begins) * step > RESTS)
+    both, apart = (
+        (float(times[begins[rests[0]]]), float(times[ends[rests[0]] - 1])) if len(rests) else 2 * (math.nan,)
+    )
+    onsets = touching[1:] & ~touching[:-1]
+    strikes = int(onsets[(times[1:] >= back) & (times[1:] <= both)].sum())
+    return {"stem": touched, "back": back, "both": both, "apart": apart, "strikes": strikes}
+
+
+def _stepping(quick: bool) -> xr.Dataset:
+    """What time-stepping finds of the top, over its step, and what an exact run finds."""
+    histories = [stepped(step) for step in (STEPS[:3] if quick else STEPS)]
+    found = [found_in(history) for history in histories]
+    samples = 8001
+    run = simulate(LEINE, LEINE_WINDOW, samples=samples)
+    times = run["time"].values
+    both = first_of(happenings(run, "double contact"))
+    exact = {
+        "stem": first_of(happenings(run, "touchdown", 1)),
+        "back": first_of(happenings(run, "touchdown", 0)),
+        "both": both,
+        "apart": first_of(happenings(run, "opening"), both),
+    }
+    impacts = happenings(run, "impact")
+    exact["strikes"] = int(((impacts >= exact["back"]) & (impacts <= both)).sum())
+    shown = (times >= ROCKING[0]) & (times <= ROCKING[1])
+    tilts = [np.interp(times[shown], *_middles(history)) for history in histories]
+    over = ("step",)
+    told = {
+        **{name: _column(found, name, "s", long) for name, long in EVENTS.items()},
+        "strikes": _column(found, "strikes", "1", "strikes of the rocking"),
+        "final_theta": variable([history.tilts[-1] for history in histories], "rad", "tilt at the end", over),
+        "theta": variable(tilts, "rad", "tilt", ("step", "time")),
+        "exact_theta": variable(run["theta"].values[shown], "rad", "tilt of an exact run", ("time",)),
+        "exact_final_theta": variable(float(run["theta"][-1]), "rad", "tilt at the end of an exact run"),
+    }
+    told |= {f"exact_{name}": variable(value, "s", f"{name}, exactly") for name, value in exact.items()}
+    steps = variable([history.step for history in histories], "s", "step", over)
+    return xr.Dataset(told, {"step": steps, "time": variable(times[shown], "s", "time", ("time",))})
+
+
+def _middles(history: History) -> tuple[np.ndarray, list[float]]:
+    return (np.arange(len(history.tilts)) + 1.0) * history.step, history.tilts
+
+
+def _column(found: Iterable[dict[str, float]], name: str, unit: str, long: str) -> object:
+    return variable([one[name] for one in found], unit, long, ("step",))
+
+
+EXPERIMENTS = [
+    Experiment("real-stepping", "Leine and Glocker's top by time-stepping", 12.0, _stepping),
+]
+"""What a fixed step finds of a real top."""

@@ -1,0 +1,173 @@
+"""Moreau's time-stepping for a top of several spheres, as Leine and Glocker followed theirs.
+
+A step of fixed length moves the top freely for its first half, gives all impulses of contact there at once,
+and moves it freely for the second half (Moreau 1988). A contact acts when its gap is not open at the middle,
+plastically, with friction of a patch that has an ellipsoidal limit surface. Events are known to a step, and
+what happens between two steps is lost. Plain numbers, and none of the equations of the package.
+"""
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+Triple = tuple[float, float, float]
+
+CLOSE = 1e-9
+"""Change of the impulses between two rounds at which they are taken, relative."""
+
+ROUNDS = 300
+"""Rounds at most."""
+
+
+class Ball(NamedTuple):
+    """One of the spheres: radius, and height of its centre above the centre of mass, m."""
+
+    radius: float
+    center: float
+
+
+class Body(NamedTuple):
+    """What is followed: SI units; `patch` is the semi-axis of the limit surface, m."""
+
+    mass: float
+    I1: float
+    I3: float
+    balls: Sequence[Ball]
+    mu: float
+    patch: float
+    gravity: float
+
+
+class History(NamedTuple):
+    """What a method with a step knows: at every step, its tilt, rad, and which spheres had an impulse."""
+
+    step: float
+    tilts: list[float]
+    touching: list[tuple[bool, ...]]
+
+
+def follow(body: Body, tilt: float, spin: float, duration: float, step: float) -> History:
+    """Follow a top that is set down at this tilt (rad) and spin (rad/s) with its centre of mass at rest."""
+    axis = (math.sin(tilt), 0.0, math.cos(tilt))
+    momentum = _scaled(body.I3 * spin, axis)
+    height = max(ball.radius - ball.center * axis[2] for ball in body.balls)
+    velocity = (0.0, 0.0, 0.0)
+    held: list[list[float]] = [[0.0] * 4 for _ in body.balls]
+    tilts, touching = [], []
+    for _ in range(round(duration / step)):
+        axis, height = _turned(axis, momentum, 0.5 * step / body.I1), height + 0.5 * step * velocity[2]
+        velocity = (velocity[0], velocity[1], velocity[2] - step * body.gravity)
+        arms = [
+            (b.center * axis[0], b.center * axis[1], b.center * axis[2] - b.radius)
+            if height + b.center * axis[2] <= b.radius
+            else None
+            for b in body.balls
+        ]
+        if any(arms):
+            velocity, momentum = _impulses(body, axis, velocity, momentum, arms, held)
+        axis, height = _turned(axis, momentum, 0.5 * step / body.I1), height + 0.5 * step * velocity[2]
+        tilts.append(math.acos(max(-1.0, min(1.0, axis[2]))))
+        touching.append(tuple(arm is not None and one[3] > 0.0 for arm, one in zip(arms, held, strict=True)))
+    return History(step, tilts, touching)
+
+
+def _impulses(
+    body: Body,
+    axis: Triple,
+    velocity: Triple,
+    momentum: Triple,
+    arms: Sequence[Triple | None],
+    held: list[list[float]],
+) -> tuple[Triple, Triple]:
+    """The velocities after the impulses, by rounds over the contacts; `held` starts and takes these.
+
+    Of each contact: along x, y, about z over the patch, and upwards.
+    """
+    across, along = 1.0 / body.I1, 1.0 / body.I3 - 1.0 / body.I1
+    patch, mass = body.patch, body.mass
+    u, L = velocity, momentum
+    contacts = []
+    for number, arm in enumerate(arms):
+        if arm is None:
+            held[number] = [0.0] * 4
+            continue
+        turns = [
+            _cross(arm, (1.0, 0.0, 0.0)),
+            _cross(arm, (0.0, 1.0, 0.0)),
+            (0.0, 0.0, patch),
+            _cross(arm, (0.0, 0.0, 1.0)),
+        ]
+        masses = [
+            across * _dot(t, t) + along * _dot(t, axis) ** 2 + (1.0 / mass if k != 2 else 0.0)
+            for k, t in enumerate(turns)
+        ]
+        contacts.append((number, turns, masses[3], 0.5 / max(masses[:3])))
+        fx, fy, drill, up = held[number]
+        u, L = _given(u, L, mass, turns, (fx, fy, drill, up))
+    for _ in range(ROUNDS):
+        worst = 0.0
+        for number, turns, resisted, weight in contacts:
+            old = held[number]
+            w = _omega(L, axis, across, along)
+            up = max(0.0, old[3] - (u[2] + _dot(turns[3], w)) / resisted)
+            slid = [
+                old[0] - weight * (u[0] + _dot(turns[0], w)),
+                old[1] - weight * (u[1] + _dot(turns[1], w)),
+                old[2] - weight * patch * w[2],
+            ]
+            size, limit = math.sqrt(slid[0] ** 2 + slid[1] ** 2 + slid[2] ** 2), body.mu * up
+            share = limit / size if size > limit else 1.0
+            new = [share * slid[0], share * slid[1], share * slid[2], up]
+            change = (new[0] - old[0], new[1] - old[1], new[2] - old[2], new[3] - old[3])
+            u, L = _given(u, L, mass, turns, change)
+            held[number] = new
+            worst = max(worst, max(map(abs, change)) - CLOSE * up)
+        if worst <= 0.0:
+            break
+    return u, L
+
+
+def _given(
+    u: Triple, L: Triple, mass: float, turns: Sequence[Triple], impulse: tuple[float, float, float, float]
+) -> tuple[Triple, Triple]:
+    """Velocity and angular momentum after an impulse along all directions of a contact."""
+    fx, fy, drill, up = impulse
+    a, b, c, d = turns
+    moved = (u[0] + fx / mass, u[1] + fy / mass, u[2] + up / mass)
+    turned = (
+        L[0] + fx * a[0] + fy * b[0] + drill * c[0] + up * d[0],
+        L[1] + fx * a[1] + fy * b[1] + drill * c[1] + up * d[1],
+        L[2] + fx * a[2] + fy * b[2] + drill * c[2] + up * d[2],
+    )
+    return moved, turned
+
+
+def _omega(L: Triple, axis: Triple, across: float, along: float) -> Triple:
+    inner = along * _dot(L, axis)
+    return (across * L[0] + inner * axis[0], across * L[1] + inner * axis[1], across * L[2] + inner * axis[2])
+
+
+def _turned(axis: Triple, momentum: Triple, time: float) -> Triple:
+    """The axis of a free top after a time over I1: it goes round its angular momentum evenly."""
+    size = math.sqrt(_dot(momentum, momentum))
+    if size == 0.0:
+        return axis
+    about = _scaled(1.0 / size, momentum)
+    angle = size * time
+    c, s, on = math.cos(angle), math.sin(angle), _dot(about, axis)
+    beside = _cross(about, axis)
+    x, y, z = (c * axis[k] + s * beside[k] + (1.0 - c) * on * about[k] for k in range(3))
+    length = math.sqrt(x * x + y * y + z * z)
+    return (x / length, y / length, z / length)
+
+
+def _dot(a: Triple, b: Triple) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def _cross(a: Triple, b: Triple) -> Triple:
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+def _scaled(factor: float, a: Triple) -> Triple:
+    return (factor * a[0], factor * a[1], factor * a[2])
