@@ -6650,13 +6650,16 @@ function level_spin(top, precession) {
 
 /** All steady states with this Jellett's integral, by increasing tilt. */
 function steady_states(top, jellett) {
-  const [upright, inverted] = [...VERTICAL_SPINS].map((kind) => vertical_spin(kind, top, py.div(jellett, vertical_spin(kind, top, 1.0).jellett)));
+  const units = [...VERTICAL_SPINS].map((kind) => vertical_spin(kind, top, 1.0));
+  const least = py.mul(py.mul(NO_JELLETT, top.axial_inertia), top.surface.size);
+  const vertical = [...units].filter((unit) => py.abs(unit.jellett) > least).map((unit) => vertical_spin(unit.kind, top, py.div(jellett, unit.jellett)));
   const between = [..._precession_tilts(top, jellett)].map((tilt) => precession_at(tilt, jellett, top));
   if (py.truth(has_level_spin(top))) {
     between.push(level_spin(top, py.div(jellett, level_spin(top, 1.0).jellett)));
   }
-  return [upright, ...py.sorted(between, py.how({ key: (state) => state.tilt })), inverted];
+  return py.sorted([...vertical, ...between], py.how({ key: (state) => state.tilt }));
 }
+const NO_JELLETT = 1e-13;
 
 /** Whether the body can spin with its axis horizontal at any rate. */
 function has_level_spin(top) {
@@ -6925,11 +6928,12 @@ function _fold_measure(gamma, alpha) {
 
 /** What Jellett's integral and the energy say of the end of a launch. */
 class Prediction extends py.Record {
-  constructor(jellett, stable, reachable) {
+  constructor(jellett, stable, reachable, surface = 0) {
     super();
     this.jellett = jellett;
     this.stable = stable;
     this.reachable = reachable;
+    this.surface = surface;
   }
   /** The reachable stable state of least energy: the end of the launch, if it is `certain`. */
   get final() {
@@ -6940,7 +6944,7 @@ class Prediction extends py.Record {
     return py.len(this.reachable) === 1;
   }
 }
-py.fields(Prediction, ["jellett", "stable", "reachable"]);
+py.fields(Prediction, ["jellett", "stable", "reachable", "surface"]);
 
 /** The steady states a launch of an eccentric sphere can end in. */
 function predict(problem) {
@@ -6979,7 +6983,8 @@ function _on_one_of_several(problem, hull) {
   if (py.len(ends) === 1) {
     [low, high] = low < problem.launch.tilt ? [low, py.math.pi] : [0.0, high];
   }
-  return py.replace(found, { stable: py.tuple([...found.stable].filter((state) => low <= state.tilt && state.tilt <= high)) });
+  const stable = py.tuple([...found.stable].filter((state) => low <= state.tilt && state.tilt <= high));
+  return py.replace(found, { stable: stable, surface: hull.active });
 }
 
 /** The tilts next to one, rad, at which another surface touches beside the active one, and its number. */
@@ -7245,6 +7250,7 @@ export {
   NOT_FINITE,
   NO_CHOICE,
   NO_IMPULSE,
+  NO_JELLETT,
   NO_REACTION,
   NO_TORQUE,
   Node,

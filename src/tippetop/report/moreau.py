@@ -26,7 +26,7 @@ class Ball(NamedTuple):
     center: float
 
 
-class Body(NamedTuple):
+class SphereTop(NamedTuple):
     """What is followed: SI units; `patch` is the semi-axis of the limit surface, m."""
 
     mass: float
@@ -46,7 +46,7 @@ class History(NamedTuple):
     touching: list[tuple[bool, ...]]
 
 
-def follow(body: Body, tilt: float, spin: float, duration: float, step: float) -> History:
+def follow(body: SphereTop, tilt: float, spin: float, duration: float, step: float) -> History:
     """Follow a top that is set down at this tilt (rad) and spin (rad/s) with its centre of mass at rest."""
     axis = (math.sin(tilt), 0.0, math.cos(tilt))
     momentum = _scaled(body.I3 * spin, axis)
@@ -72,7 +72,7 @@ def follow(body: Body, tilt: float, spin: float, duration: float, step: float) -
 
 
 def _impulses(
-    body: Body,
+    body: SphereTop,
     axis: Triple,
     velocity: Triple,
     momentum: Triple,

@@ -190,17 +190,20 @@ def steady_states(top: Top, jellett: float) -> list[SteadyState]:
     With lambda = phi' Lambda(theta), a steady precession is a root of lambda^2 (I3 omega3/phi' - I1 c) -
     m g h' Lambda^2, which is regular everywhere (a polynomial of degree 4 in c for the eccentric sphere).
     """
-    vertical = [vertical_spin(kind, top, 1.0) for kind in VERTICAL_SPINS]
+    units = [vertical_spin(kind, top, 1.0) for kind in VERTICAL_SPINS]
     # Where the centre of mass is on the table, no spin about the vertical has any of it.
-    found = [
-        vertical_spin(unit.kind, top, jellett / unit.jellett)
-        for unit in vertical
-        if abs(unit.jellett) > _ROUNDING * top.axial_inertia * top.surface.size
+    least = NO_JELLETT * top.axial_inertia * top.surface.size
+    vertical = [
+        vertical_spin(unit.kind, top, jellett / unit.jellett) for unit in units if abs(unit.jellett) > least
     ]
-    found += [precession_at(tilt, jellett, top) for tilt in _precession_tilts(top, jellett)]
+    between = [precession_at(tilt, jellett, top) for tilt in _precession_tilts(top, jellett)]
     if has_level_spin(top):
-        found.append(level_spin(top, jellett / level_spin(top, 1.0).jellett))
-    return sorted(found, key=lambda state: state.tilt)
+        between.append(level_spin(top, jellett / level_spin(top, 1.0).jellett))
+    return sorted([*vertical, *between], key=lambda state: state.tilt)
+
+
+NO_JELLETT = 1e-13
+"""What counts as no Jellett's integral of a spin, in its rate times I3 and the size."""
 
 
 def has_level_spin(top: Top) -> bool:

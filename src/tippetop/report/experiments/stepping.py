@@ -10,7 +10,7 @@ from tippetop.frictions import ContensouFriction
 from tippetop.mechanics.contensou import ELLIPSOIDAL_RADIUS
 from tippetop.report.experiment import Experiment, variable
 from tippetop.report.experiments.real import LEINE, LEINE_WINDOW, first_of, happenings
-from tippetop.report.moreau import Ball, Body, History, follow
+from tippetop.report.moreau import Ball, History, SphereTop, follow
 from tippetop.run import simulate
 
 STEPS = (1e-3, 5e-4, 2e-4, 1e-4, 5e-5)
@@ -39,7 +39,7 @@ def stepped(step: float) -> History:
     assert isinstance(friction, ContensouFriction)
     balls = [Ball(shape.surface.height(0.0), -shape.surface.slope(0.0)) for shape in body.shapes]
     patch = ELLIPSOIDAL_RADIUS * friction.patch_radius
-    followed = Body(body.mass, body.I1, body.I3, balls, friction.mu, patch, LEINE.gravity)
+    followed = SphereTop(body.mass, body.I1, body.I3, balls, friction.mu, patch, LEINE.gravity)
     return follow(followed, LEINE.launch.tilt, LEINE.launch.spin, LEINE_WINDOW, step)
 
 
