@@ -8,18 +8,20 @@ from scipy.integrate import solve_ivp
 
 from dry_runs import DryRun, launched
 from tippetop.contact.growth import growth
+from tippetop.contact.passing import Loosening
+from tippetop.contact.rules import Bilateral
 from tippetop.integrators import has_taylor, make_integrator
 from tippetop.integrators.scipy_methods import SciPy
-from tippetop.mechanics.beginning import direction_of_slip
+from tippetop.mechanics.beginning import beginning, direction_of_slip
 from tippetop.mechanics.contensou import ELLIPSOIDAL_RADIUS, EllipsoidalLaw
 from tippetop.mechanics.contensou_hertz import HertzLaw
 from tippetop.mechanics.coulomb import CoulombLaw, RollingResistance
 from tippetop.mechanics.ending import Vanishing
 from tippetop.mechanics.friction import NO_TORQUE, Traction
-from tippetop.mechanics.motion import angular_velocity, sliding_rates
+from tippetop.mechanics.motion import angular_velocity, on_table, sliding_rates
 from tippetop.mechanics.rolling import ContactPoint, contact_wrench, velocity_without_slip, without_drilling
 from tippetop.mechanics.series import horner
-from tippetop.mechanics.slip_onset import Growing, onset
+from tippetop.mechanics.slip_onset import Growing, Onset, onset
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.stick_slip import (
     creep_rates,
@@ -274,6 +276,30 @@ def test_a_driven_motion_gives_the_same_beginning(family, power):
     for one, other in zip(ends[0].rows, ends[1].rows, strict=True):
         terms = [[term * time**k for k, term in enumerate(row)] for row in (one, other)]
         assert terms[0] == pytest.approx(terms[1], rel=1e-9, abs=1e-13)
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_the_table_pulls_from_the_first_instant_on_as_it_does_where_slip_begins(family):
+    """However small slip and drilling still are: as small as rounding, and nothing at all."""
+    top, axis, momentum = swinging(FAMILIES[family](0.02))
+    velocity = velocity_without_slip(axis, momentum, top)
+    state = on_table(SlidingState(axis, momentum, velocity), top)
+    rules = Bilateral(top)
+    (segment,) = Loosening(top, rules, Vanishing(slip=True), 1).segments(0.0, state, 1.0, make_integrator())
+    point = ContactPoint.of(axis, momentum, top)
+    true = beginning(point, None, point.turning[:2], (True, False)).wrench
+    y = segment.solution(np.array([0.0, 1e-14, 1e-11, 1e-9]))
+    found = segment.mode.reaction(y.T)
+    for i in range(3):
+        assert np.broadcast_to(found.force[i], 4) == pytest.approx(true.force[i], abs=1e-7)
+        assert np.broadcast_to(found.torque[i], 4) == pytest.approx(true.torque[i], abs=1e-7)
+
+
+def test_series_are_left_before_the_speed_that_they_begin_vanishes():
+    """It is 1 - 3 t: past a third the friction would be the other way."""
+    one, none = [1.0, *[0.0] * 8], [0.0] * 9
+    begin = Onset((one, none, none), (one, none, none), (), (one, none), [1.0, -3.0, *none[2:]], 1)
+    assert 0.1 < begin.valid_until(1e-13) <= 1.0 / 6.0
 
 
 def test_slip_starts_against_the_force_that_held_it():

@@ -268,6 +268,11 @@ class Mode(ABC):
         return (self.top,)
 
     @property
+    def form(self) -> str:
+        """Modes of the same form and tops read the same from their numbers."""
+        return self.name
+
+    @property
     def label(self) -> str:
         """Its name, with the numbers of the surfaces that touch if the body has several."""
         if not self.touching or not isinstance(self.top.surface, Hull):

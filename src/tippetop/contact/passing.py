@@ -4,10 +4,10 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from tippetop.contact.growth import growth
-from tippetop.contact.mode import EventKind, IntegratedMode, Mode, Outcome, Segment, Transition
+from tippetop.contact.mode import EventKind, IntegratedMode, Mode, Outcome, Reaction, Segment, Transition
 from tippetop.contact.sliding import BRANCH, LIFT_OFF, ROLLING, Sliding, SlidingWithoutRolling
 from tippetop.contact.sticking import LIMIT_BRANCH, SLIP, Sticking, split
 from tippetop.contact.surfaces import follow_surface, stays_open, surface_guards
@@ -28,9 +28,10 @@ from tippetop.mechanics.ending import (
     slip_beside,
 )
 from tippetop.mechanics.hull import Hull
-from tippetop.mechanics.motion import on_table
+from tippetop.mechanics.motion import angular_velocity, on_table
 from tippetop.mechanics.rolling import (
     ContactPoint,
+    Slip,
     has_limit_branches,
     is_set_valued,
     limit_guard,
@@ -42,13 +43,13 @@ from tippetop.mechanics.rolling import (
     sliding_law,
     slip_dimension,
     velocity_without_slip,
+    without_rolling,
 )
+from tippetop.mechanics.series import horner
 from tippetop.mechanics.slip_onset import onset
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.stick_slip import (
     HORIZON,
-    least_slip,
-    plus,
     scaled,
     size,
     slip_branch_guard,
@@ -56,7 +57,7 @@ from tippetop.mechanics.stick_slip import (
     velocity_of,
 )
 from tippetop.mechanics.top import Kind, Top
-from tippetop.mechanics.vectors import Row, Scalar, add, scale
+from tippetop.mechanics.vectors import Row, Scalar, Vector, dot
 
 REOPENING, LANDED, TIME, OVERTAKEN = "reopening", "landed", "time", "overtaken"
 
@@ -89,7 +90,10 @@ SHORT = 1e-14
 """How long a top at rest is followed, in natural units of time or relative to the time."""
 
 DEGREE = 14
-"""Degree of the polynomials that stand for the last moments in a solution; the first have `ORDER`."""
+"""Degree of the polynomials that stand for the last moments in a solution."""
+
+TINY = 1e-100
+"""What begins at zero, and has no direction there, in natural units: nothing, but for that."""
 
 
 @dataclass(frozen=True)
@@ -104,7 +108,7 @@ class Passing(Mode):
 
     ending: Vanishing
 
-    name: ClassVar[str] = "sliding"
+    name: ClassVar[str] = "passing"
 
     @property
     def told(self) -> Sliding | Sticking:
@@ -113,15 +117,40 @@ class Passing(Mode):
             return (SlidingWithoutRolling if self.ending.held else Sliding)(self.top, self.rules)
         return (Sticking if self.ending.held else Sliding)(self.top, self.rules)
 
-    def state(self, y: Row) -> State:
-        """As in the mode as which it is told."""
-        return self.told.state(y)
+    @property
+    def label(self) -> str:
+        """The name of the mode as which it is told."""
+        return self.told.label
 
-    def numbers(self, axis: Row, momentum: Row, velocity: Row, xi: Row) -> tuple[Scalar, ...]:
-        """The numbers of that mode, where the velocity is asked for only if it is free."""
+    @property
+    def form(self) -> str:
+        """What ends or begins decides how its numbers are read."""
+        return f"{self.name}: slip {self.ending.slip}, held {self.ending.held}"
+
+    def state(self, y: Row) -> State:
+        """The state from axis, momentum, velocity where it is free, and what ends or begins."""
+        axis, momentum, velocity, xi = self._parts(y)
         if self.ending.slip:
-            velocity = velocity_of(axis, momentum, tuple(xi), self.top)
-        return (*axis, *momentum, *velocity)
+            velocity = velocity_of(axis, momentum, xi, self.top)
+            momentum = without_rolling(axis, momentum, self.top) if self.ending.held else momentum
+        elif self.ending.held:
+            velocity = velocity_without_slip(axis, momentum, self.top)
+        return on_table(SlidingState(axis, momentum, (velocity[0], velocity[1])), self.top)
+
+    def reaction(self, y: Row) -> Reaction:
+        """The contact force and torque, from what ends or begins itself: a state has but few digits of it."""
+        axis, momentum, velocity, xi = self._parts(y)
+        here = Closing(axis, momentum, velocity, xi, 0.0, 0.0)
+        force, torque = rates_in_time(here, self.ending, self.top).wrench
+        power = dot(torque, angular_velocity(axis, momentum, self.top))
+        slip = xi if self.ending.slip else slip_beside(here, self.ending, self.top)
+        if slip is not None:
+            power = power + (force[0] * slip[0] + force[1] * slip[1])
+        return Reaction(force, torque, power)
+
+    def _parts(self, y: Row) -> tuple[Vector, Vector, Slip, Slip]:
+        free = 8 if self.ending.moves else 6
+        return *split(y), tuple(y[6:free]), tuple(y[free:])
 
 
 @dataclass(frozen=True)
@@ -148,16 +177,7 @@ class Loosening(Passing):
             yield _nothing(self.told, time, state, str(error))
             return
         duration = min(begin.valid_until(ACCURACY), longest, end - time)
-        # Slip that is zero has no direction, and friction none to be against: drilling, beside it, has one.
-        apart = 2.0 * least_slip(state.momentum, state.velocity[:2]) if len(direction) == 2 else 0.0
-        least, grown = scaled(apart, direction), DenseSolution.in_time([0.0, duration], [begin.rows])
-        free = grown.size - len(direction)
-
-        def numbers(elapsed: Scalar) -> tuple[Scalar, ...]:
-            y = grown.rows(elapsed)
-            return passing.numbers(*split(y), tuple(y[6:free]), plus(tuple(y[free:]), least))
-
-        yield passing.piece(numbers, time, duration, end)
+        yield passing.piece(begin.rows, direction, time, duration, end)
 
     def _directed(self, state: State) -> "tuple[Loosening, tuple[float, ...], float]":
         """The mode on its law's branch, the direction of what begins, and how long it lasts at most.
@@ -180,22 +200,25 @@ class Loosening(Passing):
         return replace(self, top=top), way, longest
 
     def piece(
-        self, numbers: Callable[[Scalar], tuple[Scalar, ...]], time: float, duration: float, end: float
+        self, rows: Sequence[list[Scalar]], direction: Slip, time: float, duration: float, end: float
     ) -> Segment:
-        """The segment in which the numbers are a function of the time since its start."""
+        """The segment in which the numbers are polynomials in the time since its start."""
         while isinstance(self.top.surface, Hull) and duration > SETTLED:
-            if self._stays_open(numbers, duration):
+            if self._stays_open(rows, duration):
                 break
             duration *= 0.5
+        # What is zero has no direction, and friction none to be against.
+        first = len(rows) - len(direction)
+        apart = [[TINY * e, *row[1:]] for e, row in zip(direction, rows[first:], strict=True)]
         reach = min(time + duration, end)
-        solution = DenseSolution.fitted(numbers, [0.0, duration], ORDER).moved(time, reach)
-        last = self.state(numbers(duration))
+        solution = DenseSolution.in_time([0.0, duration], [[*rows[:first], *apart]]).moved(time, reach)
+        last = self.state([horner(row, duration) for row in rows])
         then = Outcome.COMPLETED if reach >= end else self.rules.going_on(last, slips=not self.stuck)
-        return Segment(self.told, solution, last, Transition((), then, last), steps=1)
+        return Segment(self, solution, last, Transition((), then, last), steps=1)
 
-    def _stays_open(self, numbers: Callable[[float], tuple[float, ...]], duration: float) -> bool:
+    def _stays_open(self, rows: Sequence[list[Scalar]], duration: float) -> bool:
         looks = [duration * look / LOOKS for look in range(1, LOOKS + 1)]
-        return all(stays_open(self.top, numbers(look)) for look in looks)
+        return all(stays_open(self.top, [horner(row, look) for row in rows]) for look in looks)
 
     @property
     def stuck(self) -> bool:
@@ -218,15 +241,11 @@ class BothLoosening(Loosening):
             yield _nothing(self.told, time, state, str(error))
             return
         assert found.slip is not None
-        passing, way = replace(self, top=on_branch(self.top, found.slip)), scaled(found.rates[0], found.slip)
-        least = scaled(2.0 * least_slip(state.momentum, state.velocity[:2]), found.slip)
-        moment = point.moment(found.wrench)
-
-        def numbers(elapsed: Scalar) -> tuple[Scalar, ...]:
-            momentum = add(state.momentum, scale(elapsed, moment))
-            return passing.numbers(state.axis, momentum, (), plus(scaled(elapsed, way), least))
-
-        yield passing.piece(numbers, time, min(INSTANT, end - time), end)
+        passing, pace = replace(self, top=on_branch(self.top, found.slip)), scaled(found.rates[0], found.slip)
+        still, growing = (*state.axis, *state.momentum), (0.0, 0.0, 0.0, *point.moment(found.wrench))
+        rows = [[number, rate] for number, rate in zip(still, growing, strict=True)]
+        rows += [[0.0, rate] for rate in pace]
+        yield passing.piece(rows, found.slip, time, min(INSTANT, end - time), end)
 
 
 @dataclass(frozen=True)
@@ -283,10 +302,10 @@ class Stopping(Passing):
                 break
         if arc is None or arc.guard == LANDED:
             here = landed(here, ending, self.top)[0]
-        last = self._state_at(here)
+        last = self.state(shown(here))
         solution = self._in_time(parts, begin, time, float(here.time))
         then = self._next(arc, solution.end, last)
-        yield Segment(self.told, solution, last, then, steps, steps)
+        yield Segment(self, solution, last, then, steps, steps)
 
     def _clock(self, state: State) -> tuple[float, ...]:
         """The numbers of the clock at a state."""
@@ -294,15 +313,6 @@ class Stopping(Passing):
         xi = self.ending.of(state.axis, state.momentum, velocity, self.top)
         free = velocity if self.ending.moves else ()
         return (*state.axis, *state.momentum, *free, *scaled(1.0 / size(xi), xi), size(xi), 0.0)
-
-    def _state_at(self, here: Closing) -> State:
-        """The whole state."""
-        velocity: Any = here.velocity
-        if self.ending.slip:
-            velocity = velocity_of(here.axis, here.momentum, scaled(here.speed, here.direction), self.top)
-        elif self.ending.held:
-            velocity = velocity_without_slip(here.axis, here.momentum, self.top)
-        return on_table(SlidingState(here.axis, here.momentum, velocity), self.top)
 
     def _next(self, arc: Arc | None, time: float, state: State) -> Transition:
         ending, stuck = self.ending, not self.ending.slip and self.ending.held
@@ -344,21 +354,20 @@ class Stopping(Passing):
         self, parts: Sequence[DenseSolution], begin: Row, time: float, duration: float
     ) -> DenseSolution:
         """The numbers of the mode as polynomials in time, from their solution in the clock."""
-
-        def shown(row: Row) -> tuple[Scalar, ...]:
-            here = closing_of(row, self.ending)
-            xi = scaled(here.speed, here.direction)
-            return self.numbers(here.axis, here.momentum, here.velocity, xi)
-
         if not parts:
-            return DenseSolution.standing(shown(begin), time, time + duration)
+            return DenseSolution.standing(shown(closing_of(begin, self.ending)), time, time + duration)
         clock, elapsed = DenseSolution.joined(parts), len(begin) - 1
 
         def numbers(times: Array) -> tuple[Scalar, ...]:
-            return shown(clock.rows(clock.when(elapsed, times)))
+            return shown(closing_of(clock.rows(clock.when(elapsed, times)), self.ending))
 
         solution = DenseSolution.fitted(numbers, clock.knots_of(elapsed, duration), DEGREE)
         return solution.moved(time, time + duration)
+
+
+def shown(here: Closing) -> tuple[Scalar, ...]:
+    """The numbers of a moment that passes: axis, momentum, velocity where it is free, and xi."""
+    return (*here.axis, *here.momentum, *here.velocity, *scaled(here.speed, here.direction))
 
 
 def _nothing(mode: Mode, time: float, state: State, why: str) -> Segment:

@@ -1469,6 +1469,10 @@ class Mode extends py.Record {
   get tops() {
     return [this.top];
   }
+  /** Modes of the same form and tops read the same from their numbers. */
+  get form() {
+    return this.name;
+  }
   /** Its name, with the numbers of the surfaces that touch if the body has several. */
   get label() {
     if (!py.truth(this.touching) || !py.isinstance(this.top.surface, Hull)) {
@@ -2496,6 +2500,7 @@ function horner(coefficients, time) {
 }
 
 // tippetop.mechanics.slip_onset
+const [LOST, SHORTER] = [0.5, 0.9];
 
 /** The beginning of slip, or rolling, as polynomials in time: lists of coefficients, in increasing order. */
 class Onset extends py.NamedTuple {
@@ -2524,7 +2529,12 @@ class Onset extends py.NamedTuple {
         }
       }
     }
-    return py.min(times);
+    let shortest = py.min(times);
+    const losses = [...this.speed].map((term) => py.min(term, 0.0));
+    while (py.neg(horner(losses, shortest)) > py.mul(LOST, py.item(this.speed, 0))) {
+      shortest = py.mul(shortest, SHORTER);
+    }
+    return shortest;
   }
   /** Coefficients of n, L, u where that is free, and zeta. */
   get rows() {
@@ -2976,6 +2986,7 @@ const INSTANT = 1e-09;
 const PART = 0.25;
 const SHORT = 1e-14;
 const DEGREE_of_passing = 14;
+const TINY_of_passing = 1e-100;
 
 /** A moment between two modes, which is told as the one of them in which something moves. */
 class Passing extends Mode {
@@ -2983,7 +2994,7 @@ class Passing extends Mode {
     super(top, rules);
     this.ending = ending;
   }
-  get name() { return "sliding"; }
+  get name() { return "passing"; }
   /** The mode as which it is told. */
   get told() {
     if (py.truth(this.ending.slip)) {
@@ -2991,16 +3002,40 @@ class Passing extends Mode {
     }
     return py.call(py.truth(this.ending.held) ? Sticking : Sliding, this.top, this.rules);
   }
-  /** As in the mode as which it is told. */
-  state(y) {
-    return this.told.state(y);
+  /** The name of the mode as which it is told. */
+  get label() {
+    return this.told.label;
   }
-  /** The numbers of that mode, where the velocity is asked for only if it is free. */
-  numbers(axis, momentum, velocity, xi) {
+  /** What ends or begins decides how its numbers are read. */
+  get form() {
+    return `${py.str(this.name)}: slip ${py.str(this.ending.slip)}, held ${py.str(this.ending.held)}`;
+  }
+  /** The state from axis, momentum, velocity where it is free, and what ends or begins. */
+  state(y) {
+    let [axis, momentum, velocity, xi] = this._parts(y);
     if (py.truth(this.ending.slip)) {
-      velocity = velocity_of(axis, momentum, py.tuple(xi), this.top);
+      velocity = velocity_of(axis, momentum, xi, this.top);
+      momentum = py.truth(this.ending.held) ? without_rolling(axis, momentum, this.top) : momentum;
+    } else if (py.truth(this.ending.held)) {
+      velocity = velocity_without_slip(axis, momentum, this.top);
     }
-    return [...axis, ...momentum, ...velocity];
+    return on_table(new SlidingState(axis, momentum, [velocity[0], velocity[1]]), this.top);
+  }
+  /** The contact force and torque, from what ends or begins itself: a state has but few digits of it. */
+  reaction(y) {
+    const [axis, momentum, velocity, xi] = this._parts(y);
+    const here = new Closing(axis, momentum, velocity, xi, 0.0, 0.0);
+    const [force, torque] = rates_in_time(here, this.ending, this.top).wrench;
+    let power = dot(torque, angular_velocity(axis, momentum, this.top));
+    const slip = py.truth(this.ending.slip) ? xi : slip_beside(here, this.ending, this.top);
+    if (slip !== null) {
+      power = py.add(power, py.add(py.mul(force[0], slip[0]), py.mul(force[1], slip[1])));
+    }
+    return new Reaction(force, torque, power);
+  }
+  _parts(y) {
+    const free = py.truth(this.ending.moves) ? 8 : 6;
+    return [...split(y), py.tuple(y.slice(6, free)), py.tuple(y.slice(free))];
   }
 }
 py.fields(Passing, ["top", "rules", "ending"]);
@@ -3026,14 +3061,7 @@ class Loosening extends Passing {
       return null;
     }
     const duration = py.min(begin.valid_until(ACCURACY), longest, end - time);
-    const apart = py.len(direction) === 2 ? py.mul(2.0, least_slip(state.momentum, state.velocity.slice(0, 2))) : 0.0;
-    const [least, grown] = [scaled(apart, direction), DenseSolution.in_time([0.0, duration], [begin.rows])];
-    const free = py.sub(grown.size, py.len(direction));
-    const numbers = (elapsed) => {
-      const y = grown.rows(elapsed);
-      return passing.numbers(...split(y), py.tuple(y.slice(6, free)), plus(py.tuple(y.slice(free)), least));
-    };
-    yield passing.piece(numbers, time, duration, end);
+    yield passing.piece(begin.rows, direction, time, duration, end);
   }
   /** The mode on its law's branch, the direction of what begins, and how long it lasts at most. */
   _directed(state) {
@@ -3054,23 +3082,25 @@ class Loosening extends Passing {
     const longest = py.truth(beside) ? py.div(py.mul(PART, size(beside)), size(other.rate(found.acceleration, top))) : py.math.inf;
     return [py.replace(this, { top: top }), way, longest];
   }
-  /** The segment in which the numbers are a function of the time since its start. */
-  piece(numbers, time, duration, end) {
+  /** The segment in which the numbers are polynomials in the time since its start. */
+  piece(rows, direction, time, duration, end) {
     while (py.isinstance(this.top.surface, Hull) && duration > SETTLED) {
-      if (py.truth(this._stays_open(numbers, duration))) {
+      if (py.truth(this._stays_open(rows, duration))) {
         break;
       }
       duration = duration * 0.5;
     }
+    const first = py.len(rows) - py.len(direction);
+    const apart = py.zip(direction, rows.slice(first)).map(([e, row]) => [py.mul(TINY_of_passing, e), ...row.slice(1)]);
     const reach = py.min(time + duration, end);
-    const solution = DenseSolution.fitted(numbers, [0.0, duration], ORDER).moved(time, reach);
-    const last = this.state(numbers(duration));
+    const solution = DenseSolution.in_time([0.0, duration], [[...rows.slice(0, first), ...apart]]).moved(time, reach);
+    const last = this.state([...rows].map((row) => horner(row, duration)));
     const then = reach >= end ? Outcome.COMPLETED : this.rules.going_on(last, !py.truth(this.stuck));
-    return new Segment(this.told, solution, last, new Transition([], then, last), 1);
+    return new Segment(this, solution, last, new Transition([], then, last), 1);
   }
-  _stays_open(numbers, duration) {
+  _stays_open(rows, duration) {
     const looks = py.range(1, py.add(LOOKS_of_passing, 1)).map((look) => py.div(py.mul(duration, look), LOOKS_of_passing));
-    return py.all([...looks].map((look) => stays_open(this.top, numbers(look))));
+    return py.all([...looks].map((look) => stays_open(this.top, [...rows].map((row) => horner(row, look)))));
   }
   /** Whether the contact sticks meanwhile. */
   get stuck() {
@@ -3096,14 +3126,11 @@ class BothLoosening extends Loosening {
       return null;
     }
     py.assert(found.slip !== null);
-    const [passing, way] = [py.replace(this, { top: on_branch(this.top, found.slip) }), scaled(found.rates[0], found.slip)];
-    const least = scaled(py.mul(2.0, least_slip(state.momentum, state.velocity.slice(0, 2))), found.slip);
-    const moment = point.moment(found.wrench);
-    const numbers = (elapsed) => {
-      const momentum = add(state.momentum, scale(elapsed, moment));
-      return passing.numbers(state.axis, momentum, [], plus(scaled(elapsed, way), least));
-    };
-    yield passing.piece(numbers, time, py.min(INSTANT, end - time), end);
+    const [passing, pace] = [py.replace(this, { top: on_branch(this.top, found.slip) }), scaled(found.rates[0], found.slip)];
+    const [still, growing] = [[...state.axis, ...state.momentum], [0.0, 0.0, 0.0, ...point.moment(found.wrench)]];
+    let rows = py.zip(still, growing);
+    rows = py.add(rows, [...pace].map((rate) => [0.0, rate]));
+    yield passing.piece(rows, found.slip, time, py.min(INSTANT, end - time), end);
   }
 }
 py.fields(BothLoosening, ["top", "rules", "ending", "power"]);
@@ -3155,10 +3182,10 @@ class Stopping extends Passing {
     if (arc === null || py.eq(arc.guard, LANDED)) {
       here = landed(here, ending, this.top)[0];
     }
-    const last = this._state_at(here);
+    const last = this.state(shown(here));
     const solution = this._in_time(parts, begin, time, py.float(here.time));
     const then = this._next(arc, solution.end, last);
-    yield new Segment(this.told, solution, last, then, steps, steps);
+    yield new Segment(this, solution, last, then, steps, steps);
   }
   /** The numbers of the clock at a state. */
   _clock(state) {
@@ -3166,16 +3193,6 @@ class Stopping extends Passing {
     const xi = this.ending.of(state.axis, state.momentum, velocity, this.top);
     const free = py.truth(this.ending.moves) ? velocity : [];
     return [...state.axis, ...state.momentum, ...free, ...scaled(py.div(1.0, size(xi)), xi), size(xi), 0.0];
-  }
-  /** The whole state. */
-  _state_at(here) {
-    let velocity = here.velocity;
-    if (py.truth(this.ending.slip)) {
-      velocity = velocity_of(here.axis, here.momentum, scaled(here.speed, here.direction), this.top);
-    } else if (py.truth(this.ending.held)) {
-      velocity = velocity_without_slip(here.axis, here.momentum, this.top);
-    }
-    return on_table(new SlidingState(here.axis, here.momentum, velocity), this.top);
   }
   _next(arc, time, state) {
     const [ending, stuck] = [this.ending, py.and(!py.truth(this.ending.slip), () => this.ending.held)];
@@ -3214,23 +3231,23 @@ class Stopping extends Passing {
   }
   /** The numbers of the mode as polynomials in time, from their solution in the clock. */
   _in_time(parts, begin, time, duration) {
-    const shown = (row) => {
-      const here = closing_of(row, this.ending);
-      const xi = scaled(here.speed, here.direction);
-      return this.numbers(here.axis, here.momentum, here.velocity, xi);
-    };
     if (!py.truth(parts)) {
-      return DenseSolution.standing(shown(begin), time, time + duration);
+      return DenseSolution.standing(shown(closing_of(begin, this.ending)), time, time + duration);
     }
     const [clock, elapsed] = [DenseSolution.joined(parts), py.len(begin) - 1];
     const numbers = (times) => {
-      return shown(clock.rows(clock.when(elapsed, times)));
+      return shown(closing_of(clock.rows(clock.when(elapsed, times)), this.ending));
     };
     const solution = DenseSolution.fitted(numbers, clock.knots_of(elapsed, duration), DEGREE_of_passing);
     return solution.moved(time, time + duration);
   }
 }
 py.fields(Stopping, ["top", "rules", "ending", "begin"]);
+
+/** The numbers of a moment that passes: axis, momentum, velocity where it is free, and xi. */
+function shown(here) {
+  return [...here.axis, ...here.momentum, ...here.velocity, ...scaled(here.speed, here.direction)];
+}
 
 /** No motion at all, and why. */
 function _nothing(mode, time, state, why) {
@@ -3943,10 +3960,12 @@ class ContactRules extends py.Record {
     }
     return py.call(py.truth(rolls) ? Sticking : StickingWithoutRolling, this._branched(state, slips), this);
   }
-  /** Follow what ends first to its end. */
+  /** Follow what ends first to its end; where a guard was touched by rounding, nothing does. */
   stopping(time, state, slips = true) {
     const [ending] = this._next_to_end(state, slips);
-    py.assert(ending !== null, "a guard has seen that something ends");
+    if (ending === null) {
+      return new Transition([], this.going_on(state, slips), state);
+    }
     return new Transition([], new Stopping(this._branched(state, slips), this, ending), state);
   }
   /** Hold what has ended, slip or rolling (new) or what was held already, if the table can; or let go. */
@@ -7227,6 +7246,7 @@ export {
   LOOKS,
   LOOKS_of_passing,
   LOOKS_of_touchdown,
+  LOST,
   Language,
   Launch,
   Loosening,
@@ -7311,6 +7331,7 @@ export {
   SELECT,
   SETTLED,
   SHORT,
+  SHORTER,
   SHORTEST,
   SIZE,
   SLIP,
@@ -7360,6 +7381,7 @@ export {
   TILTS,
   TIME,
   TINY,
+  TINY_of_passing,
   TOGETHER,
   TOLERANCE,
   TOLERANCE_of_double_sticking,
@@ -7584,6 +7606,7 @@ export {
   series_of,
   set_valued,
   settled,
+  shown,
   size,
   sliding_law,
   sliding_motion,

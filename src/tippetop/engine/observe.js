@@ -16,12 +16,12 @@ const numbersOf = (tops) => tops.flatMap((top) => top.numbers);
 /** The state of a mode and what the table does, with what is integrated; the pole of the chart is the last parameter. */
 export function observed(mode, size) {
   const kinds = mode.tops.map((top) => top.kind), parameters = numbersOf(mode.tops);
-  const holder = holders(mode.constructor, kinds, size);
+  const holder = holders(mode.form, kinds, size);
   holder.code ??= observing(mode, kinds, size);
   return { code: holder.code, parameters: Float64Array.of(...parameters, 1) };
 }
 
-const holders = cached((make, kinds, size) => ({ make, kinds, size, code: null }));
+const holders = cached((form, kinds, size) => ({ form, kinds, size, code: null }));
 
 function observing(mode, kinds, size) {
   const count = kinds.reduce((total, kind) => total + kind.numbers, 0);

@@ -58,11 +58,8 @@ class DenseSolution:
         step = np.minimum(np.searchsorted(self.knots[1:], times, side="left"), len(self.terms) - 1)
         return evaluated(self.terms, step, parts_of(times, self.knots[step], self.knots[step + 1]))
 
-    def rows(self, times: Array | float) -> Row:
-        """The numbers of the solution at times, each of shape (m,); or at a time."""
-        if isinstance(times, float):
-            found: list[float] = self(np.array([times]))[0].tolist()
-            return found
+    def rows(self, times: Array) -> Sequence[Array]:
+        """The numbers of the solution at times, each of shape (m,)."""
         return tuple(self(times).T)
 
     def moved(self, start: float, end: float) -> "DenseSolution":

@@ -28,10 +28,13 @@ from tippetop.mechanics.rolling import (
     solve,
     turning_with,
 )
-from tippetop.mechanics.series import PLAIN, Series
+from tippetop.mechanics.series import PLAIN, Series, horner
 from tippetop.mechanics.stick_slip import inner, plus, scaled, slip_of, tangents
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Scalar, Vector, add, scale
+
+LOST, SHORTER = 0.5, 0.9
+"""Part of what a speed grows by at first that it may lose, and the factor by which times are tried."""
 
 
 class Onset(NamedTuple):
@@ -57,7 +60,11 @@ class Onset(NamedTuple):
     power: int
 
     def valid_until(self, error: float) -> float:
-        """Time up to which the last two terms of each series are below an error relative to the first."""
+        """Time up to which the last two terms of each series are below an error relative to the first.
+
+        And up to which the speed, from what it grows by at first, has not lost as much as `LOST`: through its
+        end series go on with the friction of before.
+        """
         vectors = [self.axis, self.momentum, self.velocity, self.direction, (self.speed,)]
         times = [1e300]
         for rows in vectors:
@@ -68,7 +75,11 @@ class Onset(NamedTuple):
                 term = math.hypot(*(row[k] for row in rows))
                 if k > 0 and term > 0.0:
                     times.append((whole / term) ** (1.0 / k))
-        return min(times)
+        shortest = min(times)
+        losses = [min(term, 0.0) for term in self.speed]
+        while -horner(losses, shortest) > LOST * self.speed[0]:
+            shortest *= SHORTER
+        return shortest
 
     @property
     def rows(self) -> list[list[Scalar]]:
