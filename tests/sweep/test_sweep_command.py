@@ -9,6 +9,7 @@ import sys
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 import typer
 import xarray as xr
@@ -95,6 +96,32 @@ def test_a_problem_and_a_sweep_are_read_from_files(tmp_path):
     assert sweep.grid.dimensions == ("launch.tilt",)
     assert sweep.problem.friction.mu == 0.7
     assert sweep.duration == 0.1
+
+
+def test_stems_are_swept_from_a_file_and_from_the_command_as_in_python(tmp_path):
+    """Where a stem strikes, and after how long it does, by its length and the launch."""
+    problem = report_problem(tilt=2.3, spin=40.0).replace({"body": tt.presets.REPORT_STEM})
+    lengths, spins = [0.016, 0.018, 0.02], [40.0, 100.0]
+    axes = {"body.shape.1.center": lengths, "launch.spin": spins}
+    expected = tt.sweep(problem, axes, duration=0.3, workers=1)
+    assert len(np.unique(expected["final_theta"])) == 6
+    (tmp_path / "stem.toml").write_text(problem.to_toml())
+    written = ["body.shape.1.center=0.016:0.02:3", "launch.spin=40,100"]
+    options = [part for text in written for part in ("--axis", text)]
+    run(tmp_path / "stem.toml", *options, "--duration", 0.3, "--workers", 1, "--out", tmp_path / "a.zarr")
+    (tmp_path / "sweep.toml").write_text(
+        'problem = "stem.toml"\nduration = 0.3\n[axes]\n'
+        '"body.shape.1.center" = { from = 0.016, to = 0.02, count = 3 }\n'
+        "launch.spin = [40.0, 100.0]\n"
+    )
+    run(tmp_path / "sweep.toml", "--workers", 1, "--out", tmp_path / "b.zarr", "--no-maps")
+    for name in ("a.zarr", "b.zarr"):
+        found = xr.open_zarr(tmp_path / name)
+        assert found["body.shape.1.center"].values == pytest.approx(lengths)
+        assert found["body.shape.1.center"].attrs["units"] == "m"
+        for metric in ("final_theta", "final_omega3", "energy_lost"):
+            assert found[metric].values == pytest.approx(expected[metric].values, rel=1e-10), (name, metric)
+    assert (tmp_path / "a.final_theta.png").exists()
 
 
 UNREADABLE = {

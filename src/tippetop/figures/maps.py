@@ -36,7 +36,7 @@ NAMES = {
     "rolling_resistance": "Rolling resistance (m)",
     "draw": "Draw",
 }
-"""What the axes of maps are called; others by their field."""
+"""What the axes of maps are called; others by their field and its unit."""
 
 TITLES = {
     "final_theta": "Final tilt θ (rad)",
@@ -139,7 +139,7 @@ def _colours(axes: Axes, sweep: xr.Dataset, variable: str, shade: Shade) -> Any:
         rasterized=True,
     )
     for name, axis in ((across, axes.xaxis), (up, axes.yaxis)):
-        axis.set_label_text(NAMES.get(name, name))
+        axis.set_label_text(_name(sweep, name))
         if _is_geometric(sweep[name].values):
             (axes.set_xscale if axis is axes.xaxis else axes.set_yscale)("log")
     axes.set_xlim(*_ends(sweep[across].values))
@@ -150,7 +150,7 @@ def _colours(axes: Axes, sweep: xr.Dataset, variable: str, shade: Shade) -> Any:
 def _curve(axes: Axes, sweep: xr.Dataset, variable: str) -> None:
     (across,) = (str(name) for name in sweep[variable].dims)
     axes.plot(sweep[across].values, _shown(sweep, variable), ".-", color=CONVERGED, linewidth=0.8)
-    axes.set_xlabel(NAMES.get(across, across))
+    axes.set_xlabel(_name(sweep, across))
     if _is_geometric(sweep[across].values):
         axes.set_xscale("log")
     if variable == "final_theta":
@@ -168,9 +168,15 @@ def _scatter(figure: Figure, axes: Axes, sweep: xr.Dataset, variable: str) -> No
         nothing = ~np.isfinite(values)
         axes.scatter(x[nothing], y[nothing], 8, facecolors="none", edgecolors=MUTED, linewidths=0.4)
         image = axes.scatter(x[~nothing], y[~nothing], 8, values[~nothing], cmap=shade.cmap, norm=shade.norm)
-        axes.set_ylabel(NAMES.get(fields[1], fields[1]))
+        axes.set_ylabel(_name(sweep, fields[1]))
         _bar(figure, [axes], image, sweep, variable)
-    axes.set_xlabel(NAMES.get(fields[0], fields[0]))
+    axes.set_xlabel(_name(sweep, fields[0]))
+
+
+def _name(sweep: xr.Dataset, field: str) -> str:
+    """What the axis of a field is called."""
+    unit = sweep[field].attrs.get("units", "")
+    return NAMES.get(field, f"{field} ({unit.replace('-1', '⁻¹')})" if unit not in ("", "1") else field)
 
 
 def _title(sweep: xr.Dataset, variable: str) -> str:
