@@ -81,12 +81,16 @@ def launch_of(seed: int) -> dict[str, Any]:
     return fields
 
 
-def in_javascript(launches: list[dict[str, Any]]) -> Iterator[dict[str, Any]]:
-    """What the engine makes of launches."""
+def in_javascript(launches: list[dict[str, Any]], *options: str) -> Iterator[dict[str, Any]]:
+    """What the engine makes of launches, in Node with some options."""
     lines = "".join(json.dumps(launch) + "\n" for launch in launches)
     follow = Path(__file__).with_name("follow.mjs")
     ran = subprocess.run(
-        [NODE, str(follow), str(HERE / "index.js")], input=lines, capture_output=True, text=True, check=True
+        [NODE, *options, str(follow), str(HERE / "index.js")],
+        input=lines,
+        capture_output=True,
+        text=True,
+        check=True,
     )
     for line in ran.stdout.splitlines():
         yield json.loads(line)

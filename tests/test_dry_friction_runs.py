@@ -8,7 +8,11 @@ from typer.testing import CliRunner
 
 import tippetop as tt
 from tippetop.cli.commands import app
+from tippetop.contact.choice import rules_for
+from tippetop.contact.passing import Stopping
+from tippetop.contact.sliding import Sliding
 from tippetop.integrators import has_taylor
+from tippetop.mechanics.top import natural, natural_state, natural_units
 
 INTEGRATORS = [
     pytest.param("taylor", marks=pytest.mark.skipif(not has_taylor(), reason="no heyoka")),
@@ -179,3 +183,13 @@ def test_a_sweep_changes_between_the_branches_of_hertz_as_a_run_does(liftoff):
         assert 0.0 < float(drilling.mean()) < 1.0
         for name in ("energy_lost", "least_normal_force", "highest", "flights", "airborne_time"):
             assert float(here[name]) == pytest.approx(float(run[name]), rel=1e-8, abs=1e-12), (spin, name)
+
+
+@pytest.mark.parametrize(("slip", "mode"), [(1e-3, Sliding), (-1e-3, Stopping)])
+def test_slip_that_grows_is_not_followed_to_an_end(slip: float, mode: type) -> None:
+    """What falls over rolls the way it falls: slip against that ends, slip along it goes on."""
+    launch = tt.Launch(tilt=1.0, spin=0.0, slip=(slip, 0.0))
+    problem = tt.Problem(body=tt.presets.REPORT, friction=tt.CoulombFriction(mu=0.01), launch=launch)
+    top = natural(problem.top)
+    rules = rules_for(top, "ignore", 0.0)
+    assert type(rules.stopping(0.0, natural_state(problem.start(), natural_units(problem.top))).then) is mode

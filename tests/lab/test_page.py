@@ -248,3 +248,23 @@ def test_what_is_foreseen_is_what_the_theory_says(lab: Lab, launch: str) -> None
     for name in ("tilt", "spin", "precession"):
         assert end[name] == pytest.approx(getattr(expected.final, name), rel=1e-6, abs=1e-6)
     assert len(visitor.page.locator(".dial-marks span").all()) == 2
+
+
+def test_the_page_runs_where_no_code_may_be_made(
+    page: Path, tmp_path: Path, visit: Callable[..., Visit]
+) -> None:
+    """Under a policy of content security without unsafe-eval, as schools' servers send one."""
+    policy = (
+        "default-src 'none'; script-src 'unsafe-inline'; worker-src blob:; style-src 'unsafe-inline'; "
+        "img-src data: blob:"
+    )
+    told = f'<meta http-equiv="Content-Security-Policy" content="{policy}">'
+    asked = "<script>try { new Function('')(); } catch (error) { globalThis.refused = error.name; }</script>"
+    strict = tmp_path / "lab.html"
+    text = page.read_text(encoding="utf-8")
+    assert "<head>" in text
+    strict.write_text(text.replace("<head>", f"<head>{told}{asked}", 1), encoding="utf-8")
+    visitor = visit(offline=True, locale="en-US")
+    visitor.open(f"{strict.as_uri()}#tab=launch&launch.spin=155", "globalThis.tippetopLab?.track")
+    assert visitor.ask("() => refused") == "EvalError"
+    visitor.page.locator(".tt-words strong", has_text="Turns over").wait_for()
