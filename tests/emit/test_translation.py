@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from node import NODE
-from tippetop.emit.expressions import Untranslatable
+from tippetop.emit.definitions import Definitions
 from tippetop.emit.program import Program
-from tippetop.emit.statements import Statements
+from tippetop.emit.translator import Untranslatable
 from tippetop.engine import HERE
 
 MODULE = """
@@ -162,7 +162,7 @@ def both(tmp_path_factory):
     exec(compile(MODULE, "sample", "exec"), space)
     program = Program({"sample": MODULE}, {}, ())
     lines = [f'import * as py from "{(HERE / "runtime.js").as_uri()}";']
-    lines += Statements(program, "sample").module_lines()
+    lines += Definitions(program, "sample").module_lines()
     lines.append(f"console.log(JSON.stringify([{', '.join(f'{name}()' for name in TESTS)}]));")
     script = tmp_path_factory.mktemp("translated") / "sample.mjs"
     Path(script).write_text("\n".join(lines), encoding="utf-8")
@@ -183,4 +183,4 @@ def test_what_is_not_known_is_refused(statement):
     text = f"def some(x, k, f):\n    {statement}\n"
     program = Program({"sample": text}, {}, ())
     with pytest.raises(Untranslatable):
-        list(Statements(program, "sample").module_lines())
+        list(Definitions(program, "sample").module_lines())

@@ -4,11 +4,22 @@ import ast
 import json
 from collections.abc import Sequence
 
-from tippetop.emit.program import Program, safe
+from tippetop.emit.calls import Calls
+from tippetop.emit.program import safe
 from tippetop.emit.scope import Scope
-
-ARROW, OR, AND, BITS, EQUAL, LESS, SUM, PRODUCT, UNARY, ATOM = range(10)
-"""How tightly an expression binds."""
+from tippetop.emit.translator import (
+    AND,
+    ARROW,
+    ATOM,
+    BITS,
+    EQUAL,
+    LESS,
+    OR,
+    PRODUCT,
+    SUM,
+    UNARY,
+    Untranslatable,
+)
 
 ARITHMETIC = {
     ast.Add: ("add", "+", SUM),
@@ -22,38 +33,10 @@ ARITHMETIC = {
     ast.BitAnd: ("and", "&", BITS),
 }
 COMPARISONS = {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">="}
-STRINGS = {
-    "startswith": "startsWith",
-    "endswith": "endsWith",
-    "lower": "toLowerCase",
-    "append": "push",
-    "index": "indexOf",
-}
-METHODS = {"removeprefix", "rpartition", "partition", "tolist", "join", "extend", "pop", "setdefault"}
-"""Methods of Python's own types that are functions of the runtime."""
 
 
-class Untranslatable(SyntaxError):
-    """Something of Python that the program does not use so far, and the translator does not know."""
-
-
-class Expressions:
-    """Translates the expressions of a module.
-
-    Parameters
-    ----------
-    program
-        All modules.
-    module
-        The name of this one.
-    """
-
-    def __init__(self, program: Program, module: str) -> None:
-        self.program, self.module = program, module
-        self.scopes: list[Scope] = []
-        self.hidden: list[set[str]] = []
-        self.locals: dict[str, list[str]] = {}
-        self.rebound = False
+class Expressions(Calls):
+    """Translates the expressions of a module."""
 
     def text(self, node: ast.expr, binds: int = ARROW) -> str:
         """An expression, in parentheses where it binds less."""
@@ -73,17 +56,6 @@ class Expressions:
                 return f"({found})" if own < binds else found
         return f"py.truth({self.text(node)})"
 
-    def name(self, name: str) -> str:
-        """What a name is called."""
-        if any(name in hidden for hidden in self.hidden) or any(
-            name in scope.bindings or name in scope.parameters for scope in self.scopes
-        ):
-            return safe(name)
-        if name in ("self", "cls"):
-            return "self" if self.rebound else "this"
-        known = self.program.resolve(self.module, name)
-        return known if known is not None else f"py.{safe(name)}"
-
     def pattern(self, node: ast.expr) -> str:
         """What is bound, or assigned to."""
         match node:
@@ -97,10 +69,6 @@ class Expressions:
             case ast.Starred(value=value):
                 return f"...{self.pattern(value)}"
         return self.text(node)
-
-    def arguments(self, nodes: Sequence[ast.expr]) -> str:
-        """Expressions in a row."""
-        return ", ".join(self.text(node) for node in nodes)
 
     def _is_float(self, node: ast.expr) -> bool:
         return any(scope.is_float(node) for scope in self.scopes[-1:]) or is_number(node)
@@ -150,26 +118,33 @@ class Expressions:
                 with_body = self.function(node)
                 inner = self.inside(node, body)
                 return f"{with_body} => {f'({inner})' if inner.startswith('{') else inner}", ARROW
-            case ast.ListComp(elt=element) | ast.GeneratorExp(elt=element):
-                return self._comprehension(node.generators, element), ATOM
-            case ast.SetComp(elt=element):
-                return f"new py.Dict({self._comprehension(node.generators, element)})", ATOM
-            case ast.DictComp(key=key, value=value):
-                pair = ast.Tuple([key, value], ast.Load())
-                return f"new py.Dict({self._comprehension(node.generators, pair)})", ATOM
-            case ast.Dict(keys=keys, values=values):
-                pairs = [
-                    f"[{self.text(k)}, {self.text(v)}]" if k else f"...{self.text(v, ATOM)}.items()"
-                    for k, v in zip(keys, values, strict=True)
-                ]
-                return f"new py.Dict([{', '.join(pairs)}])", ATOM
+            case ast.ListComp() | ast.GeneratorExp() | ast.SetComp() | ast.DictComp() | ast.Dict():
+                return self._collection(node), ATOM
             case ast.Call():
-                return self._call(node), ATOM
+                return self.call(node), ATOM
             case ast.Yield(value=value):
                 return f"yield {self.text(value) if value else ''}", ARROW
             case ast.YieldFrom(value=value):
                 return f"yield* {self.text(value)}", ARROW
         raise Untranslatable(f"{self.module}: {ast.unparse(node)}")
+
+    def _collection(
+        self, node: ast.ListComp | ast.GeneratorExp | ast.SetComp | ast.DictComp | ast.Dict
+    ) -> str:
+        match node:
+            case ast.ListComp(elt=element) | ast.GeneratorExp(elt=element):
+                return self._comprehension(node.generators, element)
+            case ast.SetComp(elt=element):
+                return f"new py.Dict({self._comprehension(node.generators, element)})"
+            case ast.DictComp(key=key, value=value):
+                pair = ast.Tuple([key, value], ast.Load())
+                return f"new py.Dict({self._comprehension(node.generators, pair)})"
+            case ast.Dict(keys=keys, values=values):
+                pairs = [
+                    f"[{self.text(k)}, {self.text(v)}]" if k else f"...{self.text(v, ATOM)}.items()"
+                    for k, v in zip(keys, values, strict=True)
+                ]
+                return f"new py.Dict([{', '.join(pairs)}])"
 
     def function(self, node: ast.FunctionDef | ast.Lambda) -> str:
         """The parameters of a function, with their defaults, which are seen from outside."""
@@ -275,94 +250,6 @@ class Expressions:
         self.hidden.pop()
         return whole
 
-    def _call(self, node: ast.Call) -> str:
-        func = node.func
-        match func:
-            case ast.Attribute(value=ast.Call(func=ast.Name(id="super"), args=[base, whom]), attr=attr):
-                inner = self.arguments([whom, *node.args])
-                return f"Object.getPrototypeOf({self.text(base)}.prototype).{attr}.call({inner})"
-            case ast.Attribute(value=ast.Call(func=ast.Name(id="super")), attr=attr):
-                return f"super{'' if attr == '__init__' else '.' + attr}({self._given(node)})"
-            case ast.Attribute(value=value, attr=attr) if attr in METHODS and not self._is_module(value):
-                return f"py.{attr}({self.arguments([value, *node.args])})"
-            case ast.Attribute(value=value, attr=attr) if attr in STRINGS:
-                return f"{self.text(value, ATOM)}.{STRINGS[attr]}({self.arguments(node.args)})"
-            case ast.Attribute(value=value, attr="_replace"):
-                return f"{self.text(value, ATOM)}._replace({self._named(node.keywords)})"
-            case ast.Attribute(value=value, attr="model_copy"):
-                return f"{self.text(value, ATOM)}.model_copy({self.text(node.keywords[0].value)})"
-            case ast.Subscript(value=ast.Name(id="list" | "dict" | "set" as word)):
-                return f"py.{word}({self.arguments(node.args)})"
-            case ast.Name(id="replace"):
-                return f"py.replace({self.text(node.args[0])}, {self._named(node.keywords)})"
-            case ast.Name(
-                id="bool",
-            ) if len(node.args) == 1:
-                return self.truth(node.args[0], ATOM)
-            case ast.Name(id="type"):
-                return f"{self.text(node.args[0], ATOM)}.constructor"
-            case ast.Name(id="cls"):
-                return f"new {self.name('cls')}({self._given(node)})"
-            case ast.Name(id=name) if self.name(name) in self.program.classes:
-                known = self.program.classes[self.name(name)]
-                if known.kind == "part":
-                    return f"new {known.name}({self._named(node.keywords)})"
-                if node.keywords and any(isinstance(one, ast.Starred) for one in node.args):
-                    return f"{known.name}.made([{self.arguments(node.args)}], {self._named(node.keywords)})"
-                return f"new {known.name}({self._given(node)})"
-            case ast.Attribute(value=value, attr=attr):
-                return f"{self.text(value, ATOM)}.{attr}({self._given(node)})"
-            case ast.Name(id=name):
-                own = self.name(name)
-                made = "new " if is_class(own.rpartition(".")[2]) else ""
-                return f"{made}{own}({self._given(node)})"
-        return f"py.call({self.text(func)}{''.join(', ' + self.text(one) for one in node.args)})"
-
-    def _is_module(self, value: ast.expr) -> bool:
-        return isinstance(value, ast.Name) and self.name(value.id) == "py.math"
-
-    def _named(self, keywords: Sequence[ast.keyword]) -> str:
-        parts = [f"{word.arg}: {self.text(word.value)}" if word.arg else "" for word in keywords]
-        return f"{{ {', '.join(parts)} }}"
-
-    def _given(self, node: ast.Call) -> str:
-        """The arguments of a call in order, those by name in their places."""
-        found = [self.text(one) for one in node.args]
-        words = {word.arg: word.value for word in node.keywords if word.arg != "strict"}
-        if any(word.arg is None for word in node.keywords):
-            raise Untranslatable(f"{self.module}: {ast.unparse(node)}")
-        if not words:
-            return ", ".join(found)
-        if isinstance(node.func, ast.Name) and self.name(node.func.id) in ("py.max", "py.min", "py.sorted"):
-            return ", ".join([*found, f"py.how({self._named(node.keywords)})"])
-        order = self._order(node, set(map(str, words)))
-        for name in order[len(found) :]:
-            if not words:
-                break
-            found.append(self.text(words.pop(name)) if name in words else "undefined")
-        if words:
-            raise Untranslatable(f"{self.module}: {ast.unparse(node)}")
-        return ", ".join(found)
-
-    def _order(self, node: ast.Call, words: set[str]) -> list[str]:
-        """The names of the parameters of what is called."""
-        known: list[list[str]] = []
-        match node.func:
-            case ast.Name(id=name):
-                own = self.name(name)
-                if own in self.locals:
-                    known = [self.locals[own]]
-                elif own in self.program.classes:
-                    known = [list(self.program.classes[own].fields)]
-                elif own in self.program.functions:
-                    known = [self.program.functions[own]]
-            case ast.Attribute(attr=attr):
-                known = self.program.methods.get(attr, [])
-        fitting = [order for order in known if words <= set(order)]
-        if not fitting or len({tuple(order.index(word) for word in sorted(words)) for order in fitting}) > 1:
-            raise Untranslatable(f"{self.module}: whose arguments are those of {ast.unparse(node)}?")
-        return fitting[0]
-
 
 def constant(value: object) -> str:
     """A constant."""
@@ -388,11 +275,6 @@ def is_number(node: ast.expr) -> bool:
         case ast.BinOp(left=left, right=right):
             return is_number(left) and is_number(right)
     return False
-
-
-def is_class(name: str) -> bool:
-    """Whether a name is written like that of a class."""
-    return name[:1].isupper() and not name.isupper()
 
 
 def negative(node: ast.expr | None) -> bool:
