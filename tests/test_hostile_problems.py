@@ -11,8 +11,9 @@ import numpy as np
 import pytest
 
 import tippetop as tt
+from tippetop.contact import passing
 from tippetop.errors import TippetopError
-from tippetop.integrators import has_taylor
+from tippetop.integrators import has_taylor, scipy_methods
 from tippetop.mechanics import integrated_impact, touchdown
 
 COUNT, PARTS = int(os.environ.get("TIPPETOP_HOSTILE", "64")), 8
@@ -160,6 +161,15 @@ def test_a_single_impact_or_flight_is_bounded(monkeypatch: pytest.MonkeyPatch) -
     run = tt.simulate(bouncing(**{"launch.spin": 1e6}), 0.2, samples=11)
     assert run.attrs["outcome"] == "failed"
     assert float(run["time"][-1]) == 0.0
+
+
+def test_an_end_of_slip_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Slip that ends while the top spins at 1e13 rad/s: its direction turns without end."""
+    monkeypatch.setattr(passing, "MOST_STEPS", 16)
+    monkeypatch.setattr(scipy_methods, "MANY", 16)
+    run = tt.simulate(tt.Problem(**hostile(np.random.default_rng(245))), 2.0, samples=11)
+    assert run.attrs["outcome"] == "failed"
+    assert 0.0 < float(run["time"][-1]) < 1e-6
 
 
 @pytest.mark.parametrize("duration", [1e308, 1e300, np.inf, np.nan, 0.0])

@@ -96,6 +96,10 @@ TINY = 1e-100
 """What begins at zero, and has no direction there, in natural units: nothing, but for that."""
 
 
+MOST_STEPS = 2048
+"""Steps of the implicit method after which such an end is given up, within seconds; most take some hundred."""
+
+
 @dataclass(frozen=True)
 class Passing(Mode):
     """A moment between two modes, which is told as the one of them in which something moves.
@@ -386,8 +390,13 @@ def _followed(
     first = next(iter(integrator.integrate(motion, parameters, start, LONGEST)))
     if first.guard is not None or first.failure is not None or first.solution.end >= LONGEST:
         return [first]
-    implicit = make_integrator("radau", STIFF_TOLERANCE)
-    return list(implicit.integrate(motion, parameters, start, LONGEST))
+    arcs: list[Arc] = []
+    for arc in make_integrator("radau", STIFF_TOLERANCE).integrate(motion, parameters, start, LONGEST):
+        arcs.append(arc)
+        if arc.guard is None and sum(one.steps for one in arcs) >= MOST_STEPS:
+            arcs[-1] = replace(arc, failure="slip, or rolling, takes too many steps to end")
+            break
+    return arcs
 
 
 @lru_cache

@@ -2987,6 +2987,7 @@ const PART = 0.25;
 const SHORT = 1e-14;
 const DEGREE_of_passing = 14;
 const TINY_of_passing = 1e-100;
+const MOST_STEPS_of_passing = 2048;
 
 /** A moment between two modes, which is told as the one of them in which something moves. */
 class Passing extends Mode {
@@ -3260,8 +3261,15 @@ function _followed(integrator, motion, parameters, start) {
   if (first.guard !== null || first.failure !== null || first.solution.end >= LONGEST) {
     return [first];
   }
-  const implicit = make_integrator("radau", STIFF_TOLERANCE);
-  return py.list(implicit.integrate(motion, parameters, start, LONGEST));
+  const arcs = [];
+  for (const arc of make_integrator("radau", STIFF_TOLERANCE).integrate(motion, parameters, start, LONGEST)) {
+    arcs.push(arc);
+    if (arc.guard === null && py.sum([...arcs].map((one) => one.steps)) >= MOST_STEPS_of_passing) {
+      py.put(arcs, -1, py.replace(arc, { failure: "slip, or rolling, takes too many steps to end" }));
+      break;
+    }
+  }
+  return arcs;
 }
 
 /** Equations of motion in the clock -ln s where a velocity is about to end; time is the last number. */
@@ -7256,6 +7264,7 @@ export {
   MOST_IN_TURNS,
   MOST_LOOKS,
   MOST_STEPS,
+  MOST_STEPS_of_passing,
   MOST_of_impact_on_two,
   MOST_of_integrated_impact,
   Mode,
