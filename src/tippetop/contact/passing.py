@@ -97,7 +97,7 @@ TINY = 1e-100
 
 
 MOST_STEPS = 2048
-"""Steps of the implicit method after which such an end is given up, within seconds; most take some hundred."""
+"""Steps of the implicit method after which such an end is given up, within seconds; most take hundreds."""
 
 
 @dataclass(frozen=True)
