@@ -1,12 +1,14 @@
 """The page for everyone: by keyboard, on phones, in another language, without motion, read aloud."""
 
 import json
+import re
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from browsing import Visit
+from tippetop.report.gallery import PLATES
 
 Lab = Callable[..., Visit]
 
@@ -96,3 +98,10 @@ def test_where_motion_is_not_wanted_nothing_moves_by_itself(lab: Lab) -> None:
     visitor = lab("launch.spin=155", reduced_motion="reduce")
     assert not visitor.ask("() => tippetopLab.player.playing")
     assert not visitor.ask("() => tippetopLab.player.climax")
+
+
+def test_the_page_leads_to_figures_that_there_are() -> None:
+    code = (Path(__file__).parents[2] / "web" / "src" / "lab" / "presets.js").read_text(encoding="utf-8")
+    led_to = re.findall(r'"(fig\w+)"', code)
+    assert len(led_to) == 4
+    assert set(led_to) <= set(PLATES)

@@ -64,13 +64,12 @@ function Dial({ dial, lab, marks = [] }) {
   );
 }
 
-function Choice({ name, value, options, onChange, help }) {
+function Choice({ name, value, options, onChange }) {
   return (
     <label class="choice"><span>{name}</span>
       <select value={value} onChange={(event) => onChange(event.target.value)}>
         {options.map(([key, text, title]) => <option value={key} title={title}>{text}</option>)}
       </select>
-      {help && <small>{help}</small>}
     </label>
   );
 }
@@ -107,8 +106,9 @@ export function Launch({ lab }) {
     <div class="controls">
       <Choice name={t("controls.start")} value={known?.key ?? ""}
         options={[["", t("controls.other")], ...PRESETS.map(({ key }) => [key, t(`presets.${key}`)])]}
-        onChange={(key) => key && lab.go(PRESETS.find((one) => one.key === key).setup)}
-        help={known && t("presets.source", { source: known.source })} />
+        onChange={(key) => key && lab.go(PRESETS.find((one) => one.key === key).setup)} />
+      {known && <p class="source">{t("presets.source", { source: known.source })}{" "}
+        {known.figure && <a href={known.figure} rel="noreferrer">{t("presets.figure")}</a>}</p>}
       {dials(MAIN)}
       <p class="prospect">
         {prospect?.ends?.length ? heading(prospect, units) : t("controls.unknown")}

@@ -1,18 +1,18 @@
 // The guided story: each step sets a launch, asks for a prediction, shows what happens and says why.
 
 import { part, t } from "./i18n.js";
-import { preset } from "./presets.js";
+import { preset, PRESETS } from "./presets.js";
 import { changed } from "./setup.js";
 
-// Of each step: its launch, the arrows and curves it shows, and from where it is seen.
+// Of each step: its launch, the arrows and curves it shows, and the preset whose figure in the report shows it too.
 const STEPS = [
-  { setup: preset("turns"), show: ["trace", "glass", "axis"], plots: ["theta", "height", "omega3"] },
+  { from: "turns", setup: preset("turns"), show: ["trace", "glass", "axis"], plots: ["theta", "height", "omega3"] },
   { setup: changed(preset("slow"), { duration: 8 }), show: ["trace", "glass", "axis"], plots: ["theta", "omega3"] },
-  { setup: preset("half"), show: ["trace", "glass", "axis"], plots: ["theta", "slip", "phi_dot"] },
-  { setup: preset("turns"), show: ["trace", "glass", "momentum"], plots: ["theta", "omega3", "energy", "jellett_error"] },
+  { from: "half", setup: preset("half"), show: ["trace", "glass", "axis"], plots: ["theta", "slip", "phi_dot"] },
+  { from: "turns", setup: preset("turns"), show: ["trace", "glass", "momentum"], plots: ["theta", "omega3", "energy", "jellett_error"] },
   { setup: changed(preset("none"), { duration: 8 }), show: ["trace", "glass", "axis"], plots: ["theta", "energy", "slip"] },
-  { setup: changed(preset("turns"), { "friction.mu": 3000, duration: 8 }), show: ["trace", "glass", "friction"], plots: ["theta", "slip", "energy"] },
-  { setup: changed(preset("jumps"), { duration: 9 }), show: ["trace", "glass", "friction"], plots: ["theta", "normal_force", "height"] },
+  { from: "much", setup: changed(preset("turns"), { "friction.mu": 3000, duration: 8 }), show: ["trace", "glass", "friction"], plots: ["theta", "slip", "energy"] },
+  { from: "jumps", setup: changed(preset("jumps"), { duration: 9 }), show: ["trace", "glass", "friction"], plots: ["theta", "normal_force", "height"] },
   { setup: preset("stem"), show: ["trace", "glass", "axis"], plots: ["theta", "height", "normal_force"] },
   { setup: changed(preset("dry"), { duration: 8 }), show: ["trace", "glass", "friction"], plots: ["theta", "slip", "energy"], extra: "drill" },
   { setup: preset("turns"), show: ["trace", "glass"], plots: ["theta", "omega3"], extra: "own" },
@@ -65,12 +65,14 @@ function Question({ words, told, onGuess }) {
 }
 
 function Why({ lab, number, words, guess }) {
-  const { extra } = STEPS[number];
+  const { extra, from } = STEPS[number];
+  const { figure } = PRESETS.find(({ key }) => key === from) ?? {};
   return (
     <div class="answer" role="status">
       {guess.answer !== null && <p class="verdict">{t(guess.answer === words.right ? "story.right" : "story.wrong")}</p>}
       <p>{words.why}</p>
       <details><summary>{t("story.deeper")}</summary><p class="deeper">{words.deeper}</p></details>
+      {figure && <p><a href={figure} rel="noreferrer">{t("presets.figure")}</a></p>}
       {extra && <button type="button" onClick={() => more(lab, extra)}>{t(`story.extra.${extra}`)}</button>}
     </div>
   );
