@@ -197,3 +197,18 @@ def test_undo_takes_back_a_pin_and_never_leaves_the_page(lab: Lab) -> None:
     undo.click()
     visitor.wait("() => tippetopLab.player.scene.ghosts.length === 0")
     visitor.wait("() => document.querySelector('header button').disabled")
+
+
+def test_the_mark_on_every_plot_is_at_the_time_that_is_shown(lab: Lab) -> None:
+    visitor = lab("tab=launch&duration=20&t=6")
+    shares = """() => [...document.querySelectorAll(".plots .u-over")].map((over) => {
+      const mark = over.querySelector(".plot-now").getBoundingClientRect();
+      const { left, width } = over.getBoundingClientRect();
+      return (mark.left + mark.width / 2 - left) / width; })"""
+    visitor.wait("() => document.querySelectorAll('.plot-now').length === 6")
+    assert visitor.ask(shares) == pytest.approx([0.3] * 6, abs=0.01)
+    visitor.ask("() => tippetopLab.player.seek(15)")
+    visitor.wait("() => document.querySelector('.tt-time').textContent === '15.000 s'")
+    assert visitor.ask(shares) == pytest.approx([0.75] * 6, abs=0.01)
+    visitor.page.set_viewport_size({"width": 800, "height": 700})
+    visitor.wait("(share) => Math.abs(share()[0] - 0.75) < 0.01".replace("share()", f"({shares})()"))

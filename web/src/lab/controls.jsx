@@ -107,8 +107,9 @@ export function Launch({ lab }) {
       <Choice name={t("controls.start")} value={known?.key ?? ""}
         options={[["", t("controls.other")], ...PRESETS.map(({ key }) => [key, t(`presets.${key}`)])]}
         onChange={(key) => key && lab.go(PRESETS.find((one) => one.key === key).setup)} />
-      {known && <p class="source">{t("presets.source", { source: known.source })}{" "}
-        {known.figure && <a href={known.figure} rel="noreferrer">{t("presets.figure")}</a>}</p>}
+      {known && <p class="source">{known.figure
+        ? <a href={known.figure} rel="noreferrer" title={t("presets.figure")}>{t("presets.source", { source: known.source })}</a>
+        : t("presets.source", { source: known.source })}</p>}
       {dials(MAIN)}
       <p class="prospect">
         {prospect?.ends?.length ? heading(prospect, units) : t("controls.unknown")}

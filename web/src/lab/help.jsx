@@ -35,13 +35,13 @@ export function Help({ onClose }) {
 
 function Model() {
   return (
-    <svg class="model" viewBox="0 0 320 210" role="img" aria-label={t("help.drawing")}>
+    <svg class="model" viewBox="0 -12 320 218" role="img" aria-label={t("help.drawing")}>
       <line x1="20" y1="180" x2="300" y2="180" class="ink" />
       <circle cx="150" cy="105" r="75" class="ball" />
       <line x1="150" y1="195" x2="150" y2="8" class="faint" />
       <line x1="115" y1="178" x2="202" y2="-4" class="axis" />
       <circle cx="150" cy="105" r="2.5" class="dot" /><circle cx="139" cy="128" r="5" class="mass" />
-      <text x="120" y="133">C</text><text x="158" y="34">θ</text><text x="206" y="22">ω₃</text>
+      <text x="120" y="133">C</text><text x="160" y="25">θ</text><text x="206" y="22">ω₃</text>
       <path d="M150 30 A75 75 0 0 1 182 38" class="axis" />
       <path d="M178 12 a14 6 25 1 0 22 8" class="axis" />
       <line x1="150" y1="180" x2="150" y2="142" class="force" /><text x="156" y="158">N</text>

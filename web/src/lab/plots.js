@@ -116,7 +116,8 @@ export class Plots {
         { stroke: this.dark ? "#4a545e" : "#d0d6db", width: 1.2, points: { show: false } },
         { stroke: colour, width: 1.6, points: { show: false } },
       ],
-      hooks: { drawClear: [(chart) => this.shade(chart)] },
+      // How wide a plot is beside its numbers is known when it is drawn.
+      hooks: { drawClear: [(chart) => this.shade(chart)], draw: [(chart) => this.mark(this.charts.find((one) => one.chart === chart))] },
     };
   }
 
@@ -224,12 +225,18 @@ export class Plots {
     const reads = !this.playing() || now - this.told >= READING;
     if (reads) this.told = now;
     for (const one of this.charts) {
-      const { name, chart, cursor, value } = one;
-      const place = Math.round((2 * (time - begin) * chart.bbox.width) / devicePixelRatio / (end - begin)) / 2;
-      if (place !== one.place) cursor.style.transform = `translateX(${place}px)`;
-      one.place = place;
-      if (reads) value.textContent = digits(this.track.value(name, time) / unitOf(QUANTITIES[name], this.units).size, 4);
+      this.mark(one);
+      if (reads) one.value.textContent = digits(this.track.value(one.name, time) / unitOf(QUANTITIES[one.name], this.units).size, 4);
     }
+  }
+
+  // Put the mark of a plot where the player's time is, to half a pixel.
+  mark(one) {
+    if (!one) return;
+    const [begin, end] = this.span;
+    const place = Math.round((2 * (this.time() - begin) * one.chart.bbox.width) / devicePixelRatio / (end - begin)) / 2;
+    if (place !== one.place) one.cursor.style.transform = `translateX(${place}px)`;
+    one.place = place;
   }
 
   clear() {

@@ -69,7 +69,7 @@ function Why({ lab, number, words, guess }) {
   const { figure } = PRESETS.find(({ key }) => key === from) ?? {};
   return (
     <div class="answer" role="status">
-      {guess.answer !== null && <p class="verdict">{t(guess.answer === words.right ? "story.right" : "story.wrong")}</p>}
+      {guess.answer !== null && <p class={`verdict ${guess.answer === words.right ? "right" : ""}`}>{t(guess.answer === words.right ? "story.right" : "story.wrong")}</p>}
       <p>{words.why}</p>
       <details><summary>{t("story.deeper")}</summary><p class="deeper">{words.deeper}</p></details>
       {figure && <p><a href={figure} rel="noreferrer">{t("presets.figure")}</a></p>}

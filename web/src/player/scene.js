@@ -24,7 +24,7 @@ export class Scene {
     this.renderer.debug.checkShaderErrors = false;
     this.renderer.shadowMap.enabled = !frugal;
     this.usual = this.quality = frugal ? 0.7 : Math.min(globalThis.devicePixelRatio || 1, 2);
-    this.best = Math.max(this.quality, 1);
+    this.best = frugal ? 2 : this.quality;
     this.least = 0.5;
     this.renderer.shadowMap.type = THREE.PCFShadowMap;
     this.world = new THREE.Scene();

@@ -33,7 +33,7 @@ export const STYLE = `
 .tt-more { border-top: 1px solid var(--tt-line); font-size: 13px; flex: 0 0 auto; }
 .tt-more summary { padding: 6px 12px; cursor: pointer; color: var(--tt-muted); }
 .tt-options { display: flex; flex-wrap: wrap; align-items: center; gap: 4px 14px; padding: 0 12px 8px; }
-.tt-bar button { min-width: 36px; height: 36px; padding: 0 8px; border: 1px solid var(--tt-line); border-radius: 8px;
+.tt-bar button { display: inline-grid; place-items: center; min-width: 36px; height: 36px; padding: 0 8px; border: 1px solid var(--tt-line); border-radius: 8px;
   background: transparent; color: inherit; font: inherit; font-size: 15px; cursor: pointer; }
 .tt-bar button:disabled { opacity: 0.35; cursor: default; }
 .tt-bar button:not(:disabled):hover { border-color: var(--tt-accent); }
