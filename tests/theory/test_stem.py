@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import tippetop as tt
+from tippetop.theory.overview import outlook
 from tippetop.theory.stem import jellett_about
 
 
@@ -52,8 +53,28 @@ def test_what_is_no_tip_is_refused() -> None:
         tt.least_jellett_to_stand(tt.presets.COIN, 1)
 
 
-@pytest.mark.parametrize("ask", [tt.critical_spins, tt.steady_states])
-def test_theory_of_one_surface_is_not_told_of_several(ask) -> None:
-    problem = tt.presets.report_problem().model_copy(update={"body": tt.presets.REPORT_STEM})
+STEMMED = tt.presets.report_problem().model_copy(update={"body": tt.presets.REPORT_STEM})
+
+
+def test_critical_spins_are_of_one_surface_and_not_told_of_several() -> None:
     with pytest.raises(tt.InvalidInput, match=r"body\.shape = 'several surfaces' is not possible"):
-        ask(problem)
+        tt.critical_spins(STEMMED)
+
+
+@pytest.mark.parametrize(("tilt", "spin"), [(0.1, 30.0), (0.1, 155.0), (3.0, 40.0), (3.0, 250.0)])
+def test_steady_states_are_told_of_the_surface_that_touches(tilt: float, spin: float) -> None:
+    """Those of its sphere below, and of its tip beyond, the tilt at which both touch: 8 = 11 |cos|, mm."""
+    both = math.acos(-8 / 11)
+    problem = STEMMED.replace({"launch.tilt": tilt, "launch.spin": spin})
+    number = int(tilt > both)
+    alone = tt.steady_states(problem.replace({"body.shape": problem.body.shapes[number]}))
+    inside = [state for state in alone if (state.tilt > both) == bool(number)]
+    assert tt.steady_states(problem) == inside
+    assert len(inside) < len(alone), "there are states that the other surface keeps it from"
+    found = outlook(problem)
+    assert [judged.state for judged in found.steady] == inside
+    assert found.surface == number
+    assert found.tilts == pytest.approx((both, math.pi) if number else (0.0, both), abs=1e-12)
+    assert (found.prediction is None) == (spin in (155.0, 40.0)), "energy lets the other surface touch"
+    if number:
+        assert found.lambda_down == pytest.approx(tt.least_jellett_to_stand(problem.body), rel=1e-12)

@@ -96,6 +96,8 @@ def _plain(found: "Outlook") -> dict[str, Any]:
         "flip_time": found.flip_time,
         "jellett_conserved": found.conserved,
         "standing_time": finite(found.standing_time) if found.standing_time is not None else None,
+        "surface": found.surface,
+        "tilts": list(found.tilts),
     }
 
 
@@ -111,6 +113,13 @@ def _print(found: "Outlook", console: "Console") -> None:
     if found.group is not None:
         console.print(f"[bold]Group {found.group.value}[/]: {found.group.description}.", highlight=False)
     console.print(table)
+    if found.tilts != (0.0, math.pi):
+        low, high = found.tilts
+        console.print(
+            f"Of its surface {found.surface} alone, from θ = {low:.6g} to {high:.6g} rad: beyond, another "
+            "touches.",
+            highlight=False,
+        )
     if found.group is not None:
         console.print(
             f"[dim]ω_c1, ω_c2: spins of launches with this one's tilt, {found.tilt:.6g} rad, and rates.[/]",

@@ -1,14 +1,16 @@
 """Everything the theory says of a launch, in one record."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+from tippetop.errors import InvalidInput
 from tippetop.frictions import ViscousFriction
+from tippetop.mechanics.hull import Hull
 from tippetop.problem import Problem
 from tippetop.theory.averaging import flip_time_limit, nutation_of_launch
 from tippetop.theory.drilling import standing_time
 from tippetop.theory.groups import Group, classify_top, eccentricity, inertia_ratio
-from tippetop.theory.prediction import Prediction, predict, steady_launch
+from tippetop.theory.prediction import Prediction, on_surface, predict, steady_launch, tilts_held
 from tippetop.theory.requirements import require_creep
 from tippetop.theory.stability import Spectrum, spectrum
 from tippetop.theory.steady import VERTICAL_SPINS, SteadyState, jellett_of_launch, vertical_spin
@@ -35,7 +37,7 @@ class Outlook:
     inertia_ratio, eccentricity
         gamma = I1 / I3 and alpha; None for a shape other than an eccentric sphere.
     group
-        How such tops behave, or None.
+        How such tops behave, or None; also on a tip that the centre of mass is outside of.
     lambda_up, lambda_down
         Jellett's integrals, kg m^3/s, at which the upright spin loses and the inverted spin gains stability.
     critical_spins
@@ -65,6 +67,9 @@ class Outlook:
     standing_time
         Under friction that drills, how long a vertical spin stands, s: that of the launch, or else the
         inverted one with its lambda; None without drilling, and for a body that leans and is no sphere.
+    surface, tilts
+        Number of the surface that it is launched on, which alone all this is of, and the tilts, rad, between
+        which no other touches.
     """
 
     inertia_ratio: float | None
@@ -83,10 +88,12 @@ class Outlook:
     flip_time: float | None
     conserved: bool
     standing_time: float | None
+    surface: int = 0
+    tilts: tuple[float, float] = (0.0, math.pi)
 
 
 def outlook(problem: Problem) -> Outlook:
-    """What the theory says of a launch.
+    """What the theory says of a launch: of a body of several surfaces, on the one that it is launched on.
 
     Raises
     ------
@@ -95,16 +102,19 @@ def outlook(problem: Problem) -> Outlook:
         rolling is resisted.
     """
     top = problem.top
+    if isinstance(top.surface, Hull):
+        return _on_one_of_several(problem, problem.standing().surface.active)
     require_creep(top)
     jellett = jellett_of_launch(problem)
     sphere, vertical = top.conserves_jellett, problem.launch.tilt in (0.0, math.pi)
     drills, smooth = not top.friction.torque_free, problem.friction.vanishes
     stays = None if drills else steady_launch(problem)
-    limit = _flip_time_limit(problem) if sphere and stays is None else None
+    grouped = sphere and 0.0 < eccentricity(top) < 1.0
+    limit = _flip_time_limit(problem) if grouped and stays is None else None
     return Outlook(
         inertia_ratio=inertia_ratio(top) if sphere else None,
         eccentricity=eccentricity(top) if sphere else None,
-        group=classify_top(top) if sphere else None,
+        group=classify_top(top) if grouped else None,
         lambda_up=lambda_up(top),
         lambda_down=lambda_down(top),
         critical_spins=critical_spins(problem),
@@ -121,10 +131,33 @@ def outlook(problem: Problem) -> Outlook:
     )
 
 
+def _on_one_of_several(problem: Problem, number: int) -> Outlook:
+    """The outlook on one of several surfaces, as far as no other touches.
+
+    How it gets there is not told: another surface may touch on the way.
+    """
+    found = outlook(on_surface(problem, number))
+    low, high = tilts_held(problem.standing().surface, problem.launch.tilt)
+    try:
+        prediction = predict(problem) if found.prediction else None
+    except InvalidInput:
+        prediction = None
+    return replace(
+        found,
+        prediction=prediction,
+        steady=tuple(judged for judged in found.steady if low <= judged.state.tilt <= high),
+        mu_flip_time=None,
+        flip_time=None,
+        surface=number,
+        tilts=(low, high),
+    )
+
+
 def steady_states(problem: Problem) -> list[SteadyState]:
     """Steady states that a launch might end in, by increasing tilt.
 
-    All with its Jellett's integral, or where that is not conserved, both vertical spins at its axial spin.
+    All with its Jellett's integral, or where that is not conserved, both vertical spins at its axial spin. Of
+    a body of several surfaces, those on the one that it is launched on, at tilts where no other touches.
 
     Raises
     ------
@@ -141,6 +174,11 @@ def steady_states(problem: Problem) -> list[SteadyState]:
     precession 1.504 -8.2
     inverted 3.142 -26.7
     """
+    if isinstance(problem.top.surface, Hull):
+        hull = problem.standing().surface
+        low, high = tilts_held(hull, problem.launch.tilt)
+        states = steady_states(on_surface(problem, hull.active))
+        return [state for state in states if low <= state.tilt <= high]
     require_creep(problem.top)
     if problem.top.conserves_jellett:
         return all_steady_states(problem.top, jellett_of_launch(problem))

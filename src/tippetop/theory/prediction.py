@@ -114,8 +114,7 @@ def _on_one_of_several(problem: Problem, hull: Any) -> Prediction:
     Jellett's integral holds on one surface. When another touches, it begins anew with a number that the
     whole motion decides.
     """
-    body = problem.body.model_copy(update={"shape": problem.body.shapes[hull.active]})
-    alone = problem.model_copy(update={"body": body})
+    alone = on_surface(problem, hull.active)
     found = predict(alone)
     available = float(energy(alone.start(), alone.top))
     ends = touching_tilts(hull, problem.launch.tilt)
@@ -123,11 +122,22 @@ def _on_one_of_several(problem: Problem, hull: Any) -> Prediction:
         if float(least_energy(tilt, found.jellett, alone.top, math)) <= available:
             shown = f"one whose surface {number} can touch, at a tilt of {tilt:.4g} rad"
             raise InvalidInput("body.shape", shown, "one surface, or a launch of less energy: run it instead")
-    low, high = min(ends, default=0.0), max(ends, default=math.pi)
-    if len(ends) == 1:
-        low, high = (low, math.pi) if low < problem.launch.tilt else (0.0, high)
+    low, high = tilts_held(hull, problem.launch.tilt)
     stable = tuple(state for state in found.stable if low <= state.tilt <= high)
     return replace(found, stable=stable, surface=hull.active)
+
+
+def on_surface(problem: Problem, number: int) -> Problem:
+    """The problem with one of the body's surfaces alone."""
+    body = problem.body.model_copy(update={"shape": problem.body.shapes[number]})
+    return problem.model_copy(update={"body": body})
+
+
+def tilts_held(hull: Hull, tilt: float) -> tuple[float, float]:
+    """The tilts around one, rad, between which no other surface touches beside the active one."""
+    ends = touching_tilts(hull, tilt)
+    below, above = [at for at in ends if at <= tilt], [at for at in ends if at > tilt]
+    return max(below, default=0.0), min(above, default=math.pi)
 
 
 def touching_tilts(hull: Hull, tilt: float) -> dict[float, int]:
