@@ -6995,8 +6995,7 @@ function predict(problem) {
 
 /** The end on the surface of the launch, where the energy of the launch keeps all others off the table. */
 function _on_one_of_several(problem, hull) {
-  const body = problem.body.model_copy(new py.Dict([["shape", py.item(problem.body.shapes, hull.active)]]));
-  const alone = problem.model_copy(new py.Dict([["body", body]]));
+  const alone = on_surface(problem, hull.active);
   const found = predict(alone);
   const available = py.float(energy(alone.start(), alone.top));
   const ends = touching_tilts(hull, problem.launch.tilt);
@@ -7006,12 +7005,22 @@ function _on_one_of_several(problem, hull) {
       throw new InvalidInput("body.shape", shown, "one surface, or a launch of less energy: run it instead");
     }
   }
-  let [low, high] = [py.min(ends, py.how({ default: 0.0 })), py.max(ends, py.how({ default: py.math.pi }))];
-  if (py.len(ends) === 1) {
-    [low, high] = low < problem.launch.tilt ? [low, py.math.pi] : [0.0, high];
-  }
+  const [low, high] = tilts_held(hull, problem.launch.tilt);
   const stable = py.tuple([...found.stable].filter((state) => low <= state.tilt && state.tilt <= high));
   return py.replace(found, { stable: stable, surface: hull.active });
+}
+
+/** The problem with one of the body's surfaces alone. */
+function on_surface(problem, number) {
+  const body = problem.body.model_copy(new py.Dict([["shape", py.item(problem.body.shapes, number)]]));
+  return problem.model_copy(new py.Dict([["body", body]]));
+}
+
+/** The tilts around one, rad, between which no other surface touches beside the active one. */
+function tilts_held(hull, tilt) {
+  const ends = touching_tilts(hull, tilt);
+  const [below, above] = [[...ends].filter((at) => at <= tilt), [...ends].filter((at) => at > tilt)];
+  return [py.max(below, py.how({ default: 0.0 })), py.min(above, py.how({ default: py.math.pi }))];
 }
 
 /** The tilts next to one, rad, at which another surface touches beside the active one, and its number. */
@@ -7571,6 +7580,7 @@ export {
   on_limit_branch,
   on_other_branch,
   on_other_limit_branch,
+  on_surface,
   on_table,
   on_two,
   onset,
@@ -7653,6 +7663,7 @@ export {
   surface_guards,
   tangents,
   tilt_rate,
+  tilts_held,
   tops_of,
   touchdown,
   touching_tilts,
