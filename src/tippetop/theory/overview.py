@@ -103,7 +103,7 @@ def outlook(problem: Problem) -> Outlook:
     """
     top = problem.top
     if isinstance(top.surface, Hull):
-        return _on_one_of_several(problem, problem.standing().surface.active)
+        return _on_one_of_several(problem)
     require_creep(top)
     jellett = jellett_of_launch(problem)
     sphere, vertical = top.conserves_jellett, problem.launch.tilt in (0.0, math.pi)
@@ -131,13 +131,14 @@ def outlook(problem: Problem) -> Outlook:
     )
 
 
-def _on_one_of_several(problem: Problem, number: int) -> Outlook:
+def _on_one_of_several(problem: Problem) -> Outlook:
     """The outlook on one of several surfaces, as far as no other touches.
 
     How it gets there is not told: another surface may touch on the way.
     """
-    found = outlook(on_surface(problem, number))
-    low, high = tilts_held(problem.standing().surface, problem.launch.tilt)
+    hull = _standing_on(problem)
+    found = outlook(on_surface(problem, hull.active))
+    low, high = tilts_held(hull, problem.launch.tilt)
     try:
         prediction = predict(problem) if found.prediction else None
     except InvalidInput:
@@ -148,9 +149,16 @@ def _on_one_of_several(problem: Problem, number: int) -> Outlook:
         steady=tuple(judged for judged in found.steady if low <= judged.state.tilt <= high),
         mu_flip_time=None,
         flip_time=None,
-        surface=number,
+        surface=hull.active,
         tilts=(low, high),
     )
+
+
+def _standing_on(problem: Problem) -> Hull:
+    """The surfaces of a body that has several, of which that of the launch is active."""
+    hull = problem.standing().surface
+    assert isinstance(hull, Hull)
+    return hull
 
 
 def steady_states(problem: Problem) -> list[SteadyState]:
@@ -175,7 +183,7 @@ def steady_states(problem: Problem) -> list[SteadyState]:
     inverted 3.142 -26.7
     """
     if isinstance(problem.top.surface, Hull):
-        hull = problem.standing().surface
+        hull = _standing_on(problem)
         low, high = tilts_held(hull, problem.launch.tilt)
         states = steady_states(on_surface(problem, hull.active))
         return [state for state in states if low <= state.tilt <= high]
