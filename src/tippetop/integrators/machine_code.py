@@ -69,10 +69,10 @@ class _Loaded:
 
     def __call__(self, y: Array, p: Array, out: Array) -> None:
         """Compute, for as many launches as the rows have numbers."""
-        count = y.shape[1]
-        self._function(*map(_address, (y, p, out)), count)
+        self._function(*map(_address, (y, p, out)), y.shape[1])
 
 
 def _address(rows: Array) -> int:
     assert rows.flags.c_contiguous, "rows are passed as they lie in memory"
-    return rows.ctypes.data
+    # Several times as fast as `rows.ctypes.data`.
+    return int(rows.__array_interface__["data"][0])

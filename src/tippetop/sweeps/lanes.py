@@ -100,9 +100,7 @@ class Lanes:
         if len(waiting):
             slots.held[waiting] = after[layout.taken, waiting]
             slots.before[waiting] = before[layout.left, waiting]
-        slots.tip.extremes.look(
-            after[layout.looks], after[layout.slack], after[layout.taken], before[: layout.size]
-        )
+        slots.tip.extremes.put(after[layout.least])
         slots.rows, slots.spare = after, before
 
     def _look(self) -> None:
@@ -135,11 +133,10 @@ class Lanes:
     def _close(self, noted: Flags, begun: Array) -> None:
         """End a window: note it, take out what has ended, and close ranks."""
         slots, layout = self.slots, self.slots.layout
-        slots.search()
         cells, (_, down, up) = slots.cell[noted], slots.tip.extremes.lately[:, noted]
         if not self.banded:
             self.notes.append(Note(cells, begun[: layout.left + 1, noted], down, -up))
-        slots.tip.extremes.forget()
+        slots.tip.extremes.put_aside()
         ended = np.flatnonzero(slots.alive & (slots.left <= 0.0))
         if len(ended):
             slots.retire(ended, slots.whole(ended), slots.end[ended], Outcome.COMPLETED)

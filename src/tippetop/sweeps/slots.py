@@ -12,7 +12,7 @@ from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.top import Top
 from tippetop.metrics import OUTCOMES, Ends
 from tippetop.sweeps.launches import Flags, Indices, Launches, branched
-from tippetop.sweeps.stride import LANES, Jet, Layout, Stepper
+from tippetop.sweeps.stride import LANES, Layout, Stepper
 from tippetop.sweeps.tip import TipMotion
 
 LOSSES = slice(8, 10)
@@ -152,8 +152,6 @@ class Slots:
 
     def _put(self, lanes: Indices, top: Top) -> None:
         """Let these be the tops on some lanes."""
-        # What was kept to be searched is of the tops as they were.
-        self.search()
         for row, number in enumerate(top.numbers):
             self.numbers[row, lanes] = number
 
@@ -176,18 +174,7 @@ class Slots:
         self.rows[self.layout.left, lanes] = 0.0
         self.alive[lanes] = False
         stayed = np.isnan(ends.lift_off[cells]) & (ends.flights[cells] == 0)
-        self.search()
-        force, down, up = self.tip.extremes.found[:, lanes]
+        force, down, up = self.tip.extremes.least[:, lanes]
         ends.least_force[cells] = np.where(stayed, np.fmin(ends.least_force[cells], force), 0.0)
         ends.down[cells] = np.fmin(ends.down[cells], down)
         ends.up[cells] = np.fmax(ends.up[cells], -up)
-
-    def search(self) -> None:
-        """Search the steps in which something may have been extreme."""
-
-        def jet(start: Array, lanes: Indices) -> Jet:
-            rows = np.zeros((self.layout.rows, len(lanes)))
-            rows[: self.layout.size] = start
-            return self.stepper.jet(rows, self.numbers[:, lanes])
-
-        self.tip.extremes.search(jet)

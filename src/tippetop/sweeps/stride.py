@@ -24,6 +24,9 @@ from tippetop.mechanics.vectors import Scalar
 GUARD_LOOKS, TIP_LOOKS = 32, 12
 """Intervals of a step at whose ends the guards, and n_z, are looked at."""
 
+NEWTON = 3
+"""Improvements of a least value, by Newton's method from the least look: they cube its small distance."""
+
 TINY = 1e-300
 """Stands for zero where a number that is zero is to count as below it."""
 
@@ -35,9 +38,9 @@ class Layout(NamedTuple):
     """Which row holds what, for a motion of some size with some guards.
 
     A step brings the first rows up to date: the numbers of the motion, the time that is left to go and the
-    steps taken. The others tell of the step: the time it took, whether something may happen in it, the least
-    values that were looked at of the first guard, of n_z and of -n_z, and how far below them it may go.
-    Where something may happen it was not taken, those values are inf, and no time is left: the launch waits.
+    steps taken. The others tell of the step: the time it took, whether something may happen in it, and the
+    least values of the first guard, of n_z and of -n_z in it. Where something may happen it was not taken,
+    those values are inf, and no time is left: the launch waits.
 
     What to pause for is in rows after the parameters: whether each guard counts, whether the top is yet to
     turn over, and the least and the largest n_z of a band (inf and -inf for none).
@@ -78,19 +81,14 @@ class Layout(NamedTuple):
         return self.kept + 1
 
     @property
-    def looks(self) -> slice:
-        """Rows of the least values of the first guard, n_z and -n_z that were looked at in a step."""
+    def least(self) -> slice:
+        """Rows of the least values of the first guard, n_z and -n_z in a step."""
         return slice(self.kept + 2, self.kept + 5)
-
-    @property
-    def slack(self) -> slice:
-        """Rows of how far below them the step may go."""
-        return slice(self.kept + 5, self.kept + 8)
 
     @property
     def rows(self) -> int:
         """How many rows there are."""
-        return self.kept + 8
+        return self.kept + 5
 
     @property
     def counts(self) -> slice:
@@ -168,34 +166,58 @@ def stride(
     y, guards = motion_series(motion, start, numbers, plain)
     state = [[series[k] for k in range(order + 1)] for series in y]
     taken = step_size(state, left, plain)
-    heights, bend = looked_at(state[2], taken, TIP_LOOKS, plain)
-    floor, ceiling = lowest(heights, plain), -lowest([-height for height in heights], plain)
+    heights, upside = looked_at(state[2], taken, TIP_LOOKS), [-term for term in state[2]]
+    floor = least_value(state[2], heights, taken, plain)
+    ceiling = -least_value(upside, [-height for height in heights], taken, plain)
 
     events = plain.below(floor, 0.0) * plain.below(0.0, ceiling) * turns
     events += (1.0 - plain.below(band_high, floor)) * (1.0 - plain.below(ceiling, band_low))
-    lows = []
-    for guard, count in zip(guards, counts, strict=True):
-        values, slack = looked_at([guard[k] for k in range(order)], taken, GUARD_LOOKS, plain)
-        lows.append((lowest(values, plain), slack))
-        events += plain.below(lows[-1][0] - slack, TINY) * count
+    falls = [[guard[k] for k in range(order)] for guard in guards]
+    looks = [looked_at(terms, taken, GUARD_LOOKS) for terms in falls]
+    for terms, values, count in zip(falls, looks, counts, strict=True):
+        depth = lowest(values, plain) - slack(terms, taken, GUARD_LOOKS, plain)
+        events += plain.below(depth, TINY) * count
     moves = plain.below(0.0, taken)
     pause = events * moves
     after = [*(horner(series, taken) for series in state), left - taken, steps + moves]
     stays = [plain.choose(pause, old, new) for old, new in zip(before, after, strict=True)]
     stays[layout.left] = plain.choose(pause, 0.0 * left, after[layout.left])
-    looks = [plain.choose(pause, math.inf + 0.0 * look, look) for look in (lows[0][0], floor, -ceiling)]
-    return [*stays, taken, pause, *looks, lows[0][1], bend, bend]
+    force = least_value(falls[0], looks[0], taken, plain)
+    least = [plain.choose(pause, math.inf + 0.0 * value, value) for value in (force, floor, -ceiling)]
+    return [*stays, taken, pause, *least]
 
 
-def looked_at(
-    terms: Sequence[Scalar], taken: Scalar, looks: int, plain: Arithmetic
-) -> tuple[list[Scalar], Scalar]:
-    """Values of a polynomial at the looks of a step, and how far beyond them it may go in between."""
+def looked_at(terms: Sequence[Scalar], taken: Scalar, looks: int) -> list[Scalar]:
+    """Values of a polynomial at the looks of a step."""
     part = taken * (1.0 / looks)
-    values = [horner(terms, part * float(look)) for look in range(looks + 1)]
-    # Between two looks a function lies at most (interval)^2 / 8 max |f''| beyond both of them.
+    return [horner(terms, part * float(look)) for look in range(looks + 1)]
+
+
+def slack(terms: Sequence[Scalar], taken: Scalar, looks: int, plain: Arithmetic) -> Scalar:
+    """How far a polynomial may go beyond its looks: between two by (interval)^2 / 8 max |f''| at most."""
+    part = taken * (1.0 / looks)
     bends = [float(k * (k - 1)) * plain.size(terms[k]) for k in range(2, len(terms))]
-    return values, part * part * (1.0 / 8.0) * horner(bends, taken)
+    return part * part * (1.0 / 8.0) * horner(bends, taken)
+
+
+def least_value(
+    terms: Sequence[Scalar], values: Sequence[Scalar], taken: Scalar, plain: Arithmetic
+) -> Scalar:
+    """The least value of a polynomial in a step, given its looks, from the least of which it is sought."""
+    part = taken * (1.0 / (len(values) - 1))
+    least, place = values[0], 0.0 * taken
+    for look, value in enumerate(values[1:], start=1):
+        lower = plain.below(value, least)
+        least, place = plain.choose(lower, value, least), plain.choose(lower, part * float(look), place)
+    slopes = [float(k) * terms[k] for k in range(1, len(terms))]
+    bends = [float(k) * slopes[k] for k in range(1, len(slopes))]
+    low, high = -plain.least(0.0 * part, part - place), plain.least(place + part, taken)
+    for _ in range(NEWTON):
+        bend = horner(bends, place)
+        better = place - horner(slopes, place) / bend
+        better = plain.choose(plain.below(0.0, bend), better, place)
+        place = plain.least(-plain.least(-better, -low), high)
+    return plain.least(horner(terms, place), least)
 
 
 def step_size(state: Sequence[Sequence[Scalar]], left: Scalar, plain: Arithmetic) -> Scalar:
