@@ -137,12 +137,12 @@ def test_a_cell_does_not_depend_on_its_neighbours():
         assert values[::-1] == pytest.approx(together[name], rel=1e-11, abs=1e-12, nan_ok=True), name
 
 
-def test_a_cell_does_not_depend_on_lanes_waves_and_windows(monkeypatch):
+def test_a_cell_does_not_depend_on_lanes_waits_and_windows(monkeypatch):
     sweep = lively(tolerance=1e-9)
     cells = np.arange(sweep.cells)
     usual = follow_cells(sweep, cells)
     monkeypatch.setattr(ensemble, "LANES_AT_ONCE", 4)
-    monkeypatch.setattr(lanes, "WAVE", 3)
+    monkeypatch.setattr(lanes, "LOST", 0.1)
     monkeypatch.setattr(lanes, "WINDOW", 12)
     monkeypatch.setattr(lanes, "CROWDED", 1.5)
     other = follow_cells(sweep, cells)

@@ -1,8 +1,8 @@
 """Many launches followed at once, one a lane, each at its own time and with its own steps.
 
 A lane waits before a step in which something may happen: a guard may fall through zero, the top may turn
-over, a band of tilts may be reached. Every few steps the lanes that wait are looked at together, exactly, and
-go on: after that step if nothing came of it, else where `tippetop.sweeps.crossings` leads. Lanes at their end
+over, a band of tilts may be reached. When waiting has cost enough, the lanes that wait are looked at together,
+exactly, and go on: after that step if nothing came of it, else where `tippetop.sweeps.crossings` leads. Lanes at their end
 are taken out.
 """
 
@@ -21,8 +21,8 @@ from tippetop.sweeps.slots import Slots
 from tippetop.sweeps.stride import LANES, Stepper
 from tippetop.theory.prediction import is_held
 
-WAVE = 8
-"""Steps between looks at the lanes that wait."""
+LOST = 1.0
+"""Steps of all lanes that are lost to waiting, in all, before the lanes that wait are looked at."""
 
 WINDOW = 64
 """Steps between notes of the states, from which a part of the run can be done again."""
@@ -82,17 +82,21 @@ class Lanes:
         # Launches that ended in the flight they began with are noted in the first window.
         noted, slots = self._launched, self.slots
         while noted.any():
-            begun = slots.rows[: slots.layout.kept].copy()
-            for _ in range(WINDOW // WAVE):
-                for _ in range(WAVE):
-                    self._stride()
-                self._look()
+            begun, lost, waiting = slots.rows[: slots.layout.kept].copy(), 0, 0
+            bearable = LOST * np.count_nonzero(noted)
+            for _ in range(WINDOW):
+                waiting += self._stride()
+                lost += waiting
+                if lost >= bearable:
+                    self._look()
+                    lost = waiting = 0
+            self._look()
             self._close(noted, begun)
             noted = slots.alive.copy()
         return slots.ends
 
-    def _stride(self) -> None:
-        """Take a step on every lane that does not wait."""
+    def _stride(self) -> int:
+        """Take a step on every lane that does not wait; return how many wait from here on."""
         slots, layout = self.slots, self.slots.layout
         before, after = slots.rows, slots.spare
         self.slots.stepper.step(before, after, slots.numbers)
@@ -102,6 +106,7 @@ class Lanes:
             slots.before[waiting] = before[layout.left, waiting]
         slots.tip.extremes.put(after[layout.least])
         slots.rows, slots.spare = after, before
+        return len(waiting)
 
     def _look(self) -> None:
         """Look at the lanes that wait, and let them go on."""
