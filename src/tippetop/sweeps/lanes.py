@@ -1,9 +1,9 @@
 """Many launches followed at once, one a lane, each at its own time and with its own steps.
 
 A lane waits before a step in which something may happen: a guard may fall through zero, the top may turn
-over, a band of tilts may be reached. When waiting has cost enough, the lanes that wait are looked at together,
-exactly, and go on: after that step if nothing came of it, else where `tippetop.sweeps.crossings` leads. Lanes at their end
-are taken out.
+over, a band of tilts may be reached. When waiting has cost enough, the lanes that wait are looked at
+together, exactly, and go on: after that step if nothing came of it, else where `tippetop.sweeps.crossings`
+leads. Lanes at their end are taken out.
 """
 
 import numpy as np
