@@ -60,7 +60,13 @@ def test_people_are_told_too(files):
     lines = said("top.toml")
     assert "Cannot be simulated" not in lines
     assert lines.startswith("Group ")
-    for text in ("mass", "stands on its stem above", "touches in two points or a line at tilt", "2.46746"):
+    for text in (
+        "mass",
+        "stands on its stem above",
+        "comes down to the table",
+        "touches in two points or a line at tilt",
+        "2.46746",
+    ):
         assert text in lines
     cut_off = said("bowl.csv", "--density", "700", "--unit", "mm")
     assert "Cannot be simulated: profile = 'a sphere cut off" in cut_off

@@ -106,7 +106,7 @@ def _expected(piece: "Workpiece", whole: bool) -> dict[str, Any]:
     try:
         shapes = touching(piece, whole=True)
     except InvalidInput:
-        return {"trouble": trouble, "group": None, "stem": None}
+        return {"trouble": trouble, "group": None, "touch": None, "stem": None}
     mass, _, I1, I3 = piece.mass_properties
     found = prospects(Body(mass=mass, shape=shapes[0], I1=I1, I3=I3), shapes)
     return {
@@ -117,9 +117,21 @@ def _expected(piece: "Workpiece", whole: bool) -> dict[str, Any]:
         "omega_c1": found and finite(found.critical_spins.upright),
         "omega_c2": found and finite(found.critical_spins.inverted),
         "omega_c_tilt": found and found.tilt,
+        "touch": found
+        and found.touch
+        and {
+            "surface": found.touch.surface,
+            "tilt": found.touch.tilt,
+            "least_launch_spin": finite(found.touch.spin),
+        },
         "stem": found
         and found.stem
-        and {"least_jellett": finite(found.stem.jellett), "least_spin": finite(found.stem.spin)},
+        and {
+            "least_jellett": finite(found.stem.jellett),
+            "least_spin": finite(found.stem.spin),
+            # Where something else touches first, nothing is known of it.
+            **({} if math.isnan(found.stem.launch) else {"least_launch_spin": finite(found.stem.launch)}),
+        },
     }
 
 
@@ -178,8 +190,15 @@ def _rows(told: dict[str, Any]) -> list[tuple[str, str, str]]:
             ("upright spin is left above ω_c1", _shown(told["omega_c1"]), "rad/s"),
             ("inverted spin holds above ω_c2", _shown(told["omega_c2"]), "rad/s"),
         ]
+    if told["touch"]:
+        spin = _shown(told["touch"]["least_launch_spin"])
+        rows.append(
+            (f"surface {told['touch']['surface']} comes down to the table, launched above", spin, "rad/s")
+        )
     if told["stem"]:
         rows.append(("stands on its stem above", _shown(told["stem"]["least_spin"]), "rad/s"))
+        if "least_launch_spin" in told["stem"]:
+            rows.append(("that is, launched above", _shown(told["stem"]["least_launch_spin"]), "rad/s"))
     between = [tilt for tilt in told["lies_on_lines_at_tilts"] if 0.0 < tilt < math.pi]
     rows += [("touches in two points or a line at tilt", f"{tilt:.7g}", "rad") for tilt in between]
     ends = {0.0: "below", math.pi: "above"}

@@ -1,4 +1,5 @@
 // First zeros and extremes of a polynomial on [0, 1], as in tippetop.integrators.polynomials.
+import { crossing } from "./mechanics.js";
 
 const LOOKS = 32;
 
@@ -69,31 +70,14 @@ export class Polynomial {
     let before = first;
     for (let look = 1; look <= LOOKS; look += 1) {
       const low = (look - 1) / LOOKS, high = look / LOOKS, after = value(high);
-      if (before > 0 && after <= 0) return this.zero(value, sign, low, high);
+      if (before > 0 && after <= 0) return crossing(value, low, high);
       if (before > 0 && sign * this.slope(low) < 0 && sign * this.slope(high) > 0) {
         const [place, least] = this.least(sign, low, high, 2);
-        if (least + shift <= 0) return this.zero(value, sign, low, place);
+        if (least + shift <= 0) return crossing(value, low, place);
       }
       before = after;
     }
     return NaN;
-  }
-
-  zero(value, sign, low, high) {
-    let x = 0.5 * (low + high);
-    for (let turn = 0; turn < 80; turn += 1) {
-      const here = value(x);
-      if (here > 0) low = x;
-      else high = x;
-      let next = x - here / (sign * this.slope(x));
-      const arrived = Math.abs(next - x) <= 1e-9 * x;
-      if (arrived) next = Math.min(Math.max(next, low), high);
-      else if (!(next > low && next < high)) next = 0.5 * (low + high);
-      const still = Math.abs(next - x) <= 4e-16 * next;
-      x = next;
-      if (arrived || still) break;
-    }
-    return x;
   }
 }
 

@@ -69,7 +69,6 @@ export const neg = (a) => (typeof a === "number" ? -a : typeof a === "boolean" ?
 export const abs = (a) => (typeof a === "number" ? Math.abs(a) : a.__abs__());
 export const float = (a) => (a === "inf" ? Infinity : Number(a));
 export const int = (a) => Math.trunc(Number(a));
-export const bool = (a) => truth(a);
 export const str = (a) => (a instanceof Error ? a.message : a instanceof Enum ? a.name : repr(a));
 export const repr = (a) => (typeof a === "number" && Object.is(a, -0) ? "-0" : String(a));
 export const sum = (values, start = 0) => {

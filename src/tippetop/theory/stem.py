@@ -1,13 +1,14 @@
 """What it takes to stand on a stem: the least Jellett's integral about its tip."""
 
-import math
-
 from tippetop.bodies import Body
 from tippetop.errors import InvalidInput
+from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.hull import each_surface
 from tippetop.mechanics.surface import contact_vector
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Vector, dot
+from tippetop.theory.steady import SteadyKind
+from tippetop.theory.thresholds import critical_jellett
 
 
 def least_jellett_to_stand(body: Body, surface: int = 1, gravity: float = 9.8) -> float:
@@ -56,15 +57,10 @@ def least_jellett_to_stand(body: Body, surface: int = 1, gravity: float = 9.8) -
     tip = body.shapes[surface].surface
     if not tip.spherical:
         raise InvalidInput("surface", surface, "that of a sphere; Jellett's integral holds for no other")
-    radius = tip.height(0.0)
-    zeta = -float(tip.slope(0.0))
-    if zeta <= 0.0:
+    if tip.slope(0.0) >= 0.0:
         return 0.0
-    lever = zeta + radius * (1.0 - body.I1 / body.I3)
-    if lever <= 0.0:
-        return math.inf
-    spin = math.sqrt(body.mass * gravity * body.I3 * zeta / (radius * lever))
-    return float(spin * (radius + zeta) ** 2)
+    alone = Top(body.mass, body.I1, body.I3, tip, ViscousLaw(1.0), gravity)
+    return critical_jellett(SteadyKind.INVERTED, alone)
 
 
 def jellett_about(surface: int, axis: Vector, momentum: Vector, top: Top) -> float:
