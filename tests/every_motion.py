@@ -4,9 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tippetop.contact.closing import closing_motion
 from tippetop.contact.double import motion_on_two
 from tippetop.contact.double_sticking import beginning_on_two, held_motion_on_two, turning_motion
-from tippetop.contact.passing import closing_motion
 from tippetop.contact.sliding import held_motion, sliding_motion
 from tippetop.contact.sticking import sticking_motion
 from tippetop.integrators.base import Motion

@@ -1,4 +1,4 @@
-"""What holds of the source as a whole: no circles among its imports, and no two classes of one name."""
+"""What holds of the source as a whole: no circles among its imports, names and sizes of what is in it."""
 
 import ast
 import importlib.util
@@ -72,6 +72,51 @@ def test_no_two_classes_share_a_name() -> None:
         if isinstance(node, ast.ClassDef)
     )
     assert {name for name, count in names.items() if count > 1} == set()
+
+
+FILE, CLASS, FUNCTION = 300, 200, 60
+"""Lines of code that one of them has at most; blank lines, comments and what is said of code do not count."""
+
+
+def code_lines(node: ast.AST, lines: list[str]) -> int:
+    """How many lines of code a module, class or function has."""
+    said = {
+        line
+        for inner in ast.walk(node)
+        if isinstance(inner, ast.Expr) and isinstance(inner.value, ast.Constant)
+        for line in range(inner.lineno, (inner.end_lineno or inner.lineno) + 1)
+    }
+    first, last = getattr(node, "lineno", 1), getattr(node, "end_lineno", len(lines))
+    return sum(
+        number not in said
+        and not lines[number - 1].lstrip().startswith("#")
+        and bool(lines[number - 1].strip())
+        for number in range(first, last + 1)
+    )
+
+
+def too_long(name: str, text: str) -> list[str]:
+    """What has more lines than it may have."""
+    tree, lines = ast.parse(text), text.splitlines()
+    parts: list[tuple[str, ast.AST, int]] = [(name, tree, FILE)]
+    for node in ast.walk(tree):
+        if isinstance(node, (ast.ClassDef, ast.FunctionDef)):
+            most = CLASS if isinstance(node, ast.ClassDef) else FUNCTION
+            parts.append((f"{name}.{node.name}", node, most))
+    return [part for part, node, most in parts if code_lines(node, lines) > most]
+
+
+def test_no_file_class_or_function_is_too_long() -> None:
+    found = (too_long(module, path.read_text(encoding="utf-8")) for module, path in MODULES.items())
+    assert [part for parts in found for part in parts] == []
+
+
+def test_what_is_too_long_is_found() -> None:
+    line = '    """Said."""\n\n    # a comment\n' + "    x = 1\n" * FUNCTION
+    assert too_long("a", f"def f():\n{line}") == ["a.f"]
+    assert too_long("a", f"class A:\n{line}") == []
+    assert too_long("a", "x = 1\n" * FILE) == []
+    assert too_long("a", "x = 1\n" * (FILE + 1)) == ["a"]
 
 
 def test_a_circle_is_found_wherever_it_hides() -> None:

@@ -2342,6 +2342,84 @@ function split(y) {
   return [[y[0], y[1], y[2]], [y[3], y[4], y[5]]];
 }
 
+// tippetop.contact.closing
+const [REOPENING, LANDED, TIME, OVERTAKEN] = ["reopening", "landed", "time", "overtaken"];
+const LONGEST = 100.0;
+const STIFF_TOLERANCE = 1e-12;
+const MOST_STEPS_of_closing = 2048;
+
+/** The end of slip, or of rolling, in its clock. */
+function followed(integrator, motion, parameters, start) {
+  const first = py.next(py.iter(integrator.integrate(motion, parameters, start, LONGEST)));
+  if (first.guard !== null || first.failure !== null || first.solution.end >= LONGEST) {
+    return [first];
+  }
+  const arcs = [];
+  for (const arc of make_integrator("radau", STIFF_TOLERANCE).integrate(motion, parameters, start, LONGEST)) {
+    arcs.push(arc);
+    if (arc.guard === null && py.sum([...arcs].map((one) => one.steps)) >= MOST_STEPS_of_closing) {
+      py.put(arcs, -1, py.replace(arc, { failure: "slip, or rolling, takes too many steps to end" }));
+      break;
+    }
+  }
+  return arcs;
+}
+
+/** Equations of motion in the clock -ln s where a velocity is about to end; time is the last number. */
+const closing_motion = py.cached((kind, ending, guarded) => {
+  const top_of = (numbers) => {
+    return kind.top(py.tuple(numbers.slice(0, kind.numbers)));
+  };
+  const rates = (y, numbers) => {
+    const rate = closing_rates(closing_of(y, ending), ending, top_of(numbers));
+    return [...rate.axis, ...rate.momentum, ...rate.velocity, ...rate.direction, rate.speed, rate.time];
+  };
+  const guard = (name, value) => {
+    return new Guard(name, (y, numbers) => value(closing_of(y, ending), top_of(numbers), numbers));
+  };
+  const on_branch_still = (state, top, _) => {
+    return slip_branch_guard(py.or(slip_beside(state, ending, top), () => state.direction), top);
+  };
+  let guards = [guard(REOPENING, (state, top, _) => reopening_guard(state, ending, top, HORIZON)), guard(LANDED, (state, top, numbers) => landing_guard(state, ending, top, py.item(numbers, -1))), guard(TIME, (state, _, numbers) => py.sub(py.item(numbers, -2), state.time))];
+  const law = kind.example.friction;
+  const [resisted, stuck] = [py.isinstance(law, RollingResistance), py.and(!py.truth(ending.slip), () => ending.held)];
+  if (py.truth(guarded)) {
+    guards.push(guard(LIFT_OFF, (state, top, _) => rates_in_time(state, ending, top).wrench.force[2]));
+  }
+  if (!py.truth(ending.held) && py.truth(resisted) && py.truth(is_set_valued(law))) {
+    guards.push(guard(OVERTAKEN, (state, top, _) => overtaking_guard(state, ending, top)));
+  }
+  if (py.truth(ending.held)) {
+    guards.push(guard(py.truth(ending.slip) ? ROLLING : SLIP, (state, top, _) => spared(state, ending, top)));
+  }
+  if ((py.truth(ending.slip) || py.truth(ending.moves)) && py.truth(py.hasattr(sliding_law(law), "branch_guard"))) {
+    guards.push(guard(BRANCH, on_branch_still));
+  }
+  if (py.truth(stuck) && py.truth(has_limit_branches(law))) {
+    guards.push(guard(LIMIT_BRANCH, (state, top, _) => limit_guard(top, rates_in_time(state, ending, top).wrench)));
+  }
+  guards = py.add(guards, surface_guards(kind));
+  const free = py.truth(ending.moves) ? 2 : 0;
+  const components = py.truth(ending.slip) ? slip_dimension(law) : 2;
+  return new Motion(rates, py.add(py.add(8, free), components), py.add(kind.numbers, 2), py.tuple(guards), false);
+});
+
+/** Positive while the table can hold what is held beside a velocity that ends. */
+function spared(state, ending, top) {
+  const wrench = rates_in_time(state, ending, top).wrench;
+  if (py.truth(ending.slip)) {
+    const point = ContactPoint.of(state.axis, state.momentum, top);
+    return rolling_reserve(point, wrench, state.direction);
+  }
+  return set_valued(top.friction).reserve(wrench.force[2], wrench.force.slice(0, 2), wrench.torque[2]);
+}
+
+/** The state of a velocity that is about to end, from its numbers. */
+function closing_of(y, ending) {
+  const [count, free] = [py.len(y), py.truth(ending.moves) ? 8 : 6];
+  return new Closing(...split(y), py.tuple(y.slice(6, free)), py.tuple(py.slice(y, free, count - 2, null)), py.item(y, count - 2), py.item(y, count - 1));
+}
+
 // tippetop.mechanics.series
 
 /** Coefficients that have plain operators, such as floats. */
@@ -2975,10 +3053,7 @@ function _stiffness(part, point) {
 }
 
 // tippetop.contact.passing
-const [REOPENING, LANDED, TIME, OVERTAKEN] = ["reopening", "landed", "time", "overtaken"];
 const LANDING = [3e-09, 1e-16];
-const LONGEST = 100.0;
-const STIFF_TOLERANCE = 1e-12;
 const SETTLED = 1e-14;
 const LOOKS_of_passing = 16;
 const [ORDER, ACCURACY] = [20, 1e-13];
@@ -2987,7 +3062,6 @@ const PART = 0.25;
 const SHORT = 1e-14;
 const DEGREE_of_passing = 14;
 const TINY_of_passing = 1e-100;
-const MOST_STEPS_of_passing = 2048;
 
 /** A moment between two modes, which is told as the one of them in which something moves. */
 class Passing extends Mode {
@@ -3171,7 +3245,7 @@ class Stopping extends Passing {
       if (landing_guard(here, ending, this.top, horizon) <= 0.0) {
         continue;
       }
-      const arcs = _followed(integrator, motion, [...this.top.numbers, end - time, horizon], start);
+      const arcs = followed(integrator, motion, [...this.top.numbers, end - time, horizon], start);
       steps = py.add(steps, py.sum([...arcs].map((arc) => arc.steps)));
       [arc, parts] = [py.item(arcs, -1), [...parts, ...[...arcs].map((arc) => arc.solution)]];
       start = [arc.solution.end, arc.end_state];
@@ -3253,78 +3327,6 @@ function shown(here) {
 /** No motion at all, and why. */
 function _nothing(mode, time, state, why) {
   return new Segment(mode, DenseSolution.nothing(time, 8), state, new Transition([], Outcome.FAILED, state, why));
-}
-
-/** The end of slip, or of rolling, in its clock. */
-function _followed(integrator, motion, parameters, start) {
-  const first = py.next(py.iter(integrator.integrate(motion, parameters, start, LONGEST)));
-  if (first.guard !== null || first.failure !== null || first.solution.end >= LONGEST) {
-    return [first];
-  }
-  const arcs = [];
-  for (const arc of make_integrator("radau", STIFF_TOLERANCE).integrate(motion, parameters, start, LONGEST)) {
-    arcs.push(arc);
-    if (arc.guard === null && py.sum([...arcs].map((one) => one.steps)) >= MOST_STEPS_of_passing) {
-      py.put(arcs, -1, py.replace(arc, { failure: "slip, or rolling, takes too many steps to end" }));
-      break;
-    }
-  }
-  return arcs;
-}
-
-/** Equations of motion in the clock -ln s where a velocity is about to end; time is the last number. */
-const closing_motion = py.cached((kind, ending, guarded) => {
-  const top_of = (numbers) => {
-    return kind.top(py.tuple(numbers.slice(0, kind.numbers)));
-  };
-  const rates = (y, numbers) => {
-    const rate = closing_rates(closing_of(y, ending), ending, top_of(numbers));
-    return [...rate.axis, ...rate.momentum, ...rate.velocity, ...rate.direction, rate.speed, rate.time];
-  };
-  const guard = (name, value) => {
-    return new Guard(name, (y, numbers) => value(closing_of(y, ending), top_of(numbers), numbers));
-  };
-  const on_branch_still = (state, top, _) => {
-    return slip_branch_guard(py.or(slip_beside(state, ending, top), () => state.direction), top);
-  };
-  let guards = [guard(REOPENING, (state, top, _) => reopening_guard(state, ending, top, HORIZON)), guard(LANDED, (state, top, numbers) => landing_guard(state, ending, top, py.item(numbers, -1))), guard(TIME, (state, _, numbers) => py.sub(py.item(numbers, -2), state.time))];
-  const law = kind.example.friction;
-  const [resisted, stuck] = [py.isinstance(law, RollingResistance), py.and(!py.truth(ending.slip), () => ending.held)];
-  if (py.truth(guarded)) {
-    guards.push(guard(LIFT_OFF, (state, top, _) => rates_in_time(state, ending, top).wrench.force[2]));
-  }
-  if (!py.truth(ending.held) && py.truth(resisted) && py.truth(is_set_valued(law))) {
-    guards.push(guard(OVERTAKEN, (state, top, _) => overtaking_guard(state, ending, top)));
-  }
-  if (py.truth(ending.held)) {
-    guards.push(guard(py.truth(ending.slip) ? ROLLING : SLIP, (state, top, _) => spared(state, ending, top)));
-  }
-  if ((py.truth(ending.slip) || py.truth(ending.moves)) && py.truth(py.hasattr(sliding_law(law), "branch_guard"))) {
-    guards.push(guard(BRANCH, on_branch_still));
-  }
-  if (py.truth(stuck) && py.truth(has_limit_branches(law))) {
-    guards.push(guard(LIMIT_BRANCH, (state, top, _) => limit_guard(top, rates_in_time(state, ending, top).wrench)));
-  }
-  guards = py.add(guards, surface_guards(kind));
-  const free = py.truth(ending.moves) ? 2 : 0;
-  const components = py.truth(ending.slip) ? slip_dimension(law) : 2;
-  return new Motion(rates, py.add(py.add(8, free), components), py.add(kind.numbers, 2), py.tuple(guards), false);
-});
-
-/** Positive while the table can hold what is held beside a velocity that ends. */
-function spared(state, ending, top) {
-  const wrench = rates_in_time(state, ending, top).wrench;
-  if (py.truth(ending.slip)) {
-    const point = ContactPoint.of(state.axis, state.momentum, top);
-    return rolling_reserve(point, wrench, state.direction);
-  }
-  return set_valued(top.friction).reserve(wrench.force[2], wrench.force.slice(0, 2), wrench.torque[2]);
-}
-
-/** The state of a velocity that is about to end, from its numbers. */
-function closing_of(y, ending) {
-  const [count, free] = [py.len(y), py.truth(ending.moves) ? 8 : 6];
-  return new Closing(...split(y), py.tuple(y.slice(6, free)), py.tuple(py.slice(y, free, count - 2, null)), py.item(y, count - 2), py.item(y, count - 1));
 }
 
 // tippetop.mechanics.impulse
@@ -7273,7 +7275,7 @@ export {
   MOST_IN_TURNS,
   MOST_LOOKS,
   MOST_STEPS,
-  MOST_STEPS_of_passing,
+  MOST_STEPS_of_closing,
   MOST_of_impact_on_two,
   MOST_of_integrated_impact,
   Mode,
@@ -7433,7 +7435,6 @@ export {
   _coupling,
   _face,
   _fold_measure,
-  _followed,
   _gap,
   _handed_over,
   _improved,
@@ -7519,6 +7520,7 @@ export {
   fly,
   fold,
   follow_surface,
+  followed,
   gap,
   gap_rate,
   growth,

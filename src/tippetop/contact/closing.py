@@ -1,0 +1,135 @@
+"""The motion in which slip, or rolling, ends, in its clock -ln s."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import lru_cache
+
+from tippetop.contact.sliding import BRANCH, LIFT_OFF, ROLLING
+from tippetop.contact.sticking import LIMIT_BRANCH, SLIP, split
+from tippetop.contact.surfaces import surface_guards
+from tippetop.integrators import make_integrator
+from tippetop.integrators.base import Arc, Array, Guard, Integrator, Motion
+from tippetop.mechanics.coulomb import RollingResistance
+from tippetop.mechanics.ending import (
+    Closing,
+    Vanishing,
+    closing_rates,
+    landing_guard,
+    overtaking_guard,
+    rates_in_time,
+    reopening_guard,
+    slip_beside,
+)
+from tippetop.mechanics.rolling import (
+    ContactPoint,
+    has_limit_branches,
+    is_set_valued,
+    limit_guard,
+    rolling_reserve,
+    set_valued,
+    sliding_law,
+    slip_dimension,
+)
+from tippetop.mechanics.stick_slip import (
+    HORIZON,
+    slip_branch_guard,
+)
+from tippetop.mechanics.top import Kind, Top
+from tippetop.mechanics.vectors import Row, Scalar
+
+REOPENING, LANDED, TIME, OVERTAKEN = "reopening", "landed", "time", "overtaken"
+
+LONGEST = 100.0
+"""More of the clock -ln s than lies between any two speeds."""
+
+STIFF_TOLERANCE = 1e-12
+"""Relative error per step of the implicit method that takes over where slip ends in many steps."""
+
+MOST_STEPS = 2048
+"""Steps of the implicit method after which such an end is given up, within seconds; most take hundreds."""
+
+
+def followed(
+    integrator: Integrator, motion: Motion, parameters: Sequence[float], start: tuple[float, Array]
+) -> list[Arc]:
+    """The end of slip, or of rolling, in its clock.
+
+    On a small patch the direction of slip follows the friction much faster than slip ends: where that takes
+    more steps than there are in an arc, an implicit method takes them instead.
+    """
+    first = next(iter(integrator.integrate(motion, parameters, start, LONGEST)))
+    if first.guard is not None or first.failure is not None or first.solution.end >= LONGEST:
+        return [first]
+    arcs: list[Arc] = []
+    for arc in make_integrator("radau", STIFF_TOLERANCE).integrate(motion, parameters, start, LONGEST):
+        arcs.append(arc)
+        if arc.guard is None and sum(one.steps for one in arcs) >= MOST_STEPS:
+            arcs[-1] = replace(arc, failure="slip, or rolling, takes too many steps to end")
+            break
+    return arcs
+
+
+@lru_cache
+def closing_motion(kind: Kind, ending: Vanishing, guarded: bool) -> Motion:
+    """Equations of motion in the clock -ln s where a velocity is about to end; time is the last number.
+
+    The last parameters are when the run ends, and how long before its end the velocity is left to `landed`.
+    """
+
+    def top_of(numbers: Sequence[Scalar]) -> Top:
+        return kind.top(tuple(numbers[: kind.numbers]))
+
+    def rates(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[Scalar, ...]:
+        rate = closing_rates(closing_of(y, ending), ending, top_of(numbers))
+        return (*rate.axis, *rate.momentum, *rate.velocity, *rate.direction, rate.speed, rate.time)
+
+    def guard(name: str, value: Callable[[Closing, Top, Sequence[Scalar]], Scalar]) -> Guard:
+        return Guard(name, lambda y, numbers: value(closing_of(y, ending), top_of(numbers), numbers))
+
+    def on_branch_still(state: Closing, top: Top, _: Sequence[Scalar]) -> Scalar:
+        return slip_branch_guard(slip_beside(state, ending, top) or state.direction, top)
+
+    guards = [
+        guard(REOPENING, lambda state, top, _: reopening_guard(state, ending, top, HORIZON)),
+        guard(LANDED, lambda state, top, numbers: landing_guard(state, ending, top, numbers[-1])),
+        guard(TIME, lambda state, _, numbers: numbers[-2] - state.time),
+    ]
+    law = kind.example.friction
+    resisted, stuck = isinstance(law, RollingResistance), not ending.slip and ending.held
+    if guarded:
+        guards.append(
+            guard(LIFT_OFF, lambda state, top, _: rates_in_time(state, ending, top).wrench.force[2])
+        )
+    if not ending.held and resisted and is_set_valued(law):
+        guards.append(guard(OVERTAKEN, lambda state, top, _: overtaking_guard(state, ending, top)))
+    if ending.held:
+        guards.append(
+            guard(ROLLING if ending.slip else SLIP, lambda state, top, _: spared(state, ending, top))
+        )
+    if (ending.slip or ending.moves) and hasattr(sliding_law(law), "branch_guard"):
+        guards.append(guard(BRANCH, on_branch_still))
+    if stuck and has_limit_branches(law):
+        guards.append(
+            guard(
+                LIMIT_BRANCH, lambda state, top, _: limit_guard(top, rates_in_time(state, ending, top).wrench)
+            )
+        )
+    guards += surface_guards(kind)
+    free = 2 if ending.moves else 0
+    components = slip_dimension(law) if ending.slip else 2
+    return Motion(rates, 8 + free + components, kind.numbers + 2, tuple(guards), lasting=False)
+
+
+def spared(state: Closing, ending: Vanishing, top: Top) -> Scalar:
+    """Positive while the table can hold what is held beside a velocity that ends."""
+    wrench = rates_in_time(state, ending, top).wrench
+    if ending.slip:
+        point = ContactPoint.of(state.axis, state.momentum, top)
+        return rolling_reserve(point, wrench, state.direction)
+    return set_valued(top.friction).reserve(wrench.force[2], wrench.force[:2], wrench.torque[2])
+
+
+def closing_of(y: Row, ending: Vanishing) -> Closing:
+    """The state of a velocity that is about to end, from its numbers."""
+    count, free = len(y), 8 if ending.moves else 6
+    return Closing(*split(y), tuple(y[6:free]), tuple(y[free : count - 2]), y[count - 2], y[count - 1])
