@@ -16,7 +16,10 @@ const COLOURS = ["#0b5fa5", "#b3401f", "#1b7f4c", "#6a3fc0", "#8a6100", "#a3195b
 const DARK_COLOURS = ["#66c5f0", "#ff9b78", "#62d09a", "#b79cff", "#e3b34d", "#ff7fb5", "#5fd3dd", "#b4bdc6"];
 // How small a change beside the value counts as none: a constant is then seen as one.
 const CONSTANT = 0.02;
-const LEAST = { jellett_error: 1e-6 };
+const LEAST = { jellett_error: 1e-6, slip: 1e-7 };
+
+// A number beside an axis, where there is little room.
+const brief = (value) => digits(value, 4).replace(/[.,]0+e/, "e");
 
 export class Plots {
   constructor(host, { seek, time, playing }) {
@@ -107,7 +110,7 @@ export class Plots {
       scales: { x: { time: false, range: () => this.span }, y: { range: () => this.range(name) } },
       axes: [
         { ...axis, label: t("plots.time"), size: 30, space: 55 },
-        { ...axis, label, size: 48, space: 30, ...turned, values: (_, ticks) => ticks.map((tick) => digits(tick, 4)) },
+        { ...axis, label, size: 48, space: 30, ...turned, values: (_, ticks) => ticks.map(brief) },
       ],
       series: [
         {},

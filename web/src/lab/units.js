@@ -26,7 +26,7 @@ export function digits(value, count = 4) {
   if (value === 0) return "0";
   const size = Math.abs(value);
   const text = size < 1e-3 || size >= 1e5 ? value.toExponential(Math.max(count - 2, 0)) : `${+value.toPrecision(count)}`;
-  return decimal(text.replace("-", "−"));
+  return decimal(text.replaceAll("-", "−"));
 }
 
 export function shown(value, kind, units, count = 4) {
