@@ -9,6 +9,7 @@ BUILT = src/tippetop/export/built/lab.html
 .PHONY: engine reproduce page test test-browser test-docs doctest chromium check lint types contract docs bench quick dist review clean
 
 reproduce: $(VENV)/.installed ## Redo the whole report into $(OUT)
+	-@! command -v node >/dev/null || $(MAKE) --no-print-directory page  # then a run plays in it
 	$(BIN)/tippetop reproduce --out $(OUT) --force
 
 page: $(BUILT) ## Build what runs in browsers; node comes from this machine, or else from a wheel

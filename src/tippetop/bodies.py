@@ -151,8 +151,10 @@ class Spheroid(Shape):
 
     Attributes
     ----------
-    across, along
-        Semi-axes across and along the axis of symmetry, m.
+    across
+        Semi-axis across the axis of symmetry, m.
+    along
+        Semi-axis along the axis of symmetry, m.
     center
         Height of its centre above the centre of mass, along the axis, m.
 
@@ -193,9 +195,10 @@ class Body(Part):
         Mass, kg.
     shape
         Outer surface, and where the centre of mass is in it; or several, whose convex hull the body is.
-    I1, I3
-        Principal moments of inertia about the centre of mass, kg m^2: transverse to and along the axis of
-        symmetry. No body has I3 > 2 I1.
+    I1
+        Moment of inertia about the centre of mass, transverse to the axis of symmetry, kg m^2.
+    I3
+        Moment of inertia about the axis of symmetry, kg m^2; at most 2 I1.
     profile
         What the body looks like, as pictures of it show it where it fits its surfaces: points (distance from
         the axis, height above the centre of mass) or, at the end of an arc, (distance, height, radius), m, as

@@ -61,8 +61,10 @@ class Launch(Part):
         Axial spin omega3, rad/s.
     azimuth
         Direction phi into which the axis leans, rad.
-    tilt_rate, precession
-        theta' and phi', rad/s.
+    tilt_rate
+        theta', rad/s.
+    precession
+        phi', rad/s.
     slip
         Slip velocity of the contact point, m/s: along the direction into which the axis leans, and 90
         degrees to the left of it.
@@ -145,8 +147,14 @@ class Problem(Part):
 
     Attributes
     ----------
-    body, friction, launch, contact
-        The parts; see their own pages.
+    body
+        What spins.
+    friction
+        The law of the table.
+    launch
+        How it is set going.
+    contact
+        What becomes of a contact that would have to pull, and of impacts.
     gravity
         Acceleration of gravity, m/s^2.
     rolling_resistance

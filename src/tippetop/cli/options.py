@@ -18,7 +18,10 @@ if TYPE_CHECKING:
 ProblemFile = Annotated[
     Path | None, typer.Argument(help="Problem to start from, .toml or .json; the report's top if left out.")
 ]
-Preset = Annotated[str | None, typer.Option(help="Body by name: report, report-table-1, leine-glocker.")]
+Preset = Annotated[
+    str | None,
+    typer.Option(help="Body by name, such as report, leine-glocker-stem, egg or coin; a wrong one lists all."),
+]
 Spin = Annotated[float | None, typer.Option(help="Axial spin at launch, rad/s.")]
 Tilt = Annotated[float | None, typer.Option(help="Tilt of the axis at launch, rad, from 0 to pi.")]
 Mu = Annotated[float | None, typer.Option(help="Friction coefficient: s/m if viscous, else dimensionless.")]
