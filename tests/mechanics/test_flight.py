@@ -230,11 +230,11 @@ class TestUprightBodies:
         top, state = self.upright(shape, spin, up=4.9 * fall**2)
         assert touchdown(state, top, math.inf) == pytest.approx(fall, rel=1e-9)
 
-    @pytest.mark.parametrize("hop", [1e-12, 1e-6, 1e-3, 1.0])
-    def test_a_rebound(self, shape, spin, hop):
-        top, state = self.upright(shape, spin, rising=4.9 * hop)
-        assert touchdown(state, top, math.inf, Start.REBOUND) == pytest.approx(hop, rel=1e-12)
-        assert touchdown(state, top, 0.999 * hop, Start.REBOUND) is None
+    @pytest.mark.parametrize("lasting", [1e-12, 1e-6, 1e-3, 1.0])
+    def test_a_rebound(self, shape, spin, lasting):
+        top, state = self.upright(shape, spin, rising=4.9 * lasting)
+        assert touchdown(state, top, math.inf, Start.REBOUND) == pytest.approx(lasting, rel=1e-12)
+        assert touchdown(state, top, 0.999 * lasting, Start.REBOUND) is None
 
     @pytest.mark.parametrize("start", list(Start))
     def test_a_body_that_rests_touches_at_once(self, shape, spin, start):
@@ -311,7 +311,7 @@ def test_a_rebound_that_just_clears_the_table_is_told_from_one_that_does_not(sha
 
 @st.composite
 def lift_offs(draw):
-    """A body at lift-off, from the gravity that this takes; most hops are short, some very short."""
+    """A body at lift-off, from the gravity that this takes; most flights are short, some very short."""
     top = draw(tops(st.one_of(spheres(), spheroids())))
     unit = 1.0 / time_unit(top)
     tilt_rate = draw(st.sampled_from([-1.0, 1.0])) * 10.0 ** draw(numbers(-6.0, 0.7)) * unit
@@ -398,7 +398,7 @@ def test_the_horizon_hides_what_lies_beyond_it_and_nothing_else(case, part):
 
 @given(slides(), numbers(-6.0, 0.5))
 def test_no_look_at_a_hop_is_higher_than_its_highest_gap(slide, decades):
-    """Hops of tops that are let go on the table, where gap and rate are zero at first, however short."""
+    """Flights of tops that are let go on the table, where gap and rate are zero at first, however short."""
     top, sliding = slide
     state = on_table(sliding, top)
     duration = 10.0**decades * math.sqrt(top.surface.size / top.gravity)

@@ -1,4 +1,4 @@
-"""The motion in which slip, or rolling, ends, in its clock -ln s."""
+"""The motion in which slip, or rolling, ends, in its clock."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -40,7 +40,7 @@ from tippetop.mechanics.vectors import Row, Scalar
 REOPENING, LANDED, TIME, OVERTAKEN = "reopening", "landed", "time", "overtaken"
 
 LONGEST = 100.0
-"""More of the clock -ln s than lies between any two speeds."""
+"""More of the clock than any velocity takes to end, but one that turns for ever."""
 
 STIFF_TOLERANCE = 1e-12
 """Relative error per step of the implicit method that takes over where slip ends in many steps."""
@@ -71,7 +71,7 @@ def followed(
 
 @lru_cache
 def closing_motion(kind: Kind, ending: Vanishing, guarded: bool) -> Motion:
-    """Equations of motion in the clock -ln s where a velocity is about to end; time is the last number.
+    """Equations of motion in the clock of `ending` where a velocity is about to end; time is the last number.
 
     The last parameters are when the run ends, and how long before its end the velocity is left to `landed`.
     """

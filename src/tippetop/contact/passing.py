@@ -252,7 +252,7 @@ class Resting(Mode):
 
 @dataclass(frozen=True)
 class Stopping(Passing):
-    """The last moments of slip, or of rolling, in the clock -ln s (see `tippetop.mechanics.ending`).
+    """The last moments of slip, or of rolling, in a clock of their own (see `tippetop.mechanics.ending`).
 
     Attributes
     ----------
@@ -294,7 +294,7 @@ class Stopping(Passing):
 
     def _next(self, arc: Arc | None, time: float, state: State) -> Transition:
         ending, stuck = self.ending, not self.ending.slip and self.ending.held
-        if arc is None:
+        if arc is None or arc.guard == LANDED:
             return self.rules.settled(time, state, new=(ending.slip, not ending.slip), held=ending.held)
         if arc.failure is not None or arc.guard is None:
             return Transition((), Outcome.FAILED, state, arc.failure or "the slip neither ends nor goes on")
@@ -322,7 +322,7 @@ class Stopping(Passing):
                 return self.rules.giving_way(
                     state, (self.rules.event(EventKind.ROLL, time),), Vanishing(slip=False)
                 )
-        return self.rules.settled(time, state, new=(ending.slip, not ending.slip), held=ending.held)
+        raise AssertionError(f"nothing is said of what follows {arc.guard}")
 
     def _onwards(self, arc: Arc, top: Top) -> "Stopping":
         """The mode that takes the clock up where an arc leaves it, on another branch of the law."""

@@ -7,8 +7,8 @@ alone, s = |xi|, and on numbers that do not end with it: with y = (n, L), and u 
     y' = Y(y, e),        xi' = A(y, e) = R e + V,        s' = R,        s e' = V,        V.e = 0.
 
 With xi itself as a variable beside y nothing cancels as it goes to zero. Where R < 0, s reaches zero in
-finite time while e turns ever faster. In the clock -ln s it does not: de = -V/R, dy = -s Y/R, dt = -s/R, ds =
--s.
+finite time while e turns ever faster. In a clock whose unit is the time s / |A|, nearly -ln s, it does not: de =
+V/|A|, dy = s Y/|A|, dt = s/|A|, ds = s R/|A|. Nor does it where s has a least value, R = 0.
 """
 
 from typing import NamedTuple
@@ -30,6 +30,9 @@ from tippetop.mechanics.rolling import (
 from tippetop.mechanics.stick_slip import inner, plus, scaled, size, slip_of, slip_part
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Scalar, Vector, add, scale
+
+DIGITS, SLOW = 1e-11, 1e-9
+"""Error of a velocity that is not followed by itself, in natural units, and one that is slow beside it."""
 
 
 class Vanishing(NamedTuple):
@@ -93,7 +96,7 @@ class Vanishing(NamedTuple):
 
 
 class Closing(NamedTuple):
-    """A body one of whose velocities is about to end: the state in the clock -ln s.
+    """A body one of whose velocities is about to end: the state in the clock above.
 
     Attributes
     ----------
@@ -146,15 +149,15 @@ def slip_beside(state: Closing, ending: Vanishing, top: Top) -> Slip | None:
 
 
 def closing_rates(state: Closing, ending: Vanishing, top: Top) -> Closing:
-    """Rates in the clock -ln s; xi must be slowing down."""
+    """Rates in the clock of the way that xi goes, in units of s."""
     rates = rates_in_time(state, ending, top)
-    pace = -1.0 / inner(rates.xi, state.direction)
-    step = pace * state.speed
-    # 1 where e is a unit vector, and such that it stays one: 1 itself would let it grow like exp(2 clock).
-    unit = 3.0 - 2.0 * inner(state.direction, state.direction)
+    pace = inner(rates.xi, rates.xi) ** -0.5
+    along, step = pace * inner(rates.xi, state.direction), pace * state.speed
+    # The last part is none where e is a unit vector, and keeps it one.
+    unit = 2.0 * (1.0 - inner(state.direction, state.direction)) - along
     turn = tuple(pace * a + unit * e for a, e in zip(rates.xi, state.direction, strict=True))
-    moved = scaled(step, rates.velocity)
-    return Closing(scale(step, rates.axis), scale(step, rates.momentum), moved, turn, -state.speed, step)
+    moved, speeding = scaled(step, rates.velocity), along * state.speed
+    return Closing(scale(step, rates.axis), scale(step, rates.momentum), moved, turn, speeding, step)
 
 
 def slowing(state: Closing, ending: Vanishing, top: Top) -> Scalar:
@@ -163,8 +166,13 @@ def slowing(state: Closing, ending: Vanishing, top: Top) -> Scalar:
 
 
 def reopening_guard(state: Closing, ending: Vanishing, top: Top, horizon: Scalar) -> Scalar:
-    """-(s + 2 horizon R): falls through zero where the end is twice as far as the horizon (s) again."""
-    return -2.0 * horizon * slowing(state, ending, top) - state.speed
+    """Falls through zero where the end is twice as far as the horizon (s) again: -(s + 2 horizon R).
+
+    A slow velocity must grow, by more than what rounding of its direction makes of R.
+    """
+    rate = rates_in_time(state, ending, top).xi
+    doubt = inner(rate, rate) ** 0.5 * DIGITS / (state.speed + SLOW)
+    return -2.0 * horizon * (inner(rate, state.direction) - doubt) - state.speed
 
 
 def landing_guard(state: Closing, ending: Vanishing, top: Top, horizon: Scalar) -> Scalar:

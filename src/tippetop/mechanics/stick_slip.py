@@ -35,7 +35,7 @@ from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Horizontal, Scalar, Vector, add, cross, dot, scale
 
 HORIZON = 0.05
-"""How long before its end slip is followed in the clock -ln s, in natural units of time."""
+"""How long before its end slip is followed in a clock of its own, in natural units of time."""
 
 ROUNDING = 1e-14
 """Slip, relative to the momenta and velocities it is made of in natural units, that is rounding."""

@@ -77,7 +77,7 @@ def touchdown(state: State, top: Top, horizon: float, start: Start = Start.AIRBO
 
     *Start.* On a first interval G is its Taylor polynomial of degree 16, made by arithmetic of truncated
     power series on h and divided by t^k, where k coefficients vanish: what remains is free of cancellation,
-    and has a simple root even for hops of picoseconds. After it, G is evaluated directly.
+    and has a simple root even for flights of picoseconds. After it, G is evaluated directly.
 
     *Bounds.* On a disc of complex time of radius rho, c stays in a disc that is known, and arithmetic of
     discs on h gives a disc of some radius r for h(c). By Cauchy's estimate, |G'''| <= 6 r / (rho^3 (1 - q)^4)
@@ -142,7 +142,7 @@ def highest_gap(state: State, top: Top, duration: float) -> float:
     if gap(times[best])[1] > 0.0:
         low, high = times[best], times[min(best + 1, count)]
     else:
-        # At the start of a hop the rate may vanish too.
+        # At the start of a flight the rate may vanish too.
         low, high = max(times[max(best - 1, 0)], 1e-3 * times[1]), times[best]
     if not gap(low)[1] > 0.0 > gap(high)[1]:
         return gaps[best]
