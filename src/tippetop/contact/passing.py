@@ -52,8 +52,9 @@ direction has come to rest by then, and in any case."""
 SETTLED = 1e-14
 """Error of the instant at which slip ends, in natural units, that counts as none."""
 
-LOOKS = 16
-"""Looks along a beginning at whether another surface touches: then a mode with a guard takes over sooner."""
+LOOKS, PRESSED = 16, 5
+"""Looks along a beginning at whether another surface touches, and which of them look at the normal force too:
+else a mode with a guard takes over sooner."""
 
 ORDER, ACCURACY = 20, 1e-13
 """Degree of the series with which slip begins, and the size of its last terms relative to the first."""
@@ -181,9 +182,7 @@ class Loosening(Passing):
         self, rows: Sequence[list[Scalar]], direction: Slip, time: float, duration: float, end: float
     ) -> Segment:
         """The segment in which the numbers are polynomials in the time since its start."""
-        while isinstance(self.top.surface, Hull) and duration > SETTLED:
-            if self._stays_open(rows, duration):
-                break
+        while duration > SETTLED and not self._goes_on(rows, duration):
             duration *= 0.5
         # What is zero has no direction, and friction none to be against.
         first = len(rows) - len(direction)
@@ -194,9 +193,12 @@ class Loosening(Passing):
         then = Outcome.COMPLETED if reach >= end else self.rules.going_on(last, slips=not self.stuck)
         return Segment(self, solution, last, Transition((), then, last), steps=1)
 
-    def _stays_open(self, rows: Sequence[list[Scalar]], duration: float) -> bool:
-        looks = [duration * look / LOOKS for look in range(1, LOOKS + 1)]
-        return all(stays_open(self.top, [horner(row, look) for row in rows]) for look in looks)
+    def _goes_on(self, rows: Sequence[list[Scalar]], duration: float) -> bool:
+        """Whether no other surface touches meanwhile, and the table does not pull that may not."""
+        looks = [[horner(row, duration * look / LOOKS) for row in rows] for look in range(1, LOOKS + 1)]
+        if isinstance(self.top.surface, Hull) and not all(stays_open(self.top, y) for y in looks):
+            return False
+        return self.rules.pulls or all(self.reaction(y).force[2] > 0.0 for y in looks[PRESSED::PRESSED])
 
     @property
     def stuck(self) -> bool:

@@ -1235,6 +1235,7 @@ function tangents(e) {
 }
 
 // tippetop.mechanics.ending
+const [DIGITS, SLOW] = [1e-11, 1e-09];
 
 /** A velocity that ends or begins, and what the other does meanwhile. */
 class Vanishing extends py.NamedTuple {
@@ -1291,7 +1292,7 @@ class Vanishing extends py.NamedTuple {
 }
 py.fields(Vanishing, ["slip", "held"]);
 
-/** A body one of whose velocities is about to end: the state in the clock -ln s. */
+/** A body one of whose velocities is about to end: the state in the clock above. */
 class Closing extends py.NamedTuple {
   constructor(axis, momentum, velocity, direction, speed, time) {
     super();
@@ -1337,15 +1338,15 @@ function slip_beside(state, ending, top) {
   return slip_of(state.axis, state.momentum, [state.velocity[0], state.velocity[1]], top);
 }
 
-/** Rates in the clock -ln s; xi must be slowing down. */
+/** Rates in the clock of the way that xi goes, in units of s. */
 function closing_rates(state, ending, top) {
   const rates = rates_in_time(state, ending, top);
-  const pace = py.div(-1.0, inner(rates.xi, state.direction));
-  const step = py.mul(pace, state.speed);
-  const unit = py.sub(3.0, py.mul(2.0, inner(state.direction, state.direction)));
+  const pace = py.pow(inner(rates.xi, rates.xi), -0.5);
+  const [along, step] = [py.mul(pace, inner(rates.xi, state.direction)), py.mul(pace, state.speed)];
+  const unit = py.sub(py.mul(2.0, py.sub(1.0, inner(state.direction, state.direction))), along);
   const turn = py.tuple(py.zip(rates.xi, state.direction).map(([a, e]) => py.add(py.mul(pace, a), py.mul(unit, e))));
-  const moved = scaled(step, rates.velocity);
-  return new Closing(scale(step, rates.axis), scale(step, rates.momentum), moved, turn, py.neg(state.speed), step);
+  const [moved, speeding] = [scaled(step, rates.velocity), py.mul(along, state.speed)];
+  return new Closing(scale(step, rates.axis), scale(step, rates.momentum), moved, turn, speeding, step);
 }
 
 /** R, the rate of s. */
@@ -1353,9 +1354,11 @@ function slowing(state, ending, top) {
   return inner(rates_in_time(state, ending, top).xi, state.direction);
 }
 
-/** -(s + 2 horizon R): falls through zero where the end is twice as far as the horizon (s) again. */
+/** Falls through zero where the end is twice as far as the horizon (s) again: -(s + 2 horizon R). */
 function reopening_guard(state, ending, top, horizon) {
-  return py.sub(py.mul(py.mul(-2.0, horizon), slowing(state, ending, top)), state.speed);
+  const rate = rates_in_time(state, ending, top).xi;
+  const doubt = py.div(py.mul(py.pow(inner(rate, rate), 0.5), DIGITS), py.add(state.speed, SLOW));
+  return py.sub(py.mul(py.mul(-2.0, horizon), py.sub(inner(rate, state.direction), doubt)), state.speed);
 }
 
 /** Falls through zero where xi, at its present rate, ends within the horizon (s): s + horizon R. */
@@ -2365,7 +2368,7 @@ function followed(integrator, motion, parameters, start) {
   return arcs;
 }
 
-/** Equations of motion in the clock -ln s where a velocity is about to end; time is the last number. */
+/** Equations of motion in the clock of `ending` where a velocity is about to end; time is the last number. */
 const closing_motion = py.cached((kind, ending, guarded) => {
   const top_of = (numbers) => {
     return kind.top(py.tuple(numbers.slice(0, kind.numbers)));
@@ -3055,7 +3058,7 @@ function _stiffness(part, point) {
 // tippetop.contact.passing
 const LANDING = [3e-09, 1e-16];
 const SETTLED = 1e-14;
-const LOOKS_of_passing = 16;
+const [LOOKS_of_passing, PRESSED] = [16, 5];
 const [ORDER, ACCURACY] = [20, 1e-13];
 const INSTANT = 1e-09;
 const PART = 0.25;
@@ -3159,10 +3162,7 @@ class Loosening extends Passing {
   }
   /** The segment in which the numbers are polynomials in the time since its start. */
   piece(rows, direction, time, duration, end) {
-    while (py.isinstance(this.top.surface, Hull) && duration > SETTLED) {
-      if (py.truth(this._stays_open(rows, duration))) {
-        break;
-      }
+    while (duration > SETTLED && !py.truth(this._goes_on(rows, duration))) {
       duration = duration * 0.5;
     }
     const first = py.len(rows) - py.len(direction);
@@ -3173,9 +3173,13 @@ class Loosening extends Passing {
     const then = reach >= end ? Outcome.COMPLETED : this.rules.going_on(last, !py.truth(this.stuck));
     return new Segment(this, solution, last, new Transition([], then, last), 1);
   }
-  _stays_open(rows, duration) {
-    const looks = py.range(1, py.add(LOOKS_of_passing, 1)).map((look) => py.div(py.mul(duration, look), LOOKS_of_passing));
-    return py.all([...looks].map((look) => stays_open(this.top, [...rows].map((row) => horner(row, look)))));
+  /** Whether no other surface touches meanwhile, and the table does not pull that may not. */
+  _goes_on(rows, duration) {
+    const looks = py.range(1, py.add(LOOKS_of_passing, 1)).map((look) => [...rows].map((row) => horner(row, py.div(py.mul(duration, look), LOOKS_of_passing))));
+    if (py.isinstance(this.top.surface, Hull) && !py.truth(py.all([...looks].map((y) => stays_open(this.top, y))))) {
+      return false;
+    }
+    return py.or(this.rules.pulls, () => py.all([...py.slice(looks, PRESSED, null, PRESSED)].map((y) => this.reaction(y).force[2] > 0.0)));
   }
   /** Whether the contact sticks meanwhile. */
   get stuck() {
@@ -3229,7 +3233,7 @@ class Resting extends Mode {
 }
 py.fields(Resting, ["top", "rules", "told"]);
 
-/** The last moments of slip, or of rolling, in the clock -ln s (see `tippetop.mechanics.ending`). */
+/** The last moments of slip, or of rolling, in a clock of their own (see `tippetop.mechanics.ending`). */
 class Stopping extends Passing {
   constructor(top, rules, ending, begin = []) {
     super(top, rules, ending);
@@ -3271,7 +3275,7 @@ class Stopping extends Passing {
   }
   _next(arc, time, state) {
     const [ending, stuck] = [this.ending, py.and(!py.truth(this.ending.slip), () => this.ending.held)];
-    if (arc === null) {
+    if (arc === null || py.eq(arc.guard, LANDED)) {
       return this.rules.settled(time, state, [ending.slip, !py.truth(ending.slip)], ending.held);
     }
     if (arc.failure !== null || arc.guard === null) {
@@ -3298,7 +3302,7 @@ class Stopping extends Passing {
     } else if (py.eq(arc.guard, "rolling")) {
       return this.rules.giving_way(state, [this.rules.event(EventKind.ROLL, time)], new Vanishing(false));
     }
-    return this.rules.settled(time, state, [ending.slip, !py.truth(ending.slip)], ending.held);
+    throw new py.AssertionError(`nothing is said of what follows ${py.str(arc.guard)}`);
   }
   /** The mode that takes the clock up where an arc leaves it, on another branch of the law. */
   _onwards(arc, top) {
@@ -7197,6 +7201,7 @@ export {
   DEGREE_of_passing,
   DEGREE_of_series_roots,
   DIFFERENCE,
+  DIGITS,
   DIRECTED,
   DOUBT,
   DRILLING,
@@ -7310,6 +7315,7 @@ export {
   PI,
   PLAIN,
   POWER,
+  PRESSED,
   PRODUCT,
   PROTRUDING,
   PairMotion,
@@ -7357,6 +7363,7 @@ export {
   SLIP,
   SLIPPING,
   SLIP_of_double_sticking,
+  SLOW,
   SLOWEST_REBOUND,
   SLOWEST_ROCKING,
   SLOWEST_SLIP,

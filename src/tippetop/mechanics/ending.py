@@ -7,8 +7,8 @@ alone, s = |xi|, and on numbers that do not end with it: with y = (n, L), and u 
     y' = Y(y, e),        xi' = A(y, e) = R e + V,        s' = R,        s e' = V,        V.e = 0.
 
 With xi itself as a variable beside y nothing cancels as it goes to zero. Where R < 0, s reaches zero in
-finite time while e turns ever faster. In a clock whose unit is the time s / |A|, nearly -ln s, it does not: de =
-V/|A|, dy = s Y/|A|, dt = s/|A|, ds = s R/|A|. Nor does it where s has a least value, R = 0.
+finite time while e turns ever faster. In a clock whose unit is the time s / |A|, nearly -ln s, it does not:
+de = V/|A|, dy = s Y/|A|, dt = s/|A|, ds = s R/|A|. Nor does it where s has a least value, R = 0.
 """
 
 from typing import NamedTuple
