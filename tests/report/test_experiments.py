@@ -11,6 +11,7 @@ from tippetop.report.claim import Verdict
 from tippetop.report.claims.registry import CLAIMS
 from tippetop.report.experiments.methods import effort
 from tippetop.report.experiments.registry import EXPERIMENTS
+from tippetop.report.quoted import END_OF_FIG_5
 from tippetop.run import simulate
 
 
@@ -26,7 +27,7 @@ def computed() -> dict[str, xr.Dataset]:
         "run-50",
         "run-50-table-1",
         "run-50-windows",
-        "run-10",
+        "slow-spins",
         "run-mu-100",
     )
     return {name: EXPERIMENTS[name].run(quick=True) for name in names}
@@ -125,7 +126,7 @@ def test_b1_as_printed_is_of_first_order_and_mended_of_fourth(computed: dict[str
 def test_ode45_is_a_pair_of_orders_4_and_5(computed: dict[str, xr.Dataset]) -> None:
     order = computed["order"]
     assert float(order["order_companion_in_all"]) == pytest.approx(4.0, abs=0.3)
-    assert verdict(computed, "section-3-method") is Verdict.EXPLAINED
+    assert verdict(computed, "section-3-method") is Verdict.REPRODUCED
     alone = order.assign(order_companion_in_all=order["order_ode45_in_all"])
     assert verdict(computed | {"order": alone}, "section-3-method") is Verdict.CORRECTED
 
@@ -154,21 +155,24 @@ def test_evaluations_count_those_for_jacobians() -> None:
     assert made["bdf"].tilt == pytest.approx(true, abs=1e-3)
 
 
-def test_fig_5_is_compared_at_the_instant_it_was_read_at(computed: dict[str, xr.Dataset]) -> None:
-    verdicts = {"theta": Verdict.REPRODUCED, "phi-dot": Verdict.EXPLAINED, "omega3": Verdict.EXPLAINED}
-    for name, expected in verdicts.items():
-        assert verdict(computed, f"fig05-end-{name}") is expected
-    windows = computed["run-50-windows"]
-    same = windows.assign({name: windows[f"{name}_listing"] for name in ("theta", "phi_dot", "omega3")})
-    for name in verdicts:
-        assert verdict(computed | {"run-50-windows": same}, f"fig05-end-{name}") is Verdict.REPRODUCED
+def test_the_end_of_fig_5_is_one_of_a_run_cut_short(computed: dict[str, xr.Dataset]) -> None:
+    judged = CLAIMS["fig05-end"].judge(computed, quick=True)
+    assert judged.verdict is Verdict.EXPLAINED
+    assert "cut short at 12 s" in judged.finding.right
+    run, windows = computed["run-50"], computed["run-50-windows"]
+    ended = run.assign({f"end_{key}": value for key, value in END_OF_FIG_5.items()})
+    assert verdict(computed | {"run-50": ended}, "fig05-end") is Verdict.REPRODUCED
+    never = windows.isel(window=slice(1, None))
+    assert verdict(computed | {"run-50-windows": never}, "fig05-end") is Verdict.CORRECTED
 
 
 def test_what_the_report_calls_nutation_is_the_growth_of_the_tilt(computed: dict[str, xr.Dataset]) -> None:
     assert verdict(computed, "sec3-no-nutation") is Verdict.REPRODUCED
-    run = computed["run-10"]
-    grown = run.assign(theta=run["theta"] + 0.05 * (run["time"] > 1.0))
-    assert verdict(computed | {"run-10": grown}, "sec3-no-nutation") is Verdict.EXPLAINED
+    slow = computed["slow-spins"]
+    assert (slow["swings"] > 1).all(), "in the usual sense it nutates"
+    for name in ("highest", "final"):
+        grown = slow.assign({name: slow[name] + 0.05 * (slow["spin"] > 20.0)})
+        assert verdict(computed | {"slow-spins": grown}, "sec3-no-nutation") is Verdict.EXPLAINED
 
 
 def test_the_axis_goes_round_the_pole_before_it_passes_beside_it(computed: dict[str, xr.Dataset]) -> None:
@@ -181,14 +185,14 @@ def test_the_axis_goes_round_the_pole_before_it_passes_beside_it(computed: dict[
 
 
 def stiffness(ratios: list[float], miss: float) -> xr.Dataset:
-    """Two launches at the report's friction and one on much more."""
+    """Two launches at the report's friction and two on that of its Fig. 8."""
     return xr.Dataset(
         {
             "stiffness": ("launch", ratios),
-            "bdf_miss": ("launch", [0.0, 0.0, miss]),
-            "launch_spin": ("launch", [10.0, 155.0, 10.0]),
-            "launch_tilt": ("launch", [0.1, 1e-6, 0.1]),
-            "launch_mu": ("launch", [0.3, 0.3, 100.0]),
+            "bdf_miss": ("launch", [1.0, 1.0, 0.0, miss]),
+            "launch_spin": ("launch", [10.0, 155.0, 10.0, 155.0]),
+            "launch_tilt": ("launch", [0.1, 1e-6, 0.1, 0.1]),
+            "launch_mu": ("launch", [0.3, 0.3, 100.0, 100.0]),
         },
         attrs={"span_s": 3.0},
     )
@@ -197,10 +201,11 @@ def stiffness(ratios: list[float], miss: float) -> xr.Dataset:
 @pytest.mark.parametrize(
     ("ratios", "miss", "verdicts"),
     [
-        ([0.8, 1.1, 7.0], 0.004, "RCR"),
-        ([0.8, 3.0, 7.0], 0.004, "RRR"),
-        ([0.8, 1.1, 1.5], 0.004, "CCR"),
-        ([0.8, 1.1, 7.0], 0.04, "RCC"),
+        ([0.8, 1.1, 7.0, 1.6], 0.004, "RRR"),
+        ([0.8, 3.0, 1.0, 1.0], 0.004, "RRR"),
+        ([0.8, 1.1, 7.0, 7.0], 0.004, "RCR"),
+        ([0.8, 1.1, 1.5, 1.5], 0.004, "CCR"),
+        ([0.8, 1.1, 7.0, 1.6], 0.04, "RRC"),
     ],
 )
 def test_stiffness_its_cause_and_its_cure_are_judged_apart(
@@ -238,7 +243,8 @@ def times_over_mu(power: float, other: float) -> dict[str, xr.Dataset]:
 @pytest.mark.parametrize(
     ("main", "other", "exponent", "inverse"),
     [
-        (-0.7, -0.986, Verdict.EXPLAINED, Verdict.REPRODUCED),
+        (-0.7, -0.9852, Verdict.EXPLAINED, Verdict.REPRODUCED),
+        (-0.7, -0.987, Verdict.CORRECTED, Verdict.REPRODUCED),
         (-0.985, -0.5, Verdict.REPRODUCED, Verdict.CORRECTED),
         (-0.7, -0.8, Verdict.CORRECTED, Verdict.CORRECTED),
     ],

@@ -123,6 +123,7 @@ def test_the_abnormal_point_is_not_one_of_the_top(computed: dict[str, xr.Dataset
     verdicts = {
         "fig09-two-motions": Verdict.REPRODUCED,
         "fig10-fall": Verdict.REPRODUCED,
+        "fig10-by-falling": Verdict.CORRECTED,
         "fig10-gain": Verdict.EXPLAINED,
         "fig10-impossible": Verdict.REPRODUCED,
         "fig12-stop-time": Verdict.CORRECTED,
@@ -165,6 +166,15 @@ def test_a_rise_of_the_energy_would_be_seen(computed: dict[str, xr.Dataset]) -> 
     run = computed["run-175"]
     rising = run.assign(energy=run["energy"] + 0.1 * run["time"])
     assert judge(computed | {"run-175": rising}, "fig10-impossible").verdict is Verdict.CORRECTED
+
+
+def test_a_top_that_falls_keeps_its_energy(computed: dict[str, xr.Dataset]) -> None:
+    run = computed["run-175"]
+    assert judge(computed, "fig10-gain").finding.converged == 0.0, "a table that only pushes adds nothing"
+    assert "changes the energy by nothing" in judge(computed, "fig10-by-falling").finding.right
+    weightless = run.assign(energy_flight=run["energy_flight"] + 1e-6 * run["time"])
+    judged = judge(computed | {"run-175": weightless}, "fig10-by-falling")
+    assert judged.verdict is Verdict.REPRODUCED
 
 
 def test_a_stop_before_lift_off_would_be_accepted(computed: dict[str, xr.Dataset]) -> None:

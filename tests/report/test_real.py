@@ -75,6 +75,13 @@ def test_rolling_around_the_centre_is_known_for_disks_and_balls() -> None:
     assert resting_center(1.0, balls) is None, "their tilt is never as small"
 
 
+def test_balls_are_scanned_while_only_one_of_them_touches(computed: dict[str, xr.Dataset]) -> None:
+    whole = {"real-rolling": EXPERIMENTS["real-rolling"].run(quick=False)}
+    for data in (computed, whole):
+        assert data["real-rolling"]["balls_tilt"].max() < math.pi / 2
+        assert_judged(data, "real-hurricane-balls", Verdict.REPRODUCED)
+
+
 def test_any_body_rolls_so_in_a_run() -> None:
     """A flat spheroid, of which no formula was printed."""
     body = Body(mass=0.02, shape=Spheroid(across=0.02, along=0.008), I1=2e-6, I3=3.2e-6)

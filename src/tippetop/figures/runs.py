@@ -29,7 +29,7 @@ def motion_figure(
     inset: mark.Box = (0.5, 0.13, 0.48, 0.56),
     reported_turn: float | None = None,
     reported_reversals: tuple[float, ...] = (),
-    reported_end: dict[str, float] | None = None,
+    reported_end: tuple[float, dict[str, float]] | None = None,
 ) -> Figure:
     """Return tilt, axial spin, precession and slip of a launch, by both methods.
 
@@ -39,7 +39,7 @@ def motion_figure(
     `inset` (left, bottom, width, height in parts of the panel). The reversals of the
     precession are marked: `quiet_start` and `quiet_end` where they enclose a calm that comes later than 1 s,
     otherwise `last_reversal`. What the report prints gets squares: when the top has turned over and when the
-    precession reverses, s, and theta, omega3 and phi_dot at the end.
+    precession reverses, s, and the time of what it takes for the end, s, with theta, omega3 and phi_dot then.
     """
     figure = Figure(figsize=(WIDTH, 5.0))
     panels = figure.subplots(2, 2, sharex=True)
@@ -62,9 +62,9 @@ def motion_figure(
     _slip(slip, run)
     for axes, name in ((tilt, "theta"), (spin, "omega3"), (turning, "phi_dot")):
         if reported_end:
-            end = float(run["time"][-1]), reported_end[name]
-            axes.plot(*end, "s", clip_on=False, **square)
-            mark.note(axes, f"report: {reported_end[name]:g}", end, (-4, 8), REPORT, halo=True)
+            end = reported_end[0], reported_end[1][name]
+            axes.plot(*end, "s", **square)
+            mark.note(axes, f"report: {end[1]:g}", end, (-4, 8), REPORT, halo=True)
     for axes in panels[1]:
         axes.set_xlabel("time (s)")
     mark.letters(panels.flat)

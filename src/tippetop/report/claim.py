@@ -68,6 +68,8 @@ class Finding:
         What the report's printed formula evaluates to, where the claim is a formula.
     news
         What else is found that the report could not know, in a sentence; "" for nothing.
+    right
+        What is right where the claim is not, in a few words with values; "" where the claim says it.
     """
 
     listing: Value | None
@@ -77,6 +79,7 @@ class Finding:
     choice: str = ""
     reported: float | None = None
     news: str = ""
+    right: str = ""
 
 
 Examine: TypeAlias = Callable[..., Finding]

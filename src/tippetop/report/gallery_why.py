@@ -33,7 +33,8 @@ PLATES = (
         "a, growth rates of small tilts about both vertical spins, which change sign at the critical spins; "
         "in the grey band they change by less than a factor e in 20 s. b and c, the critical spins that runs "
         "of 20 s show, against the least tilt that one tells from none: from growth rates alone, and read "
-        "from runs. The report's values lie on the line. In c the line is a lower bound, because the time "
+        "from runs. The report's values are drawn where they meet the line, for it "
+        "names no least tilt. In c the line is a lower bound, because the time "
         "that the top takes to turn over is not counted.",
         ("why-critical", "critical-spins"),
         partial(theory.growth_figure, reported=(float(CRITICAL_SPINS[0]), float(CRITICAL_SPINS[1]))),

@@ -29,6 +29,9 @@ _WRONG = (Verdict.CORRECTED, Verdict.EXPLAINED)
 _THUMBNAIL = (640, 420)
 """Largest size of the pictures that the page opens with, pixels."""
 
+_THEIRS = ": the report"
+"""How sections of ours mark the statements that are the report's nevertheless."""
+
 Worded = dict[str, Any]
 """A claim in words."""
 
@@ -195,13 +198,15 @@ def worded(judgement: Judgement, shown: Set[str] = frozenset()) -> Worded:
     return {
         "id": claim.id,
         "short": _without_measure(claim.text),
+        "implied": claim.implied,
         "quote": SENTENCES.get(claim.id, ""),
         "is_code": claim.id.startswith("listing"),
         "formula": FORMULAS.get(claim.id),
         "place": claim.source.place,
         "section": section_of(claim.source.section),
+        "of_others": section_of(claim.source.section) in OWN and _THEIRS not in claim.source.section,
         "needs": claim.needs,
-        "right": claim.right or (_number(finding.converged) + unit),
+        "right": finding.right or claim.right or (_number(finding.converged) + unit),
         "text": claim.text + (" (implied)" if claim.implied else ""),
         "reported": reported + unit,
         "listing": "–" if finding.listing is None else _number(finding.listing) + unit,

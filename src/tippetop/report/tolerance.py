@@ -22,6 +22,7 @@ TRANSCRIBED = "The report is read in a transcription here, which may have lost o
 
 STEADY = Tolerance(1e-5, "far below the 1e-3 of the report's method, far above rounding")
 ROUNDING = Tolerance(1e-6, "far above rounding")
+WHOLE = Tolerance(1e-6, "the power is a whole number")
 
 
 def half_last_digit(printed: str) -> Tolerance:

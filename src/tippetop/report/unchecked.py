@@ -15,6 +15,12 @@ _OTHERS = "a statement about other people's work, which no computation here can 
 
 UNCHECKED = (
     Unchecked("Abstract", "Critical behaviour is missing in preceding works.", _OTHERS),
+    Unchecked(
+        "Abstract",
+        "The system has a high level of non-linear performance.",
+        "a manner of speaking: the equations are nonlinear, as (2.8) to (2.15) show, and there is no measure "
+        "of how much",
+    ),
     Unchecked("section 1", "That the top may fly was neglected in the literature.", _OTHERS),
     Unchecked(
         "section 1",
@@ -35,7 +41,7 @@ UNCHECKED = (
     Unchecked(
         "section 1",
         "To get the exact friction term is impossible.",
-        "a statement about materials, not about it",
+        "a statement about materials, not about the model",
     ),
     Unchecked(
         "section 2.2",
@@ -61,6 +67,16 @@ UNCHECKED = (
     ),
     Unchecked(
         "section 5", "Tricks of programming make the listing faster.", "a statement about its author's time"
+    ),
+    Unchecked(
+        "Appendix B",
+        "Runge-Kutta methods are among the most popular ones, and the one with 4 steps is the most popular.",
+        "a statement about habits; which formula ode45 uses is judged",
+    ),
+    Unchecked(
+        "Appendix B",
+        "Their accuracy and speed are both satisfactory in most situations.",
+        "a statement about most problems; that it holds for this one is judged in sections 3 and 5",
     ),
 )
 """The statements without a verdict, in the order of the report."""

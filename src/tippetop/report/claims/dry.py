@@ -26,7 +26,7 @@ _DRY = (0.1, 1.0)
     "The rate at which a tippe top tilts is proportional to the coefficient of friction.",
     needs=("dry-rolling",),
     figure="dry-rolling",
-    right="set down without slip it rolls, and does not tilt at all, on any friction above a small bound",
+    right="it can be so only while the top slips: set down without slip it rolls, and does not turn over",
 )
 def _(data: xr.Dataset) -> Finding:
     held = data["theta_held"]
@@ -40,8 +40,9 @@ def _(data: xr.Dataset) -> Finding:
         f"needs mu = {needed:.5f} to roll. On mu = {shown.min():.5f} to {shown.max():g} it does the same "
         f"for {float(data['time'][-1]):g} s: it never slips, its tilt is at most {float(held.max()):.4f} "
         f"rad and its energy is kept to {float(data['lost_held'].max()):.0e}. On 0.1 % less than it needs "
-        f"it slips after {1e3 * float(data['held_below']):.1f} ms. While a top slips, friction goes as mu; "
-        "the statement is read here for one that is set down without slip.",
+        f"it slips after {1e3 * float(data['held_below']):.1f} ms. The law has its place while a "
+        "top slips, for there friction goes as mu; judged is one that is set down without slip, as the "
+        "report's are.",
     )
 
 
@@ -104,13 +105,15 @@ def _(data: xr.Dataset) -> Finding:
 def _(data: xr.Dataset) -> Finding:
     eps, times = data["eps"].values, data["turning_time"].values
     return Finding(
-        bool(np.isfinite(times).all()),
+        None,
         bool(np.isfinite(data["exact_turns"])),
         f"Smoothed below eps = {eps[0]:g} m/s, friction of mu = {data.attrs['mu']:g} turns the top over "
         f"in {times[0]:.2f} s, below {eps[-1]:g} m/s in {times[-1]:.2f} s; there the time goes as eps to "
         f"the power {float(data['last_exponent']):.2f}. On the law itself the tilt is at most "
         f"{float(data['highest']):.4f} rad for {float(data['followed']):g} s: to let eps go to zero and "
         "to wait are not to be exchanged.",
+        bool(np.isfinite(times).all()),
+        "the friction is smoothed",
     )
 
 
@@ -169,8 +172,9 @@ def _(data: xr.Dataset) -> Finding:
 @CHAPTER.claim(
     "dry-normal-mu",
     Source("Friction: the report, section 3.3"),
-    f"Friction coefficients of {NORMAL_FRICTION[0]:g} to {NORMAL_FRICTION[1]:g} s/m are normal (friction "
-    f"over normal force of {_DRY[0]:g} to {_DRY[1]:g}, as between dry solids, at Fig. 4's largest slip).",
+    f"Friction coefficients of {NORMAL_FRICTION[0]:g} to {NORMAL_FRICTION[1]:g} s/m are normal, for fast "
+    f"slip (friction over normal force of {_DRY[0]:g} to {_DRY[1]:g}, as between dry solids, at Fig. 4's "
+    "largest slip).",
     needs=("dry-viscous", "run-155"),
     figure="dry-viscous",
 )
@@ -194,7 +198,7 @@ def _is_dry(ratios: list[float]) -> bool:
 @CHAPTER.claim(
     "dry-rough-mu",
     Source("Friction: the report, Fig. 8"),
-    f"No surface is as rough as mu = {ROUGH_FRICTION:g} s/m.",
+    f"No surface is as rough as mu = {ROUGH_FRICTION:g} s/m (of those tried, at {SPIN_OF_REPORT:g} rad/s).",
     needs=("dry-viscous",),
     figure="dry-viscous",
 )

@@ -10,7 +10,11 @@ from tippetop.report.tolerance import Tolerance
 
 CHAPTER = Chapter()
 
-_STEP = Tolerance(0.1, "a unit of the last printed digit: a scan of spins finds no better")
+_STEP = Tolerance(
+    0.1,
+    "a unit of the last printed digit: a scan in such steps has the threshold between two spins, and may "
+    "print either",
+)
 
 
 def _critical(symbol: str, name: str, printed: str, text: str, loses: str) -> None:
@@ -40,7 +44,8 @@ def _critical(symbol: str, name: str, printed: str, text: str, loses: str) -> No
             f"{same} by the spectrum of the linear motion. Runs show it the better the "
             f"longer they are: {windows}. The report's 20 s are too short for a launch near the threshold to "
             f"settle. It does not say which tilt counted as settled: {chosen:.4f} rad comes nearest to both "
-            f"its critical spins. The last {abs(given - float(printed)):.2f} rad/s are not explained.",
+            f"its critical spins. What is left is {abs(given - float(printed)):.3f} rad/s, of "
+            f"the {_STEP.value:g} rad/s that are a step of such a scan.",
             given,
             f"settled is within {chosen:.4f} rad, for both critical spins",
         )

@@ -181,7 +181,8 @@ def _(steady: xr.Dataset) -> Finding:
 @CHAPTER.claim(
     "eq-2.16-third",
     Source("2.3", equation="(2.16)"),
-    "The third line of (2.16) makes the rate of an angle phi_3 zero in the steady state.",
+    "The third line of (2.16) makes the rate of an angle phi_3 zero in the steady state (the slower of "
+    "precession and rotation about the axis).",
     "0 rad/s",
     needs=("steady-bodies",),
     figure="fig05",
@@ -194,8 +195,8 @@ def _(steady: xr.Dataset) -> Finding:
     return Finding(
         None,
         slowest,
-        "No angle of that name is introduced. The precession and the rotation about the axis both go on, in "
-        f"the steady states of {steady.sizes['body']} bodies at {slowest:.2f} rad/s and more; what vanishes "
-        f"is the rate of omega3 (at most {steady['omega3_rate'].max():.0e} rad/s²), which must be what is "
-        f"meant. {TRANSCRIBED}",
+        "A misprint for omega3' = 0, which holds: in the steady states of "
+        f"{steady.sizes['body']} bodies it is at most {steady['omega3_rate'].max():.0e} rad/s². No angle "
+        "phi_3 is introduced, and read as printed it would be wrong of any: the precession and the rotation "
+        f"about the axis both go on, at {slowest:.2f} rad/s and more. {TRANSCRIBED}",
     )

@@ -44,6 +44,9 @@ EGG_WINDOW = 8.0
 ROUGH = CoulombFriction(mu=1.0)
 """Friction that lets nothing slip here."""
 
+BALL_TILTS = (1.2, 1.55)
+"""Tilts of the hurricane balls, rad: below a right angle, at which the other ball touches too."""
+
 ROLLING_WINDOW = 0.2
 """How long steady rolling is followed, s: some turns."""
 
@@ -174,7 +177,7 @@ def rolling(body: Body, tilt: float) -> tuple[RestingCenter, xr.Dataset] | None:
 def _rolling(quick: bool) -> xr.Dataset:
     """Euler's disk and hurricane balls that roll with their centres at rest."""
     tilts = {"disk": [0.1, 0.3, 0.5] if quick else np.linspace(0.05, 0.6, 12).tolist()}
-    tilts["balls"] = [1.25, 1.35, 1.45, 1.55] if quick else np.linspace(1.2, 1.6, 12).tolist()
+    tilts["balls"] = np.linspace(*BALL_TILTS, 4 if quick else 12).tolist()
     bodies = {"disk": EULER_DISK, "balls": HURRICANE_BALLS}
     found: dict[str, list[tuple[float, float, float, float]]] = {name: [] for name in bodies}
     for name, body in bodies.items():

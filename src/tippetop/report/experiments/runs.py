@@ -12,6 +12,7 @@ from tippetop.presets import REPORT_TABLE_1, report_problem
 from tippetop.problem import Problem
 from tippetop.report.experiment import Experiment, variable
 from tippetop.report.listing import listing_run
+from tippetop.report.quoted import END_OF_FIG_5
 from tippetop.report.readings import SETTLED, SHOWN, crossings, first_below_zero, flip_time, longest_quiet
 from tippetop.run import simulate
 from tippetop.sweeps import Axis, Ending, Product, Sweep, compute
@@ -27,6 +28,9 @@ WINDOWS = np.arange(9.0, WINDOW + 0.5)
 
 CAPPED_SPINS = (165.0, 175.0, 200.0)
 """Spins of launches on which the lines that the listing has commented out are tried, rad/s."""
+
+SLOW_SPINS = (10.0, 20.0, 25.0)
+"""Spins of launches below omega_c1, rad/s."""
 
 SERIES = ("theta", "theta_dot", "phi_dot", "omega3", "slip_x", "slip_y", "normal_force", "energy")
 _DRAWN = 10_000
@@ -223,9 +227,16 @@ def _windows(quick: bool) -> xr.Dataset:
     data = {}
     for name, units in (("theta", "rad"), ("phi_dot", "rad s-1"), ("omega3", "rad s-1")):
         theirs = [float(end[name]) for end in ends]
-        data[f"{name}_listing"] = variable(theirs, units, "at the end, by the report's method", ("window",))
-        data[name] = variable(true[name].values, units, "at the end", ("window",))
+        over, label = ("window",), "at the end of a run of this length"
+        data[f"{name}_after_listing"] = variable(theirs, units, f"{label}, by the report's method", over)
+        data[f"{name}_after"] = variable(true[name].values, units, label, over)
     return xr.Dataset(data, {"window": variable(windows, "s", "length of the run", ("window",))})
+
+
+def likely_end(windows: xr.Dataset) -> xr.Dataset:
+    """The end, among runs of several lengths, that comes nearest to what is printed of Fig. 5."""
+    misses = [abs(windows[f"{key}_after_listing"].values - value) for key, value in END_OF_FIG_5.items()]
+    return windows.isel(window=int(np.argmin(np.max(misses, axis=0))))
 
 
 def _capped(quick: bool) -> xr.Dataset:
@@ -245,7 +256,38 @@ def _capped(quick: bool) -> xr.Dataset:
     )
 
 
+def _slow(quick: bool) -> xr.Dataset:
+    """How far launches below omega_c1 tilt, and where they end, by both methods."""
+    columns: dict[str, list[float]] = {}
+    for spin in SLOW_SPINS:
+        problem = report_problem(spin)
+        true = simulate(on_table(problem), WINDOW, samples=2_001 if quick else 20_001)
+        for suffix, run in (("", true), ("_listing", listing_run(problem, WINDOW))):
+            theta = run["theta"].values
+            swings = int((np.abs(np.diff(theta[_turns(theta)])) > SETTLED).sum())
+            for name, value in (("highest", theta.max()), ("final", theta[-1]), ("swings", swings)):
+                columns.setdefault(f"{name}{suffix}", []).append(float(value))
+    meanings = {
+        "highest": ("rad", "largest tilt"),
+        "final": ("rad", "tilt at the end"),
+        "swings": ("1", f"swings of the tilt by more than {SETTLED:g} rad"),
+    }
+    return xr.Dataset(
+        {
+            name: variable(values, *meanings[name.removesuffix("_listing")], ("spin",))
+            for name, values in columns.items()
+        },
+        {"spin": variable(list(SLOW_SPINS), "rad s-1", "spin at launch", ("spin",))},
+    )
+
+
+def _turns(values: np.ndarray) -> np.ndarray:
+    """Where a series begins and where it turns."""
+    return np.concatenate([[0], np.flatnonzero(np.diff(np.sign(np.diff(values)))) + 1])
+
+
 EXPERIMENTS = [
+    Experiment("slow-spins", "launches below the first critical spin", 1.5, _slow),
     Experiment("run-50-windows", "the end of Fig. 5 against the length of the run", 1.5, _windows),
     Experiment("listing-capped", "the listing with what it has commented out", 2.5, _capped),
     Experiment("settling-mu-100", "how the nutation of Fig. 8 dies away", 0.8, _settling),
