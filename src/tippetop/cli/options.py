@@ -20,7 +20,7 @@ ProblemFile = Annotated[
 ]
 Preset = Annotated[
     str | None,
-    typer.Option(help="Body by name, such as report, leine-glocker-stem, egg or coin; a wrong one lists all."),
+    typer.Option(help="Body by name, such as report, leine-glocker-stem, egg, coin; a wrong one lists all."),
 ]
 Spin = Annotated[float | None, typer.Option(help="Axial spin at launch, rad/s.")]
 Tilt = Annotated[float | None, typer.Option(help="Tilt of the axis at launch, rad, from 0 to pi.")]
