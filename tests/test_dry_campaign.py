@@ -25,6 +25,12 @@ GAVE_UP = {"coulomb": (), "ellipsoidal": ("too_many_steps", "failed"), "hertz": 
 """On a small patch the last moments of drilling are stiff, and not all are followed to their end."""
 
 
+HARD = {"ellipsoidal": (69,)}
+HARD_RESISTED = {"ellipsoidal": (99,)}
+"""Tops beyond the first ones that were followed wrongly once: slip that begins and is about to end at once,
+and rolling that passes zero by less than can be seen."""
+
+
 def ordinary(law: dict[str, Any], random: np.random.Generator) -> tt.Problem:
     """A top on a table, of any build, spun and slipping or not."""
     radius, mass = random.uniform(0.005, 0.05), random.uniform(0.002, 0.1)
@@ -58,7 +64,7 @@ def ordinary(law: dict[str, Any], random: np.random.Generator) -> tt.Problem:
 @pytest.mark.parametrize("law", RESISTED)
 def test_tops_that_are_resisted_keep_energy_with_all_losses_and_the_cone_of_the_couple(law: str) -> None:
     given_up = rested = held_for = 0
-    for seed in range(COUNT // 2):
+    for seed in (*range(COUNT // 2), *HARD_RESISTED.get(law, ())):
         random = np.random.default_rng(1000 + seed)
         problem = ordinary(RESISTED[law], random)
         arm = problem.body.shape.surface.size * 10.0 ** random.uniform(-4.0, -1.5)
@@ -94,7 +100,7 @@ def test_tops_that_are_resisted_keep_energy_with_all_losses_and_the_cone_of_the_
 @pytest.mark.parametrize("part", range(2))
 def test_dry_tops_keep_energy_the_limit_of_friction_and_jelletts_integral(law: str, part: int) -> None:
     given_up = stuck_for = 0
-    for seed in range(part, COUNT, 2):
+    for seed in (*range(part, COUNT, 2), *(HARD.get(law, ()) if part else ())):
         problem = ordinary(LAWS[law], np.random.default_rng(seed))
         run = tt.simulate(problem, DURATION, samples=201)
         said = law, seed, problem.to_json()

@@ -45,12 +45,15 @@ from tippetop.mechanics.stick_slip import (
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Row, Scalar, Vector, dot
 
-LANDING = (3e-9, 1e-16)
+LANDING = (3e-8, 1e-16)
 """How long before its end the rest of a velocity may be taken in one step, in natural units of time: if its
 direction has come to rest by then, and in any case."""
 
 SETTLED = 1e-14
 """Error of the instant at which slip ends, in natural units, that counts as none."""
+
+SLOWEST = 1e-12
+"""A velocity, in natural units, that has ended where it cannot be followed further."""
 
 LOOKS, PRESSED = 16, 5
 """Looks along a beginning at whether another surface touches, and which of them look at the normal force too:
@@ -280,7 +283,10 @@ class Stopping(Passing):
             here = closing_of(arc.end_state.tolist(), ending)
             if arc.guard != LANDED or landed(here, ending, self.top)[1] < SETTLED:
                 break
-        if arc is None or arc.guard == LANDED:
+        if arc is not None and arc.failure is not None and here.speed < SLOWEST:
+            # It passes zero by so little that no step is short enough to see it turn round.
+            here, arc = here._replace(speed=0.0), None
+        elif arc is None or arc.guard == LANDED:
             here = landed(here, ending, self.top)[0]
         last = self.state(shown(here))
         solution = self._in_time(parts, begin, time, float(here.time))

@@ -3056,8 +3056,9 @@ function _stiffness(part, point) {
 }
 
 // tippetop.contact.passing
-const LANDING = [3e-09, 1e-16];
+const LANDING = [3e-08, 1e-16];
 const SETTLED = 1e-14;
+const SLOWEST = 1e-12;
 const [LOOKS_of_passing, PRESSED] = [16, 5];
 const [ORDER, ACCURACY] = [20, 1e-13];
 const INSTANT = 1e-09;
@@ -3258,7 +3259,9 @@ class Stopping extends Passing {
         break;
       }
     }
-    if (arc === null || py.eq(arc.guard, LANDED)) {
+    if (arc !== null && arc.failure !== null && here.speed < SLOWEST) {
+      [here, arc] = [here._replace({ speed: 0.0 }), null];
+    } else if (arc === null || py.eq(arc.guard, LANDED)) {
       here = landed(here, ending, this.top)[0];
     }
     const last = this.state(shown(here));
@@ -7364,6 +7367,7 @@ export {
   SLIPPING,
   SLIP_of_double_sticking,
   SLOW,
+  SLOWEST,
   SLOWEST_REBOUND,
   SLOWEST_ROCKING,
   SLOWEST_SLIP,

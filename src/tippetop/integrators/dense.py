@@ -78,20 +78,19 @@ class DenseSolution:
 
     def when(self, number: int, values: Array) -> Array:
         """Times at which a component that grows has some values, by Newton's method, shape (m,)."""
-        shown = np.append(self.terms[:, number, 0], self(self.knots[-1:])[0, number])
-        guess = np.interp(values, shown, self.knots)
-        slopes = self.terms[:, [number], 1:] * np.arange(1, self.terms.shape[2])
+        begins, lasts = self.terms[:, number, 0], self.terms[:, number, 1:].sum(axis=1)
+        step = np.clip(np.searchsorted(begins, values, side="right") - 1, 0, len(begins) - 1)
+        terms, part = self.terms[step, number], (values - begins[step]) / lasts[step]
+        slopes = terms[:, 1:] * np.arange(1, terms.shape[1])
         for _ in range(NEWTON):
-            step = np.minimum(np.searchsorted(self.knots[1:], guess, side="left"), len(self.terms) - 1)
-            span = self.knots[step + 1] - self.knots[step]
-            here = (guess - self.knots[step]) / span
-            error = values - evaluated(self.terms[:, [number]], step, here)[:, 0]
-            pace = evaluated(slopes, step, here)[:, 0] / span
-            better = np.clip(guess + error / pace, self.knots[0], self.knots[-1])
-            moved, guess = np.abs(better - guess).max(initial=0.0), better
-            if moved <= EXACT * self.knots[-1]:
+            places = powers(part, terms.shape[1])
+            error = values - np.einsum("mk,mk->m", terms, places)
+            better = np.clip(part + error / np.einsum("mk,mk->m", slopes, places[:, :-1]), 0.0, 1.0)
+            moved, part = np.abs(better - part).max(initial=0.0), better
+            if moved <= EXACT:
                 break
-        return guess
+        found: Array = self.knots[step] + part * (self.knots[step + 1] - self.knots[step])
+        return found
 
     @classmethod
     def nothing(cls, time: float, size: int) -> "DenseSolution":
