@@ -159,6 +159,9 @@ class Loosening(Passing):
             yield _nothing(self.told, time, state, str(error))
             return
         duration = min(begin.valid_until(ACCURACY), longest, end - time)
+        if duration <= 1e-299:
+            yield _nothing(self.told, time, state, "slip cannot be told from its beginning")
+            return
         yield passing.piece(begin.rows, direction, time, duration, end)
 
     def _directed(self, state: State) -> "tuple[Loosening, tuple[float, ...], float]":

@@ -2612,7 +2612,7 @@ class Onset extends py.NamedTuple {
     }
     let shortest = py.min(times);
     const losses = [...this.speed].map((term) => py.min(term, 0.0));
-    while (py.neg(horner(losses, shortest)) > py.mul(LOST, py.item(this.speed, 0))) {
+    while (shortest > 1e-300 && py.neg(horner(losses, shortest)) > py.mul(LOST, py.item(this.speed, 0))) {
       shortest = py.mul(shortest, SHORTER);
     }
     return shortest;
@@ -3140,6 +3140,10 @@ class Loosening extends Passing {
       return null;
     }
     const duration = py.min(begin.valid_until(ACCURACY), longest, end - time);
+    if (duration <= 1e-299) {
+      yield _nothing(this.told, time, state, "slip cannot be told from its beginning");
+      return null;
+    }
     yield passing.piece(begin.rows, direction, time, duration, end);
   }
   /** The mode on its law's branch, the direction of what begins, and how long it lasts at most. */

@@ -77,7 +77,7 @@ class Onset(NamedTuple):
                     times.append((whole / term) ** (1.0 / k))
         shortest = min(times)
         losses = [min(term, 0.0) for term in self.speed]
-        while -horner(losses, shortest) > LOST * self.speed[0]:
+        while shortest > 1e-300 and -horner(losses, shortest) > LOST * self.speed[0]:
             shortest *= SHORTER
         return shortest
 
