@@ -13,7 +13,7 @@ _ACROSS = 150
 _POINTS = 600
 
 
-def envelope(times: ArrayLike, values: ArrayLike) -> tuple[Array, Array, Array]:
+def envelope(times: ArrayLike, values: ArrayLike, across: int = _ACROSS) -> tuple[Array, Array, Array]:
     """The band that an oscillation fills.
 
     Where turning points follow each other too closely to be seen apart, the band lies between the curves
@@ -23,6 +23,8 @@ def envelope(times: ArrayLike, values: ArrayLike) -> tuple[Array, Array, Array]:
     ----------
     times, values
         The oscillation, increasing in time, shape (n,); values that are not finite are left out.
+    across
+        How many oscillations can be seen side by side.
 
     Returns
     -------
@@ -34,7 +36,7 @@ def envelope(times: ArrayLike, values: ArrayLike) -> tuple[Array, Array, Array]:
     slope = np.sign(np.diff(y))
     turns = np.flatnonzero(slope[1:] * slope[:-1] < 0) + 1
     ends = np.concatenate([[0], turns, [len(t) - 1]])
-    seen = np.repeat(np.diff(t[ends]) > (t[-1] - t[0]) / _ACROSS, np.diff(ends))
+    seen = np.repeat(np.diff(t[ends]) > (t[-1] - t[0]) / across, np.diff(ends))
     apart = np.append(seen, seen[-1:]) | np.append(seen[:1], seen)
     edges = []
     for sense in (-1.0, 1.0):
@@ -44,9 +46,17 @@ def envelope(times: ArrayLike, values: ArrayLike) -> tuple[Array, Array, Array]:
     return grid, np.minimum(*edges), np.maximum(*edges)
 
 
-def band(axes: Axes, times: ArrayLike, values: ArrayLike, color: str, width: float, label: str = "") -> None:
+def band(
+    axes: Axes,
+    times: ArrayLike,
+    values: ArrayLike,
+    color: str,
+    width: float,
+    label: str = "",
+    across: int = _ACROSS,
+) -> None:
     """Draw an oscillation as a line where one sees it, and as a pale band between two lines where not."""
-    grid, low, high = envelope(times, values)
+    grid, low, high = envelope(times, values, across)
     inside = high - low > 1e-3 * (high.max() - low.min())
     axes.fill_between(grid, low, high, where=inside, color=color, alpha=0.22, lw=0)
     axes.plot(grid, high, color=color, lw=width, label=label or None)

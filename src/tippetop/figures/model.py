@@ -120,4 +120,4 @@ def _model_measures(axes: Axes, model: _Model) -> None:
     note = "$\\mathbf{2}$ points out of the page"
     draw.label(axes, (1.12, 0.25), note, color=CONVERGED, size=9.5, ha="left")
     note = "the model is\nthe whole sphere:\nno stem, no cut"
-    draw.label(axes, (1.3, 1.95), note, color=MUTED, size=9.5, ha="left")
+    draw.label(axes, (1.3, 1.95), note, color=INK, size=11, ha="left")

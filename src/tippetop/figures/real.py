@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import xarray as xr
+from matplotlib import colormaps
 from matplotlib.figure import Figure
 
 import tippetop.figures.annotation as mark
@@ -90,10 +91,13 @@ def egg_figure(data: xr.Dataset) -> Figure:
     """
     figure = Figure(figsize=(WIDTH, 4.0))
     axes = figure.subplots()
-    for rate, tilt, lift, color in zip(data["rate"], data["theta"], data["lift_off"], CYCLE, strict=False):
+    colors = colormaps["viridis"](np.linspace(0.0, 0.9, data.sizes["rate"]))
+    for rate, tilt, lift, color in zip(data["rate"], data["theta"], data["lift_off"], colors, strict=True):
         axes.plot(data["time"], tilt, color=color, lw=1.2, label=f"{float(rate):g} rad/s")
         if np.isfinite(lift):
-            axes.plot(float(lift), float(np.interp(lift, data["time"], tilt)), "o", color=INK, zorder=5)
+            axes.plot(
+                float(lift), float(np.interp(lift, data["time"], tilt)), "o", mfc="white", mec=INK, zorder=5
+            )
     axes.set_xlim(0, float(data["time"][-1]))
     axes.set_ylim(np.pi / 2 - 0.2, np.pi + 0.1)
     pi_ticks(axes.yaxis)

@@ -18,6 +18,9 @@ _NAME, _NAME_REPORT = "converged", "report's method"
 _PULLS = "converged, table pulls"
 _WIDE, _THIN = 2.6, 1.0
 _EDGES = {_WIDE: 1.8, _THIN: 0.8}
+_IN_FIG_12 = 60
+"""How many oscillations Fig. 12 can show before it stops."""
+
 _LINES = (("_listing", "time_listing", REPORT, _WIDE), ("", "time", CONVERGED, _THIN))
 
 
@@ -64,7 +67,7 @@ def motion_figure(
         if reported_end:
             end = reported_end[0], reported_end[1][name]
             axes.plot(*end, "s", **square)
-            mark.note(axes, f"report: {end[1]:g}", end, (-4, 8), REPORT, halo=True)
+            mark.note(axes, f"report: {end[1]:g}", end, (4, 8), REPORT, halo=True)
     for axes in panels[1]:
         axes.set_xlabel("time (s)")
     mark.letters(panels.flat)
@@ -162,8 +165,15 @@ def stopped_figure(run: xr.Dataset, reported_stop: float) -> Figure:
     before = run.sel(time=run["time"] <= stop)
     other = run.sel(time_listing=run["time_listing"] <= reported_stop)
     for axes, name in ((tilt, "theta"), (force, "normal_force")):
-        axes.plot(other["time_listing"], other[f"{name}_listing"], color=REPORT, lw=_WIDE, label=_NAME_REPORT)
-        axes.plot(before["time"], before[name], color=CONVERGED, lw=_THIN + 0.3, label=_NAME)
+        for part, suffix, color, width, label in (
+            (other, "_listing", REPORT, _WIDE, _NAME_REPORT),
+            (before, "", CONVERGED, _THIN + 0.3, _NAME),
+        ):
+            times, values = part[f"time{suffix}"], part[f"{name}{suffix}"]
+            if axes is tilt:
+                band(axes, times, values, color, _EDGES.get(width, width), label, _IN_FIG_12)
+            else:
+                axes.plot(times, values, color=color, lw=width)
         continue_unilateral(axes, run, name)
         shade_flights(axes, run)
     _tilt_axis(tilt)
