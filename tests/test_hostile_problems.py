@@ -130,6 +130,15 @@ def test_what_breaks_down_at_once_has_the_launch_for_a_result(changes: dict[str,
     assert float(run["theta"][0]) == pytest.approx(problem.launch.tilt)
 
 
+@pytest.mark.skipif(not has_taylor(), reason="the steps of others have bounds")
+def test_a_top_that_stands_still_has_steps_without_bound() -> None:
+    still = tt.presets.report_problem(spin=100.0, tilt=np.pi)
+    heavy = still.replace({"gravity": 1e300, "contact.liftoff": "ignore"})
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert tt.simulate(heavy, 1.0, samples=3).attrs["outcome"] == "completed"
+
+
 def bouncing(**changes: Any) -> tt.Problem:
     """A top that is dropped on a patch that drills, and rebounds."""
     friction = tt.ContensouFriction(mu=0.3, patch_radius=5e-4)

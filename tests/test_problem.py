@@ -386,6 +386,12 @@ def test_absurd_sizes_are_accepted_or_refused_but_do_not_break_the_arithmetic(ch
         the_one_line_of(refusal)
 
 
+@pytest.mark.parametrize("along", [1e-9, 1e9])
+def test_a_spheroid_so_thin_that_rounding_decides_its_curvature_is_refused(along):
+    with pytest.raises(InvalidInput, match=r"along = .* is not possible; accepted: within a factor of"):
+        Spheroid(across=0.02, along=along)
+
+
 class TestFiles:
     def write(self, path, content):
         path.write_bytes(content if isinstance(content, bytes) else content.encode())

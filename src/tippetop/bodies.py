@@ -146,6 +146,10 @@ class Ring(Shape):
         return RingSurface(self.radius, self.center, self.tube)
 
 
+MOST_ASPECT = 1e6
+"""Ratio of a spheroid's semi-axes; the square of it is still far from rounding, as its curvature needs."""
+
+
 class Spheroid(Shape):
     """A spheroid: the spinning egg.
 
@@ -170,6 +174,13 @@ class Spheroid(Shape):
     across: Annotated[Positive, Quantity("m", "semi-axis across the axis of symmetry")]
     along: Annotated[Positive, Quantity("m", "semi-axis along the axis of symmetry")]
     center: Center = 0.0
+
+    @model_validator(mode="after")
+    def _has_a_thickness(self) -> Self:
+        if not 1.0 / MOST_ASPECT <= self.along / self.across <= MOST_ASPECT:
+            accepted = f"within a factor of {MOST_ASPECT:.0e} of across = {self.across:g}"
+            raise InvalidInput("along", self.along, accepted)
+        return self
 
     @property
     def surface(self) -> Surface:

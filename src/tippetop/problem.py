@@ -228,7 +228,7 @@ class Problem(Part):
             units = natural_units(self.top)
             start = natural_state(self.start(), units)
             largest = float(max(map(abs, (*start.momentum, *start.velocity, start.height))))
-            return largest**2 * max(1.0, float(units.energy))
+            return largest**2 * max(1.0, float(units.energy), float(self.body.mass * self.gravity))
         except ArithmeticError:
             return math.nan
 

@@ -307,9 +307,17 @@ class Ring extends Shape {
   }
 }
 Part.enter("Ring", Ring);
+const MOST_ASPECT = 1000000.0;
 
 /** A spheroid: the spinning egg. */
 class Spheroid extends Shape {
+  _has_a_thickness() {
+    if (!(py.div(1.0, MOST_ASPECT) <= py.div(this.along, this.across) && py.div(this.along, this.across) <= MOST_ASPECT)) {
+      const accepted = `within a factor of ${py.format(MOST_ASPECT, ".0e")} of across = ${py.format(this.across, "g")}`;
+      throw new InvalidInput("along", this.along, accepted);
+    }
+    return this;
+  }
   /** The outer surface, from the centre of mass, as the mechanics takes it. */
   get surface() {
     return new SpheroidSurface(this.across, this.along, this.center);
@@ -5887,7 +5895,7 @@ class Problem extends Part {
       const units = natural_units(this.top);
       const start = natural_state(this.start(), units);
       const largest = py.float(py.max(py.map(py.abs, [...start.momentum, ...start.velocity, start.height])));
-      return py.mul(py.pow(largest, 2), py.max(1.0, py.float(units.energy)));
+      return py.mul(py.pow(largest, 2), py.max(1.0, py.float(units.energy), py.float(py.mul(this.body.mass, this.gravity))));
     } catch (error) {
       if (!(error instanceof py.ArithmeticError)) throw error;
       return py.math.nan;
@@ -7283,6 +7291,7 @@ export {
   Loosening,
   MARGIN,
   MOST,
+  MOST_ASPECT,
   MOST_DISCS,
   MOST_IN_TURNS,
   MOST_LOOKS,

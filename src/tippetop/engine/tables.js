@@ -305,7 +305,9 @@ export const SCHEMA = {
     "limits": {}
    }
   },
-  "checks": []
+  "checks": [
+   "_has_a_thickness"
+  ]
  },
  "ViscousFriction": {
   "description": "Friction force -mu N v for slip velocity v and normal force N.",

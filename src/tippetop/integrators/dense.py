@@ -120,7 +120,9 @@ class DenseSolution:
     def in_time(cls, knots: ArrayLike, terms: ArrayLike) -> "DenseSolution":
         """The solution whose coefficients are in powers of the time since the start of a step."""
         ends, known = np.asarray(knots, dtype=float), np.asarray(terms, dtype=float)
-        return cls(ends, known * powers(np.diff(ends), known.shape[2])[:, None, :])
+        with np.errstate(over="ignore"):  # the step of a motion that stands still has no bound
+            lengths = np.nan_to_num(powers(np.diff(ends), known.shape[2]))
+        return cls(ends, known * lengths[:, None, :])
 
     @classmethod
     def fitted(
