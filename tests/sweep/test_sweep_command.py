@@ -16,7 +16,7 @@ import xarray as xr
 from typer.testing import CliRunner
 
 import tippetop as tt
-from tippetop.cli.main import main
+from tippetop.cli import commands
 from tippetop.cli.sweep import sweep as command
 from tippetop.errors import FileTrouble, InvalidInput
 from tippetop.presets import report_problem
@@ -190,7 +190,7 @@ def test_sentences_name_options_here_and_arguments_in_python(tmp_path, monkeypat
     ):
         monkeypatch.setattr(sys, "argv", ["tippetop", "sweep", *options, *SHORT, "--out", str(out)])
         with pytest.raises(SystemExit) as ended:
-            main()
+            commands.run()
         assert ended.value.code == 2
         assert wanted in capsys.readouterr().err
     over = {"launch.spin": [1.0]}

@@ -3653,7 +3653,7 @@ function components(impulse) {
 const TOLERANCE = 1e-09;
 const STUCK = 1e-08;
 const SHORTEST = 1e-12;
-const MOST_of_integrated_impact = 20000;
+const MOST_of_integrated_impact = 100000;
 const NODES = [[1 / 5], [3 / 40, 9 / 40], [44 / 45, -56 / 15, 32 / 9], [19372 / 6561, -25360 / 2187, 64448 / 6561, -212 / 729], [9017 / 3168, -355 / 33, 46732 / 5247, 49 / 176, -5103 / 18656], [35 / 384, 0.0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84]];
 const DOUBT = [71 / 57600, 0.0, -71 / 16695, 71 / 1920, -17253 / 339200, 22 / 525, -1 / 40];
 
