@@ -161,12 +161,11 @@ def effort(problem: Problem, method: str, span: float) -> Effort:
 
 
 def _stiffness(quick: bool) -> xr.Dataset:
-    span = 0.5 if quick else _SPAN
     methods = (*EXPLICIT, *IMPLICIT)
-    made = [[effort(report_problem(*launch), method, span) for method in methods] for launch in LAUNCHES]
+    made = [[effort(report_problem(*launch), method, _SPAN) for method in methods] for launch in LAUNCHES]
     counts = np.array([[one.evaluations for one in row] for row in made])
     true = [
-        float(simulate(on_table(report_problem(*launch)), span, samples=2)["final_theta"])
+        float(simulate(on_table(report_problem(*launch)), _SPAN, samples=2)["final_theta"])
         for launch in LAUNCHES
     ]
     bdf = np.array([row[methods.index("bdf")].tilt for row in made])
@@ -186,7 +185,7 @@ def _stiffness(quick: bool) -> xr.Dataset:
             "launch_mu": variable(np.array(LAUNCHES)[:, 2], "s m-1", "friction coefficient", ("launch",)),
         },
         {"integrator": list(methods)},
-        {"span_s": span, "relative_tolerance": RELATIVE, "absolute_tolerance": ABSOLUTE},
+        {"span_s": _SPAN, "relative_tolerance": RELATIVE, "absolute_tolerance": ABSOLUTE},
     )
 
 
