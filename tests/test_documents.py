@@ -8,12 +8,15 @@ import shlex
 import sys
 from pathlib import Path
 
+import click
 import matplotlib as mpl
 import pytest
+from typer.main import get_command
 from typer.testing import CliRunner
 
 import tippetop as tt
 from tippetop.cli.commands import app
+from tippetop.sweeps import Sweep
 
 ROOT = Path(__file__).parents[1]
 PAGES = [
@@ -83,6 +86,35 @@ def test_the_blocks_of_a_page_run(page):
                 assert told.exit_code == 0, (line, told.output)
         else:
             exec(compile(code, str(page), "exec"), names)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
+def test_the_commands_of_a_page_are_understood(page):
+    """Those that would take too long to run here, with all their options."""
+    group = get_command(app)
+    for block in re.findall(
+        r"^```(?:sh)?\n(.*?)^```$", page.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL
+    ):
+        for line in re.findall(r"^tippetop (.*)$", block.replace("\\\n", " "), re.MULTILINE):
+            words = shlex.split(line, comments=True)
+            above = click.Context(group, info_name="tippetop")
+            name, command, rest = group.resolve_command(above, words)
+            command.make_context(name, rest, parent=above)
+
+
+def test_the_files_of_pages_are_accepted():
+    """The sweep that a page shows, and the piece to be turned."""
+    shown = {
+        name: re.search(
+            r"^```toml\n(.*?)^```$", (ROOT / "docs/howto" / name).read_text(encoding="utf-8"), re.M | re.S
+        )[1]
+        for name in ("sweep.md", "print.md")
+    }
+    Path("top.toml").write_text(tt.presets.report_problem().to_toml(), encoding="utf-8")
+    Path("sweep.toml").write_text(shown["sweep.md"], encoding="utf-8")
+    assert Sweep.read("sweep.toml").cells == 1000 * 1000 * 2
+    Path("turned.toml").write_text(shown["print.md"], encoding="utf-8")
+    assert tt.Body.turned("turned.toml").mass > 0.0
 
 
 def test_blocks_are_found():

@@ -39,7 +39,10 @@ from .problem import Launch as Launch
 from .problem import Problem as Problem
 from .run import simulate as simulate
 from .summary import summarize as summarize
+from .sweeps.grid import Draws as Draws
+from .sweeps.grid import Range as Range
 from .sweeps.run import sweep as sweep
+from .sweeps.store import read_sweep as read_sweep
 from .theory.drilling import standing_time as standing_time
 from .theory.overview import steady_states as steady_states
 from .theory.prediction import predict as predict

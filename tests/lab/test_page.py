@@ -92,7 +92,7 @@ def test_every_control_is_explained_in_place(lab: Lab) -> None:
     page.get_by_role("button", name="What is what").click()
     assert "Jellett" in page.locator("dialog").inner_text()
     page.keyboard.press("Escape")
-    assert page.locator("dialog").count() == 0
+    page.locator("dialog").wait_for(state="detached")
 
 
 def test_a_pinned_run_plays_beside_the_next(lab: Lab) -> None:

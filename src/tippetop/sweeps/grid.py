@@ -72,10 +72,18 @@ class Range(Entry):
     ----------
     field
         Which, with dots.
-    low, high
-        The ends of the range; "from" and "to" where they are written.
+    low
+        The lower end of the range; "from" where it is written.
+    high
+        The upper end of the range; "to" where it is written.
     law
         "uniform" or "log-uniform".
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> tt.Range("friction.mu", 0.05, 1.0, "log-uniform").law
+    'log-uniform'
     """
 
     field: str
@@ -109,6 +117,13 @@ class Draws(Entry):
         How many draws.
     seed
         What the draws follow from; a draw does not depend on how many there are.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> draws = tt.Draws((tt.Range("launch.spin", 10.0, 200.0),), count=3, seed=1)
+    >>> tt.sweep(tt.presets.report_problem(), draws, duration=0.1).sizes["draw"]
+    3
     """
 
     ranges: Annotated[tuple[Range, ...], BeforeValidator(lambda given: _read("fields", given, Range.of))] = (

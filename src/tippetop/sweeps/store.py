@@ -250,6 +250,14 @@ def read_sweep(path: Path | str, names: Collection[str] | None = None) -> xr.Dat
     ------
     FileTrouble
         If it cannot be read, is damaged or is no sweep.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> spins = {"launch.spin": [50.0, 155.0]}
+    >>> found = tt.sweep(tt.presets.report_problem(), spins, duration=0.1, out="spins.zarr", workers=1)
+    >>> tt.read_sweep("spins.zarr").equals(found)
+    True
     """
     need_zarr()
     path = Path(path)
