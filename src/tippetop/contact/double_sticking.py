@@ -38,7 +38,30 @@ TOLERANCE = 1e-13
 
 
 @dataclass(frozen=True)
-class StickingAndSliding(OnTwo):
+class HeldOnTwo(OnTwo):
+    """The first contact sticks, if not both: axis and angular momentum say how the body rolls on it."""
+
+    def numbers(self, state: State) -> tuple[Scalar, ...]:
+        """Axis and angular momentum."""
+        return (*state.axis, *state.momentum)
+
+    def state(self, y: Row) -> State:
+        """The state, whose velocity is that of rolling on the first contact."""
+        axis, momentum = split(y)
+        velocity = velocity_without_slip(axis, momentum, self.top)
+        return on_table(SlidingState(axis, momentum, velocity), self.top)
+
+    def follow(self, guard: str, time: float, state: State) -> Transition:
+        """Slip begins; or a further surface touches."""
+        if guard.startswith(SLIP):
+            return self.rules.slipping_on_two(time, state, self.tops, guard.removeprefix(SLIP))
+        found = follow_surface(self, guard, time, state)
+        assert found is not None, "there are no other guards"
+        return found
+
+
+@dataclass(frozen=True)
+class StickingAndSliding(HeldOnTwo):
     """The first contact sticks and the second slips across the axis: along t of `contact_pair`."""
 
     name: ClassVar[str] = "sticking_and_sliding"
@@ -54,16 +77,6 @@ class StickingAndSliding(OnTwo):
         """Equations of motion of axis and angular momentum, and guards."""
         return turning_motion(self.top.kind, self.other.kind, self.sign)
 
-    def numbers(self, state: State) -> tuple[Scalar, ...]:
-        """Axis and angular momentum."""
-        return (*state.axis, *state.momentum)
-
-    def state(self, y: Row) -> State:
-        """The state, whose velocity is that of rolling on the first contact."""
-        axis, momentum = split(y)
-        velocity = velocity_without_slip(axis, momentum, self.top)
-        return on_table(SlidingState(axis, momentum, velocity), self.top)
-
     def reaction(self, y: Row) -> Reaction:
         """Force of both contacts, and their torque about the first contact point."""
         pair = ContactPair.of(*split(y), self.tops)
@@ -76,11 +89,7 @@ class StickingAndSliding(OnTwo):
             return self.opening(number, time, state, slips=number == 0)
         if guard == ENDING:
             return self.rules.settled_on_two(time, state, self.tops, (number_of(self.top),))
-        if guard.startswith(SLIP):
-            return self.rules.slipping_on_two(time, state, self.tops, guard.removeprefix(SLIP))
-        found = follow_surface(self, guard, time, state)
-        assert found is not None, "there are no other guards"
-        return found
+        return super().follow(guard, time, state)
 
 
 @dataclass(frozen=True)
@@ -92,7 +101,7 @@ class StickingAndSlidingBack(StickingAndSliding):
 
 
 @dataclass(frozen=True)
-class StickingOnTwo(OnTwo):
+class StickingOnTwo(HeldOnTwo):
     """Both contacts stick: the body rolls about the line that joins them, or is at rest."""
 
     name: ClassVar[str] = "sticking"
@@ -102,16 +111,10 @@ class StickingOnTwo(OnTwo):
         """Equations of motion of axis and angular momentum, and the guards of what holds the contacts."""
         return held_motion_on_two(self.top.kind, self.other.kind)
 
-    def numbers(self, state: State) -> tuple[Scalar, ...]:
-        """Axis and angular momentum."""
-        return (*state.axis, *state.momentum)
-
     def state(self, y: Row) -> State:
         """The state, without turning about the vertical, whose velocity is that of rolling."""
         axis, momentum = split(y)
-        momentum = without_drilling(axis, momentum, self.top)
-        velocity = velocity_without_slip(axis, momentum, self.top)
-        return on_table(SlidingState(axis, momentum, velocity), self.top)
+        return super().state((*axis, *without_drilling(axis, momentum, self.top)))
 
     def reaction(self, y: Row) -> Reaction:
         """Force of both contacts, and their torque about the first contact point."""
@@ -121,11 +124,7 @@ class StickingOnTwo(OnTwo):
         """A contact opens, or one slips, or both; or a further surface touches."""
         if guard.startswith(OPENING):
             return self.opening(int(guard.removeprefix(OPENING)), time, state, slips=False)
-        if guard.startswith(SLIP):
-            return self.rules.slipping_on_two(time, state, self.tops, guard.removeprefix(SLIP))
-        found = follow_surface(self, guard, time, state)
-        assert found is not None, "there are no other guards"
-        return found
+        return super().follow(guard, time, state)
 
 
 @dataclass(frozen=True)

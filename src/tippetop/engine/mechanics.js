@@ -4699,8 +4699,35 @@ const [SLIP_of_double_sticking, ENDING_of_double_sticking] = ["slip ", "ending"]
 const BEGINNING = 0.02;
 const TOLERANCE_of_double_sticking = 1e-13;
 
+/** The first contact sticks, if not both: axis and angular momentum say how the body rolls on it. */
+class HeldOnTwo extends OnTwo {
+  constructor(top, rules, other) {
+    super(top, rules, other);
+  }
+  /** Axis and angular momentum. */
+  numbers(state) {
+    return [...state.axis, ...state.momentum];
+  }
+  /** The state, whose velocity is that of rolling on the first contact. */
+  state(y) {
+    const [axis, momentum] = split(y);
+    const velocity = velocity_without_slip(axis, momentum, this.top);
+    return on_table(new SlidingState(axis, momentum, velocity), this.top);
+  }
+  /** Slip begins; or a further surface touches. */
+  follow(guard, time, state) {
+    if (py.truth(guard.startsWith(SLIP_of_double_sticking))) {
+      return this.rules.slipping_on_two(time, state, this.tops, py.removeprefix(guard, SLIP_of_double_sticking));
+    }
+    const found = follow_surface(this, guard, time, state);
+    py.assert(found !== null, "there are no other guards");
+    return found;
+  }
+}
+py.fields(HeldOnTwo, ["top", "rules", "other"]);
+
 /** The first contact sticks and the second slips across the axis: along t of `contact_pair`. */
-class StickingAndSliding extends OnTwo {
+class StickingAndSliding extends HeldOnTwo {
   constructor(top, rules, other) {
     super(top, rules, other);
   }
@@ -4713,16 +4740,6 @@ class StickingAndSliding extends OnTwo {
   /** Equations of motion of axis and angular momentum, and guards. */
   get motion() {
     return turning_motion(this.top.kind, this.other.kind, this.sign);
-  }
-  /** Axis and angular momentum. */
-  numbers(state) {
-    return [...state.axis, ...state.momentum];
-  }
-  /** The state, whose velocity is that of rolling on the first contact. */
-  state(y) {
-    const [axis, momentum] = split(y);
-    const velocity = velocity_without_slip(axis, momentum, this.top);
-    return on_table(new SlidingState(axis, momentum, velocity), this.top);
   }
   /** Force of both contacts, and their torque about the first contact point. */
   reaction(y) {
@@ -4738,12 +4755,7 @@ class StickingAndSliding extends OnTwo {
     if (py.eq(guard, ENDING_of_double_sticking)) {
       return this.rules.settled_on_two(time, state, this.tops, [number_of(this.top)]);
     }
-    if (py.truth(guard.startsWith(SLIP_of_double_sticking))) {
-      return this.rules.slipping_on_two(time, state, this.tops, py.removeprefix(guard, SLIP_of_double_sticking));
-    }
-    const found = follow_surface(this, guard, time, state);
-    py.assert(found !== null, "there are no other guards");
-    return found;
+    return super.follow(guard, time, state);
   }
 }
 py.fields(StickingAndSliding, ["top", "rules", "other"]);
@@ -4759,7 +4771,7 @@ class StickingAndSlidingBack extends StickingAndSliding {
 py.fields(StickingAndSlidingBack, ["top", "rules", "other"]);
 
 /** Both contacts stick: the body rolls about the line that joins them, or is at rest. */
-class StickingOnTwo extends OnTwo {
+class StickingOnTwo extends HeldOnTwo {
   constructor(top, rules, other) {
     super(top, rules, other);
   }
@@ -4768,16 +4780,10 @@ class StickingOnTwo extends OnTwo {
   get motion() {
     return held_motion_on_two(this.top.kind, this.other.kind);
   }
-  /** Axis and angular momentum. */
-  numbers(state) {
-    return [...state.axis, ...state.momentum];
-  }
   /** The state, without turning about the vertical, whose velocity is that of rolling. */
   state(y) {
-    let [axis, momentum] = split(y);
-    momentum = without_drilling(axis, momentum, this.top);
-    const velocity = velocity_without_slip(axis, momentum, this.top);
-    return on_table(new SlidingState(axis, momentum, velocity), this.top);
+    const [axis, momentum] = split(y);
+    return super.state([...axis, ...without_drilling(axis, momentum, this.top)]);
   }
   /** Force of both contacts, and their torque about the first contact point. */
   reaction(y) {
@@ -4788,12 +4794,7 @@ class StickingOnTwo extends OnTwo {
     if (py.truth(guard.startsWith(OPENING))) {
       return this.opening(py.int(py.removeprefix(guard, OPENING)), time, state, false);
     }
-    if (py.truth(guard.startsWith(SLIP_of_double_sticking))) {
-      return this.rules.slipping_on_two(time, state, this.tops, py.removeprefix(guard, SLIP_of_double_sticking));
-    }
-    const found = follow_surface(this, guard, time, state);
-    py.assert(found !== null, "there are no other guards");
-    return found;
+    return super.follow(guard, time, state);
   }
 }
 py.fields(StickingOnTwo, ["top", "rules", "other"]);
@@ -7255,6 +7256,7 @@ export {
   Guard,
   HALVINGS,
   HORIZON,
+  HeldOnTwo,
   HertzBranch,
   HertzDrillingLaw,
   HertzLaw,
