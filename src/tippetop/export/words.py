@@ -60,13 +60,6 @@ def known_spins(problem: Problem) -> CriticalSpins | None:
         return None
 
 
-def spin_marks(problem: Problem) -> dict[str, float]:
-    """The critical spins that a launch has, rad/s, by their names."""
-    spins = known_spins(problem)
-    marks = {"ωc₁": spins.upright, "ωc₂": spins.inverted} if spins else {}
-    return {name: spin for name, spin in marks.items() if math.isfinite(spin)}
-
-
 def known_end(problem: Problem) -> Prediction | None:
     """The steady states a launch heads for; None where the theory does not hold, or nothing takes energy."""
     if problem.friction.vanishes:
