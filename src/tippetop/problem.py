@@ -186,14 +186,9 @@ class Problem(Part):
     def _contact_is_possible(self) -> Self:
         if not (math.isfinite(self._resistance()) and math.isfinite(self._largest_square())):
             raise self._lying_flat() or self._out_of_reach()
-        several = isinstance(self.top.surface, Hull)
-        if several and self.rolling_resistance:
-            raise InvalidInput(
-                "rolling_resistance", self.rolling_resistance, "0 for a body of several surfaces"
-            )
         if self.contact.liftoff == "fly":
             return self
-        if several:
+        if isinstance(self.top.surface, Hull):
             raise InvalidInput(
                 "contact.liftoff", self.contact.liftoff, "'fly' for a body of several surfaces"
             )

@@ -23,6 +23,7 @@ from tippetop.mechanics.contact_pair import (
     slip_apart,
     without_slips,
 )
+from tippetop.mechanics.coulomb import RollingResistance
 from tippetop.mechanics.double_contact import Tops, without_tilting
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import along_table
@@ -189,6 +190,9 @@ def settled(
     arrived: bool = False,
 ) -> Transition:
     """The resolver of two contacts, of which those of some surfaces have been sticking."""
+    if isinstance(tops[0].friction, RollingResistance):
+        detail = "two surfaces touch at once, which is not followed where rolling is resisted"
+        return Transition(events, Outcome.FAILED, state, detail)
     here = TwoClosed.of(rules, state, tops)
     if any(here.ended) and slip_length(tops[0].friction) is not None:
         return Transition(events, Outcome.STICKING_ON_TWO, state)

@@ -5115,7 +5115,11 @@ function ended_slips(state, tops) {
 
 /** The resolver of two contacts, of which those of some surfaces have been sticking. */
 function settled(rules, time, state, tops, stuck, events = [], arrived = false) {
-  let found, answers;
+  let detail, found, answers;
+  if (py.isinstance(tops[0].friction, RollingResistance)) {
+    detail = "two surfaces touch at once, which is not followed where rolling is resisted";
+    return new Transition(events, Outcome.FAILED, state, detail);
+  }
   const here = TwoClosed.of(rules, state, tops);
   if (py.truth(py.any(here.ended)) && slip_length(tops[0].friction) !== null) {
     return new Transition(events, Outcome.STICKING_ON_TWO, state);
@@ -5128,7 +5132,7 @@ function settled(rules, time, state, tops, stuck, events = [], arrived = false) 
     return new Transition(events, Outcome.FAILED, state, py.str(error));
   }
   if (py.len(answers) !== 1) {
-    const detail = "not exactly one set of forces is consistent with two surfaces that touch";
+    detail = "not exactly one set of forces is consistent with two surfaces that touch";
     return new Transition(events, Outcome.FAILED, state, detail);
   }
   if (py.eq(answers, [BOTH])) {
@@ -5855,14 +5859,10 @@ class Problem extends Part {
     if (!(py.truth(py.math.isfinite(this._resistance())) && py.truth(py.math.isfinite(this._largest_square())))) {
       throw py.or(this._lying_flat(), () => this._out_of_reach());
     }
-    const several = py.isinstance(this.top.surface, Hull);
-    if (py.truth(several) && py.truth(this.rolling_resistance)) {
-      throw new InvalidInput("rolling_resistance", this.rolling_resistance, "0 for a body of several surfaces");
-    }
     if (this.contact.liftoff === "fly") {
       return this;
     }
-    if (py.truth(several)) {
+    if (py.isinstance(this.top.surface, Hull)) {
       throw new InvalidInput("contact.liftoff", this.contact.liftoff, "'fly' for a body of several surfaces");
     }
     const launch = this.launch;
