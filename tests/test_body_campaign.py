@@ -13,7 +13,7 @@ import tippetop as tt
 
 COUNT = int(os.environ.get("TIPPETOP_BODIES", "6"))
 SIZE, MASS = 0.02, 0.02
-NAMED = {"completed", "lying_flat", "sticking_on_two"}
+NAMED = {"completed", "at_rest", "lying_flat"}
 
 
 def surface_of(random: np.random.Generator) -> tt.Shape:

@@ -10,7 +10,7 @@ from tippetop.contact.surfaces import follow_surface, number_of, surface_guards
 from tippetop.integrators.base import Function, Guard, Motion
 from tippetop.mechanics.double_contact import Tops, double_contact, double_rates
 from tippetop.mechanics.motion import along_table, on_table
-from tippetop.mechanics.rolling import is_branched, is_set_valued, on_branch, on_other_branch
+from tippetop.mechanics.rolling import is_branched, is_set_valued, on_branch, on_other_branch, slip_length
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.stick_slip import branch_guard, inner, slip_of
 from tippetop.mechanics.top import Kind, Top
@@ -19,7 +19,8 @@ from tippetop.mechanics.vectors import Row, Scalar
 OPENING, ENDING, BRANCHING = "opening ", "ending ", "branching "
 
 SLOWEST_SLIP = 1e-9
-"""Slip in natural units at which it ends on one of two contacts, where it is not followed further."""
+"""Slip in natural units at which it ends on one of two contacts, or on both where drilling is resisted too,
+and is not followed further."""
 
 
 @dataclass(frozen=True)
@@ -121,6 +122,10 @@ def motion_on_two(first: Kind, second: Kind) -> Motion:
 
         return value
 
+    def both_slips(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
+        one, other = (slip_of(*SlidingState.unpack(y), top) for top in tops(numbers))
+        return inner(one, one) + inner(other, other) - SLOWEST_SLIP * SLOWEST_SLIP
+
     def branch(number: int) -> Function:
         def value(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
             return branch_guard(*SlidingState.unpack(y), tops(numbers)[number])
@@ -128,7 +133,9 @@ def motion_on_two(first: Kind, second: Kind) -> Motion:
         return value
 
     guards = [Guard(f"{OPENING}{number}", normal(number)) for number in (0, 1)]
-    if is_set_valued(first.example.friction):
+    if slip_length(first.example.friction) is not None:
+        guards.append(Guard(f"{ENDING}both", both_slips))
+    elif is_set_valued(first.example.friction):
         guards += [Guard(f"{ENDING}{number}", slip(number)) for number in (0, 1)]
     if is_branched(first.example.friction):
         guards += [Guard(f"{BRANCHING}{number}", branch(number)) for number in (0, 1)]

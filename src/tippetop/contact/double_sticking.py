@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, ClassVar
 
-from tippetop.contact.double import OPENING, OnTwo, SlidingOnTwo
+from tippetop.contact.double import BRANCHING, OPENING, OnTwo, SlidingOnTwo
 from tippetop.contact.mode import Outcome, Reaction, Segment, Transition
 from tippetop.contact.sticking import split
 from tippetop.contact.surfaces import follow_surface, number_of, surface_guards
@@ -20,10 +20,10 @@ from tippetop.mechanics.contact_pair import (
     slips_of,
 )
 from tippetop.mechanics.double_contact import Tops
-from tippetop.mechanics.motion import axis_rate, on_table
-from tippetop.mechanics.rolling import velocity_without_slip, without_drilling
+from tippetop.mechanics.motion import along_table, axis_rate, on_table
+from tippetop.mechanics.rolling import is_branched, slip_length, velocity_without_slip, without_drilling
 from tippetop.mechanics.state import SlidingState, State
-from tippetop.mechanics.stick_slip import velocity_of
+from tippetop.mechanics.stick_slip import slip_branch_guard, slip_of, velocity_of
 from tippetop.mechanics.top import Kind
 from tippetop.mechanics.vectors import Row, Scalar, dot
 
@@ -154,6 +154,16 @@ class SlipBeginningOnTwo(SlidingOnTwo):
         velocity = velocity_of(axis, momentum, (y[6], y[7]), self.top)
         return on_table(SlidingState(axis, momentum, velocity), self.top)
 
+    def follow(self, guard: str, time: float, state: State) -> Transition:
+        """As where it has begun; on another branch of the law it goes on as it is."""
+        found = super().follow(guard, time, state)
+        if not isinstance(found.then, SlipBeginningOnTwo):
+            return found
+        slip = slip_of(*along_table(state), self.top)
+        apart = slip_apart(ContactPair.of(state.axis, state.momentum, self.tops))
+        begin = (*state.axis, *state.momentum, slip[0], slip[1], apart)
+        return replace(found, then=replace(found.then, begin=begin))
+
     def reaction(self, y: Row) -> Reaction:
         """Force of both contacts, and their torque about the first contact point."""
         pair, xi = ContactPair.of(*split(y), self.tops), (y[6], y[7], y[8])
@@ -211,17 +221,18 @@ def turning_motion(first: Kind, second: Kind, sign: float) -> Motion:
 
 @lru_cache
 def held_motion_on_two(first: Kind, second: Kind) -> Motion:
-    """Equations of motion while both contacts stick."""
+    """Equations of motion while both contacts stick: for good, where patches resist drilling."""
 
     def found(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> PairMotion:
         return pair_motion(ContactPair.of(*split(y), tops_of(first, second, numbers)), (None, None))
 
-    guards = [
-        *_openings(found),
-        Guard(f"{SLIP}0", lambda y, numbers: found(y, numbers).left(0)),
-        Guard(f"{SLIP}1", lambda y, numbers: found(y, numbers).left(1)),
-        Guard(f"{SLIP}both", lambda y, numbers: found(y, numbers).both_reserve),
-    ]
+    guards = _openings(found)
+    if slip_length(first.example.friction) is None:
+        guards += [
+            Guard(f"{SLIP}0", lambda y, numbers: found(y, numbers).left(0)),
+            Guard(f"{SLIP}1", lambda y, numbers: found(y, numbers).left(1)),
+            Guard(f"{SLIP}both", lambda y, numbers: found(y, numbers).both_reserve),
+        ]
     return _of_momentum(first, second, found, guards)
 
 
@@ -238,7 +249,17 @@ def beginning_on_two(first: Kind, second: Kind) -> Motion:
         axis, momentum = split(y)
         return (*axis_rate(axis, momentum, now.pair.first.top), *now.moment, *now.rate)
 
-    guards = [*_openings(found), *surface_guards(first, (number_of(second.example),))]
+    def branch(number: int) -> Function:
+        def value(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
+            point = found(y, numbers).pair[number]
+            return slip_branch_guard(slips_of(found(y, numbers).pair, (y[6], y[7], y[8]))[number], point.top)
+
+        return value
+
+    guards = _openings(found)
+    if is_branched(first.example.friction):
+        guards += [Guard(f"{BRANCHING}{number}", branch(number)) for number in (0, 1)]
+    guards += surface_guards(first, (number_of(second.example),))
     return Motion(rates, 9, first.numbers + second.numbers, tuple(guards), lasting=False)
 
 

@@ -43,10 +43,6 @@ class Outcome(Enum):
         "The body came to lie flat: there it touches the table all around, which is not followed further; "
         "this is the end of its motion, but for what the impact of its face would add."
     )
-    STICKING_ON_TWO = (
-        "Two surfaces touch the table and neither slip nor drill, which is followed no further where a patch "
-        "resists drilling; Coulomb's friction without a patch goes on."
-    )
     TOO_MANY_PHASES = (
         "The top bounced and slid more often than the run allows; "
         "shorten the duration, lower the restitution, or raise the limit on phases."

@@ -21,6 +21,7 @@ from tippetop.mechanics.contact_pair import (
     apart,
     pair_motion,
     slip_apart,
+    slips_of,
     without_slips,
 )
 from tippetop.mechanics.coulomb import RollingResistance
@@ -40,6 +41,8 @@ from tippetop.mechanics.rolling import (
     Wrench,
     contact_motion,
     is_set_valued,
+    off_branch,
+    on_branch,
     set_valued,
     slip_length,
     spun_up,
@@ -77,7 +80,7 @@ class TwoClosed:
     @classmethod
     def of(cls, rules: Any, state: State, tops: Tops, ended: tuple[bool, bool] | None = None) -> "TwoClosed":
         """The contacts in a state that has slip, or tilts, by no more than what is taken for none."""
-        state = without_tilting(state, tops[0])
+        state, tops = without_tilting(state, tops[0]), (off_branch(tops[0]), off_branch(tops[1]))
         ended = ended_slips(state, tops) if ended is None else ended
         if ended == (False, True):
             tops, ended = tops[::-1], ended[::-1]
@@ -152,7 +155,9 @@ class TwoClosed:
         v_x, v_y, zeta = scaled(least / size(found.begins), found.begins)
         zeta += self.xi[2]
         begin = (*self.state.axis, *self.state.momentum, v_x, v_y, zeta)
-        mode = SlipBeginningOnTwo(self.tops[0], self.rules, self.tops[1], begin)
+        slips = slips_of(self.pair, (v_x, v_y, zeta))
+        one, other = (on_branch(top, slip) for top, slip in zip(self.tops, slips, strict=True))
+        mode = SlipBeginningOnTwo(one, self.rules, other, begin)
         return Transition((), mode, mode.state(begin))
 
 
@@ -169,11 +174,13 @@ def alone(point: ContactPoint, slip: Slip | None) -> Wrench:
 
 
 def ended_slips(state: State, tops: Tops) -> tuple[bool, bool]:
-    """On which contacts slip has ended."""
+    """On which contacts slip has ended: on both at once where drilling is resisted too."""
     if not is_set_valued(tops[0].friction):
         return False, False
     one, other = (size(slip_of(*along_table(state), top)) for top in tops)
     least, limit = min(one, other), (1.0 + 1e-6) * SLOWEST_SLIP
+    if slip_length(tops[0].friction) is not None:
+        return (True, True) if one * one + other * other <= limit * limit else (False, False)
     if least > limit:
         return False, False
     return one <= TOGETHER * limit, other <= TOGETHER * limit
@@ -194,8 +201,6 @@ def settled(
         detail = "two surfaces touch at once, which is not followed where rolling is resisted"
         return Transition(events, Outcome.FAILED, state, detail)
     here = TwoClosed.of(rules, state, tops)
-    if any(here.ended) and slip_length(tops[0].friction) is not None:
-        return Transition(events, Outcome.STICKING_ON_TWO, state)
     try:
         found = here.resolved()
         answers = here.consistent(found)
@@ -260,8 +265,12 @@ def _left(state: State, tops: Tops) -> float:
     if not 0.0 < speed <= TOGETHER * SLOWEST_SLIP or not size(slips[1 - number]):
         return 0.0
     pair = ContactPair.of(state.axis, state.momentum, tops)
-    rate = inner(slip, pair_motion(pair, (slips[0], slips[1])).moving[number][:2])
-    return speed * speed / -rate if rate < 0.0 else 0.0
+    found = pair_motion(pair, (slips[0], slips[1]))
+    change: Slip = found.moving[number][:2]
+    if slip_length(tops[0].friction) is not None:
+        slip, change = (slips[0][0], slips[0][1], slip_apart(pair)), found.rate
+    rate = inner(slip, change)
+    return inner(slip, slip) / -rate if rate < 0.0 else 0.0
 
 
 def _rests(state: State, motion: PairMotion) -> bool:

@@ -1398,7 +1398,7 @@ function landed(state, ending, top) {
 /** How a run ended; the value is advice. */
 class Outcome extends py.Enum {
 }
-py.members(Outcome, { COMPLETED: "The run reached its end.", LIFTED_OFF: "The table would have to pull from here on; with liftoff = ignore it does, and with fly the top leaves it.", AT_REST: "The top came to rest, and the table holds it so: nothing happens any more.", LYING_FLAT: "The body came to lie flat: there it touches the table all around, which is not followed further; this is the end of its motion, but for what the impact of its face would add.", STICKING_ON_TWO: "Two surfaces touch the table and neither slip nor drill, which is followed no further where a patch resists drilling; Coulomb's friction without a patch goes on.", TOO_MANY_PHASES: "The top bounced and slid more often than the run allows; shorten the duration, lower the restitution, or raise the limit on phases.", TOO_MANY_STEPS: "The motion took more steps than the run allows: it is very fast, or stiff; shorten the duration, lessen the friction, try the integrator collocation, which is made for stiff friction, or raise the limit on steps.", INACCURATE: "The numbers do not keep what the motion keeps: do not trust them; try another integrator or a smaller tolerance.", FAILED: "The integrator could not go on: the motion became singular or too stiff for it; try another integrator, or less friction." });
+py.members(Outcome, { COMPLETED: "The run reached its end.", LIFTED_OFF: "The table would have to pull from here on; with liftoff = ignore it does, and with fly the top leaves it.", AT_REST: "The top came to rest, and the table holds it so: nothing happens any more.", LYING_FLAT: "The body came to lie flat: there it touches the table all around, which is not followed further; this is the end of its motion, but for what the impact of its face would add.", TOO_MANY_PHASES: "The top bounced and slid more often than the run allows; shorten the duration, lower the restitution, or raise the limit on phases.", TOO_MANY_STEPS: "The motion took more steps than the run allows: it is very fast, or stiff; shorten the duration, lessen the friction, try the integrator collocation, which is made for stiff friction, or raise the limit on steps.", INACCURATE: "The numbers do not keep what the motion keeps: do not trust them; try another integrator or a smaller tolerance.", FAILED: "The integrator could not go on: the motion became singular or too stiff for it; try another integrator, or less friction." });
 
 /** What can happen to a top; the value is its name in a result. */
 class EventKind extends py.Enum {
@@ -4436,6 +4436,10 @@ const motion_on_two = py.cached((first, second) => {
     };
     return value;
   };
+  const both_slips = (y, numbers) => {
+    const [one, other] = [...tops(numbers)].map((top) => slip_of(...SlidingState.unpack(y), top));
+    return py.sub(py.add(inner(one, one), inner(other, other)), py.mul(SLOWEST_SLIP, SLOWEST_SLIP));
+  };
   const branch = (number) => {
     const value = (y, numbers) => {
       return branch_guard(...SlidingState.unpack(y), py.item(tops(numbers), number));
@@ -4443,7 +4447,9 @@ const motion_on_two = py.cached((first, second) => {
     return value;
   };
   let guards = [0, 1].map((number) => new Guard(`${py.str(OPENING)}${py.str(number)}`, normal(number)));
-  if (py.truth(is_set_valued(first.example.friction))) {
+  if (slip_length(first.example.friction) !== null) {
+    guards.push(new Guard(`${py.str(ENDING)}both`, both_slips));
+  } else if (py.truth(is_set_valued(first.example.friction))) {
     guards = py.add(guards, [0, 1].map((number) => new Guard(`${py.str(ENDING)}${py.str(number)}`, slip(number))));
   }
   if (py.truth(is_branched(first.example.friction))) {
@@ -4620,10 +4626,16 @@ function normal_wrench(point, slip) {
   return new Wrench([...force, 1.0], torque);
 }
 
-/** How both contacts slip. */
+/** How both contacts slip, and drill if their law resists that. */
 function slips_of(pair, xi) {
   const across = directions_of(pair.first.axis)[1];
-  return [[xi[0], xi[1]], [py.add(xi[0], py.mul(xi[2], across[0])), py.add(xi[1], py.mul(xi[2], across[1]))]];
+  const [one, other] = [[xi[0], xi[1]], [py.add(xi[0], py.mul(xi[2], across[0])), py.add(xi[1], py.mul(xi[2], across[1]))]];
+  const reach = slip_length(pair.first.top.friction);
+  if (reach === null) {
+    return [one, other];
+  }
+  const drilling = py.div(py.mul(reach, xi[2]), apart(pair));
+  return [[...one, drilling], [...other, drilling]];
 }
 
 /** Angular momentum and velocity after the impulses that end the slip of one contact, or of both. */
@@ -4668,13 +4680,14 @@ function way_of_both(pair) {
   const answers = [EAST, NORTH].map((way) => pair.response([0, new Wrench(way, NO_TORQUE)])[0]);
   const turned = pair.response([1, new Wrench(across, NO_TORQUE)])[2][2];
   const stiffness = py.float(py.add(py.add(py.abs(answers[0][0]), py.abs(answers[1][1])), py.abs(py.mul(lever, turned))));
+  const drilled = py.abs(lever * py.float(pair.response([0, DRILLING])[2][2]));
   const motion = (way) => {
     return pair_motion(pair, slips_of(pair, way));
   };
   const response = (ways) => {
     const found = motion(ways[0]);
-    const strength = py.sum([...found.wrenches].map((wrench) => size(wrench.force.slice(0, 2))));
-    return [new Resisted(found.rate, py.mul(stiffness, strength))];
+    const strength = py.sum([...found.wrenches].map((wrench) => py.add(py.mul(stiffness, size(wrench.force.slice(0, 2))), py.mul(drilled, py.abs(wrench.torque[2])))));
+    return [new Resisted(found.rate, strength)];
   };
   const way = directions(response, [against(pair_motion(pair, [null, null]))])[0];
   return [way, motion(way)];
@@ -4819,6 +4832,17 @@ class SlipBeginningOnTwo extends SlidingOnTwo {
     const velocity = velocity_of(axis, momentum, [y[6], y[7]], this.top);
     return on_table(new SlidingState(axis, momentum, velocity), this.top);
   }
+  /** As where it has begun; on another branch of the law it goes on as it is. */
+  follow(guard, time, state) {
+    const found = super.follow(guard, time, state);
+    if (!py.isinstance(found.then, SlipBeginningOnTwo)) {
+      return found;
+    }
+    const slip = slip_of(...along_table(state), this.top);
+    const apart = slip_apart(ContactPair.of(state.axis, state.momentum, this.tops));
+    const begin = [...state.axis, ...state.momentum, slip[0], slip[1], apart];
+    return py.replace(found, { then: py.replace(found.then, { begin: begin }) });
+  }
   /** Force of both contacts, and their torque about the first contact point. */
   reaction(y) {
     const [pair, xi] = [ContactPair.of(...split(y), this.tops), [y[6], y[7], y[8]]];
@@ -4877,12 +4901,15 @@ const turning_motion = py.cached((first, second, sign) => {
   return _of_momentum(first, second, found, guards);
 });
 
-/** Equations of motion while both contacts stick. */
+/** Equations of motion while both contacts stick: for good, where patches resist drilling. */
 const held_motion_on_two = py.cached((first, second) => {
   const found = (y, numbers) => {
     return pair_motion(ContactPair.of(...split(y), tops_of(first, second, numbers)), [null, null]);
   };
-  const guards = [..._openings(found), new Guard(`${py.str(SLIP_of_double_sticking)}0`, (y, numbers) => found(y, numbers).left(0)), new Guard(`${py.str(SLIP_of_double_sticking)}1`, (y, numbers) => found(y, numbers).left(1)), new Guard(`${py.str(SLIP_of_double_sticking)}both`, (y, numbers) => found(y, numbers).both_reserve)];
+  let guards = _openings(found);
+  if (slip_length(first.example.friction) === null) {
+    guards = py.add(guards, [new Guard(`${py.str(SLIP_of_double_sticking)}0`, (y, numbers) => found(y, numbers).left(0)), new Guard(`${py.str(SLIP_of_double_sticking)}1`, (y, numbers) => found(y, numbers).left(1)), new Guard(`${py.str(SLIP_of_double_sticking)}both`, (y, numbers) => found(y, numbers).both_reserve)]);
+  }
   return _of_momentum(first, second, found, guards);
 });
 
@@ -4897,7 +4924,18 @@ const beginning_on_two = py.cached((first, second) => {
     const [axis, momentum] = split(y);
     return [...axis_rate(axis, momentum, now.pair.first.top), ...now.moment, ...now.rate];
   };
-  const guards = [..._openings(found), ...surface_guards(first, [number_of(second.example)])];
+  const branch = (number) => {
+    const value = (y, numbers) => {
+      const point = py.item(found(y, numbers).pair, number);
+      return slip_branch_guard(py.item(slips_of(found(y, numbers).pair, [y[6], y[7], y[8]]), number), point.top);
+    };
+    return value;
+  };
+  let guards = _openings(found);
+  if (py.truth(is_branched(first.example.friction))) {
+    guards = py.add(guards, [0, 1].map((number) => new Guard(`${py.str(BRANCHING)}${py.str(number)}`, branch(number))));
+  }
+  guards = py.add(guards, surface_guards(first, [number_of(second.example)]));
   return new Motion(rates, 9, py.add(first.numbers, second.numbers), py.tuple(guards), false);
 });
 
@@ -4960,6 +4998,9 @@ function resolution(pair, xi, ended) {
   if (py.min(held.left(0), held.left(1)) >= 0.0 && held.both_reserve >= 0.0) {
     return new Resolution(held, [true, true]);
   }
+  if (slip_length(pair.first.top.friction) !== null) {
+    return both_letting_go(pair);
+  }
   for (const number of [0, 1]) {
     for (const sign of [1.0, -1.0]) {
       const found = turning_about(pair, number, sign);
@@ -5005,7 +5046,7 @@ class TwoClosed extends py.Record {
   }
   /** The contacts in a state that has slip, or tilts, by no more than what is taken for none. */
   static of(rules, state, tops, ended = null) {
-    state = without_tilting(state, tops[0]);
+    [state, tops] = [without_tilting(state, tops[0]), [off_branch(tops[0]), off_branch(tops[1])]];
     ended = ended === null ? ended_slips(state, tops) : ended;
     if (py.eq(ended, [false, true])) {
       [tops, ended] = [py.slice(tops, null, null, -1), py.slice(ended, null, null, -1)];
@@ -5084,7 +5125,9 @@ class TwoClosed extends py.Record {
     let [v_x, v_y, zeta] = scaled(py.div(least, size(found.begins)), found.begins);
     zeta = py.add(zeta, this.xi[2]);
     const begin = [...this.state.axis, ...this.state.momentum, v_x, v_y, zeta];
-    const mode = new SlipBeginningOnTwo(this.tops[0], this.rules, this.tops[1], begin);
+    const slips = slips_of(this.pair, [v_x, v_y, zeta]);
+    const [one, other] = py.zip(this.tops, slips).map(([top, slip]) => on_branch(top, slip));
+    const mode = new SlipBeginningOnTwo(one, this.rules, other, begin);
     return new Transition([], mode, mode.state(begin));
   }
 }
@@ -5100,13 +5143,16 @@ function alone(point, slip) {
   return wrench;
 }
 
-/** On which contacts slip has ended. */
+/** On which contacts slip has ended: on both at once where drilling is resisted too. */
 function ended_slips(state, tops) {
   if (!py.truth(is_set_valued(tops[0].friction))) {
     return [false, false];
   }
   const [one, other] = [...tops].map((top) => size(slip_of(...along_table(state), top)));
   const [least, limit] = [py.min(one, other), py.mul(1.0 + 1e-06, SLOWEST_SLIP)];
+  if (slip_length(tops[0].friction) !== null) {
+    return py.add(py.mul(one, one), py.mul(other, other)) <= py.mul(limit, limit) ? [true, true] : [false, false];
+  }
   if (least > limit) {
     return [false, false];
   }
@@ -5121,9 +5167,6 @@ function settled(rules, time, state, tops, stuck, events = [], arrived = false) 
     return new Transition(events, Outcome.FAILED, state, detail);
   }
   const here = TwoClosed.of(rules, state, tops);
-  if (py.truth(py.any(here.ended)) && slip_length(tops[0].friction) !== null) {
-    return new Transition(events, Outcome.STICKING_ON_TWO, state);
-  }
   try {
     found = here.resolved();
     answers = here.consistent(found);
@@ -5190,13 +5233,18 @@ function _marks(time, here, sticks, stuck) {
 function _left(state, tops) {
   const slips = [...tops].map((top) => slip_of(...along_table(state), top));
   const number = size(slips[0]) <= size(slips[1]) ? 0 : 1;
-  const [slip, speed] = [py.item(slips, number), size(py.item(slips, number))];
+  let [slip, speed] = [py.item(slips, number), size(py.item(slips, number))];
   if (!(0.0 < speed && speed <= py.mul(TOGETHER, SLOWEST_SLIP)) || !py.truth(size(py.item(slips, py.sub(1, number))))) {
     return 0.0;
   }
   const pair = ContactPair.of(state.axis, state.momentum, tops);
-  const rate = inner(slip, py.item(pair_motion(pair, [slips[0], slips[1]]).moving, number).slice(0, 2));
-  return rate < 0.0 ? py.div(py.mul(speed, speed), py.neg(rate)) : 0.0;
+  const found = pair_motion(pair, [slips[0], slips[1]]);
+  let change = py.item(found.moving, number).slice(0, 2);
+  if (slip_length(tops[0].friction) !== null) {
+    [slip, change] = [[slips[0][0], slips[0][1], slip_apart(pair)], found.rate];
+  }
+  const rate = inner(slip, change);
+  return rate < 0.0 ? py.div(inner(slip, slip), py.neg(rate)) : 0.0;
 }
 
 /** Whether a body in contact neither moves nor begins to. */

@@ -11,6 +11,10 @@ move as one, and what holds them may act at either; across e each is held by its
 forces T_i across e and S along it, Coulomb's friction can where |T_i| <= mu N_i and
 
     |S| <= sqrt(mu^2 N_1^2 - T_1^2) + sqrt(mu^2 N_2^2 - T_2^2).
+
+Patches that resist drilling both stick or neither does, as xi = 0. There nothing works, and the body turns
+about the line that joins both contact points as fast as it did: in the frame that goes with it nothing
+changes, both T_i are zero, and S is all that the limit surfaces have to exert: as Coulomb's friction does.
 """
 
 from collections.abc import Sequence
@@ -21,6 +25,7 @@ from tippetop.mechanics.direction import Resisted, directions
 from tippetop.mechanics.double_contact import Tops
 from tippetop.mechanics.friction import NO_TORQUE
 from tippetop.mechanics.rolling import (
+    DRILLING,
     EAST,
     NORTH,
     ContactPoint,
@@ -28,6 +33,7 @@ from tippetop.mechanics.rolling import (
     Wrench,
     set_valued,
     sliding_law,
+    slip_length,
     solve,
     turning_with,
 )
@@ -227,9 +233,14 @@ def normal_wrench(point: ContactPoint, slip: Slip | None) -> Wrench:
 
 
 def slips_of(pair: ContactPair, xi: Slip) -> tuple[Slip, Slip]:
-    """How both contacts slip."""
+    """How both contacts slip, and drill if their law resists that."""
     across = directions_of(pair.first.axis)[1]
-    return (xi[0], xi[1]), (xi[0] + xi[2] * across[0], xi[1] + xi[2] * across[1])
+    one, other = (xi[0], xi[1]), (xi[0] + xi[2] * across[0], xi[1] + xi[2] * across[1])
+    reach = slip_length(pair.first.top.friction)
+    if reach is None:
+        return one, other
+    drilling = reach * xi[2] / apart(pair)
+    return (*one, drilling), (*other, drilling)
 
 
 def without_slips(pair: ContactPair, velocity: Vector, ended: tuple[bool, bool]) -> tuple[Vector, Vector]:
@@ -299,14 +310,17 @@ def way_of_both(pair: ContactPair) -> tuple[Slip, PairMotion]:
     answers = [pair.response((0, Wrench(way, NO_TORQUE)))[0] for way in (EAST, NORTH)]
     turned = pair.response((1, Wrench(across, NO_TORQUE)))[2][2]
     stiffness = float(abs(answers[0][0]) + abs(answers[1][1]) + abs(lever * turned))
+    drilled = abs(lever * float(pair.response((0, DRILLING))[2][2]))
 
     def motion(way: Slip) -> PairMotion:
         return pair_motion(pair, slips_of(pair, way))
 
     def response(ways: Sequence[Slip]) -> list[Resisted]:
         found = motion(ways[0])
-        strength = sum(size(wrench.force[:2]) for wrench in found.wrenches)
-        return [Resisted(found.rate, stiffness * strength)]
+        strength = sum(
+            stiffness * size(wrench.force[:2]) + drilled * abs(wrench.torque[2]) for wrench in found.wrenches
+        )
+        return [Resisted(found.rate, strength)]
 
     way = directions(response, [against(pair_motion(pair, (None, None)))])[0]
     return way, motion(way)

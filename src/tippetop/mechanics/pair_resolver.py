@@ -12,7 +12,7 @@ from tippetop.mechanics.contact_pair import (
     way_of_both,
     way_of_one,
 )
-from tippetop.mechanics.rolling import Slip
+from tippetop.mechanics.rolling import Slip, slip_length
 from tippetop.mechanics.stick_slip import scaled
 
 
@@ -37,7 +37,8 @@ class Resolution(NamedTuple):
 def resolution(pair: ContactPair, xi: Slip, ended: tuple[bool, bool]) -> Resolution:
     """How two contacts go on that slip so, of which slip has ended on some; if on one, on the first.
 
-    What is tried first is that all stick that can, then that one of them slips, and then both.
+    What is tried first is that all stick that can, then that one of them slips, and then both; where patches
+    resist drilling, one does not slip alone.
 
     Raises
     ------
@@ -53,6 +54,8 @@ def resolution(pair: ContactPair, xi: Slip, ended: tuple[bool, bool]) -> Resolut
         return Resolution(held, (True, False)) if held.reserve(0) >= 0.0 else letting_go(pair, xi)
     if min(held.left(0), held.left(1)) >= 0.0 and held.both_reserve >= 0.0:
         return Resolution(held, (True, True))
+    if slip_length(pair.first.top.friction) is not None:
+        return both_letting_go(pair)
     for number in (0, 1):
         for sign in (1.0, -1.0):
             found = turning_about(pair, number, sign)

@@ -1,0 +1,143 @@
+"""Two contacts whose patches resist slip and drilling: both stick together, and then for good."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import tippetop as tt
+from test_sticking_on_two import (
+    ACROSS,
+    BALL,
+    DUMBBELL,
+    HALF,
+    MASS,
+    MU,
+    ONE_THEN_BOTH,
+    SLIPS_AGAIN,
+    G,
+    followed_by_steps,
+    lying,
+    times,
+)
+from tippetop.contact.choice import rules_of
+from tippetop.contact.double import SlidingOnTwo
+from tippetop.contact.double_sticking import SlipBeginningOnTwo
+from tippetop.mechanics.top import natural, natural_state, natural_units
+
+RADIUS = 0.01
+"""A patch as large as the dumbbell's half: drilling counts."""
+PRESSURES = ["ellipsoidal", "hertz"]
+
+
+def with_patch(problem: tt.Problem, pressure: str, radius: float = RADIUS) -> tt.Problem:
+    law = tt.ContensouFriction(mu=problem.friction.mu, patch_radius=radius, pressure=pressure)
+    return problem.replace({"friction": law})
+
+
+def words(run: xr.Dataset) -> list[str]:
+    """What the body does, sample by sample."""
+    names = run["mode"].attrs["flag_meanings"].split()
+    return [names[number] for number in run["mode"].values]
+
+
+@pytest.mark.parametrize("pressure", PRESSURES)
+def test_what_slides_without_turning_stops_as_coulombs_friction_stops_it(pressure: str) -> None:
+    dumbbell = with_patch(DUMBBELL, pressure)
+    along = followed_by_steps(dumbbell.replace({"launch.velocity": (0.2, 0.0, 0.0)}), 1.0)
+    assert along.attrs["outcome"] == "at_rest"
+    assert times(along, "stick") == pytest.approx([0.2 / (MU * G)] * 2, rel=1e-13)
+    across = followed_by_steps(dumbbell.replace({"launch.velocity": (0.0, 0.2, 0.0)}), 1.0)
+    slowing = MU * G * (1.0 + MASS * BALL**2 / 1.25e-7)
+    assert times(across, "stick") == pytest.approx([0.2 / slowing] * 2, rel=1e-12)
+    assert across.attrs["outcome"] == "completed"
+    assert words(across)[-1] == "sticking_on_0_and_1"
+
+
+def couple(pressure: str) -> float:
+    """Of a patch that drills at the rate w, and slips at the speed HALF w, over mu N."""
+    if pressure == "ellipsoidal":
+        return float(np.hypot(HALF, 3.0 * np.pi / 16.0 * RADIUS))
+    k = HALF / RADIUS
+    sigma, q = np.arcsin(1.0 / k), np.sqrt(k * k - 1.0)
+    force = 3.0 / 16.0 * (k * (4.0 - k * k) * sigma + q * (k * k + 2.0) / k)
+    torque = 3.0 / 8.0 * ((1.0 - k * k + 0.375 * k**4) * sigma + q * (0.75 - 0.375 * k * k))
+    return float(HALF * force + RADIUS * torque)
+
+
+@pytest.mark.parametrize("pressure", PRESSURES)
+def test_what_turns_stops_under_the_couple_of_forces_and_of_drilling(pressure: str) -> None:
+    turns = with_patch(DUMBBELL, pressure).replace({"launch.precession": 5.0, "launch.velocity": (0, 0, 0)})
+    run = followed_by_steps(turns, 1.0)
+    assert run.attrs["outcome"] == "at_rest"
+    assert times(run, "stick") == pytest.approx(
+        [5.0 * ACROSS / (MU * MASS * G * couple(pressure))] * 2, rel=1e-12
+    )
+
+
+@pytest.mark.parametrize("pressure", PRESSURES)
+def test_both_end_at_once_and_neither_slips_nor_drills_then(pressure: str) -> None:
+    problem = with_patch(lying(ONE_THEN_BOTH), pressure, 2e-3)
+    run = followed_by_steps(problem, 0.2, 101)
+    ends = times(run, "stick")
+    assert len(ends) == 2
+    assert ends[0] == ends[1]
+    stuck = run["time"].values > ends[0]
+    assert set(np.array(words(run))[stuck]) == {"sticking_on_0_and_1"}
+    axis, momentum = run["axis"].values[stuck], run["angular_momentum"].values[stuck]
+    across, along = problem.body.I1, problem.body.I3
+    own = np.sum(axis * momentum, axis=1)[:, None] * axis
+    turning = own / along + (momentum - own) / across
+    assert np.abs(turning[:, 2]).max() < 1e-12 * np.abs(turning).max()
+    assert np.ptp(np.linalg.norm(turning, axis=1)) < 1e-12 * np.abs(turning).max()
+    assert float(run["energy_error"]) < 1e-12
+    assert float(abs(run["gap"]).max()) < 1e-12 * 0.02
+
+
+def test_small_patches_stick_when_coulombs_friction_has_both_stick() -> None:
+    """One of two contacts sticks first there; here it creeps, and the less the smaller its patch."""
+    dry = times(followed_by_steps(lying(10), 0.2), "stick")
+    off = []
+    for radius in (4e-4, 1e-4):
+        run = followed_by_steps(with_patch(lying(10), "hertz", radius), 0.2)
+        off.append(abs(times(run, "stick")[-1] - max(dry)))
+    assert off[1] < 0.3 * off[0]
+    assert off[1] < 1e-4
+
+
+@pytest.mark.parametrize("pressure", PRESSURES)
+@pytest.mark.parametrize("seed", [SLIPS_AGAIN])
+def test_it_rolls_on_as_long_as_friction_can_turn_its_way_round(seed: int, pressure: str) -> None:
+    """It rolls as a cone, Omega along the line of both contacts: its centre, h high, with
+    Omega^2 h cot(tilt)."""
+    body = with_patch(lying(seed), pressure)
+    tilt = body.launch.tilt
+    sphere = body.body.shape[0]
+    height = sphere.radius - sphere.center * np.cos(tilt)
+    most = np.sqrt(body.friction.mu * G * abs(np.tan(tilt)) / height)
+    for part, mode in ((0.999, "sticking_on_0_and_1"), (1.01, "sliding_on_0_and_1")):
+        turning = part * most
+        rolls = {
+            "launch.spin": turning * np.sin(tilt),
+            "launch.precession": -turning / np.tan(tilt),
+            "launch.velocity": None,
+        }
+        run = followed_by_steps(body.replace(rolls), 0.02)
+        assert set(words(run)[1:]) == {mode}
+        assert float(run["energy_error"]) < 1e-12
+
+
+def test_slip_that_begins_goes_on_where_hertz_branches_meet() -> None:
+    body = with_patch(lying(SLIPS_AGAIN), "hertz").replace(
+        {"launch.slip": (0.1, 0.1), "launch.velocity": None}
+    )
+    units = natural_units(body.top)
+    rules = rules_of(body.contact, natural(body.top), units)
+    slides = rules.launch(natural_state(body.start(), units))
+    assert isinstance(slides.then, SlidingOnTwo)
+    begins = SlipBeginningOnTwo(slides.then.top, slides.then.rules, slides.then.other)
+    for number, changed in enumerate(("top", "other")):
+        on = begins.follow(f"branching {number}", 0.0, slides.state).then
+        assert isinstance(on, SlipBeginningOnTwo)
+        assert on.state(on.numbers(slides.state)).velocity == pytest.approx(slides.state.velocity, abs=1e-15)
+        here = getattr(on, changed).friction.drills, getattr(begins, changed).friction.drills
+        assert sum(here) == 1.0
