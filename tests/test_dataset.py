@@ -45,6 +45,30 @@ def run(request):
     return request.getfixturevalue(request.param)
 
 
+def test_a_result_is_as_xarray_itself_would_build_it(run):
+    built = xr.Dataset(
+        {name: (values.dims, values.values, values.attrs) for name, values in run.data_vars.items()},
+        {name: (name, values.values, values.attrs) for name, values in run.coords.items()},
+        run.attrs,
+    )
+    assert same(run, built)
+    assert list(run.variables) == list(built.variables)
+    assert run.sizes == built.sizes
+    assert {name: type(index) for name, index in run.xindexes.items()} == {
+        name: type(index) for name, index in built.xindexes.items()
+    }
+    labels = run.contact_force.sel(space="z").isel(time=0)
+    assert labels == run.normal_force[0]
+    assert run.sel(time=run.time[-1] / 2, method="nearest").sizes == built.isel(time=0).sizes
+
+
+def test_results_share_nothing_that_can_be_changed(completed):
+    completed.space.attrs["long_name"] = "changed"
+    again = tt.simulate(tt.presets.report_problem(), 0.1, samples=11)
+    assert again.space.attrs == {}
+    del completed.space.attrs["long_name"]
+
+
 def same(read, written):
     """Whether everything is the same: values to the last bit, types, dimensions, units and attributes."""
     xr.testing.assert_identical(read, written)

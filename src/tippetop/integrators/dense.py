@@ -121,7 +121,9 @@ class DenseSolution:
         """The solution whose coefficients are in powers of the time since the start of a step."""
         ends, known = np.asarray(knots, dtype=float), np.asarray(terms, dtype=float)
         with np.errstate(over="ignore"):  # the step of a motion that stands still has no bound
-            lengths = np.nan_to_num(powers(np.diff(ends), known.shape[2]))
+            lengths = powers(np.diff(ends), known.shape[2])
+        if not np.isfinite(lengths[:, -1]).all():
+            lengths = np.nan_to_num(lengths)
         return cls(ends, known * lengths[:, None, :])
 
     @classmethod
@@ -165,7 +167,8 @@ def evaluated(terms: Array, which: NDArray[np.intp], parts: Array) -> Array:
     found = np.empty((len(parts), terms.shape[1]))
     for first in range(0, len(parts), MANY):
         here = slice(first, first + MANY)
-        found[here] = np.einsum("msk,mk->ms", terms[which[here]], powers(parts[here], terms.shape[2]))
+        places = powers(parts[here], terms.shape[2])
+        np.matmul(terms[which[here]], places[:, :, None], out=found[here, :, None])
     return found
 
 
@@ -180,7 +183,10 @@ def at_fractions(terms: Array, fractions: Array) -> Array:
 
 def powers(numbers: Array, count: int) -> Array:
     """The first powers of n numbers, shape (n, count)."""
-    return np.vander(numbers, count, increasing=True)
+    found = np.ones((count, len(numbers)))
+    for power in range(1, count):
+        np.multiply(found[power - 1], numbers, out=found[power])
+    return np.ascontiguousarray(found.T)
 
 
 @lru_cache

@@ -77,20 +77,24 @@ class _Compiled:
         self.integrator, self.lock = integrator, threading.Lock()
         self._coefficients = integrator.tc
         self._terms = np.empty((room, *self._coefficients.shape))
+        # A step's coefficients are copied in a third of the time that arrays need.
+        self._rows = [row.data for row in self._terms.reshape(room, -1)]
+        self._step = self._coefficients.reshape(-1).data
 
     def advance(self, end: float) -> tuple[DenseSolution, Any]:
         """Take as many steps as there is room for: for half the price of heyoka's continuous output."""
-        terms, coefficients, knots = self._terms, self._coefficients, [float(self.integrator.time)]
+        step, room, knots = self._step, iter(self._rows), [float(self.integrator.time)]
 
         def take(run: Any) -> bool:
-            terms[len(knots) - 1] = coefficients
+            next(room)[:] = step
             knots.append(run.time)
             return True
 
-        outcome, *_ = self.integrator.propagate_until(end, max_steps=len(terms), write_tc=True, callback=take)
+        most = len(self._rows)
+        outcome, *_ = self.integrator.propagate_until(end, max_steps=most, write_tc=True, callback=take)
         if outcome == hy.taylor_outcome.time_limit:
             knots[-1] = end
-        return DenseSolution.in_time(np.array(knots), terms[: len(knots) - 1]), outcome
+        return DenseSolution.in_time(np.array(knots), self._terms[: len(knots) - 1]), outcome
 
     def expanded(self, start: Sequence[float], parameters: Sequence[float], count: int) -> list[list[float]]:
         """Coefficients of the first numbers of the solution about its start."""
