@@ -1,4 +1,4 @@
-"""Ctrl-C at the command line: one line, the exit code of shells, and no half-written file.
+"""Ctrl-C at the command line: one line, the exit code of shells, no half-written file, and no waiting.
 
 TIPPETOP_INTERRUPTS=50 asks for as many random moments instead of the few that every check takes.
 """
@@ -44,3 +44,41 @@ def test_interrupted_command_says_so_and_leaves_nothing(tmp_path, arguments, lon
     out, said = process.communicate(timeout=60)
     assert (out, said, process.returncode) == ("", SAID, 130), f"after {wait} s"
     assert list(tmp_path.rglob("*")) == []
+
+
+DEAF = """
+import hashlib, os
+import {module}
+
+def compiler(*_, **__):
+    print("begun", flush=True)
+    while not os.path.exists("enough"):
+        hashlib.pbkdf2_hmac("sha256", b"", b"", 1_000_000)
+    print("done", flush=True)
+
+{module}.{name} = compiler
+"""
+"""A compiler that hears nothing, and has not done before there is a file."""
+
+
+@pytest.mark.parametrize(
+    ("integrator", "module", "name"),
+    [("taylor", "heyoka", "taylor_adaptive"), ("compiled", "numba", "njit")],
+)
+def test_a_compiler_does_not_keep_ctrl_c_waiting(tmp_path, integrator, module, name):
+    pytest.importorskip(module)
+    program = DEAF.format(module=module, name=name) + MAIN
+    process = subprocess.Popen(
+        [sys.executable, "-c", program, "simulate", "--integrator", integrator],
+        cwd=tmp_path,
+        env={**os.environ, "TIPPETOP_CACHE": str(tmp_path / "cache")},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    assert process.stdout is not None
+    assert [process.stdout.readline() for _ in range(2)] == ["begun\n"] * 2
+    os.killpg(process.pid, signal.SIGINT)
+    out, said = process.communicate(timeout=60)
+    assert (out, said, process.returncode) == ("", SAID, 130)

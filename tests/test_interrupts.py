@@ -1,11 +1,13 @@
 """Ctrl-C waits for what must not be cut short."""
 
+import hashlib
+import os
 import signal
 import threading
 
 import pytest
 
-from tippetop.interrupts import deferred
+from tippetop.interrupts import deferred, heard
 
 
 def test_ctrl_c_waits_for_the_end_of_the_block():
@@ -40,3 +42,35 @@ def test_other_threads_are_left_alone():
     thread.start()
     thread.join()
     assert seen == [signal.getsignal(signal.SIGINT)]
+
+
+def deaf() -> bytes:
+    """Most of a second that no signal ends, and during which other threads work."""
+    return hashlib.pbkdf2_hmac("sha256", b"", b"", 1_000_000)
+
+
+def test_ctrl_c_is_heard_while_deaf_work_is_done():
+    begun, ended = threading.Event(), threading.Event()
+
+    def work():
+        begun.set()
+        deaf()
+        ended.set()
+
+    def interrupt():
+        begun.wait()
+        os.kill(os.getpid(), signal.SIGINT)
+
+    interrupter = threading.Thread(target=interrupt)
+    interrupter.start()
+    with pytest.raises(KeyboardInterrupt):
+        heard(work)
+    assert not ended.is_set()
+    interrupter.join()
+    assert ended.wait(60.0), "all of it"
+
+
+def test_what_comes_of_heard_work_or_is_raised_by_it_is_handed_over():
+    assert heard(threading.current_thread) is not threading.current_thread()
+    with pytest.raises(ZeroDivisionError):
+        heard(lambda: 1 / 0)

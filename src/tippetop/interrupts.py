@@ -3,14 +3,20 @@
 import os
 import signal
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future
 from contextlib import contextmanager, suppress
 from types import FrameType
+from typing import TypeVar
 
 ENDINGS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
 """The signals that ask a program to end: Ctrl-C, the system's, and that of a terminal that is closed."""
 INTERRUPTED = 130
 """Exit code of a program that they ended."""
+GLANCE = 0.1
+"""How often one who waits for deaf work listens where a system does not wake those who wait, s."""
+
+Made = TypeVar("Made")
 
 
 def let_end(at_first: bool = False) -> None:
@@ -64,3 +70,29 @@ def deferred() -> Iterator[None]:
             signal.signal(number, handler or signal.SIG_DFL)
         if arrived:
             signal.raise_signal(arrived[0])
+
+
+def heard(work: Callable[[], Made]) -> Made:
+    """What comes of work that is deaf to signals, as a compiler is; they are heard meanwhile.
+
+    The main thread waits while another one works. Where it is interrupted the work still goes to its end, and
+    the interpreter does not end before.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        return work()
+    made: Future[Made] = Future()
+    done = threading.Event()
+
+    def do() -> None:
+        try:
+            made.set_result(work())
+        except BaseException as error:  # noqa: BLE001 - handed over, not swallowed
+            made.set_exception(error)
+        finally:
+            done.set()
+
+    threading.Thread(target=do, name="tippetop compiler").start()
+    # Not by joining it: Python 3.11 takes a thread for ended if that is interrupted.
+    while not done.wait(GLANCE):
+        pass
+    return made.result()

@@ -18,7 +18,7 @@ if not has_numba():
     pytest.skip("numba is not installed", allow_module_level=True)
 
 import tippetop as tt
-from tippetop.integrators.sealed_folders import SEAL
+from tippetop.integrators.sealed_folders import MAKING, SEAL, kept
 
 TOLERANCE = 1e-9
 
@@ -116,6 +116,17 @@ def test_processes_share_what_they_compile_and_damage_is_thrown_away(tmp_path):
     repaired = contents(tmp_path)
     assert code
     assert all(repaired[path] != damaged[path] for path in code)
+
+
+def test_what_was_left_of_compiling_is_removed_by_the_next_who_compiles(tmp_path, monkeypatch):
+    """A compiler that is interrupted, or killed, cannot clean up; one that is at work is left alone."""
+    monkeypatch.setenv(VARIABLE, str(tmp_path))
+    ended_long_ago, at_work = tmp_path / f"{MAKING}{2**22 + 1}-a", tmp_path / f"{MAKING}{os.getpid()}-b"
+    for folder in (ended_long_ago, at_work):
+        folder.mkdir()
+        (folder / "part").write_bytes(b"half")
+    assert kept("whole", lambda _: "made") == "made"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["code-whole", at_work.name]
 
 
 def test_a_cache_that_cannot_be_written_is_done_without(tmp_path):

@@ -1,9 +1,10 @@
 """Where the command line begins: Ctrl-C is heard in time, before the libraries are loaded."""
 
 import gc
+import os
 import sys
 
-from tippetop.interrupts import let_end
+from tippetop.interrupts import INTERRUPTED, let_end
 
 GARBAGE = 50_000
 """Objects made between two looks for garbage: importing the libraries makes many, and drops hardly one."""
@@ -21,4 +22,12 @@ def main() -> None:
             sys.modules.setdefault(name, None)  # type: ignore[arg-type]  # as if it were not installed
     from tippetop.cli.commands import run  # noqa: PLC0415 - slow to import, and Ctrl-C is to be heard meanwhile
 
-    run()
+    try:
+        run()
+    except SystemExit as ending:
+        if ending.code == INTERRUPTED:
+            # All is undone that was begun: nobody needs to wait for the compiler, or for libraries to go.
+            sys.stdout.flush()
+            sys.stderr.flush()
+            os._exit(INTERRUPTED)
+        raise

@@ -12,6 +12,7 @@ from tippetop.emit.llvm import llvm_source
 from tippetop.emit.recording import Recorded
 from tippetop.integrators.base import Array
 from tippetop.integrators.sealed_folders import digest, kept
+from tippetop.interrupts import heard
 
 NAME, OBJECT = "made", "made.o"
 """What functions are called, and the code in a folder of the cache."""
@@ -31,7 +32,8 @@ def batch_function(recorded: Recorded) -> Batch:
     source = llvm_source(recorded, NAME)
     cpu, features = llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten()
     made = (source, llvmlite.__version__, llvm.get_process_triple(), cpu, features, EFFORT)
-    return _Loaded(kept(digest(repr(made).encode())[:32], lambda folder: _object(source, folder)))
+    name = digest(repr(made).encode())[:32]
+    return _Loaded(heard(lambda: kept(name, lambda folder: _object(source, folder))))
 
 
 def _object(source: str, folder: Path | None) -> bytes:

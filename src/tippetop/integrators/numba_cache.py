@@ -11,6 +11,7 @@ import llvmlite.binding as llvm
 import numba
 
 from tippetop.integrators.sealed_folders import digest, kept
+from tippetop.interrupts import heard
 
 SOURCE = "source.py"
 """The code in a folder of the cache."""
@@ -23,7 +24,7 @@ def compiled(source: str, signatures: Mapping[str, Any]) -> dict[str, Any]:
     can be kept every process compiles for itself.
     """
     code = _Code(source, signatures)
-    return kept(code.name, code.functions)
+    return heard(lambda: kept(code.name, code.functions))
 
 
 class _Code(NamedTuple):

@@ -10,6 +10,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TypeVar
 
+import psutil
+
 from tippetop.integrators.cache_folder import cache_folder
 
 Found = TypeVar("Found")
@@ -19,6 +21,9 @@ SEAL = "seal.json"
 
 PREFIX, MOST = "code-", 64
 """How the folders are called, and how many there are at most: then the oldest goes."""
+
+MAKING = "making-"
+"""How those are called that are not yet whole: with this and the number of the process that makes them."""
 
 
 def kept(name: str, use: Callable[[Path | None], Found]) -> Found:
@@ -48,7 +53,8 @@ def _made(folder: Path, use: Callable[[Path | None], Found]) -> Found:
     folder.parent.mkdir(parents=True, exist_ok=True)
     for old in sorted(folder.parent.glob(PREFIX + "*"), key=os.path.getmtime)[: -MOST + 1]:
         shutil.rmtree(old, ignore_errors=True)
-    beside = Path(tempfile.mkdtemp(prefix="making-", dir=folder.parent))
+    _clear(folder.parent)
+    beside = Path(tempfile.mkdtemp(prefix=f"{MAKING}{os.getpid()}-", dir=folder.parent))
     try:
         found = use(beside)
         (beside / SEAL).write_text(json.dumps(_digests(beside)), encoding="utf-8")
@@ -57,6 +63,14 @@ def _made(folder: Path, use: Callable[[Path | None], Found]) -> Found:
     finally:
         shutil.rmtree(beside, ignore_errors=True)
     return found
+
+
+def _clear(place: Path) -> None:
+    """Remove what processes have left that are no more: interrupted, or killed, while they compiled."""
+    for left in place.glob(MAKING + "*"):
+        process = left.name.split("-")[1]
+        if not (process.isdecimal() and psutil.pid_exists(int(process))):
+            shutil.rmtree(left, ignore_errors=True)
 
 
 def _is_whole(folder: Path) -> bool:

@@ -13,6 +13,7 @@ import numpy as np
 from tippetop.integrators.base import NOT_FINITE, Arc, Array, Expansion, Motion
 from tippetop.integrators.compile_cache import compiling
 from tippetop.integrators.dense import DenseSolution
+from tippetop.interrupts import heard
 
 SHORTEST = 1e-6
 """Step, relative to the longest, that only a solution that blows up takes; rounding of time matters in it."""
@@ -119,15 +120,18 @@ def _compiled(motion: Motion, tolerance: float, room: int) -> _Compiled:
         hy.t_event(guard.value(state, parameters), direction=hy.event_direction.negative)
         for guard in motion.guards
     ]
-    with compiling():
-        integrator = hy.taylor_adaptive(
-            list(zip(state, rates, strict=True)),
-            [0.0] * motion.size,
-            tol=tolerance,
-            t_events=events,
-            compact_mode=not motion.lasting,
-        )
-    return _Compiled(integrator, room)
+
+    def compiled() -> Any:
+        with compiling():
+            return hy.taylor_adaptive(
+                list(zip(state, rates, strict=True)),
+                [0.0] * motion.size,
+                tol=tolerance,
+                t_events=events,
+                compact_mode=not motion.lasting,
+            )
+
+    return _Compiled(heard(compiled), room)
 
 
 def _before_blow_up(solution: DenseSolution) -> DenseSolution:
