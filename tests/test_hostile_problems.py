@@ -14,7 +14,7 @@ import tippetop as tt
 from tippetop.contact import closing
 from tippetop.errors import TippetopError
 from tippetop.integrators import has_taylor, scipy_methods
-from tippetop.mechanics import integrated_impact, touchdown
+from tippetop.mechanics import impact_on_two, integrated_impact, touchdown
 
 COUNT, PARTS = int(os.environ.get("TIPPETOP_HOSTILE", "64")), 8
 STEPS, MODES = 2_000, 200
@@ -170,6 +170,25 @@ def test_a_single_impact_or_flight_is_bounded(monkeypatch: pytest.MonkeyPatch) -
     run = tt.simulate(bouncing(**{"launch.spin": 1e6}), 0.2, samples=11)
     assert run.attrs["outcome"] == "failed"
     assert float(run["time"][-1]) == 0.0
+
+
+def test_steps_within_impacts_on_two_surfaces_count(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A rod falls on its ends in turn, under friction so steep that the second impact is hard to follow."""
+    ends = [tt.Sphere(radius=0.005, center=0.02), tt.Sphere(radius=0.005, center=-0.02)]
+    rod = tt.Problem(
+        body=tt.Body(mass=0.01, shape=ends, I1=2e-6, I3=1.25e-7),
+        friction=tt.RegularizedCoulombFriction(mu=0.3, eps=1e-4),
+        launch=tt.Launch(tilt=1.3, spin=5.0, gap=0.01),
+    )
+    free = tt.simulate(rod, 0.1, samples=3)
+    assert free.attrs["outcome"] == "completed"
+    taken = int(free["steps"])
+    bounded = tt.simulate(rod, 0.1, samples=3, step_limit=taken + 500)
+    assert bounded.attrs["outcome"] == "too_many_steps"
+    monkeypatch.setattr(impact_on_two, "MOST", 20)
+    given_up = tt.simulate(rod, 0.1, samples=3)
+    assert given_up.attrs["outcome"] == "failed"
+    assert "on two surfaces does not come to its end" in given_up.attrs["outcome_advice"]
 
 
 def test_an_end_of_slip_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:

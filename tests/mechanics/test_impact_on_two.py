@@ -8,9 +8,12 @@ from hypothesis import Phase, assume, given, settings
 from hypothesis import strategies as st
 
 from strategies import numbers
+from tippetop.mechanics import impact_on_two as module
+from tippetop.mechanics.coulomb import CoulombLaw
 from tippetop.mechanics.flight import gap_rate
 from tippetop.mechanics.friction import RegularizedCoulombLaw, ViscousLaw
 from tippetop.mechanics.hull import Hull
+from tippetop.mechanics.impact import impact
 from tippetop.mechanics.impact_on_two import impact_on_two
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import axis_rate, on_table
@@ -143,3 +146,60 @@ def test_with_friction_it_is_what_small_steps_find(law):
         assert axis_rate(state.axis, found.state.momentum, tops[0])[2] == pytest.approx(0.0, abs=1e-8)
 
     agree()
+
+
+def test_an_end_that_opens_neither_slips_nor_sticks():
+    """What leaves the table with no slip leaves the friction at the other end alone."""
+    hull = Hull.of((SphereSurface(1.0, 2.0), SphereSurface(1.0, -2.0)))
+    first, second = Top(1.0, 1.5, 0.5, hull, CoulombLaw(0.3), 1.0).each
+    still = on_table(SlidingState((1.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0)), first)
+    # It turns with (0.2, -0.5, 0.4), and one end moves upwards, the other across and downwards.
+    state = still._replace(momentum=(0.1, -0.75, 0.6), velocity=(-0.5, -1.0, 0.0))
+    assert gap_rate(state, first) == pytest.approx(1.0)
+    assert gap_rate(state, second) == pytest.approx(-1.0)
+    found, alone = impact_on_two(state, 0.0, (second, first)), impact(state, 0.0, second)
+    assert gap_rate(found.state, first) > 0.0
+    assert found.impulse == pytest.approx(alone.impulse, rel=1e-7)
+    assert found.state.momentum == pytest.approx(alone.state.momentum, abs=1e-7)
+    assert found.state.velocity == pytest.approx(alone.state.velocity, abs=1e-7)
+
+
+def sliding_slowly(law):
+    """A rod that falls on its second end faster than it slips, and its tops."""
+    hull = Hull.of((SphereSurface(1.0, 2.0), SphereSurface(1.0, -3.0)))
+    first, second = Top(1.0, 1.5, 0.5, hull, law, 1.0).each
+    momentum = (0.03, -0.9, 0.03)  # turns about y, by which the second end sinks
+    return on_table(SlidingState((1.0, 0.0, 0.0), momentum, (0.05, -0.04)), first), (second, first)
+
+
+def test_a_steep_law_holds_both_ends_and_takes_few_steps():
+    """What is left is the motion next to the one before, by kinetic energy, that moves neither end."""
+    state, tops = sliding_slowly(RegularizedCoulombLaw(0.6, 1e-6))
+    top = tops[0]
+    assert gap_rate(state, top) < -1.0
+    found = impact_on_two(state, 0.0, tops)
+    assert found.steps < 2000
+    inertia = np.diag([top.axial_inertia, top.transverse_inertia, top.transverse_inertia])
+    masses = np.block([[inertia, np.zeros((3, 3))], [np.zeros((3, 3)), np.eye(3)]])
+    rows = [np.hstack([-cross_matrix(contact_vector(state.axis, one.surface)), np.eye(3)]) for one in tops]
+    held = np.vstack(rows)
+    before = np.array([*np.linalg.solve(inertia, state.momentum), *state.velocity])
+    inverse = np.linalg.inv(masses)
+    impulse = np.linalg.pinv(held @ inverse @ held.T) @ held @ before
+    after = before - inverse @ held.T @ impulse
+    assert found.state.momentum == pytest.approx(inertia @ after[:3], abs=1e-5)
+    assert found.state.velocity == pytest.approx(after[3:], abs=1e-5)
+
+
+def cross_matrix(a):
+    return np.array([[0.0, -a[2], a[1]], [a[2], 0.0, -a[0]], [-a[1], a[0], 0.0]])
+
+
+def test_steps_are_bounded_and_told(monkeypatch):
+    state, tops = sliding_slowly(RegularizedCoulombLaw(0.6, 1e-6))
+    steps = impact_on_two(state, 1.0, tops).steps
+    assert steps > impact_on_two(state, 0.0, tops).steps > 10
+    monkeypatch.setattr(module, "MOST", 10)
+    with pytest.raises(ArithmeticError, match="end") as error:
+        impact_on_two(state, 0.0, tops)
+    assert not isinstance(error.value, module.SlipEnds)

@@ -332,7 +332,9 @@ class FreeToFly(ContactRules):
             collision = self._impact(state, restitution)
             rebounds = gap_rate(collision.state, self.top) > SLOWEST_REBOUND
             if restitution and not rebounds:
+                taken = collision.steps
                 collision = self._impact(state, 0.0)
+                collision = collision._replace(steps=taken + collision.steps)
         except ArithmeticError as error:
             return Transition(events, Outcome.FAILED, state, str(error))
         hit = replace(

@@ -13,7 +13,7 @@ from tippetop.mechanics.double_contact import Tops, double_contact
 from tippetop.mechanics.flight import gap, gap_rate
 from tippetop.mechanics.hull import lowest_surface
 from tippetop.mechanics.impact import Impact, impact
-from tippetop.mechanics.impact_on_two import impact_on_two
+from tippetop.mechanics.impact_on_two import SlipEnds, impact_on_two
 from tippetop.mechanics.motion import along_table
 from tippetop.mechanics.rolling import is_set_valued
 from tippetop.mechanics.state import State
@@ -83,9 +83,10 @@ class OnSeveral(FreeToFly):
             pressed = gap_rate(alone.state, other) < -SLOWEST_ROCKING
             if pressed and abs(gap_rate(state, other)) <= SLOWEST_ROCKING:
                 try:
-                    return impact_on_two(state, restitution, (self.top, other))
-                except ArithmeticError:
+                    found = impact_on_two(state, restitution, (self.top, other))
+                except SlipEnds:
                     return alone
+                return found._replace(steps=alone.steps + found.steps)
         return alone
 
     def _untouched(self, time: float, state: State, events: tuple[Event, ...]) -> Transition:

@@ -54,7 +54,13 @@ class Definitions(Statements):
                 yield "}"
                 yield f"py.members({known.name}, {{ {inside} }});"
             return
-        roots = {"tuple": "py.NamedTuple", "record": "py.Record", "part": "Part", "plain": "py.Thing"}
+        roots = {
+            "tuple": "py.NamedTuple",
+            "record": "py.Record",
+            "part": "Part",
+            "error": "py.ArithmeticError",
+            "plain": "py.Thing",
+        }
         base = known.bases[0] if known.bases else roots[known.kind]
         yield f"class {known.name} extends {base} {{"
         yield from indented(self._members(known))

@@ -40,7 +40,8 @@ class Class:
     bases
         The classes it is of that are translated too, by name.
     kind
-        "tuple", "record", "enum", "number" (an enum of numbers), "part", "plain", or "" if nothing remains.
+        "tuple", "record", "enum", "number" (an enum of numbers), "part", "error" (of arithmetic), "plain", or
+        "" if nothing remains.
     fields
         Names and defaults of its fields, those of its bases first.
     """
@@ -165,6 +166,7 @@ class Program:
             "IntEnum": "number",
             "Part": "part",
             "Variant": "part",
+            "ArithmeticError": "error",
         }.items():
             if word in words:
                 return kind

@@ -4221,7 +4221,9 @@ class FreeToFly extends ContactRules {
       collision = this._impact(state, restitution);
       rebounds = gap_rate(collision.state, this.top) > SLOWEST_REBOUND;
       if (py.truth(restitution) && !py.truth(rebounds)) {
+        const taken = collision.steps;
         collision = this._impact(state, 0.0);
+        collision = collision._replace({ steps: py.add(taken, collision.steps) });
       }
     } catch (error) {
       if (!(error instanceof py.ArithmeticError)) throw error;
@@ -5255,7 +5257,10 @@ function _rests_of_two_closed(state, motion) {
 
 // tippetop.mechanics.impact_on_two
 const OPEN = 1e-09;
-const MOST_of_impact_on_two = 3000;
+
+/** Slip ends under a law that then leaves the force open. */
+class SlipEnds extends py.ArithmeticError {
+}
 
 /** A body at the start of such an impact, floats. */
 class StruckOnTwo extends py.NamedTuple {
@@ -5269,6 +5274,11 @@ class StruckOnTwo extends py.NamedTuple {
   /** Speed of what strikes, m/s. */
   get speed() {
     return -py.float(this.points[0][2]);
+  }
+  /** Longest step of the clock in which slip that friction takes decays smoothly. */
+  get longest() {
+    const struck = [...this.tops].map((top) => Striking.of(this.state, top).inverse_mass);
+    return py.div(2.0, py.float(py.sum([...struck].map(([east, north]) => py.add(east[0], north[1])))));
   }
   /** The state after these impulses. */
   after(here) {
@@ -5292,9 +5302,10 @@ class StruckOnTwo extends py.NamedTuple {
     const omega = angular_velocity(state.axis, state.momentum, top);
     const points = this.velocities(here);
     let [pace, units, responses] = [py.div(1.0, this.speed), [], []];
-    for (const [point, arm] of py.zip(points, this.arms)) {
+    const touching = py.list(py.zip(points, this.arms));
+    for (const [point, arm] of py.truth(pressed) ? touching : touching.slice(0, 1)) {
       if (py.truth(is_dry(top.friction)) && length([...point.slice(0, 2), 0.0]) < py.mul(OPEN, this.speed)) {
-        throw new py.ArithmeticError("slip ends in an impact on two surfaces");
+        throw new SlipEnds("slip ends in an impact on two surfaces");
       }
       const traction = top.friction.traction([point[0], point[1]], omega);
       const [slip, grip] = [length([...point.slice(0, 2), 0.0]), length([...traction.force, 0.0])];
@@ -5304,7 +5315,7 @@ class StruckOnTwo extends py.NamedTuple {
       responses.push(this.change(py.item(units, -1)));
     }
     const share = py.truth(pressed) ? py.max(0.0, py.div(py.neg(responses[0][1][2]), responses[1][1][2])) : 0.0;
-    const rates = [...py.zip(...units).map(([a, b]) => py.add(a, py.mul(share, b))), 1.0, share, points[0][2]];
+    const rates = [...py.zip(units[0], py.item(units, -1)).map(([a, b]) => py.add(a, py.mul(share, b))), 1.0, share, points[0][2]];
     return py.tuple([...rates].map((rate) => py.div(rate, pace)));
   }
   /** The numbers after a step, and its error over the one allowed. */
@@ -5318,12 +5329,16 @@ class StruckOnTwo extends py.NamedTuple {
     const doubt = py.max(py.map(length, this.change(combined(py.mul([0.0], py.len(here)), step, DOUBT, slopes))));
     return [there, py.float(py.div(doubt, py.mul(TOLERANCE, this.speed)))];
   }
-  /** The first numbers from given ones on at which the goal is not negative. */
+  /** The first numbers from given ones on at which the goal is not negative, and the steps to there. */
   until(here, goal) {
-    let step = py.mul(0.05, this.tops[0].mass);
-    for (let turn = 0; turn < MOST_of_impact_on_two; turn += 1) {
+    let [step, longest] = [py.mul(0.05, this.tops[0].mass), this.longest];
+    for (let taken = 0; taken < MOST_of_integrated_impact; taken += 1) {
       const lifted = this.velocities(here)[1][2];
       const pressed = (lifted <= py.mul(OPEN, this.speed));
+      const held = py.truth(pressed) ? this.held(here, goal) : null;
+      if (held !== null) {
+        return [held, taken];
+      }
       let [there, doubt] = this.step(here, step, pressed);
       if (doubt > 1.0) {
         step = py.mul(step, py.max(0.1, py.mul(0.9, py.pow(doubt, -0.2))));
@@ -5338,11 +5353,30 @@ class StruckOnTwo extends py.NamedTuple {
         there = this._landing(here, step, end, there, pressed);
       }
       if (py.contains(reached, goal) && goal(there) >= -1e-12) {
-        return there;
+        return [there, taken + 1];
       }
-      [here, step] = [there, py.mul(step, py.min(5.0, py.mul(0.9, py.pow(py.max(doubt, 1e-10), -0.2))))];
+      [here, step] = [there, py.min(longest, py.mul(step, py.min(5.0, py.mul(0.9, py.pow(py.max(doubt, 1e-10), -0.2)))))];
     }
     throw new py.ArithmeticError("an impact on two surfaces does not come to its end");
+  }
+  /** The rest if friction has come to hold both slips constant: a straight line. */
+  held(here, goal) {
+    const rates = this.slope(here, true);
+    const unit = py.tuple([...rates].map((rate) => py.div(rate, rates[6])));
+    const [[x, y, rise], [other_x, other_y]] = this.change(unit);
+    const [approach, shift] = [this.velocities(here)[0][2], py.add(length([x, y, 0.0]), length([other_x, other_y, 0.0]))];
+    if (!(shift < py.mul(STUCK, rise))) {
+      return null;
+    }
+    const along = (q) => {
+      const work = py.mul(q, py.add(approach, py.mul(0.5 * q, rise)));
+      return [...py.zip(here.slice(0, 8), unit.slice(0, 8)).map(([a, b]) => py.add(a, py.mul(q, b))), py.add(here[8], work)];
+    };
+    let guess = py.div(this.speed, rise);
+    while (goal(along(guess)) < 0.0) {
+      guess = py.mul(guess, 2.0);
+    }
+    return along(crossing((q) => goal(along(q)), 0.0, guess));
   }
   /** Where within a step an end is reached, unless another one was before. */
   _landing(here, step, end, there, pressed) {
@@ -5360,7 +5394,7 @@ function impact_on_two(state, restitution, tops) {
   const arms = py.tuple([...tops].map((top) => contact_vector(state.axis, top.surface)));
   const points = py.tuple([...arms].map((arm) => contact_velocity(state, arm, tops[0])));
   const body = new StruckOnTwo(state, tops, [arms[0], arms[1]], [points[0], points[1]]);
-  const compressed = body.until(py.mul([0.0], 9), (y) => py.div(py.float(body.velocities(y)[0][2]), body.speed));
+  let [compressed, steps] = body.until(py.mul([0.0], 9), (y) => py.div(py.float(body.velocities(y)[0][2]), body.speed));
   let end = compressed;
   if (restitution > 0.0) {
     const [full, stored] = [py.mul(1.0 + restitution, compressed[6]), py.neg(compressed[8])];
@@ -5368,11 +5402,13 @@ function impact_on_two(state, restitution, tops) {
       const [spent, left] = [py.sub(py.div(here[6], full), 1.0), py.div(here[8], stored)];
       return py.float(py.max(spent, left));
     };
-    end = body.until(compressed, goal);
+    let more;
+    [end, more] = body.until(compressed, goal);
+    steps = py.add(steps, more);
   }
   const after = body.after(end);
   const lost = py.max(0.0, py.float(py.sub(energy(state, tops[0]), energy(after, tops[0]))));
-  return new Impact(after, end[6], lost, compressed[6]);
+  return new Impact(after, end[6], lost, compressed[6], steps);
 }
 
 // tippetop.contact.several
@@ -5430,16 +5466,18 @@ class OnSeveral extends FreeToFly {
   }
   /** That of the active surface alone, unless it presses another that touches onto the table. */
   _impact(state, restitution) {
+    let found;
     const alone = impact(state, restitution, this.top);
     for (const other of this._beside(state)) {
       const pressed = gap_rate(alone.state, other) < py.neg(SLOWEST_ROCKING);
       if (py.truth(pressed) && py.abs(gap_rate(state, other)) <= SLOWEST_ROCKING) {
         try {
-          return impact_on_two(state, restitution, [this.top, other]);
+          found = impact_on_two(state, restitution, [this.top, other]);
         } catch (error) {
-          if (!(error instanceof py.ArithmeticError)) throw error;
+          if (!(error instanceof SlipEnds)) throw error;
           return alone;
         }
+        return found._replace({ steps: py.add(alone.steps, found.steps) });
       }
     }
     return alone;
@@ -7347,7 +7385,6 @@ export {
   MOST_LOOKS,
   MOST_STEPS,
   MOST_STEPS_of_closing,
-  MOST_of_impact_on_two,
   MOST_of_integrated_impact,
   Mode,
   Motion,
@@ -7453,6 +7490,7 @@ export {
   SlidingState,
   SlidingWithoutRolling,
   SlipBeginningOnTwo,
+  SlipEnds,
   Spelling,
   Sphere,
   SphereSurface,

@@ -13,8 +13,8 @@ from typing import NamedTuple
 from tippetop.mechanics.double_contact import Tops
 from tippetop.mechanics.dry_impact import is_dry
 from tippetop.mechanics.impact import Impact
-from tippetop.mechanics.impulse import contact_velocity
-from tippetop.mechanics.integrated_impact import DOUBT, NODES, TOLERANCE, combined
+from tippetop.mechanics.impulse import Striking, contact_velocity
+from tippetop.mechanics.integrated_impact import DOUBT, MOST, NODES, STUCK, TOLERANCE, combined
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import angular_velocity, moment_per_normal_force
 from tippetop.mechanics.roots import crossing
@@ -28,8 +28,9 @@ Point = tuple[float, ...]
 OPEN = 1e-9
 """Normal velocity of a contact that is closed, and slip that has ended, in units of what strikes."""
 
-MOST = 3000
-"""Steps after which an impact is given up; most take some ten."""
+
+class SlipEnds(ArithmeticError):
+    """Slip ends under a law that then leaves the force open."""
 
 
 class StruckOnTwo(NamedTuple):
@@ -57,6 +58,12 @@ class StruckOnTwo(NamedTuple):
         """Speed of what strikes, m/s."""
         return -float(self.points[0][2])
 
+    @property
+    def longest(self) -> float:
+        """Longest step of the clock in which slip that friction takes decays smoothly."""
+        struck = (Striking.of(self.state, top).inverse_mass for top in self.tops)
+        return 2.0 / float(sum(east[0] + north[1] for east, north, _ in struck))
+
     def after(self, here: Point) -> State:
         """The state after these impulses."""
         momentum = add(self.state.momentum, (here[0], here[1], here[2]))
@@ -83,9 +90,10 @@ class StruckOnTwo(NamedTuple):
         omega = angular_velocity(state.axis, state.momentum, top)
         points = self.velocities(here)
         pace, units, responses = 1.0 / self.speed, [], []
-        for point, arm in zip(points, self.arms, strict=True):
+        touching = list(zip(points, self.arms, strict=True))
+        for point, arm in touching if pressed else touching[:1]:
             if is_dry(top.friction) and length((*point[:2], 0.0)) < OPEN * self.speed:
-                raise ArithmeticError("slip ends in an impact on two surfaces")
+                raise SlipEnds("slip ends in an impact on two surfaces")
             traction = top.friction.traction((point[0], point[1]), omega)
             slip, grip = length((*point[:2], 0.0)), length((*traction.force, 0.0))
             pace += grip / slip if slip else 0.0
@@ -93,7 +101,7 @@ class StruckOnTwo(NamedTuple):
             units.append((*moment, *scale(1.0 / top.mass, force)))
             responses.append(self.change(units[-1]))
         share = max(0.0, -responses[0][1][2] / responses[1][1][2]) if pressed else 0.0
-        rates = (*(a + share * b for a, b in zip(*units, strict=True)), 1.0, share, points[0][2])
+        rates = (*(a + share * b for a, b in zip(units[0], units[-1], strict=True)), 1.0, share, points[0][2])
         return tuple(rate / pace for rate in rates)
 
     def step(self, here: Point, step: float, *, pressed: bool) -> tuple[Point, float]:
@@ -106,18 +114,21 @@ class StruckOnTwo(NamedTuple):
         doubt = max(map(length, self.change(combined((0.0,) * len(here), step, DOUBT, slopes))))
         return there, float(doubt / (TOLERANCE * self.speed))
 
-    def until(self, here: Point, goal: Callable[[Point], float]) -> Point:
-        """The first numbers from given ones on at which the goal is not negative.
+    def until(self, here: Point, goal: Callable[[Point], float]) -> tuple[Point, int]:
+        """The first numbers from given ones on at which the goal is not negative, and the steps to there.
 
         Raises
         ------
         ArithmeticError
             If it takes too many steps.
         """
-        step = 0.05 * self.tops[0].mass
-        for _ in range(MOST):
+        step, longest = 0.05 * self.tops[0].mass, self.longest
+        for taken in range(MOST):
             lifted = self.velocities(here)[1][2]
             pressed = bool(lifted <= OPEN * self.speed)
+            held = self.held(here, goal) if pressed else None
+            if held is not None:
+                return held, taken
             there, doubt = self.step(here, step, pressed=pressed)
             if doubt > 1.0:
                 step *= max(0.1, 0.9 * doubt**-0.2)
@@ -129,9 +140,31 @@ class StruckOnTwo(NamedTuple):
             for end in reached:
                 there = self._landing(here, step, end, there, pressed=pressed)
             if goal in reached and goal(there) >= -1e-12:
-                return there
-            here, step = there, step * min(5.0, 0.9 * max(doubt, 1e-10) ** -0.2)
+                return there, taken + 1
+            here, step = there, min(longest, step * min(5.0, 0.9 * max(doubt, 1e-10) ** -0.2))
         raise ArithmeticError("an impact on two surfaces does not come to its end")
+
+    def held(self, here: Point, goal: Callable[[Point], float]) -> Point | None:
+        """The rest if friction has come to hold both slips constant: a straight line.
+
+        Where they change less along it than a step may err, a steep law would take many steps, and no other
+        way.
+        """
+        rates = self.slope(here, pressed=True)
+        unit = tuple(rate / rates[6] for rate in rates)
+        (x, y, rise), (other_x, other_y, _) = self.change(unit)
+        approach, shift = self.velocities(here)[0][2], length((x, y, 0.0)) + length((other_x, other_y, 0.0))
+        if not shift < STUCK * rise:
+            return None
+
+        def along(q: float) -> Point:
+            work = q * (approach + 0.5 * q * rise)
+            return (*(a + q * b for a, b in zip(here[:8], unit[:8], strict=True)), here[8] + work)
+
+        guess = self.speed / rise
+        while goal(along(guess)) < 0.0:
+            guess *= 2.0
+        return along(crossing(lambda q: goal(along(q)), 0.0, guess))
 
     def _landing(
         self, here: Point, step: float, end: Callable[[Point], float], there: Point, *, pressed: bool
@@ -157,13 +190,15 @@ def impact_on_two(state: State, restitution: float, tops: Tops) -> Impact:
 
     Raises
     ------
+    SlipEnds
+        If slip ends under a law that then leaves the force open.
     ArithmeticError
-        If it does not come to its end, or slip ends under a law that then leaves the force open.
+        If it takes too many steps.
     """
     arms = tuple(contact_vector(state.axis, top.surface) for top in tops)
     points = tuple(contact_velocity(state, arm, tops[0]) for arm in arms)
     body = StruckOnTwo(state, tops, (arms[0], arms[1]), (points[0], points[1]))
-    compressed = body.until((0.0,) * 9, lambda y: float(body.velocities(y)[0][2]) / body.speed)
+    compressed, steps = body.until((0.0,) * 9, lambda y: float(body.velocities(y)[0][2]) / body.speed)
     end = compressed
     if restitution > 0.0:
         full, stored = (1.0 + restitution) * compressed[6], -compressed[8]
@@ -172,7 +207,8 @@ def impact_on_two(state: State, restitution: float, tops: Tops) -> Impact:
             spent, left = here[6] / full - 1.0, here[8] / stored
             return float(max(spent, left))
 
-        end = body.until(compressed, goal)
+        end, more = body.until(compressed, goal)
+        steps += more
     after = body.after(end)
     lost = max(0.0, float(energy(state, tops[0]) - energy(after, tops[0])))
-    return Impact(after, end[6], lost, compressed[6])
+    return Impact(after, end[6], lost, compressed[6], steps)
