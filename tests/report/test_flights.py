@@ -19,7 +19,7 @@ from tippetop.run import simulate
 
 @pytest.fixture(scope="module")
 def computed() -> dict[str, xr.Dataset]:
-    tilts = {"final_theta_flight": variable([math.pi, 3.1], "rad", "tilt", ("spin_flight",))}
+    tilts = {"final_theta_flight": variable([math.pi, 3.1], "rad", "tilt", "spin_flight")}
     return {
         "run-175": EXPERIMENTS["run-175"].run(quick=True),
         "flights": followed((160.0, 175.0, 200.0), 0.0),

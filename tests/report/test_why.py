@@ -37,10 +37,10 @@ def _thresholds_of_runs() -> xr.Dataset:
     """What the sweeps for Fig. 6 find, in short: they take too long to be run here."""
     return xr.Dataset(
         {
-            "upright_by_window": variable([27.04, 27.76], "rad s-1", "first", ("window",)),
-            "inverted_by_window": variable([78.46, 77.27], "rad s-1", "second", ("window",)),
-            "upright_by_margin": variable([24.49, 27.04, 29.89], "rad s-1", "first", ("margin",)),
-            "inverted_by_margin": variable([79.45, 78.46, 77.33], "rad s-1", "second", ("margin",)),
+            "upright_by_window": variable([27.04, 27.76], "rad s-1", "first", "window"),
+            "inverted_by_window": variable([78.46, 77.27], "rad s-1", "second", "window"),
+            "upright_by_margin": variable([24.49, 27.04, 29.89], "rad s-1", "first", "margin"),
+            "inverted_by_margin": variable([79.45, 78.46, 77.33], "rad s-1", "second", "margin"),
         },
         {"window": [20.0, 200.0], "margin": [0.001, 0.01, 0.1]},
     )

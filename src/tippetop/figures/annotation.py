@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
+from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import FixedLocator, NullFormatter, ScalarFormatter
 
-from tippetop.figures.style import INK
+from tippetop.figures.style import INK, WIDTH, pi_ticks
 
 Box = tuple[float, float, float, float]
 
@@ -21,6 +22,32 @@ def plain_ticks(axis: Axis, ticks: Iterable[float]) -> None:
     axis.set_major_locator(FixedLocator(list(ticks)))
     axis.set_major_formatter(ScalarFormatter())
     axis.set_minor_formatter(NullFormatter())
+
+
+TILT, FRICTION = r"tilt $\theta$ (rad)", r"friction $\mu$ (s/m)"
+SPIN = r"spin at launch $\omega_0$ (rad/s)"
+"""What axes are called."""
+
+CRITICAL = (r"$\omega_{c1}$", r"$\omega_{c2}$")
+"""The symbols of the two critical spins."""
+
+
+def panels(
+    height: float, rows: int = 1, columns: int = 1, *, lettered: bool = True, **options: Any
+) -> tuple[Figure, Any]:
+    """Return a figure of this height, inches, with its panel, or an array of panels marked with letters."""
+    figure = Figure(figsize=(WIDTH, height))
+    made = figure.subplots(rows, columns, **options)
+    if lettered and rows * columns > 1:
+        letters(made.flat)
+    return figure, made
+
+
+def tilt_axis(axes: Axes, low: float = -0.06, high: float = np.pi + 0.1, label: str = TILT) -> None:
+    """Make the upright axis of a panel one of tilts, with ticks at parts of pi."""
+    axes.set_ylabel(label)
+    pi_ticks(axes.yaxis)
+    axes.set_ylim(low, high)
 
 
 def letters(panels: Iterable[Axes]) -> None:

@@ -16,9 +16,7 @@ from tippetop.figures.style import (
     INK,
     MUTED,
     REPORT,
-    WIDTH,
     house_style,
-    pi_ticks,
 )
 
 
@@ -29,9 +27,7 @@ def rolling_figure(data: xr.Dataset) -> Figure:
     `data` has friction_needed over tilt and spin, needed_main, theta_held over held and time, theta_slips
     over time_slips, and the attributes spin_rad_per_s, tilt_rad and slippery_mu.
     """
-    figure = Figure(figsize=(WIDTH, 5.6))
-    above, below = figure.subplots(2, 1, height_ratios=[1.25, 1])
-    mark.letters((above, below))
+    figure, (above, below) = mark.panels(5.6, 2, 1, height_ratios=[1.25, 1])
     for tilt, row in zip(data["tilt"], data["friction_needed"], strict=True):
         main = float(tilt) == data.attrs["tilt_rad"]
         above.plot(data["spin"], row, color=CONVERGED if main else MUTED)
@@ -42,19 +38,15 @@ def rolling_figure(data: xr.Dataset) -> Figure:
     mark.note(above, f"{needed:.4f}", (spin, needed), (0, -6), ACCENT)
     above.set_yscale("log")
     mark.plain_ticks(above.yaxis, (0.01, 0.02, 0.05, 0.1, 0.2))
-    above.set_xlim(0, 1.12 * float(data["spin"][-1]))
-    above.set(xlabel="spin at launch (rad/s)", ylabel=r"least $\mu$ for rolling")
-    shown = float(data["time_slips"][-1])
-    below.plot(
-        data["time_slips"], data["theta_slips"], color=REPORT, label=rf"$\mu$ = {data.attrs['slippery_mu']:g}"
-    )
+    right = 1.12 * float(data["spin"][-1])
+    above.set(xlabel="spin at launch (rad/s)", ylabel=r"least $\mu$ for rolling", xlim=(0, right))
+    name = rf"$\mu$ = {data.attrs['slippery_mu']:g}"
+    below.plot(data["time_slips"], data["theta_slips"], color=REPORT, label=name)
     rolls = data.isel(held=0)
-    below.plot(
-        rolls["time"], rolls["theta_held"], color=CONVERGED, label=rf"$\mu$ = {float(rolls['held']):.4f}"
-    )
-    below.set_xlim(0, shown)
+    name = rf"$\mu$ = {float(rolls['held']):.4f}"
+    below.plot(rolls["time"], rolls["theta_held"], color=CONVERGED, label=name)
+    below.set(xlabel="time (s)", ylabel=mark.TILT, xlim=(0, float(data["time_slips"][-1])))
     below.set_ylim(0, 1.25 * max(float(data["theta_slips"].max()), data.attrs["tilt_rad"]))
-    below.set(xlabel="time (s)", ylabel=r"tilt $\theta$ (rad)")
     below.legend(loc="upper left", ncols=2)
     return figure
 
@@ -65,16 +57,13 @@ def cohen_figure(data: xr.Dataset) -> Figure:
 
     `data` has theta_stepped over step and time, theta over time, and sticks.
     """
-    figure = Figure(figsize=(WIDTH, 4.4))
-    axes = figure.subplots()
+    figure, axes = mark.panels(4.4)
     colors = (REPORT, *(CYCLE[k] for k in (3, 4, 2, 6, 5)))
     for step, tilt, color in zip(data["step"], data["theta_stepped"], colors, strict=False):
         axes.plot(data["time"], tilt, color=color, lw=1.1, label=f"{1e3 * float(step):g} ms")
     axes.plot(data["time"], data["theta"], color=CONVERGED, lw=2.2, label="exact")
-    axes.set_xlim(0, float(data["time"][-1]))
-    axes.set_ylim(-0.05, np.pi + 0.1)
-    pi_ticks(axes.yaxis)
-    axes.set(xlabel="time (s)", ylabel=r"tilt $\theta$ (rad)")
+    axes.set(xlabel="time (s)", xlim=(0, float(data["time"][-1])))
+    mark.tilt_axis(axes, -0.05)
     mark.legend_above(axes, 7)
     return figure
 
@@ -85,8 +74,7 @@ def smoothed_figure(data: xr.Dataset) -> Figure:
 
     `data` has turning_time over eps, and last_exponent.
     """
-    figure = Figure(figsize=(WIDTH, 3.8))
-    axes = figure.subplots()
+    figure, axes = mark.panels(3.8)
     eps, time = data["eps"].values, data["turning_time"].values
     axes.loglog(eps, time, "o-", color=CONVERGED)
     line = time[-1] * eps[-1] / eps
@@ -104,8 +92,7 @@ def patch_figure(data: xr.Dataset) -> Figure:
 
     `data` has turning_time over radius and spin, and upright_limit.
     """
-    figure = Figure(figsize=(WIDTH, 4.2))
-    axes = figure.subplots()
+    figure, axes = mark.panels(4.2)
     axes.set_facecolor(FAINT)
     axes.grid(visible=False)
     times = np.ma.masked_invalid(data["turning_time"].values.T)
@@ -125,9 +112,7 @@ def viscous_figure(data: xr.Dataset) -> Figure:
 
     `data` has patch_time over mu and coefficient, viscous_time over coefficient.
     """
-    figure = Figure(figsize=(WIDTH, 5.2))
-    above, below = figure.subplots(2, 1, sharex=True, height_ratios=[1.4, 1])
-    mark.letters((above, below))
+    figure, (above, below) = mark.panels(5.2, 2, 1, sharex=True, height_ratios=[1.4, 1])
     coefficient = data["coefficient"].values
     above.loglog(coefficient, data["viscous_time"], "--", color=INK, label="viscous")
     below.axhline(1.0, color=INK, ls="--")

@@ -21,9 +21,7 @@ from tippetop.figures.style import (
     MUTED,
     REPORT,
     UNILATERAL,
-    WIDTH,
     house_style,
-    pi_ticks,
 )
 
 _BOUNCES = CYCLE[5]
@@ -53,8 +51,7 @@ def onset_figure(sweep: xr.Dataset, over: str, reported: float) -> Figure:
     `sweep` has first_lift_off over the parameter and spin, and onset over window and the parameter.
     `reported` is the spin of the report's abnormal point, rad/s.
     """
-    figure = Figure(figsize=(WIDTH, 3.9))
-    axes = figure.subplots()
+    figure, axes = mark.panels(3.9)
     values, spins = np.meshgrid(sweep[over].values, sweep["spin"].values, indexing="ij")
     times = sweep["first_lift_off"].values
     stays = ~np.isfinite(times)
@@ -76,10 +73,9 @@ def onset_figure(sweep: xr.Dataset, over: str, reported: float) -> Figure:
     axes.axhline(reported, color=REPORT, lw=1.1, ls=DASHED, label=name)
     own = 0.3 if over == "mu" else 0.1
     axes.plot(own, reported, "s", color=REPORT, ms=6, mec=INK, mew=0.6, zorder=5)
-    axes.set_ylabel(r"spin at launch $\omega_0$ (rad/s)")
-    axes.set_ylim(40, 1.03 * float(sweep["spin"][-1]))
+    axes.set(ylabel=mark.SPIN, ylim=(40, 1.03 * float(sweep["spin"][-1])))
     if over == "mu":
-        axes.set(xscale="log", xlabel=r"friction $\mu$ (s/m)")
+        axes.set(xscale="log", xlabel=mark.FRICTION)
         mark.plain_ticks(axes.xaxis, [0.03, 0.1, 0.3, 1, 3, 10])
     else:
         axes.set_xlabel(r"tilt at launch $\theta_0$ (rad)")
@@ -94,8 +90,7 @@ def flights_figure(sweep: xr.Dataset) -> Figure:
     `sweep` has airborne_time, last_touchdown, first_lift_off, flights, turning_time and final_theta_flight
     over restitution and spin.
     """
-    figure = Figure(figsize=(WIDTH, 5.2))
-    panels = figure.subplots(2, 2, sharex=True)
+    figure, panels = mark.panels(5.2, 2, 2, sharex=True)
     share, turning, count, tilt = panels.flat
     for restitution, color, marker in zip(
         sweep["restitution"].values, (UNILATERAL, _BOUNCES), ("o", "s"), strict=False
@@ -112,15 +107,12 @@ def flights_figure(sweep: xr.Dataset) -> Figure:
         tilt.plot(spins, runs["final_theta_flight"], **hollow)
     _words(share, sweep)
     share.set(ylabel="airborne share (%)", ylim=(0, 100))
-    turning.set(ylabel=r"$\theta$ first passes π/2 (s)")
-    turning.set_ylim(bottom=0)
+    turning.set(ylabel=r"$\theta$ first passes π/2 (s)", ylim=(0, None))
     turning.legend(loc="upper left")
     count.set(ylabel="number of flights", yscale="log")
-    tilt.set(ylabel=r"tilt after 60 s (rad)", ylim=(-0.1, np.pi + 0.25))
-    pi_ticks(tilt.yaxis)
+    mark.tilt_axis(tilt, -0.1, np.pi + 0.25, "tilt after 60 s (rad)")
     for axes in panels[1]:
-        axes.set_xlabel(r"spin at launch $\omega_0$ (rad/s)")
-    mark.letters(panels.flat)
+        axes.set_xlabel(mark.SPIN)
     return figure
 
 
@@ -132,13 +124,5 @@ def _words(axes: Axes, sweep: xr.Dataset) -> None:
         ("from first lift-off\nto last touchdown", air / (end - float(last["first_lift_off"])), 14),
         ("from launch\nto last touchdown", air / end, -32),
     ):
-        mark.note(
-            axes,
-            text,
-            (float(last["spin"]), 100 * share),
-            (0, offset),
-            UNILATERAL,
-            ha="right",
-            va="center",
-            size=8.5,
-        )
+        at = (float(last["spin"]), 100 * share)
+        mark.note(axes, text, at, (0, offset), UNILATERAL, ha="right", va="center", size=8.5)

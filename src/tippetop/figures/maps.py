@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import BoundaryNorm, ListedColormap, LogNorm, Normalize
 from matplotlib.figure import Figure
 
+import tippetop.figures.annotation as mark
 from tippetop.figures.style import (
     CONVERGED,
     CYCLE,
@@ -15,7 +16,6 @@ from tippetop.figures.style import (
     INK,
     MUTED,
     SEQUENTIAL,
-    WIDTH,
     house_style,
     pi_ticks,
 )
@@ -77,8 +77,7 @@ def phase_map(sweep: xr.Dataset, variable: str = "final_theta") -> Figure:
     values = sweep[variable]
     if values.ndim > 2:
         return _panels(sweep, variable)
-    figure = Figure(figsize=(WIDTH, 4.6))
-    axes = figure.subplots()
+    figure, axes = mark.panels(4.6)
     axes.set_title(_title(sweep, variable))
     if values.dims == ("draw",):
         _scatter(figure, axes, sweep, variable)
@@ -98,8 +97,9 @@ def _panels(sweep: xr.Dataset, variable: str) -> Figure:
     places = np.unique(np.linspace(0, sweep.sizes[third] - 1, MOST_PANELS).round().astype(int))
     columns = min(3, len(places))
     rows = -(-len(places) // columns)
-    figure = Figure(figsize=(WIDTH, 1.2 + 2.4 * rows))
-    grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+    figure, grid = mark.panels(
+        1.2 + 2.4 * rows, rows, columns, sharex=True, sharey=True, squeeze=False, lettered=False
+    )
     title = "; ".join([_title(sweep, variable), *(_value(sweep, name) for name in others)])
     figure.suptitle(title, x=0.01, ha="left", weight="bold", size="medium")
     shade = _shade(sweep, variable, _shown(sweep, variable))

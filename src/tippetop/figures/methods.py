@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 import tippetop.figures.annotation as mark
-from tippetop.figures.style import ACCENT, CONVERGED, CYCLE, REPORT, UNILATERAL, WIDTH, house_style
+from tippetop.figures.style import ACCENT, CONVERGED, CYCLE, REPORT, UNILATERAL, house_style
 
 _LABELS = {
     "ode45": "ode45 (explicit)",
@@ -32,8 +32,7 @@ def order_figure(errors: xr.Dataset) -> Figure:
         ("rk4_in_a_step", "Appendix B, one step", CONVERGED, "o--"),
         ("ode45_in_all", "the formula of ode45", REPORT, "s-"),
     )
-    figure = Figure(figsize=(WIDTH, 3.4))
-    axes = figure.subplots()
+    figure, axes = mark.panels(3.4)
     for name, label, color, marker in series:
         values, order = errors[name], float(errors[f"order_{name}"])
         named = f"{label}: order {order:.2f}"
@@ -50,8 +49,7 @@ def stiffness_figure(counts: xr.Dataset) -> Figure:
 
     `counts` has evaluations over launch and integrator, and launch_spin and launch_mu over launch.
     """
-    figure = Figure(figsize=(WIDTH, 3.7))
-    axes = figure.subplots()
+    figure, axes = mark.panels(3.7)
     methods = [str(name) for name in counts["integrator"].values]
     launches = np.arange(counts.sizes["launch"])
     width = 0.8 / len(methods)

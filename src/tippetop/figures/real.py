@@ -8,7 +8,7 @@ from matplotlib import colormaps
 from matplotlib.figure import Figure
 
 import tippetop.figures.annotation as mark
-from tippetop.figures.style import ACCENT, CONVERGED, CYCLE, DASHED, INK, MUTED, WIDTH, house_style, pi_ticks
+from tippetop.figures.style import ACCENT, CONVERGED, CYCLE, DASHED, INK, MUTED, house_style
 
 
 @house_style()
@@ -17,12 +17,9 @@ def leine_figure(data: xr.Dataset) -> Figure:
 
     `data` has theta over pressure and time, and over pressure stem, back, both and apart.
     """
-    figure = Figure(figsize=(WIDTH, 4.2))
-    axes = figure.subplots()
-    for pressure, tilt, color in zip(
-        data["pressure"].values, data["theta"], (CONVERGED, MUTED), strict=False
-    ):
-        axes.plot(data["time"], tilt, color=color, label=str(pressure))
+    figure, axes = mark.panels(4.2)
+    for tilt, color in zip(data["theta"], (CONVERGED, MUTED), strict=False):
+        axes.plot(data["time"], tilt, color=color, label=str(tilt["pressure"].values))
     main = data.isel(pressure=0)
     axes.axvspan(float(main["both"]), float(main["apart"]), color=ACCENT, alpha=0.15, lw=0)
     for name, text, side in (("stem", "stem touches", 4), ("back", "back on its sphere", -4)):
@@ -30,10 +27,8 @@ def leine_figure(data: xr.Dataset) -> Figure:
         axes.axvline(time, color=ACCENT, ls=DASHED, lw=1.0)
         mark.note(axes, text, (time, 0.06), (side, 0), ACCENT, xycoords=mark.ALONG_X)
     mark.note(axes, "on both", (float(main["apart"]), 0.06), (4, 0), ACCENT, xycoords=mark.ALONG_X)
-    axes.set_xlim(0, float(data["time"][-1]))
-    axes.set_ylim(0, np.pi + 0.1)
-    pi_ticks(axes.yaxis)
-    axes.set(xlabel="time (s)", ylabel=r"tilt $\theta$ (rad)")
+    axes.set(xlabel="time (s)", xlim=(0, float(data["time"][-1])))
+    mark.tilt_axis(axes, 0)
     mark.legend_above(axes, 2)
     return figure
 
@@ -44,14 +39,12 @@ def stepping_figure(data: xr.Dataset) -> Figure:
 
     `data` has theta over step and time, stem, back, both and apart over step, and all of them as exact_...
     """
-    figure = Figure(figsize=(WIDTH, 5.4))
-    above, below = figure.subplots(2, 1)
-    mark.letters((above, below))
+    figure, (above, below) = mark.panels(5.4, 2, 1)
     for step, tilt, color in zip(data["step"], data["theta"], CYCLE, strict=False):
         above.plot(data["time"], tilt, color=color, lw=1.2, label=f"{1e3 * float(step):g} ms")
     above.plot(data["time"], data["exact_theta"], color=INK, ls=DASHED, lw=1.4, label="exact")
-    above.set(xlim=(float(data["time"][0]), float(data["time"][-1])), xlabel="time (s)")
-    above.set_ylabel(r"tilt $\theta$ (rad)")
+    span = (float(data["time"][0]), float(data["time"][-1]))
+    above.set(xlim=span, xlabel="time (s)", ylabel=mark.TILT)
     mark.legend_above(above, 6)
     words = {"stem": "stem touches", "back": "back on its sphere", "both": "on both", "apart": "apart"}
     steps = 1e3 * data["step"].values
@@ -70,9 +63,7 @@ def stems_figure(data: xr.Dataset) -> Figure:
 
     `data` has final_theta, jellett and jellett_needed over radius.
     """
-    figure = Figure(figsize=(WIDTH, 4.8))
-    above, below = figure.subplots(2, 1, sharex=True)
-    mark.letters((above, below))
+    figure, (above, below) = mark.panels(4.8, 2, 1, sharex=True)
     radius = 1e3 * data["radius"].values
     above.plot(radius, data["final_theta"], "o-", color=CONVERGED)
     above.set_ylabel(r"tilt at the end (rad)")
@@ -89,20 +80,15 @@ def egg_figure(data: xr.Dataset) -> Figure:
 
     `data` has theta over rate and time, and lift_off over rate.
     """
-    figure = Figure(figsize=(WIDTH, 4.0))
-    axes = figure.subplots()
+    figure, axes = mark.panels(4.0)
     colors = colormaps["viridis"](np.linspace(0.0, 0.9, data.sizes["rate"]))
     for rate, tilt, lift, color in zip(data["rate"], data["theta"], data["lift_off"], colors, strict=True):
         axes.plot(data["time"], tilt, color=color, lw=1.2, label=f"{float(rate):g} rad/s")
         if np.isfinite(lift):
-            axes.plot(
-                float(lift), float(np.interp(lift, data["time"], tilt)), "o", mfc="white", mec=INK, zorder=5
-            )
-    axes.set_xlim(0, float(data["time"][-1]))
-    axes.set_ylim(np.pi / 2 - 0.2, np.pi + 0.1)
-    pi_ticks(axes.yaxis)
-    axes.set(xlabel="time (s)", ylabel=r"tilt $\theta$ (rad)")
-    axes.set_ylim(np.pi / 2 - 0.2, np.pi + 0.1)
+            at = (float(lift), float(np.interp(lift, data["time"], tilt)))
+            axes.plot(*at, "o", mfc="white", mec=INK, zorder=5)
+    axes.set(xlabel="time (s)", xlim=(0, float(data["time"][-1])))
+    mark.tilt_axis(axes, np.pi / 2 - 0.2)
     mark.legend_above(axes, 4)
     return figure
 
@@ -114,17 +100,15 @@ def rolling_figure(data: xr.Dataset) -> Figure:
     `data` has disk_tilt, disk_measured and disk_precession over disk, the same of balls, and the attributes
     disk_radius_m and gravity.
     """
-    figure = Figure(figsize=(WIDTH, 3.8))
-    left, right = figure.subplots(1, 2)
-    mark.letters((left, right))
+    figure, (left, right) = mark.panels(3.8, 1, 2)
     for axes, name in ((left, "disk"), (right, "balls")):
         tilt = data[f"{name}_tilt"]
         axes.plot(tilt, data[f"{name}_precession"], color=CONVERGED, label="closed formula")
         axes.plot(tilt, data[f"{name}_measured"], "o", color=ACCENT, label="runs")
-        axes.set(xlabel=r"tilt $\theta$ (rad)", title=f"{name}")
+        axes.set(xlabel=mark.TILT, title=name)
     thin = np.sqrt(4 * data.attrs["gravity"] / (data.attrs["disk_radius_m"] * np.sin(data["disk_tilt"])))
     left.plot(data["disk_tilt"], thin, color=INK, ls=DASHED, lw=1.0, label="thin disk")
     left.set_ylabel("precession (rad/s)")
-    left.legend()
-    right.legend()
+    for axes in (left, right):
+        axes.legend()
     return figure

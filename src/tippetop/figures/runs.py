@@ -12,7 +12,7 @@ import tippetop.figures.annotation as mark
 from tippetop.figures.envelope import band
 from tippetop.figures.flights import continue_unilateral
 from tippetop.figures.overview import shade_flights
-from tippetop.figures.style import ACCENT, CONVERGED, DASHED, INK, MUTED, REPORT, WIDTH, house_style, pi_ticks
+from tippetop.figures.style import ACCENT, CONVERGED, DASHED, INK, MUTED, REPORT, house_style
 
 _NAME, _NAME_REPORT = "converged", "report's method"
 _PULLS = "converged, table pulls"
@@ -44,11 +44,10 @@ def motion_figure(
     otherwise `last_reversal`. What the report prints gets squares: when the top has turned over and when the
     precession reverses, s, and the time of what it takes for the end, s, with theta, omega3 and phi_dot then.
     """
-    figure = Figure(figsize=(WIDTH, 5.0))
-    panels = figure.subplots(2, 2, sharex=True)
+    figure, panels = mark.panels(5.0, 2, 2, sharex=True)
     tilt, spin, turning, slip = panels.flat
     _pair(tilt, run, "theta", legend=True)
-    _tilt_axis(tilt)
+    mark.tilt_axis(tilt)
     if zoom:
         _zoom(tilt, run, zoom, inset)
     _pair(spin, run, "omega3")
@@ -70,7 +69,6 @@ def motion_figure(
             mark.note(axes, f"report: {end[1]:g}", end, (4, 8), REPORT, halo=True)
     for axes in panels[1]:
         axes.set_xlabel("time (s)")
-    mark.letters(panels.flat)
     for axes in panels.flat:
         axes.set_xlim(0, float(run["time"][-1]))
     return figure
@@ -92,7 +90,7 @@ def tilt_figure(
     """
     figure, axes = _wide_panel(run)
     _trio(axes, run, "theta")
-    _tilt_axis(axes)
+    mark.tilt_axis(axes)
     if zoom:
         _zoom(axes, run, zoom, inset)
     _mark_lift_off(axes, float(run["lift_off_time"]))
@@ -108,7 +106,7 @@ def upright_figure(run: xr.Dataset, until: float = 3.0) -> Figure:
     axes.set_xlim(0, until)
     axes.xaxis.set_major_locator(MultipleLocator(0.5))
     axes.set_ylim(0, 1.12 * float(run["theta"].max()))
-    axes.set_ylabel(r"tilt $\theta$ (rad)")
+    axes.set_ylabel(mark.TILT)
     return figure
 
 
@@ -125,8 +123,7 @@ def energy_figure(run: xr.Dataset, reported: tuple[float, float]) -> Figure:
     mark.note(axes, "energy at launch", (0, start), (2, -3), MUTED)
     names = ("(4.1), report's method", "full energy, table pulls")
     _trio(axes, run, "energy", scale=1e3, names=names)
-    axes.set_ylabel("energy (mJ)")
-    axes.set_ylim(bottom=0)
+    axes.set(ylabel="energy (mJ)", ylim=(0, None))
     low = 1e3 * float(np.interp(reported[0], run["time_listing"], run["energy_listing"]))
     high = low + 1e3 * reported[1]
     ends = {"arrowstyle": "|-|", "color": INK, "lw": 1.2, "mutation_scale": 3, "shrinkA": 0, "shrinkB": 0}
@@ -149,8 +146,7 @@ def force_figure(run: xr.Dataset) -> Figure:
     axes.axhline(0, color=ACCENT, lw=1.0)
     _trio(axes, run, "normal_force")
     mark.note(axes, "the table pulls", (0, low), (6, 5), ACCENT)
-    axes.set_ylabel("normal force $g_n$ (N)")
-    axes.set_ylim(bottom=low)
+    axes.set(ylabel="normal force $g_n$ (N)", ylim=(low, None))
     _mark_lift_off(axes, float(run["lift_off_time"]))
     return figure
 
@@ -158,9 +154,7 @@ def force_figure(run: xr.Dataset) -> Figure:
 @house_style()
 def stopped_figure(run: xr.Dataset, reported_stop: float) -> Figure:
     """Return tilt and force to where the report stopped, s, to the lift-off, and from there in flight."""
-    figure = Figure(figsize=(WIDTH, 4.6))
-    panels = figure.subplots(2, 1, height_ratios=[1.3, 1])
-    tilt, force = panels
+    figure, (tilt, force) = mark.panels(4.6, 2, 1, height_ratios=[1.3, 1])
     stop = float(run["lift_off_time"])
     before = run.sel(time=run["time"] <= stop)
     other = run.sel(time_listing=run["time_listing"] <= reported_stop)
@@ -176,7 +170,7 @@ def stopped_figure(run: xr.Dataset, reported_stop: float) -> Figure:
                 axes.plot(times, values, color=color, lw=width)
         continue_unilateral(axes, run, name)
         shade_flights(axes, run)
-    _tilt_axis(tilt)
+    mark.tilt_axis(tilt)
     force.axhline(0, color=ACCENT, lw=1.0)
     force.set(xlabel="time (s)", ylabel="normal force $g_n$ (N)", xlim=(stop - 0.55, reported_stop + 1.25))
     tilt.set_xlim(0, 8)
@@ -189,7 +183,6 @@ def stopped_figure(run: xr.Dataset, reported_stop: float) -> Figure:
     _callout(tilt, f"the top leaves the table\nat {stop:.3f} s", (stop, end), (-44, 22), ACCENT, "right")
     _callout(tilt, f"the report stops\nat {reported_stop:g} s", (reported_stop, last), (52, -12), INK, "left")
     tilt.legend(loc="upper left")
-    mark.letters(panels)
     return figure
 
 
@@ -203,10 +196,8 @@ def _callout(
 
 
 def _wide_panel(run: xr.Dataset) -> tuple[Figure, Axes]:
-    figure = Figure(figsize=(WIDTH, 3.0))
-    axes = figure.subplots()
-    axes.set_xlabel("time (s)")
-    axes.set_xlim(0, float(run["time"][-1]))
+    figure, axes = mark.panels(3.0)
+    axes.set(xlabel="time (s)", xlim=(0, float(run["time"][-1])))
     axes.xaxis.set_major_locator(MultipleLocator(2))
     return figure, axes
 
@@ -239,12 +230,6 @@ def _trio(
     mark.legend_above(axes, 3)
 
 
-def _tilt_axis(axes: Axes) -> None:
-    axes.set_ylabel(r"tilt $\theta$ (rad)")
-    pi_ticks(axes.yaxis)
-    axes.set_ylim(-0.06, np.pi + 0.1)
-
-
 def _precession(axes: Axes, run: xr.Dataset, limit: float) -> None:
     axes.axhline(0, color=MUTED, lw=0.8)
     _pair(axes, run, "phi_dot")
@@ -262,8 +247,7 @@ def _slip(axes: Axes, run: xr.Dataset) -> None:
     for suffix, time, color, width in _LINES:
         speed = np.hypot(run[f"slip_x{suffix}"], run[f"slip_y{suffix}"])
         band(axes, run[time], speed, color, _EDGES[width])
-    axes.set_ylabel("slip speed $|v_A|$ (m/s)")
-    axes.set_ylim(bottom=0)
+    axes.set(ylabel="slip speed $|v_A|$ (m/s)", ylim=(0, None))
 
 
 def _mark_lift_off(axes: Axes, time: float) -> None:

@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+import tippetop.figures.annotation as mark
 import tippetop.figures.drawing as draw
 from tippetop.figures.drawing import Array
 from tippetop.figures.style import ACCENT, CONVERGED, CYCLE, INK, MUTED, REPORT, WIDTH, house_style
@@ -32,8 +33,7 @@ def section(piece: Workpiece) -> Figure:
     reach, low, high = points.real.max(), points.imag.min(), points.imag.max()
     room = 0.12 * max(reach, (high - low) / 2.0)
     tall = (high - low + 2.0 * room) / (2.0 * reach + 2.0 * room)
-    figure = Figure(figsize=(WIDTH, min(8.0, max(2.4, 0.62 * WIDTH * tall))))
-    axes = figure.subplots()
+    figure, axes = mark.panels(min(8.0, max(2.4, 0.62 * WIDTH * tall)))
     axes.set(xlim=(-reach - room, reach + room), ylim=(low - room, high + room), aspect="equal")
     axes.set(xlabel="Distance from the axis (mm)", ylabel="Height (mm)")
     axes.set_xticks([tick for tick in axes.get_xticks() if abs(tick) <= reach + room])

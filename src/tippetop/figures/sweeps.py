@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FixedLocator, ScalarFormatter
 
 import tippetop.figures.annotation as mark
 from tippetop.figures.style import (
@@ -18,9 +19,7 @@ from tippetop.figures.style import (
     MUTED,
     REPORT,
     UNILATERAL,
-    WIDTH,
     house_style,
-    pi_ticks,
 )
 
 
@@ -33,8 +32,7 @@ def final_tilt_figure(sweep: xr.Dataset, reported: tuple[float, float, float]) -
     lift_off_onset. `reported` are the report's two critical spins and the
     spin of its abnormal point, rad/s.
     """
-    figure = Figure(figsize=(WIDTH, 4.3))
-    axes = figure.subplots()
+    figure, axes = mark.panels(4.3)
     longest = sweep.isel(window=-1)
     ours = (float(longest["upright_by_window"]), float(longest["inverted_by_window"]))
     onset = float(sweep["lift_off_onset"])
@@ -53,19 +51,12 @@ def final_tilt_figure(sweep: xr.Dataset, reported: tuple[float, float, float]) -
         sweep["spin_listing"], sweep["final_theta_listing"], "o", color=REPORT, label="report's method",
         ms=5, mec="white", mew=0.5, zorder=4,
     )  # fmt: skip
-    for spin in reported[:2]:
-        axes.axvline(spin, color=REPORT, lw=1.1, ls=DASHED)
-    for spin in ours:
-        axes.axvline(spin, color=CONVERGED, lw=1.1, ls=DASHED)
-    names = (r"$\omega_{c1}$", r"$\omega_{c2}$")
-    for name, theirs, spin in zip(names, reported, ours, strict=False):
+    _critical(axes, (*reported[:2], *ours), 1.1)
+    for name, theirs, spin in zip(mark.CRITICAL, reported, ours, strict=False):
         _two_values(axes, name, theirs, spin)
     _abnormal(axes, reported[2], onset)
-    axes.set_xlabel(r"spin at launch $\omega_0$ (rad/s)")
-    axes.set_ylabel(r"tilt after 20 s, $\theta_{\mathrm{end}}$ (rad)")
-    axes.set_xlim(0, right)
-    axes.set_ylim(-0.08, np.pi + 0.62)
-    pi_ticks(axes.yaxis)
+    axes.set(xlabel=mark.SPIN, xlim=(0, right))
+    mark.tilt_axis(axes, -0.08, np.pi + 0.62, r"tilt after 20 s, $\theta_{\mathrm{end}}$ (rad)")
     mark.legend_above(axes, 4)
     for box, around, tilts in (
         ((0.455, 0.11, 0.13, 0.4), (23.5, 30.5), (-0.006, 0.06)),
@@ -83,8 +74,7 @@ def _threshold(
     spins: tuple[float, float, float, float],
 ) -> None:
     """Draw one of the thresholds large: the critical spins are the report's two, then the converged ones."""
-    for spin, color in zip(spins, (REPORT, REPORT, CONVERGED, CONVERGED), strict=True):
-        panel.axvline(spin, color=color, lw=1.0, ls=DASHED)
+    _critical(panel, spins, 1.0)
     panel.plot(sweep["spin"], sweep["final_theta"], ".-", color=CONVERGED, lw=1.2, ms=3)
     panel.plot(
         sweep["spin_listing"], sweep["final_theta_listing"], "o", color=REPORT, ms=4, mec="white", mew=0.4
@@ -92,6 +82,12 @@ def _threshold(
     panel.set(xlim=limits[0], ylim=limits[1])
     panel.locator_params(nbins=4)
     mark.source(axes, panel)
+
+
+def _critical(axes: Axes, spins: tuple[float, ...], width: float) -> None:
+    """Draw the critical spins: the report's two, then the converged ones."""
+    for spin, color in zip(spins, (REPORT, REPORT, CONVERGED, CONVERGED), strict=True):
+        axes.axvline(spin, color=color, lw=width, ls=DASHED)
 
 
 def _two_values(axes: Axes, name: str, theirs: float, ours: float) -> None:
@@ -118,8 +114,7 @@ def flip_time_figure(times: xr.Dataset, reported: float) -> Figure:
     and flip_time_wide over spin_wide and mu_wide. `reported` is the power of mu that the report prints; its
     line goes through the middle of the points of its method.
     """
-    figure = Figure(figsize=(WIDTH, 3.9))
-    left, right = figure.subplots(1, 2)
+    figure, (left, right) = mark.panels(3.9, 1, 2)
     mu = times["mu"].values
     fine = np.linspace(mu[0], mu[-1], 200)
     series = (("_listing", REPORT, "o", "report's method"), ("", CONVERGED, ".", "converged"))
@@ -134,11 +129,10 @@ def flip_time_figure(times: xr.Dataset, reported: float) -> Figure:
     label = rf"the report: $\mu^{{{reported:g}}}$"
     left.plot(fine, float(middle) * fine**reported, color=INK, lw=1.0, ls=DASHED, label=label)
     left.legend(loc="upper right", labelspacing=0.9)
-    left.set(xlabel=r"friction $\mu$ (s/m)", ylabel="flip time (s)")
-    left.set_ylim(0, 1.15 * float(times["flip_time_listing"].max()))
+    high = 1.15 * float(times["flip_time_listing"].max())
+    left.set(xlabel=mark.FRICTION, ylabel="flip time (s)", ylim=(0, high))
     left.set_title(f"{times.attrs['spin_rad_per_s']:g} rad/s", size=10)
     _products(right, times)
-    mark.letters((left, right))
     return figure
 
 
@@ -150,11 +144,8 @@ def _products(axes: Axes, wide: xr.Dataset) -> None:
     for spin, color in zip(wide["spin_wide"].values, colors, strict=False):
         product = wide["mu_wide"] * wide["flip_time_wide"].sel(spin_wide=spin)
         axes.plot(wide["mu_wide"], product, "-o", color=color, ms=3, lw=1.2, label=f"{spin:g} rad/s")
-    axes.set(
-        xscale="log", yscale="log", xlabel=r"friction $\mu$ (s/m)", ylabel=r"$\mu\,\times$ flip time (s²/m)"
-    )
-    axes.xaxis.set_major_locator(FixedLocator([0.01, 0.1, 1, 10]))
-    axes.xaxis.set_major_formatter(ScalarFormatter())
+    axes.set(xscale="log", yscale="log", xlabel=mark.FRICTION, ylabel=r"$\mu\,\times$ flip time (s²/m)")
+    mark.plain_ticks(axes.xaxis, [0.01, 0.1, 1, 10])
     mark.plain_ticks(axes.yaxis, [1, 2, 5, 10, 20, 50, 100])
     axes.legend(loc="upper left", bbox_to_anchor=(0.0, 0.88))
     axes.set_title("converged", size=10)
@@ -167,18 +158,16 @@ def windows_figure(sweep: xr.Dataset, reported: tuple[float, float]) -> Figure:
     `sweep` has upright_by_window and inverted_by_window over window, and upright_by_margin and
     inverted_by_margin over margin. `reported` are the report's two critical spins, rad/s.
     """
-    figure = Figure(figsize=(WIDTH, 3.3))
-    panels = figure.subplots(1, 2)
-    names = (("upright", r"$\omega_{c1}$"), ("inverted", r"$\omega_{c2}$"))
-    for axes, (name, symbol), theirs in zip(panels, names, reported, strict=True):
+    figure, panels = mark.panels(3.3, 1, 2, lettered=False)
+    names = ("upright", "inverted")
+    for axes, name, symbol, theirs in zip(panels, names, mark.CRITICAL, reported, strict=True):
         window = sweep["window"].values
         span = sweep[f"{name}_by_margin"]
         axes.axhline(theirs, color=REPORT, lw=1.2, ls=DASHED)
         axes.plot([window[0]] * 2, [float(span.min()), float(span.max())], color=FAINT, lw=7, zorder=1)
         axes.plot(window, sweep[f"{name}_by_window"], "-o", color=CONVERGED)
-        mark.note(
-            axes, f"report: {theirs:g}", (1.0, theirs), (0, 3), REPORT, xycoords=mark.ALONG_Y, ha="right"
-        )
+        place: dict[str, Any] = {"xycoords": mark.ALONG_Y, "ha": "right"}
+        mark.note(axes, f"report: {theirs:g}", (1.0, theirs), (0, 3), REPORT, **place)
         last = float(sweep[f"{name}_by_window"][-1])
         mark.note(axes, f"{last:.2f}", (window[-1], last), (0, -8 if name == "inverted" else 7), CONVERGED)
         axes.set_xscale("log")

@@ -21,11 +21,9 @@ from tippetop.figures.style import (
     UNILATERAL,
     WIDTH,
     house_style,
-    pi_ticks,
 )
 
 _LOST = "#C0622B"
-_SYMBOLS = (r"$\omega_{c1}$", r"$\omega_{c2}$")
 _ROUNDING = 1e-9
 
 
@@ -36,21 +34,16 @@ def bifurcation_figure(states: xr.Dataset) -> Figure:
     `states` has branch_spin and branch_growth over branch_theta, run_spin, run_tilt and run_end over run, and
     limits, the two critical spins; and the same with suffix _jump for a top that jumps.
     """
-    figure = Figure(figsize=(WIDTH, 3.9))
-    panels = figure.subplots(1, 2, sharey=True)
+    figure, panels = mark.panels(3.9, 1, 2, sharey=True)
     titles = ("the report's top", f"$I_1/I_3$ = {states.attrs['inertia_ratio_jump']:g}: a fold")
     for axes, suffix, title in zip(panels, ("", "_jump"), titles, strict=True):
         right = 1.04 * float(states[f"run_spin{suffix}"].max())
         _branches(axes, states, suffix, right)
         _ends_of_runs(axes, states, suffix)
         axes.set_title(title, weight="normal", color=INK, size=10)
-        axes.set_xlabel(r"spin at launch $\omega_0$ (rad/s)")
-        axes.set_xlim(0, right)
+        axes.set(xlabel=mark.SPIN, xlim=(0, right))
         axes.xaxis.set_major_locator(MultipleLocator(20))
-    mark.letters(panels)
-    panels[0].set_ylabel(r"final tilt $\theta$ (rad)")
-    panels[0].set_ylim(-0.12, np.pi + 0.12)
-    pi_ticks(panels[0].yaxis)
+    mark.tilt_axis(panels[0], -0.12, np.pi + 0.12, r"final tilt $\theta$ (rad)")
     handles, labels = panels[1].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=4, columnspacing=1.4)
     return figure
@@ -74,8 +67,8 @@ def _branches(axes: Axes, states: xr.Dataset, suffix: str, right: float) -> None
         mark.note(axes, f"fold, {spin[turning]:.1f}", (spin[turning], tilt[turning]), (-8, 0), ACCENT)
         axes.plot(spin[turning], tilt[turning], "s", color=ACCENT, ms=5, zorder=5)
     for symbol, limit, height, offset in (
-        (_SYMBOLS[0], upright, 0.0, (5, 8)),
-        (_SYMBOLS[1], inverted, np.pi, (5, -9)),
+        (mark.CRITICAL[0], upright, 0.0, (5, 8)),
+        (mark.CRITICAL[1], inverted, np.pi, (5, -9)),
     ):
         axes.plot(limit, height, "s", color=ACCENT, ms=5, zorder=5, clip_on=False)
         mark.note(axes, f"{symbol} = {limit:.2f}", (limit, height), offset, ACCENT, zorder=6, halo=True)
@@ -108,7 +101,7 @@ def growth_figure(critical: xr.Dataset, reported: tuple[float, float]) -> Figure
     panels = figure.subplot_mosaic([["rate", "rate"], ["upright", "inverted"]], height_ratios=[1.25, 1])
     _growth(panels["rate"], critical, reported)
     names = ("upright", "inverted")
-    for name, symbol, theirs in zip(names, _SYMBOLS, reported, strict=True):
+    for name, symbol, theirs in zip(names, mark.CRITICAL, reported, strict=True):
         _apparent(panels[name], critical, name, symbol, theirs)
     mark.letters(panels[name] for name in ("rate", *names))
     return figure
@@ -125,14 +118,13 @@ def _growth(axes: Axes, critical: xr.Dataset, reported: tuple[float, float]) -> 
     axes.plot(spins, inverted, color=UNILATERAL, lw=2, label="inverted spin")
     low = min(float(upright.min()), float(inverted.min()))
     axes.set_ylim(1.6 * low, 2.2 * float(upright.max()))
-    for symbol, limit, theirs, side in zip(_SYMBOLS, limits, reported, (1, -1), strict=True):
+    for symbol, limit, theirs, side in zip(mark.CRITICAL, limits, reported, (1, -1), strict=True):
         axes.plot(limit, 0, "s", color=ACCENT, ms=6, zorder=5)
         axes.axvline(theirs, color=REPORT, lw=1.1, ls=DASHED)
         mark.note(axes, f"{symbol} = {limit:.2f}", (limit, 0), (9 * side, -11), ACCENT, halo=True)
         aside = (3 if theirs > limit else -3, 4)
         mark.note(axes, f"report: {theirs:g}", (theirs, 0.0), aside, REPORT, xycoords=mark.ALONG_X)
-    axes.set(xlabel=r"spin at launch $\omega_0$ (rad/s)", ylabel="growth rate (1/s)")
-    axes.set_xlim(spins[0], spins[-1])
+    axes.set(xlabel=mark.SPIN, ylabel="growth rate (1/s)", xlim=(spins[0], spins[-1]))
     axes.legend(loc="upper left", bbox_to_anchor=(0.24, 1.0))
 
 
@@ -171,8 +163,7 @@ def groups_figure(chart: xr.Dataset) -> Figure:
     `chart` has upright_boundary, inverted_boundary, jump_boundary, equal_thresholds, no_precession_from and
     no_precession_to over alpha, and top_gamma and top_alpha over top.
     """
-    figure = Figure(figsize=(WIDTH, 4.9))
-    axes = figure.subplots()
+    figure, axes = mark.panels(4.9)
     alpha = chart["alpha"].values
     left, right = chart.attrs["gamma_least"], chart.attrs["gamma_greatest"]
     first, jump, last = (
@@ -194,8 +185,7 @@ def groups_figure(chart: xr.Dataset) -> Figure:
     _name_regions(axes)
     _tops(axes, chart)
     axes.set(xlabel=r"inertia ratio $\gamma = I_1/I_3$", ylabel=r"eccentricity $\alpha$")
-    axes.set_xlim(left, right)
-    axes.set_ylim(0, float(alpha[-1]))
+    axes.set(xlim=(left, right), ylim=(0, float(alpha[-1])))
     axes.grid(visible=False)
     return figure
 

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FixedLocator, MultipleLocator, NullLocator, ScalarFormatter
+from matplotlib.ticker import MultipleLocator, NullLocator
 
 import tippetop.figures.annotation as mark
 from tippetop.figures.style import (
@@ -18,9 +18,7 @@ from tippetop.figures.style import (
     MUTED,
     REPORT,
     UNILATERAL,
-    WIDTH,
     house_style,
-    pi_ticks,
 )
 
 _SPAN = 3.0
@@ -34,22 +32,16 @@ def collapse_figure(flow: xr.Dataset) -> Figure:
     `flow` has flow_low and flow_high over mu_time, run_low and run_high over friction and mu_time,
     theta_swing over mu_time_swing, the run with most friction, and flip_limit.
     """
-    figure = Figure(figsize=(WIDTH, 5.6))
-    panels = figure.subplots(2, 1, sharex=True, height_ratios=[1.2, 1])
+    figure, (linear, logarithmic) = mark.panels(5.6, 2, 1, sharex=True, height_ratios=[1.2, 1])
     limit = float(flow["flip_limit"])
-    mark.letters(panels)
-    for axes in panels:
+    for axes in (linear, logarithmic):
         _runs_and_flow(axes, flow)
         axes.axvline(limit, color=MUTED, lw=0.9, ls=DASHED)
-        axes.set_ylabel(r"tilt $\theta$ (rad)")
-    linear, logarithmic = panels
-    linear.set_ylim(-0.08, np.pi + 0.12)
-    pi_ticks(linear.yaxis)
+        axes.set_ylabel(mark.TILT)
+    mark.tilt_axis(linear, -0.08, np.pi + 0.12)
     linear.legend(loc="upper left")
     mark.note(linear, f"limit of $\\mu\\,t_{{flip}}$\n{limit:.4f} s²/m", (limit, 0.2), (-6, 0), INK)
-    logarithmic.set_yscale("log")
-    logarithmic.set_ylim(1e-3, 5.0)
-    logarithmic.set_xlabel(r"$\mu\,t$ (s²/m)")
+    logarithmic.set(yscale="log", ylim=(1e-3, 5.0), xlabel=r"$\mu\,t$ (s²/m)")
     logarithmic.set_xlim(0, float(flow["mu_time"][-1]))
     return figure
 
@@ -77,8 +69,7 @@ def exponent_figure(times: xr.Dataset) -> Figure:
     `times` has crossing_time, arrival_time_end, settling_time and arrival_time_window, and exponent_ of the
     first two, over mu_flip, and limit_crossing and limit_arrival.
     """
-    figure = Figure(figsize=(WIDTH, 5.6))
-    above, below = figure.subplots(2, 1, sharex=True, height_ratios=[1.45, 1])
+    figure, (above, below) = mark.panels(5.6, 2, 1, sharex=True, height_ratios=[1.45, 1])
     mu = times["mu_flip"].values
     limits = (float(times["limit_arrival"]), float(times["limit_crossing"]))
     for limit, color in zip(limits, (CONVERGED, UNILATERAL), strict=True):
@@ -98,7 +89,6 @@ def exponent_figure(times: xr.Dataset) -> Figure:
     above.set_ylabel(r"$\mu\,\times$ time (s²/m)")
     above.legend(loc="upper left")
     _exponents(below, times)
-    mark.letters((above, below))
     for axes in (above, below):
         axes.axvspan(0.2, 1.0, color=REPORT, alpha=0.09, lw=0)
     mark.note(below, "the report's\nrange", (0.447, 1.0), (0, -4), REPORT, size=8.5, xycoords=mark.ALONG_X)
@@ -112,11 +102,9 @@ def _exponents(axes: Axes, times: xr.Dataset) -> None:
         axes.plot(mu, times[f"exponent_{name}"], "-o", color=color, ms=3.5, lw=width)
     axes.set_xscale("log")
     axes.set_xlim(mu[0] / 1.12, mu[-1] * 1.12)
-    axes.xaxis.set_major_locator(FixedLocator([0.003, 0.01, 0.03, 0.1, 0.3, 1, 3]))
-    axes.xaxis.set_major_formatter(ScalarFormatter())
+    mark.plain_ticks(axes.xaxis, [0.003, 0.01, 0.03, 0.1, 0.3, 1, 3])
     axes.xaxis.set_minor_locator(NullLocator())
-    axes.set_ylim(-2.1, 1.3)
-    axes.set(xlabel=r"friction $\mu$ (s/m)", ylabel=r"exponent $d\ln t\,/\,d\ln\mu$")
+    axes.set(xlabel=mark.FRICTION, ylabel=r"exponent $d\ln t\,/\,d\ln\mu$", ylim=(-2.1, 1.3))
 
 
 @house_style()
@@ -125,8 +113,7 @@ def balance_figure(run: xr.Dataset) -> Figure:
 
     `run` has balance_ratio, theta_diagnosed, envelope_low and envelope_high over time_diagnosed.
     """
-    figure = Figure(figsize=(WIDTH, 5.0))
-    tilt, ratio = figure.subplots(2, 1, sharex=True)
+    figure, (tilt, ratio) = mark.panels(5.0, 2, 1, sharex=True)
     time = run["time_diagnosed"].values
     _within_envelope(tilt, run, 0.9)
     inset = mark.inset(tilt, (0.71, 0.13, 0.28, 0.66))
@@ -134,18 +121,14 @@ def balance_figure(run: xr.Dataset) -> Figure:
     _within_envelope(inset, part, 1.3)
     inset.set_xlim(4.8, 5.3)
     mark.source(tilt, inset)
-    tilt.set_ylabel(r"tilt $\theta$ (rad)")
-    tilt.set_ylim(-0.06, np.pi + 0.1)
-    pi_ticks(tilt.yaxis)
+    mark.tilt_axis(tilt)
     tilt.legend(loc="upper left")
     ratio.axhspan(-0.1, 0.1, color=FAINT, alpha=0.7, lw=0)
     ratio.axhline(0, color=MUTED, lw=0.9)
     ratio.plot(time, run["balance_ratio"], color=ACCENT, lw=0.8)
     ratio.set_ylim(-1.35, 1.35)
     mark.note(ratio, "within a tenth", (time[-1], -0.1), (-3, -3), MUTED)
-    ratio.set(xlabel="time (s)", ylabel=r"$\xi\,/\,|I_3\omega_3|$ at launch")
-    ratio.set_xlim(0, time[-1])
-    mark.letters((tilt, ratio))
+    ratio.set(xlabel="time (s)", ylabel=r"$\xi\,/\,|I_3\omega_3|$ at launch", xlim=(0, time[-1]))
     return figure
 
 
@@ -164,8 +147,7 @@ def potential_figure(run: xr.Dataset) -> Figure:
 
     `run` has potential over instant and well_theta, and level and instant_theta over instant.
     """
-    figure = Figure(figsize=(WIDTH, 4.9))
-    panels = figure.subplots(2, 3, sharex=True)
+    figure, panels = mark.panels(4.9, 2, 3, sharex=True, lettered=False)
     tilt = run["well_theta"].values
     for k, axes in enumerate(panels.flat):
         well, level = 1e3 * run["potential"][k].values, 1e3 * float(run["level"][k])
@@ -175,12 +157,11 @@ def potential_figure(run: xr.Dataset) -> Figure:
         axes.plot(tilt, well, color=CONVERGED, lw=1.6)
         axes.axhline(level, color=REPORT, lw=1.1)
         axes.plot(at, level, "o", color=ACCENT, ms=5, zorder=5)
-        axes.set_ylim(low - 0.1 * _SPAN, low + _SPAN)
-        axes.set_xlim(-0.05, np.pi + 0.05)
+        axes.set(ylim=(low - 0.1 * _SPAN, low + _SPAN), xlim=(-0.05, np.pi + 0.05))
         axes.xaxis.set_major_locator(MultipleLocator(np.pi / 2))
         axes.set_title(f"t = {float(run['instant'][k]):g} s", weight="normal", size=10)
     for axes in panels[1]:
-        axes.set_xlabel(r"tilt $\theta$ (rad)")
+        axes.set_xlabel(mark.TILT)
         axes.xaxis.set_ticks([0, np.pi / 4, np.pi / 2, 3 * np.pi / 4, np.pi], ["0", "", "π/2", "", "π"])
     for axes in panels[:, 0]:
         axes.set_ylabel("effective potential (mJ)")

@@ -1,7 +1,7 @@
 """Claims: what the report says, what its own method gives, what is true, and the rule that decides."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, dataclass
 from enum import Enum
 from typing import TypeAlias
@@ -216,20 +216,23 @@ class Chapter:
         text: str,
         printed: str = "",
         *,
-        needs: tuple[str, ...],
+        needs: tuple[str, ...] = (),
         unit: str | None = None,
         tolerance: Tolerance | None = None,
         figure: str | None = None,
         implied: bool = False,
         right: str = "",
     ) -> Callable[[Examine], Examine]:
-        """Register the decorated function as what examines a claim; see `Claim`."""
+        """Register the decorated function as what examines a claim; see `Claim`.
+
+        What it needs is the experiment called as its figure if nothing is given.
+        """
+        needed = needs or tuple(filter(None, [figure]))
 
         def register(examine: Examine) -> Examine:
-            claim = Claim(
-                name, source, text, printed, unit, tolerance, needs, figure, implied, right, examine
+            self.claims.append(
+                Claim(name, source, text, printed, unit, tolerance, needed, figure, implied, right, examine)
             )
-            self.claims.append(claim)
             return examine
 
         return register
@@ -265,6 +268,16 @@ def _agree(reported: Value, found: Value, tolerance: float | None) -> bool:
         return bool(reported) == bool(found)
     # A bound that rounding alone decides is met: 7.4 and 7.45 differ by half a digit.
     return abs(reported - found) <= tolerance * (1.0 + 1e-9)
+
+
+def both(run: xr.Dataset, name: str) -> tuple[float, float]:
+    """A number by the report's method and converged."""
+    return float(run[f"{name}_listing"]), float(run[name])
+
+
+def listed(template: str, *columns: Iterable[object], between: str = ", ") -> str:
+    """The rows of some columns in words, each as the template says."""
+    return between.join(template.format(*row) for row in zip(*columns, strict=True))
 
 
 def number(printed: str) -> float:

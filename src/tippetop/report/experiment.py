@@ -45,6 +45,6 @@ class Experiment:
 Variable = tuple[tuple[str, ...], object, dict[str, str]]
 
 
-def variable(values: object, units: str, long_name: str, dimensions: tuple[str, ...] = ()) -> Variable:
+def variable(values: object, units: str, long_name: str, *dimensions: str) -> Variable:
     """A variable of a dataset with its unit and its meaning."""
     return (dimensions, values, {"units": units, "long_name": long_name})

@@ -6,11 +6,11 @@ from tippetop.figures import dry
 from tippetop.report.experiments.dry import COHEN_STEP, SLIPPERY, SMOOTHED, SMOOTHED_SPIN, SPIN, TILT
 from tippetop.report.experiments.patches import MAP_WINDOW, MU
 from tippetop.report.experiments.patches import SPIN as COMPARED_SPIN
-from tippetop.report.plate import Plate
+from tippetop.report.plate import plate
 
 SECTION = "Friction"
 
-_plate = partial(Plate, section=SECTION)
+_plate = partial(plate, section=SECTION)
 
 PLATES = (
     _plate(
@@ -20,7 +20,6 @@ PLATES = (
         "roll: the largest ratio of friction and normal force on its way. On any more it never slips, "
         f"loses nothing and does not turn over. b, its tilt at {SPIN:g} rad/s and {TILT:g} rad on a "
         f"little more than that, and on mu = {SLIPPERY:g}: there it slips and sticks by turns, and rises.",
-        ("dry-rolling",),
         dry.rolling_figure,
         finding="On dry friction of a point a top that is set down rolls for ever, and never turns over.",
     ),
@@ -31,7 +30,6 @@ PLATES = (
         "Am. J. Phys. 45 (1977) 12. The classical Runge-Kutta method with fixed steps follows the slip "
         f"through zero as if it went on. Orange: steps of {1e3 * COHEN_STEP:g} ms, as his. With shorter "
         "steps the top stays up for longer; exactly, it sticks and rolls.",
-        ("dry-cohen",),
         dry.cohen_figure,
         finding="The inversion published for Coulomb friction in 1977 came from the length of the steps.",
     ),
@@ -41,7 +39,6 @@ PLATES = (
         f"Coulomb friction of mu = {SMOOTHED:g}, smoothed below the slip speed eps, at {SMOOTHED_SPIN:g} "
         "rad/s: when the axis passes the horizontal. The time runs away as eps goes to zero: at any eps "
         "the top turns over if one waits, and on Coulomb's law itself it never does.",
-        ("dry-smoothed",),
         dry.smoothed_figure,
         finding="Dry friction turns a top over at any smoothing, and without it never: the limit misleads.",
     ),
@@ -52,7 +49,6 @@ PLATES = (
         f"{MU:g}, tilt 0.1 rad), by the radius of its contact patch and its spin. Grey: not within "
         f"{MAP_WINDOW:g} s. Dashed: below this spin the upright spin is stable. A small patch creeps "
         "slowly; a large one drills the spin away before the top is over.",
-        ("dry-patch",),
         dry.patch_figure,
         finding="On dry friction a patch that drills turns a top over: not too small, not too large.",
     ),
@@ -64,7 +60,6 @@ PLATES = (
         f"{COMPARED_SPIN:g} rad/s. b, their ratio. The more friction, the less the slip that is needed "
         "and the better the likeness, until drilling takes the spin: points are missing where the top "
         "does not turn over.",
-        ("dry-viscous",),
         dry.viscous_figure,
         finding="For slow slip a drilling patch amounts to the report's friction, with tens of s/m.",
     ),

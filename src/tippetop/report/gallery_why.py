@@ -6,13 +6,13 @@ from tippetop.figures import theory, theory_runs
 from tippetop.report.experiments.runs import WINDOW
 from tippetop.report.experiments.theory import LONG_RUN
 from tippetop.report.experiments.theory_runs import DIAGNOSED_SPIN, SPIN
-from tippetop.report.plate import Plate
+from tippetop.report.plate import plate
 from tippetop.report.quoted import CRITICAL_SPINS
 from tippetop.report.readings import SETTLED
 
 SECTION = "Why"
 
-_plate = partial(Plate, section=SECTION)
+_plate = partial(plate, section=SECTION)
 
 PLATES = (
     _plate(
@@ -23,7 +23,6 @@ PLATES = (
         "with less transverse inertia: between the fold and the first critical spin two states are stable, "
         f"and the launch decides. Circles and diamonds: ends of runs of {LONG_RUN:g} s, launched near "
         "upright and near inverted; the spin is that of a launch at 0.1 rad with the same lambda.",
-        ("why-bifurcation",),
         theory.bifurcation_figure,
         finding="Where every launch ends, from one conserved number and without a run.",
     ),
@@ -36,9 +35,10 @@ PLATES = (
         "from runs. The report's values are drawn where they meet the line, for it "
         "names no least tilt. In c the line is a lower bound, because the time "
         "that the top takes to turn over is not counted.",
-        ("why-critical", "critical-spins"),
-        partial(theory.growth_figure, reported=(float(CRITICAL_SPINS[0]), float(CRITICAL_SPINS[1]))),
+        theory.growth_figure,
         finding="Why 20 s show other critical spins than there are, from growth rates.",
+        needs=("why-critical", "critical-spins"),
+        reported=(float(CRITICAL_SPINS[0]), float(CRITICAL_SPINS[1])),
     ),
     _plate(
         "why-groups",
@@ -49,7 +49,6 @@ PLATES = (
         "together. The report's top by its listing and by its Table 1, and that of Leine and Glocker, Eur. "
         "J. Mech. A/Solids 22 (2003) 193. The three groups are those of Ueda, Sasaki and Watanabe, SIAM J. "
         "Appl. Dyn. Syst. 4 (2005) 1159.",
-        ("why-groups",),
         theory.groups_figure,
         finding="Which tops turn over at all, by their eccentricity and inertias.",
     ),
@@ -60,7 +59,6 @@ PLATES = (
         "logarithmic scale (b). With less friction the runs fall onto one curve, that of the motion averaged "
         "over a nutation, which has no mu in it. It gives the limit of mu times the flip time without one "
         "full run.",
-        ("why-collapse",),
         theory_runs.collapse_figure,
         finding="Why the time goes as 1/mu: without friction as a scale, only mu t is left.",
     ),
@@ -72,7 +70,6 @@ PLATES = (
         f"swings miss or meet the {SETTLED:g} rad decides the flip time, which jumps. The first tilt of more "
         f"than a right angle is free of that. On the left, {WINDOW:g} s are too short for the report's "
         "definition. b, the local exponents.",
-        ("why-exponent",),
         theory_runs.exponent_figure,
         finding="Where that law ends, and what its definition of the flip time hides.",
     ),
@@ -83,9 +80,9 @@ PLATES = (
         "a table that turned smooth at that instant would leave it. b, xi = I1 phi' cos(theta) - I3 omega3 "
         "in parts of the axial angular momentum at launch: the top climbs while xi is small, in gyroscopic "
         "balance. The peaks are passages of the axis close to the vertical.",
-        ("why-diagnostics",),
         theory_runs.balance_figure,
         finding="How the top climbs: nutation between turning points, in gyroscopic balance.",
+        needs=("why-diagnostics",),
     ),
     _plate(
         "why-potential",
@@ -93,9 +90,9 @@ PLATES = (
         "The effective potential of the tilt on a smooth table at six instants of the same run, with the "
         "energy (orange) and the tilt (dot). Friction lowers the energy and moves the well from upright to "
         "inverted, and the tilt goes along at its bottom. Every panel shows the same range of energies.",
-        ("why-diagnostics",),
         theory_runs.potential_figure,
         finding="The well that carries the tilt from upright to inverted.",
+        needs=("why-diagnostics",),
     ),
 )
 """The figures in the order of the page."""

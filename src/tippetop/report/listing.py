@@ -10,7 +10,8 @@ from tippetop.mechanics.euler import published_energy, published_normal_force, p
 from tippetop.problem import Problem
 from tippetop.report.ode45 import ode45
 
-_NAMES = ("theta", "theta_dot", "phi", "phi_dot", "omega3", "slip_x", "slip_y")
+VARIABLES = ("theta", "theta_dot", "phi", "phi_dot", "omega3", "slip_x", "slip_y")
+"""The report's variables, in its order."""
 
 
 def listing_run(problem: Problem, duration: float, *, unilateral: bool = False) -> xr.Dataset:
@@ -37,7 +38,7 @@ def listing_run(problem: Problem, duration: float, *, unilateral: bool = False) 
     top = problem.top
     y = solution.states.T
     wrapped = (np.mod(y[0], math.pi), *y[1:])
-    values = dict(zip(_NAMES, wrapped, strict=True))
+    values = dict(zip(VARIABLES, wrapped, strict=True))
     values["theta_integrated"] = y[0]
     with np.errstate(all="ignore"):
         values["normal_force"] = published_normal_force(wrapped, top, np)

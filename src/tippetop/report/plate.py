@@ -2,6 +2,8 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
+from typing import Any
 
 import xarray as xr
 from matplotlib.figure import Figure
@@ -45,3 +47,17 @@ class Plate:
         """The data behind the figure."""
         parts = [data[name] for name in self.needs]
         return xr.merge(parts, combine_attrs="drop_conflicts", compat="no_conflicts", join="outer")
+
+
+def plate(
+    id_: str,
+    title: str,
+    caption: str,
+    draw: Callable[..., Figure],
+    section: str,
+    finding: str = "",
+    needs: tuple[str, ...] = (),
+    **options: Any,
+) -> Plate:
+    """A figure drawn with some options, of the experiment that is called as it is if no others are named."""
+    return Plate(id_, title, caption, needs or (id_,), partial(draw, **options), section, finding)

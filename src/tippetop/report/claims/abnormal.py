@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from tippetop.report.claim import Chapter, Finding, Source
+from tippetop.report.claim import Chapter, Finding, Source, listed
 from tippetop.report.claims.flight import ROUNDED
 from tippetop.report.experiments.flights import TILT
 from tippetop.report.experiments.spins import TURNED
@@ -74,10 +74,7 @@ def _(over_tilt: xr.Dataset, over_mu: xr.Dataset, run: xr.Dataset, sweep: xr.Dat
 def _(sweep: xr.Dataset, flights: xr.Dataset, bouncing: xr.Dataset, capped: xr.Dataset) -> Finding:
     true, spins = sweep["final_theta_flight"].values, sweep["spin_flight"].values
     cured = not _turned(capped["final_theta"]) and _turned(capped["final_theta_capped"])
-    listed = ", ".join(
-        f"{spin:g} rad/s {one:.2f} and {other:.2f} rad"
-        for spin, one, other in zip(*(capped[name].values for name in _CAPPED), strict=True)
-    )
+    ends = listed("{:g} rad/s {:.2f} and {:.2f} rad", *(capped[name].values for name in _CAPPED))
     turned = all(_turned(data["final_theta_flight"]) for data in (sweep, flights, bouncing))
     lost = float(sweep["lost"])
     return Finding(
@@ -89,7 +86,7 @@ def _(sweep: xr.Dataset, flights: xr.Dataset, bouncing: xr.Dataset, capped: xr.D
         f"{sweep.attrs['window_s']:g} s, and those up to {flights['spin'][-1]:g} rad/s within "
         f"{np.abs(flights['final_theta_flight'].values - np.pi).max():.1g} rad after "
         f"{flights.attrs['window_s']:g} s. The report's listing has three lines commented out that set a "
-        f"negative normal force to zero; without and with them its method ends, by spin, at {listed}.",
+        f"negative normal force to zero; without and with them its method ends, by spin, at {ends}.",
         news="Three lines of its own listing, commented out, would have cured the abnormal point: they set a "
         "negative normal force to zero, which is close to letting the top hop, for the hops are low."
         if cured
@@ -115,11 +112,8 @@ def _(listing: xr.Dataset, sweep: xr.Dataset, flights: xr.Dataset, bouncing: xr.
     flights = flights.isel(restitution=0)
     flying = flights.sel(spin=flights["flights"] > 0)
     share = 100 * flying["airborne_time"] / flying["last_touchdown"]
-    columns = (flying["spin"], flying["flights"], share, flying["turning_time"])
-    described = "; ".join(
-        f"{spin:g}: {count:.0f}, {part:.0f} %, {passed:.1f} s"
-        for spin, count, part, passed in zip(*(column.values for column in columns), strict=True)
-    )
+    columns = (each.values for each in (flying["spin"], flying["flights"], share, flying["turning_time"]))
+    described = listed("{:g}: {:.0f}, {:.0f} %, {:.1f} s", *columns, between="; ")
     return Finding(
         _turned(theirs),
         turned,

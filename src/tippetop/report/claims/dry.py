@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from tippetop.report.claim import Chapter, Finding, Source
+from tippetop.report.claim import Chapter, Finding, Source, both, listed
 from tippetop.report.experiments.dry import COHEN_STEP, COHEN_WINDOW
 from tippetop.report.experiments.patches import SPIN_OF_REPORT
 from tippetop.report.quoted import NORMAL_FRICTION, ROUGH_FRICTION
@@ -24,7 +24,6 @@ _DRY = (0.1, 1.0)
     "dry-tilting-rate",
     Source("Friction: Pliskin, Am. J. Phys. 22 (1954) 28"),
     "The rate at which a tippe top tilts is proportional to the coefficient of friction.",
-    needs=("dry-rolling",),
     figure="dry-rolling",
     right="it can be so only while the top slips: set down without slip it rolls, and does not turn over",
 )
@@ -50,26 +49,21 @@ def _(data: xr.Dataset) -> Finding:
     "dry-cohen-inversion",
     Source("Friction: Cohen, Am. J. Phys. 45 (1977) 12", "Fig. 5"),
     "A tippe top on Coulomb friction of mu = 0.3 turns over within 2 s (100 rad/s, 0.1 rad).",
-    needs=("dry-cohen",),
     figure="dry-cohen",
     right="it sticks and rolls; the inversion comes from the length of the steps",
 )
 def _(data: xr.Dataset) -> Finding:
     window = data.sel(time=slice(0.0, COHEN_WINDOW + 1e-9))
     highest = data["theta_stepped"].max("time")
-    listed = ", ".join(
-        f"{1e3 * step:g} ms {tilt:.2f}"
-        for step, tilt in zip(data["step"].values, highest.values, strict=True)
-    )
-    ends = [
-        float(window["theta_stepped"].isel(step=0).sel(time=t, method="nearest")) for t in (1.0, 1.5, 2.0)
-    ]
+    tilts = listed("{:g} ms {:.2f}", 1e3 * data["step"].values, highest.values)
+    longest = window["theta_stepped"].isel(step=0)
+    ends = [float(longest.sel(time=t, method="nearest")) for t in (1.0, 1.5, 2.0)]
     return Finding(
         bool(window["theta_stepped"].sel(step=COHEN_STEP, method="nearest").max() > _OVER),
         bool(data["theta"].max() > _OVER),
         f"With steps of {1e3 * COHEN_STEP:g} ms the classical Runge-Kutta method gives {ends[0]:.2f}, "
         f"{ends[1]:.2f} and {ends[2]:.2f} rad at 1, 1.5 and 2 s. Largest tilts within "
-        f"{float(data['time'][-1]):g} s by the step (rad): {listed}. Exactly, slip ends after "
+        f"{float(data['time'][-1]):g} s by the step (rad): {tilts}. Exactly, slip ends after "
         f"{float(data['sticks']):.6f} s, the top rolls from then on, and its tilt is at most "
         f"{float(data['theta'].max()):.3f} rad.",
     )
@@ -79,7 +73,6 @@ def _(data: xr.Dataset) -> Finding:
     "dry-cohen-sliding",
     Source("Friction: Cohen, Am. J. Phys. 45 (1977) 12"),
     "The top always slides on its way.",
-    needs=("dry-cohen",),
     figure="dry-cohen",
     right="it sticks after 0.03 s, and slips no more",
 )
@@ -98,7 +91,6 @@ def _(data: xr.Dataset) -> Finding:
     "dry-coulomb-weaker",
     Source("Friction: Or, SIAM J. Appl. Math. 54 (1994) 597"),
     "Coulomb friction contributes to the inversion, more weakly than viscous friction.",
-    needs=("dry-smoothed",),
     figure="dry-smoothed",
     right="it does so while it is smoothed; on the law itself a top set down without slip rolls",
 )
@@ -121,7 +113,6 @@ def _(data: xr.Dataset) -> Finding:
     "dry-patch-inversion",
     Source("Friction: Leine and Glocker, Eur. J. Mech. A/Solids 22 (2003) 193"),
     "With Coulomb-Contensou friction of a patch of 0.5 mm the tippe top turns over (180 rad/s).",
-    needs=("dry-patch",),
     figure="dry-patch",
 )
 def _(data: xr.Dataset) -> Finding:
@@ -149,15 +140,12 @@ def _(data: xr.Dataset) -> Finding:
     "viscous).",
     "1",
     tolerance=ROUNDING,
-    needs=("dry-viscous",),
     figure="dry-viscous",
 )
 def _(data: xr.Dataset) -> Finding:
     ratio = data["patch_time"] / data["viscous_time"]
-    listed = "; ".join(
-        f"mu = {float(mu):g}: {float(row.min()):.2f} to {float(row.max()):.2f}"
-        for mu, row in zip(data["mu"], ratio, strict=True)
-    )
+    least, most = ratio.min("coefficient").values, ratio.max("coefficient").values
+    spans = listed("mu = {:g}: {:.2f} to {:.2f}", data["mu"].values, least, most, between="; ")
     worst = data["growth_ratio"].values.ravel()
     return Finding(
         None,
@@ -165,7 +153,7 @@ def _(data: xr.Dataset) -> Finding:
         "The coefficient is (3 pi / 8) mu / (R omega) with Hertz's pressure and mu / (rho omega) with an "
         "ellipsoidal limit surface. How well it stands for the whole way, by the ratio of the times to "
         f"the horizontal, over {float(data['coefficient'][0]):g} to {float(data['coefficient'][-1]):g} "
-        f"s/m: {listed}. On little friction the slip outgrows the limit; on much, drilling takes spin.",
+        f"s/m: {spans}. On little friction the slip outgrows the limit; on much, drilling takes spin.",
     )
 
 
@@ -179,8 +167,7 @@ def _(data: xr.Dataset) -> Finding:
     figure="dry-viscous",
 )
 def _(data: xr.Dataset, run: xr.Dataset) -> Finding:
-    slips = (float(run[f"largest_slip{suffix}"]) for suffix in ("_listing", ""))
-    theirs, ours = ([mu * slip for mu in NORMAL_FRICTION] for slip in slips)
+    theirs, ours = ([mu * slip for mu in NORMAL_FRICTION] for slip in both(run, "largest_slip"))
     return Finding(
         _is_dry(theirs),
         _is_dry(ours),
@@ -199,7 +186,6 @@ def _is_dry(ratios: list[float]) -> bool:
     "dry-rough-mu",
     Source("Friction: the report, Fig. 8"),
     f"No surface is as rough as mu = {ROUGH_FRICTION:g} s/m (of those tried, at {SPIN_OF_REPORT:g} rad/s).",
-    needs=("dry-viscous",),
     figure="dry-viscous",
 )
 def _(data: xr.Dataset) -> Finding:
@@ -214,14 +200,12 @@ def _(data: xr.Dataset) -> Finding:
 
 def _surfaces(data: xr.Dataset) -> str:
     """Which viscous friction patches of common materials stand for."""
-    listed = ", ".join(
-        f"{name} {1e6 * radius:.0f} µm and {mu:.0f} s/m"
-        for name, radius, mu in zip(
-            *(data[name].values for name in ("material", "hertz_radius", "hertz_coefficient")), strict=True
-        )
+    names, radii, coefficients = (
+        data[name].values for name in ("material", "hertz_radius", "hertz_coefficient")
     )
+    each = listed("{} {:.0f} µm and {:.0f} s/m", names, 1e6 * radii, coefficients)
     return (
         "Dry friction of mu = 0.3 on the elastic patch under the weight of the report's top, table of the "
         f"same material, creeps at {SPIN_OF_REPORT:g} rad/s as viscous friction would with this "
-        f"coefficient: {listed}."
+        f"coefficient: {each}."
     )

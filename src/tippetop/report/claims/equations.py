@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from tippetop.report.claim import Chapter, Finding, Source
+from tippetop.report.claim import Chapter, Finding, Source, both, listed
 from tippetop.report.tolerance import ROUNDING, TRANSCRIBED, Tolerance, rounded
 
 CHAPTER = Chapter()
@@ -53,10 +53,8 @@ def _(check: xr.Dataset) -> Finding:
 
 def _largest_miss(check: xr.Dataset, words: str) -> Finding:
     miss = check["miss"]
-    listed = ", ".join(
-        f"{name} {rounded(value)}" for name, value in zip(miss["equation"].values, miss, strict=True)
-    )
-    return Finding(None, float(miss.max()), f"Differences {words}: {listed}.")
+    each = listed("{} {}", miss["equation"].values, map(rounded, miss.values))
+    return Finding(None, float(miss.max()), f"Differences {words}: {each}.")
 
 
 @CHAPTER.claim(
@@ -72,8 +70,7 @@ def _largest_miss(check: xr.Dataset, words: str) -> Finding:
 )
 def _(check: xr.Dataset) -> Finding:
     return Finding(
-        float(check["torque_listing"]),
-        float(check["torque"]),
+        *both(check, "torque"),
         f"Turned round, a x F has {check['torque_turned']:.4e} N m: wrong still, because F counts the "
         "weight, which acts at the centre of mass and has no torque about it. Without the weight it is "
         f"{check['torque_corrected']:.4e} N m, as (2.8) and the run have it. In the printed order the "
@@ -95,8 +92,7 @@ def _(check: xr.Dataset) -> Finding:
 )
 def _(check: xr.Dataset) -> Finding:
     return Finding(
-        float(check["precession_listing"]),
-        float(check["precession"]),
+        *both(check, "precession"),
         "An I1 stands too much in the numerator. Read as I1 over the bracket it gives "
         f"{check['precession_printed']:.4g}, read as a factor "
         f"{check['precession_printed_product']:.4g} (in wrong units either way); the listing has the "

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from tippetop.report.claim import Chapter, Finding, Source
+from tippetop.report.claim import Chapter, Finding, Source, both, listed
 from tippetop.report.experiments.friction import power_law
 from tippetop.report.quoted import EXPONENT, NORMAL_FRICTION
 from tippetop.report.tolerance import ARRIVED, PLOTTED, TRANSCRIBED, WHOLE, half_last_digit
@@ -28,12 +28,12 @@ def _(data: xr.Dataset) -> Finding:
     mu, times = data["mu"].values, data["turning_time"].values
     turns = np.isfinite(times)
     fastest = int(np.nanargmin(times))
-    listed = ", ".join(f"{time:.2f} s at {m:g} s/m" for m, time in zip(mu[turns], times[turns], strict=True))
+    some = listed("{:.2f} s at {:g} s/m", times[turns], mu[turns])
     none = " and ".join(f"{m:g} s/m" for m in mu[~turns])
     return Finding(
         None,
         not turns[0] and bool((np.diff(times[fastest:][turns[fastest:]]) > 0).all()) and not turns[-1],
-        f"The axis of the main launch first passes the horizontal after {listed}; within "
+        f"The axis of the main launch first passes the horizontal after {some}; within "
         f"{data.attrs['window_s']:g} s it does not at {none}. Much friction hinders: the slip that turns the "
         "top over is soon gone, and a rolling top turns slowly.",
     )
@@ -53,8 +53,7 @@ def _(times: xr.Dataset, others: xr.Dataset) -> Finding:
     fits = [fit.exponent for fit in _fits(times, others)]
     given = sum(abs(fit - float(EXPONENT)) <= half_last_digit(EXPONENT).value for fit in fits)
     return Finding(
-        float(times["exponent_listing"]),
-        float(times["exponent"]),
+        *both(times, "exponent"),
         "Judged as a law, at Fig. 4's spin, "
         f"{times.attrs['spin_rad_per_s']:g} rad/s, in steps of {_step(times['mu']):.2g} s/m; the report "
         f"gives neither. Of {len(fits)} fits by its method, at this and other spins and steps, "
@@ -82,13 +81,13 @@ def _(times: xr.Dataset, others: xr.Dataset, onsets: xr.Dataset) -> Finding:
         {each: _scatter(run[f"turning_time{suffix}"]) for each, run in runs.items()}
         for suffix in ("_listing", "")
     )
-    listed = ", ".join(f"{100 * ours[each]:.0f} % at {each:g} rad/s" for each in sorted(ours))
+    off = listed("{:.0f} % at {:g} rad/s", [100 * ours[each] for each in sorted(ours)], sorted(ours))
     staying = [each for each in ours if each < onset]
     return Finding(
         bool(staying) and max(theirs[each] for each in staying) < _LOST,
         bool(staying) and max(ours[each] for each in staying) < _LOST,
         "Taken for the time at which the axis first passes the horizontal, which does not jump. Converged, "
-        f"mu t departs from its mean over this range by up to: {listed}. From {onset:.0f} rad/s on a launch "
+        f"mu t departs from its mean over this range by up to: {off}. From {onset:.0f} rad/s on a launch "
         "leaves the table with some friction of the range and no longer counts (a table that pulls).",
     )
 
@@ -149,9 +148,7 @@ def _(wide: xr.Dataset) -> Finding:
     off = abs(product / law - 1.0).transpose("spin_wide", "mu_wide")
     beyond = off.sel(mu_wide=wide["mu_wide"] > 1.0)
     first = [float(wide["mu_wide"][int(np.argmax(row > _LOST))]) for row in off.values]
-    named = " and ".join(
-        f"{mu:.2f} s/m at {spin:g} rad/s" for mu, spin in zip(first, wide["spin_wide"], strict=True)
-    )
+    named = listed("{:.2f} s/m at {:g} rad/s", first, wide["spin_wide"].values, between=" and ")
     return Finding(
         None,
         bool(float(beyond.max()) > _LOST),
@@ -229,9 +226,7 @@ def _(later: xr.Dataset) -> Finding:
         None,
         float(swing[-1]),
         f"20 s are too short for it: there the tilt still swings by {swing[0]:.3f} rad. Converged swings in "
-        "the second before: "
-        + ", ".join(f"{s:.4f} rad at {t:g} s" for t, s in zip(swing["end"], swing, strict=True))
-        + ".",
+        f"the second before: {listed('{:.4f} rad at {:g} s', swing.values, swing['end'].values)}.",
     )
 
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import xarray as xr
 
-from tippetop.report.claim import Chapter, Finding, Source
+from tippetop.report.claim import Chapter, Finding, Source, both
 from tippetop.report.experiments.flights import TILT as REPORT_TILT
 from tippetop.report.quoted import REVERSALS, TURNED_AT
 from tippetop.report.readings import SETTLED
@@ -98,8 +98,7 @@ _reversal("fig05-reversal", 50, REVERSALS["fig05"][0], "last_reversal", "the las
 def _(run: xr.Dataset) -> Finding:
     left = math.pi - float(run["end_theta"])
     return Finding(
-        float(run["end_theta_listing"]),
-        float(run["end_theta"]),
+        *both(run, "end_theta"),
         f"After 20 s the axis is still {1e3 * left:.2f} mrad from the vertical; the rest decays slowly.",
     )
 
@@ -166,8 +165,7 @@ def _detour(values: np.ndarray) -> float:
 )
 def _(run: xr.Dataset) -> Finding:
     return Finding(
-        float(run["end_theta_listing"]),
-        float(run["end_theta"]),
+        *both(run, "end_theta"),
         f"The nutation of the launch dies away: from {_settled(run):.2f} s on the tilt stays below "
         f"{SETTLED:g} rad.",
     )
@@ -186,8 +184,7 @@ def _turns_over(number: int, spin: int) -> None:
     )
     def _(run: xr.Dataset) -> Finding:
         return Finding(
-            float(run["end_theta_listing"]),
-            float(run["end_theta"]),
+            *both(run, "end_theta"),
             f"It arrives within {SETTLED:g} rad after {run['arrives']:.2f} s.",
         )
 

@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from tippetop.report.claim import Chapter, Finding, Source
+from tippetop.report.claim import Chapter, Finding, Source, listed
 from tippetop.report.experiments.flights import MU
 from tippetop.report.experiments.runs import likely_end
 from tippetop.report.quoted import END_OF_FIG_5, ROUGH_FRICTION
@@ -17,7 +17,6 @@ CHAPTER = Chapter()
     Source("Appendix B", equation="(B.1)"),
     "The method has an accuracy of order 5 in a single step (order of its error in the length of the step).",
     "5",
-    needs=("order",),
     figure="order",
 )
 def _(order: xr.Dataset) -> Finding:
@@ -35,7 +34,6 @@ def _(order: xr.Dataset) -> Finding:
     Source("Appendix B", equation="(B.1)"),
     "The last stage of (B.1) is f(Y4, t_n) (order of such a step on an equation that depends on time).",
     "5",
-    needs=("order",),
     figure="order",
     right="f(Y4, t_n + dt)",
 )
@@ -58,7 +56,6 @@ def _(order: xr.Dataset) -> Finding:
     "The results are by ode45, which is a 4-order Runge-Kutta method in a manner of speaking (order of the "
     "formula that it measures its error by).",
     "4",
-    needs=("order",),
     figure="order",
 )
 def _(data: xr.Dataset) -> Finding:
@@ -93,8 +90,8 @@ def _(*data: xr.Dataset) -> Finding:
         None,
         float(worst.max()),
         "On the launches that stay on the table, over their ends and their arrivals: at most "
-        + ", ".join(f"{100 * part:.2f} % in {what}" for what, part in zip(_READ_OFF, worst, strict=True))
-        + f". Not every printed digit is right: the end of Fig. 5, at {end['window']:g} s, is off by up to "
+        f"{listed('{:.2f} % in {}', 100 * worst, _READ_OFF)}. "
+        f"Not every printed digit is right: the end of Fig. 5, at {end['window']:g} s, is off by up to "
         f"{digits:.4f} rad or rad/s. At 175 rad/s small errors grow: the force falls through zero "
         f"{late:.2f} s late.",
     )
@@ -124,7 +121,6 @@ def _name(run: xr.Dataset) -> str:
     Source("5"),
     "There are cases in which the equations are stiff: ode45 is slow, and a method for stiff problems is "
     "not.",
-    needs=("stiffness",),
     figure="stiffness",
 )
 def _(counts: xr.Dataset) -> Finding:
@@ -144,17 +140,13 @@ _STIFF = 2.0
 
 def _ratios(counts: xr.Dataset) -> str:
     columns = (counts[name].values for name in ("launch_spin", "launch_tilt", "launch_mu", "stiffness"))
-    return "; ".join(
-        f"{spin:g} rad/s, {tilt:.5g} rad, {mu:g} s/m: {value:.1f}"
-        for spin, tilt, mu, value in zip(*columns, strict=True)
-    )
+    return listed("{:g} rad/s, {:.5g} rad, {:g} s/m: {:.1f}", *columns, between="; ")
 
 
 @CHAPTER.claim(
     "section-5-cause",
     Source("5"),
     "In some bad initial condition the equations are stiff: the launch decides.",
-    needs=("stiffness",),
     figure="stiffness",
     right="no launch makes the difference",
 )
@@ -180,25 +172,20 @@ def _(counts: xr.Dataset) -> Finding:
     "difference of its tilt from the converged one at the end).",
     "0 rad",
     tolerance=Tolerance(PLOTTED.value * np.pi, "1 % of pi: what a plot can show, as where ode45 is judged"),
-    needs=("stiffness",),
     figure="stiffness",
 )
 def _(counts: xr.Dataset) -> Finding:
     rough = counts.isel(launch=counts["launch_mu"].values == ROUGH_FRICTION)
-    listed = " and ".join(
-        f"{miss:.4f} rad at {spin:g} rad/s (ratio {ratio:.1f})"
-        for spin, miss, ratio in zip(
-            *(rough[name].values for name in ("launch_spin", "bdf_miss", "stiffness")), strict=True
-        )
-    )
+    columns = (rough[name].values for name in ("bdf_miss", "launch_spin", "stiffness"))
+    misses = listed("{:.4f} rad at {:g} rad/s (ratio {:.1f})", *columns, between=" and ")
     return Finding(
         None,
         float(rough["bdf_miss"].max()),
         "The report does not name its cases. These are its friction of Fig. 8, at which implicit methods "
-        f"need fewer evaluations; after {counts.attrs['span_s']:g} s the difference is {listed}. By SciPy's "
+        f"need fewer evaluations; after {counts.attrs['span_s']:g} s the difference is {misses}. By SciPy's "
         "BDF, which has ode15s's formulas and its way to vary the order, at the default tolerances. Where "
         "the top turns over, errors grow; tighter tolerances are the cure.",
-        right=f"at default tolerances it is off by {listed}",
+        right=f"at default tolerances it is off by {misses}",
     )
 
 
@@ -217,7 +204,7 @@ def _(check: xr.Dataset, *runs: xr.Dataset) -> Finding:
     theirs = float(check["jump_listing"]) / size
     tilts = {_name(run): run["theta_integrated_listing"] for run in runs}
     wraps = {name: int(((tilt < 0) | (tilt > np.pi)).sum()) for name, tilt in tilts.items()}
-    outside = ", ".join(f"{count} in {name}" for name, count in wraps.items())
+    outside = listed("{} in {}", wraps.values(), wraps)
     return Finding(
         theirs,
         theirs,

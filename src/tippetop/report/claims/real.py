@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from tippetop.report.claim import Chapter, Finding, Source
+from tippetop.report.claim import Chapter, Finding, Source, listed
 from tippetop.report.tolerance import ROUNDING, Tolerance
 
 CHAPTER = Chapter()
@@ -26,22 +26,18 @@ def _leine(event: str, text: str, printed: str) -> None:
         text.format(printed),
         f"{printed} s",
         tolerance=_READ,
-        needs=("real-leine",),
         figure="real-leine",
     )
     def _(data: xr.Dataset) -> Finding:
         times = data[event]
-        listed = ", ".join(
-            f"{time:.4f} s ({name})" for name, time in zip(data["pressure"].values, times.values, strict=True)
-        )
-        misses = abs(times - float(printed))
-        failing = [str(name) for name in data["pressure"].values[(misses > _READ.value).values]]
+        pressures, misses = data["pressure"].values, abs(times - float(printed))
+        failing = [str(name) for name in pressures[(misses > _READ.value).values]]
         return Finding(
             None,
             float(times[0]),
             "The paper does not say which pressure in the patch its figure is for. Judged is the ellipsoidal "
             "limit surface, the law of a code of its authors; it misses by "
-            f"{float(misses[0]):.3f} s. By the pressure: {listed}. "
+            f"{float(misses[0]):.3f} s. By the pressure: {listed('{:.4f} s ({})', times.values, pressures)}. "
             + (f"Too far off would be: {', '.join(failing)}. " if failing else "")
             + f"Energy and work balance to {float(data['energy_error'].max()):.0e} of the energy.",
         )
@@ -58,24 +54,24 @@ _leine("apart", "Sphere and stem both touch until {} s.", "5.4")
     Source("Real tops: J. J. Moreau, Unilateral contact and dry friction in finite freedom dynamics (1988)"),
     "Time-stepping goes through impacts and rocking without finding their instants: what it finds of Leine "
     "and Glocker's top goes to what happens as its step becomes small.",
-    needs=("real-stepping",),
     figure="real-stepping",
 )
 def _(data: xr.Dataset) -> Finding:
-    off = {name: data[name] - data[f"exact_{name}"] for name in ("stem", "back", "both", "apart")}
-    goes = all(abs(float(one[-1])) < 0.5 * abs(float(one[0])) for one in off.values())
-    listed = "; ".join(
-        f"{1e3 * float(step):g} ms: {float(off['stem'][k]):+.4f}, {float(off['back'][k]):+.3f}, "
-        f"{float(off['both'][k]):+.3f} s, {int(data['strikes'][k])} strikes, "
-        f"{float(data['final_theta'][k] - data['exact_final_theta']):+.3f} rad"
-        for k, step in enumerate(data["step"])
+    events = ("stem", "back", "both", "apart")
+    off = {name: data[name] - data[f"exact_{name}"] for name in (*events, "final_theta")}
+    goes = all(abs(float(off[name][-1])) < 0.5 * abs(float(off[name][0])) for name in events)
+    columns = (1e3 * data["step"], off["stem"], off["back"], off["both"], data["strikes"], off["final_theta"])
+    steps = listed(
+        "{:g} ms: {:+.4f}, {:+.3f}, {:+.3f} s, {:.0f} strikes, {:+.3f} rad",
+        *(column.values for column in columns),
+        between="; ",
     )
     return Finding(
         None,
         goes,
         "By its step, how far off are the stem's first touch, the fall back on the sphere and the beginning "
         "of double contact, of how many strikes the rocking before this consists, and how far off the tilt "
-        f"is after 8 s: {listed}. There are {int(data['exact_strikes'])} strikes above the bound at which "
+        f"is after 8 s: {steps}. There are {int(data['exact_strikes'])} strikes above the bound at which "
         "the rocking is cut off; those closer together than a step are one to it, so that both surfaces rest "
         "on the table too early.",
     )
@@ -86,7 +82,6 @@ def _(data: xr.Dataset) -> Finding:
     Source("Real tops: Rauch-Wojciechowski, Regular and Chaotic Dynamics 10 (2005) 333"),
     "A top stands on its stem where Jellett's integral about the tip is large enough for a spin upright to "
     "be stable.",
-    needs=("real-stems",),
     figure="real-stems",
 )
 def _(data: xr.Dataset) -> Finding:
@@ -108,19 +103,15 @@ def _(data: xr.Dataset) -> Finding:
     "real-egg-rises",
     Source("Real tops: Moffatt and Shimomura, Nature 416 (2002) 385"),
     "A hard-boiled egg that is spun fast enough on its side rises until it stands on its end.",
-    needs=("real-egg",),
     figure="real-egg",
 )
 def _(data: xr.Dataset) -> Finding:
     final = data["theta"].isel(time=-1)
-    listed = "; ".join(
-        f"{float(rate):g} rad/s: {float(tilt):.3f}" for rate, tilt in zip(data["rate"], final, strict=True)
-    )
-    upright = float(final.isel(rate=-1)) > np.pi - 0.1
+    tilts = listed("{:g} rad/s: {:.3f}", data["rate"].values, final.values, between="; ")
     return Finding(
         None,
-        bool(upright),
-        f"Tilt after {float(data['time'][-1]):g} s, rad, by the rate at launch: {listed}. Viscous friction "
+        float(final.isel(rate=-1)) > np.pi - 0.1,
+        f"Tilt after {float(data['time'][-1]):g} s, rad, by the rate at launch: {tilts}. Viscous friction "
         f"of {data.attrs['mu_s_per_m']:g} s/m.",
     )
 
@@ -129,12 +120,11 @@ def _(data: xr.Dataset) -> Finding:
     "real-egg-jumps",
     Source("Real tops: Mitsui, Aihara, Terayama, Kobayashi and Shimomura, Proc. R. Soc. A 462 (2006) 2897"),
     "A spinning egg may leave the table while it rises.",
-    needs=("real-egg",),
     figure="real-egg",
 )
 def _(data: xr.Dataset) -> Finding:
     lifts = data["lift_off"].dropna("rate")
-    times = ", ".join(f"{float(t):.3f} s at {float(t['rate']):g} rad/s" for t in lifts)
+    times = listed("{:.3f} s at {:g} rad/s", lifts.values, lifts["rate"].values)
     return Finding(None, bool(len(lifts)), f"First lift-offs: {times or 'none'}.")
 
 
@@ -145,15 +135,12 @@ def _(data: xr.Dataset) -> Finding:
     "to it in runs, the farther from 1).",
     "1",
     tolerance=_THIN,
-    needs=("real-rolling",),
     figure="real-rolling",
 )
 def _(data: xr.Dataset) -> Finding:
     near = data["disk_tilt"].values < 0.35
-    thin = np.sqrt(
-        4 * data.attrs["gravity"] / (data.attrs["disk_radius_m"] * np.sin(data["disk_tilt"].values))
-    )
-    ratio = (data["disk_measured"].values / thin)[near]
+    thin = 4 * data.attrs["gravity"] / (data.attrs["disk_radius_m"] * np.sin(data["disk_tilt"].values))
+    ratio = (data["disk_measured"].values / np.sqrt(thin))[near]
     return Finding(
         None,
         float(ratio[np.abs(ratio - 1.0).argmax()]),
@@ -169,7 +156,6 @@ def _(data: xr.Dataset) -> Finding:
     "Hurricane balls lean at cos(theta) = 2/5 - g / (Omega^2 R) (its residual in runs, largest).",
     "0",
     tolerance=ROUNDING,
-    needs=("real-rolling",),
     figure="real-rolling",
 )
 def _(data: xr.Dataset) -> Finding:

@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from tippetop.report.claim import Chapter, Finding, Source
+from tippetop.report.claim import Chapter, Finding, Source, listed
 from tippetop.report.experiments.spins import TURNED
 from tippetop.report.quoted import ABNORMAL_SPIN, CRITICAL_SPINS
 from tippetop.report.tolerance import Tolerance
@@ -31,10 +31,7 @@ def _critical(symbol: str, name: str, printed: str, text: str, loses: str) -> No
         theirs, chosen = listing[f"critical_{name}_listing"], _common_margin(listing)
         given = float(theirs.sel(margin_listing=chosen))
         by_window, exact = sweep[f"{name}_by_window"], theory.sel(vertical=name)
-        windows = ", ".join(
-            f"{value:.2f} in {window:g} s"
-            for window, value in zip(by_window["window"], by_window, strict=True)
-        )
+        windows = listed("{:.2f} in {:g} s", by_window.values, by_window["window"].values)
         spectrum = abs(float(exact["critical_spectrum"] / exact["critical_formula"]) - 1.0)
         same = f"within {spectrum:.0e} of it" if spectrum > 1e-14 else "to rounding there, too,"
         return Finding(

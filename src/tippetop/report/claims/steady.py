@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from tippetop.presets import REPORT
-from tippetop.report.claim import Chapter, Finding, Source
+from tippetop.report.claim import Chapter, Finding, Source, listed
 from tippetop.report.quoted import END_OF_FIG_5
 from tippetop.report.tolerance import STEADY, TRANSCRIBED, Tolerance, rounded
 
@@ -102,7 +102,6 @@ def _(run: xr.Dataset) -> Finding:
     "part of phi').",
     "0",
     tolerance=STEADY,
-    needs=("why-bifurcation",),
     figure="why-bifurcation",
 )
 def _(states: xr.Dataset) -> Finding:
@@ -172,10 +171,8 @@ def _(chart: xr.Dataset, steady: xr.Dataset) -> Finding:
 )
 def _(steady: xr.Dataset) -> Finding:
     left = abs(steady["residual_217"]) / abs(steady["phi_dot"])
-    listed = ", ".join(
-        f"{name!s} {rounded(value)}" for name, value in zip(steady["body"].values, left, strict=True)
-    )
-    return Finding(None, float(left.max()), f"Differences over phi': {listed}.")
+    each = listed("{} {}", steady["body"].values, map(rounded, left.values))
+    return Finding(None, float(left.max()), f"Differences over phi': {each}.")
 
 
 @CHAPTER.claim(

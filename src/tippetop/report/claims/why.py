@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from tippetop.report.claim import Chapter, Finding, Source
+from tippetop.report.claim import Chapter, Finding, Source, listed
 from tippetop.report.experiments.theory import QUOTED_SPINS
 from tippetop.report.quoted import ABNORMAL_SPIN, CRITICAL_SPINS
 from tippetop.report.readings import SETTLED
@@ -22,21 +22,17 @@ _NEAR_LIMIT = 1e-3
     "of a long run and the steady state of the same lambda).",
     "0 rad",
     tolerance=Tolerance(1e-6, "far below what the report's figures can show"),
-    needs=("why-bifurcation",),
     figure="why-bifurcation",
 )
 def _(states: xr.Dataset) -> Finding:
-    quoted = [states.isel(run=int(np.argmin(abs(states["run_spin"].values - s)))) for s in QUOTED_SPINS]
-    listed = "; ".join(
-        f"{one['run_spin']:g} rad/s: {one['run_predicted']:.6f} rad "
-        f"({rounded(float(one['run_end'] - one['run_predicted']))} off)"
-        for one in quoted
-    )
+    quoted = states.isel(run=[int(np.argmin(abs(states["run_spin"].values - s))) for s in QUOTED_SPINS])
+    spins, tilts, ends = (quoted[f"run_{name}"].values for name in ("spin", "predicted", "end"))
+    each = listed("{:g} rad/s: {:.6f} rad ({} off)", spins, tilts, map(rounded, ends - tilts), between="; ")
     return Finding(
         None,
         _tilt_miss(states),
         "Friction leaves Jellett's integral lambda alone, and only one stable steady state has the lambda of "
-        f"the launch. Predicted from lambda, against runs of {states.attrs['long_run_s']:g} s: {listed}.",
+        f"the launch. Predicted from lambda, against runs of {states.attrs['long_run_s']:g} s: {each}.",
     )
 
 
@@ -109,20 +105,15 @@ def _(times: xr.Dataset) -> Finding:
 )
 def _(times: xr.Dataset, wide: xr.Dataset) -> Finding:
     some = times.sel(mu_flip=[0.1, 0.3, 1.0, 3.0], method="nearest")
-    listed = ", ".join(
-        f"{exponent:.3f} at {mu:.2g}"
-        for mu, exponent in zip(some["mu_flip"], some["exponent_crossing_time"], strict=True)
-    )
-    fitted = " and ".join(
-        f"{exponent:.4f} at {spin:g} rad/s"
-        for spin, exponent in zip(wide["spin_wide"], wide["small_exponent"], strict=True)
-    )
+    local = listed("{:.3f} at {:.2g}", some["exponent_crossing_time"].values, some["mu_flip"].values)
+    exponents, spins = wide["small_exponent"].values, wide["spin_wide"].values
+    fitted = listed("{:.4f} at {:g} rad/s", exponents, spins, between=" and ")
     here = times.sel(mu_flip=0.01, method="nearest")
     return Finding(
         None,
         float(here["exponent_arrival_time_end"]),
         f"Fitted up to 0.1 s/m it is {fitted}. The exponent of the time to the "
-        f"first tilt above pi/2 leaves -1 as mu grows (s/m): {listed}.",
+        f"first tilt above pi/2 leaves -1 as mu grows (s/m): {local}.",
     )
 
 

@@ -21,8 +21,8 @@ def _units(quick: bool) -> xr.Dataset:
     return xr.Dataset(
         {
             "theta": variable(_tilt_after(report, seconds), "rad", "tilt after 2 s, in metres and seconds"),
-            "theta_in_centimetres": variable(lengths, "rad", "the same in centimetres", ("power_of_length",)),
-            "theta_in_tenths": variable(times, "rad", "the same in tenths of a second", ("power_of_time",)),
+            "theta_in_centimetres": variable(lengths, "rad", "the same in centimetres", "power_of_length"),
+            "theta_in_tenths": variable(times, "rad", "the same in tenths of a second", "power_of_time"),
         },
         {"power_of_length": length, "power_of_time": time},
     )

@@ -10,7 +10,6 @@ import xarray as xr
 from tippetop.bodies import Body, EccentricSphere
 from tippetop.contact.sliding import sliding_motion
 from tippetop.frictions import CoulombFriction, RegularizedCoulombFriction
-from tippetop.integrators.base import Array
 from tippetop.integrators.classical import classical_step
 from tippetop.integrators.rates import RightHandSide
 from tippetop.mechanics.motion import along_table
@@ -93,34 +92,27 @@ def _rolling(quick: bool) -> xr.Dataset:
     times = np.linspace(0.0, 20.0, 2001)
     coefficients = [1.001 * needed, *((1.0,) if quick else (0.3, 1.0))]
     held = [simulate(with_friction(main, CoulombFriction(mu=mu)), 20.0, times=times) for mu in coefficients]
-    below = simulate(
-        with_friction(main, CoulombFriction(mu=0.999 * needed)), NUTATION, samples=2, phase_limit=1
-    )
+    lost = [float(abs(run["energy_lost"] / run["energy_start"])) for run in held]
+    less = with_friction(main, CoulombFriction(mu=0.999 * needed))
+    below = simulate(less, NUTATION, samples=2, phase_limit=1)
     slipping = with_friction(main, CoulombFriction(mu=SLIPPERY))
     slips = simulate(slipping, 0.3 if quick else 3.0, **WITHOUT_COMPILING)
     return xr.Dataset(
         {
-            "friction_needed": variable(least, "1", "least mu for rolling", ("tilt", "spin")),
+            "friction_needed": variable(least, "1", "least mu for rolling", "tilt", "spin"),
             "needed_main": variable(needed, "1", "least mu for rolling, main launch"),
-            "theta_held": variable([run["theta"].values for run in held], "rad", "tilt", ("held", "time")),
-            "slips_held": variable(
-                [_count(run, "slip") for run in held], "1", "times of slipping", ("held",)
-            ),
-            "lost_held": variable(
-                [float(abs(run["energy_lost"] / run["energy_start"])) for run in held],
-                "1",
-                "energy lost, relative",
-                ("held",),
-            ),
+            "theta_held": variable([run["theta"].values for run in held], "rad", "tilt", "held", "time"),
+            "slips_held": variable([_count(run, "slip") for run in held], "1", "times of slipping", "held"),
+            "lost_held": variable(lost, "1", "energy lost, relative", "held"),
             "held_below": variable(float(below["end_time"]), "s", "how long a little less holds it"),
-            "theta_slips": variable(slips["theta"].values, "rad", "tilt", ("time_slips",)),
+            "theta_slips": variable(slips["theta"].values, "rad", "tilt", "time_slips"),
         },
         {
-            "tilt": variable(tilts, "rad", "tilt at launch", ("tilt",)),
-            "spin": variable(spins, "rad s-1", "spin at launch", ("spin",)),
-            "held": variable(coefficients, "1", "friction coefficient", ("held",)),
-            "time": variable(times, "s", "time", ("time",)),
-            "time_slips": variable(slips["time"].values, "s", "time", ("time_slips",)),
+            "tilt": variable(tilts, "rad", "tilt at launch", "tilt"),
+            "spin": variable(spins, "rad s-1", "spin at launch", "spin"),
+            "held": variable(coefficients, "1", "friction coefficient", "held"),
+            "time": variable(times, "s", "time", "time"),
+            "time_slips": variable(slips["time"].values, "s", "time", "time_slips"),
         },
         {"spin_rad_per_s": SPIN, "tilt_rad": TILT, "slippery_mu": SLIPPERY},
     )
@@ -163,23 +155,20 @@ def _cohen(quick: bool) -> xr.Dataset:
         slowest.append(float(slip.min()) * units.speed)
     exact = simulate(COHEN, FOLLOWED, times=times, **WITHOUT_COMPILING)
     stick = exact["event_time"].values[exact["event_kind"].values == "stick"]
-    of_steps = ("step", "time")
+    sticking = exact["energy"].values[times > float(stick[0])]
+    kept = float(np.ptp(sticking) / sticking[-1])
     return xr.Dataset(
         {
-            "theta_stepped": variable(tilts, "rad", "tilt, stepped", of_steps),
-            "slowest": variable(slowest, "m s-1", "least slip speed at a step", ("step",)),
-            "theta": variable(exact["theta"].values, "rad", "tilt, exact", ("time",)),
+            "theta_stepped": variable(tilts, "rad", "tilt, stepped", "step", "time"),
+            "slowest": variable(slowest, "m s-1", "least slip speed at a step", "step"),
+            "theta": variable(exact["theta"].values, "rad", "tilt, exact", "time"),
             "sticks": variable(float(stick[0]), "s", "when slip ends"),
             "slips_again": variable(_count(exact, "slip"), "1", "how often it slips again"),
-            "energy_kept": variable(
-                float(np.ptp(exact["energy"].values[times > float(stick[0])]) / exact["energy"].values[-1]),
-                "1",
-                "largest relative change of the energy while it sticks",
-            ),
+            "energy_kept": variable(kept, "1", "largest relative change of the energy while it sticks"),
         },
         {
-            "step": variable(steps, "s", "length of a step", ("step",)),
-            "time": variable(times, "s", "time", ("time",)),
+            "step": variable(steps, "s", "length of a step", "step"),
+            "time": variable(times, "s", "time", "time"),
         },
     )
 
@@ -199,24 +188,18 @@ def _smoothed(quick: bool) -> xr.Dataset:
         for e, w in zip(eps, windows, strict=True)
     ]
     exact = simulate(with_friction(base, CoulombFriction(mu=SMOOTHED)), float(windows.max()), samples=2001)
-    slopes = np.diff(np.log(times)) / np.diff(np.log(eps))
+    turns, slopes = float(exact["turns_over"]), np.diff(np.log(times)) / np.diff(np.log(eps))
     return xr.Dataset(
         {
-            "turning_time": variable(times, "s", "first tilt of more than pi/2", ("eps",)),
-            "last_exponent": variable(_last(slopes), "1", "d ln t / d ln eps at the least eps"),
+            "turning_time": variable(times, "s", "first tilt of more than pi/2", "eps"),
+            "last_exponent": variable(slopes[-1], "1", "d ln t / d ln eps at the least eps"),
             "highest": variable(float(exact["theta"].max()), "rad", "largest tilt on exact Coulomb friction"),
             "followed": variable(float(exact["end_time"]), "s", "how long that top was followed"),
-            "exact_turns": variable(
-                float(exact["turns_over"]), "s", "when that top turns over; nan if never"
-            ),
+            "exact_turns": variable(turns, "s", "when that top turns over; nan if never"),
         },
-        {"eps": variable(eps, "m s-1", "slip speed below which friction falls to zero", ("eps",))},
+        {"eps": variable(eps, "m s-1", "slip speed below which friction falls to zero", "eps")},
         {"mu": SMOOTHED, "spin_rad_per_s": SMOOTHED_SPIN},
     )
-
-
-def _last(values: Array) -> float:
-    return float(values[-1])
 
 
 EXPERIMENTS = [

@@ -18,11 +18,11 @@ from tippetop.presets import REPORT, report_problem
 from tippetop.problem import Problem
 from tippetop.report.experiment import Experiment, variable
 from tippetop.report.experiments.runs import on_table
+from tippetop.report.listing import VARIABLES
 from tippetop.run import simulate
 
 _INSTANT = 5.0
 _INSTANTS = np.array([1.0, 3.0, _INSTANT, 6.0, 8.0])
-_NAMES = ("theta", "theta_dot", "phi", "phi_dot", "omega3", "slip_x", "slip_y")
 _STEP = 3e-5
 _STENCIL = np.array([1.0, -8.0, 0.0, 8.0, -1.0]) / (12.0 * _STEP)
 
@@ -34,9 +34,9 @@ def _printed(quick: bool) -> xr.Dataset:
     times = (_INSTANTS[:, None] + _STEP * np.arange(-2, 3)).ravel()
     run = simulate(problem, float(_INSTANTS[-1]) + 1.0, times=times)
     now = run.isel(time=slice(2, None, 5))
-    states = np.array([now[name].values for name in _NAMES])
+    states = np.array([now[name].values for name in VARIABLES])
     published = np.array(published_rates(tuple(states), top, np))
-    rates = np.array([_STENCIL @ run[name].values.reshape(-1, 5).T for name in _NAMES])
+    rates = np.array([_STENCIL @ run[name].values.reshape(-1, 5).T for name in VARIABLES])
     rows = {"(2.8)": 1, "(2.10)": 4, "(2.12)": 5, "(2.14)": 6}
     misses = {
         name: np.abs(published[row] - rates[row]).max() / np.abs(rates[row]).max()
@@ -49,9 +49,7 @@ def _printed(quick: bool) -> xr.Dataset:
     rising = _STENCIL @ _arm_height(run["theta"].values, top).reshape(-1, 5).T
     misses["(s + a).z = 0"] = np.abs(falling + rising).max() / np.abs(falling).max()
     data = {
-        "miss": variable(
-            list(misses.values()), "1", "largest relative difference from the run", ("equation",)
-        ),
+        "miss": variable(list(misses.values()), "1", "largest relative difference from the run", "equation"),
         **_at_one_instant(run, states, published, rates, problem),
     }
     return xr.Dataset(data, {"equation": list(misses)}, {"problem": problem.to_json(), "instant_s": _INSTANT})
@@ -69,6 +67,7 @@ def _at_one_instant(
     momentum = run["angular_momentum"].values[5 * k : 5 * k + 5]
     bracket = body.I1 * listed[3] * s
     by_listing = body.I1 * listed[1] - body.I1 * y[3] ** 2 * s * c + body.I3 * y[4] * y[3] * s
+    over = body.I1 / bracket / (body.I1 * s)
     read = "rate of phi' by (2.9) as printed, read as I1"
     return {
         "torque_printed": variable(torque["printed"], "N m", "second component of F x a, as (2.7) has it"),
@@ -78,9 +77,7 @@ def _at_one_instant(
         "torque_corrected": variable(torque["corrected"], "N m", "second component of a x F without it"),
         "power_printed": variable(torque["power_printed"], "W", "power of the contact force with F x a"),
         "power": variable(torque["power"], "W", "power of the contact force with a x F"),
-        "precession_printed": variable(
-            body.I1 / bracket / (body.I1 * s), "rad s-2", f"{read} over the bracket over I1 sin(theta)"
-        ),
+        "precession_printed": variable(over, "rad s-2", f"{read} over the bracket over I1 sin(theta)"),
         "precession_printed_product": variable(
             body.I1 * listed[3], "rad s-2", f"{read} times the bracket over I1 sin(theta)"
         ),
@@ -92,7 +89,7 @@ def _at_one_instant(
 def _arm_miss(now: xr.Dataset, top: Top) -> float:
     """How far the report's a = R (sin(theta) 1 + (alpha - cos(theta)) 3) is from the contact vector, in R."""
     axis, momentum, velocity = (_vector(now, name) for name in ("axis", "angular_momentum", "velocity"))
-    _, _, _, R, alpha, _, _ = published_parameters(top)
+    R, alpha = published_parameters(top)[3:5]
     three = np.array(axis)
     c, s = three[2], math.hypot(*axis[:2])
     one = (c * three - np.array(VERTICAL)) / s
@@ -153,7 +150,7 @@ def _steady(quick: bool) -> xr.Dataset:
     for _, body, spin in tops:
         problem = on_table(report_problem(spin).replace({"body": body.model_dump()}))
         end = simulate(problem, duration, samples=2).isel(time=-1)
-        y = [float(end[name]) for name in _NAMES]
+        y = [float(end[name]) for name in VARIABLES]
         rates = published_rates(y, problem.top, math)
         speed = float(body.surface.size) * abs(y[4])
         slip = [math.hypot(*pair) / size for pair, size in ((y[5:], speed), (rates[5:], speed * abs(y[3])))]
@@ -174,7 +171,7 @@ def _steady(quick: bool) -> xr.Dataset:
         "slip_rate": ("1", "rates of its components, over R omega3 phi'"),
     }
     data = {
-        name: variable(table[i], units, long_name, ("body",))
+        name: variable(table[i], units, long_name, "body")
         for i, (name, (units, long_name)) in enumerate(names.items())
     }
     return xr.Dataset(data, {"body": [name for name, _, _ in tops]}, {"duration_s": duration})
@@ -209,7 +206,7 @@ def _rotation(quick: bool) -> xr.Dataset:
         for _ in range(20)
     ]
     return xr.Dataset(
-        {"miss": variable(np.max(misses, axis=0), "1", "largest relative difference", ("equation",))},
+        {"miss": variable(np.max(misses, axis=0), "1", "largest relative difference", "equation")},
         {"equation": ["(2.1)", "(2.2)", "(2.6)"]},
     )
 

@@ -81,14 +81,10 @@ def onset_between(
 
 
 def _onsets(
-    name: str,
-    values: np.ndarray,
-    described: tuple[str, str],
-    field: str,
-    windows: tuple[float, ...],
-    quick: bool,
+    field: str, values: np.ndarray, described: tuple[str, str], windows: tuple[float, ...], quick: bool
 ) -> xr.Dataset:
     """Times of the first lift-off over spin and another parameter, and the onset for each of its values."""
+    name = field.partition(".")[2]
     spins = np.arange(60.0, 600.1, 120.0 if quick else 30.0)
     base = stopping(report_problem(tilt=TILT, mu=MU))
     times = swept(base, {field: values, "launch.spin": spins}, windows[-1])["first_lift_off"].values
@@ -99,47 +95,32 @@ def _onsets(
 
         return first_onset(leaves, spins, row, window, 2.0 if quick else 0.25)
 
-    onsets = [
-        [onset(window, value, row) for value, row in zip(values, times, strict=True)] for window in windows
-    ]
+    scans = list(zip(values, times, strict=True))
+    onsets = [[onset(window, value, row) for value, row in scans] for window in windows]
     onset_name = "least spin of the scan that leaves the table, refined by halving"
     return xr.Dataset(
         {
-            "first_lift_off": variable(times, "s", "when the top first leaves the table", (name, "spin")),
-            "onset": variable(onsets, "rad s-1", onset_name, ("window", name)),
+            "first_lift_off": variable(times, "s", "when the top first leaves the table", name, "spin"),
+            "onset": variable(onsets, "rad s-1", onset_name, "window", name),
         },
         {
-            "spin": variable(spins, "rad s-1", "spin at launch", ("spin",)),
-            "window": variable(list(windows), "s", "length of the runs", ("window",)),
-            name: variable(values, *described, (name,)),
+            "spin": variable(spins, "rad s-1", "spin at launch", "spin"),
+            "window": variable(list(windows), "s", "length of the runs", "window"),
+            name: variable(values, *described, name),
         },
     )
 
 
 def _over_mu(quick: bool) -> xr.Dataset:
-    data = _onsets(
-        "mu",
-        np.geomspace(0.05, 10.0, 3 if quick else 8),
-        ("s m-1", "friction"),
-        "friction.mu",
-        (WINDOW, LONG_WINDOW),
-        quick,
-    )
-    data.attrs["tilt_rad"] = TILT
-    return data
+    values = np.geomspace(0.05, 10.0, 3 if quick else 8)
+    data = _onsets("friction.mu", values, ("s m-1", "friction"), (WINDOW, LONG_WINDOW), quick)
+    return data.assign_attrs(tilt_rad=TILT)
 
 
 def _over_tilt(quick: bool) -> xr.Dataset:
-    data = _onsets(
-        "tilt",
-        np.sort([TILT, *np.linspace(0.05, 1.4, 4 if quick else 12)]),
-        ("rad", "tilt at launch"),
-        "launch.tilt",
-        (WINDOW,),
-        quick,
-    )
-    data.attrs["mu_s_per_m"] = MU
-    return data
+    values = np.sort([TILT, *np.linspace(0.05, 1.4, 4 if quick else 12)])
+    data = _onsets("launch.tilt", values, ("rad", "tilt at launch"), (WINDOW,), quick)
+    return data.assign_attrs(mu_s_per_m=MU)
 
 
 def followed(spins: tuple[float, ...], restitution: float) -> xr.Dataset:
@@ -164,10 +145,10 @@ def followed(spins: tuple[float, ...], restitution: float) -> xr.Dataset:
     meanings = FLIGHT_READINGS | {"first_lift_off": ("s", "when the top first leaves the table")}
     over = ("restitution", "spin")
     return xr.Dataset(
-        {name: variable([column], *meanings[name], over) for name, column in columns.items()},
+        {name: variable([column], *meanings[name], *over) for name, column in columns.items()},
         {
-            "spin": variable(list(spins), "rad s-1", "spin at launch", ("spin",)),
-            "restitution": variable([restitution], "1", "coefficient of restitution", ("restitution",)),
+            "spin": variable(list(spins), "rad s-1", "spin at launch", "spin"),
+            "restitution": variable([restitution], "1", "coefficient of restitution", "restitution"),
         },
         {"window_s": FLIGHTS_WINDOW},
     )

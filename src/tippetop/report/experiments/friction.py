@@ -81,14 +81,14 @@ def _flip_times(quick: bool) -> xr.Dataset:
     spins = np.array([SPIN])
     columns = {"": converged_times(spins, mu), "_listing": listing_times(spins, mu)}
     data = xr.Dataset(
-        coords={"mu": variable(mu, "s m-1", "friction coefficient", ("mu",))},
+        coords={"mu": variable(mu, "s m-1", "friction coefficient", "mu")},
         attrs={"spin_rad_per_s": SPIN, "within_rad": SETTLED, "window_s": WINDOW},
     )
     for suffix, found in columns.items():
         times = found.flip[0]
         a, b, straight, correlation = power_law(mu, times)
-        data[f"flip_time{suffix}"] = variable(times, "s", "flip time", ("mu",))
-        data[f"turning_time{suffix}"] = variable(found.turning[0], *_TURNING, ("mu",))
+        data[f"flip_time{suffix}"] = variable(times, "s", "flip time", "mu")
+        data[f"turning_time{suffix}"] = variable(found.turning[0], *_TURNING, "mu")
         data[f"factor{suffix}"] = variable(a, "s", "a of the fit a mu^b (mu in s/m)")
         data[f"exponent{suffix}"] = variable(b, "1", "b of the fit a mu^b")
         data[f"exponent_of_logarithms{suffix}"] = variable(straight, "1", "slope of log t over log mu")
@@ -101,16 +101,16 @@ def _other_spins(quick: bool) -> xr.Dataset:
     mu = np.linspace(*NORMAL_FRICTION, 5 if quick else 9)
     data = xr.Dataset(
         coords={
-            "spin": variable(spins, "rad s-1", "spin at launch", ("spin",)),
-            "mu": variable(mu, "s m-1", "friction coefficient", ("mu",)),
+            "spin": variable(spins, "rad s-1", "spin at launch", "spin"),
+            "mu": variable(mu, "s m-1", "friction coefficient", "mu"),
         }
     )
     for suffix, measure in (("", converged_times), ("_listing", listing_times)):
         times = measure(spins, mu)
         exponents = [power_law(mu, row)[1] for row in times.flip]
-        data[f"flip_time{suffix}"] = variable(times.flip, "s", "flip time", ("spin", "mu"))
-        data[f"turning_time{suffix}"] = variable(times.turning, *_TURNING, ("spin", "mu"))
-        data[f"exponent{suffix}"] = variable(exponents, "1", "b of the fit a mu^b", ("spin",))
+        data[f"flip_time{suffix}"] = variable(times.flip, "s", "flip time", "spin", "mu")
+        data[f"turning_time{suffix}"] = variable(times.turning, *_TURNING, "spin", "mu")
+        data[f"exponent{suffix}"] = variable(exponents, "1", "b of the fit a mu^b", "spin")
     return data
 
 
@@ -126,12 +126,12 @@ def _wide(quick: bool) -> xr.Dataset:
     slopes = [float(np.polyfit(np.log(mu[small]), np.log(row[small]), 1)[0]) for row in times]
     return xr.Dataset(
         {
-            "flip_time_wide": variable(times, "s", "flip time", ("spin_wide", "mu_wide")),
-            "small_exponent": variable(slopes, "1", "exponent of mu up to 0.1 s/m", ("spin_wide",)),
+            "flip_time_wide": variable(times, "s", "flip time", "spin_wide", "mu_wide"),
+            "small_exponent": variable(slopes, "1", "exponent of mu up to 0.1 s/m", "spin_wide"),
         },
         {
-            "spin_wide": variable(spins, "rad s-1", "spin at launch", ("spin_wide",)),
-            "mu_wide": variable(mu, "s m-1", "friction coefficient", ("mu_wide",)),
+            "spin_wide": variable(spins, "rad s-1", "spin at launch", "spin_wide"),
+            "mu_wide": variable(mu, "s m-1", "friction coefficient", "mu_wide"),
         },
         {"window_wide": "20 s, doubled until it is no less than 3 / mu + 4 s"},
     )
@@ -143,8 +143,8 @@ def _extremes(quick: bool) -> xr.Dataset:
     window = 0.5 * WINDOW if quick else WINDOW
     found = swept(on_table(report_problem(SPIN)), {"friction.mu": mu}, window)
     return xr.Dataset(
-        {"turning_time": variable(found["turns_over"].values, *_TURNING, ("mu",))},
-        {"mu": variable(mu, "s m-1", "friction coefficient", ("mu",))},
+        {"turning_time": variable(found["turns_over"].values, *_TURNING, "mu")},
+        {"mu": variable(mu, "s m-1", "friction coefficient", "mu")},
         {"spin_rad_per_s": SPIN, "window_s": window},
     )
 

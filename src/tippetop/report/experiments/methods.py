@@ -66,25 +66,24 @@ def _order(quick: bool) -> xr.Dataset:
         return float(state[0])
 
     final = by_taylor(span)
+    tilt = float(final["theta"][-1])
     errors = {
         "rk4_in_all": [_distance(by_rk4(span, h), final) for h in steps],
         "rk4_in_a_step": [_distance(by_rk4(h, h), by_taylor(float(h))) for h in steps],
-        "ode45_in_all": [abs(by_dormand_prince(span, h) - float(final["theta"][-1])) for h in steps],
-        "companion_in_all": [
-            abs(by_dormand_prince(span, h, companion=True) - float(final["theta"][-1])) for h in steps
-        ],
+        "ode45_in_all": [abs(by_dormand_prince(span, h) - tilt) for h in steps],
+        "companion_in_all": [abs(by_dormand_prince(span, h, companion=True) - tilt) for h in steps],
     }
-    data = xr.Dataset(coords={"step": variable(steps, "s", "length of a step", ("step",))})
+    data = xr.Dataset(coords={"step": variable(steps, "s", "length of a step", "step")})
     for name, values in errors.items():
-        data[name] = variable(np.array(values), "rad", f"error of the axis or tilt: {name}", ("step",))
+        data[name] = variable(np.array(values), "rad", f"error of the axis or tilt: {name}", "step")
         data[f"order_{name}"] = _order_of(steps, np.array(values), name)
     coarse = 2.0 / np.array([20.0, 40.0, 80.0, 160.0])
-    data["step_printed"] = variable(coarse, "s", "length of a step", ("step_printed",))
+    data["step_printed"] = variable(coarse, "s", "length of a step", "step_printed")
     for suffix, last in (("", 0.0), ("_mended", 1.0)):
         table = np.array([_printed_errors(step, last) for step in coarse])
         for k, part in enumerate(("in_all", "in_a_step")):
             name = f"printed{suffix}_{part}"
-            data[name] = variable(table[:, k], "1", f"error of (B.1): {name}", ("step_printed",))
+            data[name] = variable(table[:, k], "1", f"error of (B.1): {name}", "step_printed")
             data[f"order_{name}"] = _order_of(coarse, table[:, k], name)
     return data
 
@@ -164,11 +163,10 @@ def _stiffness(quick: bool) -> xr.Dataset:
     methods = (*EXPLICIT, *IMPLICIT)
     made = [[effort(report_problem(*launch), method, _SPAN) for method in methods] for launch in LAUNCHES]
     counts = np.array([[one.evaluations for one in row] for row in made])
-    true = [
-        float(simulate(on_table(report_problem(*launch)), _SPAN, samples=2)["final_theta"])
-        for launch in LAUNCHES
-    ]
+    runs = [simulate(on_table(report_problem(*launch)), _SPAN, samples=2) for launch in LAUNCHES]
+    true = [float(run["final_theta"]) for run in runs]
     bdf = np.array([row[methods.index("bdf")].tilt for row in made])
+    spins, tilts, frictions = np.array(LAUNCHES).T
     counted = np.where(counts < 0, np.nan, counts)
     explicit = np.nanmin(counted[:, : len(EXPLICIT)], axis=1)
     implicit = np.nanmin(counted[:, len(EXPLICIT) :], axis=1)
@@ -176,13 +174,13 @@ def _stiffness(quick: bool) -> xr.Dataset:
     return xr.Dataset(
         {
             "evaluations": variable(
-                counts, "1", "evaluations of the right-hand side", ("launch", "integrator")
+                counts, "1", "evaluations of the right-hand side", "launch", "integrator"
             ),
-            "bdf_miss": variable(abs(bdf - true), "rad", "difference of bdf's tilt at the end", ("launch",)),
-            "stiffness": variable(explicit / implicit, "1", name, ("launch",)),
-            "launch_spin": variable(np.array(LAUNCHES)[:, 0], "rad s-1", "spin", ("launch",)),
-            "launch_tilt": variable(np.array(LAUNCHES)[:, 1], "rad", "tilt", ("launch",)),
-            "launch_mu": variable(np.array(LAUNCHES)[:, 2], "s m-1", "friction coefficient", ("launch",)),
+            "bdf_miss": variable(abs(bdf - true), "rad", "difference of bdf's tilt at the end", "launch"),
+            "stiffness": variable(explicit / implicit, "1", name, "launch"),
+            "launch_spin": variable(spins, "rad s-1", "spin", "launch"),
+            "launch_tilt": variable(tilts, "rad", "tilt", "launch"),
+            "launch_mu": variable(frictions, "s m-1", "friction coefficient", "launch"),
         },
         {"integrator": list(methods)},
         {"span_s": _SPAN, "relative_tolerance": RELATIVE, "absolute_tolerance": ABSOLUTE},
@@ -192,23 +190,22 @@ def _stiffness(quick: bool) -> xr.Dataset:
 def _jump(quick: bool) -> xr.Dataset:
     """The listing's right-hand side just before and just after the axis is vertical."""
     problem = report_problem()
-    motion = listing_rates(problem)
-    tiny = 1e-9
-    rest = (3.0, 0.0, 10.0, 155.0, 0.05, 0.05)
-    before, after = (np.array(motion.rates((side * tiny, *rest), ())) for side in (-1, 1))
-    smooth = listing_rates(problem, wrap=None)
-    true = [np.array(smooth.rates((side * tiny, *rest), ())) for side in (-1, 1)]
+    tiny, rest = 1e-9, (3.0, 0.0, 10.0, 155.0, 0.05, 0.05)
+
+    def beside(motion: Motion) -> list[float]:
+        return [float(motion.rates((side * tiny, *rest), ())[6]) for side in (-1, 1)]
+
+    before, after = beside(listing_rates(problem))
+    true = beside(listing_rates(problem, wrap=None))
     return xr.Dataset(
         {
             "jump_listing": variable(
-                abs(after[6] - before[6]), "m s-2", "jump of the rate of v_y with theta modulo pi"
+                abs(after - before), "m s-2", "jump of the rate of v_y with theta modulo pi"
             ),
-            "jump": variable(abs(true[1][6] - true[0][6]), "m s-2", "its change without the modulo"),
-            "size": variable(abs(after[6]), "m s-2", "the rate of v_y itself"),
+            "jump": variable(abs(true[1] - true[0]), "m s-2", "its change without the modulo"),
+            "size": variable(abs(after), "m s-2", "the rate of v_y itself"),
         },
-        attrs={
-            "state": f"theta = -/+{tiny:g}; theta', phi, phi', omega3, v_x, v_y = {rest}",
-        },
+        attrs={"state": f"theta = -/+{tiny:g}; theta', phi, phi', omega3, v_x, v_y = {rest}"},
     )
 
 

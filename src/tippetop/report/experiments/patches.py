@@ -59,46 +59,22 @@ def _map(quick: bool) -> xr.Dataset:
     """When the report's top turns over, if it does, by the radius of its patch and its spin."""
     radii = np.geomspace(2e-4, 6e-3, 5) if quick else np.geomspace(1e-4, 6e-3, 12)
     spins = np.linspace(25.0, 115.0, 4) if quick else np.linspace(34.0, 115.0, 10)
-    runs = [
-        [
-            simulate(
-                with_friction(report_problem(float(s)), patch(MU, float(r))),
-                MAP_WINDOW,
-                samples=2,
-                phase_limit=1,
-            )
-            for s in spins
-        ]
-        for r in radii
-    ]
-    over = ("radius", "spin")
-    theirs = simulate(LEINE, 3.0, samples=2)
-    top = report_problem().top
+    grid = [[with_friction(report_problem(float(s)), patch(MU, float(r))) for s in spins] for r in radii]
+    runs = [[simulate(one, MAP_WINDOW, samples=2, phase_limit=1) for one in row] for row in grid]
+    times = [[float(run["turns_over"]) for run in row] for row in runs]
+    least = min(float(run["least_normal_force"]) for row in runs for run in row)
+    theirs = float(simulate(LEINE, 3.0, samples=2)["turns_over"])
+    limit = critical_spin(SteadyKind.UPRIGHT, report_problem().top)
     return xr.Dataset(
         {
-            "turning_time": variable(
-                [[float(run["turns_over"]) for run in row] for row in runs],
-                "s",
-                "first tilt of more than pi/2",
-                over,
-            ),
-            "least_force": variable(
-                min(float(run["least_normal_force"]) for row in runs for run in row),
-                "N",
-                "least normal force of all",
-            ),
-            "upright_limit": variable(
-                critical_spin(SteadyKind.UPRIGHT, top),
-                "rad s-1",
-                "spin below which the upright spin is stable",
-            ),
-            "theirs_turns": variable(
-                float(theirs["turns_over"]), "s", "when Leine and Glocker's top turns over"
-            ),
+            "turning_time": variable(times, "s", "first tilt of more than pi/2", "radius", "spin"),
+            "least_force": variable(least, "N", "least normal force of all"),
+            "upright_limit": variable(limit, "rad s-1", "spin below which the upright spin is stable"),
+            "theirs_turns": variable(theirs, "s", "when Leine and Glocker's top turns over"),
         },
         {
-            "radius": variable(radii, "m", "radius of the contact patch", ("radius",)),
-            "spin": variable(spins, "rad s-1", "spin at launch", ("spin",)),
+            "radius": variable(radii, "m", "radius of the contact patch", "radius"),
+            "spin": variable(spins, "rad s-1", "spin at launch", "spin"),
         },
         {"mu": MU, "window_s": MAP_WINDOW, "tilt_rad": 0.1},
     )
@@ -108,45 +84,32 @@ def _viscous(quick: bool) -> xr.Dataset:
     """When patches turn the top over, and viscous friction with their coefficient for small slip."""
     coefficients = np.geomspace(1.0, 40.0, 4 if quick else 10)
     base = report_problem(SPIN)
+
+    def turning(friction: object) -> float:
+        return turning_time(with_friction(base, friction), MAP_WINDOW)
+
     times = [
-        [
-            turning_time(with_friction(base, patch(mu, viscous_coefficient(mu, float(c), SPIN))), MAP_WINDOW)
-            for c in coefficients
-        ]
+        [turning(patch(mu, viscous_coefficient(mu, float(c), SPIN))) for c in coefficients]
         for mu in FRICTIONS
     ]
-    smooth = [
-        turning_time(with_friction(base, ViscousFriction(mu=float(c))), MAP_WINDOW) for c in coefficients
-    ]
-    top = report_problem().body
-    load = top.mass * base.gravity
-    radii = [
-        hertz_patch_radius(load, float(base.top.surface.size), material, material)
-        for material in MATERIALS.values()
-    ]
+    smooth = [turning(ViscousFriction(mu=float(c))) for c in coefficients]
+    load, radius = base.body.mass * base.gravity, float(base.top.surface.size)
+    radii = [hertz_patch_radius(load, radius, material, material) for material in MATERIALS.values()]
+    creep = [CREEP["hertz"] * MU / (r * SPIN_OF_REPORT) for r in radii]
+    ratios = "growth rate of a patch over that of viscous friction"
     return xr.Dataset(
         {
-            "patch_time": variable(times, "s", "first tilt of more than pi/2, patch", ("mu", "coefficient")),
-            "viscous_time": variable(smooth, "s", "first tilt of more than pi/2, viscous", ("coefficient",)),
-            "growth_ratio": variable(
-                _growth_ratios(),
-                "1",
-                "growth rate of a patch over that of viscous friction",
-                ("pressure", "pole"),
-            ),
-            "hertz_radius": variable(
-                radii, "m", "patch of the report's top on its own material", ("material",)
-            ),
+            "patch_time": variable(times, "s", "first tilt of more than pi/2, patch", "mu", "coefficient"),
+            "viscous_time": variable(smooth, "s", "first tilt of more than pi/2, viscous", "coefficient"),
+            "growth_ratio": variable(_growth_ratios(), "1", ratios, "pressure", "pole"),
+            "hertz_radius": variable(radii, "m", "patch of the report's top on its own material", "material"),
             "hertz_coefficient": variable(
-                [CREEP["hertz"] * MU / (r * SPIN_OF_REPORT) for r in radii],
-                "s m-1",
-                "viscous coefficient of that patch at 155 rad/s",
-                ("material",),
+                creep, "s m-1", "viscous coefficient of that patch at 155 rad/s", "material"
             ),
         },
         {
-            "mu": variable(list(FRICTIONS), "1", "friction coefficient of the patch", ("mu",)),
-            "coefficient": variable(coefficients, "s m-1", "viscous coefficient at launch", ("coefficient",)),
+            "mu": variable(list(FRICTIONS), "1", "friction coefficient of the patch", "mu"),
+            "coefficient": variable(coefficients, "s m-1", "viscous coefficient at launch", "coefficient"),
             "material": list(MATERIALS),
             "pressure": list(CREEP),
         },
@@ -162,14 +125,10 @@ def _growth_ratios() -> list[list[float]]:
             ContensouFriction(mu=MU, patch_radius=5e-4, pressure=pressure),
             ViscousFriction(mu=creep * MU / (5e-4 * SPIN)),
         )
+        tops = [with_friction(report_problem(), law).top for law in frictions]
         dry, viscous = (
-            [
-                float(
-                    vertical_growth_rates(kind, with_friction(report_problem(), law).top, np.array([SPIN]))[0]
-                )
-                for kind in VERTICAL_SPINS
-            ]
-            for law in frictions
+            [float(vertical_growth_rates(kind, top, np.array([SPIN]))[0]) for kind in VERTICAL_SPINS]
+            for top in tops
         )
         found.append([one / other for one, other in zip(dry, viscous, strict=True)])
     return found

@@ -66,34 +66,38 @@ def first_of(times: np.ndarray, after: float = 0.0) -> float:
     return float(later[0]) if len(later) else math.nan
 
 
+EVENTS = {
+    "stem": "first touch of the stem",
+    "back": "first touch of the sphere again",
+    "both": "beginning of double contact",
+    "apart": "end of double contact",
+}
+"""What happens to Leine and Glocker's top."""
+
+
+def events_of(run: xr.Dataset) -> dict[str, float]:
+    """When it happens, s."""
+    both = first_of(happenings(run, "double contact"))
+    stem, back = (first_of(happenings(run, "touchdown", surface)) for surface in (1, 0))
+    return {"stem": stem, "back": back, "both": both, "apart": first_of(happenings(run, "opening"), both)}
+
+
 def _leine(quick: bool) -> xr.Dataset:
     """Leine and Glocker's top: when the stem strikes, when it falls back, and how long it rests on both."""
     pressures = ["ellipsoidal"] if quick else ["ellipsoidal", "hertz"]
-    runs = [
-        simulate(LEINE.replace({"friction.pressure": name}), LEINE_WINDOW, samples=801) for name in pressures
-    ]
-    both = [first_of(happenings(run, "double contact")) for run in runs]
-    columns = {
-        "stem": ([first_of(happenings(run, "touchdown", 1)) for run in runs], "first touch of the stem"),
-        "back": (
-            [first_of(happenings(run, "touchdown", 0)) for run in runs],
-            "first touch of the sphere again",
-        ),
-        "both": (both, "beginning of double contact"),
-        "apart": (
-            [first_of(happenings(run, "opening"), t) for run, t in zip(runs, both, strict=True)],
-            "end of double contact",
-        ),
-    }
+    problems = [LEINE.replace({"friction.pressure": name}) for name in pressures]
+    runs = [simulate(problem, LEINE_WINDOW, samples=801) for problem in problems]
+    found, errors = [events_of(run) for run in runs], [float(run["energy_error"]) for run in runs]
     return xr.Dataset(
         {
-            "theta": variable([run["theta"].values for run in runs], "rad", "tilt", ("pressure", "time")),
-            "energy_error": variable(
-                [float(run["energy_error"]) for run in runs], "1", "energy", ("pressure",)
-            ),
-            **{name: variable(values, "s", long, ("pressure",)) for name, (values, long) in columns.items()},
+            "theta": variable([run["theta"].values for run in runs], "rad", "tilt", "pressure", "time"),
+            "energy_error": variable(errors, "1", "energy", "pressure"),
+            **{
+                name: variable([one[name] for one in found], "s", long, "pressure")
+                for name, long in EVENTS.items()
+            },
         },
-        {"pressure": pressures, "time": variable(runs[0]["time"].values, "s", "time", ("time",))},
+        {"pressure": pressures, "time": variable(runs[0]["time"].values, "s", "time", "time")},
     )
 
 
@@ -118,7 +122,7 @@ def _stems(quick: bool) -> xr.Dataset:
         needed.append(least_jellett_to_stand(problem.body))
         struck.append(touch)
         final.append(float(run["theta"][-1]))
-    over = ("radius",)
+    over = "radius"
     return xr.Dataset(
         {
             "final_theta": variable(final, "rad", "tilt at the end", over),
@@ -134,29 +138,19 @@ def _stems(quick: bool) -> xr.Dataset:
 def _egg(quick: bool) -> xr.Dataset:
     """A hard-boiled egg that is spun on its side: how far it rises, and whether it leaves the table."""
     rates = [60.0, 200.0] if quick else [40.0, 60.0, 80.0, 100.0, 120.0, 150.0, 200.0]
-    runs = [
-        simulate(
-            Problem(
-                body=EGG,
-                friction=ViscousFriction(mu=EGG_MU),
-                launch=Launch(tilt=1.5, spin=0.0, precession=rate),
-            ),
-            EGG_WINDOW,
-            samples=401,
-        )
-        for rate in rates
-    ]
-    over = ("rate",)
+    friction = ViscousFriction(mu=EGG_MU)
+    launches = [Launch(tilt=1.5, spin=0.0, precession=rate) for rate in rates]
+    problems = [Problem(body=EGG, friction=friction, launch=launch) for launch in launches]
+    runs = [simulate(problem, EGG_WINDOW, samples=401) for problem in problems]
+    lifts = [first_of(happenings(run, "lift-off")) for run in runs]
     return xr.Dataset(
         {
-            "theta": variable([run["theta"].values for run in runs], "rad", "tilt", ("rate", "time")),
-            "lift_off": variable(
-                [first_of(happenings(run, "lift-off")) for run in runs], "s", "lift-off", over
-            ),
+            "theta": variable([run["theta"].values for run in runs], "rad", "tilt", "rate", "time"),
+            "lift_off": variable(lifts, "s", "lift-off", "rate"),
         },
         {
-            "rate": variable(rates, "rad s-1", "rate of turning about the vertical at launch", over),
-            "time": variable(runs[0]["time"].values, "s", "time", ("time",)),
+            "rate": variable(rates, "rad s-1", "rate of turning about the vertical at launch", "rate"),
+            "time": variable(runs[0]["time"].values, "s", "time", "time"),
         },
         {"mu_s_per_m": EGG_MU},
     )
@@ -191,7 +185,7 @@ def _rolling(quick: bool) -> xr.Dataset:
     data = {}
     for name, rows in found.items():
         for (label, unit, long), values in zip(_COLUMNS, zip(*rows, strict=True), strict=True):
-            data[f"{name}_{label}"] = variable(list(values), unit, long, (name,))
+            data[f"{name}_{label}"] = variable(list(values), unit, long, name)
     return xr.Dataset(
         data,
         attrs={

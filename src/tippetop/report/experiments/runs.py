@@ -1,8 +1,7 @@
 """Single launches, by the report's method and converged."""
 
 import math
-from collections.abc import Callable, Mapping
-from functools import partial
+from collections.abc import Mapping
 
 import numpy as np
 import xarray as xr
@@ -11,7 +10,7 @@ from tippetop.mechanics.euler import published_energy
 from tippetop.presets import REPORT_TABLE_1, report_problem
 from tippetop.problem import Problem
 from tippetop.report.experiment import Experiment, variable
-from tippetop.report.listing import listing_run
+from tippetop.report.listing import VARIABLES, listing_run
 from tippetop.report.quoted import END_OF_FIG_5
 from tippetop.report.readings import SETTLED, SHOWN, crossings, first_below_zero, flip_time, longest_quiet
 from tippetop.run import simulate
@@ -101,8 +100,8 @@ def comparison(problem: Problem, quick: bool) -> xr.Dataset:
     true = simulate(problem, WINDOW, samples=20_001 if quick else 40_001)
     listing = listing_run(problem, WINDOW)
     with np.errstate(all="ignore"):
-        published = _published_energy(true, problem)
-    true = true.assign(energy_published=("time", published))
+        published = published_energy([true[name].values for name in VARIABLES], problem.top, np)
+    true = true.assign(energy_published=("time", np.asarray(published)))
     data = _series(true, listing).assign(_readings(true, "")).assign(_readings(listing, "_listing"))
     stopped = float(simulate(stopping(problem), WINDOW, samples=2)["first_lift_off"])
     data["lift_off_time"] = variable(stopped, "s", "when the table would first have to pull")
@@ -150,16 +149,11 @@ def _continuation(problem: Problem, times: np.ndarray) -> dict[str, object]:
     drawn: dict[str, object] = {}
     for name in ("theta", "normal_force", "energy"):
         label = f"{run[name].attrs['long_name']}, on a table that only pushes"
-        drawn[f"{name}_flight"] = variable(run[name].values, run[name].attrs["units"], label, ("time",))
+        drawn[f"{name}_flight"] = variable(run[name].values, run[name].attrs["units"], label, "time")
     for name in ("flight_start", "flight_end", "flight_highest_gap"):
         drawn[name] = run[name]
     readings = flight_readings(run)
     return drawn | {name: variable(readings[name], *FLIGHT_READINGS[name]) for name in readings}
-
-
-def _published_energy(run: xr.Dataset, problem: Problem) -> np.ndarray:
-    names = ("theta", "theta_dot", "phi", "phi_dot", "omega3", "slip_x", "slip_y")
-    return np.asarray(published_energy([run[name].values for name in names], problem.top, np))
 
 
 def _readings(run: xr.Dataset, suffix: str) -> dict[str, object]:
@@ -169,13 +163,10 @@ def _readings(run: xr.Dataset, suffix: str) -> dict[str, object]:
     quiet = longest_quiet(times, turning)
     slip = np.hypot(run["slip_x"].values, run["slip_y"].values)
     force, energy = run["normal_force"].values, run["energy"].values
+    arrivals, seen = [flip_time(times, theta, within) for within in ARRIVALS], force + SHOWN * force.max()
+    arrived = "first time at which the tilt is within this of its last value"
     values = {
-        "arrival_time": variable(
-            [flip_time(times, theta, within) for within in ARRIVALS],
-            "s",
-            "first time at which the tilt is within this of its last value",
-            ("within",),
-        ),
+        "arrival_time": variable(arrivals, "s", arrived, "within"),
         "reversals": variable(len(changes), "1", "how often the precession changes sign"),
         "quiet_start": variable(quiet[0], "s", "start of the longest time between two reversals"),
         "quiet_end": variable(quiet[1], "s", "end of the longest time between two reversals"),
@@ -187,23 +178,22 @@ def _readings(run: xr.Dataset, suffix: str) -> dict[str, object]:
         "largest_slip": variable(slip.max(), "m s-1", "largest slip speed"),
         "least_force": variable(force.min(), "N", "least normal force"),
         "zero_of_force": variable(first_below_zero(times, force), "s", "first time with a pulling table"),
-        "visible_pull": variable(
-            first_below_zero(times, force + SHOWN * force.max()), "s", "first pull that a plot shows"
-        ),
+        "visible_pull": variable(first_below_zero(times, seen), "s", "first pull that a plot shows"),
         "launch_energy": variable(energy[0], "J", "energy at launch"),
         "largest_energy": variable(energy.max(), "J", "largest energy"),
     }
     readings: dict[str, object] = {f"{name}{suffix}": value for name, value in values.items()}
-    readings["within"] = variable(ARRIVALS, "rad", "distance from the last tilt", ("within",))
+    readings["within"] = variable(ARRIVALS, "rad", "distance from the last tilt", "within")
     return readings
 
 
-def _experiment(name: str, cost: float, problem: Callable[[], Problem], title: str) -> Experiment:
-    return Experiment(name, title, cost, lambda quick: comparison(problem(), quick))
+def _launch(name: str, cost: float, title: str, *numbers: float) -> Experiment:
+    """The report's top launched with a spin, and a tilt and a friction if they are others than usual."""
+    return Experiment(name, title, cost, lambda quick: comparison(report_problem(*numbers), quick))
 
 
-def _table_1() -> Problem:
-    return report_problem(50.0).replace({"body": REPORT_TABLE_1.model_dump()})
+def _table_1(quick: bool) -> xr.Dataset:
+    return comparison(report_problem(50.0).replace({"body": REPORT_TABLE_1.model_dump()}), quick)
 
 
 def _settling(quick: bool) -> xr.Dataset:
@@ -214,8 +204,8 @@ def _settling(quick: bool) -> xr.Dataset:
     )
     swings = [float(np.ptp(run["theta"].sel(time=slice(end - 1.0, end)).values)) for end in ends]
     return xr.Dataset(
-        {"swing": variable(swings, "rad", "swing of the tilt in the second before", ("end",))},
-        {"end": variable(ends, "s", "end of that second", ("end",))},
+        {"swing": variable(swings, "rad", "swing of the tilt in the second before", "end")},
+        {"end": variable(ends, "s", "end of that second", "end")},
     )
 
 
@@ -228,9 +218,9 @@ def _windows(quick: bool) -> xr.Dataset:
     for name, units in (("theta", "rad"), ("phi_dot", "rad s-1"), ("omega3", "rad s-1")):
         theirs = [float(end[name]) for end in ends]
         over, label = ("window",), "at the end of a run of this length"
-        data[f"{name}_after_listing"] = variable(theirs, units, f"{label}, by the report's method", over)
-        data[f"{name}_after"] = variable(true[name].values, units, label, over)
-    return xr.Dataset(data, {"window": variable(windows, "s", "length of the run", ("window",))})
+        data[f"{name}_after_listing"] = variable(theirs, units, f"{label}, by the report's method", *over)
+        data[f"{name}_after"] = variable(true[name].values, units, label, *over)
+    return xr.Dataset(data, {"window": variable(windows, "s", "length of the run", "window")})
 
 
 def likely_end(windows: xr.Dataset) -> xr.Dataset:
@@ -249,10 +239,10 @@ def _capped(quick: bool) -> xr.Dataset:
 
     return xr.Dataset(
         {
-            "final_theta": variable(ends(unilateral=False), "rad", "tilt at the end", ("spin",)),
-            "final_theta_capped": variable(ends(unilateral=True), "rad", "the same, g_n >= 0", ("spin",)),
+            "final_theta": variable(ends(unilateral=False), "rad", "tilt at the end", "spin"),
+            "final_theta_capped": variable(ends(unilateral=True), "rad", "the same, g_n >= 0", "spin"),
         },
-        {"spin": variable(list(spins), "rad s-1", "spin at launch", ("spin",))},
+        {"spin": variable(list(spins), "rad s-1", "spin at launch", "spin")},
     )
 
 
@@ -274,10 +264,10 @@ def _slow(quick: bool) -> xr.Dataset:
     }
     return xr.Dataset(
         {
-            name: variable(values, *meanings[name.removesuffix("_listing")], ("spin",))
+            name: variable(values, *meanings[name.removesuffix("_listing")], "spin")
             for name, values in columns.items()
         },
-        {"spin": variable(list(SLOW_SPINS), "rad s-1", "spin at launch", ("spin",))},
+        {"spin": variable(list(SLOW_SPINS), "rad s-1", "spin at launch", "spin")},
     )
 
 
@@ -291,16 +281,14 @@ EXPERIMENTS = [
     Experiment("run-50-windows", "the end of Fig. 5 against the length of the run", 1.5, _windows),
     Experiment("listing-capped", "the listing with what it has commented out", 2.5, _capped),
     Experiment("settling-mu-100", "how the nutation of Fig. 8 dies away", 0.8, _settling),
-    _experiment("run-155", 1.4, report_problem, "launch at 155 rad/s"),
-    _experiment("run-50", 0.8, partial(report_problem, 50.0), "launch at 50 rad/s"),
-    _experiment("run-50-table-1", 0.8, _table_1, "launch at 50 rad/s of the body that Table 1 prints"),
-    _experiment("run-mu-100", 4.0, partial(report_problem, 155.0, mu=100.0), "launch on an impossible table"),
-    _experiment("run-175", 2.0, partial(report_problem, 175.0), "launch at 175 rad/s"),
-    _experiment("run-10", 0.5, partial(report_problem, 10.0), "launch at 10 rad/s"),
-    _experiment("run-90", 1.0, partial(report_problem, 90.0), "launch at 90 rad/s"),
-    _experiment("run-120", 1.1, partial(report_problem, 120.0), "launch at 120 rad/s"),
-    _experiment(
-        "run-150-pi-4", 1.2, partial(report_problem, 150.0, math.pi / 4), "launch at 150 rad/s and pi/4"
-    ),
+    _launch("run-155", 1.4, "launch at 155 rad/s", 155.0),
+    _launch("run-50", 0.8, "launch at 50 rad/s", 50.0),
+    Experiment("run-50-table-1", "launch at 50 rad/s of the body that Table 1 prints", 0.8, _table_1),
+    _launch("run-mu-100", 4.0, "launch on an impossible table", 155.0, 0.1, 100.0),
+    _launch("run-175", 2.0, "launch at 175 rad/s", 175.0),
+    _launch("run-10", 0.5, "launch at 10 rad/s", 10.0),
+    _launch("run-90", 1.0, "launch at 90 rad/s", 90.0),
+    _launch("run-120", 1.1, "launch at 120 rad/s", 120.0),
+    _launch("run-150-pi-4", 1.2, "launch at 150 rad/s and pi/4", 150.0, math.pi / 4),
 ]
 """The launches of Figs. 4, 5, 8, 9 to 12 and 13 to 16, and that of Table 1."""

@@ -7,7 +7,7 @@ import xarray as xr
 from scipy.optimize import brentq
 
 from tippetop.presets import report_problem
-from tippetop.report.experiment import Experiment, variable
+from tippetop.report.experiment import Experiment, Variable, variable
 from tippetop.report.experiments.flights import leaves_at, onset_between
 from tippetop.report.experiments.runs import WINDOW, on_table, swept, unilateral
 from tippetop.report.listing import listing_run
@@ -51,33 +51,33 @@ def _listing_spins(quick: bool) -> np.ndarray:
 
 def _by_listing(quick: bool) -> xr.Dataset:
     spins = _listing_spins(quick)
-    tilts = np.array(
-        [float(listing_run(report_problem(float(spin)), WINDOW)["theta"].values[-1]) for spin in spins]
-    )
+    runs = (listing_run(report_problem(float(spin)), WINDOW) for spin in spins)
+    tilts = np.array([float(run["theta"].values[-1]) for run in runs])
     low, high = (spins >= 24) & (spins < 32), (spins > 76) & (spins < 81)
     upright = [_where(spins[low], np.log(tilts[low]), math.log(margin)) for margin in LISTED_MARGINS]
     inverted = [
         _where(spins[high], -np.log(math.pi - tilts[high]), -math.log(margin)) for margin in LISTED_MARGINS
     ]
-    lost = spins[(spins > 100) & (np.abs(tilts - math.pi) > TURNED)]
     name = "spin above which the final tilt is no longer 0, by the report's method"
     other = "spin above which the final tilt is pi, by the report's method"
     return xr.Dataset(
         {
-            "final_theta_listing": variable(tilts, *_TILT, ("spin_listing",)),
-            "critical_upright_listing": variable(upright, "rad s-1", name, ("margin_listing",)),
-            "critical_inverted_listing": variable(inverted, "rad s-1", other, ("margin_listing",)),
-            "lost_listing": variable(
-                lost.min() if len(lost) else np.nan,
-                "rad s-1",
-                "least spin above 100 rad/s that does not end at pi, by the report's method",
-            ),
+            "final_theta_listing": variable(tilts, *_TILT, "spin_listing"),
+            "critical_upright_listing": variable(upright, "rad s-1", name, "margin_listing"),
+            "critical_inverted_listing": variable(inverted, "rad s-1", other, "margin_listing"),
+            "lost_listing": _least_lost(spins, np.abs(tilts - math.pi) > TURNED, ", by the report's method"),
         },
         {
-            "spin_listing": variable(spins, "rad s-1", "spin at launch", ("spin_listing",)),
-            "margin_listing": variable(LISTED_MARGINS, "rad", "what counts as 0", ("margin_listing",)),
+            "spin_listing": variable(spins, "rad s-1", "spin at launch", "spin_listing"),
+            "margin_listing": variable(LISTED_MARGINS, "rad", "what counts as 0", "margin_listing"),
         },
     )
+
+
+def _least_lost(spins: np.ndarray, lost: np.ndarray, words: str) -> Variable:
+    found = spins[(spins > 100) & lost]
+    name = f"least spin above 100 rad/s that does not end at pi{words}"
+    return variable(found.min() if len(found) else np.nan, "rad s-1", name)
 
 
 def _where(x: np.ndarray, y: np.ndarray, level: float) -> float:
@@ -88,30 +88,26 @@ def _where(x: np.ndarray, y: np.ndarray, level: float) -> float:
 def _converged(quick: bool) -> xr.Dataset:
     spins = np.arange(5.0, 210.1, 2.5 if quick else 0.5)
     tilts = swept(on_table(report_problem()), {"launch.spin": spins})["final_theta"].values
-    lost = spins[(spins > 100) & ~(np.abs(tilts - math.pi) < TURNED)]
-    onset = onset_between(
-        lambda spin: leaves_at(report_problem(spin), WINDOW), *_LIFTING, window=WINDOW, accuracy=0.005
-    )
+
+    def leaves(spin: float) -> float:
+        return leaves_at(report_problem(spin), WINDOW)
+
+    onset = onset_between(leaves, *_LIFTING, window=WINDOW, accuracy=0.005)
+    pulling = "least spin at which the table would have to pull within the window"
     flying = np.arange(FLYING[0], FLYING[1] + 0.1, 7.5 if quick else 2.5)
     true_tilts = swept(unilateral(report_problem()), {"launch.spin": flying})["final_theta"].values
     return xr.Dataset(
         {
-            "final_theta": variable(tilts, *_TILT, ("spin",)),
+            "final_theta": variable(tilts, *_TILT, "spin"),
             "final_theta_flight": variable(
-                true_tilts, "rad", "tilt at the end of the run on a table that only pushes", ("spin_flight",)
+                true_tilts, "rad", "tilt at the end of the run on a table that only pushes", "spin_flight"
             ),
-            "lift_off_onset": variable(
-                onset, "rad s-1", "least spin at which the table would have to pull within the window"
-            ),
-            "lost": variable(
-                lost.min() if len(lost) else np.nan,
-                "rad s-1",
-                "least spin above 100 rad/s that does not end at pi on a table that pulls",
-            ),
+            "lift_off_onset": variable(onset, "rad s-1", pulling),
+            "lost": _least_lost(spins, ~(np.abs(tilts - math.pi) < TURNED), " on a table that pulls"),
         },
         {
-            "spin": variable(spins, "rad s-1", "spin at launch", ("spin",)),
-            "spin_flight": variable(flying, "rad s-1", "spin at launch", ("spin_flight",)),
+            "spin": variable(spins, "rad s-1", "spin at launch", "spin"),
+            "spin_flight": variable(flying, "rad s-1", "spin at launch", "spin_flight"),
         },
         {"window_s": WINDOW},
     )
@@ -160,14 +156,14 @@ def _thresholds(quick: bool) -> xr.Dataset:
     names = ("spin above which the final tilt is no longer 0", "spin above which the final tilt is pi")
     return xr.Dataset(
         {
-            "upright_by_window": variable(by_window[:, 0], "rad s-1", names[0], ("window",)),
-            "inverted_by_window": variable(by_window[:, 1], "rad s-1", names[1], ("window",)),
-            "upright_by_margin": variable(by_margin[:, 0], "rad s-1", names[0], ("margin",)),
-            "inverted_by_margin": variable(by_margin[:, 1], "rad s-1", names[1], ("margin",)),
+            "upright_by_window": variable(by_window[:, 0], "rad s-1", names[0], "window"),
+            "inverted_by_window": variable(by_window[:, 1], "rad s-1", names[1], "window"),
+            "upright_by_margin": variable(by_margin[:, 0], "rad s-1", names[0], "margin"),
+            "inverted_by_margin": variable(by_margin[:, 1], "rad s-1", names[1], "margin"),
         },
         {
-            "window": variable(list(windows), "s", "length of the runs", ("window",)),
-            "margin": variable(list(MARGINS), "rad", "what counts as 0", ("margin",)),
+            "window": variable(list(windows), "s", "length of the runs", "window"),
+            "margin": variable(list(MARGINS), "rad", "what counts as 0", "margin"),
         },
         {"margin_of_windows_rad": SETTLED},
     )

@@ -9,7 +9,7 @@ import xarray as xr
 from tippetop.frictions import ContensouFriction
 from tippetop.mechanics.contensou import ELLIPSOIDAL_RADIUS
 from tippetop.report.experiment import Experiment, variable
-from tippetop.report.experiments.real import LEINE, LEINE_WINDOW, first_of, happenings
+from tippetop.report.experiments.real import EVENTS, LEINE, LEINE_WINDOW, events_of, happenings
 from tippetop.report.moreau import Ball, History, SphereTop, follow
 from tippetop.run import simulate
 
@@ -24,13 +24,6 @@ RESTS = 0.02
 
 ROCKING = (4.4, 4.75)
 """The time around the rocking that is shown, s."""
-
-EVENTS = {
-    "stem": "first touch of the stem",
-    "back": "first touch of the sphere again",
-    "both": "beginning of double contact",
-    "apart": "end of double contact",
-}
 
 
 def stepped(step: float) -> History:
@@ -72,29 +65,22 @@ def _stepping(quick: bool) -> xr.Dataset:
     samples = 8001
     run = simulate(LEINE, LEINE_WINDOW, samples=samples)
     times = run["time"].values
-    both = first_of(happenings(run, "double contact"))
-    exact = {
-        "stem": first_of(happenings(run, "touchdown", 1)),
-        "back": first_of(happenings(run, "touchdown", 0)),
-        "both": both,
-        "apart": first_of(happenings(run, "opening"), both),
-    }
-    impacts = happenings(run, "impact")
-    exact["strikes"] = int(((impacts >= exact["back"]) & (impacts <= both)).sum())
+    exact, impacts = events_of(run), happenings(run, "impact")
+    exact["strikes"] = int(((impacts >= exact["back"]) & (impacts <= exact["both"])).sum())
     shown = (times >= ROCKING[0]) & (times <= ROCKING[1])
     tilts = [np.interp(times[shown], *_middles(history)) for history in histories]
-    over = ("step",)
+    last = [history.tilts[-1] for history in histories]
     told = {
         **{name: _column(found, name, "s", long) for name, long in EVENTS.items()},
         "strikes": _column(found, "strikes", "1", "strikes of the rocking"),
-        "final_theta": variable([history.tilts[-1] for history in histories], "rad", "tilt at the end", over),
-        "theta": variable(tilts, "rad", "tilt", ("step", "time")),
-        "exact_theta": variable(run["theta"].values[shown], "rad", "tilt of an exact run", ("time",)),
+        "final_theta": variable(last, "rad", "tilt at the end", "step"),
+        "theta": variable(tilts, "rad", "tilt", "step", "time"),
+        "exact_theta": variable(run["theta"].values[shown], "rad", "tilt of an exact run", "time"),
         "exact_final_theta": variable(float(run["theta"][-1]), "rad", "tilt at the end of an exact run"),
     }
     told |= {f"exact_{name}": variable(value, "s", f"{name}, exactly") for name, value in exact.items()}
-    steps = variable([history.step for history in histories], "s", "step", over)
-    return xr.Dataset(told, {"step": steps, "time": variable(times[shown], "s", "time", ("time",))})
+    steps = variable([history.step for history in histories], "s", "step", "step")
+    return xr.Dataset(told, {"step": steps, "time": variable(times[shown], "s", "time", "time")})
 
 
 def _middles(history: History) -> tuple[np.ndarray, list[float]]:
@@ -102,7 +88,7 @@ def _middles(history: History) -> tuple[np.ndarray, list[float]]:
 
 
 def _column(found: Iterable[dict[str, float]], name: str, unit: str, long: str) -> object:
-    return variable([one[name] for one in found], unit, long, ("step",))
+    return variable([one[name] for one in found], unit, long, "step")
 
 
 EXPERIMENTS = [

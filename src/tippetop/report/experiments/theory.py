@@ -5,9 +5,9 @@ import math
 import numpy as np
 import xarray as xr
 
-from tippetop.bodies import Body, EccentricSphere
+from tippetop.bodies import Body
 from tippetop.integrators.base import Array
-from tippetop.presets import REPORT, REPORT_TABLE_1, report_problem
+from tippetop.presets import LEINE_GLOCKER, REPORT, REPORT_TABLE_1, report_problem
 from tippetop.problem import Problem
 from tippetop.report.experiment import Experiment, variable
 from tippetop.report.experiments.runs import WINDOW
@@ -30,12 +30,8 @@ from tippetop.theory.groups import (
 )
 from tippetop.theory.prediction import predict
 from tippetop.theory.stability import branch_eigenvalues
-from tippetop.theory.steady import SteadyKind, jellett_of_launch, precession_branch
-from tippetop.theory.thresholds import (
-    CriticalSpins,
-    critical_spin,
-    critical_spins,
-)
+from tippetop.theory.steady import VERTICAL_SPINS, jellett_of_launch, precession_branch
+from tippetop.theory.thresholds import CriticalSpins, critical_spin, critical_spins
 
 VISIBLE = (0.001, 0.002, 0.005, 0.01)
 """Distances from the vertical that may be told from none, rad: up to the report's own 0.01 rad."""
@@ -45,11 +41,6 @@ QUOTED_SPINS = (50.0, 60.0, 100.0)
 
 JUMP_RATIO = 0.75
 """I1 / I3 of a top like the report's that jumps: with alpha = 0.3 it is in group IIb."""
-
-LEINE_GLOCKER = Body(mass=0.006, shape=EccentricSphere(radius=0.015, eccentricity=0.2), I1=8e-7, I3=7e-7)
-"""The tippe top of Leine and Glocker, Eur. J. Mech. A/Solids 22 (2003) 193."""
-
-_KINDS = (SteadyKind.UPRIGHT, SteadyKind.INVERTED)
 
 LONG_RUN = 400.0
 """Length of the runs whose end is compared with the steady states, s."""
@@ -63,27 +54,25 @@ def _critical(quick: bool) -> xr.Dataset:
     visible = np.array(VISIBLE)
     launches = critical_spins(problem)
     seen = [apparent_critical_spins(problem, WINDOW, float(least)) for least in visible]
-    formula = [critical_spin(kind, top) for kind in _KINDS]
-    spectrum = [critical_spin_from_spectrum(kind, top) for kind in _KINDS]
-    rates = [growth_rates_of_launches(kind, problem, spins) for kind in _KINDS]
-    each = ("vertical",)
+    formula = [critical_spin(kind, top) for kind in VERTICAL_SPINS]
+    spectrum = [critical_spin_from_spectrum(kind, top) for kind in VERTICAL_SPINS]
+    rates = [growth_rates_of_launches(kind, problem, spins) for kind in VERTICAL_SPINS]
+    each, zero = "vertical", "critical axial spin, where the growth rate vanishes"
     data = {
         "critical_launch": variable(_pair(launches), "rad s-1", "critical spin at launch", each),
         "critical_formula": variable(formula, "rad s-1", "critical axial spin, by formula", each),
-        "critical_spectrum": variable(
-            spectrum, "rad s-1", "critical axial spin, where the growth rate vanishes", each
-        ),
-        "growth_rate": variable(rates, "s-1", "growth rate of the vertical spin", (*each, "growth_spin")),
+        "critical_spectrum": variable(spectrum, "rad s-1", zero, each),
+        "growth_rate": variable(rates, "s-1", "growth rate of the vertical spin", each, "growth_spin"),
     }
     for name, shown in zip(("upright", "inverted"), zip(*map(_pair, seen), strict=True), strict=True):
         words = f"critical spin of the {name} spin as the window shows it"
-        data[f"apparent_{name}"] = variable(list(shown), "rad s-1", words, ("visible",))
+        data[f"apparent_{name}"] = variable(list(shown), "rad s-1", words, "visible")
     return xr.Dataset(
         data,
         {
-            "vertical": [kind.value for kind in _KINDS],
-            "growth_spin": variable(spins, "rad s-1", "spin at launch", ("growth_spin",)),
-            "visible": variable(visible, "rad", "least tilt told from none", ("visible",)),
+            "vertical": [kind.value for kind in VERTICAL_SPINS],
+            "growth_spin": variable(spins, "rad s-1", "spin at launch", "growth_spin"),
+            "visible": variable(visible, "rad", "least tilt told from none", "visible"),
         },
         {"apparent_window_s": WINDOW},
     )
@@ -128,7 +117,8 @@ def _diagram(suffix: str, body: Body, tilts: Array, launches: list[tuple[float, 
     """
     base = report_problem().replace({"body": body.model_dump()})
     branch = precession_branch(base.top, tilts)
-    eigenvalues = branch_eigenvalues(branch, base.top)
+    rates = np.max(branch_eigenvalues(branch, base.top).real, axis=1)
+    spins = branch.jellett / _per_spin(base)
     found = [_launched(base, spin, tilt) for spin, tilt in launches]
     runs = [simulate(problem, LONG_RUN, samples=2).isel(time=-1) for problem in found]
     ends = [float(run["theta"]) for run in runs]
@@ -146,21 +136,17 @@ def _diagram(suffix: str, body: Body, tilts: Array, launches: list[tuple[float, 
     run, over = f"run{suffix}", f"branch_theta{suffix}"
     return xr.Dataset(
         {
-            f"branch_spin{suffix}": variable(
-                branch.jellett / _per_spin(base), "rad s-1", "spin of launches that can end there", (over,)
-            ),
-            f"branch_growth{suffix}": variable(
-                np.max(eigenvalues.real, axis=1), "s-1", "growth rate of the steady precession", (over,)
-            ),
+            f"branch_spin{suffix}": variable(spins, "rad s-1", "spin of launches that can end there", over),
+            f"branch_growth{suffix}": variable(rates, "s-1", "growth rate of the steady precession", over),
             **{
-                f"run_{name}{suffix}": variable(values, *_OF_RUNS[name], (run,))
+                f"run_{name}{suffix}": variable(values, *_OF_RUNS[name], run)
                 for name, values in of_runs.items()
             },
-            f"limits{suffix}": variable(_pair(limits), "rad s-1", "critical spins at launch", ("vertical",)),
+            f"limits{suffix}": variable(_pair(limits), "rad s-1", "critical spins at launch", "vertical"),
         },
         {
-            over: variable(branch.tilt, "rad", "tilt of the steady precession", (over,)),
-            "vertical": [kind.value for kind in _KINDS],
+            over: variable(branch.tilt, "rad", "tilt of the steady precession", over),
+            "vertical": [kind.value for kind in VERTICAL_SPINS],
         },
     )
 
@@ -185,11 +171,8 @@ def _launched(base: Problem, spin: float, tilt: float) -> Problem:
 def _groups(quick: bool) -> xr.Dataset:
     """The map of the groups over gamma and alpha, and some tops on it."""
     alpha = np.linspace(1e-3, 0.6, 121 if quick else 601)
-    bodies = {
-        "report, listing": REPORT,
-        "report, Table 1": REPORT_TABLE_1,
-        "Leine and Glocker 2003": LEINE_GLOCKER,
-    }
+    bodies = {"report, listing": REPORT, "report, Table 1": REPORT_TABLE_1}
+    bodies["Leine and Glocker 2003"] = LEINE_GLOCKER
     tops = [report_problem().replace({"body": body.model_dump()}).top for body in bodies.values()]
     lines = {
         "upright_boundary": [upright_boundary(a) for a in alpha],
@@ -204,15 +187,12 @@ def _groups(quick: bool) -> xr.Dataset:
     names = {name: name.replace("_", " ") for name in lines}
     return xr.Dataset(
         {
-            **{name: variable(lines[name], "1", f"gamma at the {names[name]}", ("alpha",)) for name in lines},
-            "top_gamma": variable([inertia_ratio(top) for top in tops], "1", "I1 / I3", ("top",)),
-            "top_alpha": variable([eccentricity(top) for top in tops], "1", "eccentricity", ("top",)),
+            **{name: variable(lines[name], "1", f"gamma at the {names[name]}", "alpha") for name in lines},
+            "top_gamma": variable([inertia_ratio(top) for top in tops], "1", "I1 / I3", "top"),
+            "top_alpha": variable([eccentricity(top) for top in tops], "1", "eccentricity", "top"),
             "top_group": (("top",), [classify_top(top).value for top in tops], {"long_name": "group"}),
         },
-        {
-            "alpha": variable(alpha, "1", "eccentricity", ("alpha",)),
-            "top": list(bodies),
-        },
+        {"alpha": variable(alpha, "1", "eccentricity", "alpha"), "top": list(bodies)},
         {"groups": ", ".join(letters), "gamma_least": float(gamma[0]), "gamma_greatest": float(gamma[-1])},
     )
 

@@ -13,12 +13,7 @@ from tippetop.report.readings import SETTLED, flip_time
 from tippetop.run import simulate
 from tippetop.theory.apparent import growth_rates_of_launches
 from tippetop.theory.averaging import averaged_flow, flip_time_limit, local_exponent
-from tippetop.theory.diagnostics import (
-    gyroscopic_balance,
-    nutation_envelope,
-    potential_at,
-    smooth_constants,
-)
+from tippetop.theory.diagnostics import gyroscopic_balance, nutation_envelope, potential_at, smooth_constants
 from tippetop.theory.prediction import predict
 from tippetop.theory.steady import SteadyKind
 
@@ -48,26 +43,22 @@ def _collapse(quick: bool) -> xr.Dataset:
     frictions = FRICTIONS[:2] if quick else FRICTIONS
     bounds = np.array([_band(mu, edges) for mu in frictions])
     swing = simulate(on_table(problem), end / FRICTIONS[0], samples=2501)
+    tilts, swings = swing["theta"].values, FRICTIONS[0] * swing["time"].values
+    limit = flip_time_limit(problem, SETTLED)
     of_run = ("friction", "mu_time")
     return xr.Dataset(
         {
-            "flow_low": variable(low, "rad", "least tilt of the nutation, averaged flow", ("mu_time",)),
-            "flow_high": variable(high, "rad", "largest tilt of the nutation, averaged flow", ("mu_time",)),
-            "run_low": variable(bounds[:, 0], "rad", "least tilt of the run around this time", of_run),
-            "run_high": variable(bounds[:, 1], "rad", "largest tilt of the run around this time", of_run),
-            "theta_swing": variable(
-                swing["theta"].values, "rad", "tilt of the run with most friction", ("mu_time_swing",)
-            ),
-            "flip_limit": variable(
-                flip_time_limit(problem, SETTLED), "s2 m-1", "limit of mu times flip time"
-            ),
+            "flow_low": variable(low, "rad", "least tilt of the nutation, averaged flow", "mu_time"),
+            "flow_high": variable(high, "rad", "largest tilt of the nutation, averaged flow", "mu_time"),
+            "run_low": variable(bounds[:, 0], "rad", "least tilt of the run around this time", *of_run),
+            "run_high": variable(bounds[:, 1], "rad", "largest tilt of the run around this time", *of_run),
+            "theta_swing": variable(tilts, "rad", "tilt of the run with most friction", "mu_time_swing"),
+            "flip_limit": variable(limit, "s2 m-1", "limit of mu times flip time"),
         },
         {
-            "mu_time": variable(middle, "s2 m-1", "mu t", ("mu_time",)),
-            "friction": variable(list(frictions), "s m-1", "friction coefficient", ("friction",)),
-            "mu_time_swing": variable(
-                FRICTIONS[0] * swing["time"].values, "s2 m-1", "mu t", ("mu_time_swing",)
-            ),
+            "mu_time": variable(middle, "s2 m-1", "mu t", "mu_time"),
+            "friction": variable(list(frictions), "s m-1", "friction coefficient", "friction"),
+            "mu_time_swing": variable(swings, "s2 m-1", "mu t", "mu_time_swing"),
         },
         {"spin_rad_per_s": SPIN},
     )
@@ -92,28 +83,28 @@ def _exponent(quick: bool) -> xr.Dataset:
     times = np.array([_times(float(one), final) for one in mu]).T
     flow = averaged_flow(problem, samples=4000)
     half = float(np.interp(CROSSED, *_rising(flow.tilt_high, flow.mu_time)))
-    names = ("crossing_time", "arrival_time_end", "settling_time", "arrival_time_window")
-    words = (
-        "first time with a tilt of more than pi/2",
-        "first time within 0.01 rad of the steady tilt",
-        "time from which on the tilt stays within 0.01 rad of the steady tilt",
-        "first time within 0.01 rad of the tilt after 20 s, the report's definition",
-    )
     data = xr.Dataset(
-        coords={"mu_flip": variable(mu, "s m-1", "friction coefficient", ("mu_flip",))},
+        coords={"mu_flip": variable(mu, "s m-1", "friction coefficient", "mu_flip")},
         attrs={"spin_rad_per_s": SPIN, "within_rad": SETTLED},
     )
-    for name, long_name, row in zip(names, words, times, strict=True):
-        data[name] = variable(row, "s", long_name, ("mu_flip",))
-    for name, row in zip(names[:2], times, strict=False):
-        exponent = local_exponent(mu, row)
-        data[f"exponent_{name}"] = variable(exponent, "1", f"d ln t / d ln mu, {name}", ("mu_flip",))
-    data["decay_rate"] = variable(
-        [_decay_rate(float(one)) for one in mu], "s-1", "decay rate of the inverted spin", ("mu_flip",)
-    )
+    for (name, long_name), row in zip(_SENSES.items(), times, strict=True):
+        data[name] = variable(row, "s", long_name, "mu_flip")
+    for name in ("crossing_time", "arrival_time_end"):
+        exponent = local_exponent(mu, data[name].values)
+        data[f"exponent_{name}"] = variable(exponent, "1", f"d ln t / d ln mu, {name}", "mu_flip")
+    rates = [_decay_rate(float(one)) for one in mu]
+    data["decay_rate"] = variable(rates, "s-1", "decay rate of the inverted spin", "mu_flip")
     data["limit_crossing"] = variable(half, "s2 m-1", "limit of mu t at the first tilt of pi/2")
     data["limit_arrival"] = variable(flip_time_limit(problem, SETTLED), "s2 m-1", "limit of mu t, arrival")
     return data
+
+
+_SENSES = {
+    "crossing_time": "first time with a tilt of more than pi/2",
+    "arrival_time_end": "first time within 0.01 rad of the steady tilt",
+    "settling_time": "time from which on the tilt stays within 0.01 rad of the steady tilt",
+    "arrival_time_window": "first time within 0.01 rad of the tilt after 20 s, the report's definition",
+}
 
 
 def _times(mu: float, final: float) -> tuple[float, float, float, float]:
@@ -136,9 +127,8 @@ def _times(mu: float, final: float) -> tuple[float, float, float, float]:
 
 def _decay_rate(mu: float) -> float:
     """Decay rate of the inverted spin that the launch leads to, 1/s."""
-    return -float(
-        growth_rates_of_launches(SteadyKind.INVERTED, report_problem(SPIN, mu=mu), np.array([SPIN]))[0]
-    )
+    problem = report_problem(SPIN, mu=mu)
+    return -float(growth_rates_of_launches(SteadyKind.INVERTED, problem, np.array([SPIN]))[0])
 
 
 def _rising(values: Array, times: Array) -> tuple[Array, Array]:
@@ -165,19 +155,19 @@ def _diagnostics(quick: bool) -> xr.Dataset:
     over = ("time_diagnosed",)
     return xr.Dataset(
         {
-            "theta_diagnosed": variable(run["theta"].values, "rad", "tilt", over),
-            "balance": variable(xi, "kg m2 s-1", "xi = I1 phi' cos(theta) - I3 omega3", over),
-            "balance_ratio": variable(xi / float(abs(axial[0])), "1", "xi over I3 omega3 at launch", over),
-            "envelope_low": variable(envelope.low, "rad", "least tilt a smooth table would allow", over),
-            "envelope_high": variable(envelope.high, "rad", "largest tilt a smooth table would allow", over),
-            "potential": variable(wells, "J", "effective potential", ("instant", "well_theta")),
-            "level": variable(np.asarray(values.energy)[index], "J", "energy", ("instant",)),
-            "instant_theta": variable(run["theta"].values[index], "rad", "tilt", ("instant",)),
+            "theta_diagnosed": variable(run["theta"].values, "rad", "tilt", *over),
+            "balance": variable(xi, "kg m2 s-1", "xi = I1 phi' cos(theta) - I3 omega3", *over),
+            "balance_ratio": variable(xi / float(abs(axial[0])), "1", "xi over I3 omega3 at launch", *over),
+            "envelope_low": variable(envelope.low, "rad", "least tilt a smooth table would allow", *over),
+            "envelope_high": variable(envelope.high, "rad", "largest tilt a smooth table would allow", *over),
+            "potential": variable(wells, "J", "effective potential", "instant", "well_theta"),
+            "level": variable(np.asarray(values.energy)[index], "J", "energy", "instant"),
+            "instant_theta": variable(run["theta"].values[index], "rad", "tilt", "instant"),
         },
         {
-            "time_diagnosed": variable(run["time"].values, "s", "time", over),
-            "instant": variable(run["time"].values[index], "s", "instant of the run", ("instant",)),
-            "well_theta": variable(tilts, "rad", "tilt", ("well_theta",)),
+            "time_diagnosed": variable(run["time"].values, "s", "time", *over),
+            "instant": variable(run["time"].values[index], "s", "instant of the run", "instant"),
+            "well_theta": variable(tilts, "rad", "tilt", "well_theta"),
         },
         {"spin_rad_per_s": DIAGNOSED_SPIN},
     )
