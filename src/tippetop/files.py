@@ -5,12 +5,12 @@ import os
 import secrets
 import stat
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO
 
-from tippetop.errors import OVERWRITE, FileTrouble
+from tippetop.errors import OVERWRITE, FileTrouble, InvalidInput
 from tippetop.interrupts import deferred
 
 if sys.platform != "win32":
@@ -24,6 +24,12 @@ LONGEST_TEXT = 2**24
 
 LONGEST_NAME = 300
 """How much of a path a sentence shows, letters."""
+
+
+def require_ending(field: str, path: Path, endings: Sequence[str]) -> None:
+    """Raise `InvalidInput` if the name of a file does not end in one of these."""
+    if path.suffix.lower() not in endings:
+        raise InvalidInput(field, str(path), f"a file name that ends in {' or '.join(endings)}")
 
 
 def refuse_overwriting(path: Path, overwrite: bool) -> None:

@@ -7,7 +7,7 @@ import sys
 import pytest
 
 import tippetop as tt
-from tippetop.cli.options import changed_problem
+from tippetop.cli.options import Choice
 from tippetop.errors import short
 from tippetop.files import LONGEST_TEXT
 from tippetop.sweeps import Sweep
@@ -32,7 +32,7 @@ def told(refused, *arguments):
 
 
 def with_option(change):
-    return changed_problem(PROBLEM, None, {}, [change])
+    return Choice(changes=[change]).changed(PROBLEM)
 
 
 def with_key(table, key):

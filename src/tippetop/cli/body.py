@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tippetop.cli.options import Force, Json, facts, finite
+from tippetop.cli.options import Force, Json, facts, finite, listing
 from tippetop.errors import InvalidInput
-from tippetop.files import place_for, written_beside
+from tippetop.files import place_for, require_ending, written_beside
 
 if TYPE_CHECKING:
     from tippetop.lathe.workpiece import Workpiece
@@ -38,10 +38,7 @@ def body(
     wanted = {"plot": plot, "stl": stl, "3mf": three_mf}
     files = {kind: path for kind, path in wanted.items() if path is not None}
     for kind, path in files.items():
-        if path.suffix.lower() not in ENDINGS[kind]:
-            raise InvalidInput(
-                f"--{kind}", str(path), f"a file name that ends in {' or '.join(ENDINGS[kind])}"
-            )
+        require_ending(f"--{kind}", path, ENDINGS[kind])
         place_for(path, force)
     given = {"density": density, "unit": unit}
     piece = read_workpiece(file, **{name: value for name, value in given.items() if value is not None})
@@ -150,30 +147,28 @@ def _write(piece: "Workpiece", path: Path, force: bool) -> None:
 
 def _print(told: dict[str, Any], files: list[Path]) -> None:
     from rich.console import Console  # noqa: PLC0415
-    from rich.table import Table  # noqa: PLC0415
 
     console = Console()
-    table = facts(_rows(told))
     if told["group"]:
         upto = told["surfaces"][0]["to_tilt"]
         within = f" That is on its sphere, up to a tilt of {upto:.6g} rad." if upto < math.pi else ""
         console.print(
             f"[bold]Group {told['group']}[/]: {told['group_description']}.{within}", highlight=False
         )
-    console.print(table)
-    surfaces = Table(title="Stands on", title_justify="left", title_style="bold", box=None)
-    for heading in ("surface", "radius", "tube", "height of its centre", "from tilt", "to tilt"):
-        surfaces.add_column(heading, justify="left" if heading == "surface" else "right")
-    for one in told["surfaces"]:
-        tube = "" if one["tube"] is None else f"{1e3 * one['tube']:.6g}"
-        lengths = (f"{1e3 * one['radius']:.6g}", tube, f"{1e3 * one['center']:.6g}")
-        surfaces.add_row(one["kind"], *lengths, f"{one['from_tilt']:.6g}", f"{one['to_tilt']:.6g}")
-    console.print(surfaces)
+    console.print(facts(_rows(told)))
+    headings = ("surface", "radius", "tube", "height of its centre", "from tilt", "to tilt")
+    rows = (_surface_row(one) for one in told["surfaces"])
+    console.print(listing("Stands on", headings, rows, words=("surface",)))
     console.print("[dim]mm, from the centre of mass; rad.[/]", highlight=False)
     if told["trouble"]:
         console.print(f"Cannot be simulated: {told['trouble']}", highlight=False, markup=False)
     for path in files:
         console.print(f"wrote {path}", highlight=False)
+
+
+def _surface_row(one: dict[str, Any]) -> tuple[str, ...]:
+    lengths = ("" if one[name] is None else f"{1e3 * one[name]:.6g}" for name in ("radius", "tube", "center"))
+    return (one["kind"], *lengths, f"{one['from_tilt']:.6g}", f"{one['to_tilt']:.6g}")
 
 
 def _rows(told: dict[str, Any]) -> list[tuple[str, str, str]]:

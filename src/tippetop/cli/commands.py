@@ -44,13 +44,8 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-app.command()(simulate)
-app.command()(reproduce)
-app.command()(critical)
-app.command()(sweep)
-app.command()(lab)
-app.command()(problem)
-app.command()(body)
+for command in (simulate, reproduce, critical, sweep, lab, problem, body):
+    app.command()(command)
 
 
 def _print_version(asked: bool) -> None:

@@ -6,19 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from tippetop.cli.options import (
-    Changes,
-    Json,
-    LiftOff,
-    Mu,
-    Preset,
-    ProblemFile,
-    Spin,
-    Tilt,
-    chosen_problem,
-    facts,
-    finite,
-)
+from tippetop.cli.options import Choice, Json, facts, finite, listing, of_a_problem
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -27,33 +15,19 @@ if TYPE_CHECKING:
     from tippetop.theory.steady import SteadyState
 
 
+@of_a_problem
 def critical(
-    file: ProblemFile = None,
-    preset: Preset = None,
-    spin: Spin = None,
-    tilt: Tilt = None,
-    mu: Mu = None,
-    liftoff: LiftOff = None,
-    changes: Changes = None,
+    choice: Choice,
     as_json: Json = False,
 ) -> None:
     """Say what the theory knows of a launch: its critical spins, its end, and how long it takes."""
     from tippetop.theory.overview import outlook  # noqa: PLC0415 - slow to import
 
-    settings = {"launch.spin": spin, "launch.tilt": tilt, "friction.mu": mu, "contact.liftoff": liftoff}
-    problem = chosen_problem(file, preset, settings, changes)
+    problem = choice.problem()
     found = outlook(problem)
     if as_json:
-        typer.echo(
-            json.dumps(
-                {
-                    **_plain(found),
-                    "critical_spins_tilt": problem.launch.tilt,
-                    "problem": problem.model_dump(),
-                },
-                indent=2,
-            )
-        )
+        told = {"critical_spins_tilt": problem.launch.tilt, "problem": problem.model_dump()}
+        typer.echo(json.dumps({**_plain(found), **told}, indent=2))
     else:
         from rich.console import Console  # noqa: PLC0415
 
@@ -107,12 +81,9 @@ def _plain_state(state: Any) -> dict[str, Any]:
 
 
 def _print(found: "Outlook", console: "Console") -> None:
-    from rich.table import Table  # noqa: PLC0415
-
-    table = facts(_rows(found))
     if found.group is not None:
         console.print(f"[bold]Group {found.group.value}[/]: {found.group.description}.", highlight=False)
-    console.print(table)
+    console.print(facts(_rows(found)))
     if found.tilts != (0.0, math.pi):
         low, high = found.tilts
         console.print(
@@ -125,12 +96,9 @@ def _print(found: "Outlook", console: "Console") -> None:
             f"[dim]ω_c1, ω_c2: spins of launches with this one's tilt, {found.tilt:.6g} rad, and rates.[/]",
             highlight=False,
         )
-    states = Table(title="Steady states of this launch", title_justify="left", title_style="bold", box=None)
-    for heading in ("kind", "tilt", "precession", "axial spin", "energy", "", "growth rate"):
-        states.add_column(heading, justify="left" if heading in ("kind", "") else "right")
-    for judged in found.steady:
-        states.add_row(*_state_row(judged))
-    console.print(states)
+    headings = ("kind", "tilt", "precession", "axial spin", "energy", "", "growth rate")
+    rows = (_state_row(judged) for judged in found.steady)
+    console.print(listing("Steady states of this launch", headings, rows, words=("kind", "")))
     for judged in found.steady:
         console.print(f"[dim]{judged.state.kind.value}:[/] {_eigenvalues(judged)}", highlight=False)
     console.print(
@@ -142,27 +110,20 @@ def _print(found: "Outlook", console: "Console") -> None:
 
 def _rows(found: "Outlook") -> list[tuple[str, str, str]]:
     upright, inverted = found.critical_spins.upright, found.critical_spins.inverted
-    sphere = found.group is not None
+    sphere, kept = found.group is not None, "" if found.conserved else ", not conserved"
     rows = [
         ("upright spin is left above ω_c1" if sphere else "upright changes at", _shown(upright), "rad/s"),
         ("inverted spin holds above ω_c2" if sphere else "inverted changes at", _shown(inverted), "rad/s"),
         ("λ_up", _shown(found.lambda_up), "kg m³/s"),
         ("λ_down", _shown(found.lambda_down), "kg m³/s"),
-        (
-            "λ of this launch",
-            _shown(found.jellett),
-            "kg m³/s" + ("" if found.conserved else ", not conserved"),
-        ),
+        ("λ of this launch", _shown(found.jellett), "kg m³/s" + kept),
     ]
     if found.inertia_ratio is not None and found.eccentricity is not None:
         rows.insert(0, ("γ = I1/I3, α", f"{found.inertia_ratio:.6g}, {found.eccentricity:.6g}", ""))
     rows += _end_rows(found)
     if found.standing_time is not None:
-        what = (
-            "drilling lets it stand"
-            if found.tilt in (0.0, math.pi)
-            else "inverted with this λ it would stand"
-        )
+        vertical = found.tilt in (0.0, math.pi)
+        what = "drilling lets it stand" if vertical else "inverted with this λ it would stand"
         rows.append((what, _shown(found.standing_time), "s"))
     if found.mu_flip_time is not None:
         rows.append(("μ t until 0.01 rad from there, μ → 0", _shown(found.mu_flip_time), "s²/m"))
@@ -195,15 +156,8 @@ def _told(state: "SteadyState") -> str:
 def _state_row(judged: "Judged") -> tuple[str, ...]:
     state, spectrum = judged.state, judged.spectrum
     verdict = "stable" if spectrum.stable else "unstable" if spectrum.unstable else "neutral"
-    return (
-        state.kind.value,
-        f"{state.tilt:.6g}",
-        f"{state.precession:.6g}",
-        f"{state.spin:.6g}",
-        f"{state.energy:.5g}",
-        verdict,
-        f"{spectrum.growth_rate:.5g}",
-    )
+    motion = (f"{value:.6g}" for value in (state.tilt, state.precession, state.spin))
+    return (state.kind.value, *motion, f"{state.energy:.5g}", verdict, f"{spectrum.growth_rate:.5g}")
 
 
 def _eigenvalues(judged: "Judged") -> str:

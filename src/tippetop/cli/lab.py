@@ -36,13 +36,11 @@ def lab(
 
 
 def _write(path: Path, force: bool) -> None:
-    from tippetop.errors import InvalidInput  # noqa: PLC0415
     from tippetop.export.bundle import built  # noqa: PLC0415
-    from tippetop.files import written_beside  # noqa: PLC0415
+    from tippetop.files import require_ending, written_beside  # noqa: PLC0415
     from tippetop.lab.serve import PAGE  # noqa: PLC0415
 
-    if path.suffix.lower() not in (".html", ".htm"):
-        raise InvalidInput("--out", str(path), "a file name that ends in .html or .htm")
+    require_ending("--out", path, (".html", ".htm"))
     with written_beside(path, force) as beside:
         beside.write_text(built(PAGE), encoding="utf-8")
     typer.echo(f"wrote {path}")

@@ -2,9 +2,11 @@
 
 import json
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import wraps
+from inspect import Parameter, Signature, signature
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Concatenate, NamedTuple
 
 import typer
 
@@ -18,59 +20,80 @@ if TYPE_CHECKING:
 ProblemFile = Annotated[
     Path | None, typer.Argument(help="Problem to start from, .toml or .json; the report's top if left out.")
 ]
-Preset = Annotated[
-    str | None,
-    typer.Option(help="Body by name, such as report, leine-glocker-stem, egg, coin; a wrong one lists all."),
-]
-Spin = Annotated[float | None, typer.Option(help="Axial spin at launch, rad/s.")]
-Tilt = Annotated[float | None, typer.Option(help="Tilt of the axis at launch, rad, from 0 to pi.")]
-Mu = Annotated[float | None, typer.Option(help="Friction coefficient: s/m if viscous, else dimensionless.")]
-LiftOff = Annotated[str | None, typer.Option(help="When the table would have to pull: stop, ignore or fly.")]
-Changes = Annotated[
-    list[str] | None,
-    typer.Option("--set", metavar="FIELD=VALUE", help="Any other field, e.g. body.shape.eccentricity=0.2."),
-]
+ASKED = {
+    "preset": Annotated[
+        str | None,
+        typer.Option(
+            help="Body by name, such as report, leine-glocker-stem, egg, coin; a wrong one lists all."
+        ),
+    ],
+    "spin": Annotated[float | None, typer.Option(help="Axial spin at launch, rad/s.")],
+    "tilt": Annotated[float | None, typer.Option(help="Tilt of the axis at launch, rad, from 0 to pi.")],
+    "mu": Annotated[
+        float | None, typer.Option(help="Friction coefficient: s/m if viscous, else dimensionless.")
+    ],
+    "liftoff": Annotated[
+        str | None, typer.Option(help="When the table would have to pull: stop, ignore or fly.")
+    ],
+    "changes": Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set", metavar="FIELD=VALUE", help="Any other field, e.g. body.shape.eccentricity=0.2."
+        ),
+    ],
+}
+"""The options beside a file that say which problem a command is for."""
+
+FIELDS = {"spin": "launch.spin", "tilt": "launch.tilt", "mu": "friction.mu", "liftoff": "contact.liftoff"}
+"""The fields of a problem that have an option of their own."""
+
 Json = Annotated[bool, typer.Option("--json", help="Print JSON for programs.")]
 Force = Annotated[bool, typer.Option("--force", help="Overwrite results that exist.")]
 
 
-def chosen_problem(
-    file: Path | None,
-    preset: str | None,
-    settings: dict[str, Any],
-    changes: list[str] | None,
-) -> "Problem":
-    """The problem of a file (or the report's), with a preset body and some fields changed.
+class Choice(NamedTuple):
+    """Which problem a command is for: what to start from, and what is other than there."""
 
-    Raises
-    ------
-    InvalidInput, FileTrouble
-        If the file, the preset or a field is not what it should be.
-    """
-    from tippetop import presets  # noqa: PLC0415 - slow to import, and not needed for --help
-    from tippetop.problem import Problem  # noqa: PLC0415
+    file: Path | None = None
+    preset: str | None = None
+    settings: Mapping[str, Any] = {}
+    changes: Sequence[str] = ()
 
-    problem = presets.report_problem() if file is None else Problem.read(file)
-    return changed_problem(problem, preset, settings, changes)
+    def problem(self) -> "Problem":
+        """The problem of the file, or the report's, with what is other; sentences for what cannot be."""
+        from tippetop import presets  # noqa: PLC0415 - slow to import, and not needed for --help
+        from tippetop.problem import Problem  # noqa: PLC0415
+
+        return self.changed(presets.report_problem() if self.file is None else Problem.read(self.file))
+
+    def changed(self, problem: "Problem") -> "Problem":
+        """Another problem with what is other."""
+        from tippetop import presets  # noqa: PLC0415 - slow to import, and not needed for --help
+
+        if self.preset is not None:
+            problem = problem.model_copy(update={"body": presets.body(self.preset)})
+        return problem.replace({**self.settings, **dict(_parsed(change) for change in self.changes)})
 
 
-def changed_problem(
-    problem: "Problem", preset: str | None, settings: dict[str, Any], changes: list[str] | None
-) -> "Problem":
-    """A problem with a preset body and some fields changed.
+def of_a_problem(
+    command: Callable[Concatenate[Choice, ...], None], file: Any = ProblemFile
+) -> Callable[..., None]:
+    """The command with the options that say which problem it is for, as its first argument then tells."""
 
-    Raises
-    ------
-    InvalidInput
-        If the preset or a field is not what it should be.
-    """
-    from tippetop import presets  # noqa: PLC0415 - slow to import, and not needed for --help
+    @wraps(command)
+    def asked(**given: Any) -> None:
+        told = {name: given.pop(name, None) for name in ("file", *ASKED)}
+        settings = {field: told[name] for name, field in FIELDS.items() if told[name] is not None}
+        command(Choice(told["file"], told["preset"], settings, told["changes"] or ()), **given)
 
-    if preset is not None:
-        problem = problem.model_copy(update={"body": presets.body(preset)})
-    given = {field: value for field, value in settings.items() if value is not None}
-    given.update(_parsed(change) for change in changes or [])
-    return problem.replace(given)
+    _, *own = signature(command).parameters.values()
+    options = {"file": file, **ASKED}.items()
+    asking = [
+        Parameter(name, Parameter.KEYWORD_ONLY, default=None, annotation=kind) for name, kind in options
+    ]
+    whole = Signature([*asking, *(one.replace(kind=Parameter.KEYWORD_ONLY) for one in own)])
+    asked.__signature__ = whole  # type: ignore[attr-defined]
+    return asked
 
 
 def facts(rows: Iterable[Sequence[str]]) -> "Table":
@@ -81,6 +104,20 @@ def facts(rows: Iterable[Sequence[str]]) -> "Table":
     table.add_column(style="dim")
     table.add_column(justify="right", style="bold")
     table.add_column()
+    for row in rows:
+        table.add_row(*row)
+    return table
+
+
+def listing(
+    title: str, headings: Sequence[str], rows: Iterable[Sequence[str]], words: Sequence[str]
+) -> "Table":
+    """Rows of numbers under headings, but for the columns of words."""
+    from rich.table import Table  # noqa: PLC0415 - slow to import
+
+    table = Table(title=title, title_justify="left", title_style="bold", box=None)
+    for heading in headings:
+        table.add_column(heading, justify="left" if heading in words else "right")
     for row in rows:
         table.add_row(*row)
     return table

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Literal, get_args, get_origin
 
 import typer
 
-from tippetop.cli.options import Changes, Json, LiftOff, Mu, Preset, ProblemFile, Spin, Tilt, chosen_problem
+from tippetop.cli.options import Choice, Json, of_a_problem
 from tippetop.fields import part_at
 
 if TYPE_CHECKING:
@@ -16,14 +16,9 @@ TABLE, FIELD, ITEM = re.compile(r"\[(.+)]"), re.compile(r"([\w-]+) = "), re.comp
 """Lines of TOML: that begin a table, a field, or hold an item of a list."""
 
 
+@of_a_problem
 def problem(
-    file: ProblemFile = None,
-    preset: Preset = None,
-    spin: Spin = None,
-    tilt: Tilt = None,
-    mu: Mu = None,
-    liftoff: LiftOff = None,
-    changes: Changes = None,
+    choice: Choice,
     as_json: Json = False,
     schema: Annotated[bool, typer.Option("--schema", help="Print the JSON Schema of problems.")] = False,
 ) -> None:
@@ -33,8 +28,7 @@ def problem(
     if schema:
         typer.echo(json.dumps(Problem.model_json_schema(), indent=2))
         return
-    settings = {"launch.spin": spin, "launch.tilt": tilt, "friction.mu": mu, "contact.liftoff": liftoff}
-    chosen = chosen_problem(file, preset, settings, changes)
+    chosen = choice.problem()
     typer.echo(chosen.to_json() if as_json else commented_toml(chosen).rstrip())
 
 

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from tippetop.cli.options import Force, Json
+
 if TYPE_CHECKING:
     from rich.console import Console
 
@@ -21,8 +23,8 @@ def reproduce(
         typer.Option(metavar="ID", help="Redo one figure (fig06) or claim (fig05-flip-time) only."),
     ] = None,
     quick: Annotated[bool, typer.Option("--quick", help="Coarser sweeps: a check, not for quoting.")] = False,
-    force: Annotated[bool, typer.Option("--force", help="Overwrite results that exist.")] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON for programs.")] = False,
+    force: Force = False,
+    as_json: Json = False,
 ) -> None:
     """Redo the report: its figures, the data behind them, and a verdict on every claim."""
     from rich.console import Console  # noqa: PLC0415 - slow to import

@@ -10,21 +10,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tippetop.cli.options import (
-    Changes,
-    Force,
-    Json,
-    LiftOff,
-    Mu,
-    Preset,
-    ProblemFile,
-    Spin,
-    Tilt,
-    chosen_problem,
-    facts,
-)
+from tippetop.cli.options import Choice, Force, Json, facts, of_a_problem
 from tippetop.errors import InvalidInput
-from tippetop.files import place_for, written_beside
+from tippetop.files import place_for, require_ending, written_beside
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -53,28 +41,23 @@ ROWS = (
 """What is printed of a run: text, key of the summary, unit, format, and what stands for what there is not."""
 
 LOSS_ROWS = (
-    ("of it to sliding", "energy_lost_sliding", "J"),
-    ("of it to drilling", "energy_lost_drilling", "J"),
-    ("of it to rolling resistance", "energy_lost_rolling", "J"),
+    ("of it to sliding", "energy_lost_sliding", "J", ".7g", ""),
+    ("of it to drilling", "energy_lost_drilling", "J", ".7g", ""),
+    ("of it to rolling resistance", "energy_lost_rolling", "J", ".7g", ""),
 )
 """What is printed of a run that loses energy in more ways than by sliding."""
 
 FLIGHT_ROWS = (
-    ("flights", "flights", ""),
-    ("airborne for", "airborne_time", "s"),
-    ("highest above the table", "highest_gap", "m"),
-    ("energy lost in impacts", "impact_energy_lost", "J"),
+    ("flights", "flights", "", ".7g", ""),
+    ("airborne for", "airborne_time", "s", ".7g", ""),
+    ("highest above the table", "highest_gap", "m", ".7g", ""),
+    ("energy lost in impacts", "impact_energy_lost", "J", ".7g", ""),
 )
 
 
+@of_a_problem
 def simulate(
-    file: ProblemFile = None,
-    preset: Preset = None,
-    spin: Spin = None,
-    tilt: Tilt = None,
-    mu: Mu = None,
-    liftoff: LiftOff = None,
-    changes: Changes = None,
+    choice: Choice,
     duration: Annotated[float, typer.Option(help="Length of the run, s.")] = 20.0,
     samples: Annotated[
         int | None, typer.Option(help="Number of samples; 2001, or what a moving picture needs.")
@@ -101,8 +84,7 @@ def simulate(
     from tippetop.run import simulate as run_problem  # noqa: PLC0415 - slow to import
     from tippetop.summary import summarize  # noqa: PLC0415
 
-    settings = {"launch.spin": spin, "launch.tilt": tilt, "friction.mu": mu, "contact.liftoff": liftoff}
-    chosen = chosen_problem(file, preset, settings, changes)
+    chosen = choice.problem()
     files = {"out": out, "plot": plot, "csv": csv, "glb": glb, "html": html, "mp4": mp4, "gif": gif}
     wanted = {kind: path for kind, path in files.items() if path is not None}
     _check_files(wanted, force)
@@ -189,9 +171,8 @@ def _check_files(wanted: dict[str, Path], force: bool) -> None:
     """Refuse names that promise another kind of file, are given twice or taken, and films without ffmpeg."""
     taken: dict[Path, str] = {}
     for kind, path in wanted.items():
-        endings = ENDINGS.get(kind, (f".{kind}",))
-        if kind != "out" and path.suffix.lower() not in endings:
-            raise InvalidInput(f"--{kind}", str(path), f"a file name that ends in {' or '.join(endings)}")
+        if kind != "out":
+            require_ending(f"--{kind}", path, ENDINGS.get(kind, (f".{kind}",)))
         if path.resolve() in taken:
             raise InvalidInput(f"--{kind}", str(path), f"a file other than that of --{taken[path.resolve()]}")
         taken[path.resolve()] = kind
@@ -220,15 +201,13 @@ def _print_summary(summary: dict[str, Any], elapsed: float, files: list[Path]) -
 def _rows(summary: dict[str, Any]) -> list[tuple[str, str, str]]:
     lift_off = next((event["time"] for event in summary["events"] if event["kind"] == "lift-off"), None)
     numbers = {**summary, **summary["final"], "first_lift_off": lift_off}
+    resisted = summary["energy_lost_drilling"] or summary["energy_lost_rolling"]
+    shown = [*ROWS, *(LOSS_ROWS if resisted else ()), *(FLIGHT_ROWS if summary["flights"] else ())]
     rows = []
-    for text, key, unit, form, otherwise in ROWS:
+    for text, key, unit, form, otherwise in shown:
         value = numbers[key]
         if value is not None:
             rows.append((text, format(value, form), unit))
         elif otherwise:
             rows.append((text, otherwise, ""))
-    if summary["energy_lost_drilling"] or summary["energy_lost_rolling"]:
-        rows += [(text, format(summary[key], ".7g"), unit) for text, key, unit in LOSS_ROWS]
-    if summary["flights"]:
-        rows += [(text, format(summary[key], ".7g"), unit) for text, key, unit in FLIGHT_ROWS]
     return rows

@@ -6,24 +6,13 @@ import time
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tippetop.cli.options import (
-    Changes,
-    Force,
-    Json,
-    LiftOff,
-    Mu,
-    Preset,
-    Spin,
-    Tilt,
-    changed_problem,
-    chosen_problem,
-    facts,
-)
+from tippetop.cli.options import Choice, Force, Json, facts, of_a_problem
 from tippetop.errors import MISSING, FileTrouble, InvalidInput
 from tippetop.files import in_words, place_for, read_text, written_beside
 from tippetop.interrupts import INTERRUPTED
@@ -69,14 +58,9 @@ Maps = Annotated[
 ]
 
 
+@partial(of_a_problem, file=SweepFile)
 def sweep(
-    file: SweepFile = None,
-    preset: Preset = None,
-    spin: Spin = None,
-    tilt: Tilt = None,
-    mu: Mu = None,
-    liftoff: LiftOff = None,
-    changes: Changes = None,
+    choice: Choice,
     axis: Axes = None,
     draw: Ranges = None,
     count: Count = None,
@@ -99,12 +83,11 @@ def sweep(
 
     if resume and force:
         raise InvalidInput("--force", "with --resume", "one of the two")
-    settings = {"launch.spin": spin, "launch.tilt": tilt, "friction.mu": mu, "contact.liftoff": liftoff}
     over = (axis, draw, count, seed)
     with in_words(out, "read"):
-        kept = kept_sweep(out) if resume and file is None else None
+        kept = kept_sweep(out) if resume and choice.file is None else None
     limits = {"duration": duration, "tolerance": tolerance, "settled": settled}
-    chosen = _chosen_sweep(file, kept, preset, settings, changes, over, limits)
+    chosen = _chosen_sweep(choice, kept, over, limits)
     need_workers(workers, scheduler)
     pictures = _map_files(out) if maps else {}
     for path in pictures.values():
@@ -130,24 +113,22 @@ def sweep(
 
 
 def _chosen_sweep(
-    file: Path | None,
+    choice: Choice,
     kept: "Sweep | None",
-    preset: str | None,
-    settings: dict[str, Any],
-    changes: list[str] | None,
     over: tuple[list[str] | None, list[str] | None, int | None, int | None],
     limits: dict[str, float | None],
 ) -> "Sweep":
     """The sweep that the file, or the store to be resumed, and the options ask for."""
     from tippetop.sweeps import Sweep  # noqa: PLC0415 - slow to import
 
+    file = choice.file
     base = Sweep.read(file) if file is not None and _holds_sweep(file) else kept
     grid = _chosen_grid(*over)
     given = {name: limit for name, limit in limits.items() if limit is not None}
     if base is not None:
-        problem = changed_problem(base.problem, preset, settings, changes)
-        return base.model_copy(update={"problem": problem, "grid": grid or base.grid, **given})
-    problem = chosen_problem(file, preset, settings, changes)
+        update = {"problem": choice.changed(base.problem), "grid": grid or base.grid, **given}
+        return base.model_copy(update=update)
+    problem = choice.problem()
     if grid is None:
         raise InvalidInput("--axis", MISSING, "at least one axis, or --draw, or a sweep's file")
     return Sweep(problem, grid, **given)

@@ -17,7 +17,7 @@ from tippetop.export.raycast import fine_path, picture, view_of
 from tippetop.export.words import tell
 from tippetop.figures.style import INK
 from tippetop.figures.toy import Toy
-from tippetop.files import place_for, written_beside
+from tippetop.files import place_for, require_ending, written_beside
 from tippetop.problem import Problem
 
 Frame = NDArray[np.uint8]
@@ -71,8 +71,7 @@ def write_movie(
     """
     path = Path(path)
     kind = path.suffix.lower()
-    if kind not in (".mp4", ".gif"):
-        raise InvalidInput("path", str(path), "a file name that ends in .mp4 or .gif")
+    require_ending("path", path, (".mp4", ".gif"))
     encoder = ffmpeg() if kind == ".mp4" else ""
     place_for(path, overwrite)
     rate = fps if fps is not None else 30.0 if encoder else 20.0

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from tippetop.errors import InvalidInput, Unavailable
-from tippetop.files import written_beside
+from tippetop.files import require_ending, written_beside
 from tippetop.lathe.mesh import solids
 from tippetop.lathe.workpiece import Workpiece
 
@@ -48,8 +48,7 @@ def write_solid(piece: Workpiece, path: Path | str, overwrite: bool = False, *, 
     >>> tt.write_solid(ball, "ball.stl")
     """
     suffix = Path(path).suffix.lower()
-    if suffix not in (".stl", ".3mf"):
-        raise InvalidInput("path", str(path), "a file name that ends in .stl or .3mf")
+    require_ending("path", Path(path), (".stl", ".3mf"))
     if isinstance(facets, bool) or not isinstance(facets, int) or facets < 8:
         raise InvalidInput("facets", facets, "a whole number at least 8")
     trimesh = _trimesh()
