@@ -32,8 +32,9 @@ SLIDING = {
     "regularized": RegularizedCoulombLaw(0.4, 0.01),
     "coulomb": CoulombLaw(0.3),
     "ellipsoidal": EllipsoidalLaw(0.3, 0.02),
-    "drilling": HertzBranch(0.3, 0.9, 1.0),
-    "slipping": HertzBranch(0.3, 0.9, 0.0),
+    "numbered": HertzBranch(0.3, 0.9, 1.0),
+    "drilling": HertzDrillingLaw(0.3, 0.9),
+    "slipping": HertzSlidingLaw(0.3, 0.9),
 }
 STICKING = {
     "coulomb": CoulombLaw(0.3),

@@ -13,6 +13,7 @@ from tippetop.contact.double import SlidingOnTwo
 from tippetop.contact.mode import EventKind, Mode
 from tippetop.contact.passing import Resting
 from tippetop.contact.several import OnSeveral
+from tippetop.mechanics.contensou_hertz import HertzBranch
 from tippetop.mechanics.double_contact import double_contact, double_rates
 from tippetop.mechanics.motion import along_table, on_table
 from tippetop.mechanics.rolling import sliding_law, with_sliding_law
@@ -149,9 +150,7 @@ def test_two_contacts_of_a_patch_may_each_drill_or_slide() -> None:
     y = along_table(natural_state(state, natural_units(problem.top))).pack()
     for drills in ((1.0, 0.0), (0.0, 1.0), (1.0, 1.0)):
         first, second = (
-            with_sliding_law(
-                top, sliding_law(top.friction).branch((1.0, 0.0), (0.0, 0.0, 1.0))._replace(drills=d)
-            )
+            with_sliding_law(top, HertzBranch(*sliding_law(top.friction), drills=d))
             for top, d in zip(both, drills, strict=True)
         )
         mode = SlidingOnTwo(first, None, second)

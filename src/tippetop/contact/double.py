@@ -10,7 +10,13 @@ from tippetop.contact.surfaces import follow_surface, number_of, surface_guards
 from tippetop.integrators.base import Function, Guard, Motion
 from tippetop.mechanics.double_contact import Tops, double_contact, double_rates
 from tippetop.mechanics.motion import along_table, on_table
-from tippetop.mechanics.rolling import is_branched, is_set_valued, on_branch, on_other_branch, slip_length
+from tippetop.mechanics.rolling import (
+    is_branched,
+    is_set_valued,
+    on_numbered_branch,
+    on_other_branch,
+    slip_length,
+)
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.stick_slip import branch_guard, inner, slip_of
 from tippetop.mechanics.top import Kind, Top
@@ -96,7 +102,7 @@ def on_two(state: State, rules: Any, other: Top) -> SlidingOnTwo:
     """The mode of a body that slides on the surface of some rules and on another."""
     tops: Tops = (rules.top, other)
     if is_branched(other.friction):
-        one, two = (on_branch(top, slip_of(*along_table(state), top)) for top in tops)
+        one, two = (on_numbered_branch(top, slip_of(*along_table(state), top)) for top in tops)
         tops = one, two
     return SlidingOnTwo(tops[0], rules, tops[1])
 

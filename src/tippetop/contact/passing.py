@@ -29,7 +29,6 @@ from tippetop.mechanics.rolling import (
     Slip,
     on_branch,
     on_other_branch,
-    on_other_limit_branch,
     velocity_without_slip,
     without_rolling,
 )
@@ -324,7 +323,7 @@ class Stopping(Passing):
             case "branch":
                 return Transition((), self._onwards(arc, on_other_branch(self.top)), state)
             case "limit branch":
-                return Transition((), self._onwards(arc, on_other_limit_branch(self.top)), state)
+                return Transition((), self._onwards(arc, on_other_branch(self.top)), state)
             case "slip":
                 return self.rules.giving_way(
                     state, (self.rules.event(EventKind.SLIP, time),), Vanishing(slip=True)

@@ -29,7 +29,7 @@ from tippetop.mechanics.rolling import (
     without_rolling,
 )
 from tippetop.mechanics.state import SlidingState, State
-from tippetop.mechanics.stick_slip import HORIZON, inner, is_rolling, is_slipping, size, slip_of
+from tippetop.mechanics.stick_slip import HORIZON, inner, is_near, is_rolling, is_slipping, size, slip_of
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.touchdown import Start
 
@@ -99,7 +99,9 @@ class ContactRules:
             return Stopping(self._branched(state, slips), self, ending)
         rolls = self._rolls(state)
         if slips:
-            return (Sliding if rolls else SlidingWithoutRolling)(self._branched(state, slips), self)
+            top, sliding = self._branched(state, slips), along_table(state)
+            near = is_set_valued(top.friction) and bool(is_near(sliding, top))
+            return (Sliding if rolls else SlidingWithoutRolling)(top, self, near)
         return (Sticking if rolls else StickingWithoutRolling)(self._branched(state, slips), self)
 
     def stopping(self, time: float, state: State, *, slips: bool = True) -> Transition:

@@ -31,6 +31,8 @@ from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.stick_slip import (
     HORIZON,
     branch_guard,
+    nearing_guard,
+    parting_guard,
     rolling_stopping_guard,
     scaled,
     slip_of,
@@ -39,8 +41,10 @@ from tippetop.mechanics.stick_slip import (
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import Row, Scalar, dot
 
-LIFT_OFF, STOPPING, ROLLING_STOPPING, ROLLING, BRANCH = (
+LIFT_OFF, NEARING, PARTING, STOPPING, ROLLING_STOPPING, ROLLING, BRANCH = (
     "lift-off",
+    "nearing",
+    "parting",
     "stopping",
     "rolling stopping",
     "rolling",
@@ -50,14 +54,22 @@ LIFT_OFF, STOPPING, ROLLING_STOPPING, ROLLING, BRANCH = (
 
 @dataclass(frozen=True)
 class Sliding(IntegratedMode):
-    """Sliding, as long as the normal force is positive or the table may pull, and slip does not end."""
+    """Sliding, as long as the normal force is positive or the table may pull, and slip does not end.
+
+    Attributes
+    ----------
+    near
+        Whether slip is so small that it may be about to end.
+    """
+
+    near: bool = False
 
     name: ClassVar[str] = "sliding"
 
     @property
     def motion(self) -> Motion:
         """Equations of motion, with the guards of lift-off and of ending velocities where there are such."""
-        return sliding_motion(self.top.kind, not self.rules.pulls)
+        return sliding_motion(self.top.kind, not self.rules.pulls, self.near)
 
     def numbers(self, state: State) -> tuple[Scalar, ...]:
         """The 8 numbers of a sliding state."""
@@ -77,6 +89,8 @@ class Sliding(IntegratedMode):
         """What the rules say of lift-off, or of slip that is about to end; or the law's other branch."""
         if guard == LIFT_OFF:
             return self.rules.lift_off(time, state)
+        if guard in (NEARING, PARTING):
+            return Transition((), self.rules.going_on(state, slips=True), state)
         if guard in (STOPPING, ROLLING_STOPPING):
             return self.rules.stopping(time, state)
         found = follow_surface(self, guard, time, state)
@@ -94,7 +108,7 @@ class SlidingWithoutRolling(Sliding):
     @property
     def motion(self) -> Motion:
         """Equations of motion, with the guard of what holds the top beside those of sliding."""
-        return held_motion(self.top.kind, not self.rules.pulls)
+        return held_motion(self.top.kind, not self.rules.pulls, self.near)
 
     def state(self, y: Row) -> State:
         """The state, with its height and sinking, and without rolling."""
@@ -135,8 +149,11 @@ def held_rates(state: SlidingState, top: Top) -> SlidingState:
 
 
 @lru_cache
-def sliding_motion(kind: Kind, guarded: bool) -> Motion:
-    """Equations of motion of a sliding top of this kind; if `guarded`, the first guard is of lift-off."""
+def sliding_motion(kind: Kind, guarded: bool, near: bool = False) -> Motion:
+    """Equations of motion of a sliding top of this kind; if `guarded`, the first guard is of lift-off.
+
+    Where slip can end, it is watched how long it lasts if that may be soon (`near`), and else whether it may.
+    """
 
     def rates(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[Scalar, ...]:
         return sliding_rates(SlidingState.unpack(y), kind.top(tuple(numbers))).pack()
@@ -146,7 +163,7 @@ def sliding_motion(kind: Kind, guarded: bool) -> Motion:
         return rolling_stopping_guard(state, sliding_rates(state, top), top, HORIZON)
 
     guards = [Guard(LIFT_OFF, normal_force(kind))] if guarded else []
-    guards += slip_guards(kind, sliding_rates)
+    guards += slip_guards(kind, sliding_rates, near)
     if isinstance(kind.example.friction, RollingResistance):
         guards.append(Guard(ROLLING_STOPPING, rolls))
     guards += surface_guards(kind)
@@ -154,7 +171,7 @@ def sliding_motion(kind: Kind, guarded: bool) -> Motion:
 
 
 @lru_cache
-def held_motion(kind: Kind, guarded: bool) -> Motion:
+def held_motion(kind: Kind, guarded: bool, near: bool = False) -> Motion:
     """The same while rolling is held."""
 
     def rates(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[Scalar, ...]:
@@ -168,24 +185,26 @@ def held_motion(kind: Kind, guarded: bool) -> Motion:
         return holding(SlidingState.unpack(y), kind.top(tuple(numbers)))[1].force[2]
 
     guards = [Guard(LIFT_OFF, force)] if guarded else []
-    guards += [*slip_guards(kind, held_rates), Guard(ROLLING, reserve), *surface_guards(kind)]
+    guards += [*slip_guards(kind, held_rates, near), Guard(ROLLING, reserve), *surface_guards(kind)]
     return Motion(rates, size=8, parameters=kind.numbers, guards=tuple(guards), lasting=False)
 
 
-def slip_guards(kind: Kind, rate: Callable[[SlidingState, Top], SlidingState]) -> list[Guard]:
-    """The guards of slip that is about to end, and of a law's branch, where there are such."""
+def slip_guards(kind: Kind, rate: Callable[[SlidingState, Top], SlidingState], near: bool) -> list[Guard]:
+    """The guards of slip that is about to end, or comes near its end, and of a law's branch, if any."""
 
-    def stops(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
-        state, top = SlidingState.unpack(y), kind.top(tuple(numbers))
+    def guard(name: str, value: Callable[[SlidingState, Top], Scalar]) -> Guard:
+        return Guard(name, lambda y, numbers: value(SlidingState.unpack(y), kind.top(tuple(numbers))))
+
+    def stops(state: SlidingState, top: Top) -> Scalar:
         return stopping_guard(state, rate(state, top), top, HORIZON)
 
-    def on_branch(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
-        return branch_guard(*SlidingState.unpack(y), kind.top(tuple(numbers)))
-
-    law = kind.example.friction
-    guards = [Guard(STOPPING, stops)] if is_set_valued(law) else []
+    law, guards = kind.example.friction, []
+    if is_set_valued(law) and near:
+        guards += [guard(STOPPING, stops), guard(PARTING, parting_guard)]
+    elif is_set_valued(law):
+        guards.append(guard(NEARING, nearing_guard))
     if hasattr(sliding_law(law), "branch_guard"):
-        guards.append(Guard(BRANCH, on_branch))
+        guards.append(guard(BRANCH, lambda state, top: branch_guard(*state, top)))
     return guards
 
 

@@ -19,7 +19,7 @@ from tippetop.mechanics.rolling import (
     contact_wrench,
     has_limit_branches,
     limit_guard,
-    on_other_limit_branch,
+    on_other_branch,
     rolling_reserve,
     velocity_without_slip,
     without_rolling,
@@ -64,7 +64,7 @@ class Sticking(IntegratedMode):
         if guard == ROLLING_STOPPING:
             return self.rules.stopping(time, state, slips=False)
         if guard == LIMIT_BRANCH:
-            return Transition((), replace(self, top=on_other_limit_branch(self.top)), state)
+            return Transition((), replace(self, top=on_other_branch(self.top)), state)
         found = follow_surface(self, guard, time, state)
         if found is not None:
             return found

@@ -1000,9 +1000,15 @@ function is_set_valued(law) {
   return py.hasattr(sliding_law(law), "reserve");
 }
 
-/** Whether a law is made of branches, and knows itself which holds. */
+/** Whether a law is made of branches, and knows itself which holds, or is one of them. */
 function is_branched(law) {
-  return py.hasattr(sliding_law(law), "branch");
+  return py.hasattr(whole_law(law), "branch");
+}
+
+/** The law of slip and drilling, the whole of it where there is but a branch. */
+function whole_law(law) {
+  const inner = sliding_law(law);
+  return py.truth(py.hasattr(inner, "whole")) ? inner.whole : inner;
 }
 
 /** A top with another law of slip and drilling, and the same rolling resistance. */
@@ -1011,16 +1017,25 @@ function with_sliding_law(top, law) {
   return top._replace({ friction: py.isinstance(outer, RollingResistance) ? outer._replace({ law: law }) : law });
 }
 
-/** A top with the branch of its law that holds where it slips, or in that direction. */
+/** A top with the branch of its law that holds where it slips, or in that direction; of floats. */
 function on_branch(top, slip) {
-  const law = sliding_law(top.friction);
-  if (!py.truth(is_branched(law))) {
+  if (!py.truth(is_branched(top.friction))) {
     return top;
   }
+  const law = whole_law(top.friction);
   return with_sliding_law(top, law.branch(slip.slice(0, 2), [0.0, 0.0, py.div(slip[2], law.slip_length)]));
 }
 
-/** A top with the branch of its law that takes over where its own ends. */
+/** The same where a number tells the branch, for arrays, or for floats that share equations. */
+function on_numbered_branch(top, slip) {
+  if (!py.truth(is_branched(top.friction))) {
+    return top;
+  }
+  const law = whole_law(top.friction);
+  return with_sliding_law(top, law.numbered_branch(slip.slice(0, 2), [0.0, 0.0, py.div(slip[2], law.slip_length)]));
+}
+
+/** A top with the branch of its law, or of its limit surface, that takes over where its own ends. */
 function on_other_branch(top) {
   const law = sliding_law(top.friction);
   return with_sliding_law(top, law.other_branch());
@@ -1028,17 +1043,15 @@ function on_other_branch(top) {
 
 /** A top with the whole of its law, if it has but a branch of it. */
 function off_branch(top) {
-  const law = sliding_law(top.friction);
-  return py.truth(py.hasattr(law, "whole")) ? with_sliding_law(top, law.whole) : top;
+  return with_sliding_law(top, whole_law(top.friction));
 }
 
 /** A top with the branch of its law's limit surface that belongs to what holds it at rest; of floats. */
 function on_limit_branch(top, wrench) {
-  const law = set_valued(top.friction);
-  if (!py.truth(is_branched(law))) {
+  if (!py.truth(is_branched(top.friction))) {
     return top;
   }
-  return with_sliding_law(top, law.limit_branch(wrench.force[2], wrench.torque[2]));
+  return with_sliding_law(top, whole_law(top.friction).limit_branch(wrench.force[2], wrench.torque[2]));
 }
 
 /** Whether a law is one of the branches of a limit surface. */
@@ -1050,12 +1063,6 @@ function has_limit_branches(law) {
 function limit_guard(top, wrench) {
   const law = set_valued(top.friction);
   return law.limit_guard(wrench.force[2], wrench.torque[2]);
-}
-
-/** A top with the branch of its law's limit surface that takes over where its own ends. */
-function on_other_limit_branch(top) {
-  const law = set_valued(top.friction);
-  return with_sliding_law(top, law.other_limit_branch);
 }
 
 /** How many components the slip zeta has under a law that lets slip end: 3 where it resists drilling. */
@@ -1093,6 +1100,7 @@ function solve(matrix, right) {
 
 // tippetop.mechanics.stick_slip
 const HORIZON = 0.05;
+const [NEAR, APART] = [0.001, 0.1];
 const ROUNDING = 1e-14;
 const STILL = 0.1;
 
@@ -1170,6 +1178,24 @@ function stopping_guard(state, rate, top, horizon) {
   let change = [py.add(rate.velocity[0], carried[0]), py.add(rate.velocity[1], carried[1])];
   change = reach === null ? change : [...change, py.mul(reach, turned[2])];
   return remaining(slip, change, horizon);
+}
+
+/** Falls through zero where slip becomes so small that it is to be watched, (m/s)^2. */
+function nearing_guard(state, top) {
+  const slip = slip_of(...state, top);
+  return py.sub(inner(slip, slip), py.mul(NEAR, NEAR));
+}
+
+/** Falls through zero where slip is so large again that it need not be watched, (m/s)^2. */
+function parting_guard(state, top) {
+  const slip = slip_of(...state, top);
+  return py.sub(py.mul(APART, APART), inner(slip, slip));
+}
+
+/** Whether slip is to be watched from here on; a truth value of floats, or an array of them. */
+function is_near(state, top) {
+  const slip = slip_of(...state, top);
+  return inner(slip, slip) < py.mul(NEAR, APART);
 }
 
 /** The same of rolling, (rad/s)^2; velocities are not asked for. */
@@ -2083,17 +2109,18 @@ function start_of(state, top) {
 }
 
 // tippetop.contact.sliding
-const [LIFT_OFF, STOPPING, ROLLING_STOPPING, ROLLING, BRANCH] = ["lift-off", "stopping", "rolling stopping", "rolling", "branch"];
+const [LIFT_OFF, NEARING, PARTING, STOPPING, ROLLING_STOPPING, ROLLING, BRANCH] = ["lift-off", "nearing", "parting", "stopping", "rolling stopping", "rolling", "branch"];
 
 /** Sliding, as long as the normal force is positive or the table may pull, and slip does not end. */
 class Sliding extends IntegratedMode {
-  constructor(top, rules) {
+  constructor(top, rules, near = false) {
     super(top, rules);
+    this.near = near;
   }
   get name() { return "sliding"; }
   /** Equations of motion, with the guards of lift-off and of ending velocities where there are such. */
   get motion() {
-    return sliding_motion(this.top.kind, !py.truth(this.rules.pulls));
+    return sliding_motion(this.top.kind, !py.truth(this.rules.pulls), this.near);
   }
   /** The 8 numbers of a sliding state. */
   numbers(state) {
@@ -2114,6 +2141,9 @@ class Sliding extends IntegratedMode {
     if (py.eq(guard, LIFT_OFF)) {
       return this.rules.lift_off(time, state);
     }
+    if (py.contains([NEARING, PARTING], guard)) {
+      return new Transition([], this.rules.going_on(state, true), state);
+    }
     if (py.contains([STOPPING, ROLLING_STOPPING], guard)) {
       return this.rules.stopping(time, state);
     }
@@ -2124,17 +2154,17 @@ class Sliding extends IntegratedMode {
     return new Transition([], py.replace(this, { top: on_other_branch(this.top) }), state);
   }
 }
-py.fields(Sliding, ["top", "rules"]);
+py.fields(Sliding, ["top", "rules", "near"]);
 
 /** Sliding while rolling resistance holds the top: it turns about the vertical, or not at all. */
 class SlidingWithoutRolling extends Sliding {
-  constructor(top, rules) {
-    super(top, rules);
+  constructor(top, rules, near = false) {
+    super(top, rules, near);
   }
   get name() { return "sliding_without_rolling"; }
   /** Equations of motion, with the guard of what holds the top beside those of sliding. */
   get motion() {
-    return held_motion(this.top.kind, !py.truth(this.rules.pulls));
+    return held_motion(this.top.kind, !py.truth(this.rules.pulls), this.near);
   }
   /** The state, with its height and sinking, and without rolling. */
   state(y) {
@@ -2161,7 +2191,7 @@ class SlidingWithoutRolling extends Sliding {
     return super.follow(guard, time, state);
   }
 }
-py.fields(SlidingWithoutRolling, ["top", "rules"]);
+py.fields(SlidingWithoutRolling, ["top", "rules", "near"]);
 
 /** The contact point of a sliding body whose rolling is held, and what the table does. */
 function holding(state, top) {
@@ -2177,7 +2207,7 @@ function held_rates(state, top) {
 }
 
 /** Equations of motion of a sliding top of this kind; if `guarded`, the first guard is of lift-off. */
-const sliding_motion = py.cached((kind, guarded) => {
+const sliding_motion = py.cached((kind, guarded, near = false) => {
   const rates = (y, numbers) => {
     return sliding_rates(SlidingState.unpack(y), kind.top(py.tuple(numbers))).pack();
   };
@@ -2186,7 +2216,7 @@ const sliding_motion = py.cached((kind, guarded) => {
     return rolling_stopping_guard(state, sliding_rates(state, top), top, HORIZON);
   };
   let guards = py.truth(guarded) ? [new Guard(LIFT_OFF, normal_force(kind))] : [];
-  guards = py.add(guards, slip_guards(kind, sliding_rates));
+  guards = py.add(guards, slip_guards(kind, sliding_rates, near));
   if (py.isinstance(kind.example.friction, RollingResistance)) {
     guards.push(new Guard(ROLLING_STOPPING, rolls));
   }
@@ -2195,7 +2225,7 @@ const sliding_motion = py.cached((kind, guarded) => {
 });
 
 /** The same while rolling is held. */
-const held_motion = py.cached((kind, guarded) => {
+const held_motion = py.cached((kind, guarded, near = false) => {
   const rates = (y, numbers) => {
     return held_rates(SlidingState.unpack(y), kind.top(py.tuple(numbers))).pack();
   };
@@ -2207,23 +2237,26 @@ const held_motion = py.cached((kind, guarded) => {
     return holding(SlidingState.unpack(y), kind.top(py.tuple(numbers)))[1].force[2];
   };
   let guards = py.truth(guarded) ? [new Guard(LIFT_OFF, force)] : [];
-  guards = py.add(guards, [...slip_guards(kind, held_rates), new Guard(ROLLING, reserve), ...surface_guards(kind)]);
+  guards = py.add(guards, [...slip_guards(kind, held_rates, near), new Guard(ROLLING, reserve), ...surface_guards(kind)]);
   return new Motion(rates, 8, kind.numbers, py.tuple(guards), false);
 });
 
-/** The guards of slip that is about to end, and of a law's branch, where there are such. */
-function slip_guards(kind, rate) {
-  const stops = (y, numbers) => {
-    const [state, top] = [SlidingState.unpack(y), kind.top(py.tuple(numbers))];
+/** The guards of slip that is about to end, or comes near its end, and of a law's branch, if any. */
+function slip_guards(kind, rate, near) {
+  const guard = (name, value) => {
+    return new Guard(name, (y, numbers) => value(SlidingState.unpack(y), kind.top(py.tuple(numbers))));
+  };
+  const stops = (state, top) => {
     return stopping_guard(state, rate(state, top), top, HORIZON);
   };
-  const on_branch = (y, numbers) => {
-    return branch_guard(...SlidingState.unpack(y), kind.top(py.tuple(numbers)));
-  };
-  const law = kind.example.friction;
-  const guards = py.truth(is_set_valued(law)) ? [new Guard(STOPPING, stops)] : [];
+  let [law, guards] = [kind.example.friction, []];
+  if (py.truth(is_set_valued(law)) && py.truth(near)) {
+    guards = py.add(guards, [guard(STOPPING, stops), guard(PARTING, parting_guard)]);
+  } else if (py.truth(is_set_valued(law))) {
+    guards.push(guard(NEARING, nearing_guard));
+  }
   if (py.truth(py.hasattr(sliding_law(law), "branch_guard"))) {
-    guards.push(new Guard(BRANCH, on_branch));
+    guards.push(guard(BRANCH, (state, top) => branch_guard(...state, top)));
   }
   return guards;
 }
@@ -2277,7 +2310,7 @@ class Sticking extends IntegratedMode {
       return this.rules.stopping(time, state, false);
     }
     if (py.eq(guard, LIMIT_BRANCH)) {
-      return new Transition([], py.replace(this, { top: on_other_limit_branch(this.top) }), state);
+      return new Transition([], py.replace(this, { top: on_other_branch(this.top) }), state);
     }
     const found = follow_surface(this, guard, time, state);
     if (found !== null) {
@@ -2905,7 +2938,7 @@ const driven_motion = py.cached((kind, ending, components, degree) => {
 // tippetop.mechanics.direction
 const [ROUNDS, ITERATIONS, NEWTON] = [100, 50, 12];
 const [EXACT, DIRECTED] = [4e-16, 1e-09];
-const APART = 1e-07;
+const APART_of_direction = 1e-07;
 
 /** How a velocity that begins in a direction changes. */
 class Resisted extends py.NamedTuple {
@@ -2986,8 +3019,8 @@ function _newton(response, ways) {
   const count = py.len(here);
   const columns = [];
   for (let j = 0; j < count; j += 1) {
-    const there = across(moved(py.range(count).map((i) => py.eq(i, j) ? APART : 0.0)));
-    columns.push(py.range(count).map((i) => py.div(py.sub(py.item(there, i), py.item(here, i)), APART)));
+    const there = across(moved(py.range(count).map((i) => py.eq(i, j) ? APART_of_direction : 0.0)));
+    columns.push(py.range(count).map((i) => py.div(py.sub(py.item(there, i), py.item(here, i)), APART_of_direction)));
   }
   return moved(solve(py.range(count).map((i) => [...columns].map((column) => py.item(column, i))), [...here].map((x) => py.neg(x))));
 }
@@ -3311,7 +3344,7 @@ class Stopping extends Passing {
     } else if (py.eq(arc.guard, "branch")) {
       return new Transition([], this._onwards(arc, on_other_branch(this.top)), state);
     } else if (py.eq(arc.guard, "limit branch")) {
-      return new Transition([], this._onwards(arc, on_other_limit_branch(this.top)), state);
+      return new Transition([], this._onwards(arc, on_other_branch(this.top)), state);
     } else if (py.eq(arc.guard, "slip")) {
       return this.rules.giving_way(state, [this.rules.event(EventKind.SLIP, time)], new Vanishing(true));
     } else if (py.eq(arc.guard, "rolling")) {
@@ -3985,7 +4018,9 @@ class ContactRules extends py.Record {
     }
     const rolls = this._rolls(state);
     if (py.truth(slips)) {
-      return py.call(py.truth(rolls) ? Sliding : SlidingWithoutRolling, this._branched(state, slips), this);
+      const [top, sliding] = [this._branched(state, slips), along_table(state)];
+      const near = py.and(is_set_valued(top.friction), () => py.truth(is_near(sliding, top)));
+      return py.call(py.truth(rolls) ? Sliding : SlidingWithoutRolling, top, this, near);
     }
     return py.call(py.truth(rolls) ? Sticking : StickingWithoutRolling, this._branched(state, slips), this);
   }
@@ -4413,7 +4448,7 @@ py.fields(SlidingOnTwo, ["top", "rules", "other"]);
 function on_two(state, rules, other) {
   let tops = [rules.top, other];
   if (py.truth(is_branched(other.friction))) {
-    const [one, two] = [...tops].map((top) => on_branch(top, slip_of(...along_table(state), top)));
+    const [one, two] = [...tops].map((top) => on_numbered_branch(top, slip_of(...along_table(state), top)));
     tops = [one, two];
   }
   return new SlidingOnTwo(tops[0], rules, tops[1]);
@@ -5604,8 +5639,16 @@ class HertzDrillingLaw extends py.NamedTuple {
   limit_guard(normal, drilling) {
     return heaviness(this, normal, drilling, py.mul(4.0 / 3.0, EDGE));
   }
-  /** The law whose piece of the limit surface adjoins this one's. */
-  get other_limit_branch() {
+  /** The law of which it is a branch. */
+  get whole() {
+    return new HertzLaw(...this);
+  }
+  /** Positive as long as this branch is followed, up to `EDGE`, m^2/s^2. */
+  branch_guard(slip, angular_velocity) {
+    return prevalence(slip, py.mul(this.patch_radius, angular_velocity[2]), EDGE);
+  }
+  /** The law where this one does not hold, and whose piece of the limit surface adjoins this one's. */
+  other_branch() {
     return new HertzSlidingLaw(...this);
   }
   /** Friction coefficient, and patch radius in units of length. */
@@ -5659,8 +5702,16 @@ class HertzSlidingLaw extends py.NamedTuple {
   limit_guard(normal, drilling) {
     return py.neg(heaviness(this, normal, drilling, py.mul(2.0 / 3.0, EDGE)));
   }
-  /** The law whose piece of the limit surface adjoins this one's. */
-  get other_limit_branch() {
+  /** The law of which it is a branch. */
+  get whole() {
+    return new HertzLaw(...this);
+  }
+  /** Positive as long as this branch is followed, down to half of `EDGE`, m^2/s^2. */
+  branch_guard(slip, angular_velocity) {
+    return py.neg(prevalence(slip, py.mul(this.patch_radius, angular_velocity[2]), py.mul(0.5, EDGE)));
+  }
+  /** The law where this one does not hold, and whose piece of the limit surface adjoins this one's. */
+  other_branch() {
     return new HertzDrillingLaw(...this);
   }
   /** Friction coefficient, and patch radius in units of length. */
@@ -5693,14 +5744,6 @@ class HertzBranch extends py.NamedTuple {
   /** It resists drilling. */
   get torque_free() {
     return false;
-  }
-  /** The branch that holds here, in plain operators. */
-  branch(slip, angular_velocity) {
-    return this.whole.branch(slip, angular_velocity);
-  }
-  /** The law whose piece of the limit surface has this drilling torque, N m. */
-  limit_branch(normal, drilling) {
-    return this.whole.limit_branch(normal, drilling);
   }
   /** Force and torque per unit normal force; slip and drilling must not both be zero. */
   traction(slip, angular_velocity) {
@@ -5747,10 +5790,17 @@ class HertzLaw extends py.NamedTuple {
   get slip_length() {
     return this.patch_radius;
   }
-  /** The branch that holds here, in plain operators. */
+  /** Whether drilling prevails here, a truth value of floats, or an array of them. */
+  drills(slip, angular_velocity) {
+    return prevalence(slip, py.mul(this.patch_radius, angular_velocity[2]), py.mul(0.75, EDGE)) > 0.0;
+  }
+  /** The law that holds here; of floats. */
   branch(slip, angular_velocity) {
-    const drills = prevalence(slip, py.mul(this.patch_radius, angular_velocity[2]), py.mul(0.75, EDGE)) > 0.0;
-    return HertzBranch.made([...this], { drills: py.mul(1.0, drills) });
+    return py.truth(this.drills(slip, angular_velocity)) ? new HertzDrillingLaw(...this) : new HertzSlidingLaw(...this);
+  }
+  /** The branch that holds here, in plain operators. */
+  numbered_branch(slip, angular_velocity) {
+    return HertzBranch.made([...this], { drills: py.mul(1.0, this.drills(slip, angular_velocity)) });
   }
   /** The law whose piece of the limit surface has this drilling torque, N m; of floats. */
   limit_branch(normal, drilling) {
@@ -5763,7 +5813,7 @@ class HertzLaw extends py.NamedTuple {
   }
   /** Force and torque per unit normal force; slip and drilling must not both be zero. */
   traction(slip, angular_velocity) {
-    return this.branch(slip, angular_velocity).traction(slip, angular_velocity);
+    return this.numbered_branch(slip, angular_velocity).traction(slip, angular_velocity);
   }
   /** (mu N F)^2 - T^2 where the limit surface has this drilling torque, N^2; else less than zero. */
   reserve(normal, force, drilling) {
@@ -7269,6 +7319,7 @@ function _handed_over(tilt, top, other) {
 export {
   ACCURACY,
   APART,
+  APART_of_direction,
   ATOM,
   Acceleration,
   Algebra,
@@ -7389,6 +7440,8 @@ export {
   Mode,
   Motion,
   NARROWEST,
+  NEAR,
+  NEARING,
   NEAR_BRANCH,
   NEGATIVE,
   NEITHER,
@@ -7414,6 +7467,7 @@ export {
   Outcome,
   PARAMETER,
   PART,
+  PARTING,
   PHASE_LIMIT,
   PI,
   PLAIN,
@@ -7655,6 +7709,7 @@ export {
   inverted_boundary,
   is_branched,
   is_dry,
+  is_near,
   is_number,
   is_number_of_graph,
   is_one_way,
@@ -7685,6 +7740,7 @@ export {
   natural,
   natural_state,
   natural_units,
+  nearing_guard,
   negated,
   normal_force,
   normal_wrench,
@@ -7692,8 +7748,8 @@ export {
   off_branch,
   on_branch,
   on_limit_branch,
+  on_numbered_branch,
   on_other_branch,
-  on_other_limit_branch,
   on_surface,
   on_table,
   on_two,
@@ -7703,6 +7759,7 @@ export {
   overtaking_guard,
   pack,
   pair_motion,
+  parting_guard,
   phis,
   plus,
   point_velocity,
@@ -7796,6 +7853,7 @@ export {
   way_of_both,
   way_of_one,
   weight_moment,
+  whole_law,
   with_sliding_law,
   without_drilling,
   without_rolling,

@@ -151,8 +151,16 @@ class HertzDrillingLaw(NamedTuple):
         return heaviness(self, normal, drilling, 4.0 / 3.0 * EDGE)
 
     @property
-    def other_limit_branch(self) -> "HertzSlidingLaw":
-        """The law whose piece of the limit surface adjoins this one's."""
+    def whole(self) -> "HertzLaw":
+        """The law of which it is a branch."""
+        return HertzLaw(*self)
+
+    def branch_guard(self, slip: Horizontal, angular_velocity: Vector) -> Scalar:
+        """Positive as long as this branch is followed, up to `EDGE`, m^2/s^2."""
+        return prevalence(slip, self.patch_radius * angular_velocity[2], EDGE)
+
+    def other_branch(self) -> "HertzSlidingLaw":
+        """The law where this one does not hold, and whose piece of the limit surface adjoins this one's."""
         return HertzSlidingLaw(*self)
 
     def coefficients(self, units: Units) -> tuple[Scalar, ...]:
@@ -233,8 +241,16 @@ class HertzSlidingLaw(NamedTuple):
         return -heaviness(self, normal, drilling, 2.0 / 3.0 * EDGE)
 
     @property
-    def other_limit_branch(self) -> "HertzDrillingLaw":
-        """The law whose piece of the limit surface adjoins this one's."""
+    def whole(self) -> "HertzLaw":
+        """The law of which it is a branch."""
+        return HertzLaw(*self)
+
+    def branch_guard(self, slip: Horizontal, angular_velocity: Vector) -> Scalar:
+        """Positive as long as this branch is followed, down to half of `EDGE`, m^2/s^2."""
+        return -prevalence(slip, self.patch_radius * angular_velocity[2], 0.5 * EDGE)
+
+    def other_branch(self) -> "HertzDrillingLaw":
+        """The law where this one does not hold, and whose piece of the limit surface adjoins this one's."""
         return HertzDrillingLaw(*self)
 
     def coefficients(self, units: Units) -> tuple[Scalar, ...]:
@@ -250,7 +266,8 @@ class HertzSlidingLaw(NamedTuple):
 class HertzBranch(NamedTuple):
     """The branch of Hertz's law that a number tells: the other one has no part in it.
 
-    Both have a number wherever the patch moves, so that the same equations follow launches on either.
+    Both have a number wherever the patch moves, so that the same equations follow many launches, each on its
+    own: a single one costs half with those of its branch alone.
 
     Attributes
     ----------
@@ -280,14 +297,6 @@ class HertzBranch(NamedTuple):
     def torque_free(self) -> bool:
         """It resists drilling."""
         return False
-
-    def branch(self, slip: Horizontal, angular_velocity: Vector) -> "HertzBranch":
-        """The branch that holds here, in plain operators."""
-        return self.whole.branch(slip, angular_velocity)
-
-    def limit_branch(self, normal: float, drilling: float) -> HertzDrillingLaw | HertzSlidingLaw:
-        """The law whose piece of the limit surface has this drilling torque, N m."""
-        return self.whole.limit_branch(normal, drilling)
 
     def traction(self, slip: Horizontal, angular_velocity: Vector) -> Traction:
         """Force and torque per unit normal force; slip and drilling must not both be zero."""
@@ -342,10 +351,17 @@ class HertzLaw(NamedTuple):
         """The patch radius, m."""
         return self.patch_radius
 
-    def branch(self, slip: Horizontal, angular_velocity: Vector) -> HertzBranch:
+    def drills(self, slip: Horizontal, angular_velocity: Vector) -> Scalar:
+        """Whether drilling prevails here, a truth value of floats, or an array of them."""
+        return prevalence(slip, self.patch_radius * angular_velocity[2], 0.75 * EDGE) > 0.0
+
+    def branch(self, slip: Horizontal, angular_velocity: Vector) -> HertzDrillingLaw | HertzSlidingLaw:
+        """The law that holds here; of floats."""
+        return HertzDrillingLaw(*self) if self.drills(slip, angular_velocity) else HertzSlidingLaw(*self)
+
+    def numbered_branch(self, slip: Horizontal, angular_velocity: Vector) -> HertzBranch:
         """The branch that holds here, in plain operators."""
-        drills = prevalence(slip, self.patch_radius * angular_velocity[2], 0.75 * EDGE) > 0.0
-        return HertzBranch(*self, drills=1.0 * drills)
+        return HertzBranch(*self, drills=1.0 * self.drills(slip, angular_velocity))
 
     def limit_branch(self, normal: float, drilling: float) -> HertzDrillingLaw | HertzSlidingLaw:
         """The law whose piece of the limit surface has this drilling torque, N m; of floats."""
@@ -359,7 +375,7 @@ class HertzLaw(NamedTuple):
 
     def traction(self, slip: Horizontal, angular_velocity: Vector) -> Traction:
         """Force and torque per unit normal force; slip and drilling must not both be zero."""
-        return self.branch(slip, angular_velocity).traction(slip, angular_velocity)
+        return self.numbered_branch(slip, angular_velocity).traction(slip, angular_velocity)
 
     def reserve(self, normal: Scalar, force: Horizontal, drilling: Scalar) -> Scalar:
         """(mu N F)^2 - T^2 where the limit surface has this drilling torque, N^2; else less than zero."""

@@ -241,8 +241,14 @@ def is_set_valued(law: FrictionLaw) -> bool:
 
 
 def is_branched(law: FrictionLaw) -> bool:
-    """Whether a law is made of branches, and knows itself which holds."""
-    return hasattr(sliding_law(law), "branch")
+    """Whether a law is made of branches, and knows itself which holds, or is one of them."""
+    return hasattr(whole_law(law), "branch")
+
+
+def whole_law(law: FrictionLaw) -> Any:
+    """The law of slip and drilling, the whole of it where there is but a branch."""
+    inner: Any = sliding_law(law)
+    return inner.whole if hasattr(inner, "whole") else inner
 
 
 def with_sliding_law(top: Top, law: FrictionLaw) -> Top:
@@ -252,31 +258,37 @@ def with_sliding_law(top: Top, law: FrictionLaw) -> Top:
 
 
 def on_branch(top: Top, slip: Slip) -> Top:
-    """A top with the branch of its law that holds where it slips, or in that direction."""
-    law: Any = sliding_law(top.friction)
-    if not is_branched(law):
+    """A top with the branch of its law that holds where it slips, or in that direction; of floats."""
+    if not is_branched(top.friction):
         return top
+    law = whole_law(top.friction)
     return with_sliding_law(top, law.branch(slip[:2], (0.0, 0.0, slip[2] / law.slip_length)))
 
 
+def on_numbered_branch(top: Top, slip: Slip) -> Top:
+    """The same where a number tells the branch, for arrays, or for floats that share equations."""
+    if not is_branched(top.friction):
+        return top
+    law = whole_law(top.friction)
+    return with_sliding_law(top, law.numbered_branch(slip[:2], (0.0, 0.0, slip[2] / law.slip_length)))
+
+
 def on_other_branch(top: Top) -> Top:
-    """A top with the branch of its law that takes over where its own ends."""
+    """A top with the branch of its law, or of its limit surface, that takes over where its own ends."""
     law: Any = sliding_law(top.friction)
     return with_sliding_law(top, law.other_branch())
 
 
 def off_branch(top: Top) -> Top:
     """A top with the whole of its law, if it has but a branch of it."""
-    law: Any = sliding_law(top.friction)
-    return with_sliding_law(top, law.whole) if hasattr(law, "whole") else top
+    return with_sliding_law(top, whole_law(top.friction))
 
 
 def on_limit_branch(top: Top, wrench: Wrench) -> Top:
     """A top with the branch of its law's limit surface that belongs to what holds it at rest; of floats."""
-    law: Any = set_valued(top.friction)
-    if not is_branched(law):
+    if not is_branched(top.friction):
         return top
-    return with_sliding_law(top, law.limit_branch(wrench.force[2], wrench.torque[2]))
+    return with_sliding_law(top, whole_law(top.friction).limit_branch(wrench.force[2], wrench.torque[2]))
 
 
 def has_limit_branches(law: FrictionLaw) -> bool:
@@ -288,12 +300,6 @@ def limit_guard(top: Top, wrench: Wrench) -> Scalar:
     """Positive as long as the branch of the limit surface that a body at rest has is the one it is on."""
     law: Any = set_valued(top.friction)
     return law.limit_guard(wrench.force[2], wrench.torque[2])
-
-
-def on_other_limit_branch(top: Top) -> Top:
-    """A top with the branch of its law's limit surface that takes over where its own ends."""
-    law: Any = set_valued(top.friction)
-    return with_sliding_law(top, law.other_limit_branch)
 
 
 def slip_dimension(law: FrictionLaw) -> int:

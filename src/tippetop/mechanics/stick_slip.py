@@ -37,6 +37,12 @@ from tippetop.mechanics.vectors import Horizontal, Scalar, Vector, add, cross, d
 HORIZON = 0.05
 """How long before its end slip is followed in a clock of its own, in natural units of time."""
 
+NEAR, APART = 1e-3, 0.1
+"""Slip, in natural units, below which it is watched how long it lasts, and from which it no longer is.
+
+To watch it costs as much again as to follow the motion, and most of a motion it does not end.
+"""
+
 ROUNDING = 1e-14
 """Slip, relative to the momenta and velocities it is made of in natural units, that is rounding."""
 
@@ -139,6 +145,24 @@ def stopping_guard(state: SlidingState, rate: SlidingState, top: Top, horizon: S
     change: Slip = (rate.velocity[0] + carried[0], rate.velocity[1] + carried[1])
     change = change if reach is None else (*change, reach * turned[2])
     return remaining(slip, change, horizon)
+
+
+def nearing_guard(state: SlidingState, top: Top) -> Scalar:
+    """Falls through zero where slip becomes so small that it is to be watched, (m/s)^2."""
+    slip = slip_of(*state, top)
+    return inner(slip, slip) - NEAR * NEAR
+
+
+def parting_guard(state: SlidingState, top: Top) -> Scalar:
+    """Falls through zero where slip is so large again that it need not be watched, (m/s)^2."""
+    slip = slip_of(*state, top)
+    return APART * APART - inner(slip, slip)
+
+
+def is_near(state: SlidingState, top: Top) -> Scalar:
+    """Whether slip is to be watched from here on; a truth value of floats, or an array of them."""
+    slip = slip_of(*state, top)
+    return inner(slip, slip) < NEAR * APART
 
 
 def rolling_stopping_guard(state: SlidingState, rate: SlidingState, top: Top, horizon: Scalar) -> Scalar:

@@ -8,7 +8,7 @@ lane that enters a mode which only a single launch knows is followed alone to it
 import numpy as np
 
 from tippetop.contact.flight import TOUCHING, Flight
-from tippetop.contact.mode import EventKind, Outcome, Transition
+from tippetop.contact.mode import EventKind, Mode, Outcome, Transition
 from tippetop.contact.sliding import BRANCH, LIFT_OFF, Sliding, sliding_motion
 from tippetop.integrators.base import Array
 from tippetop.mechanics.flight import gap, gap_rate
@@ -52,7 +52,7 @@ class Crossings:
         alone = launches.unresisted
         for i in np.flatnonzero(alone).tolist():
             self._follow_alone(int(lanes[i]), 0.0, launches.rules(i).launch(single(state, i)))
-        plain = slips(state, launches.top) & rolls(state, launches.top)
+        plain = slips(state, launches.top, far=True) & rolls(state, launches.top)
         if launches.liftoff != "ignore":
             plain &= slides(state, launches.top)
         if launches.liftoff == "fly":
@@ -118,6 +118,7 @@ class Crossings:
         top = branched(launches.tops(cells), state)
         after, struck = collide(state, top)
         sliding = struck & (launches.restitution[cells] == 0.0) & slides(after, top)
+        sliding &= slips(after, top, far=True)
         slots.place(lanes[sliding], picked(after, sliding), time[sliding])
         taken = energy(state, top) - energy(after, top)
         slots.ends.struck[cells[sliding]] += np.broadcast_to(taken, sliding.shape)[sliding]
@@ -134,7 +135,7 @@ class Crossings:
         again, starts, states = [], [], []
         for i, transition in enumerate(transitions):
             self._note(lanes[i], float(time[i]), transition)
-            if not isinstance(transition.then, Flight | Outcome) and type(transition.then) is not Sliding:
+            if not isinstance(transition.then, Flight | Outcome) and not is_plain(transition.then):
                 self._follow_alone(int(lanes[i]), float(time[i]), transition)
                 continue
             lost = sum(event.energy_lost for event in transition.events)
@@ -192,3 +193,8 @@ class Crossings:
         tip.reached[where] = np.fmin(tip.reached[where], arrived)
         slots.rows[slots.layout.steps, where] += found.steps
         slots.retire(where, found.state, found.time, trajectory.outcome)
+
+
+def is_plain(mode: Mode) -> bool:
+    """Whether lanes slide as in this mode."""
+    return type(mode) is Sliding and not mode.near

@@ -31,7 +31,13 @@ from tippetop.mechanics.motion import (
 from tippetop.mechanics.rolling import is_branched, is_set_valued
 from tippetop.mechanics.series import Series, horner, solution
 from tippetop.mechanics.state import State
-from tippetop.mechanics.stick_slip import HORIZON, is_rolling, is_slipping, rolling_stopping_guard
+from tippetop.mechanics.stick_slip import (
+    HORIZON,
+    is_near,
+    is_rolling,
+    is_slipping,
+    rolling_stopping_guard,
+)
 from tippetop.mechanics.surface import contact_vector
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.touchdown import Tip
@@ -225,8 +231,11 @@ def rolls(state: State, top: Top) -> Flags:
     return found
 
 
-def slips(state: State, top: Top) -> Flags:
-    """Whether tops in contact slip on for a while, for all that their law says of the end of slip."""
+def slips(state: State, top: Top, *, far: bool = False) -> Flags:
+    """Whether tops in contact slip on for a while, for all that their law says of the end of slip.
+
+    If `far`, so fast that it need not be watched how long.
+    """
     count = np.ones(len(np.atleast_1d(state.height)), dtype=bool)
     if not is_set_valued(top.friction):
         return count
@@ -234,4 +243,4 @@ def slips(state: State, top: Top) -> Flags:
     with np.errstate(all="ignore"):
         lasting = stopping(y, top) > 0.0
     found: Flags = count & is_slipping(*y, top) & lasting
-    return found
+    return found & ~is_near(y, top) if far else found

@@ -11,7 +11,7 @@ from tippetop.contact.sliding import Sliding
 from tippetop.integrators.base import Array
 from tippetop.mechanics.coulomb import RollingResistance
 from tippetop.mechanics.motion import along_table
-from tippetop.mechanics.rolling import is_branched, off_branch, on_branch
+from tippetop.mechanics.rolling import is_branched, off_branch, on_numbered_branch
 from tippetop.mechanics.state import State
 from tippetop.mechanics.stick_slip import slip_of
 from tippetop.mechanics.top import Kind, Top
@@ -98,7 +98,7 @@ def branched(top: Top, state: State) -> Top:
     """Tops in these states with the branch of their law that holds there, where it is made of branches."""
     if not is_branched(top.friction):
         return top
-    return on_branch(top, slip_of(*along_table(state), top))
+    return on_numbered_branch(top, slip_of(*along_table(state), top))
 
 
 @dataclass(frozen=True)
