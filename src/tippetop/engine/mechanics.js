@@ -1011,6 +1011,13 @@ function whole_law(law) {
   return py.truth(py.hasattr(inner, "whole")) ? inner.whole : inner;
 }
 
+/** The law of slip and drilling, the branch that holds where it is made of such; of floats. */
+function branch_of(law, slip, angular_velocity) {
+  const whole = whole_law(law);
+  const inner = py.truth(is_branched(law)) ? whole.branch(slip, angular_velocity) : sliding_law(law);
+  return inner;
+}
+
 /** A top with another law of slip and drilling, and the same rolling resistance. */
 function with_sliding_law(top, law) {
   const outer = top.friction;
@@ -1022,8 +1029,8 @@ function on_branch(top, slip) {
   if (!py.truth(is_branched(top.friction))) {
     return top;
   }
-  const law = whole_law(top.friction);
-  return with_sliding_law(top, law.branch(slip.slice(0, 2), [0.0, 0.0, py.div(slip[2], law.slip_length)]));
+  const turning = [0.0, 0.0, py.div(slip[2], whole_law(top.friction).slip_length)];
+  return with_sliding_law(top, branch_of(top.friction, [slip[0], slip[1]], turning));
 }
 
 /** The same where a number tells the branch, for arrays, or for floats that share equations. */
@@ -3582,7 +3589,9 @@ class DryContact extends py.NamedTuple {
       held = py.add(held, this.reach === null ? [0, 1] : [0, 1, 5]);
     } else {
       const w = this.reach === null ? this.before[5] : py.div(slip[2], this.reach);
-      [force, torque] = sliding_law(this.law).traction([slip[0], slip[1]], [...this.before.slice(3, 5), w]);
+      const turning = [...this.before.slice(3, 5), w];
+      const law = branch_of(this.law, [slip[0], slip[1]], turning);
+      [force, torque] = law.traction([slip[0], slip[1]], turning);
     }
     if (this.resistance !== null) {
       if (rolling === null) {
@@ -3682,13 +3691,68 @@ function components(impulse) {
   return [...impulse.tangential, impulse.normal, ...impulse.angular];
 }
 
+// tippetop.mechanics.runge_kutta
+const STAGES = [[0.05260015195876773], [0.0197250569845379, 0.0591751709536137], [0.02958758547680685, 0.0, 0.08876275643042054], [0.2413651341592667, 0.0, -0.8845494793282861, 0.924834003261792], [0.037037037037037035, 0.0, 0.0, 0.17082860872947386, 0.12546768756682242], [0.037109375, 0.0, 0.0, 0.17025221101954405, 0.06021653898045596, -0.017578125], [0.03709200011850479, 0.0, 0.0, 0.17038392571223998, 0.10726203044637328, -0.015319437748624402, 0.008273789163814023], [0.6241109587160757, 0.0, 0.0, -3.3608926294469414, -0.868219346841726, 27.59209969944671, 20.154067550477894, -43.48988418106996], [0.47766253643826434, 0.0, 0.0, -2.4881146199716677, -0.590290826836843, 21.230051448181193, 15.279233632882423, -33.28821096898486, -0.020331201708508627], [-0.9371424300859873, 0.0, 0.0, 5.186372428844064, 1.0914373489967295, -8.149787010746927, -18.52006565999696, 22.739487099350505, 2.4936055526796523, -3.0467644718982196], [2.273310147516538, 0.0, 0.0, -10.53449546673725, -2.0008720582248625, -17.9589318631188, 27.94888452941996, -2.8589982771350235, -8.87285693353063, 12.360567175794303, 0.6433927460157636], [0.054293734116568765, 0.0, 0.0, 0.0, 0.0, 4.450312892752409, 1.8915178993145003, -5.801203960010585, 0.3111643669578199, -0.1521609496625161, 0.20136540080403034, 0.04471061572777259]];
+const FINE = [0.01312004499419488, 0.0, 0.0, 0.0, 0.0, -1.2251564463762044, -0.4957589496572502, 1.6643771824549864, -0.35032884874997366, 0.3341791187130175, 0.08192320648511571, -0.022355307863886294];
+const ROUGH = [-0.18980075407240762, 0.0, 0.0, 0.0, 0.0, 4.450312892752409, 1.8915178993145003, -5.801203960010585, -0.4226823213237919, -0.1521609496625161, 0.20136540080403034, 0.02265179219836082];
+const POWER = -0.125;
+
+/** A step: the numbers at its start, the rates there and at the stages, the numbers at its end. */
+class RungeKuttaStep extends py.NamedTuple {
+  constructor(here, there, slopes, size) {
+    super();
+    this.here = here;
+    this.there = there;
+    this.slopes = slopes;
+    this.size = size;
+  }
+  /** The rates at its end. */
+  get new_slope() {
+    return py.item(this.slopes, -1);
+  }
+  /** Its error, given a measure of errors. */
+  doubt(measure) {
+    const nothing = py.mul([0.0], py.len(this.here));
+    const fine = measure(combined(nothing, this.size, FINE, this.slopes));
+    const rough = measure(combined(nothing, this.size, ROUGH, this.slopes));
+    return fine > 0.0 ? py.div(py.mul(fine, fine), py.math.hypot(fine, py.mul(0.1, rough))) : 0.0;
+  }
+  /** The cubic through its ends, at a part of it. */
+  between(part) {
+    const rest = 1.0 - part;
+    const [at, pull] = [part * part * (3.0 - 2.0 * part), py.mul(part * rest, this.size)];
+    return py.tuple(py.zip(this.here, this.there, this.slopes[0], py.item(this.slopes, -1)).map(([x, y, a, b]) => py.add(py.add(x, py.mul(at, py.sub(y, x))), py.mul(pull, py.sub(py.mul(rest, a), py.mul(part, b))))));
+  }
+}
+py.fields(RungeKuttaStep, ["here", "there", "slopes", "size"]);
+
+/** A step from a point with known rates. */
+function step_from(here, slope, size, rates) {
+  let [slopes, there] = [[slope], here];
+  for (const weights of STAGES) {
+    there = combined(here, size, weights, slopes);
+    slopes.push(rates(there));
+  }
+  return new RungeKuttaStep(here, there, slopes, size);
+}
+
+/** A point moved straight on. */
+function moved(here, size, slope) {
+  return py.tuple(py.zip(here, slope).map(([x, rate]) => py.add(x, py.mul(size, rate))));
+}
+
+/** A point plus a step along a mean of slopes. */
+function combined(here, size, weights, slopes) {
+  return py.tuple(py.zip(here, py.zip(...slopes)).map(([x, column]) => py.add(x, py.mul(size, py.sum(py.map(py.mul, weights, column))))));
+}
+
 // tippetop.mechanics.integrated_impact
+const LONGEST_of_integrated_impact = 5.0;
 const TOLERANCE = 1e-09;
 const STUCK = 1e-08;
 const SHORTEST = 1e-12;
+const [NEWTON_of_integrated_impact, STRAIGHT] = [4, 1e-08];
 const MOST_of_integrated_impact = 100000;
-const NODES = [[1 / 5], [3 / 40, 9 / 40], [44 / 45, -56 / 15, 32 / 9], [19372 / 6561, -25360 / 2187, 64448 / 6561, -212 / 729], [9017 / 3168, -355 / 33, 46732 / 5247, 49 / 176, -5103 / 18656], [35 / 384, 0.0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84]];
-const DOUBT = [71 / 57600, 0.0, -71 / 16695, 71 / 1920, -17253 / 339200, 22 / 525, -1 / 40];
 
 /** An impact under any friction law, integrated with slip as the clock. */
 class IntegratedProcess extends py.NamedTuple {
@@ -3705,37 +3769,55 @@ class IntegratedProcess extends py.NamedTuple {
     }
     let waiting = goal(impulse) >= 0.0;
     let [here, slope] = [pack(impulse), self.slope(pack(impulse))];
-    const longest = py.div(2.0, py.add(self.body.inverse_mass[0][0], self.body.inverse_mass[1][1]));
-    let step = py.mul(0.05, longest);
+    const longest = py.div(py.mul(2.0, LONGEST_of_integrated_impact), py.add(self.body.inverse_mass[0][0], self.body.inverse_mass[1][1]));
+    let step = py.mul(0.01, longest);
     for (let taken = 0; taken < MOST_of_integrated_impact; taken += 1) {
       const held = self.held(unpack(here), goal, guess);
       if (held !== null) {
         return held._replace({ steps: taken });
       }
-      const [there, new_slope, doubt] = self.step(here, slope, step);
-      const reached = goal(unpack(there)) >= 0.0;
+      const taking = step_from(here, slope, step, py.bound(self, "slope"));
+      const doubt = self.doubt(taking);
+      const reached = goal(unpack(taking.there)) >= 0.0;
       if (doubt > 1.0 && step > py.mul(SHORTEST, longest) || py.truth(reached) && py.truth(waiting)) {
-        step = py.mul(step, py.min(0.5, py.max(0.1, py.mul(0.9, py.pow(doubt, -0.2)))));
+        step = py.mul(step, py.min(0.5, py.max(0.1, py.mul(0.9, py.pow(doubt, POWER)))));
         continue;
       }
       if (py.truth(reached)) {
-        return self.landing(here, slope, step, goal)._replace({ steps: taken + 1 });
+        return unpack(self.landing(taking, goal))._replace({ steps: taken + 1 });
       }
-      [here, slope, waiting] = [there, new_slope, false];
+      [here, slope, waiting] = [taking.there, taking.new_slope, false];
       if (self.dry !== null) {
         self = self._replace({ dry: self.dry.settled(unpack(here)) });
         slope = self.slope(here);
       }
-      step = py.min(longest, py.mul(step, py.min(5.0, py.mul(0.9, py.pow(py.max(doubt, 1e-10), -0.2)))));
+      step = py.min(longest, py.mul(step, py.min(5.0, py.mul(0.9, py.pow(py.max(doubt, 1e-10), POWER)))));
     }
     throw new py.ArithmeticError("an impact does not come to its end");
   }
-  /** The impulse within a step at which the goal is reached. */
-  landing(here, slope, step, goal) {
-    const along = (part) => {
-      return unpack(this.step(here, slope, part)[0]);
+  /** The numbers within a step at which the goal is reached. */
+  landing(taking, goal) {
+    const missing = (point) => {
+      return goal(unpack(point));
     };
-    return along(crossing((part) => goal(along(part)), 0.0, step));
+    const along = (size) => {
+      return step_from(taking.here, taking.slopes[0], size, py.bound(this, "slope")).there;
+    };
+    let last = taking.size;
+    let here = along(py.mul(last, crossing((part) => missing(taking.between(part)), 0.0, 1.0)));
+    for (let turn = 0; turn < NEWTON_of_integrated_impact; turn += 1) {
+      const [slope, left, nudge] = [this.slope(here), missing(here), py.mul(0.001, taking.size)];
+      const rate = py.div(py.sub(missing(moved(here, nudge, slope)), left), nudge);
+      const more = rate > 0.0 ? py.div(py.neg(left), rate) : taking.size;
+      if (py.abs(more) < py.mul(STRAIGHT, taking.size)) {
+        return moved(here, more, slope);
+      }
+      if (py.abs(more) > py.mul(0.1, last)) {
+        break;
+      }
+      [here, last] = [step_from(here, slope, more, py.bound(this, "slope")).there, py.abs(more)];
+    }
+    return along(crossing((size) => missing(along(size)), 0.0, taking.size));
   }
   /** Rate of the impulse's numbers with the clock s. */
   slope(here) {
@@ -3751,24 +3833,19 @@ class IntegratedProcess extends py.NamedTuple {
     const pace = py.div(1.0, py.add(py.div(grip, slip), py.div(1.0, length(this.body.point))));
     return [pace, py.mul(pace, force[0]), py.mul(pace, force[1]), ...scale(pace, torque), py.mul(pace, point[2])];
   }
-  /** The numbers and rates after a step, and the error of the step over the one allowed. */
-  step(here, slope, step) {
-    let doubt;
-    const slopes = [slope];
-    let there = here;
-    for (const weights of NODES) {
-      there = combined(here, step, weights, slopes);
-      slopes.push(this.slope(there));
-    }
-    const off = unpack(combined(py.mul([0.0], py.len(here)), step, DOUBT, slopes));
-    const [error, speed] = [this.body.response(off), length(this.body.point)];
-    if (this.dry !== null) {
-      doubt = this.dry.doubt(unpack(here), unpack(there), off);
-    } else {
-      const slip = py.max(this.slip(here), this.slip(there), py.mul(1e-09, speed));
-      doubt = py.div(py.math.hypot(error[0], error[1]), slip);
-    }
-    return [there, py.item(slopes, -1), py.div(py.max(doubt, py.div(py.abs(error[2]), speed)), TOLERANCE)];
+  /** The error of a step over the one allowed. */
+  doubt(taken) {
+    const [here, there, speed] = [unpack(taken.here), unpack(taken.there), length(this.body.point)];
+    const slip = py.max(this.slip(taken.here), this.slip(taken.there), py.mul(1e-09, speed));
+    const measure = (error) => {
+      const off = unpack(error);
+      const wrong = this.body.response(off);
+      if (this.dry !== null) {
+        return py.float(py.max(this.dry.doubt(here, there, off), py.div(py.abs(wrong[2]), speed)));
+      }
+      return py.float(py.max(py.div(py.math.hypot(wrong[0], wrong[1]), slip), py.div(py.abs(wrong[2]), speed)));
+    };
+    return py.div(taken.doubt(measure), TOLERANCE);
   }
   /** Slip speed, m/s. */
   slip(here) {
@@ -3802,11 +3879,6 @@ class IntegratedProcess extends py.NamedTuple {
   }
 }
 py.fields(IntegratedProcess, ["body", "dry"]);
-
-/** A point plus a step along a mean of slopes. */
-function combined(here, step, weights, slopes) {
-  return py.tuple(py.zip(here, py.zip(...slopes)).map(([x, column]) => py.add(x, py.mul(step, py.sum(py.map(py.mul, weights, column))))));
-}
 
 /** The numbers of an impulse in a row. */
 function pack(impulse) {
@@ -5355,14 +5427,12 @@ class StruckOnTwo extends py.NamedTuple {
   }
   /** The numbers after a step, and its error over the one allowed. */
   step(here, step, pressed) {
-    const slopes = [this.slope(here, pressed)];
-    let there = here;
-    for (const weights of NODES) {
-      there = combined(here, step, weights, slopes);
-      slopes.push(this.slope(there, pressed));
-    }
-    const doubt = py.max(py.map(length, this.change(combined(py.mul([0.0], py.len(here)), step, DOUBT, slopes))));
-    return [there, py.float(py.div(doubt, py.mul(TOLERANCE, this.speed)))];
+    const slope = (point) => {
+      return this.slope(point, pressed);
+    };
+    const taken = step_from(here, slope(here), step, slope);
+    const doubt = taken.doubt((error) => py.max(py.map(length, this.change(error))));
+    return [taken.there, py.float(py.div(doubt, py.mul(TOLERANCE, this.speed)))];
   }
   /** The first numbers from given ones on at which the goal is not negative, and the steps to there. */
   until(here, goal) {
@@ -5376,7 +5446,7 @@ class StruckOnTwo extends py.NamedTuple {
       }
       let [there, doubt] = this.step(here, step, pressed);
       if (doubt > 1.0) {
-        step = py.mul(step, py.max(0.1, py.mul(0.9, py.pow(doubt, -0.2))));
+        step = py.mul(step, py.max(0.1, py.mul(0.9, py.pow(doubt, POWER))));
         continue;
       }
       const ends = [goal];
@@ -5390,7 +5460,7 @@ class StruckOnTwo extends py.NamedTuple {
       if (py.contains(reached, goal) && goal(there) >= -1e-12) {
         return [there, taken + 1];
       }
-      [here, step] = [there, py.min(longest, py.mul(step, py.min(5.0, py.mul(0.9, py.pow(py.max(doubt, 1e-10), -0.2)))))];
+      [here, step] = [there, py.min(longest, py.mul(step, py.min(5.0, py.mul(0.9, py.pow(py.max(doubt, 1e-10), POWER)))))];
     }
     throw new py.ArithmeticError("an impact on two surfaces does not come to its end");
   }
@@ -6174,7 +6244,7 @@ py.fields(Trajectory, ["start", "end", "integrator", "limit", "step_limit", "tim
 // tippetop.emit.graph
 const [STATE, PARAMETER, CONSTANT] = ["state", "parameter", "constant"];
 const [NEGATIVE, SUM, DIFFERENCE, PRODUCT, QUOTIENT] = ["negative", "sum", "difference", "product", "quotient"];
-const [ROOT, POWER, SIZE, LESS, SELECT] = ["root", "power", "size", "less", "select"];
+const [ROOT, POWER_of_graph, SIZE, LESS, SELECT] = ["root", "power", "size", "less", "select"];
 const FUNCTIONS = new py.Dict([["sin", 1], ["cos", 1], ["atan2", 2]]);
 const LARGEST_POWER = 16;
 const NO_CHOICE = "a choice that depends on the numbers is to be made by select";
@@ -6337,7 +6407,7 @@ class Graph extends py.Record {
     }
     const quarters = py.mul(4.0, exponent);
     if (!py.eq(quarters, py.int(quarters)) || py.abs(exponent) > LARGEST_POWER) {
-      return this.node(POWER, [base, this.taken(exponent)]);
+      return this.node(POWER_of_graph, [base, this.taken(exponent)]);
     }
     if (exponent < 0) {
       return this.quotient(1.0, this.power(base, py.neg(exponent)));
@@ -6492,7 +6562,7 @@ py.fields(Language, ["spellings", "head", "foot", "local", "end"]);
 
 /** What languages write alike, with the elementary functions of a library. */
 function common_spellings(library) {
-  return new py.Dict([[SUM, new Spelling(["", " + ", ""], 1)], [DIFFERENCE, new Spelling(["", " - ", ""], 1)], [PRODUCT, new Spelling(["", " * ", ""], 2)], [QUOTIENT, new Spelling(["", " / ", ""], 2)], [NEGATIVE, new Spelling(["-", ""], 3)], [POWER, new Spelling([`${py.str(library)}.pow(`, ", ", ")"])], [ROOT, new Spelling([`${py.str(library)}.sqrt(`, ")"])]]).__or__(new py.Dict([...FUNCTIONS.items()].map(([name, count]) => [name, new Spelling([`${py.str(library)}.${py.str(name)}(`, ...py.mul([", "], py.sub(count, 1)), ")"])])));
+  return new py.Dict([[SUM, new Spelling(["", " + ", ""], 1)], [DIFFERENCE, new Spelling(["", " - ", ""], 1)], [PRODUCT, new Spelling(["", " * ", ""], 2)], [QUOTIENT, new Spelling(["", " / ", ""], 2)], [NEGATIVE, new Spelling(["-", ""], 3)], [POWER_of_graph, new Spelling([`${py.str(library)}.pow(`, ", ", ")"])], [ROOT, new Spelling([`${py.str(library)}.sqrt(`, ")"])]]).__or__(new py.Dict([...FUNCTIONS.items()].map(([name, count]) => [name, new Spelling([`${py.str(library)}.${py.str(name)}(`, ...py.mul([", "], py.sub(count, 1)), ")"])])));
 }
 
 /** The code of a function `name(y, p, out)` that puts what was recorded of y and p into out. */
@@ -7356,7 +7426,6 @@ export {
   DIFFERENCE,
   DIGITS,
   DIRECTED,
-  DOUBT,
   DRILLING,
   Disc,
   DoubleContact,
@@ -7376,6 +7445,7 @@ export {
   EventKind,
   FACE,
   FASTEST,
+  FINE,
   FINEST,
   FIRST,
   FLAT,
@@ -7420,6 +7490,7 @@ export {
   LIMIT_BRANCH,
   LONGEST,
   LONGEST_of_code,
+  LONGEST_of_integrated_impact,
   LONGEST_of_trajectory,
   LOOKS,
   LOOKS_of_passing,
@@ -7446,7 +7517,7 @@ export {
   NEGATIVE,
   NEITHER,
   NEWTON,
-  NODES,
+  NEWTON_of_integrated_impact,
   NORTH,
   NOT_FINITE,
   NO_CHOICE,
@@ -7472,6 +7543,7 @@ export {
   PI,
   PLAIN,
   POWER,
+  POWER_of_graph,
   PRESSED,
   PRODUCT,
   PROTRUDING,
@@ -7492,6 +7564,7 @@ export {
   ROLLING_STOPPING,
   ROLLING_of_dry_impact,
   ROOT,
+  ROUGH,
   ROUNDING,
   ROUNDING_of_prediction,
   ROUNDING_of_series_roots,
@@ -7509,6 +7582,7 @@ export {
   RingSurface,
   RollingPrecession,
   RollingResistance,
+  RungeKuttaStep,
   SEARCHES,
   SECOND,
   SELECT,
@@ -7526,12 +7600,14 @@ export {
   SLOWEST_ROCKING,
   SLOWEST_SLIP,
   SMALL,
+  STAGES,
   START,
   STATE,
   STEP_LIMIT,
   STIFF_TOLERANCE,
   STILL,
   STOPPING,
+  STRAIGHT,
   STUCK,
   SUM,
   Segment,
@@ -7645,6 +7721,7 @@ export {
   both_letting_go,
   branch_guard,
   branch_jellett,
+  branch_of,
   classify,
   classify_top,
   closing_motion,
@@ -7737,6 +7814,7 @@ export {
   lowest_surface,
   moment_per_normal_force,
   motion_on_two,
+  moved,
   natural,
   natural_state,
   natural_units,
@@ -7826,6 +7904,7 @@ export {
   stays_open,
   stays_positive,
   steady_states,
+  step_from,
   sticking_motion,
   sticking_wrench,
   stopping,

@@ -20,10 +20,10 @@ from tippetop.mechanics.rolling import (
     FORCES,
     ContactPoint,
     Slip,
+    branch_of,
     flat,
     is_set_valued,
     set_valued,
-    sliding_law,
     slip_length,
     solve,
     velocity_without_slip,
@@ -159,7 +159,9 @@ class DryContact(NamedTuple):
             held += [0, 1] if self.reach is None else [0, 1, 5]
         else:
             w = self.before[5] if self.reach is None else slip[2] / self.reach
-            force, torque = sliding_law(self.law).traction((slip[0], slip[1]), (*self.before[3:5], w))
+            turning = (*self.before[3:5], w)
+            law = branch_of(self.law, (slip[0], slip[1]), turning)
+            force, torque = law.traction((slip[0], slip[1]), turning)
         if self.resistance is not None:
             if rolling is None:
                 held += [3, 4]

@@ -14,16 +14,14 @@ from tippetop.mechanics.double_contact import Tops
 from tippetop.mechanics.dry_impact import is_dry
 from tippetop.mechanics.impact import Impact
 from tippetop.mechanics.impulse import Striking, contact_velocity
-from tippetop.mechanics.integrated_impact import DOUBT, MOST, NODES, STUCK, TOLERANCE, combined
+from tippetop.mechanics.integrated_impact import MOST, STUCK, TOLERANCE
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import angular_velocity, moment_per_normal_force
 from tippetop.mechanics.roots import crossing
+from tippetop.mechanics.runge_kutta import POWER, Point, step_from
 from tippetop.mechanics.state import State
 from tippetop.mechanics.surface import contact_vector
 from tippetop.mechanics.vectors import Vector, add, length, scale
-
-Point = tuple[float, ...]
-"""Change of angular momentum and velocity, the normal impulses of both contacts, and the first one's work."""
 
 OPEN = 1e-9
 """Normal velocity of a contact that is closed, and slip that has ended, in units of what strikes."""
@@ -35,6 +33,9 @@ class SlipEnds(ArithmeticError):
 
 class StruckOnTwo(NamedTuple):
     """A body at the start of such an impact, floats.
+
+    The numbers that an impact changes are the impulses that change angular momentum and velocity, the normal
+    impulses of both contacts, and the first one's work.
 
     Attributes
     ----------
@@ -106,13 +107,13 @@ class StruckOnTwo(NamedTuple):
 
     def step(self, here: Point, step: float, *, pressed: bool) -> tuple[Point, float]:
         """The numbers after a step, and its error over the one allowed."""
-        slopes = [self.slope(here, pressed=pressed)]
-        there = here
-        for weights in NODES:
-            there = combined(here, step, weights, slopes)
-            slopes.append(self.slope(there, pressed=pressed))
-        doubt = max(map(length, self.change(combined((0.0,) * len(here), step, DOUBT, slopes))))
-        return there, float(doubt / (TOLERANCE * self.speed))
+
+        def slope(point: Point) -> Point:
+            return self.slope(point, pressed=pressed)
+
+        taken = step_from(here, slope(here), step, slope)
+        doubt = taken.doubt(lambda error: max(map(length, self.change(error))))
+        return taken.there, float(doubt / (TOLERANCE * self.speed))
 
     def until(self, here: Point, goal: Callable[[Point], float]) -> tuple[Point, int]:
         """The first numbers from given ones on at which the goal is not negative, and the steps to there.
@@ -131,7 +132,7 @@ class StruckOnTwo(NamedTuple):
                 return held, taken
             there, doubt = self.step(here, step, pressed=pressed)
             if doubt > 1.0:
-                step *= max(0.1, 0.9 * doubt**-0.2)
+                step *= max(0.1, 0.9 * doubt**POWER)
                 continue
             ends = [goal]
             if not pressed:
@@ -141,7 +142,7 @@ class StruckOnTwo(NamedTuple):
                 there = self._landing(here, step, end, there, pressed=pressed)
             if goal in reached and goal(there) >= -1e-12:
                 return there, taken + 1
-            here, step = there, min(longest, step * min(5.0, 0.9 * max(doubt, 1e-10) ** -0.2))
+            here, step = there, min(longest, step * min(5.0, 0.9 * max(doubt, 1e-10) ** POWER))
         raise ArithmeticError("an impact on two surfaces does not come to its end")
 
     def held(self, here: Point, goal: Callable[[Point], float]) -> Point | None:

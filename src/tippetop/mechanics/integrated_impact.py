@@ -1,14 +1,16 @@
 """An impact under any friction law, integrated."""
 
 import math
-from collections.abc import Sequence
-from operator import mul
-from typing import NamedTuple, TypeAlias
+from typing import NamedTuple
 
 from tippetop.mechanics.dry_impact import DryContact
 from tippetop.mechanics.impulse import FUZZ, Goal, Impulse, Striking, first_reach
 from tippetop.mechanics.roots import crossing
+from tippetop.mechanics.runge_kutta import POWER, Point, RungeKuttaStep, moved, step_from
 from tippetop.mechanics.vectors import add, length, scale
+
+LONGEST = 5.0
+"""Step at most, in the time in which slip falls by a factor of e: so many times it are still stable."""
 
 TOLERANCE = 1e-9
 """Error of the slip in a step of the integration, relative to the slip."""
@@ -19,24 +21,11 @@ STUCK = 1e-8
 SHORTEST = 1e-12
 """Step, relative to the longest, that is taken whatever its error: at a jump of the law."""
 
+NEWTON, STRAIGHT = 4, 1e-8
+"""Improvements of the end of an impact, and how near to it, in its last step, the way is straight."""
+
 MOST = 100_000
-"""Steps after which an impact is given up; most take some hundred, the longest that came to an end 57,000."""
-
-Point: TypeAlias = tuple[float, ...]
-"""The numbers of an impulse in a row: p, impulse of friction, impulse of torque, normal work."""
-
-NODES: tuple[tuple[float, ...], ...] = (
-    (1 / 5,),
-    (3 / 40, 9 / 40),
-    (44 / 45, -56 / 15, 32 / 9),
-    (19372 / 6561, -25360 / 2187, 64448 / 6561, -212 / 729),
-    (9017 / 3168, -355 / 33, 46732 / 5247, 49 / 176, -5103 / 18656),
-    (35 / 384, 0.0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84),
-)
-"""Weights of the stages of Dormand and Prince's method of order 5 (1980)."""
-
-DOUBT = (71 / 57600, 0.0, -71 / 16695, 71 / 1920, -17253 / 339200, 22 / 525, -1 / 40)
-"""Weights of the stages in the error of a step of that method."""
+"""Steps after which an impact is given up; most take some ten, and on small patches thousands."""
 
 
 class IntegratedProcess(NamedTuple):
@@ -65,33 +54,52 @@ class IntegratedProcess(NamedTuple):
             self = self._replace(dry=self.dry.settled(impulse))  # noqa: PLW0642
         waiting = goal(impulse) >= 0.0
         here, slope = pack(impulse), self.slope(pack(impulse))
-        longest = 2.0 / (self.body.inverse_mass[0][0] + self.body.inverse_mass[1][1])
-        step = 0.05 * longest
+        longest = 2.0 * LONGEST / (self.body.inverse_mass[0][0] + self.body.inverse_mass[1][1])
+        step = 0.01 * longest
         for taken in range(MOST):
             held = self.held(unpack(here), goal, guess)
             if held is not None:
                 return held._replace(steps=taken)
-            there, new_slope, doubt = self.step(here, slope, step)
-            reached = goal(unpack(there)) >= 0.0
+            taking = step_from(here, slope, step, self.slope)
+            doubt = self.doubt(taking)
+            reached = goal(unpack(taking.there)) >= 0.0
             if (doubt > 1.0 and step > SHORTEST * longest) or (reached and waiting):
-                step *= min(0.5, max(0.1, 0.9 * doubt**-0.2))
+                step *= min(0.5, max(0.1, 0.9 * doubt**POWER))
                 continue
             if reached:
-                return self.landing(here, slope, step, goal)._replace(steps=taken + 1)
-            here, slope, waiting = there, new_slope, False
+                return unpack(self.landing(taking, goal))._replace(steps=taken + 1)
+            here, slope, waiting = taking.there, taking.new_slope, False
             if self.dry is not None:
                 self = self._replace(dry=self.dry.settled(unpack(here)))  # noqa: PLW0642
                 slope = self.slope(here)
-            step = min(longest, step * min(5.0, 0.9 * max(doubt, 1e-10) ** -0.2))
+            step = min(longest, step * min(5.0, 0.9 * max(doubt, 1e-10) ** POWER))
         raise ArithmeticError("an impact does not come to its end")
 
-    def landing(self, here: Point, slope: Point, step: float, goal: Goal) -> Impulse:
-        """The impulse within a step at which the goal is reached."""
+    def landing(self, taking: RungeKuttaStep, goal: Goal) -> Point:
+        """The numbers within a step at which the goal is reached.
 
-        def along(part: float) -> Impulse:
-            return unpack(self.step(here, slope, part)[0])
+        The cubic through its ends tells about where. From there on it is Newton's method, as a goal is linear
+        in the numbers, or the least or largest of some that are.
+        """
 
-        return along(crossing(lambda part: goal(along(part)), 0.0, step))
+        def missing(point: Point) -> float:
+            return goal(unpack(point))
+
+        def along(size: float) -> Point:
+            return step_from(taking.here, taking.slopes[0], size, self.slope).there
+
+        last = taking.size
+        here = along(last * crossing(lambda part: missing(taking.between(part)), 0.0, 1.0))
+        for _ in range(NEWTON):
+            slope, left, nudge = self.slope(here), missing(here), 1e-3 * taking.size
+            rate = (missing(moved(here, nudge, slope)) - left) / nudge
+            more = -left / rate if rate > 0.0 else taking.size
+            if abs(more) < STRAIGHT * taking.size:
+                return moved(here, more, slope)
+            if abs(more) > 0.1 * last:
+                break
+            here, last = step_from(here, slope, more, self.slope).there, abs(more)
+        return along(crossing(lambda size: missing(along(size)), 0.0, taking.size))
 
     def slope(self, here: Point) -> Point:
         """Rate of the impulse's numbers with the clock s."""
@@ -105,21 +113,19 @@ class IntegratedProcess(NamedTuple):
         pace = 1.0 / (grip / slip + 1.0 / length(self.body.point))
         return (pace, pace * force[0], pace * force[1], *scale(pace, torque), pace * point[2])
 
-    def step(self, here: Point, slope: Point, step: float) -> tuple[Point, Point, float]:
-        """The numbers and rates after a step, and the error of the step over the one allowed."""
-        slopes = [slope]
-        there = here
-        for weights in NODES:
-            there = combined(here, step, weights, slopes)
-            slopes.append(self.slope(there))
-        off = unpack(combined((0.0,) * len(here), step, DOUBT, slopes))
-        error, speed = self.body.response(off), length(self.body.point)
-        if self.dry is not None:
-            doubt = self.dry.doubt(unpack(here), unpack(there), off)
-        else:
-            slip = max(self.slip(here), self.slip(there), 1e-9 * speed)
-            doubt = math.hypot(error[0], error[1]) / slip
-        return there, slopes[-1], max(doubt, abs(error[2]) / speed) / TOLERANCE
+    def doubt(self, taken: RungeKuttaStep) -> float:
+        """The error of a step over the one allowed."""
+        here, there, speed = unpack(taken.here), unpack(taken.there), length(self.body.point)
+        slip = max(self.slip(taken.here), self.slip(taken.there), 1e-9 * speed)
+
+        def measure(error: Point) -> float:
+            off = unpack(error)
+            wrong = self.body.response(off)
+            if self.dry is not None:
+                return float(max(self.dry.doubt(here, there, off), abs(wrong[2]) / speed))
+            return float(max(math.hypot(wrong[0], wrong[1]) / slip, abs(wrong[2]) / speed))
+
+        return taken.doubt(measure) / TOLERANCE
 
     def slip(self, here: Point) -> float:
         """Slip speed, m/s."""
@@ -154,14 +160,6 @@ class IntegratedProcess(NamedTuple):
         later = self.body.friction(end)[2]
         drift = math.dist((*later.force, *later.torque), (*traction.force, *traction.torque))
         return end if drift <= 2.0 * (STUCK + fuzz) else None
-
-
-def combined(here: Point, step: float, weights: Sequence[float], slopes: Sequence[Point]) -> Point:
-    """A point plus a step along a mean of slopes."""
-    return tuple(
-        x + step * sum(map(mul, weights, column))
-        for x, column in zip(here, zip(*slopes, strict=True), strict=True)
-    )
 
 
 def pack(impulse: Impulse) -> Point:
