@@ -43,30 +43,20 @@ class Fault(IntEnum):
 
 
 class Variable(NamedTuple):
-    """A variable of a result.
-
-    Attributes
-    ----------
-    long_name
-        What it is.
-    units
-        Its SI unit; none for flags and words.
-    label
-        How plots name it, in TeX between dollars, without the unit.
-    dimensions
-        Its dimensions after that of its table.
-    dtype
-        How it is stored.
-    flags
-        The meanings of the numbers 0, 1, ..., of a variable of flags.
-    """
+    """A variable of a result."""
 
     long_name: str
+    """What it is."""
     units: str = ""
+    """Its SI unit; none for flags and words."""
     label: str = ""
+    """How plots name it, in TeX between dollars, without the unit."""
     dimensions: tuple[str, ...] = ()
+    """Its dimensions after that of its table."""
     dtype: str = "float64"
+    """How it is stored."""
     flags: tuple[str, ...] = ()
+    """The meanings of the numbers 0, 1, ..., of a variable of flags."""
 
     @property
     def missing(self) -> Any:

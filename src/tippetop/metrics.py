@@ -35,51 +35,36 @@ HEIGHT_LOOKS = 65
 
 @dataclass
 class Ends:
-    """What was found of launches, in natural units; all of shape (n,).
-
-    Attributes
-    ----------
-    state
-        The states at the end.
-    time
-        When that was.
-    outcome
-        Numbers of `OUTCOMES`.
-    steps, flights
-        Steps taken, and flights made.
-    least_force
-        Least normal force; 0 where the top left the table.
-    lift_off
-        First time the table let go; nan if it never did.
-    struck, drilled, rolled
-        Energy lost in impacts, to drilling and to rolling.
-    airborne, highest_gap, highest
-        Time spent in the air, and there the largest gap and the largest height of the centre of mass.
-    down, up
-        Least and largest n_z.
-    turned
-        First time n_z fell through 0; nan if it never did.
-    arrived
-        First time n_z was in the band of `final_band`; nan if it never was.
-    """
+    """What was found of launches, in natural units; all of shape (n,)."""
 
     state: State
+    """The states at the end."""
     time: Array
+    """When that was."""
     outcome: NDArray[np.int8]
+    """Numbers of `OUTCOMES`."""
     steps: NDArray[np.int64]
     flights: NDArray[np.int64]
+    """Steps taken, and flights made."""
     least_force: Array
+    """Least normal force; 0 where the top left the table."""
     lift_off: Array
+    """First time the table let go; nan if it never did."""
     struck: Array
     drilled: Array
     rolled: Array
+    """Energy lost in impacts, to drilling and to rolling."""
     airborne: Array
     highest_gap: Array
     highest: Array
+    """Time spent in the air, and there the largest gap and the largest height of the centre of mass."""
     down: Array
     up: Array
+    """Least and largest n_z."""
     turned: Array
+    """First time n_z fell through 0; nan if it never did."""
     arrived: Array
+    """First time n_z was in the band of `final_band`; nan if it never was."""
 
     @classmethod
     def unknown(cls, count: int) -> "Ends":

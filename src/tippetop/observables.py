@@ -38,41 +38,29 @@ LEAST_MOMENT = 1e-6
 
 
 class Samples(NamedTuple):
-    """A launch at its samples, in natural units; every number of shape (k,).
-
-    Attributes
-    ----------
-    times
-        When.
-    state
-        The states.
-    force, torque
-        Force of the table, and its torque about the contact point.
-    x, y
-        Horizontal position of the centre of mass.
-    turn, pole
-        Angle psi about the axis, and the pole of its chart (see `tippetop.mechanics.quadratures`).
-    work
-        Work of the contact force since launch.
-    struck, drilled, rolled
-        Energy lost since launch in impacts, to drilling and to rolling.
-    mode
-        Number of the contact mode, among the names that the recorder has met.
-    """
+    """A launch at its samples, in natural units; every number of shape (k,)."""
 
     times: Array
+    """When."""
     state: State
+    """The states."""
     force: Vector
     torque: Vector
+    """Force of the table, and its torque about the contact point."""
     x: Array
     y: Array
+    """Horizontal position of the centre of mass."""
     turn: Array
     work: Array
+    """Work of the contact force since launch."""
     struck: Array
     drilled: Array
     rolled: Array
+    """Energy lost since launch in impacts, to drilling and to rolling."""
     pole: Array
+    """Angle psi about the axis, and the pole of its chart (see `tippetop.mechanics.quadratures`)."""
     mode: NDArray[np.int8]
+    """Number of the contact mode, among the names that the recorder has met."""
 
 
 class Recorder:

@@ -15,20 +15,14 @@ SEGMENTS = 48
 
 
 class Mesh(NamedTuple):
-    """Triangles with a colour at every corner.
-
-    Attributes
-    ----------
-    points, normals, colours
-        Corners (m), unit normals and linear RGB, each of shape (n, 3).
-    triangles
-        Numbers of corners, anticlockwise seen from outside, shape (m, 3).
-    """
+    """Triangles with a colour at every corner."""
 
     points: Array
     normals: Array
     colours: Array
+    """Corners (m), unit normals and linear RGB, each of shape (n, 3)."""
     triangles: NDArray[np.uint32]
+    """Numbers of corners, anticlockwise seen from outside, shape (m, 3)."""
 
 
 def lathe(part: ToyPart, unit: float, segments: int = SEGMENTS) -> Mesh:

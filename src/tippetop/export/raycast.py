@@ -20,24 +20,17 @@ _TABLE, _LINE, _SKY, _TRACE = (
 
 
 class View(NamedTuple):
-    """A camera: where it is, which way its picture's right, up and depth go, and how wide it sees.
-
-    Attributes
-    ----------
-    eye, right, up, ahead
-        Place, and unit vectors.
-    spread
-        Half the width of the picture over its depth.
-    pixels
-        Width and height of the picture.
-    """
+    """A camera: where it is, which way its picture's right, up and depth go, and how wide it sees."""
 
     eye: Array
     right: Array
     up: Array
     ahead: Array
+    """Place, and unit vectors."""
     spread: float
+    """Half the width of the picture over its depth."""
     pixels: tuple[int, int]
+    """Width and height of the picture."""
 
     def rays(self, area: Area, fine: int) -> Array:
         """Unit directions of rays through some pixels, `fine` across each, shape (rows, columns, 3)."""

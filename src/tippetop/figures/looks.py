@@ -46,24 +46,16 @@ _BAND = (_CREAM, _CREAM, _CREAM, _CREAM, REPORT, REPORT)
 
 
 class ToyPart(NamedTuple):
-    """A surface of revolution.
-
-    Attributes
-    ----------
-    name
-        What it is of the toy.
-    profile
-        Points (distance from the axis, height along it from the centre of mass), from below, shape (k, 2).
-    colours
-        Colours of equal sectors around the axis, as #rrggbb.
-    opacity
-        1 for solid, less for glass.
-    """
+    """A surface of revolution."""
 
     name: str
+    """What it is of the toy."""
     profile: Array
+    """Points (distance from the axis, height along it from the centre of mass), from below, shape (k, 2)."""
     colours: tuple[str, ...]
+    """Colours of equal sectors around the axis, as #rrggbb."""
     opacity: float = 1.0
+    """1 for solid, less for glass."""
 
 
 BAND = 4

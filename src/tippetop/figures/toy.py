@@ -76,21 +76,14 @@ class _Quadric(NamedTuple):
 
 
 class Hits(NamedTuple):
-    """Where rays meet the toy.
-
-    Attributes
-    ----------
-    distances
-        How far along each ray; far if it misses.
-    normals
-        Unit normals there.
-    parts
-        Numbers of the solid parts that are met.
-    """
+    """Where rays meet the toy."""
 
     distances: Array
+    """How far along each ray; far if it misses."""
     normals: Array
+    """Unit normals there."""
     parts: NDArray[np.intp]
+    """Numbers of the solid parts that are met."""
 
     def some(self, which: Any) -> "Hits":
         """Some of them, as an array is indexed."""

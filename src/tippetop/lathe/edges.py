@@ -23,19 +23,13 @@ _SHARES = (_NODES + 1.0) / 2.0
 
 
 class Edge(NamedTuple):
-    """A straight edge, or an arc of at most half a circle.
-
-    Attributes
-    ----------
-    start, end
-        Where it begins and ends.
-    turn
-        Angle by which it turns to the left along the way, rad, between -pi and pi; 0 where it is straight.
-    """
+    """A straight edge, or an arc of at most half a circle."""
 
     start: complex
     end: complex
+    """Where it begins and ends."""
     turn: float = 0.0
+    """Angle by which it turns to the left along the way, rad, between -pi and pi; 0 where it is straight."""
 
     @property
     def chord(self) -> complex:

@@ -27,25 +27,17 @@ _CLOSE = 1e-7
 
 
 class Zone(NamedTuple):
-    """A surface of revolution that a body touches the table with.
-
-    Attributes
-    ----------
-    radius
-        Radius of the circle in the middle of its tube, m: 0 for a sphere, or a tip.
-    height
-        Height of that circle, in the profile's own coordinates, m.
-    tube
-        Radius of the tube, m: 0 for a sharp edge; of a sphere its radius.
-    low, high
-        Tilts between which the body stands on it, rad.
-    """
+    """A surface of revolution that a body touches the table with."""
 
     radius: float
+    """Radius of the circle in the middle of its tube, m: 0 for a sphere, or a tip."""
     height: float
+    """Height of that circle, in the profile's own coordinates, m."""
     tube: float
+    """Radius of the tube, m: 0 for a sharp edge; of a sphere its radius."""
     low: float
     high: float
+    """Tilts between which the body stands on it, rad."""
 
     def support(self, tilt: float) -> float:
         """Height above the table of the origin of the profile's coordinates, m."""
@@ -60,19 +52,13 @@ class Zone(NamedTuple):
 
 
 class ConvexHull(NamedTuple):
-    """The convex hull of a body.
-
-    Attributes
-    ----------
-    zones
-        The surfaces it touches the table with, by the tilt.
-    flats
-        Tilts at which it lies on a circle or a line rather than on a point: 0 and pi on a flat end, between
-        them on a cylinder or a cone.
-    """
+    """The convex hull of a body."""
 
     zones: tuple[Zone, ...]
+    """The surfaces it touches the table with, by the tilt."""
     flats: tuple[float, ...]
+    """Tilts at which it lies on a circle or a line rather than on a point: 0 and pi on a flat end, between
+    them on a cylinder or a cone."""
 
     def support(self, tilt: float) -> float:
         """Height above the table of the origin of the profile's coordinates, m."""

@@ -27,18 +27,12 @@ class MassProperties(NamedTuple):
 
 
 class Filling(NamedTuple):
-    """A profile filled with a material.
-
-    Attributes
-    ----------
-    profile
-        The edge of it.
-    density
-        Density, less that of what it takes the place of, kg/m^3.
-    """
+    """A profile filled with a material."""
 
     profile: Profile
+    """The edge of it."""
     density: float
+    """Density, less that of what it takes the place of, kg/m^3."""
 
 
 def mass_properties(fillings: Sequence[Filling]) -> MassProperties:

@@ -12,21 +12,14 @@ from tippetop.lathe.workpiece import Workpiece
 
 
 class Solid(NamedTuple):
-    """A body, or one of the weights in it, without what is let into it.
-
-    Attributes
-    ----------
-    name
-        What it is called.
-    points
-        Corners, m, shape (n, 3).
-    triangles
-        Numbers of corners, shape (m, 3): the surface outside, and those of the hollows.
-    """
+    """A body, or one of the weights in it, without what is let into it."""
 
     name: str
+    """What it is called."""
     points: NDArray[np.float64]
+    """Corners, m, shape (n, 3)."""
     triangles: NDArray[np.int64]
+    """Numbers of corners, shape (m, 3): the surface outside, and those of the hollows."""
 
 
 def solids(piece: Workpiece, facets: int) -> list[Solid]:

@@ -52,34 +52,23 @@ class Source:
 
 @dataclass(frozen=True)
 class Finding:
-    """What a run finds about a claim.
-
-    Attributes
-    ----------
-    listing
-        What the report's own method gives; None where it has nothing to say.
-    converged
-        What is true.
-    note
-        What else there is to know.
-    chosen, choice
-        What the report's method gives for one choice of what the report leaves open, and which choice.
-    reported
-        What the report's printed formula evaluates to, where the claim is a formula.
-    news
-        What else is found that the report could not know, in a sentence; "" for nothing.
-    right
-        What is right where the claim is not, in a few words with values; "" where the claim says it.
-    """
+    """What a run finds about a claim."""
 
     listing: Value | None
+    """What the report's own method gives; None where it has nothing to say."""
     converged: Value
+    """What is true."""
     note: str
+    """What else there is to know."""
     chosen: Value | None = None
     choice: str = ""
+    """What the report's method gives for one choice of what the report leaves open, and which choice."""
     reported: float | None = None
+    """What the report's printed formula evaluates to, where the claim is a formula."""
     news: str = ""
+    """What else is found that the report could not know, in a sentence; "" for nothing."""
     right: str = ""
+    """What is right where the claim is not, in a few words with values; "" where the claim says it."""
 
 
 Examine: TypeAlias = Callable[..., Finding]
@@ -88,45 +77,31 @@ Examine: TypeAlias = Callable[..., Finding]
 
 @dataclass(frozen=True)
 class Claim:
-    """What the report says, how to examine it, and which figure shows it.
-
-    Attributes
-    ----------
-    id
-        Its name.
-    source
-        Where it stands.
-    text
-        What is claimed.
-    printed
-        The number as printed, with its unit; "" where the claim is not a number or `Finding.reported` has it.
-    unit
-        Unit of a number that is not printed; None if there is none.
-    tolerance
-        What counts as agreement where the printed digits do not say it.
-    needs
-        Names of the experiments that decide it.
-    figure
-        Name of our figure that shows it, or None.
-    implied
-        Whether the report does not say it in words.
-    right
-        What is right where the claim is not, in a few words; "" where the converged value says it.
-    examine
-        Computes the finding from the experiments' datasets, given in the order of `needs`.
-    """
+    """What the report says, how to examine it, and which figure shows it."""
 
     id: str
+    """Its name."""
     source: Source
+    """Where it stands."""
     text: str
+    """What is claimed."""
     printed: str
+    """The number as printed, with its unit; "" where the claim is not a number or `Finding.reported` has
+    it."""
     unit: str | None
+    """Unit of a number that is not printed; None if there is none."""
     tolerance: Tolerance | None
+    """What counts as agreement where the printed digits do not say it."""
     needs: tuple[str, ...]
+    """Names of the experiments that decide it."""
     figure: str | None
+    """Name of our figure that shows it, or None."""
     implied: bool
+    """Whether the report does not say it in words."""
     right: str
+    """What is right where the claim is not, in a few words; "" where the converged value says it."""
     examine: Examine
+    """Computes the finding from the experiments' datasets, given in the order of `needs`."""
 
     @property
     def is_number(self) -> bool:

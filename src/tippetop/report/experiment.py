@@ -9,24 +9,16 @@ import xarray as xr
 
 @dataclass(frozen=True)
 class Experiment:
-    """A computation that depends on nothing else.
-
-    Attributes
-    ----------
-    id
-        What it is called.
-    title
-        What it finds out, in a few words.
-    cost
-        About how long it takes, s: for the order of work and for the time left.
-    compute
-        Does it; the argument says whether a coarser version is enough.
-    """
+    """A computation that depends on nothing else."""
 
     id: str
+    """What it is called."""
     title: str
+    """What it finds out, in a few words."""
     cost: float
+    """About how long it takes, s: for the order of work and for the time left."""
     compute: Callable[[bool], xr.Dataset]
+    """Does it; the argument says whether a coarser version is enough."""
 
     def run(self, quick: bool) -> xr.Dataset:
         """Compute, and note on the result what it is."""

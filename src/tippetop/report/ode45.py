@@ -29,23 +29,16 @@ _STAGES = 7
 
 @dataclass(frozen=True)
 class Solution:
-    """What the method returns.
-
-    Attributes
-    ----------
-    times, states
-        Ends of the steps and the points of output between them, shapes (k,) and (k, size).
-    steps, evaluations
-        Steps accepted, and evaluations of the right-hand side.
-    failure
-        Why it gave up, or None.
-    """
+    """What the method returns."""
 
     times: Array
     states: Array
+    """Ends of the steps and the points of output between them, shapes (k,) and (k, size)."""
     steps: int
     evaluations: int
+    """Steps accepted, and evaluations of the right-hand side."""
     failure: str | None = None
+    """Why it gave up, or None."""
 
 
 def dormand_prince_step(rates: Rates, state: Array, slope: Array, step: float) -> tuple[Array, Array]:

@@ -15,33 +15,23 @@ Draw = Callable[[xr.Dataset], Figure]
 
 @dataclass(frozen=True)
 class Plate:
-    """A figure of the report redone, or one of our own.
-
-    Attributes
-    ----------
-    id
-        Name, and stem of its files.
-    title
-        Heading.
-    caption
-        What is seen, in a few sentences.
-    needs
-        Names of the experiments it shows.
-    draw
-        Makes the figure from their merged dataset (empty for a drawing that needs none).
-    section
-        The section of the page that it belongs to; see `tippetop.report.outline`.
-    finding
-        What it finds out, in a few words, where that is news or one of the pictures that the page opens with.
-    """
+    """A figure of the report redone, or one of our own."""
 
     id: str
+    """Name, and stem of its files."""
     title: str
+    """Heading."""
     caption: str
+    """What is seen, in a few sentences."""
     needs: tuple[str, ...]
+    """Names of the experiments it shows."""
     draw: Draw
+    """Makes the figure from their merged dataset (empty for a drawing that needs none)."""
     section: str
+    """The section of the page that it belongs to; see `tippetop.report.outline`."""
     finding: str = ""
+    """What it finds out, in a few words, where that is news or one of the pictures that the page opens
+    with."""
 
     def dataset(self, data: Data) -> xr.Dataset:
         """The data behind the figure."""

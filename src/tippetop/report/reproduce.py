@@ -38,27 +38,18 @@ Progress = Callable[[float, float, str], None]
 
 @dataclass(frozen=True)
 class Reproduction:
-    """What came of redoing the report.
-
-    Attributes
-    ----------
-    folder
-        Where it was written.
-    judgements
-        The claims examined, in the order of the report.
-    figures
-        Names of the figures drawn.
-    quick
-        Whether coarser computations were asked for.
-    seconds
-        How long it took.
-    """
+    """What came of redoing the report."""
 
     folder: Path
+    """Where it was written."""
     judgements: tuple[Judgement, ...]
+    """The claims examined, in the order of the report."""
     figures: tuple[str, ...]
+    """Names of the figures drawn."""
     quick: bool
+    """Whether coarser computations were asked for."""
     seconds: float
+    """How long it took."""
 
     @property
     def counts(self) -> dict[str, int]:

@@ -9,27 +9,18 @@ from tippetop.processes import Job, shared
 
 @dataclass
 class Task:
-    """A call to be made once others have returned.
-
-    Attributes
-    ----------
-    name
-        What it is called; unique.
-    cost
-        About how long it takes, s.
-    call
-        Function of this module's kind: importable, so that another process can have it.
-    arguments
-        Makes its arguments from the results of the tasks it is after.
-    after
-        Names of tasks that come first.
-    """
+    """A call to be made once others have returned."""
 
     name: str
+    """What it is called; unique."""
     cost: float
+    """About how long it takes, s."""
     call: Callable[..., Any]
+    """Function of this module's kind: importable, so that another process can have it."""
     arguments: Callable[[dict[str, Any]], tuple[Any, ...]]
+    """Makes its arguments from the results of the tasks it is after."""
     after: tuple[str, ...] = field(default=())
+    """Names of tasks that come first."""
 
 
 def carry_out(

@@ -29,23 +29,16 @@ from tippetop.theory.steady import jellett_of_launch, steady_states
 
 @dataclass(frozen=True)
 class SlowFlow:
-    """The tilt of a launch in the limit of small friction, as a function of mu t.
-
-    Attributes
-    ----------
-    mu_time
-        mu t, s^2/m, increasing, shape (n,).
-    tilt_low, tilt_high
-        Least and largest tilt of the nutation at that time, rad, shape (n,): equal once it has died away.
-    final_tilt
-        Tilt of the steady state the flow ends in, rad; nan if it could not be followed that far, as where so
-        wide a nutation would need a table that pulls.
-    """
+    """The tilt of a launch in the limit of small friction, as a function of mu t."""
 
     mu_time: Array
+    """mu t, s^2/m, increasing, shape (n,)."""
     tilt_low: Array
     tilt_high: Array
+    """Least and largest tilt of the nutation at that time, rad, shape (n,): equal once it has died away."""
     final_tilt: float
+    """Tilt of the steady state the flow ends in, rad; nan if it could not be followed that far, as where so
+    wide a nutation would need a table that pulls."""
 
     def tilts(self, mu_times: Array) -> tuple[Array, Array]:
         """Least and largest tilt at these values of mu t (s^2/m), rad: nan outside those followed."""

@@ -7,18 +7,12 @@ from tippetop.theory.nutation import Amplitudes, Numbers, Orbit, excess_slope, o
 
 
 class Dissipation(NamedTuple):
-    """What friction takes from a nutation, on average, per unit of friction coefficient, in natural units.
-
-    Attributes
-    ----------
-    axial
-        Rate of L3.
-    energy
-        Rate of the energy.
-    """
+    """What friction takes from a nutation, on average, per unit of friction coefficient, in natural units."""
 
     axial: float
+    """Rate of L3."""
     energy: float
+    """Rate of the energy."""
 
 
 class AmplitudeRates(NamedTuple):
@@ -26,18 +20,13 @@ class AmplitudeRates(NamedTuple):
 
     Jellett's integral and the amplitudes leave two choices of the third root, which can meet: it is followed
     too.
-
-    Attributes
-    ----------
-    fast, slow
-        Logarithmic rates of the amplitudes.
-    root
-        Rate of sqrt(|p3|), which goes on to negative values where p3 touches zero.
     """
 
     fast: float
     slow: float
+    """Logarithmic rates of the amplitudes."""
     root: float
+    """Rate of sqrt(|p3|), which goes on to negative values where p3 touches zero."""
 
 
 def phases(path: Orbit) -> tuple[float, ...]:

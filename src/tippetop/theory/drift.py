@@ -21,21 +21,14 @@ from tippetop.theory.nutation import Numbers
 
 
 class Drift(NamedTuple):
-    """A drift of the tilt in time.
-
-    Attributes
-    ----------
-    time
-        mu t in natural units, from 0, shape (n,).
-    tilt
-        theta, rad, shape (n,), monotonic.
-    final_tilt
-        The steady tilt that it approaches, rad.
-    """
+    """A drift of the tilt in time."""
 
     time: Array
+    """mu t in natural units, from 0, shape (n,)."""
     tilt: Array
+    """theta, rad, shape (n,), monotonic."""
     final_tilt: float
+    """The steady tilt that it approaches, rad."""
 
 
 def smooth_precession(c: Scalar, jellett: float, fast: bool, numbers: Numbers) -> Scalar:

@@ -71,18 +71,12 @@ _DESCRIPTIONS = {
 
 
 class Fold(NamedTuple):
-    """Where the Jellett's integral of the steady precessions is least, inside the branch.
-
-    Attributes
-    ----------
-    tilt
-        theta, rad.
-    jellett
-        lambda, kg m^3/s.
-    """
+    """Where the Jellett's integral of the steady precessions is least, inside the branch."""
 
     tilt: float
+    """theta, rad."""
     jellett: float
+    """lambda, kg m^3/s."""
 
 
 class JellettRange(NamedTuple):

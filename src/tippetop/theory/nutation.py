@@ -33,19 +33,13 @@ from tippetop.theory.requirements import require_sphere
 
 
 class Constants(NamedTuple):
-    """What a nutation on a smooth table leaves alone.
-
-    Attributes
-    ----------
-    vertical, axial
-        Angular momentum about the vertical, L_z, and about the axis, L3, kg m^2/s.
-    energy
-        Energy without the horizontal motion of the centre of mass, J.
-    """
+    """What a nutation on a smooth table leaves alone."""
 
     vertical: Scalar
     axial: Scalar
+    """Angular momentum about the vertical, L_z, and about the axis, L3, kg m^2/s."""
     energy: Scalar
+    """Energy without the horizontal motion of the centre of mass, J."""
 
 
 class Numbers(NamedTuple):
@@ -62,28 +56,19 @@ class Numbers(NamedTuple):
 
 
 class Orbit(NamedTuple):
-    """A nutation of a smooth table, in units of mass, radius and gravity.
-
-    Attributes
-    ----------
-    middle, half
-        (p1 + p2)/2 and (p2 - p1)/2 of the turning points p = 1 - cos(theta).
-    far
-        The third root p3.
-    excess
-        q = L_z - L3.
-    axial
-        L3.
-    swing
-        e, the energy less that of the axial spin and of theta = 0.
-    """
+    """A nutation of a smooth table, in units of mass, radius and gravity."""
 
     middle: Scalar
     half: Scalar
+    """(p1 + p2)/2 and (p2 - p1)/2 of the turning points p = 1 - cos(theta)."""
     far: Scalar
+    """The third root p3."""
     excess: Scalar
+    """q = L_z - L3."""
     axial: Scalar
+    """L3."""
     swing: Scalar
+    """e, the energy less that of the axial spin and of theta = 0."""
 
 
 class Amplitudes(NamedTuple):

@@ -28,22 +28,15 @@ from tippetop.theory.nutation import (
 
 
 class Nutation(NamedTuple):
-    """A nutation at an instant, in natural units, seen from the pole that it is nearer to.
-
-    Attributes
-    ----------
-    orbit
-        As if that pole were theta = 0.
-    turned
-        Whether it is theta = pi.
-    log_scale
-        Logarithm of what the amplitudes are of those of `orbit`: for nutations so narrow that their squares
-        are no numbers. They are linear.
-    """
+    """A nutation at an instant, in natural units, seen from the pole that it is nearer to."""
 
     orbit: Orbit
+    """As if that pole were theta = 0."""
     turned: bool
+    """Whether it is theta = pi."""
     log_scale: float = 0.0
+    """Logarithm of what the amplitudes are of those of `orbit`: for nutations so narrow that their squares
+    are no numbers. They are linear."""
 
     @property
     def point(self) -> Array:
@@ -95,31 +88,21 @@ class Goals(NamedTuple):
 
 
 class Stage(NamedTuple):
-    """A part of the slow flow, in natural units.
-
-    Attributes
-    ----------
-    time
-        mu t from its begin, shape (n,).
-    low, high
-        Turning tilts of the nutation, rad, shape (n,).
-    end
-        The nutation at its end.
-    tail
-        The drift of the tilt that follows, or None.
-    final_tilt
-        Tilt of the steady state that it or its tail ends in, rad, or nan.
-    done
-        Whether it leads to the end of the flow; otherwise the other pole has come nearer.
-    """
+    """A part of the slow flow, in natural units."""
 
     time: Array
+    """mu t from its begin, shape (n,)."""
     low: Array
     high: Array
+    """Turning tilts of the nutation, rad, shape (n,)."""
     end: Nutation
+    """The nutation at its end."""
     tail: Drift | None
+    """The drift of the tilt that follows, or None."""
     final_tilt: float
+    """Tilt of the steady state that it or its tail ends in, rad, or nan."""
     done: bool
+    """Whether it leads to the end of the flow; otherwise the other pole has come nearer."""
 
 
 def follow_nutation(

@@ -26,69 +26,45 @@ from tippetop.theory.thresholds import (
 
 @dataclass(frozen=True)
 class StemTest:
-    """What it takes to stand on a stem: the inverted spin of the sphere at its tip holds above this.
-
-    Attributes
-    ----------
-    jellett
-        Jellett's integral about the tip, -L.a, kg m^3/s; inf if nothing is enough.
-    spin
-        The axial spin that goes with it when the axis is vertical, rad/s.
-    launch
-        Spin of launches, rad/s, that rise slowly on the sphere and have this integral when the tip first
-        touches; nan where something else touches before it. What is lost while both touch comes on top.
-    """
+    """What it takes to stand on a stem: the inverted spin of the sphere at its tip holds above this."""
 
     jellett: float
+    """Jellett's integral about the tip, -L.a, kg m^3/s; inf if nothing is enough."""
     spin: float
+    """The axial spin that goes with it when the axis is vertical, rad/s."""
     launch: float
+    """Spin of launches, rad/s, that rise slowly on the sphere and have this integral when the tip first
+    touches; nan where something else touches before it. What is lost while both touch comes on top."""
 
 
 @dataclass(frozen=True)
 class Touch:
-    """Where another surface first comes to the table, and what it takes to get there.
-
-    Attributes
-    ----------
-    tilt
-        theta, rad.
-    surface
-        Number of that surface.
-    spin
-        Least spin of launches, rad/s, whose end on the sphere alone is beyond; inf if there is none.
-    """
+    """Where another surface first comes to the table, and what it takes to get there."""
 
     tilt: float
+    """theta, rad."""
     surface: int
+    """Number of that surface."""
     spin: float
+    """Least spin of launches, rad/s, whose end on the sphere alone is beyond; inf if there is none."""
 
 
 @dataclass(frozen=True)
 class Prospects:
-    """What is known of a toy that is launched on its sphere.
-
-    Attributes
-    ----------
-    eccentricity
-        alpha: how far the centre of mass is below the centre of the sphere, in radii.
-    group
-        How such eccentric spheres behave.
-    critical_spins
-        For launches at `tilt`, at rest in tilt, rad/s.
-    tilt
-        That tilt, rad.
-    touch
-        Where another surface first touches; None if there is none.
-    stem
-        What it takes to stand on the sphere at the other end; None if there is none.
-    """
+    """What is known of a toy that is launched on its sphere."""
 
     eccentricity: float
+    """alpha: how far the centre of mass is below the centre of the sphere, in radii."""
     group: Group
+    """How such eccentric spheres behave."""
     critical_spins: CriticalSpins
+    """For launches at `tilt`, at rest in tilt, rad/s."""
     tilt: float
+    """That tilt, rad."""
     touch: Touch | None
+    """Where another surface first touches; None if there is none."""
     stem: StemTest | None
+    """What it takes to stand on the sphere at the other end; None if there is none."""
 
 
 def prospects(body: Body, shapes: list[Shape], gravity: float = 9.8, tilt: float = 0.1) -> Prospects | None:

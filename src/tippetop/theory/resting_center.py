@@ -9,18 +9,12 @@ from tippetop.mechanics.top import Top
 
 
 class RestingCenter(NamedTuple):
-    """A way to roll with the centre of mass at rest.
-
-    Attributes
-    ----------
-    precession
-        Rate at which the axis, and the contact point, go round the vertical, rad/s.
-    spin
-        Angular velocity about the axis, omega3, rad/s.
-    """
+    """A way to roll with the centre of mass at rest."""
 
     precession: float
+    """Rate at which the axis, and the contact point, go round the vertical, rad/s."""
     spin: float
+    """Angular velocity about the axis, omega3, rad/s."""
 
 
 def resting_center(tilt: float, top: Top) -> RestingCenter | None:

@@ -23,18 +23,12 @@ OTHER_SPINS = (100.0, 115.0, 130.0, 145.0, 160.0)
 
 
 class Times(NamedTuple):
-    """When tops turn over, s, of every spin with every friction coefficient, shape (spins, mu).
-
-    Attributes
-    ----------
-    flip
-        By the report's definition; nan where a run became singular or did not turn the top over.
-    turning
-        When the axis first passes the horizontal; nan where it does not.
-    """
+    """When tops turn over, s, of every spin with every friction coefficient, shape (spins, mu)."""
 
     flip: Array
+    """By the report's definition; nan where a run became singular or did not turn the top over."""
     turning: Array
+    """When the axis first passes the horizontal; nan where it does not."""
 
 
 def converged_times(spins: Array, mu: Array, window: float = WINDOW) -> Times:

@@ -131,18 +131,12 @@ class _Counted:
 
 
 class Effort(NamedTuple):
-    """What a method needs and gives at the report's tolerances.
-
-    Attributes
-    ----------
-    evaluations
-        Evaluations of the right-hand side; -1 where the method gives up.
-    tilt
-        The tilt that it ends at, rad.
-    """
+    """What a method needs and gives at the report's tolerances."""
 
     evaluations: int
+    """Evaluations of the right-hand side; -1 where the method gives up."""
     tilt: float
+    """The tilt that it ends at, rad."""
 
 
 def effort(problem: Problem, method: str, span: float) -> Effort:
