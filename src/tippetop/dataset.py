@@ -30,20 +30,9 @@ def assemble(
 ) -> xr.Dataset:
     """Label the arrays of a run as `tippetop.catalogue` says.
 
-    Parameters
-    ----------
-    times
-        Sample times, s, shape (k,).
-    samples
-        The variables of `SAMPLED`, shape (k, ...).
-    modes
-        Number of the contact mode at every sample, shape (k,), and the names that the numbers stand for.
-    numbers
-        Those of `METRICS` and `MONITORS`.
-    lists
-        Those of `LISTED`.
-    attributes
-        Provenance.
+    Over the sample times, s, shape (k,): the variables of `SAMPLED`, shape (k, ...), and the numbers of the
+    contact modes, shape (k,), with the names that they stand for. Single numbers are those of `METRICS` and
+    `MONITORS`, lists those of `LISTED`; the attributes are the provenance.
     """
     found: dict[Any, xr.Variable] = {}
     for name, values in samples.items():

@@ -22,10 +22,7 @@ Made = TypeVar("Made")
 def let_end(at_first: bool = False) -> None:
     """Let signals to end do so at once, with a word: for where nothing is begun that would have to be undone.
 
-    Parameters
-    ----------
-    at_first
-        Whether it is asked for the first time; later it undoes `let_raise`.
+    Later than `at_first` it undoes `let_raise`.
     """
     replaced = (signal.SIG_DFL, signal.default_int_handler) if at_first else (_raise,)
     for number in ENDINGS:

@@ -125,14 +125,8 @@ def tilt(state: State) -> Array:
 def metrics(ends: Ends, start: State, top: Top, units: Units) -> dict[str, NDArray[Any]]:
     """Every number of `tippetop.catalogue.METRICS` in SI, by name, each of shape (n,).
 
-    Parameters
-    ----------
-    ends
-        What was found.
-    start
-        States at launch in natural units, every number of shape (n,).
-    top, units
-        The tops in natural units, and those units: numbers, or arrays of shape (n,).
+    `start` has the states at launch in natural units, every number of shape (n,); `top` and `units`, the tops
+    in natural units and those units, have numbers, or arrays of shape (n,).
     """
     end = ends.state
     force = units.mass * units.length / units.time**2

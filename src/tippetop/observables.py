@@ -66,18 +66,9 @@ class Samples(NamedTuple):
 class Recorder:
     """Takes the samples of a launch on its way, and what is integrated along it; all in natural units.
 
-    Parameters
-    ----------
-    top
-        The top.
-    start
-        The state at launch.
-    azimuth
-        Direction into which the axis leans at launch, rad: the marker lies in the plane of axis and vertical.
-    times
-        Increasing sample times, shape (k,).
-    lost
-        Energy that an impact took at launch.
+    It is made of the top, the state at launch, the direction `azimuth` into which the axis leans there, rad
+    (the marker lies in the plane of axis and vertical), increasing sample times, shape (k,), and the energy
+    `lost` in an impact at launch.
     """
 
     def __init__(self, top: Top, start: State, azimuth: float, times: Array, lost: float = 0.0) -> None:
@@ -230,15 +221,7 @@ class Recorder:
 
 
 def observe(samples: Samples, top: Top, units: Units) -> dict[str, Array]:
-    """Every variable of `tippetop.catalogue.SAMPLED` in SI, by name.
-
-    Parameters
-    ----------
-    samples
-        A launch at its samples.
-    top, units
-        The top in natural units, and those units.
-    """
+    """Every variable of `tippetop.catalogue.SAMPLED` in SI, by name, of a top in natural units."""
     state, axis = samples.state, samples.state.axis
     momentum = state.momentum
     omega, arm = angular_velocity(axis, momentum, top), lowest_contact_vector(axis, top.surface)

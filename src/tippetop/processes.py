@@ -48,10 +48,7 @@ class _Failed(NamedTuple):
 class Worker:
     """A process that does one job at a time; another takes its place when it is killed or takes too long.
 
-    Parameters
-    ----------
-    warm_up
-        What every such process does first, so that its first job is as fast as the next.
+    It does what is to `warm_up` first, so that its first job is as fast as the next.
     """
 
     def __init__(self, warm_up: Callable[[], object] | None = None) -> None:
@@ -166,14 +163,10 @@ class Worker:
 
 
 def shared(next_job: Callable[[], Job | None], count: int) -> Iterator[tuple[Any, Any]]:
-    """Do jobs in processes, and give the name and the result of each as it comes.
+    """Do jobs in so many processes, and give the name and the result of each as it comes.
 
-    Parameters
-    ----------
-    next_job
-        Called when a process is free: the next job, or None if there is none, or none before another result.
-    count
-        How many processes; with 1 all is done in this one.
+    When a process is free, `next_job` gives another, or None if there is none, or none before another result.
+    With a count of 1 all is done in this process.
 
     Raises
     ------

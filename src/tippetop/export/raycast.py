@@ -73,16 +73,9 @@ def picture(
 ) -> NDArray[np.uint8]:
     """The picture of a moment, shape (height, width, 3).
 
-    Parameters
-    ----------
-    toy, view
-        What is seen, from where.
-    position, frame
-        Centre of mass, and the body's axes as columns, shape (3, 3).
-    path
-        The path of the contact point so far, shape (k, 2), as `fine_path` makes it.
-    cell
-        Width of the table's squares.
+    The toy's centre of mass is at `position`, and its axes are the columns of `frame`, shape (3, 3). The path
+    of the contact point so far, shape (k, 2), is as `fine_path` makes it; `cell` is the width of the table's
+    squares.
     """
     width, height = view.pixels
     colours = _table(view.eye, view.rays((0, width, 0, height), 1), cell)

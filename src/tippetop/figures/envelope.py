@@ -19,16 +19,9 @@ def envelope(times: ArrayLike, values: ArrayLike, across: int = _ACROSS) -> tupl
     Where turning points follow each other too closely to be seen apart, the band lies between the curves
     through the upper and through the lower ones; elsewhere it is the curve itself.
 
-    Parameters
-    ----------
-    times, values
-        The oscillation, increasing in time, shape (n,); values that are not finite are left out.
-    across
-        How many oscillations can be seen side by side.
-
-    Returns
-    -------
-    Times at equal distances, and the lower and upper edge of the band there, shape (m,).
+    Times and values of the oscillation are of shape (n,), increasing in time; values that are not finite are
+    left out. So many oscillations can be seen side by side `across` the axis. Returned are times at equal
+    distances, and the lower and upper edge of the band there, shape (m,).
     """
     t, y = np.asarray(times, dtype=float), np.asarray(values, dtype=float)
     t, y = t[np.isfinite(y)], y[np.isfinite(y)]

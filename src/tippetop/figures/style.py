@@ -34,7 +34,6 @@ UNILATERAL = CYCLE[2]
 """What happens on a table that only pushes; the second of two true results."""
 
 SEQUENTIAL = "cividis"
-DIVERGING = "PuOr"
 
 DASHED = (0, (4, 3))
 

@@ -25,12 +25,7 @@ class Solid(NamedTuple):
 def solids(piece: Workpiece, facets: int) -> list[Solid]:
     """The body, and then the weights in it, each with the hollows that the others leave.
 
-    Parameters
-    ----------
-    piece
-        What is turned.
-    facets
-        Facets around the axis, and around a circle of the profile.
+    There are so many facets around the axis, and around a circle of the profile.
 
     Raises
     ------

@@ -220,16 +220,9 @@ def decide(
     tolerance: float | None,
     chosen: Value | None = None,
 ) -> Verdict:
-    """The verdict on a claim; see `RULE`.
+    """The verdict on a claim by what the report says, what its method gives, and what is true; see `RULE`.
 
-    Parameters
-    ----------
-    reported, listing, converged
-        What the report says, what its method gives (None: nothing) and what is true.
-    tolerance
-        Largest difference that counts as agreement; None for values that are true or false.
-    chosen
-        What its method gives for one choice of what it leaves open.
+    The tolerance is the largest difference that counts as agreement; None for values that are true or false.
     """
     given = [value for value in (listing, chosen) if value is not None]
     theirs = any(_agree(reported, value, tolerance) for value in given)

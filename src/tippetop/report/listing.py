@@ -15,16 +15,9 @@ VARIABLES = ("theta", "theta_dot", "phi", "phi_dot", "omega3", "slip_x", "slip_y
 
 
 def listing_run(problem: Problem, duration: float, *, unilateral: bool = False) -> xr.Dataset:
-    """Run a problem as the report's listing does: on the table whatever its force (no lift-off).
+    """Run an eccentric sphere with viscous friction as the report's listing does: it never leaves the table.
 
-    Parameters
-    ----------
-    problem
-        An eccentric sphere with viscous friction.
-    duration
-        Length of the run, s.
-    unilateral
-        Whether to let the lines count that set a negative normal force to zero (commented out in the report).
+    `unilateral` lets the lines count that set a negative normal force to zero (commented out in the report).
 
     Returns
     -------

@@ -10,6 +10,8 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from tippetop.mechanics.vectors import cross, dot, scale
+
 Triple = tuple[float, float, float]
 
 CLOSE = 1e-9
@@ -49,7 +51,7 @@ class History(NamedTuple):
 def follow(body: SphereTop, tilt: float, spin: float, duration: float, step: float) -> History:
     """Follow a top that is set down at this tilt (rad) and spin (rad/s) with its centre of mass at rest."""
     axis = (math.sin(tilt), 0.0, math.cos(tilt))
-    momentum = _scaled(body.I3 * spin, axis)
+    momentum = scale(body.I3 * spin, axis)
     height = max(ball.radius - ball.center * axis[2] for ball in body.balls)
     velocity = (0.0, 0.0, 0.0)
     held: list[list[float]] = [[0.0] * 4 for _ in body.balls]
@@ -92,13 +94,13 @@ def _impulses(
             held[number] = [0.0] * 4
             continue
         turns = [
-            _cross(arm, (1.0, 0.0, 0.0)),
-            _cross(arm, (0.0, 1.0, 0.0)),
+            cross(arm, (1.0, 0.0, 0.0)),
+            cross(arm, (0.0, 1.0, 0.0)),
             (0.0, 0.0, patch),
-            _cross(arm, (0.0, 0.0, 1.0)),
+            cross(arm, (0.0, 0.0, 1.0)),
         ]
         masses = [
-            across * _dot(t, t) + along * _dot(t, axis) ** 2 + (1.0 / mass if k != 2 else 0.0)
+            across * dot(t, t) + along * dot(t, axis) ** 2 + (1.0 / mass if k != 2 else 0.0)
             for k, t in enumerate(turns)
         ]
         contacts.append((number, turns, masses[3], 0.5 / max(masses[:3])))
@@ -109,10 +111,10 @@ def _impulses(
         for number, turns, resisted, weight in contacts:
             old = held[number]
             w = _omega(L, axis, across, along)
-            up = max(0.0, old[3] - (u[2] + _dot(turns[3], w)) / resisted)
+            up = max(0.0, old[3] - (u[2] + dot(turns[3], w)) / resisted)
             slid = [
-                old[0] - weight * (u[0] + _dot(turns[0], w)),
-                old[1] - weight * (u[1] + _dot(turns[1], w)),
+                old[0] - weight * (u[0] + dot(turns[0], w)),
+                old[1] - weight * (u[1] + dot(turns[1], w)),
                 old[2] - weight * patch * w[2],
             ]
             size, limit = math.sqrt(slid[0] ** 2 + slid[1] ** 2 + slid[2] ** 2), body.mu * up
@@ -143,31 +145,19 @@ def _given(
 
 
 def _omega(L: Triple, axis: Triple, across: float, along: float) -> Triple:
-    inner = along * _dot(L, axis)
+    inner = along * dot(L, axis)
     return (across * L[0] + inner * axis[0], across * L[1] + inner * axis[1], across * L[2] + inner * axis[2])
 
 
 def _turned(axis: Triple, momentum: Triple, time: float) -> Triple:
     """The axis of a free top after a time over I1: it goes round its angular momentum evenly."""
-    size = math.sqrt(_dot(momentum, momentum))
+    size = math.sqrt(dot(momentum, momentum))
     if size == 0.0:
         return axis
-    about = _scaled(1.0 / size, momentum)
+    about = scale(1.0 / size, momentum)
     angle = size * time
-    c, s, on = math.cos(angle), math.sin(angle), _dot(about, axis)
-    beside = _cross(about, axis)
+    c, s, on = math.cos(angle), math.sin(angle), dot(about, axis)
+    beside = cross(about, axis)
     x, y, z = (c * axis[k] + s * beside[k] + (1.0 - c) * on * about[k] for k in range(3))
     length = math.sqrt(x * x + y * y + z * z)
     return (x / length, y / length, z / length)
-
-
-def _dot(a: Triple, b: Triple) -> float:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
-def _cross(a: Triple, b: Triple) -> Triple:
-    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
-
-
-def _scaled(factor: float, a: Triple) -> Triple:
-    return (factor * a[0], factor * a[1], factor * a[2])

@@ -42,20 +42,9 @@ class Solution:
 
 
 def dormand_prince_step(rates: Rates, state: Array, slope: Array, step: float) -> tuple[Array, Array]:
-    """Take one step of the fifth-order formula.
+    """Take one step of the fifth-order formula, from a state and its rates, shape (size,).
 
-    Parameters
-    ----------
-    rates
-        The right-hand side.
-    state, slope
-        State and rates at the start, shape (size,).
-    step
-        Length of the step.
-
-    Returns
-    -------
-    The state at the end, shape (size,), and the rates at all stages, shape (7, size).
+    Returns the state at the end, shape (size,), and the rates at all stages, shape (7, size).
     """
     stages = np.empty((_STAGES, len(state)))
     stages[0] = slope
@@ -69,18 +58,9 @@ def dormand_prince_step(rates: Rates, state: Array, slope: Array, step: float) -
 def ode45(
     rates: Rates, duration: float, start: Array, relative: float = RELATIVE, absolute: float = ABSOLUTE
 ) -> Solution:
-    """Integrate y' = rates(y) from time 0 as MATLAB's ode45 does (Shampine & Reichelt 1997).
+    """Integrate y' = rates(y) as MATLAB's ode45 does (Shampine & Reichelt 1997), with tolerances per step.
 
-    Parameters
-    ----------
-    rates
-        The right-hand side.
-    duration
-        Length of the run.
-    start
-        State at time 0, shape (size,).
-    relative, absolute
-        Tolerances per step.
+    `start` is the state at time 0, shape (size,).
     """
     threshold, longest = absolute / relative, 0.1 * duration
     time, state = 0.0, np.array(start, dtype=float)

@@ -45,22 +45,11 @@ def render(
     quick: bool,
     partial: str | None = None,
 ) -> str:
-    """The page as HTML.
+    """The page of some figures and claims as HTML.
 
-    Parameters
-    ----------
-    plates
-        The figures on it.
-    judgements
-        The claims on it.
-    figures
-        The folder with the figures' SVG and PNG by name; they become part of the page.
-    player
-        A run and what plays it, as `tippetop.report.playable` packs them; None for a page without.
-    quick
-        Whether to say that the computations were coarse.
-    partial
-        What was asked for, when it was not everything.
+    The folder `figures` has SVG and PNG of these by name, which become part of the page. The `player` is a
+    run and what plays it, as `tippetop.report.playable` packs them; None for a page without. `quick` has it
+    say that the computations were coarse, `partial` what was asked for, when it was not everything.
     """
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("tippetop.report", "."),

@@ -26,16 +26,10 @@ class Task:
 def carry_out(
     tasks: Sequence[Task], workers: int, progress: Callable[[float, float, str], None] | None = None
 ) -> dict[str, Any]:
-    """Do the tasks, the longest first, and return their results by name.
+    """Do the tasks, the longest first, in so many processes, and return their results by name.
 
-    Parameters
-    ----------
-    tasks
-        What there is to do.
-    workers
-        Number of processes; with 1 all is done in this one.
-    progress
-        Told the cost done, the cost of all, and the name of the task that was done last.
+    With one worker all is done in this process. `progress` is told the cost done, the cost of all, and the
+    name of the task that was done last.
 
     Raises
     ------

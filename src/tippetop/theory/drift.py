@@ -55,25 +55,10 @@ def drift(
 ) -> Drift | None:
     """The drift of the tilt from a precession to the steady state ahead, in natural units.
 
-    Parameters
-    ----------
-    tilt
-        Where it starts, rad.
-    jellett
-        Jellett's integral.
-    fast
-        Which of the two precessions it is.
-    numbers
-        The top's.
-    steady_tilts
-        Tilts of all steady states with this Jellett's integral, vertical ones included.
-    distance
-        How far from the steady state it is followed, rad.
-
-    Returns
-    -------
-    Drift or None
-        None where the precessions end or turn back on the way, so that the tilt alone does not describe it.
+    It starts at a tilt, rad, in the fast or the slow precession, and is followed up to a distance, rad, from
+    the steady state. Given are the tilts of all steady states with this Jellett's integral, vertical ones
+    included. None where the precessions end or turn back on the way, so that the tilt alone does not describe
+    it.
 
     Notes
     -----

@@ -17,15 +17,7 @@ Array: TypeAlias = NDArray[np.float64]
 
 
 class Dual(Algebra):
-    """A number, or an array of numbers, with its derivatives along k directions.
-
-    Parameters
-    ----------
-    value
-        The number, or an array of any shape.
-    gradient
-        Its derivatives, shape (k, *value.shape).
-    """
+    """A number, or an array of any shape, with its gradient along k directions, shape (k, *value.shape)."""
 
     __array_ufunc__ = None  # so that an array on the left leaves the operation to this class
 
@@ -85,12 +77,7 @@ def variables(point: Sequence[Any]) -> list[Dual]:
 def derivative(quantity: Any, like: Dual) -> Array:
     """Gradient of a quantity, shape (k, *value.shape); zero where it is a plain number.
 
-    Parameters
-    ----------
-    quantity
-        What came out of a computation with dual numbers.
-    like
-        One of the variables that went in, for the shape of a zero.
+    `like` is one of the variables that the quantity was computed of, for the shape of a zero.
     """
     gradient = quantity.gradient if isinstance(quantity, Dual) else 0.0
     whole: Array = gradient + np.zeros_like(like.gradient)
@@ -100,17 +87,8 @@ def derivative(quantity: Any, like: Dual) -> Array:
 def jacobian(function: Callable[[list[Dual]], Sequence[Any]], point: Sequence[Any]) -> Array:
     """Matrix of the derivatives of a function at a point, or at many points at once.
 
-    Parameters
-    ----------
-    function
-        Takes k dual numbers and returns r of them; plain operators only.
-    point
-        k numbers, or k arrays of one shape.
-
-    Returns
-    -------
-    array
-        Shape (*shape, r, k): the derivative of each result by each variable.
+    The function takes k dual numbers and returns r of them, by plain operators only; the point is k numbers,
+    or k arrays of one shape. Shape (*shape, r, k): the derivative of each result by each variable.
     """
     seeds = variables(point)
     rows = np.stack([derivative(result, seeds[0]) for result in function(seeds)])

@@ -110,20 +110,8 @@ def follow_nutation(
 ) -> Stage:
     """Follow the amplitudes until the nutation has died away, is steady, or is nearer to the other pole.
 
-    Parameters
-    ----------
-    begin
-        The nutation at the beginning.
-    jellett
-        Jellett's integral.
-    numbers
-        The top's.
-    goals
-        Where the flow may end.
-    samples
-        At how many times the turning tilts are given; 0 for the integrator's steps.
-    tolerance
-        Error in a step, of the logarithms.
+    The turning tilts are given at so many `samples`; 0 for the integrator's steps. The `tolerance` is the
+    error in a step, of the logarithms.
     """
     turned, seen = begin.turned, begin.orbit
     seen_numbers = numbers.turned if turned else numbers

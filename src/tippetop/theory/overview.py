@@ -14,9 +14,7 @@ from tippetop.theory.prediction import Prediction, on_surface, predict, steady_l
 from tippetop.theory.requirements import require_creep
 from tippetop.theory.stability import Spectrum, spectrum
 from tippetop.theory.steady import VERTICAL_SPINS, SteadyState, jellett_of_launch, vertical_spin
-from tippetop.theory.steady import (
-    steady_states as all_steady_states,
-)
+from tippetop.theory.steady import steady_states as all_steady_states
 from tippetop.theory.thresholds import CriticalSpins, critical_spins, lambda_down, lambda_up
 
 

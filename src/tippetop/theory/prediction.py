@@ -216,14 +216,7 @@ def is_held(state: State, top: Top, closeness: float) -> NDArray[np.bool_]:
     It does where the least energy that goes with Jellett's integral is above it on both sides: the tilt
     cannot pass there, and a stable steady state lies between. Beyond a vertical axis there is nothing to bar.
 
-    Parameters
-    ----------
-    state
-        States, every number of shape (n,).
-    top
-        The tops, with numbers or arrays of shape (n,).
-    closeness
-        How far the tilt may still go either way, rad.
+    Every number of the states is of shape (n,); the top has numbers or arrays of that shape.
     """
     tilt = np.arctan2(axis_sine(state.axis), state.axis[2])
     left, integral = energy(state, top), jellett(state, top)
@@ -235,13 +228,9 @@ def is_held(state: State, top: Top, closeness: float) -> NDArray[np.bool_]:
 
 
 def stable_by_energy(states: list[SteadyState]) -> list[SteadyState]:
-    """Those of all steady states with one Jellett's integral that are minima of the energy.
+    """Those of all steady states with one Jellett's integral, by their tilts, that are minima of the energy.
 
-    Parameters
-    ----------
-    states
-        All of them, by increasing tilt, as from `tippetop.theory.steady.steady_states`: the extrema of the
-        least energy over the tilt, which are minima and maxima in turn.
+    They are the extrema of the least energy over the tilt, which are minima and maxima in turn.
     """
     energies = [math.inf, *(state.energy for state in states), math.inf]
     minima = [

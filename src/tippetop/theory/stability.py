@@ -157,31 +157,15 @@ def vertical_growth_rates(kind: SteadyKind, top: Top, spins: Array) -> Array:
 def linear_tilts(steady: SteadyState, top: Top, start: SlidingState, times: Array) -> Array:
     """Distance of the axis from the vertical in the linear motion about a vertical spin, rad, shape (n,).
 
-    Parameters
-    ----------
-    steady
-        A vertical spin.
-    top
-        The body on its table.
-    start
-        A state close to it, SI.
-    times
-        Times after it, s, shape (n,).
+    It starts in a state close to this, SI; the times after it, s, are of shape (n,).
     """
     point = (np.array([steady.tilt]), np.zeros(1), np.array([steady.spin]))
     linear = _linear(steady.kind, *point, np.zeros(1), top)
     units = linear.units
     vertical = state_of(steady, top)
-    away = np.array(
-        [
-            *(a - b for a, b in zip(start.axis, vertical.axis, strict=True)),
-            *(
-                (a - b) / units.angular_momentum
-                for a, b in zip(start.momentum, vertical.momentum, strict=True)
-            ),
-            *(a / units.speed for a in start.velocity),
-        ]
-    )
+    tipped = np.subtract(start.axis, vertical.axis)
+    turned = np.subtract(start.momentum, vertical.momentum) / units.angular_momentum
+    away = np.concatenate([tipped, turned, np.divide(start.velocity, units.speed)])
     steps = np.asarray(times, dtype=float)[:, None, None] / units.time
     later = expm(steps * linear.matrix) @ (linear.basis[0].T @ away)
     horizontal = later @ linear.basis[0].T[:, :2]

@@ -125,10 +125,7 @@ def _count(run: xr.Dataset, kind: str) -> int:
 def stepped(problem: Problem, step: float, duration: float) -> SlidingState:
     """A sliding top followed by the classical Runge-Kutta method with fixed step, whatever its slip does.
 
-    Returns
-    -------
-    SlidingState
-        In natural units, every number of shape (steps + 1,).
+    In natural units, every number of shape (steps + 1,).
     """
     units, top = natural_units(problem.top), natural(problem.top)
     rates = RightHandSide(replace(sliding_motion(top.kind, False), guards=()), top.numbers)

@@ -48,21 +48,9 @@ def first_onset(
 ) -> float:
     """The least spin that leaves the table, rad/s: the first of a scan that does, then halving.
 
-    Parameters
-    ----------
-    times
-        The time of the first lift-off at a spin, s; nan if there is none.
-    spins, scanned
-        The spins of the scan, increasing, rad/s, and their times.
-    window
-        How late a lift-off may come, s.
-    accuracy
-        Largest error, rad/s.
-
-    Returns
-    -------
-    float
-        The onset; nan if none of the scan lifts off, or already the first does.
+    `times` gives the time of the first lift-off at a spin, s, nan if there is none; `scanned` are those of
+    the increasing `spins`, rad/s. A lift-off may come as late as the `window`, s; `accuracy` is the largest
+    error, rad/s. nan if none of the scan lifts off, or already the first does.
     """
     lifting = np.flatnonzero(scanned <= window)
     if not len(lifting) or lifting[0] == 0:
@@ -124,16 +112,9 @@ def _over_tilt(quick: bool) -> xr.Dataset:
 
 
 def followed(spins: tuple[float, ...], restitution: float) -> xr.Dataset:
-    """Launches on a table that only pushes, followed through all their flights.
+    """Launches with these spins, rad/s, on a table that only pushes, followed through all their flights.
 
     Variables over restitution and spin: those of `FLIGHT_READINGS`, and first_lift_off, s.
-
-    Parameters
-    ----------
-    spins
-        Spins at launch, rad/s.
-    restitution
-        Part of the speed of approach with which the top rebounds.
     """
     samples = int(SAMPLES_PER_SECOND * FLIGHTS_WINDOW) + 1
     columns: dict[str, list[float]] = {name: [] for name in (*FLIGHT_READINGS, "first_lift_off")}

@@ -120,16 +120,10 @@ _BETWEEN = ((22.0, 34.0), (72.0, 84.0))
 def critical_spins(
     window: float, margin: float, between: tuple[tuple[float, float], tuple[float, float]] = _BETWEEN
 ) -> tuple[float, float]:
-    """Spins between which a launch ends neither upright nor turned over, rad/s.
+    """Spins between which a launch ends neither upright nor turned over, looked for `between` others, rad/s.
 
-    Parameters
-    ----------
-    window
-        Length of the runs, s.
-    margin
-        Tilt at the end that counts as upright, and distance from pi that counts as turned over, rad.
-    between
-        Spins between which each of them lies, rad/s.
+    The `window` is the length of the runs, s. The `margin` is the tilt at the end that counts as upright, and
+    the distance from pi that counts as turned over, rad.
     """
 
     def upright(spin: float) -> float:
@@ -138,10 +132,10 @@ def critical_spins(
     def inverted(spin: float) -> float:
         return -math.log(max(math.pi - final_tilt(spin, window), 1e-12) / margin)
 
-    return (
-        float(brentq(upright, *between[0], xtol=2e-3)),
-        float(brentq(inverted, *between[1], xtol=2e-3)),
+    first, second = (
+        brentq(of, *ends, xtol=2e-3) for of, ends in zip((upright, inverted), between, strict=True)
     )
+    return float(first), float(second)
 
 
 def _thresholds(quick: bool) -> xr.Dataset:
