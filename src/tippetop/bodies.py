@@ -313,11 +313,8 @@ class Body(Part):
 def touching(piece: "Workpiece", whole: bool = False) -> list[Shape]:
     """The surfaces that a turned body touches the table with, as seen from its centre of mass.
 
-    Raises
-    ------
-    InvalidInput
-        If there are others than spheres and rings; or, unless they may be taken as whole, if one of these,
-        were it whole, would be outside of the body.
+    Raises `InvalidInput` if there are others than spheres and rings; or, unless they may be taken as whole,
+    if one of these, were it whole, would be outside of the body.
     """
     center, hull, reach = piece.mass_properties.center, piece.hull, PROTRUDING * piece.outline.size
     if len(hull.zones) > MOST:

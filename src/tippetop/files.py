@@ -41,10 +41,8 @@ def refuse_overwriting(path: Path, overwrite: bool) -> None:
 def place_for(path: Path | str, overwrite: bool) -> Path:
     """The file that writing to a path makes or replaces: the end of its links.
 
-    Raises
-    ------
-    FileTrouble
-        If something is there and `overwrite` is false or it is no regular file, or there is no such folder.
+    Raises `FileTrouble` if something is there and `overwrite` is false or it is no regular file, or there is
+    no such folder.
     """
     with in_words(path, "written"):
         target = Path(os.path.realpath(path))
@@ -62,12 +60,8 @@ def written_beside(path: Path | str, overwrite: bool = False) -> Iterator[Path]:
     """A temporary file beside `path`, with its suffix, that takes its place once all is written.
 
     It is on the disk before it does, has the permissions of the file it replaces, and is nobody else's. What
-    writers that were killed have left in the folder is removed.
-
-    Raises
-    ------
-    FileTrouble
-        If the file exists and `overwrite` is false, or cannot be written; nothing is then left of it.
+    writers that were killed have left in the folder is removed. Raises `FileTrouble` if the file exists and
+    `overwrite` is false, or cannot be written; nothing is then left of it.
     """
     target = place_for(path, overwrite)
     file = None
@@ -114,10 +108,7 @@ def put_in_place(beside: Path, path: Path | str, overwrite: bool) -> None:
 def read_text(path: Path | str, accepted: str) -> str:
     """The text of a file, which is `accepted`, as the end of a sentence.
 
-    Raises
-    ------
-    FileTrouble
-        If the file cannot be read, is no text, or is longer than `LONGEST_TEXT`.
+    Raises `FileTrouble` if the file cannot be read, is no text, or is longer than `LONGEST_TEXT`.
     """
     with in_words(path, "read"), Path(path).open("rb") as file:
         content = file.read(LONGEST_TEXT + 1)

@@ -162,13 +162,7 @@ BODIES = {
 
 
 def body(name: str) -> Body:
-    """The body of this name.
-
-    Raises
-    ------
-    InvalidInput
-        If there is no such preset.
-    """
+    """The body of this name; `InvalidInput` if there is no such preset."""
     try:
         return BODIES[name]
     except KeyError:

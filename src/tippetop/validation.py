@@ -229,10 +229,8 @@ ONE_OR_SEVERAL = _OfItsKind(several=True)
 def parse_json(text: str) -> Any:
     """What a JSON text says.
 
-    Raises
-    ------
-    ValueError
-        If it is no JSON, is nested deeper than `DEEPEST`, or holds whole numbers of thousands of digits.
+    Raises `ValueError` if it is no JSON, is nested deeper than `DEEPEST`, or holds whole numbers of thousands
+    of digits.
     """
     try:
         return _not_deep(json.loads(text))

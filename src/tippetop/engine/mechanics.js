@@ -7108,7 +7108,7 @@ function classify(gamma, alpha) {
   return _fold_measure(gamma, alpha) > alpha - 1.0 + gamma ? Group.IIB : Group.IIA;
 }
 
-/** Group of an eccentric sphere. */
+/** Group of an eccentric sphere; `InvalidInput` if the top does not conserve Jellett's integral. */
 function classify_top(top) {
   require_jellett(top);
   return classify(inertia_ratio(top), eccentricity(top));
@@ -7279,7 +7279,7 @@ function final_states(top, jellett) {
   return _by_energy(stable_by_energy(steady_states(top, jellett)));
 }
 
-/** Those of all steady states with one Jellett's integral that are minima of the energy. */
+/** Those of all steady states with one Jellett's integral, by their tilts, that are minima of the energy. */
 function stable_by_energy(states) {
   const energies = [py.math.inf, ...[...states].map((state) => state.energy), py.math.inf];
   const minima = py.zip(states, energies, energies.slice(2)).filter(([state, before, after]) => before > state.energy && state.energy < after).map(([state, before, after]) => state);

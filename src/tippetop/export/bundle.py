@@ -23,13 +23,7 @@ const { createPlayer, stillness } = await import(URL.createObjectURL(code));
 
 @cache
 def built(name: str) -> str:
-    """A built file.
-
-    Raises
-    ------
-    Unavailable
-        If it is not built.
-    """
+    """A built file; `Unavailable` if it is not built."""
     try:
         return (BUILT / name).read_text(encoding="utf-8")
     except FileNotFoundError:
@@ -41,13 +35,7 @@ def built(name: str) -> str:
 
 @cache
 def player_packed() -> str:
-    """The player, compressed, as base64.
-
-    Raises
-    ------
-    Unavailable
-        If it is not built.
-    """
+    """The player, compressed, as base64; `Unavailable` if it is not built."""
     return packed(built("player.js").encode())
 
 

@@ -91,10 +91,7 @@ def glb_bytes(run: xr.Dataset) -> bytes:
 def key_times(run: xr.Dataset, body: Body) -> NDArray[np.float64]:
     """Times of the animation's keys, s: so dense that the body turns little between them; one if it is still.
 
-    Raises
-    ------
-    InvalidInput
-        If the run would need too many keys.
+    Raises `InvalidInput` if the run would need too many keys.
     """
     duration = float(run["time"].values[-1])
     fastest = float(np.linalg.norm(run["angular_momentum"].values, axis=1).max()) / min(body.I1, body.I3)

@@ -41,13 +41,7 @@ globalThis.tippetopPlayer = player;
 
 
 def html_page(run: xr.Dataset) -> str:
-    """The page of a run.
-
-    Raises
-    ------
-    Unavailable
-        If the player is not built: see `tippetop.export.bundle`.
-    """
+    """The page of a run; `Unavailable` if the player is not built: see `tippetop.export.bundle`."""
     block = pack_run(run)
     return _PAGE.format(
         version=__version__,

@@ -94,13 +94,7 @@ def gif_rate(fps: float) -> float:
 
 
 def ffmpeg() -> str:
-    """The path of ffmpeg.
-
-    Raises
-    ------
-    Unavailable
-        If it is not installed.
-    """
+    """The path of ffmpeg; `Unavailable` if it is not installed."""
     found = shutil.which("ffmpeg")
     if found is None:
         raise Unavailable(
@@ -116,13 +110,7 @@ def frames(
     pixels: tuple[int, int],
     progress: Callable[[int, int], None] = lambda drawn, count: None,
 ) -> Iterator[Frame]:
-    """The pictures of a film, shape (height, width, 3) each.
-
-    Raises
-    ------
-    InvalidInput
-        If there would be too many.
-    """
+    """The pictures of a film, shape (height, width, 3) each; `InvalidInput` if there would be too many."""
     duration = float(run["time"].values[-1])
     count = math.floor(duration * fps / speed) + 1
     if count > MOST_FRAMES:

@@ -25,12 +25,8 @@ class Solid(NamedTuple):
 def solids(piece: Workpiece, facets: int) -> list[Solid]:
     """The body, and then the weights in it, each with the hollows that the others leave.
 
-    There are so many facets around the axis, and around a circle of the profile.
-
-    Raises
-    ------
-    InvalidInput
-        If an insert touches the surface of the body or another insert.
+    There are so many facets around the axis, and around a circle of the profile. Raises `InvalidInput` if an
+    insert touches the surface of the body or another insert.
     """
     for number, inner in enumerate(piece.insides):
         if any("on" in inner.sides(other) for other in (piece.outline, *piece.insides[:number])):

@@ -46,10 +46,7 @@ OWN = ("Why", "Friction", "Real tops")
 def section_of(place: str) -> str:
     """The section of the page that a section of the report is in: the one named most closely.
 
-    Raises
-    ------
-    LookupError
-        If there is none.
+    Raises `LookupError` if there is none.
     """
     found = [key for key in SECTIONS if place.startswith(key)]
     if not found:

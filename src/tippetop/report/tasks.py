@@ -29,12 +29,8 @@ def carry_out(
     """Do the tasks, the longest first, in so many processes, and return their results by name.
 
     With one worker all is done in this process. `progress` is told the cost done, the cost of all, and the
-    name of the task that was done last.
-
-    Raises
-    ------
-    Unavailable
-        If the process of a task was killed again and again.
+    name of the task that was done last. Raises `Unavailable` if the process of a task was killed again and
+    again.
     """
     total, done = sum(task.cost for task in tasks), 0.0
     costs = {task.name: task.cost for task in tasks}

@@ -89,10 +89,7 @@ def averaged_flow(
 def nutation_of_launch(problem: Problem) -> Nutation:
     """The nutation that a launch of an eccentric sphere would keep on a smooth table, in natural units.
 
-    Raises
-    ------
-    InvalidInput
-        If the body is of another shape.
+    Raises `InvalidInput` if the body is of another shape.
     """
     launch, time = problem.launch, float(natural_units(problem.top).time)
     rates = (launch.tilt_rate * time, 0.0, launch.precession * time, launch.spin * time)

@@ -79,10 +79,7 @@ def potential_at(index: int, axis: Array, momentum: Array, top: Top, tilts: Arra
 def nutation_envelope(axis: Array, momentum: Array, top: Top) -> Envelope:
     """The turning points of the nutation, with the constants of a smooth table at each instant.
 
-    Raises
-    ------
-    InvalidInput
-        If the body is not an eccentric sphere.
+    Raises `InvalidInput` if the body is not an eccentric sphere.
     """
     numbers = numbers_of(top)
     values = natural_constants(smooth_constants(axis, momentum, top), top)

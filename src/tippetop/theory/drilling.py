@@ -31,10 +31,8 @@ from tippetop.theory.thresholds import critical_spin
 def jellett_rate(steady: SteadyState, top: Top) -> float:
     """Rate lambda' = M h of Jellett's integral in a steady state of a sphere, kg m^2/s^2; 0 without drilling.
 
-    Raises
-    ------
-    InvalidInput
-        If friction has no linear motion about a vertical spin, or the body is no eccentric sphere.
+    Raises `InvalidInput` if friction has no linear motion about a vertical spin, or the body is no eccentric
+    sphere.
     """
     require_sphere(top)
     touch = _touch(steady, top)
@@ -44,10 +42,7 @@ def jellett_rate(steady: SteadyState, top: Top) -> float:
 def spin_rate(steady: SteadyState, top: Top) -> float:
     """Rate omega3' of the axial spin that drilling takes from a vertical spin, rad/s^2; 0 without drilling.
 
-    Raises
-    ------
-    InvalidInput
-        If friction has no linear motion about a vertical spin.
+    Raises `InvalidInput` if friction has no linear motion about a vertical spin.
     """
     return float(_touch(steady, top).torque[2]) * math.cos(steady.tilt) / float(top.axial_inertia)
 
@@ -85,10 +80,8 @@ def standing_time(problem: Problem) -> float:
 def time_to_stand(steady: SteadyState, top: Top) -> float:
     """How long drilling lets a vertical spin stand, s; see `standing_time`.
 
-    Raises
-    ------
-    InvalidInput
-        If it is another steady state, there is no linear motion about it, or a torque changes with the spin.
+    Raises `InvalidInput` if it is another steady state, there is no linear motion about it, or a torque
+    changes with the spin.
     """
     if steady.kind not in VERTICAL_SPINS:
         raise InvalidInput("kind", steady.kind.value, "a vertical spin")

@@ -89,10 +89,7 @@ class JellettRange(NamedTuple):
 def classify(gamma: float, alpha: float) -> Group:
     """Group of the eccentric sphere with inertia ratio gamma = I1 / I3 and eccentricity alpha.
 
-    Raises
-    ------
-    InvalidInput
-        If alpha is not between 0 and 1, or gamma is less than 1/2, as for no body.
+    Raises `InvalidInput` if alpha is not between 0 and 1, or gamma is less than 1/2, as for no body.
     """
     if not 0.0 < alpha < 1.0:
         raise InvalidInput("alpha", alpha, "a number greater than 0 and less than 1")
@@ -109,13 +106,7 @@ def classify(gamma: float, alpha: float) -> Group:
 
 
 def classify_top(top: Top) -> Group:
-    """Group of an eccentric sphere.
-
-    Raises
-    ------
-    InvalidInput
-        If the top does not conserve Jellett's integral.
-    """
+    """Group of an eccentric sphere; `InvalidInput` if the top does not conserve Jellett's integral."""
     require_jellett(top)
     return classify(inertia_ratio(top), eccentricity(top))
 
@@ -173,10 +164,7 @@ def equal_thresholds(alpha: float) -> float:
 def fold(top: Top) -> Fold | None:
     """The fold of the branch of steady precessions of an eccentric sphere, or None if it has none inside.
 
-    Raises
-    ------
-    InvalidInput
-        If the top does not conserve Jellett's integral.
+    Raises `InvalidInput` if the top does not conserve Jellett's integral.
     """
     if classify_top(top) not in (Group.IA, Group.IIB):
         return None
@@ -189,10 +177,7 @@ def fold(top: Top) -> Fold | None:
 def coexistence(top: Top) -> JellettRange | None:
     """Jellett's integrals for which two steady states of an eccentric sphere are stable, or None.
 
-    Raises
-    ------
-    InvalidInput
-        If the top does not conserve Jellett's integral.
+    Raises `InvalidInput` if the top does not conserve Jellett's integral.
     """
     if not classify_top(top).coexistence:
         return None

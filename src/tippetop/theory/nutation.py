@@ -93,13 +93,7 @@ def natural_constants(values: Constants, top: Top) -> Constants:
 
 
 def numbers_of(top: Top) -> Numbers:
-    """The dimensionless numbers of an eccentric sphere.
-
-    Raises
-    ------
-    InvalidInput
-        If the top is of another shape.
-    """
+    """The dimensionless numbers of an eccentric sphere; `InvalidInput` if the top is of another shape."""
     require_sphere(top)
     transverse, axial = top.numbers[:2]
     return Numbers(float(transverse), float(axial), eccentricity(top))

@@ -93,11 +93,8 @@ class Outlook:
 def outlook(problem: Problem) -> Outlook:
     """What the theory says of a launch: of a body of several surfaces, on the one that it is launched on.
 
-    Raises
-    ------
-    InvalidInput
-        If it turns so fast that the theory cannot tell, or hardly on dry friction; if a dry point rubs, or
-        rolling is resisted.
+    Raises `InvalidInput` if it turns so fast that the theory cannot tell, or hardly on dry friction; if a dry
+    point rubs, or rolling is resisted.
     """
     top = problem.top
     if isinstance(top.surface, Hull):

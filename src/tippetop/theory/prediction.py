@@ -169,10 +169,7 @@ TILTS = 200
 def steady_launch(problem: Problem) -> SteadyState | None:
     """The steady state that a launch is exactly on, to rounding, or None: nothing but its azimuth changes.
 
-    Raises
-    ------
-    InvalidInput
-        If it turns too fast for the theory.
+    Raises `InvalidInput` if it turns too fast for the theory.
     """
     top, launch, start = problem.top, problem.launch, problem.start()
     jellett, units = jellett_of_launch(problem), natural_units(top)
@@ -201,10 +198,7 @@ def steady_launch(problem: Problem) -> SteadyState | None:
 def final_states(top: Top, jellett: float) -> tuple[SteadyState, ...]:
     """The stable steady states of an eccentric sphere with this Jellett's integral, least energy first.
 
-    Raises
-    ------
-    InvalidInput
-        If Jellett's integral is not conserved.
+    Raises `InvalidInput` if Jellett's integral is not conserved.
     """
     require_jellett(top)
     return _by_energy(stable_by_energy(steady_states(top, jellett)))

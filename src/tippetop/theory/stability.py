@@ -200,10 +200,8 @@ def _linear(kind: SteadyKind, tilt: Array, precession: Array, spin: Array, frame
 def drilling(top: Top, turning: Array) -> Top:
     """The top with the branch of its law that holds where it hardly slips and turns at these rates, rad/s.
 
-    Raises
-    ------
-    InvalidInput
-        If friction has no linear motion about a vertical spin, or it hardly turns on dry friction.
+    Raises `InvalidInput` if friction has no linear motion about a vertical spin, or it hardly turns on dry
+    friction.
     """
     require_creep(top)
     if not is_set_valued(top.friction):

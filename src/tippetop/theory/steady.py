@@ -214,10 +214,7 @@ def has_level_spin(top: Top) -> bool:
 def jellett_of_launch(problem: Problem) -> float:
     """Jellett's integral of a launch, kg m^3/s.
 
-    Raises
-    ------
-    InvalidInput
-        If it turns so fast that rounding hides what the weight does.
+    Raises `InvalidInput` if it turns so fast that rounding hides what the weight does.
     """
     fastest = FASTEST / float(natural_units(problem.top).time)
     for name in ("spin", "tilt_rate", "precession"):
