@@ -8,6 +8,7 @@ from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
 import tippetop as tt
+from tippetop.integrators import has_taylor, make_integrator
 from tippetop.mechanics.motion import along_table, angular_velocity, contact, sliding_rates
 from tippetop.mechanics.quadratures import orientation
 from tippetop.mechanics.state import SlidingState
@@ -140,3 +141,42 @@ def test_what_an_impact_at_launch_takes_is_work_of_the_table():
     np.testing.assert_allclose(lost, 0.0, rtol=0, atol=1e-12 * float(run.energy_start))
     assert float(run.energy_error) < 1e-12
     assert math.isclose(float(run.energy_lost), -float(run.work[-1]), rel_tol=1e-10)
+
+
+class Uncompiled:
+    """Taylor's method, which compiles nothing but the equations of motion."""
+
+    name = "taylor"
+
+    def integrate(self, motion, parameters, start, end):
+        return make_integrator("taylor").integrate(motion, parameters, start, end)
+
+
+@pytest.mark.skipif(not has_taylor(), reason="nothing is compiled without heyoka")
+@pytest.mark.parametrize(
+    ("friction", "shape"),
+    [
+        (tt.ViscousFriction(mu=0.3), tt.presets.REPORT.shape),
+        (tt.RegularizedCoulombFriction(mu=0.3, eps=0.1), tt.presets.EGG.shape),
+        (tt.ContensouFriction(mu=0.3, patch_radius=5e-4), tt.presets.REPORT.shape),
+    ],
+    ids=["sphere", "egg", "drilling"],
+)
+def test_what_is_compiled_reads_what_arrays_read(monkeypatch, friction, shape):
+    from tippetop.integrators.taylor import Taylor  # noqa: PLC0415 - optional
+
+    asked = []
+    compiled = Taylor.evaluation
+    monkeypatch.setattr(Taylor, "evaluation", lambda *given: asked.append(given[1]) or compiled(*given))
+    problem = report_problem(spin=120.0, tilt=0.3).replace({"contact.liftoff": "ignore"})
+    problem = problem.model_copy(
+        update={"friction": friction, "body": problem.body.model_copy(update={"shape": shape})}
+    )
+    quick = tt.simulate(problem, 10.0)
+    assert len(asked) >= 2
+    plain = tt.simulate(problem, 10.0, integrator=Uncompiled())
+    assert quick.steps == plain.steps
+    for name, values in plain.data_vars.items():
+        if "time" in values.dims and name != "mode":
+            scale = float(np.abs(values).max()) + (name in ("orientation", "phi")) * 3.0
+            np.testing.assert_allclose(quick[name], values, rtol=0, atol=1e-12 * scale, err_msg=name)

@@ -100,11 +100,12 @@ def turning_time(tip: Polynomials) -> Array:
 
 def arrival_time(tip: Polynomials, low: Array, high: Array) -> Array:
     """First times at which n_z is between `low` and `high`, shape (n,); nan where it is not."""
-    everything = np.arange(len(tip.span))
     start = tip.unit[0]
-    falls = tip.some(everything, shift=-high).first_fall()
-    rises = tip.some(everything, sign=-1.0, shift=low).first_fall()
-    found: Array = np.where(start > high, falls, np.where(start < low, rises, 0.0))
+    above, below = start > high, start < low
+    # From above n_z falls to the upper end, from below its negative to that of the lower.
+    sign, shift = np.where(above, 1.0, -1.0), np.where(above, -high, low)
+    falls = tip.some(np.arange(len(tip.span)), sign, shift).first_fall()
+    found: Array = np.where(above | below, falls, 0.0)
     return found
 
 

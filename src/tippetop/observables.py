@@ -1,7 +1,7 @@
 """What is read off a run at its samples: the report's variables, forces and invariants."""
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,20 +9,21 @@ from numpy.typing import NDArray
 from tippetop.contact.block import NODES, WEIGHTS, Block
 from tippetop.contact.flight import Flight
 from tippetop.contact.mode import NO_REACTION
+from tippetop.contact.readings import TOLD, Instants, instants, read
 from tippetop.contact.rules import Bilateral
 from tippetop.contact.sliding import Sliding
 from tippetop.integrators.base import Array
 from tippetop.integrators.dense import parts_of
-from tippetop.lowest import lowest_contact_vector, lowest_jellett
+from tippetop.lowest import lowest_jellett
 from tippetop.mechanics.hull import Hull, lowest_surface, outer_height
 from tippetop.mechanics.invariants import energy
-from tippetop.mechanics.motion import along_table, angular_velocity, axial_spin, point_velocity
-from tippetop.mechanics.quadratures import orientation, quadrature_rates, resistance_powers
+from tippetop.mechanics.motion import along_table
+from tippetop.mechanics.quadratures import orientation
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.units import Units
-from tippetop.mechanics.vectors import Vector, length
-from tippetop.mechanics.view import axis_sine, precession_rate, slip_along_tilt, tilt_rate
+from tippetop.mechanics.vectors import length
+from tippetop.mechanics.view import axis_sine
 
 _INTEGRALS = np.array(
     [
@@ -42,11 +43,8 @@ class Samples(NamedTuple):
 
     times: Array
     """When."""
-    state: State
-    """The states."""
-    force: Vector
-    torque: Vector
-    """Force of the table, and its torque about the contact point."""
+    instants: Instants
+    """What is told of each."""
     x: Array
     y: Array
     """Horizontal position of the centre of mass."""
@@ -125,12 +123,10 @@ class Recorder:
                 self._sample(block, np.array([end]), *integrals)
         if not self._parts:
             self._parts.append(self._single(state))
-        rows = np.concatenate(self._parts, axis=1)
-        force, torque = (rows[11], rows[12], rows[13]), (rows[14], rows[15], rows[16])
-        x, y, turn, work, drilled, rolled, struck, pole = rows[17:25]
-        mode = rows[25].astype(np.int8)
-        lost = (struck, drilled, rolled)
-        return Samples(rows[0], State.unpack(rows[1:11]), force, torque, x, y, turn, work, *lost, pole, mode)
+        rows = np.concatenate(self._parts, axis=1) if len(self._parts) > 1 else self._parts[0]
+        times, mode, x, y, turn, work, drilled, rolled, struck, pole = rows[:10]
+        told, lost = Instants.unpack(rows[10:]), (struck, drilled, rolled)
+        return Samples(times, told, x, y, turn, work, *lost, pole, mode.astype(np.int8))
 
     def _sample(
         self, block: Block, times: Array, rates: Array, values: Array, poles: Array, struck: Array
@@ -141,17 +137,14 @@ class Recorder:
         basis = np.polynomial.legendre.legvander(2.0 * part - 1.0, len(NODES))
         integrals = _INTEGRALS @ basis.T * block.spans[step]
         sums = values[:, step] + np.einsum("ik,qik->qk", integrals, rates[:, :, step])
-        rows = np.empty((26, len(times)))
-        rows[0], rows[17:21], rows[21:23] = times, sums[:4], -sums[4:] if self._resisted else 0.0
-        rows[23], rows[24] = struck[step], poles[step]
-        for mode, here, state, reaction in block.sampled(times, step):
-            for row, number in zip(
-                rows[1:17], (*state.pack(), *reaction.force, *reaction.torque), strict=True
-            ):
-                row[here] = number
+        rows = np.empty((10 + TOLD, len(times)))
+        rows[0], rows[2:6], rows[6:8] = times, sums[:4], -sums[4:] if self._resisted else 0.0
+        rows[8], rows[9] = struck[step], poles[step]
+        for mode, here, numbers in block.sampled(times, step):
+            rows[10:, here] = numbers
             if mode.label not in self.modes:
                 self.modes.append(mode.label)
-            rows[25, here] = self.modes.index(mode.label)
+            rows[1, here] = self.modes.index(mode.label)
         self._parts.append(rows)
 
     def _single(self, state: State) -> Array:
@@ -161,8 +154,11 @@ class Recorder:
             reaction = Sliding(lowest, Bilateral(lowest)).reaction(along_table(state).pack())
         except ZeroDivisionError:  # Without slip dry friction says nothing, and the table lets go at once.
             reaction = NO_REACTION
-        sums = [*self._sums[:4], 0.0, 0.0, self._struck, self._pole, 0.0]
-        return np.array([[0.0, *state.pack(), *reaction.force, *reaction.torque, *sums]]).T
+        aloft = Flight(self.top, Bilateral(self.top))
+        found = Instants.unpack(read(instants, aloft, np.array([state.pack()]).T)[:, 0].tolist())
+        told = found._replace(force=reaction.force, torque=reaction.torque)
+        sums = [*self._sums[:4], 0.0, 0.0, self._struck, self._pole]
+        return np.array([[0.0, 0.0, *sums, *told.pack()]]).T
 
     def _integrate(self, block: Block) -> tuple[Array, Array, Array, Array]:
         """Integrate along the steps of a block.
@@ -176,17 +172,15 @@ class Recorder:
             of drilling and of rolling.
         """
         count = len(block.starts)
-        rates, axis = np.empty((len(self._sums), len(NODES), count)), np.empty((3, count))
+        rates, axis = np.empty((len(self._sums), len(NODES), count)), np.empty((2, count))
         poles = np.empty(count)
         for group in block.groups:
-            state, reaction = group.nodes
-            pole = np.where(state.axis[2][len(NODES) // 2] >= 0.0, 1.0, -1.0)
-            found: tuple[Any, ...] = quadrature_rates(state, reaction.power, pole, self.top)
-            if self._resisted:
-                found += resistance_powers(state, reaction.resistance, self.top)
-            for row, rate in zip(rates, found, strict=True):
-                row[:, group.which] = rate
-            axis[:, group.which], poles[group.which] = group.terms[:, :3, 0].T, pole
+            found = group.nodes[: len(rates)]
+            if len(group.which) == count:
+                rates = found
+            else:
+                rates[:, :, group.which] = found
+            axis[:, group.which], poles[group.which] = group.terms[:, :2, 0].T, group.poles
         gains = np.einsum("i,qik->qk", WEIGHTS, rates) * block.spans
         changes = poles - np.concatenate([[self._pole], poles[:-1]])
         values = np.cumsum(np.concatenate([self._sums[:, None], gains], axis=1), axis=1)
@@ -208,13 +202,13 @@ class Recorder:
         """See that energy and work balance, and how far Jellett's integral goes, where steps begin."""
         for group in block.groups:
             state = group.mode.state(group.terms[:, :, 0].T)
-            errors = energy(state, self.top) - self._energy - work[group.which]
-            integral = lowest_jellett(state, self.top)
+            energies, integral = energy(state, self.top), lowest_jellett(state, self.top)
+            errors = energies - self._energy - work[group.which]
             self._imbalance = max(self._imbalance, float(np.abs(errors).max()))
             if isinstance(self.top.surface, Hull):
                 depth = outer_height(self.top.surface, state.axis[2]) - state.height
                 self._sunk = max(self._sunk, float(np.max(depth)))
-            self._largest = max(self._largest, float(np.max(energy(state, self.top))))
+            self._largest = max(self._largest, float(np.max(energies)))
             self._off_unit = max(self._off_unit, float(np.abs(length(state.axis) - 1.0).max()))
             self._least = min(self._least, float(np.min(integral)))
             self._most = max(self._most, float(np.max(integral)))
@@ -222,20 +216,14 @@ class Recorder:
 
 def observe(samples: Samples, top: Top, units: Units) -> dict[str, Array]:
     """Every variable of `tippetop.catalogue.SAMPLED` in SI, by name, of a top in natural units."""
-    state, axis = samples.state, samples.state.axis
-    momentum = state.momentum
-    omega, arm = angular_velocity(axis, momentum, top), lowest_contact_vector(axis, top.surface)
-    point = point_velocity(state.velocity, omega, arm)
-    sine = axis_sine(axis)
+    told, state = samples.instants, samples.instants.state
+    axis, momentum = state.axis, state.momentum
+    sine, (slip_x, slip_y), tilting = axis_sine(axis), told.slip, told.tilting
     upright = sine == 0.0
-    with np.errstate(divide="ignore", invalid="ignore"):
-        slip_x, slip_y = slip_along_tilt(axis, (point[0], point[1]))
-        precession = precession_rate(axis, momentum, top)
-        tilting = tilt_rate(axis, momentum, top)
     if upright.any():
         # Where the axis is vertical it leans nowhere; X is then the space axis x, and theta' the rate at
         # which the axis leaves the pole.
-        slip_x, slip_y = np.where(upright, point[0], slip_x), np.where(upright, point[1], slip_y)
+        slip_x, slip_y = (np.where(upright, *both) for both in zip(told.point, told.slip, strict=True))
         leaving = np.hypot(momentum[0], momentum[1]) / top.transverse_inertia
         tilting = np.where(upright, np.copysign(leaving, axis[2]), tilting)
     force = units.energy / units.length
@@ -243,21 +231,21 @@ def observe(samples: Samples, top: Top, units: Units) -> dict[str, Array]:
         "theta": np.arctan2(sine, axis[2]),
         "theta_dot": tilting / units.time,
         "phi": np.arctan2(axis[1], axis[0]),
-        "phi_dot": precession / units.time,
-        "omega3": axial_spin(axis, momentum, top) / units.time,
+        "phi_dot": told.precession / units.time,
+        "omega3": told.spin / units.time,
         "slip_x": slip_x * units.speed,
         "slip_y": slip_y * units.speed,
-        "normal_force": samples.force[2] * force,
-        "contact_force": np.stack(samples.force, axis=1) * force,
-        "contact_torque": np.stack(samples.torque, axis=1) * units.energy,
-        "energy": energy(state, top) * units.energy,
+        "normal_force": told.force[2] * force,
+        "contact_force": np.stack(told.force, axis=1) * force,
+        "contact_torque": np.stack(told.torque, axis=1) * units.energy,
+        "energy": told.energy * units.energy,
         "work": samples.work * units.energy,
         "sliding_loss": (-samples.work - samples.struck - samples.drilled - samples.rolled) * units.energy,
         "drilling_loss": samples.drilled * units.energy,
         "rolling_loss": samples.rolled * units.energy,
-        "jellett": lowest_jellett(state, top) * units.angular_momentum * units.length,
+        "jellett": told.jellett * units.angular_momentum * units.length,
         "height": state.height * units.length,
-        "gap": (state.height + arm[2]) * units.length,
+        "gap": told.gap * units.length,
         "x": samples.x * units.length,
         "y": samples.y * units.length,
         "axis": np.stack(axis, axis=1),

@@ -7,14 +7,14 @@ import numpy as np
 
 from tippetop.contact.block import WEIGHTS, Block, ModeSteps
 from tippetop.contact.mode import Event, EventKind, Outcome, Segment
+from tippetop.contact.readings import Rates
 from tippetop.integrators.base import Array, Integrator
-from tippetop.integrators.dense import at_fractions, chebyshev
+from tippetop.integrators.dense import chebyshev
 from tippetop.integrators.polynomials import Polynomials, least_of_all
-from tippetop.mechanics.quadratures import resistance_powers
 from tippetop.mechanics.state import State
 from tippetop.metrics import OUTCOMES, Ends, Flags, arrival_time, final_band, turning_time
 
-AT_ONCE = 64
+AT_ONCE = 16
 """Steps that are searched together for the first time at which something happens."""
 
 FORCE_DEGREE = 20
@@ -68,7 +68,7 @@ class Tally:
     def _see(self, group: ModeSteps, starts: Array) -> None:
         """Take in the motion of the tip of the axis."""
         tip = Polynomials.of_unit(np.ascontiguousarray(group.terms[:, 2].T), group.spans)
-        seen = group.nodes[0].axis[2]
+        seen = Rates(*group.nodes).axis
         self._tips.append((tip, starts))
         least, most = seen.min(axis=0), seen.max(axis=0)
         lower = tip.some(np.flatnonzero(least - tip.sag <= least.min()))
@@ -85,22 +85,19 @@ class Tally:
 
     def _press(self, group: ModeSteps) -> None:
         """Take in the normal force."""
-        force = group.nodes[1].force[2]
+        force = Rates(*group.nodes).force
         least = force.min(axis=0)
         # Between Gauss's points, and beyond them, it is lower by a small part of what it varies by there.
         near = np.flatnonzero(least - 0.2 * (force.max(axis=0) - least) <= least.min())
         places, transform, to_powers = chebyshev(FORCE_DEGREE)
-        y = at_fractions(group.terms[near], places)
-        unit = to_powers @ (transform @ group.mode.reaction(y).force[2])
+        unit = to_powers @ (transform @ Rates(*group.at(places, near)).force)
         self._least_force = min(self._least_force, least_of_all(Polynomials.of_unit(unit, group.spans[near])))
 
     def _resistance(self, group: ModeSteps) -> None:
         """Take in the work of drilling and of rolling."""
-        state, reaction = group.nodes
-        drilling, rolling = resistance_powers(state, reaction.resistance, group.mode.top)
-        shares = WEIGHTS[:, None] * group.spans
-        self._drilled -= float(np.sum(shares * drilling))
-        self._rolled -= float(np.sum(shares * rolling))
+        shares, rates = WEIGHTS[:, None] * group.spans, Rates(*group.nodes)
+        self._drilled -= float(np.sum(shares * rates.drilling))
+        self._rolled -= float(np.sum(shares * rates.rolling))
 
     def ends(self, state: State, time: float, outcome: Outcome, events: Sequence[Event]) -> Ends:
         """All that was found, as of one launch, given how and where it ended."""

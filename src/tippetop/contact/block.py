@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tippetop.contact.mode import Mode, Reaction, Segment
-from tippetop.integrators.base import Array
+from tippetop.contact.mode import Mode, Segment
+from tippetop.contact.readings import Rates, instants, read
+from tippetop.integrators.base import Array, Integrator
 from tippetop.integrators.dense import at_fractions, evaluated, parts_of
-from tippetop.mechanics.state import State
 
 STEPS = 4096
 """Steps in a block, about."""
@@ -25,47 +25,46 @@ NODES, WEIGHTS = (
 
 @dataclass(frozen=True)
 class ModeSteps:
-    """The steps of a block that were taken in one mode.
-
-    Attributes
-    ----------
-    mode
-        The mode.
-    which
-        Which steps of the block, shape (k,).
-    terms
-        Their polynomials, shape (k, size, degree + 1).
-    spans
-        How long they are, shape (k,).
-    """
+    """The steps of a block that were taken in one mode."""
 
     mode: Mode
     which: NDArray[np.intp]
+    """Which steps of the block, shape (k,)."""
     terms: Array
+    """Their polynomials, shape (k, size, degree + 1)."""
     spans: Array
+    """How long they are, shape (k,)."""
+    integrator: Integrator | None = None
+    """Who followed the motion."""
 
     @cached_property
-    def nodes(self) -> tuple[State, Reaction]:
-        """States, and what the table does, at Gauss's points, every number of shape (8, k) or one for all."""
+    def nodes(self) -> Array:
+        """`Rates` at Gauss's points, shape (8, 8, k)."""
         return self.at(NODES)
 
-    def at(self, fractions: Array) -> tuple[State, Reaction]:
-        """States, and what the table does, at fractions of the steps, shape (m,), every number (m, k)."""
-        y = at_fractions(self.terms, fractions)
-        return self.mode.state(y), self.mode.reaction(y)
+    @property
+    def poles(self) -> Array:
+        """The charts in which these have the angle about the axis, shape (k,)."""
+        return nearer_pole(Rates(*self.nodes).axis)
+
+    def at(self, fractions: Array, some: NDArray[np.intp] | slice = slice(None)) -> Array:
+        """`Rates` at fractions of the steps, or of some of them, shape (m,); of shape (8, m, k)."""
+        y = at_fractions(self.terms[some], fractions)
+        return read(Rates.of, self.mode, y, nearer_pole(y[2]), integrator=self.integrator)
+
+
+def nearer_pole(axis: Array) -> Array:
+    """The pole that the axis is nearer to in the middle of steps, shape (k,), by n_z, shape (m, k)."""
+    return np.where(axis[len(axis) // 2] >= 0.0, 1.0, -1.0)
 
 
 @dataclass(frozen=True)
 class Block:
-    """Segments that follow one another.
-
-    Attributes
-    ----------
-    segments
-        In order.
-    """
+    """Segments that follow one another."""
 
     segments: Sequence[Segment]
+    integrator: Integrator | None = None
+    """Who followed the motion."""
 
     @cached_property
     def lengths(self) -> NDArray[np.intp]:
@@ -105,17 +104,16 @@ class Block:
             which = np.concatenate([np.arange(first[n], first[n + 1]) for n in numbers])
             pieces = [self.segments[n].solution.terms for n in numbers]
             terms = pieces[0] if len(pieces) == 1 else np.concatenate(pieces)
-            found.append(ModeSteps(self.segments[numbers[0]].mode, which, terms, spans[which]))
+            mode = self.segments[numbers[0]].mode
+            found.append(ModeSteps(mode, which, terms, spans[which], self.integrator))
         return found
 
     def step_at(self, times: Array) -> NDArray[np.intp]:
         """Which step some times lie in, the earlier one where two meet, shape (m,)."""
         return np.minimum(np.searchsorted(self.ends, times, side="left"), len(self.ends) - 1)
 
-    def sampled(
-        self, times: Array, step: NDArray[np.intp]
-    ) -> Iterator[tuple[Mode, NDArray[np.intp], State, Reaction]]:
-        """For every mode, which of some times lie in it, and the states and what the table does there."""
+    def sampled(self, times: Array, step: NDArray[np.intp]) -> Iterator[tuple[Mode, NDArray[np.intp], Array]]:
+        """For every mode, which of some times lie in it, and the numbers of `Instants` there."""
         parts = parts_of(times, self.starts[step], self.ends[step])
         for group in self.groups:
             place = np.full(len(self.ends), -1)
@@ -123,10 +121,10 @@ class Block:
             here = np.flatnonzero(place[step] >= 0)
             if len(here):
                 y = evaluated(group.terms, place[step[here]], parts[here])
-                yield group.mode, here, group.mode.state(y.T), group.mode.reaction(y.T)
+                yield group.mode, here, read(instants, group.mode, y.T, integrator=self.integrator)
 
 
-def in_blocks(segments: Iterable[Segment]) -> Iterator[Block]:
+def in_blocks(segments: Iterable[Segment], integrator: Integrator) -> Iterator[Block]:
     """Segments as blocks of some thousand steps."""
     waiting: list[Segment] = []
     steps = 0
@@ -134,7 +132,7 @@ def in_blocks(segments: Iterable[Segment]) -> Iterator[Block]:
         waiting.append(segment)
         steps += len(segment.solution.terms)
         if steps >= STEPS:
-            yield Block(waiting)
+            yield Block(waiting, integrator)
             waiting, steps = [], 0
     if waiting:
-        yield Block(waiting)
+        yield Block(waiting, integrator)

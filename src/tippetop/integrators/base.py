@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Protocol, TypeAlias
+from typing import Any, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,8 +14,15 @@ Array: TypeAlias = NDArray[np.float64]
 Function: TypeAlias = Callable[[Sequence[Scalar], Sequence[Scalar]], Scalar]
 """A function of the state and the parameters, in plain operators."""
 
+Rows: TypeAlias = Callable[[Sequence[Scalar], Sequence[Scalar]], Sequence[Scalar]]
+"""Several of them."""
+
 Expansion: TypeAlias = Callable[[Sequence[float]], Sequence[Sequence[float]]]
 """From a state to the coefficients of the solution from there, in powers of time, each number's in a row."""
+
+Evaluation: TypeAlias = Callable[[Array, Sequence[Any]], Array]
+"""From n states, shape (size, ...), and parameters, each of a shape that becomes theirs, to numbers of each,
+shape (numbers, ...)."""
 
 NOT_FINITE = "the solution is no longer finite"
 """Why an integrator gives up where numbers grow beyond all bounds: its last state then means nothing."""
@@ -57,7 +64,7 @@ class Motion:
         Whether runs may spend most of their steps in it: worth compiling for speed.
     """
 
-    rates: Callable[[Sequence[Scalar], Sequence[Scalar]], Sequence[Scalar]]
+    rates: Rows
     size: int
     parameters: int
     guards: tuple[Guard, ...] = ()

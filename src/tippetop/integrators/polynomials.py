@@ -7,9 +7,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tippetop.integrators.dense import Array, powers
+from tippetop.mechanics.vectors import Row, Scalar
 
 LOOKS = 32
 """Intervals at whose ends a polynomial is looked at; between them its second derivative bounds it."""
+
+FEW = 4
+"""So many polynomials at most are evaluated one by one, which is quicker than arrays so short."""
 
 TURNS = 60
 """Improvements of a zero at most: Newton's where they stay in the bracket, halvings where they do not."""
@@ -87,8 +91,10 @@ class Polynomials:
         """Numbers below which no polynomial goes, a little below its looks, shape (n,)."""
         return self.lowest - self.bending
 
-    def some(self, which: NDArray[np.intp], sign: float = 1.0, shift: Array | float = 0.0) -> "Polynomials":
-        """Some of the polynomials, times a sign and plus numbers."""
+    def some(
+        self, which: NDArray[np.intp], sign: Array | float = 1.0, shift: Array | float = 0.0
+    ) -> "Polynomials":
+        """Some of the polynomials, times signs and plus numbers."""
         chosen = copy(self)
         for known in ("values", "lowest", "bending", "bounds", "sag"):
             chosen.__dict__.pop(known, None)
@@ -162,7 +168,16 @@ def least_of_all(polynomials: "Polynomials") -> float:
 
 def value_and_slope(terms: Array, place: Array) -> tuple[Array, Array]:
     """Values and first derivatives of polynomials at one place each."""
-    value, slope = terms[-1], np.zeros_like(place)
+    if len(place) > FEW:
+        return _horner(terms, place)
+    each = zip(terms.T.tolist(), place.tolist(), strict=True)
+    found = np.array([_horner(column, at) for column, at in each]).reshape(-1, 2)
+    return found[:, 0], found[:, 1]
+
+
+def _horner(terms: Row, place: Scalar) -> tuple[Scalar, Scalar]:
+    """The value and first derivative of a polynomial."""
+    value, slope = terms[-1], 0.0 * place
     for term in terms[-2::-1]:
         slope = slope * place + value
         value = value * place + term

@@ -10,7 +10,7 @@ from typing import Any
 import heyoka as hy
 import numpy as np
 
-from tippetop.integrators.base import NOT_FINITE, Arc, Array, Expansion, Motion
+from tippetop.integrators.base import NOT_FINITE, Arc, Array, Evaluation, Expansion, Motion, Rows
 from tippetop.integrators.compile_cache import compiling
 from tippetop.integrators.dense import DenseSolution
 from tippetop.interrupts import heard
@@ -70,6 +70,10 @@ class Taylor:
         compiled = _compiled(motion, math.exp(3.0 - 2.0 * degree), 1)
         return lambda start: compiled.expanded(start, parameters, count)
 
+    def evaluation(self, function: Rows, size: int, parameters: int) -> Evaluation:
+        """Numbers that are functions of state and parameters, for many states at once, compiled."""
+        return _evaluation(function, size, parameters)
+
 
 class _Compiled:
     """An integrator, room for the coefficients of some steps, and a lock that both are used under."""
@@ -113,8 +117,7 @@ class _Compiled:
 @lru_cache(maxsize=32)
 def _compiled(motion: Motion, tolerance: float, room: int) -> _Compiled:
     """Compile the equations and the guards, or fetch them from the cache across processes."""
-    state = [hy.make_vars(f"y{i}") for i in range(motion.size)]
-    parameters = [hy.par[i] for i in range(motion.parameters)]
+    state, parameters = _symbols(motion.size, motion.parameters)
     rates = [hy.expression(rate) for rate in motion.rates(state, parameters)]
     events = [
         hy.t_event(guard.value(state, parameters), direction=hy.event_direction.negative)
@@ -132,6 +135,31 @@ def _compiled(motion: Motion, tolerance: float, room: int) -> _Compiled:
             )
 
     return _Compiled(heard(compiled), room)
+
+
+@lru_cache(maxsize=64)
+def _evaluation(function: Rows, size: int, parameters: int) -> Evaluation:
+    """Compile a function, or fetch it from the cache across processes."""
+    state, numbers = _symbols(size, parameters)
+    with compiling():
+        compiled = hy.cfunc([hy.expression(value) for value in function(state, numbers)], vars=state)
+
+    def evaluate(y: Array, given: Sequence[Any]) -> Array:
+        shape = y.shape[1:]
+        rows = np.empty((compiled.nparams, *shape))
+        for row, number in zip(rows, given, strict=False):
+            row[...] = number
+        found = np.empty((compiled.nouts, *shape))
+        flat = [np.ascontiguousarray(array).reshape(len(array), -1) for array in (y, found, rows)]
+        compiled(flat[0], outputs=flat[1], pars=flat[2])
+        return found
+
+    return evaluate
+
+
+def _symbols(size: int, parameters: int) -> tuple[list[Any], list[Any]]:
+    """State and parameters as the compiler knows them."""
+    return [hy.make_vars(f"y{i}") for i in range(size)], [hy.par[i] for i in range(parameters)]
 
 
 def _before_blow_up(solution: DenseSolution) -> DenseSolution:

@@ -51,7 +51,8 @@ def follow(
     method = make_integrator(None, max(tolerance, LEAST.get(default_name(), 0.0)))
     trajectory, tally = Trajectory(start, end, method, time=time), Tally()
     segments = trajectory.segments()
-    for block in in_blocks(segments if settled is None else until_settled(trajectory, segments, settled)):
+    segments = segments if settled is None else until_settled(trajectory, segments, settled)
+    for block in in_blocks(segments, method):
         tally.take(block)
     return trajectory, tally
 

@@ -1,0 +1,183 @@
+"""What is read off the numbers of a mode, at many instants at once: by arrays, or compiled."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import lru_cache
+from typing import Any, NamedTuple, TypeAlias
+
+import numpy as np
+
+from tippetop.contact.mode import IntegratedMode, Mode
+from tippetop.integrators.base import Array, Evaluation, Integrator, Rows
+from tippetop.lowest import lowest_contact_vector
+from tippetop.mechanics.hull import Hull
+from tippetop.mechanics.invariants import energy
+from tippetop.mechanics.motion import angular_velocity, axial_spin, point_velocity
+from tippetop.mechanics.quadratures import quadrature_rates, resistance_powers
+from tippetop.mechanics.state import State
+from tippetop.mechanics.top import Kind
+from tippetop.mechanics.vectors import Horizontal, Row, Scalar, Vector, dot
+from tippetop.mechanics.view import precession_rate, slip_along_tilt, tilt_rate
+
+WORTH = 1000
+"""Instants from which on a compiled function is asked for, which takes hundredths of a second to load."""
+
+
+class Rates(NamedTuple):
+    """What is integrated along a motion, as rates, and what its extremes are looked for of."""
+
+    x: Scalar
+    y: Scalar
+    turn: Scalar
+    work: Scalar
+    """Rates of the quadratures."""
+    drilling: Scalar
+    rolling: Scalar
+    """Powers of drilling and of rolling friction."""
+    axis: Scalar
+    """n_z."""
+    force: Scalar
+    """Normal force."""
+
+    @classmethod
+    def of(cls, mode: Mode, y: Row, pole: Scalar) -> "Rates":
+        """Read them off the numbers of a mode, with the angle about the axis in the chart of a pole."""
+        state, reaction = mode.state(y), mode.reaction(y)
+        east, north, turn, work = quadrature_rates(state, reaction.power, pole, mode.top)
+        drilling = rolling = 0.0
+        if not mode.top.friction.torque_free:
+            drilling, rolling = resistance_powers(state, reaction.resistance, mode.top)
+        return cls(east, north, turn, work, drilling, rolling, state.axis[2], reaction.force[2])
+
+
+class Instants(NamedTuple):
+    """What is told of an instant."""
+
+    state: State
+    force: Vector
+    torque: Vector
+    """Force of the table, and its torque about the contact point."""
+    energy: Scalar
+    jellett: Scalar
+    """Jellett's integral about the lowest point."""
+    gap: Scalar
+    """Height of the lowest point."""
+    spin: Scalar
+    """omega3."""
+    precession: Scalar
+    tilting: Scalar
+    """phi' and theta', which are not numbers where the axis is vertical."""
+    slip: Horizontal
+    """Slip velocity along the direction into which the axis leans, and across; there not a number either."""
+    point: Horizontal
+    """Horizontal velocity of the lowest point along the space axes."""
+
+    @classmethod
+    def of(cls, mode: Mode, y: Row) -> "Instants":
+        """Read them off the numbers of a mode."""
+        state, reaction, top = mode.state(y), mode.reaction(y), mode.top
+        axis, momentum = state.axis, state.momentum
+        arm = lowest_contact_vector(axis, top.surface)
+        x, y, _ = point_velocity(state.velocity, angular_velocity(axis, momentum, top), arm)
+        return cls(
+            state,
+            reaction.force,
+            reaction.torque,
+            energy(state, top),
+            -dot(momentum, arm),
+            state.height + arm[2],
+            axial_spin(axis, momentum, top),
+            precession_rate(axis, momentum, top),
+            tilt_rate(axis, momentum, top),
+            slip_along_tilt(axis, (x, y)),
+            (x, y),
+        )
+
+    def pack(self) -> tuple[Scalar, ...]:
+        """The numbers in the order of the attributes."""
+        state, force, torque, *numbers, slip, point = self
+        return (*state.pack(), *force, *torque, *numbers, *slip, *point)
+
+    @classmethod
+    def unpack(cls, rows: Row) -> "Instants":
+        """Read them from their numbers."""
+        force, torque = (rows[10], rows[11], rows[12]), (rows[13], rows[14], rows[15])
+        slip, point = (rows[22], rows[23]), (rows[24], rows[25])
+        numbers = rows[16], rows[17], rows[18], rows[19], rows[20], rows[21]
+        return cls(State.unpack(rows), force, torque, *numbers, slip, point)
+
+
+TOLD = 26
+"""How many numbers that are."""
+
+Reading: TypeAlias = Callable[..., Sequence[Scalar]]
+"""From a mode, its numbers and further ones to numbers, in plain operators."""
+
+
+def instants(mode: Mode, y: Row) -> tuple[Scalar, ...]:
+    """The numbers of `Instants`."""
+    return Instants.of(mode, y).pack()
+
+
+def read(
+    reading: Reading, mode: Mode, y: Array, *others: Scalar, integrator: Integrator | None = None
+) -> Array:
+    """Read numbers off those of a mode.
+
+    Parameters
+    ----------
+    reading
+        What to read.
+    mode
+        The mode.
+    y
+        Its numbers, shape (size, ...).
+    others
+        Further numbers that the reading takes, each of a shape that becomes that of the instants.
+    integrator
+        Who follows the motion; it may know how to compile a reading.
+
+    Returns
+    -------
+    ndarray
+        Shape (numbers, ...).
+    """
+    evaluation = None if y[0].size < WORTH else _compiled(reading, mode, len(y), len(others), integrator)
+    if evaluation is not None:
+        return evaluation(y, (*mode.top.numbers, *others))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        rows = reading(mode, y, *others)
+    found = np.empty((len(rows), *y.shape[1:]))
+    for place, row in zip(found, rows, strict=True):
+        place[...] = row
+    return found
+
+
+def _compiled(
+    reading: Reading, mode: Mode, size: int, others: int, integrator: Integrator | None
+) -> Evaluation | None:
+    """A reading of modes of this kind, compiled, if the integrator can and they are all alike."""
+    compile_: Callable[[Rows, int, int], Evaluation] | None = getattr(integrator, "evaluation", None)
+    if compile_ is None or not isinstance(mode, IntegratedMode) or not mode.motion.lasting:
+        return None
+    if len(mode.tops) > 1 or isinstance(mode.top.surface, Hull):
+        return None
+    kind = mode.top.kind
+    return compile_(_of_kind(reading, _without_top(mode), kind), size, kind.numbers + others)
+
+
+def _without_top(mode: IntegratedMode) -> Any:
+    """What remains of a mode when its top is taken away, and what follows it, which is not read off it."""
+    nothing: Any = None
+    return replace(mode, top=nothing, rules=nothing)
+
+
+@lru_cache
+def _of_kind(reading: Reading, form: Any, kind: Kind) -> Rows:
+    """A reading of modes of this kind as a function of their numbers and those of their tops."""
+
+    def values(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Sequence[Scalar]:
+        top = kind.top(tuple(numbers[: kind.numbers]))
+        return reading(replace(form, top=top), y, *numbers[kind.numbers :])
+
+    return values
