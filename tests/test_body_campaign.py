@@ -10,6 +10,12 @@ import numpy as np
 import pytest
 
 import tippetop as tt
+from tippetop.contact.choice import rules_of
+from tippetop.contact.trajectory import Trajectory
+from tippetop.integrators import make_integrator
+from tippetop.mechanics.flight import gap, gap_rate
+from tippetop.mechanics.motion import along_table, on_table
+from tippetop.mechanics.top import natural, natural_state, natural_units
 
 COUNT = int(os.environ.get("TIPPETOP_BODIES", "6"))
 SIZE, MASS = 0.02, 0.02
@@ -91,3 +97,46 @@ def test_slip_that_begins_goes_no_further_than_to_the_touch_of_another_surface()
     assert "touchdown" in run["event_kind"].values
     assert float(run["gap"].min()) > -1e-11 * SIZE
     assert float(run["energy_error"]) < 1e-12
+
+
+def test_a_ring_falls_as_deep_as_it_reaches_though_its_centre_be_below_the_table() -> None:
+    """As seen from a ring's plane the centre of mass is anywhere on the axis."""
+    ring = tt.Body(mass=MASS, shape=tt.Ring(radius=0.01, center=-0.04, tube=0.002), I1=3e-6, I3=3e-6)
+    launch = tt.Launch(tilt=2.4, spin=20.0, gap=0.02)
+    problem = tt.Problem(body=ring, friction=tt.ViscousFriction(mu=0.3), launch=launch)
+    run = tt.simulate(problem, 0.1, samples=11, integrator="dop853", tolerance=3e-14)
+    assert problem.start().height < 0.0
+    assert str(run["event_kind"].values[0]) == "touchdown"
+    assert float(run["event_time"][0]) == pytest.approx(np.sqrt(2.0 * 0.02 / 9.8), rel=1e-14)
+
+
+@pytest.mark.parametrize("back", [1.0, -1.0])
+def test_what_touches_within_rounding_does_not_sink_in(back: float) -> None:
+    """Two spheres of which one is 5e-13 deeper, and opens too slowly to come out of the table."""
+    body = tt.Body(
+        mass=MASS,
+        shape=[tt.Sphere(radius=0.012, center=0.02), tt.Sphere(radius=0.008, center=-0.02)],
+        I1=4e-6,
+        I3=2e-6,
+    )
+    launch = tt.Launch(tilt=float(np.arccos(0.1)), spin=10.0, slip=(0.1, 0.2))
+    problem = tt.Problem(body=body, friction=tt.ViscousFriction(mu=0.1), launch=launch)
+    units, top = natural_units(problem.top), natural(problem.top)
+    level = natural_state(problem.start(), units)
+    first, second = top.each if back > 0.0 else top.each[::-1]
+    lever = first.surface.slope(level.axis[2]) - second.surface.slope(level.axis[2])
+    # A turn about e x z by a small angle moves the tip, and as a rate the gaps: of the second -5e-13, +3e-7.
+    n, height = level.axis, np.hypot(*level.axis[:2])
+    tip = n[2] - 5e-13 / lever
+    axis = (*(x * np.sqrt(1.0 - tip * tip) / height for x in n[:2]), tip)
+    state = on_table(along_table(level._replace(axis=axis)), first)
+    assert gap(state, second) == pytest.approx(-5e-13, abs=1e-15)
+    rate = 3e-7 / lever * top.transverse_inertia / height
+    turned = (state.momentum[0] + rate * n[1] / height, state.momentum[1] - rate * n[0] / height)
+    state = state._replace(momentum=(*turned, state.momentum[2]))
+    state = on_table(along_table(state), first)
+    assert gap_rate(state, second) == pytest.approx(3e-7, rel=1e-6)
+    rules = rules_of(problem.contact, first, units)
+    run = Trajectory(rules.resting(0.0, state), 0.1, make_integrator("dop853", 3e-14))
+    for segment in run.segments():
+        assert min(gap(segment.end_state, one) for one in top.each) > -1e-12

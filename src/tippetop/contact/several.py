@@ -93,11 +93,14 @@ class OnSeveral(FreeToFly):
         return self.resting(time, state, events)
 
     def _slowest(self, other: Top, state: State) -> float:
-        """Velocity of another surface that touches too below which it stays, or comes back at once."""
-        if not self._slips(other, state):
-            return SLOWEST_ROCKING
-        back = abs(double_contact(along_table(state), (self.top, other)).acceleration[1])
-        return float(SLOWEST_ROCKING * max(1.0, back) ** 0.5)
+        """Velocity of another surface that touches too below which it stays, or comes back at once.
+
+        Or does not come out of the table, in which it is by no more than what is taken for touching.
+        """
+        back, depth = 1.0, max(0.0, float(gap(state, self.top) - gap(state, other)))
+        if self._slips(other, state):
+            back = abs(double_contact(along_table(state), (self.top, other)).acceleration[1])
+        return float(max(SLOWEST_ROCKING * max(1.0, back) ** 0.5, (2.0 * back * depth) ** 0.5))
 
     def _slips(self, other: Top, state: State) -> bool:
         """Whether both contacts slip, faster than where slip on two contacts ends, if it can end at all."""

@@ -1856,7 +1856,8 @@ const Start = Object.freeze({ AIRBORNE: 0, REBOUND: 1, RELEASE: 2, LIFT_OFF: 3 }
 function touchdown(state, top, horizon, start = Start.AIRBORNE) {
   let root;
   let [tip, , ballistic] = Separation.of(state, top);
-  horizon = py.min(horizon, py.mul(2.0, falling_time(...ballistic)));
+  const deepest = py.min(0.0, ...[-1.0, 1.0].map((c) => py.float(top.surface.height(c))));
+  horizon = py.min(horizon, py.mul(2.0, falling_time(py.sub(ballistic[0], deepest), ...ballistic.slice(1))));
   let time = 0.0;
   if (!py.eq(start, Start.AIRBORNE)) {
     const support = py.add(top.surface.height(tip.series()), py.mul(0.0, tip.series())).terms;
@@ -5592,11 +5593,11 @@ class OnSeveral extends FreeToFly {
   }
   /** Velocity of another surface that touches too below which it stays, or comes back at once. */
   _slowest(other, state) {
-    if (!py.truth(this._slips(other, state))) {
-      return SLOWEST_ROCKING;
+    let [back, depth] = [1.0, py.max(0.0, py.float(py.sub(gap(state, this.top), gap(state, other))))];
+    if (py.truth(this._slips(other, state))) {
+      back = py.abs(double_contact(along_table(state), [this.top, other]).acceleration[1]);
     }
-    const back = py.abs(double_contact(along_table(state), [this.top, other]).acceleration[1]);
-    return py.float(py.mul(SLOWEST_ROCKING, py.pow(py.max(1.0, back), 0.5)));
+    return py.float(py.max(py.mul(SLOWEST_ROCKING, py.pow(py.max(1.0, back), 0.5)), py.pow(py.mul(py.mul(2.0, back), depth), 0.5)));
   }
   /** Whether both contacts slip, faster than where slip on two contacts ends, if it can end at all. */
   _slips(other, state) {

@@ -83,6 +83,9 @@ def touchdown(state: State, top: Top, horizon: float, start: Start = Start.AIRBO
     discs on h gives a disc of some radius r for h(c). By Cauchy's estimate, |G'''| <= 6 r / (rho^3 (1 - q)^4)
     within q rho of its centre. For the first polynomial the same estimate bounds the tail, below 2e-16 r.
 
+    *Horizon.* A body of revolution reaches at least as low as the lower of the ends of its axis, h(c) >= |c|
+    h(+-1): it has touched by the time at which the centre of mass falls as deep as that.
+
     *Search.* With G, G', G'' at t and that bound on G''', a step [t, t + s] is passed only if the cubic below
     G is positive on it, or if G is surely falling or surely concave on it and positive at its end. If it is
     falling or concave, and not positive at its end, the step holds exactly one root, which is the first: it
@@ -91,7 +94,8 @@ def touchdown(state: State, top: Top, horizon: float, start: Start = Start.AIRBO
     shape will do that is written in plain operators and is analytic on [-1, 1].
     """
     tip, _, ballistic = Separation.of(state, top)
-    horizon = min(horizon, 2.0 * falling_time(*ballistic))
+    deepest = min(0.0, *(float(top.surface.height(c)) for c in (-1.0, 1.0)))
+    horizon = min(horizon, 2.0 * falling_time(ballistic[0] - deepest, *ballistic[1:]))
     time = 0.0
     if start != Start.AIRBORNE:
         support = (top.surface.height(tip.series()) + 0.0 * tip.series()).terms
