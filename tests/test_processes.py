@@ -4,9 +4,8 @@ import os
 import signal
 import subprocess
 import sys
-import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -22,11 +21,10 @@ def jobs(*calls: tuple[Any, ...]) -> Callable[[], Job | None]:
     return lambda: next(waiting, None)
 
 
-@pytest.fixture(scope="module")
-def worker() -> Iterator[Worker]:
-    worker = Worker()
-    yield worker
-    worker.close()
+def elsewhere(call: Callable[..., Any], *arguments: Any) -> Any:
+    """What a call returns in another process."""
+    [(_, result)] = shared(jobs((call, *arguments)), 2)
+    return result
 
 
 class Odd(Exception):
@@ -91,39 +89,35 @@ def test_a_job_that_kills_every_process_is_given_up() -> None:
     ("call", "kind", "match"),
     [(refuse, InvalidInput, "spin = -1"), (be_odd, RuntimeError, "Odd"), (divmod, TypeError, "divmod")],
 )
-def test_what_a_job_raises_is_raised_here(
-    worker: Worker, call: Callable[[], Any], kind: type[Exception], match: str
-) -> None:
-    before = worker._process.pid
+def test_what_a_job_raises_is_raised_here(call: Callable[[], Any], kind: type[Exception], match: str) -> None:
     with pytest.raises(kind, match=match):
-        list(worker.results(call, patience=60))
-    assert list(worker.results(len, "abc", patience=60)) == [3]
-    assert worker._process.pid == before, "which goes on"
+        elsewhere(call)
 
 
-def test_an_error_that_is_none_of_ours_says_where_it_was_raised(worker: Worker) -> None:
+def test_an_error_that_is_none_of_ours_says_where_it_was_raised() -> None:
     with pytest.raises(TypeError) as raised:
-        list(worker.results(sorted, 3, patience=60))
+        elsewhere(sorted, 3)
     assert any("in _work" in note for note in raised.value.__notes__)
 
 
-def test_processes_have_one_thread_each_and_do_not_hear_ctrl_c(worker: Worker) -> None:
-    assert list(worker.results(os.getenv, "OMP_NUM_THREADS", patience=60)) == ["1"]
-    assert list(worker.results(signal.getsignal, signal.SIGINT, patience=60)) == [signal.SIG_IGN]
-    pid = worker._process.pid
-    assert pid is not None
-    os.kill(pid, signal.SIGINT)
-    assert list(worker.results(abs, -3, patience=60)) == [3]
+def test_a_process_goes_on_after_an_error_and_does_not_hear_ctrl_c() -> None:
+    worker = Worker()
+    try:
+        worker.give(sorted, 3)
+        assert isinstance(worker.take().error, TypeError)
+        pid = worker._process.pid
+        assert pid is not None
+        os.kill(pid, signal.SIGINT)
+        worker.give(os.getpid)
+        assert worker.take() == pid
+    finally:
+        worker.close()
+    assert not worker._process.is_alive()
 
 
-def test_a_job_that_takes_too_long_costs_its_process(worker: Worker) -> None:
-    before = worker._process.pid
-    began = time.monotonic()
-    with pytest.raises(TimeoutError):
-        list(worker.results(time.sleep, 60, patience=0.1))
-    assert time.monotonic() - began < 5
-    assert worker._process.pid != before
-    assert list(worker.results(abs, -3, patience=60)) == [3]
+def test_processes_have_one_thread_each() -> None:
+    assert elsewhere(os.getenv, "OMP_NUM_THREADS") == "1"
+    assert elsewhere(signal.getsignal, signal.SIGINT) == signal.SIG_IGN
 
 
 def test_processes_are_gone_when_they_are_no_longer_asked_for() -> None:
@@ -178,13 +172,3 @@ def test_processes_cannot_hear_ctrl_c_from_their_first_moment() -> None:
     """The very first of them neither, which Python starts together with a process of its own."""
     done = subprocess.run([sys.executable, "-c", BLOCKED], capture_output=True, text=True, check=True)
     assert (done.stdout, done.stderr) == ("True\nTrue\n", "")
-
-
-def test_a_closed_worker_is_not_started_again() -> None:
-    worker = Worker()
-    closing = threading.Timer(0.5, worker.close)
-    closing.start()
-    with pytest.raises(Unavailable, match="has ended"):
-        list(worker.results(time.sleep, 60, patience=60))
-    closing.join()
-    assert not worker._process.is_alive()

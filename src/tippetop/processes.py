@@ -11,7 +11,6 @@ import pickle
 import signal
 import sys
 import threading
-import time
 import traceback
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
@@ -23,8 +22,6 @@ from tippetop.interrupts import deferred
 
 RESTARTS = 3
 """How often a job is done again whose process was killed."""
-GLANCE = 0.2
-"""How often one who waits for a process looks whether to stop, s."""
 THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 
 _SPAWN = multiprocessing.get_context("spawn")
@@ -46,18 +43,9 @@ class _Failed(NamedTuple):
 
 
 class Worker:
-    """A process that does one job at a time; another takes its place when it is killed or takes too long.
+    """A process that does one job at a time."""
 
-    It does what is to `warm_up` first, so that its first job is as fast as the next.
-    """
-
-    def __init__(self, warm_up: Callable[[], object] | None = None) -> None:
-        self._warm_up = warm_up
-        self._closed = False
-        self._changing = threading.Lock()
-        self._start()
-
-    def _start(self) -> None:
+    def __init__(self) -> None:
         self.end, theirs = _SPAWN.Pipe()
         self._process = _SPAWN.Process(target=_work, args=(theirs,), daemon=True, name="tippetop worker")
         try:
@@ -66,100 +54,27 @@ class Worker:
         except BaseException:
             # Ctrl-C that had to wait: nobody else knows of this process.
             if self._process.pid is not None:
-                self._kill()
+                self.close()
             raise
         theirs.close()
-        self._ready = self._warm_up is None
-        if self._warm_up is not None:
-            self.give(self._warm_up)
 
     def give(self, job: Callable[..., Any], *arguments: Any) -> None:
         """Have a job done; if the process has ended, `take` tells."""
         with suppress(OSError):
             self.end.send((job, arguments))
 
-    def take(self) -> tuple[bool, Any]:
-        """Whether there is more to come of the job, and what has come; an `EOFError` if the process ended."""
+    def take(self) -> Any:
+        """What comes of the job; an `EOFError` if the process ended."""
         try:
-            more, result = self.end.recv()
+            return self.end.recv()
         except OSError:
             raise EOFError from None
-        return more, result
-
-    def results(
-        self,
-        job: Callable[..., Any],
-        *arguments: Any,
-        patience: float,
-        stopped: threading.Event | None = None,
-    ) -> Iterator[Any]:
-        """What a job yields, one after the other, or the one thing it returns, until it is `stopped`.
-
-        Raises
-        ------
-        TimeoutError
-            If it takes longer than `patience` seconds; its process is then replaced.
-        Unavailable
-            If its process ends meanwhile; it is then replaced, too.
-        Exception
-            What the job raises.
-        """
-        busy = False
-        try:
-            if not self._await_ready(stopped):
-                return
-            self.give(job, *arguments)
-            busy, deadline = True, time.monotonic() + patience
-            while busy and self._heard(deadline, stopped):
-                busy, result = self.take()
-                if result is not None:
-                    yield _or_raise(result)
-        except EOFError:
-            busy = True
-            raise Unavailable(
-                "the process that computed this has ended, and another takes its place: try again"
-            ) from None
-        finally:
-            if busy:
-                self.restart()
-
-    def _heard(self, deadline: float, stopped: threading.Event | None) -> bool:
-        """Wait for a result; False when stopped before there is one."""
-        while not (stopped and stopped.is_set()):
-            left = deadline - time.monotonic()
-            if self.end.poll(max(0.0, left if stopped is None else min(left, GLANCE))):
-                return True
-            if left <= 0:
-                raise TimeoutError
-        return False
-
-    def _await_ready(self, stopped: threading.Event | None) -> bool:
-        """Wait until the process has warmed up; False when stopped, and nothing is to be sent."""
-        while not (stopped and stopped.is_set()):
-            if not self._ready and self.end.poll(GLANCE):
-                self.take()
-                self._ready = True
-            if self._ready:
-                return True
-        return False
-
-    def restart(self) -> None:
-        """Put another process in the place of this one, unless it is closed."""
-        with self._changing:
-            if not self._closed:
-                self._kill()
-                self.end.close()
-                self._start()
 
     def close(self) -> None:
-        """End the process, whatever it does, for good; another thread that waits for it hears so."""
-        with self._changing:
-            self._closed = True
-            self._kill()
-
-    def _kill(self) -> None:
+        """End the process, whatever it does."""
         self._process.kill()
         self._process.join()
+        self.end.close()
 
 
 def shared(next_job: Callable[[], Job | None], count: int) -> Iterator[tuple[Any, Any]]:
@@ -197,29 +112,26 @@ def shared(next_job: Callable[[], Job | None], count: int) -> Iterator[tuple[Any
             for end in connection.wait(busy):
                 worker, job, kills = busy.pop(end)
                 try:
-                    _, result = worker.take()
+                    result = worker.take()
                 except EOFError:
                     if kills == RESTARTS:
                         raise Unavailable(
                             f"processes were killed {kills + 1} times during {job.name}, perhaps for want of "
                             "memory; try again, or with fewer workers"
                         ) from None
-                    worker.restart()
-                    give(worker, job, kills + 1)
+                    worker.close()
+                    crew.append(Worker())
+                    give(crew[-1], job, kills + 1)
                     continue
+                if isinstance(result, _Failed):
+                    raise result.error
                 idle.append(worker)
                 hand_out()  # a process need not wait for what is done with its result
-                yield job.name, _or_raise(result)
+                yield job.name, result
                 hand_out()
     finally:
         for worker in crew:
             worker.close()
-
-
-def _or_raise(result: Any) -> Any:
-    if isinstance(result, _Failed):
-        raise result.error
-    return result
 
 
 @contextmanager
@@ -263,14 +175,9 @@ def _work(end: Any) -> None:
         while True:
             job, arguments = end.recv()
             try:
-                result = job(*arguments)
-                if isinstance(result, Iterator):
-                    for item in result:
-                        end.send((True, item))
-                    result = None
-                end.send((False, result))
+                end.send(job(*arguments))
             except Exception as error:  # noqa: BLE001 - handed over, not swallowed
-                end.send((False, _Failed(_portable(error))))
+                end.send(_Failed(_portable(error)))
 
 
 def _follow_parent() -> None:
