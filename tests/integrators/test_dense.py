@@ -158,3 +158,15 @@ def test_chebyshevs_points_lie_within_and_his_coefficients_give_back_the_values(
     # Powers of numbers up to 1 lose digits as the coefficients grow, (3 + 8^1/2)^degree / 2 at most.
     lost = 1e-15 * (3.0 + math.sqrt(8.0)) ** degree
     assert there == pytest.approx(np.eye(degree + 1), abs=lost + 1e-14)
+
+
+def test_what_polynomials_leave_unresolved_is_the_last_of_chebyshevs():
+    knots = np.array([0.0, 2.0, 3.0])
+    last = np.polynomial.Chebyshev.basis(14, domain=[0.0, 2.0])
+
+    def numbers(t):
+        return np.exp(-0.1 * t), 0.3 * np.where(t < 2.0, last(t), 1.0)
+
+    solution = DenseSolution.fitted(numbers, knots, 14)
+    assert solution.unresolved == pytest.approx(0.3, rel=1e-12)
+    assert DenseSolution.fitted(lambda t: [np.exp(-0.1 * t)], knots, 14).unresolved < 1e-16

@@ -8,8 +8,10 @@ from scipy.integrate import solve_ivp
 
 from dry_runs import DryRun, launched
 from tippetop.contact.growth import growth
-from tippetop.contact.passing import Loosening
+from tippetop.contact.passing import Loosening, Stopping
 from tippetop.contact.rules import Bilateral
+from tippetop.contact.sticking import split
+from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators import has_taylor, make_integrator
 from tippetop.integrators.scipy_methods import SciPy
 from tippetop.mechanics.beginning import beginning, direction_of_slip
@@ -258,6 +260,26 @@ def test_the_beginning_of_slip_solves_the_equations_to_its_order(family, power, 
     time = begin.valid_until(1e-5)
     assert defect(time) < 1e-3
     assert defect(time) / defect(0.5 * time) > 0.8 * 2.0**order
+
+
+@pytest.mark.skipif(not has_taylor(), reason="the other integrators are not exact to rounding")
+def test_the_last_moments_of_slip_are_told_up_to_its_end():
+    """Beyond the end of the clock too: the slip goes to zero in a straight line, and what goes with it."""
+    top, axis, momentum, velocity = launched(report(CoulombLaw(0.2)), 1.0, 50.0 / SECOND)
+    start = on_table(SlidingState(axis, momentum, velocity), top)
+    trajectory = Trajectory(Bilateral(top).launch(start), 0.4 * SECOND, make_integrator())
+    segment, *_ = (one for one in trajectory.segments() if isinstance(one.mode, Stopping))
+    solution = segment.solution
+    left = np.geomspace(1e-1, 1e-12, 23) * (solution.end - solution.knots[0])
+    numbers = solution(np.append(solution.end - left, solution.end))
+    slip = np.hypot(*numbers[:, 6:].T)
+    times = solution.end - np.append(solution.end - left, solution.end)
+    near = times < 1e-8
+    assert near.sum() > 5
+    rate = size(creep_rates(*split(numbers[-1]), tuple(numbers[near][0, 6:] / slip[near][0]), top).slip)
+    assert slip[near] == pytest.approx(rate * times[near], rel=1e-6, abs=1e-15)
+    last = segment.end_state
+    np.testing.assert_allclose(numbers[-1, :6], (*last.axis, *last.momentum), rtol=0, atol=1e-15)
 
 
 @pytest.mark.skipif(not has_taylor(), reason="no other integrator expands its solutions")

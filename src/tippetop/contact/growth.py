@@ -6,13 +6,17 @@ from functools import lru_cache
 from typing import Any
 
 from tippetop.contact.sticking import split
-from tippetop.integrators.base import Expansion, Integrator, Motion
+from tippetop.integrators.base import NOT_FINITE, Expansion, Integrator, Motion
 from tippetop.mechanics.ending import Closing, Vanishing, rates_in_time
 from tippetop.mechanics.rolling import Slip
 from tippetop.mechanics.slip_onset import Growing, Growth
 from tippetop.mechanics.stick_slip import plus, scaled
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import Scalar, Vector
+
+FEW = 11
+"""Degree up to which the first coefficients of the direction are expanded: half the others', for a third of
+the price."""
 
 
 class Driven:
@@ -24,37 +28,34 @@ class Driven:
         The direction in which slip, or rolling, begins.
     """
 
-    def __init__(self, start: tuple[Vector, Vector, Slip], velocity: Slip, degree: int, expand: Expansion):
-        self.first, self._expand = start[2], expand
-        self._begin = (*start[0], *start[1], *velocity, *scaled(0.0, start[2]))
-        self._derivatives = [[e, *[0.0] * degree] for e in start[2]]
-        self._known = list[Sequence[float]]()
-
-    @property
-    def _rows(self) -> Sequence[Sequence[float]]:
-        """Coefficients of the numbers of the motion, without what is given."""
-        if not self._known:
-            numbers = [*self._begin]
-            for derivatives in self._derivatives:
-                numbers += derivatives
-            self._known = [*self._expand(numbers)]
-        return self._known
+    def __init__(
+        self, start: tuple[Vector, Vector, Slip], velocity: Slip, degree: int, expand: Sequence[Expansion]
+    ):
+        self.first, self._expand, self._chain = start[2], expand, degree + 1
+        self._free = len(velocity) + 6
+        self._numbers = [*start[0], *start[1], *velocity, *scaled(0.0, start[2])]
+        self._given = len(self._numbers)
+        for e in start[2]:
+            self._numbers += [e, *[0.0] * degree]
 
     @property
     def state(self) -> Sequence[Sequence[float]]:
         """Coefficients of n, L, and u where that is free."""
-        return self._rows[: len(self._begin) - len(self.first)]
+        rows = [[float(term) for term in row] for row in self._expand[-1](self._numbers)[: self._free]]
+        if not math.isfinite(sum(sum(row) for row in rows)):
+            raise ArithmeticError(NOT_FINITE)
+        return rows
 
     def turn(self, j: int, direction: Slip) -> None:
         """Set the j-th coefficient of the direction."""
-        self._known = []
-        for derivatives, number in zip(self._derivatives, direction, strict=True):
-            derivatives[j] = number * math.factorial(j)
+        factor = math.factorial(j)
+        for i, number in enumerate(direction):
+            self._numbers[self._given + i * self._chain + j] = number * factor
 
     def accelerations(self, j: int) -> Slip:
-        """Coefficient of order j of A."""
-        skipped = len(self._begin) - len(self.first)
-        return tuple((j + 1) * row[j + 1] for row in self._rows[skipped:])
+        """Coefficient of order j of A, expanded no further than to the first of the degrees that has it."""
+        rows = self._expand[0 if j < FEW else -1](self._numbers)[self._free :]
+        return tuple((j + 1) * float(row[j + 1]) for row in rows)
 
     def slope(self, across: Slip) -> Slip:
         """Derivative of A along a direction across e_0, at the start: that order is linear in it."""
@@ -95,7 +96,9 @@ def growth(
         return Growing(start, top, ending, velocity)
     motion = driven_motion(top.kind, ending, len(start[2]), degree)
     count = motion.size - len(start[2]) * (degree + 1)
-    return Driven(start, velocity, degree, expansion(motion, top.numbers, degree + 1, count))
+    degrees = [FEW, degree + 1] if degree >= FEW else [degree + 1]
+    expand = [expansion(motion, top.numbers, highest, count) for highest in degrees]
+    return Driven(start, velocity, degree, expand)
 
 
 @lru_cache

@@ -73,6 +73,12 @@ SHORT = 1e-14
 DEGREE = 14
 """Degree of the polynomials that stand for the last moments in a solution."""
 
+SHARE = 0.01
+"""Part of the time to the end that such a polynomial leaves: what follows its friction ends smoothly."""
+
+RESOLVED = 1e-15
+"""Last term of these polynomials, in natural units, that is small: else they are made for shorter times."""
+
 TINY = 1e-100
 """What begins at zero, and has no direction there, in natural units: nothing, but for that."""
 
@@ -200,10 +206,14 @@ class Loosening(Passing):
 
     def _goes_on(self, rows: Sequence[list[Scalar]], duration: float) -> bool:
         """Whether no other surface touches meanwhile, and the table does not pull that may not."""
-        looks = [[horner(row, duration * look / LOOKS) for row in rows] for look in range(1, LOOKS + 1)]
-        if isinstance(self.top.surface, Hull) and not all(stays_open(self.top, y) for y in looks):
+
+        def at(look: int) -> list[Scalar]:
+            return [horner(row, duration * look / LOOKS) for row in rows]
+
+        looks, pressed = range(1, LOOKS + 1), range(1 + PRESSED, LOOKS + 1, PRESSED)
+        if isinstance(self.top.surface, Hull) and not all(stays_open(self.top, at(look)) for look in looks):
             return False
-        return self.rules.pulls or all(self.reaction(y).force[2] > 0.0 for y in looks[PRESSED::PRESSED])
+        return self.rules.pulls or all(self.reaction(at(look)).force[2] > 0.0 for look in pressed)
 
     @property
     def stuck(self) -> bool:
@@ -273,6 +283,7 @@ class Stopping(Passing):
         """Follow it to its end, or to where it is no longer about to end."""
         ending, begin = self.ending, self.begin or self._clock(state)
         here, steps, arc, parts = closing_of(begin, ending), 0, None, list[DenseSolution]()
+        rest = here
         start = 0.0, as_array(begin)
         motion = closing_motion(self.top.kind, ending, not self.rules.pulls)
         for horizon in LANDING:
@@ -283,15 +294,21 @@ class Stopping(Passing):
             arc, parts = arcs[-1], [*parts, *(arc.solution for arc in arcs)]
             start = arc.solution.end, arc.end_state
             here = closing_of(arc.end_state.tolist(), ending)
-            if arc.guard != LANDED or landed(here, ending, self.top)[1] < SETTLED:
+            if arc.guard != LANDED:
                 break
+            rest, doubt = landed(here, ending, self.top)
+            if doubt < SETTLED:
+                break
+        before = here
         if arc is not None and arc.failure is not None and here.speed < SLOWEST:
             # It passes zero by so little that no step is short enough to see it turn round.
             here, arc = here._replace(speed=0.0), None
-        elif arc is None or arc.guard == LANDED:
+        elif arc is None:
             here = landed(here, ending, self.top)[0]
+        elif arc.guard == LANDED:
+            here = rest
         last = self.state(shown(here))
-        solution = self._in_time(parts, begin, time, float(here.time))
+        solution = self._in_time(parts, begin, time, before, here)
         then = self._next(arc, solution.end, last)
         yield Segment(self, solution, last, then, steps, steps)
 
@@ -339,18 +356,39 @@ class Stopping(Passing):
         return replace(self, top=top, begin=(*arc.end_state.tolist()[:-1], 0.0))
 
     def _in_time(
-        self, parts: Sequence[DenseSolution], begin: Row, time: float, duration: float
+        self, parts: Sequence[DenseSolution], begin: Row, time: float, before: Closing, after: Closing
     ) -> DenseSolution:
-        """The numbers of the mode as polynomials in time, from their solution in the clock."""
+        """The numbers of the mode as polynomials in time, from their solution in the clock.
+
+        It goes on in a straight line from the end of the clock (before) to where the velocity ends (after).
+        """
         if not parts:
-            return DenseSolution.standing(shown(closing_of(begin, self.ending)), time, time + duration)
+            still = shown(closing_of(begin, self.ending))
+            return DenseSolution.standing(still, time, time + float(after.time))
         clock, elapsed = DenseSolution.joined(parts), len(begin) - 1
 
         def numbers(times: Array) -> tuple[Scalar, ...]:
             return shown(closing_of(clock.rows(clock.when(elapsed, times)), self.ending))
 
-        solution = DenseSolution.fitted(numbers, clock.knots_of(elapsed, duration), DEGREE)
-        return solution.moved(time, time + duration)
+        knots = clock.knots_of(elapsed, float(before.time))
+        solution = DenseSolution.fitted(numbers, thinned(knots), DEGREE)
+        if solution.unresolved > RESOLVED:
+            solution = DenseSolution.fitted(numbers, knots, DEGREE)
+        left = float(after.time) - knots[-1]
+        if left > 0.0:
+            flat, pairs = [0.0] * (DEGREE - 1), zip(shown(before), shown(after), strict=True)
+            last = DenseSolution.in_time([0.0, left], [[[a, (b - a) / left, *flat] for a, b in pairs]])
+            solution = DenseSolution.joined([solution, last.moved(knots[-1], float(after.time))])
+        return solution.moved(time, time + float(after.time))
+
+
+def thinned(knots: Sequence[float]) -> list[float]:
+    """Ends of steps, so few of them that each leaves but a share of the time to the last."""
+    end, found = knots[-1], [knots[0]]
+    for knot in knots[1:-1]:
+        if end - knot <= SHARE * (end - found[-1]):
+            found.append(knot)
+    return [*found, end]
 
 
 def shown(here: Closing) -> tuple[Scalar, ...]:

@@ -18,6 +18,7 @@ from tippetop.mechanics.motion import along_table, contact, on_table
 from tippetop.mechanics.rolling import (
     ContactPoint,
     contact_motion,
+    is_branched,
     is_set_valued,
     on_branch,
     on_limit_branch,
@@ -212,7 +213,7 @@ class ContactRules:
 
     def _branched(self, state: State, slips: bool) -> Top:
         """The top with the branch of its law that holds."""
-        if not is_set_valued(self.top.friction):
+        if not is_branched(self.top.friction):
             return self.top
         if slips:
             return on_branch(self.top, slip_of(*along_table(state), self.top))

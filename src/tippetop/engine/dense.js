@@ -146,6 +146,12 @@ export class DenseSolution {
   }
 
   /** Coefficients [step][number][power] in powers of the time since the start of a step. */
+  get unresolved() {
+    let largest = 0.0;
+    for (let row = this.degree; row < this.terms.length; row += this.degree + 1) largest = Math.max(largest, Math.abs(this.terms[row]));
+    return largest * 2 ** (1 - 2 * this.degree);
+  }
+
   static in_time(knots, terms) {
     const size = terms[0].length, degree = terms[0][0].length - 1;
     const scaled = terms.flatMap((rows, step) => rows.flatMap((row) => row.map((term, k) => term * (knots[step + 1] - knots[step]) ** k)));

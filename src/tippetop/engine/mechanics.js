@@ -2453,7 +2453,8 @@ const closing_motion = py.cached((kind, ending, guarded) => {
   guards = py.add(guards, surface_guards(kind));
   const free = py.truth(ending.moves) ? 2 : 0;
   const components = py.truth(ending.slip) ? slip_dimension(law) : 2;
-  return new Motion(rates, py.add(py.add(8, free), components), py.add(kind.numbers, 2), py.tuple(guards), false);
+  const often = py.and(components === 2, () => !py.truth(resisted));
+  return new Motion(rates, py.add(py.add(8, free), components), py.add(kind.numbers, 2), py.tuple(guards), often);
 });
 
 /** Positive while the table can hold what is held beside a velocity that ends. */
@@ -2679,8 +2680,9 @@ py.fields(Onset, ["axis", "momentum", "velocity", "direction", "speed", "power"]
 function onset(known, power, order) {
   const first = known.first;
   const across = tangents(first);
-  const basis = [...across, first];
   const slopes = [...across].map((b) => known.slope(b));
+  const aside = [...across].map((b) => [...slopes].map((g) => inner(b, g)));
+  const ahead = [...slopes].map((g) => inner(first, g));
   const [e, s] = [[...first].map((number) => [number]), py.list()];
   if (power === 1) {
     s.push(inner(known.accelerations(0), first));
@@ -2695,16 +2697,15 @@ function onset(known, power, order) {
     const behind = py.tuple([...e].map((row) => py.sum(py.map(py.mul, s.slice(0, k), py.slice(row, k, 0, -1)))));
     const rest = plus(known.accelerations(j), scaled(-(k + power), behind));
     const lag = power === 1 ? py.mul(k + power, py.item(s, 0)) : 0.0;
-    const columns = py.zip(slopes, across).map(([g, b]) => plus(g, scaled(py.neg(lag), b)));
-    columns.push(scaled(-py.float(k + power), first));
-    const found = solve([...basis].map((b) => [...columns].map((c) => inner(b, c))), [...basis].map((b) => py.neg(inner(b, rest))));
-    for (const [part, b] of py.zip(py.slice(found, null, -1, null), across)) {
+    const matrix = py.enumerate(aside).map(([a, row]) => py.enumerate(row).map(([b, g]) => py.eq(a, b) ? py.sub(g, lag) : g));
+    const parts = solve(matrix, [...across].map((b) => py.neg(inner(b, rest))));
+    for (const [part, b] of py.zip(parts, across)) {
       for (const [row, number] of py.zip(e, b)) {
         py.put(row, j, py.add(py.item(row, j), py.mul(part, number)));
       }
     }
     known.turn(j, py.tuple([...e].map((row) => py.item(row, j))));
-    s.push(py.item(found, -1));
+    s.push(py.div(py.add(inner(first, rest), py.sum(py.map(py.mul, parts, ahead))), k + power));
   }
   const rows = [...known.state].map((y) => py.range(order + power + 1).map((k) => py.item(y, k)));
   const turning = py.tuple([...e].map((row) => py.slice(row, null, order + 1, null)));
@@ -2867,42 +2868,39 @@ function at_start(parts) {
 }
 
 // tippetop.contact.growth
+const FEW = 11;
 
 /** Series from the motion of a body whose direction of slip is given, and found order by order. */
 class Driven extends py.Thing {
   constructor(start, velocity, degree, expand) {
     super();
-    [this.first, this._expand] = [start[2], expand];
-    this._begin = [...start[0], ...start[1], ...velocity, ...scaled(0.0, start[2])];
-    this._derivatives = [...start[2]].map((e) => [e, ...py.mul([0.0], degree)]);
-    this._known = py.list();
-  }
-  /** Coefficients of the numbers of the motion, without what is given. */
-  get _rows() {
-    if (!py.truth(this._known)) {
-      let numbers = [...this._begin];
-      for (const derivatives of this._derivatives) {
-        numbers = py.add(numbers, derivatives);
-      }
-      this._known = [...this._expand(numbers)];
+    [this.first, this._expand, this._chain] = [start[2], expand, degree + 1];
+    this._free = py.len(velocity) + 6;
+    py.bound(this, "_numbers") = [...start[0], ...start[1], ...velocity, ...scaled(0.0, start[2])];
+    this._given = py.len(py.bound(this, "_numbers"));
+    for (const e of start[2]) {
+      py.bound(this, "_numbers") = py.add(py.bound(this, "_numbers"), [e, ...py.mul([0.0], degree)]);
     }
-    return this._known;
   }
   /** Coefficients of n, L, and u where that is free. */
   get state() {
-    return py.slice(this._rows, null, py.len(this._begin) - py.len(this.first), null);
+    const rows = [...py.call(py.item(this._expand, -1), py.bound(this, "_numbers")).slice(0, this._free)].map((row) => [...row].map((term) => py.float(term)));
+    if (!py.truth(py.math.isfinite(py.sum([...rows].map((row) => py.sum(row)))))) {
+      throw new py.ArithmeticError(NOT_FINITE);
+    }
+    return rows;
   }
   /** Set the j-th coefficient of the direction. */
   turn(j, direction) {
-    this._known = [];
-    for (const [derivatives, number] of py.zip(this._derivatives, direction)) {
-      py.put(derivatives, j, py.mul(number, py.math.factorial(j)));
+    const factor = py.math.factorial(j);
+    for (const [i, number] of py.enumerate(direction)) {
+      py.put(py.bound(this, "_numbers"), py.add(py.add(this._given, py.mul(i, this._chain)), j), py.mul(number, factor));
     }
   }
-  /** Coefficient of order j of A. */
+  /** Coefficient of order j of A, expanded no further than to the first of the degrees that has it. */
   accelerations(j) {
-    const skipped = py.len(this._begin) - py.len(this.first);
-    return py.tuple([...this._rows.slice(skipped)].map((row) => py.mul(j + 1, py.item(row, j + 1))));
+    const rows = py.call(py.item(this._expand, j < FEW ? 0 : -1), py.bound(this, "_numbers")).slice(this._free);
+    return py.tuple([...rows].map((row) => (j + 1) * py.float(py.item(row, j + 1))));
   }
   /** Derivative of A along a direction across e_0, at the start: that order is linear in it. */
   slope(across) {
@@ -2922,7 +2920,9 @@ function growth(start, top, ending, velocity, degree, integrator) {
   }
   const motion = driven_motion(top.kind, ending, py.len(start[2]), degree);
   const count = py.sub(motion.size, py.len(start[2]) * (degree + 1));
-  return new Driven(start, velocity, degree, expansion(motion, top.numbers, degree + 1, count));
+  const degrees = degree >= FEW ? [FEW, degree + 1] : [degree + 1];
+  const expand = [...degrees].map((highest) => expansion(motion, top.numbers, highest, count));
+  return new Driven(start, velocity, degree, expand);
 }
 
 /** Equations of motion in which a direction is given: it, and its derivatives, are the last numbers. */
@@ -2962,10 +2962,13 @@ py.fields(Resisted, ["rate", "strength"]);
 function directions(response, start) {
   let ways = [...start].map((direction) => _unit(direction));
   for (let turn = 0; turn < ROUNDS; turn += 1) {
-    for (let turn = 0; turn < ITERATIONS; turn += 1) {
+    for (let step = 0; step < ITERATIONS; step += 1) {
       const [before, answers] = [ways, response(ways)];
       ways = py.zip(answers, ways).map(([answer, e]) => _unit(plus(scaled(py.add(answer.strength, size(answer.rate)), e), answer.rate)));
       if (_apart(ways, before) < EXACT) {
+        if (turn + step === 0 && py.truth(_leads(answers, before))) {
+          return ways;
+        }
         break;
       }
     }
@@ -2995,12 +2998,21 @@ function _improved(response, ways) {
     let moved;
     [moved, ways] = [_apart(better, ways), better];
     if (moved < EXACT || py.mul(last, 0.5) <= moved && moved < DIRECTED) {
-      const grows = py.zip(response(ways), ways).map(([a, e]) => inner(a.rate, e) >= py.mul(py.neg(DIRECTED), a.strength));
-      return py.truth(py.all(grows)) ? ways : null;
+      return py.truth(_grow(response(ways), ways)) ? ways : null;
     }
     last = moved;
   }
   return null;
+}
+
+/** Whether velocities in these directions grow, or stay. */
+function _grow(answers, ways) {
+  return py.all(py.zip(answers, ways).map(([a, e]) => inner(a.rate, e) >= py.mul(py.neg(DIRECTED), a.strength)));
+}
+
+/** Whether directions that do not turn at once are known: slip alone, in a plane, never turns slowly. */
+function _leads(answers, ways) {
+  return py.and(py.len(ways) === 1, () => py.and(py.len(ways[0]) === 2, () => _grow(answers, ways)));
 }
 
 /** One step towards directions across which nothing changes. */
@@ -3114,6 +3126,8 @@ const INSTANT = 1e-09;
 const PART = 0.25;
 const SHORT = 1e-14;
 const DEGREE_of_passing = 14;
+const SHARE = 0.01;
+const RESOLVED = 1e-15;
 const TINY_of_passing = 1e-100;
 
 /** A moment between two modes, which is told as the one of them in which something moves. */
@@ -3229,11 +3243,14 @@ class Loosening extends Passing {
   }
   /** Whether no other surface touches meanwhile, and the table does not pull that may not. */
   _goes_on(rows, duration) {
-    const looks = py.range(1, py.add(LOOKS_of_passing, 1)).map((look) => [...rows].map((row) => horner(row, py.div(py.mul(duration, look), LOOKS_of_passing))));
-    if (py.isinstance(this.top.surface, Hull) && !py.truth(py.all([...looks].map((y) => stays_open(this.top, y))))) {
+    const at = (look) => {
+      return [...rows].map((row) => horner(row, py.div(duration * look, LOOKS_of_passing)));
+    };
+    const [looks, pressed] = [py.range(1, py.add(LOOKS_of_passing, 1)), py.range(py.add(1, PRESSED), py.add(LOOKS_of_passing, 1), PRESSED)];
+    if (py.isinstance(this.top.surface, Hull) && !py.truth(py.all([...looks].map((look) => stays_open(this.top, at(look)))))) {
       return false;
     }
-    return py.or(this.rules.pulls, () => py.all([...py.slice(looks, PRESSED, null, PRESSED)].map((y) => this.reaction(y).force[2] > 0.0)));
+    return py.or(this.rules.pulls, () => py.all([...pressed].map((look) => this.reaction(at(look)).force[2] > 0.0)));
   }
   /** Whether the contact sticks meanwhile. */
   get stuck() {
@@ -3297,6 +3314,7 @@ class Stopping extends Passing {
   *segments(time, state, end, integrator) {
     const [ending, begin] = [this.ending, py.or(this.begin, () => this._clock(state))];
     let [here, steps, arc, parts] = [closing_of(begin, ending), 0, null, py.list()];
+    let rest = here;
     let start = [0.0, as_array(begin)];
     const motion = closing_motion(this.top.kind, ending, !py.truth(this.rules.pulls));
     for (const horizon of LANDING) {
@@ -3308,17 +3326,25 @@ class Stopping extends Passing {
       [arc, parts] = [py.item(arcs, -1), [...parts, ...[...arcs].map((arc) => arc.solution)]];
       start = [arc.solution.end, arc.end_state];
       here = closing_of(py.tolist(arc.end_state), ending);
-      if (!py.eq(arc.guard, LANDED) || landed(here, ending, this.top)[1] < SETTLED) {
+      if (!py.eq(arc.guard, LANDED)) {
+        break;
+      }
+      let doubt;
+      [rest, doubt] = landed(here, ending, this.top);
+      if (doubt < SETTLED) {
         break;
       }
     }
+    const before = here;
     if (arc !== null && arc.failure !== null && here.speed < SLOWEST) {
       [here, arc] = [here._replace({ speed: 0.0 }), null];
-    } else if (arc === null || py.eq(arc.guard, LANDED)) {
+    } else if (arc === null) {
       here = landed(here, ending, this.top)[0];
+    } else if (py.eq(arc.guard, LANDED)) {
+      here = rest;
     }
     const last = this.state(shown(here));
-    const solution = this._in_time(parts, begin, time, py.float(here.time));
+    const solution = this._in_time(parts, begin, time, before, here);
     const then = this._next(arc, solution.end, last);
     yield new Segment(this, solution, last, then, steps, steps);
   }
@@ -3365,19 +3391,41 @@ class Stopping extends Passing {
     return py.replace(this, { top: top, begin: [...py.slice(py.tolist(arc.end_state), null, -1, null), 0.0] });
   }
   /** The numbers of the mode as polynomials in time, from their solution in the clock. */
-  _in_time(parts, begin, time, duration) {
+  _in_time(parts, begin, time, before, after) {
     if (!py.truth(parts)) {
-      return DenseSolution.standing(shown(closing_of(begin, this.ending)), time, time + duration);
+      const still = shown(closing_of(begin, this.ending));
+      return DenseSolution.standing(still, time, time + py.float(after.time));
     }
     const [clock, elapsed] = [DenseSolution.joined(parts), py.len(begin) - 1];
     const numbers = (times) => {
       return shown(closing_of(clock.rows(clock.when(elapsed, times)), this.ending));
     };
-    const solution = DenseSolution.fitted(numbers, clock.knots_of(elapsed, duration), DEGREE_of_passing);
-    return solution.moved(time, time + duration);
+    const knots = clock.knots_of(elapsed, py.float(before.time));
+    let solution = DenseSolution.fitted(numbers, thinned(knots), DEGREE_of_passing);
+    if (solution.unresolved > RESOLVED) {
+      solution = DenseSolution.fitted(numbers, knots, DEGREE_of_passing);
+    }
+    const left = py.sub(py.float(after.time), py.item(knots, -1));
+    if (left > 0.0) {
+      const [flat, pairs] = [py.mul([0.0], py.sub(DEGREE_of_passing, 1)), py.zip(shown(before), shown(after))];
+      const last = DenseSolution.in_time([0.0, left], [[...pairs].map(([a, b]) => [a, py.div(py.sub(b, a), left), ...flat])]);
+      solution = DenseSolution.joined([solution, last.moved(py.item(knots, -1), py.float(after.time))]);
+    }
+    return solution.moved(time, time + py.float(after.time));
   }
 }
 py.fields(Stopping, ["top", "rules", "ending", "begin"]);
+
+/** Ends of steps, so few of them that each leaves but a share of the time to the last. */
+function thinned(knots) {
+  const [end, found] = [py.item(knots, -1), [knots[0]]];
+  for (const knot of py.slice(knots, 1, -1, null)) {
+    if (py.sub(end, knot) <= py.mul(SHARE, py.sub(end, py.item(found, -1)))) {
+      found.push(knot);
+    }
+  }
+  return [...found, end];
+}
 
 /** The numbers of a moment that passes: axis, momentum, velocity where it is free, and xi. */
 function shown(here) {
@@ -4199,7 +4247,7 @@ class ContactRules extends py.Record {
   }
   /** The top with the branch of its law that holds. */
   _branched(state, slips) {
-    if (!py.truth(is_set_valued(this.top.friction))) {
+    if (!py.truth(is_branched(this.top.friction))) {
       return this.top;
     }
     if (py.truth(slips)) {
@@ -7446,6 +7494,7 @@ export {
   EventKind,
   FACE,
   FASTEST,
+  FEW,
   FINE,
   FINEST,
   FIRST,
@@ -7560,6 +7609,7 @@ export {
   Quadratures,
   REACH,
   REOPENING,
+  RESOLVED,
   REST,
   ROLLING,
   ROLLING_STOPPING,
@@ -7588,6 +7638,7 @@ export {
   SECOND,
   SELECT,
   SETTLED,
+  SHARE,
   SHORT,
   SHORTER,
   SHORTEST,
@@ -7679,8 +7730,10 @@ export {
   _face,
   _fold_measure,
   _gap,
+  _grow,
   _handed_over,
   _improved,
+  _leads,
   _left,
   _marks,
   _meetings,
@@ -7913,6 +7966,7 @@ export {
   struck,
   surface_guards,
   tangents,
+  thinned,
   tilt_rate,
   tilts_held,
   tops_of,

@@ -17,7 +17,7 @@ Function: TypeAlias = Callable[[Sequence[Scalar], Sequence[Scalar]], Scalar]
 Rows: TypeAlias = Callable[[Sequence[Scalar], Sequence[Scalar]], Sequence[Scalar]]
 """Several of them."""
 
-Expansion: TypeAlias = Callable[[Sequence[float]], Sequence[Sequence[float]]]
+Expansion: TypeAlias = Callable[[Sequence[float]], NDArray[np.float64]]
 """From a state to the coefficients of the solution from there, in powers of time, each number's in a row."""
 
 Evaluation: TypeAlias = Callable[[Array, Sequence[Any]], Array]

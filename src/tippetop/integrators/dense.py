@@ -49,6 +49,12 @@ class DenseSolution:
         return int(self.terms.shape[1])
 
     @property
+    def unresolved(self) -> float:
+        """Size of the largest last term of its polynomials, in Chebyshev's."""
+        largest = float(np.abs(self.terms[:, :, -1]).max(initial=0.0))
+        return float(largest * 2.0 ** (3 - 2 * self.terms.shape[2]))
+
+    @property
     def end(self) -> float:
         """Where it ends."""
         return float(self.knots[-1])

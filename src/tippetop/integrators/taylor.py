@@ -101,16 +101,13 @@ class _Compiled:
             knots[-1] = end
         return DenseSolution.in_time(np.array(knots), self._terms[: len(knots) - 1]), outcome
 
-    def expanded(self, start: Sequence[float], parameters: Sequence[float], count: int) -> list[list[float]]:
+    def expanded(self, start: Sequence[float], parameters: Sequence[float], count: int) -> Array:
         """Coefficients of the first numbers of the solution about its start."""
         with self.lock:
             run = self.integrator
             run.state[:], run.pars[:] = start, parameters[: len(run.pars)]
             run.step(write_tc=True)
-            known = self._coefficients[:count]
-            if not np.isfinite(known).all():
-                raise ArithmeticError(NOT_FINITE)
-            found: list[list[float]] = known.tolist()
+            found: Array = self._coefficients[:count].copy()
         return found
 
 

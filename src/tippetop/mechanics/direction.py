@@ -57,14 +57,16 @@ def directions(response: Response, start: Sequence[Slip]) -> list[Slip]:
         If no such directions are found: more than one contact force may be consistent, or none.
     """
     ways = [_unit(direction) for direction in start]
-    for _ in range(ROUNDS):
-        for _ in range(ITERATIONS):
+    for turn in range(ROUNDS):
+        for step in range(ITERATIONS):
             before, answers = ways, response(ways)
             ways = [
                 _unit(plus(scaled(answer.strength + size(answer.rate), e), answer.rate))
                 for answer, e in zip(answers, ways, strict=True)
             ]
             if _apart(ways, before) < EXACT:
+                if turn + step == 0 and _leads(answers, before):
+                    return ways
                 break
         found = _improved(response, ways)
         if found is not None:
@@ -89,12 +91,19 @@ def _improved(response: Response, ways: list[Slip]) -> list[Slip] | None:
             return None
         moved, ways = _apart(better, ways), better
         if moved < EXACT or last * 0.5 <= moved < DIRECTED:
-            grows = (
-                inner(a.rate, e) >= -DIRECTED * a.strength for a, e in zip(response(ways), ways, strict=True)
-            )
-            return ways if all(grows) else None
+            return ways if _grow(response(ways), ways) else None
         last = moved
     return None
+
+
+def _grow(answers: Sequence[Resisted], ways: Sequence[Slip]) -> bool:
+    """Whether velocities in these directions grow, or stay."""
+    return all(inner(a.rate, e) >= -DIRECTED * a.strength for a, e in zip(answers, ways, strict=True))
+
+
+def _leads(answers: Sequence[Resisted], ways: Sequence[Slip]) -> bool:
+    """Whether directions that do not turn at once are known: slip alone, in a plane, never turns slowly."""
+    return len(ways) == 1 and len(ways[0]) == 2 and _grow(answers, ways)
 
 
 def _newton(response: Response, ways: Sequence[Slip]) -> list[Slip]:

@@ -136,8 +136,9 @@ def onset(known: Growth, power: int, order: int) -> Onset:
     """
     first = known.first
     across = tangents(first)
-    basis = (*across, first)
     slopes = [known.slope(b) for b in across]
+    aside = [[inner(b, g) for g in slopes] for b in across]
+    ahead = [inner(first, g) for g in slopes]
     e, s = [[number] for number in first], list[Scalar]()
     if power == 1:
         s.append(inner(known.accelerations(0), first))
@@ -151,14 +152,13 @@ def onset(known: Growth, power: int, order: int) -> Onset:
         behind = tuple(sum(map(mul, s[:k], row[k:0:-1])) for row in e)
         rest = plus(known.accelerations(j), scaled(-(k + power), behind))
         lag = (k + power) * s[0] if power == 1 else 0.0
-        columns = [plus(g, scaled(-lag, b)) for g, b in zip(slopes, across, strict=True)]
-        columns.append(scaled(-float(k + power), first))
-        found = solve([[inner(b, c) for c in columns] for b in basis], [-inner(b, rest) for b in basis])
-        for part, b in zip(found[:-1], across, strict=True):
+        matrix = [[g - lag if a == b else g for b, g in enumerate(row)] for a, row in enumerate(aside)]
+        parts = solve(matrix, [-inner(b, rest) for b in across])
+        for part, b in zip(parts, across, strict=True):
             for row, number in zip(e, b, strict=True):
                 row[j] = row[j] + part * number
         known.turn(j, tuple(row[j] for row in e))
-        s.append(found[-1])
+        s.append((inner(first, rest) + sum(map(mul, parts, ahead))) / (k + power))
     rows = [[y[k] for k in range(order + power + 1)] for y in known.state]
     turning = tuple(row[: order + 1] for row in e)
     return Onset(tuple(rows[:3]), tuple(rows[3:6]), tuple(rows[6:]), turning, s[: order + 1], power)
