@@ -12,8 +12,10 @@ import pytest
 
 import tippetop as tt
 from launches import TOLERANCE, asked, compared, in_javascript, in_python, launch_of
+from test_sticking_on_two import lying
 from tippetop.engine import COMMAND, HERE
 
+SLIPS_IN_THE_END = 21
 SEEDS, DURATION = (1, 3, 32, 62, 64, 104), 0.3
 if "TIPPETOP_PARITY" in os.environ:
     SEEDS = tuple(range(int(os.environ["TIPPETOP_PARITY"])))
@@ -51,6 +53,16 @@ def test_random_launches_are_the_same() -> None:
         if off:
             wrong[seed] = off
     assert not wrong
+
+
+def test_slip_that_begins_on_two_contacts_is_the_same() -> None:
+    """At first its direction follows friction so fast that rates tell of rounding, and of motion no more."""
+    problem, duration = lying(SLIPS_IN_THE_END), 0.5
+    question = asked(0, duration) | {"problem": problem.model_dump(mode="json"), "tolerance": TOLERANCE}
+    (found,) = in_javascript([question])
+    run = in_python(problem.model_dump(mode="json"), duration)
+    assert str(run["event_kind"].values[-1]) == "slip"
+    assert not compared(problem.model_dump(), found, run)
 
 
 def test_where_no_code_may_be_made_the_numbers_are_the_same() -> None:

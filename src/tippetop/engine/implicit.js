@@ -26,7 +26,8 @@ const lagrange = (j, x) => POINTS.reduce((total, c, i) => (i === j ? total : (to
 const { nodes, weights } = gauss(STAGES);
 const integral = (j, x) => nodes.reduce((total, node, i) => total + weights[i] * x * lagrange(j, x * node), 0);
 const WEIGHTS = POINTS.map((c) => POINTS.map((_, j) => integral(j, c)));
-const PLACES = chebyshev(STAGES).places.map((place) => POINTS.map((_, j) => integral(j, place)));
+/** What a polynomial that is 0 at 0 is at Chebyshev's points, from what it is at Radau's. */
+const PLACES = chebyshev(STAGES).places.map((place) => POINTS.map((c, j) => (place / c) * lagrange(j, place)));
 /** The highest of Legendre's polynomials in what a function is at the points. */
 const HIGHEST = POINTS.map((_, j) =>
   nodes.reduce((total, x, i) => total + (2 * STAGES - 1) * weights[i] * lagrange(j, x) * legendre(STAGES - 1, 2 * x - 1)[1], 0));
@@ -37,6 +38,7 @@ export class Collocation extends Stepper {
     this.most = MOST;
     this.jacobian = null;
     this.there = new Float64Array(this.size);
+    this.moved = new Float64Array(STAGES * this.size);
   }
 
   accept() {
@@ -74,7 +76,7 @@ export class Collocation extends Stepper {
         }
       }
     }
-    const order = factored(matrix), moved = new Float64Array(count), right = new Float64Array(count);
+    const order = factored(matrix), moved = this.moved.fill(0), right = new Float64Array(count);
     let error = Infinity, before = Infinity;
     for (let turn = 0; turn < TURNS; turn += 1) {
       for (let a = 0; a < STAGES; a += 1) {
@@ -116,11 +118,12 @@ export class Collocation extends Stepper {
     return 0.1 * largest;
   }
 
-  interpolate(step) {
-    const { size, state, slopes, terms } = this;
+  /** From what has moved, not from the rates: those of a stiff motion say of rounding what they say of motion. */
+  interpolate() {
+    const { size, state, moved, terms } = this;
     terms.fill(0);
     for (let i = 0; i < size; i += 1) {
-      const values = PLACES.map((row) => row.reduce((total, weight, a) => total + step * weight * slopes[a + 1][i], state[i]));
+      const values = PLACES.map((row) => row.reduce((total, weight, a) => total + weight * moved[a * size + i], state[i]));
       toPowers(values, STAGES, terms, i * (STAGES + 1));
     }
   }
