@@ -163,6 +163,16 @@ class TestRefusals:
             presets.report_problem().replace({"contact.liftoff": liftoff, name: value})
         assert the_one_line_of(caught.value).startswith(f"{name} = {value!r} is not possible")
 
+    @pytest.mark.parametrize("radius", [1e-12, 0.03])
+    def test_a_patch_that_is_a_point_or_larger_than_the_body(self, radius):
+        patch = ContensouFriction(mu=0.3, patch_radius=radius)
+        with pytest.raises(InvalidInput) as caught:
+            presets.report_problem().replace({"friction": patch})
+        told = the_one_line_of(caught.value)
+        assert told.startswith(
+            f"friction.patch_radius = {radius!r} is not possible; accepted: from 2e-11 to 0.02"
+        )
+
     @pytest.mark.parametrize("slip", [(0.0, 0.0, 0.0), "no", 1.0])
     def test_a_slip_that_is_not_two_numbers(self, slip):
         with pytest.raises(InvalidInput) as caught:

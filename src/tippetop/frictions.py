@@ -7,7 +7,11 @@ from tippetop.mechanics.contensou import EllipsoidalLaw
 from tippetop.mechanics.contensou_hertz import HertzLaw
 from tippetop.mechanics.coulomb import CoulombLaw
 from tippetop.mechanics.friction import FrictionLaw, RegularizedCoulombLaw, ViscousLaw
+from tippetop.mechanics.vectors import Scalar
 from tippetop.validation import NotNegative, Positive, Quantity, Variant
+
+LEAST_PATCH = 1e-9
+"""Least radius of a contact patch in units of the body's size: smaller, its drilling is lost in rounding."""
 
 
 class Friction(Variant):
@@ -31,6 +35,10 @@ class Friction(Variant):
     @abstractmethod
     def law(self) -> FrictionLaw:
         """The law as the mechanics takes it."""
+
+    def fits(self, size: Scalar) -> bool:
+        """Whether the contact of a body of this size, m, can be so; of arrays, an array of it."""
+        return True
 
     @property
     def vanishes(self) -> bool:
@@ -152,3 +160,8 @@ class ContensouFriction(Friction):
     def law(self) -> FrictionLaw:
         """The law as the mechanics takes it."""
         return (HertzLaw if self.pressure == "hertz" else EllipsoidalLaw)(self.mu, self.patch_radius)
+
+    def fits(self, size: Scalar) -> bool:
+        """As `Friction.fits`: a patch is no larger than the body, and more than a point."""
+        fits: bool = (self.patch_radius >= LEAST_PATCH * size) & (self.patch_radius <= size)
+        return fits

@@ -13,10 +13,10 @@ import tomli_w
 from pydantic import Field, model_validator
 
 from tippetop.bodies import Body
-from tippetop.errors import InvalidInput, one_of
+from tippetop.errors import MISSING, InvalidInput, one_of
 from tippetop.fields import dotted_names, numbers_of, part_at, table_at
 from tippetop.files import read_text
-from tippetop.frictions import Friction
+from tippetop.frictions import LEAST_PATCH, Friction
 from tippetop.mechanics.coulomb import RollingResistance
 from tippetop.mechanics.friction import FrictionLaw
 from tippetop.mechanics.hull import Hull, acting, lowest_surface
@@ -184,6 +184,7 @@ class Problem(Part):
 
     @model_validator(mode="after")
     def _contact_is_possible(self) -> Self:
+        self._refuse_strange_patch()
         if not (math.isfinite(self._resistance()) and math.isfinite(self._largest_square())):
             raise self._lying_flat() or self._out_of_reach()
         if self.contact.liftoff == "fly":
@@ -205,6 +206,17 @@ class Problem(Part):
                 "(Painleve's paradox), unless contact.liftoff is 'fly'",
             )
         return self
+
+    def _refuse_strange_patch(self) -> None:
+        """Refuse a contact patch that is larger than the body, or too small to be told from a point."""
+        size = self.body.surface.size
+        if not self.friction.fits(size):
+            raise InvalidInput(
+                "friction.patch_radius",
+                getattr(self.friction, "patch_radius", MISSING),
+                f"from {LEAST_PATCH * size:.3g} to {size:.3g} on this body; a smaller patch is a point, "
+                "for which there is coulomb",
+            )
 
     def _resistance(self) -> float:
         """The resistance of the contact at launch; nan where its arithmetic breaks down."""

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from test_impact import RESTITUTIONS, Rigid, check_laws_of_impact, planar
 
 from strategies import numbers, slides
+from tippetop.mechanics import integrated_impact
 from tippetop.mechanics.contensou import EllipsoidalLaw
 from tippetop.mechanics.contensou_hertz import HertzLaw
 from tippetop.mechanics.coulomb import CoulombLaw, RollingResistance
@@ -69,6 +70,42 @@ def test_regularized_friction_comes_to_it_as_its_speed_goes_to_zero(velocity):
         ends.append(impact(state, 0.5, top))
     assert ends[0].impulse == pytest.approx(ends[1].impulse, rel=1e-5)
     assert ends[0].state.momentum == pytest.approx(ends[1].state.momentum, abs=1e-5 * 3e-4)
+
+
+def test_drilling_alone_takes_no_steps():
+    """A body that falls spinning upright: the patch takes mu rho p from L, exactly, until none is left."""
+    mu, rho, restitution = 0.4, 0.05, 0.5
+    for spin, falling in ((3.0, 1.0), (1e-2, 1.0)):
+        top = Top(
+            1.0, 0.4, 0.5, SpheroidSurface(1.0, 1.4), EllipsoidalLaw(mu, rho / (3.0 * math.pi / 16.0)), 1.0
+        )
+        state = on_table(SlidingState((0.0, 0.0, 1.0), (0.0, 0.0, 0.5 * spin), (0.0, 0.0)), top)
+        result = impact(state._replace(velocity=(0.0, 0.0, -falling)), restitution, top)
+        assert result.impulse == pytest.approx(1.0 + restitution, rel=1e-14)
+        left = max(0.0, 0.5 * spin - mu * rho * result.impulse)
+        assert result.state.momentum == pytest.approx((0.0, 0.0, left), abs=1e-15)
+        assert result.steps < 20
+
+
+@pytest.mark.parametrize("law", [EllipsoidalLaw, HertzLaw])
+def test_a_direction_that_slip_keeps_is_followed_in_one_step(law, monkeypatch):
+    """On a small patch sliding follows drilling, which lasts: the same as by many steps, and without them."""
+
+    def struck(patch):
+        top = Top(1.0, 0.4, 0.5, SpheroidSurface(1.0, 1.4), law(0.3, patch), 1.0)
+        axis = (math.sin(1.2), 0.0, math.cos(1.2))
+        state = on_table(SlidingState(axis, (0.1, 0.05, 0.4), (0.1, -0.2)), top)
+        return impact(state._replace(velocity=(*state.velocity[:2], -1.0)), 0.7, top)
+
+    quick = [struck(patch) for patch in (3e-3, 1e-5, 1e-8)]
+    assert all(one.steps < 500 for one in quick)
+    monkeypatch.setattr(integrated_impact, "straight", lambda *_: None)
+    slow = struck(3e-3)
+    assert slow.steps > 2 * quick[0].steps
+    assert quick[0].state.momentum == pytest.approx(slow.state.momentum, abs=1e-9)
+    assert quick[0].state.velocity == pytest.approx(slow.state.velocity, abs=1e-9)
+    # The smaller the patch, the more it is a point, with rounding.
+    assert quick[2].state.momentum == pytest.approx(quick[1].state.momentum, abs=1e-4)
 
 
 DRY = {

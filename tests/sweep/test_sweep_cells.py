@@ -78,6 +78,15 @@ def test_cells_are_refused_where_problems_are(field, liftoff):
     assert (cells.fault != Fault.NONE).tolist() == refused
 
 
+def test_cells_whose_patch_does_not_fit_the_body_are_refused():
+    patch = {"friction.kind": "contensou", "friction.mu": 0.3, "friction.patch_radius": 1e-3}
+    problem = report_problem(tilt=1.0).replace(patch)
+    wanted = [Fault.NONE, Fault.VALUE_OUT_OF_RANGE]
+    assert list(cells_of(problem, {"friction.patch_radius": np.array([1e-4, 1e-12])}).fault) == wanted
+    radius = {"body.shape.radius": np.array([0.02, 1e-4])}
+    assert list(cells_of(problem, radius).fault) == wanted
+
+
 def test_a_cell_is_labelled_with_what_is_wrong_with_it():
     problem = report_problem(tilt=1.0).replace({"contact.liftoff": "stop"})
     assert cells_of(problem, {"launch.tilt": np.array([4.0])}).fault == [Fault.VALUE_OUT_OF_RANGE]

@@ -7,6 +7,7 @@ from tippetop.mechanics.dry_impact import DryContact
 from tippetop.mechanics.impulse import FUZZ, Goal, Impulse, Striking, first_reach
 from tippetop.mechanics.roots import crossing
 from tippetop.mechanics.runge_kutta import POWER, Point, RungeKuttaStep, moved, step_from
+from tippetop.mechanics.straight_impact import straight
 from tippetop.mechanics.vectors import add, length, scale
 
 LONGEST = 5.0
@@ -25,7 +26,10 @@ NEWTON, STRAIGHT = 4, 1e-8
 """Improvements of the end of an impact, and how near to it, in its last step, the way is straight."""
 
 MOST = 100_000
-"""Steps after which an impact is given up; most take some ten, and on small patches thousands."""
+"""Steps after which an impact is given up; most take some ten."""
+
+LOOK = 4
+"""After how many steps each it is looked whether slip has come to a direction that it keeps."""
 
 
 class IntegratedProcess(NamedTuple):
@@ -60,6 +64,15 @@ class IntegratedProcess(NamedTuple):
             held = self.held(unpack(here), goal, guess)
             if held is not None:
                 return held._replace(steps=taken)
+            if self.dry is not None and taken % LOOK == 0:
+                ended = straight(self.dry, unpack(here), goal, guess)
+                if ended is not None:
+                    if goal(ended) >= 0.0:
+                        return ended._replace(steps=taken)
+                    here, waiting = pack(ended), False
+                    self = self._replace(dry=self.dry.settled(ended))  # noqa: PLW0642
+                    slope = self.slope(here)
+                    continue
             taking = step_from(here, slope, step, self.slope)
             doubt = self.doubt(taking)
             reached = goal(unpack(taking.there)) >= 0.0

@@ -112,6 +112,8 @@ def cells_of(problem: Problem, values: Mapping[str, Array]) -> Cells:
             fault[~allowed(numbers, known[field])] = Fault.VALUE_OUT_OF_RANGE
         for part in (*filled.body.shapes, filled.friction, filled.contact):
             fault[refused(part, count)] = Fault.VALUE_OUT_OF_RANGE
+        fits = filled.friction.fits(spread(filled.body.surface.size, count))
+        fault[~np.broadcast_to(fits, (count,))] = Fault.VALUE_OUT_OF_RANGE
         if not isinstance(top.surface, Hull):
             fault[~np.isfinite(top.surface.slope(start.axis[2]))] = Fault.VALUE_OUT_OF_RANGE
         units = natural_units(top)
