@@ -150,7 +150,7 @@ def test_steps_within_impacts_count() -> None:
     free = tt.simulate(bouncing(), 0.2, samples=11)
     assert free.attrs["outcome"] == "completed"
     assert int(free["steps"]) < 50
-    bounded = tt.simulate(bouncing(), 0.2, samples=11, step_limit=300)
+    bounded = tt.simulate(bouncing(), 0.2, samples=11, step_limit=100)
     assert bounded.attrs["outcome"] == "too_many_steps"
     assert 0.0 < float(bounded["time"][-1]) < 0.2
 
@@ -162,7 +162,7 @@ def test_pieces_of_flights_count() -> None:
 
 
 def test_a_single_impact_or_flight_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(integrated_impact, "MOST", 20)
+    monkeypatch.setattr(integrated_impact, "MOST", 5)
     run = tt.simulate(bouncing(), 0.2, samples=11)
     assert run.attrs["outcome"] == "failed"
     assert 0.0 < float(run["time"][-1]) < 0.2
@@ -183,7 +183,7 @@ def test_steps_within_impacts_on_two_surfaces_count(monkeypatch: pytest.MonkeyPa
     free = tt.simulate(rod, 0.1, samples=3)
     assert free.attrs["outcome"] == "completed"
     taken = int(free["steps"])
-    bounded = tt.simulate(rod, 0.1, samples=3, step_limit=taken + 500)
+    bounded = tt.simulate(rod, 0.1, samples=3, step_limit=taken + 300)
     assert bounded.attrs["outcome"] == "too_many_steps"
     monkeypatch.setattr(impact_on_two, "MOST", 20)
     given_up = tt.simulate(rod, 0.1, samples=3)

@@ -138,6 +138,14 @@ def test_a_law_that_takes_no_complex_numbers_is_left_to_the_explicit_method():
     assert np.isnan(RightHandSide(motion, ()).linearized(np.ones((1, 1)))[0]).all()
 
 
+def test_a_root_of_a_negative_number_is_no_rate():
+    motion = Motion(lambda y, p: (y[0] ** -0.5, 1.0), 2, 0)
+    assert RightHandSide(motion, ())(0.0, np.array([4.0, 0.0])).tolist() == [0.5, 1.0]
+    found = RightHandSide(motion, ())(0.0, np.array([-4.0, 0.0]))
+    assert found.dtype == float
+    assert np.isnan(found).all()
+
+
 def test_a_relieved_method_is_relieved_once():
     method = make_integrator()
     assert relieved(method) is method

@@ -24,9 +24,11 @@ class RightHandSide:
         """The rates at a state, whatever the time."""
         self.calls += 1
         try:
-            return np.array(self.motion.rates(state.tolist(), self.parameters))
+            rates = np.array(self.motion.rates(state.tolist(), self.parameters))
         except ArithmeticError:
             return np.full(self.motion.size, np.nan)
+        # Python takes the root of a negative number for a complex one.
+        return np.full(self.motion.size, np.nan) if np.iscomplexobj(rates) else rates
 
     def linearized(self, states: Array) -> tuple[Array, Array]:
         """The rates at n states, shape (n, size), and their derivatives, shape (n, size, size).
