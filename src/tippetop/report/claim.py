@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, dataclass
 from enum import Enum
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import xarray as xr
 
@@ -69,6 +69,11 @@ class Finding:
     """What else is found that the report could not know, in a sentence; "" for nothing."""
     right: str = ""
     """What is right where the claim is not, in a few words with values; "" where the claim says it."""
+
+    @classmethod
+    def unlisted(cls, converged: Value, note: str, *choices: Any, **others: Any) -> "Finding":
+        """A finding where the report's own method has nothing to say."""
+        return cls(None, converged, note, *choices, **others)
 
 
 Examine: TypeAlias = Callable[..., Finding]

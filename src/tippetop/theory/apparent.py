@@ -40,9 +40,8 @@ def critical_spin_from_spectrum(kind: SteadyKind, top: Top) -> float:
 
 def vertical_spins_of_launches(kind: SteadyKind, problem: Problem, spins: Array) -> Array:
     """Axial spins, rad/s, of the vertical spins with the Jellett's integrals of launches with these spins."""
-    line = jellett_line(problem)
-    found: Array = line.at(np.asarray(spins)) / vertical_spin(kind, problem.top, 1.0).jellett
-    return found
+    per_spin = vertical_spin(kind, problem.top, 1.0).jellett
+    return np.asarray(jellett_line(problem).at(np.asarray(spins)) / per_spin)
 
 
 def growth_rates_of_launches(kind: SteadyKind, problem: Problem, spins: Array) -> Array:
@@ -84,11 +83,10 @@ def apparent_critical_spins(problem: Problem, window: float, visible: float) -> 
         raise InvalidInput("window", window, "a positive time")
     real = critical_spins(problem)
     top, line = problem.top, jellett_line(problem)
+    per_spin = vertical_spin(SteadyKind.UPRIGHT, top, 1.0).jellett
 
     def tilt_left(spin: float) -> float:
-        upright = vertical_spin(
-            SteadyKind.UPRIGHT, top, line.at(spin) / vertical_spin(SteadyKind.UPRIGHT, top, 1.0).jellett
-        )
+        upright = vertical_spin(SteadyKind.UPRIGHT, top, line.at(spin) / per_spin)
         start = along_table(problem.replace({"launch.spin": spin}).start())
         return math.log(float(linear_tilts(upright, top, start, np.array([window]))[0]) / visible)
 

@@ -124,8 +124,7 @@ def flip_time_limit(problem: Problem, distance: float = 0.01) -> float:
 
 def local_exponent(mu: Array, flip_time: Array) -> Array:
     """Exponent d ln t / d ln mu along a table of flip times, shape (n,): -1 where t goes as 1 / mu."""
-    exponent: Array = np.gradient(np.log(flip_time), np.log(mu))
-    return exponent
+    return np.asarray(np.gradient(np.log(flip_time), np.log(mu)))
 
 
 _FINE = 4000
@@ -134,8 +133,7 @@ _MOST_STAGES = 20
 
 def _distances(flow: SlowFlow) -> Array:
     """Distance of the nutation from the final tilt, rad, negative where it contains it."""
-    away: Array = np.maximum(flow.tilt_low - flow.final_tilt, flow.final_tilt - flow.tilt_high)
-    return away
+    return np.asarray(np.maximum(flow.tilt_low - flow.final_tilt, flow.final_tilt - flow.tilt_high))
 
 
 def _follow(

@@ -72,8 +72,7 @@ def smooth_constants(axis: Array, momentum: Array, top: Top) -> Constants:
 def potential_at(index: int, axis: Array, momentum: Array, top: Top, tilts: Array) -> Array:
     """Effective potential, J, of these tilts (rad, between 0 and pi, shape (k,)) at one instant of a run."""
     values = smooth_constants(axis[index : index + 1], momentum[index : index + 1], top)
-    potential: Array = effective_potential(np.asarray(tilts, dtype=float), values, top, np)
-    return potential
+    return np.asarray(effective_potential(np.asarray(tilts, dtype=float), values, top, np))
 
 
 def nutation_envelope(axis: Array, momentum: Array, top: Top) -> Envelope:

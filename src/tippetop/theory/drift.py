@@ -101,8 +101,7 @@ _NO_SLIP = 1e-6
 
 def _between(log_ratio: Array, start: float, end: float) -> Array:
     """The tilts with these values of ln((tilt - start) / (end - tilt))."""
-    tilts: Array = end - (end - start) / (1.0 + np.exp(log_ratio))
-    return tilts
+    return np.asarray(end - (end - start) / (1.0 + np.exp(log_ratio)))
 
 
 def _speeds(tilts: Array, jellett: float, fast: bool, numbers: Numbers) -> Array:

@@ -150,8 +150,7 @@ def vertical_eigenvalues(kind: SteadyKind, top: Top, spins: Array) -> Complex:
 
 def vertical_growth_rates(kind: SteadyKind, top: Top, spins: Array) -> Array:
     """Growth rates of the vertical spin at these axial spins (rad/s), 1/s, shape (n,)."""
-    growth: Array = vertical_eigenvalues(kind, top, spins)[:, 0].real
-    return growth
+    return np.asarray(vertical_eigenvalues(kind, top, spins)[:, 0].real)
 
 
 def linear_tilts(steady: SteadyState, top: Top, start: SlidingState, times: Array) -> Array:
@@ -169,8 +168,7 @@ def linear_tilts(steady: SteadyState, top: Top, start: SlidingState, times: Arra
     steps = np.asarray(times, dtype=float)[:, None, None] / units.time
     later = expm(steps * linear.matrix) @ (linear.basis[0].T @ away)
     horizontal = later @ linear.basis[0].T[:, :2]
-    tilts: Array = np.hypot(horizontal[:, 0], horizontal[:, 1])
-    return tilts
+    return np.asarray(np.hypot(horizontal[:, 0], horizontal[:, 1]))
 
 
 class _Linear(NamedTuple):
@@ -274,5 +272,4 @@ def _along_branch(angles: Angles, top: Top) -> list[Array]:
 
 def _complement(directions: Array) -> Array:
     """Orthonormal basis of what is perpendicular to the directions, shape (n, 8, 8 - m)."""
-    basis: Array = np.linalg.qr(directions, mode="complete").Q[..., directions.shape[-1] :]
-    return basis
+    return np.asarray(np.linalg.qr(directions, mode="complete").Q[..., directions.shape[-1] :])

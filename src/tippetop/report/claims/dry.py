@@ -32,8 +32,7 @@ def _(data: xr.Dataset) -> Finding:
     same = float(abs(held - held.isel(held=0)).max()) < _SAME
     rolls = same and int(data["slips_held"].sum()) == 0 and float(data["lost_held"].max()) < _SAME
     needed, shown = float(data["needed_main"]), data["held"].values
-    return Finding(
-        None,
+    return Finding.unlisted(
         not rolls,
         f"At {data.attrs['spin_rad_per_s']:g} rad/s and {data.attrs['tilt_rad']:g} rad the report's top "
         f"needs mu = {needed:.5f} to roll. On mu = {shown.min():.5f} to {shown.max():g} it does the same "
@@ -96,8 +95,7 @@ def _(data: xr.Dataset) -> Finding:
 )
 def _(data: xr.Dataset) -> Finding:
     eps, times = data["eps"].values, data["turning_time"].values
-    return Finding(
-        None,
+    return Finding.unlisted(
         bool(np.isfinite(data["exact_turns"])),
         f"Smoothed below eps = {eps[0]:g} m/s, friction of mu = {data.attrs['mu']:g} turns the top over "
         f"in {times[0]:.2f} s, below {eps[-1]:g} m/s in {times[-1]:.2f} s; there the time goes as eps to "
@@ -121,8 +119,7 @@ def _(data: xr.Dataset) -> Finding:
     quickest = fast.isel(radius=int(fast["turning_time"].argmin("radius")))
     never = fast["radius"].where(fast["turning_time"].isnull() & (fast["radius"] > quickest["radius"]))
     slowest = float(data["spin"].where(turned.any("radius")).min())
-    return Finding(
-        None,
+    return Finding.unlisted(
         bool(np.isfinite(data["theirs_turns"])),
         f"Their top passes the horizontal after {float(data['theirs_turns']):.5f} s (ellipsoidal limit "
         f"surface). The report's, on mu = {data.attrs['mu']:g} at {float(fast['spin']):g} rad/s, is "
@@ -147,8 +144,7 @@ def _(data: xr.Dataset) -> Finding:
     least, most = ratio.min("coefficient").values, ratio.max("coefficient").values
     spans = listed("mu = {:g}: {:.2f} to {:.2f}", data["mu"].values, least, most, between="; ")
     worst = data["growth_ratio"].values.ravel()
-    return Finding(
-        None,
+    return Finding.unlisted(
         float(worst[np.abs(worst - 1.0).argmax()]),
         "The coefficient is (3 pi / 8) mu / (R omega) with Hertz's pressure and mu / (rho omega) with an "
         "ellipsoidal limit surface. How well it stands for the whole way, by the ratio of the times to "
@@ -190,8 +186,7 @@ def _is_dry(ratios: list[float]) -> bool:
 )
 def _(data: xr.Dataset) -> Finding:
     slowest = float((data["hertz_coefficient"].max() / ROUGH_FRICTION) * SPIN_OF_REPORT)
-    return Finding(
-        None,
+    return Finding.unlisted(
         bool((data["hertz_coefficient"] < ROUGH_FRICTION).all()),
         f"{_surfaces(data)} None reaches {ROUGH_FRICTION:g} s/m there, but the coefficient goes as one over "
         f"the spin: below {slowest:.0f} rad/s the hardest of these does.",

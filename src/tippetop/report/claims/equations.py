@@ -54,7 +54,7 @@ def _(check: xr.Dataset) -> Finding:
 def _largest_miss(check: xr.Dataset, words: str) -> Finding:
     miss = check["miss"]
     each = listed("{} {}", miss["equation"].values, map(rounded, miss.values))
-    return Finding(None, float(miss.max()), f"Differences {words}: {each}.")
+    return Finding.unlisted(float(miss.max()), f"Differences {words}: {each}.")
 
 
 @CHAPTER.claim(
@@ -117,8 +117,7 @@ def _(run: xr.Dataset) -> Finding:
     difference = run["energy_published"] - run["energy"]
     k = int(np.argmax(np.abs(difference.values)))
     share = float(difference[k]) / launch
-    return Finding(
-        None,
+    return Finding.unlisted(
         abs(share),
         "(4.1) leaves out what slip adds to the velocity of the centre of mass. At "
         f"{run['time'][k]:.2f} s it is {1e3 * float(difference[k]):+.3f} mJ off, {100 * share:+.1f} % "

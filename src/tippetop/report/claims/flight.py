@@ -96,8 +96,7 @@ def _weight(run: xr.Dataset) -> float:
 )
 def _(run: xr.Dataset) -> Finding:
     fall = float(ENERGY) / _weight(run)
-    return Finding(
-        None,
+    return Finding.unlisted(
         fall,
         "So much for the arithmetic. What it is there to show, that the energy could grow by a fall, is "
         "judged apart (fig10-by-falling).",
@@ -115,8 +114,7 @@ def _(run: xr.Dataset) -> Finding:
     change, height = _kept_in_flight(run)
     work = _weight(run) / float(REPORT.surface.size) * height
     none = change < _NO_PART * work
-    return Finding(
-        None,
+    return Finding.unlisted(
         not none,
         "The report argues that the top cannot gain the energy, because it would have to fall so far. But "
         "(4.1) counts the height already, as m g R (1 - alpha cos theta): what falls turns one part of its "
@@ -154,8 +152,7 @@ def _(run: xr.Dataset) -> Finding:
     rising = np.diff(energy.sel(time=after["time"]).values) > ROUNDED * launch
     pulled = (after.values[1:] < 0) | (after.values[:-1] < 0)
     only = "only there" if not (rising & ~pulled).any() else "not only there"
-    return Finding(
-        None,
+    return Finding.unlisted(
         largest_rise <= ROUNDED * launch and not (rising & ~pulled).any(),
         f"Up to lift-off the energy never rises (largest change from sample to sample {largest_rise:.1e} J). "
         f"Later the force is negative at {100 * float((after < 0).mean()):.0f} % of the samples, and {only} "
@@ -277,8 +274,7 @@ def _(run: xr.Dataset) -> Finding:
     figure="fig12",
 )
 def _(run: xr.Dataset) -> Finding:
-    return Finding(
-        None,
+    return Finding.unlisted(
         float(run["highest_gap"]) > PLOTTED.value * float(REPORT.surface.size),
         f"It leaves the table first after {run['lift_off_time']:.2f} s, and rises higher than the 1 % of its "
         f"radius that a drawing could show. {_hopping(run)} That the motion is hard to discuss, as the "

@@ -1,6 +1,5 @@
 """Claims about friction: Fig. 7, Fig. 8, and what is said of other values of mu."""
 
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -30,8 +29,7 @@ def _(data: xr.Dataset) -> Finding:
     fastest = int(np.nanargmin(times))
     some = listed("{:.2f} s at {:g} s/m", times[turns], mu[turns])
     none = " and ".join(f"{m:g} s/m" for m in mu[~turns])
-    return Finding(
-        None,
+    return Finding.unlisted(
         not turns[0] and bool((np.diff(times[fastest:][turns[fastest:]]) > 0).all()) and not turns[-1],
         f"The axis of the main launch first passes the horizontal after {some}; within "
         f"{data.attrs['window_s']:g} s it does not at {none}. Much friction hinders: the slip that turns the "
@@ -149,8 +147,7 @@ def _(wide: xr.Dataset) -> Finding:
     beyond = off.sel(mu_wide=wide["mu_wide"] > 1.0)
     first = [float(wide["mu_wide"][int(np.argmax(row > _LOST))]) for row in off.values]
     named = listed("{:.2f} s/m at {:g} rad/s", first, wide["spin_wide"].values, between=" and ")
-    return Finding(
-        None,
+    return Finding.unlisted(
         bool(float(beyond.max()) > _LOST),
         f"Beyond 1 s/m mu t departs by up to a factor {1 + float(beyond.max()):.1f}. By the report's "
         f"definition it does so earlier, too: it is first off by more than {100 * _LOST:.0f} % at {named}.",
@@ -222,8 +219,7 @@ def _(run: xr.Dataset) -> Finding:
 )
 def _(later: xr.Dataset) -> Finding:
     swing = later["swing"]
-    return Finding(
-        None,
+    return Finding.unlisted(
         float(swing[-1]),
         f"20 s are too short for it: there the tilt still swings by {swing[0]:.3f} rad. Converged swings in "
         f"the second before: {listed('{:.4f} rad at {:g} s', swing.values, swing['end'].values)}.",
@@ -240,56 +236,46 @@ def _(later: xr.Dataset) -> Finding:
 )
 def _(block: xr.Dataset) -> Finding:
     distance = float(block["distance"])
-    return Finding(None, distance, f"It comes to rest after {1e3 * distance:.3f} mm.")
+    return Finding.unlisted(distance, f"It comes to rest after {1e3 * distance:.3f} mm.")
 
 
-@CHAPTER.claim(
-    "eq-2.7-mu-unit",
-    Source("2.2", equation="(2.7)"),
-    "mu has the dimension of s/m (the value is the power of length in it).",
-    "-1",
-    tolerance=WHOLE,
-    needs=("units",),
-)
-def _(check: xr.Dataset) -> Finding:
-    return _unit(check, "centimetres", "length", "s/m", "m/s")
+def _unit(
+    name: str, source: Source, text: str, power: str, quantity: str, units: tuple[str, str], right: str = ""
+) -> None:
+    """A power of a quantity in a unit; `units` are the right one, as it is told, and the other."""
 
-
-@CHAPTER.claim(
-    "table-1-mu-unit",
-    Source("3", "Table 1"),
-    "Table 1: the unit of mu is m/s (the value is the power of length in it).",
-    "1",
-    tolerance=WHOLE,
-    needs=("units",),
-    right="s/m, as in section 2.2",
-)
-def _(check: xr.Dataset) -> Finding:
-    return _unit(check, "centimetres", "length", "s/m, which section 2.2 has right,", "m/s")
-
-
-@CHAPTER.claim(
-    "table-1-g-unit",
-    Source("3", "Table 1"),
-    "Table 1: the unit of g is m s^2 (the value is the power of time in it).",
-    "2",
-    tolerance=WHOLE,
-    needs=("units",),
-    right="m s^-2",
-)
-def _(check: xr.Dataset) -> Finding:
-    found = _unit(check, "tenths", "time", "m s^-2", "m s^2")
-    return replace(found, note=f"{found.note} {TRANSCRIBED}")
-
-
-def _unit(check: xr.Dataset, others: str, quantity: str, right: str, printed: str) -> Finding:
-    """Which power keeps the motion the same in other units."""
-    misses = abs(check[f"theta_in_{others}"] - check["theta"])
-    k = int(np.argmin(misses.values))
-    power = float(misses[f"power_of_{quantity}"][k])
-    return Finding(
+    @CHAPTER.claim(
+        name,
+        source,
+        f"{text} (the value is the power of {quantity} in it).",
         power,
-        power,
-        f"A launch computed in other units of {quantity} must give the same tilt. Converted as {right} it "
-        f"differs by {misses[k]:.1e} rad after 2 s, as {printed} by {misses[1 - k]:.1e} rad.",
+        tolerance=WHOLE,
+        needs=("units",),
+        right=right,
     )
+    def _(check: xr.Dataset) -> Finding:
+        others = {"length": "centimetres", "time": "tenths"}[quantity]
+        misses = abs(check[f"theta_in_{others}"] - check["theta"])
+        k = int(np.argmin(misses.values))
+        found = float(misses[f"power_of_{quantity}"][k])
+        return Finding(
+            found,
+            found,
+            f"A launch computed in other units of {quantity} must give the same tilt. Converted as "
+            f"{units[0]} it differs by {misses[k]:.1e} rad after 2 s, as {units[1]} by "
+            f"{misses[1 - k]:.1e} rad." + (f" {TRANSCRIBED}" if quantity == "time" else ""),
+        )
+
+
+_TABLE_1 = Source("3", "Table 1")
+_unit(
+    "eq-2.7-mu-unit", Source("2.2", equation="(2.7)"), "mu has the dimension of s/m", "-1", "length",
+    ("s/m", "m/s"),
+)  # fmt: skip
+_unit(
+    "table-1-mu-unit", _TABLE_1, "Table 1: the unit of mu is m/s", "1", "length",
+    ("s/m, which section 2.2 has right,", "m/s"), "s/m, as in section 2.2",
+)  # fmt: skip
+_unit(
+    "table-1-g-unit", _TABLE_1, "Table 1: the unit of g is m s^2", "2", "time", ("m s^-2", "m s^2"), "m s^-2"
+)

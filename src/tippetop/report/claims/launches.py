@@ -1,6 +1,7 @@
 """Claims about single launches: Figs. 4 and 5, and Appendix C."""
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 import xarray as xr
@@ -86,21 +87,32 @@ _reversal("fig04-second-reversal", 155, _SECOND, "quiet_end", "the first after t
 _reversal("fig05-reversal", 50, REVERSALS["fig05"][0], "last_reversal", "the last")
 
 
-@CHAPTER.claim(
-    "fig04-inverts",
-    Source("3.1", "Fig. 4"),
-    "At 155 rad/s the top turns around completely, to theta = pi.",
-    "pi rad",
-    tolerance=ARRIVED,
-    needs=("run-155",),
-    figure="fig04",
-)
-def _(run: xr.Dataset) -> Finding:
-    left = math.pi - float(run["end_theta"])
-    return Finding(
-        *both(run, "end_theta"),
-        f"After 20 s the axis is still {1e3 * left:.2f} mrad from the vertical; the rest decays slowly.",
+def _ends(
+    name: str, place: str, spin: int, text: str, printed: str, told: Callable[[xr.Dataset], str]
+) -> None:
+    """The tilt at the end of a run; of those in the appendix the report says nothing in words."""
+    figure = name.partition("-")[0]
+
+    @CHAPTER.claim(
+        name,
+        Source(place, f"Fig. {int(figure[3:])}"),
+        f"At {spin} rad/s the top {text}.",
+        printed,
+        tolerance=ARRIVED,
+        needs=(f"run-{spin}",),
+        figure=figure,
+        implied=place == "Appendix C",
     )
+    def _(run: xr.Dataset) -> Finding:
+        return Finding(*both(run, "end_theta"), told(run))
+
+
+def _left(run: xr.Dataset) -> str:
+    left = math.pi - float(run["end_theta"])
+    return f"After 20 s the axis is still {1e3 * left:.2f} mrad from the vertical; the rest decays slowly."
+
+
+_ends("fig04-inverts", "3.1", 155, "turns around completely, to theta = pi", "pi rad", _left)
 
 
 def _slip_vanishes(figure: str, spin: int) -> None:
@@ -153,44 +165,22 @@ def _detour(values: np.ndarray) -> float:
     return float(np.abs(np.diff(values)).sum() / np.ptp(values)) - 1.0
 
 
-@CHAPTER.claim(
-    "fig13-upright",
-    Source("Appendix C", "Fig. 13"),
-    "At 10 rad/s the top stays upright (tilt after 20 s).",
-    "0 rad",
-    tolerance=ARRIVED,
-    needs=("run-10",),
-    figure="fig13",
-    implied=True,
-)
-def _(run: xr.Dataset) -> Finding:
-    return Finding(
-        *both(run, "end_theta"),
-        f"The nutation of the launch dies away: from {_settled(run):.2f} s on the tilt stays below "
-        f"{SETTLED:g} rad.",
+def _settled(run: xr.Dataset) -> str:
+    """From when on the tilt stays within the report's measure of its last value."""
+    away = np.abs(run["theta"].values - float(run["end_theta"])) > SETTLED
+    since = float(run["time"].values[np.flatnonzero(away)[-1] + 1])
+    return (
+        f"The nutation of the launch dies away: from {since:.2f} s on the tilt stays below {SETTLED:g} rad."
     )
 
 
-def _turns_over(number: int, spin: int) -> None:
-    @CHAPTER.claim(
-        f"fig{number}-inverts",
-        Source("Appendix C", f"Fig. {number}"),
-        f"At {spin} rad/s the top turns over completely (tilt after 20 s).",
-        "pi rad",
-        tolerance=ARRIVED,
-        needs=(f"run-{spin}",),
-        figure=f"fig{number}",
-        implied=True,
-    )
-    def _(run: xr.Dataset) -> Finding:
-        return Finding(
-            *both(run, "end_theta"),
-            f"It arrives within {SETTLED:g} rad after {run['arrives']:.2f} s.",
-        )
+def _arrived(run: xr.Dataset) -> str:
+    return f"It arrives within {SETTLED:g} rad after {run['arrives']:.2f} s."
 
 
-_turns_over(14, 90)
-_turns_over(15, 120)
+_ends("fig13-upright", "Appendix C", 10, "stays upright (tilt after 20 s)", "0 rad", _settled)
+_ends("fig14-inverts", "Appendix C", 90, "turns over completely (tilt after 20 s)", "pi rad", _arrived)
+_ends("fig15-inverts", "Appendix C", 120, "turns over completely (tilt after 20 s)", "pi rad", _arrived)
 
 
 @CHAPTER.claim(
@@ -220,9 +210,3 @@ def _stays_upright(slow: xr.Dataset, suffix: str) -> bool:
     """Whether no tilt exceeds that of the launch, and all are gone in the end."""
     highest, final = slow[f"highest{suffix}"], slow[f"final{suffix}"]
     return bool((highest <= REPORT_TILT + SETTLED).all() and (final < SETTLED).all())
-
-
-def _settled(run: xr.Dataset) -> float:
-    """From when on the tilt stays within the report's measure of its last value, s."""
-    away = np.abs(run["theta"].values - float(run["end_theta"])) > SETTLED
-    return float(run["time"].values[np.flatnonzero(away)[-1] + 1])

@@ -20,8 +20,7 @@ CHAPTER = Chapter()
     figure="order",
 )
 def _(order: xr.Dataset) -> Finding:
-    return Finding(
-        None,
+    return Finding.unlisted(
         float(order["order_rk4_in_a_step"]),
         "On the top, whose equations do not depend on time, so that the slip in the last stage of (B.1) "
         f"does not matter, a step is of order {order['order_rk4_in_a_step']:.2f} and a whole run, in which "
@@ -38,8 +37,7 @@ def _(order: xr.Dataset) -> Finding:
     right="f(Y4, t_n + dt)",
 )
 def _(order: xr.Dataset) -> Finding:
-    return Finding(
-        None,
+    return Finding.unlisted(
         float(order["order_printed_in_a_step"]),
         "Taken at t_n instead of t_n + dt, it makes a single step of order "
         f"{order['order_printed_in_a_step']:.2f} and a whole run of order "
@@ -86,8 +84,7 @@ def _(*data: xr.Dataset) -> Finding:
     late = float(fast["zero_of_force_listing"] - fast["lift_off_time"])
     end = likely_end(windows)
     digits = max(abs(float(end[f"{key}_after_listing"] - end[f"{key}_after"])) for key in END_OF_FIG_5)
-    return Finding(
-        None,
+    return Finding.unlisted(
         float(worst.max()),
         "On the launches that stay on the table, over their ends and their arrivals: at most "
         f"{listed('{:.2f} % in {}', 100 * worst, _READ_OFF)}. "
@@ -124,8 +121,7 @@ def _name(run: xr.Dataset) -> str:
     figure="stiffness",
 )
 def _(counts: xr.Dataset) -> Finding:
-    return Finding(
-        None,
+    return Finding.unlisted(
         bool((counts["stiffness"] > _STIFF).any()),
         f"A launch counts as stiff if the best implicit method needs less than 1/{_STIFF:g} of the "
         "evaluations of the right-hand side that the best explicit one needs: methods of different orders "
@@ -156,8 +152,7 @@ def _(counts: xr.Dataset) -> Finding:
     named = " and ".join(f"{mu:g} s/m" for mu in decided)
     own, ratio = friction == MU, counts["stiffness"].values
     tried = "none is stiff" if not stiff[own].any() else f"{stiff[own].sum()} are stiff"
-    return Finding(
-        None,
+    return Finding.unlisted(
         bool(decided),
         f"It does so at mu = {named or 'none tried'}. What the report does not say is that friction takes "
         f"part: of {own.sum()} launches at mu = {MU:g} s/m, fast or slow, lying or next to a pole, {tried}, "
@@ -178,8 +173,7 @@ def _(counts: xr.Dataset) -> Finding:
     rough = counts.isel(launch=counts["launch_mu"].values == ROUGH_FRICTION)
     columns = (rough[name].values for name in ("bdf_miss", "launch_spin", "stiffness"))
     misses = listed("{:.4f} rad at {:g} rad/s (ratio {:.1f})", *columns, between=" and ")
-    return Finding(
-        None,
+    return Finding.unlisted(
         float(rough["bdf_miss"].max()),
         "The report does not name its cases. These are its friction of Fig. 8, at which implicit methods "
         f"need fewer evaluations; after {counts.attrs['span_s']:g} s the difference is {misses}. By SciPy's "

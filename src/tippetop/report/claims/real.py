@@ -32,8 +32,7 @@ def _leine(event: str, text: str, printed: str) -> None:
         times = data[event]
         pressures, misses = data["pressure"].values, abs(times - float(printed))
         failing = [str(name) for name in pressures[(misses > _READ.value).values]]
-        return Finding(
-            None,
+        return Finding.unlisted(
             float(times[0]),
             "The paper does not say which pressure in the patch its figure is for. Judged is the ellipsoidal "
             "limit surface, the law of a code of its authors; it misses by "
@@ -66,8 +65,7 @@ def _(data: xr.Dataset) -> Finding:
         *(column.values for column in columns),
         between="; ",
     )
-    return Finding(
-        None,
+    return Finding.unlisted(
         goes,
         "By its step, how far off are the stem's first touch, the fall back on the sphere and the beginning "
         "of double contact, of how many strikes the rocking before this consists, and how far off the tilt "
@@ -88,8 +86,7 @@ def _(data: xr.Dataset) -> Finding:
     stands = (data["final_theta"] > np.pi - data.attrs["upright_rad"]).values
     enough = (data["jellett"] > data["jellett_needed"]).values
     share = (data["jellett"] / data["jellett_needed"]).values
-    return Finding(
-        None,
+    return Finding.unlisted(
         bool((stands == enough).all()),
         f"{int(stands.sum())} of {len(stands)} stems of the report's top, whose tips have radii of "
         f"{1e3 * float(data['radius'].min()):g} to {1e3 * float(data['radius'].max()):g} mm, are stood upon "
@@ -108,8 +105,7 @@ def _(data: xr.Dataset) -> Finding:
 def _(data: xr.Dataset) -> Finding:
     final = data["theta"].isel(time=-1)
     tilts = listed("{:g} rad/s: {:.3f}", data["rate"].values, final.values, between="; ")
-    return Finding(
-        None,
+    return Finding.unlisted(
         float(final.isel(rate=-1)) > np.pi - 0.1,
         f"Tilt after {float(data['time'][-1]):g} s, rad, by the rate at launch: {tilts}. Viscous friction "
         f"of {data.attrs['mu_s_per_m']:g} s/m.",
@@ -125,7 +121,7 @@ def _(data: xr.Dataset) -> Finding:
 def _(data: xr.Dataset) -> Finding:
     lifts = data["lift_off"].dropna("rate")
     times = listed("{:.3f} s at {:g} rad/s", lifts.values, lifts["rate"].values)
-    return Finding(None, bool(len(lifts)), f"First lift-offs: {times or 'none'}.")
+    return Finding.unlisted(bool(len(lifts)), f"First lift-offs: {times or 'none'}.")
 
 
 @CHAPTER.claim(
@@ -141,8 +137,7 @@ def _(data: xr.Dataset) -> Finding:
     near = data["disk_tilt"].values < 0.35
     thin = 4 * data.attrs["gravity"] / (data.attrs["disk_radius_m"] * np.sin(data["disk_tilt"].values))
     ratio = (data["disk_measured"].values / np.sqrt(thin))[near]
-    return Finding(
-        None,
+    return Finding.unlisted(
         float(ratio[np.abs(ratio - 1.0).argmax()]),
         "The toy of 75 mm and 12.5 mm thickness, at tilts up to "
         f"{float(data['disk_tilt'].values[near].max()):g} rad. The tilt keeps to "
@@ -161,8 +156,7 @@ def _(data: xr.Dataset) -> Finding:
 def _(data: xr.Dataset) -> Finding:
     rate, tilt = data["balls_measured"].values, data["balls_tilt"].values
     off = np.cos(tilt) - 2 / 5 + data.attrs["gravity"] / (rate**2 * data.attrs["ball_radius_m"])
-    return Finding(
-        None,
+    return Finding.unlisted(
         float(np.abs(off).max()),
         f"Runs at {rate.min():.1f} to {rate.max():.1f} rad/s on dry friction, whose tilts keep to "
         f"{float(data['balls_drift'].max()):.0e} rad. Slower than sqrt(5 g / (2 R)) none is.",

@@ -25,8 +25,7 @@ CHAPTER = Chapter()
 def _(steady: xr.Dataset, *runs: xr.Dataset) -> Finding:
     left = np.maximum(steady["slip"], steady["slip_rate"])
     theirs = max(float(run["end_slip_listing"] / run["largest_slip_listing"]) for run in runs)
-    return Finding(
-        None,
+    return Finding.unlisted(
         float(left.max()),
         f"After {steady.attrs['duration_s']:g} s, for {steady.sizes['body']} bodies. After the 20 s of "
         f"Figs. 4 and 5 the report's method has at most {theirs:.0e} of the largest slip left. That "
@@ -47,8 +46,7 @@ def _(steady: xr.Dataset, *runs: xr.Dataset) -> Finding:
 )
 def _(steady: xr.Dataset) -> Finding:
     left = np.maximum(steady["residual_216"].values, steady["phi_ddot"].values)
-    return Finding(
-        None,
+    return Finding.unlisted(
         float(left.max()),
         f"The largest of {len(left)} bodies after {steady.attrs['duration_s']:g} s; "
         f"{left[0]:.1e} for the report's. The second line, phi'' = 0, is counted in parts of phi'^2.",
@@ -109,8 +107,7 @@ def _(states: xr.Dataset) -> Finding:
     inside = states.isel(run=((states["run_spin"] > low) & (states["run_spin"] < high)).values)
     left = inside["run_left"]
     shown = ", ".join(f"{spin:g}" for spin in inside["run_spin"].values)
-    return Finding(
-        None,
+    return Finding.unlisted(
         float(left.max()),
         f"In runs of {states.attrs['long_run_s']:g} s launched at {shown} rad/s, which end at tilts from "
         f"{inside['run_end'].min():.2f} to {inside['run_end'].max():.2f} rad.",
@@ -131,8 +128,7 @@ def _(states: xr.Dataset) -> Finding:
 def _(run: xr.Dataset) -> Finding:
     late = run.sel(time=slice(15.0, None))
     left = late["omega3"] - late["phi_dot"] * (np.cos(late["theta"]) - _ALPHA)
-    return Finding(
-        None,
+    return Finding.unlisted(
         float((abs(left) / abs(late["omega3"])).max()),
         "Judged, as (2.14) is, over all the states in which the report's top can end. theta = 0 is one, and "
         "an exception too: the derivation divides by sin(theta). An upright top spins steadily at any "
@@ -151,8 +147,7 @@ def _(chart: xr.Dataset, steady: xr.Dataset) -> Finding:
     # The bracket over I3 is alpha + (gamma - 1) cos(theta): it has a zero where |gamma - 1| reaches alpha.
     bracket = chart["top_alpha"] - abs(chart["top_gamma"] - 1.0)
     listed, tilting = float(bracket[0]), float(steady["theta_dot"].max())
-    return Finding(
-        None,
+    return Finding.unlisted(
         listed > 0 and tilting < STEADY.value,
         "Judged, as (2.17) is, over all the states in which the report's top can end: there the bracket is "
         f"at least {listed:.2f} I3, and theta' is at most {rounded(tilting)} phi'. In general (2.14) leaves "
@@ -172,7 +167,7 @@ def _(chart: xr.Dataset, steady: xr.Dataset) -> Finding:
 def _(steady: xr.Dataset) -> Finding:
     left = abs(steady["residual_217"]) / abs(steady["phi_dot"])
     each = listed("{} {}", steady["body"].values, map(rounded, left.values))
-    return Finding(None, float(left.max()), f"Differences over phi': {each}.")
+    return Finding.unlisted(float(left.max()), f"Differences over phi': {each}.")
 
 
 @CHAPTER.claim(
@@ -189,8 +184,7 @@ def _(steady: xr.Dataset) -> Finding:
     precession, spin = steady["phi_dot"], steady["omega3"]
     rotation = spin - precession * np.cos(steady["theta"])
     slowest = min(float(abs(rate).min()) for rate in (precession, rotation))
-    return Finding(
-        None,
+    return Finding.unlisted(
         slowest,
         "A misprint for omega3' = 0, which holds: in the steady states of "
         f"{steady.sizes['body']} bodies it is at most {steady['omega3_rate'].max():.0e} rad/s². No angle "

@@ -28,8 +28,7 @@ def _(states: xr.Dataset) -> Finding:
     quoted = states.isel(run=[int(np.argmin(abs(states["run_spin"].values - s))) for s in QUOTED_SPINS])
     spins, tilts, ends = (quoted[f"run_{name}"].values for name in ("spin", "predicted", "end"))
     each = listed("{:g} rad/s: {:.6f} rad ({} off)", spins, tilts, map(rounded, ends - tilts), between="; ")
-    return Finding(
-        None,
+    return Finding.unlisted(
         _tilt_miss(states),
         "Friction leaves Jellett's integral lambda alone, and only one stable steady state has the lambda of "
         f"the launch. Predicted from lambda, against runs of {states.attrs['long_run_s']:g} s: {each}.",
@@ -82,8 +81,7 @@ def _(states: xr.Dataset, chart: xr.Dataset, listing: xr.Dataset) -> Finding:
 )
 def _(times: xr.Dataset) -> Finding:
     misses = _law_misses(times)
-    return Finding(
-        None,
+    return Finding.unlisted(
         max(misses) < _NEAR_LIMIT,
         "Weak friction acts on a nutation that it hardly disturbs: averaged over one, its torque and power "
         "are proportional to mu, so that mu t is the only time there is. The averaged flow has mu t_flip = "
@@ -109,8 +107,7 @@ def _(times: xr.Dataset, wide: xr.Dataset) -> Finding:
     exponents, spins = wide["small_exponent"].values, wide["spin_wide"].values
     fitted = listed("{:.4f} at {:g} rad/s", exponents, spins, between=" and ")
     here = times.sel(mu_flip=0.01, method="nearest")
-    return Finding(
-        None,
+    return Finding.unlisted(
         float(here["exponent_arrival_time_end"]),
         f"Fitted up to 0.1 s/m it is {fitted}. The exponent of the time to the "
         f"first tilt above pi/2 leaves -1 as mu grows (s/m): {local}.",
@@ -128,8 +125,7 @@ def _(times: xr.Dataset, wide: xr.Dataset) -> Finding:
 def _(theory: xr.Dataset, states: xr.Dataset, times: xr.Dataset) -> Finding:
     tilt, law = _tilt_miss(states), max(_law_misses(times))
     known = _spectral_miss(theory) < _NEAR_LIMIT and tilt < SETTLED and law < _NEAR_LIMIT
-    return Finding(
-        None,
+    return Finding.unlisted(
         not known,
         "Without a simulation one has the critical spins, the final tilt (runs differ from it by at most "
         f"{tilt:.0e} rad) and for small mu the time to turn over (by {law:.0e} of it). The single swings of "
