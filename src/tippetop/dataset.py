@@ -43,7 +43,7 @@ def assemble(
     found["mode"] = xr.Variable("time", modes[0], described.attributes)
     for name, value in numbers.items():
         variable = METRICS.get(name) or MONITORS[name]
-        number = np.asarray(value, dtype=variable.dtype)
+        number = np.array(value, dtype=variable.dtype)
         found[name] = xr.Variable((), number, variable.attributes, fastpath=True)
     for name, values in lists.items():
         found[name] = xr.Variable(name.partition("_")[0], values, LISTED[name].attributes)

@@ -21,7 +21,7 @@ from tippetop.mechanics.motion import axial_spin
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.units import Units
-from tippetop.mechanics.vectors import length
+from tippetop.mechanics.vectors import Scalar, length
 from tippetop.mechanics.view import axis_sine, precession_rate
 
 OUTCOMES = tuple(Outcome)
@@ -35,35 +35,35 @@ HEIGHT_LOOKS = 65
 
 @dataclass
 class Ends:
-    """What was found of launches, in natural units; all of shape (n,)."""
+    """What was found of launches, in natural units: all of shape (n,), or numbers of one."""
 
     state: State
     """The states at the end."""
-    time: Array
+    time: Scalar
     """When that was."""
-    outcome: NDArray[np.int8]
+    outcome: Scalar
     """Numbers of `OUTCOMES`."""
-    steps: NDArray[np.int64]
-    flights: NDArray[np.int64]
+    steps: Scalar
+    flights: Scalar
     """Steps taken, and flights made."""
-    least_force: Array
+    least_force: Scalar
     """Least normal force; 0 where the top left the table."""
-    lift_off: Array
+    lift_off: Scalar
     """First time the table let go; nan if it never did."""
-    struck: Array
-    drilled: Array
-    rolled: Array
+    struck: Scalar
+    drilled: Scalar
+    rolled: Scalar
     """Energy lost in impacts, to drilling and to rolling."""
-    airborne: Array
-    highest_gap: Array
-    highest: Array
+    airborne: Scalar
+    highest_gap: Scalar
+    highest: Scalar
     """Time spent in the air, and there the largest gap and the largest height of the centre of mass."""
-    down: Array
-    up: Array
+    down: Scalar
+    up: Scalar
     """Least and largest n_z."""
-    turned: Array
+    turned: Scalar
     """First time n_z fell through 0; nan if it never did."""
-    arrived: Array
+    arrived: Scalar
     """First time n_z was in the band of `final_band`; nan if it never was."""
 
     @classmethod
@@ -98,7 +98,7 @@ def turning_time(tip: Polynomials) -> Array:
     return tip.first_fall(from_above=True)
 
 
-def arrival_time(tip: Polynomials, low: Array, high: Array) -> Array:
+def arrival_time(tip: Polynomials, low: Scalar, high: Scalar) -> Array:
     """First times at which n_z is between `low` and `high`, shape (n,); nan where it is not."""
     start = tip.unit[0]
     above, below = start > high, start < low
@@ -109,7 +109,7 @@ def arrival_time(tip: Polynomials, low: Array, high: Array) -> Array:
     return found
 
 
-def final_band(state: State) -> tuple[Array, Array]:
+def final_band(state: State) -> tuple[Scalar, Scalar]:
     """Least and largest n_z for which the tilt is near its final value, each of shape (n,)."""
     final = tilt(state)
     low = np.cos(np.minimum(final + NEAR_FINAL, np.pi))
@@ -137,7 +137,7 @@ def metrics(ends: Ends, start: State, top: Top, units: Units) -> dict[str, NDArr
         drift = change / np.where(moment > 0, moment, np.nan)
         lost = energy(start, top) - energy(end, top)
         precession = np.where(axis_sine(end.axis) > 0, precession_rate(end.axis, end.momentum, top), np.nan)
-        swept = np.linspace(0.0, 1.0, HEIGHT_LOOKS)[:, None] * (ends.up - ends.down) + ends.down
+        swept = np.multiply.outer(np.linspace(0.0, 1.0, HEIGHT_LOOKS), ends.up - ends.down) + ends.down
         highest = np.fmax(np.max(outer_height(top.surface, swept), axis=0), ends.highest)
     found = {
         "final_theta": tilt(end),
@@ -159,7 +159,7 @@ def metrics(ends: Ends, start: State, top: Top, units: Units) -> dict[str, NDArr
         "end_time": ends.time * units.time,
         "steps": ends.steps,
     }
-    return {name: np.broadcast_to(values, ends.time.shape) for name, values in found.items()}
+    return {name: np.broadcast_to(values, np.shape(ends.time)) for name, values in found.items()}
 
 
 def ending(ends: Ends) -> NDArray[np.int8]:

@@ -123,8 +123,8 @@ def simulate(
     early = outcome is not Outcome.COMPLETED and trajectory.detail != NOT_FINITE
     found = recorder.finish(trajectory.time, trajectory.state, early)
     ends = tally.ends(trajectory.state, trajectory.time, outcome, trajectory.events)
-    numbers = metrics(ends, State.unpack([np.array([number]) for number in state.pack()]), top, units)
-    scalars = {name: values[0] for name, values in numbers.items()} | {
+    begin = State.unpack([np.float64(number) for number in state.pack()])
+    scalars = metrics(ends, begin, top, units) | {
         "energy_start": float(energy(state, top)) * units.energy,
         "impact_energy_lost": sum(event.energy_lost for event in trajectory.events) * units.energy,
         "evaluations": tally.evaluations,

@@ -1,7 +1,6 @@
 """What is found on the way of one launch, block by block: events and extremes of the dense solution."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -12,6 +11,7 @@ from tippetop.integrators.base import Array, Integrator
 from tippetop.integrators.dense import chebyshev
 from tippetop.integrators.polynomials import Polynomials, least_of_all
 from tippetop.mechanics.state import State
+from tippetop.mechanics.vectors import Scalar
 from tippetop.metrics import OUTCOMES, Ends, Flags, arrival_time, final_band, turning_time
 
 AT_ONCE = 16
@@ -100,38 +100,32 @@ class Tally:
         self._rolled -= float(np.sum(shares * rates.rolling))
 
     def ends(self, state: State, time: float, outcome: Outcome, events: Sequence[Event]) -> Ends:
-        """All that was found, as of one launch, given how and where it ended."""
-        found = Ends.unknown(1)
-        last = State.unpack([np.array([number], dtype=float) for number in state.pack()])
+        """All that was found, as numbers, given how and where it ended."""
+        last = State.unpack([np.float64(number) for number in state.pack()])
         lift_offs = [event.time for event in events if event.kind is EventKind.LIFT_OFF]
         flights = self.flights
-        found.put(
-            np.arange(1),
-            replace(
-                found,
-                state=last,
-                time=np.array([time]),
-                outcome=np.array([OUTCOMES.index(outcome)]),
-                steps=np.array([self.steps]),
-                flights=np.array([len(flights)]),
-                least_force=np.array([0.0 if lift_offs or len(flights) else self._least_force]),
-                lift_off=np.array([min(lift_offs, default=np.nan)]),
-                struck=np.array([sum(event.energy_lost for event in events)]),
-                drilled=np.array([self._drilled]),
-                rolled=np.array([self._rolled]),
-                airborne=np.array([(flights[:, 1] - flights[:, 0]).sum()]),
-                highest_gap=np.array([flights[:, 2].max(initial=0.0)]),
-                highest=np.array([self._highest]),
-                down=np.array([self._down]),
-                up=np.array([self._up]),
-                turned=np.array([self._turned]),
-                arrived=np.array([self.arrival(*final_band(last))]),
-            ),
+        return Ends(
+            state=last,
+            time=np.float64(time),
+            outcome=OUTCOMES.index(outcome),
+            steps=self.steps,
+            flights=len(flights),
+            least_force=0.0 if lift_offs or len(flights) else self._least_force,
+            lift_off=min(lift_offs, default=np.nan),
+            struck=sum(event.energy_lost for event in events),
+            drilled=self._drilled,
+            rolled=self._rolled,
+            airborne=(flights[:, 1] - flights[:, 0]).sum(),
+            highest_gap=flights[:, 2].max(initial=0.0),
+            highest=self._highest,
+            down=self._down,
+            up=self._up,
+            turned=self._turned,
+            arrived=self.arrival(*final_band(last)),
         )
-        return found
 
-    def arrival(self, low: Array, high: Array) -> float:
-        """First time at which n_z is between `low` and `high`, each of shape (1,); nan if it never is."""
+    def arrival(self, low: Scalar, high: Scalar) -> float:
+        """First time at which n_z is between `low` and `high`; nan if it never is."""
         found = float(np.nan)
         for tip, starts in self._tips:
             least, most = tip.bounds

@@ -189,7 +189,7 @@ class Crossings:
             getattr(ends, name)[cell] = np.fmin(getattr(ends, name)[cell], getattr(found, name))
         tip = slots.tip
         tip.turned[where] = np.fmin(tip.turned[where], found.turned)
-        arrived = tally.arrival(tip.low[where], tip.high[where]) if self.banded else found.arrived[0]
+        arrived = tally.arrival(tip.low[where], tip.high[where]) if self.banded else found.arrived
         tip.reached[where] = np.fmin(tip.reached[where], arrived)
         slots.rows[slots.layout.steps, where] += found.steps
         slots.retire(where, found.state, found.time, trajectory.outcome)
