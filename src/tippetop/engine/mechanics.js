@@ -7413,12 +7413,6 @@ function _meetings(one, other, tilts) {
 }
 const TILTS = 200;
 
-/** The stable steady states of an eccentric sphere with this Jellett's integral, least energy first. */
-function final_states(top, jellett) {
-  require_jellett(top);
-  return _by_energy(stable_by_energy(steady_states(top, jellett)));
-}
-
 /** Those of all steady states with one Jellett's integral, by their tilts, that are minima of the energy. */
 function stable_by_energy(states) {
   const energies = [py.math.inf, ...[...states].map((state) => state.energy), py.math.inf];
@@ -7906,7 +7900,6 @@ export {
   energy,
   equal_thresholds,
   falling_time,
-  final_states,
   first_reach,
   first_root,
   flat,

@@ -13,20 +13,19 @@ from tippetop.figures.looks import FACE, KNOB, STEM, STEM_TOP
 from tippetop.figures.style import ACCENT, CONVERGED, INK, MUTED, TABLE, house_style
 
 _AXIS = 1.62
+_ECCENTRICITY, _TILT = 0.3, np.radians(50.0)
+"""The report's alpha, and theta, for which the labels stay clear of each other."""
 
 
 @house_style()
-def model_drawing(eccentricity: float = 0.3, tilt: float = np.radians(50.0)) -> Figure:
+def model_drawing() -> Figure:
     """Return the model seen from the side: an eccentric sphere on the table.
 
-    `eccentricity` is the report's alpha, between 0 and 1; `tilt` is theta in radians, between 0 and pi/2. The
-    top leans to the left, so that axis 2 = z x X, with X the horizontal direction of the lean, points at the
-    reader. The labels stay clear of each other for an eccentricity of 0.2 to 0.5 and a tilt of 0.5 to 1.1.
+    The top leans to the left, so that axis 2 = z x X, with X the horizontal direction of the lean, points at
+    the reader.
     """
-    if not 0 < eccentricity < 1 or not 0 < tilt < np.pi / 2:
-        raise ValueError(f"no drawing for eccentricity {eccentricity} and tilt {tilt} rad")
-    figure, axes = draw.canvas((-2.0, 2.15), (-0.7, max(2.5, 1.25 + _AXIS * np.cos(tilt))))
-    points = _Model(eccentricity, tilt)
+    figure, axes = draw.canvas((-2.0, 2.15), (-0.7, 2.5))
+    points = _Model(_ECCENTRICITY, _TILT)
     _model_body(axes, points)
     _model_axes(axes, points)
     _model_vectors(axes, points)

@@ -103,15 +103,6 @@ def save(figure: Figure, path: Path | str, **options: Any) -> None:
         figure.savefig(path, **{"metadata": dated.get(Path(path).suffix.lower()), **options})
 
 
-def pi_ticks(axis: Axis, top: float = np.pi) -> None:
-    """Label an angle axis at the quarters of pi from 0 to `top` (radians): 0, π/4, π/2, 3π/4, π, ..."""
-    quarters = np.arange(round(4 * top / np.pi) + 1)
-    axis.set_ticks(list(quarters * np.pi / 4), [_quarters_of_pi(int(k)) for k in quarters])
-
-
-def _quarters_of_pi(count: int) -> str:
-    if count == 0:
-        return "0"
-    over = {0: 1, 2: 2}.get(count % 4, 4)
-    times = count * over // 4
-    return ("" if times == 1 else str(times)) + "π" + ("" if over == 1 else f"/{over}")
+def pi_ticks(axis: Axis) -> None:
+    """Label an angle axis at the quarters of pi, from 0 to pi."""
+    axis.set_ticks([k * np.pi / 4 for k in range(5)], ["0", "π/4", "π/2", "3π/4", "π"])

@@ -195,15 +195,6 @@ def steady_launch(problem: Problem) -> SteadyState | None:
     return steady if max(map(abs, off)) <= ROUNDING * quickest else None
 
 
-def final_states(top: Top, jellett: float) -> tuple[SteadyState, ...]:
-    """The stable steady states of an eccentric sphere with this Jellett's integral, least energy first.
-
-    Raises `InvalidInput` if Jellett's integral is not conserved.
-    """
-    require_jellett(top)
-    return _by_energy(stable_by_energy(steady_states(top, jellett)))
-
-
 def is_held(state: State, top: Top, closeness: float) -> NDArray[np.bool_]:
     """Whether the energy that is left holds an eccentric sphere's tilt within `closeness`, rad, for good.
 
