@@ -16,7 +16,7 @@ from tippetop.mechanics.coulomb import CoulombLaw, RollingResistance
 from tippetop.mechanics.ending import Vanishing
 from tippetop.mechanics.friction import RegularizedCoulombLaw, ViscousLaw
 from tippetop.mechanics.hull import Hull
-from tippetop.mechanics.rolling import is_set_valued
+from tippetop.mechanics.rolling import is_set_valued, sliding_law
 from tippetop.mechanics.surface import RingSurface, SphereSurface, SpheroidSurface
 from tippetop.mechanics.top import Top
 
@@ -71,11 +71,13 @@ def sliding_motions(surface, law):
     if isinstance(surface, Hull):
         other = top._replace(surface=surface._replace(active=1))
         both = kind, other.kind
-        yield "two", motion_on_two(*both), (*numbers, *other.numbers)
-        if isinstance(law, CoulombLaw):
-            yield "two beginning", beginning_on_two(*both), (*numbers, *other.numbers)
-            yield "two turning", turning_motion(*both, -1.0), (*numbers, *other.numbers)
-            yield "two sticking", held_motion_on_two(*both), (*numbers, *other.numbers)
+        for way in (0.0, -1.0)[: 1 + rolls]:
+            told = f"two {way}"
+            yield told, motion_on_two(*both, way), (*numbers, *other.numbers)
+            if isinstance(sliding_law(law), CoulombLaw):
+                yield f"{told} beginning", beginning_on_two(*both, way), (*numbers, *other.numbers)
+                yield f"{told} turning", turning_motion(*both, -1.0, way), (*numbers, *other.numbers)
+                yield f"{told} sticking", held_motion_on_two(*both, way), (*numbers, *other.numbers)
 
 
 def sticking_motions(surface, law):

@@ -76,7 +76,7 @@ def launch_of(seed: int) -> dict[str, Any]:
         "launch": launch,
         "contact": {"liftoff": liftoff, "restitution": float(random.choice([0.0, 0.0, 0.5]))},
     }
-    if not several and random.random() < 0.2:
+    if random.random() < 0.2:
         fields["rolling_resistance"] = size * 10.0 ** random.uniform(-3.5, -1.5)
     return fields
 

@@ -13,11 +13,12 @@ from tippetop.contact.double import SlidingOnTwo
 from tippetop.contact.mode import EventKind, Mode
 from tippetop.contact.passing import Resting
 from tippetop.contact.several import OnSeveral
+from tippetop.mechanics.contact_pair import ContactPair, normal_wrench, sliding_pair_rates
 from tippetop.mechanics.contensou_hertz import HertzBranch
-from tippetop.mechanics.double_contact import double_contact, double_rates
 from tippetop.mechanics.motion import along_table, on_table
 from tippetop.mechanics.rolling import sliding_law, with_sliding_law
 from tippetop.mechanics.state import SlidingState, State
+from tippetop.mechanics.stick_slip import slip_of
 from tippetop.mechanics.top import natural, natural_state, natural_units
 
 LEINE_GLOCKER = tt.Problem(
@@ -133,11 +134,12 @@ def test_rocking_shrinks_by_what_the_inverse_masses_say() -> None:
     vectors = (tuple(here[name].values.tolist()) for name in ("axis", "angular_momentum", "velocity"))
     axis, momentum, velocity = vectors
     state = SlidingState(axis, momentum, velocity[:2])
-    both = double_contact(state, LEINE_GLOCKER.top.each)
-    (first, second), (alone, other) = (both.first, both.second), both.acceleration
-    coupled = (first.free_acceleration - alone) / second.free_acceleration * second.delassus
-    back = (second.free_acceleration - other) / first.free_acceleration * first.delassus
-    expected = coupled * back / (first.delassus * second.delassus)
+    tops = LEINE_GLOCKER.top.each
+    pair = ContactPair.of(axis, momentum, tops)
+    slips = [slip_of(*state, top) for top in tops]
+    units = [normal_wrench(point, slip, (0.0, 0.0, 0.0)) for point, slip in zip(pair, slips, strict=True)]
+    (a, c), (b, d) = ([pair.response(unit)[i][2] for i in (0, 1)] for unit in enumerate(units))
+    expected = b * c / (a * d)
     assert 0.7 < expected < 0.8
     assert (cycles[1:] / cycles[:-1])[18:24] == pytest.approx(expected, abs=2e-3)
 
@@ -155,7 +157,9 @@ def test_two_contacts_of_a_patch_may_each_drill_or_slide() -> None:
         )
         mode = SlidingOnTwo(first, None, second)
         rates = mode.motion.rates(y, mode.parameters)
-        assert rates == pytest.approx(double_rates(SlidingState.unpack(y), (first, second)).pack(), rel=1e-14)
+        assert rates == pytest.approx(
+            sliding_pair_rates(SlidingState.unpack(y), (first, second), 0.0).pack(), rel=1e-14
+        )
 
 
 def test_a_body_of_one_surface_in_a_list_is_that_surface() -> None:

@@ -7,6 +7,7 @@ import pytest
 import xarray as xr
 
 import tippetop as tt
+from lying import lying
 from tippetop.contact.choice import rules_of
 from tippetop.contact.double import SlidingOnTwo
 from tippetop.contact.double_sticking import (
@@ -77,27 +78,6 @@ def test_a_dumbbell_that_slides_across_comes_to_roll() -> None:
     assert run["mode"].attrs["flag_meanings"].split()[int(run["mode"][-1])] == "sticking_on_0_and_1"
 
 
-def lying(seed: int) -> tt.Problem:
-    """A body on two unlike spheres that rolls, slides and turns."""
-    random = np.random.default_rng(seed)
-    (r1, r2), z1, z2 = 0.02 * random.uniform(0.3, 1, 2), *(0.02 * random.uniform(0.9, 1.8, 2))
-    I1 = random.uniform(0.3, 1) * 0.02**3
-    body = tt.Body(
-        mass=0.02,
-        shape=[tt.Sphere(radius=r1, center=z1), tt.Sphere(radius=r2, center=-z2)],
-        I1=I1,
-        I3=I1 * random.uniform(0.1, 1.2),
-    )
-    friction = tt.CoulombFriction(mu=random.uniform(0.05, 0.6))
-    launch = tt.Launch(
-        tilt=float(np.arccos((r1 - r2) / (z1 + z2))),
-        spin=random.uniform(-60, 60),
-        precession=random.uniform(-8, 8),
-        velocity=(*random.uniform(-0.3, 0.3, 2).tolist(), 0.0),
-    )
-    return tt.Problem(body=body, friction=friction, launch=launch)
-
-
 ONE_THEN_BOTH, SLIPS_AGAIN = 8, 11
 """Of the one both contacts stick in turn; of the other one sticks, and slips again."""
 DURATION = {ONE_THEN_BOTH: 0.12, SLIPS_AGAIN: 0.3}
@@ -142,12 +122,12 @@ def test_what_sticks_does_not_slip_and_takes_no_more_than_it_can(seed: int) -> N
             pair = ContactPair.of(state.axis, state.momentum, mode.tops)
             force = mode.reaction(y).force
             if isinstance(mode, StickingOnTwo):
-                found = pair_motion(pair, (None, None))
+                found = pair_motion(pair, (None, None), 0.0)
                 assert min(found.normal) > 0.0
                 assert min(found.left(0), found.left(1), found.both_reserve) >= 0.0
             else:
                 across = mode.sign * np.array([-state.axis[1], state.axis[0]])
-                found = pair_motion(pair, (None, tuple(across)))
+                found = pair_motion(pair, (None, tuple(across)), 0.0)
                 assert min(found.normal) > 0.0
                 assert found.reserve(0) >= -1e-12
                 assert mode.sign * slip_apart(pair) >= -1e-12
@@ -159,7 +139,7 @@ def test_force_across_leaves_less_along() -> None:
     """Against many ways to share the force out between both contacts."""
     segment = next(s for s in followed(ONE_THEN_BOTH) if isinstance(s.mode, StickingOnTwo))
     (_, state), *_ = states(segment)
-    held = pair_motion(ContactPair.of(state.axis, state.momentum, segment.mode.tops), (None, None))
+    held = pair_motion(ContactPair.of(state.axis, state.momentum, segment.mode.tops), (None, None), 0.0)
     limits = segment.mode.top.friction.mu * np.array(held.normal)
     e = np.array([*state.axis[:2], 0.0]) / np.hypot(*state.axis[:2])
     t, across = np.array([-e[1], e[0], 0.0]), limits * (0.3, -0.7)

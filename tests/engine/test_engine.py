@@ -12,7 +12,7 @@ import pytest
 
 import tippetop as tt
 from launches import TOLERANCE, asked, compared, in_javascript, in_python, launch_of
-from test_sticking_on_two import lying
+from lying import lying, resisted
 from tippetop.engine import COMMAND, HERE
 
 SLIPS_IN_THE_END = 21
@@ -62,6 +62,16 @@ def test_slip_that_begins_on_two_contacts_is_the_same() -> None:
     (found,) = in_javascript([question])
     run = in_python(problem.model_dump(mode="json"), duration)
     assert str(run["event_kind"].values[-1]) == "slip"
+    assert not compared(problem.model_dump(), found, run)
+
+
+def test_rolling_that_stops_and_starts_on_two_contacts_is_the_same() -> None:
+    problem, duration = resisted(64), 0.1
+    question = asked(0, duration) | {"problem": problem.model_dump(mode="json"), "tolerance": TOLERANCE}
+    (found,) = in_javascript([question])
+    run = in_python(problem.model_dump(mode="json"), duration)
+    assert {"rolling starts", "rolling stops"} <= set(run["event_kind"].values.tolist())
+    assert run.attrs["outcome"] == "at_rest"
     assert not compared(problem.model_dump(), found, run)
 
 

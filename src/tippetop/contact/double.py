@@ -1,26 +1,38 @@
 """Two surfaces touch the table at once."""
 
+from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, ClassVar
 
 from tippetop.contact.mode import Event, EventKind, IntegratedMode, Reaction, Transition
+from tippetop.contact.sliding import ROLLING, ROLLING_STOPPING
 from tippetop.contact.surfaces import follow_surface, number_of, surface_guards
 from tippetop.integrators.base import Function, Guard, Motion
-from tippetop.mechanics.double_contact import Tops, double_contact, double_rates
+from tippetop.mechanics.contact_pair import (
+    PairMotion,
+    Tops,
+    sliding_pair,
+    sliding_pair_rates,
+    turning_along,
+)
+from tippetop.mechanics.coulomb import RollingResistance
 from tippetop.mechanics.motion import along_table, on_table
+from tippetop.mechanics.pair_resolver import rolling_way
 from tippetop.mechanics.rolling import (
+    Slip,
     is_branched,
     is_set_valued,
     on_numbered_branch,
     on_other_branch,
     slip_length,
+    without_rolling,
 )
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.stick_slip import branch_guard, inner, slip_of
 from tippetop.mechanics.top import Kind, Top
-from tippetop.mechanics.vectors import Row, Scalar
+from tippetop.mechanics.vectors import Row, Scalar, Vector, dot
 
 OPENING, ENDING, BRANCHING = "opening ", "ending ", "branching "
 
@@ -37,9 +49,66 @@ class OnTwo(IntegratedMode):
     ----------
     other
         The top with the second surface active.
+    rolls
+        Sign of omega_e (see `tippetop.mechanics.contact_pair`); 0 where rolling is held, or not resisted.
     """
 
     other: Top
+    rolls: float = 0.0
+
+    @property
+    def form(self) -> str:
+        """How it rolls decides what its numbers say of the couple."""
+        return f"{self.name} {self.rolls}"
+
+    @property
+    def label(self) -> str:
+        """Its name, and the numbers of the surfaces."""
+        first, second = sorted((number_of(self.top), number_of(self.other)))
+        return f"{self.name}{self.held}_on_{first}_and_{second}"
+
+    @property
+    def held(self) -> str:
+        """What its name says where rolling is held."""
+        return "_without_rolling" if self.stopped else ""
+
+    @property
+    def stopped(self) -> bool:
+        """Whether rolling is held."""
+        return isinstance(self.top.friction, RollingResistance) and not self.rolls
+
+    @property
+    def stuck(self) -> tuple[int, ...]:
+        """Numbers of the surfaces that stick: none, where a mode does not say otherwise."""
+        return ()
+
+    @abstractmethod
+    def found(self, y: Row) -> tuple[PairMotion, tuple[Slip, Slip]]:
+        """What the table does, and how both contacts slip, from the numbers of the mode."""
+
+    def reaction(self, y: Row) -> Reaction:
+        """Force of both contacts, and their torque about the first contact point."""
+        found, slips = self.found(y)
+        power: Any = dot(found.couple, found.pair.first.turning)
+        for slip, wrench in zip(slips, found.wrenches, strict=True):
+            power = power + (wrench.force[0] * slip[0] + wrench.force[1] * slip[1])
+        return Reaction(found.force, found.torque, power, found.couple)
+
+    def stilled(self, axis: Vector, momentum: Vector) -> Vector:
+        """The angular momentum, without rolling where that is held."""
+        return without_rolling(axis, momentum, self.top) if self.stopped else momentum
+
+    def settled(self, time: float, state: State, rolls: float) -> Transition:
+        """What the resolver finds where slip, or rolling, has ended, or begins as signed."""
+        return self.rules.settled_on_two(time, state, self.tops, self.stuck, (self.rolls, rolls))
+
+    def follow_rolling(self, guard: str, time: float, state: State) -> Transition | None:
+        """What follows where rolling ends, or can be held no longer; None for any other guard."""
+        if guard == ROLLING_STOPPING:
+            return self.settled(time, state, 0.0)
+        if guard == ROLLING:
+            return self.settled(time, state, rolling_way(self.found(self.numbers(state))[0]))
+        return follow_surface(self, guard, time, state)
 
     @property
     def tops(self) -> Tops:
@@ -55,6 +124,7 @@ class OnTwo(IntegratedMode):
         """One of both surfaces opens, while the other goes on, slipping or not."""
         left, kept = (self.tops, self.tops[::-1])[number]
         event = Event(EventKind.OPENING, time, surface=number_of(left))
+        state = state._replace(momentum=self.stilled(state.axis, state.momentum))
         return Transition((event,), self.rules.on(number_of(kept)).going_on(state, slips=slips), state)
 
 
@@ -67,7 +137,7 @@ class SlidingOnTwo(OnTwo):
     @property
     def motion(self) -> Motion:
         """Equations of motion, with the guards of both contacts and of further surfaces."""
-        return motion_on_two(self.top.kind, self.other.kind)
+        return motion_on_two(self.top.kind, self.other.kind, self.rolls)
 
     def numbers(self, state: State) -> tuple[Scalar, ...]:
         """The 8 numbers of a sliding state."""
@@ -77,13 +147,12 @@ class SlidingOnTwo(OnTwo):
         """The state, with its height."""
         return on_table(SlidingState.unpack(y), self.top)
 
-    def reaction(self, y: Row) -> Reaction:
-        """Force of both contacts, and their torque about the first contact point."""
-        both = double_contact(SlidingState.unpack(y), self.tops)
-        return Reaction(both.force, both.torque, both.power, both.couple)
+    def found(self, y: Row) -> tuple[PairMotion, tuple[Slip, Slip]]:
+        """What the table does, and how both contacts slip."""
+        return sliding_pair(SlidingState.unpack(y), self.tops, self.rolls)
 
     def follow(self, guard: str, time: float, state: State) -> Transition:
-        """One surface opens, while the other goes on; or slip ends on one; or a further one touches."""
+        """One surface opens, while the other goes on; or slip or rolling ends; or a further one touches."""
         kind, _, number = guard.rpartition(" ")
         if f"{kind} " == OPENING:
             return self.opening(int(number), time, state, slips=True)
@@ -92,23 +161,23 @@ class SlidingOnTwo(OnTwo):
             tops[int(number)] = on_other_branch(tops[int(number)])
             return Transition((), replace(self, top=tops[0], other=tops[1]), state)
         if f"{kind} " == ENDING:
-            return self.rules.settled_on_two(time, state, self.tops, ())
-        found = follow_surface(self, guard, time, state)
+            return self.settled(time, state, self.rolls)
+        found = self.follow_rolling(guard, time, state)
         assert found is not None, "there are no other guards"
         return found
 
 
-def on_two(state: State, rules: Any, other: Top) -> SlidingOnTwo:
+def on_two(state: State, rules: Any, other: Top, rolls: float) -> SlidingOnTwo:
     """The mode of a body that slides on the surface of some rules and on another."""
     tops: Tops = (rules.top, other)
     if is_branched(other.friction):
         one, two = (on_numbered_branch(top, slip_of(*along_table(state), top)) for top in tops)
         tops = one, two
-    return SlidingOnTwo(tops[0], rules, tops[1])
+    return SlidingOnTwo(tops[0], rules, tops[1], rolls)
 
 
 @lru_cache
-def motion_on_two(first: Kind, second: Kind) -> Motion:
+def motion_on_two(first: Kind, second: Kind, rolls: float) -> Motion:
     """Equations of motion of a top of these kinds: of another active surface and branch of the law each."""
 
     def tops(numbers: Sequence[Scalar]) -> Tops:
@@ -116,10 +185,10 @@ def motion_on_two(first: Kind, second: Kind) -> Motion:
         return first.top(tuple(numbers[:cut])), second.top(tuple(numbers[cut : 2 * cut]))
 
     def rates(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[Scalar, ...]:
-        return double_rates(SlidingState.unpack(y), tops(numbers)).pack()
+        return sliding_pair_rates(SlidingState.unpack(y), tops(numbers), rolls).pack()
 
-    def normal(number: int) -> Function:
-        return lambda y, numbers: double_contact(SlidingState.unpack(y), tops(numbers)).normal[number]
+    def found(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> PairMotion:
+        return sliding_pair(SlidingState.unpack(y), tops(numbers), rolls)[0]
 
     def slip(number: int) -> Function:
         def value(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
@@ -138,12 +207,29 @@ def motion_on_two(first: Kind, second: Kind) -> Motion:
 
         return value
 
-    guards = [Guard(f"{OPENING}{number}", normal(number)) for number in (0, 1)]
+    guards = pair_guards(first, second, found, rolls)
     if slip_length(first.example.friction) is not None:
         guards.append(Guard(f"{ENDING}both", both_slips))
     elif is_set_valued(first.example.friction):
         guards += [Guard(f"{ENDING}{number}", slip(number)) for number in (0, 1)]
     if is_branched(first.example.friction):
         guards += [Guard(f"{BRANCHING}{number}", branch(number)) for number in (0, 1)]
-    guards += surface_guards(first, (number_of(second.example),))
     return Motion(rates, size=8, parameters=2 * first.numbers, guards=tuple(guards), lasting=False)
+
+
+def pair_guards(first: Kind, second: Kind, found: Any, rolls: float) -> list[Guard]:
+    """The guards of normal forces, of rolling, and of further surfaces, from what the table does."""
+
+    def normal(number: int) -> Function:
+        return lambda y, numbers: found(y, numbers).normal[number]
+
+    def rolling(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
+        return rolls * turning_along(found(y, numbers).pair)
+
+    def reserve(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
+        return found(y, numbers).rolling_reserve
+
+    guards = [Guard(f"{OPENING}{number}", normal(number)) for number in (0, 1)]
+    if isinstance(first.example.friction, RollingResistance):
+        guards.append(Guard(ROLLING_STOPPING, rolling) if rolls else Guard(ROLLING, reserve))
+    return guards + surface_guards(first, (number_of(second.example),))

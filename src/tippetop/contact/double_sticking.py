@@ -5,27 +5,27 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, ClassVar
 
-from tippetop.contact.double import BRANCHING, OPENING, OnTwo, SlidingOnTwo
-from tippetop.contact.mode import Outcome, Reaction, Segment, Transition
+from tippetop.contact.double import BRANCHING, OPENING, OnTwo, SlidingOnTwo, pair_guards
+from tippetop.contact.mode import Outcome, Segment, Transition
 from tippetop.contact.sticking import split
-from tippetop.contact.surfaces import follow_surface, number_of, surface_guards
+from tippetop.contact.surfaces import number_of
 from tippetop.integrators import make_integrator
 from tippetop.integrators.base import Function, Guard, Integrator, Motion
 from tippetop.mechanics.contact_pair import (
     ContactPair,
     PairMotion,
+    Tops,
     directions_of,
     pair_motion,
     slip_apart,
     slips_of,
 )
-from tippetop.mechanics.double_contact import Tops
 from tippetop.mechanics.motion import along_table, axis_rate, on_table
-from tippetop.mechanics.rolling import is_branched, slip_length, velocity_without_slip, without_drilling
+from tippetop.mechanics.rolling import Slip, is_branched, slip_length, velocity_without_slip, without_drilling
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.stick_slip import slip_branch_guard, slip_of, velocity_of
 from tippetop.mechanics.top import Kind
-from tippetop.mechanics.vectors import Row, Scalar, dot
+from tippetop.mechanics.vectors import Row, Scalar
 
 SLIP, ENDING = "slip ", "ending"
 
@@ -48,14 +48,16 @@ class HeldOnTwo(OnTwo):
     def state(self, y: Row) -> State:
         """The state, whose velocity is that of rolling on the first contact."""
         axis, momentum = split(y)
+        momentum = self.stilled(axis, momentum)
         velocity = velocity_without_slip(axis, momentum, self.top)
         return on_table(SlidingState(axis, momentum, velocity), self.top)
 
     def follow(self, guard: str, time: float, state: State) -> Transition:
-        """Slip begins; or a further surface touches."""
+        """Slip begins; or rolling ends or begins; or a further surface touches."""
         if guard.startswith(SLIP):
-            return self.rules.slipping_on_two(time, state, self.tops, guard.removeprefix(SLIP))
-        found = follow_surface(self, guard, time, state)
+            which = guard.removeprefix(SLIP)
+            return self.rules.slipping_on_two(time, state, self.tops, which, self.rolls)
+        found = self.follow_rolling(guard, time, state)
         assert found is not None, "there are no other guards"
         return found
 
@@ -70,17 +72,23 @@ class StickingAndSliding(HeldOnTwo):
     @property
     def label(self) -> str:
         """Its name, with the numbers of the surface that sticks, and of that which slips."""
-        return f"sticking_on_{number_of(self.top)}_sliding_on_{number_of(self.other)}"
+        return f"sticking{self.held}_on_{number_of(self.top)}_sliding_on_{number_of(self.other)}"
+
+    @property
+    def stuck(self) -> tuple[int, ...]:
+        """The first surface."""
+        return (number_of(self.top),)
 
     @property
     def motion(self) -> Motion:
         """Equations of motion of axis and angular momentum, and guards."""
-        return turning_motion(self.top.kind, self.other.kind, self.sign)
+        return turning_motion(self.top.kind, self.other.kind, self.sign, self.rolls)
 
-    def reaction(self, y: Row) -> Reaction:
-        """Force of both contacts, and their torque about the first contact point."""
+    def found(self, y: Row) -> tuple[PairMotion, tuple[Slip, Slip]]:
+        """What the table does, and how both contacts slip."""
         pair = ContactPair.of(*split(y), self.tops)
-        return reaction_of(turned(pair, self.sign), (0.0, 0.0, slip_apart(pair)))
+        zeta = slip_apart(pair)
+        return turned(pair, self.sign, self.rolls), slips_of(pair, (0.0 * zeta, 0.0 * zeta, zeta))
 
     def follow(self, guard: str, time: float, state: State) -> Transition:
         """A contact opens; or slip ends on the second, or begins on the first; or a further one touches."""
@@ -88,7 +96,7 @@ class StickingAndSliding(HeldOnTwo):
             number = int(guard.removeprefix(OPENING))
             return self.opening(number, time, state, slips=number == 0)
         if guard == ENDING:
-            return self.rules.settled_on_two(time, state, self.tops, (number_of(self.top),))
+            return self.settled(time, state, self.rolls)
         return super().follow(guard, time, state)
 
 
@@ -107,18 +115,24 @@ class StickingOnTwo(HeldOnTwo):
     name: ClassVar[str] = "sticking"
 
     @property
+    def stuck(self) -> tuple[int, ...]:
+        """Both surfaces."""
+        return number_of(self.top), number_of(self.other)
+
+    @property
     def motion(self) -> Motion:
         """Equations of motion of axis and angular momentum, and the guards of what holds the contacts."""
-        return held_motion_on_two(self.top.kind, self.other.kind)
+        return held_motion_on_two(self.top.kind, self.other.kind, self.rolls)
 
     def state(self, y: Row) -> State:
         """The state, without turning about the vertical, whose velocity is that of rolling."""
         axis, momentum = split(y)
         return super().state((*axis, *without_drilling(axis, momentum, self.top)))
 
-    def reaction(self, y: Row) -> Reaction:
-        """Force of both contacts, and their torque about the first contact point."""
-        return reaction_of(pair_motion(ContactPair.of(*split(y), self.tops), (None, None)), (0.0, 0.0, 0.0))
+    def found(self, y: Row) -> tuple[PairMotion, tuple[Slip, Slip]]:
+        """What the table does, and that neither contact slips."""
+        pair = ContactPair.of(*split(y), self.tops)
+        return pair_motion(pair, (None, None), self.rolls), ((0.0, 0.0), (0.0, 0.0))
 
     def follow(self, guard: str, time: float, state: State) -> Transition:
         """A contact opens, or one slips, or both; or a further surface touches."""
@@ -142,7 +156,7 @@ class SlipBeginningOnTwo(SlidingOnTwo):
     @property
     def motion(self) -> Motion:
         """Equations of motion, with the guards of both contacts and of further surfaces."""
-        return beginning_on_two(self.top.kind, self.other.kind)
+        return beginning_on_two(self.top.kind, self.other.kind, self.rolls)
 
     def numbers(self, state: State) -> tuple[Scalar, ...]:
         """Those it begins with."""
@@ -151,6 +165,7 @@ class SlipBeginningOnTwo(SlidingOnTwo):
     def state(self, y: Row) -> State:
         """The state, with its height."""
         axis, momentum = split(y)
+        momentum = self.stilled(axis, momentum)
         velocity = velocity_of(axis, momentum, (y[6], y[7]), self.top)
         return on_table(SlidingState(axis, momentum, velocity), self.top)
 
@@ -164,10 +179,11 @@ class SlipBeginningOnTwo(SlidingOnTwo):
         begin = (*state.axis, *state.momentum, slip[0], slip[1], apart)
         return replace(found, then=replace(found.then, begin=begin))
 
-    def reaction(self, y: Row) -> Reaction:
-        """Force of both contacts, and their torque about the first contact point."""
-        pair, xi = ContactPair.of(*split(y), self.tops), (y[6], y[7], y[8])
-        return reaction_of(pair_motion(pair, slips_of(pair, xi)), xi)
+    def found(self, y: Row) -> tuple[PairMotion, tuple[Slip, Slip]]:
+        """What the table does, and how both contacts slip."""
+        pair = ContactPair.of(*split(y), self.tops)
+        slips = slips_of(pair, (y[6], y[7], y[8]))
+        return pair_motion(pair, slips, self.rolls), slips
 
     def segments(self, time: float, state: State, end: float, integrator: Integrator) -> Iterator[Segment]:
         """Follow it by an implicit method: its direction is damped the faster the slower it is."""
@@ -175,25 +191,16 @@ class SlipBeginningOnTwo(SlidingOnTwo):
         for segment in super().segments(time, state, reach, make_integrator("collocation", TOLERANCE)):
             found = segment.transition
             if found is not None and found.then is Outcome.COMPLETED and reach < end:
-                then = SlidingOnTwo(self.top, self.rules, self.other)
+                then = SlidingOnTwo(self.top, self.rules, self.other, self.rolls)
                 yield replace(segment, transition=Transition((), then, found.state))
             else:
                 yield segment
 
 
-def turned(pair: ContactPair, sign: Scalar) -> PairMotion:
+def turned(pair: ContactPair, sign: Scalar, rolls: float) -> PairMotion:
     """What the table does while the first contact sticks, and the second slips so across the axis."""
     across = directions_of(pair.first.axis)[1]
-    return pair_motion(pair, (None, (sign * across[0], sign * across[1])))
-
-
-def reaction_of(found: PairMotion, xi: tuple[Scalar, ...]) -> Reaction:
-    """What the table does to a body that slips so."""
-    power: Any = 0.0
-    for slip, wrench in zip(slips_of(found.pair, xi), found.wrenches, strict=True):
-        power = power + wrench.force[0] * slip[0] + wrench.force[1] * slip[1]
-    power = power + dot(found.couple, found.pair.first.turning)
-    return Reaction(found.force, found.torque, power, found.couple)
+    return pair_motion(pair, (None, (sign * across[0], sign * across[1])), rolls)
 
 
 def tops_of(first: Kind, second: Kind, numbers: Sequence[Scalar]) -> Tops:
@@ -203,11 +210,11 @@ def tops_of(first: Kind, second: Kind, numbers: Sequence[Scalar]) -> Tops:
 
 
 @lru_cache
-def turning_motion(first: Kind, second: Kind, sign: float) -> Motion:
+def turning_motion(first: Kind, second: Kind, sign: float, rolls: float) -> Motion:
     """Equations of motion while the first contact sticks and the second slips across the axis, as signed."""
 
     def found(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> PairMotion:
-        return turned(ContactPair.of(*split(y), tops_of(first, second, numbers)), sign)
+        return turned(ContactPair.of(*split(y), tops_of(first, second, numbers)), sign, rolls)
 
     def slides(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
         return sign * slip_apart(ContactPair.of(*split(y), tops_of(first, second, numbers)))
@@ -215,19 +222,19 @@ def turning_motion(first: Kind, second: Kind, sign: float) -> Motion:
     def holds(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
         return found(y, numbers).reserve(0)
 
-    guards = [*_openings(found), Guard(f"{SLIP}first", holds), Guard(ENDING, slides)]
-    return _of_momentum(first, second, found, guards)
+    guards = [Guard(f"{SLIP}first", holds), Guard(ENDING, slides)]
+    return _of_momentum(first, second, found, [*guards, *pair_guards(first, second, found, rolls)])
 
 
 @lru_cache
-def held_motion_on_two(first: Kind, second: Kind) -> Motion:
-    """Equations of motion while both contacts stick: for good, where patches resist drilling."""
+def held_motion_on_two(first: Kind, second: Kind, rolls: float) -> Motion:
+    """Equations of motion while both contacts stick: for good, where patches resist drilling, and rolls."""
 
     def found(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> PairMotion:
-        return pair_motion(ContactPair.of(*split(y), tops_of(first, second, numbers)), (None, None))
+        return pair_motion(ContactPair.of(*split(y), tops_of(first, second, numbers)), (None, None), rolls)
 
-    guards = _openings(found)
-    if slip_length(first.example.friction) is None:
+    guards = pair_guards(first, second, found, rolls)
+    if slip_length(first.example.friction) is None or rolls:
         guards += [
             Guard(f"{SLIP}0", lambda y, numbers: found(y, numbers).left(0)),
             Guard(f"{SLIP}1", lambda y, numbers: found(y, numbers).left(1)),
@@ -237,12 +244,12 @@ def held_motion_on_two(first: Kind, second: Kind) -> Motion:
 
 
 @lru_cache
-def beginning_on_two(first: Kind, second: Kind) -> Motion:
+def beginning_on_two(first: Kind, second: Kind, rolls: float) -> Motion:
     """Equations of motion while both contacts slip, with xi, of which a part may have just begun."""
 
     def found(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> PairMotion:
         pair = ContactPair.of(*split(y), tops_of(first, second, numbers))
-        return pair_motion(pair, slips_of(pair, (y[6], y[7], y[8])))
+        return pair_motion(pair, slips_of(pair, (y[6], y[7], y[8])), rolls)
 
     def rates(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[Scalar, ...]:
         now = found(y, numbers)
@@ -256,10 +263,9 @@ def beginning_on_two(first: Kind, second: Kind) -> Motion:
 
         return value
 
-    guards = _openings(found)
+    guards = pair_guards(first, second, found, rolls)
     if is_branched(first.example.friction):
         guards += [Guard(f"{BRANCHING}{number}", branch(number)) for number in (0, 1)]
-    guards += surface_guards(first, (number_of(second.example),))
     return Motion(rates, 9, first.numbers + second.numbers, tuple(guards), lasting=False)
 
 
@@ -270,14 +276,4 @@ def _of_momentum(first: Kind, second: Kind, found: Any, guards: Sequence[Guard])
         now = found(y, numbers)
         return (*axis_rate(*split(y), now.pair.first.top), *now.moment)
 
-    guards = [*guards, *surface_guards(first, (number_of(second.example),))]
     return Motion(rates, 6, first.numbers + second.numbers, tuple(guards), lasting=False)
-
-
-def _openings(found: Any) -> list[Guard]:
-    """The guards of the normal forces."""
-
-    def normal(number: int) -> Function:
-        return lambda y, numbers: found(y, numbers).normal[number]
-
-    return [Guard(f"{OPENING}{number}", normal(number)) for number in (0, 1)]

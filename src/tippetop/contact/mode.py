@@ -219,11 +219,21 @@ class Rules(Protocol):
         """The rules of the top with another of its surfaces active."""
 
     def settled_on_two(
-        self, time: float, state: State, tops: tuple[Top, Top], stuck: tuple[int, ...]
+        self,
+        time: float,
+        state: State,
+        tops: tuple[Top, Top],
+        stuck: tuple[int, ...],
+        rolls: tuple[float, float],
     ) -> Transition:
-        """What follows when slip ends on a contact beside another one; contacts of these surfaces stuck."""
+        """What follows when slip ends on a contact beside another one, or rolling; some surfaces stuck.
 
-    def slipping_on_two(self, time: float, state: State, tops: tuple[Top, Top], which: str) -> Transition:
+        The body rolled, and now does, as signed (see `tippetop.contact.double.OnTwo`).
+        """
+
+    def slipping_on_two(
+        self, time: float, state: State, tops: tuple[Top, Top], which: str, rolls: float
+    ) -> Transition:
         """What follows when one of two contacts, or both, can be held no longer."""
 
     def stopping(self, time: float, state: State, *, slips: bool = True) -> Transition:

@@ -9,7 +9,7 @@ from tippetop.contact.passing import BothLoosening, Loosening, Resting, Stopping
 from tippetop.contact.sliding import Sliding, SlidingWithoutRolling
 from tippetop.contact.sticking import Sticking, StickingWithoutRolling
 from tippetop.contact.surfaces import number_of
-from tippetop.mechanics.beginning import Beginning, beginning
+from tippetop.mechanics.beginning import Beginning, settling
 from tippetop.mechanics.coulomb import RollingResistance
 from tippetop.mechanics.ending import Vanishing
 from tippetop.mechanics.flight import gap, gap_rate
@@ -22,8 +22,6 @@ from tippetop.mechanics.rolling import (
     is_set_valued,
     on_branch,
     on_limit_branch,
-    rolling_reserve,
-    set_valued,
     slip_length,
     velocity_without_slip,
     without_drilling,
@@ -80,12 +78,19 @@ class ContactRules:
         raise NotImplementedError
 
     def settled_on_two(
-        self, time: float, state: State, tops: tuple[Top, Top], stuck: tuple[int, ...]
+        self,
+        time: float,
+        state: State,
+        tops: tuple[Top, Top],
+        stuck: tuple[int, ...],
+        rolls: tuple[float, float],
     ) -> Transition:
         """Never happens: as `touch`."""
         raise NotImplementedError
 
-    def slipping_on_two(self, time: float, state: State, tops: tuple[Top, Top], which: str) -> Transition:
+    def slipping_on_two(
+        self, time: float, state: State, tops: tuple[Top, Top], which: str, rolls: float
+    ) -> Transition:
         """Never happens: as `touch`."""
         raise NotImplementedError
 
@@ -130,19 +135,12 @@ class ContactRules:
         point = ContactPoint.of(state.axis, state.momentum, self.top)
         slip = None if ended[0] else slip_of(*along_table(state), self.top)
         rolling = None if ended[1] else point.turning[:2]
-        for begins in ((False, False), (True, False), (False, True), (True, True)):
-            if begins[0] > ended[0] or begins[1] > ended[1]:
-                continue
-            try:
-                found = beginning(point, slip, rolling, begins)
-            except ArithmeticError:
-                continue
-            if self._admits(point, found, ended, begins):
-                return self._settle(
-                    time, state, found, begins, ended, (*events, *self._marks(time, new, begins))
-                )
-        why = "nothing can hold the contact, and there is no direction in which it can go on"
-        return Transition(events, Outcome.FAILED, state, why)
+        try:
+            found, begins = settling(point, slip, rolling)
+        except ArithmeticError as error:
+            return Transition(events, Outcome.FAILED, state, str(error))
+        events = (*events, *self._marks(time, new, begins))
+        return self._settle(time, state, found, begins, ended, events)
 
     def giving_way(self, state: State, events: tuple[Event, ...], beginning: Vanishing) -> Transition:
         """Slip, or rolling, begins from the limit of what the table can hold."""
@@ -169,19 +167,6 @@ class ContactRules:
         if isinstance(mode, IntegratedMode) and _rests(found, state):
             return Transition(events, Resting(self.top, self, mode), state)
         return Transition(events, mode, state)
-
-    def _admits(
-        self, point: ContactPoint, found: Beginning, ended: tuple[bool, bool], begins: tuple[bool, bool]
-    ) -> bool:
-        """Whether the table can hold what has ended and does not begin."""
-        (x, y, normal), torque = found.wrench
-        if ended[0] and not begins[0]:
-            reserve = set_valued(self.top.friction).reserve(normal, (x, y), torque[2])
-            if reserve < 0.0:
-                return False
-        if ended[1] and not begins[1]:
-            return bool(rolling_reserve(point, found.wrench, found.slip) >= 0.0)
-        return True
 
     def _marks(self, time: float, new: tuple[bool, bool], begins: tuple[bool, bool]) -> tuple[Event, ...]:
         """What is told where slip, or rolling, has newly ended and is held, or was held and begins."""

@@ -8,14 +8,14 @@ from tippetop.contact.flight import TOUCHING
 from tippetop.contact.mode import Event, EventKind, Outcome, Transition
 from tippetop.contact.rules import FreeToFly
 from tippetop.contact.surfaces import number_of
-from tippetop.contact.two_closed import settled, slipping
-from tippetop.mechanics.double_contact import Tops, double_contact
+from tippetop.contact.two_closed import Before, rolling_of, settled, slipping
+from tippetop.mechanics.contact_pair import ContactPair, Tops, without_tilting
 from tippetop.mechanics.flight import gap, gap_rate
 from tippetop.mechanics.hull import lowest_surface
 from tippetop.mechanics.impact import Impact, impact
 from tippetop.mechanics.impact_on_two import SlipEnds, impact_on_two
 from tippetop.mechanics.motion import along_table
-from tippetop.mechanics.rolling import is_set_valued
+from tippetop.mechanics.rolling import contact_wrench, is_set_valued
 from tippetop.mechanics.state import State
 from tippetop.mechanics.stick_slip import size, slip_of
 from tippetop.mechanics.top import Top
@@ -70,7 +70,9 @@ class OnSeveral(FreeToFly):
         if len(closed) > 1:
             return Transition(events, Outcome.FAILED, state, "three surfaces touch at once")
         if closed:
-            return settled(self, time, state, (self.top, closed[0]), (), events, arrived=True)
+            before = Before((), bool(rolling_of(state, self.top)))
+            rolls = rolling_of(without_tilting(state, self.top), self.top)
+            return settled(self, time, state, (self.top, closed[0]), before, rolls, events, arrived=True)
         return self.resting_alone(time, state, events)
 
     def _impact(self, state: State, restitution: float) -> Impact:
@@ -99,7 +101,10 @@ class OnSeveral(FreeToFly):
         """
         back, depth = 1.0, max(0.0, float(gap(state, self.top) - gap(state, other)))
         if self._slips(other, state):
-            back = abs(double_contact(along_table(state), (self.top, other)).acceleration[1])
+            pair = ContactPair.of(state.axis, state.momentum, (self.top, other))
+            slip = slip_of(*along_table(state), self.top)
+            wrench = contact_wrench(pair.first, slip, pair.first.turning[:2])
+            back = float(abs(pair.under([(0, wrench)])[1][2]))
         return float(max(SLOWEST_ROCKING * max(1.0, back) ** 0.5, (2.0 * back * depth) ** 0.5))
 
     def _slips(self, other: Top, state: State) -> bool:
@@ -112,10 +117,12 @@ class OnSeveral(FreeToFly):
         """As for one surface, whatever else touches."""
         return super().resting(time, state, events)
 
-    def settled_on_two(self, time: float, state: State, tops: Tops, stuck: tuple[int, ...]) -> Transition:
+    def settled_on_two(
+        self, time: float, state: State, tops: Tops, stuck: tuple[int, ...], rolls: tuple[float, float]
+    ) -> Transition:
         """As the resolver of two contacts finds."""
-        return settled(self, time, state, tops, stuck)
+        return settled(self, time, state, tops, Before(stuck, bool(rolls[0])), rolls[1])
 
-    def slipping_on_two(self, time: float, state: State, tops: Tops, which: str) -> Transition:
+    def slipping_on_two(self, time: float, state: State, tops: Tops, which: str, rolls: float) -> Transition:
         """Slip begins at the limit of what the table can hold."""
-        return slipping(self, time, state, tops, which)
+        return slipping(self, time, state, tops, which, rolls)

@@ -14,18 +14,22 @@ from tippetop.contact.mode import Event, EventKind, Outcome, Transition
 from tippetop.contact.passing import Resting
 from tippetop.contact.rules import REST
 from tippetop.contact.surfaces import number_of
-from tippetop.mechanics.beginning import beginning
+from tippetop.mechanics.beginning import settling
 from tippetop.mechanics.contact_pair import (
     ContactPair,
     PairMotion,
+    Tops,
     apart,
+    at_rest,
+    directions_of,
+    is_resisted,
     pair_motion,
     slip_apart,
     slips_of,
-    without_slips,
+    turning_along,
+    without_tilting,
 )
 from tippetop.mechanics.coulomb import RollingResistance
-from tippetop.mechanics.double_contact import Tops, without_tilting
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import along_table
 from tippetop.mechanics.pair_resolver import (
@@ -36,24 +40,40 @@ from tippetop.mechanics.pair_resolver import (
     turning_about,
 )
 from tippetop.mechanics.rolling import (
-    ContactPoint,
     Slip,
-    Wrench,
-    contact_motion,
     is_set_valued,
     off_branch,
     on_branch,
-    set_valued,
     slip_length,
     spun_up,
 )
 from tippetop.mechanics.state import State
-from tippetop.mechanics.stick_slip import inner, least_slip, scaled, size, slip_of
+from tippetop.mechanics.stick_slip import inner, is_rolling, least_slip, scaled, size, slip_of
+from tippetop.mechanics.top import Top
+from tippetop.mechanics.vectors import scale
 
 TOGETHER = 30.0
 """How many times `SLOWEST_SLIP` the slip of the other contact may be where it ends on one to end with it."""
 
 FIRST, SECOND, BOTH, NEITHER = "first", "second", "both", "neither"
+
+OPENS, HELD, CLOSES = "opens", "held", "closes"
+
+
+@dataclass(frozen=True)
+class Before:
+    """What two contacts did before.
+
+    Attributes
+    ----------
+    stuck
+        Numbers of the surfaces that stuck.
+    rolled
+        Whether the body rolled, if that is resisted.
+    """
+
+    stuck: tuple[int, ...] = ()
+    rolled: bool = False
 
 
 @dataclass(frozen=True)
@@ -67,33 +87,44 @@ class TwoClosed:
     tops
         The top with either surface active; if slip has ended on one, that comes first.
     state
-        The state, in which slip that has ended is zero.
+        The state, in which slip, and rolling, that has ended is zero.
     ended
         On which contacts it has.
+    rolls
+        Sign of omega_e; 0 where rolling has ended, or is not resisted.
     """
 
     rules: Any
     tops: Tops
     state: State
     ended: tuple[bool, bool]
+    rolls: float
 
     @classmethod
-    def of(cls, rules: Any, state: State, tops: Tops, ended: tuple[bool, bool] | None = None) -> "TwoClosed":
+    def of(
+        cls, rules: Any, state: State, tops: Tops, rolls: float, ended: tuple[bool, bool] | None = None
+    ) -> "TwoClosed":
         """The contacts in a state that has slip, or tilts, by no more than what is taken for none."""
         state, tops = without_tilting(state, tops[0]), (off_branch(tops[0]), off_branch(tops[1]))
         ended = ended_slips(state, tops) if ended is None else ended
         if ended == (False, True):
             tops, ended = tops[::-1], ended[::-1]
-        if any(ended):
-            pair = ContactPair.of(state.axis, state.momentum, tops)
-            momentum, velocity = without_slips(pair, state.velocity, ended)
+        pair = ContactPair.of(state.axis, state.momentum, tops)
+        stopped = is_resisted(pair) and not rolls
+        if any(ended) or stopped:
+            momentum, velocity = at_rest(pair, state.velocity, ended, stopped=stopped)
             state = state._replace(momentum=momentum, velocity=velocity)
-        return cls(rules, tops, state, ended)
+        return cls(rules, tops, state, ended, rolls)
 
     @property
     def pair(self) -> ContactPair:
         """The contact points."""
         return ContactPair.of(self.state.axis, self.state.momentum, self.tops)
+
+    @property
+    def stopped(self) -> bool:
+        """Whether rolling has ended."""
+        return is_resisted(self.pair) and not self.rolls
 
     @property
     def xi(self) -> Slip:
@@ -105,41 +136,65 @@ class TwoClosed:
 
     def resolved(self) -> Resolution:
         """How both go on while they stay closed."""
-        return resolution(self.pair, self.xi, self.ended)
+        return resolution(self.pair, self.xi, self.ended, self.rolls)
 
     def consistent(self, found: Resolution) -> list[str]:
-        """Which contacts may stay closed: exactly one answer is expected."""
+        """Which contacts may stay closed: exactly one answer is expected.
+
+        Where rolling is held, what one contact may do alone both may; else that which is pressed the more.
+        """
         normal, free = found.motion.normal, self.pair.free
         answers = [BOTH] if normal[0] > 0.0 and normal[1] > 0.0 else []
-        answers += [name for number, name in enumerate((FIRST, SECOND)) if self._stays_alone(number)]
+        if self.stopped and answers and not found.rolls:
+            return answers
+        ways = [self._alone(number) for number in (0, 1)]
+        held = [number for number in (0, 1) if ways[number] == HELD]
+        if held and not answers:
+            return [(FIRST, SECOND)[max(held, key=lambda number: normal[number])]]
+        answers += [name for way, name in zip(ways, (FIRST, SECOND), strict=True) if way == OPENS]
         return answers + ([NEITHER] if free[0][2] >= 0.0 and free[1][2] >= 0.0 else [])
 
-    def _stays_alone(self, number: int) -> bool:
-        """Whether one contact is pressed onto the table, and the other opens."""
+    def _alone(self, number: int) -> str:
+        """What the other contact does where one alone is pressed: opens, or is held as it is."""
         point = self.pair[number]
         if point.free.point[2] >= 0.0:
-            return False
+            return CLOSES
         slip = None if self.ended[number] else slip_of(*along_table(self.state), self.tops[number])
-        wrench = alone(point, slip)
-        return bool(wrench.force[2] > 0.0 and self.pair.under([(number, wrench)])[1 - number][2] >= 0.0)
+        found, _ = settling(point, slip, None if self.stopped else point.turning[:2])
+        if found.wrench.force[2] <= 0.0:
+            return CLOSES
+        if found.rolling is None:
+            return HELD
+        opens = self.pair.under([(number, found.wrench)])[1 - number][2] >= 0.0
+        return OPENS if opens else CLOSES
 
     def going_on(self, found: Resolution) -> Transition:
         """The mode in which both go on."""
+        if found.rolls != self.rolls:
+            return self._rolling(found.rolls).going_on(found)
         if found.begins is not None:
             return self.letting_go(found)
         if not any(found.sticks):
-            return Transition(
-                (), on_two(self.state, self.rules.on(number_of(self.tops[0])), self.tops[1]), self.state
-            )
+            rules = self.rules.on(number_of(self.tops[0]))
+            return Transition((), on_two(self.state, rules, self.tops[1], self.rolls), self.state)
         if all(found.sticks):
-            mode = StickingOnTwo(self.tops[0], self.rules, self.tops[1])
+            mode = StickingOnTwo(self.tops[0], self.rules, self.tops[1], self.rolls)
             rests = _rests(self.state, found.motion)
             return Transition((), Resting(self.tops[0], self.rules, mode) if rests else mode, self.state)
         return Transition((), self._turning(self.tops, self.xi[2]), self.state)
 
     def _turning(self, tops: Tops, zeta: float) -> StickingAndSliding:
         """The mode in which the first of these contacts sticks, and the second slips so."""
-        return (StickingAndSliding if zeta >= 0.0 else StickingAndSlidingBack)(tops[0], self.rules, tops[1])
+        return (StickingAndSliding if zeta >= 0.0 else StickingAndSlidingBack)(
+            tops[0], self.rules, tops[1], self.rolls
+        )
+
+    def _rolling(self, rolls: float) -> "TwoClosed":
+        """The same where rolling has begun."""
+        least = 2.0 * least_slip(self.state.momentum, self.state.velocity[:2])
+        change = scale(rolls * least, directions_of(self.state.axis)[0])
+        momentum = spun_up(self.state.axis, self.state.momentum, change, self.tops[0])
+        return replace(self, state=self.state._replace(momentum=momentum), rolls=rolls)
 
     def letting_go(self, found: Resolution) -> Transition:
         """The mode in which slip begins."""
@@ -157,20 +212,15 @@ class TwoClosed:
         begin = (*self.state.axis, *self.state.momentum, v_x, v_y, zeta)
         slips = slips_of(self.pair, (v_x, v_y, zeta))
         one, other = (on_branch(top, slip) for top, slip in zip(self.tops, slips, strict=True))
-        mode = SlipBeginningOnTwo(one, self.rules, other, begin)
+        mode = SlipBeginningOnTwo(one, self.rules, other, self.rolls, begin)
         return Transition((), mode, mode.state(begin))
 
 
-def alone(point: ContactPoint, slip: Slip | None) -> Wrench:
-    """What the table does where one contact alone is closed."""
-    rolling = point.turning[:2]
-    wrench = contact_motion(point, slip, rolling)[0]
-    if (
-        slip is None
-        and set_valued(point.top.friction).reserve(wrench.force[2], wrench.force[:2], wrench.torque[2]) < 0.0
-    ):
-        return beginning(point, None, rolling, (True, False)).wrench
-    return wrench
+def rolling_of(state: State, top: Top) -> float:
+    """Sign of omega_e where rolling is resisted and goes on; else 0."""
+    if not isinstance(top.friction, RollingResistance) or not is_rolling(state.axis, state.momentum, top):
+        return 0.0
+    return 1.0 if turning_along(ContactPair.of(state.axis, state.momentum, (top, top))) > 0.0 else -1.0
 
 
 def ended_slips(state: State, tops: Tops) -> tuple[bool, bool]:
@@ -191,16 +241,14 @@ def settled(
     time: float,
     state: State,
     tops: Tops,
-    stuck: tuple[int, ...],
+    before: Before,
+    rolls: float,
     events: tuple[Event, ...] = (),
     *,
     arrived: bool = False,
 ) -> Transition:
-    """The resolver of two contacts, of which those of some surfaces have been sticking."""
-    if isinstance(tops[0].friction, RollingResistance):
-        detail = "two surfaces touch at once, which is not followed where rolling is resisted"
-        return Transition(events, Outcome.FAILED, state, detail)
-    here = TwoClosed.of(rules, state, tops)
+    """The resolver of two contacts, where the body rolls as signed, or not (0)."""
+    here = TwoClosed.of(rules, state, tops, rolls)
     try:
         found = here.resolved()
         answers = here.consistent(found)
@@ -213,7 +261,7 @@ def settled(
         if arrived:
             lost = float(energy(state, tops[0]) - energy(here.state, tops[0]))
             events = (*events, rules.event(EventKind.DOUBLE_CONTACT, time, 0.0, lost))
-        events = (*events, *_marks(time + _left(state, tops), here, found.sticks, stuck))
+        events = (*events, *_marks((time + _left(state, here), time), here, found, before))
         return replace(here.going_on(found), events=events)
     numbers = [number_of(top) for top in here.tops]
     left, kept = numbers if answers == [SECOND] else numbers[::-1]
@@ -222,50 +270,57 @@ def settled(
     return then
 
 
-def slipping(rules: Any, time: float, state: State, tops: Tops, which: str) -> Transition:
+def slipping(rules: Any, time: float, state: State, tops: Tops, which: str, rolls: float) -> Transition:
     """What follows where what both contacts need, or one of them, reaches the limit of what the table can.
 
     Of those that stick, that of this number slips, or "both"; where only the first does, it does.
     """
     alone = which == FIRST
-    here = TwoClosed.of(rules, state, tops, (True, not alone))
+    here = TwoClosed.of(rules, state, tops, rolls, (True, not alone))
     pair = here.pair
     try:
-        if which == BOTH:
-            found = both_letting_go(pair)
+        if which == BOTH or slip_length(tops[0].friction) is not None:
+            found = both_letting_go(pair, rolls)
         elif alone:
-            found = letting_go(pair, here.xi)
+            found = letting_go(pair, here.xi, rolls)
         else:
             number = int(which)
-            needed = pair_motion(pair, (None, None)).needed(number)
-            found = turning_about(pair, 1 - number, 1.0 if (needed > 0.0) == (number == 0) else -1.0)
+            needed = pair_motion(pair, (None, None), rolls).needed(number)
+            found = turning_about(pair, 1 - number, 1.0 if (needed > 0.0) == (number == 0) else -1.0, rolls)
     except ArithmeticError as error:
         return Transition((), Outcome.FAILED, state, str(error))
-    before = (number_of(tops[0]),) if alone else (number_of(tops[0]), number_of(tops[1]))
-    return replace(here.letting_go(found), events=_marks(time, here, found.sticks, before))
+    stuck = (number_of(tops[0]),) if alone else (number_of(tops[0]), number_of(tops[1]))
+    marks = _marks((time, time), here, found, Before(stuck, bool(rolls)))
+    return replace(here.letting_go(found), events=marks)
 
 
 def _marks(
-    time: float, here: TwoClosed, sticks: tuple[bool, bool], stuck: tuple[int, ...]
+    times: tuple[float, float], here: TwoClosed, found: Resolution, before: Before
 ) -> tuple[Event, ...]:
-    """What is told where a contact sticks that did not, or slips that stuck."""
+    """What is told where a contact sticks that did not, or slips that stuck; and the same of rolling."""
     told = []
-    for top, held in zip(here.tops, sticks, strict=True):
+    for top, held in zip(here.tops, found.sticks, strict=True):
         surface = number_of(top)
-        if held != (surface in stuck):
-            told.append(Event(EventKind.STICK if held else EventKind.SLIP, time, surface=surface))
+        if held != (surface in before.stuck):
+            told.append(Event(EventKind.STICK if held else EventKind.SLIP, times[0], surface=surface))
+    if before.rolled != bool(found.rolls):
+        kind = EventKind.ROLL if found.rolls else EventKind.HALT
+        told += [Event(kind, times[1], surface=number_of(top)) for top in here.tops]
     return tuple(told)
 
 
-def _left(state: State, tops: Tops) -> float:
+def _left(state: State, here: TwoClosed) -> float:
     """Time to the end of slip that is followed no further, at its present rate."""
+    if not any(here.ended):
+        return 0.0
+    tops = here.tops
     slips = [slip_of(*along_table(state), top) for top in tops]
     number = 0 if size(slips[0]) <= size(slips[1]) else 1
     slip, speed = slips[number], size(slips[number])
     if not 0.0 < speed <= TOGETHER * SLOWEST_SLIP or not size(slips[1 - number]):
         return 0.0
     pair = ContactPair.of(state.axis, state.momentum, tops)
-    found = pair_motion(pair, (slips[0], slips[1]))
+    found = pair_motion(pair, (slips[0], slips[1]), here.rolls)
     change: Slip = found.moving[number][:2]
     if slip_length(tops[0].friction) is not None:
         slip, change = (slips[0][0], slips[0][1], slip_apart(pair)), found.rate

@@ -191,7 +191,7 @@ class Statements(Expressions):
         yield "try {"
         yield from indented(self._block(node.body))
         handler, *others = node.handlers
-        if others or handler.type is None:
+        if others or handler.type is None or node.orelse or node.finalbody:
             raise Untranslatable(f"{self.module}: {ast.unparse(node)}")
         yield "} catch (error) {"
         yield f"  if (!(error instanceof {self.text(handler.type)})) throw error;"

@@ -3054,6 +3054,7 @@ function _unit(a) {
 }
 
 // tippetop.mechanics.beginning
+const CHOICES = [[false, false], [true, false], [false, true], [true, true]];
 
 /** How the velocities of a contact go on. */
 class Beginning extends py.NamedTuple {
@@ -3090,6 +3091,36 @@ function beginning(point, slip, rolling, begins) {
   const found = motion(ways);
   const along = py.zip(parts, ways).map(([part, e]) => inner(part.rate(found[3], point.top), e));
   return new Beginning(found[0], found[1], py.tuple([...along].map((rate) => py.max(rate, 0.0))), found[2], found[3]);
+}
+
+/** How a contact goes on whose slip, or rolling, or both, have ended, and which of them begin again. */
+function settling(point, slip, rolling) {
+  let found;
+  const ended = [slip === null, rolling === null];
+  for (const begins of CHOICES) {
+    if (begins[0] > ended[0] || begins[1] > ended[1]) {
+      continue;
+    }
+    try {
+      found = beginning(point, slip, rolling, begins);
+    } catch (error) {
+      if (!(error instanceof py.ArithmeticError)) throw error;
+      continue;
+    }
+    if (py.truth(_admits(point, found))) {
+      return [found, begins];
+    }
+  }
+  throw new py.ArithmeticError("nothing can hold the contact, and there is no direction in which it can go on");
+}
+
+/** Whether the table can hold what does not go on. */
+function _admits(point, found) {
+  const [[x, y, normal], torque] = found.wrench;
+  if (found.slip === null && set_valued(point.top.friction).reserve(normal, [x, y], torque[2]) < 0.0) {
+    return false;
+  }
+  return py.or(found.rolling !== null, () => (rolling_reserve(point, found.wrench, found.slip) >= 0.0));
 }
 
 /** Direction in which a rolling body that cannot stick slips, floats, and the rate of its speed, m/s^2. */
@@ -3533,7 +3564,6 @@ function first_reach(along, goal, guess) {
 // tippetop.mechanics.dry_impact
 const ENDED = py.mul(10.0, FUZZ);
 const [SLIPPING, ROLLING_of_dry_impact] = ["slipping", "rolling"];
-const CHOICES = [[false, false], [true, false], [false, true], [true, true]];
 
 /** Whether slip or rolling can end under this law. */
 function is_dry(law) {
@@ -4193,11 +4223,11 @@ class ContactRules extends py.Record {
     throw new py.NotImplementedError();
   }
   /** Never happens: as `touch`. */
-  settled_on_two(time, state, tops, stuck) {
+  settled_on_two(time, state, tops, stuck, rolls) {
     throw new py.NotImplementedError();
   }
   /** Never happens: as `touch`. */
-  slipping_on_two(time, state, tops, which) {
+  slipping_on_two(time, state, tops, which, rolls) {
     throw new py.NotImplementedError();
   }
   /** Something that happens to the surface that is active. */
@@ -4228,28 +4258,20 @@ class ContactRules extends py.Record {
   }
   /** Hold what has ended, slip or rolling (new) or what was held already, if the table can; or let go. */
   settled(time, state, new_, held = false, events = []) {
-    let found;
+    let found, begins;
     const ended = [py.or(new_[0], () => py.and(held, () => new_[1])), py.or(new_[1], () => py.and(held, () => new_[0]))];
     state = this._at_rest(state, ...ended);
     const point = ContactPoint.of(state.axis, state.momentum, this.top);
     const slip = py.truth(ended[0]) ? null : slip_of(...along_table(state), this.top);
     const rolling = py.truth(ended[1]) ? null : point.turning.slice(0, 2);
-    for (const begins of [[false, false], [true, false], [false, true], [true, true]]) {
-      if (begins[0] > ended[0] || begins[1] > ended[1]) {
-        continue;
-      }
-      try {
-        found = beginning(point, slip, rolling, begins);
-      } catch (error) {
-        if (!(error instanceof py.ArithmeticError)) throw error;
-        continue;
-      }
-      if (py.truth(this._admits(point, found, ended, begins))) {
-        return this._settle(time, state, found, begins, ended, [...events, ...this._marks(time, new_, begins)]);
-      }
+    try {
+      [found, begins] = settling(point, slip, rolling);
+    } catch (error) {
+      if (!(error instanceof py.ArithmeticError)) throw error;
+      return new Transition(events, Outcome.FAILED, state, py.str(error));
     }
-    const why = "nothing can hold the contact, and there is no direction in which it can go on";
-    return new Transition(events, Outcome.FAILED, state, why);
+    events = [...events, ...this._marks(time, new_, begins)];
+    return this._settle(time, state, found, begins, ended, events);
   }
   /** Slip, or rolling, begins from the limit of what the table can hold. */
   giving_way(state, events, beginning) {
@@ -4272,20 +4294,6 @@ class ContactRules extends py.Record {
       return new Transition(events, new Resting(this.top, this, mode), state);
     }
     return new Transition(events, mode, state);
-  }
-  /** Whether the table can hold what has ended and does not begin. */
-  _admits(point, found, ended, begins) {
-    const [[x, y, normal], torque] = found.wrench;
-    if (py.truth(ended[0]) && !py.truth(begins[0])) {
-      const reserve = set_valued(this.top.friction).reserve(normal, [x, y], torque[2]);
-      if (reserve < 0.0) {
-        return false;
-      }
-    }
-    if (py.truth(ended[1]) && !py.truth(begins[1])) {
-      return (rolling_reserve(point, found.wrench, found.slip) >= 0.0);
-    }
-    return true;
   }
   /** What is told where slip, or rolling, has newly ended and is held, or was held and begins. */
   _marks(time, new_, begins) {
@@ -4487,210 +4495,8 @@ function _rests(found, state) {
   return (py.max(py.map(py.abs, rates)) <= REST);
 }
 
-// tippetop.mechanics.double_contact
-
-/** Both contacts, as if each were alone, and their normal forces when both stay closed. */
-class DoubleContact extends py.NamedTuple {
-  constructor(first, second, normal, acceleration) {
-    super();
-    this.first = first;
-    this.second = second;
-    this.normal = normal;
-    this.acceleration = acceleration;
-  }
-  /** Force of the table, N. */
-  get force() {
-    return add(...[0, 1].map((number) => this._force(number)));
-  }
-  /** Moment of the table about the centre of mass, N m. */
-  get moment() {
-    const pairs = py.zip(this.normal, [this.first, this.second]);
-    const [one, other] = [...pairs].map(([n, touch]) => scale(n, moment_per_normal_force(touch.arm, touch.traction)));
-    return add(one, other);
-  }
-  /** Torque of drilling friction at both contacts, N m. */
-  get couple() {
-    const pairs = py.zip(this.normal, [this.first, this.second]);
-    const [one, other] = [...pairs].map(([n, touch]) => scale(n, touch.traction.torque));
-    return add(one, other);
-  }
-  /** Torque of the table about the first contact point, N m. */
-  get torque() {
-    return add(this.moment, scale(-1.0, cross(this.first.arm, this.force)));
-  }
-  /** Power of friction, W. */
-  get power() {
-    return py.add(this._power(0), this._power(1));
-  }
-  _power(number) {
-    const touch = py.item([this.first, this.second], number);
-    const [[x, y], torque] = [touch.traction.force, touch.traction.torque];
-    return py.mul(py.item(this.normal, number), py.add(py.add(py.mul(x, touch.slip[0]), py.mul(y, touch.slip[1])), dot(torque, touch.spin)));
-  }
-  _force(number) {
-    const [[x, y], n] = [py.item([this.first, this.second], number).traction.force, py.item(this.normal, number)];
-    return [py.mul(n, x), py.mul(n, y), n];
-  }
-}
-py.fields(DoubleContact, ["first", "second", "normal", "acceleration"]);
-
-/** The contacts of a body that touches the table with two surfaces, whose gaps have no rates. */
-function double_contact(state, tops) {
-  const [first, second] = [...tops].map((top) => contact(...state, top));
-  const [a, d] = [first.delassus, second.delassus];
-  const [b, c] = [_coupling(state, tops[0], second), _coupling(state, tops[1], first)];
-  const [p, q] = [first.free_acceleration, second.free_acceleration];
-  const inverse = py.div(1.0, py.sub(py.mul(a, d), py.mul(b, c)));
-  const normal = [py.mul(py.sub(py.mul(b, q), py.mul(d, p)), inverse), py.mul(py.sub(py.mul(c, p), py.mul(a, q)), inverse)];
-  return new DoubleContact(first, second, normal, [py.sub(p, py.div(py.mul(b, q), d)), py.sub(q, py.div(py.mul(c, p), a))]);
-}
-
-/** A_ij, 1/kg: acceleration of this top's gap per unit normal force at the other contact. */
-function _coupling(state, top, other) {
-  const lever = py.div(top.surface.slope(state.axis[2]), top.transverse_inertia);
-  return py.sub(py.div(1.0, top.mass), py.mul(lever, cross(moment_per_normal_force(other.arm, other.traction), state.axis)[2]));
-}
-
-/** Time derivative of the state of a body that slides on two surfaces. */
-function double_rates(state, tops) {
-  const [both, top] = [double_contact(state, tops), tops[0]];
-  const [x, y] = both.force;
-  return new SlidingState(axis_rate(state.axis, state.momentum, top), both.moment, [py.div(x, top.mass), py.div(y, top.mass)]);
-}
-
-/** The state with c' = 0 and no sinking: what is taken from the momentum lies across the axis. */
-function without_tilting(state, top) {
-  const n = state.axis;
-  const rate = axis_rate(n, state.momentum, top)[2];
-  const part = py.div(py.mul(top.transverse_inertia, rate), py.add(py.mul(n[0], n[0]), py.mul(n[1], n[1])));
-  const momentum = [py.sub(state.momentum[0], py.mul(part, n[1])), py.add(state.momentum[1], py.mul(part, n[0])), state.momentum[2]];
-  return state._replace({ momentum: momentum, velocity: [...state.velocity.slice(0, 2), 0.0] });
-}
-
-// tippetop.contact.double
-const [OPENING, ENDING, BRANCHING] = ["opening ", "ending ", "branching "];
-const SLOWEST_SLIP = 1e-09;
-
-/** Two surfaces touch. */
-class OnTwo extends IntegratedMode {
-  constructor(top, rules, other) {
-    super(top, rules);
-    this.other = other;
-  }
-  /** The top with either surface active. */
-  get tops() {
-    return [this.top, this.other];
-  }
-  /** The numbers of the top on either surface: the branches of their laws may differ. */
-  get parameters() {
-    return [...this.top.numbers, ...this.other.numbers];
-  }
-  /** One of both surfaces opens, while the other goes on, slipping or not. */
-  opening(number, time, state, slips) {
-    const [left, kept] = py.item([this.tops, py.slice(this.tops, null, null, -1)], number);
-    const event = new Event(EventKind.OPENING, time, undefined, undefined, number_of(left));
-    return new Transition([event], this.rules.on(number_of(kept)).going_on(state, slips), state);
-  }
-}
-py.fields(OnTwo, ["top", "rules", "other"]);
-
-/** Sliding on two surfaces, as long as both normal forces are positive. */
-class SlidingOnTwo extends OnTwo {
-  constructor(top, rules, other) {
-    super(top, rules, other);
-  }
-  get name() { return "sliding"; }
-  /** Equations of motion, with the guards of both contacts and of further surfaces. */
-  get motion() {
-    return motion_on_two(this.top.kind, this.other.kind);
-  }
-  /** The 8 numbers of a sliding state. */
-  numbers(state) {
-    return along_table(state).pack();
-  }
-  /** The state, with its height. */
-  state(y) {
-    return on_table(SlidingState.unpack(y), this.top);
-  }
-  /** Force of both contacts, and their torque about the first contact point. */
-  reaction(y) {
-    const both = double_contact(SlidingState.unpack(y), this.tops);
-    return new Reaction(both.force, both.torque, both.power, both.couple);
-  }
-  /** One surface opens, while the other goes on; or slip ends on one; or a further one touches. */
-  follow(guard, time, state) {
-    const [kind, , number] = py.rpartition(guard, " ");
-    if (py.eq(`${py.str(kind)} `, OPENING)) {
-      return this.opening(py.int(number), time, state, true);
-    }
-    if (py.eq(`${py.str(kind)} `, BRANCHING)) {
-      const tops = py.list(this.tops);
-      py.put(tops, py.int(number), on_other_branch(py.item(tops, py.int(number))));
-      return new Transition([], py.replace(this, { top: tops[0], other: tops[1] }), state);
-    }
-    if (py.eq(`${py.str(kind)} `, ENDING)) {
-      return this.rules.settled_on_two(time, state, this.tops, []);
-    }
-    const found = follow_surface(this, guard, time, state);
-    py.assert(found !== null, "there are no other guards");
-    return found;
-  }
-}
-py.fields(SlidingOnTwo, ["top", "rules", "other"]);
-
-/** The mode of a body that slides on the surface of some rules and on another. */
-function on_two(state, rules, other) {
-  let tops = [rules.top, other];
-  if (py.truth(is_branched(other.friction))) {
-    const [one, two] = [...tops].map((top) => on_numbered_branch(top, slip_of(...along_table(state), top)));
-    tops = [one, two];
-  }
-  return new SlidingOnTwo(tops[0], rules, tops[1]);
-}
-
-/** Equations of motion of a top of these kinds: of another active surface and branch of the law each. */
-const motion_on_two = py.cached((first, second) => {
-  const tops = (numbers) => {
-    const cut = first.numbers;
-    return [first.top(py.tuple(numbers.slice(0, cut))), second.top(py.tuple(py.slice(numbers, cut, py.mul(2, cut), null)))];
-  };
-  const rates = (y, numbers) => {
-    return double_rates(SlidingState.unpack(y), tops(numbers)).pack();
-  };
-  const normal = (number) => {
-    return (y, numbers) => py.item(double_contact(SlidingState.unpack(y), tops(numbers)).normal, number);
-  };
-  const slip = (number) => {
-    const value = (y, numbers) => {
-      const found = slip_of(...SlidingState.unpack(y), py.item(tops(numbers), number));
-      return py.sub(inner(found, found), py.mul(SLOWEST_SLIP, SLOWEST_SLIP));
-    };
-    return value;
-  };
-  const both_slips = (y, numbers) => {
-    const [one, other] = [...tops(numbers)].map((top) => slip_of(...SlidingState.unpack(y), top));
-    return py.sub(py.add(inner(one, one), inner(other, other)), py.mul(SLOWEST_SLIP, SLOWEST_SLIP));
-  };
-  const branch = (number) => {
-    const value = (y, numbers) => {
-      return branch_guard(...SlidingState.unpack(y), py.item(tops(numbers), number));
-    };
-    return value;
-  };
-  let guards = [0, 1].map((number) => new Guard(`${py.str(OPENING)}${py.str(number)}`, normal(number)));
-  if (slip_length(first.example.friction) !== null) {
-    guards.push(new Guard(`${py.str(ENDING)}both`, both_slips));
-  } else if (py.truth(is_set_valued(first.example.friction))) {
-    guards = py.add(guards, [0, 1].map((number) => new Guard(`${py.str(ENDING)}${py.str(number)}`, slip(number))));
-  }
-  if (py.truth(is_branched(first.example.friction))) {
-    guards = py.add(guards, [0, 1].map((number) => new Guard(`${py.str(BRANCHING)}${py.str(number)}`, branch(number))));
-  }
-  guards = py.add(guards, surface_guards(first, [number_of(second.example)]));
-  return new Motion(rates, 8, py.mul(2, first.numbers), py.tuple(guards), false);
-});
-
 // tippetop.mechanics.contact_pair
+const TURNING = 2;
 
 /** The contact points of a body that touches the table with two surfaces. */
 class ContactPair extends py.NamedTuple {
@@ -4744,11 +4550,12 @@ py.fields(ContactPair, ["first", "second"]);
 
 /** What the table does at both contacts that stay closed, and how they accelerate. */
 class PairMotion extends py.NamedTuple {
-  constructor(pair, wrenches, moving) {
+  constructor(pair, wrenches, moving, holding = 0.0) {
     super();
     this.pair = pair;
     this.wrenches = wrenches;
     this.moving = moving;
+    this.holding = holding;
   }
   /** Force of the table, N. */
   get force() {
@@ -4793,6 +4600,16 @@ class PairMotion extends py.NamedTuple {
   get along() {
     return dot(this.force, directions_of(this.pair.first.axis)[0]);
   }
+  /** Rate of omega_e, rad/s^2. */
+  get rolling_rate() {
+    return dot(this.moving[2], directions_of(this.pair.first.axis)[0]);
+  }
+  /** Positive while the table can exert the couple that holds rolling, (N m)^2. */
+  get rolling_reserve() {
+    const law = this.pair.first.top.friction;
+    const [one, other] = this.normal;
+    return law.reserve(py.add(one, other), [this.holding, 0.0]);
+  }
   /** Positive while the table can exert S, N^2: (sqrt(A_1) + sqrt(A_2))^2 - S^2 for positive A_i. */
   get both_reserve() {
     const [one, other, along] = [this.left(0), this.left(1), this.along];
@@ -4800,7 +4617,7 @@ class PairMotion extends py.NamedTuple {
     return py.sub(py.add(py.add(one, other), py.mul(2.0, py.pow(py.add(py.mul(product, product), TINY), 0.25))), py.mul(along, along));
   }
 }
-py.fields(PairMotion, ["pair", "wrenches", "moving"]);
+py.fields(PairMotion, ["pair", "wrenches", "moving", "holding"]);
 
 /** Horizontal unit vectors e along the axis and t across it. */
 function directions_of(axis) {
@@ -4820,11 +4637,21 @@ function slip_apart(pair) {
   return py.mul(apart(pair), pair.first.turning[2]);
 }
 
+/** omega_e, rad/s. */
+function turning_along(pair) {
+  return dot(pair.first.turning, directions_of(pair.first.axis)[0]);
+}
+
+/** Whether rolling is resisted. */
+function is_resisted(pair) {
+  return py.isinstance(pair.first.top.friction, RollingResistance);
+}
+
 /** What the table does to a body whose two contacts stay closed, and how it accelerates. */
-function pair_motion(pair, slips) {
+function pair_motion(pair, slips, rolls) {
   let held = [];
+  const [along, across] = directions_of(pair.first.axis);
   if (slips[0] === null && slips[1] === null) {
-    const [along, across] = directions_of(pair.first.axis);
     held = py.add(held, [[0, along], [0, across], [1, across]]);
   }
   for (const [number, slip] of py.enumerate(slips)) {
@@ -4834,8 +4661,13 @@ function pair_motion(pair, slips) {
   }
   const units = [...held].map(([number, way]) => [number, new Wrench(way, NO_TORQUE)]);
   for (const [number, slip] of py.enumerate(slips)) {
-    units.push([number, normal_wrench(py.item(pair, number), slip)]);
+    units.push([number, normal_wrench(py.item(pair, number), slip, scale(rolls, along))]);
     held.push([number, VERTICAL]);
+  }
+  const stopped = py.and(is_resisted(pair), () => !py.truth(rolls));
+  if (py.truth(stopped)) {
+    units.push([0, new Wrench(NO_TORQUE, along)]);
+    held.push([TURNING, along]);
   }
   const sizes = pair.holding(units, held, pair.free);
   const found = [new Wrench(NO_TORQUE, NO_TORQUE), new Wrench(NO_TORQUE, NO_TORQUE)];
@@ -4845,16 +4677,43 @@ function pair_motion(pair, slips) {
     py.put(found, number, new Wrench(...py.zip(py.item(found, number), push).map(([a, b]) => add(a, b))));
     pushes.push([number, push]);
   }
-  return new PairMotion(pair, [found[0], found[1]], pair.under(pushes));
+  return new PairMotion(pair, [found[0], found[1]], pair.under(pushes), py.truth(stopped) ? py.item(sizes, -1) : 0.0);
 }
 
-/** A unit normal force with the friction that goes with it where the contact slips. */
-function normal_wrench(point, slip) {
-  if (slip === null) {
-    return new Wrench(VERTICAL, NO_TORQUE);
+/** A unit normal force with what goes with it where the contact slips, and rolls in this direction. */
+function normal_wrench(point, slip, rolling) {
+  const law = point.top.friction;
+  let [force, torque] = [[0.0, 0.0], NO_TORQUE];
+  if (slip !== null) {
+    [force, torque] = sliding_law(law).traction([slip[0], slip[1]], turning_with(point, slip));
   }
-  const [force, torque] = sliding_law(point.top.friction).traction([slip[0], slip[1]], turning_with(point, slip));
+  if (py.isinstance(law, RollingResistance)) {
+    torque = add(torque, scale(py.neg(law.length), rolling));
+  }
   return new Wrench([...force, 1.0], torque);
+}
+
+/** What the table does to a body that slides on two surfaces, and how they slip. */
+function sliding_pair(state, tops, rolls) {
+  const [first, second] = [...tops].map((top) => slip_of(...state, top));
+  const pair = ContactPair.of(state.axis, state.momentum, tops);
+  return [pair_motion(pair, [first, second], rolls), [first, second]];
+}
+
+/** Time derivative of the state of a body that slides on two surfaces. */
+function sliding_pair_rates(state, tops, rolls) {
+  const [now] = sliding_pair(state, tops, rolls);
+  const [x, y] = scaled(py.div(1.0, tops[0].mass), now.force.slice(0, 2));
+  return new SlidingState(axis_rate(state.axis, state.momentum, tops[0]), now.moment, [x, y]);
+}
+
+/** The state with c' = 0 and no sinking: what is taken from the momentum lies across the axis. */
+function without_tilting(state, top) {
+  const n = state.axis;
+  const rate = axis_rate(n, state.momentum, top)[2];
+  const part = py.div(py.mul(top.transverse_inertia, rate), py.add(py.mul(n[0], n[0]), py.mul(n[1], n[1])));
+  const momentum = [py.sub(state.momentum[0], py.mul(part, n[1])), py.add(state.momentum[1], py.mul(part, n[0])), state.momentum[2]];
+  return state._replace({ momentum: momentum, velocity: [...state.velocity.slice(0, 2), 0.0] });
 }
 
 /** How both contacts slip, and drill if their law resists that. */
@@ -4869,21 +4728,25 @@ function slips_of(pair, xi) {
   return [[...one, drilling], [...other, drilling]];
 }
 
-/** Angular momentum and velocity after the impulses that end the slip of one contact, or of both. */
-function without_slips(pair, velocity, ended) {
+/** Angular momentum and velocity after the impulses that end what is left of slip, and of rolling. */
+function at_rest(pair, velocity, ended, stopped) {
   const omega = pair.first.turning;
   let moving = [...[...pair].map((point) => add(velocity, cross(omega, point.arm))), omega];
   const [along, across] = directions_of(pair.first.axis);
-  const both = [[0, along], [0, across], [1, across]];
-  const held = py.truth(py.all(ended)) ? both : [[py.int(ended[1]), EAST], [py.int(ended[1]), NORTH]];
+  let held = [];
+  if (py.truth(py.any(ended))) {
+    const both = [[0, along], [0, across], [1, across]];
+    held = py.add(held, py.truth(py.all(ended)) ? both : [[py.int(ended[1]), EAST], [py.int(ended[1]), NORTH]]);
+  }
+  held = py.add(held, [[0, VERTICAL], [1, VERTICAL]]);
   const units = [...held].map(([number, way]) => [number, new Wrench(way, NO_TORQUE)]);
-  for (const number of [0, 1]) {
-    units.push([number, new Wrench(VERTICAL, NO_TORQUE)]);
-    held.push([number, VERTICAL]);
+  if (py.truth(stopped)) {
+    units.push([0, new Wrench(NO_TORQUE, along)]);
+    held.push([TURNING, along]);
   }
   moving = [moving[0], moving[1], moving[2]];
   const sizes = pair.holding(units, held, moving);
-  const pushes = py.zip(sizes, units).map(([a, [number, unit]]) => [number, new Wrench(scale(a, unit.force), NO_TORQUE)]);
+  const pushes = py.zip(sizes, units).map(([a, [number, unit]]) => [number, new Wrench(scale(a, unit.force), scale(a, unit.torque))]);
   const momentum = add(pair.first.momentum, pair.moment(pushes));
   for (const [, push] of pushes) {
     velocity = add(velocity, scale(py.div(1.0, pair.first.top.mass), push.force));
@@ -4892,20 +4755,20 @@ function without_slips(pair, velocity, ended) {
 }
 
 /** Direction in which the first contact begins to slip, and the motion then. */
-function way_of_one(pair, slip) {
+function way_of_one(pair, slip, rolls) {
   const answers = [EAST, NORTH].map((way) => pair.response([0, new Wrench(way, NO_TORQUE)])[0]);
   const stiffness = py.float(py.add(py.abs(answers[0][0]), py.abs(answers[1][1])));
   const response = (ways) => {
-    const found = pair_motion(pair, [ways[0], slip]);
+    const found = pair_motion(pair, [ways[0], slip], rolls);
     return [new Resisted(found.moving[0].slice(0, 2), py.mul(stiffness, size(found.wrenches[0].force.slice(0, 2))))];
   };
-  const held = pair_motion(pair, [null, slip]).wrenches[0];
+  const held = pair_motion(pair, [null, slip], rolls).wrenches[0];
   const way = directions(response, [scaled(-1.0, held.force.slice(0, 2))])[0];
-  return [way, pair_motion(pair, [way, slip])];
+  return [way, pair_motion(pair, [way, slip], rolls)];
 }
 
 /** Direction of xi in which both contacts begin to slip that cannot be held, and the motion then. */
-function way_of_both(pair) {
+function way_of_both(pair, rolls) {
   const across = directions_of(pair.first.axis)[1];
   const lever = py.float(apart(pair));
   const answers = [EAST, NORTH].map((way) => pair.response([0, new Wrench(way, NO_TORQUE)])[0]);
@@ -4913,14 +4776,14 @@ function way_of_both(pair) {
   const stiffness = py.float(py.add(py.add(py.abs(answers[0][0]), py.abs(answers[1][1])), py.abs(py.mul(lever, turned))));
   const drilled = py.abs(lever * py.float(pair.response([0, DRILLING])[2][2]));
   const motion = (way) => {
-    return pair_motion(pair, slips_of(pair, way));
+    return pair_motion(pair, slips_of(pair, way), rolls);
   };
   const response = (ways) => {
     const found = motion(ways[0]);
     const strength = py.sum([...found.wrenches].map((wrench) => py.add(py.mul(stiffness, size(wrench.force.slice(0, 2))), py.mul(drilled, py.abs(wrench.torque[2])))));
     return [new Resisted(found.rate, strength)];
   };
-  const way = directions(response, [against(pair_motion(pair, [null, null]))])[0];
+  const way = directions(response, [against(pair_motion(pair, [null, null], rolls))])[0];
   return [way, motion(way)];
 }
 
@@ -4938,6 +4801,292 @@ function against(held) {
   return [...v, py.neg(py.sub(ratios[1], ratios[0]))];
 }
 
+// tippetop.mechanics.pair_resolver
+
+/** How two contacts go on. */
+class Resolution extends py.NamedTuple {
+  constructor(motion, sticks, rolls, begins = null) {
+    super();
+    this.motion = motion;
+    this.sticks = sticks;
+    this.rolls = rolls;
+    this.begins = begins;
+  }
+}
+py.fields(Resolution, ["motion", "sticks", "rolls", "begins"]);
+
+/** How two contacts go on that slip so, of which slip has ended on some; if on one, on the first. */
+function resolution(pair, xi, ended, rolls) {
+  if (py.truth(rolls) || !py.truth(is_resisted(pair))) {
+    return of_slips(pair, xi, ended, rolls);
+  }
+  const held = _without_rolling(pair, xi, ended);
+  if (held !== null && held.motion.rolling_reserve >= 0.0) {
+    return held;
+  }
+  const way = held === null ? 1.0 : rolling_way(held.motion);
+  for (const sign of [way, py.neg(way)]) {
+    const found = of_slips(pair, xi, ended, sign);
+    if (py.mul(found.motion.rolling_rate, sign) >= 0.0) {
+      return found;
+    }
+  }
+  throw new py.ArithmeticError("nothing can hold the rolling of two contacts, and it can begin neither way");
+}
+
+/** How they go on while rolling is held; None where that is no way to. */
+function _without_rolling(pair, xi, ended) {
+  try {
+    return of_slips(pair, xi, ended, 0.0);
+  } catch (error) {
+    if (!(error instanceof py.ArithmeticError)) throw error;
+    return null;
+  }
+}
+
+/** Sign of omega_e where rolling begins: against the couple that would have held it. */
+function rolling_way(held) {
+  return held.holding > 0.0 ? -1.0 : 1.0;
+}
+
+/** The same where it is known how the body rolls. */
+function of_slips(pair, xi, ended, rolls) {
+  const [one, other] = slips_of(pair, xi);
+  const slips = [py.truth(ended[0]) ? null : one, py.truth(ended[1]) ? null : other];
+  const held = pair_motion(pair, slips, rolls);
+  if (!py.truth(py.any(ended))) {
+    return new Resolution(held, [false, false], rolls);
+  }
+  if (!py.truth(py.all(ended))) {
+    const sticks = held.reserve(0) >= 0.0;
+    return py.truth(sticks) ? new Resolution(held, [true, false], rolls) : letting_go(pair, xi, rolls);
+  }
+  if (py.min(held.left(0), held.left(1)) >= 0.0 && held.both_reserve >= 0.0) {
+    return new Resolution(held, [true, true], rolls);
+  }
+  if (slip_length(pair.first.top.friction) !== null) {
+    return both_letting_go(pair, rolls);
+  }
+  for (const number of [0, 1]) {
+    for (const sign of [1.0, -1.0]) {
+      const found = turning_about(pair, number, sign, rolls);
+      if (py.mul(found.motion.rate[2], sign) >= 0.0 && found.motion.reserve(number) >= 0.0) {
+        return found;
+      }
+    }
+  }
+  return both_letting_go(pair, rolls);
+}
+
+/** The first contact, which alone sticks, begins to slip. */
+function letting_go(pair, xi, rolls) {
+  const [way, motion] = way_of_one(pair, slips_of(pair, xi)[1], rolls);
+  return new Resolution(motion, [false, false], rolls, [...way, 0.0]);
+}
+
+/** Both contacts begin to slip. */
+function both_letting_go(pair, rolls) {
+  const [way, motion] = way_of_both(pair, rolls);
+  return new Resolution(motion, [false, false], rolls, way);
+}
+
+/** The body begins to turn about one of both contacts, and the other slips, xi_3 as signed. */
+function turning_about(pair, number, sign, rolls) {
+  const across = scaled(number === 0 ? sign : -sign, directions_of(pair.first.axis)[1].slice(0, 2));
+  const slips = number === 0 ? [null, across] : [across, null];
+  const motion = pair_motion(pair, slips, rolls);
+  return new Resolution(motion, [number === 0, number === 1], rolls, [0.0, 0.0, sign]);
+}
+
+// tippetop.contact.double
+const [OPENING, ENDING, BRANCHING] = ["opening ", "ending ", "branching "];
+const SLOWEST_SLIP = 1e-09;
+
+/** Two surfaces touch. */
+class OnTwo extends IntegratedMode {
+  constructor(top, rules, other, rolls = 0.0) {
+    super(top, rules);
+    this.other = other;
+    this.rolls = rolls;
+  }
+  /** How it rolls decides what its numbers say of the couple. */
+  get form() {
+    return `${py.str(this.name)} ${py.str(this.rolls)}`;
+  }
+  /** Its name, and the numbers of the surfaces. */
+  get label() {
+    const [first, second] = py.sorted([number_of(this.top), number_of(this.other)]);
+    return `${py.str(this.name)}${py.str(this.held)}_on_${py.str(first)}_and_${py.str(second)}`;
+  }
+  /** What its name says where rolling is held. */
+  get held() {
+    return py.truth(this.stopped) ? "_without_rolling" : "";
+  }
+  /** Whether rolling is held. */
+  get stopped() {
+    return py.and(py.isinstance(this.top.friction, RollingResistance), () => !py.truth(this.rolls));
+  }
+  /** Numbers of the surfaces that stick: none, where a mode does not say otherwise. */
+  get stuck() {
+    return [];
+  }
+  /** Force of both contacts, and their torque about the first contact point. */
+  reaction(y) {
+    const [found, slips] = this.found(y);
+    let power = dot(found.couple, found.pair.first.turning);
+    for (const [slip, wrench] of py.zip(slips, found.wrenches)) {
+      power = py.add(power, py.add(py.mul(wrench.force[0], slip[0]), py.mul(wrench.force[1], slip[1])));
+    }
+    return new Reaction(found.force, found.torque, power, found.couple);
+  }
+  /** The angular momentum, without rolling where that is held. */
+  stilled(axis, momentum) {
+    return py.truth(this.stopped) ? without_rolling(axis, momentum, this.top) : momentum;
+  }
+  /** What the resolver finds where slip, or rolling, has ended, or begins as signed. */
+  settled(time, state, rolls) {
+    return this.rules.settled_on_two(time, state, this.tops, this.stuck, [this.rolls, rolls]);
+  }
+  /** What follows where rolling ends, or can be held no longer; None for any other guard. */
+  follow_rolling(guard, time, state) {
+    if (py.eq(guard, ROLLING_STOPPING)) {
+      return this.settled(time, state, 0.0);
+    }
+    if (py.eq(guard, ROLLING)) {
+      return this.settled(time, state, rolling_way(this.found(this.numbers(state))[0]));
+    }
+    return follow_surface(this, guard, time, state);
+  }
+  /** The top with either surface active. */
+  get tops() {
+    return [this.top, this.other];
+  }
+  /** The numbers of the top on either surface: the branches of their laws may differ. */
+  get parameters() {
+    return [...this.top.numbers, ...this.other.numbers];
+  }
+  /** One of both surfaces opens, while the other goes on, slipping or not. */
+  opening(number, time, state, slips) {
+    const [left, kept] = py.item([this.tops, py.slice(this.tops, null, null, -1)], number);
+    const event = new Event(EventKind.OPENING, time, undefined, undefined, number_of(left));
+    state = state._replace({ momentum: this.stilled(state.axis, state.momentum) });
+    return new Transition([event], this.rules.on(number_of(kept)).going_on(state, slips), state);
+  }
+}
+py.fields(OnTwo, ["top", "rules", "other", "rolls"]);
+
+/** Sliding on two surfaces, as long as both normal forces are positive. */
+class SlidingOnTwo extends OnTwo {
+  constructor(top, rules, other, rolls = 0.0) {
+    super(top, rules, other, rolls);
+  }
+  get name() { return "sliding"; }
+  /** Equations of motion, with the guards of both contacts and of further surfaces. */
+  get motion() {
+    return motion_on_two(this.top.kind, this.other.kind, this.rolls);
+  }
+  /** The 8 numbers of a sliding state. */
+  numbers(state) {
+    return along_table(state).pack();
+  }
+  /** The state, with its height. */
+  state(y) {
+    return on_table(SlidingState.unpack(y), this.top);
+  }
+  /** What the table does, and how both contacts slip. */
+  found(y) {
+    return sliding_pair(SlidingState.unpack(y), this.tops, this.rolls);
+  }
+  /** One surface opens, while the other goes on; or slip or rolling ends; or a further one touches. */
+  follow(guard, time, state) {
+    const [kind, , number] = py.rpartition(guard, " ");
+    if (py.eq(`${py.str(kind)} `, OPENING)) {
+      return this.opening(py.int(number), time, state, true);
+    }
+    if (py.eq(`${py.str(kind)} `, BRANCHING)) {
+      const tops = py.list(this.tops);
+      py.put(tops, py.int(number), on_other_branch(py.item(tops, py.int(number))));
+      return new Transition([], py.replace(this, { top: tops[0], other: tops[1] }), state);
+    }
+    if (py.eq(`${py.str(kind)} `, ENDING)) {
+      return this.settled(time, state, this.rolls);
+    }
+    const found = this.follow_rolling(guard, time, state);
+    py.assert(found !== null, "there are no other guards");
+    return found;
+  }
+}
+py.fields(SlidingOnTwo, ["top", "rules", "other", "rolls"]);
+
+/** The mode of a body that slides on the surface of some rules and on another. */
+function on_two(state, rules, other, rolls) {
+  let tops = [rules.top, other];
+  if (py.truth(is_branched(other.friction))) {
+    const [one, two] = [...tops].map((top) => on_numbered_branch(top, slip_of(...along_table(state), top)));
+    tops = [one, two];
+  }
+  return new SlidingOnTwo(tops[0], rules, tops[1], rolls);
+}
+
+/** Equations of motion of a top of these kinds: of another active surface and branch of the law each. */
+const motion_on_two = py.cached((first, second, rolls) => {
+  const tops = (numbers) => {
+    const cut = first.numbers;
+    return [first.top(py.tuple(numbers.slice(0, cut))), second.top(py.tuple(py.slice(numbers, cut, py.mul(2, cut), null)))];
+  };
+  const rates = (y, numbers) => {
+    return sliding_pair_rates(SlidingState.unpack(y), tops(numbers), rolls).pack();
+  };
+  const found = (y, numbers) => {
+    return sliding_pair(SlidingState.unpack(y), tops(numbers), rolls)[0];
+  };
+  const slip = (number) => {
+    const value = (y, numbers) => {
+      const found = slip_of(...SlidingState.unpack(y), py.item(tops(numbers), number));
+      return py.sub(inner(found, found), py.mul(SLOWEST_SLIP, SLOWEST_SLIP));
+    };
+    return value;
+  };
+  const both_slips = (y, numbers) => {
+    const [one, other] = [...tops(numbers)].map((top) => slip_of(...SlidingState.unpack(y), top));
+    return py.sub(py.add(inner(one, one), inner(other, other)), py.mul(SLOWEST_SLIP, SLOWEST_SLIP));
+  };
+  const branch = (number) => {
+    const value = (y, numbers) => {
+      return branch_guard(...SlidingState.unpack(y), py.item(tops(numbers), number));
+    };
+    return value;
+  };
+  let guards = pair_guards(first, second, found, rolls);
+  if (slip_length(first.example.friction) !== null) {
+    guards.push(new Guard(`${py.str(ENDING)}both`, both_slips));
+  } else if (py.truth(is_set_valued(first.example.friction))) {
+    guards = py.add(guards, [0, 1].map((number) => new Guard(`${py.str(ENDING)}${py.str(number)}`, slip(number))));
+  }
+  if (py.truth(is_branched(first.example.friction))) {
+    guards = py.add(guards, [0, 1].map((number) => new Guard(`${py.str(BRANCHING)}${py.str(number)}`, branch(number))));
+  }
+  return new Motion(rates, 8, py.mul(2, first.numbers), py.tuple(guards), false);
+});
+
+/** The guards of normal forces, of rolling, and of further surfaces, from what the table does. */
+function pair_guards(first, second, found, rolls) {
+  const normal = (number) => {
+    return (y, numbers) => py.item(found(y, numbers).normal, number);
+  };
+  const rolling = (y, numbers) => {
+    return py.mul(rolls, turning_along(found(y, numbers).pair));
+  };
+  const reserve = (y, numbers) => {
+    return found(y, numbers).rolling_reserve;
+  };
+  const guards = [0, 1].map((number) => new Guard(`${py.str(OPENING)}${py.str(number)}`, normal(number)));
+  if (py.isinstance(first.example.friction, RollingResistance)) {
+    guards.push(py.truth(rolls) ? new Guard(ROLLING_STOPPING, rolling) : new Guard(ROLLING, reserve));
+  }
+  return py.add(guards, surface_guards(first, [number_of(second.example)]));
+}
+
 // tippetop.contact.double_sticking
 const [SLIP_of_double_sticking, ENDING_of_double_sticking] = ["slip ", "ending"];
 const BEGINNING = 0.02;
@@ -4945,8 +5094,8 @@ const TOLERANCE_of_double_sticking = 1e-13;
 
 /** The first contact sticks, if not both: axis and angular momentum say how the body rolls on it. */
 class HeldOnTwo extends OnTwo {
-  constructor(top, rules, other) {
-    super(top, rules, other);
+  constructor(top, rules, other, rolls = 0.0) {
+    super(top, rules, other, rolls);
   }
   /** Axis and angular momentum. */
   numbers(state) {
@@ -4954,41 +5103,48 @@ class HeldOnTwo extends OnTwo {
   }
   /** The state, whose velocity is that of rolling on the first contact. */
   state(y) {
-    const [axis, momentum] = split(y);
+    let [axis, momentum] = split(y);
+    momentum = this.stilled(axis, momentum);
     const velocity = velocity_without_slip(axis, momentum, this.top);
     return on_table(new SlidingState(axis, momentum, velocity), this.top);
   }
-  /** Slip begins; or a further surface touches. */
+  /** Slip begins; or rolling ends or begins; or a further surface touches. */
   follow(guard, time, state) {
     if (py.truth(guard.startsWith(SLIP_of_double_sticking))) {
-      return this.rules.slipping_on_two(time, state, this.tops, py.removeprefix(guard, SLIP_of_double_sticking));
+      const which = py.removeprefix(guard, SLIP_of_double_sticking);
+      return this.rules.slipping_on_two(time, state, this.tops, which, this.rolls);
     }
-    const found = follow_surface(this, guard, time, state);
+    const found = this.follow_rolling(guard, time, state);
     py.assert(found !== null, "there are no other guards");
     return found;
   }
 }
-py.fields(HeldOnTwo, ["top", "rules", "other"]);
+py.fields(HeldOnTwo, ["top", "rules", "other", "rolls"]);
 
 /** The first contact sticks and the second slips across the axis: along t of `contact_pair`. */
 class StickingAndSliding extends HeldOnTwo {
-  constructor(top, rules, other) {
-    super(top, rules, other);
+  constructor(top, rules, other, rolls = 0.0) {
+    super(top, rules, other, rolls);
   }
   get name() { return "sticking_and_sliding"; }
   get sign() { return 1.0; }
   /** Its name, with the numbers of the surface that sticks, and of that which slips. */
   get label() {
-    return `sticking_on_${py.str(number_of(this.top))}_sliding_on_${py.str(number_of(this.other))}`;
+    return `sticking${py.str(this.held)}_on_${py.str(number_of(this.top))}_sliding_on_${py.str(number_of(this.other))}`;
+  }
+  /** The first surface. */
+  get stuck() {
+    return [number_of(this.top)];
   }
   /** Equations of motion of axis and angular momentum, and guards. */
   get motion() {
-    return turning_motion(this.top.kind, this.other.kind, this.sign);
+    return turning_motion(this.top.kind, this.other.kind, this.sign, this.rolls);
   }
-  /** Force of both contacts, and their torque about the first contact point. */
-  reaction(y) {
+  /** What the table does, and how both contacts slip. */
+  found(y) {
     const pair = ContactPair.of(...split(y), this.tops);
-    return reaction_of(turned_of_double_sticking(pair, this.sign), [0.0, 0.0, slip_apart(pair)]);
+    const zeta = slip_apart(pair);
+    return [turned_of_double_sticking(pair, this.sign, this.rolls), slips_of(pair, [py.mul(0.0, zeta), py.mul(0.0, zeta), zeta])];
   }
   /** A contact opens; or slip ends on the second, or begins on the first; or a further one touches. */
   follow(guard, time, state) {
@@ -4997,41 +5153,46 @@ class StickingAndSliding extends HeldOnTwo {
       return this.opening(number, time, state, number === 0);
     }
     if (py.eq(guard, ENDING_of_double_sticking)) {
-      return this.rules.settled_on_two(time, state, this.tops, [number_of(this.top)]);
+      return this.settled(time, state, this.rolls);
     }
     return super.follow(guard, time, state);
   }
 }
-py.fields(StickingAndSliding, ["top", "rules", "other"]);
+py.fields(StickingAndSliding, ["top", "rules", "other", "rolls"]);
 
 /** The same where the second contact slips the other way. */
 class StickingAndSlidingBack extends StickingAndSliding {
-  constructor(top, rules, other) {
-    super(top, rules, other);
+  constructor(top, rules, other, rolls = 0.0) {
+    super(top, rules, other, rolls);
   }
   get name() { return "sticking_and_sliding_back"; }
   get sign() { return -1.0; }
 }
-py.fields(StickingAndSlidingBack, ["top", "rules", "other"]);
+py.fields(StickingAndSlidingBack, ["top", "rules", "other", "rolls"]);
 
 /** Both contacts stick: the body rolls about the line that joins them, or is at rest. */
 class StickingOnTwo extends HeldOnTwo {
-  constructor(top, rules, other) {
-    super(top, rules, other);
+  constructor(top, rules, other, rolls = 0.0) {
+    super(top, rules, other, rolls);
   }
   get name() { return "sticking"; }
+  /** Both surfaces. */
+  get stuck() {
+    return [number_of(this.top), number_of(this.other)];
+  }
   /** Equations of motion of axis and angular momentum, and the guards of what holds the contacts. */
   get motion() {
-    return held_motion_on_two(this.top.kind, this.other.kind);
+    return held_motion_on_two(this.top.kind, this.other.kind, this.rolls);
   }
   /** The state, without turning about the vertical, whose velocity is that of rolling. */
   state(y) {
     const [axis, momentum] = split(y);
     return super.state([...axis, ...without_drilling(axis, momentum, this.top)]);
   }
-  /** Force of both contacts, and their torque about the first contact point. */
-  reaction(y) {
-    return reaction_of(pair_motion(ContactPair.of(...split(y), this.tops), [null, null]), [0.0, 0.0, 0.0]);
+  /** What the table does, and that neither contact slips. */
+  found(y) {
+    const pair = ContactPair.of(...split(y), this.tops);
+    return [pair_motion(pair, [null, null], this.rolls), [[0.0, 0.0], [0.0, 0.0]]];
   }
   /** A contact opens, or one slips, or both; or a further surface touches. */
   follow(guard, time, state) {
@@ -5041,17 +5202,17 @@ class StickingOnTwo extends HeldOnTwo {
     return super.follow(guard, time, state);
   }
 }
-py.fields(StickingOnTwo, ["top", "rules", "other"]);
+py.fields(StickingOnTwo, ["top", "rules", "other", "rolls"]);
 
 /** The first moments of slip at a contact, or at both: slip itself is what moves, and loses no digits. */
 class SlipBeginningOnTwo extends SlidingOnTwo {
-  constructor(top, rules, other, begin = []) {
-    super(top, rules, other);
+  constructor(top, rules, other, rolls = 0.0, begin = []) {
+    super(top, rules, other, rolls);
     this.begin = begin;
   }
   /** Equations of motion, with the guards of both contacts and of further surfaces. */
   get motion() {
-    return beginning_on_two(this.top.kind, this.other.kind);
+    return beginning_on_two(this.top.kind, this.other.kind, this.rolls);
   }
   /** Those it begins with. */
   numbers(state) {
@@ -5059,7 +5220,8 @@ class SlipBeginningOnTwo extends SlidingOnTwo {
   }
   /** The state, with its height. */
   state(y) {
-    const [axis, momentum] = split(y);
+    let [axis, momentum] = split(y);
+    momentum = this.stilled(axis, momentum);
     const velocity = velocity_of(axis, momentum, [y[6], y[7]], this.top);
     return on_table(new SlidingState(axis, momentum, velocity), this.top);
   }
@@ -5074,10 +5236,11 @@ class SlipBeginningOnTwo extends SlidingOnTwo {
     const begin = [...state.axis, ...state.momentum, slip[0], slip[1], apart];
     return py.replace(found, { then: py.replace(found.then, { begin: begin }) });
   }
-  /** Force of both contacts, and their torque about the first contact point. */
-  reaction(y) {
-    const [pair, xi] = [ContactPair.of(...split(y), this.tops), [y[6], y[7], y[8]]];
-    return reaction_of(pair_motion(pair, slips_of(pair, xi)), xi);
+  /** What the table does, and how both contacts slip. */
+  found(y) {
+    const pair = ContactPair.of(...split(y), this.tops);
+    const slips = slips_of(pair, [y[6], y[7], y[8]]);
+    return [pair_motion(pair, slips, this.rolls), slips];
   }
   /** Follow it by an implicit method: its direction is damped the faster the slower it is. */
   *segments(time, state, end, integrator) {
@@ -5085,7 +5248,7 @@ class SlipBeginningOnTwo extends SlidingOnTwo {
     for (const segment of super.segments(time, state, reach, make_integrator("collocation", TOLERANCE_of_double_sticking))) {
       const found = segment.transition;
       if (found !== null && found.then === Outcome.COMPLETED && reach < end) {
-        const then = new SlidingOnTwo(this.top, this.rules, this.other);
+        const then = new SlidingOnTwo(this.top, this.rules, this.other, this.rolls);
         yield py.replace(segment, { transition: new Transition([], then, found.state) });
       } else {
         yield segment;
@@ -5093,22 +5256,12 @@ class SlipBeginningOnTwo extends SlidingOnTwo {
     }
   }
 }
-py.fields(SlipBeginningOnTwo, ["top", "rules", "other", "begin"]);
+py.fields(SlipBeginningOnTwo, ["top", "rules", "other", "rolls", "begin"]);
 
 /** What the table does while the first contact sticks, and the second slips so across the axis. */
-function turned_of_double_sticking(pair, sign) {
+function turned_of_double_sticking(pair, sign, rolls) {
   const across = directions_of(pair.first.axis)[1];
-  return pair_motion(pair, [null, [py.mul(sign, across[0]), py.mul(sign, across[1])]]);
-}
-
-/** What the table does to a body that slips so. */
-function reaction_of(found, xi) {
-  let power = 0.0;
-  for (const [slip, wrench] of py.zip(slips_of(found.pair, xi), found.wrenches)) {
-    power = py.add(py.add(power, py.mul(wrench.force[0], slip[0])), py.mul(wrench.force[1], slip[1]));
-  }
-  power = py.add(power, dot(found.couple, found.pair.first.turning));
-  return new Reaction(found.force, found.torque, power, found.couple);
+  return pair_motion(pair, [null, [py.mul(sign, across[0]), py.mul(sign, across[1])]], rolls);
 }
 
 /** The top on either surface. */
@@ -5118,9 +5271,9 @@ function tops_of(first, second, numbers) {
 }
 
 /** Equations of motion while the first contact sticks and the second slips across the axis, as signed. */
-const turning_motion = py.cached((first, second, sign) => {
+const turning_motion = py.cached((first, second, sign, rolls) => {
   const found = (y, numbers) => {
-    return turned_of_double_sticking(ContactPair.of(...split(y), tops_of(first, second, numbers)), sign);
+    return turned_of_double_sticking(ContactPair.of(...split(y), tops_of(first, second, numbers)), sign, rolls);
   };
   const slides = (y, numbers) => {
     return py.mul(sign, slip_apart(ContactPair.of(...split(y), tops_of(first, second, numbers))));
@@ -5128,27 +5281,27 @@ const turning_motion = py.cached((first, second, sign) => {
   const holds = (y, numbers) => {
     return found(y, numbers).reserve(0);
   };
-  const guards = [..._openings(found), new Guard(`${py.str(SLIP_of_double_sticking)}first`, holds), new Guard(ENDING_of_double_sticking, slides)];
-  return _of_momentum(first, second, found, guards);
+  const guards = [new Guard(`${py.str(SLIP_of_double_sticking)}first`, holds), new Guard(ENDING_of_double_sticking, slides)];
+  return _of_momentum(first, second, found, [...guards, ...pair_guards(first, second, found, rolls)]);
 });
 
-/** Equations of motion while both contacts stick: for good, where patches resist drilling. */
-const held_motion_on_two = py.cached((first, second) => {
+/** Equations of motion while both contacts stick: for good, where patches resist drilling, and rolls. */
+const held_motion_on_two = py.cached((first, second, rolls) => {
   const found = (y, numbers) => {
-    return pair_motion(ContactPair.of(...split(y), tops_of(first, second, numbers)), [null, null]);
+    return pair_motion(ContactPair.of(...split(y), tops_of(first, second, numbers)), [null, null], rolls);
   };
-  let guards = _openings(found);
-  if (slip_length(first.example.friction) === null) {
+  let guards = pair_guards(first, second, found, rolls);
+  if (slip_length(first.example.friction) === null || py.truth(rolls)) {
     guards = py.add(guards, [new Guard(`${py.str(SLIP_of_double_sticking)}0`, (y, numbers) => found(y, numbers).left(0)), new Guard(`${py.str(SLIP_of_double_sticking)}1`, (y, numbers) => found(y, numbers).left(1)), new Guard(`${py.str(SLIP_of_double_sticking)}both`, (y, numbers) => found(y, numbers).both_reserve)]);
   }
   return _of_momentum(first, second, found, guards);
 });
 
 /** Equations of motion while both contacts slip, with xi, of which a part may have just begun. */
-const beginning_on_two = py.cached((first, second) => {
+const beginning_on_two = py.cached((first, second, rolls) => {
   const found = (y, numbers) => {
     const pair = ContactPair.of(...split(y), tops_of(first, second, numbers));
-    return pair_motion(pair, slips_of(pair, [y[6], y[7], y[8]]));
+    return pair_motion(pair, slips_of(pair, [y[6], y[7], y[8]]), rolls);
   };
   const rates = (y, numbers) => {
     const now = found(y, numbers);
@@ -5162,11 +5315,10 @@ const beginning_on_two = py.cached((first, second) => {
     };
     return value;
   };
-  let guards = _openings(found);
+  let guards = pair_guards(first, second, found, rolls);
   if (py.truth(is_branched(first.example.friction))) {
     guards = py.add(guards, [0, 1].map((number) => new Guard(`${py.str(BRANCHING)}${py.str(number)}`, branch(number))));
   }
-  guards = py.add(guards, surface_guards(first, [number_of(second.example)]));
   return new Motion(rates, 9, py.add(first.numbers, second.numbers), py.tuple(guards), false);
 });
 
@@ -5176,16 +5328,7 @@ function _of_momentum(first, second, found, guards) {
     const now = found(y, numbers);
     return [...axis_rate(...split(y), now.pair.first.top), ...now.moment];
   };
-  guards = [...guards, ...surface_guards(first, [number_of(second.example)])];
   return new Motion(rates, 6, py.add(first.numbers, second.numbers), py.tuple(guards), false);
-}
-
-/** The guards of the normal forces. */
-function _openings(found) {
-  const normal = (number) => {
-    return (y, numbers) => py.item(found(y, numbers).normal, number);
-  };
-  return [0, 1].map((number) => new Guard(`${py.str(OPENING)}${py.str(number)}`, normal(number)));
 }
 
 // tippetop.mechanics.invariants
@@ -5202,96 +5345,53 @@ function jellett(state, top) {
   return py.neg(dot(state.momentum, contact_vector(state.axis, top.surface)));
 }
 
-// tippetop.mechanics.pair_resolver
-
-/** How two contacts go on. */
-class Resolution extends py.NamedTuple {
-  constructor(motion, sticks, begins = null) {
-    super();
-    this.motion = motion;
-    this.sticks = sticks;
-    this.begins = begins;
-  }
-}
-py.fields(Resolution, ["motion", "sticks", "begins"]);
-
-/** How two contacts go on that slip so, of which slip has ended on some; if on one, on the first. */
-function resolution(pair, xi, ended) {
-  const [one, other] = slips_of(pair, xi);
-  const slips = [py.truth(ended[0]) ? null : one, py.truth(ended[1]) ? null : other];
-  const held = pair_motion(pair, slips);
-  if (!py.truth(py.any(ended))) {
-    return new Resolution(held, [false, false]);
-  }
-  if (!py.truth(py.all(ended))) {
-    return held.reserve(0) >= 0.0 ? new Resolution(held, [true, false]) : letting_go(pair, xi);
-  }
-  if (py.min(held.left(0), held.left(1)) >= 0.0 && held.both_reserve >= 0.0) {
-    return new Resolution(held, [true, true]);
-  }
-  if (slip_length(pair.first.top.friction) !== null) {
-    return both_letting_go(pair);
-  }
-  for (const number of [0, 1]) {
-    for (const sign of [1.0, -1.0]) {
-      const found = turning_about(pair, number, sign);
-      if (py.mul(found.motion.rate[2], sign) >= 0.0 && found.motion.reserve(number) >= 0.0) {
-        return found;
-      }
-    }
-  }
-  return both_letting_go(pair);
-}
-
-/** The first contact, which alone sticks, begins to slip. */
-function letting_go(pair, xi) {
-  const [way, motion] = way_of_one(pair, slips_of(pair, xi)[1]);
-  return new Resolution(motion, [false, false], [...way, 0.0]);
-}
-
-/** Both contacts begin to slip. */
-function both_letting_go(pair) {
-  const [way, motion] = way_of_both(pair);
-  return new Resolution(motion, [false, false], way);
-}
-
-/** The body begins to turn about one of both contacts, and the other slips, xi_3 as signed. */
-function turning_about(pair, number, sign) {
-  const across = scaled(number === 0 ? sign : -sign, directions_of(pair.first.axis)[1].slice(0, 2));
-  const slips = number === 0 ? [null, across] : [across, null];
-  return new Resolution(pair_motion(pair, slips), [number === 0, number === 1], [0.0, 0.0, sign]);
-}
-
 // tippetop.contact.two_closed
 const TOGETHER = 30.0;
 const [FIRST, SECOND, BOTH, NEITHER] = ["first", "second", "both", "neither"];
+const [OPENS, HELD, CLOSES] = ["opens", "held", "closes"];
+
+/** What two contacts did before. */
+class Before extends py.Record {
+  constructor(stuck = [], rolled = false) {
+    super();
+    this.stuck = stuck;
+    this.rolled = rolled;
+  }
+}
+py.fields(Before, ["stuck", "rolled"]);
 
 /** Two contacts that are closed and have no normal velocities. */
 class TwoClosed extends py.Record {
-  constructor(rules, tops, state, ended) {
+  constructor(rules, tops, state, ended, rolls) {
     super();
     this.rules = rules;
     this.tops = tops;
     this.state = state;
     this.ended = ended;
+    this.rolls = rolls;
   }
   /** The contacts in a state that has slip, or tilts, by no more than what is taken for none. */
-  static of(rules, state, tops, ended = null) {
+  static of(rules, state, tops, rolls, ended = null) {
     [state, tops] = [without_tilting(state, tops[0]), [off_branch(tops[0]), off_branch(tops[1])]];
     ended = ended === null ? ended_slips(state, tops) : ended;
     if (py.eq(ended, [false, true])) {
       [tops, ended] = [py.slice(tops, null, null, -1), py.slice(ended, null, null, -1)];
     }
-    if (py.truth(py.any(ended))) {
-      const pair = ContactPair.of(state.axis, state.momentum, tops);
-      const [momentum, velocity] = without_slips(pair, state.velocity, ended);
+    const pair = ContactPair.of(state.axis, state.momentum, tops);
+    const stopped = py.and(is_resisted(pair), () => !py.truth(rolls));
+    if (py.truth(py.any(ended)) || py.truth(stopped)) {
+      const [momentum, velocity] = at_rest(pair, state.velocity, ended, stopped);
       state = state._replace({ momentum: momentum, velocity: velocity });
     }
-    return new this(rules, tops, state, ended);
+    return new this(rules, tops, state, ended, rolls);
   }
   /** The contact points. */
   get pair() {
     return ContactPair.of(this.state.axis, this.state.momentum, this.tops);
+  }
+  /** Whether rolling has ended. */
+  get stopped() {
+    return py.and(is_resisted(this.pair), () => !py.truth(this.rolls));
   }
   /** How they slip. */
   get xi() {
@@ -5303,35 +5403,54 @@ class TwoClosed extends py.Record {
   }
   /** How both go on while they stay closed. */
   resolved() {
-    return resolution(this.pair, this.xi, this.ended);
+    return resolution(this.pair, this.xi, this.ended, this.rolls);
   }
   /** Which contacts may stay closed: exactly one answer is expected. */
   consistent(found) {
     const [normal, free] = [found.motion.normal, this.pair.free];
     let answers = normal[0] > 0.0 && normal[1] > 0.0 ? [BOTH] : [];
-    answers = py.add(answers, py.enumerate([FIRST, SECOND]).filter(([number, name]) => py.truth(this._stays_alone(number))).map(([number, name]) => name));
+    if (py.truth(this.stopped) && py.truth(answers) && !py.truth(found.rolls)) {
+      return answers;
+    }
+    const ways = [0, 1].map((number) => this._alone(number));
+    const held = [0, 1].filter((number) => py.eq(py.item(ways, number), HELD));
+    if (py.truth(held) && !py.truth(answers)) {
+      return [py.item([FIRST, SECOND], py.max(held, py.how({ key: (number) => py.item(normal, number) })))];
+    }
+    answers = py.add(answers, py.zip(ways, [FIRST, SECOND]).filter(([way, name]) => py.eq(way, OPENS)).map(([way, name]) => name));
     return py.add(answers, free[0][2] >= 0.0 && free[1][2] >= 0.0 ? [NEITHER] : []);
   }
-  /** Whether one contact is pressed onto the table, and the other opens. */
-  _stays_alone(number) {
+  /** What the other contact does where one alone is pressed: opens, or is held as it is. */
+  _alone(number) {
     const point = py.item(this.pair, number);
     if (point.free.point[2] >= 0.0) {
-      return false;
+      return CLOSES;
     }
     const slip = py.truth(py.item(this.ended, number)) ? null : slip_of(...along_table(this.state), py.item(this.tops, number));
-    const wrench = alone(point, slip);
-    return (wrench.force[2] > 0.0 && py.item(this.pair.under([[number, wrench]]), 1 - number)[2] >= 0.0);
+    const [found] = settling(point, slip, py.truth(this.stopped) ? null : point.turning.slice(0, 2));
+    if (found.wrench.force[2] <= 0.0) {
+      return CLOSES;
+    }
+    if (found.rolling === null) {
+      return HELD;
+    }
+    const opens = py.item(this.pair.under([[number, found.wrench]]), 1 - number)[2] >= 0.0;
+    return py.truth(opens) ? OPENS : CLOSES;
   }
   /** The mode in which both go on. */
   going_on(found) {
+    if (!py.eq(found.rolls, this.rolls)) {
+      return this._rolling(found.rolls).going_on(found);
+    }
     if (found.begins !== null) {
       return this.letting_go(found);
     }
     if (!py.truth(py.any(found.sticks))) {
-      return new Transition([], on_two(this.state, this.rules.on(number_of(this.tops[0])), this.tops[1]), this.state);
+      const rules = this.rules.on(number_of(this.tops[0]));
+      return new Transition([], on_two(this.state, rules, this.tops[1], this.rolls), this.state);
     }
     if (py.truth(py.all(found.sticks))) {
-      const mode = new StickingOnTwo(this.tops[0], this.rules, this.tops[1]);
+      const mode = new StickingOnTwo(this.tops[0], this.rules, this.tops[1], this.rolls);
       const rests = _rests_of_two_closed(this.state, found.motion);
       return new Transition([], py.truth(rests) ? new Resting(this.tops[0], this.rules, mode) : mode, this.state);
     }
@@ -5339,7 +5458,14 @@ class TwoClosed extends py.Record {
   }
   /** The mode in which the first of these contacts sticks, and the second slips so. */
   _turning(tops, zeta) {
-    return py.call(zeta >= 0.0 ? StickingAndSliding : StickingAndSlidingBack, tops[0], this.rules, tops[1]);
+    return py.call(zeta >= 0.0 ? StickingAndSliding : StickingAndSlidingBack, tops[0], this.rules, tops[1], this.rolls);
+  }
+  /** The same where rolling has begun. */
+  _rolling(rolls) {
+    const least = py.mul(2.0, least_slip(this.state.momentum, this.state.velocity.slice(0, 2)));
+    const change = scale(py.mul(rolls, least), directions_of(this.state.axis)[0]);
+    const momentum = spun_up(this.state.axis, this.state.momentum, change, this.tops[0]);
+    return py.replace(this, { state: this.state._replace({ momentum: momentum }), rolls: rolls });
   }
   /** The mode in which slip begins. */
   letting_go(found) {
@@ -5358,20 +5484,18 @@ class TwoClosed extends py.Record {
     const begin = [...this.state.axis, ...this.state.momentum, v_x, v_y, zeta];
     const slips = slips_of(this.pair, [v_x, v_y, zeta]);
     const [one, other] = py.zip(this.tops, slips).map(([top, slip]) => on_branch(top, slip));
-    const mode = new SlipBeginningOnTwo(one, this.rules, other, begin);
+    const mode = new SlipBeginningOnTwo(one, this.rules, other, this.rolls, begin);
     return new Transition([], mode, mode.state(begin));
   }
 }
-py.fields(TwoClosed, ["rules", "tops", "state", "ended"]);
+py.fields(TwoClosed, ["rules", "tops", "state", "ended", "rolls"]);
 
-/** What the table does where one contact alone is closed. */
-function alone(point, slip) {
-  const rolling = point.turning.slice(0, 2);
-  const wrench = contact_motion(point, slip, rolling)[0];
-  if (slip === null && set_valued(point.top.friction).reserve(wrench.force[2], wrench.force.slice(0, 2), wrench.torque[2]) < 0.0) {
-    return beginning(point, null, rolling, [true, false]).wrench;
+/** Sign of omega_e where rolling is resisted and goes on; else 0. */
+function rolling_of(state, top) {
+  if (!py.isinstance(top.friction, RollingResistance) || !py.truth(is_rolling(state.axis, state.momentum, top))) {
+    return 0.0;
   }
-  return wrench;
+  return turning_along(ContactPair.of(state.axis, state.momentum, [top, top])) > 0.0 ? 1.0 : -1.0;
 }
 
 /** On which contacts slip has ended: on both at once where drilling is resisted too. */
@@ -5390,14 +5514,10 @@ function ended_slips(state, tops) {
   return [one <= py.mul(TOGETHER, limit), other <= py.mul(TOGETHER, limit)];
 }
 
-/** The resolver of two contacts, of which those of some surfaces have been sticking. */
-function settled(rules, time, state, tops, stuck, events = [], arrived = false) {
-  let detail, found, answers;
-  if (py.isinstance(tops[0].friction, RollingResistance)) {
-    detail = "two surfaces touch at once, which is not followed where rolling is resisted";
-    return new Transition(events, Outcome.FAILED, state, detail);
-  }
-  const here = TwoClosed.of(rules, state, tops);
+/** The resolver of two contacts, where the body rolls as signed, or not (0). */
+function settled(rules, time, state, tops, before, rolls, events = [], arrived = false) {
+  let found, answers;
+  const here = TwoClosed.of(rules, state, tops, rolls);
   try {
     found = here.resolved();
     answers = here.consistent(found);
@@ -5406,7 +5526,7 @@ function settled(rules, time, state, tops, stuck, events = [], arrived = false) 
     return new Transition(events, Outcome.FAILED, state, py.str(error));
   }
   if (py.len(answers) !== 1) {
-    detail = "not exactly one set of forces is consistent with two surfaces that touch";
+    const detail = "not exactly one set of forces is consistent with two surfaces that touch";
     return new Transition(events, Outcome.FAILED, state, detail);
   }
   if (py.eq(answers, [BOTH])) {
@@ -5414,7 +5534,7 @@ function settled(rules, time, state, tops, stuck, events = [], arrived = false) 
       const lost = py.float(py.sub(energy(state, tops[0]), energy(here.state, tops[0])));
       events = [...events, rules.event(EventKind.DOUBLE_CONTACT, time, 0.0, lost)];
     }
-    events = [...events, ..._marks(py.add(time, _left(state, tops)), here, found.sticks, stuck)];
+    events = [...events, ..._marks([py.add(time, _left(state, here)), time], here, found, before)];
     return py.replace(here.going_on(found), { events: events });
   }
   const numbers = [...here.tops].map((top) => number_of(top));
@@ -5425,43 +5545,52 @@ function settled(rules, time, state, tops, stuck, events = [], arrived = false) 
 }
 
 /** What follows where what both contacts need, or one of them, reaches the limit of what the table can. */
-function slipping(rules, time, state, tops, which) {
+function slipping(rules, time, state, tops, which, rolls) {
   let found;
   const alone = py.eq(which, FIRST);
-  const here = TwoClosed.of(rules, state, tops, [true, !py.truth(alone)]);
+  const here = TwoClosed.of(rules, state, tops, rolls, [true, !py.truth(alone)]);
   const pair = here.pair;
   try {
-    if (py.eq(which, BOTH)) {
-      found = both_letting_go(pair);
+    if (py.eq(which, BOTH) || slip_length(tops[0].friction) !== null) {
+      found = both_letting_go(pair, rolls);
     } else if (py.truth(alone)) {
-      found = letting_go(pair, here.xi);
+      found = letting_go(pair, here.xi, rolls);
     } else {
       const number = py.int(which);
-      const needed = pair_motion(pair, [null, null]).needed(number);
-      found = turning_about(pair, 1 - number, py.eq(needed > 0.0, (number === 0)) ? 1.0 : -1.0);
+      const needed = pair_motion(pair, [null, null], rolls).needed(number);
+      found = turning_about(pair, 1 - number, py.eq(needed > 0.0, (number === 0)) ? 1.0 : -1.0, rolls);
     }
   } catch (error) {
     if (!(error instanceof py.ArithmeticError)) throw error;
     return new Transition([], Outcome.FAILED, state, py.str(error));
   }
-  const before = py.truth(alone) ? [number_of(tops[0])] : [number_of(tops[0]), number_of(tops[1])];
-  return py.replace(here.letting_go(found), { events: _marks(time, here, found.sticks, before) });
+  const stuck = py.truth(alone) ? [number_of(tops[0])] : [number_of(tops[0]), number_of(tops[1])];
+  const marks = _marks([time, time], here, found, new Before(stuck, py.truth(rolls)));
+  return py.replace(here.letting_go(found), { events: marks });
 }
 
-/** What is told where a contact sticks that did not, or slips that stuck. */
-function _marks(time, here, sticks, stuck) {
-  const told = [];
-  for (const [top, held] of py.zip(here.tops, sticks)) {
+/** What is told where a contact sticks that did not, or slips that stuck; and the same of rolling. */
+function _marks(times, here, found, before) {
+  let told = [];
+  for (const [top, held] of py.zip(here.tops, found.sticks)) {
     const surface = number_of(top);
-    if (!py.eq(held, py.contains(stuck, surface))) {
-      told.push(new Event(py.truth(held) ? EventKind.STICK : EventKind.SLIP, time, undefined, undefined, surface));
+    if (!py.eq(held, py.contains(before.stuck, surface))) {
+      told.push(new Event(py.truth(held) ? EventKind.STICK : EventKind.SLIP, times[0], undefined, undefined, surface));
     }
+  }
+  if (!py.eq(before.rolled, py.truth(found.rolls))) {
+    const kind = py.truth(found.rolls) ? EventKind.ROLL : EventKind.HALT;
+    told = py.add(told, [...here.tops].map((top) => new Event(kind, times[1], undefined, undefined, number_of(top))));
   }
   return py.tuple(told);
 }
 
 /** Time to the end of slip that is followed no further, at its present rate. */
-function _left(state, tops) {
+function _left(state, here) {
+  if (!py.truth(py.any(here.ended))) {
+    return 0.0;
+  }
+  const tops = here.tops;
   const slips = [...tops].map((top) => slip_of(...along_table(state), top));
   const number = size(slips[0]) <= size(slips[1]) ? 0 : 1;
   let [slip, speed] = [py.item(slips, number), size(py.item(slips, number))];
@@ -5469,7 +5598,7 @@ function _left(state, tops) {
     return 0.0;
   }
   const pair = ContactPair.of(state.axis, state.momentum, tops);
-  const found = pair_motion(pair, [slips[0], slips[1]]);
+  const found = pair_motion(pair, [slips[0], slips[1]], here.rolls);
   let change = py.item(found.moving, number).slice(0, 2);
   if (slip_length(tops[0].friction) !== null) {
     [slip, change] = [[slips[0][0], slips[0][1], slip_apart(pair)], found.rate];
@@ -5487,7 +5616,7 @@ function _rests_of_two_closed(state, motion) {
 // tippetop.mechanics.impact_on_two
 const OPEN = 1e-09;
 
-/** Slip ends under a law that then leaves the force open. */
+/** Slip, or rolling, ends under a law that then leaves what resists it open. */
 class SlipEnds extends py.ArithmeticError {
 }
 
@@ -5531,9 +5660,17 @@ class StruckOnTwo extends py.NamedTuple {
     const omega = angular_velocity(state.axis, state.momentum, top);
     const points = this.velocities(here);
     let [pace, units, responses] = [py.div(1.0, this.speed), [], []];
+    if (py.isinstance(top.friction, RollingResistance)) {
+      const lever = length(this.arms[0]);
+      const rolling = py.mul(lever, length([...omega.slice(0, 2), 0.0]));
+      if (rolling < py.mul(OPEN, this.speed)) {
+        throw new SlipEnds("rolling ends in an impact on two surfaces");
+      }
+      pace = py.add(pace, py.div(py.mul(2.0, top.friction.length), py.mul(lever, rolling)));
+    }
     const touching = py.list(py.zip(points, this.arms));
     for (const [point, arm] of py.truth(pressed) ? touching : touching.slice(0, 1)) {
-      if (py.truth(is_dry(top.friction)) && length([...point.slice(0, 2), 0.0]) < py.mul(OPEN, this.speed)) {
+      if (py.truth(is_set_valued(top.friction)) && length([...point.slice(0, 2), 0.0]) < py.mul(OPEN, this.speed)) {
         throw new SlipEnds("slip ends in an impact on two surfaces");
       }
       const traction = top.friction.traction([point[0], point[1]], omega);
@@ -5687,7 +5824,9 @@ class OnSeveral extends FreeToFly {
       return new Transition(events, Outcome.FAILED, state, "three surfaces touch at once");
     }
     if (py.truth(closed)) {
-      return settled(this, time, state, [this.top, closed[0]], [], events, true);
+      const before = new Before([], py.truth(rolling_of(state, this.top)));
+      const rolls = rolling_of(without_tilting(state, this.top), this.top);
+      return settled(this, time, state, [this.top, closed[0]], before, rolls, events, true);
     }
     return this.resting_alone(time, state, events);
   }
@@ -5716,9 +5855,12 @@ class OnSeveral extends FreeToFly {
   _slowest(other, state) {
     let [back, depth] = [1.0, py.max(0.0, py.float(py.sub(gap(state, this.top), gap(state, other))))];
     if (py.truth(this._slips(other, state))) {
-      back = py.abs(double_contact(along_table(state), [this.top, other]).acceleration[1]);
+      const pair = ContactPair.of(state.axis, state.momentum, [this.top, other]);
+      const slip = slip_of(...along_table(state), this.top);
+      const wrench = contact_wrench(pair.first, slip, pair.first.turning.slice(0, 2));
+      back = py.float(py.abs(pair.under([[0, wrench]])[1][2]));
     }
-    return py.float(py.max(py.mul(SLOWEST_ROCKING, py.pow(py.max(1.0, back), 0.5)), py.pow(py.mul(py.mul(2.0, back), depth), 0.5)));
+    return py.float(py.max(py.mul(SLOWEST_ROCKING, py.pow(py.max(1.0, back), 0.5)), py.pow(py.mul(2.0 * back, depth), 0.5)));
   }
   /** Whether both contacts slip, faster than where slip on two contacts ends, if it can end at all. */
   _slips(other, state) {
@@ -5732,12 +5874,12 @@ class OnSeveral extends FreeToFly {
     return super.resting(time, state, events);
   }
   /** As the resolver of two contacts finds. */
-  settled_on_two(time, state, tops, stuck) {
-    return settled(this, time, state, tops, stuck);
+  settled_on_two(time, state, tops, stuck, rolls) {
+    return settled(this, time, state, tops, new Before(stuck, py.truth(rolls[0])), rolls[1]);
   }
   /** Slip begins at the limit of what the table can hold. */
-  slipping_on_two(time, state, tops, which) {
-    return slipping(this, time, state, tops, which);
+  slipping_on_two(time, state, tops, which, rolls) {
+    return slipping(this, time, state, tops, which, rolls);
   }
 }
 py.fields(OnSeveral, ["top", "restitution"]);
@@ -7535,11 +7677,13 @@ export {
   BRANCH,
   BRANCHING,
   BRANCH_TORQUE,
+  Before,
   Beginning,
   Bilateral,
   Body,
   BothLoosening,
   CHOICES,
+  CLOSES,
   CONSTANT,
   COUPLES,
   Closing,
@@ -7562,7 +7706,6 @@ export {
   DIRECTED,
   DRILLING,
   Disc,
-  DoubleContact,
   Driven,
   DryContact,
   EAST,
@@ -7597,6 +7740,7 @@ export {
   Growing,
   Guard,
   HALVINGS,
+  HELD,
   HORIZON,
   HeldOnTwo,
   HertzBranch,
@@ -7667,6 +7811,7 @@ export {
   NotRecordable,
   OPEN,
   OPENING,
+  OPENS,
   ORDER,
   OVERTAKEN,
   OnSeveral,
@@ -7791,6 +7936,7 @@ export {
   TOUCH,
   TOUCHING,
   TURN,
+  TURNING,
   Tip,
   Top,
   Touch,
@@ -7810,11 +7956,11 @@ export {
   Wrench,
   _DESCRIPTIONS,
   _Lines,
+  _admits,
   _apart,
   _at_rest,
   _beside,
   _by_energy,
-  _coupling,
   _face,
   _fold_measure,
   _gap,
@@ -7833,7 +7979,6 @@ export {
   _number,
   _of_momentum,
   _on_one_of_several,
-  _openings,
   _precession_tilts,
   _reach,
   _reaches_out,
@@ -7846,16 +7991,17 @@ export {
   _touch,
   _unit,
   _unknown,
+  _without_rolling,
   acting,
   add,
   against,
-  alone,
   along_table,
   analytic_disc,
   angular_acceleration,
   angular_velocity,
   apart,
   arm_rate,
+  at_rest,
   at_start,
   axial_spin,
   axis_rate,
@@ -7891,8 +8037,6 @@ export {
   directions,
   directions_of,
   dot,
-  double_contact,
-  double_rates,
   driven_motion,
   each_surface,
   eccentricity,
@@ -7933,6 +8077,7 @@ export {
   is_number,
   is_number_of_graph,
   is_one_way,
+  is_resisted,
   is_rolling,
   is_set_valued,
   is_slipping,
@@ -7966,6 +8111,7 @@ export {
   normal_force,
   normal_wrench,
   number_of,
+  of_slips,
   off_branch,
   on_branch,
   on_limit_branch,
@@ -7979,6 +8125,7 @@ export {
   outer_height,
   overtaking_guard,
   pack,
+  pair_guards,
   pair_motion,
   parting_guard,
   phis,
@@ -7994,7 +8141,6 @@ export {
   prospects,
   quadrature_rates,
   rates_in_time,
-  reaction_of,
   record,
   remaining,
   reopening_guard,
@@ -8005,10 +8151,12 @@ export {
   resistance_powers,
   resolution,
   restitution_goal,
+  rolling_of,
   rolling_precession,
   rolling_reserve,
   rolling_spin,
   rolling_stopping_guard,
+  rolling_way,
   roots_between,
   roots_of,
   rules_for,
@@ -8017,10 +8165,13 @@ export {
   series_of,
   set_valued,
   settled,
+  settling,
   shown,
   size,
   sliding_law,
   sliding_motion,
+  sliding_pair,
+  sliding_pair_rates,
   sliding_rates,
   slip_along_tilt,
   slip_apart,
@@ -8066,6 +8217,7 @@ export {
   turned,
   turned_of_double_sticking,
   turning_about,
+  turning_along,
   turning_motion,
   turning_with,
   unpack,
@@ -8081,7 +8233,6 @@ export {
   with_sliding_law,
   without_drilling,
   without_rolling,
-  without_slips,
   without_tilting,
   work_of,
   written,

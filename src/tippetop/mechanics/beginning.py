@@ -5,10 +5,21 @@ from typing import NamedTuple
 
 from tippetop.mechanics.direction import Resisted, directions
 from tippetop.mechanics.ending import Vanishing
-from tippetop.mechanics.rolling import Acceleration, ContactPoint, Slip, Wrench, contact_motion
+from tippetop.mechanics.rolling import (
+    Acceleration,
+    ContactPoint,
+    Slip,
+    Wrench,
+    contact_motion,
+    rolling_reserve,
+    set_valued,
+)
 from tippetop.mechanics.stick_slip import inner, scaled, size
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Vector
+
+CHOICES = ((False, False), (True, False), (False, True), (True, True))
+"""What is tried in turn where slip, and rolling, have ended: whether they go on all the same."""
 
 
 class Beginning(NamedTuple):
@@ -74,6 +85,44 @@ def beginning(
     found = motion(ways)
     along = [inner(part.rate(found[3], point.top), e) for part, e in zip(parts, ways, strict=True)]
     return Beginning(found[0], found[1], tuple(max(rate, 0.0) for rate in along), found[2], found[3])
+
+
+def settling(
+    point: ContactPoint, slip: Slip | None, rolling: Slip | None
+) -> tuple[Beginning, tuple[bool, bool]]:
+    """How a contact goes on whose slip, or rolling, or both, have ended, and which of them begin again.
+
+    Parameters
+    ----------
+    point
+        The contact point, floats.
+    slip, rolling
+        Slip and horizontal angular velocity, None where they have ended.
+
+    Raises
+    ------
+    ArithmeticError
+        If nothing can hold the contact, and it can go on in no direction.
+    """
+    ended = slip is None, rolling is None
+    for begins in CHOICES:
+        if begins[0] > ended[0] or begins[1] > ended[1]:
+            continue
+        try:
+            found = beginning(point, slip, rolling, begins)
+        except ArithmeticError:
+            continue
+        if _admits(point, found):
+            return found, begins
+    raise ArithmeticError("nothing can hold the contact, and there is no direction in which it can go on")
+
+
+def _admits(point: ContactPoint, found: Beginning) -> bool:
+    """Whether the table can hold what does not go on."""
+    (x, y, normal), torque = found.wrench
+    if found.slip is None and set_valued(point.top.friction).reserve(normal, (x, y), torque[2]) < 0.0:
+        return False
+    return found.rolling is not None or bool(rolling_reserve(point, found.wrench, found.slip) >= 0.0)
 
 
 def direction_of_slip(axis: Vector, momentum: Vector, top: Top) -> tuple[Slip, float]:

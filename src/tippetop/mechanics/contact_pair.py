@@ -1,8 +1,10 @@
-"""Two closed contacts of one body, of which one sticks, or both: what the table does, and what it can hold.
+"""Two closed contacts of one body, which slip or stick: what the table does, and what it can hold.
 
-Both contact points lie in the plane of the axis and the vertical, a_2 - a_1 = D e, with e the horizontal
-direction of the axis and D constant, as the tilt is. While both stay closed the body turns about e and the
-vertical only, so that with t = z x e
+The gaps change at gap_i'' = A_ij N_j + b_i with the normal forces N_i and the friction that goes with them.
+Both stay closed where A N + b = 0 has N > 0: there c' = 0, and c'' with it. Both contact points lie in the
+plane of the axis and the vertical, a_2 - a_1 = D e, with e the horizontal direction of the axis and D
+constant, as the tilt is. While both stay closed the body turns about e and the vertical only, so that with
+t = z x e
 
     v_2 = v_1 + zeta t,        zeta = D omega_z:
 
@@ -15,15 +17,18 @@ forces T_i across e and S along it, Coulomb's friction can where |T_i| <= mu N_i
 Patches that resist drilling both stick or neither does, as xi = 0. There nothing works, and the body turns
 about the line that joins both contact points as fast as it did: in the frame that goes with it nothing
 changes, both T_i are zero, and S is all that the limit surfaces have to exert: as Coulomb's friction does.
+
+What rolls turns about e, one way or the other: rolling resistance is a couple -+ length (N_1 + N_2) e. Where
+omega_e = 0 it is any up to that, along e: across e the normal forces hold the body already.
 """
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from tippetop.mechanics.coulomb import TINY
+from tippetop.mechanics.coulomb import TINY, RollingResistance
 from tippetop.mechanics.direction import Resisted, directions
-from tippetop.mechanics.double_contact import Tops
 from tippetop.mechanics.friction import NO_TORQUE
+from tippetop.mechanics.motion import axis_rate
 from tippetop.mechanics.rolling import (
     DRILLING,
     EAST,
@@ -37,8 +42,13 @@ from tippetop.mechanics.rolling import (
     solve,
     turning_with,
 )
-from tippetop.mechanics.stick_slip import plus, scaled, size
+from tippetop.mechanics.state import SlidingState, State
+from tippetop.mechanics.stick_slip import plus, scaled, size, slip_of
+from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import VERTICAL, Scalar, Vector, add, cross, dot, scale
+
+Tops = tuple[Top, Top]
+"""A top with one, and with the other, of two of its surfaces active."""
 
 Slips = tuple[Slip | None, Slip | None]
 """Slip of both contacts, or its direction; None where it is held."""
@@ -51,6 +61,9 @@ At = tuple[int, Wrench]
 
 Held = tuple[int, Vector]
 """A component that is held: number in `Moving`, and direction."""
+
+TURNING = 2
+"""Number of the angular velocity in `Moving`."""
 
 
 class ContactPair(NamedTuple):
@@ -111,11 +124,14 @@ class PairMotion(NamedTuple):
         What the table does at each; along e, where both stick, all at the first.
     moving
         Accelerations.
+    holding
+        Couple along e that holds rolling, N m; none where nothing does.
     """
 
     pair: ContactPair
     wrenches: tuple[Wrench, Wrench]
     moving: Moving
+    holding: Scalar = 0.0
 
     @property
     def force(self) -> Vector:
@@ -168,6 +184,18 @@ class PairMotion(NamedTuple):
         return dot(self.force, directions_of(self.pair.first.axis)[0])
 
     @property
+    def rolling_rate(self) -> Scalar:
+        """Rate of omega_e, rad/s^2."""
+        return dot(self.moving[2], directions_of(self.pair.first.axis)[0])
+
+    @property
+    def rolling_reserve(self) -> Scalar:
+        """Positive while the table can exert the couple that holds rolling, (N m)^2."""
+        law: Any = self.pair.first.top.friction
+        one, other = self.normal
+        return law.reserve(one + other, (self.holding, 0.0))
+
+    @property
     def both_reserve(self) -> Scalar:
         """Positive while the table can exert S, N^2: (sqrt(A_1) + sqrt(A_2))^2 - S^2 for positive A_i."""
         one, other, along = self.left(0), self.left(1), self.along
@@ -193,7 +221,17 @@ def slip_apart(pair: ContactPair) -> Scalar:
     return apart(pair) * pair.first.turning[2]
 
 
-def pair_motion(pair: ContactPair, slips: Slips) -> PairMotion:
+def turning_along(pair: ContactPair) -> Scalar:
+    """omega_e, rad/s."""
+    return dot(pair.first.turning, directions_of(pair.first.axis)[0])
+
+
+def is_resisted(pair: ContactPair) -> bool:
+    """Whether rolling is resisted."""
+    return isinstance(pair.first.top.friction, RollingResistance)
+
+
+def pair_motion(pair: ContactPair, slips: Slips, rolls: float) -> PairMotion:
     """What the table does to a body whose two contacts stay closed, and how it accelerates.
 
     Parameters
@@ -202,18 +240,24 @@ def pair_motion(pair: ContactPair, slips: Slips) -> PairMotion:
         The contact points.
     slips
         How they slip.
+    rolls
+        Sign of omega_e, 0 where it is held at zero; without rolling resistance it does not matter.
     """
     held: list[Held] = []
+    along, across = directions_of(pair.first.axis)
     if slips[0] is None and slips[1] is None:
-        along, across = directions_of(pair.first.axis)
         held += [(0, along), (0, across), (1, across)]
     for number, slip in enumerate(slips):
         if slip is None and len(held) < 2:
             held += [(number, EAST), (number, NORTH)]
     units: list[At] = [(number, Wrench(way, NO_TORQUE)) for number, way in held]
     for number, slip in enumerate(slips):
-        units.append((number, normal_wrench(pair[number], slip)))
+        units.append((number, normal_wrench(pair[number], slip, scale(rolls, along))))
         held.append((number, VERTICAL))
+    stopped = is_resisted(pair) and not rolls
+    if stopped:
+        units.append((0, Wrench(NO_TORQUE, along)))
+        held.append((TURNING, along))
     sizes = pair.holding(units, held, pair.free)
     found = [Wrench(NO_TORQUE, NO_TORQUE), Wrench(NO_TORQUE, NO_TORQUE)]
     pushes: list[At] = []
@@ -221,15 +265,41 @@ def pair_motion(pair: ContactPair, slips: Slips) -> PairMotion:
         push = Wrench(scale(amount, unit.force), scale(amount, unit.torque))
         found[number] = Wrench(*(add(a, b) for a, b in zip(found[number], push, strict=True)))
         pushes.append((number, push))
-    return PairMotion(pair, (found[0], found[1]), pair.under(pushes))
+    return PairMotion(pair, (found[0], found[1]), pair.under(pushes), sizes[-1] if stopped else 0.0)
 
 
-def normal_wrench(point: ContactPoint, slip: Slip | None) -> Wrench:
-    """A unit normal force with the friction that goes with it where the contact slips."""
-    if slip is None:
-        return Wrench(VERTICAL, NO_TORQUE)
-    force, torque = sliding_law(point.top.friction).traction((slip[0], slip[1]), turning_with(point, slip))
+def normal_wrench(point: ContactPoint, slip: Slip | None, rolling: Vector) -> Wrench:
+    """A unit normal force with what goes with it where the contact slips, and rolls in this direction."""
+    law = point.top.friction
+    force, torque = (0.0, 0.0), NO_TORQUE
+    if slip is not None:
+        force, torque = sliding_law(law).traction((slip[0], slip[1]), turning_with(point, slip))
+    if isinstance(law, RollingResistance):
+        torque = add(torque, scale(-law.length, rolling))
     return Wrench((*force, 1.0), torque)
+
+
+def sliding_pair(state: SlidingState, tops: Tops, rolls: float) -> tuple[PairMotion, tuple[Slip, Slip]]:
+    """What the table does to a body that slides on two surfaces, and how they slip."""
+    first, second = (slip_of(*state, top) for top in tops)
+    pair = ContactPair.of(state.axis, state.momentum, tops)
+    return pair_motion(pair, (first, second), rolls), (first, second)
+
+
+def sliding_pair_rates(state: SlidingState, tops: Tops, rolls: float) -> SlidingState:
+    """Time derivative of the state of a body that slides on two surfaces."""
+    now, _ = sliding_pair(state, tops, rolls)
+    x, y = scaled(1.0 / tops[0].mass, now.force[:2])
+    return SlidingState(axis_rate(state.axis, state.momentum, tops[0]), now.moment, (x, y))
+
+
+def without_tilting(state: State, top: Top) -> State:
+    """The state with c' = 0 and no sinking: what is taken from the momentum lies across the axis."""
+    n = state.axis
+    rate = axis_rate(n, state.momentum, top)[2]
+    part = top.transverse_inertia * rate / (n[0] * n[0] + n[1] * n[1])
+    momentum = (state.momentum[0] - part * n[1], state.momentum[1] + part * n[0], state.momentum[2])
+    return state._replace(momentum=momentum, velocity=(*state.velocity[:2], 0.0))
 
 
 def slips_of(pair: ContactPair, xi: Slip) -> tuple[Slip, Slip]:
@@ -243,8 +313,10 @@ def slips_of(pair: ContactPair, xi: Slip) -> tuple[Slip, Slip]:
     return (*one, drilling), (*other, drilling)
 
 
-def without_slips(pair: ContactPair, velocity: Vector, ended: tuple[bool, bool]) -> tuple[Vector, Vector]:
-    """Angular momentum and velocity after the impulses that end the slip of one contact, or of both.
+def at_rest(
+    pair: ContactPair, velocity: Vector, ended: tuple[bool, bool], *, stopped: bool
+) -> tuple[Vector, Vector]:
+    """Angular momentum and velocity after the impulses that end what is left of slip, and of rolling.
 
     They act at the contacts, and keep the normal velocities: what little slip is left goes as friction takes
     it.
@@ -252,16 +324,19 @@ def without_slips(pair: ContactPair, velocity: Vector, ended: tuple[bool, bool])
     omega = pair.first.turning
     moving = (*(add(velocity, cross(omega, point.arm)) for point in pair), omega)
     along, across = directions_of(pair.first.axis)
-    both: list[Held] = [(0, along), (0, across), (1, across)]
-    held = both if all(ended) else [(int(ended[1]), EAST), (int(ended[1]), NORTH)]
+    held: list[Held] = []
+    if any(ended):
+        both: list[Held] = [(0, along), (0, across), (1, across)]
+        held += both if all(ended) else [(int(ended[1]), EAST), (int(ended[1]), NORTH)]
+    held += [(0, VERTICAL), (1, VERTICAL)]
     units: list[At] = [(number, Wrench(way, NO_TORQUE)) for number, way in held]
-    for number in (0, 1):
-        units.append((number, Wrench(VERTICAL, NO_TORQUE)))
-        held.append((number, VERTICAL))
+    if stopped:
+        units.append((0, Wrench(NO_TORQUE, along)))
+        held.append((TURNING, along))
     moving = (moving[0], moving[1], moving[2])
     sizes = pair.holding(units, held, moving)
     pushes = [
-        (number, Wrench(scale(a, unit.force), NO_TORQUE))
+        (number, Wrench(scale(a, unit.force), scale(a, unit.torque)))
         for a, (number, unit) in zip(sizes, units, strict=True)
     ]
     momentum = add(pair.first.momentum, pair.moment(pushes))
@@ -270,7 +345,7 @@ def without_slips(pair: ContactPair, velocity: Vector, ended: tuple[bool, bool])
     return momentum, velocity
 
 
-def way_of_one(pair: ContactPair, slip: Slip) -> tuple[Slip, PairMotion]:
+def way_of_one(pair: ContactPair, slip: Slip, rolls: float) -> tuple[Slip, PairMotion]:
     """Direction in which the first contact begins to slip, and the motion then.
 
     Parameters
@@ -279,6 +354,8 @@ def way_of_one(pair: ContactPair, slip: Slip) -> tuple[Slip, PairMotion]:
         The contact points.
     slip
         How the second contact slips.
+    rolls
+        As for `pair_motion`.
 
     Raises
     ------
@@ -289,15 +366,15 @@ def way_of_one(pair: ContactPair, slip: Slip) -> tuple[Slip, PairMotion]:
     stiffness = float(abs(answers[0][0]) + abs(answers[1][1]))
 
     def response(ways: Sequence[Slip]) -> list[Resisted]:
-        found = pair_motion(pair, (ways[0], slip))
+        found = pair_motion(pair, (ways[0], slip), rolls)
         return [Resisted(found.moving[0][:2], stiffness * size(found.wrenches[0].force[:2]))]
 
-    held = pair_motion(pair, (None, slip)).wrenches[0]
+    held = pair_motion(pair, (None, slip), rolls).wrenches[0]
     way = directions(response, [scaled(-1.0, held.force[:2])])[0]
-    return way, pair_motion(pair, (way, slip))
+    return way, pair_motion(pair, (way, slip), rolls)
 
 
-def way_of_both(pair: ContactPair) -> tuple[Slip, PairMotion]:
+def way_of_both(pair: ContactPair, rolls: float) -> tuple[Slip, PairMotion]:
     """Direction of xi in which both contacts begin to slip that cannot be held, and the motion then.
 
     Raises
@@ -313,7 +390,7 @@ def way_of_both(pair: ContactPair) -> tuple[Slip, PairMotion]:
     drilled = abs(lever * float(pair.response((0, DRILLING))[2][2]))
 
     def motion(way: Slip) -> PairMotion:
-        return pair_motion(pair, slips_of(pair, way))
+        return pair_motion(pair, slips_of(pair, way), rolls)
 
     def response(ways: Sequence[Slip]) -> list[Resisted]:
         found = motion(ways[0])
@@ -322,7 +399,7 @@ def way_of_both(pair: ContactPair) -> tuple[Slip, PairMotion]:
         )
         return [Resisted(found.rate, strength)]
 
-    way = directions(response, [against(pair_motion(pair, (None, None)))])[0]
+    way = directions(response, [against(pair_motion(pair, (None, None), rolls))])[0]
     return way, motion(way)
 
 

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from operator import mul
 from typing import NamedTuple
 
+from tippetop.mechanics.beginning import CHOICES
 from tippetop.mechanics.coulomb import RollingResistance
 from tippetop.mechanics.direction import Resisted, directions
 from tippetop.mechanics.friction import NO_TORQUE, FrictionLaw
@@ -38,9 +39,6 @@ ENDED = 10.0 * FUZZ
 """Slip, in units of the body's speed, that is none."""
 
 SLIPPING, ROLLING = "slipping", "rolling"
-
-CHOICES = ((False, False), (True, False), (False, True), (True, True))
-"""What is tried in turn where slip, and rolling, have ended: whether they go on all the same."""
 
 
 def is_dry(law: FrictionLaw) -> bool:

@@ -10,13 +10,14 @@ and none of its own while it is open. At both, friction follows the law along th
 from collections.abc import Callable
 from typing import NamedTuple
 
-from tippetop.mechanics.double_contact import Tops
-from tippetop.mechanics.dry_impact import is_dry
+from tippetop.mechanics.contact_pair import Tops
+from tippetop.mechanics.coulomb import RollingResistance
 from tippetop.mechanics.impact import Impact
 from tippetop.mechanics.impulse import Striking, contact_velocity
 from tippetop.mechanics.integrated_impact import MOST, STUCK, TOLERANCE
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import angular_velocity, moment_per_normal_force
+from tippetop.mechanics.rolling import is_set_valued
 from tippetop.mechanics.roots import crossing
 from tippetop.mechanics.runge_kutta import POWER, Point, step_from
 from tippetop.mechanics.state import State
@@ -28,7 +29,7 @@ OPEN = 1e-9
 
 
 class SlipEnds(ArithmeticError):
-    """Slip ends under a law that then leaves the force open."""
+    """Slip, or rolling, ends under a law that then leaves what resists it open."""
 
 
 class StruckOnTwo(NamedTuple):
@@ -91,9 +92,15 @@ class StruckOnTwo(NamedTuple):
         omega = angular_velocity(state.axis, state.momentum, top)
         points = self.velocities(here)
         pace, units, responses = 1.0 / self.speed, [], []
+        if isinstance(top.friction, RollingResistance):
+            lever = length(self.arms[0])
+            rolling = lever * length((*omega[:2], 0.0))
+            if rolling < OPEN * self.speed:
+                raise SlipEnds("rolling ends in an impact on two surfaces")
+            pace += 2.0 * top.friction.length / (lever * rolling)
         touching = list(zip(points, self.arms, strict=True))
         for point, arm in touching if pressed else touching[:1]:
-            if is_dry(top.friction) and length((*point[:2], 0.0)) < OPEN * self.speed:
+            if is_set_valued(top.friction) and length((*point[:2], 0.0)) < OPEN * self.speed:
                 raise SlipEnds("slip ends in an impact on two surfaces")
             traction = top.friction.traction((point[0], point[1]), omega)
             slip, grip = length((*point[:2], 0.0)), length((*traction.force, 0.0))

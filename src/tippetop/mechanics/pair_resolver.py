@@ -1,4 +1,4 @@
-"""Which of two closed contacts stick, and how those go on that cannot."""
+"""Which of two closed contacts stick, whether rolling is held, and how what cannot be goes on."""
 
 from typing import NamedTuple
 
@@ -7,6 +7,7 @@ from tippetop.mechanics.contact_pair import (
     PairMotion,
     Slips,
     directions_of,
+    is_resisted,
     pair_motion,
     slips_of,
     way_of_both,
@@ -25,59 +26,96 @@ class Resolution(NamedTuple):
         What the table does, and how the contacts accelerate.
     sticks
         Which of them stick.
+    rolls
+        Sign of omega_e; 0 where rolling is held, or not resisted.
     begins
         Direction of xi where slip begins; None where nothing does.
     """
 
     motion: PairMotion
     sticks: tuple[bool, bool]
+    rolls: float
     begins: Slip | None = None
 
 
-def resolution(pair: ContactPair, xi: Slip, ended: tuple[bool, bool]) -> Resolution:
+def resolution(pair: ContactPair, xi: Slip, ended: tuple[bool, bool], rolls: float) -> Resolution:
     """How two contacts go on that slip so, of which slip has ended on some; if on one, on the first.
 
-    What is tried first is that all stick that can, then that one of them slips, and then both; where patches
-    resist drilling, one does not slip alone.
+    What is tried first is to hold rolling, if that is resisted and has ended (rolls = 0), and then that it
+    begins, one way or the other.
 
     Raises
     ------
     ArithmeticError
-        If nothing can hold them, and there is no direction, or more than one, in which they can slip.
+        If nothing can hold them, and there is no direction, or more than one, in which they can go on.
+    """
+    if rolls or not is_resisted(pair):
+        return of_slips(pair, xi, ended, rolls)
+    held = _without_rolling(pair, xi, ended)
+    if held is not None and held.motion.rolling_reserve >= 0.0:
+        return held
+    way = 1.0 if held is None else rolling_way(held.motion)
+    for sign in (way, -way):
+        found = of_slips(pair, xi, ended, sign)
+        if found.motion.rolling_rate * sign >= 0.0:
+            return found
+    raise ArithmeticError("nothing can hold the rolling of two contacts, and it can begin neither way")
+
+
+def _without_rolling(pair: ContactPair, xi: Slip, ended: tuple[bool, bool]) -> Resolution | None:
+    """How they go on while rolling is held; None where that is no way to."""
+    try:
+        return of_slips(pair, xi, ended, 0.0)
+    except ArithmeticError:
+        return None
+
+
+def rolling_way(held: PairMotion) -> float:
+    """Sign of omega_e where rolling begins: against the couple that would have held it."""
+    return -1.0 if held.holding > 0.0 else 1.0
+
+
+def of_slips(pair: ContactPair, xi: Slip, ended: tuple[bool, bool], rolls: float) -> Resolution:
+    """The same where it is known how the body rolls.
+
+    What is tried first is that all stick that can, then that one of them slips, and then both; where patches
+    resist drilling, one does not slip alone.
     """
     one, other = slips_of(pair, xi)
     slips: Slips = (None if ended[0] else one, None if ended[1] else other)
-    held = pair_motion(pair, slips)
+    held = pair_motion(pair, slips, rolls)
     if not any(ended):
-        return Resolution(held, (False, False))
+        return Resolution(held, (False, False), rolls)
     if not all(ended):
-        return Resolution(held, (True, False)) if held.reserve(0) >= 0.0 else letting_go(pair, xi)
+        sticks = held.reserve(0) >= 0.0
+        return Resolution(held, (True, False), rolls) if sticks else letting_go(pair, xi, rolls)
     if min(held.left(0), held.left(1)) >= 0.0 and held.both_reserve >= 0.0:
-        return Resolution(held, (True, True))
+        return Resolution(held, (True, True), rolls)
     if slip_length(pair.first.top.friction) is not None:
-        return both_letting_go(pair)
+        return both_letting_go(pair, rolls)
     for number in (0, 1):
         for sign in (1.0, -1.0):
-            found = turning_about(pair, number, sign)
+            found = turning_about(pair, number, sign, rolls)
             if found.motion.rate[2] * sign >= 0.0 and found.motion.reserve(number) >= 0.0:
                 return found
-    return both_letting_go(pair)
+    return both_letting_go(pair, rolls)
 
 
-def letting_go(pair: ContactPair, xi: Slip) -> Resolution:
+def letting_go(pair: ContactPair, xi: Slip, rolls: float) -> Resolution:
     """The first contact, which alone sticks, begins to slip."""
-    way, motion = way_of_one(pair, slips_of(pair, xi)[1])
-    return Resolution(motion, (False, False), (*way, 0.0))
+    way, motion = way_of_one(pair, slips_of(pair, xi)[1], rolls)
+    return Resolution(motion, (False, False), rolls, (*way, 0.0))
 
 
-def both_letting_go(pair: ContactPair) -> Resolution:
+def both_letting_go(pair: ContactPair, rolls: float) -> Resolution:
     """Both contacts begin to slip."""
-    way, motion = way_of_both(pair)
-    return Resolution(motion, (False, False), way)
+    way, motion = way_of_both(pair, rolls)
+    return Resolution(motion, (False, False), rolls, way)
 
 
-def turning_about(pair: ContactPair, number: int, sign: float) -> Resolution:
+def turning_about(pair: ContactPair, number: int, sign: float, rolls: float) -> Resolution:
     """The body begins to turn about one of both contacts, and the other slips, xi_3 as signed."""
     across = scaled(sign if number == 0 else -sign, directions_of(pair.first.axis)[1][:2])
     slips: Slips = (None, across) if number == 0 else (across, None)
-    return Resolution(pair_motion(pair, slips), (number == 0, number == 1), (0.0, 0.0, sign))
+    motion = pair_motion(pair, slips, rolls)
+    return Resolution(motion, (number == 0, number == 1), rolls, (0.0, 0.0, sign))
