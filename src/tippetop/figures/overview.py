@@ -1,7 +1,7 @@
 """One run at a glance: the report's four variables, the normal force and the energy."""
 
 from io import BytesIO
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -24,13 +24,6 @@ class ShownFigure(Figure):
         return picture.getvalue()
 
 
-class Panel(NamedTuple):
-    """What a panel shows: a title with its unit, and the variable's values."""
-
-    title: str
-    values: np.ndarray[Any, Any]
-
-
 @house_style()
 def plot(run: xr.Dataset) -> Figure:
     """Draw tilt, axial spin, precession, slip, normal force and energy of a run against time.
@@ -41,19 +34,19 @@ def plot(run: xr.Dataset) -> Figure:
     >>> figure = tt.plot(tt.simulate(tt.presets.report_problem(), duration=10.0))
     >>> figure.savefig("run.svg")
     """
-    panels = [
-        Panel("Tilt θ (rad)", run["theta"].values),
-        Panel("Axial spin ω₃ (rad/s)", run["omega3"].values),
-        Panel("Precession φ′ (rad/s)", run["phi_dot"].values),
-        Panel("Slip speed (m/s)", np.hypot(run["slip_x"].values, run["slip_y"].values)),
-        Panel("Normal force (N)", run["normal_force"].values),
-        Panel("Energy (J)", run["energy"].values),
-    ]
+    panels = {
+        "Tilt θ (rad)": run["theta"].values,
+        "Axial spin ω₃ (rad/s)": run["omega3"].values,
+        "Precession φ′ (rad/s)": run["phi_dot"].values,
+        "Slip speed (m/s)": np.hypot(run["slip_x"].values, run["slip_y"].values),
+        "Normal force (N)": run["normal_force"].values,
+        "Energy (J)": run["energy"].values,
+    }
     figure = ShownFigure(figsize=(WIDTH, 6.2))
     grid = figure.subplots(3, 2, sharex=True)
-    for axes, panel in zip(grid.flat, panels, strict=True):
-        axes.plot(run["time"].values, panel.values, color=CONVERGED, linewidth=1.1)
-        axes.set_title(panel.title)
+    for axes, (title, values) in zip(grid.flat, panels.items(), strict=True):
+        axes.plot(run["time"].values, values, color=CONVERGED, linewidth=1.1)
+        axes.set_title(title)
         shade_flights(axes, run)
     pi_ticks(grid[0, 0].yaxis)
     grid[0, 0].set_ylim(-0.1, np.pi + 0.1)

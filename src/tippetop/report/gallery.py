@@ -27,8 +27,6 @@ from tippetop.report.quoted import (
     TURNED_AT,
 )
 
-__all__ = ["PLATES", "Plate"]
-
 _CRITICAL = (float(CRITICAL_SPINS[0]), float(CRITICAL_SPINS[1]))
 
 

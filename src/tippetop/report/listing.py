@@ -36,13 +36,9 @@ def listing_run(problem: Problem, duration: float, *, unilateral: bool = False) 
     with np.errstate(all="ignore"):
         values["normal_force"] = published_normal_force(wrapped, top, np)
         values["energy"] = published_energy(wrapped, top, np)
-    attributes = {
-        "steps": solution.steps,
-        "evaluations": solution.evaluations,
-        "failure": solution.failure or "",
-    }
+    counts = {"steps": solution.steps, "evaluations": solution.evaluations}
     variables = {name: ("time", value) for name, value in values.items()}
-    return xr.Dataset(variables, {"time": solution.times}, attributes)
+    return xr.Dataset(variables, {"time": solution.times}, {**counts, "failure": solution.failure or ""})
 
 
 def listing_rates(problem: Problem, wrap: float | None = math.pi, *, unilateral: bool = False) -> Motion:

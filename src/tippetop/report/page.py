@@ -15,8 +15,9 @@ from tippetop.integrators import default_name
 from tippetop.report.claim import RULE, Judgement, Value, Verdict
 from tippetop.report.experiments.registry import EXPERIMENTS
 from tippetop.report.formulas import FORMULAS
-from tippetop.report.gallery import PLATES, Plate
+from tippetop.report.gallery import PLATES
 from tippetop.report.outline import OWN, PICTURES, SECTIONS, section_of
+from tippetop.report.plate import Plate
 from tippetop.report.sentences import SENTENCES
 from tippetop.report.typeset import formula, typeset
 from tippetop.report.unchecked import UNCHECKED
@@ -130,15 +131,9 @@ def _sections(plates: Sequence[Plate], claims: Sequence[Worded], figures: Path) 
         names = {plate.id for plate in drawn}
         rest = [claim for claim in inside if claim["figure"] not in names]
         if drawn or rest:
-            found.append(
-                {
-                    "id": "section-" + key.replace(" ", "-").lower(),
-                    "title": title,
-                    "words": words,
-                    "figures": [_shown(plate, figures, claims, key) for plate in drawn],
-                    "claims": rest,
-                }
-            )
+            shown = [_shown(plate, figures, claims, key) for plate in drawn]
+            named = {"id": "section-" + key.replace(" ", "-").lower(), "title": title, "words": words}
+            found.append({**named, "figures": shown, "claims": rest})
     return found
 
 

@@ -99,12 +99,9 @@ _READ_OFF = ("the tilt", "phi'", "omega3", "time")
 
 def _misses(run: xr.Dataset) -> tuple[float, ...]:
     """Differences of tilt, precession, spin and arrival from converged ones, in parts of their plots."""
-    ends = {
-        "theta": np.pi,
-        "phi_dot": 2.0 * float(abs(run["phi_dot"]).max()),
-        "omega3": float(np.ptp(run["omega3"].values)),
-    }
-    parts = [abs(float(run[f"end_{key}_listing"] - run[f"end_{key}"])) / span for key, span in ends.items()]
+    spans = (np.pi, 2.0 * float(abs(run["phi_dot"]).max()), float(np.ptp(run["omega3"].values)))
+    ends = zip(("end_theta", "end_phi_dot", "end_omega3"), spans, strict=True)
+    parts = [abs(float(run[f"{end}_listing"] - run[end])) / span for end, span in ends]
     window = float(run["time"][-1])
     return (*parts, abs(float(run["arrival_time_listing"][0] - run["arrives"])) / window)
 

@@ -31,13 +31,8 @@ def _units(quick: bool) -> xr.Dataset:
 def _in_tenths(problem: Problem, power: int) -> Problem:
     """The problem with every time in tenths of a second, if g has this power of time in its unit."""
     unit = 10.0
-    return problem.replace(
-        {
-            "friction.mu": _mu(problem) * unit,
-            "launch.spin": problem.launch.spin / unit,
-            "gravity": problem.gravity * unit**power,
-        }
-    )
+    times = {"friction.mu": _mu(problem) * unit, "launch.spin": problem.launch.spin / unit}
+    return problem.replace({**times, "gravity": problem.gravity * unit**power})
 
 
 def _in_centimetres(problem: Problem, power: int) -> Problem:
