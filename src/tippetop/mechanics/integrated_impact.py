@@ -59,7 +59,7 @@ class IntegratedProcess(NamedTuple):
         waiting = goal(impulse) >= 0.0
         here, slope = pack(impulse), self.slope(pack(impulse))
         longest = 2.0 * LONGEST / (self.body.inverse_mass[0][0] + self.body.inverse_mass[1][1])
-        step = 0.01 * longest
+        step = 0.1 * longest
         for taken in range(MOST):
             held = self.held(unpack(here), goal, guess)
             if held is not None:
