@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
+from tippetop.contact.arriving import Arrival, arriving
 from tippetop.contact.closing import LANDED, closing_motion, closing_of, followed
 from tippetop.contact.growth import growth
 from tippetop.contact.mode import EventKind, IntegratedMode, Mode, Outcome, Reaction, Segment, Transition
@@ -14,6 +15,7 @@ from tippetop.contact.surfaces import follow_surface, stays_open
 from tippetop.integrators.base import Arc, Array, Integrator
 from tippetop.integrators.dense import DenseSolution, as_array
 from tippetop.mechanics.beginning import beginning
+from tippetop.mechanics.coulomb import RollingResistance
 from tippetop.mechanics.ending import (
     Closing,
     Vanishing,
@@ -29,6 +31,7 @@ from tippetop.mechanics.rolling import (
     Slip,
     on_branch,
     on_other_branch,
+    slip_length,
     velocity_without_slip,
     without_rolling,
 )
@@ -38,6 +41,7 @@ from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.stick_slip import (
     scaled,
     size,
+    slip_branch_guard,
     slip_of,
     velocity_of,
 )
@@ -282,6 +286,13 @@ class Stopping(Passing):
     def segments(self, time: float, state: State, end: float, integrator: Integrator) -> Iterator[Segment]:
         """Follow it to its end, or to where it is no longer about to end."""
         ending, begin = self.ending, self.begin or self._clock(state)
+        arrival = self._arrival(closing_of(begin, ending), end - time, integrator)
+        if arrival is not None:
+            solution = DenseSolution.in_time([0.0, arrival.left], [arrival.onwards])
+            last = self.state(arrival.at(0.0))
+            then = self._next(None, time + arrival.left, last)
+            yield Segment(self, solution.moved(time, time + arrival.left), last, then, steps=1)
+            return
         here, steps, arc, parts = closing_of(begin, ending), 0, None, list[DenseSolution]()
         rest = here
         start = 0.0, as_array(begin)
@@ -311,6 +322,25 @@ class Stopping(Passing):
         solution = self._in_time(parts, begin, time, before, here)
         then = self._next(arc, solution.end, last)
         yield Segment(self, solution, last, then, steps, steps)
+
+    def _arrival(self, here: Closing, longest: float, integrator: Integrator) -> Arrival | None:
+        """The end of slip by power series, if its direction has come to rest and nothing else happens."""
+        law = self.top.friction
+        if not self.ending.slip or isinstance(law, RollingResistance) or slip_length(law) is None:
+            return None
+        found = arriving(here, self.ending, self.top, integrator)
+        if found is None or found.left > longest:
+            return None
+        looks = [found.at(look / LOOKS) for look in range(1, LOOKS + 1)]
+        if isinstance(self.top.surface, Hull) and not all(stays_open(self.top, y) for y in looks):
+            return None
+        if not self.rules.pulls and not all(self.reaction(y).force[2] > 0.0 for y in looks):
+            return None
+        if hasattr(law, "branch_guard") and not all(
+            slip_branch_guard(tuple(y[6:]), self.top) > 0.0 for y in looks
+        ):
+            return None
+        return found
 
     def _clock(self, state: State) -> tuple[float, ...]:
         """The numbers of the clock at a state."""

@@ -1616,506 +1616,6 @@ function _gap(kind, number) {
   return value;
 }
 
-// tippetop.mechanics.flight
-const SMALL = 1e-100;
-
-/** The state after a time of free flight. */
-function fly(state, elapsed, top, functions) {
-  const precession = scale(py.div(1.0, top.transverse_inertia), state.momentum);
-  const still = [py.mul(0.0, elapsed), py.mul(0.0, elapsed), py.mul(0.0, elapsed)];
-  const falling = [py.mul(0.0, elapsed), py.mul(0.0, elapsed), py.mul(py.neg(top.gravity), elapsed)];
-  return new State(turned(state.axis, precession, elapsed, functions), add(state.momentum, still), add(state.velocity, falling), py.add(state.height, py.mul(elapsed, py.add(state.velocity[2], py.mul(0.5, falling[2])))));
-}
-
-/** A vector after turning for a time with a constant angular velocity (rad/s), which may be zero. */
-function turned(vector, rate, elapsed, functions) {
-  const half = py.add(py.mul(py.mul(0.5, elapsed), length(rate)), SMALL);
-  const pivot = scale(py.div(py.mul(py.mul(0.5, elapsed), functions.sin(half)), half), rate);
-  const swung = cross(pivot, vector);
-  return add(vector, scale(2.0, add(scale(functions.cos(half), swung), cross(pivot, swung))));
-}
-
-/** Height of the lowest point of the body above the table, z - h(n_z), m. */
-function gap(state, top) {
-  return py.sub(state.height, on_table(along_table(state), top).height);
-}
-
-/** Rate of change of the gap, m/s: the vertical velocity of the body's lowest point. */
-function gap_rate(state, top) {
-  return py.sub(state.velocity[2], on_table(along_table(state), top).velocity[2]);
-}
-
-// tippetop.mechanics.algebra
-
-/** Arithmetic that follows from a sum, a product and a power, for what the mechanics may run on. */
-class Algebra extends py.Thing {
-  __add__(other) {
-    throw new py.NotImplementedError();
-  }
-  __mul__(other) {
-    throw new py.NotImplementedError();
-  }
-  /** A power that is not a natural number. */
-  power(exponent) {
-    throw new py.NotImplementedError();
-  }
-  __pow__(exponent) {
-    if (exponent < 1 || exponent !== py.int(exponent)) {
-      return this.power(exponent);
-    }
-    return exponent === 1 ? this : py.mul(this, py.pow(this, exponent - 1));
-  }
-  __neg__() {
-    return py.mul(this, -1.0);
-  }
-  __sub__(other) {
-    return this.__add__(py.neg(other));
-  }
-  __truediv__(other) {
-    return this.__mul__(py.pow(other, -1.0));
-  }
-  __radd__(other) {
-    return py.add(this, other);
-  }
-  __rsub__(other) {
-    return py.add(py.neg(this), other);
-  }
-  __rmul__(other) {
-    return py.mul(this, other);
-  }
-  __rtruediv__(other) {
-    return py.mul(py.pow(this, -1.0), other);
-  }
-}
-
-/** A power series in time, truncated after the degree of all others. */
-class TruncatedSeries extends Algebra {
-  constructor(terms) {
-    super();
-    this.terms = terms;
-  }
-  __add__(other) {
-    if (py.isinstance(other, TruncatedSeries)) {
-      return new TruncatedSeries(py.zip(this.terms, other.terms).map(([a, b]) => py.add(a, b)));
-    }
-    return new TruncatedSeries([py.add(this.terms[0], other), ...this.terms.slice(1)]);
-  }
-  __mul__(other) {
-    const a = this.terms;
-    if (py.isinstance(other, TruncatedSeries)) {
-      const b = py.slice(other.terms, null, null, -1);
-      const last = py.len(a) - 1;
-      return new TruncatedSeries(py.range(last + 1).map((k) => py.sum(py.map(py.mul, a, py.slice(b, py.sub(last, k), null, null)))));
-    }
-    return new TruncatedSeries([...a].map((term) => py.mul(other, term)));
-  }
-  /** A real power, term by term from y' a = exponent a' y. */
-  power(exponent) {
-    const [a, y] = [this.terms, [py.pow(this.terms[0], exponent)]];
-    for (let k = 1; k < py.len(a); k += 1) {
-      const total = py.sum(py.range(1, k + 1).map((j) => py.mul(py.mul(py.sub(py.mul(exponent + 1.0, j), k), py.item(a, j)), py.item(y, py.sub(k, j)))));
-      y.push(py.div(total, py.mul(k, a[0])));
-    }
-    return new TruncatedSeries(y);
-  }
-}
-
-/** All complex numbers within a radius of a real centre, and what arithmetic can make of them. */
-class Disc extends Algebra {
-  constructor(centre, radius) {
-    super();
-    [this.centre, this.radius] = [centre, radius];
-  }
-  __add__(other) {
-    if (py.isinstance(other, Disc)) {
-      return new Disc(py.add(this.centre, other.centre), py.add(this.radius, other.radius));
-    }
-    return new Disc(py.add(this.centre, other), this.radius);
-  }
-  __mul__(other) {
-    if (py.isinstance(other, Disc)) {
-      const far = py.add(py.abs(other.centre), other.radius);
-      return new Disc(py.mul(this.centre, other.centre), py.add(py.mul(py.abs(this.centre), other.radius), py.mul(this.radius, far)));
-    }
-    return new Disc(py.mul(this.centre, other), py.mul(this.radius, py.abs(other)));
-  }
-  /** A real power, by the mean value theorem; the disc must lie right of zero for it to be analytic. */
-  power(exponent) {
-    const [near, far] = [py.sub(this.centre, this.radius), py.add(this.centre, this.radius)];
-    if (near <= 0.0) {
-      throw new py.ArithmeticError("a power of a disc that touches zero");
-    }
-    const steepest = py.max(py.pow(near, exponent - 1.0), py.pow(far, exponent - 1.0));
-    return new Disc(py.pow(this.centre, exponent), py.mul(py.mul(this.radius, py.abs(exponent)), steepest));
-  }
-}
-
-// tippetop.mechanics.roots
-const FINEST = 1e-10;
-
-/** First root from `low` to `high`, or `low` if not positive there; `jerk` bounds the third derivative. */
-function first_root(function_, low, high, jerk) {
-  let [time, step, finest] = [low, high - low, py.mul(FINEST, high - low)];
-  let [value, rate, acceleration] = function_(time);
-  while (value > 0.0) {
-    step = py.min(step, py.sub(high, time));
-    const end = py.eq(step, py.sub(high, time)) ? high : py.add(time, step);
-    const positive = stays_positive(value, rate, acceleration, jerk, step);
-    if (py.truth(positive) || py.truth(is_one_way(rate, acceleration, jerk, step))) {
-      if (py.eq(end, high) && py.truth(positive)) {
-        return null;
-      }
-      const later = function_(end);
-      if (later[0] <= 0.0 && !py.truth(positive)) {
-        return crossing((t) => function_(t)[0], time, end);
-      }
-      if (py.eq(end, high) && later[0] > 0.0) {
-        return null;
-      }
-      [time, step] = [end, py.mul(2.0, step)];
-      [value, rate, acceleration] = later;
-    } else {
-      step = py.mul(step, 0.5);
-      if (step < finest) {
-        break;
-      }
-    }
-  }
-  return time;
-}
-
-/** Whether value + rate s + acceleration s^2/2 - jerk s^3/6 is positive for all s in [0, step]. */
-function stays_positive(value, rate, acceleration, jerk, step) {
-  const cubic = (s) => {
-    return value + s * (rate + s * (acceleration / 2.0 - s * jerk / 6.0));
-  };
-  if (cubic(step) <= 0.0) {
-    return false;
-  }
-  const discriminant = acceleration * acceleration + 2.0 * jerk * rate;
-  if (rate >= 0.0 || acceleration <= 0.0 || discriminant <= 0.0) {
-    return true;
-  }
-  const dip = py.div(-2.0 * rate, acceleration + py.pow(discriminant, 0.5));
-  return py.or(dip >= step, () => cubic(dip) > 0.0);
-}
-
-/** Whether a function surely falls, or surely is concave, all along a step: it has one root at most. */
-function is_one_way(rate, acceleration, jerk, step) {
-  const falls = py.and(rate < 0.0, () => rate + step * (acceleration + 0.5 * step * jerk) < 0.0);
-  return py.or(falls, () => acceleration + step * jerk < 0.0);
-}
-
-/** Root of a function between two points where its signs differ, by the method of Chandrupatla (1997). */
-function crossing(function_, low, high) {
-  let x3, y3;
-  let [x1, x2, part] = [high, low, 0.5];
-  let [y1, y2] = [function_(x1), function_(x2)];
-  if (y1 === 0.0 || y2 === 0.0) {
-    return y2 === 0.0 ? x2 : x1;
-  }
-  let best = x1;
-  for (let turn = 0; turn < 400; turn += 1) {
-    const x = py.add(x1, py.mul(part, py.sub(x2, x1)));
-    const y = function_(x);
-    if (py.eq(y > 0.0, y1 > 0.0)) {
-      [x3, y3] = [x1, y1];
-    } else {
-      [x3, y3, x2, y2] = [x2, y2, x1, y1];
-    }
-    [x1, y1] = [x, y];
-    best = py.abs(y1) < py.abs(y2) ? x1 : x2;
-    const fuzz = py.div(py.mul(2.3e-16, py.abs(best)), py.abs(py.sub(x2, x1)));
-    if (fuzz > 0.5 || y === 0.0) {
-      break;
-    }
-    const [xi, phi] = [py.div(py.sub(x1, x2), py.sub(x3, x2)), py.div(py.sub(y1, y2), py.sub(y3, y2))];
-    part = 0.5;
-    if (py.mul(phi, phi) < xi && py.pow(py.sub(1.0, phi), 2) < py.sub(1.0, xi)) {
-      part = py.div(py.mul(py.div(y1, py.sub(y2, y1)), y3), py.sub(y2, y3));
-      part = py.add(part, py.div(py.mul(py.div(py.mul(py.div(py.sub(x3, x1), py.sub(x2, x1)), y1), py.sub(y3, y1)), y2), py.sub(y3, y2)));
-    }
-    part = py.min(py.max(part, fuzz), py.sub(1.0, fuzz));
-  }
-  return best;
-}
-
-// tippetop.mechanics.touchdown
-const DEGREE = 16;
-const START = py.pow(10.0, py.div(-16.0, py.add(DEGREE, 1)));
-const WIDEST = 4.0;
-const NARROWEST = 1e-09;
-const LOOKS_of_touchdown = 10.0;
-const MOST_LOOKS = 1000;
-const MOST_DISCS = 100000;
-
-/** How a flight starts: how many of gap, gap rate and gap acceleration are then zero by construction. */
-const Start = Object.freeze({ AIRBORNE: 0, REBOUND: 1, RELEASE: 2, LIFT_OFF: 3 });
-
-/** Time of the first touch of the table after the start of a flight, s. */
-function touchdown(state, top, horizon, start = Start.AIRBORNE) {
-  let root;
-  let [tip, , ballistic] = Separation.of(state, top);
-  const deepest = py.min(0.0, ...[-1.0, 1.0].map((c) => py.float(top.surface.height(c))));
-  horizon = py.min(horizon, py.mul(2.0, falling_time(py.sub(ballistic[0], deepest), ...ballistic.slice(1))));
-  let time = 0.0;
-  if (!py.eq(start, Start.AIRBORNE)) {
-    const support = py.add(top.surface.height(tip.series()), py.mul(0.0, tip.series())).terms;
-    ballistic = [...support.slice(0, start), ...ballistic.slice(start)];
-    const terms = [...support].map((term) => py.neg(term));
-    py.put_slice(terms, start, 3, py.zip(ballistic.slice(start), support.slice(start, 3)).map(([b, s]) => py.sub(b, s)));
-    const opening = new Opening(py.slice(terms, py.next(py.range(start, DEGREE).filter((j) => py.truth(py.item(terms, j))), DEGREE), null, null));
-    time = py.min(horizon, py.mul(START, analytic_disc(tip, top.surface, 0.0, 0.0, WIDEST)[0]));
-    root = first_root(py.bound(opening, "at"), 0.0, time, opening.jerk_bound(time));
-    if (root !== null) {
-      return root;
-    }
-  }
-  const separation = new Separation(tip, top.surface, ballistic);
-  let angle = WIDEST;
-  for (let turn = 0; turn < MOST_DISCS; turn += 1) {
-    if (time >= horizon) {
-      return null;
-    }
-    const [radius, spread] = analytic_disc(tip, top.surface, time, 0.25, angle);
-    angle = py.min(WIDEST, py.mul(py.mul(2.0, radius), tip.frequency));
-    const end = py.min(horizon, py.add(time, py.mul(0.5, radius)));
-    root = first_root(py.bound(separation, "at"), time, end, py.div(py.mul(6.0, spread), py.mul(py.pow(0.75, 4), py.pow(radius, 3))));
-    if (root !== null) {
-      return root;
-    }
-    time = end;
-  }
-  throw new py.ArithmeticError("a flight turns too often for its end to be found");
-}
-
-/** Time after which height + rate t + half t^2 stays negative, infinite if half is not negative. */
-function falling_time(height, rate, half) {
-  if (half >= 0.0) {
-    return py.math.inf;
-  }
-  return py.div(-(rate + py.math.sqrt(py.max(rate * rate - 4.0 * half * height, 0.0))), 2.0 * half);
-}
-
-/** The highest gap of a free flight that lasts some time, s; floats. */
-function highest_gap(state, top, duration) {
-  let low, high;
-  let [gap, ...others] = [...top.each].map((one) => py.bound(Separation.of(state, one), "at"));
-  if (py.truth(others)) {
-    const everywhere = [gap, ...others];
-    gap = (time) => {
-      return py.min([...everywhere].map((at) => at(time)));
-    };
-  }
-  const count = py.min(MOST_LOOKS, 2 + py.int(py.div(py.mul(py.mul(LOOKS_of_touchdown, duration), length(state.momentum)), top.transverse_inertia)));
-  const times = py.range(py.add(count, 1)).map((j) => py.div(py.mul(duration, j), count));
-  const gaps = [...times].map((time) => gap(time)[0]);
-  const best = py.max(py.range(py.add(count, 1)), py.how({ key: py.bound(gaps, "__getitem__") }));
-  if (gap(py.item(times, best))[1] > 0.0) {
-    [low, high] = [py.item(times, best), py.item(times, py.min(py.add(best, 1), count))];
-  } else {
-    [low, high] = [py.max(py.item(times, py.max(py.sub(best, 1), 0)), py.mul(0.001, times[1])), py.item(times, best)];
-  }
-  if (!(gap(low)[1] > 0.0 && 0.0 > gap(high)[1])) {
-    return py.item(gaps, best);
-  }
-  return py.max(py.item(gaps, best), gap(crossing((time) => gap(time)[1], low, high))[0]);
-}
-
-/** Height c = n_z of the tip of the axis in free flight: its value, two derivatives, and frequency. */
-class Tip extends py.NamedTuple {
-  constructor(height, rate, acceleration, frequency) {
-    super();
-    this.height = height;
-    this.rate = rate;
-    this.acceleration = acceleration;
-    this.frequency = frequency;
-  }
-  /** The tip in a free flight from a state on; of numbers, or arrays of them. */
-  static of(state, top) {
-    const turning = axis_rate(state.axis, state.momentum, top);
-    return new this(state.axis[2], turning[2], axis_rate(turning, state.momentum, top)[2], py.add(length(scale(py.div(1.0, top.transverse_inertia), state.momentum)), SMALL));
-  }
-  /** Height, rate and acceleration at a time: c'' turns into -w^2 c' and back. */
-  at(time) {
-    const w = this.frequency;
-    const [cosine, sine, half] = [py.math.cos(py.mul(w, time)), py.div(py.math.sin(py.mul(w, time)), w), py.div(py.math.sin(py.mul(py.mul(0.5, w), time)), w)];
-    return [py.add(py.add(this.height, py.mul(this.rate, sine)), py.mul(py.mul(py.mul(2.0, this.acceleration), half), half)), py.add(py.mul(this.rate, cosine), py.mul(this.acceleration, sine)), py.sub(py.mul(this.acceleration, cosine), py.mul(py.mul(py.mul(this.rate, w), w), sine))];
-  }
-  /** Height as a power series in time. */
-  series() {
-    const terms = [this.height, this.rate, py.mul(0.5, this.acceleration)];
-    for (let j = 1; j < py.sub(DEGREE, 1); j += 1) {
-      terms.push(py.div(py.mul(py.neg(py.pow(this.frequency, 2)), py.item(terms, j)), (j + 1) * (j + 2)));
-    }
-    return new TruncatedSeries(terms);
-  }
-  /** Largest |c - c(time)| for complex times within angle / frequency of a real one. */
-  spread(time, angle) {
-    const [, rate, acceleration] = this.at(time);
-    const w = this.frequency;
-    return py.add(py.div(py.mul(py.abs(rate), py.math.sinh(angle)), w), py.div(py.mul(py.abs(acceleration), py.math.cosh(angle) - 1.0), py.pow(w, 2)));
-  }
-}
-py.fields(Tip, ["height", "rate", "acceleration", "frequency"]);
-
-/** The gap as a function of time: a parabola less the support function at the tip's height. */
-class Separation extends py.NamedTuple {
-  constructor(tip, shape, parabola) {
-    super();
-    this.tip = tip;
-    this.shape = shape;
-    this.parabola = parabola;
-  }
-  /** The gap of a free flight from a state on. */
-  static of(state, top) {
-    return new this(Tip.of(state, top), top.surface, [state.height, state.velocity[2], py.mul(-0.5, top.gravity)]);
-  }
-  /** Gap, its rate and its acceleration. */
-  at(time) {
-    const [p0, p1, p2] = this.parabola;
-    const [c, rate, acceleration] = this.tip.at(time);
-    const slope = this.shape.slope(c);
-    return [py.sub(py.add(p0, py.mul(time, py.add(p1, py.mul(time, p2)))), this.shape.height(c)), py.sub(py.add(p1, py.mul(2.0 * time, p2)), py.mul(slope, rate)), py.sub(py.sub(py.mul(2.0, p2), py.mul(py.mul(this.shape.curvature(c), rate), rate)), py.mul(slope, acceleration))];
-  }
-}
-py.fields(Separation, ["tip", "shape", "parabola"]);
-
-/** A polynomial in time: the gap at the start of a flight, divided by the power of time that it has. */
-class Opening extends py.NamedTuple {
-  constructor(terms) {
-    super();
-    this.terms = terms;
-  }
-  /** Value and first two derivatives, by Horner's rule. */
-  at(time) {
-    let value = 0.0;
-    let rate = 0.0;
-    let half = 0.0;
-    for (const term of py.reversed(this.terms)) {
-      half = py.add(py.mul(half, time), rate);
-      rate = py.add(py.mul(rate, time), value);
-      value = py.add(py.mul(value, time), term);
-    }
-    return [value, rate, py.mul(2.0, half)];
-  }
-  /** A bound on the third derivative up to this time. */
-  jerk_bound(time) {
-    let bound = 0.0;
-    for (let j = py.len(this.terms) - 1; j > 2; j -= 1) {
-      bound = py.add(py.mul(bound, time), py.mul(j * (j - 1) * (j - 2), py.abs(py.item(this.terms, j))));
-    }
-    return bound;
-  }
-}
-py.fields(Opening, ["terms"]);
-
-/** Radius of a disc of time centred `ahead` radii after `time` where h(c) is analytic, and of h(c). */
-function analytic_disc(tip, shape, time, ahead, angle) {
-  while (py.truth(true)) {
-    const radius = py.div(angle, tip.frequency);
-    const centre = py.add(time, py.mul(ahead, radius));
-    try {
-      const c = new Disc(tip.at(centre)[0], tip.spread(centre, angle));
-      return [radius, py.float(py.add(shape.height(c), py.mul(0.0, c)).radius)];
-    } catch (error) {
-      if (!(error instanceof py.ArithmeticError)) throw error;
-      angle = angle * 0.5;
-      if (angle < NARROWEST) {
-        throw error;
-      }
-    }
-  }
-}
-
-// tippetop.contact.flight
-const DEGREE_of_flight = 14;
-const TURN = 0.25;
-const MOST_STEPS = 4096;
-const TOUCHING = 1e-12;
-
-/** Free flight, until the body's lowest point touches the table again. */
-class Flight extends Mode {
-  constructor(top, rules, start = Start.AIRBORNE) {
-    super(top, rules);
-    this.start = start;
-  }
-  get name() { return "flight"; }
-  get touching() { return false; }
-  /** The numbers of a flight are those of the state. */
-  state(y) {
-    return State.unpack(y);
-  }
-  /** Evaluate the flight, which needs no integrator. */
-  *segments(time, state, end, integrator) {
-    let landing, lowest;
-    try {
-      [landing, lowest] = this._landing(state, end - time);
-    } catch (error) {
-      if (!(error instanceof py.ArithmeticError)) throw error;
-      const failed = new Transition([], Outcome.FAILED, state, py.str(error));
-      yield new Segment(this, DenseSolution.nothing(time, py.len(state.pack())), state, failed);
-      return null;
-    }
-    const duration = landing === null ? end - time : landing;
-    const rate = py.div(length(state.momentum), this.top.transverse_inertia);
-    const count = 1 + py.int(py.div(py.mul(duration, rate), TURN));
-    const highest = highest_gap(state, this.top, duration);
-    for (let first = 0; first < count; first += MOST_STEPS) {
-      const last = py.min(py.add(first, MOST_STEPS), count);
-      const elapsed = py.range(first, py.add(last, 1)).map((step) => py.mul(py.div(duration, count), step));
-      py.put(elapsed, -1, py.eq(last, count) ? duration : py.item(elapsed, -1));
-      const here = fly(state, py.item(elapsed, -1), this.top, py.math);
-      let [transition, reach] = [null, py.add(time, py.item(elapsed, -1))];
-      if (py.eq(last, count)) {
-        reach = landing === null ? end : reach;
-        transition = this._transition(reach, here, landing === null ? null : lowest);
-      }
-      const solution = DenseSolution.fitted(this._numbers(state), elapsed, DEGREE_of_flight).moved(time, reach);
-      yield new Segment(this, solution, here, transition, undefined, undefined, highest);
-    }
-  }
-  /** The numbers of the flight as a function of the time since its start. */
-  _numbers(state) {
-    return (elapsed) => fly(state, elapsed, this.top, ELEMENTARY).pack();
-  }
-  /** When the first surface touches the table, and the top with that surface active. */
-  _landing(state, horizon) {
-    let found = touchdown(state, this.top, horizon, this.start);
-    let lowest = this.top;
-    for (const other of this.top.each) {
-      if (!py.eq(other, this.top)) {
-        const limit = found === null ? horizon : found;
-        const sooner = touchdown(state, other, limit, start_of(state, other));
-        if (sooner !== null && (found === null || sooner < found)) {
-          [found, lowest] = [sooner, other];
-        }
-      }
-    }
-    return [found, lowest];
-  }
-  _transition(time, state, lowest) {
-    if (lowest === null) {
-      return new Transition([], Outcome.COMPLETED, state);
-    }
-    const here = state._replace({ height: on_table(along_table(state), lowest).height });
-    if (py.eq(lowest, this.top)) {
-      return this.rules.touchdown(time, here);
-    }
-    return this.rules.touch(number_of(lowest), time, here);
-  }
-}
-py.fields(Flight, ["top", "rules", "start"]);
-
-/** How a flight starts for a surface that did not decide it: far, or just opened. */
-function start_of(state, top) {
-  const rate = gap_rate(state, top);
-  if (gap(state, top) > TOUCHING || rate < py.neg(TOUCHING)) {
-    return Start.AIRBORNE;
-  }
-  return rate > TOUCHING ? Start.REBOUND : Start.RELEASE;
-}
-
 // tippetop.contact.sliding
 const [LIFT_OFF, NEARING, PARTING, STOPPING, ROLLING_STOPPING, ROLLING, BRANCH] = ["lift-off", "nearing", "parting", "stopping", "rolling stopping", "rolling", "branch"];
 
@@ -2394,83 +1894,109 @@ function split(y) {
   return [[y[0], y[1], y[2]], [y[3], y[4], y[5]]];
 }
 
-// tippetop.contact.closing
-const [REOPENING, LANDED, TIME, OVERTAKEN] = ["reopening", "landed", "time", "overtaken"];
-const LONGEST = 100.0;
-const STIFF_TOLERANCE = 1e-12;
-const MOST_STEPS_of_closing = 2048;
+// tippetop.mechanics.algebra
 
-/** The end of slip, or of rolling, in its clock. */
-function followed(integrator, motion, parameters, start) {
-  const first = py.next(py.iter(integrator.integrate(motion, parameters, start, LONGEST)));
-  if (first.guard !== null || first.failure !== null || first.solution.end >= LONGEST) {
-    return [first];
+/** Arithmetic that follows from a sum, a product and a power, for what the mechanics may run on. */
+class Algebra extends py.Thing {
+  __add__(other) {
+    throw new py.NotImplementedError();
   }
-  const arcs = [];
-  for (const arc of make_integrator("radau", STIFF_TOLERANCE).integrate(motion, parameters, start, LONGEST)) {
-    arcs.push(arc);
-    if (arc.guard === null && py.sum([...arcs].map((one) => one.steps)) >= MOST_STEPS_of_closing) {
-      py.put(arcs, -1, py.replace(arc, { failure: "slip, or rolling, takes too many steps to end" }));
-      break;
+  __mul__(other) {
+    throw new py.NotImplementedError();
+  }
+  /** A power that is not a natural number. */
+  power(exponent) {
+    throw new py.NotImplementedError();
+  }
+  __pow__(exponent) {
+    if (exponent < 1 || exponent !== py.int(exponent)) {
+      return this.power(exponent);
     }
+    return exponent === 1 ? this : py.mul(this, py.pow(this, exponent - 1));
   }
-  return arcs;
+  __neg__() {
+    return py.mul(this, -1.0);
+  }
+  __sub__(other) {
+    return this.__add__(py.neg(other));
+  }
+  __truediv__(other) {
+    return this.__mul__(py.pow(other, -1.0));
+  }
+  __radd__(other) {
+    return py.add(this, other);
+  }
+  __rsub__(other) {
+    return py.add(py.neg(this), other);
+  }
+  __rmul__(other) {
+    return py.mul(this, other);
+  }
+  __rtruediv__(other) {
+    return py.mul(py.pow(this, -1.0), other);
+  }
 }
 
-/** Equations of motion in the clock of `ending` where a velocity is about to end; time is the last number. */
-const closing_motion = py.cached((kind, ending, guarded) => {
-  const top_of = (numbers) => {
-    return kind.top(py.tuple(numbers.slice(0, kind.numbers)));
-  };
-  const rates = (y, numbers) => {
-    const rate = closing_rates(closing_of(y, ending), ending, top_of(numbers));
-    return [...rate.axis, ...rate.momentum, ...rate.velocity, ...rate.direction, rate.speed, rate.time];
-  };
-  const guard = (name, value) => {
-    return new Guard(name, (y, numbers) => value(closing_of(y, ending), top_of(numbers), numbers));
-  };
-  const on_branch_still = (state, top, _) => {
-    return slip_branch_guard(py.or(slip_beside(state, ending, top), () => state.direction), top);
-  };
-  let guards = [guard(REOPENING, (state, top, _) => reopening_guard(state, ending, top, HORIZON)), guard(LANDED, (state, top, numbers) => landing_guard(state, ending, top, py.item(numbers, -1))), guard(TIME, (state, _, numbers) => py.sub(py.item(numbers, -2), state.time))];
-  const law = kind.example.friction;
-  const [resisted, stuck] = [py.isinstance(law, RollingResistance), py.and(!py.truth(ending.slip), () => ending.held)];
-  if (py.truth(guarded)) {
-    guards.push(guard(LIFT_OFF, (state, top, _) => rates_in_time(state, ending, top).wrench.force[2]));
+/** A power series in time, truncated after the degree of all others. */
+class TruncatedSeries extends Algebra {
+  constructor(terms) {
+    super();
+    this.terms = terms;
   }
-  if (!py.truth(ending.held) && py.truth(resisted) && py.truth(is_set_valued(law))) {
-    guards.push(guard(OVERTAKEN, (state, top, _) => overtaking_guard(state, ending, top)));
+  __add__(other) {
+    if (py.isinstance(other, TruncatedSeries)) {
+      return new TruncatedSeries(py.zip(this.terms, other.terms).map(([a, b]) => py.add(a, b)));
+    }
+    return new TruncatedSeries([py.add(this.terms[0], other), ...this.terms.slice(1)]);
   }
-  if (py.truth(ending.held)) {
-    guards.push(guard(py.truth(ending.slip) ? ROLLING : SLIP, (state, top, _) => spared(state, ending, top)));
+  __mul__(other) {
+    const a = this.terms;
+    if (py.isinstance(other, TruncatedSeries)) {
+      const b = py.slice(other.terms, null, null, -1);
+      const last = py.len(a) - 1;
+      return new TruncatedSeries(py.range(last + 1).map((k) => py.sum(py.map(py.mul, a, py.slice(b, py.sub(last, k), null, null)))));
+    }
+    return new TruncatedSeries([...a].map((term) => py.mul(other, term)));
   }
-  if ((py.truth(ending.slip) || py.truth(ending.moves)) && py.truth(py.hasattr(sliding_law(law), "branch_guard"))) {
-    guards.push(guard(BRANCH, on_branch_still));
+  /** A real power, term by term from y' a = exponent a' y. */
+  power(exponent) {
+    const [a, y] = [this.terms, [py.pow(this.terms[0], exponent)]];
+    for (let k = 1; k < py.len(a); k += 1) {
+      const total = py.sum(py.range(1, k + 1).map((j) => py.mul(py.mul(py.sub(py.mul(exponent + 1.0, j), k), py.item(a, j)), py.item(y, py.sub(k, j)))));
+      y.push(py.div(total, py.mul(k, a[0])));
+    }
+    return new TruncatedSeries(y);
   }
-  if (py.truth(stuck) && py.truth(has_limit_branches(law))) {
-    guards.push(guard(LIMIT_BRANCH, (state, top, _) => limit_guard(top, rates_in_time(state, ending, top).wrench)));
-  }
-  guards = py.add(guards, surface_guards(kind));
-  const free = py.truth(ending.moves) ? 2 : 0;
-  const components = py.truth(ending.slip) ? slip_dimension(law) : 2;
-  const often = py.and(components === 2, () => !py.truth(resisted));
-  return new Motion(rates, py.add(py.add(8, free), components), py.add(kind.numbers, 2), py.tuple(guards), often);
-});
-
-/** Positive while the table can hold what is held beside a velocity that ends. */
-function spared(state, ending, top) {
-  const wrench = rates_in_time(state, ending, top).wrench;
-  if (py.truth(ending.slip)) {
-    const point = ContactPoint.of(state.axis, state.momentum, top);
-    return rolling_reserve(point, wrench, state.direction);
-  }
-  return set_valued(top.friction).reserve(wrench.force[2], wrench.force.slice(0, 2), wrench.torque[2]);
 }
 
-/** The state of a velocity that is about to end, from its numbers. */
-function closing_of(y, ending) {
-  const [count, free] = [py.len(y), py.truth(ending.moves) ? 8 : 6];
-  return new Closing(...split(y), py.tuple(y.slice(6, free)), py.tuple(py.slice(y, free, count - 2, null)), py.item(y, count - 2), py.item(y, count - 1));
+/** All complex numbers within a radius of a real centre, and what arithmetic can make of them. */
+class Disc extends Algebra {
+  constructor(centre, radius) {
+    super();
+    [this.centre, this.radius] = [centre, radius];
+  }
+  __add__(other) {
+    if (py.isinstance(other, Disc)) {
+      return new Disc(py.add(this.centre, other.centre), py.add(this.radius, other.radius));
+    }
+    return new Disc(py.add(this.centre, other), this.radius);
+  }
+  __mul__(other) {
+    if (py.isinstance(other, Disc)) {
+      const far = py.add(py.abs(other.centre), other.radius);
+      return new Disc(py.mul(this.centre, other.centre), py.add(py.mul(py.abs(this.centre), other.radius), py.mul(this.radius, far)));
+    }
+    return new Disc(py.mul(this.centre, other), py.mul(this.radius, py.abs(other)));
+  }
+  /** A real power, by the mean value theorem; the disc must lie right of zero for it to be analytic. */
+  power(exponent) {
+    const [near, far] = [py.sub(this.centre, this.radius), py.add(this.centre, this.radius)];
+    if (near <= 0.0) {
+      throw new py.ArithmeticError("a power of a disc that touches zero");
+    }
+    const steepest = py.max(py.pow(near, exponent - 1.0), py.pow(far, exponent - 1.0));
+    return new Disc(py.pow(this.centre, exponent), py.mul(py.mul(this.radius, py.abs(exponent)), steepest));
+  }
 }
 
 // tippetop.mechanics.series
@@ -2943,6 +2469,592 @@ const driven_motion = py.cached((kind, ending, components, degree) => {
   return new Motion(rates, py.add(free, components * (chain + 1)), kind.numbers, undefined, false);
 });
 
+// tippetop.contact.arriving
+const [DEGREE, ACCURACY] = [12, 1e-13];
+const [MOST_of_arriving, TURNS] = [16, 8];
+const SETTLED = 1e-14;
+const AT_REST = 1e-12;
+const TURNING = 1.0;
+
+/** The end of slip. */
+class Arrival extends py.NamedTuple {
+  constructor(left, rows) {
+    super();
+    this.left = left;
+    this.rows = rows;
+  }
+  /** The numbers where a part of the time is left. */
+  at(part) {
+    return [...this.rows].map((row) => horner(row, py.mul(-part, this.left)));
+  }
+  /** Whether the last terms are small, those of zeta beside zeta. */
+  get serves() {
+    const whole = size(py.tuple(this.at(1.0).slice(6)));
+    return py.all([[this.rows.slice(0, 6), 1.0], [this.rows.slice(6), whole]].flatMap(([rows, unit]) => [py.sub(DEGREE, 1), DEGREE].map((k) => size(py.tuple([...rows].map((row) => py.mul(py.item(row, k), py.pow(this.left, k))))) < py.mul(ACCURACY, unit))));
+  }
+  /** Coefficients in powers of the time since the start. */
+  get onwards() {
+    const rows = [];
+    for (const row of this.rows) {
+      const shifted = py.list(row);
+      for (let first = 0; first < py.len(row) - 1; first += 1) {
+        for (let k = py.len(row) - 2; k > first - 1; k -= 1) {
+          py.put(shifted, k, py.sub(py.item(shifted, k), py.mul(this.left, py.item(shifted, k + 1))));
+        }
+      }
+      rows.push(shifted);
+    }
+    return rows;
+  }
+}
+py.fields(Arrival, ["left", "rows"]);
+
+/** The end of slip from a state on; None where its direction has not come to rest. */
+function arriving(here, ending, top, integrator) {
+  const rates = rates_in_time(here, ending, top);
+  const along = inner(rates.xi, here.direction);
+  if (along >= 0.0) {
+    return null;
+  }
+  let [left, now] = [py.div(py.neg(here.speed), along), [...here.axis, ...here.momentum]];
+  let [end, way] = [plus(now, scaled(left, [...rates.axis, ...rates.momentum])), here.direction];
+  try {
+    for (let turn = 0; turn < MOST_of_arriving; turn += 1) {
+      const [axis, momentum] = [[end[0], end[1], end[2]], [end[3], end[4], end[5]]];
+      const known = resting_way(axis, momentum, way, ending, top, integrator);
+      let begin;
+      [begin, way] = [onset(known, 1, DEGREE), known.first];
+      const found = new Arrival(time_to(here.speed, begin.rows, left), begin.rows);
+      let then;
+      [left, then] = [found.left, found.at(1.0)];
+      const off = plus(now, scaled(-1.0, py.tuple(then.slice(0, 6))));
+      const doubt = py.mul(left, py.math.dist(here.direction, scaled(py.div(1.0, size(py.tuple(then.slice(6)))), py.tuple(then.slice(6)))));
+      if (!(doubt < py.mul(py.mul(TURNING, left), left))) {
+        return null;
+      }
+      if (size(off) < SETTLED) {
+        return doubt < AT_REST && py.truth(found.serves) ? found : null;
+      }
+      end = plus(end, off);
+    }
+  } catch (error) {
+    if (!(error instanceof py.ArithmeticError)) throw error;
+    return null;
+  }
+  return null;
+}
+
+/** The series at the end, in the direction in which slip ends there, by Newton's method from another one. */
+function resting_way(axis, momentum, way, ending, top, integrator) {
+  for (let turn = 0; turn < TURNS; turn += 1) {
+    const known = growth([axis, momentum, way], top, ending, [], DEGREE, integrator);
+    const [rate, across] = [known.accelerations(0), tangents(way)];
+    const along = inner(rate, way);
+    const slopes = [...across].map((b) => known.slope(b));
+    const matrix = [...across].map((a) => py.zip(across, slopes).map(([b, g]) => py.sub(inner(a, g), a === b ? along : 0.0)));
+    const turned = solve(matrix, [...across].map((a) => py.neg(inner(a, rate))));
+    if (!(py.math.hypot(...turned) < 1.0)) {
+      throw new py.ArithmeticError("slip does not end near this direction");
+    }
+    if (along < 0.0 && py.math.hypot(...turned) < SETTLED) {
+      return known;
+    }
+    for (const [amount, b] of py.zip(turned, across)) {
+      way = plus(way, scaled(amount, b));
+    }
+    way = scaled(py.div(1.0, size(way)), way);
+  }
+  throw new py.ArithmeticError("no direction is found in which slip ends");
+}
+
+/** How long before its end slip had this speed. */
+function time_to(speed, rows, guess) {
+  let left = guess;
+  for (let turn = 0; turn < MOST_of_arriving; turn += 1) {
+    const then = size(py.tuple([...rows.slice(6)].map((row) => horner(row, py.neg(left)))));
+    const better = py.div(py.mul(left, speed), then);
+    if (py.abs(py.sub(better, left)) <= py.mul(SETTLED, left)) {
+      return better;
+    }
+    left = better;
+  }
+  return left;
+}
+
+// tippetop.mechanics.flight
+const SMALL = 1e-100;
+
+/** The state after a time of free flight. */
+function fly(state, elapsed, top, functions) {
+  const precession = scale(py.div(1.0, top.transverse_inertia), state.momentum);
+  const still = [py.mul(0.0, elapsed), py.mul(0.0, elapsed), py.mul(0.0, elapsed)];
+  const falling = [py.mul(0.0, elapsed), py.mul(0.0, elapsed), py.mul(py.neg(top.gravity), elapsed)];
+  return new State(turned(state.axis, precession, elapsed, functions), add(state.momentum, still), add(state.velocity, falling), py.add(state.height, py.mul(elapsed, py.add(state.velocity[2], py.mul(0.5, falling[2])))));
+}
+
+/** A vector after turning for a time with a constant angular velocity (rad/s), which may be zero. */
+function turned(vector, rate, elapsed, functions) {
+  const half = py.add(py.mul(py.mul(0.5, elapsed), length(rate)), SMALL);
+  const pivot = scale(py.div(py.mul(py.mul(0.5, elapsed), functions.sin(half)), half), rate);
+  const swung = cross(pivot, vector);
+  return add(vector, scale(2.0, add(scale(functions.cos(half), swung), cross(pivot, swung))));
+}
+
+/** Height of the lowest point of the body above the table, z - h(n_z), m. */
+function gap(state, top) {
+  return py.sub(state.height, on_table(along_table(state), top).height);
+}
+
+/** Rate of change of the gap, m/s: the vertical velocity of the body's lowest point. */
+function gap_rate(state, top) {
+  return py.sub(state.velocity[2], on_table(along_table(state), top).velocity[2]);
+}
+
+// tippetop.mechanics.roots
+const FINEST = 1e-10;
+
+/** First root from `low` to `high`, or `low` if not positive there; `jerk` bounds the third derivative. */
+function first_root(function_, low, high, jerk) {
+  let [time, step, finest] = [low, high - low, py.mul(FINEST, high - low)];
+  let [value, rate, acceleration] = function_(time);
+  while (value > 0.0) {
+    step = py.min(step, py.sub(high, time));
+    const end = py.eq(step, py.sub(high, time)) ? high : py.add(time, step);
+    const positive = stays_positive(value, rate, acceleration, jerk, step);
+    if (py.truth(positive) || py.truth(is_one_way(rate, acceleration, jerk, step))) {
+      if (py.eq(end, high) && py.truth(positive)) {
+        return null;
+      }
+      const later = function_(end);
+      if (later[0] <= 0.0 && !py.truth(positive)) {
+        return crossing((t) => function_(t)[0], time, end);
+      }
+      if (py.eq(end, high) && later[0] > 0.0) {
+        return null;
+      }
+      [time, step] = [end, py.mul(2.0, step)];
+      [value, rate, acceleration] = later;
+    } else {
+      step = py.mul(step, 0.5);
+      if (step < finest) {
+        break;
+      }
+    }
+  }
+  return time;
+}
+
+/** Whether value + rate s + acceleration s^2/2 - jerk s^3/6 is positive for all s in [0, step]. */
+function stays_positive(value, rate, acceleration, jerk, step) {
+  const cubic = (s) => {
+    return value + s * (rate + s * (acceleration / 2.0 - s * jerk / 6.0));
+  };
+  if (cubic(step) <= 0.0) {
+    return false;
+  }
+  const discriminant = acceleration * acceleration + 2.0 * jerk * rate;
+  if (rate >= 0.0 || acceleration <= 0.0 || discriminant <= 0.0) {
+    return true;
+  }
+  const dip = py.div(-2.0 * rate, acceleration + py.pow(discriminant, 0.5));
+  return py.or(dip >= step, () => cubic(dip) > 0.0);
+}
+
+/** Whether a function surely falls, or surely is concave, all along a step: it has one root at most. */
+function is_one_way(rate, acceleration, jerk, step) {
+  const falls = py.and(rate < 0.0, () => rate + step * (acceleration + 0.5 * step * jerk) < 0.0);
+  return py.or(falls, () => acceleration + step * jerk < 0.0);
+}
+
+/** Root of a function between two points where its signs differ, by the method of Chandrupatla (1997). */
+function crossing(function_, low, high) {
+  let x3, y3;
+  let [x1, x2, part] = [high, low, 0.5];
+  let [y1, y2] = [function_(x1), function_(x2)];
+  if (y1 === 0.0 || y2 === 0.0) {
+    return y2 === 0.0 ? x2 : x1;
+  }
+  let best = x1;
+  for (let turn = 0; turn < 400; turn += 1) {
+    const x = py.add(x1, py.mul(part, py.sub(x2, x1)));
+    const y = function_(x);
+    if (py.eq(y > 0.0, y1 > 0.0)) {
+      [x3, y3] = [x1, y1];
+    } else {
+      [x3, y3, x2, y2] = [x2, y2, x1, y1];
+    }
+    [x1, y1] = [x, y];
+    best = py.abs(y1) < py.abs(y2) ? x1 : x2;
+    const fuzz = py.div(py.mul(2.3e-16, py.abs(best)), py.abs(py.sub(x2, x1)));
+    if (fuzz > 0.5 || y === 0.0) {
+      break;
+    }
+    const [xi, phi] = [py.div(py.sub(x1, x2), py.sub(x3, x2)), py.div(py.sub(y1, y2), py.sub(y3, y2))];
+    part = 0.5;
+    if (py.mul(phi, phi) < xi && py.pow(py.sub(1.0, phi), 2) < py.sub(1.0, xi)) {
+      part = py.div(py.mul(py.div(y1, py.sub(y2, y1)), y3), py.sub(y2, y3));
+      part = py.add(part, py.div(py.mul(py.div(py.mul(py.div(py.sub(x3, x1), py.sub(x2, x1)), y1), py.sub(y3, y1)), y2), py.sub(y3, y2)));
+    }
+    part = py.min(py.max(part, fuzz), py.sub(1.0, fuzz));
+  }
+  return best;
+}
+
+// tippetop.mechanics.touchdown
+const DEGREE_of_touchdown = 16;
+const START = py.pow(10.0, py.div(-16.0, py.add(DEGREE_of_touchdown, 1)));
+const WIDEST = 4.0;
+const NARROWEST = 1e-09;
+const LOOKS_of_touchdown = 10.0;
+const MOST_LOOKS = 1000;
+const MOST_DISCS = 100000;
+
+/** How a flight starts: how many of gap, gap rate and gap acceleration are then zero by construction. */
+const Start = Object.freeze({ AIRBORNE: 0, REBOUND: 1, RELEASE: 2, LIFT_OFF: 3 });
+
+/** Time of the first touch of the table after the start of a flight, s. */
+function touchdown(state, top, horizon, start = Start.AIRBORNE) {
+  let root;
+  let [tip, , ballistic] = Separation.of(state, top);
+  const deepest = py.min(0.0, ...[-1.0, 1.0].map((c) => py.float(top.surface.height(c))));
+  horizon = py.min(horizon, py.mul(2.0, falling_time(py.sub(ballistic[0], deepest), ...ballistic.slice(1))));
+  let time = 0.0;
+  if (!py.eq(start, Start.AIRBORNE)) {
+    const support = py.add(top.surface.height(tip.series()), py.mul(0.0, tip.series())).terms;
+    ballistic = [...support.slice(0, start), ...ballistic.slice(start)];
+    const terms = [...support].map((term) => py.neg(term));
+    py.put_slice(terms, start, 3, py.zip(ballistic.slice(start), support.slice(start, 3)).map(([b, s]) => py.sub(b, s)));
+    const opening = new Opening(py.slice(terms, py.next(py.range(start, DEGREE_of_touchdown).filter((j) => py.truth(py.item(terms, j))), DEGREE_of_touchdown), null, null));
+    time = py.min(horizon, py.mul(START, analytic_disc(tip, top.surface, 0.0, 0.0, WIDEST)[0]));
+    root = first_root(py.bound(opening, "at"), 0.0, time, opening.jerk_bound(time));
+    if (root !== null) {
+      return root;
+    }
+  }
+  const separation = new Separation(tip, top.surface, ballistic);
+  let angle = WIDEST;
+  for (let turn = 0; turn < MOST_DISCS; turn += 1) {
+    if (time >= horizon) {
+      return null;
+    }
+    const [radius, spread] = analytic_disc(tip, top.surface, time, 0.25, angle);
+    angle = py.min(WIDEST, py.mul(py.mul(2.0, radius), tip.frequency));
+    const end = py.min(horizon, py.add(time, py.mul(0.5, radius)));
+    root = first_root(py.bound(separation, "at"), time, end, py.div(py.mul(6.0, spread), py.mul(py.pow(0.75, 4), py.pow(radius, 3))));
+    if (root !== null) {
+      return root;
+    }
+    time = end;
+  }
+  throw new py.ArithmeticError("a flight turns too often for its end to be found");
+}
+
+/** Time after which height + rate t + half t^2 stays negative, infinite if half is not negative. */
+function falling_time(height, rate, half) {
+  if (half >= 0.0) {
+    return py.math.inf;
+  }
+  return py.div(-(rate + py.math.sqrt(py.max(rate * rate - 4.0 * half * height, 0.0))), 2.0 * half);
+}
+
+/** The highest gap of a free flight that lasts some time, s; floats. */
+function highest_gap(state, top, duration) {
+  let low, high;
+  let [gap, ...others] = [...top.each].map((one) => py.bound(Separation.of(state, one), "at"));
+  if (py.truth(others)) {
+    const everywhere = [gap, ...others];
+    gap = (time) => {
+      return py.min([...everywhere].map((at) => at(time)));
+    };
+  }
+  const count = py.min(MOST_LOOKS, 2 + py.int(py.div(py.mul(py.mul(LOOKS_of_touchdown, duration), length(state.momentum)), top.transverse_inertia)));
+  const times = py.range(py.add(count, 1)).map((j) => py.div(py.mul(duration, j), count));
+  const gaps = [...times].map((time) => gap(time)[0]);
+  const best = py.max(py.range(py.add(count, 1)), py.how({ key: py.bound(gaps, "__getitem__") }));
+  if (gap(py.item(times, best))[1] > 0.0) {
+    [low, high] = [py.item(times, best), py.item(times, py.min(py.add(best, 1), count))];
+  } else {
+    [low, high] = [py.max(py.item(times, py.max(py.sub(best, 1), 0)), py.mul(0.001, times[1])), py.item(times, best)];
+  }
+  if (!(gap(low)[1] > 0.0 && 0.0 > gap(high)[1])) {
+    return py.item(gaps, best);
+  }
+  return py.max(py.item(gaps, best), gap(crossing((time) => gap(time)[1], low, high))[0]);
+}
+
+/** Height c = n_z of the tip of the axis in free flight: its value, two derivatives, and frequency. */
+class Tip extends py.NamedTuple {
+  constructor(height, rate, acceleration, frequency) {
+    super();
+    this.height = height;
+    this.rate = rate;
+    this.acceleration = acceleration;
+    this.frequency = frequency;
+  }
+  /** The tip in a free flight from a state on; of numbers, or arrays of them. */
+  static of(state, top) {
+    const turning = axis_rate(state.axis, state.momentum, top);
+    return new this(state.axis[2], turning[2], axis_rate(turning, state.momentum, top)[2], py.add(length(scale(py.div(1.0, top.transverse_inertia), state.momentum)), SMALL));
+  }
+  /** Height, rate and acceleration at a time: c'' turns into -w^2 c' and back. */
+  at(time) {
+    const w = this.frequency;
+    const [cosine, sine, half] = [py.math.cos(py.mul(w, time)), py.div(py.math.sin(py.mul(w, time)), w), py.div(py.math.sin(py.mul(py.mul(0.5, w), time)), w)];
+    return [py.add(py.add(this.height, py.mul(this.rate, sine)), py.mul(py.mul(py.mul(2.0, this.acceleration), half), half)), py.add(py.mul(this.rate, cosine), py.mul(this.acceleration, sine)), py.sub(py.mul(this.acceleration, cosine), py.mul(py.mul(py.mul(this.rate, w), w), sine))];
+  }
+  /** Height as a power series in time. */
+  series() {
+    const terms = [this.height, this.rate, py.mul(0.5, this.acceleration)];
+    for (let j = 1; j < py.sub(DEGREE_of_touchdown, 1); j += 1) {
+      terms.push(py.div(py.mul(py.neg(py.pow(this.frequency, 2)), py.item(terms, j)), (j + 1) * (j + 2)));
+    }
+    return new TruncatedSeries(terms);
+  }
+  /** Largest |c - c(time)| for complex times within angle / frequency of a real one. */
+  spread(time, angle) {
+    const [, rate, acceleration] = this.at(time);
+    const w = this.frequency;
+    return py.add(py.div(py.mul(py.abs(rate), py.math.sinh(angle)), w), py.div(py.mul(py.abs(acceleration), py.math.cosh(angle) - 1.0), py.pow(w, 2)));
+  }
+}
+py.fields(Tip, ["height", "rate", "acceleration", "frequency"]);
+
+/** The gap as a function of time: a parabola less the support function at the tip's height. */
+class Separation extends py.NamedTuple {
+  constructor(tip, shape, parabola) {
+    super();
+    this.tip = tip;
+    this.shape = shape;
+    this.parabola = parabola;
+  }
+  /** The gap of a free flight from a state on. */
+  static of(state, top) {
+    return new this(Tip.of(state, top), top.surface, [state.height, state.velocity[2], py.mul(-0.5, top.gravity)]);
+  }
+  /** Gap, its rate and its acceleration. */
+  at(time) {
+    const [p0, p1, p2] = this.parabola;
+    const [c, rate, acceleration] = this.tip.at(time);
+    const slope = this.shape.slope(c);
+    return [py.sub(py.add(p0, py.mul(time, py.add(p1, py.mul(time, p2)))), this.shape.height(c)), py.sub(py.add(p1, py.mul(2.0 * time, p2)), py.mul(slope, rate)), py.sub(py.sub(py.mul(2.0, p2), py.mul(py.mul(this.shape.curvature(c), rate), rate)), py.mul(slope, acceleration))];
+  }
+}
+py.fields(Separation, ["tip", "shape", "parabola"]);
+
+/** A polynomial in time: the gap at the start of a flight, divided by the power of time that it has. */
+class Opening extends py.NamedTuple {
+  constructor(terms) {
+    super();
+    this.terms = terms;
+  }
+  /** Value and first two derivatives, by Horner's rule. */
+  at(time) {
+    let value = 0.0;
+    let rate = 0.0;
+    let half = 0.0;
+    for (const term of py.reversed(this.terms)) {
+      half = py.add(py.mul(half, time), rate);
+      rate = py.add(py.mul(rate, time), value);
+      value = py.add(py.mul(value, time), term);
+    }
+    return [value, rate, py.mul(2.0, half)];
+  }
+  /** A bound on the third derivative up to this time. */
+  jerk_bound(time) {
+    let bound = 0.0;
+    for (let j = py.len(this.terms) - 1; j > 2; j -= 1) {
+      bound = py.add(py.mul(bound, time), py.mul(j * (j - 1) * (j - 2), py.abs(py.item(this.terms, j))));
+    }
+    return bound;
+  }
+}
+py.fields(Opening, ["terms"]);
+
+/** Radius of a disc of time centred `ahead` radii after `time` where h(c) is analytic, and of h(c). */
+function analytic_disc(tip, shape, time, ahead, angle) {
+  while (py.truth(true)) {
+    const radius = py.div(angle, tip.frequency);
+    const centre = py.add(time, py.mul(ahead, radius));
+    try {
+      const c = new Disc(tip.at(centre)[0], tip.spread(centre, angle));
+      return [radius, py.float(py.add(shape.height(c), py.mul(0.0, c)).radius)];
+    } catch (error) {
+      if (!(error instanceof py.ArithmeticError)) throw error;
+      angle = angle * 0.5;
+      if (angle < NARROWEST) {
+        throw error;
+      }
+    }
+  }
+}
+
+// tippetop.contact.flight
+const DEGREE_of_flight = 14;
+const TURN = 0.25;
+const MOST_STEPS = 4096;
+const TOUCHING = 1e-12;
+
+/** Free flight, until the body's lowest point touches the table again. */
+class Flight extends Mode {
+  constructor(top, rules, start = Start.AIRBORNE) {
+    super(top, rules);
+    this.start = start;
+  }
+  get name() { return "flight"; }
+  get touching() { return false; }
+  /** The numbers of a flight are those of the state. */
+  state(y) {
+    return State.unpack(y);
+  }
+  /** Evaluate the flight, which needs no integrator. */
+  *segments(time, state, end, integrator) {
+    let landing, lowest;
+    try {
+      [landing, lowest] = this._landing(state, end - time);
+    } catch (error) {
+      if (!(error instanceof py.ArithmeticError)) throw error;
+      const failed = new Transition([], Outcome.FAILED, state, py.str(error));
+      yield new Segment(this, DenseSolution.nothing(time, py.len(state.pack())), state, failed);
+      return null;
+    }
+    const duration = landing === null ? end - time : landing;
+    const rate = py.div(length(state.momentum), this.top.transverse_inertia);
+    const count = 1 + py.int(py.div(py.mul(duration, rate), TURN));
+    const highest = highest_gap(state, this.top, duration);
+    for (let first = 0; first < count; first += MOST_STEPS) {
+      const last = py.min(py.add(first, MOST_STEPS), count);
+      const elapsed = py.range(first, py.add(last, 1)).map((step) => py.mul(py.div(duration, count), step));
+      py.put(elapsed, -1, py.eq(last, count) ? duration : py.item(elapsed, -1));
+      const here = fly(state, py.item(elapsed, -1), this.top, py.math);
+      let [transition, reach] = [null, py.add(time, py.item(elapsed, -1))];
+      if (py.eq(last, count)) {
+        reach = landing === null ? end : reach;
+        transition = this._transition(reach, here, landing === null ? null : lowest);
+      }
+      const solution = DenseSolution.fitted(this._numbers(state), elapsed, DEGREE_of_flight).moved(time, reach);
+      yield new Segment(this, solution, here, transition, undefined, undefined, highest);
+    }
+  }
+  /** The numbers of the flight as a function of the time since its start. */
+  _numbers(state) {
+    return (elapsed) => fly(state, elapsed, this.top, ELEMENTARY).pack();
+  }
+  /** When the first surface touches the table, and the top with that surface active. */
+  _landing(state, horizon) {
+    let found = touchdown(state, this.top, horizon, this.start);
+    let lowest = this.top;
+    for (const other of this.top.each) {
+      if (!py.eq(other, this.top)) {
+        const limit = found === null ? horizon : found;
+        const sooner = touchdown(state, other, limit, start_of(state, other));
+        if (sooner !== null && (found === null || sooner < found)) {
+          [found, lowest] = [sooner, other];
+        }
+      }
+    }
+    return [found, lowest];
+  }
+  _transition(time, state, lowest) {
+    if (lowest === null) {
+      return new Transition([], Outcome.COMPLETED, state);
+    }
+    const here = state._replace({ height: on_table(along_table(state), lowest).height });
+    if (py.eq(lowest, this.top)) {
+      return this.rules.touchdown(time, here);
+    }
+    return this.rules.touch(number_of(lowest), time, here);
+  }
+}
+py.fields(Flight, ["top", "rules", "start"]);
+
+/** How a flight starts for a surface that did not decide it: far, or just opened. */
+function start_of(state, top) {
+  const rate = gap_rate(state, top);
+  if (gap(state, top) > TOUCHING || rate < py.neg(TOUCHING)) {
+    return Start.AIRBORNE;
+  }
+  return rate > TOUCHING ? Start.REBOUND : Start.RELEASE;
+}
+
+// tippetop.contact.closing
+const [REOPENING, LANDED, TIME, OVERTAKEN] = ["reopening", "landed", "time", "overtaken"];
+const LONGEST = 100.0;
+const STIFF_TOLERANCE = 1e-12;
+const MOST_STEPS_of_closing = 2048;
+
+/** The end of slip, or of rolling, in its clock. */
+function followed(integrator, motion, parameters, start) {
+  const first = py.next(py.iter(integrator.integrate(motion, parameters, start, LONGEST)));
+  if (first.guard !== null || first.failure !== null || first.solution.end >= LONGEST) {
+    return [first];
+  }
+  const arcs = [];
+  for (const arc of make_integrator("radau", STIFF_TOLERANCE).integrate(motion, parameters, start, LONGEST)) {
+    arcs.push(arc);
+    if (arc.guard === null && py.sum([...arcs].map((one) => one.steps)) >= MOST_STEPS_of_closing) {
+      py.put(arcs, -1, py.replace(arc, { failure: "slip, or rolling, takes too many steps to end" }));
+      break;
+    }
+  }
+  return arcs;
+}
+
+/** Equations of motion in the clock of `ending` where a velocity is about to end; time is the last number. */
+const closing_motion = py.cached((kind, ending, guarded) => {
+  const top_of = (numbers) => {
+    return kind.top(py.tuple(numbers.slice(0, kind.numbers)));
+  };
+  const rates = (y, numbers) => {
+    const rate = closing_rates(closing_of(y, ending), ending, top_of(numbers));
+    return [...rate.axis, ...rate.momentum, ...rate.velocity, ...rate.direction, rate.speed, rate.time];
+  };
+  const guard = (name, value) => {
+    return new Guard(name, (y, numbers) => value(closing_of(y, ending), top_of(numbers), numbers));
+  };
+  const on_branch_still = (state, top, _) => {
+    return slip_branch_guard(py.or(slip_beside(state, ending, top), () => state.direction), top);
+  };
+  let guards = [guard(REOPENING, (state, top, _) => reopening_guard(state, ending, top, HORIZON)), guard(LANDED, (state, top, numbers) => landing_guard(state, ending, top, py.item(numbers, -1))), guard(TIME, (state, _, numbers) => py.sub(py.item(numbers, -2), state.time))];
+  const law = kind.example.friction;
+  const [resisted, stuck] = [py.isinstance(law, RollingResistance), py.and(!py.truth(ending.slip), () => ending.held)];
+  if (py.truth(guarded)) {
+    guards.push(guard(LIFT_OFF, (state, top, _) => rates_in_time(state, ending, top).wrench.force[2]));
+  }
+  if (!py.truth(ending.held) && py.truth(resisted) && py.truth(is_set_valued(law))) {
+    guards.push(guard(OVERTAKEN, (state, top, _) => overtaking_guard(state, ending, top)));
+  }
+  if (py.truth(ending.held)) {
+    guards.push(guard(py.truth(ending.slip) ? ROLLING : SLIP, (state, top, _) => spared(state, ending, top)));
+  }
+  if ((py.truth(ending.slip) || py.truth(ending.moves)) && py.truth(py.hasattr(sliding_law(law), "branch_guard"))) {
+    guards.push(guard(BRANCH, on_branch_still));
+  }
+  if (py.truth(stuck) && py.truth(has_limit_branches(law))) {
+    guards.push(guard(LIMIT_BRANCH, (state, top, _) => limit_guard(top, rates_in_time(state, ending, top).wrench)));
+  }
+  guards = py.add(guards, surface_guards(kind));
+  const free = py.truth(ending.moves) ? 2 : 0;
+  const components = py.truth(ending.slip) ? slip_dimension(law) : 2;
+  const often = py.and(components === 2, () => !py.truth(resisted));
+  return new Motion(rates, py.add(py.add(8, free), components), py.add(kind.numbers, 2), py.tuple(guards), often);
+});
+
+/** Positive while the table can hold what is held beside a velocity that ends. */
+function spared(state, ending, top) {
+  const wrench = rates_in_time(state, ending, top).wrench;
+  if (py.truth(ending.slip)) {
+    const point = ContactPoint.of(state.axis, state.momentum, top);
+    return rolling_reserve(point, wrench, state.direction);
+  }
+  return set_valued(top.friction).reserve(wrench.force[2], wrench.force.slice(0, 2), wrench.torque[2]);
+}
+
+/** The state of a velocity that is about to end, from its numbers. */
+function closing_of(y, ending) {
+  const [count, free] = [py.len(y), py.truth(ending.moves) ? 8 : 6];
+  return new Closing(...split(y), py.tuple(y.slice(6, free)), py.tuple(py.slice(y, free, count - 2, null)), py.item(y, count - 2), py.item(y, count - 1));
+}
+
 // tippetop.mechanics.direction
 const [ROUNDS, ITERATIONS, NEWTON] = [100, 50, 12];
 const [EXACT, DIRECTED] = [4e-16, 1e-09];
@@ -3149,10 +3261,10 @@ function _stiffness(part, point) {
 
 // tippetop.contact.passing
 const LANDING = [3e-08, 1e-16];
-const SETTLED = 1e-14;
+const SETTLED_of_passing = 1e-14;
 const SLOWEST = 1e-12;
 const [LOOKS_of_passing, PRESSED] = [16, 5];
-const [ORDER, ACCURACY] = [20, 1e-13];
+const [ORDER, ACCURACY_of_passing] = [20, 1e-13];
 const INSTANT = 1e-09;
 const PART = 0.25;
 const SHORT = 1e-14;
@@ -3233,7 +3345,7 @@ class Loosening extends Passing {
       yield _nothing(this.told, time, state, py.str(error));
       return null;
     }
-    const duration = py.min(begin.valid_until(ACCURACY), longest, end - time);
+    const duration = py.min(begin.valid_until(ACCURACY_of_passing), longest, end - time);
     if (duration <= 1e-299) {
       yield _nothing(this.told, time, state, "slip cannot be told from its beginning");
       return null;
@@ -3261,7 +3373,7 @@ class Loosening extends Passing {
   }
   /** The segment in which the numbers are polynomials in the time since its start. */
   piece(rows, direction, time, duration, end) {
-    while (duration > SETTLED && !py.truth(this._goes_on(rows, duration))) {
+    while (duration > SETTLED_of_passing && !py.truth(this._goes_on(rows, duration))) {
       duration = duration * 0.5;
     }
     const first = py.len(rows) - py.len(direction);
@@ -3343,7 +3455,16 @@ class Stopping extends Passing {
   }
   /** Follow it to its end, or to where it is no longer about to end. */
   *segments(time, state, end, integrator) {
+    let solution, last, then;
     const [ending, begin] = [this.ending, py.or(this.begin, () => this._clock(state))];
+    const arrival = this._arrival(closing_of(begin, ending), end - time, integrator);
+    if (arrival !== null) {
+      solution = DenseSolution.in_time([0.0, arrival.left], [arrival.onwards]);
+      last = this.state(arrival.at(0.0));
+      then = this._next(null, py.add(time, arrival.left), last);
+      yield new Segment(this, solution.moved(time, py.add(time, arrival.left)), last, then, 1);
+      return null;
+    }
     let [here, steps, arc, parts] = [closing_of(begin, ending), 0, null, py.list()];
     let rest = here;
     let start = [0.0, as_array(begin)];
@@ -3362,7 +3483,7 @@ class Stopping extends Passing {
       }
       let doubt;
       [rest, doubt] = landed(here, ending, this.top);
-      if (doubt < SETTLED) {
+      if (doubt < SETTLED_of_passing) {
         break;
       }
     }
@@ -3374,10 +3495,32 @@ class Stopping extends Passing {
     } else if (py.eq(arc.guard, LANDED)) {
       here = rest;
     }
-    const last = this.state(shown(here));
-    const solution = this._in_time(parts, begin, time, before, here);
-    const then = this._next(arc, solution.end, last);
+    last = this.state(shown(here));
+    solution = this._in_time(parts, begin, time, before, here);
+    then = this._next(arc, solution.end, last);
     yield new Segment(this, solution, last, then, steps, steps);
+  }
+  /** The end of slip by power series, if its direction has come to rest and nothing else happens. */
+  _arrival(here, longest, integrator) {
+    const law = this.top.friction;
+    if (!py.truth(this.ending.slip) || py.isinstance(law, RollingResistance) || slip_length(law) === null) {
+      return null;
+    }
+    const found = arriving(here, this.ending, this.top, integrator);
+    if (found === null || found.left > longest) {
+      return null;
+    }
+    const looks = py.range(1, py.add(LOOKS_of_passing, 1)).map((look) => found.at(py.div(look, LOOKS_of_passing)));
+    if (py.isinstance(this.top.surface, Hull) && !py.truth(py.all([...looks].map((y) => stays_open(this.top, y))))) {
+      return null;
+    }
+    if (!py.truth(this.rules.pulls) && !py.truth(py.all([...looks].map((y) => this.reaction(y).force[2] > 0.0)))) {
+      return null;
+    }
+    if (py.truth(py.hasattr(law, "branch_guard")) && !py.truth(py.all([...looks].map((y) => slip_branch_guard(py.tuple(y.slice(6)), this.top) > 0.0)))) {
+      return null;
+    }
+    return found;
   }
   /** The numbers of the clock at a state. */
   _clock(state) {
@@ -3910,7 +4053,7 @@ class IntegratedProcess extends py.NamedTuple {
     let waiting = goal(impulse) >= 0.0;
     let [here, slope] = [pack(impulse), self.slope(pack(impulse))];
     const longest = py.div(py.mul(2.0, LONGEST_of_integrated_impact), py.add(self.body.inverse_mass[0][0], self.body.inverse_mass[1][1]));
-    let step = py.mul(0.01, longest);
+    let step = py.mul(0.1, longest);
     for (let taken = 0; taken < MOST_of_integrated_impact; taken += 1) {
       const held = self.held(unpack(here), goal, guess);
       if (held !== null) {
@@ -4496,7 +4639,7 @@ function _rests(found, state) {
 }
 
 // tippetop.mechanics.contact_pair
-const TURNING = 2;
+const TURNING_of_contact_pair = 2;
 
 /** The contact points of a body that touches the table with two surfaces. */
 class ContactPair extends py.NamedTuple {
@@ -4667,7 +4810,7 @@ function pair_motion(pair, slips, rolls) {
   const stopped = py.and(is_resisted(pair), () => !py.truth(rolls));
   if (py.truth(stopped)) {
     units.push([0, new Wrench(NO_TORQUE, along)]);
-    held.push([TURNING, along]);
+    held.push([TURNING_of_contact_pair, along]);
   }
   const sizes = pair.holding(units, held, pair.free);
   const found = [new Wrench(NO_TORQUE, NO_TORQUE), new Wrench(NO_TORQUE, NO_TORQUE)];
@@ -4742,7 +4885,7 @@ function at_rest(pair, velocity, ended, stopped) {
   const units = [...held].map(([number, way]) => [number, new Wrench(way, NO_TORQUE)]);
   if (py.truth(stopped)) {
     units.push([0, new Wrench(NO_TORQUE, along)]);
-    held.push([TURNING, along]);
+    held.push([TURNING_of_contact_pair, along]);
   }
   moving = [moving[0], moving[1], moving[2]];
   const sizes = pair.holding(units, held, moving);
@@ -7664,13 +7807,16 @@ function _handed_over(tilt, top, other) {
 
 export {
   ACCURACY,
+  ACCURACY_of_passing,
   APART,
   APART_of_direction,
   ATOM,
+  AT_REST,
   Acceleration,
   Algebra,
   Angles,
   Arc,
+  Arrival,
   BEGINNING,
   BEYOND,
   BOTH,
@@ -7701,6 +7847,7 @@ export {
   DEGREE_of_flight,
   DEGREE_of_passing,
   DEGREE_of_series_roots,
+  DEGREE_of_touchdown,
   DIFFERENCE,
   DIGITS,
   DIRECTED,
@@ -7789,6 +7936,7 @@ export {
   MOST_LOOKS,
   MOST_STEPS,
   MOST_STEPS_of_closing,
+  MOST_of_arriving,
   MOST_of_integrated_impact,
   Mode,
   Motion,
@@ -7871,6 +8019,7 @@ export {
   SECOND,
   SELECT,
   SETTLED,
+  SETTLED_of_passing,
   SHARE,
   SHORT,
   SHORTER,
@@ -7937,6 +8086,8 @@ export {
   TOUCHING,
   TURN,
   TURNING,
+  TURNING_of_contact_pair,
+  TURNS,
   Tip,
   Top,
   Touch,
@@ -8001,6 +8152,7 @@ export {
   angular_velocity,
   apart,
   arm_rate,
+  arriving,
   at_rest,
   at_start,
   axial_spin,
@@ -8150,6 +8302,7 @@ export {
   require_sphere,
   resistance_powers,
   resolution,
+  resting_way,
   restitution_goal,
   rolling_of,
   rolling_precession,
@@ -8210,6 +8363,7 @@ export {
   thinned,
   tilt_rate,
   tilts_held,
+  time_to,
   tops_of,
   touchdown,
   touching_tilts,

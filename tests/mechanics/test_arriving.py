@@ -1,0 +1,75 @@
+"""Slip that ends on a small patch, where friction has long turned it into the direction in which it ends."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from dry_runs import DryRun
+from tippetop.contact.arriving import arriving
+from tippetop.contact.closing import closing_of
+from tippetop.integrators import make_integrator
+from tippetop.integrators.scipy_methods import SciPy
+from tippetop.mechanics.contensou import EllipsoidalLaw
+from tippetop.mechanics.contensou_hertz import HertzDrillingLaw, HertzLaw
+from tippetop.mechanics.ending import Vanishing, closing_rates
+from tippetop.mechanics.stick_slip import size, velocity_of
+from tippetop.mechanics.surface import SphereSurface
+from tippetop.mechanics.top import Top
+from tippetop.mechanics.vectors import dot
+
+SLIP = Vanishing(slip=True)
+
+
+def in_its_clock(top, start, until):
+    """The numbers of a top that slips less and less, by an implicit method."""
+
+    def rates(_, y):
+        rate = closing_rates(closing_of(y.tolist(), SLIP), SLIP, top)
+        return [*rate.axis, *rate.momentum, *rate.direction, rate.speed, rate.time]
+
+    return solve_ivp(rates, (0.0, until), start, "Radau", rtol=1e-9, atol=1e-13).y[:, -1].tolist()
+
+
+def slipping(law):
+    """A top that slips and drills, and its numbers in the clock."""
+    top = Top(1.0, 131 / 350, 2 / 5, SphereSurface(1.0, 0.3), law, 1.0)
+    way = (0.6, 0.0, 0.8)
+    axis, momentum = (math.sin(1.1), 0.0, math.cos(1.1)), (0.05, 0.02, 0.0)
+    momentum = (*momentum[:2], spin_for(top, axis, momentum, 1e-3 * way[2] / law.slip_length))
+    return top, [*axis, *momentum, *way, 1e-3, 0.0]
+
+
+def spin_for(top, axis, momentum, rate):
+    """The vertical angular momentum with which a top drills at this rate."""
+    excess = (top.transverse_inertia - top.axial_inertia) / (top.transverse_inertia * top.axial_inertia)
+    along = excess * axis[2]
+    return (rate - along * dot(axis, momentum)) / (1.0 / top.transverse_inertia + along * axis[2])
+
+
+@pytest.mark.parametrize("law", [EllipsoidalLaw(0.4, 0.1), HertzDrillingLaw(0.4, 0.1)])
+@pytest.mark.parametrize("integrator", [make_integrator(), SciPy("dop853", 1e-12)], ids=["best", "dop853"])
+def test_its_end_by_power_series_is_where_an_implicit_method_comes_to(law, integrator):
+    top, start = slipping(law)
+    assert arriving(closing_of(start, SLIP), SLIP, top, integrator) is None, "its direction is not at rest"
+    settled = in_its_clock(top, start, 1.0)
+    found = arriving(closing_of(settled, SLIP), SLIP, top, integrator)
+    assert found is not None
+    end = in_its_clock(top, settled, 25.0)
+    assert settled[-1] + found.left == pytest.approx(end[-1], rel=1e-8)
+    assert found.at(0.0)[:6] == pytest.approx(end[:6], abs=1e-9)
+    assert found.at(0.0)[6:] == [0.0, 0.0, 0.0]
+    midway = found.at(0.5)
+    onwards = [np.polynomial.polynomial.polyval(0.5 * found.left, row) for row in found.onwards]
+    assert onwards == pytest.approx(midway, abs=1e-15)
+    assert size(midway[6:]) < 0.6 * settled[-2]
+
+
+def test_a_top_on_a_small_patch_sticks_when_it_does():
+    law = HertzLaw(0.4, 0.02)
+    top, start = slipping(law)
+    end = in_its_clock(top._replace(friction=HertzDrillingLaw(*law)), start, 25.0)
+    axis, momentum, slip = tuple(start[:3]), tuple(start[3:6]), [start[-2] * e for e in start[6:9]]
+    run = DryRun(top, axis, momentum, velocity_of(axis, momentum, slip, top)).follow(1.5 * end[-1])
+    assert run.times("stick") == pytest.approx([end[-1]], rel=1e-7)
