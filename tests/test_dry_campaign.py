@@ -108,6 +108,8 @@ def test_dry_tops_keep_energy_the_limit_of_friction_and_jelletts_integral(law: s
             given_up += 1
             continue
         assert run.attrs["outcome"] in ("completed", "lifted_off"), (run.attrs["outcome_advice"], *said)
+        if not float(run["end_time"]):
+            continue  # the table would have to pull from the start
         scale = float(np.abs(run["energy"]).max())
         off = run["energy"].values - run["energy"].values[0] - run["work"].values
         assert np.abs(off).max() < 1e-10 * scale, said

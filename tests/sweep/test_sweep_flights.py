@@ -8,16 +8,19 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from strategies import slides, spheres, spheroids, tops
+from tippetop.mechanics.contensou_hertz import HertzLaw
 from tippetop.mechanics.flight import fly, gap_rate
 from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.impact import impact
 from tippetop.mechanics.invariants import energy, jellett
 from tippetop.mechanics.motion import contact, on_table
 from tippetop.mechanics.state import State
-from tippetop.mechanics.top import natural_state, natural_units
+from tippetop.mechanics.surface import SphereSurface
+from tippetop.mechanics.top import Top, natural_state, natural_units
 from tippetop.mechanics.touchdown import Start, touchdown
 from tippetop.sweeps.flights import collide, fly_all
 from tippetop.sweeps.flights import slides as goes_on
+from tippetop.sweeps.launches import branched, single
 from tippetop.sweeps.tip import TipMotion
 
 VISCOUS = tops(friction_laws=(ViscousLaw,))
@@ -142,3 +145,27 @@ def test_a_flight_that_outlasts_its_horizon_ends_there():
         assert found.duration.tolist() == [0.25, 0.25]
 
     look()
+
+
+def test_impacts_of_patches_on_which_another_branch_takes_over_are_left_to_single_launches() -> None:
+    """The others are what they are alone."""
+    random, count = np.random.default_rng(3), 150
+    axis = random.normal(size=(3, count))
+    axis /= np.linalg.norm(axis, axis=0)
+    law = HertzLaw(np.full(count, 0.3), random.uniform(0.02, 0.6, count))
+    top = Top(1.0, 0.45, 0.38, SphereSurface(1.0, 0.3), law, 1.0)
+    velocity = random.normal(size=(3, count))
+    state = State(tuple(axis), tuple(random.normal(size=(3, count))), tuple(velocity), 1.0 - 0.3 * axis[2])
+    after, struck = collide(state, branched(top, state))
+    assert 0.3 * count < struck.sum()
+    left = 0
+    for i in range(count):
+        mine = single(state, i)
+        alone = top._replace(friction=HertzLaw(0.3, float(law.patch_radius[i])))
+        hit = impact(mine, 0.0, alone)
+        before, then = (float(branched(alone, one).friction.drills) for one in (mine, hit.state))
+        left += before != then
+        assert not (struck[i] and before != then), "friction goes on along the branch that no longer holds"
+        if struck[i]:
+            assert single(after, i).momentum == pytest.approx(hit.state.momentum, abs=1e-7)
+    assert left > 0, "on some the other branch should take over"

@@ -28,7 +28,7 @@ from tippetop.mechanics.motion import (
     on_table,
     sliding_rates,
 )
-from tippetop.mechanics.rolling import is_branched, is_set_valued
+from tippetop.mechanics.rolling import is_branched, is_set_valued, sliding_law
 from tippetop.mechanics.series import Series, horner, solution
 from tippetop.mechanics.state import State
 from tippetop.mechanics.stick_slip import (
@@ -168,8 +168,8 @@ def divided(terms: Array, vanishing: Indices) -> Array:
 def collide(state: State, top: Top) -> tuple[State, Flags]:
     """States after impacts without restitution, and which of them are to be had; the others are unchanged.
 
-    Left out are tops whose contact point does not sink, impacts too stiff for this method, and those under a
-    law of branches.
+    Left out are tops whose contact point does not sink, impacts too stiff for this method, and those in which
+    another branch of the law takes over.
     """
     arm = contact_vector(state.axis, top.surface)
     point = contact_velocity(state, arm, top)
@@ -177,7 +177,8 @@ def collide(state: State, top: Top) -> tuple[State, Flags]:
     stopping = top.mass * length(point) + TINY
     moving = np.array(np.broadcast_arrays(*state.momentum, *state.velocity))
     struck = np.zeros(sinking.shape, dtype=bool)
-    waiting = sinking & (not is_branched(top.friction))
+    waiting = sinking.copy()
+    law: Any = sliding_law(top.friction)
 
     def read(y: Sequence[Any]) -> State:
         return state._replace(momentum=(y[0], y[1], y[2]), velocity=(y[3], y[4], y[5]))
@@ -189,17 +190,26 @@ def collide(state: State, top: Top) -> tuple[State, Flags]:
         traction = top.friction.traction((point[0], point[1]), omega)
         return (*moment_per_normal_force(arm, traction), *scale(1.0 / top.mass, (*traction.force, 1.0)))
 
+    def first_fall(value: Any, span: Array) -> Array:
+        terms = np.array([np.broadcast_to(value[k], span.shape) for k in range(DEGREE + 1)])
+        found = np.full(span.shape, np.nan)
+        found[waiting] = Polynomials(terms[:, waiting], span[waiting]).first_fall()
+        return found
+
     for _ in range(MOST_PIECES):
         if not waiting.any():
             break
         with np.errstate(all="ignore"):
             y = solution(list(moving), rates, PLAIN)
             terms = [[series[k] for k in range(DEGREE + 1)] for series in y]
-            sink = -contact_velocity(read(y), arm, top)[2]
+            now = read(y)
+            point = contact_velocity(now, arm, top)
             span = step_size(terms, stopping, PLAIN)
-        approach = np.array([np.broadcast_to(sink[k], span.shape) for k in range(DEGREE + 1)])
-        end = np.full(span.shape, np.nan)
-        end[waiting] = Polynomials(approach[:, waiting], span[waiting]).first_fall()
+            end = first_fall(-point[2], span)
+            if is_branched(law):
+                turning = angular_velocity(now.axis, now.momentum, top)
+                change = first_fall(law.branch_guard((point[0], point[1]), turning), span)
+                waiting &= np.isnan(change) | (end < change)
         stops = waiting & ~np.isnan(end)
         taken = np.where(stops, end, span)
         moved = np.array([horner(series, taken) for series in terms])
