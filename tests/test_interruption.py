@@ -46,6 +46,35 @@ def test_interrupted_command_says_so_and_leaves_nothing(tmp_path, arguments, lon
     assert list(tmp_path.rglob("*")) == []
 
 
+MASKED = """
+import os, signal, sys
+from importlib import abc
+
+class Finder(abc.MetaPathFinder):
+    def find_spec(self, name, *_):
+        if name == "tippetop.run":
+            try:
+                os.kill(os.getpid(), signal.SIGINT)
+            except KeyboardInterrupt:
+                raise ImportError("initialization failed") from None
+
+sys.meta_path.insert(0, Finder())
+"""
+"""An import that makes another error of Ctrl-C, as those of some extensions do."""
+
+
+def test_ctrl_c_that_becomes_another_error_is_still_ctrl_c(tmp_path):
+    done = subprocess.run(
+        [sys.executable, "-c", MASKED + MAIN, "simulate"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert (done.stdout, done.stderr, done.returncode) == ("begun\n", SAID, 130)
+
+
 DEAF = """
 import hashlib, os
 import {module}

@@ -2,10 +2,12 @@
 
 import os
 import signal
+import sys
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
 from contextlib import contextmanager, suppress
+from importlib import import_module
 from types import FrameType
 from typing import TypeVar
 
@@ -44,8 +46,17 @@ def _end(number: int, frame: FrameType | None) -> None:
     os._exit(INTERRUPTED)
 
 
+_raised: list[int] = []
+
+
 def _raise(number: int, frame: FrameType | None) -> None:
+    _raised.append(number)
     raise KeyboardInterrupt
+
+
+def asked_to_end() -> bool:
+    """Whether a signal has raised a `KeyboardInterrupt`; imports may have made another error of it."""
+    return bool(_raised)
 
 
 @contextmanager
@@ -67,6 +78,12 @@ def deferred() -> Iterator[None]:
             signal.signal(number, handler or signal.SIG_DFL)
         if arrived:
             signal.raise_signal(arrived[0])
+
+
+def import_heard(name: str) -> None:
+    """Import a module, if it is not, of which an interrupted import would leave pieces and another error."""
+    if name not in sys.modules:
+        heard(lambda: import_module(name))
 
 
 def heard(work: Callable[[], Made]) -> Made:

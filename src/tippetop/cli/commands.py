@@ -15,7 +15,7 @@ from tippetop.cli.reproduce import reproduce
 from tippetop.cli.simulate import simulate
 from tippetop.cli.sweep import sweep
 from tippetop.errors import OTHER_OUT, OVERWRITE, RESUME, TippetopError
-from tippetop.interrupts import INTERRUPTED, let_end, let_raise
+from tippetop.interrupts import INTERRUPTED, asked_to_end, let_end, let_raise
 
 MISUSE = 2
 
@@ -31,7 +31,9 @@ class Commands(TyperGroup):
         try:
             let_raise()
             return super().invoke(ctx)
-        except KeyboardInterrupt:
+        except (KeyboardInterrupt, Exception) as error:
+            if not (isinstance(error, KeyboardInterrupt) or asked_to_end()) or isinstance(error, typer.Exit):
+                raise
             typer.echo("tippetop: interrupted", err=True)
             raise typer.Exit(INTERRUPTED) from None
         finally:

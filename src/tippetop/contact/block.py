@@ -54,8 +54,8 @@ class ModeSteps:
 
 
 def nearer_pole(axis: Array) -> Array:
-    """The pole that the axis is nearer to in the middle of steps, shape (k,), by n_z, shape (m, k)."""
-    return np.where(axis[len(axis) // 2] >= 0.0, 1.0, -1.0)
+    """The pole from whose other one the axis stays farther in steps, shape (k,), by n_z, shape (m, k)."""
+    return np.where(axis.min(axis=0) + axis.max(axis=0) >= 0.0, 1.0, -1.0)
 
 
 @dataclass(frozen=True)

@@ -302,7 +302,7 @@ class Stopping(Passing):
                 continue
             arcs = followed(integrator, motion, (*self.top.numbers, end - time, horizon), start)
             steps += sum(arc.steps for arc in arcs)
-            arc, parts = arcs[-1], [*parts, *(arc.solution for arc in arcs)]
+            arc, parts = arcs[-1], [*parts, *(arc.solution for arc in arcs if len(arc.solution.terms))]
             start = arc.solution.end, arc.end_state
             here = closing_of(arc.end_state.tolist(), ending)
             if arc.guard != LANDED:

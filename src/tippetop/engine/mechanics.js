@@ -3475,7 +3475,7 @@ class Stopping extends Passing {
       }
       const arcs = followed(integrator, motion, [...this.top.numbers, end - time, horizon], start);
       steps = py.add(steps, py.sum([...arcs].map((arc) => arc.steps)));
-      [arc, parts] = [py.item(arcs, -1), [...parts, ...[...arcs].map((arc) => arc.solution)]];
+      [arc, parts] = [py.item(arcs, -1), [...parts, ...[...arcs].filter((arc) => py.truth(py.len(arc.solution.terms))).map((arc) => arc.solution)]];
       start = [arc.solution.end, arc.end_state];
       here = closing_of(py.tolist(arc.end_state), ending);
       if (!py.eq(arc.guard, LANDED)) {

@@ -6,6 +6,7 @@ import numpy as np
 
 from tippetop.errors import MISSING, InvalidInput, Unavailable, is_number, one_of
 from tippetop.integrators.base import Arc, Guard, Integrator, Motion
+from tippetop.interrupts import import_heard
 
 __all__ = [
     "NAMES",
@@ -126,6 +127,7 @@ def _collocation(tolerance: float | None) -> Integrator:
 def _taylor(tolerance: float | None) -> Integrator:
     if not has_taylor():
         raise _missing("taylor", "heyoka")
+    import_heard("tippetop.integrators.taylor")
     from tippetop.integrators.taylor import Taylor  # noqa: PLC0415 - optional, and slow to import
 
     return Taylor() if tolerance is None else Taylor(tolerance)
