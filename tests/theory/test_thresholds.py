@@ -7,6 +7,7 @@ import pytest
 from full_runs import full_run, jellett_unit, sphere, tilts_of
 from hypothesis import assume, given
 
+import tippetop as tt
 from strategies import numbers, spheroids, tops
 from tippetop import presets
 from tippetop.errors import InvalidInput
@@ -118,3 +119,19 @@ def test_a_finite_window_shows_the_inverted_threshold_too_high_and_by_how_much_a
 def test_impossible_windows_are_refused(window, visible):
     with pytest.raises(InvalidInput):
         apparent_critical_spins(presets.report_problem(), window, visible)
+
+
+@pytest.mark.parametrize(
+    "friction", [tt.ViscousFriction(mu=0.3), tt.ContensouFriction(mu=0.3, patch_radius=1e-4)]
+)
+def test_one_of_two_balls_on_top_of_the_other_never_stands_on_the_table(friction: tt.Friction) -> None:
+    """Where they touch one another is the centre of mass: for the upper one, in the table."""
+    balls = tt.presets.HURRICANE_BALLS
+    for center in (balls.shapes[0].center, -balls.shapes[0].radius):
+        ball = tt.Sphere(radius=balls.shapes[0].radius, center=center)
+        problem = tt.Problem(
+            body=balls.model_copy(update={"shape": ball}),
+            friction=friction,
+            launch=tt.Launch(tilt=0.1, spin=155.0),
+        )
+        assert tt.critical_spins(problem).inverted == math.inf

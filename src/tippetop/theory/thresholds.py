@@ -26,6 +26,9 @@ from tippetop.theory.steady import (
     vertical_spin,
 )
 
+ROUNDING = 1e-14
+"""Height of the centre of mass above the table, in sizes, that is none."""
+
 
 @dataclass(frozen=True)
 class CriticalSpins:
@@ -44,7 +47,13 @@ class CriticalSpins:
 
 
 def critical_jellett(kind: SteadyKind, top: Top) -> float:
-    """Jellett's integral at which a vertical spin changes stability, kg m^3/s: inf where it never does."""
+    """Jellett's integral at which a vertical spin changes stability, kg m^3/s: inf where it never does.
+
+    Nor does it where the centre of mass is not above the table: as of one of two balls on top of the other.
+    """
+    standing = float(top.surface.height(1.0 if kind is SteadyKind.UPRIGHT else -1.0))
+    if standing <= ROUNDING * top.surface.size:
+        return math.inf
     return branch_jellett(vertical_spin(kind, top, 0.0).tilt, top)
 
 
@@ -60,7 +69,8 @@ def lambda_down(top: Top) -> float:
 
 def critical_spin(kind: SteadyKind, top: Top) -> float:
     """Axial spin at which a vertical spin changes stability, by formula, rad/s; inf where it never does."""
-    return critical_jellett(kind, top) / abs(vertical_spin(kind, top, 1.0).jellett)
+    critical = critical_jellett(kind, top)
+    return critical if math.isinf(critical) else critical / abs(vertical_spin(kind, top, 1.0).jellett)
 
 
 def critical_spins(problem: Problem) -> CriticalSpins:

@@ -3,7 +3,8 @@
 import { changed, differences, fields, FIRST } from "./setup.js";
 import { CHOICES, FIRST as FIRST_UNITS } from "./units.js";
 
-const LONGEST_VALUE = 2000;
+// Longer than any profile that a body may have; addresses may be as long.
+const LONGEST_VALUE = 100_000;
 const FORBIDDEN = ["__proto__", "prototype", "constructor"];
 const TABLES = /^(body|friction|launch|contact)\./;
 const PLAIN = ["gravity", "rolling_resistance", "duration"];

@@ -22,6 +22,7 @@ export const PRESETS = [
   ["drill", { friction: DRILL, "launch.spin": 100, duration: 6 }, "Contensou 1963; Leine & Glocker 2003"],
   ["stem", { body: bodies["report-stem"], duration: 10 }, "a stem on the report's top"],
   ["thin", { body: bodies["report-thin-stem"], duration: 10 }, "a thin stem on the report's top"],
+  ["wooden", { body: bodies.wooden, friction: DRILL, duration: 10 }, "a common top by a turner's measures"],
   ["leine", problems["leine-glocker"], "Leine & Glocker 2003"],
 ].map(([key, changes, source, figure]) => ({ key, source, figure: figure && REPRODUCTION + figure, setup: changed(FIRST, changes) }));
 
