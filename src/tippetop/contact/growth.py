@@ -33,15 +33,15 @@ class Driven:
     ):
         self.first, self._expand, self._chain = start[2], expand, degree + 1
         self._free = len(velocity) + 6
-        self._numbers = [*start[0], *start[1], *velocity, *scaled(0.0, start[2])]
-        self._given = len(self._numbers)
+        self._arguments = [*start[0], *start[1], *velocity, *scaled(0.0, start[2])]
+        self._given = len(self._arguments)
         for e in start[2]:
-            self._numbers += [e, *[0.0] * degree]
+            self._arguments += [e, *[0.0] * degree]
 
     @property
     def state(self) -> Sequence[Sequence[float]]:
         """Coefficients of n, L, and u where that is free."""
-        rows = [[float(term) for term in row] for row in self._expand[-1](self._numbers)[: self._free]]
+        rows = [[float(term) for term in row] for row in self._expand[-1](self._arguments)[: self._free]]
         if not math.isfinite(sum(sum(row) for row in rows)):
             raise ArithmeticError(NOT_FINITE)
         return rows
@@ -50,11 +50,11 @@ class Driven:
         """Set the j-th coefficient of the direction."""
         factor = math.factorial(j)
         for i, number in enumerate(direction):
-            self._numbers[self._given + i * self._chain + j] = number * factor
+            self._arguments[self._given + i * self._chain + j] = number * factor
 
     def accelerations(self, j: int) -> Slip:
         """Coefficient of order j of A, expanded no further than to the first of the degrees that has it."""
-        rows = self._expand[0 if j < FEW else -1](self._numbers)[self._free :]
+        rows = self._expand[0 if j < FEW else -1](self._arguments)[self._free :]
         return tuple((j + 1) * float(row[j + 1]) for row in rows)
 
     def slope(self, across: Slip) -> Slip:

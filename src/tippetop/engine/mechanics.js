@@ -2402,15 +2402,15 @@ class Driven extends py.Thing {
     super();
     [this.first, this._expand, this._chain] = [start[2], expand, degree + 1];
     this._free = py.len(velocity) + 6;
-    py.bound(this, "_numbers") = [...start[0], ...start[1], ...velocity, ...scaled(0.0, start[2])];
-    this._given = py.len(py.bound(this, "_numbers"));
+    this._arguments = [...start[0], ...start[1], ...velocity, ...scaled(0.0, start[2])];
+    this._given = py.len(this._arguments);
     for (const e of start[2]) {
-      py.bound(this, "_numbers") = py.add(py.bound(this, "_numbers"), [e, ...py.mul([0.0], degree)]);
+      this._arguments = py.add(this._arguments, [e, ...py.mul([0.0], degree)]);
     }
   }
   /** Coefficients of n, L, and u where that is free. */
   get state() {
-    const rows = [...py.call(py.item(this._expand, -1), py.bound(this, "_numbers")).slice(0, this._free)].map((row) => [...row].map((term) => py.float(term)));
+    const rows = [...py.call(py.item(this._expand, -1), this._arguments).slice(0, this._free)].map((row) => [...row].map((term) => py.float(term)));
     if (!py.truth(py.math.isfinite(py.sum([...rows].map((row) => py.sum(row)))))) {
       throw new py.ArithmeticError(NOT_FINITE);
     }
@@ -2420,12 +2420,12 @@ class Driven extends py.Thing {
   turn(j, direction) {
     const factor = py.math.factorial(j);
     for (const [i, number] of py.enumerate(direction)) {
-      py.put(py.bound(this, "_numbers"), py.add(py.add(this._given, py.mul(i, this._chain)), j), py.mul(number, factor));
+      py.put(this._arguments, py.add(py.add(this._given, py.mul(i, this._chain)), j), py.mul(number, factor));
     }
   }
   /** Coefficient of order j of A, expanded no further than to the first of the degrees that has it. */
   accelerations(j) {
-    const rows = py.call(py.item(this._expand, j < FEW ? 0 : -1), py.bound(this, "_numbers")).slice(this._free);
+    const rows = py.call(py.item(this._expand, j < FEW ? 0 : -1), this._arguments).slice(this._free);
     return py.tuple([...rows].map((row) => (j + 1) * py.float(py.item(row, j + 1))));
   }
   /** Derivative of A along a direction across e_0, at the start: that order is linear in it. */
@@ -7399,6 +7399,7 @@ function _precession_tilts(top, jellett) {
 }
 
 // tippetop.theory.thresholds
+const ROUNDING_of_thresholds = 1e-14;
 
 /** Spins of a launch, rad/s, at which the two vertical spins change stability. */
 class CriticalSpins extends py.Record {
@@ -7412,6 +7413,10 @@ py.fields(CriticalSpins, ["upright", "inverted"]);
 
 /** Jellett's integral at which a vertical spin changes stability, kg m^3/s: inf where it never does. */
 function critical_jellett(kind, top) {
+  const standing = py.float(top.surface.height(kind === SteadyKind.UPRIGHT ? 1.0 : -1.0));
+  if (standing <= py.mul(ROUNDING_of_thresholds, top.surface.size)) {
+    return py.math.inf;
+  }
   return branch_jellett(vertical_spin(kind, top, 0.0).tilt, top);
 }
 
@@ -7427,7 +7432,8 @@ function lambda_down(top) {
 
 /** Axial spin at which a vertical spin changes stability, by formula, rad/s; inf where it never does. */
 function critical_spin(kind, top) {
-  return py.div(critical_jellett(kind, top), py.abs(vertical_spin(kind, top, 1.0).jellett));
+  const critical = critical_jellett(kind, top);
+  return py.truth(py.math.isinf(critical)) ? critical : py.div(critical, py.abs(vertical_spin(kind, top, 1.0).jellett));
 }
 
 /** Critical spins of a launch: with its tilt and its rates, and any axial spin. */
@@ -8000,6 +8006,7 @@ export {
   ROUNDING,
   ROUNDING_of_prediction,
   ROUNDING_of_series_roots,
+  ROUNDING_of_thresholds,
   ROUNDING_of_viscous_impact,
   ROUNDS,
   Reaction,
