@@ -136,11 +136,13 @@ class Recorder:
         part = parts_of(times, block.starts[step], block.ends[step])
         basis = np.polynomial.legendre.legvander(2.0 * part - 1.0, len(NODES))
         integrals = _INTEGRALS @ basis.T * block.spans[step]
-        sums = values[:, step] + np.einsum("ik,qik->qk", integrals, rates[:, :, step])
+        sums = values[:, step]
+        for row, rate in enumerate(rates):
+            sums[row] += np.einsum("ik,ik->k", integrals, rate.take(step, axis=1))
         rows = np.empty((10 + TOLD, len(times)))
         rows[0], rows[2:6], rows[6:8] = times, sums[:4], -sums[4:] if self._resisted else 0.0
         rows[8], rows[9] = struck[step], poles[step]
-        for mode, here, numbers in block.sampled(times, step):
+        for mode, here, numbers in block.sampled(step, part):
             rows[10:, here] = numbers
             if mode.label not in self.modes:
                 self.modes.append(mode.label)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from tippetop.contact.mode import Mode, Segment
 from tippetop.contact.readings import Rates, instants, read
 from tippetop.integrators.base import Array, Integrator
-from tippetop.integrators.dense import at_fractions, evaluated, parts_of
+from tippetop.integrators.dense import at_fractions, evaluated
 
 STEPS = 4096
 """Steps in a block, about."""
@@ -112,16 +112,29 @@ class Block:
         """Which step some times lie in, the earlier one where two meet, shape (m,)."""
         return np.minimum(np.searchsorted(self.ends, times, side="left"), len(self.ends) - 1)
 
-    def sampled(self, times: Array, step: NDArray[np.intp]) -> Iterator[tuple[Mode, NDArray[np.intp], Array]]:
-        """For every mode, which of some times lie in it, and the numbers of `Instants` there."""
-        parts = parts_of(times, self.starts[step], self.ends[step])
+    def sampled(
+        self, step: NDArray[np.intp], parts: Array
+    ) -> Iterator[tuple[Mode, NDArray[np.intp] | slice, Array]]:
+        """For every mode, which of some instants lie in it, and the numbers of `Instants` there.
+
+        An instant is told by its step and the part of it that has passed.
+        """
         for group in self.groups:
-            place = np.full(len(self.ends), -1)
-            place[group.which] = np.arange(len(group.which))
-            here = np.flatnonzero(place[step] >= 0)
-            if len(here):
-                y = evaluated(group.terms, place[step[here]], parts[here])
+            here, own = self._within(group, step)
+            if len(own):
+                y = evaluated(group.terms, own, parts[here])
                 yield group.mode, here, read(instants, group.mode, y.T, integrator=self.integrator)
+
+    def _within(
+        self, group: ModeSteps, step: NDArray[np.intp]
+    ) -> tuple[NDArray[np.intp] | slice, NDArray[np.intp]]:
+        """Which of some steps a group has, and their numbers in it."""
+        if len(self.groups) == 1:
+            return slice(None), step
+        place = np.full(len(self.ends), -1)
+        place[group.which] = np.arange(len(group.which))
+        here = np.flatnonzero(place[step] >= 0)
+        return here, place[step[here]]
 
 
 def in_blocks(segments: Iterable[Segment], integrator: Integrator) -> Iterator[Block]:
