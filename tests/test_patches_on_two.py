@@ -24,8 +24,8 @@ from tippetop.contact.double import SlidingOnTwo
 from tippetop.contact.double_sticking import SlipBeginningOnTwo
 from tippetop.mechanics.top import natural, natural_state, natural_units
 
-RADIUS = 0.01
-"""A patch as large as the dumbbell's half: drilling counts."""
+RADIUS = 0.004
+"""A patch nearly as large as the dumbbell's balls: drilling counts."""
 PRESSURES = ["ellipsoidal", "hertz"]
 
 
