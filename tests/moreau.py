@@ -101,3 +101,56 @@ def launched(body, mu, rho, tilt, spin, *, rests=False):
     arm = zeta * rotation[:, 2] - radius * UP
     velocity = np.zeros(3) if rests else -np.cross(turning, arm)
     return Moreau(body, mu, rho, rotation, turning, -arm[2] * UP, velocity)
+
+
+class OnSpheres(Moreau):
+    """The same on several spheres, of (radius, zeta) each, with a resistance to rolling of this arm.
+
+    Each has a disc of forces of radius mu L_N, and couples up to arm L_N along the horizontal direction
+    of the axis: those across it would leave open how several contacts share the weight, and do no work.
+    """
+
+    def __init__(self, body, spheres, mu, arm, rotation, turning, velocity):
+        mass, I1, I3, gravity = body
+        height = max(radius - zeta * rotation[2, 2] for radius, zeta in spheres)
+        super().__init__((mass, I1, I3, 0.0, 0.0, gravity), mu, 0.0, rotation, turning, height * UP, velocity)
+        self.spheres, self.arm = spheres, arm
+        self.impulse = np.zeros(4 * len(spheres))
+
+    def kick(self, h):
+        """Change of the velocities in a step, at the midpoint's configuration."""
+        R, inverse = self.rotation.as_matrix(), np.linalg.inv(self.inertia)
+        free_velocity = self.velocity - h * self.gravity * UP
+        free_turning = self.turning - h * inverse @ np.cross(self.turning, self.inertia @ self.turning)
+        along = np.array([R[0, 2], R[1, 2], 0.0]) / np.hypot(R[0, 2], R[1, 2])
+        linear, angular, shut = [], [], []
+        for radius, zeta in self.spheres:
+            push = np.column_stack([np.eye(3)[0], np.eye(3)[1], np.zeros(3), UP])
+            turn = cross_matrix(R.T @ (zeta * R[:, 2] - radius * UP)) @ R.T @ push
+            turn[:, 2] = R.T @ along
+            linear.append(push)
+            angular.append(turn)
+            shut.append(self.position[2] + zeta * R[2, 2] - radius <= 0.0)
+        linear, angular = np.hstack(linear), np.hstack(angular)
+        G = linear.T @ linear / self.mass + angular.T @ inverse @ angular
+        impulse = self.shared(G, linear.T @ free_velocity + angular.T @ free_turning, shut)
+        self.velocity = free_velocity + linear @ impulse / self.mass
+        self.turning = free_turning + inverse @ angular @ impulse
+        self.impulse = impulse
+
+    def shared(self, G, start, shut):
+        """Impulses by Gauss-Seidel between normals, forces and couples of all contacts that are shut."""
+        impulse = self.impulse * np.repeat(shut, 4)
+        for _ in range(20000):
+            before = impulse.copy()
+            for place in 4 * np.flatnonzero(shut):
+                n = place + 3
+                impulse[n] = max(0.0, impulse[n] - (start[n] + G[n] @ impulse) / G[n, n])
+                for part, limit in ((slice(place, place + 2), self.mu), (slice(place + 2, n), self.arm)):
+                    weight = 1.0 / np.linalg.eigvalsh(G[part, part])[-1]
+                    trial = impulse[part] - weight * (start[part] + G[part] @ impulse)
+                    size = max(np.linalg.norm(trial), 1e-300)
+                    impulse[part] = trial * min(1.0, limit * impulse[n] / size)
+            if np.abs(impulse - before).max() <= 1e-11 * np.abs(impulse).max():
+                break
+        return impulse

@@ -5,7 +5,9 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 import pytest
 import xarray as xr
+from scipy.spatial.transform import Rotation
 
+import moreau
 import tippetop as tt
 from lying import R, resisted
 from tippetop.contact.choice import rules_for
@@ -13,6 +15,7 @@ from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators import make_integrator
 from tippetop.mechanics.contact_pair import ContactPair, pair_motion, turning_along
 from tippetop.mechanics.friction import Traction
+from tippetop.mechanics.motion import angular_velocity
 from tippetop.mechanics.top import natural, natural_state, natural_units
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Horizontal, Scalar, Vector
@@ -237,6 +240,31 @@ def test_it_is_the_limit_of_what_is_smoothed(seed: int, duration: float) -> None
         off.append(float(np.abs(smooth - dry).max()))
     assert off[1] < 0.3 * off[0]
     assert off[1] < 1e-2
+
+
+@pytest.mark.parametrize(("seed", "duration"), [(31, 0.1), (64, 0.055)])
+def test_time_stepping_converges_to_our_runs_at_first_order(seed: int, duration: float) -> None:
+    """Which shares no equation with them: rolling stops in both, and starts again in the second."""
+    problem = resisted(seed)
+    run = followed(problem, duration, 3)
+    assert bool(events(run, "rolling starts")) is (seed == 64)
+    body, start = problem.body, problem.start()
+    rotation = Rotation.from_euler("y", problem.launch.tilt).as_matrix()
+    turning = angular_velocity(start.axis, start.momentum, problem.top)
+    spheres = [(shape.surface.radius, shape.surface.center) for shape in body.shapes]
+    numbers = (body.mass, body.I1, body.I3, problem.gravity), spheres, problem.friction.mu  # type: ignore[attr-defined]
+    errors = []
+    for step in (2e-4, 1e-4):
+        other = moreau.OnSpheres(
+            *numbers, problem.rolling_resistance, rotation, turning, np.array(start.velocity)
+        )
+        for _ in range(round(duration / step)):
+            other.step(step)
+        momentum = other.rotation.apply(other.inertia @ other.turning)
+        errors.append(momentum - run["angular_momentum"].values[-1])
+    sizes = [np.linalg.norm(error) / np.linalg.norm(start.momentum) for error in errors]
+    assert sizes[0] < 3e-3
+    assert sizes[0] / sizes[1] == pytest.approx(2.0, rel=0.1)
 
 
 def test_sweeps_find_what_runs_find() -> None:

@@ -31,9 +31,9 @@ export class Track {
   mode(time) {
     const label = this.header.modes?.[this.columns.mode[this.before(time)]];
     if (label === undefined) return undefined;
-    const [kind, surfaces = "0"] = label.split("_on_");
+    const [kind, surfaces = "0", others] = label.split("_on_");
     const last = [this.header.problem.body.shape].flat().length - 1;
-    if (surfaces.includes("_and_")) return "double";
+    if (others !== undefined || surfaces.includes("_and_")) return "double";
     if (surfaces !== "0") return Number(surfaces) === last ? "stem" : "rim";
     return kind.replace("_without_rolling", "");
   }
