@@ -188,6 +188,18 @@ def test_the_link_carries_time_camera_units_arrows_and_pins(lab: Lab) -> None:
     assert received["pins"][0]["problem"]["friction"]["mu"] == 0.3
 
 
+def test_the_link_takes_along_a_profile_of_many_points(lab: Lab) -> None:
+    angles = np.linspace(-np.pi / 2, np.pi / 2, 101)
+    points = np.stack([0.02 * np.cos(angles), 0.006 + 0.02 * np.sin(angles)], axis=1)
+    points[[0, -1], 0] = 0.0
+    visitor = lab("duration=2")
+    visitor.ask("(points) => tippetopLab.change({ 'body.profile': points })", points.tolist())
+    settled(visitor, "problem.body.profile")
+    sent = visitor.ask("() => tippetopLab.link().split('#')[1]")
+    assert len(sent) > 2000
+    assert lab(sent).ask("() => tippetopLab.state.setup.problem.body.profile") == points.tolist()
+
+
 def test_undo_takes_back_a_pin_and_never_leaves_the_page(lab: Lab) -> None:
     visitor = lab("tab=compare&duration=2")
     undo = visitor.page.get_by_role("button", name="Undo")
