@@ -80,6 +80,12 @@ def deferred() -> Iterator[None]:
             signal.raise_signal(arrived[0])
 
 
+def hear() -> None:
+    """Raise again the `KeyboardInterrupt` of a signal that was lost, as some imports swallow it."""
+    if asked_to_end():
+        raise KeyboardInterrupt
+
+
 def import_heard(name: str) -> None:
     """Import a module, if it is not, of which an interrupted import would leave pieces and another error."""
     if name not in sys.modules:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from tippetop.cli.options import Force, Json
+from tippetop.interrupts import hear
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -39,6 +40,7 @@ def reproduce(
         work = bar.add_task("starting", total=None)
 
         def advance(done: float, total: float, what: str) -> None:
+            hear()
             bar.update(work, completed=done, total=total, description=what)
 
         result = report.reproduce(out, only=only, quick=quick, overwrite=force, progress=advance)

@@ -13,6 +13,7 @@ import typer
 from tippetop.cli.options import Choice, Force, Json, facts, of_a_problem
 from tippetop.errors import InvalidInput
 from tippetop.files import place_for, require_ending, written_beside
+from tippetop.interrupts import hear
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -92,6 +93,11 @@ def simulate(
         samples = _enough_samples(chosen, duration, wanted)
     began = time.perf_counter()
     with _bar("simulating") as progress:
+
+        def callback(part: float) -> None:
+            hear()
+            progress(part, 1.0)
+
         run = run_problem(
             chosen,
             duration,
@@ -99,7 +105,7 @@ def simulate(
             integrator=integrator,
             tolerance=tolerance,
             step=step,
-            callback=lambda part: progress(part, 1.0),
+            callback=callback,
         )
     elapsed = time.perf_counter() - began
     for kind, path in wanted.items():

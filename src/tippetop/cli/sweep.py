@@ -15,7 +15,7 @@ import typer
 from tippetop.cli.options import Choice, Force, Json, facts, of_a_problem
 from tippetop.errors import MISSING, FileTrouble, InvalidInput
 from tippetop.files import in_words, place_for, read_text, written_beside
-from tippetop.interrupts import INTERRUPTED
+from tippetop.interrupts import INTERRUPTED, hear
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -211,6 +211,7 @@ def _shown(seen: list["Progress"], silent: bool) -> Iterator["Callback"]:
         shown = bar.add_task("sweep", total=None, rate="", left="")
 
         def callback(progress: "Progress") -> None:
+            hear()
             seen.append(progress)
             left = progress.time_left
             bar.update(
