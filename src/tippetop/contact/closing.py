@@ -117,8 +117,8 @@ def closing_motion(kind: Kind, ending: Vanishing, guarded: bool) -> Motion:
     guards += surface_guards(kind)
     free = 2 if ending.moves else 0
     components = slip_dimension(law) if ending.slip else 2
-    often = components == 2 and not resisted
-    return Motion(rates, 8 + free + components, kind.numbers + 2, tuple(guards), lasting=often)
+    size = 8 + free + components
+    return Motion(rates, size, kind.numbers + 2, tuple(guards), lasting=ending.recurs(law))
 
 
 def spared(state: Closing, ending: Vanishing, top: Top) -> Scalar:

@@ -46,7 +46,7 @@ class Driven:
             raise ArithmeticError(NOT_FINITE)
         return rows
 
-    def turn(self, j: int, direction: Slip) -> None:
+    def turn(self, j: int, direction: Sequence[Scalar]) -> None:
         """Set the j-th coefficient of the direction."""
         factor = math.factorial(j)
         for i, number in enumerate(direction):
@@ -55,7 +55,7 @@ class Driven:
     def accelerations(self, j: int) -> Slip:
         """Coefficient of order j of A, expanded no further than to the first of the degrees that has it."""
         rows = self._expand[0 if j < FEW else -1](self._arguments)[self._free :]
-        return tuple((j + 1) * float(row[j + 1]) for row in rows)
+        return tuple([(j + 1) * float(row[j + 1]) for row in rows])
 
     def slope(self, across: Slip) -> Slip:
         """Derivative of A along a direction across e_0, at the start: that order is linear in it."""
@@ -108,7 +108,7 @@ def driven_motion(kind: Kind, ending: Vanishing, components: int, degree: int) -
     The velocity that begins comes before them: it is what the acceleration adds up to.
     """
     free = 8 if ending.moves else 6
-    chain = degree + 1
+    chain, often = degree + 1, ending.recurs(kind.example.friction)
 
     def rates(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[Scalar, ...]:
         given = y[free + components :]
@@ -120,4 +120,4 @@ def driven_motion(kind: Kind, ending: Vanishing, components: int, degree: int) -
             turning += [*given[i * chain + 1 : (i + 1) * chain], 0.0]
         return (*rate.axis, *rate.momentum, *rate.velocity, *rate.xi, *turning)
 
-    return Motion(rates, free + components * (chain + 1), kind.numbers, lasting=False)
+    return Motion(rates, free + components * (chain + 1), kind.numbers, lasting=often)

@@ -404,12 +404,11 @@ class Stopping(Passing):
         solution = DenseSolution.fitted(numbers, thinned(knots), DEGREE)
         if solution.unresolved > RESOLVED:
             solution = DenseSolution.fitted(numbers, knots, DEGREE)
-        left = float(after.time) - knots[-1]
-        if left > 0.0:
-            flat, pairs = [0.0] * (DEGREE - 1), zip(shown(before), shown(after), strict=True)
-            last = DenseSolution.in_time([0.0, left], [[[a, (b - a) / left, *flat] for a, b in pairs]])
-            solution = DenseSolution.joined([solution, last.moved(knots[-1], float(after.time))])
-        return solution.moved(time, time + float(after.time))
+        reach = float(after.time)
+        if reach > knots[-1]:
+            rest = DenseSolution.straight(shown(before), shown(after), knots[-1], reach, DEGREE)
+            solution = DenseSolution.joined([solution, rest])
+        return solution.moved(time, time + reach)
 
 
 def thinned(knots: Sequence[float]) -> list[float]:

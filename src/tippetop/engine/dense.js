@@ -158,6 +158,11 @@ export class DenseSolution {
     return new DenseSolution(knots, Float64Array.from(scaled), size, degree);
   }
 
+  static straight(begin, last, start, end, degree) {
+    const terms = begin.flatMap((number, i) => [number, last[i] - number, ...new Array(degree - 1).fill(0.0)]);
+    return new DenseSolution([start, end], Float64Array.from(terms), begin.length, degree);
+  }
+
   static joined(parts) {
     if (parts.length === 1) return parts[0];
     const knots = parts.flatMap((part, i) => Array.from(part.knots).slice(i ? 1 : 0));

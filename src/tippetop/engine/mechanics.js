@@ -1084,6 +1084,9 @@ function flat(motion) {
 
 /** Solution of a few linear equations, by elimination without pivots: nearly symmetric and definite. */
 function solve(matrix, right) {
+  if (py.len(right) === 1) {
+    return [py.div(right[0], matrix[0][0])];
+  }
   const rows = py.zip(matrix, right).map(([row, b]) => [...row, b]);
   const count = py.len(rows);
   for (const [i, pivot] of py.enumerate(rows)) {
@@ -1288,6 +1291,10 @@ class Vanishing extends py.NamedTuple {
   /** Whether the velocity of the centre of mass is free beside it. */
   get moves() {
     return py.and(!py.truth(this.slip), () => !py.truth(this.held));
+  }
+  /** Whether it may end and begin many times a second: slip under a law that resists nothing else. */
+  recurs(law) {
+    return py.and(this.slip, () => py.and(slip_length(law) === null, () => !py.isinstance(law, RollingResistance)));
   }
   /** The velocity xi, from axis, angular momentum and horizontal velocity of the centre of mass. */
   of(axis, momentum, velocity, top) {
@@ -2215,23 +2222,28 @@ function onset(known, power, order) {
   }
   for (let j = 1; j < order + power; j += 1) {
     const k = j - power + 1;
-    const along = py.mul(-0.5, py.sum([...e].map((row) => py.sum(py.map(py.mul, row.slice(1), py.slice(row, null, 0, -1))))));
-    known.turn(j, scaled(along, first));
-    for (const [row, number] of py.zip(e, first)) {
-      row.push(py.mul(along, number));
+    let [factor, along] = [k + power, 0.0];
+    for (const row of e) {
+      along = py.sub(along, py.mul(0.5, py.sum(py.map(py.mul, row.slice(1), py.slice(row, null, 0, -1)))));
     }
-    const behind = py.tuple([...e].map((row) => py.sum(py.map(py.mul, s.slice(0, k), py.slice(row, k, 0, -1)))));
-    const rest = plus(known.accelerations(j), scaled(-(k + power), behind));
-    const lag = power === 1 ? py.mul(k + power, py.item(s, 0)) : 0.0;
+    let turned = [...first].map((number) => py.mul(along, number));
+    known.turn(j, turned);
+    for (const [row, number] of py.zip(e, turned)) {
+      row.push(number);
+    }
+    const rates = known.accelerations(j);
+    const rest = py.zip(rates, e).map(([a, row]) => py.sub(a, py.mul(factor, py.sum(py.map(py.mul, s, py.slice(row, k, 0, -1))))));
+    const lag = power === 1 ? py.mul(factor, py.item(s, 0)) : 0.0;
     const matrix = py.enumerate(aside).map(([a, row]) => py.enumerate(row).map(([b, g]) => py.eq(a, b) ? py.sub(g, lag) : g));
-    const parts = solve(matrix, [...across].map((b) => py.neg(inner(b, rest))));
+    const parts = solve(matrix, [...across].map((b) => py.neg(py.sum(py.map(py.mul, b, rest)))));
     for (const [part, b] of py.zip(parts, across)) {
-      for (const [row, number] of py.zip(e, b)) {
-        py.put(row, j, py.add(py.item(row, j), py.mul(part, number)));
-      }
+      turned = py.zip(turned, b).map(([number, beside]) => py.add(number, py.mul(part, beside)));
     }
-    known.turn(j, py.tuple([...e].map((row) => py.item(row, j))));
-    s.push(py.div(py.add(inner(first, rest), py.sum(py.map(py.mul, parts, ahead))), k + power));
+    known.turn(j, turned);
+    for (const [row, number] of py.zip(e, turned)) {
+      py.put(row, j, number);
+    }
+    s.push(py.div(py.add(py.sum(py.map(py.mul, first, rest)), py.sum(py.map(py.mul, parts, ahead))), factor));
   }
   const rows = [...known.state].map((y) => py.range(order + power + 1).map((k) => py.item(y, k)));
   const turning = py.tuple([...e].map((row) => py.slice(row, null, order + 1, null)));
@@ -2454,7 +2466,7 @@ function growth(start, top, ending, velocity, degree, integrator) {
 /** Equations of motion in which a direction is given: it, and its derivatives, are the last numbers. */
 const driven_motion = py.cached((kind, ending, components, degree) => {
   const free = py.truth(ending.moves) ? 8 : 6;
-  const chain = degree + 1;
+  const [chain, often] = [degree + 1, ending.recurs(kind.example.friction)];
   const rates = (y, numbers) => {
     const given = py.slice(y, py.add(free, components), null, null);
     const direction = py.tuple(py.range(components).map((i) => py.item(given, i * chain)));
@@ -2466,7 +2478,7 @@ const driven_motion = py.cached((kind, ending, components, degree) => {
     }
     return [...rate.axis, ...rate.momentum, ...rate.velocity, ...rate.xi, ...turning];
   };
-  return new Motion(rates, py.add(free, components * (chain + 1)), kind.numbers, undefined, false);
+  return new Motion(rates, py.add(free, components * (chain + 1)), kind.numbers, undefined, often);
 });
 
 // tippetop.contact.arriving
@@ -3035,8 +3047,8 @@ const closing_motion = py.cached((kind, ending, guarded) => {
   guards = py.add(guards, surface_guards(kind));
   const free = py.truth(ending.moves) ? 2 : 0;
   const components = py.truth(ending.slip) ? slip_dimension(law) : 2;
-  const often = py.and(components === 2, () => !py.truth(resisted));
-  return new Motion(rates, py.add(py.add(8, free), components), py.add(kind.numbers, 2), py.tuple(guards), often);
+  const size = py.add(py.add(8, free), components);
+  return new Motion(rates, size, py.add(kind.numbers, 2), py.tuple(guards), ending.recurs(law));
 });
 
 /** Positive while the table can hold what is held beside a velocity that ends. */
@@ -3579,13 +3591,12 @@ class Stopping extends Passing {
     if (solution.unresolved > RESOLVED) {
       solution = DenseSolution.fitted(numbers, knots, DEGREE_of_passing);
     }
-    const left = py.sub(py.float(after.time), py.item(knots, -1));
-    if (left > 0.0) {
-      const [flat, pairs] = [py.mul([0.0], py.sub(DEGREE_of_passing, 1)), py.zip(shown(before), shown(after))];
-      const last = DenseSolution.in_time([0.0, left], [[...pairs].map(([a, b]) => [a, py.div(py.sub(b, a), left), ...flat])]);
-      solution = DenseSolution.joined([solution, last.moved(py.item(knots, -1), py.float(after.time))]);
+    const reach = py.float(after.time);
+    if (reach > py.item(knots, -1)) {
+      const rest = DenseSolution.straight(shown(before), shown(after), py.item(knots, -1), reach, DEGREE_of_passing);
+      solution = DenseSolution.joined([solution, rest]);
     }
-    return solution.moved(time, time + py.float(after.time));
+    return solution.moved(time, time + reach);
   }
 }
 py.fields(Stopping, ["top", "rules", "ending", "begin"]);

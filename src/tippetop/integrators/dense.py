@@ -18,11 +18,18 @@ ELEMENTARY: Functions = np
 NEWTON = 6
 """Improvements of a time at which a component has some value."""
 
-EXACT = 1e-15
-"""Such an improvement, relative to the longest time, that is rounding."""
+EXACT = 3e-9
+"""Such an improvement, as part of a step, after which the next one, of the order of its square, is none."""
 
 SHORTEST = 1e-8
 """The last of the steps that such a component's values make, relatively."""
+
+ALONE = 2**17
+"""Multiplications of a product of matrices that one thread does: several wait for each other, and for other
+programs."""
+
+FEW = 64
+"""Numbers whose powers are made one after another, and not all at once."""
 
 MANY = 256
 """Polynomials that are evaluated at a time, so that their coefficients stay in the processor's cache."""
@@ -110,6 +117,16 @@ class DenseSolution:
         return cls(np.array([start, end]), np.stack([here, np.zeros_like(here)], axis=1)[None])
 
     @classmethod
+    def straight(
+        cls, begin: Sequence[float], last: Sequence[float], start: float, end: float, degree: int
+    ) -> "DenseSolution":
+        """Numbers that go from some to others in a straight line, as polynomials of a degree."""
+        here, there = np.array(begin, dtype=float), np.array(last, dtype=float)
+        terms = np.zeros((1, len(here), degree + 1))
+        terms[0, :, 0], terms[0, :, 1] = here, there - here
+        return cls(np.array([start, end]), terms)
+
+    @classmethod
     def joined(cls, parts: Sequence["DenseSolution"]) -> "DenseSolution":
         """Solutions that follow one another as one."""
         if len(parts) == 1:
@@ -182,13 +199,18 @@ def at_fractions(terms: Array, fractions: Array) -> Array:
     """Values of k polynomials at fractions of their steps, shape (m,); of shape (size, m, k)."""
     found = np.empty((terms.shape[1], len(fractions), len(terms)))
     places = powers(fractions, terms.shape[2])
+    most = max(ALONE // max(places.size, 1), 1)
     for number, values in enumerate(found):
-        np.matmul(places, terms[:, number].T, out=values)
+        for first in range(0, len(terms), most):
+            some = terms[first : first + most, number]
+            np.matmul(places, some.T, out=values[:, first : first + most])
     return found
 
 
 def powers(numbers: Array, count: int) -> Array:
     """The first powers of n numbers, shape (n, count)."""
+    if len(numbers) <= FEW:
+        return np.vander(numbers, count, increasing=True)
     found = np.ones((count, len(numbers)))
     for power in range(1, count):
         np.multiply(found[power - 1], numbers, out=found[power])

@@ -68,7 +68,8 @@ class Taylor:
     def expansion(self, motion: Motion, parameters: Sequence[float], degree: int, count: int) -> Expansion:
         """The coefficients of the first numbers of a motion's solutions in powers of time, compiled."""
         compiled = _compiled(motion, math.exp(3.0 - 2.0 * degree), 1)
-        return lambda start: compiled.expanded(start, parameters, count)
+        numbers = np.array(parameters)
+        return lambda start: compiled.expanded(start, numbers, count)
 
     def evaluation(self, function: Rows, size: int, parameters: int) -> Evaluation:
         """Numbers that are functions of state and parameters, for many states at once, compiled."""
@@ -80,7 +81,7 @@ class _Compiled:
 
     def __init__(self, integrator: Any, room: int) -> None:
         self.integrator, self.lock = integrator, threading.Lock()
-        self._coefficients = integrator.tc
+        self._coefficients, self._state, self._parameters = integrator.tc, integrator.state, integrator.pars
         self._terms = np.empty((room, *self._coefficients.shape))
         # A step's coefficients are copied in a third of the time that arrays need.
         self._rows = [row.data for row in self._terms.reshape(room, -1)]
@@ -101,12 +102,11 @@ class _Compiled:
             knots[-1] = end
         return DenseSolution.in_time(np.array(knots), self._terms[: len(knots) - 1]), outcome
 
-    def expanded(self, start: Sequence[float], parameters: Sequence[float], count: int) -> Array:
+    def expanded(self, start: Sequence[float], parameters: Array, count: int) -> Array:
         """Coefficients of the first numbers of the solution about its start."""
         with self.lock:
-            run = self.integrator
-            run.state[:], run.pars[:] = start, parameters[: len(run.pars)]
-            run.step(write_tc=True)
+            self._state[:], self._parameters[:] = start, parameters[: len(self._parameters)]
+            self.integrator.step(write_tc=True)
             found: Array = self._coefficients[:count].copy()
         return found
 

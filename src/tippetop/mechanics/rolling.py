@@ -321,6 +321,8 @@ def flat(motion: Acceleration) -> tuple[Scalar, ...]:
 
 def solve(matrix: list[list[Scalar]], right: list[Scalar]) -> list[Scalar]:
     """Solution of a few linear equations, by elimination without pivots: nearly symmetric and definite."""
+    if len(right) == 1:
+        return [right[0] / matrix[0][0]]
     rows = [[*row, b] for row, b in zip(matrix, right, strict=True)]
     count = len(rows)
     for i, pivot in enumerate(rows):

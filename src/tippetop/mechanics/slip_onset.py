@@ -29,7 +29,7 @@ from tippetop.mechanics.rolling import (
     turning_with,
 )
 from tippetop.mechanics.series import PLAIN, Series, horner
-from tippetop.mechanics.stick_slip import inner, plus, scaled, slip_of, tangents
+from tippetop.mechanics.stick_slip import inner, scaled, slip_of, tangents
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Scalar, Vector, add, scale
 
@@ -106,7 +106,7 @@ class Growth(Protocol):
     def state(self) -> Sequence[Any]:
         """Coefficients of n, L, and u where that is free, each to be indexed."""
 
-    def turn(self, j: int, direction: Slip) -> None:
+    def turn(self, j: int, direction: Sequence[Scalar]) -> None:
         """Set the j-th coefficient of the direction; those after it are not known."""
 
     def accelerations(self, j: int) -> Slip:
@@ -144,21 +144,25 @@ def onset(known: Growth, power: int, order: int) -> Onset:
         s.append(inner(known.accelerations(0), first))
     for j in range(1, order + power):
         k = j - power + 1
-        along = -0.5 * sum(sum(map(mul, row[1:], row[:0:-1])) for row in e)
-        known.turn(j, scaled(along, first))
-        for row, number in zip(e, first, strict=True):
-            row.append(along * number)
+        factor, along = k + power, 0.0
+        for row in e:
+            along -= 0.5 * sum(map(mul, row[1:], row[:0:-1]))
+        turned = [along * number for number in first]
+        known.turn(j, turned)
+        for row, number in zip(e, turned, strict=True):
+            row.append(number)
         # (k + power) zeta_k = A_j, where zeta_k has s_k e_0, known terms, and for power 1 also s_0 e_j.
-        behind = tuple(sum(map(mul, s[:k], row[k:0:-1])) for row in e)
-        rest = plus(known.accelerations(j), scaled(-(k + power), behind))
-        lag = (k + power) * s[0] if power == 1 else 0.0
+        rates = known.accelerations(j)
+        rest = [a - factor * sum(map(mul, s, row[k:0:-1])) for a, row in zip(rates, e, strict=True)]
+        lag = factor * s[0] if power == 1 else 0.0
         matrix = [[g - lag if a == b else g for b, g in enumerate(row)] for a, row in enumerate(aside)]
-        parts = solve(matrix, [-inner(b, rest) for b in across])
+        parts = solve(matrix, [-sum(map(mul, b, rest)) for b in across])
         for part, b in zip(parts, across, strict=True):
-            for row, number in zip(e, b, strict=True):
-                row[j] = row[j] + part * number
-        known.turn(j, tuple(row[j] for row in e))
-        s.append((inner(first, rest) + sum(map(mul, parts, ahead))) / (k + power))
+            turned = [number + part * beside for number, beside in zip(turned, b, strict=True)]
+        known.turn(j, turned)
+        for row, number in zip(e, turned, strict=True):
+            row[j] = number
+        s.append((sum(map(mul, first, rest)) + sum(map(mul, parts, ahead))) / factor)
     rows = [[y[k] for k in range(order + power + 1)] for y in known.state]
     turning = tuple(row[: order + 1] for row in e)
     return Onset(tuple(rows[:3]), tuple(rows[3:6]), tuple(rows[6:]), turning, s[: order + 1], power)
@@ -219,7 +223,7 @@ class Growing:
         """Rate of zeta, and the normal acceleration, among the accelerations of the contact."""
         return (*self.ending.rate(acceleration, self.top), acceleration.point[2])
 
-    def turn(self, j: int, direction: Slip) -> None:
+    def turn(self, j: int, direction: Sequence[Scalar]) -> None:
         """Set the j-th coefficient of the direction, and forget what was made of another."""
         for series in self._revisable:
             del series.known[j:]
