@@ -33,11 +33,12 @@ MOST, TURNS = 16, 8
 SETTLED = 1e-14
 """Error of the state, in natural units, that counts as none, and of a direction."""
 
-AT_REST = 1e-12
-"""How far the direction may be from the series' at most, times the time that is left, in natural units."""
+AT_REST, UNSEEN = 1e-12, 1e-15
+"""How far the direction may be from the series' at most, times the time that is left, in natural units; or
+times the speed, which is rounding of the state."""
 
 TURNING = 1.0
-"""The same in the first series: there is no hope beyond."""
+"""How far it may be, over that time, in any of the series: there is no hope beyond."""
 
 
 class Arrival(NamedTuple):
@@ -109,11 +110,12 @@ def arriving(here: Closing, ending: Vanishing, top: Top, integrator: Integrator)
             found = Arrival(time_to(here.speed, begin.rows, left), begin.rows)
             left, then = found.left, found.at(1.0)
             off = plus(now, scaled(-1.0, tuple(then[:6])))
-            doubt = left * math.dist(here.direction, scaled(1.0 / size(tuple(then[6:])), tuple(then[6:])))
-            if not doubt < TURNING * left * left:
+            aside = math.dist(here.direction, scaled(1.0 / size(tuple(then[6:])), tuple(then[6:])))
+            rounding = aside * here.speed < UNSEEN
+            if not (aside < TURNING * left or rounding):
                 return None
             if size(off) < SETTLED:
-                return found if doubt < AT_REST and found.serves else None
+                return found if (aside * left < AT_REST or rounding) and found.serves else None
             end = plus(end, off)
     except ArithmeticError:
         return None

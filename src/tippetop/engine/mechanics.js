@@ -2485,7 +2485,7 @@ const driven_motion = py.cached((kind, ending, components, degree) => {
 const [DEGREE, ACCURACY] = [12, 1e-13];
 const [MOST_of_arriving, TURNS] = [16, 8];
 const SETTLED = 1e-14;
-const AT_REST = 1e-12;
+const [AT_REST, UNSEEN] = [1e-12, 1e-15];
 const TURNING = 1.0;
 
 /** The end of slip. */
@@ -2540,12 +2540,13 @@ function arriving(here, ending, top, integrator) {
       let then;
       [left, then] = [found.left, found.at(1.0)];
       const off = plus(now, scaled(-1.0, py.tuple(then.slice(0, 6))));
-      const doubt = py.mul(left, py.math.dist(here.direction, scaled(py.div(1.0, size(py.tuple(then.slice(6)))), py.tuple(then.slice(6)))));
-      if (!(doubt < py.mul(py.mul(TURNING, left), left))) {
+      const aside = py.math.dist(here.direction, scaled(py.div(1.0, size(py.tuple(then.slice(6)))), py.tuple(then.slice(6))));
+      const rounding = py.mul(aside, here.speed) < UNSEEN;
+      if (!(aside < py.mul(TURNING, left) || py.truth(rounding))) {
         return null;
       }
       if (size(off) < SETTLED) {
-        return doubt < AT_REST && py.truth(found.serves) ? found : null;
+        return (py.mul(aside, left) < AT_REST || py.truth(rounding)) && py.truth(found.serves) ? found : null;
       }
       end = plus(end, off);
     }
@@ -8114,6 +8115,7 @@ export {
   Transition,
   TruncatedSeries,
   TwoClosed,
+  UNSEEN,
   Units,
   VERTICAL,
   VERTICAL_SPINS,
