@@ -64,9 +64,10 @@ def problem_of(random: np.random.Generator) -> tt.Problem:
         return problem_of(random)
 
 
-CLOSE_CALLS = {29, 72, 94, 186}
-"""Bodies that lift off as slip begins, that rock in rebounds much shorter than a step, whose slip is to end
-as drilling begins anew beside it, and whose last impacts are slow."""
+CLOSE_CALLS = {24, 29, 72, 94, 186}
+"""Bodies whose slip seems to end where no tilt is left, that lift off as slip begins, that rock in rebounds
+much shorter than a step, whose slip is to end as drilling begins anew beside it, and whose last impacts are
+slow."""
 
 
 @pytest.mark.parametrize("seed", sorted({*range(COUNT), *CLOSE_CALLS}))

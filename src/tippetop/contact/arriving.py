@@ -105,6 +105,9 @@ def arriving(here: Closing, ending: Vanishing, top: Top, integrator: Integrator)
     try:
         for _ in range(MOST):
             axis, momentum = (end[0], end[1], end[2]), (end[3], end[4], end[5])
+            if not abs(axis[2]) < 1.0:
+                # So far off that there is no such tilt, and no shape to ask.
+                return None
             known = resting_way(axis, momentum, way, ending, top, integrator)
             begin, way = onset(known, 1, DEGREE), known.first
             found = Arrival(time_to(here.speed, begin.rows, left), begin.rows)

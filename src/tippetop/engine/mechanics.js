@@ -2533,6 +2533,9 @@ function arriving(here, ending, top, integrator) {
   try {
     for (let turn = 0; turn < MOST_of_arriving; turn += 1) {
       const [axis, momentum] = [[end[0], end[1], end[2]], [end[3], end[4], end[5]]];
+      if (!(py.abs(axis[2]) < 1.0)) {
+        return null;
+      }
       const known = resting_way(axis, momentum, way, ending, top, integrator);
       let begin;
       [begin, way] = [onset(known, 1, DEGREE), known.first];
