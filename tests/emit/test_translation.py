@@ -122,8 +122,8 @@ def choices():
                 found.append(Colour.RED.value)
             case "blue":
                 found.append(Colour.BLUE.name.lower())
-            case _:
-                found.append(word or number)
+        if number > 1:
+            found.append(word or number)
     if 1.0 <= len(found) < 5.0 and "red" not in found:
         found.append(f"{len(found)} {Step.TWO + 1}")
     best = max([Point(1.0, 5.0), Point(2.0, 4.0)], key=lambda one: one.y)
@@ -139,7 +139,7 @@ def closures():
     while (left := count) > 0:
         def more(by, times=2.0):
             return by * times + left
-        total += more(1.0, times=4.0)
+        total += more(1.0, 4.0)
         count -= 1
     values = [1.0, 2.0, 3.0, 4.0]
     del values[2:]

@@ -23,9 +23,6 @@ class Calls(Translator):
         """A call."""
         func = node.func
         match func:
-            case ast.Attribute(value=ast.Call(func=ast.Name(id="super"), args=[base, whom]), attr=attr):
-                inner = self.arguments([whom, *node.args])
-                return f"Object.getPrototypeOf({self.text(base)}.prototype).{attr}.call({inner})"
             case ast.Attribute(value=ast.Call(func=ast.Name(id="super")), attr=attr):
                 return f"super{'' if attr == '__init__' else '.' + attr}({self._given(node)})"
             case ast.Attribute(value=value, attr=attr) if attr in METHODS and not self._is_module(value):
@@ -95,9 +92,7 @@ class Calls(Translator):
         match node.func:
             case ast.Name(id=name):
                 own = self.name(name)
-                if own in self.locals:
-                    known = [self.locals[own]]
-                elif own in self.program.classes:
+                if own in self.program.classes:
                     known = [list(self.program.classes[own].fields)]
                 elif own in self.program.functions:
                     known = [self.program.functions[own]]

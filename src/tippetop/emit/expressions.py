@@ -118,24 +118,18 @@ class Expressions(Calls):
                 with_body = self.function(node)
                 inner = self.inside(node, body)
                 return f"{with_body} => {f'({inner})' if inner.startswith('{') else inner}", ARROW
-            case ast.ListComp() | ast.GeneratorExp() | ast.SetComp() | ast.DictComp() | ast.Dict():
+            case ast.ListComp() | ast.GeneratorExp() | ast.DictComp() | ast.Dict():
                 return self._collection(node), ATOM
             case ast.Call():
                 return self.call(node), ATOM
             case ast.Yield(value=value):
                 return f"yield {self.text(value) if value else ''}", ARROW
-            case ast.YieldFrom(value=value):
-                return f"yield* {self.text(value)}", ARROW
         raise Untranslatable(f"{self.module}: {ast.unparse(node)}")
 
-    def _collection(
-        self, node: ast.ListComp | ast.GeneratorExp | ast.SetComp | ast.DictComp | ast.Dict
-    ) -> str:
+    def _collection(self, node: ast.ListComp | ast.GeneratorExp | ast.DictComp | ast.Dict) -> str:
         match node:
             case ast.ListComp(elt=element) | ast.GeneratorExp(elt=element):
                 return self._comprehension(node.generators, element)
-            case ast.SetComp(elt=element):
-                return f"new py.Dict({self._comprehension(node.generators, element)})"
             case ast.DictComp(key=key, value=value):
                 pair = ast.Tuple([key, value], ast.Load())
                 return f"new py.Dict({self._comprehension(node.generators, pair)})"
@@ -224,8 +218,6 @@ class Expressions(Calls):
                     return f"{whole}.slice({', '.join(parts)})"
                 parts = [self.text(one) if one else "null" for one in (low, high, step)]
                 return f"py.slice({whole}, {', '.join(parts)})"
-            case ast.Constant(value=str(key)):
-                return f"py.item({whole}, {json.dumps(key)})"
             case ast.Constant(value=int(number)) if self.module not in self.program.indexed:
                 return f"{whole}[{number}]"
         return f"py.item({whole}, {self.text(node.slice)})"

@@ -205,8 +205,6 @@ def default_of(value: ast.expr | None) -> ast.expr | None:
     """The default of a field."""
     if isinstance(value, ast.Call) and ast.unparse(value.func) == "field":
         for keyword in value.keywords:
-            if keyword.arg == "default":
-                return keyword.value
             if keyword.arg == "default_factory":
                 return ast.Call(keyword.value, [], [])
         return None

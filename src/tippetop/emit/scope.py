@@ -1,28 +1,13 @@
-"""Where the names of a function are bound and used, so that each is declared where it is first bound."""
+"""Where the names of a function are declared, and which of them are numbers."""
 
 import ast
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 
 from tippetop.emit.program import names_in, parameters
 
 FLOATS = {"float", "int"}
-
-
-@dataclass
-class Binding:
-    """A statement that binds names.
-
-    Attributes
-    ----------
-    node
-        The statement.
-    path
-        The blocks it is in, outermost first, each by identity of its list.
-    """
-
-    node: ast.AST
-    path: tuple[int, ...]
 
 
 @dataclass
@@ -34,122 +19,76 @@ class Scope:
     parameters
         Names of its parameters.
     bindings
-        Where other names are bound.
-    uses
-        The blocks in which they are used.
+        What binds other names, and binds parameters anew.
     floats
         Names of numbers.
     declared
-        The statements that declare names; None for what is declared at the top.
+        The statements that declare names; none for what is declared at the top.
     """
 
     parameters: list[str] = field(default_factory=list)
-    bindings: dict[str, list[Binding]] = field(default_factory=dict)
-    uses: dict[str, list[tuple[int, ...]]] = field(default_factory=dict)
+    bindings: dict[str, list[ast.AST]] = field(default_factory=dict)
     floats: set[str] = field(default_factory=set)
-    declared: dict[str, ast.AST | None] = field(default_factory=dict)
+    declared: dict[str, Sequence[ast.AST]] = field(default_factory=dict)
 
     @classmethod
     def of(cls, node: ast.FunctionDef | ast.Lambda) -> "Scope":
         """The scope of a function."""
-        found = cls(parameters(node))
-        for one in (*node.args.args, *node.args.kwonlyargs):
-            if one.annotation is not None and ast.unparse(one.annotation) in FLOATS:
-                found.floats.add(one.arg)
-        if node.args.vararg:
-            found.parameters.append(node.args.vararg.arg)
+        found = cls(parameters(node) + ([node.args.vararg.arg] if node.args.vararg else []))
+        for given in (*node.args.args, *node.args.kwonlyargs):
+            if given.annotation is not None and ast.unparse(given.annotation) in FLOATS:
+                found.floats.add(given.arg)
         if isinstance(node, ast.FunctionDef):
-            found._walk_block(node.body, ())
+            for one in within(node):
+                for name in bound_by(one):
+                    found.bindings.setdefault(name, []).append(one)
             found._weigh()
-            found.declared = {name: found.declared_at(name) for name in found.bindings}
+            total = Counter(uses(node.body))
+            for name, bindings in found.bindings.items():
+                loops = [one for one in bindings if isinstance(one, ast.For)]
+                if loops == bindings and Counter(uses(loops))[name] == total[name]:
+                    found.declared[name] = loops
+            found._place(node.body, total)
+            found._settle()
         return found
 
-    def declared_at(self, name: str) -> ast.AST | None:
-        """The statement that can declare a name; None if it is to be declared at the top."""
-        bindings = self.bindings[name]
-        if name in self.parameters:
-            return bindings[0].node
-        first = bindings[0]
-        paths = [binding.path for binding in bindings] + self.uses.get(name, [])
-        if isinstance(first.node, (ast.For, ast.NamedExpr)):
-            inside = [*first.path, id(first.node.body)] if isinstance(first.node, ast.For) else None
-            loops = {id(b.node.body) for b in bindings if isinstance(b.node, ast.For)}
-            same = len(bindings) == len(loops)
-            within = all(any(step in loops for step in path) for path in self.uses.get(name, []))
-            return first.node if inside and same and within else None
-        if not isinstance(first.node, (ast.Assign, ast.AnnAssign, ast.FunctionDef)):
-            return None
-        depth = len(first.path)
-        return first.node if all(path[:depth] == first.path for path in paths) else None
+    def fresh(self, node: ast.AST) -> bool:
+        """Whether a statement declares the names that it binds."""
+        return any(node in self.declared.get(name, ()) for name in bound_by(node))
 
-    def _bind(self, name: str, node: ast.AST, path: tuple[int, ...]) -> None:
-        self.bindings.setdefault(name, []).append(Binding(node, path))
+    def word(self, node: ast.AST) -> str:
+        """By what a statement declares the names that it binds; nothing if it does not."""
+        if not self.fresh(node):
+            return ""
+        once = all(len(self.bindings[name]) == len(self.declared[name]) for name in bound_by(node))
+        return "const " if once else "let "
 
-    def _use(self, node: ast.AST, path: tuple[int, ...], hidden: frozenset[str] = frozenset()) -> None:
-        """Note the names that an expression uses."""
-        match node:
-            case ast.Name(id=name):
-                if name not in hidden and isinstance(node.ctx, ast.Load):
-                    self.uses.setdefault(name, []).append(path)
-                return
-            case ast.NamedExpr(target=ast.Name(id=name)):
-                self._bind(name, node, path)
-            case ast.Lambda() | ast.FunctionDef():
-                inner = Scope.of(node)
-                hidden = hidden | {*inner.parameters, *inner.bindings}
-            case ast.ListComp() | ast.GeneratorExp() | ast.DictComp() | ast.SetComp():
-                hidden = hidden | {name for one in node.generators for name in names_in(one.target)}
-        for child in ast.iter_child_nodes(node):
-            self._use(child, path, hidden)
-
-    def _walk_block(self, body: Sequence[ast.stmt], path: tuple[int, ...]) -> None:
-        path = (*path, id(body))
+    def _place(self, body: Sequence[ast.stmt], total: Counter[str]) -> None:
+        """Find what declares the names that no other block knows: inner blocks first."""
         for node in body:
-            self._walk(node, path)
+            for block in blocks(node):
+                self._place(block, total)
+        known = [(node, Counter(uses([node]))) for node in body]
+        for name in self.bindings:
+            where = [node for node, found in known if found[name]]
+            if name in self.declared or sum(found[name] for _, found in known) < total[name]:
+                continue
+            self.declared[name] = []
+            if name in self.parameters or name in ("self", "cls"):
+                continue
+            # A function may speak of what is only known when it is called.
+            first = next(n for n in where if name in bound_by(n) or not isinstance(n, ast.FunctionDef))
+            if isinstance(first, DECLARES) and name in bound_by(first):
+                self.declared[name] = [first]
 
-    def _walk(self, node: ast.stmt, path: tuple[int, ...]) -> None:
-        match node:
-            case ast.FunctionDef(name=name):
-                self._bind(name, node, path)
-                self._use(node, path)
-            case ast.Assign(targets=targets, value=value):
-                self._use(value, path)
-                for target in targets:
-                    self._use(target, path)
-                    for name in names_in(target):
-                        self._bind(name, node, path)
-            case ast.AnnAssign(target=target):
-                if node.value is not None:
-                    self._use(node.value, path)
-                for name in names_in(target):
-                    self._bind(name, node, path)
-            case ast.AugAssign(target=target, value=value):
-                self._use(value, path)
-                if isinstance(target, ast.Name):
-                    self._bind(target.id, node, path)
-                    self.uses.setdefault(target.id, []).append(path)
-                else:
-                    self._use(target, path)
-            case ast.For(target=target, iter=iterable, body=body, orelse=orelse):
-                self._use(iterable, path)
-                for name in names_in(target):
-                    self._bind(name, node, (*path, id(body)))
-                self._walk_block(body, path)
-                self._walk_block(orelse, path)
-            case ast.If(test=test, body=body, orelse=orelse) | ast.While(test=test, body=body, orelse=orelse):
-                self._use(test, path)
-                self._walk_block(body, path)
-                self._walk_block(orelse, path)
-            case ast.Try(body=body, handlers=handlers):
-                self._walk_block(body, path)
-                for handler in handlers:
-                    self._walk_block(handler.body, path)
-            case ast.Match(subject=subject, cases=cases):
-                self._use(subject, path)
-                for case in cases:
-                    self._walk_block(case.body, path)
-            case _:
-                self._use(node, path)
+    def _settle(self) -> None:
+        """Declare at the top what stands beside names that are declared elsewhere."""
+        moved = True
+        while moved:
+            moved = False
+            for name, where in self.declared.items():
+                if any(node not in self.declared[other] for node in where for other in bound_by(node)):
+                    self.declared[name], moved = [], True
 
     def _weigh(self) -> None:
         """Find the names that are bound to numbers alone: all that are not bound to anything else."""
@@ -159,7 +98,7 @@ class Scope:
         while before != len(self.floats):
             before = len(self.floats)
             for name, bindings in self.bindings.items():
-                if not all(self._is_number(name, binding.node) for binding in bindings):
+                if not all(self._is_number(name, node) for node in bindings):
                     self.floats.discard(name)
 
     def _is_number(self, name: str, node: ast.AST) -> bool:
@@ -203,3 +142,52 @@ class Scope:
 def is_range(node: ast.expr) -> bool:
     """Whether an expression is a call of range."""
     return isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "range"
+
+
+DECLARES = (ast.Assign, ast.AnnAssign, ast.FunctionDef)
+"""What can declare names for the statements after it."""
+
+
+def within(node: ast.AST) -> Iterator[ast.AST]:
+    """All that is in a function, but not what is in functions that are in it."""
+    for child in ast.iter_child_nodes(node):
+        yield child
+        if not isinstance(child, ast.FunctionDef | ast.Lambda):
+            yield from within(child)
+
+
+def bound_by(node: ast.AST) -> list[str]:
+    """The names that a statement or expression itself binds."""
+    found: list[str] = []
+    match node:
+        case ast.Assign(targets=targets):
+            found = [name for target in targets for name in names_in(target)]
+        case ast.AnnAssign(target=target) | ast.AugAssign(target=target) | ast.For(target=target):
+            found = names_in(target)
+        case ast.NamedExpr(target=target):
+            found = names_in(target)
+        case ast.FunctionDef(name=name):
+            found = [name]
+    return [name for name in found if name != "_"]
+
+
+def uses(nodes: Iterable[ast.AST], hidden: Sequence[str] = ()) -> Iterator[str]:
+    """The names in statements and in all that is in them, as often as they are there."""
+    for node in nodes:
+        own = list(hidden)
+        match node:
+            case ast.Name(id=name) | ast.FunctionDef(name=name) if name not in hidden:
+                yield name
+        match node:
+            case ast.Lambda() | ast.FunctionDef():
+                own += [*parameters(node), *(name for one in within(node) for name in bound_by(one))]
+            case ast.ListComp() | ast.GeneratorExp() | ast.DictComp():
+                own += [name for one in node.generators for name in names_in(one.target)]
+        yield from uses(ast.iter_child_nodes(node), own)
+
+
+def blocks(node: ast.stmt) -> Iterator[list[ast.stmt]]:
+    """The blocks of a statement."""
+    if not isinstance(node, ast.FunctionDef):
+        for part in [node, *getattr(node, "handlers", []), *getattr(node, "cases", [])]:
+            yield from (getattr(part, name) for name in ("body", "orelse") if getattr(part, name, None))

@@ -30,7 +30,6 @@ class Statements(Expressions):
         yield "});" if known else "}"
 
     def _body(self, node: ast.FunctionDef, scope: Scope) -> Iterator[str]:
-        before = dict(self.locals)
         scope.floats |= {
             name
             for outer in self.scopes
@@ -38,11 +37,8 @@ class Statements(Expressions):
             if name not in scope.bindings and name not in scope.parameters
         }
         self.scopes.append(scope)
-        top = [
-            safe(name)
-            for name, where in scope.declared.items()
-            if where is None and name not in ("self", "cls")
-        ]
+        own = [*scope.parameters, "self", "cls"]
+        top = [safe(name) for name, where in scope.declared.items() if not where and name not in own]
         if self.rebound and len(self.scopes) == 1:
             yield "let self = this;"
         if node.name == "__init__" and "super().__init__" not in ast.unparse(node):
@@ -51,7 +47,6 @@ class Statements(Expressions):
             yield f"let {', '.join(top)};"
         yield from self._block(node.body)
         self.scopes.pop()
-        self.locals = before
 
     def _block(self, body: Sequence[ast.stmt]) -> Iterator[str]:
         for node in body:
@@ -70,8 +65,8 @@ class Statements(Expressions):
             case ast.AnnAssign(target=target, value=value):
                 if value is not None:
                     yield from self._assignment(node, [target], self.text(value))
-                elif isinstance(target, ast.Name) and self.scopes[-1].declared.get(target.id) is node:
-                    yield f"let {self.name(target.id)};"
+                elif self.scopes[-1].fresh(node):
+                    yield f"let {self.text(target)};"
             case ast.AugAssign(target=target, op=op, value=value):
                 load = ast.parse(ast.unparse(target), mode="eval").body
                 whole = self.text(ast.BinOp(load, op, value))
@@ -137,27 +132,14 @@ class Statements(Expressions):
                 whole, place = self.text(target.value, ATOM), self.text(target.slice)
                 yield f"py.put({whole}, {place}, {value});"
                 continue
-            names = names_in(target)
-            fresh = [
-                name for name in names if scope.declared.get(name) is node and name not in scope.parameters
-            ]
-            pattern = self.pattern(target)
-            if not fresh:
-                yield f"{pattern} = {value};"
-            elif len(fresh) == len(set(names)) or set(names) - set(fresh) <= {"_"}:
-                once = all(len(scope.bindings[name]) == 1 for name in names if name != "_")
-                yield f"{'const' if once else 'let'} {pattern} = {value};"
-            else:
-                yield f"let {', '.join(safe(name) for name in fresh)};"
-                yield f"{pattern} = {value};"
+            yield f"{scope.word(node) if names_in(target) else ''}{self.pattern(target)} = {value};"
 
     def _loop(self, node: ast.For) -> Iterator[str]:
-        scope = self.scopes[-1]
-        fresh = all(scope.declared.get(name) is not None or name == "_" for name in names_in(node.target))
+        word = self.scopes[-1].word(node)
         match node:
             case ast.For(target=ast.Name(id=name), iter=ast.Call(args=args)) if is_range(node.iter):
                 i = self.name(name) if name != "_" else "turn"
-                word = "let " if fresh else ""
+                word = "let " if word or name == "_" else ""
                 start = self.text(args[0]) if len(args) > 1 else "0"
                 stop = self.text(args[1] if len(args) > 1 else args[0], LESS)
                 step = self.text(args[2]) if len(args) > 2 else "1"
@@ -166,24 +148,12 @@ class Statements(Expressions):
                 )
                 yield f"for ({word}{i} = {start}; {i} {sign} {stop}; {by}) {{"
             case _:
-                word = ""
-                if fresh:
-                    once = all(
-                        sum(not isinstance(b.node, ast.For) for b in scope.bindings[name]) == 0
-                        for name in names_in(node.target)
-                    )
-                    word = "const " if once else "let "
                 yield f"for ({word}{self.pattern(node.target)} of {self.text(node.iter)}) {{"
         yield from indented(self._block(node.body))
         yield "}"
 
     def _nested(self, node: ast.FunctionDef, name: str) -> Iterator[str]:
-        scope = self.scopes[-1]
-        self.locals[self.name(name)] = [one.arg for one in (*node.args.args, *node.args.kwonlyargs)]
-        word = "const " if len(scope.bindings[name]) == 1 and scope.declared.get(name) is node else ""
-        if not word and scope.declared.get(name) is node:
-            word = "let "
-        yield f"{word}{self.name(name)} = {self.function(node)} => {{"
+        yield f"{self.scopes[-1].word(node)}{self.name(name)} = {self.function(node)} => {{"
         yield from indented(self._body(node, Scope.of(node)))
         yield "};"
 
@@ -207,8 +177,6 @@ class Statements(Expressions):
             match case.pattern:
                 case ast.MatchValue(value=value):
                     yield f"{word}if (py.eq({subject}, {self.text(value)})) {{"
-                case ast.MatchAs(pattern=None, name=None):
-                    yield f"{word}{{"
                 case _:
                     raise Untranslatable(f"{self.module}: {ast.unparse(case)}")
             yield from indented(self._block(case.body))

@@ -30,7 +30,6 @@ class Translator(ABC):
         self.program, self.module = program, module
         self.scopes: list[Scope] = []
         self.hidden: list[set[str]] = []
-        self.locals: dict[str, list[str]] = {}
         self.rebound = False
 
     @abstractmethod

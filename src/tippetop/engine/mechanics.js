@@ -3114,7 +3114,7 @@ function directions(response, start) {
 
 /** The directions by Newton's method from near ones; None if that does not lead to any. */
 function _improved(response, ways) {
-  let better;
+  let better, moved;
   let last = DIRECTED;
   for (let turn = 0; turn < NEWTON; turn += 1) {
     try {
@@ -3123,7 +3123,6 @@ function _improved(response, ways) {
       if (!(error instanceof py.ArithmeticError)) throw error;
       return null;
     }
-    let moved;
     [moved, ways] = [_apart(better, ways), better];
     if (moved < EXACT || py.mul(last, 0.5) <= moved && moved < DIRECTED) {
       return py.truth(_grow(response(ways), ways)) ? ways : null;
