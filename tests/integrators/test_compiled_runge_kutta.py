@@ -10,7 +10,7 @@ import pytest
 from exact_motions import KEPLER, whole
 
 from every_motion import CASES, states
-from tippetop.integrators import Motion, has_numba, make_integrator
+from tippetop.integrators import Guard, Motion, has_numba, make_integrator
 from tippetop.integrators.cache_folder import VARIABLE
 from tippetop.presets import report_problem
 
@@ -61,6 +61,16 @@ def test_rounding_does_not_gather():
     )
     assert abs(math.hypot(*arc.end_state) - 1.0) < 1e-11
     assert arc.steps > 5000
+
+
+@pytest.mark.parametrize("rise", [1e-3, 1e-6])
+def test_a_hop_far_shorter_than_a_step_ends_where_it_lands(rise):
+    """A guard that starts at zero, rises and is back before any look: thrown up, it falls as long."""
+    guards = (Guard("landing", lambda y, p: y[0]),)
+    motion = Motion(lambda y, p: (y[1], -p[0]), size=2, parameters=1, guards=guards)
+    _, own = both(motion, (1.0,), np.array([0.0, rise]), 50.0)
+    assert own.guard == "landing"
+    assert own.solution.end == pytest.approx(2.0 * rise, rel=1e-9)
 
 
 def test_what_cannot_be_recorded_is_left_to_scipy():

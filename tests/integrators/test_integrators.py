@@ -32,12 +32,11 @@ from tippetop.integrators import (
     has_taylor,
     make_integrator,
     scipy_methods,
+    stepping,
 )
 
 if has_taylor():
     from tippetop.integrators import taylor
-if has_numba():
-    from tippetop.integrators import compiled_runge_kutta
 
 every_method = pytest.mark.parametrize("method", DEFAULTS, ids=lambda method: method.label)
 every_method_also_loose = pytest.mark.parametrize(
@@ -151,7 +150,7 @@ def test_steps_join(method):
 CUTS = {
     "taylor": (taylor, {"LONG": 4}) if has_taylor() else None,
     "collocation": (collocation, {"MANY": 8}),
-    "compiled": (compiled_runge_kutta, {"MANY": 7}) if has_numba() else None,
+    "compiled": (stepping, {"MANY": 7}),
 }
 """What decides into how many arcs a solution is cut, and smaller numbers of it."""
 

@@ -41,6 +41,10 @@ class Calls(Translator):
                 id="bool",
             ) if len(node.args) == 1:
                 return self.truth(node.args[0], ATOM)
+            case ast.Name(id="abs" | "max" | "min" as word) if self.among_arrays(node):
+                return f"Math.{word}({self.arguments(node.args)})"
+            case ast.Name(id="len") if self.is_array(node.args[0]):
+                return f"{self.text(node.args[0])}.length"
             case ast.Name(id="type"):
                 return f"{self.text(node.args[0], ATOM)}.constructor"
             case ast.Name(id="cls"):

@@ -3,7 +3,7 @@
 import ast
 from collections.abc import Iterator
 
-from tippetop.emit.program import Class, names_in, safe
+from tippetop.emit.program import Class, is_alias, names_in, safe
 from tippetop.emit.statements import Statements, indented
 
 
@@ -27,7 +27,7 @@ class Definitions(Statements):
                 case ast.Assign(targets=targets, value=value) if names_in(targets[0]):
                     if all(self.program.resolve(self.module, name) for name in names_in(targets[0])):
                         yield f"const {self.pattern(targets[0])} = {self.text(value)};"
-                case ast.AnnAssign(target=ast.Name(id=name), value=value) if value:
+                case ast.AnnAssign(target=ast.Name(id=name), value=value) if value and not is_alias(node):
                     if self.program.resolve(self.module, name):
                         yield f"const {self.name(name)} = {self.text(value)};"
 

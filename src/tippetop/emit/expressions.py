@@ -70,6 +70,14 @@ class Expressions(Calls):
                 return f"...{self.pattern(value)}"
         return self.text(node)
 
+    def is_array(self, node: ast.expr) -> bool:
+        """Whether an expression is an array of numbers."""
+        return isinstance(node, ast.Name) and any(node.id in scope.arrays for scope in self.scopes[-1:])
+
+    def among_arrays(self, node: ast.expr) -> bool:
+        """Whether an expression is a number in a function of arrays of numbers, where nothing is an error."""
+        return self._is_float(node) and any(scope.arrays for scope in self.scopes[-1:])
+
     def _is_float(self, node: ast.expr) -> bool:
         return any(scope.is_float(node) for scope in self.scopes[-1:]) or is_number(node)
 
@@ -167,7 +175,7 @@ class Expressions(Calls):
     def _arithmetic(self, node: ast.BinOp) -> tuple[str, int]:
         word, sign, binds = ARITHMETIC[type(node.op)]
         plain = self._is_float(node.left) and self._is_float(node.right)
-        if isinstance(node.op, ast.Div):
+        if isinstance(node.op, ast.Div) and not self.among_arrays(node):
             plain = plain and isinstance(node.right, ast.Constant) and bool(node.right.value)
         if sign and (plain or binds == BITS):
             return f"{self.text(node.left, binds)} {sign} {self.text(node.right, binds + 1)}", binds
@@ -218,6 +226,11 @@ class Expressions(Calls):
                     return f"{whole}.slice({', '.join(parts)})"
                 parts = [self.text(one) if one else "null" for one in (low, high, step)]
                 return f"py.slice({whole}, {', '.join(parts)})"
+            case ast.Tuple(elts=places):
+                row = f"{whole}[{self.text(places[0])}]"
+                return self.rows.get(row, row) + "".join(f"[{self.text(place)}]" for place in places[1:])
+            case _ if self.is_array(node.value):
+                return f"{whole}[{self.text(node.slice)}]"
             case ast.Constant(value=int(number)) if self.module not in self.program.indexed:
                 return f"{whole}[{number}]"
         return f"py.item({whole}, {self.text(node.slice)})"

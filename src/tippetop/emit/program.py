@@ -176,6 +176,9 @@ class Program:
         return "record" if "dataclass" in marks or "record" in inherited else "plain"
 
     def _describe(self, found: Class) -> None:
+        for one in ast.walk(found.node):
+            if isinstance(one, ast.Attribute) and isinstance(one.ctx, ast.Store):
+                self.values.setdefault(one.attr, [])
         for base in found.bases:
             found.fields.update(self.classes[base].fields)
         for node in found.node.body:
@@ -226,8 +229,8 @@ def is_type(value: ast.expr) -> bool:
 
 
 def is_alias(node: ast.AnnAssign) -> bool:
-    """Whether an assignment gives a type another name."""
-    return ast.unparse(node.annotation).endswith("TypeAlias")
+    """Whether an assignment gives a type another name, or holds a name free for what is written later."""
+    return ast.unparse(node.annotation).endswith("TypeAlias") or ast.unparse(node.value or node) == "None"
 
 
 def safe(name: str) -> str:

@@ -4,6 +4,7 @@ import ast
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 from tippetop.emit.program import names_in, parameters
 
@@ -20,8 +21,8 @@ class Scope:
         Names of its parameters.
     bindings
         What binds other names, and binds parameters anew.
-    floats
-        Names of numbers.
+    floats, arrays
+        Names of numbers, and of arrays of them.
     declared
         The statements that declare names; none for what is declared at the top.
     """
@@ -29,6 +30,7 @@ class Scope:
     parameters: list[str] = field(default_factory=list)
     bindings: dict[str, list[ast.AST]] = field(default_factory=dict)
     floats: set[str] = field(default_factory=set)
+    arrays: set[str] = field(default_factory=set)
     declared: dict[str, Sequence[ast.AST]] = field(default_factory=dict)
 
     @classmethod
@@ -36,12 +38,17 @@ class Scope:
         """The scope of a function."""
         found = cls(parameters(node) + ([node.args.vararg.arg] if node.args.vararg else []))
         for given in (*node.args.args, *node.args.kwonlyargs):
-            if given.annotation is not None and ast.unparse(given.annotation) in FLOATS:
+            said = ast.unparse(given.annotation) if given.annotation else ""
+            if said in FLOATS:
                 found.floats.add(given.arg)
+            if said == "Array":
+                found.arrays.add(given.arg)
         if isinstance(node, ast.FunctionDef):
             for one in within(node):
                 for name in bound_by(one):
                     found.bindings.setdefault(name, []).append(one)
+                if isinstance(one, ast.Assign):
+                    found.arrays |= {target.id for target, value in pairs_of(one) if is_room(target, value)}
             found._weigh()
             total = Counter(uses(node.body))
             for name, bindings in found.bindings.items():
@@ -104,15 +111,9 @@ class Scope:
     def _is_number(self, name: str, node: ast.AST) -> bool:
         """Whether a statement binds a name to a number."""
         match node:
-            case ast.Assign(targets=targets, value=value):
-                for target in targets:
-                    pairs = [(target, value)]
-                    if isinstance(target, ast.Tuple) and isinstance(value, ast.Tuple):
-                        pairs = list(zip(target.elts, value.elts, strict=False))
-                    for one, part in pairs:
-                        if name in names_in(one) and not (isinstance(one, ast.Name) and self.is_float(part)):
-                            return False
-                return True
+            case ast.Assign():
+                pairs = [pair for pair in pairs_of(node) if name in names_in(pair[0])]
+                return all(isinstance(target, ast.Name) and self.is_float(value) for target, value in pairs)
             case ast.AnnAssign(annotation=annotation):
                 return ast.unparse(annotation) in FLOATS
             case ast.AugAssign(value=value):
@@ -132,8 +133,14 @@ class Scope:
                 return self.is_float(operand)
             case ast.BinOp(left=left, right=right):
                 return self.is_float(left) and self.is_float(right)
+            case ast.IfExp(body=body, orelse=orelse):
+                return self.is_float(body) and self.is_float(orelse)
+            case ast.Subscript(value=ast.Name(id=name)):
+                return name in self.arrays
             case ast.Call(func=ast.Name(id="len" | "float" | "int")):
                 return True
+            case ast.Call(func=ast.Name(id="abs" | "max" | "min"), args=args):
+                return all(self.is_float(one) for one in args)
             case ast.Call(func=ast.Attribute(value=ast.Name(id="math"))):
                 return True
         return False
@@ -169,6 +176,22 @@ def bound_by(node: ast.AST) -> list[str]:
         case ast.FunctionDef(name=name):
             found = [name]
     return [name for name in found if name != "_"]
+
+
+def pairs_of(node: ast.Assign) -> Iterator[tuple[Any, ast.expr]]:
+    """What is bound, or assigned to, with its value: one by one where both are rows."""
+    for target in node.targets:
+        if isinstance(target, ast.Tuple) and isinstance(node.value, ast.Tuple):
+            yield from zip(target.elts, node.value.elts, strict=False)
+        else:
+            yield target, node.value
+
+
+def is_room(target: ast.expr, value: ast.expr) -> bool:
+    """Whether a name is bound to an array that is to be filled."""
+    return (
+        isinstance(target, ast.Name) and isinstance(value, ast.Call) and ast.unparse(value.func) == "np.empty"
+    )
 
 
 def uses(nodes: Iterable[ast.AST], hidden: Sequence[str] = ()) -> Iterator[str]:

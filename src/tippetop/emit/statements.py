@@ -2,6 +2,7 @@
 
 import ast
 from collections.abc import Iterator, Sequence
+from typing import Any
 
 from tippetop.emit.expressions import Expressions
 from tippetop.emit.program import names_in, safe
@@ -128,6 +129,11 @@ class Statements(Expressions):
                 )
                 yield f"py.put_slice({self.text(target.value, ATOM)}, {low}, {high}, {value});"
                 continue
+            if isinstance(target, ast.Subscript) and (
+                isinstance(target.slice, ast.Tuple) or self.is_array(target.value)
+            ):
+                yield f"{self.text(target)} = {value};"
+                continue
             if isinstance(target, ast.Subscript):
                 whole, place = self.text(target.value, ATOM), self.text(target.slice)
                 yield f"py.put({whole}, {place}, {value});"
@@ -146,10 +152,16 @@ class Statements(Expressions):
                 sign, by = (
                     ("<", f"{i} += {step}") if not step.startswith("-") else (">", f"{i} -= {step[1:]}")
                 )
-                yield f"for ({word}{i} = {start}; {i} {sign} {stop}; {by}) {{"
+                # Rows of arrays whose numbers are gone through are looked up once.
+                rows: list[Any] = [one for inner in node.body for one in ast.walk(inner) if is_row(one, name)]
+                found = sorted({(self.text(one.value), self.text(one.slice.elts[0])) for one in rows})
+                self.rows = {f"{whole}[{place}]": f"{whole}{place}" for whole, place in found}
+                known = "".join(f", {own} = {row}" for row, own in self.rows.items())
+                yield f"for ({word}{i} = {start}{known}; {i} {sign} {stop}; {by}) {{"
             case _:
                 yield f"for ({word}{self.pattern(node.target)} of {self.text(node.iter)}) {{"
         yield from indented(self._block(node.body))
+        self.rows = {}
         yield "}"
 
     def _nested(self, node: ast.FunctionDef, name: str) -> Iterator[str]:
@@ -182,6 +194,14 @@ class Statements(Expressions):
             yield from indented(self._block(case.body))
             word = "} else "
         yield "}"
+
+
+def is_row(node: Any, index: str) -> bool:
+    """Whether an expression is a number, of this index, of a row of an array."""
+    match node:
+        case ast.Subscript(slice=ast.Tuple(elts=[ast.Constant(), ast.Name(id=name)])):
+            return name == index
+    return False
 
 
 def indented(lines: Iterator[str]) -> Iterator[str]:

@@ -30,6 +30,7 @@ class Translator(ABC):
         self.program, self.module = program, module
         self.scopes: list[Scope] = []
         self.hidden: list[set[str]] = []
+        self.rows: dict[str, str] = {}
         self.rebound = False
 
     @abstractmethod
@@ -39,6 +40,14 @@ class Translator(ABC):
     @abstractmethod
     def truth(self, node: ast.expr, binds: int = ARROW) -> str:
         """Whether an expression is true."""
+
+    @abstractmethod
+    def among_arrays(self, node: ast.expr) -> bool:
+        """Whether an expression is a number in a function of arrays of numbers, where nothing is an error."""
+
+    @abstractmethod
+    def is_array(self, node: ast.expr) -> bool:
+        """Whether an expression is an array of numbers."""
 
     def arguments(self, nodes: Sequence[ast.expr]) -> str:
         """Expressions in a row."""

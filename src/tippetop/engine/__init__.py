@@ -1,6 +1,6 @@
 """The engine in the page: launches followed in JavaScript, in a browser, a worker or Node.
 
-`mechanics.js`, `tableau.js` and `tables.js` are made by ``python -m tippetop.engine`` of the modules of this
+`mechanics.js` and `tables.js` are made by ``python -m tippetop.engine`` of the modules of this
 package that say what happens to a top. What is written by hand is what these are run by: what Python means
 where JavaScript means something else, the integrator, and what is read off a run.
 """

@@ -1,4 +1,5 @@
 // Solutions as polynomials in time, one a step, as in tippetop.integrators.dense.
+import { CHEBYSHEV } from "./tables.js";
 import { math } from "./runtime.js";
 
 /** Elementary functions of numbers, and of the nodes of a graph. */
@@ -8,45 +9,19 @@ export const as_array = (numbers) => Float64Array.from(numbers);
 
 const NEWTON = 6;
 const SHORTEST = 1e-8;
-const known = new Map();
-
-/** Chebyshev's points in [0, 1], and the matrices from values there to his coefficients and to powers. */
-export function chebyshev(degree) {
-  if (known.has(degree)) return known.get(degree);
-  const count = degree + 1;
-  const angles = Array.from({ length: count }, (_, j) => (Math.PI * (j + 0.5)) / count);
-  const places = angles.map((angle) => 0.5 - 0.5 * Math.cos(angle));
-  const transform = Float64Array.from({ length: count * count }, (_, place) => {
-    const k = Math.floor(place / count);
-    return ((k ? 2 : 1) / count) * (k % 2 ? -1 : 1) * Math.cos(k * angles[place % count]);
-  });
-  const powers = [Float64Array.of(1), Float64Array.of(-1, 2)];
-  for (let k = 2; k < count; k += 1) {
-    const next = new Float64Array(k + 1);
-    powers[k - 1].forEach((term, i) => {
-      next[i] -= 2 * term;
-      next[i + 1] += 4 * term;
-    });
-    powers[k - 2].forEach((term, i) => (next[i] -= term));
-    powers.push(next);
-  }
-  known.set(degree, { places, transform, powers });
-  return known.get(degree);
-}
-
 /** Coefficients in powers of a polynomial with some values at Chebyshev's points, put in `out` from `at` on. */
 export function toPowers(values, degree, out, at = 0) {
-  const { transform, powers } = chebyshev(degree), first = values[0];
+  const { transform, powers } = CHEBYSHEV[degree], first = values[0];
   let same = 1;
   while (same <= degree && values[same] === first) same += 1;
   if (same > degree) {
     out[at] = first;
     return;
   }
-  for (let k = 0, place = 0; k <= degree; k += 1) {
-    const terms = powers[k];
+  for (let k = 0; k <= degree; k += 1) {
+    const terms = powers[k], row = transform[k];
     let weight = 0;
-    for (let j = 0; j <= degree; j += 1, place += 1) weight += transform[place] * values[j];
+    for (let j = 0; j <= degree; j += 1) weight += row[j] * values[j];
     for (let i = 0; i <= k; i += 1) out[at + i] += weight * terms[i];
   }
 }
@@ -137,6 +112,17 @@ export class DenseSolution {
     return time;
   }
 
+  /** The first of some steps, with rows [power][number] of coefficients. */
+  static of_steps(knots, steps, count) {
+    const wide = steps[0].length, size = steps[0][0].length, terms = new Float64Array(count * size * wide);
+    for (let step = 0, at = 0; step < count; step += 1) {
+      for (let number = 0; number < size; number += 1) {
+        for (let power = 0; power < wide; power += 1, at += 1) terms[at] = steps[step][power][number];
+      }
+    }
+    return new DenseSolution(knots.slice(0, count + 1), terms, size, wide - 1);
+  }
+
   static nothing(time, size) {
     return new DenseSolution([time], new Float64Array(0), size, 0);
   }
@@ -178,7 +164,7 @@ export class DenseSolution {
   /** Polynomials that agree with a function, from a time to numbers, at Chebyshev's points of every step. */
   static fitted(function_, knots, degree) {
     if (function_.size) return new Evaluated(function_, Array.from(knots), Array.from(knots), degree);
-    const { places } = chebyshev(degree), count = knots.length - 1, wide = degree + 1;
+    const { places } = CHEBYSHEV[degree], count = knots.length - 1, wide = degree + 1;
     let terms = null, size = 0, values = null;
     for (let step = 0; step < count; step += 1) {
       for (let place = 0; place < wide; place += 1) {
@@ -223,7 +209,7 @@ class Evaluated extends DenseSolution {
   polynomial(step, number) {
     const wide = this.degree + 1;
     if (!this.fits.has(number)) {
-      const { places } = chebyshev(this.degree), values = new Float64Array(wide), terms = new Float64Array(wide * this.count);
+      const { places } = CHEBYSHEV[this.degree], values = new Float64Array(wide), terms = new Float64Array(wide * this.count);
       for (let each = 0; each < this.count; each += 1) {
         for (let place = 0; place < wide; place += 1) values[place] = this.value(each, number, places[place]);
         toPowers(values, this.degree, terms, each * wide);

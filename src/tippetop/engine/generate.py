@@ -8,8 +8,8 @@ from pathlib import Path
 from tippetop.emit.definitions import Definitions
 from tippetop.emit.program import Program
 from tippetop.engine import COMMAND
-from tippetop.engine.tableau import tableau
 from tippetop.engine.tables import tables
+from tippetop.integrators import dormand_prince
 
 ROOTS = (
     "tippetop.contact.choice",
@@ -19,12 +19,14 @@ ROOTS = (
     "tippetop.theory.prospects",
     "tippetop.mechanics.view",
     "tippetop.mechanics.quadratures",
+    "tippetop.integrators.stepping",
     "tippetop.emit.javascript",
 )
 """What the engine asks for: these, and what they import, are translated."""
 
 GIVEN = {
     "tippetop.integrators.dense": "./dense.js",
+    "tippetop.integrators.rates": "",
     "tippetop.integrators": "./integrate.js",
     "tippetop.validation": "./part.js",
     "tippetop.errors": "./part.js",
@@ -41,6 +43,7 @@ LEFT = {
     "_a_profile",
     "Body.turned",
     "Contact.rules",
+    *("written_out", "_for_each", "_sum", "_powers"),
     *("Branch", "precession_branch", "state_of", "is_held", "steady_launch"),
     *(f"Problem.{name}" for name in ("replace", "to_toml", "to_json", "from_toml", "from_json", "read")),
 }
@@ -52,7 +55,7 @@ INDEXED = {"tippetop.mechanics.series", "tippetop.mechanics.slip_onset"}
 
 def generated() -> dict[str, str]:
     """The texts of the modules by their names."""
-    return {"mechanics.js": translated(), "tableau.js": tableau(COMMAND), "tables.js": tables(COMMAND)}
+    return {"mechanics.js": translated(), "tables.js": tables(COMMAND)}
 
 
 def translated() -> str:
@@ -91,4 +94,5 @@ def _text(module: str) -> str:
     spec = importlib.util.find_spec(module)
     assert spec is not None, module
     assert spec.origin is not None, module
-    return Path(spec.origin).read_text(encoding="utf-8")
+    text = Path(spec.origin).read_text(encoding="utf-8")
+    return text + dormand_prince.written_out() if module == dormand_prince.__name__ else text

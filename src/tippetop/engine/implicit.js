@@ -1,44 +1,84 @@
 // Collocation at Radau's points (Hairer and Wanner, Solving Ordinary Differential Equations II): for stiff motions.
-import { toPowers, chebyshev } from "./dense.js";
-import { gauss } from "./polynomials.js";
-import { Stepper } from "./stepper.js";
+import { Arc, FAILURES, MANY, SINGULAR, STUCK_of_dormand_prince as STUCK, first_fall, first_step, polish } from "./mechanics.js";
+import { DenseSolution } from "./dense.js";
+import { RADAU } from "./tables.js";
 
-const STAGES = 6, TURNS = 12, ENOUGH = 1e-3, MOST = 2048;
+const { integrals: WEIGHTS, powers: POWERS, last: [LAST] } = RADAU;
+const STAGES = WEIGHTS.length, TURNS = 12, ENOUGH = 1e-3, LEAST_STEP = 1e-15;
 
-/** Radau's points in (0, 1], of which the last is 1. */
-const POINTS = Array.from({ length: STAGES }, (_, j) => {
-  let x = Math.cos((2 * Math.PI * (STAGES - 1 - j)) / (2 * STAGES - 1));
-  for (let turn = 0; turn < 30 && j < STAGES - 1; turn += 1) {
-    const [before, now] = legendre(STAGES, x), value = before - now, step = 1e-7;
-    const [b, n] = legendre(STAGES, x + step);
-    x -= (value * step) / (b - n - value);
+/** Follow a motion; see tippetop.integrators.base.Integrator. */
+export function* collocated(motion, functions, parameters, [start, begin], end, tolerance) {
+  const step = new Step(functions, parameters, begin), { size } = step;
+  let knots = [start], terms = [], time = start, growth = 10, counted = 0;
+  const guards = motion.guards.map((guard, number) => functions.guard(guard, number));
+  const arc = (guard, failure, last) => {
+    const solution = new DenseSolution(knots, Float64Array.from(terms.flat()), size, STAGES);
+    const found = new Arc(solution, Float64Array.from(last), guard, failure, knots.length - 1, step.evaluations - counted);
+    [knots, terms, counted] = [[time], [], step.evaluations];
+    return found;
+  };
+  step.begin();
+  if (!step.slopes[0].every(Number.isFinite)) {
+    yield arc(null, FAILURES.get(SINGULAR), begin);
+    return;
   }
-  return 0.5 * (1 + x);
-});
-
-function legendre(count, x) {
-  let [before, now] = [1, x];
-  for (let k = 2; k <= count; k += 1) [before, now] = [now, ((2 * k - 1) * x * now - (k - 1) * before) / k];
-  return [before, now];
+  let span = first_step(
+    functions.rates, parameters, step.state, step.slopes, step.work, end - start, [tolerance, tolerance]);
+  step.begin();
+  while (time < end) {
+    const reach = Math.min(time + span, end), doubt = step.take(reach - time, tolerance);
+    if (!(doubt < 1)) {
+      if (span <= LEAST_STEP * Math.max(1, Math.abs(reach))) {
+        yield arc(null, FAILURES.get(STUCK), step.state);
+        return;
+      }
+      span = (reach - time) * (doubt > 0 && doubt < Infinity ? Math.max(0.2, 0.9 * doubt ** (-1 / STAGES)) : 0.2);
+      growth = 1;
+      continue;
+    }
+    const taken = step.terms(), here = new DenseSolution([time, reach], Float64Array.from(taken), size, STAGES);
+    let again = false;
+    const advance = (at) => {
+      again = true;
+      step.take(at - time, tolerance);
+      return step.reached.slice();
+    };
+    const fall = first_fall(guards, parameters, (at) => here.rows(at), advance, [time, reach]);
+    if (fall !== null) {
+      const guard = guards[fall[0]], [at, last] = polish(guard, parameters, advance, [time, reach], fall[1]);
+      advance(at);
+      terms.push(step.terms());
+      knots.push((time = at));
+      yield arc(guard.name, null, last);
+      return;
+    }
+    if (again) step.take(reach - time, tolerance);
+    step.accept();
+    terms.push(taken);
+    knots.push(reach);
+    span = (reach - time) * Math.min(growth, doubt === 0 ? 10 : 0.9 * doubt ** (-1 / STAGES));
+    [time, growth] = [reach, 10];
+    if (terms.length === MANY || time >= end) yield arc(null, null, step.state);
+  }
 }
 
-const lagrange = (j, x) => POINTS.reduce((total, c, i) => (i === j ? total : (total * (x - c)) / (POINTS[j] - c)), 1);
-const { nodes, weights } = gauss(STAGES);
-const integral = (j, x) => nodes.reduce((total, node, i) => total + weights[i] * x * lagrange(j, x * node), 0);
-const WEIGHTS = POINTS.map((c) => POINTS.map((_, j) => integral(j, c)));
-/** What a polynomial that is 0 at 0 is at Chebyshev's points, from what it is at Radau's. */
-const PLACES = chebyshev(STAGES).places.map((place) => POINTS.map((c, j) => (place / c) * lagrange(j, place)));
-/** The highest of Legendre's polynomials in what a function is at the points. */
-const HIGHEST = POINTS.map((_, j) =>
-  nodes.reduce((total, x, i) => total + (2 * STAGES - 1) * weights[i] * lagrange(j, x) * legendre(STAGES - 1, 2 * x - 1)[1], 0));
-
-export class Collocation extends Stepper {
-  constructor(motion, parameters, state) {
-    super(motion, parameters, state, STAGES, STAGES);
-    this.most = MOST;
-    this.jacobian = null;
-    this.there = new Float64Array(this.size);
+class Step {
+  constructor(functions, parameters, state) {
+    Object.assign(this, { functions, parameters, size: state.length, jacobian: null, evaluations: 0 });
+    const room = () => new Float64Array(this.size);
+    this.state = Float64Array.from(state);
+    [this.reached, this.work, this.there] = [room(), room(), room()];
+    this.slopes = Array.from({ length: STAGES + 1 }, room);
     this.moved = new Float64Array(STAGES * this.size);
+  }
+
+  rates(y, out) {
+    this.evaluations += 1;
+    this.functions.rates(y, this.parameters, out);
+  }
+
+  begin() {
+    this.rates(this.state, this.slopes[0]);
   }
 
   accept() {
@@ -48,114 +88,91 @@ export class Collocation extends Stepper {
   }
 
   /** Derivatives of the rates at the start of the step, by differences that are small beside what moves in it. */
-  differentiate(step) {
-    const { size, state, slopes, work, there } = this, found = [];
-    for (let j = 0; j < size; j += 1) {
-      const shift = 1e-7 * Math.max(Math.abs(state[j]), step * Math.abs(slopes[0][j]), 1e-3 * step), columns = [];
-      for (const sign of [1, -1]) {
+  differentiate(span) {
+    const { size, state, slopes, work, there } = this;
+    return Array.from({ length: size }, (_, j) => {
+      const shift = 1e-7 * Math.max(Math.abs(state[j]), span * Math.abs(slopes[0][j]), 1e-3 * span);
+      const [above, below] = [shift, -shift].map((by) => {
         work.set(state);
-        work[j] += sign * shift;
+        work[j] += by;
         this.rates(work, there);
-        columns.push(there.slice());
-      }
-      found.push(columns[0].map((value, i) => (value - columns[1][i]) / (2 * shift)));
-    }
-    return found;
+        return there.slice();
+      });
+      return above.map((value, i) => (value - below[i]) / (2 * shift));
+    });
   }
 
-  take(step, tolerance) {
-    const { size, state, slopes, work, reached } = this, count = STAGES * size;
-    this.jacobian ??= this.differentiate(step);
-    const matrix = Array.from({ length: count }, () => new Float64Array(count));
-    for (let a = 0; a < STAGES; a += 1) {
-      for (let b = 0; b < STAGES; b += 1) {
-        for (let i = 0; i < size; i += 1) {
-          for (let j = 0; j < size; j += 1) {
-            matrix[a * size + i][b * size + j] = (a === b && i === j ? 1 : 0) - step * WEIGHTS[a][b] * this.jacobian[j][i];
-          }
-        }
-      }
-    }
-    const order = factored(matrix), moved = this.moved.fill(0), right = new Float64Array(count);
+  /** The matrix 1 - span (weights x derivatives), with a right-hand side beside it. */
+  system(weights, span, right) {
+    const { size, jacobian } = this;
+    return Array.from({ length: weights.length * size }, (_, row) => {
+      const a = Math.floor(row / size), i = row % size, found = new Float64Array(weights.length * size + 1);
+      weights[a].forEach((weight, b) => jacobian.forEach((column, j) => (found[b * size + j] = -span * weight * column[i])));
+      found[row] += 1;
+      found[found.length - 1] = right[row];
+      return found;
+    });
+  }
+
+  /** Take a step from the state to `reached`; its error over the one allowed. */
+  take(span, tolerance) {
+    const { size, state, slopes, work, moved } = this, right = new Float64Array(moved.length);
+    this.jacobian ??= this.differentiate(span);
+    moved.fill(0);
     let error = Infinity, before = Infinity;
     for (let turn = 0; turn < TURNS; turn += 1) {
       for (let a = 0; a < STAGES; a += 1) {
         for (let i = 0; i < size; i += 1) work[i] = state[i] + moved[a * size + i];
         this.rates(work, slopes[a + 1]);
       }
-      for (let a = 0; a < STAGES; a += 1) {
-        for (let i = 0; i < size; i += 1) {
-          let total = 0;
-          for (let b = 0; b < STAGES; b += 1) total += WEIGHTS[a][b] * slopes[b + 1][i];
-          right[a * size + i] = step * total - moved[a * size + i];
-        }
+      for (let k = 0; k < right.length; k += 1) {
+        const total = WEIGHTS[Math.floor(k / size)].reduce((sum, weight, b) => sum + weight * slopes[b + 1][k % size], 0);
+        right[k] = span * total - moved[k];
       }
-      solved(matrix, order, right);
+      const change = solved(this.system(WEIGHTS, span, right));
       error = 0;
-      for (let k = 0; k < count; k += 1) {
-        moved[k] += right[k];
-        error = Math.max(error, Math.abs(right[k]) / (tolerance * (1 + Math.abs(state[k % size]))));
+      for (let k = 0; k < right.length; k += 1) {
+        moved[k] += change[k];
+        error = Math.max(error, Math.abs(change[k]) / (tolerance * (1 + Math.abs(state[k % size]))));
       }
       if (error <= ENOUGH || !(error < 0.7 * before || turn < 2)) break;
       before = error;
     }
-    for (let i = 0; i < size; i += 1) reached[i] = state[i] + moved[count - size + i];
-    if (!(error <= 0.1)) return error === error ? 1e3 : NaN;
-    return this.doubt(step, tolerance);
+    for (let i = 0; i < size; i += 1) this.reached[i] = state[i] + moved[moved.length - size + i];
+    return error <= 0.1 ? this.doubt(span, tolerance) : error === error ? 1e3 : NaN;
   }
 
   /** The error of the step over the one allowed, without what stiffness makes of rounding (Hairer's filter). */
-  doubt(step, tolerance) {
-    const { size, state, slopes, jacobian } = this, off = new Float64Array(size), share = WEIGHTS[STAGES - 1][STAGES - 1];
-    const rows = Array.from({ length: size }, (_, i) =>
-      Float64Array.from({ length: size }, (__, j) => (i === j ? 1 : 0) - step * share * jacobian[j][i]));
-    for (let i = 0; i < size; i += 1) {
-      for (let a = 0; a < STAGES; a += 1) off[i] += step * HIGHEST[a] * slopes[a + 1][i];
-    }
-    solved(rows, factored(rows), off);
-    let largest = 0;
-    for (let i = 0; i < size; i += 1) largest = Math.max(largest, Math.abs(off[i]) / (tolerance * (1 + Math.abs(state[i]))));
-    return 0.1 * largest;
+  doubt(span, tolerance) {
+    const last = this.slopes[0].map((_, i) => span * LAST.reduce((sum, weight, a) => sum + weight * this.slopes[a + 1][i], 0));
+    const off = solved(this.system([[WEIGHTS[STAGES - 1][STAGES - 1]]], span, last));
+    return 0.1 * Math.max(...off.map((one, i) => Math.abs(one) / (tolerance * (1 + Math.abs(this.state[i])))));
   }
 
-  /** From what has moved, not from the rates: those of a stiff motion say of rounding what they say of motion. */
-  interpolate() {
-    const { size, state, moved, terms } = this;
-    terms.fill(0);
-    for (let i = 0; i < size; i += 1) {
-      const values = PLACES.map((row) => row.reduce((total, weight, a) => total + weight * moved[a * size + i], state[i]));
-      toPowers(values, STAGES, terms, i * (STAGES + 1));
-    }
+  /** The polynomials of the step just taken, [number][power] in a row. */
+  terms() {
+    const { size, state, moved } = this;
+    return Array.from(state).flatMap((start, i) => POWERS.map((row, power) =>
+      row.reduce((sum, weight, a) => (a ? sum + weight * moved[(a - 1) * size + i] : sum), power ? 0 : start)));
   }
 }
 
-/** Triangular factors of a matrix in its place, and the order of its rows. */
-function factored(rows) {
-  const count = rows.length, order = rows.map((_, i) => i);
+/** Solution of linear equations, a row each with its right-hand side last, by elimination with pivots. */
+function solved(rows) {
+  const count = rows.length, found = new Float64Array(count);
   for (let k = 0; k < count; k += 1) {
     let best = k;
     for (let i = k + 1; i < count; i += 1) if (Math.abs(rows[i][k]) > Math.abs(rows[best][k])) best = i;
     [rows[k], rows[best]] = [rows[best], rows[k]];
-    [order[k], order[best]] = [order[best], order[k]];
-    const pivot = rows[k];
     for (let i = k + 1; i < count; i += 1) {
-      const row = rows[i], factor = (row[k] /= pivot[k]);
-      if (factor !== 0) for (let j = k + 1; j < count; j += 1) row[j] -= factor * pivot[j];
+      const factor = rows[i][k] / rows[k][k];
+      if (factor !== 0) for (let j = k + 1; j <= count; j += 1) rows[i][j] -= factor * rows[k][j];
     }
   }
-  return order;
-}
-
-function solved(rows, order, right) {
-  const given = order.map((place) => right[place]), count = rows.length;
-  for (let i = 0; i < count; i += 1) {
-    let total = given[i];
-    for (let j = 0; j < i; j += 1) total -= rows[i][j] * right[j];
-    right[i] = total;
-  }
   for (let i = count - 1; i >= 0; i -= 1) {
-    let total = right[i];
-    for (let j = i + 1; j < count; j += 1) total -= rows[i][j] * right[j];
-    right[i] = total / rows[i][i];
+    let total = rows[i][count];
+    for (let j = i + 1; j < count; j += 1) total -= rows[i][j] * found[j];
+    found[i] = total / rows[i][i];
   }
+  return found;
 }

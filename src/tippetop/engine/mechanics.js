@@ -1275,7 +1275,7 @@ function tangents(e) {
   const [x, y, z] = e;
   const sign = z >= 0.0 ? 1.0 : -1.0;
   const a = py.div(1.0, py.add(1.0, py.mul(sign, z)));
-  return [[py.sub(1.0, py.mul(py.mul(x, x), a)), py.mul(py.mul(py.neg(x), y), a), py.mul(py.neg(sign), x)], [py.mul(py.mul(py.neg(x), y), a), py.sub(1.0, py.mul(py.mul(y, y), a)), py.mul(py.neg(sign), y)]];
+  return [[py.sub(1.0, py.mul(py.mul(x, x), a)), py.mul(py.mul(py.neg(x), y), a), py.mul(-sign, x)], [py.mul(py.mul(py.neg(x), y), a), py.sub(1.0, py.mul(py.mul(y, y), a)), py.mul(-sign, y)]];
 }
 
 // tippetop.mechanics.ending
@@ -2468,7 +2468,7 @@ const driven_motion = py.cached((kind, ending, components, degree) => {
   const free = py.truth(ending.moves) ? 8 : 6;
   const [chain, often] = [degree + 1, ending.recurs(kind.example.friction)];
   const rates = (y, numbers) => {
-    const given = py.slice(y, py.add(free, components), null, null);
+    const given = py.slice(y, free + components, null, null);
     const direction = py.tuple(py.range(components).map((i) => py.item(given, i * chain)));
     const state = new Closing(...split(y), py.tuple(y.slice(6, free)), direction, 0.0, 0.0);
     const rate = rates_in_time(state, ending, kind.top(py.tuple(numbers)));
@@ -2478,7 +2478,7 @@ const driven_motion = py.cached((kind, ending, components, degree) => {
     }
     return [...rate.axis, ...rate.momentum, ...rate.velocity, ...rate.xi, ...turning];
   };
-  return new Motion(rates, py.add(free, components * (chain + 1)), kind.numbers, undefined, often);
+  return new Motion(rates, free + components * (chain + 1), kind.numbers, undefined, often);
 });
 
 // tippetop.contact.arriving
@@ -2523,6 +2523,7 @@ py.fields(Arrival, ["left", "rows"]);
 
 /** The end of slip from a state on; None where its direction has not come to rest. */
 function arriving(here, ending, top, integrator) {
+  let begin, then;
   const rates = rates_in_time(here, ending, top);
   const along = inner(rates.xi, here.direction);
   if (along >= 0.0) {
@@ -2537,10 +2538,8 @@ function arriving(here, ending, top, integrator) {
         return null;
       }
       const known = resting_way(axis, momentum, way, ending, top, integrator);
-      let begin;
       [begin, way] = [onset(known, 1, DEGREE), known.first];
       const found = new Arrival(time_to(here.speed, begin.rows, left), begin.rows);
-      let then;
       [left, then] = [found.left, found.at(1.0)];
       const off = plus(now, scaled(-1.0, py.tuple(then.slice(0, 6))));
       const aside = py.math.dist(here.direction, scaled(py.div(1.0, size(py.tuple(then.slice(6)))), py.tuple(then.slice(6))));
@@ -2628,30 +2627,31 @@ function gap_rate(state, top) {
 
 // tippetop.mechanics.roots
 const FINEST = 1e-10;
+const [GOLDEN, NARROWED] = [0.5 * (3.0 - py.pow(5.0, 0.5)), 29];
 
 /** First root from `low` to `high`, or `low` if not positive there; `jerk` bounds the third derivative. */
 function first_root(function_, low, high, jerk) {
   let [time, step, finest] = [low, high - low, py.mul(FINEST, high - low)];
   let [value, rate, acceleration] = function_(time);
   while (value > 0.0) {
-    step = py.min(step, py.sub(high, time));
-    const end = py.eq(step, py.sub(high, time)) ? high : py.add(time, step);
+    step = py.min(step, high - time);
+    const end = step === high - time ? high : time + step;
     const positive = stays_positive(value, rate, acceleration, jerk, step);
     if (py.truth(positive) || py.truth(is_one_way(rate, acceleration, jerk, step))) {
-      if (py.eq(end, high) && py.truth(positive)) {
+      if (end === high && py.truth(positive)) {
         return null;
       }
       const later = function_(end);
       if (later[0] <= 0.0 && !py.truth(positive)) {
         return crossing((t) => function_(t)[0], time, end);
       }
-      if (py.eq(end, high) && later[0] > 0.0) {
+      if (end === high && later[0] > 0.0) {
         return null;
       }
-      [time, step] = [end, py.mul(2.0, step)];
+      [time, step] = [end, 2.0 * step];
       [value, rate, acceleration] = later;
     } else {
-      step = py.mul(step, 0.5);
+      step = step * 0.5;
       if (step < finest) {
         break;
       }
@@ -2680,6 +2680,28 @@ function stays_positive(value, rate, acceleration, jerk, step) {
 function is_one_way(rate, acceleration, jerk, step) {
   const falls = py.and(rate < 0.0, () => rate + step * (acceleration + 0.5 * step * jerk) < 0.0);
   return py.or(falls, () => acceleration + step * jerk < 0.0);
+}
+
+/** Place and value of a function's least value between two points, or of one that is not positive. */
+function dip(function_, low, high) {
+  let [a, b] = [low, high];
+  let [x, y] = [py.add(a, py.mul(GOLDEN, py.sub(b, a))), py.sub(b, py.mul(GOLDEN, py.sub(b, a)))];
+  let [f, g] = [function_(x), function_(y)];
+  for (let turn = 0; turn < NARROWED; turn += 1) {
+    if (f <= 0.0 || g <= 0.0) {
+      break;
+    }
+    if (f < g) {
+      [b, y, g] = [y, x, f];
+      x = py.add(a, py.mul(GOLDEN, py.sub(b, a)));
+      f = function_(x);
+    } else {
+      [a, x, f] = [x, y, g];
+      y = py.sub(b, py.mul(GOLDEN, py.sub(b, a)));
+      g = function_(y);
+    }
+  }
+  return f < g ? [x, f] : [y, g];
 }
 
 /** Root of a function between two points where its signs differ, by the method of Chandrupatla (1997). */
@@ -3051,7 +3073,7 @@ const closing_motion = py.cached((kind, ending, guarded) => {
   guards = py.add(guards, surface_guards(kind));
   const free = py.truth(ending.moves) ? 2 : 0;
   const components = py.truth(ending.slip) ? slip_dimension(law) : 2;
-  const size = py.add(py.add(8, free), components);
+  const size = py.add(8 + free, components);
   return new Motion(rates, size, py.add(kind.numbers, 2), py.tuple(guards), ending.recurs(law));
 });
 
@@ -3470,7 +3492,7 @@ class Stopping extends Passing {
   }
   /** Follow it to its end, or to where it is no longer about to end. */
   *segments(time, state, end, integrator) {
-    let solution, last, then;
+    let doubt, solution, last, then;
     const [ending, begin] = [this.ending, py.or(this.begin, () => this._clock(state))];
     const arrival = this._arrival(closing_of(begin, ending), end - time, integrator);
     if (arrival !== null) {
@@ -3496,7 +3518,6 @@ class Stopping extends Passing {
       if (!py.eq(arc.guard, LANDED)) {
         break;
       }
-      let doubt;
       [rest, doubt] = landed(here, ending, this.top);
       if (doubt < SETTLED_of_passing) {
         break;
@@ -3706,14 +3727,14 @@ function first_reach(along, goal, guess) {
   let there;
   let high = guess;
   while ((there = goal(along(high))) < 0.0) {
-    high = py.mul(high, 2.0);
+    high = high * 2.0;
   }
   if (there === 0.0) {
     return along(high);
   }
-  let low = goal(along(0.0)) < 0.0 ? 0.0 : py.mul(0.5, high);
+  let low = goal(along(0.0)) < 0.0 ? 0.0 : 0.5 * high;
   while (goal(along(low)) >= 0.0) {
-    [low, high] = [py.mul(0.5, low), low];
+    [low, high] = [0.5 * low, low];
   }
   return along(crossing((q) => goal(along(q)), low, high));
 }
@@ -5751,7 +5772,7 @@ function _left(state, here) {
   const slips = [...tops].map((top) => slip_of(...along_table(state), top));
   const number = size(slips[0]) <= size(slips[1]) ? 0 : 1;
   let [slip, speed] = [py.item(slips, number), size(py.item(slips, number))];
-  if (!(0.0 < speed && speed <= py.mul(TOGETHER, SLOWEST_SLIP)) || !py.truth(size(py.item(slips, py.sub(1, number))))) {
+  if (!(0.0 < speed && speed <= py.mul(TOGETHER, SLOWEST_SLIP)) || !py.truth(size(py.item(slips, 1 - number)))) {
     return 0.0;
   }
   const pair = ContactPair.of(state.axis, state.momentum, tops);
@@ -5912,6 +5933,7 @@ py.fields(StruckOnTwo, ["state", "tops", "arms", "points"]);
 
 /** What an impact does to a body whose other surface touches the table, with no normal velocity. */
 function impact_on_two(state, restitution, tops) {
+  let more;
   const arms = py.tuple([...tops].map((top) => contact_vector(state.axis, top.surface)));
   const points = py.tuple([...arms].map((arm) => contact_velocity(state, arm, tops[0])));
   const body = new StruckOnTwo(state, tops, [arms[0], arms[1]], [points[0], points[1]]);
@@ -5923,7 +5945,6 @@ function impact_on_two(state, restitution, tops) {
       const [spent, left] = [py.sub(py.div(here[6], full), 1.0), py.div(here[8], stored)];
       return py.float(py.max(spent, left));
     };
-    let more;
     [end, more] = body.until(compressed, goal);
     steps = py.add(steps, more);
   }
@@ -6017,7 +6038,7 @@ class OnSeveral extends FreeToFly {
       const wrench = contact_wrench(pair.first, slip, pair.first.turning.slice(0, 2));
       back = py.float(py.abs(pair.under([[0, wrench]])[1][2]));
     }
-    return py.float(py.max(py.mul(SLOWEST_ROCKING, py.pow(py.max(1.0, back), 0.5)), py.pow(py.mul(2.0 * back, depth), 0.5)));
+    return py.float(py.max(py.mul(SLOWEST_ROCKING, py.pow(py.max(1.0, back), 0.5)), py.pow(2.0 * back * depth, 0.5)));
   }
   /** Whether both contacts slip, faster than where slip on two contacts ends, if it can end at all. */
   _slips(other, state) {
@@ -6541,7 +6562,7 @@ class Problem extends Part {
       const units = natural_units(this.top);
       const start = natural_state(this.start(), units);
       const largest = py.float(py.max(py.map(py.abs, [...start.momentum, ...start.velocity, start.height])));
-      return py.mul(py.pow(largest, 2), py.max(1.0, py.float(units.energy), py.float(py.mul(this.body.mass, this.gravity))));
+      return py.pow(largest, 2) * py.max(1.0, py.float(units.energy), py.float(py.mul(this.body.mass, this.gravity)));
     } catch (error) {
       if (!(error instanceof py.ArithmeticError)) throw error;
       return py.math.nan;
@@ -7088,6 +7109,533 @@ const JAVASCRIPT = new Language(new py.Dict([[SIZE, new Spelling(["Math.abs(", "
 /** A JavaScript function `name(y, p, out)`. */
 function javascript_source(recorded, name) {
   return written(recorded, name, JAVASCRIPT);
+}
+
+// tippetop.integrators.dormand_prince
+const [REACHED, FULL, SUSPECT, STUCK_of_dormand_prince, SINGULAR] = py.range(5);
+const [SAFETY, LEAST_FACTOR, MOST_FACTOR] = [0.9, 0.2, 10.0];
+const NOTHING = 2e-15;
+const [EARLIEST, RISEN] = [py.pow(0.5, 40), 1e-15];
+const ROWS = 23;
+const LOOKS_of_dormand_prince = 8;
+
+/** Error of a step: less than 1 is good enough. */
+function error_of(h, y, new_, k, tolerance) {
+  combined_of_dormand_prince(y, k);
+  let [fifth, third] = [0.0, 0.0];
+  for (let i = 0, k16 = k[16], k17 = k[17]; i < y.length; i += 1) {
+    const scale = tolerance[1] + tolerance[0] * Math.max(Math.abs(y[i]), Math.abs(new_[i]));
+    const [first, second] = [k16[i] / scale, k17[i] / scale];
+    fifth = fifth + first * first;
+    third = third + second * second;
+  }
+  if (fifth === 0.0 && third === 0.0) {
+    return 0.0;
+  }
+  return h * fifth / py.math.sqrt((fifth + 0.01 * third) * y.length);
+}
+
+/** By how much a step of this error may be longer. */
+function factor_for(error, tries) {
+  let factor;
+  if (!(error < 1.0)) {
+    factor = py.mul(SAFETY, py.pow(error, -0.125));
+    return factor > LEAST_FACTOR ? factor : LEAST_FACTOR;
+  }
+  factor = error === 0.0 ? MOST_FACTOR : py.min(MOST_FACTOR, py.mul(SAFETY, py.pow(error, -0.125)));
+  return tries === 1 ? factor : py.min(1.0, factor);
+}
+
+/** How large the difference of two is beside the errors that are allowed: a mean. */
+function measure(a, b, y, tolerance) {
+  let total = 0.0;
+  for (let i = 0; i < y.length; i += 1) {
+    const part = (a[i] - b[i]) / (tolerance[1] + tolerance[0] * Math.abs(y[i]));
+    total = total + part * part;
+  }
+  return py.math.sqrt(total / y.length);
+}
+
+/** A step to begin with, whose error is about right; k[0] has the rates. */
+function first_step(rates, p, y, k, place, span, tolerance) {
+  for (let i = 0; i < y.length; i += 1) {
+    place[i] = 0.0;
+  }
+  const [size, slope] = [measure(y, place, y, tolerance), measure(k[0], place, y, tolerance)];
+  const trial = py.min(span, size < 1e-05 || slope < 1e-05 ? 1e-06 : py.div(py.mul(0.01, size), slope));
+  for (let i = 0, k0 = k[0]; i < y.length; i += 1) {
+    place[i] = py.add(y[i], py.mul(trial, k0[i]));
+  }
+  rates(place, p, k[1]);
+  const steepest = py.max(slope, py.div(measure(k[1], k[0], y, tolerance), trial));
+  const found = steepest <= 1e-15 ? py.max(1e-06, py.mul(trial, 0.001)) : py.pow(py.div(0.01, steepest), 0.125);
+  return py.min(py.mul(100.0, trial), found, span);
+}
+
+/** Put the state at a part of a step in y. */
+function within(powers, part, y) {
+  for (let i = 0, powers0 = powers[0], powers1 = powers[1], powers2 = powers[2], powers3 = powers[3], powers4 = powers[4], powers5 = powers[5], powers6 = powers[6], powers7 = powers[7]; i < y.length; i += 1) {
+    const high = powers4[i] + part * (powers5[i] + part * (powers6[i] + part * powers7[i]));
+    const low = powers2[i] + part * (powers3[i] + part * high);
+    y[i] = powers0[i] + part * (powers1[i] + part * low);
+  }
+}
+
+/** Whether a guard with these values at the looks falls through zero, or may dip below it in between. */
+function may_fall(values, guard) {
+  for (let i = 0; i < py.add(LOOKS_of_dormand_prince, 1); i += 1) {
+    const [before, here, after] = [Math.max(i - 1, 0), values[i][guard], py.min(i + 1, LOOKS_of_dormand_prince)];
+    if (here > 0.0) {
+      if (values[after][guard] <= 0.0) {
+        return true;
+      }
+      if (here <= values[before][guard] && here <= values[after][guard]) {
+        for (let j = Math.max(i - 2, 0); j < py.add(py.min(i + 2, LOOKS_of_dormand_prince), 1); j += 1) {
+          if (2.0 * here < values[j][guard]) {
+            return true;
+          }
+        }
+      }
+    }
+  }
+  return false;
+}
+
+/** Whether a guard that starts at zero, or by rounding below, rises before the first look. */
+function rises(guards, p, powers, y, values, guard) {
+  let part = py.div(1.0, LOOKS_of_dormand_prince);
+  while (part > EARLIEST) {
+    part = py.mul(part, 0.5);
+    within(powers, part, y);
+    guards(y, p, values[py.add(LOOKS_of_dormand_prince, 1)]);
+    if (values[py.add(LOOKS_of_dormand_prince, 1)][guard] > RISEN) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/** Whether a guard may fall in a step; values has those at its start, and room for the other looks. */
+function suspect(guards, p, powers, y, values) {
+  for (let look = 1; look < py.add(LOOKS_of_dormand_prince, 1); look += 1) {
+    within(powers, py.div(look, LOOKS_of_dormand_prince), y);
+    guards(y, p, values[look]);
+  }
+  for (let guard = 0, values0 = values[0], values1 = values[1]; guard < py.len(values[0]); guard += 1) {
+    if (py.truth(may_fall(values, guard))) {
+      return true;
+    }
+    if (values0[guard] <= 0.0 && values1[guard] <= 0.0 && py.truth(rises(guards, p, powers, y, values, guard))) {
+      return true;
+    }
+  }
+  for (let guard = 0, values0 = values[0]; guard < py.len(values[0]); guard += 1) {
+    values0[guard] = values[LOOKS_of_dormand_prince][guard];
+  }
+  return false;
+}
+
+/** Take steps from a state, which is brought up to date. */
+function advance(rates, guards, count, p, y, lost, k, span, tolerance, knots, terms, steps) {
+  let reach, h;
+  const size = y.length;
+  const [moved, new_, place] = [py.np.empty(size), py.np.empty(size), py.np.empty(size)];
+  const values = py.np.empty([py.add(LOOKS_of_dormand_prince, 2), count]);
+  let [time, end] = [span[0], span[1]];
+  let calls = 0;
+  if (span[2] === 0.0) {
+    rates(y, p, k[0]);
+    for (let i = 0, k0 = k[0]; i < size; i += 1) {
+      if (!py.truth(py.math.isfinite(k0[i]))) {
+        return [steps, 1, SINGULAR];
+      }
+    }
+    span[2] = first_step(rates, p, y, k, place, end - time, tolerance);
+    calls = calls + 2;
+  }
+  if (count > 0) {
+    guards(y, p, values[0]);
+  }
+  while (time < end) {
+    if (steps === terms.length) {
+      return [steps, calls, FULL];
+    }
+    let [error, tries] = [2.0, 0];
+    while (!(error < 1.0)) {
+      if (!(span[2] > py.mul(NOTHING, Math.abs(time)))) {
+        return [steps, calls, STUCK_of_dormand_prince];
+      }
+      reach = Math.min(time + span[2], end);
+      h = reach - time;
+      stages(rates, h, p, y, lost, k, moved, new_);
+      error = error_of(h, y, new_, k, tolerance);
+      tries = tries + 1;
+      span[2] = py.mul(h, factor_for(error, tries));
+    }
+    calls = calls + (12 * tries + 3);
+    more_stages(rates, h, p, y, lost, k, place);
+    polynomials(h, y, new_, k, terms[steps]);
+    for (let i = 0, k0 = k[0], k12 = k[12]; i < size; i += 1) {
+      lost[i] = moved[i] - (new_[i] - y[i]);
+      y[i] = new_[i];
+      k0[i] = k12[i];
+    }
+    time = reach;
+    steps = steps + 1;
+    knots[steps] = time;
+    span[0] = time;
+    if (count > 0 && py.truth(suspect(guards, p, terms[steps - 1], place, values))) {
+      return [steps, calls, SUSPECT];
+    }
+  }
+  return [steps, calls, REACHED];
+}
+
+function stages(rates, h, p, y, lost, k, moved, place) {
+  for (let i = 0, k0 = k[0]; i < y.length; i += 1) {
+    moved[i] = h * (0.05260015195876773 * k0[i]) + lost[i];
+    place[i] = y[i] + moved[i];
+  }
+  rates(place, p, k[1]);
+  for (let i = 0, k0 = k[0], k1 = k[1]; i < y.length; i += 1) {
+    moved[i] = h * (0.0197250569845379 * k0[i] + 0.0591751709536137 * k1[i]) + lost[i];
+    place[i] = y[i] + moved[i];
+  }
+  rates(place, p, k[2]);
+  for (let i = 0, k0 = k[0], k2 = k[2]; i < y.length; i += 1) {
+    moved[i] = h * (0.02958758547680685 * k0[i] + 0.08876275643042054 * k2[i]) + lost[i];
+    place[i] = y[i] + moved[i];
+  }
+  rates(place, p, k[3]);
+  for (let i = 0, k0 = k[0], k2 = k[2], k3 = k[3]; i < y.length; i += 1) {
+    moved[i] = h * (0.2413651341592667 * k0[i] + -0.8845494793282861 * k2[i] + 0.924834003261792 * k3[i]) + lost[i];
+    place[i] = y[i] + moved[i];
+  }
+  rates(place, p, k[4]);
+  for (let i = 0, k0 = k[0], k3 = k[3], k4 = k[4]; i < y.length; i += 1) {
+    moved[i] = h * (0.037037037037037035 * k0[i] + 0.17082860872947386 * k3[i] + 0.12546768756682242 * k4[i]) + lost[i];
+    place[i] = y[i] + moved[i];
+  }
+  rates(place, p, k[5]);
+  for (let i = 0, k0 = k[0], k3 = k[3], k4 = k[4], k5 = k[5]; i < y.length; i += 1) {
+    moved[i] = h * (0.037109375 * k0[i] + 0.17025221101954405 * k3[i] + 0.06021653898045596 * k4[i] + -0.017578125 * k5[i]) + lost[i];
+    place[i] = y[i] + moved[i];
+  }
+  rates(place, p, k[6]);
+  for (let i = 0, k0 = k[0], k3 = k[3], k4 = k[4], k5 = k[5], k6 = k[6]; i < y.length; i += 1) {
+    moved[i] = h * (0.03709200011850479 * k0[i] + 0.17038392571223998 * k3[i] + 0.10726203044637328 * k4[i] + -0.015319437748624402 * k5[i] + 0.008273789163814023 * k6[i]) + lost[i];
+    place[i] = y[i] + moved[i];
+  }
+  rates(place, p, k[7]);
+  for (let i = 0, k0 = k[0], k3 = k[3], k4 = k[4], k5 = k[5], k6 = k[6], k7 = k[7]; i < y.length; i += 1) {
+    moved[i] = h * (0.6241109587160757 * k0[i] + -3.3608926294469414 * k3[i] + -0.868219346841726 * k4[i] + 27.59209969944671 * k5[i] + 20.154067550477894 * k6[i] + -43.48988418106996 * k7[i]) + lost[i];
+    place[i] = y[i] + moved[i];
+  }
+  rates(place, p, k[8]);
+  for (let i = 0, k0 = k[0], k3 = k[3], k4 = k[4], k5 = k[5], k6 = k[6], k7 = k[7], k8 = k[8]; i < y.length; i += 1) {
+    moved[i] = h * (0.47766253643826434 * k0[i] + -2.4881146199716677 * k3[i] + -0.590290826836843 * k4[i] + 21.230051448181193 * k5[i] + 15.279233632882423 * k6[i] + -33.28821096898486 * k7[i] + -0.020331201708508627 * k8[i]) + lost[i];
+    place[i] = y[i] + moved[i];
+  }
+  rates(place, p, k[9]);
+  for (let i = 0, k0 = k[0], k3 = k[3], k4 = k[4], k5 = k[5], k6 = k[6], k7 = k[7], k8 = k[8], k9 = k[9]; i < y.length; i += 1) {
+    moved[i] = h * (-0.9371424300859873 * k0[i] + 5.186372428844064 * k3[i] + 1.0914373489967295 * k4[i] + -8.149787010746927 * k5[i] + -18.52006565999696 * k6[i] + 22.739487099350505 * k7[i] + 2.4936055526796523 * k8[i] + -3.0467644718982196 * k9[i]) + lost[i];
+    place[i] = y[i] + moved[i];
+  }
+  rates(place, p, k[10]);
+  for (let i = 0, k0 = k[0], k10 = k[10], k3 = k[3], k4 = k[4], k5 = k[5], k6 = k[6], k7 = k[7], k8 = k[8], k9 = k[9]; i < y.length; i += 1) {
+    moved[i] = h * (2.273310147516538 * k0[i] + -10.53449546673725 * k3[i] + -2.0008720582248625 * k4[i] + -17.9589318631188 * k5[i] + 27.94888452941996 * k6[i] + -2.8589982771350235 * k7[i] + -8.87285693353063 * k8[i] + 12.360567175794303 * k9[i] + 0.6433927460157636 * k10[i]) + lost[i];
+    place[i] = y[i] + moved[i];
+  }
+  rates(place, p, k[11]);
+  for (let i = 0, k0 = k[0], k10 = k[10], k11 = k[11], k5 = k[5], k6 = k[6], k7 = k[7], k8 = k[8], k9 = k[9]; i < y.length; i += 1) {
+    moved[i] = h * (0.054293734116568765 * k0[i] + 4.450312892752409 * k5[i] + 1.8915178993145003 * k6[i] + -5.801203960010585 * k7[i] + 0.3111643669578199 * k8[i] + -0.1521609496625161 * k9[i] + 0.20136540080403034 * k10[i] + 0.04471061572777259 * k11[i]) + lost[i];
+    place[i] = y[i] + moved[i];
+  }
+  rates(place, p, k[12]);
+}
+
+function more_stages(rates, h, p, y, lost, k, place) {
+  for (let i = 0, k0 = k[0], k10 = k[10], k11 = k[11], k12 = k[12], k6 = k[6], k7 = k[7], k8 = k[8], k9 = k[9]; i < y.length; i += 1) {
+    place[i] = y[i] + (h * (0.056167502283047954 * k0[i] + 0.25350021021662483 * k6[i] + -0.2462390374708025 * k7[i] + -0.12419142326381637 * k8[i] + 0.15329179827876568 * k9[i] + 0.00820105229563469 * k10[i] + 0.007567897660545699 * k11[i] + -0.008298 * k12[i]) + lost[i]);
+  }
+  rates(place, p, k[13]);
+  for (let i = 0, k0 = k[0], k10 = k[10], k11 = k[11], k12 = k[12], k13 = k[13], k5 = k[5], k6 = k[6], k7 = k[7]; i < y.length; i += 1) {
+    place[i] = y[i] + (h * (0.03183464816350214 * k0[i] + 0.028300909672366776 * k5[i] + 0.053541988307438566 * k6[i] + -0.05492374857139099 * k7[i] + -0.00010834732869724932 * k10[i] + 0.0003825710908356584 * k11[i] + -0.00034046500868740456 * k12[i] + 0.1413124436746325 * k13[i]) + lost[i]);
+  }
+  rates(place, p, k[14]);
+  for (let i = 0, k0 = k[0], k12 = k[12], k13 = k[13], k14 = k[14], k5 = k[5], k6 = k[6], k7 = k[7], k8 = k[8]; i < y.length; i += 1) {
+    place[i] = y[i] + (h * (-0.42889630158379194 * k0[i] + -4.697621415361164 * k5[i] + 7.683421196062599 * k6[i] + 4.06898981839711 * k7[i] + 0.3567271874552811 * k8[i] + -0.0013990241651590145 * k12[i] + 2.9475147891527724 * k13[i] + -9.15095847217987 * k14[i]) + lost[i]);
+  }
+  rates(place, p, k[15]);
+}
+
+function combined_of_dormand_prince(y, k) {
+  for (let i = 0, k0 = k[0], k10 = k[10], k11 = k[11], k16 = k[16], k17 = k[17], k5 = k[5], k6 = k[6], k7 = k[7], k8 = k[8], k9 = k[9]; i < y.length; i += 1) {
+    k16[i] = 0.01312004499419488 * k0[i] + -1.2251564463762044 * k5[i] + -0.4957589496572502 * k6[i] + 1.6643771824549864 * k7[i] + -0.35032884874997366 * k8[i] + 0.3341791187130175 * k9[i] + 0.08192320648511571 * k10[i] + -0.022355307863886294 * k11[i];
+    k17[i] = -0.18980075407240762 * k0[i] + 4.450312892752409 * k5[i] + 1.8915178993145003 * k6[i] + -5.801203960010585 * k7[i] + -0.4226823213237919 * k8[i] + -0.1521609496625161 * k9[i] + 0.20136540080403034 * k10[i] + 0.02265179219836082 * k11[i];
+  }
+}
+
+function polynomials(h, y, new_, k, powers) {
+  for (let i = 0, k0 = k[0], k10 = k[10], k11 = k[11], k12 = k[12], k13 = k[13], k14 = k[14], k15 = k[15], k16 = k[16], k17 = k[17], k18 = k[18], k19 = k[19], k20 = k[20], k21 = k[21], k22 = k[22], k5 = k[5], k6 = k[6], k7 = k[7], k8 = k[8], k9 = k[9], powers0 = powers[0]; i < y.length; i += 1) {
+    k16[i] = new_[i] - y[i];
+    k17[i] = h * k0[i] - k16[i];
+    k18[i] = 2.0 * k16[i] - h * (k0[i] + k12[i]);
+    k19[i] = h * (-8.428938276109013 * k0[i] + 0.5667149535193777 * k5[i] + -3.0689499459498917 * k6[i] + 2.38466765651207 * k7[i] + 2.117034582445028 * k8[i] + -0.871391583777973 * k9[i] + 2.2404374302607883 * k10[i] + 0.6315787787694688 * k11[i] + -0.08899033645133331 * k12[i] + 18.148505520854727 * k13[i] + -9.194632392478356 * k14[i] + -4.436036387594894 * k15[i]);
+    k20[i] = h * (10.427508642579134 * k0[i] + 242.28349177525817 * k5[i] + 165.20045171727028 * k6[i] + -374.5467547226902 * k7[i] + -22.113666853125306 * k8[i] + 7.733432668472264 * k9[i] + -30.674084731089398 * k10[i] + -9.332130526430229 * k11[i] + 15.697238121770845 * k12[i] + -31.139403219565178 * k13[i] + -9.35292435884448 * k14[i] + 35.81684148639408 * k15[i]);
+    k21[i] = h * (19.985053242002433 * k0[i] + -387.0373087493518 * k5[i] + -189.17813819516758 * k6[i] + 527.8081592054236 * k7[i] + -11.57390253995963 * k8[i] + 6.8812326946963 * k9[i] + -1.0006050966910838 * k10[i] + 0.7777137798053443 * k11[i] + -2.778205752353508 * k12[i] + -60.19669523126412 * k13[i] + 84.32040550667716 * k14[i] + 11.99229113618279 * k15[i]);
+    k22[i] = h * (-25.69393346270375 * k0[i] + -154.18974869023643 * k5[i] + -231.5293791760455 * k6[i] + 357.6391179106141 * k7[i] + 93.40532418362432 * k8[i] + -37.45832313645163 * k9[i] + 104.0996495089623 * k10[i] + 29.8402934266605 * k11[i] + -43.53345659001114 * k12[i] + 96.32455395918828 * k13[i] + -39.17726167561544 * k14[i] + -149.72683625798564 * k15[i]);
+    powers0[i] = y[i];
+  }
+  for (let i = 0, k16 = k[16], k17 = k[17], k18 = k[18], k19 = k[19], k20 = k[20], k21 = k[21], k22 = k[22], powers1 = powers[1], powers2 = powers[2], powers3 = powers[3], powers4 = powers[4], powers5 = powers[5], powers6 = powers[6], powers7 = powers[7]; i < y.length; i += 1) {
+    powers1[i] = k16[i] + k17[i];
+    powers2[i] = -1.0 * k17[i] + k18[i] + k19[i];
+    powers3[i] = -1.0 * k18[i] + -2.0 * k19[i] + k20[i] + k21[i];
+    powers4[i] = k19[i] + -2.0 * k20[i] + -3.0 * k21[i] + k22[i];
+    powers5[i] = k20[i] + 3.0 * k21[i] + -3.0 * k22[i];
+    powers6[i] = -1.0 * k21[i] + 3.0 * k22[i];
+    powers7[i] = -1.0 * k22[i];
+  }
+}
+
+// tippetop.integrators.falls
+const INEXACT = 0.05;
+
+/** The guard that first falls through zero within a step, and when. */
+function first_fall(guards, parameters, dense, advance, step) {
+  if (!py.truth(guards)) {
+    return null;
+  }
+  let first = null;
+  const [start, end] = step;
+  const probes = py.add(py.range(LOOKS_of_dormand_prince).map((look) => py.add(start, py.mul(py.div(look, LOOKS_of_dormand_prince), py.sub(end, start)))), [end]);
+  const states = [...probes].map((time) => py.tolist(dense(time)));
+  for (const [index, guard] of py.enumerate(guards)) {
+    const values = [...states].map((state) => py.float(guard.value(state, parameters)));
+    const [value, exact] = [_along(guard, parameters, dense), _along(guard, parameters, advance)];
+    let found = py.max(values.slice(0, 2)) <= 0.0 ? _early_bracket(step, value) : null;
+    found = py.or(found, () => _bracket(probes, values, value, exact));
+    if (found !== null) {
+      const [low, high, function_] = found;
+      const time = crossing(function_, low, high);
+      if (first === null || time < first[1]) {
+        first = [index, time];
+      }
+    }
+  }
+  return first;
+}
+
+/** A guard along a solution. */
+function _along(guard, parameters, solution) {
+  return (time) => py.float(guard.value(py.tolist(solution(time)), parameters));
+}
+
+/** The interval before the first probe over which a guard falls that starts at zero and rises. */
+function _early_bracket(step, value) {
+  const [start, end] = step;
+  let part = EARLIEST;
+  while (part < py.div(1.0, LOOKS_of_dormand_prince)) {
+    const [low, high] = [py.add(start, py.mul(part, py.sub(end, start))), py.add(start, py.mul(py.mul(2.0, part), py.sub(end, start)))];
+    if (value(low) > RISEN && value(high) <= 0.0) {
+      return [low, high, value];
+    }
+    part = py.mul(part, 2.0);
+  }
+  return null;
+}
+
+/** The first interval over which the guard falls from positive to not positive, and in which solution. */
+function _bracket(probes, values, value, exact) {
+  const last = py.len(probes) - 1;
+  for (let i = 0; i < last + 1; i += 1) {
+    const [before, after] = [py.max(i - 1, 0), py.min(i + 1, last)];
+    if (py.item(values, i) > 0.0 && py.item(values, i) <= py.min(py.item(values, before), py.item(values, after))) {
+      const drop = py.sub(py.max(py.slice(values, py.max(i - 2, 0), i + 3, null)), py.item(values, i));
+      if (py.item(values, i) < drop) {
+        const [place, least] = dip(value, py.item(probes, before), py.item(probes, after));
+        if (least <= 0.0) {
+          return [py.item(probes, before), place, value];
+        }
+        if (least < py.mul(INEXACT, drop) && exact(place) <= 0.0 && exact(py.item(probes, before)) > 0.0) {
+          return [py.item(probes, before), place, exact];
+        }
+      }
+    }
+    if (py.item(values, i) > 0.0 && py.item(values, after) <= 0.0) {
+      return [py.item(probes, i), py.item(probes, after), value];
+    }
+  }
+  return null;
+}
+
+/** Improve the time of a guard's zero with solutions that really end there. */
+function polish(guard, parameters, advance, step, guess) {
+  const [start, end] = step;
+  const shift = py.min(py.mul(0.0001, py.sub(end, start)), py.mul(0.1, py.sub(guess, start)));
+  let [time, other] = [guess, py.sub(guess, shift) > start ? py.sub(guess, shift) : py.add(guess, shift)];
+  let [state, beside] = [advance(time), advance(other)];
+  let [value, theirs] = [state, beside].map((one) => py.float(guard.value(py.tolist(one), parameters)));
+  for (let turn = 0; turn < 8; turn += 1) {
+    if (py.eq(value, theirs)) {
+      break;
+    }
+    let new_ = py.sub(time, py.div(py.mul(value, py.sub(time, other)), py.sub(value, theirs)));
+    new_ = py.min(py.max(new_, py.add(start, py.mul(0.001, shift))), py.add(end, shift));
+    if (py.abs(py.sub(new_, time)) <= py.mul(4e-16, py.max(1.0, py.abs(new_)))) {
+      break;
+    }
+    [time, other, beside, theirs] = [new_, time, state, value];
+    state = advance(new_);
+    value = py.float(guard.value(py.tolist(state), parameters));
+  }
+  return py.abs(value) <= py.abs(theirs) ? [time, state] : [other, beside];
+}
+
+// tippetop.integrators.stepping
+const [FEW_of_stepping, WIDER, MANY] = [4, 4, 512];
+const POWERS = 8;
+const FAILURES = new py.Dict([[SINGULAR, "the motion is singular from the start"], [STUCK_of_dormand_prince, "the step size fell to nothing"]]);
+
+/** What a motion is followed with. */
+class Machinery extends py.NamedTuple {
+  constructor(advance, within, rates, guards, number, values) {
+    super();
+    this.advance = advance;
+    this.within = within;
+    this.rates = rates;
+    this.guards = guards;
+    this.number = number;
+    this.values = values;
+  }
+  /** A guard that is evaluated by the compiled function. */
+  guard(guard, number) {
+    const found = py.np.empty(this.number);
+    const value = (y, p) => {
+      this.values(py.np.array(y), p, found);
+      return py.item(found, number);
+    };
+    return new Guard(guard.name, value);
+  }
+}
+py.fields(Machinery, ["advance", "within", "rates", "guards", "number", "values"]);
+
+/** Follow a motion; see `tippetop.integrators.base.Integrator`. */
+function* stepped(motion, functions, parameters, start, end, tolerance) {
+  const going = new Stepping(functions, py.np.array(parameters), start, end, tolerance);
+  while (going.time < end) {
+    const ended = going.advance();
+    const fall = py.eq(ended, SUSPECT) ? going.fall(motion.guards) : null;
+    if (fall !== null) {
+      const [guard, time, state] = fall;
+      going.end_at(time, state);
+      yield going.arc(guard.name);
+      return null;
+    }
+    if (py.contains(FAILURES, ended)) {
+      yield going.arc(null, py.item(FAILURES, ended));
+      return null;
+    }
+    if (py.eq(going.steps, MANY) || going.time >= end) {
+      yield going.arc();
+    } else if (py.eq(ended, FULL)) {
+      going.widen();
+    }
+  }
+}
+
+/** A motion under way: the state, and the steps of the arc that is being made. */
+class Stepping extends py.Thing {
+  constructor(functions, parameters, start, end, tolerance) {
+    super();
+    const size = py.len(start[1]);
+    [this.functions, this.parameters, this.tolerance] = [functions, parameters, py.np.full(2, tolerance)];
+    [this.state, this.lost] = [py.np.array(start[1]), py.np.zeros(size)];
+    [this.stages, this.span] = [py.np.empty([ROWS, size]), py.np.array([start[0], end, 0.0])];
+    [this.steps, this.calls] = [0, 0];
+    this.other = null;
+    [this.knots, this.terms] = [py.np.empty(py.add(FEW_of_stepping, 1)), py.np.empty([FEW_of_stepping, POWERS, size])];
+    py.put(this.knots, 0, start[0]);
+  }
+  /** Where it is. */
+  get time() {
+    return py.float(this.span[0]);
+  }
+  /** Make room for more steps. */
+  widen() {
+    const more = py.sub(py.min(py.mul(WIDER, this.steps), MANY), this.steps);
+    this.knots = py.np.concatenate([this.knots, py.np.empty(more)]);
+    this.terms = py.np.concatenate([this.terms, py.np.empty([more, POWERS, py.len(this.state)])]);
+  }
+  /** Take steps until something is to be done; tell what. */
+  advance(guarded = true) {
+    const functions = this.functions;
+    const [steps, calls, ended] = functions.advance(functions.rates, functions.guards, py.truth(guarded) ? functions.number : 0, this.parameters, this.state, this.lost, this.stages, this.span, this.tolerance, this.knots, this.terms, this.steps);
+    [this.steps, this.calls] = [steps, py.add(this.calls, calls)];
+    return ended;
+  }
+  /** The arc that has been made; the next one begins. */
+  arc(guard = null, failure = null) {
+    const solution = DenseSolution.of_steps(this.knots, this.terms, this.steps);
+    const arc = new Arc(solution, py.np.array(this.state), guard, failure, this.steps, this.calls);
+    py.put(this.knots, 0, this.time);
+    [this.steps, this.calls] = [0, 0];
+    return arc;
+  }
+  /** The guard that first falls through zero in the last step, when, and the state there. */
+  fall(guards) {
+    const [last, begin, reach] = [py.item(this.terms, py.sub(this.steps, 1)), py.float(py.item(this.knots, py.sub(this.steps, 1))), this.time];
+    const dense = (at) => {
+      const found = py.np.empty(py.len(this.state));
+      this.functions.within(last, py.div(at - begin, py.sub(reach, begin)), found);
+      return found;
+    };
+    const advance = (at) => {
+      return this.beside().landed(begin, last[0], at);
+    };
+    const parameters = this.parameters;
+    const known = py.enumerate(guards).map(([number, guard]) => this.functions.guard(guard, number));
+    const found = first_fall(known, parameters, dense, advance, [begin, reach]);
+    if (found === null) {
+      return null;
+    }
+    const [number, guess] = found;
+    const [time, state] = polish(py.item(known, number), parameters, advance, [begin, reach], guess);
+    return [py.item(known, number), time, state];
+  }
+  /** End within the last step. */
+  end_at(time, state) {
+    const [begin, end] = [py.item(this.knots, py.sub(this.steps, 1)), py.item(this.knots, this.steps)];
+    let [part, last, share] = [py.div(py.sub(time, begin), py.sub(end, begin)), py.item(this.terms, py.sub(this.steps, 1)), 1.0];
+    for (let power = 0; power < POWERS; power += 1) {
+      for (let i = 0; i < state.length; i += 1) {
+        last[power][i] = py.mul(last[power][i], share);
+      }
+      share = py.mul(share, part);
+    }
+    py.put(this.knots, this.steps, time);
+    py.put(this.span, 0, time);
+    this.state = state;
+  }
+  /** Another motion of the same kind, for trial. */
+  beside() {
+    if (this.other === null) {
+      const [begin, end] = [py.float(this.span[0]), py.float(this.span[1])];
+      this.other = new Stepping(this.functions, this.parameters, [begin, this.state], end, py.float(this.tolerance[0]));
+    }
+    return this.other;
+  }
+  /** The state after steps from another that end at exactly this time. */
+  landed(time, state, end) {
+    [this.state, this.lost] = [py.np.array(state), py.np.zeros(state.length)];
+    this.span = py.np.array([time, end, 0.0]);
+    let ended = FULL;
+    while (py.eq(ended, FULL) && end > time) {
+      this.steps = 0;
+      ended = this.advance(false);
+    }
+    return this.state;
+  }
 }
 
 // tippetop.mechanics.quadratures
@@ -7875,6 +8423,7 @@ export {
   Disc,
   Driven,
   DryContact,
+  EARLIEST,
   EAST,
   EDGE,
   ELLIPSOIDAL_RADIUS,
@@ -7888,20 +8437,24 @@ export {
   Event,
   EventKind,
   FACE,
+  FAILURES,
   FASTEST,
   FEW,
+  FEW_of_stepping,
   FINE,
   FINEST,
   FIRST,
   FLAT,
   FORCE,
   FORCES,
+  FULL,
   FUNCTIONS,
   FUZZ,
   Flight,
   Fold,
   FreeToFly,
   Friction,
+  GOLDEN,
   Graph,
   Group,
   Growing,
@@ -7916,6 +8469,7 @@ export {
   HertzSlidingLaw,
   Hull,
   HullKind,
+  INEXACT,
   INSTANT,
   ITERATIONS,
   Impact,
@@ -7931,6 +8485,7 @@ export {
   LANDING,
   LARGEST_POWER,
   LEANING,
+  LEAST_FACTOR,
   LEAST_PATCH,
   LESS,
   LIFT_OFF,
@@ -7942,24 +8497,29 @@ export {
   LONGEST_of_trajectory,
   LOOK,
   LOOKS,
+  LOOKS_of_dormand_prince,
   LOOKS_of_passing,
   LOOKS_of_touchdown,
   LOST,
   Language,
   Launch,
   Loosening,
+  MANY,
   MARGIN,
   MOST,
   MOST_ASPECT,
   MOST_DISCS,
+  MOST_FACTOR,
   MOST_IN_TURNS,
   MOST_LOOKS,
   MOST_STEPS,
   MOST_STEPS_of_closing,
   MOST_of_arriving,
   MOST_of_integrated_impact,
+  Machinery,
   Mode,
   Motion,
+  NARROWED,
   NARROWEST,
   NEAR,
   NEARING,
@@ -7969,6 +8529,7 @@ export {
   NEWTON,
   NEWTON_of_integrated_impact,
   NORTH,
+  NOTHING,
   NOT_FINITE,
   NO_CHOICE,
   NO_IMPULSE,
@@ -7994,6 +8555,7 @@ export {
   PI,
   PLAIN,
   POWER,
+  POWERS,
   POWER_of_graph,
   PRESSED,
   PRODUCT,
@@ -8009,9 +8571,11 @@ export {
   QUOTIENT,
   Quadratures,
   REACH,
+  REACHED,
   REOPENING,
   RESOLVED,
   REST,
+  RISEN,
   ROLLING,
   ROLLING_STOPPING,
   ROLLING_of_dry_impact,
@@ -8023,6 +8587,7 @@ export {
   ROUNDING_of_thresholds,
   ROUNDING_of_viscous_impact,
   ROUNDS,
+  ROWS,
   Reaction,
   Recorded,
   RegularizedCoulombFriction,
@@ -8036,6 +8601,7 @@ export {
   RollingPrecession,
   RollingResistance,
   RungeKuttaStep,
+  SAFETY,
   SEARCHES,
   SECOND,
   SELECT,
@@ -8045,6 +8611,7 @@ export {
   SHORT,
   SHORTER,
   SHORTEST,
+  SINGULAR,
   SIZE,
   SLIP,
   SLIPPING,
@@ -8064,7 +8631,9 @@ export {
   STOPPING,
   STRAIGHT,
   STUCK,
+  STUCK_of_dormand_prince,
   SUM,
+  SUSPECT,
   Segment,
   Separation,
   Series,
@@ -8086,6 +8655,7 @@ export {
   SteadyKind,
   SteadyState,
   StemTest,
+  Stepping,
   Sticking,
   StickingAndSliding,
   StickingAndSlidingBack,
@@ -8125,15 +8695,19 @@ export {
   ViscousFriction,
   ViscousLaw,
   ViscousProcess,
+  WIDER,
   WIDEST,
   Wrench,
   _DESCRIPTIONS,
   _Lines,
   _admits,
+  _along,
   _apart,
   _at_rest,
   _beside,
+  _bracket,
   _by_energy,
+  _early_bracket,
   _face,
   _fold_measure,
   _gap,
@@ -8167,6 +8741,7 @@ export {
   _without_rolling,
   acting,
   add,
+  advance,
   against,
   along_table,
   analytic_disc,
@@ -8193,6 +8768,7 @@ export {
   closing_rates,
   coexistence,
   combined,
+  combined_of_dormand_prince,
   common_spellings,
   components,
   contact,
@@ -8207,6 +8783,7 @@ export {
   cross,
   crossing,
   derivative_of,
+  dip,
   direction_of_slip,
   directions,
   directions_of,
@@ -8217,9 +8794,13 @@ export {
   ended_slips,
   energy,
   equal_thresholds,
+  error_of,
+  factor_for,
   falling_time,
+  first_fall,
   first_reach,
   first_root,
+  first_step,
   flat,
   fly,
   fold,
@@ -8274,7 +8855,10 @@ export {
   level_spin,
   limit_guard,
   lowest_surface,
+  may_fall,
+  measure,
   moment_per_normal_force,
+  more_stages,
   motion_on_two,
   moved,
   natural,
@@ -8305,6 +8889,8 @@ export {
   phis,
   plus,
   point_velocity,
+  polish,
+  polynomials,
   positive,
   precession_at,
   precession_boundaries,
@@ -8326,6 +8912,7 @@ export {
   resolution,
   resting_way,
   restitution_goal,
+  rises,
   rolling_of,
   rolling_precession,
   rolling_reserve,
@@ -8368,12 +8955,14 @@ export {
   split,
   spun_up,
   stable_by_energy,
+  stages,
   start_of,
   state_from_angles,
   stays_open,
   stays_positive,
   steady_states,
   step_from,
+  stepped,
   sticking_motion,
   sticking_wrench,
   stopping,
@@ -8381,6 +8970,7 @@ export {
   straight,
   struck,
   surface_guards,
+  suspect,
   tangents,
   thinned,
   tilt_rate,
@@ -8407,6 +8997,7 @@ export {
   weight_moment,
   whole_law,
   with_sliding_law,
+  within,
   without_drilling,
   without_rolling,
   without_tilting,

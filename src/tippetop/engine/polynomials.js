@@ -80,20 +80,3 @@ export class Polynomial {
     return NaN;
   }
 }
-
-/** Gauss's points and weights in [0, 1]. */
-export function gauss(count) {
-  const nodes = [], weights = [];
-  for (let i = count; i >= 1; i -= 1) {
-    let x = Math.cos((Math.PI * (i - 0.25)) / (count + 0.5)), rate = 0;
-    for (let turn = 0; turn < 20; turn += 1) {
-      let [before, now] = [1, x];
-      for (let k = 2; k <= count; k += 1) [before, now] = [now, ((2 * k - 1) * x * now - (k - 1) * before) / k];
-      rate = (count * (x * now - before)) / (x * x - 1);
-      x -= now / rate;
-    }
-    nodes.push(0.5 * (1 + x));
-    weights.push(1 / ((1 - x * x) * rate * rate));
-  }
-  return { nodes, weights };
-}

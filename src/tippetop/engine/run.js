@@ -4,15 +4,14 @@ import { make_integrator } from "./integrate.js";
 import { observed, seen } from "./observe.js";
 import * as of from "./observe.js";
 import { InvalidInput } from "./part.js";
-import { Polynomial, gauss, reach } from "./polynomials.js";
+import { Polynomial, reach } from "./polynomials.js";
 import { math } from "./runtime.js";
-import { CATALOGUE, NEAR_FINAL, NEAR_POLE } from "./tables.js";
+import { CATALOGUE, GAUSS, NEAR_FINAL, NEAR_POLE } from "./tables.js";
 
 const NOT_FINITE = "the solution is no longer finite";
 const LONGEST = 1e300, LEAST_TOLERANCE = 2.3e-14, HEIGHT_LOOKS = 65;
 const [WORST, ACCUMULATED, LEAST_MOMENT] = [1e-6, 1e4, 1e-6];
 const [X, Y, TURN, WORK, DRILLED, ROLLED, STRUCK, SUMS] = [0, 1, 2, 3, 4, 5, 6, 7];
-const RULES = { coarse: gauss(4), fine: gauss(8) };
 
 /** Follow a launch; see the README beside. */
 export function simulate(problem, { duration, tolerance = 1e-10, onProgress, shouldStop } = {}) {
@@ -71,7 +70,7 @@ export class Run {
   take(segment) {
     const { solution, mode } = segment, { code, parameters } = observed(mode, solution.size);
     const piece = { solution, mode, code, parameters, sums: [], poles: [], numbers: new Float64Array(solution.size) };
-    piece.rule = solution.degree > 7 ? RULES.fine : RULES.coarse;
+    piece.rule = solution.degree > 7 ? GAUSS[8] : GAUSS[4];
     this.pieces.push(piece);
     this.steps += segment.steps;
     if (!mode.touching) this.fly(segment);

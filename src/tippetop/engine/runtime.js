@@ -117,6 +117,21 @@ export const math = {
   dist: (a, b) => math.hypot(...Array.from(a, (x, i) => x - b[i])),
 };
 
+/** What is asked of NumPy: arrays to be filled, those of more dimensions as lists of arrays. */
+export const np = {
+  empty(shape) {
+    if (typeof shape === "number") return new Float64Array(shape);
+    const whole = new Float64Array(shape.reduce((a, b) => a * b)), width = shape.at(-1);
+    let rows = Array.from({ length: whole.length / width }, (_, i) => new Float64Array(whole.buffer, 8 * i * width, width));
+    if (shape.length > 2) rows = Array.from({ length: shape[0] }, (_, i) => rows.slice(i * shape[1], (i + 1) * shape[1]));
+    return rows;
+  },
+  concatenate: ([a, b]) => (Array.isArray(a) ? [...a, ...b] : Float64Array.of(...a, ...b)),
+  zeros: (count) => new Float64Array(count),
+  array: (numbers) => new Float64Array(numbers),
+  full: (count, value) => new Float64Array(count).fill(value),
+};
+
 // ---- tuples with names, records and enumerations
 
 export class Thing {}
@@ -353,7 +368,11 @@ export function sorted(all, told = {}) {
   return pairs.map(([, one]) => one);
 }
 
-export const tolist = (all) => Array.from(all);
+export function tolist(all) {
+  const found = [];
+  for (let i = 0; i < all.length; i += 1) found.push(all[i]);
+  return found;
+}
 export const join = (between, all) => [...all].join(between);
 export const extend = (all, more) => all.push(...more);
 export const pop = (all) => all.pop();

@@ -111,6 +111,11 @@ class DenseSolution:
         return cls(np.array([time]), np.empty((0, size, 1)))
 
     @classmethod
+    def of_steps(cls, knots: Array, terms: Array, count: int) -> "DenseSolution":
+        """The first of some steps, whose polynomials have shapes (degree + 1, size)."""
+        return cls(knots[: count + 1].copy(), np.ascontiguousarray(np.swapaxes(terms[:count], 1, 2)))
+
+    @classmethod
     def standing(cls, numbers: Sequence[float], start: float, end: float) -> "DenseSolution":
         """Numbers that stay as they are."""
         here = np.array(numbers, dtype=float)

@@ -29,18 +29,29 @@ REACHED, FULL, SUSPECT, STUCK, SINGULAR = range(5)
 SAFETY, LEAST_FACTOR, MOST_FACTOR = 0.9, 0.2, 10.0
 """How much of the step that the error allows is taken, and how much steps may differ."""
 
+NOTHING = 2e-15
+"""A step shorter than this part of the time does not move it."""
+
+EARLIEST, RISEN = 0.5**40, 1e-15
+"""Where else a guard is looked at that starts at zero: one place is within any rebound; and what it must
+reach there to have risen: less is rounding."""
+
+ROWS = 23
+"""Stages of a step, 16, and what its polynomials are made of."""
+
 LOOKS = 8
 """Parts of a step at whose ends guards are looked at."""
 
 
-def error_of(h: float, y: Array, new: Array, k: Array, tolerance: Array, room: Array) -> float:
+def error_of(h: float, y: Array, new: Array, k: Array, tolerance: Array) -> float:
     """Error of a step: less than 1 is good enough."""
-    combined(y, k, room)
+    combined(y, k)
     fifth, third = 0.0, 0.0
     for i in range(len(y)):
         scale = tolerance[1] + tolerance[0] * max(abs(y[i]), abs(new[i]))
-        fifth += (room[0, i] / scale) ** 2
-        third += (room[1, i] / scale) ** 2
+        first, second = k[16, i] / scale, k[17, i] / scale
+        fifth += first * first
+        third += second * second
     if fifth == 0.0 and third == 0.0:
         return 0.0
     return h * fifth / math.sqrt((fifth + 0.01 * third) * len(y))
@@ -60,7 +71,8 @@ def measure(a: Array, b: Array, y: Array, tolerance: Array) -> float:
     """How large the difference of two is beside the errors that are allowed: a mean."""
     total = 0.0
     for i in range(len(y)):
-        total += ((a[i] - b[i]) / (tolerance[1] + tolerance[0] * abs(y[i]))) ** 2
+        part = (a[i] - b[i]) / (tolerance[1] + tolerance[0] * abs(y[i]))
+        total += part * part
     return math.sqrt(total / len(y))
 
 
@@ -68,7 +80,8 @@ def first_step(
     rates: Compiled, p: Array, y: Array, k: Array, place: Array, span: float, tolerance: Array
 ) -> float:
     """A step to begin with, whose error is about right; k[0] has the rates."""
-    place[:] = 0.0
+    for i in range(len(y)):
+        place[i] = 0.0
     size, slope = measure(y, place, y, tolerance), measure(k[0], place, y, tolerance)
     trial = min(span, 1e-6 if size < 1e-5 or slope < 1e-5 else 0.01 * size / slope)
     for i in range(len(y)):
@@ -79,36 +92,52 @@ def first_step(
     return min(100.0 * trial, found, span)
 
 
-def may_fall(values: Array) -> bool:
+def within(powers: Array, part: float, y: Array) -> None:
+    """Put the state at a part of a step in y."""
+    for i in range(len(y)):
+        high = powers[4, i] + part * (powers[5, i] + part * (powers[6, i] + part * powers[7, i]))
+        low = powers[2, i] + part * (powers[3, i] + part * high)
+        y[i] = powers[0, i] + part * (powers[1, i] + part * low)
+
+
+def may_fall(values: Array, guard: int) -> bool:
     """Whether a guard with these values at the looks falls through zero, or may dip below it in between."""
-    last = len(values) - 1
-    for i in range(last + 1):
-        before, after = max(i - 1, 0), min(i + 1, last)
-        if values[i] > 0.0:
-            if values[after] <= 0.0:
+    for i in range(LOOKS + 1):
+        before, here, after = max(i - 1, 0), values[i, guard], min(i + 1, LOOKS)
+        if here > 0.0:
+            if values[after, guard] <= 0.0:
                 return True
-            if values[i] <= min(values[before], values[after]):
-                for j in range(max(i - 2, 0), min(i + 2, last) + 1):
-                    if 2.0 * values[i] < values[j]:
+            if here <= values[before, guard] and here <= values[after, guard]:
+                for j in range(max(i - 2, 0), min(i + 2, LOOKS) + 1):
+                    if 2.0 * here < values[j, guard]:
                         return True
     return False
 
 
-def suspect(guards: Compiled, p: Array, powers: Array, values: Array) -> bool:
-    """Whether a guard may fall in a step; values has room for them at the looks, a row a guard."""
-    y, found = np.empty(powers.shape[1]), np.empty(len(values))
-    for look in range(LOOKS + 1):
-        part = look / LOOKS
-        for i in range(len(y)):
-            high = powers[4, i] + part * (powers[5, i] + part * (powers[6, i] + part * powers[7, i]))
-            low = powers[2, i] + part * (powers[3, i] + part * high)
-            y[i] = powers[0, i] + part * (powers[1, i] + part * low)
-        guards(y, p, found)
-        for guard in range(len(values)):
-            values[guard, look] = found[guard]
-    for guard in range(len(values)):  # noqa: SIM110 - numba knows no generators here
-        if may_fall(values[guard]):
+def rises(guards: Compiled, p: Array, powers: Array, y: Array, values: Array, guard: int) -> bool:
+    """Whether a guard that starts at zero, or by rounding below, rises before the first look."""
+    part = 1.0 / LOOKS
+    while part > EARLIEST:
+        part *= 0.5
+        within(powers, part, y)
+        guards(y, p, values[LOOKS + 1])
+        if values[LOOKS + 1, guard] > RISEN:
             return True
+    return False
+
+
+def suspect(guards: Compiled, p: Array, powers: Array, y: Array, values: Array) -> bool:
+    """Whether a guard may fall in a step; values has those at its start, and room for the other looks."""
+    for look in range(1, LOOKS + 1):
+        within(powers, look / LOOKS, y)
+        guards(y, p, values[look])
+    for guard in range(len(values[0])):
+        if may_fall(values, guard):
+            return True
+        if values[0, guard] <= 0.0 and values[1, guard] <= 0.0 and rises(guards, p, powers, y, values, guard):
+            return True
+    for guard in range(len(values[0])):
+        values[0, guard] = values[LOOKS, guard]
     return False
 
 
@@ -124,6 +153,7 @@ def advance(
     tolerance: Array,
     knots: Array,
     terms: Array,
+    steps: int,
 ) -> tuple[int, int, int]:
     """Take steps from a state, which is brought up to date.
 
@@ -136,55 +166,61 @@ def advance(
     y, lost
         The state, and what rounding has taken from it so far.
     k
-        Room for the rates of the stages, shape (16, size); the first have been found unless all begins here.
+        Room for the rates of the stages, the first of which have been found unless all begins here, and for
+        what is made of them, shape (`ROWS`, size).
     span
         Time, the end, and the next step's size, 0 to begin with: time and size are brought up to date.
     tolerance
         Relative and absolute error per step.
     knots, terms
         Room for the ends of steps, shape (n + 1,), and for their polynomials, shape (n, 8, size).
+    steps
+        How many are there.
 
     Returns
     -------
     tuple
-        How many steps were taken, how often the rates were asked for, and how it ended.
+        How many steps are there then, how often the rates were asked for, and how it ended.
     """
     size = len(y)
     moved, new, place = np.empty(size), np.empty(size), np.empty(size)
-    parts, values = np.empty((7, size)), np.empty((count, LOOKS + 1))
+    values = np.empty((LOOKS + 2, count))
     time, end = span[0], span[1]
-    calls, steps = 0, 0
+    calls = 0
     if span[2] == 0.0:
         rates(y, p, k[0])
         for i in range(size):
             if not math.isfinite(k[0, i]):
-                return 0, 1, SINGULAR
+                return steps, 1, SINGULAR
         span[2] = first_step(rates, p, y, k, place, end - time, tolerance)
         calls += 2
+    if count > 0:
+        guards(y, p, values[0])
     while time < end:
         if steps == len(terms):
             return steps, calls, FULL
         error, tries = 2.0, 0
         while not error < 1.0:
-            # A step shorter than this does not move the time.
-            if not span[2] >= 10.0 * (np.nextafter(time, np.inf) - time):
+            if not span[2] > NOTHING * abs(time):
                 return steps, calls, STUCK
             reach = min(time + span[2], end)
             h = reach - time
             stages(rates, h, p, y, lost, k, moved, new)
-            error = error_of(h, y, new, k, tolerance, parts)
+            error = error_of(h, y, new, k, tolerance)
             tries += 1
             span[2] = h * factor_for(error, tries)
         calls += 12 * tries + 3
         more_stages(rates, h, p, y, lost, k, place)
-        polynomials(h, y, new, k, parts, terms[steps])
+        polynomials(h, y, new, k, terms[steps])
         for i in range(size):
             lost[i] = moved[i] - (new[i] - y[i])
-            y[i], k[0, i] = new[i], k[12, i]
+            y[i] = new[i]
+            k[0, i] = k[12, i]
         time = reach
         steps += 1
-        knots[steps], span[0] = time, time
-        if count > 0 and suspect(guards, p, terms[steps - 1], values):
+        knots[steps] = time
+        span[0] = time
+        if count > 0 and suspect(guards, p, terms[steps - 1], place, values):
             return steps, calls, SUSPECT
     return steps, calls, REACHED
 
@@ -192,27 +228,30 @@ def advance(
 def written_out() -> str:
     """The functions in which the method's coefficients are, as code."""
     moved, place = "moved[i] = h * ({}) + lost[i]", "place[i] = y[i] + {}"
-    lines = ["def stages(rates, h, p, y, lost, k, moved, place):"]
+    given = "p, y: Array, lost: Array, k: Array"
+    lines = [f"def stages(rates, h: float, {given}, moved: Array, place: Array):"]
     for number, weights in enumerate([*DOP853.A[1:], DOP853.B], start=1):
-        lines += _for_each(moved.format(_sum(weights, "k")), place.format("moved[i]"))
+        lines += _for_each(moved.format(_sum(weights)), place.format("moved[i]"))
         lines.append(f"    rates(place, p, k[{number}])")
-    lines.append("def more_stages(rates, h, p, y, lost, k, place):")
+    lines.append(f"def more_stages(rates, h: float, {given}, place: Array):")
     for number, weights in enumerate(DOP853.A_EXTRA, start=13):
-        lines += _for_each(place.format(f"(h * ({_sum(weights, 'k')}) + lost[i])"))
+        lines += _for_each(place.format(f"(h * ({_sum(weights)}) + lost[i])"))
         lines.append(f"    rates(place, p, k[{number}])")
-    lines.append("def combined(y, k, found):")
-    lines += _for_each(*(f"found[{n}, i] = {_sum(row, 'k')}" for n, row in enumerate((DOP853.E5, DOP853.E3))))
-    # Of the polynomials x, x (1 - x), x^2 (1 - x), ... the ends of the step give the first three.
-    lines.append("def polynomials(h, y, new, k, parts, powers):")
+    lines.append("def combined(y: Array, k: Array):")
     lines += _for_each(
-        "parts[0, i] = new[i] - y[i]",
-        "parts[1, i] = h * k[0, i] - parts[0, i]",
-        "parts[2, i] = 2.0 * parts[0, i] - h * (k[0, i] + k[12, i])",
-        *(f"parts[{n}, i] = h * ({_sum(row, 'k')})" for n, row in enumerate(DOP853.D, start=3)),
+        *(f"k[{n}, i] = {_sum(row)}" for n, row in enumerate((DOP853.E5, DOP853.E3), start=16))
+    )
+    # Of the polynomials x, x (1 - x), x^2 (1 - x), ... the ends of the step give the first three.
+    lines.append("def polynomials(h: float, y: Array, new: Array, k: Array, powers: Array):")
+    lines += _for_each(
+        "k[16, i] = new[i] - y[i]",
+        "k[17, i] = h * k[0, i] - k[16, i]",
+        "k[18, i] = 2.0 * k[16, i] - h * (k[0, i] + k[12, i])",
+        *(f"k[{n}, i] = h * ({_sum(row)})" for n, row in enumerate(DOP853.D, start=19)),
         "powers[0, i] = y[i]",
     )
     rows = enumerate(_powers()[1:], start=1)
-    lines += _for_each(*(f"powers[{n}, i] = {_sum(row, 'parts')}" for n, row in rows))
+    lines += _for_each(*(f"powers[{n}, i] = {_sum(row, 16)}" for n, row in rows))
     return "\n".join(lines)
 
 
@@ -220,8 +259,9 @@ def _for_each(*assignments: str) -> list[str]:
     return ["    for i in range(len(y)):", *(f"        {line}" for line in assignments)]
 
 
-def _sum(weights: Array, name: str) -> str:
-    return " + ".join(f"{weight!r} * {name}[{j}, i]" for j, weight in enumerate(weights.tolist()) if weight)
+def _sum(weights: Array, first: int = 0) -> str:
+    terms = [(weight, f"k[{first + j}, i]") for j, weight in enumerate(weights.tolist()) if weight]
+    return " + ".join(term if weight == 1.0 else f"{weight!r} * {term}" for weight, term in terms)
 
 
 def _powers() -> Array:

@@ -11,6 +11,7 @@ from scipy.integrate import BDF, DOP853, LSODA, RK45, Radau
 from tippetop.integrators.base import NOT_FINITE, Arc, Array, Motion
 from tippetop.integrators.rates import RightHandSide
 from tippetop.integrators.sampling import Steps
+from tippetop.integrators.stepping import MANY
 
 METHODS: dict[str, Any] = {
     "dop853": DOP853,
@@ -22,9 +23,6 @@ METHODS: dict[str, Any] = {
 
 DEGREES = {"dop853": 7, "rk45": 4, "radau": 3, "bdf": 5, "lsoda": 12}
 """Degrees of the polynomials by which they interpolate."""
-
-MANY = 512
-"""Steps in an arc."""
 
 LEAST_STEP = 1e-15
 """A step shorter than this part of the time gets nowhere."""

@@ -6,6 +6,9 @@ from typing import TypeAlias
 FINEST = 1e-10
 """Step, relative to its piece, below which a gap that is neither open nor closing counts as closed."""
 
+GOLDEN, NARROWED = 0.5 * (3.0 - 5.0**0.5), 29
+"""Smaller part of an interval in the golden ratio, and how often one is divided for a least value."""
+
 Triple: TypeAlias = tuple[float, float, float]
 """A function's value and its first two derivatives."""
 
@@ -54,6 +57,28 @@ def is_one_way(rate: float, acceleration: float, jerk: float, step: float) -> bo
     """Whether a function surely falls, or surely is concave, all along a step: it has one root at most."""
     falls = rate < 0.0 and rate + step * (acceleration + 0.5 * step * jerk) < 0.0
     return falls or acceleration + step * jerk < 0.0
+
+
+def dip(function: Callable[[float], float], low: float, high: float) -> tuple[float, float]:
+    """Place and value of a function's least value between two points, or of one that is not positive.
+
+    By golden section; the place is found to a millionth of the interval.
+    """
+    a, b = low, high
+    x, y = a + GOLDEN * (b - a), b - GOLDEN * (b - a)
+    f, g = function(x), function(y)
+    for _ in range(NARROWED):
+        if f <= 0.0 or g <= 0.0:
+            break
+        if f < g:
+            b, y, g = y, x, f
+            x = a + GOLDEN * (b - a)
+            f = function(x)
+        else:
+            a, x, f = x, y, g
+            y = b - GOLDEN * (b - a)
+            g = function(y)
+    return (x, f) if f < g else (y, g)
 
 
 def crossing(function: Callable[[float], float], low: float, high: float) -> float:

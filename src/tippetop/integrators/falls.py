@@ -1,0 +1,124 @@
+"""Where a guard falls through zero within a step of an integrator."""
+
+from collections.abc import Callable, Sequence
+
+from tippetop.integrators.base import Array, Guard
+from tippetop.integrators.dormand_prince import EARLIEST, LOOKS, RISEN
+from tippetop.mechanics.roots import crossing, dip
+from tippetop.mechanics.vectors import Scalar
+
+Dense = Callable[[float], Array]
+"""The solution within a step as a function of time."""
+
+Value = Callable[[float], float]
+"""A guard as a function of time."""
+
+INEXACT = 0.05
+"""How near zero a dip must come, as a part of its depth, for the interpolation not to be trusted about it."""
+
+
+def first_fall(
+    guards: Sequence[Guard],
+    parameters: Sequence[Scalar],
+    dense: Dense,
+    advance: Dense,
+    step: tuple[float, float],
+) -> tuple[int, float] | None:
+    """The guard that first falls through zero within a step, and when.
+
+    A guard that dips below zero and returns within the step is found by minimising it between the probes
+    where its probed values bend that way; one that starts at zero, rises, and is back before the first probe,
+    by looking earlier.
+
+    Parameters
+    ----------
+    guards, parameters
+        The guards, and the numbers in them.
+    dense
+        The solution within the step, as interpolated.
+    advance
+        The same by a step of its own: dearer, and exact where the interpolation of a long step is not.
+    step
+        Where it begins and ends.
+    """
+    if not guards:
+        return None
+    first: tuple[int, float] | None = None
+    start, end = step
+    probes = [start + look / LOOKS * (end - start) for look in range(LOOKS)] + [end]
+    states = [dense(time).tolist() for time in probes]
+    for index, guard in enumerate(guards):
+        values = [float(guard.value(state, parameters)) for state in states]
+        value, exact = _along(guard, parameters, dense), _along(guard, parameters, advance)
+        found = _early_bracket(step, value) if max(values[:2]) <= 0.0 else None
+        found = found or _bracket(probes, values, value, exact)
+        if found is not None:
+            low, high, function = found
+            time = crossing(function, low, high)
+            if first is None or time < first[1]:
+                first = index, time
+    return first
+
+
+def _along(guard: Guard, parameters: Sequence[Scalar], solution: Dense) -> Value:
+    """A guard along a solution."""
+    return lambda time: float(guard.value(solution(time).tolist(), parameters))
+
+
+def _early_bracket(step: tuple[float, float], value: Value) -> tuple[float, float, Value] | None:
+    """The interval before the first probe over which a guard falls that starts at zero and rises."""
+    start, end = step
+    part = EARLIEST
+    while part < 1.0 / LOOKS:
+        low, high = start + part * (end - start), start + 2.0 * part * (end - start)
+        if value(low) > RISEN and value(high) <= 0.0:
+            return low, high, value
+        part *= 2.0
+    return None
+
+
+def _bracket(
+    probes: Sequence[float], values: Sequence[float], value: Value, exact: Value
+) -> tuple[float, float, Value] | None:
+    """The first interval over which the guard falls from positive to not positive, and in which solution."""
+    last = len(probes) - 1
+    for i in range(last + 1):
+        before, after = max(i - 1, 0), min(i + 1, last)
+        if values[i] > 0.0 and values[i] <= min(values[before], values[after]):
+            # Between the probes it may be lower, though by little: by less than it falls within two of them.
+            drop = max(values[max(i - 2, 0) : i + 3]) - values[i]
+            if values[i] < drop:
+                place, least = dip(value, probes[before], probes[after])
+                if least <= 0.0:
+                    return probes[before], place, value
+                if least < INEXACT * drop and exact(place) <= 0.0 and exact(probes[before]) > 0.0:
+                    return probes[before], place, exact
+        if values[i] > 0.0 and values[after] <= 0.0:
+            return probes[i], probes[after], value
+    return None
+
+
+def polish(
+    guard: Guard, parameters: Sequence[Scalar], advance: Dense, step: tuple[float, float], guess: float
+) -> tuple[float, Array]:
+    """Improve the time of a guard's zero with solutions that really end there.
+
+    The solution inside a step is less accurate than at its ends, so the step is taken again with other ends,
+    `advance(time)`, until the secant no longer moves.
+    """
+    start, end = step
+    shift = min(1e-4 * (end - start), 0.1 * (guess - start))
+    time, other = guess, guess - shift if guess - shift > start else guess + shift
+    state, beside = advance(time), advance(other)
+    value, theirs = (float(guard.value(one.tolist(), parameters)) for one in (state, beside))
+    for _ in range(8):
+        if value == theirs:
+            break
+        new = time - value * (time - other) / (value - theirs)
+        new = min(max(new, start + 1e-3 * shift), end + shift)
+        if abs(new - time) <= 4e-16 * max(1.0, abs(new)):
+            break
+        time, other, beside, theirs = new, time, state, value
+        state = advance(new)
+        value = float(guard.value(state.tolist(), parameters))
+    return (time, state) if abs(value) <= abs(theirs) else (other, beside)

@@ -1,0 +1,196 @@
+"""Dormand and Prince's steps as arcs: how a motion is followed with functions that are compiled for it."""
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from tippetop.integrators.base import Arc, Array, Guard, Motion
+from tippetop.integrators.dense import DenseSolution
+from tippetop.integrators.dormand_prince import FULL, ROWS, SINGULAR, STUCK, SUSPECT
+from tippetop.integrators.falls import first_fall, polish
+from tippetop.mechanics.vectors import Scalar
+
+FEW, WIDER, MANY = 4, 4, 512
+"""Steps for which there is room at first, how many times as many there is room for then, and in an arc."""
+
+POWERS = 8
+"""Coefficients of each of a step's polynomials."""
+
+FAILURES = {
+    SINGULAR: "the motion is singular from the start",
+    STUCK: "the step size fell to nothing",
+}
+"""Why there may be no solution, or no more of it."""
+
+
+class Machinery(NamedTuple):
+    """What a motion is followed with.
+
+    Attributes
+    ----------
+    advance, within
+        Of `dormand_prince`.
+    rates, guards
+        The motion's as that takes them.
+    number
+        How many guards there are.
+    values
+        The guards as functions (y, p, out) for Python.
+    """
+
+    advance: Callable[..., tuple[int, int, int]]
+    within: Callable[[Array, float, Array], None]
+    rates: Any
+    guards: Any
+    number: int
+    values: Callable[[Array, Array, Array], None]
+
+    def guard(self, guard: Guard, number: int) -> Guard:
+        """A guard that is evaluated by the compiled function."""
+        found = np.empty(self.number)
+
+        def value(y: Sequence[Scalar], p: Any) -> Scalar:
+            self.values(np.array(y), p, found)
+            return found[number]
+
+        return Guard(guard.name, value)
+
+
+def stepped(
+    motion: Motion,
+    functions: Machinery,
+    parameters: Sequence[float],
+    start: tuple[float, Array],
+    end: float,
+    tolerance: float,
+) -> Iterator[Arc]:
+    """Follow a motion; see `tippetop.integrators.base.Integrator`."""
+    going = Stepping(functions, np.array(parameters), start, end, tolerance)
+    while going.time < end:
+        ended = going.advance()
+        fall = going.fall(motion.guards) if ended == SUSPECT else None
+        if fall is not None:
+            guard, time, state = fall
+            going.end_at(time, state)
+            yield going.arc(guard.name)
+            return
+        if ended in FAILURES:
+            yield going.arc(None, FAILURES[ended])
+            return
+        if going.steps == MANY or going.time >= end:
+            yield going.arc()
+        elif ended == FULL:
+            going.widen()
+
+
+class Stepping:
+    """A motion under way: the state, and the steps of the arc that is being made."""
+
+    def __init__(
+        self,
+        functions: Machinery,
+        parameters: Array,
+        start: tuple[float, Array],
+        end: float,
+        tolerance: float,
+    ) -> None:
+        size = len(start[1])
+        self.functions, self.parameters, self.tolerance = functions, parameters, np.full(2, tolerance)
+        self.state, self.lost = np.array(start[1]), np.zeros(size)
+        self.stages, self.span = np.empty((ROWS, size)), np.array([start[0], end, 0.0])
+        self.steps, self.calls = 0, 0
+        self.other: Stepping | None = None
+        self.knots, self.terms = np.empty(FEW + 1), np.empty((FEW, POWERS, size))
+        self.knots[0] = start[0]
+
+    @property
+    def time(self) -> float:
+        """Where it is."""
+        return float(self.span[0])
+
+    def widen(self) -> None:
+        """Make room for more steps."""
+        more = min(WIDER * self.steps, MANY) - self.steps
+        self.knots = np.concatenate([self.knots, np.empty(more)])
+        self.terms = np.concatenate([self.terms, np.empty((more, POWERS, len(self.state)))])
+
+    def advance(self, *, guarded: bool = True) -> int:
+        """Take steps until something is to be done; tell what."""
+        functions = self.functions
+        steps, calls, ended = functions.advance(
+            functions.rates,
+            functions.guards,
+            functions.number if guarded else 0,
+            self.parameters,
+            self.state,
+            self.lost,
+            self.stages,
+            self.span,
+            self.tolerance,
+            self.knots,
+            self.terms,
+            self.steps,
+        )
+        self.steps, self.calls = steps, self.calls + calls
+        return ended
+
+    def arc(self, guard: str | None = None, failure: str | None = None) -> Arc:
+        """The arc that has been made; the next one begins."""
+        solution = DenseSolution.of_steps(self.knots, self.terms, self.steps)
+        arc = Arc(solution, np.array(self.state), guard, failure, self.steps, self.calls)
+        self.knots[0] = self.time
+        self.steps, self.calls = 0, 0
+        return arc
+
+    def fall(self, guards: Sequence[Guard]) -> tuple[Guard, float, Array] | None:
+        """The guard that first falls through zero in the last step, when, and the state there."""
+        last, begin, reach = self.terms[self.steps - 1], float(self.knots[self.steps - 1]), self.time
+
+        def dense(at: float) -> Array:
+            found = np.empty(len(self.state))
+            self.functions.within(last, (at - begin) / (reach - begin), found)
+            return found
+
+        def advance(at: float) -> Array:
+            return self.beside().landed(begin, last[0], at)
+
+        parameters: Any = self.parameters
+        known = [self.functions.guard(guard, number) for number, guard in enumerate(guards)]
+        found = first_fall(known, parameters, dense, advance, (begin, reach))
+        if found is None:
+            return None
+        number, guess = found
+        time, state = polish(known[number], parameters, advance, (begin, reach), guess)
+        return known[number], time, state
+
+    def end_at(self, time: float, state: Array) -> None:
+        """End within the last step."""
+        begin, end = self.knots[self.steps - 1], self.knots[self.steps]
+        part, last, share = (time - begin) / (end - begin), self.terms[self.steps - 1], 1.0
+        for power in range(POWERS):
+            for i in range(len(state)):
+                last[power, i] *= share
+            share *= part
+        self.knots[self.steps] = time
+        self.span[0] = time
+        self.state = state
+
+    def beside(self) -> "Stepping":
+        """Another motion of the same kind, for trial."""
+        if self.other is None:
+            begin, end = float(self.span[0]), float(self.span[1])
+            self.other = Stepping(
+                self.functions, self.parameters, (begin, self.state), end, float(self.tolerance[0])
+            )
+        return self.other
+
+    def landed(self, time: float, state: Array, end: float) -> Array:
+        """The state after steps from another that end at exactly this time."""
+        self.state, self.lost = np.array(state), np.zeros(len(state))
+        self.span = np.array([time, end, 0.0])
+        ended = FULL
+        while ended == FULL and end > time:
+            self.steps = 0
+            ended = self.advance(guarded=False)
+        return self.state
