@@ -14,7 +14,8 @@ import pytest
 import tippetop as tt
 from tippetop.contact import closing
 from tippetop.errors import TippetopError
-from tippetop.integrators import has_taylor, scipy_methods
+from tippetop.integrators import has_taylor, make_integrator, scipy_methods
+from tippetop.integrators.base import Motion
 from tippetop.mechanics import impact_on_two, integrated_impact, touchdown
 
 COUNT, PARTS = int(os.environ.get("TIPPETOP_HOSTILE", "64")), 8
@@ -210,12 +211,17 @@ def test_steps_within_impacts_on_two_surfaces_count(monkeypatch: pytest.MonkeyPa
 
 
 def test_an_end_of_slip_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Slip that ends while the top spins at 1e13 rad/s: its direction turns without end."""
+    """Numbers that turn for ever, as the direction of slip may, in the clock in which it ends."""
     monkeypatch.setattr(closing, "MOST_STEPS", 16)
     monkeypatch.setattr(scipy_methods, "MANY", 16)
-    run = tt.simulate(tt.Problem(**hostile(np.random.default_rng(245))), 2.0, samples=11)
-    assert run.attrs["outcome"] == "failed"
-    assert 0.0 < float(run["time"][-1]) < 1e-6
+    turning = Motion(lambda y, pace: (pace[0] * y[1], -pace[0] * y[0]), size=2, parameters=1, guards=())
+    start = 0.0, np.array([1.0, 0.0])
+    arcs = closing.followed(make_integrator("dop853", 1e-12), turning, [1e4], start)
+    assert arcs[-1].failure == "slip, or rolling, takes too many steps to end"
+    assert sum(arc.steps for arc in arcs) < 64
+    slow = closing.followed(make_integrator("dop853", 1e-12), turning, [1e-4], start)
+    assert slow[-1].failure is None
+    assert slow[-1].solution.end == closing.LONGEST
 
 
 @pytest.mark.parametrize("duration", [1e308, 1e300, np.inf, np.nan, 0.0])
