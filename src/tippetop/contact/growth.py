@@ -108,7 +108,7 @@ def driven_motion(kind: Kind, ending: Vanishing, components: int, degree: int) -
     The velocity that begins comes before them: it is what the acceleration adds up to.
     """
     free = 8 if ending.moves else 6
-    chain, often = degree + 1, ending.recurs(kind.example.friction)
+    chain = degree + 1
 
     def rates(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[Scalar, ...]:
         given = y[free + components :]
@@ -120,4 +120,4 @@ def driven_motion(kind: Kind, ending: Vanishing, components: int, degree: int) -
             turning += [*given[i * chain + 1 : (i + 1) * chain], 0.0]
         return (*rate.axis, *rate.momentum, *rate.velocity, *rate.xi, *turning)
 
-    return Motion(rates, free + components * (chain + 1), kind.numbers, lasting=often)
+    return Motion(rates, free + components * (chain + 1), kind.numbers, lasting=False)

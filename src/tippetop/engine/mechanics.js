@@ -2466,7 +2466,7 @@ function growth(start, top, ending, velocity, degree, integrator) {
 /** Equations of motion in which a direction is given: it, and its derivatives, are the last numbers. */
 const driven_motion = py.cached((kind, ending, components, degree) => {
   const free = py.truth(ending.moves) ? 8 : 6;
-  const [chain, often] = [degree + 1, ending.recurs(kind.example.friction)];
+  const chain = degree + 1;
   const rates = (y, numbers) => {
     const given = py.slice(y, free + components, null, null);
     const direction = py.tuple(py.range(components).map((i) => py.item(given, i * chain)));
@@ -2478,7 +2478,7 @@ const driven_motion = py.cached((kind, ending, components, degree) => {
     }
     return [...rate.axis, ...rate.momentum, ...rate.velocity, ...rate.xi, ...turning];
   };
-  return new Motion(rates, free + components * (chain + 1), kind.numbers, undefined, often);
+  return new Motion(rates, free + components * (chain + 1), kind.numbers, undefined, false);
 });
 
 // tippetop.contact.arriving
