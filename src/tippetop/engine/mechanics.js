@@ -4069,7 +4069,7 @@ const TOLERANCE = 1e-09;
 const STUCK = 1e-08;
 const SHORTEST = 1e-12;
 const [NEWTON_of_integrated_impact, STRAIGHT] = [4, 1e-08];
-const MOST_of_integrated_impact = 100000;
+const MOST_of_integrated_impact = 20000;
 const LOOK = 4;
 
 /** An impact under any friction law, integrated with slip as the clock. */

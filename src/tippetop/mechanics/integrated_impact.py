@@ -25,8 +25,8 @@ SHORTEST = 1e-12
 NEWTON, STRAIGHT = 4, 1e-8
 """Improvements of the end of an impact, and how near to it, in its last step, the way is straight."""
 
-MOST = 100_000
-"""Steps after which an impact is given up; most take some ten."""
+MOST = 20_000
+"""Steps after which an impact is given up, within seconds; most take some ten, on small patches thousands."""
 
 LOOK = 4
 """After how many steps each it is looked whether slip has come to a direction that it keeps."""
