@@ -42,18 +42,12 @@ TURNING = 1.0
 
 
 class Arrival(NamedTuple):
-    """The end of slip.
-
-    Attributes
-    ----------
-    left
-        The time until it ends.
-    rows
-        Coefficients of n, L and zeta in powers of the time since then, which is negative.
-    """
+    """The end of slip."""
 
     left: float
+    """The time until it ends."""
     rows: Sequence[list[Scalar]]
+    """Coefficients of n, L and zeta in powers of the time since then, which is negative."""
 
     def at(self, part: float) -> list[Scalar]:
         """The numbers where a part of the time is left."""

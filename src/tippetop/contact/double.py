@@ -43,18 +43,12 @@ and is not followed further."""
 
 @dataclass(frozen=True)
 class OnTwo(IntegratedMode):
-    """Two surfaces touch.
-
-    Attributes
-    ----------
-    other
-        The top with the second surface active.
-    rolls
-        Sign of omega_e (see `tippetop.mechanics.contact_pair`); 0 where rolling is held, or not resisted.
-    """
+    """Two surfaces touch."""
 
     other: Top
+    """The top with the second surface active."""
     rolls: float = 0.0
+    """Sign of omega_e (see `tippetop.mechanics.contact_pair`); 0 where rolling is held, or not resisted."""
 
     @property
     def form(self) -> str:

@@ -143,15 +143,10 @@ class StickingOnTwo(HeldOnTwo):
 
 @dataclass(frozen=True)
 class SlipBeginningOnTwo(SlidingOnTwo):
-    """The first moments of slip at a contact, or at both: slip itself is what moves, and loses no digits.
-
-    Attributes
-    ----------
-    begin
-        Its numbers at the start: axis, angular momentum, and xi (see `tippetop.mechanics.contact_pair`).
-    """
+    """The first moments of slip at a contact, or at both: slip itself is what moves, and loses no digits."""
 
     begin: tuple[float, ...] = ()
+    """Its numbers at the start: axis, angular momentum, and xi (see `tippetop.mechanics.contact_pair`)."""
 
     @property
     def motion(self) -> Motion:

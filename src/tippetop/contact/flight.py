@@ -31,15 +31,10 @@ TOUCHING = 1e-12
 
 @dataclass(frozen=True)
 class Flight(Mode):
-    """Free flight, until the body's lowest point touches the table again.
-
-    Attributes
-    ----------
-    start
-        How the flight starts: thrown, rebounding, released or lifting off.
-    """
+    """Free flight, until the body's lowest point touches the table again."""
 
     start: Start = Start.AIRBORNE
+    """How the flight starts: thrown, rebounding, released or lifting off."""
 
     name: ClassVar[str] = "flight"
     touching: ClassVar[bool] = False

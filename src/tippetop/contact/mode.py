@@ -78,71 +78,46 @@ class EventKind(Enum):
 
 @dataclass(frozen=True)
 class Event:
-    """Something that happened at an instant.
-
-    Attributes
-    ----------
-    kind
-        What happened.
-    time
-        When.
-    impulse, energy_lost
-        Normal impulse of the table, and energy that went with it.
-    surface
-        Number of the body's surface to which it happened.
-    steps
-        How many steps it took to find what it does.
-    """
+    """Something that happened at an instant."""
 
     kind: EventKind
+    """What happened."""
     time: float
+    """When."""
     impulse: float = 0.0
     energy_lost: float = 0.0
+    """Normal impulse of the table, and energy that went with it."""
     surface: int = 0
+    """Number of the body's surface to which it happened."""
     steps: int = 0
+    """How many steps it took to find what it does."""
 
 
 @dataclass(frozen=True)
 class Transition:
-    """What follows the end of a mode.
-
-    Attributes
-    ----------
-    events
-        What happened, in order.
-    then
-        The next mode, or the outcome of the run.
-    state
-        The state in which it begins, floats.
-    detail
-        More about the outcome, where there is more to say.
-    """
+    """What follows the end of a mode."""
 
     events: tuple[Event, ...]
+    """What happened, in order."""
     then: "Mode | Outcome"
+    """The next mode, or the outcome of the run."""
     state: State
+    """The state in which it begins, floats."""
     detail: str = ""
+    """More about the outcome, where there is more to say."""
 
 
 class Reaction(NamedTuple):
-    """What the table does to the top at an instant.
-
-    Attributes
-    ----------
-    force
-        Contact force.
-    torque
-        Torque about the contact point.
-    power
-        Power of the contact force and torque.
-    couple
-        Torque of drilling and rolling friction alone; None if that is all of the torque.
-    """
+    """What the table does to the top at an instant."""
 
     force: Vector
+    """Contact force."""
     torque: Vector
+    """Torque about the contact point."""
     power: Scalar
+    """Power of the contact force and torque."""
     couple: Vector | None = None
+    """Torque of drilling and rolling friction alone; None if that is all of the torque."""
 
     @property
     def resistance(self) -> Vector:
@@ -155,34 +130,23 @@ NO_REACTION = Reaction((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.0)
 
 @dataclass(frozen=True)
 class Segment:
-    """A piece of a trajectory within one mode.
-
-    Attributes
-    ----------
-    mode
-        What the top was doing.
-    solution
-        The numbers of the mode as functions of time.
-    end_state
-        The state at its end, floats.
-    transition
-        What follows where the mode ended, None where it goes on.
-    steps, evaluations
-        Work done by the integrator.
-    highest_gap
-        How high the lowest point rose above the table.
-    method
-        The integrator that took the steps, if it is not the one that was asked.
-    """
+    """A piece of a trajectory within one mode."""
 
     mode: "Mode"
+    """What the top was doing."""
     solution: DenseSolution
+    """The numbers of the mode as functions of time."""
     end_state: State
+    """The state at its end, floats."""
     transition: Transition | None
+    """What follows where the mode ended, None where it goes on."""
     steps: int = 0
     evaluations: int = 0
+    """Work done by the integrator."""
     highest_gap: float = 0.0
+    """How high the lowest point rose above the table."""
     method: Integrator | None = None
+    """The integrator that took the steps, if it is not the one that was asked."""
 
     @property
     def end_time(self) -> float:
@@ -248,25 +212,17 @@ class Rules(Protocol):
 
 @dataclass(frozen=True)
 class Mode(ABC):
-    """A way to move.
-
-    Attributes
-    ----------
-    top
-        The top in natural units.
-    rules
-        What follows where contact begins or ends.
-    name
-        Its name in a result.
-    touching
-        Whether the top is in contact with the table.
-    """
+    """A way to move."""
 
     top: Top
+    """The top in natural units."""
     rules: Rules = field(repr=False)
+    """What follows where contact begins or ends."""
 
     name: ClassVar[str]
+    """Its name in a result."""
     touching: ClassVar[bool] = True
+    """Whether the top is in contact with the table."""
 
     @property
     def tops(self) -> tuple[Top, ...]:

@@ -89,15 +89,10 @@ TINY = 1e-100
 
 @dataclass(frozen=True)
 class Passing(Mode):
-    """A moment between two modes, which is told as the one of them in which something moves.
-
-    Attributes
-    ----------
-    ending
-        Which velocity ends or begins, and whether the other is held.
-    """
+    """A moment between two modes, which is told as the one of them in which something moves."""
 
     ending: Vanishing
+    """Which velocity ends or begins, and whether the other is held."""
 
     name: ClassVar[str] = "passing"
 
@@ -146,15 +141,10 @@ class Passing(Mode):
 
 @dataclass(frozen=True)
 class Loosening(Passing):
-    """The first moments of slip, or of rolling, as a power series in time.
-
-    Attributes
-    ----------
-    power
-        How it grows with time: 2 from the limit of what can be held, 1 from beyond it.
-    """
+    """The first moments of slip, or of rolling, as a power series in time."""
 
     power: int = 1
+    """How it grows with time: 2 from the limit of what can be held, 1 from beyond it."""
 
     def segments(self, time: float, state: State, end: float, integrator: Integrator) -> Iterator[Segment]:
         """Evaluate the series."""
@@ -249,15 +239,10 @@ class BothLoosening(Loosening):
 
 @dataclass(frozen=True)
 class Resting(Mode):
-    """Every velocity has ended: an instant, so that a result has it, and then the run is over.
-
-    Attributes
-    ----------
-    told
-        The mode as which it is told.
-    """
+    """Every velocity has ended: an instant, so that a result has it, and then the run is over."""
 
     told: IntegratedMode
+    """The mode as which it is told."""
 
     name: ClassVar[str] = "resting"
 
@@ -273,15 +258,10 @@ class Resting(Mode):
 
 @dataclass(frozen=True)
 class Stopping(Passing):
-    """The last moments of slip, or of rolling, in a clock of their own (see `tippetop.mechanics.ending`).
-
-    Attributes
-    ----------
-    begin
-        The numbers of the clock where another branch of the law has left off; else they are the state's.
-    """
+    """The last moments of slip, or of rolling, in a clock of their own (see `tippetop.mechanics.ending`)."""
 
     begin: tuple[float, ...] = ()
+    """The numbers of the clock where another branch of the law has left off; else they are the state's."""
 
     def segments(self, time: float, state: State, end: float, integrator: Integrator) -> Iterator[Segment]:
         """Follow it to its end, or to where it is no longer about to end."""

@@ -45,15 +45,10 @@ REST = 1e-13
 
 @dataclass(frozen=True)
 class ContactRules:
-    """What all rules have in common: the resolver of a contact that is closed and has no normal velocity.
-
-    Attributes
-    ----------
-    top
-        The top in natural units.
-    """
+    """What all rules have in common: the resolver of a contact that is closed and has no normal velocity."""
 
     top: Top
+    """The top in natural units."""
 
     pulls: ClassVar[bool] = False
 
@@ -273,15 +268,10 @@ class StopAtLiftOff(ContactRules):
 
 @dataclass(frozen=True)
 class FreeToFly(ContactRules):
-    """The top leaves the table where that would have to pull, flies, and comes back with an impact.
-
-    Attributes
-    ----------
-    restitution
-        Ratio of the normal impulses of restitution and compression.
-    """
+    """The top leaves the table where that would have to pull, flies, and comes back with an impact."""
 
     restitution: float
+    """Ratio of the normal impulses of restitution and compression."""
 
     def launch(self, state: State) -> Transition:
         """Fly from above the table or if thrown up, collide if thrown down, and else go on from contact."""

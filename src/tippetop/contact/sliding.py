@@ -54,15 +54,10 @@ LIFT_OFF, NEARING, PARTING, STOPPING, ROLLING_STOPPING, ROLLING, BRANCH = (
 
 @dataclass(frozen=True)
 class Sliding(IntegratedMode):
-    """Sliding, as long as the normal force is positive or the table may pull, and slip does not end.
-
-    Attributes
-    ----------
-    near
-        Whether slip is so small that it may be about to end.
-    """
+    """Sliding, as long as the normal force is positive or the table may pull, and slip does not end."""
 
     near: bool = False
+    """Whether slip is so small that it may be about to end."""
 
     name: ClassVar[str] = "sliding"
 

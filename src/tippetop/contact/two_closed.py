@@ -62,43 +62,28 @@ OPENS, HELD, CLOSES = "opens", "held", "closes"
 
 @dataclass(frozen=True)
 class Before:
-    """What two contacts did before.
-
-    Attributes
-    ----------
-    stuck
-        Numbers of the surfaces that stuck.
-    rolled
-        Whether the body rolled, if that is resisted.
-    """
+    """What two contacts did before."""
 
     stuck: tuple[int, ...] = ()
+    """Numbers of the surfaces that stuck."""
     rolled: bool = False
+    """Whether the body rolled, if that is resisted."""
 
 
 @dataclass(frozen=True)
 class TwoClosed:
-    """Two contacts that are closed and have no normal velocities.
-
-    Attributes
-    ----------
-    rules
-        The rules of the body.
-    tops
-        The top with either surface active; if slip has ended on one, that comes first.
-    state
-        The state, in which slip, and rolling, that has ended is zero.
-    ended
-        On which contacts it has.
-    rolls
-        Sign of omega_e; 0 where rolling has ended, or is not resisted.
-    """
+    """Two contacts that are closed and have no normal velocities."""
 
     rules: Any
+    """The rules of the body."""
     tops: Tops
+    """The top with either surface active; if slip has ended on one, that comes first."""
     state: State
+    """The state, in which slip, and rolling, that has ended is zero."""
     ended: tuple[bool, bool]
+    """On which contacts it has."""
     rolls: float
+    """Sign of omega_e; 0 where rolling has ended, or is not resisted."""
 
     @classmethod
     def of(

@@ -27,41 +27,27 @@ ATOM = 9
 
 
 class Spelling(NamedTuple):
-    """How an operation is written.
-
-    Attributes
-    ----------
-    parts
-        What stands before, between and after its operands.
-    binds
-        How tightly: an operand that binds less is put in parentheses, and the last one if it binds no more.
-    order
-        In which order its operands stand there, if it is another.
-    """
+    """How an operation is written."""
 
     parts: tuple[str, ...]
+    """What stands before, between and after its operands."""
     binds: int = ATOM
+    """How tightly: an operand that binds less is put in parentheses, and the last one if it binds no more."""
     order: tuple[int, ...] = ()
+    """In which order its operands stand there, if it is another."""
 
 
 class Language(NamedTuple):
-    """How code is written.
-
-    Attributes
-    ----------
-    spellings
-        Operations by name.
-    head, foot
-        What stands before and after the name of a function, and at its end.
-    local, end
-        What stands before and after an assignment to a new name.
-    """
+    """How code is written."""
 
     spellings: dict[str, Spelling]
+    """Operations by name."""
     head: tuple[str, str]
     foot: str
+    """What stands before and after the name of a function, and at its end."""
     local: str
     end: str
+    """What stands before and after an assignment to a new name."""
 
 
 def common_spellings(library: str) -> dict[str, Spelling]:

@@ -29,27 +29,18 @@ class NotRecordable(TypeError):
 
 @dataclass(eq=False)
 class Node:
-    """A number that is to be computed, or given.
-
-    Attributes
-    ----------
-    graph
-        Where it belongs.
-    name
-        What makes it: an operation, or `STATE`, `PARAMETER` or `CONSTANT`.
-    operands
-        Of what it is made.
-    value
-        Which number of the state or the parameters it is, or the value of a constant.
-    place
-        Its number in the graph: greater than those of its operands.
-    """
+    """A number that is to be computed, or given."""
 
     graph: "Graph" = field(repr=False)
+    """Where it belongs."""
     name: str
+    """What makes it: an operation, or `STATE`, `PARAMETER` or `CONSTANT`."""
     operands: "tuple[Node, ...]"
+    """Of what it is made."""
     value: float
+    """Which number of the state or the parameters it is, or the value of a constant."""
     place: int
+    """Its number in the graph: greater than those of its operands."""
 
     __array_ufunc__ = None
     """Keeps NumPy from taking a node for an element of an array."""
@@ -109,18 +100,12 @@ class Node:
 
 @dataclass(eq=False)
 class Graph:
-    """Nodes, each of which is there once.
-
-    Attributes
-    ----------
-    nodes
-        All of them, operands before what is made of them.
-    known
-        The same by what they are.
-    """
+    """Nodes, each of which is there once."""
 
     nodes: list[Node] = field(default_factory=list)
+    """All of them, operands before what is made of them."""
     known: dict[str, Node] = field(default_factory=dict)
+    """The same by what they are."""
 
     def node(self, name: str, operands: tuple[Node, ...], value: float = 0.0) -> Node:
         """The node of this description, which is made if there is none."""

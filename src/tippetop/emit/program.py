@@ -27,31 +27,21 @@ TYPES = {"tuple", "list", "dict", "Callable", "Annotated", "Any", "Literal", "ND
 
 @dataclass
 class Class:
-    """A class.
-
-    Attributes
-    ----------
-    name
-        What it is called.
-    node
-        Its definition.
-    module
-        Where that is.
-    bases
-        The classes it is of that are translated too, by name.
-    kind
-        "tuple", "record", "enum", "number" (an enum of numbers), "part", "error" (of arithmetic), "plain", or
-        "" if nothing remains.
-    fields
-        Names and defaults of its fields, those of its bases first.
-    """
+    """A class."""
 
     name: str
+    """What it is called."""
     node: ast.ClassDef
+    """Its definition."""
     module: str
+    """Where that is."""
     bases: list[str]
+    """The classes it is of that are translated too, by name."""
     kind: str
+    """"tuple", "record", "enum", "number" (an enum of numbers), "part", "error" (of arithmetic), "plain", or
+    "" if nothing remains."""
     fields: dict[str, ast.expr | None] = field(default_factory=dict)
+    """Names and defaults of its fields, those of its bases first."""
 
 
 class Program:

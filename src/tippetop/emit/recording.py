@@ -20,22 +20,15 @@ class Elementary:
 
 
 class Recorded(NamedTuple):
-    """What a function does.
-
-    Attributes
-    ----------
-    nodes
-        What it computes with, operands first, and nothing else.
-    outputs
-        What it returns.
-    size, parameters
-        How many numbers the state has, and how many parameters there are.
-    """
+    """What a function does."""
 
     nodes: tuple[Node, ...]
+    """What it computes with, operands first, and nothing else."""
     outputs: tuple[Node, ...]
+    """What it returns."""
     size: int
     parameters: int
+    """How many numbers the state has, and how many parameters there are."""
 
     @property
     def operations(self) -> int:

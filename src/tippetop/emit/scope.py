@@ -13,25 +13,17 @@ FLOATS = {"float", "int"}
 
 @dataclass
 class Scope:
-    """The names of a function.
-
-    Attributes
-    ----------
-    parameters
-        Names of its parameters.
-    bindings
-        What binds other names, and binds parameters anew.
-    floats, arrays
-        Names of numbers, and of arrays of them.
-    declared
-        The statements that declare names; none for what is declared at the top.
-    """
+    """The names of a function."""
 
     parameters: list[str] = field(default_factory=list)
+    """Names of its parameters."""
     bindings: dict[str, list[ast.AST]] = field(default_factory=dict)
+    """What binds other names, and binds parameters anew."""
     floats: set[str] = field(default_factory=set)
     arrays: set[str] = field(default_factory=set)
+    """Names of numbers, and of arrays of them."""
     declared: dict[str, Sequence[ast.AST]] = field(default_factory=dict)
+    """The statements that declare names; none for what is declared at the top."""
 
     @classmethod
     def of(cls, node: ast.FunctionDef | ast.Lambda) -> "Scope":

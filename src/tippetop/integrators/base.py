@@ -33,71 +33,47 @@ class Guard:
     """A condition that ends a motion: the first time its value falls through zero from above.
 
     It may start at zero, or below by rounding, and rise: however soon it falls again, that ends the motion.
-
-    Attributes
-    ----------
-    name
-        What has happened then.
-    value
-        A function of state and parameters, positive while the motion may go on.
     """
 
     name: str
+    """What has happened then."""
     value: Function
+    """A function of state and parameters, positive while the motion may go on."""
 
 
 @dataclass(frozen=True)
 class Motion:
-    """Autonomous equations of motion y' = rates(y, parameters), and what ends them.
-
-    Attributes
-    ----------
-    rates
-        Time derivative of the state, in plain operators where a compiled integrator is to take it.
-    size
-        How many numbers the state has.
-    parameters
-        How many parameters there are.
-    guards
-        Conditions that end the motion.
-    lasting
-        Whether runs may spend most of their steps in it: worth compiling for speed.
-    """
+    """Autonomous equations of motion y' = rates(y, parameters), and what ends them."""
 
     rates: Rows
+    """Time derivative of the state, in plain operators where a compiled integrator is to take it."""
     size: int
+    """How many numbers the state has."""
     parameters: int
+    """How many parameters there are."""
     guards: tuple[Guard, ...] = ()
+    """Conditions that end the motion."""
     lasting: bool = True
+    """Whether runs may spend most of their steps in it: worth compiling for speed."""
 
 
 @dataclass(frozen=True)
 class Arc:
-    """A piece of a solution.
-
-    Attributes
-    ----------
-    solution
-        The state as a function of time, from the start of the arc to its end.
-    end_state
-        The state at its end, shape (size,).
-    guard
-        Name of the guard that ended the motion there, or None.
-    failure
-        Why the integrator gave up there, or None.
-    steps, evaluations
-        Steps accepted, and evaluations of the right-hand side (for the Taylor method: expansions).
-    method
-        Who took them, if it is not the integrator that was asked.
-    """
+    """A piece of a solution."""
 
     solution: DenseSolution
+    """The state as a function of time, from the start of the arc to its end."""
     end_state: Array
+    """The state at its end, shape (size,)."""
     guard: str | None = None
+    """Name of the guard that ended the motion there, or None."""
     failure: str | None = None
+    """Why the integrator gave up there, or None."""
     steps: int = 0
     evaluations: int = 0
+    """Steps accepted, and evaluations of the right-hand side (for the Taylor method: expansions)."""
     method: "Integrator | None" = None
+    """Who took them, if it is not the integrator that was asked."""
 
 
 class Integrator(Protocol):

@@ -18,15 +18,10 @@ MANY = 512
 
 @dataclass(frozen=True)
 class ClassicalRK4:
-    """Fourth-order Runge-Kutta: error h^5 in a step, h^4 in all.
-
-    Attributes
-    ----------
-    step
-        Step size, in the units of time of the motion.
-    """
+    """Fourth-order Runge-Kutta: error h^5 in a step, h^4 in all."""
 
     step: float
+    """Step size, in the units of time of the motion."""
     name: str = field(default="rk4", init=False)
 
     def integrate(

@@ -55,21 +55,14 @@ NO_STEP, TOO_SHORT = "the step size fell to nothing", "the step size fell below 
 
 
 class Points(NamedTuple):
-    """Radau's points and what belongs to them.
-
-    Attributes
-    ----------
-    places
-        0 and the points, as parts of a step, shape (s + 1,).
-    integrals
-        Integrals, from 0 to each point, of Lagrange's polynomials on the points, shape (s, s).
-    transform
-        From values at the places to coefficients in Chebyshev's polynomials, shape (s + 1, s + 1).
-    """
+    """Radau's points and what belongs to them."""
 
     places: Array
+    """0 and the points, as parts of a step, shape (s + 1,)."""
     integrals: Array
+    """Integrals, from 0 to each point, of Lagrange's polynomials on the points, shape (s, s)."""
     transform: Array
+    """From values at the places to coefficients in Chebyshev's polynomials, shape (s + 1, s + 1)."""
 
 
 @lru_cache
@@ -88,18 +81,12 @@ def radau_points(stages: int = STAGES) -> Points:
 
 @dataclass(frozen=True)
 class Collocation:
-    """Collocation at Radau's points with adaptive steps.
-
-    Attributes
-    ----------
-    tolerance
-        Relative and absolute size of the last coefficients of a step's polynomials, at most.
-    shortest
-        The method gives up where its steps would be shorter than this, and begins with such steps.
-    """
+    """Collocation at Radau's points with adaptive steps."""
 
     tolerance: float = LEAST_TOLERANCE
+    """Relative and absolute size of the last coefficients of a step's polynomials, at most."""
     shortest: float = 0.0
+    """The method gives up where its steps would be shorter than this, and begins with such steps."""
     name: str = field(default="collocation", init=False)
 
     def integrate(
@@ -154,22 +141,15 @@ class Collocation:
 
 @dataclass(frozen=True)
 class Step:
-    """The polynomial of a step, a function of time.
-
-    Attributes
-    ----------
-    start, end
-        Where it begins and ends.
-    terms
-        Coefficients in Chebyshev's polynomials, shape (degree + 1, size).
-    end_state
-        The state at its end.
-    """
+    """The polynomial of a step, a function of time."""
 
     start: float
     end: float
+    """Where it begins and ends."""
     terms: Array
+    """Coefficients in Chebyshev's polynomials, shape (degree + 1, size)."""
     end_state: Array
+    """The state at its end."""
 
     def __call__(self, time: float) -> Array:
         """The solution within the step."""

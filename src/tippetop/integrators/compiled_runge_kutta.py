@@ -38,14 +38,10 @@ class CompiledRungeKutta:
     """SciPy's DOP853, compiled: the same steps, with compensated sums, and the same guards.
 
     A motion that cannot be recorded (see `tippetop.emit.recording`) is left to SciPy.
-
-    Attributes
-    ----------
-    tolerance
-        Relative and absolute error per step.
     """
 
     tolerance: float
+    """Relative and absolute error per step."""
     name: str = field(default="compiled", init=False)
 
     def integrate(

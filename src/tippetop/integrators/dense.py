@@ -37,18 +37,13 @@ MANY = 256
 
 @dataclass(frozen=True)
 class DenseSolution:
-    """A solution over k steps.
-
-    Attributes
-    ----------
-    knots
-        Ends of the steps, increasing, shape (k + 1,).
-    terms
-        Coefficients in increasing powers of the part of a step that has passed, shape (k, size, degree + 1).
-    """
+    """A solution over k steps."""
 
     knots: Array
+    """Ends of the steps, increasing, shape (k + 1,)."""
     terms: Array
+    """Coefficients in increasing powers of the part of a step that has passed, shape (k, size, degree +
+    1)."""
 
     @property
     def size(self) -> int:

@@ -30,15 +30,10 @@ LONGER = 100.0
 
 @dataclass(frozen=True)
 class Relieved:
-    """An explicit method, and `Collocation` where the motion is stiff.
-
-    Attributes
-    ----------
-    explicit
-        The method that follows the motion elsewhere.
-    """
+    """An explicit method, and `Collocation` where the motion is stiff."""
 
     explicit: Integrator
+    """The method that follows the motion elsewhere."""
 
     @property
     def name(self) -> str:

@@ -30,21 +30,14 @@ LEAST_STEP = 1e-15
 
 @dataclass(frozen=True)
 class SciPy:
-    """One of SciPy's adaptive methods.
-
-    Attributes
-    ----------
-    name
-        A key of `METHODS`.
-    tolerance
-        Relative tolerance per step.
-    absolute
-        Absolute tolerance per step; None for the same.
-    """
+    """One of SciPy's adaptive methods."""
 
     name: str
+    """A key of `METHODS`."""
     tolerance: float
+    """Relative tolerance per step."""
     absolute: float | None = None
+    """Absolute tolerance per step; None for the same."""
 
     def integrate(
         self, motion: Motion, parameters: Sequence[float], start: tuple[float, Array], end: float

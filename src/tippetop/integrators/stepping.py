@@ -25,26 +25,18 @@ FAILURES = {
 
 
 class Machinery(NamedTuple):
-    """What a motion is followed with.
-
-    Attributes
-    ----------
-    advance, within
-        Of `dormand_prince`.
-    rates, guards
-        The motion's as that takes them.
-    number
-        How many guards there are.
-    values
-        The guards as functions (y, p, out) for Python.
-    """
+    """What a motion is followed with."""
 
     advance: Callable[..., tuple[int, int, int]]
     within: Callable[[Array, float, Array], None]
+    """Of `dormand_prince`."""
     rates: Any
     guards: Any
+    """The motion's as that takes them."""
     number: int
+    """How many guards there are."""
     values: Callable[[Array, Array, Array], None]
+    """The guards as functions (y, p, out) for Python."""
 
     def guard(self, guard: Guard, number: int) -> Guard:
         """A guard that is evaluated by the compiled function."""

@@ -24,15 +24,10 @@ LONG = 4096
 
 @dataclass(frozen=True)
 class Taylor:
-    """Adaptive Taylor series, accurate to rounding at its default tolerance.
-
-    Attributes
-    ----------
-    tolerance
-        Relative and absolute error per step, at least 2.2e-16.
-    """
+    """Adaptive Taylor series, accurate to rounding at its default tolerance."""
 
     tolerance: float = float(np.finfo(float).eps)
+    """Relative and absolute error per step, at least 2.2e-16."""
     name: str = field(default="taylor", init=False)
 
     def integrate(

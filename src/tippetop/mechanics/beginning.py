@@ -23,23 +23,16 @@ CHOICES = ((False, False), (True, False), (False, True), (True, True))
 
 
 class Beginning(NamedTuple):
-    """How the velocities of a contact go on.
-
-    Attributes
-    ----------
-    slip, rolling
-        Slip and rolling, or the directions in which they begin; None where they are held.
-    rates
-        At which rates R >= 0 those that begin grow, slip first.
-    wrench, acceleration
-        What the table does, and how the contact accelerates.
-    """
+    """How the velocities of a contact go on."""
 
     slip: Slip | None
     rolling: Slip | None
+    """Slip and rolling, or the directions in which they begin; None where they are held."""
     rates: tuple[float, ...]
+    """At which rates R >= 0 those that begin grow, slip first."""
     wrench: Wrench
     acceleration: Acceleration
+    """What the table does, and how the contact accelerates."""
 
 
 def beginning(

@@ -114,24 +114,16 @@ class ContactPair(NamedTuple):
 
 
 class PairMotion(NamedTuple):
-    """What the table does at both contacts that stay closed, and how they accelerate.
-
-    Attributes
-    ----------
-    pair
-        The contact points.
-    wrenches
-        What the table does at each; along e, where both stick, all at the first.
-    moving
-        Accelerations.
-    holding
-        Couple along e that holds rolling, N m; none where nothing does.
-    """
+    """What the table does at both contacts that stay closed, and how they accelerate."""
 
     pair: ContactPair
+    """The contact points."""
     wrenches: tuple[Wrench, Wrench]
+    """What the table does at each; along e, where both stick, all at the first."""
     moving: Moving
+    """Accelerations."""
     holding: Scalar = 0.0
+    """Couple along e that holds rolling, N m; none where nothing does."""
 
     @property
     def force(self) -> Vector:

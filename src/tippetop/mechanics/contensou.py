@@ -23,17 +23,12 @@ class EllipsoidalLaw(NamedTuple):
 
     S = sqrt(v^2 + rho^2 w^2), f = -mu v / S, t = -mu rho^2 w / S along the vertical, and rho = (3 pi/16)
     patch_radius: analytic but for v = w = 0, where any (T / mu N)^2 + (M / (mu N rho))^2 <= 1 is possible.
-
-    Attributes
-    ----------
-    mu
-        Friction coefficient.
-    patch_radius
-        Radius of the contact patch, m.
     """
 
     mu: Scalar
+    """Friction coefficient."""
     patch_radius: Scalar
+    """Radius of the contact patch, m."""
 
     @property
     def slip_length(self) -> Scalar:

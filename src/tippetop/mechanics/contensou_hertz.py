@@ -102,17 +102,12 @@ class HertzDrillingLaw(NamedTuple):
     """Contensou friction with Hertz's pressure where drilling prevails, kappa < 1.
 
     f = -mu (3 pi/32) (4 - kappa^2) v / (R |w|), |t| = mu R (3 pi/16) (1 - kappa^2 + 3/8 kappa^4).
-
-    Attributes
-    ----------
-    mu
-        Friction coefficient.
-    patch_radius
-        Radius R of the contact patch, m.
     """
 
     mu: Scalar
+    """Friction coefficient."""
     patch_radius: Scalar
+    """Radius R of the contact patch, m."""
 
     @property
     def slip_length(self) -> Scalar:
@@ -185,13 +180,6 @@ class HertzSlidingLaw(NamedTuple):
     tan(sig / 2) = 1 / (kappa + q), F and T / w^(1/2) are analytic on [0, 1] with the nearest singularity at
     -1, and ratios of polynomials give them to rounding, with plain operators only.
 
-    Attributes
-    ----------
-    mu
-        Friction coefficient.
-    patch_radius
-        Radius R of the contact patch, m.
-
     Notes
     -----
     Beyond its branch, q is the root of |kappa^2 - 1|: there is a number there for an integrator that looks
@@ -200,7 +188,9 @@ class HertzSlidingLaw(NamedTuple):
     """
 
     mu: Scalar
+    """Friction coefficient."""
     patch_radius: Scalar
+    """Radius R of the contact patch, m."""
 
     @property
     def slip_length(self) -> Scalar:
@@ -268,20 +258,14 @@ class HertzBranch(NamedTuple):
 
     Both have a number wherever the patch moves, so that the same equations follow many launches, each on its
     own: a single one costs half with those of its branch alone.
-
-    Attributes
-    ----------
-    mu
-        Friction coefficient.
-    patch_radius
-        Radius R of the contact patch, m.
-    drills
-        1 where drilling prevails, 0 where slip does.
     """
 
     mu: Scalar
+    """Friction coefficient."""
     patch_radius: Scalar
+    """Radius R of the contact patch, m."""
     drills: Scalar
+    """1 where drilling prevails, 0 where slip does."""
 
     @property
     def whole(self) -> "HertzLaw":
@@ -333,18 +317,12 @@ class HertzBranch(NamedTuple):
 
 
 class HertzLaw(NamedTuple):
-    """Contensou friction with Hertz's pressure, whichever branch holds: for numbers, or arrays of them.
-
-    Attributes
-    ----------
-    mu
-        Friction coefficient.
-    patch_radius
-        Radius R of the contact patch, m.
-    """
+    """Contensou friction with Hertz's pressure, whichever branch holds: for numbers, or arrays of them."""
 
     mu: Scalar
+    """Friction coefficient."""
     patch_radius: Scalar
+    """Radius R of the contact patch, m."""
 
     @property
     def slip_length(self) -> Scalar:

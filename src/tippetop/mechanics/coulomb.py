@@ -60,18 +60,12 @@ class CoulombLaw(NamedTuple):
 
 
 class RollingResistance(NamedTuple):
-    """Another law, and a torque -length w_t / |w_t| against rolling, w_t the horizontal angular velocity.
-
-    Attributes
-    ----------
-    law
-        The law of slip and drilling.
-    length
-        Arm of the normal force's couple, m. At w_t = 0 it is any horizontal torque up to length N.
-    """
+    """Another law, and a torque -length w_t / |w_t| against rolling, w_t the horizontal angular velocity."""
 
     law: Any
+    """The law of slip and drilling."""
     length: Scalar
+    """Arm of the normal force's couple, m. At w_t = 0 it is any horizontal torque up to length N."""
 
     def traction(self, slip: Horizontal, angular_velocity: Vector) -> Traction:
         """Force and torque per unit normal force."""

@@ -23,18 +23,12 @@ APART = 1e-7
 
 
 class Resisted(NamedTuple):
-    """How a velocity that begins in a direction changes.
-
-    Attributes
-    ----------
-    rate
-        A.
-    strength
-        Size of what resists it, as large as its share in A at least: the part of c that is not A itself.
-    """
+    """How a velocity that begins in a direction changes."""
 
     rate: Slip
+    """A."""
     strength: float
+    """Size of what resists it, as large as its share in A at least: the part of c that is not A itself."""
 
 
 Response = Callable[[Sequence[Slip]], Sequence[Resisted]]

@@ -47,32 +47,22 @@ def is_dry(law: FrictionLaw) -> bool:
 
 
 class DryContact(NamedTuple):
-    """The contact of a struck body under dry friction, all floats.
-
-    Attributes
-    ----------
-    body
-        The body at the start of the impact.
-    speed
-        Speed of the body's material, m/s: the measure of what is no slip.
-    before
-        Velocity of the contact point, m/s, and angular velocity, rad/s, at the start.
-    response
-        What an impulse adds to each of these six, per component of the impulse and of that of the torque.
-    ended, stopped
-        Whether slip, and rolling, have ended.
-    way, rolling_way
-        The direction in which they go on all the same; None if they are held.
-    """
+    """The contact of a struck body under dry friction, all floats."""
 
     body: Striking
+    """The body at the start of the impact."""
     speed: float
+    """Speed of the body's material, m/s: the measure of what is no slip."""
     before: Slip
+    """Velocity of the contact point, m/s, and angular velocity, rad/s, at the start."""
     response: tuple[Slip, ...]
+    """What an impulse adds to each of these six, per component of the impulse and of that of the torque."""
     ended: bool = False
     stopped: bool = False
+    """Whether slip, and rolling, have ended."""
     way: Slip | None = None
     rolling_way: Slip | None = None
+    """The direction in which they go on all the same; None if they are held."""
 
     @classmethod
     def of(cls, body: Striking) -> "DryContact":

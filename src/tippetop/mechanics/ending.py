@@ -37,18 +37,12 @@ DIGITS, SLOW = 1e-11, 1e-9
 
 
 class Vanishing(NamedTuple):
-    """A velocity that ends or begins, and what the other does meanwhile.
-
-    Attributes
-    ----------
-    slip
-        Whether it is the slip; else it is rolling.
-    held
-        Whether the other is held at zero; else it goes on, or is not resisted.
-    """
+    """A velocity that ends or begins, and what the other does meanwhile."""
 
     slip: bool
+    """Whether it is the slip; else it is rolling."""
     held: bool = False
+    """Whether the other is held at zero; else it goes on, or is not resisted."""
 
     @property
     def moves(self) -> bool:
@@ -101,28 +95,19 @@ class Vanishing(NamedTuple):
 
 
 class Closing(NamedTuple):
-    """A body one of whose velocities is about to end: the state in the clock above.
-
-    Attributes
-    ----------
-    axis, momentum
-        Axis n, and angular momentum L, kg m^2/s.
-    velocity
-        Horizontal velocity of the centre of mass, m/s, where that is free; else nothing.
-    direction
-        Direction e of xi, a unit vector.
-    speed
-        Its size s, m/s or rad/s.
-    time
-        Time, s.
-    """
+    """A body one of whose velocities is about to end: the state in the clock above."""
 
     axis: Vector
     momentum: Vector
+    """Axis n, and angular momentum L, kg m^2/s."""
     velocity: Slip
+    """Horizontal velocity of the centre of mass, m/s, where that is free; else nothing."""
     direction: Slip
+    """Direction e of xi, a unit vector."""
     speed: Scalar
+    """Its size s, m/s or rad/s."""
     time: Scalar
+    """Time, s."""
 
 
 class ClosingRates(NamedTuple):

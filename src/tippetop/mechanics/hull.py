@@ -7,19 +7,13 @@ from tippetop.mechanics.vectors import Scalar
 
 
 class Hull(NamedTuple):
-    """The surfaces of a body: a `Surface` that answers for the active one.
-
-    Attributes
-    ----------
-    units, sizes
-        The surfaces, each of unit size, and their sizes, m.
-    active
-        Number of the surface that answers.
-    """
+    """The surfaces of a body: a `Surface` that answers for the active one."""
 
     units: tuple[Surface, ...]
     sizes: tuple[Scalar, ...]
+    """The surfaces, each of unit size, and their sizes, m."""
     active: int = 0
+    """Number of the surface that answers."""
 
     @classmethod
     def of(cls, surfaces: tuple[Surface, ...]) -> "Hull":

@@ -42,27 +42,18 @@ from tippetop.mechanics.viscous_impact import ViscousProcess
 
 
 class Impact(NamedTuple):
-    """What an impact did.
-
-    Attributes
-    ----------
-    state
-        The state after: same configuration, other velocities.
-    impulse
-        Normal impulse p, N s.
-    energy_lost
-        Energy that the impact took, J: never negative.
-    compression
-        Normal impulse of compression p_c, N s.
-    steps
-        How many steps it took to find them, where they are integrated.
-    """
+    """What an impact did."""
 
     state: State
+    """The state after: same configuration, other velocities."""
     impulse: Scalar
+    """Normal impulse p, N s."""
     energy_lost: Scalar
+    """Energy that the impact took, J: never negative."""
     compression: Scalar
+    """Normal impulse of compression p_c, N s."""
     steps: int = 0
+    """How many steps it took to find them, where they are integrated."""
 
 
 def impact(state: State, restitution: float, top: Top) -> Impact:

@@ -37,23 +37,16 @@ class StruckOnTwo(NamedTuple):
 
     The numbers that an impact changes are the impulses that change angular momentum and velocity, the normal
     impulses of both contacts, and the first one's work.
-
-    Attributes
-    ----------
-    state
-        Its state.
-    tops
-        The top with the striking surface active, and with the one that touches.
-    arms
-        Their contact vectors, m.
-    points
-        Velocities of both contact points, m/s.
     """
 
     state: State
+    """Its state."""
     tops: Tops
+    """The top with the striking surface active, and with the one that touches."""
     arms: tuple[Vector, Vector]
+    """Their contact vectors, m."""
     points: tuple[Vector, Vector]
+    """Velocities of both contact points, m/s."""
 
     @property
     def speed(self) -> float:

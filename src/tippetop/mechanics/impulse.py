@@ -16,27 +16,18 @@ FUZZ = 1e-14
 
 
 class Impulse(NamedTuple):
-    """Impulses of the table on the body so far.
-
-    Attributes
-    ----------
-    normal
-        Normal impulse p, N s.
-    tangential
-        Impulse of friction, N s.
-    angular
-        Impulse of the torque, N m s.
-    normal_work
-        Work of the normal impulse, J.
-    steps
-        How many steps it took to find them, where they are integrated.
-    """
+    """Impulses of the table on the body so far."""
 
     normal: float
+    """Normal impulse p, N s."""
     tangential: Horizontal
+    """Impulse of friction, N s."""
     angular: Vector
+    """Impulse of the torque, N m s."""
     normal_work: float
+    """Work of the normal impulse, J."""
     steps: int = 0
+    """How many steps it took to find them, where they are integrated."""
 
 
 NO_IMPULSE = Impulse(0.0, (0.0, 0.0), NO_TORQUE, 0.0)
@@ -46,26 +37,18 @@ Goal: TypeAlias = Callable[[Impulse], float]
 
 
 class Striking(NamedTuple):
-    """A body at the start of an impact, and what an impulse does to its contact point.
-
-    Attributes
-    ----------
-    state, top
-        The body.
-    arm
-        Contact vector a, m.
-    point
-        Velocity of the contact point, m/s; a normal part that is but round-off is zero.
-    inverse_mass
-        Columns of M, the inverse effective mass (Delassus matrix): velocity of the contact point per unit
-        impulse along x, y and z, 1/kg.
-    """
+    """A body at the start of an impact, and what an impulse does to its contact point."""
 
     state: State
     top: Top
+    """The body."""
     arm: Vector
+    """Contact vector a, m."""
     point: Vector
+    """Velocity of the contact point, m/s; a normal part that is but round-off is zero."""
     inverse_mass: tuple[Vector, Vector, Vector]
+    """Columns of M, the inverse effective mass (Delassus matrix): velocity of the contact point per unit
+    impulse along x, y and z, 1/kg."""
 
     @classmethod
     def of(cls, state: State, top: Top) -> "Striking":

@@ -16,31 +16,21 @@ from tippetop.mechanics.vectors import VERTICAL, Horizontal, Scalar, Vector, add
 
 
 class SlidingContact(NamedTuple):
-    """The geometry, kinematics and forces of the contact at an instant.
-
-    Attributes
-    ----------
-    arm
-        Contact vector a, from the centre of mass to the contact point, m.
-    slip
-        Slip velocity: horizontal velocity of the body's point of contact, m/s.
-    spin
-        Angular velocity omega, rad/s.
-    traction
-        Friction force and torque per unit normal force.
-    free_acceleration
-        Acceleration b of the gap there would be without a contact force, m/s^2.
-    delassus
-        Acceleration A of the gap per unit normal force with the friction that goes with it, 1/kg. Where it
-        is not positive, no contact force is consistent (Painleve's paradox).
-    """
+    """The geometry, kinematics and forces of the contact at an instant."""
 
     arm: Vector
+    """Contact vector a, from the centre of mass to the contact point, m."""
     slip: Horizontal
+    """Slip velocity: horizontal velocity of the body's point of contact, m/s."""
     spin: Vector
+    """Angular velocity omega, rad/s."""
     traction: Traction
+    """Friction force and torque per unit normal force."""
     free_acceleration: Scalar
+    """Acceleration b of the gap there would be without a contact force, m/s^2."""
     delassus: Scalar
+    """Acceleration A of the gap per unit normal force with the friction that goes with it, 1/kg. Where it is
+    not positive, no contact force is consistent (Painleve's paradox)."""
 
     @property
     def normal_force(self) -> Scalar:

@@ -18,24 +18,16 @@ from tippetop.mechanics.stick_slip import scaled
 
 
 class Resolution(NamedTuple):
-    """How two contacts go on.
-
-    Attributes
-    ----------
-    motion
-        What the table does, and how the contacts accelerate.
-    sticks
-        Which of them stick.
-    rolls
-        Sign of omega_e; 0 where rolling is held, or not resisted.
-    begins
-        Direction of xi where slip begins; None where nothing does.
-    """
+    """How two contacts go on."""
 
     motion: PairMotion
+    """What the table does, and how the contacts accelerate."""
     sticks: tuple[bool, bool]
+    """Which of them stick."""
     rolls: float
+    """Sign of omega_e; 0 where rolling is held, or not resisted."""
     begins: Slip | None = None
+    """Direction of xi where slip begins; None where nothing does."""
 
 
 def resolution(pair: ContactPair, xi: Slip, ended: tuple[bool, bool], rolls: float) -> Resolution:

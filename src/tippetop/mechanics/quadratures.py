@@ -15,22 +15,15 @@ from tippetop.mechanics.vectors import Functions, Scalar, Vector
 
 
 class Quadratures(NamedTuple):
-    """What the motion is integrated to; as rates, their time derivatives.
-
-    Attributes
-    ----------
-    x, y
-        Horizontal position of the centre of mass, m.
-    turn
-        Angle psi about the axis in one of the two charts, rad.
-    work
-        Work of friction since the start, J.
-    """
+    """What the motion is integrated to; as rates, their time derivatives."""
 
     x: Scalar
     y: Scalar
+    """Horizontal position of the centre of mass, m."""
     turn: Scalar
+    """Angle psi about the axis in one of the two charts, rad."""
     work: Scalar
+    """Work of friction since the start, J."""
 
 
 def turn_rate(axis: Vector, momentum: Vector, pole: Scalar, top: Top) -> Scalar:

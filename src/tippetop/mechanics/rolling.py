@@ -49,28 +49,19 @@ class Acceleration(NamedTuple):
 
 
 class ContactPoint(NamedTuple):
-    """The contact point of a body in some configuration, and how it accelerates.
-
-    Attributes
-    ----------
-    axis, momentum
-        Unit vector n, and angular momentum L, kg m^2/s.
-    arm
-        Contact vector a, m.
-    turning
-        Angular velocity omega, rad/s.
-    free
-        Acceleration without contact force.
-    top
-        The body.
-    """
+    """The contact point of a body in some configuration, and how it accelerates."""
 
     axis: Vector
     momentum: Vector
+    """Unit vector n, and angular momentum L, kg m^2/s."""
     arm: Vector
+    """Contact vector a, m."""
     turning: Vector
+    """Angular velocity omega, rad/s."""
     free: Acceleration
+    """Acceleration without contact force."""
     top: Top
+    """The body."""
 
     @classmethod
     def of(cls, axis: Vector, momentum: Vector, top: Top) -> "ContactPoint":

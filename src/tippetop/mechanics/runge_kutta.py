@@ -125,22 +125,15 @@ POWER = -0.125
 
 
 class RungeKuttaStep(NamedTuple):
-    """A step: the numbers at its start, the rates there and at the stages, the numbers at its end.
-
-    Attributes
-    ----------
-    here, there
-        Where it begins and ends.
-    slopes
-        The rates at its stages, those at its start first and those at its end last.
-    size
-        Its size.
-    """
+    """A step: the numbers at its start, the rates there and at the stages, the numbers at its end."""
 
     here: Point
     there: Point
+    """Where it begins and ends."""
     slopes: Sequence[Point]
+    """The rates at its stages, those at its start first and those at its end last."""
     size: float
+    """Its size."""
 
     @property
     def new_slope(self) -> Point:

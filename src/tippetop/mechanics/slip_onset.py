@@ -41,23 +41,17 @@ class Onset(NamedTuple):
     """The beginning of slip, or rolling, as polynomials in time: lists of coefficients, in increasing order.
 
     The speed and the direction go up to some order, and the others to as many more as there are powers.
-
-    Attributes
-    ----------
-    axis, momentum, velocity, direction
-        n, L, u where that is free beside what begins (else nothing), and e.
-    speed
-        s / t^power.
-    power
-        2 where it starts from the limit of being held, 1 where it starts beyond it.
     """
 
     axis: tuple[list[Scalar], ...]
     momentum: tuple[list[Scalar], ...]
     velocity: tuple[list[Scalar], ...]
     direction: tuple[list[Scalar], ...]
+    """n, L, u where that is free beside what begins (else nothing), and e."""
     speed: list[Scalar]
+    """s / t^power."""
     power: int
+    """2 where it starts from the limit of being held, 1 where it starts beyond it."""
 
     def valid_until(self, error: float) -> float:
         """Time up to which the last two terms of each series are below an error relative to the first.
@@ -92,15 +86,10 @@ class Onset(NamedTuple):
 
 
 class Growth(Protocol):
-    """Series in time of y and A while the direction e is being found, from the first order on.
-
-    Attributes
-    ----------
-    first
-        The direction e_0 in which slip, or rolling, begins: along it A = R e_0.
-    """
+    """Series in time of y and A while the direction e is being found, from the first order on."""
 
     first: Slip
+    """The direction e_0 in which slip, or rolling, begins: along it A = R e_0."""
 
     @property
     def state(self) -> Sequence[Any]:

@@ -10,24 +10,16 @@ from tippetop.mechanics.vectors import Horizontal, Row, Scalar, Vector
 
 
 class State(NamedTuple):
-    """What the motion of the body depends on, whether it touches the table or not.
-
-    Attributes
-    ----------
-    axis
-        Unit vector n along the axis of symmetry.
-    momentum
-        Angular momentum L about the centre of mass, kg m^2/s.
-    velocity
-        Velocity of the centre of mass, m/s.
-    height
-        Height of the centre of mass above the table, m.
-    """
+    """What the motion of the body depends on, whether it touches the table or not."""
 
     axis: Vector
+    """Unit vector n along the axis of symmetry."""
     momentum: Vector
+    """Angular momentum L about the centre of mass, kg m^2/s."""
     velocity: Vector
+    """Velocity of the centre of mass, m/s."""
     height: Scalar
+    """Height of the centre of mass above the table, m."""
 
     def pack(self) -> tuple[Scalar, ...]:
         """The 10 numbers of the state in the order of its attributes."""

@@ -52,22 +52,15 @@ STILL = 0.1
 
 
 class CreepRates(NamedTuple):
-    """What follows from axis, angular momentum and direction of slip.
-
-    Attributes
-    ----------
-    axis, momentum
-        Rates of axis and angular momentum, Y.
-    slip
-        Rate of the slip, A.
-    wrench
-        What the table does.
-    """
+    """What follows from axis, angular momentum and direction of slip."""
 
     axis: Vector
     momentum: Vector
+    """Rates of axis and angular momentum, Y."""
     slip: Slip
+    """Rate of the slip, A."""
     wrench: Wrench
+    """What the table does."""
 
 
 def slip_of(axis: Vector, momentum: Vector, velocity: Horizontal, top: Top) -> Slip:

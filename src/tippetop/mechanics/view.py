@@ -14,26 +14,18 @@ from tippetop.mechanics.vectors import Functions, Horizontal, Scalar, Vector, ad
 
 
 class Angles(NamedTuple):
-    """The state of a sliding body in Euler angles.
-
-    Attributes
-    ----------
-    tilt, tilt_rate
-        theta, rad, and theta', rad/s.
-    azimuth, precession
-        phi, rad, and phi', rad/s.
-    spin
-        Axial spin omega3, rad/s.
-    slip
-        Slip velocity along X and Y, m/s.
-    """
+    """The state of a sliding body in Euler angles."""
 
     tilt: Scalar
     tilt_rate: Scalar
+    """theta, rad, and theta', rad/s."""
     azimuth: Scalar
     precession: Scalar
+    """phi, rad, and phi', rad/s."""
     spin: Scalar
+    """Axial spin omega3, rad/s."""
     slip: Horizontal
+    """Slip velocity along X and Y, m/s."""
 
 
 def axis_sine(axis: Vector) -> Scalar:
@@ -66,15 +58,10 @@ def slip_along_tilt(axis: Vector, slip: Horizontal) -> Horizontal:
 
 
 class PoleExact(NamedTuple):
-    """Sine and cosine with sin(pi) = 0, so that a launch at tilt pi is exactly vertical.
-
-    Attributes
-    ----------
-    functions
-        Where sin and cos come from: `math` for floats, `numpy` for arrays.
-    """
+    """Sine and cosine with sin(pi) = 0, so that a launch at tilt pi is exactly vertical."""
 
     functions: Functions
+    """Where sin and cos come from: `math` for floats, `numpy` for arrays."""
 
     def sin(self, angle: Scalar) -> Scalar:
         """Sine of an angle in radians, zero at the floating-point numbers nearest to pi and -pi."""

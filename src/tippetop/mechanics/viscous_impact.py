@@ -12,22 +12,15 @@ ROUNDING = 1e-17
 
 
 class PrincipalDirection(NamedTuple):
-    """A direction in which slip, v' = coupling - mu stiffness v, is driven by friction along itself only.
-
-    Attributes
-    ----------
-    direction
-        A unit vector, horizontal.
-    stiffness, coupling
-        Slip along it per unit impulse along it, and per unit normal impulse, 1/kg.
-    slip
-        Slip along it at the start, m/s.
-    """
+    """A direction in which slip, v' = coupling - mu stiffness v, is driven by friction along itself only."""
 
     direction: Horizontal
+    """A unit vector, horizontal."""
     stiffness: float
     coupling: float
+    """Slip along it per unit impulse along it, and per unit normal impulse, 1/kg."""
     slip: float
+    """Slip along it at the start, m/s."""
 
 
 class ViscousProcess(NamedTuple):

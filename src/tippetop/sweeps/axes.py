@@ -79,22 +79,15 @@ class Axis(Entry):
 
 
 class Spaced(Axis):
-    """Values from a first to a last, in equal steps or in equal ratios.
-
-    Attributes
-    ----------
-    first, last
-        The ends, both among the values; "from" and "to" where they are written.
-    count
-        How many values there are.
-    spacing
-        "linear" or "geometric".
-    """
+    """Values from a first to a last, in equal steps or in equal ratios."""
 
     first: Number = Field(alias="from")
     last: Number = Field(alias="to")
+    """The ends, both among the values; "from" and "to" where they are written."""
     count: Count
+    """How many values there are."""
     spacing: Annotated[Literal["linear", "geometric"], BeforeValidator(_in_full)] = "linear"
+    """"linear" or "geometric"."""
 
     @model_validator(mode="after")
     def _has_values(self) -> Self:

@@ -32,25 +32,17 @@ PartType = TypeVar("PartType", bound=Part)
 
 @dataclass(frozen=True)
 class Cells:
-    """Cells of a sweep.
-
-    Attributes
-    ----------
-    fault
-        Numbers of `Fault`, shape (n,).
-    top, units
-        The tops in SI, and their natural units; arrays of shape (n,), or one number for all.
-    start
-        States at launch in natural units, every number of shape (n,).
-    problem
-        The problem whose fields are arrays of shape (n,) where they change.
-    """
+    """Cells of a sweep."""
 
     fault: NDArray[np.int8]
+    """Numbers of `Fault`, shape (n,)."""
     top: Top
     units: Units
+    """The tops in SI, and their natural units; arrays of shape (n,), or one number for all."""
     start: State
+    """States at launch in natural units, every number of shape (n,)."""
     problem: Problem
+    """The problem whose fields are arrays of shape (n,) where they change."""
 
     def launches(self, which: NDArray[np.intp], duration: float) -> Launches:
         """Some of the cells as launches."""

@@ -36,20 +36,6 @@ class Sweep(Part):
     grid
         The cells, `axes` or `draws`, whichever it is.
 
-    Attributes
-    ----------
-    problem
-        The problem whose fields are changed.
-    axes, draws
-        The cells: `Product` of axes, or `Draws`.
-    duration
-        Length of every run, s.
-    tolerance
-        Relative error per step.
-    settled
-        A run ends once its energy holds the tilt within this for good, rad (see
-        `tippetop.theory.prediction.is_held`); None to follow every run for its whole duration.
-
     Raises
     ------
     InvalidInput
@@ -58,11 +44,17 @@ class Sweep(Part):
     """
 
     problem: Problem
+    """The problem whose fields are changed."""
     axes: Annotated[Product, BeforeValidator(Product.of)] | None = None
     draws: Draws | None = None
+    """The cells: `Product` of axes, or `Draws`."""
     duration: Positive = 20.0
+    """Length of every run, s."""
     tolerance: Annotated[Number, Field(ge=LEAST_TOLERANCE, le=1e-3)] = DEFAULT_TOLERANCE
+    """Relative error per step."""
     settled: Annotated[Number, Field(ge=SETTLED_RANGE[0], le=SETTLED_RANGE[1])] | None = None
+    """A run ends once its energy holds the tilt within this for good, rad (see
+    `tippetop.theory.prediction.is_held`); None to follow every run for its whole duration."""
 
     def __init__(self, /, *values: Any, **fields: Any) -> None:
         fields |= dict(zip(("problem", "grid", "duration", "tolerance", "settled"), values, strict=False))

@@ -14,16 +14,11 @@ FORCE, DOWN, UP = range(3)
 
 @dataclass
 class Extremes:
-    """Least values of the normal force, n_z and -n_z of n launches.
-
-    Attributes
-    ----------
-    early, lately
-        The least values before they were last put aside, and since, shape (3, n); inf where there are none.
-    """
+    """Least values of the normal force, n_z and -n_z of n launches."""
 
     early: Array
     lately: Array
+    """The least values before they were last put aside, and since, shape (3, n); inf where there are none."""
 
     @classmethod
     def of(cls, count: int) -> "Extremes":

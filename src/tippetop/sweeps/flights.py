@@ -63,25 +63,17 @@ TINY = 1e-150
 
 
 class Flown(NamedTuple):
-    """What became of flights: all of shape (n,).
-
-    Attributes
-    ----------
-    duration
-        How long each lasted.
-    landed
-        Whether it ended on the table rather than at the horizon.
-    state
-        The states at the end.
-    highest_gap, highest
-        Largest gap of each, and largest height of its centre of mass.
-    """
+    """What became of flights: all of shape (n,)."""
 
     duration: Array
+    """How long each lasted."""
     landed: Flags
+    """Whether it ended on the table rather than at the horizon."""
     state: State
+    """The states at the end."""
     highest_gap: Array
     highest: Array
+    """Largest gap of each, and largest height of its centre of mass."""
 
 
 def fly_all(

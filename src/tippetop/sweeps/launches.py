@@ -24,31 +24,21 @@ Own = NDArray[np.object_]
 
 @dataclass(frozen=True)
 class Launches:
-    """Launches of tops of one kind, in natural units.
-
-    Attributes
-    ----------
-    kind, numbers
-        The tops: their dimensionless numbers, shape (kind.numbers, n).
-    state
-        The states at launch, every number of shape (n,).
-    end
-        When the runs end, shape (n,).
-    liftoff
-        "ignore", "stop" or "fly".
-    restitution
-        Ratio of the normal impulses of restitution and compression, shape (n,).
-    own
-        For contacts that bring their own rules, what makes them of a top, shape (n,).
-    """
+    """Launches of tops of one kind, in natural units."""
 
     kind: Kind
     numbers: Array
+    """The tops: their dimensionless numbers, shape (kind.numbers, n)."""
     state: State
+    """The states at launch, every number of shape (n,)."""
     end: Array
+    """When the runs end, shape (n,)."""
     liftoff: str
+    """"ignore", "stop" or "fly"."""
     restitution: Array
+    """Ratio of the normal impulses of restitution and compression, shape (n,)."""
     own: Own | None = None
+    """For contacts that bring their own rules, what makes them of a top, shape (n,)."""
 
     def __len__(self) -> int:
         return len(self.end)
@@ -103,22 +93,15 @@ def branched(top: Top, state: State) -> Top:
 
 @dataclass(frozen=True)
 class Note:
-    """A window of steps of some launches: where they were at its start, and how far n_z went in it.
-
-    Attributes
-    ----------
-    cells
-        Which launches, shape (n,).
-    rows
-        Their numbers and the time left, shape (size + 1, n).
-    down, up
-        Least and largest n_z in the window, shape (n,).
-    """
+    """A window of steps of some launches: where they were at its start, and how far n_z went in it."""
 
     cells: Indices
+    """Which launches, shape (n,)."""
     rows: Array
+    """Their numbers and the time left, shape (size + 1, n)."""
     down: Array
     up: Array
+    """Least and largest n_z in the window, shape (n,)."""
 
 
 def picked(state: State, launches: Indices | Flags) -> State:

@@ -20,24 +20,16 @@ from tippetop.sweeps.tasks import need_workers, results
 
 @dataclass(frozen=True)
 class Progress:
-    """How far a sweep is.
-
-    Attributes
-    ----------
-    cells
-        How many cells there are.
-    before
-        How many of them were done before this run began.
-    done
-        How many are done.
-    elapsed
-        Time since this run began, s.
-    """
+    """How far a sweep is."""
 
     cells: int
+    """How many cells there are."""
     before: int
+    """How many of them were done before this run began."""
     done: int
+    """How many are done."""
     elapsed: float
+    """Time since this run began, s."""
 
     @property
     def rate(self) -> float:

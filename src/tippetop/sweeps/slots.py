@@ -21,44 +21,30 @@ LOSSES = slice(8, 10)
 
 @dataclass
 class Slots:
-    """Lanes, and what is kept of each; all of shape (n,) or (rows, n).
-
-    Attributes
-    ----------
-    launches
-        What is launched.
-    stepper
-        Taylor's method for sliding tops of their kind.
-    ends
-        How the launches ended.
-    cell
-        Which launch is on the lane.
-    alive
-        Whether it is under way: lanes beyond the launches only fill up.
-    end
-        When its run ends.
-    numbers
-        The parameters of the motion and what to pause for.
-    rows, spare
-        What a step brings up to date, and room for the next.
-    held, before
-        The step that a lane waits before, 0 if it does not wait, and the time left before it.
-    tip
-        How the tip of the axis moves.
-    """
+    """Lanes, and what is kept of each; all of shape (n,) or (rows, n)."""
 
     launches: Launches
+    """What is launched."""
     stepper: Stepper
+    """Taylor's method for sliding tops of their kind."""
     ends: Ends
+    """How the launches ended."""
     cell: Indices
+    """Which launch is on the lane."""
     alive: Flags
+    """Whether it is under way: lanes beyond the launches only fill up."""
     end: Array
+    """When its run ends."""
     numbers: Array
+    """The parameters of the motion and what to pause for."""
     rows: Array
     spare: Array
+    """What a step brings up to date, and room for the next."""
     held: Array
     before: Array
+    """The step that a lane waits before, 0 if it does not wait, and the time left before it."""
     tip: TipMotion
+    """How the tip of the axis moves."""
 
     @classmethod
     def of(cls, launches: Launches, stepper: Stepper, band: tuple[Array, Array] | None) -> "Slots":

@@ -129,18 +129,12 @@ class Stepper(Protocol):
 
 
 class Jet(NamedTuple):
-    """Coefficients of polynomials in time, in increasing order, for n launches.
-
-    Attributes
-    ----------
-    state
-        Those of the state, shape (size, order + 1, n).
-    guards
-        Those of the guards, shape (guards, order, n).
-    """
+    """Coefficients of polynomials in time, in increasing order, for n launches."""
 
     state: Array
+    """Those of the state, shape (size, order + 1, n)."""
     guards: Array
+    """Those of the guards, shape (guards, order, n)."""
 
     def at(self, time: Array) -> Array:
         """The states at one time for every launch, shape (size, n)."""

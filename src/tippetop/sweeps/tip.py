@@ -13,26 +13,18 @@ from tippetop.sweeps.launches import Indices
 
 @dataclass
 class TipMotion:
-    """The motion of the tip of the axis, n_z, for n launches.
-
-    Attributes
-    ----------
-    turned
-        First time at which n_z falls through zero, which is when the top turns over; nan before. A top that
-        starts beyond a right angle turns over when it passes it from below.
-    low, high
-        A band of n_z that is waited for, or nan.
-    reached
-        First time at which n_z is in the band; nan before.
-    extremes
-        Least normal force, and least and largest n_z, exactly.
-    """
+    """The motion of the tip of the axis, n_z, for n launches."""
 
     turned: Array
+    """First time at which n_z falls through zero, which is when the top turns over; nan before. A top that
+    starts beyond a right angle turns over when it passes it from below."""
     low: Array
     high: Array
+    """A band of n_z that is waited for, or nan."""
     reached: Array = field(init=False)
+    """First time at which n_z is in the band; nan before."""
     extremes: Extremes = field(init=False)
+    """Least normal force, and least and largest n_z, exactly."""
 
     def __post_init__(self) -> None:
         self.reached = np.full(self.low.shape, np.nan)
