@@ -16,7 +16,8 @@ from lying import lying, resisted
 from tippetop.engine import COMMAND, HERE
 
 SLIPS_IN_THE_END = 21
-SEEDS, DURATION = (1, 3, 32, 62, 64, 104), 0.3
+STOP_ON_TWO = (80, 192, 426)
+SEEDS, DURATION = (1, 3, 32, 62, 64, 104, 195), 0.3
 if "TIPPETOP_PARITY" in os.environ:
     SEEDS = tuple(range(int(os.environ["TIPPETOP_PARITY"])))
 
@@ -73,6 +74,19 @@ def test_rolling_that_stops_and_starts_on_two_contacts_is_the_same() -> None:
     assert {"rolling starts", "rolling stops"} <= set(run["event_kind"].values.tolist())
     assert run.attrs["outcome"] == "at_rest"
     assert not compared(problem.model_dump(), found, run)
+
+
+def test_two_patches_stop_whatever_a_step_may_be_wrong_by() -> None:
+    """In the end guards are zero but for the error of a step, or for rounding, and no end of anything."""
+    ends = []
+    for tolerance in (1e-12, TOLERANCE):
+        found = list(
+            in_javascript([asked(seed, DURATION) | {"tolerance": tolerance} for seed in STOP_ON_TWO])
+        )
+        assert [run["outcome"]["name"] for run in found] == ["completed"] * len(STOP_ON_TWO)
+        ends.append([[(event["kind"], event["surface"]) for event in run["events"]] for run in found])
+    assert ends[0] == ends[1]
+    assert all([kind for kind, _ in events[-2:]] == ["stick", "stick"] for events in ends[0])
 
 
 def test_where_no_code_may_be_made_the_numbers_are_the_same() -> None:

@@ -67,8 +67,9 @@ def test_rounding_does_not_gather():
 def test_a_hop_far_shorter_than_a_step_ends_where_it_lands(rise):
     """A guard that starts at zero, rises and is back before any look: thrown up, it falls as long."""
     guards = (Guard("landing", lambda y, p: y[0]),)
-    motion = Motion(lambda y, p: (y[1], -p[0]), size=2, parameters=1, guards=guards)
-    _, own = both(motion, (1.0,), np.array([0.0, rise]), 50.0)
+    # The first step is chosen by the largest number.
+    motion = Motion(lambda y, p: (y[1], -p[0], 0.0 * y[2]), size=3, parameters=1, guards=guards)
+    _, own = both(motion, (1.0,), np.array([0.0, rise, 1.0]), 50.0)
     assert own.guard == "landing"
     assert own.solution.end == pytest.approx(2.0 * rise, rel=1e-9)
 

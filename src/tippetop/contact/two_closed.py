@@ -55,6 +55,9 @@ from tippetop.mechanics.vectors import scale
 TOGETHER = 30.0
 """How many times `SLOWEST_SLIP` the slip of the other contact may be where it ends on one to end with it."""
 
+ABOUT = 1.0 + 1e-3
+"""The same of slip that ends on both at once: what is left of it is known to rounding of the velocities."""
+
 FIRST, SECOND, BOTH, NEITHER = "first", "second", "both", "neither"
 
 OPENS, HELD, CLOSES = "opens", "held", "closes"
@@ -213,7 +216,7 @@ def ended_slips(state: State, tops: Tops) -> tuple[bool, bool]:
     if not is_set_valued(tops[0].friction):
         return False, False
     one, other = (size(slip_of(*along_table(state), top)) for top in tops)
-    least, limit = min(one, other), (1.0 + 1e-6) * SLOWEST_SLIP
+    least, limit = min(one, other), ABOUT * SLOWEST_SLIP
     if slip_length(tops[0].friction) is not None:
         return (True, True) if one * one + other * other <= limit * limit else (False, False)
     if least > limit:

@@ -1,5 +1,5 @@
 // Collocation at Radau's points (Hairer and Wanner, Solving Ordinary Differential Equations II): for stiff motions.
-import { Arc, FAILURES, MANY, SINGULAR, STUCK_of_dormand_prince as STUCK, first_fall, first_step, polish } from "./mechanics.js";
+import { Arc, FAILURES, MANY, SINGULAR, STUCK_of_dormand_prince as STUCK, first_fall, first_step } from "./mechanics.js";
 import { DenseSolution } from "./dense.js";
 import { RADAU } from "./tables.js";
 
@@ -45,11 +45,11 @@ export function* collocated(motion, functions, parameters, [start, begin], end, 
     };
     const fall = first_fall(guards, parameters, (at) => here.rows(at), advance, [time, reach]);
     if (fall !== null) {
-      const guard = guards[fall[0]], [at, last] = polish(guard, parameters, advance, [time, reach], fall[1]);
+      const [number, at, last] = fall;
       advance(at);
       terms.push(step.terms());
       knots.push((time = at));
-      yield arc(guard.name, null, last);
+      yield arc(guards[number].name, null, last);
       return;
     }
     if (again) step.take(reach - time, tolerance);

@@ -5525,6 +5525,7 @@ function jellett(state, top) {
 
 // tippetop.contact.two_closed
 const TOGETHER = 30.0;
+const ABOUT = 1.0 + 0.001;
 const [FIRST, SECOND, BOTH, NEITHER] = ["first", "second", "both", "neither"];
 const [OPENS, HELD, CLOSES] = ["opens", "held", "closes"];
 
@@ -5682,7 +5683,7 @@ function ended_slips(state, tops) {
     return [false, false];
   }
   const [one, other] = [...tops].map((top) => size(slip_of(...along_table(state), top)));
-  const [least, limit] = [py.min(one, other), py.mul(1.0 + 1e-06, SLOWEST_SLIP)];
+  const [least, limit] = [py.min(one, other), py.mul(ABOUT, SLOWEST_SLIP)];
   if (slip_length(tops[0].friction) !== null) {
     return py.add(py.mul(one, one), py.mul(other, other)) <= py.mul(limit, limit) ? [true, true] : [false, false];
   }
@@ -7405,10 +7406,29 @@ function polynomials(h, y, new_, k, powers) {
 }
 
 // tippetop.integrators.falls
+const AT_ONCE = 0.001;
 const INEXACT = 0.05;
 
-/** The guard that first falls through zero within a step, and when. */
+/** The guard that first falls through zero within a step, when, and the state there. */
 function first_fall(guards, parameters, dense, advance, step) {
+  let found = _fall_along(guards, parameters, dense, advance, step, 0.0);
+  if (found === null) {
+    return null;
+  }
+  const [number, guess] = found;
+  const polished = _polished(py.item(guards, number), parameters, advance, step, guess);
+  if (polished !== null) {
+    return [number, ...polished];
+  }
+  const landed = (time) => {
+    return step[0] < time && time < step[1] ? advance(time) : dense(time);
+  };
+  found = _fall_along(guards, parameters, landed, landed, step, AT_ONCE);
+  return found === null ? null : [...found, landed(found[1])];
+}
+
+/** The guard that first falls along a solution, and when; see `first_fall`. */
+function _fall_along(guards, parameters, dense, advance, step, least) {
   if (!py.truth(guards)) {
     return null;
   }
@@ -7424,7 +7444,8 @@ function first_fall(guards, parameters, dense, advance, step) {
     if (found !== null) {
       const [low, high, function_] = found;
       const time = crossing(function_, low, high);
-      if (first === null || time < first[1]) {
+      const zero = py.and(py.item(values, LOOKS_of_dormand_prince) > 0.0, () => py.sub(time, start) < py.mul(least, py.sub(end, start)));
+      if (!py.truth(zero) && (first === null || time < first[1])) {
         first = [index, time];
       }
     }
@@ -7476,24 +7497,29 @@ function _bracket(probes, values, value, exact) {
 }
 
 /** Improve the time of a guard's zero with solutions that really end there. */
-function polish(guard, parameters, advance, step, guess) {
+function _polished(guard, parameters, advance, step, guess) {
   const [start, end] = step;
   const shift = py.min(py.mul(0.0001, py.sub(end, start)), py.mul(0.1, py.sub(guess, start)));
   let [time, other] = [guess, py.sub(guess, shift) > start ? py.sub(guess, shift) : py.add(guess, shift)];
   let [state, beside] = [advance(time), advance(other)];
   let [value, theirs] = [state, beside].map((one) => py.float(guard.value(py.tolist(one), parameters)));
+  let [moved, finest] = [shift, py.mul(0.001, shift)];
   for (let turn = 0; turn < 8; turn += 1) {
     if (py.eq(value, theirs)) {
       break;
     }
     let new_ = py.sub(time, py.div(py.mul(value, py.sub(time, other)), py.sub(value, theirs)));
-    new_ = py.min(py.max(new_, py.add(start, py.mul(0.001, shift))), py.add(end, shift));
+    moved = py.abs(py.sub(new_, time));
+    new_ = py.min(py.max(new_, py.add(start, finest)), py.add(end, shift));
     if (py.abs(py.sub(new_, time)) <= py.mul(4e-16, py.max(1.0, py.abs(new_)))) {
       break;
     }
     [time, other, beside, theirs] = [new_, time, state, value];
     state = advance(new_);
     value = py.float(guard.value(py.tolist(state), parameters));
+  }
+  if (moved > py.max(finest, py.mul(4e-16, py.max(1.0, py.abs(time)))) || py.abs(py.sub(time, guess)) > py.mul(0.5, py.sub(guess, start))) {
+    return null;
   }
   return py.abs(value) <= py.abs(theirs) ? [time, state] : [other, beside];
 }
@@ -7602,12 +7628,7 @@ class Stepping extends py.Thing {
     const parameters = this.parameters;
     const known = py.enumerate(guards).map(([number, guard]) => this.functions.guard(guard, number));
     const found = first_fall(known, parameters, dense, advance, [begin, reach]);
-    if (found === null) {
-      return null;
-    }
-    const [number, guess] = found;
-    const [time, state] = polish(py.item(known, number), parameters, advance, [begin, reach], guess);
-    return [py.item(known, number), time, state];
+    return found === null ? null : [py.item(known, found[0]), ...found.slice(1)];
   }
   /** End within the last step. */
   end_at(time, state) {
@@ -8380,11 +8401,13 @@ function _handed_over(tilt, top, other) {
 }
 
 export {
+  ABOUT,
   ACCURACY,
   ACCURACY_of_passing,
   APART,
   APART_of_direction,
   ATOM,
+  AT_ONCE,
   AT_REST,
   Acceleration,
   Algebra,
@@ -8715,6 +8738,7 @@ export {
   _by_energy,
   _early_bracket,
   _face,
+  _fall_along,
   _fold_measure,
   _gap,
   _grow,
@@ -8732,6 +8756,7 @@ export {
   _number,
   _of_momentum,
   _on_one_of_several,
+  _polished,
   _precession_tilts,
   _reach,
   _reaches_out,
@@ -8895,7 +8920,6 @@ export {
   phis,
   plus,
   point_velocity,
-  polish,
   polynomials,
   positive,
   precession_at,

@@ -13,6 +13,10 @@ Dense = Callable[[float], Array]
 Value = Callable[[float], float]
 """A guard as a function of time."""
 
+AT_ONCE = 1e-3
+"""Part of a step: a guard that falls as early, where the solution is wrong by more than the guard, and is
+positive in the end was zero but for that error. To end there would bring the motion nowhere."""
+
 INEXACT = 0.05
 """How near zero a dip must come, as a part of its depth, for the interpolation not to be trusted about it."""
 
@@ -23,8 +27,8 @@ def first_fall(
     dense: Dense,
     advance: Dense,
     step: tuple[float, float],
-) -> tuple[int, float] | None:
-    """The guard that first falls through zero within a step, and when.
+) -> tuple[int, float, Array] | None:
+    """The guard that first falls through zero within a step, when, and the state there.
 
     A guard that dips below zero and returns within the step is found by minimising it between the probes
     where its probed values bend that way; one that starts at zero, rises, and is back before the first probe,
@@ -41,6 +45,34 @@ def first_fall(
     step
         Where it begins and ends.
     """
+    found = _fall_along(guards, parameters, dense, advance, step, 0.0)
+    if found is None:
+        return None
+    number, guess = found
+    polished = _polished(guards[number], parameters, advance, step, guess)
+    if polished is not None:
+        return number, *polished
+
+    def landed(time: float) -> Array:
+        return advance(time) if step[0] < time < step[1] else dense(time)
+
+    # The interpolation is wrong by more than the guard is: only ends of steps tell.
+    found = _fall_along(guards, parameters, landed, landed, step, AT_ONCE)
+    return None if found is None else (*found, landed(found[1]))
+
+
+def _fall_along(
+    guards: Sequence[Guard],
+    parameters: Sequence[Scalar],
+    dense: Dense,
+    advance: Dense,
+    step: tuple[float, float],
+    least: float,
+) -> tuple[int, float] | None:
+    """The guard that first falls along a solution, and when; see `first_fall`.
+
+    One that falls before this least part of the step and is positive at its end is passed over.
+    """
     if not guards:
         return None
     first: tuple[int, float] | None = None
@@ -55,7 +87,8 @@ def first_fall(
         if found is not None:
             low, high, function = found
             time = crossing(function, low, high)
-            if first is None or time < first[1]:
+            zero = values[LOOKS] > 0.0 and time - start < least * (end - start)
+            if not zero and (first is None or time < first[1]):
                 first = index, time
     return first
 
@@ -98,27 +131,33 @@ def _bracket(
     return None
 
 
-def polish(
+def _polished(
     guard: Guard, parameters: Sequence[Scalar], advance: Dense, step: tuple[float, float], guess: float
-) -> tuple[float, Array]:
+) -> tuple[float, Array] | None:
     """Improve the time of a guard's zero with solutions that really end there.
 
     The solution inside a step is less accurate than at its ends, so the step is taken again with other ends,
-    `advance(time)`, until the secant no longer moves.
+    `advance(time)`, until the secant no longer moves. None if it leads far away, as to where a guard began
+    at zero, or comes to no place: the solution inside the step is wrong by more than the guard is, and that
+    need not fall.
     """
     start, end = step
     shift = min(1e-4 * (end - start), 0.1 * (guess - start))
     time, other = guess, guess - shift if guess - shift > start else guess + shift
     state, beside = advance(time), advance(other)
     value, theirs = (float(guard.value(one.tolist(), parameters)) for one in (state, beside))
+    moved, finest = shift, 1e-3 * shift
     for _ in range(8):
         if value == theirs:
             break
         new = time - value * (time - other) / (value - theirs)
-        new = min(max(new, start + 1e-3 * shift), end + shift)
+        moved = abs(new - time)
+        new = min(max(new, start + finest), end + shift)
         if abs(new - time) <= 4e-16 * max(1.0, abs(new)):
             break
         time, other, beside, theirs = new, time, state, value
         state = advance(new)
         value = float(guard.value(state.tolist(), parameters))
+    if moved > max(finest, 4e-16 * max(1.0, abs(time))) or abs(time - guess) > 0.5 * (guess - start):
+        return None
     return (time, state) if abs(value) <= abs(theirs) else (other, beside)

@@ -4,7 +4,7 @@ import numpy as np
 
 from tippetop.integrators.base import Arc, Array
 from tippetop.integrators.dense import DenseSolution, chebyshev
-from tippetop.integrators.falls import Dense, first_fall, polish
+from tippetop.integrators.falls import Dense, first_fall
 from tippetop.integrators.rates import RightHandSide
 
 
@@ -43,10 +43,9 @@ class Steps:
         if fall is None:
             self._keep(end, dense)
             return None
-        guard = motion.guards[fall[0]]
-        at, last = polish(guard, parameters, advance, step, fall[1])
+        number, at, last = fall
         self._keep(at, dense)
-        return self.arc(last, guard.name)
+        return self.arc(last, motion.guards[number].name)
 
     def _keep(self, end: float, dense: Dense) -> None:
         start = self.knots[-1]

@@ -8,7 +8,7 @@ import numpy as np
 from tippetop.integrators.base import Arc, Array, Guard, Motion
 from tippetop.integrators.dense import DenseSolution
 from tippetop.integrators.dormand_prince import FULL, ROWS, SINGULAR, STUCK, SUSPECT
-from tippetop.integrators.falls import first_fall, polish
+from tippetop.integrators.falls import first_fall
 from tippetop.mechanics.vectors import Scalar
 
 FEW, WIDER, MANY = 4, 4, 512
@@ -150,11 +150,7 @@ class Stepping:
         parameters: Any = self.parameters
         known = [self.functions.guard(guard, number) for number, guard in enumerate(guards)]
         found = first_fall(known, parameters, dense, advance, (begin, reach))
-        if found is None:
-            return None
-        number, guess = found
-        time, state = polish(known[number], parameters, advance, (begin, reach), guess)
-        return known[number], time, state
+        return None if found is None else (known[found[0]], *found[1:])
 
     def end_at(self, time: float, state: Array) -> None:
         """End within the last step."""
