@@ -22,6 +22,7 @@ from test_sticking_on_two import (
 from tippetop.contact.choice import rules_of
 from tippetop.contact.double import SlidingOnTwo
 from tippetop.contact.double_sticking import SlipBeginningOnTwo
+from tippetop.mechanics.contensou_hertz import HertzLaw
 from tippetop.mechanics.top import natural, natural_state, natural_units
 
 RADIUS = 0.004
@@ -141,3 +142,13 @@ def test_slip_that_begins_goes_on_where_hertz_branches_meet() -> None:
         assert on.state(on.numbers(slides.state)).velocity == pytest.approx(slides.state.velocity, abs=1e-15)
         here = getattr(on, changed).friction.drills, getattr(begins, changed).friction.drills
         assert sum(here) == 1.0
+
+
+def test_what_holds_hertz_s_patch_without_drilling_is_an_expression():
+    """Two contacts that stick and roll ask for it with a normal force that is a symbol."""
+    heyoka = pytest.importorskip("heyoka")
+    law = HertzLaw(0.3, 0.002)
+    normal = heyoka.make_vars("n")
+    found = law.reserve(normal, (0.1, 0.0), 0.0)
+    value = heyoka.cfunc([found], [normal])([2.0])[0]
+    assert value == pytest.approx(law.reserve(2.0, (0.1, 0.0), 0.0), rel=1e-14)

@@ -6317,7 +6317,7 @@ class HertzLaw extends py.NamedTuple {
   }
   /** The law whose piece of the limit surface has this drilling torque, N m; of floats. */
   limit_branch(normal, drilling) {
-    const drills = heaviness(this, normal, drilling, EDGE) > 0.0;
+    const drills = py.and(drilling !== 0.0, () => heaviness(this, normal, drilling, EDGE) > 0.0);
     return py.truth(drills) ? new HertzDrillingLaw(...this) : new HertzSlidingLaw(...this);
   }
   /** It resists drilling. */

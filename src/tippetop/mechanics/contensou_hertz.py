@@ -343,7 +343,8 @@ class HertzLaw(NamedTuple):
 
     def limit_branch(self, normal: float, drilling: float) -> HertzDrillingLaw | HertzSlidingLaw:
         """The law whose piece of the limit surface has this drilling torque, N m; of floats."""
-        drills = heaviness(self, normal, drilling, EDGE) > 0.0
+        # Without drilling no normal force decides: it may be a symbol.
+        drills = drilling != 0.0 and heaviness(self, normal, drilling, EDGE) > 0.0
         return HertzDrillingLaw(*self) if drills else HertzSlidingLaw(*self)
 
     @property
