@@ -185,8 +185,7 @@ class Problem(Part):
     @model_validator(mode="after")
     def _contact_is_possible(self) -> Self:
         self._refuse_strange_patch()
-        reckoned = math.isfinite(self._resistance()) and math.isfinite(self._largest_square())
-        if not (reckoned and self._coefficients_have_squares()):
+        if not (math.isfinite(self._resistance()) and math.isfinite(self._largest_square())):
             raise self._lying_flat() or self._out_of_reach()
         if self.contact.liftoff == "fly":
             return self
@@ -239,11 +238,6 @@ class Problem(Part):
             return largest**2 * max(1.0, float(units.energy), float(self.body.mass * self.gravity))
         except ArithmeticError:
             return math.nan
-
-    def _coefficients_have_squares(self) -> bool:
-        """Whether the squares of what the forces are made with are neither lost nor beyond all numbers."""
-        given = {"friction": self.friction.model_dump(), "gravity": self.gravity}
-        return all(0.0 < value * value < math.inf for _, value in numbers_of(given) if value)
 
     def _lying_flat(self) -> InvalidInput | None:
         """The refusal of a launch on a face; None where that is not what is wrong."""

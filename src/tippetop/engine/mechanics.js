@@ -6516,8 +6516,7 @@ Part.enter("Contact", Contact);
 class Problem extends Part {
   _contact_is_possible() {
     this._refuse_strange_patch();
-    const reckoned = py.and(py.math.isfinite(this._resistance()), () => py.math.isfinite(this._largest_square()));
-    if (!(py.truth(reckoned) && py.truth(this._coefficients_have_squares()))) {
+    if (!(py.truth(py.math.isfinite(this._resistance())) && py.truth(py.math.isfinite(this._largest_square())))) {
       throw py.or(this._lying_flat(), () => this._out_of_reach());
     }
     if (this.contact.liftoff === "fly") {
@@ -6569,11 +6568,6 @@ class Problem extends Part {
       if (!(error instanceof py.ArithmeticError)) throw error;
       return py.math.nan;
     }
-  }
-  /** Whether the squares of what the forces are made with are neither lost nor beyond all numbers. */
-  _coefficients_have_squares() {
-    const given = new py.Dict([["friction", this.friction.model_dump()], ["gravity", this.gravity]]);
-    return py.all([...numbers_of(given)].filter(([, value]) => py.truth(value)).map(([, value]) => 0.0 < py.mul(value, value) && py.mul(value, value) < py.math.inf));
   }
   /** The refusal of a launch on a face; None where that is not what is wrong. */
   _lying_flat() {
