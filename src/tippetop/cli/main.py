@@ -3,6 +3,7 @@
 import gc
 import os
 import sys
+from contextlib import suppress
 
 from tippetop.interrupts import INTERRUPTED, let_end
 
@@ -27,7 +28,8 @@ def main() -> None:
     except SystemExit as ending:
         if ending.code == INTERRUPTED:
             # All is undone that was begun: nobody needs to wait for the compiler, or for libraries to go.
-            sys.stdout.flush()
-            sys.stderr.flush()
+            with suppress(OSError, ValueError):
+                sys.stdout.flush()
+                sys.stderr.flush()
             os._exit(INTERRUPTED)
         raise

@@ -108,7 +108,7 @@ class DenseSolution:
     @classmethod
     def of_steps(cls, knots: Array, terms: Array, count: int) -> "DenseSolution":
         """The first of some steps, whose polynomials have shapes (degree + 1, size)."""
-        return cls(knots[: count + 1].copy(), np.ascontiguousarray(np.swapaxes(terms[:count], 1, 2)))
+        return cls(knots[: count + 1].copy(), np.swapaxes(terms[:count], 1, 2).copy())
 
     @classmethod
     def standing(cls, numbers: Sequence[float], start: float, end: float) -> "DenseSolution":
