@@ -170,34 +170,36 @@ def on_two(state: State, rules: Any, other: Top, rolls: float) -> SlidingOnTwo:
     return SlidingOnTwo(tops[0], rules, tops[1], rolls)
 
 
+def tops_of(first: Kind, second: Kind, numbers: Sequence[Scalar]) -> Tops:
+    """The top on either surface."""
+    cut = first.numbers
+    return first.top(tuple(numbers[:cut])), second.top(tuple(numbers[cut : cut + second.numbers]))
+
+
 @lru_cache
 def motion_on_two(first: Kind, second: Kind, rolls: float) -> Motion:
     """Equations of motion of a top of these kinds: of another active surface and branch of the law each."""
 
-    def tops(numbers: Sequence[Scalar]) -> Tops:
-        cut = first.numbers
-        return first.top(tuple(numbers[:cut])), second.top(tuple(numbers[cut : 2 * cut]))
-
     def rates(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[Scalar, ...]:
-        return sliding_pair_rates(SlidingState.unpack(y), tops(numbers), rolls).pack()
+        return sliding_pair_rates(SlidingState.unpack(y), tops_of(first, second, numbers), rolls).pack()
 
     def found(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> PairMotion:
-        return sliding_pair(SlidingState.unpack(y), tops(numbers), rolls)[0]
+        return sliding_pair(SlidingState.unpack(y), tops_of(first, second, numbers), rolls)[0]
 
     def slip(number: int) -> Function:
         def value(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
-            found = slip_of(*SlidingState.unpack(y), tops(numbers)[number])
+            found = slip_of(*SlidingState.unpack(y), tops_of(first, second, numbers)[number])
             return inner(found, found) - SLOWEST_SLIP * SLOWEST_SLIP
 
         return value
 
     def both_slips(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
-        one, other = (slip_of(*SlidingState.unpack(y), top) for top in tops(numbers))
+        one, other = (slip_of(*SlidingState.unpack(y), top) for top in tops_of(first, second, numbers))
         return inner(one, one) + inner(other, other) - SLOWEST_SLIP * SLOWEST_SLIP
 
     def branch(number: int) -> Function:
         def value(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
-            return branch_guard(*SlidingState.unpack(y), tops(numbers)[number])
+            return branch_guard(*SlidingState.unpack(y), tops_of(first, second, numbers)[number])
 
         return value
 
@@ -208,7 +210,9 @@ def motion_on_two(first: Kind, second: Kind, rolls: float) -> Motion:
         guards += [Guard(f"{ENDING}{number}", slip(number)) for number in (0, 1)]
     if is_branched(first.example.friction):
         guards += [Guard(f"{BRANCHING}{number}", branch(number)) for number in (0, 1)]
-    return Motion(rates, size=8, parameters=2 * first.numbers, guards=tuple(guards), lasting=False)
+    return Motion(
+        rates, size=8, parameters=first.numbers + second.numbers, guards=tuple(guards), lasting=False
+    )
 
 
 def pair_guards(first: Kind, second: Kind, found: Any, rolls: float) -> list[Guard]:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, ClassVar
 
-from tippetop.contact.double import BRANCHING, OPENING, OnTwo, SlidingOnTwo, pair_guards
+from tippetop.contact.double import BRANCHING, OPENING, OnTwo, SlidingOnTwo, pair_guards, tops_of
 from tippetop.contact.mode import Outcome, Segment, Transition
 from tippetop.contact.sticking import split
 from tippetop.contact.surfaces import number_of
@@ -14,7 +14,6 @@ from tippetop.integrators.base import Function, Guard, Integrator, Motion
 from tippetop.mechanics.contact_pair import (
     ContactPair,
     PairMotion,
-    Tops,
     directions_of,
     pair_motion,
     slip_apart,
@@ -196,12 +195,6 @@ def turned(pair: ContactPair, sign: Scalar, rolls: float) -> PairMotion:
     """What the table does while the first contact sticks, and the second slips so across the axis."""
     across = directions_of(pair.first.axis)[1]
     return pair_motion(pair, (None, (sign * across[0], sign * across[1])), rolls)
-
-
-def tops_of(first: Kind, second: Kind, numbers: Sequence[Scalar]) -> Tops:
-    """The top on either surface."""
-    cut = first.numbers
-    return first.top(tuple(numbers[:cut])), second.top(tuple(numbers[cut : cut + second.numbers]))
 
 
 @lru_cache

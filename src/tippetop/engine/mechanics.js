@@ -3951,7 +3951,8 @@ function components(impulse) {
 // tippetop.mechanics.runge_kutta
 const STAGES = [[0.05260015195876773], [0.0197250569845379, 0.0591751709536137], [0.02958758547680685, 0.0, 0.08876275643042054], [0.2413651341592667, 0.0, -0.8845494793282861, 0.924834003261792], [0.037037037037037035, 0.0, 0.0, 0.17082860872947386, 0.12546768756682242], [0.037109375, 0.0, 0.0, 0.17025221101954405, 0.06021653898045596, -0.017578125], [0.03709200011850479, 0.0, 0.0, 0.17038392571223998, 0.10726203044637328, -0.015319437748624402, 0.008273789163814023], [0.6241109587160757, 0.0, 0.0, -3.3608926294469414, -0.868219346841726, 27.59209969944671, 20.154067550477894, -43.48988418106996], [0.47766253643826434, 0.0, 0.0, -2.4881146199716677, -0.590290826836843, 21.230051448181193, 15.279233632882423, -33.28821096898486, -0.020331201708508627], [-0.9371424300859873, 0.0, 0.0, 5.186372428844064, 1.0914373489967295, -8.149787010746927, -18.52006565999696, 22.739487099350505, 2.4936055526796523, -3.0467644718982196], [2.273310147516538, 0.0, 0.0, -10.53449546673725, -2.0008720582248625, -17.9589318631188, 27.94888452941996, -2.8589982771350235, -8.87285693353063, 12.360567175794303, 0.6433927460157636], [0.054293734116568765, 0.0, 0.0, 0.0, 0.0, 4.450312892752409, 1.8915178993145003, -5.801203960010585, 0.3111643669578199, -0.1521609496625161, 0.20136540080403034, 0.04471061572777259]];
 const FINE = [0.01312004499419488, 0.0, 0.0, 0.0, 0.0, -1.2251564463762044, -0.4957589496572502, 1.6643771824549864, -0.35032884874997366, 0.3341791187130175, 0.08192320648511571, -0.022355307863886294];
-const ROUGH = [-0.18980075407240762, 0.0, 0.0, 0.0, 0.0, 4.450312892752409, 1.8915178993145003, -5.801203960010585, -0.4226823213237919, -0.1521609496625161, 0.20136540080403034, 0.02265179219836082];
+const THIRD = [0.2440944881889764, ...py.mul([0.0], 7), 0.7338466882816118, 0.0, 0.0, 0.022058823529411766];
+const ROUGH = py.tuple(py.zip(py.item(STAGES, -1), THIRD).map(([b, third]) => py.sub(b, third)));
 const POWER = -0.125;
 
 /** A step: the numbers at its start, the rates there and at the stages, the numbers at its end. */
@@ -5206,32 +5207,34 @@ function on_two(state, rules, other, rolls) {
   return new SlidingOnTwo(tops[0], rules, tops[1], rolls);
 }
 
+/** The top on either surface. */
+function tops_of(first, second, numbers) {
+  const cut = first.numbers;
+  return [first.top(py.tuple(numbers.slice(0, cut))), second.top(py.tuple(py.slice(numbers, cut, py.add(cut, second.numbers), null)))];
+}
+
 /** Equations of motion of a top of these kinds: of another active surface and branch of the law each. */
 const motion_on_two = py.cached((first, second, rolls) => {
-  const tops = (numbers) => {
-    const cut = first.numbers;
-    return [first.top(py.tuple(numbers.slice(0, cut))), second.top(py.tuple(py.slice(numbers, cut, py.mul(2, cut), null)))];
-  };
   const rates = (y, numbers) => {
-    return sliding_pair_rates(SlidingState.unpack(y), tops(numbers), rolls).pack();
+    return sliding_pair_rates(SlidingState.unpack(y), tops_of(first, second, numbers), rolls).pack();
   };
   const found = (y, numbers) => {
-    return sliding_pair(SlidingState.unpack(y), tops(numbers), rolls)[0];
+    return sliding_pair(SlidingState.unpack(y), tops_of(first, second, numbers), rolls)[0];
   };
   const slip = (number) => {
     const value = (y, numbers) => {
-      const found = slip_of(...SlidingState.unpack(y), py.item(tops(numbers), number));
+      const found = slip_of(...SlidingState.unpack(y), py.item(tops_of(first, second, numbers), number));
       return py.sub(inner(found, found), py.mul(SLOWEST_SLIP, SLOWEST_SLIP));
     };
     return value;
   };
   const both_slips = (y, numbers) => {
-    const [one, other] = [...tops(numbers)].map((top) => slip_of(...SlidingState.unpack(y), top));
+    const [one, other] = [...tops_of(first, second, numbers)].map((top) => slip_of(...SlidingState.unpack(y), top));
     return py.sub(py.add(inner(one, one), inner(other, other)), py.mul(SLOWEST_SLIP, SLOWEST_SLIP));
   };
   const branch = (number) => {
     const value = (y, numbers) => {
-      return branch_guard(...SlidingState.unpack(y), py.item(tops(numbers), number));
+      return branch_guard(...SlidingState.unpack(y), py.item(tops_of(first, second, numbers), number));
     };
     return value;
   };
@@ -5244,7 +5247,7 @@ const motion_on_two = py.cached((first, second, rolls) => {
   if (py.truth(is_branched(first.example.friction))) {
     guards = py.add(guards, [0, 1].map((number) => new Guard(`${py.str(BRANCHING)}${py.str(number)}`, branch(number))));
   }
-  return new Motion(rates, 8, py.mul(2, first.numbers), py.tuple(guards), false);
+  return new Motion(rates, 8, py.add(first.numbers, second.numbers), py.tuple(guards), false);
 });
 
 /** The guards of normal forces, of rolling, and of further surfaces, from what the table does. */
@@ -5440,12 +5443,6 @@ py.fields(SlipBeginningOnTwo, ["top", "rules", "other", "rolls", "begin"]);
 function turned_of_double_sticking(pair, sign, rolls) {
   const across = directions_of(pair.first.axis)[1];
   return pair_motion(pair, [null, [py.mul(sign, across[0]), py.mul(sign, across[1])]], rolls);
-}
-
-/** The top on either surface. */
-function tops_of(first, second, numbers) {
-  const cut = first.numbers;
-  return [first.top(py.tuple(numbers.slice(0, cut))), second.top(py.tuple(py.slice(numbers, cut, py.add(cut, second.numbers), null)))];
 }
 
 /** Equations of motion while the first contact sticks and the second slips across the axis, as signed. */
@@ -8688,6 +8685,7 @@ export {
   Stopping,
   Striking,
   StruckOnTwo,
+  THIRD,
   TILTS,
   TIME,
   TINY,

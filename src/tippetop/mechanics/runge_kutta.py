@@ -104,21 +104,18 @@ FINE: tuple[float, ...] = (
     0.08192320648511571,
     -0.022355307863886294,
 )
-ROUGH: tuple[float, ...] = (
-    -0.18980075407240762,
+"""Weights in the difference to a step of order 5."""
+
+THIRD: tuple[float, ...] = (
+    0.244094488188976377952755905512,
+    *(0.0,) * 7,
+    0.733846688281611857341361741547,
     0.0,
     0.0,
-    0.0,
-    0.0,
-    4.450312892752409,
-    1.8915178993145003,
-    -5.801203960010585,
-    -0.4226823213237919,
-    -0.1521609496625161,
-    0.20136540080403034,
-    0.02265179219836082,
+    0.0220588235294117647058823529412,
 )
-"""Weights in the differences to a step of order 5, and to one of order 3."""
+ROUGH: tuple[float, ...] = tuple(b - third for b, third in zip(STAGES[-1], THIRD, strict=True))
+"""Weights of a step of order 3, and in the difference to it."""
 
 POWER = -0.125
 """How a step that is to have another error changes with that error."""
