@@ -31,6 +31,7 @@ from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.stick_slip import HORIZON, inner, is_near, is_rolling, is_slipping, size, slip_of
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.touchdown import Start
+from tippetop.mechanics.vectors import Scalar
 
 SLOWEST_REBOUND = 1e-6
 """Rebound velocity, in units of sqrt(g R), below which a rebound is none and the top stays on the table.
@@ -159,7 +160,8 @@ class ContactRules:
             ending = Vanishing(begins[0], held=ended[1] if begins[0] else ended[0])
             return Transition(events, Loosening(self.top, self, ending, 1), state)
         mode = self.going_on(state, slips=not ended[0])
-        if isinstance(mode, IntegratedMode) and _rests(found, state):
+        at, turning = found.acceleration
+        if isinstance(mode, IntegratedMode) and rests(state, *turning, *at[:2]):
             return Transition(events, Resting(self.top, self, mode), state)
         return Transition(events, mode, state)
 
@@ -337,8 +339,6 @@ class FreeToFly(ContactRules):
         return Flight(self.top, self, start)
 
 
-def _rests(found: Beginning, state: State) -> bool:
-    """Whether a body in contact neither moves nor begins to."""
-    point, turning = found.acceleration
-    rates = (*turning, *point[:2], *state.momentum, *state.velocity)
-    return bool(max(map(abs, rates)) <= REST)
+def rests(state: State, *rates: Scalar) -> bool:
+    """Whether a body in contact neither moves nor begins to, by the rates of its velocities."""
+    return bool(max(map(abs, (*rates, *state.momentum, *state.velocity))) <= REST)

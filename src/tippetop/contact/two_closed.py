@@ -12,12 +12,11 @@ from tippetop.contact.double_sticking import (
 )
 from tippetop.contact.mode import Event, EventKind, Outcome, Transition
 from tippetop.contact.passing import Resting
-from tippetop.contact.rules import REST
+from tippetop.contact.rules import rests
 from tippetop.contact.surfaces import number_of
 from tippetop.mechanics.beginning import settling
 from tippetop.mechanics.contact_pair import (
     ContactPair,
-    PairMotion,
     Tops,
     apart,
     at_rest,
@@ -167,8 +166,8 @@ class TwoClosed:
             return Transition((), on_two(self.state, rules, self.tops[1], self.rolls), self.state)
         if all(found.sticks):
             mode = StickingOnTwo(self.tops[0], self.rules, self.tops[1], self.rolls)
-            rests = _rests(self.state, found.motion)
-            return Transition((), Resting(self.tops[0], self.rules, mode) if rests else mode, self.state)
+            still = rests(self.state, *found.motion.moving[2])
+            return Transition((), Resting(self.tops[0], self.rules, mode) if still else mode, self.state)
         return Transition((), self._turning(self.tops, self.xi[2]), self.state)
 
     def _turning(self, tops: Tops, zeta: float) -> StickingAndSliding:
@@ -314,9 +313,3 @@ def _left(state: State, here: TwoClosed) -> float:
         slip, change = (slips[0][0], slips[0][1], slip_apart(pair)), found.rate
     rate = inner(slip, change)
     return inner(slip, slip) / -rate if rate < 0.0 else 0.0
-
-
-def _rests(state: State, motion: PairMotion) -> bool:
-    """Whether a body in contact neither moves nor begins to."""
-    rates = (*motion.moving[2], *state.momentum, *state.velocity)
-    return bool(max(map(abs, rates)) <= REST)

@@ -4469,7 +4469,8 @@ class ContactRules extends py.Record {
       return new Transition(events, new Loosening(this.top, this, ending, 1), state);
     }
     const mode = this.going_on(state, !py.truth(ended[0]));
-    if (py.isinstance(mode, IntegratedMode) && py.truth(_rests(found, state))) {
+    const [at, turning] = found.acceleration;
+    if (py.isinstance(mode, IntegratedMode) && py.truth(rests(state, ...turning, ...at.slice(0, 2)))) {
       return new Transition(events, new Resting(this.top, this, mode), state);
     }
     return new Transition(events, mode, state);
@@ -4667,11 +4668,9 @@ class FreeToFly extends ContactRules {
 }
 py.fields(FreeToFly, ["top", "restitution"]);
 
-/** Whether a body in contact neither moves nor begins to. */
-function _rests(found, state) {
-  const [point, turning] = found.acceleration;
-  const rates = [...turning, ...point.slice(0, 2), ...state.momentum, ...state.velocity];
-  return (py.max(py.map(py.abs, rates)) <= REST);
+/** Whether a body in contact neither moves nor begins to, by the rates of its velocities. */
+function rests(state, ...rates) {
+  return (py.max(py.map(py.abs, [...rates, ...state.momentum, ...state.velocity])) <= REST);
 }
 
 // tippetop.mechanics.contact_pair
@@ -5627,8 +5626,8 @@ class TwoClosed extends py.Record {
     }
     if (py.truth(py.all(found.sticks))) {
       const mode = new StickingOnTwo(this.tops[0], this.rules, this.tops[1], this.rolls);
-      const rests = _rests_of_two_closed(this.state, found.motion);
-      return new Transition([], py.truth(rests) ? new Resting(this.tops[0], this.rules, mode) : mode, this.state);
+      const still = rests(this.state, ...found.motion.moving[2]);
+      return new Transition([], py.truth(still) ? new Resting(this.tops[0], this.rules, mode) : mode, this.state);
     }
     return new Transition([], this._turning(this.tops, this.xi[2]), this.state);
   }
@@ -5781,12 +5780,6 @@ function _left(state, here) {
   }
   const rate = inner(slip, change);
   return rate < 0.0 ? py.div(inner(slip, slip), py.neg(rate)) : 0.0;
-}
-
-/** Whether a body in contact neither moves nor begins to. */
-function _rests_of_two_closed(state, motion) {
-  const rates = [...motion.moving[2], ...state.momentum, ...state.velocity];
-  return (py.max(py.map(py.abs, rates)) <= REST);
 }
 
 // tippetop.mechanics.impact_on_two
@@ -8753,8 +8746,6 @@ export {
   _reach,
   _reaches_out,
   _resisting,
-  _rests,
-  _rests_of_two_closed,
   _stem,
   _stiffness,
   _surface,
@@ -8934,6 +8925,7 @@ export {
   resolution,
   resting_way,
   restitution_goal,
+  rests,
   rises,
   rolling_of,
   rolling_precession,
