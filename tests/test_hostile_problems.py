@@ -124,6 +124,8 @@ def test_hostile_problems_end_with_an_outcome_or_a_sentence(part: int) -> None:
     [
         pytest.param(66, {"completed"}, id="a small patch that is struck"),
         pytest.param(1284, {"failed"}, id="slip whose end breaks down at its first step"),
+        pytest.param(7259, {"failed"}, id="forces beyond all numbers"),
+        pytest.param(7394, {"failed"}, id="friction beyond all numbers"),
         pytest.param(2113, {"completed"}, id="a launch with an impact"),
         pytest.param(1782, {"completed"}, id="half a turn from pole to pole in one step"),
     ],

@@ -3,15 +3,20 @@
 from abc import abstractmethod
 from typing import Annotated, Literal
 
+from pydantic import Field
+
 from tippetop.mechanics.contensou import EllipsoidalLaw
 from tippetop.mechanics.contensou_hertz import HertzLaw
 from tippetop.mechanics.coulomb import CoulombLaw
 from tippetop.mechanics.friction import FrictionLaw, RegularizedCoulombLaw, ViscousLaw
 from tippetop.mechanics.vectors import Scalar
-from tippetop.validation import NotNegative, Positive, Quantity, Variant
+from tippetop.validation import NO_WORD, NotNegative, Positive, Quantity, Variant
 
 LEAST_PATCH = 1e-9
 """Least radius of a contact patch in units of the body's size: smaller, its drilling is lost in rounding."""
+
+LEAST_EPS = 1e-100
+"""Least slip speed that a law is smoothed below, m/s: the square of a much smaller one is 0."""
 
 
 class Friction(Variant):
@@ -90,7 +95,12 @@ class RegularizedCoulombFriction(Friction):
 
     kind: Literal["regularized_coulomb"] = "regularized_coulomb"
     mu: Annotated[NotNegative, Quantity("1", "friction coefficient")]
-    eps: Annotated[Positive, Quantity("m s-1", "slip speed below which friction falls to zero")] = 1e-3
+    eps: Annotated[
+        float,
+        Field(ge=LEAST_EPS),
+        NO_WORD,
+        Quantity("m s-1", "slip speed below which friction falls to zero"),
+    ] = 1e-3
 
     @property
     def law(self) -> FrictionLaw:

@@ -36,6 +36,7 @@ SURELY_FIT = 10_000
 """Samples for which nobody needs to ask how much memory there is."""
 
 
+@np.errstate(all="ignore")  # What grows beyond all numbers is the outcome's matter.
 def simulate(
     problem: Problem,
     duration: float,
@@ -118,7 +119,7 @@ def simulate(
             callback(trajectory.time / trajectory.end)
     outcome = trajectory.outcome
     assert outcome is not None, "a trajectory that has no more segments has ended"
-    if outcome is Outcome.COMPLETED and recorder.inaccuracy > tolerated(method):
+    if outcome is Outcome.COMPLETED and not recorder.inaccuracy <= tolerated(method):
         outcome = Outcome.INACCURATE
     early = outcome is not Outcome.COMPLETED and trajectory.detail != NOT_FINITE
     found = recorder.finish(trajectory.time, trajectory.state, early)

@@ -6358,6 +6358,7 @@ function horner_of_contensou_hertz(coefficients, x) {
 
 // tippetop.frictions
 const LEAST_PATCH = 1e-09;
+const LEAST_EPS = 1e-100;
 
 /** The friction of the table; a kind of it is a subclass. */
 class Friction extends Part {
@@ -8498,6 +8499,7 @@ export {
   LANDING,
   LARGEST_POWER,
   LEANING,
+  LEAST_EPS,
   LEAST_FACTOR,
   LEAST_PATCH,
   LESS,

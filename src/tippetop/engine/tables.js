@@ -349,7 +349,7 @@ export const SCHEMA = {
     "long_name": "slip speed below which friction falls to zero",
     "default": 0.001,
     "limits": {
-     "gt": 0
+     "ge": 1e-100
     }
    }
   },
