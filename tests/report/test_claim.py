@@ -7,6 +7,7 @@ import pytest
 
 from tippetop.report.claim import (
     Claim,
+    Examiner,
     Finding,
     Judgement,
     Source,
@@ -14,12 +15,10 @@ from tippetop.report.claim import (
     decide,
     number,
 )
-from tippetop.report.claims.registry import CLAIMS
+from tippetop.report.claims.registry import CLAIMS, EXAMINERS
 from tippetop.report.experiments.registry import EXPERIMENTS
-from tippetop.report.formulas import FORMULAS
-from tippetop.report.gallery import PLATES
+from tippetop.report.gallery import DRAWN, PLATES
 from tippetop.report.outline import OWN, PICTURES, SECTIONS, section_of
-from tippetop.report.sentences import SENTENCES
 from tippetop.report.tolerance import Tolerance, half_last_digit
 
 FIELDS = {"id", "source", "statement", "reported", "listing", "converged", "unit", "verdict", "note"}
@@ -28,9 +27,8 @@ FIELDS = {"id", "source", "statement", "reported", "listing", "converged", "unit
 def judged(finding: Finding, printed: str = "", tolerance: Tolerance | None = None) -> Judgement:
     source = Source("1", "Fig. 1", "(1)")
     unit = "s" if tolerance else None
-    claim = Claim(
-        "a-claim", source, "It is so.", printed, unit, tolerance, (), None, False, "", lambda: finding
-    )
+    examiner = Examiner((), tolerance, lambda: finding)
+    claim = Claim("a-claim", examiner, source, "It is so.", printed=printed, unit=unit)
     return claim.judge({}, quick=False)
 
 
@@ -108,23 +106,31 @@ def test_claims_are_complete(claim: Claim) -> None:
     assert set(claim.needs) <= set(EXPERIMENTS)
     assert claim.figure is None or claim.figure in PLATES
     assert claim.source.section
-    assert claim.printed or not claim.unit or claim.tolerance
+    assert claim.printed or not claim.unit or claim.examiner.tolerance
+    assert claim.formula != claim.formula_right or not claim.formula
     if claim.printed:
         assert math.isfinite(number(claim.number))
-    if claim.tolerance is not None:
-        assert claim.tolerance.reason
+    if claim.examiner.tolerance is not None:
+        assert claim.examiner.tolerance.reason
     assert section_of(claim.source.section)
 
 
 def test_every_statement_of_the_report_is_quoted() -> None:
     """Claims of the page's own sections quote nothing, for the report has no such section."""
-    ours = {name for name, claim in CLAIMS.items() if section_of(claim.source.section) in OWN}
-    assert set(CLAIMS) - ours == set(SENTENCES)
-    assert all(0 < len(quote) < 160 for quote in SENTENCES.values())
+    for claim in CLAIMS.values():
+        assert bool(claim.quote) is (section_of(claim.source.section) not in OWN)
+        assert len(claim.quote) < 160
 
 
-def test_formulas_belong_to_claims() -> None:
-    assert set(FORMULAS) <= set(CLAIMS)
+def test_all_that_is_told_is_examined_or_drawn_and_the_other_way_round() -> None:
+    assert set(EXAMINERS) == set(CLAIMS)
+    assert set(DRAWN) == set(PLATES)
+
+
+def test_constants_stand_in_what_is_told_of_them() -> None:
+    assert CLAIMS["fig10-fall"].text == "The work of the weight in a fall by 15 radii is 0.06 J."
+    assert CLAIMS["fig05-reversal"].printed == "1.1 s"
+    assert not any("{" in plate.caption for plate in PLATES.values())
 
 
 def test_figures_stand_in_sections_of_the_page() -> None:

@@ -16,7 +16,6 @@ from tippetop.report.experiments.dry import COHEN, friction_needed, stepped
 from tippetop.report.experiments.patches import CREEP, viscous_coefficient
 from tippetop.report.experiments.registry import EXPERIMENTS
 from tippetop.report.gallery import PLATES
-from tippetop.report.gallery_friction import PLATES as FRICTION
 from tippetop.report.plate import Plate
 from tippetop.run import simulate
 
@@ -142,6 +141,9 @@ def test_verdicts_follow_the_data(
     computed: dict[str, xr.Dataset], name: str, experiment: str, change: dict[str, float], verdict: Verdict
 ) -> None:
     assert_judged_otherwise(computed, name, experiment, change, verdict)
+
+
+FRICTION = [plate for plate in PLATES.values() if plate.section == "Friction"]
 
 
 @pytest.mark.parametrize("plate", FRICTION, ids=lambda plate: plate.id)

@@ -14,7 +14,6 @@ from tippetop.report.claims.registry import CLAIMS
 from tippetop.report.experiment import variable
 from tippetop.report.experiments.registry import EXPERIMENTS
 from tippetop.report.gallery import PLATES
-from tippetop.report.gallery_why import PLATES as WHY
 from tippetop.report.page import render
 from tippetop.report.plate import Plate
 
@@ -157,6 +156,9 @@ def test_claims_follow_the_data(computed: dict[str, xr.Dataset]) -> None:
     other["final_theta_listing"][0] = 0.5
     spoilt["final-tilt-listing"] = other
     assert CLAIMS["why-regimes"].judge(spoilt, quick=True).verdict is Verdict.CORRECTED
+
+
+WHY = [plate for plate in PLATES.values() if plate.section == "Why"]
 
 
 @pytest.mark.parametrize("plate", WHY, ids=lambda plate: plate.id)

@@ -4,7 +4,8 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, dataclass
 from enum import Enum
-from typing import Any, TypeAlias
+from functools import partial
+from typing import Any, NamedTuple, TypeAlias
 
 import xarray as xr
 
@@ -76,8 +77,15 @@ class Finding:
         return cls(None, converged, note, *choices, **others)
 
 
-Examine: TypeAlias = Callable[..., Finding]
-"""Computes a finding from the datasets of the experiments that a claim needs, in that order."""
+class Examiner(NamedTuple):
+    """How a claim is examined."""
+
+    needs: tuple[str, ...]
+    """Names of the experiments that decide it; () for the one called as its figure."""
+    tolerance: Tolerance | None
+    """What counts as agreement where the printed digits do not say it."""
+    examine: Callable[..., Finding]
+    """Computes the finding from the experiments' datasets, given in the order of `needs`."""
 
 
 @dataclass(frozen=True)
@@ -86,27 +94,34 @@ class Claim:
 
     id: str
     """Its name."""
+    examiner: Examiner
+    """How it is examined."""
     source: Source
     """Where it stands."""
     text: str
     """What is claimed."""
-    printed: str
+    quote: str = ""
+    """What the report says, word for word and in its spelling; "" where it is not the report that says it."""
+    printed: str = ""
     """The number as printed, with its unit; "" where the claim is not a number or `Finding.reported` has
     it."""
-    unit: str | None
+    unit: str | None = None
     """Unit of a number that is not printed; None if there is none."""
-    tolerance: Tolerance | None
-    """What counts as agreement where the printed digits do not say it."""
-    needs: tuple[str, ...]
-    """Names of the experiments that decide it."""
-    figure: str | None
+    formula: tuple[str, ...] = ()
+    """A formula as the report sets it apart, in TeX as far as matplotlib sets it, a string a line."""
+    formula_right: tuple[str, ...] = ()
+    """What it should be; () where it is right."""
+    figure: str | None = None
     """Name of our figure that shows it, or None."""
-    implied: bool
+    implied: bool = False
     """Whether the report does not say it in words."""
-    right: str
+    right: str = ""
     """What is right where the claim is not, in a few words; "" where the converged value says it."""
-    examine: Examine
-    """Computes the finding from the experiments' datasets, given in the order of `needs`."""
+
+    @property
+    def needs(self) -> tuple[str, ...]:
+        """Names of the experiments that decide it."""
+        return self.examiner.needs or tuple(filter(None, [self.figure]))
 
     @property
     def is_number(self) -> bool:
@@ -125,7 +140,7 @@ class Claim:
 
     def judge(self, data: Data, quick: bool) -> "Judgement":
         """Examine the claim by the experiments it needs."""
-        return Judgement(self, self.examine(*(data[name] for name in self.needs)), quick)
+        return Judgement(self, self.examiner.examine(*(data[name] for name in self.needs)), quick)
 
 
 @dataclass(frozen=True)
@@ -148,7 +163,7 @@ class Judgement:
         """What counts as agreement; None for claims that are true or false."""
         if not self.claim.is_number:
             return None
-        return self.claim.tolerance or half_last_digit(self.claim.number)
+        return self.claim.examiner.tolerance or half_last_digit(self.claim.number)
 
     @property
     def verdict(self) -> Verdict:
@@ -183,36 +198,16 @@ class Judgement:
         }
 
 
-class Chapter:
-    """Collects the claims of a module."""
+class Chapter(dict[str, Examiner]):
+    """What examines the claims of a module, by their names."""
 
-    def __init__(self) -> None:
-        self.claims: list[Claim] = []
+    def examines(
+        self, claim: str, *needs: str, tolerance: Tolerance | None = None, **options: Any
+    ) -> Callable[[Callable[..., Finding]], Callable[..., Finding]]:
+        """Register the decorated function, with some options, as what examines a claim; see `Examiner`."""
 
-    def claim(
-        self,
-        name: str,
-        source: Source,
-        text: str,
-        printed: str = "",
-        *,
-        needs: tuple[str, ...] = (),
-        unit: str | None = None,
-        tolerance: Tolerance | None = None,
-        figure: str | None = None,
-        implied: bool = False,
-        right: str = "",
-    ) -> Callable[[Examine], Examine]:
-        """Register the decorated function as what examines a claim; see `Claim`.
-
-        What it needs is the experiment called as its figure if nothing is given.
-        """
-        needed = needs or tuple(filter(None, [figure]))
-
-        def register(examine: Examine) -> Examine:
-            self.claims.append(
-                Claim(name, source, text, printed, unit, tolerance, needed, figure, implied, right, examine)
-            )
+        def register(examine: Callable[..., Finding]) -> Callable[..., Finding]:
+            self[claim] = Examiner(needs, tolerance, partial(examine, **options))
             return examine
 
         return register

@@ -14,13 +14,10 @@ from PIL import Image
 from tippetop.integrators import default_name
 from tippetop.report.claim import RULE, Judgement, Value, Verdict
 from tippetop.report.experiments.registry import EXPERIMENTS
-from tippetop.report.formulas import FORMULAS
 from tippetop.report.gallery import PLATES
-from tippetop.report.outline import OWN, PICTURES, SECTIONS, section_of
+from tippetop.report.outline import OWN, PICTURES, SECTIONS, UNCHECKED, section_of
 from tippetop.report.plate import Plate
-from tippetop.report.sentences import SENTENCES
 from tippetop.report.typeset import formula, typeset
-from tippetop.report.unchecked import UNCHECKED
 
 _TEMPLATE = "page.html.j2"
 
@@ -183,9 +180,9 @@ def worded(judgement: Judgement, shown: Set[str] = frozenset()) -> Worded:
         "id": claim.id,
         "short": _without_measure(claim.text),
         "implied": claim.implied,
-        "quote": SENTENCES.get(claim.id, ""),
+        "quote": claim.quote,
         "is_code": claim.id.startswith("listing"),
-        "formula": FORMULAS.get(claim.id),
+        "formula": {"printed": claim.formula, "right": claim.formula_right} if claim.formula else None,
         "place": claim.source.place,
         "section": section_of(claim.source.section),
         "of_others": section_of(claim.source.section) in OWN and _THEIRS not in claim.source.section,
@@ -198,7 +195,7 @@ def worded(judgement: Judgement, shown: Set[str] = frozenset()) -> Worded:
         "choice": finding.choice,
         "converged": _number(finding.converged) + unit,
         "tolerance": f"± {tolerance.value:g}{unit}" if tolerance else None,
-        "tolerance_from": tolerance.reason if claim.tolerance and tolerance else "",
+        "tolerance_from": tolerance.reason if claim.examiner.tolerance and tolerance else "",
         "verdict": judgement.verdict.name.lower(),
         "note": finding.note,
         "news": finding.news,

@@ -2,8 +2,6 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
-from typing import Any
 
 import xarray as xr
 from matplotlib.figure import Figure
@@ -19,14 +17,14 @@ class Plate:
 
     id: str
     """Name, and stem of its files."""
+    draw: Draw
+    """Makes the figure from their merged dataset (empty for a drawing that needs none)."""
     title: str
     """Heading."""
     caption: str
     """What is seen, in a few sentences."""
     needs: tuple[str, ...]
     """Names of the experiments it shows."""
-    draw: Draw
-    """Makes the figure from their merged dataset (empty for a drawing that needs none)."""
     section: str
     """The section of the page that it belongs to; see `tippetop.report.outline`."""
     finding: str = ""
@@ -37,17 +35,3 @@ class Plate:
         """The data behind the figure."""
         parts = [data[name] for name in self.needs]
         return xr.merge(parts, combine_attrs="drop_conflicts", compat="no_conflicts", join="outer")
-
-
-def plate(
-    id_: str,
-    title: str,
-    caption: str,
-    draw: Callable[..., Figure],
-    section: str,
-    finding: str = "",
-    needs: tuple[str, ...] = (),
-    **options: Any,
-) -> Plate:
-    """A figure drawn with some options, of the experiment that is called as it is if no others are named."""
-    return Plate(id_, title, caption, needs or (id_,), partial(draw, **options), section, finding)

@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from tippetop.report.claim import Chapter, Finding, Source, listed
+from tippetop.report.claim import Chapter, Finding, listed
 from tippetop.report.claims.flight import ROUNDED
 from tippetop.report.experiments.flights import TILT
 from tippetop.report.experiments.spins import TURNED
@@ -12,13 +12,7 @@ from tippetop.report.quoted import ABNORMAL_SPIN, CRITICAL_SPINS
 CHAPTER = Chapter()
 
 
-@CHAPTER.claim(
-    "sec4-energy-falls",
-    Source("4", "Fig. 10"),
-    "The top loses energy during its motion; nothing adds to it.",
-    needs=("run-175", "flights", "flights-bouncing"),
-    figure="fig10",
-)
+@CHAPTER.examines("sec4-energy-falls", "run-175", "flights", "flights-bouncing")
 def _(run: xr.Dataset, flights: xr.Dataset, bouncing: xr.Dataset) -> Finding:
     rises = [float(data["energy_rise"].max()) for data in (run, flights, bouncing)]
     launch, impacts = float(run["launch_energy"]), float(run["energy_in_impacts"])
@@ -33,13 +27,7 @@ def _(run: xr.Dataset, flights: xr.Dataset, bouncing: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.claim(
-    "sec4-huge-spin",
-    Source("4"),
-    f"The top can not be held on the surface at huge spins, above {ABNORMAL_SPIN} rad/s.",
-    needs=("onset-tilt", "onset-mu", "run-175", "final-tilt"),
-    figure="onset-tilt",
-)
+@CHAPTER.examines("sec4-huge-spin", "onset-tilt", "onset-mu", "run-175", "final-tilt")
 def _(over_tilt: xr.Dataset, over_mu: xr.Dataset, run: xr.Dataset, sweep: xr.Dataset) -> Finding:
     own = over_tilt.sel(tilt=TILT)
     huge = own["first_lift_off"].sel(spin=own["spin"] > float(ABNORMAL_SPIN))
@@ -63,14 +51,7 @@ def _(over_tilt: xr.Dataset, over_mu: xr.Dataset, run: xr.Dataset, sweep: xr.Dat
     )
 
 
-@CHAPTER.claim(
-    "sum-abnormal",
-    Source("3.3", "Fig. 6"),
-    f"Above {ABNORMAL_SPIN} rad/s the top behaves abnormally; a negative normal force causes that, and "
-    "it is not physical.",
-    needs=("final-tilt", "flights", "flights-bouncing", "listing-capped"),
-    figure="flights",
-)
+@CHAPTER.examines("sum-abnormal", "final-tilt", "flights", "flights-bouncing", "listing-capped")
 def _(sweep: xr.Dataset, flights: xr.Dataset, bouncing: xr.Dataset, capped: xr.Dataset) -> Finding:
     true, spins = sweep["final_theta_flight"].values, sweep["spin_flight"].values
     cured = not _turned(capped["final_theta"]) and _turned(capped["final_theta_capped"])
@@ -97,14 +78,7 @@ def _(sweep: xr.Dataset, flights: xr.Dataset, bouncing: xr.Dataset, capped: xr.D
 _CAPPED = ("spin", "final_theta", "final_theta_capped")
 
 
-@CHAPTER.claim(
-    "sum-turns-over",
-    Source("3.3"),
-    "Above omega_c2 the top turns over completely (the report excepts the spins above "
-    f"{ABNORMAL_SPIN} rad/s).",
-    needs=("final-tilt-listing", "final-tilt", "flights", "flights-bouncing"),
-    figure="flights",
-)
+@CHAPTER.examines("sum-turns-over", "final-tilt-listing", "final-tilt", "flights", "flights-bouncing")
 def _(listing: xr.Dataset, sweep: xr.Dataset, flights: xr.Dataset, bouncing: xr.Dataset) -> Finding:
     theirs = _inverting(listing, "_listing", float(ABNORMAL_SPIN))
     ours = _inverting(sweep, "", float(sweep["lift_off_onset"]))

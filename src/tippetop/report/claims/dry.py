@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from tippetop.report.claim import Chapter, Finding, Source, both, listed
+from tippetop.report.claim import Chapter, Finding, both, listed
 from tippetop.report.experiments.dry import COHEN_STEP, COHEN_WINDOW
 from tippetop.report.experiments.patches import SPIN_OF_REPORT
 from tippetop.report.quoted import NORMAL_FRICTION, ROUGH_FRICTION
@@ -17,16 +17,11 @@ _SAME = 1e-6
 _OVER = np.pi / 2
 
 _DRY = (0.1, 1.0)
-"""Coefficients of Coulomb friction that dry solids have, from polished to rough ones."""
+"""Coefficients of Coulomb friction that dry solids have, from polished to rough ones; the claim dry-normal-mu
+tells them."""
 
 
-@CHAPTER.claim(
-    "dry-tilting-rate",
-    Source("Friction: Pliskin, Am. J. Phys. 22 (1954) 28"),
-    "The rate at which a tippe top tilts is proportional to the coefficient of friction.",
-    figure="dry-rolling",
-    right="it can be so only while the top slips: set down without slip it rolls, and does not turn over",
-)
+@CHAPTER.examines("dry-tilting-rate")
 def _(data: xr.Dataset) -> Finding:
     held = data["theta_held"]
     same = float(abs(held - held.isel(held=0)).max()) < _SAME
@@ -44,13 +39,7 @@ def _(data: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.claim(
-    "dry-cohen-inversion",
-    Source("Friction: Cohen, Am. J. Phys. 45 (1977) 12", "Fig. 5"),
-    "A tippe top on Coulomb friction of mu = 0.3 turns over within 2 s (100 rad/s, 0.1 rad).",
-    figure="dry-cohen",
-    right="it sticks and rolls; the inversion comes from the length of the steps",
-)
+@CHAPTER.examines("dry-cohen-inversion")
 def _(data: xr.Dataset) -> Finding:
     window = data.sel(time=slice(0.0, COHEN_WINDOW + 1e-9))
     highest = data["theta_stepped"].max("time")
@@ -68,13 +57,7 @@ def _(data: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.claim(
-    "dry-cohen-sliding",
-    Source("Friction: Cohen, Am. J. Phys. 45 (1977) 12"),
-    "The top always slides on its way.",
-    figure="dry-cohen",
-    right="it sticks after 0.03 s, and slips no more",
-)
+@CHAPTER.examines("dry-cohen-sliding")
 def _(data: xr.Dataset) -> Finding:
     least = float(data["slowest"].sel(step=COHEN_STEP, method="nearest"))
     return Finding(
@@ -86,13 +69,7 @@ def _(data: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.claim(
-    "dry-coulomb-weaker",
-    Source("Friction: Or, SIAM J. Appl. Math. 54 (1994) 597"),
-    "Coulomb friction contributes to the inversion, more weakly than viscous friction.",
-    figure="dry-smoothed",
-    right="it does so while it is smoothed; on the law itself a top set down without slip rolls",
-)
+@CHAPTER.examines("dry-coulomb-weaker")
 def _(data: xr.Dataset) -> Finding:
     eps, times = data["eps"].values, data["turning_time"].values
     return Finding.unlisted(
@@ -107,12 +84,7 @@ def _(data: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.claim(
-    "dry-patch-inversion",
-    Source("Friction: Leine and Glocker, Eur. J. Mech. A/Solids 22 (2003) 193"),
-    "With Coulomb-Contensou friction of a patch of 0.5 mm the tippe top turns over (180 rad/s).",
-    figure="dry-patch",
-)
+@CHAPTER.examines("dry-patch-inversion")
 def _(data: xr.Dataset) -> Finding:
     turned = data["turning_time"].notnull()
     fast = data.isel(spin=-1)
@@ -130,15 +102,7 @@ def _(data: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.claim(
-    "dry-viscous-limit",
-    Source("Friction: Contensou 1963"),
-    "Fast drilling makes dry friction viscous for little slip (growth rates of small tilts, patch over "
-    "viscous).",
-    "1",
-    tolerance=ROUNDING,
-    figure="dry-viscous",
-)
+@CHAPTER.examines("dry-viscous-limit", tolerance=ROUNDING)
 def _(data: xr.Dataset) -> Finding:
     ratio = data["patch_time"] / data["viscous_time"]
     least, most = ratio.min("coefficient").values, ratio.max("coefficient").values
@@ -153,15 +117,7 @@ def _(data: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.claim(
-    "dry-normal-mu",
-    Source("Friction: the report, section 3.3"),
-    f"Friction coefficients of {NORMAL_FRICTION[0]:g} to {NORMAL_FRICTION[1]:g} s/m are normal, for fast "
-    f"slip (friction over normal force of {_DRY[0]:g} to {_DRY[1]:g}, as between dry solids, at Fig. 4's "
-    "largest slip).",
-    needs=("dry-viscous", "run-155"),
-    figure="dry-viscous",
-)
+@CHAPTER.examines("dry-normal-mu", "dry-viscous", "run-155")
 def _(data: xr.Dataset, run: xr.Dataset) -> Finding:
     theirs, ours = ([mu * slip for mu in NORMAL_FRICTION] for slip in both(run, "largest_slip"))
     return Finding(
@@ -178,12 +134,7 @@ def _is_dry(ratios: list[float]) -> bool:
     return _DRY[0] <= min(ratios) and max(ratios) <= _DRY[1]
 
 
-@CHAPTER.claim(
-    "dry-rough-mu",
-    Source("Friction: the report, Fig. 8"),
-    f"No surface is as rough as mu = {ROUGH_FRICTION:g} s/m (of those tried, at {SPIN_OF_REPORT:g} rad/s).",
-    figure="dry-viscous",
-)
+@CHAPTER.examines("dry-rough-mu")
 def _(data: xr.Dataset) -> Finding:
     slowest = float((data["hertz_coefficient"].max() / ROUGH_FRICTION) * SPIN_OF_REPORT)
     return Finding.unlisted(

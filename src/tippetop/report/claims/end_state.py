@@ -3,7 +3,7 @@
 import xarray as xr
 
 from tippetop.presets import REPORT, REPORT_TABLE_1
-from tippetop.report.claim import Chapter, Finding, Source
+from tippetop.report.claim import Chapter, Finding
 from tippetop.report.experiments.runs import likely_end
 from tippetop.report.quoted import END_OF_FIG_5
 from tippetop.report.tolerance import Tolerance
@@ -18,16 +18,7 @@ _DISPLAYED = Tolerance(
 _QUOTED = "({theta}, {phi_dot}, {omega3})".format(**END_OF_FIG_5)
 
 
-@CHAPTER.claim(
-    "fig05-end",
-    Source("3.1", "Fig. 5"),
-    f"Launched at 50 rad/s the top ends with (theta, phi', omega) = {_QUOTED} (largest difference from the "
-    "end, in rad and rad/s).",
-    "0",
-    tolerance=_DISPLAYED,
-    needs=("run-50", "run-50-windows", "run-50-table-1"),
-    figure="fig05",
-)
+@CHAPTER.examines("fig05-end", "run-50", "run-50-windows", "run-50-table-1", tolerance=_DISPLAYED)
 def _(run: xr.Dataset, windows: xr.Dataset, other: xr.Dataset) -> Finding:
     chosen = likely_end(windows)
     every = float(windows["window"].diff("window")[0])
@@ -59,15 +50,8 @@ def _triple(state: dict[str, float]) -> str:
     return "(" + ", ".join(f"{value:.4f}" for value in state.values()) + ")"
 
 
-@CHAPTER.claim(
-    "table-1-inertia",
-    Source("3", "Table 1"),
-    "Table 1: I1 = 2/5 m R^2 and I3 = 131/350 m R^2 (the value is I1 / (m R^2)).",
-    unit="1",
-    tolerance=Tolerance(1e-6, "fractions are exact"),
-    needs=("run-50", "run-50-table-1"),
-    figure="fig05",
-    right="I1 = 131/350 m R^2 and I3 = 2/5 m R^2, as in the listing",
+@CHAPTER.examines(
+    "table-1-inertia", "run-50", "run-50-table-1", tolerance=Tolerance(1e-6, "fractions are exact")
 )
 def _(run: xr.Dataset, other: xr.Dataset) -> Finding:
     unit = REPORT.mass * float(REPORT.surface.size) ** 2

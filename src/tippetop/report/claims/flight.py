@@ -6,20 +6,14 @@ import xarray as xr
 from tippetop.mechanics.euler import published_parameters
 from tippetop.presets import REPORT
 from tippetop.problem import Problem
-from tippetop.report.claim import Chapter, Finding, Source
-from tippetop.report.quoted import ENERGY, ENERGY_TIME, FALL, STOP
+from tippetop.report.claim import Chapter, Finding
+from tippetop.report.quoted import ENERGY, ENERGY_TIME, STOP
 from tippetop.report.tolerance import PLOTTED, rounded
 
 CHAPTER = Chapter()
 
 
-@CHAPTER.claim(
-    "fig11-negative",
-    Source("4", "Fig. 11"),
-    "At 175 rad/s the normal force becomes negative.",
-    needs=("run-175",),
-    figure="fig11",
-)
+@CHAPTER.examines("fig11-negative", "run-175")
 def _(run: xr.Dataset) -> Finding:
     return Finding(
         float(run["least_force_listing"]) < 0,
@@ -30,14 +24,7 @@ def _(run: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.claim(
-    "fig10-gain",
-    Source("4", "Fig. 10"),
-    f"At 175 rad/s the top gains {ENERGY} J, at t = {ENERGY_TIME} s.",
-    f"{ENERGY} J",
-    needs=("run-175",),
-    figure="fig10",
-)
+@CHAPTER.examines("fig10-gain", "run-175")
 def _(run: xr.Dataset) -> Finding:
     theirs, ours = _gains(run, "_listing"), _gains(run, "")
     weight = _weight(run)
@@ -86,14 +73,7 @@ def _weight(run: xr.Dataset) -> float:
     return float(problem.body.mass * problem.gravity * float(problem.body.surface.size))
 
 
-@CHAPTER.claim(
-    "fig10-fall",
-    Source("4", "Fig. 10"),
-    f"The work of the weight in a fall by {FALL} radii is {ENERGY} J.",
-    f"{FALL} R",
-    needs=("run-175",),
-    figure="fig10",
-)
+@CHAPTER.examines("fig10-fall", "run-175")
 def _(run: xr.Dataset) -> Finding:
     fall = float(ENERGY) / _weight(run)
     return Finding.unlisted(
@@ -103,13 +83,7 @@ def _(run: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.claim(
-    "fig10-by-falling",
-    Source("4", "Fig. 10"),
-    "A top that falls far enough gains energy (4.1).",
-    needs=("run-175",),
-    figure="fig10",
-)
+@CHAPTER.examines("fig10-by-falling", "run-175")
 def _(run: xr.Dataset) -> Finding:
     change, height = _kept_in_flight(run)
     work = _weight(run) / float(REPORT.surface.size) * height
@@ -138,13 +112,7 @@ def _kept_in_flight(run: xr.Dataset) -> tuple[float, float]:
     return max(float(np.ptp(part)) for part in inside if len(part) > 1), float(run["highest_gap"])
 
 
-@CHAPTER.claim(
-    "fig10-impossible",
-    Source("4", "Fig. 10"),
-    "Only gravity can do positive work: a growing energy is impossible as long as the table does not pull.",
-    needs=("run-175",),
-    figure="fig10",
-)
+@CHAPTER.examines("fig10-impossible", "run-175")
 def _(run: xr.Dataset) -> Finding:
     energy, launch = run["energy"], float(run["launch_energy"])
     largest_rise = float(np.diff(energy.sel(time=slice(None, float(run["lift_off_time"]))).values).max())
@@ -167,14 +135,7 @@ ROUNDED = 1e-12
 """Rises of the energy, in parts of that at launch, that are rounding: the tolerance of the runs."""
 
 
-@CHAPTER.claim(
-    "fig12-stop-time",
-    Source("4", "Fig. 12"),
-    f"t = {STOP} s is before the critical time, at which the normal force becomes negative.",
-    needs=("run-175",),
-    figure="fig12",
-    right="it is after the critical time",
-)
+@CHAPTER.examines("fig12-stop-time", "run-175")
 def _(run: xr.Dataset) -> Finding:
     stop, theirs, ours = float(STOP), float(run["zero_of_force_listing"]), float(run["lift_off_time"])
     visible = float(run["visible_pull_listing"])
@@ -189,13 +150,7 @@ def _(run: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.claim(
-    "fig09-two-motions",
-    Source("4", "Fig. 9"),
-    "At 175 rad/s the motion mixes rapid and smooth nutation.",
-    needs=("run-175",),
-    figure="fig09",
-)
+@CHAPTER.examines("fig09-two-motions", "run-175")
 def _(run: xr.Dataset) -> Finding:
     theirs, ours = (_swing_by_second(run, suffix) for suffix in ("_listing", ""))
     visible = PLOTTED.value * np.pi
@@ -217,13 +172,7 @@ def _swing_by_second(run: xr.Dataset, suffix: str) -> np.ndarray:
     return np.array([np.median(size[second == k]) for k in np.unique(second)])
 
 
-@CHAPTER.claim(
-    "sec2-large-spin",
-    Source("2.2", equation="(2.15)"),
-    "At a large omega3 the third term of the numerator of (2.15) makes g_n negative.",
-    needs=("run-175",),
-    figure="fig11",
-)
+@CHAPTER.examines("sec2-large-spin", "run-175")
 def _(run: xr.Dataset) -> Finding:
     theirs, ours = (_numerator(run, suffix) for suffix in ("_listing", ""))
     return Finding(
@@ -247,15 +196,7 @@ def _numerator(run: xr.Dataset, suffix: str) -> tuple[float, float, float]:
     return m * g * I1, m * R * alpha * turning, -m * R * alpha * I3 * phi_dot * omega3 * s**2
 
 
-@CHAPTER.claim(
-    "fig16-stays",
-    Source("Appendix C", "Fig. 16"),
-    "Launched at 150 rad/s and theta = pi/4 the top stays on the table (drawn without a remark).",
-    needs=("run-150-pi-4",),
-    figure="fig16",
-    implied=True,
-    right="it leaves the table",
-)
+@CHAPTER.examines("fig16-stays", "run-150-pi-4")
 def _(run: xr.Dataset) -> Finding:
     return Finding(
         not float(run["least_force_listing"]) < 0,
@@ -266,13 +207,7 @@ def _(run: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.claim(
-    "sec4-may-fly",
-    Source("4", "Fig. 11"),
-    "At 175 rad/s the top may fly off the surface.",
-    needs=("run-175",),
-    figure="fig12",
-)
+@CHAPTER.examines("sec4-may-fly", "run-175")
 def _(run: xr.Dataset) -> Finding:
     return Finding.unlisted(
         float(run["highest_gap"]) > PLOTTED.value * float(REPORT.surface.size),

@@ -1,28 +1,23 @@
 """Claims about friction: Fig. 7, Fig. 8, and what is said of other values of mu."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
-from tippetop.report.claim import Chapter, Finding, Source, both, listed
+from tippetop.report.claim import Chapter, Finding, both, listed
 from tippetop.report.experiments.friction import power_law
-from tippetop.report.quoted import EXPONENT, NORMAL_FRICTION
+from tippetop.report.quoted import EXPONENT
 from tippetop.report.tolerance import ARRIVED, PLOTTED, TRANSCRIBED, WHOLE, half_last_digit
 
 CHAPTER = Chapter()
 
 _LOST = 0.1
-"""Relative departure from the law that counts as losing it: more than its scatter over a decade below."""
+"""Relative departure from the law that counts as losing it: more than its scatter over a decade below; the
+claim fig07-inverse tells it."""
 
 
-@CHAPTER.claim(
-    "sec3-friction",
-    Source("3.3"),
-    "Without friction the top hardly turns over, and too much friction makes it difficult too.",
-    needs=("friction-extremes",),
-    figure="fig07",
-)
+@CHAPTER.examines("sec3-friction", "friction-extremes")
 def _(data: xr.Dataset) -> Finding:
     mu, times = data["mu"].values, data["turning_time"].values
     turns = np.isfinite(times)
@@ -37,15 +32,7 @@ def _(data: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.claim(
-    "fig07-exponent",
-    Source("3.3", "Fig. 7, and summary, point 5"),
-    f"For mu from {NORMAL_FRICTION[0]:g} to {NORMAL_FRICTION[1]:g} the flip time goes as mu^{EXPONENT}.",
-    EXPONENT,
-    needs=("flip-times", "flip-times-spins"),
-    figure="fig07",
-    right="no one power: the time jumps with the last swings",
-)
+@CHAPTER.examines("fig07-exponent", "flip-times", "flip-times-spins")
 def _(times: xr.Dataset, others: xr.Dataset) -> Finding:
     nearest = min(_fits(times, others), key=lambda fit: abs(fit.exponent - float(EXPONENT)))
     fits = [fit.exponent for fit in _fits(times, others)]
@@ -63,14 +50,7 @@ def _(times: xr.Dataset, others: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.claim(
-    "fig07-inverse",
-    Source("3.3", "Fig. 7"),
-    f"For mu from {NORMAL_FRICTION[0]:g} to {NORMAL_FRICTION[1]:g} the time to turn over is nearly inversely "
-    f"proportional to mu (mu t within {100 * _LOST:.0f} % of its mean, at spins that stay on the table).",
-    needs=("flip-times", "flip-times-spins", "onset-mu"),
-    figure="fig07",
-)
+@CHAPTER.examines("fig07-inverse", "flip-times", "flip-times-spins", "onset-mu")
 def _(times: xr.Dataset, others: xr.Dataset, onsets: xr.Dataset) -> Finding:
     onset = _least_onset(onsets["onset"].isel(window=-1), times["mu"].values)
     runs = {float(one["spin"]): one for one in (others.isel(spin=k) for k in range(others.sizes["spin"]))}
@@ -133,13 +113,7 @@ def _step(mu: xr.DataArray) -> float:
     return float(mu[1] - mu[0])
 
 
-@CHAPTER.claim(
-    "summary-large-mu",
-    Source("3.3", "summary, point 6"),
-    "For mu beyond 1 s/m the relation t ~ 1/mu no longer holds.",
-    needs=("flip-times-wide",),
-    figure="fig07",
-)
+@CHAPTER.examines("summary-large-mu", "flip-times-wide")
 def _(wide: xr.Dataset) -> Finding:
     product = wide["mu_wide"] * wide["flip_time_wide"]
     law = product.sel(mu_wide=wide["mu_wide"] <= 0.1001).mean("mu_wide")
@@ -154,13 +128,7 @@ def _(wide: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.claim(
-    "fig08-around-pi",
-    Source("3.3", "Fig. 8"),
-    "At mu = 100 s/m the top nutates around theta = pi (the axis goes round that pole in most nutations).",
-    needs=("run-mu-100",),
-    figure="fig08",
-)
+@CHAPTER.examines("fig08-around-pi", "run-mu-100")
 def _(run: xr.Dataset) -> Finding:
     (theirs, _), (ours, last) = (_round_the_pole(run, suffix) for suffix in ("_listing", ""))
     late = run["theta"].sel(time=slice(last, None))
@@ -191,13 +159,7 @@ def _round_the_pole(run: xr.Dataset, suffix: str) -> tuple[float, float]:
     return float(round_it.mean()), float(times[round_it][-1])
 
 
-@CHAPTER.claim(
-    "fig08-rapid",
-    Source("3.3", "Fig. 8"),
-    "At mu = 100 s/m the nutation around pi is rapid (a nutation takes less than a plot of 20 s can show).",
-    needs=("run-mu-100",),
-    figure="fig08",
-)
+@CHAPTER.examines("fig08-rapid", "run-mu-100")
 def _(run: xr.Dataset) -> Finding:
     theirs, ours = (float(np.median(np.diff(_nearest_to_pi(run, suffix)[0]))) for suffix in ("_listing", ""))
     shown = PLOTTED.value * float(run["time"][-1])
@@ -208,15 +170,7 @@ def _(run: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.claim(
-    "fig08-settles",
-    Source("3.3", "Fig. 8"),
-    "At mu = 100 s/m the top finally stops nutating (swing of the tilt in the last second).",
-    "0 rad",
-    tolerance=ARRIVED,
-    needs=("settling-mu-100",),
-    figure="fig08",
-)
+@CHAPTER.examines("fig08-settles", "settling-mu-100", tolerance=ARRIVED)
 def _(later: xr.Dataset) -> Finding:
     swing = later["swing"]
     return Finding.unlisted(
@@ -226,56 +180,27 @@ def _(later: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.claim(
-    "fig08-block",
-    Source("3.3", "Fig. 8"),
-    "At mu = 100 s/m a block started with 1 m/s travels only 0.001 m.",
-    "0.001 m",
-    needs=("block",),
-    figure="fig08",
-)
+@CHAPTER.examines("fig08-block", "block")
 def _(block: xr.Dataset) -> Finding:
     distance = float(block["distance"])
     return Finding.unlisted(distance, f"It comes to rest after {1e3 * distance:.3f} mm.")
 
 
-def _unit(
-    name: str, source: Source, text: str, power: str, quantity: str, units: tuple[str, str], right: str = ""
-) -> None:
-    """A power of a quantity in a unit; `units` are the right one, as it is told, and the other."""
+_LENGTH: dict[str, Any] = {"tolerance": WHOLE, "quantity": "length", "others": "centimetres", "wrong": "m/s"}
+_TIME: dict[str, Any] = {"tolerance": WHOLE, "quantity": "time", "others": "tenths", "wrong": "m s^2"}
 
-    @CHAPTER.claim(
-        name,
-        source,
-        f"{text} (the value is the power of {quantity} in it).",
-        power,
-        tolerance=WHOLE,
-        needs=("units",),
-        right=right,
+
+@CHAPTER.examines("eq-2.7-mu-unit", "units", **_LENGTH, correct="s/m")
+@CHAPTER.examines("table-1-mu-unit", "units", **_LENGTH, correct="s/m, which section 2.2 has right,")
+@CHAPTER.examines("table-1-g-unit", "units", **_TIME, correct="m s^-2")
+def _(check: xr.Dataset, *, quantity: str, others: str, wrong: str, correct: str) -> Finding:
+    misses = abs(check[f"theta_in_{others}"] - check["theta"])
+    k = int(np.argmin(misses.values))
+    found = float(misses[f"power_of_{quantity}"][k])
+    return Finding(
+        found,
+        found,
+        f"A launch computed in other units of {quantity} must give the same tilt. Converted as "
+        f"{correct} it differs by {misses[k]:.1e} rad after 2 s, as {wrong} by "
+        f"{misses[1 - k]:.1e} rad." + (f" {TRANSCRIBED}" if quantity == "time" else ""),
     )
-    def _(check: xr.Dataset) -> Finding:
-        others = {"length": "centimetres", "time": "tenths"}[quantity]
-        misses = abs(check[f"theta_in_{others}"] - check["theta"])
-        k = int(np.argmin(misses.values))
-        found = float(misses[f"power_of_{quantity}"][k])
-        return Finding(
-            found,
-            found,
-            f"A launch computed in other units of {quantity} must give the same tilt. Converted as "
-            f"{units[0]} it differs by {misses[k]:.1e} rad after 2 s, as {units[1]} by "
-            f"{misses[1 - k]:.1e} rad." + (f" {TRANSCRIBED}" if quantity == "time" else ""),
-        )
-
-
-_TABLE_1 = Source("3", "Table 1")
-_unit(
-    "eq-2.7-mu-unit", Source("2.2", equation="(2.7)"), "mu has the dimension of s/m", "-1", "length",
-    ("s/m", "m/s"),
-)  # fmt: skip
-_unit(
-    "table-1-mu-unit", _TABLE_1, "Table 1: the unit of mu is m/s", "1", "length",
-    ("s/m, which section 2.2 has right,", "m/s"), "s/m, as in section 2.2",
-)  # fmt: skip
-_unit(
-    "table-1-g-unit", _TABLE_1, "Table 1: the unit of g is m s^2", "2", "time", ("m s^-2", "m s^2"), "m s^-2"
-)

@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from tippetop.report.claim import Chapter, Finding, Source, listed
+from tippetop.report.claim import Chapter, Finding, listed
 from tippetop.report.experiments.flights import MU
 from tippetop.report.experiments.runs import likely_end
 from tippetop.report.quoted import END_OF_FIG_5, ROUGH_FRICTION
@@ -12,13 +12,7 @@ from tippetop.report.tolerance import PLOTTED, ROUNDING, TRANSCRIBED, Tolerance
 CHAPTER = Chapter()
 
 
-@CHAPTER.claim(
-    "appendix-b-order",
-    Source("Appendix B", equation="(B.1)"),
-    "The method has an accuracy of order 5 in a single step (order of its error in the length of the step).",
-    "5",
-    figure="order",
-)
+@CHAPTER.examines("appendix-b-order")
 def _(order: xr.Dataset) -> Finding:
     return Finding.unlisted(
         float(order["order_rk4_in_a_step"]),
@@ -28,14 +22,7 @@ def _(order: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.claim(
-    "eq-b.1",
-    Source("Appendix B", equation="(B.1)"),
-    "The last stage of (B.1) is f(Y4, t_n) (order of such a step on an equation that depends on time).",
-    "5",
-    figure="order",
-    right="f(Y4, t_n + dt)",
-)
+@CHAPTER.examines("eq-b.1")
 def _(order: xr.Dataset) -> Finding:
     return Finding.unlisted(
         float(order["order_printed_in_a_step"]),
@@ -48,14 +35,7 @@ def _(order: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.claim(
-    "section-3-method",
-    Source("3"),
-    "The results are by ode45, which is a 4-order Runge-Kutta method in a manner of speaking (order of the "
-    "formula that it measures its error by).",
-    "4",
-    figure="order",
-)
+@CHAPTER.examines("section-3-method")
 def _(data: xr.Dataset) -> Finding:
     companion = float(data["order_companion_in_all"])
     return Finding(
@@ -67,15 +47,16 @@ def _(data: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.claim(
+@CHAPTER.examines(
     "section-3-reliable",
-    Source("3"),
-    "The simulation is reliable (largest difference from the converged value of what is read off it, as a "
-    "part of what its plots span).",
-    "0",
+    "run-155",
+    "run-50",
+    "run-10",
+    "run-90",
+    "run-120",
+    "run-175",
+    "run-50-windows",
     tolerance=PLOTTED,
-    needs=("run-155", "run-50", "run-10", "run-90", "run-120", "run-175", "run-50-windows"),
-    figure="fig04",
 )
 def _(*data: xr.Dataset) -> Finding:
     *runs, fast, windows = data
@@ -110,13 +91,7 @@ def _name(run: xr.Dataset) -> str:
     return str(run.attrs["experiment"])
 
 
-@CHAPTER.claim(
-    "section-5-stiff",
-    Source("5"),
-    "There are cases in which the equations are stiff: ode45 is slow, and a method for stiff problems is "
-    "not.",
-    figure="stiffness",
-)
+@CHAPTER.examines("section-5-stiff")
 def _(counts: xr.Dataset) -> Finding:
     return Finding.unlisted(
         bool((counts["stiffness"] > _STIFF).any()),
@@ -136,13 +111,7 @@ def _ratios(counts: xr.Dataset) -> str:
     return listed("{:g} rad/s, {:.5g} rad, {:g} s/m: {:.1f}", *columns, between="; ")
 
 
-@CHAPTER.claim(
-    "section-5-cause",
-    Source("5"),
-    "In some bad initial condition the equations are stiff: the launch decides.",
-    figure="stiffness",
-    right="no launch makes the difference",
-)
+@CHAPTER.examines("section-5-cause")
 def _(counts: xr.Dataset) -> Finding:
     friction, stiff = counts["launch_mu"].values, counts["stiffness"].values > _STIFF
     decided = [mu for mu in np.unique(friction) if 0 < stiff[friction == mu].sum() < (friction == mu).sum()]
@@ -157,14 +126,9 @@ def _(counts: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.claim(
+@CHAPTER.examines(
     "section-5-ode15s",
-    Source("5"),
-    f"Where friction is huge, mu = {ROUGH_FRICTION:g} s/m, ode15s gives a reliable solution (largest "
-    "difference of its tilt from the converged one at the end).",
-    "0 rad",
     tolerance=Tolerance(PLOTTED.value * np.pi, "1 % of pi: what a plot can show, as where ode45 is judged"),
-    figure="stiffness",
 )
 def _(counts: xr.Dataset) -> Finding:
     rough = counts.isel(launch=counts["launch_mu"].values == ROUGH_FRICTION)
@@ -180,15 +144,8 @@ def _(counts: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.claim(
-    "listing-theta-mod-pi",
-    Source("Appendix A.1, function tip, line 22"),
-    "Replacing theta by theta modulo pi leaves the equations as they are (jump of the rate of v_y at the "
-    "pole, as a part of that rate).",
-    "0",
-    tolerance=ROUNDING,
-    implied=True,
-    needs=("theta-mod-pi", "run-mu-100", "run-155", "run-175"),
+@CHAPTER.examines(
+    "listing-theta-mod-pi", "theta-mod-pi", "run-mu-100", "run-155", "run-175", tolerance=ROUNDING
 )
 def _(check: xr.Dataset, *runs: xr.Dataset) -> Finding:
     size = float(check["size"])

@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from tippetop.report.claim import Chapter, Finding, Source, listed
+from tippetop.report.claim import Chapter, Finding, listed
 from tippetop.report.tolerance import ROUNDING, Tolerance
 
 CHAPTER = Chapter()
@@ -12,49 +12,28 @@ _READ = Tolerance(
     0.13, "1 % of the 8 s of the plot that the time is read off, and half a unit of the last printed digit"
 )
 
-_LEINE = Source("Real tops: Leine and Glocker, Eur. J. Mech. A/Solids 22 (2003) 193")
-
 _THIN = Tolerance(0.02, "2 %: the disk of the toy has a thickness, and the formula is for one that has none")
 
 
-def _leine(event: str, text: str, printed: str) -> None:
-    """When something happens to Leine and Glocker's top, by the pressure in the patch."""
-
-    @CHAPTER.claim(
-        f"real-leine-{event}",
-        _LEINE,
-        text.format(printed),
-        f"{printed} s",
-        tolerance=_READ,
-        figure="real-leine",
+@CHAPTER.examines("real-leine-stem", tolerance=_READ, event="stem", printed=1.5)
+@CHAPTER.examines("real-leine-back", tolerance=_READ, event="back", printed=4.5)
+@CHAPTER.examines("real-leine-both", tolerance=_READ, event="both", printed=4.6)
+@CHAPTER.examines("real-leine-apart", tolerance=_READ, event="apart", printed=5.4)
+def _(data: xr.Dataset, *, event: str, printed: float) -> Finding:
+    times = data[event]
+    pressures, misses = data["pressure"].values, abs(times - printed)
+    failing = [str(name) for name in pressures[(misses > _READ.value).values]]
+    return Finding.unlisted(
+        float(times[0]),
+        "The paper does not say which pressure in the patch its figure is for. Judged is the ellipsoidal "
+        "limit surface, the law of a code of its authors; it misses by "
+        f"{float(misses[0]):.3f} s. By the pressure: {listed('{:.4f} s ({})', times.values, pressures)}. "
+        + (f"Too far off would be: {', '.join(failing)}. " if failing else "")
+        + f"Energy and work balance to {float(data['energy_error'].max()):.0e} of the energy.",
     )
-    def _(data: xr.Dataset) -> Finding:
-        times = data[event]
-        pressures, misses = data["pressure"].values, abs(times - float(printed))
-        failing = [str(name) for name in pressures[(misses > _READ.value).values]]
-        return Finding.unlisted(
-            float(times[0]),
-            "The paper does not say which pressure in the patch its figure is for. Judged is the ellipsoidal "
-            "limit surface, the law of a code of its authors; it misses by "
-            f"{float(misses[0]):.3f} s. By the pressure: {listed('{:.4f} s ({})', times.values, pressures)}. "
-            + (f"Too far off would be: {', '.join(failing)}. " if failing else "")
-            + f"Energy and work balance to {float(data['energy_error'].max()):.0e} of the energy.",
-        )
 
 
-_leine("stem", "The stem of Leine and Glocker's top touches the table after {} s.", "1.5")
-_leine("back", "It falls back on its sphere after {} s.", "4.5")
-_leine("both", "Sphere and stem both touch from {} s on.", "4.6")
-_leine("apart", "Sphere and stem both touch until {} s.", "5.4")
-
-
-@CHAPTER.claim(
-    "real-leine-stepping",
-    Source("Real tops: J. J. Moreau, Unilateral contact and dry friction in finite freedom dynamics (1988)"),
-    "Time-stepping goes through impacts and rocking without finding their instants: what it finds of Leine "
-    "and Glocker's top goes to what happens as its step becomes small.",
-    figure="real-stepping",
-)
+@CHAPTER.examines("real-leine-stepping")
 def _(data: xr.Dataset) -> Finding:
     events = ("stem", "back", "both", "apart")
     off = {name: data[name] - data[f"exact_{name}"] for name in (*events, "final_theta")}
@@ -75,13 +54,7 @@ def _(data: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.claim(
-    "real-stem-test",
-    Source("Real tops: Rauch-Wojciechowski, Regular and Chaotic Dynamics 10 (2005) 333"),
-    "A top stands on its stem where Jellett's integral about the tip is large enough for a spin upright to "
-    "be stable.",
-    figure="real-stems",
-)
+@CHAPTER.examines("real-stem-test")
 def _(data: xr.Dataset) -> Finding:
     stands = (data["final_theta"] > np.pi - data.attrs["upright_rad"]).values
     enough = (data["jellett"] > data["jellett_needed"]).values
@@ -96,12 +69,7 @@ def _(data: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.claim(
-    "real-egg-rises",
-    Source("Real tops: Moffatt and Shimomura, Nature 416 (2002) 385"),
-    "A hard-boiled egg that is spun fast enough on its side rises until it stands on its end.",
-    figure="real-egg",
-)
+@CHAPTER.examines("real-egg-rises")
 def _(data: xr.Dataset) -> Finding:
     final = data["theta"].isel(time=-1)
     tilts = listed("{:g} rad/s: {:.3f}", data["rate"].values, final.values, between="; ")
@@ -112,27 +80,14 @@ def _(data: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.claim(
-    "real-egg-jumps",
-    Source("Real tops: Mitsui, Aihara, Terayama, Kobayashi and Shimomura, Proc. R. Soc. A 462 (2006) 2897"),
-    "A spinning egg may leave the table while it rises.",
-    figure="real-egg",
-)
+@CHAPTER.examines("real-egg-jumps")
 def _(data: xr.Dataset) -> Finding:
     lifts = data["lift_off"].dropna("rate")
     times = listed("{:.3f} s at {:g} rad/s", lifts.values, lifts["rate"].values)
     return Finding.unlisted(bool(len(lifts)), f"First lift-offs: {times or 'none'}.")
 
 
-@CHAPTER.claim(
-    "real-disk-rate",
-    Source("Real tops: Moffatt, Nature 404 (2000) 833"),
-    "The contact point of a disk goes round at the rate sqrt(4 g / (R sin(theta))) (least and largest ratio "
-    "to it in runs, the farther from 1).",
-    "1",
-    tolerance=_THIN,
-    figure="real-rolling",
-)
+@CHAPTER.examines("real-disk-rate", tolerance=_THIN)
 def _(data: xr.Dataset) -> Finding:
     near = data["disk_tilt"].values < 0.35
     thin = 4 * data.attrs["gravity"] / (data.attrs["disk_radius_m"] * np.sin(data["disk_tilt"].values))
@@ -145,14 +100,7 @@ def _(data: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.claim(
-    "real-hurricane-balls",
-    Source("Real tops: Jackson, Mertens and Pearson, Am. J. Phys. 83 (2015) 959"),
-    "Hurricane balls lean at cos(theta) = 2/5 - g / (Omega^2 R) (its residual in runs, largest).",
-    "0",
-    tolerance=ROUNDING,
-    figure="real-rolling",
-)
+@CHAPTER.examines("real-hurricane-balls", tolerance=ROUNDING)
 def _(data: xr.Dataset) -> Finding:
     rate, tilt = data["balls_measured"].values, data["balls_tilt"].values
     off = np.cos(tilt) - 2 / 5 + data.attrs["gravity"] / (rate**2 * data.attrs["ball_radius_m"])

@@ -1,6 +1,6 @@
-"""Everything the report claims that can be put to numbers."""
+"""Everything the report claims that can be put to numbers: told in `claims.toml`, examined here."""
 
-from tippetop.report.claim import Claim
+from tippetop.report.claim import Chapter, Claim, Source
 from tippetop.report.claims import (
     abnormal,
     dry,
@@ -15,21 +15,18 @@ from tippetop.report.claims import (
     steady,
     why,
 )
+from tippetop.report.told import told
 
-_CHAPTERS = (
-    launches,
-    end_state,
-    spins,
-    friction,
-    flight,
-    abnormal,
-    equations,
-    steady,
-    methods,
-    why,
-    dry,
-    real,
-)
+EXAMINERS = Chapter()
+"""How the claims are examined, by their names."""
+for module in (
+    *(launches, end_state, spins, friction, flight, abnormal),
+    *(equations, steady, methods, why, dry, real),
+):
+    EXAMINERS |= module.CHAPTER
 
-CLAIMS: dict[str, Claim] = {claim.id: claim for module in _CHAPTERS for claim in module.CHAPTER.claims}
+CLAIMS: dict[str, Claim] = {
+    name: Claim(name, EXAMINERS[name], Source(**fields.pop("source")), **fields)
+    for name, fields in told("claims").items()
+}
 """Every claim by its name, in the order of the report."""

@@ -6,22 +6,14 @@ import numpy as np
 import xarray as xr
 
 from tippetop.presets import REPORT
-from tippetop.report.claim import Chapter, Finding, Source, listed
+from tippetop.report.claim import Chapter, Finding, listed
 from tippetop.report.quoted import END_OF_FIG_5
 from tippetop.report.tolerance import STEADY, TRANSCRIBED, Tolerance, rounded
 
 CHAPTER = Chapter()
 
 
-@CHAPTER.claim(
-    "sec2-no-slip",
-    Source("2.3"),
-    "In the end v_x, v_y and their rates must vanish (largest of them, over R omega3 and R omega3 phi').",
-    "0",
-    tolerance=STEADY,
-    needs=("steady-bodies", "run-155", "run-50"),
-    figure="fig05",
-)
+@CHAPTER.examines("sec2-no-slip", "steady-bodies", "run-155", "run-50", tolerance=STEADY)
 def _(steady: xr.Dataset, *runs: xr.Dataset) -> Finding:
     left = np.maximum(steady["slip"], steady["slip_rate"])
     theirs = max(float(run["end_slip_listing"] / run["largest_slip_listing"]) for run in runs)
@@ -34,16 +26,7 @@ def _(steady: xr.Dataset, *runs: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.claim(
-    "eq-2.16",
-    Source("2.3", equation="(2.16)"),
-    "In the steady state the first, second and fourth lines of (2.16) vanish (what is left, as a part of "
-    "their terms).",
-    "0",
-    tolerance=STEADY,
-    needs=("steady-bodies",),
-    figure="fig05",
-)
+@CHAPTER.examines("eq-2.16", "steady-bodies", tolerance=STEADY)
 def _(steady: xr.Dataset) -> Finding:
     left = np.maximum(steady["residual_216"].values, steady["phi_ddot"].values)
     return Finding.unlisted(
@@ -66,17 +49,13 @@ def _rounding_of_217(theta: float, phi_dot: float, omega3: float) -> float:
     return 0.0005 * (abs(phi_dot * math.sin(theta)) + abs(math.cos(theta) - _ALPHA) + 1.0)
 
 
-@CHAPTER.claim(
+@CHAPTER.examines(
     "eq-2.17",
-    Source("3.1", "Fig. 5", "(2.17)"),
-    "The end state of Fig. 5 satisfies omega3 = phi' (cos theta - alpha) (the value is the difference).",
-    "0 rad/s",
+    "run-50",
     tolerance=Tolerance(
         _rounding_of_217(**END_OF_FIG_5),
         "what rounding the three quoted numbers to their last digit makes of it",
     ),
-    needs=("run-50",),
-    figure="fig05",
 )
 def _(run: xr.Dataset) -> Finding:
     listed, ours = (
@@ -93,15 +72,7 @@ def _(run: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.claim(
-    "eq-2.17-range",
-    Source("3.3", "summary, point 2", "(2.17)"),
-    "Between omega_c1 and omega_c2 the final angular velocity satisfies (2.17) (what is left of it, as a "
-    "part of phi').",
-    "0",
-    tolerance=STEADY,
-    figure="why-bifurcation",
-)
+@CHAPTER.examines("eq-2.17-range", tolerance=STEADY)
 def _(states: xr.Dataset) -> Finding:
     low, high = (float(limit) for limit in states["limits"])
     inside = states.isel(run=((states["run_spin"] > low) & (states["run_spin"] < high)).values)
@@ -114,17 +85,7 @@ def _(states: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.claim(
-    "eq-2.17-exception",
-    Source("2.3", equation="(2.17)"),
-    "In a steady state (2.17) holds if theta is not pi (what is left of it for a top that spins upright, as "
-    "a part of omega3).",
-    "0",
-    tolerance=STEADY,
-    needs=("run-10",),
-    figure="fig13",
-    right="if theta is neither 0 nor pi",
-)
+@CHAPTER.examines("eq-2.17-exception", "run-10", tolerance=STEADY)
 def _(run: xr.Dataset) -> Finding:
     late = run.sel(time=slice(15.0, None))
     left = late["omega3"] - late["phi_dot"] * (np.cos(late["theta"]) - _ALPHA)
@@ -137,12 +98,7 @@ def _(run: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.claim(
-    "eq-2.14-no-nutation",
-    Source("2.3", equation="(2.14)"),
-    "Without slip (2.14) leads to theta' = 0.",
-    needs=("why-groups", "steady-bodies"),
-)
+@CHAPTER.examines("eq-2.14-no-nutation", "why-groups", "steady-bodies")
 def _(chart: xr.Dataset, steady: xr.Dataset) -> Finding:
     # The bracket over I3 is alpha + (gamma - 1) cos(theta): it has a zero where |gamma - 1| reaches alpha.
     bracket = chart["top_alpha"] - abs(chart["top_gamma"] - 1.0)
@@ -156,30 +112,14 @@ def _(chart: xr.Dataset, steady: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.claim(
-    "eq-2.17-any-body",
-    Source("2.3", equation="(2.17)"),
-    "(2.17) holds whatever the mass and the moments of inertia (largest relative difference).",
-    "0",
-    tolerance=STEADY,
-    needs=("steady-bodies",),
-)
+@CHAPTER.examines("eq-2.17-any-body", "steady-bodies", tolerance=STEADY)
 def _(steady: xr.Dataset) -> Finding:
     left = abs(steady["residual_217"]) / abs(steady["phi_dot"])
     each = listed("{} {}", steady["body"].values, map(rounded, left.values))
     return Finding.unlisted(float(left.max()), f"Differences over phi': {each}.")
 
 
-@CHAPTER.claim(
-    "eq-2.16-third",
-    Source("2.3", equation="(2.16)"),
-    "The third line of (2.16) makes the rate of an angle phi_3 zero in the steady state (the slower of "
-    "precession and rotation about the axis).",
-    "0 rad/s",
-    needs=("steady-bodies",),
-    figure="fig05",
-    right="omega3' = 0",
-)
+@CHAPTER.examines("eq-2.16-third", "steady-bodies")
 def _(steady: xr.Dataset) -> Finding:
     precession, spin = steady["phi_dot"], steady["omega3"]
     rotation = spin - precession * np.cos(steady["theta"])

@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from tippetop.report.claim import Chapter, Finding, Source, listed
+from tippetop.report.claim import Chapter, Finding, listed
 from tippetop.report.experiments.theory import QUOTED_SPINS
 from tippetop.report.quoted import ABNORMAL_SPIN, CRITICAL_SPINS
 from tippetop.report.readings import SETTLED
@@ -15,15 +15,7 @@ _NEAR_LIMIT = 1e-3
 """Relative distance from the limit that counts as there: the tolerance of the report's own method."""
 
 
-@CHAPTER.claim(
-    "why-final-tilt",
-    Source("2.3"),
-    "After a long time the top spins steadily and loses no energy (largest difference between the tilt "
-    "of a long run and the steady state of the same lambda).",
-    "0 rad",
-    tolerance=Tolerance(1e-6, "far below what the report's figures can show"),
-    figure="why-bifurcation",
-)
+@CHAPTER.examines("why-final-tilt", tolerance=Tolerance(1e-6, "far below what the report's figures can show"))
 def _(states: xr.Dataset) -> Finding:
     quoted = states.isel(run=[int(np.argmin(abs(states["run_spin"].values - s))) for s in QUOTED_SPINS])
     spins, tilts, ends = (quoted[f"run_{name}"].values for name in ("spin", "predicted", "end"))
@@ -35,14 +27,7 @@ def _(states: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.claim(
-    "why-regimes",
-    Source("3.3", "summary, points 1 to 3"),
-    "Below omega_c1 the top ends upright, between omega_c1 and omega_c2 at a constant tilt, above "
-    "omega_c2 inverted.",
-    needs=("why-bifurcation", "why-groups", "final-tilt-listing"),
-    figure="why-bifurcation",
-)
+@CHAPTER.examines("why-regimes", "why-bifurcation", "why-groups", "final-tilt-listing")
 def _(states: xr.Dataset, chart: xr.Dataset, listing: xr.Dataset) -> Finding:
     upright, inverted = (float(limit) for limit in states["limits"])
     spin, end = states["run_spin"].values, states["run_end"].values
@@ -72,13 +57,7 @@ def _(states: xr.Dataset, chart: xr.Dataset, listing: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.claim(
-    "why-flip-law",
-    Source("5"),
-    "A more fundamental rule guarantees that the flip time goes as 1/mu.",
-    needs=("why-exponent",),
-    figure="why-collapse",
-)
+@CHAPTER.examines("why-flip-law", "why-exponent")
 def _(times: xr.Dataset) -> Finding:
     misses = _law_misses(times)
     return Finding.unlisted(
@@ -92,14 +71,11 @@ def _(times: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.claim(
+@CHAPTER.examines(
     "section-5-small-mu",
-    Source("5"),
-    "The dependence t ~ mu^-1 is true even for mu = 0.01 s/m (local exponent there).",
-    "-1",
+    "why-exponent",
+    "flip-times-wide",
     tolerance=Tolerance(0.005, "the precision of the exponent quoted for Fig. 7, half a per cent"),
-    needs=("why-exponent", "flip-times-wide"),
-    figure="why-exponent",
 )
 def _(times: xr.Dataset, wide: xr.Dataset) -> Finding:
     some = times.sel(mu_flip=[0.1, 0.3, 1.0, 3.0], method="nearest")
@@ -114,14 +90,7 @@ def _(times: xr.Dataset, wide: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.claim(
-    "why-only-simulation",
-    Source("1"),
-    "The only possible approach to the dynamics is numerical simulation.",
-    needs=("why-critical", "why-bifurcation", "why-exponent"),
-    figure="why-bifurcation",
-    right="critical spins, final tilts and the law of weak friction follow without one",
-)
+@CHAPTER.examines("why-only-simulation", "why-critical", "why-bifurcation", "why-exponent")
 def _(theory: xr.Dataset, states: xr.Dataset, times: xr.Dataset) -> Finding:
     tilt, law = _tilt_miss(states), max(_law_misses(times))
     known = _spectral_miss(theory) < _NEAR_LIMIT and tilt < SETTLED and law < _NEAR_LIMIT
