@@ -73,3 +73,19 @@ def test_a_top_on_a_small_patch_sticks_when_it_does():
     axis, momentum, slip = tuple(start[:3]), tuple(start[3:6]), [start[-2] * e for e in start[6:9]]
     run = DryRun(top, axis, momentum, velocity_of(axis, momentum, slip, top)).follow(1.5 * end[-1])
     assert run.times("stick") == pytest.approx([end[-1]], rel=1e-7)
+
+
+@pytest.mark.parametrize("law", [EllipsoidalLaw(0.4, 0.1), HertzDrillingLaw(0.4, 0.1)])
+def test_a_direction_is_at_rest_as_well_as_an_integrator_of_some_tolerance_tells(law):
+    top, start = slipping(law)
+    exact = closing_of(in_its_clock(top, start, 1.0), SLIP)
+    x, y, z = exact.direction
+    off = 3e-10 / math.hypot(x, z)
+    rough = exact._replace(direction=(x + off * z, y, z - off * x))
+    fine, coarse = make_integrator(), make_integrator(tolerance=1e-10)
+    assert arriving(rough, SLIP, top, fine) is None
+    found, known = arriving(rough, SLIP, top, coarse), arriving(exact, SLIP, top, fine)
+    assert found is not None
+    assert known is not None
+    assert found.left == pytest.approx(known.left, abs=1e-12)
+    assert found.at(0.0)[:6] == pytest.approx(known.at(0.0)[:6], abs=1e-12)

@@ -35,7 +35,7 @@ SETTLED = 1e-14
 
 AT_REST, UNSEEN = 1e-12, 1e-15
 """How far the direction may be from the series' at most, times the time that is left, in natural units; or
-times the speed, which is rounding of the state."""
+times the speed, which is rounding of the state. An integrator leaves it no nearer than its tolerance."""
 
 TURNING = 1.0
 """How far it may be, over that time, in any of the series: there is no hope beyond."""
@@ -96,6 +96,7 @@ def arriving(here: Closing, ending: Vanishing, top: Top, integrator: Integrator)
         return None
     left, now = -here.speed / along, (*here.axis, *here.momentum)
     end, way = plus(now, scaled(left, (*rates.axis, *rates.momentum))), here.direction
+    at_rest = max(AT_REST, getattr(integrator, "tolerance", 0.0))
     try:
         for _ in range(MOST):
             axis, momentum = (end[0], end[1], end[2]), (end[3], end[4], end[5])
@@ -112,7 +113,7 @@ def arriving(here: Closing, ending: Vanishing, top: Top, integrator: Integrator)
             if not (aside < TURNING * left or rounding):
                 return None
             if size(off) < SETTLED:
-                return found if (aside * left < AT_REST or rounding) and found.serves else None
+                return found if (aside * left < at_rest or rounding) and found.serves else None
             end = plus(end, off)
     except ArithmeticError:
         return None

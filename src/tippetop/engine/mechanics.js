@@ -2531,6 +2531,7 @@ function arriving(here, ending, top, integrator) {
   }
   let [left, now] = [py.div(py.neg(here.speed), along), [...here.axis, ...here.momentum]];
   let [end, way] = [plus(now, scaled(left, [...rates.axis, ...rates.momentum])), here.direction];
+  const at_rest = py.max(AT_REST, py.getattr(integrator, "tolerance", 0.0));
   try {
     for (let turn = 0; turn < MOST_of_arriving; turn += 1) {
       const [axis, momentum] = [[end[0], end[1], end[2]], [end[3], end[4], end[5]]];
@@ -2548,7 +2549,7 @@ function arriving(here, ending, top, integrator) {
         return null;
       }
       if (size(off) < SETTLED) {
-        return (py.mul(aside, left) < AT_REST || py.truth(rounding)) && py.truth(found.serves) ? found : null;
+        return (py.mul(aside, left) < at_rest || py.truth(rounding)) && py.truth(found.serves) ? found : null;
       }
       end = plus(end, off);
     }
