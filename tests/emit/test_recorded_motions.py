@@ -1,4 +1,4 @@
-"""What is printed of the mechanics computes what the mechanics does: in Python, JavaScript and LLVM's."""
+"""What is printed of the mechanics computes what the mechanics does: in JavaScript and in LLVM's code."""
 
 import json
 import math
@@ -14,8 +14,7 @@ from tippetop.emit import llvm
 from tippetop.emit.coefficients import NodeArithmetic, SeriesGraph
 from tippetop.emit.graph import NotRecordable
 from tippetop.emit.javascript import javascript_source
-from tippetop.emit.python import python_source
-from tippetop.emit.recording import Elementary, record
+from tippetop.emit.recording import record
 from tippetop.integrators import has_llvm
 from tippetop.mechanics.contensou_hertz import HertzLaw
 from tippetop.mechanics.euler import published_rates
@@ -57,39 +56,18 @@ def recorded(case):
     return record(everything(case.motion), case.motion.size, case.motion.parameters)
 
 
-class Machine:
-    """Functions as machines have them: the root of a negative number is no number."""
-
-    sin, cos, pow = math.sin, math.cos, math.pow
-
-    @staticmethod
-    def sqrt(x):
-        return math.sqrt(x) if x >= 0.0 else math.nan
-
-
-def compiled(source, name):
-    """The function of Python code."""
-    place = {"math": Machine}
-    exec(source, place)
-    return place[name]
-
-
-def by_python(function, rows, parameters, count):
-    found = []
-    for row in rows.tolist():
-        out = [math.nan] * count
-        try:
-            function(row, parameters, out)
-        except ArithmeticError:
-            out = [math.nan] * count
-        found.append(out)
-    return found
+def by_node(lines):
+    """What lines of JavaScript that fill `found` leave there."""
+    script = "\n".join(["const found = {};", *lines, "process.stdout.write(JSON.stringify(found));"])
+    done = subprocess.run([NODE, "-"], input=script, capture_output=True, text=True, timeout=60, check=False)
+    assert done.stderr == ""
+    return json.loads(done.stdout)
 
 
 @pytest.fixture(scope="module")
 def by_javascript():
     """What the JavaScript of every case makes of its points, by one run of Node."""
-    lines = ["const found = {};"]
+    lines = []
     for number, case in enumerate(CASES):
         count = case.motion.size + len(case.motion.guards)
         rows = json.dumps(states(case.motion, POINTS).tolist())
@@ -101,11 +79,7 @@ def by_javascript():
             "  return out.map(String);",
             "});",
         ]
-    lines.append("process.stdout.write(JSON.stringify(found));")
-    script = "\n".join(lines)
-    done = subprocess.run([NODE, "-"], input=script, capture_output=True, text=True, timeout=60, check=False)
-    assert done.stderr == ""
-    return json.loads(done.stdout)
+    return by_node(lines)
 
 
 @pytest.mark.parametrize("shape", SURFACES)
@@ -115,31 +89,36 @@ def test_printed_code_computes_what_the_mechanics_does(shape, by_javascript):
             continue
         rows, function = states(case.motion, POINTS), everything(case.motion)
         expected = by_floats(function, rows, case.parameters)
-        code = compiled(python_source(recorded(case), "code"), "code")
-        count = case.motion.size + len(case.motion.guards)
-        assert_same(by_python(code, rows, case.parameters, count), expected)
         assert_same([[float(text) for text in row] for row in by_javascript[case.name]], expected)
 
 
-def by_llvm(recorded, rows, parameters):
+def by_llvm(recorded, rows, parameters, abreast=8):
     """What LLVM's code makes of rows of states, each a launch."""
-    from tippetop.integrators.machine_code import batch_function  # noqa: PLC0415 - where there is llvmlite
+    from tippetop.integrators.machine_code import machine_code  # noqa: PLC0415 - where there is llvmlite
 
+    function = machine_code({"f": recorded}, abreast)["f"]
     y = np.ascontiguousarray(np.resize(rows, (8 * math.ceil(len(rows) / 8), rows.shape[1])).T)
     given = np.repeat(np.array(parameters, dtype=float)[:, None], y.shape[1], axis=1)
     out = np.full((len(recorded.outputs), y.shape[1]), np.nan)
-    batch_function(recorded)(y, given, out)
+    if abreast > 1:
+        function(y, given, out)
+    else:
+        for column in range(y.shape[1]):
+            alone = np.full(len(out), np.nan)
+            function(y[:, column].copy(), given[:, column].copy(), alone)
+            out[:, column] = alone
     return out[:, : len(rows)].T
 
 
 @pytest.mark.skipif(not has_llvm(), reason="llvmlite is not installed")
 @pytest.mark.parametrize("shape", SURFACES)
-def test_code_for_many_launches_computes_what_the_mechanics_does(shape, monkeypatch):
+@pytest.mark.parametrize("abreast", [1, llvm.ABREAST])
+def test_machine_code_computes_what_the_mechanics_does(shape, abreast, monkeypatch):
     monkeypatch.setattr(llvm, "ROUNDING", "")  # as Python rounds, so that what cancels is the same too
     for case in CASES:
         if case.name.startswith(shape):
             rows, function = states(case.motion, POINTS), everything(case.motion)
-            found = by_llvm(recorded(case), rows, case.parameters)
+            found = by_llvm(recorded(case), rows, case.parameters, abreast)
             assert_same(found.tolist(), by_floats(function, rows, case.parameters))
 
 
@@ -184,16 +163,30 @@ def test_a_choice_that_depends_on_numbers_is_refused():
     assert record(lambda y, p: (1.0 * (y[0] > 0.0),), 1, 0).operations == 1
 
 
+class Elementary:
+    """Elementary functions of nodes."""
+
+    @staticmethod
+    def sin(x):
+        return x.graph.node("sin", (x,))
+
+    @staticmethod
+    def cos(x):
+        return x.graph.node("cos", (x,))
+
+
+@pytest.mark.skipif(not has_llvm(), reason="llvmlite is not installed")
 def test_elementary_functions_and_selections_are_printed():
     def function(y, p):
         rates = published_rates(y, REPORT, Elementary())
         return (*rates, y[0].graph.select(y[0] < y[1], y[0], abs(-y[1])), y[2] ** 1.3, y[2] ** -2.25)
 
     y = [0.3, 1.2, 0.7, 2.0, 90.0, 0.01, -0.02]
-    out = [0.0] * 10
-    compiled(python_source(record(function, 7, 0), "f"), "f")(y, [], out)
     expected = (*published_rates(y, REPORT, math), 0.3, 0.7**1.3, 0.7**-2.25)
-    np.testing.assert_allclose(out, expected, rtol=1e-13)
+    taken = record(function, 7, 0)
+    code = [javascript_source(taken, "f"), "found.out = [];", f"f({json.dumps(y)}, [], found.out);"]
+    for out in (by_node(code)["out"], by_llvm(taken, np.array([y]), ())[0]):
+        np.testing.assert_allclose(out, expected, rtol=1e-13)
 
 
 @pytest.mark.parametrize(
@@ -214,6 +207,5 @@ def test_elementary_functions_and_selections_are_printed():
 def test_nothing_is_computed_twice_or_for_nothing(function, operations):
     found = record(lambda y, p: (function(y[0]),), 1, 0)
     assert found.operations == operations
-    out = [0.0]
-    compiled(python_source(found, "f"), "f")([0.7], [], out)
-    assert out[0] == pytest.approx(function(0.7), abs=1e-15)
+    if has_llvm():
+        assert by_llvm(found, np.array([[0.7]]), ())[0, 0] == pytest.approx(function(0.7), abs=1e-15)

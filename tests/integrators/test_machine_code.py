@@ -21,19 +21,19 @@ def assert_computes(function):
 
 @pytest.fixture
 def recorded():
-    return record(lambda y, p: (y[0] * p[0] - 1.0,), 1, 1)
+    return {"f": record(lambda y, p: (y[0] * p[0] - 1.0,), 1, 1)}
 
 
 def test_code_is_compiled_once_and_again_where_it_is_damaged(recorded, tmp_path, monkeypatch):
     monkeypatch.setenv(VARIABLE, str(tmp_path))
-    assert_computes(machine_code.batch_function(recorded))
+    assert_computes(machine_code.machine_code(recorded, 8)["f"])
     (kept,) = tmp_path.glob(f"*/{machine_code.OBJECT}")
     content = kept.read_bytes()
     with monkeypatch.context() as without:
         without.setattr(machine_code, "_compiled", None)
-        assert_computes(machine_code.batch_function(recorded))
+        assert_computes(machine_code.machine_code(recorded, 8)["f"])
     kept.write_bytes(content[:100] + b"damaged" + content[107:])
-    assert_computes(machine_code.batch_function(recorded))
+    assert_computes(machine_code.machine_code(recorded, 8)["f"])
     assert kept.read_bytes() == content
 
 
@@ -41,4 +41,4 @@ def test_code_is_compiled_once_and_again_where_it_is_damaged(recorded, tmp_path,
 def test_without_a_cache_it_is_compiled_all_the_same(recorded, place, tmp_path, monkeypatch):
     (tmp_path / "file").write_text("no folder")
     monkeypatch.setenv(VARIABLE, place if place == "off" else str(tmp_path / place))
-    assert_computes(machine_code.batch_function(recorded))
+    assert_computes(machine_code.machine_code(recorded, 8)["f"])

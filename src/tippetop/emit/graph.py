@@ -9,12 +9,11 @@ become products and roots.
 from dataclasses import dataclass, field
 from typing import Any
 
-STATE, PARAMETER, CONSTANT = "state", "parameter", "constant"
-NEGATIVE, SUM, DIFFERENCE, PRODUCT, QUOTIENT = "negative", "sum", "difference", "product", "quotient"
-ROOT, POWER, SIZE, LESS, SELECT = "root", "power", "size", "less", "select"
-
-FUNCTIONS = {"sin": 1, "cos": 1, "atan2": 2}
-"""Elementary functions by name, and how many arguments they take."""
+STATE, PARAMETER, CONSTANT = "y", "p", "constant"
+SUM, DIFFERENCE, PRODUCT, QUOTIENT = "+", "-", "*", "/"
+NEGATIVE, LESS, SELECT = "negative", "less", "select"
+SIZE, ROOT, POWER, SINE, COSINE = "abs", "sqrt", "pow", "sin", "cos"
+"""What makes nodes."""
 
 LARGEST_POWER = 16
 """Whole powers up to this are products."""
@@ -188,10 +187,6 @@ class Graph:
             if whole > 0:
                 square = square * square
         return found
-
-    def call(self, name: str, *arguments: Any) -> Node:
-        """An elementary function of nodes and numbers by name, such as "sin"."""
-        return self.node(name, tuple([self.taken(argument) for argument in arguments]))
 
     def select(self, condition: Any, a: Any, b: Any) -> Any:
         """The first where a condition is not 0, else the second."""

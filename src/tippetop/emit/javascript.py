@@ -1,23 +1,28 @@
 """Recorded functions as JavaScript."""
 
-from tippetop.emit.code import Language, Spelling, common_spellings, written
-from tippetop.emit.graph import LESS, SELECT, SIZE
+from tippetop.emit.graph import CONSTANT, LESS, NEGATIVE, PARAMETER, SELECT, STATE, Node
 from tippetop.emit.recording import Recorded
-
-JAVASCRIPT = Language(
-    {
-        SIZE: Spelling(("Math.abs(", ")")),
-        LESS: Spelling(("(", " < ", " ? 1 : 0)")),
-        SELECT: Spelling(("(", " !== 0 ? ", " : ", ")")),
-    }
-    | common_spellings("Math"),
-    head=("function ", "(y, p, out) {"),
-    foot="}\n",
-    local="const ",
-    end=";",
-)
 
 
 def javascript_source(recorded: Recorded, name: str) -> str:
-    """A JavaScript function `name(y, p, out)`."""
-    return written(recorded, name, JAVASCRIPT)
+    """A JavaScript function `name(y, p, out)` that puts what was recorded of y and p into out."""
+    lines = [f"  const t{node.place} = {_written(node)};" for node in recorded.nodes]
+    lines += [f"  out[{number}] = t{node.place};" for number, node in enumerate(recorded.outputs)]
+    return "\n".join([f"function {name}(y, p, out) {{", *lines, "}"])
+
+
+def _written(node: Node) -> str:
+    names = [f"t{operand.place}" for operand in node.operands]
+    if node.name == CONSTANT:
+        return repr(node.value)
+    if node.name in (STATE, PARAMETER):
+        return f"{node.name}[{node.value}]"
+    if node.name in ("+", "-", "*", "/"):
+        return f"{names[0]} {node.name} {names[1]}"
+    if node.name == NEGATIVE:
+        return f"-{names[0]}"
+    if node.name == LESS:
+        return f"{names[0]} < {names[1]} ? 1 : 0"
+    if node.name == SELECT:
+        return f"{names[0]} !== 0 ? {names[1]} : {names[2]}"
+    return f"Math.{node.name}({', '.join(names)})"

@@ -1,59 +1,58 @@
-"""Recorded functions as LLVM's code for eight launches an instruction."""
+"""Recorded functions as LLVM's code, for one launch or for several an instruction."""
 
+from collections.abc import Mapping
 from struct import pack
 
-from tippetop.emit.graph import (
-    CONSTANT,
-    DIFFERENCE,
-    LESS,
-    NEGATIVE,
-    PARAMETER,
-    POWER,
-    PRODUCT,
-    QUOTIENT,
-    ROOT,
-    SELECT,
-    SIZE,
-    STATE,
-    SUM,
-    Node,
-    NotRecordable,
-)
+from tippetop.emit import graph
 from tippetop.emit.recording import Recorded
 
 ABREAST = 8
 """Launches an instruction; where a processor has not as many, several instructions."""
 
-VECTOR, FLAGS = f"<{ABREAST} x double>", f"<{ABREAST} x i1>"
-
 ROUNDING = "contract"
 """What a sum and a product may do beyond the letter: be rounded together, which is faster."""
 
+PLACE = """\
+{t}_begin = mul i64 {count}, {row}
+  {t}_where = add i64 {t}_begin, %first
+  {t}_place = getelementptr double, ptr %{name}, i64 {t}_where
+"""
+"""Where the numbers of a row are."""
+
+LOAD = PLACE + "  {t} = load {v}, ptr {t}_place, align 8"
+STORE = PLACE + "  store {v} {0}, ptr {t}_place, align 8"
+CALL = "{t} = call {v} @llvm.{name}.v{n}f64({v} {0})"
+CHOICE = "{t} = select <{n} x i1> {0}_flag, {v} {1}, {v} {2}"
+"""One of two numbers, by flags that are there already."""
+
 SPELLINGS = {
-    SUM: "fadd {r} {v} {0}, {1}",
-    DIFFERENCE: "fsub {r} {v} {0}, {1}",
-    PRODUCT: "fmul {r} {v} {0}, {1}",
-    QUOTIENT: "fdiv {v} {0}, {1}",
-    NEGATIVE: "fneg {v} {0}",
-    ROOT: "call {v} @llvm.sqrt.v{n}f64({v} {0})",
-    SIZE: "call {v} @llvm.fabs.v{n}f64({v} {0})",
-    POWER: "call {v} @llvm.pow.v{n}f64({v} {0}, {v} {1})",
+    graph.STATE: LOAD,
+    graph.PARAMETER: LOAD,
+    graph.SUM: "{t} = fadd {r} {v} {0}, {1}",
+    graph.DIFFERENCE: "{t} = fsub {r} {v} {0}, {1}",
+    graph.PRODUCT: "{t} = fmul {r} {v} {0}, {1}",
+    graph.QUOTIENT: "{t} = fdiv {v} {0}, {1}",
+    graph.NEGATIVE: "{t} = fneg {v} {0}",
+    graph.SIZE: CALL.replace("{name}", "fabs"),
+    graph.ROOT: CALL,
+    graph.SINE: CALL,
+    graph.COSINE: CALL,
+    graph.POWER: "{t} = call {v} @llvm.pow.v{n}f64({v} {0}, {v} {1})",
+    graph.LESS: "{t}_flag = fcmp ogt {v} {1}, {0}\n  {t} = uitofp <{n} x i1> {t}_flag to {v}",
+    graph.SELECT: "{t}_flag = fcmp une {v} {0}, zeroinitializer\n  " + CHOICE.replace("{0}", "{t}"),
 }
-"""Operations by name."""
+"""What makes {t} of {0}, {1}, ..."""
 
 FRAME = """\
-declare {v} @llvm.sqrt.v{n}f64({v})
-declare {v} @llvm.fabs.v{n}f64({v})
-declare {v} @llvm.pow.v{n}f64({v}, {v})
 define void @{name}(ptr noalias %y, ptr noalias %p, ptr noalias %out, i64 %count) {{
 entry:
-  %any = icmp ult i64 0, %count
+  %any = icmp ult i64 0, {count}
   br i1 %any, label %launches, label %done
 launches:
   %first = phi i64 [ 0, %entry ], [ %next, %launches ]
-{body}
+  {body}
   %next = add i64 %first, {n}
-  %more = icmp ult i64 %next, %count
+  %more = icmp ult i64 %next, {count}
   br i1 %more, label %launches, label %done
 done:
   ret void
@@ -61,72 +60,34 @@ done:
 """
 
 
-def llvm_source(recorded: Recorded, name: str) -> str:
-    """A function `name(y, p, out, count)` of arrays whose rows have a number for each of `count` launches.
+def llvm_source(functions: Mapping[str, Recorded], abreast: int) -> str:
+    """Functions `name(y, p, out, count)` of arrays whose rows have a number for each of `count` launches.
 
-    The count is a multiple of `ABREAST`.
-
-    Raises
-    ------
-    NotRecordable
-        If there is an operation for which LLVM has no name.
+    The count is a multiple of the launches `abreast`, and 1 if that is.
     """
-    lines = _Instructions()
-    for node in recorded.nodes:
-        lines.take(node)
-    for row, node in enumerate(recorded.outputs):
-        place = lines.place("out", row)
-        lines.put(f"store {VECTOR} {lines.names[node.place]}, ptr {place}, align 8")
-    return FRAME.format(name=name, body="\n".join(lines.lines), v=VECTOR, n=ABREAST)
+    vector, count = f"<{abreast} x double>", "%count" if abreast > 1 else "1"
+    words = {"v": vector, "n": abreast, "r": ROUNDING, "count": count}
 
+    def name_of(node: graph.Node) -> str:
+        if node.name != graph.CONSTANT:
+            return f"%t{node.place}"
+        bits = pack(">d", node.value).hex().upper()
+        return f"<{', '.join([f'double 0x{bits}'] * abreast)}>"
 
-class _Instructions:
-    """Lines of code, and the names of the nodes that are there so far."""
-
-    def __init__(self) -> None:
-        self.lines, self.names, self.flags = list[str](), dict[int, str](), dict[int, str]()
-
-    def put(self, line: str) -> None:
-        """Add a line."""
-        self.lines.append("  " + line)
-
-    def new(self, made: str) -> str:
-        """Give a name to what a line makes."""
-        name = f"%v{len(self.lines)}"
-        self.put(f"{name} = {made}")
-        return name
-
-    def place(self, array: str, row: int) -> str:
-        """Where the numbers of a row are."""
-        begin = self.new(f"mul i64 %count, {row}")
-        where = self.new(f"add i64 {begin}, %first")
-        return self.new(f"getelementptr double, ptr %{array}, i64 {where}")
-
-    def take(self, node: Node) -> None:
-        """Write a node."""
-        if node.name == CONSTANT:
-            self.names[node.place] = _number(node.value)
-        elif node.name in (STATE, PARAMETER):
-            place = self.place("y" if node.name == STATE else "p", int(node.value))
-            self.names[node.place] = self.new(f"load {VECTOR}, ptr {place}, align 8")
-        else:
-            self.names[node.place] = self._compute(node)
-
-    def _compute(self, node: Node) -> str:
-        operands = [self.names[operand.place] for operand in node.operands]
-        if node.name == LESS:
-            flags = self.new(f"fcmp ogt {VECTOR} {operands[1]}, {operands[0]}")
-            self.flags[node.place] = flags
-            return self.new(f"uitofp {FLAGS} {flags} to {VECTOR}")
-        if node.name == SELECT:
-            flags = self.flags.get(node.operands[0].place, "")
-            flags = flags or self.new(f"fcmp une {VECTOR} {operands[0]}, zeroinitializer")
-            return self.new(f"select {FLAGS} {flags}, {VECTOR} {operands[1]}, {VECTOR} {operands[2]}")
-        if node.name not in SPELLINGS:
-            raise NotRecordable(f"there is no spelling of {node.name}")
-        return self.new(SPELLINGS[node.name].format(*operands, r=ROUNDING, v=VECTOR, n=ABREAST))
-
-
-def _number(value: float) -> str:
-    """A constant, to the bit."""
-    return "<" + ", ".join([f"double 0x{pack('>d', value).hex().upper()}"] * ABREAST) + ">"
+    parts = [
+        f"declare {vector} @llvm.{name}.v{abreast}f64({vector}{', ' + vector if name == 'pow' else ''})\n"
+        for name in ("fabs", "sqrt", "sin", "cos", "pow")
+    ]
+    for name, recorded in functions.items():
+        known, lines = dict[int, str](), list[str]()
+        for node in recorded.nodes:
+            known[node.place] = t = name_of(node)
+            if node.name != graph.CONSTANT:
+                operands = [known[operand.place] for operand in node.operands]
+                own = {"t": t, "name": node.name, "row": node.value}
+                flagged = node.name == graph.SELECT and node.operands[0].name == graph.LESS
+                lines.append((CHOICE if flagged else SPELLINGS[node.name]).format(*operands, **own, **words))
+        for row, node in enumerate(recorded.outputs):
+            lines.append(STORE.format(known[node.place], t=f"%out{row}", name="out", row=row, **words))
+        parts.append(FRAME.format(name=name, body="\n  ".join(lines), **words))
+    return "".join(parts)

@@ -7,18 +7,6 @@ from tippetop.emit.graph import PARAMETER, STATE, Graph, Node
 from tippetop.mechanics.vectors import Scalar
 
 
-class Elementary:
-    """Elementary functions of nodes: a module such as `math`, for what takes one."""
-
-    def sin(self, x: Node) -> Node:
-        """Sine of an angle in radians."""
-        return x.graph.call("sin", x)
-
-    def cos(self, x: Node) -> Node:
-        """Cosine of an angle in radians."""
-        return x.graph.call("cos", x)
-
-
 class Recorded(NamedTuple):
     """What a function does."""
 

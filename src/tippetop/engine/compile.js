@@ -28,8 +28,7 @@ export function compiled(function_, size, parameters, count) {
   }
 }
 
-const NAMES = ["state", "parameter", "sum", "difference", "product", "quotient", "negative", "root", "power", "size", "less", "select"];
-const ELEMENTARY = ["sin", "cos", "atan2"], WIDE = 5;
+const NAMES = ["y", "p", "+", "-", "*", "/", "negative", "sqrt", "pow", "abs", "less", "select", "sin", "cos"], WIDE = 5;
 
 /** What is recorded, operation by operation: where pages may not make code, as some servers' policies have it. */
 function interpreted({ nodes, outputs }) {
@@ -37,8 +36,8 @@ function interpreted({ nodes, outputs }) {
   const values = Float64Array.from(nodes, (node) => node.value), tape = [];
   nodes.forEach((node, place) => {
     if (node.name === "constant") return;
-    const named = NAMES.indexOf(node.name), given = node.operands.length ? node.operands.map((one) => places.get(one)) : [node.value];
-    tape.push(named < 0 ? NAMES.length + ELEMENTARY.indexOf(node.name) : named, place, given[0], given[1] ?? 0, given[2] ?? 0);
+    const given = node.operands.length ? node.operands.map((one) => places.get(one)) : [node.value];
+    tape.push(NAMES.indexOf(node.name), place, given[0], given[1] ?? 0, given[2] ?? 0);
   });
   const steps = Int32Array.from(tape), ends = Int32Array.from(outputs, (node) => places.get(node));
   return (y, p, out) => {
@@ -59,8 +58,7 @@ function interpreted({ nodes, outputs }) {
         case 10: found = a < b ? 1 : 0; break;
         case 11: found = a !== 0 ? b : values[steps[at + 4]]; break;
         case 12: found = Math.sin(a); break;
-        case 13: found = Math.cos(a); break;
-        default: found = Math.atan2(a, b);
+        default: found = Math.cos(a);
       }
       values[steps[at + 1]] = found;
     }

@@ -3,7 +3,7 @@ import { CHEBYSHEV } from "./tables.js";
 import { math } from "./runtime.js";
 
 /** Elementary functions of numbers, and of the nodes of a graph. */
-const of = (name) => (x) => (typeof x === "number" ? math[name](x) : x.graph.call(name, x));
+const of = (name) => (x) => (typeof x === "number" ? math[name](x) : x.graph.node(name, [x]));
 export const ELEMENTARY = { sin: of("sin"), cos: of("cos") };
 export const as_array = (numbers) => Float64Array.from(numbers);
 

@@ -6695,10 +6695,10 @@ class Trajectory extends py.Record {
 py.fields(Trajectory, ["start", "end", "integrator", "limit", "step_limit", "time", "outcome", "detail", "events"]);
 
 // tippetop.emit.graph
-const [STATE, PARAMETER, CONSTANT] = ["state", "parameter", "constant"];
-const [NEGATIVE, SUM, DIFFERENCE, PRODUCT, QUOTIENT] = ["negative", "sum", "difference", "product", "quotient"];
-const [ROOT, POWER_of_graph, SIZE, LESS, SELECT] = ["root", "power", "size", "less", "select"];
-const FUNCTIONS = new py.Dict([["sin", 1], ["cos", 1], ["atan2", 2]]);
+const [STATE, PARAMETER, CONSTANT] = ["y", "p", "constant"];
+const [SUM, DIFFERENCE, PRODUCT, QUOTIENT] = ["+", "-", "*", "/"];
+const [NEGATIVE, LESS, SELECT] = ["negative", "less", "select"];
+const [SIZE, ROOT, POWER_of_graph, SINE, COSINE] = ["abs", "sqrt", "pow", "sin", "cos"];
 const LARGEST_POWER = 16;
 const NO_CHOICE = "a choice that depends on the numbers is to be made by select";
 
@@ -6885,10 +6885,6 @@ class Graph extends py.Record {
     }
     return found;
   }
-  /** An elementary function of nodes and numbers by name, such as "sin". */
-  call(name, ...arguments_) {
-    return this.node(name, py.tuple([...arguments_].map((argument) => this.taken(argument))));
-  }
   /** The first where a condition is not 0, else the second. */
   select(condition, a, b) {
     if (!py.isinstance(condition, Node)) {
@@ -6938,18 +6934,6 @@ function in_order(a, b) {
 
 // tippetop.emit.recording
 
-/** Elementary functions of nodes: a module such as `math`, for what takes one. */
-class Elementary extends py.Thing {
-  /** Sine of an angle in radians. */
-  sin(x) {
-    return x.graph.call("sin", x);
-  }
-  /** Cosine of an angle in radians. */
-  cos(x) {
-    return x.graph.call("cos", x);
-  }
-}
-
 /** What a function does. */
 class Recorded extends py.NamedTuple {
   constructor(nodes, outputs, size, parameters) {
@@ -6985,123 +6969,36 @@ function record(function_, size, parameters, graph = null) {
   return new Recorded(py.tuple(nodes), py.tuple(outputs), size, parameters);
 }
 
-// tippetop.emit.code
-const LONGEST_of_code = 72;
-const ATOM = 9;
-
-/** How an operation is written. */
-class Spelling extends py.NamedTuple {
-  constructor(parts, binds = ATOM, order = []) {
-    super();
-    this.parts = parts;
-    this.binds = binds;
-    this.order = order;
-  }
-}
-py.fields(Spelling, ["parts", "binds", "order"]);
-
-/** How code is written. */
-class Language extends py.NamedTuple {
-  constructor(spellings, head, foot, local, end) {
-    super();
-    this.spellings = spellings;
-    this.head = head;
-    this.foot = foot;
-    this.local = local;
-    this.end = end;
-  }
-}
-py.fields(Language, ["spellings", "head", "foot", "local", "end"]);
-
-/** What languages write alike, with the elementary functions of a library. */
-function common_spellings(library) {
-  return new py.Dict([[SUM, new Spelling(["", " + ", ""], 1)], [DIFFERENCE, new Spelling(["", " - ", ""], 1)], [PRODUCT, new Spelling(["", " * ", ""], 2)], [QUOTIENT, new Spelling(["", " / ", ""], 2)], [NEGATIVE, new Spelling(["-", ""], 3)], [POWER_of_graph, new Spelling([`${py.str(library)}.pow(`, ", ", ")"])], [ROOT, new Spelling([`${py.str(library)}.sqrt(`, ")"])]]).__or__(new py.Dict([...FUNCTIONS.items()].map(([name, count]) => [name, new Spelling([`${py.str(library)}.${py.str(name)}(`, ...py.mul([", "], py.sub(count, 1)), ")"])])));
-}
-
-/** The code of a function `name(y, p, out)` that puts what was recorded of y and p into out. */
-function written(recorded, name, language) {
-  const lines = new _Lines(recorded, language);
-  for (const node of recorded.nodes) {
-    lines.take(node);
-  }
-  for (const [number, node] of py.enumerate(recorded.outputs)) {
-    lines.put(py.add(py.add(py.add("    out[", py.str(number)), "] = "), py.item(lines.texts, node.place)));
-  }
-  return py.join("\n", [py.add(py.add(language.head[0], name), language.head[1]), ...lines.lines, language.foot]);
-}
-
-/** Lines of code, and how the nodes are written that are there so far. */
-class _Lines extends py.Thing {
-  constructor(recorded, language) {
-    super();
-    [this.language, this.lines] = [language, py.list()];
-    [this.texts, this.binds] = [py.dict(), py.dict()];
-    this.uses = py.dict();
-    this.named = 0;
-    for (const used of [recorded.outputs, ...[...recorded.nodes].map((node) => node.operands)]) {
-      for (const node of used) {
-        py.put(this.uses, node.place, py.add(this.uses.get(node.place, 0), 1));
-      }
-    }
-  }
-  /** Add a line. */
-  put(line) {
-    this.lines.push(py.add(line, this.language.end));
-  }
-  /** Write a node: under a name of its own if it is used often, or is long. */
-  take(node) {
-    py.put(this.binds, node.place, ATOM);
-    if (py.eq(node.name, CONSTANT)) {
-      py.put(this.texts, node.place, _number(node.value));
-    } else if (py.contains([STATE, PARAMETER], node.name)) {
-      const [letter, which] = [py.eq(node.name, STATE) ? "y" : "p", py.str(py.int(node.value))];
-      py.put(this.texts, node.place, py.add(letter, which));
-      this.put(py.add(py.add(py.add(py.add(py.add(py.add(py.add(py.add("    ", this.language.local), letter), which), " = "), letter), "["), which), "]"));
-    } else {
-      this._compute(node);
-    }
-  }
-  _compute(node) {
-    const spelling = this.language.spellings.get(node.name);
-    if (spelling === null) {
-      throw new NotRecordable(py.add("there is no spelling of ", node.name));
-    }
-    let text = spelling.parts[0];
-    const operands = py.or([...spelling.order].map((which) => py.item(node.operands, which)), () => py.list(node.operands));
-    for (const [number, operand] of py.enumerate(operands)) {
-      let [here, binds] = [py.item(this.texts, operand.place), py.item(this.binds, operand.place)];
-      if (spelling.binds < ATOM && (binds < spelling.binds || py.eq(binds, spelling.binds) && number > 0)) {
-        here = py.add(py.add("(", here), ")");
-      }
-      text = py.add(py.add(text, here), py.item(spelling.parts, py.add(number, 1)));
-    }
-    if (py.item(this.uses, node.place) === 1 && py.len(text) <= LONGEST_of_code) {
-      {
-        const parts = [text, spelling.binds];
-        py.put(this.texts, node.place, parts[0]);
-        py.put(this.binds, node.place, parts[1]);
-      }
-      return null;
-    }
-    py.put(this.texts, node.place, py.add("t", py.str(this.named)));
-    this.named = py.add(this.named, 1);
-    this.put(py.add(py.add(py.add(py.add("    ", this.language.local), py.item(this.texts, node.place)), " = "), text));
-  }
-}
-
-function _number(value) {
-  if (py.contains([py.float("inf"), -py.float("inf")], value)) {
-    return value > 0.0 ? "1e999" : "-1e999";
-  }
-  return py.repr(value);
-}
-
 // tippetop.emit.javascript
-const JAVASCRIPT = new Language(new py.Dict([[SIZE, new Spelling(["Math.abs(", ")"])], [LESS, new Spelling(["(", " < ", " ? 1 : 0)"])], [SELECT, new Spelling(["(", " !== 0 ? ", " : ", ")"])]]).__or__(common_spellings("Math")), ["function ", "(y, p, out) {"], "}\n", "const ", ";");
 
-/** A JavaScript function `name(y, p, out)`. */
+/** A JavaScript function `name(y, p, out)` that puts what was recorded of y and p into out. */
 function javascript_source(recorded, name) {
-  return written(recorded, name, JAVASCRIPT);
+  let lines = [...recorded.nodes].map((node) => `  const t${py.str(node.place)} = ${py.str(_written(node))};`);
+  lines = py.add(lines, py.enumerate(recorded.outputs).map(([number, node]) => `  out[${py.str(number)}] = t${py.str(node.place)};`));
+  return py.join("\n", [`function ${py.str(name)}(y, p, out) {`, ...lines, "}"]);
+}
+
+function _written(node) {
+  const names = [...node.operands].map((operand) => `t${py.str(operand.place)}`);
+  if (py.eq(node.name, CONSTANT)) {
+    return py.repr(node.value);
+  }
+  if (py.contains([STATE, PARAMETER], node.name)) {
+    return `${py.str(node.name)}[${py.str(node.value)}]`;
+  }
+  if (py.contains(["+", "-", "*", "/"], node.name)) {
+    return `${py.str(names[0])} ${py.str(node.name)} ${py.str(names[1])}`;
+  }
+  if (py.eq(node.name, NEGATIVE)) {
+    return `-${py.str(names[0])}`;
+  }
+  if (py.eq(node.name, LESS)) {
+    return `${py.str(names[0])} < ${py.str(names[1])} ? 1 : 0`;
+  }
+  if (py.eq(node.name, SELECT)) {
+    return `${py.str(names[0])} !== 0 ? ${py.str(names[1])} : ${py.str(names[2])}`;
+  }
+  return `Math.${py.str(node.name)}(${py.str(py.join(", ", names))})`;
 }
 
 // tippetop.integrators.dormand_prince
@@ -7111,6 +7008,11 @@ const NOTHING = 2e-15;
 const [EARLIEST, RISEN] = [py.pow(0.5, 40), 1e-15];
 const ROWS = 23;
 const LOOKS_of_dormand_prince = 8;
+
+/** Call a motion's function. */
+function evaluate(function_, y, p, out) {
+  function_(y, p, out);
+}
 
 /** Error of a step: less than 1 is good enough. */
 function error_of(h, y, new_, k, tolerance) {
@@ -7159,7 +7061,7 @@ function first_step(rates, p, y, k, place, span, tolerance) {
   for (let i = 0, k0 = k[0]; i < y.length; i += 1) {
     place[i] = py.add(y[i], py.mul(trial, k0[i]));
   }
-  rates(place, p, k[1]);
+  evaluate(rates, place, p, k[1]);
   const steepest = py.max(slope, py.div(measure(k[1], k[0], y, tolerance), trial));
   const found = steepest <= 1e-15 ? py.max(1e-06, py.mul(trial, 0.001)) : py.pow(py.div(0.01, steepest), 0.125);
   return py.min(py.mul(100.0, trial), found, span);
@@ -7200,7 +7102,7 @@ function rises(guards, p, powers, y, values, guard) {
   while (part > EARLIEST) {
     part = py.mul(part, 0.5);
     within(powers, part, y);
-    guards(y, p, values[py.add(LOOKS_of_dormand_prince, 1)]);
+    evaluate(guards, y, p, values[py.add(LOOKS_of_dormand_prince, 1)]);
     if (values[py.add(LOOKS_of_dormand_prince, 1)][guard] > RISEN) {
       return true;
     }
@@ -7212,7 +7114,7 @@ function rises(guards, p, powers, y, values, guard) {
 function suspect(guards, p, powers, y, values) {
   for (let look = 1; look < py.add(LOOKS_of_dormand_prince, 1); look += 1) {
     within(powers, py.div(look, LOOKS_of_dormand_prince), y);
-    guards(y, p, values[look]);
+    evaluate(guards, y, p, values[look]);
   }
   for (let guard = 0, values0 = values[0], values1 = values[1]; guard < py.len(values[0]); guard += 1) {
     if (py.truth(may_fall(values, guard))) {
@@ -7237,7 +7139,7 @@ function advance(rates, guards, count, p, y, lost, k, span, tolerance, knots, te
   let [time, end] = [span[0], span[1]];
   let calls = 0;
   if (span[2] === 0.0) {
-    rates(y, p, k[0]);
+    evaluate(rates, y, p, k[0]);
     for (let i = 0, k0 = k[0]; i < size; i += 1) {
       if (!py.truth(py.math.isfinite(k0[i]))) {
         return [steps, 1, SINGULAR];
@@ -7247,7 +7149,7 @@ function advance(rates, guards, count, p, y, lost, k, span, tolerance, knots, te
     calls = calls + 2;
   }
   if (count > 0) {
-    guards(y, p, values[0]);
+    evaluate(guards, y, p, values[0]);
   }
   while (time < end) {
     if (steps === terms.length) {
@@ -7289,77 +7191,77 @@ function stages(rates, h, p, y, lost, k, moved, place) {
     moved[i] = h * (0.05260015195876773 * k0[i]) + lost[i];
     place[i] = y[i] + moved[i];
   }
-  rates(place, p, k[1]);
+  evaluate(rates, place, p, k[1]);
   for (let i = 0, k0 = k[0], k1 = k[1]; i < y.length; i += 1) {
     moved[i] = h * (0.0197250569845379 * k0[i] + 0.0591751709536137 * k1[i]) + lost[i];
     place[i] = y[i] + moved[i];
   }
-  rates(place, p, k[2]);
+  evaluate(rates, place, p, k[2]);
   for (let i = 0, k0 = k[0], k2 = k[2]; i < y.length; i += 1) {
     moved[i] = h * (0.02958758547680685 * k0[i] + 0.08876275643042054 * k2[i]) + lost[i];
     place[i] = y[i] + moved[i];
   }
-  rates(place, p, k[3]);
+  evaluate(rates, place, p, k[3]);
   for (let i = 0, k0 = k[0], k2 = k[2], k3 = k[3]; i < y.length; i += 1) {
     moved[i] = h * (0.2413651341592667 * k0[i] + -0.8845494793282861 * k2[i] + 0.924834003261792 * k3[i]) + lost[i];
     place[i] = y[i] + moved[i];
   }
-  rates(place, p, k[4]);
+  evaluate(rates, place, p, k[4]);
   for (let i = 0, k0 = k[0], k3 = k[3], k4 = k[4]; i < y.length; i += 1) {
     moved[i] = h * (0.037037037037037035 * k0[i] + 0.17082860872947386 * k3[i] + 0.12546768756682242 * k4[i]) + lost[i];
     place[i] = y[i] + moved[i];
   }
-  rates(place, p, k[5]);
+  evaluate(rates, place, p, k[5]);
   for (let i = 0, k0 = k[0], k3 = k[3], k4 = k[4], k5 = k[5]; i < y.length; i += 1) {
     moved[i] = h * (0.037109375 * k0[i] + 0.17025221101954405 * k3[i] + 0.06021653898045596 * k4[i] + -0.017578125 * k5[i]) + lost[i];
     place[i] = y[i] + moved[i];
   }
-  rates(place, p, k[6]);
+  evaluate(rates, place, p, k[6]);
   for (let i = 0, k0 = k[0], k3 = k[3], k4 = k[4], k5 = k[5], k6 = k[6]; i < y.length; i += 1) {
     moved[i] = h * (0.03709200011850479 * k0[i] + 0.17038392571223998 * k3[i] + 0.10726203044637328 * k4[i] + -0.015319437748624402 * k5[i] + 0.008273789163814023 * k6[i]) + lost[i];
     place[i] = y[i] + moved[i];
   }
-  rates(place, p, k[7]);
+  evaluate(rates, place, p, k[7]);
   for (let i = 0, k0 = k[0], k3 = k[3], k4 = k[4], k5 = k[5], k6 = k[6], k7 = k[7]; i < y.length; i += 1) {
     moved[i] = h * (0.6241109587160757 * k0[i] + -3.3608926294469414 * k3[i] + -0.868219346841726 * k4[i] + 27.59209969944671 * k5[i] + 20.154067550477894 * k6[i] + -43.48988418106996 * k7[i]) + lost[i];
     place[i] = y[i] + moved[i];
   }
-  rates(place, p, k[8]);
+  evaluate(rates, place, p, k[8]);
   for (let i = 0, k0 = k[0], k3 = k[3], k4 = k[4], k5 = k[5], k6 = k[6], k7 = k[7], k8 = k[8]; i < y.length; i += 1) {
     moved[i] = h * (0.47766253643826434 * k0[i] + -2.4881146199716677 * k3[i] + -0.590290826836843 * k4[i] + 21.230051448181193 * k5[i] + 15.279233632882423 * k6[i] + -33.28821096898486 * k7[i] + -0.020331201708508627 * k8[i]) + lost[i];
     place[i] = y[i] + moved[i];
   }
-  rates(place, p, k[9]);
+  evaluate(rates, place, p, k[9]);
   for (let i = 0, k0 = k[0], k3 = k[3], k4 = k[4], k5 = k[5], k6 = k[6], k7 = k[7], k8 = k[8], k9 = k[9]; i < y.length; i += 1) {
     moved[i] = h * (-0.9371424300859873 * k0[i] + 5.186372428844064 * k3[i] + 1.0914373489967295 * k4[i] + -8.149787010746927 * k5[i] + -18.52006565999696 * k6[i] + 22.739487099350505 * k7[i] + 2.4936055526796523 * k8[i] + -3.0467644718982196 * k9[i]) + lost[i];
     place[i] = y[i] + moved[i];
   }
-  rates(place, p, k[10]);
+  evaluate(rates, place, p, k[10]);
   for (let i = 0, k0 = k[0], k10 = k[10], k3 = k[3], k4 = k[4], k5 = k[5], k6 = k[6], k7 = k[7], k8 = k[8], k9 = k[9]; i < y.length; i += 1) {
     moved[i] = h * (2.273310147516538 * k0[i] + -10.53449546673725 * k3[i] + -2.0008720582248625 * k4[i] + -17.9589318631188 * k5[i] + 27.94888452941996 * k6[i] + -2.8589982771350235 * k7[i] + -8.87285693353063 * k8[i] + 12.360567175794303 * k9[i] + 0.6433927460157636 * k10[i]) + lost[i];
     place[i] = y[i] + moved[i];
   }
-  rates(place, p, k[11]);
+  evaluate(rates, place, p, k[11]);
   for (let i = 0, k0 = k[0], k10 = k[10], k11 = k[11], k5 = k[5], k6 = k[6], k7 = k[7], k8 = k[8], k9 = k[9]; i < y.length; i += 1) {
     moved[i] = h * (0.054293734116568765 * k0[i] + 4.450312892752409 * k5[i] + 1.8915178993145003 * k6[i] + -5.801203960010585 * k7[i] + 0.3111643669578199 * k8[i] + -0.1521609496625161 * k9[i] + 0.20136540080403034 * k10[i] + 0.04471061572777259 * k11[i]) + lost[i];
     place[i] = y[i] + moved[i];
   }
-  rates(place, p, k[12]);
+  evaluate(rates, place, p, k[12]);
 }
 
 function more_stages(rates, h, p, y, lost, k, place) {
   for (let i = 0, k0 = k[0], k10 = k[10], k11 = k[11], k12 = k[12], k6 = k[6], k7 = k[7], k8 = k[8], k9 = k[9]; i < y.length; i += 1) {
     place[i] = y[i] + (h * (0.056167502283047954 * k0[i] + 0.25350021021662483 * k6[i] + -0.2462390374708025 * k7[i] + -0.12419142326381637 * k8[i] + 0.15329179827876568 * k9[i] + 0.00820105229563469 * k10[i] + 0.007567897660545699 * k11[i] + -0.008298 * k12[i]) + lost[i]);
   }
-  rates(place, p, k[13]);
+  evaluate(rates, place, p, k[13]);
   for (let i = 0, k0 = k[0], k10 = k[10], k11 = k[11], k12 = k[12], k13 = k[13], k5 = k[5], k6 = k[6], k7 = k[7]; i < y.length; i += 1) {
     place[i] = y[i] + (h * (0.03183464816350214 * k0[i] + 0.028300909672366776 * k5[i] + 0.053541988307438566 * k6[i] + -0.05492374857139099 * k7[i] + -0.00010834732869724932 * k10[i] + 0.0003825710908356584 * k11[i] + -0.00034046500868740456 * k12[i] + 0.1413124436746325 * k13[i]) + lost[i]);
   }
-  rates(place, p, k[14]);
+  evaluate(rates, place, p, k[14]);
   for (let i = 0, k0 = k[0], k12 = k[12], k13 = k[13], k14 = k[14], k5 = k[5], k6 = k[6], k7 = k[7], k8 = k[8]; i < y.length; i += 1) {
     place[i] = y[i] + (h * (-0.42889630158379194 * k0[i] + -4.697621415361164 * k5[i] + 7.683421196062599 * k6[i] + 4.06898981839711 * k7[i] + 0.3567271874552811 * k8[i] + -0.0013990241651590145 * k12[i] + 2.9475147891527724 * k13[i] + -9.15095847217987 * k14[i]) + lost[i]);
   }
-  rates(place, p, k[15]);
+  evaluate(rates, place, p, k[15]);
 }
 
 function combined_of_dormand_prince(y, k) {
@@ -8392,7 +8294,6 @@ export {
   ACCURACY_of_passing,
   APART,
   APART_of_direction,
-  ATOM,
   AT_ONCE,
   AT_REST,
   Acceleration,
@@ -8414,6 +8315,7 @@ export {
   CHOICES,
   CLOSES,
   CONSTANT,
+  COSINE,
   COUPLES,
   Closing,
   ClosingRates,
@@ -8447,7 +8349,6 @@ export {
   ENDING_of_double_sticking,
   EXACT,
   EccentricSphere,
-  Elementary,
   EllipsoidalLaw,
   Event,
   EventKind,
@@ -8463,7 +8364,6 @@ export {
   FORCE,
   FORCES,
   FULL,
-  FUNCTIONS,
   FUZZ,
   Flight,
   Fold,
@@ -8491,7 +8391,6 @@ export {
   Impulse,
   IntegratedMode,
   IntegratedProcess,
-  JAVASCRIPT,
   JellettLine,
   JellettRange,
   KEPT,
@@ -8508,7 +8407,6 @@ export {
   LIMIT,
   LIMIT_BRANCH,
   LONGEST,
-  LONGEST_of_code,
   LONGEST_of_integrated_impact,
   LONGEST_of_trajectory,
   LOOK,
@@ -8517,7 +8415,6 @@ export {
   LOOKS_of_passing,
   LOOKS_of_touchdown,
   LOST,
-  Language,
   Launch,
   Loosening,
   MANY,
@@ -8627,6 +8524,7 @@ export {
   SHORT,
   SHORTER,
   SHORTEST,
+  SINE,
   SINGULAR,
   SIZE,
   SLIP,
@@ -8661,7 +8559,6 @@ export {
   SlidingWithoutRolling,
   SlipBeginningOnTwo,
   SlipEnds,
-  Spelling,
   Sphere,
   SphereSurface,
   Spheroid,
@@ -8716,7 +8613,6 @@ export {
   WIDEST,
   Wrench,
   _DESCRIPTIONS,
-  _Lines,
   _admits,
   _along,
   _apart,
@@ -8741,7 +8637,6 @@ export {
   _newton,
   _normal_wrench,
   _nothing,
-  _number,
   _of_momentum,
   _on_one_of_several,
   _polished,
@@ -8756,6 +8651,7 @@ export {
   _unit,
   _unknown,
   _without_rolling,
+  _written,
   acting,
   add,
   advance,
@@ -8786,7 +8682,6 @@ export {
   coexistence,
   combined,
   combined_of_dormand_prince,
-  common_spellings,
   components,
   contact,
   contact_motion,
@@ -8812,6 +8707,7 @@ export {
   energy,
   equal_thresholds,
   error_of,
+  evaluate,
   factor_for,
   falling_time,
   first_fall,
@@ -9019,5 +8915,4 @@ export {
   without_rolling,
   without_tilting,
   work_of,
-  written,
 };

@@ -1,4 +1,4 @@
-"""Dormand and Prince's method of order 8(5,3), compiled by numba once for every kind of motion."""
+"""Dormand and Prince's method of order 8(5,3), compiled by numba; what it follows, by LLVM."""
 
 import inspect
 from collections.abc import Iterator, Sequence
@@ -8,17 +8,18 @@ from typing import Any
 
 from numba import types
 
-from tippetop.emit.python import python_source
 from tippetop.emit.recording import record
 from tippetop.integrators import dormand_prince as loop
 from tippetop.integrators.base import Arc, Array, Motion
+from tippetop.integrators.machine_code import Compiled, machine_code
 from tippetop.integrators.numba_cache import compiled
 from tippetop.integrators.scipy_methods import SciPy
 from tippetop.integrators.stepping import Machinery, stepped
 from tippetop.mechanics.vectors import Scalar
 
 ROW = types.float64[::1]
-FUNCTION = types.void(ROW, ROW, ROW)
+PLACE = types.CPointer(types.float64)  # type: ignore[no-untyped-call]
+FUNCTION = types.void(*[PLACE] * 3, types.int64)
 ADVANCE = types.UniTuple(types.int64, 3)(  # type: ignore[no-untyped-call]
     types.FunctionType(FUNCTION),
     types.FunctionType(FUNCTION),
@@ -31,6 +32,15 @@ ADVANCE = types.UniTuple(types.int64, 3)(  # type: ignore[no-untyped-call]
 )
 WITHIN = types.void(types.float64[:, ::1], types.float64, ROW)
 """What the functions take: a motion's, and those of `dormand_prince`."""
+
+CALLED = """
+import numba
+
+@numba.njit(inline="always")
+def evaluate(function, y, p, out):
+    function(y.ctypes, p.ctypes, out.ctypes, 1)
+"""
+"""How functions are called that LLVM compiled."""
 
 
 @dataclass(frozen=True)
@@ -56,14 +66,13 @@ class CompiledRungeKutta:
 
 
 class _Address(types.WrapperAddressProtocol):
-    """A compiled function as others take it, who would else ask it every time where it is."""
+    """Where a compiled function is, for others that are compiled."""
 
-    def __init__(self, function: Any) -> None:
-        found = function.get_compile_result(FUNCTION)
-        self.address = found.library.get_pointer_to_function(found.fndesc.llvm_cfunc_wrapper_name)
+    def __init__(self, function: Compiled) -> None:
+        self.function = function
 
     def __wrapper_address__(self) -> int:
-        return int(self.address)
+        return int(self.function.address)
 
     def signature(self) -> Any:
         """What the function takes and gives."""
@@ -77,22 +86,20 @@ def _compiled(motion: Motion) -> Machinery | None:
     def guards(y: Sequence[Scalar], p: Sequence[Scalar]) -> list[Scalar]:
         return [guard.value(y, p) for guard in motion.guards]
 
-    functions: dict[str, Any] = {"rates": motion.rates} | ({"guards": guards} if motion.guards else {})
     try:
-        sources = [
-            python_source(record(function, motion.size, motion.parameters), name)
-            for name, function in functions.items()
-        ]
+        recorded = {
+            name: record(function, motion.size, motion.parameters)
+            for name, function in {"rates": motion.rates, "guards": guards}.items()
+        }
     except (TypeError, ValueError, ArithmeticError, AttributeError):
         return None
-    found = compiled("\n\n".join(sources), dict.fromkeys(functions, FUNCTION))
-    rates, guarding = found["rates"], found.get("guards", found["rates"])
-    method = _method()
-    addresses = _Address(rates), _Address(guarding)
-    return Machinery(method["advance"], method["within"], *addresses, len(motion.guards), guarding)
+    found, method = machine_code(recorded), _method()
+    addresses = _Address(found["rates"]), _Address(found["guards"])
+    return Machinery(method["advance"], method["within"], *addresses, len(motion.guards), found["guards"])
 
 
 @cache
 def _method() -> dict[str, Any]:
     """What the method is, compiled."""
-    return compiled(inspect.getsource(loop) + loop.written_out(), {"advance": ADVANCE, "within": WITHIN})
+    source = inspect.getsource(loop) + loop.written_out() + CALLED
+    return compiled(source, {"advance": ADVANCE, "within": WITHIN})

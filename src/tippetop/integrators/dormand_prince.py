@@ -43,6 +43,11 @@ LOOKS = 8
 """Parts of a step at whose ends guards are looked at."""
 
 
+def evaluate(function: Compiled, y: Array, p: Array, out: Array) -> None:
+    """Call a motion's function."""
+    function(y, p, out)
+
+
 def error_of(h: float, y: Array, new: Array, k: Array, tolerance: Array) -> float:
     """Error of a step: less than 1 is good enough."""
     combined(y, k)
@@ -86,7 +91,7 @@ def first_step(
     trial = min(span, 1e-6 if size < 1e-5 or slope < 1e-5 else 0.01 * size / slope)
     for i in range(len(y)):
         place[i] = y[i] + trial * k[0, i]
-    rates(place, p, k[1])
+    evaluate(rates, place, p, k[1])
     steepest = max(slope, measure(k[1], k[0], y, tolerance) / trial)
     found = max(1e-6, trial * 1e-3) if steepest <= 1e-15 else (0.01 / steepest) ** 0.125
     return min(100.0 * trial, found, span)
@@ -120,7 +125,7 @@ def rises(guards: Compiled, p: Array, powers: Array, y: Array, values: Array, gu
     while part > EARLIEST:
         part *= 0.5
         within(powers, part, y)
-        guards(y, p, values[LOOKS + 1])
+        evaluate(guards, y, p, values[LOOKS + 1])
         if values[LOOKS + 1, guard] > RISEN:
             return True
     return False
@@ -130,7 +135,7 @@ def suspect(guards: Compiled, p: Array, powers: Array, y: Array, values: Array) 
     """Whether a guard may fall in a step; values has those at its start, and room for the other looks."""
     for look in range(1, LOOKS + 1):
         within(powers, look / LOOKS, y)
-        guards(y, p, values[look])
+        evaluate(guards, y, p, values[look])
     for guard in range(len(values[0])):
         if may_fall(values, guard):
             return True
@@ -188,14 +193,14 @@ def advance(
     time, end = span[0], span[1]
     calls = 0
     if span[2] == 0.0:
-        rates(y, p, k[0])
+        evaluate(rates, y, p, k[0])
         for i in range(size):
             if not math.isfinite(k[0, i]):
                 return steps, 1, SINGULAR
         span[2] = first_step(rates, p, y, k, place, end - time, tolerance)
         calls += 2
     if count > 0:
-        guards(y, p, values[0])
+        evaluate(guards, y, p, values[0])
     while time < end:
         if steps == len(terms):
             return steps, calls, FULL
@@ -232,11 +237,11 @@ def written_out() -> str:
     lines = [f"def stages(rates, h: float, {given}, moved: Array, place: Array):"]
     for number, weights in enumerate([*DOP853.A[1:], DOP853.B], start=1):
         lines += _for_each(moved.format(_sum(weights)), place.format("moved[i]"))
-        lines.append(f"    rates(place, p, k[{number}])")
+        lines.append(f"    evaluate(rates, place, p, k[{number}])")
     lines.append(f"def more_stages(rates, h: float, {given}, place: Array):")
     for number, weights in enumerate(DOP853.A_EXTRA, start=13):
         lines += _for_each(place.format(f"(h * ({_sum(weights)}) + lost[i])"))
-        lines.append(f"    rates(place, p, k[{number}])")
+        lines.append(f"    evaluate(rates, place, p, k[{number}])")
     lines.append("def combined(y: Array, k: Array):")
     lines += _for_each(
         *(f"k[{n}, i] = {_sum(row)}" for n, row in enumerate((DOP853.E5, DOP853.E3), start=16))

@@ -1,9 +1,8 @@
-"""Functions of many launches compiled by LLVM once, and kept between processes."""
+"""Recorded functions compiled by LLVM once, and kept between processes."""
 
 import ctypes
-from collections.abc import Callable
+from collections.abc import Mapping
 from pathlib import Path
-from typing import TypeAlias
 
 import llvmlite
 import llvmlite.binding as llvm
@@ -14,26 +13,24 @@ from tippetop.integrators.base import Array
 from tippetop.integrators.sealed_folders import digest, kept
 from tippetop.interrupts import heard
 
-NAME, OBJECT = "made", "made.o"
-"""What functions are called, and the code in a folder of the cache."""
+OBJECT = "made.o"
+"""What the code is called in a folder of the cache."""
 
 EFFORT = 2
 """How hard the compiler tries."""
 
-Batch: TypeAlias = Callable[[Array, Array, Array], None]
-"""A function of rows of the state, of the parameters, and of room for what it makes of them.
 
-The rows have shape (k, n), with n a multiple of `tippetop.emit.llvm.ABREAST`, and lie one after another.
-"""
-
-
-def batch_function(recorded: Recorded) -> Batch:
-    """Compile what was recorded, or take it from the cache."""
-    source = llvm_source(recorded, NAME)
+def machine_code(functions: Mapping[str, Recorded], abreast: int = 1) -> "dict[str, Compiled]":
+    """Compile what was recorded, for so many launches an instruction, or take it from the cache."""
+    source = llvm_source(functions, abreast)
     cpu, features = llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten()
     made = (source, llvmlite.__version__, llvm.get_process_triple(), cpu, features, EFFORT)
     name = digest(repr(made).encode())[:32]
-    return _Loaded(heard(lambda: kept(name, lambda folder: _object(source, folder))))
+    content = heard(lambda: kept(name, lambda folder: _object(source, folder)))
+    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), _machine())
+    engine.add_object_file(llvm.ObjectFileRef.from_data(content))
+    engine.finalize_object()
+    return {name: Compiled(engine, name) for name in functions}
 
 
 def _object(source: str, folder: Path | None) -> bytes:
@@ -59,19 +56,20 @@ def _machine() -> llvm.TargetMachine:
     return target.create_target_machine(cpu=cpu, features=features, opt=EFFORT, jit=True)
 
 
-class _Loaded:
-    """Compiled code in the memory of this process."""
+class Compiled:
+    """A compiled function of rows of the state, of the parameters, and of room for what it makes of them.
 
-    def __init__(self, content: bytes) -> None:
-        self._engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), _machine())
-        self._engine.add_object_file(llvm.ObjectFileRef.from_data(content))
-        self._engine.finalize_object()
-        kind = ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * 3, ctypes.c_int64)
-        self._function = kind(self._engine.get_function_address(NAME))
+    A row is a number, or has one for each of n launches, n a multiple of how many the code takes
+    an instruction; they lie one after another.
+    """
+
+    def __init__(self, engine: llvm.ExecutionEngine, name: str) -> None:
+        self.engine, self.address = engine, engine.get_function_address(name)
+        self._function = ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * 3, ctypes.c_int64)(self.address)
 
     def __call__(self, y: Array, p: Array, out: Array) -> None:
         """Compute, for as many launches as the rows have numbers."""
-        self._function(*map(_address, (y, p, out)), y.shape[1])
+        self._function(*map(_address, (y, p, out)), y.shape[1] if y.ndim > 1 else 1)
 
 
 def _address(rows: Array) -> int:

@@ -5,9 +5,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from tippetop.emit.coefficients import NodeArithmetic, SeriesGraph
-from tippetop.emit.recording import record
+from tippetop.emit.llvm import ABREAST
+from tippetop.emit.recording import Recorded, record
 from tippetop.integrators.base import Array, Motion
-from tippetop.integrators.machine_code import Batch, batch_function
+from tippetop.integrators.machine_code import Compiled, machine_code
 from tippetop.mechanics.vectors import Scalar
 from tippetop.sweeps.stride import LANES, Jet, Layout, motion_series, stride
 
@@ -23,8 +24,8 @@ class CompiledStepper:
         def rows(before: Sequence[Scalar], numbers: Sequence[Scalar]) -> list[Scalar]:
             return stride(motion, order, before, numbers, NODES)
 
-        self._step = batch_function(record(rows, self.layout.kept, self.layout.numbers, SeriesGraph()))
-        self._jet: Batch | None = None
+        self._step = _compiled(record(rows, self.layout.kept, self.layout.numbers, SeriesGraph()))
+        self._jet: Compiled | None = None
 
     def step(self, before: Array, after: Array, numbers: Array) -> None:
         """Take a step."""
@@ -34,7 +35,7 @@ class CompiledStepper:
         """The polynomials of the steps."""
         layout, order = self.layout, self.order
         if self._jet is None:
-            self._jet = batch_function(record(self._jet_rows, layout.size, layout.parameters, SeriesGraph()))
+            self._jet = _compiled(record(self._jet_rows, layout.size, layout.parameters, SeriesGraph()))
         count = before.shape[1]
         start, given = padded(before[: layout.size]), padded(numbers[: layout.parameters])
         cut = layout.size * (order + 1)
@@ -47,6 +48,10 @@ class CompiledStepper:
         y, guards = motion_series(self.motion, start, numbers, NODES)
         rows = [series[k] for series in y for k in range(self.order + 1)]
         return rows + [guard[k] for guard in guards for k in range(self.order)]
+
+
+def _compiled(recorded: Recorded) -> Compiled:
+    return machine_code({"made": recorded}, ABREAST)["made"]
 
 
 def padded(rows: Array) -> Array:
