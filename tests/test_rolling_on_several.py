@@ -9,7 +9,8 @@ from scipy.spatial.transform import Rotation
 
 import moreau
 import tippetop as tt
-from lying import R, resisted
+from lying import R, lying, resisted
+from tippetop.contact import double, two_closed
 from tippetop.contact.choice import rules_for
 from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators import make_integrator
@@ -156,6 +157,31 @@ def test_it_rolls_once_friction_needs_more_than_the_resistance_can() -> None:
     np.testing.assert_allclose(couple[time > starts], ARM * MASS * G, rtol=1e-12)
     assert couple[time < starts][-1] > 0.98 * ARM * MASS * G
     assert float(run["energy_error"]) < 1e-12
+
+
+def test_rolling_that_slip_held_up_begins_when_that_ends(monkeypatch: pytest.MonkeyPatch) -> None:
+    """However little slip is taken for none, and its end for known from there on."""
+    body = lying(1083)
+    turning = -5.7625
+    launch = {
+        "launch.spin": turning * np.cos(body.launch.tilt),
+        "launch.precession": turning,
+        "launch.velocity": None,
+        "launch.slip": (0.009413, 0.003374),
+        "rolling_resistance": 0.00402,
+    }
+    found = []
+    for slowest in (1e-9, 1e-6):
+        for module in (double, two_closed):
+            monkeypatch.setattr(module, "SLOWEST_SLIP", slowest)
+        double.motion_on_two.cache_clear()
+        run = followed(body.replace(launch), 0.004)
+        (sticks,), (*_, one, other) = events(run, "stick"), events(run, "rolling starts")
+        assert one == other == sticks
+        assert run["event_time"].values.tolist() == sorted(run["event_time"].values)
+        found.append(sticks)
+    double.motion_on_two.cache_clear()
+    assert found[1] == pytest.approx(found[0], abs=1e-12)
 
 
 class SmoothedLaw(NamedTuple):

@@ -171,6 +171,15 @@ def test_it_is_the_limit_of_friction_that_is_smoothed(seed, near) -> None:
     assert off[1] < near
 
 
+def test_a_result_tells_who_followed_slip_that_begins() -> None:
+    """Its direction is damped so fast at first that an implicit method does."""
+    assert any(isinstance(segment.mode, SlipBeginningOnTwo) for segment in followed(SLIPS_AGAIN))
+    run = followed_by_steps(lying(SLIPS_AGAIN), DURATION[SLIPS_AGAIN])
+    assert run.attrs["integrator"] == "dop853, collocation"
+    assert not any(isinstance(segment.mode, SlipBeginningOnTwo) for segment in followed(ONE_THEN_BOTH))
+    assert followed_by_steps(lying(ONE_THEN_BOTH), 0.01).attrs["integrator"] == "dop853"
+
+
 @pytest.mark.parametrize("seed", [ONE_THEN_BOTH, SLIPS_AGAIN])
 def test_energy_balances_over_all_transitions(seed: int) -> None:
     run = followed_by_steps(lying(seed), DURATION[seed], 101)

@@ -46,6 +46,13 @@ def test_what_falls_at_once_and_is_back_in_the_end_was_zero_but_for_errors():
     assert fall(lambda t: (0.1 * ERROR * (t - 1e-4) * (t - 0.9), 1.0)) is None
 
 
+def test_nor_does_such_a_fall_hide_a_later_one_of_the_same_guard():
+    """It is positive again at 0.3, and falls at 0.6 until 0.9."""
+    number, time, _ = fall(lambda t: (ERROR * (t - 1e-4) * (t - 0.3) * (t - 0.6) * (t - 0.9), 1.0))
+    assert number == 0
+    assert time == pytest.approx(3.6, abs=1e-12)
+
+
 def test_another_guard_that_falls_in_the_same_step_is_not_lost():
     number, time, state = fall(lambda t: (0.1 * ERROR * (1.0 + t), 0.8 - t))
     assert number == 1

@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from dry_runs import DryRun
-from tippetop.contact.arriving import arriving
+from tippetop.contact.arriving import DEGREE, Arrival, arriving
 from tippetop.contact.closing import closing_of
 from tippetop.integrators import make_integrator
 from tippetop.integrators.scipy_methods import SciPy
@@ -64,6 +64,25 @@ def test_its_end_by_power_series_is_where_an_implicit_method_comes_to(law, integ
     onwards = [np.polynomial.polynomial.polyval(0.5 * found.left, row) for row in found.onwards]
     assert onwards == pytest.approx(midway, abs=1e-15)
     assert size(midway[6:]) < 0.6 * settled[-2]
+
+
+@pytest.mark.parametrize("row", [0, 4, 8])
+@pytest.mark.parametrize("term", [DEGREE, DEGREE + 1])
+def test_series_whose_last_terms_are_not_small_do_not_serve(row, term):
+    """Of which a solution has the coefficients up to one more than its direction."""
+    left = 0.1
+    rows = [[0.5, 0.3, *[0.0] * DEGREE] for _ in range(6)] + [[0.0, -1.0, *[0.0] * DEGREE] for _ in range(3)]
+    assert Arrival(left, rows).serves
+    rows[row][term] = 1e-10 * left**-term
+    assert not Arrival(left, rows).serves
+
+
+def test_the_series_have_a_term_more_than_the_direction():
+    law = EllipsoidalLaw(0.4, 0.1)
+    top, start = slipping(law)
+    found = arriving(closing_of(in_its_clock(top, start, 1.0), SLIP), SLIP, top, make_integrator())
+    assert found is not None
+    assert {len(row) for row in found.rows} == {DEGREE + 2}
 
 
 def test_a_top_on_a_small_patch_sticks_when_it_does():

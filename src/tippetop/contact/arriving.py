@@ -25,7 +25,8 @@ from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Scalar, Vector
 
 DEGREE, ACCURACY = 12, 1e-13
-"""Degree of the series, and the size of their last terms in natural units, or relative to zeta's."""
+"""Degree of the series of speed and direction, one less than of the others, and the size of the last terms in
+natural units, or relative to zeta's."""
 
 MOST, TURNS = 16, 8
 """Improvements of the state at the end, and of the direction there, at most."""
@@ -55,12 +56,12 @@ class Arrival(NamedTuple):
 
     @property
     def serves(self) -> bool:
-        """Whether the last terms are small, those of zeta beside zeta."""
+        """Whether the last two terms are small, those of zeta beside zeta."""
         whole = size(tuple(self.at(1.0)[6:]))
         return all(
             size(tuple(row[k] * self.left**k for row in rows)) < ACCURACY * unit
             for rows, unit in ((self.rows[:6], 1.0), (self.rows[6:], whole))
-            for k in (DEGREE - 1, DEGREE)
+            for k in range(len(rows[0]) - 2, len(rows[0]))
         )
 
     @property

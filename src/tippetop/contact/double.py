@@ -17,7 +17,6 @@ from tippetop.mechanics.contact_pair import (
     sliding_pair_rates,
     turning_along,
 )
-from tippetop.mechanics.coulomb import RollingResistance
 from tippetop.mechanics.motion import along_table, on_table
 from tippetop.mechanics.pair_resolver import rolling_way
 from tippetop.mechanics.rolling import (
@@ -69,7 +68,7 @@ class OnTwo(IntegratedMode):
     @property
     def stopped(self) -> bool:
         """Whether rolling is held."""
-        return isinstance(self.top.friction, RollingResistance) and not self.rolls
+        return self.top.resists_rolling and not self.rolls
 
     @property
     def stuck(self) -> tuple[int, ...]:
@@ -228,6 +227,6 @@ def pair_guards(first: Kind, second: Kind, found: Any, rolls: float) -> list[Gua
         return found(y, numbers).rolling_reserve
 
     guards = [Guard(f"{OPENING}{number}", normal(number)) for number in (0, 1)]
-    if isinstance(first.example.friction, RollingResistance):
+    if first.example.resists_rolling:
         guards.append(Guard(ROLLING_STOPPING, rolling) if rolls else Guard(ROLLING, reserve))
     return guards + surface_guards(first, (number_of(second.example),))

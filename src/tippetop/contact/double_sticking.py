@@ -181,14 +181,13 @@ class SlipBeginningOnTwo(SlidingOnTwo):
 
     def segments(self, time: float, state: State, end: float, integrator: Integrator) -> Iterator[Segment]:
         """Follow it by an implicit method: its direction is damped the faster the slower it is."""
-        reach = min(time + BEGINNING, end)
-        for segment in super().segments(time, state, reach, make_integrator("collocation", TOLERANCE)):
+        reach, method = min(time + BEGINNING, end), make_integrator("collocation", TOLERANCE)
+        for segment in super().segments(time, state, reach, method):
             found = segment.transition
             if found is not None and found.then is Outcome.COMPLETED and reach < end:
                 then = SlidingOnTwo(self.top, self.rules, self.other, self.rolls)
-                yield replace(segment, transition=Transition((), then, found.state))
-            else:
-                yield segment
+                found = Transition((), then, found.state)
+            yield replace(segment, transition=found, method=method)
 
 
 def turned(pair: ContactPair, sign: Scalar, rolls: float) -> PairMotion:

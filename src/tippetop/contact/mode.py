@@ -86,9 +86,9 @@ class Event:
     """When."""
     impulse: float = 0.0
     energy_lost: float = 0.0
-    """Normal impulse of the table, and energy that went with it."""
+    """Normal impulse of the table on all surfaces that touch, and energy that went with it."""
     surface: int = 0
-    """Number of the body's surface to which it happened."""
+    """Number of the body's surface to which it happened: that which struck, of an impact."""
     steps: int = 0
     """How many steps it took to find what it does."""
 

@@ -21,14 +21,12 @@ from tippetop.mechanics.contact_pair import (
     apart,
     at_rest,
     directions_of,
-    is_resisted,
     pair_motion,
     slip_apart,
     slips_of,
     turning_along,
     without_tilting,
 )
-from tippetop.mechanics.coulomb import RollingResistance
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import along_table
 from tippetop.mechanics.pair_resolver import (
@@ -86,6 +84,8 @@ class TwoClosed:
     """On which contacts it has."""
     rolls: float
     """Sign of omega_e; 0 where rolling has ended, or is not resisted."""
+    pair: ContactPair
+    """The contact points."""
 
     @classmethod
     def of(
@@ -97,21 +97,17 @@ class TwoClosed:
         if ended == (False, True):
             tops, ended = tops[::-1], ended[::-1]
         pair = ContactPair.of(state.axis, state.momentum, tops)
-        stopped = is_resisted(pair) and not rolls
+        stopped = tops[0].resists_rolling and not rolls
         if any(ended) or stopped:
             momentum, velocity = at_rest(pair, state.velocity, ended, stopped=stopped)
             state = state._replace(momentum=momentum, velocity=velocity)
-        return cls(rules, tops, state, ended, rolls)
-
-    @property
-    def pair(self) -> ContactPair:
-        """The contact points."""
-        return ContactPair.of(self.state.axis, self.state.momentum, self.tops)
+            pair = ContactPair.of(state.axis, state.momentum, tops)
+        return cls(rules, tops, state, ended, rolls, pair)
 
     @property
     def stopped(self) -> bool:
         """Whether rolling has ended."""
-        return is_resisted(self.pair) and not self.rolls
+        return self.tops[0].resists_rolling and not self.rolls
 
     @property
     def xi(self) -> Slip:
@@ -180,8 +176,11 @@ class TwoClosed:
         """The same where rolling has begun."""
         least = 2.0 * least_slip(self.state.momentum, self.state.velocity[:2])
         change = scale(rolls * least, directions_of(self.state.axis)[0])
-        momentum = spun_up(self.state.axis, self.state.momentum, change, self.tops[0])
-        return replace(self, state=self.state._replace(momentum=momentum), rolls=rolls)
+        state = self.state._replace(
+            momentum=spun_up(self.state.axis, self.state.momentum, change, self.tops[0])
+        )
+        pair = ContactPair.of(state.axis, state.momentum, self.tops)
+        return replace(self, state=state, rolls=rolls, pair=pair)
 
     def letting_go(self, found: Resolution) -> Transition:
         """The mode in which slip begins."""
@@ -205,7 +204,7 @@ class TwoClosed:
 
 def rolling_of(state: State, top: Top) -> float:
     """Sign of omega_e where rolling is resisted and goes on; else 0."""
-    if not isinstance(top.friction, RollingResistance) or not is_rolling(state.axis, state.momentum, top):
+    if not top.resists_rolling or not is_rolling(state.axis, state.momentum, top):
         return 0.0
     return 1.0 if turning_along(ContactPair.of(state.axis, state.momentum, (top, top))) > 0.0 else -1.0
 
@@ -248,7 +247,10 @@ def settled(
         if arrived:
             lost = float(energy(state, tops[0]) - energy(here.state, tops[0]))
             events = (*events, rules.event(EventKind.DOUBLE_CONTACT, time, 0.0, lost))
-        events = (*events, *_marks((time + _left(state, here), time), here, found, before))
+        ended = time + _left(state, here)
+        # Rolling that is let go now began when the slip ended that held it up.
+        turned = ended if found.rolls != rolls else time
+        events = (*events, *_marks((ended, turned), here, found, before))
         return replace(here.going_on(found), events=events)
     numbers = [number_of(top) for top in here.tops]
     left, kept = numbers if answers == [SECOND] else numbers[::-1]
@@ -284,7 +286,10 @@ def slipping(rules: Any, time: float, state: State, tops: Tops, which: str, roll
 def _marks(
     times: tuple[float, float], here: TwoClosed, found: Resolution, before: Before
 ) -> tuple[Event, ...]:
-    """What is told where a contact sticks that did not, or slips that stuck; and the same of rolling."""
+    """What is told where a contact sticks that did not, or slips that stuck; and the same of rolling.
+
+    The times are that of slip's end, or beginning, and that of rolling's.
+    """
     told = []
     for top, held in zip(here.tops, found.sticks, strict=True):
         surface = number_of(top)
@@ -293,7 +298,7 @@ def _marks(
     if before.rolled != bool(found.rolls):
         kind = EventKind.ROLL if found.rolls else EventKind.HALT
         told += [Event(kind, times[1], surface=number_of(top)) for top in here.tops]
-    return tuple(told)
+    return tuple(sorted(told, key=lambda event: event.time))
 
 
 def _left(state: State, here: TwoClosed) -> float:

@@ -657,6 +657,10 @@ class Top extends py.NamedTuple {
   get conserves_jellett() {
     return py.and(this.surface.spherical, () => this.friction.torque_free);
   }
+  /** Whether the table resists rolling, and holds it where that takes little enough. */
+  get resists_rolling() {
+    return py.isinstance(this.friction, RollingResistance);
+  }
   /** What remains of it without its numbers. */
   get kind() {
     const coefficients = py.len(this.friction.coefficients(new Units(1.0, 1.0, 1.0)));
@@ -2499,10 +2503,10 @@ class Arrival extends py.NamedTuple {
   at(part) {
     return [...this.rows].map((row) => horner(row, py.mul(-part, this.left)));
   }
-  /** Whether the last terms are small, those of zeta beside zeta. */
+  /** Whether the last two terms are small, those of zeta beside zeta. */
   get serves() {
     const whole = size(py.tuple(this.at(1.0).slice(6)));
-    return py.all([[this.rows.slice(0, 6), 1.0], [this.rows.slice(6), whole]].flatMap(([rows, unit]) => [py.sub(DEGREE, 1), DEGREE].map((k) => size(py.tuple([...rows].map((row) => py.mul(py.item(row, k), py.pow(this.left, k))))) < py.mul(ACCURACY, unit))));
+    return py.all([[this.rows.slice(0, 6), 1.0], [this.rows.slice(6), whole]].flatMap(([rows, unit]) => py.range(py.len(rows[0]) - 2, py.len(rows[0])).map((k) => size(py.tuple([...rows].map((row) => py.mul(py.item(row, k), py.pow(this.left, k))))) < py.mul(ACCURACY, unit))));
   }
   /** Coefficients in powers of the time since the start. */
   get onwards() {
@@ -4821,11 +4825,6 @@ function turning_along(pair) {
   return dot(pair.first.turning, directions_of(pair.first.axis)[0]);
 }
 
-/** Whether rolling is resisted. */
-function is_resisted(pair) {
-  return py.isinstance(pair.first.top.friction, RollingResistance);
-}
-
 /** What the table does to a body whose two contacts stay closed, and how it accelerates. */
 function pair_motion(pair, slips, rolls) {
   let held = [];
@@ -4843,7 +4842,7 @@ function pair_motion(pair, slips, rolls) {
     units.push([number, normal_wrench(py.item(pair, number), slip, scale(rolls, along))]);
     held.push([number, VERTICAL]);
   }
-  const stopped = py.and(is_resisted(pair), () => !py.truth(rolls));
+  const stopped = py.and(pair.first.top.resists_rolling, () => !py.truth(rolls));
   if (py.truth(stopped)) {
     units.push([0, new Wrench(NO_TORQUE, along)]);
     held.push([TURNING_of_contact_pair, along]);
@@ -4996,7 +4995,7 @@ py.fields(Resolution, ["motion", "sticks", "rolls", "begins"]);
 
 /** How two contacts go on that slip so, of which slip has ended on some; if on one, on the first. */
 function resolution(pair, xi, ended, rolls) {
-  if (py.truth(rolls) || !py.truth(is_resisted(pair))) {
+  if (py.truth(rolls) || !py.truth(pair.first.top.resists_rolling)) {
     return of_slips(pair, xi, ended, rolls);
   }
   const held = _without_rolling(pair, xi, ended);
@@ -5103,7 +5102,7 @@ class OnTwo extends IntegratedMode {
   }
   /** Whether rolling is held. */
   get stopped() {
-    return py.and(py.isinstance(this.top.friction, RollingResistance), () => !py.truth(this.rolls));
+    return py.and(this.top.resists_rolling, () => !py.truth(this.rolls));
   }
   /** Numbers of the surfaces that stick: none, where a mode does not say otherwise. */
   get stuck() {
@@ -5262,7 +5261,7 @@ function pair_guards(first, second, found, rolls) {
     return found(y, numbers).rolling_reserve;
   };
   const guards = [0, 1].map((number) => new Guard(`${py.str(OPENING)}${py.str(number)}`, normal(number)));
-  if (py.isinstance(first.example.friction, RollingResistance)) {
+  if (py.truth(first.example.resists_rolling)) {
     guards.push(py.truth(rolls) ? new Guard(ROLLING_STOPPING, rolling) : new Guard(ROLLING, reserve));
   }
   return py.add(guards, surface_guards(first, [number_of(second.example)]));
@@ -5425,15 +5424,14 @@ class SlipBeginningOnTwo extends SlidingOnTwo {
   }
   /** Follow it by an implicit method: its direction is damped the faster the slower it is. */
   *segments(time, state, end, integrator) {
-    const reach = py.min(py.add(time, BEGINNING), end);
-    for (const segment of super.segments(time, state, reach, make_integrator("collocation", TOLERANCE_of_double_sticking))) {
-      const found = segment.transition;
+    const [reach, method] = [py.min(py.add(time, BEGINNING), end), make_integrator("collocation", TOLERANCE_of_double_sticking)];
+    for (const segment of super.segments(time, state, reach, method)) {
+      let found = segment.transition;
       if (found !== null && found.then === Outcome.COMPLETED && reach < end) {
         const then = new SlidingOnTwo(this.top, this.rules, this.other, this.rolls);
-        yield py.replace(segment, { transition: new Transition([], then, found.state) });
-      } else {
-        yield segment;
+        found = new Transition([], then, found.state);
       }
+      yield py.replace(segment, { transition: found, method: method });
     }
   }
 }
@@ -5538,13 +5536,14 @@ py.fields(Before, ["stuck", "rolled"]);
 
 /** Two contacts that are closed and have no normal velocities. */
 class TwoClosed extends py.Record {
-  constructor(rules, tops, state, ended, rolls) {
+  constructor(rules, tops, state, ended, rolls, pair) {
     super();
     this.rules = rules;
     this.tops = tops;
     this.state = state;
     this.ended = ended;
     this.rolls = rolls;
+    this.pair = pair;
   }
   /** The contacts in a state that has slip, or tilts, by no more than what is taken for none. */
   static of(rules, state, tops, rolls, ended = null) {
@@ -5553,21 +5552,18 @@ class TwoClosed extends py.Record {
     if (py.eq(ended, [false, true])) {
       [tops, ended] = [py.slice(tops, null, null, -1), py.slice(ended, null, null, -1)];
     }
-    const pair = ContactPair.of(state.axis, state.momentum, tops);
-    const stopped = py.and(is_resisted(pair), () => !py.truth(rolls));
+    let pair = ContactPair.of(state.axis, state.momentum, tops);
+    const stopped = py.and(tops[0].resists_rolling, () => !py.truth(rolls));
     if (py.truth(py.any(ended)) || py.truth(stopped)) {
       const [momentum, velocity] = at_rest(pair, state.velocity, ended, stopped);
       state = state._replace({ momentum: momentum, velocity: velocity });
+      pair = ContactPair.of(state.axis, state.momentum, tops);
     }
-    return new this(rules, tops, state, ended, rolls);
-  }
-  /** The contact points. */
-  get pair() {
-    return ContactPair.of(this.state.axis, this.state.momentum, this.tops);
+    return new this(rules, tops, state, ended, rolls, pair);
   }
   /** Whether rolling has ended. */
   get stopped() {
-    return py.and(is_resisted(this.pair), () => !py.truth(this.rolls));
+    return py.and(this.tops[0].resists_rolling, () => !py.truth(this.rolls));
   }
   /** How they slip. */
   get xi() {
@@ -5640,8 +5636,9 @@ class TwoClosed extends py.Record {
   _rolling(rolls) {
     const least = py.mul(2.0, least_slip(this.state.momentum, this.state.velocity.slice(0, 2)));
     const change = scale(py.mul(rolls, least), directions_of(this.state.axis)[0]);
-    const momentum = spun_up(this.state.axis, this.state.momentum, change, this.tops[0]);
-    return py.replace(this, { state: this.state._replace({ momentum: momentum }), rolls: rolls });
+    const state = this.state._replace({ momentum: spun_up(this.state.axis, this.state.momentum, change, this.tops[0]) });
+    const pair = ContactPair.of(state.axis, state.momentum, this.tops);
+    return py.replace(this, { state: state, rolls: rolls, pair: pair });
   }
   /** The mode in which slip begins. */
   letting_go(found) {
@@ -5664,11 +5661,11 @@ class TwoClosed extends py.Record {
     return new Transition([], mode, mode.state(begin));
   }
 }
-py.fields(TwoClosed, ["rules", "tops", "state", "ended", "rolls"]);
+py.fields(TwoClosed, ["rules", "tops", "state", "ended", "rolls", "pair"]);
 
 /** Sign of omega_e where rolling is resisted and goes on; else 0. */
 function rolling_of(state, top) {
-  if (!py.isinstance(top.friction, RollingResistance) || !py.truth(is_rolling(state.axis, state.momentum, top))) {
+  if (!py.truth(top.resists_rolling) || !py.truth(is_rolling(state.axis, state.momentum, top))) {
     return 0.0;
   }
   return turning_along(ContactPair.of(state.axis, state.momentum, [top, top])) > 0.0 ? 1.0 : -1.0;
@@ -5710,7 +5707,9 @@ function settled(rules, time, state, tops, before, rolls, events = [], arrived =
       const lost = py.float(py.sub(energy(state, tops[0]), energy(here.state, tops[0])));
       events = [...events, rules.event(EventKind.DOUBLE_CONTACT, time, 0.0, lost)];
     }
-    events = [...events, ..._marks([py.add(time, _left(state, here)), time], here, found, before)];
+    const ended = py.add(time, _left(state, here));
+    const turned = !py.eq(found.rolls, rolls) ? ended : time;
+    events = [...events, ..._marks([ended, turned], here, found, before)];
     return py.replace(here.going_on(found), { events: events });
   }
   const numbers = [...here.tops].map((top) => number_of(top));
@@ -5758,7 +5757,7 @@ function _marks(times, here, found, before) {
     const kind = py.truth(found.rolls) ? EventKind.ROLL : EventKind.HALT;
     told = py.add(told, [...here.tops].map((top) => new Event(kind, times[1], undefined, undefined, number_of(top))));
   }
-  return py.tuple(told);
+  return py.tuple(py.sorted(told, py.how({ key: (event) => event.time })));
 }
 
 /** Time to the end of slip that is followed no further, at its present rate. */
@@ -5942,7 +5941,7 @@ function impact_on_two(state, restitution, tops) {
   }
   const after = body.after(end);
   const lost = py.max(0.0, py.float(py.sub(energy(state, tops[0]), energy(after, tops[0]))));
-  return new Impact(after, end[6], lost, compressed[6], steps);
+  return new Impact(after, py.add(end[6], end[7]), lost, compressed[6], steps);
 }
 
 // tippetop.contact.several
@@ -7327,15 +7326,15 @@ function _fall_along(guards, parameters, dense, advance, step, least) {
   for (const [index, guard] of py.enumerate(guards)) {
     const values = [...states].map((state) => py.float(guard.value(state, parameters)));
     const [value, exact] = [_along(guard, parameters, dense), _along(guard, parameters, advance)];
-    let found = py.max(values.slice(0, 2)) <= 0.0 ? _early_bracket(step, value) : null;
-    found = py.or(found, () => _bracket(probes, values, value, exact));
-    if (found !== null) {
-      const [low, high, function_] = found;
+    for (const [low, high, function_] of _brackets(probes, values, value, exact)) {
       const time = crossing(function_, low, high);
-      const zero = py.and(py.item(values, LOOKS_of_dormand_prince) > 0.0, () => py.sub(time, start) < py.mul(least, py.sub(end, start)));
-      if (!py.truth(zero) && (first === null || time < first[1])) {
+      if (py.item(values, LOOKS_of_dormand_prince) > 0.0 && py.sub(time, start) < py.mul(least, py.sub(end, start))) {
+        continue;
+      }
+      if (first === null || time < first[1]) {
         first = [index, time];
       }
+      break;
     }
   }
   return first;
@@ -7346,23 +7345,15 @@ function _along(guard, parameters, solution) {
   return (time) => py.float(guard.value(py.tolist(solution(time)), parameters));
 }
 
-/** The interval before the first probe over which a guard falls that starts at zero and rises. */
-function _early_bracket(step, value) {
-  const [start, end] = step;
-  let part = EARLIEST;
-  while (part < py.div(1.0, LOOKS_of_dormand_prince)) {
-    const [low, high] = [py.add(start, py.mul(part, py.sub(end, start))), py.add(start, py.mul(py.mul(2.0, part), py.sub(end, start)))];
-    if (value(low) > RISEN && value(high) <= 0.0) {
-      return [low, high, value];
-    }
-    part = py.mul(part, 2.0);
-  }
-  return null;
-}
-
-/** The first interval over which the guard falls from positive to not positive, and in which solution. */
-function _bracket(probes, values, value, exact) {
+/** The intervals over which the guard falls from positive to not positive, in turn; in which solution. */
+function* _brackets(probes, values, value, exact) {
   const last = py.len(probes) - 1;
+  if (py.max(values.slice(0, 2)) <= 0.0) {
+    const early = _early_bracket(probes[0], py.item(probes, last), value);
+    if (early !== null) {
+      yield early;
+    }
+  }
   for (let i = 0; i < last + 1; i += 1) {
     const [before, after] = [py.max(i - 1, 0), py.min(i + 1, last)];
     if (py.item(values, i) > 0.0 && py.item(values, i) <= py.min(py.item(values, before), py.item(values, after))) {
@@ -7370,16 +7361,27 @@ function _bracket(probes, values, value, exact) {
       if (py.item(values, i) < drop) {
         const [place, least] = dip(value, py.item(probes, before), py.item(probes, after));
         if (least <= 0.0) {
-          return [py.item(probes, before), place, value];
-        }
-        if (least < py.mul(INEXACT, drop) && exact(place) <= 0.0 && exact(py.item(probes, before)) > 0.0) {
-          return [py.item(probes, before), place, exact];
+          yield [py.item(probes, before), place, value];
+        } else if (least < py.mul(INEXACT, drop) && exact(place) <= 0.0 && exact(py.item(probes, before)) > 0.0) {
+          yield [py.item(probes, before), place, exact];
         }
       }
     }
     if (py.item(values, i) > 0.0 && py.item(values, after) <= 0.0) {
-      return [py.item(probes, i), py.item(probes, after), value];
+      yield [py.item(probes, i), py.item(probes, after), value];
     }
+  }
+}
+
+/** The interval before the first probe over which a guard falls that starts at zero and rises. */
+function _early_bracket(start, end, value) {
+  let part = EARLIEST;
+  while (part < py.div(1.0, LOOKS_of_dormand_prince)) {
+    const [low, high] = [py.add(start, py.mul(part, end - start)), py.add(start, py.mul(py.mul(2.0, part), end - start))];
+    if (value(low) > RISEN && value(high) <= 0.0) {
+      return [low, high, value];
+    }
+    part = py.mul(part, 2.0);
   }
   return null;
 }
@@ -8618,7 +8620,7 @@ export {
   _apart,
   _at_rest,
   _beside,
-  _bracket,
+  _brackets,
   _by_energy,
   _early_bracket,
   _face,
@@ -8745,7 +8747,6 @@ export {
   is_number,
   is_number_of_graph,
   is_one_way,
-  is_resisted,
   is_rolling,
   is_set_valued,
   is_slipping,

@@ -1,6 +1,6 @@
 """Where a guard falls through zero within a step of an integrator."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 from tippetop.integrators.base import Array, Guard
 from tippetop.integrators.dormand_prince import EARLIEST, LOOKS, RISEN
@@ -82,14 +82,13 @@ def _fall_along(
     for index, guard in enumerate(guards):
         values = [float(guard.value(state, parameters)) for state in states]
         value, exact = _along(guard, parameters, dense), _along(guard, parameters, advance)
-        found = _early_bracket(step, value) if max(values[:2]) <= 0.0 else None
-        found = found or _bracket(probes, values, value, exact)
-        if found is not None:
-            low, high, function = found
+        for low, high, function in _brackets(probes, values, value, exact):
             time = crossing(function, low, high)
-            zero = values[LOOKS] > 0.0 and time - start < least * (end - start)
-            if not zero and (first is None or time < first[1]):
+            if values[LOOKS] > 0.0 and time - start < least * (end - start):
+                continue
+            if first is None or time < first[1]:
                 first = index, time
+            break
     return first
 
 
@@ -98,23 +97,15 @@ def _along(guard: Guard, parameters: Sequence[Scalar], solution: Dense) -> Value
     return lambda time: float(guard.value(solution(time).tolist(), parameters))
 
 
-def _early_bracket(step: tuple[float, float], value: Value) -> tuple[float, float, Value] | None:
-    """The interval before the first probe over which a guard falls that starts at zero and rises."""
-    start, end = step
-    part = EARLIEST
-    while part < 1.0 / LOOKS:
-        low, high = start + part * (end - start), start + 2.0 * part * (end - start)
-        if value(low) > RISEN and value(high) <= 0.0:
-            return low, high, value
-        part *= 2.0
-    return None
-
-
-def _bracket(
+def _brackets(
     probes: Sequence[float], values: Sequence[float], value: Value, exact: Value
-) -> tuple[float, float, Value] | None:
-    """The first interval over which the guard falls from positive to not positive, and in which solution."""
+) -> Iterator[tuple[float, float, Value]]:
+    """The intervals over which the guard falls from positive to not positive, in turn; in which solution."""
     last = len(probes) - 1
+    if max(values[:2]) <= 0.0:
+        early = _early_bracket(probes[0], probes[last], value)
+        if early is not None:
+            yield early
     for i in range(last + 1):
         before, after = max(i - 1, 0), min(i + 1, last)
         if values[i] > 0.0 and values[i] <= min(values[before], values[after]):
@@ -123,11 +114,21 @@ def _bracket(
             if values[i] < drop:
                 place, least = dip(value, probes[before], probes[after])
                 if least <= 0.0:
-                    return probes[before], place, value
-                if least < INEXACT * drop and exact(place) <= 0.0 and exact(probes[before]) > 0.0:
-                    return probes[before], place, exact
+                    yield probes[before], place, value
+                elif least < INEXACT * drop and exact(place) <= 0.0 and exact(probes[before]) > 0.0:
+                    yield probes[before], place, exact
         if values[i] > 0.0 and values[after] <= 0.0:
-            return probes[i], probes[after], value
+            yield probes[i], probes[after], value
+
+
+def _early_bracket(start: float, end: float, value: Value) -> tuple[float, float, Value] | None:
+    """The interval before the first probe over which a guard falls that starts at zero and rises."""
+    part = EARLIEST
+    while part < 1.0 / LOOKS:
+        low, high = start + part * (end - start), start + 2.0 * part * (end - start)
+        if value(low) > RISEN and value(high) <= 0.0:
+            return low, high, value
+        part *= 2.0
     return None
 
 

@@ -218,11 +218,6 @@ def turning_along(pair: ContactPair) -> Scalar:
     return dot(pair.first.turning, directions_of(pair.first.axis)[0])
 
 
-def is_resisted(pair: ContactPair) -> bool:
-    """Whether rolling is resisted."""
-    return isinstance(pair.first.top.friction, RollingResistance)
-
-
 def pair_motion(pair: ContactPair, slips: Slips, rolls: float) -> PairMotion:
     """What the table does to a body whose two contacts stay closed, and how it accelerates.
 
@@ -246,7 +241,7 @@ def pair_motion(pair: ContactPair, slips: Slips, rolls: float) -> PairMotion:
     for number, slip in enumerate(slips):
         units.append((number, normal_wrench(pair[number], slip, scale(rolls, along))))
         held.append((number, VERTICAL))
-    stopped = is_resisted(pair) and not rolls
+    stopped = pair.first.top.resists_rolling and not rolls
     if stopped:
         units.append((0, Wrench(NO_TORQUE, along)))
         held.append((TURNING, along))

@@ -47,11 +47,11 @@ class Impact(NamedTuple):
     state: State
     """The state after: same configuration, other velocities."""
     impulse: Scalar
-    """Normal impulse p, N s."""
+    """Normal impulse of the table, N s: on all surfaces that touch."""
     energy_lost: Scalar
     """Energy that the impact took, J: never negative."""
     compression: Scalar
-    """Normal impulse of compression p_c, N s."""
+    """Normal impulse of compression p_c, N s: of what strikes."""
     steps: int = 0
     """How many steps it took to find them, where they are integrated."""
 

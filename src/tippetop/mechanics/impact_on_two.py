@@ -212,4 +212,4 @@ def impact_on_two(state: State, restitution: float, tops: Tops) -> Impact:
         steps += more
     after = body.after(end)
     lost = max(0.0, float(energy(state, tops[0]) - energy(after, tops[0])))
-    return Impact(after, end[6], lost, compressed[6], steps)
+    return Impact(after, end[6] + end[7], lost, compressed[6], steps)

@@ -7,7 +7,6 @@ from tippetop.mechanics.contact_pair import (
     PairMotion,
     Slips,
     directions_of,
-    is_resisted,
     pair_motion,
     slips_of,
     way_of_both,
@@ -41,7 +40,7 @@ def resolution(pair: ContactPair, xi: Slip, ended: tuple[bool, bool], rolls: flo
     ArithmeticError
         If nothing can hold them, and there is no direction, or more than one, in which they can go on.
     """
-    if rolls or not is_resisted(pair):
+    if rolls or not pair.first.top.resists_rolling:
         return of_slips(pair, xi, ended, rolls)
     held = _without_rolling(pair, xi, ended)
     if held is not None and held.motion.rolling_reserve >= 0.0:

@@ -2,6 +2,7 @@
 
 from typing import Any, NamedTuple
 
+from tippetop.mechanics.coulomb import RollingResistance
 from tippetop.mechanics.friction import FrictionLaw
 from tippetop.mechanics.hull import each_surface
 from tippetop.mechanics.state import State
@@ -28,6 +29,11 @@ class Top(NamedTuple):
         perpendicular to the other; a torque of the table has.
         """
         return self.surface.spherical and self.friction.torque_free
+
+    @property
+    def resists_rolling(self) -> bool:
+        """Whether the table resists rolling, and holds it where that takes little enough."""
+        return isinstance(self.friction, RollingResistance)
 
     @property
     def kind(self) -> "Kind":
