@@ -80,7 +80,7 @@ def cost_of_a_flight(cells: int) -> tuple[float, float]:
     is left of the whole run is the cost of the flights.
     """
     problem = report_problem(spin=200.0)
-    axis = Axis.linear("launch.spin", 190.0, 210.0, cells)
+    axis = Axis.of("launch.spin", {"from": 190.0, "to": 210.0, "count": cells})
     whole = Sweep(problem, Product((axis,)), DURATION)
     calm = Sweep(problem, Product((axis,)), 5.0)
     numbers = np.arange(cells)

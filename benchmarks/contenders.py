@@ -40,7 +40,7 @@ def problem() -> Problem:
 
 def engine(spins: Array, tolerance: float) -> Array:
     """The engine of sweeps, with all observables."""
-    axis = Axis.listed("launch.spin", spins.tolist())
+    axis = Axis.of("launch.spin", spins.tolist())
     sweep = Sweep(problem(), Product((axis,)), DURATION, tolerance)
     found: Array = follow_cells(sweep, np.arange(len(spins)))["final_theta"].astype(float)
     return found

@@ -67,7 +67,7 @@ def test_a_sweep_says_what_a_run_says(problem, run):
 @pytest.mark.skipif(not has_numba(), reason="numba is not installed")
 def test_a_sweep_without_heyoka_says_what_a_run_says(monkeypatch):
     monkeypatch.setattr(integrators, "has_taylor", lambda: False)
-    problem, grid = report_problem(175.0), Product((Axis.listed("launch.spin", [175.0]),))
+    problem, grid = report_problem(175.0), Product((Axis.of("launch.spin", [175.0]),))
     found = follow_cells(Sweep(problem, grid, 8.0, EXACT), np.arange(1))
     run = tt.simulate(problem, 8.0, samples=11, integrator="compiled")
     assert run.sizes["flight"] > 0

@@ -337,11 +337,7 @@ class Problem(Part):
         InvalidInput
             If the text is not TOML, or not a problem.
         """
-        try:
-            fields = parse_toml(text)
-        except ValueError as error:
-            raise InvalidInput("problem", text.strip(), f"TOML; {error}") from None
-        return cls(**fields)
+        return cls(**parse_toml(text, "problem"))
 
     @classmethod
     def from_json(cls, text: str) -> Self:

@@ -5,6 +5,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from tippetop.catalogue import METRICS, MONITORS
+
 
 def summarize(run: xr.Dataset) -> dict[str, Any]:
     """The main figures of a run, as plain numbers and strings.
@@ -44,25 +46,11 @@ def summarize(run: xr.Dataset) -> dict[str, Any]:
     }
 
 
-NUMBERS = (
-    "turns_over",
-    "arrives",
-    "least_normal_force",
-    "first_lift_off",
-    "energy_start",
-    "energy_lost",
-    "energy_lost_sliding",
-    "energy_lost_drilling",
-    "energy_lost_rolling",
-    "jellett_drift",
-    "energy_error",
-    "flights",
-    "airborne_time",
-    "highest",
-    "highest_gap",
-    "impact_energy_lost",
-)
-"""The single numbers of a run that are told."""
+_OTHERWISE = {
+    "final_theta", "final_omega3", "final_phi_dot", "end_time", "steps", "evaluations", "jellett_error",
+}  # fmt: skip
+NUMBERS = [name for name in (*METRICS, *MONITORS) if name not in _OTHERWISE]
+"""The single numbers of a run that are told under their names."""
 
 
 def _number(value: xr.DataArray) -> int | float | None:

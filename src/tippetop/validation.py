@@ -238,13 +238,17 @@ def parse_json(text: str) -> Any:
         raise ValueError(_TOO_DEEP) from None
 
 
-def parse_toml(text: str) -> dict[str, Any]:
-    """What a TOML text says; see `parse_json`."""
+def parse_toml(text: str, field: str, shown: str | None = None) -> dict[str, Any]:
+    """What a TOML text says that states a field, and is shown as something else if need be.
+
+    Raises `InvalidInput` if it is no TOML, or is nested deeper than `DEEPEST`.
+    """
     try:
         fields = tomllib.loads(text)
-    except RecursionError:
-        raise ValueError(_TOO_DEEP) from None
-    _not_deep(fields)
+        _not_deep(fields)
+    except (ValueError, RecursionError) as error:
+        told = _TOO_DEEP if isinstance(error, RecursionError) else error
+        raise InvalidInput(field, shown or text.strip(), f"TOML; {told}") from None
     return fields
 
 

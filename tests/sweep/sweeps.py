@@ -5,6 +5,7 @@ import numpy as np
 from tippetop.presets import report_problem
 from tippetop.run import simulate
 from tippetop.sweeps import Axis, Product, Sweep
+from tippetop.sweeps.axes import Spaced
 
 FIELDS = ("final_theta", "final_omega3", "energy_lost", "airborne_time", "first_lift_off", "end_time")
 
@@ -12,14 +13,14 @@ FIELDS = ("final_theta", "final_omega3", "energy_lost", "airborne_time", "first_
 def lively(liftoff="fly", spins=5, mus=3, duration=1.4, tolerance=1e-12, tilt=1.0):
     """Launches of which some lift off, over spin and friction; tilted, so that things happen early."""
     problem = report_problem(tilt=tilt).replace({"contact.liftoff": liftoff})
-    axes = Axis.linear("launch.spin", 40.0, 240.0, spins), Axis.geometric("friction.mu", 0.2, 1.0, mus)
+    axes = Spaced("launch.spin", 40.0, 240.0, spins), Spaced("friction.mu", 0.2, 1.0, mus, "geometric")
     return Sweep(problem, Product(axes), duration, tolerance)
 
 
 def thrown(tolerance=1e-9):
     """Launches that fall on the table, bounce, and slide on; short."""
     problem = report_problem(spin=150.0, tilt=0.5)
-    axes = Axis.listed("launch.gap", [0.0, 0.001]), Axis.listed("contact.restitution", [0.0, 0.4])
+    axes = Axis.of("launch.gap", [0.0, 0.001]), Axis.of("contact.restitution", [0.0, 0.4])
     return Sweep(problem, Product(axes), 0.12, tolerance)
 
 

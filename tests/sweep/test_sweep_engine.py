@@ -94,7 +94,7 @@ def test_cells_are_single_runs(liftoff):
 
 
 def test_a_top_that_turns_over_is_a_single_run():
-    axes = Axis.listed("launch.spin", [20.0, 50.0, 155.0, 180.0]), Axis.listed("friction.mu", [0.3])
+    axes = Axis.of("launch.spin", [20.0, 50.0, 155.0, 180.0]), Axis.of("friction.mu", [0.3])
     found = check_against_runs(Sweep(report_problem(), Product(axes), 12.0, 1e-12))
     assert found["outcome"].tolist() == [Ending.UPRIGHT, Ending.TILTED, Ending.INVERTED, Ending.INVERTED]
     assert found["flights"][3] > 0
@@ -105,7 +105,7 @@ def test_other_shapes_and_friction_laws_are_single_runs():
         body=EGG, friction=RegularizedCoulombFriction(mu=0.3, eps=0.01), launch={"tilt": 1.5, "spin": 0.0}
     )
     egg = egg.replace({"launch.precession": 150.0, "contact.liftoff": "ignore"})
-    axis = Axis.listed("launch.precession", [60.0, 150.0])
+    axis = Axis.of("launch.precession", [60.0, 150.0])
     check_against_runs(Sweep(egg, Product((axis,)), 0.6, 1e-12), closeness=1e-6)
     flying = egg.replace({"contact.liftoff": "fly"})
     check_against_runs(Sweep(flying, Product((axis,)), 0.6, 1e-12), closeness=1e-6)
@@ -113,7 +113,7 @@ def test_other_shapes_and_friction_laws_are_single_runs():
 
 def test_thrown_and_bouncing_tops_are_single_runs():
     problem = report_problem(spin=100.0, tilt=0.5).replace({"contact.restitution": 0.5})
-    axes = Axis.listed("launch.gap", [0.0, 0.002, 0.01]), Axis.listed("contact.restitution", [0.0, 0.6])
+    axes = Axis.of("launch.gap", [0.0, 0.002, 0.01]), Axis.of("contact.restitution", [0.0, 0.6])
     found = check_against_runs(Sweep(problem, Product(axes), 0.4, 1e-12), closeness=1e-6)
     assert np.all(found["flights"][2:] > 0)
     assert np.all(found["flights"][[3, 5]] > found["flights"][[2, 4]])
@@ -193,17 +193,17 @@ def test_launches_that_begin_beyond_a_right_angle_are_single_runs(liftoff):
     """Some fall back upright, some swing, some are thrown; none turns over merely because it is there."""
     problem = report_problem(spin=155.0).replace({"contact.liftoff": liftoff, "launch.precession": -40.0})
     # With the faster spin a table that pulls drives the top until its motion is singular.
-    spins = Axis.listed("launch.spin", [5.0, 155.0] if liftoff == "fly" else [5.0])
-    axes = Axis.listed("launch.tilt", [1.6, 2.0, 2.5]), spins
+    spins = Axis.of("launch.spin", [5.0, 155.0] if liftoff == "fly" else [5.0])
+    axes = Axis.of("launch.tilt", [1.6, 2.0, 2.5]), spins
     found = check_against_runs(Sweep(problem, Product(axes), 0.8, 1e-12), closeness=1e-6)
     assert np.isnan(found["turns_over"]).any() == (liftoff == "fly")
     if liftoff == "fly":
-        gaps = Axis.listed("launch.gap", [0.003, 0.05]), Axis.listed("launch.tilt", [2.0, 3.0])
+        gaps = Axis.of("launch.gap", [0.003, 0.05]), Axis.of("launch.tilt", [2.0, 3.0])
         check_against_runs(Sweep(report_problem(), Product(gaps), 0.3, 1e-12), closeness=1e-6)
 
 
 def test_a_launch_that_ends_in_its_first_flight_has_arrived():
-    axis = Axis.listed("launch.gap", [0.5, 50.0])
+    axis = Axis.of("launch.gap", [0.5, 50.0])
     sweep = Sweep(report_problem(), Product((axis,)), 0.2, 1e-12)
     found = check_against_runs(sweep, closeness=1e-6)
     assert np.all(np.isfinite(found["arrives"]))
@@ -212,7 +212,7 @@ def test_a_launch_that_ends_in_its_first_flight_has_arrived():
 def test_a_flight_that_cannot_be_followed_is_said_to_have_failed(monkeypatch):
     monkeypatch.setattr(flights, "PIECES", 1)
     problem = report_problem(spin=2000.0, tilt=1.0).replace({"launch.precession": 3000.0})
-    axis = Axis.listed("launch.gap", [1.0])
+    axis = Axis.of("launch.gap", [1.0])
     found = follow_cells(Sweep(problem, Product((axis,)), 0.3, 1e-9), np.arange(1))
     assert found["outcome"][0] == Ending.FAILED
     assert found["end_time"][0] == pytest.approx(found["airborne_time"][0])
@@ -222,8 +222,8 @@ def test_a_flight_that_cannot_be_followed_is_said_to_have_failed(monkeypatch):
 def settling(settled):
     """Launches that end upright, inverted and between, some of them after flights, over a long time."""
     axes = (
-        Axis.listed("launch.spin", [15.0, 45.0, 60.0, 120.0, 190.0]),
-        Axis.listed("friction.mu", [0.3, 0.8]),
+        Axis.of("launch.spin", [15.0, 45.0, 60.0, 120.0, 190.0]),
+        Axis.of("friction.mu", [0.3, 0.8]),
     )
     return Sweep(report_problem(), Product(axes), 60.0, 1e-9, settled)
 
@@ -264,14 +264,14 @@ def test_launches_followed_one_by_one_end_too_when_they_have_settled():
 
 def test_a_launch_that_swings_has_not_settled():
     """Without friction nothing settles, and a top that stands where it is unstable does not count as held."""
-    axes = Axis.listed("launch.tilt", [0.0, 0.3]), Axis.listed("friction.mu", [0.0, 0.01])
+    axes = Axis.of("launch.tilt", [0.0, 0.3]), Axis.of("friction.mu", [0.0, 0.01])
     found = follow_cells(Sweep(report_problem(), Product(axes), 1.0, 1e-9, 1e-2), np.arange(4))
     assert np.all(found["end_time"] == 1.0)
 
 
 def test_only_eccentric_spheres_are_known_to_settle():
     egg = report_problem().replace({"body": EGG.model_dump()})
-    grid = Product((Axis.listed("launch.spin", [1.0]),))
+    grid = Product((Axis.of("launch.spin", [1.0]),))
     assert Sweep(egg, grid).settled is None
     with pytest.raises(InvalidInput, match="sphere"):
         Sweep(egg, grid, settled=1e-3)
@@ -302,7 +302,7 @@ def test_a_sweep_is_the_same_without_heyoka(tmp_path):
 
 
 def test_bad_cells_are_labelled_and_harm_no_other():
-    axes = Axis.listed("body.I3", [3.2e-6, 1.0, -1.0]), Axis.listed("launch.tilt", [1.0, 4.0])
+    axes = Axis.of("body.I3", [3.2e-6, 1.0, -1.0]), Axis.of("launch.tilt", [1.0, 4.0])
     problem = report_problem(spin=200.0)
     sweep = Sweep(problem, Product(axes), 0.2, 1e-9)
     dataset = compute(sweep)
@@ -312,9 +312,7 @@ def test_bad_cells_are_labelled_and_harm_no_other():
         [Fault.NO_SUCH_BODY, Fault.VALUE_OUT_OF_RANGE],
         [Fault.VALUE_OUT_OF_RANGE, Fault.VALUE_OUT_OF_RANGE],
     ]
-    one = Sweep(
-        problem.replace({"body.I3": 3.2e-6}), Product((Axis.listed("launch.tilt", [1.0]),)), 0.2, 1e-9
-    )
+    one = Sweep(problem.replace({"body.I3": 3.2e-6}), Product((Axis.of("launch.tilt", [1.0]),)), 0.2, 1e-9)
     good, alone = follow_cells(sweep, np.array([0])), follow_cells(one, np.array([0]))
     assert same(good, alone)
     bad = follow_cells(sweep, np.array([1, 2]))
@@ -329,7 +327,7 @@ def test_a_motion_that_becomes_singular_is_labelled():
     problem = report_problem(spin=200.0, tilt=1.0).replace(
         {"contact.liftoff": "ignore", "launch.slip": (-0.3, 0.0)}
     )
-    sweep = Sweep(problem, Product((Axis.listed("friction.mu", [0.3, 40.0]),)), 1.0, 1e-9)
+    sweep = Sweep(problem, Product((Axis.of("friction.mu", [0.3, 40.0]),)), 1.0, 1e-9)
     found = follow_cells(sweep, np.arange(2))
     runs = [truth(problem_of(sweep, k), 1.0, 11) for k in range(2)]
     assert [outcome == Ending.FAILED for outcome in found["outcome"]] == [
@@ -359,7 +357,7 @@ def test_a_smaller_tolerance_is_a_smaller_error():
 
 
 def test_upright_launches_stay_where_they_are():
-    axes = Axis.listed("launch.tilt", [0.0, math.pi]), Axis.listed("launch.spin", [0.0, 100.0])
+    axes = Axis.of("launch.tilt", [0.0, math.pi]), Axis.of("launch.spin", [0.0, 100.0])
     found = follow_cells(Sweep(report_problem(), Product(axes), 1.0), np.arange(4))
     assert found["final_theta"] == pytest.approx([0, 0, math.pi, math.pi], abs=1e-12)
     assert found["arrives"].tolist() == [0.0] * 4

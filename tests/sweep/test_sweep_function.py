@@ -17,7 +17,7 @@ OVER = {"launch.spin": np.linspace(50, 200, 3), "friction.mu": [0.1, 0.3]}
 
 def test_fields_and_their_values_are_a_sweep():
     problem = report_problem(tilt=1.0)
-    axes = Axis.listed("launch.spin", [50, 125, 200]), Axis.listed("friction.mu", [0.1, 0.3])
+    axes = Axis.of("launch.spin", [50, 125, 200]), Axis.of("friction.mu", [0.1, 0.3])
     found = sweep(problem, OVER, duration=0.1, tolerance=1e-8, workers=1)
     xr.testing.assert_identical(found, compute(Sweep(problem, Product(axes), 0.1, 1e-8)))
     xr.testing.assert_identical(found, sweep(problem, Product(axes), duration=0.1, tolerance=1e-8))

@@ -10,6 +10,7 @@ import pytest
 from tippetop.errors import FileTrouble, InvalidInput
 from tippetop.presets import report_problem
 from tippetop.sweeps import Axis, Draws, Product, Range, Sweep
+from tippetop.sweeps.axes import Spaced
 from tippetop.sweeps.definition import is_sweep
 
 
@@ -59,7 +60,7 @@ def test_axes_that_cannot_be_are_refused_by_what_is_wrong(entry, field):
 
 
 def test_cells_of_a_product_are_counted_row_by_row():
-    grid = Product((Axis.listed("launch.spin", [1, 2]), Axis.listed("friction.mu", [0.1, 0.2, 0.3])))
+    grid = Product((Axis.of("launch.spin", [1, 2]), Axis.of("friction.mu", [0.1, 0.2, 0.3])))
     values = grid.values(np.arange(6))
     assert values["launch.spin"].tolist() == [1, 1, 1, 2, 2, 2]
     assert values["friction.mu"].tolist() == [0.1, 0.2, 0.3] * 2
@@ -100,7 +101,7 @@ def test_draws_that_cannot_be_are_refused_by_what_is_wrong(entry, field):
 @pytest.mark.parametrize(
     "grid",
     [
-        Product((Axis.geometric("friction.mu", 0.1, 1, 5), Axis.listed("launch.tilt", [0.1, 0.2]))),
+        Product((Spaced("friction.mu", 0.1, 1, 5, "geometric"), Axis.of("launch.tilt", [0.1, 0.2]))),
         Draws((Range("launch.spin", 0, 1),), 5, 3),
     ],
 )
@@ -125,7 +126,7 @@ def test_what_is_written_is_what_is_described():
 @pytest.mark.parametrize("shape", [(1,), (7,), (1000, 1000), (3, 1, 50, 2), (100_000,), (20, 20)])
 def test_tasks_part_the_grid(shape):
     fields = ("launch.spin", "friction.mu", "launch.tilt", "gravity")
-    axes = tuple(Axis.linear(field, 0.1, 1, size) for field, size in zip(fields, shape, strict=False))
+    axes = tuple(Spaced(field, 0.1, 1, size) for field, size in zip(fields, shape, strict=False))
     sweep = Sweep(report_problem(), Product(axes))
     seen = np.zeros(shape, dtype=int)
     numbers = np.arange(seen.size).reshape(shape)
@@ -154,9 +155,9 @@ def test_a_sweep_is_read_from_one_file(tmp_path):
     (tmp_path / "sweep.toml").write_text(SWEEP)
     grid = Product(
         (
-            Axis.linear("launch.spin", 0, 100, 3),
-            Axis.geometric("friction.mu", 0.1, 1, 2),
-            Axis.listed("body.shape.eccentricity", [0.2, 0.3]),
+            Spaced("launch.spin", 0, 100, 3),
+            Spaced("friction.mu", 0.1, 1, 2, "geometric"),
+            Axis.of("body.shape.eccentricity", [0.2, 0.3]),
         )
     )
     assert Sweep.read(tmp_path / "sweep.toml") == Sweep(report_problem(mu=0.2), grid, 2.5, 1e-8, 1e-3)
@@ -211,7 +212,7 @@ def test_files_that_cannot_be_are_refused_by_the_field(tmp_path, change, field):
 
 
 def test_values_of_some_cells_are_made_without_the_others():
-    axes = Axis.linear("launch.spin", 0.1, 7, 10**4), Axis.geometric("launch.tilt", 0.1, 7, 10**4)
+    axes = Spaced("launch.spin", 0.1, 7, 10**4), Spaced("launch.tilt", 0.1, 7, 10**4, "geometric")
     some = Product(axes).values(np.array([0, 10**4, 10**8 - 1]))
     assert some["launch.spin"].tolist() == [0.1, axes[0].values[1], 7.0]
     assert some["launch.tilt"].tolist() == [0.1, 0.1, 7.0]
@@ -226,7 +227,7 @@ def test_values_of_some_cells_are_made_without_the_others():
 def test_a_slip_is_no_axis_where_the_velocity_is_given():
     thrown = report_problem().replace({"launch.velocity": (0.1, 0.0, 0.0)})
     with pytest.raises(InvalidInput, match="velocity"):
-        Sweep(thrown, Product((Axis.listed("launch.slip.0", [0.1, 0.2]),)))
+        Sweep(thrown, Product((Axis.of("launch.slip.0", [0.1, 0.2]),)))
 
 
 def test_a_misspelt_sweep_is_not_taken_for_a_problem(tmp_path):
@@ -246,6 +247,6 @@ def test_a_sweep_over_nothing_or_over_a_field_twice_is_refused():
     with pytest.raises(InvalidInput):
         Product(())
     with pytest.raises(InvalidInput):
-        Product((Axis.listed("launch.spin", [1]), Axis.listed("launch.spin", [2])))
+        Product((Axis.of("launch.spin", [1]), Axis.of("launch.spin", [2])))
     with pytest.raises(InvalidInput, match="cells"):
-        Product((Axis.linear("launch.spin", 0, 1, 10**6), Axis.linear("friction.mu", 0, 1, 10**6)))
+        Product((Spaced("launch.spin", 0, 1, 10**6), Spaced("friction.mu", 0, 1, 10**6)))

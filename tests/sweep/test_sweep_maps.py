@@ -10,12 +10,13 @@ from sweeps import lively
 from tippetop.figures.maps import MAPPED, phase_map
 from tippetop.figures.style import save
 from tippetop.presets import report_problem
-from tippetop.sweeps import SWEPT, Axis, Draws, Ending, Product, Range, Sweep, compute
+from tippetop.sweeps import SWEPT, Draws, Ending, Product, Range, Sweep, compute
+from tippetop.sweeps.axes import Spaced
 
 
 @pytest.fixture(scope="module")
 def plane():
-    axes = Axis.linear("launch.spin", 100.0, 200.0, 3), Axis.geometric("friction.mu", 0.1, 1.0, 4)
+    axes = Spaced("launch.spin", 100.0, 200.0, 3), Spaced("friction.mu", 0.1, 1.0, 4, "geometric")
     return compute(Sweep(report_problem(tilt=1.0), Product(axes), 0.2))
 
 
@@ -54,7 +55,7 @@ def test_cells_are_drawn_where_their_values_are(plane):
 
 
 def test_one_axis_is_a_curve_and_draws_are_points():
-    curve = compute(Sweep(report_problem(), Product((Axis.linear("launch.spin", 1, 9, 5),)), 0.1))
+    curve = compute(Sweep(report_problem(), Product((Spaced("launch.spin", 1, 9, 5),)), 0.1))
     (line,) = phase_map(curve, "final_theta").axes[0].lines
     assert line.get_ydata() == pytest.approx(curve["final_theta"].values)
     ranges = Range("launch.spin", 1, 9), Range("launch.tilt", 0.1, 0.2)

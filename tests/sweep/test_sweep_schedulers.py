@@ -65,7 +65,7 @@ UNGUARDED = """
 from tippetop.presets import report_problem
 from tippetop.sweeps import Axis, Product, Sweep, compute
 print("once")
-axis = Axis.linear("launch.spin", 10, 100, 600)
+axis = Axis.of("launch.spin", {"from": 10, "to": 100, "count": 600})
 print(compute(Sweep(report_problem(), Product((axis,)), 0.01), workers=2).sizes["launch.spin"])
 print(__file__.endswith("script.py"), __spec__)
 """

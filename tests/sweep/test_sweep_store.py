@@ -18,7 +18,6 @@ from tippetop.errors import FileTrouble, InvalidInput
 from tippetop.presets import report_problem
 from tippetop.sweeps import (
     SWEPT,
-    Axis,
     Draws,
     Product,
     Range,
@@ -31,6 +30,7 @@ from tippetop.sweeps import (
     read_sweep,
     run_sweep,
 )
+from tippetop.sweeps.axes import Spaced
 
 zarr = pytest.importorskip("zarr")
 
@@ -293,4 +293,4 @@ def test_progress_is_told_and_counts_what_was_there(tmp_path, small_tasks):
 
 
 def test_a_small_axis_is_one_task():
-    assert Sweep(report_problem(), Product((Axis.linear("launch.spin", 1, 2, 100),))).chunk == (100,)
+    assert Sweep(report_problem(), Product((Spaced("launch.spin", 1, 2, 100),))).chunk == (100,)

@@ -188,7 +188,7 @@ def _holds_sweep(file: Path) -> bool:
     from tippetop.validation import parse_toml  # noqa: PLC0415
 
     try:
-        return file.suffix != ".json" and is_sweep(parse_toml(read_text(file, "a sweep or a problem")))
+        return file.suffix != ".json" and is_sweep(parse_toml(read_text(file, "a sweep or a problem"), ""))
     except (FileTrouble, ValueError):
         return False
 

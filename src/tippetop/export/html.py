@@ -10,40 +10,13 @@ from tippetop.export.bundle import LOADER, packed, player_packed
 from tippetop.export.track import pack_run, unpack_header
 from tippetop.files import place_for, written_beside
 
-_PAGE = """<!doctype html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<meta name="color-scheme" content="light dark">
-<meta name="generator" content="tippetop {version}">
-<title>{title}</title>
-<style>
-  html, body {{ height: 100%; margin: 0; }}
-  #stage {{ height: 100%; }}
-</style>
-</head>
-<body>
-<div id="stage"></div>
-<noscript>This page plays a run of a tippe top; it needs JavaScript.</noscript>
-<script type="text/plain" id="player-code">{player}</script>
-<script type="text/plain" id="run">{run}</script>
-<script type="module">
-{loader}
-const player = createPlayer(document.getElementById("stage"), {{ theme: "auto" }});
-player.load(await unzip("run").arrayBuffer());
-player.toggle(!stillness());
-globalThis.tippetopPlayer = player;
-</script>
-</body>
-</html>
-"""
+_PAGE = Path(__file__).with_name("run.html")
 
 
 def html_page(run: xr.Dataset) -> str:
     """The page of a run; `Unavailable` if the player is not built: see `tippetop.export.bundle`."""
     block = pack_run(run)
-    return _PAGE.format(
+    return _PAGE.read_text(encoding="utf-8").format(
         version=__version__,
         title=html.escape(f"Tippe top: {unpack_header(block)['story']['headline']}"),
         run=packed(block),

@@ -43,11 +43,7 @@ def read_workpiece(path: Path | str, **fields: Any) -> Workpiece:
     path = Path(path)
     if path.suffix.lower() != ".toml":
         return Workpiece(**{"profile": read_points(path), **fields})
-    text = read_text(path, ACCEPTED)
-    try:
-        found = {**parse_toml(text), **fields}
-    except ValueError as error:
-        raise InvalidInput("workpiece", text.strip(), f"TOML; {error}") from None
+    found = {**parse_toml(read_text(path, ACCEPTED), "workpiece"), **fields}
     inserts = found.get("inserts")
     for part in [found, *(inserts if isinstance(inserts, list) else [])]:
         if isinstance(part, dict) and isinstance(part.get("profile"), str):

@@ -1,12 +1,12 @@
 """The order of the page: the report's own sections, then ours, and the pictures that it opens with."""
 
 import tomllib
-from importlib.resources import files
+from pathlib import Path
 
 PICTURES = ("fig04", "fig06", "flights", "fig12", "why-bifurcation")
 """Names of the five figures that tell what was found."""
 
-_TOLD = tomllib.loads(files("tippetop.report").joinpath("outline.toml").read_text(encoding="utf-8"))
+_TOLD = tomllib.loads(Path(__file__).with_name("outline.toml").read_text(encoding="utf-8"))
 
 SECTIONS: dict[str, tuple[str, str]] = {
     one["name"]: (one["title"], one.get("words", "")) for one in _TOLD["sections"]

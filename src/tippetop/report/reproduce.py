@@ -16,7 +16,7 @@ import xarray as xr
 
 from tippetop.errors import FileTrouble
 from tippetop.figures.style import save
-from tippetop.files import put_in_place, refuse_overwriting
+from tippetop.files import in_words, put_in_place, refuse_overwriting
 from tippetop.netcdf import write_run
 from tippetop.report.claim import Data, Judgement
 from tippetop.report.experiments.registry import EXPERIMENTS
@@ -178,15 +178,11 @@ def _processes(workers: int | None) -> int:
 @contextmanager
 def _staging(folder: Path) -> Iterator[Path]:
     """A folder beside the one to be written, gone afterwards whatever happens."""
-    try:
+    with in_words(folder, "written"):
         folder.parent.mkdir(parents=True, exist_ok=True)
         if folder.exists() and not folder.is_dir():
             raise FileTrouble(f"{folder} is not a folder")
         stage = Path(tempfile.mkdtemp(dir=folder.parent, prefix=f".{folder.name}."))
-    except FileTrouble:
-        raise
-    except OSError as error:
-        raise FileTrouble(f"{folder} cannot be written: {error.strerror or error}") from None
     try:
         for name in (FIGURES, DATA):
             (stage / name).mkdir()
@@ -197,9 +193,7 @@ def _staging(folder: Path) -> Iterator[Path]:
 
 def _move(stage: Path, folder: Path, names: list[str], overwrite: bool) -> None:
     """Put the finished files in their places."""
-    try:
+    with in_words(folder, "written"):
         for name in names:
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
             put_in_place(stage / name, folder / name, overwrite)
-    except OSError as error:
-        raise FileTrouble(f"{folder} cannot be written: {error.strerror or error}") from None

@@ -1,7 +1,7 @@
 """What is told in words: the data beside the code, in files of TOML."""
 
 import tomllib
-from importlib.resources import files
+from pathlib import Path
 from typing import Any
 
 from tippetop.report import quoted, readings
@@ -16,7 +16,7 @@ def told(name: str) -> dict[str, Any]:
     That is a constant of `quoted`, `readings` or the experiments, such as {dry.SPIN:g}, or one of the words
     that the file itself explains.
     """
-    tables = tomllib.loads(files("tippetop.report").joinpath(f"{name}.toml").read_text(encoding="utf-8"))
+    tables = tomllib.loads(Path(__file__).with_name(f"{name}.toml").read_text(encoding="utf-8"))
     names = {module.__name__.rpartition(".")[2]: module for module in _MODULES} | tables.pop("words", {})
 
     def filled(value: Any) -> Any:

@@ -3,7 +3,7 @@
 An axis is written as a list of values or as a table ``{ from, to, count, spacing }``.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import Annotated, Any, Literal, Self
 
 import numpy as np
@@ -38,21 +38,6 @@ class Axis(Entry):
     """Values of one field, named with dots: ``launch.spin``."""
 
     field: str
-
-    @classmethod
-    def linear(cls, field: str, first: float, last: float, count: int) -> "Axis":
-        """Equally spaced values, both ends among them."""
-        return Spaced(field=field, first=first, last=last, count=count)
-
-    @classmethod
-    def geometric(cls, field: str, first: float, last: float, count: int) -> "Axis":
-        """Values in equal ratios, both ends among them."""
-        return Spaced(field=field, first=first, last=last, count=count, spacing="geometric")
-
-    @classmethod
-    def listed(cls, field: str, values: Iterable[float]) -> "Axis":
-        """These values."""
-        return cls.of(field, {"values": tuple(values)})
 
     @classmethod
     def of(cls, field: str, entry: Any) -> "Axis":

@@ -130,11 +130,7 @@ class Sweep(Part):
         InvalidInput
             If it does not hold a sweep.
         """
-        text = read_text(path, "a sweep in TOML")
-        try:
-            fields = parse_toml(text)
-        except ValueError as error:
-            raise InvalidInput("sweep", str(path), f"TOML; {error}") from None
+        fields = parse_toml(read_text(path, "a sweep in TOML"), "sweep", str(path))
         if isinstance(fields.get("problem"), str):
             fields["problem"] = Problem.read(Path(path).parent / fields["problem"])
         return cls(**fields)

@@ -72,25 +72,19 @@ def fill(
         where this one ended.
     """
     with store.held():
-        return _fill(store, workers, scheduler, callback)
-
-
-def _fill(store: Store, workers: int | None, scheduler: str | None, callback: Callback | None) -> Progress:
-    sweep = store.sweep
-    tasks = store.remaining()
-    sizes = {task: sweep.numbers(task).size for task in tasks}
-    before = sweep.cells - sum(sizes.values())
-    began = time.monotonic()
-    progress = Progress(sweep.cells, before, before, 0.0)
-    if callback is not None:
-        callback(progress)
-    if tasks:
-        for task, found in results(sweep, tasks, workers, scheduler):
+        sweep, tasks = store.sweep, store.remaining()
+        sizes = {task: sweep.numbers(task).size for task in tasks}
+        before = sweep.cells - sum(sizes.values())
+        began = time.monotonic()
+        progress = Progress(sweep.cells, before, before, 0.0)
+        if callback is not None:
+            callback(progress)
+        for task, found in results(sweep, tasks, workers, scheduler) if tasks else ():
             store.write(task, found)
             progress = Progress(sweep.cells, before, progress.done + sizes[task], time.monotonic() - began)
             if callback is not None:
                 callback(progress)
-    return progress
+        return progress
 
 
 def run_sweep(

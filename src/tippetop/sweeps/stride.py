@@ -49,66 +49,36 @@ class Layout(NamedTuple):
     size: int
     guards: int
     parameters: int
+    """Numbers of the motion, guards, and parameters."""
+    left: int
+    steps: int
+    """Rows of the time left, and of the number of steps."""
+    kept: int
+    """How many rows a step brings up to date."""
+    taken: int
+    pause: int
+    """Rows of the time that a step took, and of whether something may happen in it."""
+    least: slice
+    """Rows of the least values of the first guard, n_z and -n_z in a step."""
+    rows: int
+    """How many rows there are."""
+    counts: slice
+    turns: int
+    band: slice
+    """Rows, after the parameters, of which guards count, of whether the top is yet to turn over, and of the
+    band."""
+    numbers: int
+    """How many rows of parameters and of what to pause for there are."""
 
     @classmethod
     def of(cls, motion: Motion) -> "Layout":
         """The layout for a motion."""
-        return cls(motion.size, len(motion.guards), motion.parameters)
-
-    @property
-    def left(self) -> int:
-        """Row of the time left."""
-        return self.size
-
-    @property
-    def steps(self) -> int:
-        """Row of the number of steps."""
-        return self.size + 1
-
-    @property
-    def kept(self) -> int:
-        """How many rows a step brings up to date."""
-        return self.size + 2
-
-    @property
-    def taken(self) -> int:
-        """Row of the time that a step took."""
-        return self.kept
-
-    @property
-    def pause(self) -> int:
-        """Row that says whether something may happen in a step."""
-        return self.kept + 1
-
-    @property
-    def least(self) -> slice:
-        """Rows of the least values of the first guard, n_z and -n_z in a step."""
-        return slice(self.kept + 2, self.kept + 5)
-
-    @property
-    def rows(self) -> int:
-        """How many rows there are."""
-        return self.kept + 5
-
-    @property
-    def counts(self) -> slice:
-        """Rows, after the parameters, of which guards count."""
-        return slice(self.parameters, self.parameters + self.guards)
-
-    @property
-    def turns(self) -> int:
-        """Row, after the parameters, of whether the top is yet to turn over."""
-        return self.parameters + self.guards
-
-    @property
-    def band(self) -> slice:
-        """Rows, after the parameters, of the band."""
-        return slice(self.turns + 1, self.turns + 3)
-
-    @property
-    def numbers(self) -> int:
-        """How many rows of parameters and of what to pause for there are."""
-        return self.turns + 3
+        size, guards, parameters = motion.size, len(motion.guards), motion.parameters
+        kept, turns = size + 2, parameters + guards
+        pause, rows, numbers = kept + 1, kept + 5, turns + 3
+        least, counts, band = slice(kept + 2, rows), slice(parameters, turns), slice(turns + 1, numbers)
+        row = (size, size + 1, kept, kept, pause, least, rows)
+        return cls(size, guards, parameters, *row, counts, turns, band, numbers)
 
 
 class Stepper(Protocol):

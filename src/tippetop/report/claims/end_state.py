@@ -15,9 +15,6 @@ _DISPLAYED = Tolerance(
 )
 
 
-_QUOTED = "({theta}, {phi_dot}, {omega3})".format(**END_OF_FIG_5)
-
-
 @CHAPTER.examines("fig05-end", "run-50", "run-50-windows", "run-50-table-1", tolerance=_DISPLAYED)
 def _(run: xr.Dataset, windows: xr.Dataset, other: xr.Dataset) -> Finding:
     chosen = likely_end(windows)

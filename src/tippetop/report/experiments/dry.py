@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from tippetop.bodies import Body, EccentricSphere
+from tippetop import presets
 from tippetop.contact.sliding import sliding_motion
 from tippetop.frictions import CoulombFriction, RegularizedCoulombFriction
 from tippetop.integrators.classical import classical_step
@@ -40,10 +40,8 @@ NUTATION = 0.1
 WITHOUT_COMPILING: Any = {"integrator": "dop853", "tolerance": 1e-11}
 """How single runs are followed: compiling what a top that slips and sticks takes would cost more."""
 
-_INERTIA = 0.4 * 0.015 * 0.025**2
-
 COHEN = Problem(
-    body=Body(mass=0.015, shape=EccentricSphere(radius=0.025, eccentricity=0.2), I1=_INERTIA, I3=_INERTIA),
+    body=presets.COHEN,
     friction=CoulombFriction(mu=0.3),
     launch=Launch(tilt=0.1, spin=100.0, slip=(0.0, 2.5 * math.sin(0.1))),
     contact=Contact(liftoff="stop"),

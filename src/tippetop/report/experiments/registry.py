@@ -20,19 +20,8 @@ from tippetop.report.experiments import (
 EXPERIMENTS: dict[str, Experiment] = {
     experiment.id: experiment
     for module in (
-        runs,
-        spins,
-        friction,
-        flights,
-        methods,
-        equations,
-        checks,
-        theory,
-        theory_runs,
-        dry,
-        patches,
-        real,
-        stepping,
+        *(runs, spins, friction, flights, methods, equations, checks),
+        *(theory, theory_runs, dry, patches, real, stepping),
     )
     for experiment in module.EXPERIMENTS
 }

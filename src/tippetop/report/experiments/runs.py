@@ -14,7 +14,7 @@ from tippetop.report.listing import VARIABLES, listing_run
 from tippetop.report.quoted import END_OF_FIG_5
 from tippetop.report.readings import SETTLED, SHOWN, crossings, first_below_zero, flip_time, longest_quiet
 from tippetop.run import simulate
-from tippetop.sweeps import Axis, Ending, Product, Sweep, compute
+from tippetop.sweeps import Ending, Product, Sweep, compute
 
 WINDOW = 20.0
 """Length of the report's runs, s (its listing, line 13)."""
@@ -56,8 +56,7 @@ SWEPT = 1e-12
 
 def swept(problem: Problem, values: Mapping[str, np.ndarray], window: float = WINDOW) -> xr.Dataset:
     """What becomes of the launches that cross these values of fields; nan where one became singular."""
-    axes = (Axis.listed(field, list(numbers)) for field, numbers in values.items())
-    found = compute(Sweep(problem, Product(tuple(axes)), window, SWEPT))
+    found = compute(Sweep(problem, Product.of(values), window, SWEPT))
     return found.where(~found["outcome"].isin([Ending.FAILED, Ending.BAD]))
 
 
