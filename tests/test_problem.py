@@ -5,6 +5,7 @@ import inspect
 import json
 import math
 import pickle
+import re
 
 import pytest
 from hypothesis import given
@@ -170,8 +171,40 @@ class TestRefusals:
             presets.report_problem().replace({"friction": patch})
         told = the_one_line_of(caught.value)
         assert told.startswith(
-            f"friction.patch_radius = {radius!r} is not possible; accepted: from 2e-11 to 0.02"
+            f"friction.patch_radius = {radius!r} is not possible; accepted: from 2.01e-11 to 0.02"
         )
+
+    @pytest.mark.parametrize("size", [0.01, 0.0123456, 0.0199999, 0.0999951, 1 / 7])
+    def test_what_a_sentence_says_is_accepted_is(self, size):
+        def fitted(patch, arm=0.0):
+            changes = {
+                "body.shape.radius": size,
+                "friction.kind": "contensou",
+                "friction.patch_radius": patch,
+            }
+            return presets.report_problem(mu=0.3).replace(changes | {"rolling_resistance": arm})
+
+        def bounds(*numbers):
+            with pytest.raises(InvalidInput) as caught:
+                fitted(*numbers)
+            told = re.search("from (.*) to (.*) on this body", str(caught.value))
+            return [float(number) for number in told.groups()]
+
+        least, most = bounds(0.5)
+        assert [least, most] == pytest.approx([1e-9 * size, size], rel=0.01)
+        assert bounds(most, 0.5) == [0.0, most]
+        for patch in (least, most):
+            assert fitted(patch, most).friction.patch_radius == patch
+
+    def test_a_patch_and_an_arm_fit_the_largest_surface_whichever_comes_first(self):
+        ball, tip = Sphere(radius=0.02, center=-0.006), Sphere(radius=0.004, center=0.02)
+        for shapes in ([ball, tip], [tip, ball]):
+            patch = {"friction.kind": "contensou", "friction.patch_radius": 0.01, "rolling_resistance": 0.01}
+            problem = presets.report_problem(mu=0.3).replace({"body.shape": shapes} | patch)
+            for name, value in (("friction.patch_radius", 1e-11), ("rolling_resistance", 0.021)):
+                with pytest.raises(InvalidInput) as caught:
+                    problem.replace({name: value})
+                assert the_one_line_of(caught.value).startswith(f"{name} = {value!r} is not possible")
 
     @pytest.mark.parametrize("slip", [(0.0, 0.0, 0.0), "no", 1.0])
     def test_a_slip_that_is_not_two_numbers(self, slip):

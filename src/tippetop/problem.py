@@ -19,7 +19,7 @@ from tippetop.files import read_text
 from tippetop.frictions import LEAST_PATCH, Friction
 from tippetop.mechanics.coulomb import RollingResistance
 from tippetop.mechanics.friction import FrictionLaw
-from tippetop.mechanics.hull import Hull, acting, lowest_surface
+from tippetop.mechanics.hull import Hull, acting, lowest_surface, sizes
 from tippetop.mechanics.motion import along_table, contact, on_table
 from tippetop.mechanics.rolling import is_set_valued
 from tippetop.mechanics.state import State
@@ -158,9 +158,9 @@ class Problem(Part):
     gravity
         Acceleration of gravity, m/s^2.
     rolling_resistance
-        Arm of the normal force's couple against rolling beside any law of friction, m: the table resists the
-        horizontal angular velocity w_t with the torque N rolling_resistance, and holds it at zero where less
-        is enough for that.
+        Arm of the normal force's couple against rolling beside any law of friction, m, no longer than the
+        body is large: the table resists the horizontal angular velocity w_t with the torque N
+        rolling_resistance, and holds it at zero where less is enough for that.
 
     Examples
     --------
@@ -184,7 +184,7 @@ class Problem(Part):
 
     @model_validator(mode="after")
     def _contact_is_possible(self) -> Self:
-        self._refuse_strange_patch()
+        self._refuse_what_does_not_fit()
         if not (math.isfinite(self._resistance()) and math.isfinite(self._largest_square())):
             raise self._lying_flat() or self._out_of_reach()
         if self.contact.liftoff == "fly":
@@ -207,15 +207,21 @@ class Problem(Part):
             )
         return self
 
-    def _refuse_strange_patch(self) -> None:
-        """Refuse a contact patch that is larger than the body, or too small to be told from a point."""
-        size = self.body.surface.size
+    def _refuse_what_does_not_fit(self) -> None:
+        """Refuse a patch, or an arm, that is larger than the body, or a patch that is but a point."""
+        size = max(sizes(self.body.surface))
         if not self.friction.fits(size):
             raise InvalidInput(
                 "friction.patch_radius",
                 getattr(self.friction, "patch_radius", MISSING),
-                f"from {LEAST_PATCH * size:.3g} to {size:.3g} on this body; a smaller patch is a point, "
-                "for which there is coulomb",
+                f"from {_inside(LEAST_PATCH * size, 1.0)} to {_inside(size, -1.0)} on this body; a smaller "
+                "patch is a point, for which there is coulomb",
+            )
+        if self.rolling_resistance > size:
+            raise InvalidInput(
+                "rolling_resistance",
+                self.rolling_resistance,
+                f"from 0 to {_inside(size, -1.0)} on this body, within which the table presses",
             )
 
     def _resistance(self) -> float:
@@ -369,3 +375,11 @@ class Problem(Part):
         """
         text = read_text(path, "a problem in TOML or JSON")
         return cls.from_json(text) if Path(path).suffix.lower() == ".json" else cls.from_toml(text)
+
+
+def _inside(bound: float, side: float) -> str:
+    """A bound in three digits, not beyond it: no less if the side is 1, and no more if it is -1."""
+    near = float(f"{bound:.3g}")
+    if (near - bound) * side < 0.0:
+        near += side * 10.0 ** (math.floor(math.log10(bound)) - 2)
+    return f"{near:.3g}"

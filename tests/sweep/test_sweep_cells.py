@@ -11,7 +11,7 @@ from strategies import problems
 from tippetop.catalogue import Fault
 from tippetop.errors import InvalidInput
 from tippetop.mechanics.top import natural_state, natural_units
-from tippetop.presets import report_problem
+from tippetop.presets import REPORT_THIN_STEM, report_problem
 from tippetop.sweeps.cells import cells_of, numeric_fields
 
 EDGES = {
@@ -85,6 +85,19 @@ def test_cells_whose_patch_does_not_fit_the_body_are_refused():
     assert list(cells_of(problem, {"friction.patch_radius": np.array([1e-4, 1e-12])}).fault) == wanted
     radius = {"body.shape.radius": np.array([0.02, 1e-4])}
     assert list(cells_of(problem, radius).fault) == wanted
+    arms = {"rolling_resistance": np.array([0.02, 1e200])}
+    assert list(cells_of(problem, arms).fault) == wanted
+
+
+def test_cells_compare_a_patch_with_the_largest_surface():
+    patch = {"friction.kind": "contensou", "friction.mu": 0.3, "friction.patch_radius": 1e-3}
+    problem = report_problem(tilt=1.0).replace({**patch, "body": REPORT_THIN_STEM})
+    stem, *others = problem.body.shapes[::-1]
+    radii = np.array([1e-12, 0.015, 0.021])
+    for body in (problem, problem.replace({"body.shape": [stem, *others]})):
+        refused = [as_problem(body, "friction.patch_radius", radius) is None for radius in radii]
+        assert refused == [True, False, True]
+        assert (cells_of(body, {"friction.patch_radius": radii}).fault != Fault.NONE).tolist() == refused
 
 
 def test_a_cell_is_labelled_with_what_is_wrong_with_it():

@@ -1,6 +1,7 @@
 """The final state predicted from lambda and the energy against full runs."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ from full_runs import full_run, sphere_problem, tilts_of
 
 from tippetop import presets
 from tippetop.errors import InvalidInput
+from tippetop.mechanics.invariants import energy
 from tippetop.run import simulate
 from tippetop.theory.prediction import predict, touching_tilts
 from tippetop.theory.steady import SteadyKind, jellett_of_launch, precession_branch
@@ -102,6 +104,22 @@ def test_what_may_touch_with_its_stem_is_refused_where_the_stem_touches():
     assert list(touching_tilts(STEMMED.top.surface, 0.1)) == pytest.approx([tilt], abs=1e-12)
     with pytest.raises(InvalidInput, match=rf"surface 1 can touch, at a tilt of {tilt:.4g} rad.*run it"):
         predict(STEMMED)
+
+
+def test_the_energy_that_is_named_is_what_decides():
+    """Just above the least spin that is refused, the launch has hardly more than it takes."""
+    accepted, refused = 40.0, 155.0
+    while refused - accepted > 1e-3:
+        middle = 0.5 * (accepted + refused)
+        try:
+            predict(STEMMED.replace({"launch.spin": middle}))
+            accepted = middle
+        except InvalidInput as error:
+            refused, told = middle, str(error)
+    needed, available = (float(number) for number in re.findall(r"(\S+) J\b", told))
+    assert available == pytest.approx(needed, rel=1e-3)
+    start = STEMMED.replace({"launch.spin": refused})
+    assert available == pytest.approx(float(energy(start.start(), start.standing())), rel=1e-3)
 
 
 @pytest.mark.parametrize(

@@ -253,6 +253,11 @@ function each_surface(surface) {
   return py.isinstance(surface, Hull) ? surface.each : [surface];
 }
 
+/** The sizes of all surfaces, m. */
+function sizes(surface) {
+  return py.isinstance(surface, Hull) ? surface.sizes : [surface.size];
+}
+
 /** A surface, or, of a hull, the one that is active, in its own size. */
 function acting(surface) {
   return py.isinstance(surface, Hull) ? py.item(surface.units, surface.active) : surface;
@@ -6506,7 +6511,7 @@ Part.enter("Contact", Contact);
 /** Everything physical about a run. */
 class Problem extends Part {
   _contact_is_possible() {
-    this._refuse_strange_patch();
+    this._refuse_what_does_not_fit();
     if (!(py.truth(py.math.isfinite(this._resistance())) && py.truth(py.math.isfinite(this._largest_square())))) {
       throw py.or(this._lying_flat(), () => this._out_of_reach());
     }
@@ -6527,11 +6532,14 @@ class Problem extends Part {
     }
     return this;
   }
-  /** Refuse a contact patch that is larger than the body, or too small to be told from a point. */
-  _refuse_strange_patch() {
-    const size = this.body.surface.size;
+  /** Refuse a patch, or an arm, that is larger than the body, or a patch that is but a point. */
+  _refuse_what_does_not_fit() {
+    const size = py.max(sizes(this.body.surface));
     if (!py.truth(this.friction.fits(size))) {
-      throw new InvalidInput("friction.patch_radius", py.getattr(this.friction, "patch_radius", MISSING), `from ${py.format(py.mul(LEAST_PATCH, size), ".3g")} to ${py.format(size, ".3g")} on this body; a smaller patch is a point, for which there is coulomb`);
+      throw new InvalidInput("friction.patch_radius", py.getattr(this.friction, "patch_radius", MISSING), `from ${py.str(_inside(py.mul(LEAST_PATCH, size), 1.0))} to ${py.str(_inside(size, -1.0))} on this body; a smaller patch is a point, for which there is coulomb`);
+    }
+    if (this.rolling_resistance > size) {
+      throw new InvalidInput("rolling_resistance", this.rolling_resistance, `from 0 to ${py.str(_inside(size, -1.0))} on this body, within which the table presses`);
     }
   }
   /** The resistance of the contact at launch; nan where its arithmetic breaks down. */
@@ -6614,6 +6622,15 @@ class Problem extends Part {
   }
 }
 Part.enter("Problem", Problem);
+
+/** A bound in three digits, not beyond it: no less if the side is 1, and no more if it is -1. */
+function _inside(bound, side) {
+  let near = py.float(`${py.format(bound, ".3g")}`);
+  if ((near - bound) * side < 0.0) {
+    near = near + side * py.pow(10.0, py.math.floor(py.math.log10(bound)) - 2);
+  }
+  return `${py.format(near, ".3g")}`;
+}
 
 // tippetop.contact.choice
 
@@ -8138,9 +8155,11 @@ function _on_one_of_several(problem, hull) {
   const available = py.float(energy(alone.start(), alone.top));
   const ends = touching_tilts(hull, problem.launch.tilt);
   for (const [tilt, number] of ends.items()) {
-    if (py.float(least_energy(tilt, found.jellett, alone.top, py.math)) <= available) {
+    const needed = py.float(least_energy(tilt, found.jellett, alone.top, py.math));
+    if (needed <= available) {
       const shown = `one whose surface ${py.str(number)} can touch, at a tilt of ${py.format(tilt, ".4g")} rad`;
-      throw new InvalidInput("body.shape", shown, "one surface, or a launch of less energy: run it instead");
+      const accepted = `one surface, or a launch of less than the ${py.format(needed, ".4g")} J that this takes; it has ${py.format(available, ".4g")} J, with which the whole motion decides whether that surface touches, and with what Jellett's integral the top goes on then: run it instead`;
+      throw new InvalidInput("body.shape", shown, accepted);
     }
   }
   const [low, high] = tilts_held(hull, problem.launch.tilt);
@@ -8631,6 +8650,7 @@ export {
   _handed_over,
   _improved,
   _impulse_for,
+  _inside,
   _leads,
   _left,
   _line,
@@ -8844,6 +8864,7 @@ export {
   settling,
   shown,
   size,
+  sizes,
   sliding_law,
   sliding_motion,
   sliding_pair,

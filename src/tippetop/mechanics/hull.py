@@ -96,6 +96,11 @@ def each_surface(surface: Surface) -> tuple[Surface, ...]:
     return surface.each if isinstance(surface, Hull) else (surface,)
 
 
+def sizes(surface: Surface) -> tuple[Scalar, ...]:
+    """The sizes of all surfaces, m."""
+    return surface.sizes if isinstance(surface, Hull) else (surface.size,)
+
+
 def acting(surface: Surface) -> Surface:
     """A surface, or, of a hull, the one that is active, in its own size."""
     return surface.units[surface.active] if isinstance(surface, Hull) else surface

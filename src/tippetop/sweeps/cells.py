@@ -17,7 +17,7 @@ from tippetop.contact.choice import rules_of
 from tippetop.contact.trajectory import LONGEST
 from tippetop.errors import InvalidInput, one_of
 from tippetop.integrators.base import Array
-from tippetop.mechanics.hull import Hull
+from tippetop.mechanics.hull import Hull, sizes
 from tippetop.mechanics.motion import along_table, contact
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top, natural_state, natural_units
@@ -104,7 +104,8 @@ def cells_of(problem: Problem, values: Mapping[str, Array]) -> Cells:
             fault[~allowed(numbers, known[field])] = Fault.VALUE_OUT_OF_RANGE
         for part in (*filled.body.shapes, filled.friction, filled.contact):
             fault[refused(part, count)] = Fault.VALUE_OUT_OF_RANGE
-        fits = filled.friction.fits(spread(filled.body.surface.size, count))
+        size = np.max([spread(size, count) for size in sizes(filled.body.surface)], axis=0)
+        fits = filled.friction.fits(size) & (filled.rolling_resistance <= size)
         fault[~np.broadcast_to(fits, (count,))] = Fault.VALUE_OUT_OF_RANGE
         if not isinstance(top.surface, Hull):
             fault[~np.isfinite(top.surface.slope(start.axis[2]))] = Fault.VALUE_OUT_OF_RANGE

@@ -112,16 +112,24 @@ def _on_one_of_several(problem: Problem, hull: Any) -> Prediction:
     """The end on the surface of the launch, where the energy of the launch keeps all others off the table.
 
     Jellett's integral holds on one surface. When another touches, it begins anew with a number that the
-    whole motion decides.
+    whole motion decides. So does, with more energy than that takes, whether it touches at all: only where
+    friction is weak does the tilt follow a path that the theory knows, and how far it nods beside that path
+    goes with the launch and the friction.
     """
     alone = on_surface(problem, hull.active)
     found = predict(alone)
     available = float(energy(alone.start(), alone.top))
     ends = touching_tilts(hull, problem.launch.tilt)
     for tilt, number in ends.items():
-        if float(least_energy(tilt, found.jellett, alone.top, math)) <= available:
+        needed = float(least_energy(tilt, found.jellett, alone.top, math))
+        if needed <= available:
             shown = f"one whose surface {number} can touch, at a tilt of {tilt:.4g} rad"
-            raise InvalidInput("body.shape", shown, "one surface, or a launch of less energy: run it instead")
+            accepted = (
+                f"one surface, or a launch of less than the {needed:.4g} J that this takes; it has "
+                f"{available:.4g} J, with which the whole motion decides whether that surface touches, and "
+                "with what Jellett's integral the top goes on then: run it instead"
+            )
+            raise InvalidInput("body.shape", shown, accepted)
     low, high = tilts_held(hull, problem.launch.tilt)
     stable = tuple(state for state in found.stable if low <= state.tilt <= high)
     return replace(found, stable=stable, surface=hull.active)
