@@ -57,6 +57,16 @@ class DryContact(NamedTuple):
     """Velocity of the contact point, m/s, and angular velocity, rad/s, at the start."""
     response: tuple[Slip, ...]
     """What an impulse adds to each of these six, per component of the impulse and of that of the torque."""
+    resistance: RollingResistance | None
+    """The resistance to rolling, if there is any."""
+    is_set_valued: bool
+    """Whether slip can end under the law."""
+    reach: float | None
+    """Slip length of the law; None if drilling is free."""
+    arm: float
+    """Length of the contact vector, m."""
+    striking: float
+    """Speed of the contact point at the start, m/s."""
     ended: bool = False
     stopped: bool = False
     """Whether slip, and rolling, have ended."""
@@ -70,7 +80,11 @@ class DryContact(NamedTuple):
         point = ContactPoint.of(body.state.axis, body.state.momentum, body.top)
         speed = length(body.state.velocity) + length(point.turning) * length(point.arm)
         columns = [flat(point.response(wrench)) for wrench in (*FORCES, *COUPLES, DRILLING)]
-        return cls(body, speed, (*body.point, *point.turning), tuple(zip(*columns, strict=True)))
+        law: FrictionLaw = body.top.friction
+        resistance = law if isinstance(law, RollingResistance) else None
+        before, response = (*body.point, *point.turning), tuple(zip(*columns, strict=True))
+        of_law = (resistance, is_set_valued(law), slip_length(law))
+        return cls(body, speed, before, response, *of_law, length(body.arm), length(body.point))
 
     @property
     def law(self) -> FrictionLaw:
@@ -78,24 +92,9 @@ class DryContact(NamedTuple):
         law: FrictionLaw = self.body.top.friction
         return law
 
-    @property
-    def resistance(self) -> RollingResistance | None:
-        """The resistance to rolling, if there is any."""
-        return self.law if isinstance(self.law, RollingResistance) else None
-
-    @property
-    def is_set_valued(self) -> bool:
-        """Whether slip can end under the law."""
-        return is_set_valued(self.law)
-
-    @property
-    def reach(self) -> float | None:
-        """Slip length of the law; None if drilling is free."""
-        return slip_length(self.law)
-
     def change(self, impulse: Sequence[float]) -> Slip:
         """What an impulse and that of a torque, six numbers, add to the six velocities."""
-        return tuple(sum(map(mul, row, impulse)) for row in self.response)
+        return tuple([sum(map(mul, row, impulse)) for row in self.response])
 
     def velocities(self, impulse: Impulse) -> tuple[Slip, Slip]:
         """Slip zeta and horizontal angular velocity (times the arm's length) after an impulse, m/s."""
@@ -103,7 +102,7 @@ class DryContact(NamedTuple):
 
     def parts(self, velocity: Slip) -> tuple[Slip, Slip]:
         """Slip zeta and horizontal angular velocity (times the arm's length) of six velocities, m/s."""
-        return slip_part(velocity, self.reach), scaled(length(self.body.arm), velocity[3:5])
+        return slip_part(velocity, self.reach), scaled(self.arm, velocity[3:5])
 
     def settled(self, impulse: Impulse) -> "DryContact":
         """The contact with what has ended after an impulse, and where that goes on if it cannot stay so."""
@@ -214,12 +213,12 @@ class DryContact(NamedTuple):
         velocity = plus(self.before, self.change(components(impulse)))
         slip, rolling = self.parts(velocity)
         east, north, _, *torque = self.friction(slip, rolling)
-        rate = 1.0 / length(self.body.point)
+        rate = 1.0 / self.striking
         drilled = 0.0 if self.reach is None else torque[2] / self.reach
         if not self.ended and size(slip) > 0.0:
             rate += math.hypot(east, north, drilled) / size(slip)
         if self.resistance is not None and not self.stopped and size(rolling) > 0.0:
-            rate += math.hypot(torque[0], torque[1]) / (length(self.body.arm) * size(rolling))
+            rate += math.hypot(torque[0], torque[1]) / (self.arm * size(rolling))
         return scaled(1.0 / rate, (1.0, east, north, *torque, velocity[2]))
 
     def at_rest(self, impulse: Impulse, after: State) -> State:

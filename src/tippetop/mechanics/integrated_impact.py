@@ -6,7 +6,15 @@ from typing import NamedTuple
 from tippetop.mechanics.dry_impact import DryContact
 from tippetop.mechanics.impulse import FUZZ, Goal, Impulse, Striking, first_reach
 from tippetop.mechanics.roots import crossing
-from tippetop.mechanics.runge_kutta import POWER, Point, RungeKuttaStep, moved, step_from
+from tippetop.mechanics.runge_kutta import (
+    POWER,
+    Point,
+    RungeKuttaStep,
+    moved,
+    short_step,
+    step_from,
+    step_to,
+)
 from tippetop.mechanics.straight_impact import straight
 from tippetop.mechanics.vectors import add, length, scale
 
@@ -22,8 +30,9 @@ STUCK = 1e-8
 SHORTEST = 1e-12
 """Step, relative to the longest, that is taken whatever its error: at a jump of the law."""
 
-NEWTON, STRAIGHT = 4, 1e-8
-"""Improvements of the end of an impact, and how near to it, in its last step, the way is straight."""
+NEWTON, SHORT, STRAIGHT = 4, 2e-3, 1e-8
+"""Improvements of the end of an impact, and how near to it, in parts of its last step, the way is short, and
+straight."""
 
 MOST = 20_000
 """Steps after which an impact is given up, within seconds; most take some ten, on small patches thousands."""
@@ -99,7 +108,7 @@ class IntegratedProcess(NamedTuple):
             return goal(unpack(point))
 
         def along(size: float) -> Point:
-            return step_from(taking.here, taking.slopes[0], size, self.slope).there
+            return step_to(taking.here, taking.slopes[0], size, self.slope)
 
         last = taking.size
         here = along(last * crossing(lambda part: missing(taking.between(part)), 0.0, 1.0))
@@ -111,7 +120,8 @@ class IntegratedProcess(NamedTuple):
                 return moved(here, more, slope)
             if abs(more) > 0.1 * last:
                 break
-            here, last = step_from(here, slope, more, self.slope).there, abs(more)
+            short = abs(more) < SHORT * taking.size
+            last, here = abs(more), (short_step if short else step_to)(here, slope, more, self.slope)
         return along(crossing(lambda size: missing(along(size)), 0.0, taking.size))
 
     def slope(self, here: Point) -> Point:
