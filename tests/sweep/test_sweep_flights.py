@@ -8,6 +8,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from strategies import slides, spheres, spheroids, tops
+from tippetop.mechanics import integrated_impact
 from tippetop.mechanics.contensou_hertz import HertzLaw
 from tippetop.mechanics.flight import fly, gap_rate
 from tippetop.mechanics.friction import ViscousLaw
@@ -18,8 +19,9 @@ from tippetop.mechanics.state import State
 from tippetop.mechanics.surface import SphereSurface
 from tippetop.mechanics.top import Top, natural_state, natural_units
 from tippetop.mechanics.touchdown import Start, touchdown
-from tippetop.sweeps.flights import collide, fly_all
+from tippetop.sweeps.flights import fly_all
 from tippetop.sweeps.flights import slides as goes_on
+from tippetop.sweeps.impacts import collide
 from tippetop.sweeps.launches import branched, single
 from tippetop.sweeps.tip import TipMotion
 
@@ -147,8 +149,9 @@ def test_a_flight_that_outlasts_its_horizon_ends_there():
     look()
 
 
-def test_impacts_of_patches_on_which_another_branch_takes_over_are_left_to_single_launches() -> None:
-    """The others are what they are alone."""
+def test_impacts_of_patches_go_on_where_another_branch_takes_over(monkeypatch) -> None:
+    """They are what they are alone, and that to more digits than are asked of a single one."""
+    monkeypatch.setattr(integrated_impact, "TOLERANCE", 1e-12)
     random, count = np.random.default_rng(3), 150
     axis = random.normal(size=(3, count))
     axis /= np.linalg.norm(axis, axis=0)
@@ -157,15 +160,13 @@ def test_impacts_of_patches_on_which_another_branch_takes_over_are_left_to_singl
     velocity = random.normal(size=(3, count))
     state = State(tuple(axis), tuple(random.normal(size=(3, count))), tuple(velocity), 1.0 - 0.3 * axis[2])
     after, struck = collide(state, branched(top, state))
-    assert 0.3 * count < struck.sum()
-    left = 0
-    for i in range(count):
+    changed = 0
+    for i in np.flatnonzero(struck).tolist():
         mine = single(state, i)
         alone = top._replace(friction=HertzLaw(0.3, float(law.patch_radius[i])))
         hit = impact(mine, 0.0, alone)
         before, then = (float(branched(alone, one).friction.drills) for one in (mine, hit.state))
-        left += before != then
-        assert not (struck[i] and before != then), "friction goes on along the branch that no longer holds"
-        if struck[i]:
-            assert single(after, i).momentum == pytest.approx(hit.state.momentum, abs=1e-7)
-    assert left > 0, "on some the other branch should take over"
+        changed += before != then
+        assert single(after, i).momentum == pytest.approx(hit.state.momentum, abs=1e-10)
+    assert changed > 10, "on many the other branch should take over"
+    assert struck.sum() > 0.9 * np.sum(gap_rate(state, top) < 0.0)

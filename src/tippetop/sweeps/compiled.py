@@ -20,16 +20,15 @@ class CompiledStepper:
 
     def __init__(self, motion: Motion, order: int) -> None:
         self.motion, self.order, self.layout = motion, order, Layout.of(motion)
-
-        def rows(before: Sequence[Scalar], numbers: Sequence[Scalar]) -> list[Scalar]:
-            return stride(motion, order, before, numbers, NODES)
-
-        self._step = _compiled(record(rows, self.layout.kept, self.layout.numbers, SeriesGraph()))
+        self._step: Compiled | None = None
         self._jet: Compiled | None = None
 
     def step(self, before: Array, after: Array, numbers: Array) -> None:
         """Take a step."""
-        self._step(before[: self.layout.kept], numbers, after)
+        layout = self.layout
+        if self._step is None:
+            self._step = _compiled(record(self._rows, layout.kept, layout.numbers, SeriesGraph()))
+        self._step(before[: layout.kept], numbers, after)
 
     def jet(self, before: Array, numbers: Array) -> Jet:
         """The polynomials of the steps."""
@@ -43,6 +42,9 @@ class CompiledStepper:
         self._jet(start, given, values)
         guards = values[cut:, :count].reshape(layout.guards, order, count)
         return Jet(values[:cut, :count].reshape(layout.size, order + 1, count), guards)
+
+    def _rows(self, before: Sequence[Scalar], numbers: Sequence[Scalar]) -> list[Scalar]:
+        return stride(self.motion, self.order, before, numbers, NODES)
 
     def _jet_rows(self, start: Sequence[Scalar], numbers: Sequence[Scalar]) -> list[Scalar]:
         y, guards = motion_series(self.motion, start, numbers, NODES)

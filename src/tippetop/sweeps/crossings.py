@@ -16,7 +16,8 @@ from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.state import State
 from tippetop.mechanics.touchdown import Start
 from tippetop.sweeps.alone import follow
-from tippetop.sweeps.flights import collide, fly_all, rolls, slides, slips
+from tippetop.sweeps.flights import fly_all, rolls, slides, slips
+from tippetop.sweeps.impacts import collide
 from tippetop.sweeps.launches import Indices, branched, picked, single
 from tippetop.sweeps.slots import Slots
 

@@ -1,16 +1,12 @@
-"""Flights and impacts of many tops at once.
+"""Flights of many tops at once, and whether tops in contact slide on.
 
 A flight is closed: the axis turns about the constant angular momentum and the centre of mass falls, so that
 the gap is a known function of time. Its first zero is found piece by piece, on Taylor polynomials that are
 exact to rounding there. What vanishes at the start of a flight (`tippetop.mechanics.touchdown.Start`) is
 divided out.
-
-An impact without restitution ends where the contact point stops sinking. Its equations, in which the normal
-impulse plays the part of time, are solved by the same polynomials; see `tippetop.mechanics.impact`.
 """
 
-from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -19,17 +15,14 @@ from tippetop.integrators.base import Array
 from tippetop.integrators.polynomials import Polynomials
 from tippetop.mechanics.coulomb import RollingResistance
 from tippetop.mechanics.flight import fly
-from tippetop.mechanics.impulse import contact_velocity
 from tippetop.mechanics.motion import (
     along_table,
-    angular_velocity,
     contact,
-    moment_per_normal_force,
     on_table,
     sliding_rates,
 )
-from tippetop.mechanics.rolling import is_branched, is_set_valued, sliding_law
-from tippetop.mechanics.series import Series, horner, solution
+from tippetop.mechanics.rolling import is_set_valued
+from tippetop.mechanics.series import Series
 from tippetop.mechanics.state import State
 from tippetop.mechanics.stick_slip import (
     HORIZON,
@@ -38,10 +31,8 @@ from tippetop.mechanics.stick_slip import (
     is_slipping,
     rolling_stopping_guard,
 )
-from tippetop.mechanics.surface import contact_vector
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.touchdown import Tip
-from tippetop.mechanics.vectors import length, scale
 from tippetop.sweeps.launches import Flags, Indices, picked
 from tippetop.sweeps.stepper import NumPyArithmetic
 from tippetop.sweeps.stride import step_size
@@ -51,15 +42,6 @@ PLAIN = NumPyArithmetic()
 
 PIECES = 100_000
 """Pieces that a flight may have: each is a fraction of a turn."""
-
-MOST_PIECES = 50
-"""Pieces that an impact may have before it is left to the method that takes stiff friction."""
-
-DEGREE = 12
-"""Degree of an impact's polynomials."""
-
-TINY = 1e-150
-"""Added to a frequency that may be zero."""
 
 
 class Flown(NamedTuple):
@@ -155,61 +137,6 @@ def divided(terms: Array, vanishing: Indices) -> Array:
     inside = place < len(terms)
     found: Array = np.where(inside, np.take_along_axis(terms, np.where(inside, place, 0), axis=0), 0.0)
     return found
-
-
-def collide(state: State, top: Top) -> tuple[State, Flags]:
-    """States after impacts without restitution, and which of them are to be had; the others are unchanged.
-
-    Left out are tops whose contact point does not sink, impacts too stiff for this method, and those in which
-    another branch of the law takes over.
-    """
-    arm = contact_vector(state.axis, top.surface)
-    point = contact_velocity(state, arm, top)
-    sinking = point[2] < 0.0
-    stopping = top.mass * length(point) + TINY
-    moving = np.array(np.broadcast_arrays(*state.momentum, *state.velocity))
-    struck = np.zeros(sinking.shape, dtype=bool)
-    waiting = sinking.copy()
-    law: Any = sliding_law(top.friction)
-
-    def read(y: Sequence[Any]) -> State:
-        return state._replace(momentum=(y[0], y[1], y[2]), velocity=(y[3], y[4], y[5]))
-
-    def rates(y: Sequence[Any]) -> tuple[Any, ...]:
-        now = read(y)
-        point = contact_velocity(now, arm, top)
-        omega = angular_velocity(now.axis, now.momentum, top)
-        traction = top.friction.traction((point[0], point[1]), omega)
-        return (*moment_per_normal_force(arm, traction), *scale(1.0 / top.mass, (*traction.force, 1.0)))
-
-    def first_fall(value: Any, span: Array) -> Array:
-        terms = np.array([np.broadcast_to(value[k], span.shape) for k in range(DEGREE + 1)])
-        found = np.full(span.shape, np.nan)
-        found[waiting] = Polynomials(terms[:, waiting], span[waiting]).first_fall()
-        return found
-
-    for _ in range(MOST_PIECES):
-        if not waiting.any():
-            break
-        with np.errstate(all="ignore"):
-            y = solution(list(moving), rates, PLAIN)
-            terms = [[series[k] for k in range(DEGREE + 1)] for series in y]
-            now = read(y)
-            point = contact_velocity(now, arm, top)
-            span = step_size(terms, stopping, PLAIN)
-            end = first_fall(-point[2], span)
-            if is_branched(law):
-                turning = angular_velocity(now.axis, now.momentum, top)
-                change = first_fall(law.branch_guard((point[0], point[1]), turning), span)
-                waiting &= np.isnan(change) | (end < change)
-        stops = waiting & ~np.isnan(end)
-        taken = np.where(stops, end, span)
-        moved = np.array([horner(series, taken) for series in terms])
-        moving = np.where(waiting, moved, moving)
-        struck |= stops
-        waiting &= ~stops
-    after = np.where(struck, moving, np.array(np.broadcast_arrays(*state.momentum, *state.velocity)))
-    return read(list(after)), struck
 
 
 def slides(state: State, top: Top) -> Flags:
