@@ -1,5 +1,6 @@
 """Every variable of a result: what it is called, what it is, its SI unit and how plots name it."""
 
+import re
 from collections.abc import Mapping
 from enum import IntEnum
 from typing import Any, NamedTuple
@@ -73,6 +74,16 @@ class Variable(NamedTuple):
             found["flag_values"] = np.arange(len(self.flags), dtype=self.dtype)
             found["flag_meanings"] = " ".join(self.flags)
         return found
+
+
+def written_unit(units: str) -> str:
+    """A unit of CF as people write it: rad/s for rad s-1."""
+    powers = [re.fullmatch(r"([A-Za-z]+)(-?\d*)", unit) for unit in units.split()]
+    sides: dict[bool, list[str]] = {False: [], True: []}
+    for found in filter(None, powers):
+        power = found[2].lstrip("-")
+        sides[found[2].startswith("-")].append(found[1] + (f"^{power}" if power not in ("", "1") else ""))
+    return "/".join([" ".join(sides[False]) or "1", *sides[True]])
 
 
 def meanings(flags: type[IntEnum]) -> tuple[str, ...]:

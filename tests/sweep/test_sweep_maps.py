@@ -75,6 +75,7 @@ def test_more_axes_go_from_panel_to_panel(plane, count, drawn, tmp_path):
     cube = cube.expand_dims({"gravity": [1.0, 2.0, 3.0]}).transpose(
         "launch.spin", "friction.mu", "launch.tilt", "gravity"
     )
+    cube["gravity"].attrs["units"] = "m s-2"
     figure = phase_map(cube)
     meshes = [child for axes in figure.axes for child in axes.get_children() if isinstance(child, QuadMesh)]
     maps = [mesh for mesh in meshes if mesh.get_array().shape == (4, 3)]
@@ -102,3 +103,12 @@ def test_launches_that_were_stopped_at_lift_off_show_no_final_tilt():
     mesh = next(child for child in axes.get_children() if isinstance(child, QuadMesh))
     assert np.array_equal(np.ma.getmaskarray(mesh.get_array()), lifted.T)
     assert "left the table" in axes.get_title(loc="left")
+
+
+def test_axes_have_the_units_of_the_problem():
+    """The friction coefficient of dry friction has none."""
+    problem = report_problem(tilt=1.0).replace({"friction.kind": "coulomb"})
+    grid = Product.of({"friction.mu": [0.1, 0.2], "launch.gap": [0.01, 0.02]})
+    axes = phase_map(compute(Sweep(problem, grid, 0.01))).axes[0]
+    assert axes.get_xlabel() == "Friction coefficient μ"
+    assert axes.get_ylabel() == "Height of the lowest point at launch (m)"

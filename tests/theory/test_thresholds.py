@@ -16,12 +16,12 @@ from tippetop.theory.apparent import (
     apparent_critical_spins,
     critical_spin_from_spectrum,
     growth_rates_of_launches,
-    vertical_spins_of_launches,
 )
-from tippetop.theory.steady import SteadyKind, jellett_of_launch
+from tippetop.theory.steady import SteadyKind, jellett_of_launch, vertical_spin
 from tippetop.theory.thresholds import (
     critical_spin,
     critical_spins,
+    jellett_line,
     lambda_down,
     lambda_up,
 )
@@ -93,8 +93,9 @@ def test_growth_rates_of_launches_vanish_at_their_critical_spins():
         assert abs(at) < 1e-10
         assert below * above < 0.0
         assert (below < 0.0) == (kind is SteadyKind.UPRIGHT)
-    vertical = vertical_spins_of_launches(SteadyKind.UPRIGHT, problem, np.array([spins.upright]))
-    assert vertical[0] == pytest.approx(critical_spin(SteadyKind.UPRIGHT, problem.top), rel=1e-13)
+    unit = vertical_spin(SteadyKind.UPRIGHT, problem.top, 1.0)
+    vertical = jellett_line(problem).at(spins.upright) / unit.jellett
+    assert vertical == pytest.approx(critical_spin(SteadyKind.UPRIGHT, problem.top), rel=1e-13)
 
 
 def test_a_finite_window_shows_the_upright_threshold_too_low_and_by_how_much():

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Literal, get_args, get_origin
 
 import typer
 
+from tippetop.catalogue import written_unit
 from tippetop.cli.options import Choice, Json, of_a_problem
 from tippetop.fields import part_at
 
@@ -67,15 +68,5 @@ def _remark(problem: "Problem", name: str) -> str:
         units, meaning, _ = problem.quantity(name)
     except (KeyError, AttributeError):
         return ""
-    unit = "" if units == "1" else f"{_written(units)}: "
+    unit = "" if units == "1" else f"{written_unit(units)}: "
     return unit + meaning if units else ""
-
-
-def _written(units: str) -> str:
-    """A unit of CF as people write it: rad/s for rad s-1."""
-    powers = [re.fullmatch(r"([A-Za-z]+)(-?\d*)", unit) for unit in units.split()]
-    sides: dict[bool, list[str]] = {False: [], True: []}
-    for found in filter(None, powers):
-        power = found[2].lstrip("-")
-        sides[found[2].startswith("-")].append(found[1] + (f"^{power}" if power not in ("", "1") else ""))
-    return "/".join([" ".join(sides[False]) or "1", *sides[True]])

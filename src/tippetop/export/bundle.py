@@ -10,14 +10,7 @@ from tippetop.errors import Unavailable
 BUILT = Path(__file__).parent / "built"
 """Where the built files are; a released package brings them."""
 
-LOADER = """\
-const unzip = (id) => {
-  const zipped = Uint8Array.from(atob(document.getElementById(id).textContent), (c) => c.charCodeAt(0));
-  return new Response(new Blob([zipped]).stream().pipeThrough(new DecompressionStream("gzip")));
-};
-const code = new Blob([await unzip("player-code").text()], { type: "text/javascript" });
-const { createPlayer, stillness } = await import(URL.createObjectURL(code));
-"""
+LOADER = Path(__file__).with_name("loader.js").read_text(encoding="utf-8")
 """JavaScript that takes the player out of a page that has it, packed, in an element called "player-code"."""
 
 

@@ -9,6 +9,7 @@ from matplotlib.colors import BoundaryNorm, ListedColormap, LogNorm, Normalize
 from matplotlib.figure import Figure
 
 import tippetop.figures.annotation as mark
+from tippetop.catalogue import SWEPT, Ending, written_unit
 from tippetop.figures.style import (
     CONVERGED,
     CYCLE,
@@ -19,38 +20,19 @@ from tippetop.figures.style import (
     house_style,
     pi_ticks,
 )
-from tippetop.sweeps import Ending
 
 MAPPED = ("final_theta", "turns_over", "flights")
 """The maps that are drawn of every sweep."""
 
-NAMES = {
-    "launch.spin": "Axial spin at launch (rad/s)",
-    "launch.tilt": "Tilt at launch (rad)",
-    "friction.mu": "Friction coefficient μ (s/m)",
-    "body.shape.eccentricity": "Eccentricity α",
-    "contact.restitution": "Coefficient of restitution",
-    "body.I1": "I₁ (kg m²)",
-    "body.I3": "I₃ (kg m²)",
-    "gravity": "Gravity (m/s²)",
-    "rolling_resistance": "Rolling resistance (m)",
-    "draw": "Draw",
-}
-"""What the axes of maps are called; others by their field and its unit."""
+SHORT = {
+    "friction.mu": "friction coefficient μ", "body.shape.eccentricity": "eccentricity α", "body.I1": "I₁",
+    "body.I3": "I₃", "launch.tilt": "tilt at launch", "launch.spin": "axial spin at launch",
+    "gravity": "gravity",
+}  # fmt: skip
+"""What some fields are called, in few words; others on axes by what they are, elsewhere by their name."""
 
-TITLES = {
-    "final_theta": "Final tilt θ (rad)",
-    "turns_over": "Time of turning over (s); grey: never",
-    "arrives": "Time of arriving within 0.01 rad (s)",
-    "flights": "Number of flights; grey: none",
-    "airborne_time": "Time in the air (s)",
-    "least_normal_force": "Least normal force (N)",
-    "first_lift_off": "First lift-off (s); grey: never",
-    "energy_lost": "Energy lost (J)",
-    "highest_gap": "Largest gap (m)",
-    "highest": "Largest height (m)",
-    "outcome": "Outcome",
-}
+GREY = {"turns_over": "; grey: never", "flights": "; grey: none", "first_lift_off": "; grey: never"}
+"""What grey means in maps of some variables."""
 
 MOST_PANELS = 9
 """Maps that are drawn side by side."""
@@ -120,7 +102,7 @@ def _panels(sweep: xr.Dataset, variable: str) -> Figure:
 
 def _value(sweep: xr.Dataset, name: str) -> str:
     """Where a sweep was cut."""
-    return f"{NAMES.get(name, name)} = {sweep[name].values:.4g}"
+    return f"{_name(sweep, name) if name in SHORT else name} = {sweep[name].values:.4g}"
 
 
 def _colours(axes: Axes, sweep: xr.Dataset, variable: str, shade: Shade) -> Any:
@@ -175,12 +157,18 @@ def _scatter(figure: Figure, axes: Axes, sweep: xr.Dataset, variable: str) -> No
 
 def _name(sweep: xr.Dataset, field: str) -> str:
     """What the axis of a field is called."""
-    unit = sweep[field].attrs.get("units", "")
-    return NAMES.get(field, f"{field} ({unit.replace('-1', '⁻¹')})" if unit not in ("", "1") else field)
+    told = sweep[field].attrs
+    return _heading(SHORT.get(field, told.get("long_name", field)), told.get("units", ""))
+
+
+def _heading(words: str, units: str) -> str:
+    """A name with its unit, as it begins a line."""
+    unit = written_unit(units).replace("^2", "²").replace("^3", "³") if units not in ("", "1") else ""
+    return words[:1].upper() + words[1:] + (f" ({unit})" if unit else "")
 
 
 def _title(sweep: xr.Dataset, variable: str) -> str:
-    title = TITLES.get(variable, variable)
+    title = _heading(SWEPT[variable].label, SWEPT[variable].units) + GREY.get(variable, "")
     if variable == "final_theta" and _ended_early(sweep).any():
         return f"{title}; grey: left the table before the end"
     return title

@@ -3,8 +3,11 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from importlib.metadata import version
+from typing import TypeAlias
 
 import xarray as xr
+
+Compute: TypeAlias = Callable[[bool], xr.Dataset]
 
 
 @dataclass(frozen=True)
@@ -17,7 +20,7 @@ class Experiment:
     """What it finds out, in a few words."""
     cost: float
     """About how long it takes, s: for the order of work and for the time left."""
-    compute: Callable[[bool], xr.Dataset]
+    compute: Compute
     """Does it; the argument says whether a coarser version is enough."""
 
     def run(self, quick: bool) -> xr.Dataset:
@@ -32,6 +35,19 @@ class Experiment:
             **data.attrs,
         }
         return data
+
+
+class Bench(dict[str, Experiment]):
+    """The experiments of a module, by their names."""
+
+    def experiment(self, name: str, title: str, cost: float) -> Callable[[Compute], Compute]:
+        """Register the decorated function as what does an experiment; see `Experiment`."""
+
+        def register(compute: Compute) -> Compute:
+            self[name] = Experiment(name, title, cost, compute)
+            return compute
+
+        return register
 
 
 Variable = tuple[tuple[str, ...], object, dict[str, str]]

@@ -38,15 +38,10 @@ def critical_spin_from_spectrum(kind: SteadyKind, top: Top) -> float:
     return float(brentq(growth_rate, spins[first], spins[first + 1], xtol=1e-14 * unit, rtol=1e-15))
 
 
-def vertical_spins_of_launches(kind: SteadyKind, problem: Problem, spins: Array) -> Array:
-    """Axial spins, rad/s, of the vertical spins with the Jellett's integrals of launches with these spins."""
-    per_spin = vertical_spin(kind, problem.top, 1.0).jellett
-    return np.asarray(jellett_line(problem).at(np.asarray(spins)) / per_spin)
-
-
 def growth_rates_of_launches(kind: SteadyKind, problem: Problem, spins: Array) -> Array:
     """Growth rates, 1/s, of the vertical spins with the Jellett's integrals of launches with these spins."""
-    return vertical_growth_rates(kind, problem.top, vertical_spins_of_launches(kind, problem, spins))
+    per_spin = vertical_spin(kind, problem.top, 1.0).jellett
+    return vertical_growth_rates(kind, problem.top, jellett_line(problem).at(np.asarray(spins)) / per_spin)
 
 
 def apparent_critical_spins(problem: Problem, window: float, visible: float) -> CriticalSpins:

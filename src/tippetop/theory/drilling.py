@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from tippetop.errors import InvalidInput
-from tippetop.mechanics.motion import SlidingContact, angular_velocity, contact
+from tippetop.mechanics.motion import angular_velocity, contact
 from tippetop.mechanics.rolling import is_set_valued
 from tippetop.mechanics.top import Top
 from tippetop.problem import Problem
@@ -28,23 +28,16 @@ from tippetop.theory.steady import (
 from tippetop.theory.thresholds import critical_spin
 
 
-def jellett_rate(steady: SteadyState, top: Top) -> float:
-    """Rate lambda' = M h of Jellett's integral in a steady state of a sphere, kg m^2/s^2; 0 without drilling.
-
-    Raises `InvalidInput` if friction has no linear motion about a vertical spin, or the body is no eccentric
-    sphere.
-    """
-    require_sphere(top)
-    touch = _touch(steady, top)
-    return float(-touch.torque[2] * touch.arm[2])
-
-
 def spin_rate(steady: SteadyState, top: Top) -> float:
     """Rate omega3' of the axial spin that drilling takes from a vertical spin, rad/s^2; 0 without drilling.
 
     Raises `InvalidInput` if friction has no linear motion about a vertical spin.
     """
-    return float(_touch(steady, top).torque[2]) * math.cos(steady.tilt) / float(top.axial_inertia)
+    axis, momentum, velocity = state_of(steady, top)
+    turning = angular_velocity(axis, momentum, top)[2]
+    # On the branch of a law that drills without slip.
+    touch = contact(axis, momentum, velocity, drilling(top, np.array([turning])))
+    return float(touch.torque[2]) * math.cos(steady.tilt) / float(top.axial_inertia)
 
 
 def standing_time(problem: Problem) -> float:
@@ -94,10 +87,3 @@ def time_to_stand(steady: SteadyState, top: Top) -> float:
         return math.inf
     limit = critical_spin(steady.kind, top)
     return (spin - limit if limit < spin else spin) / rate
-
-
-def _touch(steady: SteadyState, top: Top) -> SlidingContact:
-    """Contact of a steady state, on the branch of a law that drills without slip."""
-    axis, momentum, velocity = state_of(steady, top)
-    turning = angular_velocity(axis, momentum, top)[2]
-    return contact(axis, momentum, velocity, drilling(top, np.array([turning])))

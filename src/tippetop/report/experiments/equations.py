@@ -16,10 +16,12 @@ from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import VERTICAL, Vector, cross, dot, scale
 from tippetop.presets import REPORT, report_problem
 from tippetop.problem import Problem
-from tippetop.report.experiment import Experiment, variable
+from tippetop.report.experiment import Bench, variable
 from tippetop.report.experiments.runs import on_table
 from tippetop.report.listing import VARIABLES
 from tippetop.run import simulate
+
+BENCH = Bench()
 
 _INSTANT = 5.0
 _INSTANTS = np.array([1.0, 3.0, _INSTANT, 6.0, 8.0])
@@ -27,6 +29,7 @@ _STEP = 3e-5
 _STENCIL = np.array([1.0, -8.0, 0.0, 8.0, -1.0]) / (12.0 * _STEP)
 
 
+@BENCH.experiment("printed-equations", "the equations of section 2.2 along a run", 0.3)
 def _printed(quick: bool) -> xr.Dataset:
     """The equations of section 2.2 as printed, as listed and as they are, at instants of the main run."""
     problem = on_table(report_problem())
@@ -131,6 +134,7 @@ def _vector(now: xr.Dataset, name: str) -> Vector:
     return (x, y, z)
 
 
+@BENCH.experiment("steady-bodies", "steady states of several bodies", 0.5)
 def _steady(quick: bool) -> xr.Dataset:
     """Where several bodies end up between upright and inverted, and how well (2.16) and (2.17) hold there."""
     m, R = REPORT.mass, float(REPORT.surface.size)
@@ -198,6 +202,7 @@ def _residuals(y: list[float], top: Top) -> tuple[float, float]:
     return spin - precession * (c - alpha), left
 
 
+@BENCH.experiment("rotation", "the equations of section 2.1 at random states", 0.1)
 def _rotation(quick: bool) -> xr.Dataset:
     """Section 2.1 at random states: the angular velocity by (2.1) and (2.2), and Euler's equations (2.6)."""
     random = np.random.default_rng(1)
@@ -249,11 +254,3 @@ def _rotation_misses(angles: Array, rates: Array, torque: Array) -> tuple[float,
 
 def _part(difference: Array, whole: Array) -> float:
     return float(np.abs(difference).max() / np.abs(whole).max())
-
-
-EXPERIMENTS = [
-    Experiment("printed-equations", "the equations of section 2.2 along a run", 0.3, _printed),
-    Experiment("rotation", "the equations of section 2.1 at random states", 0.1, _rotation),
-    Experiment("steady-bodies", "steady states of several bodies", 0.5, _steady),
-]
-"""What the report's printed equations are checked by."""

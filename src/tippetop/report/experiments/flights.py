@@ -8,9 +8,8 @@ import xarray as xr
 
 from tippetop.presets import report_problem
 from tippetop.problem import Problem
-from tippetop.report.experiment import Experiment, variable
+from tippetop.report.experiment import Bench, variable
 from tippetop.report.experiments.runs import (
-    FLIGHT_READINGS,
     WINDOW,
     flight_readings,
     stopping,
@@ -18,6 +17,8 @@ from tippetop.report.experiments.runs import (
     unilateral,
 )
 from tippetop.run import simulate
+
+BENCH = Bench()
 
 LONG_WINDOW = 100.0
 """Length of the longer runs in which a lift-off is looked for, s."""
@@ -99,12 +100,14 @@ def _onsets(
     )
 
 
+@BENCH.experiment("onset-mu", "the least spin that leaves the table, against friction", 7.0)
 def _over_mu(quick: bool) -> xr.Dataset:
     values = np.geomspace(0.05, 10.0, 3 if quick else 8)
     data = _onsets("friction.mu", values, ("s m-1", "friction"), (WINDOW, LONG_WINDOW), quick)
     return data.assign_attrs(tilt_rad=TILT)
 
 
+@BENCH.experiment("onset-tilt", "the least spin that leaves the table, against tilt", 5.0)
 def _over_tilt(quick: bool) -> xr.Dataset:
     values = np.sort([TILT, *np.linspace(0.05, 1.4, 4 if quick else 12)])
     data = _onsets("launch.tilt", values, ("rad", "tilt at launch"), (WINDOW,), quick)
@@ -114,19 +117,19 @@ def _over_tilt(quick: bool) -> xr.Dataset:
 def followed(spins: tuple[float, ...], restitution: float) -> xr.Dataset:
     """Launches with these spins, rad/s, on a table that only pushes, followed through all their flights.
 
-    Variables over restitution and spin: those of `FLIGHT_READINGS`, and first_lift_off, s.
+    Variables over restitution and spin: what `flight_readings` gives, and first_lift_off, s.
     """
     samples = int(SAMPLES_PER_SECOND * FLIGHTS_WINDOW) + 1
-    columns: dict[str, list[float]] = {name: [] for name in (*FLIGHT_READINGS, "first_lift_off")}
+    rows = []
     for spin in spins:
         run = simulate(unilateral(report_problem(spin), restitution), FLIGHTS_WINDOW, samples=samples)
-        readings = flight_readings(run) | {"first_lift_off": float(run["first_lift_off"])}
-        for name, column in columns.items():
-            column.append(readings[name])
-    meanings = FLIGHT_READINGS | {"first_lift_off": ("s", "when the top first leaves the table")}
-    over = ("restitution", "spin")
+        lifted = float(run["first_lift_off"]), "s", "when the top first leaves the table"
+        rows.append(flight_readings(run) | {"first_lift_off": lifted})
     return xr.Dataset(
-        {name: variable([column], *meanings[name], *over) for name, column in columns.items()},
+        {
+            name: variable([[row[name][0] for row in rows]], *meaning, "restitution", "spin")
+            for name, (_, *meaning) in rows[0].items()
+        },
         {
             "spin": variable(list(spins), "rad s-1", "spin at launch", "spin"),
             "restitution": variable([restitution], "1", "coefficient of restitution", "restitution"),
@@ -135,18 +138,11 @@ def followed(spins: tuple[float, ...], restitution: float) -> xr.Dataset:
     )
 
 
+@BENCH.experiment("flights", "launches followed through their flights", 11.0)
 def _plastic(quick: bool) -> xr.Dataset:
     return followed(SPINS_QUICK if quick else SPINS, 0.0)
 
 
+@BENCH.experiment("flights-bouncing", "the same with impacts that rebound", 5.0)
 def _bouncing(quick: bool) -> xr.Dataset:
     return followed(BOUNCING_SPINS_QUICK if quick else BOUNCING_SPINS, BOUNCING)
-
-
-EXPERIMENTS = [
-    Experiment("onset-mu", "the least spin that leaves the table, against friction", 7.0, _over_mu),
-    Experiment("onset-tilt", "the least spin that leaves the table, against tilt", 5.0, _over_tilt),
-    Experiment("flights", "launches followed through their flights", 11.0, _plastic),
-    Experiment("flights-bouncing", "the same with impacts that rebound", 5.0, _bouncing),
-]
-"""What the figures of lift-off and flight are made from."""

@@ -9,11 +9,13 @@ from scipy.optimize import curve_fit
 
 from tippetop.integrators.base import Array
 from tippetop.presets import report_problem
-from tippetop.report.experiment import Experiment, variable
+from tippetop.report.experiment import Bench, variable
 from tippetop.report.experiments.runs import WINDOW, on_table, swept
 from tippetop.report.listing import listing_run
 from tippetop.report.quoted import NORMAL_FRICTION
 from tippetop.report.readings import SETTLED, crossings, flip_time
+
+BENCH = Bench()
 
 SPIN = 155.0
 """The report does not say at which spin its Fig. 7 was made; this is that of its main run, rad/s."""
@@ -70,6 +72,7 @@ def power_law(mu: Array, times: Array) -> tuple[float, float, float, float]:
     return float(a), float(b), float(straight[0]), float(np.corrcoef(np.log(x), np.log(y))[0, 1])
 
 
+@BENCH.experiment("flip-times", "flip time against friction, at 155 rad/s", 2.0)
 def _flip_times(quick: bool) -> xr.Dataset:
     mu = np.linspace(*NORMAL_FRICTION, 7 if quick else 17)
     spins = np.array([SPIN])
@@ -90,6 +93,7 @@ def _flip_times(quick: bool) -> xr.Dataset:
     return data
 
 
+@BENCH.experiment("flip-times-spins", "the same at other spins", 7.0)
 def _other_spins(quick: bool) -> xr.Dataset:
     spins = np.array(OTHER_SPINS[:3:2] if quick else OTHER_SPINS)
     mu = np.linspace(*NORMAL_FRICTION, 5 if quick else 9)
@@ -108,6 +112,7 @@ def _other_spins(quick: bool) -> xr.Dataset:
     return data
 
 
+@BENCH.experiment("flip-times-wide", "flip time over three decades of friction", 2.5)
 def _wide(quick: bool) -> xr.Dataset:
     mu = np.geomspace(0.03, 10.0, 9) if quick else np.geomspace(0.01, 10.0, 28)
     spins = np.array([100.0, 155.0])
@@ -131,6 +136,7 @@ def _wide(quick: bool) -> xr.Dataset:
     )
 
 
+@BENCH.experiment("friction-extremes", "turning over from no friction to far too much", 5.0)
 def _extremes(quick: bool) -> xr.Dataset:
     """When the report's main launch turns half over, from no friction to far too much."""
     mu = np.array([0.0, 0.3, 1.0, 100.0, *([] if quick else [300.0]), 1000.0])
@@ -141,12 +147,3 @@ def _extremes(quick: bool) -> xr.Dataset:
         {"mu": variable(mu, "s m-1", "friction coefficient", "mu")},
         {"spin_rad_per_s": SPIN, "window_s": window},
     )
-
-
-EXPERIMENTS = [
-    Experiment("friction-extremes", "turning over from no friction to far too much", 5.0, _extremes),
-    Experiment("flip-times", "flip time against friction, at 155 rad/s", 2.0, _flip_times),
-    Experiment("flip-times-spins", "the same at other spins", 7.0, _other_spins),
-    Experiment("flip-times-wide", "flip time over three decades of friction", 2.5, _wide),
-]
-"""What Fig. 7 is made from."""

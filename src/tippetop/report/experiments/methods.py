@@ -13,11 +13,13 @@ from tippetop.integrators.scipy_methods import SciPy
 from tippetop.mechanics.vectors import Scalar
 from tippetop.presets import report_problem
 from tippetop.problem import Problem
-from tippetop.report.experiment import Experiment, Variable, variable
+from tippetop.report.experiment import Bench, Variable, variable
 from tippetop.report.experiments.runs import on_table
 from tippetop.report.listing import launch_state, listing_rates
 from tippetop.report.ode45 import ABSOLUTE, RELATIVE, dormand_prince_step, ode45
 from tippetop.run import simulate
+
+BENCH = Bench()
 
 EXPLICIT, IMPLICIT = ("ode45", "dop853"), ("radau", "bdf", "lsoda")
 
@@ -42,6 +44,7 @@ def _generic() -> Problem:
     return on_table(report_problem(80.0, tilt=0.7).replace(changes))
 
 
+@BENCH.experiment("order", "order of accuracy of the two Runge-Kutta formulas", 1.0)
 def _order(quick: bool) -> xr.Dataset:
     problem, span = _generic(), 0.1
     steps = span / np.array([50, 100, 200] if quick else [50, 100, 200, 400])
@@ -153,6 +156,7 @@ def effort(problem: Problem, method: str, span: float) -> Effort:
     return Effort(rates.count if failure is None else -1, float(end[0] % math.pi))
 
 
+@BENCH.experiment("stiffness", "evaluations of explicit and implicit methods", 12.0)
 def _stiffness(quick: bool) -> xr.Dataset:
     methods = (*EXPLICIT, *IMPLICIT)
     made = [[effort(report_problem(*launch), method, _SPAN) for method in methods] for launch in LAUNCHES]
@@ -181,6 +185,7 @@ def _stiffness(quick: bool) -> xr.Dataset:
     )
 
 
+@BENCH.experiment("theta-mod-pi", "the listing's right-hand side at the poles", 0.1)
 def _jump(quick: bool) -> xr.Dataset:
     """The listing's right-hand side just before and just after the axis is vertical."""
     problem = report_problem()
@@ -201,11 +206,3 @@ def _jump(quick: bool) -> xr.Dataset:
         },
         attrs={"state": f"theta = -/+{tiny:g}; theta', phi, phi', omega3, v_x, v_y = {rest}"},
     )
-
-
-EXPERIMENTS = [
-    Experiment("order", "order of accuracy of the two Runge-Kutta formulas", 1.0, _order),
-    Experiment("stiffness", "evaluations of explicit and implicit methods", 12.0, _stiffness),
-    Experiment("theta-mod-pi", "the listing's right-hand side at the poles", 0.1, _jump),
-]
-"""What is said about numerical methods."""

@@ -17,12 +17,10 @@ from tippetop.report.experiments import (
     theory_runs,
 )
 
-EXPERIMENTS: dict[str, Experiment] = {
-    experiment.id: experiment
-    for module in (
-        *(runs, spins, friction, flights, methods, equations, checks),
-        *(theory, theory_runs, dry, patches, real, stepping),
-    )
-    for experiment in module.EXPERIMENTS
-}
+EXPERIMENTS: dict[str, Experiment] = {}
 """Every experiment by its name."""
+for module in (
+    *(runs, spins, friction, flights, methods, equations, checks),
+    *(theory, theory_runs, dry, patches, real, stepping),
+):
+    EXPERIMENTS |= module.BENCH

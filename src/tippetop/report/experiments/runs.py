@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping
+from typing import TypeAlias
 
 import numpy as np
 import xarray as xr
@@ -9,12 +10,14 @@ import xarray as xr
 from tippetop.mechanics.euler import published_energy
 from tippetop.presets import REPORT_TABLE_1, report_problem
 from tippetop.problem import Problem
-from tippetop.report.experiment import Experiment, variable
+from tippetop.report.experiment import Bench, Experiment, variable
 from tippetop.report.listing import VARIABLES, listing_run
 from tippetop.report.quoted import END_OF_FIG_5
 from tippetop.report.readings import SETTLED, SHOWN, crossings, first_below_zero, flip_time, longest_quiet
 from tippetop.run import simulate
 from tippetop.sweeps import Ending, Product, Sweep, compute
+
+BENCH = Bench()
 
 WINDOW = 20.0
 """Length of the report's runs, s (its listing, line 13)."""
@@ -60,31 +63,23 @@ def swept(problem: Problem, values: Mapping[str, np.ndarray], window: float = WI
     return found.where(~found["outcome"].isin([Ending.FAILED, Ending.BAD]))
 
 
-FLIGHT_READINGS = {
-    "flights": ("1", "number of flights"),
-    "airborne_time": ("s", "time spent above the table in all"),
-    "last_touchdown": ("s", "end of the last flight; 0 without one"),
-    "highest_gap": ("m", "greatest height of the lowest point above the table"),
-    "turning_time": ("s", "when the axis first passed the horizontal"),
-    "energy_rise": ("J", "largest rise of the energy from sample to sample"),
-    "energy_in_impacts": ("J", "energy lost in impacts on the table"),
-    "final_theta_flight": ("rad", "tilt at the end, on a table that only pushes"),
-}
-"""What `flight_readings` gives, with unit and meaning."""
+Reading: TypeAlias = tuple[float, str, str]
+"""A number with its unit and its meaning."""
 
 
-def flight_readings(run: xr.Dataset) -> dict[str, float]:
-    """What is read off a run on a table that only pushes; the names are those of `FLIGHT_READINGS`."""
-    ends = run["flight_end"].values
+def flight_readings(run: xr.Dataset) -> dict[str, Reading]:
+    """What is read off a run on a table that only pushes."""
+    last, gap, tilt = max(run["flight_end"].values, default=0.0), run["highest_gap"], run["final_theta"]
+    rise, struck = np.diff(run["energy"].values).max(), run["event_energy_lost"].values.sum()
     return {
-        "flights": float(run["flights"]),
-        "airborne_time": float(run["airborne_time"]),
-        "last_touchdown": float(ends[-1]) if len(ends) else 0.0,
-        "highest_gap": float(run["highest_gap"]),
-        "turning_time": float(run["turns_over"]),
-        "energy_rise": float(np.diff(run["energy"].values).max()),
-        "energy_in_impacts": float(run["event_energy_lost"].values.sum()),
-        "final_theta_flight": float(run["final_theta"]),
+        "flights": (float(run["flights"]), "1", "number of flights"),
+        "airborne_time": (float(run["airborne_time"]), "s", "time spent above the table in all"),
+        "last_touchdown": (float(last), "s", "end of the last flight; 0 without one"),
+        "highest_gap": (float(gap), "m", "greatest height of the lowest point above the table"),
+        "turning_time": (float(run["turns_over"]), "s", "when the axis first passed the horizontal"),
+        "energy_rise": (float(rise), "J", "largest rise of the energy from sample to sample"),
+        "energy_in_impacts": (float(struck), "J", "energy lost in impacts on the table"),
+        "final_theta_flight": (float(tilt), "rad", "tilt at the end, on a table that only pushes"),
     }
 
 
@@ -147,8 +142,7 @@ def _continuation(problem: Problem, times: np.ndarray) -> dict[str, object]:
         drawn[f"{name}_flight"] = variable(run[name].values, run[name].attrs["units"], label, "time")
     for name in ("flight_start", "flight_end", "flight_highest_gap"):
         drawn[name] = run[name]
-    readings = flight_readings(run)
-    return drawn | {name: variable(readings[name], *FLIGHT_READINGS[name]) for name in readings}
+    return drawn | {name: variable(*reading) for name, reading in flight_readings(run).items()}
 
 
 def _readings(run: xr.Dataset, suffix: str) -> dict[str, object]:
@@ -182,15 +176,17 @@ def _readings(run: xr.Dataset, suffix: str) -> dict[str, object]:
     return readings
 
 
-def _launch(name: str, cost: float, title: str, *numbers: float) -> Experiment:
+def _launch(name: str, cost: float, title: str, *numbers: float) -> None:
     """The report's top launched with a spin, and a tilt and a friction if they are others than usual."""
-    return Experiment(name, title, cost, lambda quick: comparison(report_problem(*numbers), quick))
+    BENCH[name] = Experiment(name, title, cost, lambda quick: comparison(report_problem(*numbers), quick))
 
 
+@BENCH.experiment("run-50-table-1", "launch at 50 rad/s of the body that Table 1 prints", 0.8)
 def _table_1(quick: bool) -> xr.Dataset:
     return comparison(report_problem(50.0).replace({"body": REPORT_TABLE_1.model_dump()}), quick)
 
 
+@BENCH.experiment("settling-mu-100", "how the nutation of Fig. 8 dies away", 0.8)
 def _settling(quick: bool) -> xr.Dataset:
     """How far the tilt still swings, in the second before several times, on the table of Fig. 8."""
     ends = np.array([20.0, 40.0] if quick else [20.0, 40.0, 80.0])
@@ -204,6 +200,7 @@ def _settling(quick: bool) -> xr.Dataset:
     )
 
 
+@BENCH.experiment("run-50-windows", "the end of Fig. 5 against the length of the run", 1.5)
 def _windows(quick: bool) -> xr.Dataset:
     """The end of the launch at 50 rad/s by both methods, against the length of the run."""
     windows, problem = WINDOWS[3::4] if quick else WINDOWS, report_problem(50.0)
@@ -224,6 +221,7 @@ def likely_end(windows: xr.Dataset) -> xr.Dataset:
     return windows.isel(window=int(np.argmin(np.max(misses, axis=0))))
 
 
+@BENCH.experiment("listing-capped", "the listing with what it has commented out", 2.5)
 def _capped(quick: bool) -> xr.Dataset:
     """Where launches end by the report's method, and if a negative normal force is set to zero in it."""
     spins = CAPPED_SPINS[1:2] if quick else CAPPED_SPINS
@@ -241,6 +239,7 @@ def _capped(quick: bool) -> xr.Dataset:
     )
 
 
+@BENCH.experiment("slow-spins", "launches below the first critical spin", 1.5)
 def _slow(quick: bool) -> xr.Dataset:
     """How far launches below omega_c1 tilt, and where they end, by both methods."""
     columns: dict[str, list[float]] = {}
@@ -271,19 +270,11 @@ def _turns(values: np.ndarray) -> np.ndarray:
     return np.concatenate([[0], np.flatnonzero(np.diff(np.sign(np.diff(values)))) + 1])
 
 
-EXPERIMENTS = [
-    Experiment("slow-spins", "launches below the first critical spin", 1.5, _slow),
-    Experiment("run-50-windows", "the end of Fig. 5 against the length of the run", 1.5, _windows),
-    Experiment("listing-capped", "the listing with what it has commented out", 2.5, _capped),
-    Experiment("settling-mu-100", "how the nutation of Fig. 8 dies away", 0.8, _settling),
-    _launch("run-155", 1.4, "launch at 155 rad/s", 155.0),
-    _launch("run-50", 0.8, "launch at 50 rad/s", 50.0),
-    Experiment("run-50-table-1", "launch at 50 rad/s of the body that Table 1 prints", 0.8, _table_1),
-    _launch("run-mu-100", 4.0, "launch on an impossible table", 155.0, 0.1, 100.0),
-    _launch("run-175", 2.0, "launch at 175 rad/s", 175.0),
-    _launch("run-10", 0.5, "launch at 10 rad/s", 10.0),
-    _launch("run-90", 1.0, "launch at 90 rad/s", 90.0),
-    _launch("run-120", 1.1, "launch at 120 rad/s", 120.0),
-    _launch("run-150-pi-4", 1.2, "launch at 150 rad/s and pi/4", 150.0, math.pi / 4),
-]
-"""The launches of Figs. 4, 5, 8, 9 to 12 and 13 to 16, and that of Table 1."""
+_launch("run-155", 1.4, "launch at 155 rad/s", 155.0)
+_launch("run-50", 0.8, "launch at 50 rad/s", 50.0)
+_launch("run-mu-100", 4.0, "launch on an impossible table", 155.0, 0.1, 100.0)
+_launch("run-175", 2.0, "launch at 175 rad/s", 175.0)
+_launch("run-10", 0.5, "launch at 10 rad/s", 10.0)
+_launch("run-90", 1.0, "launch at 90 rad/s", 90.0)
+_launch("run-120", 1.1, "launch at 120 rad/s", 120.0)
+_launch("run-150-pi-4", 1.2, "launch at 150 rad/s and pi/4", 150.0, math.pi / 4)

@@ -8,10 +8,12 @@ import xarray as xr
 
 from tippetop.frictions import ContensouFriction
 from tippetop.mechanics.contensou import ELLIPSOIDAL_RADIUS
-from tippetop.report.experiment import Experiment, variable
+from tippetop.report.experiment import Bench, variable
 from tippetop.report.experiments.real import EVENTS, LEINE, LEINE_WINDOW, events_of, happenings
 from tippetop.report.moreau import Ball, History, SphereTop, follow
 from tippetop.run import simulate
+
+BENCH = Bench()
 
 STEPS = (1e-3, 5e-4, 2e-4, 1e-4, 5e-5)
 """Steps that are tried, s."""
@@ -58,6 +60,7 @@ def found_in(history: History) -> dict[str, float]:
     return {"stem": touched, "back": back, "both": both, "apart": apart, "strikes": strikes}
 
 
+@BENCH.experiment("real-stepping", "Leine and Glocker's top by time-stepping", 12.0)
 def _stepping(quick: bool) -> xr.Dataset:
     """What time-stepping finds of the top, over its step, and what an exact run finds."""
     histories = [stepped(step) for step in (STEPS[:3] if quick else STEPS)]
@@ -89,9 +92,3 @@ def _middles(history: History) -> tuple[np.ndarray, list[float]]:
 
 def _column(found: Iterable[dict[str, float]], name: str, unit: str, long: str) -> object:
     return variable([one[name] for one in found], unit, long, "step")
-
-
-EXPERIMENTS = [
-    Experiment("real-stepping", "Leine and Glocker's top by time-stepping", 12.0, _stepping),
-]
-"""What a fixed step finds of a real top."""

@@ -9,7 +9,7 @@ from tippetop.bodies import Body
 from tippetop.integrators.base import Array
 from tippetop.presets import LEINE_GLOCKER, REPORT, REPORT_TABLE_1, report_problem
 from tippetop.problem import Problem
-from tippetop.report.experiment import Experiment, variable
+from tippetop.report.experiment import Bench, variable
 from tippetop.report.experiments.runs import WINDOW
 from tippetop.run import simulate
 from tippetop.theory.apparent import (
@@ -33,6 +33,8 @@ from tippetop.theory.stability import branch_eigenvalues
 from tippetop.theory.steady import VERTICAL_SPINS, jellett_of_launch, precession_branch
 from tippetop.theory.thresholds import CriticalSpins, critical_spin, critical_spins
 
+BENCH = Bench()
+
 VISIBLE = (0.001, 0.002, 0.005, 0.01)
 """Distances from the vertical that may be told from none, rad: up to the report's own 0.01 rad."""
 
@@ -46,6 +48,7 @@ LONG_RUN = 400.0
 """Length of the runs whose end is compared with the steady states, s."""
 
 
+@BENCH.experiment("why-critical", "critical spins without a simulation", 1.0)
 def _critical(quick: bool) -> xr.Dataset:
     """The critical spins by formula and by the spectrum, and what a short window makes of them."""
     problem = report_problem()
@@ -82,6 +85,7 @@ def _pair(spins: CriticalSpins) -> list[float]:
     return [spins.upright, spins.inverted]
 
 
+@BENCH.experiment("why-bifurcation", "steady states against spin, and long runs", 5.0)
 def _bifurcation(quick: bool) -> xr.Dataset:
     """Steady states against spin with their stability, and where long runs end, for two bodies."""
     jumping = REPORT.model_copy(update={"I1": JUMP_RATIO * REPORT.I3})
@@ -168,6 +172,7 @@ def _launched(base: Problem, spin: float, tilt: float) -> Problem:
     return tilted.replace({"launch.spin": spin * _per_spin(base) / _per_spin(tilted)})
 
 
+@BENCH.experiment("why-groups", "which tops turn over", 0.3)
 def _groups(quick: bool) -> xr.Dataset:
     """The map of the groups over gamma and alpha, and some tops on it."""
     alpha = np.linspace(1e-3, 0.6, 121 if quick else 601)
@@ -195,11 +200,3 @@ def _groups(quick: bool) -> xr.Dataset:
         {"alpha": variable(alpha, "1", "eccentricity", "alpha"), "top": list(bodies)},
         {"groups": ", ".join(letters), "gamma_least": float(gamma[0]), "gamma_greatest": float(gamma[-1])},
     )
-
-
-EXPERIMENTS = [
-    Experiment("why-critical", "critical spins without a simulation", 1.0, _critical),
-    Experiment("why-bifurcation", "steady states against spin, and long runs", 5.0, _bifurcation),
-    Experiment("why-groups", "which tops turn over", 0.3, _groups),
-]
-"""What the figures about steady states are made from."""
