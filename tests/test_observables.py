@@ -12,8 +12,8 @@ from tippetop.integrators import has_taylor, make_integrator
 from tippetop.mechanics.motion import along_table, angular_velocity, contact, sliding_rates
 from tippetop.mechanics.quadratures import orientation
 from tippetop.mechanics.state import SlidingState
-from tippetop.observables import continuous
 from tippetop.presets import report_problem
+from tippetop.samples import continuous
 
 RANDOM = np.random.default_rng(2).normal(size=(1000, 4))
 HALF_TURNS = np.hstack((np.zeros((100, 1)), RANDOM[:100, 1:]))
@@ -31,7 +31,7 @@ def seen(turned):
     )
     over = Rotation.from_rotvec(np.where(pole > 0.0, 0.0, np.pi)[:, None] * np.array([0.0, 1.0, 0.0]))
     x, y, _ = (least * over).inv().apply(marker).T
-    return orientation(tuple(axis.T), np.arctan2(y, x), pole, np)
+    return np.stack(orientation(tuple(axis.T), np.arctan2(y, x), pole, np), axis=1)
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tippetop.mechanics.hull import Hull, each_surface
+from tippetop.mechanics.hull import Hull, each_surface, outer_height
 from tippetop.mechanics.state import State
 from tippetop.mechanics.surface import Surface, contact_vector
 from tippetop.mechanics.top import Top
@@ -13,6 +13,9 @@ from tippetop.mechanics.vectors import Scalar, Vector, dot
 
 LEVEL = 1e-9
 """Difference of height, in sizes, up to which two surfaces are equally low: then the first of them counts."""
+
+LOOKS = 65
+"""Tilts at which the height of the centre of mass is looked at."""
 
 
 def lowest_number(surface: Surface, c: Any) -> NDArray[np.intp]:
@@ -31,6 +34,12 @@ def lowest_contact_vector(axis: Vector, surface: Surface) -> Vector:
         arms = np.array([np.broadcast_arrays(*contact_vector(axis, one)) for one in surface.each])
     x, y, z = np.take_along_axis(arms, number[None, None], axis=0)[0]
     return (x, y, z)
+
+
+def highest_between(surface: Surface, low: Scalar, high: Scalar) -> Scalar:
+    """Largest height of the centre of mass on the table for n_z from `low` to `high`, in some looks."""
+    heights = outer_height(surface, np.multiply.outer(np.linspace(0.0, 1.0, LOOKS), high - low) + low)
+    return np.max(heights, axis=0)
 
 
 def lowest_jellett(state: State, top: Top) -> Scalar:

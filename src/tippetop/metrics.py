@@ -14,7 +14,7 @@ from tippetop.catalogue import NEAR_FINAL, NEAR_POLE, Ending
 from tippetop.contact.mode import Outcome
 from tippetop.integrators.base import Array
 from tippetop.integrators.polynomials import Polynomials
-from tippetop.lowest import lowest_jellett
+from tippetop.lowest import highest_between, lowest_jellett
 from tippetop.mechanics.hull import outer_height
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import axial_spin
@@ -28,9 +28,6 @@ OUTCOMES = tuple(Outcome)
 """How a launch can end, by number."""
 
 Flags = NDArray[np.bool_]
-
-HEIGHT_LOOKS = 65
-"""Tilts at which the height of the centre of mass is looked at, over the range that a launch went through."""
 
 
 @dataclass
@@ -137,8 +134,7 @@ def metrics(ends: Ends, start: State, top: Top, units: Units) -> dict[str, NDArr
         drift = change / np.where(moment > 0, moment, np.nan)
         lost = energy(start, top) - energy(end, top)
         precession = np.where(axis_sine(end.axis) > 0, precession_rate(end.axis, end.momentum, top), np.nan)
-        swept = np.multiply.outer(np.linspace(0.0, 1.0, HEIGHT_LOOKS), ends.up - ends.down) + ends.down
-        highest = np.fmax(np.max(outer_height(top.surface, swept), axis=0), ends.highest)
+        highest = np.fmax(highest_between(top.surface, ends.down, ends.up), ends.highest)
     found = {
         "final_theta": tilt(end),
         "final_omega3": axial_spin(end.axis, end.momentum, top) / units.time,

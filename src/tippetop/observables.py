@@ -1,10 +1,6 @@
-"""What is read off a run at its samples: the report's variables, forces and invariants."""
-
-from collections.abc import Sequence
-from typing import NamedTuple
+"""What is read off a run on its way: its samples, what is integrated along it, and what it must keep."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tippetop.contact.block import NODES, WEIGHTS, Block
 from tippetop.contact.flight import Flight
@@ -18,12 +14,10 @@ from tippetop.lowest import lowest_jellett
 from tippetop.mechanics.hull import Hull, lowest_surface, outer_height
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import along_table
-from tippetop.mechanics.quadratures import orientation
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
-from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import length
-from tippetop.mechanics.view import axis_sine
+from tippetop.samples import Samples
 
 _INTEGRALS = np.array(
     [
@@ -36,29 +30,6 @@ _INTEGRALS = np.array(
 
 LEAST_MOMENT = 1e-6
 """Size |L| h of Jellett's integral at launch, in natural units, below which its drift says nothing."""
-
-
-class Samples(NamedTuple):
-    """A launch at its samples, in natural units; every number of shape (k,)."""
-
-    times: Array
-    """When."""
-    instants: Instants
-    """What is told of each."""
-    x: Array
-    y: Array
-    """Horizontal position of the centre of mass."""
-    turn: Array
-    work: Array
-    """Work of the contact force since launch."""
-    struck: Array
-    drilled: Array
-    rolled: Array
-    """Energy lost since launch in impacts, to drilling and to rolling."""
-    pole: Array
-    """Angle psi about the axis, and the pole of its chart (see `tippetop.mechanics.quadratures`)."""
-    mode: NDArray[np.int8]
-    """Number of the contact mode, among the names that the recorder has met."""
 
 
 class Recorder:
@@ -216,58 +187,9 @@ class Recorder:
             self._most = max(self._most, float(np.max(integral)))
 
 
-def observe(samples: Samples, top: Top, units: Units) -> dict[str, Array]:
-    """Every variable of `tippetop.catalogue.SAMPLED` in SI, by name, of a top in natural units."""
-    told, state = samples.instants, samples.instants.state
-    axis, momentum = state.axis, state.momentum
-    sine, (slip_x, slip_y), tilting = axis_sine(axis), told.slip, told.tilting
-    upright = sine == 0.0
-    if upright.any():
-        # Where the axis is vertical it leans nowhere; X is then the space axis x, and theta' the rate at
-        # which the axis leaves the pole.
-        slip_x, slip_y = (np.where(upright, *both) for both in zip(told.point, told.slip, strict=True))
-        leaving = np.hypot(momentum[0], momentum[1]) / top.transverse_inertia
-        tilting = np.where(upright, np.copysign(leaving, axis[2]), tilting)
-    force = units.energy / units.length
-    return {
-        "theta": np.arctan2(sine, axis[2]),
-        "theta_dot": tilting / units.time,
-        "phi": np.arctan2(axis[1], axis[0]),
-        "phi_dot": told.precession / units.time,
-        "omega3": told.spin / units.time,
-        "slip_x": slip_x * units.speed,
-        "slip_y": slip_y * units.speed,
-        "normal_force": told.force[2] * force,
-        "contact_force": np.stack(told.force, axis=1) * force,
-        "contact_torque": np.stack(told.torque, axis=1) * units.energy,
-        "energy": told.energy * units.energy,
-        "work": samples.work * units.energy,
-        "sliding_loss": (-samples.work - samples.struck - samples.drilled - samples.rolled) * units.energy,
-        "drilling_loss": samples.drilled * units.energy,
-        "rolling_loss": samples.rolled * units.energy,
-        "jellett": told.jellett * units.angular_momentum * units.length,
-        "height": state.height * units.length,
-        "gap": told.gap * units.length,
-        "x": samples.x * units.length,
-        "y": samples.y * units.length,
-        "axis": np.stack(axis, axis=1),
-        "velocity": np.stack(state.velocity, axis=1) * units.speed,
-        "angular_momentum": np.stack(momentum, axis=1) * units.angular_momentum,
-        "orientation": continuous(orientation(axis, samples.turn, samples.pole, np)),
-    }
-
-
 def evenly_summed(gains: Array) -> Array:
     """Sums of the first gains, from none to all, without adding up the rounding of many that are alike."""
     mean = np.mean(gains)
     found: Array = mean * np.arange(len(gains) + 1.0)
     found[1:] += np.cumsum(gains - mean)
     return found
-
-
-def continuous(components: Sequence[Array]) -> Array:
-    """Quaternions, shape (k, 4), from components of shape (k,), with the signs that let none jump."""
-    quaternions = np.stack(components, axis=1)
-    jumps = np.einsum("ij,ij->i", quaternions[1:], quaternions[:-1]) < 0
-    signs = np.concatenate(([1.0], np.cumprod(np.where(jumps, -1.0, 1.0))))
-    return np.asarray(quaternions * signs[:, None])

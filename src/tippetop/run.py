@@ -22,8 +22,9 @@ from tippetop.mechanics.state import State
 from tippetop.mechanics.top import natural, natural_state, natural_units
 from tippetop.mechanics.units import Units
 from tippetop.metrics import metrics
-from tippetop.observables import Recorder, observe
+from tippetop.observables import Recorder
 from tippetop.problem import Problem
+from tippetop.samples import continuous, observe
 from tippetop.tally import Tally
 
 BYTES_PER_SAMPLE = 1600
@@ -145,6 +146,7 @@ def simulate(
     if early:
         times[-1] = trajectory.time * units.time
     variables = observe(found, top, units)
+    variables["orientation"] = continuous(variables["orientation"])
     return assemble(times, variables, (found.mode, recorder.modes), scalars, lists, attributes)
 
 

@@ -53,9 +53,13 @@ Whole: TypeAlias = Annotated[int, BeforeValidator(_whole)]
 """A whole number, and nothing that only looks like one."""
 
 
+POINTS = "a list of points [distance from the axis, height, radius]"
+"""What a profile is accepted as."""
+
+
 def _listed(value: Any) -> Any:
     if not isinstance(value, list | tuple) or not all(isinstance(point, list | tuple) for point in value):
-        raise PydanticCustomError("points", "a list of points [distance from the axis, height, radius]")
+        raise PydanticCustomError("points", POINTS)
     return value
 
 
@@ -292,7 +296,7 @@ def _accepted(detail: ErrorDetails, part: type[Part]) -> str:
     """What would be accepted instead, from the kind of validation error."""
     match detail["type"]:
         case "greater_than" | "greater_than_equal" | "less_than" | "less_than_equal":
-            return _range(_written(part)[str(detail["loc"][0])])
+            return range_of(_written(part)[str(detail["loc"][0])])
         case "finite_number" | "float_type" | "float_parsing":
             return "a finite number"
         case "missing":
@@ -307,7 +311,7 @@ def _accepted(detail: ErrorDetails, part: type[Part]) -> str:
             return detail["msg"][0].lower() + detail["msg"][1:]
 
 
-def _range(info: FieldInfo) -> str:
+def range_of(info: FieldInfo) -> str:
     """The constraints of a number in words: "a number greater than 0 and less than 1"."""
     words = {"gt": "greater than", "ge": "at least", "lt": "less than", "le": "at most"}
     bounds = [

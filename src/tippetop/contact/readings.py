@@ -95,8 +95,8 @@ class Instants(NamedTuple):
 
     def pack(self) -> tuple[Scalar, ...]:
         """The numbers in the order of the attributes."""
-        state, force, torque, *numbers, slip, point = self
-        return (*state.pack(), *force, *torque, *numbers, *slip, *point)
+        numbers = self.energy, self.jellett, self.gap, self.spin, self.precession, self.tilting
+        return (*self.state.pack(), *self.force, *self.torque, *numbers, *self.slip, *self.point)
 
     @classmethod
     def unpack(cls, rows: Row) -> "Instants":

@@ -104,7 +104,7 @@ class Statements(Expressions):
                 yield "break;"
             case ast.Continue():
                 yield "continue;"
-            case ast.Try():
+            case ast.Try() | ast.With():
                 yield from self._try(node)
             case ast.Match():
                 yield from self._match(node)
@@ -169,9 +169,16 @@ class Statements(Expressions):
         yield from indented(self._body(node, Scope.of(node)))
         yield "};"
 
-    def _try(self, node: ast.Try) -> Iterator[str]:
+    def _try(self, node: ast.Try | ast.With) -> Iterator[str]:
+        """What may fail; or, as in `numpy.errstate`, does not."""
+        yield from ["py.heed(false);"] * isinstance(node, ast.With)
         yield "try {"
         yield from indented(self._block(node.body))
+        if isinstance(node, ast.With):
+            if not ast.unparse(node.items[0]).startswith("np.errstate("):
+                raise Untranslatable(f"{self.module}: {ast.unparse(node)}")
+            yield from ["} finally {", "  py.heed(true);", "}"]
+            return
         handler, *others = node.handlers
         if others or handler.type is None or node.orelse or node.finalbody:
             raise Untranslatable(f"{self.module}: {ast.unparse(node)}")

@@ -20,12 +20,17 @@ ROOTS = (
     "tippetop.mechanics.view",
     "tippetop.mechanics.quadratures",
     "tippetop.integrators.stepping",
+    "tippetop.metrics",
+    "tippetop.samples",
     "tippetop.emit.javascript",
 )
 """What the engine asks for: these, and what they import, are translated."""
 
 GIVEN = {
+    "tippetop.catalogue": "./tables.js",
+    "tippetop.lowest": "./observe.js",
     "tippetop.integrators.dense": "./dense.js",
+    "tippetop.integrators.polynomials": "",
     "tippetop.integrators.rates": "",
     "tippetop.integrators": "./integrate.js",
     "tippetop.validation": "./part.js",
@@ -43,6 +48,8 @@ LEFT = {
     "_a_profile",
     "Body.turned",
     "Contact.rules",
+    *("read", "_compiled", "_without_top", "_of_kind", "continuous"),
+    *("Ends.unknown", "Ends.put", "ending", "turning_time", "arrival_time"),
     *("written_out", "_for_each", "_sum", "_powers"),
     *("Branch", "precession_branch", "state_of", "is_held", "steady_launch"),
     *(f"Problem.{name}" for name in ("replace", "to_toml", "to_json", "from_toml", "from_json", "read")),

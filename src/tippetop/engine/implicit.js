@@ -1,102 +1,69 @@
 // Collocation at Radau's points (Hairer and Wanner, Solving Ordinary Differential Equations II): for stiff motions.
-import { Arc, FAILURES, MANY, SINGULAR, STUCK_of_dormand_prince as STUCK, first_fall, first_step } from "./mechanics.js";
-import { DenseSolution } from "./dense.js";
+import { FULL, REACHED, SINGULAR, STUCK_of_dormand_prince as STUCK, SUSPECT, first_step } from "./mechanics.js";
 import { RADAU } from "./tables.js";
 
 const { integrals: WEIGHTS, powers: POWERS, last: [LAST] } = RADAU;
 const STAGES = WEIGHTS.length, TURNS = 12, ENOUGH = 1e-3, LEAST_STEP = 1e-15;
 
-/** Follow a motion; see tippetop.integrators.base.Integrator. */
-export function* collocated(motion, functions, parameters, [start, begin], end, tolerance) {
-  const step = new Step(functions, parameters, begin), { size } = step;
-  let knots = [start], terms = [], time = start, growth = 10, counted = 0;
-  const guards = motion.guards.map((guard, number) => functions.guard(guard, number));
-  const arc = (guard, failure, last) => {
-    const solution = new DenseSolution(knots, Float64Array.from(terms.flat()), size, STAGES);
-    const found = new Arc(solution, Float64Array.from(last), guard, failure, knots.length - 1, step.evaluations - counted);
-    [knots, terms, counted] = [[time], [], step.evaluations];
-    return found;
-  };
-  step.begin();
-  if (!step.slopes[0].every(Number.isFinite)) {
-    yield arc(null, FAILURES.get(SINGULAR), begin);
-    return;
-  }
-  let span = first_step(
-    functions.rates, parameters, step.state, step.slopes, step.work, end - start, [tolerance, tolerance]);
-  step.begin();
-  while (time < end) {
-    const reach = Math.min(time + span, end), doubt = step.take(reach - time, tolerance);
-    if (!(doubt < 1)) {
-      if (span <= LEAST_STEP * Math.max(1, Math.abs(reach))) {
-        yield arc(null, FAILURES.get(STUCK), step.state);
-        return;
-      }
-      span = (reach - time) * (doubt > 0 && doubt < Infinity ? Math.max(0.2, 0.9 * doubt ** (-1 / STAGES)) : 0.2);
+/** Steps from a state, as `advance` of Dormand and Prince takes them; where there are guards, every one is suspect. */
+export function implicit(rates, guards, count, p, y, lost, k, span, tolerance, knots, terms, steps) {
+  const step = new Step(rates, p, y, k, tolerance[0]), told = (ended) => [steps, step.calls, ended];
+  let growth = 10;
+  rates(y, p, k[0]);
+  if (!k[0].every(Number.isFinite)) return told(SINGULAR);
+  if (span[2] === 0) span[2] = first_step(rates, p, y, k, step.place, span[1] - span[0], tolerance);
+  while (span[0] < span[1]) {
+    if (steps === terms.length) return told(FULL);
+    const reach = Math.min(span[0] + span[2], span[1]), h = reach - span[0], doubt = step.take(h);
+    if (doubt < 1) {
+      step.accept(terms[steps]);
+      steps += 1;
+      knots[steps] = span[0] = reach;
+      span[2] = h * Math.min(growth, doubt === 0 ? 10 : 0.9 * doubt ** (-1 / STAGES));
+      growth = 10;
+      if (count > 0) return told(SUSPECT);
+    } else {
+      if (span[2] <= LEAST_STEP * Math.max(1, Math.abs(reach))) return told(STUCK);
+      span[2] = h * (doubt < Infinity ? Math.max(0.2, 0.9 * doubt ** (-1 / STAGES)) : 0.2);
       growth = 1;
-      continue;
     }
-    const taken = step.terms(), here = new DenseSolution([time, reach], Float64Array.from(taken), size, STAGES);
-    let again = false;
-    const advance = (at) => {
-      again = true;
-      step.take(at - time, tolerance);
-      return step.reached.slice();
-    };
-    const fall = first_fall(guards, parameters, (at) => here.rows(at), advance, [time, reach]);
-    if (fall !== null) {
-      const [number, at, last] = fall;
-      advance(at);
-      terms.push(step.terms());
-      knots.push((time = at));
-      yield arc(guards[number].name, null, last);
-      return;
-    }
-    if (again) step.take(reach - time, tolerance);
-    step.accept();
-    terms.push(taken);
-    knots.push(reach);
-    span = (reach - time) * Math.min(growth, doubt === 0 ? 10 : 0.9 * doubt ** (-1 / STAGES));
-    [time, growth] = [reach, 10];
-    if (terms.length === MANY || time >= end) yield arc(null, null, step.state);
   }
+  return told(REACHED);
 }
 
+/** A step from a state y; k has the rates there and, once it is taken, at Radau's points. */
 class Step {
-  constructor(functions, parameters, state) {
-    Object.assign(this, { functions, parameters, size: state.length, jacobian: null, evaluations: 0 });
-    const room = () => new Float64Array(this.size);
-    this.state = Float64Array.from(state);
-    [this.reached, this.work, this.there] = [room(), room(), room()];
-    this.slopes = Array.from({ length: STAGES + 1 }, room);
-    this.moved = new Float64Array(STAGES * this.size);
+  constructor(rates, p, y, k, tolerance) {
+    const [place, there] = [new Float64Array(y.length), new Float64Array(y.length)];
+    Object.assign(this, { rates, p, y, k, tolerance, place, there, jacobian: null, calls: 0 });
+    this.moved = new Float64Array(STAGES * y.length);
   }
 
-  rates(y, out) {
-    this.evaluations += 1;
-    this.functions.rates(y, this.parameters, out);
+  /** Rates at the state moved by a part of some numbers. */
+  look(moved, from, out) {
+    for (let i = 0; i < this.y.length; i += 1) this.place[i] = this.y[i] + moved[from + i];
+    this.calls += 1;
+    this.rates(this.place, this.p, out);
   }
 
-  begin() {
-    this.rates(this.state, this.slopes[0]);
-  }
-
-  accept() {
-    this.state.set(this.reached);
-    this.slopes[0].set(this.slopes[STAGES]);
+  accept(terms) {
+    const { y, k, moved } = this;
+    POWERS.forEach((row, power) => y.forEach((start, i) => {
+      terms[power][i] = row.reduce((sum, weight, a) => (a ? sum + weight * moved[(a - 1) * y.length + i] : sum), power ? 0 : start);
+    }));
+    y.forEach((start, i) => (y[i] = start + moved[moved.length - y.length + i]));
+    k[0].set(k[STAGES]);
     this.jacobian = null;
   }
 
   /** Derivatives of the rates at the start of the step, by differences that are small beside what moves in it. */
   differentiate(span) {
-    const { size, state, slopes, work, there } = this;
-    return Array.from({ length: size }, (_, j) => {
-      const shift = 1e-7 * Math.max(Math.abs(state[j]), span * Math.abs(slopes[0][j]), 1e-3 * span);
+    return Array.from(this.y, (start, j) => {
+      const shift = 1e-7 * Math.max(Math.abs(start), span * Math.abs(this.k[0][j]), 1e-3 * span), moved = new Float64Array(this.y.length);
       const [above, below] = [shift, -shift].map((by) => {
-        work.set(state);
-        work[j] += by;
-        this.rates(work, there);
-        return there.slice();
+        moved[j] = by;
+        this.look(moved, 0, this.there);
+        return this.there.slice();
       });
       return above.map((value, i) => (value - below[i]) / (2 * shift));
     });
@@ -104,56 +71,40 @@ class Step {
 
   /** The matrix 1 - span (weights x derivatives), with a right-hand side beside it. */
   system(weights, span, right) {
-    const { size, jacobian } = this;
-    return Array.from({ length: weights.length * size }, (_, row) => {
-      const a = Math.floor(row / size), i = row % size, found = new Float64Array(weights.length * size + 1);
+    const { jacobian } = this, size = this.y.length;
+    return Array.from(right, (value, row) => {
+      const a = Math.floor(row / size), i = row % size, found = new Float64Array(right.length + 1);
       weights[a].forEach((weight, b) => jacobian.forEach((column, j) => (found[b * size + j] = -span * weight * column[i])));
       found[row] += 1;
-      found[found.length - 1] = right[row];
+      found[right.length] = value;
       return found;
     });
   }
 
-  /** Take a step from the state to `reached`; its error over the one allowed. */
-  take(span, tolerance) {
-    const { size, state, slopes, work, moved } = this, right = new Float64Array(moved.length);
+  /** Take the step; its error over the one allowed. */
+  take(span) {
+    const { y, k, moved } = this, size = y.length;
     this.jacobian ??= this.differentiate(span);
     moved.fill(0);
     let error = Infinity, before = Infinity;
     for (let turn = 0; turn < TURNS; turn += 1) {
-      for (let a = 0; a < STAGES; a += 1) {
-        for (let i = 0; i < size; i += 1) work[i] = state[i] + moved[a * size + i];
-        this.rates(work, slopes[a + 1]);
-      }
-      for (let k = 0; k < right.length; k += 1) {
-        const total = WEIGHTS[Math.floor(k / size)].reduce((sum, weight, b) => sum + weight * slopes[b + 1][k % size], 0);
-        right[k] = span * total - moved[k];
-      }
-      const change = solved(this.system(WEIGHTS, span, right));
-      error = 0;
-      for (let k = 0; k < right.length; k += 1) {
-        moved[k] += change[k];
-        error = Math.max(error, Math.abs(change[k]) / (tolerance * (1 + Math.abs(state[k % size]))));
-      }
+      for (let a = 0; a < STAGES; a += 1) this.look(moved, a * size, k[a + 1]);
+      const change = solved(this.system(WEIGHTS, span, moved.map((one, row) =>
+        span * WEIGHTS[Math.floor(row / size)].reduce((sum, weight, b) => sum + weight * k[b + 1][row % size], 0) - one)));
+      moved.forEach((one, row) => (moved[row] = one + change[row]));
+      error = this.worst(change);
       if (error <= ENOUGH || !(error < 0.7 * before || turn < 2)) break;
       before = error;
     }
-    for (let i = 0; i < size; i += 1) this.reached[i] = state[i] + moved[moved.length - size + i];
-    return error <= 0.1 ? this.doubt(span, tolerance) : error === error ? 1e3 : NaN;
+    if (!(error <= 0.1)) return error === error ? 1e3 : NaN;
+    // Without what stiffness makes of rounding (Hairer's filter).
+    const last = y.map((_, i) => span * LAST.reduce((sum, weight, a) => sum + weight * k[a + 1][i], 0));
+    return 0.1 * this.worst(solved(this.system([[WEIGHTS[STAGES - 1][STAGES - 1]]], span, last)));
   }
 
-  /** The error of the step over the one allowed, without what stiffness makes of rounding (Hairer's filter). */
-  doubt(span, tolerance) {
-    const last = this.slopes[0].map((_, i) => span * LAST.reduce((sum, weight, a) => sum + weight * this.slopes[a + 1][i], 0));
-    const off = solved(this.system([[WEIGHTS[STAGES - 1][STAGES - 1]]], span, last));
-    return 0.1 * Math.max(...off.map((one, i) => Math.abs(one) / (tolerance * (1 + Math.abs(this.state[i])))));
-  }
-
-  /** The polynomials of the step just taken, [number][power] in a row. */
-  terms() {
-    const { size, state, moved } = this;
-    return Array.from(state).flatMap((start, i) => POWERS.map((row, power) =>
-      row.reduce((sum, weight, a) => (a ? sum + weight * moved[(a - 1) * size + i] : sum), power ? 0 : start)));
+  /** The largest of some numbers over the errors that are allowed. */
+  worst(off) {
+    return Math.max(...off.map((one, i) => Math.abs(one) / (this.tolerance * (1 + Math.abs(this.y[i % this.y.length])))));
   }
 }
 
@@ -170,9 +121,8 @@ function solved(rows) {
     }
   }
   for (let i = count - 1; i >= 0; i -= 1) {
-    let total = rows[i][count];
-    for (let j = i + 1; j < count; j += 1) total -= rows[i][j] * found[j];
-    found[i] = total / rows[i][i];
+    found[i] = rows[i][count] / rows[i][i];
+    for (let above = 0; above < i; above += 1) rows[above][count] -= rows[above][i] * found[i];
   }
   return found;
 }

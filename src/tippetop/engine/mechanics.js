@@ -3,6 +3,8 @@ import * as py from "./runtime.js";
 import { InvalidInput, MISSING, Part, numbers_of } from "./part.js";
 import { DenseSolution, ELEMENTARY, as_array } from "./dense.js";
 import { make_integrator } from "./integrate.js";
+import { highest_between, lowest_contact_vector, lowest_jellett } from "./observe.js";
+import { NEAR_FINAL } from "./tables.js";
 
 // tippetop.mechanics.vectors
 const VERTICAL = [0.0, 0.0, 1.0];
@@ -2937,7 +2939,7 @@ function analytic_disc(tip, shape, time, ahead, angle) {
 }
 
 // tippetop.contact.flight
-const DEGREE_of_flight = 14;
+const DEGREE_of_flight = 9;
 const TURN = 0.25;
 const MOST_STEPS = 4096;
 const TOUCHING = 1e-12;
@@ -6662,6 +6664,126 @@ function rules_for(top, liftoff, restitution) {
   return liftoff === "stop" ? new StopAtLiftOff(top) : new Bilateral(top);
 }
 
+// tippetop.mechanics.quadratures
+
+/** What the motion is integrated to; as rates, their time derivatives. */
+class Quadratures extends py.NamedTuple {
+  constructor(x, y, turn, work) {
+    super();
+    this.x = x;
+    this.y = y;
+    this.turn = turn;
+    this.work = work;
+  }
+}
+py.fields(Quadratures, ["x", "y", "turn", "work"]);
+
+/** Rate of psi in the chart of a pole (1: z, -1: -z), rad/s. */
+function turn_rate(axis, momentum, pole, top) {
+  const rate = axis_rate(axis, momentum, top);
+  const area = py.sub(py.mul(axis[0], rate[1]), py.mul(axis[1], rate[0]));
+  return py.add(axial_spin(axis, momentum, top), py.div(py.mul(pole, area), py.add(1.0, py.mul(pole, axis[2]))));
+}
+
+/** Rates of the quadratures, given the power of friction (W) and the chart of psi. */
+function quadrature_rates(state, power, pole, top) {
+  const turning = turn_rate(state.axis, state.momentum, pole, top);
+  return new Quadratures(state.velocity[0], state.velocity[1], turning, power);
+}
+
+/** Powers of drilling and of rolling friction, W, for the table's torque, N m. */
+function resistance_powers(state, torque, top) {
+  const turning = angular_velocity(state.axis, state.momentum, top);
+  return [py.mul(torque[2], turning[2]), py.add(py.mul(torque[0], turning[0]), py.mul(torque[1], turning[1]))];
+}
+
+/** Unit quaternion, scalar first, of a body whose axis is n and whose psi in a chart is `turn`, rad. */
+function orientation(axis, turn, pole, functions) {
+  const [cosine, sine] = [functions.cos(py.mul(0.5, turn)), functions.sin(py.mul(0.5, turn))];
+  const size = py.pow(py.mul(0.5, py.add(1.0, py.mul(pole, axis[2]))), 0.5);
+  const [x, y] = [py.div(py.mul(0.5, axis[0]), size), py.div(py.mul(0.5, axis[1]), size)];
+  const up = py.mul(0.5, py.add(1.0, pole));
+  const down = py.sub(1.0, up);
+  const [w, i, j, k] = [py.add(py.mul(up, size), py.mul(down, x)), py.mul(py.neg(up), y), py.add(py.mul(down, size), py.mul(up, x)), py.mul(down, y)];
+  return [py.sub(py.mul(w, cosine), py.mul(k, sine)), py.add(py.mul(i, cosine), py.mul(j, sine)), py.sub(py.mul(j, cosine), py.mul(i, sine)), py.add(py.mul(k, cosine), py.mul(w, sine))];
+}
+
+// tippetop.contact.readings
+const WORTH = 1000;
+
+/** What is integrated along a motion, as rates, and what its extremes are looked for of. */
+class Rates extends py.NamedTuple {
+  constructor(x, y, turn, work, drilling, rolling, axis, force) {
+    super();
+    this.x = x;
+    this.y = y;
+    this.turn = turn;
+    this.work = work;
+    this.drilling = drilling;
+    this.rolling = rolling;
+    this.axis = axis;
+    this.force = force;
+  }
+  /** Read them off the numbers of a mode, with the angle about the axis in the chart of a pole. */
+  static of(mode, y, pole) {
+    const [state, reaction] = [mode.state(y), mode.reaction(y)];
+    const [east, north, turn, work] = quadrature_rates(state, reaction.power, pole, mode.top);
+    let drilling = 0.0;
+    let rolling = 0.0;
+    if (!py.truth(mode.top.friction.torque_free)) {
+      [drilling, rolling] = resistance_powers(state, reaction.resistance, mode.top);
+    }
+    return new this(east, north, turn, work, drilling, rolling, state.axis[2], reaction.force[2]);
+  }
+}
+py.fields(Rates, ["x", "y", "turn", "work", "drilling", "rolling", "axis", "force"]);
+
+/** What is told of an instant. */
+class Instants extends py.NamedTuple {
+  constructor(state, force, torque, energy, jellett, gap, spin, precession, tilting, slip, point) {
+    super();
+    this.state = state;
+    this.force = force;
+    this.torque = torque;
+    this.energy = energy;
+    this.jellett = jellett;
+    this.gap = gap;
+    this.spin = spin;
+    this.precession = precession;
+    this.tilting = tilting;
+    this.slip = slip;
+    this.point = point;
+  }
+  /** Read them off the numbers of a mode. */
+  static of(mode, y) {
+    let x;
+    const [state, reaction, top] = [mode.state(y), mode.reaction(y), mode.top];
+    const [axis, momentum] = [state.axis, state.momentum];
+    const arm = lowest_contact_vector(axis, top.surface);
+    [x, y] = point_velocity(state.velocity, angular_velocity(axis, momentum, top), arm);
+    return new this(state, reaction.force, reaction.torque, energy(state, top), py.neg(dot(momentum, arm)), py.add(state.height, arm[2]), axial_spin(axis, momentum, top), precession_rate(axis, momentum, top), tilt_rate(axis, momentum, top), slip_along_tilt(axis, [x, y]), [x, y]);
+  }
+  /** The numbers in the order of the attributes. */
+  pack() {
+    const numbers = [this.energy, this.jellett, this.gap, this.spin, this.precession, this.tilting];
+    return [...this.state.pack(), ...this.force, ...this.torque, ...numbers, ...this.slip, ...this.point];
+  }
+  /** Read them from their numbers. */
+  static unpack(rows) {
+    const [force, torque] = [[rows[10], rows[11], rows[12]], [rows[13], rows[14], rows[15]]];
+    const [slip, point] = [[rows[22], rows[23]], [rows[24], rows[25]]];
+    const numbers = [rows[16], rows[17], rows[18], rows[19], rows[20], rows[21]];
+    return new this(State.unpack(rows), force, torque, ...numbers, slip, point);
+  }
+}
+py.fields(Instants, ["state", "force", "torque", "energy", "jellett", "gap", "spin", "precession", "tilting", "slip", "point"]);
+const TOLD = 26;
+
+/** The numbers of `Instants`. */
+function instants(mode, y) {
+  return Instants.of(mode, y).pack();
+}
+
 // tippetop.contact.trajectory
 const PHASE_LIMIT = 100000;
 const LONGEST_of_trajectory = 1e+300;
@@ -7362,7 +7484,7 @@ function _fall_along(guards, parameters, dense, advance, step, least) {
   for (const [index, guard] of py.enumerate(guards)) {
     const values = [...states].map((state) => py.float(guard.value(state, parameters)));
     const [value, exact] = [_along(guard, parameters, dense), _along(guard, parameters, advance)];
-    for (const [low, high, function_] of _brackets(probes, values, value, exact)) {
+    for (const [low, high, function_] of brackets(probes, values, value, exact)) {
       const time = crossing(function_, low, high);
       if (py.item(values, LOOKS_of_dormand_prince) > 0.0 && py.sub(time, start) < py.mul(least, py.sub(end, start))) {
         continue;
@@ -7382,7 +7504,7 @@ function _along(guard, parameters, solution) {
 }
 
 /** The intervals over which the guard falls from positive to not positive, in turn; in which solution. */
-function* _brackets(probes, values, value, exact) {
+function* brackets(probes, values, value, exact) {
   const last = py.len(probes) - 1;
   if (py.max(values.slice(0, 2)) <= 0.0) {
     const early = _early_bracket(probes[0], py.item(probes, last), value);
@@ -7591,48 +7713,102 @@ class Stepping extends py.Thing {
   }
 }
 
-// tippetop.mechanics.quadratures
+// tippetop.metrics
+const OUTCOMES = py.tuple(Outcome);
 
-/** What the motion is integrated to; as rates, their time derivatives. */
-class Quadratures extends py.NamedTuple {
-  constructor(x, y, turn, work) {
+/** What was found of launches, in natural units: all of shape (n,), or numbers of one. */
+class Ends extends py.Record {
+  constructor(state, time, outcome, steps, flights, least_force, lift_off, struck, drilled, rolled, airborne, highest_gap, highest, down, up, turned, arrived) {
     super();
+    this.state = state;
+    this.time = time;
+    this.outcome = outcome;
+    this.steps = steps;
+    this.flights = flights;
+    this.least_force = least_force;
+    this.lift_off = lift_off;
+    this.struck = struck;
+    this.drilled = drilled;
+    this.rolled = rolled;
+    this.airborne = airborne;
+    this.highest_gap = highest_gap;
+    this.highest = highest;
+    this.down = down;
+    this.up = up;
+    this.turned = turned;
+    this.arrived = arrived;
+  }
+}
+py.fields(Ends, ["state", "time", "outcome", "steps", "flights", "least_force", "lift_off", "struck", "drilled", "rolled", "airborne", "highest_gap", "highest", "down", "up", "turned", "arrived"]);
+
+/** Least and largest n_z for which the tilt is near its final value, each of shape (n,). */
+function final_band(state) {
+  const final = tilt(state);
+  const low = py.np.cos(py.np.minimum(py.add(final, NEAR_FINAL), py.np.pi));
+  const high = py.np.cos(py.np.maximum(py.sub(final, NEAR_FINAL), 0.0));
+  return [low, high];
+}
+
+/** Tilts, rad. */
+function tilt(state) {
+  const found = py.np.arctan2(axis_sine(state.axis), state.axis[2]);
+  return found;
+}
+
+/** Every number of `tippetop.catalogue.METRICS` in SI, by name, each of shape (n,). */
+function metrics(ends, start, top, units) {
+  let drift, lost, precession, highest;
+  const end = ends.state;
+  const force = py.div(py.mul(units.mass, units.length), py.pow(units.time, 2));
+  py.heed(false);
+  try {
+    const moment = py.mul(length(start.momentum), outer_height(top.surface, start.axis[2]));
+    const change = py.np.abs(py.sub(lowest_jellett(end, top), lowest_jellett(start, top)));
+    drift = py.div(change, py.np.where(moment > 0, moment, py.np.nan));
+    lost = py.sub(energy(start, top), energy(end, top));
+    precession = py.np.where(axis_sine(end.axis) > 0, precession_rate(end.axis, end.momentum, top), py.np.nan);
+    highest = py.np.fmax(highest_between(top.surface, ends.down, ends.up), ends.highest);
+  } finally {
+    py.heed(true);
+  }
+  const found = new py.Dict([["final_theta", tilt(end)], ["final_omega3", py.div(axial_spin(end.axis, end.momentum, top), units.time)], ["final_phi_dot", py.div(precession, units.time)], ["turns_over", py.mul(ends.turned, units.time)], ["arrives", py.mul(ends.arrived, units.time)], ["least_normal_force", py.mul(ends.least_force, force)], ["first_lift_off", py.mul(ends.lift_off, units.time)], ["flights", ends.flights], ["airborne_time", py.mul(ends.airborne, units.time)], ["energy_lost", py.mul(lost, units.energy)], ["energy_lost_sliding", py.mul(py.sub(py.sub(py.sub(lost, ends.struck), ends.drilled), ends.rolled), units.energy)], ["energy_lost_drilling", py.mul(ends.drilled, units.energy)], ["energy_lost_rolling", py.mul(ends.rolled, units.energy)], ["highest", py.mul(highest, units.length)], ["highest_gap", py.mul(ends.highest_gap, units.length)], ["jellett_error", drift], ["end_time", py.mul(ends.time, units.time)], ["steps", ends.steps]]);
+  return new py.Dict([...found.items()].map(([name, values]) => [name, py.np.broadcast_to(values, py.np.shape(ends.time))]));
+}
+
+// tippetop.samples
+
+/** A launch at its samples, in natural units; every number of shape (k,). */
+class Samples extends py.NamedTuple {
+  constructor(times, instants, x, y, turn, work, struck, drilled, rolled, pole, mode) {
+    super();
+    this.times = times;
+    this.instants = instants;
     this.x = x;
     this.y = y;
     this.turn = turn;
     this.work = work;
+    this.struck = struck;
+    this.drilled = drilled;
+    this.rolled = rolled;
+    this.pole = pole;
+    this.mode = mode;
   }
 }
-py.fields(Quadratures, ["x", "y", "turn", "work"]);
+py.fields(Samples, ["times", "instants", "x", "y", "turn", "work", "struck", "drilled", "rolled", "pole", "mode"]);
 
-/** Rate of psi in the chart of a pole (1: z, -1: -z), rad/s. */
-function turn_rate(axis, momentum, pole, top) {
-  const rate = axis_rate(axis, momentum, top);
-  const area = py.sub(py.mul(axis[0], rate[1]), py.mul(axis[1], rate[0]));
-  return py.add(axial_spin(axis, momentum, top), py.div(py.mul(pole, area), py.add(1.0, py.mul(pole, axis[2]))));
-}
-
-/** Rates of the quadratures, given the power of friction (W) and the chart of psi. */
-function quadrature_rates(state, power, pole, top) {
-  const turning = turn_rate(state.axis, state.momentum, pole, top);
-  return new Quadratures(state.velocity[0], state.velocity[1], turning, power);
-}
-
-/** Powers of drilling and of rolling friction, W, for the table's torque, N m. */
-function resistance_powers(state, torque, top) {
-  const turning = angular_velocity(state.axis, state.momentum, top);
-  return [py.mul(torque[2], turning[2]), py.add(py.mul(torque[0], turning[0]), py.mul(torque[1], turning[1]))];
-}
-
-/** Unit quaternion, scalar first, of a body whose axis is n and whose psi in a chart is `turn`, rad. */
-function orientation(axis, turn, pole, functions) {
-  const [cosine, sine] = [functions.cos(py.mul(0.5, turn)), functions.sin(py.mul(0.5, turn))];
-  const size = py.pow(py.mul(0.5, py.add(1.0, py.mul(pole, axis[2]))), 0.5);
-  const [x, y] = [py.div(py.mul(0.5, axis[0]), size), py.div(py.mul(0.5, axis[1]), size)];
-  const up = py.mul(0.5, py.add(1.0, pole));
-  const down = py.sub(1.0, up);
-  const [w, i, j, k] = [py.add(py.mul(up, size), py.mul(down, x)), py.mul(py.neg(up), y), py.add(py.mul(down, size), py.mul(up, x)), py.mul(down, y)];
-  return [py.sub(py.mul(w, cosine), py.mul(k, sine)), py.add(py.mul(i, cosine), py.mul(j, sine)), py.sub(py.mul(j, cosine), py.mul(i, sine)), py.add(py.mul(k, cosine), py.mul(w, sine))];
+/** Every variable of `tippetop.catalogue.SAMPLED` in SI, by name, of a top in natural units. */
+function observe(samples, top, units) {
+  const [told, state] = [samples.instants, samples.instants.state];
+  const [axis, momentum] = [state.axis, state.momentum];
+  let [sine, [slip_x, slip_y], tilting] = [axis_sine(axis), told.slip, told.tilting];
+  const upright = sine === 0.0;
+  if (py.truth(py.np.any(upright))) {
+    [slip_x, slip_y] = py.zip(told.point, told.slip).map((both) => py.np.where(upright, ...both));
+    const leaving = py.div(py.np.hypot(momentum[0], momentum[1]), top.transverse_inertia);
+    tilting = py.np.where(upright, py.np.copysign(leaving, axis[2]), tilting);
+  }
+  const force = py.div(units.energy, units.length);
+  return new py.Dict([["theta", py.np.arctan2(sine, axis[2])], ["theta_dot", py.div(tilting, units.time)], ["phi", py.np.arctan2(axis[1], axis[0])], ["phi_dot", py.div(told.precession, units.time)], ["omega3", py.div(told.spin, units.time)], ["slip_x", py.mul(slip_x, units.speed)], ["slip_y", py.mul(slip_y, units.speed)], ["normal_force", py.mul(told.force[2], force)], ["contact_force", py.mul(py.np.stack(told.force, -1), force)], ["contact_torque", py.mul(py.np.stack(told.torque, -1), units.energy)], ["energy", py.mul(told.energy, units.energy)], ["work", py.mul(samples.work, units.energy)], ["sliding_loss", py.mul(py.sub(py.sub(py.sub(py.neg(samples.work), samples.struck), samples.drilled), samples.rolled), units.energy)], ["drilling_loss", py.mul(samples.drilled, units.energy)], ["rolling_loss", py.mul(samples.rolled, units.energy)], ["jellett", py.mul(py.mul(told.jellett, units.angular_momentum), units.length)], ["height", py.mul(state.height, units.length)], ["gap", py.mul(told.gap, units.length)], ["x", py.mul(samples.x, units.length)], ["y", py.mul(samples.y, units.length)], ["axis", py.np.stack(axis, -1)], ["velocity", py.mul(py.np.stack(state.velocity, -1), units.speed)], ["angular_momentum", py.mul(py.np.stack(momentum, -1), units.angular_momentum)], ["orientation", py.np.stack(orientation(axis, samples.turn, samples.pole, py.np), -1)]]);
 }
 
 // tippetop.theory.requirements
@@ -8390,6 +8566,7 @@ export {
   EXACT,
   EccentricSphere,
   EllipsoidalLaw,
+  Ends,
   Event,
   EventKind,
   FACE,
@@ -8429,6 +8606,7 @@ export {
   ITERATIONS,
   Impact,
   Impulse,
+  Instants,
   IntegratedMode,
   IntegratedProcess,
   JellettLine,
@@ -8495,6 +8673,7 @@ export {
   OPENING,
   OPENS,
   ORDER,
+  OUTCOMES,
   OVERTAKEN,
   OnSeveral,
   OnTwo,
@@ -8541,6 +8720,7 @@ export {
   ROUNDING_of_viscous_impact,
   ROUNDS,
   ROWS,
+  Rates,
   Reaction,
   Recorded,
   RegularizedCoulombFriction,
@@ -8589,6 +8769,7 @@ export {
   STUCK_of_dormand_prince,
   SUM,
   SUSPECT,
+  Samples,
   Segment,
   Separation,
   Series,
@@ -8625,6 +8806,7 @@ export {
   TINY,
   TINY_of_passing,
   TOGETHER,
+  TOLD,
   TOLERANCE,
   TOLERANCE_of_double_sticking,
   TORQUE,
@@ -8652,6 +8834,7 @@ export {
   ViscousProcess,
   WIDER,
   WIDEST,
+  WORTH,
   Wrench,
   _DESCRIPTIONS,
   _admits,
@@ -8659,7 +8842,6 @@ export {
   _apart,
   _at_rest,
   _beside,
-  _brackets,
   _by_energy,
   _early_bracket,
   _face,
@@ -8713,6 +8895,7 @@ export {
   beginning,
   beginning_on_two,
   both_letting_go,
+  brackets,
   branch_guard,
   branch_jellett,
   branch_of,
@@ -8752,6 +8935,7 @@ export {
   evaluate,
   factor_for,
   falling_time,
+  final_band,
   first_fall,
   first_reach,
   first_root,
@@ -8780,6 +8964,7 @@ export {
   in_order,
   inertia_ratio,
   inner,
+  instants,
   inverted_boundary,
   is_branched,
   is_dry,
@@ -8811,6 +8996,7 @@ export {
   lowest_surface,
   may_fall,
   measure,
+  metrics,
   moment_per_normal_force,
   more_stages,
   motion_on_two,
@@ -8823,6 +9009,7 @@ export {
   normal_force,
   normal_wrench,
   number_of,
+  observe,
   of_slips,
   off_branch,
   on_branch,
@@ -8931,6 +9118,7 @@ export {
   suspect,
   tangents,
   thinned,
+  tilt,
   tilt_rate,
   tilts_held,
   time_to,

@@ -1,71 +1,47 @@
-// What a mode says of its numbers, and what is read off a state: the mechanics, compiled once a kind.
+// What a mode says of its numbers, compiled once a kind; and the lowest surface, as in tippetop.lowest.
 import {
-  Flight, State, angular_velocity, axial_spin, axis_sine, contact_vector, dot, energy, fly, jellett,
-  point_velocity, precession_rate, slip_along_tilt, tilt_rate, turn_rate, resistance_powers,
+  Hull, NotRecordable, contact_vector, dot, each_surface, energy, jellett, lowest_surface, outer_height,
 } from "./mechanics.js";
 import { compiled } from "./compile.js";
-import { ELEMENTARY } from "./dense.js";
 import { cached, replace } from "./runtime.js";
 
-export const STATE = 0, FORCE = 10, TORQUE = 13, POWER = 16, ENERGY = 17, JELLETT = 18, DRILLING = 19, ROLLING = 20,
-  TURNING = 21, OUTPUTS = 22;
-export const SINE = 0, PRECESSION = 1, TILTING = 2, SPIN = 3, POINT = 4, SLIP = 7, ARM = 9, INTEGRAL = 10, OMEGA = 11, SEEN = 14;
+const LEVEL = 1e-9, LOOKS = 65;
 
-const numbersOf = (tops) => tops.flatMap((top) => top.numbers);
-
-/** The state of a mode and what the table does, with what is integrated; the pole of the chart is the last parameter. */
-export function observed(mode, size) {
-  const kinds = mode.tops.map((top) => top.kind), parameters = numbersOf(mode.tops);
-  const holder = holders(mode.form, kinds, size);
-  holder.code ??= observing(mode, kinds, size);
-  return { code: holder.code, parameters: Float64Array.of(...parameters, 1) };
+export function lowest_contact_vector(axis, surface) {
+  if (!(surface instanceof Hull)) return contact_vector(axis, surface);
+  if (typeof axis[2] !== "number") throw new NotRecordable("which surface is lowest depends on numbers");
+  const limit = lowest_surface(surface, axis[2]).height(axis[2]) - LEVEL * surface.size;
+  return contact_vector(axis, each_surface(surface).find((one) => one.height(axis[2]) >= limit));
 }
+export const lowest_jellett = (state, top) => -dot(state.momentum, lowest_contact_vector(state.axis, top.surface));
+export const highest_between = (surface, low, high) =>
+  Math.max(...Array.from({ length: LOOKS }, (_, i) => outer_height(surface, low + ((high - low) * i) / (LOOKS - 1))));
 
-const holders = cached((form, kinds, size) => ({ form, kinds, size, code: null }));
+/** What a motion keeps, of the numbers of a mode: the axis, the height, energy and Jellett's integral. */
+export function kept(mode, y) {
+  const state = mode.state(y);
+  return [...state.axis, state.height, energy(state, mode.top), jellett(state, mode.top)];
+}
+export const KEPT = 6;
 
-function observing(mode, kinds, size) {
-  const count = kinds.reduce((total, kind) => total + kind.numbers, 0);
-  const values = (y, p) => {
-    const tops = [];
+const known = cached(() => new Map());
+
+/** What makes readings, of so many numbers, of those of a mode and another one; what has no value is no number. */
+export function reader(mode, size) {
+  const kinds = mode.tops.map((top) => top.kind), numbers = mode.tops.flatMap((top) => top.numbers);
+  const codes = known(mode.form, kinds, size), parameters = Float64Array.of(...numbers, 0);
+  const values = (of) => (y, p) => {
     let from = 0;
-    for (const kind of kinds) tops.push(kind.top(p.slice(from, (from += kind.numbers))));
-    const here = replace(mode, tops.length > 1 ? { top: tops[0], other: tops[1] } : { top: tops[0] });
-    const state = here.state(y), table = here.reaction(y), [top] = tops;
-    return [
-      ...state.pack(), ...table.force, ...table.torque, table.power, energy(state, top), jellett(state, top),
-      ...resistance_powers(state, table.resistance, top), turn_rate(state.axis, state.momentum, p[count], top),
-    ];
+    const [top, other] = kinds.map((kind) => kind.top(p.slice(from, (from += kind.numbers))));
+    return [...of(replace(mode, other ? { top, other } : { top }), y, p[from])];
   };
-  return compiled(values, size, count + 1, OUTPUTS);
-}
-
-const flying = cached((kind) =>
-  compiled((y, p) => fly(State.unpack(p), y[0], kind.top(p.slice(10)), ELEMENTARY).pack(), 1, 10 + kind.numbers, 10));
-
-/** A flight's numbers as a function of its time, compiled. */
-Flight.prototype._numbers = function numbers(state) {
-  const code = flying(this.top.kind), given = Float64Array.of(...state.pack(), ...this.top.numbers);
-  const time = new Float64Array(1), out = new Float64Array(10);
-  const found = (elapsed) => {
-    time[0] = elapsed;
-    code(time, given, out);
-    return out;
+  return (of, count) => {
+    if (!codes.has(of)) codes.set(of, compiled(values(of), size, parameters.length, count, false));
+    const code = codes.get(of), out = new Float64Array(count);
+    return (y, other = 0) => {
+      parameters[numbers.length] = other;
+      code(y, parameters, out);
+      return out;
+    };
   };
-  return Object.assign(found, { size: 10 });
-};
-
-/** What is seen of a state on the surface that is lowest. */
-export function seen(top) {
-  return { code: seeing(top.kind), parameters: Float64Array.from(top.numbers) };
 }
-
-const seeing = cached((kind) =>
-  compiled((y, p) => {
-    const top = kind.top(p), { axis, momentum, velocity } = State.unpack(y);
-    const omega = angular_velocity(axis, momentum, top), arm = contact_vector(axis, top.surface);
-    const point = point_velocity(velocity, omega, arm);
-    return [
-      axis_sine(axis), precession_rate(axis, momentum, top), tilt_rate(axis, momentum, top), axial_spin(axis, momentum, top),
-      ...point, ...slip_along_tilt(axis, point), arm[2], dot(momentum, arm), ...omega,
-    ];
-  }, 10, kind.numbers, SEEN));

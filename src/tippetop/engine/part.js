@@ -29,7 +29,7 @@ export function* numbers_of(value, name = "") {
   }
 }
 
-const KINDS = {};
+const KINDS = {}, TABLE = "a table of its fields";
 
 export class Part {
   static enter(name, kind) {
@@ -70,60 +70,31 @@ export class Part {
 
 function taken(name, value, field, wrong) {
   const refuse = (where, what, accepted, others) => wrong.push([where, what, accepted, others]);
+  const number = (where, one) => {
+    const { gt, ge, lt, le } = field.limits ?? {};
+    if (typeof one !== "number" || !Number.isFinite(one)) refuse(where, one, "a finite number");
+    else if (one <= gt || one < ge || one >= lt || one > le) refuse(where, one, field.accepted);
+  };
+  const listed = (all) => Array.isArray(all) && (field.points ? all.every(Array.isArray) : all.length === field.count);
+  if (value === null && field.default === null) return null;
   if (field.parts) {
-    if (Array.isArray(value) && field.several) {
-      const found = value.map((inner, place) => part(`${name}.${place}`, inner, field.parts, refuse));
-      if (!found.length) refuse(name, value, "a table of its fields");
-      return found.length === 1 ? found[0] : found;
-    }
-    return part(name, value, field.parts, refuse);
+    if (!(Array.isArray(value) && field.several)) return part(name, value, field.parts, refuse);
+    const found = value.map((inner, place) => part(`${name}.${place}`, inner, field.parts, refuse));
+    if (!found.length) refuse(name, value, TABLE);
+    return found.length === 1 ? found[0] : found;
   }
-  if (field.choices) {
-    if (!field.choices.includes(value)) refuse(name, value, choice(field.choices));
-    return value;
-  }
-  if (field.points) {
-    if (value === null && field.default === null) return null;
-    const listed = Array.isArray(value) && value.every(Array.isArray);
-    if (!listed) refuse(name, value, "a list of points [distance from the axis, height, radius]");
-    else value.forEach((point, place) => point.forEach((one, k) => number(`${name}.${place}.${k}`, one, field, refuse)));
-    return value;
-  }
-  if (field.count) {
-    if (value === null && field.default === null) return null;
-    if (!Array.isArray(value) || value.length !== field.count) refuse(name, value, `${field.count} numbers`);
-    else value.forEach((one, place) => number(`${name}.${place}`, one, field, refuse));
-    return value;
-  }
-  number(name, value, field, refuse);
+  if (field.choices ? !field.choices.includes(value) : (field.points || field.count) && !listed(value)) refuse(name, value, field.accepted);
+  else if (field.points) value.forEach((point, place) => point.forEach((one, k) => number(`${name}.${place}.${k}`, one)));
+  else if (field.count) value.forEach((one, place) => number(`${name}.${place}`, one));
+  else if (!field.choices) number(name, value);
   return value;
-}
-
-const choice = (words) => {
-  const quoted = words.map((word) => `'${word}'`);
-  return quoted.length < 2 ? quoted.join() : `${quoted.slice(0, -1).join(", ")} or ${quoted.at(-1)}`;
-};
-
-function number(name, value, field, refuse) {
-  if (typeof value !== "number" || !Number.isFinite(value)) {
-    refuse(name, value, "a finite number");
-    return;
-  }
-  const { gt, ge, lt, le } = field.limits ?? {};
-  if (value <= gt || value < ge || value >= lt || value > le) refuse(name, value, range(field.limits));
-}
-
-function range(limits) {
-  const words = { gt: "greater than", ge: "at least", lt: "less than", le: "at most" };
-  const said = Object.entries(words).filter(([word]) => word in limits);
-  return `a number ${said.map(([word, phrase]) => `${phrase} ${limits[word] === Math.PI ? "pi" : limits[word]}`).join(" and ")}`;
 }
 
 /** A part of one of some kinds, told apart by their field `kind`. */
 function part(name, value, kinds, refuse) {
   if (value instanceof Part) return value;
   if (value === null || typeof value !== "object" || Array.isArray(value)) {
-    refuse(name, value, "a table of its fields");
+    refuse(name, value, TABLE);
     return null;
   }
   let found = kinds[0];

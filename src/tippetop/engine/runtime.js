@@ -7,6 +7,10 @@ export class ValueError extends Error {}
 export class NotImplementedError extends Error {}
 export class AssertionError extends Error {}
 
+let heeded = true;
+/** Whether what has no value is an error, or no number, as in arrays. */
+export const heed = (whether) => (heeded = whether);
+
 // ---- numbers, and what else has arithmetic: series, discs, nodes of a graph; lists are joined
 
 const takes = (a, word) => a !== null && typeof a === "object" && word in a;
@@ -41,7 +45,7 @@ export function mul(a, b) {
 
 export function div(a, b) {
   if (typeof a === "number" && typeof b === "number") {
-    if (b === 0) throw new ZeroDivisionError("division by zero");
+    if (b === 0 && heeded) throw new ZeroDivisionError("division by zero");
     return a / b;
   }
   return applied(a, b, "__truediv__", "__rtruediv__", div);
@@ -50,6 +54,7 @@ export function div(a, b) {
 export function pow(a, b) {
   if (typeof a !== "number" || typeof b !== "number") return applied(a, b, "__pow__", "__rpow__", pow);
   if (b === 2) return finite(a * a, a);
+  if (!heeded) return a ** b;
   if (a === 0 && b < 0) throw new ZeroDivisionError("0.0 cannot be raised to a negative power");
   if (a < 0 && b !== Math.trunc(b)) throw new ArithmeticError("a root of a negative number");
   if (b === 0.5) return Math.sqrt(a);
@@ -59,7 +64,7 @@ export function pow(a, b) {
 }
 
 function finite(value, ...given) {
-  if (!Number.isFinite(value) && given.every(Number.isFinite)) throw new OverflowError("a result too large");
+  if (heeded && !Number.isFinite(value) && given.every(Number.isFinite)) throw new OverflowError("a result too large");
   return value;
 }
 
@@ -117,12 +122,34 @@ export const math = {
   dist: (a, b) => math.hypot(...Array.from(a, (x, i) => x - b[i])),
 };
 
-/** What is asked of NumPy: arrays to be filled, those of more dimensions as lists of arrays. */
+/** A row of numbers that takes factors. */
+class Factored extends Float64Array {
+  __mul__(factor) {
+    return this.map((one) => one * factor);
+  }
+}
+
+/** What is asked of NumPy: arrays to be filled, those of more dimensions as lists of arrays; and numbers for arrays. */
 export const np = {
+  pi: Math.PI,
+  nan: NaN,
+  abs: Math.abs,
+  sin: Math.sin,
+  cos: Math.cos,
+  hypot: Math.hypot,
+  arctan2: Math.atan2,
+  minimum: Math.min,
+  maximum: Math.max,
+  fmax: (a, b) => (a >= b || b !== b ? a : b),
+  copysign: (a, b) => (b < 0 || Object.is(b, -0) ? -Math.abs(a) : Math.abs(a)),
+  where: (condition, a, b) => (condition ? a : b),
+  any: (condition) => condition,
+  stack: (parts) => Factored.from(parts),
+  shape: () => [],
+  broadcast_to: (number) => number,
   empty(shape) {
     if (typeof shape === "number") return new Float64Array(shape);
-    const whole = new Float64Array(shape.reduce((a, b) => a * b)), width = shape.at(-1);
-    let rows = Array.from({ length: whole.length / width }, (_, i) => new Float64Array(whole.buffer, 8 * i * width, width));
+    let rows = Array.from({ length: shape.slice(0, -1).reduce((a, b) => a * b) }, () => new Float64Array(shape.at(-1)));
     if (shape.length > 2) rows = Array.from({ length: shape[0] }, (_, i) => rows.slice(i * shape[1], (i + 1) * shape[1]));
     return rows;
   },
@@ -172,6 +199,7 @@ export class Enum {
 }
 
 export function members(kind, values) {
+  kind[Symbol.iterator] = () => Object.keys(values).map((name) => kind[name])[Symbol.iterator]();
   for (const [name, value] of Object.entries(values)) kind[name] = Object.freeze(new kind(name, value));
 }
 

@@ -12,7 +12,7 @@ from tippetop.frictions import Friction
 from tippetop.integrators.collocation import radau_points
 from tippetop.integrators.dense import chebyshev
 from tippetop.problem import Contact, Launch, Problem
-from tippetop.validation import Part
+from tippetop.validation import POINTS, Part, range_of
 
 LIMITS = {"exclusiveMinimum": "gt", "minimum": "ge", "exclusiveMaximum": "lt", "maximum": "le"}
 STAGES = 6
@@ -124,17 +124,21 @@ def _field(part: type[Part], name: str, field: dict[str, Any]) -> dict[str, Any]
     first = first.get("allOf", [first])[0]
     if "const" in first or "enum" in first:
         found["choices"] = first.get("enum", [first.get("const")])
+        *others, last = map(repr, found["choices"])
+        found["accepted"] = f"{', '.join(others)} or {last}" if others else last
     elif "oneOf" in first:
         found["parts"] = [one["title"] for one in first["oneOf"]]
         found["several"] = len(several) > 1
     elif "$ref" in first or first.get("type") == "object":
         found["parts"] = [first["$ref"].rpartition("/")[2] if "$ref" in first else first["title"]]
     elif first.get("items", {}).get("type") == "array":
-        found["points"] = True
+        found |= {"points": True, "accepted": POINTS}
     elif first.get("type") == "array":
-        found["count"] = first["maxItems"]
+        found |= {"count": first["maxItems"], "accepted": f"{first['maxItems']} numbers"}
     else:
         found["limits"] = {LIMITS[key]: value for key, value in first.items() if key in LIMITS}
+        if found["limits"]:
+            found["accepted"] = range_of(info)
     return found
 
 

@@ -82,7 +82,7 @@ def _fall_along(
     for index, guard in enumerate(guards):
         values = [float(guard.value(state, parameters)) for state in states]
         value, exact = _along(guard, parameters, dense), _along(guard, parameters, advance)
-        for low, high, function in _brackets(probes, values, value, exact):
+        for low, high, function in brackets(probes, values, value, exact):
             time = crossing(function, low, high)
             if values[LOOKS] > 0.0 and time - start < least * (end - start):
                 continue
@@ -97,7 +97,7 @@ def _along(guard: Guard, parameters: Sequence[Scalar], solution: Dense) -> Value
     return lambda time: float(guard.value(solution(time).tolist(), parameters))
 
 
-def _brackets(
+def brackets(
     probes: Sequence[float], values: Sequence[float], value: Value, exact: Value
 ) -> Iterator[tuple[float, float, Value]]:
     """The intervals over which the guard falls from positive to not positive, in turn; in which solution."""
