@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from creeping import creep_rates, direction_of_slip
 from dry_runs import DryRun, launched
 from tippetop.contact.growth import growth
 from tippetop.contact.passing import Loosening, Stopping
@@ -14,7 +15,7 @@ from tippetop.contact.sticking import split
 from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators import has_taylor, make_integrator
 from tippetop.integrators.scipy_methods import SciPy
-from tippetop.mechanics.beginning import beginning, direction_of_slip
+from tippetop.mechanics.beginning import beginning
 from tippetop.mechanics.contensou import ELLIPSOIDAL_RADIUS, EllipsoidalLaw
 from tippetop.mechanics.contensou_hertz import HertzLaw
 from tippetop.mechanics.coulomb import CoulombLaw, RollingResistance
@@ -26,7 +27,6 @@ from tippetop.mechanics.series import horner
 from tippetop.mechanics.slip_onset import Growing, Onset, onset
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.stick_slip import (
-    creep_rates,
     inner,
     plus,
     scaled,

@@ -1125,18 +1125,6 @@ const [NEAR, APART] = [0.001, 0.1];
 const ROUNDING = 1e-14;
 const STILL = 0.1;
 
-/** What follows from axis, angular momentum and direction of slip. */
-class CreepRates extends py.NamedTuple {
-  constructor(axis, momentum, slip, wrench) {
-    super();
-    this.axis = axis;
-    this.momentum = momentum;
-    this.slip = slip;
-    this.wrench = wrench;
-  }
-}
-py.fields(CreepRates, ["axis", "momentum", "slip", "wrench"]);
-
 /** The velocity zeta of a body in contact whose centre of mass has this horizontal velocity. */
 function slip_of(axis, momentum, velocity, top) {
   const turning = angular_velocity(axis, momentum, top);
@@ -1178,14 +1166,6 @@ function slip_part(accelerations, reach) {
     return [accelerations[0], accelerations[1]];
   }
   return [accelerations[0], accelerations[1], py.mul(reach, accelerations[5])];
-}
-
-/** Rates of a slipping body; `slip` may be its direction only. */
-function creep_rates(axis, momentum, slip, top, rolling_held = false) {
-  const point = ContactPoint.of(axis, momentum, top);
-  const [wrench, acceleration] = contact_motion(point, slip, py.truth(rolling_held) ? null : point.turning.slice(0, 2));
-  const rate = slip_part(flat(acceleration), slip_length(top.friction));
-  return new CreepRates(axis_rate(axis, momentum, top), point.moment(wrench), rate, wrench);
 }
 
 /** Falls through zero where slip, at its present rate, ends within the horizon (s): s (s + horizon R). */
@@ -3282,14 +3262,6 @@ function _admits(point, found) {
     return false;
   }
   return py.or(found.rolling !== null, () => (rolling_reserve(point, found.wrench, found.slip) >= 0.0));
-}
-
-/** Direction in which a rolling body that cannot stick slips, floats, and the rate of its speed, m/s^2. */
-function direction_of_slip(axis, momentum, top) {
-  const point = ContactPoint.of(axis, momentum, top);
-  const found = beginning(point, null, point.turning.slice(0, 2), [true, false]);
-  py.assert(found.slip !== null);
-  return [found.slip, found.rates[0]];
 }
 
 /** What resists slip, a drilling torque over the law's length, or the couple that resists rolling. */
@@ -8542,7 +8514,6 @@ export {
   ContensouFriction,
   CoulombFriction,
   CoulombLaw,
-  CreepRates,
   CriticalSpins,
   DEGREE,
   DEGREE_of_flight,
@@ -8913,7 +8884,6 @@ export {
   contact_vector,
   contact_velocity,
   contact_wrench,
-  creep_rates,
   critical_jellett,
   critical_spin,
   critical_spins,
@@ -8921,7 +8891,6 @@ export {
   crossing,
   derivative_of,
   dip,
-  direction_of_slip,
   directions,
   directions_of,
   dot,

@@ -16,7 +16,6 @@ from tippetop.mechanics.rolling import (
 )
 from tippetop.mechanics.stick_slip import inner, scaled, size
 from tippetop.mechanics.top import Top
-from tippetop.mechanics.vectors import Vector
 
 CHOICES = ((False, False), (True, False), (False, True), (True, True))
 """What is tried in turn where slip, and rolling, have ended: whether they go on all the same."""
@@ -116,14 +115,6 @@ def _admits(point: ContactPoint, found: Beginning) -> bool:
     if found.slip is None and set_valued(point.top.friction).reserve(normal, (x, y), torque[2]) < 0.0:
         return False
     return found.rolling is not None or bool(rolling_reserve(point, found.wrench, found.slip) >= 0.0)
-
-
-def direction_of_slip(axis: Vector, momentum: Vector, top: Top) -> tuple[Slip, float]:
-    """Direction in which a rolling body that cannot stick slips, floats, and the rate of its speed, m/s^2."""
-    point = ContactPoint.of(axis, momentum, top)
-    found = beginning(point, None, point.turning[:2], (True, False))
-    assert found.slip is not None
-    return found.slip, found.rates[0]
 
 
 def _resisting(part: Vanishing, wrench: Wrench, top: Top) -> Slip:

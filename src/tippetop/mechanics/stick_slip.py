@@ -13,17 +13,14 @@ if the limit surface admits it. Otherwise slip goes on in a direction in which i
 
 import math
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
-from tippetop.mechanics.motion import angular_velocity, axial_spin, axis_rate, point_velocity
+from tippetop.mechanics.motion import angular_velocity, axial_spin, point_velocity
 from tippetop.mechanics.rolling import (
     ContactPoint,
     Slip,
-    Wrench,
     arm_rate,
-    contact_motion,
     contact_wrench,
-    flat,
     set_valued,
     sliding_law,
     slip_length,
@@ -49,18 +46,6 @@ ROUNDING = 1e-14
 
 STILL = 0.1
 """Angular velocity, in natural units, below which rounding does not fall with it."""
-
-
-class CreepRates(NamedTuple):
-    """What follows from axis, angular momentum and direction of slip."""
-
-    axis: Vector
-    momentum: Vector
-    """Rates of axis and angular momentum, Y."""
-    slip: Slip
-    """Rate of the slip, A."""
-    wrench: Wrench
-    """What the table does."""
 
 
 def slip_of(axis: Vector, momentum: Vector, velocity: Horizontal, top: Top) -> Slip:
@@ -105,16 +90,6 @@ def slip_part(accelerations: Sequence[Scalar], reach: Scalar | None) -> Slip:
     if reach is None:
         return (accelerations[0], accelerations[1])
     return (accelerations[0], accelerations[1], reach * accelerations[5])
-
-
-def creep_rates(
-    axis: Vector, momentum: Vector, slip: Slip, top: Top, *, rolling_held: bool = False
-) -> CreepRates:
-    """Rates of a slipping body; `slip` may be its direction only."""
-    point = ContactPoint.of(axis, momentum, top)
-    wrench, acceleration = contact_motion(point, slip, None if rolling_held else point.turning[:2])
-    rate = slip_part(flat(acceleration), slip_length(top.friction))
-    return CreepRates(axis_rate(axis, momentum, top), point.moment(wrench), rate, wrench)
 
 
 def stopping_guard(state: SlidingState, rate: SlidingState, top: Top, horizon: Scalar) -> Scalar:
