@@ -40,18 +40,21 @@ def assemble(
         dimensions = "time", *variable.dimensions
         found[name] = xr.Variable(dimensions, values, variable.attributes, fastpath=True)
     described = Variable("contact mode", dtype="int8", flags=tuple(modes[1]))
-    found["mode"] = xr.Variable("time", modes[0], described.attributes)
+    found["mode"] = xr.Variable(("time",), modes[0], described.attributes, fastpath=True)
     for name, value in numbers.items():
         variable = METRICS.get(name) or MONITORS[name]
         number = np.array(value, dtype=variable.dtype)
         found[name] = xr.Variable((), number, variable.attributes, fastpath=True)
+    lengths = {"time": len(times), **{name: len(index.index) for name, index in NAMED.items()}}
     for name, values in lists.items():
-        found[name] = xr.Variable(name.partition("_")[0], values, LISTED[name].attributes)
+        dimension = name.partition("_")[0]
+        found[name] = xr.Variable((dimension,), values, LISTED[name].attributes, fastpath=True)
+        lengths[dimension] = len(values)
     indexes: dict[Any, Index] = {"time": PandasIndex(times, "time"), **NAMED}
     for index in indexes.values():
         found |= index.create_variables()
     found["time"].attrs = dict(TIME)
     # The public constructor would align and merge what is aligned: it takes five times as long.
     return xr.Dataset._construct_direct(
-        found, set(indexes), attrs={"Conventions": CONVENTIONS, **attributes}, indexes=indexes
+        found, set(indexes), lengths, {"Conventions": CONVENTIONS, **attributes}, indexes
     )

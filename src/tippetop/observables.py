@@ -9,7 +9,7 @@ from tippetop.contact.readings import TOLD, Instants, instants, read
 from tippetop.contact.rules import Bilateral
 from tippetop.contact.sliding import Sliding
 from tippetop.integrators.base import Array
-from tippetop.integrators.dense import parts_of
+from tippetop.integrators.dense import parts_of, powers
 from tippetop.lowest import lowest_jellett
 from tippetop.mechanics.hull import Hull, lowest_surface, outer_height
 from tippetop.mechanics.invariants import energy
@@ -21,11 +21,14 @@ from tippetop.samples import Samples
 
 _INTEGRALS = np.array(
     [
-        np.polynomial.Legendre.fit(NODES, unit, len(NODES) - 1, domain=[0.0, 1.0]).integ(lbnd=0.0).coef
+        np.polynomial.Legendre.fit(NODES, unit, len(NODES) - 1, domain=[0.0, 1.0])
+        .integ(lbnd=0.0)
+        .convert(kind=np.polynomial.Polynomial, domain=[0.0, 1.0])
+        .coef
         for unit in np.eye(len(NODES))
     ]
 )
-"""The integrals of Lagrange's polynomials on Gauss's points, from 0, in Legendre's polynomials."""
+"""The integrals of Lagrange's polynomials on Gauss's points, from 0, in powers from -1 to 1 over a step."""
 
 
 LEAST_MOMENT = 1e-6
@@ -70,7 +73,7 @@ class Recorder:
     def inaccuracy(self) -> float:
         """How far, relatively, the run is off what every motion keeps: energy and work, |n|, lambda, gaps."""
         drift = self.jellett_drift if self.top.conserves_jellett and self._moment > LEAST_MOMENT else 0.0
-        return float(np.nanmax([self._imbalance / self._largest, self._off_unit, drift, self._sunk]))
+        return max(0.0, self._imbalance / self._largest, self._off_unit, drift, self._sunk)
 
     def take(self, block: Block) -> None:
         """Take the samples in a block."""
@@ -105,8 +108,7 @@ class Recorder:
         """Take the samples of a block at some times."""
         step = block.step_at(times)
         part = parts_of(times, block.starts[step], block.ends[step])
-        basis = np.polynomial.legendre.legvander(2.0 * part - 1.0, len(NODES))
-        integrals = _INTEGRALS @ basis.T * block.spans[step]
+        integrals = _INTEGRALS @ powers(2.0 * part - 1.0, len(NODES) + 1).T * block.spans[step]
         sums = values[:, step]
         for row, rate in enumerate(rates):
             sums[row] += np.einsum("ik,ik->k", integrals, rate.take(step, axis=1))
@@ -157,8 +159,9 @@ class Recorder:
         gains = np.einsum("i,qik->qk", WEIGHTS, rates) * block.spans
         changes = poles - np.concatenate([[self._pole], poles[:-1]])
         values = np.cumsum(np.concatenate([self._sums[:, None], gains], axis=1), axis=1)
-        turned = np.where(changes == 0.0, 0.0, changes * np.arctan2(axis[1], axis[0]))
-        values[2] = self._sums[2] + evenly_summed(gains[2]) + np.append(np.cumsum(turned), turned.sum())
+        values[2] = self._sums[2] + evenly_summed(gains[2])
+        for step in np.flatnonzero(changes):
+            values[2, step:] += changes[step] * np.arctan2(axis[1, step], axis[0, step])
         lost = np.zeros(count + 1)
         for place, segment in zip(np.cumsum(block.lengths), block.segments, strict=True):
             if segment.transition is not None:
@@ -174,17 +177,15 @@ class Recorder:
     def _monitor(self, block: Block, work: Array) -> None:
         """See that energy and work balance, and how far Jellett's integral goes, where steps begin."""
         for group in block.groups:
-            state = group.mode.state(group.terms[:, :, 0].T)
-            energies, integral = energy(state, self.top), lowest_jellett(state, self.top)
-            errors = energies - self._energy - work[group.which]
+            told = group.begun
+            errors = told.energy - self._energy - work[group.which]
             self._imbalance = max(self._imbalance, float(np.abs(errors).max()))
             if isinstance(self.top.surface, Hull):
-                depth = outer_height(self.top.surface, state.axis[2]) - state.height
-                self._sunk = max(self._sunk, float(np.max(depth)))
-            self._largest = max(self._largest, float(np.max(energies)))
-            self._off_unit = max(self._off_unit, float(np.abs(length(state.axis) - 1.0).max()))
-            self._least = min(self._least, float(np.min(integral)))
-            self._most = max(self._most, float(np.max(integral)))
+                self._sunk = max(self._sunk, -float(told.gap.min()))
+            self._largest = max(self._largest, float(told.energy.max()))
+            self._off_unit = max(self._off_unit, float(np.abs(length(told.state.axis) - 1.0).max()))
+            self._least = min(self._least, float(told.jellett.min()))
+            self._most = max(self._most, float(told.jellett.max()))
 
 
 def evenly_summed(gains: Array) -> Array:

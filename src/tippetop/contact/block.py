@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tippetop.contact.mode import Mode, Segment
-from tippetop.contact.readings import Rates, instants, read
+from tippetop.contact.readings import WORTH, Instants, Rates, instants, read
 from tippetop.integrators.base import Array, Integrator
 from tippetop.integrators.dense import at_fractions, evaluated
 
@@ -50,7 +50,18 @@ class ModeSteps:
     def at(self, fractions: Array, some: NDArray[np.intp] | slice = slice(None)) -> Array:
         """`Rates` at fractions of the steps, or of some of them, shape (m,); of shape (8, m, k)."""
         y = at_fractions(self.terms[some], fractions)
-        return read(Rates.of, self.mode, y, nearer_pole(y[2]), integrator=self.integrator)
+        compiler = self.compiler(len(NODES) * len(self.which))
+        return read(Rates.of, self.mode, y, nearer_pole(y[2]), integrator=compiler)
+
+    @property
+    def begun(self) -> Instants:
+        """What is told of where the steps begin."""
+        y = self.terms[:, :, 0].T
+        return Instants.unpack(read(instants, self.mode, y, integrator=self.compiler(len(self.which))))
+
+    def compiler(self, count: int) -> Integrator | None:
+        """Who compiles what is read of so many instants, if they are enough."""
+        return self.integrator if count >= WORTH else None
 
 
 def nearer_pole(axis: Array) -> Array:
@@ -123,7 +134,7 @@ class Block:
             here, own = self._within(group, step)
             if len(own):
                 y = evaluated(group.terms, own, parts[here])
-                yield group.mode, here, read(instants, group.mode, y.T, integrator=self.integrator)
+                yield group.mode, here, read(instants, group.mode, y.T, integrator=group.compiler(len(own)))
 
     def _within(
         self, group: ModeSteps, step: NDArray[np.intp]

@@ -135,14 +135,14 @@ def read(
     others
         Further numbers that the reading takes, each of a shape that becomes that of the instants.
     integrator
-        Who follows the motion; it may know how to compile a reading.
+        Who follows the motion, if it is to compile the reading: it may know how to.
 
     Returns
     -------
     ndarray
         Shape (numbers, ...).
     """
-    evaluation = None if y[0].size < WORTH else _compiled(reading, mode, len(y), len(others), integrator)
+    evaluation = _compiled(reading, mode, len(y), len(others), integrator)
     if evaluation is not None:
         return evaluation(y, (*mode.top.numbers, *others))
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -1,7 +1,9 @@
 """First zeros and extremes of many polynomials at once, each on its own interval from zero."""
 
+from collections.abc import Callable, Sequence
 from copy import copy
 from functools import cached_property, lru_cache
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,11 +11,14 @@ from numpy.typing import NDArray
 from tippetop.integrators.dense import Array, powers
 from tippetop.mechanics.vectors import Row, Scalar
 
+Choice: TypeAlias = Callable[[Any, Any, Any], Any]
+"""What chooses between two by a flag: of numbers, or of arrays."""
+
 LOOKS = 32
 """Intervals at whose ends a polynomial is looked at; between them its second derivative bounds it."""
 
 FEW = 4
-"""So many polynomials at most are evaluated one by one, which is quicker than arrays so short."""
+"""So many polynomials at most are taken one by one in plain numbers, quicker than arrays so short."""
 
 TURNS = 60
 """Improvements of a zero at most: Newton's where they stay in the bracket, halvings where they do not."""
@@ -166,13 +171,78 @@ def least_of_all(polynomials: "Polynomials") -> float:
     return float(lowest.refined_least()[1].min())
 
 
-def value_and_slope(terms: Array, place: Array) -> tuple[Array, Array]:
-    """Values and first derivatives of polynomials at one place each."""
-    if len(place) > FEW:
-        return _horner(terms, place)
-    each = zip(terms.T.tolist(), place.tolist(), strict=True)
-    found = np.array([_horner(column, at) for column, at in each]).reshape(-1, 2)
+def least_near(unit: Array, guess: Array) -> tuple[Array, Array]:
+    """Places of least values no further than a look from a guess, and those values, by Newton's method."""
+    if len(guess) > FEW:
+        return _least_near(unit, guess, np.where, np.any)
+    each = zip(unit.T.tolist(), guess.tolist(), strict=True)
+    found = np.array([_least_near(terms, near, _chosen, bool) for terms, near in each]).reshape(-1, 2)
     return found[:, 0], found[:, 1]
+
+
+def _least_near(
+    terms: Row, guess: Scalar, where: Choice, some: Callable[[Any], Any]
+) -> tuple[Scalar, Scalar]:
+    """The place of the least value near a guess, and that value, of one polynomial or of many at once."""
+    slopes = [power * term for power, term in enumerate(terms)][1:]
+    first, last, place = guess - 1.0 / LOOKS, guess + 1.0 / LOOKS, guess
+    for _ in range(5):
+        slope, bend = _horner(slopes, place)
+        move = slope / where(bend > 0.0, bend, np.inf)
+        place = where(place - move < first, first, where(place - move > last, last, place - move))
+        if not some(abs(move) > 1e-9):
+            break
+    return place, _horner(terms, place)[0]
+
+
+def bracketed_zero(unit: Array, low: Array, high: Array) -> Array:
+    """Zeros between places where the polynomials are positive and not positive."""
+    if len(low) <= FEW:
+        return np.array(
+            [_zero(*one) for one in zip(unit.T.tolist(), low.tolist(), high.tolist(), strict=True)]
+        )
+    zeros = 0.5 * (low + high)
+    work = np.arange(len(zeros))
+    place = zeros.copy()
+    for _ in range(TURNS):
+        new, low, high, moving = _improved(unit, place, low, high, np.where)
+        zeros[work] = new
+        if not moving.any():
+            break
+        place = new
+        if 2 * np.count_nonzero(moving) < len(work):
+            work, unit = work[moving], unit[:, moving]
+            low, high, place = low[moving], high[moving], place[moving]
+    return zeros
+
+
+def _zero(terms: Sequence[float], low: float, high: float) -> float:
+    """The same of one polynomial."""
+    place = 0.5 * (low + high)
+    for _ in range(TURNS):
+        place, low, high, moving = _improved(terms, place, low, high, _chosen)
+        if not moving:
+            break
+    return place
+
+
+def _improved(terms: Row, place: Scalar, low: Scalar, high: Scalar, where: Choice) -> tuple[Any, ...]:
+    """A better place of a zero, its bracket, and whether it still moves, of one polynomial or of many."""
+    value, slope = _horner(terms, place)
+    positive = value > 0.0
+    low, high = where(positive, place, low), where(positive, high, place)
+    newton = place - value / where(slope == 0.0, 1.0, slope)
+    # Newton's method doubles the digits that are right: from nine on, this was the last step.
+    arrived = abs(newton - place) <= 1e-9 * place
+    end = where(newton <= low, low, high)
+    outside = where(arrived, end, 0.5 * (low + high))
+    new = where((newton > low) & (newton < high), newton, outside)
+    return new, low, high, where(arrived, False, abs(new - place) > 4e-16 * new)
+
+
+def _chosen(flag: bool, yes: float, no: float) -> float:
+    """What `numpy.where` chooses, of plain numbers."""
+    return yes if flag else no
 
 
 def _horner(terms: Row, place: Scalar) -> tuple[Scalar, Scalar]:
@@ -182,42 +252,3 @@ def _horner(terms: Row, place: Scalar) -> tuple[Scalar, Scalar]:
         slope = slope * place + value
         value = value * place + term
     return value, slope
-
-
-def least_near(unit: Array, guess: Array) -> tuple[Array, Array]:
-    """Places of least values no further than a look from a guess, and those values, by Newton's method."""
-    slopes = unit[1:] * np.arange(1, len(unit))[:, None]
-    place = guess.copy()
-    for _ in range(5):
-        slope, bend = value_and_slope(slopes, place)
-        rising = bend > 0.0
-        move = np.where(rising, -slope / np.where(rising, bend, 1.0), 0.0)
-        place = np.clip(place + move, guess - 1.0 / LOOKS, guess + 1.0 / LOOKS)
-        if np.all(np.abs(move) <= 1e-9):
-            break
-    return place, value_and_slope(unit, place)[0]
-
-
-def bracketed_zero(unit: Array, low: Array, high: Array) -> Array:
-    """Zeros between places where the polynomials are positive and not positive."""
-    zeros = 0.5 * (low + high)
-    work = np.arange(len(zeros))
-    place = zeros.copy()
-    for _ in range(TURNS):
-        value, slope = value_and_slope(unit, place)
-        low = np.where(value > 0.0, place, low)
-        high = np.where(value > 0.0, high, place)
-        newton = place - value / np.where(slope == 0.0, 1.0, slope)
-        # Newton's method doubles the digits that are right: from nine on, this was the last step.
-        arrived = np.abs(newton - place) <= 1e-9 * place
-        inside = arrived | ((newton > low) & (newton < high))
-        new = np.where(inside, np.clip(newton, low, high), 0.5 * (low + high))
-        zeros[work] = new
-        moving = ~arrived & (np.abs(new - place) > 4e-16 * new)
-        if not moving.any():
-            break
-        place = new
-        if 2 * np.count_nonzero(moving) < len(work):
-            work, unit = work[moving], unit[:, moving]
-            low, high, place = low[moving], high[moving], place[moving]
-    return zeros
