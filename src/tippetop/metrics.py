@@ -155,7 +155,9 @@ def metrics(ends: Ends, start: State, top: Top, units: Units) -> dict[str, NDArr
         "end_time": ends.time * units.time,
         "steps": ends.steps,
     }
-    return {name: np.broadcast_to(values, np.shape(ends.time)) for name, values in found.items()}
+    shape = np.shape(ends.time)
+    # To broadcast a number to a number takes longer than to compute it.
+    return {name: np.broadcast_to(values, shape) if shape else values for name, values in found.items()}
 
 
 def ending(ends: Ends) -> NDArray[np.int8]:

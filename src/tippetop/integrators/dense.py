@@ -198,7 +198,7 @@ def evaluated(terms: Array, which: NDArray[np.intp], parts: Array) -> Array:
     for first in range(0, len(parts), MANY):
         here = slice(first, first + MANY)
         places = powers(parts[here], terms.shape[2])
-        np.matmul(terms[which[here]], places[:, :, None], out=found[here, :, None])
+        np.matmul(terms.take(which[here], axis=0), places[:, :, None], out=found[here, :, None])
     return found
 
 

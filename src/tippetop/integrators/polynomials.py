@@ -61,9 +61,9 @@ class Polynomials:
     @cached_property
     def sag(self) -> Array:
         """How far a polynomial can go beyond its values at Gauss's eight points, shape (n,)."""
-        k, size = np.arange(len(self.unit)), np.abs(self.unit)
+        k = np.arange(len(self.unit))
         # Between two of them by interval^2 / 8 max |f''|, and beyond the outer ones by distance max |f'|.
-        found: Array = np.maximum((k * (k - 1)) @ size * (0.19**2 / 8.0), k @ size * 0.02)
+        found: Array = np.maximum(k * (k - 1) * (0.19**2 / 8.0), k * 0.02) @ np.abs(self.unit)
         return found
 
     @cached_property
@@ -140,15 +140,14 @@ class Polynomials:
     def refined_least(self) -> tuple[Array, Array]:
         """Times at which the least values are taken, and those values, by Newton's method; of shape (n,)."""
         best = self.values.argmin(axis=0)
-        place = best / LOOKS
-        value = np.take_along_axis(self.values, best[None], axis=0)[0]
+        place, value = best / LOOKS, self.lowest.copy()
         # At an end away from which it rises there is nothing to find.
         rises = (best == 0) & (self.unit[1] >= 0.0)
         rises |= (best == LOOKS) & (np.arange(len(self.unit)) @ self.unit <= 0.0)
         dips = np.flatnonzero(~rises)
         if len(dips):
             # The parabola through the least look and its neighbours is near it.
-            inside = np.clip(best[dips], 1, LOOKS - 1)
+            inside = np.minimum(np.maximum(best[dips], 1), LOOKS - 1)
             before, here, after = (self.values[inside + k, dips] for k in (-1, 0, 1))
             bend = before - 2.0 * here + after
             vertex = inside + 0.5 * (before - after) / np.where(bend > 0.0, bend, np.inf)

@@ -2,6 +2,7 @@
 
 import math
 import threading
+from array import array
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
@@ -89,11 +90,12 @@ class _Compiled:
 
     def advance(self, end: float) -> tuple[DenseSolution, Any]:
         """Take as many steps as there is room for: for half the price of heyoka's continuous output."""
-        step, room, knots = self._step, iter(self._rows), [float(self.integrator.time)]
+        step, room, knots = self._step, iter(self._rows), array("d", [self.integrator.time])
+        note = knots.append
 
         def take(run: Any) -> bool:
             next(room)[:] = step
-            knots.append(run.time)
+            note(run.time)
             return True
 
         most = len(self._rows)
