@@ -8,8 +8,8 @@ import pytest
 
 from node import NODE
 from tippetop.emit.definitions import Definitions
+from tippetop.emit.expressions import Untranslatable
 from tippetop.emit.program import Program
-from tippetop.emit.translator import Untranslatable
 from tippetop.engine import HERE
 
 MODULE = """
@@ -117,11 +117,10 @@ def arithmetic():
 def choices():
     found = []
     for number, word in enumerate(["red", "blue", "grey", ""]):
-        match word:
-            case "red":
-                found.append(Colour.RED.value)
-            case "blue":
-                found.append(Colour.BLUE.name.lower())
+        if word == "red":
+            found.append(Colour.RED.value)
+        elif word == "blue":
+            found.append(Colour.BLUE.name)
         if number > 1:
             found.append(word or number)
     if 1.0 <= len(found) < 5.0 and "red" not in found:
@@ -136,14 +135,15 @@ def choices():
 def closures():
     total = 0.0
     count = 3
-    while (left := count) > 0:
+    while count > 0:
+        left = count
         def more(by, times=2.0):
             return by * times + left
         total += more(1.0, 4.0)
         count -= 1
     values = [1.0, 2.0, 3.0, 4.0]
-    del values[2:]
-    values[0], values[1] = values[1], values[0]
+    values = values[:2]
+    values[0] = values[1]
     return [total, count, values, remembered(Point(1.0), "a"), remembered(Point(1.0), "a"), len(CALLS)]
 """
 

@@ -338,27 +338,20 @@ class Stopping(Passing):
         found = follow_surface(self, arc.guard, time, state)
         if found is not None:
             return found
-        match arc.guard:
-            case "time":
-                return Transition((), Outcome.COMPLETED, state)
-            case "lift-off":
-                return self.rules.lift_off(time, state)
-            case "reopening":
-                return Transition((), self.rules.going_on(state, slips=not stuck), state)
-            case "overtaken":
-                return Transition((), replace(self, ending=Vanishing(not ending.slip), begin=()), state)
-            case "branch":
-                return Transition((), self._onwards(arc, on_other_branch(self.top)), state)
-            case "limit branch":
-                return Transition((), self._onwards(arc, on_other_branch(self.top)), state)
-            case "slip":
-                return self.rules.giving_way(
-                    state, (self.rules.event(EventKind.SLIP, time),), Vanishing(slip=True)
-                )
-            case "rolling":
-                return self.rules.giving_way(
-                    state, (self.rules.event(EventKind.ROLL, time),), Vanishing(slip=False)
-                )
+        if arc.guard == "time":
+            return Transition((), Outcome.COMPLETED, state)
+        if arc.guard == "lift-off":
+            return self.rules.lift_off(time, state)
+        if arc.guard == "reopening":
+            return Transition((), self.rules.going_on(state, slips=not stuck), state)
+        if arc.guard == "overtaken":
+            return Transition((), replace(self, ending=Vanishing(not ending.slip), begin=()), state)
+        if arc.guard in ("branch", "limit branch"):
+            return Transition((), self._onwards(arc, on_other_branch(self.top)), state)
+        if arc.guard in ("slip", "rolling"):
+            slip = arc.guard == "slip"
+            event = self.rules.event(EventKind.SLIP if slip else EventKind.ROLL, time)
+            return self.rules.giving_way(state, (event,), Vanishing(slip=slip))
         raise AssertionError(f"nothing is said of what follows {arc.guard}")
 
     def _onwards(self, arc: Arc, top: Top) -> "Stopping":

@@ -1,28 +1,28 @@
-"""Python modules that are to be another language's: who is who in them, and in which order they come."""
+"""Python modules that are to be another language's: who is who in them."""
 
 import ast
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
 
-RESERVED = {
-    "new",
-    "function",
-    "default",
-    "delete",
-    "var",
-    "this",
-    "typeof",
-    "void",
-    "switch",
-    "case",
-    "null",
-    "arguments",
-}
+RESERVED = " new function default delete var this typeof void switch case null arguments "
 """Words that are names in Python only."""
 
-TYPES = {"tuple", "list", "dict", "Callable", "Annotated", "Any", "Literal", "NDArray", "type"}
-"""What a name for a type is made of."""
+KINDS = {
+    "NamedTuple": "py.NamedTuple",
+    "Enum": "py.Enum",
+    "StrEnum": "py.Enum",
+    "IntEnum": "py.IntEnum",
+    "Part": "Part",
+    "Variant": "Part",
+    "ArithmeticError": "py.ArithmeticError",
+    "Protocol": "",
+}
+"""What classes of a base are in the other language; of a protocol nothing remains."""
+
+RECORDS = ("py.NamedTuple", "py.Record")
+"""Kinds whose fields are what they are made of, by their places."""
+
+NOTHING = ast.Constant(None)
 
 
 @dataclass
@@ -33,13 +33,10 @@ class Class:
     """What it is called."""
     node: ast.ClassDef
     """Its definition."""
-    module: str
-    """Where that is."""
     bases: list[str]
     """The classes it is of that are translated too, by name."""
     kind: str
-    """"tuple", "record", "enum", "number" (an enum of numbers), "part", "error" (of arithmetic), "plain", or
-    "" if nothing remains."""
+    """One of `KINDS`, "py.Record" or "py.Thing"."""
     fields: dict[str, ast.expr | None] = field(default_factory=dict)
     """Names and defaults of its fields, those of its bases first."""
 
@@ -50,7 +47,7 @@ class Program:
     Parameters
     ----------
     sources
-        The modules' texts by their names.
+        The modules' texts by their names, each after those it imports.
     given
         Modules that are written by hand: where they are, by the names of what they stand for.
     left
@@ -67,45 +64,23 @@ class Program:
         indexed: Iterable[str] = (),
     ) -> None:
         self.trees = {name: ast.parse(text) for name, text in sources.items()}
-        self.given, self.left = dict(given), frozenset(left)
+        self.given, self.left, self.indexed = dict(given), frozenset(left), frozenset(indexed)
         self.names: dict[tuple[str, str], str] = {}
         self.made: list[str] = []
         self.imported: dict[str, set[str]] = {}
-        self.indexed = frozenset(indexed)
         self.classes: dict[str, Class] = {}
         self.functions: dict[str, list[str]] = {}
-        self.methods: dict[str, list[list[str]]] = {"__getitem__": []}
-        self.values: dict[str, list[list[str]]] = {}
-        for module in self.order:
-            for node in self.trees[module].body:
+        self.methods: dict[str, list[list[str]]] = {"__getitem__": [], "model_copy": [["update"]]}
+        self.values: set[str] = set()
+        for module, tree in self.trees.items():
+            for node in tree.body:
                 self._enter(module, node)
         for found in self.classes.values():
             self._describe(found)
 
-    @cached_property
-    def order(self) -> list[str]:
-        """The modules, each after those it imports."""
-        found: list[str] = []
-
-        def visit(module: str) -> None:
-            for node in self.trees[module].body:
-                if isinstance(node, ast.ImportFrom) and node.module in self.trees:
-                    visit(node.module)
-            if module not in found:
-                found.append(module)
-
-        for module in self.trees:
-            visit(module)
-        return found
-
     def resolve(self, module: str, name: str) -> str | None:
         """What a name at the top of a module is called in the program; None if it is not there."""
         return self.names.get((module, name))
-
-    def class_of(self, module: str, node: ast.expr) -> Class | None:
-        """The class that an expression names."""
-        name = self.resolve(module, node.id) if isinstance(node, ast.Name) else None
-        return self.classes.get(name or "")
 
     def is_method(self, name: str) -> bool:
         """Whether an attribute of this name is a method, whatever has it."""
@@ -123,64 +98,52 @@ class Program:
             case ast.FunctionDef(name=name) if name not in self.left:
                 self.functions[self._unique(module, name)] = parameters(node)
             case ast.ClassDef(name=name) if name not in self.left:
-                kind = self._kind(module, node)
+                above = [self.names.get((module, ast.unparse(one)), "") for one in node.bases]
+                bases = [base for base in above if base in self.classes]
+                kind = self._kind(node, bases)
                 if kind:
                     own = self._unique(module, name)
-                    bases = [base.name for one in node.bases if (base := self.class_of(module, one))]
-                    self.classes[own] = Class(own, node, module, bases, kind)
-            case ast.Assign(targets=targets) if not is_type(node.value):
-                for target in targets:
+                    self.classes[own] = Class(own, node, bases, kind)
+            case ast.Assign() | ast.AnnAssign() if not is_type(node):
+                for target in targets_of(node):
                     for name in names_in(target):
                         self._unique(module, name)
-            case ast.AnnAssign(target=ast.Name(id=name)) if node.value and not is_alias(node):
-                self._unique(module, name)
 
     def _unique(self, module: str, name: str) -> str:
-        taken = {*self.classes, *self.functions, *self.names.values()}
         found = safe(name)
-        if found in taken:
+        if found in {*self.classes, *self.functions, *self.names.values()}:
             found = f"{name}_of_{module.rpartition('.')[2]}"
         self.names[module, name] = found
         self.made.append(found)
         return found
 
-    def _kind(self, module: str, node: ast.ClassDef) -> str:
-        words = {base.id for base in node.bases if isinstance(base, ast.Name)}
-        inherited = {base.kind for one in node.bases if (base := self.class_of(module, one))}
-        if "Protocol" in words:
-            return ""
-        for word, kind in {
-            "NamedTuple": "tuple",
-            "Enum": "enum",
-            "StrEnum": "enum",
-            "IntEnum": "number",
-            "Part": "part",
-            "Variant": "part",
-            "ArithmeticError": "error",
-        }.items():
-            if word in words:
-                return kind
-        if "part" in inherited:
-            return "part"
-        marks = {ast.unparse(mark).partition("(")[0] for mark in node.decorator_list}
-        return "record" if "dataclass" in marks or "record" in inherited else "plain"
+    def _kind(self, node: ast.ClassDef, bases: list[str]) -> str:
+        for base in node.bases:
+            if ast.unparse(base) in KINDS:
+                return KINDS[ast.unparse(base)]
+        inherited = {self.classes[base].kind for base in bases}
+        if "Part" in inherited:
+            return "Part"
+        marked = any("dataclass" in ast.unparse(mark) for mark in node.decorator_list)
+        return "py.Record" if marked or "py.Record" in inherited else "py.Thing"
 
     def _describe(self, found: Class) -> None:
         for one in ast.walk(found.node):
             if isinstance(one, ast.Attribute) and isinstance(one.ctx, ast.Store):
-                self.values.setdefault(one.attr, [])
+                self.values.add(one.attr)
         for base in found.bases:
             found.fields.update(self.classes[base].fields)
         for node in found.node.body:
             match node:
-                case ast.AnnAssign(target=ast.Name(id=name)) if found.kind in ("tuple", "record", "part"):
+                case ast.AnnAssign(target=ast.Name(id=name)) if found.kind in (*RECORDS, "Part"):
                     if not ast.unparse(node.annotation).startswith("ClassVar"):
                         found.fields[name] = default_of(node.value)
                 case ast.FunctionDef(name="__init__"):
                     found.fields = dict.fromkeys(parameters(node))
+                case ast.FunctionDef(name=name) if "property" in " ".join(marks_of(node)):
+                    self.values.add(name)
                 case ast.FunctionDef(name=name):
-                    known = self.values if is_property(node) else self.methods
-                    known.setdefault(name, []).append(parameters(node))
+                    self.methods.setdefault(name, []).append(parameters(node))
 
 
 def parameters(node: ast.FunctionDef | ast.Lambda) -> list[str]:
@@ -189,19 +152,22 @@ def parameters(node: ast.FunctionDef | ast.Lambda) -> list[str]:
     return found[1:] if found[:1] in (["self"], ["cls"]) else found
 
 
-def is_property(node: ast.FunctionDef) -> bool:
-    """Whether a method is asked for like a field."""
-    return any("property" in ast.unparse(mark) for mark in node.decorator_list)
+def marks_of(node: ast.FunctionDef) -> list[str]:
+    """The names of a function's decorators."""
+    return [ast.unparse(mark).partition("(")[0].rpartition(".")[2] for mark in node.decorator_list]
 
 
 def default_of(value: ast.expr | None) -> ast.expr | None:
     """The default of a field."""
     if isinstance(value, ast.Call) and ast.unparse(value.func) == "field":
-        for keyword in value.keywords:
-            if keyword.arg == "default_factory":
-                return ast.Call(keyword.value, [], [])
-        return None
+        made = [keyword.value for keyword in value.keywords if keyword.arg == "default_factory"]
+        return ast.Call(made[0], [], []) if made else None
     return value
+
+
+def targets_of(node: ast.Assign | ast.AnnAssign) -> list[ast.expr]:
+    """What an assignment binds."""
+    return node.targets if isinstance(node, ast.Assign) else [node.target]
 
 
 def names_in(target: ast.AST) -> list[str]:
@@ -211,18 +177,13 @@ def names_in(target: ast.AST) -> list[str]:
     ]
 
 
-def is_type(value: ast.expr) -> bool:
-    """Whether an expression is one of types."""
-    return (
-        isinstance(value, ast.Subscript) and isinstance(value.value, ast.Name) and value.value.id in TYPES
-    ) or (isinstance(value, ast.Name) and value.id in TYPES)
-
-
-def is_alias(node: ast.AnnAssign) -> bool:
-    """Whether an assignment gives a type another name, or holds a name free for what is written later."""
-    return ast.unparse(node.annotation).endswith("TypeAlias") or ast.unparse(node.value or node) == "None"
+def is_type(node: ast.Assign | ast.AnnAssign) -> bool:
+    """Whether an assignment at the top of a module names a type, or is there for what is written later."""
+    if isinstance(node, ast.Assign):
+        return isinstance(node.value, ast.Subscript)
+    return ast.unparse(node.annotation) == "TypeAlias" or ast.unparse(node.value or NOTHING) == "None"
 
 
 def safe(name: str) -> str:
     """A name that is no word of the other language."""
-    return f"{name}_" if name in RESERVED else name
+    return f"{name}_" if f" {name} " in RESERVED else name

@@ -4,48 +4,28 @@ import ast
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from tippetop.emit.expressions import Expressions
-from tippetop.emit.program import names_in, safe
-from tippetop.emit.scope import Scope, is_range
-from tippetop.emit.translator import ATOM, LESS, Untranslatable
+from tippetop.emit.calls import Calls
+from tippetop.emit.expressions import ATOM, LESS
+from tippetop.emit.program import marks_of, names_in, targets_of
+from tippetop.emit.scope import Scope, is_range, within
 
 
-class Statements(Expressions):
+class Statements(Calls):
     """Translates the statements and functions of a module."""
 
     def function_lines(self, node: ast.FunctionDef, head: str) -> Iterator[str]:
         """A function or method; what it yields makes it a generator."""
-        given = self.function(node)
-        scope = Scope.of(node)
-        generator = any(isinstance(one, (ast.Yield, ast.YieldFrom)) for one in ast.walk(node))
-        if generator:
+        given, known = self.function(node), set(marks_of(node)) & {"cache", "lru_cache"}
+        if any(isinstance(one, ast.Yield) for one in within(node)):
             head = head.replace("function ", "function* ") if " " in head else f"*{head}"
-        known = head.startswith("function") and any(
-            "cache" in ast.unparse(mark) for mark in node.decorator_list
-        )
-        if known:
-            yield f"const {head.split()[1]} = py.cached({given} => {{"
-        else:
-            yield f"{head}{given} {{"
-        yield from indented(self._body(node, scope))
+        yield f"const {head.split()[1]} = py.cached({given} => {{" if known else f"{head}{given} {{"
+        yield from indented(self._body(node))
         yield "});" if known else "}"
 
-    def _body(self, node: ast.FunctionDef, scope: Scope) -> Iterator[str]:
-        scope.floats |= {
-            name
-            for outer in self.scopes
-            for name in outer.floats
-            if name not in scope.bindings and name not in scope.parameters
-        }
-        self.scopes.append(scope)
-        own = [*scope.parameters, "self", "cls"]
-        top = [safe(name) for name, where in scope.declared.items() if not where and name not in own]
-        if self.rebound and len(self.scopes) == 1:
-            yield "let self = this;"
+    def _body(self, node: ast.FunctionDef) -> Iterator[str]:
+        self.scopes.append(Scope.of(node, self.scopes[-1]))
         if node.name == "__init__" and "super().__init__" not in ast.unparse(node):
             yield "super();"
-        if top:
-            yield f"let {', '.join(top)};"
         yield from self._block(node.body)
         self.scopes.pop()
 
@@ -55,35 +35,20 @@ class Statements(Expressions):
 
     def _statement(self, node: ast.stmt) -> Iterator[str]:
         match node:
-            case ast.Expr(value=ast.Constant()) | ast.Pass() | ast.Import() | ast.ImportFrom():
+            case ast.Expr(value=ast.Constant()) | ast.Pass() | ast.AnnAssign(value=None):
                 return
             case ast.Expr(value=value):
                 yield f"{self.text(value)};"
             case ast.Return(value=value):
                 yield "return null;" if value is None else f"return {self.text(value)};"
-            case ast.Assign(targets=targets, value=value):
-                yield from self._assignment(node, targets, self.text(value))
-            case ast.AnnAssign(target=target, value=value):
-                if value is not None:
-                    yield from self._assignment(node, [target], self.text(value))
-                elif self.scopes[-1].fresh(node):
-                    yield f"let {self.text(target)};"
+            case ast.Assign(value=value) | ast.AnnAssign(value=ast.expr() as value):
+                said = self.text(value)
+                for target in targets_of(node):
+                    yield self._assigned(target, said)
             case ast.AugAssign(target=target, op=op, value=value):
-                load = ast.parse(ast.unparse(target), mode="eval").body
-                whole = self.text(ast.BinOp(load, op, value))
-                yield from self._assignment(node, [target], whole)
-            case ast.If(test=test, body=body, orelse=orelse):
-                yield f"if ({self.truth(test)}) {{"
-                yield from indented(self._block(body))
-                if len(orelse) == 1 and isinstance(orelse[0], ast.If):
-                    first, *rest = self._statement(orelse[0])
-                    yield f"}} else {first}"
-                    yield from rest
-                    return
-                if orelse:
-                    yield "} else {"
-                    yield from indented(self._block(orelse))
-                yield "}"
+                yield self._assigned(target, self.text(ast.BinOp(target, op, value)))
+            case ast.If():
+                yield from self._choice(node)
             case ast.While(test=test, body=body):
                 yield f"while ({self.truth(test)}) {{"
                 yield from indented(self._block(body))
@@ -91,7 +56,9 @@ class Statements(Expressions):
             case ast.For():
                 yield from self._loop(node)
             case ast.FunctionDef(name=name):
-                yield from self._nested(node, name)
+                yield f"{self._var(name)}{self.name(name)} = {self.function(node)} => {{"
+                yield from indented(self._body(node))
+                yield "};"
             case ast.Raise(exc=None):
                 yield "throw error;"
             case ast.Raise(exc=ast.Name() as error):
@@ -104,102 +71,69 @@ class Statements(Expressions):
                 yield "break;"
             case ast.Continue():
                 yield "continue;"
-            case ast.Try() | ast.With():
-                yield from self._try(node)
-            case ast.Match():
-                yield from self._match(node)
-            case ast.Delete(targets=[ast.Subscript(value=value, slice=ast.Slice(lower=ast.expr() as low))]):
-                yield f"{self.text(value, ATOM)}.splice({self.text(low)});"
-            case _:
-                raise Untranslatable(f"{self.module}: {ast.unparse(node)}")
-
-    def _assignment(self, node: ast.stmt, targets: Sequence[ast.expr], value: str) -> Iterator[str]:
-        scope = self.scopes[-1]
-        for target in targets:
-            if isinstance(target, ast.Tuple) and any(isinstance(one, ast.Subscript) for one in target.elts):
-                yield "{"
-                yield f"  const parts = {value};"
-                for number, one in enumerate(target.elts):
-                    yield from indented(self._assignment(node, [one], f"parts[{number}]"))
+            case ast.Try(handlers=[handler], orelse=[], finalbody=[]) if handler.type is not None:
+                yield "try {"
+                yield from indented(self._block(node.body))
+                yield "} catch (error) {"
+                yield f"  if (!(error instanceof {self.text(handler.type)})) throw error;"
+                yield from indented(self._block(handler.body))
                 yield "}"
-                continue
-            if isinstance(target, ast.Subscript) and isinstance(target.slice, ast.Slice):
-                low, high = (
-                    self.text(one) if one else "null" for one in (target.slice.lower, target.slice.upper)
-                )
-                yield f"py.put_slice({self.text(target.value, ATOM)}, {low}, {high}, {value});"
-                continue
-            if isinstance(target, ast.Subscript) and (
-                isinstance(target.slice, ast.Tuple) or self.is_array(target.value)
-            ):
-                yield f"{self.text(target)} = {value};"
-                continue
-            if isinstance(target, ast.Subscript):
-                whole, place = self.text(target.value, ATOM), self.text(target.slice)
-                yield f"py.put({whole}, {place}, {value});"
-                continue
-            yield f"{scope.word(node) if names_in(target) else ''}{self.pattern(target)} = {value};"
+            case ast.With(items=[place], body=body) if ast.unparse(place).startswith("np.errstate("):
+                yield from ("py.heed(false);", "try {")
+                yield from indented(self._block(body))
+                yield from ("} finally {", "  py.heed(true);", "}")
+            case _:
+                raise self.refused(node)
+
+    def _var(self, *names: str) -> str:
+        """What declares names in all of a function, as Python does, before they are first written there."""
+        known = self.scopes[-1].declared
+        new = not known.issuperset(names)
+        known.update(names)
+        return "var " if new else ""
+
+    def _assigned(self, target: ast.expr, value: str) -> str:
+        match target:
+            case ast.Subscript(value=whole, slice=place):
+                if isinstance(place, ast.Tuple) or self.is_array(whole):
+                    return f"{self.text(target)} = {value};"
+                return f"py.put({self.text(whole, ATOM)}, {self.text(place)}, {value});"
+        return f"{self._var(*names_in(target))}{self.pattern(target)} = {value};"
+
+    def _choice(self, node: ast.If) -> Iterator[str]:
+        yield f"if ({self.truth(node.test)}) {{"
+        yield from indented(self._block(node.body))
+        match node.orelse:
+            case [ast.If() as other]:
+                first, *rest = self._choice(other)
+                yield from (f"}} else {first}", *rest)
+            case []:
+                yield "}"
+            case _:
+                yield "} else {"
+                yield from indented(self._block(node.orelse))
+                yield "}"
 
     def _loop(self, node: ast.For) -> Iterator[str]:
-        word = self.scopes[-1].word(node)
         match node:
             case ast.For(target=ast.Name(id=name), iter=ast.Call(args=args)) if is_range(node.iter):
                 i = self.name(name) if name != "_" else "turn"
-                word = "let " if word or name == "_" else ""
                 start = self.text(args[0]) if len(args) > 1 else "0"
                 stop = self.text(args[1] if len(args) > 1 else args[0], LESS)
                 step = self.text(args[2]) if len(args) > 2 else "1"
-                sign, by = (
-                    ("<", f"{i} += {step}") if not step.startswith("-") else (">", f"{i} -= {step[1:]}")
-                )
+                sign = ">" if step.startswith("-") else "<"
                 # Rows of arrays whose numbers are gone through are looked up once.
                 rows: list[Any] = [one for inner in node.body for one in ast.walk(inner) if is_row(one, name)]
                 found = sorted({(self.text(one.value), self.text(one.slice.elts[0])) for one in rows})
                 self.rows = {f"{whole}[{place}]": f"{whole}{place}" for whole, place in found}
                 known = "".join(f", {own} = {row}" for row, own in self.rows.items())
-                yield f"for ({word}{i} = {start}{known}; {i} {sign} {stop}; {by}) {{"
+                self._var(name)
+                yield f"for (var {i} = {start}{known}; {i} {sign} {stop}; {i} += {step}) {{"
             case _:
-                yield f"for ({word}{self.pattern(node.target)} of {self.text(node.iter)}) {{"
+                self._var(*names_in(node.target))
+                yield f"for (var {self.pattern(node.target)} of {self.text(node.iter)}) {{"
         yield from indented(self._block(node.body))
         self.rows = {}
-        yield "}"
-
-    def _nested(self, node: ast.FunctionDef, name: str) -> Iterator[str]:
-        yield f"{self.scopes[-1].word(node)}{self.name(name)} = {self.function(node)} => {{"
-        yield from indented(self._body(node, Scope.of(node)))
-        yield "};"
-
-    def _try(self, node: ast.Try | ast.With) -> Iterator[str]:
-        """What may fail; or, as in `numpy.errstate`, does not."""
-        yield from ["py.heed(false);"] * isinstance(node, ast.With)
-        yield "try {"
-        yield from indented(self._block(node.body))
-        if isinstance(node, ast.With):
-            if not ast.unparse(node.items[0]).startswith("np.errstate("):
-                raise Untranslatable(f"{self.module}: {ast.unparse(node)}")
-            yield from ["} finally {", "  py.heed(true);", "}"]
-            return
-        handler, *others = node.handlers
-        if others or handler.type is None or node.orelse or node.finalbody:
-            raise Untranslatable(f"{self.module}: {ast.unparse(node)}")
-        yield "} catch (error) {"
-        yield f"  if (!(error instanceof {self.text(handler.type)})) throw error;"
-        self.hidden.append({handler.name} if handler.name else set())
-        yield from indented(self._block(handler.body))
-        self.hidden.pop()
-        yield "}"
-
-    def _match(self, node: ast.Match) -> Iterator[str]:
-        subject = self.text(node.subject)
-        word = ""
-        for case in node.cases:
-            match case.pattern:
-                case ast.MatchValue(value=value):
-                    yield f"{word}if (py.eq({subject}, {self.text(value)})) {{"
-                case _:
-                    raise Untranslatable(f"{self.module}: {ast.unparse(case)}")
-            yield from indented(self._block(case.body))
-            word = "} else "
         yield "}"
 
 

@@ -69,7 +69,7 @@ def translated() -> str:
     """The module of mechanics and contact modes."""
     program = Program(sources(), GIVEN, LEFT, INDEXED)
     lines = list[str]()
-    for module in program.order:
+    for module in program.trees:
         lines += ["", f"// {module}", *Definitions(program, module).module_lines()]
     used = set(re.findall(r"\w+", "\n".join(line for line in lines if "/**" not in line)))
     head = [
@@ -84,17 +84,21 @@ def translated() -> str:
 
 
 def sources() -> dict[str, str]:
-    """The texts of the modules by their names."""
+    """The texts of the translated modules by their names, each after those it imports."""
     found: dict[str, str] = {}
-    waiting = list(ROOTS)
-    while waiting:
-        module = waiting.pop()
-        if module in found or module in GIVEN:
-            continue
-        found[module] = _text(module)
-        imports = [node for node in ast.parse(found[module]).body if isinstance(node, ast.ImportFrom)]
-        waiting += [str(node.module) for node in imports if str(node.module).startswith("tippetop.")]
-    return {module: found[module] for module in sorted(found)}
+
+    def visit(module: str) -> None:
+        if module in found or module in GIVEN or not module.startswith("tippetop."):
+            return
+        text = _text(module)
+        for node in ast.parse(text).body:
+            if isinstance(node, ast.ImportFrom):
+                visit(str(node.module))
+        found[module] = text
+
+    for module in ROOTS:
+        visit(module)
+    return found
 
 
 def _text(module: str) -> str:

@@ -88,6 +88,7 @@ export function truth(a) {
   if (typeof a.__bool__ === "function") return a.__bool__();
   return a instanceof NamedTuple || a.length === undefined ? true : a.length > 0;
 }
+export { truth as bool };
 const or_ = (a, other) => (truth(a) ? a : other());
 const and_ = (a, other) => (truth(a) ? other() : a);
 export { or_ as or, and_ as and };
@@ -173,9 +174,6 @@ export class NamedTuple {
   _replace(changes) {
     return new this.constructor(...this.constructor.fields.map((name) => (name in changes ? changes[name] : this[name])));
   }
-  static made(given, named) {
-    return new this(...this.fields.map((name, i) => (name in named ? named[name] : given[i])));
-  }
 }
 
 export class Record {}
@@ -191,6 +189,8 @@ export function fields(kind, names) {
 export const replace = (one, changes) =>
   new one.constructor(...one.constructor.fields.map((name) => (name in changes ? changes[name] : one[name])));
 
+export class IntEnum {}
+
 export class Enum {
   constructor(name, value) {
     this.name = name;
@@ -200,7 +200,9 @@ export class Enum {
 
 export function members(kind, values) {
   kind[Symbol.iterator] = () => Object.keys(values).map((name) => kind[name])[Symbol.iterator]();
-  for (const [name, value] of Object.entries(values)) kind[name] = Object.freeze(new kind(name, value));
+  for (const [name, value] of Object.entries(values)) {
+    kind[name] = kind.prototype instanceof Enum ? Object.freeze(new kind(name, value)) : value;
+  }
 }
 
 /** Records, tuples with names and words of an enumeration as plain objects, arrays and strings. */
@@ -287,9 +289,6 @@ export class Dict {
   __getitem__(one) {
     return this.get(one);
   }
-  __or__(other) {
-    return new Dict([...this.items(), ...other.items()]);
-  }
   [Symbol.iterator]() {
     return this.keys()[Symbol.iterator]();
   }
@@ -308,10 +307,6 @@ export function item(all, place) {
 export function put(all, place, value) {
   if (all instanceof Dict) all.put(place, value);
   else all[place < 0 ? all.length + place : place] = value;
-}
-
-export function put_slice(all, from, to, values) {
-  all.splice(from ?? 0, (to ?? all.length) - (from ?? 0), ...values);
 }
 
 export function slice(all, from, to, step) {
@@ -417,6 +412,7 @@ export const format = (value, how_) =>
 export const hasattr = (one, name) => one !== null && typeof one === "object" && name in one;
 export const getattr = (one, name, otherwise) => (hasattr(one, name) ? one[name] : otherwise);
 export const bound = (one, name) => (Array.isArray(one) ? (place) => item(one, place) : one[name].bind(one));
+export const type = (one) => one.constructor;
 export const call = (one, ...given) => (/^class\b/.test(Function.prototype.toString.call(one)) ? new one(...given) : one(...given));
 export function isinstance(one, kind) {
   if (Array.isArray(kind)) return kind.some((each) => isinstance(one, each));

@@ -339,7 +339,7 @@ class HertzLaw(NamedTuple):
 
     def numbered_branch(self, slip: Horizontal, angular_velocity: Vector) -> HertzBranch:
         """The branch that holds here, in plain operators."""
-        return HertzBranch(*self, drills=1.0 * self.drills(slip, angular_velocity))
+        return HertzBranch(*self, 1.0 * self.drills(slip, angular_velocity))
 
     def limit_branch(self, normal: float, drilling: float) -> HertzDrillingLaw | HertzSlidingLaw:
         """The law whose piece of the limit surface has this drilling torque, N m; of floats."""

@@ -122,8 +122,10 @@ def first_reach(along: Callable[[float], Impulse], goal: Goal, guess: float) -> 
     Where the goal is zero at the start, it is about to become negative: that start is passed over.
     """
     high = guess
-    while (there := goal(along(high))) < 0.0:
+    there = goal(along(high))
+    while there < 0.0:
         high *= 2.0
+        there = goal(along(high))
     if there == 0.0:
         return along(high)
     low = 0.0 if goal(along(0.0)) < 0.0 else 0.5 * high

@@ -1,7 +1,7 @@
 """An impact under any friction law, integrated."""
 
 import math
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 from tippetop.mechanics.dry_impact import DryContact
 from tippetop.mechanics.impulse import FUZZ, Goal, Impulse, Striking, first_reach
@@ -63,39 +63,41 @@ class IntegratedProcess(NamedTuple):
         ArithmeticError
             If it takes too many steps.
         """
-        if self.dry is not None:
-            self = self._replace(dry=self.dry.settled(impulse))  # noqa: PLW0642
-        waiting = goal(impulse) >= 0.0
-        here, slope = pack(impulse), self.slope(pack(impulse))
+        now, waiting = self.settled(impulse), goal(impulse) >= 0.0
+        here, slope = pack(impulse), now.slope(pack(impulse))
         longest = 2.0 * LONGEST / (self.body.inverse_mass[0][0] + self.body.inverse_mass[1][1])
         step = 0.1 * longest
         for taken in range(MOST):
-            held = self.held(unpack(here), goal, guess)
+            held = now.held(unpack(here), goal, guess)
             if held is not None:
                 return held._replace(steps=taken)
-            if self.dry is not None and taken % LOOK == 0:
-                ended = straight(self.dry, unpack(here), goal, guess)
+            if now.dry is not None and taken % LOOK == 0:
+                ended = straight(now.dry, unpack(here), goal, guess)
                 if ended is not None:
                     if goal(ended) >= 0.0:
                         return ended._replace(steps=taken)
                     here, waiting = pack(ended), False
-                    self = self._replace(dry=self.dry.settled(ended))  # noqa: PLW0642
-                    slope = self.slope(here)
+                    now = now.settled(ended)
+                    slope = now.slope(here)
                     continue
-            taking = step_from(here, slope, step, self.slope)
-            doubt = self.doubt(taking)
+            taking = step_from(here, slope, step, now.slope)
+            doubt = now.doubt(taking)
             reached = goal(unpack(taking.there)) >= 0.0
             if (doubt > 1.0 and step > SHORTEST * longest) or (reached and waiting):
                 step *= min(0.5, max(0.1, 0.9 * doubt**POWER))
                 continue
             if reached:
-                return unpack(self.landing(taking, goal))._replace(steps=taken + 1)
+                return unpack(now.landing(taking, goal))._replace(steps=taken + 1)
             here, slope, waiting = taking.there, taking.new_slope, False
-            if self.dry is not None:
-                self = self._replace(dry=self.dry.settled(unpack(here)))  # noqa: PLW0642
-                slope = self.slope(here)
+            if now.dry is not None:
+                now = now.settled(unpack(here))
+                slope = now.slope(here)
             step = min(longest, step * min(5.0, 0.9 * max(doubt, 1e-10) ** POWER))
         raise ArithmeticError("an impact does not come to its end")
+
+    def settled(self, impulse: Impulse) -> Self:
+        """The process from an impulse on, where a dry contact does what it does there."""
+        return self if self.dry is None else self._replace(dry=self.dry.settled(impulse))
 
     def landing(self, taking: RungeKuttaStep, goal: Goal) -> Point:
         """The numbers within a step at which the goal is reached.

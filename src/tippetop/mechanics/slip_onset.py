@@ -215,7 +215,7 @@ class Growing:
     def turn(self, j: int, direction: Sequence[Scalar]) -> None:
         """Set the j-th coefficient of the direction, and forget what was made of another."""
         for series in self._revisable:
-            del series.known[j:]
+            series.known = series.known[:j]
         for series, number in zip(self.direction, direction, strict=True):
             series.known.append(number)
 

@@ -100,8 +100,7 @@ def touchdown(state: State, top: Top, horizon: float, start: Start = Start.AIRBO
     if start != Start.AIRBORNE:
         support = (top.surface.height(tip.series()) + 0.0 * tip.series()).terms
         ballistic = (*support[:start], *ballistic[start:])
-        terms = [-term for term in support]
-        terms[start:3] = [b - s for b, s in zip(ballistic[start:], support[start:3], strict=True)]
+        terms = [b - s for b, s in zip(ballistic, support[:3], strict=True)] + [-s for s in support[3:]]
         opening = Opening(terms[next((j for j in range(start, DEGREE) if terms[j]), DEGREE) :])
         time = min(horizon, START * analytic_disc(tip, top.surface, 0.0, 0.0, WIDEST)[0])
         root = first_root(opening.at, 0.0, time, opening.jerk_bound(time))
