@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from scipy.spatial.transform import Rotation
 
 import tippetop.figures.drawing as draw
 from tippetop.figures.drawing import Array
@@ -40,16 +41,7 @@ def _view(azimuth: float, elevation: float) -> Array:
 
 def _body_axes() -> Array:
     """Return the body axes X, Y, Z as rows: turned by alpha about z, beta about N, then gamma about Z."""
-
-    def turned(angle: float, kept: int) -> Array:
-        c, s = np.cos(angle), np.sin(angle)
-        first, second = [i for i in range(3) if i != kept]
-        matrix = np.eye(3)
-        matrix[first, first], matrix[second, second] = c, c
-        matrix[first, second], matrix[second, first] = s, -s
-        return matrix
-
-    return turned(_ROTATION, 2) @ turned(_NUTATION, 0) @ turned(_PRECESSION, 2)
+    return np.asarray(Rotation.from_euler("ZXZ", [_PRECESSION, _NUTATION, _ROTATION]).as_matrix().T)
 
 
 def _discs(axes: Axes, view: Array, space: Array, body: Array, nodes: Array) -> None:

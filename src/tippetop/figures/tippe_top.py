@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from scipy.spatial.transform import Rotation
 
 from tippetop.figures import drawing as draw
 from tippetop.figures.drawing import Array
@@ -92,8 +93,7 @@ def _spin(axes: Axes, centre: Array, camera: Camera, height: float = 3.0, radius
 
 def _frame(tilt: float, azimuth: float) -> Array:
     """Return the body's axes in space as columns, shape (3, 3), the third leaning towards an azimuth."""
-    (s, c), (sine, cosine) = (np.sin(tilt), np.cos(tilt)), (np.sin(azimuth), np.cos(azimuth))
-    return np.array([[c * cosine, -sine, s * cosine], [c * sine, cosine, s * sine], [-s, 0.0, c]])
+    return np.asarray(Rotation.from_euler("ZY", [azimuth, tilt]).as_matrix())
 
 
 def _picture(toy: Toy, frame: Array, camera: Camera, pixels: int = 300, oversample: int = 2) -> Array:

@@ -52,24 +52,10 @@ def fill(
     scheduler: str | None = None,
     callback: Callback | None = None,
 ) -> Progress:
-    """Compute what is missing in a store.
+    """Compute what is missing in a store; for workers, scheduler and callback see `sweep`.
 
-    Parameters
-    ----------
-    store
-        From `Store.create` or `Store.resume`.
-    workers
-        How many processes; None for as many as there are processors, 1 for this process alone.
-    scheduler
-        Address of a running dask.distributed scheduler, instead of processes.
-    callback
-        Told of the progress, at the beginning and after every task.
-
-    Raises
-    ------
-    FileTrouble
-        If the store cannot be written, or another process fills it; it stays good, and another call goes on
-        where this one ended.
+    Raises `FileTrouble` if the store cannot be written, or another process fills it; it stays good, and
+    another call goes on where this one ended.
     """
     with store.held():
         sweep, tasks = store.sweep, store.remaining()
@@ -97,30 +83,9 @@ def run_sweep(
     scheduler: str | None = None,
     callback: Callback | None = None,
 ) -> xr.Dataset:
-    """Carry out a sweep into a store, and open it.
+    """Carry out a sweep into a store, or that of the store that is resumed, and open it, as `sweep` does.
 
-    Parameters
-    ----------
-    sweep
-        What to compute; None to take it from the store that is resumed.
-    out
-        Folder of the store.
-    resume
-        Finish a store that is there.
-    overwrite
-        Replace what is there.
-    workers, scheduler, callback
-        See `fill`.
-
-    Returns
-    -------
-    xarray.Dataset
-        The variables of `tippetop.catalogue.SWEPT` and `status` over the grid, read when used.
-
-    Raises
-    ------
-    FileTrouble
-        If something is there already, or it is of another sweep, or cannot be written.
+    The variables of `tippetop.catalogue.SWEPT` and `status` over the grid are read when used.
     """
     need_workers(workers, scheduler, sweep)
     store = Store.resume(out, sweep) if resume or sweep is None else Store.create(out, sweep, overwrite)
@@ -135,13 +100,7 @@ def compute(
     scheduler: str | None = None,
     callback: Callback | None = None,
 ) -> xr.Dataset:
-    """Carry out a sweep in memory.
-
-    Returns
-    -------
-    xarray.Dataset
-        As from `run_sweep`.
-    """
+    """Carry out a sweep in memory, with the variables of `run_sweep`."""
     shape, grid = sweep.grid.shape, sweep.grid
     arrays = {name: np.full(shape, kind.missing, dtype=kind.dtype) for name, kind in SWEPT.items()}
     done, began = 0, time.monotonic()

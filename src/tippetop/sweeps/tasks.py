@@ -77,24 +77,7 @@ def _sweep(description: str) -> Sweep:
 def results(
     sweep: Sweep, tasks: Sequence[Task], workers: int | None = None, scheduler: str | None = None
 ) -> Iterator[tuple[Task, Found]]:
-    """Compute tasks and give what they found as it comes, in any order.
-
-    Parameters
-    ----------
-    sweep, tasks
-        What to compute.
-    workers
-        How many processes; None for as many as there are processors, 1 for this process alone.
-    scheduler
-        Address of a running dask.distributed scheduler, instead of processes.
-
-    Raises
-    ------
-    InvalidInput
-        If the number of workers is not positive, or there is no scheduler at the address.
-    Unavailable
-        If dask.distributed is needed and not installed.
-    """
+    """Compute tasks of a sweep and give what they found as it comes, in any order; see `need_workers`."""
     _check_number(workers)
     modules = _modules(sweep, workers, scheduler)
     if HERE in modules:
@@ -112,12 +95,14 @@ def results(
 
 
 def need_workers(workers: int | None, scheduler: str | None, sweep: Sweep | None = None) -> None:
-    """See that there is someone to compute, before anything is written.
+    """See that there is someone to compute, before anything is written; for both see `sweep`.
 
     Raises
     ------
-    InvalidInput, Unavailable
-        As from `results`.
+    InvalidInput
+        If the number of workers is not positive, or there is no scheduler at the address.
+    Unavailable
+        If dask.distributed is needed and not installed.
     """
     _check_number(workers)
     if sweep is not None:
