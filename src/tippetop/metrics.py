@@ -135,7 +135,7 @@ def metrics(ends: Ends, start: State, top: Top, units: Units) -> dict[str, NDArr
         lost = energy(start, top) - energy(end, top)
         precession = np.where(axis_sine(end.axis) > 0, precession_rate(end.axis, end.momentum, top), np.nan)
         highest = np.fmax(highest_between(top.surface, ends.down, ends.up), ends.highest)
-    found = {
+    return {
         "final_theta": tilt(end),
         "final_omega3": axial_spin(end.axis, end.momentum, top) / units.time,
         "final_phi_dot": precession / units.time,
@@ -155,9 +155,6 @@ def metrics(ends: Ends, start: State, top: Top, units: Units) -> dict[str, NDArr
         "end_time": ends.time * units.time,
         "steps": ends.steps,
     }
-    shape = np.shape(ends.time)
-    # To broadcast a number to a number takes longer than to compute it.
-    return {name: np.broadcast_to(values, shape) if shape else values for name, values in found.items()}
 
 
 def ending(ends: Ends) -> NDArray[np.int8]:

@@ -146,8 +146,6 @@ export const np = {
   where: (condition, a, b) => (condition ? a : b),
   any: (condition) => condition,
   stack: (parts) => Factored.from(parts),
-  shape: () => [],
-  broadcast_to: (number) => number,
   empty(shape) {
     if (typeof shape === "number") return new Float64Array(shape);
     let rows = Array.from({ length: shape.slice(0, -1).reduce((a, b) => a * b) }, () => new Float64Array(shape.at(-1)));
