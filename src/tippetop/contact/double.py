@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 
 from tippetop.contact.mode import Event, EventKind, IntegratedMode, Reaction, Transition
 from tippetop.contact.sliding import ROLLING, ROLLING_STOPPING
-from tippetop.contact.surfaces import follow_surface, number_of, surface_guards
+from tippetop.contact.surfaces import number_of
 from tippetop.integrators.base import Function, Guard, Motion
 from tippetop.mechanics.contact_pair import (
     PairMotion,
@@ -95,13 +95,10 @@ class OnTwo(IntegratedMode):
         """What the resolver finds where slip, or rolling, has ended, or begins as signed."""
         return self.rules.settled_on_two(time, state, self.tops, self.stuck, (self.rolls, rolls))
 
-    def follow_rolling(self, guard: str, time: float, state: State) -> Transition | None:
-        """What follows where rolling ends, or can be held no longer; None for any other guard."""
-        if guard == ROLLING_STOPPING:
-            return self.settled(time, state, 0.0)
-        if guard == ROLLING:
-            return self.settled(time, state, rolling_way(self.found(self.numbers(state))[0]))
-        return follow_surface(self, guard, time, state)
+    def follow_rolling(self, guard: str, time: float, state: State) -> Transition:
+        """What follows where rolling ends, or can be held no longer: there are no other guards."""
+        ends = guard == ROLLING_STOPPING
+        return self.settled(time, state, 0.0 if ends else rolling_way(self.found(self.numbers(state))[0]))
 
     @property
     def tops(self) -> Tops:
@@ -129,7 +126,7 @@ class SlidingOnTwo(OnTwo):
 
     @property
     def motion(self) -> Motion:
-        """Equations of motion, with the guards of both contacts and of further surfaces."""
+        """Equations of motion, with the guards of both contacts."""
         return motion_on_two(self.top.kind, self.other.kind, self.rolls)
 
     def numbers(self, state: State) -> tuple[Scalar, ...]:
@@ -145,7 +142,7 @@ class SlidingOnTwo(OnTwo):
         return sliding_pair(SlidingState.unpack(y), self.tops, self.rolls)
 
     def follow(self, guard: str, time: float, state: State) -> Transition:
-        """One surface opens, while the other goes on; or slip or rolling ends; or a further one touches."""
+        """One surface opens, while the other goes on; or slip or rolling ends."""
         kind, _, number = guard.rpartition(" ")
         if f"{kind} " == OPENING:
             return self.opening(int(number), time, state, slips=True)
@@ -155,9 +152,7 @@ class SlidingOnTwo(OnTwo):
             return Transition((), replace(self, top=tops[0], other=tops[1]), state)
         if f"{kind} " == ENDING:
             return self.settled(time, state, self.rolls)
-        found = self.follow_rolling(guard, time, state)
-        assert found is not None, "there are no other guards"
-        return found
+        return self.follow_rolling(guard, time, state)
 
 
 def on_two(state: State, rules: Any, other: Top, rolls: float) -> SlidingOnTwo:
@@ -202,7 +197,7 @@ def motion_on_two(first: Kind, second: Kind, rolls: float) -> Motion:
 
         return value
 
-    guards = pair_guards(first, second, found, rolls)
+    guards = pair_guards(first, found, rolls)
     if slip_length(first.example.friction) is not None:
         guards.append(Guard(f"{ENDING}both", both_slips))
     elif is_set_valued(first.example.friction):
@@ -214,8 +209,11 @@ def motion_on_two(first: Kind, second: Kind, rolls: float) -> Motion:
     )
 
 
-def pair_guards(first: Kind, second: Kind, found: Any, rolls: float) -> list[Guard]:
-    """The guards of normal forces, of rolling, and of further surfaces, from what the table does."""
+def pair_guards(first: Kind, found: Any, rolls: float) -> list[Guard]:
+    """The guards of normal forces, and of rolling, from what the table does.
+
+    While both contacts stay closed the tilt does not change, and no further surface comes to the table.
+    """
 
     def normal(number: int) -> Function:
         return lambda y, numbers: found(y, numbers).normal[number]
@@ -229,4 +227,4 @@ def pair_guards(first: Kind, second: Kind, found: Any, rolls: float) -> list[Gua
     guards = [Guard(f"{OPENING}{number}", normal(number)) for number in (0, 1)]
     if first.example.resists_rolling:
         guards.append(Guard(ROLLING_STOPPING, rolling) if rolls else Guard(ROLLING, reserve))
-    return guards + surface_guards(first, (number_of(second.example),))
+    return guards

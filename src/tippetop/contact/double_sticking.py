@@ -52,13 +52,11 @@ class HeldOnTwo(OnTwo):
         return on_table(SlidingState(axis, momentum, velocity), self.top)
 
     def follow(self, guard: str, time: float, state: State) -> Transition:
-        """Slip begins; or rolling ends or begins; or a further surface touches."""
+        """Slip begins; or rolling ends or begins."""
         if guard.startswith(SLIP):
             which = guard.removeprefix(SLIP)
             return self.rules.slipping_on_two(time, state, self.tops, which, self.rolls)
-        found = self.follow_rolling(guard, time, state)
-        assert found is not None, "there are no other guards"
-        return found
+        return self.follow_rolling(guard, time, state)
 
 
 @dataclass(frozen=True)
@@ -90,7 +88,7 @@ class StickingAndSliding(HeldOnTwo):
         return turned(pair, self.sign, self.rolls), slips_of(pair, (0.0 * zeta, 0.0 * zeta, zeta))
 
     def follow(self, guard: str, time: float, state: State) -> Transition:
-        """A contact opens; or slip ends on the second, or begins on the first; or a further one touches."""
+        """A contact opens; or slip ends on the second, or begins on the first."""
         if guard.startswith(OPENING):
             number = int(guard.removeprefix(OPENING))
             return self.opening(number, time, state, slips=number == 0)
@@ -134,7 +132,7 @@ class StickingOnTwo(HeldOnTwo):
         return pair_motion(pair, (None, None), self.rolls), ((0.0, 0.0), (0.0, 0.0))
 
     def follow(self, guard: str, time: float, state: State) -> Transition:
-        """A contact opens, or one slips, or both; or a further surface touches."""
+        """A contact opens, or one slips, or both."""
         if guard.startswith(OPENING):
             return self.opening(int(guard.removeprefix(OPENING)), time, state, slips=False)
         return super().follow(guard, time, state)
@@ -149,7 +147,7 @@ class SlipBeginningOnTwo(SlidingOnTwo):
 
     @property
     def motion(self) -> Motion:
-        """Equations of motion, with the guards of both contacts and of further surfaces."""
+        """Equations of motion, with the guards of both contacts."""
         return beginning_on_two(self.top.kind, self.other.kind, self.rolls)
 
     def numbers(self, state: State) -> tuple[Scalar, ...]:
@@ -210,7 +208,7 @@ def turning_motion(first: Kind, second: Kind, sign: float, rolls: float) -> Moti
         return found(y, numbers).reserve(0)
 
     guards = [Guard(f"{SLIP}first", holds), Guard(ENDING, slides)]
-    return _of_momentum(first, second, found, [*guards, *pair_guards(first, second, found, rolls)])
+    return _of_momentum(first, second, found, [*guards, *pair_guards(first, found, rolls)])
 
 
 @lru_cache
@@ -220,7 +218,7 @@ def held_motion_on_two(first: Kind, second: Kind, rolls: float) -> Motion:
     def found(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> PairMotion:
         return pair_motion(ContactPair.of(*split(y), tops_of(first, second, numbers)), (None, None), rolls)
 
-    guards = pair_guards(first, second, found, rolls)
+    guards = pair_guards(first, found, rolls)
     if slip_length(first.example.friction) is None or rolls:
         guards += [
             Guard(f"{SLIP}0", lambda y, numbers: found(y, numbers).left(0)),
@@ -250,7 +248,7 @@ def beginning_on_two(first: Kind, second: Kind, rolls: float) -> Motion:
 
         return value
 
-    guards = pair_guards(first, second, found, rolls)
+    guards = pair_guards(first, found, rolls)
     if is_branched(first.example.friction):
         guards += [Guard(f"{BRANCHING}{number}", branch(number)) for number in (0, 1)]
     return Motion(rates, 9, first.numbers + second.numbers, tuple(guards), lasting=False)

@@ -1,5 +1,6 @@
 """What follows when a surface of a body that has several touches the table, or leaves it."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Self
 
@@ -47,33 +48,45 @@ class OnSeveral(FreeToFly):
         return replace(self, top=top)
 
     def _beside(self, state: State) -> list[Top]:
-        """The top with each of the other surfaces active that touch."""
-        return [other for other in self.top.each if other != self.top and gap(state, other) <= TOUCHING]
+        """The top with each of the other surfaces active that touch, what sinks fastest first."""
+        others = [other for other in self.top.each if other != self.top and gap(state, other) <= TOUCHING]
+        return sorted(others, key=lambda other: float(gap_rate(state, other)))
 
     def touch(self, surface: int, time: float, state: State) -> Transition:
-        """Collide with another surface, and go on as the impact leaves the top."""
-        return self.on(surface).touchdown(time, state)
+        """Collide with another surface, and go on as the impact leaves the top.
+
+        Where more come to the table at once, the outermost strikes: what lies between sinks more slowly.
+        """
+        striking = self.on(surface)
+        faster = [
+            other
+            for other in self._beside(state)[:1]
+            if gap_rate(state, other) < gap_rate(state, striking.top)
+        ]
+        return (self._of(faster[0]) if faster else striking).touchdown(time, state)
 
     def resting(self, time: float, state: State, events: tuple[Event, ...] = ()) -> Transition:
-        """As for one surface, unless others touch too, and open no faster than rocking that has ended."""
-        closed = []
-        for other in self._beside(state):
+        """As for one surface, unless others touch too, and open no faster than rocking that has ended.
+
+        Where one of them stays, the tilt does, and all do that touch: the body rests on the outermost.
+        """
+        closed, told, beside = False, events, self._beside(state)
+        for other in beside:
             rate = gap_rate(state, other)
             if rate < -SLOWEST_ROCKING:
                 if sum(event.kind is EventKind.IMPACT for event in events) >= MOST_IN_TURNS:
                     return Transition(events, Outcome.FAILED, state, "surfaces strike in turns for ever")
-                return self._of(other)._collide(time, state, events, 0.0)
+                return self._of(other)._collide(time, state, told, 0.0)
             if rate <= self._slowest(other, state):
-                closed.append(other)
+                closed = True
             else:
-                events = (*events, Event(EventKind.OPENING, time, surface=number_of(other)))
-        if len(closed) > 1:
-            return Transition(events, Outcome.FAILED, state, "three surfaces touch at once")
-        if closed:
-            before = Before((), bool(rolling_of(state, self.top)))
-            rolls = rolling_of(without_tilting(state, self.top), self.top)
-            return settled(self, time, state, (self.top, closed[0]), before, rolls, events, arrived=True)
-        return self.resting_alone(time, state, events)
+                told = (*told, Event(EventKind.OPENING, time, surface=number_of(other)))
+        if not closed:
+            return self.resting_alone(time, state, told)
+        tops = outermost((self.top, *beside), state.axis[2])
+        before = Before((), bool(rolling_of(state, self.top)))
+        rolls = rolling_of(without_tilting(state, self.top), self.top)
+        return settled(self._of(tops[0]), time, state, tops, before, rolls, events, arrived=True)
 
     def _impact(self, state: State, restitution: float) -> Impact:
         """That of the active surface alone, unless it presses another that touches onto the table.
@@ -81,7 +94,7 @@ class OnSeveral(FreeToFly):
         Where slip ends meanwhile, under a law that leaves the force open then, the surfaces strike in turns.
         """
         alone = impact(state, restitution, self.top)
-        for other in self._beside(state):
+        for other in self._beside(alone.state):
             pressed = gap_rate(alone.state, other) < -SLOWEST_ROCKING
             if pressed and abs(gap_rate(state, other)) <= SLOWEST_ROCKING:
                 try:
@@ -126,3 +139,15 @@ class OnSeveral(FreeToFly):
     def slipping_on_two(self, time: float, state: State, tops: Tops, which: str, rolls: float) -> Transition:
         """Slip begins at the limit of what the table can hold."""
         return slipping(self, time, state, tops, which, rolls)
+
+
+def outermost(touching: Sequence[Top], c: float) -> Tops:
+    """The two of some tops that touch farthest apart, in their order: a surface touches at -h' s along e.
+
+    What lies between them touches without force: all contact points are in a line, on which a rigid body
+    rests on two. How three would share its weight is not told by what they do to it, but where it slides and
+    turns at once.
+    """
+    places = [float(top.surface.slope(c)) for top in touching]
+    first, second = sorted((places.index(min(places)), places.index(max(places))))
+    return touching[first], touching[second]

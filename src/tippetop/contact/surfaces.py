@@ -21,22 +21,13 @@ def number_of(top: Top) -> int:
     return top.surface.active if isinstance(top.surface, Hull) else 0
 
 
-def surface_guards(kind: Kind, closed: Sequence[int] = ()) -> list[Guard]:
-    """Guards of the open surfaces of bodies of this kind, and of the face that the active one is the edge of.
-
-    Parameters
-    ----------
-    kind
-        The kind of body.
-    closed
-        Numbers of surfaces that touch the table besides the active one.
-    """
-    surface = kind.example.surface
-    closed = (*closed, number_of(kind.example))
+def surface_guards(kind: Kind) -> list[Guard]:
+    """Guards of the open surfaces of bodies of this kind, and of the face that one is the edge of."""
+    surface, active = kind.example.surface, number_of(kind.example)
     guards = []
     if hasattr(acting(surface), "face_guard"):
         guards.append(Guard(FACE, lambda y, numbers: _face(y, _surface(kind, numbers))))
-    others = [number for number in range(len(each_surface(surface))) if number not in closed]
+    others = [number for number in range(len(each_surface(surface))) if number != active]
     return guards + [Guard(f"{TOUCH}{number}", _gap(kind, number)) for number in others]
 
 

@@ -1461,15 +1461,14 @@ function number_of(top) {
   return py.isinstance(top.surface, Hull) ? top.surface.active : 0;
 }
 
-/** Guards of the open surfaces of bodies of this kind, and of the face that the active one is the edge of. */
-function surface_guards(kind, closed = []) {
-  var surface = kind.example.surface;
-  closed = [...closed, number_of(kind.example)];
+/** Guards of the open surfaces of bodies of this kind, and of the face that one is the edge of. */
+function surface_guards(kind) {
+  var [surface, active] = [kind.example.surface, number_of(kind.example)];
   var guards = [];
   if (py.truth(py.hasattr(acting(surface), "face_guard"))) {
     guards.push(new Guard(FACE, (y, numbers) => _face(y, _surface(kind, numbers))));
   }
-  var others = py.range(py.len(each_surface(surface))).filter((number) => !py.contains(closed, number));
+  var others = py.range(py.len(each_surface(surface))).filter((number) => !py.eq(number, active));
   return py.add(guards, [...others].map((number) => new Guard(`${py.str(TOUCH)}${py.str(number)}`, _gap(kind, number))));
 }
 
@@ -5007,15 +5006,10 @@ class OnTwo extends IntegratedMode {
   settled(time, state, rolls) {
     return this.rules.settled_on_two(time, state, this.tops, this.stuck, [this.rolls, rolls]);
   }
-  /** What follows where rolling ends, or can be held no longer; None for any other guard. */
+  /** What follows where rolling ends, or can be held no longer: there are no other guards. */
   follow_rolling(guard, time, state) {
-    if (py.eq(guard, ROLLING_STOPPING)) {
-      return this.settled(time, state, 0.0);
-    }
-    if (py.eq(guard, ROLLING)) {
-      return this.settled(time, state, rolling_way(this.found(this.numbers(state))[0]));
-    }
-    return follow_surface(this, guard, time, state);
+    var ends = py.eq(guard, ROLLING_STOPPING);
+    return this.settled(time, state, py.truth(ends) ? 0.0 : rolling_way(this.found(this.numbers(state))[0]));
   }
   /** The top with either surface active. */
   get tops() {
@@ -5041,7 +5035,7 @@ class SlidingOnTwo extends OnTwo {
     super(top, rules, other, rolls);
   }
   get name() { return "sliding"; }
-  /** Equations of motion, with the guards of both contacts and of further surfaces. */
+  /** Equations of motion, with the guards of both contacts. */
   get motion() {
     return motion_on_two(this.top.kind, this.other.kind, this.rolls);
   }
@@ -5057,7 +5051,7 @@ class SlidingOnTwo extends OnTwo {
   found(y) {
     return sliding_pair(SlidingState.unpack(y), this.tops, this.rolls);
   }
-  /** One surface opens, while the other goes on; or slip or rolling ends; or a further one touches. */
+  /** One surface opens, while the other goes on; or slip or rolling ends. */
   follow(guard, time, state) {
     var [kind, , number] = py.rpartition(guard, " ");
     if (py.eq(`${py.str(kind)} `, OPENING)) {
@@ -5071,9 +5065,7 @@ class SlidingOnTwo extends OnTwo {
     if (py.eq(`${py.str(kind)} `, ENDING)) {
       return this.settled(time, state, this.rolls);
     }
-    var found = this.follow_rolling(guard, time, state);
-    py.assert(found !== null, "there are no other guards");
-    return found;
+    return this.follow_rolling(guard, time, state);
   }
 }
 py.fields(SlidingOnTwo, ["top", "rules", "other", "rolls"]);
@@ -5119,7 +5111,7 @@ const motion_on_two = py.cached((first, second, rolls) => {
     };
     return value;
   };
-  var guards = pair_guards(first, second, found, rolls);
+  var guards = pair_guards(first, found, rolls);
   if (slip_length(first.example.friction) !== null) {
     guards.push(new Guard(`${py.str(ENDING)}both`, both_slips));
   } else if (py.truth(is_set_valued(first.example.friction))) {
@@ -5131,8 +5123,8 @@ const motion_on_two = py.cached((first, second, rolls) => {
   return new Motion(rates, 8, py.add(first.numbers, second.numbers), py.tuple(guards), false);
 });
 
-/** The guards of normal forces, of rolling, and of further surfaces, from what the table does. */
-function pair_guards(first, second, found, rolls) {
+/** The guards of normal forces, and of rolling, from what the table does. */
+function pair_guards(first, found, rolls) {
   var normal = (number) => {
     return (y, numbers) => py.item(found(y, numbers).normal, number);
   };
@@ -5146,7 +5138,7 @@ function pair_guards(first, second, found, rolls) {
   if (py.truth(first.example.resists_rolling)) {
     guards.push(py.truth(rolls) ? new Guard(ROLLING_STOPPING, rolling) : new Guard(ROLLING, reserve));
   }
-  return py.add(guards, surface_guards(first, [number_of(second.example)]));
+  return guards;
 }
 
 // tippetop.contact.double_sticking
@@ -5170,15 +5162,13 @@ class HeldOnTwo extends OnTwo {
     var velocity = velocity_without_slip(axis, momentum, this.top);
     return on_table(new SlidingState(axis, momentum, velocity), this.top);
   }
-  /** Slip begins; or rolling ends or begins; or a further surface touches. */
+  /** Slip begins; or rolling ends or begins. */
   follow(guard, time, state) {
     if (py.truth(guard.startsWith(SLIP_of_double_sticking))) {
       var which = py.removeprefix(guard, SLIP_of_double_sticking);
       return this.rules.slipping_on_two(time, state, this.tops, which, this.rolls);
     }
-    var found = this.follow_rolling(guard, time, state);
-    py.assert(found !== null, "there are no other guards");
-    return found;
+    return this.follow_rolling(guard, time, state);
   }
 }
 py.fields(HeldOnTwo, ["top", "rules", "other", "rolls"]);
@@ -5208,7 +5198,7 @@ class StickingAndSliding extends HeldOnTwo {
     var zeta = slip_apart(pair);
     return [turned_of_double_sticking(pair, this.sign, this.rolls), slips_of(pair, [py.mul(0.0, zeta), py.mul(0.0, zeta), zeta])];
   }
-  /** A contact opens; or slip ends on the second, or begins on the first; or a further one touches. */
+  /** A contact opens; or slip ends on the second, or begins on the first. */
   follow(guard, time, state) {
     if (py.truth(guard.startsWith(OPENING))) {
       var number = py.int(py.removeprefix(guard, OPENING));
@@ -5256,7 +5246,7 @@ class StickingOnTwo extends HeldOnTwo {
     var pair = ContactPair.of(...split(y), this.tops);
     return [pair_motion(pair, [null, null], this.rolls), [[0.0, 0.0], [0.0, 0.0]]];
   }
-  /** A contact opens, or one slips, or both; or a further surface touches. */
+  /** A contact opens, or one slips, or both. */
   follow(guard, time, state) {
     if (py.truth(guard.startsWith(OPENING))) {
       return this.opening(py.int(py.removeprefix(guard, OPENING)), time, state, false);
@@ -5272,7 +5262,7 @@ class SlipBeginningOnTwo extends SlidingOnTwo {
     super(top, rules, other, rolls);
     this.begin = begin;
   }
-  /** Equations of motion, with the guards of both contacts and of further surfaces. */
+  /** Equations of motion, with the guards of both contacts. */
   get motion() {
     return beginning_on_two(this.top.kind, this.other.kind, this.rolls);
   }
@@ -5337,7 +5327,7 @@ const turning_motion = py.cached((first, second, sign, rolls) => {
     return found(y, numbers).reserve(0);
   };
   var guards = [new Guard(`${py.str(SLIP_of_double_sticking)}first`, holds), new Guard(ENDING_of_double_sticking, slides)];
-  return _of_momentum(first, second, found, [...guards, ...pair_guards(first, second, found, rolls)]);
+  return _of_momentum(first, second, found, [...guards, ...pair_guards(first, found, rolls)]);
 });
 
 /** Equations of motion while both contacts stick: for good, where patches resist drilling, and rolls. */
@@ -5345,7 +5335,7 @@ const held_motion_on_two = py.cached((first, second, rolls) => {
   var found = (y, numbers) => {
     return pair_motion(ContactPair.of(...split(y), tops_of(first, second, numbers)), [null, null], rolls);
   };
-  var guards = pair_guards(first, second, found, rolls);
+  var guards = pair_guards(first, found, rolls);
   if (slip_length(first.example.friction) === null || py.truth(rolls)) {
     guards = py.add(guards, [new Guard(`${py.str(SLIP_of_double_sticking)}0`, (y, numbers) => found(y, numbers).left(0)), new Guard(`${py.str(SLIP_of_double_sticking)}1`, (y, numbers) => found(y, numbers).left(1)), new Guard(`${py.str(SLIP_of_double_sticking)}both`, (y, numbers) => found(y, numbers).both_reserve)]);
   }
@@ -5370,7 +5360,7 @@ const beginning_on_two = py.cached((first, second, rolls) => {
     };
     return value;
   };
-  var guards = pair_guards(first, second, found, rolls);
+  var guards = pair_guards(first, found, rolls);
   if (py.truth(is_branched(first.example.friction))) {
     guards = py.add(guards, [0, 1].map((number) => new Guard(`${py.str(BRANCHING)}${py.str(number)}`, branch(number))));
   }
@@ -5843,45 +5833,46 @@ class OnSeveral extends FreeToFly {
   _of(top) {
     return py.replace(this, { top: top });
   }
-  /** The top with each of the other surfaces active that touch. */
+  /** The top with each of the other surfaces active that touch, what sinks fastest first. */
   _beside(state) {
-    return [...this.top.each].filter((other) => !py.eq(other, this.top) && gap(state, other) <= TOUCHING);
+    var others = [...this.top.each].filter((other) => !py.eq(other, this.top) && gap(state, other) <= TOUCHING);
+    return py.sorted(others, py.how({ key: (other) => py.float(gap_rate(state, other)) }));
   }
   /** Collide with another surface, and go on as the impact leaves the top. */
   touch(surface, time, state) {
-    return this.on(surface).touchdown(time, state);
+    var striking = this.on(surface);
+    var faster = [...this._beside(state).slice(0, 1)].filter((other) => gap_rate(state, other) < gap_rate(state, striking.top));
+    return (py.truth(faster) ? this._of(faster[0]) : striking).touchdown(time, state);
   }
   /** As for one surface, unless others touch too, and open no faster than rocking that has ended. */
   resting(time, state, events = []) {
-    var closed = [];
-    for (var other of this._beside(state)) {
+    var [closed, told, beside] = [false, events, this._beside(state)];
+    for (var other of beside) {
       var rate = gap_rate(state, other);
       if (rate < py.neg(SLOWEST_ROCKING)) {
         if (py.sum([...events].map((event) => event.kind === EventKind.IMPACT)) >= MOST_IN_TURNS) {
           return new Transition(events, Outcome.FAILED, state, "surfaces strike in turns for ever");
         }
-        return this._of(other)._collide(time, state, events, 0.0);
+        return this._of(other)._collide(time, state, told, 0.0);
       }
       if (rate <= this._slowest(other, state)) {
-        closed.push(other);
+        closed = true;
       } else {
-        events = [...events, new Event(EventKind.OPENING, time, undefined, undefined, number_of(other))];
+        told = [...told, new Event(EventKind.OPENING, time, undefined, undefined, number_of(other))];
       }
     }
-    if (py.len(closed) > 1) {
-      return new Transition(events, Outcome.FAILED, state, "three surfaces touch at once");
+    if (!py.truth(closed)) {
+      return this.resting_alone(time, state, told);
     }
-    if (py.truth(closed)) {
-      var before = new Before([], py.bool(rolling_of(state, this.top)));
-      var rolls = rolling_of(without_tilting(state, this.top), this.top);
-      return settled(this, time, state, [this.top, closed[0]], before, rolls, events, true);
-    }
-    return this.resting_alone(time, state, events);
+    var tops = outermost([this.top, ...beside], state.axis[2]);
+    var before = new Before([], py.bool(rolling_of(state, this.top)));
+    var rolls = rolling_of(without_tilting(state, this.top), this.top);
+    return settled(this._of(tops[0]), time, state, tops, before, rolls, events, true);
   }
   /** That of the active surface alone, unless it presses another that touches onto the table. */
   _impact(state, restitution) {
     var alone = impact(state, restitution, this.top);
-    for (var other of this._beside(state)) {
+    for (var other of this._beside(alone.state)) {
       var pressed = gap_rate(alone.state, other) < py.neg(SLOWEST_ROCKING);
       if (py.truth(pressed) && py.abs(gap_rate(state, other)) <= SLOWEST_ROCKING) {
         try {
@@ -5930,6 +5921,13 @@ class OnSeveral extends FreeToFly {
   }
 }
 py.fields(OnSeveral, ["top", "restitution"]);
+
+/** The two of some tops that touch farthest apart, in their order: a surface touches at -h' s along e. */
+function outermost(touching, c) {
+  var places = [...touching].map((top) => py.float(top.surface.slope(c)));
+  var [first, second] = py.sorted([places.indexOf(py.min(places)), places.indexOf(py.max(places))]);
+  return [py.item(touching, first), py.item(touching, second)];
+}
 
 // tippetop.bodies
 
@@ -8968,6 +8966,7 @@ export {
   onset,
   orientation,
   outer_height,
+  outermost,
   overtaking_guard,
   pack,
   pair_guards,
