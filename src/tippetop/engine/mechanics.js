@@ -6102,13 +6102,15 @@ class HertzDrillingLaw extends py.NamedTuple {
   }
   /** Force and torque per unit normal force; drilling must not be zero, or there is only a number. */
   traction(slip, angular_velocity) {
-    var drilling = py.mul(this.patch_radius, angular_velocity[2]);
-    var square = py.add(py.mul(slip[0], slip[0]), py.mul(slip[1], slip[1]));
+    return resisting(this, slip, angular_velocity);
+  }
+  /** Force over slip, and torque, per unit normal force, at slip of this square and drilling R w. */
+  shares(square, drilling) {
     var rate = py.pow(py.add(py.mul(drilling, drilling), py.mul(BEYOND, square)), -0.5);
     var kappa2 = py.mul(py.mul(square, rate), rate);
     var force = py.mul(py.mul(py.mul(py.neg(this.mu), py.div(py.mul(3.0, PI), 32.0)), py.sub(4.0, kappa2)), rate);
     var torque = py.mul(py.mul(py.mul(py.neg(this.mu), py.div(py.mul(3.0, PI), 16.0)), py.sub(1.0, py.mul(kappa2, py.sub(1.0, py.mul(0.375, kappa2))))), rate);
-    return new Traction([py.mul(force, slip[0]), py.mul(force, slip[1])], [0.0, 0.0, py.mul(py.mul(torque, drilling), this.patch_radius)]);
+    return [force, py.mul(py.mul(torque, drilling), this.patch_radius)];
   }
   /** (mu N F)^2 - T^2 where the limit surface has this drilling torque, N^2. */
   reserve(normal, force, drilling) {
@@ -6163,15 +6165,20 @@ class HertzSlidingLaw extends py.NamedTuple {
   }
   /** Force and torque per unit normal force; the slip must not be zero, or there is only a number. */
   traction(slip, angular_velocity) {
-    var drilling = py.mul(this.patch_radius, angular_velocity[2]);
-    var square = py.add(py.add(py.mul(slip[0], slip[0]), py.mul(slip[1], slip[1])), py.mul(py.mul(BEYOND, drilling), drilling));
+    return resisting(this, slip, angular_velocity);
+  }
+  /** Force over slip, and torque, per unit normal force, at slip of this square and drilling R w. */
+  shares(square, drilling) {
+    square = py.add(square, py.mul(py.mul(BEYOND, drilling), drilling));
     var excess = py.sub(square, py.mul(drilling, drilling));
     var speed = py.pow(square, 0.5);
     var tangent = py.div(drilling, py.add(speed, py.pow(py.add(py.mul(excess, excess), py.mul(py.mul(NEAR_BRANCH, square), square)), 0.25)));
     var w = py.mul(tangent, tangent);
-    var force = py.div(py.mul(py.neg(this.mu), horner_of_contensou_hertz(FORCE[0], w)), py.mul(horner_of_contensou_hertz(FORCE[1], w), speed));
-    var torque = py.div(py.mul(py.mul(py.mul(py.neg(this.mu), this.patch_radius), tangent), horner_of_contensou_hertz(TORQUE[0], w)), horner_of_contensou_hertz(TORQUE[1], w));
-    return new Traction([py.mul(force, slip[0]), py.mul(force, slip[1])], [0.0, 0.0, torque]);
+    var w2 = py.mul(w, w);
+    var powers = [w, w2, py.mul(w2, w), py.mul(w2, w2)];
+    var force = py.div(py.mul(py.neg(this.mu), polynomial(FORCE[0], powers)), py.mul(polynomial(FORCE[1], powers), speed));
+    var grip = py.div(polynomial(TORQUE[0], powers), polynomial(TORQUE[1], powers));
+    return [force, py.mul(py.mul(py.mul(py.neg(this.mu), this.patch_radius), tangent), grip)];
   }
   /** (mu N F)^2 - T^2 where the limit surface has this drilling torque, N^2. */
   reserve(normal, force, drilling) {
@@ -6231,13 +6238,16 @@ class HertzBranch extends py.NamedTuple {
   }
   /** Force and torque per unit normal force; slip and drilling must not both be zero. */
   traction(slip, angular_velocity) {
-    var drilling = new HertzDrillingLaw(this.mu, this.patch_radius).traction(slip, angular_velocity);
-    var sliding = new HertzSlidingLaw(this.mu, this.patch_radius).traction(slip, angular_velocity);
+    return resisting(this, slip, angular_velocity);
+  }
+  /** Force over slip, and torque, per unit normal force, at slip of this square and drilling R w. */
+  shares(square, drilling) {
+    var drills = new HertzDrillingLaw(this.mu, this.patch_radius).shares(square, drilling);
+    var slides = new HertzSlidingLaw(this.mu, this.patch_radius).shares(square, drilling);
     var mixed = (a, b) => {
       return py.add(py.mul(this.drills, a), py.mul(py.sub(1.0, this.drills), b));
     };
-    var force = [mixed(drilling.force[0], sliding.force[0]), mixed(drilling.force[1], sliding.force[1])];
-    return new Traction(force, [0.0, 0.0, mixed(drilling.torque[2], sliding.torque[2])]);
+    return [mixed(drills[0], slides[0]), mixed(drills[1], slides[1])];
   }
   /** That of the whole law. */
   reserve(normal, force, drilling) {
@@ -6326,6 +6336,25 @@ function prevalence(slip, drilling, edge) {
 function heaviness(law, normal, drilling, edge) {
   var limit = py.mul(py.mul(py.mul(BRANCH_TORQUE, law.mu), normal), law.patch_radius);
   return py.sub(py.mul(drilling, drilling), py.mul(py.mul(py.sub(1.0, edge), limit), limit));
+}
+
+/** Force and torque per unit normal force of a branch of the law. */
+function resisting(law, slip, angular_velocity) {
+  var square = py.add(py.mul(slip[0], slip[0]), py.mul(slip[1], slip[1]));
+  var [force, torque] = law.shares(square, py.mul(law.patch_radius, angular_velocity[2]));
+  return new Traction([py.mul(force, slip[0]), py.mul(force, slip[1])], [0.0, 0.0, torque]);
+}
+
+/** Value of a polynomial of degree 5 to 7, given four powers. */
+function polynomial(coefficients, powers) {
+  var [low, high] = [coefficients[0], coefficients[4]];
+  for (var [coefficient, power] of py.zip(coefficients.slice(1, 4), powers.slice(0, 3))) {
+    low = py.add(low, py.mul(coefficient, power));
+  }
+  for (var [coefficient, power] of py.zip(coefficients.slice(5), py.slice(powers, null, py.len(coefficients) - 5, null))) {
+    high = py.add(high, py.mul(coefficient, power));
+  }
+  return py.add(low, py.mul(high, powers[3]));
 }
 
 /** Value of a polynomial, its coefficients in increasing order. */
@@ -8975,6 +9004,7 @@ export {
   phis,
   plus,
   point_velocity,
+  polynomial,
   polynomials,
   positive,
   precession_at,
@@ -8994,6 +9024,7 @@ export {
   require_one_surface,
   require_sphere,
   resistance_powers,
+  resisting,
   resolution,
   resting_way,
   restitution_goal,

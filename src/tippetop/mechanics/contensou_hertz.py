@@ -121,13 +121,15 @@ class HertzDrillingLaw(NamedTuple):
 
     def traction(self, slip: Horizontal, angular_velocity: Vector) -> Traction:
         """Force and torque per unit normal force; drilling must not be zero, or there is only a number."""
-        drilling = self.patch_radius * angular_velocity[2]
-        square = slip[0] * slip[0] + slip[1] * slip[1]
+        return resisting(self, slip, angular_velocity)
+
+    def shares(self, square: Scalar, drilling: Scalar) -> tuple[Scalar, Scalar]:
+        """Force over slip, and torque, per unit normal force, at slip of this square and drilling R w."""
         rate = (drilling * drilling + BEYOND * square) ** -0.5
         kappa2 = square * rate * rate
         force = -self.mu * (3.0 * PI / 32.0) * (4.0 - kappa2) * rate
         torque = -self.mu * (3.0 * PI / 16.0) * (1.0 - kappa2 * (1.0 - 0.375 * kappa2)) * rate
-        return Traction((force * slip[0], force * slip[1]), (0.0, 0.0, torque * drilling * self.patch_radius))
+        return force, torque * drilling * self.patch_radius
 
     def reserve(self, normal: Scalar, force: Horizontal, drilling: Scalar) -> Scalar:
         """(mu N F)^2 - T^2 where the limit surface has this drilling torque, N^2.
@@ -204,15 +206,20 @@ class HertzSlidingLaw(NamedTuple):
 
     def traction(self, slip: Horizontal, angular_velocity: Vector) -> Traction:
         """Force and torque per unit normal force; the slip must not be zero, or there is only a number."""
-        drilling = self.patch_radius * angular_velocity[2]
-        square = slip[0] * slip[0] + slip[1] * slip[1] + BEYOND * drilling * drilling
+        return resisting(self, slip, angular_velocity)
+
+    def shares(self, square: Scalar, drilling: Scalar) -> tuple[Scalar, Scalar]:
+        """Force over slip, and torque, per unit normal force, at slip of this square and drilling R w."""
+        square = square + BEYOND * drilling * drilling
         excess = square - drilling * drilling
         speed = square**0.5
         tangent = drilling / (speed + (excess * excess + NEAR_BRANCH * square * square) ** 0.25)
         w = tangent * tangent
-        force = -self.mu * horner(FORCE[0], w) / (horner(FORCE[1], w) * speed)
-        torque = -self.mu * self.patch_radius * tangent * horner(TORQUE[0], w) / horner(TORQUE[1], w)
-        return Traction((force * slip[0], force * slip[1]), (0.0, 0.0, torque))
+        w2 = w * w
+        powers = (w, w2, w2 * w, w2 * w2)
+        force = -self.mu * polynomial(FORCE[0], powers) / (polynomial(FORCE[1], powers) * speed)
+        grip = polynomial(TORQUE[0], powers) / polynomial(TORQUE[1], powers)
+        return force, -self.mu * self.patch_radius * tangent * grip
 
     def reserve(self, normal: Scalar, force: Horizontal, drilling: Scalar) -> Scalar:
         """(mu N F)^2 - T^2 where the limit surface has this drilling torque, N^2.
@@ -284,14 +291,17 @@ class HertzBranch(NamedTuple):
 
     def traction(self, slip: Horizontal, angular_velocity: Vector) -> Traction:
         """Force and torque per unit normal force; slip and drilling must not both be zero."""
-        drilling = HertzDrillingLaw(self.mu, self.patch_radius).traction(slip, angular_velocity)
-        sliding = HertzSlidingLaw(self.mu, self.patch_radius).traction(slip, angular_velocity)
+        return resisting(self, slip, angular_velocity)
+
+    def shares(self, square: Scalar, drilling: Scalar) -> tuple[Scalar, Scalar]:
+        """Force over slip, and torque, per unit normal force, at slip of this square and drilling R w."""
+        drills = HertzDrillingLaw(self.mu, self.patch_radius).shares(square, drilling)
+        slides = HertzSlidingLaw(self.mu, self.patch_radius).shares(square, drilling)
 
         def mixed(a: Scalar, b: Scalar) -> Scalar:
             return self.drills * a + (1.0 - self.drills) * b
 
-        force = (mixed(drilling.force[0], sliding.force[0]), mixed(drilling.force[1], sliding.force[1]))
-        return Traction(force, (0.0, 0.0, mixed(drilling.torque[2], sliding.torque[2])))
+        return mixed(drills[0], slides[0]), mixed(drills[1], slides[1])
 
     def reserve(self, normal: Scalar, force: Horizontal, drilling: Scalar) -> Scalar:
         """That of the whole law."""
@@ -384,6 +394,27 @@ def heaviness(law: Any, normal: Scalar, drilling: Scalar, edge: Scalar) -> Scala
     """
     limit = BRANCH_TORQUE * law.mu * normal * law.patch_radius
     return drilling * drilling - (1.0 - edge) * limit * limit
+
+
+def resisting(law: Any, slip: Horizontal, angular_velocity: Vector) -> Traction:
+    """Force and torque per unit normal force of a branch of the law."""
+    square = slip[0] * slip[0] + slip[1] * slip[1]
+    force, torque = law.shares(square, law.patch_radius * angular_velocity[2])
+    return Traction((force * slip[0], force * slip[1]), (0.0, 0.0, torque))
+
+
+def polynomial(coefficients: tuple[float, ...], powers: tuple[Scalar, ...]) -> Scalar:
+    """Value of a polynomial of degree 5 to 7, given four powers.
+
+    It takes one product of variables beyond those of the powers: where they are power series, products are
+    what costs.
+    """
+    low, high = coefficients[0], coefficients[4]
+    for coefficient, power in zip(coefficients[1:4], powers[:3], strict=True):
+        low = low + coefficient * power
+    for coefficient, power in zip(coefficients[5:], powers[: len(coefficients) - 5], strict=True):
+        high = high + coefficient * power
+    return low + high * powers[3]
 
 
 def horner(coefficients: tuple[float, ...], x: Scalar) -> Scalar:
