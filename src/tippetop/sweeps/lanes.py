@@ -106,6 +106,9 @@ class Lanes:
             slots.before[waiting] = before[layout.left, waiting]
         slots.tip.extremes.put(after[layout.least])
         slots.rows, slots.spare = after, before
+        changed = after[layout.changed].nonzero()[0]
+        if len(changed):
+            slots.change_branch(changed)
         return len(waiting)
 
     def _look(self) -> None:

@@ -17,15 +17,17 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
+from tippetop.contact.sliding import BRANCH
 from tippetop.integrators.base import Array, Motion
 from tippetop.mechanics.series import Arithmetic, horner, solution
 from tippetop.mechanics.vectors import Scalar
 
-GUARD_LOOKS, TIP_LOOKS = 32, 12
-"""Intervals of a step at whose ends the guards, and n_z, are looked at."""
+GUARD_LOOKS, OTHER_LOOKS, TIP_LOOKS = 32, 8, 12
+"""Intervals of a step at whose ends the first guard, the others, and n_z are looked at."""
 
-NEWTON = 3
-"""Improvements of a least value, by Newton's method from the least look: they cube its small distance."""
+NEWTON, BRACKETED = 3, 8
+"""Improvements of a least value, by Newton's method from the least look, which cube its small distance, and
+of a zero between two looks."""
 
 TINY = 1e-300
 """Stands for zero where a number that is zero is to count as below it."""
@@ -38,9 +40,10 @@ class Layout(NamedTuple):
     """Which row holds what, for a motion of some size with some guards.
 
     A step brings the first rows up to date: the numbers of the motion, the time that is left to go and the
-    steps taken. The others tell of the step: the time it took, whether something may happen in it, and the
-    least values of the first guard, of n_z and of -n_z in it. Where something may happen it was not taken,
-    those values are inf, and no time is left: the launch waits.
+    steps taken. The others tell of the step: the time it may take, whether something may happen in it, the
+    least values of the first guard, of n_z and of -n_z in it, and whether it ended earlier, where another
+    branch of the law takes over. Where something else may happen it was not taken, those values are inf, and
+    no time is left: the launch waits.
 
     What to pause for is in rows after the parameters: whether each guard counts, whether the top is yet to
     turn over, and the least and the largest n_z of a band (inf and -inf for none).
@@ -57,9 +60,11 @@ class Layout(NamedTuple):
     """How many rows a step brings up to date."""
     taken: int
     pause: int
-    """Rows of the time that a step took, and of whether something may happen in it."""
+    """Rows of the time that a step may take, and of whether something may happen in it."""
     least: slice
     """Rows of the least values of the first guard, n_z and -n_z in a step."""
+    changed: int
+    """Row of whether a step ended where another branch of the law takes over."""
     rows: int
     """How many rows there are."""
     counts: slice
@@ -69,16 +74,20 @@ class Layout(NamedTuple):
     band."""
     numbers: int
     """How many rows of parameters and of what to pause for there are."""
+    branch: int | None
+    """Which guard tells where another branch of the law takes over, if any does."""
 
     @classmethod
     def of(cls, motion: Motion) -> "Layout":
         """The layout for a motion."""
         size, guards, parameters = motion.size, len(motion.guards), motion.parameters
         kept, turns = size + 2, parameters + guards
-        pause, rows, numbers = kept + 1, kept + 5, turns + 3
-        least, counts, band = slice(kept + 2, rows), slice(parameters, turns), slice(turns + 1, numbers)
-        row = (size, size + 1, kept, kept, pause, least, rows)
-        return cls(size, guards, parameters, *row, counts, turns, band, numbers)
+        pause, changed, numbers = kept + 1, kept + 5, turns + 3
+        least, counts, band = slice(kept + 2, changed), slice(parameters, turns), slice(turns + 1, numbers)
+        row = (size, size + 1, kept, kept, pause, least, changed, changed + 1)
+        names = [guard.name for guard in motion.guards]
+        branch = names.index(BRANCH) if BRANCH in names else None
+        return cls(size, guards, parameters, *row, counts, turns, band, numbers, branch)
 
 
 class Stepper(Protocol):
@@ -129,26 +138,62 @@ def stride(
     counts, turns, (band_low, band_high) = numbers[layout.counts], numbers[layout.turns], numbers[layout.band]
     y, guards = motion_series(motion, start, numbers, plain)
     state = [[series[k] for k in range(order + 1)] for series in y]
-    taken = step_size(state, left, plain)
+    falls = [[guard[k] for k in range(order)] for guard in guards]
+    whole = taken = step_size(state, left, plain)
+    changes = 0.0 * whole
+    if layout.branch is not None:
+        change, doubt = branch_change(falls[layout.branch], whole, plain)
+        changes, taken = plain.below(change, whole), plain.least(change, whole)
     heights, upside = looked_at(state[2], taken, TIP_LOOKS), [-term for term in state[2]]
     floor = least_value(state[2], heights, taken, plain)
     ceiling = -least_value(upside, [-height for height in heights], taken, plain)
 
     events = plain.below(floor, 0.0) * plain.below(0.0, ceiling) * turns
     events += (1.0 - plain.below(band_high, floor)) * (1.0 - plain.below(ceiling, band_low))
-    falls = [[guard[k] for k in range(order)] for guard in guards]
-    looks = [looked_at(terms, taken, GUARD_LOOKS) for terms in falls]
-    for terms, values, count in zip(falls, looks, counts, strict=True):
-        depth = lowest(values, plain) - slack(terms, taken, GUARD_LOOKS, plain)
+    pressing = looked_at(falls[0], taken, GUARD_LOOKS)
+    for number, (terms, count) in enumerate(zip(falls, counts, strict=True)):
+        if number == layout.branch:
+            events += doubt
+            continue
+        values = looked_at(terms, taken, OTHER_LOOKS) if number else pressing
+        depth = lowest(values, plain) - slack(terms, taken, len(values) - 1, plain)
         events += plain.below(depth, TINY) * count
     moves = plain.below(0.0, taken)
     pause = events * moves
     after = [*(horner(series, taken) for series in state), left - taken, steps + moves]
     stays = [plain.choose(pause, old, new) for old, new in zip(before, after, strict=True)]
     stays[layout.left] = plain.choose(pause, 0.0 * left, after[layout.left])
-    force = least_value(falls[0], looks[0], taken, plain)
+    force = least_value(falls[0], pressing, taken, plain)
     least = [plain.choose(pause, math.inf + 0.0 * value, value) for value in (force, floor, -ceiling)]
-    return [*stays, taken, pause, *least]
+    return [*stays, whole, pause, *least, plain.choose(pause, 0.0 * changes, changes)]
+
+
+def branch_change(terms: Sequence[Scalar], whole: Scalar, plain: Arithmetic) -> tuple[Scalar, Scalar]:
+    """Where in a step the guard of the law's branch falls through zero, and whether that is not told.
+
+    It is inf where no look is below zero. It is not told where the guard begins there, or dips between looks.
+    """
+    values, part = looked_at(terms, whole, OTHER_LOOKS), whole * (1.0 / OTHER_LOOKS)
+    begins, falls, high = plain.below(values[0], TINY), 0.0 * whole, 0.0 * whole
+    nearest = math.inf + 0.0 * whole
+    for k in range(OTHER_LOOKS, 0, -1):
+        under = plain.below(values[k], TINY)
+        falls, high = plain.choose(under, under, falls), plain.choose(under, part * float(k), high)
+        nearest = plain.choose(under, values[k - 1], plain.least(values[k], nearest))
+    slopes = [float(k) * terms[k] for k in range(1, len(terms))]
+    low, place = high - part, high - 0.5 * part
+    for _ in range(BRACKETED):
+        value = horner(terms, place)
+        above, better = plain.below(0.0, value), place - value / horner(slopes, place)
+        low, high = plain.choose(above, place, low), plain.choose(above, high, place)
+        outside = plain.below(better, low) + plain.below(high, better)
+        place = plain.choose(outside, 0.5 * (low + high), better)
+    # Before it falls it may have dipped; if it does not fall, its least value tells.
+    least = plain.choose(
+        falls, nearest - slack(terms, whole, OTHER_LOOKS, plain), least_value(terms, values, whole, plain)
+    )
+    told = plain.choose(falls * (1.0 - begins), place, math.inf + 0.0 * whole)
+    return told, begins + plain.below(least, TINY)
 
 
 def looked_at(terms: Sequence[Scalar], taken: Scalar, looks: int) -> list[Scalar]:
