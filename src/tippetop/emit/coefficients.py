@@ -3,24 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
-from tippetop.emit.graph import Graph, Node
-from tippetop.mechanics.series import Series
-
-
-class SeriesGraph(Graph):
-    """A graph whose nodes leave it to a series what the two of them make."""
-
-    def sum(self, a: Any, b: Any) -> Any:
-        """Sum of two; see `Graph.sum`."""
-        return NotImplemented if isinstance(b, Series) else super().sum(a, b)
-
-    def product(self, a: Any, b: Any) -> Any:
-        """Product of two; see `Graph.product`."""
-        return NotImplemented if isinstance(b, Series) else super().product(a, b)
-
-    def quotient(self, a: Any, b: Any) -> Any:
-        """Quotient of two; see `Graph.quotient`."""
-        return NotImplemented if isinstance(b, Series) else super().quotient(a, b)
+from tippetop.emit.graph import Node
 
 
 class NodeArithmetic:

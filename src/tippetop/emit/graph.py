@@ -1,13 +1,14 @@
 """A function in plain operators as a graph of operations, each of them there once.
 
-The function is run on nodes instead of numbers, and what it does to them is recorded. Constants are folded,
-what is computed twice is computed once, and signs are taken out of products, so that a product and its
-opposite share their work. All of that is exact in floating-point numbers; powers of halves and quarters
-become products and roots.
+The function is run on nodes instead of numbers, and what it does to them is recorded. What is multiplied by 0
+or 1 is left out, and what is computed twice is computed once. All of that is exact in floating-point numbers;
+powers of halves and quarters become products and roots.
 """
 
 from dataclasses import dataclass, field
 from typing import Any
+
+from tippetop.mechanics.series import Series
 
 STATE, PARAMETER, CONSTANT = "y", "p", "constant"
 SUM, DIFFERENCE, PRODUCT, QUOTIENT = "+", "-", "*", "/"
@@ -45,25 +46,25 @@ class Node:
     """Keeps NumPy from taking a node for an element of an array."""
 
     def __add__(self, other: Any) -> Any:
-        return self.graph.sum(self, other)
+        return NotImplemented if isinstance(other, Series) else self.graph.sum(self, other)
 
     def __radd__(self, other: Any) -> Any:
         return self.graph.sum(other, self)
 
     def __sub__(self, other: Any) -> Any:
-        return self.graph.sum(self, -other)
+        return NotImplemented if isinstance(other, Series) else self.graph.difference(self, other)
 
     def __rsub__(self, other: Any) -> Any:
-        return self.graph.sum(other, -self)
+        return self.graph.difference(other, self)
 
     def __mul__(self, other: Any) -> Any:
-        return self.graph.product(self, other)
+        return NotImplemented if isinstance(other, Series) else self.graph.product(self, other)
 
     def __rmul__(self, other: Any) -> Any:
         return self.graph.product(other, self)
 
     def __truediv__(self, other: Any) -> Any:
-        return self.graph.quotient(self, other)
+        return NotImplemented if isinstance(other, Series) else self.graph.quotient(self, other)
 
     def __rtruediv__(self, other: Any) -> Any:
         return self.graph.quotient(other, self)
@@ -72,12 +73,10 @@ class Node:
         return self.graph.power(self, exponent)
 
     def __neg__(self) -> Any:
-        if self.name == NEGATIVE:
-            return self.operands[0]
-        return self.graph.node(NEGATIVE, (self,))
+        return self.operands[0] if self.name == NEGATIVE else self.graph.node(NEGATIVE, (self,))
 
     def __abs__(self) -> Any:
-        return self.graph.node(SIZE, (positive(self)[1],))
+        return self.graph.node(SIZE, (self.operands[0] if self.name == NEGATIVE else self,))
 
     def __lt__(self, other: Any) -> Any:
         return self.graph.node(LESS, (self, self.graph.taken(other)))
@@ -124,82 +123,53 @@ class Graph:
 
     def sum(self, a: Any, b: Any) -> Any:
         """Sum of two, as a difference if one of them is negative."""
-        if is_number(a, 0.0):
-            return b
-        if is_number(b, 0.0):
-            return a
-        first, second = negated(a), negated(b)
-        if second is not None:
-            if first is not None:
-                return -(self.sum(first, second))
-            return self._difference(a, second)
-        if first is not None:
-            return self._difference(b, first)
+        if is_number(a, 0.0) or is_number(b, 0.0):
+            return b if is_number(a, 0.0) else a
+        for one, other in ((a, b), (b, a)):
+            if isinstance(other, Node) and other.name == NEGATIVE:
+                return self.difference(one, other.operands[0])
         return self.node(SUM, in_order(self.taken(a), self.taken(b)))
 
-    def product(self, a: Any, b: Any) -> Any:
-        """Product of two, with its sign outside."""
+    def difference(self, a: Any, b: Any) -> Any:
+        """Difference of two."""
         if is_number(a, 0.0) or is_number(b, 0.0):
-            return 0.0
-        if is_number(a, 1.0):
-            return b
-        if is_number(b, 1.0):
-            return a
-        first, second = positive(a), positive(b)
-        if is_number(first[1], 1.0) or is_number(second[1], 1.0):
-            found = second[1] if is_number(first[1], 1.0) else first[1]
-        else:
-            found = self.node(PRODUCT, in_order(self.taken(first[1]), self.taken(second[1])))
-        return found if first[0] == second[0] else -found
+            return -b if is_number(a, 0.0) else a
+        return 0.0 if a is b else self.node(DIFFERENCE, (self.taken(a), self.taken(b)))
+
+    def product(self, a: Any, b: Any) -> Any:
+        """Product of two."""
+        for one, other in ((a, b), (b, a)):
+            if is_number(one, 0.0):
+                return 0.0
+            if is_number(one, 1.0) or is_number(one, -1.0):
+                return other if one > 0.0 else -other
+        return self.node(PRODUCT, in_order(self.taken(a), self.taken(b)))
 
     def quotient(self, a: Any, b: Any) -> Any:
-        """Quotient of two, with its sign outside."""
-        if is_number(a, 0.0):
-            return 0.0
-        if is_number(b, 1.0):
+        """Quotient of two."""
+        if is_number(a, 0.0) or is_number(b, 1.0):
             return a
-        first, second = positive(a), positive(b)
-        if is_number(second[1], 1.0):
-            return -a
-        found = self.node(QUOTIENT, (self.taken(first[1]), self.taken(second[1])))
-        return found if first[0] == second[0] else -found
+        return self.node(QUOTIENT, (self.taken(a), self.taken(b)))
 
     def power(self, base: Node, exponent: Any) -> Any:
         """A power: by products and roots where the exponent is a whole number of quarters."""
         if not isinstance(exponent, (int, float)):
             raise NotRecordable("exponents are numbers")
-        quarters = 4.0 * exponent
-        if quarters != int(quarters) or abs(exponent) > LARGEST_POWER:
+        if (4.0 * exponent) % 1.0 != 0.0 or abs(exponent) > LARGEST_POWER:
             return self.node(POWER, (base, self.taken(exponent)))
-        if exponent < 0:
+        if exponent < 0.0:
             return self.quotient(1.0, self.power(base, -exponent))
-        whole, rest = int(quarters) // 4, int(quarters) % 4
-        found: Any = 1.0
-        if rest >= 2:
-            found = self.node(ROOT, (base,))
-        if rest % 2 == 1:
-            found = found * self.node(ROOT, (self.node(ROOT, (base,)),))
-        square: Any = base
-        while whole > 0:
-            if whole % 2 == 1:
-                found = found * square
-            whole = whole // 2
-            if whole > 0:
-                square = square * square
-        return found
+        part, whole = exponent % 1.0, exponent // 1.0
+        if part > 0.0:
+            return self.power(self.node(ROOT, (base,)), 2.0 * part) * self.power(base, whole)
+        half = self.power(base, whole // 2.0) if whole > 1.0 else 1.0
+        return half * half * base if whole % 2.0 == 1.0 else half * half
 
     def select(self, condition: Any, a: Any, b: Any) -> Any:
         """The first where a condition is not 0, else the second."""
         if not isinstance(condition, Node):
             return a if condition else b
         return self.node(SELECT, (condition, self.taken(a), self.taken(b)))
-
-    def _difference(self, a: Any, b: Any) -> Any:
-        if a is b:
-            return 0.0
-        first, second = self.taken(a), self.taken(b)
-        opposite = self.known.get(key_of(DIFFERENCE, (second, first)))
-        return self.node(DIFFERENCE, (first, second)) if opposite is None else -opposite
 
 
 def key_of(name: str, operands: tuple[Node, ...], value: float = 0.0) -> str:
@@ -210,19 +180,6 @@ def key_of(name: str, operands: tuple[Node, ...], value: float = 0.0) -> str:
 def is_number(value: Any, number: float) -> bool:
     """Whether a value is a plain number, and this one."""
     return isinstance(value, (int, float)) and value == number
-
-
-def negated(value: Any) -> Any:
-    """That of which a value is the negative; None where it is not one."""
-    if isinstance(value, Node):
-        return value.operands[0] if value.name == NEGATIVE else None
-    return -value if value < 0.0 else None
-
-
-def positive(value: Any) -> tuple[bool, Any]:
-    """Whether a value is negative, and what it is without its sign."""
-    opposite = negated(value)
-    return (False, value) if opposite is None else (True, opposite)
 
 
 def in_order(a: Node, b: Node) -> tuple[Node, Node]:

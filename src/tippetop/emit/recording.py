@@ -28,7 +28,6 @@ def record(
     function: Callable[[Sequence[Scalar], Sequence[Scalar]], Sequence[Scalar]],
     size: int,
     parameters: int,
-    graph: Graph | None = None,
 ) -> Recorded:
     """Record what a function of a state and parameters does.
 
@@ -38,15 +37,13 @@ def record(
         It returns a sequence of numbers, and asks nothing of its arguments but operators.
     size, parameters
         How many numbers the state has, and how many parameters there are.
-    graph
-        Where to record it: an empty graph of its own unless said.
 
     Raises
     ------
     NotRecordable
         If the function makes a choice that depends on the numbers.
     """
-    graph = Graph() if graph is None else graph
+    graph = Graph()
     state = [graph.node(STATE, (), i) for i in range(size)]
     given = [graph.node(PARAMETER, (), i) for i in range(parameters)]
     outputs = [graph.taken(output) for output in function(state, given)]

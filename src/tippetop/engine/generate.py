@@ -1,9 +1,9 @@
 """The engine's generated modules: mechanics and contact modes as JavaScript, tables and the method."""
 
 import ast
-import importlib.util
+import importlib
+import inspect
 import re
-from pathlib import Path
 
 from tippetop.emit.definitions import Definitions
 from tippetop.emit.program import Program
@@ -102,8 +102,5 @@ def sources() -> dict[str, str]:
 
 
 def _text(module: str) -> str:
-    spec = importlib.util.find_spec(module)
-    assert spec is not None, module
-    assert spec.origin is not None, module
-    text = Path(spec.origin).read_text(encoding="utf-8")
+    text = inspect.getsource(importlib.import_module(module))
     return text + dormand_prince.written_out() if module == dormand_prince.__name__ else text

@@ -8197,25 +8197,25 @@ class Node extends py.Record {
     this.place = place;
   }
   __add__(other) {
-    return this.graph.sum(this, other);
+    return py.isinstance(other, Series) ? py.NotImplemented : this.graph.sum(this, other);
   }
   __radd__(other) {
     return this.graph.sum(other, this);
   }
   __sub__(other) {
-    return this.graph.sum(this, py.neg(other));
+    return py.isinstance(other, Series) ? py.NotImplemented : this.graph.difference(this, other);
   }
   __rsub__(other) {
-    return this.graph.sum(other, py.neg(this));
+    return this.graph.difference(other, this);
   }
   __mul__(other) {
-    return this.graph.product(this, other);
+    return py.isinstance(other, Series) ? py.NotImplemented : this.graph.product(this, other);
   }
   __rmul__(other) {
     return this.graph.product(other, this);
   }
   __truediv__(other) {
-    return this.graph.quotient(this, other);
+    return py.isinstance(other, Series) ? py.NotImplemented : this.graph.quotient(this, other);
   }
   __rtruediv__(other) {
     return this.graph.quotient(other, this);
@@ -8224,13 +8224,10 @@ class Node extends py.Record {
     return this.graph.power(this, exponent);
   }
   __neg__() {
-    if (py.eq(this.name, NEGATIVE)) {
-      return this.operands[0];
-    }
-    return this.graph.node(NEGATIVE, [this]);
+    return py.eq(this.name, NEGATIVE) ? this.operands[0] : this.graph.node(NEGATIVE, [this]);
   }
   __abs__() {
-    return this.graph.node(SIZE, [positive(this)[1]]);
+    return this.graph.node(SIZE, [py.eq(this.name, NEGATIVE) ? this.operands[0] : this]);
   }
   __lt__(other) {
     return this.graph.node(LESS, [this, this.graph.taken(other)]);
@@ -8280,89 +8277,59 @@ class Graph extends py.Record {
   }
   /** Sum of two, as a difference if one of them is negative. */
   sum(a, b) {
-    if (py.truth(is_number_of_graph(a, 0.0))) {
-      return b;
+    if (py.truth(is_number_of_graph(a, 0.0)) || py.truth(is_number_of_graph(b, 0.0))) {
+      return py.truth(is_number_of_graph(a, 0.0)) ? b : a;
     }
-    if (py.truth(is_number_of_graph(b, 0.0))) {
-      return a;
-    }
-    var [first, second] = [negated(a), negated(b)];
-    if (second !== null) {
-      if (first !== null) {
-        return py.neg(this.sum(first, second));
+    for (var [one, other] of [[a, b], [b, a]]) {
+      if (py.isinstance(other, Node) && py.eq(other.name, NEGATIVE)) {
+        return this.difference(one, other.operands[0]);
       }
-      return this._difference(a, second);
-    }
-    if (first !== null) {
-      return this._difference(b, first);
     }
     return this.node(SUM, in_order(this.taken(a), this.taken(b)));
   }
-  /** Product of two, with its sign outside. */
-  product(a, b) {
+  /** Difference of two. */
+  difference(a, b) {
     if (py.truth(is_number_of_graph(a, 0.0)) || py.truth(is_number_of_graph(b, 0.0))) {
-      return 0.0;
+      return py.truth(is_number_of_graph(a, 0.0)) ? py.neg(b) : a;
     }
-    if (py.truth(is_number_of_graph(a, 1.0))) {
-      return b;
-    }
-    if (py.truth(is_number_of_graph(b, 1.0))) {
-      return a;
-    }
-    var [first, second] = [positive(a), positive(b)];
-    if (py.truth(is_number_of_graph(first[1], 1.0)) || py.truth(is_number_of_graph(second[1], 1.0))) {
-      var found = py.truth(is_number_of_graph(first[1], 1.0)) ? second[1] : first[1];
-    } else {
-      found = this.node(PRODUCT, in_order(this.taken(first[1]), this.taken(second[1])));
-    }
-    return py.eq(first[0], second[0]) ? found : py.neg(found);
+    return a === b ? 0.0 : this.node(DIFFERENCE, [this.taken(a), this.taken(b)]);
   }
-  /** Quotient of two, with its sign outside. */
-  quotient(a, b) {
-    if (py.truth(is_number_of_graph(a, 0.0))) {
-      return 0.0;
+  /** Product of two. */
+  product(a, b) {
+    for (var [one, other] of [[a, b], [b, a]]) {
+      if (py.truth(is_number_of_graph(one, 0.0))) {
+        return 0.0;
+      }
+      if (py.truth(is_number_of_graph(one, 1.0)) || py.truth(is_number_of_graph(one, -1.0))) {
+        return one > 0.0 ? other : py.neg(other);
+      }
     }
-    if (py.truth(is_number_of_graph(b, 1.0))) {
+    return this.node(PRODUCT, in_order(this.taken(a), this.taken(b)));
+  }
+  /** Quotient of two. */
+  quotient(a, b) {
+    if (py.truth(is_number_of_graph(a, 0.0)) || py.truth(is_number_of_graph(b, 1.0))) {
       return a;
     }
-    var [first, second] = [positive(a), positive(b)];
-    if (py.truth(is_number_of_graph(second[1], 1.0))) {
-      return py.neg(a);
-    }
-    var found = this.node(QUOTIENT, [this.taken(first[1]), this.taken(second[1])]);
-    return py.eq(first[0], second[0]) ? found : py.neg(found);
+    return this.node(QUOTIENT, [this.taken(a), this.taken(b)]);
   }
   /** A power: by products and roots where the exponent is a whole number of quarters. */
   power(base, exponent) {
     if (!py.isinstance(exponent, [py.int, py.float])) {
       throw new NotRecordable("exponents are numbers");
     }
-    var quarters = py.mul(4.0, exponent);
-    if (!py.eq(quarters, py.int(quarters)) || py.abs(exponent) > LARGEST_POWER) {
+    if (py.mod(py.mul(4.0, exponent), 1.0) !== 0.0 || py.abs(exponent) > LARGEST_POWER) {
       return this.node(POWER_of_graph, [base, this.taken(exponent)]);
     }
-    if (exponent < 0) {
+    if (exponent < 0.0) {
       return this.quotient(1.0, this.power(base, py.neg(exponent)));
     }
-    var [whole, rest] = [py.floordiv(py.int(quarters), 4), py.mod(py.int(quarters), 4)];
-    var found = 1.0;
-    if (rest >= 2) {
-      found = this.node(ROOT, [base]);
+    var [part, whole] = [py.mod(exponent, 1.0), py.floordiv(exponent, 1.0)];
+    if (part > 0.0) {
+      return py.mul(this.power(this.node(ROOT, [base]), py.mul(2.0, part)), this.power(base, whole));
     }
-    if (py.mod(rest, 2) === 1) {
-      found = py.mul(found, this.node(ROOT, [this.node(ROOT, [base])]));
-    }
-    var square = base;
-    while (whole > 0) {
-      if (py.mod(whole, 2) === 1) {
-        found = py.mul(found, square);
-      }
-      whole = py.floordiv(whole, 2);
-      if (whole > 0) {
-        square = py.mul(square, square);
-      }
-    }
-    return found;
+    var half = whole > 1.0 ? this.power(base, py.floordiv(whole, 2.0)) : 1.0;
+    return py.mod(whole, 2.0) === 1.0 ? py.mul(py.mul(half, half), base) : py.mul(half, half);
   }
   /** The first where a condition is not 0, else the second. */
   select(condition, a, b) {
@@ -8370,14 +8337,6 @@ class Graph extends py.Record {
       return py.truth(condition) ? a : b;
     }
     return this.node(SELECT, [condition, this.taken(a), this.taken(b)]);
-  }
-  _difference(a, b) {
-    if (a === b) {
-      return 0.0;
-    }
-    var [first, second] = [this.taken(a), this.taken(b)];
-    var opposite = this.known.get(key_of(DIFFERENCE, [second, first]));
-    return opposite === null ? this.node(DIFFERENCE, [first, second]) : py.neg(opposite);
   }
 }
 py.fields(Graph, ["nodes", "known"]);
@@ -8390,20 +8349,6 @@ function key_of(name, operands, value = 0.0) {
 /** Whether a value is a plain number, and this one. */
 function is_number_of_graph(value, number) {
   return py.and(py.isinstance(value, [py.int, py.float]), () => py.eq(value, number));
-}
-
-/** That of which a value is the negative; None where it is not one. */
-function negated(value) {
-  if (py.isinstance(value, Node)) {
-    return py.eq(value.name, NEGATIVE) ? value.operands[0] : null;
-  }
-  return value < 0.0 ? py.neg(value) : null;
-}
-
-/** Whether a value is negative, and what it is without its sign. */
-function positive(value) {
-  var opposite = negated(value);
-  return opposite === null ? [false, value] : [true, opposite];
 }
 
 /** Two operands whose order does not matter. */
@@ -8430,8 +8375,8 @@ class Recorded extends py.NamedTuple {
 py.fields(Recorded, ["nodes", "outputs", "size", "parameters"]);
 
 /** Record what a function of a state and parameters does. */
-function record(function_, size, parameters, graph = null) {
-  graph = graph === null ? new Graph() : graph;
+function record(function_, size, parameters) {
+  var graph = new Graph();
   var state = py.range(size).map((i) => graph.node(STATE, [], i));
   var given = py.range(parameters).map((i) => graph.node(PARAMETER, [], i));
   var outputs = [...function_(state, given)].map((output) => graph.taken(output));
@@ -8978,7 +8923,6 @@ export {
   natural_state,
   natural_units,
   nearing_guard,
-  negated,
   normal_force,
   normal_wrench,
   number_of,
@@ -9006,7 +8950,6 @@ export {
   point_velocity,
   polynomial,
   polynomials,
-  positive,
   precession_at,
   precession_boundaries,
   precession_rate,

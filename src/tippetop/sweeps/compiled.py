@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tippetop.emit.coefficients import NodeArithmetic, SeriesGraph
+from tippetop.emit.coefficients import NodeArithmetic
 from tippetop.emit.llvm import ABREAST
 from tippetop.emit.recording import Recorded, record
 from tippetop.integrators.base import Array, Motion
@@ -27,14 +27,14 @@ class CompiledStepper:
         """Take a step."""
         layout = self.layout
         if self._step is None:
-            self._step = _compiled(record(self._rows, layout.kept, layout.numbers, SeriesGraph()))
+            self._step = _compiled(record(self._rows, layout.kept, layout.numbers))
         self._step(before[: layout.kept], numbers, after)
 
     def jet(self, before: Array, numbers: Array) -> Jet:
         """The polynomials of the steps."""
         layout, order = self.layout, self.order
         if self._jet is None:
-            self._jet = _compiled(record(self._jet_rows, layout.size, layout.parameters, SeriesGraph()))
+            self._jet = _compiled(record(self._jet_rows, layout.size, layout.parameters))
         count = before.shape[1]
         start, given = padded(before[: layout.size]), padded(numbers[: layout.parameters])
         cut = layout.size * (order + 1)
