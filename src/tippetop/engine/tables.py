@@ -1,9 +1,11 @@
-"""What the engine is told of problems and results: fields, limits, defaults, presets, the catalogue."""
+"""What the engine is told of problems and results: fields, limits, defaults, presets, units."""
 
 import json
 from typing import Any
 
 import numpy as np
+from pydantic.fields import FieldInfo
+from pydantic_core import to_jsonable_python
 
 from tippetop import catalogue, presets
 from tippetop.bodies import Body, Shape
@@ -31,25 +33,11 @@ def tables(command: str) -> str:
         *Shape.kinds.values(),
         *Friction.kinds.values(),
     ]
-    variables = {
-        "sampled": catalogue.SAMPLED,
-        "metrics": catalogue.METRICS,
-        "swept": catalogue.SWEPT,
-        "listed": catalogue.LISTED,
-    }
+    problems = {"report": presets.report_problem(), "leine-glocker": presets.leine_glocker_problem()}
     told = {
         "SCHEMA": {part.__name__: _described(part) for part in parts},
-        "PRESETS": {
-            "bodies": {name: _plain(body) for name, body in presets.BODIES.items()},
-            "problems": {
-                "report": _plain(presets.report_problem()),
-                "leine-glocker": _plain(presets.leine_glocker_problem()),
-            },
-        },
-        "CATALOGUE": {
-            table: {name: _variable(one) for name, one in known.items()} for table, known in variables.items()
-        },
-        "NEAR_POLE": catalogue.NEAR_POLE,
+        "PRESETS": to_jsonable_python({"bodies": presets.BODIES, "problems": problems}, exclude_none=True),
+        "CATALOGUE": {"sampled": {name: _variable(one) for name, one in catalogue.SAMPLED.items()}},
         "NEAR_FINAL": catalogue.NEAR_FINAL,
     }
     numbers = {
@@ -88,47 +76,31 @@ def radau() -> dict[str, list[list[float]]]:
     return {"integrals": integrals.tolist(), "powers": powers.tolist(), "last": last.tolist()}
 
 
-def _plain(part: Part) -> Any:
-    return part.model_dump(mode="json", exclude_none=True)
-
-
 def _variable(variable: catalogue.Variable) -> dict[str, Any]:
     wide = [WIDTHS[name] for name in variable.dimensions]
-    return {
-        "long_name": variable.long_name,
-        "units": variable.units,
-        "label": variable.label,
-        "width": wide[0] if wide else 1,
-    }
+    return {"units": variable.units, "width": wide[0] if wide else 1}
 
 
 def _described(part: type[Part]) -> dict[str, Any]:
     """The fields of a part, and the checks of all of them together."""
-    schema = part.model_json_schema(mode="validation")
-    checks = part.__pydantic_decorators__.model_validators
+    fields = part.model_json_schema(mode="validation")["properties"]
     return {
-        "description": str(part.__doc__).partition("\n")[0],
-        "fields": {name: _field(part, name, field) for name, field in schema["properties"].items()},
-        "checks": list(checks),
+        "fields": {name: _field(part.model_fields[name], field) for name, field in fields.items()},
+        "checks": list(part.__pydantic_decorators__.model_validators),
     }
 
 
-def _field(part: type[Part], name: str, field: dict[str, Any]) -> dict[str, Any]:
-    quantity, info = _quantity(part, name), part.model_fields[name]
-    found: dict[str, Any] = {key: value for key, value in quantity.items() if value}
-    if not info.is_required():
-        default = info.default
-        found["default"] = _plain(default) if isinstance(default, Part) else default
+def _field(info: FieldInfo, field: dict[str, Any]) -> dict[str, Any]:
     several = [one for one in field.get("anyOf", [field]) if one.get("type") != "null"]
-    first = several[0]
-    first = first.get("allOf", [first])[0]
+    first, found = several[0], {}
+    if not info.is_required():
+        found["default"] = to_jsonable_python(info.default, exclude_none=True)
     if "const" in first or "enum" in first:
         found["choices"] = first.get("enum", [first.get("const")])
         *others, last = map(repr, found["choices"])
         found["accepted"] = f"{', '.join(others)} or {last}" if others else last
     elif "oneOf" in first:
-        found["parts"] = [one["title"] for one in first["oneOf"]]
-        found["several"] = len(several) > 1
+        found |= {"parts": [one["title"] for one in first["oneOf"]], "several": len(several) > 1}
     elif "$ref" in first or first.get("type") == "object":
         found["parts"] = [first["$ref"].rpartition("/")[2] if "$ref" in first else first["title"]]
     elif first.get("items", {}).get("type") == "array":
@@ -140,10 +112,3 @@ def _field(part: type[Part], name: str, field: dict[str, Any]) -> dict[str, Any]
         if found["limits"]:
             found["accepted"] = range_of(info)
     return found
-
-
-def _quantity(part: type[Part], name: str) -> dict[str, Any]:
-    for item in part.model_fields[name].metadata:
-        if hasattr(item, "long_name"):
-            return {"units": item.units, "long_name": item.long_name, "places": list(item.places)}
-    return {}
