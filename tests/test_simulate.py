@@ -352,6 +352,16 @@ def test_run_that_never_lifts_off_has_no_events():
     assert float(run.normal_force.min()) > 0
 
 
+@pytest.mark.parametrize("spin", [60.0, 155.0])
+def test_watching_for_lift_off_costs_no_steps(spin):
+    alone, watched = (
+        tt.simulate(report(spin, liftoff=rule), 20.0, integrator=EXACT_INTEGRATORS[0])
+        for rule in ("ignore", "fly")
+    )
+    assert int(watched["flights"]) == 0
+    assert int(watched["steps"]) <= 1.001 * int(alone["steps"])
+
+
 def test_launch_that_the_table_would_have_to_hold_ends_as_it_begins():
     """With its centre of mass above the middle, a top that swings fast pulls at the table."""
     run = tt.simulate(report(0.0, liftoff="stop", tilt=2.5, tilt_rate=200.0), 1.0)

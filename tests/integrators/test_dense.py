@@ -2,6 +2,9 @@
 
 import itertools
 import math
+import platform
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -170,3 +173,22 @@ def test_what_polynomials_leave_unresolved_is_the_last_of_chebyshevs():
     solution = DenseSolution.fitted(numbers, knots, 14)
     assert solution.unresolved == pytest.approx(0.3, rel=1e-12)
     assert DenseSolution.fitted(lambda t: [np.exp(-0.1 * t)], knots, 14).unresolved < 1e-16
+
+
+@pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="other allocators have other rules")
+def test_memory_that_arrays_leave_is_not_fetched_again():
+    code = """if True:
+        import resource
+        import numpy as np
+        import tippetop.integrators.dense
+
+        def faults_of_some_arrays():
+            before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
+            held = [np.ones(2**16) for _ in range(16)]
+            return resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before
+
+        print(*(faults_of_some_arrays() for _ in range(3)))
+    """
+    made = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
+    first, *others = map(int, made.stdout.split())
+    assert max(others) < 0.1 * first
