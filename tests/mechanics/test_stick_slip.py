@@ -9,7 +9,9 @@ from scipy.integrate import solve_ivp
 from creeping import creep_rates, direction_of_slip
 from dry_runs import DryRun, launched
 from tippetop.contact.growth import growth
-from tippetop.contact.passing import Loosening, Stopping
+from tippetop.contact.loosening import Loosening
+from tippetop.contact.mode import EventKind
+from tippetop.contact.passing import Stopping
 from tippetop.contact.rules import Bilateral
 from tippetop.contact.sticking import split
 from tippetop.contact.trajectory import Trajectory
@@ -263,12 +265,16 @@ def test_the_beginning_of_slip_solves_the_equations_to_its_order(family, power, 
 
 
 @pytest.mark.skipif(not has_taylor(), reason="the other integrators are not exact to rounding")
-def test_the_last_moments_of_slip_are_told_up_to_its_end():
+@pytest.mark.parametrize("mode", [Stopping, Loosening], ids=["clock", "phase"])
+def test_the_last_moments_of_slip_are_told_up_to_its_end(mode, monkeypatch):
     """Beyond the end of the clock too: the slip goes to zero in a straight line, and what goes with it."""
+    if mode is Stopping:
+        monkeypatch.setattr(Loosening, "slips", lambda *_: None)
     top, axis, momentum, velocity = launched(report(CoulombLaw(0.2)), 1.0, 50.0 / SECOND)
     start = on_table(SlidingState(axis, momentum, velocity), top)
     trajectory = Trajectory(Bilateral(top).launch(start), 0.4 * SECOND, make_integrator())
-    segment, *_ = (one for one in trajectory.segments() if isinstance(one.mode, Stopping))
+    segment, *_ = (one for one in trajectory.segments() if isinstance(one.mode, mode))
+    assert [event.kind for event in segment.transition.events] == [EventKind.STICK]
     solution = segment.solution
     left = np.geomspace(1e-1, 1e-12, 23) * (solution.end - solution.knots[0])
     numbers = solution(np.append(solution.end - left, solution.end))

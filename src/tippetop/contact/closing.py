@@ -118,7 +118,7 @@ def closing_motion(kind: Kind, ending: Vanishing, guarded: bool) -> Motion:
     free = 2 if ending.moves else 0
     components = slip_dimension(law) if ending.slip else 2
     size = 8 + free + components
-    return Motion(rates, size, kind.numbers + 2, tuple(guards), lasting=ending.recurs(law))
+    return Motion(rates, size, kind.numbers + 2, tuple(guards), lasting=False)
 
 
 def spared(state: Closing, ending: Vanishing, top: Top) -> Scalar:

@@ -4,8 +4,9 @@ from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
 from tippetop.contact.flight import TOUCHING, Flight
+from tippetop.contact.loosening import BothLoosening, Loosening
 from tippetop.contact.mode import Event, EventKind, IntegratedMode, Mode, Outcome, Transition
-from tippetop.contact.passing import BothLoosening, Loosening, Resting, Stopping
+from tippetop.contact.passing import Resting, Stopping
 from tippetop.contact.sliding import Sliding, SlidingWithoutRolling
 from tippetop.contact.sticking import Sticking, StickingWithoutRolling
 from tippetop.contact.surfaces import number_of

@@ -33,8 +33,18 @@ def surface_guards(kind: Kind) -> list[Guard]:
 
 def stays_open(top: Top, y: Row) -> bool:
     """Whether no other surface touches at these numbers of a mode on the active one, floats."""
-    height = top.surface.height(y[2])
-    return all(height - other.height(y[2]) > -MARGIN for other in each_surface(top.surface))
+    return clearance(top, y[2]) > -MARGIN
+
+
+def clearance(top: Top, c: float) -> float:
+    """The least gap of the other surfaces while the active one touches, at a cosine of the tilt, floats."""
+    height = top.surface.height(c)
+    gaps = [
+        height - other.height(c)
+        for number, other in enumerate(each_surface(top.surface))
+        if number != number_of(top)
+    ]
+    return float(min(gaps))
 
 
 def follow_surface(mode: Mode, guard: str, time: float, state: State) -> Transition | None:

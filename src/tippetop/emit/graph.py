@@ -14,7 +14,8 @@ STATE, PARAMETER, CONSTANT = "y", "p", "constant"
 SUM, DIFFERENCE, PRODUCT, QUOTIENT = "+", "-", "*", "/"
 NEGATIVE, LESS, SELECT = "negative", "less", "select"
 SIZE, ROOT, POWER, SINE, COSINE = "abs", "sqrt", "pow", "sin", "cos"
-"""What makes nodes."""
+SPREAD, TOTAL = "spread", "total"
+"""What makes nodes; where they have several values, the last two are one of them for all, and their sum."""
 
 LARGEST_POWER = 16
 """Whole powers up to this are products."""

@@ -25,6 +25,11 @@ CALL = "{t} = call {v} @llvm.{name}.v{n}f64({v} {0})"
 CHOICE = "{t} = select <{n} x i1> {0}_flag, {v} {1}, {v} {2}"
 """One of two numbers, by flags that are there already."""
 
+SPREAD = """\
+  {t}_first = insertelement {v} poison, double {t}_one, i64 0
+  {t} = shufflevector {v} {t}_first, {v} poison, <{n} x i32> zeroinitializer"""
+"""One number for all."""
+
 SPELLINGS = {
     graph.STATE: LOAD,
     graph.PARAMETER: LOAD,
@@ -40,6 +45,9 @@ SPELLINGS = {
     graph.POWER: "{t} = call {v} @llvm.pow.v{n}f64({v} {0}, {v} {1})",
     graph.LESS: "{t}_flag = fcmp ogt {v} {1}, {0}\n  {t} = uitofp <{n} x i1> {t}_flag to {v}",
     graph.SELECT: "{t}_flag = fcmp une {v} {0}, zeroinitializer\n  " + CHOICE.replace("{0}", "{t}"),
+    graph.SPREAD: "{t}_one = extractelement {v} {0}, i64 {row}\n" + SPREAD,
+    graph.TOTAL: "{t}_one = call reassoc double @llvm.vector.reduce.fadd.v{n}f64(double 0.0, {v} {0})\n"
+    + SPREAD,
 }
 """What makes {t} of {0}, {1}, ..."""
 
@@ -59,13 +67,37 @@ done:
 }}
 """
 
+AGAIN = """\
+define i64 @{name}(ptr noalias %y, ptr noalias %p, ptr noalias %out, double %enough, i64 %most) {{
+entry:
+  br label %turn
+turn:
+  %first = phi i64 [ 0, %entry ], [ 0, %turn ]
+  %turns = phi i64 [ 0, %entry ], [ %next, %turn ]
+  {body}
+  %changed = extractelement {v} {last}, i64 0
+  %next = add i64 %turns, 1
+  %left = icmp ult i64 %next, %most
+  %moves = fcmp oge double %changed, %enough
+  %more = and i1 %left, %moves
+  br i1 %more, label %turn, label %done
+done:
+  ret i64 %next
+}}
+"""
 
-def llvm_source(functions: Mapping[str, Recorded], abreast: int) -> str:
+
+def llvm_source(functions: Mapping[str, Recorded], abreast: int, *, again: bool = False) -> str:
     """Functions `name(y, p, out, count)` of arrays whose rows have a number for each of `count` launches.
 
     The count is a multiple of the launches `abreast`, and 1 if that is.
+
+    If they are made again and again, they are functions `name(y, p, out, enough, most)` of as many numbers
+    abreast: what is made of y is put into its place, and only what is made besides goes to `out`, until the
+    last of that is less than enough, or no number, or as many times as may be; they return how many.
     """
-    vector, count = f"<{abreast} x double>", "%count" if abreast > 1 else "1"
+    frame, vector = AGAIN if again else FRAME, f"<{abreast} x double>"
+    count = abreast if again else "%count" if abreast > 1 else 1
     words = {"v": vector, "n": abreast, "r": ROUNDING, "count": count}
 
     def name_of(node: graph.Node) -> str:
@@ -78,6 +110,7 @@ def llvm_source(functions: Mapping[str, Recorded], abreast: int) -> str:
         f"declare {vector} @llvm.{name}.v{abreast}f64({vector}{', ' + vector if name == 'pow' else ''})\n"
         for name in ("fabs", "sqrt", "sin", "cos", "pow")
     ]
+    parts.append(f"declare double @llvm.vector.reduce.fadd.v{abreast}f64(double, {vector})\n")
     for name, recorded in functions.items():
         known, lines = dict[int, str](), list[str]()
         for node in recorded.nodes:
@@ -87,7 +120,14 @@ def llvm_source(functions: Mapping[str, Recorded], abreast: int) -> str:
                 own = {"t": t, "name": node.name, "row": node.value}
                 flagged = node.name == graph.SELECT and node.operands[0].name == graph.LESS
                 lines.append((CHOICE if flagged else SPELLINGS[node.name]).format(*operands, **own, **words))
-        for row, node in enumerate(recorded.outputs):
-            lines.append(STORE.format(known[node.place], t=f"%out{row}", name="out", row=row, **words))
-        parts.append(FRAME.format(name=name, body="\n  ".join(lines), **words))
+        replaced = recorded.size if again else 0
+        for number, node in enumerate(recorded.outputs):
+            row = (
+                {"name": "y", "row": number}
+                if number < replaced
+                else {"name": "out", "row": number - replaced}
+            )
+            lines.append(STORE.format(known[node.place], t=f"%out{number}", **row, **words))
+        last = known[recorded.outputs[-1].place]
+        parts.append(frame.format(name=name, body="\n  ".join(lines), last=last, **words))
     return "".join(parts)

@@ -47,12 +47,15 @@ def record(
     state = [graph.node(STATE, (), i) for i in range(size)]
     given = [graph.node(PARAMETER, (), i) for i in range(parameters)]
     outputs = [graph.taken(output) for output in function(state, given)]
-    needed = set()
-    waiting = list(outputs)
+    return Recorded(needed(graph, outputs), tuple(outputs), size, parameters)
+
+
+def needed(graph: Graph, outputs: Sequence[Node]) -> tuple[Node, ...]:
+    """The nodes of a graph of which some are made."""
+    places, waiting = set[int](), list(outputs)
     while waiting:
         node = waiting.pop()
-        if node.place not in needed:
-            needed.add(node.place)
+        if node.place not in places:
+            places.add(node.place)
             waiting.extend(node.operands)
-    nodes = [node for node in graph.nodes if node.place in needed]
-    return Recorded(tuple(nodes), tuple(outputs), size, parameters)
+    return tuple([node for node in graph.nodes if node.place in places])

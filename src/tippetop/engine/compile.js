@@ -1,5 +1,5 @@
 // What modes state in plain operators, recorded once a kind and compiled by the browser.
-import { javascript_source, record } from "./mechanics.js";
+import { NodeValues, javascript_source, record, unrolled } from "./mechanics.js";
 import { ArithmeticError, heed } from "./runtime.js";
 
 /** A function (y, p) => numbers in plain operators as code (y, p, out); run as it stands where it cannot be. */
@@ -22,6 +22,10 @@ export function compiled(function_, size, parameters, count, heeds = true) {
       }
     };
   }
+  return made(recorded);
+}
+
+function made(recorded) {
   try {
     return new Function(`"use strict";\n${javascript_source(recorded, "recorded")}\nreturn recorded;`)();
   } catch (error) {
@@ -53,6 +57,24 @@ function interpreted({ nodes, outputs }) {
     for (const { name, place, value } of given) values[place] = (name === "y" ? y : p)[value];
     for (const { of, place, a, b, c } of steps) values[place] = of(values[a], values[b], values[c]);
     outputs.forEach(({ place }, i) => (out[i] = values[place]));
+  };
+}
+
+export const room = (count) => new Float64Array(count);
+export const copied = (numbers) => numbers.slice();
+export const put_from = (numbers, first, values) => numbers.set(values, first);
+
+/** A function that makes numbers, of some values each, better again and again: see tippetop.integrators.iteration. */
+export function iterated(function_, size, parameters, abreast) {
+  const values = new NodeValues(), recorded = unrolled(record((y, p) => function_(y, p, values), size, parameters), abreast);
+  const once = made(recorded), found = new Float64Array(recorded.outputs.length), last = found.length - 1;
+  return (y, p, out, enough, most) => {
+    for (let turn = 1; ; turn += 1) {
+      once(y, p, found);
+      y.set(found.subarray(0, recorded.size));
+      out.set(found.subarray(recorded.size));
+      if (turn === most || !(found[last] >= enough)) return turn;
+    }
   };
 }
 

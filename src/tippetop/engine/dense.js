@@ -123,6 +123,19 @@ export class DenseSolution {
     return new DenseSolution(knots.slice(0, count + 1), terms, size, wide - 1);
   }
 
+  /** Steps whose coefficients from the first on lie in a row, from the numbers with which they begin. */
+  static of_rows(knots, start, rows) {
+    const size = start.length, degree = rows[0].length / size, terms = [], now = [...start];
+    for (const row of rows) {
+      for (let i = 0; i < size; i += 1) {
+        const later = row.slice(i * degree, (i + 1) * degree);
+        terms.push(now[i], ...later);
+        now[i] += later.reduce((a, b) => a + b);
+      }
+    }
+    return new DenseSolution(knots, Float64Array.from(terms), size, degree);
+  }
+
   static nothing(time, size) {
     return new DenseSolution([time], new Float64Array(0), size, 0);
   }

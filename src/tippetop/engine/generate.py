@@ -23,6 +23,7 @@ ROOTS = (
     "tippetop.metrics",
     "tippetop.samples",
     "tippetop.emit.javascript",
+    "tippetop.emit.unrolling",
 )
 """What the engine asks for: these, and what they import, are translated."""
 
@@ -31,6 +32,7 @@ GIVEN = {
     "tippetop.lowest": "./observe.js",
     "tippetop.integrators.dense": "./dense.js",
     "tippetop.integrators.polynomials": "",
+    "tippetop.integrators.iteration": "./compile.js",
     "tippetop.integrators.rates": "",
     "tippetop.integrators": "./integrate.js",
     "tippetop.validation": "./part.js",

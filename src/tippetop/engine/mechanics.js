@@ -2,6 +2,7 @@
 import * as py from "./runtime.js";
 import { DenseSolution, ELEMENTARY, as_array } from "./dense.js";
 import { make_integrator } from "./integrate.js";
+import { copied, iterated, put_from, room } from "./compile.js";
 import { InvalidInput, MISSING, Part, numbers_of } from "./part.js";
 import { NEAR_FINAL } from "./tables.js";
 import { highest_between, lowest_contact_vector, lowest_jellett } from "./observe.js";
@@ -1474,8 +1475,14 @@ function surface_guards(kind) {
 
 /** Whether no other surface touches at these numbers of a mode on the active one, floats. */
 function stays_open(top, y) {
-  var height = top.surface.height(y[2]);
-  return py.all([...each_surface(top.surface)].map((other) => py.sub(height, other.height(y[2])) > py.neg(MARGIN)));
+  return clearance(top, y[2]) > py.neg(MARGIN);
+}
+
+/** The least gap of the other surfaces while the active one touches, at a cosine of the tilt, floats. */
+function clearance(top, c) {
+  var height = top.surface.height(c);
+  var gaps = py.enumerate(each_surface(top.surface)).filter(([number, other]) => !py.eq(number, number_of(top))).map(([number, other]) => py.sub(height, other.height(c)));
+  return py.float(py.min(gaps));
 }
 
 /** What follows one of these guards; None for any other. */
@@ -2954,7 +2961,7 @@ const closing_motion = py.cached((kind, ending, guarded) => {
   var free = py.truth(ending.moves) ? 2 : 0;
   var components = py.truth(ending.slip) ? slip_dimension(law) : 2;
   var size = py.add(8 + free, components);
-  return new Motion(rates, size, py.add(kind.numbers, 2), py.tuple(guards), ending.recurs(law));
+  return new Motion(rates, size, py.add(kind.numbers, 2), py.tuple(guards), false);
 });
 
 /** Positive while the table can hold what is held beside a velocity that ends. */
@@ -2971,6 +2978,659 @@ function spared(state, ending, top) {
 function closing_of(y, ending) {
   var [count, free] = [py.len(y), py.truth(ending.moves) ? 8 : 6];
   return new Closing(...split(y), py.tuple(y.slice(6, free)), py.tuple(py.slice(y, free, count - 2, null)), py.item(y, count - 2), py.item(y, count - 1));
+}
+
+// tippetop.contact.passing
+const LANDING = [3e-08, 1e-16];
+const SETTLED_of_passing = 1e-14;
+const SLOWEST = 1e-12;
+const LOOKS_of_passing = 16;
+const SHORT = 1e-14;
+const DEGREE_of_passing = 14;
+const SHARE = 0.01;
+const RESOLVED = 1e-15;
+
+/** A moment between two modes, which is told as the one of them in which something moves. */
+class Passing extends Mode {
+  constructor(top, rules, ending) {
+    super(top, rules);
+    this.ending = ending;
+  }
+  get name() { return "passing"; }
+  /** The mode as which it is told. */
+  get told() {
+    if (py.truth(this.ending.slip)) {
+      return py.call(py.truth(this.ending.held) ? SlidingWithoutRolling : Sliding, this.top, this.rules);
+    }
+    return py.call(py.truth(this.ending.held) ? Sticking : Sliding, this.top, this.rules);
+  }
+  /** The name of the mode as which it is told. */
+  get label() {
+    return this.told.label;
+  }
+  /** What ends or begins decides how its numbers are read. */
+  get form() {
+    return `${py.str(this.name)}: slip ${py.str(this.ending.slip)}, held ${py.str(this.ending.held)}`;
+  }
+  /** The state from axis, momentum, velocity where it is free, and what ends or begins. */
+  state(y) {
+    var [axis, momentum, velocity, xi] = this._parts(y);
+    if (py.truth(this.ending.slip)) {
+      velocity = velocity_of(axis, momentum, xi, this.top);
+      momentum = py.truth(this.ending.held) ? without_rolling(axis, momentum, this.top) : momentum;
+    } else if (py.truth(this.ending.held)) {
+      velocity = velocity_without_slip(axis, momentum, this.top);
+    }
+    return on_table(new SlidingState(axis, momentum, [velocity[0], velocity[1]]), this.top);
+  }
+  /** The contact force and torque, from what ends or begins itself: a state has but few digits of it. */
+  reaction(y) {
+    var [axis, momentum, velocity, xi] = this._parts(y);
+    var here = new Closing(axis, momentum, velocity, xi, 0.0, 0.0);
+    var [force, torque] = rates_in_time(here, this.ending, this.top).wrench;
+    var power = dot(torque, angular_velocity(axis, momentum, this.top));
+    var slip = py.truth(this.ending.slip) ? xi : slip_beside(here, this.ending, this.top);
+    if (slip !== null) {
+      power = py.add(power, py.add(py.mul(force[0], slip[0]), py.mul(force[1], slip[1])));
+    }
+    return new Reaction(force, torque, power);
+  }
+  _parts(y) {
+    var free = py.truth(this.ending.moves) ? 8 : 6;
+    return [...split(y), py.tuple(y.slice(6, free)), py.tuple(y.slice(free))];
+  }
+}
+py.fields(Passing, ["top", "rules", "ending"]);
+
+/** Every velocity has ended: an instant, so that a result has it, and then the run is over. */
+class Resting extends Mode {
+  constructor(top, rules, told) {
+    super(top, rules);
+    this.told = told;
+  }
+  get name() { return "resting"; }
+  /** As in the mode as which it is told. */
+  state(y) {
+    return this.told.state(y);
+  }
+  /** Stay as it is. */
+  *segments(time, state, end, integrator) {
+    var still = DenseSolution.standing(this.told.numbers(state), time, py.add(time, py.mul(SHORT, py.max(1.0, time))));
+    yield new Segment(this.told, still, state, new Transition([], Outcome.AT_REST, state));
+  }
+}
+py.fields(Resting, ["top", "rules", "told"]);
+
+/** The last moments of slip, or of rolling, in a clock of their own (see `tippetop.mechanics.ending`). */
+class Stopping extends Passing {
+  constructor(top, rules, ending, begin = []) {
+    super(top, rules, ending);
+    this.begin = begin;
+  }
+  /** Follow it to its end, or to where it is no longer about to end. */
+  *segments(time, state, end, integrator) {
+    var [ending, begin] = [this.ending, py.or(this.begin, () => this._clock(state))];
+    var arrival = this._arrival(closing_of(begin, ending), end - time, integrator);
+    if (arrival !== null) {
+      var solution = DenseSolution.in_time([0.0, arrival.left], [arrival.onwards]);
+      var last = this.state(arrival.at(0.0));
+      var then = this._next(null, py.add(time, arrival.left), last);
+      yield new Segment(this, solution.moved(time, py.add(time, arrival.left)), last, then, 1);
+      return null;
+    }
+    var [here, steps, arc, parts] = [closing_of(begin, ending), 0, null, py.list()];
+    var rest = here;
+    var start = [0.0, as_array(begin)];
+    var motion = closing_motion(this.top.kind, ending, !py.truth(this.rules.pulls));
+    for (var horizon of LANDING) {
+      if (landing_guard(here, ending, this.top, horizon) <= 0.0) {
+        continue;
+      }
+      var arcs = followed(integrator, motion, [...this.top.numbers, end - time, horizon], start);
+      steps = py.add(steps, py.sum([...arcs].map((arc) => arc.steps)));
+      [arc, parts] = [py.item(arcs, -1), [...parts, ...[...arcs].filter((arc) => py.truth(py.len(arc.solution.terms))).map((arc) => arc.solution)]];
+      start = [arc.solution.end, arc.end_state];
+      here = closing_of(py.tolist(arc.end_state), ending);
+      if (!py.eq(arc.guard, LANDED)) {
+        break;
+      }
+      var [rest, doubt] = landed(here, ending, this.top);
+      if (doubt < SETTLED_of_passing) {
+        break;
+      }
+    }
+    var before = here;
+    if (arc !== null && arc.failure !== null && here.speed < SLOWEST) {
+      [here, arc] = [here._replace({ speed: 0.0 }), null];
+    } else if (arc === null) {
+      here = landed(here, ending, this.top)[0];
+    } else if (py.eq(arc.guard, LANDED)) {
+      here = rest;
+    }
+    last = this.state(shown(here));
+    solution = this._in_time(parts, begin, time, before, here);
+    then = this._next(arc, solution.end, last);
+    yield new Segment(this, solution, last, then, steps, steps);
+  }
+  /** The end of slip by power series, if its direction has come to rest and nothing else happens. */
+  _arrival(here, longest, integrator) {
+    var law = this.top.friction;
+    if (!py.truth(this.ending.slip) || py.isinstance(law, RollingResistance) || slip_length(law) === null) {
+      return null;
+    }
+    var found = arriving(here, this.ending, this.top, integrator);
+    if (found === null || found.left > longest) {
+      return null;
+    }
+    var looks = py.range(1, py.add(LOOKS_of_passing, 1)).map((look) => found.at(py.div(look, LOOKS_of_passing)));
+    if (py.isinstance(this.top.surface, Hull) && !py.truth(py.all([...looks].map((y) => stays_open(this.top, y))))) {
+      return null;
+    }
+    if (!py.truth(this.rules.pulls) && !py.truth(py.all([...looks].map((y) => this.reaction(y).force[2] > 0.0)))) {
+      return null;
+    }
+    if (py.truth(py.hasattr(law, "branch_guard")) && !py.truth(py.all([...looks].map((y) => slip_branch_guard(py.tuple(y.slice(6)), this.top) > 0.0)))) {
+      return null;
+    }
+    return found;
+  }
+  /** The numbers of the clock at a state. */
+  _clock(state) {
+    var velocity = state.velocity.slice(0, 2);
+    var xi = this.ending.of(state.axis, state.momentum, velocity, this.top);
+    var free = py.truth(this.ending.moves) ? velocity : [];
+    return [...state.axis, ...state.momentum, ...free, ...scaled(py.div(1.0, size(xi)), xi), size(xi), 0.0];
+  }
+  _next(arc, time, state) {
+    var [ending, stuck] = [this.ending, py.and(!py.truth(this.ending.slip), () => this.ending.held)];
+    if (arc === null || py.eq(arc.guard, LANDED)) {
+      return this.rules.settled(time, state, [ending.slip, !py.truth(ending.slip)], ending.held);
+    }
+    if (arc.failure !== null || arc.guard === null) {
+      return new Transition([], Outcome.FAILED, state, py.or(arc.failure, () => "the slip neither ends nor goes on"));
+    }
+    var found = follow_surface(this, arc.guard, time, state);
+    if (found !== null) {
+      return found;
+    }
+    if (arc.guard === "time") {
+      return new Transition([], Outcome.COMPLETED, state);
+    }
+    if (arc.guard === "lift-off") {
+      return this.rules.lift_off(time, state);
+    }
+    if (arc.guard === "reopening") {
+      return new Transition([], this.rules.going_on(state, !py.truth(stuck)), state);
+    }
+    if (arc.guard === "overtaken") {
+      return new Transition([], py.replace(this, { ending: new Vanishing(!py.truth(ending.slip)), begin: [] }), state);
+    }
+    if (py.contains(["branch", "limit branch"], arc.guard)) {
+      return new Transition([], this._onwards(arc, on_other_branch(this.top)), state);
+    }
+    if (py.contains(["slip", "rolling"], arc.guard)) {
+      var slip = arc.guard === "slip";
+      var event = this.rules.event(py.truth(slip) ? EventKind.SLIP : EventKind.ROLL, time);
+      return this.rules.giving_way(state, [event], new Vanishing(slip));
+    }
+    throw new py.AssertionError(`nothing is said of what follows ${py.str(arc.guard)}`);
+  }
+  /** The mode that takes the clock up where an arc leaves it, on another branch of the law. */
+  _onwards(arc, top) {
+    return py.replace(this, { top: top, begin: [...py.slice(py.tolist(arc.end_state), null, -1, null), 0.0] });
+  }
+  /** The numbers of the mode as polynomials in time, from their solution in the clock. */
+  _in_time(parts, begin, time, before, after) {
+    if (!py.truth(parts)) {
+      var still = shown(closing_of(begin, this.ending));
+      return DenseSolution.standing(still, time, time + py.float(after.time));
+    }
+    var [clock, elapsed] = [DenseSolution.joined(parts), py.len(begin) - 1];
+    var numbers = (times) => {
+      return shown(closing_of(clock.rows(clock.when(elapsed, times)), this.ending));
+    };
+    var knots = clock.knots_of(elapsed, py.float(before.time));
+    var solution = DenseSolution.fitted(numbers, thinned(knots), DEGREE_of_passing);
+    if (solution.unresolved > RESOLVED) {
+      solution = DenseSolution.fitted(numbers, knots, DEGREE_of_passing);
+    }
+    var reach = py.float(after.time);
+    if (reach > py.item(knots, -1)) {
+      var rest = DenseSolution.straight(shown(before), shown(after), py.item(knots, -1), reach, DEGREE_of_passing);
+      solution = DenseSolution.joined([solution, rest]);
+    }
+    return solution.moved(time, time + reach);
+  }
+}
+py.fields(Stopping, ["top", "rules", "ending", "begin"]);
+
+/** Ends of steps, so few of them that each leaves but a share of the time to the last. */
+function thinned(knots) {
+  var [end, found] = [py.item(knots, -1), [knots[0]]];
+  for (var knot of py.slice(knots, 1, -1, null)) {
+    if (py.sub(end, knot) <= py.mul(SHARE, py.sub(end, py.item(found, -1)))) {
+      found.push(knot);
+    }
+  }
+  return [...found, end];
+}
+
+/** The numbers of a moment that passes: axis, momentum, velocity where it is free, and xi. */
+function shown(here) {
+  return [...here.axis, ...here.momentum, ...here.velocity, ...scaled(here.speed, here.direction)];
+}
+
+// tippetop.mechanics.slip_phase
+const STAGES = 16;
+const PARTS = 3;
+const ROOTS = 12;
+
+/** Gauss's points in a step of length 1, and what belongs to them. */
+class GaussPoints extends py.NamedTuple {
+  constructor(integrals, units, terms, powers) {
+    super();
+    this.integrals = integrals;
+    this.units = units;
+    this.terms = terms;
+    this.powers = powers;
+  }
+}
+py.fields(GaussPoints, ["integrals", "units", "terms", "powers"]);
+
+/** The points of a step with so many stages. */
+function gauss_points(stages) {
+  var roots = py.range(stages).map((number) => _root(stages, number));
+  var values = [...roots].map((x) => legendre(stages + 1, x));
+  var weights = [...values].map((at) => py.div(2.0, py.sum(py.range(stages).map((k) => py.mul(py.mul(py.add(py.mul(2, k), 1), py.item(at, k)), py.item(at, k))))));
+  var terms = py.range(stages).map((k) => py.zip(weights, values).map(([weight, at]) => py.mul(py.mul(py.mul(0.5, py.add(py.mul(2, k), 1)), weight), py.item(at, k))));
+  var integrals = py.range(stages).map((j) => py.zip(roots, values).map(([x, at]) => py.sum(py.range(stages).map((k) => py.mul(py.mul(0.5, _integral(k, x, at)), py.item(py.item(terms, k), j))))));
+  return new GaussPoints(integrals, py.range(stages).map((i) => py.range(stages).map((j) => py.eq(i, j) ? 1.0 : 0.0)), terms, py.range(PARTS).map((part) => _in_powers(stages, part)));
+}
+
+/** Legendre's polynomials of degrees 0 to `count`. */
+function legendre(count, x) {
+  var found = [1.0, x];
+  for (var k = 1; k < count; k += 1) {
+    found.push(py.div(py.sub(py.mul((2 * k + 1) * x, py.item(found, k)), py.mul(k, py.item(found, k - 1))), k + 1));
+  }
+  return found;
+}
+
+/** A root of Legendre's polynomial of a degree, by Newton's method from Chebyshev's points. */
+function _root(stages, number) {
+  var x = -py.math.cos(py.div(py.mul(py.math.pi, number + 0.75), stages + 0.5));
+  for (var turn = 0; turn < ROOTS; turn += 1) {
+    var at = legendre(stages, x);
+    x = py.sub(x, py.div(py.mul(py.item(at, stages), py.sub(py.mul(x, x), 1.0)), py.mul(stages, py.sub(py.mul(x, py.item(at, stages)), py.item(at, stages - 1)))));
+  }
+  return x;
+}
+
+/** Integral of Legendre's polynomial from -1. */
+function _integral(k, x, at) {
+  return py.truth(k) ? py.div(py.sub(py.item(at, k + 1), py.item(at, k - 1)), 2 * k + 1) : x + 1.0;
+}
+
+/** Coefficients of the integrals of Legendre's polynomials in powers of what has passed of a part. */
+function _in_powers(stages, part) {
+  var [begin, slope] = [py.sub(py.div(2.0 * part, PARTS), 1.0), py.div(2.0, PARTS)];
+  var none = py.mul([0.0], stages);
+  var rows = [[1.0, ...none.slice(1)], [begin, slope, ...none.slice(2)]];
+  for (var k = 1; k < stages - 1; k += 1) {
+    var times = py.zip(py.item(rows, k), [0.0, ...py.slice(py.item(rows, k), null, stages - 1, null)]).map(([a, b]) => py.add(py.mul(begin, a), py.mul(slope, b)));
+    rows.push(py.zip(times, py.item(rows, k - 1)).map(([a, b]) => py.div(py.sub(py.mul(2 * k + 1, a), py.mul(k, b)), k + 1)));
+  }
+  return [...rows].map((row) => py.enumerate(row).map(([power, number]) => py.div(number, py.mul(PARTS, py.add(power, 1)))));
+}
+const GAUSS = gauss_points(STAGES);
+const CONSTANTS = [...GAUSS.integrals, ...GAUSS.units].flatMap((row) => [...row]);
+const TERMS = [...GAUSS.terms, ...[...GAUSS.powers].flatMap((part) => [...part])].flatMap((row) => [...row]);
+
+/** Which rows the numbers of a step are, each with a value for every point. */
+class StepRows extends py.NamedTuple {
+  constructor(free) {
+    super();
+    this.free = free;
+  }
+  /** For what begins or ends. */
+  static of(ending) {
+    return new this(py.truth(ending.moves) ? 8 : 6);
+  }
+  /** How many numbers y and xi have. */
+  get size() {
+    return py.add(this.free, 2);
+  }
+  /** What a sweep makes better: y and e. */
+  get unknowns() {
+    return this.size;
+  }
+  /** What is given of a step before the numbers of the top: y and xi at its start, and its length. */
+  get given() {
+    return py.add(this.size, 1);
+  }
+  /** What a sweep makes besides: rates of y and xi, the normal force, s, and its change. */
+  get found() {
+    return py.add(this.size, 3);
+  }
+}
+py.fields(StepRows, ["free"]);
+
+/** Make the unknowns of a step better. */
+function sweep(y, p, ending, kind, points) {
+  var layout = StepRows.of(ending);
+  var [free, given] = [layout.free, layout.given];
+  var last = py.add(given, kind.numbers);
+  var [top, integrals, units] = [kind.top(py.tuple(p.slice(given, last))), py.slice(p, last, py.add(last, STAGES), null), py.slice(p, py.add(last, STAGES), null, null)];
+  var [way, step] = [[py.item(y, free), py.item(y, py.add(free, 1))], py.item(p, layout.size)];
+  var across = [py.neg(way[1]), way[0]];
+  var [rates, slopes, normal] = _answers(y.slice(0, free), way, across, ending, top);
+  var xi = _moved(py.tuple(p.slice(free, layout.size)), step, rates.slice(free), integrals, points);
+  var speed = inner(xi, way);
+  var columns = [];
+  for (var [j, [integral, unit]] of py.enumerate(py.zip(integrals, units))) {
+    var slope = py.tuple([...slopes.slice(free)].map((number) => points.spread(number, j)));
+    columns.push(py.sub(py.mul(py.mul(step, integral), inner(across, slope)), py.mul(speed, unit)));
+  }
+  var turned = _solved(columns, py.neg(inner(xi, across)), units, points);
+  rates = plus(rates, scaled(turned, slopes));
+  var after = _moved(py.tuple(p.slice(0, free)), step, rates.slice(0, free), integrals, points);
+  var to = plus(way, scaled(turned, across));
+  var changes = [...py.zip(after, y).map(([new_, old]) => py.sub(new_, old)), turned];
+  var changed = points.total(inner(changes, changes));
+  return [...after, ...scaled(py.pow(inner(to, to), -0.5), to), ...rates, normal, speed, changed];
+}
+
+/** What a step makes of numbers, from their rates y. */
+function step_terms(y, p, points) {
+  var [step, legendre_rows] = [p[0], py.slice(p, 1, py.add(STAGES, 1), null)];
+  var series = [...y].map((rate) => py.tuple([...legendre_rows].map((row) => py.mul(step, points.total(py.mul(rate, row))))));
+  var found = py.list();
+  for (var part = 1; part < py.add(PARTS, 1); part += 1) {
+    var powers = py.tuple(py.slice(p, py.add(py.mul(part, STAGES), 1), py.add(py.mul(part + 1, STAGES), 1), null));
+    found = py.add(found, [...series].map((terms) => inner(terms, powers)));
+  }
+  var squares = [...series].flatMap((terms) => [py.sub(STAGES, 2), py.sub(STAGES, 1)].map((k) => py.mul(py.item(terms, k), py.item(terms, k))));
+  return [...found, ...[...series].map((terms) => terms[0]), py.sum(squares.slice(1), squares[0])];
+}
+
+/** Numbers at the points, from their rates there and where they begin. */
+function _moved(start, step, rates, integrals, points) {
+  var found = [];
+  for (var [begin, rate] of py.zip(start, rates)) {
+    var total = py.mul(points.spread(rate, 0), integrals[0]);
+    for (var j = 1; j < STAGES; j += 1) {
+      total = py.add(total, py.mul(points.spread(rate, j), py.item(integrals, j)));
+    }
+    found.push(py.add(begin, py.mul(step, total)));
+  }
+  return py.tuple(found);
+}
+
+/** Solution of as many linear equations as there are points, by Gauss and Jordan's elimination. */
+function _solved(columns, right, units, points) {
+  var diagonal = 0.0;
+  for (var [k, unit] of py.enumerate(units)) {
+    var pivot = py.item(columns, k);
+    diagonal = py.add(diagonal, py.mul(pivot, unit));
+    var factor = py.mul(py.mul(pivot, py.div(1.0, points.spread(pivot, k))), py.sub(1.0, unit));
+    right = py.sub(right, py.mul(factor, points.spread(right, k)));
+    for (var j = py.add(k, 1); j < py.len(columns); j += 1) {
+      py.put(columns, j, py.sub(py.item(columns, j), py.mul(factor, points.spread(py.item(columns, j), k))));
+    }
+  }
+  return py.div(right, diagonal);
+}
+
+/** Rates of y and xi, their derivatives as the direction turns, and the normal force. */
+function _answers(y, way, beside, ending, top) {
+  var here = new Closing([y[0], y[1], y[2]], [y[3], y[4], y[5]], py.tuple(y.slice(6)), way, 0.0, 0.0);
+  var [point, slip] = [ContactPoint.of(here.axis, here.momentum, top), slip_beside(here, ending, top)];
+  var [wrench, acceleration] = ending.contact(point, way, slip);
+  var [normal, force, torque] = [wrench.force[2], NO_TORQUE, NO_TORQUE];
+  for (var [share, unit] of py.zip(ending.shares(beside, top), ending.wrenches(top))) {
+    [force, torque] = [add(force, scale(share, unit.force)), add(torque, scale(share, unit.torque))];
+  }
+  var turned = new Wrench(scale(normal, force), scale(normal, torque));
+  var [[more, couple], change] = ending.contact(point._replace({ free: point.response(turned) }), way, slip);
+  var added = new Wrench(add(turned.force, more), add(turned.torque, couple));
+  var rates = (wrench, acceleration) => {
+    var drawn = scaled(py.div(1.0, top.mass), py.slice(wrench.force, null, py.len(here.velocity), null));
+    return [...point.moment(wrench), ...drawn, ...ending.rate(acceleration, top)];
+  };
+  var tilting = axis_rate(here.axis, here.momentum, top);
+  return [[...tilting, ...rates(wrench, acceleration)], [0.0, 0.0, 0.0, ...rates(added, change)], normal];
+}
+
+// tippetop.contact.slipping
+const [FIRST, LEAST] = [0.6, 0.005];
+const [ENOUGH, MOST_of_slipping] = [1e-28, 50];
+const ACCURACY_of_slipping = 1e-22;
+const BEYOND = 1.1;
+const LOOKS_of_slipping = 6;
+const [PRESSED, CLEAR] = [0.1, 0.01];
+const [LONGER, SHORTER_of_slipping, SHORTEST, SAFETY] = [1.5, 0.7, 0.3, 0.9];
+const TINY_of_slipping = 1e-300;
+
+/** Slip that began, and how far it was followed. */
+class SlipPhase extends py.NamedTuple {
+  constructor(knots, rows, last, ended, sweeps) {
+    super();
+    this.knots = knots;
+    this.rows = rows;
+    this.last = last;
+    this.ended = ended;
+    this.sweeps = sweeps;
+  }
+}
+py.fields(SlipPhase, ["knots", "rows", "last", "ended", "sweeps"]);
+
+/** What steps are made with. */
+class _Machinery extends py.NamedTuple {
+  constructor(better, terms, given, measured) {
+    super();
+    this.better = better;
+    this.terms = terms;
+    this.given = given;
+    this.measured = measured;
+  }
+}
+py.fields(_Machinery, ["better", "terms", "given", "measured"]);
+
+/** What makes steps of a kind of top better, and their polynomials. */
+const compiled_step = py.cached((kind, ending) => {
+  var layout = StepRows.of(ending);
+  var better = (y, p, points) => {
+    return sweep(y, p, ending, kind, points);
+  };
+  var terms = (y, p, points) => {
+    return [...y, ...step_terms(y, p, points)];
+  };
+  var given = py.add(py.add(layout.given, kind.numbers), py.floordiv(py.len(CONSTANTS), STAGES));
+  return [iterated(better, layout.unknowns, given, STAGES), iterated(terms, layout.size, py.add(1, py.floordiv(py.len(TERMS), STAGES)), STAGES)];
+});
+
+/** What steps of a top are made with. */
+const machinery_of = py.cached((top, ending) => {
+  var [layout, numbers] = [StepRows.of(ending), rows_of(top.numbers)];
+  var given = room(py.add(py.add(py.mul(layout.given, STAGES), py.len(numbers)), py.len(CONSTANTS)));
+  put_from(given, py.mul(layout.given, STAGES), [...numbers, ...CONSTANTS]);
+  var measured = room(py.add(STAGES, py.len(TERMS)));
+  put_from(measured, STAGES, TERMS);
+  return new _Machinery(...compiled_step(top.kind, ending), given, measured);
+});
+
+/** Rows of numbers that are the same at every point. */
+function rows_of(numbers) {
+  return [...numbers].flatMap((number) => py.range(STAGES).map((_) => number));
+}
+
+/** A step of collocation. */
+class SlipStep extends py.Thing {
+  constructor(top, ending) {
+    super();
+    [this.machinery, this.layout] = [machinery_of(top, ending), StepRows.of(ending)];
+    var layout = this.layout;
+    [this.given, this.measured] = [copied(this.machinery.given), copied(this.machinery.measured)];
+    [this.unknowns, this.found] = [room(py.mul(layout.unknowns, STAGES)), room(py.mul(layout.found, STAGES))];
+    this.rows = room(py.mul(py.add(py.mul(py.add(PARTS, 1), layout.size), 1), STAGES));
+    this.sweeps = 0;
+  }
+  /** Find what solves the equations of a step of some length; tell whether that is found. */
+  solve(now, way, length) {
+    var [begin, lengths] = [rows_of(now), py.mul([length], STAGES)];
+    put_from(this.given, 0, py.add(begin, lengths));
+    put_from(this.unknowns, 0, py.add(py.slice(begin, null, py.mul(this.layout.free, STAGES), null), rows_of(way)));
+    this.sweeps = py.add(this.sweeps, this.machinery.better(this.unknowns, this.given, this.found, ENOUGH, MOST_of_slipping));
+    if (!(py.item(this.found, py.len(this.found) - 1) < ENOUGH)) {
+      return false;
+    }
+    put_from(this.measured, 0, lengths);
+    this.machinery.terms(this.found, this.measured, this.rows, 0.0, 1);
+    return true;
+  }
+  /** A measure of its error. */
+  get error() {
+    return py.float(py.item(this.rows, py.len(this.rows) - 1));
+  }
+  /** Whether there is slip at every point of it. */
+  get slips() {
+    var first = py.mul(py.add(this.layout.size, 1), STAGES);
+    return py.bool(py.min(py.slice(this.found, first, py.add(first, STAGES), null)) > 0.0);
+  }
+  /** The direction at its last point. */
+  get last_way() {
+    var first = py.sub(py.mul(py.add(this.layout.free, 1), STAGES), 1);
+    return [py.item(this.unknowns, first), py.item(this.unknowns, py.add(first, STAGES))];
+  }
+  /** By how much y and xi change. */
+  get changes() {
+    var first = py.mul(py.mul(PARTS, this.layout.size), STAGES);
+    return [...py.slice(this.rows, first, py.add(first, py.mul(this.layout.size, STAGES)), STAGES)];
+  }
+  /** Coefficients of y and xi in a part of it. */
+  part(number) {
+    var wide = py.mul(this.layout.size, STAGES);
+    return [...py.slice(this.rows, py.mul(number, wide), py.mul(number + 1, wide), null)];
+  }
+  /** Whether no other surface comes near the table, and that is far from pulling if it may not. */
+  goes_on(top, pulls) {
+    if (py.isinstance(top.surface, Hull)) {
+      var tilts = py.slice(this.unknowns, py.mul(2, STAGES), py.mul(3, STAGES), null);
+      if (!(py.min([...tilts].map((c) => clearance(top, c))) > CLEAR)) {
+        return false;
+      }
+    }
+    var first = py.mul(this.layout.size, STAGES);
+    return py.or(pulls, () => py.bool(py.min(py.slice(this.found, first, py.add(first, STAGES), null)) > PRESSED));
+  }
+  /** Coefficients of s in a part of it, at whose start xi is this; beyond slip s is less than zero. */
+  speed(number, xi, way) {
+    var first = py.mul(py.add(py.mul(number, this.layout.size), this.layout.free), STAGES);
+    var rows = [py.slice(this.rows, first, py.add(first, STAGES), null), py.slice(this.rows, py.add(first, STAGES), py.add(first, py.mul(2, STAGES)), null)];
+    var [x, y] = way;
+    return [py.add(py.mul(x, xi[0]), py.mul(y, xi[1])), ...py.zip(...rows).map(([a, b]) => py.add(py.mul(x, a), py.mul(y, b)))];
+  }
+  /** After how many parts of it slip ends, that is xi at its start; None if that is not told. */
+  end_of_slip(xi) {
+    var [found, way, now] = [py.list(), this.last_way, py.list(xi)];
+    var first = py.mul(this.layout.free, STAGES);
+    for (var number = 0; number < PARTS; number += 1) {
+      found.push(this.speed(number, now, way));
+      var changes = this.part(number).slice(first);
+      now = py.enumerate(now).map(([i, a]) => py.add(a, py.sum(py.slice(changes, py.mul(i, STAGES), py.mul(py.add(i, 1), STAGES), null))));
+    }
+    return first_zero(found);
+  }
+}
+
+/** Follow slip, or rolling, that begins, as far as the method goes, which may be nowhere. */
+function slip_phase(y, way, top, ending, longest, pulls) {
+  var step = new SlipStep(top, ending);
+  var [now, length, free] = [[...y, ...[...way].map((_) => 0.0)], FIRST, py.len(y)];
+  var [knots, rows, ended] = [[0.0], py.list(), false];
+  while (!py.truth(ended) && py.item(knots, -1) < longest && size(py.tuple(now.slice(free))) < APART) {
+    var [begin, known] = [py.item(knots, -1), py.len(rows)];
+    length = py.min(length, py.sub(longest, begin));
+    var solved = step.solve(now, way, length);
+    var factor = py.truth(solved) ? py.mul(SAFETY, py.pow(py.div(ACCURACY_of_slipping, py.add(step.error, TINY_of_slipping)), py.div(0.5, STAGES))) : 0.0;
+    var after = py.zip(now, step.changes).map(([a, b]) => py.add(a, b));
+    var last = step.last_way;
+    var lasts = py.and(step.slips, () => py.add(py.mul(py.item(after, free), last[0]), py.mul(py.item(after, free + 1), last[1])) > 0.0);
+    var part = py.truth(lasts) || factor < SAFETY ? py.float(PARTS) : step.end_of_slip(now.slice(free));
+    if (factor < SAFETY || part === null) {
+      length = py.mul(length, py.max(py.min(factor, SHORTER_of_slipping), SHORTEST));
+      if (length < LEAST) {
+        break;
+      }
+      continue;
+    }
+    if (!py.truth(step.goes_on(top, pulls))) {
+      break;
+    }
+    ended = !py.truth(lasts);
+    for (var number = 0; number < PARTS; number += 1) {
+      if (part > number) {
+        var share = py.min(py.sub(part, number), 1.0);
+        rows.push(shortened(step.part(number), share));
+        knots.push(py.add(begin, py.mul(length, py.div(py.add(number, share), PARTS))));
+      }
+    }
+    if (py.truth(ended)) {
+      for (var row of rows.slice(known)) {
+        now = py.enumerate(now).map(([i, a]) => py.add(a, py.sum(py.slice(row, py.mul(i, STAGES), py.mul(py.add(i, 1), STAGES), null))));
+      }
+    } else {
+      if (py.eq(length, py.sub(longest, begin))) {
+        py.put(knots, py.len(knots) - 1, longest);
+      }
+      [now, way] = [after, scaled(py.div(1.0, size(py.tuple(after.slice(free)))), py.tuple(after.slice(free)))];
+      var speed = step.speed(py.sub(PARTS, 1), after.slice(free), last);
+      py.put(speed, 0, py.sub(speed[0], py.sum(speed.slice(1))));
+      length = py.min(py.mul(length, py.min(factor, LONGER)), py.mul(py.div(py.mul(BEYOND, length), PARTS), parts_left(speed)));
+    }
+  }
+  return new SlipPhase(knots, rows, now, ended, step.sweeps);
+}
+
+/** Coefficients in powers of a share of what they were in powers of, from the first on. */
+function shortened(rows, share) {
+  if (share === 1.0) {
+    return rows;
+  }
+  var powers = py.mul(py.range(STAGES).map((k) => py.pow(share, py.add(k, 1))), py.floordiv(py.len(rows), STAGES));
+  return py.zip(rows, powers).map(([number, power]) => py.mul(number, power));
+}
+
+/** How far beyond 1 a polynomial is zero, by its value and two derivatives there. */
+function parts_left(terms) {
+  var value = py.sum(terms);
+  var slope = py.sum(py.enumerate(terms).map(([k, term]) => py.mul(k, term)));
+  var bend = py.sum(py.enumerate(terms).map(([k, term]) => py.mul(py.mul(k, py.sub(k, 1)), term)));
+  var rest = py.sub(py.mul(slope, slope), py.mul(py.mul(2.0, bend), value));
+  if (slope >= 0.0 && bend >= 0.0) {
+    return py.math.inf;
+  }
+  return rest > 0.0 ? py.div(py.mul(2.0, value), py.add(py.neg(slope), py.pow(rest, 0.5))) : py.div(py.neg(slope), bend);
+}
+
+/** Where a function that is a polynomial in each of some parts first falls to zero, counted in parts. */
+function first_zero(parts) {
+  for (var [number, terms] of py.enumerate(parts)) {
+    for (var look = 0; look < LOOKS_of_slipping; look += 1) {
+      if (horner(terms, py.div(look + 1, LOOKS_of_slipping)) <= 0.0) {
+        if (number === 0 && look === 0) {
+          return null;
+        }
+        return py.add(number, _zero(terms, py.div(look, LOOKS_of_slipping), py.div(look + 1, LOOKS_of_slipping)));
+      }
+    }
+  }
+  return null;
+}
+
+/** Zero of a polynomial between two places where its signs differ. */
+function _zero(terms, low, high) {
+  return crossing((part) => py.float(horner(terms, part)), low, high);
 }
 
 // tippetop.mechanics.direction
@@ -3166,71 +3826,12 @@ function _stiffness(part, point) {
   return py.float(py.add(py.sum(sizes.slice(0, 2)), py.mul(py.sum(sizes.slice(2)), py.or(part.reach(point.top), () => 0.0))));
 }
 
-// tippetop.contact.passing
-const LANDING = [3e-08, 1e-16];
-const SETTLED_of_passing = 1e-14;
-const SLOWEST = 1e-12;
-const [LOOKS_of_passing, PRESSED] = [16, 5];
-const [ORDER, ACCURACY_of_passing] = [20, 1e-13];
+// tippetop.contact.loosening
+const PRESSED_of_loosening = 5;
+const [ORDER, ACCURACY_of_loosening] = [20, 1e-13];
 const INSTANT = 1e-09;
 const PART = 0.25;
-const SHORT = 1e-14;
-const DEGREE_of_passing = 14;
-const SHARE = 0.01;
-const RESOLVED = 1e-15;
-const TINY_of_passing = 1e-100;
-
-/** A moment between two modes, which is told as the one of them in which something moves. */
-class Passing extends Mode {
-  constructor(top, rules, ending) {
-    super(top, rules);
-    this.ending = ending;
-  }
-  get name() { return "passing"; }
-  /** The mode as which it is told. */
-  get told() {
-    if (py.truth(this.ending.slip)) {
-      return py.call(py.truth(this.ending.held) ? SlidingWithoutRolling : Sliding, this.top, this.rules);
-    }
-    return py.call(py.truth(this.ending.held) ? Sticking : Sliding, this.top, this.rules);
-  }
-  /** The name of the mode as which it is told. */
-  get label() {
-    return this.told.label;
-  }
-  /** What ends or begins decides how its numbers are read. */
-  get form() {
-    return `${py.str(this.name)}: slip ${py.str(this.ending.slip)}, held ${py.str(this.ending.held)}`;
-  }
-  /** The state from axis, momentum, velocity where it is free, and what ends or begins. */
-  state(y) {
-    var [axis, momentum, velocity, xi] = this._parts(y);
-    if (py.truth(this.ending.slip)) {
-      velocity = velocity_of(axis, momentum, xi, this.top);
-      momentum = py.truth(this.ending.held) ? without_rolling(axis, momentum, this.top) : momentum;
-    } else if (py.truth(this.ending.held)) {
-      velocity = velocity_without_slip(axis, momentum, this.top);
-    }
-    return on_table(new SlidingState(axis, momentum, [velocity[0], velocity[1]]), this.top);
-  }
-  /** The contact force and torque, from what ends or begins itself: a state has but few digits of it. */
-  reaction(y) {
-    var [axis, momentum, velocity, xi] = this._parts(y);
-    var here = new Closing(axis, momentum, velocity, xi, 0.0, 0.0);
-    var [force, torque] = rates_in_time(here, this.ending, this.top).wrench;
-    var power = dot(torque, angular_velocity(axis, momentum, this.top));
-    var slip = py.truth(this.ending.slip) ? xi : slip_beside(here, this.ending, this.top);
-    if (slip !== null) {
-      power = py.add(power, py.add(py.mul(force[0], slip[0]), py.mul(force[1], slip[1])));
-    }
-    return new Reaction(force, torque, power);
-  }
-  _parts(y) {
-    var free = py.truth(this.ending.moves) ? 8 : 6;
-    return [...split(y), py.tuple(y.slice(6, free)), py.tuple(y.slice(free))];
-  }
-}
-py.fields(Passing, ["top", "rules", "ending"]);
+const TINY_of_loosening = 1e-100;
 
 /** The first moments of slip, or of rolling, as a power series in time. */
 class Loosening extends Passing {
@@ -3243,6 +3844,13 @@ class Loosening extends Passing {
     try {
       var [passing, direction, longest] = this._directed(state);
       var velocity = py.truth(this.ending.moves) ? state.velocity.slice(0, 2) : [];
+      if (py.truth(this.ending.recurs(this.top.friction))) {
+        var found = passing.slips(time, state, direction, end);
+        if (found !== null) {
+          yield found;
+          return null;
+        }
+      }
       var [start, degree] = [[state.axis, state.momentum, direction], py.sub(py.add(ORDER, this.power), 1)];
       var known = growth(start, passing.top, this.ending, velocity, degree, integrator);
       var begin = onset(known, this.power, ORDER);
@@ -3251,12 +3859,32 @@ class Loosening extends Passing {
       yield _nothing(this.told, time, state, py.str(error));
       return null;
     }
-    var duration = py.min(begin.valid_until(ACCURACY_of_passing), longest, end - time);
+    var duration = py.min(begin.valid_until(ACCURACY_of_loosening), longest, end - time);
     if (duration <= 1e-299) {
       yield _nothing(this.told, time, state, "slip cannot be told from its beginning");
       return null;
     }
     yield passing.piece(begin.rows, direction, time, duration, end);
+  }
+  /** Slip to its end, or as far as it follows what drives it; None if it does not from the beginning. */
+  slips(time, state, direction, end) {
+    var begin = [...state.axis, ...state.momentum];
+    var phase = slip_phase(begin, direction, this.top, this.ending, end - time, this.rules.pulls);
+    if (!py.truth(phase.rows)) {
+      return null;
+    }
+    var start = [...begin, ...scaled(TINY_of_loosening, direction)];
+    var last = this.state(py.truth(phase.ended) ? [...py.slice(phase.last, null, -2, null), 0.0, 0.0] : phase.last);
+    var duration = py.item(phase.knots, -1);
+    var reach = duration >= end - time ? end : py.add(time, duration);
+    var solution = DenseSolution.of_rows(phase.knots, start, phase.rows).moved(time, reach);
+    if (py.truth(phase.ended)) {
+      var then = this.rules.settled(reach, last, [true, false], false);
+    } else {
+      var mode = reach >= end ? Outcome.COMPLETED : this.rules.going_on(last, true);
+      then = new Transition([], mode, last);
+    }
+    return new Segment(this, solution, last, then, py.len(phase.rows), phase.sweeps);
   }
   /** The mode on its law's branch, the direction of what begins, and how long it lasts at most. */
   _directed(state) {
@@ -3283,7 +3911,7 @@ class Loosening extends Passing {
       duration = duration * 0.5;
     }
     var first = py.len(rows) - py.len(direction);
-    var apart = py.zip(direction, rows.slice(first)).map(([e, row]) => [py.mul(TINY_of_passing, e), ...row.slice(1)]);
+    var apart = py.zip(direction, rows.slice(first)).map(([e, row]) => [py.mul(TINY_of_loosening, e), ...row.slice(1)]);
     var reach = py.min(time + duration, end);
     var solution = DenseSolution.in_time([0.0, duration], [[...rows.slice(0, first), ...apart]]).moved(time, reach);
     var last = this.state([...rows].map((row) => horner(row, duration)));
@@ -3295,7 +3923,7 @@ class Loosening extends Passing {
     var at = (look) => {
       return [...rows].map((row) => horner(row, py.div(duration * look, LOOKS_of_passing)));
     };
-    var [looks, pressed] = [py.range(1, py.add(LOOKS_of_passing, 1)), py.range(py.add(1, PRESSED), py.add(LOOKS_of_passing, 1), PRESSED)];
+    var [looks, pressed] = [py.range(1, py.add(LOOKS_of_passing, 1)), py.range(py.add(1, PRESSED_of_loosening), py.add(LOOKS_of_passing, 1), PRESSED_of_loosening)];
     if (py.isinstance(this.top.surface, Hull) && !py.truth(py.all([...looks].map((look) => stays_open(this.top, at(look)))))) {
       return false;
     }
@@ -3332,184 +3960,6 @@ class BothLoosening extends Loosening {
   }
 }
 py.fields(BothLoosening, ["top", "rules", "ending", "power"]);
-
-/** Every velocity has ended: an instant, so that a result has it, and then the run is over. */
-class Resting extends Mode {
-  constructor(top, rules, told) {
-    super(top, rules);
-    this.told = told;
-  }
-  get name() { return "resting"; }
-  /** As in the mode as which it is told. */
-  state(y) {
-    return this.told.state(y);
-  }
-  /** Stay as it is. */
-  *segments(time, state, end, integrator) {
-    var still = DenseSolution.standing(this.told.numbers(state), time, py.add(time, py.mul(SHORT, py.max(1.0, time))));
-    yield new Segment(this.told, still, state, new Transition([], Outcome.AT_REST, state));
-  }
-}
-py.fields(Resting, ["top", "rules", "told"]);
-
-/** The last moments of slip, or of rolling, in a clock of their own (see `tippetop.mechanics.ending`). */
-class Stopping extends Passing {
-  constructor(top, rules, ending, begin = []) {
-    super(top, rules, ending);
-    this.begin = begin;
-  }
-  /** Follow it to its end, or to where it is no longer about to end. */
-  *segments(time, state, end, integrator) {
-    var [ending, begin] = [this.ending, py.or(this.begin, () => this._clock(state))];
-    var arrival = this._arrival(closing_of(begin, ending), end - time, integrator);
-    if (arrival !== null) {
-      var solution = DenseSolution.in_time([0.0, arrival.left], [arrival.onwards]);
-      var last = this.state(arrival.at(0.0));
-      var then = this._next(null, py.add(time, arrival.left), last);
-      yield new Segment(this, solution.moved(time, py.add(time, arrival.left)), last, then, 1);
-      return null;
-    }
-    var [here, steps, arc, parts] = [closing_of(begin, ending), 0, null, py.list()];
-    var rest = here;
-    var start = [0.0, as_array(begin)];
-    var motion = closing_motion(this.top.kind, ending, !py.truth(this.rules.pulls));
-    for (var horizon of LANDING) {
-      if (landing_guard(here, ending, this.top, horizon) <= 0.0) {
-        continue;
-      }
-      var arcs = followed(integrator, motion, [...this.top.numbers, end - time, horizon], start);
-      steps = py.add(steps, py.sum([...arcs].map((arc) => arc.steps)));
-      [arc, parts] = [py.item(arcs, -1), [...parts, ...[...arcs].filter((arc) => py.truth(py.len(arc.solution.terms))).map((arc) => arc.solution)]];
-      start = [arc.solution.end, arc.end_state];
-      here = closing_of(py.tolist(arc.end_state), ending);
-      if (!py.eq(arc.guard, LANDED)) {
-        break;
-      }
-      var [rest, doubt] = landed(here, ending, this.top);
-      if (doubt < SETTLED_of_passing) {
-        break;
-      }
-    }
-    var before = here;
-    if (arc !== null && arc.failure !== null && here.speed < SLOWEST) {
-      [here, arc] = [here._replace({ speed: 0.0 }), null];
-    } else if (arc === null) {
-      here = landed(here, ending, this.top)[0];
-    } else if (py.eq(arc.guard, LANDED)) {
-      here = rest;
-    }
-    last = this.state(shown(here));
-    solution = this._in_time(parts, begin, time, before, here);
-    then = this._next(arc, solution.end, last);
-    yield new Segment(this, solution, last, then, steps, steps);
-  }
-  /** The end of slip by power series, if its direction has come to rest and nothing else happens. */
-  _arrival(here, longest, integrator) {
-    var law = this.top.friction;
-    if (!py.truth(this.ending.slip) || py.isinstance(law, RollingResistance) || slip_length(law) === null) {
-      return null;
-    }
-    var found = arriving(here, this.ending, this.top, integrator);
-    if (found === null || found.left > longest) {
-      return null;
-    }
-    var looks = py.range(1, py.add(LOOKS_of_passing, 1)).map((look) => found.at(py.div(look, LOOKS_of_passing)));
-    if (py.isinstance(this.top.surface, Hull) && !py.truth(py.all([...looks].map((y) => stays_open(this.top, y))))) {
-      return null;
-    }
-    if (!py.truth(this.rules.pulls) && !py.truth(py.all([...looks].map((y) => this.reaction(y).force[2] > 0.0)))) {
-      return null;
-    }
-    if (py.truth(py.hasattr(law, "branch_guard")) && !py.truth(py.all([...looks].map((y) => slip_branch_guard(py.tuple(y.slice(6)), this.top) > 0.0)))) {
-      return null;
-    }
-    return found;
-  }
-  /** The numbers of the clock at a state. */
-  _clock(state) {
-    var velocity = state.velocity.slice(0, 2);
-    var xi = this.ending.of(state.axis, state.momentum, velocity, this.top);
-    var free = py.truth(this.ending.moves) ? velocity : [];
-    return [...state.axis, ...state.momentum, ...free, ...scaled(py.div(1.0, size(xi)), xi), size(xi), 0.0];
-  }
-  _next(arc, time, state) {
-    var [ending, stuck] = [this.ending, py.and(!py.truth(this.ending.slip), () => this.ending.held)];
-    if (arc === null || py.eq(arc.guard, LANDED)) {
-      return this.rules.settled(time, state, [ending.slip, !py.truth(ending.slip)], ending.held);
-    }
-    if (arc.failure !== null || arc.guard === null) {
-      return new Transition([], Outcome.FAILED, state, py.or(arc.failure, () => "the slip neither ends nor goes on"));
-    }
-    var found = follow_surface(this, arc.guard, time, state);
-    if (found !== null) {
-      return found;
-    }
-    if (arc.guard === "time") {
-      return new Transition([], Outcome.COMPLETED, state);
-    }
-    if (arc.guard === "lift-off") {
-      return this.rules.lift_off(time, state);
-    }
-    if (arc.guard === "reopening") {
-      return new Transition([], this.rules.going_on(state, !py.truth(stuck)), state);
-    }
-    if (arc.guard === "overtaken") {
-      return new Transition([], py.replace(this, { ending: new Vanishing(!py.truth(ending.slip)), begin: [] }), state);
-    }
-    if (py.contains(["branch", "limit branch"], arc.guard)) {
-      return new Transition([], this._onwards(arc, on_other_branch(this.top)), state);
-    }
-    if (py.contains(["slip", "rolling"], arc.guard)) {
-      var slip = arc.guard === "slip";
-      var event = this.rules.event(py.truth(slip) ? EventKind.SLIP : EventKind.ROLL, time);
-      return this.rules.giving_way(state, [event], new Vanishing(slip));
-    }
-    throw new py.AssertionError(`nothing is said of what follows ${py.str(arc.guard)}`);
-  }
-  /** The mode that takes the clock up where an arc leaves it, on another branch of the law. */
-  _onwards(arc, top) {
-    return py.replace(this, { top: top, begin: [...py.slice(py.tolist(arc.end_state), null, -1, null), 0.0] });
-  }
-  /** The numbers of the mode as polynomials in time, from their solution in the clock. */
-  _in_time(parts, begin, time, before, after) {
-    if (!py.truth(parts)) {
-      var still = shown(closing_of(begin, this.ending));
-      return DenseSolution.standing(still, time, time + py.float(after.time));
-    }
-    var [clock, elapsed] = [DenseSolution.joined(parts), py.len(begin) - 1];
-    var numbers = (times) => {
-      return shown(closing_of(clock.rows(clock.when(elapsed, times)), this.ending));
-    };
-    var knots = clock.knots_of(elapsed, py.float(before.time));
-    var solution = DenseSolution.fitted(numbers, thinned(knots), DEGREE_of_passing);
-    if (solution.unresolved > RESOLVED) {
-      solution = DenseSolution.fitted(numbers, knots, DEGREE_of_passing);
-    }
-    var reach = py.float(after.time);
-    if (reach > py.item(knots, -1)) {
-      var rest = DenseSolution.straight(shown(before), shown(after), py.item(knots, -1), reach, DEGREE_of_passing);
-      solution = DenseSolution.joined([solution, rest]);
-    }
-    return solution.moved(time, time + reach);
-  }
-}
-py.fields(Stopping, ["top", "rules", "ending", "begin"]);
-
-/** Ends of steps, so few of them that each leaves but a share of the time to the last. */
-function thinned(knots) {
-  var [end, found] = [py.item(knots, -1), [knots[0]]];
-  for (var knot of py.slice(knots, 1, -1, null)) {
-    if (py.sub(end, knot) <= py.mul(SHARE, py.sub(end, py.item(found, -1)))) {
-      found.push(knot);
-    }
-  }
-  return [...found, end];
-}
-
-/** The numbers of a moment that passes: axis, momentum, velocity where it is free, and xi. */
-function shown(here) {
-  return [...here.axis, ...here.momentum, ...here.velocity, ...scaled(here.speed, here.direction)];
-}
 
 /** No motion at all, and why. */
 function _nothing(mode, time, state, why) {
@@ -3816,10 +4266,10 @@ function components(impulse) {
 }
 
 // tippetop.mechanics.runge_kutta
-const STAGES = [[0.05260015195876773], [0.0197250569845379, 0.0591751709536137], [0.02958758547680685, 0.0, 0.08876275643042054], [0.2413651341592667, 0.0, -0.8845494793282861, 0.924834003261792], [0.037037037037037035, 0.0, 0.0, 0.17082860872947386, 0.12546768756682242], [0.037109375, 0.0, 0.0, 0.17025221101954405, 0.06021653898045596, -0.017578125], [0.03709200011850479, 0.0, 0.0, 0.17038392571223998, 0.10726203044637328, -0.015319437748624402, 0.008273789163814023], [0.6241109587160757, 0.0, 0.0, -3.3608926294469414, -0.868219346841726, 27.59209969944671, 20.154067550477894, -43.48988418106996], [0.47766253643826434, 0.0, 0.0, -2.4881146199716677, -0.590290826836843, 21.230051448181193, 15.279233632882423, -33.28821096898486, -0.020331201708508627], [-0.9371424300859873, 0.0, 0.0, 5.186372428844064, 1.0914373489967295, -8.149787010746927, -18.52006565999696, 22.739487099350505, 2.4936055526796523, -3.0467644718982196], [2.273310147516538, 0.0, 0.0, -10.53449546673725, -2.0008720582248625, -17.9589318631188, 27.94888452941996, -2.8589982771350235, -8.87285693353063, 12.360567175794303, 0.6433927460157636], [0.054293734116568765, 0.0, 0.0, 0.0, 0.0, 4.450312892752409, 1.8915178993145003, -5.801203960010585, 0.3111643669578199, -0.1521609496625161, 0.20136540080403034, 0.04471061572777259]];
+const STAGES_of_runge_kutta = [[0.05260015195876773], [0.0197250569845379, 0.0591751709536137], [0.02958758547680685, 0.0, 0.08876275643042054], [0.2413651341592667, 0.0, -0.8845494793282861, 0.924834003261792], [0.037037037037037035, 0.0, 0.0, 0.17082860872947386, 0.12546768756682242], [0.037109375, 0.0, 0.0, 0.17025221101954405, 0.06021653898045596, -0.017578125], [0.03709200011850479, 0.0, 0.0, 0.17038392571223998, 0.10726203044637328, -0.015319437748624402, 0.008273789163814023], [0.6241109587160757, 0.0, 0.0, -3.3608926294469414, -0.868219346841726, 27.59209969944671, 20.154067550477894, -43.48988418106996], [0.47766253643826434, 0.0, 0.0, -2.4881146199716677, -0.590290826836843, 21.230051448181193, 15.279233632882423, -33.28821096898486, -0.020331201708508627], [-0.9371424300859873, 0.0, 0.0, 5.186372428844064, 1.0914373489967295, -8.149787010746927, -18.52006565999696, 22.739487099350505, 2.4936055526796523, -3.0467644718982196], [2.273310147516538, 0.0, 0.0, -10.53449546673725, -2.0008720582248625, -17.9589318631188, 27.94888452941996, -2.8589982771350235, -8.87285693353063, 12.360567175794303, 0.6433927460157636], [0.054293734116568765, 0.0, 0.0, 0.0, 0.0, 4.450312892752409, 1.8915178993145003, -5.801203960010585, 0.3111643669578199, -0.1521609496625161, 0.20136540080403034, 0.04471061572777259]];
 const FINE = [0.01312004499419488, 0.0, 0.0, 0.0, 0.0, -1.2251564463762044, -0.4957589496572502, 1.6643771824549864, -0.35032884874997366, 0.3341791187130175, 0.08192320648511571, -0.022355307863886294];
 const THIRD = [0.2440944881889764, ...py.mul([0.0], 7), 0.7338466882816118, 0.0, 0.0, 0.022058823529411766];
-const ROUGH = py.tuple(py.zip(py.item(STAGES, -1), THIRD).map(([b, third]) => py.sub(b, third)));
+const ROUGH = py.tuple(py.zip(py.item(STAGES_of_runge_kutta, -1), THIRD).map(([b, third]) => py.sub(b, third)));
 const POWER = -0.125;
 
 /** A step: the numbers at its start, the rates there and at the stages, the numbers at its end. */
@@ -3854,19 +4304,19 @@ py.fields(RungeKuttaStep, ["here", "there", "slopes", "size"]);
 /** A step from a point with known rates. */
 function step_from(here, slope, size, rates) {
   var slopes = stages(here, slope, size, rates);
-  var there = combined(here, size, py.item(STAGES, -1), slopes);
+  var there = combined(here, size, py.item(STAGES_of_runge_kutta, -1), slopes);
   return new RungeKuttaStep(here, there, [...slopes, rates(there)], size);
 }
 
 /** Where such a step leads. */
 function step_to(here, slope, size, rates) {
-  return combined(here, size, py.item(STAGES, -1), stages(here, slope, size, rates));
+  return combined(here, size, py.item(STAGES_of_runge_kutta, -1), stages(here, slope, size, rates));
 }
 
 /** The rates at its start and at its stages. */
 function stages(here, slope, size, rates) {
   var slopes = [slope];
-  for (var weights of py.slice(STAGES, null, -1, null)) {
+  for (var weights of py.slice(STAGES_of_runge_kutta, null, -1, null)) {
     slopes.push(rates(combined(here, size, weights, slopes)));
   }
   return slopes;
@@ -3956,7 +4406,7 @@ function _impulse_for(dry, change) {
 const LONGEST_of_integrated_impact = 5.0;
 const TOLERANCE = 1e-09;
 const STUCK = 1e-08;
-const SHORTEST = 1e-12;
+const SHORTEST_of_integrated_impact = 1e-12;
 const [NEWTON_of_integrated_impact, SHORT_of_integrated_impact, STRAIGHT] = [4, 0.002, 1e-08];
 const MOST_of_integrated_impact = 20000;
 const LOOK = 4;
@@ -3994,7 +4444,7 @@ class IntegratedProcess extends py.NamedTuple {
       var taking = step_from(here, slope, step, py.bound(now, "slope"));
       var doubt = now.doubt(taking);
       var reached = goal(unpack(taking.there)) >= 0.0;
-      if (doubt > 1.0 && step > py.mul(SHORTEST, longest) || py.truth(reached) && py.truth(waiting)) {
+      if (doubt > 1.0 && step > py.mul(SHORTEST_of_integrated_impact, longest) || py.truth(reached) && py.truth(waiting)) {
         step = py.mul(step, py.min(0.5, py.max(0.1, py.mul(0.9, py.pow(doubt, POWER)))));
         continue;
       }
@@ -5393,7 +5843,7 @@ function jellett(state, top) {
 // tippetop.contact.two_closed
 const TOGETHER = 30.0;
 const ABOUT = 1.0 + 0.001;
-const [FIRST, SECOND, BOTH, NEITHER] = ["first", "second", "both", "neither"];
+const [FIRST_of_two_closed, SECOND, BOTH, NEITHER] = ["first", "second", "both", "neither"];
 const [OPENS, HELD, CLOSES] = ["opens", "held", "closes"];
 
 /** What two contacts did before. */
@@ -5459,9 +5909,9 @@ class TwoClosed extends py.Record {
     var ways = [0, 1].map((number) => this._alone(number));
     var held = [0, 1].filter((number) => py.eq(py.item(ways, number), HELD));
     if (py.truth(held) && !py.truth(answers)) {
-      return [py.item([FIRST, SECOND], py.max(held, py.how({ key: (number) => py.item(normal, number) })))];
+      return [py.item([FIRST_of_two_closed, SECOND], py.max(held, py.how({ key: (number) => py.item(normal, number) })))];
     }
-    answers = py.add(answers, py.zip(ways, [FIRST, SECOND]).filter(([way, name]) => py.eq(way, OPENS)).map(([way, name]) => name));
+    answers = py.add(answers, py.zip(ways, [FIRST_of_two_closed, SECOND]).filter(([way, name]) => py.eq(way, OPENS)).map(([way, name]) => name));
     return py.add(answers, free[0][2] >= 0.0 && free[1][2] >= 0.0 ? [NEITHER] : []);
   }
   /** What the other contact does where one alone is pressed: opens, or is held as it is. */
@@ -5592,7 +6042,7 @@ function settled(rules, time, state, tops, before, rolls, events = [], arrived =
 
 /** What follows where what both contacts need, or one of them, reaches the limit of what the table can. */
 function slipping(rules, time, state, tops, which, rolls) {
-  var alone = py.eq(which, FIRST);
+  var alone = py.eq(which, FIRST_of_two_closed);
   var here = TwoClosed.of(rules, state, tops, rolls, [true, !py.truth(alone)]);
   var pair = here.pair;
   try {
@@ -6082,7 +6532,7 @@ const TORQUE = [[0.4, 0.822105487763007, 0.5189122287774408, 0.08174030474884943
 const LIMIT = [[0.8835729338221295, 3.889778559163314, 5.573221706650525, 3.0420944615186203, 0.7966720357548377, 0.26696888590798373, 0.05714222546990528, 0.0010481676273393747, 0.00039135703969367353], [1.0, 4.402328783813161, 6.1825966830889465, 2.8926555398109404, 0.12101121238237003, -0.09382811272248932, 0.006126226581420139]];
 const NEAR_BRANCH = 1e-20;
 const EDGE = 1e-05;
-const BEYOND = 1e-20;
+const BEYOND_of_contensou_hertz = 1e-20;
 const BRANCH_TORQUE = py.div(py.mul(9.0, PI), 128.0);
 
 /** Contensou friction with Hertz's pressure where drilling prevails, kappa < 1. */
@@ -6106,7 +6556,7 @@ class HertzDrillingLaw extends py.NamedTuple {
   }
   /** Force over slip, and torque, per unit normal force, at slip of this square and drilling R w. */
   shares(square, drilling) {
-    var rate = py.pow(py.add(py.mul(drilling, drilling), py.mul(BEYOND, square)), -0.5);
+    var rate = py.pow(py.add(py.mul(drilling, drilling), py.mul(BEYOND_of_contensou_hertz, square)), -0.5);
     var kappa2 = py.mul(py.mul(square, rate), rate);
     var force = py.mul(py.mul(py.mul(py.neg(this.mu), py.div(py.mul(3.0, PI), 32.0)), py.sub(4.0, kappa2)), rate);
     var torque = py.mul(py.mul(py.mul(py.neg(this.mu), py.div(py.mul(3.0, PI), 16.0)), py.sub(1.0, py.mul(kappa2, py.sub(1.0, py.mul(0.375, kappa2))))), rate);
@@ -6169,7 +6619,7 @@ class HertzSlidingLaw extends py.NamedTuple {
   }
   /** Force over slip, and torque, per unit normal force, at slip of this square and drilling R w. */
   shares(square, drilling) {
-    square = py.add(square, py.mul(py.mul(BEYOND, drilling), drilling));
+    square = py.add(square, py.mul(py.mul(BEYOND_of_contensou_hertz, drilling), drilling));
     var excess = py.sub(square, py.mul(drilling, drilling));
     var speed = py.pow(square, 0.5);
     var tangent = py.div(drilling, py.add(speed, py.pow(py.add(py.mul(excess, excess), py.mul(py.mul(NEAR_BRANCH, square), square)), 0.25)));
@@ -7452,7 +7902,7 @@ function orientation(axis, turn, pole, functions) {
 
 // tippetop.integrators.dormand_prince
 const [REACHED, FULL, SUSPECT, STUCK_of_dormand_prince, SINGULAR] = py.range(5);
-const [SAFETY, LEAST_FACTOR, MOST_FACTOR] = [0.9, 0.2, 10.0];
+const [SAFETY_of_dormand_prince, LEAST_FACTOR, MOST_FACTOR] = [0.9, 0.2, 10.0];
 const NOTHING = 2e-15;
 const [EARLIEST, RISEN] = [py.pow(0.5, 40), 1e-15];
 const ROWS = 23;
@@ -7482,10 +7932,10 @@ function error_of(h, y, new_, k, tolerance) {
 /** By how much a step of this error may be longer. */
 function factor_for(error, tries) {
   if (!(error < 1.0)) {
-    var factor = py.mul(SAFETY, py.pow(error, -0.125));
+    var factor = py.mul(SAFETY_of_dormand_prince, py.pow(error, -0.125));
     return factor > LEAST_FACTOR ? factor : LEAST_FACTOR;
   }
-  factor = error === 0.0 ? MOST_FACTOR : py.min(MOST_FACTOR, py.mul(SAFETY, py.pow(error, -0.125)));
+  factor = error === 0.0 ? MOST_FACTOR : py.min(MOST_FACTOR, py.mul(SAFETY_of_dormand_prince, py.pow(error, -0.125)));
   return tries === 1 ? factor : py.min(1.0, factor);
 }
 
@@ -8179,6 +8629,7 @@ const [STATE, PARAMETER, CONSTANT] = ["y", "p", "constant"];
 const [SUM, DIFFERENCE, PRODUCT, QUOTIENT] = ["+", "-", "*", "/"];
 const [NEGATIVE, LESS, SELECT] = ["negative", "less", "select"];
 const [SIZE, ROOT, POWER_of_graph, SINE, COSINE] = ["abs", "sqrt", "pow", "sin", "cos"];
+const [SPREAD, TOTAL] = ["spread", "total"];
 const LARGEST_POWER = 16;
 const NO_CHOICE = "a choice that depends on the numbers is to be made by select";
 
@@ -8380,17 +8831,20 @@ function record(function_, size, parameters) {
   var state = py.range(size).map((i) => graph.node(STATE, [], i));
   var given = py.range(parameters).map((i) => graph.node(PARAMETER, [], i));
   var outputs = [...function_(state, given)].map((output) => graph.taken(output));
-  var needed = py.set();
-  var waiting = py.list(outputs);
+  return new Recorded(needed(graph, outputs), py.tuple(outputs), size, parameters);
+}
+
+/** The nodes of a graph of which some are made. */
+function needed(graph, outputs) {
+  var [places, waiting] = [py.set(), py.list(outputs)];
   while (py.truth(waiting)) {
     var node = py.pop(waiting);
-    if (!py.contains(needed, node.place)) {
-      needed.add(node.place);
+    if (!py.contains(places, node.place)) {
+      places.add(node.place);
       py.extend(waiting, node.operands);
     }
   }
-  var nodes = [...graph.nodes].filter((node) => py.contains(needed, node.place));
-  return new Recorded(py.tuple(nodes), py.tuple(outputs), size, parameters);
+  return py.tuple([...graph.nodes].filter((node) => py.contains(places, node.place)));
 }
 
 // tippetop.emit.javascript
@@ -8425,10 +8879,52 @@ function _written(node) {
   return `Math.${py.str(node.name)}(${py.str(py.join(", ", names))})`;
 }
 
+// tippetop.emit.unrolling
+
+/** What is done with the values of nodes that have several. */
+class NodeValues extends py.Thing {
+  /** One of a node's values, for all. */
+  spread(a, lane) {
+    return py.isinstance(a, Node) ? a.graph.node(SPREAD, [a], lane) : a;
+  }
+  /** The sum of a node's values, for all. */
+  total(a) {
+    return a.graph.node(TOTAL, [a]);
+  }
+}
+
+/** What does the same with each of so many values, one after another in the state and the parameters. */
+function unrolled(recorded, abreast) {
+  var [graph, values] = [new Graph(), py.dict()];
+  for (var node of recorded.nodes) {
+    var operands = [...node.operands].map((operand) => py.item(values, operand.place));
+    if (py.eq(node.name, CONSTANT)) {
+      var found = py.mul([graph.taken(node.value)], abreast);
+    } else if (py.contains([STATE, PARAMETER], node.name)) {
+      found = py.range(abreast).map((lane) => graph.node(node.name, [], py.add(py.int(node.value) * abreast, lane)));
+    } else if (py.eq(node.name, SPREAD)) {
+      found = py.mul([py.item(operands[0], py.int(node.value))], abreast);
+    } else if (py.eq(node.name, TOTAL)) {
+      var total = operands[0][0];
+      for (var number of operands[0].slice(1)) {
+        total = py.add(total, number);
+      }
+      found = py.mul([total], abreast);
+    } else {
+      found = py.range(abreast).map((lane) => graph.node(node.name, py.tuple([...operands].map((operand) => py.item(operand, lane))), node.value));
+    }
+    py.put(values, node.place, found);
+  }
+  var outputs = [...recorded.outputs].flatMap((output) => [...py.item(values, output.place)]);
+  var [size, parameters] = [py.mul(recorded.size, abreast), py.mul(recorded.parameters, abreast)];
+  return new Recorded(needed(graph, outputs), py.tuple(outputs), size, parameters);
+}
+
 export {
   ABOUT,
   ACCURACY,
-  ACCURACY_of_passing,
+  ACCURACY_of_loosening,
+  ACCURACY_of_slipping,
   APART,
   APART_of_direction,
   AT_ONCE,
@@ -8440,6 +8936,7 @@ export {
   Arrival,
   BEGINNING,
   BEYOND,
+  BEYOND_of_contensou_hertz,
   BOTH,
   BRANCH,
   BRANCHING,
@@ -8450,8 +8947,10 @@ export {
   Body,
   BothLoosening,
   CHOICES,
+  CLEAR,
   CLOSES,
   CONSTANT,
+  CONSTANTS,
   COSINE,
   COUPLES,
   Closing,
@@ -8483,6 +8982,7 @@ export {
   ENDED,
   ENDING,
   ENDING_of_double_sticking,
+  ENOUGH,
   EXACT,
   EccentricSphere,
   EllipsoidalLaw,
@@ -8497,6 +8997,7 @@ export {
   FINE,
   FINEST,
   FIRST,
+  FIRST_of_two_closed,
   FLAT,
   FORCE,
   FORCES,
@@ -8506,7 +9007,9 @@ export {
   Fold,
   FreeToFly,
   Friction,
+  GAUSS,
   GOLDEN,
+  GaussPoints,
   Graph,
   Group,
   Growing,
@@ -8537,6 +9040,7 @@ export {
   LANDING,
   LARGEST_POWER,
   LEANING,
+  LEAST,
   LEAST_EPS,
   LEAST_FACTOR,
   LEAST_PATCH,
@@ -8544,6 +9048,7 @@ export {
   LIFT_OFF,
   LIMIT,
   LIMIT_BRANCH,
+  LONGER,
   LONGEST,
   LONGEST_of_integrated_impact,
   LONGEST_of_trajectory,
@@ -8552,6 +9057,7 @@ export {
   LOOKS_of_bodies,
   LOOKS_of_dormand_prince,
   LOOKS_of_passing,
+  LOOKS_of_slipping,
   LOST,
   Launch,
   Loosening,
@@ -8567,6 +9073,7 @@ export {
   MOST_STEPS_of_closing,
   MOST_of_bodies,
   MOST_of_integrated_impact,
+  MOST_of_slipping,
   Machinery,
   Mode,
   Motion,
@@ -8588,6 +9095,7 @@ export {
   NO_REACTION,
   NO_TORQUE,
   Node,
+  NodeValues,
   NotRecordable,
   OPEN,
   OPENING,
@@ -8603,6 +9111,7 @@ export {
   PARAMETER,
   PART,
   PARTING,
+  PARTS,
   PHASE_LIMIT,
   PI,
   PLAIN,
@@ -8610,6 +9119,7 @@ export {
   POWERS,
   POWER_of_graph,
   PRESSED,
+  PRESSED_of_loosening,
   PRODUCT,
   PROTRUDING,
   PairMotion,
@@ -8632,6 +9142,7 @@ export {
   ROLLING_STOPPING,
   ROLLING_of_dry_impact,
   ROOT,
+  ROOTS,
   ROUGH,
   ROUNDING,
   ROUNDING_of_prediction,
@@ -8655,6 +9166,7 @@ export {
   RollingResistance,
   RungeKuttaStep,
   SAFETY,
+  SAFETY_of_dormand_prince,
   SEARCHES,
   SECOND,
   SELECT,
@@ -8663,7 +9175,9 @@ export {
   SHARE,
   SHORT,
   SHORTER,
+  SHORTER_of_slipping,
   SHORTEST,
+  SHORTEST_of_integrated_impact,
   SHORT_of_integrated_impact,
   SINE,
   SINGULAR,
@@ -8677,7 +9191,9 @@ export {
   SLOWEST_ROCKING,
   SLOWEST_SLIP,
   SMALL,
+  SPREAD,
   STAGES,
+  STAGES_of_runge_kutta,
   START,
   STATE,
   STEP_LIMIT,
@@ -8701,6 +9217,8 @@ export {
   SlidingWithoutRolling,
   SlipBeginningOnTwo,
   SlipEnds,
+  SlipPhase,
+  SlipStep,
   Sphere,
   SphereSurface,
   Spheroid,
@@ -8710,6 +9228,7 @@ export {
   SteadyKind,
   SteadyState,
   StemTest,
+  StepRows,
   Stepping,
   Sticking,
   StickingAndSliding,
@@ -8720,16 +9239,19 @@ export {
   Stopping,
   Striking,
   StruckOnTwo,
+  TERMS,
   THIRD,
   TILTS,
   TIME,
   TINY,
-  TINY_of_passing,
+  TINY_of_loosening,
+  TINY_of_slipping,
   TOGETHER,
   TOLD,
   TOLERANCE,
   TOLERANCE_of_double_sticking,
   TORQUE,
+  TOTAL,
   TOUCH,
   TOUCHING,
   TURN,
@@ -8757,8 +9279,10 @@ export {
   WORTH,
   Wrench,
   _DESCRIPTIONS,
+  _Machinery,
   _admits,
   _along,
+  _answers,
   _apart,
   _at_rest,
   _beside,
@@ -8772,12 +9296,15 @@ export {
   _handed_over,
   _improved,
   _impulse_for,
+  _in_powers,
   _inside,
+  _integral,
   _leads,
   _left,
   _line,
   _marks,
   _meetings,
+  _moved,
   _newton,
   _normal_wrench,
   _nothing,
@@ -8788,6 +9315,8 @@ export {
   _reach,
   _reaches_out,
   _resisting,
+  _root,
+  _solved,
   _stem,
   _stiffness,
   _surface,
@@ -8796,6 +9325,7 @@ export {
   _unknown,
   _without_rolling,
   _written,
+  _zero,
   acting,
   add,
   advance,
@@ -8821,12 +9351,14 @@ export {
   branch_of,
   classify,
   classify_top,
+  clearance,
   closing_motion,
   closing_of,
   closing_rates,
   coexistence,
   combined,
   combined_of_dormand_prince,
+  compiled_step,
   components,
   contact,
   contact_motion,
@@ -8858,6 +9390,7 @@ export {
   first_reach,
   first_root,
   first_step,
+  first_zero,
   flat,
   fly,
   fold,
@@ -8865,6 +9398,7 @@ export {
   followed,
   gap,
   gap_rate,
+  gauss_points,
   growth,
   gyroscopic_reaction,
   has_level_spin,
@@ -8907,11 +9441,13 @@ export {
   largest,
   least_energy,
   least_slip,
+  legendre,
   length,
   letting_go,
   level_spin,
   limit_guard,
   lowest_surface,
+  machinery_of,
   may_fall,
   measure,
   metrics,
@@ -8923,6 +9459,7 @@ export {
   natural_state,
   natural_units,
   nearing_guard,
+  needed,
   normal_force,
   normal_wrench,
   number_of,
@@ -8945,6 +9482,7 @@ export {
   pair_guards,
   pair_motion,
   parting_guard,
+  parts_left,
   phis,
   plus,
   point_velocity,
@@ -8981,6 +9519,7 @@ export {
   rolling_way,
   roots_between,
   roots_of,
+  rows_of,
   rules_for,
   scale,
   scaled,
@@ -8989,6 +9528,7 @@ export {
   settled,
   settling,
   short_step,
+  shortened,
   shown,
   size,
   sizes,
@@ -9007,6 +9547,7 @@ export {
   slip_length,
   slip_of,
   slip_part,
+  slip_phase,
   slip_wrenches,
   slipping,
   slips_of,
@@ -9025,6 +9566,7 @@ export {
   stays_positive,
   steady_states,
   step_from,
+  step_terms,
   step_to,
   stepped,
   sticking_motion,
@@ -9035,6 +9577,7 @@ export {
   struck,
   surface_guards,
   suspect,
+  sweep,
   tangents,
   thinned,
   tilt,
@@ -9052,6 +9595,7 @@ export {
   turning_motion,
   turning_with,
   unpack,
+  unrolled,
   upright_boundary,
   value_of,
   velocity_of,

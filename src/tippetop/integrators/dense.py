@@ -118,6 +118,15 @@ class DenseSolution:
         return cls(knots[: count + 1].copy(), np.swapaxes(terms[:count], 1, 2).copy())
 
     @classmethod
+    def of_rows(
+        cls, knots: Sequence[float], start: Sequence[float], rows: Sequence[Sequence[float]]
+    ) -> "DenseSolution":
+        """Steps whose coefficients from the first on lie in a row, from the numbers with which they begin."""
+        later = np.array(rows).reshape(len(rows), len(start), -1)
+        begins = np.cumsum([np.array(start), *later[:-1].sum(axis=2)], axis=0)
+        return cls(np.array(knots), np.concatenate([begins[:, :, None], later], axis=2))
+
+    @classmethod
     def standing(cls, numbers: Sequence[float], start: float, end: float) -> "DenseSolution":
         """Numbers that stay as they are."""
         here = np.array(numbers, dtype=float)

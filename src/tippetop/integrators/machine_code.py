@@ -1,8 +1,9 @@
 """Recorded functions compiled by LLVM once, and kept between processes."""
 
 import ctypes
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import Any
 
 import llvmlite
 import llvmlite.binding as llvm
@@ -22,7 +23,24 @@ EFFORT = 2
 
 def machine_code(functions: Mapping[str, Recorded], abreast: int = 1) -> "dict[str, Compiled]":
     """Compile what was recorded, for so many launches an instruction, or take it from the cache."""
-    source = llvm_source(functions, abreast)
+    engine = _loaded(llvm_source(functions, abreast))
+    return {name: Compiled(engine, name) for name in functions}
+
+
+def iterations(functions: Mapping[str, Recorded], abreast: int) -> dict[str, Callable[..., int]]:
+    """The same of what is made again and again; see `llvm_source`. They take arrays of `ctypes`."""
+    engine = _loaded(llvm_source(functions, abreast, again=True))
+    kind = ctypes.CFUNCTYPE(ctypes.c_int64, *[ctypes.c_void_p] * 3, ctypes.c_double, ctypes.c_int64)
+    found: dict[str, Callable[..., int]] = {}
+    for name in functions:
+        function: Any = kind(engine.get_function_address(name))
+        function.engine = engine
+        found[name] = function
+    return found
+
+
+def _loaded(source: str) -> llvm.ExecutionEngine:
+    """The machine code of a source, compiled or taken from the cache."""
     cpu, features = llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten()
     made = (source, llvmlite.__version__, llvm.get_process_triple(), cpu, features, EFFORT)
     name = digest(repr(made).encode())[:32]
@@ -30,7 +48,7 @@ def machine_code(functions: Mapping[str, Recorded], abreast: int = 1) -> "dict[s
     engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), _machine())
     engine.add_object_file(llvm.ObjectFileRef.from_data(content))
     engine.finalize_object()
-    return {name: Compiled(engine, name) for name in functions}
+    return engine
 
 
 def _object(source: str, folder: Path | None) -> bytes:

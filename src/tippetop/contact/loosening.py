@@ -1,0 +1,163 @@
+"""The moments in which slip, or rolling, begins, and slip that ends as it began: in one piece."""
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+from tippetop.contact.growth import growth
+from tippetop.contact.mode import Mode, Outcome, Segment, Transition
+from tippetop.contact.passing import LOOKS, SETTLED, Passing
+from tippetop.contact.slipping import slip_phase
+from tippetop.contact.surfaces import stays_open
+from tippetop.integrators.base import Integrator
+from tippetop.integrators.dense import DenseSolution
+from tippetop.mechanics.beginning import beginning
+from tippetop.mechanics.ending import Vanishing
+from tippetop.mechanics.hull import Hull
+from tippetop.mechanics.rolling import ContactPoint, Slip, on_branch
+from tippetop.mechanics.series import horner
+from tippetop.mechanics.slip_onset import onset
+from tippetop.mechanics.state import State
+from tippetop.mechanics.stick_slip import scaled, size, slip_of
+from tippetop.mechanics.vectors import Scalar
+
+PRESSED = 5
+"""Which of the looks along a beginning look at the normal force, too."""
+
+ORDER, ACCURACY = 20, 1e-13
+"""Degree of the series with which slip begins, and the size of its last terms relative to the first."""
+
+INSTANT = 1e-9
+"""How long slip and rolling that begin at once go on at their first rates, in natural units of time."""
+
+PART = 0.25
+"""Part of the time in which another velocity could end at its first rate that such a beginning lasts."""
+
+TINY = 1e-100
+"""What begins at zero, and has no direction there, in natural units: nothing, but for that."""
+
+
+@dataclass(frozen=True)
+class Loosening(Passing):
+    """The first moments of slip, or of rolling, as a power series in time."""
+
+    power: int = 1
+    """How it grows with time: 2 from the limit of what can be held, 1 from beyond it."""
+
+    def segments(self, time: float, state: State, end: float, integrator: Integrator) -> Iterator[Segment]:
+        """Evaluate the series."""
+        try:
+            passing, direction, longest = self._directed(state)
+            velocity = state.velocity[:2] if self.ending.moves else ()
+            if self.ending.recurs(self.top.friction):
+                found = passing.slips(time, state, direction, end)
+                if found is not None:
+                    yield found
+                    return
+            start, degree = (state.axis, state.momentum, direction), ORDER + self.power - 1
+            known = growth(start, passing.top, self.ending, velocity, degree, integrator)
+            begin = onset(known, self.power, ORDER)
+        except ArithmeticError as error:
+            yield _nothing(self.told, time, state, str(error))
+            return
+        duration = min(begin.valid_until(ACCURACY), longest, end - time)
+        if duration <= 1e-299:
+            yield _nothing(self.told, time, state, "slip cannot be told from its beginning")
+            return
+        yield passing.piece(begin.rows, direction, time, duration, end)
+
+    def slips(self, time: float, state: State, direction: Slip, end: float) -> Segment | None:
+        """Slip to its end, or as far as it follows what drives it; None if it does not from the beginning."""
+        begin = (*state.axis, *state.momentum)
+        phase = slip_phase(begin, direction, self.top, self.ending, end - time, pulls=self.rules.pulls)
+        if not phase.rows:
+            return None
+        start = [*begin, *scaled(TINY, direction)]
+        last = self.state([*phase.last[:-2], 0.0, 0.0] if phase.ended else phase.last)
+        duration = phase.knots[-1]
+        reach = end if duration >= end - time else time + duration
+        solution = DenseSolution.of_rows(phase.knots, start, phase.rows).moved(time, reach)
+        if phase.ended:
+            then = self.rules.settled(reach, last, new=(True, False), held=False)
+        else:
+            mode = Outcome.COMPLETED if reach >= end else self.rules.going_on(last, slips=True)
+            then = Transition((), mode, last)
+        return Segment(self, solution, last, then, len(phase.rows), phase.sweeps)
+
+    def _directed(self, state: State) -> "tuple[Loosening, tuple[float, ...], float]":
+        """The mode on its law's branch, the direction of what begins, and how long it lasts at most.
+
+        In planar motion what ends meanwhile passes through zero, which series do not see.
+        """
+        ending, other = self.ending, Vanishing(not self.ending.slip)
+        point = ContactPoint.of(state.axis, state.momentum, self.top)
+        slip, rolling = None, None
+        if ending.moves:
+            slip = slip_of(state.axis, state.momentum, state.velocity[:2], self.top)
+        if ending.slip and not ending.held:
+            rolling = point.turning[:2]
+        found = beginning(point, slip, rolling, (ending.slip, not ending.slip))
+        top = on_branch(self.top, found.slip) if found.slip is not None else self.top
+        way = found.slip if ending.slip else found.rolling
+        assert way is not None
+        beside = slip if ending.moves else rolling
+        longest = PART * size(beside) / size(other.rate(found.acceleration, top)) if beside else math.inf
+        return replace(self, top=top), way, longest
+
+    def piece(
+        self, rows: Sequence[list[Scalar]], direction: Slip, time: float, duration: float, end: float
+    ) -> Segment:
+        """The segment in which the numbers are polynomials in the time since its start."""
+        while duration > SETTLED and not self._goes_on(rows, duration):
+            duration *= 0.5
+        # What is zero has no direction, and friction none to be against.
+        first = len(rows) - len(direction)
+        apart = [[TINY * e, *row[1:]] for e, row in zip(direction, rows[first:], strict=True)]
+        reach = min(time + duration, end)
+        solution = DenseSolution.in_time([0.0, duration], [[*rows[:first], *apart]]).moved(time, reach)
+        last = self.state([horner(row, duration) for row in rows])
+        then = Outcome.COMPLETED if reach >= end else self.rules.going_on(last, slips=not self.stuck)
+        return Segment(self, solution, last, Transition((), then, last), steps=1)
+
+    def _goes_on(self, rows: Sequence[list[Scalar]], duration: float) -> bool:
+        """Whether no other surface touches meanwhile, and the table does not pull that may not."""
+
+        def at(look: int) -> list[Scalar]:
+            return [horner(row, duration * look / LOOKS) for row in rows]
+
+        looks, pressed = range(1, LOOKS + 1), range(1 + PRESSED, LOOKS + 1, PRESSED)
+        if isinstance(self.top.surface, Hull) and not all(stays_open(self.top, at(look)) for look in looks):
+            return False
+        return self.rules.pulls or all(self.reaction(at(look)).force[2] > 0.0 for look in pressed)
+
+    @property
+    def stuck(self) -> bool:
+        """Whether the contact sticks meanwhile."""
+        return not self.ending.slip and self.ending.held
+
+
+@dataclass(frozen=True)
+class BothLoosening(Loosening):
+    """Slip and rolling begin at once: an instant at their first rates, to which what follows settles."""
+
+    ending: Vanishing = Vanishing(slip=True)  # noqa: RUF009
+
+    def segments(self, time: float, state: State, end: float, integrator: Integrator) -> Iterator[Segment]:
+        """Go on at the first rates."""
+        point = ContactPoint.of(state.axis, state.momentum, self.top)
+        try:
+            found = beginning(point, None, None, (True, True))
+        except ArithmeticError as error:
+            yield _nothing(self.told, time, state, str(error))
+            return
+        assert found.slip is not None
+        passing, pace = replace(self, top=on_branch(self.top, found.slip)), scaled(found.rates[0], found.slip)
+        still, growing = (*state.axis, *state.momentum), (0.0, 0.0, 0.0, *point.moment(found.wrench))
+        rows = [[number, rate] for number, rate in zip(still, growing, strict=True)]
+        rows += [[0.0, rate] for rate in pace]
+        yield passing.piece(rows, found.slip, time, min(INSTANT, end - time), end)
+
+
+def _nothing(mode: Mode, time: float, state: State, why: str) -> Segment:
+    """No motion at all, and why."""
+    return Segment(mode, DenseSolution.nothing(time, 8), state, Transition((), Outcome.FAILED, state, why))

@@ -1,0 +1,290 @@
+"""Slip from its beginning to its end, step by step of collocation (see `tippetop.mechanics.slip_phase`)."""
+
+import math
+from collections.abc import Sequence
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+from tippetop.contact.surfaces import clearance
+from tippetop.integrators.iteration import Iteration, copied, iterated, put_from, room
+from tippetop.mechanics.ending import Vanishing
+from tippetop.mechanics.hull import Hull
+from tippetop.mechanics.rolling import Slip
+from tippetop.mechanics.roots import crossing
+from tippetop.mechanics.series import horner
+from tippetop.mechanics.slip_phase import (
+    CONSTANTS,
+    PARTS,
+    STAGES,
+    TERMS,
+    StepRows,
+    Values,
+    step_terms,
+    sweep,
+)
+from tippetop.mechanics.stick_slip import APART, scaled, size
+from tippetop.mechanics.top import Kind, Top
+from tippetop.mechanics.vectors import Scalar
+
+FIRST, LEAST = 0.6, 0.005
+"""The first step, in natural units of time, and the least that a step is shortened to: where shorter ones are
+asked for, slip does not follow what drives it, and other methods are quicker."""
+
+ENOUGH, MOST = 1e-28, 50
+"""Sum of the squares of changes that are rounding, and sweeps of a step at most."""
+
+ACCURACY = 1e-22
+"""Sum of the squares of the last coefficients of a step, in natural units, that is small: in the solution
+they are divided by thirty and more, and the error of what a step ends with is of the order of their product.
+"""
+
+BEYOND = 1.1
+"""How much longer a step is than slip seems to last, so that its end lies within."""
+
+LOOKS = 6
+"""Looks along a part of a step for where slip ends."""
+
+PRESSED, CLEAR = 0.1, 1e-2
+"""Normal force, and gap of another surface, in natural units, at points of a step, which neither falls to
+zero between."""
+
+LONGER, SHORTER, SHORTEST, SAFETY = 1.5, 0.7, 0.3, 0.9
+"""How much longer the next step may be; how much shorter one is at most, and at least, that is tried again;
+and how much shorter than it should."""
+
+TINY = 1e-300
+"""Added to an error that may be zero."""
+
+
+class SlipPhase(NamedTuple):
+    """Slip that began, and how far it was followed."""
+
+    knots: list[float]
+    """Ends of pieces since then."""
+    rows: list[list[float]]
+    """Of every piece the coefficients of y and xi in powers of what has passed of it, from the first on, one
+    number's after the other's."""
+    last: list[float]
+    """y and xi where that ends."""
+    ended: bool
+    """Whether slip has ended there."""
+    sweeps: int
+    """Sweeps that it took."""
+
+
+class _Machinery(NamedTuple):
+    """What steps are made with."""
+
+    better: Iteration
+    terms: Iteration
+    given: Any
+    measured: Any
+    """What they are given, but for the numbers of a step."""
+
+
+@lru_cache(maxsize=64)
+def compiled_step(kind: Kind, ending: Vanishing) -> tuple[Iteration, Iteration]:
+    """What makes steps of a kind of top better, and their polynomials."""
+    layout = StepRows.of(ending)
+
+    def better(y: Sequence[Scalar], p: Sequence[Scalar], points: Values) -> list[Scalar]:
+        return sweep(y, p, ending, kind, points)
+
+    def terms(y: Sequence[Scalar], p: Sequence[Scalar], points: Values) -> list[Scalar]:
+        return [*y, *step_terms(y, p, points)]
+
+    given = layout.given + kind.numbers + len(CONSTANTS) // STAGES
+    return (
+        iterated(better, layout.unknowns, given, STAGES),
+        iterated(terms, layout.size, 1 + len(TERMS) // STAGES, STAGES),
+    )
+
+
+@lru_cache(maxsize=64)
+def machinery_of(top: Top, ending: Vanishing) -> _Machinery:
+    """What steps of a top are made with."""
+    layout, numbers = StepRows.of(ending), rows_of(top.numbers)
+    given = room(layout.given * STAGES + len(numbers) + len(CONSTANTS))
+    put_from(given, layout.given * STAGES, [*numbers, *CONSTANTS])
+    measured = room(STAGES + len(TERMS))
+    put_from(measured, STAGES, TERMS)
+    return _Machinery(*compiled_step(top.kind, ending), given, measured)
+
+
+def rows_of(numbers: Sequence[float]) -> list[float]:
+    """Rows of numbers that are the same at every point."""
+    return [number for number in numbers for _ in range(STAGES)]
+
+
+class SlipStep:
+    """A step of collocation."""
+
+    def __init__(self, top: Top, ending: Vanishing) -> None:
+        self.machinery, self.layout = machinery_of(top, ending), StepRows.of(ending)
+        layout = self.layout
+        self.given, self.measured = copied(self.machinery.given), copied(self.machinery.measured)
+        self.unknowns, self.found = room(layout.unknowns * STAGES), room(layout.found * STAGES)
+        self.rows = room(((PARTS + 1) * layout.size + 1) * STAGES)
+        self.sweeps = 0
+
+    def solve(self, now: Sequence[float], way: Slip, length: float) -> bool:
+        """Find what solves the equations of a step of some length; tell whether that is found."""
+        begin, lengths = rows_of(now), [length] * STAGES
+        put_from(self.given, 0, begin + lengths)
+        put_from(self.unknowns, 0, begin[: self.layout.free * STAGES] + rows_of(way))
+        self.sweeps += self.machinery.better(self.unknowns, self.given, self.found, ENOUGH, MOST)
+        if not self.found[len(self.found) - 1] < ENOUGH:
+            return False
+        put_from(self.measured, 0, lengths)
+        self.machinery.terms(self.found, self.measured, self.rows, 0.0, 1)
+        return True
+
+    @property
+    def error(self) -> float:
+        """A measure of its error."""
+        return float(self.rows[len(self.rows) - 1])
+
+    @property
+    def slips(self) -> bool:
+        """Whether there is slip at every point of it."""
+        first = (self.layout.size + 1) * STAGES
+        return bool(min(self.found[first : first + STAGES]) > 0.0)
+
+    @property
+    def last_way(self) -> Slip:
+        """The direction at its last point."""
+        first = (self.layout.free + 1) * STAGES - 1
+        return self.unknowns[first], self.unknowns[first + STAGES]
+
+    @property
+    def changes(self) -> list[float]:
+        """By how much y and xi change."""
+        first = PARTS * self.layout.size * STAGES
+        return [*self.rows[first : first + self.layout.size * STAGES : STAGES]]
+
+    def part(self, number: int) -> list[float]:
+        """Coefficients of y and xi in a part of it."""
+        wide = self.layout.size * STAGES
+        return [*self.rows[number * wide : (number + 1) * wide]]
+
+    def goes_on(self, top: Top, *, pulls: bool) -> bool:
+        """Whether no other surface comes near the table, and that is far from pulling if it may not."""
+        if isinstance(top.surface, Hull):
+            tilts = self.unknowns[2 * STAGES : 3 * STAGES]
+            if not min([clearance(top, c) for c in tilts]) > CLEAR:
+                return False
+        first = self.layout.size * STAGES
+        return pulls or bool(min(self.found[first : first + STAGES]) > PRESSED)
+
+    def speed(self, number: int, xi: Sequence[float], way: Slip) -> list[float]:
+        """Coefficients of s in a part of it, at whose start xi is this; beyond slip s is less than zero."""
+        first = (number * self.layout.size + self.layout.free) * STAGES
+        rows = self.rows[first : first + STAGES], self.rows[first + STAGES : first + 2 * STAGES]
+        x, y = way
+        return [x * xi[0] + y * xi[1], *[x * a + y * b for a, b in zip(*rows, strict=True)]]
+
+    def end_of_slip(self, xi: Sequence[float]) -> float | None:
+        """After how many parts of it slip ends, that is xi at its start; None if that is not told."""
+        found, way, now = list[list[float]](), self.last_way, list(xi)
+        first = self.layout.free * STAGES
+        for number in range(PARTS):
+            found.append(self.speed(number, now, way))
+            changes = self.part(number)[first:]
+            now = [a + sum(changes[i * STAGES : (i + 1) * STAGES]) for i, a in enumerate(now)]
+        return first_zero(found)
+
+
+def slip_phase(
+    y: Sequence[float], way: Slip, top: Top, ending: Vanishing, longest: float, *, pulls: bool
+) -> SlipPhase:
+    """Follow slip, or rolling, that begins, as far as the method goes, which may be nowhere.
+
+    Parameters
+    ----------
+    y
+        Axis, angular momentum, and velocity where that is free.
+    way
+        The direction in which it begins.
+    top
+        The body.
+    ending
+        What begins.
+    longest
+        How long it is followed at most, in natural units of time.
+    pulls
+        Whether the table may pull.
+    """
+    step = SlipStep(top, ending)
+    now, length, free = [*y, *[0.0 for _ in way]], FIRST, len(y)
+    knots, rows, ended = [0.0], list[list[float]](), False
+    while not ended and knots[-1] < longest and size(tuple(now[free:])) < APART:
+        begin, known = knots[-1], len(rows)
+        length = min(length, longest - begin)
+        solved = step.solve(now, way, length)
+        factor = SAFETY * (ACCURACY / (step.error + TINY)) ** (0.5 / STAGES) if solved else 0.0
+        after = [a + b for a, b in zip(now, step.changes, strict=True)]
+        last = step.last_way
+        lasts = step.slips and after[free] * last[0] + after[free + 1] * last[1] > 0.0
+        part = float(PARTS) if lasts or factor < SAFETY else step.end_of_slip(now[free:])
+        if factor < SAFETY or part is None:
+            length *= max(min(factor, SHORTER), SHORTEST)
+            if length < LEAST:
+                break
+            continue
+        if not step.goes_on(top, pulls=pulls):
+            break
+        ended = not lasts
+        for number in range(PARTS):
+            if part > number:
+                share = min(part - number, 1.0)
+                rows.append(shortened(step.part(number), share))
+                knots.append(begin + length * ((number + share) / PARTS))
+        if ended:
+            for row in rows[known:]:
+                now = [a + sum(row[i * STAGES : (i + 1) * STAGES]) for i, a in enumerate(now)]
+        else:
+            if length == longest - begin:
+                knots[len(knots) - 1] = longest
+            now, way = after, scaled(1.0 / size(tuple(after[free:])), tuple(after[free:]))
+            speed = step.speed(PARTS - 1, after[free:], last)
+            speed[0] -= sum(speed[1:])
+            length = min(length * min(factor, LONGER), BEYOND * length / PARTS * parts_left(speed))
+    return SlipPhase(knots, rows, now, ended, step.sweeps)
+
+
+def shortened(rows: list[float], share: float) -> list[float]:
+    """Coefficients in powers of a share of what they were in powers of, from the first on."""
+    if share == 1.0:
+        return rows
+    powers = [share ** (k + 1) for k in range(STAGES)] * (len(rows) // STAGES)
+    return [number * power for number, power in zip(rows, powers, strict=True)]
+
+
+def parts_left(terms: Sequence[float]) -> float:
+    """How far beyond 1 a polynomial is zero, by its value and two derivatives there."""
+    value = sum(terms)
+    slope = sum([k * term for k, term in enumerate(terms)])
+    bend = sum([k * (k - 1) * term for k, term in enumerate(terms)])
+    rest = slope * slope - 2.0 * bend * value
+    if slope >= 0.0 and bend >= 0.0:
+        return math.inf
+    return 2.0 * value / (-slope + rest**0.5) if rest > 0.0 else -slope / bend
+
+
+def first_zero(parts: Sequence[Sequence[float]]) -> float | None:
+    """Where a function that is a polynomial in each of some parts first falls to zero, counted in parts.
+
+    None if that is too near the beginning to be told, or nowhere.
+    """
+    for number, terms in enumerate(parts):
+        for look in range(LOOKS):
+            if horner(terms, (look + 1) / LOOKS) <= 0.0:
+                if number == 0 and look == 0:
+                    return None
+                return number + _zero(terms, look / LOOKS, (look + 1) / LOOKS)
+    return None
+
+
+def _zero(terms: Sequence[float], low: float, high: float) -> float:
+    """Zero of a polynomial between two places where its signs differ."""
+    return crossing(lambda part: float(horner(terms, part)), low, high)

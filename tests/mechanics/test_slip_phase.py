@@ -1,0 +1,109 @@
+"""Slip by collocation from its beginning to its end, against series, clocks and Runge and Kutta's method."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from dry_runs import launched
+from tippetop.contact import slipping
+from tippetop.contact.loosening import Loosening
+from tippetop.contact.mode import EventKind
+from tippetop.contact.rules import FreeToFly
+from tippetop.contact.slipping import first_zero, parts_left
+from tippetop.contact.trajectory import Trajectory
+from tippetop.integrators import iteration, make_integrator
+from tippetop.mechanics.coulomb import CoulombLaw
+from tippetop.mechanics.motion import on_table, sliding_rates
+from tippetop.mechanics.slip_phase import STAGES, gauss_points
+from tippetop.mechanics.state import SlidingState
+from tippetop.mechanics.surface import SphereSurface, SpheroidSurface
+from tippetop.mechanics.top import Top
+
+LAUNCHES = {
+    "sphere": (SphereSurface(1.0, 0.3), 0.2, 1.0, 2.2),
+    "egg": (SpheroidSurface(1.0, 1.2), 0.05, 1.4, 1.5),
+}
+"""Surface, friction, tilt and spin of tops that stick and slip."""
+
+
+def followed(name, end):
+    """One of them: its segments and events."""
+    shape, mu, tilt, spin = LAUNCHES[name]
+    top = Top(1.0, 131 / 350, 2 / 5, shape, CoulombLaw(mu), 1.0)
+    top, axis, momentum, velocity = launched(top, tilt, spin)
+    start = on_table(SlidingState(axis, momentum, velocity), top)
+    trajectory = Trajectory(FreeToFly(top, 0.0).launch(start), end, make_integrator())
+    return list(trajectory.segments()), [(event.kind, event.time) for event in trajectory.events]
+
+
+def told(events):
+    return [kind for kind, _ in events], [time for _, time in events]
+
+
+def test_the_points_are_those_of_gauss_and_integrate_what_they_should():
+    points, _ = np.polynomial.legendre.leggauss(STAGES)
+    made, places = gauss_points(STAGES), 0.5 + 0.5 * points
+    for k in range(STAGES):
+        integrals = np.array(made.integrals).T @ places**k
+        assert integrals == pytest.approx(places ** (k + 1) / (k + 1), abs=3e-15)
+
+
+@pytest.mark.parametrize("name", LAUNCHES)
+def test_a_phase_solves_the_equations_of_sliding(name):
+    """From places in it Runge and Kutta's method goes on with the same motion."""
+    segments, _ = followed(name, 20.0)
+    phases = [one for one in segments if isinstance(one.mode, Loosening)]
+    assert max(one.steps for one in phases) > 1
+    for segment in phases[:2]:
+        top = segment.mode.top
+        for begin, end in zip(segment.solution.knots[:-1], segment.solution.knots[1:], strict=True):
+            times = begin + np.array([0.3, 0.6]) * (end - begin)
+            states = [segment.mode.state(tuple(y)) for y in segment.solution(times)]
+            first, last = ([*one.axis, *one.momentum, *one.velocity[:2]] for one in states)
+            run = solve_ivp(
+                lambda _, y, top=top: sliding_rates(SlidingState.unpack(y), top).pack(),
+                times,
+                first,
+                method="DOP853",
+                rtol=1e-11,
+                atol=1e-13,
+            )
+            np.testing.assert_allclose(run.y[:, -1], last, rtol=0, atol=1e-10)
+
+
+@pytest.mark.parametrize("name", LAUNCHES)
+def test_series_and_clocks_tell_the_same_of_it(name, monkeypatch):
+    kinds, times = told(followed(name, 30.0)[1])
+    assert kinds.count(EventKind.SLIP) > 1
+    monkeypatch.setattr(Loosening, "slips", lambda *_: None)
+    others, seconds = told(followed(name, 30.0)[1])
+    assert kinds == others
+    assert times == pytest.approx(seconds, abs=1e-11)
+
+
+def test_it_is_the_same_where_nothing_is_compiled(monkeypatch):
+    kinds, times = told(followed("sphere", 6.0)[1])
+    monkeypatch.setattr(iteration, "has_llvm", lambda: False)
+    for cached in (slipping.compiled_step, slipping.machinery_of):
+        cached.cache_clear()
+    try:
+        others, seconds = told(followed("sphere", 6.0)[1])
+    finally:
+        for cached in (slipping.compiled_step, slipping.machinery_of):
+            cached.cache_clear()
+    assert kinds == others
+    assert times == pytest.approx(seconds, abs=1e-12)
+
+
+def test_a_polynomial_s_first_zero_is_found_and_foreseen():
+    # (x - 0.3) (x - 0.7)
+    assert first_zero([[0.21, -1.0, 1.0]]) == pytest.approx(0.3, rel=1e-14)
+    assert first_zero([[1.0, -0.5], [0.5, -2.0]]) == pytest.approx(1.25, rel=1e-14)
+    assert first_zero([[-0.1, 1.0]]) is None
+    assert first_zero([[1.0, -0.5]]) is None
+    # 2 - x, and (2 - x) (3 - x)
+    assert parts_left([2.0, -1.0]) == pytest.approx(1.0)
+    assert parts_left([6.0, -5.0, 1.0]) == pytest.approx(1.0)
+    assert parts_left([1.0, 1.0]) == math.inf
