@@ -77,7 +77,7 @@ def sliding_motions(surface, law):
             if isinstance(sliding_law(law), CoulombLaw):
                 yield f"{told} beginning", beginning_on_two(*both, way), (*numbers, *other.numbers)
                 yield f"{told} turning", turning_motion(*both, -1.0, way), (*numbers, *other.numbers)
-                yield f"{told} sticking", held_motion_on_two(*both, way), (*numbers, *other.numbers)
+                yield f"{told} sticking", held_motion_on_two(*both, way), (*numbers, *other.numbers, -1.0)
 
 
 def sticking_motions(surface, law):

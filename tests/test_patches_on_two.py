@@ -3,8 +3,10 @@
 import numpy as np
 import pytest
 import xarray as xr
+from scipy.optimize import brentq, minimize
 
 import tippetop as tt
+from lying import R
 from test_sticking_on_two import (
     ACROSS,
     BALL,
@@ -125,6 +127,84 @@ def test_it_rolls_on_as_long_as_friction_can_turn_its_way_round(seed: int, press
         run = followed_by_steps(body.replace(rolls), 0.02)
         assert set(words(run)[1:]) == {mode}
         assert float(run["energy_error"]) < 1e-12
+
+
+def rolling(turning: float, arm: float) -> tt.Problem:
+    """A body that rolls on two patches about the line through both, while that is resisted."""
+    body = with_patch(lying(8), "ellipsoidal")
+    tilt = body.launch.tilt
+    return body.replace(
+        {
+            "launch.spin": turning * np.sin(tilt),
+            "launch.precession": -turning / np.tan(tilt),
+            "launch.velocity": None,
+            "rolling_resistance": arm,
+        }
+    )
+
+
+def holding(problem: tt.Problem, turning: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """What holds it, as a force along and across and a moment about the vertical, the normal forces, and
+    where they act; from m V' and L' of a body that rolls at this rate."""
+    body, tilt = problem.body, problem.launch.tilt
+    s, c = np.sin(tilt), np.cos(tilt)
+    spheres = [shape.surface for shape in body.shapes]
+    height = spheres[0].radius - spheres[0].center * c
+    along, upwards = body.I1 * c * c + body.I3 * s * s, (body.I3 - body.I1) * s * c
+    slowing = -problem.rolling_resistance * body.mass * G / (along + body.mass * height**2)
+    way_round = -turning * c / s
+    forces = body.mass * height * np.array([turning * way_round, -slowing])
+    places = s * np.array([sphere.center for sphere in spheres])
+    moment = -height * forces[0] - turning * along * way_round
+    normal = np.linalg.solve([[1.0, 1.0], places], [body.mass * G, moment])
+    return np.array([*forces, slowing * upwards]), normal, places
+
+
+def spared(problem: tt.Problem, turning: float) -> float:
+    """How many times what holds it both patches can exert, less 1, by the least of a convex function.
+
+    A motion in which they slip, and in which what holds it has the power 1, loses this to friction at least.
+    """
+    wrench, normal, places = holding(problem, turning)
+    scaled = wrench / (1.0, 1.0, R)
+    first, others = scaled / (scaled @ scaled), np.linalg.svd(scaled[None])[2][1:]
+    drilled = 3.0 * np.pi / 16.0 * problem.friction.patch_radius
+
+    def loss(parts: np.ndarray) -> float:
+        along, across, turned = first + parts @ others
+        slips = np.hypot(along, across + turned / R * places)
+        return float(problem.friction.mu * normal @ np.hypot(slips, drilled * turned / R))
+
+    starts = ([0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0])
+    return min(minimize(loss, start, method="BFGS", options={"gtol": 1e-13}).fun for start in starts) - 1.0
+
+
+def test_moments_of_drilling_hold_what_forces_alone_do_not() -> None:
+    """It rolls until that ends, though across the line one contact would need more than its mu N."""
+    problem = rolling(6.0, 0.0076)
+    wrench, normal, places = holding(problem, 0.0)
+    across = np.linalg.solve([[1.0, 1.0], places], wrench[1:])
+    assert (np.abs(across) > problem.friction.mu * normal).any()
+    assert min(spared(problem, turning) for turning in (1e-6, 1.0, 3.0, 6.0)) > 0.0
+    run = followed_by_steps(problem, 0.2, 101)
+    assert run.attrs["outcome"] == "at_rest"
+    assert not times(run, "slip")
+    assert set(words(run)[1:]) == {"sticking_on_0_and_1", "sticking_without_rolling_on_0_and_1"}
+    assert float(run["energy_error"]) < 1e-12
+
+
+def test_patches_slip_when_rolling_has_become_too_slow_for_what_holds_them() -> None:
+    """The fewer it presses one contact with, of which the needed force across the line stays the same."""
+    problem = rolling(10.0, 0.00775)
+    held = brentq(lambda turning: spared(problem, turning), 0.5, 10.0, xtol=1e-12)
+    assert 1.0 < held < 9.0
+    sphere = problem.body.shape[0].surface
+    height = sphere.radius - sphere.center * np.cos(problem.launch.tilt)
+    (_, across, _), _, _ = holding(problem, held)
+    expected = (10.0 - held) * problem.body.mass * height / across
+    run = followed_by_steps(problem, expected + 1e-4)
+    assert times(run, "slip") == pytest.approx([expected] * 2, rel=1e-7)
+    assert float(run["energy_error"]) < 1e-11
 
 
 def test_slip_that_begins_goes_on_where_hertz_branches_meet() -> None:

@@ -18,6 +18,7 @@ from tippetop.mechanics.contact_pair import (
     pair_motion,
     slip_apart,
     slips_of,
+    turning_along,
 )
 from tippetop.mechanics.motion import along_table, axis_rate, on_table
 from tippetop.mechanics.rolling import Slip, is_branched, slip_length, velocity_without_slip, without_drilling
@@ -109,7 +110,15 @@ class StickingAndSlidingBack(StickingAndSliding):
 class StickingOnTwo(HeldOnTwo):
     """Both contacts stick: the body rolls about the line that joins them, or is at rest."""
 
+    least: float = -1.0
+    """The |omega_e| at which patches slip that stick while the body rolls."""
+
     name: ClassVar[str] = "sticking"
+
+    @property
+    def parameters(self) -> tuple[Scalar, ...]:
+        """The numbers of the top on either surface, and when patches slip."""
+        return (*self.top.numbers, *self.other.numbers, self.least)
 
     @property
     def stuck(self) -> tuple[int, ...]:
@@ -213,19 +222,26 @@ def turning_motion(first: Kind, second: Kind, sign: float, rolls: float) -> Moti
 
 @lru_cache
 def held_motion_on_two(first: Kind, second: Kind, rolls: float) -> Motion:
-    """Equations of motion while both contacts stick: for good, where patches resist drilling, and rolls."""
+    """Equations of motion while both contacts stick; the last parameter is when patches slip."""
 
     def found(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> PairMotion:
         return pair_motion(ContactPair.of(*split(y), tops_of(first, second, numbers)), (None, None), rolls)
 
     guards = pair_guards(first, found, rolls)
-    if slip_length(first.example.friction) is None or rolls:
+    if slip_length(first.example.friction) is None:
         guards += [
             Guard(f"{SLIP}0", lambda y, numbers: found(y, numbers).left(0)),
             Guard(f"{SLIP}1", lambda y, numbers: found(y, numbers).left(1)),
             Guard(f"{SLIP}both", lambda y, numbers: found(y, numbers).both_reserve),
         ]
-    return _of_momentum(first, second, found, guards)
+    elif rolls:
+        guards.append(
+            Guard(
+                f"{SLIP}both",
+                lambda y, numbers: rolls * turning_along(found(y, numbers).pair) - numbers[-1],
+            )
+        )
+    return _of_momentum(first, second, found, guards, 1)
 
 
 @lru_cache
@@ -254,11 +270,11 @@ def beginning_on_two(first: Kind, second: Kind, rolls: float) -> Motion:
     return Motion(rates, 9, first.numbers + second.numbers, tuple(guards), lasting=False)
 
 
-def _of_momentum(first: Kind, second: Kind, found: Any, guards: Sequence[Guard]) -> Motion:
-    """Equations of motion of axis and angular momentum."""
+def _of_momentum(first: Kind, second: Kind, found: Any, guards: Sequence[Guard], further: int = 0) -> Motion:
+    """Equations of motion of axis and angular momentum, with so many further parameters."""
 
     def rates(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[Scalar, ...]:
         now = found(y, numbers)
         return (*axis_rate(*split(y), now.pair.first.top), *now.moment)
 
-    return Motion(rates, 6, first.numbers + second.numbers, tuple(guards), lasting=False)
+    return Motion(rates, 6, first.numbers + second.numbers + further, tuple(guards), lasting=False)

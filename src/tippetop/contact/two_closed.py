@@ -34,6 +34,7 @@ from tippetop.mechanics.pair_resolver import (
     both_letting_go,
     letting_go,
     resolution,
+    rolling_of_slip,
     turning_about,
 )
 from tippetop.mechanics.rolling import (
@@ -161,7 +162,9 @@ class TwoClosed:
             rules = self.rules.on(number_of(self.tops[0]))
             return Transition((), on_two(self.state, rules, self.tops[1], self.rolls), self.state)
         if all(found.sticks):
-            mode = StickingOnTwo(self.tops[0], self.rules, self.tops[1], self.rolls)
+            patches = self.rolls and slip_length(self.tops[0].friction) is not None
+            least = rolling_of_slip(self.pair, self.rolls) if patches else -1.0
+            mode = StickingOnTwo(self.tops[0], self.rules, self.tops[1], self.rolls, least)
             still = rests(self.state, *found.motion.moving[2])
             return Transition((), Resting(self.tops[0], self.rules, mode) if still else mode, self.state)
         return Transition((), self._turning(self.tops, self.xi[2]), self.state)

@@ -5130,6 +5130,22 @@ class PairMotion extends py.NamedTuple {
     var product = py.mul(one, other);
     return py.sub(py.add(py.add(one, other), py.mul(2.0, py.pow(py.add(py.mul(product, product), TINY), 0.25))), py.mul(along, along));
   }
+  /** Whether the table can hold both contacts, without moments of drilling; of floats. */
+  get is_held() {
+    return py.bool(py.min(this.left(0), this.left(1), this.both_reserve) >= 0.0);
+  }
+  /** Power that friction takes at most where xi = `way`, less what holding takes of it, W. */
+  spare(way) {
+    var spare = 0.0;
+    for (var [point, slip, wrench] of py.zip(this.pair, slips_of(this.pair, way), this.wrenches)) {
+      var turning = turning_with(point, slip);
+      var [force, torque] = sliding_law(point.top.friction).traction([slip[0], slip[1]], turning);
+      var [x, y, normal] = wrench.force;
+      spare = py.sub(spare, py.mul(py.mul(normal, torque[2]), turning[2]));
+      spare = py.add(py.add(spare, py.mul(py.sub(x, py.mul(normal, force[0])), slip[0])), py.mul(py.sub(y, py.mul(normal, force[1])), slip[1]));
+    }
+    return spare;
+  }
 }
 py.fields(PairMotion, ["pair", "wrenches", "moving", "holding"]);
 
@@ -5311,6 +5327,7 @@ function against(held) {
 }
 
 // tippetop.mechanics.pair_resolver
+const CUTS = 50;
 
 /** How two contacts go on. */
 class Resolution extends py.NamedTuple {
@@ -5370,11 +5387,11 @@ function of_slips(pair, xi, ended, rolls) {
     var sticks = held.reserve(0) >= 0.0;
     return py.truth(sticks) ? new Resolution(held, [true, false], rolls) : letting_go(pair, xi, rolls);
   }
-  if (py.min(held.left(0), held.left(1)) >= 0.0 && held.both_reserve >= 0.0) {
-    return new Resolution(held, [true, true], rolls);
-  }
   if (slip_length(pair.first.top.friction) !== null) {
-    return both_letting_go(pair, rolls);
+    return py.or(patches_letting_go(pair, rolls), () => new Resolution(held, [true, true], rolls));
+  }
+  if (py.truth(held.is_held)) {
+    return new Resolution(held, [true, true], rolls);
   }
   for (var number of [0, 1]) {
     for (var sign of [1.0, -1.0]) {
@@ -5397,6 +5414,42 @@ function letting_go(pair, xi, rolls) {
 function both_letting_go(pair, rolls) {
   var [way, motion] = way_of_both(pair, rolls);
   return new Resolution(motion, [false, false], rolls, way);
+}
+
+/** How patches begin to slip that both stick; None where they can be held. */
+function patches_letting_go(pair, rolls) {
+  if (py.truth(pair_motion(pair, [null, null], rolls).is_held)) {
+    return null;
+  }
+  try {
+    return both_letting_go(pair, rolls);
+  } catch (error) {
+    if (!(error instanceof py.ArithmeticError)) throw error;
+    return null;
+  }
+}
+
+/** The |omega_e|, less than there is, at which patches that stick while the body rolls slip; -1 for none. */
+function rolling_of_slip(pair, rolls) {
+  var [axis, momentum, tops] = [pair.first.axis, pair.first.momentum, [pair.first.top, pair.second.top]];
+  var at = (q) => {
+    return ContactPair.of(axis, scale(py.pow(q, 0.5), momentum), tops);
+  };
+  var [q, still] = [0.0, at(0.0)];
+  for (var turn = 0; turn < CUTS; turn += 1) {
+    var found = patches_letting_go(at(q), rolls);
+    if (found === null) {
+      break;
+    }
+    py.assert(found.begins !== null);
+    var [least, most] = [still, pair].map((one) => pair_motion(one, [null, null], rolls).spare(found.begins));
+    var bound = py.div(py.neg(least), py.sub(most, least));
+    if (!(q < bound && bound < 1.0)) {
+      break;
+    }
+    q = bound;
+  }
+  return py.truth(q) ? py.mul(py.pow(q, 0.5), py.float(py.abs(turning_along(pair)))) : -1.0;
 }
 
 /** The body begins to turn about one of both contacts, and the other slips, xi_3 as signed. */
@@ -5674,10 +5727,15 @@ py.fields(StickingAndSlidingBack, ["top", "rules", "other", "rolls"]);
 
 /** Both contacts stick: the body rolls about the line that joins them, or is at rest. */
 class StickingOnTwo extends HeldOnTwo {
-  constructor(top, rules, other, rolls = 0.0) {
+  constructor(top, rules, other, rolls = 0.0, least = -1.0) {
     super(top, rules, other, rolls);
+    this.least = least;
   }
   get name() { return "sticking"; }
+  /** The numbers of the top on either surface, and when patches slip. */
+  get parameters() {
+    return [...this.top.numbers, ...this.other.numbers, this.least];
+  }
   /** Both surfaces. */
   get stuck() {
     return [number_of(this.top), number_of(this.other)];
@@ -5704,7 +5762,7 @@ class StickingOnTwo extends HeldOnTwo {
     return super.follow(guard, time, state);
   }
 }
-py.fields(StickingOnTwo, ["top", "rules", "other", "rolls"]);
+py.fields(StickingOnTwo, ["top", "rules", "other", "rolls", "least"]);
 
 /** The first moments of slip at a contact, or at both: slip itself is what moves, and loses no digits. */
 class SlipBeginningOnTwo extends SlidingOnTwo {
@@ -5780,16 +5838,18 @@ const turning_motion = py.cached((first, second, sign, rolls) => {
   return _of_momentum(first, second, found, [...guards, ...pair_guards(first, found, rolls)]);
 });
 
-/** Equations of motion while both contacts stick: for good, where patches resist drilling, and rolls. */
+/** Equations of motion while both contacts stick; the last parameter is when patches slip. */
 const held_motion_on_two = py.cached((first, second, rolls) => {
   var found = (y, numbers) => {
     return pair_motion(ContactPair.of(...split(y), tops_of(first, second, numbers)), [null, null], rolls);
   };
   var guards = pair_guards(first, found, rolls);
-  if (slip_length(first.example.friction) === null || py.truth(rolls)) {
+  if (slip_length(first.example.friction) === null) {
     guards = py.add(guards, [new Guard(`${py.str(SLIP_of_double_sticking)}0`, (y, numbers) => found(y, numbers).left(0)), new Guard(`${py.str(SLIP_of_double_sticking)}1`, (y, numbers) => found(y, numbers).left(1)), new Guard(`${py.str(SLIP_of_double_sticking)}both`, (y, numbers) => found(y, numbers).both_reserve)]);
+  } else if (py.truth(rolls)) {
+    guards.push(new Guard(`${py.str(SLIP_of_double_sticking)}both`, (y, numbers) => py.sub(py.mul(rolls, turning_along(found(y, numbers).pair)), py.item(numbers, -1))));
   }
-  return _of_momentum(first, second, found, guards);
+  return _of_momentum(first, second, found, guards, 1);
 });
 
 /** Equations of motion while both contacts slip, with xi, of which a part may have just begun. */
@@ -5817,13 +5877,13 @@ const beginning_on_two = py.cached((first, second, rolls) => {
   return new Motion(rates, 9, py.add(first.numbers, second.numbers), py.tuple(guards), false);
 });
 
-/** Equations of motion of axis and angular momentum. */
-function _of_momentum(first, second, found, guards) {
+/** Equations of motion of axis and angular momentum, with so many further parameters. */
+function _of_momentum(first, second, found, guards, further = 0) {
   var rates = (y, numbers) => {
     var now = found(y, numbers);
     return [...axis_rate(...split(y), now.pair.first.top), ...now.moment];
   };
-  return new Motion(rates, 6, py.add(first.numbers, second.numbers), py.tuple(guards), false);
+  return new Motion(rates, 6, py.add(py.add(first.numbers, second.numbers), further), py.tuple(guards), false);
 }
 
 // tippetop.mechanics.invariants
@@ -5944,7 +6004,9 @@ class TwoClosed extends py.Record {
       return new Transition([], on_two(this.state, rules, this.tops[1], this.rolls), this.state);
     }
     if (py.truth(py.all(found.sticks))) {
-      var mode = new StickingOnTwo(this.tops[0], this.rules, this.tops[1], this.rolls);
+      var patches = py.and(this.rolls, () => slip_length(this.tops[0].friction) !== null);
+      var least = py.truth(patches) ? rolling_of_slip(this.pair, this.rolls) : -1.0;
+      var mode = new StickingOnTwo(this.tops[0], this.rules, this.tops[1], this.rolls, least);
       var still = rests(this.state, ...found.motion.moving[2]);
       return new Transition([], py.truth(still) ? new Resting(this.tops[0], this.rules, mode) : mode, this.state);
     }
@@ -8953,6 +9015,7 @@ export {
   CONSTANTS,
   COSINE,
   COUPLES,
+  CUTS,
   Closing,
   ClosingRates,
   Contact,
@@ -9483,6 +9546,7 @@ export {
   pair_motion,
   parting_guard,
   parts_left,
+  patches_letting_go,
   phis,
   plus,
   point_velocity,
@@ -9512,6 +9576,7 @@ export {
   rests,
   rises,
   rolling_of,
+  rolling_of_slip,
   rolling_precession,
   rolling_reserve,
   rolling_spin,

@@ -17,6 +17,8 @@ forces T_i across e and S along it, Coulomb's friction can where |T_i| <= mu N_i
 Patches that resist drilling both stick or neither does, as xi = 0. There nothing works, and the body turns
 about the line that joins both contact points as fast as it did: in the frame that goes with it nothing
 changes, both T_i are zero, and S is all that the limit surfaces have to exert: as Coulomb's friction does.
+Where rolling is resisted the T_i are none any more but constant, and moments of drilling may take a share in
+what holds the points across e.
 
 What rolls turns about e, one way or the other: rolling resistance is a couple -+ length (N_1 + N_2) e. Where
 omega_e = 0 it is any up to that, along e: across e the normal forces hold the body already.
@@ -193,6 +195,22 @@ class PairMotion(NamedTuple):
         one, other, along = self.left(0), self.left(1), self.along
         product = one * other
         return one + other + 2.0 * (product * product + TINY) ** 0.25 - along * along
+
+    @property
+    def is_held(self) -> bool:
+        """Whether the table can hold both contacts, without moments of drilling; of floats."""
+        return bool(min(self.left(0), self.left(1), self.both_reserve) >= 0.0)
+
+    def spare(self, way: Slip) -> Scalar:
+        """Power that friction takes at most where xi = `way`, less what holding takes of it, W."""
+        spare: Any = 0.0
+        for point, slip, wrench in zip(self.pair, slips_of(self.pair, way), self.wrenches, strict=True):
+            turning = turning_with(point, slip)
+            force, torque = sliding_law(point.top.friction).traction((slip[0], slip[1]), turning)
+            x, y, normal = wrench.force
+            spare = spare - normal * torque[2] * turning[2]
+            spare = spare + (x - normal * force[0]) * slip[0] + (y - normal * force[1]) * slip[1]
+        return spare
 
 
 def directions_of(axis: Vector) -> tuple[Vector, Vector]:

@@ -9,11 +9,16 @@ from tippetop.mechanics.contact_pair import (
     directions_of,
     pair_motion,
     slips_of,
+    turning_along,
     way_of_both,
     way_of_one,
 )
 from tippetop.mechanics.rolling import Slip, slip_length
 from tippetop.mechanics.stick_slip import scaled
+from tippetop.mechanics.vectors import scale
+
+CUTS = 50
+"""Bounds of the rolling at which patches slip, at most: a few find it to rounding."""
 
 
 class Resolution(NamedTuple):
@@ -80,10 +85,10 @@ def of_slips(pair: ContactPair, xi: Slip, ended: tuple[bool, bool], rolls: float
     if not all(ended):
         sticks = held.reserve(0) >= 0.0
         return Resolution(held, (True, False), rolls) if sticks else letting_go(pair, xi, rolls)
-    if min(held.left(0), held.left(1)) >= 0.0 and held.both_reserve >= 0.0:
-        return Resolution(held, (True, True), rolls)
     if slip_length(pair.first.top.friction) is not None:
-        return both_letting_go(pair, rolls)
+        return patches_letting_go(pair, rolls) or Resolution(held, (True, True), rolls)
+    if held.is_held:
+        return Resolution(held, (True, True), rolls)
     for number in (0, 1):
         for sign in (1.0, -1.0):
             found = turning_about(pair, number, sign, rolls)
@@ -102,6 +107,45 @@ def both_letting_go(pair: ContactPair, rolls: float) -> Resolution:
     """Both contacts begin to slip."""
     way, motion = way_of_both(pair, rolls)
     return Resolution(motion, (False, False), rolls, way)
+
+
+def patches_letting_go(pair: ContactPair, rolls: float) -> Resolution | None:
+    """How patches begin to slip that both stick; None where they can be held.
+
+    They can where forces alone do, without moments of drilling. If not, moments may help: either there are
+    some that do, or there is a direction in which slip begins, as both limit surfaces are convex.
+    """
+    if pair_motion(pair, (None, None), rolls).is_held:
+        return None
+    try:
+        return both_letting_go(pair, rolls)
+    except ArithmeticError:
+        return None
+
+
+def rolling_of_slip(pair: ContactPair, rolls: float) -> float:
+    """The |omega_e|, less than there is, at which patches that stick while the body rolls slip; -1 for none.
+
+    With q = omega_e^2 the needed forces and the normal ones change as a + b q: those that can be held fill an
+    interval of q. From q = 0, where they may not, each direction in which slip begins bounds it from below.
+    """
+    axis, momentum, tops = pair.first.axis, pair.first.momentum, (pair.first.top, pair.second.top)
+
+    def at(q: float) -> ContactPair:
+        return ContactPair.of(axis, scale(q**0.5, momentum), tops)
+
+    q, still = 0.0, at(0.0)
+    for _ in range(CUTS):
+        found = patches_letting_go(at(q), rolls)
+        if found is None:
+            break
+        assert found.begins is not None
+        least, most = (pair_motion(one, (None, None), rolls).spare(found.begins) for one in (still, pair))
+        bound = -least / (most - least)
+        if not q < bound < 1.0:
+            break
+        q = bound
+    return q**0.5 * float(abs(turning_along(pair))) if q else -1.0
 
 
 def turning_about(pair: ContactPair, number: int, sign: float, rolls: float) -> Resolution:
