@@ -2,7 +2,8 @@
 
 A measurement is `simulate` (a run against the bare integration inside it), `compilers` (the same run by
 heyoka, by numba and by SciPy at the same error), `sweep` (the sweep's engine
-against other programs at the same error) or `scale` (what sweeps cost by size, workers and flights).
+against other programs at the same error), `scale` (what sweeps cost by size, workers and flights) or
+`friction` (what friction of a patch costs beside viscous friction).
 """
 
 import argparse
@@ -13,10 +14,10 @@ from pathlib import Path
 from rich.console import Console
 from rich.markdown import Markdown
 
-from benchmarks import bench_compilers, bench_simulate, bench_sweep, bench_sweep_scale
+from benchmarks import bench_compilers, bench_friction, bench_simulate, bench_sweep, bench_sweep_scale
 from benchmarks.surroundings import machine
 
-MEASUREMENTS = ("simulate", "compilers", "sweep", "scale")
+MEASUREMENTS = ("simulate", "compilers", "sweep", "scale", "friction")
 
 
 def main() -> None:
@@ -44,6 +45,9 @@ def main() -> None:
         elif name == "sweep":
             found = bench_sweep.measure(options.quick, progress.print)
             table = bench_sweep.tables(found)
+        elif name == "friction":
+            found = bench_friction.measure(options.quick)
+            table = bench_friction.tables(found)
         else:
             found = bench_sweep_scale.measure(options.quick, options.whole, progress.print)
             table = bench_sweep_scale.tables(found)

@@ -1,0 +1,150 @@
+"""What dry friction of a patch costs beside viscous friction, in single runs and in sweeps, as ratios.
+
+The same launches of the report's top are followed under viscous friction and under Contensou's, with the
+coefficient for which the two are one law at slow slip, 3 pi mu / (8 omega R) in s/m: so tops turn over and
+fly much alike, and none sticks. They are not alike in all: nutation lasts longer on a patch, which takes more
+steps, and there are more flights. So beside the ratios of what whole launches cost stand those of a step and
+of a flight, and that of a launch to as many steps and flights under viscous friction.
+"""
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+import tippetop as tt
+from benchmarks.surroundings import markdown
+from tippetop.presets import report_problem
+from tippetop.sweeps import Axis, Product, Sweep
+from tippetop.sweeps.ensemble import follow_cells
+
+DURATION = 20.0
+VISCOUS, PATCH = 0.3, 1e-3
+"""Viscous coefficient, s/m, and radius of the patch, m."""
+
+SPINS = {"ignore": (130.0, 155.0), "fly": (180.0, 200.0)}
+"""Launches without flights, and with them, rad/s."""
+
+TARGETS = {"one by one": 2.0, "a sweep": 2.0}
+"""What a launch may cost, over viscous friction."""
+
+
+@dataclass(frozen=True)
+class Cost:
+    """What launches cost under a law, each in processor time, s, with its steps and flights.
+
+    Attributes
+    ----------
+    calm, calm_steps
+        A launch without flights.
+    lively, lively_steps, flights
+        A launch with flights.
+    """
+
+    calm: float
+    calm_steps: float
+    lively: float
+    lively_steps: float
+    flights: float
+
+    @property
+    def step(self) -> float:
+        """A step."""
+        return self.calm / self.calm_steps
+
+    @property
+    def flight(self) -> float:
+        """A flight, with the impact at its end."""
+        return (self.lively - self.step * self.lively_steps) / self.flights
+
+
+def laws() -> dict[str, tt.Friction]:
+    """Viscous friction, and that of a patch for each pressure."""
+    mu = VISCOUS * 8.0 * PATCH * 0.5 * (SPINS["ignore"][0] + SPINS["fly"][1]) / (3.0 * math.pi)
+    hertz = tt.ContensouFriction(mu=mu, patch_radius=PATCH)
+    ellipsoidal = tt.ContensouFriction(mu=mu, patch_radius=PATCH, pressure="ellipsoidal")
+    return {"viscous": tt.ViscousFriction(mu=VISCOUS), "ellipsoidal": ellipsoidal, "hertz": hertz}
+
+
+def one_by_one(problem: tt.Problem, spins: list[float]) -> tuple[float, float]:
+    """Mean steps and flights of single runs."""
+    runs = [tt.simulate(problem.replace({"launch.spin": spin}), DURATION, samples=2) for spin in spins]
+    counted = [(float(run["steps"]), float(run["flights"])) for run in runs]
+    steps, flights = np.mean(counted, axis=0)
+    return float(steps), float(flights)
+
+
+def swept(problem: tt.Problem, spins: list[float]) -> tuple[float, float]:
+    """The same of a sweep."""
+    sweep = Sweep(problem, Product((Axis.of("launch.spin", spins),)), DURATION)
+    found = follow_cells(sweep, np.arange(len(spins)))
+    return float(found["steps"].mean()), float(found["flights"].mean())
+
+
+def costs(method: Callable[..., tuple[float, float]], count: int, rounds: int) -> dict[str, Cost]:
+    """The cost under every law: the laws take turns, and the least time of each counts."""
+    least: dict[tuple[str, str], float] = {}
+    counted: dict[tuple[str, str], tuple[float, float]] = {}
+    for _ in range(rounds + 1):
+        for name, law in laws().items():
+            for liftoff, ends in SPINS.items():
+                problem = report_problem().replace({"friction": law, "contact.liftoff": liftoff})
+                began = time.process_time()
+                counted[name, liftoff] = method(problem, np.linspace(*ends, count).tolist())
+                used = (time.process_time() - began) / count
+                # The first round compiles.
+                least[name, liftoff] = (
+                    min(used, least[name, liftoff]) if (name, liftoff) in least else math.inf
+                )
+    return {
+        name: Cost(
+            least[name, "ignore"],
+            counted[name, "ignore"][0],
+            least[name, "fly"],
+            *counted[name, "fly"],
+        )
+        for name in laws()
+    }
+
+
+def ratios(cost: Cost, viscous: Cost) -> dict[str, float]:
+    """A law's cost over the viscous one's."""
+    alike = viscous.step * cost.lively_steps + viscous.flight * cost.flights
+    return {
+        "without flights": cost.calm / viscous.calm,
+        "a step": cost.step / viscous.step,
+        "with flights": cost.lively / viscous.lively,
+        "a flight": cost.flight / viscous.flight,
+        "as many steps and flights": cost.lively / alike,
+        "steps": cost.calm_steps / viscous.calm_steps,
+        "flights": cost.flights / viscous.flights,
+    }
+
+
+def measure(quick: bool) -> dict[str, Any]:
+    """All ratios, of launches one by one and in a sweep."""
+    found: dict[str, Any] = {}
+    plans = {"one by one": (one_by_one, 6 if quick else 12), "a sweep": (swept, 512 if quick else 2048)}
+    for way, (method, count) in plans.items():
+        known = costs(method, count, 2 if quick else 5)
+        found[way] = {
+            name: ratios(cost, known["viscous"]) | {"costs": asdict(cost)}
+            for name, cost in known.items()
+            if name != "viscous"
+        }
+    return found
+
+
+def tables(found: dict[str, Any]) -> str:
+    """The figures for people, in Markdown."""
+    names = [name for name in next(iter(found["a sweep"].values())) if name != "costs"]
+    rows = [
+        [f"{law}, {way}", *(f"{values[name]:.2f}" for name in names)]
+        for way, by_law in found.items()
+        for law, values in by_law.items()
+    ]
+    targets = ", ".join(f"{way} {target:g}" for way, target in TARGETS.items())
+    return f"{markdown(['over viscous friction', *names], rows)}\n\nWanted of a launch at most: {targets}."
