@@ -6589,8 +6589,8 @@ class EllipsoidalLaw extends py.NamedTuple {
 py.fields(EllipsoidalLaw, ["mu", "patch_radius"]);
 
 // tippetop.mechanics.contensou_hertz
-const FORCE = [[1.0, 2.0379589900224446, 1.7454503606464322, 0.748871602371356, 0.1272777587571475, -0.0027191903426678006, -0.0016068785745065434, -2.585824983858782e-05], [1.0, 2.437958990022489, 2.0920625280814025, 0.7580271532705276, 0.10811738333537868, 0.004218755819955418]];
-const TORQUE = [[0.4, 0.822105487763007, 0.5189122287774408, 0.08174030474884943, -0.007570333630208161, 0.004741971472147535, 0.001852985148541204, 8.943122718983565e-05], [1.0, 2.7695494336932254, 2.8469587388677655, 1.3323282422825315, 0.2778032550943552, 0.020859716514356943, 0.00025020282491132825]];
+const FORCE = [[1.0, 2.0379589900224446, 1.7454503606464322, 0.748871602371356, 0.1272777587571475, -0.0027191903426678006, -0.0016068785745065434, -2.585824983858782e-05], [1.0, 2.437958990022489, 2.0920625280814025, 0.7580271532705276, 0.10811738333537868, 0.004218755819955418, 0.0, 0.0]];
+const TORQUE = [[0.4, 0.822105487763007, 0.5189122287774408, 0.08174030474884943, -0.007570333630208161, 0.004741971472147535, 0.001852985148541204, 8.943122718983565e-05], [1.0, 2.7695494336932254, 2.8469587388677655, 1.3323282422825315, 0.2778032550943552, 0.020859716514356943, 0.00025020282491132825, 0.0]];
 const LIMIT = [[0.8835729338221295, 3.889778559163314, 5.573221706650525, 3.0420944615186203, 0.7966720357548377, 0.26696888590798373, 0.05714222546990528, 0.0010481676273393747, 0.00039135703969367353], [1.0, 4.402328783813161, 6.1825966830889465, 2.8926555398109404, 0.12101121238237003, -0.09382811272248932, 0.006126226581420139]];
 const NEAR_BRANCH = 1e-20;
 const EDGE = 1e-05;
@@ -6857,16 +6857,10 @@ function resisting(law, slip, angular_velocity) {
   return new Traction([py.mul(force, slip[0]), py.mul(force, slip[1])], [0.0, 0.0, torque]);
 }
 
-/** Value of a polynomial of degree 5 to 7, given four powers. */
-function polynomial(coefficients, powers) {
-  var [low, high] = [coefficients[0], coefficients[4]];
-  for (var [coefficient, power] of py.zip(coefficients.slice(1, 4), powers.slice(0, 3))) {
-    low = py.add(low, py.mul(coefficient, power));
-  }
-  for (var [coefficient, power] of py.zip(coefficients.slice(5), py.slice(powers, null, py.len(coefficients) - 5, null))) {
-    high = py.add(high, py.mul(coefficient, power));
-  }
-  return py.add(low, py.mul(high, powers[3]));
+/** Value of a polynomial of degree 7, given its coefficients and four powers. */
+function polynomial(c, powers) {
+  var [x, x2, x3, x4] = powers;
+  return py.add(py.add(py.add(py.add(c[0], py.mul(c[1], x)), py.mul(c[2], x2)), py.mul(c[3], x3)), py.mul(py.add(py.add(py.add(c[4], py.mul(c[5], x)), py.mul(c[6], x2)), py.mul(c[7], x3)), x4));
 }
 
 /** Value of a polynomial, its coefficients in increasing order. */

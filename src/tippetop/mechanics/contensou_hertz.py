@@ -29,6 +29,8 @@ FORCE: tuple[tuple[float, ...], ...] = (
         0.7580271532705276,
         0.10811738333537868,
         0.004218755819955418,
+        0.0,
+        0.0,
     ),
 )
 """Numerator and denominator of F(w) of a sliding Hertz patch, see `HertzSlidingLaw`; relative error 2e-16."""
@@ -52,6 +54,7 @@ TORQUE: tuple[tuple[float, ...], ...] = (
         0.2778032550943552,
         0.020859716514356943,
         0.00025020282491132825,
+        0.0,
     ),
 )
 """Numerator and denominator of T(w) / w^(1/2) of such a patch; relative error 1e-16."""
@@ -403,18 +406,14 @@ def resisting(law: Any, slip: Horizontal, angular_velocity: Vector) -> Traction:
     return Traction((force * slip[0], force * slip[1]), (0.0, 0.0, torque))
 
 
-def polynomial(coefficients: tuple[float, ...], powers: tuple[Scalar, ...]) -> Scalar:
-    """Value of a polynomial of degree 5 to 7, given four powers.
+def polynomial(c: tuple[float, ...], powers: tuple[Scalar, ...]) -> Scalar:
+    """Value of a polynomial of degree 7, given its coefficients and four powers.
 
     It takes one product of variables beyond those of the powers: where they are power series, products are
     what costs.
     """
-    low, high = coefficients[0], coefficients[4]
-    for coefficient, power in zip(coefficients[1:4], powers[:3], strict=True):
-        low = low + coefficient * power
-    for coefficient, power in zip(coefficients[5:], powers[: len(coefficients) - 5], strict=True):
-        high = high + coefficient * power
-    return low + high * powers[3]
+    x, x2, x3, x4 = powers
+    return (c[0] + c[1] * x + c[2] * x2 + c[3] * x3) + (c[4] + c[5] * x + c[6] * x2 + c[7] * x3) * x4
 
 
 def horner(coefficients: tuple[float, ...], x: Scalar) -> Scalar:

@@ -184,12 +184,12 @@ def size(a: Slip) -> float:
 
 def scaled(factor: Scalar, a: Slip) -> Slip:
     """A number times a vector."""
-    return tuple(factor * x for x in a)
+    return tuple([factor * x for x in a])
 
 
 def plus(a: Slip, b: Slip) -> Slip:
     """Sum of two vectors."""
-    return tuple(x + y for x, y in zip(a, b, strict=True))
+    return tuple([x + y for x, y in zip(a, b, strict=True)])
 
 
 def tangents(e: Slip) -> list[Slip]:
