@@ -11,7 +11,7 @@ from tippetop.contact import slipping
 from tippetop.contact.loosening import Loosening
 from tippetop.contact.mode import EventKind
 from tippetop.contact.rules import FreeToFly
-from tippetop.contact.slipping import first_zero, parts_left
+from tippetop.contact.slipping import dips, parts_left
 from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators import iteration, make_integrator
 from tippetop.mechanics.coulomb import CoulombLaw
@@ -97,13 +97,13 @@ def test_it_is_the_same_where_nothing_is_compiled(monkeypatch):
     assert times == pytest.approx(seconds, abs=1e-12)
 
 
-def test_a_polynomial_s_first_zero_is_found_and_foreseen():
-    # (x - 0.3) (x - 0.7)
-    assert first_zero([[0.21, -1.0, 1.0]]) == pytest.approx(0.3, rel=1e-14)
-    assert first_zero([[1.0, -0.5], [0.5, -2.0]]) == pytest.approx(1.25, rel=1e-14)
-    assert first_zero([[-0.1, 1.0]]) is None
-    assert first_zero([[1.0, -0.5]]) is None
+def test_the_end_of_a_polynomial_is_foreseen_and_a_dip_seen():
     # 2 - x, and (2 - x) (3 - x)
     assert parts_left([2.0, -1.0]) == pytest.approx(1.0)
     assert parts_left([6.0, -5.0, 1.0]) == pytest.approx(1.0)
     assert parts_left([1.0, 1.0]) == math.inf
+    places = np.array(gauss_points(STAGES).places)
+    for low, seen in ((0.5, False), (0.01, True)):
+        assert dips((low + (places - 0.5) ** 2 * 4.0).tolist()) is seen
+    assert not dips(places.tolist())
+    assert not dips((1.0 - places).tolist())

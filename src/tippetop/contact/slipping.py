@@ -14,6 +14,7 @@ from tippetop.mechanics.roots import crossing
 from tippetop.mechanics.series import horner
 from tippetop.mechanics.slip_phase import (
     CONSTANTS,
+    GAUSS,
     PARTS,
     STAGES,
     TERMS,
@@ -41,8 +42,9 @@ they are divided by thirty and more, and the error of what a step ends with is o
 BEYOND = 1.1
 """How much longer a step is than slip seems to last, so that its end lies within."""
 
-LOOKS = 6
-"""Looks along a part of a step for where slip ends."""
+DIP, NONE = 0.1, 1e-11
+"""Slip within a step, as part of the most in it, that may be none between two points; and slip, in natural
+units, that is none where it ends."""
 
 PRESSED, CLEAR = 0.1, 1e-2
 """Normal force, and gap of another surface, in natural units, at points of a step, which neither falls to
@@ -113,7 +115,10 @@ def machinery_of(top: Top, ending: Vanishing) -> _Machinery:
 
 def rows_of(numbers: Sequence[float]) -> list[float]:
     """Rows of numbers that are the same at every point."""
-    return [number for number in numbers for _ in range(STAGES)]
+    found = list[float]()
+    for number in numbers:
+        found += [number] * STAGES
+    return found
 
 
 class SlipStep:
@@ -145,10 +150,10 @@ class SlipStep:
         return float(self.rows[len(self.rows) - 1])
 
     @property
-    def slips(self) -> bool:
-        """Whether there is slip at every point of it."""
+    def speeds(self) -> list[float]:
+        """S at its points."""
         first = (self.layout.size + 1) * STAGES
-        return bool(min(self.found[first : first + STAGES]) > 0.0)
+        return [*self.found[first : first + STAGES]]
 
     @property
     def last_way(self) -> Slip:
@@ -183,15 +188,25 @@ class SlipStep:
         x, y = way
         return [x * xi[0] + y * xi[1], *[x * a + y * b for a, b in zip(*rows, strict=True)]]
 
-    def end_of_slip(self, xi: Sequence[float]) -> float | None:
+    def end_of_slip(self, xi: Sequence[float], speeds: Sequence[float]) -> float | None:
         """After how many parts of it slip ends, that is xi at its start; None if that is not told."""
-        found, way, now = list[list[float]](), self.last_way, list(xi)
-        first = self.layout.free * STAGES
+        below = [number for number, speed in enumerate(speeds) if speed <= 0.0]
+        point = below[0] if below else STAGES
+        if point == 0:
+            return None
+        way, now, first = self.last_way, list(xi), self.layout.free * STAGES
+        polynomials = list[list[float]]()
         for number in range(PARTS):
-            found.append(self.speed(number, now, way))
+            polynomials.append(self.speed(number, now, way))
             changes = self.part(number)[first:]
             now = [a + sum(changes[i * STAGES : (i + 1) * STAGES]) for i, a in enumerate(now)]
-        return first_zero(found)
+
+        def speed(place: float) -> float:
+            number = min(int(place), PARTS - 1)
+            return float(horner(polynomials[number], place - number))
+
+        high = GAUSS.places[point] if point < STAGES else 1.0
+        return crossing(speed, PARTS * GAUSS.places[point - 1], PARTS * high)
 
 
 def slip_phase(
@@ -218,15 +233,15 @@ def slip_phase(
     now, length, free = [*y, *[0.0 for _ in way]], FIRST, len(y)
     knots, rows, ended = [0.0], list[list[float]](), False
     while not ended and knots[-1] < longest and size(tuple(now[free:])) < APART:
-        begin, known = knots[-1], len(rows)
+        begin, known, before = knots[-1], len(rows), now
         length = min(length, longest - begin)
         solved = step.solve(now, way, length)
         factor = SAFETY * (ACCURACY / (step.error + TINY)) ** (0.5 / STAGES) if solved else 0.0
         after = [a + b for a, b in zip(now, step.changes, strict=True)]
-        last = step.last_way
-        lasts = step.slips and after[free] * last[0] + after[free + 1] * last[1] > 0.0
-        part = float(PARTS) if lasts or factor < SAFETY else step.end_of_slip(now[free:])
-        if factor < SAFETY or part is None:
+        last, speeds = step.last_way, step.speeds
+        lasts = min(speeds) > 0.0 and after[free] * last[0] + after[free + 1] * last[1] > 0.0
+        part = float(PARTS) if lasts or factor < SAFETY else step.end_of_slip(now[free:], speeds)
+        if factor < SAFETY or part is None or dips(speeds):
             length *= max(min(factor, SHORTER), SHORTEST)
             if length < LEAST:
                 break
@@ -242,6 +257,9 @@ def slip_phase(
         if ended:
             for row in rows[known:]:
                 now = [a + sum(row[i * STAGES : (i + 1) * STAGES]) for i, a in enumerate(now)]
+            if not size(tuple(now[free:])) < NONE:
+                # Its direction turned by so much that it ends elsewhere.
+                return SlipPhase(knots[: known + 1], rows[:known], before, False, step.sweeps)
         else:
             if length == longest - begin:
                 knots[len(knots) - 1] = longest
@@ -271,20 +289,7 @@ def parts_left(terms: Sequence[float]) -> float:
     return 2.0 * value / (-slope + rest**0.5) if rest > 0.0 else -slope / bend
 
 
-def first_zero(parts: Sequence[Sequence[float]]) -> float | None:
-    """Where a function that is a polynomial in each of some parts first falls to zero, counted in parts.
-
-    None if that is too near the beginning to be told, or nowhere.
-    """
-    for number, terms in enumerate(parts):
-        for look in range(LOOKS):
-            if horner(terms, (look + 1) / LOOKS) <= 0.0:
-                if number == 0 and look == 0:
-                    return None
-                return number + _zero(terms, look / LOOKS, (look + 1) / LOOKS)
-    return None
-
-
-def _zero(terms: Sequence[float], low: float, high: float) -> float:
-    """Zero of a polynomial between two places where its signs differ."""
-    return crossing(lambda part: float(horner(terms, part)), low, high)
+def dips(speeds: Sequence[float]) -> bool:
+    """Whether s comes near zero within a step, perhaps to it between two points."""
+    least = min(speeds[1 : STAGES - 1])
+    return min(speeds[0], speeds[STAGES - 1]) > least and 0.0 < least < DIP * max(speeds)

@@ -3227,15 +3227,16 @@ const ROOTS = 12;
 
 /** Gauss's points in a step of length 1, and what belongs to them. */
 class GaussPoints extends py.NamedTuple {
-  constructor(integrals, units, terms, powers) {
+  constructor(places, integrals, units, terms, powers) {
     super();
+    this.places = places;
     this.integrals = integrals;
     this.units = units;
     this.terms = terms;
     this.powers = powers;
   }
 }
-py.fields(GaussPoints, ["integrals", "units", "terms", "powers"]);
+py.fields(GaussPoints, ["places", "integrals", "units", "terms", "powers"]);
 
 /** The points of a step with so many stages. */
 function gauss_points(stages) {
@@ -3244,7 +3245,7 @@ function gauss_points(stages) {
   var weights = [...values].map((at) => py.div(2.0, py.sum(py.range(stages).map((k) => py.mul(py.mul(py.add(py.mul(2, k), 1), py.item(at, k)), py.item(at, k))))));
   var terms = py.range(stages).map((k) => py.zip(weights, values).map(([weight, at]) => py.mul(py.mul(py.mul(0.5, py.add(py.mul(2, k), 1)), weight), py.item(at, k))));
   var integrals = py.range(stages).map((j) => py.zip(roots, values).map(([x, at]) => py.sum(py.range(stages).map((k) => py.mul(py.mul(0.5, _integral(k, x, at)), py.item(py.item(terms, k), j))))));
-  return new GaussPoints(integrals, py.range(stages).map((i) => py.range(stages).map((j) => py.eq(i, j) ? 1.0 : 0.0)), terms, py.range(PARTS).map((part) => _in_powers(stages, part)));
+  return new GaussPoints([...roots].map((x) => py.add(0.5, py.mul(0.5, x))), integrals, py.range(stages).map((i) => py.range(stages).map((j) => py.eq(i, j) ? 1.0 : 0.0)), terms, py.range(PARTS).map((part) => _in_powers(stages, part)));
 }
 
 /** Legendre's polynomials of degrees 0 to `count`. */
@@ -3406,7 +3407,7 @@ const [FIRST, LEAST] = [0.6, 0.005];
 const [ENOUGH, MOST_of_slipping] = [1e-28, 50];
 const ACCURACY_of_slipping = 1e-22;
 const BEYOND = 1.1;
-const LOOKS_of_slipping = 6;
+const [DIP, NONE] = [0.1, 1e-11];
 const [PRESSED, CLEAR] = [0.1, 0.01];
 const [LONGER, SHORTER_of_slipping, SHORTEST, SAFETY] = [1.5, 0.7, 0.3, 0.9];
 const TINY_of_slipping = 1e-300;
@@ -3461,7 +3462,11 @@ const machinery_of = py.cached((top, ending) => {
 
 /** Rows of numbers that are the same at every point. */
 function rows_of(numbers) {
-  return [...numbers].flatMap((number) => py.range(STAGES).map((_) => number));
+  var found = py.list();
+  for (var number of numbers) {
+    found = py.add(found, py.mul([number], STAGES));
+  }
+  return found;
 }
 
 /** A step of collocation. */
@@ -3492,10 +3497,10 @@ class SlipStep extends py.Thing {
   get error() {
     return py.float(py.item(this.rows, py.len(this.rows) - 1));
   }
-  /** Whether there is slip at every point of it. */
-  get slips() {
+  /** S at its points. */
+  get speeds() {
     var first = py.mul(py.add(this.layout.size, 1), STAGES);
-    return py.bool(py.min(py.slice(this.found, first, py.add(first, STAGES), null)) > 0.0);
+    return [...py.slice(this.found, first, py.add(first, STAGES), null)];
   }
   /** The direction at its last point. */
   get last_way() {
@@ -3531,15 +3536,25 @@ class SlipStep extends py.Thing {
     return [py.add(py.mul(x, xi[0]), py.mul(y, xi[1])), ...py.zip(...rows).map(([a, b]) => py.add(py.mul(x, a), py.mul(y, b)))];
   }
   /** After how many parts of it slip ends, that is xi at its start; None if that is not told. */
-  end_of_slip(xi) {
-    var [found, way, now] = [py.list(), this.last_way, py.list(xi)];
-    var first = py.mul(this.layout.free, STAGES);
+  end_of_slip(xi, speeds) {
+    var below = py.enumerate(speeds).filter(([number, speed]) => speed <= 0.0).map(([number, speed]) => number);
+    var point = py.truth(below) ? below[0] : STAGES;
+    if (point === 0) {
+      return null;
+    }
+    var [way, now, first] = [this.last_way, py.list(xi), py.mul(this.layout.free, STAGES)];
+    var polynomials = py.list();
     for (var number = 0; number < PARTS; number += 1) {
-      found.push(this.speed(number, now, way));
+      polynomials.push(this.speed(number, now, way));
       var changes = this.part(number).slice(first);
       now = py.enumerate(now).map(([i, a]) => py.add(a, py.sum(py.slice(changes, py.mul(i, STAGES), py.mul(py.add(i, 1), STAGES), null))));
     }
-    return first_zero(found);
+    var speed = (place) => {
+      var number = py.min(py.int(place), py.sub(PARTS, 1));
+      return py.float(horner(py.item(polynomials, number), py.sub(place, number)));
+    };
+    var high = point < STAGES ? py.item(GAUSS.places, point) : 1.0;
+    return crossing(speed, py.mul(PARTS, py.item(GAUSS.places, py.sub(point, 1))), py.mul(PARTS, high));
   }
 }
 
@@ -3549,15 +3564,15 @@ function slip_phase(y, way, top, ending, longest, pulls) {
   var [now, length, free] = [[...y, ...[...way].map((_) => 0.0)], FIRST, py.len(y)];
   var [knots, rows, ended] = [[0.0], py.list(), false];
   while (!py.truth(ended) && py.item(knots, -1) < longest && size(py.tuple(now.slice(free))) < APART) {
-    var [begin, known] = [py.item(knots, -1), py.len(rows)];
+    var [begin, known, before] = [py.item(knots, -1), py.len(rows), now];
     length = py.min(length, py.sub(longest, begin));
     var solved = step.solve(now, way, length);
     var factor = py.truth(solved) ? py.mul(SAFETY, py.pow(py.div(ACCURACY_of_slipping, py.add(step.error, TINY_of_slipping)), py.div(0.5, STAGES))) : 0.0;
     var after = py.zip(now, step.changes).map(([a, b]) => py.add(a, b));
-    var last = step.last_way;
-    var lasts = py.and(step.slips, () => py.add(py.mul(py.item(after, free), last[0]), py.mul(py.item(after, free + 1), last[1])) > 0.0);
-    var part = py.truth(lasts) || factor < SAFETY ? py.float(PARTS) : step.end_of_slip(now.slice(free));
-    if (factor < SAFETY || part === null) {
+    var [last, speeds] = [step.last_way, step.speeds];
+    var lasts = py.and(py.min(speeds) > 0.0, () => py.add(py.mul(py.item(after, free), last[0]), py.mul(py.item(after, free + 1), last[1])) > 0.0);
+    var part = py.truth(lasts) || factor < SAFETY ? py.float(PARTS) : step.end_of_slip(now.slice(free), speeds);
+    if (factor < SAFETY || part === null || py.truth(dips(speeds))) {
       length = py.mul(length, py.max(py.min(factor, SHORTER_of_slipping), SHORTEST));
       if (length < LEAST) {
         break;
@@ -3578,6 +3593,9 @@ function slip_phase(y, way, top, ending, longest, pulls) {
     if (py.truth(ended)) {
       for (var row of rows.slice(known)) {
         now = py.enumerate(now).map(([i, a]) => py.add(a, py.sum(py.slice(row, py.mul(i, STAGES), py.mul(py.add(i, 1), STAGES), null))));
+      }
+      if (!(size(py.tuple(now.slice(free))) < NONE)) {
+        return new SlipPhase(py.slice(knots, null, known + 1, null), rows.slice(0, known), before, false, step.sweeps);
       }
     } else {
       if (py.eq(length, py.sub(longest, begin))) {
@@ -3613,24 +3631,10 @@ function parts_left(terms) {
   return rest > 0.0 ? py.div(py.mul(2.0, value), py.add(py.neg(slope), py.pow(rest, 0.5))) : py.div(py.neg(slope), bend);
 }
 
-/** Where a function that is a polynomial in each of some parts first falls to zero, counted in parts. */
-function first_zero(parts) {
-  for (var [number, terms] of py.enumerate(parts)) {
-    for (var look = 0; look < LOOKS_of_slipping; look += 1) {
-      if (horner(terms, py.div(look + 1, LOOKS_of_slipping)) <= 0.0) {
-        if (number === 0 && look === 0) {
-          return null;
-        }
-        return py.add(number, _zero(terms, py.div(look, LOOKS_of_slipping), py.div(look + 1, LOOKS_of_slipping)));
-      }
-    }
-  }
-  return null;
-}
-
-/** Zero of a polynomial between two places where its signs differ. */
-function _zero(terms, low, high) {
-  return crossing((part) => py.float(horner(terms, part)), low, high);
+/** Whether s comes near zero within a step, perhaps to it between two points. */
+function dips(speeds) {
+  var least = py.min(py.slice(speeds, 1, py.sub(STAGES, 1), null));
+  return py.and(py.min(speeds[0], py.item(speeds, py.sub(STAGES, 1))) > least, () => 0.0 < least && least < py.mul(DIP, py.max(speeds)));
 }
 
 // tippetop.mechanics.direction
@@ -9027,6 +9031,7 @@ export {
   DEGREE_of_series_roots,
   DIFFERENCE,
   DIGITS,
+  DIP,
   DIRECTED,
   DRILLING,
   Disc,
@@ -9114,7 +9119,6 @@ export {
   LOOKS_of_bodies,
   LOOKS_of_dormand_prince,
   LOOKS_of_passing,
-  LOOKS_of_slipping,
   LOST,
   Launch,
   Loosening,
@@ -9143,6 +9147,7 @@ export {
   NEITHER,
   NEWTON,
   NEWTON_of_integrated_impact,
+  NONE,
   NORTH,
   NOTHING,
   NOT_FINITE,
@@ -9382,7 +9387,6 @@ export {
   _unknown,
   _without_rolling,
   _written,
-  _zero,
   acting,
   add,
   advance,
@@ -9429,6 +9433,7 @@ export {
   crossing,
   derivative_of,
   dip,
+  dips,
   directions,
   directions_of,
   dot,
@@ -9447,7 +9452,6 @@ export {
   first_reach,
   first_root,
   first_step,
-  first_zero,
   flat,
   fly,
   fold,

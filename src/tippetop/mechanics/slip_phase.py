@@ -46,6 +46,8 @@ class Values(Protocol):
 class GaussPoints(NamedTuple):
     """Gauss's points in a step of length 1, and what belongs to them."""
 
+    places: list[float]
+    """The points."""
     integrals: list[list[float]]
     """Integrals of Lagrange's polynomial of every point, from 0 to each."""
     units: list[list[float]]
@@ -74,6 +76,7 @@ def gauss_points(stages: int) -> GaussPoints:
         for j in range(stages)
     ]
     return GaussPoints(
+        [0.5 + 0.5 * x for x in roots],
         integrals,
         [[1.0 if i == j else 0.0 for j in range(stages)] for i in range(stages)],
         terms,
