@@ -47,7 +47,7 @@ class Run {
   piece(mode, solution, label = mode.label) {
     const { size, degree } = solution, read = reader(mode, size), of = read(rates, RATES), numbers = new Float64Array(size);
     const look = (step, part, pole = 1) => of(solution.numbers(step, part, numbers), pole);
-    const piece = { solution, label, read, look, sums: [], poles: [], rule: mode.touching && degree > 7 ? GAUSS[8] : GAUSS[4] };
+    const piece = { solution, label, read, look, numbers, sums: [], poles: [], rule: mode.touching && degree > 7 ? GAUSS[8] : GAUSS[4] };
     this.pieces.push(piece);
     return piece;
   }
@@ -58,7 +58,7 @@ class Run {
     this.steps += segment.steps;
     if (!mode.touching) this.fly(segment);
     for (let step = 0; step < solution.count; step += 1) {
-      this.monitor(known(solution.numbers(step, 0)));
+      this.monitor(known(solution.numbers(step, 0, piece.numbers)));
       this.sum(piece, step, mode.touching && !this.hops.length);
       this.tip(solution, step);
       if (!mode.touching) this.rise(solution, step);
@@ -71,7 +71,7 @@ class Run {
   /** Take in the height of the centre of mass in a flight. */
   rise(solution, step) {
     if (solution.start(step, 9) + solution.reach(step, 9) <= this.highest) return;
-    this.highest = Math.max(this.highest, -least((part) => -solution.value(step, 9, part)));
+    this.highest = -least((part) => -solution.value(step, 9, part), -this.highest);
   }
 
   fly(segment) {
@@ -81,14 +81,14 @@ class Run {
   }
 
   /** See that energy and work balance where a step begins, and what else the motion keeps. */
-  monitor([x, y, z, height, energy, jellett]) {
-    const { off } = this;
+  monitor(out) {
+    const { off } = this, x = out[0], y = out[1], z = out[2], energy = out[4], jellett = out[5];
     off.imbalance = Math.max(off.imbalance, Math.abs(energy - this.energy - this.sums[WORK]));
     off.largest = Math.max(off.largest, energy);
     off.stretch = Math.max(off.stretch, Math.abs(Math.sqrt(x * x + y * y + z * z) - 1));
     off.least = Math.min(off.least, jellett);
     off.most = Math.max(off.most, jellett);
-    if (this.top.surface instanceof m.Hull) off.sunk = Math.max(off.sunk, m.outer_height(this.top.surface, z) - height);
+    if (this.top.surface instanceof m.Hull) off.sunk = Math.max(off.sunk, m.outer_height(this.top.surface, z) - out[3]);
   }
 
   /** Integrate along a step; and see how small the normal force is. */
@@ -236,13 +236,17 @@ class Run {
 
 const PLACES = Array.from({ length: LOOKS + 1 }, (_, look) => look / LOOKS);
 
-/** The least value of a function on [0, 1], or one known: by golden section about the least of some looks. */
+/** The least value of a function on [0, 1], or one known: by parabolas about the least of some looks. */
 function least(value, known = Infinity) {
-  const looks = PLACES.map(value), found = Math.min(...looks), at = looks.indexOf(found), varies = Math.max(...looks) - found;
-  if (found - 0.1 * varies > known) return known;
-  // What it looks for ends where it is not positive.
-  const above = (x) => value(x) - found + varies;
-  return Math.min(known, found, m.dip(above, PLACES[Math.max(at - 1, 0)], PLACES[Math.min(at + 1, LOOKS)])[1] + found - varies);
+  const looks = PLACES.map(value);
+  let best = Math.min(...looks), x = PLACES[looks.indexOf(best)];
+  if (best - 0.1 * (Math.max(...looks) - best) > known) return known;
+  for (let h = 1 / LOOKS; h > 1e-5; h *= 0.02) {
+    const [before, here, after] = [value(x - h), value(x), value(x + h)], bend = before - 2 * here + after;
+    best = Math.min(best, here);
+    if (bend > 0) x = Math.min(Math.max(x + (0.5 * h * (before - after)) / bend, 0), 1);
+  }
+  return Math.min(known, best, value(x));
 }
 
 /** Where a function on [0, 1] first falls to zero from above; nan where it does not. */

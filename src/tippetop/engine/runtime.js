@@ -95,15 +95,11 @@ const and_ = (a, other) => (truth(a) ? other() : a);
 export { or_ as or, and_ as and };
 
 export const math = {
+  __proto__: Math,
   pi: Math.PI,
   inf: Infinity,
   nan: NaN,
-  sin: Math.sin,
-  cos: Math.cos,
-  atan2: Math.atan2,
-  acos: Math.acos,
-  log: Math.log,
-  expm1: Math.expm1,
+  factorial: (count) => (count > 1 ? count * math.factorial(count - 1) : 1),
   isfinite: Number.isFinite,
   isinf: (x) => Math.abs(x) === Infinity,
   exp: (x) => finite(Math.exp(x), x),
@@ -133,12 +129,9 @@ class Factored extends Float64Array {
 
 /** What is asked of NumPy: arrays to be filled, those of more dimensions as lists of arrays; and numbers for arrays. */
 export const np = {
+  __proto__: Math,
   pi: Math.PI,
   nan: NaN,
-  abs: Math.abs,
-  sin: Math.sin,
-  cos: Math.cos,
-  hypot: Math.hypot,
   arctan2: Math.atan2,
   minimum: Math.min,
   maximum: Math.max,
@@ -149,8 +142,8 @@ export const np = {
   stack: (parts) => Factored.from(parts),
   empty(shape) {
     if (typeof shape === "number") return new Float64Array(shape);
-    let rows = Array.from({ length: shape.slice(0, -1).reduce((a, b) => a * b) }, () => new Float64Array(shape.at(-1)));
-    if (shape.length > 2) rows = Array.from({ length: shape[0] }, (_, i) => rows.slice(i * shape[1], (i + 1) * shape[1]));
+    const [count, more, wide] = shape, rows = new Array(count);
+    for (let i = 0; i < count; i += 1) rows[i] = wide === undefined ? new Float64Array(more) : np.empty([more, wide]);
     return rows;
   },
   concatenate: ([a, b]) => (Array.isArray(a) ? [...a, ...b] : Float64Array.of(...a, ...b)),
