@@ -35,28 +35,29 @@ function made(recorded) {
 }
 
 const OPERATIONS = {
-  "+": (a, b) => a + b,
-  "-": (a, b) => a - b,
-  "*": (a, b) => a * b,
-  "/": (a, b) => a / b,
-  negative: (a) => -a,
-  less: (a, b) => (a < b ? 1 : 0),
-  select: (condition, a, b) => (condition !== 0 ? a : b),
+  "+": (v, to, a, b) => () => { v[to] = v[a] + v[b]; },
+  "-": (v, to, a, b) => () => { v[to] = v[a] - v[b]; },
+  "*": (v, to, a, b) => () => { v[to] = v[a] * v[b]; },
+  "/": (v, to, a, b) => () => { v[to] = v[a] / v[b]; },
+  negative: (v, to, a) => () => { v[to] = -v[a]; },
+  sqrt: (v, to, a) => () => { v[to] = Math.sqrt(v[a]); },
+  less: (v, to, a, b) => () => { v[to] = v[a] < v[b] ? 1 : 0; },
+  select: (v, to, condition, a, b) => () => { v[to] = v[condition] !== 0 ? v[a] : v[b]; },
 };
+const elementary = (name) => (v, to, a, b = a) => () => { v[to] = Math[name](v[a], v[b]); };
 
 /** What is recorded, operation by operation: where pages may not make code, as some servers' policies have it. */
 function interpreted({ nodes, outputs }) {
   const values = new Float64Array(nodes.at(-1).place + 1), steps = [], given = [];
   for (const { name, place, value, operands } of nodes) {
-    const [a, b, c] = operands.map((operand) => operand.place);
-    if (operands.length) steps.push({ of: OPERATIONS[name] ?? Math[name], place, a, b: b ?? a, c: c ?? a });
+    if (operands.length) steps.push((OPERATIONS[name] ?? elementary(name))(values, place, ...operands.map((one) => one.place)));
     else if (name === "constant") values[place] = value;
     else given.push({ name, place, value });
   }
   return (y, p, out) => {
     for (const { name, place, value } of given) values[place] = (name === "y" ? y : p)[value];
-    for (const { of, place, a, b, c } of steps) values[place] = of(values[a], values[b], values[c]);
-    outputs.forEach(({ place }, i) => (out[i] = values[place]));
+    for (let i = 0; i < steps.length; i += 1) steps[i]();
+    for (let i = 0; i < outputs.length; i += 1) out[i] = values[outputs[i].place];
   };
 }
 
