@@ -128,6 +128,6 @@ def llvm_source(functions: Mapping[str, Recorded], abreast: int, *, again: bool 
                 else {"name": "out", "row": number - replaced}
             )
             lines.append(STORE.format(known[node.place], t=f"%out{number}", **row, **words))
-        last = known[recorded.outputs[-1].place]
+        last = known[recorded.outputs[-1].place] if again else ""
         parts.append(frame.format(name=name, body="\n  ".join(lines), last=last, **words))
     return "".join(parts)
