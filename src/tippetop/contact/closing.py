@@ -60,10 +60,11 @@ def followed(
     first = next(iter(integrator.integrate(motion, parameters, start, LONGEST)))
     if first.guard is not None or first.failure is not None or first.solution.end >= LONGEST:
         return [first]
-    arcs: list[Arc] = []
-    for arc in make_integrator("radau", STIFF_TOLERANCE).integrate(motion, parameters, start, LONGEST):
+    # It goes on from there: about the start, next to the branch of a law, its trials may have no solution.
+    arcs, onwards = [first], (first.solution.end, first.end_state)
+    for arc in make_integrator("radau", STIFF_TOLERANCE).integrate(motion, parameters, onwards, LONGEST):
         arcs.append(arc)
-        if arc.guard is None and sum(one.steps for one in arcs) >= MOST_STEPS:
+        if arc.guard is None and sum(one.steps for one in arcs[1:]) >= MOST_STEPS:
             arcs[-1] = replace(arc, failure="slip, or rolling, takes too many steps to end")
             break
     return arcs

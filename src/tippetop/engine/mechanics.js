@@ -2913,10 +2913,10 @@ function followed(integrator, motion, parameters, start) {
   if (first.guard !== null || first.failure !== null || first.solution.end >= LONGEST) {
     return [first];
   }
-  var arcs = [];
-  for (var arc of make_integrator("radau", STIFF_TOLERANCE).integrate(motion, parameters, start, LONGEST)) {
+  var [arcs, onwards] = [[first], [first.solution.end, first.end_state]];
+  for (var arc of make_integrator("radau", STIFF_TOLERANCE).integrate(motion, parameters, onwards, LONGEST)) {
     arcs.push(arc);
-    if (arc.guard === null && py.sum([...arcs].map((one) => one.steps)) >= MOST_STEPS_of_closing) {
+    if (arc.guard === null && py.sum([...arcs.slice(1)].map((one) => one.steps)) >= MOST_STEPS_of_closing) {
       py.put(arcs, -1, py.replace(arc, { failure: "slip, or rolling, takes too many steps to end" }));
       break;
     }
