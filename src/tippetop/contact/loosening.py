@@ -82,7 +82,7 @@ class Loosening(Passing):
         else:
             mode = Outcome.COMPLETED if reach >= end else self.rules.going_on(last, slips=True)
             then = Transition((), mode, last)
-        return Segment(self, solution, last, then, len(phase.rows), phase.sweeps)
+        return Segment(self, solution, last, then, len(phase.knots) - 1, phase.sweeps)
 
     def _directed(self, state: State) -> "tuple[Loosening, tuple[float, ...], float]":
         """The mode on its law's branch, the direction of what begins, and how long it lasts at most.

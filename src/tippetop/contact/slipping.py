@@ -6,7 +6,17 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 from tippetop.contact.surfaces import clearance
-from tippetop.integrators.iteration import Iteration, copied, iterated, put_from, room
+from tippetop.integrators.base import Array
+from tippetop.integrators.iteration import (
+    Iteration,
+    change_over,
+    copied,
+    iterated,
+    pieces_of,
+    put_from,
+    put_rows,
+    room,
+)
 from tippetop.mechanics.ending import Vanishing
 from tippetop.mechanics.hull import Hull
 from tippetop.mechanics.rolling import Slip
@@ -23,7 +33,7 @@ from tippetop.mechanics.slip_phase import (
     step_terms,
     sweep,
 )
-from tippetop.mechanics.stick_slip import APART, scaled, size
+from tippetop.mechanics.stick_slip import APART, inner, scaled, size
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import Scalar
 
@@ -63,9 +73,9 @@ class SlipPhase(NamedTuple):
 
     knots: list[float]
     """Ends of pieces since then."""
-    rows: list[list[float]]
-    """Of every piece the coefficients of y and xi in powers of what has passed of it, from the first on, one
-    number's after the other's."""
+    rows: list[Array]
+    """Of the pieces of every step the coefficients of y and xi in powers of what has passed of each, from the
+    first on, in a row."""
     last: list[float]
     """y and xi where that ends."""
     ended: bool
@@ -134,13 +144,12 @@ class SlipStep:
 
     def solve(self, now: Sequence[float], way: Slip, length: float) -> bool:
         """Find what solves the equations of a step of some length; tell whether that is found."""
-        begin, lengths = rows_of(now), [length] * STAGES
-        put_from(self.given, 0, begin + lengths)
-        put_from(self.unknowns, 0, begin[: self.layout.free * STAGES] + rows_of(way))
+        put_rows(self.given, 0, [*now, length], STAGES)
+        put_rows(self.unknowns, 0, [*now[: self.layout.free], *way], STAGES)
         self.sweeps += self.machinery.better(self.unknowns, self.given, self.found, ENOUGH, MOST)
         if not self.found[len(self.found) - 1] < ENOUGH:
             return False
-        put_from(self.measured, 0, lengths)
+        put_rows(self.measured, 0, [length], STAGES)
         self.machinery.terms(self.found, self.measured, self.rows, 0.0, 1)
         return True
 
@@ -167,10 +176,9 @@ class SlipStep:
         first = PARTS * self.layout.size * STAGES
         return [*self.rows[first : first + self.layout.size * STAGES : STAGES]]
 
-    def part(self, number: int) -> list[float]:
-        """Coefficients of y and xi in a part of it."""
-        wide = self.layout.size * STAGES
-        return [*self.rows[number * wide : (number + 1) * wide]]
+    def pieces(self, parts: float) -> Array:
+        """Coefficients of y and xi in so many of its parts, of the last of which it may be a share."""
+        return pieces_of(self.rows, self.layout.size, STAGES, parts)
 
     def goes_on(self, top: Top, *, pulls: bool) -> bool:
         """Whether no other surface comes near the table, and that is far from pulling if it may not."""
@@ -181,25 +189,24 @@ class SlipStep:
         first = self.layout.size * STAGES
         return pulls or bool(min(self.found[first : first + STAGES]) > PRESSED)
 
-    def speed(self, number: int, xi: Sequence[float], way: Slip) -> list[float]:
-        """Coefficients of s in a part of it, at whose start xi is this; beyond slip s is less than zero."""
+    def speed(self, number: int, begin: float, way: Slip) -> list[float]:
+        """Coefficients of s in a part of it, at whose start it is this; beyond slip s is less than zero."""
         first = (number * self.layout.size + self.layout.free) * STAGES
         rows = self.rows[first : first + STAGES], self.rows[first + STAGES : first + 2 * STAGES]
         x, y = way
-        return [x * xi[0] + y * xi[1], *[x * a + y * b for a, b in zip(*rows, strict=True)]]
+        return [begin, *[x * a + y * b for a, b in zip(*rows, strict=True)]]
 
-    def end_of_slip(self, xi: Sequence[float], speeds: Sequence[float]) -> float | None:
+    def end_of_slip(self, xi: Slip, speeds: Sequence[float]) -> float | None:
         """After how many parts of it slip ends, that is xi at its start; None if that is not told."""
         below = [number for number, speed in enumerate(speeds) if speed <= 0.0]
         point = below[0] if below else STAGES
         if point == 0:
             return None
-        way, now, first = self.last_way, list(xi), self.layout.free * STAGES
-        polynomials = list[list[float]]()
+        way, polynomials = self.last_way, list[list[float]]()
+        begin = inner(xi, way)
         for number in range(PARTS):
-            polynomials.append(self.speed(number, now, way))
-            changes = self.part(number)[first:]
-            now = [a + sum(changes[i * STAGES : (i + 1) * STAGES]) for i, a in enumerate(now)]
+            polynomials.append(self.speed(number, begin, way))
+            begin = sum(polynomials[number])
 
         def speed(place: float) -> float:
             number = min(int(place), PARTS - 1)
@@ -231,16 +238,16 @@ def slip_phase(
     """
     step = SlipStep(top, ending)
     now, length, free = [*y, *[0.0 for _ in way]], FIRST, len(y)
-    knots, rows, ended = [0.0], list[list[float]](), False
+    knots, rows, ended = [0.0], list[Array](), False
     while not ended and knots[-1] < longest and size(tuple(now[free:])) < APART:
-        begin, known, before = knots[-1], len(rows), now
+        begin, known, before = knots[-1], len(knots), now
         length = min(length, longest - begin)
         solved = step.solve(now, way, length)
         factor = SAFETY * (ACCURACY / (step.error + TINY)) ** (0.5 / STAGES) if solved else 0.0
         after = [a + b for a, b in zip(now, step.changes, strict=True)]
         last, speeds = step.last_way, step.speeds
         lasts = min(speeds) > 0.0 and after[free] * last[0] + after[free + 1] * last[1] > 0.0
-        part = float(PARTS) if lasts or factor < SAFETY else step.end_of_slip(now[free:], speeds)
+        part = float(PARTS) if lasts or factor < SAFETY else step.end_of_slip(tuple(now[free:]), speeds)
         if factor < SAFETY or part is None or dips(speeds):
             length *= max(min(factor, SHORTER), SHORTEST)
             if length < LEAST:
@@ -249,33 +256,23 @@ def slip_phase(
         if not step.goes_on(top, pulls=pulls):
             break
         ended = not lasts
-        for number in range(PARTS):
-            if part > number:
-                share = min(part - number, 1.0)
-                rows.append(shortened(step.part(number), share))
-                knots.append(begin + length * ((number + share) / PARTS))
+        pieces = step.pieces(part)
+        ends = [min(part, number + 1.0) / PARTS for number in range(PARTS) if part > number]
+        knots += [begin + length * end for end in ends]
         if ended:
-            for row in rows[known:]:
-                now = [a + sum(row[i * STAGES : (i + 1) * STAGES]) for i, a in enumerate(now)]
+            now = [a + b for a, b in zip(now, change_over(pieces, len(now), STAGES), strict=True)]
             if not size(tuple(now[free:])) < NONE:
                 # Its direction turned by so much that it ends elsewhere.
-                return SlipPhase(knots[: known + 1], rows[:known], before, False, step.sweeps)
+                return SlipPhase(knots[:known], rows, before, False, step.sweeps)
         else:
             if length == longest - begin:
                 knots[len(knots) - 1] = longest
             now, way = after, scaled(1.0 / size(tuple(after[free:])), tuple(after[free:]))
-            speed = step.speed(PARTS - 1, after[free:], last)
-            speed[0] -= sum(speed[1:])
+            speed = step.speed(PARTS - 1, 0.0, last)
+            speed[0] = inner(tuple(after[free:]), last) - sum(speed)
             length = min(length * min(factor, LONGER), BEYOND * length / PARTS * parts_left(speed))
+        rows.append(pieces)
     return SlipPhase(knots, rows, now, ended, step.sweeps)
-
-
-def shortened(rows: list[float], share: float) -> list[float]:
-    """Coefficients in powers of a share of what they were in powers of, from the first on."""
-    if share == 1.0:
-        return rows
-    powers = [share ** (k + 1) for k in range(STAGES)] * (len(rows) // STAGES)
-    return [number * power for number, power in zip(rows, powers, strict=True)]
 
 
 def parts_left(terms: Sequence[float]) -> float:

@@ -65,6 +65,26 @@ export const room = (count) => new Float64Array(count);
 export const copied = (numbers) => numbers.slice();
 export const put_from = (numbers, first, values) => numbers.set(values, first);
 
+/** Put values into room for numbers, from one of them on, each for as many as there are abreast. */
+export function put_rows(numbers, first, values, abreast) {
+  values.forEach((value, i) => numbers.fill(value, (first + i) * abreast, (first + i + 1) * abreast));
+}
+
+/** The first of some pieces of polynomials, of which the last may be a share. */
+export function pieces_of(numbers, size, degree, count) {
+  const whole = Math.ceil(count), share = count - (whole - 1), found = numbers.slice(0, whole * size * degree);
+  if (count === whole) return found;
+  for (let at = (whole - 1) * size * degree; at < found.length; at += 1) found[at] *= share ** (1 + at % degree);
+  return found;
+}
+
+/** By how much numbers change over pieces. */
+export function change_over(pieces, size, degree) {
+  const found = new Array(size).fill(0);
+  pieces.forEach((term, at) => (found[Math.floor(at / degree) % size] += term));
+  return found;
+}
+
 /** A function that makes numbers, of some values each, better again and again: see tippetop.integrators.iteration. */
 export function iterated(function_, size, parameters, abreast) {
   const values = new NodeValues(), recorded = unrolled(record((y, p) => function_(y, p, values), size, parameters), abreast);

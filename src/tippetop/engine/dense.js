@@ -123,15 +123,14 @@ export class DenseSolution {
     return new DenseSolution(knots.slice(0, count + 1), terms, size, wide - 1);
   }
 
-  /** Steps whose coefficients from the first on lie in a row, from the numbers with which they begin. */
+  /** Steps whose coefficients from the first on lie in rows, from the numbers with which they begin. */
   static of_rows(knots, start, rows) {
-    const size = start.length, degree = rows[0].length / size, terms = [], now = [...start];
-    for (const row of rows) {
-      for (let i = 0; i < size; i += 1) {
-        const later = row.slice(i * degree, (i + 1) * degree);
-        terms.push(now[i], ...later);
-        now[i] += later.reduce((a, b) => a + b);
-      }
+    const size = start.length, terms = [], now = [...start], later = rows.flatMap((row) => [...row]);
+    const degree = later.length / size / (knots.length - 1);
+    for (let at = 0, i = 0; at < later.length; at += degree, i = (i + 1) % size) {
+      const some = later.slice(at, at + degree);
+      terms.push(now[i], ...some);
+      now[i] += some.reduce((a, b) => a + b);
     }
     return new DenseSolution(knots, Float64Array.from(terms), size, degree);
   }

@@ -2,7 +2,7 @@
 import * as py from "./runtime.js";
 import { DenseSolution, ELEMENTARY, as_array } from "./dense.js";
 import { make_integrator } from "./integrate.js";
-import { copied, iterated, put_from, room } from "./compile.js";
+import { change_over, copied, iterated, pieces_of, put_from, put_rows, room } from "./compile.js";
 import { InvalidInput, MISSING, Part, numbers_of } from "./part.js";
 import { NEAR_FINAL } from "./tables.js";
 import { highest_between, lowest_contact_vector, lowest_jellett } from "./observe.js";
@@ -3482,14 +3482,13 @@ class SlipStep extends py.Thing {
   }
   /** Find what solves the equations of a step of some length; tell whether that is found. */
   solve(now, way, length) {
-    var [begin, lengths] = [rows_of(now), py.mul([length], STAGES)];
-    put_from(this.given, 0, py.add(begin, lengths));
-    put_from(this.unknowns, 0, py.add(py.slice(begin, null, py.mul(this.layout.free, STAGES), null), rows_of(way)));
+    put_rows(this.given, 0, [...now, length], STAGES);
+    put_rows(this.unknowns, 0, [...now.slice(0, this.layout.free), ...way], STAGES);
     this.sweeps = py.add(this.sweeps, this.machinery.better(this.unknowns, this.given, this.found, ENOUGH, MOST_of_slipping));
     if (!(py.item(this.found, py.len(this.found) - 1) < ENOUGH)) {
       return false;
     }
-    put_from(this.measured, 0, lengths);
+    put_rows(this.measured, 0, [length], STAGES);
     this.machinery.terms(this.found, this.measured, this.rows, 0.0, 1);
     return true;
   }
@@ -3512,10 +3511,9 @@ class SlipStep extends py.Thing {
     var first = py.mul(py.mul(PARTS, this.layout.size), STAGES);
     return [...py.slice(this.rows, first, py.add(first, py.mul(this.layout.size, STAGES)), STAGES)];
   }
-  /** Coefficients of y and xi in a part of it. */
-  part(number) {
-    var wide = py.mul(this.layout.size, STAGES);
-    return [...py.slice(this.rows, py.mul(number, wide), py.mul(number + 1, wide), null)];
+  /** Coefficients of y and xi in so many of its parts, of the last of which it may be a share. */
+  pieces(parts) {
+    return pieces_of(this.rows, this.layout.size, STAGES, parts);
   }
   /** Whether no other surface comes near the table, and that is far from pulling if it may not. */
   goes_on(top, pulls) {
@@ -3528,12 +3526,12 @@ class SlipStep extends py.Thing {
     var first = py.mul(this.layout.size, STAGES);
     return py.or(pulls, () => py.bool(py.min(py.slice(this.found, first, py.add(first, STAGES), null)) > PRESSED));
   }
-  /** Coefficients of s in a part of it, at whose start xi is this; beyond slip s is less than zero. */
-  speed(number, xi, way) {
+  /** Coefficients of s in a part of it, at whose start it is this; beyond slip s is less than zero. */
+  speed(number, begin, way) {
     var first = py.mul(py.add(py.mul(number, this.layout.size), this.layout.free), STAGES);
     var rows = [py.slice(this.rows, first, py.add(first, STAGES), null), py.slice(this.rows, py.add(first, STAGES), py.add(first, py.mul(2, STAGES)), null)];
     var [x, y] = way;
-    return [py.add(py.mul(x, xi[0]), py.mul(y, xi[1])), ...py.zip(...rows).map(([a, b]) => py.add(py.mul(x, a), py.mul(y, b)))];
+    return [begin, ...py.zip(...rows).map(([a, b]) => py.add(py.mul(x, a), py.mul(y, b)))];
   }
   /** After how many parts of it slip ends, that is xi at its start; None if that is not told. */
   end_of_slip(xi, speeds) {
@@ -3542,12 +3540,11 @@ class SlipStep extends py.Thing {
     if (point === 0) {
       return null;
     }
-    var [way, now, first] = [this.last_way, py.list(xi), py.mul(this.layout.free, STAGES)];
-    var polynomials = py.list();
+    var [way, polynomials] = [this.last_way, py.list()];
+    var begin = inner(xi, way);
     for (var number = 0; number < PARTS; number += 1) {
-      polynomials.push(this.speed(number, now, way));
-      var changes = this.part(number).slice(first);
-      now = py.enumerate(now).map(([i, a]) => py.add(a, py.sum(py.slice(changes, py.mul(i, STAGES), py.mul(py.add(i, 1), STAGES), null))));
+      polynomials.push(this.speed(number, begin, way));
+      begin = py.sum(py.item(polynomials, number));
     }
     var speed = (place) => {
       var number = py.min(py.int(place), py.sub(PARTS, 1));
@@ -3564,14 +3561,14 @@ function slip_phase(y, way, top, ending, longest, pulls) {
   var [now, length, free] = [[...y, ...[...way].map((_) => 0.0)], FIRST, py.len(y)];
   var [knots, rows, ended] = [[0.0], py.list(), false];
   while (!py.truth(ended) && py.item(knots, -1) < longest && size(py.tuple(now.slice(free))) < APART) {
-    var [begin, known, before] = [py.item(knots, -1), py.len(rows), now];
+    var [begin, known, before] = [py.item(knots, -1), py.len(knots), now];
     length = py.min(length, py.sub(longest, begin));
     var solved = step.solve(now, way, length);
     var factor = py.truth(solved) ? py.mul(SAFETY, py.pow(py.div(ACCURACY_of_slipping, py.add(step.error, TINY_of_slipping)), py.div(0.5, STAGES))) : 0.0;
     var after = py.zip(now, step.changes).map(([a, b]) => py.add(a, b));
     var [last, speeds] = [step.last_way, step.speeds];
     var lasts = py.and(py.min(speeds) > 0.0, () => py.add(py.mul(py.item(after, free), last[0]), py.mul(py.item(after, free + 1), last[1])) > 0.0);
-    var part = py.truth(lasts) || factor < SAFETY ? py.float(PARTS) : step.end_of_slip(now.slice(free), speeds);
+    var part = py.truth(lasts) || factor < SAFETY ? py.float(PARTS) : step.end_of_slip(py.tuple(now.slice(free)), speeds);
     if (factor < SAFETY || part === null || py.truth(dips(speeds))) {
       length = py.mul(length, py.max(py.min(factor, SHORTER_of_slipping), SHORTEST));
       if (length < LEAST) {
@@ -3583,40 +3580,26 @@ function slip_phase(y, way, top, ending, longest, pulls) {
       break;
     }
     ended = !py.truth(lasts);
-    for (var number = 0; number < PARTS; number += 1) {
-      if (part > number) {
-        var share = py.min(py.sub(part, number), 1.0);
-        rows.push(shortened(step.part(number), share));
-        knots.push(py.add(begin, py.mul(length, py.div(py.add(number, share), PARTS))));
-      }
-    }
+    var pieces = step.pieces(part);
+    var ends = py.range(PARTS).filter((number) => part > number).map((number) => py.div(py.min(part, py.add(number, 1.0)), PARTS));
+    knots = py.add(knots, [...ends].map((end) => py.add(begin, py.mul(length, end))));
     if (py.truth(ended)) {
-      for (var row of rows.slice(known)) {
-        now = py.enumerate(now).map(([i, a]) => py.add(a, py.sum(py.slice(row, py.mul(i, STAGES), py.mul(py.add(i, 1), STAGES), null))));
-      }
+      now = py.zip(now, change_over(pieces, py.len(now), STAGES)).map(([a, b]) => py.add(a, b));
       if (!(size(py.tuple(now.slice(free))) < NONE)) {
-        return new SlipPhase(py.slice(knots, null, known + 1, null), rows.slice(0, known), before, false, step.sweeps);
+        return new SlipPhase(knots.slice(0, known), rows, before, false, step.sweeps);
       }
     } else {
       if (py.eq(length, py.sub(longest, begin))) {
         py.put(knots, py.len(knots) - 1, longest);
       }
       [now, way] = [after, scaled(py.div(1.0, size(py.tuple(after.slice(free)))), py.tuple(after.slice(free)))];
-      var speed = step.speed(py.sub(PARTS, 1), after.slice(free), last);
-      py.put(speed, 0, py.sub(speed[0], py.sum(speed.slice(1))));
+      var speed = step.speed(py.sub(PARTS, 1), 0.0, last);
+      py.put(speed, 0, py.sub(inner(py.tuple(after.slice(free)), last), py.sum(speed)));
       length = py.min(py.mul(length, py.min(factor, LONGER)), py.mul(py.div(py.mul(BEYOND, length), PARTS), parts_left(speed)));
     }
+    rows.push(pieces);
   }
   return new SlipPhase(knots, rows, now, ended, step.sweeps);
-}
-
-/** Coefficients in powers of a share of what they were in powers of, from the first on. */
-function shortened(rows, share) {
-  if (share === 1.0) {
-    return rows;
-  }
-  var powers = py.mul(py.range(STAGES).map((k) => py.pow(share, py.add(k, 1))), py.floordiv(py.len(rows), STAGES));
-  return py.zip(rows, powers).map(([number, power]) => py.mul(number, power));
 }
 
 /** How far beyond 1 a polynomial is zero, by its value and two derivatives there. */
@@ -3888,7 +3871,7 @@ class Loosening extends Passing {
       var mode = reach >= end ? Outcome.COMPLETED : this.rules.going_on(last, true);
       then = new Transition([], mode, last);
     }
-    return new Segment(this, solution, last, then, py.len(phase.rows), phase.sweeps);
+    return new Segment(this, solution, last, then, py.len(phase.knots) - 1, phase.sweeps);
   }
   /** The mode on its law's branch, the direction of what begins, and how long it lasts at most. */
   _directed(state) {
@@ -9591,7 +9574,6 @@ export {
   settled,
   settling,
   short_step,
-  shortened,
   shown,
   size,
   sizes,

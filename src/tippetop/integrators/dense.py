@@ -119,12 +119,15 @@ class DenseSolution:
 
     @classmethod
     def of_rows(
-        cls, knots: Sequence[float], start: Sequence[float], rows: Sequence[Sequence[float]]
+        cls, knots: Sequence[float], start: Sequence[float], rows: Sequence[Array]
     ) -> "DenseSolution":
-        """Steps whose coefficients from the first on lie in a row, from the numbers with which they begin."""
-        later = np.array(rows).reshape(len(rows), len(start), -1)
-        begins = np.cumsum([np.array(start), *later[:-1].sum(axis=2)], axis=0)
-        return cls(np.array(knots), np.concatenate([begins[:, :, None], later], axis=2))
+        """Steps whose coefficients from the first on lie in rows, from the numbers with which they begin."""
+        later = np.concatenate(rows).reshape(len(knots) - 1, len(start), -1)
+        terms = np.empty((*later.shape[:2], later.shape[2] + 1))
+        terms[:, :, 1:], terms[0, :, 0] = later, start
+        terms[1:, :, 0] = later[:-1].sum(axis=2)
+        np.add.accumulate(terms[:, :, 0], axis=0, out=terms[:, :, 0])
+        return cls(np.array(knots), terms)
 
     @classmethod
     def standing(cls, numbers: Sequence[float], start: float, end: float) -> "DenseSolution":
