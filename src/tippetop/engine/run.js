@@ -14,7 +14,7 @@ const [WORST, ACCUMULATED, LEAST_MOMENT] = [1e-6, 1e4, 1e-6];
 const rates = (mode, y, pole) => m.Rates.of(mode, y, pole), RATES = 8, FORCE = 7;
 const [X, Y, TURN, WORK, DRILLED, ROLLED, STRUCK, SUMS] = [0, 1, 2, 3, 4, 5, 6, 7];
 
-/** Follow a launch; see the README beside. */
+/** Follow the launch of a problem (as JSON tells it) for a duration, s, at a relative error a step. */
 export function simulate(problem, { duration, tolerance = 1e-10, onProgress } = {}) {
   if (!(typeof duration === "number" && duration > 0 && duration <= LONGEST)) {
     throw new InvalidInput("duration", duration, "a number of seconds greater than 0, at most 1e+300");
