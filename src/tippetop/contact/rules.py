@@ -334,7 +334,8 @@ class FreeToFly(ContactRules):
         return impact(state, restitution, self.top)
 
     def _untouched(self, time: float, state: State, events: tuple[Event, ...]) -> Transition:
-        return Transition(events, self.going_on(state, slips=True), state)
+        stuck = is_set_valued(self.top.friction) and not is_slipping(*along_table(state), self.top)
+        return Transition(events, self.going_on(state, slips=not stuck), state)
 
     def _flight(self, start: Start) -> Flight:
         return Flight(self.top, self, start)

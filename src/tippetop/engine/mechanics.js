@@ -4983,7 +4983,8 @@ class FreeToFly extends ContactRules {
     return impact(state, restitution, this.top);
   }
   _untouched(time, state, events) {
-    return new Transition(events, this.going_on(state, true), state);
+    var stuck = py.and(is_set_valued(this.top.friction), () => !py.truth(is_slipping(...along_table(state), this.top)));
+    return new Transition(events, this.going_on(state, !py.truth(stuck)), state);
   }
   _flight(start) {
     return new Flight(this.top, this, start);
