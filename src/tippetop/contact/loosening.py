@@ -14,7 +14,7 @@ from tippetop.integrators.dense import DenseSolution
 from tippetop.mechanics.beginning import beginning
 from tippetop.mechanics.ending import Vanishing
 from tippetop.mechanics.hull import Hull
-from tippetop.mechanics.rolling import ContactPoint, Slip, on_branch
+from tippetop.mechanics.rolling import ContactPoint, Slip, Wrench, on_branch
 from tippetop.mechanics.series import horner
 from tippetop.mechanics.slip_onset import onset
 from tippetop.mechanics.state import State
@@ -43,6 +43,8 @@ class Loosening(Passing):
 
     power: int = 1
     """How it grows with time: 2 from the limit of what can be held, 1 from beyond it."""
+    wrench: Wrench | None = None
+    """What has held it until now, if that is known."""
 
     def segments(self, time: float, state: State, end: float, integrator: Integrator) -> Iterator[Segment]:
         """Evaluate the series."""
@@ -96,7 +98,7 @@ class Loosening(Passing):
             slip = slip_of(state.axis, state.momentum, state.velocity[:2], self.top)
         if ending.slip and not ending.held:
             rolling = point.turning[:2]
-        found = beginning(point, slip, rolling, (ending.slip, not ending.slip))
+        found = beginning(point, slip, rolling, (ending.slip, not ending.slip), self.wrench)
         top = on_branch(self.top, found.slip) if found.slip is not None else self.top
         way = found.slip if ending.slip else found.rolling
         assert way is not None

@@ -15,6 +15,7 @@ from tippetop.integrators.base import Integrator, Motion
 from tippetop.integrators.dense import DenseSolution, as_array
 from tippetop.mechanics.ending import Vanishing
 from tippetop.mechanics.hull import Hull
+from tippetop.mechanics.rolling import Wrench
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Row, Scalar, Vector
@@ -206,8 +207,10 @@ class Rules(Protocol):
     def settled(self, time: float, state: State, new: tuple[bool, bool], *, held: bool) -> Transition:
         """What follows when slip, or rolling (new), has ended, and whether the other was held already."""
 
-    def giving_way(self, state: State, events: tuple[Event, ...], beginning: Vanishing) -> Transition:
-        """What follows when slip, or rolling, can be held no longer."""
+    def giving_way(
+        self, state: State, events: tuple[Event, ...], beginning: Vanishing, wrench: Wrench | None = None
+    ) -> Transition:
+        """What follows when slip, or rolling, can be held no longer, by a wrench if that is known."""
 
 
 @dataclass(frozen=True)

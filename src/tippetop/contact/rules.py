@@ -18,6 +18,7 @@ from tippetop.mechanics.impact import Impact, impact
 from tippetop.mechanics.motion import along_table, contact, on_table
 from tippetop.mechanics.rolling import (
     ContactPoint,
+    Wrench,
     contact_motion,
     is_branched,
     is_set_valued,
@@ -139,9 +140,11 @@ class ContactRules:
         events = (*events, *self._marks(time, new, begins))
         return self._settle(time, state, found, begins, ended, events)
 
-    def giving_way(self, state: State, events: tuple[Event, ...], beginning: Vanishing) -> Transition:
-        """Slip, or rolling, begins from the limit of what the table can hold."""
-        return Transition(events, Loosening(self.top, self, beginning, 2), state)
+    def giving_way(
+        self, state: State, events: tuple[Event, ...], beginning: Vanishing, wrench: Wrench | None = None
+    ) -> Transition:
+        """Slip, or rolling, begins from the limit of what the table can hold, which is a wrench."""
+        return Transition(events, Loosening(self.top, self, beginning, 2, wrench), state)
 
     def _settle(
         self,

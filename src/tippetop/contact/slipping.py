@@ -37,7 +37,7 @@ from tippetop.mechanics.stick_slip import APART, inner, scaled, size
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import Scalar
 
-FIRST, LEAST = 0.6, 0.005
+FIRST, LEAST = 0.5, 0.005
 """The first step, in natural units of time, and the least that a step is shortened to: where shorter ones are
 asked for, slip does not follow what drives it, and other methods are quicker."""
 
@@ -49,7 +49,7 @@ ACCURACY = 1e-22
 they are divided by thirty and more, and the error of what a step ends with is of the order of their product.
 """
 
-BEYOND = 1.1
+BEYOND = 1.05
 """How much longer a step is than slip seems to last, so that its end lies within."""
 
 DIP, NONE = 0.1, 1e-11
@@ -60,7 +60,7 @@ PRESSED, CLEAR = 0.1, 1e-2
 """Normal force, and gap of another surface, in natural units, at points of a step, which neither falls to
 zero between."""
 
-LONGER, SHORTER, SHORTEST, SAFETY = 1.5, 0.7, 0.3, 0.9
+LONGER, SHORTER, SHORTEST, SAFETY = 1.5, 0.8, 0.3, 0.9
 """How much longer the next step may be; how much shorter one is at most, and at least, that is tried again;
 and how much shorter than it should."""
 

@@ -68,13 +68,14 @@ class Sticking(IntegratedMode):
         found = follow_surface(self, guard, time, state)
         if found is not None:
             return found
-        if self.reaction(self.numbers(state)).force[2] <= 0.0 and not self.rules.pulls:
+        _, wrench = sticking_wrench(state.axis, state.momentum, self.top, self.held)
+        if wrench.force[2] <= 0.0 and not self.rules.pulls:
             return self.rules.lift_off(time, state)
         kind = EventKind.ROLL if guard == ROLLING else EventKind.SLIP
         beginning = (
             Vanishing(slip=False, held=True) if guard == ROLLING else Vanishing(slip=True, held=self.held)
         )
-        return self.rules.giving_way(state, (self.rules.event(kind, time),), beginning)
+        return self.rules.giving_way(state, (self.rules.event(kind, time),), beginning, wrench)
 
 
 @dataclass(frozen=True)

@@ -2242,12 +2242,13 @@ class Sticking extends IntegratedMode {
     if (found !== null) {
       return found;
     }
-    if (this.reaction(this.numbers(state)).force[2] <= 0.0 && !py.truth(this.rules.pulls)) {
+    var [, wrench] = sticking_wrench(state.axis, state.momentum, this.top, this.held);
+    if (wrench.force[2] <= 0.0 && !py.truth(this.rules.pulls)) {
       return this.rules.lift_off(time, state);
     }
     var kind = py.eq(guard, ROLLING) ? EventKind.ROLL : EventKind.SLIP;
     var beginning = py.eq(guard, ROLLING) ? new Vanishing(false, true) : new Vanishing(true, this.held);
-    return this.rules.giving_way(state, [this.rules.event(kind, time)], beginning);
+    return this.rules.giving_way(state, [this.rules.event(kind, time)], beginning, wrench);
   }
 }
 py.fields(Sticking, ["top", "rules"]);
@@ -3403,13 +3404,13 @@ function _answers(y, way, beside, ending, top) {
 }
 
 // tippetop.contact.slipping
-const [FIRST, LEAST] = [0.6, 0.005];
+const [FIRST, LEAST] = [0.5, 0.005];
 const [ENOUGH, MOST_of_slipping] = [1e-28, 50];
 const ACCURACY_of_slipping = 1e-22;
-const BEYOND = 1.1;
+const BEYOND = 1.05;
 const [DIP, NONE] = [0.1, 1e-11];
 const [PRESSED, CLEAR] = [0.1, 0.01];
-const [LONGER, SHORTER_of_slipping, SHORTEST, SAFETY] = [1.5, 0.7, 0.3, 0.9];
+const [LONGER, SHORTER_of_slipping, SHORTEST, SAFETY] = [1.5, 0.8, 0.3, 0.9];
 const TINY_of_slipping = 1e-300;
 
 /** Slip that began, and how far it was followed. */
@@ -3644,7 +3645,7 @@ function directions(response, start) {
       ways = py.zip(answers, ways).map(([answer, e]) => _unit(plus(scaled(py.add(answer.strength, size(answer.rate)), e), answer.rate)));
       if (_apart(ways, before) < EXACT) {
         if (turn + step === 0 && py.truth(_leads(answers, before))) {
-          return ways;
+          return before;
         }
         break;
       }
@@ -3745,13 +3746,19 @@ class Beginning extends py.NamedTuple {
 py.fields(Beginning, ["slip", "rolling", "rates", "wrench", "acceleration"]);
 
 /** Directions in which slip, or rolling, or both, begin. */
-function beginning(point, slip, rolling, begins) {
+function beginning(point, slip, rolling, begins, held = null) {
   var parts = py.zip([true, false], begins).filter(([which, wanted]) => py.truth(wanted)).map(([which, wanted]) => new Vanishing(which));
   var stiffness = [...parts].map((part) => _stiffness(part, point));
+  var tried = py.list();
   var motion = (ways) => {
+    if (py.truth(tried) && py.item(tried, -1)[0] === ways) {
+      return py.item(tried, -1)[1];
+    }
     var found = py.dict(py.zip(parts, ways));
     var both = [found.get(new Vanishing(true), slip), found.get(new Vanishing(false), rolling)];
-    return [...both, ...contact_motion(point, ...both)];
+    var answer = [...both, ...contact_motion(point, ...both)];
+    tried.push([ways, answer]);
+    return answer;
   };
   var response = (ways) => {
     var answer = motion(ways);
@@ -3760,8 +3767,8 @@ function beginning(point, slip, rolling, begins) {
   var ways = [];
   if (py.truth(parts)) {
     var beside = py.truth(py.all(begins)) ? beginning(point, slip, rolling, [false, true]).rolling : rolling;
-    var [held] = contact_motion(point, slip, beside);
-    ways = directions(response, [...parts].map((part) => scaled(-1.0, _resisting(part, held, point.top))));
+    var against = py.or(held, () => contact_motion(point, slip, beside)[0]);
+    ways = directions(response, [...parts].map((part) => scaled(-1.0, _resisting(part, against, point.top))));
   }
   var found = motion(ways);
   var along = py.zip(parts, ways).map(([part, e]) => inner(part.rate(found[3], point.top), e));
@@ -3822,9 +3829,10 @@ const TINY_of_loosening = 1e-100;
 
 /** The first moments of slip, or of rolling, as a power series in time. */
 class Loosening extends Passing {
-  constructor(top, rules, ending, power = 1) {
+  constructor(top, rules, ending, power = 1, wrench = null) {
     super(top, rules, ending);
     this.power = power;
+    this.wrench = wrench;
   }
   /** Evaluate the series. */
   *segments(time, state, end, integrator) {
@@ -3884,7 +3892,7 @@ class Loosening extends Passing {
     if (py.truth(ending.slip) && !py.truth(ending.held)) {
       rolling = point.turning.slice(0, 2);
     }
-    var found = beginning(point, slip, rolling, [ending.slip, !py.truth(ending.slip)]);
+    var found = beginning(point, slip, rolling, [ending.slip, !py.truth(ending.slip)], this.wrench);
     var top = found.slip !== null ? on_branch(this.top, found.slip) : this.top;
     var way = py.truth(ending.slip) ? found.slip : found.rolling;
     py.assert(way !== null);
@@ -3921,12 +3929,12 @@ class Loosening extends Passing {
     return py.and(!py.truth(this.ending.slip), () => this.ending.held);
   }
 }
-py.fields(Loosening, ["top", "rules", "ending", "power"]);
+py.fields(Loosening, ["top", "rules", "ending", "power", "wrench"]);
 
 /** Slip and rolling begin at once: an instant at their first rates, to which what follows settles. */
 class BothLoosening extends Loosening {
-  constructor(top, rules, ending = new Vanishing(true), power = 1) {
-    super(top, rules, ending, power);
+  constructor(top, rules, ending = new Vanishing(true), power = 1, wrench = null) {
+    super(top, rules, ending, power, wrench);
   }
   /** Go on at the first rates. */
   *segments(time, state, end, integrator) {
@@ -3946,7 +3954,7 @@ class BothLoosening extends Loosening {
     yield passing.piece(rows, found.slip, time, py.min(INSTANT, end - time), end);
   }
 }
-py.fields(BothLoosening, ["top", "rules", "ending", "power"]);
+py.fields(BothLoosening, ["top", "rules", "ending", "power", "wrench"]);
 
 /** No motion at all, and why. */
 function _nothing(mode, time, state, why) {
@@ -4776,9 +4784,9 @@ class ContactRules extends py.Record {
     events = [...events, ...this._marks(time, new_, begins)];
     return this._settle(time, state, found, begins, ended, events);
   }
-  /** Slip, or rolling, begins from the limit of what the table can hold. */
-  giving_way(state, events, beginning) {
-    return new Transition(events, new Loosening(this.top, this, beginning, 2), state);
+  /** Slip, or rolling, begins from the limit of what the table can hold, which is a wrench. */
+  giving_way(state, events, beginning, wrench = null) {
+    return new Transition(events, new Loosening(this.top, this, beginning, 2, wrench), state);
   }
   /** The mode that follows where it is known what is held and what begins. */
   _settle(time, state, found, begins, ended, events) {

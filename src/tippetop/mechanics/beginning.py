@@ -1,7 +1,7 @@
 """In which direction slip, or rolling, begins where the table cannot hold it."""
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 from tippetop.mechanics.direction import Resisted, directions
 from tippetop.mechanics.ending import Vanishing
@@ -21,6 +21,10 @@ CHOICES = ((False, False), (True, False), (False, True), (True, True))
 """What is tried in turn where slip, and rolling, have ended: whether they go on all the same."""
 
 
+Motion: TypeAlias = tuple[Slip | None, Slip | None, Wrench, Acceleration]
+"""Slip and rolling, or their directions, None where they are held; and what comes of them."""
+
+
 class Beginning(NamedTuple):
     """How the velocities of a contact go on."""
 
@@ -35,7 +39,11 @@ class Beginning(NamedTuple):
 
 
 def beginning(
-    point: ContactPoint, slip: Slip | None, rolling: Slip | None, begins: tuple[bool, bool]
+    point: ContactPoint,
+    slip: Slip | None,
+    rolling: Slip | None,
+    begins: tuple[bool, bool],
+    held: Wrench | None = None,
 ) -> Beginning:
     """Directions in which slip, or rolling, or both, begin.
 
@@ -47,6 +55,8 @@ def beginning(
         Slip and horizontal angular velocity, None where they are zero.
     begins
         Whether slip, and rolling, begin; what is zero and does not is held.
+    held
+        What would hold what begins, if that is known and not both begin.
 
     Raises
     ------
@@ -56,10 +66,16 @@ def beginning(
     parts = [Vanishing(which) for which, wanted in zip((True, False), begins, strict=True) if wanted]
     stiffness = [_stiffness(part, point) for part in parts]
 
-    def motion(ways: Sequence[Slip]) -> tuple[Slip | None, Slip | None, Wrench, Acceleration]:
+    tried = list[tuple[Sequence[Slip], Motion]]()
+
+    def motion(ways: Sequence[Slip]) -> Motion:
+        if tried and tried[-1][0] is ways:
+            return tried[-1][1]
         found = dict(zip(parts, ways, strict=True))
         both = found.get(Vanishing(True), slip), found.get(Vanishing(False), rolling)
-        return *both, *contact_motion(point, *both)
+        answer = (*both, *contact_motion(point, *both))
+        tried.append((ways, answer))
+        return answer
 
     def response(ways: Sequence[Slip]) -> list[Resisted]:
         answer = motion(ways)
@@ -72,8 +88,8 @@ def beginning(
     if parts:
         # Against what would have held it; slip, if both begin, against what holds it once rolling goes on.
         beside = beginning(point, slip, rolling, (False, True)).rolling if all(begins) else rolling
-        held, _ = contact_motion(point, slip, beside)
-        ways = directions(response, [scaled(-1.0, _resisting(part, held, point.top)) for part in parts])
+        against = held or contact_motion(point, slip, beside)[0]
+        ways = directions(response, [scaled(-1.0, _resisting(part, against, point.top)) for part in parts])
     found = motion(ways)
     along = [inner(part.rate(found[3], point.top), e) for part, e in zip(parts, ways, strict=True)]
     return Beginning(found[0], found[1], tuple(max(rate, 0.0) for rate in along), found[2], found[3])

@@ -60,7 +60,7 @@ def directions(response: Response, start: Sequence[Slip]) -> list[Slip]:
             ]
             if _apart(ways, before) < EXACT:
                 if turn + step == 0 and _leads(answers, before):
-                    return ways
+                    return before
                 break
         found = _improved(response, ways)
         if found is not None:
