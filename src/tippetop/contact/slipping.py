@@ -149,7 +149,7 @@ class SlipStep:
         self.sweeps += self.machinery.better(self.unknowns, self.given, self.found, ENOUGH, MOST)
         if not self.found[len(self.found) - 1] < ENOUGH:
             return False
-        put_rows(self.measured, 0, [length], STAGES)
+        put_from(self.measured, 0, [length] * STAGES)
         self.machinery.terms(self.found, self.measured, self.rows, 0.0, 1)
         return True
 

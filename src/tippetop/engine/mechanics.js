@@ -3489,7 +3489,7 @@ class SlipStep extends py.Thing {
     if (!(py.item(this.found, py.len(this.found) - 1) < ENOUGH)) {
       return false;
     }
-    put_rows(this.measured, 0, [length], STAGES);
+    put_from(this.measured, 0, py.mul([length], STAGES));
     this.machinery.terms(this.found, this.measured, this.rows, 0.0, 1);
     return true;
   }

@@ -163,7 +163,7 @@ class DenseSolution:
         """The solution whose coefficients are in powers of the time since the start of a step."""
         ends, known = np.asarray(knots, dtype=float), np.asarray(terms, dtype=float)
         with np.errstate(over="ignore"):  # the step of a motion that stands still has no bound
-            lengths = powers(np.diff(ends), known.shape[2])
+            lengths = powers(ends[1:] - ends[:-1], known.shape[2])
         if not np.isfinite(lengths[:, -1]).all():
             lengths = np.nan_to_num(lengths)
         return cls(ends, known * lengths[:, None, :])

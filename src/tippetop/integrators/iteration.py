@@ -38,7 +38,7 @@ def put_from(numbers: Any, first: int, values: Sequence[float]) -> None:
 
 def put_rows(numbers: Any, first: int, values: Sequence[float], abreast: int) -> None:
     """Put values into room for numbers, from one of them on, each for as many as there are abreast."""
-    _rows(numbers, abreast)[first : first + len(values)].T[:] = values
+    _rows(numbers, abreast)[first : first + len(values)] = np.array(values)[:, None]
 
 
 def pieces_of(numbers: Any, size: int, degree: int, count: float) -> Array:
