@@ -12,6 +12,7 @@ from tippetop.contact.loosening import Loosening
 from tippetop.contact.mode import EventKind
 from tippetop.contact.rules import FreeToFly
 from tippetop.contact.slipping import dips, parts_left
+from tippetop.contact.sticking import Sticking
 from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators import iteration, make_integrator
 from tippetop.mechanics.coulomb import CoulombLaw
@@ -56,6 +57,7 @@ def test_a_phase_solves_the_equations_of_sliding(name):
     segments, _ = followed(name, 20.0)
     phases = [one for one in segments if isinstance(one.mode, Loosening)]
     assert max(one.steps for one in phases) > 1
+    assert any(isinstance(one.transition.then, Sticking) for one in phases), "it is followed to its end"
     for segment in phases[:2]:
         top = segment.mode.top
         for begin, end in zip(segment.solution.knots[:-1], segment.solution.knots[1:], strict=True):
@@ -95,6 +97,18 @@ def test_it_is_the_same_where_nothing_is_compiled(monkeypatch):
             cached.cache_clear()
     assert kinds == others
     assert times == pytest.approx(seconds, abs=1e-12)
+
+
+def test_a_share_of_a_piece_is_the_same_polynomial():
+    whole = np.random.default_rng(1).normal(size=(2, 3, 4))
+    numbers = iteration.room(whole.size)
+    iteration.put_from(numbers, 0, whole.ravel().tolist())
+    pieces = iteration.pieces_of(numbers, 3, 4, 1.3)
+    cut, powers = pieces.reshape(2, 3, 4), np.arange(1, 5)
+    np.testing.assert_array_equal(cut[0], whole[0])
+    np.testing.assert_allclose(cut[1] @ 0.7**powers, whole[1] @ 0.21**powers, rtol=1e-14)
+    change = whole[0].sum(axis=1) + whole[1] @ 0.3**powers
+    np.testing.assert_allclose(iteration.change_over(pieces, 3, 4), change, rtol=1e-14)
 
 
 def test_the_end_of_a_polynomial_is_foreseen_and_a_dip_seen():
