@@ -337,8 +337,9 @@ class FreeToFly(ContactRules):
         return impact(state, restitution, self.top)
 
     def _untouched(self, time: float, state: State, events: tuple[Event, ...]) -> Transition:
-        stuck = is_set_valued(self.top.friction) and not is_slipping(*along_table(state), self.top)
-        return Transition(events, self.going_on(state, slips=not stuck), state)
+        slip = slip_of(*along_table(state), self.top)
+        slips = not is_set_valued(self.top.friction) or sum(number * number for number in slip) > 0.0
+        return Transition(events, self.going_on(state, slips=slips), state)
 
     def _flight(self, start: Start) -> Flight:
         return Flight(self.top, self, start)

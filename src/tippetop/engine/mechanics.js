@@ -4991,8 +4991,9 @@ class FreeToFly extends ContactRules {
     return impact(state, restitution, this.top);
   }
   _untouched(time, state, events) {
-    var stuck = py.and(is_set_valued(this.top.friction), () => !py.truth(is_slipping(...along_table(state), this.top)));
-    return new Transition(events, this.going_on(state, !py.truth(stuck)), state);
+    var slip = slip_of(...along_table(state), this.top);
+    var slips = py.or(!py.truth(is_set_valued(this.top.friction)), () => py.sum([...slip].map((number) => py.mul(number, number))) > 0.0);
+    return new Transition(events, this.going_on(state, slips), state);
   }
   _flight(start) {
     return new Flight(this.top, this, start);
