@@ -338,7 +338,7 @@ class FreeToFly(ContactRules):
 
     def _untouched(self, time: float, state: State, events: tuple[Event, ...]) -> Transition:
         slip = slip_of(*along_table(state), self.top)
-        slips = not is_set_valued(self.top.friction) or sum(number * number for number in slip) > 0.0
+        slips = not is_set_valued(self.top.friction) or inner(slip, slip) > 0.0
         return Transition(events, self.going_on(state, slips=slips), state)
 
     def _flight(self, start: Start) -> Flight:

@@ -4992,7 +4992,7 @@ class FreeToFly extends ContactRules {
   }
   _untouched(time, state, events) {
     var slip = slip_of(...along_table(state), this.top);
-    var slips = py.or(!py.truth(is_set_valued(this.top.friction)), () => py.sum([...slip].map((number) => py.mul(number, number))) > 0.0);
+    var slips = py.or(!py.truth(is_set_valued(this.top.friction)), () => inner(slip, slip) > 0.0);
     return new Transition(events, this.going_on(state, slips), state);
   }
   _flight(start) {
