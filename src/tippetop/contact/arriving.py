@@ -19,7 +19,7 @@ from tippetop.integrators.base import Integrator
 from tippetop.mechanics.ending import Closing, Vanishing, rates_in_time
 from tippetop.mechanics.rolling import Slip, solve
 from tippetop.mechanics.series import horner
-from tippetop.mechanics.slip_onset import Growth, onset
+from tippetop.mechanics.slip_onset import Growth, onset, turned_slope
 from tippetop.mechanics.stick_slip import inner, plus, scaled, size, tangents
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Scalar, Vector
@@ -135,7 +135,7 @@ def resting_way(
         known = growth((axis, momentum, way), top, ending, (), DEGREE, integrator)
         rate, across = known.accelerations(0), tangents(way)
         along = inner(rate, way)
-        slopes = [known.slope(b) for b in across]
+        slopes = [turned_slope(known, b) for b in across]
         matrix = [
             [inner(a, g) - (along if a is b else 0.0) for b, g in zip(across, slopes, strict=True)]
             for a in across

@@ -10,7 +10,7 @@ from tippetop.integrators.base import NOT_FINITE, Expansion, Integrator, Motion
 from tippetop.mechanics.ending import Closing, Vanishing, rates_in_time
 from tippetop.mechanics.rolling import Slip
 from tippetop.mechanics.slip_onset import Growing, Growth
-from tippetop.mechanics.stick_slip import plus, scaled
+from tippetop.mechanics.stick_slip import scaled
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import Scalar, Vector
 
@@ -56,13 +56,6 @@ class Driven:
         """Coefficient of order j of A, expanded no further than to the first of the degrees that has it."""
         rows = self._expand[0 if j < FEW else -1](self._arguments)[self._free :]
         return tuple([(j + 1) * float(row[j + 1]) for row in rows])
-
-    def slope(self, across: Slip) -> Slip:
-        """Derivative of A along a direction across e_0, at the start: that order is linear in it."""
-        self.turn(1, across)
-        turned = self.accelerations(1)
-        self.turn(1, scaled(0.0, across))
-        return plus(turned, scaled(-1.0, self.accelerations(1)))
 
 
 def growth(

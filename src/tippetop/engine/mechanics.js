@@ -2447,18 +2447,26 @@ function is_number(value, number) {
 
 /** The series of the solution of y' = rates(y) that starts at y = start. */
 function solution(start, rates, arithmetic) {
-  var unknown = [...start].map((_) => new Series((_) => null, arithmetic));
-  var slopes = py.list(rates(unknown));
+  return solved([...start].map((_) => new Series(unknown, arithmetic)), start, rates);
+}
+
+/** Series that are unknown, made the solution. */
+function solved(series, start, rates) {
   var rule = (first, slope) => {
     if (!py.isinstance(slope, Series)) {
       return (k) => k < 2 ? py.item([first, py.add(py.mul(0.0, first), slope)], k) : py.mul(0.0, first);
     }
     return (k) => py.truth(k) ? py.mul(py.item(slope, py.sub(k, 1)), py.div(1.0, k)) : first;
   };
-  for (var [series, first, slope] of py.zip(unknown, start, slopes)) {
-    series.rule = rule(first, slope);
+  for (var [one, first, slope] of py.zip(series, start, rates(series))) {
+    one.rule = rule(first, slope);
   }
-  return unknown;
+  return series;
+}
+
+/** The rule of a series that has none yet. */
+function unknown(k) {
+  throw new py.AssertionError(`a series is asked for its coefficient ${py.str(k)} before that is known`);
 }
 
 /** Value of a polynomial, its coefficients in increasing order, at a time. */
@@ -2516,11 +2524,19 @@ class Onset extends py.NamedTuple {
 }
 py.fields(Onset, ["axis", "momentum", "velocity", "direction", "speed", "power"]);
 
+/** Derivative of A along a direction across e_0, at the start: its order 1 is linear in that of e. */
+function turned_slope(known, across) {
+  known.turn(1, across);
+  var turned = known.accelerations(1);
+  known.turn(1, scaled(0.0, across));
+  return plus(turned, scaled(-1.0, known.accelerations(1)));
+}
+
 /** The beginning of slip, or rolling, order by order. */
 function onset(known, power, order) {
   var first = known.first;
   var across = tangents(first);
-  var slopes = [...across].map((b) => known.slope(b));
+  var slopes = [...across].map((b) => turned_slope(known, b));
   var aside = [...across].map((b) => [...slopes].map((g) => inner(b, g)));
   var ahead = [...slopes].map((g) => inner(first, g));
   var [e, s] = [[...first].map((number) => [number]), py.list()];
@@ -2561,50 +2577,24 @@ function onset(known, power, order) {
 class Growing extends py.Thing {
   constructor(start, top, ending = new Vanishing(true), velocity = []) {
     super();
-    [this.top, this.first, this.ending] = [top, py.item(start, 2), ending];
-    var rules = [];
-    var later = (i) => {
-      var rule = (k) => {
-        return py.call(py.item(rules, i), k);
-      };
-      return new Series(rule, PLAIN);
-    };
+    [this.first, this._made] = [py.item(start, 2), py.list()];
+    this._direction = py.tuple([...this.first].map((_) => new Revisable(unknown, this._made)));
+    this.turn(0, this.first);
     var begin = [...py.item(start, 0), ...py.item(start, 1), ...velocity];
-    this.state = py.tuple(py.range(py.len(begin)).map((i) => later(i)));
-    var [n, L] = [this.state.slice(0, 3), this.state.slice(3, 6)];
-    var point = ContactPoint.of(n, L, top);
-    var push = _normal_wrench(point, ending, this.state.slice(6));
-    var [holding, free, pushes] = _beside([...ending.wrenches(top), push], point, ending);
-    this.free = this._part(free);
-    this.responses = py.tuple([...pushes].map(([, response]) => this._part(response)));
-    this._revisable = [];
-    this.direction = py.tuple([...py.item(start, 2)].map((_) => new Revisable(_unknown, this._revisable)));
-    for (var [series, first] of py.zip(this.direction, py.item(start, 2))) {
-      series.known.push(first);
-    }
-    var amounts = this._amounts(this.direction, this.free, this.responses);
-    this._rates = this._all_rates(amounts, this.free, this.responses);
-    var integral = (first, slope) => {
-      return (k) => py.truth(k) ? py.mul(py.item(slope, py.sub(k, 1)), py.div(1.0, k)) : first;
+    var rates = (y) => {
+      var state = new Closing([py.item(y, 0), py.item(y, 1), py.item(y, 2)], [py.item(y, 3), py.item(y, 4), py.item(y, 5)], py.tuple(y.slice(6)), this._direction, 0.0, 0.0);
+      var found = rates_in_time(state, ending, top);
+      this._rates = found.xi;
+      return [...found.axis, ...found.momentum, ...found.velocity];
     };
-    var [force, moment] = [holding.force, point.moment(holding)];
-    for (var [amount, [unit]] of py.zip(amounts, pushes)) {
-      force = add(force, scale(amount, unit.force));
-      moment = add(moment, scale(amount, point.moment(unit)));
-    }
-    var slopes = [...axis_rate(n, L, top), ...moment, ...scaled(py.div(1.0, top.mass), py.slice(force, null, py.len(velocity), null))];
-    rules = py.add(rules, py.zip(begin, slopes).map((pair) => integral(...pair)));
-  }
-  /** Rate of zeta, and the normal acceleration, among the accelerations of the contact. */
-  _part(acceleration) {
-    return [...this.ending.rate(acceleration, this.top), py.item(acceleration.point, 2)];
+    this.state = solved([...begin].map((_) => new Revisable(unknown, this._made)), begin, rates);
   }
   /** Set the j-th coefficient of the direction, and forget what was made of another. */
   turn(j, direction) {
-    for (var series of this._revisable) {
+    for (var series of this._made) {
       series.known = series.known.slice(0, j);
     }
-    for (var [series, number] of py.zip(this.direction, direction)) {
+    for (var [series, number] of py.zip(this._direction, direction)) {
       series.known.push(number);
     }
   }
@@ -2612,71 +2602,6 @@ class Growing extends py.Thing {
   accelerations(j) {
     return py.tuple([...this._rates].map((rate) => py.item(rate, j)));
   }
-  /** Derivative of A along a direction across e_0, at the start. */
-  slope(across) {
-    var direction = py.tuple(py.zip(this.first, across).map(([e, b]) => new TruncatedSeries([e, b])));
-    var [free, responses] = [at_start(this.free), py.tuple([...this.responses].map((column) => at_start(column)))];
-    var rates = this._all_rates(this._amounts(direction, free, responses), free, responses);
-    return py.tuple([...rates].map((rate) => py.item(rate.terms, 1)));
-  }
-  /** Amounts of the wrenches for a direction of what begins, the normal force last. */
-  _amounts(direction, free, responses) {
-    var shares = this.ending.shares(py.tuple(direction), this.top);
-    var denominator = py.item(py.item(responses, -1), -1);
-    for (var [share, column] of py.zip(shares, responses)) {
-      denominator = py.add(py.mul(share, py.item(column, -1)), denominator);
-    }
-    var normal = py.div(py.neg(py.item(free, -1)), denominator);
-    return [...[...shares].map((share) => py.mul(normal, share)), normal];
-  }
-  /** A for amounts of the wrenches. */
-  _all_rates(amounts, free, responses) {
-    var rates = [];
-    for (var i = 0; i < py.len(this.first); i += 1) {
-      var rate = py.item(free, i);
-      for (var [amount, column] of py.zip(amounts, responses)) {
-        rate = py.add(py.mul(amount, py.item(column, i)), rate);
-      }
-      rates.push(rate);
-    }
-    return py.tuple(rates);
-  }
-}
-
-/** A unit normal force with the friction that goes with it beside what begins. */
-function _normal_wrench(point, ending, velocity) {
-  var law = point.top.friction;
-  if (py.truth(ending.slip)) {
-    var moves = py.and(py.isinstance(law, RollingResistance), () => !py.truth(ending.held));
-    return new Wrench(py.item(FORCES, 2).force, py.truth(moves) ? law.couple(point.turning) : NO_TORQUE);
-  }
-  if (py.truth(ending.held)) {
-    return py.item(FORCES, 2);
-  }
-  var slip = slip_of(point.axis, point.momentum, [py.item(velocity, 0), py.item(velocity, 1)], point.top);
-  var [force, torque] = sliding_law(law).traction([py.item(slip, 0), py.item(slip, 1)], turning_with(point, slip));
-  return new Wrench([...force, 1.0], torque);
-}
-
-/** Wrenches with what holds the other velocity beside them: without any, and beside one unit of each. */
-function _beside(units, point, ending) {
-  var nothing = new Wrench(NO_TORQUE, NO_TORQUE);
-  var alone = [...units].map((unit) => [unit, point.response(unit)]);
-  if (!py.truth(ending.held)) {
-    return [nothing, point.free, alone];
-  }
-  var other = new Vanishing(!py.truth(ending.slip));
-  var holds = [...other.wrenches(point.top)].map((unit) => [unit, point.response(unit)]);
-  var rows = py.range(py.len(holds)).map((i) => [...holds].map(([, response]) => py.item(other.rate(response, point.top), i)));
-  var held = (wrench, response) => {
-    var sizes = solve(rows, [...other.rate(response, point.top)].map((rate) => py.neg(rate)));
-    for (var [size, [unit, answer]] of py.zip(sizes, holds)) {
-      wrench = new Wrench(...py.zip(wrench, unit).map(([a, b]) => add(a, scale(size, b))));
-      response = new Acceleration(...py.zip(response, answer).map(([a, b]) => add(a, scale(size, b))));
-    }
-    return [wrench, response];
-  };
-  return [...held(nothing, point.free), [...alone].map((pair) => held(...pair))];
 }
 
 /** A series, and all that are made of it, whose last coefficients can be forgotten. */
@@ -2689,27 +2614,6 @@ class Revisable extends Series {
   _made(rule) {
     return new Revisable(rule, this.made);
   }
-  __radd__(other) {
-    return this.__add__(other);
-  }
-  __rmul__(other) {
-    return this.__mul__(other);
-  }
-  __rsub__(other) {
-    return py.neg(this).__add__(other);
-  }
-  __rtruediv__(other) {
-    return py.mul(py.pow(this, -1.0), other);
-  }
-}
-
-function _unknown(k) {
-  throw new py.AssertionError(`the direction is asked for its coefficient ${py.str(k)} before that is known`);
-}
-
-/** Series, or numbers, at the start. */
-function at_start(parts) {
-  return py.tuple([...parts].map((part) => py.isinstance(part, [py.float, py.int]) ? part : py.item(part, 0)));
 }
 
 // tippetop.contact.growth
@@ -2746,13 +2650,6 @@ class Driven extends py.Thing {
   accelerations(j) {
     var rows = py.call(py.item(this._expand, j < FEW ? 0 : -1), this._arguments).slice(this._free);
     return py.tuple([...rows].map((row) => (j + 1) * py.float(py.item(row, j + 1))));
-  }
-  /** Derivative of A along a direction across e_0, at the start: that order is linear in it. */
-  slope(across) {
-    this.turn(1, across);
-    var turned = this.accelerations(1);
-    this.turn(1, scaled(0.0, across));
-    return plus(turned, scaled(-1.0, this.accelerations(1)));
   }
 }
 
@@ -2871,7 +2768,7 @@ function resting_way(axis, momentum, way, ending, top, integrator) {
     var known = growth([axis, momentum, way], top, ending, [], DEGREE_of_arriving, integrator);
     var [rate, across] = [known.accelerations(0), tangents(way)];
     var along = inner(rate, way);
-    var slopes = [...across].map((b) => known.slope(b));
+    var slopes = [...across].map((b) => turned_slope(known, b));
     var matrix = [...across].map((a) => py.zip(across, slopes).map(([b, g]) => py.sub(inner(a, g), a === b ? along : 0.0)));
     var turned = solve(matrix, [...across].map((a) => py.neg(inner(a, rate))));
     if (!(py.math.hypot(...turned) < 1.0)) {
@@ -9340,7 +9237,6 @@ export {
   _answers,
   _apart,
   _at_rest,
-  _beside,
   _by_energy,
   _early_bracket,
   _face,
@@ -9361,7 +9257,6 @@ export {
   _meetings,
   _moved,
   _newton,
-  _normal_wrench,
   _nothing,
   _of_momentum,
   _on_one_of_several,
@@ -9377,7 +9272,6 @@ export {
   _surface,
   _touch,
   _unit,
-  _unknown,
   _without_rolling,
   _written,
   acting,
@@ -9392,7 +9286,6 @@ export {
   arm_rate,
   arriving,
   at_rest,
-  at_start,
   axial_spin,
   axis_rate,
   axis_sine,
@@ -9609,6 +9502,7 @@ export {
   slowing,
   solution,
   solve,
+  solved,
   spared,
   split,
   spun_up,
@@ -9645,10 +9539,12 @@ export {
   turn_rate,
   turned,
   turned_of_double_sticking,
+  turned_slope,
   turning_about,
   turning_along,
   turning_motion,
   turning_with,
+  unknown,
   unpack,
   unrolled,
   upright_boundary,

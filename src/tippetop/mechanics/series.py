@@ -176,17 +176,27 @@ def solution(
     arithmetic: Sums,
 ) -> list[Series]:
     """The series of the solution of y' = rates(y) that starts at y = start."""
-    unknown = [Series(lambda _: None, arithmetic) for _ in start]
-    slopes = list(rates(unknown))
+    return solved([Series(unknown, arithmetic) for _ in start], start, rates)
+
+
+def solved(
+    series: list[Series], start: Sequence[Scalar], rates: Callable[[Sequence[Series]], Sequence[Any]]
+) -> list[Series]:
+    """Series that are unknown, made the solution."""
 
     def rule(first: Scalar, slope: Any) -> Callable[[int], Scalar]:
         if not isinstance(slope, Series):
             return lambda k: (first, 0.0 * first + slope)[k] if k < 2 else 0.0 * first
         return lambda k: slope[k - 1] * (1.0 / k) if k else first
 
-    for series, first, slope in zip(unknown, start, slopes, strict=True):
-        series.rule = rule(first, slope)
-    return unknown
+    for one, first, slope in zip(series, start, rates(series), strict=True):
+        one.rule = rule(first, slope)
+    return series
+
+
+def unknown(k: int) -> Scalar:
+    """The rule of a series that has none yet."""
+    raise AssertionError(f"a series is asked for its coefficient {k} before that is known")
 
 
 def horner(coefficients: Sequence[Scalar], time: Scalar) -> Scalar:

@@ -13,25 +13,12 @@ from collections.abc import Callable, Sequence
 from operator import mul
 from typing import Any, NamedTuple, Protocol
 
-from tippetop.mechanics.algebra import TruncatedSeries
-from tippetop.mechanics.coulomb import RollingResistance
-from tippetop.mechanics.ending import Vanishing
-from tippetop.mechanics.friction import NO_TORQUE
-from tippetop.mechanics.motion import axis_rate
-from tippetop.mechanics.rolling import (
-    FORCES,
-    Acceleration,
-    ContactPoint,
-    Slip,
-    Wrench,
-    sliding_law,
-    solve,
-    turning_with,
-)
-from tippetop.mechanics.series import PLAIN, Series, horner
-from tippetop.mechanics.stick_slip import inner, scaled, slip_of, tangents
+from tippetop.mechanics.ending import Closing, Vanishing, rates_in_time
+from tippetop.mechanics.rolling import Slip, solve
+from tippetop.mechanics.series import PLAIN, Series, horner, solved, unknown
+from tippetop.mechanics.stick_slip import inner, plus, scaled, tangents
 from tippetop.mechanics.top import Top
-from tippetop.mechanics.vectors import Scalar, Vector, add, scale
+from tippetop.mechanics.vectors import Scalar, Vector
 
 LOST, SHORTER = 0.5, 0.9
 """Part of what a speed grows by at first that it may lose, and the factor by which times are tried."""
@@ -101,8 +88,13 @@ class Growth(Protocol):
     def accelerations(self, j: int) -> Slip:
         """Coefficient of order j of A."""
 
-    def slope(self, across: Slip) -> Slip:
-        """Derivative of A along a direction across e_0, at the start."""
+
+def turned_slope(known: Growth, across: Slip) -> Slip:
+    """Derivative of A along a direction across e_0, at the start: its order 1 is linear in that of e."""
+    known.turn(1, across)
+    turned = known.accelerations(1)
+    known.turn(1, scaled(0.0, across))
+    return plus(turned, scaled(-1.0, known.accelerations(1)))
 
 
 def onset(known: Growth, power: int, order: int) -> Onset:
@@ -125,7 +117,7 @@ def onset(known: Growth, power: int, order: int) -> Onset:
     """
     first = known.first
     across = tangents(first)
-    slopes = [known.slope(b) for b in across]
+    slopes = [turned_slope(known, b) for b in across]
     aside = [[inner(b, g) for g in slopes] for b in across]
     ahead = [inner(first, g) for g in slopes]
     e, s = [[number] for number in first], list[Scalar]()
@@ -162,9 +154,6 @@ class Growing:
 
     Made of axis, angular momentum and e_0, the body, which velocity begins and whether the other is held, and
     the horizontal velocity of the centre of mass where that is free beside it, m/s.
-
-    `free` and `responses` hold the rates of zeta and the normal acceleration without what begins, and per
-    unit of each wrench, the normal force last: series that depend on the state alone.
     """
 
     def __init__(
@@ -174,149 +163,38 @@ class Growing:
         ending: Vanishing = Vanishing(slip=True),  # noqa: B008
         velocity: Slip = (),
     ) -> None:
-        self.top, self.first, self.ending = top, start[2], ending
-        rules: list[Callable[[int], Scalar]] = []
-
-        def later(i: int) -> Any:
-            def rule(k: int) -> Scalar:
-                return rules[i](k)
-
-            return Series(rule, PLAIN)
-
+        self.first, self._made = start[2], list[Series]()
+        self._direction = tuple(Revisable(unknown, self._made) for _ in self.first)
+        self.turn(0, self.first)
         begin = (*start[0], *start[1], *velocity)
-        self.state = tuple(later(i) for i in range(len(begin)))
-        n, L = self.state[:3], self.state[3:6]
-        point = ContactPoint.of(n, L, top)
-        push = _normal_wrench(point, ending, self.state[6:])
-        holding, free, pushes = _beside((*ending.wrenches(top), push), point, ending)
-        self.free = self._part(free)
-        self.responses = tuple(self._part(response) for _, response in pushes)
-        self._revisable: list[Revisable] = []
-        self.direction = tuple(Revisable(_unknown, self._revisable) for _ in start[2])
-        for series, first in zip(self.direction, start[2], strict=True):
-            series.known.append(first)
-        amounts = self._amounts(self.direction, self.free, self.responses)
-        self._rates = self._all_rates(amounts, self.free, self.responses)
 
-        def integral(first: Scalar, slope: Any) -> Callable[[int], Scalar]:
-            return lambda k: slope[k - 1] * (1.0 / k) if k else first
+        def rates(y: Sequence[Series]) -> Sequence[Any]:
+            state = Closing((y[0], y[1], y[2]), (y[3], y[4], y[5]), tuple(y[6:]), self._direction, 0.0, 0.0)
+            found = rates_in_time(state, ending, top)
+            self._rates = found.xi
+            return (*found.axis, *found.momentum, *found.velocity)
 
-        force, moment = holding.force, point.moment(holding)
-        for amount, (unit, _) in zip(amounts, pushes, strict=True):
-            force = add(force, scale(amount, unit.force))
-            moment = add(moment, scale(amount, point.moment(unit)))
-        slopes = (*axis_rate(n, L, top), *moment, *scaled(1.0 / top.mass, force[: len(velocity)]))
-        rules += [integral(*pair) for pair in zip(begin, slopes, strict=True)]
-
-    def _part(self, acceleration: Acceleration) -> tuple[Any, ...]:
-        """Rate of zeta, and the normal acceleration, among the accelerations of the contact."""
-        return (*self.ending.rate(acceleration, self.top), acceleration.point[2])
+        self.state = solved([Revisable(unknown, self._made) for _ in begin], begin, rates)
 
     def turn(self, j: int, direction: Sequence[Scalar]) -> None:
         """Set the j-th coefficient of the direction, and forget what was made of another."""
-        for series in self._revisable:
+        for series in self._made:
             series.known = series.known[:j]
-        for series, number in zip(self.direction, direction, strict=True):
+        for series, number in zip(self._direction, direction, strict=True):
             series.known.append(number)
 
     def accelerations(self, j: int) -> Slip:
         """Coefficient of order j of A."""
         return tuple(rate[j] for rate in self._rates)
 
-    def slope(self, across: Slip) -> Slip:
-        """Derivative of A along a direction across e_0, at the start."""
-        direction = tuple(TruncatedSeries([e, b]) for e, b in zip(self.first, across, strict=True))
-        free, responses = at_start(self.free), tuple(at_start(column) for column in self.responses)
-        rates = self._all_rates(self._amounts(direction, free, responses), free, responses)
-        return tuple(rate.terms[1] for rate in rates)
-
-    def _amounts(
-        self, direction: Sequence[Any], free: Sequence[Any], responses: Sequence[Sequence[Any]]
-    ) -> tuple[Any, ...]:
-        """Amounts of the wrenches for a direction of what begins, the normal force last."""
-        shares = self.ending.shares(tuple(direction), self.top)
-        denominator = responses[-1][-1]
-        for share, column in zip(shares, responses, strict=False):
-            denominator = share * column[-1] + denominator
-        normal = -free[-1] / denominator
-        return (*(normal * share for share in shares), normal)
-
-    def _all_rates(
-        self, amounts: Sequence[Any], free: Sequence[Any], responses: Sequence[Sequence[Any]]
-    ) -> tuple[Any, ...]:
-        """A for amounts of the wrenches."""
-        rates = []
-        for i in range(len(self.first)):
-            rate = free[i]
-            for amount, column in zip(amounts, responses, strict=True):
-                rate = amount * column[i] + rate
-            rates.append(rate)
-        return tuple(rates)
-
-
-def _normal_wrench(point: ContactPoint, ending: Vanishing, velocity: Slip) -> Wrench:
-    """A unit normal force with the friction that goes with it beside what begins."""
-    law: Any = point.top.friction
-    if ending.slip:
-        moves = isinstance(law, RollingResistance) and not ending.held
-        return Wrench(FORCES[2].force, law.couple(point.turning) if moves else NO_TORQUE)
-    if ending.held:
-        return FORCES[2]
-    slip = slip_of(point.axis, point.momentum, (velocity[0], velocity[1]), point.top)
-    force, torque = sliding_law(law).traction((slip[0], slip[1]), turning_with(point, slip))
-    return Wrench((*force, 1.0), torque)
-
-
-def _beside(
-    units: Sequence[Wrench], point: ContactPoint, ending: Vanishing
-) -> tuple[Wrench, Acceleration, list[tuple[Wrench, Acceleration]]]:
-    """Wrenches with what holds the other velocity beside them: without any, and beside one unit of each."""
-    nothing = Wrench(NO_TORQUE, NO_TORQUE)
-    alone = [(unit, point.response(unit)) for unit in units]
-    if not ending.held:
-        return nothing, point.free, alone
-    other = Vanishing(not ending.slip)
-    holds = [(unit, point.response(unit)) for unit in other.wrenches(point.top)]
-    rows = [[other.rate(response, point.top)[i] for _, response in holds] for i in range(len(holds))]
-
-    def held(wrench: Wrench, response: Acceleration) -> tuple[Wrench, Acceleration]:
-        sizes = solve(rows, [-rate for rate in other.rate(response, point.top)])
-        for size, (unit, answer) in zip(sizes, holds, strict=True):
-            wrench = Wrench(*(add(a, scale(size, b)) for a, b in zip(wrench, unit, strict=True)))
-            response = Acceleration(*(add(a, scale(size, b)) for a, b in zip(response, answer, strict=True)))
-        return wrench, response
-
-    return *held(nothing, point.free), [held(*pair) for pair in alone]
-
 
 class Revisable(Series):
     """A series, and all that are made of it, whose last coefficients can be forgotten."""
 
-    def __init__(self, rule: Callable[[int], Scalar], made: "list[Revisable]") -> None:
+    def __init__(self, rule: Callable[[int], Scalar], made: list[Series]) -> None:
         super().__init__(rule, PLAIN)
         self.made = made
         made.append(self)
 
     def _made(self, rule: Callable[[int], Scalar]) -> "Revisable":
         return Revisable(rule, self.made)
-
-    def __radd__(self, other: Any) -> Series:
-        return self.__add__(other)
-
-    def __rmul__(self, other: Any) -> Any:
-        return self.__mul__(other)
-
-    def __rsub__(self, other: Any) -> Series:
-        return (-self).__add__(other)
-
-    def __rtruediv__(self, other: Any) -> Any:
-        return self**-1.0 * other
-
-
-def _unknown(k: int) -> Scalar:
-    raise AssertionError(f"the direction is asked for its coefficient {k} before that is known")
-
-
-def at_start(parts: Sequence[Any]) -> tuple[Any, ...]:
-    """Series, or numbers, at the start."""
-    return tuple(part if isinstance(part, (float, int)) else part[0] for part in parts)
