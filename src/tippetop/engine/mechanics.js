@@ -6444,55 +6444,8 @@ function _reaches_out(number, shapes) {
 const PI = 3.141592653589793;
 const ELLIPSOIDAL_RADIUS = py.div(py.mul(3.0, PI), 16.0);
 
-/** Contensou friction with an ellipsoidal limit surface (Leine and Glocker 2003). */
-class EllipsoidalLaw extends py.NamedTuple {
-  constructor(mu, patch_radius) {
-    super();
-    this.mu = mu;
-    this.patch_radius = patch_radius;
-  }
-  /** The semi-axis rho, m. */
-  get slip_length() {
-    return py.mul(ELLIPSOIDAL_RADIUS, this.patch_radius);
-  }
-  /** It resists drilling. */
-  get torque_free() {
-    return false;
-  }
-  /** Force and torque per unit normal force; slip and drilling must not both be zero. */
-  traction(slip, angular_velocity) {
-    var drilling = py.mul(this.slip_length, angular_velocity[2]);
-    var factor = py.mul(py.neg(this.mu), py.pow(py.add(py.add(py.mul(slip[0], slip[0]), py.mul(slip[1], slip[1])), py.mul(drilling, drilling)), -0.5));
-    var torque = py.mul(py.mul(factor, this.slip_length), drilling);
-    return new Traction([py.mul(factor, slip[0]), py.mul(factor, slip[1])], [0.0, 0.0, torque]);
-  }
-  /** (mu N)^2 - T^2 - (M / rho)^2, N^2. */
-  reserve(normal, force, drilling) {
-    var [limit, torque] = [py.mul(this.mu, normal), py.div(drilling, this.slip_length)];
-    return py.sub(py.sub(py.sub(py.mul(limit, limit), py.mul(force[0], force[0])), py.mul(force[1], force[1])), py.mul(torque, torque));
-  }
-  /** Friction coefficient, and patch radius in units of length. */
-  coefficients(units) {
-    return [this.mu, py.div(this.patch_radius, units.length)];
-  }
-  /** Make the law with this coefficient and patch radius. */
-  static from_coefficients(coefficients) {
-    return new this(...coefficients);
-  }
-}
-py.fields(EllipsoidalLaw, ["mu", "patch_radius"]);
-
-// tippetop.mechanics.contensou_hertz
-const FORCE = [[1.0, 2.0379589900224446, 1.7454503606464322, 0.748871602371356, 0.1272777587571475, -0.0027191903426678006, -0.0016068785745065434, -2.585824983858782e-05], [1.0, 2.437958990022489, 2.0920625280814025, 0.7580271532705276, 0.10811738333537868, 0.004218755819955418, 0.0, 0.0]];
-const TORQUE = [[0.4, 0.822105487763007, 0.5189122287774408, 0.08174030474884943, -0.007570333630208161, 0.004741971472147535, 0.001852985148541204, 8.943122718983565e-05], [1.0, 2.7695494336932254, 2.8469587388677655, 1.3323282422825315, 0.2778032550943552, 0.020859716514356943, 0.00025020282491132825, 0.0]];
-const LIMIT = [[0.8835729338221295, 3.889778559163314, 5.573221706650525, 3.0420944615186203, 0.7966720357548377, 0.26696888590798373, 0.05714222546990528, 0.0010481676273393747, 0.00039135703969367353], [1.0, 4.402328783813161, 6.1825966830889465, 2.8926555398109404, 0.12101121238237003, -0.09382811272248932, 0.006126226581420139]];
-const NEAR_BRANCH = 1e-20;
-const EDGE = 1e-05;
-const BEYOND_of_contensou_hertz = 1e-20;
-const BRANCH_TORQUE = py.div(py.mul(9.0, PI), 128.0);
-
-/** Contensou friction with Hertz's pressure where drilling prevails, kappa < 1. */
-class HertzDrillingLaw extends py.NamedTuple {
+/** What the laws of a patch are made of. */
+class PatchLaw extends py.NamedTuple {
   constructor(mu, patch_radius) {
     super();
     this.mu = mu;
@@ -6506,10 +6459,60 @@ class HertzDrillingLaw extends py.NamedTuple {
   get torque_free() {
     return false;
   }
-  /** Force and torque per unit normal force; drilling must not be zero, or there is only a number. */
+  /** Friction coefficient, and patch radius in units of length. */
+  coefficients(units) {
+    return [this.mu, py.div(this.patch_radius, units.length)];
+  }
+  /** Make the law with this coefficient and patch radius. */
+  static from_coefficients(coefficients) {
+    return new this(...coefficients);
+  }
+}
+py.fields(PatchLaw, ["mu", "patch_radius"]);
+
+/** Contensou friction with an ellipsoidal limit surface (Leine and Glocker 2003). */
+class EllipsoidalLaw extends PatchLaw {
+  /** The semi-axis rho, m. */
+  get slip_length() {
+    return py.mul(ELLIPSOIDAL_RADIUS, this.patch_radius);
+  }
+  /** Force and torque per unit normal force; slip and drilling must not both be zero. */
+  traction(slip, angular_velocity) {
+    var drilling = py.mul(this.slip_length, angular_velocity[2]);
+    var factor = py.mul(py.neg(this.mu), py.pow(py.add(py.add(py.mul(slip[0], slip[0]), py.mul(slip[1], slip[1])), py.mul(drilling, drilling)), -0.5));
+    var torque = py.mul(py.mul(factor, this.slip_length), drilling);
+    return new Traction([py.mul(factor, slip[0]), py.mul(factor, slip[1])], [0.0, 0.0, torque]);
+  }
+  /** (mu N)^2 - T^2 - (M / rho)^2, N^2. */
+  reserve(normal, force, drilling) {
+    var [limit, torque] = [py.mul(this.mu, normal), py.div(drilling, this.slip_length)];
+    return py.sub(py.sub(py.sub(py.mul(limit, limit), py.mul(force[0], force[0])), py.mul(force[1], force[1])), py.mul(torque, torque));
+  }
+}
+
+// tippetop.mechanics.contensou_hertz
+const FORCE = [[1.0, 2.0379589900224446, 1.7454503606464322, 0.748871602371356, 0.1272777587571475, -0.0027191903426678006, -0.0016068785745065434, -2.585824983858782e-05], [1.0, 2.437958990022489, 2.0920625280814025, 0.7580271532705276, 0.10811738333537868, 0.004218755819955418, 0.0, 0.0]];
+const TORQUE = [[0.4, 0.822105487763007, 0.5189122287774408, 0.08174030474884943, -0.007570333630208161, 0.004741971472147535, 0.001852985148541204, 8.943122718983565e-05], [1.0, 2.7695494336932254, 2.8469587388677655, 1.3323282422825315, 0.2778032550943552, 0.020859716514356943, 0.00025020282491132825, 0.0]];
+const LIMIT = [[0.8835729338221295, 3.889778559163314, 5.573221706650525, 3.0420944615186203, 0.7966720357548377, 0.26696888590798373, 0.05714222546990528, 0.0010481676273393747, 0.00039135703969367353], [1.0, 4.402328783813161, 6.1825966830889465, 2.8926555398109404, 0.12101121238237003, -0.09382811272248932, 0.006126226581420139]];
+const NEAR_BRANCH = 1e-20;
+const EDGE = 1e-05;
+const BEYOND_of_contensou_hertz = 1e-20;
+const BRANCH_TORQUE = py.div(py.mul(9.0, PI), 128.0);
+
+/** A branch of Hertz's law, which has a number beyond where it holds, too. */
+class HertzPiece extends PatchLaw {
+  /** Force and torque per unit normal force; what prevails, drilling or slip, must not be zero. */
   traction(slip, angular_velocity) {
     return resisting(this, slip, angular_velocity);
   }
+  /** The law of which it is a branch. */
+  get whole() {
+    return new HertzLaw(...this);
+  }
+}
+
+/** Contensou friction with Hertz's pressure where drilling prevails, kappa < 1. */
+class HertzDrillingLaw extends HertzPiece {
   /** Force over slip, and torque, per unit normal force, at slip of this square and drilling R w. */
   shares(square, drilling) {
     var rate = py.pow(py.add(py.mul(drilling, drilling), py.mul(BEYOND_of_contensou_hertz, square)), -0.5);
@@ -6531,10 +6534,6 @@ class HertzDrillingLaw extends py.NamedTuple {
   limit_guard(normal, drilling) {
     return heaviness(this, normal, drilling, py.mul(4.0 / 3.0, EDGE));
   }
-  /** The law of which it is a branch. */
-  get whole() {
-    return new HertzLaw(...this);
-  }
   /** Positive as long as this branch is followed, up to `EDGE`, m^2/s^2. */
   branch_guard(slip, angular_velocity) {
     return prevalence(slip, py.mul(this.patch_radius, angular_velocity[2]), EDGE);
@@ -6543,36 +6542,10 @@ class HertzDrillingLaw extends py.NamedTuple {
   other_branch() {
     return new HertzSlidingLaw(...this);
   }
-  /** Friction coefficient, and patch radius in units of length. */
-  coefficients(units) {
-    return [this.mu, py.div(this.patch_radius, units.length)];
-  }
-  /** Make the law with this coefficient and patch radius. */
-  static from_coefficients(coefficients) {
-    return new this(...coefficients);
-  }
 }
-py.fields(HertzDrillingLaw, ["mu", "patch_radius"]);
 
 /** Contensou friction with Hertz's pressure where slip prevails, kappa > 1, drilling or not. */
-class HertzSlidingLaw extends py.NamedTuple {
-  constructor(mu, patch_radius) {
-    super();
-    this.mu = mu;
-    this.patch_radius = patch_radius;
-  }
-  /** The patch radius, m. */
-  get slip_length() {
-    return this.patch_radius;
-  }
-  /** It resists drilling. */
-  get torque_free() {
-    return false;
-  }
-  /** Force and torque per unit normal force; the slip must not be zero, or there is only a number. */
-  traction(slip, angular_velocity) {
-    return resisting(this, slip, angular_velocity);
-  }
+class HertzSlidingLaw extends HertzPiece {
   /** Force over slip, and torque, per unit normal force, at slip of this square and drilling R w. */
   shares(square, drilling) {
     square = py.add(square, py.mul(py.mul(BEYOND_of_contensou_hertz, drilling), drilling));
@@ -6592,16 +6565,12 @@ class HertzSlidingLaw extends py.NamedTuple {
     var share = py.div(drilling, py.mul(py.mul(BRANCH_TORQUE, this.patch_radius), limit));
     var under = py.sub(1.0, py.mul(share, share));
     var y = py.pow(py.mul(under, under), 0.25);
-    var size = py.div(py.mul(limit, horner_of_contensou_hertz(LIMIT[0], y)), horner_of_contensou_hertz(LIMIT[1], y));
+    var size = py.div(py.mul(limit, horner(LIMIT[0], y)), horner(LIMIT[1], y));
     return py.sub(py.sub(py.mul(size, size), py.mul(force[0], force[0])), py.mul(force[1], force[1]));
   }
   /** Positive as long as this piece of the limit surface is followed, (N m)^2. */
   limit_guard(normal, drilling) {
     return py.neg(heaviness(this, normal, drilling, py.mul(2.0 / 3.0, EDGE)));
-  }
-  /** The law of which it is a branch. */
-  get whole() {
-    return new HertzLaw(...this);
   }
   /** Positive as long as this branch is followed, down to half of `EDGE`, m^2/s^2. */
   branch_guard(slip, angular_velocity) {
@@ -6611,16 +6580,7 @@ class HertzSlidingLaw extends py.NamedTuple {
   other_branch() {
     return new HertzDrillingLaw(...this);
   }
-  /** Friction coefficient, and patch radius in units of length. */
-  coefficients(units) {
-    return [this.mu, py.div(this.patch_radius, units.length)];
-  }
-  /** Make the law with this coefficient and patch radius. */
-  static from_coefficients(coefficients) {
-    return new this(...coefficients);
-  }
 }
-py.fields(HertzSlidingLaw, ["mu", "patch_radius"]);
 
 /** The branch of Hertz's law that a number tells: the other one has no part in it. */
 class HertzBranch extends py.NamedTuple {
@@ -6680,16 +6640,7 @@ class HertzBranch extends py.NamedTuple {
 py.fields(HertzBranch, ["mu", "patch_radius", "drills"]);
 
 /** Contensou friction with Hertz's pressure, whichever branch holds: for numbers, or arrays of them. */
-class HertzLaw extends py.NamedTuple {
-  constructor(mu, patch_radius) {
-    super();
-    this.mu = mu;
-    this.patch_radius = patch_radius;
-  }
-  /** The patch radius, m. */
-  get slip_length() {
-    return this.patch_radius;
-  }
+class HertzLaw extends PatchLaw {
   /** Whether drilling prevails here, a truth value of floats, or an array of them. */
   drills(slip, angular_velocity) {
     return prevalence(slip, py.mul(this.patch_radius, angular_velocity[2]), py.mul(0.75, EDGE)) > 0.0;
@@ -6707,10 +6658,6 @@ class HertzLaw extends py.NamedTuple {
     var drills = py.and(drilling !== 0.0, () => heaviness(this, normal, drilling, EDGE) > 0.0);
     return py.truth(drills) ? new HertzDrillingLaw(...this) : new HertzSlidingLaw(...this);
   }
-  /** It resists drilling. */
-  get torque_free() {
-    return false;
-  }
   /** Force and torque per unit normal force; slip and drilling must not both be zero. */
   traction(slip, angular_velocity) {
     return this.numbered_branch(slip, angular_velocity).traction(slip, angular_velocity);
@@ -6722,16 +6669,7 @@ class HertzLaw extends py.NamedTuple {
     }
     return this.limit_branch(normal, drilling).reserve(normal, force, drilling);
   }
-  /** Friction coefficient, and patch radius in units of length. */
-  coefficients(units) {
-    return [this.mu, py.div(this.patch_radius, units.length)];
-  }
-  /** Make the law with this coefficient and patch radius. */
-  static from_coefficients(coefficients) {
-    return new this(...coefficients);
-  }
 }
-py.fields(HertzLaw, ["mu", "patch_radius"]);
 
 /** (1 + edge) (R w)^2 - v^2, of the slip v and drilling R w: positive where drilling prevails, m^2/s^2. */
 function prevalence(slip, drilling, edge) {
@@ -6755,15 +6693,6 @@ function resisting(law, slip, angular_velocity) {
 function polynomial(c, powers) {
   var [x, x2, x3, x4] = powers;
   return py.add(py.add(py.add(py.add(c[0], py.mul(c[1], x)), py.mul(c[2], x2)), py.mul(c[3], x3)), py.mul(py.add(py.add(py.add(c[4], py.mul(c[5], x)), py.mul(c[6], x2)), py.mul(c[7], x3)), x4));
-}
-
-/** Value of a polynomial, its coefficients in increasing order. */
-function horner_of_contensou_hertz(coefficients, x) {
-  var value = py.item(coefficients, -1);
-  for (var coefficient of py.slice(coefficients, -2, null, -1)) {
-    value = py.add(coefficient, py.mul(value, x));
-  }
-  return value;
 }
 
 // tippetop.frictions
@@ -8973,6 +8902,7 @@ export {
   HertzBranch,
   HertzDrillingLaw,
   HertzLaw,
+  HertzPiece,
   HertzSlidingLaw,
   Hull,
   HullKind,
@@ -9076,6 +9006,7 @@ export {
   PROTRUDING,
   PairMotion,
   Passing,
+  PatchLaw,
   PlainArithmetic,
   PoleExact,
   Prediction,
@@ -9357,7 +9288,6 @@ export {
   highest_gap,
   holding,
   horner,
-  horner_of_contensou_hertz,
   impact,
   impact_on_two,
   in_order,

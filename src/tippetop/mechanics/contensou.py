@@ -6,7 +6,7 @@ depend on kappa = v / (R |w|) alone, and derive from one convex dissipation pote
 and w = 0.
 """
 
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 from tippetop.mechanics.friction import Traction
 from tippetop.mechanics.units import Units
@@ -18,27 +18,45 @@ ELLIPSOIDAL_RADIUS = 3.0 * PI / 16.0
 """Semi-axis rho of the ellipsoidal limit surface over the patch radius: it drills as hard as Hertz's."""
 
 
-class EllipsoidalLaw(NamedTuple):
+class PatchLaw(NamedTuple):
+    """What the laws of a patch are made of."""
+
+    mu: Scalar
+    """Friction coefficient."""
+    patch_radius: Scalar
+    """Radius R of the contact patch, m."""
+
+    @property
+    def slip_length(self) -> Scalar:
+        """The patch radius, m."""
+        return self.patch_radius
+
+    @property
+    def torque_free(self) -> bool:
+        """It resists drilling."""
+        return False
+
+    def coefficients(self, units: Units) -> tuple[Scalar, ...]:
+        """Friction coefficient, and patch radius in units of length."""
+        return (self.mu, self.patch_radius / units.length)
+
+    @classmethod
+    def from_coefficients(cls, coefficients: tuple[Scalar, ...]) -> Self:
+        """Make the law with this coefficient and patch radius."""
+        return cls(*coefficients)
+
+
+class EllipsoidalLaw(PatchLaw):
     """Contensou friction with an ellipsoidal limit surface (Leine and Glocker 2003).
 
     S = sqrt(v^2 + rho^2 w^2), f = -mu v / S, t = -mu rho^2 w / S along the vertical, and rho = (3 pi/16)
     patch_radius: analytic but for v = w = 0, where any (T / mu N)^2 + (M / (mu N rho))^2 <= 1 is possible.
     """
 
-    mu: Scalar
-    """Friction coefficient."""
-    patch_radius: Scalar
-    """Radius of the contact patch, m."""
-
     @property
     def slip_length(self) -> Scalar:
         """The semi-axis rho, m."""
         return ELLIPSOIDAL_RADIUS * self.patch_radius
-
-    @property
-    def torque_free(self) -> bool:
-        """It resists drilling."""
-        return False
 
     def traction(self, slip: Horizontal, angular_velocity: Vector) -> Traction:
         """Force and torque per unit normal force; slip and drilling must not both be zero."""
@@ -51,12 +69,3 @@ class EllipsoidalLaw(NamedTuple):
         """(mu N)^2 - T^2 - (M / rho)^2, N^2."""
         limit, torque = self.mu * normal, drilling / self.slip_length
         return limit * limit - force[0] * force[0] - force[1] * force[1] - torque * torque
-
-    def coefficients(self, units: Units) -> tuple[Scalar, ...]:
-        """Friction coefficient, and patch radius in units of length."""
-        return (self.mu, self.patch_radius / units.length)
-
-    @classmethod
-    def from_coefficients(cls, coefficients: tuple[Scalar, ...]) -> "EllipsoidalLaw":
-        """Make the law with this coefficient and patch radius."""
-        return cls(*coefficients)

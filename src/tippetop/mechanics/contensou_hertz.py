@@ -6,8 +6,9 @@ that stands still is on its rim.
 
 from typing import Any, NamedTuple
 
-from tippetop.mechanics.contensou import PI
+from tippetop.mechanics.contensou import PI, PatchLaw
 from tippetop.mechanics.friction import Traction
+from tippetop.mechanics.series import horner
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Horizontal, Scalar, Vector
 
@@ -101,30 +102,24 @@ BRANCH_TORQUE = 9.0 * PI / 128.0
 """T at kappa = 1."""
 
 
-class HertzDrillingLaw(NamedTuple):
+class HertzPiece(PatchLaw):
+    """A branch of Hertz's law, which has a number beyond where it holds, too."""
+
+    def traction(self, slip: Horizontal, angular_velocity: Vector) -> Traction:
+        """Force and torque per unit normal force; what prevails, drilling or slip, must not be zero."""
+        return resisting(self, slip, angular_velocity)
+
+    @property
+    def whole(self) -> "HertzLaw":
+        """The law of which it is a branch."""
+        return HertzLaw(*self)
+
+
+class HertzDrillingLaw(HertzPiece):
     """Contensou friction with Hertz's pressure where drilling prevails, kappa < 1.
 
     f = -mu (3 pi/32) (4 - kappa^2) v / (R |w|), |t| = mu R (3 pi/16) (1 - kappa^2 + 3/8 kappa^4).
     """
-
-    mu: Scalar
-    """Friction coefficient."""
-    patch_radius: Scalar
-    """Radius R of the contact patch, m."""
-
-    @property
-    def slip_length(self) -> Scalar:
-        """The patch radius, m."""
-        return self.patch_radius
-
-    @property
-    def torque_free(self) -> bool:
-        """It resists drilling."""
-        return False
-
-    def traction(self, slip: Horizontal, angular_velocity: Vector) -> Traction:
-        """Force and torque per unit normal force; drilling must not be zero, or there is only a number."""
-        return resisting(self, slip, angular_velocity)
 
     def shares(self, square: Scalar, drilling: Scalar) -> tuple[Scalar, Scalar]:
         """Force over slip, and torque, per unit normal force, at slip of this square and drilling R w."""
@@ -150,11 +145,6 @@ class HertzDrillingLaw(NamedTuple):
         """Positive as long as this piece of the limit surface is followed, (N m)^2."""
         return heaviness(self, normal, drilling, 4.0 / 3.0 * EDGE)
 
-    @property
-    def whole(self) -> "HertzLaw":
-        """The law of which it is a branch."""
-        return HertzLaw(*self)
-
     def branch_guard(self, slip: Horizontal, angular_velocity: Vector) -> Scalar:
         """Positive as long as this branch is followed, up to `EDGE`, m^2/s^2."""
         return prevalence(slip, self.patch_radius * angular_velocity[2], EDGE)
@@ -163,17 +153,8 @@ class HertzDrillingLaw(NamedTuple):
         """The law where this one does not hold, and whose piece of the limit surface adjoins this one's."""
         return HertzSlidingLaw(*self)
 
-    def coefficients(self, units: Units) -> tuple[Scalar, ...]:
-        """Friction coefficient, and patch radius in units of length."""
-        return (self.mu, self.patch_radius / units.length)
 
-    @classmethod
-    def from_coefficients(cls, coefficients: tuple[Scalar, ...]) -> "HertzDrillingLaw":
-        """Make the law with this coefficient and patch radius."""
-        return cls(*coefficients)
-
-
-class HertzSlidingLaw(NamedTuple):
+class HertzSlidingLaw(HertzPiece):
     """Contensou friction with Hertz's pressure where slip prevails, kappa > 1, drilling or not.
 
     With sig = asin(1 / kappa) and q = sqrt(kappa^2 - 1),
@@ -191,25 +172,6 @@ class HertzSlidingLaw(NamedTuple):
     ahead, but not the law. It is followed from kappa^2 = 1 + EDGE / 2 on; drilling's branch serves up to 1 +
     EDGE. So that it has derivatives at kappa = 1 too, q is 1e-5 there.
     """
-
-    mu: Scalar
-    """Friction coefficient."""
-    patch_radius: Scalar
-    """Radius R of the contact patch, m."""
-
-    @property
-    def slip_length(self) -> Scalar:
-        """The patch radius, m."""
-        return self.patch_radius
-
-    @property
-    def torque_free(self) -> bool:
-        """It resists drilling."""
-        return False
-
-    def traction(self, slip: Horizontal, angular_velocity: Vector) -> Traction:
-        """Force and torque per unit normal force; the slip must not be zero, or there is only a number."""
-        return resisting(self, slip, angular_velocity)
 
     def shares(self, square: Scalar, drilling: Scalar) -> tuple[Scalar, Scalar]:
         """Force over slip, and torque, per unit normal force, at slip of this square and drilling R w."""
@@ -240,11 +202,6 @@ class HertzSlidingLaw(NamedTuple):
         """Positive as long as this piece of the limit surface is followed, (N m)^2."""
         return -heaviness(self, normal, drilling, 2.0 / 3.0 * EDGE)
 
-    @property
-    def whole(self) -> "HertzLaw":
-        """The law of which it is a branch."""
-        return HertzLaw(*self)
-
     def branch_guard(self, slip: Horizontal, angular_velocity: Vector) -> Scalar:
         """Positive as long as this branch is followed, down to half of `EDGE`, m^2/s^2."""
         return -prevalence(slip, self.patch_radius * angular_velocity[2], 0.5 * EDGE)
@@ -252,15 +209,6 @@ class HertzSlidingLaw(NamedTuple):
     def other_branch(self) -> "HertzDrillingLaw":
         """The law where this one does not hold, and whose piece of the limit surface adjoins this one's."""
         return HertzDrillingLaw(*self)
-
-    def coefficients(self, units: Units) -> tuple[Scalar, ...]:
-        """Friction coefficient, and patch radius in units of length."""
-        return (self.mu, self.patch_radius / units.length)
-
-    @classmethod
-    def from_coefficients(cls, coefficients: tuple[Scalar, ...]) -> "HertzSlidingLaw":
-        """Make the law with this coefficient and patch radius."""
-        return cls(*coefficients)
 
 
 class HertzBranch(NamedTuple):
@@ -329,18 +277,8 @@ class HertzBranch(NamedTuple):
         return cls(*coefficients)
 
 
-class HertzLaw(NamedTuple):
+class HertzLaw(PatchLaw):
     """Contensou friction with Hertz's pressure, whichever branch holds: for numbers, or arrays of them."""
-
-    mu: Scalar
-    """Friction coefficient."""
-    patch_radius: Scalar
-    """Radius R of the contact patch, m."""
-
-    @property
-    def slip_length(self) -> Scalar:
-        """The patch radius, m."""
-        return self.patch_radius
 
     def drills(self, slip: Horizontal, angular_velocity: Vector) -> Scalar:
         """Whether drilling prevails here, a truth value of floats, or an array of them."""
@@ -360,11 +298,6 @@ class HertzLaw(NamedTuple):
         drills = drilling != 0.0 and heaviness(self, normal, drilling, EDGE) > 0.0
         return HertzDrillingLaw(*self) if drills else HertzSlidingLaw(*self)
 
-    @property
-    def torque_free(self) -> bool:
-        """It resists drilling."""
-        return False
-
     def traction(self, slip: Horizontal, angular_velocity: Vector) -> Traction:
         """Force and torque per unit normal force; slip and drilling must not both be zero."""
         return self.numbered_branch(slip, angular_velocity).traction(slip, angular_velocity)
@@ -374,15 +307,6 @@ class HertzLaw(NamedTuple):
         if normal == 0.0:  # without a normal force there is no friction
             return -(force[0] ** 2) - force[1] ** 2 - (drilling / self.patch_radius) ** 2
         return self.limit_branch(normal, drilling).reserve(normal, force, drilling)
-
-    def coefficients(self, units: Units) -> tuple[Scalar, ...]:
-        """Friction coefficient, and patch radius in units of length."""
-        return (self.mu, self.patch_radius / units.length)
-
-    @classmethod
-    def from_coefficients(cls, coefficients: tuple[Scalar, ...]) -> "HertzLaw":
-        """Make the law with this coefficient and patch radius."""
-        return cls(*coefficients)
 
 
 def prevalence(slip: Horizontal, drilling: Scalar, edge: Scalar) -> Scalar:
@@ -414,11 +338,3 @@ def polynomial(c: tuple[float, ...], powers: tuple[Scalar, ...]) -> Scalar:
     """
     x, x2, x3, x4 = powers
     return (c[0] + c[1] * x + c[2] * x2 + c[3] * x3) + (c[4] + c[5] * x + c[6] * x2 + c[7] * x3) * x4
-
-
-def horner(coefficients: tuple[float, ...], x: Scalar) -> Scalar:
-    """Value of a polynomial, its coefficients in increasing order."""
-    value: Scalar = coefficients[-1]
-    for coefficient in coefficients[-2::-1]:
-        value = coefficient + value * x
-    return value
