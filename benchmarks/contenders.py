@@ -17,7 +17,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from tippetop.integrators.compile_cache import compiling
 from tippetop.mechanics.euler import published_rates
 from tippetop.mechanics.motion import contact, sliding_rates
 from tippetop.mechanics.state import SlidingState
@@ -99,14 +98,13 @@ def _batch_integrator(kind: Any, tolerance: float) -> Any:
     state = sliding_state(y)
     rates = [hy.expression(rate) for rate in eight(sliding_rates(state, top))]
     force = contact(state.axis, state.momentum, state.velocity, top).normal_force
-    with compiling():
-        return hy.taylor_adaptive_batch(
-            list(zip(y, rates, strict=True)),
-            np.zeros((8, lanes)),
-            pars=np.ones((kind.numbers, lanes)),
-            tol=tolerance,
-            t_events=[hy.t_event_batch(force, direction=hy.event_direction.negative)],
-        )
+    return hy.taylor_adaptive_batch(
+        list(zip(y, rates, strict=True)),
+        np.zeros((8, lanes)),
+        pars=np.ones((kind.numbers, lanes)),
+        tol=tolerance,
+        t_events=[hy.t_event_batch(force, direction=hy.event_direction.negative)],
+    )
 
 
 def bare_batch(spins: Array, tolerance: float) -> Array:

@@ -1,20 +1,18 @@
 """Compiled code that was damaged in the cache is never run, and costs a compilation."""
 
 import os
-import sqlite3
 import subprocess
 import sys
 
 import numpy as np
 import pytest
 
-from tippetop.integrators import has_taylor
+from tippetop.integrators import has_llvm, has_taylor
 
-if not has_taylor():
-    pytest.skip("heyoka is not installed", allow_module_level=True)
+if not has_llvm():
+    pytest.skip("llvmlite is not installed", allow_module_level=True)
 
-from tippetop.integrators.cache_folder import VARIABLE
-from tippetop.integrators.compile_cache import compiling, drop_damaged, use_compile_cache
+from tippetop.integrators.sealed_folders import VARIABLE, kept_content
 
 MANY = int(os.environ.get("TIPPETOP_FAULTS", "1"))
 """How many times more faults than in a quick run."""
@@ -45,107 +43,55 @@ def swing(folder):
     assert (done.stdout, done.stderr, done.returncode) == ("", "", 0)
 
 
-def entries(database):
-    """The compiled code in a cache by its key."""
-    with sqlite3.connect(database) as opened:
-        rows = opened.execute("SELECT hash, bitcode, comp_flag, opt_bc, opt_ir, obj FROM cache").fetchall()
-    opened.close()
-    return {row[0]: row[1:] for row in rows}
-
-
-@pytest.fixture(scope="module")
-def filled(tmp_path_factory):
-    """A cache with two entries, closed."""
-    folder = tmp_path_factory.mktemp("filled")
-    swing(folder)
-    assert len(entries(folder / "cache.db")) >= 2
-    return (folder / "cache.db").read_bytes()
-
-
 def damage(content, rng, number):
-    """A content in which bits flipped, or bytes are zero or of another place."""
+    """A content in which bits flipped, or bytes are zero or of another place, or missing."""
     damaged = bytearray(content)
     first = int(rng.integers(len(content)))
     length = int(min(rng.integers(1, 5000), len(content) - first))
     match number % 4:
-        case 0 | 1:
+        case 0:
             damaged[first] ^= 1 << int(rng.integers(8))
-        case 2:
+        case 1:
             damaged[first : first + length] = bytes(length)
-        case 3:
+        case 2:
             other = int(rng.integers(len(content) - length + 1))
             damaged[first : first + length] = content[other : other + length]
+        case 3:
+            del damaged[first:]
     return bytes(damaged)
 
 
-def test_a_cache_that_is_whole_is_kept(filled, tmp_path):
-    database = tmp_path / "cache.db"
-    database.write_bytes(filled)
-    before = entries(database)
-    assert drop_damaged(database)
-    assert entries(database) == before
-    swing(tmp_path)
-    assert entries(database) == before
+def test_damage_at_any_place_is_dropped(tmp_path, monkeypatch):
+    monkeypatch.setenv(VARIABLE, str(tmp_path))
+    rng, made = np.random.default_rng(7), []
+    content = rng.bytes(9000)
+
+    def make():
+        made.append(True)
+        return content
+
+    for number in range(300 * MANY):
+        assert kept_content("code", make) == content
+        [folder] = tmp_path.iterdir()
+        for file in folder.iterdir():
+            if file.name == ["seal.json", "content"][rng.integers(2)]:
+                file.write_bytes(damage(file.read_bytes(), rng, number))
+    assert len(made) > 200 * MANY
 
 
-def test_damage_at_any_place_is_dropped(filled, tmp_path):
-    database, rng = tmp_path / "cache.db", np.random.default_rng(7)
-    database.write_bytes(filled)
-    good, kept = entries(database), 0
-    for number in range(1000 * MANY):
-        database.write_bytes(damage(filled, rng, number))
-        assert drop_damaged(database)
-        if database.exists():
-            left = entries(database)
-            assert left.items() <= good.items()
-            kept += len(left)
-            database.unlink()
-    assert kept > 200 * MANY, "one damaged entry is no reason to drop the others"
+def test_what_is_whole_is_not_made_again(tmp_path, monkeypatch):
+    monkeypatch.setenv(VARIABLE, str(tmp_path))
+    assert kept_content("code", lambda: b"made") == b"made"
+    assert kept_content("code", lambda: b"again") == b"made"
+    assert kept_content("other", lambda: b"again") == b"again"
 
 
-def test_a_damaged_cache_is_as_good_as_none(filled, tmp_path):
+@pytest.mark.skipif(not has_taylor(), reason="heyoka is not installed")
+def test_a_damaged_cache_is_as_good_as_none(tmp_path):
     rng = np.random.default_rng(8)
-    for number in range(8 * MANY):
-        (tmp_path / "cache.db").write_bytes(damage(filled, rng, number))
+    for number in range(5 * MANY):
         swing(tmp_path)
-        for path in tmp_path.iterdir():
-            path.unlink()
-
-
-def test_code_without_a_digest_is_compiled_again(filled, tmp_path):
-    """As a process that was killed leaves it."""
-    database = tmp_path / "cache.db"
-    database.write_bytes(filled)
-    with sqlite3.connect(database) as opened:
-        one = opened.execute("SELECT hash FROM digest").fetchone()
-        opened.execute("DELETE FROM digest WHERE hash = ?", one)
-    opened.close()
-    keys = entries(database).keys()
-    assert drop_damaged(database)
-    assert entries(database).keys() == keys - set(one)
-    swing(tmp_path)
-    assert entries(database).keys() == keys
-
-
-def test_code_that_takes_the_place_of_other_does_not_take_its_digest(filled, tmp_path):
-    database = tmp_path / "cache.db"
-    database.write_bytes(filled)
-    with sqlite3.connect(database) as opened:
-        opened.execute("CREATE TEMP TABLE moved AS SELECT * FROM cache")
-        opened.execute("DELETE FROM cache")
-        assert opened.execute("SELECT count(*) FROM digest").fetchone() == (0,)
-        opened.execute("INSERT INTO cache SELECT * FROM moved")
-    opened.close()
-    assert drop_damaged(database)
-    assert entries(database) == {}
-
-
-def test_what_is_compiled_is_kept_also_where_noting_it_fails(tmp_path, monkeypatch):
-    monkeypatch.setenv(VARIABLE, "off")
-    use_compile_cache.cache_clear()
-    try:
-        with compiling():
-            pass
-        assert use_compile_cache() is None
-    finally:
-        use_compile_cache.cache_clear()
+        files = sorted(path for path in tmp_path.rglob("*") if path.is_file())
+        assert len(files) == 4, "two motions, each with its seal"
+        for file in files:
+            file.write_bytes(damage(file.read_bytes(), rng, number))

@@ -1,7 +1,6 @@
 """The Taylor method is compiled once for all values, and kept between processes where that is possible."""
 
 import os
-import sqlite3
 import subprocess
 import sys
 import threading
@@ -20,7 +19,7 @@ if not has_taylor():
 import heyoka as hy
 
 from tippetop.integrators import taylor
-from tippetop.integrators.cache_folder import VARIABLE
+from tippetop.integrators.sealed_folders import SEAL, VARIABLE
 
 TAYLOR = DEFAULTS[0]
 
@@ -36,6 +35,7 @@ def compilations(monkeypatch):
         return make(*arguments, **options)
 
     monkeypatch.setattr(hy, "taylor_adaptive", count)
+    monkeypatch.setenv(VARIABLE, "off")
     return made
 
 
@@ -156,11 +156,9 @@ def swing_elsewhere(**variables):
 
 
 def kept(folder):
-    """The compiled code in a cache: each piece's key, and when it was last used."""
-    with sqlite3.connect(folder / "cache.db") as database:
-        rows = database.execute("SELECT hash, last_access FROM cache").fetchall()
-    database.close()
-    return dict(rows)
+    """The files of compiled code in a cache: their content, and what would change if it were made again."""
+    files = [path for path in folder.rglob("*") if path.is_file()]
+    return {path: (path.stat().st_ino, path.stat().st_mtime_ns, path.read_bytes()) for path in files}
 
 
 @pytest.fixture(scope="module")
@@ -171,30 +169,11 @@ def filled_cache(tmp_path_factory):
     return folder
 
 
-def copy_of(filled_cache, folder):
-    """A copy of a cache, for doing harm to."""
-    folder.mkdir()
-    database = folder / "cache.db"
-    with sqlite3.connect(filled_cache / "cache.db") as source, sqlite3.connect(database) as target:
-        source.backup(target)
-    source.close()
-    target.close()
-    return database
-
-
-def test_a_second_process_compiles_nothing(filled_cache, tmp_path):
-    folder = copy_of(filled_cache, tmp_path / "cache").parent
-    before = kept(folder)
-    assert before
-    # What is found is marked as used; what is compiled is added. Age everything, to see which it is.
-    with sqlite3.connect(folder / "cache.db") as database:
-        database.execute("UPDATE cache SET last_access = last_access - 1000000")
-    database.close()
-    aged = kept(folder)
-    swing_elsewhere(**{VARIABLE: folder})
-    after = kept(folder)
-    assert after.keys() == before.keys()
-    assert all(after[key] != aged[key] for key in after)
+def test_a_second_process_compiles_nothing(filled_cache):
+    before = kept(filled_cache)
+    assert len(before) == 2, "the code, and its seal"
+    swing_elsewhere(**{VARIABLE: filled_cache})
+    assert kept(filled_cache) == before
 
 
 def test_cache_folder_is_made_when_there_is_none(tmp_path):
@@ -204,87 +183,15 @@ def test_cache_folder_is_made_when_there_is_none(tmp_path):
 
 def test_cache_is_kept_in_the_users_cache_folder(tmp_path):
     swing_elsewhere(XDG_CACHE_HOME=tmp_path, HOME=tmp_path)
-    [database] = tmp_path.rglob("cache.db")
-    assert "tippetop" in database.parent.name
-    assert kept(database.parent)
+    [seal] = tmp_path.rglob(SEAL)
+    assert "tippetop" in seal.parent.parent.name
+    assert kept(seal.parent)
 
 
 def test_cache_can_be_turned_off(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     swing_elsewhere(XDG_CACHE_HOME=tmp_path, HOME=tmp_path, **{VARIABLE: "off"})
     assert list(tmp_path.rglob("*")) == []
-
-
-def garbage(database: Path) -> None:
-    database.write_bytes(np.random.default_rng(1).bytes(10_000))
-
-
-def nothing_at_all(database: Path) -> None:
-    database.write_bytes(b"")
-
-
-def head_only(database: Path) -> None:
-    database.write_bytes(database.read_bytes()[:50])
-
-
-def half(database: Path) -> None:
-    content = database.read_bytes()
-    database.write_bytes(content[: len(content) // 2])
-
-
-def all_but_the_last_page(database: Path) -> None:
-    database.write_bytes(database.read_bytes()[:-4096])
-
-
-def holes(database: Path) -> None:
-    content = database.read_bytes()
-    cut = len(content) // 3
-    database.write_bytes(content[:cut] + bytes(cut) + content[2 * cut :])
-
-
-def another_programs_tables(database: Path) -> None:
-    database.unlink()
-    with sqlite3.connect(database) as other:
-        other.execute("CREATE TABLE cache (name TEXT)")
-    other.close()
-
-
-@pytest.mark.parametrize(
-    ("damage", "beyond_use"),
-    [
-        (garbage, True),
-        (nothing_at_all, True),
-        (head_only, True),
-        (half, True),
-        (all_but_the_last_page, True),
-        (holes, False),
-        (another_programs_tables, False),
-    ],
-    ids=lambda damage: getattr(damage, "__name__", ""),
-)
-def test_damaged_cache_costs_a_compilation_and_nothing_else(filled_cache, tmp_path, damage, beyond_use):
-    database = copy_of(filled_cache, tmp_path / "cache")
-    keys = kept(database.parent).keys()
-    damage(database)
-    swing_elsewhere(**{VARIABLE: database.parent})
-    if beyond_use:
-        assert kept(database.parent).keys() == keys
-
-
-@pytest.mark.parametrize("hold", ["IMMEDIATE", "EXCLUSIVE"])
-def test_cache_that_another_process_holds_is_left_alone(filled_cache, tmp_path, hold):
-    database = copy_of(filled_cache, tmp_path / "cache")
-    keys, identity = kept(database.parent).keys(), database.stat().st_ino
-    holder = sqlite3.connect(database, isolation_level=None)
-    try:
-        holder.execute(f"BEGIN {hold}")
-        swing_elsewhere(**{VARIABLE: database.parent})
-        assert database.stat().st_ino == identity
-        holder.execute("ROLLBACK")
-    finally:
-        holder.close()
-    assert kept(database.parent).keys() == keys
-    swing_elsewhere(**{VARIABLE: database.parent})
 
 
 def a_file_in_its_place(folder: Path) -> Path:
@@ -305,11 +212,6 @@ def a_folder_that_cannot_be_written(_: Path) -> Path:
     return Path("/proc/self")
 
 
-def a_folder_in_place_of_the_database(folder: Path) -> Path:
-    (folder / "cache.db" / "inside").mkdir(parents=True)
-    return folder
-
-
 @pytest.mark.parametrize(
     "place",
     [
@@ -317,7 +219,6 @@ def a_folder_in_place_of_the_database(folder: Path) -> Path:
         below_a_file,
         a_folder_that_cannot_be_made,
         a_folder_that_cannot_be_written,
-        a_folder_in_place_of_the_database,
     ],
     ids=lambda place: place.__name__,
 )

@@ -5,12 +5,12 @@ import pytest
 
 from tippetop.emit.recording import record
 from tippetop.integrators import has_llvm
-from tippetop.integrators.cache_folder import VARIABLE
 
 if not has_llvm():
     pytest.skip("llvmlite is not installed", allow_module_level=True)
 
 from tippetop.integrators import machine_code
+from tippetop.integrators.sealed_folders import CONTENT, VARIABLE
 
 
 def assert_computes(function):
@@ -27,7 +27,7 @@ def recorded():
 def test_code_is_compiled_once_and_again_where_it_is_damaged(recorded, tmp_path, monkeypatch):
     monkeypatch.setenv(VARIABLE, str(tmp_path))
     assert_computes(machine_code.machine_code(recorded, 8)["f"])
-    (kept,) = tmp_path.glob(f"*/{machine_code.OBJECT}")
+    (kept,) = tmp_path.glob(f"*/{CONTENT}")
     content = kept.read_bytes()
     with monkeypatch.context() as without:
         without.setattr(machine_code, "_compiled", None)

@@ -2,7 +2,6 @@
 
 import ctypes
 from collections.abc import Callable, Mapping
-from pathlib import Path
 from typing import Any
 
 import llvmlite
@@ -11,11 +10,8 @@ import llvmlite.binding as llvm
 from tippetop.emit.llvm import llvm_source
 from tippetop.emit.recording import Recorded
 from tippetop.integrators.base import Array
-from tippetop.integrators.sealed_folders import digest, kept
+from tippetop.integrators.sealed_folders import kept_content
 from tippetop.interrupts import heard
-
-OBJECT = "made.o"
-"""What the code is called in a folder of the cache."""
 
 EFFORT = 2
 """How hard the compiler tries."""
@@ -41,25 +37,12 @@ def iterations(functions: Mapping[str, Recorded], abreast: int) -> dict[str, Cal
 
 def _loaded(source: str) -> llvm.ExecutionEngine:
     """The machine code of a source, compiled or taken from the cache."""
-    cpu, features = llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten()
-    made = (source, llvmlite.__version__, llvm.get_process_triple(), cpu, features, EFFORT)
-    name = digest(repr(made).encode())[:32]
-    content = heard(lambda: kept(name, lambda folder: _object(source, folder)))
+    made = (source, llvmlite.__version__, EFFORT)
+    content = heard(lambda: kept_content(made, lambda: _compiled(source)))
     engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), _machine())
     engine.add_object_file(llvm.ObjectFileRef.from_data(content))
     engine.finalize_object()
     return engine
-
-
-def _object(source: str, folder: Path | None) -> bytes:
-    """Compile, or load what is in a folder."""
-    path = (folder or Path()) / OBJECT
-    if folder is not None and path.exists():
-        return path.read_bytes()
-    content = _compiled(source)
-    if folder is not None:
-        path.write_bytes(content)
-    return content
 
 
 def _compiled(source: str) -> bytes:

@@ -3,14 +3,14 @@
 import math
 import sys
 from collections.abc import Mapping
+from hashlib import sha256
 from pathlib import Path
 from types import FunctionType, ModuleType
-from typing import Any, NamedTuple
+from typing import Any
 
-import llvmlite.binding as llvm
 import numba
 
-from tippetop.integrators.sealed_folders import digest, kept
+from tippetop.integrators.sealed_folders import kept
 from tippetop.interrupts import heard
 
 SOURCE = "source.py"
@@ -20,40 +20,26 @@ SOURCE = "source.py"
 def compiled(source: str, signatures: Mapping[str, Any]) -> dict[str, Any]:
     """Some functions of a source, compiled for signatures; its other functions are compiled with them.
 
-    They are taken from the cache, or else kept there. What is damaged in it is thrown away, and where none
-    can be kept every process compiles for itself.
+    They are taken from the cache, or else kept there; see `kept`.
     """
-    code = _Code(source, signatures)
-    return heard(lambda: kept(code.name, code.functions))
+    made = (source, str(signatures), numba.__version__, sys.version)
+    return heard(lambda: kept(made, lambda folder: _functions(source, signatures, folder)))
 
 
-class _Code(NamedTuple):
-    """A source, and the signatures of the functions in it that are wanted."""
-
-    source: str
-    signatures: Mapping[str, Any]
-
-    @property
-    def name(self) -> str:
-        """What it is, and what it is compiled with, and for."""
-        processor = (llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten())
-        made = (self.source, str(self.signatures), numba.__version__, sys.version, *processor)
-        return digest(repr(made).encode())[:32]
-
-    def functions(self, folder: Path | None) -> dict[str, Any]:
-        """Compile, or load what is in a folder."""
-        # What is loaded asks for the module by name.
-        module = ModuleType(f"tippetop_compiled_{self.name}")
-        sys.modules[module.__name__], place = module, module.__dict__
-        place["math"] = math
-        path = (folder or Path()) / SOURCE
-        if folder is not None and not path.exists():
-            path.write_text(self.source, encoding="utf-8")
-        exec(compile(self.source, str(path), "exec"), place)
-        for name, made in list(place.items()):
-            if isinstance(made, FunctionType) and made.__module__ == module.__name__:
-                place[name] = numba.njit(error_model="numpy")(made)
-        for name, signature in self.signatures.items():
-            made = place[name].py_func
-            place[name] = numba.njit(signature, error_model="numpy", cache=folder is not None)(made)
-        return {name: place[name] for name in self.signatures}
+def _functions(source: str, signatures: Mapping[str, Any], folder: Path | None) -> dict[str, Any]:
+    """Compile, or load what is in a folder."""
+    # What is loaded asks for the module by name.
+    module = ModuleType(f"tippetop_compiled_{sha256(source.encode()).hexdigest()}")
+    sys.modules[module.__name__], place = module, module.__dict__
+    place["math"] = math
+    path = (folder or Path()) / SOURCE
+    if folder is not None and not path.exists():
+        path.write_text(source, encoding="utf-8")
+    exec(compile(source, str(path), "exec"), place)
+    for name, made in list(place.items()):
+        if isinstance(made, FunctionType) and made.__module__ == module.__name__:
+            place[name] = numba.njit(error_model="numpy")(made)
+    for name, signature in signatures.items():
+        made = place[name].py_func
+        place[name] = numba.njit(signature, error_model="numpy", cache=folder is not None)(made)
+    return {name: place[name] for name in signatures}

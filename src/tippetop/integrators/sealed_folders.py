@@ -10,42 +10,71 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TypeVar
 
+import platformdirs
 import psutil
 
-from tippetop.integrators.cache_folder import cache_folder
+from tippetop.integrators import has_llvm
 
 Found = TypeVar("Found")
 
-SEAL = "seal.json"
-"""The digests of all else in a folder."""
+VARIABLE = "TIPPETOP_CACHE"
+"""Environment variable that names another folder for the cache than the user's, or "off" for none."""
 
-PREFIX, MOST = "code-", 64
+SEAL, CONTENT = "seal.json", "content"
+"""The digests of all else in a folder, and what is in it where that is one file."""
+
+PREFIX, MOST = "code-", 256
 """How the folders are called, and how many there are at most: then the oldest goes."""
 
 MAKING = "making-"
 """How those are called that are not yet whole: with this and the number of the process that makes them."""
 
 
-def kept(name: str, use: Callable[[Path | None], Found]) -> Found:
+def kept(made: object, use: Callable[[Path | None], Found]) -> Found:
     """What comes of a folder of compiled code.
+
+    What is damaged in it is thrown away, and where none can be kept every process compiles for itself.
 
     Parameters
     ----------
-    name
-        What tells the code from all other: it is compiled once for it.
+    made
+        What is compiled, and with what, as something that is written down: it is compiled once for each
+        kind of processor.
     use
         Takes the code from a folder, or compiles it and puts it there if it is empty; with no folder it
         compiles only.
     """
-    place = cache_folder()
-    if place is not None:
+    place = os.environ.get(VARIABLE) or platformdirs.user_cache_path("tippetop", appauthor=False)
+    if place != "off" and has_llvm():
         with contextlib.suppress(OSError):
-            folder = place / (PREFIX + name)
+            folder = Path(place) / (PREFIX + _digest(repr((made, *_processor())).encode())[:32])
             if _is_whole(folder):
                 return use(folder)
             shutil.rmtree(folder, ignore_errors=True)
             return _made(folder, use)
     return use(None)
+
+
+def kept_content(made: object, make: Callable[[], bytes]) -> bytes:
+    """Compiled code that is one file, made or taken from the cache; see `kept`."""
+
+    def use(folder: Path | None) -> bytes:
+        path = folder and folder / CONTENT
+        if path and path.exists():
+            return path.read_bytes()
+        content = make()
+        if path:
+            path.write_bytes(content)
+        return content
+
+    return kept(made, use)
+
+
+def _processor() -> tuple[str, ...]:
+    """What code is compiled for."""
+    import llvmlite.binding as llvm  # noqa: PLC0415 - optional
+
+    return llvm.get_process_triple(), llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten()
 
 
 def _made(folder: Path, use: Callable[[Path | None], Found]) -> Found:
@@ -83,9 +112,8 @@ def _is_whole(folder: Path) -> bool:
 
 def _digests(folder: Path) -> dict[str, str]:
     files = [path for path in folder.rglob("*") if path.is_file() and path.name != SEAL]
-    return {path.relative_to(folder).as_posix(): digest(path.read_bytes()) for path in files}
+    return {path.relative_to(folder).as_posix(): _digest(path.read_bytes()) for path in files}
 
 
-def digest(content: bytes) -> str:
-    """What tells some bytes from all others."""
+def _digest(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()

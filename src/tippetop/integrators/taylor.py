@@ -1,9 +1,10 @@
 """Taylor's method of high order, compiled by heyoka once for all values of the parameters."""
 
 import math
+import pickle
 import threading
 from array import array
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Any
@@ -12,8 +13,8 @@ import heyoka as hy
 import numpy as np
 
 from tippetop.integrators.base import NOT_FINITE, Arc, Array, Evaluation, Expansion, Motion, Rows
-from tippetop.integrators.compile_cache import compiling
 from tippetop.integrators.dense import DenseSolution
+from tippetop.integrators.sealed_folders import kept_content
 from tippetop.interrupts import heard
 
 SHORTEST = 1e-6
@@ -26,6 +27,9 @@ GUARDED = 2.0**-5
 """Weight of guards beside the numbers of the motion where the compiler chooses steps by the largest of all. A
 guard's zero needs fewer digits than they do, since the state there is theirs: by itself a guard would cost
 steps."""
+
+# What is compiled is kept by this package, whole or not at all.
+hy.llvm_state.set_diskcache_enabled(False)
 
 
 @dataclass(frozen=True)
@@ -118,30 +122,27 @@ def _compiled(motion: Motion, tolerance: float, room: int) -> _Compiled:
     """Compile the equations and the guards, or fetch them from the cache across processes."""
     state, parameters = _symbols(motion.size, motion.parameters)
     rates = [hy.expression(rate) for rate in motion.rates(state, parameters)]
-    events = [
-        hy.t_event(GUARDED * guard.value(state, parameters), direction=hy.event_direction.negative)
-        for guard in motion.guards
-    ]
+    guards = [GUARDED * guard.value(state, parameters) for guard in motion.guards]
 
-    def compiled() -> Any:
-        with compiling():
-            return hy.taylor_adaptive(
-                list(zip(state, rates, strict=True)),
-                [0.0] * motion.size,
-                tol=tolerance,
-                t_events=events,
-                compact_mode=not motion.lasting,
-            )
+    def make() -> Any:
+        falling = hy.event_direction.negative
+        return hy.taylor_adaptive(
+            list(zip(state, rates, strict=True)),
+            [0.0] * motion.size,
+            tol=tolerance,
+            t_events=[hy.t_event(guard, direction=falling) for guard in guards],
+            compact_mode=not motion.lasting,
+        )
 
-    return _Compiled(heard(compiled), room)
+    return _Compiled(_kept(make, (rates, guards, tolerance, motion.lasting)), room)
 
 
 @lru_cache(maxsize=64)
 def _evaluation(function: Rows, size: int, parameters: int) -> Evaluation:
     """Compile a function, or fetch it from the cache across processes."""
     state, numbers = _symbols(size, parameters)
-    with compiling():
-        compiled = hy.cfunc([hy.expression(value) for value in function(state, numbers)], vars=state)
+    values = [hy.expression(value) for value in function(state, numbers)]
+    compiled = _kept(lambda: hy.cfunc(values, vars=state), (values, state))
 
     def evaluate(y: Array, given: Sequence[Any]) -> Array:
         shape = y.shape[1:]
@@ -154,6 +155,12 @@ def _evaluation(function: Rows, size: int, parameters: int) -> Evaluation:
         return found
 
     return evaluate
+
+
+def _kept(make: Callable[[], Any], made: tuple[Any, ...]) -> Any:
+    """What heyoka makes of some expressions and numbers, or made of them in another process."""
+    known = hy.__version__, pickle.dumps(made)
+    return pickle.loads(heard(lambda: kept_content(known, lambda: pickle.dumps(make()))))
 
 
 def _symbols(size: int, parameters: int) -> tuple[list[Any], list[Any]]:
