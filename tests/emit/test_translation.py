@@ -9,6 +9,7 @@ import pytest
 from node import NODE
 from tippetop.emit.definitions import Definitions
 from tippetop.emit.expressions import Untranslatable
+from tippetop.emit.layout import WIDTH, laid_out
 from tippetop.emit.program import Program
 from tippetop.engine import HERE
 
@@ -184,3 +185,19 @@ def test_what_is_not_known_is_refused(statement):
     program = Program({"sample": text}, {}, ())
     with pytest.raises(Untranslatable):
         list(Definitions(program, "sample").module_lines())
+
+
+def test_long_lines_are_broken_into_the_same_code():
+    args = ", ".join(f"f({number}, [1.0, x{number}])" for number in range(12))
+    text = f'say("of (many, things", `and ${{name}}, too`, {args})'
+    for line in (
+        f"  return {text};",
+        f"  if (a) {{ {text}; }}",
+        f"  const total = h * ({args.replace(', f', ' + f')});",
+    ):
+        lines = list(laid_out(line))
+        assert len(lines) > 10
+        assert max(map(len, lines)) <= WIDTH
+        assert "".join("".join(lines).split()) == "".join(line.split())
+    assert list(laid_out(f"/** {args}, {args} */")) == [f"/** {args}, {args} */"]
+    assert list(laid_out("f(1, 2);")) == ["f(1, 2);"]

@@ -126,9 +126,9 @@ class Statements(Calls):
                 rows: list[Any] = [one for inner in node.body for one in ast.walk(inner) if is_row(one, name)]
                 found = sorted({(self.text(one.value), self.text(one.slice.elts[0])) for one in rows})
                 self.rows = {f"{whole}[{place}]": f"{whole}{place}" for whole, place in found}
-                known = "".join(f", {own} = {row}" for row, own in self.rows.items())
+                yield from (f"var {own} = {row};" for row, own in self.rows.items())
                 self._var(name)
-                yield f"for (var {i} = {start}{known}; {i} {sign} {stop}; {i} += {step}) {{"
+                yield f"for (var {i} = {start}; {i} {sign} {stop}; {i} += {step}) {{"
             case _:
                 self._var(*names_in(node.target))
                 yield f"for (var {self.pattern(node.target)} of {self.text(node.iter)}) {{"

@@ -17,7 +17,11 @@ function dot(a, b) {
 
 /** Vector product of two vectors. */
 function cross(a, b) {
-  return [py.sub(py.mul(a[1], b[2]), py.mul(a[2], b[1])), py.sub(py.mul(a[2], b[0]), py.mul(a[0], b[2])), py.sub(py.mul(a[0], b[1]), py.mul(a[1], b[0]))];
+  return [
+    py.sub(py.mul(a[1], b[2]), py.mul(a[2], b[1])),
+    py.sub(py.mul(a[2], b[0]), py.mul(a[0], b[2])),
+    py.sub(py.mul(a[0], b[1]), py.mul(a[1], b[0]))
+  ];
 }
 
 /** Sum of two vectors. */
@@ -160,7 +164,10 @@ class RegularizedCoulombLaw extends py.NamedTuple {
   }
   /** Force and torque per unit normal force. */
   traction(slip, angular_velocity) {
-    var factor = py.mul(py.neg(this.mu), py.pow(py.add(py.add(py.pow(slip[0], 2), py.pow(slip[1], 2)), py.pow(this.eps, 2)), -0.5));
+    var factor = py.mul(
+      py.neg(this.mu),
+      py.pow(py.add(py.add(py.pow(slip[0], 2), py.pow(slip[1], 2)), py.pow(this.eps, 2)), -0.5)
+    );
     return new Traction([py.mul(factor, slip[0]), py.mul(factor, slip[1])], NO_TORQUE);
   }
   /** Friction coefficient mu, and eps in units of speed. */
@@ -193,7 +200,10 @@ class CoulombLaw extends py.NamedTuple {
   }
   /** Force and torque per unit normal force; the slip must not be zero. */
   traction(slip, angular_velocity) {
-    var factor = py.mul(py.neg(this.mu), py.pow(py.add(py.mul(slip[0], slip[0]), py.mul(slip[1], slip[1])), -0.5));
+    var factor = py.mul(
+      py.neg(this.mu),
+      py.pow(py.add(py.mul(slip[0], slip[0]), py.mul(slip[1], slip[1])), -0.5)
+    );
     return new Traction([py.mul(factor, slip[0]), py.mul(factor, slip[1])], NO_TORQUE);
   }
   /** (mu N)^2 - T^2, N^2. */
@@ -249,7 +259,10 @@ class RollingResistance extends py.NamedTuple {
   }
   /** Make a law of the same make with these numbers. */
   from_coefficients(coefficients) {
-    return new RollingResistance(this.law.from_coefficients(py.slice(coefficients, null, -1, null)), py.item(coefficients, -1));
+    return new RollingResistance(
+      this.law.from_coefficients(py.slice(coefficients, null, -1, null)),
+      py.item(coefficients, -1)
+    );
   }
 }
 py.fields(RollingResistance, ["law", "length"]);
@@ -350,11 +363,17 @@ class SpheroidSurface extends py.NamedTuple {
   }
   /** First derivative h'(c), m. */
   slope(c) {
-    return py.sub(py.div(py.mul(py.sub(py.pow(this.along, 2), py.pow(this.across, 2)), c), this._central_height(c)), this.center);
+    return py.sub(
+      py.div(py.mul(py.sub(py.pow(this.along, 2), py.pow(this.across, 2)), c), this._central_height(c)),
+      this.center
+    );
   }
   /** Second derivative h''(c), m. */
   curvature(c) {
-    return py.div(py.mul(py.sub(py.pow(this.along, 2), py.pow(this.across, 2)), py.pow(this.across, 2)), py.pow(this._central_height(c), 3));
+    return py.div(
+      py.mul(py.sub(py.pow(this.along, 2), py.pow(this.across, 2)), py.pow(this.across, 2)),
+      py.pow(this._central_height(c), 3)
+    );
   }
   /** It is none, though its semi-axes be equal. */
   get spherical() {
@@ -374,7 +393,13 @@ class SpheroidSurface extends py.NamedTuple {
   }
   /** Height of the spheroid's centre above the table, m. */
   _central_height(c) {
-    return py.pow(py.add(py.mul(py.pow(this.across, 2), py.sub(1.0, py.mul(c, c))), py.mul(py.mul(py.pow(this.along, 2), c), c)), 0.5);
+    return py.pow(
+      py.add(
+        py.mul(py.pow(this.across, 2), py.sub(1.0, py.mul(c, c))),
+        py.mul(py.mul(py.pow(this.along, 2), c), c)
+      ),
+      0.5
+    );
   }
 }
 py.fields(SpheroidSurface, ["across", "along", "center"]);
@@ -389,11 +414,17 @@ class RingSurface extends py.NamedTuple {
   }
   /** Support function h(c), m. */
   height(c) {
-    return py.sub(py.add(this.tube, py.mul(this.radius, py.pow(py.sub(1.0, py.mul(c, c)), 0.5))), py.mul(this.center, c));
+    return py.sub(
+      py.add(this.tube, py.mul(this.radius, py.pow(py.sub(1.0, py.mul(c, c)), 0.5))),
+      py.mul(this.center, c)
+    );
   }
   /** First derivative h'(c), m. */
   slope(c) {
-    return py.sub(py.mul(py.mul(py.neg(this.radius), c), py.pow(py.sub(1.0, py.mul(c, c)), -0.5)), this.center);
+    return py.sub(
+      py.mul(py.mul(py.neg(this.radius), c), py.pow(py.sub(1.0, py.mul(c, c)), -0.5)),
+      this.center
+    );
   }
   /** Second derivative h''(c), m. */
   curvature(c) {
@@ -426,7 +457,11 @@ py.fields(RingSurface, ["radius", "center", "tube"]);
 function contact_vector(axis, surface) {
   var c = axis[2];
   var slope = surface.slope(c);
-  return [py.mul(py.neg(slope), axis[0]), py.mul(py.neg(slope), axis[1]), py.sub(py.mul(py.neg(slope), py.sub(axis[2], c)), surface.height(c))];
+  return [
+    py.mul(py.neg(slope), axis[0]),
+    py.mul(py.neg(slope), axis[1]),
+    py.sub(py.mul(py.neg(slope), py.sub(axis[2], c)), surface.height(c))
+  ];
 }
 
 // tippetop.mechanics.hull
@@ -441,7 +476,9 @@ class Hull extends py.NamedTuple {
   }
   /** The hull of some surfaces; the first is active. */
   static of(surfaces) {
-    var units = py.tuple([...surfaces].map((surface) => py.type(surface).from_proportions(surface.proportions)));
+    var units = py.tuple(
+      [...surfaces].map((surface) => py.type(surface).from_proportions(surface.proportions))
+    );
     return new this(units, py.tuple([...surfaces].map((surface) => surface.size)));
   }
   /** The hull with every surface active in turn. */
@@ -482,7 +519,11 @@ class Hull extends py.NamedTuple {
   }
   /** What remains of it without its numbers. */
   get make() {
-    return new HullKind(py.tuple([...this.units].map((unit) => py.type(unit))), py.tuple([...this.units].map((unit) => py.len(unit.proportions))), this.active);
+    return new HullKind(
+      py.tuple([...this.units].map((unit) => py.type(unit))),
+      py.tuple([...this.units].map((unit) => py.len(unit.proportions))),
+      this.active
+    );
   }
 }
 py.fields(Hull, ["units", "sizes", "active"]);
@@ -577,7 +618,12 @@ class Top extends py.NamedTuple {
   /** The numbers that remain in natural units: inertias, proportions of the surface, friction law. */
   get numbers() {
     var units = natural_units(this);
-    return [py.div(this.transverse_inertia, units.inertia), py.div(this.axial_inertia, units.inertia), ...this.surface.proportions, ...this.friction.coefficients(units)];
+    return [
+      py.div(this.transverse_inertia, units.inertia),
+      py.div(this.axial_inertia, units.inertia),
+      ...this.surface.proportions,
+      ...this.friction.coefficients(units)
+    ];
   }
 }
 py.fields(Top, ["mass", "transverse_inertia", "axial_inertia", "surface", "friction", "gravity"]);
@@ -622,7 +668,12 @@ function natural(top) {
 
 /** A state in natural units from one in SI. */
 function natural_state(state, units) {
-  return new State(state.axis, scale(py.div(1.0, units.angular_momentum), state.momentum), scale(py.div(1.0, units.speed), state.velocity), py.div(state.height, units.length));
+  return new State(
+    state.axis,
+    scale(py.div(1.0, units.angular_momentum), state.momentum),
+    scale(py.div(1.0, units.speed), state.velocity),
+    py.div(state.height, units.length)
+  );
 }
 
 // tippetop.mechanics.motion
@@ -654,7 +705,10 @@ class SlidingContact extends py.NamedTuple {
   /** Power of friction, N (f.v + t.omega), W: never positive while the table pushes. */
   get power() {
     var [[x, y], torque] = [this.traction.force, this.traction.torque];
-    return py.mul(this.normal_force, py.add(py.add(py.mul(x, this.slip[0]), py.mul(y, this.slip[1])), dot(torque, this.spin)));
+    return py.mul(
+      this.normal_force,
+      py.add(py.add(py.mul(x, this.slip[0]), py.mul(y, this.slip[1])), dot(torque, this.spin))
+    );
   }
 }
 py.fields(SlidingContact, ["arm", "slip", "spin", "traction", "free_acceleration", "delassus"]);
@@ -692,9 +746,22 @@ function contact(axis, momentum, velocity, top) {
   var traction = top.friction.traction(slip, omega);
   var turning = axis_rate(axis, momentum, top);
   var lever = py.div(slope, top.transverse_inertia);
-  var falling = py.add(top.gravity, py.add(py.mul(py.mul(top.surface.curvature(c), turning[2]), turning[2]), py.mul(lever, cross(momentum, turning)[2])));
+  var falling = py.add(
+    top.gravity,
+    py.add(
+      py.mul(py.mul(top.surface.curvature(c), turning[2]), turning[2]),
+      py.mul(lever, cross(momentum, turning)[2])
+    )
+  );
   var reaction = cross(moment_per_normal_force(arm, traction), axis)[2];
-  return new SlidingContact(arm, slip, omega, traction, py.neg(falling), py.sub(py.div(1.0, top.mass), py.mul(lever, reaction)));
+  return new SlidingContact(
+    arm,
+    slip,
+    omega,
+    traction,
+    py.neg(falling),
+    py.sub(py.div(1.0, top.mass), py.mul(lever, reaction))
+  );
 }
 
 /** Moment of the contact force about the centre of mass per unit normal force, a x (z + f) + t, m. */
@@ -707,7 +774,11 @@ function moment_per_normal_force(arm, traction) {
 function sliding_rates(state, top) {
   var touch = contact(state.axis, state.momentum, state.velocity, top);
   var [normal, [x, y]] = [touch.normal_force, touch.traction.force];
-  return new SlidingState(axis_rate(state.axis, state.momentum, top), scale(normal, moment_per_normal_force(touch.arm, touch.traction)), [py.div(py.mul(normal, x), top.mass), py.div(py.mul(normal, y), top.mass)]);
+  return new SlidingState(
+    axis_rate(state.axis, state.momentum, top),
+    scale(normal, moment_per_normal_force(touch.arm, touch.traction)),
+    [py.div(py.mul(normal, x), top.mass), py.div(py.mul(normal, y), top.mass)]
+  );
 }
 
 /** The whole state of a body that touches the table: height h(c) and vertical velocity h'(c) c' added. */
@@ -789,13 +860,19 @@ class ContactPoint extends py.NamedTuple {
   holding(unit, held) {
     var responses = [...unit].map((wrench) => this.response(wrench));
     var [columns, free] = [[...responses].map((response) => flat(response)), flat(this.free)];
-    var sizes = solve([...held].map((i) => [...columns].map((column) => py.item(column, i))), [...held].map((i) => py.neg(py.item(free, i))));
+    var sizes = solve(
+      [...held].map((i) => [...columns].map((column) => py.item(column, i))),
+      [...held].map((i) => py.neg(py.item(free, i)))
+    );
     var force = NO_TORQUE;
     var torque = NO_TORQUE;
     var [point, turning] = this.free;
     for (var [size, wrench, response] of py.zip(sizes, unit, responses)) {
       [force, torque] = [add(force, scale(size, wrench.force)), add(torque, scale(size, wrench.torque))];
-      [point, turning] = [add(point, scale(size, response.point)), add(turning, scale(size, response.turning))];
+      [point, turning] = [
+        add(point, scale(size, response.point)),
+        add(turning, scale(size, response.turning))
+      ];
     }
     return [new Wrench(force, torque), new Acceleration(point, turning)];
   }
@@ -927,7 +1004,11 @@ function branch_of(law, slip, angular_velocity) {
 /** A top with another law of slip and drilling, and the same rolling resistance. */
 function with_sliding_law(top, law) {
   var outer = top.friction;
-  return top._replace({ friction: py.isinstance(outer, RollingResistance) ? outer._replace({ law: law }) : law });
+  return top._replace({
+    friction: py.isinstance(outer, RollingResistance)
+    ? outer._replace({ law: law })
+    : law
+  });
 }
 
 /** A top with the branch of its law that holds where it slips, or in that direction; of floats. */
@@ -945,7 +1026,10 @@ function on_numbered_branch(top, slip) {
     return top;
   }
   var law = whole_law(top.friction);
-  return with_sliding_law(top, law.numbered_branch(slip.slice(0, 2), [0.0, 0.0, py.div(slip[2], law.slip_length)]));
+  return with_sliding_law(
+    top,
+    law.numbered_branch(slip.slice(0, 2), [0.0, 0.0, py.div(slip[2], law.slip_length)])
+  );
 }
 
 /** A top with the branch of its law, or of its limit surface, that takes over where its own ends. */
@@ -1050,7 +1134,10 @@ function least_slip(momentum, velocity) {
 
 /** Whether the body turns, by more than rounding, about anything but the vertical; as `is_slipping`. */
 function is_rolling(axis, momentum, top) {
-  var measure = py.add(py.div(py.sum([...momentum].map((number) => py.abs(number))), top.transverse_inertia), STILL);
+  var measure = py.add(
+    py.div(py.sum([...momentum].map((number) => py.abs(number))), top.transverse_inertia),
+    STILL
+  );
   var [x, y] = angular_velocity(axis, momentum, top);
   return py.abs(x) > py.mul(ROUNDING, measure) | py.abs(y) > py.mul(ROUNDING, measure);
 }
@@ -1121,7 +1208,10 @@ function slip_branch_guard(slip, top) {
 function angular_acceleration(state, rate, top) {
   var excess = py.div(py.sub(top.transverse_inertia, top.axial_inertia), top.transverse_inertia);
   var spin = axial_spin(state.axis, state.momentum, top);
-  var spinning = py.div(py.add(dot(rate.momentum, state.axis), dot(state.momentum, rate.axis)), top.axial_inertia);
+  var spinning = py.div(
+    py.add(dot(rate.momentum, state.axis), dot(state.momentum, rate.axis)),
+    top.axial_inertia
+  );
   var turned = scale(py.div(1.0, top.transverse_inertia), rate.momentum);
   return add(turned, scale(excess, add(scale(spinning, state.axis), scale(spin, rate.axis))));
 }
@@ -1129,7 +1219,11 @@ function angular_acceleration(state, rate, top) {
 /** Positive while the limit surface admits the wrench that keeps a sticking body so, N^2. */
 function slip_guard(axis, momentum, top, rolling_held = false) {
   var point = ContactPoint.of(axis, momentum, top);
-  var [force, torque] = contact_wrench(point, null, py.truth(rolling_held) ? null : point.turning.slice(0, 2));
+  var [force, torque] = contact_wrench(
+    point,
+    null,
+    py.truth(rolling_held) ? null : point.turning.slice(0, 2)
+  );
   return set_valued(top.friction).reserve(force[2], [force[0], force[1]], torque[2]);
 }
 
@@ -1161,7 +1255,10 @@ function tangents(e) {
   var [x, y, z] = e;
   var sign = z >= 0.0 ? 1.0 : -1.0;
   var a = py.div(1.0, py.add(1.0, py.mul(sign, z)));
-  return [[py.sub(1.0, py.mul(py.mul(x, x), a)), py.mul(py.mul(py.neg(x), y), a), py.mul(-sign, x)], [py.mul(py.mul(py.neg(x), y), a), py.sub(1.0, py.mul(py.mul(y, y), a)), py.mul(-sign, y)]];
+  return [
+    [py.sub(1.0, py.mul(py.mul(x, x), a)), py.mul(py.mul(py.neg(x), y), a), py.mul(-sign, x)],
+    [py.mul(py.mul(py.neg(x), y), a), py.sub(1.0, py.mul(py.mul(y, y), a)), py.mul(-sign, y)]
+  ];
 }
 
 // tippetop.mechanics.ending
@@ -1180,7 +1277,10 @@ class Vanishing extends py.NamedTuple {
   }
   /** Whether it may end and begin many times a second: slip under a law that resists nothing else. */
   recurs(law) {
-    return py.and(this.slip, () => py.and(slip_length(law) === null, () => !py.isinstance(law, RollingResistance)));
+    return py.and(
+      this.slip,
+      () => py.and(slip_length(law) === null, () => !py.isinstance(law, RollingResistance))
+    );
   }
   /** The velocity xi, from axis, angular momentum and horizontal velocity of the centre of mass. */
   of(axis, momentum, velocity, top) {
@@ -1278,7 +1378,9 @@ function closing_rates(state, ending, top) {
   var pace = py.pow(inner(rates.xi, rates.xi), -0.5);
   var [along, step] = [py.mul(pace, inner(rates.xi, state.direction)), py.mul(pace, state.speed)];
   var unit = py.sub(py.mul(2.0, py.sub(1.0, inner(state.direction, state.direction))), along);
-  var turn = py.tuple(py.zip(rates.xi, state.direction).map(([a, e]) => py.add(py.mul(pace, a), py.mul(unit, e))));
+  var turn = py.tuple(
+    py.zip(rates.xi, state.direction).map(([a, e]) => py.add(py.mul(pace, a), py.mul(unit, e)))
+  );
   var [moved, speeding] = [scaled(step, rates.velocity), py.mul(along, state.speed)];
   return new Closing(scale(step, rates.axis), scale(step, rates.momentum), moved, turn, speeding, step);
 }
@@ -1315,7 +1417,14 @@ function landed(state, ending, top) {
   var along = inner(rates.xi, state.direction);
   var left = py.div(py.neg(state.speed), along);
   var across = plus(rates.xi, scaled(py.neg(along), state.direction));
-  var rest = new Closing(add(state.axis, scale(left, rates.axis)), add(state.momentum, scale(left, rates.momentum)), plus(state.velocity, scaled(left, rates.velocity)), state.direction, 0.0, py.add(state.time, left));
+  var rest = new Closing(
+    add(state.axis, scale(left, rates.axis)),
+    add(state.momentum, scale(left, rates.momentum)),
+    plus(state.velocity, scaled(left, rates.velocity)),
+    state.direction,
+    0.0,
+    py.add(state.time, left)
+  );
   return [rest, py.div(py.mul(left, size(across)), py.neg(along))];
 }
 
@@ -1324,12 +1433,37 @@ function landed(state, ending, top) {
 /** How a run ended; the value is advice. */
 class Outcome extends py.Enum {
 }
-py.members(Outcome, { COMPLETED: "The run reached its end.", LIFTED_OFF: "The table would have to pull from here on; with liftoff = ignore it does, and with fly the top leaves it.", AT_REST: "The top came to rest, and the table holds it so: nothing happens any more.", LYING_FLAT: "The body came to lie flat: there it touches the table all around, which is not followed further; this is the end of its motion, but for what the impact of its face would add.", TOO_MANY_PHASES: "The top bounced and slid more often than the run allows; shorten the duration, lower the restitution, or raise the limit on phases.", TOO_MANY_STEPS: "The motion took more steps than the run allows: it is very fast, or stiff; shorten the duration, lessen the friction, try the integrator collocation, which is made for stiff friction, or raise the limit on steps.", INACCURATE: "The numbers do not keep what the motion keeps: do not trust them; try another integrator or a smaller tolerance.", FAILED: "The integrator could not go on: the motion became singular or too stiff for it; try another integrator, or less friction." });
+py.members(
+  Outcome,
+  {
+    COMPLETED: "The run reached its end.",
+    LIFTED_OFF: "The table would have to pull from here on; with liftoff = ignore it does, and with fly the top leaves it.",
+    AT_REST: "The top came to rest, and the table holds it so: nothing happens any more.",
+    LYING_FLAT: "The body came to lie flat: there it touches the table all around, which is not followed further; this is the end of its motion, but for what the impact of its face would add.",
+    TOO_MANY_PHASES: "The top bounced and slid more often than the run allows; shorten the duration, lower the restitution, or raise the limit on phases.",
+    TOO_MANY_STEPS: "The motion took more steps than the run allows: it is very fast, or stiff; shorten the duration, lessen the friction, try the integrator collocation, which is made for stiff friction, or raise the limit on steps.",
+    INACCURATE: "The numbers do not keep what the motion keeps: do not trust them; try another integrator or a smaller tolerance.",
+    FAILED: "The integrator could not go on: the motion became singular or too stiff for it; try another integrator, or less friction."
+  }
+);
 
 /** What can happen to a top; the value is its name in a result. */
 class EventKind extends py.Enum {
 }
-py.members(EventKind, { LIFT_OFF: "lift-off", TOUCHDOWN: "touchdown", STICK: "stick", SLIP: "slip", HALT: "rolling stops", ROLL: "rolling starts", IMPACT: "impact", OPENING: "opening", DOUBLE_CONTACT: "double contact" });
+py.members(
+  EventKind,
+  {
+    LIFT_OFF: "lift-off",
+    TOUCHDOWN: "touchdown",
+    STICK: "stick",
+    SLIP: "slip",
+    HALT: "rolling stops",
+    ROLL: "rolling starts",
+    IMPACT: "impact",
+    OPENING: "opening",
+    DOUBLE_CONTACT: "double contact"
+  }
+);
 
 /** Something that happened at an instant. */
 class Event extends py.Record {
@@ -1376,7 +1510,16 @@ const NO_REACTION = new Reaction([0.0, 0.0, 0.0], [0.0, 0.0, 0.0], 0.0);
 
 /** A piece of a trajectory within one mode. */
 class Segment extends py.Record {
-  constructor(mode, solution, end_state, transition, steps = 0, evaluations = 0, highest_gap = 0.0, method = null) {
+  constructor(
+    mode,
+    solution,
+    end_state,
+    transition,
+    steps = 0,
+    evaluations = 0,
+    highest_gap = 0.0,
+    method = null
+  ) {
     super();
     this.mode = mode;
     this.solution = solution;
@@ -1392,7 +1535,10 @@ class Segment extends py.Record {
     return this.solution.end;
   }
 }
-py.fields(Segment, ["mode", "solution", "end_state", "transition", "steps", "evaluations", "highest_gap", "method"]);
+py.fields(
+  Segment,
+  ["mode", "solution", "end_state", "transition", "steps", "evaluations", "highest_gap", "method"]
+);
 
 /** A way to move. */
 class Mode extends py.Record {
@@ -1447,7 +1593,16 @@ class IntegratedMode extends Mode {
       } else if (arc.solution.end >= end) {
         transition = new Transition([], Outcome.COMPLETED, last);
       }
-      yield new Segment(this, arc.solution, last, transition, arc.steps, arc.evaluations, undefined, arc.method);
+      yield new Segment(
+        this,
+        arc.solution,
+        last,
+        transition,
+        arc.steps,
+        arc.evaluations,
+        undefined,
+        arc.method
+      );
     }
   }
 }
@@ -1470,7 +1625,10 @@ function surface_guards(kind) {
     guards.push(new Guard(FACE, (y, numbers) => _face(y, _surface(kind, numbers))));
   }
   var others = py.range(py.len(each_surface(surface))).filter((number) => !py.eq(number, active));
-  return py.add(guards, [...others].map((number) => new Guard(`${py.str(TOUCH)}${py.str(number)}`, _gap(kind, number))));
+  return py.add(
+    guards,
+    [...others].map((number) => new Guard(`${py.str(TOUCH)}${py.str(number)}`, _gap(kind, number)))
+  );
 }
 
 /** Whether no other surface touches at these numbers of a mode on the active one, floats. */
@@ -1481,7 +1639,11 @@ function stays_open(top, y) {
 /** The least gap of the other surfaces while the active one touches, at a cosine of the tilt, floats. */
 function clearance(top, c) {
   var height = top.surface.height(c);
-  var gaps = py.enumerate(each_surface(top.surface)).filter(([number, other]) => !py.eq(number, number_of(top))).map(([number, other]) => py.sub(height, other.height(c)));
+  var gaps = py.enumerate(each_surface(top.surface)).filter(
+    ([number, other]) => !py.eq(number, number_of(top))
+  ).map(
+    ([number, other]) => py.sub(height, other.height(c))
+  );
   return py.float(py.min(gaps));
 }
 
@@ -1522,7 +1684,12 @@ function fly(state, elapsed, top, functions) {
   var precession = scale(py.div(1.0, top.transverse_inertia), state.momentum);
   var still = [py.mul(0.0, elapsed), py.mul(0.0, elapsed), py.mul(0.0, elapsed)];
   var falling = [py.mul(0.0, elapsed), py.mul(0.0, elapsed), py.mul(py.neg(top.gravity), elapsed)];
-  return new State(turned(state.axis, precession, elapsed, functions), add(state.momentum, still), add(state.velocity, falling), py.add(state.height, py.mul(elapsed, py.add(state.velocity[2], py.mul(0.5, falling[2])))));
+  return new State(
+    turned(state.axis, precession, elapsed, functions),
+    add(state.momentum, still),
+    add(state.velocity, falling),
+    py.add(state.height, py.mul(elapsed, py.add(state.velocity[2], py.mul(0.5, falling[2]))))
+  );
 }
 
 /** A vector after turning for a time with a constant angular velocity (rad/s), which may be zero. */
@@ -1603,7 +1770,9 @@ class TruncatedSeries extends Algebra {
     if (py.isinstance(other, TruncatedSeries)) {
       var b = py.slice(other.terms, null, null, -1);
       var last = py.len(a) - 1;
-      return new TruncatedSeries(py.range(last + 1).map((k) => py.sum(py.map(py.mul, a, py.slice(b, py.sub(last, k), null, null)))));
+      return new TruncatedSeries(
+        py.range(last + 1).map((k) => py.sum(py.map(py.mul, a, py.slice(b, py.sub(last, k), null, null))))
+      );
     }
     return new TruncatedSeries([...a].map((term) => py.mul(other, term)));
   }
@@ -1611,7 +1780,11 @@ class TruncatedSeries extends Algebra {
   power(exponent) {
     var [a, y] = [this.terms, [py.pow(this.terms[0], exponent)]];
     for (var k = 1; k < py.len(a); k += 1) {
-      var total = py.sum(py.range(1, k + 1).map((j) => py.mul(py.mul(py.sub(py.mul(exponent + 1.0, j), k), py.item(a, j)), py.item(y, py.sub(k, j)))));
+      var total = py.sum(
+        py.range(1, k + 1).map(
+          (j) => py.mul(py.mul(py.sub(py.mul(exponent + 1.0, j), k), py.item(a, j)), py.item(y, py.sub(k, j)))
+        )
+      );
       y.push(py.div(total, py.mul(k, a[0])));
     }
     return new TruncatedSeries(y);
@@ -1633,7 +1806,10 @@ class Disc extends Algebra {
   __mul__(other) {
     if (py.isinstance(other, Disc)) {
       var far = py.add(py.abs(other.centre), other.radius);
-      return new Disc(py.mul(this.centre, other.centre), py.add(py.mul(py.abs(this.centre), other.radius), py.mul(this.radius, far)));
+      return new Disc(
+        py.mul(this.centre, other.centre),
+        py.add(py.mul(py.abs(this.centre), other.radius), py.mul(this.radius, far))
+      );
     }
     return new Disc(py.mul(this.centre, other), py.mul(this.radius, py.abs(other)));
   }
@@ -1753,7 +1929,13 @@ function crossing(function_, low, high) {
     part = 0.5;
     if (py.mul(phi, phi) < xi && py.pow(py.sub(1.0, phi), 2) < py.sub(1.0, xi)) {
       part = py.div(py.mul(py.div(y1, py.sub(y2, y1)), y3), py.sub(y2, y3));
-      part = py.add(part, py.div(py.mul(py.div(py.mul(py.div(py.sub(x3, x1), py.sub(x2, x1)), y1), py.sub(y3, y1)), y2), py.sub(y3, y2)));
+      part = py.add(
+        part,
+        py.div(
+          py.mul(py.div(py.mul(py.div(py.sub(x3, x1), py.sub(x2, x1)), y1), py.sub(y3, y1)), y2),
+          py.sub(y3, y2)
+        )
+      );
     }
     part = py.min(py.max(part, fuzz), py.sub(1.0, fuzz));
   }
@@ -1783,8 +1965,18 @@ function touchdown(state, top, horizon, start = Start.AIRBORNE) {
   if (!py.eq(start, Start.AIRBORNE)) {
     var support = py.add(top.surface.height(tip.series()), py.mul(0.0, tip.series())).terms;
     ballistic = [...support.slice(0, start), ...ballistic.slice(start)];
-    var terms = py.add(py.zip(ballistic, support.slice(0, 3)).map(([b, s]) => py.sub(b, s)), [...support.slice(3)].map((s) => py.neg(s)));
-    var opening = new Opening(py.slice(terms, py.next(py.range(start, DEGREE).filter((j) => py.truth(py.item(terms, j))), DEGREE), null, null));
+    var terms = py.add(
+      py.zip(ballistic, support.slice(0, 3)).map(([b, s]) => py.sub(b, s)),
+      [...support.slice(3)].map((s) => py.neg(s))
+    );
+    var opening = new Opening(
+      py.slice(
+        terms,
+        py.next(py.range(start, DEGREE).filter((j) => py.truth(py.item(terms, j))), DEGREE),
+        null,
+        null
+      )
+    );
     time = py.min(horizon, py.mul(START, analytic_disc(tip, top.surface, 0.0, 0.0, WIDEST)[0]));
     var root = first_root(py.bound(opening, "at"), 0.0, time, opening.jerk_bound(time));
     if (root !== null) {
@@ -1800,7 +1992,12 @@ function touchdown(state, top, horizon, start = Start.AIRBORNE) {
     var [radius, spread] = analytic_disc(tip, top.surface, time, 0.25, angle);
     angle = py.min(WIDEST, py.mul(py.mul(2.0, radius), tip.frequency));
     var end = py.min(horizon, py.add(time, py.mul(0.5, radius)));
-    root = first_root(py.bound(separation, "at"), time, end, py.div(py.mul(6.0, spread), py.mul(py.pow(0.75, 4), py.pow(radius, 3))));
+    root = first_root(
+      py.bound(separation, "at"),
+      time,
+      end,
+      py.div(py.mul(6.0, spread), py.mul(py.pow(0.75, 4), py.pow(radius, 3)))
+    );
     if (root !== null) {
       return root;
     }
@@ -1826,14 +2023,20 @@ function highest_gap(state, top, duration) {
       return py.min([...everywhere].map((at) => at(time)));
     };
   }
-  var count = py.min(MOST_LOOKS, 2 + py.int(py.div(py.mul(py.mul(LOOKS, duration), length(state.momentum)), top.transverse_inertia)));
+  var count = py.min(
+    MOST_LOOKS,
+    2 + py.int(py.div(py.mul(py.mul(LOOKS, duration), length(state.momentum)), top.transverse_inertia))
+  );
   var times = py.range(py.add(count, 1)).map((j) => py.div(py.mul(duration, j), count));
   var gaps = [...times].map((time) => gap(time)[0]);
   var best = py.max(py.range(py.add(count, 1)), py.how({ key: py.bound(gaps, "__getitem__") }));
   if (gap(py.item(times, best))[1] > 0.0) {
     var [low, high] = [py.item(times, best), py.item(times, py.min(py.add(best, 1), count))];
   } else {
-    [low, high] = [py.max(py.item(times, py.max(py.sub(best, 1), 0)), py.mul(0.001, times[1])), py.item(times, best)];
+    [low, high] = [
+      py.max(py.item(times, py.max(py.sub(best, 1), 0)), py.mul(0.001, times[1])),
+      py.item(times, best)
+    ];
   }
   if (!(gap(low)[1] > 0.0 && 0.0 > gap(high)[1])) {
     return py.item(gaps, best);
@@ -1853,13 +2056,29 @@ class Tip extends py.NamedTuple {
   /** The tip in a free flight from a state on; of numbers, or arrays of them. */
   static of(state, top) {
     var turning = axis_rate(state.axis, state.momentum, top);
-    return new this(state.axis[2], turning[2], axis_rate(turning, state.momentum, top)[2], py.add(length(scale(py.div(1.0, top.transverse_inertia), state.momentum)), SMALL));
+    return new this(
+      state.axis[2],
+      turning[2],
+      axis_rate(turning, state.momentum, top)[2],
+      py.add(length(scale(py.div(1.0, top.transverse_inertia), state.momentum)), SMALL)
+    );
   }
   /** Height, rate and acceleration at a time: c'' turns into -w^2 c' and back. */
   at(time) {
     var w = this.frequency;
-    var [cosine, sine, half] = [py.math.cos(py.mul(w, time)), py.div(py.math.sin(py.mul(w, time)), w), py.div(py.math.sin(py.mul(py.mul(0.5, w), time)), w)];
-    return [py.add(py.add(this.height, py.mul(this.rate, sine)), py.mul(py.mul(py.mul(2.0, this.acceleration), half), half)), py.add(py.mul(this.rate, cosine), py.mul(this.acceleration, sine)), py.sub(py.mul(this.acceleration, cosine), py.mul(py.mul(py.mul(this.rate, w), w), sine))];
+    var [cosine, sine, half] = [
+      py.math.cos(py.mul(w, time)),
+      py.div(py.math.sin(py.mul(w, time)), w),
+      py.div(py.math.sin(py.mul(py.mul(0.5, w), time)), w)
+    ];
+    return [
+      py.add(
+        py.add(this.height, py.mul(this.rate, sine)),
+        py.mul(py.mul(py.mul(2.0, this.acceleration), half), half)
+      ),
+      py.add(py.mul(this.rate, cosine), py.mul(this.acceleration, sine)),
+      py.sub(py.mul(this.acceleration, cosine), py.mul(py.mul(py.mul(this.rate, w), w), sine))
+    ];
   }
   /** Height as a power series in time. */
   series() {
@@ -1873,7 +2092,10 @@ class Tip extends py.NamedTuple {
   spread(time, angle) {
     var [, rate, acceleration] = this.at(time);
     var w = this.frequency;
-    return py.add(py.div(py.mul(py.abs(rate), py.math.sinh(angle)), w), py.div(py.mul(py.abs(acceleration), py.math.cosh(angle) - 1.0), py.pow(w, 2)));
+    return py.add(
+      py.div(py.mul(py.abs(rate), py.math.sinh(angle)), w),
+      py.div(py.mul(py.abs(acceleration), py.math.cosh(angle) - 1.0), py.pow(w, 2))
+    );
   }
 }
 py.fields(Tip, ["height", "rate", "acceleration", "frequency"]);
@@ -1888,14 +2110,25 @@ class Separation extends py.NamedTuple {
   }
   /** The gap of a free flight from a state on. */
   static of(state, top) {
-    return new this(Tip.of(state, top), top.surface, [state.height, state.velocity[2], py.mul(-0.5, top.gravity)]);
+    return new this(
+      Tip.of(state, top),
+      top.surface,
+      [state.height, state.velocity[2], py.mul(-0.5, top.gravity)]
+    );
   }
   /** Gap, its rate and its acceleration. */
   at(time) {
     var [p0, p1, p2] = this.parabola;
     var [c, rate, acceleration] = this.tip.at(time);
     var slope = this.shape.slope(c);
-    return [py.sub(py.add(p0, py.mul(time, py.add(p1, py.mul(time, p2)))), this.shape.height(c)), py.sub(py.add(p1, py.mul(2.0 * time, p2)), py.mul(slope, rate)), py.sub(py.sub(py.mul(2.0, p2), py.mul(py.mul(this.shape.curvature(c), rate), rate)), py.mul(slope, acceleration))];
+    return [
+      py.sub(py.add(p0, py.mul(time, py.add(p1, py.mul(time, p2)))), this.shape.height(c)),
+      py.sub(py.add(p1, py.mul(2.0 * time, p2)), py.mul(slope, rate)),
+      py.sub(
+        py.sub(py.mul(2.0, p2), py.mul(py.mul(this.shape.curvature(c), rate), rate)),
+        py.mul(slope, acceleration)
+      )
+    ];
   }
 }
 py.fields(Separation, ["tip", "shape", "parabola"]);
@@ -2035,7 +2268,15 @@ function start_of(state, top) {
 }
 
 // tippetop.contact.sliding
-const [LIFT_OFF, NEARING, PARTING, STOPPING, ROLLING_STOPPING, ROLLING, BRANCH] = ["lift-off", "nearing", "parting", "stopping", "rolling stopping", "rolling", "branch"];
+const [LIFT_OFF, NEARING, PARTING, STOPPING, ROLLING_STOPPING, ROLLING, BRANCH] = [
+  "lift-off",
+  "nearing",
+  "parting",
+  "stopping",
+  "rolling stopping",
+  "rolling",
+  "branch"
+];
 
 /** Sliding, as long as the normal force is positive or the table may pull, and slip does not end. */
 class Sliding extends IntegratedMode {
@@ -2103,7 +2344,10 @@ class SlidingWithoutRolling extends Sliding {
     var state = SlidingState.unpack(y);
     var [point, wrench] = holding(state, this.top);
     var slip = slip_of(...state, this.top);
-    var power = py.add(py.add(py.mul(wrench.force[0], slip[0]), py.mul(wrench.force[1], slip[1])), dot(wrench.torque, point.turning));
+    var power = py.add(
+      py.add(py.mul(wrench.force[0], slip[0]), py.mul(wrench.force[1], slip[1])),
+      dot(wrench.torque, point.turning)
+    );
     return new Reaction(wrench.force, wrench.torque, power);
   }
   /** Rolling begins; or what follows sliding. */
@@ -2163,7 +2407,10 @@ const held_motion = py.cached((kind, guarded, near = false) => {
     return holding(SlidingState.unpack(y), kind.top(py.tuple(numbers)))[1].force[2];
   };
   var guards = py.truth(guarded) ? [new Guard(LIFT_OFF, force)] : [];
-  guards = py.add(guards, [...slip_guards(kind, held_rates, near), new Guard(ROLLING, reserve), ...surface_guards(kind)]);
+  guards = py.add(
+    guards,
+    [...slip_guards(kind, held_rates, near), new Guard(ROLLING, reserve), ...surface_guards(kind)]
+  );
   return new Motion(rates, 8, kind.numbers, py.tuple(guards), false);
 });
 
@@ -2377,7 +2624,9 @@ class Series extends py.Thing {
   _squared() {
     var rule = (k) => {
       var known = this.up_to(k);
-      var terms = py.range(py.floordiv(k + 1, 2)).map((j) => py.mul(2.0, py.mul(py.item(known, j), py.item(known, py.sub(k, j)))));
+      var terms = py.range(py.floordiv(k + 1, 2)).map(
+        (j) => py.mul(2.0, py.mul(py.item(known, j), py.item(known, py.sub(k, j))))
+      );
       if (py.mod(k, 2) === 0) {
         terms.push(py.mul(py.item(known, py.floordiv(k, 2)), py.item(known, py.floordiv(k, 2))));
       }
@@ -2414,7 +2663,9 @@ class Series extends py.Thing {
       }
       var [base, found] = [this.up_to(k), power.known];
       var factors = py.range(1, k + 1).map((j) => py.div(py.sub(py.mul(exponent + 1.0, j), k), k));
-      var terms = py.list(py.map(py.mul, factors, py.map(py.mul, base.slice(1), py.slice(found, k - 1, null, -1))));
+      var terms = py.list(
+        py.map(py.mul, factors, py.map(py.mul, base.slice(1), py.slice(found, k - 1, null, -1)))
+      );
       return py.mul(this.arithmetic.total(terms), py.item(inverse, 0));
     };
     var power = this._made(rule);
@@ -2518,7 +2769,12 @@ class Onset extends py.NamedTuple {
   /** Coefficients of n, L, u where that is free, and zeta. */
   get rows() {
     var [begun, count] = [py.mul([0.0], this.power), py.len(this.speed)];
-    var zeta = [...this.direction].map((row) => py.add(begun, py.range(count).map((k) => py.sum(py.map(py.mul, this.speed, py.slice(row, k, null, -1))))));
+    var zeta = [...this.direction].map(
+      (row) => py.add(
+        begun,
+        py.range(count).map((k) => py.sum(py.map(py.mul, this.speed, py.slice(row, k, null, -1))))
+      )
+    );
     return [...this.axis, ...this.momentum, ...this.velocity, ...zeta];
   }
 }
@@ -2555,9 +2811,13 @@ function onset(known, power, order) {
       row.push(number);
     }
     var rates = known.accelerations(j);
-    var rest = py.zip(rates, e).map(([a, row]) => py.sub(a, py.mul(factor, py.sum(py.map(py.mul, s, py.slice(row, k, 0, -1))))));
+    var rest = py.zip(rates, e).map(
+      ([a, row]) => py.sub(a, py.mul(factor, py.sum(py.map(py.mul, s, py.slice(row, k, 0, -1)))))
+    );
     var lag = power === 1 ? py.mul(factor, py.item(s, 0)) : 0.0;
-    var matrix = py.enumerate(aside).map(([a, row]) => py.enumerate(row).map(([b, g]) => py.eq(a, b) ? py.sub(g, lag) : g));
+    var matrix = py.enumerate(aside).map(
+      ([a, row]) => py.enumerate(row).map(([b, g]) => py.eq(a, b) ? py.sub(g, lag) : g)
+    );
     var parts = solve(matrix, [...across].map((b) => py.neg(py.sum(py.map(py.mul, b, rest)))));
     for (var [part, b] of py.zip(parts, across)) {
       turned = py.zip(turned, b).map(([number, beside]) => py.add(number, py.mul(part, beside)));
@@ -2570,7 +2830,14 @@ function onset(known, power, order) {
   }
   var rows = [...known.state].map((y) => py.range(order + power + 1).map((k) => py.item(y, k)));
   var turning = py.tuple([...e].map((row) => py.slice(row, null, order + 1, null)));
-  return new Onset(py.tuple(rows.slice(0, 3)), py.tuple(rows.slice(3, 6)), py.tuple(rows.slice(6)), turning, py.slice(s, null, order + 1, null), power);
+  return new Onset(
+    py.tuple(rows.slice(0, 3)),
+    py.tuple(rows.slice(3, 6)),
+    py.tuple(rows.slice(6)),
+    turning,
+    py.slice(s, null, order + 1, null),
+    power
+  );
 }
 
 /** Series that are made in plain operators: the state follows from the directions known so far. */
@@ -2582,7 +2849,14 @@ class Growing extends py.Thing {
     this.turn(0, this.first);
     var begin = [...py.item(start, 0), ...py.item(start, 1), ...velocity];
     var rates = (y) => {
-      var state = new Closing([py.item(y, 0), py.item(y, 1), py.item(y, 2)], [py.item(y, 3), py.item(y, 4), py.item(y, 5)], py.tuple(y.slice(6)), this._direction, 0.0, 0.0);
+      var state = new Closing(
+        [py.item(y, 0), py.item(y, 1), py.item(y, 2)],
+        [py.item(y, 3), py.item(y, 4), py.item(y, 5)],
+        py.tuple(y.slice(6)),
+        this._direction,
+        0.0,
+        0.0
+      );
       var found = rates_in_time(state, ending, top);
       this._rates = found.xi;
       return [...found.axis, ...found.momentum, ...found.velocity];
@@ -2633,7 +2907,9 @@ class Driven extends py.Thing {
   }
   /** Coefficients of n, L, and u where that is free. */
   get state() {
-    var rows = [...py.call(py.item(this._expand, -1), this._arguments).slice(0, this._free)].map((row) => [...row].map((term) => py.float(term)));
+    var rows = [
+      ...py.call(py.item(this._expand, -1), this._arguments).slice(0, this._free)
+    ].map((row) => [...row].map((term) => py.float(term)));
     if (!py.truth(py.math.isfinite(py.sum([...rows].map((row) => py.sum(row)))))) {
       throw new py.ArithmeticError(NOT_FINITE);
     }
@@ -2705,7 +2981,15 @@ class Arrival extends py.NamedTuple {
   /** Whether the last two terms are small, those of zeta beside zeta. */
   get serves() {
     var whole = size(py.tuple(this.at(1.0).slice(6)));
-    return py.all([[this.rows.slice(0, 6), 1.0], [this.rows.slice(6), whole]].flatMap(([rows, unit]) => py.range(py.len(rows[0]) - 2, py.len(rows[0])).map((k) => size(py.tuple([...rows].map((row) => py.mul(py.item(row, k), py.pow(this.left, k))))) < py.mul(ACCURACY, unit))));
+    return py.all(
+      [[this.rows.slice(0, 6), 1.0], [this.rows.slice(6), whole]].flatMap(
+        ([rows, unit]) => py.range(py.len(rows[0]) - 2, py.len(rows[0])).map(
+          (k) => size(
+            py.tuple([...rows].map((row) => py.mul(py.item(row, k), py.pow(this.left, k))))
+          ) < py.mul(ACCURACY, unit)
+        )
+      )
+    );
   }
   /** Coefficients in powers of the time since the start. */
   get onwards() {
@@ -2745,7 +3029,10 @@ function arriving(here, ending, top, integrator) {
       var found = new Arrival(time_to(here.speed, begin.rows, left), begin.rows);
       var [left, then] = [found.left, found.at(1.0)];
       var off = plus(now, scaled(-1.0, py.tuple(then.slice(0, 6))));
-      var aside = py.math.dist(here.direction, scaled(py.div(1.0, size(py.tuple(then.slice(6)))), py.tuple(then.slice(6))));
+      var aside = py.math.dist(
+        here.direction,
+        scaled(py.div(1.0, size(py.tuple(then.slice(6)))), py.tuple(then.slice(6)))
+      );
       var rounding = py.mul(aside, here.speed) < UNSEEN;
       if (!(aside < py.mul(TURNING, left) || py.truth(rounding))) {
         return null;
@@ -2769,7 +3056,9 @@ function resting_way(axis, momentum, way, ending, top, integrator) {
     var [rate, across] = [known.accelerations(0), tangents(way)];
     var along = inner(rate, way);
     var slopes = [...across].map((b) => turned_slope(known, b));
-    var matrix = [...across].map((a) => py.zip(across, slopes).map(([b, g]) => py.sub(inner(a, g), a === b ? along : 0.0)));
+    var matrix = [...across].map(
+      (a) => py.zip(across, slopes).map(([b, g]) => py.sub(inner(a, g), a === b ? along : 0.0))
+    );
     var turned = solve(matrix, [...across].map((a) => py.neg(inner(a, rate))));
     if (!(py.math.hypot(...turned) < 1.0)) {
       throw new py.ArithmeticError("slip does not end near this direction");
@@ -2837,9 +3126,16 @@ const closing_motion = py.cached((kind, ending, guarded) => {
   var on_branch_still = (state, top, _) => {
     return slip_branch_guard(py.or(slip_beside(state, ending, top), () => state.direction), top);
   };
-  var guards = [guard(REOPENING, (state, top, _) => reopening_guard(state, ending, top, HORIZON)), guard(LANDED, (state, top, numbers) => landing_guard(state, ending, top, py.item(numbers, -1))), guard(TIME, (state, _, numbers) => py.sub(py.item(numbers, -2), state.time))];
+  var guards = [
+    guard(REOPENING, (state, top, _) => reopening_guard(state, ending, top, HORIZON)),
+    guard(LANDED, (state, top, numbers) => landing_guard(state, ending, top, py.item(numbers, -1))),
+    guard(TIME, (state, _, numbers) => py.sub(py.item(numbers, -2), state.time))
+  ];
   var law = kind.example.friction;
-  var [resisted, stuck] = [py.isinstance(law, RollingResistance), py.and(!py.truth(ending.slip), () => ending.held)];
+  var [resisted, stuck] = [
+    py.isinstance(law, RollingResistance),
+    py.and(!py.truth(ending.slip), () => ending.held)
+  ];
   if (py.truth(guarded)) {
     guards.push(guard(LIFT_OFF, (state, top, _) => rates_in_time(state, ending, top).wrench.force[2]));
   }
@@ -2849,11 +3145,17 @@ const closing_motion = py.cached((kind, ending, guarded) => {
   if (py.truth(ending.held)) {
     guards.push(guard(py.truth(ending.slip) ? ROLLING : SLIP, (state, top, _) => spared(state, ending, top)));
   }
-  if ((py.truth(ending.slip) || py.truth(ending.moves)) && py.truth(py.hasattr(sliding_law(law), "branch_guard"))) {
+  if (
+    (
+      py.truth(ending.slip) || py.truth(ending.moves)
+    ) && py.truth(py.hasattr(sliding_law(law), "branch_guard"))
+  ) {
     guards.push(guard(BRANCH, on_branch_still));
   }
   if (py.truth(stuck) && py.truth(has_limit_branches(law))) {
-    guards.push(guard(LIMIT_BRANCH, (state, top, _) => limit_guard(top, rates_in_time(state, ending, top).wrench)));
+    guards.push(
+      guard(LIMIT_BRANCH, (state, top, _) => limit_guard(top, rates_in_time(state, ending, top).wrench))
+    );
   }
   guards = py.add(guards, surface_guards(kind));
   var free = py.truth(ending.moves) ? 2 : 0;
@@ -2875,7 +3177,13 @@ function spared(state, ending, top) {
 /** The state of a velocity that is about to end, from its numbers. */
 function closing_of(y, ending) {
   var [count, free] = [py.len(y), py.truth(ending.moves) ? 8 : 6];
-  return new Closing(...split(y), py.tuple(y.slice(6, free)), py.tuple(py.slice(y, free, count - 2, null)), py.item(y, count - 2), py.item(y, count - 1));
+  return new Closing(
+    ...split(y),
+    py.tuple(y.slice(6, free)),
+    py.tuple(py.slice(y, free, count - 2, null)),
+    py.item(y, count - 2),
+    py.item(y, count - 1)
+  );
 }
 
 // tippetop.contact.passing
@@ -2953,7 +3261,11 @@ class Resting extends Mode {
   }
   /** Stay as it is. */
   *segments(time, state, end, integrator) {
-    var still = DenseSolution.standing(this.told.numbers(state), time, py.add(time, py.mul(SHORT, py.max(1.0, time))));
+    var still = DenseSolution.standing(
+      this.told.numbers(state),
+      time,
+      py.add(time, py.mul(SHORT, py.max(1.0, time)))
+    );
     yield new Segment(this.told, still, state, new Transition([], Outcome.AT_REST, state));
   }
 }
@@ -2986,7 +3298,13 @@ class Stopping extends Passing {
       }
       var arcs = followed(integrator, motion, [...this.top.numbers, end - time, horizon], start);
       steps = py.add(steps, py.sum([...arcs].map((arc) => arc.steps)));
-      [arc, parts] = [py.item(arcs, -1), [...parts, ...[...arcs].filter((arc) => py.truth(py.len(arc.solution.terms))).map((arc) => arc.solution)]];
+      [arc, parts] = [
+        py.item(arcs, -1),
+        [
+          ...parts,
+          ...[...arcs].filter((arc) => py.truth(py.len(arc.solution.terms))).map((arc) => arc.solution)
+        ]
+      ];
       start = [arc.solution.end, arc.end_state];
       here = closing_of(py.tolist(arc.end_state), ending);
       if (!py.eq(arc.guard, LANDED)) {
@@ -3020,14 +3338,26 @@ class Stopping extends Passing {
     if (found === null || found.left > longest) {
       return null;
     }
-    var looks = py.range(1, py.add(LOOKS_of_passing, 1)).map((look) => found.at(py.div(look, LOOKS_of_passing)));
-    if (py.isinstance(this.top.surface, Hull) && !py.truth(py.all([...looks].map((y) => stays_open(this.top, y))))) {
+    var looks = py.range(1, py.add(LOOKS_of_passing, 1)).map(
+      (look) => found.at(py.div(look, LOOKS_of_passing))
+    );
+    if (
+      py.isinstance(this.top.surface, Hull) && !py.truth(
+        py.all([...looks].map((y) => stays_open(this.top, y)))
+      )
+    ) {
       return null;
     }
-    if (!py.truth(this.rules.pulls) && !py.truth(py.all([...looks].map((y) => this.reaction(y).force[2] > 0.0)))) {
+    if (
+      !py.truth(this.rules.pulls) && !py.truth(py.all([...looks].map((y) => this.reaction(y).force[2] > 0.0)))
+    ) {
       return null;
     }
-    if (py.truth(py.hasattr(law, "branch_guard")) && !py.truth(py.all([...looks].map((y) => slip_branch_guard(py.tuple(y.slice(6)), this.top) > 0.0)))) {
+    if (
+      py.truth(py.hasattr(law, "branch_guard")) && !py.truth(
+        py.all([...looks].map((y) => slip_branch_guard(py.tuple(y.slice(6)), this.top) > 0.0))
+      )
+    ) {
       return null;
     }
     return found;
@@ -3045,7 +3375,12 @@ class Stopping extends Passing {
       return this.rules.settled(time, state, [ending.slip, !py.truth(ending.slip)], ending.held);
     }
     if (arc.failure !== null || arc.guard === null) {
-      return new Transition([], Outcome.FAILED, state, py.or(arc.failure, () => "the slip neither ends nor goes on"));
+      return new Transition(
+        [],
+        Outcome.FAILED,
+        state,
+        py.or(arc.failure, () => "the slip neither ends nor goes on")
+      );
     }
     var found = follow_surface(this, arc.guard, time, state);
     if (found !== null) {
@@ -3061,7 +3396,11 @@ class Stopping extends Passing {
       return new Transition([], this.rules.going_on(state, !py.truth(stuck)), state);
     }
     if (arc.guard === "overtaken") {
-      return new Transition([], py.replace(this, { ending: new Vanishing(!py.truth(ending.slip)), begin: [] }), state);
+      return new Transition(
+        [],
+        py.replace(this, { ending: new Vanishing(!py.truth(ending.slip)), begin: [] }),
+        state
+      );
     }
     if (py.contains(["branch", "limit branch"], arc.guard)) {
       return new Transition([], this._onwards(arc, on_other_branch(this.top)), state);
@@ -3075,7 +3414,10 @@ class Stopping extends Passing {
   }
   /** The mode that takes the clock up where an arc leaves it, on another branch of the law. */
   _onwards(arc, top) {
-    return py.replace(this, { top: top, begin: [...py.slice(py.tolist(arc.end_state), null, -1, null), 0.0] });
+    return py.replace(
+      this,
+      { top: top, begin: [...py.slice(py.tolist(arc.end_state), null, -1, null), 0.0] }
+    );
   }
   /** The numbers of the mode as polynomials in time, from their solution in the clock. */
   _in_time(parts, begin, time, before, after) {
@@ -3094,7 +3436,13 @@ class Stopping extends Passing {
     }
     var reach = py.float(after.time);
     if (reach > py.item(knots, -1)) {
-      var rest = DenseSolution.straight(shown(before), shown(after), py.item(knots, -1), reach, DEGREE_of_passing);
+      var rest = DenseSolution.straight(
+        shown(before),
+        shown(after),
+        py.item(knots, -1),
+        reach,
+        DEGREE_of_passing
+      );
       solution = DenseSolution.joined([solution, rest]);
     }
     return solution.moved(time, time + reach);
@@ -3140,17 +3488,42 @@ py.fields(GaussPoints, ["places", "integrals", "units", "terms", "powers"]);
 function gauss_points(stages) {
   var roots = py.range(stages).map((number) => _root(stages, number));
   var values = [...roots].map((x) => legendre(stages + 1, x));
-  var weights = [...values].map((at) => py.div(2.0, py.sum(py.range(stages).map((k) => py.mul(py.mul(py.add(py.mul(2, k), 1), py.item(at, k)), py.item(at, k))))));
-  var terms = py.range(stages).map((k) => py.zip(weights, values).map(([weight, at]) => py.mul(py.mul(py.mul(0.5, py.add(py.mul(2, k), 1)), weight), py.item(at, k))));
-  var integrals = py.range(stages).map((j) => py.zip(roots, values).map(([x, at]) => py.sum(py.range(stages).map((k) => py.mul(py.mul(0.5, _integral(k, x, at)), py.item(py.item(terms, k), j))))));
-  return new GaussPoints([...roots].map((x) => py.add(0.5, py.mul(0.5, x))), integrals, py.range(stages).map((i) => py.range(stages).map((j) => py.eq(i, j) ? 1.0 : 0.0)), terms, py.range(PARTS).map((part) => _in_powers(stages, part)));
+  var weights = [...values].map(
+    (at) => py.div(
+      2.0,
+      py.sum(
+        py.range(stages).map((k) => py.mul(py.mul(py.add(py.mul(2, k), 1), py.item(at, k)), py.item(at, k)))
+      )
+    )
+  );
+  var terms = py.range(stages).map(
+    (k) => py.zip(weights, values).map(
+      ([weight, at]) => py.mul(py.mul(py.mul(0.5, py.add(py.mul(2, k), 1)), weight), py.item(at, k))
+    )
+  );
+  var integrals = py.range(stages).map(
+    (j) => py.zip(roots, values).map(
+      ([x, at]) => py.sum(
+        py.range(stages).map((k) => py.mul(py.mul(0.5, _integral(k, x, at)), py.item(py.item(terms, k), j)))
+      )
+    )
+  );
+  return new GaussPoints(
+    [...roots].map((x) => py.add(0.5, py.mul(0.5, x))),
+    integrals,
+    py.range(stages).map((i) => py.range(stages).map((j) => py.eq(i, j) ? 1.0 : 0.0)),
+    terms,
+    py.range(PARTS).map((part) => _in_powers(stages, part))
+  );
 }
 
 /** Legendre's polynomials of degrees 0 to `count`. */
 function legendre(count, x) {
   var found = [1.0, x];
   for (var k = 1; k < count; k += 1) {
-    found.push(py.div(py.sub(py.mul((2 * k + 1) * x, py.item(found, k)), py.mul(k, py.item(found, k - 1))), k + 1));
+    found.push(
+      py.div(py.sub(py.mul((2 * k + 1) * x, py.item(found, k)), py.mul(k, py.item(found, k - 1))), k + 1)
+    );
   }
   return found;
 }
@@ -3160,7 +3533,13 @@ function _root(stages, number) {
   var x = -py.math.cos(py.div(py.mul(py.math.pi, number + 0.75), stages + 0.5));
   for (var turn = 0; turn < ROOTS; turn += 1) {
     var at = legendre(stages, x);
-    x = py.sub(x, py.div(py.mul(py.item(at, stages), py.sub(py.mul(x, x), 1.0)), py.mul(stages, py.sub(py.mul(x, py.item(at, stages)), py.item(at, stages - 1)))));
+    x = py.sub(
+      x,
+      py.div(
+        py.mul(py.item(at, stages), py.sub(py.mul(x, x), 1.0)),
+        py.mul(stages, py.sub(py.mul(x, py.item(at, stages)), py.item(at, stages - 1)))
+      )
+    );
   }
   return x;
 }
@@ -3176,10 +3555,19 @@ function _in_powers(stages, part) {
   var none = py.mul([0.0], stages);
   var rows = [[1.0, ...none.slice(1)], [begin, slope, ...none.slice(2)]];
   for (var k = 1; k < stages - 1; k += 1) {
-    var times = py.zip(py.item(rows, k), [0.0, ...py.slice(py.item(rows, k), null, stages - 1, null)]).map(([a, b]) => py.add(py.mul(begin, a), py.mul(slope, b)));
-    rows.push(py.zip(times, py.item(rows, k - 1)).map(([a, b]) => py.div(py.sub(py.mul(2 * k + 1, a), py.mul(k, b)), k + 1)));
+    var times = py.zip(
+      py.item(rows, k),
+      [0.0, ...py.slice(py.item(rows, k), null, stages - 1, null)]
+    ).map(([a, b]) => py.add(py.mul(begin, a), py.mul(slope, b)));
+    rows.push(
+      py.zip(times, py.item(rows, k - 1)).map(
+        ([a, b]) => py.div(py.sub(py.mul(2 * k + 1, a), py.mul(k, b)), k + 1)
+      )
+    );
   }
-  return [...rows].map((row) => py.enumerate(row).map(([power, number]) => py.div(number, py.mul(PARTS, py.add(power, 1)))));
+  return [...rows].map(
+    (row) => py.enumerate(row).map(([power, number]) => py.div(number, py.mul(PARTS, py.add(power, 1))))
+  );
 }
 const GAUSS = gauss_points(STAGES);
 const CONSTANTS = [...GAUSS.integrals, ...GAUSS.units].flatMap((row) => [...row]);
@@ -3219,7 +3607,11 @@ function sweep(y, p, ending, kind, points) {
   var layout = StepRows.of(ending);
   var [free, given] = [layout.free, layout.given];
   var last = py.add(given, kind.numbers);
-  var [top, integrals, units] = [kind.top(py.tuple(p.slice(given, last))), py.slice(p, last, py.add(last, STAGES), null), py.slice(p, py.add(last, STAGES), null, null)];
+  var [top, integrals, units] = [
+    kind.top(py.tuple(p.slice(given, last))),
+    py.slice(p, last, py.add(last, STAGES), null),
+    py.slice(p, py.add(last, STAGES), null, null)
+  ];
   var [way, step] = [[py.item(y, free), py.item(y, py.add(free, 1))], py.item(p, layout.size)];
   var across = [py.neg(way[1]), way[0]];
   var [rates, slopes, normal] = _answers(y.slice(0, free), way, across, ending, top);
@@ -3242,13 +3634,19 @@ function sweep(y, p, ending, kind, points) {
 /** What a step makes of numbers, from their rates y. */
 function step_terms(y, p, points) {
   var [step, legendre_rows] = [p[0], py.slice(p, 1, py.add(STAGES, 1), null)];
-  var series = [...y].map((rate) => py.tuple([...legendre_rows].map((row) => py.mul(step, points.total(py.mul(rate, row))))));
+  var series = [...y].map(
+    (rate) => py.tuple([...legendre_rows].map((row) => py.mul(step, points.total(py.mul(rate, row)))))
+  );
   var found = py.list();
   for (var part = 1; part < py.add(PARTS, 1); part += 1) {
-    var powers = py.tuple(py.slice(p, py.add(py.mul(part, STAGES), 1), py.add(py.mul(part + 1, STAGES), 1), null));
+    var powers = py.tuple(
+      py.slice(p, py.add(py.mul(part, STAGES), 1), py.add(py.mul(part + 1, STAGES), 1), null)
+    );
     found = py.add(found, [...series].map((terms) => inner(terms, powers)));
   }
-  var squares = [...series].flatMap((terms) => [py.sub(STAGES, 2), py.sub(STAGES, 1)].map((k) => py.mul(py.item(terms, k), py.item(terms, k))));
+  var squares = [...series].flatMap(
+    (terms) => [py.sub(STAGES, 2), py.sub(STAGES, 1)].map((k) => py.mul(py.item(terms, k), py.item(terms, k)))
+  );
   return [...found, ...[...series].map((terms) => terms[0]), py.sum(squares.slice(1), squares[0])];
 }
 
@@ -3345,7 +3743,10 @@ const compiled_step = py.cached((kind, ending) => {
     return [...y, ...step_terms(y, p, points)];
   };
   var given = py.add(py.add(layout.given, kind.numbers), py.floordiv(py.len(CONSTANTS), STAGES));
-  return [iterated(better, layout.unknowns, given, STAGES), iterated(terms, layout.size, py.add(1, py.floordiv(py.len(TERMS), STAGES)), STAGES)];
+  return [
+    iterated(better, layout.unknowns, given, STAGES),
+    iterated(terms, layout.size, py.add(1, py.floordiv(py.len(TERMS), STAGES)), STAGES)
+  ];
 });
 
 /** What steps of a top are made with. */
@@ -3382,7 +3783,10 @@ class SlipStep extends py.Thing {
   solve(now, way, length) {
     put_rows(this.given, 0, [...now, length], STAGES);
     put_rows(this.unknowns, 0, [...now.slice(0, this.layout.free), ...way], STAGES);
-    this.sweeps = py.add(this.sweeps, this.machinery.better(this.unknowns, this.given, this.found, ENOUGH, MOST_of_slipping));
+    this.sweeps = py.add(
+      this.sweeps,
+      this.machinery.better(this.unknowns, this.given, this.found, ENOUGH, MOST_of_slipping)
+    );
     if (!(py.item(this.found, py.len(this.found) - 1) < ENOUGH)) {
       return false;
     }
@@ -3422,18 +3826,26 @@ class SlipStep extends py.Thing {
       }
     }
     var first = py.mul(this.layout.size, STAGES);
-    return py.or(pulls, () => py.bool(py.min(py.slice(this.found, first, py.add(first, STAGES), null)) > PRESSED));
+    return py.or(
+      pulls,
+      () => py.bool(py.min(py.slice(this.found, first, py.add(first, STAGES), null)) > PRESSED)
+    );
   }
   /** Coefficients of s in a part of it, at whose start it is this; beyond slip s is less than zero. */
   speed(number, begin, way) {
     var first = py.mul(py.add(py.mul(number, this.layout.size), this.layout.free), STAGES);
-    var rows = [py.slice(this.rows, first, py.add(first, STAGES), null), py.slice(this.rows, py.add(first, STAGES), py.add(first, py.mul(2, STAGES)), null)];
+    var rows = [
+      py.slice(this.rows, first, py.add(first, STAGES), null),
+      py.slice(this.rows, py.add(first, STAGES), py.add(first, py.mul(2, STAGES)), null)
+    ];
     var [x, y] = way;
     return [begin, ...py.zip(...rows).map(([a, b]) => py.add(py.mul(x, a), py.mul(y, b)))];
   }
   /** After how many parts of it slip ends, that is xi at its start; None if that is not told. */
   end_of_slip(xi, speeds) {
-    var below = py.enumerate(speeds).filter(([number, speed]) => speed <= 0.0).map(([number, speed]) => number);
+    var below = py.enumerate(speeds).filter(
+      ([number, speed]) => speed <= 0.0
+    ).map(([number, speed]) => number);
     var point = py.truth(below) ? below[0] : STAGES;
     if (point === 0) {
       return null;
@@ -3462,11 +3874,20 @@ function slip_phase(y, way, top, ending, longest, pulls) {
     var [begin, known, before] = [py.item(knots, -1), py.len(knots), now];
     length = py.min(length, py.sub(longest, begin));
     var solved = step.solve(now, way, length);
-    var factor = py.truth(solved) ? py.mul(SAFETY, py.pow(py.div(ACCURACY_of_slipping, py.add(step.error, TINY_of_slipping)), py.div(0.5, STAGES))) : 0.0;
+    var factor = py.truth(solved) ? py.mul(
+      SAFETY,
+      py.pow(py.div(ACCURACY_of_slipping, py.add(step.error, TINY_of_slipping)), py.div(0.5, STAGES))
+    ) : 0.0;
     var after = py.zip(now, step.changes).map(([a, b]) => py.add(a, b));
     var [last, speeds] = [step.last_way, step.speeds];
-    var lasts = py.and(py.min(speeds) > 0.0, () => py.add(py.mul(py.item(after, free), last[0]), py.mul(py.item(after, free + 1), last[1])) > 0.0);
-    var part = py.truth(lasts) || factor < SAFETY ? py.float(PARTS) : step.end_of_slip(py.tuple(now.slice(free)), speeds);
+    var lasts = py.and(
+      py.min(speeds) > 0.0,
+      () => py.add(py.mul(py.item(after, free), last[0]), py.mul(py.item(after, free + 1), last[1])) > 0.0
+    );
+    var part = py.truth(lasts) || factor < SAFETY ? py.float(PARTS) : step.end_of_slip(
+      py.tuple(now.slice(free)),
+      speeds
+    );
     if (factor < SAFETY || part === null || py.truth(dips(speeds))) {
       length = py.mul(length, py.max(py.min(factor, SHORTER_of_slipping), SHORTEST));
       if (length < LEAST) {
@@ -3479,7 +3900,9 @@ function slip_phase(y, way, top, ending, longest, pulls) {
     }
     ended = !py.truth(lasts);
     var pieces = step.pieces(part);
-    var ends = py.range(PARTS).filter((number) => part > number).map((number) => py.div(py.min(part, py.add(number, 1.0)), PARTS));
+    var ends = py.range(PARTS).filter((number) => part > number).map(
+      (number) => py.div(py.min(part, py.add(number, 1.0)), PARTS)
+    );
     knots = py.add(knots, [...ends].map((end) => py.add(begin, py.mul(length, end))));
     if (py.truth(ended)) {
       now = py.zip(now, change_over(pieces, py.len(now), STAGES)).map(([a, b]) => py.add(a, b));
@@ -3490,10 +3913,16 @@ function slip_phase(y, way, top, ending, longest, pulls) {
       if (py.eq(length, py.sub(longest, begin))) {
         py.put(knots, py.len(knots) - 1, longest);
       }
-      [now, way] = [after, scaled(py.div(1.0, size(py.tuple(after.slice(free)))), py.tuple(after.slice(free)))];
+      [now, way] = [
+        after,
+        scaled(py.div(1.0, size(py.tuple(after.slice(free)))), py.tuple(after.slice(free)))
+      ];
       var speed = step.speed(py.sub(PARTS, 1), 0.0, last);
       py.put(speed, 0, py.sub(inner(py.tuple(after.slice(free)), last), py.sum(speed)));
-      length = py.min(py.mul(length, py.min(factor, LONGER)), py.mul(py.div(py.mul(BEYOND, length), PARTS), parts_left(speed)));
+      length = py.min(
+        py.mul(length, py.min(factor, LONGER)),
+        py.mul(py.div(py.mul(BEYOND, length), PARTS), parts_left(speed))
+      );
     }
     rows.push(pieces);
   }
@@ -3509,13 +3938,19 @@ function parts_left(terms) {
   if (slope >= 0.0 && bend >= 0.0) {
     return py.math.inf;
   }
-  return rest > 0.0 ? py.div(py.mul(2.0, value), py.add(py.neg(slope), py.pow(rest, 0.5))) : py.div(py.neg(slope), bend);
+  return rest > 0.0 ? py.div(
+    py.mul(2.0, value),
+    py.add(py.neg(slope), py.pow(rest, 0.5))
+  ) : py.div(py.neg(slope), bend);
 }
 
 /** Whether s comes near zero within a step, perhaps to it between two points. */
 function dips(speeds) {
   var least = py.min(py.slice(speeds, 1, py.sub(STAGES, 1), null));
-  return py.and(py.min(speeds[0], py.item(speeds, py.sub(STAGES, 1))) > least, () => 0.0 < least && least < py.mul(DIP, py.max(speeds)));
+  return py.and(
+    py.min(speeds[0], py.item(speeds, py.sub(STAGES, 1))) > least,
+    () => 0.0 < least && least < py.mul(DIP, py.max(speeds))
+  );
 }
 
 // tippetop.mechanics.direction
@@ -3539,7 +3974,9 @@ function directions(response, start) {
   for (var turn = 0; turn < ROUNDS; turn += 1) {
     for (var step = 0; step < ITERATIONS; step += 1) {
       var [before, answers] = [ways, response(ways)];
-      ways = py.zip(answers, ways).map(([answer, e]) => _unit(plus(scaled(py.add(answer.strength, size(answer.rate)), e), answer.rate)));
+      ways = py.zip(answers, ways).map(
+        ([answer, e]) => _unit(plus(scaled(py.add(answer.strength, size(answer.rate)), e), answer.rate))
+      );
       if (_apart(ways, before) < EXACT) {
         if (turn + step === 0 && py.truth(_leads(answers, before))) {
           return before;
@@ -3554,7 +3991,11 @@ function directions(response, start) {
     var rates = [...response(ways)].map((answer) => answer.rate);
     var along = py.zip(rates, ways).map(([rate, e]) => inner(rate, e));
     var against = py.min(0.0, ...along);
-    ways = py.range(py.len(ways)).map((i) => py.item(along, i) < 0.0 && py.eq(py.item(along, i), against) ? _unit(py.item(rates, i)) : py.item(ways, i));
+    ways = py.range(py.len(ways)).map(
+      (i) => py.item(along, i) < 0.0 && py.eq(py.item(along, i), against)
+      ? _unit(py.item(rates, i))
+      : py.item(ways, i)
+    );
   }
   throw new py.ArithmeticError("no direction in which the contact can go on, though nothing can hold it");
 }
@@ -3580,7 +4021,9 @@ function _improved(response, ways) {
 
 /** Whether velocities in these directions grow, or stay. */
 function _grow(answers, ways) {
-  return py.all(py.zip(answers, ways).map(([a, e]) => inner(a.rate, e) >= py.mul(py.neg(DIRECTED), a.strength)));
+  return py.all(
+    py.zip(answers, ways).map(([a, e]) => inner(a.rate, e) >= py.mul(py.neg(DIRECTED), a.strength))
+  );
 }
 
 /** Whether directions that do not turn at once are known: slip alone, in a plane, never turns slowly. */
@@ -3593,7 +4036,9 @@ function _newton(response, ways) {
   var bases = [...ways].map((e) => tangents(e));
   var across = (ways) => {
     var answers = response(ways);
-    var lefts = py.zip(answers, ways).map(([answer, e]) => plus(answer.rate, scaled(py.neg(inner(answer.rate, e)), e)));
+    var lefts = py.zip(answers, ways).map(
+      ([answer, e]) => plus(answer.rate, scaled(py.neg(inner(answer.rate, e)), e))
+    );
     return py.zip(lefts, bases).flatMap(([left, basis]) => [...basis].map((b) => inner(left, b)));
   };
   var moved = (parts) => {
@@ -3613,9 +4058,16 @@ function _newton(response, ways) {
   var columns = [];
   for (var j = 0; j < count; j += 1) {
     var there = across(moved(py.range(count).map((i) => py.eq(i, j) ? APART_of_direction : 0.0)));
-    columns.push(py.range(count).map((i) => py.div(py.sub(py.item(there, i), py.item(here, i)), APART_of_direction)));
+    columns.push(
+      py.range(count).map((i) => py.div(py.sub(py.item(there, i), py.item(here, i)), APART_of_direction))
+    );
   }
-  return moved(solve(py.range(count).map((i) => [...columns].map((column) => py.item(column, i))), [...here].map((x) => py.neg(x))));
+  return moved(
+    solve(
+      py.range(count).map((i) => [...columns].map((column) => py.item(column, i))),
+      [...here].map((x) => py.neg(x))
+    )
+  );
 }
 
 function _apart(ways, others) {
@@ -3644,7 +4096,9 @@ py.fields(Beginning, ["slip", "rolling", "rates", "wrench", "acceleration"]);
 
 /** Directions in which slip, or rolling, or both, begin. */
 function beginning(point, slip, rolling, begins, held = null) {
-  var parts = py.zip([true, false], begins).filter(([which, wanted]) => py.truth(wanted)).map(([which, wanted]) => new Vanishing(which));
+  var parts = py.zip([true, false], begins).filter(([which, wanted]) => py.truth(wanted)).map(
+    ([which, wanted]) => new Vanishing(which)
+  );
   var stiffness = [...parts].map((part) => _stiffness(part, point));
   var tried = py.list();
   var motion = (ways) => {
@@ -3659,7 +4113,12 @@ function beginning(point, slip, rolling, begins, held = null) {
   };
   var response = (ways) => {
     var answer = motion(ways);
-    return py.zip(parts, stiffness).map(([part, stiff]) => new Resisted(part.rate(answer[3], point.top), py.mul(stiff, size(_resisting(part, answer[2], point.top)))));
+    return py.zip(parts, stiffness).map(
+      ([part, stiff]) => new Resisted(
+        part.rate(answer[3], point.top),
+        py.mul(stiff, size(_resisting(part, answer[2], point.top)))
+      )
+    );
   };
   var ways = [];
   if (py.truth(parts)) {
@@ -3669,7 +4128,13 @@ function beginning(point, slip, rolling, begins, held = null) {
   }
   var found = motion(ways);
   var along = py.zip(parts, ways).map(([part, e]) => inner(part.rate(found[3], point.top), e));
-  return new Beginning(found[0], found[1], py.tuple([...along].map((rate) => py.max(rate, 0.0))), found[2], found[3]);
+  return new Beginning(
+    found[0],
+    found[1],
+    py.tuple([...along].map((rate) => py.max(rate, 0.0))),
+    found[2],
+    found[3]
+  );
 }
 
 /** How a contact goes on whose slip, or rolling, or both, have ended, and which of them begin again. */
@@ -3689,7 +4154,9 @@ function settling(point, slip, rolling) {
       return [found, begins];
     }
   }
-  throw new py.ArithmeticError("nothing can hold the contact, and there is no direction in which it can go on");
+  throw new py.ArithmeticError(
+    "nothing can hold the contact, and there is no direction in which it can go on"
+  );
 }
 
 /** Whether the table can hold what does not go on. */
@@ -3698,7 +4165,10 @@ function _admits(point, found) {
   if (found.slip === null && set_valued(point.top.friction).reserve(normal, [x, y], torque[2]) < 0.0) {
     return false;
   }
-  return py.or(found.rolling !== null, () => py.bool(rolling_reserve(point, found.wrench, found.slip) >= 0.0));
+  return py.or(
+    found.rolling !== null,
+    () => py.bool(rolling_reserve(point, found.wrench, found.slip) >= 0.0)
+  );
 }
 
 /** What resists slip, a drilling torque over the law's length, or the couple that resists rolling. */
@@ -3707,14 +4177,19 @@ function _resisting(part, wrench, top) {
     return wrench.torque.slice(0, 2);
   }
   var reach = part.reach(top);
-  return reach === null ? wrench.force.slice(0, 2) : [...wrench.force.slice(0, 2), py.div(wrench.torque[2], reach)];
+  return reach === null ? wrench.force.slice(0, 2) : [
+    ...wrench.force.slice(0, 2),
+    py.div(wrench.torque[2], reach)
+  ];
 }
 
 /** How strongly the contact answers to what resists slip, or rolling, 1/kg or 1/(kg m^2). */
 function _stiffness(part, point) {
   var answers = [...part.wrenches(point.top)].map((unit) => part.rate(point.response(unit), point.top));
   var sizes = py.enumerate(answers).map(([i, answer]) => py.abs(py.item(answer, i)));
-  return py.float(py.add(py.sum(sizes.slice(0, 2)), py.mul(py.sum(sizes.slice(2)), py.or(part.reach(point.top), () => 0.0))));
+  return py.float(
+    py.add(py.sum(sizes.slice(0, 2)), py.mul(py.sum(sizes.slice(2)), py.or(part.reach(point.top), () => 0.0)))
+  );
 }
 
 // tippetop.contact.loosening
@@ -3766,7 +4241,11 @@ class Loosening extends Passing {
       return null;
     }
     var start = [...begin, ...scaled(TINY_of_loosening, direction)];
-    var last = this.state(py.truth(phase.ended) ? [...py.slice(phase.last, null, -2, null), 0.0, 0.0] : phase.last);
+    var last = this.state(
+      py.truth(phase.ended)
+      ? [...py.slice(phase.last, null, -2, null), 0.0, 0.0]
+      : phase.last
+    );
     var duration = py.item(phase.knots, -1);
     var reach = duration >= end - time ? end : py.add(time, duration);
     var solution = DenseSolution.of_rows(phase.knots, start, phase.rows).moved(time, reach);
@@ -3794,7 +4273,10 @@ class Loosening extends Passing {
     var way = py.truth(ending.slip) ? found.slip : found.rolling;
     py.assert(way !== null);
     var beside = py.truth(ending.moves) ? slip : rolling;
-    var longest = py.truth(beside) ? py.div(py.mul(PART, size(beside)), size(other.rate(found.acceleration, top))) : py.math.inf;
+    var longest = py.truth(beside) ? py.div(
+      py.mul(PART, size(beside)),
+      size(other.rate(found.acceleration, top))
+    ) : py.math.inf;
     return [py.replace(this, { top: top }), way, longest];
   }
   /** The segment in which the numbers are polynomials in the time since its start. */
@@ -3803,9 +4285,14 @@ class Loosening extends Passing {
       duration = duration * 0.5;
     }
     var first = py.len(rows) - py.len(direction);
-    var apart = py.zip(direction, rows.slice(first)).map(([e, row]) => [py.mul(TINY_of_loosening, e), ...row.slice(1)]);
+    var apart = py.zip(direction, rows.slice(first)).map(
+      ([e, row]) => [py.mul(TINY_of_loosening, e), ...row.slice(1)]
+    );
     var reach = py.min(time + duration, end);
-    var solution = DenseSolution.in_time([0.0, duration], [[...rows.slice(0, first), ...apart]]).moved(time, reach);
+    var solution = DenseSolution.in_time(
+      [0.0, duration],
+      [[...rows.slice(0, first), ...apart]]
+    ).moved(time, reach);
     var last = this.state([...rows].map((row) => horner(row, duration)));
     var then = reach >= end ? Outcome.COMPLETED : this.rules.going_on(last, !py.truth(this.stuck));
     return new Segment(this, solution, last, new Transition([], then, last), 1);
@@ -3815,11 +4302,21 @@ class Loosening extends Passing {
     var at = (look) => {
       return [...rows].map((row) => horner(row, py.div(duration * look, LOOKS_of_passing)));
     };
-    var [looks, pressed] = [py.range(1, py.add(LOOKS_of_passing, 1)), py.range(py.add(1, PRESSED_of_loosening), py.add(LOOKS_of_passing, 1), PRESSED_of_loosening)];
-    if (py.isinstance(this.top.surface, Hull) && !py.truth(py.all([...looks].map((look) => stays_open(this.top, at(look)))))) {
+    var [looks, pressed] = [
+      py.range(1, py.add(LOOKS_of_passing, 1)),
+      py.range(py.add(1, PRESSED_of_loosening), py.add(LOOKS_of_passing, 1), PRESSED_of_loosening)
+    ];
+    if (
+      py.isinstance(this.top.surface, Hull) && !py.truth(
+        py.all([...looks].map((look) => stays_open(this.top, at(look))))
+      )
+    ) {
       return false;
     }
-    return py.or(this.rules.pulls, () => py.all([...pressed].map((look) => this.reaction(at(look)).force[2] > 0.0)));
+    return py.or(
+      this.rules.pulls,
+      () => py.all([...pressed].map((look) => this.reaction(at(look)).force[2] > 0.0))
+    );
   }
   /** Whether the contact sticks meanwhile. */
   get stuck() {
@@ -3844,8 +4341,14 @@ class BothLoosening extends Loosening {
       return null;
     }
     py.assert(found.slip !== null);
-    var [passing, pace] = [py.replace(this, { top: on_branch(this.top, found.slip) }), scaled(found.rates[0], found.slip)];
-    var [still, growing] = [[...state.axis, ...state.momentum], [0.0, 0.0, 0.0, ...point.moment(found.wrench)]];
+    var [passing, pace] = [
+      py.replace(this, { top: on_branch(this.top, found.slip) }),
+      scaled(found.rates[0], found.slip)
+    ];
+    var [still, growing] = [
+      [...state.axis, ...state.momentum],
+      [0.0, 0.0, 0.0, ...point.moment(found.wrench)]
+    ];
     var rows = py.zip(still, growing);
     rows = py.add(rows, [...pace].map((rate) => [0.0, rate]));
     yield passing.piece(rows, found.slip, time, py.min(INSTANT, end - time), end);
@@ -3855,7 +4358,12 @@ py.fields(BothLoosening, ["top", "rules", "ending", "power", "wrench"]);
 
 /** No motion at all, and why. */
 function _nothing(mode, time, state, why) {
-  return new Segment(mode, DenseSolution.nothing(time, 8), state, new Transition([], Outcome.FAILED, state, why));
+  return new Segment(
+    mode,
+    DenseSolution.nothing(time, 8),
+    state,
+    new Transition([], Outcome.FAILED, state, why)
+  );
 }
 
 // tippetop.mechanics.impulse
@@ -3891,11 +4399,15 @@ class Striking extends py.NamedTuple {
     var at_rest = state._replace({ momentum: NO_TORQUE, velocity: NO_TORQUE });
     var point = contact_velocity(state, arm, top);
     var omega = angular_velocity(state.axis, state.momentum, top);
-    if (py.abs(point[2]) <= py.mul(FUZZ, py.add(length(state.velocity), py.mul(length(omega), length(arm))))) {
+    if (
+      py.abs(point[2]) <= py.mul(FUZZ, py.add(length(state.velocity), py.mul(length(omega), length(arm))))
+    ) {
       point = [point[0], point[1], 0.0];
     }
     var here = new this(state, top, arm, point, [NO_TORQUE, NO_TORQUE, NO_TORQUE]);
-    var nudged = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map((unit) => contact_velocity(struck(at_rest, arm, unit, NO_TORQUE, top), arm, top));
+    var nudged = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(
+      (unit) => contact_velocity(struck(at_rest, arm, unit, NO_TORQUE, top), arm, top)
+    );
     return here._replace({ inverse_mass: [nudged[0], nudged[1], nudged[2]] });
   }
   /** The state after an impulse. */
@@ -3905,7 +4417,11 @@ class Striking extends py.NamedTuple {
   /** Change of the velocity of the contact point by an impulse, m/s. */
   response(impulse) {
     var [[x, y], p, [east, north, up]] = [impulse.tangential, impulse.normal, this.inverse_mass];
-    var change = [py.add(py.add(py.mul(x, east[0]), py.mul(y, north[0])), py.mul(p, up[0])), py.add(py.add(py.mul(x, east[1]), py.mul(y, north[1])), py.mul(p, up[1])), py.add(py.add(py.mul(x, east[2]), py.mul(y, north[2])), py.mul(p, up[2]))];
+    var change = [
+      py.add(py.add(py.mul(x, east[0]), py.mul(y, north[0])), py.mul(p, up[0])),
+      py.add(py.add(py.mul(x, east[1]), py.mul(y, north[1])), py.mul(p, up[1])),
+      py.add(py.add(py.mul(x, east[2]), py.mul(y, north[2])), py.mul(p, up[2]))
+    ];
     if (py.eq(impulse.angular, NO_TORQUE)) {
       return change;
     }
@@ -3926,7 +4442,10 @@ py.fields(Striking, ["state", "top", "arm", "point", "inverse_mass"]);
 
 /** The state after an impulse at the contact and an impulse of torque. */
 function struck(state, arm, linear, angular, top) {
-  return state._replace({ momentum: add(state.momentum, add(cross(arm, linear), angular)), velocity: add(state.velocity, scale(py.div(1.0, top.mass), linear)) });
+  return state._replace({
+    momentum: add(state.momentum, add(cross(arm, linear), angular)),
+    velocity: add(state.velocity, scale(py.div(1.0, top.mass), linear))
+  });
 }
 
 /** Velocity of the body's contact point, m/s. */
@@ -3963,7 +4482,21 @@ function is_dry(law) {
 
 /** The contact of a struck body under dry friction, all floats. */
 class DryContact extends py.NamedTuple {
-  constructor(body, speed, before, response, resistance, is_set_valued, reach, arm, striking, ended = false, stopped = false, way = null, rolling_way = null) {
+  constructor(
+    body,
+    speed,
+    before,
+    response,
+    resistance,
+    is_set_valued,
+    reach,
+    arm,
+    striking,
+    ended = false,
+    stopped = false,
+    way = null,
+    rolling_way = null
+  ) {
     super();
     this.body = body;
     this.speed = speed;
@@ -4013,7 +4546,10 @@ class DryContact extends py.NamedTuple {
     var ended = py.and(this.is_set_valued, () => size(slip) <= py.mul(ENDED, this.speed));
     var stopped = py.and(this.resistance !== null, () => size(rolling) <= py.mul(ENDED, this.speed));
     if (!(py.truth(ended) || py.truth(stopped))) {
-      return py.truth(this.ended) || py.truth(this.stopped) ? this._replace({ ended: false, stopped: false }) : this;
+      return py.truth(this.ended) || py.truth(this.stopped) ? this._replace({
+        ended: false,
+        stopped: false
+      }) : this;
     }
     var go_on = [py.truth(ended) ? null : slip, py.truth(stopped) ? null : rolling];
     for (var begins of CHOICES) {
@@ -4030,7 +4566,9 @@ class DryContact extends py.NamedTuple {
         return this._replace({ ended: ended, stopped: stopped, way: ways[0], rolling_way: ways[1] });
       }
     }
-    throw new py.ArithmeticError("nothing can hold the contact in an impact, and it cannot go on in any direction");
+    throw new py.ArithmeticError(
+      "nothing can hold the contact in an impact, and it cannot go on in any direction"
+    );
   }
   /** Whether the table can hold those velocities that are None. */
   admits(slip, rolling) {
@@ -4045,7 +4583,10 @@ class DryContact extends py.NamedTuple {
   }
   /** Force and torque per unit normal impulse at these velocities. */
   friction(slip, rolling) {
-    return this.unit(py.truth(this.ended) ? this.way : slip, py.truth(this.stopped) ? this.rolling_way : rolling);
+    return this.unit(
+      py.truth(this.ended) ? this.way : slip,
+      py.truth(this.stopped) ? this.rolling_way : rolling
+    );
   }
   /** Force and torque per unit normal impulse, six numbers; a velocity that is None is held. */
   unit(slip, rolling) {
@@ -4070,7 +4611,12 @@ class DryContact extends py.NamedTuple {
     if (py.truth(held)) {
       var rows = [...held].map((i) => py.item(this.response, i));
       var right = [...rows].map((row) => py.neg(py.sum(py.map(py.mul, row, unit))));
-      for (var [i, part] of py.zip(held, solve([...rows].map((row) => [...held].map((j) => py.item(row, j))), right))) {
+      for (
+        var [i, part] of py.zip(
+          held,
+          solve([...rows].map((row) => [...held].map((j) => py.item(row, j))), right)
+        )
+      ) {
         py.put(unit, i, py.add(py.item(unit, i), part));
       }
     }
@@ -4078,7 +4624,10 @@ class DryContact extends py.NamedTuple {
   }
   /** Slip and rolling, or the directions in which they begin; None where they are held. */
   ways_on(slip, rolling, begins) {
-    var parts = py.zip([SLIPPING, ROLLING_of_dry_impact], begins).filter(([part, wanted]) => py.truth(wanted)).map(([part, wanted]) => part);
+    var parts = py.zip(
+      [SLIPPING, ROLLING_of_dry_impact],
+      begins
+    ).filter(([part, wanted]) => py.truth(wanted)).map(([part, wanted]) => part);
     if (!py.truth(parts)) {
       return [slip, rolling];
     }
@@ -4089,7 +4638,12 @@ class DryContact extends py.NamedTuple {
     var response = (ways) => {
       var unit = this.unit(...both(ways));
       var velocities = this.change(unit);
-      return [...parts].map((part) => new Resisted(this.part(part, velocities), py.mul(this.stiffness(part), size(this.resisting(part, unit)))));
+      return [...parts].map(
+        (part) => new Resisted(
+          this.part(part, velocities),
+          py.mul(this.stiffness(part), size(this.resisting(part, unit)))
+        )
+      );
     };
     var beside = py.truth(py.all(begins)) ? this.ways_on(slip, rolling, [false, true]) : [slip, rolling];
     var holding = this.unit(...beside);
@@ -4147,10 +4701,34 @@ class DryContact extends py.NamedTuple {
   /** Error of a step in slip and rolling, relative to them or to a millionth of the body's speed. */
   doubt(here, there, error) {
     var off = this.parts(this.change(components(error)));
-    return py.max(py.zip(this.velocities(here), this.velocities(there), off).map(([before, after, wrong]) => py.div(size(wrong), py.max(size(before), size(after), py.mul(1e-06, this.speed)))));
+    return py.max(
+      py.zip(this.velocities(here), this.velocities(there), off).map(
+        ([before, after, wrong]) => py.div(
+          size(wrong),
+          py.max(size(before), size(after), py.mul(1e-06, this.speed))
+        )
+      )
+    );
   }
 }
-py.fields(DryContact, ["body", "speed", "before", "response", "resistance", "is_set_valued", "reach", "arm", "striking", "ended", "stopped", "way", "rolling_way"]);
+py.fields(
+  DryContact,
+  [
+    "body",
+    "speed",
+    "before",
+    "response",
+    "resistance",
+    "is_set_valued",
+    "reach",
+    "arm",
+    "striking",
+    "ended",
+    "stopped",
+    "way",
+    "rolling_way"
+  ]
+);
 
 /** Impulse along x, y and z, and that of the torque. */
 function components(impulse) {
@@ -4158,10 +4736,101 @@ function components(impulse) {
 }
 
 // tippetop.mechanics.runge_kutta
-const STAGES_of_runge_kutta = [[0.05260015195876773], [0.0197250569845379, 0.0591751709536137], [0.02958758547680685, 0.0, 0.08876275643042054], [0.2413651341592667, 0.0, -0.8845494793282861, 0.924834003261792], [0.037037037037037035, 0.0, 0.0, 0.17082860872947386, 0.12546768756682242], [0.037109375, 0.0, 0.0, 0.17025221101954405, 0.06021653898045596, -0.017578125], [0.03709200011850479, 0.0, 0.0, 0.17038392571223998, 0.10726203044637328, -0.015319437748624402, 0.008273789163814023], [0.6241109587160757, 0.0, 0.0, -3.3608926294469414, -0.868219346841726, 27.59209969944671, 20.154067550477894, -43.48988418106996], [0.47766253643826434, 0.0, 0.0, -2.4881146199716677, -0.590290826836843, 21.230051448181193, 15.279233632882423, -33.28821096898486, -0.020331201708508627], [-0.9371424300859873, 0.0, 0.0, 5.186372428844064, 1.0914373489967295, -8.149787010746927, -18.52006565999696, 22.739487099350505, 2.4936055526796523, -3.0467644718982196], [2.273310147516538, 0.0, 0.0, -10.53449546673725, -2.0008720582248625, -17.9589318631188, 27.94888452941996, -2.8589982771350235, -8.87285693353063, 12.360567175794303, 0.6433927460157636], [0.054293734116568765, 0.0, 0.0, 0.0, 0.0, 4.450312892752409, 1.8915178993145003, -5.801203960010585, 0.3111643669578199, -0.1521609496625161, 0.20136540080403034, 0.04471061572777259]];
-const FINE = [0.01312004499419488, 0.0, 0.0, 0.0, 0.0, -1.2251564463762044, -0.4957589496572502, 1.6643771824549864, -0.35032884874997366, 0.3341791187130175, 0.08192320648511571, -0.022355307863886294];
+const STAGES_of_runge_kutta = [
+  [0.05260015195876773],
+  [0.0197250569845379, 0.0591751709536137],
+  [0.02958758547680685, 0.0, 0.08876275643042054],
+  [0.2413651341592667, 0.0, -0.8845494793282861, 0.924834003261792],
+  [0.037037037037037035, 0.0, 0.0, 0.17082860872947386, 0.12546768756682242],
+  [0.037109375, 0.0, 0.0, 0.17025221101954405, 0.06021653898045596, -0.017578125],
+  [
+    0.03709200011850479,
+    0.0,
+    0.0,
+    0.17038392571223998,
+    0.10726203044637328,
+    -0.015319437748624402,
+    0.008273789163814023
+  ],
+  [
+    0.6241109587160757,
+    0.0,
+    0.0,
+    -3.3608926294469414,
+    -0.868219346841726,
+    27.59209969944671,
+    20.154067550477894,
+    -43.48988418106996
+  ],
+  [
+    0.47766253643826434,
+    0.0,
+    0.0,
+    -2.4881146199716677,
+    -0.590290826836843,
+    21.230051448181193,
+    15.279233632882423,
+    -33.28821096898486,
+    -0.020331201708508627
+  ],
+  [
+    -0.9371424300859873,
+    0.0,
+    0.0,
+    5.186372428844064,
+    1.0914373489967295,
+    -8.149787010746927,
+    -18.52006565999696,
+    22.739487099350505,
+    2.4936055526796523,
+    -3.0467644718982196
+  ],
+  [
+    2.273310147516538,
+    0.0,
+    0.0,
+    -10.53449546673725,
+    -2.0008720582248625,
+    -17.9589318631188,
+    27.94888452941996,
+    -2.8589982771350235,
+    -8.87285693353063,
+    12.360567175794303,
+    0.6433927460157636
+  ],
+  [
+    0.054293734116568765,
+    0.0,
+    0.0,
+    0.0,
+    0.0,
+    4.450312892752409,
+    1.8915178993145003,
+    -5.801203960010585,
+    0.3111643669578199,
+    -0.1521609496625161,
+    0.20136540080403034,
+    0.04471061572777259
+  ]
+];
+const FINE = [
+  0.01312004499419488,
+  0.0,
+  0.0,
+  0.0,
+  0.0,
+  -1.2251564463762044,
+  -0.4957589496572502,
+  1.6643771824549864,
+  -0.35032884874997366,
+  0.3341791187130175,
+  0.08192320648511571,
+  -0.022355307863886294
+];
 const THIRD = [0.2440944881889764, ...py.mul([0.0], 7), 0.7338466882816118, 0.0, 0.0, 0.022058823529411766];
-const ROUGH = py.tuple(py.zip(py.item(STAGES_of_runge_kutta, -1), THIRD).map(([b, third]) => py.sub(b, third)));
+const ROUGH = py.tuple(
+  py.zip(py.item(STAGES_of_runge_kutta, -1), THIRD).map(([b, third]) => py.sub(b, third))
+);
 const POWER = -0.125;
 
 /** A step: the numbers at its start, the rates there and at the stages, the numbers at its end. */
@@ -4188,7 +4857,14 @@ class RungeKuttaStep extends py.NamedTuple {
   between(part) {
     var rest = 1.0 - part;
     var [at, pull] = [part * part * (3.0 - 2.0 * part), py.mul(part * rest, this.size)];
-    return py.tuple(py.zip(this.here, this.there, this.slopes[0], py.item(this.slopes, -1)).map(([x, y, a, b]) => py.add(py.add(x, py.mul(at, py.sub(y, x))), py.mul(pull, py.sub(py.mul(rest, a), py.mul(part, b))))));
+    return py.tuple(
+      py.zip(this.here, this.there, this.slopes[0], py.item(this.slopes, -1)).map(
+        ([x, y, a, b]) => py.add(
+          py.add(x, py.mul(at, py.sub(y, x))),
+          py.mul(pull, py.sub(py.mul(rest, a), py.mul(part, b)))
+        )
+      )
+    );
   }
 }
 py.fields(RungeKuttaStep, ["here", "there", "slopes", "size"]);
@@ -4231,7 +4907,11 @@ function moved(here, size, slope) {
 /** A point plus a step along a mean of slopes. */
 function combined(here, size, weights, slopes) {
   var columns = py.zip(...slopes);
-  return py.tuple(py.zip(here, columns).map(([x, column]) => py.add(x, py.mul(size, py.sum(py.map(py.mul, weights, column))))));
+  return py.tuple(
+    py.zip(here, columns).map(
+      ([x, column]) => py.add(x, py.mul(size, py.sum(py.map(py.mul, weights, column))))
+    )
+  );
 }
 
 // tippetop.mechanics.straight_impact
@@ -4250,7 +4930,12 @@ function straight(dry, impulse, goal, guess) {
   var [approach, rise] = [dry.body.approach(impulse), dry.change(unit)[2]];
   var along = (q) => {
     var [[east, north], [x, y, z]] = [impulse.tangential, impulse.angular];
-    return new Impulse(py.add(impulse.normal, q), [py.add(east, py.mul(q, unit[0])), py.add(north, py.mul(q, unit[1]))], [py.add(x, py.mul(q, unit[3])), py.add(y, py.mul(q, unit[4])), py.add(z, py.mul(q, unit[5]))], py.add(impulse.normal_work, py.mul(q, py.add(approach, py.mul(0.5 * q, rise)))));
+    return new Impulse(
+      py.add(impulse.normal, q),
+      [py.add(east, py.mul(q, unit[0])), py.add(north, py.mul(q, unit[1]))],
+      [py.add(x, py.mul(q, unit[3])), py.add(y, py.mul(q, unit[4])), py.add(z, py.mul(q, unit[5]))],
+      py.add(impulse.normal_work, py.mul(q, py.add(approach, py.mul(0.5 * q, rise))))
+    );
   };
   if (longest < py.math.inf) {
     var end = along(longest);
@@ -4291,7 +4976,14 @@ function _line(dry, impulse) {
 function _impulse_for(dry, change) {
   var [held, lengths] = dry.reach === null ? [[0, 1], [1.0, 1.0]] : [[0, 1, 5], [1.0, 1.0, dry.reach]];
   var pairs = py.list(py.zip(held, lengths));
-  return py.tuple(solve([...pairs].map(([i, a]) => [...pairs].map(([j, b]) => py.mul(py.mul(a, py.item(py.item(dry.response, i), j)), b))), py.list(change)));
+  return py.tuple(
+    solve(
+      [...pairs].map(
+        ([i, a]) => [...pairs].map(([j, b]) => py.mul(py.mul(a, py.item(py.item(dry.response, i), j)), b))
+      ),
+      py.list(change)
+    )
+  );
 }
 
 // tippetop.mechanics.integrated_impact
@@ -4314,7 +5006,10 @@ class IntegratedProcess extends py.NamedTuple {
   until(impulse, goal, guess) {
     var [now, waiting] = [this.settled(impulse), goal(impulse) >= 0.0];
     var [here, slope] = [pack(impulse), now.slope(pack(impulse))];
-    var longest = py.div(py.mul(2.0, LONGEST_of_integrated_impact), py.add(this.body.inverse_mass[0][0], this.body.inverse_mass[1][1]));
+    var longest = py.div(
+      py.mul(2.0, LONGEST_of_integrated_impact),
+      py.add(this.body.inverse_mass[0][0], this.body.inverse_mass[1][1])
+    );
     var step = py.mul(0.1, longest);
     for (var taken = 0; taken < MOST_of_integrated_impact; taken += 1) {
       var held = now.held(unpack(here), goal, guess);
@@ -4336,7 +5031,12 @@ class IntegratedProcess extends py.NamedTuple {
       var taking = step_from(here, slope, step, py.bound(now, "slope"));
       var doubt = now.doubt(taking);
       var reached = goal(unpack(taking.there)) >= 0.0;
-      if (doubt > 1.0 && step > py.mul(SHORTEST_of_integrated_impact, longest) || py.truth(reached) && py.truth(waiting)) {
+      if (
+        doubt > 1.0 && step > py.mul(
+          SHORTEST_of_integrated_impact,
+          longest
+        ) || py.truth(reached) && py.truth(waiting)
+      ) {
         step = py.mul(step, py.min(0.5, py.max(0.1, py.mul(0.9, py.pow(doubt, POWER)))));
         continue;
       }
@@ -4377,7 +5077,10 @@ class IntegratedProcess extends py.NamedTuple {
         break;
       }
       var short = py.abs(more) < py.mul(SHORT_of_integrated_impact, taking.size);
-      [last, here] = [py.abs(more), py.call(py.truth(short) ? short_step : step_to, here, slope, more, py.bound(this, "slope"))];
+      [last, here] = [
+        py.abs(more),
+        py.call(py.truth(short) ? short_step : step_to, here, slope, more, py.bound(this, "slope"))
+      ];
     }
     return along(crossing((size) => missing(along(size)), 0.0, taking.size));
   }
@@ -4393,7 +5096,13 @@ class IntegratedProcess extends py.NamedTuple {
       grip = py.math.hypot(...this.body.top.friction.traction([slip, 0.0], omega).force);
     }
     var pace = py.div(1.0, py.add(py.div(grip, slip), py.div(1.0, length(this.body.point))));
-    return [pace, py.mul(pace, force[0]), py.mul(pace, force[1]), ...scale(pace, torque), py.mul(pace, point[2])];
+    return [
+      pace,
+      py.mul(pace, force[0]),
+      py.mul(pace, force[1]),
+      ...scale(pace, torque),
+      py.mul(pace, point[2])
+    ];
   }
   /** The error of a step over the one allowed. */
   doubt(taken) {
@@ -4405,7 +5114,9 @@ class IntegratedProcess extends py.NamedTuple {
       if (this.dry !== null) {
         return py.float(py.max(this.dry.doubt(here, there, off), py.div(py.abs(wrong[2]), speed)));
       }
-      return py.float(py.max(py.div(py.math.hypot(wrong[0], wrong[1]), slip), py.div(py.abs(wrong[2]), speed)));
+      return py.float(
+        py.max(py.div(py.math.hypot(wrong[0], wrong[1]), slip), py.div(py.abs(wrong[2]), speed))
+      );
     };
     return py.div(taken.doubt(measure), TOLERANCE);
   }
@@ -4422,17 +5133,34 @@ class IntegratedProcess extends py.NamedTuple {
     var [[a, b], [, d]] = this.body.inverse_mass;
     var [point, , traction] = this.body.friction(impulse);
     var [x, y] = this.body.response(new Impulse(1.0, [0.0, 0.0], traction.torque, 0.0));
-    var holding = [py.div(py.sub(py.mul(b, y), py.mul(d, x)), py.sub(py.mul(a, d), py.mul(b, b))), py.div(py.sub(py.mul(b, x), py.mul(a, y)), py.sub(py.mul(a, d), py.mul(b, b)))];
-    var fuzz = py.div(py.mul(py.mul(FUZZ, length(this.body.point)), py.math.hypot(...traction.force)), py.or(py.math.hypot(...point.slice(0, 2)), () => 1.0));
+    var holding = [
+      py.div(py.sub(py.mul(b, y), py.mul(d, x)), py.sub(py.mul(a, d), py.mul(b, b))),
+      py.div(py.sub(py.mul(b, x), py.mul(a, y)), py.sub(py.mul(a, d), py.mul(b, b)))
+    ];
+    var fuzz = py.div(
+      py.mul(py.mul(FUZZ, length(this.body.point)), py.math.hypot(...traction.force)),
+      py.or(py.math.hypot(...point.slice(0, 2)), () => 1.0)
+    );
     if (py.math.dist(traction.force, holding) > py.add(STUCK, fuzz)) {
       return null;
     }
     if (!py.truth(py.any(traction.force))) {
       holding = [0.0, 0.0];
     }
-    var rise = py.sub(this.body.approach(new Impulse(1.0, holding, traction.torque, 0.0)), this.body.point[2]);
+    var rise = py.sub(
+      this.body.approach(new Impulse(1.0, holding, traction.torque, 0.0)),
+      this.body.point[2]
+    );
     var along = (q) => {
-      return new Impulse(py.add(impulse.normal, q), [py.add(impulse.tangential[0], py.mul(q, holding[0])), py.add(impulse.tangential[1], py.mul(q, holding[1]))], add(impulse.angular, scale(q, traction.torque)), py.add(impulse.normal_work, py.mul(q, py.add(point[2], py.mul(0.5 * q, rise)))));
+      return new Impulse(
+        py.add(impulse.normal, q),
+        [
+          py.add(impulse.tangential[0], py.mul(q, holding[0])),
+          py.add(impulse.tangential[1], py.mul(q, holding[1]))
+        ],
+        add(impulse.angular, scale(q, traction.torque)),
+        py.add(impulse.normal_work, py.mul(q, py.add(point[2], py.mul(0.5 * q, rise))))
+      );
     };
     var end = first_reach(along, goal, guess);
     var later = this.body.friction(end)[2];
@@ -4481,8 +5209,14 @@ class ViscousProcess extends py.NamedTuple {
     var angle = 0.5 * py.math.atan2(py.mul(2.0, east[1]), py.sub(east[0], north[1]));
     var [cosine, sine] = [py.math.cos(angle), py.math.sin(angle)];
     var mode = (x, y) => {
-      var stiffness = py.add(py.add(py.mul(x * x, east[0]), py.mul(2.0 * x * y, east[1])), py.mul(y * y, north[1]));
-      var [coupling, slip] = [py.add(py.mul(x, up[0]), py.mul(y, up[1])), py.add(py.mul(x, body.point[0]), py.mul(y, body.point[1]))];
+      var stiffness = py.add(
+        py.add(py.mul(x * x, east[0]), py.mul(2.0 * x * y, east[1])),
+        py.mul(y * y, north[1])
+      );
+      var [coupling, slip] = [
+        py.add(py.mul(x, up[0]), py.mul(y, up[1])),
+        py.add(py.mul(x, body.point[0]), py.mul(y, body.point[1]))
+      ];
       return new PrincipalDirection([x, y], stiffness, coupling, slip);
     };
     return new this(body, law.mu, [mode(cosine, sine), mode(-sine, cosine)]);
@@ -4497,9 +5231,18 @@ class ViscousProcess extends py.NamedTuple {
     var work = py.mul(p, py.add(this.body.point[2], py.mul(0.5 * p, this.body.inverse_mass[2][2])));
     for (var [[x, y], stiffness, coupling, slip] of this.modes) {
       var [phi_1, phi_2, phi_3] = phis(py.mul(py.mul(this.mu, stiffness), p));
-      var along = py.mul(py.mul(py.neg(this.mu), p), py.add(py.mul(slip, phi_1), py.mul(py.mul(coupling, p), phi_2)));
+      var along = py.mul(
+        py.mul(py.neg(this.mu), p),
+        py.add(py.mul(slip, phi_1), py.mul(py.mul(coupling, p), phi_2))
+      );
       tangential = [py.add(tangential[0], py.mul(along, x)), py.add(tangential[1], py.mul(along, y))];
-      work = py.sub(work, py.mul(py.mul(py.mul(py.mul(this.mu, p), p), coupling), py.add(py.mul(slip, phi_2), py.mul(py.mul(coupling, p), phi_3))));
+      work = py.sub(
+        work,
+        py.mul(
+          py.mul(py.mul(py.mul(this.mu, p), p), coupling),
+          py.add(py.mul(slip, phi_2), py.mul(py.mul(coupling, p), phi_3))
+        )
+      );
     }
     return new Impulse(p, tangential, NO_TORQUE, work);
   }
@@ -4544,7 +5287,9 @@ py.fields(Impact, ["state", "impulse", "energy_lost", "compression", "steps"]);
 /** What an impact does to a body that touches the table. */
 function impact(state, restitution, top) {
   if (!(0.0 <= restitution && restitution <= 1.0)) {
-    throw new py.ValueError(`the coefficient of restitution must lie between 0 and 1, but is ${py.str(restitution)}`);
+    throw new py.ValueError(
+      `the coefficient of restitution must lie between 0 and 1, but is ${py.str(restitution)}`
+    );
   }
   var body = Striking.of(state, top);
   var law = top.friction;
@@ -4552,8 +5297,14 @@ function impact(state, restitution, top) {
   if (!py.truth(is_struck(body, dry))) {
     return new Impact(state, 0.0, 0.0, 0.0);
   }
-  var process = py.isinstance(law, ViscousLaw) ? ViscousProcess.of(body, law) : new IntegratedProcess(body, dry);
-  var frictionless = py.div(py.or(py.mul(-2.0, body.point[2]), () => length(body.point)), body.inverse_mass[2][2]);
+  var process = py.isinstance(
+    law,
+    ViscousLaw
+  ) ? ViscousProcess.of(body, law) : new IntegratedProcess(body, dry);
+  var frictionless = py.div(
+    py.or(py.mul(-2.0, body.point[2]), () => length(body.point)),
+    body.inverse_mass[2][2]
+  );
   var compressed = process.until(NO_IMPULSE, py.bound(body, "approach"), frictionless);
   var [impulse, steps] = [compressed, compressed.steps];
   if (restitution > 0.0) {
@@ -4597,7 +5348,9 @@ function is_struck(body, dry) {
 function work_of(impulse, before, after, body) {
   var omega = add(...[before, after].map((state) => angular_velocity(state.axis, state.momentum, body.top)));
   var point = add(body.point, contact_velocity(after, body.arm, body.top));
-  return py.float(py.mul(0.5, py.add(dot([...impulse.tangential, impulse.normal], point), dot(impulse.angular, omega))));
+  return py.float(
+    py.mul(0.5, py.add(dot([...impulse.tangential, impulse.normal], point), dot(impulse.angular, omega)))
+  );
 }
 
 // tippetop.contact.rules
@@ -4667,7 +5420,10 @@ class ContactRules extends py.Record {
   }
   /** Hold what has ended, slip or rolling (new) or what was held already, if the table can; or let go. */
   settled(time, state, new_, held = false, events = []) {
-    var ended = [py.or(new_[0], () => py.and(held, () => new_[1])), py.or(new_[1], () => py.and(held, () => new_[0]))];
+    var ended = [
+      py.or(new_[0], () => py.and(held, () => new_[1])),
+      py.or(new_[1], () => py.and(held, () => new_[0]))
+    ];
     state = this._at_rest(state, ...ended);
     var point = ContactPoint.of(state.axis, state.momentum, this.top);
     var slip = py.truth(ended[0]) ? null : slip_of(...along_table(state), this.top);
@@ -4707,7 +5463,14 @@ class ContactRules extends py.Record {
   /** What is told where slip, or rolling, has newly ended and is held, or was held and begins. */
   _marks(time, new_, begins) {
     var told = [];
-    for (var [ended, starts, stop, start] of py.zip(new_, begins, [EventKind.STICK, EventKind.HALT], [EventKind.SLIP, EventKind.ROLL])) {
+    for (
+      var [ended, starts, stop, start] of py.zip(
+        new_,
+        begins,
+        [EventKind.STICK, EventKind.HALT],
+        [EventKind.SLIP, EventKind.ROLL]
+      )
+    ) {
       if (py.truth(ended) && !py.truth(starts)) {
         told.push(this.event(stop, time));
       } else if (py.truth(starts) && !py.truth(ended)) {
@@ -4751,8 +5514,13 @@ class ContactRules extends py.Record {
   _next_to_end(state, slips) {
     var [rolls, law] = [this._rolls(state), this.top.friction];
     var resisted = py.isinstance(law, RollingResistance);
-    var possible = py.truth(slips) && py.truth(is_set_valued(law)) ? [new Vanishing(true, !py.truth(rolls))] : [];
-    possible = py.add(possible, py.truth(rolls) && py.truth(resisted) ? [new Vanishing(false, !py.truth(slips))] : []);
+    var possible = py.truth(slips) && py.truth(is_set_valued(law)) ? [
+      new Vanishing(true, !py.truth(rolls))
+    ] : [];
+    possible = py.add(
+      possible,
+      py.truth(rolls) && py.truth(resisted) ? [new Vanishing(false, !py.truth(slips))] : []
+    );
     if (!py.truth(possible)) {
       return [null, py.float("inf")];
     }
@@ -4874,7 +5642,10 @@ class FreeToFly extends ContactRules {
       if (!(error instanceof py.ArithmeticError)) throw error;
       return new Transition(events, Outcome.FAILED, state, py.str(error));
     }
-    var hit = py.replace(this.event(EventKind.IMPACT, time, py.float(collision.impulse), py.float(collision.energy_lost)), { steps: collision.steps });
+    var hit = py.replace(
+      this.event(EventKind.IMPACT, time, py.float(collision.impulse), py.float(collision.energy_lost)),
+      { steps: collision.steps }
+    );
     var after = collision.state;
     if (!py.truth(collision.impulse)) {
       return this._untouched(time, after, events);
@@ -4933,7 +5704,9 @@ class ContactPair extends py.NamedTuple {
   /** How much of each wrench keeps as many components of something that moves at zero. */
   holding(units, held, moving) {
     var responses = [...units].map((unit) => this.response(unit));
-    var rows = [...held].map(([number, way]) => [...responses].map((found) => dot(py.item(found, number), way)));
+    var rows = [...held].map(
+      ([number, way]) => [...responses].map((found) => dot(py.item(found, number), way))
+    );
     return solve(rows, [...held].map(([number, way]) => py.neg(dot(py.item(moving, number), way))));
   }
   /** Moment of some wrenches about the centre of mass, N m. */
@@ -5022,7 +5795,10 @@ class PairMotion extends py.NamedTuple {
   get both_reserve() {
     var [one, other, along] = [this.left(0), this.left(1), this.along];
     var product = py.mul(one, other);
-    return py.sub(py.add(py.add(one, other), py.mul(2.0, py.pow(py.add(py.mul(product, product), TINY), 0.25))), py.mul(along, along));
+    return py.sub(
+      py.add(py.add(one, other), py.mul(2.0, py.pow(py.add(py.mul(product, product), TINY), 0.25))),
+      py.mul(along, along)
+    );
   }
   /** Whether the table can hold both contacts, without moments of drilling; of floats. */
   get is_held() {
@@ -5036,7 +5812,10 @@ class PairMotion extends py.NamedTuple {
       var [force, torque] = sliding_law(point.top.friction).traction([slip[0], slip[1]], turning);
       var [x, y, normal] = wrench.force;
       spare = py.sub(spare, py.mul(py.mul(normal, torque[2]), turning[2]));
-      spare = py.add(py.add(spare, py.mul(py.sub(x, py.mul(normal, force[0])), slip[0])), py.mul(py.sub(y, py.mul(normal, force[1])), slip[1]));
+      spare = py.add(
+        py.add(spare, py.mul(py.sub(x, py.mul(normal, force[0])), slip[0])),
+        py.mul(py.sub(y, py.mul(normal, force[1])), slip[1])
+      );
     }
     return spare;
   }
@@ -5096,7 +5875,12 @@ function pair_motion(pair, slips, rolls) {
     py.put(found, number, new Wrench(...py.zip(py.item(found, number), push).map(([a, b]) => add(a, b))));
     pushes.push([number, push]);
   }
-  return new PairMotion(pair, [found[0], found[1]], pair.under(pushes), py.truth(stopped) ? py.item(sizes, -1) : 0.0);
+  return new PairMotion(
+    pair,
+    [found[0], found[1]],
+    pair.under(pushes),
+    py.truth(stopped) ? py.item(sizes, -1) : 0.0
+  );
 }
 
 /** A unit normal force with what goes with it where the contact slips, and rolls in this direction. */
@@ -5131,14 +5915,21 @@ function without_tilting(state, top) {
   var n = state.axis;
   var rate = axis_rate(n, state.momentum, top)[2];
   var part = py.div(py.mul(top.transverse_inertia, rate), py.add(py.mul(n[0], n[0]), py.mul(n[1], n[1])));
-  var momentum = [py.sub(state.momentum[0], py.mul(part, n[1])), py.add(state.momentum[1], py.mul(part, n[0])), state.momentum[2]];
+  var momentum = [
+    py.sub(state.momentum[0], py.mul(part, n[1])),
+    py.add(state.momentum[1], py.mul(part, n[0])),
+    state.momentum[2]
+  ];
   return state._replace({ momentum: momentum, velocity: [...state.velocity.slice(0, 2), 0.0] });
 }
 
 /** How both contacts slip, and drill if their law resists that. */
 function slips_of(pair, xi) {
   var across = directions_of(pair.first.axis)[1];
-  var [one, other] = [[xi[0], xi[1]], [py.add(xi[0], py.mul(xi[2], across[0])), py.add(xi[1], py.mul(xi[2], across[1]))]];
+  var [one, other] = [
+    [xi[0], xi[1]],
+    [py.add(xi[0], py.mul(xi[2], across[0])), py.add(xi[1], py.mul(xi[2], across[1]))]
+  ];
   var reach = slip_length(pair.first.top.friction);
   if (reach === null) {
     return [one, other];
@@ -5155,7 +5946,10 @@ function at_rest(pair, velocity, ended, stopped) {
   var held = [];
   if (py.truth(py.any(ended))) {
     var both = [[0, along], [0, across], [1, across]];
-    held = py.add(held, py.truth(py.all(ended)) ? both : [[py.int(ended[1]), EAST], [py.int(ended[1]), NORTH]]);
+    held = py.add(
+      held,
+      py.truth(py.all(ended)) ? both : [[py.int(ended[1]), EAST], [py.int(ended[1]), NORTH]]
+    );
   }
   held = py.add(held, [[0, VERTICAL], [1, VERTICAL]]);
   var units = [...held].map(([number, way]) => [number, new Wrench(way, NO_TORQUE)]);
@@ -5165,7 +5959,9 @@ function at_rest(pair, velocity, ended, stopped) {
   }
   moving = [moving[0], moving[1], moving[2]];
   var sizes = pair.holding(units, held, moving);
-  var pushes = py.zip(sizes, units).map(([a, [number, unit]]) => [number, new Wrench(scale(a, unit.force), scale(a, unit.torque))]);
+  var pushes = py.zip(sizes, units).map(
+    ([a, [number, unit]]) => [number, new Wrench(scale(a, unit.force), scale(a, unit.torque))]
+  );
   var momentum = add(pair.first.momentum, pair.moment(pushes));
   for (var [, push] of pushes) {
     velocity = add(velocity, scale(py.div(1.0, pair.first.top.mass), push.force));
@@ -5179,7 +5975,9 @@ function way_of_one(pair, slip, rolls) {
   var stiffness = py.float(py.add(py.abs(answers[0][0]), py.abs(answers[1][1])));
   var response = (ways) => {
     var found = pair_motion(pair, [ways[0], slip], rolls);
-    return [new Resisted(found.moving[0].slice(0, 2), py.mul(stiffness, size(found.wrenches[0].force.slice(0, 2))))];
+    return [
+      new Resisted(found.moving[0].slice(0, 2), py.mul(stiffness, size(found.wrenches[0].force.slice(0, 2))))
+    ];
   };
   var held = pair_motion(pair, [null, slip], rolls).wrenches[0];
   var way = directions(response, [scaled(-1.0, held.force.slice(0, 2))])[0];
@@ -5192,14 +5990,23 @@ function way_of_both(pair, rolls) {
   var lever = py.float(apart(pair));
   var answers = [EAST, NORTH].map((way) => pair.response([0, new Wrench(way, NO_TORQUE)])[0]);
   var turned = pair.response([1, new Wrench(across, NO_TORQUE)])[2][2];
-  var stiffness = py.float(py.add(py.add(py.abs(answers[0][0]), py.abs(answers[1][1])), py.abs(py.mul(lever, turned))));
+  var stiffness = py.float(
+    py.add(py.add(py.abs(answers[0][0]), py.abs(answers[1][1])), py.abs(py.mul(lever, turned)))
+  );
   var drilled = py.abs(lever * py.float(pair.response([0, DRILLING])[2][2]));
   var motion = (way) => {
     return pair_motion(pair, slips_of(pair, way), rolls);
   };
   var response = (ways) => {
     var found = motion(ways[0]);
-    var strength = py.sum([...found.wrenches].map((wrench) => py.add(py.mul(stiffness, size(wrench.force.slice(0, 2))), py.mul(drilled, py.abs(wrench.torque[2])))));
+    var strength = py.sum(
+      [...found.wrenches].map(
+        (wrench) => py.add(
+          py.mul(stiffness, size(wrench.force.slice(0, 2))),
+          py.mul(drilled, py.abs(wrench.torque[2]))
+        )
+      )
+    );
     return [new Resisted(found.rate, strength)];
   };
   var way = directions(response, [against(pair_motion(pair, [null, null], rolls))])[0];
@@ -5480,7 +6287,10 @@ function on_two(state, rules, other, rolls) {
 /** The top on either surface. */
 function tops_of(first, second, numbers) {
   var cut = first.numbers;
-  return [first.top(py.tuple(numbers.slice(0, cut))), second.top(py.tuple(py.slice(numbers, cut, py.add(cut, second.numbers), null)))];
+  return [
+    first.top(py.tuple(numbers.slice(0, cut))),
+    second.top(py.tuple(py.slice(numbers, cut, py.add(cut, second.numbers), null)))
+  ];
 }
 
 /** Equations of motion of a top of these kinds: of another active surface and branch of the law each. */
@@ -5499,7 +6309,9 @@ const motion_on_two = py.cached((first, second, rolls) => {
     return value;
   };
   var both_slips = (y, numbers) => {
-    var [one, other] = [...tops_of(first, second, numbers)].map((top) => slip_of(...SlidingState.unpack(y), top));
+    var [one, other] = [...tops_of(first, second, numbers)].map(
+      (top) => slip_of(...SlidingState.unpack(y), top)
+    );
     return py.sub(py.add(inner(one, one), inner(other, other)), py.mul(SLOWEST_SLIP, SLOWEST_SLIP));
   };
   var branch = (number) => {
@@ -5512,10 +6324,16 @@ const motion_on_two = py.cached((first, second, rolls) => {
   if (slip_length(first.example.friction) !== null) {
     guards.push(new Guard(`${py.str(ENDING)}both`, both_slips));
   } else if (py.truth(is_set_valued(first.example.friction))) {
-    guards = py.add(guards, [0, 1].map((number) => new Guard(`${py.str(ENDING)}${py.str(number)}`, slip(number))));
+    guards = py.add(
+      guards,
+      [0, 1].map((number) => new Guard(`${py.str(ENDING)}${py.str(number)}`, slip(number)))
+    );
   }
   if (py.truth(is_branched(first.example.friction))) {
-    guards = py.add(guards, [0, 1].map((number) => new Guard(`${py.str(BRANCHING)}${py.str(number)}`, branch(number))));
+    guards = py.add(
+      guards,
+      [0, 1].map((number) => new Guard(`${py.str(BRANCHING)}${py.str(number)}`, branch(number)))
+    );
   }
   return new Motion(rates, 8, py.add(first.numbers, second.numbers), py.tuple(guards), false);
 });
@@ -5593,7 +6411,10 @@ class StickingAndSliding extends HeldOnTwo {
   found(y) {
     var pair = ContactPair.of(...split(y), this.tops);
     var zeta = slip_apart(pair);
-    return [turned_of_double_sticking(pair, this.sign, this.rolls), slips_of(pair, [py.mul(0.0, zeta), py.mul(0.0, zeta), zeta])];
+    return [
+      turned_of_double_sticking(pair, this.sign, this.rolls),
+      slips_of(pair, [py.mul(0.0, zeta), py.mul(0.0, zeta), zeta])
+    ];
   }
   /** A contact opens; or slip ends on the second, or begins on the first. */
   follow(guard, time, state) {
@@ -5698,7 +6519,10 @@ class SlipBeginningOnTwo extends SlidingOnTwo {
   }
   /** Follow it by an implicit method: its direction is damped the faster the slower it is. */
   *segments(time, state, end, integrator) {
-    var [reach, method] = [py.min(py.add(time, BEGINNING), end), make_integrator("collocation", TOLERANCE_of_double_sticking)];
+    var [reach, method] = [
+      py.min(py.add(time, BEGINNING), end),
+      make_integrator("collocation", TOLERANCE_of_double_sticking)
+    ];
     for (var segment of super.segments(time, state, reach, method)) {
       var found = segment.transition;
       if (found !== null && found.then === Outcome.COMPLETED && reach < end) {
@@ -5720,7 +6544,11 @@ function turned_of_double_sticking(pair, sign, rolls) {
 /** Equations of motion while the first contact sticks and the second slips across the axis, as signed. */
 const turning_motion = py.cached((first, second, sign, rolls) => {
   var found = (y, numbers) => {
-    return turned_of_double_sticking(ContactPair.of(...split(y), tops_of(first, second, numbers)), sign, rolls);
+    return turned_of_double_sticking(
+      ContactPair.of(...split(y), tops_of(first, second, numbers)),
+      sign,
+      rolls
+    );
   };
   var slides = (y, numbers) => {
     return py.mul(sign, slip_apart(ContactPair.of(...split(y), tops_of(first, second, numbers))));
@@ -5728,7 +6556,10 @@ const turning_motion = py.cached((first, second, sign, rolls) => {
   var holds = (y, numbers) => {
     return found(y, numbers).reserve(0);
   };
-  var guards = [new Guard(`${py.str(SLIP_of_double_sticking)}first`, holds), new Guard(ENDING_of_double_sticking, slides)];
+  var guards = [
+    new Guard(`${py.str(SLIP_of_double_sticking)}first`, holds),
+    new Guard(ENDING_of_double_sticking, slides)
+  ];
   return _of_momentum(first, second, found, [...guards, ...pair_guards(first, found, rolls)]);
 });
 
@@ -5739,9 +6570,21 @@ const held_motion_on_two = py.cached((first, second, rolls) => {
   };
   var guards = pair_guards(first, found, rolls);
   if (slip_length(first.example.friction) === null) {
-    guards = py.add(guards, [new Guard(`${py.str(SLIP_of_double_sticking)}0`, (y, numbers) => found(y, numbers).left(0)), new Guard(`${py.str(SLIP_of_double_sticking)}1`, (y, numbers) => found(y, numbers).left(1)), new Guard(`${py.str(SLIP_of_double_sticking)}both`, (y, numbers) => found(y, numbers).both_reserve)]);
+    guards = py.add(
+      guards,
+      [
+        new Guard(`${py.str(SLIP_of_double_sticking)}0`, (y, numbers) => found(y, numbers).left(0)),
+        new Guard(`${py.str(SLIP_of_double_sticking)}1`, (y, numbers) => found(y, numbers).left(1)),
+        new Guard(`${py.str(SLIP_of_double_sticking)}both`, (y, numbers) => found(y, numbers).both_reserve)
+      ]
+    );
   } else if (py.truth(rolls)) {
-    guards.push(new Guard(`${py.str(SLIP_of_double_sticking)}both`, (y, numbers) => py.sub(py.mul(rolls, turning_along(found(y, numbers).pair)), py.item(numbers, -1))));
+    guards.push(
+      new Guard(
+        `${py.str(SLIP_of_double_sticking)}both`,
+        (y, numbers) => py.sub(py.mul(rolls, turning_along(found(y, numbers).pair)), py.item(numbers, -1))
+      )
+    );
   }
   return _of_momentum(first, second, found, guards, 1);
 });
@@ -5760,13 +6603,19 @@ const beginning_on_two = py.cached((first, second, rolls) => {
   var branch = (number) => {
     var value = (y, numbers) => {
       var point = py.item(found(y, numbers).pair, number);
-      return slip_branch_guard(py.item(slips_of(found(y, numbers).pair, [y[6], y[7], y[8]]), number), point.top);
+      return slip_branch_guard(
+        py.item(slips_of(found(y, numbers).pair, [y[6], y[7], y[8]]), number),
+        point.top
+      );
     };
     return value;
   };
   var guards = pair_guards(first, found, rolls);
   if (py.truth(is_branched(first.example.friction))) {
-    guards = py.add(guards, [0, 1].map((number) => new Guard(`${py.str(BRANCHING)}${py.str(number)}`, branch(number))));
+    guards = py.add(
+      guards,
+      [0, 1].map((number) => new Guard(`${py.str(BRANCHING)}${py.str(number)}`, branch(number)))
+    );
   }
   return new Motion(rates, 9, py.add(first.numbers, second.numbers), py.tuple(guards), false);
 });
@@ -5777,7 +6626,13 @@ function _of_momentum(first, second, found, guards, further = 0) {
     var now = found(y, numbers);
     return [...axis_rate(...split(y), now.pair.first.top), ...now.moment];
   };
-  return new Motion(rates, 6, py.add(py.add(first.numbers, second.numbers), further), py.tuple(guards), false);
+  return new Motion(
+    rates,
+    6,
+    py.add(py.add(first.numbers, second.numbers), further),
+    py.tuple(guards),
+    false
+  );
 }
 
 // tippetop.mechanics.invariants
@@ -5786,7 +6641,10 @@ function _of_momentum(first, second, found, guards, further = 0) {
 function energy(state, top) {
   var omega = angular_velocity(state.axis, state.momentum, top);
   var translation = py.mul(top.mass, dot(state.velocity, state.velocity));
-  return py.add(py.mul(0.5, py.add(translation, dot(omega, state.momentum))), py.mul(py.mul(top.mass, top.gravity), state.height));
+  return py.add(
+    py.mul(0.5, py.add(translation, dot(omega, state.momentum))),
+    py.mul(py.mul(top.mass, top.gravity), state.height)
+  );
 }
 
 /** Jellett's integral lambda = -L.a, kg m^3/s. */
@@ -5863,9 +6721,20 @@ class TwoClosed extends py.Record {
     var ways = [0, 1].map((number) => this._alone(number));
     var held = [0, 1].filter((number) => py.eq(py.item(ways, number), HELD));
     if (py.truth(held) && !py.truth(answers)) {
-      return [py.item([FIRST_of_two_closed, SECOND], py.max(held, py.how({ key: (number) => py.item(normal, number) })))];
+      return [
+        py.item(
+          [FIRST_of_two_closed, SECOND],
+          py.max(held, py.how({ key: (number) => py.item(normal, number) }))
+        )
+      ];
     }
-    answers = py.add(answers, py.zip(ways, [FIRST_of_two_closed, SECOND]).filter(([way, name]) => py.eq(way, OPENS)).map(([way, name]) => name));
+    answers = py.add(
+      answers,
+      py.zip(
+        ways,
+        [FIRST_of_two_closed, SECOND]
+      ).filter(([way, name]) => py.eq(way, OPENS)).map(([way, name]) => name)
+    );
     return py.add(answers, free[0][2] >= 0.0 && free[1][2] >= 0.0 ? [NEITHER] : []);
   }
   /** What the other contact does where one alone is pressed: opens, or is held as it is. */
@@ -5874,7 +6743,10 @@ class TwoClosed extends py.Record {
     if (point.free.point[2] >= 0.0) {
       return CLOSES;
     }
-    var slip = py.truth(py.item(this.ended, number)) ? null : slip_of(...along_table(this.state), py.item(this.tops, number));
+    var slip = py.truth(py.item(this.ended, number)) ? null : slip_of(
+      ...along_table(this.state),
+      py.item(this.tops, number)
+    );
     var [found] = settling(point, slip, py.truth(this.stopped) ? null : point.turning.slice(0, 2));
     if (found.wrench.force[2] <= 0.0) {
       return CLOSES;
@@ -5902,19 +6774,31 @@ class TwoClosed extends py.Record {
       var least = py.truth(patches) ? rolling_of_slip(this.pair, this.rolls) : -1.0;
       var mode = new StickingOnTwo(this.tops[0], this.rules, this.tops[1], this.rolls, least);
       var still = rests(this.state, ...found.motion.moving[2]);
-      return new Transition([], py.truth(still) ? new Resting(this.tops[0], this.rules, mode) : mode, this.state);
+      return new Transition(
+        [],
+        py.truth(still) ? new Resting(this.tops[0], this.rules, mode) : mode,
+        this.state
+      );
     }
     return new Transition([], this._turning(this.tops, this.xi[2]), this.state);
   }
   /** The mode in which the first of these contacts sticks, and the second slips so. */
   _turning(tops, zeta) {
-    return py.call(zeta >= 0.0 ? StickingAndSliding : StickingAndSlidingBack, tops[0], this.rules, tops[1], this.rolls);
+    return py.call(
+      zeta >= 0.0 ? StickingAndSliding : StickingAndSlidingBack,
+      tops[0],
+      this.rules,
+      tops[1],
+      this.rolls
+    );
   }
   /** The same where rolling has begun. */
   _rolling(rolls) {
     var least = py.mul(2.0, least_slip(this.state.momentum, this.state.velocity.slice(0, 2)));
     var change = scale(py.mul(rolls, least), directions_of(this.state.axis)[0]);
-    var state = this.state._replace({ momentum: spun_up(this.state.axis, this.state.momentum, change, this.tops[0]) });
+    var state = this.state._replace({
+      momentum: spun_up(this.state.axis, this.state.momentum, change, this.tops[0])
+    });
     var pair = ContactPair.of(state.axis, state.momentum, this.tops);
     return py.replace(this, { state: state, rolls: rolls, pair: pair });
   }
@@ -5957,7 +6841,10 @@ function ended_slips(state, tops) {
   var [one, other] = [...tops].map((top) => size(slip_of(...along_table(state), top)));
   var [least, limit] = [py.min(one, other), py.mul(ABOUT, SLOWEST_SLIP)];
   if (slip_length(tops[0].friction) !== null) {
-    return py.add(py.mul(one, one), py.mul(other, other)) <= py.mul(limit, limit) ? [true, true] : [false, false];
+    return py.add(
+      py.mul(one, one),
+      py.mul(other, other)
+    ) <= py.mul(limit, limit) ? [true, true] : [false, false];
   }
   if (least > limit) {
     return [false, false];
@@ -6026,12 +6913,17 @@ function _marks(times, here, found, before) {
   for (var [top, held] of py.zip(here.tops, found.sticks)) {
     var surface = number_of(top);
     if (!py.eq(held, py.contains(before.stuck, surface))) {
-      told.push(new Event(py.truth(held) ? EventKind.STICK : EventKind.SLIP, times[0], undefined, undefined, surface));
+      told.push(
+        new Event(py.truth(held) ? EventKind.STICK : EventKind.SLIP, times[0], undefined, undefined, surface)
+      );
     }
   }
   if (!py.eq(before.rolled, py.bool(found.rolls))) {
     var kind = py.truth(found.rolls) ? EventKind.ROLL : EventKind.HALT;
-    told = py.add(told, [...here.tops].map((top) => new Event(kind, times[1], undefined, undefined, number_of(top))));
+    told = py.add(
+      told,
+      [...here.tops].map((top) => new Event(kind, times[1], undefined, undefined, number_of(top)))
+    );
   }
   return py.tuple(py.sorted(told, py.how({ key: (event) => event.time })));
 }
@@ -6045,7 +6937,9 @@ function _left(state, here) {
   var slips = [...tops].map((top) => slip_of(...along_table(state), top));
   var number = size(slips[0]) <= size(slips[1]) ? 0 : 1;
   var [slip, speed] = [py.item(slips, number), size(py.item(slips, number))];
-  if (!(0.0 < speed && speed <= py.mul(TOGETHER, SLOWEST_SLIP)) || !py.truth(size(py.item(slips, 1 - number)))) {
+  if (
+    !(0.0 < speed && speed <= py.mul(TOGETHER, SLOWEST_SLIP)) || !py.truth(size(py.item(slips, 1 - number)))
+  ) {
     return 0.0;
   }
   var pair = ContactPair.of(state.axis, state.momentum, tops);
@@ -6086,11 +6980,17 @@ class StruckOnTwo extends py.NamedTuple {
   /** The state after these impulses. */
   after(here) {
     var momentum = add(this.state.momentum, [here[0], here[1], here[2]]);
-    return this.state._replace({ momentum: momentum, velocity: add(this.state.velocity, [here[3], here[4], here[5]]) });
+    return this.state._replace({
+      momentum: momentum,
+      velocity: add(this.state.velocity, [here[3], here[4], here[5]])
+    });
   }
   /** Change of the velocities of both contact points by these impulses, whose digits it keeps. */
   change(here) {
-    var moved = this.state._replace({ momentum: [here[0], here[1], here[2]], velocity: [here[3], here[4], here[5]] });
+    var moved = this.state._replace({
+      momentum: [here[0], here[1], here[2]],
+      velocity: [here[3], here[4], here[5]]
+    });
     var [one, other] = [...this.arms].map((arm) => contact_velocity(moved, arm, this.tops[0]));
     return [one, other];
   }
@@ -6115,7 +7015,11 @@ class StruckOnTwo extends py.NamedTuple {
     }
     var touching = py.list(py.zip(points, this.arms));
     for (var [point, arm] of py.truth(pressed) ? touching : touching.slice(0, 1)) {
-      if (py.truth(is_set_valued(top.friction)) && length([...point.slice(0, 2), 0.0]) < py.mul(OPEN, this.speed)) {
+      if (
+        py.truth(
+          is_set_valued(top.friction)
+        ) && length([...point.slice(0, 2), 0.0]) < py.mul(OPEN, this.speed)
+      ) {
         throw new SlipEnds("slip ends in an impact on two surfaces");
       }
       var traction = top.friction.traction([point[0], point[1]], omega);
@@ -6126,7 +7030,12 @@ class StruckOnTwo extends py.NamedTuple {
       responses.push(this.change(py.item(units, -1)));
     }
     var share = py.truth(pressed) ? py.max(0.0, py.div(py.neg(responses[0][1][2]), responses[1][1][2])) : 0.0;
-    var rates = [...py.zip(units[0], py.item(units, -1)).map(([a, b]) => py.add(a, py.mul(share, b))), 1.0, share, points[0][2]];
+    var rates = [
+      ...py.zip(units[0], py.item(units, -1)).map(([a, b]) => py.add(a, py.mul(share, b))),
+      1.0,
+      share,
+      points[0][2]
+    ];
     return py.tuple([...rates].map((rate) => py.div(rate, pace)));
   }
   /** The numbers after a step, and its error over the one allowed. */
@@ -6164,7 +7073,10 @@ class StruckOnTwo extends py.NamedTuple {
       if (py.contains(reached, goal) && goal(there) >= -1e-12) {
         return [there, taken + 1];
       }
-      [here, step] = [there, py.min(longest, py.mul(step, py.min(5.0, py.mul(0.9, py.pow(py.max(doubt, 1e-10), POWER)))))];
+      [here, step] = [
+        there,
+        py.min(longest, py.mul(step, py.min(5.0, py.mul(0.9, py.pow(py.max(doubt, 1e-10), POWER)))))
+      ];
     }
     throw new py.ArithmeticError("an impact on two surfaces does not come to its end");
   }
@@ -6173,13 +7085,19 @@ class StruckOnTwo extends py.NamedTuple {
     var rates = this.slope(here, true);
     var unit = py.tuple([...rates].map((rate) => py.div(rate, rates[6])));
     var [[x, y, rise], [other_x, other_y]] = this.change(unit);
-    var [approach, shift] = [this.velocities(here)[0][2], py.add(length([x, y, 0.0]), length([other_x, other_y, 0.0]))];
+    var [approach, shift] = [
+      this.velocities(here)[0][2],
+      py.add(length([x, y, 0.0]), length([other_x, other_y, 0.0]))
+    ];
     if (!(shift < py.mul(STUCK, rise))) {
       return null;
     }
     var along = (q) => {
       var work = py.mul(q, py.add(approach, py.mul(0.5 * q, rise)));
-      return [...py.zip(here.slice(0, 8), unit.slice(0, 8)).map(([a, b]) => py.add(a, py.mul(q, b))), py.add(here[8], work)];
+      return [
+        ...py.zip(here.slice(0, 8), unit.slice(0, 8)).map(([a, b]) => py.add(a, py.mul(q, b))),
+        py.add(here[8], work)
+      ];
     };
     var guess = py.div(this.speed, rise);
     while (goal(along(guess)) < 0.0) {
@@ -6203,7 +7121,10 @@ function impact_on_two(state, restitution, tops) {
   var arms = py.tuple([...tops].map((top) => contact_vector(state.axis, top.surface)));
   var points = py.tuple([...arms].map((arm) => contact_velocity(state, arm, tops[0])));
   var body = new StruckOnTwo(state, tops, [arms[0], arms[1]], [points[0], points[1]]);
-  var [compressed, steps] = body.until(py.mul([0.0], 9), (y) => py.div(py.float(body.velocities(y)[0][2]), body.speed));
+  var [compressed, steps] = body.until(
+    py.mul([0.0], 9),
+    (y) => py.div(py.float(body.velocities(y)[0][2]), body.speed)
+  );
   var end = compressed;
   if (restitution > 0.0) {
     var [full, stored] = [py.mul(1.0 + restitution, compressed[6]), py.neg(compressed[8])];
@@ -6241,13 +7162,17 @@ class OnSeveral extends FreeToFly {
   }
   /** The top with each of the other surfaces active that touch, what sinks fastest first. */
   _beside(state) {
-    var others = [...this.top.each].filter((other) => !py.eq(other, this.top) && gap(state, other) <= TOUCHING);
+    var others = [...this.top.each].filter(
+      (other) => !py.eq(other, this.top) && gap(state, other) <= TOUCHING
+    );
     return py.sorted(others, py.how({ key: (other) => py.float(gap_rate(state, other)) }));
   }
   /** Collide with another surface, and go on as the impact leaves the top. */
   touch(surface, time, state) {
     var striking = this.on(surface);
-    var faster = [...this._beside(state).slice(0, 1)].filter((other) => gap_rate(state, other) < gap_rate(state, striking.top));
+    var faster = [...this._beside(state).slice(0, 1)].filter(
+      (other) => gap_rate(state, other) < gap_rate(state, striking.top)
+    );
     return (py.truth(faster) ? this._of(faster[0]) : striking).touchdown(time, state);
   }
   /** As for one surface, unless others touch too, and open no faster than rocking that has ended. */
@@ -6304,7 +7229,9 @@ class OnSeveral extends FreeToFly {
       var wrench = contact_wrench(pair.first, slip, pair.first.turning.slice(0, 2));
       back = py.float(py.abs(pair.under([[0, wrench]])[1][2]));
     }
-    return py.float(py.max(py.mul(SLOWEST_ROCKING, py.pow(py.max(1.0, back), 0.5)), py.pow(2.0 * back * depth, 0.5)));
+    return py.float(
+      py.max(py.mul(SLOWEST_ROCKING, py.pow(py.max(1.0, back), 0.5)), py.pow(2.0 * back * depth, 0.5))
+    );
   }
   /** Whether both contacts slip, faster than where slip on two contacts ends, if it can end at all. */
   _slips(other, state) {
@@ -6373,7 +7300,14 @@ const MOST_ASPECT = 1000000.0;
 /** A spheroid: the spinning egg. */
 class Spheroid extends Shape {
   _has_a_thickness() {
-    if (!(py.div(1.0, MOST_ASPECT) <= py.div(this.along, this.across) && py.div(this.along, this.across) <= MOST_ASPECT)) {
+    if (
+      !(
+        py.div(1.0, MOST_ASPECT) <= py.div(
+          this.along,
+          this.across
+        ) && py.div(this.along, this.across) <= MOST_ASPECT
+      )
+    ) {
       var accepted = `within a factor of ${py.format(MOST_ASPECT, ".0e")} of across = ${py.format(this.across, "g")}`;
       throw new InvalidInput("along", this.along, accepted);
     }
@@ -6390,12 +7324,20 @@ Part.enter("Spheroid", Spheroid);
 class Body extends Part {
   _can_exist() {
     if (this.I3 > py.mul(2, this.I1)) {
-      throw new InvalidInput("I3", this.I3, `at most 2 I1 = ${py.format(py.mul(2, this.I1), "g")}, as for any body`);
+      throw new InvalidInput(
+        "I3",
+        this.I3,
+        `at most 2 I1 = ${py.format(py.mul(2, this.I1), "g")}, as for any body`
+      );
     }
     for (var [number, shape] of py.enumerate(this.shapes)) {
       if (py.len(this.shapes) > 1 && !py.truth(_reaches_out(number, this.shapes))) {
         var numbers = py.join(", ", [...shape].map(([name, value]) => `${py.str(name)} = ${py.str(value)}`));
-        throw new InvalidInput(`shape.${py.str(number)}`, numbers, "a surface that the others do not enclose");
+        throw new InvalidInput(
+          `shape.${py.str(number)}`,
+          numbers,
+          "a surface that the others do not enclose"
+        );
       }
     }
     return this;
@@ -6421,12 +7363,18 @@ const REACH = 1e-09;
 /** Whether a surface touches the table at some tilt; also where no computer can tell. */
 function _reaches_out(number, shapes) {
   var own = py.item(shapes, number).surface;
-  var others = py.enumerate(shapes).filter(([place, shape]) => !py.eq(place, number)).map(([place, shape]) => shape.surface);
+  var others = py.enumerate(shapes).filter(
+    ([place, shape]) => !py.eq(place, number)
+  ).map(([place, shape]) => shape.surface);
   var [low, high] = [0.0, py.math.pi];
   for (var turn = 0; turn < SEARCHES; turn += 1) {
-    var looks = py.range(py.add(LOOKS_of_bodies, 1)).map((k) => py.add(low, py.div(py.mul(py.sub(high, low), k), LOOKS_of_bodies)));
+    var looks = py.range(py.add(LOOKS_of_bodies, 1)).map(
+      (k) => py.add(low, py.div(py.mul(py.sub(high, low), k), LOOKS_of_bodies))
+    );
     try {
-      var ahead = [...py.map(py.bound(py.math, "cos"), looks)].map((c) => py.sub(own.height(c), py.max([...others].map((other) => other.height(c)))));
+      var ahead = [...py.map(py.bound(py.math, "cos"), looks)].map(
+        (c) => py.sub(own.height(c), py.max([...others].map((other) => other.height(c))))
+      );
     } catch (error) {
       if (!(error instanceof py.ArithmeticError)) throw error;
       return true;
@@ -6435,7 +7383,10 @@ function _reaches_out(number, shapes) {
       return true;
     }
     var best = ahead.indexOf(py.max(ahead));
-    [low, high] = [py.item(looks, py.max(py.sub(best, 1), 0)), py.item(looks, py.min(py.add(best, 1), LOOKS_of_bodies))];
+    [low, high] = [
+      py.item(looks, py.max(py.sub(best, 1), 0)),
+      py.item(looks, py.min(py.add(best, 1), LOOKS_of_bodies))
+    ];
   }
   return false;
 }
@@ -6479,21 +7430,93 @@ class EllipsoidalLaw extends PatchLaw {
   /** Force and torque per unit normal force; slip and drilling must not both be zero. */
   traction(slip, angular_velocity) {
     var drilling = py.mul(this.slip_length, angular_velocity[2]);
-    var factor = py.mul(py.neg(this.mu), py.pow(py.add(py.add(py.mul(slip[0], slip[0]), py.mul(slip[1], slip[1])), py.mul(drilling, drilling)), -0.5));
+    var factor = py.mul(
+      py.neg(this.mu),
+      py.pow(
+        py.add(py.add(py.mul(slip[0], slip[0]), py.mul(slip[1], slip[1])), py.mul(drilling, drilling)),
+        -0.5
+      )
+    );
     var torque = py.mul(py.mul(factor, this.slip_length), drilling);
     return new Traction([py.mul(factor, slip[0]), py.mul(factor, slip[1])], [0.0, 0.0, torque]);
   }
   /** (mu N)^2 - T^2 - (M / rho)^2, N^2. */
   reserve(normal, force, drilling) {
     var [limit, torque] = [py.mul(this.mu, normal), py.div(drilling, this.slip_length)];
-    return py.sub(py.sub(py.sub(py.mul(limit, limit), py.mul(force[0], force[0])), py.mul(force[1], force[1])), py.mul(torque, torque));
+    return py.sub(
+      py.sub(py.sub(py.mul(limit, limit), py.mul(force[0], force[0])), py.mul(force[1], force[1])),
+      py.mul(torque, torque)
+    );
   }
 }
 
 // tippetop.mechanics.contensou_hertz
-const FORCE = [[1.0, 2.0379589900224446, 1.7454503606464322, 0.748871602371356, 0.1272777587571475, -0.0027191903426678006, -0.0016068785745065434, -2.585824983858782e-05], [1.0, 2.437958990022489, 2.0920625280814025, 0.7580271532705276, 0.10811738333537868, 0.004218755819955418, 0.0, 0.0]];
-const TORQUE = [[0.4, 0.822105487763007, 0.5189122287774408, 0.08174030474884943, -0.007570333630208161, 0.004741971472147535, 0.001852985148541204, 8.943122718983565e-05], [1.0, 2.7695494336932254, 2.8469587388677655, 1.3323282422825315, 0.2778032550943552, 0.020859716514356943, 0.00025020282491132825, 0.0]];
-const LIMIT = [[0.8835729338221295, 3.889778559163314, 5.573221706650525, 3.0420944615186203, 0.7966720357548377, 0.26696888590798373, 0.05714222546990528, 0.0010481676273393747, 0.00039135703969367353], [1.0, 4.402328783813161, 6.1825966830889465, 2.8926555398109404, 0.12101121238237003, -0.09382811272248932, 0.006126226581420139]];
+const FORCE = [
+  [
+    1.0,
+    2.0379589900224446,
+    1.7454503606464322,
+    0.748871602371356,
+    0.1272777587571475,
+    -0.0027191903426678006,
+    -0.0016068785745065434,
+    -2.585824983858782e-05
+  ],
+  [
+    1.0,
+    2.437958990022489,
+    2.0920625280814025,
+    0.7580271532705276,
+    0.10811738333537868,
+    0.004218755819955418,
+    0.0,
+    0.0
+  ]
+];
+const TORQUE = [
+  [
+    0.4,
+    0.822105487763007,
+    0.5189122287774408,
+    0.08174030474884943,
+    -0.007570333630208161,
+    0.004741971472147535,
+    0.001852985148541204,
+    8.943122718983565e-05
+  ],
+  [
+    1.0,
+    2.7695494336932254,
+    2.8469587388677655,
+    1.3323282422825315,
+    0.2778032550943552,
+    0.020859716514356943,
+    0.00025020282491132825,
+    0.0
+  ]
+];
+const LIMIT = [
+  [
+    0.8835729338221295,
+    3.889778559163314,
+    5.573221706650525,
+    3.0420944615186203,
+    0.7966720357548377,
+    0.26696888590798373,
+    0.05714222546990528,
+    0.0010481676273393747,
+    0.00039135703969367353
+  ],
+  [
+    1.0,
+    4.402328783813161,
+    6.1825966830889465,
+    2.8926555398109404,
+    0.12101121238237003,
+    -0.09382811272248932,
+    0.006126226581420139
+  ]
+];
 const NEAR_BRANCH = 1e-20;
 const EDGE = 1e-05;
 const BEYOND_of_contensou_hertz = 1e-20;
@@ -6517,8 +7540,17 @@ class HertzDrillingLaw extends HertzPiece {
   shares(square, drilling) {
     var rate = py.pow(py.add(py.mul(drilling, drilling), py.mul(BEYOND_of_contensou_hertz, square)), -0.5);
     var kappa2 = py.mul(py.mul(square, rate), rate);
-    var force = py.mul(py.mul(py.mul(py.neg(this.mu), py.div(py.mul(3.0, PI), 32.0)), py.sub(4.0, kappa2)), rate);
-    var torque = py.mul(py.mul(py.mul(py.neg(this.mu), py.div(py.mul(3.0, PI), 16.0)), py.sub(1.0, py.mul(kappa2, py.sub(1.0, py.mul(0.375, kappa2))))), rate);
+    var force = py.mul(
+      py.mul(py.mul(py.neg(this.mu), py.div(py.mul(3.0, PI), 32.0)), py.sub(4.0, kappa2)),
+      rate
+    );
+    var torque = py.mul(
+      py.mul(
+        py.mul(py.neg(this.mu), py.div(py.mul(3.0, PI), 16.0)),
+        py.sub(1.0, py.mul(kappa2, py.sub(1.0, py.mul(0.375, kappa2))))
+      ),
+      rate
+    );
     return [force, py.mul(py.mul(torque, drilling), this.patch_radius)];
   }
   /** (mu N F)^2 - T^2 where the limit surface has this drilling torque, N^2. */
@@ -6528,7 +7560,10 @@ class HertzDrillingLaw extends HertzPiece {
     var under = py.sub(py.mul(1.5, py.pow(py.mul(torque, torque), 0.5)), 0.5);
     var kappa2 = py.mul(4.0 / 3.0, py.sub(1.0, py.pow(py.mul(under, under), 0.25)));
     var size = py.mul(py.mul(py.div(py.mul(3.0, PI), 32.0), py.sub(4.0, kappa2)), limit);
-    return py.sub(py.sub(py.mul(py.mul(size, size), kappa2), py.mul(force[0], force[0])), py.mul(force[1], force[1]));
+    return py.sub(
+      py.sub(py.mul(py.mul(size, size), kappa2), py.mul(force[0], force[0])),
+      py.mul(force[1], force[1])
+    );
   }
   /** Positive as long as this piece of the limit surface is followed, (N m)^2. */
   limit_guard(normal, drilling) {
@@ -6551,11 +7586,17 @@ class HertzSlidingLaw extends HertzPiece {
     square = py.add(square, py.mul(py.mul(BEYOND_of_contensou_hertz, drilling), drilling));
     var excess = py.sub(square, py.mul(drilling, drilling));
     var speed = py.pow(square, 0.5);
-    var tangent = py.div(drilling, py.add(speed, py.pow(py.add(py.mul(excess, excess), py.mul(py.mul(NEAR_BRANCH, square), square)), 0.25)));
+    var tangent = py.div(
+      drilling,
+      py.add(speed, py.pow(py.add(py.mul(excess, excess), py.mul(py.mul(NEAR_BRANCH, square), square)), 0.25))
+    );
     var w = py.mul(tangent, tangent);
     var w2 = py.mul(w, w);
     var powers = [w, w2, py.mul(w2, w), py.mul(w2, w2)];
-    var force = py.div(py.mul(py.neg(this.mu), polynomial(FORCE[0], powers)), py.mul(polynomial(FORCE[1], powers), speed));
+    var force = py.div(
+      py.mul(py.neg(this.mu), polynomial(FORCE[0], powers)),
+      py.mul(polynomial(FORCE[1], powers), speed)
+    );
     var grip = py.div(polynomial(TORQUE[0], powers), polynomial(TORQUE[1], powers));
     return [force, py.mul(py.mul(py.mul(py.neg(this.mu), this.patch_radius), tangent), grip)];
   }
@@ -6622,7 +7663,10 @@ class HertzBranch extends py.NamedTuple {
   /** Positive as long as this branch is followed, up to `EDGE` or down to half of it, m^2/s^2. */
   branch_guard(slip, angular_velocity) {
     var drilling = py.mul(this.patch_radius, angular_velocity[2]);
-    return py.mul(py.sub(py.mul(2.0, this.drills), 1.0), prevalence(slip, drilling, py.mul(py.mul(0.5, EDGE), py.add(1.0, this.drills))));
+    return py.mul(
+      py.sub(py.mul(2.0, this.drills), 1.0),
+      prevalence(slip, drilling, py.mul(py.mul(0.5, EDGE), py.add(1.0, this.drills)))
+    );
   }
   /** The law where this one does not hold. */
   other_branch() {
@@ -6647,7 +7691,9 @@ class HertzLaw extends PatchLaw {
   }
   /** The law that holds here; of floats. */
   branch(slip, angular_velocity) {
-    return py.truth(this.drills(slip, angular_velocity)) ? new HertzDrillingLaw(...this) : new HertzSlidingLaw(...this);
+    return py.truth(
+      this.drills(slip, angular_velocity)
+    ) ? new HertzDrillingLaw(...this) : new HertzSlidingLaw(...this);
   }
   /** The branch that holds here, in plain operators. */
   numbered_branch(slip, angular_velocity) {
@@ -6665,7 +7711,10 @@ class HertzLaw extends PatchLaw {
   /** (mu N F)^2 - T^2 where the limit surface has this drilling torque, N^2; else less than zero. */
   reserve(normal, force, drilling) {
     if (normal === 0.0) {
-      return py.sub(py.sub(py.neg(py.pow(force[0], 2)), py.pow(force[1], 2)), py.pow(py.div(drilling, this.patch_radius), 2));
+      return py.sub(
+        py.sub(py.neg(py.pow(force[0], 2)), py.pow(force[1], 2)),
+        py.pow(py.div(drilling, this.patch_radius), 2)
+      );
     }
     return this.limit_branch(normal, drilling).reserve(normal, force, drilling);
   }
@@ -6673,7 +7722,10 @@ class HertzLaw extends PatchLaw {
 
 /** (1 + edge) (R w)^2 - v^2, of the slip v and drilling R w: positive where drilling prevails, m^2/s^2. */
 function prevalence(slip, drilling, edge) {
-  return py.sub(py.sub(py.mul(py.mul(py.add(1.0, edge), drilling), drilling), py.mul(slip[0], slip[0])), py.mul(slip[1], slip[1]));
+  return py.sub(
+    py.sub(py.mul(py.mul(py.add(1.0, edge), drilling), drilling), py.mul(slip[0], slip[0])),
+    py.mul(slip[1], slip[1])
+  );
 }
 
 /** M^2 - (1 - edge) (mu N R T(1))^2, (N m)^2: positive where drilling torque M is on drilling's piece. */
@@ -6692,7 +7744,10 @@ function resisting(law, slip, angular_velocity) {
 /** Value of a polynomial of degree 7, given its coefficients and four powers. */
 function polynomial(c, powers) {
   var [x, x2, x3, x4] = powers;
-  return py.add(py.add(py.add(py.add(c[0], py.mul(c[1], x)), py.mul(c[2], x2)), py.mul(c[3], x3)), py.mul(py.add(py.add(py.add(c[4], py.mul(c[5], x)), py.mul(c[6], x2)), py.mul(c[7], x3)), x4));
+  return py.add(
+    py.add(py.add(py.add(c[0], py.mul(c[1], x)), py.mul(c[2], x2)), py.mul(c[3], x3)),
+    py.mul(py.add(py.add(py.add(c[4], py.mul(c[5], x)), py.mul(c[6], x2)), py.mul(c[7], x3)), x4)
+  );
 }
 
 // tippetop.frictions
@@ -6783,13 +7838,19 @@ function precession_rate(axis, momentum, top) {
 
 /** Rate of the tilt theta' = (n_x n_x' + n_y n_y') / (sin(theta) cos(theta)) = L.Y / I1, rad/s. */
 function tilt_rate(axis, momentum, top) {
-  return py.div(py.sub(py.mul(momentum[1], axis[0]), py.mul(momentum[0], axis[1])), py.mul(axis_sine(axis), top.transverse_inertia));
+  return py.div(
+    py.sub(py.mul(momentum[1], axis[0]), py.mul(momentum[0], axis[1])),
+    py.mul(axis_sine(axis), top.transverse_inertia)
+  );
 }
 
 /** Slip velocity along X, into which the axis leans, and Y = z x X, m/s. */
 function slip_along_tilt(axis, slip) {
   var sine = axis_sine(axis);
-  return [py.div(py.add(py.mul(slip[0], axis[0]), py.mul(slip[1], axis[1])), sine), py.div(py.sub(py.mul(slip[1], axis[0]), py.mul(slip[0], axis[1])), sine)];
+  return [
+    py.div(py.add(py.mul(slip[0], axis[0]), py.mul(slip[1], axis[1])), sine),
+    py.div(py.sub(py.mul(slip[1], axis[0]), py.mul(slip[0], axis[1])), sine)
+  ];
 }
 
 /** Sine and cosine with sin(pi) = 0, so that a launch at tilt pi is exactly vertical. */
@@ -6816,15 +7877,27 @@ function state_from_angles(angles, top, functions) {
   var axis = [py.mul(sin_tilt, cos_azimuth), py.mul(sin_tilt, sin_azimuth), cos_tilt];
   var second = [py.neg(sin_azimuth), cos_azimuth, 0.0];
   var first = cross(second, axis);
-  var omega = add(add(scale(py.mul(py.neg(angles.precession), sin_tilt), first), scale(angles.tilt_rate, second)), scale(angles.spin, axis));
-  var momentum = add(scale(top.transverse_inertia, omega), scale(py.mul(py.sub(top.axial_inertia, top.transverse_inertia), angles.spin), axis));
+  var omega = add(
+    add(scale(py.mul(py.neg(angles.precession), sin_tilt), first), scale(angles.tilt_rate, second)),
+    scale(angles.spin, axis)
+  );
+  var momentum = add(
+    scale(top.transverse_inertia, omega),
+    scale(py.mul(py.sub(top.axial_inertia, top.transverse_inertia), angles.spin), axis)
+  );
   var swing = cross(omega, contact_vector(axis, top.surface));
-  var velocity = [py.sub(py.sub(py.mul(angles.slip[0], cos_azimuth), py.mul(angles.slip[1], sin_azimuth)), swing[0]), py.sub(py.add(py.mul(angles.slip[0], sin_azimuth), py.mul(angles.slip[1], cos_azimuth)), swing[1])];
+  var velocity = [
+    py.sub(py.sub(py.mul(angles.slip[0], cos_azimuth), py.mul(angles.slip[1], sin_azimuth)), swing[0]),
+    py.sub(py.add(py.mul(angles.slip[0], sin_azimuth), py.mul(angles.slip[1], cos_azimuth)), swing[1])
+  ];
   return new SlidingState(axis, momentum, velocity);
 }
 
 // tippetop.problem
-const LEANING = ["along the direction into which the axis leans", "90 degrees to the left of the direction into which the axis leans"];
+const LEANING = [
+  "along the direction into which the axis leans",
+  "90 degrees to the left of the direction into which the axis leans"
+];
 
 /** How the top is set on the table. */
 class Launch extends Part {
@@ -6846,7 +7919,9 @@ Part.enter("Contact", Contact);
 class Problem extends Part {
   _contact_is_possible() {
     this._refuse_what_does_not_fit();
-    if (!(py.truth(py.math.isfinite(this._resistance())) && py.truth(py.math.isfinite(this._largest_square())))) {
+    if (
+      !(py.truth(py.math.isfinite(this._resistance())) && py.truth(py.math.isfinite(this._largest_square())))
+    ) {
       throw py.or(this._lying_flat(), () => this._out_of_reach());
     }
     if (this.contact.liftoff === "fly") {
@@ -6862,7 +7937,11 @@ class Problem extends Part {
       throw new InvalidInput(field, value, "a launch on the table, unless contact.liftoff is 'fly'");
     }
     if (!(this._resistance() > 0)) {
-      throw new InvalidInput("launch.slip", this.launch.slip, "less slip or less friction: here any push of the table would drag the body further into it (Painleve's paradox), unless contact.liftoff is 'fly'");
+      throw new InvalidInput(
+        "launch.slip",
+        this.launch.slip,
+        "less slip or less friction: here any push of the table would drag the body further into it (Painleve's paradox), unless contact.liftoff is 'fly'"
+      );
     }
     return this;
   }
@@ -6870,10 +7949,18 @@ class Problem extends Part {
   _refuse_what_does_not_fit() {
     var size = py.max(sizes(this.body.surface));
     if (!py.truth(this.friction.fits(size))) {
-      throw new InvalidInput("friction.patch_radius", py.getattr(this.friction, "patch_radius", MISSING), `from ${py.str(_inside(py.mul(LEAST_PATCH, size), 1.0))} to ${py.str(_inside(size, -1.0))} on this body; a smaller patch is a point, for which there is coulomb`);
+      throw new InvalidInput(
+        "friction.patch_radius",
+        py.getattr(this.friction, "patch_radius", MISSING),
+        `from ${py.str(_inside(py.mul(LEAST_PATCH, size), 1.0))} to ${py.str(_inside(size, -1.0))} on this body; a smaller patch is a point, for which there is coulomb`
+      );
     }
     if (this.rolling_resistance > size) {
-      throw new InvalidInput("rolling_resistance", this.rolling_resistance, `from 0 to ${py.str(_inside(size, -1.0))} on this body, within which the table presses`);
+      throw new InvalidInput(
+        "rolling_resistance",
+        this.rolling_resistance,
+        `from 0 to ${py.str(_inside(size, -1.0))} on this body, within which the table presses`
+      );
     }
   }
   /** The resistance of the contact at launch; nan where its arithmetic breaks down. */
@@ -6896,7 +7983,11 @@ class Problem extends Part {
       var units = natural_units(this.top);
       var start = natural_state(this.start(), units);
       var largest = py.float(py.max(py.map(py.abs, [...start.momentum, ...start.velocity, start.height])));
-      return py.pow(largest, 2) * py.max(1.0, py.float(units.energy), py.float(py.mul(this.body.mass, this.gravity)));
+      return py.pow(largest, 2) * py.max(
+        1.0,
+        py.float(units.energy),
+        py.float(py.mul(this.body.mass, this.gravity))
+      );
     } catch (error) {
       if (!(error instanceof py.ArithmeticError)) throw error;
       return py.math.nan;
@@ -6918,9 +8009,14 @@ class Problem extends Part {
   /** The refusal of numbers with which no computer can reckon, about the one furthest from 1. */
   _out_of_reach() {
     var numbers = new py.Dict([...numbers_of(this.model_dump())].filter(([name, value]) => py.truth(value)));
-    var distance = new py.Dict([...numbers.items()].map(([name, value]) => [name, py.abs(py.math.log(py.abs(value)))]));
+    var distance = new py.Dict(
+      [...numbers.items()].map(([name, value]) => [name, py.abs(py.math.log(py.abs(value)))])
+    );
     var worst = py.max(distance, py.how({ key: py.bound(distance, "__getitem__") }));
-    var others = py.sub(py.sum([...distance.values()].map((other) => py.mul(2, other) > py.item(distance, worst))), 1);
+    var others = py.sub(
+      py.sum([...distance.values()].map((other) => py.mul(2, other) > py.item(distance, worst))),
+      1
+    );
     return new InvalidInput(worst, py.item(numbers, worst), "a number whose square is a number too", others);
   }
   /** The problem's numbers as the mechanics takes them, SI. */
@@ -6949,9 +8045,19 @@ class Problem extends Part {
   /** The state at launch, SI; with sine and cosine for whatever the fields are, such as arrays. */
   start(functions = py.math) {
     var [launch, top] = [this.launch, this.standing(functions)];
-    var angles = new Angles(launch.tilt, launch.tilt_rate, launch.azimuth, launch.precession, launch.spin, launch.slip);
+    var angles = new Angles(
+      launch.tilt,
+      launch.tilt_rate,
+      launch.azimuth,
+      launch.precession,
+      launch.spin,
+      launch.slip
+    );
     var touching = on_table(state_from_angles(angles, top, new PoleExact(functions)), top);
-    return touching._replace({ height: py.add(touching.height, launch.gap), velocity: launch.velocity === null ? touching.velocity : launch.velocity });
+    return touching._replace({
+      height: py.add(touching.height, launch.gap),
+      velocity: launch.velocity === null ? touching.velocity : launch.velocity
+    });
   }
 }
 Part.enter("Problem", Problem);
@@ -6983,7 +8089,17 @@ const STEP_LIMIT = 500000;
 
 /** A launch under way; iterate over `segments` to follow it. */
 class Trajectory extends py.Record {
-  constructor(start, end, integrator, limit = PHASE_LIMIT, step_limit = STEP_LIMIT, time = 0.0, outcome = null, detail = "", events = py.list()) {
+  constructor(
+    start,
+    end,
+    integrator,
+    limit = PHASE_LIMIT,
+    step_limit = STEP_LIMIT,
+    time = 0.0,
+    outcome = null,
+    detail = "",
+    events = py.list()
+  ) {
     super();
     this.start = start;
     this.end = end;
@@ -7041,7 +8157,10 @@ class Trajectory extends py.Record {
     return transition;
   }
 }
-py.fields(Trajectory, ["start", "end", "integrator", "limit", "step_limit", "time", "outcome", "detail", "events"]);
+py.fields(
+  Trajectory,
+  ["start", "end", "integrator", "limit", "step_limit", "time", "outcome", "detail", "events"]
+);
 
 // tippetop.theory.requirements
 
@@ -7056,7 +8175,11 @@ function require_one_surface(top) {
 function require_sphere(top) {
   require_one_surface(top);
   if (!py.truth(top.surface.spherical)) {
-    throw new InvalidInput("body.shape", top.surface, "an eccentric sphere; Jellett's integral holds for no other");
+    throw new InvalidInput(
+      "body.shape",
+      top.surface,
+      "an eccentric sphere; Jellett's integral holds for no other"
+    );
   }
 }
 
@@ -7064,10 +8187,18 @@ function require_sphere(top) {
 function require_jellett(top) {
   require_sphere(top);
   if (py.isinstance(top.friction, RollingResistance)) {
-    throw new InvalidInput("rolling_resistance", top.friction.length, "0: with it Jellett's integral is not conserved");
+    throw new InvalidInput(
+      "rolling_resistance",
+      top.friction.length,
+      "0: with it Jellett's integral is not conserved"
+    );
   }
   if (!py.truth(top.conserves_jellett)) {
-    throw new InvalidInput("friction", top.friction, "friction without torque, which conserves Jellett's integral");
+    throw new InvalidInput(
+      "friction",
+      top.friction,
+      "friction without torque, which conserves Jellett's integral"
+    );
   }
 }
 
@@ -7075,13 +8206,25 @@ function require_jellett(top) {
 function require_creep(top) {
   require_one_surface(top);
   if (py.truth(py.hasattr(top.surface, "face_guard"))) {
-    throw new InvalidInput("body.shape", top.surface, "a shape that touches in one point when its axis is vertical");
+    throw new InvalidInput(
+      "body.shape",
+      top.surface,
+      "a shape that touches in one point when its axis is vertical"
+    );
   }
   if (py.isinstance(top.friction, RollingResistance)) {
-    throw new InvalidInput("rolling_resistance", top.friction.length, "0: with it a spin about the vertical has no linear motion");
+    throw new InvalidInput(
+      "rolling_resistance",
+      top.friction.length,
+      "0: with it a spin about the vertical has no linear motion"
+    );
   }
   if (py.truth(is_set_valued(top.friction)) && slip_dimension(top.friction) === 2) {
-    throw new InvalidInput("friction", top.friction, "viscous, regularized or Contensou friction, by which slip never ends while the top spins; on this one it sticks, and may roll for ever in a state that is not stable");
+    throw new InvalidInput(
+      "friction",
+      top.friction,
+      "viscous, regularized or Contensou friction, by which slip never ends while the top spins; on this one it sticks, and may roll for ever in a state that is not stable"
+    );
   }
 }
 
@@ -7105,7 +8248,12 @@ function roots_between(function_, low, high, noise) {
     while (py.truth(series) && py.abs(py.item(series, -1)) <= least) {
       py.pop(series);
     }
-    found = py.add(found, [...roots_of(series)].map((place) => py.add(start, py.mul(py.mul(0.5, py.sub(end, start)), py.add(1.0, place)))));
+    found = py.add(
+      found,
+      [...roots_of(series)].map(
+        (place) => py.add(start, py.mul(py.mul(0.5, py.sub(end, start)), py.add(1.0, place)))
+      )
+    );
   }
   return found;
 }
@@ -7117,7 +8265,9 @@ function series_of(function_, low, high) {
   var values = [...angles].map((angle) => function_(low + 0.5 * (high - low) * (1.0 + py.math.cos(angle))));
   var found = [];
   for (var term = 0; term < count; term += 1) {
-    var total = py.sum(py.zip(values, angles).map(([value, angle]) => py.mul(value, py.math.cos(py.mul(term, angle)))));
+    var total = py.sum(
+      py.zip(values, angles).map(([value, angle]) => py.mul(value, py.math.cos(py.mul(term, angle))))
+    );
     found.push(py.mul(py.div(py.truth(term) ? 2.0 : 1.0, count), total));
   }
   return found;
@@ -7167,7 +8317,10 @@ function largest(series) {
 /** What a steady state looks like. */
 class SteadyKind extends py.Enum {
 }
-py.members(SteadyKind, { UPRIGHT: "upright", INVERTED: "inverted", PRECESSION: "precession", LEVEL: "level" });
+py.members(
+  SteadyKind,
+  { UPRIGHT: "upright", INVERTED: "inverted", PRECESSION: "precession", LEVEL: "level" }
+);
 const VERTICAL_SPINS = [SteadyKind.UPRIGHT, SteadyKind.INVERTED];
 
 /** A motion that friction leaves alone. */
@@ -7247,14 +8400,23 @@ function vertical_spin(kind, top, spin) {
 /** The spin with horizontal axis at this precession, rad/s, of a shape that has one. */
 function level_spin(top, precession) {
   var whole = _at_rest([1.0, 0.0, 0.0], [0.0, 0.0, py.mul(top.transverse_inertia, precession)], top);
-  return new SteadyState(SteadyKind.LEVEL, py.div(py.math.pi, 2), precession, 0.0, jellett(whole, top), energy(whole, top));
+  return new SteadyState(
+    SteadyKind.LEVEL,
+    py.div(py.math.pi, 2),
+    precession,
+    0.0,
+    jellett(whole, top),
+    energy(whole, top)
+  );
 }
 
 /** All steady states with this Jellett's integral, by increasing tilt. */
 function steady_states(top, jellett) {
   var units = [...VERTICAL_SPINS].map((kind) => vertical_spin(kind, top, 1.0));
   var least = py.mul(py.mul(NO_JELLETT, top.axial_inertia), top.surface.size);
-  var vertical = [...units].filter((unit) => py.abs(unit.jellett) > least).map((unit) => vertical_spin(unit.kind, top, py.div(jellett, unit.jellett)));
+  var vertical = [...units].filter((unit) => py.abs(unit.jellett) > least).map(
+    (unit) => vertical_spin(unit.kind, top, py.div(jellett, unit.jellett))
+  );
   var between = [..._precession_tilts(top, jellett)].map((tilt) => precession_at(tilt, jellett, top));
   if (py.truth(has_level_spin(top))) {
     between.push(level_spin(top, py.div(jellett, level_spin(top, 1.0).jellett)));
@@ -7274,7 +8436,11 @@ function jellett_of_launch(problem) {
   for (var name of ["spin", "tilt_rate", "precession"]) {
     var rate = py.getattr(problem.launch, name);
     if (py.abs(rate) > fastest) {
-      throw new InvalidInput(`launch.${py.str(name)}`, rate, `at most ${py.format(fastest, ".3g")} rad/s, for the theory to tell`);
+      throw new InvalidInput(
+        `launch.${py.str(name)}`,
+        rate,
+        `at most ${py.format(fastest, ".3g")} rad/s, for the theory to tell`
+      );
     }
   }
   return py.float(jellett(problem.start(), problem.top));
@@ -7286,7 +8452,10 @@ function least_energy(tilt, jellett, top, functions) {
   var potential = energy(_at_rest(axis, [0.0, 0.0, 0.0], top), top);
   var arm = contact_vector(axis, top.surface);
   var along = dot(arm, axis);
-  var inertia = py.add(py.mul(top.transverse_inertia, py.sub(dot(arm, arm), py.pow(along, 2))), py.mul(top.axial_inertia, py.pow(along, 2)));
+  var inertia = py.add(
+    py.mul(top.transverse_inertia, py.sub(dot(arm, arm), py.pow(along, 2))),
+    py.mul(top.axial_inertia, py.pow(along, 2))
+  );
   return py.add(potential, py.div(py.mul(0.5, py.pow(jellett, 2)), inertia));
 }
 
@@ -7302,7 +8471,14 @@ function precession_at(tilt, jellett, top) {
   var rate = py.div(jellett, rolling.jellett);
   var whole = _at_rest(rolling.axis, scale(rate, rolling.momentum), top);
   var spin = py.mul(rate, rolling_spin(rolling.axis[2], top.surface));
-  return new SteadyState(SteadyKind.PRECESSION, tilt, py.float(rate), py.float(spin), jellett, py.float(energy(whole, top)));
+  return new SteadyState(
+    SteadyKind.PRECESSION,
+    tilt,
+    py.float(rate),
+    py.float(spin),
+    jellett,
+    py.float(energy(whole, top))
+  );
 }
 const FASTEST = 100000000.0;
 
@@ -7310,7 +8486,10 @@ const FASTEST = 100000000.0;
 function _precession_tilts(top, jellett) {
   var [scaled, square] = [natural(top), py.pow(py.div(jellett, py.float(natural_units(top).jellett)), 2)];
   var balance = (c) => {
-    var supported = py.mul(weight_moment(c, scaled), py.pow(rolling_precession(py.math.acos(c), scaled, py.math).jellett, 2));
+    var supported = py.mul(
+      weight_moment(c, scaled),
+      py.pow(rolling_precession(py.math.acos(c), scaled, py.math).jellett, 2)
+    );
     return py.float(py.div(py.sub(py.mul(square, gyroscopic_reaction(c, scaled)), supported), 1.0 + square));
   };
   var inertias = py.add(scaled.transverse_inertia, scaled.axial_inertia);
@@ -7396,7 +8575,10 @@ function tilts_held(hull, tilt) {
 
 /** The tilts next to one, rad, at which another surface touches beside the active one, and its number. */
 function touching_tilts(hull, tilt) {
-  var tilts = py.sorted([...py.range(py.add(TILTS, 1)).map((k) => py.div(py.mul(py.math.pi, k), TILTS)), tilt]);
+  var tilts = py.sorted([
+    ...py.range(py.add(TILTS, 1)).map((k) => py.div(py.mul(py.math.pi, k), TILTS)),
+    tilt
+  ]);
   var found = new py.Dict([]);
   for (var [number, other] of py.enumerate(hull.each)) {
     if (!py.eq(number, hull.active)) {
@@ -7404,7 +8586,12 @@ function touching_tilts(hull, tilt) {
     }
   }
   var [below, above] = [[...found].filter((at) => at <= tilt), [...found].filter((at) => at > tilt)];
-  return new py.Dict([...py.slice(py.sorted(below), -1, null, null), ...py.sorted(above).slice(0, 1)].map((at) => [at, py.item(found, at)]));
+  return new py.Dict(
+    [
+      ...py.slice(py.sorted(below), -1, null, null),
+      ...py.sorted(above).slice(0, 1)
+    ].map((at) => [at, py.item(found, at)])
+  );
 }
 
 /** The tilts at which two surfaces touch together, rad, where they change places between some others. */
@@ -7412,14 +8599,18 @@ function _meetings(one, other, tilts) {
   var gap = (at) => {
     return py.float(py.sub(one.height(py.math.cos(at)), other.height(py.math.cos(at))));
   };
-  return [...py.pairwise(tilts)].filter(([low, high]) => !py.eq(gap(low) < 0.0, gap(high) < 0.0)).map(([low, high]) => crossing(gap, low, high));
+  return [...py.pairwise(tilts)].filter(
+    ([low, high]) => !py.eq(gap(low) < 0.0, gap(high) < 0.0)
+  ).map(([low, high]) => crossing(gap, low, high));
 }
 const TILTS = 200;
 
 /** Those of all steady states with one Jellett's integral, by their tilts, that are minima of the energy. */
 function stable_by_energy(states) {
   var energies = [py.math.inf, ...[...states].map((state) => state.energy), py.math.inf];
-  var minima = py.zip(states, energies, energies.slice(2)).filter(([state, before, after]) => before > state.energy && state.energy < after).map(([state, before, after]) => state);
+  var minima = py.zip(states, energies, energies.slice(2)).filter(
+    ([state, before, after]) => before > state.energy && state.energy < after
+  ).map(([state, before, after]) => state);
   return py.or(minima, () => [py.min(states, py.how({ key: (state) => state.energy }))]);
 }
 const ROUNDING_of_prediction = 1e-12;
@@ -7431,7 +8622,9 @@ function _by_energy(states) {
 /** Tilts between the nearest barriers on both sides: steady states with more energy than is available. */
 function _reach(states, tilt, available) {
   var rounding = py.mul(ROUNDING_of_prediction, py.max([...states].map((state) => py.abs(state.energy))));
-  var barriers = [...states].filter((state) => state.energy > py.add(available, rounding)).map((state) => state.tilt);
+  var barriers = [...states].filter(
+    (state) => state.energy > py.add(available, rounding)
+  ).map((state) => state.tilt);
   var below = [...barriers].filter((barrier) => barrier <= tilt);
   var above = [...barriers].filter((barrier) => barrier >= tilt);
   return [py.max(below, py.how({ default: 0.0 })), py.min(above, py.how({ default: py.math.pi }))];
@@ -7472,7 +8665,10 @@ function lambda_down(top) {
 /** Axial spin at which a vertical spin changes stability, by formula, rad/s; inf where it never does. */
 function critical_spin(kind, top) {
   var critical = critical_jellett(kind, top);
-  return py.truth(py.math.isinf(critical)) ? critical : py.div(critical, py.abs(vertical_spin(kind, top, 1.0).jellett));
+  return py.truth(py.math.isinf(critical)) ? critical : py.div(
+    critical,
+    py.abs(vertical_spin(kind, top, 1.0).jellett)
+  );
 }
 
 /** Critical spins of a launch: with its tilt and its rates, and any axial spin. */
@@ -7482,7 +8678,9 @@ function critical_spins(problem) {
     return new CriticalSpins(...[...VERTICAL_SPINS].map((kind) => critical_spin(kind, problem.top)));
   }
   var line = jellett_line(problem);
-  return new CriticalSpins(...[...VERTICAL_SPINS].map((kind) => line.spin_at(critical_jellett(kind, problem.top))));
+  return new CriticalSpins(
+    ...[...VERTICAL_SPINS].map((kind) => line.spin_at(critical_jellett(kind, problem.top)))
+  );
 }
 
 /** Jellett's integral of a launch as a function of its spin. */
@@ -7509,7 +8707,14 @@ py.fields(JellettLine, ["at_rest", "per_spin"]);
 /** Jellett's integral over the spin of a launch whose other numbers are kept. */
 function jellett_line(problem) {
   var still = new py.Dict([["spin", 0.0], ["tilt_rate", 0.0], ["precession", 0.0]]);
-  var [at_rest, per_spin] = [new py.Dict([["spin", 0.0]]), new py.Dict([...still.items(), ["spin", 1.0]])].map((changes) => jellett_of_launch(problem.model_copy(new py.Dict([["launch", problem.launch.model_copy(changes)]]))));
+  var [at_rest, per_spin] = [
+    new py.Dict([["spin", 0.0]]),
+    new py.Dict([...still.items(), ["spin", 1.0]])
+  ].map(
+    (changes) => jellett_of_launch(
+      problem.model_copy(new py.Dict([["launch", problem.launch.model_copy(changes)]]))
+    )
+  );
   return new JellettLine(at_rest, per_spin);
 }
 
@@ -7535,7 +8740,26 @@ class Group extends py.Enum {
   }
 }
 py.members(Group, { IA: "Ia", IB: "Ib", IIA: "IIa", IIB: "IIb", IIC: "IIc", III: "III" });
-const _DESCRIPTIONS = new py.Dict([[Group.IA, "never inverts: the upright spin is stable at any spin; from some spin on, a tilted precession or the inverted spin is stable beside it"], [Group.IB, "never inverts: the upright spin is stable at any spin; from some spin on, the inverted spin is stable beside it, and no precession is"], [Group.IIA, "inverts completely, and gradually: one steady state is stable at every spin"], [Group.IIB, "inverts completely, with a jump: over a range of spins, the upright spin and another state are both stable"], [Group.IIC, "inverts completely, in one jump: no precession is stable, and over a range of spins both vertical spins are"], [Group.III, "stops part-way: it leaves the upright spin, but the inverted spin is never stable"]]);
+const _DESCRIPTIONS = new py.Dict([
+  [
+    Group.IA,
+    "never inverts: the upright spin is stable at any spin; from some spin on, a tilted precession or the inverted spin is stable beside it"
+  ],
+  [
+    Group.IB,
+    "never inverts: the upright spin is stable at any spin; from some spin on, the inverted spin is stable beside it, and no precession is"
+  ],
+  [Group.IIA, "inverts completely, and gradually: one steady state is stable at every spin"],
+  [
+    Group.IIB,
+    "inverts completely, with a jump: over a range of spins, the upright spin and another state are both stable"
+  ],
+  [
+    Group.IIC,
+    "inverts completely, in one jump: no precession is stable, and over a range of spins both vertical spins are"
+  ],
+  [Group.III, "stops part-way: it leaves the upright spin, but the inverted spin is never stable"]
+]);
 
 /** Where the Jellett's integral of the steady precessions is least, inside the branch. */
 class Fold extends py.NamedTuple {
@@ -7621,7 +8845,10 @@ function precession_boundaries(alpha) {
 
 /** Gamma in group II at which both vertical spins change stability together, lambda_up = lambda_down. */
 function equal_thresholds(alpha) {
-  return py.div((1.0 - py.pow(alpha, 2)) * (1.0 + 3.0 * py.pow(alpha, 2)), 1.0 + 6.0 * py.pow(alpha, 2) + py.pow(alpha, 4));
+  return py.div(
+    (1.0 - py.pow(alpha, 2)) * (1.0 + 3.0 * py.pow(alpha, 2)),
+    1.0 + 6.0 * py.pow(alpha, 2) + py.pow(alpha, 4)
+  );
 }
 
 /** The fold of the branch of steady precessions of an eccentric sphere, or None if it has none inside. */
@@ -7691,16 +8918,27 @@ py.fields(Prospects, ["eccentricity", "group", "critical_spins", "tilt", "touch"
 function prospects(body, shapes, gravity = 9.8, tilt = 0.1) {
   var sphere = shapes[0];
   if (py.isinstance(sphere, Sphere) && (0.0 < sphere.center && sphere.center < sphere.radius)) {
-    sphere = new EccentricSphere({ radius: sphere.radius, eccentricity: py.div(sphere.center, sphere.radius) });
+    sphere = new EccentricSphere({
+      radius: sphere.radius,
+      eccentricity: py.div(sphere.center, sphere.radius)
+    });
   }
   if (!py.isinstance(sphere, EccentricSphere)) {
     return null;
   }
-  var problem = new Problem({ body: body.model_copy(new py.Dict([["shape", sphere]])), friction: new ViscousFriction({ mu: 1.0 }), launch: new Launch({ tilt: tilt, spin: 0.0 }), gravity: gravity });
+  var problem = new Problem({
+    body: body.model_copy(new py.Dict([["shape", sphere]])),
+    friction: new ViscousFriction({ mu: 1.0 }),
+    launch: new Launch({ tilt: tilt, spin: 0.0 }),
+    gravity: gravity
+  });
   var group = classify(py.div(body.I1, body.I3), sphere.eccentricity);
   var surfaces = [problem.top.surface, ...[...shapes.slice(1)].map((shape) => shape.surface)];
   var touch = _touch(problem, surfaces, group);
-  var stem = py.isinstance(py.item(shapes, -1), Sphere) && py.len(shapes) > 1 ? _stem(problem, surfaces, touch) : null;
+  var stem = py.isinstance(
+    py.item(shapes, -1),
+    Sphere
+  ) && py.len(shapes) > 1 ? _stem(problem, surfaces, touch) : null;
   return new Prospects(sphere.eccentricity, group, critical_spins(problem), tilt, touch, stem);
 }
 
@@ -7721,7 +8959,10 @@ function _stem(problem, surfaces, touch) {
   var [least, launch] = [critical_jellett(inverted, top), py.math.nan];
   if (touch !== null && py.eq(touch.surface, py.len(surfaces) - 1)) {
     var share = _handed_over(touch.tilt, problem.top, py.item(surfaces, -1));
-    launch = py.max(touch.spin, share > 0.0 ? jellett_line(problem).spin_at(py.div(least, share)) : py.math.inf);
+    launch = py.max(
+      touch.spin,
+      share > 0.0 ? jellett_line(problem).spin_at(py.div(least, share)) : py.math.inf
+    );
   }
   return new StemTest(least, critical_spin(inverted, top), launch);
 }
@@ -7753,7 +8994,10 @@ py.fields(Quadratures, ["x", "y", "turn", "work"]);
 function turn_rate(axis, momentum, pole, top) {
   var rate = axis_rate(axis, momentum, top);
   var area = py.sub(py.mul(axis[0], rate[1]), py.mul(axis[1], rate[0]));
-  return py.add(axial_spin(axis, momentum, top), py.div(py.mul(pole, area), py.add(1.0, py.mul(pole, axis[2]))));
+  return py.add(
+    axial_spin(axis, momentum, top),
+    py.div(py.mul(pole, area), py.add(1.0, py.mul(pole, axis[2])))
+  );
 }
 
 /** Rates of the quadratures, given the power of friction (W) and the chart of psi. */
@@ -7765,7 +9009,10 @@ function quadrature_rates(state, power, pole, top) {
 /** Powers of drilling and of rolling friction, W, for the table's torque, N m. */
 function resistance_powers(state, torque, top) {
   var turning = angular_velocity(state.axis, state.momentum, top);
-  return [py.mul(torque[2], turning[2]), py.add(py.mul(torque[0], turning[0]), py.mul(torque[1], turning[1]))];
+  return [
+    py.mul(torque[2], turning[2]),
+    py.add(py.mul(torque[0], turning[0]), py.mul(torque[1], turning[1]))
+  ];
 }
 
 /** Unit quaternion, scalar first, of a body whose axis is n and whose psi in a chart is `turn`, rad. */
@@ -7775,8 +9022,18 @@ function orientation(axis, turn, pole, functions) {
   var [x, y] = [py.div(py.mul(0.5, axis[0]), size), py.div(py.mul(0.5, axis[1]), size)];
   var up = py.mul(0.5, py.add(1.0, pole));
   var down = py.sub(1.0, up);
-  var [w, i, j, k] = [py.add(py.mul(up, size), py.mul(down, x)), py.mul(py.neg(up), y), py.add(py.mul(down, size), py.mul(up, x)), py.mul(down, y)];
-  return [py.sub(py.mul(w, cosine), py.mul(k, sine)), py.add(py.mul(i, cosine), py.mul(j, sine)), py.sub(py.mul(j, cosine), py.mul(i, sine)), py.add(py.mul(k, cosine), py.mul(w, sine))];
+  var [w, i, j, k] = [
+    py.add(py.mul(up, size), py.mul(down, x)),
+    py.mul(py.neg(up), y),
+    py.add(py.mul(down, size), py.mul(up, x)),
+    py.mul(down, y)
+  ];
+  return [
+    py.sub(py.mul(w, cosine), py.mul(k, sine)),
+    py.add(py.mul(i, cosine), py.mul(j, sine)),
+    py.sub(py.mul(j, cosine), py.mul(i, sine)),
+    py.add(py.mul(k, cosine), py.mul(w, sine))
+  ];
 }
 
 // tippetop.integrators.dormand_prince
@@ -7796,7 +9053,9 @@ function evaluate(function_, y, p, out) {
 function error_of(h, y, new_, k, tolerance) {
   combined_of_dormand_prince(y, k);
   var [fifth, third] = [0.0, 0.0];
-  for (var i = 0, k16 = k[16], k17 = k[17]; i < y.length; i += 1) {
+  var k16 = k[16];
+  var k17 = k[17];
+  for (var i = 0; i < y.length; i += 1) {
     var scale = tolerance[1] + tolerance[0] * Math.max(Math.abs(y[i]), Math.abs(new_[i]));
     var [first, second] = [k16[i] / scale, k17[i] / scale];
     fifth = fifth + first * first;
@@ -7814,7 +9073,10 @@ function factor_for(error, tries) {
     var factor = py.mul(SAFETY_of_dormand_prince, py.pow(error, -0.125));
     return factor > LEAST_FACTOR ? factor : LEAST_FACTOR;
   }
-  factor = error === 0.0 ? MOST_FACTOR : py.min(MOST_FACTOR, py.mul(SAFETY_of_dormand_prince, py.pow(error, -0.125)));
+  factor = error === 0.0 ? MOST_FACTOR : py.min(
+    MOST_FACTOR,
+    py.mul(SAFETY_of_dormand_prince, py.pow(error, -0.125))
+  );
   return tries === 1 ? factor : py.min(1.0, factor);
 }
 
@@ -7835,7 +9097,8 @@ function first_step(rates, p, y, k, place, span, tolerance) {
   }
   var [size, slope] = [measure(y, place, y, tolerance), measure(k[0], place, y, tolerance)];
   var trial = py.min(span, size < 1e-05 || slope < 1e-05 ? 1e-06 : py.div(py.mul(0.01, size), slope));
-  for (var i = 0, k0 = k[0]; i < y.length; i += 1) {
+  var k0 = k[0];
+  for (var i = 0; i < y.length; i += 1) {
     place[i] = py.add(y[i], py.mul(trial, k0[i]));
   }
   evaluate(rates, place, p, k[1]);
@@ -7846,7 +9109,15 @@ function first_step(rates, p, y, k, place, span, tolerance) {
 
 /** Put the state at a part of a step in y. */
 function within(powers, part, y) {
-  for (var i = 0, powers0 = powers[0], powers1 = powers[1], powers2 = powers[2], powers3 = powers[3], powers4 = powers[4], powers5 = powers[5], powers6 = powers[6], powers7 = powers[7]; i < y.length; i += 1) {
+  var powers0 = powers[0];
+  var powers1 = powers[1];
+  var powers2 = powers[2];
+  var powers3 = powers[3];
+  var powers4 = powers[4];
+  var powers5 = powers[5];
+  var powers6 = powers[6];
+  var powers7 = powers[7];
+  for (var i = 0; i < y.length; i += 1) {
     var high = powers4[i] + part * (powers5[i] + part * (powers6[i] + part * powers7[i]));
     var low = powers2[i] + part * (powers3[i] + part * high);
     y[i] = powers0[i] + part * (powers1[i] + part * low);
@@ -7856,7 +9127,11 @@ function within(powers, part, y) {
 /** Whether a guard with these values at the looks falls through zero, or may dip below it in between. */
 function may_fall(values, guard) {
   for (var i = 0; i < py.add(LOOKS_of_dormand_prince, 1); i += 1) {
-    var [before, here, after] = [Math.max(i - 1, 0), values[i][guard], py.min(i + 1, LOOKS_of_dormand_prince)];
+    var [before, here, after] = [
+      Math.max(i - 1, 0),
+      values[i][guard],
+      py.min(i + 1, LOOKS_of_dormand_prince)
+    ];
     if (here > 0.0) {
       if (values[after][guard] <= 0.0) {
         return true;
@@ -7893,15 +9168,20 @@ function suspect(guards, p, powers, y, values) {
     within(powers, py.div(look, LOOKS_of_dormand_prince), y);
     evaluate(guards, y, p, values[look]);
   }
-  for (var guard = 0, values0 = values[0], values1 = values[1]; guard < py.len(values[0]); guard += 1) {
+  var values0 = values[0];
+  var values1 = values[1];
+  for (var guard = 0; guard < py.len(values[0]); guard += 1) {
     if (py.truth(may_fall(values, guard))) {
       return true;
     }
-    if (values0[guard] <= 0.0 && values1[guard] <= 0.0 && py.truth(rises(guards, p, powers, y, values, guard))) {
+    if (
+      values0[guard] <= 0.0 && values1[guard] <= 0.0 && py.truth(rises(guards, p, powers, y, values, guard))
+    ) {
       return true;
     }
   }
-  for (var guard = 0, values0 = values[0]; guard < py.len(values[0]); guard += 1) {
+  var values0 = values[0];
+  for (var guard = 0; guard < py.len(values[0]); guard += 1) {
     values0[guard] = values[LOOKS_of_dormand_prince][guard];
   }
   return false;
@@ -7916,7 +9196,8 @@ function advance(rates, guards, count, p, y, lost, k, span, tolerance, knots, te
   var calls = 0;
   if (span[2] === 0.0) {
     evaluate(rates, y, p, k[0]);
-    for (var i = 0, k0 = k[0]; i < size; i += 1) {
+    var k0 = k[0];
+    for (var i = 0; i < size; i += 1) {
       if (!py.truth(py.math.isfinite(k0[i]))) {
         return [steps, 1, SINGULAR];
       }
@@ -7946,7 +9227,9 @@ function advance(rates, guards, count, p, y, lost, k, span, tolerance, knots, te
     calls = calls + (12 * tries + 3);
     more_stages(rates, h, p, y, lost, k, place);
     polynomials(h, y, new_, k, terms[steps]);
-    for (var i = 0, k0 = k[0], k12 = k[12]; i < size; i += 1) {
+    var k0 = k[0];
+    var k12 = k[12];
+    for (var i = 0; i < size; i += 1) {
       lost[i] = moved[i] - (new_[i] - y[i]);
       y[i] = new_[i];
       k0[i] = k12[i];
@@ -7963,102 +9246,402 @@ function advance(rates, guards, count, p, y, lost, k, span, tolerance, knots, te
 }
 
 function stages_of_dormand_prince(rates, h, p, y, lost, k, moved, place) {
-  for (var i = 0, k0 = k[0]; i < y.length; i += 1) {
+  var k0 = k[0];
+  for (var i = 0; i < y.length; i += 1) {
     moved[i] = h * (0.05260015195876773 * k0[i]) + lost[i];
     place[i] = y[i] + moved[i];
   }
   evaluate(rates, place, p, k[1]);
-  for (var i = 0, k0 = k[0], k1 = k[1]; i < y.length; i += 1) {
+  var k0 = k[0];
+  var k1 = k[1];
+  for (var i = 0; i < y.length; i += 1) {
     moved[i] = h * (0.0197250569845379 * k0[i] + 0.0591751709536137 * k1[i]) + lost[i];
     place[i] = y[i] + moved[i];
   }
   evaluate(rates, place, p, k[2]);
-  for (var i = 0, k0 = k[0], k2 = k[2]; i < y.length; i += 1) {
+  var k0 = k[0];
+  var k2 = k[2];
+  for (var i = 0; i < y.length; i += 1) {
     moved[i] = h * (0.02958758547680685 * k0[i] + 0.08876275643042054 * k2[i]) + lost[i];
     place[i] = y[i] + moved[i];
   }
   evaluate(rates, place, p, k[3]);
-  for (var i = 0, k0 = k[0], k2 = k[2], k3 = k[3]; i < y.length; i += 1) {
-    moved[i] = h * (0.2413651341592667 * k0[i] + -0.8845494793282861 * k2[i] + 0.924834003261792 * k3[i]) + lost[i];
+  var k0 = k[0];
+  var k2 = k[2];
+  var k3 = k[3];
+  for (var i = 0; i < y.length; i += 1) {
+    moved[i] = h * (
+      0.2413651341592667 * k0[i]
+      + -0.8845494793282861 * k2[i]
+      + 0.924834003261792 * k3[i]
+    ) + lost[i];
     place[i] = y[i] + moved[i];
   }
   evaluate(rates, place, p, k[4]);
-  for (var i = 0, k0 = k[0], k3 = k[3], k4 = k[4]; i < y.length; i += 1) {
-    moved[i] = h * (0.037037037037037035 * k0[i] + 0.17082860872947386 * k3[i] + 0.12546768756682242 * k4[i]) + lost[i];
+  var k0 = k[0];
+  var k3 = k[3];
+  var k4 = k[4];
+  for (var i = 0; i < y.length; i += 1) {
+    moved[i] = h * (
+      0.037037037037037035 * k0[i]
+      + 0.17082860872947386 * k3[i]
+      + 0.12546768756682242 * k4[i]
+    ) + lost[i];
     place[i] = y[i] + moved[i];
   }
   evaluate(rates, place, p, k[5]);
-  for (var i = 0, k0 = k[0], k3 = k[3], k4 = k[4], k5 = k[5]; i < y.length; i += 1) {
-    moved[i] = h * (0.037109375 * k0[i] + 0.17025221101954405 * k3[i] + 0.06021653898045596 * k4[i] + -0.017578125 * k5[i]) + lost[i];
+  var k0 = k[0];
+  var k3 = k[3];
+  var k4 = k[4];
+  var k5 = k[5];
+  for (var i = 0; i < y.length; i += 1) {
+    moved[i] = h * (
+      0.037109375 * k0[i]
+      + 0.17025221101954405 * k3[i]
+      + 0.06021653898045596 * k4[i]
+      + -0.017578125 * k5[i]
+    ) + lost[i];
     place[i] = y[i] + moved[i];
   }
   evaluate(rates, place, p, k[6]);
-  for (var i = 0, k0 = k[0], k3 = k[3], k4 = k[4], k5 = k[5], k6 = k[6]; i < y.length; i += 1) {
-    moved[i] = h * (0.03709200011850479 * k0[i] + 0.17038392571223998 * k3[i] + 0.10726203044637328 * k4[i] + -0.015319437748624402 * k5[i] + 0.008273789163814023 * k6[i]) + lost[i];
+  var k0 = k[0];
+  var k3 = k[3];
+  var k4 = k[4];
+  var k5 = k[5];
+  var k6 = k[6];
+  for (var i = 0; i < y.length; i += 1) {
+    moved[i] = h * (
+      0.03709200011850479 * k0[i]
+      + 0.17038392571223998 * k3[i]
+      + 0.10726203044637328 * k4[i]
+      + -0.015319437748624402 * k5[i]
+      + 0.008273789163814023 * k6[i]
+    ) + lost[i];
     place[i] = y[i] + moved[i];
   }
   evaluate(rates, place, p, k[7]);
-  for (var i = 0, k0 = k[0], k3 = k[3], k4 = k[4], k5 = k[5], k6 = k[6], k7 = k[7]; i < y.length; i += 1) {
-    moved[i] = h * (0.6241109587160757 * k0[i] + -3.3608926294469414 * k3[i] + -0.868219346841726 * k4[i] + 27.59209969944671 * k5[i] + 20.154067550477894 * k6[i] + -43.48988418106996 * k7[i]) + lost[i];
+  var k0 = k[0];
+  var k3 = k[3];
+  var k4 = k[4];
+  var k5 = k[5];
+  var k6 = k[6];
+  var k7 = k[7];
+  for (var i = 0; i < y.length; i += 1) {
+    moved[i] = h * (
+      0.6241109587160757 * k0[i]
+      + -3.3608926294469414 * k3[i]
+      + -0.868219346841726 * k4[i]
+      + 27.59209969944671 * k5[i]
+      + 20.154067550477894 * k6[i]
+      + -43.48988418106996 * k7[i]
+    ) + lost[i];
     place[i] = y[i] + moved[i];
   }
   evaluate(rates, place, p, k[8]);
-  for (var i = 0, k0 = k[0], k3 = k[3], k4 = k[4], k5 = k[5], k6 = k[6], k7 = k[7], k8 = k[8]; i < y.length; i += 1) {
-    moved[i] = h * (0.47766253643826434 * k0[i] + -2.4881146199716677 * k3[i] + -0.590290826836843 * k4[i] + 21.230051448181193 * k5[i] + 15.279233632882423 * k6[i] + -33.28821096898486 * k7[i] + -0.020331201708508627 * k8[i]) + lost[i];
+  var k0 = k[0];
+  var k3 = k[3];
+  var k4 = k[4];
+  var k5 = k[5];
+  var k6 = k[6];
+  var k7 = k[7];
+  var k8 = k[8];
+  for (var i = 0; i < y.length; i += 1) {
+    moved[i] = h * (
+      0.47766253643826434 * k0[i]
+      + -2.4881146199716677 * k3[i]
+      + -0.590290826836843 * k4[i]
+      + 21.230051448181193 * k5[i]
+      + 15.279233632882423 * k6[i]
+      + -33.28821096898486 * k7[i]
+      + -0.020331201708508627 * k8[i]
+    ) + lost[i];
     place[i] = y[i] + moved[i];
   }
   evaluate(rates, place, p, k[9]);
-  for (var i = 0, k0 = k[0], k3 = k[3], k4 = k[4], k5 = k[5], k6 = k[6], k7 = k[7], k8 = k[8], k9 = k[9]; i < y.length; i += 1) {
-    moved[i] = h * (-0.9371424300859873 * k0[i] + 5.186372428844064 * k3[i] + 1.0914373489967295 * k4[i] + -8.149787010746927 * k5[i] + -18.52006565999696 * k6[i] + 22.739487099350505 * k7[i] + 2.4936055526796523 * k8[i] + -3.0467644718982196 * k9[i]) + lost[i];
+  var k0 = k[0];
+  var k3 = k[3];
+  var k4 = k[4];
+  var k5 = k[5];
+  var k6 = k[6];
+  var k7 = k[7];
+  var k8 = k[8];
+  var k9 = k[9];
+  for (var i = 0; i < y.length; i += 1) {
+    moved[i] = h * (
+      -0.9371424300859873 * k0[i]
+      + 5.186372428844064 * k3[i]
+      + 1.0914373489967295 * k4[i]
+      + -8.149787010746927 * k5[i]
+      + -18.52006565999696 * k6[i]
+      + 22.739487099350505 * k7[i]
+      + 2.4936055526796523 * k8[i]
+      + -3.0467644718982196 * k9[i]
+    ) + lost[i];
     place[i] = y[i] + moved[i];
   }
   evaluate(rates, place, p, k[10]);
-  for (var i = 0, k0 = k[0], k10 = k[10], k3 = k[3], k4 = k[4], k5 = k[5], k6 = k[6], k7 = k[7], k8 = k[8], k9 = k[9]; i < y.length; i += 1) {
-    moved[i] = h * (2.273310147516538 * k0[i] + -10.53449546673725 * k3[i] + -2.0008720582248625 * k4[i] + -17.9589318631188 * k5[i] + 27.94888452941996 * k6[i] + -2.8589982771350235 * k7[i] + -8.87285693353063 * k8[i] + 12.360567175794303 * k9[i] + 0.6433927460157636 * k10[i]) + lost[i];
+  var k0 = k[0];
+  var k10 = k[10];
+  var k3 = k[3];
+  var k4 = k[4];
+  var k5 = k[5];
+  var k6 = k[6];
+  var k7 = k[7];
+  var k8 = k[8];
+  var k9 = k[9];
+  for (var i = 0; i < y.length; i += 1) {
+    moved[i] = h * (
+      2.273310147516538 * k0[i]
+      + -10.53449546673725 * k3[i]
+      + -2.0008720582248625 * k4[i]
+      + -17.9589318631188 * k5[i]
+      + 27.94888452941996 * k6[i]
+      + -2.8589982771350235 * k7[i]
+      + -8.87285693353063 * k8[i]
+      + 12.360567175794303 * k9[i]
+      + 0.6433927460157636 * k10[i]
+    ) + lost[i];
     place[i] = y[i] + moved[i];
   }
   evaluate(rates, place, p, k[11]);
-  for (var i = 0, k0 = k[0], k10 = k[10], k11 = k[11], k5 = k[5], k6 = k[6], k7 = k[7], k8 = k[8], k9 = k[9]; i < y.length; i += 1) {
-    moved[i] = h * (0.054293734116568765 * k0[i] + 4.450312892752409 * k5[i] + 1.8915178993145003 * k6[i] + -5.801203960010585 * k7[i] + 0.3111643669578199 * k8[i] + -0.1521609496625161 * k9[i] + 0.20136540080403034 * k10[i] + 0.04471061572777259 * k11[i]) + lost[i];
+  var k0 = k[0];
+  var k10 = k[10];
+  var k11 = k[11];
+  var k5 = k[5];
+  var k6 = k[6];
+  var k7 = k[7];
+  var k8 = k[8];
+  var k9 = k[9];
+  for (var i = 0; i < y.length; i += 1) {
+    moved[i] = h * (
+      0.054293734116568765 * k0[i]
+      + 4.450312892752409 * k5[i]
+      + 1.8915178993145003 * k6[i]
+      + -5.801203960010585 * k7[i]
+      + 0.3111643669578199 * k8[i]
+      + -0.1521609496625161 * k9[i]
+      + 0.20136540080403034 * k10[i]
+      + 0.04471061572777259 * k11[i]
+    ) + lost[i];
     place[i] = y[i] + moved[i];
   }
   evaluate(rates, place, p, k[12]);
 }
 
 function more_stages(rates, h, p, y, lost, k, place) {
-  for (var i = 0, k0 = k[0], k10 = k[10], k11 = k[11], k12 = k[12], k6 = k[6], k7 = k[7], k8 = k[8], k9 = k[9]; i < y.length; i += 1) {
-    place[i] = y[i] + (h * (0.056167502283047954 * k0[i] + 0.25350021021662483 * k6[i] + -0.2462390374708025 * k7[i] + -0.12419142326381637 * k8[i] + 0.15329179827876568 * k9[i] + 0.00820105229563469 * k10[i] + 0.007567897660545699 * k11[i] + -0.008298 * k12[i]) + lost[i]);
+  var k0 = k[0];
+  var k10 = k[10];
+  var k11 = k[11];
+  var k12 = k[12];
+  var k6 = k[6];
+  var k7 = k[7];
+  var k8 = k[8];
+  var k9 = k[9];
+  for (var i = 0; i < y.length; i += 1) {
+    place[i] = y[i] + (
+      h * (
+        0.056167502283047954 * k0[i]
+        + 0.25350021021662483 * k6[i]
+        + -0.2462390374708025 * k7[i]
+        + -0.12419142326381637 * k8[i]
+        + 0.15329179827876568 * k9[i]
+        + 0.00820105229563469 * k10[i]
+        + 0.007567897660545699 * k11[i]
+        + -0.008298 * k12[i]
+      )
+      + lost[i]
+    );
   }
   evaluate(rates, place, p, k[13]);
-  for (var i = 0, k0 = k[0], k10 = k[10], k11 = k[11], k12 = k[12], k13 = k[13], k5 = k[5], k6 = k[6], k7 = k[7]; i < y.length; i += 1) {
-    place[i] = y[i] + (h * (0.03183464816350214 * k0[i] + 0.028300909672366776 * k5[i] + 0.053541988307438566 * k6[i] + -0.05492374857139099 * k7[i] + -0.00010834732869724932 * k10[i] + 0.0003825710908356584 * k11[i] + -0.00034046500868740456 * k12[i] + 0.1413124436746325 * k13[i]) + lost[i]);
+  var k0 = k[0];
+  var k10 = k[10];
+  var k11 = k[11];
+  var k12 = k[12];
+  var k13 = k[13];
+  var k5 = k[5];
+  var k6 = k[6];
+  var k7 = k[7];
+  for (var i = 0; i < y.length; i += 1) {
+    place[i] = y[i] + (
+      h * (
+        0.03183464816350214 * k0[i]
+        + 0.028300909672366776 * k5[i]
+        + 0.053541988307438566 * k6[i]
+        + -0.05492374857139099 * k7[i]
+        + -0.00010834732869724932 * k10[i]
+        + 0.0003825710908356584 * k11[i]
+        + -0.00034046500868740456 * k12[i]
+        + 0.1413124436746325 * k13[i]
+      )
+      + lost[i]
+    );
   }
   evaluate(rates, place, p, k[14]);
-  for (var i = 0, k0 = k[0], k12 = k[12], k13 = k[13], k14 = k[14], k5 = k[5], k6 = k[6], k7 = k[7], k8 = k[8]; i < y.length; i += 1) {
-    place[i] = y[i] + (h * (-0.42889630158379194 * k0[i] + -4.697621415361164 * k5[i] + 7.683421196062599 * k6[i] + 4.06898981839711 * k7[i] + 0.3567271874552811 * k8[i] + -0.0013990241651590145 * k12[i] + 2.9475147891527724 * k13[i] + -9.15095847217987 * k14[i]) + lost[i]);
+  var k0 = k[0];
+  var k12 = k[12];
+  var k13 = k[13];
+  var k14 = k[14];
+  var k5 = k[5];
+  var k6 = k[6];
+  var k7 = k[7];
+  var k8 = k[8];
+  for (var i = 0; i < y.length; i += 1) {
+    place[i] = y[i] + (
+      h * (
+        -0.42889630158379194 * k0[i]
+        + -4.697621415361164 * k5[i]
+        + 7.683421196062599 * k6[i]
+        + 4.06898981839711 * k7[i]
+        + 0.3567271874552811 * k8[i]
+        + -0.0013990241651590145 * k12[i]
+        + 2.9475147891527724 * k13[i]
+        + -9.15095847217987 * k14[i]
+      )
+      + lost[i]
+    );
   }
   evaluate(rates, place, p, k[15]);
 }
 
 function combined_of_dormand_prince(y, k) {
-  for (var i = 0, k0 = k[0], k10 = k[10], k11 = k[11], k16 = k[16], k17 = k[17], k5 = k[5], k6 = k[6], k7 = k[7], k8 = k[8], k9 = k[9]; i < y.length; i += 1) {
-    k16[i] = 0.01312004499419488 * k0[i] + -1.2251564463762044 * k5[i] + -0.4957589496572502 * k6[i] + 1.6643771824549864 * k7[i] + -0.35032884874997366 * k8[i] + 0.3341791187130175 * k9[i] + 0.08192320648511571 * k10[i] + -0.022355307863886294 * k11[i];
-    k17[i] = -0.18980075407240762 * k0[i] + 4.450312892752409 * k5[i] + 1.8915178993145003 * k6[i] + -5.801203960010585 * k7[i] + -0.4226823213237919 * k8[i] + -0.1521609496625161 * k9[i] + 0.20136540080403034 * k10[i] + 0.02265179219836082 * k11[i];
+  var k0 = k[0];
+  var k10 = k[10];
+  var k11 = k[11];
+  var k16 = k[16];
+  var k17 = k[17];
+  var k5 = k[5];
+  var k6 = k[6];
+  var k7 = k[7];
+  var k8 = k[8];
+  var k9 = k[9];
+  for (var i = 0; i < y.length; i += 1) {
+    k16[
+      i
+    ] = 0.01312004499419488 * k0[
+      i
+    ] + -1.2251564463762044 * k5[
+      i
+    ] + -0.4957589496572502 * k6[
+      i
+    ] + 1.6643771824549864 * k7[
+      i
+    ] + -0.35032884874997366 * k8[
+      i
+    ] + 0.3341791187130175 * k9[i] + 0.08192320648511571 * k10[i] + -0.022355307863886294 * k11[i];
+    k17[
+      i
+    ] = -0.18980075407240762 * k0[
+      i
+    ] + 4.450312892752409 * k5[
+      i
+    ] + 1.8915178993145003 * k6[
+      i
+    ] + -5.801203960010585 * k7[
+      i
+    ] + -0.4226823213237919 * k8[
+      i
+    ] + -0.1521609496625161 * k9[i] + 0.20136540080403034 * k10[i] + 0.02265179219836082 * k11[i];
   }
 }
 
 function polynomials(h, y, new_, k, powers) {
-  for (var i = 0, k0 = k[0], k10 = k[10], k11 = k[11], k12 = k[12], k13 = k[13], k14 = k[14], k15 = k[15], k16 = k[16], k17 = k[17], k18 = k[18], k19 = k[19], k20 = k[20], k21 = k[21], k22 = k[22], k5 = k[5], k6 = k[6], k7 = k[7], k8 = k[8], k9 = k[9], powers0 = powers[0]; i < y.length; i += 1) {
+  var k0 = k[0];
+  var k10 = k[10];
+  var k11 = k[11];
+  var k12 = k[12];
+  var k13 = k[13];
+  var k14 = k[14];
+  var k15 = k[15];
+  var k16 = k[16];
+  var k17 = k[17];
+  var k18 = k[18];
+  var k19 = k[19];
+  var k20 = k[20];
+  var k21 = k[21];
+  var k22 = k[22];
+  var k5 = k[5];
+  var k6 = k[6];
+  var k7 = k[7];
+  var k8 = k[8];
+  var k9 = k[9];
+  var powers0 = powers[0];
+  for (var i = 0; i < y.length; i += 1) {
     k16[i] = new_[i] - y[i];
     k17[i] = h * k0[i] - k16[i];
     k18[i] = 2.0 * k16[i] - h * (k0[i] + k12[i]);
-    k19[i] = h * (-8.428938276109013 * k0[i] + 0.5667149535193777 * k5[i] + -3.0689499459498917 * k6[i] + 2.38466765651207 * k7[i] + 2.117034582445028 * k8[i] + -0.871391583777973 * k9[i] + 2.2404374302607883 * k10[i] + 0.6315787787694688 * k11[i] + -0.08899033645133331 * k12[i] + 18.148505520854727 * k13[i] + -9.194632392478356 * k14[i] + -4.436036387594894 * k15[i]);
-    k20[i] = h * (10.427508642579134 * k0[i] + 242.28349177525817 * k5[i] + 165.20045171727028 * k6[i] + -374.5467547226902 * k7[i] + -22.113666853125306 * k8[i] + 7.733432668472264 * k9[i] + -30.674084731089398 * k10[i] + -9.332130526430229 * k11[i] + 15.697238121770845 * k12[i] + -31.139403219565178 * k13[i] + -9.35292435884448 * k14[i] + 35.81684148639408 * k15[i]);
-    k21[i] = h * (19.985053242002433 * k0[i] + -387.0373087493518 * k5[i] + -189.17813819516758 * k6[i] + 527.8081592054236 * k7[i] + -11.57390253995963 * k8[i] + 6.8812326946963 * k9[i] + -1.0006050966910838 * k10[i] + 0.7777137798053443 * k11[i] + -2.778205752353508 * k12[i] + -60.19669523126412 * k13[i] + 84.32040550667716 * k14[i] + 11.99229113618279 * k15[i]);
-    k22[i] = h * (-25.69393346270375 * k0[i] + -154.18974869023643 * k5[i] + -231.5293791760455 * k6[i] + 357.6391179106141 * k7[i] + 93.40532418362432 * k8[i] + -37.45832313645163 * k9[i] + 104.0996495089623 * k10[i] + 29.8402934266605 * k11[i] + -43.53345659001114 * k12[i] + 96.32455395918828 * k13[i] + -39.17726167561544 * k14[i] + -149.72683625798564 * k15[i]);
+    k19[i] = h * (
+      -8.428938276109013 * k0[i]
+      + 0.5667149535193777 * k5[i]
+      + -3.0689499459498917 * k6[i]
+      + 2.38466765651207 * k7[i]
+      + 2.117034582445028 * k8[i]
+      + -0.871391583777973 * k9[i]
+      + 2.2404374302607883 * k10[i]
+      + 0.6315787787694688 * k11[i]
+      + -0.08899033645133331 * k12[i]
+      + 18.148505520854727 * k13[i]
+      + -9.194632392478356 * k14[i]
+      + -4.436036387594894 * k15[i]
+    );
+    k20[i] = h * (
+      10.427508642579134 * k0[i]
+      + 242.28349177525817 * k5[i]
+      + 165.20045171727028 * k6[i]
+      + -374.5467547226902 * k7[i]
+      + -22.113666853125306 * k8[i]
+      + 7.733432668472264 * k9[i]
+      + -30.674084731089398 * k10[i]
+      + -9.332130526430229 * k11[i]
+      + 15.697238121770845 * k12[i]
+      + -31.139403219565178 * k13[i]
+      + -9.35292435884448 * k14[i]
+      + 35.81684148639408 * k15[i]
+    );
+    k21[i] = h * (
+      19.985053242002433 * k0[i]
+      + -387.0373087493518 * k5[i]
+      + -189.17813819516758 * k6[i]
+      + 527.8081592054236 * k7[i]
+      + -11.57390253995963 * k8[i]
+      + 6.8812326946963 * k9[i]
+      + -1.0006050966910838 * k10[i]
+      + 0.7777137798053443 * k11[i]
+      + -2.778205752353508 * k12[i]
+      + -60.19669523126412 * k13[i]
+      + 84.32040550667716 * k14[i]
+      + 11.99229113618279 * k15[i]
+    );
+    k22[i] = h * (
+      -25.69393346270375 * k0[i]
+      + -154.18974869023643 * k5[i]
+      + -231.5293791760455 * k6[i]
+      + 357.6391179106141 * k7[i]
+      + 93.40532418362432 * k8[i]
+      + -37.45832313645163 * k9[i]
+      + 104.0996495089623 * k10[i]
+      + 29.8402934266605 * k11[i]
+      + -43.53345659001114 * k12[i]
+      + 96.32455395918828 * k13[i]
+      + -39.17726167561544 * k14[i]
+      + -149.72683625798564 * k15[i]
+    );
     powers0[i] = y[i];
   }
-  for (var i = 0, k16 = k[16], k17 = k[17], k18 = k[18], k19 = k[19], k20 = k[20], k21 = k[21], k22 = k[22], powers1 = powers[1], powers2 = powers[2], powers3 = powers[3], powers4 = powers[4], powers5 = powers[5], powers6 = powers[6], powers7 = powers[7]; i < y.length; i += 1) {
+  var k16 = k[16];
+  var k17 = k[17];
+  var k18 = k[18];
+  var k19 = k[19];
+  var k20 = k[20];
+  var k21 = k[21];
+  var k22 = k[22];
+  var powers1 = powers[1];
+  var powers2 = powers[2];
+  var powers3 = powers[3];
+  var powers4 = powers[4];
+  var powers5 = powers[5];
+  var powers6 = powers[6];
+  var powers7 = powers[7];
+  for (var i = 0; i < y.length; i += 1) {
     powers1[i] = k16[i] + k17[i];
     powers2[i] = -1.0 * k17[i] + k18[i] + k19[i];
     powers3[i] = -1.0 * k18[i] + -2.0 * k19[i] + k20[i] + k21[i];
@@ -8098,14 +9681,24 @@ function _fall_along(guards, parameters, dense, advance, step, least) {
   }
   var first = null;
   var [start, end] = step;
-  var probes = py.add(py.range(LOOKS_of_dormand_prince).map((look) => py.add(start, py.mul(py.div(look, LOOKS_of_dormand_prince), py.sub(end, start)))), [end]);
+  var probes = py.add(
+    py.range(LOOKS_of_dormand_prince).map(
+      (look) => py.add(start, py.mul(py.div(look, LOOKS_of_dormand_prince), py.sub(end, start)))
+    ),
+    [end]
+  );
   var states = [...probes].map((time) => py.tolist(dense(time)));
   for (var [index, guard] of py.enumerate(guards)) {
     var values = [...states].map((state) => py.float(guard.value(state, parameters)));
     var [value, exact] = [_along(guard, parameters, dense), _along(guard, parameters, advance)];
     for (var [low, high, function_] of brackets(probes, values, value, exact)) {
       var time = crossing(function_, low, high);
-      if (py.item(values, LOOKS_of_dormand_prince) > 0.0 && py.sub(time, start) < py.mul(least, py.sub(end, start))) {
+      if (
+        py.item(
+          values,
+          LOOKS_of_dormand_prince
+        ) > 0.0 && py.sub(time, start) < py.mul(least, py.sub(end, start))
+      ) {
         continue;
       }
       if (first === null || time < first[1]) {
@@ -8133,13 +9726,20 @@ function* brackets(probes, values, value, exact) {
   }
   for (var i = 0; i < last + 1; i += 1) {
     var [before, after] = [py.max(i - 1, 0), py.min(i + 1, last)];
-    if (py.item(values, i) > 0.0 && py.item(values, i) <= py.min(py.item(values, before), py.item(values, after))) {
+    if (
+      py.item(values, i) > 0.0 && py.item(values, i) <= py.min(
+        py.item(values, before),
+        py.item(values, after)
+      )
+    ) {
       var drop = py.sub(py.max(py.slice(values, py.max(i - 2, 0), i + 3, null)), py.item(values, i));
       if (py.item(values, i) < drop) {
         var [place, least] = dip(value, py.item(probes, before), py.item(probes, after));
         if (least <= 0.0) {
           yield [py.item(probes, before), place, value];
-        } else if (least < py.mul(INEXACT, drop) && exact(place) <= 0.0 && exact(py.item(probes, before)) > 0.0) {
+        } else if (
+          least < py.mul(INEXACT, drop) && exact(place) <= 0.0 && exact(py.item(probes, before)) > 0.0
+        ) {
           yield [py.item(probes, before), place, exact];
         }
       }
@@ -8154,7 +9754,10 @@ function* brackets(probes, values, value, exact) {
 function _early_bracket(start, end, value) {
   var part = EARLIEST;
   while (part < py.div(1.0, LOOKS_of_dormand_prince)) {
-    var [low, high] = [py.add(start, py.mul(part, end - start)), py.add(start, py.mul(py.mul(2.0, part), end - start))];
+    var [low, high] = [
+      py.add(start, py.mul(part, end - start)),
+      py.add(start, py.mul(py.mul(2.0, part), end - start))
+    ];
     if (value(low) > RISEN && value(high) <= 0.0) {
       return [low, high, value];
     }
@@ -8185,7 +9788,12 @@ function _polished(guard, parameters, advance, step, guess) {
     state = advance(new_);
     value = py.float(guard.value(py.tolist(state), parameters));
   }
-  if (moved > py.max(finest, py.mul(4e-16, py.max(1.0, py.abs(time)))) || py.abs(py.sub(time, guess)) > py.mul(0.5, py.sub(guess, start))) {
+  if (
+    moved > py.max(
+      finest,
+      py.mul(4e-16, py.max(1.0, py.abs(time)))
+    ) || py.abs(py.sub(time, guess)) > py.mul(0.5, py.sub(guess, start))
+  ) {
     return null;
   }
   return py.abs(value) <= py.abs(theirs) ? [time, state] : [other, beside];
@@ -8194,7 +9802,10 @@ function _polished(guard, parameters, advance, step, guess) {
 // tippetop.integrators.stepping
 const [FEW_of_stepping, WIDER, MANY] = [4, 4, 512];
 const POWERS = 8;
-const FAILURES = new py.Dict([[SINGULAR, "the motion is singular from the start"], [STUCK_of_dormand_prince, "the step size fell to nothing"]]);
+const FAILURES = new py.Dict([
+  [SINGULAR, "the motion is singular from the start"],
+  [STUCK_of_dormand_prince, "the step size fell to nothing"]
+]);
 
 /** What a motion is followed with. */
 class Machinery extends py.NamedTuple {
@@ -8253,7 +9864,10 @@ class Stepping extends py.Thing {
     [this.stages, this.span] = [py.np.empty([ROWS, size]), py.np.array([start[0], end, 0.0])];
     [this.steps, this.calls] = [0, 0];
     this.other = null;
-    [this.knots, this.terms] = [py.np.empty(py.add(FEW_of_stepping, 1)), py.np.empty([FEW_of_stepping, POWERS, size])];
+    [this.knots, this.terms] = [
+      py.np.empty(py.add(FEW_of_stepping, 1)),
+      py.np.empty([FEW_of_stepping, POWERS, size])
+    ];
     py.put(this.knots, 0, start[0]);
   }
   /** Where it is. */
@@ -8269,7 +9883,20 @@ class Stepping extends py.Thing {
   /** Take steps until something is to be done; tell what. */
   advance(guarded = true) {
     var functions = this.functions;
-    var [steps, calls, ended] = functions.advance(functions.rates, functions.guards, py.truth(guarded) ? functions.number : 0, this.parameters, this.state, this.lost, this.stages, this.span, this.tolerance, this.knots, this.terms, this.steps);
+    var [steps, calls, ended] = functions.advance(
+      functions.rates,
+      functions.guards,
+      py.truth(guarded) ? functions.number : 0,
+      this.parameters,
+      this.state,
+      this.lost,
+      this.stages,
+      this.span,
+      this.tolerance,
+      this.knots,
+      this.terms,
+      this.steps
+    );
     [this.steps, this.calls] = [steps, py.add(this.calls, calls)];
     return ended;
   }
@@ -8283,7 +9910,11 @@ class Stepping extends py.Thing {
   }
   /** The guard that first falls through zero in the last step, when, and the state there. */
   fall(guards) {
-    var [last, begin, reach] = [py.item(this.terms, py.sub(this.steps, 1)), py.float(py.item(this.knots, py.sub(this.steps, 1))), this.time];
+    var [last, begin, reach] = [
+      py.item(this.terms, py.sub(this.steps, 1)),
+      py.float(py.item(this.knots, py.sub(this.steps, 1))),
+      this.time
+    ];
     var dense = (at) => {
       var found = py.np.empty(py.len(this.state));
       this.functions.within(last, py.div(at - begin, py.sub(reach, begin)), found);
@@ -8300,7 +9931,11 @@ class Stepping extends py.Thing {
   /** End within the last step. */
   end_at(time, state) {
     var [begin, end] = [py.item(this.knots, py.sub(this.steps, 1)), py.item(this.knots, this.steps)];
-    var [part, last, share] = [py.div(py.sub(time, begin), py.sub(end, begin)), py.item(this.terms, py.sub(this.steps, 1)), 1.0];
+    var [part, last, share] = [
+      py.div(py.sub(time, begin), py.sub(end, begin)),
+      py.item(this.terms, py.sub(this.steps, 1)),
+      1.0
+    ];
     for (var power = 0; power < POWERS; power += 1) {
       for (var i = 0; i < state.length; i += 1) {
         last[power][i] = py.mul(last[power][i], share);
@@ -8315,7 +9950,13 @@ class Stepping extends py.Thing {
   beside() {
     if (this.other === null) {
       var [begin, end] = [py.float(this.span[0]), py.float(this.span[1])];
-      this.other = new Stepping(this.functions, this.parameters, [begin, this.state], end, py.float(this.tolerance[0]));
+      this.other = new Stepping(
+        this.functions,
+        this.parameters,
+        [begin, this.state],
+        end,
+        py.float(this.tolerance[0])
+      );
     }
     return this.other;
   }
@@ -8337,7 +9978,25 @@ const OUTCOMES = py.tuple(Outcome);
 
 /** What was found of launches, in natural units: all of shape (n,), or numbers of one. */
 class Ends extends py.Record {
-  constructor(state, time, outcome, steps, flights, least_force, lift_off, struck, drilled, rolled, airborne, highest_gap, highest, down, up, turned, arrived) {
+  constructor(
+    state,
+    time,
+    outcome,
+    steps,
+    flights,
+    least_force,
+    lift_off,
+    struck,
+    drilled,
+    rolled,
+    airborne,
+    highest_gap,
+    highest,
+    down,
+    up,
+    turned,
+    arrived
+  ) {
     super();
     this.state = state;
     this.time = time;
@@ -8358,7 +10017,28 @@ class Ends extends py.Record {
     this.arrived = arrived;
   }
 }
-py.fields(Ends, ["state", "time", "outcome", "steps", "flights", "least_force", "lift_off", "struck", "drilled", "rolled", "airborne", "highest_gap", "highest", "down", "up", "turned", "arrived"]);
+py.fields(
+  Ends,
+  [
+    "state",
+    "time",
+    "outcome",
+    "steps",
+    "flights",
+    "least_force",
+    "lift_off",
+    "struck",
+    "drilled",
+    "rolled",
+    "airborne",
+    "highest_gap",
+    "highest",
+    "down",
+    "up",
+    "turned",
+    "arrived"
+  ]
+);
 
 /** Least and largest n_z for which the tilt is near its final value, each of shape (n,). */
 function final_band(state) {
@@ -8384,12 +10064,38 @@ function metrics(ends, start, top, units) {
     var change = py.np.abs(py.sub(lowest_jellett(end, top), lowest_jellett(start, top)));
     var drift = py.div(change, py.np.where(moment > 0, moment, py.np.nan));
     var lost = py.sub(energy(start, top), energy(end, top));
-    var precession = py.np.where(axis_sine(end.axis) > 0, precession_rate(end.axis, end.momentum, top), py.np.nan);
+    var precession = py.np.where(
+      axis_sine(end.axis) > 0,
+      precession_rate(end.axis, end.momentum, top),
+      py.np.nan
+    );
     var highest = py.np.fmax(highest_between(top.surface, ends.down, ends.up), ends.highest);
   } finally {
     py.heed(true);
   }
-  return new py.Dict([["final_theta", tilt(end)], ["final_omega3", py.div(axial_spin(end.axis, end.momentum, top), units.time)], ["final_phi_dot", py.div(precession, units.time)], ["turns_over", py.mul(ends.turned, units.time)], ["arrives", py.mul(ends.arrived, units.time)], ["least_normal_force", py.mul(ends.least_force, force)], ["first_lift_off", py.mul(ends.lift_off, units.time)], ["flights", ends.flights], ["airborne_time", py.mul(ends.airborne, units.time)], ["energy_lost", py.mul(lost, units.energy)], ["energy_lost_sliding", py.mul(py.sub(py.sub(py.sub(lost, ends.struck), ends.drilled), ends.rolled), units.energy)], ["energy_lost_drilling", py.mul(ends.drilled, units.energy)], ["energy_lost_rolling", py.mul(ends.rolled, units.energy)], ["highest", py.mul(highest, units.length)], ["highest_gap", py.mul(ends.highest_gap, units.length)], ["jellett_error", drift], ["end_time", py.mul(ends.time, units.time)], ["steps", ends.steps]]);
+  return new py.Dict([
+    ["final_theta", tilt(end)],
+    ["final_omega3", py.div(axial_spin(end.axis, end.momentum, top), units.time)],
+    ["final_phi_dot", py.div(precession, units.time)],
+    ["turns_over", py.mul(ends.turned, units.time)],
+    ["arrives", py.mul(ends.arrived, units.time)],
+    ["least_normal_force", py.mul(ends.least_force, force)],
+    ["first_lift_off", py.mul(ends.lift_off, units.time)],
+    ["flights", ends.flights],
+    ["airborne_time", py.mul(ends.airborne, units.time)],
+    ["energy_lost", py.mul(lost, units.energy)],
+    [
+      "energy_lost_sliding",
+      py.mul(py.sub(py.sub(py.sub(lost, ends.struck), ends.drilled), ends.rolled), units.energy)
+    ],
+    ["energy_lost_drilling", py.mul(ends.drilled, units.energy)],
+    ["energy_lost_rolling", py.mul(ends.rolled, units.energy)],
+    ["highest", py.mul(highest, units.length)],
+    ["highest_gap", py.mul(ends.highest_gap, units.length)],
+    ["jellett_error", drift],
+    ["end_time", py.mul(ends.time, units.time)],
+    ["steps", ends.steps]
+  ]);
 }
 
 // tippetop.contact.readings
@@ -8444,7 +10150,19 @@ class Instants extends py.NamedTuple {
     var [axis, momentum] = [state.axis, state.momentum];
     var arm = lowest_contact_vector(axis, top.surface);
     var [x, y] = point_velocity(state.velocity, angular_velocity(axis, momentum, top), arm);
-    return new this(state, reaction.force, reaction.torque, energy(state, top), py.neg(dot(momentum, arm)), py.add(state.height, arm[2]), axial_spin(axis, momentum, top), precession_rate(axis, momentum, top), tilt_rate(axis, momentum, top), slip_along_tilt(axis, [x, y]), [x, y]);
+    return new this(
+      state,
+      reaction.force,
+      reaction.torque,
+      energy(state, top),
+      py.neg(dot(momentum, arm)),
+      py.add(state.height, arm[2]),
+      axial_spin(axis, momentum, top),
+      precession_rate(axis, momentum, top),
+      tilt_rate(axis, momentum, top),
+      slip_along_tilt(axis, [x, y]),
+      [x, y]
+    );
   }
   /** The numbers in the order of the attributes. */
   pack() {
@@ -8459,7 +10177,10 @@ class Instants extends py.NamedTuple {
     return new this(State.unpack(rows), force, torque, ...numbers, slip, point);
   }
 }
-py.fields(Instants, ["state", "force", "torque", "energy", "jellett", "gap", "spin", "precession", "tilting", "slip", "point"]);
+py.fields(
+  Instants,
+  ["state", "force", "torque", "energy", "jellett", "gap", "spin", "precession", "tilting", "slip", "point"]
+);
 const TOLD = 26;
 
 /** The numbers of `Instants`. */
@@ -8486,7 +10207,10 @@ class Samples extends py.NamedTuple {
     this.mode = mode;
   }
 }
-py.fields(Samples, ["times", "instants", "x", "y", "turn", "work", "struck", "drilled", "rolled", "pole", "mode"]);
+py.fields(
+  Samples,
+  ["times", "instants", "x", "y", "turn", "work", "struck", "drilled", "rolled", "pole", "mode"]
+);
 
 /** Every variable of `tippetop.catalogue.SAMPLED` in SI, by name, of a top in natural units. */
 function observe(samples, top, units) {
@@ -8500,7 +10224,38 @@ function observe(samples, top, units) {
     tilting = py.np.where(upright, py.np.copysign(leaving, axis[2]), tilting);
   }
   var force = py.div(units.energy, units.length);
-  return new py.Dict([["theta", py.np.arctan2(sine, axis[2])], ["theta_dot", py.div(tilting, units.time)], ["phi", py.np.arctan2(axis[1], axis[0])], ["phi_dot", py.div(told.precession, units.time)], ["omega3", py.div(told.spin, units.time)], ["slip_x", py.mul(slip_x, units.speed)], ["slip_y", py.mul(slip_y, units.speed)], ["normal_force", py.mul(told.force[2], force)], ["contact_force", py.mul(py.np.stack(told.force, -1), force)], ["contact_torque", py.mul(py.np.stack(told.torque, -1), units.energy)], ["energy", py.mul(told.energy, units.energy)], ["work", py.mul(samples.work, units.energy)], ["sliding_loss", py.mul(py.sub(py.sub(py.sub(py.neg(samples.work), samples.struck), samples.drilled), samples.rolled), units.energy)], ["drilling_loss", py.mul(samples.drilled, units.energy)], ["rolling_loss", py.mul(samples.rolled, units.energy)], ["jellett", py.mul(py.mul(told.jellett, units.angular_momentum), units.length)], ["height", py.mul(state.height, units.length)], ["gap", py.mul(told.gap, units.length)], ["x", py.mul(samples.x, units.length)], ["y", py.mul(samples.y, units.length)], ["axis", py.np.stack(axis, -1)], ["velocity", py.mul(py.np.stack(state.velocity, -1), units.speed)], ["angular_momentum", py.mul(py.np.stack(momentum, -1), units.angular_momentum)], ["orientation", py.np.stack(orientation(axis, samples.turn, samples.pole, py.np), -1)]]);
+  return new py.Dict([
+    ["theta", py.np.arctan2(sine, axis[2])],
+    ["theta_dot", py.div(tilting, units.time)],
+    ["phi", py.np.arctan2(axis[1], axis[0])],
+    ["phi_dot", py.div(told.precession, units.time)],
+    ["omega3", py.div(told.spin, units.time)],
+    ["slip_x", py.mul(slip_x, units.speed)],
+    ["slip_y", py.mul(slip_y, units.speed)],
+    ["normal_force", py.mul(told.force[2], force)],
+    ["contact_force", py.mul(py.np.stack(told.force, -1), force)],
+    ["contact_torque", py.mul(py.np.stack(told.torque, -1), units.energy)],
+    ["energy", py.mul(told.energy, units.energy)],
+    ["work", py.mul(samples.work, units.energy)],
+    [
+      "sliding_loss",
+      py.mul(
+        py.sub(py.sub(py.sub(py.neg(samples.work), samples.struck), samples.drilled), samples.rolled),
+        units.energy
+      )
+    ],
+    ["drilling_loss", py.mul(samples.drilled, units.energy)],
+    ["rolling_loss", py.mul(samples.rolled, units.energy)],
+    ["jellett", py.mul(py.mul(told.jellett, units.angular_momentum), units.length)],
+    ["height", py.mul(state.height, units.length)],
+    ["gap", py.mul(told.gap, units.length)],
+    ["x", py.mul(samples.x, units.length)],
+    ["y", py.mul(samples.y, units.length)],
+    ["axis", py.np.stack(axis, -1)],
+    ["velocity", py.mul(py.np.stack(state.velocity, -1), units.speed)],
+    ["angular_momentum", py.mul(py.np.stack(momentum, -1), units.angular_momentum)],
+    ["orientation", py.np.stack(orientation(axis, samples.turn, samples.pole, py.np), -1)]
+  ]);
 }
 
 // tippetop.emit.graph
@@ -8730,8 +10485,15 @@ function needed(graph, outputs) {
 
 /** A JavaScript function `name(y, p, out)` that puts what was recorded of y and p into out. */
 function javascript_source(recorded, name) {
-  var lines = [...recorded.nodes].map((node) => `  const t${py.str(node.place)} = ${py.str(_written(node))};`);
-  lines = py.add(lines, py.enumerate(recorded.outputs).map(([number, node]) => `  out[${py.str(number)}] = t${py.str(node.place)};`));
+  var lines = [...recorded.nodes].map(
+    (node) => `  const t${py.str(node.place)} = ${py.str(_written(node))};`
+  );
+  lines = py.add(
+    lines,
+    py.enumerate(recorded.outputs).map(
+      ([number, node]) => `  out[${py.str(number)}] = t${py.str(node.place)};`
+    )
+  );
   return py.join("\n", [`function ${py.str(name)}(y, p, out) {`, ...lines, "}"]);
 }
 
@@ -8780,7 +10542,9 @@ function unrolled(recorded, abreast) {
     if (py.eq(node.name, CONSTANT)) {
       var found = py.mul([graph.taken(node.value)], abreast);
     } else if (py.contains([STATE, PARAMETER], node.name)) {
-      found = py.range(abreast).map((lane) => graph.node(node.name, [], py.add(py.int(node.value) * abreast, lane)));
+      found = py.range(abreast).map(
+        (lane) => graph.node(node.name, [], py.add(py.int(node.value) * abreast, lane))
+      );
     } else if (py.eq(node.name, SPREAD)) {
       found = py.mul([py.item(operands[0], py.int(node.value))], abreast);
     } else if (py.eq(node.name, TOTAL)) {
@@ -8790,7 +10554,13 @@ function unrolled(recorded, abreast) {
       }
       found = py.mul([total], abreast);
     } else {
-      found = py.range(abreast).map((lane) => graph.node(node.name, py.tuple([...operands].map((operand) => py.item(operand, lane))), node.value));
+      found = py.range(abreast).map(
+        (lane) => graph.node(
+          node.name,
+          py.tuple([...operands].map((operand) => py.item(operand, lane))),
+          node.value
+        )
+      );
     }
     py.put(values, node.place, found);
   }
