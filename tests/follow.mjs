@@ -9,7 +9,7 @@ function followed({ problem, duration, tolerance, times }) {
     const run = simulate(problem, { duration, tolerance });
     const track = run.track(times.filter((time) => time <= run.endTime));
     return {
-      outcome: run.outcome, end: run.endTime, events: run.events, metrics: run.metrics,
+      outcome: run.outcome, end: run.endTime, events: run.events, flights: run.flights, metrics: run.metrics,
       track: Object.fromEntries(Object.entries(track).map(([name, values]) => [name, Array.from(values)])),
     };
   } catch (error) {

@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 import subprocess
 from collections.abc import Iterator
 from pathlib import Path
@@ -11,12 +12,16 @@ import numpy as np
 
 import tippetop as tt
 from node import NODE
+from tippetop.catalogue import LISTED, METRICS, SAMPLED
 from tippetop.engine import HERE
 
 SAMPLES = 41
 TOLERANCE = 3e-14
 """Of both. Launches that stick and slip again and again multiply errors up to 1e5 times, in Python as in the
 page: with 1e-12 a step either may be off by more than the 1e-7 by which they are judged."""
+
+MOST_OFF = 1e-7
+"""How much numbers may differ, beside the largest of their unit in the run."""
 
 
 def law_of(random: np.random.Generator, size: float) -> dict[str, Any]:
@@ -98,7 +103,7 @@ def in_javascript(launches: list[dict[str, Any]], *options: str) -> Iterator[dic
         yield json.loads(line)
 
 
-def compared(fields: dict[str, Any], found: dict[str, Any], run: Any) -> list[str]:
+def compared(found: dict[str, Any], run: Any) -> list[str]:
     """How what JavaScript made of a launch differs from a run; nothing if it does not."""
     if "outcome" not in found:
         return [str(found)]
@@ -106,20 +111,56 @@ def compared(fields: dict[str, Any], found: dict[str, Any], run: Any) -> list[st
     if found["outcome"]["name"] != run.attrs["outcome"]:
         wrong.append(f"outcome {found['outcome']} instead of {run.attrs['outcome_advice']}")
     kinds = [str(kind) for kind in run["event_kind"].values]
-    theirs = [event["kind"] for event in found["events"]]
-    if theirs != kinds:
-        first = next((i for i, (a, b) in enumerate(zip(theirs, kinds, strict=False)) if a != b), None)
-        wrong.append(f"events {len(theirs)} instead of {len(kinds)}, from number {first} on")
-    times = [event["time"] for event in found["events"]]
-    off = max((abs(a - b) for a, b in zip(times, run["event_time"].values, strict=False)), default=0.0)
-    if off > 1e-7:
-        wrong.append(f"events off by {off:.1e} s")
-    theta = np.array(found["track"]["theta"])
-    count = min(len(theta), len(run["theta"]))
-    tilts = np.abs(theta[:count] - run["theta"].values[:count])
-    if not tilts.max(initial=0.0) <= 1e-7:
-        wrong.append(f"tilt off by {tilts.max():.1e} rad")
+    others = [event["kind"] for event in found["events"]]
+    if others != kinds:
+        first = next((i for i, (a, b) in enumerate(zip(others, kinds, strict=False)) if a != b), None)
+        return [*wrong, f"events {len(others)} instead of {len(kinds)}, from number {first} on"]
+    modes = [run["mode"].attrs["flag_meanings"].split()[number] for number in run["mode"].values]
+    # Where the runs end before their time, one may end a rounding before the last of the samples.
+    count = min(len(modes), len(found["track"]["time"]))
+    if found["track"]["mode"][:count] != modes[:count]:
+        wrong.append(f"modes {found['track']['mode']} instead of {modes}")
+    sizes = sizes_of(run)
+    for name, numbers in numbers_of(found).items():
+        ours = run[name].values[:count] if name in SAMPLED else run[name].values
+        theirs = np.array(numbers, dtype=float)[: ours.size].reshape(ours.shape)
+        if not np.array_equal(np.isnan(theirs), np.isnan(ours)):
+            wrong.append(f"{name} is missing elsewhere")
+        off = np.abs(theirs - ours)
+        if name == "phi":
+            off = np.minimum(off, 2.0 * np.pi - off)
+        most, size = largest(off), sizes[run[name].attrs.get("units", "1")]
+        if most > MOST_OFF * size:
+            wrong.append(f"{name} off by {most:.1e} of {size:.1e}")
     return wrong
+
+
+def sizes_of(run: Any) -> dict[str, float]:
+    """The largest number of each unit in a run, beside which others are judged; and 1 rad, 1 s and 1."""
+    sizes = dict[str, float]()
+    for name in SAMPLED | METRICS | LISTED:
+        if run[name].dtype.kind == "f":
+            units = run[name].attrs["units"]
+            sizes[units] = max(sizes.get(units, 0.0), largest(np.abs(run[name].values)))
+    return sizes | dict.fromkeys(("rad", "s", "1"), 1.0)
+
+
+def largest(numbers: Any) -> float:
+    """The largest of some numbers but those that are missing; 0 if all are."""
+    return float(np.max(numbers, initial=0.0, where=~np.isnan(numbers)))
+
+
+def numbers_of(found: dict[str, Any]) -> dict[str, list[Any]]:
+    """The numbers of what JavaScript made of a launch by their names in a run; steps are its own matter."""
+    numbers = {name: found["track"][name] for name in SAMPLED}
+    numbers |= {name: [found["metrics"][name]] for name in METRICS if name != "steps"}
+    for name in LISTED:
+        table, _, word = name.partition("_")
+        if name != "event_kind":
+            numbers[name] = [
+                one[re.sub("_(.)", lambda found: found[1].upper(), word)] for one in found[f"{table}s"]
+            ]
+    return numbers
 
 
 def asked(seed: int, duration: float) -> dict[str, Any]:

@@ -8,8 +8,6 @@ import os
 import subprocess
 import sys
 
-import pytest
-
 import tippetop as tt
 from launches import TOLERANCE, asked, compared, in_javascript, in_python, launch_of
 from lying import lying, resisted
@@ -37,9 +35,7 @@ def test_the_report_s_launch_with_flights_is_the_same() -> None:
     question = asked(0, duration) | {"problem": problem.model_dump(mode="json"), "tolerance": TOLERANCE}
     (found,) = in_javascript([question])
     assert run.sizes["event"] > 10, "it flies"
-    assert not compared(problem.model_dump(), found, run)
-    for name in ("turns_over", "airborne_time", "highest_gap", "energy_lost_sliding", "highest"):
-        assert found["metrics"][name] == pytest.approx(float(run[name]), rel=1e-6), name
+    assert not compared(found, run)
 
 
 def test_random_launches_are_the_same() -> None:
@@ -50,7 +46,7 @@ def test_random_launches_are_the_same() -> None:
         if isinstance(run, str):
             off = [] if theirs.get("refused") == run else [f"{theirs} instead of {run}"]
         else:
-            off = compared(launch_of(seed), theirs, run)
+            off = compared(theirs, run)
         if off:
             wrong[seed] = off
     assert not wrong
@@ -63,7 +59,7 @@ def test_slip_that_begins_on_two_contacts_is_the_same() -> None:
     (found,) = in_javascript([question])
     run = in_python(problem.model_dump(mode="json"), duration)
     assert str(run["event_kind"].values[-1]) == "slip"
-    assert not compared(problem.model_dump(), found, run)
+    assert not compared(found, run)
 
 
 def test_rolling_that_stops_and_starts_on_two_contacts_is_the_same() -> None:
@@ -73,7 +69,7 @@ def test_rolling_that_stops_and_starts_on_two_contacts_is_the_same() -> None:
     run = in_python(problem.model_dump(mode="json"), duration)
     assert {"rolling starts", "rolling stops"} <= set(run["event_kind"].values.tolist())
     assert run.attrs["outcome"] == "at_rest"
-    assert not compared(problem.model_dump(), found, run)
+    assert not compared(found, run)
 
 
 def test_two_patches_stop_whatever_a_step_may_be_wrong_by() -> None:
