@@ -7,13 +7,12 @@ import os
 import shutil
 import tempfile
 from collections.abc import Callable
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TypeVar
 
 import platformdirs
 import psutil
-
-from tippetop.integrators import has_llvm
 
 Found = TypeVar("Found")
 
@@ -45,7 +44,7 @@ def kept(made: object, use: Callable[[Path | None], Found]) -> Found:
         compiles only.
     """
     place = os.environ.get(VARIABLE) or platformdirs.user_cache_path("tippetop", appauthor=False)
-    if place != "off" and has_llvm():
+    if place != "off" and find_spec("llvmlite") is not None:
         with contextlib.suppress(OSError):
             folder = Path(place) / (PREFIX + _digest(repr((made, *_processor())).encode())[:32])
             if _is_whole(folder):
