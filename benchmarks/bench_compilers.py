@@ -14,7 +14,7 @@ import numpy as np
 
 import tippetop as tt
 from benchmarks.surroundings import markdown, rounded
-from tippetop.integrators import COMPILED_TOLERANCE
+from tippetop.integrators import TOLERANCES as DEFAULTS
 from tippetop.presets import report_problem
 
 DURATION, PART, SAMPLES = 20.0, 4.0, 2001
@@ -47,9 +47,9 @@ def measure(quick: bool) -> dict[str, Any]:
             break
     ways = {
         "heyoka": ("taylor", tolerance, DURATION),
-        "numba": ("compiled", COMPILED_TOLERANCE, DURATION),
-        "numba, 4 s": ("compiled", COMPILED_TOLERANCE, PART),
-        "SciPy, 4 s": ("dop853", COMPILED_TOLERANCE, PART),
+        "numba": ("compiled", DEFAULTS["compiled"], DURATION),
+        "numba, 4 s": ("compiled", DEFAULTS["compiled"], PART),
+        "SciPy, 4 s": ("dop853", DEFAULTS["compiled"], PART),
     }
     times: dict[str, list[float]] = {name: [] for name in ways}
     for _ in range(3 if quick else 21):

@@ -7,7 +7,7 @@ import pytest
 from exact_motions import whole
 
 import tippetop as tt
-from tippetop.integrators import Motion, has_taylor, make_integrator, relieved
+from tippetop.integrators import Motion, default_name, has_taylor, make_integrator
 from tippetop.integrators.base import Guard
 from tippetop.integrators.collocation import STAGES, Collocation, Step, solved
 from tippetop.integrators.rates import RightHandSide
@@ -146,10 +146,8 @@ def test_a_root_of_a_negative_number_is_no_rate():
     assert np.isnan(found).all()
 
 
-def test_a_relieved_method_is_relieved_once():
-    method = make_integrator()
-    assert relieved(method) is method
-    assert make_integrator("dop853") == relieved(make_integrator("dop853")).explicit
+def test_the_best_method_is_relieved_and_one_by_name_is_not():
+    assert make_integrator() == Relieved(make_integrator(default_name()))
 
 
 def test_what_polynomials_say_beyond_a_step_is_what_they_say_within_it():

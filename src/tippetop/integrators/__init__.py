@@ -2,36 +2,18 @@
 
 from importlib.util import find_spec
 
-import numpy as np
-
 from tippetop.errors import MISSING, InvalidInput, Unavailable, is_number, one_of
-from tippetop.integrators.base import Arc, Guard, Integrator, Motion
+from tippetop.integrators.base import TOLERANCES as TOLERANCES
+from tippetop.integrators.base import Arc as Arc
+from tippetop.integrators.base import Guard as Guard
+from tippetop.integrators.base import Integrator as Integrator
+from tippetop.integrators.base import Motion as Motion
 from tippetop.interrupts import import_heard
 
-__all__ = [
-    "NAMES",
-    "Arc",
-    "Guard",
-    "Integrator",
-    "Motion",
-    "default_name",
-    "has_llvm",
-    "has_numba",
-    "has_taylor",
-    "make_integrator",
-    "relieved",
-]
+LEAST_TOLERANCE = 2.3e-14
+"""Below this no solver but Taylor's honours a relative tolerance."""
 
-SCIPY_TOLERANCES = {"dop853": 1e-12, "rk45": 1e-10, "radau": 1e-9, "bdf": 1e-9, "lsoda": 1e-11}
-"""SciPy's methods, with the relative error per step that each is given where nobody says."""
-
-COMPILED_TOLERANCE = 1e-13
-"""The relative error per step of the method that numba compiles, where nobody says."""
-
-LEAST_SCIPY_TOLERANCE = 2.3e-14
-"""Below this SciPy's solvers do not honour a relative tolerance."""
-
-NAMES = ["taylor", "collocation", "compiled", *SCIPY_TOLERANCES, "rk4"]
+NAMES = [*TOLERANCES, "rk4"]
 """The integrators by the names users give."""
 
 
@@ -84,7 +66,9 @@ def make_integrator(
         If it is not installed.
     """
     if name is None:
-        return relieved(make_integrator(default_name(), tolerance, step, time_unit))
+        from tippetop.integrators.relief import Relieved  # noqa: PLC0415 - slow to import
+
+        return Relieved(make_integrator(default_name(), tolerance, step, time_unit))
     if not isinstance(name, str) or name not in NAMES:
         raise InvalidInput("integrator", name, one_of(name, NAMES))
     if name == "rk4":
@@ -96,63 +80,39 @@ def make_integrator(
                 MISSING if step is None else step,
                 "a step size in seconds greater than 0, which rk4 needs",
             )
-        return _classical(step / time_unit)
+        from tippetop.integrators.classical import ClassicalRK4  # noqa: PLC0415 - slow to import
+
+        return ClassicalRK4(step / time_unit)
     if step is not None:
         raise InvalidInput("step", step, f"none with {name}, which chooses its own")
-    least = np.finfo(float).eps if name == "taylor" else LEAST_SCIPY_TOLERANCE
+    least = TOLERANCES["taylor"] if name == "taylor" else LEAST_TOLERANCE
     if tolerance is not None and not (is_number(tolerance) and least <= tolerance < 1):
         raise InvalidInput("tolerance", tolerance, f"a number from {least:.2g} to 1 with {name}")
-    if name == "taylor":
-        return _taylor(tolerance)
-    if name == "collocation":
-        return _collocation(tolerance)
-    if name == "compiled":
-        return _compiled(COMPILED_TOLERANCE if tolerance is None else tolerance)
-    return _scipy(name, SCIPY_TOLERANCES[name] if tolerance is None else tolerance)
+    return _adaptive(name, TOLERANCES[name] if tolerance is None else tolerance)
 
 
-def relieved(integrator: Integrator) -> Integrator:
-    """The method, relieved by "collocation" where the motion is stiff."""
-    from tippetop.integrators.relief import Relieved  # noqa: PLC0415 - it imports from here
+def _adaptive(name: str, tolerance: float) -> Integrator:
+    """An integrator that chooses its steps; they are imported when asked for, which is slow."""
+    for needing, package, there in (("taylor", "heyoka", has_taylor), ("compiled", "numba", has_numba)):
+        if name == needing and not there():
+            others = ", ".join(other for other in NAMES if other != name)
+            raise Unavailable(
+                f"the integrator {name} needs {package}, which is not installed; accepted: {others}"
+            )
+    match name:
+        case "taylor":
+            import_heard("tippetop.integrators.taylor")
+            from tippetop.integrators.taylor import Taylor  # noqa: PLC0415
 
-    return integrator if isinstance(integrator, Relieved) else Relieved(integrator)
+            return Taylor(tolerance)
+        case "collocation":
+            from tippetop.integrators.collocation import Collocation  # noqa: PLC0415
 
+            return Collocation(tolerance)
+        case "compiled":
+            from tippetop.integrators.compiled_runge_kutta import CompiledRungeKutta  # noqa: PLC0415
 
-def _collocation(tolerance: float | None) -> Integrator:
-    from tippetop.integrators.collocation import Collocation  # noqa: PLC0415 - slow to import
-
-    return Collocation() if tolerance is None else Collocation(tolerance)
-
-
-def _taylor(tolerance: float | None) -> Integrator:
-    if not has_taylor():
-        raise _missing("taylor", "heyoka")
-    import_heard("tippetop.integrators.taylor")
-    from tippetop.integrators.taylor import Taylor  # noqa: PLC0415 - optional, and slow to import
-
-    return Taylor() if tolerance is None else Taylor(tolerance)
-
-
-def _compiled(tolerance: float) -> Integrator:
-    if not has_numba():
-        raise _missing("compiled", "numba")
-    from tippetop.integrators.compiled_runge_kutta import CompiledRungeKutta  # noqa: PLC0415 - optional
-
-    return CompiledRungeKutta(tolerance)
-
-
-def _missing(name: str, package: str) -> Unavailable:
-    others = ", ".join(other for other in NAMES if other != name)
-    return Unavailable(f"the integrator {name} needs {package}, which is not installed; accepted: {others}")
-
-
-def _scipy(name: str, tolerance: float) -> Integrator:
-    from tippetop.integrators.scipy_methods import SciPy  # noqa: PLC0415 - slow to import
+            return CompiledRungeKutta(tolerance)
+    from tippetop.integrators.scipy_methods import SciPy  # noqa: PLC0415
 
     return SciPy(name, tolerance)
-
-
-def _classical(step: float) -> Integrator:
-    from tippetop.integrators.classical import ClassicalRK4  # noqa: PLC0415 - slow to import
-
-    return ClassicalRK4(step)

@@ -24,6 +24,18 @@ Evaluation: TypeAlias = Callable[[Array, Sequence[Any]], Array]
 """From n states, shape (size, ...), and parameters, each of a shape that becomes theirs, to numbers of each,
 shape (numbers, ...)."""
 
+TOLERANCES = {
+    "taylor": float(np.finfo(float).eps),
+    "collocation": 1e-13,
+    "compiled": 1e-13,
+    "dop853": 1e-12,
+    "rk45": 1e-10,
+    "radau": 1e-9,
+    "bdf": 1e-9,
+    "lsoda": 1e-11,
+}
+"""The integrators that choose their steps, and the relative error per step of each where nobody says."""
+
 NOT_FINITE = "the solution is no longer finite"
 """Why an integrator gives up where numbers grow beyond all bounds: its last state then means nothing."""
 

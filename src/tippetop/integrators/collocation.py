@@ -15,7 +15,7 @@ import numpy as np
 from numpy.polynomial.chebyshev import chebval
 from scipy.special import roots_jacobi
 
-from tippetop.integrators.base import Arc, Array, Motion
+from tippetop.integrators.base import TOLERANCES, Arc, Array, Motion
 from tippetop.integrators.rates import RightHandSide
 from tippetop.integrators.sampling import Steps
 
@@ -40,9 +40,6 @@ SLOWER, FASTER, SAFETY = 0.25, 3.0, 0.8
 
 FIRST = 1e-3
 """How far the state goes, relatively, in the first step."""
-
-LEAST_TOLERANCE = 1e-13
-"""Tolerance below which the coefficients of a step are rounding."""
 
 LEAST_STEP = 1e-15
 """A step shorter than this part of the time gets nowhere."""
@@ -83,7 +80,7 @@ def radau_points(stages: int = STAGES) -> Points:
 class Collocation:
     """Collocation at Radau's points with adaptive steps."""
 
-    tolerance: float = LEAST_TOLERANCE
+    tolerance: float = TOLERANCES["collocation"]
     """Relative and absolute size of the last coefficients of a step's polynomials, at most."""
     shortest: float = 0.0
     """The method gives up where its steps would be shorter than this, and begins with such steps."""

@@ -13,7 +13,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tippetop.integrators.base import Arc, Array, Evaluation, Expansion, Integrator, Motion, Rows
+from tippetop.integrators.base import (
+    TOLERANCES,
+    Arc,
+    Array,
+    Evaluation,
+    Expansion,
+    Integrator,
+    Motion,
+    Rows,
+)
 from tippetop.integrators.rates import RightHandSide
 from tippetop.mechanics.vectors import Scalar
 
@@ -58,9 +67,9 @@ class Relieved:
     def _implicit(self, shortest: float) -> Integrator:
         """The method where the motion is stiff."""
         # Slow to import, and seldom needed.
-        from tippetop.integrators.collocation import LEAST_TOLERANCE, Collocation  # noqa: PLC0415
+        from tippetop.integrators.collocation import Collocation  # noqa: PLC0415
 
-        return Collocation(max(self.tolerance, LEAST_TOLERANCE), shortest)
+        return Collocation(max(self.tolerance, TOLERANCES["collocation"]), shortest)
 
     def integrate(
         self, motion: Motion, parameters: Sequence[float], start: tuple[float, Array], end: float

@@ -12,7 +12,16 @@ from typing import Any
 import heyoka as hy
 import numpy as np
 
-from tippetop.integrators.base import NOT_FINITE, Arc, Array, Evaluation, Expansion, Motion, Rows
+from tippetop.integrators.base import (
+    NOT_FINITE,
+    TOLERANCES,
+    Arc,
+    Array,
+    Evaluation,
+    Expansion,
+    Motion,
+    Rows,
+)
 from tippetop.integrators.dense import DenseSolution
 from tippetop.integrators.sealed_folders import kept_content
 from tippetop.interrupts import heard
@@ -36,7 +45,7 @@ hy.llvm_state.set_diskcache_enabled(False)
 class Taylor:
     """Adaptive Taylor series, accurate to rounding at its default tolerance."""
 
-    tolerance: float = float(np.finfo(float).eps)
+    tolerance: float = TOLERANCES["taylor"]
     """Relative and absolute error per step, at least 2.2e-16."""
     name: str = field(default="taylor", init=False)
 

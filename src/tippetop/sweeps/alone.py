@@ -8,22 +8,13 @@ import numpy as np
 from tippetop.contact.block import in_blocks
 from tippetop.contact.mode import Segment, Transition
 from tippetop.contact.trajectory import Trajectory
-from tippetop.integrators import (
-    COMPILED_TOLERANCE,
-    SCIPY_TOLERANCES,
-    default_name,
-    has_llvm,
-    make_integrator,
-)
+from tippetop.integrators import TOLERANCES, default_name, has_llvm, make_integrator
 from tippetop.integrators.dense import DenseSolution
 from tippetop.mechanics.hull import Hull
 from tippetop.metrics import Ends
 from tippetop.sweeps.launches import Launches, single
 from tippetop.tally import Tally
 from tippetop.theory.prediction import is_held
-
-LEAST = {"compiled": COMPILED_TOLERANCE, "dop853": SCIPY_TOLERANCES["dop853"]}
-"""Least tolerances where heyoka is not installed: those of single runs."""
 
 
 def is_alone(launches: Launches) -> bool:
@@ -48,7 +39,7 @@ def follow(
     start: Transition, time: float, end: float, tolerance: float, settled: float | None = None
 ) -> tuple[Trajectory, Tally]:
     """Follow one launch from a transition to its end, or until its tilt is held."""
-    method = make_integrator(None, max(tolerance, LEAST.get(default_name(), 0.0)))
+    method = make_integrator(None, max(tolerance, TOLERANCES[default_name()]))
     trajectory, tally = Trajectory(start, end, method, time=time), Tally()
     segments = trajectory.segments()
     segments = segments if settled is None else until_settled(trajectory, segments, settled)
