@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 
 from tippetop.contact.closing import closing_motion
-from tippetop.contact.double import motion_on_two
-from tippetop.contact.double_sticking import beginning_on_two, held_motion_on_two, turning_motion
+from tippetop.contact.double import SlidingOnTwo
+from tippetop.contact.double_sticking import SlipBeginningOnTwo, StickingAndSlidingBack, StickingOnTwo
 from tippetop.contact.sliding import held_motion, sliding_motion
 from tippetop.contact.sticking import sticking_motion
 from tippetop.integrators.base import Motion
@@ -70,14 +70,17 @@ def sliding_motions(surface, law):
         yield f"closing {ending}", closing_motion(kind, ending, True), (*numbers, 1e9, 1e-3)
     if isinstance(surface, Hull):
         other = top._replace(surface=surface._replace(active=1))
-        both = kind, other.kind
+        modes = {"": SlidingOnTwo}
+        if isinstance(sliding_law(law), CoulombLaw):
+            modes |= {
+                " beginning": SlipBeginningOnTwo,
+                " turning": StickingAndSlidingBack,
+                " sticking": StickingOnTwo,
+            }
         for way in (0.0, -1.0)[: 1 + rolls]:
-            told = f"two {way}"
-            yield told, motion_on_two(*both, way), (*numbers, *other.numbers)
-            if isinstance(sliding_law(law), CoulombLaw):
-                yield f"{told} beginning", beginning_on_two(*both, way), (*numbers, *other.numbers)
-                yield f"{told} turning", turning_motion(*both, -1.0, way), (*numbers, *other.numbers)
-                yield f"{told} sticking", held_motion_on_two(*both, way), (*numbers, *other.numbers, -1.0)
+            for told, form in modes.items():
+                mode = form(top, None, other, way)
+                yield f"two {way}{told}", mode.motion, mode.parameters
 
 
 def sticking_motions(surface, law):

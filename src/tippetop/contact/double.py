@@ -1,23 +1,18 @@
 """Two surfaces touch the table at once."""
 
 from abc import abstractmethod
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Self, TypeAlias
 
 from tippetop.contact.mode import Event, EventKind, IntegratedMode, Reaction, Transition
 from tippetop.contact.sliding import ROLLING, ROLLING_STOPPING
+from tippetop.contact.sticking import split
 from tippetop.contact.surfaces import number_of
-from tippetop.integrators.base import Function, Guard, Motion
-from tippetop.mechanics.contact_pair import (
-    PairMotion,
-    Tops,
-    sliding_pair,
-    sliding_pair_rates,
-    turning_along,
-)
-from tippetop.mechanics.motion import along_table, on_table
+from tippetop.integrators.base import Guard, Motion
+from tippetop.mechanics.contact_pair import ContactPair, PairMotion, Tops, pair_motion
+from tippetop.mechanics.motion import along_table, axis_rate, on_table
 from tippetop.mechanics.pair_resolver import rolling_way
 from tippetop.mechanics.rolling import (
     Slip,
@@ -29,7 +24,7 @@ from tippetop.mechanics.rolling import (
     without_rolling,
 )
 from tippetop.mechanics.state import SlidingState, State
-from tippetop.mechanics.stick_slip import branch_guard, inner, slip_of
+from tippetop.mechanics.stick_slip import inner, scaled, slip_branch_guard, slip_of
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import Row, Scalar, Vector, dot
 
@@ -38,6 +33,9 @@ OPENING, ENDING, BRANCHING = "opening ", "ending ", "branching "
 SLOWEST_SLIP = 1e-9
 """Slip in natural units at which it ends on one of two contacts, or on both where drilling is resisted too,
 and is not followed further."""
+
+Watched: TypeAlias = tuple[str, Callable[[Any, Row], Scalar]]
+"""Name of a guard, and its value from a mode and the numbers of that."""
 
 
 @dataclass(frozen=True)
@@ -48,6 +46,11 @@ class OnTwo(IntegratedMode):
     """The top with the second surface active."""
     rolls: float = 0.0
     """Sign of omega_e (see `tippetop.mechanics.contact_pair`); 0 where rolling is held, or not resisted."""
+
+    size: ClassVar[int] = 6
+    """How many numbers the mode has."""
+    further: ClassVar[int] = 0
+    """How many parameters, beside the numbers of both tops."""
 
     @property
     def form(self) -> str:
@@ -74,6 +77,41 @@ class OnTwo(IntegratedMode):
     def stuck(self) -> tuple[int, ...]:
         """Numbers of the surfaces that stick: none, where a mode does not say otherwise."""
         return ()
+
+    @property
+    def motion(self) -> Motion:
+        """Equations of motion, with the guards of both contacts."""
+        return motion_on_two(self.without_tops(), self.top.kind, self.other.kind)
+
+    def without_tops(self) -> Self:
+        """What remains of it without its tops, and what follows it."""
+        nothing: Any = None
+        return replace(self, top=nothing, rules=nothing, other=nothing)
+
+    def with_tops(self, tops: Tops, more: Sequence[Scalar]) -> Self:
+        """The same with tops, and with its further parameters."""
+        return replace(self, top=tops[0], other=tops[1])
+
+    def rates(self, y: Row) -> tuple[Scalar, ...]:
+        """Time derivatives of the numbers."""
+        now = self.found(y)[0]
+        return (*axis_rate(*split(y), self.top), *now.moment, *self.slipping(now))
+
+    def slipping(self, now: PairMotion) -> Slip:
+        """Those of the numbers after axis and angular momentum: none, where a mode does not say otherwise."""
+        return ()
+
+    def watched(self) -> list[Watched]:
+        """The guards of normal forces, and of rolling.
+
+        While both contacts stay closed the tilt does not change, and no further surface comes to the table.
+        """
+        found = [(f"{OPENING}{number}", _normal(number)) for number in (0, 1)]
+        if self.stopped:
+            found.append((ROLLING, lambda mode, y: mode.found(y)[0].rolling_reserve))
+        elif self.top.resists_rolling:
+            found.append((ROLLING_STOPPING, lambda mode, y: mode.rolls * mode.found(y)[0].rolling))
+        return found
 
     @abstractmethod
     def found(self, y: Row) -> tuple[PairMotion, tuple[Slip, Slip]]:
@@ -123,11 +161,7 @@ class SlidingOnTwo(OnTwo):
     """Sliding on two surfaces, as long as both normal forces are positive."""
 
     name: ClassVar[str] = "sliding"
-
-    @property
-    def motion(self) -> Motion:
-        """Equations of motion, with the guards of both contacts."""
-        return motion_on_two(self.top.kind, self.other.kind, self.rolls)
+    size: ClassVar[int] = 8
 
     def numbers(self, state: State) -> tuple[Scalar, ...]:
         """The 8 numbers of a sliding state."""
@@ -139,7 +173,28 @@ class SlidingOnTwo(OnTwo):
 
     def found(self, y: Row) -> tuple[PairMotion, tuple[Slip, Slip]]:
         """What the table does, and how both contacts slip."""
-        return sliding_pair(SlidingState.unpack(y), self.tops, self.rolls)
+        state = SlidingState.unpack(y)
+        one, other = (slip_of(*state, top) for top in self.tops)
+        pair = ContactPair.of(state.axis, state.momentum, self.tops)
+        return pair_motion(pair, (one, other), self.rolls), (one, other)
+
+    def slipping(self, now: PairMotion) -> Slip:
+        """Acceleration of the centre of mass."""
+        return scaled(1.0 / self.top.mass, now.force[:2])
+
+    def watched(self) -> list[Watched]:
+        """The guards of slip's end, and of the branches of the law, too."""
+        found = [*super().watched(), *self.endings()]
+        if is_branched(self.top.friction):
+            found += [(f"{BRANCHING}{number}", _branch(number)) for number in (0, 1)]
+        return found
+
+    def endings(self) -> list[Watched]:
+        """The guards of slip's end: on both contacts at once where drilling is resisted too."""
+        law = self.top.friction
+        if slip_length(law) is not None:
+            return [(f"{ENDING}both", lambda mode, y: _left(*mode.found(y)[1]))]
+        return [(f"{ENDING}{number}", _slip(number)) for number in (0, 1)] if is_set_valued(law) else []
 
     def follow(self, guard: str, time: float, state: State) -> Transition:
         """One surface opens, while the other goes on; or slip or rolling ends."""
@@ -164,67 +219,38 @@ def on_two(state: State, rules: Any, other: Top, rolls: float) -> SlidingOnTwo:
     return SlidingOnTwo(tops[0], rules, tops[1], rolls)
 
 
-def tops_of(first: Kind, second: Kind, numbers: Sequence[Scalar]) -> Tops:
-    """The top on either surface."""
-    cut = first.numbers
-    return first.top(tuple(numbers[:cut])), second.top(tuple(numbers[cut : cut + second.numbers]))
-
-
 @lru_cache
-def motion_on_two(first: Kind, second: Kind, rolls: float) -> Motion:
-    """Equations of motion of a top of these kinds: of another active surface and branch of the law each."""
+def motion_on_two(form: OnTwo, first: Kind, second: Kind) -> Motion:
+    """Equations of motion of a mode without tops, for tops of which each has a surface and a branch."""
+    cut, last = first.numbers, first.numbers + second.numbers
+
+    def mode(numbers: Sequence[Scalar]) -> OnTwo:
+        tops = first.top(tuple(numbers[:cut])), second.top(tuple(numbers[cut:last]))
+        return form.with_tops(tops, numbers[last:])
+
+    def guard(name: str, value: Callable[[Any, Row], Scalar]) -> Guard:
+        return Guard(name, lambda y, numbers: value(mode(numbers), y))
 
     def rates(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[Scalar, ...]:
-        return sliding_pair_rates(SlidingState.unpack(y), tops_of(first, second, numbers), rolls).pack()
+        return mode(numbers).rates(y)
 
-    def found(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> PairMotion:
-        return sliding_pair(SlidingState.unpack(y), tops_of(first, second, numbers), rolls)[0]
-
-    def slip(number: int) -> Function:
-        def value(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
-            found = slip_of(*SlidingState.unpack(y), tops_of(first, second, numbers)[number])
-            return inner(found, found) - SLOWEST_SLIP * SLOWEST_SLIP
-
-        return value
-
-    def both_slips(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
-        one, other = (slip_of(*SlidingState.unpack(y), top) for top in tops_of(first, second, numbers))
-        return inner(one, one) + inner(other, other) - SLOWEST_SLIP * SLOWEST_SLIP
-
-    def branch(number: int) -> Function:
-        def value(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
-            return branch_guard(*SlidingState.unpack(y), tops_of(first, second, numbers)[number])
-
-        return value
-
-    guards = pair_guards(first, found, rolls)
-    if slip_length(first.example.friction) is not None:
-        guards.append(Guard(f"{ENDING}both", both_slips))
-    elif is_set_valued(first.example.friction):
-        guards += [Guard(f"{ENDING}{number}", slip(number)) for number in (0, 1)]
-    if is_branched(first.example.friction):
-        guards += [Guard(f"{BRANCHING}{number}", branch(number)) for number in (0, 1)]
-    return Motion(
-        rates, size=8, parameters=first.numbers + second.numbers, guards=tuple(guards), lasting=False
-    )
+    example = replace(form, top=first.example, other=second.example)
+    guards = tuple(guard(name, value) for name, value in example.watched())
+    return Motion(rates, form.size, last + form.further, guards, lasting=False)
 
 
-def pair_guards(first: Kind, found: Any, rolls: float) -> list[Guard]:
-    """The guards of normal forces, and of rolling, from what the table does.
+def _normal(number: int) -> Callable[[Any, Row], Scalar]:
+    return lambda mode, y: mode.found(y)[0].normal[number]
 
-    While both contacts stay closed the tilt does not change, and no further surface comes to the table.
-    """
 
-    def normal(number: int) -> Function:
-        return lambda y, numbers: found(y, numbers).normal[number]
+def _slip(number: int) -> Callable[[Any, Row], Scalar]:
+    return lambda mode, y: _left(mode.found(y)[1][number])
 
-    def rolling(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
-        return rolls * turning_along(found(y, numbers).pair)
 
-    def reserve(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
-        return found(y, numbers).rolling_reserve
+def _branch(number: int) -> Callable[[Any, Row], Scalar]:
+    return lambda mode, y: slip_branch_guard(mode.found(y)[1][number], mode.tops[number])
 
-    guards = [Guard(f"{OPENING}{number}", normal(number)) for number in (0, 1)]
-    if first.example.resists_rolling:
-        guards.append(Guard(ROLLING_STOPPING, rolling) if rolls else Guard(ROLLING, reserve))
-    return guards
+
+def _left(*slips: Slip) -> Scalar:
+    """Falls through zero where so little is left of all these that they are followed no further."""
+    return sum(inner(slip, slip) for slip in slips) - SLOWEST_SLIP * SLOWEST_SLIP

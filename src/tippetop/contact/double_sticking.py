@@ -2,29 +2,27 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
-from typing import Any, ClassVar
+from typing import ClassVar, Self
 
-from tippetop.contact.double import BRANCHING, OPENING, OnTwo, SlidingOnTwo, pair_guards, tops_of
+from tippetop.contact.double import OPENING, OnTwo, SlidingOnTwo, Watched
 from tippetop.contact.mode import Outcome, Segment, Transition
 from tippetop.contact.sticking import split
 from tippetop.contact.surfaces import number_of
 from tippetop.integrators import make_integrator
-from tippetop.integrators.base import Function, Guard, Integrator, Motion
+from tippetop.integrators.base import Integrator
 from tippetop.mechanics.contact_pair import (
     ContactPair,
     PairMotion,
+    Tops,
     directions_of,
     pair_motion,
     slip_apart,
     slips_of,
-    turning_along,
 )
-from tippetop.mechanics.motion import along_table, axis_rate, on_table
-from tippetop.mechanics.rolling import Slip, is_branched, slip_length, velocity_without_slip, without_drilling
+from tippetop.mechanics.motion import along_table, on_table
+from tippetop.mechanics.rolling import Slip, slip_length, velocity_without_slip, without_drilling
 from tippetop.mechanics.state import SlidingState, State
-from tippetop.mechanics.stick_slip import slip_branch_guard, slip_of, velocity_of
-from tippetop.mechanics.top import Kind
+from tippetop.mechanics.stick_slip import scaled, slip_of, velocity_of
 from tippetop.mechanics.vectors import Row, Scalar
 
 SLIP, ENDING = "slip ", "ending"
@@ -77,16 +75,19 @@ class StickingAndSliding(HeldOnTwo):
         """The first surface."""
         return (number_of(self.top),)
 
-    @property
-    def motion(self) -> Motion:
-        """Equations of motion of axis and angular momentum, and guards."""
-        return turning_motion(self.top.kind, self.other.kind, self.sign, self.rolls)
-
     def found(self, y: Row) -> tuple[PairMotion, tuple[Slip, Slip]]:
         """What the table does, and how both contacts slip."""
         pair = ContactPair.of(*split(y), self.tops)
-        zeta = slip_apart(pair)
-        return turned(pair, self.sign, self.rolls), slips_of(pair, (0.0 * zeta, 0.0 * zeta, zeta))
+        zeta, way = slip_apart(pair), scaled(self.sign, directions_of(pair.first.axis)[1][:2])
+        return pair_motion(pair, (None, way), self.rolls), slips_of(pair, (0.0 * zeta, 0.0 * zeta, zeta))
+
+    def watched(self) -> list[Watched]:
+        """The guards of what holds the first, and of slip on the second, too."""
+        own: list[Watched] = [
+            (f"{SLIP}first", lambda mode, y: mode.found(y)[0].reserve(0)),
+            (ENDING, lambda mode, y: mode.sign * slip_apart(ContactPair.of(*split(y), mode.tops))),
+        ]
+        return own + super().watched()
 
     def follow(self, guard: str, time: float, state: State) -> Transition:
         """A contact opens; or slip ends on the second, or begins on the first."""
@@ -114,6 +115,7 @@ class StickingOnTwo(HeldOnTwo):
     """The |omega_e| at which patches slip that stick while the body rolls."""
 
     name: ClassVar[str] = "sticking"
+    further: ClassVar[int] = 1
 
     @property
     def parameters(self) -> tuple[Scalar, ...]:
@@ -125,10 +127,26 @@ class StickingOnTwo(HeldOnTwo):
         """Both surfaces."""
         return number_of(self.top), number_of(self.other)
 
-    @property
-    def motion(self) -> Motion:
-        """Equations of motion of axis and angular momentum, and the guards of what holds the contacts."""
-        return held_motion_on_two(self.top.kind, self.other.kind, self.rolls)
+    def without_tops(self) -> Self:
+        """Without what is a parameter, too."""
+        return replace(super().without_tops(), least=0.0)
+
+    def with_tops(self, tops: Tops, more: Sequence[Scalar]) -> Self:
+        """With that."""
+        return replace(super().with_tops(tops, more), least=more[0])
+
+    def watched(self) -> list[Watched]:
+        """The guards of what holds the contacts, too."""
+        found = super().watched()
+        if slip_length(self.top.friction) is None:
+            found += [
+                (f"{SLIP}0", lambda mode, y: mode.found(y)[0].left(0)),
+                (f"{SLIP}1", lambda mode, y: mode.found(y)[0].left(1)),
+                (f"{SLIP}both", lambda mode, y: mode.found(y)[0].both_reserve),
+            ]
+        elif self.rolls:
+            found.append((f"{SLIP}both", lambda mode, y: mode.rolls * mode.found(y)[0].rolling - mode.least))
+        return found
 
     def state(self, y: Row) -> State:
         """The state, without turning about the vertical, whose velocity is that of rolling."""
@@ -154,10 +172,11 @@ class SlipBeginningOnTwo(SlidingOnTwo):
     begin: tuple[float, ...] = ()
     """Its numbers at the start: axis, angular momentum, and xi (see `tippetop.mechanics.contact_pair`)."""
 
-    @property
-    def motion(self) -> Motion:
-        """Equations of motion, with the guards of both contacts."""
-        return beginning_on_two(self.top.kind, self.other.kind, self.rolls)
+    size: ClassVar[int] = 9
+
+    def without_tops(self) -> Self:
+        """Without the numbers at the start, too."""
+        return replace(super().without_tops(), begin=())
 
     def numbers(self, state: State) -> tuple[Scalar, ...]:
         """Those it begins with."""
@@ -186,6 +205,14 @@ class SlipBeginningOnTwo(SlidingOnTwo):
         slips = slips_of(pair, (y[6], y[7], y[8]))
         return pair_motion(pair, slips, self.rolls), slips
 
+    def slipping(self, now: PairMotion) -> Slip:
+        """Rate of xi."""
+        return now.rate
+
+    def endings(self) -> list[Watched]:
+        """It has just begun."""
+        return []
+
     def segments(self, time: float, state: State, end: float, integrator: Integrator) -> Iterator[Segment]:
         """Follow it by an implicit method: its direction is damped the faster the slower it is."""
         reach, method = min(time + BEGINNING, end), make_integrator("collocation", TOLERANCE)
@@ -195,86 +222,3 @@ class SlipBeginningOnTwo(SlidingOnTwo):
                 then = SlidingOnTwo(self.top, self.rules, self.other, self.rolls)
                 found = Transition((), then, found.state)
             yield replace(segment, transition=found, method=method)
-
-
-def turned(pair: ContactPair, sign: Scalar, rolls: float) -> PairMotion:
-    """What the table does while the first contact sticks, and the second slips so across the axis."""
-    across = directions_of(pair.first.axis)[1]
-    return pair_motion(pair, (None, (sign * across[0], sign * across[1])), rolls)
-
-
-@lru_cache
-def turning_motion(first: Kind, second: Kind, sign: float, rolls: float) -> Motion:
-    """Equations of motion while the first contact sticks and the second slips across the axis, as signed."""
-
-    def found(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> PairMotion:
-        return turned(ContactPair.of(*split(y), tops_of(first, second, numbers)), sign, rolls)
-
-    def slides(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
-        return sign * slip_apart(ContactPair.of(*split(y), tops_of(first, second, numbers)))
-
-    def holds(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
-        return found(y, numbers).reserve(0)
-
-    guards = [Guard(f"{SLIP}first", holds), Guard(ENDING, slides)]
-    return _of_momentum(first, second, found, [*guards, *pair_guards(first, found, rolls)])
-
-
-@lru_cache
-def held_motion_on_two(first: Kind, second: Kind, rolls: float) -> Motion:
-    """Equations of motion while both contacts stick; the last parameter is when patches slip."""
-
-    def found(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> PairMotion:
-        return pair_motion(ContactPair.of(*split(y), tops_of(first, second, numbers)), (None, None), rolls)
-
-    guards = pair_guards(first, found, rolls)
-    if slip_length(first.example.friction) is None:
-        guards += [
-            Guard(f"{SLIP}0", lambda y, numbers: found(y, numbers).left(0)),
-            Guard(f"{SLIP}1", lambda y, numbers: found(y, numbers).left(1)),
-            Guard(f"{SLIP}both", lambda y, numbers: found(y, numbers).both_reserve),
-        ]
-    elif rolls:
-        guards.append(
-            Guard(
-                f"{SLIP}both",
-                lambda y, numbers: rolls * turning_along(found(y, numbers).pair) - numbers[-1],
-            )
-        )
-    return _of_momentum(first, second, found, guards, 1)
-
-
-@lru_cache
-def beginning_on_two(first: Kind, second: Kind, rolls: float) -> Motion:
-    """Equations of motion while both contacts slip, with xi, of which a part may have just begun."""
-
-    def found(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> PairMotion:
-        pair = ContactPair.of(*split(y), tops_of(first, second, numbers))
-        return pair_motion(pair, slips_of(pair, (y[6], y[7], y[8])), rolls)
-
-    def rates(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[Scalar, ...]:
-        now = found(y, numbers)
-        axis, momentum = split(y)
-        return (*axis_rate(axis, momentum, now.pair.first.top), *now.moment, *now.rate)
-
-    def branch(number: int) -> Function:
-        def value(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
-            point = found(y, numbers).pair[number]
-            return slip_branch_guard(slips_of(found(y, numbers).pair, (y[6], y[7], y[8]))[number], point.top)
-
-        return value
-
-    guards = pair_guards(first, found, rolls)
-    if is_branched(first.example.friction):
-        guards += [Guard(f"{BRANCHING}{number}", branch(number)) for number in (0, 1)]
-    return Motion(rates, 9, first.numbers + second.numbers, tuple(guards), lasting=False)
-
-
-def _of_momentum(first: Kind, second: Kind, found: Any, guards: Sequence[Guard], further: int = 0) -> Motion:
-    """Equations of motion of axis and angular momentum, with so many further parameters."""
-
-    def rates(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[Scalar, ...]:
-        now = found(y, numbers)
-        return (*axis_rate(*split(y), now.pair.first.top), *now.moment)
-
-    return Motion(rates, 6, first.numbers + second.numbers + further, tuple(guards), lasting=False)

@@ -40,6 +40,16 @@ function length(a) {
 }
 
 // tippetop.integrators.base
+const TOLERANCES = new py.Dict([
+  ["taylor", py.float(py.np.finfo(py.float).eps)],
+  ["collocation", 1e-13],
+  ["compiled", 1e-13],
+  ["dop853", 1e-12],
+  ["rk45", 1e-10],
+  ["radau", 1e-09],
+  ["bdf", 1e-09],
+  ["lsoda", 1e-11]
+]);
 const NOT_FINITE = "the solution is no longer finite";
 
 /** A condition that ends a motion: the first time its value falls through zero from above. */
@@ -5781,6 +5791,10 @@ class PairMotion extends py.NamedTuple {
   get along() {
     return dot(this.force, directions_of(this.pair.first.axis)[0]);
   }
+  /** omega_e, rad/s. */
+  get rolling() {
+    return turning_along(this.pair);
+  }
   /** Rate of omega_e, rad/s^2. */
   get rolling_rate() {
     return dot(this.moving[2], directions_of(this.pair.first.axis)[0]);
@@ -5894,20 +5908,6 @@ function normal_wrench(point, slip, rolling) {
     torque = add(torque, scale(py.neg(law.length), rolling));
   }
   return new Wrench([...force, 1.0], torque);
-}
-
-/** What the table does to a body that slides on two surfaces, and how they slip. */
-function sliding_pair(state, tops, rolls) {
-  var [first, second] = [...tops].map((top) => slip_of(...state, top));
-  var pair = ContactPair.of(state.axis, state.momentum, tops);
-  return [pair_motion(pair, [first, second], rolls), [first, second]];
-}
-
-/** Time derivative of the state of a body that slides on two surfaces. */
-function sliding_pair_rates(state, tops, rolls) {
-  var [now] = sliding_pair(state, tops, rolls);
-  var [x, y] = scaled(py.div(1.0, tops[0].mass), now.force.slice(0, 2));
-  return new SlidingState(axis_rate(state.axis, state.momentum, tops[0]), now.moment, [x, y]);
 }
 
 /** The state with c' = 0 and no sinking: what is taken from the momentum lies across the axis. */
@@ -6172,6 +6172,8 @@ class OnTwo extends IntegratedMode {
     this.other = other;
     this.rolls = rolls;
   }
+  get size() { return 6; }
+  get further() { return 0; }
   /** How it rolls decides what its numbers say of the couple. */
   get form() {
     return `${py.str(this.name)} ${py.str(this.rolls)}`;
@@ -6192,6 +6194,38 @@ class OnTwo extends IntegratedMode {
   /** Numbers of the surfaces that stick: none, where a mode does not say otherwise. */
   get stuck() {
     return [];
+  }
+  /** Equations of motion, with the guards of both contacts. */
+  get motion() {
+    return motion_on_two(this.without_tops(), this.top.kind, this.other.kind);
+  }
+  /** What remains of it without its tops, and what follows it. */
+  without_tops() {
+    var nothing = null;
+    return py.replace(this, { top: nothing, rules: nothing, other: nothing });
+  }
+  /** The same with tops, and with its further parameters. */
+  with_tops(tops, more) {
+    return py.replace(this, { top: tops[0], other: tops[1] });
+  }
+  /** Time derivatives of the numbers. */
+  rates(y) {
+    var now = this.found(y)[0];
+    return [...axis_rate(...split(y), this.top), ...now.moment, ...this.slipping(now)];
+  }
+  /** Those of the numbers after axis and angular momentum: none, where a mode does not say otherwise. */
+  slipping(now) {
+    return [];
+  }
+  /** The guards of normal forces, and of rolling. */
+  watched() {
+    var found = [0, 1].map((number) => [`${py.str(OPENING)}${py.str(number)}`, _normal(number)]);
+    if (py.truth(this.stopped)) {
+      found.push([ROLLING, (mode, y) => mode.found(y)[0].rolling_reserve]);
+    } else if (py.truth(this.top.resists_rolling)) {
+      found.push([ROLLING_STOPPING, (mode, y) => py.mul(mode.rolls, mode.found(y)[0].rolling)]);
+    }
+    return found;
   }
   /** Force of both contacts, and their torque about the first contact point. */
   reaction(y) {
@@ -6239,10 +6273,7 @@ class SlidingOnTwo extends OnTwo {
     super(top, rules, other, rolls);
   }
   get name() { return "sliding"; }
-  /** Equations of motion, with the guards of both contacts. */
-  get motion() {
-    return motion_on_two(this.top.kind, this.other.kind, this.rolls);
-  }
+  get size() { return 8; }
   /** The 8 numbers of a sliding state. */
   numbers(state) {
     return along_table(state).pack();
@@ -6253,7 +6284,35 @@ class SlidingOnTwo extends OnTwo {
   }
   /** What the table does, and how both contacts slip. */
   found(y) {
-    return sliding_pair(SlidingState.unpack(y), this.tops, this.rolls);
+    var state = SlidingState.unpack(y);
+    var [one, other] = [...this.tops].map((top) => slip_of(...state, top));
+    var pair = ContactPair.of(state.axis, state.momentum, this.tops);
+    return [pair_motion(pair, [one, other], this.rolls), [one, other]];
+  }
+  /** Acceleration of the centre of mass. */
+  slipping(now) {
+    return scaled(py.div(1.0, this.top.mass), now.force.slice(0, 2));
+  }
+  /** The guards of slip's end, and of the branches of the law, too. */
+  watched() {
+    var found = [...super.watched(), ...this.endings()];
+    if (py.truth(is_branched(this.top.friction))) {
+      found = py.add(
+        found,
+        [0, 1].map((number) => [`${py.str(BRANCHING)}${py.str(number)}`, _branch(number)])
+      );
+    }
+    return found;
+  }
+  /** The guards of slip's end: on both contacts at once where drilling is resisted too. */
+  endings() {
+    var law = this.top.friction;
+    if (slip_length(law) !== null) {
+      return [[`${py.str(ENDING)}both`, (mode, y) => _left(...mode.found(y)[1])]];
+    }
+    return py.truth(is_set_valued(law)) ? [0, 1].map(
+      (number) => [`${py.str(ENDING)}${py.str(number)}`, _slip(number)]
+    ) : [];
   }
   /** One surface opens, while the other goes on; or slip or rolling ends. */
   follow(guard, time, state) {
@@ -6284,76 +6343,39 @@ function on_two(state, rules, other, rolls) {
   return new SlidingOnTwo(tops[0], rules, tops[1], rolls);
 }
 
-/** The top on either surface. */
-function tops_of(first, second, numbers) {
-  var cut = first.numbers;
-  return [
-    first.top(py.tuple(numbers.slice(0, cut))),
-    second.top(py.tuple(py.slice(numbers, cut, py.add(cut, second.numbers), null)))
-  ];
-}
-
-/** Equations of motion of a top of these kinds: of another active surface and branch of the law each. */
-const motion_on_two = py.cached((first, second, rolls) => {
+/** Equations of motion of a mode without tops, for tops of which each has a surface and a branch. */
+const motion_on_two = py.cached((form, first, second) => {
+  var [cut, last] = [first.numbers, py.add(first.numbers, second.numbers)];
+  var mode = (numbers) => {
+    var tops = [first.top(py.tuple(numbers.slice(0, cut))), second.top(py.tuple(numbers.slice(cut, last)))];
+    return form.with_tops(tops, numbers.slice(last));
+  };
+  var guard = (name, value) => {
+    return new Guard(name, (y, numbers) => value(mode(numbers), y));
+  };
   var rates = (y, numbers) => {
-    return sliding_pair_rates(SlidingState.unpack(y), tops_of(first, second, numbers), rolls).pack();
+    return mode(numbers).rates(y);
   };
-  var found = (y, numbers) => {
-    return sliding_pair(SlidingState.unpack(y), tops_of(first, second, numbers), rolls)[0];
-  };
-  var slip = (number) => {
-    var value = (y, numbers) => {
-      var found = slip_of(...SlidingState.unpack(y), py.item(tops_of(first, second, numbers), number));
-      return py.sub(inner(found, found), py.mul(SLOWEST_SLIP, SLOWEST_SLIP));
-    };
-    return value;
-  };
-  var both_slips = (y, numbers) => {
-    var [one, other] = [...tops_of(first, second, numbers)].map(
-      (top) => slip_of(...SlidingState.unpack(y), top)
-    );
-    return py.sub(py.add(inner(one, one), inner(other, other)), py.mul(SLOWEST_SLIP, SLOWEST_SLIP));
-  };
-  var branch = (number) => {
-    var value = (y, numbers) => {
-      return branch_guard(...SlidingState.unpack(y), py.item(tops_of(first, second, numbers), number));
-    };
-    return value;
-  };
-  var guards = pair_guards(first, found, rolls);
-  if (slip_length(first.example.friction) !== null) {
-    guards.push(new Guard(`${py.str(ENDING)}both`, both_slips));
-  } else if (py.truth(is_set_valued(first.example.friction))) {
-    guards = py.add(
-      guards,
-      [0, 1].map((number) => new Guard(`${py.str(ENDING)}${py.str(number)}`, slip(number)))
-    );
-  }
-  if (py.truth(is_branched(first.example.friction))) {
-    guards = py.add(
-      guards,
-      [0, 1].map((number) => new Guard(`${py.str(BRANCHING)}${py.str(number)}`, branch(number)))
-    );
-  }
-  return new Motion(rates, 8, py.add(first.numbers, second.numbers), py.tuple(guards), false);
+  var example = py.replace(form, { top: first.example, other: second.example });
+  var guards = py.tuple([...example.watched()].map(([name, value]) => guard(name, value)));
+  return new Motion(rates, form.size, py.add(last, form.further), guards, false);
 });
 
-/** The guards of normal forces, and of rolling, from what the table does. */
-function pair_guards(first, found, rolls) {
-  var normal = (number) => {
-    return (y, numbers) => py.item(found(y, numbers).normal, number);
-  };
-  var rolling = (y, numbers) => {
-    return py.mul(rolls, turning_along(found(y, numbers).pair));
-  };
-  var reserve = (y, numbers) => {
-    return found(y, numbers).rolling_reserve;
-  };
-  var guards = [0, 1].map((number) => new Guard(`${py.str(OPENING)}${py.str(number)}`, normal(number)));
-  if (py.truth(first.example.resists_rolling)) {
-    guards.push(py.truth(rolls) ? new Guard(ROLLING_STOPPING, rolling) : new Guard(ROLLING, reserve));
-  }
-  return guards;
+function _normal(number) {
+  return (mode, y) => py.item(mode.found(y)[0].normal, number);
+}
+
+function _slip(number) {
+  return (mode, y) => _left(py.item(mode.found(y)[1], number));
+}
+
+function _branch(number) {
+  return (mode, y) => slip_branch_guard(py.item(mode.found(y)[1], number), py.item(mode.tops, number));
+}
+
+/** Falls through zero where so little is left of all these that they are followed no further. */
+function _left(...slips) {
+  return py.sub(py.sum([...slips].map((slip) => inner(slip, slip))), py.mul(SLOWEST_SLIP, SLOWEST_SLIP));
 }
 
 // tippetop.contact.double_sticking
@@ -6403,18 +6425,25 @@ class StickingAndSliding extends HeldOnTwo {
   get stuck() {
     return [number_of(this.top)];
   }
-  /** Equations of motion of axis and angular momentum, and guards. */
-  get motion() {
-    return turning_motion(this.top.kind, this.other.kind, this.sign, this.rolls);
-  }
   /** What the table does, and how both contacts slip. */
   found(y) {
     var pair = ContactPair.of(...split(y), this.tops);
-    var zeta = slip_apart(pair);
+    var [zeta, way] = [slip_apart(pair), scaled(this.sign, directions_of(pair.first.axis)[1].slice(0, 2))];
     return [
-      turned_of_double_sticking(pair, this.sign, this.rolls),
+      pair_motion(pair, [null, way], this.rolls),
       slips_of(pair, [py.mul(0.0, zeta), py.mul(0.0, zeta), zeta])
     ];
+  }
+  /** The guards of what holds the first, and of slip on the second, too. */
+  watched() {
+    var own = [
+      [`${py.str(SLIP_of_double_sticking)}first`, (mode, y) => mode.found(y)[0].reserve(0)],
+      [
+        ENDING_of_double_sticking,
+        (mode, y) => py.mul(mode.sign, slip_apart(ContactPair.of(...split(y), mode.tops)))
+      ]
+    ];
+    return py.add(own, super.watched());
   }
   /** A contact opens; or slip ends on the second, or begins on the first. */
   follow(guard, time, state) {
@@ -6447,6 +6476,7 @@ class StickingOnTwo extends HeldOnTwo {
     this.least = least;
   }
   get name() { return "sticking"; }
+  get further() { return 1; }
   /** The numbers of the top on either surface, and when patches slip. */
   get parameters() {
     return [...this.top.numbers, ...this.other.numbers, this.least];
@@ -6455,9 +6485,33 @@ class StickingOnTwo extends HeldOnTwo {
   get stuck() {
     return [number_of(this.top), number_of(this.other)];
   }
-  /** Equations of motion of axis and angular momentum, and the guards of what holds the contacts. */
-  get motion() {
-    return held_motion_on_two(this.top.kind, this.other.kind, this.rolls);
+  /** Without what is a parameter, too. */
+  without_tops() {
+    return py.replace(super.without_tops(), { least: 0.0 });
+  }
+  /** With that. */
+  with_tops(tops, more) {
+    return py.replace(super.with_tops(tops, more), { least: more[0] });
+  }
+  /** The guards of what holds the contacts, too. */
+  watched() {
+    var found = super.watched();
+    if (slip_length(this.top.friction) === null) {
+      found = py.add(
+        found,
+        [
+          [`${py.str(SLIP_of_double_sticking)}0`, (mode, y) => mode.found(y)[0].left(0)],
+          [`${py.str(SLIP_of_double_sticking)}1`, (mode, y) => mode.found(y)[0].left(1)],
+          [`${py.str(SLIP_of_double_sticking)}both`, (mode, y) => mode.found(y)[0].both_reserve]
+        ]
+      );
+    } else if (py.truth(this.rolls)) {
+      found.push([
+        `${py.str(SLIP_of_double_sticking)}both`,
+        (mode, y) => py.sub(py.mul(mode.rolls, mode.found(y)[0].rolling), mode.least)
+      ]);
+    }
+    return found;
   }
   /** The state, without turning about the vertical, whose velocity is that of rolling. */
   state(y) {
@@ -6485,9 +6539,10 @@ class SlipBeginningOnTwo extends SlidingOnTwo {
     super(top, rules, other, rolls);
     this.begin = begin;
   }
-  /** Equations of motion, with the guards of both contacts. */
-  get motion() {
-    return beginning_on_two(this.top.kind, this.other.kind, this.rolls);
+  get size() { return 9; }
+  /** Without the numbers at the start, too. */
+  without_tops() {
+    return py.replace(super.without_tops(), { begin: [] });
   }
   /** Those it begins with. */
   numbers(state) {
@@ -6517,6 +6572,14 @@ class SlipBeginningOnTwo extends SlidingOnTwo {
     var slips = slips_of(pair, [y[6], y[7], y[8]]);
     return [pair_motion(pair, slips, this.rolls), slips];
   }
+  /** Rate of xi. */
+  slipping(now) {
+    return now.rate;
+  }
+  /** It has just begun. */
+  endings() {
+    return [];
+  }
   /** Follow it by an implicit method: its direction is damped the faster the slower it is. */
   *segments(time, state, end, integrator) {
     var [reach, method] = [
@@ -6534,106 +6597,6 @@ class SlipBeginningOnTwo extends SlidingOnTwo {
   }
 }
 py.fields(SlipBeginningOnTwo, ["top", "rules", "other", "rolls", "begin"]);
-
-/** What the table does while the first contact sticks, and the second slips so across the axis. */
-function turned_of_double_sticking(pair, sign, rolls) {
-  var across = directions_of(pair.first.axis)[1];
-  return pair_motion(pair, [null, [py.mul(sign, across[0]), py.mul(sign, across[1])]], rolls);
-}
-
-/** Equations of motion while the first contact sticks and the second slips across the axis, as signed. */
-const turning_motion = py.cached((first, second, sign, rolls) => {
-  var found = (y, numbers) => {
-    return turned_of_double_sticking(
-      ContactPair.of(...split(y), tops_of(first, second, numbers)),
-      sign,
-      rolls
-    );
-  };
-  var slides = (y, numbers) => {
-    return py.mul(sign, slip_apart(ContactPair.of(...split(y), tops_of(first, second, numbers))));
-  };
-  var holds = (y, numbers) => {
-    return found(y, numbers).reserve(0);
-  };
-  var guards = [
-    new Guard(`${py.str(SLIP_of_double_sticking)}first`, holds),
-    new Guard(ENDING_of_double_sticking, slides)
-  ];
-  return _of_momentum(first, second, found, [...guards, ...pair_guards(first, found, rolls)]);
-});
-
-/** Equations of motion while both contacts stick; the last parameter is when patches slip. */
-const held_motion_on_two = py.cached((first, second, rolls) => {
-  var found = (y, numbers) => {
-    return pair_motion(ContactPair.of(...split(y), tops_of(first, second, numbers)), [null, null], rolls);
-  };
-  var guards = pair_guards(first, found, rolls);
-  if (slip_length(first.example.friction) === null) {
-    guards = py.add(
-      guards,
-      [
-        new Guard(`${py.str(SLIP_of_double_sticking)}0`, (y, numbers) => found(y, numbers).left(0)),
-        new Guard(`${py.str(SLIP_of_double_sticking)}1`, (y, numbers) => found(y, numbers).left(1)),
-        new Guard(`${py.str(SLIP_of_double_sticking)}both`, (y, numbers) => found(y, numbers).both_reserve)
-      ]
-    );
-  } else if (py.truth(rolls)) {
-    guards.push(
-      new Guard(
-        `${py.str(SLIP_of_double_sticking)}both`,
-        (y, numbers) => py.sub(py.mul(rolls, turning_along(found(y, numbers).pair)), py.item(numbers, -1))
-      )
-    );
-  }
-  return _of_momentum(first, second, found, guards, 1);
-});
-
-/** Equations of motion while both contacts slip, with xi, of which a part may have just begun. */
-const beginning_on_two = py.cached((first, second, rolls) => {
-  var found = (y, numbers) => {
-    var pair = ContactPair.of(...split(y), tops_of(first, second, numbers));
-    return pair_motion(pair, slips_of(pair, [y[6], y[7], y[8]]), rolls);
-  };
-  var rates = (y, numbers) => {
-    var now = found(y, numbers);
-    var [axis, momentum] = split(y);
-    return [...axis_rate(axis, momentum, now.pair.first.top), ...now.moment, ...now.rate];
-  };
-  var branch = (number) => {
-    var value = (y, numbers) => {
-      var point = py.item(found(y, numbers).pair, number);
-      return slip_branch_guard(
-        py.item(slips_of(found(y, numbers).pair, [y[6], y[7], y[8]]), number),
-        point.top
-      );
-    };
-    return value;
-  };
-  var guards = pair_guards(first, found, rolls);
-  if (py.truth(is_branched(first.example.friction))) {
-    guards = py.add(
-      guards,
-      [0, 1].map((number) => new Guard(`${py.str(BRANCHING)}${py.str(number)}`, branch(number)))
-    );
-  }
-  return new Motion(rates, 9, py.add(first.numbers, second.numbers), py.tuple(guards), false);
-});
-
-/** Equations of motion of axis and angular momentum, with so many further parameters. */
-function _of_momentum(first, second, found, guards, further = 0) {
-  var rates = (y, numbers) => {
-    var now = found(y, numbers);
-    return [...axis_rate(...split(y), now.pair.first.top), ...now.moment];
-  };
-  return new Motion(
-    rates,
-    6,
-    py.add(py.add(first.numbers, second.numbers), further),
-    py.tuple(guards),
-    false
-  );
-}
 
 // tippetop.mechanics.invariants
 
@@ -6871,7 +6834,7 @@ function settled(rules, time, state, tops, before, rolls, events = [], arrived =
       var lost = py.float(py.sub(energy(state, tops[0]), energy(here.state, tops[0])));
       events = [...events, rules.event(EventKind.DOUBLE_CONTACT, time, 0.0, lost)];
     }
-    var ended = py.add(time, _left(state, here));
+    var ended = py.add(time, _left_of_two_closed(state, here));
     var turned = !py.eq(found.rolls, rolls) ? ended : time;
     events = [...events, ..._marks([ended, turned], here, found, before)];
     return py.replace(here.going_on(found), { events: events });
@@ -6929,7 +6892,7 @@ function _marks(times, here, found, before) {
 }
 
 /** Time to the end of slip that is followed no further, at its present rate. */
-function _left(state, here) {
+function _left_of_two_closed(state, here) {
   if (!py.truth(py.any(here.ended))) {
     return 0.0;
   }
@@ -10902,6 +10865,7 @@ export {
   TOGETHER,
   TOLD,
   TOLERANCE,
+  TOLERANCES,
   TOLERANCE_of_double_sticking,
   TORQUE,
   TOTAL,
@@ -10938,6 +10902,7 @@ export {
   _answers,
   _apart,
   _at_rest,
+  _branch,
   _by_energy,
   _early_bracket,
   _face,
@@ -10953,13 +10918,14 @@ export {
   _integral,
   _leads,
   _left,
+  _left_of_two_closed,
   _line,
   _marks,
   _meetings,
   _moved,
   _newton,
+  _normal,
   _nothing,
-  _of_momentum,
   _on_one_of_several,
   _polished,
   _precession_tilts,
@@ -10967,6 +10933,7 @@ export {
   _reaches_out,
   _resisting,
   _root,
+  _slip,
   _solved,
   _stem,
   _stiffness,
@@ -10991,7 +10958,6 @@ export {
   axis_rate,
   axis_sine,
   beginning,
-  beginning_on_two,
   both_letting_go,
   brackets,
   branch_guard,
@@ -11053,7 +11019,6 @@ export {
   has_limit_branches,
   heaviness,
   held_motion,
-  held_motion_on_two,
   held_rates,
   highest_gap,
   holding,
@@ -11126,7 +11091,6 @@ export {
   outermost,
   overtaking_guard,
   pack,
-  pair_guards,
   pair_motion,
   parting_guard,
   parts_left,
@@ -11182,8 +11146,6 @@ export {
   sizes,
   sliding_law,
   sliding_motion,
-  sliding_pair,
-  sliding_pair_rates,
   sliding_rates,
   slip_along_tilt,
   slip_apart,
@@ -11233,16 +11195,13 @@ export {
   tilt_rate,
   tilts_held,
   time_to,
-  tops_of,
   touchdown,
   touching_tilts,
   turn_rate,
   turned,
-  turned_of_double_sticking,
   turned_slope,
   turning_about,
   turning_along,
-  turning_motion,
   turning_with,
   unknown,
   unpack,

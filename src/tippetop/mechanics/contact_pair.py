@@ -44,8 +44,8 @@ from tippetop.mechanics.rolling import (
     solve,
     turning_with,
 )
-from tippetop.mechanics.state import SlidingState, State
-from tippetop.mechanics.stick_slip import plus, scaled, size, slip_of
+from tippetop.mechanics.state import State
+from tippetop.mechanics.stick_slip import plus, scaled, size
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import VERTICAL, Scalar, Vector, add, cross, dot, scale
 
@@ -178,6 +178,11 @@ class PairMotion(NamedTuple):
         return dot(self.force, directions_of(self.pair.first.axis)[0])
 
     @property
+    def rolling(self) -> Scalar:
+        """omega_e, rad/s."""
+        return turning_along(self.pair)
+
+    @property
     def rolling_rate(self) -> Scalar:
         """Rate of omega_e, rad/s^2."""
         return dot(self.moving[2], directions_of(self.pair.first.axis)[0])
@@ -282,20 +287,6 @@ def normal_wrench(point: ContactPoint, slip: Slip | None, rolling: Vector) -> Wr
     if isinstance(law, RollingResistance):
         torque = add(torque, scale(-law.length, rolling))
     return Wrench((*force, 1.0), torque)
-
-
-def sliding_pair(state: SlidingState, tops: Tops, rolls: float) -> tuple[PairMotion, tuple[Slip, Slip]]:
-    """What the table does to a body that slides on two surfaces, and how they slip."""
-    first, second = (slip_of(*state, top) for top in tops)
-    pair = ContactPair.of(state.axis, state.momentum, tops)
-    return pair_motion(pair, (first, second), rolls), (first, second)
-
-
-def sliding_pair_rates(state: SlidingState, tops: Tops, rolls: float) -> SlidingState:
-    """Time derivative of the state of a body that slides on two surfaces."""
-    now, _ = sliding_pair(state, tops, rolls)
-    x, y = scaled(1.0 / tops[0].mass, now.force[:2])
-    return SlidingState(axis_rate(state.axis, state.momentum, tops[0]), now.moment, (x, y))
 
 
 def without_tilting(state: State, top: Top) -> State:
