@@ -1,12 +1,15 @@
 """Turned bodies as files for printing, in millimetres: STL for the body alone, 3MF for all of its parts."""
 
+import math
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from tippetop.errors import InvalidInput, Unavailable
 from tippetop.files import require_ending, written_beside
-from tippetop.lathe.mesh import solids
+from tippetop.lathe.profile import Profile
 from tippetop.lathe.workpiece import Workpiece
 
 FACETS = 180
@@ -51,15 +54,45 @@ def write_solid(piece: Workpiece, path: Path | str, overwrite: bool = False, *, 
     require_ending("path", Path(path), (".stl", ".3mf"))
     if isinstance(facets, bool) or not isinstance(facets, int) or facets < 8:
         raise InvalidInput("facets", facets, "a whole number at least 8")
-    trimesh = _trimesh()
-    meshes = {
-        name: trimesh.Trimesh(MM * points, triangles, process=False)
-        for name, points, triangles in solids(piece, facets)
-    }
-    whole = meshes["body"] if suffix == ".stl" else trimesh.Scene(meshes)
+    meshes = solids(piece, facets)
+    whole = meshes["body"] if suffix == ".stl" else _trimesh().Scene(meshes)
     content = whole.export(file_type=suffix[1:])
     with written_beside(path, overwrite) as beside:
         beside.write_bytes(content)
+
+
+def solids(piece: Workpiece, facets: int) -> dict[str, Any]:
+    """The body, and then the weights in it, by name, each with the hollows that the others leave.
+
+    They are meshes of trimesh, in millimetres. Raises `InvalidInput` if an insert touches the surface of the
+    body or another insert.
+    """
+    for number, inner in enumerate(piece.insides):
+        if any("on" in inner.sides(other) for other in (piece.outline, *piece.insides[:number])):
+            field = f"inserts.{number}.profile"
+            raise InvalidInput(
+                field, "an insert that touches a surface", "for a solid, one inside another part"
+            )
+    trimesh = _trimesh()
+    found = {"body": trimesh.creation.revolve(_line(piece.outline, facets), sections=facets)}
+    for number, inner in enumerate(piece.insides, start=1):
+        found[f"insert {number}"] = trimesh.creation.revolve(_line(inner, facets), sections=facets)
+    shells = list(found.values())
+    for shell, outer in zip(shells[1:], piece.around, strict=True):
+        hollow = shell.copy()
+        hollow.invert()
+        name = "body" if outer is None else f"insert {outer + 1}"
+        found[name] = trimesh.util.concatenate([found[name], hollow])
+    weights = (piece.density, *(insert.density for insert in piece.inserts))
+    return {name: solid for (name, solid), weight in zip(found.items(), weights, strict=True) if weight}
+
+
+def _line(profile: Profile, facets: int) -> Any:
+    """Points along a profile, mm, shape (k, 2), so many around a circle."""
+    steps = [math.ceil(abs(edge.turn) / math.tau * facets) or 1 for edge in profile.edges]
+    points = [edge.points(np.arange(k) / k) for edge, k in zip(profile.edges, steps, strict=True)]
+    line = MM * np.append(np.concatenate(points), profile.edges[-1].end)
+    return np.stack([line.real, line.imag], axis=1)
 
 
 def _trimesh() -> Any:
@@ -67,6 +100,6 @@ def _trimesh() -> Any:
         raise Unavailable(
             'solids are written with trimesh, which is not installed: pip install "tippetop[lathe]"'
         )
-    import trimesh  # noqa: PLC0415 - optional
+    import trimesh.creation  # noqa: PLC0415 - optional
 
     return trimesh
