@@ -1,7 +1,5 @@
 """What is written on figures: notes beside points, letters of panels, ticks, legends and insets."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Any
 

@@ -3,8 +3,6 @@
 Points are rows of arrays in data units. A canvas has equal axes and no frame, so a data unit is a length.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,23 +1,11 @@
 """Dry friction: the friction that rolling needs, steps against the exact motion, smoothing, and patches."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
 import tippetop.figures.annotation as mark
-from tippetop.figures.style import (
-    ACCENT,
-    CONVERGED,
-    CYCLE,
-    DASHED,
-    FAINT,
-    INK,
-    MUTED,
-    REPORT,
-    house_style,
-)
+from tippetop.figures.style import ACCENT, CONVERGED, CYCLE, DASHED, FAINT, INK, MUTED, REPORT, house_style
 
 
 @house_style()

@@ -1,7 +1,5 @@
 """Fast oscillations on a long axis: drawn as the band between their turning points, not as a solid blob."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike, NDArray

@@ -1,7 +1,5 @@
 """The Euler angles of equation (2.1) (the report's Fig. 2)."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure

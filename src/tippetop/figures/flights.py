@@ -1,7 +1,5 @@
 """Launches that leave the table: where that begins, and what becomes of them."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -12,17 +10,7 @@ from numpy.typing import ArrayLike
 
 import tippetop.figures.annotation as mark
 from tippetop.figures.envelope import band
-from tippetop.figures.style import (
-    ACCENT,
-    CYCLE,
-    DASHED,
-    FAINT,
-    INK,
-    MUTED,
-    REPORT,
-    UNILATERAL,
-    house_style,
-)
+from tippetop.figures.style import ACCENT, CYCLE, DASHED, FAINT, INK, MUTED, REPORT, UNILATERAL, house_style
 
 _BOUNCES = CYCLE[5]
 

@@ -10,16 +10,7 @@ from matplotlib.figure import Figure
 
 import tippetop.figures.annotation as mark
 from tippetop.catalogue import SWEPT, Ending, written_unit
-from tippetop.figures.style import (
-    CONVERGED,
-    CYCLE,
-    FAINT,
-    INK,
-    MUTED,
-    SEQUENTIAL,
-    house_style,
-    pi_ticks,
-)
+from tippetop.figures.style import CONVERGED, CYCLE, FAINT, INK, MUTED, SEQUENTIAL, house_style, pi_ticks
 
 MAPPED = ("final_theta", "turns_over", "flights")
 """The maps that are drawn of every sweep."""

@@ -1,7 +1,5 @@
 """The numerical methods compared: their order, and what a stiff launch costs them."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure

@@ -1,7 +1,5 @@
 """The model: an eccentric sphere on a table, and what acts on it (the report's Fig. 3)."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb

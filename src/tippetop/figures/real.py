@@ -1,7 +1,5 @@
 """Real tops: a stem that strikes, stems that are stood upon, an egg, a disk and two balls."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 from matplotlib import colormaps

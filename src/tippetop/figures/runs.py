@@ -1,7 +1,5 @@
 """One launch, by the report's method and converged (the report's Figs. 4, 5 and 8 to 16)."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes

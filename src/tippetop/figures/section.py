@@ -1,7 +1,5 @@
 """A turned body cut along its axis: what it is made of, and the surfaces it stands on."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -4,8 +4,6 @@ Figures are plain `matplotlib.figure.Figure` objects, never pyplot ones, so ther
 nothing to close. Both making and saving a figure must happen inside `house_style`; `save` sees to the latter.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Many launches: where they end, how long they take (the report's Figs. 6 and 7), what the windows do."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Steady states: where launches end and why, how fast they get there, and which tops turn over."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

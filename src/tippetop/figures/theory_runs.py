@@ -1,7 +1,5 @@
 """The way to the end: runs against the limit of weak friction, and what a run says of its nutation."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes

@@ -1,7 +1,5 @@
 """The toy itself, in three stages of turning over (the report's Fig. 1), seen along parallel rays."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure

@@ -9,13 +9,7 @@ import xarray as xr
 from tippetop.presets import report_problem
 from tippetop.problem import Problem
 from tippetop.report.experiment import Bench, variable
-from tippetop.report.experiments.runs import (
-    WINDOW,
-    flight_readings,
-    stopping,
-    swept,
-    unilateral,
-)
+from tippetop.report.experiments.runs import WINDOW, flight_readings, stopping, swept, unilateral
 from tippetop.run import simulate
 
 BENCH = Bench()
