@@ -2,12 +2,15 @@
 
 import json
 import math
+from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tippetop.cli.options import Force, Json, facts, finite, listing
+from tippetop.cli.options import Force, Json, finite
+from tippetop.cli.terminal import facts, listing, show
 from tippetop.errors import InvalidInput
 from tippetop.files import place_for, require_ending, written_beside
 
@@ -33,7 +36,9 @@ def body(
     force: Force = False,
 ) -> None:
     """Say what a body turned on a lathe weighs, what it stands on, and whether it turns over."""
-    from tippetop.lathe.files import read_workpiece  # noqa: PLC0415 - slow to import
+    from tippetop.bodies import Body  # noqa: PLC0415 - slow to import, like what follows
+    from tippetop.lathe.files import read_workpiece  # noqa: PLC0415
+    from tippetop.presets import report_problem  # noqa: PLC0415
 
     wanted = {"plot": plot, "stl": stl, "3mf": three_mf}
     files = {kind: path for kind, path in wanted.items() if path is not None}
@@ -44,30 +49,33 @@ def body(
     piece = read_workpiece(file, **{name: value for name, value in given.items() if value is not None})
     if as_toml and as_json:
         raise InvalidInput("--toml", "with --json", "one of the two")
-    told = _problem(piece, whole) if as_toml else _told(piece, whole)
+    if as_toml:
+        written = report_problem().model_copy(update={"body": Body.turned(piece, whole=whole)}).to_toml()
+    else:
+        told = _told(piece, whole)
     for path in files.values():
         _write(piece, path, force)
-    if isinstance(told, str):
-        typer.echo(told.rstrip())
+    if as_toml:
+        typer.echo(written.rstrip())
     elif as_json:
-        written = {kind: str(path) for kind, path in files.items()}
-        typer.echo(json.dumps({**told, "files": written}, indent=2))
+        names = {kind: str(path) for kind, path in files.items()}
+        typer.echo(json.dumps({**told, "files": names}, indent=2))
     else:
-        _print(told, list(files.values()))
-
-
-def _problem(piece: "Workpiece", whole: bool) -> str:
-    from tippetop.bodies import Body  # noqa: PLC0415 - slow to import
-    from tippetop.presets import report_problem  # noqa: PLC0415
-
-    return report_problem().model_copy(update={"body": Body.turned(piece, whole=whole)}).to_toml()
+        show(*_sentences(told), files=files.values())
 
 
 def _told(piece: "Workpiece", whole: bool) -> dict[str, Any]:
     """What is told of a body; what it cannot be simulated for is the trouble with it."""
+    from tippetop.bodies import Body  # noqa: PLC0415 - slow to import
+
+    trouble = None
+    try:
+        Body.turned(piece, whole=whole)
+    except InvalidInput as error:
+        trouble = str(error)
     mass, center, I1, I3 = piece.mass_properties
     hull = piece.hull
-    told: dict[str, Any] = {
+    return {
         "mass": mass,
         "center": center,
         "I1": I1,
@@ -86,49 +94,37 @@ def _told(piece: "Workpiece", whole: bool) -> dict[str, Any]:
             for zone in hull.zones
         ],
         "lies_on_lines_at_tilts": list(hull.flats),
+        "trouble": trouble,
+        **_expected(piece),
     }
-    return {**told, **_expected(piece, whole)}
 
 
-def _expected(piece: "Workpiece", whole: bool) -> dict[str, Any]:
-    """What the theory says of it, and why it cannot be simulated, if so."""
+def _expected(piece: "Workpiece") -> dict[str, Any]:
+    """What the theory says of it; nothing but None where it does not lie on a sphere."""
     from tippetop.bodies import Body, touching  # noqa: PLC0415 - slow to import
     from tippetop.theory.prospects import prospects  # noqa: PLC0415
 
-    trouble = None
-    try:
-        Body.turned(piece, whole=whole)
-    except InvalidInput as error:
-        trouble = str(error)
-    try:
-        shapes = touching(piece, whole=True)
-    except InvalidInput:
-        return {"trouble": trouble, "group": None, "touch": None, "stem": None}
     mass, _, I1, I3 = piece.mass_properties
-    found = prospects(Body(mass=mass, shape=shapes[0], I1=I1, I3=I3), shapes)
+    found = None
+    with suppress(InvalidInput):
+        shapes = touching(piece, whole=True)
+        found = prospects(Body(mass=mass, shape=shapes[0], I1=I1, I3=I3), shapes)
+    if found is None:
+        sphere = ("eccentricity", "group", "group_description", "omega_c1", "omega_c2", "omega_c_tilt")
+        return dict.fromkeys((*sphere, "touch", "stem"))
+    spins, touch, stem = found.critical_spins, found.touch, found.stem
+    # Where something else touches before the stem, nothing is known of launches that reach it.
+    reached = {} if stem is None or math.isnan(stem.launch) else {"least_launch_spin": finite(stem.launch)}
     return {
-        "trouble": trouble,
-        "eccentricity": found and found.eccentricity,
-        "group": found and found.group.value,
-        "group_description": found and found.group.description,
-        "omega_c1": found and finite(found.critical_spins.upright),
-        "omega_c2": found and finite(found.critical_spins.inverted),
-        "omega_c_tilt": found and found.tilt,
-        "touch": found
-        and found.touch
-        and {
-            "surface": found.touch.surface,
-            "tilt": found.touch.tilt,
-            "least_launch_spin": finite(found.touch.spin),
-        },
-        "stem": found
-        and found.stem
-        and {
-            "least_jellett": finite(found.stem.jellett),
-            "least_spin": finite(found.stem.spin),
-            # Where something else touches first, nothing is known of it.
-            **({} if math.isnan(found.stem.launch) else {"least_launch_spin": finite(found.stem.launch)}),
-        },
+        "eccentricity": found.eccentricity,
+        "group": found.group.value,
+        "group_description": found.group.description,
+        "omega_c1": finite(spins.upright),
+        "omega_c2": finite(spins.inverted),
+        "omega_c_tilt": found.tilt,
+        "touch": touch
+        and {"surface": touch.surface, "tilt": touch.tilt, "least_launch_spin": finite(touch.spin)},
+        "stem": stem and {"least_jellett": finite(stem.jellett), "least_spin": finite(stem.spin), **reached},
     }
 
 
@@ -145,25 +141,20 @@ def _write(piece: "Workpiece", path: Path, force: bool) -> None:
         write_solid(piece, path, force)
 
 
-def _print(told: dict[str, Any], files: list[Path]) -> None:
-    from rich.console import Console  # noqa: PLC0415
+def _sentences(told: dict[str, Any]) -> Iterator[Any]:
+    from rich.markup import escape  # noqa: PLC0415 - slow to import
 
-    console = Console()
     if told["group"]:
         upto = told["surfaces"][0]["to_tilt"]
         within = f" That is on its sphere, up to a tilt of {upto:.6g} rad." if upto < math.pi else ""
-        console.print(
-            f"[bold]Group {told['group']}[/]: {told['group_description']}.{within}", highlight=False
-        )
-    console.print(facts(_rows(told)))
+        yield f"[bold]Group {told['group']}[/]: {told['group_description']}.{within}"
+    yield facts(_rows(told))
     headings = ("surface", "radius", "tube", "height of its centre", "from tilt", "to tilt")
     rows = (_surface_row(one) for one in told["surfaces"])
-    console.print(listing("Stands on", headings, rows, words=("surface",)))
-    console.print("[dim]mm, from the centre of mass; rad.[/]", highlight=False)
+    yield listing("Stands on", headings, rows, words=("surface",))
+    yield "[dim]mm, from the centre of mass; rad.[/]"
     if told["trouble"]:
-        console.print(f"Cannot be simulated: {told['trouble']}", highlight=False, markup=False)
-    for path in files:
-        console.print(f"wrote {path}", highlight=False)
+        yield escape(f"Cannot be simulated: {told['trouble']}")
 
 
 def _surface_row(one: dict[str, Any]) -> tuple[str, ...]:

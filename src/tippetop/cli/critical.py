@@ -2,15 +2,15 @@
 
 import json
 import math
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import typer
 
-from tippetop.cli.options import Choice, Json, facts, finite, listing, of_a_problem
+from tippetop.cli.options import Choice, Json, finite, of_a_problem
+from tippetop.cli.terminal import facts, listing, show
 
 if TYPE_CHECKING:
-    from rich.console import Console
-
     from tippetop.theory.overview import Judged, Outlook
     from tippetop.theory.steady import SteadyState
 
@@ -29,9 +29,7 @@ def critical(
         told = {"critical_spins_tilt": problem.launch.tilt, "problem": problem.model_dump()}
         typer.echo(json.dumps({**_plain(found), **told}, indent=2))
     else:
-        from rich.console import Console  # noqa: PLC0415
-
-        _print(found, Console())
+        show(*_sentences(found))
 
 
 def _plain(found: "Outlook") -> dict[str, Any]:
@@ -80,31 +78,27 @@ def _plain_state(state: Any) -> dict[str, Any]:
     return {"kind": state.kind.value, **{name: finite(getattr(state, name)) for name in names}}
 
 
-def _print(found: "Outlook", console: "Console") -> None:
+def _sentences(found: "Outlook") -> Iterator[Any]:
+    """The record for people."""
     if found.group is not None:
-        console.print(f"[bold]Group {found.group.value}[/]: {found.group.description}.", highlight=False)
-    console.print(facts(_rows(found)))
+        yield f"[bold]Group {found.group.value}[/]: {found.group.description}."
+    yield facts(_rows(found))
     if found.tilts != (0.0, math.pi):
         low, high = found.tilts
-        console.print(
+        yield (
             f"Of its surface {found.surface} alone, from θ = {low:.6g} to {high:.6g} rad: beyond, another "
-            "touches.",
-            highlight=False,
+            "touches."
         )
     if found.group is not None:
-        console.print(
-            f"[dim]ω_c1, ω_c2: spins of launches with this one's tilt, {found.tilt:.6g} rad, and rates.[/]",
-            highlight=False,
-        )
+        yield f"[dim]ω_c1, ω_c2: spins of launches with this one's tilt, {found.tilt:.6g} rad, and rates.[/]"
     headings = ("kind", "tilt", "precession", "axial spin", "energy", "", "growth rate")
     rows = (_state_row(judged) for judged in found.steady)
-    console.print(listing("Steady states of this launch", headings, rows, words=("kind", "")))
+    yield listing("Steady states of this launch", headings, rows, words=("kind", ""))
     for judged in found.steady:
-        console.print(f"[dim]{judged.state.kind.value}:[/] {_eigenvalues(judged)}", highlight=False)
-    console.print(
+        yield f"[dim]{judged.state.kind.value}:[/] {_eigenvalues(judged)}"
+    yield (
         "[dim]rad, rad/s, J; eigenvalues in 1/s, in the frame that turns with the precession (for vertical "
-        "spins, a frame at rest), without the zeros of symmetry.[/]",
-        highlight=False,
+        "spins, a frame at rest), without the zeros of symmetry.[/]"
     )
 
 

@@ -2,7 +2,7 @@
 
 import json
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import wraps
 from inspect import Parameter, Signature, signature
 from pathlib import Path
@@ -13,8 +13,6 @@ import typer
 from tippetop.errors import InvalidInput
 
 if TYPE_CHECKING:
-    from rich.table import Table
-
     from tippetop.problem import Problem
 
 ProblemFile = Annotated[
@@ -94,33 +92,6 @@ def of_a_problem(
     whole = Signature([*asking, *(one.replace(kind=Parameter.KEYWORD_ONLY) for one in own)])
     asked.__signature__ = whole  # type: ignore[attr-defined]
     return asked
-
-
-def facts(rows: Iterable[Sequence[str]]) -> "Table":
-    """What is told, a name, a number and perhaps a remark to a row, as a table."""
-    from rich.table import Table  # noqa: PLC0415 - slow to import
-
-    table = Table(box=None, show_header=False, padding=(0, 2, 0, 0))
-    table.add_column(style="dim")
-    table.add_column(justify="right", style="bold")
-    table.add_column()
-    for row in rows:
-        table.add_row(*row)
-    return table
-
-
-def listing(
-    title: str, headings: Sequence[str], rows: Iterable[Sequence[str]], words: Sequence[str]
-) -> "Table":
-    """Rows of numbers under headings, but for the columns of words."""
-    from rich.table import Table  # noqa: PLC0415 - slow to import
-
-    table = Table(title=title, title_justify="left", title_style="bold", box=None)
-    for heading in headings:
-        table.add_column(heading, justify="left" if heading in words else "right")
-    for row in rows:
-        table.add_row(*row)
-    return table
 
 
 def finite(value: float) -> float | None:

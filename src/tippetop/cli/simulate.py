@@ -1,19 +1,17 @@
 """`tippetop simulate`: one run, its summary, its files."""
 
 import json
-import sys
 import time
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tippetop.cli.options import Choice, Force, Json, facts, of_a_problem
+from tippetop.cli.options import Choice, Force, Json, of_a_problem
+from tippetop.cli.terminal import facts, progress_bar, show
 from tippetop.errors import InvalidInput
 from tippetop.files import place_for, require_ending, written_beside
-from tippetop.interrupts import hear
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -92,12 +90,7 @@ def simulate(
     if samples is None:
         samples = _enough_samples(chosen, duration, wanted)
     began = time.perf_counter()
-    with _bar("simulating") as progress:
-
-        def callback(part: float) -> None:
-            hear()
-            progress(part, 1.0)
-
+    with progress_bar("simulating") as progress:
         run = run_problem(
             chosen,
             duration,
@@ -105,7 +98,7 @@ def simulate(
             integrator=integrator,
             tolerance=tolerance,
             step=step,
-            callback=callback,
+            callback=lambda part: progress(part, 1.0),
         )
     elapsed = time.perf_counter() - began
     for kind, path in wanted.items():
@@ -115,7 +108,12 @@ def simulate(
         written = {kind: path and str(path) for kind, path in files.items()}
         typer.echo(json.dumps({**summary, **written, "problem": chosen.model_dump()}, indent=2))
     else:
-        _print_summary(summary, elapsed, list(wanted.values()))
+        show(
+            f"[bold]{summary['outcome'].replace('_', ' ')}[/]: {summary['advice']}",
+            facts(_rows(summary)),
+            f"[dim]{summary['steps']} steps of {summary['integrator']} in {elapsed:.3g} s[/]",
+            files=wanted.values(),
+        )
 
 
 def _enough_samples(problem: "Problem", duration: float, wanted: Iterable[str]) -> int:
@@ -155,22 +153,8 @@ def _write(run: "xr.Dataset", kind: str, path: Path, force: bool) -> None:
         case _:
             from tippetop.export.movie import write_movie  # noqa: PLC0415
 
-            with _bar(f"drawing {path.name}") as progress:
+            with progress_bar(f"drawing {path.name}") as progress:
                 write_movie(run, path, force, progress=progress)
-
-
-@contextmanager
-def _bar(what: str) -> Iterator[Callable[[float, float], None]]:
-    """Shows on a terminal how far something is, and how long it still takes, as it is told."""
-    if not sys.stderr.isatty():
-        yield lambda _done, _count: None
-        return
-    from rich.console import Console  # noqa: PLC0415
-    from rich.progress import Progress  # noqa: PLC0415
-
-    with Progress(console=Console(stderr=True), transient=True) as bar:
-        shown = bar.add_task(what)
-        yield lambda done, count: bar.update(shown, total=count, completed=done)
 
 
 def _check_files(wanted: dict[str, Path], force: bool) -> None:
@@ -188,20 +172,6 @@ def _check_files(wanted: dict[str, Path], force: bool) -> None:
         from tippetop.export.movie import ffmpeg  # noqa: PLC0415 - slow to import
 
         ffmpeg()
-
-
-def _print_summary(summary: dict[str, Any], elapsed: float, files: list[Path]) -> None:
-    from rich.console import Console  # noqa: PLC0415
-
-    console = Console()
-    table = facts(_rows(summary))
-    console.print(f"[bold]{summary['outcome'].replace('_', ' ')}[/]: {summary['advice']}")
-    console.print(table)
-    console.print(
-        f"[dim]{summary['steps']} steps of {summary['integrator']} in {elapsed:.3g} s[/]", highlight=False
-    )
-    for path in files:
-        console.print(f"wrote {path}", highlight=False)
 
 
 def _rows(summary: dict[str, Any]) -> list[tuple[str, str, str]]:

@@ -1,78 +1,70 @@
 """`tippetop sweep`: many launches, kept in a store, with maps beside it."""
 
 import json
-import sys
 import time
 from collections import Counter
 from collections.abc import Iterator
-from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tippetop.cli.options import Choice, Force, Json, facts, of_a_problem
+from tippetop.cli.options import Choice, Force, Json, of_a_problem
+from tippetop.cli.terminal import facts, progress_bar, show
 from tippetop.errors import MISSING, FileTrouble, InvalidInput
 from tippetop.files import in_words, place_for, read_text, written_beside
-from tippetop.interrupts import INTERRUPTED, hear
+from tippetop.interrupts import INTERRUPTED
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from tippetop.sweeps import Draws, Product, Progress, Sweep
-    from tippetop.sweeps.run import Callback
 
 
 SweepFile = Annotated[
     Path | None,
     typer.Argument(help="Sweep (.toml with axes or draws), or problem to start from; else the report's top."),
 ]
-Axes = Annotated[
-    list[str] | None,
-    typer.Option(
-        metavar="FIELD=VALUES",
-        help="Values of a field: FIRST:LAST:COUNT, FIRST:LAST:COUNT:geo or A,B,C. Axes cross.",
-    ),
-]
-Ranges = Annotated[
-    list[str] | None,
-    typer.Option(metavar="FIELD=LOW:HIGH", help="Draw a field at random instead; append :log for its log."),
-]
-Count = Annotated[int | None, typer.Option(help="Number of draws.")]
-Seed = Annotated[int | None, typer.Option(help="What the draws follow from; 0 if left out.")]
-Duration = Annotated[float | None, typer.Option(help="Length of every run, s; 20 if left out.")]
-Tolerance = Annotated[float | None, typer.Option(help="Relative error per step; 1e-9 if left out.")]
-Settled = Annotated[
-    float | None,
-    typer.Option(help="End a run once its tilt is held within this for good, rad; else all run on."),
-]
-Processes = Annotated[int | None, typer.Option(help="Number of processes; all processors if left out.")]
-Scheduler = Annotated[
-    str | None, typer.Option(metavar="ADDRESS", help="Compute on a running dask.distributed cluster.")
-]
-Out = Annotated[Path, typer.Option(help="Zarr store to write.")]
-Resume = Annotated[bool, typer.Option("--resume", help="Finish a store that is there.")]
-Maps = Annotated[
-    bool, typer.Option(show_default=False, help="Draw maps beside the store; drawn if left out.")
-]
 
 
 @partial(of_a_problem, file=SweepFile)
 def sweep(
     choice: Choice,
-    axis: Axes = None,
-    draw: Ranges = None,
-    count: Count = None,
-    seed: Seed = None,
-    duration: Duration = None,
-    tolerance: Tolerance = None,
-    settled: Settled = None,
-    workers: Processes = None,
-    scheduler: Scheduler = None,
-    out: Out = Path("sweep.zarr"),
-    resume: Resume = False,
-    maps: Maps = True,
+    axis: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="FIELD=VALUES",
+            help="Values of a field: FIRST:LAST:COUNT, FIRST:LAST:COUNT:geo or A,B,C. Axes cross.",
+        ),
+    ] = None,
+    draw: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="FIELD=LOW:HIGH", help="Draw a field at random instead; append :log for its log."
+        ),
+    ] = None,
+    count: Annotated[int | None, typer.Option(help="Number of draws.")] = None,
+    seed: Annotated[int | None, typer.Option(help="What the draws follow from; 0 if left out.")] = None,
+    duration: Annotated[float | None, typer.Option(help="Length of every run, s; 20 if left out.")] = None,
+    tolerance: Annotated[
+        float | None, typer.Option(help="Relative error per step; 1e-9 if left out.")
+    ] = None,
+    settled: Annotated[
+        float | None,
+        typer.Option(help="End a run once its tilt is held within this for good, rad; else all run on."),
+    ] = None,
+    workers: Annotated[
+        int | None, typer.Option(help="Number of processes; all processors if left out.")
+    ] = None,
+    scheduler: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="Compute on a running dask.distributed cluster.")
+    ] = None,
+    out: Annotated[Path, typer.Option(help="Zarr store to write.")] = Path("sweep.zarr"),
+    resume: Annotated[bool, typer.Option("--resume", help="Finish a store that is there.")] = False,
+    maps: Annotated[
+        bool, typer.Option(show_default=False, help="Draw maps beside the store; drawn if left out.")
+    ] = True,
     as_json: Json = False,
     force: Force = False,
 ) -> None:
@@ -83,11 +75,10 @@ def sweep(
 
     if resume and force:
         raise InvalidInput("--force", "with --resume", "one of the two")
-    over = (axis, draw, count, seed)
     with in_words(out, "read"):
         kept = kept_sweep(out) if resume and choice.file is None else None
     limits = {"duration": duration, "tolerance": tolerance, "settled": settled}
-    chosen = _chosen_sweep(choice, kept, over, limits)
+    chosen = _chosen_sweep(choice, kept, _chosen_grid(axis, draw, count, seed), limits)
     need_workers(workers, scheduler)
     pictures = _map_files(out) if maps else {}
     for path in pictures.values():
@@ -96,7 +87,13 @@ def sweep(
     began = time.perf_counter()
     progress: list[Progress] = []
     try:
-        with _shown(progress, silent=as_json or not sys.stderr.isatty()) as callback:
+        with progress_bar() as tell:
+
+            def callback(now: "Progress") -> None:
+                progress.append(now)
+                rate = f" {now.rate:,.0f} launches/s" if now.rate else ""
+                tell(now.done, now.cells, f"{now.done:,} of {now.cells:,}{rate}")
+
             fill(store, workers=workers, scheduler=scheduler, callback=callback)
         dataset = store.load(["status", "outcome", *dict.fromkeys(["flights", *pictures])])
         _draw_maps(dataset, pictures, force or resume)
@@ -109,21 +106,17 @@ def sweep(
         files = {"out": str(out), "maps": [str(path) for path in pictures.values()]}
         typer.echo(json.dumps({**summary, **files, "sweep": store.sweep.describe()}, indent=2))
     else:
-        _print_summary(summary, [out, *pictures.values()])
+        show(*_sentences(summary), files=[out, *pictures.values()])
 
 
 def _chosen_sweep(
-    choice: Choice,
-    kept: "Sweep | None",
-    over: tuple[list[str] | None, list[str] | None, int | None, int | None],
-    limits: dict[str, float | None],
+    choice: Choice, kept: "Sweep | None", grid: "Product | Draws | None", limits: dict[str, float | None]
 ) -> "Sweep":
     """The sweep that the file, or the store to be resumed, and the options ask for."""
     from tippetop.sweeps import Sweep  # noqa: PLC0415 - slow to import
 
     file = choice.file
     base = Sweep.read(file) if file is not None and _holds_sweep(file) else kept
-    grid = _chosen_grid(*over)
     given = {name: limit for name, limit in limits.items() if limit is not None}
     if base is not None:
         update = {"problem": choice.changed(base.problem), "grid": grid or base.grid, **given}
@@ -193,38 +186,6 @@ def _holds_sweep(file: Path) -> bool:
         return False
 
 
-@contextmanager
-def _shown(seen: list["Progress"], silent: bool) -> Iterator["Callback"]:
-    """A callback that keeps what it is told, and shows it on a terminal."""
-    from rich.console import Console  # noqa: PLC0415
-    from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn  # noqa: PLC0415
-    from rich.progress import Progress as Bar  # noqa: PLC0415
-
-    columns = (
-        BarColumn(bar_width=None),
-        MofNCompleteColumn(),
-        TextColumn("{task.fields[rate]}"),
-        TimeElapsedColumn(),
-        TextColumn("{task.fields[left]}"),
-    )
-    with Bar(*columns, console=Console(stderr=True), disable=silent, transient=True) as bar:
-        shown = bar.add_task("sweep", total=None, rate="", left="")
-
-        def callback(progress: "Progress") -> None:
-            hear()
-            seen.append(progress)
-            left = progress.time_left
-            bar.update(
-                shown,
-                total=progress.cells,
-                completed=progress.done,
-                rate=f"{progress.rate:,.0f} launches/s" if progress.rate else "",
-                left="" if left is None else f"{left:,.0f} s left",
-            )
-
-        yield callback
-
-
 def _map_files(out: Path) -> dict[str, Path]:
     """The maps that are drawn beside a store: variables and files."""
     from tippetop.figures.maps import MAPPED  # noqa: PLC0415 - slow to import
@@ -255,19 +216,13 @@ def _summary(dataset: "xr.Dataset", progress: "Progress", elapsed: float) -> dic
     }
 
 
-def _print_summary(summary: dict[str, Any], files: list[Path]) -> None:
-    from rich.console import Console  # noqa: PLC0415
-
-    console = Console()
+def _sentences(summary: dict[str, Any]) -> Iterator[Any]:
     rows = [(name.replace("_", " "), f"{number:,}") for name, number in summary["outcomes"].items()]
     if summary["flights"]:
         rows.append(("flights", f"{summary['flights']:,}"))
-    console.print(f"[bold]{summary['cells']:,} launches[/]")
-    console.print(facts(rows))
-    console.print(
+    yield f"[bold]{summary['cells']:,} launches[/]"
+    yield facts(rows)
+    yield (
         f"[dim]{summary['computed']:,} computed in {summary['seconds']:.3g} s, "
-        f"{summary['launches_per_second']:,.0f} a second[/]",
-        highlight=False,
+        f"{summary['launches_per_second']:,.0f} a second[/]"
     )
-    for path in files:
-        console.print(f"wrote {path}", highlight=False)

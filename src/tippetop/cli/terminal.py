@@ -1,0 +1,78 @@
+"""What the commands show people: tables, sentences, and how far they are."""
+
+import sys
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tippetop.interrupts import hear
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+
+def facts(rows: Iterable[Sequence[str]]) -> "Table":
+    """What is told, a name, a number and perhaps a remark to a row, as a table."""
+    from rich.table import Table  # noqa: PLC0415 - slow to import, like what follows
+
+    table = Table(box=None, show_header=False, padding=(0, 2, 0, 0))
+    table.add_column(style="dim")
+    table.add_column(justify="right", style="bold")
+    table.add_column()
+    for row in rows:
+        table.add_row(*row)
+    return table
+
+
+def listing(
+    title: str | None, headings: Sequence[str], rows: Iterable[Sequence[str]], words: Sequence[str]
+) -> "Table":
+    """Rows of numbers under headings, but for the columns of words."""
+    from rich.table import Table  # noqa: PLC0415
+
+    table = Table(title=title, title_justify="left", title_style="bold", box=None)
+    for heading in headings:
+        table.add_column(heading, justify="left" if heading in words else "right", overflow="fold")
+    for row in rows:
+        table.add_row(*row)
+    return table
+
+
+def show(*parts: Any, files: Iterable[Path] = ()) -> None:
+    """Print sentences, with rich's markup, and tables, and which files were written."""
+    from rich.console import Console  # noqa: PLC0415
+
+    console = Console(highlight=False)
+    for part in parts:
+        console.print(part)
+    for path in files:
+        console.print(f"wrote {path}", markup=False, soft_wrap=True)
+
+
+@contextmanager
+def progress_bar(what: str = "") -> Iterator[Callable[..., None]]:
+    """Show on a terminal how far something is, and how long it still takes.
+
+    Given is what is to be told of it: how much is done, of how much, and, if that changes, what it is at.
+    """
+    with _bar(what) as draw:
+
+        def tell(done: float, total: float, now: str = what) -> None:
+            hear()
+            draw(completed=done, total=total, description=f"{now:<28}")
+
+        yield tell
+
+
+@contextmanager
+def _bar(what: str) -> Iterator[Callable[..., None]]:
+    if not sys.stderr.isatty():
+        yield lambda **_: None
+        return
+    from rich.console import Console  # noqa: PLC0415
+    from rich.progress import Progress  # noqa: PLC0415
+
+    with Progress(console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task(what, total=None)
+        yield lambda **told: bar.update(task, **told)
