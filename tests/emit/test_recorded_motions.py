@@ -140,6 +140,32 @@ def test_every_launch_has_its_own_choice_and_its_own_numbers():
 
 
 @pytest.mark.skipif(not has_llvm(), reason="llvmlite is not installed")
+def test_what_is_rarely_needed_is_there_for_those_who_need_it():
+    plain = NodeArithmetic()
+
+    def function(y, p):
+        negative, shared = plain.below(y[0], 0.0), y[0] * p[0]
+        cube = plain.rarely(negative, y[0] ** 3.0, 7.0)
+        chosen = plain.rarely(negative, (-shared) ** 0.5 + shared, shared)
+        return chosen, cube + chosen * chosen, shared
+
+    # Launches eight at a time: none needs it, all do, and some.
+    places = np.concatenate((np.linspace(1.0, 2.0, 8), np.linspace(-2.0, -1.0, 8), np.linspace(-1.2, 1.1, 8)))
+    chosen, cube, shared = by_llvm(record(function, 1, 1), places[:, None], (2.0,)).T
+    np.testing.assert_array_equal(shared, 2.0 * places)
+    wanted = np.where(places < 0.0, 2.0 * places + np.sqrt(2.0 * np.abs(places)), 2.0 * places)
+    np.testing.assert_allclose(chosen, wanted, rtol=1e-15)
+    np.testing.assert_allclose(cube, np.where(places < 0.0, places**3, 7.0) + wanted**2, rtol=1e-14)
+
+    def twice(y, p):
+        inner = plain.rarely(plain.below(y[0], 0.0), y[0] ** 2.0, 1.0)
+        return (plain.rarely(plain.below(y[0], 1.0), inner + 1.0, 0.0),)
+
+    with pytest.raises(NotRecordable, match="rarely"):
+        by_llvm(record(twice, 1, 0), places[:, None], ())
+
+
+@pytest.mark.skipif(not has_llvm(), reason="llvmlite is not installed")
 def test_series_of_nodes_solve_what_they_are_given():
     def exponential(y, p):
         (series,) = solution(y, lambda y: (p[0] * y[0] - y[0] * p[0] + y[0] / p[1],), NodeArithmetic())

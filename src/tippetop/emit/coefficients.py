@@ -33,3 +33,7 @@ class NodeArithmetic:
         if isinstance(condition, Node):
             return condition.graph.select(condition, a, b)
         return a if condition else b
+
+    def rarely(self, condition: Any, a: Any, b: Any) -> Any:
+        """The same, where it is the second mostly; one condition for all that a function computes rarely."""
+        return condition.graph.rarely(condition, a, b)

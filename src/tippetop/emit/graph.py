@@ -12,7 +12,7 @@ from tippetop.mechanics.series import Series
 
 STATE, PARAMETER, CONSTANT = "y", "p", "constant"
 SUM, DIFFERENCE, PRODUCT, QUOTIENT = "+", "-", "*", "/"
-NEGATIVE, LESS, SELECT = "negative", "less", "select"
+NEGATIVE, LESS, SELECT, RARELY = "negative", "less", "select", "rarely"
 SIZE, ROOT, POWER, SINE, COSINE = "abs", "sqrt", "pow", "sin", "cos"
 SPREAD, TOTAL = "spread", "total"
 """What makes nodes; where they have several values, the last two are one of them for all, and their sum."""
@@ -171,6 +171,10 @@ class Graph:
         if not isinstance(condition, Node):
             return a if condition else b
         return self.node(SELECT, (condition, self.taken(a), self.taken(b)))
+
+    def rarely(self, condition: Any, a: Any, b: Any) -> Any:
+        """The same; the first is computed only where launches abreast have need of it."""
+        return self.node(RARELY, (self.taken(condition), self.taken(a), self.taken(b)))
 
 
 def key_of(name: str, operands: tuple[Node, ...], value: float = 0.0) -> str:

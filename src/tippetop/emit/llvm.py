@@ -1,6 +1,6 @@
 """Recorded functions as LLVM's code, for one launch or for several an instruction."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from struct import pack
 
 from tippetop.emit import graph
@@ -51,17 +51,26 @@ SPELLINGS = {
 }
 """What makes {t} of {0}, {1}, ..."""
 
+NEED = """\
+%need = fcmp une {v} {0}, zeroinitializer
+  %somewhere = call i1 @llvm.vector.reduce.or.v{n}i1(<{n} x i1> %need)
+  br i1 %somewhere, label %rare, label %{end}
+rare:"""
+RARE = "{t}_rare = select <{n} x i1> %need, {v} {1}, {v} {2}"
+EITHER = "{t} = phi {v} [ {2}, %{begin} ], [ {t}_rare, %rare ]"
+"""What is computed only where one of the launches has need of it: how that begins, and what it makes."""
+
 FRAME = """\
 define void @{name}(ptr noalias %y, ptr noalias %p, ptr noalias %out, i64 %count) {{
 entry:
   %any = icmp ult i64 0, {count}
-  br i1 %any, label %launches, label %done
-launches:
-  %first = phi i64 [ 0, %entry ], [ %next, %launches ]
+  br i1 %any, label %{begin}, label %done
+{begin}:
+  %first = phi i64 [ 0, %entry ], [ %next, %{end} ]
   {body}
   %next = add i64 %first, {n}
   %more = icmp ult i64 %next, {count}
-  br i1 %more, label %launches, label %done
+  br i1 %more, label %{begin}, label %done
 done:
   ret void
 }}
@@ -70,17 +79,17 @@ done:
 AGAIN = """\
 define i64 @{name}(ptr noalias %y, ptr noalias %p, ptr noalias %out, double %enough, i64 %most) {{
 entry:
-  br label %turn
-turn:
-  %first = phi i64 [ 0, %entry ], [ 0, %turn ]
-  %turns = phi i64 [ 0, %entry ], [ %next, %turn ]
+  br label %{begin}
+{begin}:
+  %first = phi i64 [ 0, %entry ], [ 0, %{end} ]
+  %turns = phi i64 [ 0, %entry ], [ %next, %{end} ]
   {body}
   %changed = extractelement {v} {last}, i64 0
   %next = add i64 %turns, 1
   %left = icmp ult i64 %next, %most
   %moves = fcmp oge double %changed, %enough
   %more = and i1 %left, %moves
-  br i1 %more, label %turn, label %done
+  br i1 %more, label %{begin}, label %done
 done:
   ret i64 %next
 }}
@@ -98,7 +107,7 @@ def llvm_source(functions: Mapping[str, Recorded], abreast: int, *, again: bool 
     """
     frame, vector = AGAIN if again else FRAME, f"<{abreast} x double>"
     count = abreast if again else "%count" if abreast > 1 else 1
-    words = {"v": vector, "n": abreast, "r": ROUNDING, "count": count}
+    words = {"v": vector, "n": abreast, "r": ROUNDING, "count": count, "begin": "launches"}
 
     def name_of(node: graph.Node) -> str:
         if node.name != graph.CONSTANT:
@@ -111,15 +120,12 @@ def llvm_source(functions: Mapping[str, Recorded], abreast: int, *, again: bool 
         for name in ("fabs", "sqrt", "sin", "cos", "pow")
     ]
     parts.append(f"declare double @llvm.vector.reduce.fadd.v{abreast}f64(double, {vector})\n")
+    parts.append(f"declare i1 @llvm.vector.reduce.or.v{abreast}i1(<{abreast} x i1>)\n")
     for name, recorded in functions.items():
-        known, lines = dict[int, str](), list[str]()
-        for node in recorded.nodes:
-            known[node.place] = t = name_of(node)
-            if node.name != graph.CONSTANT:
-                operands = [known[operand.place] for operand in node.operands]
-                own = {"t": t, "name": node.name, "row": node.value}
-                flagged = node.name == graph.SELECT and node.operands[0].name == graph.LESS
-                lines.append((CHOICE if flagged else SPELLINGS[node.name]).format(*operands, **own, **words))
+        known = {node.place: name_of(node) for node in recorded.nodes}
+        branches = any(node.name == graph.RARELY for node in recorded.nodes)
+        words["end"] = "rest" if branches else words["begin"]
+        lines = spelt(recorded, known, words)
         replaced = recorded.size if again else 0
         for number, node in enumerate(recorded.outputs):
             row = (
@@ -131,3 +137,46 @@ def llvm_source(functions: Mapping[str, Recorded], abreast: int, *, again: bool 
         last = known[recorded.outputs[-1].place] if again else ""
         parts.append(frame.format(name=name, body="\n  ".join(lines), last=last, **words))
     return "".join(parts)
+
+
+def spelt(recorded: Recorded, known: Mapping[int, str], words: Mapping[str, object]) -> list[str]:
+    """What computes the nodes, given what they are called."""
+
+    def line(node: graph.Node, spelling: str | None = None) -> str:
+        operands = [known[operand.place] for operand in node.operands]
+        own = {"t": known[node.place], "name": node.name, "row": node.value}
+        flagged = node.name == graph.SELECT and node.operands[0].name == graph.LESS
+        text = spelling or (CHOICE if flagged else SPELLINGS[node.name])
+        return text.format(*operands, **own, **words)
+
+    always, seldom, either, rest = parted(recorded)
+    lines = list(map(line, always))
+    if either:
+        lines += [line(either[0], NEED), *map(line, seldom), *(line(node, RARE) for node in either)]
+        lines += ["br label %rest", "rest:", *(line(node, EITHER) for node in either), *map(line, rest)]
+    return lines
+
+
+def parted(recorded: Recorded) -> tuple[Sequence[graph.Node], ...]:
+    """What is computed first, what only where there is need, what is one of both, and the rest."""
+    needed = {node.place for node in recorded.outputs}
+    for node in reversed(recorded.nodes):
+        if node.place in needed:
+            kept = node.operands[::2] if node.name == graph.RARELY else node.operands
+            needed.update([operand.place for operand in kept])
+    later = set[int]()
+    for node in recorded.nodes:
+        if node.name == graph.RARELY or not later.isdisjoint([operand.place for operand in node.operands]):
+            later.add(node.place)
+    made = [node for node in recorded.nodes if node.name != graph.CONSTANT]
+    either = [node for node in made if node.name == graph.RARELY]
+    if len({node.operands[0].place for node in either}) > 1 or any(
+        node.place in later and node.place not in needed for node in made
+    ):
+        raise graph.NotRecordable("what is computed rarely is so on one condition, and needs nothing of it")
+    return (
+        [node for node in made if node.place in needed and node.place not in later],
+        [node for node in made if node.place not in needed],
+        either,
+        [node for node in made if node.place in later and node.name != graph.RARELY],
+    )

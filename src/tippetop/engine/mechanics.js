@@ -10224,7 +10224,7 @@ function observe(samples, top, units) {
 // tippetop.emit.graph
 const [STATE, PARAMETER, CONSTANT] = ["y", "p", "constant"];
 const [SUM, DIFFERENCE, PRODUCT, QUOTIENT] = ["+", "-", "*", "/"];
-const [NEGATIVE, LESS, SELECT] = ["negative", "less", "select"];
+const [NEGATIVE, LESS, SELECT, RARELY] = ["negative", "less", "select", "rarely"];
 const [SIZE, ROOT, POWER_of_graph, SINE, COSINE] = ["abs", "sqrt", "pow", "sin", "cos"];
 const [SPREAD, TOTAL] = ["spread", "total"];
 const LARGEST_POWER = 16;
@@ -10385,6 +10385,10 @@ class Graph extends py.Record {
       return py.truth(condition) ? a : b;
     }
     return this.node(SELECT, [condition, this.taken(a), this.taken(b)]);
+  }
+  /** The same; the first is computed only where launches abreast have need of it. */
+  rarely(condition, a, b) {
+    return this.node(RARELY, [this.taken(condition), this.taken(a), this.taken(b)]);
   }
 }
 py.fields(Graph, ["nodes", "known"]);
@@ -10748,6 +10752,7 @@ export {
   Prospects,
   QUOTIENT,
   Quadratures,
+  RARELY,
   REACH,
   REACHED,
   REOPENING,

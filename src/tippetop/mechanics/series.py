@@ -35,6 +35,9 @@ class Arithmetic(Sums, Protocol):
     def choose(self, condition: Scalar, a: Scalar, b: Scalar) -> Scalar:
         """The first where a condition is not 0, else the second."""
 
+    def rarely(self, condition: Scalar, a: Scalar, b: Scalar) -> Scalar:
+        """The same, where it is the second mostly; all in a function have one condition."""
+
 
 class PlainArithmetic:
     """Coefficients that have plain operators, such as floats."""

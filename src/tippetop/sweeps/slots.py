@@ -10,10 +10,14 @@ from tippetop.mechanics.motion import along_table, on_table
 from tippetop.mechanics.rolling import is_branched, on_other_branch
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.top import Top
+from tippetop.mechanics.units import Units
 from tippetop.metrics import OUTCOMES, Ends
 from tippetop.sweeps.launches import Flags, Indices, Launches, branched
 from tippetop.sweeps.stride import LANES, Layout, Stepper
 from tippetop.sweeps.tip import TipMotion
+
+NATURAL = Units(1.0, 1.0, 1.0)
+"""Units of what is dimensionless."""
 
 LOSSES = slice(8, 10)
 """Rows of the work of drilling and of rolling, where a law has a torque."""
@@ -137,8 +141,9 @@ class Slots:
         self._put(lanes, on_other_branch(self.tops(lanes)))
 
     def _put(self, lanes: Indices, top: Top) -> None:
-        """Let these be the tops on some lanes."""
-        for row, number in enumerate(top.numbers):
+        """Let tops on some lanes have these tops' law."""
+        first = self.layout.parameters - self.launches.kind.coefficients
+        for row, number in enumerate(top.friction.coefficients(NATURAL), start=first):
             self.numbers[row, lanes] = number
 
     def retire(self, lanes: Indices, state: State, time: Array, outcome: Outcome) -> None:

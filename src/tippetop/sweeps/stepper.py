@@ -34,6 +34,8 @@ class NumPyArithmetic:
         """The first where a condition is not 0, else the second."""
         return np.where(condition != 0.0, a, b)
 
+    rarely = choose
+
 
 @lru_cache(maxsize=16)
 def stepper(motion: Motion, tolerance: float) -> Stepper:

@@ -22,7 +22,7 @@ from tippetop.integrators.base import Array, Motion
 from tippetop.mechanics.series import Arithmetic, horner, solution
 from tippetop.mechanics.vectors import Scalar
 
-GUARD_LOOKS, OTHER_LOOKS, TIP_LOOKS = 32, 8, 12
+GUARD_LOOKS, OTHER_LOOKS, TIP_LOOKS = 32, 16, 12
 """Intervals of a step at whose ends the first guard, the others, and n_z are looked at."""
 
 NEWTON, BRACKETED = 3, 8
@@ -139,25 +139,16 @@ def stride(
     y, guards = motion_series(motion, start, numbers, plain)
     state = [[series[k] for k in range(order + 1)] for series in y]
     falls = [[guard[k] for k in range(order)] for guard in guards]
-    whole = taken = step_size(state, left, plain)
-    changes = 0.0 * whole
-    if layout.branch is not None:
-        change, doubt = branch_change(falls[layout.branch], whole, plain)
-        changes, taken = plain.below(change, whole), plain.least(change, whole)
+    whole = step_size(state, left, plain)
+    taken, changes, events = later_guards(falls, counts, (whole, layout.branch), plain)
     heights, upside = looked_at(state[2], taken, TIP_LOOKS), [-term for term in state[2]]
     floor = least_value(state[2], heights, taken, plain)
     ceiling = -least_value(upside, [-height for height in heights], taken, plain)
 
-    events = plain.below(floor, 0.0) * plain.below(0.0, ceiling) * turns
+    events += plain.below(floor, 0.0) * plain.below(0.0, ceiling) * turns
     events += (1.0 - plain.below(band_high, floor)) * (1.0 - plain.below(ceiling, band_low))
     pressing = looked_at(falls[0], taken, GUARD_LOOKS)
-    for number, (terms, count) in enumerate(zip(falls, counts, strict=True)):
-        if number == layout.branch:
-            events += doubt
-            continue
-        values = looked_at(terms, taken, OTHER_LOOKS) if number else pressing
-        depth = lowest(values, plain) - slack(terms, taken, len(values) - 1, plain)
-        events += plain.below(depth, TINY) * count
+    events += may_fall(falls[0], pressing, taken, plain) * counts[0]
     moves = plain.below(0.0, taken)
     pause = events * moves
     after = [*(horner(series, taken) for series in state), left - taken, steps + moves]
@@ -166,6 +157,56 @@ def stride(
     force = least_value(falls[0], pressing, taken, plain)
     least = [plain.choose(pause, math.inf + 0.0 * value, value) for value in (force, floor, -ceiling)]
     return [*stays, whole, pause, *least, plain.choose(pause, 0.0 * changes, changes)]
+
+
+def later_guards(
+    falls: Sequence[Sequence[Scalar]],
+    counts: Sequence[Scalar],
+    step: tuple[Scalar, int | None],
+    plain: Arithmetic,
+) -> tuple[Scalar, Scalar, Scalar]:
+    """What a step is because of all guards but the first.
+
+    Parameters
+    ----------
+    falls, counts
+        The guards, and whether each of them counts.
+    step
+        The step that may be taken, and which of the guards is of the law's branch.
+
+    Returns
+    -------
+    tuple
+        The step that is taken, whether it ends where another branch of the law takes over, and whether a
+        guard may fall in it. Only where one comes near zero are they looked at.
+    """
+    whole, branch = step
+    none = 0.0 * whole
+    usual = taken, changes, events = whole, none, none
+    if len(falls) == 1:
+        return usual
+    near = none
+    for number, (terms, count) in enumerate(zip(falls[1:], counts[1:], strict=True), start=1):
+        near += plain.below(lower_bound(terms, whole, plain), TINY)
+        if number == branch:
+            change, doubt = branch_change(terms, whole, plain)
+            changes, taken, events = plain.below(change, whole), plain.least(change, whole), events + doubt
+        else:
+            events += may_fall(terms, looked_at(terms, whole, OTHER_LOOKS), whole, plain) * count
+    need, found = near * plain.below(0.0, whole), (taken, changes, events)
+    taken, changes, events = (plain.rarely(need, a, b) for a, b in zip(found, usual, strict=True))
+    return taken, changes, events
+
+
+def lower_bound(terms: Sequence[Scalar], whole: Scalar, plain: Arithmetic) -> Scalar:
+    """What a polynomial is at least in a step: its tangent's ends less all that bends."""
+    bends = horner([plain.size(term) for term in terms[2:]], whole)
+    return plain.least(terms[0], terms[0] + whole * terms[1]) - whole * whole * bends
+
+
+def may_fall(terms: Sequence[Scalar], values: Sequence[Scalar], taken: Scalar, plain: Arithmetic) -> Scalar:
+    """Whether a guard may fall through zero in a step, given its looks."""
+    return plain.below(lowest(values, plain) - slack(terms, taken, len(values) - 1, plain), TINY)
 
 
 def branch_change(terms: Sequence[Scalar], whole: Scalar, plain: Arithmetic) -> tuple[Scalar, Scalar]:
