@@ -2,6 +2,7 @@
 
 import numpy as np
 
+import tippetop as tt
 from tippetop.presets import report_problem
 from tippetop.run import simulate
 from tippetop.sweeps import Axis, Product, Sweep
@@ -22,6 +23,12 @@ def thrown(tolerance=1e-9):
     problem = report_problem(spin=150.0, tilt=0.5)
     axes = Axis.of("launch.gap", [0.0, 0.001]), Axis.of("contact.restitution", [0.0, 0.4])
     return Sweep(problem, Product(axes), 0.12, tolerance)
+
+
+def stored(sweep, out, **options):
+    """A sweep carried out into a store, as anybody does that."""
+    limits = {"duration": sweep.duration, "tolerance": sweep.tolerance, "settled": sweep.settled}
+    return tt.sweep(sweep.problem, sweep.grid, **limits, out=out, **options)
 
 
 def problem_of(sweep, cell):

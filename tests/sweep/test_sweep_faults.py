@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from sweeps import lively
+from sweeps import lively, stored
 
 from tippetop.errors import FileTrouble
 from tippetop.presets import report_problem
@@ -30,7 +30,6 @@ from tippetop.sweeps import (
     fill,
     layout,
     read_sweep,
-    run_sweep,
 )
 
 zarr = pytest.importorskip("zarr")
@@ -66,7 +65,7 @@ def test_nothing_damaged_is_read_and_what_can_be_mended_is(tmp_path, monkeypatch
     monkeypatch.setattr(definition, "LEAST_CELLS_A_TASK", 12)
     path, random = tmp_path / "a.zarr", np.random.default_rng(7)
     truth = compute(quick())
-    run_sweep(quick(), path, workers=1)
+    stored(quick(), path, workers=1)
     names = ["status", *SWEPT]
     xr.testing.assert_identical(read_sweep(path)[names], truth[names])
     files = sorted(file for file in path.rglob("*") if file.is_file() and file.name != ".lock")
@@ -127,7 +126,7 @@ def test_metadata_that_were_edited_are_refused(tmp_path, there, instead):
 
 def test_resuming_does_again_what_is_missing_and_no_more(tmp_path, small_tasks):
     path = tmp_path / "a.zarr"
-    run_sweep(quick(), path, workers=1)
+    stored(quick(), path, workers=1)
     first, *_, last = quick().tasks
     shutil.rmtree(path / "final_theta" / "c" / str(first[0]))
     chunk = path.joinpath("steps", "c", *map(str, last))
@@ -141,7 +140,9 @@ def test_resuming_does_again_what_is_missing_and_no_more(tmp_path, small_tasks):
     with pytest.raises(FileTrouble, match=r"a chunk of .* is missing"):
         store.dataset()
     progress = fill(store, workers=1)
-    assert progress.done - progress.before == sum(store.sweep.numbers(task).size for task in lost)
+    assert progress.done - progress.before == sum(
+        store.sweep.numbers(store.sweep.region(task)).size for task in lost
+    )
     xr.testing.assert_identical(store.dataset().load(), compute(quick()))
 
 
@@ -149,11 +150,11 @@ def test_draws_are_mended_too(tmp_path):
     sweep = Sweep(
         report_problem(), Draws((Range("launch.spin", 10, 200), Range("friction.mu", 0, 1)), 5), 0.05
     )
-    run_sweep(sweep, tmp_path / "a.zarr", workers=1)
+    stored(sweep, tmp_path / "a.zarr", workers=1)
     shutil.rmtree(tmp_path / "a.zarr" / "friction.mu")
     with pytest.raises(FileTrouble, match=r"a chunk of friction\.mu is missing"):
         read_sweep(tmp_path / "a.zarr")
-    run_sweep(sweep, tmp_path / "a.zarr", resume=True, workers=1)
+    stored(sweep, tmp_path / "a.zarr", resume=True, workers=1)
     names = list(SWEPT)
     xr.testing.assert_identical(read_sweep(tmp_path / "a.zarr", names), compute(sweep)[names])
 
@@ -183,7 +184,7 @@ def test_results_are_on_disk_before_they_are_said_to_be(tmp_path, small_tasks, m
         await put(self, key, value)
 
     monkeypatch.setattr(zarr.storage.LocalStore, "set", after_the_others)
-    numbers = store.sweep.numbers(task)
+    numbers = store.sweep.numbers(store.sweep.region(task))
     store.write(task, {name: np.zeros(numbers.size, dtype=kind.dtype) for name, kind in SWEPT.items()})
     assert chunks <= synced
 
@@ -224,13 +225,13 @@ def test_a_sweep_that_is_being_filled_is_not_replaced(tmp_path, small_tasks):
     other = lively("stop", 7, 3, 0.05, 1e-9)
     for overwrite in (True, False):
         with pytest.raises(FileTrouble, match="being filled by another process" if overwrite else "exists"):
-            run_sweep(other, path, overwrite=overwrite, workers=1)
+            stored(other, path, overwrite=overwrite, workers=1)
     process.kill()
     process.wait()
     process.stdout.close()
     assert [item.name for item in tmp_path.iterdir()] == ["a.zarr"]
     assert 0 < len(Store.resume(path, quick()).remaining()) < len(quick().tasks)
-    run_sweep(other, path, overwrite=True, workers=1)
+    stored(other, path, overwrite=True, workers=1)
     xr.testing.assert_identical(read_sweep(path, list(SWEPT)), compute(other)[list(SWEPT)])
 
 
@@ -240,7 +241,7 @@ def test_a_writer_notices_that_its_store_was_replaced(tmp_path, small_tasks):
     def replace(progress):
         if progress.done and path.exists() and Store.resume(path).sweep == quick():
             shutil.rmtree(path)
-            run_sweep(other, path, workers=1)
+            stored(other, path, workers=1)
 
     store = Store.create(path, quick())
     with pytest.raises(FileTrouble, match="replaced by another sweep"):

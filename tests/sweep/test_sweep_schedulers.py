@@ -85,7 +85,7 @@ def test_a_number_of_workers_that_cannot_be_is_refused():
 
 def test_workers_of_another_version_are_refused():
     with pytest.raises(Unavailable, match=r"the sweep is run by 99\.0"):
-        scheduling.compute_block("{}", "99.0", (), ((0, 1),))
+        scheduling.compute_region("{}", "99.0", (), (slice(0, 1),))
 
 
 @pytest.mark.filterwarnings("ignore")
@@ -156,16 +156,16 @@ def test_a_cluster_without_workers_is_refused_and_one_that_is_lost_is_told_of(sm
 LOST = """
 import sys, time
 sys.path[:0] = {paths!r}
-from sweeps import lively
+from sweeps import lively, stored
 from tippetop.errors import Unavailable
-from tippetop.sweeps import definition, run_sweep, tasks
+from tippetop.sweeps import definition, tasks
 definition.LEAST_CELLS_A_TASK, definition.TASKS, tasks.LONELY = 4, 1000, 2.0
 import os, signal
 def kill(progress):
     if 8 <= progress.done < 12:
         os.kill({victim}, signal.SIGKILL)
 try:
-    run_sweep(lively("fly", 6, 4, 0.3, 1e-9), {out!r}, scheduler={address!r}, callback=kill)
+    stored(lively("fly", 6, 4, 0.3, 1e-9), {out!r}, scheduler={address!r}, callback=kill)
 except Unavailable as error:
     print(error)
 """

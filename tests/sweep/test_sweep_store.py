@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from sweeps import lively, same
+from sweeps import lively, same, stored
 
 from tippetop.errors import FileTrouble, InvalidInput
 from tippetop.presets import report_problem
@@ -28,7 +28,6 @@ from tippetop.sweeps import (
     fill,
     layout,
     read_sweep,
-    run_sweep,
 )
 from tippetop.sweeps.axes import Spaced
 
@@ -52,12 +51,12 @@ def quick(cells=24, **options):
     ],
 )
 def test_a_store_is_the_sweep_in_memory(tmp_path, sweep):
-    stored = run_sweep(sweep, tmp_path / "a.zarr", workers=1)
-    xr.testing.assert_identical(stored.load(), compute(sweep))
+    found = stored(sweep, tmp_path / "a.zarr", workers=1)
+    xr.testing.assert_identical(found.load(), compute(sweep))
 
 
 def test_a_store_opens_with_plain_xarray(tmp_path):
-    run_sweep(quick(), tmp_path / "a.zarr", workers=1)
+    stored(quick(), tmp_path / "a.zarr", workers=1)
     opened = xr.open_zarr(tmp_path / "a.zarr")
     assert opened["final_theta"].dims == ("launch.spin", "friction.mu")
     assert opened["friction.mu"].values == pytest.approx(np.geomspace(0.2, 1, 4))
@@ -69,7 +68,7 @@ def test_a_store_opens_with_plain_xarray(tmp_path):
 
 def test_a_task_is_a_chunk_and_there_are_no_shards(tmp_path, small_tasks):
     sweep = quick()
-    run_sweep(sweep, tmp_path / "a.zarr", workers=1)
+    stored(sweep, tmp_path / "a.zarr", workers=1)
     for name in ("status", *SWEPT):
         array = zarr.open_array(tmp_path / "a.zarr" / name, mode="r")
         assert array.chunks == sweep.chunk
@@ -80,7 +79,7 @@ def test_a_task_is_a_chunk_and_there_are_no_shards(tmp_path, small_tasks):
 def test_the_status_alone_decides_what_remains(tmp_path, small_tasks):
     sweep = quick()
     path = tmp_path / "a.zarr"
-    run_sweep(sweep, path, workers=1)
+    stored(sweep, path, workers=1)
     store = Store.resume(path, sweep)
     assert store.remaining() == []
     status = zarr.open_array(path / "status", mode="r+")
@@ -89,14 +88,14 @@ def test_the_status_alone_decides_what_remains(tmp_path, small_tasks):
     assert Store.resume(path, sweep).remaining() == [task]
     theta = zarr.open_array(path / "final_theta", mode="r+")
     theta[sweep.region(task)] = 99.0
-    xr.testing.assert_identical(run_sweep(sweep, path, resume=True, workers=1).load(), compute(sweep))
+    xr.testing.assert_identical(stored(sweep, path, resume=True, workers=1).load(), compute(sweep))
 
 
 @pytest.mark.parametrize("damage", [b"", b"\x00", b"garbage that is no chunk"])
 def test_a_chunk_cut_short_is_done_again(tmp_path, small_tasks, damage):
     sweep = quick()
     path = tmp_path / "a.zarr"
-    run_sweep(sweep, path, workers=1)
+    stored(sweep, path, workers=1)
     (path / "status" / "c" / "0" / "0").write_bytes(damage)
     store = Store.resume(path, sweep)
     assert store.remaining() == [(0, 0)]
@@ -132,7 +131,7 @@ def test_another_version_is_refused(tmp_path, monkeypatch):
 
 
 def test_what_is_there_is_not_overwritten_unasked(tmp_path):
-    run_sweep(quick(), tmp_path / "a.zarr", workers=1)
+    stored(quick(), tmp_path / "a.zarr", workers=1)
     with pytest.raises(FileTrouble, match="overwrite=True"):
         Store.create(tmp_path / "a.zarr", quick())
     assert Store.resume(tmp_path / "a.zarr").remaining() == []
@@ -191,7 +190,7 @@ def test_a_store_is_filled_by_one_process_at_a_time(tmp_path, small_tasks):
 
 
 def test_a_damaged_chunk_is_told_in_a_sentence(tmp_path, small_tasks):
-    run_sweep(quick(), tmp_path / "a.zarr", workers=1)
+    stored(quick(), tmp_path / "a.zarr", workers=1)
     chunk = next(path for path in (tmp_path / "a.zarr" / "flights" / "c").rglob("*") if path.is_file())
     chunk.write_bytes(chunk.read_bytes()[:5])
     store = Store.resume(tmp_path / "a.zarr")
@@ -201,12 +200,12 @@ def test_a_damaged_chunk_is_told_in_a_sentence(tmp_path, small_tasks):
 
 
 def test_nothing_is_written_where_nobody_can_compute(tmp_path):
-    run_sweep(quick(), tmp_path / "a.zarr", workers=1)
+    stored(quick(), tmp_path / "a.zarr", workers=1)
     for options in ({"workers": 0}, {"scheduler": "nonsense://"}):
         with pytest.raises(InvalidInput):
-            run_sweep(quick(), tmp_path / "a.zarr", overwrite=True, **options)
+            stored(quick(), tmp_path / "a.zarr", overwrite=True, **options)
         with pytest.raises(InvalidInput):
-            run_sweep(quick(), tmp_path / "b.zarr", **options)
+            stored(quick(), tmp_path / "b.zarr", **options)
     assert not Store.resume(tmp_path / "a.zarr").remaining()
     assert not (tmp_path / "b.zarr").exists()
 
@@ -230,7 +229,7 @@ def test_a_full_disk_leaves_a_store_that_resumes(tmp_path, small_tasks, monkeypa
             fill(store, workers=1)
     left = len(Store.resume(path).remaining())
     assert 0 < left < len(sweep.tasks)
-    xr.testing.assert_identical(run_sweep(sweep, path, resume=True, workers=1).load(), compute(sweep))
+    xr.testing.assert_identical(stored(sweep, path, resume=True, workers=1).load(), compute(sweep))
 
 
 @pytest.mark.skipif(not Path("/sys/kernel").is_dir(), reason="a folder in which not even root may write")
@@ -282,12 +281,12 @@ def test_a_sweep_killed_at_random_moments_loses_nothing(tmp_path, small_tasks):
 def test_progress_is_told_and_counts_what_was_there(tmp_path, small_tasks):
     sweep = quick()
     seen = []
-    run_sweep(sweep, tmp_path / "a.zarr", workers=1, callback=seen.append)
+    stored(sweep, tmp_path / "a.zarr", workers=1, callback=seen.append)
     assert [progress.done for progress in seen] == list(range(0, 25, 4))
     assert seen[-1].rate > 0
     assert seen[-1].time_left == 0
     again = []
-    run_sweep(sweep, tmp_path / "a.zarr", resume=True, workers=1, callback=again.append)
+    stored(sweep, tmp_path / "a.zarr", resume=True, workers=1, callback=again.append)
     assert [(progress.before, progress.done) for progress in again] == [(24, 24)]
     assert again[0].time_left is None
 

@@ -79,7 +79,7 @@ def sweep(
         kept = kept_sweep(out) if resume and choice.file is None else None
     limits = {"duration": duration, "tolerance": tolerance, "settled": settled}
     chosen = _chosen_sweep(choice, kept, _chosen_grid(axis, draw, count, seed), limits)
-    need_workers(workers, scheduler)
+    need_workers(chosen, workers, scheduler)
     pictures = _map_files(out) if maps else {}
     for path in pictures.values():
         place_for(path, force or resume)

@@ -1,7 +1,7 @@
 """Sweeps: what becomes of many launches, over grids or random draws of any of a problem's numbers.
 
 `sweep` sweeps fields of a problem over values. `Sweep` says what to compute, `compute` does it in memory, and
-`run_sweep` into a store that survives whatever happens to the program.
+`fill` in a `Store`, which survives whatever happens to the program.
 """
 
 from tippetop.catalogue import SWEPT, Ending, Fault
@@ -9,7 +9,7 @@ from tippetop.sweeps.axes import Axis
 from tippetop.sweeps.definition import Sweep
 from tippetop.sweeps.grid import Draws, Product, Range
 from tippetop.sweeps.layout import Status
-from tippetop.sweeps.run import Progress, compute, fill, run_sweep, sweep
+from tippetop.sweeps.run import Progress, compute, fill, sweep
 from tippetop.sweeps.store import Store, read_sweep
 
 __all__ = [
@@ -27,6 +27,5 @@ __all__ = [
     "compute",
     "fill",
     "read_sweep",
-    "run_sweep",
     "sweep",
 ]

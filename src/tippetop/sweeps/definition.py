@@ -106,13 +106,9 @@ class Sweep(Part):
         parts = zip(task, self.chunk, self.grid.shape, strict=True)
         return tuple(slice(k * part, min((k + 1) * part, size)) for k, part, size in parts)
 
-    def numbers(self, task: tuple[int, ...]) -> Any:
-        """The cells of a task, counted row by row over the whole sweep, in the shape of its region."""
-        return self.numbers_in(tuple((part.start, part.stop) for part in self.region(task)))
-
-    def numbers_in(self, block: tuple[tuple[int, int], ...]) -> Any:
-        """The cells between first and last along every dimension, counted row by row, in that shape."""
-        ranges = [np.arange(first, last) for first, last in block]
+    def numbers(self, region: tuple[slice, ...]) -> Any:
+        """The cells of a region, counted row by row over the whole sweep, in its shape."""
+        ranges = [np.arange(part.start, part.stop) for part in region]
         return np.ravel_multi_index(np.ix_(*ranges), self.grid.shape)
 
     def describe(self) -> dict[str, Any]:

@@ -1,7 +1,7 @@
 """Carry out a sweep, into a store or into memory."""
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -15,7 +15,7 @@ from tippetop.sweeps.definition import DEFAULT_TOLERANCE, Sweep
 from tippetop.sweeps.grid import Draws, Product
 from tippetop.sweeps.layout import STATUS, Status, coordinate_attributes, layout_attributes
 from tippetop.sweeps.store import Store
-from tippetop.sweeps.tasks import need_workers, results
+from tippetop.sweeps.tasks import Found, Task, need_workers, results
 
 
 @dataclass(frozen=True)
@@ -45,6 +45,27 @@ class Progress:
 Callback = Callable[[Progress], None]
 
 
+def _carry_out(
+    sweep: Sweep,
+    tasks: Sequence[Task],
+    keep: Callable[[Task, Found], None],
+    workers: int | None,
+    scheduler: str | None,
+    callback: Callback | None,
+) -> Progress:
+    """Compute tasks of a sweep whose others are done, and keep what they find."""
+    before = sweep.cells - sum(sweep.numbers(sweep.region(task)).size for task in tasks)
+    began, told = time.monotonic(), callback or (lambda _: None)
+    progress = Progress(sweep.cells, before, before, 0.0)
+    told(progress)
+    for task, found in results(sweep, tasks, workers, scheduler) if tasks else ():
+        keep(task, found)
+        done = progress.done + found["outcome"].size
+        progress = Progress(sweep.cells, before, done, time.monotonic() - began)
+        told(progress)
+    return progress
+
+
 def fill(
     store: Store,
     *,
@@ -58,39 +79,7 @@ def fill(
     another call goes on where this one ended.
     """
     with store.held():
-        sweep, tasks = store.sweep, store.remaining()
-        sizes = {task: sweep.numbers(task).size for task in tasks}
-        before = sweep.cells - sum(sizes.values())
-        began = time.monotonic()
-        progress = Progress(sweep.cells, before, before, 0.0)
-        if callback is not None:
-            callback(progress)
-        for task, found in results(sweep, tasks, workers, scheduler) if tasks else ():
-            store.write(task, found)
-            progress = Progress(sweep.cells, before, progress.done + sizes[task], time.monotonic() - began)
-            if callback is not None:
-                callback(progress)
-        return progress
-
-
-def run_sweep(
-    sweep: Sweep | None,
-    out: Path | str,
-    *,
-    resume: bool = False,
-    overwrite: bool = False,
-    workers: int | None = None,
-    scheduler: str | None = None,
-    callback: Callback | None = None,
-) -> xr.Dataset:
-    """Carry out a sweep into a store, or that of the store that is resumed, and open it, as `sweep` does.
-
-    The variables of `tippetop.catalogue.SWEPT` and `status` over the grid are read when used.
-    """
-    need_workers(workers, scheduler, sweep)
-    store = Store.resume(out, sweep) if resume or sweep is None else Store.create(out, sweep, overwrite)
-    fill(store, workers=workers, scheduler=scheduler, callback=callback)
-    return store.dataset()
+        return _carry_out(store.sweep, store.remaining(), store.write, workers, scheduler, callback)
 
 
 def compute(
@@ -100,17 +89,19 @@ def compute(
     scheduler: str | None = None,
     callback: Callback | None = None,
 ) -> xr.Dataset:
-    """Carry out a sweep in memory, with the variables of `run_sweep`."""
+    """Carry out a sweep in memory; for workers, scheduler and callback see `sweep`.
+
+    The variables of `tippetop.catalogue.SWEPT` and `status` are over the grid.
+    """
     shape, grid = sweep.grid.shape, sweep.grid
     arrays = {name: np.full(shape, kind.missing, dtype=kind.dtype) for name, kind in SWEPT.items()}
-    done, began = 0, time.monotonic()
-    for task, found in results(sweep, sweep.tasks, workers, scheduler):
+
+    def keep(task: Task, found: Found) -> None:
         region = sweep.region(task)
         for name, values in found.items():
             arrays[name][region] = values.reshape(arrays[name][region].shape)
-        done += found["outcome"].size
-        if callback is not None:
-            callback(Progress(sweep.cells, 0, done, time.monotonic() - began))
+
+    _carry_out(sweep, sweep.tasks, keep, workers, scheduler, callback)
     status = np.full(shape, Status.DONE, dtype=np.int8)
     data = {"status": (grid.dimensions, status, STATUS.attributes)}
     for name, kind in SWEPT.items():
@@ -170,7 +161,7 @@ def sweep(
     -------
     xarray.Dataset
         What became of every launch, over the grid: its outcome, final tilt, spin and precession, when it
-        turned over, its flights, forces and losses, each with its SI unit.
+        turned over, its flights, forces and losses, each with its SI unit. That of a store is read when used.
 
     Raises
     ------
@@ -190,5 +181,7 @@ def sweep(
     chosen = Sweep(problem, grid, duration, tolerance, settled)
     if out is None:
         return compute(chosen, workers=workers, scheduler=scheduler, callback=callback)
-    permission = {"overwrite": overwrite, "resume": resume}
-    return run_sweep(chosen, out, **permission, workers=workers, scheduler=scheduler, callback=callback)
+    need_workers(chosen, workers, scheduler)
+    store = Store.resume(out, chosen) if resume else Store.create(out, chosen, overwrite)
+    fill(store, workers=workers, scheduler=scheduler, callback=callback)
+    return store.dataset()

@@ -24,9 +24,8 @@ from tippetop.sweeps.ensemble import follow_cells
 
 Task: TypeAlias = tuple[int, ...]
 Found: TypeAlias = dict[str, NDArray[Any]]
-Block: TypeAlias = tuple[tuple[int, int], ...]
-Call: TypeAlias = tuple[str, str, tuple[str, ...], Block]
-"""What `compute_block` is called with."""
+Call: TypeAlias = tuple[str, str, tuple[str, ...], tuple[slice, ...]]
+"""What `compute_region` is called with."""
 
 AHEAD = 2
 """Tasks handed out for every worker of a cluster, so that none waits."""
@@ -46,10 +45,12 @@ HERE = "__main__"
 _turn = threading.Lock()
 
 
-def compute_block(description: str, version: str, modules: tuple[str, ...], block: Block) -> Found:
-    """Compute a block of cells from parameters: this is all that a worker is sent.
+def compute_region(
+    description: str, version: str, modules: tuple[str, ...], region: tuple[slice, ...]
+) -> Found:
+    """Compute a region of the cells from parameters: this is all that a worker is sent.
 
-    The modules are those in which the sweep's own kinds of parts are defined, in whoever asks for the block.
+    The modules are those in which the sweep's own kinds of parts are defined, in whoever asks for it.
 
     Raises
     ------
@@ -66,7 +67,7 @@ def compute_block(description: str, version: str, modules: tuple[str, ...], bloc
     sweep = _sweep(description)
     # Compiled functions have one set of buffers; a worker with several threads takes turns.
     with _turn:
-        return follow_cells(sweep, sweep.numbers_in(block).ravel())
+        return follow_cells(sweep, sweep.numbers(region).ravel())
 
 
 @lru_cache(maxsize=4)
@@ -78,23 +79,22 @@ def results(
     sweep: Sweep, tasks: Sequence[Task], workers: int | None = None, scheduler: str | None = None
 ) -> Iterator[tuple[Task, Found]]:
     """Compute tasks of a sweep and give what they found as it comes, in any order; see `need_workers`."""
-    _check_number(workers)
     modules = _modules(sweep, workers, scheduler)
     if HERE in modules:
         workers = 1
     description = json.dumps(sweep.describe())
-    calls = {task: (description, __version__, modules, _block(sweep, task)) for task in tasks}
+    calls = {task: (description, __version__, modules, sweep.region(task)) for task in tasks}
     if scheduler is not None:
         yield from _share_with_cluster(scheduler, calls)
         return
-    jobs = (Job(task, compute_block, call) for task, call in calls.items())
+    jobs = (Job(task, compute_region, call) for task, call in calls.items())
     try:
         yield from shared(lambda: next(jobs, None), min(workers or processors(), max(len(tasks), 1)))
     except Unavailable as error:
         raise Unavailable(f"{error}; {KEPT}") from None
 
 
-def need_workers(workers: int | None, scheduler: str | None, sweep: Sweep | None = None) -> None:
+def need_workers(sweep: Sweep, workers: int | None, scheduler: str | None) -> None:
     """See that there is someone to compute, before anything is written; for both see `sweep`.
 
     Raises
@@ -104,21 +104,16 @@ def need_workers(workers: int | None, scheduler: str | None, sweep: Sweep | None
     Unavailable
         If dask.distributed is needed and not installed.
     """
-    _check_number(workers)
-    if sweep is not None:
-        _modules(sweep, workers, scheduler)
+    _modules(sweep, workers, scheduler)
     if scheduler is not None:
         with _cluster(scheduler):
             pass
 
 
-def _check_number(workers: int | None) -> None:
-    if workers is not None and workers < 1:
-        raise InvalidInput("workers", workers, "a whole number, at least 1")
-
-
 def _modules(sweep: Sweep, workers: int | None, scheduler: str | None) -> tuple[str, ...]:
     """The modules that a worker has to import, for kinds of parts that are not of this package."""
+    if workers is not None and workers < 1:
+        raise InvalidInput("workers", workers, "a whole number, at least 1")
     modules = sweep.problem.modules()
     if HERE in modules and (scheduler is not None or workers not in (None, 1)):
         raise InvalidInput(
@@ -128,11 +123,6 @@ def _modules(sweep: Sweep, workers: int | None, scheduler: str | None) -> tuple[
             "that other processes can import only from a module",
         )
     return tuple(sorted(modules))
-
-
-def _block(sweep: Sweep, task: Task) -> Block:
-    """The cells of a task: first and last along every dimension."""
-    return tuple((part.start, part.stop) for part in sweep.region(task))
 
 
 def processors() -> int:
@@ -151,7 +141,7 @@ def _share_with_cluster(address: str, calls: Mapping[Task, Call]) -> Iterator[tu
             while waiting or running:
                 while waiting and len(running) < most:
                     task = waiting.popleft()
-                    running[executor.submit(compute_block, *calls[task])] = task
+                    running[executor.submit(compute_region, *calls[task])] = task
                 for future in _first_done(client, address, running):
                     task = running.pop(future)
                     yield task, future.result()
