@@ -7,7 +7,7 @@ import numpy as np
 from tippetop.contact.closing import closing_motion
 from tippetop.contact.double import SlidingOnTwo
 from tippetop.contact.double_sticking import SlipBeginningOnTwo, StickingAndSlidingBack, StickingOnTwo
-from tippetop.contact.sliding import held_motion, sliding_motion
+from tippetop.contact.sliding import sliding_motion
 from tippetop.contact.sticking import sticking_motion
 from tippetop.integrators.base import Motion
 from tippetop.mechanics.contensou import EllipsoidalLaw
@@ -63,7 +63,7 @@ def sliding_motions(surface, law):
     yield "sliding", sliding_motion(kind, True), numbers
     endings = [Vanishing(slip=False)] if rolls else []
     if rolls:
-        yield "held", held_motion(kind, True), numbers
+        yield "held", sliding_motion(kind, True, held=True), numbers
     if is_set_valued(law):
         endings += [Vanishing(slip=True, held=held) for held in (False, True)[: 1 + rolls]]
     for ending in endings:

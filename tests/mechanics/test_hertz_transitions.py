@@ -16,7 +16,7 @@ from tippetop.mechanics.ending import Vanishing, closing_rates
 from tippetop.mechanics.motion import axis_rate
 from tippetop.mechanics.rolling import (
     ContactPoint,
-    contact_wrench,
+    contact_motion,
     spun_up,
     velocity_without_slip,
     without_drilling,
@@ -87,7 +87,7 @@ def test_a_patch_sticks_while_its_limit_surface_admits_it_on_either_piece(seed, 
     def held(y):
         axis, momentum = split([float(x) for x in y])
         point = ContactPoint.of(axis, momentum, top)
-        return point, contact_wrench(point, None)
+        return point, contact_motion(point, None)[0]
 
     def rates(_, y):
         point, wrench = held(y)

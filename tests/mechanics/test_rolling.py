@@ -16,7 +16,7 @@ from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import axis_rate, contact, on_table
 from tippetop.mechanics.rolling import (
     ContactPoint,
-    contact_wrench,
+    contact_motion,
     velocity_without_slip,
     without_drilling,
 )
@@ -66,7 +66,7 @@ def test_what_is_held_stays(slide, mode):
     top = top._replace(friction=laws[mode])
     point = ContactPoint.of(state.axis, state.momentum, top)
     slip = (0.6, -0.8) if mode == "slip" else None
-    wrench = contact_wrench(point, slip, None)
+    wrench = contact_motion(point, slip, None)[0]
     rates = np.concatenate(newton_euler(top, state.axis, point.turning, wrench))
     size = scale_of(top, point)
     units = np.array([1.0] * 3 + [length] * 3) / size
@@ -80,7 +80,7 @@ def test_sliding_has_the_normal_force_of_the_equations_of_sliding(slide):
     top, state = slide
     touch = contact(state.axis, state.momentum, state.velocity, top)
     point = ContactPoint.of(state.axis, state.momentum, top)
-    wrench = contact_wrench(point, touch.slip)
+    wrench = contact_motion(point, touch.slip)[0]
     size = top.mass * scale_of(top, point)
     assert wrench.force[2] == pytest.approx(touch.normal_force, rel=1e-12, abs=1e-13 * size)
     assert wrench.force[0] == pytest.approx(
@@ -96,7 +96,7 @@ def test_a_body_that_rolls_with_resistance_keeps_its_contact_point_at_rest(slide
     top = top._replace(friction=law)
     point = ContactPoint.of(state.axis, state.momentum, top)
     rolling = (math.cos(angle), math.sin(angle))
-    wrench = contact_wrench(point, None, rolling)
+    wrench = contact_motion(point, None, rolling)[0]
     rate, _ = newton_euler(top, state.axis, point.turning, wrench)
     assert rate == pytest.approx(np.zeros(3), abs=1e-11 * scale_of(top, point))
     couple = -law.length * wrench.force[2]
@@ -125,7 +125,7 @@ def roll(top, tilt, spin, end):
     def rates(_, y):
         axis, momentum = tuple(y[:3]), tuple(y[3:])
         point = ContactPoint.of(axis, momentum, top)
-        return [*axis_rate(axis, momentum, top), *point.moment(contact_wrench(point, None))]
+        return [*axis_rate(axis, momentum, top), *point.moment(contact_motion(point, None)[0])]
 
     scales = [1.0] * 3 + [top.axial_inertia * spin] * 3
     times = np.linspace(0.0, end, 11)

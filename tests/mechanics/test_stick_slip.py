@@ -24,7 +24,13 @@ from tippetop.mechanics.coulomb import CoulombLaw, RollingResistance
 from tippetop.mechanics.ending import Vanishing
 from tippetop.mechanics.friction import NO_TORQUE, Traction
 from tippetop.mechanics.motion import angular_velocity, on_table, sliding_rates
-from tippetop.mechanics.rolling import ContactPoint, contact_wrench, velocity_without_slip, without_drilling
+from tippetop.mechanics.rolling import (
+    ContactPoint,
+    contact_motion,
+    slip_reserve,
+    velocity_without_slip,
+    without_drilling,
+)
 from tippetop.mechanics.series import horner
 from tippetop.mechanics.slip_onset import Growing, Onset, onset
 from tippetop.mechanics.state import SlidingState
@@ -33,7 +39,6 @@ from tippetop.mechanics.stick_slip import (
     plus,
     scaled,
     size,
-    slip_guard,
     slip_of,
     velocity_of,
 )
@@ -179,6 +184,12 @@ def swinging(law, shape=None):
     return top, axis, momentum
 
 
+def stuck_reserve(axis, momentum, top):
+    """Positive while the table can hold the contact, and the body rolls as it does."""
+    point = ContactPoint.of(axis, momentum, top)
+    return slip_reserve(top, contact_motion(point, None, point.turning[:2])[0])
+
+
 WEAK = [
     CoulombLaw(0.02),
     EllipsoidalLaw(0.02, 0.1),
@@ -191,7 +202,7 @@ WEAK = [
 @pytest.mark.parametrize("law", WEAK, ids=repr)
 def test_what_cannot_stick_slips_the_way_it_is_accelerated(law):
     top, axis, momentum = swinging(law)
-    assert slip_guard(axis, momentum, top) < 0.0
+    assert stuck_reserve(axis, momentum, top) < 0.0
     direction, rate = direction_of_slip(axis, momentum, top)
     acceleration = creep_rates(axis, momentum, direction, top).slip
     assert rate > 0.01
@@ -206,7 +217,7 @@ def at_the_limit(law, shape=None):
         low, high = 0.0, 1.0
         for _ in range(200):
             middle = 0.5 * (low + high)
-            held = slip_guard(axis, momentum, top._replace(friction=law(middle))) >= 0.0
+            held = stuck_reserve(axis, momentum, top._replace(friction=law(middle))) >= 0.0
             low, high = (low, middle) if held else (middle, high)
         top = top._replace(friction=law(high))
         direction, _ = direction_of_slip(axis, momentum, top)
@@ -333,7 +344,7 @@ def test_series_are_left_before_the_speed_that_they_begin_vanishes():
 def test_slip_starts_against_the_force_that_held_it():
     top, axis, momentum = at_the_limit(CoulombLaw)
     direction, _ = direction_of_slip(axis, momentum, top)
-    force = contact_wrench(ContactPoint.of(axis, momentum, top), None).force[:2]
+    force = contact_motion(ContactPoint.of(axis, momentum, top), None)[0].force[:2]
     assert direction == pytest.approx(scaled(-1.0 / size(force), force), abs=1e-12)
     begin = onset(Growing((axis, momentum, direction), top), 2, 8)
     # s = s_0 t^2: the doubling of time quadruples the slip

@@ -9,7 +9,6 @@ from tippetop.contact.sticking import LIMIT_BRANCH, SLIP, split
 from tippetop.contact.surfaces import surface_guards
 from tippetop.integrators import make_integrator
 from tippetop.integrators.base import Arc, Array, Guard, Integrator, Motion
-from tippetop.mechanics.coulomb import RollingResistance
 from tippetop.mechanics.ending import (
     Closing,
     Vanishing,
@@ -22,18 +21,15 @@ from tippetop.mechanics.ending import (
 )
 from tippetop.mechanics.rolling import (
     ContactPoint,
+    Wrench,
     has_limit_branches,
     is_set_valued,
     limit_guard,
     rolling_reserve,
-    set_valued,
     sliding_law,
-    slip_dimension,
+    slip_reserve,
 )
-from tippetop.mechanics.stick_slip import (
-    HORIZON,
-    slip_branch_guard,
-)
+from tippetop.mechanics.stick_slip import branch_guard
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import Row, Scalar
 
@@ -87,38 +83,32 @@ def closing_motion(kind: Kind, ending: Vanishing, guarded: bool) -> Motion:
     def guard(name: str, value: Callable[[Closing, Top, Sequence[Scalar]], Scalar]) -> Guard:
         return Guard(name, lambda y, numbers: value(closing_of(y, ending), top_of(numbers), numbers))
 
+    def held_by(state: Closing, top: Top) -> Wrench:
+        return rates_in_time(state, ending, top).wrench
+
     def on_branch_still(state: Closing, top: Top, _: Sequence[Scalar]) -> Scalar:
-        return slip_branch_guard(slip_beside(state, ending, top) or state.direction, top)
+        return branch_guard(slip_beside(state, ending, top) or state.direction, top)
 
     guards = [
-        guard(REOPENING, lambda state, top, _: reopening_guard(state, ending, top, HORIZON)),
+        guard(REOPENING, lambda state, top, _: reopening_guard(state, ending, top)),
         guard(LANDED, lambda state, top, numbers: landing_guard(state, ending, top, numbers[-1])),
         guard(TIME, lambda state, _, numbers: numbers[-2] - state.time),
     ]
-    law = kind.example.friction
-    resisted, stuck = isinstance(law, RollingResistance), not ending.slip and ending.held
+    top = kind.example
+    law, stuck = top.friction, not ending.slip and ending.held
     if guarded:
-        guards.append(
-            guard(LIFT_OFF, lambda state, top, _: rates_in_time(state, ending, top).wrench.force[2])
-        )
-    if not ending.held and resisted and is_set_valued(law):
+        guards.append(guard(LIFT_OFF, lambda state, top, _: held_by(state, top).force[2]))
+    if not ending.held and top.resists_rolling and is_set_valued(law):
         guards.append(guard(OVERTAKEN, lambda state, top, _: overtaking_guard(state, ending, top)))
     if ending.held:
-        guards.append(
-            guard(ROLLING if ending.slip else SLIP, lambda state, top, _: spared(state, ending, top))
-        )
+        held = ROLLING if ending.slip else SLIP
+        guards.append(guard(held, lambda state, top, _: spared(state, ending, top)))
     if (ending.slip or ending.moves) and hasattr(sliding_law(law), "branch_guard"):
         guards.append(guard(BRANCH, on_branch_still))
     if stuck and has_limit_branches(law):
-        guards.append(
-            guard(
-                LIMIT_BRANCH, lambda state, top, _: limit_guard(top, rates_in_time(state, ending, top).wrench)
-            )
-        )
+        guards.append(guard(LIMIT_BRANCH, lambda state, top, _: limit_guard(top, held_by(state, top))))
     guards += surface_guards(kind)
-    free = 2 if ending.moves else 0
-    components = slip_dimension(law) if ending.slip else 2
-    size = 8 + free + components
+    size = (10 if ending.moves else 8) + len(ending.wrenches(top))
     return Motion(rates, size, kind.numbers + 2, tuple(guards), lasting=False)
 
 
@@ -128,7 +118,7 @@ def spared(state: Closing, ending: Vanishing, top: Top) -> Scalar:
     if ending.slip:
         point = ContactPoint.of(state.axis, state.momentum, top)
         return rolling_reserve(point, wrench, state.direction)
-    return set_valued(top.friction).reserve(wrench.force[2], wrench.force[:2], wrench.torque[2])
+    return slip_reserve(top, wrench)
 
 
 def closing_of(y: Row, ending: Vanishing) -> Closing:

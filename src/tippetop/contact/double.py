@@ -24,7 +24,7 @@ from tippetop.mechanics.rolling import (
     without_rolling,
 )
 from tippetop.mechanics.state import SlidingState, State
-from tippetop.mechanics.stick_slip import inner, scaled, slip_branch_guard, slip_of
+from tippetop.mechanics.stick_slip import branch_guard, inner, scaled, slip_of
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import Row, Scalar, Vector, dot
 
@@ -248,7 +248,7 @@ def _slip(number: int) -> Callable[[Any, Row], Scalar]:
 
 
 def _branch(number: int) -> Callable[[Any, Row], Scalar]:
-    return lambda mode, y: slip_branch_guard(mode.found(y)[1][number], mode.tops[number])
+    return lambda mode, y: branch_guard(mode.found(y)[1][number], mode.tops[number])
 
 
 def _left(*slips: Slip) -> Scalar:

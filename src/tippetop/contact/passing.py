@@ -12,7 +12,6 @@ from tippetop.contact.sticking import Sticking, split
 from tippetop.contact.surfaces import follow_surface, stays_open
 from tippetop.integrators.base import Arc, Array, Integrator
 from tippetop.integrators.dense import DenseSolution, as_array
-from tippetop.mechanics.coulomb import RollingResistance
 from tippetop.mechanics.ending import (
     Closing,
     Vanishing,
@@ -32,9 +31,9 @@ from tippetop.mechanics.rolling import (
 )
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.stick_slip import (
+    branch_guard,
     scaled,
     size,
-    slip_branch_guard,
     velocity_of,
 )
 from tippetop.mechanics.top import Top
@@ -188,7 +187,7 @@ class Stopping(Passing):
     def _arrival(self, here: Closing, longest: float, integrator: Integrator) -> Arrival | None:
         """The end of slip by power series, if its direction has come to rest and nothing else happens."""
         law = self.top.friction
-        if not self.ending.slip or isinstance(law, RollingResistance) or slip_length(law) is None:
+        if not self.ending.slip or self.top.resists_rolling or slip_length(law) is None:
             return None
         found = arriving(here, self.ending, self.top, integrator)
         if found is None or found.left > longest:
@@ -199,7 +198,7 @@ class Stopping(Passing):
         if not self.rules.pulls and not all(self.reaction(y).force[2] > 0.0 for y in looks):
             return None
         if hasattr(law, "branch_guard") and not all(
-            slip_branch_guard(tuple(y[6:]), self.top) > 0.0 for y in looks
+            branch_guard(tuple(y[6:]), self.top) > 0.0 for y in looks
         ):
             return None
         return found

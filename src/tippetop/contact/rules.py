@@ -11,7 +11,6 @@ from tippetop.contact.sliding import Sliding, SlidingWithoutRolling
 from tippetop.contact.sticking import Sticking, StickingWithoutRolling
 from tippetop.contact.surfaces import number_of
 from tippetop.mechanics.beginning import Beginning, settling
-from tippetop.mechanics.coulomb import RollingResistance
 from tippetop.mechanics.ending import Vanishing
 from tippetop.mechanics.flight import gap, gap_rate
 from tippetop.mechanics.impact import Impact, impact
@@ -194,8 +193,7 @@ class ContactRules:
 
     def _rolls(self, state: State) -> bool:
         """Whether nothing holds rolling."""
-        resisted = isinstance(self.top.friction, RollingResistance)
-        return not resisted or bool(is_rolling(state.axis, state.momentum, self.top))
+        return not self.top.resists_rolling or bool(is_rolling(state.axis, state.momentum, self.top))
 
     def _branched(self, state: State, slips: bool) -> Top:
         """The top with the branch of its law that holds."""
@@ -209,10 +207,9 @@ class ContactRules:
 
     def _next_to_end(self, state: State, slips: bool) -> tuple[Vanishing | None, float]:
         """Which velocity ends first at present rates, and the time left; none if all grow or none can end."""
-        rolls, law = self._rolls(state), self.top.friction
-        resisted = isinstance(law, RollingResistance)
-        possible = [Vanishing(slip=True, held=not rolls)] if slips and is_set_valued(law) else []
-        possible += [Vanishing(slip=False, held=not slips)] if rolls and resisted else []
+        rolls, ends = self._rolls(state), slips and is_set_valued(self.top.friction)
+        possible = [Vanishing(slip=True, held=not rolls)] if ends else []
+        possible += [Vanishing(slip=False, held=not slips)] if rolls and self.top.resists_rolling else []
         if not possible:
             return None, float("inf")
         sliding, top = along_table(state), self._branched(state, slips)

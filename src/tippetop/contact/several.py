@@ -16,7 +16,7 @@ from tippetop.mechanics.hull import lowest_surface
 from tippetop.mechanics.impact import Impact, impact
 from tippetop.mechanics.impact_on_two import SlipEnds, impact_on_two
 from tippetop.mechanics.motion import along_table
-from tippetop.mechanics.rolling import contact_wrench, is_set_valued
+from tippetop.mechanics.rolling import contact_motion, is_set_valued
 from tippetop.mechanics.state import State
 from tippetop.mechanics.stick_slip import size, slip_of
 from tippetop.mechanics.top import Top
@@ -116,7 +116,7 @@ class OnSeveral(FreeToFly):
         if self._slips(other, state):
             pair = ContactPair.of(state.axis, state.momentum, (self.top, other))
             slip = slip_of(*along_table(state), self.top)
-            wrench = contact_wrench(pair.first, slip, pair.first.turning[:2])
+            wrench = contact_motion(pair.first, slip, pair.first.turning[:2])[0]
             back = float(abs(pair.under([(0, wrench)])[1][2]))
         return float(max(SLOWEST_ROCKING * max(1.0, back) ** 0.5, (2.0 * back * depth) ** 0.5))
 

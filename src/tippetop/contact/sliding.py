@@ -7,8 +7,7 @@ from typing import ClassVar
 
 from tippetop.contact.mode import EventKind, IntegratedMode, Reaction, Transition
 from tippetop.contact.surfaces import follow_surface, surface_guards
-from tippetop.integrators.base import Function, Guard, Motion
-from tippetop.mechanics.coulomb import RollingResistance
+from tippetop.integrators.base import Guard, Motion
 from tippetop.mechanics.ending import Vanishing
 from tippetop.mechanics.motion import (
     along_table,
@@ -20,7 +19,7 @@ from tippetop.mechanics.motion import (
 from tippetop.mechanics.rolling import (
     ContactPoint,
     Wrench,
-    contact_wrench,
+    contact_motion,
     is_set_valued,
     on_other_branch,
     rolling_reserve,
@@ -29,7 +28,6 @@ from tippetop.mechanics.rolling import (
 )
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.stick_slip import (
-    HORIZON,
     branch_guard,
     nearing_guard,
     parting_guard,
@@ -60,11 +58,12 @@ class Sliding(IntegratedMode):
     """Whether slip is so small that it may be about to end."""
 
     name: ClassVar[str] = "sliding"
+    held: ClassVar[bool] = False
 
     @property
     def motion(self) -> Motion:
         """Equations of motion, with the guards of lift-off and of ending velocities where there are such."""
-        return sliding_motion(self.top.kind, not self.rules.pulls, self.near)
+        return sliding_motion(self.top.kind, not self.rules.pulls, self.near, self.held)
 
     def numbers(self, state: State) -> tuple[Scalar, ...]:
         """The 8 numbers of a sliding state."""
@@ -99,11 +98,7 @@ class SlidingWithoutRolling(Sliding):
     """Sliding while rolling resistance holds the top: it turns about the vertical, or not at all."""
 
     name: ClassVar[str] = "sliding_without_rolling"
-
-    @property
-    def motion(self) -> Motion:
-        """Equations of motion, with the guard of what holds the top beside those of sliding."""
-        return held_motion(self.top.kind, not self.rules.pulls, self.near)
+    held: ClassVar[bool] = True
 
     def state(self, y: Row) -> State:
         """The state, with its height and sinking, and without rolling."""
@@ -133,7 +128,7 @@ class SlidingWithoutRolling(Sliding):
 def holding(state: SlidingState, top: Top) -> tuple[ContactPoint, Wrench]:
     """The contact point of a sliding body whose rolling is held, and what the table does."""
     point = ContactPoint.of(state.axis, state.momentum, top)
-    return point, contact_wrench(point, slip_of(*state, top), None)
+    return point, contact_motion(point, slip_of(*state, top), None)[0]
 
 
 def held_rates(state: SlidingState, top: Top) -> SlidingState:
@@ -144,76 +139,34 @@ def held_rates(state: SlidingState, top: Top) -> SlidingState:
 
 
 @lru_cache
-def sliding_motion(kind: Kind, guarded: bool, near: bool = False) -> Motion:
-    """Equations of motion of a sliding top of this kind; if `guarded`, the first guard is of lift-off.
+def sliding_motion(kind: Kind, guarded: bool, near: bool = False, held: bool = False) -> Motion:
+    """Equations of motion of a sliding top of this kind, whose rolling may be held.
 
-    Where slip can end, it is watched how long it lasts if that may be soon (`near`), and else whether it may.
+    If `guarded`, the first guard is of lift-off. Where slip can end, it is watched how long it lasts if that
+    may be soon (`near`), and else whether it may.
     """
+    law, rate, guards = kind.example.friction, held_rates if held else sliding_rates, list[Guard]()
 
     def rates(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[Scalar, ...]:
-        return sliding_rates(SlidingState.unpack(y), kind.top(tuple(numbers))).pack()
+        return rate(SlidingState.unpack(y), kind.top(tuple(numbers))).pack()
 
-    def rolls(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
-        state, top = SlidingState.unpack(y), kind.top(tuple(numbers))
-        return rolling_stopping_guard(state, sliding_rates(state, top), top, HORIZON)
+    def watch(name: str, value: Callable[[SlidingState, Top], Scalar]) -> None:
+        guards.append(Guard(name, lambda y, numbers: value(SlidingState.unpack(y), kind.top(tuple(numbers)))))
 
-    guards = [Guard(LIFT_OFF, normal_force(kind))] if guarded else []
-    guards += slip_guards(kind, sliding_rates, near)
-    if isinstance(kind.example.friction, RollingResistance):
-        guards.append(Guard(ROLLING_STOPPING, rolls))
-    guards += surface_guards(kind)
-    return Motion(rates, size=8, parameters=kind.numbers, guards=tuple(guards))
+    def force(state: SlidingState, top: Top) -> Scalar:
+        return holding(state, top)[1].force[2] if held else contact(*state, top).normal_force
 
-
-@lru_cache
-def held_motion(kind: Kind, guarded: bool, near: bool = False) -> Motion:
-    """The same while rolling is held."""
-
-    def rates(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[Scalar, ...]:
-        return held_rates(SlidingState.unpack(y), kind.top(tuple(numbers))).pack()
-
-    def reserve(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
-        state, top = SlidingState.unpack(y), kind.top(tuple(numbers))
-        return rolling_reserve(*holding(state, top), slip_of(*state, top))
-
-    def force(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
-        return holding(SlidingState.unpack(y), kind.top(tuple(numbers)))[1].force[2]
-
-    guards = [Guard(LIFT_OFF, force)] if guarded else []
-    guards += [*slip_guards(kind, held_rates, near), Guard(ROLLING, reserve), *surface_guards(kind)]
-    return Motion(rates, size=8, parameters=kind.numbers, guards=tuple(guards), lasting=False)
-
-
-def slip_guards(kind: Kind, rate: Callable[[SlidingState, Top], SlidingState], near: bool) -> list[Guard]:
-    """The guards of slip that is about to end, or comes near its end, and of a law's branch, if any."""
-
-    def guard(name: str, value: Callable[[SlidingState, Top], Scalar]) -> Guard:
-        return Guard(name, lambda y, numbers: value(SlidingState.unpack(y), kind.top(tuple(numbers))))
-
-    def stops(state: SlidingState, top: Top) -> Scalar:
-        return stopping_guard(state, rate(state, top), top, HORIZON)
-
-    law, guards = kind.example.friction, []
+    if guarded:
+        watch(LIFT_OFF, force)
     if is_set_valued(law) and near:
-        guards += [guard(STOPPING, stops), guard(PARTING, parting_guard)]
+        watch(STOPPING, lambda state, top: stopping_guard(state, rate(state, top), top))
+        watch(PARTING, parting_guard)
     elif is_set_valued(law):
-        guards.append(guard(NEARING, nearing_guard))
+        watch(NEARING, nearing_guard)
     if hasattr(sliding_law(law), "branch_guard"):
-        guards.append(guard(BRANCH, lambda state, top: branch_guard(*state, top)))
-    return guards
-
-
-def stopping(state: SlidingState, top: Top) -> Scalar:
-    """Value of the guard of slip that is about to end: positive as long as it goes on."""
-    return stopping_guard(state, sliding_rates(state, top), top, HORIZON)
-
-
-@lru_cache
-def normal_force(kind: Kind) -> Function:
-    """Normal force on a sliding top of this kind as a function of its state and numbers."""
-
-    def value(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
-        state = SlidingState.unpack(y)
-        return contact(state.axis, state.momentum, state.velocity, kind.top(tuple(numbers))).normal_force
-
-    return value
+        watch(BRANCH, lambda state, top: branch_guard(slip_of(*state, top), top))
+    if held:
+        watch(ROLLING, lambda state, top: rolling_reserve(*holding(state, top), slip_of(*state, top)))
+    elif kind.example.resists_rolling:
+        watch(ROLLING_STOPPING, lambda state, top: rolling_stopping_guard(state, rate(state, top), top))
+    return Motion(rates, 8, kind.numbers, (*guards, *surface_guards(kind)), lasting=not held)

@@ -9,23 +9,22 @@ from tippetop.contact.mode import EventKind, IntegratedMode, Reaction, Transitio
 from tippetop.contact.sliding import ROLLING, ROLLING_STOPPING
 from tippetop.contact.surfaces import follow_surface, surface_guards
 from tippetop.integrators.base import Guard, Motion
-from tippetop.mechanics.coulomb import RollingResistance
 from tippetop.mechanics.ending import Vanishing
 from tippetop.mechanics.motion import axis_rate, on_table
 from tippetop.mechanics.rolling import (
     ContactPoint,
     Wrench,
     contact_motion,
-    contact_wrench,
     has_limit_branches,
     limit_guard,
     on_other_branch,
     rolling_reserve,
+    slip_reserve,
     velocity_without_slip,
     without_rolling,
 )
 from tippetop.mechanics.state import SlidingState, State
-from tippetop.mechanics.stick_slip import HORIZON, remaining, slip_guard
+from tippetop.mechanics.stick_slip import remaining
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import Row, Scalar, Vector, dot
 
@@ -94,7 +93,7 @@ class StickingWithoutRolling(Sticking):
 def sticking_wrench(axis: Vector, momentum: Vector, top: Top, held: bool) -> tuple[ContactPoint, Wrench]:
     """The contact point of a sticking body, whose rolling may be held too, and what the table does."""
     point = ContactPoint.of(axis, momentum, top)
-    return point, contact_wrench(point, None, None if held else point.turning[:2])
+    return point, contact_motion(point, None, None if held else point.turning[:2])[0]
 
 
 @lru_cache
@@ -107,7 +106,8 @@ def sticking_motion(kind: Kind, held: bool) -> Motion:
         return (*axis_rate(axis, momentum, point.top), *point.moment(wrench))
 
     def reserve(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
-        return slip_guard(*split(y), kind.top(tuple(numbers)), rolling_held=held)
+        point, wrench = sticking_wrench(*split(y), kind.top(tuple(numbers)), held)
+        return slip_reserve(point.top, wrench)
 
     def couple(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
         return rolling_reserve(*sticking_wrench(*split(y), kind.top(tuple(numbers)), True), None)
@@ -116,7 +116,7 @@ def sticking_motion(kind: Kind, held: bool) -> Motion:
         point = ContactPoint.of(*split(y), kind.top(tuple(numbers)))
         rolling = point.turning[:2]
         change = contact_motion(point, None, rolling)[1].turning[:2]
-        return remaining(rolling, change, HORIZON)
+        return remaining(rolling, change)
 
     def on_branch(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
         point, wrench = sticking_wrench(*split(y), kind.top(tuple(numbers)), held)
@@ -125,7 +125,7 @@ def sticking_motion(kind: Kind, held: bool) -> Motion:
     guards = [Guard(SLIP, reserve)]
     if has_limit_branches(kind.example.friction):
         guards.append(Guard(LIMIT_BRANCH, on_branch))
-    if isinstance(kind.example.friction, RollingResistance):
+    if kind.example.resists_rolling:
         guards.append(Guard(ROLLING, couple) if held else Guard(ROLLING_STOPPING, rolls))
     guards += surface_guards(kind)
     return Motion(rates, size=6, parameters=kind.numbers, guards=tuple(guards), lasting=False)

@@ -897,11 +897,6 @@ function arm_rate(axis, tilting, top) {
   return add(scale(py.neg(top.surface.slope(c)), tilting), outward);
 }
 
-/** What the table does to a body in contact; see `contact_motion`. */
-function contact_wrench(point, slip, rolling = null) {
-  return contact_motion(point, slip, rolling)[0];
-}
-
 /** What the table does to a body in contact, and how that accelerates. */
 function contact_motion(point, slip, rolling = null) {
   var law = point.top.friction;
@@ -932,6 +927,11 @@ function slip_wrenches(law) {
 /** Length by which drilling compares with slip under a law with or without rolling resistance, m. */
 function slip_length(law) {
   return py.getattr(sliding_law(law), "slip_length", null);
+}
+
+/** Positive while the table can exert the force and drilling torque in a wrench that holds slip, N^2. */
+function slip_reserve(top, wrench) {
+  return set_valued(top.friction).reserve(wrench.force[2], wrench.force.slice(0, 2), wrench.torque[2]);
 }
 
 /** Positive while the table can exert the couple in a wrench that holds rolling, (N m)^2. */
@@ -1072,11 +1072,6 @@ function limit_guard(top, wrench) {
   return law.limit_guard(wrench.force[2], wrench.torque[2]);
 }
 
-/** How many components the slip zeta has under a law that lets slip end: 3 where it resists drilling. */
-function slip_dimension(law) {
-  return set_valued(law).slip_length === null ? 2 : 3;
-}
-
 /** Six numbers in a row. */
 function flat(motion) {
   return [...motion.point, ...motion.turning];
@@ -1160,8 +1155,8 @@ function slip_part(accelerations, reach) {
   return [accelerations[0], accelerations[1], py.mul(reach, accelerations[5])];
 }
 
-/** Falls through zero where slip, at its present rate, ends within the horizon (s): s (s + horizon R). */
-function stopping_guard(state, rate, top, horizon) {
+/** Falls through zero where slip ends soon; for a sliding state and its time derivative. */
+function stopping_guard(state, rate, top) {
   var [turning, tilting] = [angular_velocity(state.axis, state.momentum, top), rate.axis];
   var turned = angular_acceleration(state, rate, top);
   var arm = contact_vector(state.axis, top.surface);
@@ -1170,7 +1165,7 @@ function stopping_guard(state, rate, top, horizon) {
   var reach = slip_length(top.friction);
   var change = [py.add(rate.velocity[0], carried[0]), py.add(rate.velocity[1], carried[1])];
   change = reach === null ? change : [...change, py.mul(reach, turned[2])];
-  return remaining(slip, change, horizon);
+  return remaining(slip, change);
 }
 
 /** Falls through zero where slip becomes so small that it is to be watched, (m/s)^2. */
@@ -1192,24 +1187,19 @@ function is_near(state, top) {
 }
 
 /** The same of rolling, (rad/s)^2; velocities are not asked for. */
-function rolling_stopping_guard(state, rate, top, horizon) {
+function rolling_stopping_guard(state, rate, top) {
   var rolling = angular_velocity(state.axis, state.momentum, top).slice(0, 2);
   var change = angular_acceleration(state, rate, top).slice(0, 2);
-  return remaining(rolling, change, horizon);
+  return remaining(rolling, change);
 }
 
-/** Positive while a velocity, at its present rate of change, lasts longer than the horizon (s). */
-function remaining(velocity, change, horizon) {
-  return py.add(inner(velocity, velocity), py.mul(horizon, inner(change, velocity)));
+/** Positive while a velocity, at its present rate of change, outlasts `HORIZON`: s (s + HORIZON R). */
+function remaining(velocity, change) {
+  return py.add(inner(velocity, velocity), py.mul(HORIZON, inner(change, velocity)));
 }
 
-/** Positive as long as the branch of the law that a body in contact is on holds, m^2/s^2. */
-function branch_guard(axis, momentum, velocity, top) {
-  return slip_branch_guard(slip_of(axis, momentum, velocity, top), top);
-}
-
-/** The same of zeta, or of its direction alone. */
-function slip_branch_guard(slip, top) {
+/** Positive as long as a branch of a law holds where it slips so, or in that direction, m^2/s^2. */
+function branch_guard(slip, top) {
   var law = sliding_law(top.friction);
   return law.branch_guard(slip.slice(0, 2), [0.0, 0.0, py.div(slip[2], law.slip_length)]);
 }
@@ -1224,17 +1214,6 @@ function angular_acceleration(state, rate, top) {
   );
   var turned = scale(py.div(1.0, top.transverse_inertia), rate.momentum);
   return add(turned, scale(excess, add(scale(spinning, state.axis), scale(spin, rate.axis))));
-}
-
-/** Positive while the limit surface admits the wrench that keeps a sticking body so, N^2. */
-function slip_guard(axis, momentum, top, rolling_held = false) {
-  var point = ContactPoint.of(axis, momentum, top);
-  var [force, torque] = contact_wrench(
-    point,
-    null,
-    py.truth(rolling_held) ? null : point.turning.slice(0, 2)
-  );
-  return set_valued(top.friction).reserve(force[2], [force[0], force[1]], torque[2]);
 }
 
 /** Scalar product. */
@@ -1305,10 +1284,6 @@ class Vanishing extends py.NamedTuple {
       return slip_part(flat(acceleration), slip_length(top.friction));
     }
     return acceleration.turning.slice(0, 2);
-  }
-  /** Length by which drilling compares with slip, m; None where it is not resisted. */
-  reach(top) {
-    return slip_length(top.friction);
   }
   /** The wrenches that resist its components. */
   wrenches(top) {
@@ -1400,11 +1375,11 @@ function slowing(state, ending, top) {
   return inner(rates_in_time(state, ending, top).xi, state.direction);
 }
 
-/** Falls through zero where the end is twice as far as the horizon (s) again: -(s + 2 horizon R). */
-function reopening_guard(state, ending, top, horizon) {
+/** Falls through zero where the end is twice as far as `HORIZON` again: -(s + 2 HORIZON R). */
+function reopening_guard(state, ending, top) {
   var rate = rates_in_time(state, ending, top).xi;
   var doubt = py.div(py.mul(py.pow(inner(rate, rate), 0.5), DIGITS), py.add(state.speed, SLOW));
-  return py.sub(py.mul(py.mul(-2.0, horizon), py.sub(inner(rate, state.direction), doubt)), state.speed);
+  return py.sub(py.mul(py.mul(-2.0, HORIZON), py.sub(inner(rate, state.direction), doubt)), state.speed);
 }
 
 /** Falls through zero where xi, at its present rate, ends within the horizon (s): s + horizon R. */
@@ -2295,9 +2270,10 @@ class Sliding extends IntegratedMode {
     this.near = near;
   }
   get name() { return "sliding"; }
+  get held() { return false; }
   /** Equations of motion, with the guards of lift-off and of ending velocities where there are such. */
   get motion() {
-    return sliding_motion(this.top.kind, !py.truth(this.rules.pulls), this.near);
+    return sliding_motion(this.top.kind, !py.truth(this.rules.pulls), this.near, this.held);
   }
   /** The 8 numbers of a sliding state. */
   numbers(state) {
@@ -2339,10 +2315,7 @@ class SlidingWithoutRolling extends Sliding {
     super(top, rules, near);
   }
   get name() { return "sliding_without_rolling"; }
-  /** Equations of motion, with the guard of what holds the top beside those of sliding. */
-  get motion() {
-    return held_motion(this.top.kind, !py.truth(this.rules.pulls), this.near);
-  }
+  get held() { return true; }
   /** The state, with its height and sinking, and without rolling. */
   state(y) {
     var sliding = SlidingState.unpack(y);
@@ -2376,7 +2349,7 @@ py.fields(SlidingWithoutRolling, ["top", "rules", "near"]);
 /** The contact point of a sliding body whose rolling is held, and what the table does. */
 function holding(state, top) {
   var point = ContactPoint.of(state.axis, state.momentum, top);
-  return [point, contact_wrench(point, slip_of(...state, top), null)];
+  return [point, contact_motion(point, slip_of(...state, top), null)[0]];
 }
 
 /** Time derivative of the state of a sliding body whose rolling is held. */
@@ -2386,76 +2359,36 @@ function held_rates(state, top) {
   return new SlidingState(axis_rate(state.axis, state.momentum, top), point.moment(wrench), [x, y]);
 }
 
-/** Equations of motion of a sliding top of this kind; if `guarded`, the first guard is of lift-off. */
-const sliding_motion = py.cached((kind, guarded, near = false) => {
+/** Equations of motion of a sliding top of this kind, whose rolling may be held. */
+const sliding_motion = py.cached((kind, guarded, near = false, held = false) => {
+  var [law, rate, guards] = [kind.example.friction, py.truth(held) ? held_rates : sliding_rates, py.list()];
   var rates = (y, numbers) => {
-    return sliding_rates(SlidingState.unpack(y), kind.top(py.tuple(numbers))).pack();
+    return rate(SlidingState.unpack(y), kind.top(py.tuple(numbers))).pack();
   };
-  var rolls = (y, numbers) => {
-    var [state, top] = [SlidingState.unpack(y), kind.top(py.tuple(numbers))];
-    return rolling_stopping_guard(state, sliding_rates(state, top), top, HORIZON);
+  var watch = (name, value) => {
+    guards.push(new Guard(name, (y, numbers) => value(SlidingState.unpack(y), kind.top(py.tuple(numbers)))));
   };
-  var guards = py.truth(guarded) ? [new Guard(LIFT_OFF, normal_force(kind))] : [];
-  guards = py.add(guards, slip_guards(kind, sliding_rates, near));
-  if (py.isinstance(kind.example.friction, RollingResistance)) {
-    guards.push(new Guard(ROLLING_STOPPING, rolls));
+  var force = (state, top) => {
+    return py.truth(held) ? holding(state, top)[1].force[2] : contact(...state, top).normal_force;
+  };
+  if (py.truth(guarded)) {
+    watch(LIFT_OFF, force);
   }
-  guards = py.add(guards, surface_guards(kind));
-  return new Motion(rates, 8, kind.numbers, py.tuple(guards));
-});
-
-/** The same while rolling is held. */
-const held_motion = py.cached((kind, guarded, near = false) => {
-  var rates = (y, numbers) => {
-    return held_rates(SlidingState.unpack(y), kind.top(py.tuple(numbers))).pack();
-  };
-  var reserve = (y, numbers) => {
-    var [state, top] = [SlidingState.unpack(y), kind.top(py.tuple(numbers))];
-    return rolling_reserve(...holding(state, top), slip_of(...state, top));
-  };
-  var force = (y, numbers) => {
-    return holding(SlidingState.unpack(y), kind.top(py.tuple(numbers)))[1].force[2];
-  };
-  var guards = py.truth(guarded) ? [new Guard(LIFT_OFF, force)] : [];
-  guards = py.add(
-    guards,
-    [...slip_guards(kind, held_rates, near), new Guard(ROLLING, reserve), ...surface_guards(kind)]
-  );
-  return new Motion(rates, 8, kind.numbers, py.tuple(guards), false);
-});
-
-/** The guards of slip that is about to end, or comes near its end, and of a law's branch, if any. */
-function slip_guards(kind, rate, near) {
-  var guard = (name, value) => {
-    return new Guard(name, (y, numbers) => value(SlidingState.unpack(y), kind.top(py.tuple(numbers))));
-  };
-  var stops = (state, top) => {
-    return stopping_guard(state, rate(state, top), top, HORIZON);
-  };
-  var [law, guards] = [kind.example.friction, []];
   if (py.truth(is_set_valued(law)) && py.truth(near)) {
-    guards = py.add(guards, [guard(STOPPING, stops), guard(PARTING, parting_guard)]);
+    watch(STOPPING, (state, top) => stopping_guard(state, rate(state, top), top));
+    watch(PARTING, parting_guard);
   } else if (py.truth(is_set_valued(law))) {
-    guards.push(guard(NEARING, nearing_guard));
+    watch(NEARING, nearing_guard);
   }
   if (py.truth(py.hasattr(sliding_law(law), "branch_guard"))) {
-    guards.push(guard(BRANCH, (state, top) => branch_guard(...state, top)));
+    watch(BRANCH, (state, top) => branch_guard(slip_of(...state, top), top));
   }
-  return guards;
-}
-
-/** Value of the guard of slip that is about to end: positive as long as it goes on. */
-function stopping(state, top) {
-  return stopping_guard(state, sliding_rates(state, top), top, HORIZON);
-}
-
-/** Normal force on a sliding top of this kind as a function of its state and numbers. */
-const normal_force = py.cached((kind) => {
-  var value = (y, numbers) => {
-    var state = SlidingState.unpack(y);
-    return contact(state.axis, state.momentum, state.velocity, kind.top(py.tuple(numbers))).normal_force;
-  };
-  return value;
+  if (py.truth(held)) {
+    watch(ROLLING, (state, top) => rolling_reserve(...holding(state, top), slip_of(...state, top)));
+  } else if (py.truth(kind.example.resists_rolling)) {
+    watch(ROLLING_STOPPING, (state, top) => rolling_stopping_guard(state, rate(state, top), top));
+  }
+  return new Motion(rates, 8, kind.numbers, [...guards, ...surface_guards(kind)], !py.truth(held));
 });
 
 // tippetop.contact.sticking
@@ -2528,7 +2461,7 @@ py.fields(StickingWithoutRolling, ["top", "rules"]);
 /** The contact point of a sticking body, whose rolling may be held too, and what the table does. */
 function sticking_wrench(axis, momentum, top, held) {
   var point = ContactPoint.of(axis, momentum, top);
-  return [point, contact_wrench(point, null, py.truth(held) ? null : point.turning.slice(0, 2))];
+  return [point, contact_motion(point, null, py.truth(held) ? null : point.turning.slice(0, 2))[0]];
 }
 
 /** Equations of motion of a sticking top of this kind, whose rolling may be held too. */
@@ -2539,7 +2472,8 @@ const sticking_motion = py.cached((kind, held) => {
     return [...axis_rate(axis, momentum, point.top), ...point.moment(wrench)];
   };
   var reserve = (y, numbers) => {
-    return slip_guard(...split(y), kind.top(py.tuple(numbers)), undefined, held);
+    var [point, wrench] = sticking_wrench(...split(y), kind.top(py.tuple(numbers)), held);
+    return slip_reserve(point.top, wrench);
   };
   var couple = (y, numbers) => {
     return rolling_reserve(...sticking_wrench(...split(y), kind.top(py.tuple(numbers)), true), null);
@@ -2548,7 +2482,7 @@ const sticking_motion = py.cached((kind, held) => {
     var point = ContactPoint.of(...split(y), kind.top(py.tuple(numbers)));
     var rolling = point.turning.slice(0, 2);
     var change = contact_motion(point, null, rolling)[1].turning.slice(0, 2);
-    return remaining(rolling, change, HORIZON);
+    return remaining(rolling, change);
   };
   var on_branch = (y, numbers) => {
     var [point, wrench] = sticking_wrench(...split(y), kind.top(py.tuple(numbers)), held);
@@ -2558,7 +2492,7 @@ const sticking_motion = py.cached((kind, held) => {
   if (py.truth(has_limit_branches(kind.example.friction))) {
     guards.push(new Guard(LIMIT_BRANCH, on_branch));
   }
-  if (py.isinstance(kind.example.friction, RollingResistance)) {
+  if (py.truth(kind.example.resists_rolling)) {
     guards.push(py.truth(held) ? new Guard(ROLLING, couple) : new Guard(ROLLING_STOPPING, rolls));
   }
   guards = py.add(guards, surface_guards(kind));
@@ -3133,27 +3067,28 @@ const closing_motion = py.cached((kind, ending, guarded) => {
   var guard = (name, value) => {
     return new Guard(name, (y, numbers) => value(closing_of(y, ending), top_of(numbers), numbers));
   };
+  var held_by = (state, top) => {
+    return rates_in_time(state, ending, top).wrench;
+  };
   var on_branch_still = (state, top, _) => {
-    return slip_branch_guard(py.or(slip_beside(state, ending, top), () => state.direction), top);
+    return branch_guard(py.or(slip_beside(state, ending, top), () => state.direction), top);
   };
   var guards = [
-    guard(REOPENING, (state, top, _) => reopening_guard(state, ending, top, HORIZON)),
+    guard(REOPENING, (state, top, _) => reopening_guard(state, ending, top)),
     guard(LANDED, (state, top, numbers) => landing_guard(state, ending, top, py.item(numbers, -1))),
     guard(TIME, (state, _, numbers) => py.sub(py.item(numbers, -2), state.time))
   ];
-  var law = kind.example.friction;
-  var [resisted, stuck] = [
-    py.isinstance(law, RollingResistance),
-    py.and(!py.truth(ending.slip), () => ending.held)
-  ];
+  var top = kind.example;
+  var [law, stuck] = [top.friction, py.and(!py.truth(ending.slip), () => ending.held)];
   if (py.truth(guarded)) {
-    guards.push(guard(LIFT_OFF, (state, top, _) => rates_in_time(state, ending, top).wrench.force[2]));
+    guards.push(guard(LIFT_OFF, (state, top, _) => held_by(state, top).force[2]));
   }
-  if (!py.truth(ending.held) && py.truth(resisted) && py.truth(is_set_valued(law))) {
+  if (!py.truth(ending.held) && py.truth(top.resists_rolling) && py.truth(is_set_valued(law))) {
     guards.push(guard(OVERTAKEN, (state, top, _) => overtaking_guard(state, ending, top)));
   }
   if (py.truth(ending.held)) {
-    guards.push(guard(py.truth(ending.slip) ? ROLLING : SLIP, (state, top, _) => spared(state, ending, top)));
+    var held = py.truth(ending.slip) ? ROLLING : SLIP;
+    guards.push(guard(held, (state, top, _) => spared(state, ending, top)));
   }
   if (
     (
@@ -3163,14 +3098,10 @@ const closing_motion = py.cached((kind, ending, guarded) => {
     guards.push(guard(BRANCH, on_branch_still));
   }
   if (py.truth(stuck) && py.truth(has_limit_branches(law))) {
-    guards.push(
-      guard(LIMIT_BRANCH, (state, top, _) => limit_guard(top, rates_in_time(state, ending, top).wrench))
-    );
+    guards.push(guard(LIMIT_BRANCH, (state, top, _) => limit_guard(top, held_by(state, top))));
   }
   guards = py.add(guards, surface_guards(kind));
-  var free = py.truth(ending.moves) ? 2 : 0;
-  var components = py.truth(ending.slip) ? slip_dimension(law) : 2;
-  var size = py.add(8 + free, components);
+  var size = (py.truth(ending.moves) ? 10 : 8) + py.len(ending.wrenches(top));
   return new Motion(rates, size, py.add(kind.numbers, 2), py.tuple(guards), false);
 });
 
@@ -3181,7 +3112,7 @@ function spared(state, ending, top) {
     var point = ContactPoint.of(state.axis, state.momentum, top);
     return rolling_reserve(point, wrench, state.direction);
   }
-  return set_valued(top.friction).reserve(wrench.force[2], wrench.force.slice(0, 2), wrench.torque[2]);
+  return slip_reserve(top, wrench);
 }
 
 /** The state of a velocity that is about to end, from its numbers. */
@@ -3341,7 +3272,7 @@ class Stopping extends Passing {
   /** The end of slip by power series, if its direction has come to rest and nothing else happens. */
   _arrival(here, longest, integrator) {
     var law = this.top.friction;
-    if (!py.truth(this.ending.slip) || py.isinstance(law, RollingResistance) || slip_length(law) === null) {
+    if (!py.truth(this.ending.slip) || py.truth(this.top.resists_rolling) || slip_length(law) === null) {
       return null;
     }
     var found = arriving(here, this.ending, this.top, integrator);
@@ -3365,7 +3296,7 @@ class Stopping extends Passing {
     }
     if (
       py.truth(py.hasattr(law, "branch_guard")) && !py.truth(
-        py.all([...looks].map((y) => slip_branch_guard(py.tuple(y.slice(6)), this.top) > 0.0))
+        py.all([...looks].map((y) => branch_guard(py.tuple(y.slice(6)), this.top) > 0.0))
       )
     ) {
       return null;
@@ -4171,8 +4102,7 @@ function settling(point, slip, rolling) {
 
 /** Whether the table can hold what does not go on. */
 function _admits(point, found) {
-  var [[x, y, normal], torque] = found.wrench;
-  if (found.slip === null && set_valued(point.top.friction).reserve(normal, [x, y], torque[2]) < 0.0) {
+  if (found.slip === null && slip_reserve(point.top, found.wrench) < 0.0) {
     return false;
   }
   return py.or(
@@ -4186,7 +4116,7 @@ function _resisting(part, wrench, top) {
   if (!py.truth(part.slip)) {
     return wrench.torque.slice(0, 2);
   }
-  var reach = part.reach(top);
+  var reach = slip_length(top.friction);
   return reach === null ? wrench.force.slice(0, 2) : [
     ...wrench.force.slice(0, 2),
     py.div(wrench.torque[2], reach)
@@ -4198,7 +4128,10 @@ function _stiffness(part, point) {
   var answers = [...part.wrenches(point.top)].map((unit) => part.rate(point.response(unit), point.top));
   var sizes = py.enumerate(answers).map(([i, answer]) => py.abs(py.item(answer, i)));
   return py.float(
-    py.add(py.sum(sizes.slice(0, 2)), py.mul(py.sum(sizes.slice(2)), py.or(part.reach(point.top), () => 0.0)))
+    py.add(
+      py.sum(sizes.slice(0, 2)),
+      py.mul(py.sum(sizes.slice(2)), py.or(slip_length(point.top.friction), () => 0.0))
+    )
   );
 }
 
@@ -5505,8 +5438,10 @@ class ContactRules extends py.Record {
   }
   /** Whether nothing holds rolling. */
   _rolls(state) {
-    var resisted = py.isinstance(this.top.friction, RollingResistance);
-    return py.or(!py.truth(resisted), () => py.bool(is_rolling(state.axis, state.momentum, this.top)));
+    return py.or(
+      !py.truth(this.top.resists_rolling),
+      () => py.bool(is_rolling(state.axis, state.momentum, this.top))
+    );
   }
   /** The top with the branch of its law that holds. */
   _branched(state, slips) {
@@ -5522,14 +5457,11 @@ class ContactRules extends py.Record {
   }
   /** Which velocity ends first at present rates, and the time left; none if all grow or none can end. */
   _next_to_end(state, slips) {
-    var [rolls, law] = [this._rolls(state), this.top.friction];
-    var resisted = py.isinstance(law, RollingResistance);
-    var possible = py.truth(slips) && py.truth(is_set_valued(law)) ? [
-      new Vanishing(true, !py.truth(rolls))
-    ] : [];
+    var [rolls, ends] = [this._rolls(state), py.and(slips, () => is_set_valued(this.top.friction))];
+    var possible = py.truth(ends) ? [new Vanishing(true, !py.truth(rolls))] : [];
     possible = py.add(
       possible,
-      py.truth(rolls) && py.truth(resisted) ? [new Vanishing(false, !py.truth(slips))] : []
+      py.truth(rolls) && py.truth(this.top.resists_rolling) ? [new Vanishing(false, !py.truth(slips))] : []
     );
     if (!py.truth(possible)) {
       return [null, py.float("inf")];
@@ -6370,7 +6302,7 @@ function _slip(number) {
 }
 
 function _branch(number) {
-  return (mode, y) => slip_branch_guard(py.item(mode.found(y)[1], number), py.item(mode.tops, number));
+  return (mode, y) => branch_guard(py.item(mode.found(y)[1], number), py.item(mode.tops, number));
 }
 
 /** Falls through zero where so little is left of all these that they are followed no further. */
@@ -7189,7 +7121,7 @@ class OnSeveral extends FreeToFly {
     if (py.truth(this._slips(other, state))) {
       var pair = ContactPair.of(state.axis, state.momentum, [this.top, other]);
       var slip = slip_of(...along_table(state), this.top);
-      var wrench = contact_wrench(pair.first, slip, pair.first.turning.slice(0, 2));
+      var wrench = contact_motion(pair.first, slip, pair.first.turning.slice(0, 2))[0];
       back = py.float(py.abs(pair.under([[0, wrench]])[1][2]));
     }
     return py.float(
@@ -8182,7 +8114,7 @@ function require_creep(top) {
       "0: with it a spin about the vertical has no linear motion"
     );
   }
-  if (py.truth(is_set_valued(top.friction)) && slip_dimension(top.friction) === 2) {
+  if (py.truth(is_set_valued(top.friction)) && slip_length(top.friction) === null) {
     throw new InvalidInput(
       "friction",
       top.friction,
@@ -10983,7 +10915,6 @@ export {
   contact_motion,
   contact_vector,
   contact_velocity,
-  contact_wrench,
   critical_jellett,
   critical_spin,
   critical_spins,
@@ -11023,7 +10954,6 @@ export {
   has_level_spin,
   has_limit_branches,
   heaviness,
-  held_motion,
   held_rates,
   highest_gap,
   holding,
@@ -11077,7 +11007,6 @@ export {
   natural_units,
   nearing_guard,
   needed,
-  normal_force,
   normal_wrench,
   number_of,
   observe,
@@ -11155,14 +11084,11 @@ export {
   slip_along_tilt,
   slip_apart,
   slip_beside,
-  slip_branch_guard,
-  slip_dimension,
-  slip_guard,
-  slip_guards,
   slip_length,
   slip_of,
   slip_part,
   slip_phase,
+  slip_reserve,
   slip_wrenches,
   slipping,
   slips_of,
@@ -11187,7 +11113,6 @@ export {
   stepped,
   sticking_motion,
   sticking_wrench,
-  stopping,
   stopping_guard,
   straight,
   struck,

@@ -12,7 +12,8 @@ from tippetop.mechanics.rolling import (
     Wrench,
     contact_motion,
     rolling_reserve,
-    set_valued,
+    slip_length,
+    slip_reserve,
 )
 from tippetop.mechanics.stick_slip import inner, scaled, size
 from tippetop.mechanics.top import Top
@@ -127,8 +128,7 @@ def settling(
 
 def _admits(point: ContactPoint, found: Beginning) -> bool:
     """Whether the table can hold what does not go on."""
-    (x, y, normal), torque = found.wrench
-    if found.slip is None and set_valued(point.top.friction).reserve(normal, (x, y), torque[2]) < 0.0:
+    if found.slip is None and slip_reserve(point.top, found.wrench) < 0.0:
         return False
     return found.rolling is not None or bool(rolling_reserve(point, found.wrench, found.slip) >= 0.0)
 
@@ -137,7 +137,7 @@ def _resisting(part: Vanishing, wrench: Wrench, top: Top) -> Slip:
     """What resists slip, a drilling torque over the law's length, or the couple that resists rolling."""
     if not part.slip:
         return wrench.torque[:2]
-    reach = part.reach(top)
+    reach = slip_length(top.friction)
     return wrench.force[:2] if reach is None else (*wrench.force[:2], wrench.torque[2] / reach)
 
 
@@ -145,4 +145,4 @@ def _stiffness(part: Vanishing, point: ContactPoint) -> float:
     """How strongly the contact answers to what resists slip, or rolling, 1/kg or 1/(kg m^2)."""
     answers = [part.rate(point.response(unit), point.top) for unit in part.wrenches(point.top)]
     sizes = [abs(answer[i]) for i, answer in enumerate(answers)]
-    return float(sum(sizes[:2]) + sum(sizes[2:]) * (part.reach(point.top) or 0.0))
+    return float(sum(sizes[:2]) + sum(sizes[2:]) * (slip_length(point.top.friction) or 0.0))

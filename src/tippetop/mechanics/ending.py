@@ -28,7 +28,7 @@ from tippetop.mechanics.rolling import (
     slip_length,
     slip_wrenches,
 )
-from tippetop.mechanics.stick_slip import inner, plus, scaled, size, slip_of, slip_part
+from tippetop.mechanics.stick_slip import HORIZON, inner, plus, scaled, size, slip_of, slip_part
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Scalar, Vector, add, scale
 
@@ -64,10 +64,6 @@ class Vanishing(NamedTuple):
         if self.slip:
             return slip_part(flat(acceleration), slip_length(top.friction))
         return acceleration.turning[:2]
-
-    def reach(self, top: Top) -> Scalar | None:
-        """Length by which drilling compares with slip, m; None where it is not resisted."""
-        return slip_length(top.friction)
 
     def wrenches(self, top: Top) -> tuple[Wrench, ...]:
         """The wrenches that resist its components."""
@@ -155,14 +151,14 @@ def slowing(state: Closing, ending: Vanishing, top: Top) -> Scalar:
     return inner(rates_in_time(state, ending, top).xi, state.direction)
 
 
-def reopening_guard(state: Closing, ending: Vanishing, top: Top, horizon: Scalar) -> Scalar:
-    """Falls through zero where the end is twice as far as the horizon (s) again: -(s + 2 horizon R).
+def reopening_guard(state: Closing, ending: Vanishing, top: Top) -> Scalar:
+    """Falls through zero where the end is twice as far as `HORIZON` again: -(s + 2 HORIZON R).
 
     A slow velocity must grow, by more than what rounding of its direction makes of R.
     """
     rate = rates_in_time(state, ending, top).xi
     doubt = inner(rate, rate) ** 0.5 * DIGITS / (state.speed + SLOW)
-    return -2.0 * horizon * (inner(rate, state.direction) - doubt) - state.speed
+    return -2.0 * HORIZON * (inner(rate, state.direction) - doubt) - state.speed
 
 
 def landing_guard(state: Closing, ending: Vanishing, top: Top, horizon: Scalar) -> Scalar:

@@ -121,11 +121,6 @@ def arm_rate(axis: Vector, tilting: Vector, top: Top) -> Vector:
     return add(scale(-top.surface.slope(c), tilting), outward)
 
 
-def contact_wrench(point: ContactPoint, slip: Slip | None, rolling: Horizontal | None = None) -> Wrench:
-    """What the table does to a body in contact; see `contact_motion`."""
-    return contact_motion(point, slip, rolling)[0]
-
-
 def contact_motion(
     point: ContactPoint, slip: Slip | None, rolling: Horizontal | None = None
 ) -> tuple[Wrench, Acceleration]:
@@ -168,6 +163,11 @@ def slip_wrenches(law: FrictionLaw) -> tuple[Wrench, ...]:
 def slip_length(law: FrictionLaw) -> Scalar | None:
     """Length by which drilling compares with slip under a law with or without rolling resistance, m."""
     return getattr(sliding_law(law), "slip_length", None)
+
+
+def slip_reserve(top: Top, wrench: Wrench) -> Scalar:
+    """Positive while the table can exert the force and drilling torque in a wrench that holds slip, N^2."""
+    return set_valued(top.friction).reserve(wrench.force[2], wrench.force[:2], wrench.torque[2])
 
 
 def rolling_reserve(point: "ContactPoint", wrench: Wrench, slip: Slip | None) -> Scalar:
@@ -298,11 +298,6 @@ def limit_guard(top: Top, wrench: Wrench) -> Scalar:
     """Positive as long as the branch of the limit surface that a body at rest has is the one it is on."""
     law: Any = set_valued(top.friction)
     return law.limit_guard(wrench.force[2], wrench.torque[2])
-
-
-def slip_dimension(law: FrictionLaw) -> int:
-    """How many components the slip zeta has under a law that lets slip end: 3 where it resists drilling."""
-    return 2 if set_valued(law).slip_length is None else 3
 
 
 def flat(motion: Acceleration) -> tuple[Scalar, ...]:

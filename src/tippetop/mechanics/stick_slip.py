@@ -17,11 +17,8 @@ from typing import Any
 
 from tippetop.mechanics.motion import angular_velocity, axial_spin, point_velocity
 from tippetop.mechanics.rolling import (
-    ContactPoint,
     Slip,
     arm_rate,
-    contact_wrench,
-    set_valued,
     sliding_law,
     slip_length,
     velocity_without_slip,
@@ -92,18 +89,8 @@ def slip_part(accelerations: Sequence[Scalar], reach: Scalar | None) -> Slip:
     return (accelerations[0], accelerations[1], reach * accelerations[5])
 
 
-def stopping_guard(state: SlidingState, rate: SlidingState, top: Top, horizon: Scalar) -> Scalar:
-    """Falls through zero where slip, at its present rate, ends within the horizon (s): s (s + horizon R).
-
-    Parameters
-    ----------
-    state, rate
-        A sliding state and its time derivative.
-    top
-        The body.
-    horizon
-        How far ahead the end may be, s.
-    """
+def stopping_guard(state: SlidingState, rate: SlidingState, top: Top) -> Scalar:
+    """Falls through zero where slip ends soon; for a sliding state and its time derivative."""
     turning, tilting = angular_velocity(state.axis, state.momentum, top), rate.axis
     turned = angular_acceleration(state, rate, top)
     arm = contact_vector(state.axis, top.surface)
@@ -112,7 +99,7 @@ def stopping_guard(state: SlidingState, rate: SlidingState, top: Top, horizon: S
     reach = slip_length(top.friction)
     change: Slip = (rate.velocity[0] + carried[0], rate.velocity[1] + carried[1])
     change = change if reach is None else (*change, reach * turned[2])
-    return remaining(slip, change, horizon)
+    return remaining(slip, change)
 
 
 def nearing_guard(state: SlidingState, top: Top) -> Scalar:
@@ -133,25 +120,20 @@ def is_near(state: SlidingState, top: Top) -> Scalar:
     return inner(slip, slip) < NEAR * APART
 
 
-def rolling_stopping_guard(state: SlidingState, rate: SlidingState, top: Top, horizon: Scalar) -> Scalar:
+def rolling_stopping_guard(state: SlidingState, rate: SlidingState, top: Top) -> Scalar:
     """The same of rolling, (rad/s)^2; velocities are not asked for."""
     rolling = angular_velocity(state.axis, state.momentum, top)[:2]
     change = angular_acceleration(state, rate, top)[:2]
-    return remaining(rolling, change, horizon)
+    return remaining(rolling, change)
 
 
-def remaining(velocity: Slip, change: Slip, horizon: Scalar) -> Scalar:
-    """Positive while a velocity, at its present rate of change, lasts longer than the horizon (s)."""
-    return inner(velocity, velocity) + horizon * inner(change, velocity)
+def remaining(velocity: Slip, change: Slip) -> Scalar:
+    """Positive while a velocity, at its present rate of change, outlasts `HORIZON`: s (s + HORIZON R)."""
+    return inner(velocity, velocity) + HORIZON * inner(change, velocity)
 
 
-def branch_guard(axis: Vector, momentum: Vector, velocity: Horizontal, top: Top) -> Scalar:
-    """Positive as long as the branch of the law that a body in contact is on holds, m^2/s^2."""
-    return slip_branch_guard(slip_of(axis, momentum, velocity, top), top)
-
-
-def slip_branch_guard(slip: Slip, top: Top) -> Scalar:
-    """The same of zeta, or of its direction alone."""
+def branch_guard(slip: Slip, top: Top) -> Scalar:
+    """Positive as long as a branch of a law holds where it slips so, or in that direction, m^2/s^2."""
     law: Any = sliding_law(top.friction)
     return law.branch_guard(slip[:2], (0.0, 0.0, slip[2] / law.slip_length))
 
@@ -163,13 +145,6 @@ def angular_acceleration(state: SlidingState, rate: SlidingState, top: Top) -> V
     spinning = (dot(rate.momentum, state.axis) + dot(state.momentum, rate.axis)) / top.axial_inertia
     turned = scale(1.0 / top.transverse_inertia, rate.momentum)
     return add(turned, scale(excess, add(scale(spinning, state.axis), scale(spin, rate.axis))))
-
-
-def slip_guard(axis: Vector, momentum: Vector, top: Top, *, rolling_held: bool = False) -> Scalar:
-    """Positive while the limit surface admits the wrench that keeps a sticking body so, N^2."""
-    point = ContactPoint.of(axis, momentum, top)
-    force, torque = contact_wrench(point, None, None if rolling_held else point.turning[:2])
-    return set_valued(top.friction).reserve(force[2], (force[0], force[1]), torque[2])
 
 
 def inner(a: Slip, b: Slip) -> Scalar:

@@ -10,10 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tippetop.contact.sliding import stopping
 from tippetop.integrators.base import Array
 from tippetop.integrators.polynomials import Polynomials
-from tippetop.mechanics.coulomb import RollingResistance
 from tippetop.mechanics.flight import fly
 from tippetop.mechanics.motion import (
     along_table,
@@ -25,11 +23,11 @@ from tippetop.mechanics.rolling import is_set_valued
 from tippetop.mechanics.series import Series
 from tippetop.mechanics.state import State
 from tippetop.mechanics.stick_slip import (
-    HORIZON,
     is_near,
     is_rolling,
     is_slipping,
     rolling_stopping_guard,
+    stopping_guard,
 )
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.touchdown import Tip
@@ -151,11 +149,11 @@ def slides(state: State, top: Top) -> Flags:
 def rolls(state: State, top: Top) -> Flags:
     """Whether tops in contact roll on for a while, or nothing resists that."""
     count = np.ones(len(np.atleast_1d(state.height)), dtype=bool)
-    if not isinstance(top.friction, RollingResistance):
+    if not top.resists_rolling:
         return count
     y = along_table(state)
     with np.errstate(all="ignore"):
-        lasting = rolling_stopping_guard(y, sliding_rates(y, top), top, HORIZON) > 0.0
+        lasting = rolling_stopping_guard(y, sliding_rates(y, top), top) > 0.0
     found: Flags = count & is_rolling(y.axis, y.momentum, top) & lasting
     return found
 
@@ -170,6 +168,6 @@ def slips(state: State, top: Top, *, far: bool = False) -> Flags:
         return count
     y = along_table(state)
     with np.errstate(all="ignore"):
-        lasting = stopping(y, top) > 0.0
+        lasting = stopping_guard(y, sliding_rates(y, top), top) > 0.0
     found: Flags = count & is_slipping(*y, top) & lasting
     return found & ~is_near(y, top) if far else found

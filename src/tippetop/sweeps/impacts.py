@@ -17,7 +17,7 @@ from tippetop.mechanics.impulse import contact_velocity
 from tippetop.mechanics.motion import angular_velocity, moment_per_normal_force
 from tippetop.mechanics.rolling import is_branched, on_other_branch
 from tippetop.mechanics.state import State
-from tippetop.mechanics.stick_slip import slip_branch_guard, slip_of
+from tippetop.mechanics.stick_slip import branch_guard, slip_of
 from tippetop.mechanics.surface import contact_vector
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import Scalar, length, scale
@@ -109,7 +109,7 @@ def impact_motion(kind: Kind) -> Motion:
 
     def branch(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
         state, top = read(y, numbers)
-        return slip_branch_guard(slip_of(state.axis, state.momentum, state.velocity[:2], top), top)
+        return branch_guard(slip_of(state.axis, state.momentum, state.velocity[:2], top), top)
 
     guards = [Guard(SINKING, sinking)]
     if is_branched(kind.example.friction):

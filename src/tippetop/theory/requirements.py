@@ -3,7 +3,7 @@
 from tippetop.errors import InvalidInput
 from tippetop.mechanics.coulomb import RollingResistance
 from tippetop.mechanics.hull import Hull
-from tippetop.mechanics.rolling import is_set_valued, slip_dimension
+from tippetop.mechanics.rolling import is_set_valued, slip_length
 from tippetop.mechanics.top import Top
 
 
@@ -53,7 +53,7 @@ def require_creep(top: Top) -> None:
             top.friction.length,
             "0: with it a spin about the vertical has no linear motion",
         )
-    if is_set_valued(top.friction) and slip_dimension(top.friction) == 2:
+    if is_set_valued(top.friction) and slip_length(top.friction) is None:
         raise InvalidInput(
             "friction",
             top.friction,
