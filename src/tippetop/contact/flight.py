@@ -47,7 +47,7 @@ class Flight(Mode):
         return State.unpack(y)
 
     def segments(self, time: float, state: State, end: float, integrator: Integrator) -> Iterator[Segment]:
-        """Evaluate the flight, which needs no integrator."""
+        """Evaluate the flight, which needs no integrator: the impact at its end may."""
         try:
             landing, lowest = self._landing(state, end - time)
         except ArithmeticError as error:
@@ -66,7 +66,8 @@ class Flight(Mode):
             transition, reach = None, time + elapsed[-1]
             if last == count:
                 reach = end if landing is None else reach
-                transition = self._transition(reach, here, None if landing is None else lowest)
+                low = None if landing is None else lowest
+                transition = self._transition(reach, here, low, integrator)
             solution = DenseSolution.fitted(self._numbers(state), elapsed, DEGREE).moved(time, reach)
             yield Segment(self, solution, here, transition, highest_gap=highest)
 
@@ -86,13 +87,15 @@ class Flight(Mode):
                     found, lowest = sooner, other
         return found, lowest
 
-    def _transition(self, time: float, state: State, lowest: Top | None) -> Transition:
+    def _transition(
+        self, time: float, state: State, lowest: Top | None, integrator: Integrator
+    ) -> Transition:
         if lowest is None:
             return Transition((), Outcome.COMPLETED, state)
         here = state._replace(height=on_table(along_table(state), lowest).height)
         if lowest == self.top:
-            return self.rules.touchdown(time, here)
-        return self.rules.touch(number_of(lowest), time, here)
+            return self.rules.touchdown(time, here, integrator)
+        return self.rules.touch(number_of(lowest), time, here, integrator)
 
 
 def start_of(state: State, top: Top) -> Start:

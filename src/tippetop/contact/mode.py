@@ -168,8 +168,8 @@ class Rules(Protocol):
     def lift_off(self, time: float, state: State) -> Transition:
         """What follows when the normal force falls to zero."""
 
-    def touchdown(self, time: float, state: State) -> Transition:
-        """What follows when the top reaches the table."""
+    def touchdown(self, time: float, state: State, integrator: Integrator | None = None) -> Transition:
+        """What follows when the top reaches the table; the integrator may follow the impact too."""
 
     def event(self, kind: EventKind, time: float) -> Event:
         """Something that happens to the surface that is active."""
@@ -177,7 +177,9 @@ class Rules(Protocol):
     def going_on(self, state: State, *, slips: bool) -> "Mode":
         """The mode of a contact whose velocities go on, or stay held; it sticks or slips."""
 
-    def touch(self, surface: int, time: float, state: State) -> Transition:
+    def touch(
+        self, surface: int, time: float, state: State, integrator: Integrator | None = None
+    ) -> Transition:
         """What follows when another surface of the top, of this number, reaches the table too."""
 
     def on(self, surface: int) -> "Rules":

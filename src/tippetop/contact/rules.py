@@ -9,7 +9,9 @@ from tippetop.contact.mode import Event, EventKind, IntegratedMode, Mode, Outcom
 from tippetop.contact.passing import Resting, Stopping
 from tippetop.contact.sliding import Sliding, SlidingWithoutRolling
 from tippetop.contact.sticking import Sticking, StickingWithoutRolling
+from tippetop.contact.striking import impact_of_patch
 from tippetop.contact.surfaces import number_of
+from tippetop.integrators.base import Integrator
 from tippetop.mechanics.beginning import Beginning, settling
 from tippetop.mechanics.ending import Vanishing
 from tippetop.mechanics.flight import gap, gap_rate
@@ -66,11 +68,13 @@ class ContactRules:
         """Never happens: the table may pull."""
         raise NotImplementedError
 
-    def touchdown(self, time: float, state: State) -> Transition:
+    def touchdown(self, time: float, state: State, integrator: Integrator | None = None) -> Transition:
         """Never happens: there are no flights."""
         raise NotImplementedError
 
-    def touch(self, surface: int, time: float, state: State) -> Transition:
+    def touch(
+        self, surface: int, time: float, state: State, integrator: Integrator | None = None
+    ) -> Transition:
         """Never happens: a body of several surfaces may fly."""
         raise NotImplementedError
 
@@ -291,9 +295,10 @@ class FreeToFly(ContactRules):
         """Fly from where the normal force reached zero."""
         return Transition((self.event(EventKind.LIFT_OFF, time),), self._flight(Start.LIFT_OFF), state)
 
-    def touchdown(self, time: float, state: State) -> Transition:
+    def touchdown(self, time: float, state: State, integrator: Integrator | None = None) -> Transition:
         """Collide, and go on as the impact leaves the top."""
-        return self._collide(time, state, (self.event(EventKind.TOUCHDOWN, time),), self.restitution)
+        told = (self.event(EventKind.TOUCHDOWN, time),)
+        return self._collide(time, state, told, self.restitution, integrator)
 
     def _let_go(self, time: float, state: State, events: tuple[Event, ...]) -> Transition:
         """Fly from where the table would have to pull from now on, not from zero force."""
@@ -307,14 +312,19 @@ class FreeToFly(ContactRules):
         return self._collide(time, state, events, 0.0)
 
     def _collide(
-        self, time: float, state: State, events: tuple[Event, ...], restitution: float
+        self,
+        time: float,
+        state: State,
+        events: tuple[Event, ...],
+        restitution: float,
+        integrator: Integrator | None = None,
     ) -> Transition:
         try:
-            collision = self._impact(state, restitution)
+            collision = self._impact(state, restitution, integrator)
             rebounds = gap_rate(collision.state, self.top) > SLOWEST_REBOUND
             if restitution and not rebounds:
                 taken = collision.steps
-                collision = self._impact(state, 0.0)
+                collision = self._impact(state, 0.0, integrator)
                 collision = collision._replace(steps=taken + collision.steps)
         except ArithmeticError as error:
             return Transition(events, Outcome.FAILED, state, str(error))
@@ -330,8 +340,9 @@ class FreeToFly(ContactRules):
             return Transition((*events, hit), self._flight(Start.REBOUND), after)
         return self.resting(time, after, (*events, hit))
 
-    def _impact(self, state: State, restitution: float) -> Impact:
-        return impact(state, restitution, self.top)
+    def _impact(self, state: State, restitution: float, integrator: Integrator | None) -> Impact:
+        found = None if restitution else impact_of_patch(state, self.top, integrator)
+        return impact(state, restitution, self.top) if found is None else found
 
     def _untouched(self, time: float, state: State, events: tuple[Event, ...]) -> Transition:
         slip = slip_of(*along_table(state), self.top)

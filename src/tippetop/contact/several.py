@@ -10,10 +10,11 @@ from tippetop.contact.mode import Event, EventKind, Outcome, Transition
 from tippetop.contact.rules import FreeToFly
 from tippetop.contact.surfaces import number_of
 from tippetop.contact.two_closed import Before, rolling_of, settled, slipping
+from tippetop.integrators.base import Integrator
 from tippetop.mechanics.contact_pair import ContactPair, Tops, without_tilting
 from tippetop.mechanics.flight import gap, gap_rate
 from tippetop.mechanics.hull import lowest_surface
-from tippetop.mechanics.impact import Impact, impact
+from tippetop.mechanics.impact import Impact
 from tippetop.mechanics.impact_on_two import SlipEnds, impact_on_two
 from tippetop.mechanics.motion import along_table
 from tippetop.mechanics.rolling import contact_motion, is_set_valued
@@ -52,7 +53,9 @@ class OnSeveral(FreeToFly):
         others = [other for other in self.top.each if other != self.top and gap(state, other) <= TOUCHING]
         return sorted(others, key=lambda other: float(gap_rate(state, other)))
 
-    def touch(self, surface: int, time: float, state: State) -> Transition:
+    def touch(
+        self, surface: int, time: float, state: State, integrator: Integrator | None = None
+    ) -> Transition:
         """Collide with another surface, and go on as the impact leaves the top.
 
         Where more come to the table at once, the outermost strikes: what lies between sinks more slowly.
@@ -63,7 +66,7 @@ class OnSeveral(FreeToFly):
             for other in self._beside(state)[:1]
             if gap_rate(state, other) < gap_rate(state, striking.top)
         ]
-        return (self._of(faster[0]) if faster else striking).touchdown(time, state)
+        return (self._of(faster[0]) if faster else striking).touchdown(time, state, integrator)
 
     def resting(self, time: float, state: State, events: tuple[Event, ...] = ()) -> Transition:
         """As for one surface, unless others touch too, and open no faster than rocking that has ended.
@@ -88,12 +91,12 @@ class OnSeveral(FreeToFly):
         rolls = rolling_of(without_tilting(state, self.top), self.top)
         return settled(self._of(tops[0]), time, state, tops, before, rolls, events, arrived=True)
 
-    def _impact(self, state: State, restitution: float) -> Impact:
+    def _impact(self, state: State, restitution: float, integrator: Integrator | None) -> Impact:
         """That of the active surface alone, unless it presses another that touches onto the table.
 
         Where slip ends meanwhile, under a law that leaves the force open then, the surfaces strike in turns.
         """
-        alone = impact(state, restitution, self.top)
+        alone = super()._impact(state, restitution, integrator)
         for other in self._beside(alone.state):
             pressed = gap_rate(alone.state, other) < -SLOWEST_ROCKING
             if pressed and abs(gap_rate(state, other)) <= SLOWEST_ROCKING:

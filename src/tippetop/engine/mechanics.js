@@ -2183,7 +2183,7 @@ class Flight extends Mode {
   state(y) {
     return State.unpack(y);
   }
-  /** Evaluate the flight, which needs no integrator. */
+  /** Evaluate the flight, which needs no integrator: the impact at its end may. */
   *segments(time, state, end, integrator) {
     try {
       var [landing, lowest] = this._landing(state, end - time);
@@ -2205,7 +2205,8 @@ class Flight extends Mode {
       var [transition, reach] = [null, py.add(time, py.item(elapsed, -1))];
       if (py.eq(last, count)) {
         reach = landing === null ? end : reach;
-        transition = this._transition(reach, here, landing === null ? null : lowest);
+        var low = landing === null ? null : lowest;
+        transition = this._transition(reach, here, low, integrator);
       }
       var solution = DenseSolution.fitted(this._numbers(state), elapsed, DEGREE_of_flight).moved(time, reach);
       yield new Segment(this, solution, here, transition, undefined, undefined, highest);
@@ -2230,15 +2231,15 @@ class Flight extends Mode {
     }
     return [found, lowest];
   }
-  _transition(time, state, lowest) {
+  _transition(time, state, lowest, integrator) {
     if (lowest === null) {
       return new Transition([], Outcome.COMPLETED, state);
     }
     var here = state._replace({ height: on_table(along_table(state), lowest).height });
     if (py.eq(lowest, this.top)) {
-      return this.rules.touchdown(time, here);
+      return this.rules.touchdown(time, here, integrator);
     }
-    return this.rules.touch(number_of(lowest), time, here);
+    return this.rules.touch(number_of(lowest), time, here, integrator);
   }
 }
 py.fields(Flight, ["top", "rules", "start"]);
@@ -5296,6 +5297,96 @@ function work_of(impulse, before, after, body) {
   );
 }
 
+// tippetop.contact.striking
+const SINKING = "sinking";
+const LONGEST_of_striking = 1000.0;
+const MOST_PIECES = 50;
+
+/** What an impact without restitution does to a body that touches the table. */
+function impact_of_patch(state, top, integrator) {
+  var law = top.friction;
+  if (py.isinstance(law, RollingResistance) || !py.truth(is_set_valued(law)) || slip_length(law) === null) {
+    return null;
+  }
+  var body = Striking.of(state, top);
+  if (py.getattr(integrator, "expansion", null) === null || body.point[2] >= 0.0) {
+    return null;
+  }
+  py.assert(integrator !== null);
+  if (py.truth(is_near(along_table(state), top))) {
+    return null;
+  }
+  top = on_branch(top, slip_of(...along_table(state), top));
+  var [impulse, moving, steps] = [0.0, as_array([...state.momentum, ...state.velocity]), 0];
+  var longest = py.mul(py.mul(LONGEST_of_striking, top.mass), length(body.point));
+  for (var turn = 0; turn < MOST_PIECES; turn += 1) {
+    var motion = impact_motion(top.kind, true);
+    var arc = py.next(
+      integrator.integrate(motion, [...top.numbers, ...state.axis], [impulse, moving], longest)
+    );
+    [impulse, moving, steps] = [arc.solution.end, arc.end_state, py.add(steps, arc.steps)];
+    if (py.eq(arc.guard, SINKING)) {
+      return impact_between(state, after(state, py.tolist(moving)), impulse, body)._replace({ steps: steps });
+    }
+    if (!py.eq(arc.guard, BRANCH)) {
+      return null;
+    }
+    top = on_other_branch(top);
+  }
+  return null;
+}
+
+/** A state with other momenta and velocities. */
+function after(state, y) {
+  return state._replace({ momentum: [y[0], y[1], y[2]], velocity: [y[3], y[4], y[5]] });
+}
+
+/** The impact that leads from one state to another. */
+function impact_between(before, then, normal, body) {
+  var [x, y] = scale(body.top.mass, add(then.velocity, scale(-1.0, before.velocity)));
+  var moment = add(then.momentum, scale(-1.0, before.momentum));
+  var angular = add(moment, cross([x, y, normal], body.arm));
+  var lost = py.neg(work_of(new Impulse(normal, [x, y], angular, 0.0), before, then, body));
+  return new Impact(then, normal, py.max(0.0, lost), normal);
+}
+
+/** How angular momentum and velocity of a struck top change with the normal impulse. */
+const impact_motion = py.cached((kind, watched = false) => {
+  var read = (y, numbers) => {
+    var [first, second, third] = numbers.slice(kind.numbers);
+    var state = new State([first, second, third], [y[0], y[1], y[2]], [y[3], y[4], y[5]], 0.0);
+    return [state, kind.top(py.tuple(numbers.slice(0, kind.numbers)))];
+  };
+  var guard = (name, value) => {
+    return new Guard(name, (y, numbers) => value(...read(y, numbers)));
+  };
+  var rates = (y, numbers) => {
+    var [state, top] = read(y, numbers);
+    var arm = contact_vector(state.axis, top.surface);
+    var point = contact_velocity(state, arm, top);
+    var turning = angular_velocity(state.axis, state.momentum, top);
+    var traction = top.friction.traction([point[0], point[1]], turning);
+    return [
+      ...moment_per_normal_force(arm, traction),
+      ...scale(py.div(1.0, top.mass), [...traction.force, 1.0])
+    ];
+  };
+  var sinking = (state, top) => {
+    return py.neg(contact_velocity(state, contact_vector(state.axis, top.surface), top)[2]);
+  };
+  var branch = (state, top) => {
+    return branch_guard(slip_of(...along_table(state), top), top);
+  };
+  var guards = [guard(SINKING, sinking)];
+  if (py.truth(is_branched(kind.example.friction))) {
+    guards.push(guard(BRANCH, branch));
+  }
+  if (py.truth(watched)) {
+    guards.push(guard(NEARING, (state, top) => nearing_guard(along_table(state), top)));
+  }
+  return new Motion(rates, 6, py.add(kind.numbers, 3), py.tuple(guards));
+});
+
 // tippetop.contact.rules
 const SLOWEST_REBOUND = 1e-06;
 const REST = 1e-13;
@@ -5320,11 +5411,11 @@ class ContactRules extends py.Record {
     throw new py.NotImplementedError();
   }
   /** Never happens: there are no flights. */
-  touchdown(time, state) {
+  touchdown(time, state, integrator = null) {
     throw new py.NotImplementedError();
   }
   /** Never happens: a body of several surfaces may fly. */
-  touch(surface, time, state) {
+  touch(surface, time, state, integrator = null) {
     throw new py.NotImplementedError();
   }
   /** Never happens: as `touch`. */
@@ -5556,8 +5647,9 @@ class FreeToFly extends ContactRules {
     return new Transition([this.event(EventKind.LIFT_OFF, time)], this._flight(Start.LIFT_OFF), state);
   }
   /** Collide, and go on as the impact leaves the top. */
-  touchdown(time, state) {
-    return this._collide(time, state, [this.event(EventKind.TOUCHDOWN, time)], this.restitution);
+  touchdown(time, state, integrator = null) {
+    var told = [this.event(EventKind.TOUCHDOWN, time)];
+    return this._collide(time, state, told, this.restitution, integrator);
   }
   /** Fly from where the table would have to pull from now on, not from zero force. */
   _let_go(time, state, events) {
@@ -5571,13 +5663,13 @@ class FreeToFly extends ContactRules {
     }
     return this._collide(time, state, events, 0.0);
   }
-  _collide(time, state, events, restitution) {
+  _collide(time, state, events, restitution, integrator = null) {
     try {
-      var collision = this._impact(state, restitution);
+      var collision = this._impact(state, restitution, integrator);
       var rebounds = gap_rate(collision.state, this.top) > SLOWEST_REBOUND;
       if (py.truth(restitution) && !py.truth(rebounds)) {
         var taken = collision.steps;
-        collision = this._impact(state, 0.0);
+        collision = this._impact(state, 0.0, integrator);
         collision = collision._replace({ steps: py.add(taken, collision.steps) });
       }
     } catch (error) {
@@ -5597,8 +5689,9 @@ class FreeToFly extends ContactRules {
     }
     return this.resting(time, after, [...events, hit]);
   }
-  _impact(state, restitution) {
-    return impact(state, restitution, this.top);
+  _impact(state, restitution, integrator) {
+    var found = py.truth(restitution) ? null : impact_of_patch(state, this.top, integrator);
+    return found === null ? impact(state, restitution, this.top) : found;
   }
   _untouched(time, state, events) {
     var slip = slip_of(...along_table(state), this.top);
@@ -7063,12 +7156,12 @@ class OnSeveral extends FreeToFly {
     return py.sorted(others, py.how({ key: (other) => py.float(gap_rate(state, other)) }));
   }
   /** Collide with another surface, and go on as the impact leaves the top. */
-  touch(surface, time, state) {
+  touch(surface, time, state, integrator = null) {
     var striking = this.on(surface);
     var faster = [...this._beside(state).slice(0, 1)].filter(
       (other) => gap_rate(state, other) < gap_rate(state, striking.top)
     );
-    return (py.truth(faster) ? this._of(faster[0]) : striking).touchdown(time, state);
+    return (py.truth(faster) ? this._of(faster[0]) : striking).touchdown(time, state, integrator);
   }
   /** As for one surface, unless others touch too, and open no faster than rocking that has ended. */
   resting(time, state, events = []) {
@@ -7096,8 +7189,8 @@ class OnSeveral extends FreeToFly {
     return settled(this._of(tops[0]), time, state, tops, before, rolls, events, true);
   }
   /** That of the active surface alone, unless it presses another that touches onto the table. */
-  _impact(state, restitution) {
-    var alone = impact(state, restitution, this.top);
+  _impact(state, restitution, integrator) {
+    var alone = super._impact(state, restitution, integrator);
     for (var other of this._beside(alone.state)) {
       var pressed = gap_rate(alone.state, other) < py.neg(SLOWEST_ROCKING);
       if (py.truth(pressed) && py.abs(gap_rate(state, other)) <= SLOWEST_ROCKING) {
@@ -10602,6 +10695,7 @@ export {
   LONGER,
   LONGEST,
   LONGEST_of_integrated_impact,
+  LONGEST_of_striking,
   LONGEST_of_trajectory,
   LOOK,
   LOOKS,
@@ -10619,6 +10713,7 @@ export {
   MOST_FACTOR,
   MOST_IN_TURNS,
   MOST_LOOKS,
+  MOST_PIECES,
   MOST_STEPS,
   MOST_STEPS_of_closing,
   MOST_of_bodies,
@@ -10734,6 +10829,7 @@ export {
   SHORT_of_integrated_impact,
   SINE,
   SINGULAR,
+  SINKING,
   SIZE,
   SLIP,
   SLIPPING,
@@ -10882,6 +10978,7 @@ export {
   acting,
   add,
   advance,
+  after,
   against,
   along_table,
   analytic_disc,
@@ -10959,6 +11056,9 @@ export {
   holding,
   horner,
   impact,
+  impact_between,
+  impact_motion,
+  impact_of_patch,
   impact_on_two,
   in_order,
   inertia_ratio,

@@ -5,22 +5,17 @@ impulse plays the part of time (see `tippetop.mechanics.impact`), are solved pie
 those of sliding are; where another branch of the law takes over, a piece ends.
 """
 
-from collections.abc import Sequence
-from functools import lru_cache
-
 import numpy as np
 
-from tippetop.contact.sliding import BRANCH
-from tippetop.integrators.base import Array, Guard, Motion
+from tippetop.contact.striking import MOST_PIECES, impact_motion
+from tippetop.integrators.base import Array
 from tippetop.integrators.polynomials import Polynomials
 from tippetop.mechanics.impulse import contact_velocity
-from tippetop.mechanics.motion import angular_velocity, moment_per_normal_force
-from tippetop.mechanics.rolling import is_branched, on_other_branch
+from tippetop.mechanics.rolling import on_other_branch
 from tippetop.mechanics.state import State
-from tippetop.mechanics.stick_slip import branch_guard, slip_of
 from tippetop.mechanics.surface import contact_vector
 from tippetop.mechanics.top import Kind, Top
-from tippetop.mechanics.vectors import Scalar, length, scale
+from tippetop.mechanics.vectors import length
 from tippetop.sweeps.launches import Flags
 from tippetop.sweeps.stepper import NumPyArithmetic, stepper
 from tippetop.sweeps.stride import Jet, step_size
@@ -30,13 +25,8 @@ PLAIN = NumPyArithmetic()
 TOLERANCE = 1e-10
 """What is left out of the polynomials, relative to the momenta and velocities."""
 
-MOST_PIECES = 50
-"""Pieces that an impact may have before it is left to the method that takes stiff friction."""
-
 TINY = 1e-150
 """Added to a step that may be zero."""
-
-SINKING = "sinking"
 
 
 def collide(state: State, top: Top) -> tuple[State, Flags]:
@@ -80,38 +70,3 @@ def pieces(jet: Jet, longest: Array) -> tuple[Array, Flags, Flags]:
 def others(kind: Kind, numbers: Array) -> Array:
     """The numbers of tops with the branch of their law that takes over."""
     return np.array(np.broadcast_arrays(*on_other_branch(kind.top(tuple(numbers))).numbers))
-
-
-@lru_cache
-def impact_motion(kind: Kind) -> Motion:
-    """How angular momentum and velocity of struck tops change with the normal impulse.
-
-    The parameters are a top's numbers and its axis, which does not move.
-    """
-
-    def read(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[State, Top]:
-        x, y_, z = numbers[kind.numbers :]
-        state = State((x, y_, z), (y[0], y[1], y[2]), (y[3], y[4], y[5]), 0.0)
-        return state, kind.top(tuple(numbers[: kind.numbers]))
-
-    def rates(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[Scalar, ...]:
-        state, top = read(y, numbers)
-        arm = contact_vector(state.axis, top.surface)
-        point = contact_velocity(state, arm, top)
-        traction = top.friction.traction(
-            (point[0], point[1]), angular_velocity(state.axis, state.momentum, top)
-        )
-        return (*moment_per_normal_force(arm, traction), *scale(1.0 / top.mass, (*traction.force, 1.0)))
-
-    def sinking(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
-        state, top = read(y, numbers)
-        return -contact_velocity(state, contact_vector(state.axis, top.surface), top)[2]
-
-    def branch(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
-        state, top = read(y, numbers)
-        return branch_guard(slip_of(state.axis, state.momentum, state.velocity[:2], top), top)
-
-    guards = [Guard(SINKING, sinking)]
-    if is_branched(kind.example.friction):
-        guards.append(Guard(BRANCH, branch))
-    return Motion(rates, size=6, parameters=kind.numbers + 3, guards=tuple(guards))

@@ -1,0 +1,112 @@
+"""An impact without restitution as a motion, in which the normal impulse plays the part of time.
+
+It ends where the contact point stops sinking (see `tippetop.mechanics.impact`). What follows motions of one
+launch, and of many, follows it too, unless slip ends on the way, which that module knows.
+"""
+
+from collections.abc import Callable, Sequence
+from functools import lru_cache
+
+from tippetop.contact.sliding import BRANCH, NEARING
+from tippetop.integrators.base import Guard, Integrator, Motion
+from tippetop.integrators.dense import as_array
+from tippetop.mechanics.coulomb import RollingResistance
+from tippetop.mechanics.impact import Impact, work_of
+from tippetop.mechanics.impulse import Impulse, Striking, contact_velocity
+from tippetop.mechanics.motion import along_table, angular_velocity, moment_per_normal_force
+from tippetop.mechanics.rolling import is_branched, is_set_valued, on_branch, on_other_branch, slip_length
+from tippetop.mechanics.state import State
+from tippetop.mechanics.stick_slip import branch_guard, is_near, nearing_guard, slip_of
+from tippetop.mechanics.surface import contact_vector
+from tippetop.mechanics.top import Kind, Top
+from tippetop.mechanics.vectors import Scalar, add, cross, length, scale
+
+SINKING = "sinking"
+
+LONGEST = 1e3
+"""Normal impulse at most, in units of that which stops a point mass."""
+
+MOST_PIECES = 50
+"""Pieces that an impact may have, on one branch of the law each."""
+
+
+def impact_of_patch(state: State, top: Top, integrator: Integrator | None) -> Impact | None:
+    """What an impact without restitution does to a body that touches the table.
+
+    None where this is no way to find it: there is no integrator that compiles motions, drilling is not
+    resisted or rolling is, the contact point does not sink, or slip is about to end.
+    """
+    law = top.friction
+    if isinstance(law, RollingResistance) or not is_set_valued(law) or slip_length(law) is None:
+        return None
+    body = Striking.of(state, top)
+    if getattr(integrator, "expansion", None) is None or body.point[2] >= 0.0:
+        return None
+    assert integrator is not None
+    if is_near(along_table(state), top):
+        return None
+    top = on_branch(top, slip_of(*along_table(state), top))
+    impulse, moving, steps = 0.0, as_array((*state.momentum, *state.velocity)), 0
+    longest = LONGEST * top.mass * length(body.point)
+    for _ in range(MOST_PIECES):
+        motion = impact_motion(top.kind, watched=True)
+        arc = next(integrator.integrate(motion, (*top.numbers, *state.axis), (impulse, moving), longest))
+        impulse, moving, steps = arc.solution.end, arc.end_state, steps + arc.steps
+        if arc.guard == SINKING:
+            return impact_between(state, after(state, moving.tolist()), impulse, body)._replace(steps=steps)
+        if arc.guard != BRANCH:
+            return None
+        top = on_other_branch(top)
+    return None
+
+
+def after(state: State, y: Sequence[float]) -> State:
+    """A state with other momenta and velocities."""
+    return state._replace(momentum=(y[0], y[1], y[2]), velocity=(y[3], y[4], y[5]))
+
+
+def impact_between(before: State, then: State, normal: float, body: Striking) -> Impact:
+    """The impact that leads from one state to another."""
+    x, y, _ = scale(body.top.mass, add(then.velocity, scale(-1.0, before.velocity)))
+    moment = add(then.momentum, scale(-1.0, before.momentum))
+    angular = add(moment, cross((x, y, normal), body.arm))
+    lost = -work_of(Impulse(normal, (x, y), angular, 0.0), before, then, body)
+    return Impact(then, normal, max(0.0, lost), normal)
+
+
+@lru_cache
+def impact_motion(kind: Kind, *, watched: bool = False) -> Motion:
+    """How angular momentum and velocity of a struck top change with the normal impulse.
+
+    The parameters are its numbers and its axis, which does not move. If `watched`, slip that is about to end
+    ends the motion.
+    """
+
+    def read(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[State, Top]:
+        first, second, third = numbers[kind.numbers :]
+        state = State((first, second, third), (y[0], y[1], y[2]), (y[3], y[4], y[5]), 0.0)
+        return state, kind.top(tuple(numbers[: kind.numbers]))
+
+    def guard(name: str, value: Callable[[State, Top], Scalar]) -> Guard:
+        return Guard(name, lambda y, numbers: value(*read(y, numbers)))
+
+    def rates(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[Scalar, ...]:
+        state, top = read(y, numbers)
+        arm = contact_vector(state.axis, top.surface)
+        point = contact_velocity(state, arm, top)
+        turning = angular_velocity(state.axis, state.momentum, top)
+        traction = top.friction.traction((point[0], point[1]), turning)
+        return (*moment_per_normal_force(arm, traction), *scale(1.0 / top.mass, (*traction.force, 1.0)))
+
+    def sinking(state: State, top: Top) -> Scalar:
+        return -contact_velocity(state, contact_vector(state.axis, top.surface), top)[2]
+
+    def branch(state: State, top: Top) -> Scalar:
+        return branch_guard(slip_of(*along_table(state), top), top)
+
+    guards = [guard(SINKING, sinking)]
+    if is_branched(kind.example.friction):
+        guards.append(guard(BRANCH, branch))
+    if watched:
+        guards.append(guard(NEARING, lambda state, top: nearing_guard(along_table(state), top)))
+    return Motion(rates, size=6, parameters=kind.numbers + 3, guards=tuple(guards))
