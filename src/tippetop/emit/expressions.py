@@ -42,7 +42,7 @@ class Expressions(ABC):
 
     def __init__(self, program: Program, module: str) -> None:
         self.program, self.module = program, module
-        self.scopes = [Scope()]
+        self.scopes = [Scope(floats={name for where, name in program.numbers if where == module})]
         self.rows: dict[str, str] = {}
 
     @abstractmethod

@@ -72,6 +72,7 @@ class Program:
         self.functions: dict[str, list[str]] = {}
         self.methods: dict[str, list[list[str]]] = {"__getitem__": [], "model_copy": [["update"]]}
         self.values: set[str] = set()
+        self.numbers: set[tuple[str, str]] = set()
         for module, tree in self.trees.items():
             for node in tree.body:
                 self._enter(module, node)
@@ -95,6 +96,8 @@ class Program:
                         self.imported.setdefault(self.given[where], set()).add(alias.name)
                     known = self.names.get((str(where), alias.name), alias.name)
                     self.names[module, alias.asname or alias.name] = known
+                    if (where, alias.name) in self.numbers:
+                        self.numbers.add((module, alias.asname or alias.name))
             case ast.FunctionDef(name=name) if name not in self.left:
                 self.functions[self._unique(module, name)] = parameters(node)
             case ast.ClassDef(name=name) if name not in self.left:
@@ -104,10 +107,14 @@ class Program:
                 if kind:
                     own = self._unique(module, name)
                     self.classes[own] = Class(own, node, bases, kind)
-            case ast.Assign() | ast.AnnAssign() if not is_type(node):
+            case ast.Assign(value=value) | ast.AnnAssign(value=value) if not is_type(node):
+                values = value.elts if isinstance(value, ast.Tuple) else [value]
                 for target in targets_of(node):
                     for name in names_in(target):
                         self._unique(module, name)
+                    for name, one in zip(names_in(target), values, strict=False):
+                        if isinstance(one, ast.Constant) and isinstance(one.value, float | int):
+                            self.numbers.add((module, name))
 
     def _unique(self, module: str, name: str) -> str:
         found = safe(name)

@@ -112,15 +112,10 @@ export class DenseSolution {
     return last.reduce((most, term) => Math.max(most, Math.abs(term)), 0) * 2 ** (1 - 2 * this.degree);
   }
 
-  /** The first of some steps, with rows [power][number] of coefficients. */
-  static of_steps(knots, steps, count) {
-    const wide = steps[0].length, size = steps[0][0].length, terms = new Float64Array(count * size * wide);
-    for (let step = 0, at = 0; step < count; step += 1) {
-      for (let number = 0; number < size; number += 1) {
-        for (let power = 0; power < wide; power += 1, at += 1) terms[at] = steps[step][power][number];
-      }
-    }
-    return new DenseSolution(knots.slice(0, count + 1), terms, size, wide - 1);
+  /** The first of some steps, with all coefficients in a row. */
+  static of_steps(knots, terms, size, count) {
+    const wide = terms.length / (knots.length - 1);
+    return new DenseSolution(knots.slice(0, count + 1), terms.slice(0, count * wide), size, wide / size - 1);
   }
 
   /** Steps whose coefficients from the first on lie in rows, from the numbers with which they begin. */

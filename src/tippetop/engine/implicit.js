@@ -1,8 +1,8 @@
 // Collocation at Radau's points (Hairer and Wanner, Solving Ordinary Differential Equations II): for stiff motions.
-import { FULL, REACHED, SINGULAR, STUCK_of_dormand_prince as STUCK, SUSPECT, first_step } from "./mechanics.js";
+import { FULL, POWERS, REACHED, SINGULAR, STUCK_of_dormand_prince as STUCK, SUSPECT, first_step } from "./mechanics.js";
 import { RADAU } from "./tables.js";
 
-const { integrals: WEIGHTS, powers: POWERS, last: [LAST] } = RADAU;
+const { integrals: WEIGHTS, powers: TERMS, last: [LAST] } = RADAU;
 const STAGES = WEIGHTS.length, TURNS = 12, ENOUGH = 1e-3, LEAST_STEP = 1e-15;
 
 /** Steps from a state, as `advance` of Dormand and Prince takes them; where there are guards, every one is suspect. */
@@ -13,10 +13,10 @@ export function implicit(rates, guards, count, p, y, lost, k, span, tolerance, k
   if (!k[0].every(Number.isFinite)) return told(SINGULAR);
   if (span[2] === 0) span[2] = first_step(rates, p, y, k, step.place, span[1] - span[0], tolerance);
   while (span[0] < span[1]) {
-    if (steps === terms.length) return told(FULL);
+    if (steps === knots.length - 1) return told(FULL);
     const reach = Math.min(span[0] + span[2], span[1]), h = reach - span[0], doubt = step.take(h);
     if (doubt < 1) {
-      step.accept(terms[steps]);
+      step.accept(terms, steps);
       steps += 1;
       knots[steps] = span[0] = reach;
       span[2] = h * Math.min(growth, doubt === 0 ? 10 : 0.9 * doubt ** (-1 / STAGES));
@@ -46,10 +46,10 @@ class Step {
     this.rates(this.place, this.p, out);
   }
 
-  accept(terms) {
+  accept(terms, steps) {
     const { y, k, moved } = this;
-    POWERS.forEach((row, power) => y.forEach((start, i) => {
-      terms[power][i] = row.reduce((sum, weight, a) => (a ? sum + weight * moved[(a - 1) * y.length + i] : sum), power ? 0 : start);
+    TERMS.forEach((row, power) => y.forEach((start, i) => {
+      terms[(steps * y.length + i) * POWERS + power] = row.reduce((sum, weight, a) => (a ? sum + weight * moved[(a - 1) * y.length + i] : sum), power ? 0 : start);
     }));
     y.forEach((start, i) => (y[i] = start + moved[moved.length - y.length + i]));
     k[0].set(k[STAGES]);

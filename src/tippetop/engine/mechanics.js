@@ -442,7 +442,7 @@ class RingSurface extends py.NamedTuple {
   }
   /** Falls through zero where the body comes to lie flat: s^2 less that of `FLAT`. */
   face_guard(axis) {
-    return py.sub(py.add(py.mul(axis[0], axis[0]), py.mul(axis[1], axis[1])), py.mul(FLAT, FLAT));
+    return py.sub(py.add(py.mul(axis[0], axis[0]), py.mul(axis[1], axis[1])), FLAT * FLAT);
   }
   /** It is none. */
   get spherical() {
@@ -1171,19 +1171,19 @@ function stopping_guard(state, rate, top) {
 /** Falls through zero where slip becomes so small that it is to be watched, (m/s)^2. */
 function nearing_guard(state, top) {
   var slip = slip_of(...state, top);
-  return py.sub(inner(slip, slip), py.mul(NEAR, NEAR));
+  return py.sub(inner(slip, slip), NEAR * NEAR);
 }
 
 /** Falls through zero where slip is so large again that it need not be watched, (m/s)^2. */
 function parting_guard(state, top) {
   var slip = slip_of(...state, top);
-  return py.sub(py.mul(APART, APART), inner(slip, slip));
+  return py.sub(APART * APART, inner(slip, slip));
 }
 
 /** Whether slip is to be watched from here on; a truth value of floats, or an array of them. */
 function is_near(state, top) {
   var slip = slip_of(...state, top);
-  return inner(slip, slip) < py.mul(NEAR, APART);
+  return inner(slip, slip) < NEAR * APART;
 }
 
 /** The same of rolling, (rad/s)^2; velocities are not asked for. */
@@ -1379,7 +1379,7 @@ function slowing(state, ending, top) {
 function reopening_guard(state, ending, top) {
   var rate = rates_in_time(state, ending, top).xi;
   var doubt = py.div(py.mul(py.pow(inner(rate, rate), 0.5), DIGITS), py.add(state.speed, SLOW));
-  return py.sub(py.mul(py.mul(-2.0, HORIZON), py.sub(inner(rate, state.direction), doubt)), state.speed);
+  return py.sub(py.mul(-2.0 * HORIZON, py.sub(inner(rate, state.direction), doubt)), state.speed);
 }
 
 /** Falls through zero where xi, at its present rate, ends within the horizon (s): s + horizon R. */
@@ -1618,7 +1618,7 @@ function surface_guards(kind) {
 
 /** Whether no other surface touches at these numbers of a mode on the active one, floats. */
 function stays_open(top, y) {
-  return clearance(top, y[2]) > py.neg(MARGIN);
+  return clearance(top, y[2]) > -MARGIN;
 }
 
 /** The least gap of the other surfaces while the active one touches, at a cosine of the tilt, floats. */
@@ -1815,7 +1815,7 @@ const [GOLDEN, NARROWED] = [0.5 * (3.0 - py.pow(5.0, 0.5)), 29];
 
 /** First root from `low` to `high`, or `low` if not positive there; `jerk` bounds the third derivative. */
 function first_root(function_, low, high, jerk) {
-  var [time, step, finest] = [low, high - low, py.mul(FINEST, high - low)];
+  var [time, step, finest] = [low, high - low, FINEST * (high - low)];
   var [value, rate, acceleration] = function_(time);
   while (value > 0.0) {
     step = py.min(step, high - time);
@@ -1929,7 +1929,7 @@ function crossing(function_, low, high) {
 
 // tippetop.mechanics.touchdown
 const DEGREE = 16;
-const START = py.pow(10.0, py.div(-16.0, py.add(DEGREE, 1)));
+const START = py.pow(10.0, py.div(-16.0, DEGREE + 1));
 const WIDEST = 4.0;
 const NARROWEST = 1e-09;
 const LOOKS = 10.0;
@@ -2010,11 +2010,11 @@ function highest_gap(state, top, duration) {
   }
   var count = py.min(
     MOST_LOOKS,
-    2 + py.int(py.div(py.mul(py.mul(LOOKS, duration), length(state.momentum)), top.transverse_inertia))
+    2 + py.int(py.div(py.mul(LOOKS * duration, length(state.momentum)), top.transverse_inertia))
   );
-  var times = py.range(py.add(count, 1)).map((j) => py.div(py.mul(duration, j), count));
+  var times = py.range(count + 1).map((j) => py.div(py.mul(duration, j), count));
   var gaps = [...times].map((time) => gap(time)[0]);
-  var best = py.max(py.range(py.add(count, 1)), py.how({ key: py.bound(gaps, "__getitem__") }));
+  var best = py.max(py.range(count + 1), py.how({ key: py.bound(gaps, "__getitem__") }));
   if (gap(py.item(times, best))[1] > 0.0) {
     var [low, high] = [py.item(times, best), py.item(times, py.min(py.add(best, 1), count))];
   } else {
@@ -2068,7 +2068,7 @@ class Tip extends py.NamedTuple {
   /** Height as a power series in time. */
   series() {
     var terms = [this.height, this.rate, py.mul(0.5, this.acceleration)];
-    for (var j = 1; j < py.sub(DEGREE, 1); j += 1) {
+    for (var j = 1; j < DEGREE - 1; j += 1) {
       terms.push(py.div(py.mul(py.neg(py.pow(this.frequency, 2)), py.item(terms, j)), (j + 1) * (j + 2)));
     }
     return new TruncatedSeries(terms);
@@ -2198,12 +2198,12 @@ class Flight extends Mode {
     var count = 1 + py.int(py.div(py.mul(duration, rate), TURN));
     var highest = highest_gap(state, this.top, duration);
     for (var first = 0; first < count; first += MOST_STEPS) {
-      var last = py.min(py.add(first, MOST_STEPS), count);
-      var elapsed = py.range(first, py.add(last, 1)).map((step) => py.mul(py.div(duration, count), step));
-      py.put(elapsed, -1, py.eq(last, count) ? duration : py.item(elapsed, -1));
+      var last = py.min(first + MOST_STEPS, count);
+      var elapsed = py.range(first, last + 1).map((step) => py.mul(py.div(duration, count), step));
+      py.put(elapsed, -1, last === count ? duration : py.item(elapsed, -1));
       var here = fly(state, py.item(elapsed, -1), this.top, py.math);
       var [transition, reach] = [null, py.add(time, py.item(elapsed, -1))];
-      if (py.eq(last, count)) {
+      if (last === count) {
         reach = landing === null ? end : reach;
         var low = landing === null ? null : lowest;
         transition = this._transition(reach, here, low, integrator);
@@ -2247,7 +2247,7 @@ py.fields(Flight, ["top", "rules", "start"]);
 /** How a flight starts for a surface that did not decide it: far, or just opened. */
 function start_of(state, top) {
   var rate = gap_rate(state, top);
-  if (gap(state, top) > TOUCHING || rate < py.neg(TOUCHING)) {
+  if (gap(state, top) > TOUCHING || rate < -TOUCHING) {
     return Start.AIRBORNE;
   }
   return rate > TOUCHING ? Start.REBOUND : Start.RELEASE;
@@ -3203,11 +3203,7 @@ class Resting extends Mode {
   }
   /** Stay as it is. */
   *segments(time, state, end, integrator) {
-    var still = DenseSolution.standing(
-      this.told.numbers(state),
-      time,
-      py.add(time, py.mul(SHORT, py.max(1.0, time)))
-    );
+    var still = DenseSolution.standing(this.told.numbers(state), time, time + SHORT * py.max(1.0, time));
     yield new Segment(this.told, still, state, new Transition([], Outcome.AT_REST, state));
   }
 }
@@ -3280,9 +3276,7 @@ class Stopping extends Passing {
     if (found === null || found.left > longest) {
       return null;
     }
-    var looks = py.range(1, py.add(LOOKS_of_passing, 1)).map(
-      (look) => found.at(py.div(look, LOOKS_of_passing))
-    );
+    var looks = py.range(1, LOOKS_of_passing + 1).map((look) => found.at(py.div(look, LOOKS_of_passing)));
     if (
       py.isinstance(this.top.surface, Hull) && !py.truth(
         py.all([...looks].map((y) => stays_open(this.top, y)))
@@ -3493,7 +3487,7 @@ function _integral(k, x, at) {
 
 /** Coefficients of the integrals of Legendre's polynomials in powers of what has passed of a part. */
 function _in_powers(stages, part) {
-  var [begin, slope] = [py.sub(py.div(2.0 * part, PARTS), 1.0), py.div(2.0, PARTS)];
+  var [begin, slope] = [py.div(2.0 * part, PARTS) - 1.0, py.div(2.0, PARTS)];
   var none = py.mul([0.0], stages);
   var rows = [[1.0, ...none.slice(1)], [begin, slope, ...none.slice(2)]];
   for (var k = 1; k < stages - 1; k += 1) {
@@ -3575,19 +3569,17 @@ function sweep(y, p, ending, kind, points) {
 
 /** What a step makes of numbers, from their rates y. */
 function step_terms(y, p, points) {
-  var [step, legendre_rows] = [p[0], py.slice(p, 1, py.add(STAGES, 1), null)];
+  var [step, legendre_rows] = [p[0], py.slice(p, 1, STAGES + 1, null)];
   var series = [...y].map(
     (rate) => py.tuple([...legendre_rows].map((row) => py.mul(step, points.total(py.mul(rate, row)))))
   );
   var found = py.list();
-  for (var part = 1; part < py.add(PARTS, 1); part += 1) {
-    var powers = py.tuple(
-      py.slice(p, py.add(py.mul(part, STAGES), 1), py.add(py.mul(part + 1, STAGES), 1), null)
-    );
+  for (var part = 1; part < PARTS + 1; part += 1) {
+    var powers = py.tuple(py.slice(p, part * STAGES + 1, (part + 1) * STAGES + 1, null));
     found = py.add(found, [...series].map((terms) => inner(terms, powers)));
   }
   var squares = [...series].flatMap(
-    (terms) => [py.sub(STAGES, 2), py.sub(STAGES, 1)].map((k) => py.mul(py.item(terms, k), py.item(terms, k)))
+    (terms) => [STAGES - 2, STAGES - 1].map((k) => py.mul(py.item(terms, k), py.item(terms, k)))
   );
   return [...found, ...[...series].map((terms) => terms[0]), py.sum(squares.slice(1), squares[0])];
 }
@@ -3687,7 +3679,7 @@ const compiled_step = py.cached((kind, ending) => {
   var given = py.add(py.add(layout.given, kind.numbers), py.floordiv(py.len(CONSTANTS), STAGES));
   return [
     iterated(better, layout.unknowns, given, STAGES),
-    iterated(terms, layout.size, py.add(1, py.floordiv(py.len(TERMS), STAGES)), STAGES)
+    iterated(terms, layout.size, 1 + py.floordiv(py.len(TERMS), STAGES), STAGES)
   ];
 });
 
@@ -3696,7 +3688,7 @@ const machinery_of = py.cached((top, ending) => {
   var [layout, numbers] = [StepRows.of(ending), rows_of(top.numbers)];
   var given = room(py.add(py.add(py.mul(layout.given, STAGES), py.len(numbers)), py.len(CONSTANTS)));
   put_from(given, py.mul(layout.given, STAGES), [...numbers, ...CONSTANTS]);
-  var measured = room(py.add(STAGES, py.len(TERMS)));
+  var measured = room(STAGES + py.len(TERMS));
   put_from(measured, STAGES, TERMS);
   return new _Machinery(...compiled_step(top.kind, ending), given, measured);
 });
@@ -3718,7 +3710,7 @@ class SlipStep extends py.Thing {
     var layout = this.layout;
     [this.given, this.measured] = [copied(this.machinery.given), copied(this.machinery.measured)];
     [this.unknowns, this.found] = [room(py.mul(layout.unknowns, STAGES)), room(py.mul(layout.found, STAGES))];
-    this.rows = room(py.mul(py.add(py.mul(py.add(PARTS, 1), layout.size), 1), STAGES));
+    this.rows = room(py.mul(py.add(py.mul(PARTS + 1, layout.size), 1), STAGES));
     this.sweeps = 0;
   }
   /** Find what solves the equations of a step of some length; tell whether that is found. */
@@ -3762,7 +3754,7 @@ class SlipStep extends py.Thing {
   /** Whether no other surface comes near the table, and that is far from pulling if it may not. */
   goes_on(top, pulls) {
     if (py.isinstance(top.surface, Hull)) {
-      var tilts = py.slice(this.unknowns, py.mul(2, STAGES), py.mul(3, STAGES), null);
+      var tilts = py.slice(this.unknowns, 2 * STAGES, 3 * STAGES, null);
       if (!(py.min([...tilts].map((c) => clearance(top, c))) > CLEAR)) {
         return false;
       }
@@ -3778,7 +3770,7 @@ class SlipStep extends py.Thing {
     var first = py.mul(py.add(py.mul(number, this.layout.size), this.layout.free), STAGES);
     var rows = [
       py.slice(this.rows, first, py.add(first, STAGES), null),
-      py.slice(this.rows, py.add(first, STAGES), py.add(first, py.mul(2, STAGES)), null)
+      py.slice(this.rows, py.add(first, STAGES), py.add(first, 2 * STAGES), null)
     ];
     var [x, y] = way;
     return [begin, ...py.zip(...rows).map(([a, b]) => py.add(py.mul(x, a), py.mul(y, b)))];
@@ -3799,8 +3791,8 @@ class SlipStep extends py.Thing {
       begin = py.sum(py.item(polynomials, number));
     }
     var speed = (place) => {
-      var number = py.min(py.int(place), py.sub(PARTS, 1));
-      return py.float(horner(py.item(polynomials, number), py.sub(place, number)));
+      var number = py.min(py.int(place), PARTS - 1);
+      return py.float(horner(py.item(polynomials, number), place - number));
     };
     var high = point < STAGES ? py.item(GAUSS.places, point) : 1.0;
     return crossing(speed, py.mul(PARTS, py.item(GAUSS.places, py.sub(point, 1))), py.mul(PARTS, high));
@@ -3859,7 +3851,7 @@ function slip_phase(y, way, top, ending, longest, pulls) {
         after,
         scaled(py.div(1.0, size(py.tuple(after.slice(free)))), py.tuple(after.slice(free)))
       ];
-      var speed = step.speed(py.sub(PARTS, 1), 0.0, last);
+      var speed = step.speed(PARTS - 1, 0.0, last);
       py.put(speed, 0, py.sub(inner(py.tuple(after.slice(free)), last), py.sum(speed)));
       length = py.min(
         py.mul(length, py.min(factor, LONGER)),
@@ -3888,9 +3880,9 @@ function parts_left(terms) {
 
 /** Whether s comes near zero within a step, perhaps to it between two points. */
 function dips(speeds) {
-  var least = py.min(py.slice(speeds, 1, py.sub(STAGES, 1), null));
+  var least = py.min(py.slice(speeds, 1, STAGES - 1, null));
   return py.and(
-    py.min(speeds[0], py.item(speeds, py.sub(STAGES, 1))) > least,
+    py.min(speeds[0], py.item(speeds, STAGES - 1)) > least,
     () => 0.0 < least && least < py.mul(DIP, py.max(speeds))
   );
 }
@@ -3963,9 +3955,7 @@ function _improved(response, ways) {
 
 /** Whether velocities in these directions grow, or stay. */
 function _grow(answers, ways) {
-  return py.all(
-    py.zip(answers, ways).map(([a, e]) => inner(a.rate, e) >= py.mul(py.neg(DIRECTED), a.strength))
-  );
+  return py.all(py.zip(answers, ways).map(([a, e]) => inner(a.rate, e) >= py.mul(-DIRECTED, a.strength)));
 }
 
 /** Whether directions that do not turn at once are known: slip alone, in a plane, never turns slowly. */
@@ -4247,8 +4237,8 @@ class Loosening extends Passing {
       return [...rows].map((row) => horner(row, py.div(duration * look, LOOKS_of_passing)));
     };
     var [looks, pressed] = [
-      py.range(1, py.add(LOOKS_of_passing, 1)),
-      py.range(py.add(1, PRESSED_of_loosening), py.add(LOOKS_of_passing, 1), PRESSED_of_loosening)
+      py.range(1, LOOKS_of_passing + 1),
+      py.range(1 + PRESSED_of_loosening, LOOKS_of_passing + 1, PRESSED_of_loosening)
     ];
     if (
       py.isinstance(this.top.surface, Hull) && !py.truth(
@@ -4416,7 +4406,7 @@ function first_reach(along, goal, guess) {
 }
 
 // tippetop.mechanics.dry_impact
-const ENDED = py.mul(10.0, FUZZ);
+const ENDED = 10.0 * FUZZ;
 const [SLIPPING, ROLLING_of_dry_impact] = ["slipping", "rolling"];
 
 /** Whether slip or rolling can end under this law. */
@@ -4951,7 +4941,7 @@ class IntegratedProcess extends py.NamedTuple {
     var [now, waiting] = [this.settled(impulse), goal(impulse) >= 0.0];
     var [here, slope] = [pack(impulse), now.slope(pack(impulse))];
     var longest = py.div(
-      py.mul(2.0, LONGEST_of_integrated_impact),
+      2.0 * LONGEST_of_integrated_impact,
       py.add(this.body.inverse_mass[0][0], this.body.inverse_mass[1][1])
     );
     var step = py.mul(0.1, longest);
@@ -5637,7 +5627,7 @@ class FreeToFly extends ContactRules {
     if (rate > TOUCHING) {
       return new Transition([], this._flight(Start.REBOUND), state);
     }
-    if (rate < py.neg(TOUCHING)) {
+    if (rate < -TOUCHING) {
       return this.touchdown(0.0, state);
     }
     return this.resting(0.0, state);
@@ -6400,7 +6390,7 @@ function _branch(number) {
 
 /** Falls through zero where so little is left of all these that they are followed no further. */
 function _left(...slips) {
-  return py.sub(py.sum([...slips].map((slip) => inner(slip, slip))), py.mul(SLOWEST_SLIP, SLOWEST_SLIP));
+  return py.sub(py.sum([...slips].map((slip) => inner(slip, slip))), SLOWEST_SLIP * SLOWEST_SLIP);
 }
 
 // tippetop.contact.double_sticking
@@ -6608,7 +6598,7 @@ class SlipBeginningOnTwo extends SlidingOnTwo {
   /** Follow it by an implicit method: its direction is damped the faster the slower it is. */
   *segments(time, state, end, integrator) {
     var [reach, method] = [
-      py.min(py.add(time, BEGINNING), end),
+      py.min(time + BEGINNING, end),
       make_integrator("collocation", TOLERANCE_of_double_sticking)
     ];
     for (var segment of super.segments(time, state, reach, method)) {
@@ -6925,9 +6915,7 @@ function _left_of_two_closed(state, here) {
   var slips = [...tops].map((top) => slip_of(...along_table(state), top));
   var number = size(slips[0]) <= size(slips[1]) ? 0 : 1;
   var [slip, speed] = [py.item(slips, number), size(py.item(slips, number))];
-  if (
-    !(0.0 < speed && speed <= py.mul(TOGETHER, SLOWEST_SLIP)) || !py.truth(size(py.item(slips, 1 - number)))
-  ) {
+  if (!(0.0 < speed && speed <= TOGETHER * SLOWEST_SLIP) || !py.truth(size(py.item(slips, 1 - number)))) {
     return 0.0;
   }
   var pair = ContactPair.of(state.axis, state.momentum, tops);
@@ -7168,7 +7156,7 @@ class OnSeveral extends FreeToFly {
     var [closed, told, beside] = [false, events, this._beside(state)];
     for (var other of beside) {
       var rate = gap_rate(state, other);
-      if (rate < py.neg(SLOWEST_ROCKING)) {
+      if (rate < -SLOWEST_ROCKING) {
         if (py.sum([...events].map((event) => event.kind === EventKind.IMPACT)) >= MOST_IN_TURNS) {
           return new Transition(events, Outcome.FAILED, state, "surfaces strike in turns for ever");
         }
@@ -7192,7 +7180,7 @@ class OnSeveral extends FreeToFly {
   _impact(state, restitution, integrator) {
     var alone = super._impact(state, restitution, integrator);
     for (var other of this._beside(alone.state)) {
-      var pressed = gap_rate(alone.state, other) < py.neg(SLOWEST_ROCKING);
+      var pressed = gap_rate(alone.state, other) < -SLOWEST_ROCKING;
       if (py.truth(pressed) && py.abs(gap_rate(state, other)) <= SLOWEST_ROCKING) {
         try {
           var found = impact_on_two(state, restitution, [this.top, other]);
@@ -7218,7 +7206,7 @@ class OnSeveral extends FreeToFly {
       back = py.float(py.abs(pair.under([[0, wrench]])[1][2]));
     }
     return py.float(
-      py.max(py.mul(SLOWEST_ROCKING, py.pow(py.max(1.0, back), 0.5)), py.pow(2.0 * back * depth, 0.5))
+      py.max(SLOWEST_ROCKING * py.pow(py.max(1.0, back), 0.5), py.pow(2.0 * back * depth, 0.5))
     );
   }
   /** Whether both contacts slip, faster than where slip on two contacts ends, if it can end at all. */
@@ -7356,7 +7344,7 @@ function _reaches_out(number, shapes) {
   ).map(([place, shape]) => shape.surface);
   var [low, high] = [0.0, py.math.pi];
   for (var turn = 0; turn < SEARCHES; turn += 1) {
-    var looks = py.range(py.add(LOOKS_of_bodies, 1)).map(
+    var looks = py.range(LOOKS_of_bodies + 1).map(
       (k) => py.add(low, py.div(py.mul(py.sub(high, low), k), LOOKS_of_bodies))
     );
     try {
@@ -7381,7 +7369,7 @@ function _reaches_out(number, shapes) {
 
 // tippetop.mechanics.contensou
 const PI = 3.141592653589793;
-const ELLIPSOIDAL_RADIUS = py.div(py.mul(3.0, PI), 16.0);
+const ELLIPSOIDAL_RADIUS = 3.0 * PI / 16.0;
 
 /** What the laws of a patch are made of. */
 class PatchLaw extends py.NamedTuple {
@@ -7508,7 +7496,7 @@ const LIMIT = [
 const NEAR_BRANCH = 1e-20;
 const EDGE = 1e-05;
 const BEYOND_of_contensou_hertz = 1e-20;
-const BRANCH_TORQUE = py.div(py.mul(9.0, PI), 128.0);
+const BRANCH_TORQUE = 9.0 * PI / 128.0;
 
 /** A branch of Hertz's law, which has a number beyond where it holds, too. */
 class HertzPiece extends PatchLaw {
@@ -7528,13 +7516,10 @@ class HertzDrillingLaw extends HertzPiece {
   shares(square, drilling) {
     var rate = py.pow(py.add(py.mul(drilling, drilling), py.mul(BEYOND_of_contensou_hertz, square)), -0.5);
     var kappa2 = py.mul(py.mul(square, rate), rate);
-    var force = py.mul(
-      py.mul(py.mul(py.neg(this.mu), py.div(py.mul(3.0, PI), 32.0)), py.sub(4.0, kappa2)),
-      rate
-    );
+    var force = py.mul(py.mul(py.mul(py.neg(this.mu), 3.0 * PI / 32.0), py.sub(4.0, kappa2)), rate);
     var torque = py.mul(
       py.mul(
-        py.mul(py.neg(this.mu), py.div(py.mul(3.0, PI), 16.0)),
+        py.mul(py.neg(this.mu), 3.0 * PI / 16.0),
         py.sub(1.0, py.mul(kappa2, py.sub(1.0, py.mul(0.375, kappa2))))
       ),
       rate
@@ -7544,10 +7529,10 @@ class HertzDrillingLaw extends HertzPiece {
   /** (mu N F)^2 - T^2 where the limit surface has this drilling torque, N^2. */
   reserve(normal, force, drilling) {
     var limit = py.mul(this.mu, normal);
-    var torque = py.div(py.mul(py.div(16.0, py.mul(3.0, PI)), drilling), py.mul(this.patch_radius, limit));
+    var torque = py.div(py.mul(py.div(16.0, 3.0 * PI), drilling), py.mul(this.patch_radius, limit));
     var under = py.sub(py.mul(1.5, py.pow(py.mul(torque, torque), 0.5)), 0.5);
     var kappa2 = py.mul(4.0 / 3.0, py.sub(1.0, py.pow(py.mul(under, under), 0.25)));
-    var size = py.mul(py.mul(py.div(py.mul(3.0, PI), 32.0), py.sub(4.0, kappa2)), limit);
+    var size = py.mul(py.mul(3.0 * PI / 32.0, py.sub(4.0, kappa2)), limit);
     return py.sub(
       py.sub(py.mul(py.mul(size, size), kappa2), py.mul(force[0], force[0])),
       py.mul(force[1], force[1])
@@ -7555,7 +7540,7 @@ class HertzDrillingLaw extends HertzPiece {
   }
   /** Positive as long as this piece of the limit surface is followed, (N m)^2. */
   limit_guard(normal, drilling) {
-    return heaviness(this, normal, drilling, py.mul(4.0 / 3.0, EDGE));
+    return heaviness(this, normal, drilling, 4.0 / 3.0 * EDGE);
   }
   /** Positive as long as this branch is followed, up to `EDGE`, m^2/s^2. */
   branch_guard(slip, angular_velocity) {
@@ -7599,11 +7584,11 @@ class HertzSlidingLaw extends HertzPiece {
   }
   /** Positive as long as this piece of the limit surface is followed, (N m)^2. */
   limit_guard(normal, drilling) {
-    return py.neg(heaviness(this, normal, drilling, py.mul(2.0 / 3.0, EDGE)));
+    return py.neg(heaviness(this, normal, drilling, 2.0 / 3.0 * EDGE));
   }
   /** Positive as long as this branch is followed, down to half of `EDGE`, m^2/s^2. */
   branch_guard(slip, angular_velocity) {
-    return py.neg(prevalence(slip, py.mul(this.patch_radius, angular_velocity[2]), py.mul(0.5, EDGE)));
+    return py.neg(prevalence(slip, py.mul(this.patch_radius, angular_velocity[2]), 0.5 * EDGE));
   }
   /** The law where this one does not hold, and whose piece of the limit surface adjoins this one's. */
   other_branch() {
@@ -7653,7 +7638,7 @@ class HertzBranch extends py.NamedTuple {
     var drilling = py.mul(this.patch_radius, angular_velocity[2]);
     return py.mul(
       py.sub(py.mul(2.0, this.drills), 1.0),
-      prevalence(slip, drilling, py.mul(py.mul(0.5, EDGE), py.add(1.0, this.drills)))
+      prevalence(slip, drilling, py.mul(0.5 * EDGE, py.add(1.0, this.drills)))
     );
   }
   /** The law where this one does not hold. */
@@ -7675,7 +7660,7 @@ py.fields(HertzBranch, ["mu", "patch_radius", "drills"]);
 class HertzLaw extends PatchLaw {
   /** Whether drilling prevails here, a truth value of floats, or an array of them. */
   drills(slip, angular_velocity) {
-    return prevalence(slip, py.mul(this.patch_radius, angular_velocity[2]), py.mul(0.75, EDGE)) > 0.0;
+    return prevalence(slip, py.mul(this.patch_radius, angular_velocity[2]), 0.75 * EDGE) > 0.0;
   }
   /** The law that holds here; of floats. */
   branch(slip, angular_velocity) {
@@ -8248,7 +8233,7 @@ function roots_between(function_, low, high, noise) {
 
 /** Coefficients of the Chebyshev series that is the function at Chebyshev's points of a piece. */
 function series_of(function_, low, high) {
-  var count = py.add(DEGREE_of_series_roots, 1);
+  var count = DEGREE_of_series_roots + 1;
   var angles = py.range(count).map((place) => py.div(py.mul(py.math.pi, py.add(place, 0.5)), count));
   var values = [...angles].map((angle) => function_(low + 0.5 * (high - low) * (1.0 + py.math.cos(angle))));
   var found = [];
@@ -8563,10 +8548,7 @@ function tilts_held(hull, tilt) {
 
 /** The tilts next to one, rad, at which another surface touches beside the active one, and its number. */
 function touching_tilts(hull, tilt) {
-  var tilts = py.sorted([
-    ...py.range(py.add(TILTS, 1)).map((k) => py.div(py.mul(py.math.pi, k), TILTS)),
-    tilt
-  ]);
+  var tilts = py.sorted([...py.range(TILTS + 1).map((k) => py.div(py.mul(py.math.pi, k), TILTS)), tilt]);
   var found = new py.Dict([]);
   for (var [number, other] of py.enumerate(hull.each)) {
     if (!py.eq(number, hull.active)) {
@@ -9030,6 +9012,7 @@ const [SAFETY_of_dormand_prince, LEAST_FACTOR, MOST_FACTOR] = [0.9, 0.2, 10.0];
 const NOTHING = 2e-15;
 const [EARLIEST, RISEN] = [py.pow(0.5, 40), 1e-15];
 const ROWS = 23;
+const POWERS = 8;
 const LOOKS_of_dormand_prince = 8;
 
 /** Call a motion's function. */
@@ -9058,12 +9041,12 @@ function error_of(h, y, new_, k, tolerance) {
 /** By how much a step of this error may be longer. */
 function factor_for(error, tries) {
   if (!(error < 1.0)) {
-    var factor = py.mul(SAFETY_of_dormand_prince, py.pow(error, -0.125));
+    var factor = SAFETY_of_dormand_prince * py.pow(error, -0.125);
     return factor > LEAST_FACTOR ? factor : LEAST_FACTOR;
   }
   factor = error === 0.0 ? MOST_FACTOR : py.min(
     MOST_FACTOR,
-    py.mul(SAFETY_of_dormand_prince, py.pow(error, -0.125))
+    SAFETY_of_dormand_prince * py.pow(error, -0.125)
   );
   return tries === 1 ? factor : py.min(1.0, factor);
 }
@@ -9095,37 +9078,31 @@ function first_step(rates, p, y, k, place, span, tolerance) {
   return py.min(py.mul(100.0, trial), found, span);
 }
 
-/** Put the state at a part of a step in y. */
-function within(powers, part, y) {
-  var powers0 = powers[0];
-  var powers1 = powers[1];
-  var powers2 = powers[2];
-  var powers3 = powers[3];
-  var powers4 = powers[4];
-  var powers5 = powers[5];
-  var powers6 = powers[6];
-  var powers7 = powers[7];
+/** Put the state at a part of a step, whose coefficients are from `first` on, in y. */
+function within(terms, first, part, y) {
+  var at = first;
   for (var i = 0; i < y.length; i += 1) {
-    var high = powers4[i] + part * (powers5[i] + part * (powers6[i] + part * powers7[i]));
-    var low = powers2[i] + part * (powers3[i] + part * high);
-    y[i] = powers0[i] + part * (powers1[i] + part * low);
+    var high = terms[at + 4] + part * (terms[at + 5] + part * (terms[at + 6] + part * terms[at + 7]));
+    var low = terms[at + 2] + part * (terms[at + 3] + part * high);
+    y[i] = terms[at] + part * (terms[at + 1] + part * low);
+    at = at + POWERS;
   }
 }
 
 /** Whether a guard with these values at the looks falls through zero, or may dip below it in between. */
 function may_fall(values, guard) {
-  for (var i = 0; i < py.add(LOOKS_of_dormand_prince, 1); i += 1) {
+  for (var i = 0; i < LOOKS_of_dormand_prince + 1; i += 1) {
     var [before, here, after] = [
       Math.max(i - 1, 0),
       values[i][guard],
-      py.min(i + 1, LOOKS_of_dormand_prince)
+      Math.min(i + 1, LOOKS_of_dormand_prince)
     ];
     if (here > 0.0) {
       if (values[after][guard] <= 0.0) {
         return true;
       }
       if (here <= values[before][guard] && here <= values[after][guard]) {
-        for (var j = Math.max(i - 2, 0); j < py.add(py.min(i + 2, LOOKS_of_dormand_prince), 1); j += 1) {
+        for (var j = Math.max(i - 2, 0); j < Math.min(i + 2, LOOKS_of_dormand_prince) + 1; j += 1) {
           if (2.0 * here < values[j][guard]) {
             return true;
           }
@@ -9137,13 +9114,13 @@ function may_fall(values, guard) {
 }
 
 /** Whether a guard that starts at zero, or by rounding below, rises before the first look. */
-function rises(guards, p, powers, y, values, guard) {
-  var part = py.div(1.0, LOOKS_of_dormand_prince);
+function rises(guards, p, terms, first, y, values, guard) {
+  var part = 1.0 / LOOKS_of_dormand_prince;
   while (part > EARLIEST) {
-    part = py.mul(part, 0.5);
-    within(powers, part, y);
-    evaluate(guards, y, p, values[py.add(LOOKS_of_dormand_prince, 1)]);
-    if (values[py.add(LOOKS_of_dormand_prince, 1)][guard] > RISEN) {
+    part = part * 0.5;
+    within(terms, first, part, y);
+    evaluate(guards, y, p, values[LOOKS_of_dormand_prince + 1]);
+    if (values[LOOKS_of_dormand_prince + 1][guard] > RISEN) {
       return true;
     }
   }
@@ -9151,9 +9128,9 @@ function rises(guards, p, powers, y, values, guard) {
 }
 
 /** Whether a guard may fall in a step; values has those at its start, and room for the other looks. */
-function suspect(guards, p, powers, y, values) {
-  for (var look = 1; look < py.add(LOOKS_of_dormand_prince, 1); look += 1) {
-    within(powers, py.div(look, LOOKS_of_dormand_prince), y);
+function suspect(guards, p, terms, first, y, values) {
+  for (var look = 1; look < LOOKS_of_dormand_prince + 1; look += 1) {
+    within(terms, first, look / LOOKS_of_dormand_prince, y);
     evaluate(guards, y, p, values[look]);
   }
   var values0 = values[0];
@@ -9163,7 +9140,9 @@ function suspect(guards, p, powers, y, values) {
       return true;
     }
     if (
-      values0[guard] <= 0.0 && values1[guard] <= 0.0 && py.truth(rises(guards, p, powers, y, values, guard))
+      values0[guard] <= 0.0 && values1[guard] <= 0.0 && py.truth(
+        rises(guards, p, terms, first, y, values, guard)
+      )
     ) {
       return true;
     }
@@ -9179,7 +9158,7 @@ function suspect(guards, p, powers, y, values) {
 function advance(rates, guards, count, p, y, lost, k, span, tolerance, knots, terms, steps) {
   var size = y.length;
   var [moved, new_, place] = [py.np.empty(size), py.np.empty(size), py.np.empty(size)];
-  var values = py.np.empty([py.add(LOOKS_of_dormand_prince, 2), count]);
+  var values = py.np.empty([LOOKS_of_dormand_prince + 2, count]);
   var [time, end] = [span[0], span[1]];
   var calls = 0;
   if (span[2] === 0.0) {
@@ -9197,12 +9176,12 @@ function advance(rates, guards, count, p, y, lost, k, span, tolerance, knots, te
     evaluate(guards, y, p, values[0]);
   }
   while (time < end) {
-    if (steps === terms.length) {
+    if (steps === knots.length - 1) {
       return [steps, calls, FULL];
     }
     var [error, tries] = [2.0, 0];
     while (!(error < 1.0)) {
-      if (!(span[2] > py.mul(NOTHING, Math.abs(time)))) {
+      if (!(span[2] > NOTHING * Math.abs(time))) {
         return [steps, calls, STUCK_of_dormand_prince];
       }
       var reach = Math.min(time + span[2], end);
@@ -9214,7 +9193,8 @@ function advance(rates, guards, count, p, y, lost, k, span, tolerance, knots, te
     }
     calls = calls + (12 * tries + 3);
     more_stages(rates, h, p, y, lost, k, place);
-    polynomials(h, y, new_, k, terms[steps]);
+    var first = steps * size * POWERS;
+    polynomials(h, y, new_, k, terms, first);
     var k0 = k[0];
     var k12 = k[12];
     for (var i = 0; i < size; i += 1) {
@@ -9226,7 +9206,7 @@ function advance(rates, guards, count, p, y, lost, k, span, tolerance, knots, te
     steps = steps + 1;
     knots[steps] = time;
     span[0] = time;
-    if (count > 0 && py.truth(suspect(guards, p, terms[steps - 1], place, values))) {
+    if (count > 0 && py.truth(suspect(guards, p, terms, first, place, values))) {
       return [steps, calls, SUSPECT];
     }
   }
@@ -9532,7 +9512,7 @@ function combined_of_dormand_prince(y, k) {
   }
 }
 
-function polynomials(h, y, new_, k, powers) {
+function polynomials(h, y, new_, k, terms, first) {
   var k0 = k[0];
   var k10 = k[10];
   var k11 = k[11];
@@ -9552,7 +9532,6 @@ function polynomials(h, y, new_, k, powers) {
   var k7 = k[7];
   var k8 = k[8];
   var k9 = k[9];
-  var powers0 = powers[0];
   for (var i = 0; i < y.length; i += 1) {
     k16[i] = new_[i] - y[i];
     k17[i] = h * k0[i] - k16[i];
@@ -9613,8 +9592,8 @@ function polynomials(h, y, new_, k, powers) {
       + -39.17726167561544 * k14[i]
       + -149.72683625798564 * k15[i]
     );
-    powers0[i] = y[i];
   }
+  var at = first;
   var k16 = k[16];
   var k17 = k[17];
   var k18 = k[18];
@@ -9622,21 +9601,16 @@ function polynomials(h, y, new_, k, powers) {
   var k20 = k[20];
   var k21 = k[21];
   var k22 = k[22];
-  var powers1 = powers[1];
-  var powers2 = powers[2];
-  var powers3 = powers[3];
-  var powers4 = powers[4];
-  var powers5 = powers[5];
-  var powers6 = powers[6];
-  var powers7 = powers[7];
   for (var i = 0; i < y.length; i += 1) {
-    powers1[i] = k16[i] + k17[i];
-    powers2[i] = -1.0 * k17[i] + k18[i] + k19[i];
-    powers3[i] = -1.0 * k18[i] + -2.0 * k19[i] + k20[i] + k21[i];
-    powers4[i] = k19[i] + -2.0 * k20[i] + -3.0 * k21[i] + k22[i];
-    powers5[i] = k20[i] + 3.0 * k21[i] + -3.0 * k22[i];
-    powers6[i] = -1.0 * k21[i] + 3.0 * k22[i];
-    powers7[i] = -1.0 * k22[i];
+    terms[at] = y[i];
+    terms[at + 1] = k16[i] + k17[i];
+    terms[at + 2] = -1.0 * k17[i] + k18[i] + k19[i];
+    terms[at + 3] = -1.0 * k18[i] + -2.0 * k19[i] + k20[i] + k21[i];
+    terms[at + 4] = k19[i] + -2.0 * k20[i] + -3.0 * k21[i] + k22[i];
+    terms[at + 5] = k20[i] + 3.0 * k21[i] + -3.0 * k22[i];
+    terms[at + 6] = -1.0 * k21[i] + 3.0 * k22[i];
+    terms[at + 7] = -1.0 * k22[i];
+    at = at + POWERS;
   }
 }
 
@@ -9789,7 +9763,6 @@ function _polished(guard, parameters, advance, step, guess) {
 
 // tippetop.integrators.stepping
 const [FEW_of_stepping, WIDER, MANY] = [4, 4, 512];
-const POWERS = 8;
 const FAILURES = new py.Dict([
   [SINGULAR, "the motion is singular from the start"],
   [STUCK_of_dormand_prince, "the step size fell to nothing"]
@@ -9853,8 +9826,8 @@ class Stepping extends py.Thing {
     [this.steps, this.calls] = [0, 0];
     this.other = null;
     [this.knots, this.terms] = [
-      py.np.empty(py.add(FEW_of_stepping, 1)),
-      py.np.empty([FEW_of_stepping, POWERS, size])
+      py.np.empty(FEW_of_stepping + 1),
+      py.np.empty(FEW_of_stepping * POWERS * size)
     ];
     py.put(this.knots, 0, start[0]);
   }
@@ -9866,7 +9839,10 @@ class Stepping extends py.Thing {
   widen() {
     var more = py.sub(py.min(py.mul(WIDER, this.steps), MANY), this.steps);
     this.knots = py.np.concatenate([this.knots, py.np.empty(more)]);
-    this.terms = py.np.concatenate([this.terms, py.np.empty([more, POWERS, py.len(this.state)])]);
+    this.terms = py.np.concatenate([
+      this.terms,
+      py.np.empty(py.mul(py.mul(more, POWERS), py.len(this.state)))
+    ]);
   }
   /** Take steps until something is to be done; tell what. */
   advance(guarded = true) {
@@ -9890,7 +9866,7 @@ class Stepping extends py.Thing {
   }
   /** The arc that has been made; the next one begins. */
   arc(guard = null, failure = null) {
-    var solution = DenseSolution.of_steps(this.knots, this.terms, this.steps);
+    var solution = DenseSolution.of_steps(this.knots, this.terms, py.len(this.state), this.steps);
     var arc = new Arc(solution, py.np.array(this.state), guard, failure, this.steps, this.calls);
     py.put(this.knots, 0, this.time);
     [this.steps, this.calls] = [0, 0];
@@ -9898,19 +9874,21 @@ class Stepping extends py.Thing {
   }
   /** The guard that first falls through zero in the last step, when, and the state there. */
   fall(guards) {
-    var [last, begin, reach] = [
-      py.item(this.terms, py.sub(this.steps, 1)),
+    var [size, begin, reach] = [
+      py.len(this.state),
       py.float(py.item(this.knots, py.sub(this.steps, 1))),
       this.time
     ];
+    var first = py.mul(py.mul(py.sub(this.steps, 1), size), POWERS);
     var dense = (at) => {
-      var found = py.np.empty(py.len(this.state));
-      this.functions.within(last, py.div(at - begin, py.sub(reach, begin)), found);
+      var found = py.np.empty(size);
+      this.functions.within(this.terms, first, py.div(at - begin, py.sub(reach, begin)), found);
       return found;
     };
     var advance = (at) => {
-      return this.beside().landed(begin, last[0], at);
+      return this.beside().landed(begin, state, at);
     };
+    var state = dense(begin);
     var parameters = this.parameters;
     var known = py.enumerate(guards).map(([number, guard]) => this.functions.guard(guard, number));
     var found = first_fall(known, parameters, dense, advance, [begin, reach]);
@@ -9919,16 +9897,12 @@ class Stepping extends py.Thing {
   /** End within the last step. */
   end_at(time, state) {
     var [begin, end] = [py.item(this.knots, py.sub(this.steps, 1)), py.item(this.knots, this.steps)];
-    var [part, last, share] = [
+    var [part, last] = [
       py.div(py.sub(time, begin), py.sub(end, begin)),
-      py.item(this.terms, py.sub(this.steps, 1)),
-      1.0
+      py.mul(py.mul(this.steps, state.length), POWERS)
     ];
-    for (var power = 0; power < POWERS; power += 1) {
-      for (var i = 0; i < state.length; i += 1) {
-        last[power][i] = py.mul(last[power][i], share);
-      }
-      share = py.mul(share, part);
+    for (var number = py.sub(last, state.length * POWERS); number < last; number += 1) {
+      py.put(this.terms, number, py.mul(py.item(this.terms, number), py.pow(part, py.mod(number, POWERS))));
     }
     py.put(this.knots, this.steps, time);
     py.put(this.span, 0, time);

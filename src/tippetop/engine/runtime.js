@@ -146,7 +146,12 @@ export const np = {
     for (let i = 0; i < count; i += 1) rows[i] = wide === undefined ? new Float64Array(more) : np.empty([more, wide]);
     return rows;
   },
-  concatenate: ([a, b]) => (Array.isArray(a) ? [...a, ...b] : Float64Array.of(...a, ...b)),
+  concatenate([a, b]) {
+    const found = new Float64Array(a.length + b.length);
+    found.set(a);
+    found.set(b, a.length);
+    return found;
+  },
   zeros: (count) => new Float64Array(count),
   array: (numbers) => new Float64Array(numbers),
   full: (count, value) => new Float64Array(count).fill(value),

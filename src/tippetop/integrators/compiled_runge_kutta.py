@@ -26,11 +26,10 @@ ADVANCE = types.UniTuple(types.int64, 3)(  # type: ignore[no-untyped-call]
     types.int64,
     *[ROW] * 3,
     types.float64[:, ::1],
-    *[ROW] * 3,
-    types.float64[:, :, ::1],
+    *[ROW] * 4,
     types.int64,
 )
-WITHIN = types.void(types.float64[:, ::1], types.float64, ROW)
+WITHIN = types.void(ROW, types.int64, types.float64, ROW)
 """What the functions take: a motion's, and those of `dormand_prince`."""
 
 CALLED = """

@@ -113,9 +113,9 @@ class DenseSolution:
         return cls(np.array([time]), np.empty((0, size, 1)))
 
     @classmethod
-    def of_steps(cls, knots: Array, terms: Array, count: int) -> "DenseSolution":
-        """The first of some steps, whose polynomials have shapes (degree + 1, size)."""
-        return cls(knots[: count + 1].copy(), np.swapaxes(terms[:count], 1, 2).copy())
+    def of_steps(cls, knots: Array, terms: Array, size: int, count: int) -> "DenseSolution":
+        """The first of some steps, with all coefficients in a row."""
+        return cls(knots[: count + 1].copy(), terms.reshape(len(knots) - 1, size, -1)[:count].copy())
 
     @classmethod
     def of_rows(

@@ -39,6 +39,9 @@ reach there to have risen: less is rounding."""
 ROWS = 23
 """Stages of a step, 16, and what its polynomials are made of."""
 
+POWERS = 8
+"""Coefficients of each of a step's polynomials."""
+
 LOOKS = 8
 """Parts of a step at whose ends guards are looked at."""
 
@@ -97,12 +100,14 @@ def first_step(
     return min(100.0 * trial, found, span)
 
 
-def within(powers: Array, part: float, y: Array) -> None:
-    """Put the state at a part of a step in y."""
+def within(terms: Array, first: int, part: float, y: Array) -> None:
+    """Put the state at a part of a step, whose coefficients are from `first` on, in y."""
+    at = first
     for i in range(len(y)):
-        high = powers[4, i] + part * (powers[5, i] + part * (powers[6, i] + part * powers[7, i]))
-        low = powers[2, i] + part * (powers[3, i] + part * high)
-        y[i] = powers[0, i] + part * (powers[1, i] + part * low)
+        high = terms[at + 4] + part * (terms[at + 5] + part * (terms[at + 6] + part * terms[at + 7]))
+        low = terms[at + 2] + part * (terms[at + 3] + part * high)
+        y[i] = terms[at] + part * (terms[at + 1] + part * low)
+        at += POWERS
 
 
 def may_fall(values: Array, guard: int) -> bool:
@@ -119,27 +124,31 @@ def may_fall(values: Array, guard: int) -> bool:
     return False
 
 
-def rises(guards: Compiled, p: Array, powers: Array, y: Array, values: Array, guard: int) -> bool:
+def rises(guards: Compiled, p: Array, terms: Array, first: int, y: Array, values: Array, guard: int) -> bool:
     """Whether a guard that starts at zero, or by rounding below, rises before the first look."""
     part = 1.0 / LOOKS
     while part > EARLIEST:
         part *= 0.5
-        within(powers, part, y)
+        within(terms, first, part, y)
         evaluate(guards, y, p, values[LOOKS + 1])
         if values[LOOKS + 1, guard] > RISEN:
             return True
     return False
 
 
-def suspect(guards: Compiled, p: Array, powers: Array, y: Array, values: Array) -> bool:
+def suspect(guards: Compiled, p: Array, terms: Array, first: int, y: Array, values: Array) -> bool:
     """Whether a guard may fall in a step; values has those at its start, and room for the other looks."""
     for look in range(1, LOOKS + 1):
-        within(powers, look / LOOKS, y)
+        within(terms, first, look / LOOKS, y)
         evaluate(guards, y, p, values[look])
     for guard in range(len(values[0])):
         if may_fall(values, guard):
             return True
-        if values[0, guard] <= 0.0 and values[1, guard] <= 0.0 and rises(guards, p, powers, y, values, guard):
+        if (
+            values[0, guard] <= 0.0
+            and values[1, guard] <= 0.0
+            and rises(guards, p, terms, first, y, values, guard)
+        ):
             return True
     for guard in range(len(values[0])):
         values[0, guard] = values[LOOKS, guard]
@@ -178,7 +187,8 @@ def advance(
     tolerance
         Relative and absolute error per step.
     knots, terms
-        Room for the ends of steps, shape (n + 1,), and for their polynomials, shape (n, 8, size).
+        Room for the ends of n steps, shape (n + 1,), and for the coefficients of their polynomials, those of
+        each number in a row, shape (n * size * `POWERS`,).
     steps
         How many are there.
 
@@ -202,7 +212,7 @@ def advance(
     if count > 0:
         evaluate(guards, y, p, values[0])
     while time < end:
-        if steps == len(terms):
+        if steps == len(knots) - 1:
             return steps, calls, FULL
         error, tries = 2.0, 0
         while not error < 1.0:
@@ -216,7 +226,8 @@ def advance(
             span[2] = h * factor_for(error, tries)
         calls += 12 * tries + 3
         more_stages(rates, h, p, y, lost, k, place)
-        polynomials(h, y, new, k, terms[steps])
+        first = steps * size * POWERS
+        polynomials(h, y, new, k, terms, first)
         for i in range(size):
             lost[i] = moved[i] - (new[i] - y[i])
             y[i] = new[i]
@@ -225,7 +236,7 @@ def advance(
         steps += 1
         knots[steps] = time
         span[0] = time
-        if count > 0 and suspect(guards, p, terms[steps - 1], place, values):
+        if count > 0 and suspect(guards, p, terms, first, place, values):
             return steps, calls, SUSPECT
     return steps, calls, REACHED
 
@@ -247,16 +258,18 @@ def written_out() -> str:
         *(f"k[{n}, i] = {_sum(row)}" for n, row in enumerate((DOP853.E5, DOP853.E3), start=16))
     )
     # Of the polynomials x, x (1 - x), x^2 (1 - x), ... the ends of the step give the first three.
-    lines.append("def polynomials(h: float, y: Array, new: Array, k: Array, powers: Array):")
+    lines.append("def polynomials(h: float, y: Array, new: Array, k: Array, terms: Array, first: int):")
     lines += _for_each(
         "k[16, i] = new[i] - y[i]",
         "k[17, i] = h * k[0, i] - k[16, i]",
         "k[18, i] = 2.0 * k[16, i] - h * (k[0, i] + k[12, i])",
         *(f"k[{n}, i] = h * ({_sum(row)})" for n, row in enumerate(DOP853.D, start=19)),
-        "powers[0, i] = y[i]",
     )
+    lines.append("    at = first")
     rows = enumerate(_powers()[1:], start=1)
-    lines += _for_each(*(f"powers[{n}, i] = {_sum(row, 16)}" for n, row in rows))
+    lines += _for_each(
+        "terms[at] = y[i]", *(f"terms[at + {n}] = {_sum(row, 16)}" for n, row in rows), "at += POWERS"
+    )
     return "\n".join(lines)
 
 

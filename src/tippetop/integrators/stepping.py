@@ -7,15 +7,12 @@ import numpy as np
 
 from tippetop.integrators.base import Arc, Array, Guard, Motion
 from tippetop.integrators.dense import DenseSolution
-from tippetop.integrators.dormand_prince import FULL, ROWS, SINGULAR, STUCK, SUSPECT
+from tippetop.integrators.dormand_prince import FULL, POWERS, ROWS, SINGULAR, STUCK, SUSPECT
 from tippetop.integrators.falls import first_fall
 from tippetop.mechanics.vectors import Scalar
 
 FEW, WIDER, MANY = 4, 4, 512
 """Steps for which there is room at first, how many times as many there is room for then, and in an arc."""
-
-POWERS = 8
-"""Coefficients of each of a step's polynomials."""
 
 FAILURES = {
     SINGULAR: "the motion is singular from the start",
@@ -28,7 +25,7 @@ class Machinery(NamedTuple):
     """What a motion is followed with."""
 
     advance: Callable[..., tuple[int, int, int]]
-    within: Callable[[Array, float, Array], None]
+    within: Callable[[Array, int, float, Array], None]
     """Of `dormand_prince`."""
     rates: Any
     guards: Any
@@ -93,7 +90,7 @@ class Stepping:
         self.stages, self.span = np.empty((ROWS, size)), np.array([start[0], end, 0.0])
         self.steps, self.calls = 0, 0
         self.other: Stepping | None = None
-        self.knots, self.terms = np.empty(FEW + 1), np.empty((FEW, POWERS, size))
+        self.knots, self.terms = np.empty(FEW + 1), np.empty(FEW * POWERS * size)
         self.knots[0] = start[0]
 
     @property
@@ -105,7 +102,7 @@ class Stepping:
         """Make room for more steps."""
         more = min(WIDER * self.steps, MANY) - self.steps
         self.knots = np.concatenate([self.knots, np.empty(more)])
-        self.terms = np.concatenate([self.terms, np.empty((more, POWERS, len(self.state)))])
+        self.terms = np.concatenate([self.terms, np.empty(more * POWERS * len(self.state))])
 
     def advance(self, *, guarded: bool = True) -> int:
         """Take steps until something is to be done; tell what."""
@@ -129,7 +126,7 @@ class Stepping:
 
     def arc(self, guard: str | None = None, failure: str | None = None) -> Arc:
         """The arc that has been made; the next one begins."""
-        solution = DenseSolution.of_steps(self.knots, self.terms, self.steps)
+        solution = DenseSolution.of_steps(self.knots, self.terms, len(self.state), self.steps)
         arc = Arc(solution, np.array(self.state), guard, failure, self.steps, self.calls)
         self.knots[0] = self.time
         self.steps, self.calls = 0, 0
@@ -137,15 +134,18 @@ class Stepping:
 
     def fall(self, guards: Sequence[Guard]) -> tuple[Guard, float, Array] | None:
         """The guard that first falls through zero in the last step, when, and the state there."""
-        last, begin, reach = self.terms[self.steps - 1], float(self.knots[self.steps - 1]), self.time
+        size, begin, reach = len(self.state), float(self.knots[self.steps - 1]), self.time
+        first = (self.steps - 1) * size * POWERS
 
         def dense(at: float) -> Array:
-            found = np.empty(len(self.state))
-            self.functions.within(last, (at - begin) / (reach - begin), found)
+            found = np.empty(size)
+            self.functions.within(self.terms, first, (at - begin) / (reach - begin), found)
             return found
 
         def advance(at: float) -> Array:
-            return self.beside().landed(begin, last[0], at)
+            return self.beside().landed(begin, state, at)
+
+        state = dense(begin)
 
         parameters: Any = self.parameters
         known = [self.functions.guard(guard, number) for number, guard in enumerate(guards)]
@@ -155,11 +155,9 @@ class Stepping:
     def end_at(self, time: float, state: Array) -> None:
         """End within the last step."""
         begin, end = self.knots[self.steps - 1], self.knots[self.steps]
-        part, last, share = (time - begin) / (end - begin), self.terms[self.steps - 1], 1.0
-        for power in range(POWERS):
-            for i in range(len(state)):
-                last[power, i] *= share
-            share *= part
+        part, last = (time - begin) / (end - begin), self.steps * len(state) * POWERS
+        for number in range(last - len(state) * POWERS, last):
+            self.terms[number] *= part ** (number % POWERS)
         self.knots[self.steps] = time
         self.span[0] = time
         self.state = state
