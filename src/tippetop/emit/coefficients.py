@@ -1,20 +1,13 @@
 """Coefficients of power series as nodes: what Taylor's method computes, recorded number by number."""
 
-from collections.abc import Sequence
 from typing import Any
 
 from tippetop.emit.graph import Node
+from tippetop.mechanics.series import PlainArithmetic
 
 
-class NodeArithmetic:
+class NodeArithmetic(PlainArithmetic):
     """Coefficients that are nodes, or numbers."""
-
-    def total(self, terms: Sequence[Any]) -> Any:
-        """Sum of terms, of neighbours first: shorter chains, which processors are faster with."""
-        while len(terms) > 1:
-            pairs = zip(terms[::2], terms[1::2], strict=False)
-            terms = [a + b for a, b in pairs] + list(terms[len(terms) & ~1 :])
-        return terms[0]
 
     def least(self, a: Any, b: Any) -> Any:
         """The smaller of two; the second where one is not a number."""

@@ -54,24 +54,33 @@ SPELLINGS = {
 NEED = """\
 %need = fcmp une {v} {0}, zeroinitializer
   %somewhere = call i1 @llvm.vector.reduce.or.v{n}i1(<{n} x i1> %need)
-  br i1 %somewhere, label %rare, label %{end}
+  br i1 %somewhere, label %rare, label %rest
 rare:"""
 RARE = "{t}_rare = select <{n} x i1> %need, {v} {1}, {v} {2}"
-EITHER = "{t} = phi {v} [ {2}, %{begin} ], [ {t}_rare, %rare ]"
+EITHER = "{t} = phi {v} [ {2}, %ready ], [ {t}_rare, %rare ]"
 """What is computed only where one of the launches has need of it: how that begins, and what it makes."""
+
+PART = 400
+"""Operations a block: for thousands in one, LLVM takes twice as long to find registers."""
+
+BLOCK = """\
+br i1 %any, label %{name}, label %none
+{name}:"""
 
 FRAME = """\
 define void @{name}(ptr noalias %y, ptr noalias %p, ptr noalias %out, i64 %count) {{
 entry:
   %any = icmp ult i64 0, {count}
-  br i1 %any, label %{begin}, label %done
-{begin}:
-  %first = phi i64 [ 0, %entry ], [ %next, %{end} ]
+  br i1 %any, label %launches, label %none
+launches:
+  %first = phi i64 [ 0, %entry ], [ %next, %last ]
   {body}
+  br label %last
+last:
   %next = add i64 %first, {n}
   %more = icmp ult i64 %next, {count}
-  br i1 %more, label %{begin}, label %done
-done:
+  br i1 %more, label %launches, label %none
+none:
   ret void
 }}
 """
@@ -79,19 +88,24 @@ done:
 AGAIN = """\
 define i64 @{name}(ptr noalias %y, ptr noalias %p, ptr noalias %out, double %enough, i64 %most) {{
 entry:
-  br label %{begin}
-{begin}:
-  %first = phi i64 [ 0, %entry ], [ 0, %{end} ]
-  %turns = phi i64 [ 0, %entry ], [ %next, %{end} ]
+  %any = icmp ult i64 0, %most
+  br i1 %any, label %turn, label %none
+turn:
+  %first = phi i64 [ 0, %entry ], [ 0, %last ]
+  %turns = phi i64 [ 0, %entry ], [ %next, %last ]
   {body}
+  br label %last
+last:
   %changed = extractelement {v} {last}, i64 0
   %next = add i64 %turns, 1
   %left = icmp ult i64 %next, %most
   %moves = fcmp oge double %changed, %enough
   %more = and i1 %left, %moves
-  br i1 %more, label %{begin}, label %done
+  br i1 %more, label %turn, label %done
 done:
   ret i64 %next
+none:
+  ret i64 0
 }}
 """
 
@@ -107,7 +121,7 @@ def llvm_source(functions: Mapping[str, Recorded], abreast: int, *, again: bool 
     """
     frame, vector = AGAIN if again else FRAME, f"<{abreast} x double>"
     count = abreast if again else "%count" if abreast > 1 else 1
-    words = {"v": vector, "n": abreast, "r": ROUNDING, "count": count, "begin": "launches"}
+    words = {"v": vector, "n": abreast, "r": ROUNDING, "count": count}
 
     def name_of(node: graph.Node) -> str:
         if node.name != graph.CONSTANT:
@@ -123,8 +137,6 @@ def llvm_source(functions: Mapping[str, Recorded], abreast: int, *, again: bool 
     parts.append(f"declare i1 @llvm.vector.reduce.or.v{abreast}i1(<{abreast} x i1>)\n")
     for name, recorded in functions.items():
         known = {node.place: name_of(node) for node in recorded.nodes}
-        branches = any(node.name == graph.RARELY for node in recorded.nodes)
-        words["end"] = "rest" if branches else words["begin"]
         lines = spelt(recorded, known, words)
         replaced = recorded.size if again else 0
         for number, node in enumerate(recorded.outputs):
@@ -150,11 +162,20 @@ def spelt(recorded: Recorded, known: Mapping[int, str], words: Mapping[str, obje
         return text.format(*operands, **own, **words)
 
     always, seldom, either, rest = parted(recorded)
-    lines = list(map(line, always))
+    lines = in_blocks(list(map(line, always)), "part")
     if either:
-        lines += [line(either[0], NEED), *map(line, seldom), *(line(node, RARE) for node in either)]
-        lines += ["br label %rest", "rest:", *(line(node, EITHER) for node in either), *map(line, rest)]
+        lines += ["br label %ready", "ready:", line(either[0], NEED), *map(line, seldom)]
+        lines += [*(line(node, RARE) for node in either), "br label %rest", "rest:"]
+        lines += [*(line(node, EITHER) for node in either), *in_blocks(list(map(line, rest)), "later")]
     return lines
+
+
+def in_blocks(lines: Sequence[str], name: str) -> list[str]:
+    """Lines with ends of blocks between them."""
+    found = list(lines[:PART])
+    for first in range(PART, len(lines), PART):
+        found += [BLOCK.format(name=f"{name}{first}"), *lines[first : first + PART]]
+    return found
 
 
 def parted(recorded: Recorded) -> tuple[Sequence[graph.Node], ...]:

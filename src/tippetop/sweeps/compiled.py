@@ -34,7 +34,7 @@ class CompiledStepper:
         """The polynomials of the steps."""
         layout, order = self.layout, self.order
         if self._jet is None:
-            self._jet = _compiled(record(self._jet_rows, layout.size, layout.parameters))
+            self._jet = _compiled(record(self._jet_rows, layout.size, layout.parameters), effort=0)
         count = before.shape[1]
         start, given = padded(before[: layout.size]), padded(numbers[: layout.parameters])
         cut = layout.size * (order + 1)
@@ -52,8 +52,8 @@ class CompiledStepper:
         return rows + [guard[k] for guard in guards for k in range(self.order)]
 
 
-def _compiled(recorded: Recorded) -> Compiled:
-    return machine_code({"made": recorded}, ABREAST)["made"]
+def _compiled(recorded: Recorded, **options: int) -> Compiled:
+    return machine_code({"made": recorded}, ABREAST, **options)["made"]
 
 
 def padded(rows: Array) -> Array:
