@@ -174,3 +174,14 @@ def test_some_polynomials_have_bounds_of_their_own():
     some = every.some(np.array([2, 0]), sign=-1.0, shift=5.0)
     assert [bound.tolist() for bound in some.bounds] == [[1.0, 3.5], [3.0, 4.5]]
     assert some.sag.tolist() == every.sag[[2, 0]].tolist()
+
+
+def test_so_many_that_they_are_taken_in_parts_are_as_one_by_one():
+    random = np.random.default_rng(3)
+    terms, span = random.normal(size=(8, 600)), random.uniform(0.5, 2.0, 600)
+    many, middle = Polynomials(terms, span), np.array([0, 255, 256, 511, 512, 599])
+    few = Polynomials(terms[:, middle], span[middle])
+    for name in ("values", "slopes", "bending", "sag"):
+        assert getattr(many, name)[..., middle] == pytest.approx(getattr(few, name), rel=1e-14, abs=1e-14)
+    assert many.values.shape == (LOOKS + 1, 600)
+    assert few.values[LOOKS] == pytest.approx(np.sum(few.unit, axis=0), rel=1e-13, abs=1e-13)

@@ -20,6 +20,9 @@ LOOKS = 32
 FEW = 4
 """So many polynomials at most are taken one by one in plain numbers, quicker than arrays so short."""
 
+TOGETHER = 256
+"""Columns that are multiplied at once: of a few hundred more, threads cost several times what they save."""
+
 TURNS = 60
 """Improvements of a zero at most: Newton's where they stay in the bracket, halvings where they do not."""
 
@@ -63,27 +66,23 @@ class Polynomials:
         """How far a polynomial can go beyond its values at Gauss's eight points, shape (n,)."""
         k = np.arange(len(self.unit))
         # Between two of them by interval^2 / 8 max |f''|, and beyond the outer ones by distance max |f'|.
-        found: Array = np.maximum(k * (k - 1) * (0.19**2 / 8.0), k * 0.02) @ np.abs(self.unit)
-        return found
+        return times(np.maximum(k * (k - 1) * (0.19**2 / 8.0), k * 0.02), np.abs(self.unit))
 
     @cached_property
     def values(self) -> Array:
         """Values at the looks, shape (LOOKS + 1, n)."""
-        found: Array = _places(len(self.unit)) @ self.unit
-        return found
+        return times(_places(len(self.unit)), self.unit)
 
     @property
     def slopes(self) -> Array:
         """First derivatives at the looks, over the interval, shape (LOOKS + 1, n)."""
-        found: Array = _places(len(self.unit) - 1) @ (self.unit[1:] * np.arange(1, len(self.unit))[:, None])
-        return found
+        return times(_places(len(self.unit) - 1), self.unit[1:] * np.arange(1, len(self.unit))[:, None])
 
     @cached_property
     def bending(self) -> Array:
         """How far a polynomial can lie below two neighbouring looks: interval^2 / 8 max |f''|, shape (n,)."""
         k = np.arange(len(self.unit))
-        found: Array = (k * (k - 1)) @ np.abs(self.unit) / (8.0 * LOOKS**2)
-        return found
+        return times(k * (k - 1) / (8.0 * LOOKS**2), np.abs(self.unit))
 
     @cached_property
     def lowest(self) -> Array:
@@ -143,7 +142,7 @@ class Polynomials:
         place, value = best / LOOKS, self.lowest.copy()
         # At an end away from which it rises there is nothing to find.
         rises = (best == 0) & (self.unit[1] >= 0.0)
-        rises |= (best == LOOKS) & (np.arange(len(self.unit)) @ self.unit <= 0.0)
+        rises |= (best == LOOKS) & (times(np.arange(float(len(self.unit))), self.unit) <= 0.0)
         dips = np.flatnonzero(~rises)
         if len(dips):
             # The parabola through the least look and its neighbours is near it.
@@ -162,6 +161,15 @@ class Polynomials:
         found = Polynomials.of_unit(-self.unit, self.span)
         found.values, found.bending = -self.values, self.bending
         return found
+
+
+def times(matrix: Array, columns: Array) -> Array:
+    """A matrix, or a row, times columns: so few at once that NumPy's library has no use for threads."""
+    count = columns.shape[1]
+    if count <= TOGETHER:
+        return np.asarray(matrix @ columns)
+    parts = [matrix @ columns[:, first : first + TOGETHER] for first in range(0, count, TOGETHER)]
+    return np.concatenate(parts, axis=-1)
 
 
 def least_of_all(polynomials: "Polynomials") -> float:

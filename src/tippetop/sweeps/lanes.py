@@ -21,8 +21,9 @@ from tippetop.sweeps.slots import Slots
 from tippetop.sweeps.stride import LANES, Stepper
 from tippetop.theory.prediction import is_held
 
-LOST = 1.0
-"""Steps of all lanes that are lost to waiting, in all, before the lanes that wait are looked at."""
+LOST = 4.0
+"""Steps of all lanes that are lost to waiting, in all, before the lanes that wait are looked at: to look at
+some costs Python as much as several steps of all."""
 
 WINDOW = 64
 """Steps between notes of the states, from which a part of the run can be done again."""
