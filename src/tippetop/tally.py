@@ -25,7 +25,7 @@ class Tally:
     """What is found on the way of one launch, block by block."""
 
     def __init__(self) -> None:
-        self._tips: list[tuple[Polynomials, Array]] = []
+        self._tips: list[tuple[Polynomials, Array, Array, Array]] = []
         self._airborne: list[tuple[float, float, float]] = []
         self._least_force, self._down, self._up, self._highest = np.inf, np.inf, -np.inf, 0.0
         self._turned, self._landed = np.nan, True
@@ -69,14 +69,12 @@ class Tally:
         """Take in the motion of the tip of the axis."""
         tip = Polynomials.of_unit(np.ascontiguousarray(group.terms[:, 2].T), group.spans)
         seen = Rates(*group.nodes).axis
-        self._tips.append((tip, starts))
-        least, most = seen.min(axis=0), seen.max(axis=0)
-        lower = tip.some(np.flatnonzero(least - tip.sag <= least.min()))
-        upper = tip.some(np.flatnonzero(most + tip.sag >= most.max()), sign=-1.0)
-        self._down = min(self._down, least_of_all(lower))
-        self._up = max(self._up, -least_of_all(upper))
-        near = (least - tip.sag <= 0.0) & (most + tip.sag >= 0.0)
-        self._turned = _first(self._turned, tip, starts, near, turning_time)
+        least, most, sag = seen.min(axis=0), seen.max(axis=0), tip.sag
+        low, high = least - sag, most + sag
+        self._tips.append((tip, starts, low, high))
+        self._down = min(self._down, least_of_all(tip.some(np.flatnonzero(low <= least.min()))))
+        self._up = max(self._up, -least_of_all(tip.some(np.flatnonzero(high >= most.max()), sign=-1.0)))
+        self._turned = _first(self._turned, tip, starts, (low <= 0.0) & (high >= 0.0), turning_time)
 
     def _rise(self, group: ModeSteps) -> None:
         """Take in the height of the centre of mass in flights."""
@@ -127,8 +125,7 @@ class Tally:
     def arrival(self, low: Scalar, high: Scalar) -> float:
         """First time at which n_z is between `low` and `high`; nan if it never is."""
         found = float(np.nan)
-        for tip, starts in self._tips:
-            least, most = tip.bounds
+        for tip, starts, least, most in self._tips:
             near = (least <= high) & (most >= low)
             found = _first(found, tip, starts, near, lambda some: arrival_time(some, low, high))
         return found

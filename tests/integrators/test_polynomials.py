@@ -105,7 +105,7 @@ def test_a_dip_between_an_end_and_the_next_look_is_found():
         assert Polynomials(course, ones()).refined_least()[1][0] == pytest.approx(-1e-4, rel=1e-12)
 
 
-# --- bounds -------------------------------------------------------------------------------------------------
+# --- sag ----------------------------------------------------------------------------------------------------
 
 ANY_TERMS = st.lists(st.floats(-1.0, 1.0, allow_subnormal=False), min_size=1, max_size=22)
 PLACES = np.linspace(0.0, 1.0, 1001)
@@ -115,19 +115,6 @@ def values_of(terms, span):
     """Values all over the interval, and rounding in them."""
     values = np.polynomial.polynomial.polyval(PLACES * span, terms)
     return values, 1e-14 * np.abs(np.array(terms) * span ** np.arange(len(terms))).sum()
-
-
-@given(ANY_TERMS, st.floats(0.1, 1.5))
-def test_no_polynomial_crosses_its_bounds(terms, span):
-    low, high = Polynomials(np.array(terms)[:, None], ones(span)).bounds
-    values, fuzz = values_of(terms, span)
-    assert low[0] - fuzz <= values.min() <= values.max() <= high[0] + fuzz
-
-
-@pytest.mark.parametrize("signs", [(1, 1, 1), (1, -1, -1)])
-def test_bounds_are_reached_where_all_terms_pull_the_same_way(signs):
-    low, high = Polynomials(np.array(signs, dtype=float)[:, None], ones()).bounds
-    assert (low[0], high[0]) == (-1.0, 3.0)
 
 
 def assert_within_sag(terms, span=1.0):
@@ -166,13 +153,12 @@ def test_sag_of_a_line_is_what_lies_beyond_the_points():
     assert NODES[0] <= sag <= 1.02 * NODES[0]
 
 
-def test_some_polynomials_have_bounds_of_their_own():
+def test_some_polynomials_are_told_of_themselves():
     terms = np.array([[1.0, 2.0, 3.0], [0.5, -0.5, 0.25]])
     every = Polynomials(terms, np.array([1.0, 2.0, 4.0]))
-    assert every.bounds[0].tolist() == [0.5, 1.0, 2.0]
-    assert every.sag.shape == (3,)
+    assert every.sag.shape == every.lowest.shape == (3,)
     some = every.some(np.array([2, 0]), sign=-1.0, shift=5.0)
-    assert [bound.tolist() for bound in some.bounds] == [[1.0, 3.5], [3.0, 4.5]]
+    assert some.lowest.tolist() == [1.0, 3.5]
     assert some.sag.tolist() == every.sag[[2, 0]].tolist()
 
 

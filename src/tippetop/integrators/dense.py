@@ -31,7 +31,7 @@ programs."""
 FEW = 64
 """Numbers whose powers are made one after another, and not all at once."""
 
-MANY = 1024
+MANY = 4096
 """Polynomials that are evaluated at a time, so that their coefficients stay in the processor's cache."""
 
 KEPT = 2**24
@@ -160,13 +160,14 @@ class DenseSolution:
 
     @classmethod
     def in_time(cls, knots: ArrayLike, terms: ArrayLike) -> "DenseSolution":
-        """The solution whose coefficients are in powers of the time since the start of a step."""
+        """The solution by coefficients in powers of the time since a step's start, an array that it takes."""
         ends, known = np.asarray(knots, dtype=float), np.asarray(terms, dtype=float)
         with np.errstate(over="ignore"):  # the step of a motion that stands still has no bound
             lengths = powers(ends[1:] - ends[:-1], known.shape[2])
         if not np.isfinite(lengths[:, -1]).all():
             lengths = np.nan_to_num(lengths)
-        return cls(ends, known * lengths[:, None, :])
+        known *= lengths[:, None, :]
+        return cls(ends, known)
 
     @classmethod
     def fitted(

@@ -1,7 +1,6 @@
 """First zeros and extremes of many polynomials at once, each on its own interval from zero."""
 
 from collections.abc import Callable, Sequence
-from copy import copy
 from functools import cached_property, lru_cache
 from typing import Any, TypeAlias
 
@@ -55,13 +54,7 @@ class Polynomials:
         found.span, found.unit = span, unit
         return found
 
-    @cached_property
-    def bounds(self) -> tuple[Array, Array]:
-        """Numbers below and above which no polynomial goes, each of shape (n,)."""
-        reach = np.abs(self.unit[1:]).sum(axis=0)
-        return self.unit[0] - reach, self.unit[0] + reach
-
-    @cached_property
+    @property
     def sag(self) -> Array:
         """How far a polynomial can go beyond its values at Gauss's eight points, shape (n,)."""
         k = np.arange(len(self.unit))
@@ -99,12 +92,9 @@ class Polynomials:
         self, which: NDArray[np.intp], sign: Array | float = 1.0, shift: Array | float = 0.0
     ) -> "Polynomials":
         """Some of the polynomials, times signs and plus numbers."""
-        chosen = copy(self)
-        for known in ("values", "lowest", "bending", "bounds", "sag"):
-            chosen.__dict__.pop(known, None)
-        chosen.span, chosen.unit = self.span[which], sign * self.unit[:, which]
-        chosen.unit[0] += shift
-        return chosen
+        unit = sign * self.unit.take(which, axis=1)
+        unit[0] += shift
+        return Polynomials.of_unit(unit, self.span.take(which))
 
     def first_fall(self, from_above: bool = False) -> Array:
         """First times at which the polynomials fall to zero from above, nan where they do not, shape (n,).

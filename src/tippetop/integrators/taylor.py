@@ -53,7 +53,7 @@ class Taylor:
         self, motion: Motion, parameters: Sequence[float], start: tuple[float, Array], end: float
     ) -> Iterator[Arc]:
         """Follow the motion; see `tippetop.integrators.base.Integrator`."""
-        compiled = _compiled(motion, self.tolerance, LONG)
+        compiled = _compiled(motion, self.tolerance)
         while start[0] < end:
             with compiled.lock:
                 run = compiled.integrator
@@ -81,7 +81,7 @@ class Taylor:
 
     def expansion(self, motion: Motion, parameters: Sequence[float], degree: int, count: int) -> Expansion:
         """The coefficients of the first numbers of a motion's solutions in powers of time, compiled."""
-        compiled = _compiled(motion, math.exp(3.0 - 2.0 * degree), 1)
+        compiled = _compiled(motion, math.exp(3.0 - 2.0 * degree))
         numbers = np.array(parameters)
         return lambda start: compiled.expanded(start, numbers, count)
 
@@ -91,31 +91,27 @@ class Taylor:
 
 
 class _Compiled:
-    """An integrator, room for the coefficients of some steps, and a lock that both are used under."""
+    """An integrator, and a lock that it is used under."""
 
-    def __init__(self, integrator: Any, room: int) -> None:
+    def __init__(self, integrator: Any) -> None:
         self.integrator, self.lock = integrator, threading.Lock()
         self._coefficients, self._state, self._parameters = integrator.tc, integrator.state, integrator.pars
-        self._terms = np.empty((room, *self._coefficients.shape))
-        # A step's coefficients are copied in a third of the time that arrays need.
-        self._rows = [row.data for row in self._terms.reshape(room, -1)]
-        self._step = self._coefficients.reshape(-1).data
 
     def advance(self, end: float) -> tuple[DenseSolution, Any]:
-        """Take as many steps as there is room for: for half the price of heyoka's continuous output."""
-        step, room, knots = self._step, iter(self._rows), array("d", [self.integrator.time])
-        note = knots.append
+        """Take an arc's steps: for half the price of heyoka's continuous output."""
+        shape, terms, knots = self._coefficients.shape, bytearray(), array("d", [self.integrator.time])
+        # Bytes are copied in a third of the time that arrays need.
+        step, keep, note = self._coefficients.reshape(-1).data, terms.extend, knots.append
 
         def take(run: Any) -> bool:
-            next(room)[:] = step
+            keep(step)
             note(run.time)
             return True
 
-        most = len(self._rows)
-        outcome, *_ = self.integrator.propagate_until(end, max_steps=most, write_tc=True, callback=take)
+        outcome, *_ = self.integrator.propagate_until(end, max_steps=LONG, write_tc=True, callback=take)
         if outcome == hy.taylor_outcome.time_limit:
             knots[-1] = end
-        return DenseSolution.in_time(np.array(knots), self._terms[: len(knots) - 1]), outcome
+        return DenseSolution.in_time(np.array(knots), np.frombuffer(terms).reshape(-1, *shape)), outcome
 
     def expanded(self, start: Sequence[float], parameters: Array, count: int) -> Array:
         """Coefficients of the first numbers of the solution about its start."""
@@ -127,7 +123,7 @@ class _Compiled:
 
 
 @lru_cache(maxsize=32)
-def _compiled(motion: Motion, tolerance: float, room: int) -> _Compiled:
+def _compiled(motion: Motion, tolerance: float) -> _Compiled:
     """Compile the equations and the guards, or fetch them from the cache across processes."""
     state, parameters = _symbols(motion.size, motion.parameters)
     rates = [hy.expression(rate) for rate in motion.rates(state, parameters)]
@@ -143,7 +139,7 @@ def _compiled(motion: Motion, tolerance: float, room: int) -> _Compiled:
             compact_mode=not motion.lasting,
         )
 
-    return _Compiled(_kept(make, (rates, guards, tolerance, motion.lasting)), room)
+    return _Compiled(_kept(make, (rates, guards, tolerance, motion.lasting)))
 
 
 @lru_cache(maxsize=64)
