@@ -107,7 +107,7 @@ def compiled_step(kind: Kind, ending: Vanishing) -> tuple[Iteration, Iteration]:
 
     given = layout.given + kind.numbers + len(CONSTANTS) // STAGES
     return (
-        iterated(better, layout.unknowns, given, STAGES),
+        iterated(better, layout.size, given, STAGES),
         iterated(terms, layout.size, 1 + len(TERMS) // STAGES, STAGES),
     )
 
@@ -115,20 +115,18 @@ def compiled_step(kind: Kind, ending: Vanishing) -> tuple[Iteration, Iteration]:
 @lru_cache(maxsize=64)
 def machinery_of(top: Top, ending: Vanishing) -> _Machinery:
     """What steps of a top are made with."""
-    layout, numbers = StepRows.of(ending), rows_of(top.numbers)
-    given = room(layout.given * STAGES + len(numbers) + len(CONSTANTS))
-    put_from(given, layout.given * STAGES, [*numbers, *CONSTANTS])
+    first, numbers = StepRows.of(ending).given, top.numbers
+    given = room((first + len(numbers)) * STAGES + len(CONSTANTS))
+    put_rows(given, first, numbers, STAGES)
+    put_from(given, (first + len(numbers)) * STAGES, CONSTANTS)
     measured = room(STAGES + len(TERMS))
     put_from(measured, STAGES, TERMS)
     return _Machinery(*compiled_step(top.kind, ending), given, measured)
 
 
-def rows_of(numbers: Sequence[float]) -> list[float]:
-    """Rows of numbers that are the same at every point."""
-    found = list[float]()
-    for number in numbers:
-        found += [number] * STAGES
-    return found
+def row_of(numbers: Sequence[float], row: int) -> list[float]:
+    """What a number is at every point, by its row."""
+    return [*numbers[row * STAGES : (row + 1) * STAGES]]
 
 
 class SlipStep:
@@ -138,7 +136,7 @@ class SlipStep:
         self.machinery, self.layout = machinery_of(top, ending), StepRows.of(ending)
         layout = self.layout
         self.given, self.measured = copied(self.machinery.given), copied(self.machinery.measured)
-        self.unknowns, self.found = room(layout.unknowns * STAGES), room(layout.found * STAGES)
+        self.unknowns, self.found = room(layout.size * STAGES), room(layout.found * STAGES)
         self.rows = room(((PARTS + 1) * layout.size + 1) * STAGES)
         self.sweeps = 0
 
@@ -149,7 +147,7 @@ class SlipStep:
         self.sweeps += self.machinery.better(self.unknowns, self.given, self.found, ENOUGH, MOST)
         if not self.found[len(self.found) - 1] < ENOUGH:
             return False
-        put_from(self.measured, 0, [length] * STAGES)
+        put_rows(self.measured, 0, [length], STAGES)
         self.machinery.terms(self.found, self.measured, self.rows, 0.0, 1)
         return True
 
@@ -161,20 +159,19 @@ class SlipStep:
     @property
     def speeds(self) -> list[float]:
         """S at its points."""
-        first = (self.layout.size + 1) * STAGES
-        return [*self.found[first : first + STAGES]]
+        return row_of(self.found, self.layout.speed)
 
     @property
     def last_way(self) -> Slip:
         """The direction at its last point."""
-        first = (self.layout.free + 1) * STAGES - 1
-        return self.unknowns[first], self.unknowns[first + STAGES]
+        free = self.layout.free
+        return row_of(self.unknowns, free)[STAGES - 1], row_of(self.unknowns, free + 1)[STAGES - 1]
 
     @property
     def changes(self) -> list[float]:
         """By how much y and xi change."""
-        first = PARTS * self.layout.size * STAGES
-        return [*self.rows[first : first + self.layout.size * STAGES : STAGES]]
+        size = self.layout.size
+        return [row_of(self.rows, row)[0] for row in range(PARTS * size, (PARTS + 1) * size)]
 
     def pieces(self, parts: float) -> Array:
         """Coefficients of y and xi in so many of its parts, of the last of which it may be a share."""
@@ -182,19 +179,16 @@ class SlipStep:
 
     def goes_on(self, top: Top, *, pulls: bool) -> bool:
         """Whether no other surface comes near the table, and that is far from pulling if it may not."""
-        if isinstance(top.surface, Hull):
-            tilts = self.unknowns[2 * STAGES : 3 * STAGES]
-            if not min([clearance(top, c) for c in tilts]) > CLEAR:
-                return False
-        first = self.layout.size * STAGES
-        return pulls or bool(min(self.found[first : first + STAGES]) > PRESSED)
+        several = isinstance(top.surface, Hull)
+        if several and not min([clearance(top, c) for c in row_of(self.unknowns, 2)]) > CLEAR:
+            return False
+        return pulls or bool(min(row_of(self.found, self.layout.normal)) > PRESSED)
 
     def speed(self, number: int, begin: float, way: Slip) -> list[float]:
         """Coefficients of s in a part of it, at whose start it is this; beyond slip s is less than zero."""
-        first = (number * self.layout.size + self.layout.free) * STAGES
-        rows = self.rows[first : first + STAGES], self.rows[first + STAGES : first + 2 * STAGES]
-        x, y = way
-        return [begin, *[x * a + y * b for a, b in zip(*rows, strict=True)]]
+        first = number * self.layout.size + self.layout.free
+        x, y = row_of(self.rows, first), row_of(self.rows, first + 1)
+        return [begin, *[way[0] * a + way[1] * b for a, b in zip(x, y, strict=True)]]
 
     def end_of_slip(self, xi: Slip, speeds: Sequence[float]) -> float | None:
         """After how many parts of it slip ends, that is xi at its start; None if that is not told."""

@@ -3519,19 +3519,23 @@ class StepRows extends py.NamedTuple {
   static of(ending) {
     return new this(py.truth(ending.moves) ? 8 : 6);
   }
-  /** How many numbers y and xi have. */
+  /** How many numbers y and xi have, and so y and e, which a sweep makes better. */
   get size() {
     return py.add(this.free, 2);
-  }
-  /** What a sweep makes better: y and e. */
-  get unknowns() {
-    return this.size;
   }
   /** What is given of a step before the numbers of the top: y and xi at its start, and its length. */
   get given() {
     return py.add(this.size, 1);
   }
-  /** What a sweep makes besides: rates of y and xi, the normal force, s, and its change. */
+  /** Which of what a sweep makes besides, after rates of y and xi, is the normal force. */
+  get normal() {
+    return this.size;
+  }
+  /** And which is s. */
+  get speed() {
+    return py.add(this.size, 1);
+  }
+  /** What that is in all; its change is last. */
   get found() {
     return py.add(this.size, 3);
   }
@@ -3678,28 +3682,25 @@ const compiled_step = py.cached((kind, ending) => {
   };
   var given = py.add(py.add(layout.given, kind.numbers), py.floordiv(py.len(CONSTANTS), STAGES));
   return [
-    iterated(better, layout.unknowns, given, STAGES),
+    iterated(better, layout.size, given, STAGES),
     iterated(terms, layout.size, 1 + py.floordiv(py.len(TERMS), STAGES), STAGES)
   ];
 });
 
 /** What steps of a top are made with. */
 const machinery_of = py.cached((top, ending) => {
-  var [layout, numbers] = [StepRows.of(ending), rows_of(top.numbers)];
-  var given = room(py.add(py.add(py.mul(layout.given, STAGES), py.len(numbers)), py.len(CONSTANTS)));
-  put_from(given, py.mul(layout.given, STAGES), [...numbers, ...CONSTANTS]);
+  var [first, numbers] = [StepRows.of(ending).given, top.numbers];
+  var given = room(py.add(py.mul(py.add(first, py.len(numbers)), STAGES), py.len(CONSTANTS)));
+  put_rows(given, first, numbers, STAGES);
+  put_from(given, py.mul(py.add(first, py.len(numbers)), STAGES), CONSTANTS);
   var measured = room(STAGES + py.len(TERMS));
   put_from(measured, STAGES, TERMS);
   return new _Machinery(...compiled_step(top.kind, ending), given, measured);
 });
 
-/** Rows of numbers that are the same at every point. */
-function rows_of(numbers) {
-  var found = py.list();
-  for (var number of numbers) {
-    found = py.add(found, py.mul([number], STAGES));
-  }
-  return found;
+/** What a number is at every point, by its row. */
+function row_of(numbers, row) {
+  return [...py.slice(numbers, row * STAGES, (row + 1) * STAGES, null)];
 }
 
 /** A step of collocation. */
@@ -3709,7 +3710,7 @@ class SlipStep extends py.Thing {
     [this.machinery, this.layout] = [machinery_of(top, ending), StepRows.of(ending)];
     var layout = this.layout;
     [this.given, this.measured] = [copied(this.machinery.given), copied(this.machinery.measured)];
-    [this.unknowns, this.found] = [room(py.mul(layout.unknowns, STAGES)), room(py.mul(layout.found, STAGES))];
+    [this.unknowns, this.found] = [room(py.mul(layout.size, STAGES)), room(py.mul(layout.found, STAGES))];
     this.rows = room(py.mul(py.add(py.mul(PARTS + 1, layout.size), 1), STAGES));
     this.sweeps = 0;
   }
@@ -3724,7 +3725,7 @@ class SlipStep extends py.Thing {
     if (!(py.item(this.found, py.len(this.found) - 1) < ENOUGH)) {
       return false;
     }
-    put_from(this.measured, 0, py.mul([length], STAGES));
+    put_rows(this.measured, 0, [length], STAGES);
     this.machinery.terms(this.found, this.measured, this.rows, 0.0, 1);
     return true;
   }
@@ -3734,18 +3735,20 @@ class SlipStep extends py.Thing {
   }
   /** S at its points. */
   get speeds() {
-    var first = py.mul(py.add(this.layout.size, 1), STAGES);
-    return [...py.slice(this.found, first, py.add(first, STAGES), null)];
+    return row_of(this.found, this.layout.speed);
   }
   /** The direction at its last point. */
   get last_way() {
-    var first = py.sub(py.mul(py.add(this.layout.free, 1), STAGES), 1);
-    return [py.item(this.unknowns, first), py.item(this.unknowns, py.add(first, STAGES))];
+    var free = this.layout.free;
+    return [
+      py.item(row_of(this.unknowns, free), STAGES - 1),
+      py.item(row_of(this.unknowns, py.add(free, 1)), STAGES - 1)
+    ];
   }
   /** By how much y and xi change. */
   get changes() {
-    var first = py.mul(py.mul(PARTS, this.layout.size), STAGES);
-    return [...py.slice(this.rows, first, py.add(first, py.mul(this.layout.size, STAGES)), STAGES)];
+    var size = this.layout.size;
+    return py.range(py.mul(PARTS, size), py.mul(PARTS + 1, size)).map((row) => row_of(this.rows, row)[0]);
   }
   /** Coefficients of y and xi in so many of its parts, of the last of which it may be a share. */
   pieces(parts) {
@@ -3753,27 +3756,17 @@ class SlipStep extends py.Thing {
   }
   /** Whether no other surface comes near the table, and that is far from pulling if it may not. */
   goes_on(top, pulls) {
-    if (py.isinstance(top.surface, Hull)) {
-      var tilts = py.slice(this.unknowns, 2 * STAGES, 3 * STAGES, null);
-      if (!(py.min([...tilts].map((c) => clearance(top, c))) > CLEAR)) {
-        return false;
-      }
+    var several = py.isinstance(top.surface, Hull);
+    if (py.truth(several) && !(py.min([...row_of(this.unknowns, 2)].map((c) => clearance(top, c))) > CLEAR)) {
+      return false;
     }
-    var first = py.mul(this.layout.size, STAGES);
-    return py.or(
-      pulls,
-      () => py.bool(py.min(py.slice(this.found, first, py.add(first, STAGES), null)) > PRESSED)
-    );
+    return py.or(pulls, () => py.bool(py.min(row_of(this.found, this.layout.normal)) > PRESSED));
   }
   /** Coefficients of s in a part of it, at whose start it is this; beyond slip s is less than zero. */
   speed(number, begin, way) {
-    var first = py.mul(py.add(py.mul(number, this.layout.size), this.layout.free), STAGES);
-    var rows = [
-      py.slice(this.rows, first, py.add(first, STAGES), null),
-      py.slice(this.rows, py.add(first, STAGES), py.add(first, 2 * STAGES), null)
-    ];
-    var [x, y] = way;
-    return [begin, ...py.zip(...rows).map(([a, b]) => py.add(py.mul(x, a), py.mul(y, b)))];
+    var first = py.add(py.mul(number, this.layout.size), this.layout.free);
+    var [x, y] = [row_of(this.rows, first), row_of(this.rows, py.add(first, 1))];
+    return [begin, ...py.zip(x, y).map(([a, b]) => py.add(py.mul(way[0], a), py.mul(way[1], b)))];
   }
   /** After how many parts of it slip ends, that is xi at its start; None if that is not told. */
   end_of_slip(xi, speeds) {
@@ -5726,13 +5719,28 @@ class ContactPair extends py.NamedTuple {
     var other = add(point, cross(turning, add(there.arm, scale(-1.0, here.arm))));
     return py.truth(number) ? [other, point, turning] : [point, other, turning];
   }
-  /** How much of each wrench keeps as many components of something that moves at zero. */
-  holding(units, held, moving) {
+  /** What keeps both contacts closed, and at rest where slip has ended, and rolling. */
+  holding(ended, normal, moving, stopped) {
+    var [along, across] = directions_of(this.first.axis);
+    var held = py.truth(py.all(ended)) ? [[0, along], [0, across], [1, across]] : [];
+    if (py.truth(py.any(ended)) && !py.truth(held)) {
+      held = [[py.int(ended[1]), EAST], [py.int(ended[1]), NORTH]];
+    }
+    var units = [...held].map(([number, way]) => [number, new Wrench(way, NO_TORQUE)]);
+    units = py.add(units, [...py.enumerate(normal)]);
+    held = py.add(held, [[0, VERTICAL], [1, VERTICAL]]);
+    if (py.truth(stopped)) {
+      units.push([0, new Wrench(NO_TORQUE, along)]);
+      held.push([TURNING_of_contact_pair, along]);
+    }
     var responses = [...units].map((unit) => this.response(unit));
     var rows = [...held].map(
       ([number, way]) => [...responses].map((found) => dot(py.item(found, number), way))
     );
-    return solve(rows, [...held].map(([number, way]) => py.neg(dot(py.item(moving, number), way))));
+    var sizes = solve(rows, [...held].map(([number, way]) => py.neg(dot(py.item(moving, number), way))));
+    return py.zip(sizes, units).map(
+      ([size, [number, unit]]) => [number, new Wrench(scale(size, unit.force), scale(size, unit.torque))]
+    );
   }
   /** Moment of some wrenches about the centre of mass, N m. */
   moment(pushes) {
@@ -5876,40 +5884,18 @@ function turning_along(pair) {
 
 /** What the table does to a body whose two contacts stay closed, and how it accelerates. */
 function pair_motion(pair, slips, rolls) {
-  var held = [];
-  var [along, across] = directions_of(pair.first.axis);
-  if (slips[0] === null && slips[1] === null) {
-    held = py.add(held, [[0, along], [0, across], [1, across]]);
-  }
-  for (var [number, slip] of py.enumerate(slips)) {
-    if (slip === null && py.len(held) < 2) {
-      held = py.add(held, [[number, EAST], [number, NORTH]]);
-    }
-  }
-  var units = [...held].map(([number, way]) => [number, new Wrench(way, NO_TORQUE)]);
-  for (var [number, slip] of py.enumerate(slips)) {
-    units.push([number, normal_wrench(py.item(pair, number), slip, scale(rolls, along))]);
-    held.push([number, VERTICAL]);
-  }
-  var stopped = py.and(pair.first.top.resists_rolling, () => !py.truth(rolls));
-  if (py.truth(stopped)) {
-    units.push([0, new Wrench(NO_TORQUE, along)]);
-    held.push([TURNING_of_contact_pair, along]);
-  }
-  var sizes = pair.holding(units, held, pair.free);
+  var [along, stopped] = [
+    directions_of(pair.first.axis)[0],
+    py.and(pair.first.top.resists_rolling, () => !py.truth(rolls))
+  ];
+  var [one, other] = py.zip(pair, slips).map((contact) => normal_wrench(...contact, scale(rolls, along)));
+  var pushes = pair.holding([slips[0] === null, slips[1] === null], [one, other], pair.free, stopped);
   var found = [new Wrench(NO_TORQUE, NO_TORQUE), new Wrench(NO_TORQUE, NO_TORQUE)];
-  var pushes = [];
-  for (var [amount, [number, unit]] of py.zip(sizes, units)) {
-    var push = new Wrench(scale(amount, unit.force), scale(amount, unit.torque));
+  for (var [number, push] of pushes) {
     py.put(found, number, new Wrench(...py.zip(py.item(found, number), push).map(([a, b]) => add(a, b))));
-    pushes.push([number, push]);
   }
-  return new PairMotion(
-    pair,
-    [found[0], found[1]],
-    pair.under(pushes),
-    py.truth(stopped) ? py.item(sizes, -1) : 0.0
-  );
+  var holding = py.truth(stopped) ? dot(py.item(pushes, -1)[1].torque, along) : 0.0;
+  return new PairMotion(pair, [found[0], found[1]], pair.under(pushes), holding);
 }
 
 /** A unit normal force with what goes with it where the contact slips, and rolls in this direction. */
@@ -5955,28 +5941,9 @@ function slips_of(pair, xi) {
 
 /** Angular momentum and velocity after the impulses that end what is left of slip, and of rolling. */
 function at_rest(pair, velocity, ended, stopped) {
-  var omega = pair.first.turning;
-  var moving = [...[...pair].map((point) => add(velocity, cross(omega, point.arm))), omega];
-  var [along, across] = directions_of(pair.first.axis);
-  var held = [];
-  if (py.truth(py.any(ended))) {
-    var both = [[0, along], [0, across], [1, across]];
-    held = py.add(
-      held,
-      py.truth(py.all(ended)) ? both : [[py.int(ended[1]), EAST], [py.int(ended[1]), NORTH]]
-    );
-  }
-  held = py.add(held, [[0, VERTICAL], [1, VERTICAL]]);
-  var units = [...held].map(([number, way]) => [number, new Wrench(way, NO_TORQUE)]);
-  if (py.truth(stopped)) {
-    units.push([0, new Wrench(NO_TORQUE, along)]);
-    held.push([TURNING_of_contact_pair, along]);
-  }
-  moving = [moving[0], moving[1], moving[2]];
-  var sizes = pair.holding(units, held, moving);
-  var pushes = py.zip(sizes, units).map(
-    ([a, [number, unit]]) => [number, new Wrench(scale(a, unit.force), scale(a, unit.torque))]
-  );
+  var [omega, up] = [pair.first.turning, new Wrench(VERTICAL, NO_TORQUE)];
+  var [one, other] = [...pair].map((point) => add(velocity, cross(omega, point.arm)));
+  var pushes = pair.holding(ended, [up, up], [one, other, omega], stopped);
   var momentum = add(pair.first.momentum, pair.moment(pushes));
   for (var [, push] of pushes) {
     velocity = add(velocity, scale(py.div(1.0, pair.first.top.mass), push.force));
@@ -11140,7 +11107,7 @@ export {
   rolling_way,
   roots_between,
   roots_of,
-  rows_of,
+  row_of,
   rules_for,
   scale,
   scaled,

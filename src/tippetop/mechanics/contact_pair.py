@@ -93,11 +93,44 @@ class ContactPair(NamedTuple):
         other = add(point, cross(turning, add(there.arm, scale(-1.0, here.arm))))
         return (other, point, turning) if number else (point, other, turning)
 
-    def holding(self, units: Sequence[At], held: Sequence[Held], moving: Moving) -> list[Scalar]:
-        """How much of each wrench keeps as many components of something that moves at zero."""
+    def holding(
+        self, ended: tuple[bool, bool], normal: tuple[Wrench, Wrench], moving: Moving, *, stopped: bool
+    ) -> list[At]:
+        """What keeps both contacts closed, and at rest where slip has ended, and rolling.
+
+        Parameters
+        ----------
+        ended
+            On which contacts slip has ended.
+        normal
+            A unit normal force at each, with what goes with it.
+        moving
+            Accelerations without it, or velocities, which it makes zero.
+        stopped
+            Whether rolling has ended.
+
+        Returns
+        -------
+        list
+            Wrenches, or impulses of such; that which holds rolling is last.
+        """
+        along, across = directions_of(self.first.axis)
+        held: list[Held] = [(0, along), (0, across), (1, across)] if all(ended) else []
+        if any(ended) and not held:
+            held = [(int(ended[1]), EAST), (int(ended[1]), NORTH)]
+        units: list[At] = [(number, Wrench(way, NO_TORQUE)) for number, way in held]
+        units += [*enumerate(normal)]
+        held += [(0, VERTICAL), (1, VERTICAL)]
+        if stopped:
+            units.append((0, Wrench(NO_TORQUE, along)))
+            held.append((TURNING, along))
         responses = [self.response(unit) for unit in units]
         rows = [[dot(found[number], way) for found in responses] for number, way in held]
-        return solve(rows, [-dot(moving[number], way) for number, way in held])
+        sizes = solve(rows, [-dot(moving[number], way) for number, way in held])
+        return [
+            (number, Wrench(scale(size, unit.force), scale(size, unit.torque)))
+            for size, (number, unit) in zip(sizes, units, strict=True)
+        ]
 
     def moment(self, pushes: Sequence[At]) -> Vector:
         """Moment of some wrenches about the centre of mass, N m."""
@@ -253,29 +286,14 @@ def pair_motion(pair: ContactPair, slips: Slips, rolls: float) -> PairMotion:
     rolls
         Sign of omega_e, 0 where it is held at zero; without rolling resistance it does not matter.
     """
-    held: list[Held] = []
-    along, across = directions_of(pair.first.axis)
-    if slips[0] is None and slips[1] is None:
-        held += [(0, along), (0, across), (1, across)]
-    for number, slip in enumerate(slips):
-        if slip is None and len(held) < 2:
-            held += [(number, EAST), (number, NORTH)]
-    units: list[At] = [(number, Wrench(way, NO_TORQUE)) for number, way in held]
-    for number, slip in enumerate(slips):
-        units.append((number, normal_wrench(pair[number], slip, scale(rolls, along))))
-        held.append((number, VERTICAL))
-    stopped = pair.first.top.resists_rolling and not rolls
-    if stopped:
-        units.append((0, Wrench(NO_TORQUE, along)))
-        held.append((TURNING, along))
-    sizes = pair.holding(units, held, pair.free)
+    along, stopped = directions_of(pair.first.axis)[0], pair.first.top.resists_rolling and not rolls
+    one, other = (normal_wrench(*contact, scale(rolls, along)) for contact in zip(pair, slips, strict=True))
+    pushes = pair.holding((slips[0] is None, slips[1] is None), (one, other), pair.free, stopped=stopped)
     found = [Wrench(NO_TORQUE, NO_TORQUE), Wrench(NO_TORQUE, NO_TORQUE)]
-    pushes: list[At] = []
-    for amount, (number, unit) in zip(sizes, units, strict=True):
-        push = Wrench(scale(amount, unit.force), scale(amount, unit.torque))
+    for number, push in pushes:
         found[number] = Wrench(*(add(a, b) for a, b in zip(found[number], push, strict=True)))
-        pushes.append((number, push))
-    return PairMotion(pair, (found[0], found[1]), pair.under(pushes), sizes[-1] if stopped else 0.0)
+    holding = dot(pushes[-1][1].torque, along) if stopped else 0.0
+    return PairMotion(pair, (found[0], found[1]), pair.under(pushes), holding)
 
 
 def normal_wrench(point: ContactPoint, slip: Slip | None, rolling: Vector) -> Wrench:
@@ -317,24 +335,9 @@ def at_rest(
     They act at the contacts, and keep the normal velocities: what little slip is left goes as friction takes
     it.
     """
-    omega = pair.first.turning
-    moving = (*(add(velocity, cross(omega, point.arm)) for point in pair), omega)
-    along, across = directions_of(pair.first.axis)
-    held: list[Held] = []
-    if any(ended):
-        both: list[Held] = [(0, along), (0, across), (1, across)]
-        held += both if all(ended) else [(int(ended[1]), EAST), (int(ended[1]), NORTH)]
-    held += [(0, VERTICAL), (1, VERTICAL)]
-    units: list[At] = [(number, Wrench(way, NO_TORQUE)) for number, way in held]
-    if stopped:
-        units.append((0, Wrench(NO_TORQUE, along)))
-        held.append((TURNING, along))
-    moving = (moving[0], moving[1], moving[2])
-    sizes = pair.holding(units, held, moving)
-    pushes = [
-        (number, Wrench(scale(a, unit.force), scale(a, unit.torque)))
-        for a, (number, unit) in zip(sizes, units, strict=True)
-    ]
+    omega, up = pair.first.turning, Wrench(VERTICAL, NO_TORQUE)
+    one, other = (add(velocity, cross(omega, point.arm)) for point in pair)
+    pushes = pair.holding(ended, (up, up), (one, other, omega), stopped=stopped)
     momentum = add(pair.first.momentum, pair.moment(pushes))
     for _, push in pushes:
         velocity = add(velocity, scale(1.0 / pair.first.top.mass, push.force))

@@ -137,13 +137,8 @@ class StepRows(NamedTuple):
 
     @property
     def size(self) -> int:
-        """How many numbers y and xi have."""
+        """How many numbers y and xi have, and so y and e, which a sweep makes better."""
         return self.free + 2
-
-    @property
-    def unknowns(self) -> int:
-        """What a sweep makes better: y and e."""
-        return self.size
 
     @property
     def given(self) -> int:
@@ -151,8 +146,18 @@ class StepRows(NamedTuple):
         return self.size + 1
 
     @property
+    def normal(self) -> int:
+        """Which of what a sweep makes besides, after rates of y and xi, is the normal force."""
+        return self.size
+
+    @property
+    def speed(self) -> int:
+        """And which is s."""
+        return self.size + 1
+
+    @property
     def found(self) -> int:
-        """What a sweep makes besides: rates of y and xi, the normal force, s, and its change."""
+        """What that is in all; its change is last."""
         return self.size + 3
 
 
