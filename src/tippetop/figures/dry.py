@@ -10,11 +10,7 @@ from tippetop.figures.style import ACCENT, CONVERGED, CYCLE, DASHED, FAINT, INK,
 
 @house_style()
 def rolling_figure(data: xr.Dataset) -> Figure:
-    """Return the friction that rolling needs over the spin, and tilts with more and with less than that.
-
-    `data` has friction_needed over tilt and spin, needed_main, theta_held over held and time, theta_slips
-    over time_slips, and the attributes spin_rad_per_s, tilt_rad and slippery_mu.
-    """
+    """Return the friction that rolling needs over the spin, and tilts with more and with less than that."""
     figure, (above, below) = mark.panels(5.6, 2, 1, height_ratios=[1.25, 1])
     for tilt, row in zip(data["tilt"], data["friction_needed"], strict=True):
         main = float(tilt) == data.attrs["tilt_rad"]
@@ -41,10 +37,7 @@ def rolling_figure(data: xr.Dataset) -> Figure:
 
 @house_style()
 def cohen_figure(data: xr.Dataset) -> Figure:
-    """Return the tilt of Cohen's top by steps of several lengths, and exactly.
-
-    `data` has theta_stepped over step and time, theta over time, and sticks.
-    """
+    """Return the tilt of Cohen's top by steps of several lengths, and exactly."""
     figure, axes = mark.panels(4.4)
     colors = (REPORT, *(CYCLE[k] for k in (3, 4, 2, 6, 5)))
     for step, tilt, color in zip(data["step"], data["theta_stepped"], colors, strict=False):
@@ -58,10 +51,7 @@ def cohen_figure(data: xr.Dataset) -> Figure:
 
 @house_style()
 def smoothed_figure(data: xr.Dataset) -> Figure:
-    """Return the time of turning over on smoothed Coulomb friction against the smoothing.
-
-    `data` has turning_time over eps, and last_exponent.
-    """
+    """Return the time of turning over on smoothed Coulomb friction against the smoothing."""
     figure, axes = mark.panels(3.8)
     eps, time = data["eps"].values, data["turning_time"].values
     axes.loglog(eps, time, "o-", color=CONVERGED)
@@ -76,10 +66,7 @@ def smoothed_figure(data: xr.Dataset) -> Figure:
 
 @house_style()
 def patch_figure(data: xr.Dataset) -> Figure:
-    """Return the map of the time of turning over, over patch radius and spin; grey where it does not.
-
-    `data` has turning_time over radius and spin, and upright_limit.
-    """
+    """Return the map of the time of turning over, over patch radius and spin; grey where it does not."""
     figure, axes = mark.panels(4.2)
     axes.set_facecolor(FAINT)
     axes.grid(visible=False)
@@ -96,10 +83,7 @@ def patch_figure(data: xr.Dataset) -> Figure:
 
 @house_style()
 def viscous_figure(data: xr.Dataset) -> Figure:
-    """Return times of turning over against the viscous coefficient, of patches that have it and of itself.
-
-    `data` has patch_time over mu and coefficient, viscous_time over coefficient.
-    """
+    """Return times of turning over against the viscous coefficient, of patches that have it and of itself."""
     figure, (above, below) = mark.panels(5.2, 2, 1, sharex=True, height_ratios=[1.4, 1])
     coefficient = data["coefficient"].values
     above.loglog(coefficient, data["viscous_time"], "--", color=INK, label="viscous")

@@ -36,7 +36,6 @@ def _line(axes: Axes, times: ArrayLike, values: ArrayLike, color: str, width: fl
 def onset_figure(sweep: xr.Dataset, over: str, reported: float) -> Figure:
     """Return the least spin that leaves the table against "mu" or "tilt", with the launches of the scan.
 
-    `sweep` has first_lift_off over the parameter and spin, and onset over window and the parameter.
     `reported` is the spin of the report's abnormal point, rad/s.
     """
     figure, axes = mark.panels(3.9)
@@ -73,11 +72,7 @@ def onset_figure(sweep: xr.Dataset, over: str, reported: float) -> Figure:
 
 @house_style()
 def flights_figure(sweep: xr.Dataset) -> Figure:
-    """Return how launches go on after lift-off, against the spin.
-
-    `sweep` has airborne_time, last_touchdown, first_lift_off, flights, turning_time and final_theta_flight
-    over restitution and spin.
-    """
+    """Return how launches go on after lift-off, against the spin."""
     figure, panels = mark.panels(5.2, 2, 2, sharex=True)
     share, turning, count, tilt = panels.flat
     for restitution, color, marker in zip(

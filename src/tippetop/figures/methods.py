@@ -18,11 +18,7 @@ _LABELS = {
 
 @house_style()
 def order_figure(errors: xr.Dataset) -> Figure:
-    """Return errors against the length of a step, in all and in one step.
-
-    `errors` has rk4_in_all, rk4_in_a_step and ode45_in_all over step, printed_in_all and
-    printed_mended_in_all over step_printed, and the orders order_... of each.
-    """
+    """Return errors against the length of a step, in all and in one step."""
     series = (
         ("printed_in_all", "(B.1) as printed, time in f", ACCENT, "^-"),
         ("printed_mended_in_all", "(B.1) mended, time in f", UNILATERAL, "v-"),
@@ -43,10 +39,7 @@ def order_figure(errors: xr.Dataset) -> Figure:
 
 @house_style()
 def stiffness_figure(counts: xr.Dataset) -> Figure:
-    """Return how often every method evaluates the right-hand side, launch by launch.
-
-    `counts` has evaluations over launch and integrator, and launch_spin and launch_mu over launch.
-    """
+    """Return how often every method evaluates the right-hand side, launch by launch."""
     figure, axes = mark.panels(3.7)
     methods = [str(name) for name in counts["integrator"].values]
     launches = np.arange(counts.sizes["launch"])

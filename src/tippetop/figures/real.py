@@ -11,10 +11,7 @@ from tippetop.figures.style import ACCENT, CONVERGED, CYCLE, DASHED, INK, MUTED,
 
 @house_style()
 def leine_figure(data: xr.Dataset) -> Figure:
-    """Return the tilt of Leine and Glocker's top, with what its stem does.
-
-    `data` has theta over pressure and time, and over pressure stem, back, both and apart.
-    """
+    """Return the tilt of Leine and Glocker's top, with what its stem does."""
     figure, axes = mark.panels(4.2)
     for tilt, color in zip(data["theta"], (CONVERGED, MUTED), strict=False):
         axes.plot(data["time"], tilt, color=color, label=str(tilt["pressure"].values))
@@ -33,10 +30,7 @@ def leine_figure(data: xr.Dataset) -> Figure:
 
 @house_style()
 def stepping_figure(data: xr.Dataset) -> Figure:
-    """Return the tilt during the rocking by time-stepping, and how far off it finds what happens.
-
-    `data` has theta over step and time, stem, back, both and apart over step, and all of them as exact_...
-    """
+    """Return the tilt during the rocking by time-stepping, and how far off it finds what happens."""
     figure, (above, below) = mark.panels(5.4, 2, 1)
     for step, tilt, color in zip(data["step"], data["theta"], CYCLE, strict=False):
         above.plot(data["time"], tilt, color=color, lw=1.2, label=f"{1e3 * float(step):g} ms")
@@ -57,10 +51,7 @@ def stepping_figure(data: xr.Dataset) -> Figure:
 
 @house_style()
 def stems_figure(data: xr.Dataset) -> Figure:
-    """Return the final tilt, and Jellett's integral about the tip over what it takes, by the tip's radius.
-
-    `data` has final_theta, jellett and jellett_needed over radius.
-    """
+    """Return the final tilt, and Jellett's integral about the tip over what it takes, by the tip's radius."""
     figure, (above, below) = mark.panels(4.8, 2, 1, sharex=True)
     radius = 1e3 * data["radius"].values
     above.plot(radius, data["final_theta"], "o-", color=CONVERGED)
@@ -74,10 +65,7 @@ def stems_figure(data: xr.Dataset) -> Figure:
 
 @house_style()
 def egg_figure(data: xr.Dataset) -> Figure:
-    """Return the tilt of eggs that are spun on their sides, with their first lift-offs.
-
-    `data` has theta over rate and time, and lift_off over rate.
-    """
+    """Return the tilt of eggs that are spun on their sides, with their first lift-offs."""
     figure, axes = mark.panels(4.0)
     colors = colormaps["viridis"](np.linspace(0.0, 0.9, data.sizes["rate"]))
     for rate, tilt, lift, color in zip(data["rate"], data["theta"], data["lift_off"], colors, strict=True):
@@ -93,11 +81,7 @@ def egg_figure(data: xr.Dataset) -> Figure:
 
 @house_style()
 def rolling_figure(data: xr.Dataset) -> Figure:
-    """Return precessions of a disk and of two balls that roll with their centres at rest, by their tilts.
-
-    `data` has disk_tilt, disk_measured and disk_precession over disk, the same of balls, and the attributes
-    disk_radius_m and gravity.
-    """
+    """Return precessions of a disk and of two balls that roll with their centres at rest, by their tilts."""
     figure, (left, right) = mark.panels(3.8, 1, 2)
     for axes, name in ((left, "disk"), (right, "balls")):
         tilt = data[f"{name}_tilt"]

@@ -34,13 +34,12 @@ def motion_figure(
 ) -> Figure:
     """Return tilt, axial spin, precession and slip of a launch, by both methods.
 
-    `run` has theta, omega3, phi_dot, slip_x, slip_y over time and, with the suffix _listing, over
-    time_listing. The precession is cut at `precession_limit` rad/s: it has peaks wherever the axis comes near
-    the vertical. `zoom` is a span of time, s, whose tilt is also drawn large, in the box
-    `inset` (left, bottom, width, height in parts of the panel). The reversals of the
-    precession are marked: `quiet_start` and `quiet_end` where they enclose a calm that comes later than 1 s,
-    otherwise `last_reversal`. What the report prints gets squares: when the top has turned over and when the
-    precession reverses, s, and the time of what it takes for the end, s, with theta, omega3 and phi_dot then.
+    The precession is cut at `precession_limit` rad/s: it has peaks wherever the axis comes near the vertical.
+    `zoom` is a span of time, s, whose tilt is also drawn large, in the box `inset` (left, bottom, width,
+    height in parts of the panel). The reversals of the precession are marked: `quiet_start` and `quiet_end`
+    where they enclose a calm that comes later than 1 s, otherwise `last_reversal`. What the report prints
+    gets squares: when the top has turned over and when the precession reverses, s, and the time of what it
+    takes for the end, s, with theta, omega3 and phi_dot then.
     """
     figure, panels = mark.panels(5.0, 2, 2, sharex=True)
     tilt, spin, turning, slip = panels.flat
@@ -112,8 +111,7 @@ def upright_figure(run: xr.Dataset, until: float = 3.0) -> Figure:
 def energy_figure(run: xr.Dataset, reported: tuple[float, float]) -> Figure:
     """Return the energy over time: the report's (4.1) by its method, and the converged one on both tables.
 
-    `run` has energy and energy_flight over time, energy_listing over time_listing, launch_energy, J,
-    lift_off_time, s, and the flights. `reported` is the time, s, and the gain, J, that the report names.
+    `reported` is the time, s, and the gain, J, that the report names.
     """
     figure, axes = _wide_panel(run)
     start = 1e3 * float(run["launch_energy"])
@@ -134,10 +132,7 @@ def energy_figure(run: xr.Dataset, reported: tuple[float, float]) -> Figure:
 
 @house_style()
 def force_figure(run: xr.Dataset) -> Figure:
-    """Return the normal force over time; below zero the table would have to pull.
-
-    `run` also has lift_off_time, s.
-    """
+    """Return the normal force over time; below zero the table would have to pull."""
     figure, axes = _wide_panel(run)
     low = 1.12 * min(float(run["normal_force"].min()), float(run["normal_force_listing"].min()))
     axes.axhspan(low, 0, color=ACCENT, alpha=0.07, lw=0)

@@ -25,10 +25,7 @@ from tippetop.figures.style import (
 def final_tilt_figure(sweep: xr.Dataset, reported: tuple[float, float, float]) -> Figure:
     """Return the final tilt against the spin at launch, with the critical points.
 
-    `sweep` has final_theta over spin, final_theta_flight (on a table that only pushes) over spin_flight,
-    final_theta_listing over spin_listing, upright_by_window and inverted_by_window over window, and
-    lift_off_onset. `reported` are the report's two critical spins and the
-    spin of its abnormal point, rad/s.
+    `reported` are the report's two critical spins and the spin of its abnormal point, rad/s.
     """
     figure, axes = mark.panels(4.3)
     longest = sweep.isel(window=-1)
@@ -108,9 +105,8 @@ def _abnormal(axes: Axes, theirs: float, onset: float) -> None:
 def flip_time_figure(times: xr.Dataset, reported: float) -> Figure:
     """Return flip times against friction: the report's range with fits, and three decades of it.
 
-    `times` has flip_time, factor, exponent and correlation, and the same with suffix _listing, over mu,
-    and flip_time_wide over spin_wide and mu_wide. `reported` is the power of mu that the report prints; its
-    line goes through the middle of the points of its method.
+    `reported` is the power of mu that the report prints; its line goes through the middle of the points of
+    its method.
     """
     figure, (left, right) = mark.panels(3.9, 1, 2)
     mu = times["mu"].values
@@ -153,8 +149,7 @@ def _products(axes: Axes, wide: xr.Dataset) -> None:
 def windows_figure(sweep: xr.Dataset, reported: tuple[float, float]) -> Figure:
     """Return the two critical spins against the length of the runs they are read from.
 
-    `sweep` has upright_by_window and inverted_by_window over window, and upright_by_margin and
-    inverted_by_margin over margin. `reported` are the report's two critical spins, rad/s.
+    `reported` are the report's two critical spins, rad/s.
     """
     figure, panels = mark.panels(3.3, 1, 2, lettered=False)
     names = ("upright", "inverted")

@@ -27,11 +27,7 @@ _ROUNDING = 1e-9
 
 @house_style()
 def bifurcation_figure(states: xr.Dataset) -> Figure:
-    """Return the steady tilts against the spin, stable and unstable, with the ends of long runs.
-
-    `states` has branch_spin and branch_growth over branch_theta, run_spin, run_tilt and run_end over run, and
-    limits, the two critical spins; and the same with suffix _jump for a top that jumps.
-    """
+    """Return the steady tilts against the spin, stable and unstable, with the ends of long runs."""
     figure, panels = mark.panels(3.9, 1, 2, sharey=True)
     titles = ("the report's top", f"$I_1/I_3$ = {states.attrs['inertia_ratio_jump']:g}: a fold")
     for axes, suffix, title in zip(panels, ("", "_jump"), titles, strict=True):
@@ -91,9 +87,7 @@ def _ends_of_runs(axes: Axes, states: xr.Dataset, suffix: str) -> None:
 def growth_figure(critical: xr.Dataset, reported: tuple[float, float]) -> Figure:
     """Return the growth rates of both vertical spins, and the thresholds that a window makes of them.
 
-    `critical` has growth_rate over vertical and growth_spin, critical_launch over vertical, apparent_upright
-    and apparent_inverted over visible, and upright_by_margin and inverted_by_margin, read from runs, over
-    margin. `reported` are the report's two critical spins, rad/s.
+    `reported` are the report's two critical spins, rad/s.
     """
     figure = Figure(figsize=(WIDTH, 5.4))
     panels = figure.subplot_mosaic([["rate", "rate"], ["upright", "inverted"]], height_ratios=[1.25, 1])
@@ -156,11 +150,7 @@ _REGIONS = {"I": "#E8ECF0", "IIa": "#D5E8F8", "IIb": "#F9E3C4", "III": "#F3DCE6"
 
 @house_style()
 def groups_figure(chart: xr.Dataset) -> Figure:
-    """Return the map of the eccentric spheres by inertia ratio and eccentricity, with some tops on it.
-
-    `chart` has upright_boundary, inverted_boundary, jump_boundary, equal_thresholds, no_precession_from and
-    no_precession_to over alpha, and top_gamma and top_alpha over top.
-    """
+    """Return the map of the eccentric spheres by inertia ratio and eccentricity, with some tops on it."""
     figure, axes = mark.panels(4.9)
     alpha = chart["alpha"].values
     left, right = chart.attrs["gamma_least"], chart.attrs["gamma_greatest"]

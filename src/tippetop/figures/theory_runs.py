@@ -25,11 +25,7 @@ _SPAN = 3.0
 
 @house_style()
 def collapse_figure(flow: xr.Dataset) -> Figure:
-    """Return the tilt against mu t of runs at several frictions, with the averaged flow, on two scales.
-
-    `flow` has flow_low and flow_high over mu_time, run_low and run_high over friction and mu_time,
-    theta_swing over mu_time_swing, the run with most friction, and flip_limit.
-    """
+    """Return the tilt against mu t of runs at several frictions, with the averaged flow, on two scales."""
     figure, (linear, logarithmic) = mark.panels(5.6, 2, 1, sharex=True, height_ratios=[1.2, 1])
     limit = float(flow["flip_limit"])
     for axes in (linear, logarithmic):
@@ -62,11 +58,7 @@ def _runs_and_flow(axes: Axes, flow: xr.Dataset) -> None:
 
 @house_style()
 def exponent_figure(times: xr.Dataset) -> Figure:
-    """Return mu times the time to turn over against friction, in several senses, and the local exponent.
-
-    `times` has crossing_time, arrival_time_end, settling_time and arrival_time_window, and exponent_ of the
-    first two, over mu_flip, and limit_crossing and limit_arrival.
-    """
+    """Return mu times the time to turn over against friction, in several senses, and the local exponent."""
     figure, (above, below) = mark.panels(5.6, 2, 1, sharex=True, height_ratios=[1.45, 1])
     mu = times["mu_flip"].values
     limits = (float(times["limit_arrival"]), float(times["limit_crossing"]))
@@ -107,10 +99,7 @@ def _exponents(axes: Axes, times: xr.Dataset) -> None:
 
 @house_style()
 def balance_figure(run: xr.Dataset) -> Figure:
-    """Return how near a run is to gyroscopic balance, and its tilt within the envelope of its nutation.
-
-    `run` has balance_ratio, theta_diagnosed, envelope_low and envelope_high over time_diagnosed.
-    """
+    """Return how near a run is to gyroscopic balance, and its tilt within the envelope of its nutation."""
     figure, (tilt, ratio) = mark.panels(5.0, 2, 1, sharex=True)
     time = run["time_diagnosed"].values
     _within_envelope(tilt, run, 0.9)
@@ -141,10 +130,7 @@ def _within_envelope(axes: Axes, run: xr.Dataset, width: float) -> None:
 
 @house_style()
 def potential_figure(run: xr.Dataset) -> Figure:
-    """Return the effective potential of the tilt at several instants of a run, with the energy level.
-
-    `run` has potential over instant and well_theta, and level and instant_theta over instant.
-    """
+    """Return the effective potential of the tilt at several instants of a run, with the energy level."""
     figure, panels = mark.panels(4.9, 2, 3, sharex=True, lettered=False)
     tilt = run["well_theta"].values
     for k, axes in enumerate(panels.flat):
