@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from tippetop.files import place_for, written_beside
+from tippetop.files import written_beside
 
 
 def write_csv(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Path:
@@ -27,8 +27,6 @@ def write_csv(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Pat
     >>> path.read_text().splitlines()[0][:40]
     'time (s),theta (rad),theta_dot (rad s-1)'
     """
-    path = Path(path)
-    place_for(path, overwrite)
     columns: dict[str, Any] = {}
     for name, variable in {"time": run["time"], **run.data_vars}.items():
         units = variable.attrs.get("units", "1")
@@ -40,7 +38,7 @@ def write_csv(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Pat
                 columns[f"{name}_{label}{unit}"] = ("time", variable.values[:, number])
     with written_beside(path, overwrite) as beside:
         xr.Dataset(columns).to_dataframe().to_csv(beside, index=False)
-    return path
+    return Path(path)
 
 
 def _words(variable: xr.DataArray) -> np.ndarray[Any, Any]:

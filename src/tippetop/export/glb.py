@@ -16,7 +16,7 @@ from tippetop.export.geometry import Mesh, lathe
 from tippetop.export.poses import poses_at
 from tippetop.export.words import tell
 from tippetop.figures.looks import SCENES, ToyPart, size, toy_parts
-from tippetop.files import place_for, written_beside
+from tippetop.files import written_beside
 from tippetop.problem import Problem
 
 TURN_PER_KEY = 0.5
@@ -46,12 +46,9 @@ def write_glb(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Pat
     >>> tt.write_glb(run, "run.glb").read_bytes()[:4]
     b'glTF'
     """
-    path = Path(path)
-    place_for(path, overwrite)
-    content = glb_bytes(run)
     with written_beside(path, overwrite) as beside:
-        beside.write_bytes(content)
-    return path
+        beside.write_bytes(glb_bytes(run))
+    return Path(path)
 
 
 def glb_bytes(run: xr.Dataset) -> bytes:

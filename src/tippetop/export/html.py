@@ -8,7 +8,7 @@ import xarray as xr
 from tippetop import __version__
 from tippetop.export.bundle import LOADER, packed, player_packed
 from tippetop.export.track import pack_run, unpack_header
-from tippetop.files import place_for, written_beside
+from tippetop.files import written_beside
 
 _PAGE = Path(__file__).with_name("run.html")
 
@@ -42,9 +42,6 @@ def write_html(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Pa
     >>> tt.write_html(run, "run.html").name  # open it in any browser, on any machine
     'run.html'
     """
-    path = Path(path)
-    place_for(path, overwrite)
-    page = html_page(run)
     with written_beside(path, overwrite) as beside:
-        beside.write_text(page, encoding="utf-8")
-    return path
+        beside.write_text(html_page(run), encoding="utf-8")
+    return Path(path)
