@@ -8708,16 +8708,6 @@ class Fold extends py.NamedTuple {
 }
 py.fields(Fold, ["tilt", "jellett"]);
 
-/** Range of the size of Jellett's integral, kg m^3/s. */
-class JellettRange extends py.NamedTuple {
-  constructor(low, high) {
-    super();
-    this.low = low;
-    this.high = high;
-  }
-}
-py.fields(JellettRange, ["low", "high"]);
-
 /** Group of the eccentric sphere with inertia ratio gamma = I1 / I3 and eccentricity alpha. */
 function classify(gamma, alpha) {
   if (!(0.0 < alpha && alpha < 1.0)) {
@@ -8799,13 +8789,13 @@ function fold(top) {
   return new Fold(tilt, branch_jellett(tilt, top));
 }
 
-/** Jellett's integrals for which two steady states of an eccentric sphere are stable, or None. */
+/** Sizes of Jellett's integral between which two steady states are stable, kg m^3/s, or None. */
 function coexistence(top) {
   if (!py.truth(classify_top(top).coexistence)) {
     return null;
   }
   var turning = fold(top);
-  return new JellettRange(turning === null ? lambda_down(top) : turning.jellett, lambda_up(top));
+  return [turning === null ? lambda_down(top) : turning.jellett, lambda_up(top)];
 }
 
 /** D at the fold, sqrt(gamma (1 - gamma - alpha^2) / 3); 0 where there is none and every D is larger. */
@@ -10618,7 +10608,6 @@ export {
   IntegratedMode,
   IntegratedProcess,
   JellettLine,
-  JellettRange,
   KEPT,
   Kind,
   LANDED,

@@ -4,8 +4,6 @@ All functions take the axis and the angular momentum of a run, as arrays over ti
 where the axis is vertical, except for quantities that are infinite there.
 """
 
-from typing import NamedTuple
-
 import numpy as np
 
 from tippetop.mechanics.motion import axial_spin
@@ -24,13 +22,6 @@ from tippetop.theory.nutation import (
     orbit,
     turning_tilts,
 )
-
-
-class Envelope(NamedTuple):
-    """Least and largest tilt of the nutation that a smooth table would leave the top in, rad, shape (n,)."""
-
-    low: Array
-    high: Array
 
 
 def gyroscopic_balance(axis: Array, momentum: Array, top: Top) -> Array:
@@ -75,14 +66,14 @@ def potential_at(index: int, axis: Array, momentum: Array, top: Top, tilts: Arra
     return np.asarray(effective_potential(np.asarray(tilts, dtype=float), values, top, np))
 
 
-def nutation_envelope(axis: Array, momentum: Array, top: Top) -> Envelope:
-    """The turning points of the nutation, with the constants of a smooth table at each instant.
+def nutation_envelope(axis: Array, momentum: Array, top: Top) -> tuple[Array, Array]:
+    """Least and largest tilt of the nutation that a smooth table would leave the top in, rad, shape (n,).
 
     Raises `InvalidInput` if the body is not an eccentric sphere.
     """
     numbers = numbers_of(top)
     values = natural_constants(smooth_constants(axis, momentum, top), top)
-    return Envelope(*turning_tilts(amplitudes(orbit(values, numbers))))
+    return turning_tilts(amplitudes(orbit(values, numbers)))
 
 
 def _vector(rows: Array) -> Vector:

@@ -79,13 +79,6 @@ class Fold(NamedTuple):
     """lambda, kg m^3/s."""
 
 
-class JellettRange(NamedTuple):
-    """Range of the size of Jellett's integral, kg m^3/s."""
-
-    low: float
-    high: float
-
-
 def classify(gamma: float, alpha: float) -> Group:
     """Group of the eccentric sphere with inertia ratio gamma = I1 / I3 and eccentricity alpha.
 
@@ -174,15 +167,15 @@ def fold(top: Top) -> Fold | None:
     return Fold(tilt, branch_jellett(tilt, top))
 
 
-def coexistence(top: Top) -> JellettRange | None:
-    """Jellett's integrals for which two steady states of an eccentric sphere are stable, or None.
+def coexistence(top: Top) -> tuple[float, float] | None:
+    """Sizes of Jellett's integral between which two steady states are stable, kg m^3/s, or None.
 
     Raises `InvalidInput` if the top does not conserve Jellett's integral.
     """
     if not classify_top(top).coexistence:
         return None
     turning = fold(top)
-    return JellettRange(lambda_down(top) if turning is None else turning.jellett, lambda_up(top))
+    return (lambda_down(top) if turning is None else turning.jellett), lambda_up(top)
 
 
 def _fold_measure(gamma: float, alpha: float) -> float:

@@ -28,66 +28,47 @@ class Judged:
 
 @dataclass(frozen=True)
 class Outlook:
-    """What can be said of a launch without simulating it.
-
-    Attributes
-    ----------
-    inertia_ratio, eccentricity
-        gamma = I1 / I3 and alpha; None for a shape other than an eccentric sphere.
-    group
-        How such tops behave, or None; also on a tip that the centre of mass is outside of.
-    lambda_up, lambda_down
-        Jellett's integrals, kg m^3/s, at which the upright spin loses and the inverted spin gains stability.
-    critical_spins
-        The spins of launches with this one's tilt and rates, rad/s, that have those integrals.
-    tilt
-        Tilt of this launch, rad.
-    jellett
-        lambda of this launch, kg m^3/s.
-    stays
-        The steady state that it is exactly on, and so stays in until it is disturbed, or None.
-    swings
-        Without friction, the least and the largest tilt between which it swings for ever, rad, if it is of an
-        eccentric sphere; None with friction.
-    prediction
-        Where it can end, from beside a steady state if it is on one; None where nothing conserved says so, or
-        nothing takes energy.
-    steady
-        Steady states, by tilt: all with the launch's lambda, or for a shape that does not conserve it, the
-        two vertical spins at the launch's axial spin.
-    mu_flip_time
-        mu times the time (s^2/m) until within 0.01 rad of the end, in the limit of small friction; None
-        where there is none, or no friction.
-    flip_time
-        The same divided by the problem's mu, s.
-    conserved
-        Whether Jellett's integral is constant: for an eccentric sphere under friction without torque.
-    standing_time
-        Under friction that drills, how long a vertical spin stands, s: that of the launch, or else the
-        inverted one with its lambda; None without drilling, and for a body that leans and is no sphere.
-    surface, tilts
-        Number of the surface that it is launched on, which alone all this is of, and the tilts, rad, between
-        which no other touches.
-    """
+    """What can be said of a launch without simulating it."""
 
     inertia_ratio: float | None
     eccentricity: float | None
+    """gamma = I1 / I3 and alpha; None for a shape other than an eccentric sphere."""
     group: Group | None
+    """How such tops behave, or None; also on a tip that the centre of mass is outside of."""
     lambda_up: float
     lambda_down: float
+    """Jellett's integrals, kg m^3/s, at which the upright spin loses and the inverted spin gains stability."""
     critical_spins: CriticalSpins
+    """The spins of launches with this one's tilt and rates, rad/s, that have those integrals."""
     tilt: float
+    """Tilt of this launch, rad."""
     jellett: float
+    """lambda of this launch, kg m^3/s."""
     stays: Judged | None
+    """The steady state that it is exactly on, and so stays in until it is disturbed, or None."""
     swings: tuple[float, float] | None
+    """Without friction, the least and the largest tilt between which it swings for ever, rad, if it is of an
+    eccentric sphere; None with friction."""
     prediction: Prediction | None
+    """Where it can end, from beside a steady state if it is on one; None where nothing conserved says so, or
+    nothing takes energy."""
     steady: tuple[Judged, ...]
+    """Steady states, by tilt: all with the launch's lambda, or for a shape that does not conserve it, the two
+    vertical spins at the launch's axial spin."""
     mu_flip_time: float | None
+    """mu times the time (s^2/m) until within 0.01 rad of the end, in the limit of small friction; None where
+    there is none, or no friction."""
     flip_time: float | None
+    """The same divided by the problem's mu, s."""
     conserved: bool
+    """Whether Jellett's integral is constant: for an eccentric sphere under friction without torque."""
     standing_time: float | None
+    """Under friction that drills, how long a vertical spin stands, s: that of the launch, or else the inverted
+    one with its lambda; None without drilling, and for a body that leans and is no sphere."""
     surface: int = 0
     tilts: tuple[float, float] = (0.0, math.pi)
+    """Number of the surface that it is launched on, which alone all this is of, and the tilts, rad, between
+    which no other touches."""
 
 
 def outlook(problem: Problem) -> Outlook:

@@ -66,22 +66,15 @@ SLOWEST = 1e-6
 
 @dataclass(frozen=True)
 class Spectrum:
-    """The eigenvalues of the linear motion about a steady state, but for its neutral directions.
-
-    Attributes
-    ----------
-    eigenvalues
-        1/s, by decreasing real part: 5 for a precession, 6 for a vertical spin.
-    frame_rate
-        Angular velocity of the frame about the vertical, rad/s: in another frame the imaginary parts of a
-        vertical spin's eigenvalues shift by the difference.
-    neutral
-        Names of the zero eigenvalues that were divided out, which are those of symmetry.
-    """
+    """The eigenvalues of the linear motion about a steady state, but for its neutral directions."""
 
     eigenvalues: Complex
+    """1/s, by decreasing real part: 5 for a precession, 6 for a vertical spin."""
     frame_rate: float
+    """Angular velocity of the frame about the vertical, rad/s: in another frame the imaginary parts of a
+    vertical spin's eigenvalues shift by the difference."""
     neutral: tuple[str, ...]
+    """Names of the zero eigenvalues that were divided out, which are those of symmetry."""
 
     @property
     def growth_rate(self) -> float:

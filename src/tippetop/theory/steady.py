@@ -85,21 +85,14 @@ class Branch:
 
 
 class RollingPrecession(NamedTuple):
-    """A precession without slip, per unit precession, whether steady or not.
-
-    Attributes
-    ----------
-    axis
-        Axis n.
-    momentum
-        L / phi', kg m^2.
-    jellett
-        lambda / phi', kg m^3.
-    """
+    """A precession without slip, per unit precession, whether steady or not."""
 
     axis: Vector
+    """Axis n."""
     momentum: Vector
+    """L / phi', kg m^2."""
     jellett: Scalar
+    """lambda / phi', kg m^3."""
 
 
 def rolling_precession(tilt: Scalar, top: Top, functions: Functions) -> RollingPrecession:

@@ -96,8 +96,6 @@ def _exponent(quick: bool) -> xr.Dataset:
     for name in ("crossing_time", "arrival_time_end"):
         exponent = local_exponent(mu, data[name].values)
         data[f"exponent_{name}"] = variable(exponent, "1", f"d ln t / d ln mu, {name}", "mu_flip")
-    rates = [_decay_rate(float(one)) for one in mu]
-    data["decay_rate"] = variable(rates, "s-1", "decay rate of the inverted spin", "mu_flip")
     data["limit_crossing"] = variable(half, "s2 m-1", "limit of mu t at the first tilt of pi/2")
     data["limit_arrival"] = variable(flip_time_limit(problem, SETTLED), "s2 m-1", "limit of mu t, arrival")
     return data
@@ -150,7 +148,7 @@ def _diagnostics(quick: bool) -> xr.Dataset:
     run = simulate(problem, 10.0, samples=2001 if quick else 5001)
     axis, momentum = run["axis"].values, run["angular_momentum"].values
     xi = gyroscopic_balance(axis, momentum, top)
-    envelope = nutation_envelope(axis, momentum, top)
+    low, high = nutation_envelope(axis, momentum, top)
     values = smooth_constants(axis, momentum, top)
     axial = top.axial_inertia * run["omega3"].values
     instants = np.array([0.0, 3.0, 5.0, 5.5, 6.0, 8.0])
@@ -163,8 +161,8 @@ def _diagnostics(quick: bool) -> xr.Dataset:
             "theta_diagnosed": variable(run["theta"].values, "rad", "tilt", *over),
             "balance": variable(xi, "kg m2 s-1", "xi = I1 phi' cos(theta) - I3 omega3", *over),
             "balance_ratio": variable(xi / float(abs(axial[0])), "1", "xi over I3 omega3 at launch", *over),
-            "envelope_low": variable(envelope.low, "rad", "least tilt a smooth table would allow", *over),
-            "envelope_high": variable(envelope.high, "rad", "largest tilt a smooth table would allow", *over),
+            "envelope_low": variable(low, "rad", "least tilt a smooth table would allow", *over),
+            "envelope_high": variable(high, "rad", "largest tilt a smooth table would allow", *over),
             "potential": variable(wells, "J", "effective potential", "instant", "well_theta"),
             "level": variable(np.asarray(values.energy)[index], "J", "energy", "instant"),
             "instant_theta": variable(run["theta"].values[index], "rad", "tilt", "instant"),
