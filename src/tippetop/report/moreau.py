@@ -10,7 +10,7 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from tippetop.mechanics.vectors import cross, dot, scale
+from tippetop.mechanics.vectors import VERTICAL, add, cross, dot, scale
 
 Triple = tuple[float, float, float]
 
@@ -60,7 +60,7 @@ def follow(body: SphereTop, tilt: float, spin: float, duration: float, step: flo
         axis, height = _turned(axis, momentum, 0.5 * step / body.I1), height + 0.5 * step * velocity[2]
         velocity = (velocity[0], velocity[1], velocity[2] - step * body.gravity)
         arms = [
-            (b.center * axis[0], b.center * axis[1], b.center * axis[2] - b.radius)
+            add(scale(b.center, axis), (0.0, 0.0, -b.radius))
             if height + b.center * axis[2] <= b.radius
             else None
             for b in body.balls
@@ -97,20 +97,19 @@ def _impulses(
             cross(arm, (1.0, 0.0, 0.0)),
             cross(arm, (0.0, 1.0, 0.0)),
             (0.0, 0.0, patch),
-            cross(arm, (0.0, 0.0, 1.0)),
+            cross(arm, VERTICAL),
         ]
         masses = [
             across * dot(t, t) + along * dot(t, axis) ** 2 + (1.0 / mass if k != 2 else 0.0)
             for k, t in enumerate(turns)
         ]
         contacts.append((number, turns, masses[3], 0.5 / max(masses[:3])))
-        fx, fy, drill, up = held[number]
-        u, L = _given(u, L, mass, turns, (fx, fy, drill, up))
+        u, L = _given(u, L, mass, turns, held[number])
     for _ in range(ROUNDS):
         worst = 0.0
         for number, turns, resisted, weight in contacts:
             old = held[number]
-            w = _omega(L, axis, across, along)
+            w = add(scale(across, L), scale(along * dot(L, axis), axis))
             up = max(0.0, old[3] - (u[2] + dot(turns[3], w)) / resisted)
             slid = [
                 old[0] - weight * (u[0] + dot(turns[0], w)),
@@ -130,23 +129,17 @@ def _impulses(
 
 
 def _given(
-    u: Triple, L: Triple, mass: float, turns: Sequence[Triple], impulse: tuple[float, float, float, float]
+    u: Triple, L: Triple, mass: float, turns: Sequence[Triple], impulse: Sequence[float]
 ) -> tuple[Triple, Triple]:
     """Velocity and angular momentum after an impulse along all directions of a contact."""
     fx, fy, drill, up = impulse
     a, b, c, d = turns
-    moved = (u[0] + fx / mass, u[1] + fy / mass, u[2] + up / mass)
     turned = (
         L[0] + fx * a[0] + fy * b[0] + drill * c[0] + up * d[0],
         L[1] + fx * a[1] + fy * b[1] + drill * c[1] + up * d[1],
         L[2] + fx * a[2] + fy * b[2] + drill * c[2] + up * d[2],
     )
-    return moved, turned
-
-
-def _omega(L: Triple, axis: Triple, across: float, along: float) -> Triple:
-    inner = along * dot(L, axis)
-    return (across * L[0] + inner * axis[0], across * L[1] + inner * axis[1], across * L[2] + inner * axis[2])
+    return (u[0] + fx / mass, u[1] + fy / mass, u[2] + up / mass), turned
 
 
 def _turned(axis: Triple, momentum: Triple, time: float) -> Triple:
@@ -157,7 +150,5 @@ def _turned(axis: Triple, momentum: Triple, time: float) -> Triple:
     about = scale(1.0 / size, momentum)
     angle = size * time
     c, s, on = math.cos(angle), math.sin(angle), dot(about, axis)
-    beside = cross(about, axis)
-    x, y, z = (c * axis[k] + s * beside[k] + (1.0 - c) * on * about[k] for k in range(3))
-    length = math.sqrt(x * x + y * y + z * z)
-    return (x / length, y / length, z / length)
+    turned = add(add(scale(c, axis), scale(s, cross(about, axis))), scale((1.0 - c) * on, about))
+    return scale(1.0 / math.sqrt(dot(turned, turned)), turned)

@@ -4,7 +4,6 @@ All functions take the times and values of a run that is sampled finely enough t
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tippetop.integrators.base import Array
 
@@ -41,11 +40,7 @@ def longest_quiet(times: Array, values: Array) -> tuple[float, float]:
 
 def first_below_zero(times: Array, values: Array) -> float:
     """The first time at which the values are negative, s; nan if they never are."""
-    below: NDArray[np.bool_] = values < 0
-    if not below.any():
-        return float("nan")
-    k = int(np.argmax(below))
-    if k == 0:
+    if values[0] < 0:
         return float(times[0])
-    before, after = values[k - 1], values[k]
-    return float(times[k - 1] + (times[k] - times[k - 1]) * before / (before - after))
+    changes = crossings(times, values)
+    return float(changes[0]) if len(changes) else float("nan")

@@ -9,9 +9,9 @@ from tippetop.frictions import ContensouFriction, ViscousFriction
 from tippetop.mechanics.contensou import ELLIPSOIDAL_RADIUS
 from tippetop.mechanics.hertz import MATERIALS, hertz_patch_radius
 from tippetop.presets import LEINE_GLOCKER, report_problem
-from tippetop.problem import Contact, Launch, Problem
 from tippetop.report.experiment import Bench, variable
 from tippetop.report.experiments.dry import turning_time, with_friction
+from tippetop.report.experiments.real import LEINE
 from tippetop.run import simulate
 from tippetop.theory.stability import vertical_growth_rates
 from tippetop.theory.steady import VERTICAL_SPINS, SteadyKind
@@ -37,14 +37,8 @@ SPIN = 100.0
 FRICTIONS = (0.1, 0.2, 0.4)
 """Friction coefficients of the patches that are compared with viscous friction."""
 
-LEINE = Problem(
-    body=LEINE_GLOCKER,
-    friction=ContensouFriction(mu=0.3, patch_radius=5e-4, pressure="ellipsoidal"),
-    launch=Launch(tilt=0.1, spin=180.0, slip=(0.0, 180.0 * 0.015 * math.sin(0.1))),
-    contact=Contact(liftoff="stop"),
-    gravity=9.81,
-)
-"""The launch of Leine and Glocker (2003): centre of mass at rest; their stem is left out."""
+ALONE = LEINE.replace({"body": LEINE_GLOCKER.model_dump()})
+"""Their launch with the stem left out."""
 
 
 def patch(mu: float, radius: float) -> ContensouFriction:
@@ -66,7 +60,7 @@ def _map(quick: bool) -> xr.Dataset:
     runs = [[simulate(one, MAP_WINDOW, samples=2, phase_limit=1) for one in row] for row in grid]
     times = [[float(run["turns_over"]) for run in row] for row in runs]
     least = min(float(run["least_normal_force"]) for row in runs for run in row)
-    theirs = float(simulate(LEINE, 3.0, samples=2)["turns_over"])
+    theirs = float(simulate(ALONE, 3.0, samples=2)["turns_over"])
     limit = critical_spin(SteadyKind.UPRIGHT, report_problem().top)
     return xr.Dataset(
         {

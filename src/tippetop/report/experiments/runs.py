@@ -102,8 +102,7 @@ def comparison(problem: Problem, quick: bool) -> xr.Dataset:
     data["arrives"] = variable(float(true["arrives"]), "s", "first time within 0.01 rad of the last tilt")
     if math.isfinite(stopped):
         data = data.assign(_continuation(problem, data["time"].values))
-    told = {name: true.attrs[name] for name in ("outcome", "outcome_advice")}
-    data.attrs = {"problem": problem.to_json(), **told, "failure_listing": listing.attrs["failure"]}
+    data.attrs = {"problem": problem.to_json(), "outcome": true.attrs["outcome"]}
     return data
 
 

@@ -109,7 +109,6 @@ _OF_RUNS = {
     "end": ("rad", "tilt at the end of a long run"),
     "left": ("1", "what is left there of the report's (2.17), over the precession"),
     "predicted": ("rad", "reachable stable steady tilt of least energy"),
-    "certain": ("1", "whether it is the only one in reach"),
     "stable": ("1", "number of stable steady states"),
 }
 
@@ -133,7 +132,6 @@ def _diagram(suffix: str, body: Body, tilts: Array, launches: list[tuple[float, 
         "end": ends,
         "left": [_left_of_217(run, base) for run in runs],
         "predicted": [one.final.tilt for one in predicted],
-        "certain": [int(one.certain) for one in predicted],
         "stable": [len(one.stable) for one in predicted],
     }
     limits = critical_spins(base)
