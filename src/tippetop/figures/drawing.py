@@ -19,11 +19,11 @@ from tippetop.figures.style import INK, MUTED, WIDTH
 Array = NDArray[np.float64]
 
 
-def canvas(xlim: tuple[float, float], ylim: tuple[float, float], width: float = WIDTH) -> tuple[Figure, Axes]:
-    """Return a figure `width` inches wide filled by frameless equal axes with exactly these limits."""
-    height = width * (ylim[1] - ylim[0]) / (xlim[1] - xlim[0])
+def canvas(xlim: tuple[float, float], ylim: tuple[float, float]) -> tuple[Figure, Axes]:
+    """Return a figure of full width filled by frameless equal axes with exactly these limits."""
+    height = WIDTH * (ylim[1] - ylim[0]) / (xlim[1] - xlim[0])
     # An engine that does nothing: with none at all, saving falls back on the style's constrained layout.
-    figure = Figure(figsize=(width, height), layout=PlaceHolderLayoutEngine(True, False))
+    figure = Figure(figsize=(WIDTH, height), layout=PlaceHolderLayoutEngine(True, False))
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     axes.set(xlim=xlim, ylim=ylim, aspect="equal")
     axes.set_axis_off()
@@ -36,7 +36,7 @@ def unit(vector: ArrayLike) -> Array:
     return array / float(np.linalg.norm(array))
 
 
-def arc(first: ArrayLike, towards: ArrayLike, angle: float, start: float = 0.0, count: int = 121) -> Array:
+def arc(first: ArrayLike, towards: ArrayLike, angle: float, start: float = 0.0) -> Array:
     """Return points of the unit circle about the origin, from `start` to `angle` radians.
 
     The circle lies in the plane of the two vectors, of two or three components, and is measured from `first`
@@ -45,7 +45,7 @@ def arc(first: ArrayLike, towards: ArrayLike, angle: float, start: float = 0.0, 
     u = unit(first)
     along = np.asarray(towards, dtype=float)
     w = unit(along - (along @ u) * u)
-    t = np.linspace(start, angle, count)[:, None]
+    t = np.linspace(start, angle, 121)[:, None]
     return np.cos(t) * u + np.sin(t) * w
 
 
@@ -78,11 +78,11 @@ def arrow(
     axes.add_patch(Polygon(barbed, closed=True, fc=color, ec="none", zorder=z))
 
 
-def dimension(axes: Axes, start: ArrayLike, end: ArrayLike, color: str = MUTED, head: float = 0.07) -> None:
+def dimension(axes: Axes, start: ArrayLike, end: ArrayLike) -> None:
     """Draw a thin double-headed arrow between two points."""
     middle = (np.asarray(start, dtype=float) + np.asarray(end, dtype=float)) / 2
     for tip in (start, end):
-        arrow(axes, [middle, tip], color, width=0.9, head=head, z=3)
+        arrow(axes, [middle, tip], MUTED, width=0.9, head=0.07, z=3)
 
 
 def label(
@@ -101,25 +101,25 @@ def label(
     axes.text(x, y, text, color=color, fontsize=size, ha=ha, va=va, zorder=9)
 
 
-def dot(axes: Axes, at: ArrayLike, color: str = INK, radius: float = 0.028, z: float = 6) -> None:
+def dot(axes: Axes, at: ArrayLike, radius: float) -> None:
     """Draw a point with a thin white rim, so that it stays visible on lines."""
     x, y = np.asarray(at, dtype=float)
-    axes.add_patch(Circle((x, y), radius, fc=color, ec="white", lw=0.8, zorder=z))
+    axes.add_patch(Circle((x, y), radius, fc=INK, ec="white", lw=0.8, zorder=6))
 
 
-def mass_centre(axes: Axes, at: ArrayLike, radius: float = 0.055, z: float = 6) -> None:
+def mass_centre(axes: Axes, at: ArrayLike, radius: float) -> None:
     """Draw the quartered disc that marks a centre of mass."""
     x, y = np.asarray(at, dtype=float)
-    axes.add_patch(Circle((x, y), radius, fc="white", ec=INK, lw=1.0, zorder=z))
+    axes.add_patch(Circle((x, y), radius, fc="white", ec=INK, lw=1.0, zorder=6))
     for start in (0, 180):
-        axes.add_patch(Wedge((x, y), radius, start, start + 90, fc=INK, ec="none", zorder=z))
+        axes.add_patch(Wedge((x, y), radius, start, start + 90, fc=INK, ec="none", zorder=6))
 
 
-def out_of_page(axes: Axes, at: ArrayLike, color: str = INK, radius: float = 0.055, z: float = 6) -> None:
+def out_of_page(axes: Axes, at: ArrayLike, color: str) -> None:
     """Draw the circled point of a vector that comes out of the page."""
     x, y = np.asarray(at, dtype=float)
-    axes.add_patch(Circle((x, y), radius, fc="white", ec=color, lw=1.4, zorder=z))
-    axes.add_patch(Circle((x, y), 0.33 * radius, fc=color, ec="none", zorder=z))
+    axes.add_patch(Circle((x, y), 0.055, fc="white", ec=color, lw=1.4, zorder=6))
+    axes.add_patch(Circle((x, y), 0.01815, fc=color, ec="none", zorder=6))
 
 
 def outline(points: ArrayLike) -> Path:

@@ -5,7 +5,6 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
-from matplotlib.ticker import NullFormatter, ScalarFormatter
 from numpy.typing import ArrayLike
 
 import tippetop.figures.annotation as mark
@@ -48,9 +47,8 @@ def onset_figure(sweep: xr.Dataset, over: str, reported: float) -> Figure:
     )
     bar = figure.colorbar(dots, ax=axes, label="first lift-off (s)", pad=0.02)
     first, last = np.nanmin(times), np.nanmax(times)
-    bar.set_ticks([tick for tick in (1, 2, 5, 10, 20, 50, 100, 200) if first <= tick <= last])
-    bar.ax.yaxis.set_major_formatter(ScalarFormatter())
-    bar.ax.yaxis.set_minor_formatter(NullFormatter())
+    ticks = (1, 2, 5, 10, 20, 50, 100, 200)
+    mark.plain_ticks(bar.ax.yaxis, [tick for tick in ticks if first <= tick <= last])
     for k, (window, style) in enumerate(zip(sweep["window"].values, ("-", (0, (4, 2))), strict=False)):
         axes.plot(
             sweep[over], sweep["onset"].sel(window=window), color=ACCENT, ls=style, lw=1.8, zorder=4 - k,

@@ -88,8 +88,7 @@ def rolling_figure(data: xr.Dataset) -> Figure:
         axes.plot(tilt, data[f"{name}_precession"], color=CONVERGED, label="closed formula")
         axes.plot(tilt, data[f"{name}_measured"], "o", color=ACCENT, label="runs")
         axes.set(xlabel=mark.TILT, title=name)
-    thin = np.sqrt(4 * data.attrs["gravity"] / (data.attrs["disk_radius_m"] * np.sin(data["disk_tilt"])))
-    left.plot(data["disk_tilt"], thin, color=INK, ls=DASHED, lw=1.0, label="thin disk")
+    left.plot(data["disk_tilt"], data["disk_thin"], color=INK, ls=DASHED, lw=1.0, label="thin disk")
     left.set_ylabel("precession (rad/s)")
     for axes in (left, right):
         axes.legend()

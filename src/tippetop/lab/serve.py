@@ -3,9 +3,9 @@
 import socket
 import webbrowser
 from collections.abc import Callable
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from importlib.util import find_spec
-from io import StringIO
+from io import BytesIO, StringIO
 from pathlib import Path
 
 from tippetop.errors import InvalidInput
@@ -31,25 +31,18 @@ def page_path() -> Path:
     return BUILT / PAGE
 
 
-class PageHandler(BaseHTTPRequestHandler):
+class PageHandler(SimpleHTTPRequestHandler):
     """Gives the page to whoever asks for it, and nothing else."""
 
     timeout = PATIENCE
     server_version = "tippetop"
     sys_version = ""
 
-    def do_GET(self) -> None:
-        """Respond with the page."""
-        self._respond(with_content=True)
-
-    def do_HEAD(self) -> None:
-        """Respond with what is said of the page."""
-        self._respond(with_content=False)
-
-    def _respond(self, with_content: bool) -> None:
+    def send_head(self) -> BytesIO | None:
+        """Say what the page is, and give it to be sent."""
         if self.path.partition("?")[0] not in ("/", f"/{PAGE}"):
             self.send_error(404)
-            return
+            return None
         content = built(PAGE).encode()
         self.send_response(200)
         self.send_header("Content-Type", "text/html; charset=utf-8")
@@ -57,8 +50,7 @@ class PageHandler(BaseHTTPRequestHandler):
         self.send_header("Cache-Control", "no-cache")
         self.send_header("X-Content-Type-Options", "nosniff")
         self.end_headers()
-        if with_content:
-            self.wfile.write(content)
+        return BytesIO(content)
 
     def log_message(self, format: str, *arguments: object) -> None:  # noqa: A002 - the library's name
         """Say nothing."""

@@ -53,6 +53,24 @@ class Bench(dict[str, Experiment]):
 Variable = tuple[tuple[str, ...], object, dict[str, str]]
 
 
+_ALONG = {
+    "spin": ("rad s-1", "spin at launch"),
+    "tilt": ("rad", "tilt at launch"),
+    "mu": ("s m-1", "friction coefficient"),
+    "restitution": ("1", "coefficient of restitution"),
+    "time": ("s", "time"),
+    "step": ("s", "length of a step"),
+    "window": ("s", "length of the runs"),
+    "margin": ("rad", "what counts as 0"),
+}
+"""Units and meanings of what experiments go over."""
+
+
+def along(**values: object) -> dict[str, Variable]:
+    """Coordinates by what they are, and perhaps what of, as in spin and spin_listing."""
+    return {name: variable(each, *_ALONG[name.partition("_")[0]], name) for name, each in values.items()}
+
+
 def variable(values: object, units: str, long_name: str, *dimensions: str) -> Variable:
     """A variable of a dataset with its unit and its meaning."""
     return (dimensions, values, {"units": units, "long_name": long_name})

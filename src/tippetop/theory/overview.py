@@ -37,7 +37,7 @@ class Outlook:
     """How such tops behave, or None; also on a tip that the centre of mass is outside of."""
     lambda_up: float
     lambda_down: float
-    """Jellett's integrals, kg m^3/s, at which the upright spin loses and the inverted spin gains stability."""
+    """Jellett's integrals, kg m^3/s, at which the upright spin loses and the inverted gains stability."""
     critical_spins: CriticalSpins
     """The spins of launches with this one's tilt and rates, rad/s, that have those integrals."""
     tilt: float
@@ -63,8 +63,8 @@ class Outlook:
     conserved: bool
     """Whether Jellett's integral is constant: for an eccentric sphere under friction without torque."""
     standing_time: float | None
-    """Under friction that drills, how long a vertical spin stands, s: that of the launch, or else the inverted
-    one with its lambda; None without drilling, and for a body that leans and is no sphere."""
+    """Under friction that drills, how long a vertical spin stands, s: that of the launch, or else the
+    inverted one with its lambda; None without drilling, and for a body that leans and is no sphere."""
     surface: int = 0
     tilts: tuple[float, float] = (0.0, math.pi)
     """Number of the surface that it is launched on, which alone all this is of, and the tilts, rad, between

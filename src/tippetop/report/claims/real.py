@@ -90,8 +90,7 @@ def _(data: xr.Dataset) -> Finding:
 @CHAPTER.examines("real-disk-rate", tolerance=_THIN)
 def _(data: xr.Dataset) -> Finding:
     near = data["disk_tilt"].values < 0.35
-    thin = 4 * data.attrs["gravity"] / (data.attrs["disk_radius_m"] * np.sin(data["disk_tilt"].values))
-    ratio = (data["disk_measured"].values / np.sqrt(thin))[near]
+    ratio = (data["disk_measured"] / data["disk_thin"]).values[near]
     return Finding.unlisted(
         float(ratio[np.abs(ratio - 1.0).argmax()]),
         "The toy of 75 mm and 12.5 mm thickness, at tilts up to "

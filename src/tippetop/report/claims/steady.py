@@ -7,6 +7,7 @@ import xarray as xr
 
 from tippetop.presets import REPORT
 from tippetop.report.claim import Chapter, Finding, listed
+from tippetop.report.experiments.equations import left_of_217
 from tippetop.report.quoted import END_OF_FIG_5
 from tippetop.report.tolerance import STEADY, TRANSCRIBED, Tolerance, rounded
 
@@ -39,11 +40,6 @@ def _(steady: xr.Dataset) -> Finding:
 _ALPHA = float(REPORT.surface.proportions[0])
 
 
-def _left_of_217(theta: float, phi_dot: float, omega3: float) -> float:
-    """What is left of (2.17), rad/s."""
-    return omega3 - phi_dot * (math.cos(theta) - _ALPHA)
-
-
 def _rounding_of_217(theta: float, phi_dot: float, omega3: float) -> float:
     """How far three numbers that satisfy (2.17) may miss it when each is rounded to three decimals, rad/s."""
     return 0.0005 * (abs(phi_dot * math.sin(theta)) + abs(math.cos(theta) - _ALPHA) + 1.0)
@@ -59,10 +55,10 @@ def _rounding_of_217(theta: float, phi_dot: float, omega3: float) -> float:
 )
 def _(run: xr.Dataset) -> Finding:
     listed, ours = (
-        _left_of_217(*(float(run[f"end_{name}{suffix}"]) for name in END_OF_FIG_5))
+        float(left_of_217(**{name: run[f"end_{name}{suffix}"] for name in END_OF_FIG_5}, alpha=_ALPHA))
         for suffix in ("_listing", "")
     )
-    quoted = _left_of_217(**END_OF_FIG_5)
+    quoted = float(left_of_217(**END_OF_FIG_5, alpha=_ALPHA))
     return Finding(
         listed,
         ours,
@@ -88,7 +84,7 @@ def _(states: xr.Dataset) -> Finding:
 @CHAPTER.examines("eq-2.17-exception", "run-10", tolerance=STEADY)
 def _(run: xr.Dataset) -> Finding:
     late = run.sel(time=slice(15.0, None))
-    left = late["omega3"] - late["phi_dot"] * (np.cos(late["theta"]) - _ALPHA)
+    left = left_of_217(late["theta"], late["phi_dot"], late["omega3"], _ALPHA)
     return Finding.unlisted(
         float((abs(left) / abs(late["omega3"])).max()),
         "Judged, as (2.14) is, over all the states in which the report's top can end. theta = 0 is one, and "

@@ -18,8 +18,8 @@ from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.top import natural, natural_state, natural_units
 from tippetop.presets import report_problem
 from tippetop.problem import Contact, Launch, Problem
-from tippetop.report.experiment import Bench, variable
-from tippetop.report.experiments.runs import stopping
+from tippetop.report.experiment import Bench, along, variable
+from tippetop.report.experiments.runs import happenings, stopping
 from tippetop.run import simulate
 
 BENCH = Bench()
@@ -94,6 +94,7 @@ def _rolling(quick: bool) -> xr.Dataset:
     coefficients = [1.001 * needed, *((1.0,) if quick else (0.3, 1.0))]
     held = [simulate(with_friction(main, CoulombFriction(mu=mu)), 20.0, times=times) for mu in coefficients]
     lost = [float(abs(run["energy_lost"] / run["energy_start"])) for run in held]
+    slips_held = [len(happenings(run, "slip")) for run in held]
     less = with_friction(main, CoulombFriction(mu=0.999 * needed))
     below = simulate(less, NUTATION, samples=2, phase_limit=1)
     slipping = with_friction(main, CoulombFriction(mu=SLIPPERY))
@@ -103,24 +104,17 @@ def _rolling(quick: bool) -> xr.Dataset:
             "friction_needed": variable(least, "1", "least mu for rolling", "tilt", "spin"),
             "needed_main": variable(needed, "1", "least mu for rolling, main launch"),
             "theta_held": variable([run["theta"].values for run in held], "rad", "tilt", "held", "time"),
-            "slips_held": variable([_count(run, "slip") for run in held], "1", "times of slipping", "held"),
+            "slips_held": variable(slips_held, "1", "times of slipping", "held"),
             "lost_held": variable(lost, "1", "energy lost, relative", "held"),
             "held_below": variable(float(below["end_time"]), "s", "how long a little less holds it"),
             "theta_slips": variable(slips["theta"].values, "rad", "tilt", "time_slips"),
         },
         {
-            "tilt": variable(tilts, "rad", "tilt at launch", "tilt"),
-            "spin": variable(spins, "rad s-1", "spin at launch", "spin"),
+            **along(tilt=tilts, spin=spins, time=times, time_slips=slips["time"].values),
             "held": variable(coefficients, "1", "friction coefficient", "held"),
-            "time": variable(times, "s", "time", "time"),
-            "time_slips": variable(slips["time"].values, "s", "time", "time_slips"),
         },
         {"spin_rad_per_s": SPIN, "tilt_rad": TILT, "slippery_mu": SLIPPERY},
     )
-
-
-def _count(run: xr.Dataset, kind: str) -> int:
-    return int((run["event_kind"].values == kind).sum())
 
 
 def stepped(problem: Problem, step: float, duration: float) -> SlidingState:
@@ -153,22 +147,19 @@ def _cohen(quick: bool) -> xr.Dataset:
         slip = np.hypot(*(u - v for u, v in zip(state.velocity, rolling, strict=True)))
         slowest.append(float(slip.min()) * units.speed)
     exact = simulate(COHEN, FOLLOWED, times=times, **WITHOUT_COMPILING)
-    stick = exact["event_time"].values[exact["event_kind"].values == "stick"]
-    sticking = exact["energy"].values[times > float(stick[0])]
+    stick = float(happenings(exact, "stick")[0])
+    sticking = exact["energy"].values[times > stick]
     kept = float(np.ptp(sticking) / sticking[-1])
     return xr.Dataset(
         {
             "theta_stepped": variable(tilts, "rad", "tilt, stepped", "step", "time"),
             "slowest": variable(slowest, "m s-1", "least slip speed at a step", "step"),
             "theta": variable(exact["theta"].values, "rad", "tilt, exact", "time"),
-            "sticks": variable(float(stick[0]), "s", "when slip ends"),
-            "slips_again": variable(_count(exact, "slip"), "1", "how often it slips again"),
+            "sticks": variable(stick, "s", "when slip ends"),
+            "slips_again": variable(len(happenings(exact, "slip")), "1", "how often it slips again"),
             "energy_kept": variable(kept, "1", "largest relative change of the energy while it sticks"),
         },
-        {
-            "step": variable(steps, "s", "length of a step", "step"),
-            "time": variable(times, "s", "time", "time"),
-        },
+        along(step=steps, time=times),
     )
 
 

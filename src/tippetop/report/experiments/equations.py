@@ -13,7 +13,7 @@ from tippetop.integrators.base import Array
 from tippetop.mechanics.euler import published_normal_force, published_parameters, published_rates
 from tippetop.mechanics.motion import angular_velocity, contact
 from tippetop.mechanics.top import Top
-from tippetop.mechanics.vectors import VERTICAL, Vector, cross, dot, scale
+from tippetop.mechanics.vectors import VERTICAL, Scalar, Vector, cross, dot, scale
 from tippetop.presets import REPORT, report_problem
 from tippetop.problem import Problem
 from tippetop.report.experiment import Bench, variable
@@ -199,7 +199,12 @@ def _residuals(y: list[float], top: Top) -> tuple[float, float]:
         -I1 * alpha * precession**2 * s**2,
     )
     left = max(abs(sum(line)) / max(abs(term) for term in line) for line in (first, fourth))
-    return spin - precession * (c - alpha), left
+    return left_of_217(theta, precession, spin, alpha), left
+
+
+def left_of_217(theta: Scalar, phi_dot: Scalar, omega3: Scalar, alpha: float) -> Scalar:
+    """What is left of (2.17), omega3 = phi' (cos(theta) - alpha), rad/s."""
+    return omega3 - phi_dot * (np.cos(theta) - alpha)
 
 
 @BENCH.experiment("rotation", "the equations of section 2.1 at random states", 0.1)

@@ -8,7 +8,7 @@ import xarray as xr
 
 from tippetop.presets import report_problem
 from tippetop.problem import Problem
-from tippetop.report.experiment import Bench, variable
+from tippetop.report.experiment import Bench, along, variable
 from tippetop.report.experiments.runs import WINDOW, flight_readings, stopping, swept, unilateral
 from tippetop.run import simulate
 
@@ -63,9 +63,7 @@ def onset_between(
     return 0.5 * (low + high)
 
 
-def _onsets(
-    field: str, values: np.ndarray, described: tuple[str, str], windows: tuple[float, ...], quick: bool
-) -> xr.Dataset:
+def _onsets(field: str, values: np.ndarray, windows: tuple[float, ...], quick: bool) -> xr.Dataset:
     """Times of the first lift-off over spin and another parameter, and the onset for each of its values."""
     name = field.partition(".")[2]
     spins = np.arange(60.0, 600.1, 120.0 if quick else 30.0)
@@ -86,26 +84,20 @@ def _onsets(
             "first_lift_off": variable(times, "s", "when the top first leaves the table", name, "spin"),
             "onset": variable(onsets, "rad s-1", onset_name, "window", name),
         },
-        {
-            "spin": variable(spins, "rad s-1", "spin at launch", "spin"),
-            "window": variable(list(windows), "s", "length of the runs", "window"),
-            name: variable(values, *described, name),
-        },
+        along(spin=spins, window=list(windows), **{name: values}),
     )
 
 
 @BENCH.experiment("onset-mu", "the least spin that leaves the table, against friction", 7.0)
 def _over_mu(quick: bool) -> xr.Dataset:
     values = np.geomspace(0.05, 10.0, 3 if quick else 8)
-    data = _onsets("friction.mu", values, ("s m-1", "friction"), (WINDOW, LONG_WINDOW), quick)
-    return data.assign_attrs(tilt_rad=TILT)
+    return _onsets("friction.mu", values, (WINDOW, LONG_WINDOW), quick).assign_attrs(tilt_rad=TILT)
 
 
 @BENCH.experiment("onset-tilt", "the least spin that leaves the table, against tilt", 5.0)
 def _over_tilt(quick: bool) -> xr.Dataset:
     values = np.sort([TILT, *np.linspace(0.05, 1.4, 4 if quick else 12)])
-    data = _onsets("launch.tilt", values, ("rad", "tilt at launch"), (WINDOW,), quick)
-    return data.assign_attrs(mu_s_per_m=MU)
+    return _onsets("launch.tilt", values, (WINDOW,), quick).assign_attrs(mu_s_per_m=MU)
 
 
 def followed(spins: tuple[float, ...], restitution: float) -> xr.Dataset:
@@ -124,10 +116,7 @@ def followed(spins: tuple[float, ...], restitution: float) -> xr.Dataset:
             name: variable([[row[name][0] for row in rows]], *meaning, "restitution", "spin")
             for name, (_, *meaning) in rows[0].items()
         },
-        {
-            "spin": variable(list(spins), "rad s-1", "spin at launch", "spin"),
-            "restitution": variable([restitution], "1", "coefficient of restitution", "restitution"),
-        },
+        along(spin=list(spins), restitution=[restitution]),
         {"window_s": FLIGHTS_WINDOW},
     )
 

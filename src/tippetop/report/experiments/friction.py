@@ -9,7 +9,7 @@ from scipy.optimize import curve_fit
 
 from tippetop.integrators.base import Array
 from tippetop.presets import report_problem
-from tippetop.report.experiment import Bench, variable
+from tippetop.report.experiment import Bench, along, variable
 from tippetop.report.experiments.runs import WINDOW, on_table, swept
 from tippetop.report.listing import listing_run
 from tippetop.report.quoted import NORMAL_FRICTION
@@ -75,12 +75,7 @@ def power_law(mu: Array, times: Array) -> tuple[float, float, float]:
 def _fitted(spins: Array, count: int) -> xr.Dataset:
     """Times by both methods over the report's range of friction, with fits a mu^b at every spin."""
     mu = np.linspace(*NORMAL_FRICTION, count)
-    data = xr.Dataset(
-        coords={
-            "spin": variable(spins, "rad s-1", "spin at launch", "spin"),
-            "mu": variable(mu, "s m-1", "friction coefficient", "mu"),
-        }
-    )
+    data = xr.Dataset(coords=along(spin=spins, mu=mu))
     for suffix, measure in (("", converged_times), ("_listing", listing_times)):
         times = measure(spins, mu)
         factor, exponent, correlation = np.array([power_law(mu, row) for row in times.flip]).T
@@ -121,10 +116,7 @@ def _wide(quick: bool) -> xr.Dataset:
             "flip_time_wide": variable(times, "s", "flip time", "spin_wide", "mu_wide"),
             "small_exponent": variable(slopes, "1", "exponent of mu up to 0.1 s/m", "spin_wide"),
         },
-        {
-            "spin_wide": variable(spins, "rad s-1", "spin at launch", "spin_wide"),
-            "mu_wide": variable(mu, "s m-1", "friction coefficient", "mu_wide"),
-        },
+        along(spin_wide=spins, mu_wide=mu),
         {"window_wide": "20 s, doubled until it is no less than 3 / mu + 4 s"},
     )
 
@@ -137,6 +129,6 @@ def _extremes(quick: bool) -> xr.Dataset:
     found = swept(on_table(report_problem(SPIN)), {"friction.mu": mu}, window)
     return xr.Dataset(
         {"turning_time": variable(found["turns_over"].values, *_TURNING, "mu")},
-        {"mu": variable(mu, "s m-1", "friction coefficient", "mu")},
+        along(mu=mu),
         {"spin_rad_per_s": SPIN, "window_s": window},
     )

@@ -13,7 +13,7 @@ from tippetop.integrators.scipy_methods import SciPy
 from tippetop.mechanics.vectors import Scalar
 from tippetop.presets import report_problem
 from tippetop.problem import Problem
-from tippetop.report.experiment import Bench, Variable, variable
+from tippetop.report.experiment import Bench, Variable, along, variable
 from tippetop.report.experiments.runs import on_table
 from tippetop.report.listing import launch_state, listing_rates
 from tippetop.report.ode45 import ABSOLUTE, RELATIVE, dormand_prince_step, ode45
@@ -76,12 +76,12 @@ def _order(quick: bool) -> xr.Dataset:
         "ode45_in_all": [abs(by_dormand_prince(span, h) - tilt) for h in steps],
         "companion_in_all": [abs(by_dormand_prince(span, h, companion=True) - tilt) for h in steps],
     }
-    data = xr.Dataset(coords={"step": variable(steps, "s", "length of a step", "step")})
+    data = xr.Dataset(coords=along(step=steps))
     for name, values in errors.items():
         data[name] = variable(np.array(values), "rad", f"error of the axis or tilt: {name}", "step")
         data[f"order_{name}"] = _order_of(steps, np.array(values), name)
     coarse = 2.0 / np.array([20.0, 40.0, 80.0, 160.0])
-    data["step_printed"] = variable(coarse, "s", "length of a step", "step_printed")
+    data = data.assign_coords(along(step_printed=coarse))
     for suffix, last in (("", 0.0), ("_mended", 1.0)):
         table = np.array([_printed_errors(step, last) for step in coarse])
         for k, part in enumerate(("in_all", "in_a_step")):

@@ -9,7 +9,7 @@ from tippetop.frictions import ContensouFriction, ViscousFriction
 from tippetop.mechanics.contensou import ELLIPSOIDAL_RADIUS
 from tippetop.mechanics.hertz import MATERIALS, hertz_patch_radius
 from tippetop.presets import LEINE_GLOCKER, report_problem
-from tippetop.report.experiment import Bench, variable
+from tippetop.report.experiment import Bench, along, variable
 from tippetop.report.experiments.dry import turning_time, with_friction
 from tippetop.report.experiments.real import LEINE
 from tippetop.run import simulate
@@ -71,7 +71,7 @@ def _map(quick: bool) -> xr.Dataset:
         },
         {
             "radius": variable(radii, "m", "radius of the contact patch", "radius"),
-            "spin": variable(spins, "rad s-1", "spin at launch", "spin"),
+            **along(spin=spins),
         },
         {"mu": MU, "window_s": MAP_WINDOW, "tilt_rad": 0.1},
     )

@@ -10,7 +10,8 @@ from tippetop.frictions import ContensouFriction, CoulombFriction, ViscousFricti
 from tippetop.mechanics.top import Top
 from tippetop.presets import EGG, EULER_DISK, HURRICANE_BALLS, LEINE_GLOCKER_STEM, REPORT_STEM, report_problem
 from tippetop.problem import Launch, Problem
-from tippetop.report.experiment import Bench, variable
+from tippetop.report.experiment import Bench, along, variable
+from tippetop.report.experiments.runs import happenings
 from tippetop.run import simulate
 from tippetop.theory.resting_center import RestingCenter, resting_center
 from tippetop.theory.stem import jellett_about, least_jellett_to_stand
@@ -53,15 +54,6 @@ ROLLING_WINDOW = 0.2
 """How long steady rolling is followed, s: some turns."""
 
 
-def happenings(run: xr.Dataset, kind: str, surface: int | None = None) -> np.ndarray:
-    """Times of all events of a kind, to one surface or to any, s."""
-    which = run["event_kind"].values == kind
-    if surface is not None:
-        which &= run["event_surface"].values == surface
-    found: np.ndarray = run["event_time"].values[which]
-    return found
-
-
 def first_of(times: np.ndarray, after: float = 0.0) -> float:
     """The first of some times after one, s; nan if there is none."""
     later = times[times > after]
@@ -100,7 +92,7 @@ def _leine(quick: bool) -> xr.Dataset:
                 for name, long in EVENTS.items()
             },
         },
-        {"pressure": pressures, "time": variable(runs[0]["time"].values, "s", "time", "time")},
+        {"pressure": pressures, **along(time=runs[0]["time"].values)},
     )
 
 
@@ -155,7 +147,7 @@ def _egg(quick: bool) -> xr.Dataset:
         },
         {
             "rate": variable(rates, "rad s-1", "rate of turning about the vertical at launch", "rate"),
-            "time": variable(runs[0]["time"].values, "s", "time", "time"),
+            **along(time=runs[0]["time"].values),
         },
         {"mu_s_per_m": EGG_MU},
     )
@@ -192,10 +184,13 @@ def _rolling(quick: bool) -> xr.Dataset:
     for name, rows in found.items():
         for (label, unit, long), values in zip(_COLUMNS, zip(*rows, strict=True), strict=True):
             data[f"{name}_{label}"] = variable(list(values), unit, long, name)
+    thin = np.sqrt(
+        4.0 * 9.81 / (EULER_DISK.shapes[0].surface.size * np.sin([row[0] for row in found["disk"]]))
+    )
+    data["disk_thin"] = variable(thin, "rad s-1", "precession of a thin disk", "disk")
     return xr.Dataset(
         data,
         attrs={
-            "disk_radius_m": float(EULER_DISK.shapes[0].surface.size),
             "ball_radius_m": float(HURRICANE_BALLS.shapes[0].surface.size),
             "gravity": 9.81,
         },

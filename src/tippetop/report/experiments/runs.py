@@ -10,7 +10,7 @@ import xarray as xr
 from tippetop.mechanics.euler import published_energy
 from tippetop.presets import REPORT_TABLE_1, report_problem
 from tippetop.problem import Problem
-from tippetop.report.experiment import Bench, Experiment, variable
+from tippetop.report.experiment import Bench, Experiment, along, variable
 from tippetop.report.listing import VARIABLES, listing_run
 from tippetop.report.quoted import END_OF_FIG_5
 from tippetop.report.readings import SETTLED, SHOWN, crossings, first_below_zero, flip_time, longest_quiet
@@ -61,6 +61,15 @@ def swept(problem: Problem, values: Mapping[str, np.ndarray], window: float = WI
     """What becomes of the launches that cross these values of fields; nan where one became singular."""
     found = compute(Sweep(problem, Product.of(values), window, SWEPT))
     return found.where(~found["outcome"].isin([Ending.FAILED, Ending.BAD]))
+
+
+def happenings(run: xr.Dataset, kind: str, surface: int | None = None) -> np.ndarray:
+    """Times of all events of a kind, to one surface or to any, s."""
+    which = run["event_kind"].values == kind
+    if surface is not None:
+        which &= run["event_surface"].values == surface
+    found: np.ndarray = run["event_time"].values[which]
+    return found
 
 
 Reading: TypeAlias = tuple[float, str, str]
@@ -234,7 +243,7 @@ def _capped(quick: bool) -> xr.Dataset:
             "final_theta": variable(ends(unilateral=False), "rad", "tilt at the end", "spin"),
             "final_theta_capped": variable(ends(unilateral=True), "rad", "the same, g_n >= 0", "spin"),
         },
-        {"spin": variable(list(spins), "rad s-1", "spin at launch", "spin")},
+        along(spin=list(spins)),
     )
 
 
@@ -260,7 +269,7 @@ def _slow(quick: bool) -> xr.Dataset:
             name: variable(values, *meanings[name.removesuffix("_listing")], "spin")
             for name, values in columns.items()
         },
-        {"spin": variable(list(SLOW_SPINS), "rad s-1", "spin at launch", "spin")},
+        along(spin=list(SLOW_SPINS)),
     )
 
 

@@ -7,7 +7,7 @@ import xarray as xr
 from scipy.optimize import brentq
 
 from tippetop.presets import report_problem
-from tippetop.report.experiment import Bench, Variable, variable
+from tippetop.report.experiment import Bench, Variable, along, variable
 from tippetop.report.experiments.flights import leaves_at, onset_between
 from tippetop.report.experiments.runs import WINDOW, on_table, swept, unilateral
 from tippetop.report.listing import listing_run
@@ -70,10 +70,7 @@ def _by_listing(quick: bool) -> xr.Dataset:
             "critical_inverted_listing": variable(inverted, "rad s-1", other, "margin_listing"),
             "lost_listing": _least_lost(spins, np.abs(tilts - math.pi) > TURNED, ", by the report's method"),
         },
-        {
-            "spin_listing": variable(spins, "rad s-1", "spin at launch", "spin_listing"),
-            "margin_listing": variable(LISTED_MARGINS, "rad", "what counts as 0", "margin_listing"),
-        },
+        along(spin_listing=spins, margin_listing=LISTED_MARGINS),
     )
 
 
@@ -109,10 +106,7 @@ def _converged(quick: bool) -> xr.Dataset:
             "lift_off_onset": variable(onset, "rad s-1", pulling),
             "lost": _least_lost(spins, ~(np.abs(tilts - math.pi) < TURNED), " on a table that pulls"),
         },
-        {
-            "spin": variable(spins, "rad s-1", "spin at launch", "spin"),
-            "spin_flight": variable(flying, "rad s-1", "spin at launch", "spin_flight"),
-        },
+        along(spin=spins, spin_flight=flying),
         {"window_s": WINDOW},
     )
 
@@ -160,9 +154,6 @@ def _thresholds(quick: bool) -> xr.Dataset:
             "upright_by_margin": variable(by_margin[:, 0], "rad s-1", names[0], "margin"),
             "inverted_by_margin": variable(by_margin[:, 1], "rad s-1", names[1], "margin"),
         },
-        {
-            "window": variable(list(windows), "s", "length of the runs", "window"),
-            "margin": variable(list(MARGINS), "rad", "what counts as 0", "margin"),
-        },
+        along(window=list(windows), margin=list(MARGINS)),
         {"margin_of_windows_rad": SETTLED},
     )

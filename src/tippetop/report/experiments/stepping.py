@@ -8,8 +8,9 @@ import xarray as xr
 
 from tippetop.frictions import ContensouFriction
 from tippetop.mechanics.contensou import ELLIPSOIDAL_RADIUS
-from tippetop.report.experiment import Bench, variable
-from tippetop.report.experiments.real import EVENTS, LEINE, LEINE_WINDOW, events_of, happenings
+from tippetop.report.experiment import Bench, along, variable
+from tippetop.report.experiments.real import EVENTS, LEINE, LEINE_WINDOW, events_of
+from tippetop.report.experiments.runs import happenings
 from tippetop.report.moreau import Ball, History, SphereTop, follow
 from tippetop.run import simulate
 
@@ -82,8 +83,7 @@ def _stepping(quick: bool) -> xr.Dataset:
         "exact_final_theta": variable(float(run["theta"][-1]), "rad", "tilt at the end of an exact run"),
     }
     told |= {f"exact_{name}": variable(value, "s", f"{name}, exactly") for name, value in exact.items()}
-    steps = variable([history.step for history in histories], "s", "step", "step")
-    return xr.Dataset(told, {"step": steps, "time": variable(times[shown], "s", "time", "time")})
+    return xr.Dataset(told, along(step=[history.step for history in histories], time=times[shown]))
 
 
 def _middles(history: History) -> tuple[np.ndarray, list[float]]:

@@ -1,6 +1,7 @@
 """Steady states of the report's top and of others, found without a simulation, and runs beside them."""
 
 import math
+from dataclasses import astuple
 
 import numpy as np
 import xarray as xr
@@ -10,6 +11,7 @@ from tippetop.integrators.base import Array
 from tippetop.presets import LEINE_GLOCKER, REPORT, REPORT_TABLE_1, report_problem
 from tippetop.problem import Problem
 from tippetop.report.experiment import Bench, variable
+from tippetop.report.experiments.equations import left_of_217
 from tippetop.report.experiments.runs import WINDOW
 from tippetop.run import simulate
 from tippetop.theory.apparent import (
@@ -31,7 +33,7 @@ from tippetop.theory.groups import (
 from tippetop.theory.prediction import predict
 from tippetop.theory.stability import branch_eigenvalues
 from tippetop.theory.steady import VERTICAL_SPINS, jellett_of_launch, precession_branch
-from tippetop.theory.thresholds import CriticalSpins, critical_spin, critical_spins
+from tippetop.theory.thresholds import critical_spin, critical_spins
 
 BENCH = Bench()
 
@@ -62,12 +64,12 @@ def _critical(quick: bool) -> xr.Dataset:
     rates = [growth_rates_of_launches(kind, problem, spins) for kind in VERTICAL_SPINS]
     each, zero = "vertical", "critical axial spin, where the growth rate vanishes"
     data = {
-        "critical_launch": variable(_pair(launches), "rad s-1", "critical spin at launch", each),
+        "critical_launch": variable(list(astuple(launches)), "rad s-1", "critical spin at launch", each),
         "critical_formula": variable(formula, "rad s-1", "critical axial spin, by formula", each),
         "critical_spectrum": variable(spectrum, "rad s-1", zero, each),
         "growth_rate": variable(rates, "s-1", "growth rate of the vertical spin", each, "growth_spin"),
     }
-    for name, shown in zip(("upright", "inverted"), zip(*map(_pair, seen), strict=True), strict=True):
+    for name, shown in zip(("upright", "inverted"), zip(*map(astuple, seen), strict=True), strict=True):
         words = f"critical spin of the {name} spin as the window shows it"
         data[f"apparent_{name}"] = variable(list(shown), "rad s-1", words, "visible")
     return xr.Dataset(
@@ -79,10 +81,6 @@ def _critical(quick: bool) -> xr.Dataset:
         },
         {"apparent_window_s": WINDOW},
     )
-
-
-def _pair(spins: CriticalSpins) -> list[float]:
-    return [spins.upright, spins.inverted]
 
 
 @BENCH.experiment("why-bifurcation", "steady states against spin, and long runs", 5.0)
@@ -134,7 +132,7 @@ def _diagram(suffix: str, body: Body, tilts: Array, launches: list[tuple[float, 
         "predicted": [one.final.tilt for one in predicted],
         "stable": [len(one.stable) for one in predicted],
     }
-    limits = critical_spins(base)
+    limits = list(astuple(critical_spins(base)))
     run, over = f"run{suffix}", f"branch_theta{suffix}"
     return xr.Dataset(
         {
@@ -144,7 +142,7 @@ def _diagram(suffix: str, body: Body, tilts: Array, launches: list[tuple[float, 
                 f"run_{name}{suffix}": variable(values, *_OF_RUNS[name], run)
                 for name, values in of_runs.items()
             },
-            f"limits{suffix}": variable(_pair(limits), "rad s-1", "critical spins at launch", "vertical"),
+            f"limits{suffix}": variable(limits, "rad s-1", "critical spins at launch", "vertical"),
         },
         {
             over: variable(branch.tilt, "rad", "tilt of the steady precession", over),
@@ -154,9 +152,9 @@ def _diagram(suffix: str, body: Body, tilts: Array, launches: list[tuple[float, 
 
 
 def _left_of_217(end: xr.Dataset, problem: Problem) -> float:
-    """What is left of omega3 = phi' (cos(theta) - alpha) at the end of a run, over phi'."""
-    ratio = float(end["omega3"]) / float(end["phi_dot"])
-    return abs(ratio - math.cos(float(end["theta"])) + eccentricity(problem.top))
+    """What is left of (2.17) at the end of a run, over phi'."""
+    left = left_of_217(end["theta"], end["phi_dot"], end["omega3"], eccentricity(problem.top))
+    return float(abs(left / end["phi_dot"]))
 
 
 def _per_spin(problem: Problem) -> float:

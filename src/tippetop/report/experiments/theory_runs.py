@@ -7,7 +7,7 @@ import xarray as xr
 
 from tippetop.integrators.base import Array
 from tippetop.presets import report_problem
-from tippetop.report.experiment import Bench, variable
+from tippetop.report.experiment import Bench, along, variable
 from tippetop.report.experiments.runs import WINDOW, on_table
 from tippetop.report.readings import SETTLED, flip_time
 from tippetop.run import simulate
@@ -87,10 +87,7 @@ def _exponent(quick: bool) -> xr.Dataset:
     times = np.array([_times(float(one), final) for one in mu]).T
     flow = averaged_flow(problem, samples=4000)
     half = float(np.interp(CROSSED, *_rising(flow.tilt_high, flow.mu_time)))
-    data = xr.Dataset(
-        coords={"mu_flip": variable(mu, "s m-1", "friction coefficient", "mu_flip")},
-        attrs={"spin_rad_per_s": SPIN, "within_rad": SETTLED},
-    )
+    data = xr.Dataset(coords=along(mu_flip=mu), attrs={"spin_rad_per_s": SPIN, "within_rad": SETTLED})
     for (name, long_name), row in zip(_SENSES.items(), times, strict=True):
         data[name] = variable(row, "s", long_name, "mu_flip")
     for name in ("crossing_time", "arrival_time_end"):
@@ -168,7 +165,7 @@ def _diagnostics(quick: bool) -> xr.Dataset:
             "instant_theta": variable(run["theta"].values[index], "rad", "tilt", "instant"),
         },
         {
-            "time_diagnosed": variable(run["time"].values, "s", "time", *over),
+            **along(time_diagnosed=run["time"].values),
             "instant": variable(run["time"].values[index], "s", "instant of the run", "instant"),
             "well_theta": variable(tilts, "rad", "tilt", "well_theta"),
         },
