@@ -26,45 +26,51 @@ SweepFile = Annotated[
     Path | None,
     typer.Argument(help="Sweep (.toml with axes or draws), or problem to start from; else the report's top."),
 ]
+Axes = Annotated[
+    list[str] | None,
+    typer.Option(
+        metavar="FIELD=VALUES",
+        help="Values of a field: FIRST:LAST:COUNT, FIRST:LAST:COUNT:geo or A,B,C. Axes cross.",
+    ),
+]
+Ranges = Annotated[
+    list[str] | None,
+    typer.Option(metavar="FIELD=LOW:HIGH", help="Draw a field at random instead; append :log for its log."),
+]
+Count = Annotated[int | None, typer.Option(help="Number of draws.")]
+Seed = Annotated[int | None, typer.Option(help="What the draws follow from; 0 if left out.")]
+Duration = Annotated[float | None, typer.Option(help="Length of every run, s; 20 if left out.")]
+Tolerance = Annotated[float | None, typer.Option(help="Relative error per step; 1e-9 if left out.")]
+Settled = Annotated[
+    float | None,
+    typer.Option(help="End a run once its tilt is held within this for good, rad; else all run on."),
+]
+Processes = Annotated[int | None, typer.Option(help="Number of processes; all processors if left out.")]
+Scheduler = Annotated[
+    str | None, typer.Option(metavar="ADDRESS", help="Compute on a running dask.distributed cluster.")
+]
+Out = Annotated[Path, typer.Option(help="Zarr store to write.")]
+Resume = Annotated[bool, typer.Option("--resume", help="Finish a store that is there.")]
+Maps = Annotated[
+    bool, typer.Option(show_default=False, help="Draw maps beside the store; drawn if left out.")
+]
 
 
 @partial(of_a_problem, file=SweepFile)
 def sweep(
     choice: Choice,
-    axis: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="FIELD=VALUES",
-            help="Values of a field: FIRST:LAST:COUNT, FIRST:LAST:COUNT:geo or A,B,C. Axes cross.",
-        ),
-    ] = None,
-    draw: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="FIELD=LOW:HIGH", help="Draw a field at random instead; append :log for its log."
-        ),
-    ] = None,
-    count: Annotated[int | None, typer.Option(help="Number of draws.")] = None,
-    seed: Annotated[int | None, typer.Option(help="What the draws follow from; 0 if left out.")] = None,
-    duration: Annotated[float | None, typer.Option(help="Length of every run, s; 20 if left out.")] = None,
-    tolerance: Annotated[
-        float | None, typer.Option(help="Relative error per step; 1e-9 if left out.")
-    ] = None,
-    settled: Annotated[
-        float | None,
-        typer.Option(help="End a run once its tilt is held within this for good, rad; else all run on."),
-    ] = None,
-    workers: Annotated[
-        int | None, typer.Option(help="Number of processes; all processors if left out.")
-    ] = None,
-    scheduler: Annotated[
-        str | None, typer.Option(metavar="ADDRESS", help="Compute on a running dask.distributed cluster.")
-    ] = None,
-    out: Annotated[Path, typer.Option(help="Zarr store to write.")] = Path("sweep.zarr"),
-    resume: Annotated[bool, typer.Option("--resume", help="Finish a store that is there.")] = False,
-    maps: Annotated[
-        bool, typer.Option(show_default=False, help="Draw maps beside the store; drawn if left out.")
-    ] = True,
+    axis: Axes = None,
+    draw: Ranges = None,
+    count: Count = None,
+    seed: Seed = None,
+    duration: Duration = None,
+    tolerance: Tolerance = None,
+    settled: Settled = None,
+    workers: Processes = None,
+    scheduler: Scheduler = None,
+    out: Out = Path("sweep.zarr"),
+    resume: Resume = False,
+    maps: Maps = True,
     as_json: Json = False,
     force: Force = False,
 ) -> None:

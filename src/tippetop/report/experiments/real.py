@@ -184,15 +184,14 @@ def _rolling(quick: bool) -> xr.Dataset:
     for name, rows in found.items():
         for (label, unit, long), values in zip(_COLUMNS, zip(*rows, strict=True), strict=True):
             data[f"{name}_{label}"] = variable(list(values), unit, long, name)
-    thin = np.sqrt(
-        4.0 * 9.81 / (EULER_DISK.shapes[0].surface.size * np.sin([row[0] for row in found["disk"]]))
-    )
+    gravity, radius = 9.81, float(EULER_DISK.shapes[0].surface.size)
+    thin = np.sqrt(4.0 * gravity / (radius * np.sin([row[0] for row in found["disk"]])))
     data["disk_thin"] = variable(thin, "rad s-1", "precession of a thin disk", "disk")
     return xr.Dataset(
         data,
         attrs={
             "ball_radius_m": float(HURRICANE_BALLS.shapes[0].surface.size),
-            "gravity": 9.81,
+            "gravity": gravity,
         },
     )
 
