@@ -7,9 +7,9 @@ the engine of sweeps many; neither knows mechanics.
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
-from typing import ClassVar, NamedTuple, Protocol
+from typing import ClassVar, NamedTuple, Self
 
 from tippetop.integrators.base import Integrator, Motion
 from tippetop.integrators.dense import DenseSolution, as_array
@@ -155,25 +155,37 @@ class Segment:
         return self.solution.end
 
 
-class Rules(Protocol):
-    """What follows where contact, or slip, begins or ends."""
+@dataclass(frozen=True)
+class Rules(ABC):
+    """What follows where contact, or slip, begins or ends; what never happens under some raises an error."""
 
-    @property
-    def pulls(self) -> bool:
-        """Whether the table may pull, so that contact does not end."""
+    top: Top
+    """The top in natural units."""
 
+    pulls: ClassVar[bool] = False
+    """Whether the table may pull, so that contact does not end."""
+
+    def on(self, surface: int) -> Self:
+        """The rules of the top with another of its surfaces active."""
+        return replace(self, top=self.top.each[surface])
+
+    @abstractmethod
     def launch(self, state: State) -> Transition:
         """How a run begins."""
 
     def lift_off(self, time: float, state: State) -> Transition:
         """What follows when the normal force falls to zero."""
+        raise NotImplementedError
 
     def touchdown(self, time: float, state: State, integrator: Integrator | None = None) -> Transition:
         """What follows when the top reaches the table; the integrator may follow the impact too."""
+        raise NotImplementedError
 
+    @abstractmethod
     def event(self, kind: EventKind, time: float) -> Event:
         """Something that happens to the surface that is active."""
 
+    @abstractmethod
     def going_on(self, state: State, *, slips: bool) -> "Mode":
         """The mode of a contact whose velocities go on, or stay held; it sticks or slips."""
 
@@ -181,9 +193,7 @@ class Rules(Protocol):
         self, surface: int, time: float, state: State, integrator: Integrator | None = None
     ) -> Transition:
         """What follows when another surface of the top, of this number, reaches the table too."""
-
-    def on(self, surface: int) -> "Rules":
-        """The rules of the top with another of its surfaces active."""
+        raise NotImplementedError
 
     def settled_on_two(
         self,
@@ -197,18 +207,23 @@ class Rules(Protocol):
 
         The body rolled, and now does, as signed (see `tippetop.contact.double.OnTwo`).
         """
+        raise NotImplementedError
 
     def slipping_on_two(
         self, time: float, state: State, tops: tuple[Top, Top], which: str, rolls: float
     ) -> Transition:
         """What follows when one of two contacts, or both, can be held no longer."""
+        raise NotImplementedError
 
+    @abstractmethod
     def stopping(self, time: float, state: State, *, slips: bool = True) -> Transition:
         """What follows when slip, or rolling, is about to end; the contact sticks or slips."""
 
+    @abstractmethod
     def settled(self, time: float, state: State, new: tuple[bool, bool], *, held: bool) -> Transition:
         """What follows when slip, or rolling (new), has ended, and whether the other was held already."""
 
+    @abstractmethod
     def giving_way(
         self, state: State, events: tuple[Event, ...], beginning: Vanishing, wrench: Wrench | None = None
     ) -> Transition:

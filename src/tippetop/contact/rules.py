@@ -1,11 +1,11 @@
 """What follows when contact begins or ends, for each way of treating lift-off."""
 
 from dataclasses import dataclass, replace
-from typing import ClassVar, Self
+from typing import ClassVar
 
 from tippetop.contact.flight import TOUCHING, Flight
 from tippetop.contact.loosening import BothLoosening, Loosening
-from tippetop.contact.mode import Event, EventKind, IntegratedMode, Mode, Outcome, Transition
+from tippetop.contact.mode import Event, EventKind, IntegratedMode, Mode, Outcome, Rules, Transition
 from tippetop.contact.passing import Resting, Stopping
 from tippetop.contact.sliding import Sliding, SlidingWithoutRolling
 from tippetop.contact.sticking import Sticking, StickingWithoutRolling
@@ -48,52 +48,12 @@ REST = 1e-13
 
 
 @dataclass(frozen=True)
-class ContactRules:
+class ContactRules(Rules):
     """What all rules have in common: the resolver of a contact that is closed and has no normal velocity."""
-
-    top: Top
-    """The top in natural units."""
-
-    pulls: ClassVar[bool] = False
-
-    def on(self, surface: int) -> Self:
-        """The rules with another surface active."""
-        return replace(self, top=self.top.each[surface])
 
     def launch(self, state: State) -> Transition:
         """Go on from contact."""
         return self.resting(0.0, state)
-
-    def lift_off(self, time: float, state: State) -> Transition:
-        """Never happens: the table may pull."""
-        raise NotImplementedError
-
-    def touchdown(self, time: float, state: State, integrator: Integrator | None = None) -> Transition:
-        """Never happens: there are no flights."""
-        raise NotImplementedError
-
-    def touch(
-        self, surface: int, time: float, state: State, integrator: Integrator | None = None
-    ) -> Transition:
-        """Never happens: a body of several surfaces may fly."""
-        raise NotImplementedError
-
-    def settled_on_two(
-        self,
-        time: float,
-        state: State,
-        tops: tuple[Top, Top],
-        stuck: tuple[int, ...],
-        rolls: tuple[float, float],
-    ) -> Transition:
-        """Never happens: as `touch`."""
-        raise NotImplementedError
-
-    def slipping_on_two(
-        self, time: float, state: State, tops: tuple[Top, Top], which: str, rolls: float
-    ) -> Transition:
-        """Never happens: as `touch`."""
-        raise NotImplementedError
 
     def event(self, kind: EventKind, time: float, impulse: float = 0.0, lost: float = 0.0) -> Event:
         """Something that happens to the surface that is active."""

@@ -1525,6 +1525,40 @@ py.fields(
   ["mode", "solution", "end_state", "transition", "steps", "evaluations", "highest_gap", "method"]
 );
 
+/** What follows where contact, or slip, begins or ends; what never happens under some raises an error. */
+class Rules extends py.Record {
+  constructor(top) {
+    super();
+    this.top = top;
+  }
+  get pulls() { return false; }
+  /** The rules of the top with another of its surfaces active. */
+  on(surface) {
+    return py.replace(this, { top: py.item(this.top.each, surface) });
+  }
+  /** What follows when the normal force falls to zero. */
+  lift_off(time, state) {
+    throw new py.NotImplementedError();
+  }
+  /** What follows when the top reaches the table; the integrator may follow the impact too. */
+  touchdown(time, state, integrator = null) {
+    throw new py.NotImplementedError();
+  }
+  /** What follows when another surface of the top, of this number, reaches the table too. */
+  touch(surface, time, state, integrator = null) {
+    throw new py.NotImplementedError();
+  }
+  /** What follows when slip ends on a contact beside another one, or rolling; some surfaces stuck. */
+  settled_on_two(time, state, tops, stuck, rolls) {
+    throw new py.NotImplementedError();
+  }
+  /** What follows when one of two contacts, or both, can be held no longer. */
+  slipping_on_two(time, state, tops, which, rolls) {
+    throw new py.NotImplementedError();
+  }
+}
+py.fields(Rules, ["top"]);
+
 /** A way to move. */
 class Mode extends py.Record {
   constructor(top, rules) {
@@ -5375,39 +5409,13 @@ const SLOWEST_REBOUND = 1e-06;
 const REST = 1e-13;
 
 /** What all rules have in common: the resolver of a contact that is closed and has no normal velocity. */
-class ContactRules extends py.Record {
+class ContactRules extends Rules {
   constructor(top) {
-    super();
-    this.top = top;
-  }
-  get pulls() { return false; }
-  /** The rules with another surface active. */
-  on(surface) {
-    return py.replace(this, { top: py.item(this.top.each, surface) });
+    super(top);
   }
   /** Go on from contact. */
   launch(state) {
     return this.resting(0.0, state);
-  }
-  /** Never happens: the table may pull. */
-  lift_off(time, state) {
-    throw new py.NotImplementedError();
-  }
-  /** Never happens: there are no flights. */
-  touchdown(time, state, integrator = null) {
-    throw new py.NotImplementedError();
-  }
-  /** Never happens: a body of several surfaces may fly. */
-  touch(surface, time, state, integrator = null) {
-    throw new py.NotImplementedError();
-  }
-  /** Never happens: as `touch`. */
-  settled_on_two(time, state, tops, stuck, rolls) {
-    throw new py.NotImplementedError();
-  }
-  /** Never happens: as `touch`. */
-  slipping_on_two(time, state, tops, which, rolls) {
-    throw new py.NotImplementedError();
   }
   /** Something that happens to the surface that is active. */
   event(kind, time, impulse = 0.0, lost = 0.0) {
@@ -10742,6 +10750,7 @@ export {
   RingSurface,
   RollingPrecession,
   RollingResistance,
+  Rules,
   RungeKuttaStep,
   SAFETY,
   SAFETY_of_dormand_prince,
