@@ -18,7 +18,8 @@ from tippetop.sweeps.crossings import Crossings
 from tippetop.sweeps.extremes import FORCE
 from tippetop.sweeps.launches import Flags, Indices, Launches, Note, picked
 from tippetop.sweeps.slots import Slots
-from tippetop.sweeps.stride import LANES, Stepper
+from tippetop.sweeps.stepper import Stepper
+from tippetop.sweeps.stride import LANES
 from tippetop.theory.prediction import is_held
 
 LOST = 4.0

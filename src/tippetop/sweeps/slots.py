@@ -13,7 +13,8 @@ from tippetop.mechanics.top import Top
 from tippetop.mechanics.units import Units
 from tippetop.metrics import OUTCOMES, Ends
 from tippetop.sweeps.launches import Flags, Indices, Launches, branched
-from tippetop.sweeps.stride import LANES, Layout, Stepper
+from tippetop.sweeps.stepper import Stepper
+from tippetop.sweeps.stride import LANES, Layout
 from tippetop.sweeps.tip import TipMotion
 
 NATURAL = Units(1.0, 1.0, 1.0)

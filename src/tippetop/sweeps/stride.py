@@ -13,7 +13,7 @@ every launch is computed by the same instructions wherever it stands in them.
 
 import math
 from collections.abc import Sequence
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -88,23 +88,6 @@ class Layout(NamedTuple):
         names = [guard.name for guard in motion.guards]
         branch = names.index(BRANCH) if BRANCH in names else None
         return cls(size, guards, parameters, *row, counts, turns, band, numbers, branch)
-
-
-class Stepper(Protocol):
-    """Taylor's method for one motion and one tolerance."""
-
-    @property
-    def layout(self) -> Layout:
-        """Which row holds what."""
-
-    def step(self, before: Array, after: Array, numbers: Array) -> None:
-        """Take a step from the rows of `before` to those of `after`, both of shape (layout.rows, n).
-
-        The numbers have shape (layout.numbers, n). A launch with no time left stays as it is.
-        """
-
-    def jet(self, before: Array, numbers: Array) -> "Jet":
-        """The polynomials in time of the steps that start from `before`."""
 
 
 class Jet(NamedTuple):
