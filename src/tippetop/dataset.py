@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 from numpy.typing import NDArray
 from xarray.indexes import Index, PandasIndex
@@ -50,7 +51,9 @@ def assemble(
         dimension = name.partition("_")[0]
         found[name] = xr.Variable((dimension,), values, LISTED[name].attributes, fastpath=True)
         lengths[dimension] = len(values)
-    indexes: dict[Any, Index] = {"time": PandasIndex(times, "time"), **NAMED}
+    # What xarray would find out about the times is known.
+    instants = PandasIndex(pd.Index(times, name="time"), "time", times.dtype, fastpath=True)
+    indexes: dict[Any, Index] = {"time": instants, **NAMED}
     for index in indexes.values():
         found |= index.create_variables()
     found["time"].attrs = dict(TIME)

@@ -9,7 +9,7 @@ from tippetop.contact.mode import Event, EventKind, Outcome, Segment
 from tippetop.contact.readings import Rates
 from tippetop.integrators.base import Array, Integrator
 from tippetop.integrators.dense import chebyshev
-from tippetop.integrators.polynomials import Polynomials, least_of_all
+from tippetop.integrators.polynomials import Polynomials, least_of_each
 from tippetop.mechanics.state import State
 from tippetop.mechanics.vectors import Scalar
 from tippetop.metrics import OUTCOMES, Ends, Flags, arrival_time, final_band, turning_time
@@ -27,7 +27,7 @@ class Tally:
     def __init__(self) -> None:
         self._tips: list[tuple[Polynomials, Array, Array, Array]] = []
         self._airborne: list[tuple[float, float, float]] = []
-        self._least_force, self._down, self._up, self._highest = np.inf, np.inf, -np.inf, 0.0
+        self._lowest, self._highest, self._raised, self._pressed = (list[Polynomials]() for _ in range(4))
         self._turned, self._landed = np.nan, True
         self._drilled = self._rolled = 0.0
         self.steps = self.evaluations = 0
@@ -72,14 +72,13 @@ class Tally:
         least, most, sag = seen.min(axis=0), seen.max(axis=0), tip.sag
         low, high = least - sag, most + sag
         self._tips.append((tip, starts, low, high))
-        self._down = min(self._down, least_of_all(tip.some(np.flatnonzero(low <= least.min()))))
-        self._up = max(self._up, -least_of_all(tip.some(np.flatnonzero(high >= most.max()), sign=-1.0)))
+        self._lowest.append(tip.some(np.flatnonzero(low <= least.min())))
+        self._highest.append(tip.some(np.flatnonzero(high >= most.max()), sign=-1.0))
         self._turned = _first(self._turned, tip, starts, (low <= 0.0) & (high >= 0.0), turning_time)
 
     def _rise(self, group: ModeSteps) -> None:
         """Take in the height of the centre of mass in flights."""
-        depth = Polynomials.of_unit(-group.terms[:, 9].T, group.spans)
-        self._highest = max(self._highest, -least_of_all(depth))
+        self._raised.append(Polynomials.of_unit(-group.terms[:, 9].T, group.spans))
 
     def _press(self, group: ModeSteps) -> None:
         """Take in the normal force."""
@@ -89,7 +88,7 @@ class Tally:
         near = np.flatnonzero(least - 0.2 * (force.max(axis=0) - least) <= least.min())
         places, transform, to_powers = chebyshev(FORCE_DEGREE)
         unit = to_powers @ (transform @ Rates(*group.at(places, near)).force)
-        self._least_force = min(self._least_force, least_of_all(Polynomials.of_unit(unit, group.spans[near])))
+        self._pressed.append(Polynomials.of_unit(unit, group.spans[near]))
 
     def _resistance(self, group: ModeSteps) -> None:
         """Take in the work of drilling and of rolling."""
@@ -102,22 +101,23 @@ class Tally:
         last = State.unpack([np.float64(number) for number in state.pack()])
         lift_offs = [event.time for event in events if event.kind is EventKind.LIFT_OFF]
         flights = self.flights
+        force, down, up, depth = least_of_each(self._pressed, self._lowest, self._highest, self._raised)
         return Ends(
             state=last,
             time=np.float64(time),
             outcome=OUTCOMES.index(outcome),
             steps=self.steps,
             flights=len(flights),
-            least_force=0.0 if lift_offs or len(flights) else self._least_force,
+            least_force=0.0 if lift_offs or len(flights) else force,
             lift_off=min(lift_offs, default=np.nan),
             struck=sum(event.energy_lost for event in events),
             drilled=self._drilled,
             rolled=self._rolled,
             airborne=(flights[:, 1] - flights[:, 0]).sum(),
             highest_gap=flights[:, 2].max(initial=0.0),
-            highest=self._highest,
-            down=self._down,
-            up=self._up,
+            highest=max(-depth, 0.0),
+            down=down,
+            up=-up,
             turned=self._turned,
             arrived=self.arrival(*final_band(last)),
         )

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tippetop.contact.block import NODES
-from tippetop.integrators.polynomials import LOOKS, Polynomials
+from tippetop.integrators.polynomials import LOOKS, Polynomials, least_of_each
 
 
 def with_roots(roots, factor=1.0):
@@ -103,6 +103,12 @@ def test_a_dip_between_an_end_and_the_next_look_is_found():
     terms = np.array([[0.0], [-0.02], [1.0]])
     for course in (terms, np.array([[0.98], [-1.98], [1.0]])):
         assert Polynomials(course, ones()).refined_least()[1][0] == pytest.approx(-1e-4, rel=1e-12)
+
+
+def test_the_least_values_of_lots_are_found_whatever_their_degrees():
+    dip = Polynomials(np.array([[0.3], [-1.0], [1.0]]), ones())
+    lines = Polynomials(np.array([[1.0, 2.0], [-0.5, 1.0]]), np.ones(2))
+    assert least_of_each([lines, dip], [], [lines]) == [pytest.approx(0.05, rel=1e-12), np.inf, 0.5]
 
 
 # --- sag ----------------------------------------------------------------------------------------------------

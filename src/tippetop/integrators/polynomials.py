@@ -109,9 +109,11 @@ class Polynomials:
         after = np.where(found, falls.argmax(axis=0) + 1, LOOKS + 1)
         low, high = (after - 1) / LOOKS, after / LOOKS
 
-        slopes, nearer = self.slopes, np.minimum(values[:-1], values[1:])
-        dips = (nearer > 0.0) & (nearer <= self.bending) & (slopes[:-1] < 0.0) & (slopes[1:] > 0.0)
-        dips &= np.arange(LOOKS)[:, None] < after
+        nearer = np.minimum(values[:-1], values[1:])
+        dips = (nearer > 0.0) & (nearer <= self.bending) & (np.arange(LOOKS)[:, None] < after)
+        if dips.any():
+            slopes = self.slopes
+            dips &= (slopes[:-1] < 0.0) & (slopes[1:] > 0.0)
         for lane in np.flatnonzero(dips.any(axis=0)):
             for look in np.flatnonzero(dips[:, lane]):
                 place, value = least_near(self.unit[:, [lane]], np.array([(look + 0.5) / LOOKS]))
@@ -162,10 +164,20 @@ def times(matrix: Array, columns: Array) -> Array:
     return np.concatenate(parts, axis=-1)
 
 
-def least_of_all(polynomials: "Polynomials") -> float:
-    """The least value of many polynomials."""
-    lowest = polynomials.some(np.flatnonzero(polynomials.floor <= polynomials.lowest.min()))
-    return float(lowest.refined_least()[1].min())
+def least_of_each(*lots: Sequence["Polynomials"]) -> list[float]:
+    """The least values of several lots of polynomials; inf of a lot without any."""
+    every = [one for lot in lots for one in lot]
+    owner = np.repeat(np.arange(len(lots)), [sum(len(one.span) for one in lot) for lot in lots])
+    unit, first = np.zeros((max((len(one.unit) for one in every), default=2), len(owner))), 0
+    for one in every:
+        unit[: len(one.unit), first : first + len(one.span)] = one.unit
+        first += len(one.span)
+    joined = Polynomials.of_unit(unit, np.ones(len(owner)))
+    least = np.full(len(lots), np.inf)
+    np.fmin.at(least, owner, joined.lowest)
+    lower = np.flatnonzero(joined.floor <= least[owner])
+    np.fmin.at(least, owner[lower], joined.some(lower).refined_least()[1])
+    return least.tolist()
 
 
 def least_near(unit: Array, guess: Array) -> tuple[Array, Array]:
