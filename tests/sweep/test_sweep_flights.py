@@ -118,7 +118,7 @@ def test_flights_and_impacts_keep_what_must_be_kept(slide):
     size = 1.0 + abs(energy(state, top))
     assert energy(found.state, top)[0] == pytest.approx(energy(state, top), abs=1e-10 * size)
     assert found.highest[0] >= state.height - 1e-12
-    _, down, up = tip.extremes.least[:, 0]
+    _, down, up = tip.least[:, 0]
     assert down <= min(state.axis[2], found.state.axis[2][0]) + 1e-12
     assert -up >= max(state.axis[2], found.state.axis[2][0]) - 1e-12
     after, struck = collide(found.state, kind.top(tuple(np.full(2, n) for n in numbers)))

@@ -15,11 +15,11 @@ from tippetop.integrators.polynomials import Polynomials
 from tippetop.integrators.relief import PATIENCE, is_stiff
 from tippetop.metrics import Ends
 from tippetop.sweeps.crossings import Crossings
-from tippetop.sweeps.extremes import FORCE
 from tippetop.sweeps.launches import Flags, Indices, Launches, Note, picked
 from tippetop.sweeps.slots import Slots
 from tippetop.sweeps.stepper import Stepper
 from tippetop.sweeps.stride import LANES
+from tippetop.sweeps.tip import FORCE
 from tippetop.theory.prediction import is_held
 
 LOST = 4.0
@@ -65,7 +65,7 @@ class Lanes:
         settled: float | None = None,
     ) -> None:
         self.tolerance, self.banded, self.settled = tolerance, band is not None, settled
-        self.slots = slots = Slots.of(launches, stepper, band)
+        self.slots = slots = Slots(launches, stepper, band)
         self.crossings, self.notes = Crossings(slots, tolerance, band is not None), list[Note]()
         self._launched = slots.alive.copy()
         if resumed is None:
@@ -106,7 +106,7 @@ class Lanes:
         if len(waiting):
             slots.held[waiting] = after[layout.taken, waiting]
             slots.before[waiting] = before[layout.left, waiting]
-        slots.tip.extremes.put(after[layout.least])
+        slots.tip.put(after[layout.least])
         slots.rows, slots.spare = after, before
         changed = after[layout.changed].nonzero()[0]
         if len(changed):
@@ -127,7 +127,7 @@ class Lanes:
             fall = Polynomials(terms, slots.held[lanes]).first_fall()
             earlier = (slots.numbers[layout.counts][number, lanes] != 0.0) & (fall <= span)
             fallen[earlier], span = number, np.where(earlier, fall, span)
-        slots.tip.extremes.take(FORCE, lanes, Polynomials(jet.guards[0], span))
+        slots.tip.take(FORCE, lanes, Polynomials(jet.guards[0], span))
         slots.tip.see(lanes, begun, Polynomials(jet.state[2], span))
         slots.rows[: layout.size, lanes] = jet.at(span)
         slots.rows[layout.left, lanes], slots.rows[layout.taken, lanes] = left - span, slots.held[lanes]
@@ -143,10 +143,10 @@ class Lanes:
     def _close(self, noted: Flags, begun: Array) -> None:
         """End a window: note it, take out what has ended, and close ranks."""
         slots, layout = self.slots, self.slots.layout
-        cells, (_, down, up) = slots.cell[noted], slots.tip.extremes.lately[:, noted]
+        cells, (_, down, up) = slots.cell[noted], slots.tip.lately[:, noted]
         if not self.banded:
             self.notes.append(Note(cells, begun[: layout.left + 1, noted], down, -up))
-        slots.tip.extremes.put_aside()
+        slots.tip.put_aside()
         ended = np.flatnonzero(slots.alive & (slots.left <= 0.0))
         if len(ended):
             slots.retire(ended, slots.whole(ended), slots.end[ended], Outcome.COMPLETED)

@@ -1,7 +1,5 @@
 """The arrays of launches under way: one lane a launch."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from tippetop.contact.mode import Outcome
@@ -14,7 +12,7 @@ from tippetop.mechanics.units import Units
 from tippetop.metrics import OUTCOMES, Ends
 from tippetop.sweeps.launches import Flags, Indices, Launches, branched
 from tippetop.sweeps.stepper import Stepper
-from tippetop.sweeps.stride import LANES, Layout
+from tippetop.sweeps.stride import LANES
 from tippetop.sweeps.tip import TipMotion
 
 NATURAL = Units(1.0, 1.0, 1.0)
@@ -24,70 +22,56 @@ LOSSES = slice(8, 10)
 """Rows of the work of drilling and of rolling, where a law has a torque."""
 
 
-@dataclass
 class Slots:
-    """Lanes, and what is kept of each; all of shape (n,) or (rows, n)."""
+    """Lanes, and what is kept of each; all of shape (n,) or (rows, n).
 
-    launches: Launches
-    """What is launched."""
-    stepper: Stepper
-    """Taylor's method for sliding tops of their kind."""
-    ends: Ends
-    """How the launches ended."""
-    cell: Indices
-    """Which launch is on the lane."""
-    alive: Flags
-    """Whether it is under way: lanes beyond the launches only fill up."""
-    end: Array
-    """When its run ends."""
-    numbers: Array
-    """The parameters of the motion and what to pause for."""
-    rows: Array
-    spare: Array
-    """What a step brings up to date, and room for the next."""
-    held: Array
-    before: Array
-    """The step that a lane waits before, 0 if it does not wait, and the time left before it."""
-    tip: TipMotion
-    """How the tip of the axis moves."""
+    Parameters
+    ----------
+    launches
+        What is launched.
+    stepper
+        Taylor's method for sliding tops of their kind.
+    band
+        The least and the largest n_z that each waits for, if there are such.
 
-    @classmethod
-    def of(cls, launches: Launches, stepper: Stepper, band: tuple[Array, Array] | None) -> "Slots":
-        """Lanes for launches; each waits for its own band of n_z if there is one."""
+    Attributes
+    ----------
+    ends
+        How the launches ended.
+    cell
+        Which launch is on the lane.
+    alive
+        Whether it is under way: lanes beyond the launches only fill up.
+    end
+        When its run ends.
+    numbers
+        The parameters of the motion and what to pause for.
+    rows, spare
+        What a step brings up to date, and room for the next.
+    held, before
+        The step that a lane waits before, 0 if it does not wait, and the time left before it.
+    tip
+        How the tip of the axis moves.
+    """
+
+    def __init__(self, launches: Launches, stepper: Stepper, band: tuple[Array, Array] | None) -> None:
         count, layout = len(launches), stepper.layout
         lanes = count + -count % LANES
-        filled = np.minimum(np.arange(lanes), count - 1)
-        tip = TipMotion.of(lanes)
-        numbers = np.concatenate(
-            (launches.numbers[:, filled], np.zeros((layout.numbers - layout.parameters, lanes)))
-        )
-        numbers[layout.counts], numbers[layout.turns] = 1.0, 1.0
+        self.launches, self.stepper, self.layout = launches, stepper, layout
+        self.ends, self.tip = Ends.unknown(count), TipMotion.of(lanes)
+        self.cell: Indices = np.minimum(np.arange(lanes), count - 1)
+        self.alive, self.end = np.arange(lanes) < count, launches.end[self.cell]
+        pauses = np.zeros((layout.numbers - layout.parameters, lanes))
+        self.numbers = np.concatenate((launches.numbers[:, self.cell], pauses))
+        self.numbers[layout.counts], self.numbers[layout.turns] = 1.0, 1.0
         # The first guard is of lift-off.
-        numbers[layout.counts.start] = float(launches.liftoff != "ignore")
-        numbers[layout.band] = np.array([[np.inf], [-np.inf]])
+        self.numbers[layout.counts.start] = float(launches.liftoff != "ignore")
+        self.numbers[layout.band] = np.array([[np.inf], [-np.inf]])
         if band is not None:
-            tip.low, tip.high = band[0][filled], band[1][filled]
-            numbers[layout.band] = tip.low, tip.high
-        rows = np.zeros((layout.rows, lanes))
-        return cls(
-            launches,
-            stepper,
-            Ends.unknown(count),
-            cell=filled,
-            alive=np.arange(lanes) < count,
-            end=launches.end[filled],
-            numbers=numbers,
-            rows=rows,
-            spare=np.zeros_like(rows),
-            held=np.zeros(lanes),
-            before=np.zeros(lanes),
-            tip=tip,
-        )
-
-    @property
-    def layout(self) -> Layout:
-        """Which row holds what."""
-        return self.stepper.layout
+            self.tip.low, self.tip.high = band[0][self.cell], band[1][self.cell]
+            self.numbers[layout.band] = self.tip.low, self.tip.high
+        self.rows, self.spare = np.zeros((2, layout.rows, lanes))
+        self.held, self.before = np.zeros((2, lanes))
 
     @property
     def left(self) -> Array:
@@ -166,7 +150,7 @@ class Slots:
         self.rows[self.layout.left, lanes] = 0.0
         self.alive[lanes] = False
         stayed = np.isnan(ends.lift_off[cells]) & (ends.flights[cells] == 0)
-        force, down, up = self.tip.extremes.least[:, lanes]
+        force, down, up = self.tip.least[:, lanes]
         ends.least_force[cells] = np.where(stayed, np.fmin(ends.least_force[cells], force), 0.0)
         ends.down[cells] = np.fmin(ends.down[cells], down)
         ends.up[cells] = np.fmax(ends.up[cells], -up)

@@ -1,19 +1,21 @@
-"""How the tip of the axis moves on the way: how far it moves, when it turns over, when it reaches a band."""
+"""How the tip of the axis moves on the way, and how hard the table presses: first times, and least values."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, fields
 
 import numpy as np
 
 from tippetop.integrators.base import Array
 from tippetop.integrators.polynomials import Polynomials
 from tippetop.metrics import arrival_time, turning_time
-from tippetop.sweeps.extremes import DOWN, UP, Extremes
 from tippetop.sweeps.launches import Indices
+
+FORCE, DOWN, UP = range(3)
+"""What is least: the value of the first guard, which is the normal force; n_z; and -n_z."""
 
 
 @dataclass
 class TipMotion:
-    """The motion of the tip of the axis, n_z, for n launches."""
+    """The motion of the tip of the axis, n_z, and the normal force, for n launches."""
 
     turned: Array
     """First time at which n_z falls through zero, which is when the top turns over; nan before. A top that
@@ -21,25 +23,43 @@ class TipMotion:
     low: Array
     high: Array
     """A band of n_z that is waited for, or nan."""
-    reached: Array = field(init=False)
+    reached: Array
     """First time at which n_z is in the band; nan before."""
-    extremes: Extremes = field(init=False)
-    """Least normal force, and least and largest n_z, exactly."""
-
-    def __post_init__(self) -> None:
-        self.reached = np.full(self.low.shape, np.nan)
-        self.extremes = Extremes.of(len(self.low))
+    early: Array
+    lately: Array
+    """The least values before they were last put aside, and since, shape (3, n); inf where there are none."""
 
     @classmethod
     def of(cls, count: int) -> "TipMotion":
         """That of launches that wait for no band."""
-        nothing = np.full(count, np.nan)
-        return cls(*(nothing.copy() for _ in range(3)))
+        return cls(*np.full((4, count), np.nan), *np.full((2, 3, count), np.inf))
+
+    @property
+    def least(self) -> Array:
+        """The least values, shape (3, n)."""
+        found: Array = np.fmin(self.early, self.lately)
+        return found
+
+    def put_aside(self) -> None:
+        """Begin anew with what is found lately."""
+        self.early = self.least
+        self.lately[:] = np.inf
+
+    def put(self, least: Array) -> None:
+        """Take in the least values of a step of every launch, shape (3, n); inf for those that took none."""
+        np.fmin(self.lately, least, out=self.lately)
+
+    def take(self, which: int, lanes: Indices, course: Polynomials) -> None:
+        """Take in the course of what may be least on some lanes; a lane may be there several times."""
+        np.fmin.at(self.lately[which], lanes, course.lowest)
+        lower = np.flatnonzero(course.floor <= self.least[which, lanes])
+        if len(lower):
+            np.fmin.at(self.lately[which], lanes[lower], course.some(lower).refined_least()[1])
 
     def see(self, launches: Indices, time: Array, tip: Polynomials) -> None:
         """Take in n_z as polynomials in time since `time`, shape (n,)."""
-        self.extremes.take(DOWN, launches, tip)
-        self.extremes.take(UP, launches, tip.negative())
+        self.take(DOWN, launches, tip)
+        self.take(UP, launches, tip.negative())
         some = np.flatnonzero(np.isnan(self.turned[launches]) & (tip.values.min(axis=0) < 0.0))
         if len(some):
             self.turned[launches[some]] = time[some] + turning_time(tip.some(some))
@@ -50,7 +70,4 @@ class TipMotion:
 
     def some(self, which: Indices) -> "TipMotion":
         """That of some of the launches."""
-        arrays = (self.turned, self.low, self.high)
-        motion = TipMotion(*(array[which] for array in arrays))
-        motion.reached, motion.extremes = self.reached[which], self.extremes.some(which)
-        return motion
+        return TipMotion(*(getattr(self, field.name)[..., which] for field in fields(self)))
