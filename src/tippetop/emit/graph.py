@@ -28,7 +28,7 @@ class NotRecordable(TypeError):
     """A function asked of a node what only a number can tell."""
 
 
-@dataclass(eq=False)
+@dataclass(eq=False, slots=True)
 class Node:
     """A number that is to be computed, or given."""
 
