@@ -32,9 +32,9 @@ class Calls(Expressions):
                 return f"{self.text(value, ATOM)}.{RENAMED.get(attr, attr)}({self._given(node)})"
             case ast.Subscript(value=ast.Name(id="list" | "dict" | "set" as word)):
                 return f"py.{word}({self.arguments(node.args)})"
-            case ast.Name(id="abs" | "max" | "min" as word) if self.among_arrays(node):
+            case ast.Name(id="abs" | "max" | "min" as word) if self.numeric:
                 return f"Math.{word}({self.arguments(node.args)})"
-            case ast.Name(id="len") if self.is_array(node.args[0]):
+            case ast.Name(id="len") if self.numeric:
                 return f"{self.text(node.args[0])}.length"
             case ast.Name(id=name):
                 own = self.name(name)

@@ -53,12 +53,10 @@ class Definitions(Statements):
 
     def _constructor(self, known: Class) -> Iterator[str]:
         """The fields of the bases first, by their places."""
-        self.scopes.append(self.scopes[-1].with_names(set()))
         given = [
             safe(name) if value is None else f"{safe(name)} = {self.text(value)}"
             for name, value in known.fields.items()
         ]
-        self.scopes.pop()
         above = [name for base in known.bases for name in self.program.classes[base].fields]
         yield f"constructor({', '.join(given)}) {{"
         yield f"  super({', '.join(map(safe, above))});"

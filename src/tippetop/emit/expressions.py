@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 
 from tippetop.emit.program import Program, safe
-from tippetop.emit.scope import Scope
+from tippetop.emit.scope import given
 
 ARROW, OR, AND, BITS, EQUAL, LESS, SUM, PRODUCT, UNARY, ATOM = range(10)
 """How tightly an expression binds."""
@@ -42,8 +42,8 @@ class Expressions(ABC):
 
     def __init__(self, program: Program, module: str) -> None:
         self.program, self.module = program, module
-        self.scopes = [Scope(floats={name for where, name in program.numbers if where == module})]
-        self.rows: dict[str, str] = {}
+        self.scopes, self.numeric = [set[str]()], module in program.numeric
+        self.declared, self.rows = set[str](), dict[str, str]()
 
     @abstractmethod
     def call(self, node: ast.Call) -> str:
@@ -55,7 +55,7 @@ class Expressions(ABC):
 
     def name(self, name: str) -> str:
         """What a name is called."""
-        if any(name in scope.names for scope in self.scopes):
+        if any(name in names for names in self.scopes):
             return safe(name)
         if name in ("self", "cls"):
             return "this"
@@ -91,14 +91,6 @@ class Expressions(ABC):
                 return self.text(node)
         raise self.refused(node)
 
-    def is_array(self, node: ast.expr) -> bool:
-        """Whether an expression is an array of numbers."""
-        return isinstance(node, ast.Name) and node.id in self.scopes[-1].arrays
-
-    def among_arrays(self, node: ast.expr) -> bool:
-        """Whether an expression is a number in a function of arrays of numbers, where nothing is an error."""
-        return bool(self.scopes[-1].arrays) and self.scopes[-1].is_float(node)
-
     def _found(self, node: ast.expr) -> tuple[str, int]:
         """An expression, and how tightly it binds."""
         match node:
@@ -118,7 +110,7 @@ class Expressions(ABC):
                 return self._arithmetic(node)
             case ast.UnaryOp(op=ast.Not(), operand=operand):
                 return f"!{self.truth(operand, UNARY)}", UNARY
-            case ast.UnaryOp(operand=operand) if self.scopes[-1].is_float(operand):
+            case ast.UnaryOp(operand=operand) if self.numeric or isinstance(operand, ast.Constant):
                 return f"-{self.text(operand, ATOM)}", UNARY
             case ast.UnaryOp(operand=operand):
                 return f"py.neg({self.text(operand)})", ATOM
@@ -137,7 +129,7 @@ class Expressions(ABC):
                 return self._item(node), ATOM
             case ast.Lambda(body=body):
                 return (
-                    f"{self.function(node)} => {self._inside(Scope.of(node, self.scopes[-1]), body)}",
+                    f"{self.function(node)} => {self._inside(given(node), body)}",
                     ARROW,
                 )
             case ast.ListComp(elt=element) | ast.GeneratorExp(elt=element):
@@ -172,19 +164,16 @@ class Expressions(ABC):
             names.append(f"...{safe(node.args.vararg.arg)}")
         return f"({', '.join(names)})"
 
-    def _inside(self, scope: Scope, body: ast.expr) -> str:
+    def _inside(self, names: set[str], body: ast.expr) -> str:
         """An expression where other names hold."""
-        self.scopes.append(scope)
+        self.scopes.append(names)
         found = self.text(body)
         self.scopes.pop()
         return f"({found})" if found.startswith("{") else found
 
     def _arithmetic(self, node: ast.BinOp) -> tuple[str, int]:
         word, sign, binds = ARITHMETIC[type(node.op)]
-        plain = self.scopes[-1].is_float(node)
-        if isinstance(node.op, ast.Div) and not self.among_arrays(node):
-            plain = plain and isinstance(node.right, ast.Constant) and bool(node.right.value)
-        if sign and (plain or binds == BITS):
+        if sign and (self.numeric or binds == BITS):
             return f"{self.text(node.left, binds)} {sign} {self.text(node.right, binds + 1)}", binds
         return f"py.{word}({self.text(node.left)}, {self.text(node.right)})", ATOM
 
@@ -204,8 +193,8 @@ class Expressions(ABC):
             found = f"py.contains({right}, {left})"
         elif (
             isinstance(op, ast.Is | ast.IsNot)
+            or self.numeric
             or any(isinstance(one, ast.Constant) for one in (a, b))
-            or all(self.scopes[-1].is_float(one) for one in (a, b))
         ):
             return f"{left} {'!' if negated else '='}== {right}", EQUAL
         else:
@@ -234,7 +223,7 @@ class Expressions(ABC):
             case ast.Tuple(elts=places):
                 row = f"{whole}[{self.text(places[0])}]"
                 return self.rows.get(row, row) + "".join(f"[{self.text(place)}]" for place in places[1:])
-            case _ if self.is_array(node.value):
+            case _ if self.numeric:
                 return f"{whole}[{self.text(node.slice)}]"
             case ast.Constant(value=int(number)) if self.module not in self.program.indexed:
                 return f"{whole}[{number}]"
@@ -246,7 +235,7 @@ class Expressions(ABC):
         if not whole.startswith(ROWS):
             whole = f"[...{whole}]"
         bound = {n.id for n in ast.walk(first.target) if isinstance(n, ast.Name)}
-        self.scopes.append(self.scopes[-1].with_names(bound))
+        self.scopes.append(bound)
         target = self.pattern(first.target)
         for test in first.ifs:
             whole = f"{whole}.filter(({target}) => {self.truth(test)})"

@@ -54,6 +54,8 @@ class Program:
         What is left out: functions, and methods with their class.
     indexed
         Modules in which what is indexed may be an object of its own kind.
+    numeric
+        Modules of numbers and arrays of them alone, in which nothing is an error.
     """
 
     def __init__(
@@ -62,9 +64,11 @@ class Program:
         given: Mapping[str, str],
         left: Iterable[str],
         indexed: Iterable[str] = (),
+        numeric: Iterable[str] = (),
     ) -> None:
         self.trees = {name: ast.parse(text) for name, text in sources.items()}
         self.given, self.left, self.indexed = dict(given), frozenset(left), frozenset(indexed)
+        self.numeric = frozenset(numeric)
         self.names: dict[tuple[str, str], str] = {}
         self.made: list[str] = []
         self.imported: dict[str, set[str]] = {}
@@ -72,7 +76,6 @@ class Program:
         self.functions: dict[str, list[str]] = {}
         self.methods: dict[str, list[list[str]]] = {"__getitem__": [], "model_copy": [["update"]]}
         self.values: set[str] = set()
-        self.numbers: set[tuple[str, str]] = set()
         for module, tree in self.trees.items():
             for node in tree.body:
                 self._enter(module, node)
@@ -96,8 +99,6 @@ class Program:
                         self.imported.setdefault(self.given[where], set()).add(alias.name)
                     known = self.names.get((str(where), alias.name), alias.name)
                     self.names[module, alias.asname or alias.name] = known
-                    if (where, alias.name) in self.numbers:
-                        self.numbers.add((module, alias.asname or alias.name))
             case ast.FunctionDef(name=name) if name not in self.left:
                 self.functions[self._unique(module, name)] = parameters(node)
             case ast.ClassDef(name=name) if name not in self.left:
@@ -107,14 +108,10 @@ class Program:
                 if kind:
                     own = self._unique(module, name)
                     self.classes[own] = Class(own, node, bases, kind)
-            case ast.Assign(value=value) | ast.AnnAssign(value=value) if not is_type(node):
-                values = value.elts if isinstance(value, ast.Tuple) else [value]
+            case ast.Assign() | ast.AnnAssign() if not is_type(node):
                 for target in targets_of(node):
                     for name in names_in(target):
                         self._unique(module, name)
-                    for name, one in zip(names_in(target), values, strict=False):
-                        if isinstance(one, ast.Constant) and isinstance(one.value, float | int):
-                            self.numbers.add((module, name))
 
     def _unique(self, module: str, name: str) -> str:
         found = safe(name)

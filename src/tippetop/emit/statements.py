@@ -7,7 +7,7 @@ from typing import Any
 from tippetop.emit.calls import Calls
 from tippetop.emit.expressions import ATOM, LESS
 from tippetop.emit.program import marks_of, names_in, targets_of
-from tippetop.emit.scope import Scope, is_range, within
+from tippetop.emit.scope import bound, given, within
 
 
 class Statements(Calls):
@@ -23,11 +23,13 @@ class Statements(Calls):
         yield "});" if known else "}"
 
     def _body(self, node: ast.FunctionDef) -> Iterator[str]:
-        self.scopes.append(Scope.of(node, self.scopes[-1]))
+        outer, self.declared = self.declared, given(node)
+        self.scopes.append(bound(node))
         if node.name == "__init__" and "super().__init__" not in ast.unparse(node):
             yield "super();"
         yield from self._block(node.body)
         self.scopes.pop()
+        self.declared = outer
 
     def _block(self, body: Sequence[ast.stmt]) -> Iterator[str]:
         for node in body:
@@ -87,15 +89,14 @@ class Statements(Calls):
 
     def _var(self, *names: str) -> str:
         """What declares names in all of a function, as Python does, before they are first written there."""
-        known = self.scopes[-1].declared
-        new = not known.issuperset(names)
-        known.update(names)
+        new = not self.declared.issuperset(names)
+        self.declared.update(names)
         return "var " if new else ""
 
     def _assigned(self, target: ast.expr, value: str) -> str:
         match target:
             case ast.Subscript(value=whole, slice=place):
-                if isinstance(place, ast.Tuple) or self.is_array(whole):
+                if self.numeric:
                     return f"{self.text(target)} = {value};"
                 return f"py.put({self.text(whole, ATOM)}, {self.text(place)}, {value});"
         return f"{self._var(*names_in(target))}{self.pattern(target)} = {value};"
@@ -116,7 +117,7 @@ class Statements(Calls):
 
     def _loop(self, node: ast.For) -> Iterator[str]:
         match node:
-            case ast.For(target=ast.Name(id=name), iter=ast.Call(args=args)) if is_range(node.iter):
+            case ast.For(target=ast.Name(id=name), iter=ast.Call(func=ast.Name("range"), args=args)):
                 i = self.name(name) if name != "_" else "turn"
                 start = self.text(args[0]) if len(args) > 1 else "0"
                 stop = self.text(args[1] if len(args) > 1 else args[0], LESS)

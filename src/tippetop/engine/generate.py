@@ -62,6 +62,9 @@ LEFT = {
 INDEXED = {"tippetop.mechanics.series", "tippetop.mechanics.slip_onset"}
 """Where what is indexed may be a series."""
 
+NUMERIC = {"tippetop.integrators.dormand_prince"}
+"""Where all is numbers, and arrays of them."""
+
 
 def generated() -> dict[str, str]:
     """The texts of the modules by their names."""
@@ -70,7 +73,7 @@ def generated() -> dict[str, str]:
 
 def translated() -> str:
     """The module of mechanics and contact modes."""
-    program = Program(sources(), GIVEN, LEFT, INDEXED)
+    program = Program(sources(), GIVEN, LEFT, INDEXED, NUMERIC)
     lines = list[str]()
     for module in program.trees:
         lines += ["", f"// {module}"]

@@ -442,7 +442,7 @@ class RingSurface extends py.NamedTuple {
   }
   /** Falls through zero where the body comes to lie flat: s^2 less that of `FLAT`. */
   face_guard(axis) {
-    return py.sub(py.add(py.mul(axis[0], axis[0]), py.mul(axis[1], axis[1])), FLAT * FLAT);
+    return py.sub(py.add(py.mul(axis[0], axis[0]), py.mul(axis[1], axis[1])), py.mul(FLAT, FLAT));
   }
   /** It is none. */
   get spherical() {
@@ -1088,7 +1088,7 @@ function solve(matrix, right) {
     var inverse = py.div(1.0, py.item(pivot, i));
     for (var row of py.slice(rows, py.add(i, 1), null, null)) {
       var factor = py.mul(py.item(row, i), inverse);
-      for (var j = py.add(i, 1); j < count + 1; j += 1) {
+      for (var j = py.add(i, 1); j < py.add(count, 1); j += 1) {
         py.put(row, j, py.sub(py.item(row, j), py.mul(factor, py.item(pivot, j))));
       }
     }
@@ -1171,19 +1171,19 @@ function stopping_guard(state, rate, top) {
 /** Falls through zero where slip becomes so small that it is to be watched, (m/s)^2. */
 function nearing_guard(state, top) {
   var slip = slip_of(...state, top);
-  return py.sub(inner(slip, slip), NEAR * NEAR);
+  return py.sub(inner(slip, slip), py.mul(NEAR, NEAR));
 }
 
 /** Falls through zero where slip is so large again that it need not be watched, (m/s)^2. */
 function parting_guard(state, top) {
   var slip = slip_of(...state, top);
-  return py.sub(APART * APART, inner(slip, slip));
+  return py.sub(py.mul(APART, APART), inner(slip, slip));
 }
 
 /** Whether slip is to be watched from here on; a truth value of floats, or an array of them. */
 function is_near(state, top) {
   var slip = slip_of(...state, top);
-  return inner(slip, slip) < NEAR * APART;
+  return inner(slip, slip) < py.mul(NEAR, APART);
 }
 
 /** The same of rolling, (rad/s)^2; velocities are not asked for. */
@@ -1245,8 +1245,8 @@ function tangents(e) {
   var sign = z >= 0.0 ? 1.0 : -1.0;
   var a = py.div(1.0, py.add(1.0, py.mul(sign, z)));
   return [
-    [py.sub(1.0, py.mul(py.mul(x, x), a)), py.mul(py.mul(py.neg(x), y), a), py.mul(-sign, x)],
-    [py.mul(py.mul(py.neg(x), y), a), py.sub(1.0, py.mul(py.mul(y, y), a)), py.mul(-sign, y)]
+    [py.sub(1.0, py.mul(py.mul(x, x), a)), py.mul(py.mul(py.neg(x), y), a), py.mul(py.neg(sign), x)],
+    [py.mul(py.mul(py.neg(x), y), a), py.sub(1.0, py.mul(py.mul(y, y), a)), py.mul(py.neg(sign), y)]
   ];
 }
 
@@ -1379,7 +1379,7 @@ function slowing(state, ending, top) {
 function reopening_guard(state, ending, top) {
   var rate = rates_in_time(state, ending, top).xi;
   var doubt = py.div(py.mul(py.pow(inner(rate, rate), 0.5), DIGITS), py.add(state.speed, SLOW));
-  return py.sub(py.mul(-2.0 * HORIZON, py.sub(inner(rate, state.direction), doubt)), state.speed);
+  return py.sub(py.mul(py.mul(-2.0, HORIZON), py.sub(inner(rate, state.direction), doubt)), state.speed);
 }
 
 /** Falls through zero where xi, at its present rate, ends within the horizon (s): s + horizon R. */
@@ -1652,7 +1652,7 @@ function surface_guards(kind) {
 
 /** Whether no other surface touches at these numbers of a mode on the active one, floats. */
 function stays_open(top, y) {
-  return clearance(top, y[2]) > -MARGIN;
+  return clearance(top, y[2]) > py.neg(MARGIN);
 }
 
 /** The least gap of the other surfaces while the active one touches, at a cosine of the tilt, floats. */
@@ -1744,10 +1744,10 @@ class Algebra extends py.Thing {
     throw new py.NotImplementedError();
   }
   __pow__(exponent) {
-    if (exponent < 1 || exponent !== py.int(exponent)) {
+    if (exponent < 1 || !py.eq(exponent, py.int(exponent))) {
       return this.power(exponent);
     }
-    return exponent === 1 ? this : py.mul(this, py.pow(this, exponent - 1));
+    return exponent === 1 ? this : py.mul(this, py.pow(this, py.sub(exponent, 1)));
   }
   __neg__() {
     return py.mul(this, -1.0);
@@ -1788,9 +1788,11 @@ class TruncatedSeries extends Algebra {
     var a = this.terms;
     if (py.isinstance(other, TruncatedSeries)) {
       var b = py.slice(other.terms, null, null, -1);
-      var last = py.len(a) - 1;
+      var last = py.sub(py.len(a), 1);
       return new TruncatedSeries(
-        py.range(last + 1).map((k) => py.sum(py.map(py.mul, a, py.slice(b, py.sub(last, k), null, null))))
+        py.range(py.add(last, 1)).map(
+          (k) => py.sum(py.map(py.mul, a, py.slice(b, py.sub(last, k), null, null)))
+        )
       );
     }
     return new TruncatedSeries([...a].map((term) => py.mul(other, term)));
@@ -1800,8 +1802,11 @@ class TruncatedSeries extends Algebra {
     var [a, y] = [this.terms, [py.pow(this.terms[0], exponent)]];
     for (var k = 1; k < py.len(a); k += 1) {
       var total = py.sum(
-        py.range(1, k + 1).map(
-          (j) => py.mul(py.mul(py.sub(py.mul(exponent + 1.0, j), k), py.item(a, j)), py.item(y, py.sub(k, j)))
+        py.range(1, py.add(k, 1)).map(
+          (j) => py.mul(
+            py.mul(py.sub(py.mul(py.add(exponent, 1.0), j), k), py.item(a, j)),
+            py.item(y, py.sub(k, j))
+          )
         )
       );
       y.push(py.div(total, py.mul(k, a[0])));
@@ -1838,38 +1843,38 @@ class Disc extends Algebra {
     if (near <= 0.0) {
       throw new py.ArithmeticError("a power of a disc that touches zero");
     }
-    var steepest = py.max(py.pow(near, exponent - 1.0), py.pow(far, exponent - 1.0));
+    var steepest = py.max(py.pow(near, py.sub(exponent, 1.0)), py.pow(far, py.sub(exponent, 1.0)));
     return new Disc(py.pow(this.centre, exponent), py.mul(py.mul(this.radius, py.abs(exponent)), steepest));
   }
 }
 
 // tippetop.mechanics.roots
 const FINEST = 1e-10;
-const [GOLDEN, NARROWED] = [0.5 * (3.0 - py.pow(5.0, 0.5)), 29];
+const [GOLDEN, NARROWED] = [py.mul(0.5, py.sub(3.0, py.pow(5.0, 0.5))), 29];
 
 /** First root from `low` to `high`, or `low` if not positive there; `jerk` bounds the third derivative. */
 function first_root(function_, low, high, jerk) {
-  var [time, step, finest] = [low, high - low, FINEST * (high - low)];
+  var [time, step, finest] = [low, py.sub(high, low), py.mul(FINEST, py.sub(high, low))];
   var [value, rate, acceleration] = function_(time);
   while (value > 0.0) {
-    step = py.min(step, high - time);
-    var end = step === high - time ? high : time + step;
+    step = py.min(step, py.sub(high, time));
+    var end = py.eq(step, py.sub(high, time)) ? high : py.add(time, step);
     var positive = stays_positive(value, rate, acceleration, jerk, step);
     if (py.truth(positive) || py.truth(is_one_way(rate, acceleration, jerk, step))) {
-      if (end === high && py.truth(positive)) {
+      if (py.eq(end, high) && py.truth(positive)) {
         return null;
       }
       var later = function_(end);
       if (later[0] <= 0.0 && !py.truth(positive)) {
         return crossing((t) => function_(t)[0], time, end);
       }
-      if (end === high && later[0] > 0.0) {
+      if (py.eq(end, high) && later[0] > 0.0) {
         return null;
       }
-      [time, step] = [end, 2.0 * step];
+      [time, step] = [end, py.mul(2.0, step)];
       [value, rate, acceleration] = later;
     } else {
-      step = step * 0.5;
+      step = py.mul(step, 0.5);
       if (step < finest) {
         break;
       }
@@ -1881,23 +1886,29 @@ function first_root(function_, low, high, jerk) {
 /** Whether value + rate s + acceleration s^2/2 - jerk s^3/6 is positive for all s in [0, step]. */
 function stays_positive(value, rate, acceleration, jerk, step) {
   var cubic = (s) => {
-    return value + s * (rate + s * (acceleration / 2.0 - s * jerk / 6.0));
+    return py.add(
+      value,
+      py.mul(s, py.add(rate, py.mul(s, py.sub(py.div(acceleration, 2.0), py.div(py.mul(s, jerk), 6.0)))))
+    );
   };
   if (cubic(step) <= 0.0) {
     return false;
   }
-  var discriminant = acceleration * acceleration + 2.0 * jerk * rate;
+  var discriminant = py.add(py.mul(acceleration, acceleration), py.mul(py.mul(2.0, jerk), rate));
   if (rate >= 0.0 || acceleration <= 0.0 || discriminant <= 0.0) {
     return true;
   }
-  var dip = py.div(-2.0 * rate, acceleration + py.pow(discriminant, 0.5));
+  var dip = py.div(py.mul(-2.0, rate), py.add(acceleration, py.pow(discriminant, 0.5)));
   return py.or(dip >= step, () => cubic(dip) > 0.0);
 }
 
 /** Whether a function surely falls, or surely is concave, all along a step: it has one root at most. */
 function is_one_way(rate, acceleration, jerk, step) {
-  var falls = py.and(rate < 0.0, () => rate + step * (acceleration + 0.5 * step * jerk) < 0.0);
-  return py.or(falls, () => acceleration + step * jerk < 0.0);
+  var falls = py.and(
+    rate < 0.0,
+    () => py.add(rate, py.mul(step, py.add(acceleration, py.mul(py.mul(0.5, step), jerk)))) < 0.0
+  );
+  return py.or(falls, () => py.add(acceleration, py.mul(step, jerk)) < 0.0);
 }
 
 /** Place and value of a function's least value between two points, or of one that is not positive. */
@@ -1963,7 +1974,7 @@ function crossing(function_, low, high) {
 
 // tippetop.mechanics.touchdown
 const DEGREE = 16;
-const START = py.pow(10.0, py.div(-16.0, DEGREE + 1));
+const START = py.pow(10.0, py.div(-16.0, py.add(DEGREE, 1)));
 const WIDEST = 4.0;
 const NARROWEST = 1e-09;
 const LOOKS = 10.0;
@@ -2030,7 +2041,12 @@ function falling_time(height, rate, half) {
   if (half >= 0.0) {
     return py.math.inf;
   }
-  return py.div(-(rate + py.math.sqrt(py.max(rate * rate - 4.0 * half * height, 0.0))), 2.0 * half);
+  return py.div(
+    py.neg(
+      py.add(rate, py.math.sqrt(py.max(py.sub(py.mul(rate, rate), py.mul(py.mul(4.0, half), height)), 0.0)))
+    ),
+    py.mul(2.0, half)
+  );
 }
 
 /** The highest gap of a free flight that lasts some time, s; floats. */
@@ -2044,11 +2060,11 @@ function highest_gap(state, top, duration) {
   }
   var count = py.min(
     MOST_LOOKS,
-    2 + py.int(py.div(py.mul(LOOKS * duration, length(state.momentum)), top.transverse_inertia))
+    py.add(2, py.int(py.div(py.mul(py.mul(LOOKS, duration), length(state.momentum)), top.transverse_inertia)))
   );
-  var times = py.range(count + 1).map((j) => py.div(py.mul(duration, j), count));
+  var times = py.range(py.add(count, 1)).map((j) => py.div(py.mul(duration, j), count));
   var gaps = [...times].map((time) => gap(time)[0]);
-  var best = py.max(py.range(count + 1), py.how({ key: py.bound(gaps, "__getitem__") }));
+  var best = py.max(py.range(py.add(count, 1)), py.how({ key: py.bound(gaps, "__getitem__") }));
   if (gap(py.item(times, best))[1] > 0.0) {
     var [low, high] = [py.item(times, best), py.item(times, py.min(py.add(best, 1), count))];
   } else {
@@ -2102,8 +2118,13 @@ class Tip extends py.NamedTuple {
   /** Height as a power series in time. */
   series() {
     var terms = [this.height, this.rate, py.mul(0.5, this.acceleration)];
-    for (var j = 1; j < DEGREE - 1; j += 1) {
-      terms.push(py.div(py.mul(py.neg(py.pow(this.frequency, 2)), py.item(terms, j)), (j + 1) * (j + 2)));
+    for (var j = 1; j < py.sub(DEGREE, 1); j += 1) {
+      terms.push(
+        py.div(
+          py.mul(py.neg(py.pow(this.frequency, 2)), py.item(terms, j)),
+          py.mul(py.add(j, 1), py.add(j, 2))
+        )
+      );
     }
     return new TruncatedSeries(terms);
   }
@@ -2113,7 +2134,7 @@ class Tip extends py.NamedTuple {
     var w = this.frequency;
     return py.add(
       py.div(py.mul(py.abs(rate), py.math.sinh(angle)), w),
-      py.div(py.mul(py.abs(acceleration), py.math.cosh(angle) - 1.0), py.pow(w, 2))
+      py.div(py.mul(py.abs(acceleration), py.sub(py.math.cosh(angle), 1.0)), py.pow(w, 2))
     );
   }
 }
@@ -2142,7 +2163,7 @@ class Separation extends py.NamedTuple {
     var slope = this.shape.slope(c);
     return [
       py.sub(py.add(p0, py.mul(time, py.add(p1, py.mul(time, p2)))), this.shape.height(c)),
-      py.sub(py.add(p1, py.mul(2.0 * time, p2)), py.mul(slope, rate)),
+      py.sub(py.add(p1, py.mul(py.mul(2.0, time), p2)), py.mul(slope, rate)),
       py.sub(
         py.sub(py.mul(2.0, p2), py.mul(py.mul(this.shape.curvature(c), rate), rate)),
         py.mul(slope, acceleration)
@@ -2173,8 +2194,11 @@ class Opening extends py.NamedTuple {
   /** A bound on the third derivative up to this time. */
   jerk_bound(time) {
     var bound = 0.0;
-    for (var j = py.len(this.terms) - 1; j > 2; j += -1) {
-      bound = py.add(py.mul(bound, time), py.mul(j * (j - 1) * (j - 2), py.abs(py.item(this.terms, j))));
+    for (var j = py.sub(py.len(this.terms), 1); j > 2; j += -1) {
+      bound = py.add(
+        py.mul(bound, time),
+        py.mul(py.mul(py.mul(j, py.sub(j, 1)), py.sub(j, 2)), py.abs(py.item(this.terms, j)))
+      );
     }
     return bound;
   }
@@ -2191,7 +2215,7 @@ function analytic_disc(tip, shape, time, ahead, angle) {
       return [radius, py.float(py.add(shape.height(c), py.mul(0.0, c)).radius)];
     } catch (error) {
       if (!(error instanceof py.ArithmeticError)) throw error;
-      angle = angle * 0.5;
+      angle = py.mul(angle, 0.5);
       if (angle < NARROWEST) {
         throw error;
       }
@@ -2220,24 +2244,24 @@ class Flight extends Mode {
   /** Evaluate the flight, which needs no integrator: the impact at its end may. */
   *segments(time, state, end, integrator) {
     try {
-      var [landing, lowest] = this._landing(state, end - time);
+      var [landing, lowest] = this._landing(state, py.sub(end, time));
     } catch (error) {
       if (!(error instanceof py.ArithmeticError)) throw error;
       var failed = new Transition([], Outcome.FAILED, state, py.str(error));
       yield new Segment(this, DenseSolution.nothing(time, py.len(state.pack())), state, failed);
       return null;
     }
-    var duration = landing === null ? end - time : landing;
+    var duration = landing === null ? py.sub(end, time) : landing;
     var rate = py.div(length(state.momentum), this.top.transverse_inertia);
-    var count = 1 + py.int(py.div(py.mul(duration, rate), TURN));
+    var count = py.add(1, py.int(py.div(py.mul(duration, rate), TURN)));
     var highest = highest_gap(state, this.top, duration);
     for (var first = 0; first < count; first += MOST_STEPS) {
-      var last = py.min(first + MOST_STEPS, count);
-      var elapsed = py.range(first, last + 1).map((step) => py.mul(py.div(duration, count), step));
-      py.put(elapsed, -1, last === count ? duration : py.item(elapsed, -1));
+      var last = py.min(py.add(first, MOST_STEPS), count);
+      var elapsed = py.range(first, py.add(last, 1)).map((step) => py.mul(py.div(duration, count), step));
+      py.put(elapsed, -1, py.eq(last, count) ? duration : py.item(elapsed, -1));
       var here = fly(state, py.item(elapsed, -1), this.top, py.math);
       var [transition, reach] = [null, py.add(time, py.item(elapsed, -1))];
-      if (last === count) {
+      if (py.eq(last, count)) {
         reach = landing === null ? end : reach;
         var low = landing === null ? null : lowest;
         transition = this._transition(reach, here, low, integrator);
@@ -2281,7 +2305,7 @@ py.fields(Flight, ["top", "rules", "start"]);
 /** How a flight starts for a surface that did not decide it: far, or just opened. */
 function start_of(state, top) {
   var rate = gap_rate(state, top);
-  if (gap(state, top) > TOUCHING || rate < -TOUCHING) {
+  if (gap(state, top) > TOUCHING || rate < py.neg(TOUCHING)) {
     return Start.AIRBORNE;
   }
   return rate > TOUCHING ? Start.REBOUND : Start.RELEASE;
@@ -2603,7 +2627,7 @@ class Series extends py.Thing {
   _squared() {
     var rule = (k) => {
       var known = this.up_to(k);
-      var terms = py.range(py.floordiv(k + 1, 2)).map(
+      var terms = py.range(py.floordiv(py.add(k, 1), 2)).map(
         (j) => py.mul(2.0, py.mul(py.item(known, j), py.item(known, py.sub(k, j))))
       );
       if (py.mod(k, 2) === 0) {
@@ -2641,9 +2665,11 @@ class Series extends py.Thing {
         return py.pow(py.item(this, 0), exponent);
       }
       var [base, found] = [this.up_to(k), power.known];
-      var factors = py.range(1, k + 1).map((j) => py.div(py.sub(py.mul(exponent + 1.0, j), k), k));
+      var factors = py.range(1, py.add(k, 1)).map(
+        (j) => py.div(py.sub(py.mul(py.add(exponent, 1.0), j), k), k)
+      );
       var terms = py.list(
-        py.map(py.mul, factors, py.map(py.mul, base.slice(1), py.slice(found, k - 1, null, -1)))
+        py.map(py.mul, factors, py.map(py.mul, base.slice(1), py.slice(found, py.sub(k, 1), null, -1)))
       );
       return py.mul(this.arithmetic.total(terms), py.item(inverse, 0));
     };
@@ -2727,11 +2753,11 @@ class Onset extends py.NamedTuple {
     var vectors = [this.axis, this.momentum, this.velocity, this.direction, [this.speed]];
     var times = [1e+300];
     for (var rows of vectors) {
-      var whole = error * py.math.hypot(...[...rows].map((row) => py.item(row, 0)));
+      var whole = py.mul(error, py.math.hypot(...[...rows].map((row) => py.item(row, 0))));
       if (!py.truth(whole)) {
         continue;
       }
-      for (var k = py.len(this.speed) - 2; k < py.len(this.speed); k += 1) {
+      for (var k = py.sub(py.len(this.speed), 2); k < py.len(this.speed); k += 1) {
         var term = py.math.hypot(...[...rows].map((row) => py.item(row, k)));
         if (k > 0 && term > 0.0) {
           times.push(py.pow(py.div(whole, term), py.div(1.0, k)));
@@ -2778,9 +2804,9 @@ function onset(known, power, order) {
   if (power === 1) {
     s.push(inner(known.accelerations(0), first));
   }
-  for (var j = 1; j < order + power; j += 1) {
-    var k = j - power + 1;
-    var [factor, along] = [k + power, 0.0];
+  for (var j = 1; j < py.add(order, power); j += 1) {
+    var k = py.add(py.sub(j, power), 1);
+    var [factor, along] = [py.add(k, power), 0.0];
     for (var row of e) {
       along = py.sub(along, py.mul(0.5, py.sum(py.map(py.mul, row.slice(1), py.slice(row, null, 0, -1)))));
     }
@@ -2807,14 +2833,14 @@ function onset(known, power, order) {
     }
     s.push(py.div(py.add(py.sum(py.map(py.mul, first, rest)), py.sum(py.map(py.mul, parts, ahead))), factor));
   }
-  var rows = [...known.state].map((y) => py.range(order + power + 1).map((k) => py.item(y, k)));
-  var turning = py.tuple([...e].map((row) => py.slice(row, null, order + 1, null)));
+  var rows = [...known.state].map((y) => py.range(py.add(py.add(order, power), 1)).map((k) => py.item(y, k)));
+  var turning = py.tuple([...e].map((row) => py.slice(row, null, py.add(order, 1), null)));
   return new Onset(
     py.tuple(rows.slice(0, 3)),
     py.tuple(rows.slice(3, 6)),
     py.tuple(rows.slice(6)),
     turning,
-    py.slice(s, null, order + 1, null),
+    py.slice(s, null, py.add(order, 1), null),
     power
   );
 }
@@ -2876,8 +2902,8 @@ const FEW = 11;
 class Driven extends py.Thing {
   constructor(start, velocity, degree, expand) {
     super();
-    [this.first, this._expand, this._chain] = [start[2], expand, degree + 1];
-    this._free = py.len(velocity) + 6;
+    [this.first, this._expand, this._chain] = [start[2], expand, py.add(degree, 1)];
+    this._free = py.add(py.len(velocity), 6);
     this._arguments = [...start[0], ...start[1], ...velocity, ...scaled(0.0, start[2])];
     this._given = py.len(this._arguments);
     for (var e of start[2]) {
@@ -2904,7 +2930,7 @@ class Driven extends py.Thing {
   /** Coefficient of order j of A, expanded no further than to the first of the degrees that has it. */
   accelerations(j) {
     var rows = py.call(py.item(this._expand, j < FEW ? 0 : -1), this._arguments).slice(this._free);
-    return py.tuple([...rows].map((row) => (j + 1) * py.float(py.item(row, j + 1))));
+    return py.tuple([...rows].map((row) => py.mul(py.add(j, 1), py.float(py.item(row, py.add(j, 1))))));
   }
 }
 
@@ -2915,8 +2941,8 @@ function growth(start, top, ending, velocity, degree, integrator) {
     return new Growing(start, top, ending, velocity);
   }
   var motion = driven_motion(top.kind, ending, py.len(start[2]), degree);
-  var count = py.sub(motion.size, py.len(start[2]) * (degree + 1));
-  var degrees = degree >= FEW ? [FEW, degree + 1] : [degree + 1];
+  var count = py.sub(motion.size, py.mul(py.len(start[2]), py.add(degree, 1)));
+  var degrees = degree >= FEW ? [FEW, py.add(degree, 1)] : [py.add(degree, 1)];
   var expand = [...degrees].map((highest) => expansion(motion, top.numbers, highest, count));
   return new Driven(start, velocity, degree, expand);
 }
@@ -2924,19 +2950,28 @@ function growth(start, top, ending, velocity, degree, integrator) {
 /** Equations of motion in which a direction is given: it, and its derivatives, are the last numbers. */
 const driven_motion = py.cached((kind, ending, components, degree) => {
   var free = py.truth(ending.moves) ? 8 : 6;
-  var chain = degree + 1;
+  var chain = py.add(degree, 1);
   var rates = (y, numbers) => {
-    var given = py.slice(y, free + components, null, null);
+    var given = py.slice(y, py.add(free, components), null, null);
     var direction = py.tuple(py.range(components).map((i) => py.item(given, py.mul(i, chain))));
     var state = new Closing(...split(y), py.tuple(y.slice(6, free)), direction, 0.0, 0.0);
     var rate = rates_in_time(state, ending, kind.top(py.tuple(numbers)));
     var turning = py.list();
     for (var i = 0; i < components; i += 1) {
-      turning = py.add(turning, [...py.slice(given, i * chain + 1, (i + 1) * chain, null), 0.0]);
+      turning = py.add(
+        turning,
+        [...py.slice(given, py.add(py.mul(i, chain), 1), py.mul(py.add(i, 1), chain), null), 0.0]
+      );
     }
     return [...rate.axis, ...rate.momentum, ...rate.velocity, ...rate.xi, ...turning];
   };
-  return new Motion(rates, free + components * (chain + 1), kind.numbers, undefined, false);
+  return new Motion(
+    rates,
+    py.add(free, py.mul(components, py.add(chain, 1))),
+    kind.numbers,
+    undefined,
+    false
+  );
 });
 
 // tippetop.contact.arriving
@@ -2955,14 +2990,14 @@ class Arrival extends py.NamedTuple {
   }
   /** The numbers where a part of the time is left. */
   at(part) {
-    return [...this.rows].map((row) => horner(row, py.mul(-part, this.left)));
+    return [...this.rows].map((row) => horner(row, py.mul(py.neg(part), this.left)));
   }
   /** Whether the last two terms are small, those of zeta beside zeta. */
   get serves() {
     var whole = size(py.tuple(this.at(1.0).slice(6)));
     return py.all(
       [[this.rows.slice(0, 6), 1.0], [this.rows.slice(6), whole]].flatMap(
-        ([rows, unit]) => py.range(py.len(rows[0]) - 2, py.len(rows[0])).map(
+        ([rows, unit]) => py.range(py.sub(py.len(rows[0]), 2), py.len(rows[0])).map(
           (k) => size(
             py.tuple([...rows].map((row) => py.mul(py.item(row, k), py.pow(this.left, k))))
           ) < py.mul(ACCURACY, unit)
@@ -2975,9 +3010,9 @@ class Arrival extends py.NamedTuple {
     var rows = [];
     for (var row of this.rows) {
       var shifted = py.list(row);
-      for (var first = 0; first < py.len(row) - 1; first += 1) {
-        for (var k = py.len(row) - 2; k > first - 1; k += -1) {
-          py.put(shifted, k, py.sub(py.item(shifted, k), py.mul(this.left, py.item(shifted, k + 1))));
+      for (var first = 0; first < py.sub(py.len(row), 1); first += 1) {
+        for (var k = py.sub(py.len(row), 2); k > py.sub(first, 1); k += -1) {
+          py.put(shifted, k, py.sub(py.item(shifted, k), py.mul(this.left, py.item(shifted, py.add(k, 1)))));
         }
       }
       rows.push(shifted);
@@ -3136,7 +3171,7 @@ const closing_motion = py.cached((kind, ending, guarded) => {
     guards.push(guard(LIMIT_BRANCH, (state, top, _) => limit_guard(top, held_by(state, top))));
   }
   guards = py.add(guards, surface_guards(kind));
-  var size = (py.truth(ending.moves) ? 10 : 8) + py.len(ending.wrenches(top));
+  var size = py.add(py.truth(ending.moves) ? 10 : 8, py.len(ending.wrenches(top)));
   return new Motion(rates, size, py.add(kind.numbers, 2), py.tuple(guards), false);
 });
 
@@ -3156,9 +3191,9 @@ function closing_of(y, ending) {
   return new Closing(
     ...split(y),
     py.tuple(y.slice(6, free)),
-    py.tuple(py.slice(y, free, count - 2, null)),
-    py.item(y, count - 2),
-    py.item(y, count - 1)
+    py.tuple(py.slice(y, free, py.sub(count, 2), null)),
+    py.item(y, py.sub(count, 2)),
+    py.item(y, py.sub(count, 1))
   );
 }
 
@@ -3237,7 +3272,11 @@ class Resting extends Mode {
   }
   /** Stay as it is. */
   *segments(time, state, end, integrator) {
-    var still = DenseSolution.standing(this.told.numbers(state), time, time + SHORT * py.max(1.0, time));
+    var still = DenseSolution.standing(
+      this.told.numbers(state),
+      time,
+      py.add(time, py.mul(SHORT, py.max(1.0, time)))
+    );
     yield new Segment(this.told, still, state, new Transition([], Outcome.AT_REST, state));
   }
 }
@@ -3252,7 +3291,7 @@ class Stopping extends Passing {
   /** Follow it to its end, or to where it is no longer about to end. */
   *segments(time, state, end, integrator) {
     var [ending, begin] = [this.ending, py.or(this.begin, () => this._clock(state))];
-    var arrival = this._arrival(closing_of(begin, ending), end - time, integrator);
+    var arrival = this._arrival(closing_of(begin, ending), py.sub(end, time), integrator);
     if (arrival !== null) {
       var solution = DenseSolution.in_time([0.0, arrival.left], [arrival.onwards]);
       var last = this.state(arrival.at(0.0));
@@ -3268,7 +3307,7 @@ class Stopping extends Passing {
       if (landing_guard(here, ending, this.top, horizon) <= 0.0) {
         continue;
       }
-      var arcs = followed(integrator, motion, [...this.top.numbers, end - time, horizon], start);
+      var arcs = followed(integrator, motion, [...this.top.numbers, py.sub(end, time), horizon], start);
       steps = py.add(steps, py.sum([...arcs].map((arc) => arc.steps)));
       [arc, parts] = [
         py.item(arcs, -1),
@@ -3310,7 +3349,9 @@ class Stopping extends Passing {
     if (found === null || found.left > longest) {
       return null;
     }
-    var looks = py.range(1, LOOKS_of_passing + 1).map((look) => found.at(py.div(look, LOOKS_of_passing)));
+    var looks = py.range(1, py.add(LOOKS_of_passing, 1)).map(
+      (look) => found.at(py.div(look, LOOKS_of_passing))
+    );
     if (
       py.isinstance(this.top.surface, Hull) && !py.truth(
         py.all([...looks].map((y) => stays_open(this.top, y)))
@@ -3393,9 +3434,9 @@ class Stopping extends Passing {
   _in_time(parts, begin, time, before, after) {
     if (!py.truth(parts)) {
       var still = shown(closing_of(begin, this.ending));
-      return DenseSolution.standing(still, time, time + py.float(after.time));
+      return DenseSolution.standing(still, time, py.add(time, py.float(after.time)));
     }
-    var [clock, elapsed] = [DenseSolution.joined(parts), py.len(begin) - 1];
+    var [clock, elapsed] = [DenseSolution.joined(parts), py.sub(py.len(begin), 1)];
     var numbers = (times) => {
       return shown(closing_of(clock.rows(clock.when(elapsed, times)), this.ending));
     };
@@ -3415,7 +3456,7 @@ class Stopping extends Passing {
       );
       solution = DenseSolution.joined([solution, rest]);
     }
-    return solution.moved(time, time + reach);
+    return solution.moved(time, py.add(time, reach));
   }
 }
 py.fields(Stopping, ["top", "rules", "ending", "begin"]);
@@ -3457,7 +3498,7 @@ py.fields(GaussPoints, ["places", "integrals", "units", "terms", "powers"]);
 /** The points of a step with so many stages. */
 function gauss_points(stages) {
   var roots = py.range(stages).map((number) => _root(stages, number));
-  var values = [...roots].map((x) => legendre(stages + 1, x));
+  var values = [...roots].map((x) => legendre(py.add(stages, 1), x));
   var weights = [...values].map(
     (at) => py.div(
       2.0,
@@ -3492,7 +3533,13 @@ function legendre(count, x) {
   var found = [1.0, x];
   for (var k = 1; k < count; k += 1) {
     found.push(
-      py.div(py.sub(py.mul((2 * k + 1) * x, py.item(found, k)), py.mul(k, py.item(found, k - 1))), k + 1)
+      py.div(
+        py.sub(
+          py.mul(py.mul(py.add(py.mul(2, k), 1), x), py.item(found, k)),
+          py.mul(k, py.item(found, py.sub(k, 1)))
+        ),
+        py.add(k, 1)
+      )
     );
   }
   return found;
@@ -3500,14 +3547,14 @@ function legendre(count, x) {
 
 /** A root of Legendre's polynomial of a degree, by Newton's method from Chebyshev's points. */
 function _root(stages, number) {
-  var x = -py.math.cos(py.div(py.mul(py.math.pi, number + 0.75), stages + 0.5));
+  var x = py.neg(py.math.cos(py.div(py.mul(py.math.pi, py.add(number, 0.75)), py.add(stages, 0.5))));
   for (var turn = 0; turn < ROOTS; turn += 1) {
     var at = legendre(stages, x);
     x = py.sub(
       x,
       py.div(
         py.mul(py.item(at, stages), py.sub(py.mul(x, x), 1.0)),
-        py.mul(stages, py.sub(py.mul(x, py.item(at, stages)), py.item(at, stages - 1)))
+        py.mul(stages, py.sub(py.mul(x, py.item(at, stages)), py.item(at, py.sub(stages, 1))))
       )
     );
   }
@@ -3516,22 +3563,25 @@ function _root(stages, number) {
 
 /** Integral of Legendre's polynomial from -1. */
 function _integral(k, x, at) {
-  return py.truth(k) ? py.div(py.sub(py.item(at, k + 1), py.item(at, k - 1)), 2 * k + 1) : x + 1.0;
+  return py.truth(k) ? py.div(
+    py.sub(py.item(at, py.add(k, 1)), py.item(at, py.sub(k, 1))),
+    py.add(py.mul(2, k), 1)
+  ) : py.add(x, 1.0);
 }
 
 /** Coefficients of the integrals of Legendre's polynomials in powers of what has passed of a part. */
 function _in_powers(stages, part) {
-  var [begin, slope] = [py.div(2.0 * part, PARTS) - 1.0, py.div(2.0, PARTS)];
+  var [begin, slope] = [py.sub(py.div(py.mul(2.0, part), PARTS), 1.0), py.div(2.0, PARTS)];
   var none = py.mul([0.0], stages);
   var rows = [[1.0, ...none.slice(1)], [begin, slope, ...none.slice(2)]];
-  for (var k = 1; k < stages - 1; k += 1) {
+  for (var k = 1; k < py.sub(stages, 1); k += 1) {
     var times = py.zip(
       py.item(rows, k),
-      [0.0, ...py.slice(py.item(rows, k), null, stages - 1, null)]
+      [0.0, ...py.slice(py.item(rows, k), null, py.sub(stages, 1), null)]
     ).map(([a, b]) => py.add(py.mul(begin, a), py.mul(slope, b)));
     rows.push(
-      py.zip(times, py.item(rows, k - 1)).map(
-        ([a, b]) => py.div(py.sub(py.mul(2 * k + 1, a), py.mul(k, b)), k + 1)
+      py.zip(times, py.item(rows, py.sub(k, 1))).map(
+        ([a, b]) => py.div(py.sub(py.mul(py.add(py.mul(2, k), 1), a), py.mul(k, b)), py.add(k, 1))
       )
     );
   }
@@ -3607,17 +3657,19 @@ function sweep(y, p, ending, kind, points) {
 
 /** What a step makes of numbers, from their rates y. */
 function step_terms(y, p, points) {
-  var [step, legendre_rows] = [p[0], py.slice(p, 1, STAGES + 1, null)];
+  var [step, legendre_rows] = [p[0], py.slice(p, 1, py.add(STAGES, 1), null)];
   var series = [...y].map(
     (rate) => py.tuple([...legendre_rows].map((row) => py.mul(step, points.total(py.mul(rate, row)))))
   );
   var found = py.list();
-  for (var part = 1; part < PARTS + 1; part += 1) {
-    var powers = py.tuple(py.slice(p, part * STAGES + 1, (part + 1) * STAGES + 1, null));
+  for (var part = 1; part < py.add(PARTS, 1); part += 1) {
+    var powers = py.tuple(
+      py.slice(p, py.add(py.mul(part, STAGES), 1), py.add(py.mul(py.add(part, 1), STAGES), 1), null)
+    );
     found = py.add(found, [...series].map((terms) => inner(terms, powers)));
   }
   var squares = [...series].flatMap(
-    (terms) => [STAGES - 2, STAGES - 1].map((k) => py.mul(py.item(terms, k), py.item(terms, k)))
+    (terms) => [py.sub(STAGES, 2), py.sub(STAGES, 1)].map((k) => py.mul(py.item(terms, k), py.item(terms, k)))
   );
   return [...found, ...[...series].map((terms) => terms[0]), py.sum(squares.slice(1), squares[0])];
 }
@@ -3717,7 +3769,7 @@ const compiled_step = py.cached((kind, ending) => {
   var given = py.add(py.add(layout.given, kind.numbers), py.floordiv(py.len(CONSTANTS), STAGES));
   return [
     iterated(better, layout.size, given, STAGES),
-    iterated(terms, layout.size, 1 + py.floordiv(py.len(TERMS), STAGES), STAGES)
+    iterated(terms, layout.size, py.add(1, py.floordiv(py.len(TERMS), STAGES)), STAGES)
   ];
 });
 
@@ -3727,14 +3779,14 @@ const machinery_of = py.cached((top, ending) => {
   var given = room(py.add(py.mul(py.add(first, py.len(numbers)), STAGES), py.len(CONSTANTS)));
   put_rows(given, first, numbers, STAGES);
   put_from(given, py.mul(py.add(first, py.len(numbers)), STAGES), CONSTANTS);
-  var measured = room(STAGES + py.len(TERMS));
+  var measured = room(py.add(STAGES, py.len(TERMS)));
   put_from(measured, STAGES, TERMS);
   return new _Machinery(...compiled_step(top.kind, ending), given, measured);
 });
 
 /** What a number is at every point, by its row. */
 function row_of(numbers, row) {
-  return [...py.slice(numbers, row * STAGES, (row + 1) * STAGES, null)];
+  return [...py.slice(numbers, py.mul(row, STAGES), py.mul(py.add(row, 1), STAGES), null)];
 }
 
 /** A step of collocation. */
@@ -3745,7 +3797,7 @@ class SlipStep extends py.Thing {
     var layout = this.layout;
     [this.given, this.measured] = [copied(this.machinery.given), copied(this.machinery.measured)];
     [this.unknowns, this.found] = [room(py.mul(layout.size, STAGES)), room(py.mul(layout.found, STAGES))];
-    this.rows = room(py.mul(py.add(py.mul(PARTS + 1, layout.size), 1), STAGES));
+    this.rows = room(py.mul(py.add(py.mul(py.add(PARTS, 1), layout.size), 1), STAGES));
     this.sweeps = 0;
   }
   /** Find what solves the equations of a step of some length; tell whether that is found. */
@@ -3756,7 +3808,7 @@ class SlipStep extends py.Thing {
       this.sweeps,
       this.machinery.better(this.unknowns, this.given, this.found, ENOUGH, MOST_of_slipping)
     );
-    if (!(py.item(this.found, py.len(this.found) - 1) < ENOUGH)) {
+    if (!(py.item(this.found, py.sub(py.len(this.found), 1)) < ENOUGH)) {
       return false;
     }
     put_rows(this.measured, 0, [length], STAGES);
@@ -3765,7 +3817,7 @@ class SlipStep extends py.Thing {
   }
   /** A measure of its error. */
   get error() {
-    return py.float(py.item(this.rows, py.len(this.rows) - 1));
+    return py.float(py.item(this.rows, py.sub(py.len(this.rows), 1)));
   }
   /** S at its points. */
   get speeds() {
@@ -3775,14 +3827,17 @@ class SlipStep extends py.Thing {
   get last_way() {
     var free = this.layout.free;
     return [
-      py.item(row_of(this.unknowns, free), STAGES - 1),
-      py.item(row_of(this.unknowns, py.add(free, 1)), STAGES - 1)
+      py.item(row_of(this.unknowns, free), py.sub(STAGES, 1)),
+      py.item(row_of(this.unknowns, py.add(free, 1)), py.sub(STAGES, 1))
     ];
   }
   /** By how much y and xi change. */
   get changes() {
     var size = this.layout.size;
-    return py.range(py.mul(PARTS, size), py.mul(PARTS + 1, size)).map((row) => row_of(this.rows, row)[0]);
+    return py.range(
+      py.mul(PARTS, size),
+      py.mul(py.add(PARTS, 1), size)
+    ).map((row) => row_of(this.rows, row)[0]);
   }
   /** Coefficients of y and xi in so many of its parts, of the last of which it may be a share. */
   pieces(parts) {
@@ -3818,8 +3873,8 @@ class SlipStep extends py.Thing {
       begin = py.sum(py.item(polynomials, number));
     }
     var speed = (place) => {
-      var number = py.min(py.int(place), PARTS - 1);
-      return py.float(horner(py.item(polynomials, number), place - number));
+      var number = py.min(py.int(place), py.sub(PARTS, 1));
+      return py.float(horner(py.item(polynomials, number), py.sub(place, number)));
     };
     var high = point < STAGES ? py.item(GAUSS.places, point) : 1.0;
     return crossing(speed, py.mul(PARTS, py.item(GAUSS.places, py.sub(point, 1))), py.mul(PARTS, high));
@@ -3843,7 +3898,10 @@ function slip_phase(y, way, top, ending, longest, pulls) {
     var [last, speeds] = [step.last_way, step.speeds];
     var lasts = py.and(
       py.min(speeds) > 0.0,
-      () => py.add(py.mul(py.item(after, free), last[0]), py.mul(py.item(after, free + 1), last[1])) > 0.0
+      () => py.add(
+        py.mul(py.item(after, free), last[0]),
+        py.mul(py.item(after, py.add(free, 1)), last[1])
+      ) > 0.0
     );
     var part = py.truth(lasts) || factor < SAFETY ? py.float(PARTS) : step.end_of_slip(
       py.tuple(now.slice(free)),
@@ -3872,13 +3930,13 @@ function slip_phase(y, way, top, ending, longest, pulls) {
       }
     } else {
       if (py.eq(length, py.sub(longest, begin))) {
-        py.put(knots, py.len(knots) - 1, longest);
+        py.put(knots, py.sub(py.len(knots), 1), longest);
       }
       [now, way] = [
         after,
         scaled(py.div(1.0, size(py.tuple(after.slice(free)))), py.tuple(after.slice(free)))
       ];
-      var speed = step.speed(PARTS - 1, 0.0, last);
+      var speed = step.speed(py.sub(PARTS, 1), 0.0, last);
       py.put(speed, 0, py.sub(inner(py.tuple(after.slice(free)), last), py.sum(speed)));
       length = py.min(
         py.mul(length, py.min(factor, LONGER)),
@@ -3907,9 +3965,9 @@ function parts_left(terms) {
 
 /** Whether s comes near zero within a step, perhaps to it between two points. */
 function dips(speeds) {
-  var least = py.min(py.slice(speeds, 1, STAGES - 1, null));
+  var least = py.min(py.slice(speeds, 1, py.sub(STAGES, 1), null));
   return py.and(
-    py.min(speeds[0], py.item(speeds, STAGES - 1)) > least,
+    py.min(speeds[0], py.item(speeds, py.sub(STAGES, 1))) > least,
     () => 0.0 < least && least < py.mul(DIP, py.max(speeds))
   );
 }
@@ -3939,7 +3997,7 @@ function directions(response, start) {
         ([answer, e]) => _unit(plus(scaled(py.add(answer.strength, size(answer.rate)), e), answer.rate))
       );
       if (_apart(ways, before) < EXACT) {
-        if (turn + step === 0 && py.truth(_leads(answers, before))) {
+        if (py.add(turn, step) === 0 && py.truth(_leads(answers, before))) {
           return before;
         }
         break;
@@ -3982,7 +4040,9 @@ function _improved(response, ways) {
 
 /** Whether velocities in these directions grow, or stay. */
 function _grow(answers, ways) {
-  return py.all(py.zip(answers, ways).map(([a, e]) => inner(a.rate, e) >= py.mul(-DIRECTED, a.strength)));
+  return py.all(
+    py.zip(answers, ways).map(([a, e]) => inner(a.rate, e) >= py.mul(py.neg(DIRECTED), a.strength))
+  );
 }
 
 /** Whether directions that do not turn at once are known: slip alone, in a plane, never turns slowly. */
@@ -4006,7 +4066,7 @@ function _newton(response, ways) {
       var turned = e;
       for (var b of basis) {
         turned = plus(turned, scaled(py.item(parts, used), b));
-        used = used + 1;
+        used = py.add(used, 1);
       }
       found.push(_unit(turned));
     }
@@ -4187,7 +4247,7 @@ class Loosening extends Passing {
       yield _nothing(this.told, time, state, py.str(error));
       return null;
     }
-    var duration = py.min(begin.valid_until(ACCURACY_of_loosening), longest, end - time);
+    var duration = py.min(begin.valid_until(ACCURACY_of_loosening), longest, py.sub(end, time));
     if (duration <= 1e-299) {
       yield _nothing(this.told, time, state, "slip cannot be told from its beginning");
       return null;
@@ -4197,7 +4257,7 @@ class Loosening extends Passing {
   /** Slip to its end, or as far as it follows what drives it; None if it does not from the beginning. */
   slips(time, state, direction, end) {
     var begin = [...state.axis, ...state.momentum];
-    var phase = slip_phase(begin, direction, this.top, this.ending, end - time, this.rules.pulls);
+    var phase = slip_phase(begin, direction, this.top, this.ending, py.sub(end, time), this.rules.pulls);
     if (!py.truth(phase.rows)) {
       return null;
     }
@@ -4208,7 +4268,7 @@ class Loosening extends Passing {
       : phase.last
     );
     var duration = py.item(phase.knots, -1);
-    var reach = duration >= end - time ? end : py.add(time, duration);
+    var reach = duration >= py.sub(end, time) ? end : py.add(time, duration);
     var solution = DenseSolution.of_rows(phase.knots, start, phase.rows).moved(time, reach);
     if (py.truth(phase.ended)) {
       var then = this.rules.settled(reach, last, [true, false], false);
@@ -4216,7 +4276,7 @@ class Loosening extends Passing {
       var mode = reach >= end ? Outcome.COMPLETED : this.rules.going_on(last, true);
       then = new Transition([], mode, last);
     }
-    return new Segment(this, solution, last, then, py.len(phase.knots) - 1, phase.sweeps);
+    return new Segment(this, solution, last, then, py.sub(py.len(phase.knots), 1), phase.sweeps);
   }
   /** The mode on its law's branch, the direction of what begins, and how long it lasts at most. */
   _directed(state) {
@@ -4243,13 +4303,13 @@ class Loosening extends Passing {
   /** The segment in which the numbers are polynomials in the time since its start. */
   piece(rows, direction, time, duration, end) {
     while (duration > SETTLED_of_passing && !py.truth(this._goes_on(rows, duration))) {
-      duration = duration * 0.5;
+      duration = py.mul(duration, 0.5);
     }
-    var first = py.len(rows) - py.len(direction);
+    var first = py.sub(py.len(rows), py.len(direction));
     var apart = py.zip(direction, rows.slice(first)).map(
       ([e, row]) => [py.mul(TINY_of_loosening, e), ...row.slice(1)]
     );
-    var reach = py.min(time + duration, end);
+    var reach = py.min(py.add(time, duration), end);
     var solution = DenseSolution.in_time(
       [0.0, duration],
       [[...rows.slice(0, first), ...apart]]
@@ -4261,11 +4321,11 @@ class Loosening extends Passing {
   /** Whether no other surface touches meanwhile, and the table does not pull that may not. */
   _goes_on(rows, duration) {
     var at = (look) => {
-      return [...rows].map((row) => horner(row, py.div(duration * look, LOOKS_of_passing)));
+      return [...rows].map((row) => horner(row, py.div(py.mul(duration, look), LOOKS_of_passing)));
     };
     var [looks, pressed] = [
-      py.range(1, LOOKS_of_passing + 1),
-      py.range(1 + PRESSED_of_loosening, LOOKS_of_passing + 1, PRESSED_of_loosening)
+      py.range(1, py.add(LOOKS_of_passing, 1)),
+      py.range(py.add(1, PRESSED_of_loosening), py.add(LOOKS_of_passing, 1), PRESSED_of_loosening)
     ];
     if (
       py.isinstance(this.top.surface, Hull) && !py.truth(
@@ -4312,7 +4372,7 @@ class BothLoosening extends Loosening {
     ];
     var rows = py.zip(still, growing);
     rows = py.add(rows, [...pace].map((rate) => [0.0, rate]));
-    yield passing.piece(rows, found.slip, time, py.min(INSTANT, end - time), end);
+    yield passing.piece(rows, found.slip, time, py.min(INSTANT, py.sub(end, time)), end);
   }
 }
 py.fields(BothLoosening, ["top", "rules", "ending", "power", "wrench"]);
@@ -4419,21 +4479,21 @@ function first_reach(along, goal, guess) {
   var high = guess;
   var there = goal(along(high));
   while (there < 0.0) {
-    high = high * 2.0;
+    high = py.mul(high, 2.0);
     there = goal(along(high));
   }
   if (there === 0.0) {
     return along(high);
   }
-  var low = goal(along(0.0)) < 0.0 ? 0.0 : 0.5 * high;
+  var low = goal(along(0.0)) < 0.0 ? 0.0 : py.mul(0.5, high);
   while (goal(along(low)) >= 0.0) {
-    [low, high] = [0.5 * low, low];
+    [low, high] = [py.mul(0.5, low), low];
   }
   return along(crossing((q) => goal(along(q)), low, high));
 }
 
 // tippetop.mechanics.dry_impact
-const ENDED = 10.0 * FUZZ;
+const ENDED = py.mul(10.0, FUZZ);
 const [SLIPPING, ROLLING_of_dry_impact] = ["slipping", "rolling"];
 
 /** Whether slip or rolling can end under this law. */
@@ -4816,8 +4876,11 @@ class RungeKuttaStep extends py.NamedTuple {
   }
   /** The cubic through its ends, at a part of it. */
   between(part) {
-    var rest = 1.0 - part;
-    var [at, pull] = [part * part * (3.0 - 2.0 * part), py.mul(part * rest, this.size)];
+    var rest = py.sub(1.0, part);
+    var [at, pull] = [
+      py.mul(py.mul(part, part), py.sub(3.0, py.mul(2.0, part))),
+      py.mul(py.mul(part, rest), this.size)
+    ];
     return py.tuple(
       py.zip(this.here, this.there, this.slopes[0], py.item(this.slopes, -1)).map(
         ([x, y, a, b]) => py.add(
@@ -4853,11 +4916,11 @@ function stages(here, slope, size, rates) {
 
 /** Where a step leads that is short beside those of order 8: Kutta's, of order 4, costs a third. */
 function short_step(here, slope, size, rates) {
-  var half = 0.5 * size;
+  var half = py.mul(0.5, size);
   var second = rates(moved(here, half, slope));
   var third = rates(moved(here, half, second));
   var last = rates(moved(here, size, third));
-  return combined(here, size / 6.0, [1.0, 2.0, 2.0, 1.0], [slope, second, third, last]);
+  return combined(here, py.div(size, 6.0), [1.0, 2.0, 2.0, 1.0], [slope, second, third, last]);
 }
 
 /** A point moved straight on. */
@@ -4895,7 +4958,7 @@ function straight(dry, impulse, goal, guess) {
       py.add(impulse.normal, q),
       [py.add(east, py.mul(q, unit[0])), py.add(north, py.mul(q, unit[1]))],
       [py.add(x, py.mul(q, unit[3])), py.add(y, py.mul(q, unit[4])), py.add(z, py.mul(q, unit[5]))],
-      py.add(impulse.normal_work, py.mul(q, py.add(approach, py.mul(0.5 * q, rise))))
+      py.add(impulse.normal_work, py.mul(q, py.add(approach, py.mul(py.mul(0.5, q), rise))))
     );
   };
   if (longest < py.math.inf) {
@@ -4968,7 +5031,7 @@ class IntegratedProcess extends py.NamedTuple {
     var [now, waiting] = [this.settled(impulse), goal(impulse) >= 0.0];
     var [here, slope] = [pack(impulse), now.slope(pack(impulse))];
     var longest = py.div(
-      2.0 * LONGEST_of_integrated_impact,
+      py.mul(2.0, LONGEST_of_integrated_impact),
       py.add(this.body.inverse_mass[0][0], this.body.inverse_mass[1][1])
     );
     var step = py.mul(0.1, longest);
@@ -5002,7 +5065,7 @@ class IntegratedProcess extends py.NamedTuple {
         continue;
       }
       if (py.truth(reached)) {
-        return unpack(now.landing(taking, goal))._replace({ steps: taken + 1 });
+        return unpack(now.landing(taking, goal))._replace({ steps: py.add(taken, 1) });
       }
       [here, slope, waiting] = [taking.there, taking.new_slope, false];
       if (now.dry !== null) {
@@ -5120,7 +5183,7 @@ class IntegratedProcess extends py.NamedTuple {
           py.add(impulse.tangential[1], py.mul(q, holding[1]))
         ],
         add(impulse.angular, scale(q, traction.torque)),
-        py.add(impulse.normal_work, py.mul(q, py.add(point[2], py.mul(0.5 * q, rise))))
+        py.add(impulse.normal_work, py.mul(q, py.add(point[2], py.mul(py.mul(0.5, q), rise))))
       );
     };
     var end = first_reach(along, goal, guess);
@@ -5167,12 +5230,12 @@ class ViscousProcess extends py.NamedTuple {
   /** The process of this impact, from the principal directions of its tangential part of M. */
   static of(body, law) {
     var [east, north, up] = body.inverse_mass;
-    var angle = 0.5 * py.math.atan2(py.mul(2.0, east[1]), py.sub(east[0], north[1]));
+    var angle = py.mul(0.5, py.math.atan2(py.mul(2.0, east[1]), py.sub(east[0], north[1])));
     var [cosine, sine] = [py.math.cos(angle), py.math.sin(angle)];
     var mode = (x, y) => {
       var stiffness = py.add(
-        py.add(py.mul(x * x, east[0]), py.mul(2.0 * x * y, east[1])),
-        py.mul(y * y, north[1])
+        py.add(py.mul(py.mul(x, x), east[0]), py.mul(py.mul(py.mul(2.0, x), y), east[1])),
+        py.mul(py.mul(y, y), north[1])
       );
       var [coupling, slip] = [
         py.add(py.mul(x, up[0]), py.mul(y, up[1])),
@@ -5180,7 +5243,7 @@ class ViscousProcess extends py.NamedTuple {
       ];
       return new PrincipalDirection([x, y], stiffness, coupling, slip);
     };
-    return new this(body, law.mu, [mode(cosine, sine), mode(-sine, cosine)]);
+    return new this(body, law.mu, [mode(cosine, sine), mode(py.neg(sine), cosine)]);
   }
   /** The first impulse from a given one on at which the goal is not negative. */
   until(impulse, goal, guess) {
@@ -5189,7 +5252,7 @@ class ViscousProcess extends py.NamedTuple {
   /** The impulse when the normal impulse is p. */
   at(p) {
     var tangential = [0.0, 0.0];
-    var work = py.mul(p, py.add(this.body.point[2], py.mul(0.5 * p, this.body.inverse_mass[2][2])));
+    var work = py.mul(p, py.add(this.body.point[2], py.mul(py.mul(0.5, p), this.body.inverse_mass[2][2])));
     for (var [[x, y], stiffness, coupling, slip] of this.modes) {
       var [phi_1, phi_2, phi_3] = phis(py.mul(py.mul(this.mu, stiffness), p));
       var along = py.mul(
@@ -5213,21 +5276,21 @@ py.fields(ViscousProcess, ["body", "mu", "modes"]);
 /** phi_1, phi_2 and phi_3 of x >= 0, where phi_k = sum of (-x)^j / (j + k)! over j. */
 function phis(x) {
   if (x < 1.0) {
-    var phi_3 = 1.0 / 6.0;
-    var term = 1.0 / 6.0;
+    var phi_3 = py.div(1.0, 6.0);
+    var term = py.div(1.0, 6.0);
     for (var j = 4; j < 20; j += 1) {
-      term = term * py.div(-x, j);
-      phi_3 = phi_3 + term;
+      term = py.mul(term, py.div(py.neg(x), j));
+      phi_3 = py.add(phi_3, term);
       if (py.abs(term) < ROUNDING_of_viscous_impact) {
         break;
       }
     }
-    var phi_2 = 0.5 - x * phi_3;
-    return [1.0 - x * phi_2, phi_2, phi_3];
+    var phi_2 = py.sub(0.5, py.mul(x, phi_3));
+    return [py.sub(1.0, py.mul(x, phi_2)), phi_2, phi_3];
   }
-  var phi_1 = py.div(-py.math.expm1(-x), x);
-  phi_2 = py.div(1.0 - phi_1, x);
-  return [phi_1, phi_2, py.div(0.5 - phi_2, x)];
+  var phi_1 = py.div(py.neg(py.math.expm1(py.neg(x))), x);
+  phi_2 = py.div(py.sub(1.0, phi_1), x);
+  return [phi_1, phi_2, py.div(py.sub(0.5, phi_2), x)];
 }
 
 // tippetop.mechanics.impact
@@ -5628,7 +5691,7 @@ class FreeToFly extends ContactRules {
     if (rate > TOUCHING) {
       return new Transition([], this._flight(Start.REBOUND), state);
     }
-    if (rate < -TOUCHING) {
+    if (rate < py.neg(TOUCHING)) {
       return this.touchdown(0.0, state);
     }
     return this.resting(0.0, state);
@@ -5983,7 +6046,7 @@ function way_of_both(pair, rolls) {
   var stiffness = py.float(
     py.add(py.add(py.abs(answers[0][0]), py.abs(answers[1][1])), py.abs(py.mul(lever, turned)))
   );
-  var drilled = py.abs(lever * py.float(pair.response([0, DRILLING])[2][2]));
+  var drilled = py.abs(py.mul(lever, py.float(pair.response([0, DRILLING])[2][2])));
   var motion = (way) => {
     return pair_motion(pair, slips_of(pair, way), rolls);
   };
@@ -6145,7 +6208,7 @@ function rolling_of_slip(pair, rolls) {
 
 /** The body begins to turn about one of both contacts, and the other slips, xi_3 as signed. */
 function turning_about(pair, number, sign, rolls) {
-  var across = scaled(number === 0 ? sign : -sign, directions_of(pair.first.axis)[1].slice(0, 2));
+  var across = scaled(number === 0 ? sign : py.neg(sign), directions_of(pair.first.axis)[1].slice(0, 2));
   var slips = number === 0 ? [null, across] : [across, null];
   var motion = pair_motion(pair, slips, rolls);
   return new Resolution(motion, [number === 0, number === 1], rolls, [0.0, 0.0, sign]);
@@ -6365,7 +6428,7 @@ function _branch(number) {
 
 /** Falls through zero where so little is left of all these that they are followed no further. */
 function _left(...slips) {
-  return py.sub(py.sum([...slips].map((slip) => inner(slip, slip))), SLOWEST_SLIP * SLOWEST_SLIP);
+  return py.sub(py.sum([...slips].map((slip) => inner(slip, slip))), py.mul(SLOWEST_SLIP, SLOWEST_SLIP));
 }
 
 // tippetop.contact.double_sticking
@@ -6573,7 +6636,7 @@ class SlipBeginningOnTwo extends SlidingOnTwo {
   /** Follow it by an implicit method: its direction is damped the faster the slower it is. */
   *segments(time, state, end, integrator) {
     var [reach, method] = [
-      py.min(time + BEGINNING, end),
+      py.min(py.add(time, BEGINNING), end),
       make_integrator("collocation", TOLERANCE_of_double_sticking)
     ];
     for (var segment of super.segments(time, state, reach, method)) {
@@ -6607,7 +6670,7 @@ function jellett(state, top) {
 
 // tippetop.contact.two_closed
 const TOGETHER = 30.0;
-const ABOUT = 1.0 + 0.001;
+const ABOUT = py.add(1.0, 0.001);
 const [FIRST_of_two_closed, SECOND, BOTH, NEITHER] = ["first", "second", "both", "neither"];
 const [OPENS, HELD, CLOSES] = ["opens", "held", "closes"];
 
@@ -6707,7 +6770,7 @@ class TwoClosed extends py.Record {
     if (found.rolling === null) {
       return HELD;
     }
-    var opens = py.item(this.pair.under([[number, found.wrench]]), 1 - number)[2] >= 0.0;
+    var opens = py.item(this.pair.under([[number, found.wrench]]), py.sub(1, number))[2] >= 0.0;
     return py.truth(opens) ? OPENS : CLOSES;
   }
   /** The mode in which both go on. */
@@ -6849,7 +6912,7 @@ function slipping(rules, time, state, tops, which, rolls) {
     } else {
       var number = py.int(which);
       var needed = pair_motion(pair, [null, null], rolls).needed(number);
-      found = turning_about(pair, 1 - number, py.eq(needed > 0.0, (number === 0)) ? 1.0 : -1.0, rolls);
+      found = turning_about(pair, py.sub(1, number), py.eq(needed > 0.0, (number === 0)) ? 1.0 : -1.0, rolls);
     }
   } catch (error) {
     if (!(error instanceof py.ArithmeticError)) throw error;
@@ -6890,7 +6953,11 @@ function _left_of_two_closed(state, here) {
   var slips = [...tops].map((top) => slip_of(...along_table(state), top));
   var number = size(slips[0]) <= size(slips[1]) ? 0 : 1;
   var [slip, speed] = [py.item(slips, number), size(py.item(slips, number))];
-  if (!(0.0 < speed && speed <= TOGETHER * SLOWEST_SLIP) || !py.truth(size(py.item(slips, 1 - number)))) {
+  if (
+    !(
+      0.0 < speed && speed <= py.mul(TOGETHER, SLOWEST_SLIP)
+    ) || !py.truth(size(py.item(slips, py.sub(1, number))))
+  ) {
     return 0.0;
   }
   var pair = ContactPair.of(state.axis, state.momentum, tops);
@@ -6921,7 +6988,7 @@ class StruckOnTwo extends py.NamedTuple {
   }
   /** Speed of what strikes, m/s. */
   get speed() {
-    return -py.float(this.points[0][2]);
+    return py.neg(py.float(this.points[0][2]));
   }
   /** Longest step of the clock in which slip that friction takes decays smoothly. */
   get longest() {
@@ -7022,7 +7089,7 @@ class StruckOnTwo extends py.NamedTuple {
         there = this._landing(here, step, end, there, pressed);
       }
       if (py.contains(reached, goal) && goal(there) >= -1e-12) {
-        return [there, taken + 1];
+        return [there, py.add(taken, 1)];
       }
       [here, step] = [
         there,
@@ -7044,7 +7111,7 @@ class StruckOnTwo extends py.NamedTuple {
       return null;
     }
     var along = (q) => {
-      var work = py.mul(q, py.add(approach, py.mul(0.5 * q, rise)));
+      var work = py.mul(q, py.add(approach, py.mul(py.mul(0.5, q), rise)));
       return [
         ...py.zip(here.slice(0, 8), unit.slice(0, 8)).map(([a, b]) => py.add(a, py.mul(q, b))),
         py.add(here[8], work)
@@ -7078,7 +7145,7 @@ function impact_on_two(state, restitution, tops) {
   );
   var end = compressed;
   if (restitution > 0.0) {
-    var [full, stored] = [py.mul(1.0 + restitution, compressed[6]), py.neg(compressed[8])];
+    var [full, stored] = [py.mul(py.add(1.0, restitution), compressed[6]), py.neg(compressed[8])];
     var goal = (here) => {
       var [spent, left] = [py.sub(py.div(here[6], full), 1.0), py.div(here[8], stored)];
       return py.float(py.max(spent, left));
@@ -7131,7 +7198,7 @@ class OnSeveral extends FreeToFly {
     var [closed, told, beside] = [false, events, this._beside(state)];
     for (var other of beside) {
       var rate = gap_rate(state, other);
-      if (rate < -SLOWEST_ROCKING) {
+      if (rate < py.neg(SLOWEST_ROCKING)) {
         if (py.sum([...events].map((event) => event.kind === EventKind.IMPACT)) >= MOST_IN_TURNS) {
           return new Transition(events, Outcome.FAILED, state, "surfaces strike in turns for ever");
         }
@@ -7155,7 +7222,7 @@ class OnSeveral extends FreeToFly {
   _impact(state, restitution, integrator) {
     var alone = super._impact(state, restitution, integrator);
     for (var other of this._beside(alone.state)) {
-      var pressed = gap_rate(alone.state, other) < -SLOWEST_ROCKING;
+      var pressed = gap_rate(alone.state, other) < py.neg(SLOWEST_ROCKING);
       if (py.truth(pressed) && py.abs(gap_rate(state, other)) <= SLOWEST_ROCKING) {
         try {
           var found = impact_on_two(state, restitution, [this.top, other]);
@@ -7181,7 +7248,10 @@ class OnSeveral extends FreeToFly {
       back = py.float(py.abs(pair.under([[0, wrench]])[1][2]));
     }
     return py.float(
-      py.max(SLOWEST_ROCKING * py.pow(py.max(1.0, back), 0.5), py.pow(2.0 * back * depth, 0.5))
+      py.max(
+        py.mul(SLOWEST_ROCKING, py.pow(py.max(1.0, back), 0.5)),
+        py.pow(py.mul(py.mul(2.0, back), depth), 0.5)
+      )
     );
   }
   /** Whether both contacts slip, faster than where slip on two contacts ends, if it can end at all. */
@@ -7319,7 +7389,7 @@ function _reaches_out(number, shapes) {
   ).map(([place, shape]) => shape.surface);
   var [low, high] = [0.0, py.math.pi];
   for (var turn = 0; turn < SEARCHES; turn += 1) {
-    var looks = py.range(LOOKS_of_bodies + 1).map(
+    var looks = py.range(py.add(LOOKS_of_bodies, 1)).map(
       (k) => py.add(low, py.div(py.mul(py.sub(high, low), k), LOOKS_of_bodies))
     );
     try {
@@ -7344,7 +7414,7 @@ function _reaches_out(number, shapes) {
 
 // tippetop.mechanics.contensou
 const PI = 3.141592653589793;
-const ELLIPSOIDAL_RADIUS = 3.0 * PI / 16.0;
+const ELLIPSOIDAL_RADIUS = py.div(py.mul(3.0, PI), 16.0);
 
 /** What the laws of a patch are made of. */
 class PatchLaw extends py.NamedTuple {
@@ -7471,7 +7541,7 @@ const LIMIT = [
 const NEAR_BRANCH = 1e-20;
 const EDGE = 1e-05;
 const BEYOND_of_contensou_hertz = 1e-20;
-const BRANCH_TORQUE = 9.0 * PI / 128.0;
+const BRANCH_TORQUE = py.div(py.mul(9.0, PI), 128.0);
 
 /** A branch of Hertz's law, which has a number beyond where it holds, too. */
 class HertzPiece extends PatchLaw {
@@ -7491,10 +7561,13 @@ class HertzDrillingLaw extends HertzPiece {
   shares(square, drilling) {
     var rate = py.pow(py.add(py.mul(drilling, drilling), py.mul(BEYOND_of_contensou_hertz, square)), -0.5);
     var kappa2 = py.mul(py.mul(square, rate), rate);
-    var force = py.mul(py.mul(py.mul(py.neg(this.mu), 3.0 * PI / 32.0), py.sub(4.0, kappa2)), rate);
+    var force = py.mul(
+      py.mul(py.mul(py.neg(this.mu), py.div(py.mul(3.0, PI), 32.0)), py.sub(4.0, kappa2)),
+      rate
+    );
     var torque = py.mul(
       py.mul(
-        py.mul(py.neg(this.mu), 3.0 * PI / 16.0),
+        py.mul(py.neg(this.mu), py.div(py.mul(3.0, PI), 16.0)),
         py.sub(1.0, py.mul(kappa2, py.sub(1.0, py.mul(0.375, kappa2))))
       ),
       rate
@@ -7504,10 +7577,10 @@ class HertzDrillingLaw extends HertzPiece {
   /** (mu N F)^2 - T^2 where the limit surface has this drilling torque, N^2. */
   reserve(normal, force, drilling) {
     var limit = py.mul(this.mu, normal);
-    var torque = py.div(py.mul(py.div(16.0, 3.0 * PI), drilling), py.mul(this.patch_radius, limit));
+    var torque = py.div(py.mul(py.div(16.0, py.mul(3.0, PI)), drilling), py.mul(this.patch_radius, limit));
     var under = py.sub(py.mul(1.5, py.pow(py.mul(torque, torque), 0.5)), 0.5);
-    var kappa2 = py.mul(4.0 / 3.0, py.sub(1.0, py.pow(py.mul(under, under), 0.25)));
-    var size = py.mul(py.mul(3.0 * PI / 32.0, py.sub(4.0, kappa2)), limit);
+    var kappa2 = py.mul(py.div(4.0, 3.0), py.sub(1.0, py.pow(py.mul(under, under), 0.25)));
+    var size = py.mul(py.mul(py.div(py.mul(3.0, PI), 32.0), py.sub(4.0, kappa2)), limit);
     return py.sub(
       py.sub(py.mul(py.mul(size, size), kappa2), py.mul(force[0], force[0])),
       py.mul(force[1], force[1])
@@ -7515,7 +7588,7 @@ class HertzDrillingLaw extends HertzPiece {
   }
   /** Positive as long as this piece of the limit surface is followed, (N m)^2. */
   limit_guard(normal, drilling) {
-    return heaviness(this, normal, drilling, 4.0 / 3.0 * EDGE);
+    return heaviness(this, normal, drilling, py.mul(py.div(4.0, 3.0), EDGE));
   }
   /** Positive as long as this branch is followed, up to `EDGE`, m^2/s^2. */
   branch_guard(slip, angular_velocity) {
@@ -7559,11 +7632,11 @@ class HertzSlidingLaw extends HertzPiece {
   }
   /** Positive as long as this piece of the limit surface is followed, (N m)^2. */
   limit_guard(normal, drilling) {
-    return py.neg(heaviness(this, normal, drilling, 2.0 / 3.0 * EDGE));
+    return py.neg(heaviness(this, normal, drilling, py.mul(py.div(2.0, 3.0), EDGE)));
   }
   /** Positive as long as this branch is followed, down to half of `EDGE`, m^2/s^2. */
   branch_guard(slip, angular_velocity) {
-    return py.neg(prevalence(slip, py.mul(this.patch_radius, angular_velocity[2]), 0.5 * EDGE));
+    return py.neg(prevalence(slip, py.mul(this.patch_radius, angular_velocity[2]), py.mul(0.5, EDGE)));
   }
   /** The law where this one does not hold, and whose piece of the limit surface adjoins this one's. */
   other_branch() {
@@ -7613,7 +7686,7 @@ class HertzBranch extends py.NamedTuple {
     var drilling = py.mul(this.patch_radius, angular_velocity[2]);
     return py.mul(
       py.sub(py.mul(2.0, this.drills), 1.0),
-      prevalence(slip, drilling, py.mul(0.5 * EDGE, py.add(1.0, this.drills)))
+      prevalence(slip, drilling, py.mul(py.mul(0.5, EDGE), py.add(1.0, this.drills)))
     );
   }
   /** The law where this one does not hold. */
@@ -7635,7 +7708,7 @@ py.fields(HertzBranch, ["mu", "patch_radius", "drills"]);
 class HertzLaw extends PatchLaw {
   /** Whether drilling prevails here, a truth value of floats, or an array of them. */
   drills(slip, angular_velocity) {
-    return prevalence(slip, py.mul(this.patch_radius, angular_velocity[2]), 0.75 * EDGE) > 0.0;
+    return prevalence(slip, py.mul(this.patch_radius, angular_velocity[2]), py.mul(0.75, EDGE)) > 0.0;
   }
   /** The law that holds here; of floats. */
   branch(slip, angular_velocity) {
@@ -7931,10 +8004,9 @@ class Problem extends Part {
       var units = natural_units(this.top);
       var start = natural_state(this.start(), units);
       var largest = py.float(py.max(py.map(py.abs, [...start.momentum, ...start.velocity, start.height])));
-      return py.pow(largest, 2) * py.max(
-        1.0,
-        py.float(units.energy),
-        py.float(py.mul(this.body.mass, this.gravity))
+      return py.mul(
+        py.pow(largest, 2),
+        py.max(1.0, py.float(units.energy), py.float(py.mul(this.body.mass, this.gravity)))
       );
     } catch (error) {
       if (!(error instanceof py.ArithmeticError)) throw error;
@@ -8013,8 +8085,8 @@ Part.enter("Problem", Problem);
 /** A bound in three digits, not beyond it: no less if the side is 1, and no more if it is -1. */
 function _inside(bound, side) {
   var near = py.float(`${py.format(bound, ".3g")}`);
-  if ((near - bound) * side < 0.0) {
-    near = near + side * py.pow(10.0, py.math.floor(py.math.log10(bound)) - 2);
+  if (py.mul(py.sub(near, bound), side) < 0.0) {
+    near = py.add(near, py.mul(side, py.pow(10.0, py.sub(py.math.floor(py.math.log10(bound)), 2))));
   }
   return `${py.format(near, ".3g")}`;
 }
@@ -8075,10 +8147,10 @@ class Trajectory extends py.Record {
         this.outcome = this.time >= this.end ? Outcome.COMPLETED : Outcome.TOO_MANY_PHASES;
         return null;
       }
-      modes = modes + 1;
+      modes = py.add(modes, 1);
       for (var segment of transition.then.segments(this.time, this._state, this.end, this.integrator)) {
         [this.time, this._state] = [segment.end_time, segment.end_state];
-        steps = py.add(steps, py.max(segment.steps, py.len(segment.solution.knots) - 1));
+        steps = py.add(steps, py.max(segment.steps, py.sub(py.len(segment.solution.knots), 1)));
         if (segment.transition !== null) {
           transition = this._enter(segment.transition);
           steps = py.add(steps, py.sum([...transition.events].map((event) => event.steps)));
@@ -8208,9 +8280,11 @@ function roots_between(function_, low, high, noise) {
 
 /** Coefficients of the Chebyshev series that is the function at Chebyshev's points of a piece. */
 function series_of(function_, low, high) {
-  var count = DEGREE_of_series_roots + 1;
+  var count = py.add(DEGREE_of_series_roots, 1);
   var angles = py.range(count).map((place) => py.div(py.mul(py.math.pi, py.add(place, 0.5)), count));
-  var values = [...angles].map((angle) => function_(low + 0.5 * (high - low) * (1.0 + py.math.cos(angle))));
+  var values = [...angles].map(
+    (angle) => function_(py.add(low, py.mul(py.mul(0.5, py.sub(high, low)), py.add(1.0, py.math.cos(angle)))))
+  );
   var found = [];
   for (var term = 0; term < count; term += 1) {
     var total = py.sum(
@@ -8225,19 +8299,23 @@ function series_of(function_, low, high) {
 function value_of(series, place) {
   var [after, now] = [0.0, 0.0];
   for (var term of py.reversed(series.slice(1))) {
-    [now, after] = [py.sub(py.add(term, py.mul(2.0 * place, now)), after), now];
+    [now, after] = [py.sub(py.add(term, py.mul(py.mul(2.0, place), now)), after), now];
   }
   return py.sub(py.add(series[0], py.mul(place, now)), after);
 }
 
 /** Coefficients of the derivative of a Chebyshev series of degree 1 or more. */
 function derivative_of(series) {
-  var found = py.mul([0.0], py.len(series) + 1);
-  for (var term = py.len(series) - 1; term > 0; term += -1) {
-    py.put(found, term - 1, py.add(py.item(found, term + 1), py.mul(2.0 * term, py.item(series, term))));
+  var found = py.mul([0.0], py.add(py.len(series), 1));
+  for (var term = py.sub(py.len(series), 1); term > 0; term += -1) {
+    py.put(
+      found,
+      py.sub(term, 1),
+      py.add(py.item(found, py.add(term, 1)), py.mul(py.mul(2.0, term), py.item(series, term)))
+    );
   }
   py.put(found, 0, py.mul(found[0], 0.5));
-  return py.slice(found, null, py.len(series) - 1, null);
+  return py.slice(found, null, py.sub(py.len(series), 1), null);
 }
 
 /** Places in [-1, 1) at which a Chebyshev series changes its sign, in order. */
@@ -8438,10 +8516,12 @@ function _precession_tilts(top, jellett) {
       weight_moment(c, scaled),
       py.pow(rolling_precession(py.math.acos(c), scaled, py.math).jellett, 2)
     );
-    return py.float(py.div(py.sub(py.mul(square, gyroscopic_reaction(c, scaled)), supported), 1.0 + square));
+    return py.float(
+      py.div(py.sub(py.mul(square, gyroscopic_reaction(c, scaled)), supported), py.add(1.0, square))
+    );
   };
   var inertias = py.add(scaled.transverse_inertia, scaled.axial_inertia);
-  var noise = py.div(py.mul(py.mul(1e-15, inertias), square), 1.0 + square);
+  var noise = py.div(py.mul(py.mul(1e-15, inertias), square), py.add(1.0, square));
   var cosines = roots_between(balance, -1.0, 1.0, noise);
   var level = py.mul(1e-09, top.surface.size);
   return [...cosines].filter((c) => py.abs(top.surface.slope(c)) > level).map((c) => py.math.acos(c));
@@ -8523,7 +8603,10 @@ function tilts_held(hull, tilt) {
 
 /** The tilts next to one, rad, at which another surface touches beside the active one, and its number. */
 function touching_tilts(hull, tilt) {
-  var tilts = py.sorted([...py.range(TILTS + 1).map((k) => py.div(py.mul(py.math.pi, k), TILTS)), tilt]);
+  var tilts = py.sorted([
+    ...py.range(py.add(TILTS, 1)).map((k) => py.div(py.mul(py.math.pi, k), TILTS)),
+    tilt
+  ]);
   var found = new py.Dict([]);
   for (var [number, other] of py.enumerate(hull.each)) {
     if (!py.eq(number, hull.active)) {
@@ -8727,14 +8810,14 @@ function classify(gamma, alpha) {
   if (gamma >= inverted_boundary(alpha)) {
     return Group.III;
   }
-  var no_stable_precession = _fold_measure(gamma, alpha) >= alpha + 1.0 - gamma;
+  var no_stable_precession = _fold_measure(gamma, alpha) >= py.sub(py.add(alpha, 1.0), gamma);
   if (gamma <= upright_boundary(alpha)) {
     return py.truth(no_stable_precession) ? Group.IB : Group.IA;
   }
   if (py.truth(no_stable_precession)) {
     return Group.IIC;
   }
-  return _fold_measure(gamma, alpha) > alpha - 1.0 + gamma ? Group.IIB : Group.IIA;
+  return _fold_measure(gamma, alpha) > py.add(py.sub(alpha, 1.0), gamma) ? Group.IIB : Group.IIA;
 }
 
 /** Group of an eccentric sphere; `InvalidInput` if the top does not conserve Jellett's integral. */
@@ -8755,34 +8838,40 @@ function eccentricity(top) {
 
 /** Gamma of the boundary between groups I and II: below it the upright spin is stable at any spin. */
 function upright_boundary(alpha) {
-  return 1.0 - alpha;
+  return py.sub(1.0, alpha);
 }
 
 /** Gamma of the boundary between groups II and III: above it the inverted spin is stable at no spin. */
 function inverted_boundary(alpha) {
-  return 1.0 + alpha;
+  return py.add(1.0, alpha);
 }
 
 /** Gamma of the boundary between groups IIb and IIa, where the fold enters at theta = 0. */
 function jump_boundary(alpha) {
-  return (1.0 - alpha) / 8.0 * (7.0 + alpha + py.math.sqrt(1.0 + 14.0 * alpha + py.pow(alpha, 2)));
+  return py.mul(
+    py.div(py.sub(1.0, alpha), 8.0),
+    py.add(py.add(7.0, alpha), py.math.sqrt(py.add(py.add(1.0, py.mul(14.0, alpha)), py.pow(alpha, 2))))
+  );
 }
 
 /** Gammas between which no precession is stable (groups Ib and IIc), where the fold leaves at theta = pi. */
 function precession_boundaries(alpha) {
-  var discriminant = 1.0 - 14.0 * alpha + py.pow(alpha, 2);
+  var discriminant = py.add(py.sub(1.0, py.mul(14.0, alpha)), py.pow(alpha, 2));
   if (discriminant < 0.0) {
     return [py.math.nan, py.math.nan];
   }
-  var [middle, half] = [7.0 - alpha, py.math.sqrt(discriminant)];
-  return [(1.0 + alpha) / 8.0 * (middle - half), (1.0 + alpha) / 8.0 * (middle + half)];
+  var [middle, half] = [py.sub(7.0, alpha), py.math.sqrt(discriminant)];
+  return [
+    py.mul(py.div(py.add(1.0, alpha), 8.0), py.sub(middle, half)),
+    py.mul(py.div(py.add(1.0, alpha), 8.0), py.add(middle, half))
+  ];
 }
 
 /** Gamma in group II at which both vertical spins change stability together, lambda_up = lambda_down. */
 function equal_thresholds(alpha) {
   return py.div(
-    (1.0 - py.pow(alpha, 2)) * (1.0 + 3.0 * py.pow(alpha, 2)),
-    1.0 + 6.0 * py.pow(alpha, 2) + py.pow(alpha, 4)
+    py.mul(py.sub(1.0, py.pow(alpha, 2)), py.add(1.0, py.mul(3.0, py.pow(alpha, 2)))),
+    py.add(py.add(1.0, py.mul(6.0, py.pow(alpha, 2))), py.pow(alpha, 4))
   );
 }
 
@@ -8808,7 +8897,7 @@ function coexistence(top) {
 
 /** D at the fold, sqrt(gamma (1 - gamma - alpha^2) / 3); 0 where there is none and every D is larger. */
 function _fold_measure(gamma, alpha) {
-  return py.math.sqrt(py.max(gamma * (1.0 - gamma - py.pow(alpha, 2)) / 3.0, 0.0));
+  return py.math.sqrt(py.max(py.div(py.mul(gamma, py.sub(py.sub(1.0, gamma), py.pow(alpha, 2))), 3.0), 0.0));
 }
 
 // tippetop.theory.prospects
@@ -8892,7 +8981,7 @@ function _stem(problem, surfaces, touch) {
   var [body, inverted] = [problem.body, SteadyKind.INVERTED];
   var top = new Top(body.mass, body.I1, body.I3, py.item(surfaces, -1), new ViscousLaw(1.0), problem.gravity);
   var [least, launch] = [critical_jellett(inverted, top), py.math.nan];
-  if (touch !== null && py.eq(touch.surface, py.len(surfaces) - 1)) {
+  if (touch !== null && py.eq(touch.surface, py.sub(py.len(surfaces), 1))) {
     var share = _handed_over(touch.tilt, problem.top, py.item(surfaces, -1));
     launch = py.max(
       touch.spin,
@@ -9009,11 +9098,11 @@ function factor_for(error, tries) {
     var factor = SAFETY_of_dormand_prince * py.pow(error, -0.125);
     return factor > LEAST_FACTOR ? factor : LEAST_FACTOR;
   }
-  factor = error === 0.0 ? MOST_FACTOR : py.min(
+  factor = error === 0.0 ? MOST_FACTOR : Math.min(
     MOST_FACTOR,
     SAFETY_of_dormand_prince * py.pow(error, -0.125)
   );
-  return tries === 1 ? factor : py.min(1.0, factor);
+  return tries === 1 ? factor : Math.min(1.0, factor);
 }
 
 /** How large the difference of two is beside the errors that are allowed: a mean. */
@@ -9032,15 +9121,15 @@ function first_step(rates, p, y, k, place, span, tolerance) {
     place[i] = 0.0;
   }
   var [size, slope] = [measure(y, place, y, tolerance), measure(k[0], place, y, tolerance)];
-  var trial = py.min(span, size < 1e-05 || slope < 1e-05 ? 1e-06 : py.div(py.mul(0.01, size), slope));
+  var trial = Math.min(span, size < 1e-05 || slope < 1e-05 ? 1e-06 : 0.01 * size / slope);
   var k0 = k[0];
   for (var i = 0; i < y.length; i += 1) {
-    place[i] = py.add(y[i], py.mul(trial, k0[i]));
+    place[i] = y[i] + trial * k0[i];
   }
   evaluate(rates, place, p, k[1]);
-  var steepest = py.max(slope, py.div(measure(k[1], k[0], y, tolerance), trial));
-  var found = steepest <= 1e-15 ? py.max(1e-06, py.mul(trial, 0.001)) : py.pow(py.div(0.01, steepest), 0.125);
-  return py.min(py.mul(100.0, trial), found, span);
+  var steepest = Math.max(slope, measure(k[1], k[0], y, tolerance) / trial);
+  var found = steepest <= 1e-15 ? Math.max(1e-06, trial * 0.001) : py.pow(0.01 / steepest, 0.125);
+  return Math.min(100.0 * trial, found, span);
 }
 
 /** Put the state at a part of a step, whose coefficients are from `first` on, in y. */
@@ -9100,7 +9189,7 @@ function suspect(guards, p, terms, first, y, values) {
   }
   var values0 = values[0];
   var values1 = values[1];
-  for (var guard = 0; guard < py.len(values[0]); guard += 1) {
+  for (var guard = 0; guard < values[0].length; guard += 1) {
     if (py.truth(may_fall(values, guard))) {
       return true;
     }
@@ -9113,7 +9202,7 @@ function suspect(guards, p, terms, first, y, values) {
     }
   }
   var values0 = values[0];
-  for (var guard = 0; guard < py.len(values[0]); guard += 1) {
+  for (var guard = 0; guard < values[0].length; guard += 1) {
     values0[guard] = values[LOOKS_of_dormand_prince][guard];
   }
   return false;
@@ -9154,7 +9243,7 @@ function advance(rates, guards, count, p, y, lost, k, span, tolerance, knots, te
       stages_of_dormand_prince(rates, h, p, y, lost, k, moved, new_);
       error = error_of(h, y, new_, k, tolerance);
       tries = tries + 1;
-      span[2] = py.mul(h, factor_for(error, tries));
+      span[2] = h * factor_for(error, tries);
     }
     calls = calls + (12 * tries + 3);
     more_stages(rates, h, p, y, lost, k, place);
@@ -9644,22 +9733,25 @@ function _along(guard, parameters, solution) {
 
 /** The intervals over which the guard falls from positive to not positive, in turn; in which solution. */
 function* brackets(probes, values, value, exact) {
-  var last = py.len(probes) - 1;
+  var last = py.sub(py.len(probes), 1);
   if (py.max(values.slice(0, 2)) <= 0.0) {
     var early = _early_bracket(probes[0], py.item(probes, last), value);
     if (early !== null) {
       yield early;
     }
   }
-  for (var i = 0; i < last + 1; i += 1) {
-    var [before, after] = [py.max(i - 1, 0), py.min(i + 1, last)];
+  for (var i = 0; i < py.add(last, 1); i += 1) {
+    var [before, after] = [py.max(py.sub(i, 1), 0), py.min(py.add(i, 1), last)];
     if (
       py.item(values, i) > 0.0 && py.item(values, i) <= py.min(
         py.item(values, before),
         py.item(values, after)
       )
     ) {
-      var drop = py.sub(py.max(py.slice(values, py.max(i - 2, 0), i + 3, null)), py.item(values, i));
+      var drop = py.sub(
+        py.max(py.slice(values, py.max(py.sub(i, 2), 0), py.add(i, 3), null)),
+        py.item(values, i)
+      );
       if (py.item(values, i) < drop) {
         var [place, least] = dip(value, py.item(probes, before), py.item(probes, after));
         if (least <= 0.0) {
@@ -9682,8 +9774,8 @@ function _early_bracket(start, end, value) {
   var part = EARLIEST;
   while (part < py.div(1.0, LOOKS_of_dormand_prince)) {
     var [low, high] = [
-      py.add(start, py.mul(part, end - start)),
-      py.add(start, py.mul(py.mul(2.0, part), end - start))
+      py.add(start, py.mul(part, py.sub(end, start))),
+      py.add(start, py.mul(py.mul(2.0, part), py.sub(end, start)))
     ];
     if (value(low) > RISEN && value(high) <= 0.0) {
       return [low, high, value];
@@ -9791,8 +9883,8 @@ class Stepping extends py.Thing {
     [this.steps, this.calls] = [0, 0];
     this.other = null;
     [this.knots, this.terms] = [
-      py.np.empty(FEW_of_stepping + 1),
-      py.np.empty(FEW_of_stepping * POWERS * size)
+      py.np.empty(py.add(FEW_of_stepping, 1)),
+      py.np.empty(py.mul(py.mul(FEW_of_stepping, POWERS), size))
     ];
     py.put(this.knots, 0, start[0]);
   }
@@ -9847,7 +9939,7 @@ class Stepping extends py.Thing {
     var first = py.mul(py.mul(py.sub(this.steps, 1), size), POWERS);
     var dense = (at) => {
       var found = py.np.empty(size);
-      this.functions.within(this.terms, first, py.div(at - begin, py.sub(reach, begin)), found);
+      this.functions.within(this.terms, first, py.div(py.sub(at, begin), py.sub(reach, begin)), found);
       return found;
     };
     var advance = (at) => {
@@ -9864,9 +9956,9 @@ class Stepping extends py.Thing {
     var [begin, end] = [py.item(this.knots, py.sub(this.steps, 1)), py.item(this.knots, this.steps)];
     var [part, last] = [
       py.div(py.sub(time, begin), py.sub(end, begin)),
-      py.mul(py.mul(this.steps, state.length), POWERS)
+      py.mul(py.mul(this.steps, py.len(state)), POWERS)
     ];
-    for (var number = py.sub(last, state.length * POWERS); number < last; number += 1) {
+    for (var number = py.sub(last, py.mul(py.len(state), POWERS)); number < last; number += 1) {
       py.put(this.terms, number, py.mul(py.item(this.terms, number), py.pow(part, py.mod(number, POWERS))));
     }
     py.put(this.knots, this.steps, time);
@@ -9889,7 +9981,7 @@ class Stepping extends py.Thing {
   }
   /** The state after steps from another that end at exactly this time. */
   landed(time, state, end) {
-    [this.state, this.lost] = [py.np.array(state), py.np.zeros(state.length)];
+    [this.state, this.lost] = [py.np.array(state), py.np.zeros(py.len(state))];
     this.span = py.np.array([time, end, 0.0]);
     var ended = FULL;
     while (py.eq(ended, FULL) && end > time) {
@@ -10474,7 +10566,7 @@ function unrolled(recorded, abreast) {
       var found = py.mul([graph.taken(node.value)], abreast);
     } else if (py.contains([STATE, PARAMETER], node.name)) {
       found = py.range(abreast).map(
-        (lane) => graph.node(node.name, [], py.add(py.int(node.value) * abreast, lane))
+        (lane) => graph.node(node.name, [], py.add(py.mul(py.int(node.value), abreast), lane))
       );
     } else if (py.eq(node.name, SPREAD)) {
       found = py.mul([py.item(operands[0], py.int(node.value))], abreast);
