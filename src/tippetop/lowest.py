@@ -26,20 +26,25 @@ def lowest_number(surface: Surface, c: Any) -> NDArray[np.intp]:
 
 
 def lowest_contact_vector(axis: Vector, surface: Surface) -> Vector:
-    """Vectors from the centre of mass to the lowest point of the body; of arrays, all of one shape."""
+    """Vectors from the centre of mass to the lowest point of the body; of numbers, or arrays of one shape."""
     if not isinstance(surface, Hull):
         return contact_vector(axis, surface)
-    number = lowest_number(surface, axis[2])
+    level = outer_height(surface, axis[2]) - LEVEL * surface.size
+    last, *others = reversed(each_surface(surface))
     with np.errstate(divide="ignore", invalid="ignore"):
-        arms = np.array([np.broadcast_arrays(*contact_vector(axis, one)) for one in surface.each])
-    x, y, z = np.take_along_axis(arms, number[None, None], axis=0)[0]
+        x, y, z = contact_vector(axis, last)
+        for one in others:
+            lowest, arm = one.height(axis[2]) >= level, contact_vector(axis, one)
+            x, y, z = (np.where(lowest, arm[i], other) for i, other in enumerate((x, y, z)))
     return (x, y, z)
 
 
 def highest_between(surface: Surface, low: Scalar, high: Scalar) -> Scalar:
     """Largest height of the centre of mass on the table for n_z from `low` to `high`, in some looks."""
-    heights = outer_height(surface, np.multiply.outer(np.linspace(0.0, 1.0, LOOKS), high - low) + low)
-    return np.max(heights, axis=0)
+    found = outer_height(surface, low)
+    for look in range(1, LOOKS):
+        found = np.maximum(found, outer_height(surface, low + look / (LOOKS - 1) * (high - low)))
+    return found
 
 
 def lowest_jellett(state: State, top: Top) -> Scalar:

@@ -30,7 +30,6 @@ ROOTS = (
 
 GIVEN = {
     "tippetop.catalogue": "./tables.js",
-    "tippetop.lowest": "./observe.js",
     "tippetop.integrators.dense": "./dense.js",
     "tippetop.integrators.polynomials": "",
     "tippetop.integrators.iteration": "./compile.js",
@@ -47,6 +46,7 @@ GIVEN = {
 LEFT = {
     "rules_of",
     "touching",
+    "lowest_number",
     "_shape",
     "_a_profile",
     "Body.turned",

@@ -5,7 +5,6 @@ import { make_integrator } from "./integrate.js";
 import { change_over, copied, iterated, pieces_of, put_from, put_rows, room } from "./compile.js";
 import { InvalidInput, MISSING, Part, numbers_of } from "./part.js";
 import { NEAR_FINAL } from "./tables.js";
-import { highest_between, lowest_contact_vector, lowest_jellett } from "./observe.js";
 
 // tippetop.mechanics.vectors
 const VERTICAL = [0.0, 0.0, 1.0];
@@ -9992,6 +9991,47 @@ class Stepping extends py.Thing {
   }
 }
 
+// tippetop.lowest
+const LEVEL = 1e-09;
+const LOOKS_of_lowest = 65;
+
+/** Vectors from the centre of mass to the lowest point of the body; of numbers, or arrays of one shape. */
+function lowest_contact_vector(axis, surface) {
+  if (!py.isinstance(surface, Hull)) {
+    return contact_vector(axis, surface);
+  }
+  var level = py.sub(outer_height(surface, axis[2]), py.mul(LEVEL, surface.size));
+  var [last, ...others] = py.reversed(each_surface(surface));
+  py.heed(false);
+  try {
+    var [x, y, z] = contact_vector(axis, last);
+    for (var one of others) {
+      var [lowest, arm] = [one.height(axis[2]) >= level, contact_vector(axis, one)];
+      [x, y, z] = py.enumerate([x, y, z]).map(([i, other]) => py.np.where(lowest, py.item(arm, i), other));
+    }
+  } finally {
+    py.heed(true);
+  }
+  return [x, y, z];
+}
+
+/** Largest height of the centre of mass on the table for n_z from `low` to `high`, in some looks. */
+function highest_between(surface, low, high) {
+  var found = outer_height(surface, low);
+  for (var look = 1; look < LOOKS_of_lowest; look += 1) {
+    found = py.np.maximum(
+      found,
+      outer_height(surface, py.add(low, py.mul(py.div(look, LOOKS_of_lowest - 1), py.sub(high, low))))
+    );
+  }
+  return found;
+}
+
+/** Jellett's integral -L.a about the lowest point of the body, whichever surface that is on, kg m^3/s. */
+function lowest_jellett(state, top) {
+  return py.neg(dot(state.momentum, lowest_contact_vector(state.axis, top.surface)));
+}
+
 // tippetop.metrics
 const OUTCOMES = py.tuple(Outcome);
 
@@ -10719,6 +10759,7 @@ export {
   LEAST_FACTOR,
   LEAST_PATCH,
   LESS,
+  LEVEL,
   LIFT_OFF,
   LIMIT,
   LIMIT_BRANCH,
@@ -10731,6 +10772,7 @@ export {
   LOOKS,
   LOOKS_of_bodies,
   LOOKS_of_dormand_prince,
+  LOOKS_of_lowest,
   LOOKS_of_passing,
   LOST,
   Launch,
@@ -11083,6 +11125,7 @@ export {
   has_limit_branches,
   heaviness,
   held_rates,
+  highest_between,
   highest_gap,
   holding,
   horner,
@@ -11124,6 +11167,8 @@ export {
   letting_go,
   level_spin,
   limit_guard,
+  lowest_contact_vector,
+  lowest_jellett,
   lowest_surface,
   machinery_of,
   may_fall,

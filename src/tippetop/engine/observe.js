@@ -1,21 +1,7 @@
-// What a mode says of its numbers, compiled once a kind; and the lowest surface, as in tippetop.lowest.
-import {
-  Hull, NotRecordable, contact_vector, dot, each_surface, energy, jellett, lowest_surface, outer_height,
-} from "./mechanics.js";
+// What a mode says of its numbers, compiled once a kind.
+import { energy, jellett } from "./mechanics.js";
 import { compiled } from "./compile.js";
 import { cached, replace } from "./runtime.js";
-
-const LEVEL = 1e-9, LOOKS = 65;
-
-export function lowest_contact_vector(axis, surface) {
-  if (!(surface instanceof Hull)) return contact_vector(axis, surface);
-  if (typeof axis[2] !== "number") throw new NotRecordable("which surface is lowest depends on numbers");
-  const limit = lowest_surface(surface, axis[2]).height(axis[2]) - LEVEL * surface.size;
-  return contact_vector(axis, each_surface(surface).find((one) => one.height(axis[2]) >= limit));
-}
-export const lowest_jellett = (state, top) => -dot(state.momentum, lowest_contact_vector(state.axis, top.surface));
-export const highest_between = (surface, low, high) =>
-  Math.max(...Array.from({ length: LOOKS }, (_, i) => outer_height(surface, low + ((high - low) * i) / (LOOKS - 1))));
 
 /** What a motion keeps, of the numbers of a mode: the axis, the height, energy and Jellett's integral. */
 export function kept(mode, y) {

@@ -173,7 +173,11 @@ export class NamedTuple {
   }
 }
 
-export class Record {}
+export class Record {
+  valueOf() {
+    throw new ArithmeticError("what is compared is no number");
+  }
+}
 
 export function fields(kind, names) {
   kind.fields = names;
