@@ -10,6 +10,7 @@ from tippetop.integrators.base import Array
 from tippetop.mechanics.quadratures import orientation
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.units import Units
+from tippetop.mechanics.vectors import scale
 from tippetop.mechanics.view import axis_sine
 
 
@@ -58,8 +59,8 @@ def observe(samples: Samples, top: Top, units: Units) -> dict[str, Array]:
         "slip_x": slip_x * units.speed,
         "slip_y": slip_y * units.speed,
         "normal_force": told.force[2] * force,
-        "contact_force": np.stack(told.force, -1) * force,
-        "contact_torque": np.stack(told.torque, -1) * units.energy,
+        "contact_force": np.stack(scale(force, told.force), -1),
+        "contact_torque": np.stack(scale(units.energy, told.torque), -1),
         "energy": told.energy * units.energy,
         "work": samples.work * units.energy,
         "sliding_loss": (-samples.work - samples.struck - samples.drilled - samples.rolled) * units.energy,
@@ -71,8 +72,8 @@ def observe(samples: Samples, top: Top, units: Units) -> dict[str, Array]:
         "x": samples.x * units.length,
         "y": samples.y * units.length,
         "axis": np.stack(axis, -1),
-        "velocity": np.stack(state.velocity, -1) * units.speed,
-        "angular_momentum": np.stack(momentum, -1) * units.angular_momentum,
+        "velocity": np.stack(scale(units.speed, state.velocity), -1),
+        "angular_momentum": np.stack(scale(units.angular_momentum, momentum), -1),
         "orientation": np.stack(orientation(axis, samples.turn, samples.pole, np), -1),
     }
 

@@ -10292,8 +10292,8 @@ function observe(samples, top, units) {
     ["slip_x", py.mul(slip_x, units.speed)],
     ["slip_y", py.mul(slip_y, units.speed)],
     ["normal_force", py.mul(told.force[2], force)],
-    ["contact_force", py.mul(py.np.stack(told.force, -1), force)],
-    ["contact_torque", py.mul(py.np.stack(told.torque, -1), units.energy)],
+    ["contact_force", py.np.stack(scale(force, told.force), -1)],
+    ["contact_torque", py.np.stack(scale(units.energy, told.torque), -1)],
     ["energy", py.mul(told.energy, units.energy)],
     ["work", py.mul(samples.work, units.energy)],
     [
@@ -10311,8 +10311,8 @@ function observe(samples, top, units) {
     ["x", py.mul(samples.x, units.length)],
     ["y", py.mul(samples.y, units.length)],
     ["axis", py.np.stack(axis, -1)],
-    ["velocity", py.mul(py.np.stack(state.velocity, -1), units.speed)],
-    ["angular_momentum", py.mul(py.np.stack(momentum, -1), units.angular_momentum)],
+    ["velocity", py.np.stack(scale(units.speed, state.velocity), -1)],
+    ["angular_momentum", py.np.stack(scale(units.angular_momentum, momentum), -1)],
     ["orientation", py.np.stack(orientation(axis, samples.turn, samples.pole, py.np), -1)]
   ]);
 }

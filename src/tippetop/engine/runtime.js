@@ -105,29 +105,10 @@ export const math = {
   exp: (x) => finite(Math.exp(x), x),
   sinh: (x) => finite(Math.sinh(x), x),
   cosh: (x) => finite(Math.cosh(x), x),
-  sqrt(x) {
-    if (x < 0) throw new ValueError("math domain error");
-    return Math.sqrt(x);
-  },
-  hypot(...parts) {
-    let largest = 0;
-    for (const part of parts) largest = part !== part ? NaN : Math.max(largest, Math.abs(part));
-    if (largest === 0 || !Number.isFinite(largest)) return largest;
-    let total = 0;
-    for (const part of parts) total += (part / largest) * (part / largest);
-    return largest * Math.sqrt(total);
-  },
-  dist: (a, b) => math.hypot(...Array.from(a, (x, i) => x - b[i])),
+  dist: (a, b) => Math.hypot(...Array.from(a, (x, i) => x - b[i])),
 };
 
-/** A row of numbers that takes factors. */
-class Factored extends Float64Array {
-  __mul__(factor) {
-    return this.map((one) => one * factor);
-  }
-}
-
-/** What is asked of NumPy: arrays to be filled, those of more dimensions as lists of arrays; and numbers for arrays. */
+/** What is asked of NumPy: arrays to be filled, those of two dimensions as lists of arrays; and numbers for arrays. */
 export const np = {
   __proto__: Math,
   pi: Math.PI,
@@ -139,13 +120,9 @@ export const np = {
   copysign: (a, b) => (b < 0 || Object.is(b, -0) ? -Math.abs(a) : Math.abs(a)),
   where: (condition, a, b) => (condition ? a : b),
   any: (condition) => condition,
-  stack: (parts) => Factored.from(parts),
-  empty(shape) {
-    if (typeof shape === "number") return new Float64Array(shape);
-    const [count, more, wide] = shape, rows = new Array(count);
-    for (let i = 0; i < count; i += 1) rows[i] = wide === undefined ? new Float64Array(more) : np.empty([more, wide]);
-    return rows;
-  },
+  stack: (parts) => Float64Array.from(parts),
+  empty: (shape) => (typeof shape === "number" ? new Float64Array(shape)
+    : Array.from({ length: shape[0] }, () => new Float64Array(shape[1]))),
   concatenate([a, b]) {
     const found = new Float64Array(a.length + b.length);
     found.set(a);
@@ -220,11 +197,7 @@ const isRow = (a) => Array.isArray(a) || a instanceof NamedTuple;
 
 export function eq(a, b) {
   if (a === b) return true;
-  if (isRow(a) && isRow(b)) {
-    if (len(a) !== len(b)) return false;
-    for (let i = 0; i < len(a); i += 1) if (!eq(a[i], b[i])) return false;
-    return true;
-  }
+  if (isRow(a) && isRow(b)) return len(a) === len(b) && [...a].every((one, place) => eq(one, b[place]));
   if (a instanceof Record && b instanceof Record && a.constructor === b.constructor) {
     return a.constructor.fields.every((name) => eq(a[name], b[name]));
   }
@@ -257,7 +230,7 @@ export function cached(function_) {
 export class Dict {
   constructor(pairs = []) {
     this.pairs = new Map();
-    for (const pair of pairs) Array.isArray(pair) ? this.put(pair[0], pair[1]) : this.add(pair);
+    this.update(pairs);
   }
   get length() {
     return this.pairs.size;
@@ -287,9 +260,6 @@ export class Dict {
   update(pairs) {
     for (const [one, value] of pairs) this.put(one, value);
   }
-  __getitem__(one) {
-    return this.get(one);
-  }
   [Symbol.iterator]() {
     return this.keys()[Symbol.iterator]();
   }
@@ -310,16 +280,12 @@ export function put(all, place, value) {
   else all[place < 0 ? all.length + place : place] = value;
 }
 
+/** A slice of a sequence, every so many, or backwards. */
 export function slice(all, from, to, step) {
-  const by = step ?? 1, whole = Array.isArray(all) ? all : [...all];
-  if (by === 1) return whole.slice(from ?? 0, to ?? undefined);
-  const count = whole.length, found = [];
-  const at = (place, otherwise) => (place === null ? otherwise : place < 0 ? place + count : place);
-  const last = at(to, by < 0 ? -1 : count);
-  for (let i = Math.min(at(from, by < 0 ? count - 1 : 0), by < 0 ? count - 1 : count); by < 0 ? i > last : i < last; i += by) {
-    found.push(whole[i]);
-  }
-  return found;
+  const whole = Array.isArray(all) ? all : [...all];
+  if (step === -1) return whole.slice(to === null ? 0 : to + 1, from === null ? undefined : from + 1).reverse();
+  const found = whole.slice(from ?? 0, to ?? undefined);
+  return step > 1 ? found.filter((_, place) => place % step === 0) : found;
 }
 
 export const len = (all) => (all instanceof NamedTuple ? all.constructor.fields.length : all.length);
@@ -343,18 +309,13 @@ export const pairwise = (all) => zip(all, all.slice(1));
 export const any = (all) => [...all].some(truth);
 export const all = (each) => [...each].every(truth);
 export const iter = (all) => all[Symbol.iterator]();
-export function next(all, otherwise) {
-  const found = (typeof all.next === "function" ? all : iter(all)).next();
-  if (found.done && otherwise === undefined) throw new ValueError("there is no next one");
-  return found.done ? otherwise : found.value;
-}
+export const next = (all, otherwise) => {
+  const { done, value } = iter(all).next();
+  return done ? otherwise : value;
+};
 
-class How {
-  constructor(given) {
-    Object.assign(this, given);
-  }
-}
-export const how = (given) => new How(given);
+class How {}
+export const how = (given) => Object.assign(new How(), given);
 
 function below(a, b) {
   if (!isRow(a)) return a < b;
@@ -363,16 +324,10 @@ function below(a, b) {
 }
 
 function most(given, better) {
-  const told = given.at(-1) instanceof How ? given.pop() : {};
+  const told = given.at(-1) instanceof How ? given.pop() : {}, { key: worth = (one) => one } = told;
   const choices = given.length === 1 ? [...given[0]] : given;
   if (!choices.length && "default" in told) return told.default;
-  const worth = told.key ?? ((one) => one);
-  let best = choices[0], value = worth(best);
-  for (const choice of choices.slice(1)) {
-    const other = worth(choice);
-    if (better(other, value)) [best, value] = [choice, other];
-  }
-  return best;
+  return choices.reduce((best, choice) => (better(worth(choice), worth(best)) ? choice : best));
 }
 export function max(...given) {
   if (given.length === 2 && typeof given[0] === "number" && typeof given[1] === "number") {
@@ -386,17 +341,10 @@ export function min(...given) {
   }
   return most(given, below);
 }
-export function sorted(all, told = {}) {
-  const worth = told.key ?? ((one) => one);
-  const pairs = Array.from(all, (one) => [worth(one), one]).sort(([a], [b]) => (below(a, b) ? -1 : below(b, a) ? 1 : 0));
-  return pairs.map(([, one]) => one);
-}
+export const sorted = (all, { key: worth = (one) => one } = {}) =>
+  [...all].sort((a, b) => (below(worth(a), worth(b)) ? -1 : Number(below(worth(b), worth(a)))));
 
-export function tolist(all) {
-  const found = [];
-  for (let i = 0; i < all.length; i += 1) found.push(all[i]);
-  return found;
-}
+export const tolist = (all) => [...all];
 export const join = (between, all) => [...all].join(between);
 export const extend = (all, more) => all.push(...more);
 export const pop = (all) => all.pop();
@@ -412,7 +360,7 @@ export const format = (value, how_) =>
 
 export const hasattr = (one, name) => one !== null && typeof one === "object" && name in one;
 export const getattr = (one, name, otherwise) => (hasattr(one, name) ? one[name] : otherwise);
-export const bound = (one, name) => (Array.isArray(one) ? (place) => item(one, place) : one[name].bind(one));
+export const bound = (one, name) => (name === "__getitem__" ? (place) => item(one, place) : one[name].bind(one));
 export const type = (one) => one.constructor;
 export const call = (one, ...given) => (/^class\b/.test(Function.prototype.toString.call(one)) ? new one(...given) : one(...given));
 export function isinstance(one, kind) {
