@@ -134,9 +134,7 @@ def test_a_solution_is_moved_in_time_to_end_exactly():
     assert moved.size == 2
 
 
-def test_what_stands_still_and_what_does_not_exist_are_solutions_too():
-    standing = DenseSolution.standing((1.0, -2.0), 3.0, 4.0)
-    np.testing.assert_array_equal(standing(np.array([3.0, 3.7, 4.0])), [[1.0, -2.0]] * 3)
+def test_what_does_not_exist_is_a_solution_too():
     assert DenseSolution.nothing(2.0, 8).end == 2.0
     assert len(DenseSolution.nothing(2.0, 8).terms) == 0
 

@@ -133,7 +133,8 @@ class Resting(Mode):
 
     def segments(self, time: float, state: State, end: float, integrator: Integrator) -> Iterator[Segment]:
         """Stay as it is."""
-        still = DenseSolution.standing(self.told.numbers(state), time, time + SHORT * max(1.0, time))
+        numbers = self.told.numbers(state)
+        still = straight(numbers, numbers, time, time + SHORT * max(1.0, time))
         yield Segment(self.told, still, state, Transition((), Outcome.AT_REST, state))
 
 
@@ -248,7 +249,7 @@ class Stopping(Passing):
         """
         if not parts:
             still = shown(closing_of(begin, self.ending))
-            return DenseSolution.standing(still, time, time + float(after.time))
+            return straight(still, still, time, time + float(after.time))
         clock, elapsed = DenseSolution.joined(parts), len(begin) - 1
 
         def numbers(times: Array) -> tuple[Scalar, ...]:
@@ -260,9 +261,15 @@ class Stopping(Passing):
             solution = DenseSolution.fitted(numbers, knots, DEGREE)
         reach = float(after.time)
         if reach > knots[-1]:
-            rest = DenseSolution.straight(shown(before), shown(after), knots[-1], reach, DEGREE)
+            rest = straight(shown(before), shown(after), knots[-1], reach)
             solution = DenseSolution.joined([solution, rest])
         return solution.moved(time, time + reach)
+
+
+def straight(begin: Sequence[float], last: Sequence[float], start: float, end: float) -> DenseSolution:
+    """Numbers that go from some to others in a straight line."""
+    terms = [(a, b - a, *[0.0] * (DEGREE - 1)) for a, b in zip(begin, last, strict=True)]
+    return DenseSolution.in_time([0.0, 1.0], [terms]).moved(start, end)
 
 
 def thinned(knots: Sequence[float]) -> list[float]:

@@ -22,12 +22,6 @@ export function earliest(count, holds) {
 
 /** Put coefficients in powers of a polynomial with some values at Chebyshev's points in `out` from `at` on. */
 function toPowers(values, { transform, powers }, out, at) {
-  let same = 1;
-  while (same < values.length && values[same] === values[0]) same += 1;
-  if (same === values.length) {
-    out[at] = values[0];
-    return;
-  }
   for (let k = 0; k < values.length; k += 1) {
     const terms = powers[k], row = transform[k];
     let weight = 0;
@@ -49,11 +43,6 @@ export class DenseSolution {
   /** The step in which a time lies, the earlier one where two meet. */
   step(time) {
     return earliest(this.count, (step) => this.knots[step + 1] >= time);
-  }
-
-  /** One number where a step starts. */
-  start(step, number) {
-    return this.terms[(step * this.size + number) * (this.degree + 1)];
   }
 
   /** One number at a part of a step. */
@@ -90,7 +79,7 @@ export class DenseSolution {
   }
 
   knots_of(number, end) {
-    const shown = Array.from({ length: this.count }, (_, step) => this.start(step, number));
+    const shown = Array.from({ length: this.count }, (_, step) => this.value(step, number, 0));
     return [...shown.filter((value) => value < end * (1 - SHORTEST)), end];
   }
 
@@ -132,15 +121,6 @@ export class DenseSolution {
 
   static nothing(time, size) {
     return new DenseSolution([time], new Float64Array(0), size, 0);
-  }
-
-  static standing(numbers, start, end) {
-    return new DenseSolution([start, end], Float64Array.from(numbers), numbers.length, 0);
-  }
-
-  static straight(begin, last, start, end, degree) {
-    const terms = begin.flatMap((number, i) => [number, last[i] - number, ...new Array(degree - 1).fill(0.0)]);
-    return new DenseSolution([start, end], Float64Array.from(terms), begin.length, degree);
   }
 
   static joined(parts) {

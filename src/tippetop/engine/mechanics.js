@@ -3271,11 +3271,8 @@ class Resting extends Mode {
   }
   /** Stay as it is. */
   *segments(time, state, end, integrator) {
-    var still = DenseSolution.standing(
-      this.told.numbers(state),
-      time,
-      py.add(time, py.mul(SHORT, py.max(1.0, time)))
-    );
+    var numbers = this.told.numbers(state);
+    var still = straight(numbers, numbers, time, py.add(time, py.mul(SHORT, py.max(1.0, time))));
     yield new Segment(this.told, still, state, new Transition([], Outcome.AT_REST, state));
   }
 }
@@ -3433,7 +3430,7 @@ class Stopping extends Passing {
   _in_time(parts, begin, time, before, after) {
     if (!py.truth(parts)) {
       var still = shown(closing_of(begin, this.ending));
-      return DenseSolution.standing(still, time, py.add(time, py.float(after.time)));
+      return straight(still, still, time, py.add(time, py.float(after.time)));
     }
     var [clock, elapsed] = [DenseSolution.joined(parts), py.sub(py.len(begin), 1)];
     var numbers = (times) => {
@@ -3446,19 +3443,21 @@ class Stopping extends Passing {
     }
     var reach = py.float(after.time);
     if (reach > py.item(knots, -1)) {
-      var rest = DenseSolution.straight(
-        shown(before),
-        shown(after),
-        py.item(knots, -1),
-        reach,
-        DEGREE_of_passing
-      );
+      var rest = straight(shown(before), shown(after), py.item(knots, -1), reach);
       solution = DenseSolution.joined([solution, rest]);
     }
     return solution.moved(time, py.add(time, reach));
   }
 }
 py.fields(Stopping, ["top", "rules", "ending", "begin"]);
+
+/** Numbers that go from some to others in a straight line. */
+function straight(begin, last, start, end) {
+  var terms = py.zip(begin, last).map(
+    ([a, b]) => [a, py.sub(b, a), ...py.mul([0.0], py.sub(DEGREE_of_passing, 1))]
+  );
+  return DenseSolution.in_time([0.0, 1.0], [terms]).moved(start, end);
+}
 
 /** Ends of steps, so few of them that each leaves but a share of the time to the last. */
 function thinned(knots) {
@@ -4941,7 +4940,7 @@ function combined(here, size, weights, slopes) {
 const KEPT = 1e-08;
 
 /** The impulse at the end of a straight line: at the goal, or where slip ends. */
-function straight(dry, impulse, goal, guess) {
+function straight_of_straight_impact(dry, impulse, goal, guess) {
   if (dry.resistance !== null || py.truth(dry.ended) && dry.way !== null || goal(impulse) >= 0.0) {
     return null;
   }
@@ -5040,7 +5039,7 @@ class IntegratedProcess extends py.NamedTuple {
         return held._replace({ steps: taken });
       }
       if (now.dry !== null && py.mod(taken, LOOK) === 0) {
-        var ended = straight(now.dry, unpack(here), goal, guess);
+        var ended = straight_of_straight_impact(now.dry, unpack(here), goal, guess);
         if (ended !== null) {
           if (goal(ended) >= 0.0) {
             return ended._replace({ steps: taken });
@@ -10021,7 +10020,7 @@ function highest_between(surface, low, high) {
   for (var look = 1; look < LOOKS_of_lowest; look += 1) {
     found = py.np.maximum(
       found,
-      outer_height(surface, py.add(low, py.mul(py.div(look, LOOKS_of_lowest - 1), py.sub(high, low))))
+      outer_height(surface, py.add(low, py.mul(py.div(look, py.sub(LOOKS_of_lowest, 1)), py.sub(high, low))))
     );
   }
   return found;
@@ -11291,6 +11290,7 @@ export {
   sticking_wrench,
   stopping_guard,
   straight,
+  straight_of_straight_impact,
   struck,
   surface_guards,
   suspect,

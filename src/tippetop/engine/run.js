@@ -70,7 +70,7 @@ class Run {
 
   /** Take in the height of the centre of mass in a flight. */
   rise(solution, step) {
-    if (solution.start(step, 9) + solution.reach(step, 9) <= this.highest) return;
+    if (solution.value(step, 9, 0) + solution.reach(step, 9) <= this.highest) return;
     this.highest = -least((part) => -solution.value(step, 9, part), -this.highest);
   }
 
@@ -95,7 +95,7 @@ class Run {
   sum(piece, step, presses) {
     const { solution, rule } = piece, pole = solution.value(step, 2, rule.nodes[rule.nodes.length >> 1]) >= 0 ? 1 : -1;
     if (pole !== this.pole) {
-      this.sums[TURN] += (pole - this.pole) * Math.atan2(solution.start(step, 1), solution.start(step, 0));
+      this.sums[TURN] += (pole - this.pole) * Math.atan2(solution.value(step, 1, 0), solution.value(step, 0, 0));
       this.pole = pole;
     }
     for (let i = 0; i < SUMS; i += 1) piece.sums.push(this.sums[i]);
@@ -124,7 +124,7 @@ class Run {
 
   /** Take in the motion of the tip of the axis. */
   tip(solution, step) {
-    const start = solution.start(step, 2), far = solution.reach(step, 2), lowest = start - far, highest = start + far;
+    const start = solution.value(step, 2, 0), far = solution.reach(step, 2), lowest = start - far, highest = start + far;
     const turns = this.turned !== this.turned && lowest <= 0 && highest >= 0, at = (part) => solution.value(step, 2, part);
     if (lowest < this.down || highest > this.up) this.tips.push([lowest, highest, at]);
     this.down = Math.min(this.down, start);
@@ -150,7 +150,7 @@ class Run {
   arrival([low, high]) {
     for (const { solution } of this.pieces) {
       for (let step = 0; step < solution.count; step += 1) {
-        const start = solution.start(step, 2), far = solution.reach(step, 2);
+        const start = solution.value(step, 2, 0), far = solution.reach(step, 2);
         if (start - far > high || start + far < low) continue;
         const sign = start > high ? 1 : -1, edge = start > high ? high : low;
         const part = start <= high && start >= low ? 0 : firstFall((x) => sign * (solution.value(step, 2, x) - edge));
@@ -182,7 +182,7 @@ class Run {
       this.arrival(m.final_band(state)));
     this.metrics = Object.fromEntries(m.metrics(ends, this.start, this.top, units).items());
     if (!this.pieces.some(({ solution }) => solution.count)) {
-      const still = this.piece(new m.Flight(this.top, null), DenseSolution.standing(this.start.pack(), 0, 1), "sliding");
+      const still = this.piece(new m.Flight(this.top, null), DenseSolution.in_time([0, 1], [this.start.pack().map((number) => [number])]), "sliding");
       still.sums.push(...sums);
       still.poles.push(this.pole);
     }

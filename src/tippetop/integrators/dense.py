@@ -130,22 +130,6 @@ class DenseSolution:
         return cls(np.array(knots), terms)
 
     @classmethod
-    def standing(cls, numbers: Sequence[float], start: float, end: float) -> "DenseSolution":
-        """Numbers that stay as they are."""
-        here = np.array(numbers, dtype=float)
-        return cls(np.array([start, end]), np.stack([here, np.zeros_like(here)], axis=1)[None])
-
-    @classmethod
-    def straight(
-        cls, begin: Sequence[float], last: Sequence[float], start: float, end: float, degree: int
-    ) -> "DenseSolution":
-        """Numbers that go from some to others in a straight line, as polynomials of a degree."""
-        here, there = np.array(begin, dtype=float), np.array(last, dtype=float)
-        terms = np.zeros((1, len(here), degree + 1))
-        terms[0, :, 0], terms[0, :, 1] = here, there - here
-        return cls(np.array([start, end]), terms)
-
-    @classmethod
     def joined(cls, parts: Sequence["DenseSolution"]) -> "DenseSolution":
         """Solutions that follow one another as one."""
         if len(parts) == 1:
