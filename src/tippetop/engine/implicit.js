@@ -1,32 +1,30 @@
 // Collocation at Radau's points (Hairer and Wanner, Solving Ordinary Differential Equations II): for stiff motions.
-import { FULL, POWERS, REACHED, SINGULAR, STUCK_of_dormand_prince as STUCK, SUSPECT, first_step } from "./mechanics.js";
+import {
+  FULL, POWERS, REACHED, SINGULAR, STUCK_of_dormand_prince as STUCK, SUSPECT, factor_for, first_step,
+} from "./mechanics.js";
 import { RADAU } from "./tables.js";
 
 const { integrals: WEIGHTS, powers: TERMS, last: [LAST] } = RADAU;
 const STAGES = WEIGHTS.length, TURNS = 12, ENOUGH = 1e-3, LEAST_STEP = 1e-15;
 
+const sum = (weights, term) => weights.reduce((total, weight, a) => total + weight * term(a), 0);
+
 /** Steps from a state, as `advance` of Dormand and Prince takes them; where there are guards, every one is suspect. */
 export function implicit(rates, guards, count, p, y, lost, k, span, tolerance, knots, terms, steps) {
   const step = new Step(rates, p, y, k, tolerance[0]), told = (ended) => [steps, step.calls, ended];
-  let growth = 10;
   rates(y, p, k[0]);
   if (!k[0].every(Number.isFinite)) return told(SINGULAR);
   if (span[2] === 0) span[2] = first_step(rates, p, y, k, step.place, span[1] - span[0], tolerance);
-  while (span[0] < span[1]) {
+  for (let tries = 1; span[0] < span[1]; tries += 1) {
     if (steps === knots.length - 1) return told(FULL);
     const reach = Math.min(span[0] + span[2], span[1]), h = reach - span[0], doubt = step.take(h);
+    span[2] = h * factor_for(doubt ** (8 / STAGES), tries);
     if (doubt < 1) {
-      step.accept(terms, steps);
-      steps += 1;
+      step.accept(terms, steps * y.length * POWERS);
+      [steps, tries] = [steps + 1, 0];
       knots[steps] = span[0] = reach;
-      span[2] = h * Math.min(growth, doubt === 0 ? 10 : 0.9 * doubt ** (-1 / STAGES));
-      growth = 10;
       if (count > 0) return told(SUSPECT);
-    } else {
-      if (span[2] <= LEAST_STEP * Math.max(1, Math.abs(reach))) return told(STUCK);
-      span[2] = h * (doubt < Infinity ? Math.max(0.2, 0.9 * doubt ** (-1 / STAGES)) : 0.2);
-      growth = 1;
-    }
+    } else if (span[2] <= LEAST_STEP * Math.max(1, Math.abs(reach))) return told(STUCK);
   }
   return told(REACHED);
 }
@@ -34,9 +32,8 @@ export function implicit(rates, guards, count, p, y, lost, k, span, tolerance, k
 /** A step from a state y; k has the rates there and, once it is taken, at Radau's points. */
 class Step {
   constructor(rates, p, y, k, tolerance) {
-    const [place, there] = [new Float64Array(y.length), new Float64Array(y.length)];
-    Object.assign(this, { rates, p, y, k, tolerance, place, there, jacobian: null, calls: 0 });
-    this.moved = new Float64Array(STAGES * y.length);
+    const [place, moved] = [new Float64Array(y.length), new Float64Array(STAGES * y.length)];
+    Object.assign(this, { rates, p, y, k, tolerance, place, moved, jacobian: null, calls: 0 });
   }
 
   /** Rates at the state moved by a part of some numbers. */
@@ -44,28 +41,27 @@ class Step {
     for (let i = 0; i < this.y.length; i += 1) this.place[i] = this.y[i] + moved[from + i];
     this.calls += 1;
     this.rates(this.place, this.p, out);
+    return out;
   }
 
-  accept(terms, steps) {
-    const { y, k, moved } = this;
+  accept(terms, first) {
+    const { y, k, moved } = this, size = y.length;
     TERMS.forEach((row, power) => y.forEach((start, i) => {
-      terms[(steps * y.length + i) * POWERS + power] = row.reduce((sum, weight, a) => (a ? sum + weight * moved[(a - 1) * y.length + i] : sum), power ? 0 : start);
+      terms[first + i * POWERS + power] = (power ? 0 : start) + sum(row, (a) => moved[a * size + i]);
     }));
-    y.forEach((start, i) => (y[i] = start + moved[moved.length - y.length + i]));
+    y.forEach((start, i) => (y[i] = start + moved[moved.length - size + i]));
     k[0].set(k[STAGES]);
     this.jacobian = null;
   }
 
   /** Derivatives of the rates at the start of the step, by differences that are small beside what moves in it. */
   differentiate(span) {
-    return Array.from(this.y, (start, j) => {
-      const shift = 1e-7 * Math.max(Math.abs(start), span * Math.abs(this.k[0][j]), 1e-3 * span), moved = new Float64Array(this.y.length);
-      const [above, below] = [shift, -shift].map((by) => {
-        moved[j] = by;
-        this.look(moved, 0, this.there);
-        return this.there.slice();
-      });
-      return above.map((value, i) => (value - below[i]) / (2 * shift));
+    const { y, k } = this, moved = new Float64Array(y.length);
+    return Array.from(y, (start, j) => {
+      const shift = 1e-7 * Math.max(Math.abs(start), span * Math.abs(k[0][j]), 1e-3 * span);
+      const at = (by) => this.look(moved.fill(by, j, j + 1), 0, new Float64Array(y.length)), above = at(shift), below = at(-shift);
+      moved[j] = 0;
+      return above.map((rate, i) => (rate - below[i]) / (2 * shift));
     });
   }
 
@@ -83,22 +79,20 @@ class Step {
 
   /** Take the step; its error over the one allowed. */
   take(span) {
-    const { y, k, moved } = this, size = y.length;
+    const { y, k, moved } = this, size = y.length, gained = (weights, i) => span * sum(weights, (a) => k[a + 1][i]);
     this.jacobian ??= this.differentiate(span);
     moved.fill(0);
     let error = Infinity, before = Infinity;
-    for (let turn = 0; turn < TURNS; turn += 1) {
+    for (let turn = 0; turn < TURNS && !(error <= ENOUGH) && (error < 0.7 * before || turn < 3); turn += 1) {
       for (let a = 0; a < STAGES; a += 1) this.look(moved, a * size, k[a + 1]);
-      const change = solved(this.system(WEIGHTS, span, moved.map((one, row) =>
-        span * WEIGHTS[Math.floor(row / size)].reduce((sum, weight, b) => sum + weight * k[b + 1][row % size], 0) - one)));
-      moved.forEach((one, row) => (moved[row] = one + change[row]));
-      error = this.worst(change);
-      if (error <= ENOUGH || !(error < 0.7 * before || turn < 2)) break;
-      before = error;
+      const off = moved.map((one, row) => gained(WEIGHTS[Math.floor(row / size)], row % size) - one);
+      const change = solved(this.system(WEIGHTS, span, off));
+      change.forEach((one, row) => (moved[row] += one));
+      [before, error] = [error, this.worst(change)];
     }
-    if (!(error <= 0.1)) return error === error ? 1e3 : NaN;
+    if (!(error <= 0.1)) return NaN;
     // Without what stiffness makes of rounding (Hairer's filter).
-    const last = y.map((_, i) => span * LAST.reduce((sum, weight, a) => sum + weight * k[a + 1][i], 0));
+    const last = y.map((_, i) => gained(LAST, i));
     return 0.1 * this.worst(solved(this.system([[WEIGHTS[STAGES - 1][STAGES - 1]]], span, last)));
   }
 

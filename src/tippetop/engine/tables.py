@@ -67,12 +67,12 @@ def gauss(count: int) -> dict[str, list[float]]:
 def radau() -> dict[str, list[list[float]]]:
     """What belongs to Radau's points.
 
-    Integrals up to them of Lagrange's polynomials on them; the matrix from values at the beginning and
-    at them to powers of the part of a step; and the row from those at them to Legendre's last polynomial.
+    Integrals up to them of Lagrange's polynomials on them; the matrix from changes since the beginning at
+    them to powers of the part of a step; and the row from values there to Legendre's last polynomial.
     """
     places, integrals, transform = radau_points(STAGES)
     last = np.linalg.inv(np.polynomial.legendre.legvander(2.0 * places[1:] - 1.0, STAGES - 1))[-1:]
-    powers = chebyshev(STAGES)[2] @ transform
+    powers = (chebyshev(STAGES)[2] @ transform)[:, 1:]
     return {"integrals": integrals.tolist(), "powers": powers.tolist(), "last": last.tolist()}
 
 
