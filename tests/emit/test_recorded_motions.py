@@ -56,6 +56,11 @@ def recorded(case):
     return record(everything(case.motion), case.motion.size, case.motion.parameters)
 
 
+def operations(recorded):
+    """How many operations a function takes."""
+    return len([node for node in recorded.nodes if node.operands])
+
+
 def by_node(lines):
     """What lines of JavaScript that fill `found` leave there."""
     script = "\n".join(["const found = {};", *lines, "process.stdout.write(JSON.stringify(found));"])
@@ -178,7 +183,7 @@ def test_series_of_nodes_solve_what_they_are_given():
 
 def test_the_reports_sliding_equations_are_few_operations():
     motion = sliding_motion(REPORT.kind, True)
-    assert 50 < record(motion.rates, motion.size, motion.parameters).operations <= 110
+    assert 50 < operations(record(motion.rates, motion.size, motion.parameters)) <= 110
 
 
 def test_a_choice_that_depends_on_numbers_is_refused():
@@ -186,7 +191,7 @@ def test_a_choice_that_depends_on_numbers_is_refused():
     kind = Top(1.0, 0.45, 0.38, SphereSurface(1.0, 0.3), law, 1.0).kind
     with pytest.raises(NotRecordable, match="select"):
         record(lambda y, p: kind.top(tuple(p)).friction.reserve(y[0], (y[1], y[2]), y[3]), 8, kind.numbers)
-    assert record(lambda y, p: (1.0 * (y[0] > 0.0),), 1, 0).operations == 1
+    assert operations(record(lambda y, p: (1.0 * (y[0] > 0.0),), 1, 0)) == 1
 
 
 class Elementary:
@@ -216,7 +221,7 @@ def test_elementary_functions_and_selections_are_printed():
 
 
 @pytest.mark.parametrize(
-    ("function", "operations"),
+    ("function", "count"),
     [
         (lambda x: x * 0.0 + 0.0 * x, 0),
         (lambda x: 1.0 * x - 0.0, 0),
@@ -230,8 +235,8 @@ def test_elementary_functions_and_selections_are_printed():
         (lambda x: abs(-x) - abs(x), 0),
     ],
 )
-def test_nothing_is_computed_twice_or_for_nothing(function, operations):
+def test_nothing_is_computed_twice_or_for_nothing(function, count):
     found = record(lambda y, p: (function(y[0]),), 1, 0)
-    assert found.operations == operations
+    assert operations(found) == count
     if has_llvm():
         assert by_llvm(found, np.array([[0.7]]), ())[0, 0] == pytest.approx(function(0.7), abs=1e-15)

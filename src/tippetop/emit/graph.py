@@ -8,7 +8,7 @@ powers of halves and quarters become products and roots.
 from dataclasses import dataclass, field
 from typing import Any
 
-from tippetop.mechanics.series import Series
+from tippetop.mechanics.series import Series, is_number
 
 STATE, PARAMETER, CONSTANT = "y", "p", "constant"
 SUM, DIFFERENCE, PRODUCT, QUOTIENT = "+", "-", "*", "/"
@@ -180,11 +180,6 @@ class Graph:
 def key_of(name: str, operands: tuple[Node, ...], value: float = 0.0) -> str:
     """What tells a node from all others of its graph."""
     return " ".join([name, repr(value), *[str(operand.place) for operand in operands]])
-
-
-def is_number(value: Any, number: float) -> bool:
-    """Whether a value is a plain number, and this one."""
-    return isinstance(value, (int, float)) and value == number
 
 
 def in_order(a: Node, b: Node) -> tuple[Node, Node]:

@@ -18,11 +18,6 @@ class Recorded(NamedTuple):
     parameters: int
     """How many numbers the state has, and how many parameters there are."""
 
-    @property
-    def operations(self) -> int:
-        """How many operations it takes."""
-        return len([node for node in self.nodes if node.operands])
-
 
 def record(
     function: Callable[[Sequence[Scalar], Sequence[Scalar]], Sequence[Scalar]],

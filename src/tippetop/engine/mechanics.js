@@ -10420,8 +10420,8 @@ class Graph extends py.Record {
   }
   /** Sum of two, as a difference if one of them is negative. */
   sum(a, b) {
-    if (py.truth(is_number_of_graph(a, 0.0)) || py.truth(is_number_of_graph(b, 0.0))) {
-      return py.truth(is_number_of_graph(a, 0.0)) ? b : a;
+    if (py.truth(is_number(a, 0.0)) || py.truth(is_number(b, 0.0))) {
+      return py.truth(is_number(a, 0.0)) ? b : a;
     }
     for (var [one, other] of [[a, b], [b, a]]) {
       if (py.isinstance(other, Node) && py.eq(other.name, NEGATIVE)) {
@@ -10432,18 +10432,18 @@ class Graph extends py.Record {
   }
   /** Difference of two. */
   difference(a, b) {
-    if (py.truth(is_number_of_graph(a, 0.0)) || py.truth(is_number_of_graph(b, 0.0))) {
-      return py.truth(is_number_of_graph(a, 0.0)) ? py.neg(b) : a;
+    if (py.truth(is_number(a, 0.0)) || py.truth(is_number(b, 0.0))) {
+      return py.truth(is_number(a, 0.0)) ? py.neg(b) : a;
     }
     return a === b ? 0.0 : this.node(DIFFERENCE, [this.taken(a), this.taken(b)]);
   }
   /** Product of two. */
   product(a, b) {
     for (var [one, other] of [[a, b], [b, a]]) {
-      if (py.truth(is_number_of_graph(one, 0.0))) {
+      if (py.truth(is_number(one, 0.0))) {
         return 0.0;
       }
-      if (py.truth(is_number_of_graph(one, 1.0)) || py.truth(is_number_of_graph(one, -1.0))) {
+      if (py.truth(is_number(one, 1.0)) || py.truth(is_number(one, -1.0))) {
         return one > 0.0 ? other : py.neg(other);
       }
     }
@@ -10451,7 +10451,7 @@ class Graph extends py.Record {
   }
   /** Quotient of two. */
   quotient(a, b) {
-    if (py.truth(is_number_of_graph(a, 0.0)) || py.truth(is_number_of_graph(b, 1.0))) {
+    if (py.truth(is_number(a, 0.0)) || py.truth(is_number(b, 1.0))) {
       return a;
     }
     return this.node(QUOTIENT, [this.taken(a), this.taken(b)]);
@@ -10493,11 +10493,6 @@ function key_of(name, operands, value = 0.0) {
   return py.join(" ", [name, py.repr(value), ...[...operands].map((operand) => py.str(operand.place))]);
 }
 
-/** Whether a value is a plain number, and this one. */
-function is_number_of_graph(value, number) {
-  return py.and(py.isinstance(value, [py.int, py.float]), () => py.eq(value, number));
-}
-
 /** Two operands whose order does not matter. */
 function in_order(a, b) {
   return a.place <= b.place ? [a, b] : [b, a];
@@ -10513,10 +10508,6 @@ class Recorded extends py.NamedTuple {
     this.outputs = outputs;
     this.size = size;
     this.parameters = parameters;
-  }
-  /** How many operations it takes. */
-  get operations() {
-    return py.len([...this.nodes].filter((node) => py.truth(node.operands)));
   }
 }
 py.fields(Recorded, ["nodes", "outputs", "size", "parameters"]);
@@ -11142,7 +11133,6 @@ export {
   is_dry,
   is_near,
   is_number,
-  is_number_of_graph,
   is_one_way,
   is_rolling,
   is_set_valued,
