@@ -17,29 +17,22 @@ def numbers_of(value: Any, name: str = "") -> Iterator[tuple[str, float]]:
             yield name, value
 
 
+def part_at(whole: Any, where: str) -> Any:
+    """What has this name, with dots, in tables, tuples and objects; None where there is nothing."""
+    for name in where.split(".") if where else ():
+        if isinstance(whole, dict):
+            whole = whole.get(name)
+        elif isinstance(whole, tuple) and name.isdecimal() and int(name) < len(whole):
+            whole = whole[int(name)]
+        else:
+            whole = getattr(whole, name, None)
+    return whole
+
+
 def table_at(fields: dict[str, Any], where: str) -> dict[str, Any]:
     """The table of this name, with dots; an empty one where there is none."""
-    found: Any = fields
-    for name in where.split(".") if where else ():
-        found = _inner(found, name)
+    found = part_at(fields, where)
     return found if isinstance(found, dict) else {}
-
-
-def _inner(value: Any, name: str) -> Any:
-    """What a table has by this name, or a tuple at this place; None where it has nothing."""
-    if isinstance(value, dict):
-        return value.get(name)
-    if isinstance(value, tuple) and name.isdecimal() and int(name) < len(value):
-        return value[int(name)]
-    return getattr(value, name, None)
-
-
-def part_at(whole: object, where: str) -> Any:
-    """The part of this name, with dots; None where there is none."""
-    found: Any = whole
-    for name in where.split("."):
-        found = _inner(found, name)
-    return found
 
 
 def dotted_names(fields: Mapping[str, Any], prefix: str = "") -> Iterator[str]:

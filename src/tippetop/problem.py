@@ -354,13 +354,7 @@ class Problem(Part):
         InvalidInput
             If the text is not JSON, or not a problem.
         """
-        try:
-            fields = parse_json(text)
-        except ValueError as error:
-            raise InvalidInput("problem", text.strip(), f"JSON; {error}") from None
-        if not isinstance(fields, dict):
-            raise InvalidInput("problem", fields, "a JSON object")
-        return cls(**fields)
+        return cls(**parse_json(text, "problem"))
 
     @classmethod
     def read(cls, path: Path | str) -> Self:

@@ -4,7 +4,7 @@ import inspect
 import json
 import math
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from numbers import Integral
 from typing import Annotated, Any, ClassVar, NamedTuple, Self, TypeAlias, get_args
 
@@ -230,36 +230,36 @@ OF_ITS_KIND = _OfItsKind()
 ONE_OR_SEVERAL = _OfItsKind(several=True)
 
 
-def parse_json(text: str) -> Any:
-    """What a JSON text says.
+def parse_json(text: str, field: str) -> dict[str, Any]:
+    """The fields of a JSON text that states something, which is called a field in sentences.
 
-    Raises `ValueError` if it is no JSON, is nested deeper than `DEEPEST`, or holds whole numbers of thousands
-    of digits.
+    Raises `InvalidInput` if it is no JSON object, is nested deeper than `DEEPEST`, or holds whole numbers of
+    thousands of digits.
     """
-    try:
-        return _not_deep(json.loads(text))
-    except RecursionError:
-        raise ValueError(_TOO_DEEP) from None
+    return _parsed("JSON", json.loads, text, field, text.strip())
 
 
 def parse_toml(text: str, field: str, shown: str | None = None) -> dict[str, Any]:
-    """What a TOML text says that states a field, and is shown as something else if need be.
+    """The same of a TOML text, shown as something else if need be."""
+    return _parsed("TOML", tomllib.loads, text, field, shown or text.strip())
 
-    Raises `InvalidInput` if it is no TOML, or is nested deeper than `DEEPEST`.
-    """
+
+def _parsed(language: str, loads: Callable[[str], Any], text: str, field: str, shown: str) -> dict[str, Any]:
     try:
-        fields = tomllib.loads(text)
-        _not_deep(fields)
+        fields = loads(text)
+        _refuse_depths(fields)
     except (ValueError, RecursionError) as error:
         told = _TOO_DEEP if isinstance(error, RecursionError) else error
-        raise InvalidInput(field, shown or text.strip(), f"TOML; {told}") from None
+        raise InvalidInput(field, shown, f"{language}; {told}") from None
+    if not isinstance(fields, dict):
+        raise InvalidInput(field, fields, f"a {language} object")
     return fields
 
 
 _TOO_DEEP = f"tables and lists at most {DEEPEST} deep"
 
 
-def _not_deep(value: Any) -> Any:
+def _refuse_depths(value: Any) -> None:
     layer = [value]
     for _ in range(DEEPEST):
         layer = [
@@ -270,7 +270,6 @@ def _not_deep(value: Any) -> Any:
         ]
     if layer:
         raise ValueError(_TOO_DEEP)
-    return value
 
 
 def _as_invalid_input(error: ValidationError, part: type[Part]) -> InvalidInput:

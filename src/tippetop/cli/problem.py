@@ -56,7 +56,7 @@ def commented_toml(problem: "Problem") -> str:
 def _remark(problem: "Problem", name: str) -> str:
     """What is said beside a field: unit and meaning of a number, or the words that are possible."""
     where, _, field = name.rpartition(".")
-    part = part_at(problem, where) if where else problem
+    part = part_at(problem, where)
     known = getattr(type(part), "model_fields", {})
     if field in known:
         kinds = getattr(part, "kinds", {}) if field == "kind" else {}

@@ -86,11 +86,10 @@ def iterated(function: Improvement, size: int, parameters: int, abreast: int) ->
     """
     if not has_llvm():
         return _by_arrays(function, size, abreast)
-    from tippetop.integrators.machine_code import iterations  # noqa: PLC0415 - optional
+    from tippetop.integrators.machine_code import iteration  # noqa: PLC0415 - optional
 
     values = NodeValues()
-    recorded = record(lambda y, p: function(y, p, values), size, parameters)
-    return iterations({"made": recorded}, abreast)["made"]
+    return iteration(record(lambda y, p: function(y, p, values), size, parameters), abreast)
 
 
 class _Lanes:

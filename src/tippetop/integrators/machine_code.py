@@ -2,7 +2,7 @@
 
 import ctypes
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, cast
 
 import llvmlite
 import llvmlite.binding as llvm
@@ -25,16 +25,13 @@ def machine_code(
     return {name: Compiled(engine, name) for name in functions}
 
 
-def iterations(functions: Mapping[str, Recorded], abreast: int) -> dict[str, Callable[..., int]]:
-    """The same of what is made again and again; see `llvm_source`. They take arrays of `ctypes`."""
-    engine = _loaded(llvm_source(functions, abreast, again=True))
+def iteration(function: Recorded, abreast: int) -> Callable[..., int]:
+    """The same of what is made again and again; see `llvm_source`. It takes arrays of `ctypes`."""
+    engine = _loaded(llvm_source({"made": function}, abreast, again=True))
     kind = ctypes.CFUNCTYPE(ctypes.c_int64, *[ctypes.c_void_p] * 3, ctypes.c_double, ctypes.c_int64)
-    found: dict[str, Callable[..., int]] = {}
-    for name in functions:
-        function: Any = kind(engine.get_function_address(name))
-        function.engine = engine
-        found[name] = function
-    return found
+    found: Any = kind(engine.get_function_address("made"))
+    found.engine = engine
+    return cast(Callable[..., int], found)
 
 
 def _loaded(source: str, effort: int = EFFORT) -> llvm.ExecutionEngine:

@@ -28,24 +28,22 @@ def follow_each(launches: Launches, tolerance: float, settled: float | None = No
     ends = Ends.unknown(len(launches))
     for i in range(len(launches)):
         start = launches.rules(i).launch(single(launches.state, i))
-        trajectory, tally = follow(start, 0.0, float(launches.end[i]), tolerance, settled)
-        assert trajectory.outcome is not None, "a trajectory that has no more segments has ended"
-        found = tally.ends(trajectory.state, trajectory.time, trajectory.outcome, trajectory.events)
-        ends.put(np.array([i]), found)
+        ends.put(np.array([i]), follow(start, 0.0, float(launches.end[i]), tolerance, settled)[0])
     return ends
 
 
 def follow(
     start: Transition, time: float, end: float, tolerance: float, settled: float | None = None
-) -> tuple[Trajectory, Tally]:
-    """Follow one launch from a transition to its end, or until its tilt is held."""
+) -> tuple[Ends, Tally]:
+    """What one launch comes to that is followed from a transition to its end, or until its tilt is held."""
     method = make_integrator(None, max(tolerance, TOLERANCES[default_name()]))
     trajectory, tally = Trajectory(start, end, method, time=time), Tally()
     segments = trajectory.segments()
     segments = segments if settled is None else until_settled(trajectory, segments, settled)
     for block in in_blocks(segments, method):
         tally.take(block)
-    return trajectory, tally
+    assert trajectory.outcome is not None, "a trajectory that has no more segments has ended"
+    return tally.ends(trajectory.state, trajectory.time, trajectory.outcome, trajectory.events), tally
 
 
 def until_settled(trajectory: Trajectory, segments: Iterator[Segment], closeness: float) -> Iterator[Segment]:

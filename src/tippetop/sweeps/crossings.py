@@ -15,6 +15,7 @@ from tippetop.mechanics.flight import gap, gap_rate
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.state import State
 from tippetop.mechanics.touchdown import Start
+from tippetop.metrics import OUTCOMES
 from tippetop.sweeps.alone import follow
 from tippetop.sweeps.flights import fly_all, rolls, slides, slips
 from tippetop.sweeps.impacts import collide
@@ -179,9 +180,7 @@ class Crossings:
     def _follow_alone(self, lane: int, time: float, transition: Transition) -> None:
         """Follow one launch to its end as a single launch is."""
         slots, ends, cell, where = self.slots, self.slots.ends, self.slots.cell[[lane]], np.array([lane])
-        trajectory, tally = follow(transition, time, float(slots.end[lane]), self.tolerance)
-        assert trajectory.outcome is not None, "a trajectory that has no more segments has ended"
-        found = tally.ends(trajectory.state, trajectory.time, trajectory.outcome, trajectory.events)
+        found, tally = follow(transition, time, float(slots.end[lane]), self.tolerance)
         for name in ("flights", "airborne", "struck", "drilled", "rolled"):
             getattr(ends, name)[cell] += getattr(found, name)
         for name in ("highest_gap", "highest", "up"):
@@ -193,7 +192,7 @@ class Crossings:
         arrived = tally.arrival(tip.low[where], tip.high[where]) if self.banded else found.arrived
         tip.reached[where] = np.fmin(tip.reached[where], arrived)
         slots.rows[slots.layout.steps, where] += found.steps
-        slots.retire(where, found.state, found.time, trajectory.outcome)
+        slots.retire(where, found.state, found.time, OUTCOMES[found.outcome])
 
 
 def is_plain(mode: Mode) -> bool:

@@ -36,11 +36,6 @@ class Progress:
         """Cells per second in this run."""
         return (self.done - self.before) / self.elapsed if self.elapsed > 0 else 0.0
 
-    @property
-    def time_left(self) -> float | None:
-        """Time that is left at this rate, s; None if there is no rate yet."""
-        return (self.cells - self.done) / self.rate if self.rate > 0 else None
-
 
 Callback = Callable[[Progress], None]
 
