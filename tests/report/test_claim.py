@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 
 import pytest
 
@@ -18,8 +19,20 @@ from tippetop.report.claim import (
 from tippetop.report.claims.registry import CLAIMS, EXAMINERS
 from tippetop.report.experiments.registry import EXPERIMENTS
 from tippetop.report.gallery import DRAWN, PLATES
-from tippetop.report.outline import OWN, PICTURES, SECTIONS, section_of
+from tippetop.report.outline import OWN, PICTURES, SECTIONS, UNCHECKED, section_of
 from tippetop.report.tolerance import Tolerance, half_last_digit
+
+IN_WORDS = {"eq-2.7-mu-unit", "table-1-mu-unit", "eq-b.1", "section-5-small-mu", "dry-viscous-limit"}
+"""Claims whose number the sentence does not print: powers, and a ratio of one."""
+
+BY_OTHER_RUNS = {
+    *("sec3-no-nutation", "sec3-friction", "fig08-settles", "fig08-block", "eq-2.16", "eq-2.16-third"),
+    "why-flip-law",
+}
+"""Claims that are decided by other runs than those of the figure that they stand beside."""
+
+BESIDE_ANOTHER = {"sec3-no-nutation", "table-1-inertia", "summary-large-mu", "sec4-may-fly"}
+"""Claims beside another figure than the one that the report makes them of."""
 
 FIELDS = {"id", "source", "statement", "reported", "listing", "converged", "unit", "verdict", "note"}
 
@@ -110,9 +123,31 @@ def test_claims_are_complete(claim: Claim) -> None:
     assert claim.formula != claim.formula_right or not claim.formula
     if claim.printed:
         assert math.isfinite(number(claim.number))
+    assert isinstance(claim.implied, bool)
+    assert not re.search("[{}]", claim.text + claim.quote + claim.printed + claim.right)
     if claim.examiner.tolerance is not None:
         assert claim.examiner.tolerance.reason
+        assert claim.is_number
     assert section_of(claim.source.section)
+
+
+@pytest.mark.parametrize("claim", CLAIMS.values(), ids=CLAIMS)
+def test_a_printed_number_stands_in_the_sentence(claim: Claim) -> None:
+    """But for what the sentence says in words: that it is nothing, or that the axis is turned over."""
+    if claim.number not in ("", "0", "pi") and claim.id not in IN_WORDS:
+        assert re.search(rf"(?<![\d.]){re.escape(claim.number)}(?![\d.]*\d)", claim.quote or claim.text)
+
+
+@pytest.mark.parametrize(
+    "claim", [claim for claim in CLAIMS.values() if claim.figure], ids=lambda one: one.id
+)
+def test_a_figure_shows_what_decides_the_claims_beside_it(claim: Claim) -> None:
+    needs = PLATES[str(claim.figure)].needs
+    assert (not needs or not set(needs).isdisjoint(claim.needs)) is (claim.id not in BY_OTHER_RUNS)
+    drawn = re.fullmatch(r"fig(\d+)", str(claim.figure))
+    if drawn and claim.source.figure:
+        numbers = map(int, re.findall(r"\d+", claim.source.figure))
+        assert (int(drawn[1]) in numbers) is (claim.id not in BESIDE_ANOTHER)
 
 
 def test_every_statement_of_the_report_is_quoted() -> None:
@@ -130,20 +165,37 @@ def test_all_that_is_told_is_examined_or_drawn_and_the_other_way_round() -> None
 def test_constants_stand_in_what_is_told_of_them() -> None:
     assert CLAIMS["fig10-fall"].text == "The work of the weight in a fall by 15 radii is 0.06 J."
     assert CLAIMS["fig05-reversal"].printed == "1.1 s"
-    assert not any("{" in plate.caption for plate in PLATES.values())
+    assert not any(
+        re.search("[{}]", plate.title + plate.caption + plate.finding) for plate in PLATES.values()
+    )
 
 
 def test_figures_stand_in_sections_of_the_page() -> None:
     order = list(SECTIONS)
     assert order[-3:] == list(OWN)
+    for name, (title, _) in SECTIONS.items():
+        assert title.startswith(name)
     for plate in PLATES.values():
         assert section_of(plate.section) == plate.section
+        drawn = re.fullmatch(r"fig(\d+)", plate.id)
+        assert plate.title.startswith(f"Figure {int(drawn[1])}: " if drawn else "")
+        assert plate.title
+        assert plate.caption
         assert plate.finding or plate.id.startswith("fig") or plate.section not in ("Why",)
     assert all(PLATES[name].finding for name in PICTURES)
     assert section_of("Appendix A.1, line 22") == "Appendix A"
     assert section_of("3.1") == "3.1"
     with pytest.raises(LookupError):
         section_of("Elsewhere")
+
+
+def test_what_is_not_judged_is_said_with_its_place_and_its_reason() -> None:
+    order = ["Abstract", *SECTIONS]
+    places = [one["place"].removeprefix("section ").partition(",")[0] for one in UNCHECKED]
+    assert places == sorted(places, key=order.index)
+    for one in UNCHECKED:
+        assert one.keys() == {"place", "statement", "reason"}
+        assert all(one.values())
 
 
 def test_every_figure_of_the_report_is_there() -> None:
