@@ -25,11 +25,11 @@ _LINES = (("_listing", "time_listing", REPORT, _WIDE), ("", "time", CONVERGED, _
 @house_style()
 def motion_figure(
     run: xr.Dataset,
+    zoom: tuple[float, float],
+    reported_turn: float,
+    reported_reversals: tuple[float, ...],
     precession_limit: float = 200.0,
-    zoom: tuple[float, float] | None = None,
     inset: mark.Box = (0.5, 0.13, 0.48, 0.56),
-    reported_turn: float | None = None,
-    reported_reversals: tuple[float, ...] = (),
     reported_end: tuple[float, dict[str, float]] | None = None,
 ) -> Figure:
     """Return tilt, axial spin, precession and slip of a launch, by both methods.
@@ -45,8 +45,7 @@ def motion_figure(
     tilt, spin, turning, slip = panels.flat
     _pair(tilt, run, "theta", legend=True)
     mark.tilt_axis(tilt)
-    if zoom:
-        _zoom(tilt, run, zoom, inset)
+    _zoom(tilt, run, zoom, inset)
     _pair(spin, run, "omega3")
     spin.set_ylabel(r"axial spin $\omega_3$ (rad/s)")
     _precession(turning, run, precession_limit)
@@ -54,10 +53,9 @@ def motion_figure(
     turning.plot(reported_reversals, np.zeros(len(reported_reversals)), "s", **square)
     for time, below in zip(reversed(reported_reversals), (-6, -20), strict=False):
         mark.note(turning, f"report:\n{time:g} s", (time, 0), (7, below), REPORT, halo=True)
-    if reported_turn is not None:
-        height = float(np.interp(reported_turn, run["time_listing"], run["theta_listing"]))
-        tilt.plot(reported_turn, height, "s", **square)
-        mark.note(tilt, f"report: {reported_turn:g} s", (reported_turn, height), (6, -8), REPORT, halo=True)
+    turned = reported_turn, float(np.interp(reported_turn, run["time_listing"], run["theta_listing"]))
+    tilt.plot(*turned, "s", **square)
+    mark.note(tilt, f"report: {reported_turn:g} s", turned, (6, -8), REPORT, halo=True)
     _slip(slip, run)
     for axes, name in ((tilt, "theta"), (spin, "omega3"), (turning, "phi_dot")):
         if reported_end:
@@ -73,23 +71,17 @@ def motion_figure(
 
 @house_style()
 def tilt_figure(
-    run: xr.Dataset,
-    zoom: tuple[float, float] | None = None,
-    inset: mark.Box = (0.56, 0.14, 0.42, 0.56),
+    run: xr.Dataset, zoom: tuple[float, float], inset: mark.Box = (0.56, 0.14, 0.42, 0.56)
 ) -> Figure:
     """Return the tilt of a launch over time by both methods, with the lift-off (`lift_off_time`) marked.
 
-    With `theta_flight` over time, and `flight_start` and `flight_end` over flight, also how it goes on when
-    the table only pushes.
-
-    `zoom` is a span of time, s, that is also drawn large, in the box `inset` (left, bottom, width, height in
-    parts of the panel).
+    Where the top flies, also how it goes on when the table only pushes. `zoom` is a span of time, s, that is
+    also drawn large, in the box `inset` (left, bottom, width, height in parts of the panel).
     """
     figure, axes = _wide_panel(run)
     _trio(axes, run, "theta")
     mark.tilt_axis(axes)
-    if zoom:
-        _zoom(axes, run, zoom, inset)
+    _zoom(axes, run, zoom, inset)
     _mark_lift_off(axes, float(run["lift_off_time"]))
     return figure
 

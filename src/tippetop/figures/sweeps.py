@@ -48,7 +48,8 @@ def final_tilt_figure(sweep: xr.Dataset, reported: tuple[float, float, float]) -
     )  # fmt: skip
     _critical(axes, (*reported[:2], *ours), 1.1)
     for name, theirs, spin in zip(mark.CRITICAL, reported, ours, strict=False):
-        _two_values(axes, name, theirs, spin)
+        mark.note(axes, f"{name} = {spin:.1f}", (spin, np.pi + 0.56), (5, 0), CONVERGED, va="top")
+        mark.note(axes, f"report: {theirs:g}", (spin, np.pi + 0.36), (5, 0), REPORT, va="top")
     _abnormal(axes, reported[2], onset)
     axes.set(xlabel=mark.SPIN, xlim=(0, right))
     mark.tilt_axis(axes, -0.08, np.pi + 0.62, r"tilt after 20 s, $\theta_{\mathrm{end}}$ (rad)")
@@ -83,12 +84,6 @@ def _critical(axes: Axes, spins: tuple[float, ...], width: float) -> None:
     """Draw the critical spins: the report's two, then the converged ones."""
     for spin, color in zip(spins, (REPORT, REPORT, CONVERGED, CONVERGED), strict=True):
         axes.axvline(spin, color=color, lw=width, ls=DASHED)
-
-
-def _two_values(axes: Axes, name: str, theirs: float, ours: float) -> None:
-    """Write a threshold as the report has it and as it is, above the line."""
-    mark.note(axes, f"{name} = {ours:.1f}", (ours, np.pi + 0.56), (5, 0), CONVERGED, va="top")
-    mark.note(axes, f"report: {theirs:g}", (ours, np.pi + 0.36), (5, 0), REPORT, va="top")
 
 
 def _abnormal(axes: Axes, theirs: float, onset: float) -> None:

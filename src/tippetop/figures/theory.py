@@ -218,11 +218,5 @@ def _tops(axes: Axes, chart: xr.Dataset) -> None:
     for k, (offset, side) in enumerate(places):
         at = (float(chart["top_gamma"][k]), float(chart["top_alpha"][k]))
         axes.plot(*at, "o", color=colors[k], ms=8, mec="white", mew=1.0, zorder=5)
-        label = _label(str(chart["top"].values[k]))
+        label = str(chart["top"].values[k]).replace(" and ", " and\n")
         mark.note(axes, label, at, offset, colors[k], ha=side, va="center", halo=True)
-
-
-def _label(name: str) -> str:
-    """A long name on two lines."""
-    first, _, rest = name.partition(" and ")
-    return f"{first} and\n{rest}" if rest else name

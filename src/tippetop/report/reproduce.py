@@ -100,7 +100,8 @@ def reproduce(
         tasks = _tasks(chosen, quick, stage)
         if only is None:
             tasks.append(Task(_PLAYER, _PLAYER_COST, playable, lambda _: (quick,)))
-        results = carry_out(tasks, _processes(workers), progress)
+        processes = min(2, os.cpu_count() or 1) if workers is None else max(1, workers)
+        results = carry_out(tasks, processes, progress)
         data = {experiment.id: results[experiment.id] for experiment in chosen.experiments}
         judgements = tuple(claim.judge(data, quick) for claim in chosen.claims)
         for name in _unseen(chosen):
@@ -169,10 +170,6 @@ def _draw(name: str, data: Data, stage: Path, quick: bool) -> None:
     for kind in ("png", "svg"):
         save(figure, stage / FIGURES / f"{name}.{kind}", **(_COARSE if quick else {}))
         figure.set_layout_engine("none")  # all is in its place by now
-
-
-def _processes(workers: int | None) -> int:
-    return min(2, os.cpu_count() or 1) if workers is None else max(1, workers)
 
 
 @contextmanager

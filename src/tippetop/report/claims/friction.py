@@ -52,7 +52,9 @@ def _(times: xr.Dataset, others: xr.Dataset) -> Finding:
 
 @CHAPTER.examines("fig07-inverse", "flip-times", "flip-times-spins", "onset-mu")
 def _(times: xr.Dataset, others: xr.Dataset, onsets: xr.Dataset) -> Finding:
-    onset = _least_onset(onsets["onset"].isel(window=-1), times["mu"].values)
+    # The least spin that leaves the table with any friction of the range, between those scanned.
+    scanned = onsets["onset"].isel(window=-1)
+    onset = float(np.interp(np.log(times["mu"]), np.log(scanned["mu"]), scanned).min())
     runs = {float(one["spin"]): one for one in (others.isel(spin=k) for k in range(others.sizes["spin"]))}
     runs[times.attrs["spin_rad_per_s"]] = times
     theirs, ours = (
@@ -68,11 +70,6 @@ def _(times: xr.Dataset, others: xr.Dataset, onsets: xr.Dataset) -> Finding:
         f"mu t departs from its mean over this range by up to: {off}. From {onset:.0f} rad/s on a launch "
         "leaves the table with some friction of the range and no longer counts (a table that pulls).",
     )
-
-
-def _least_onset(onset: xr.DataArray, mu: np.ndarray) -> float:
-    """The least spin that leaves the table with any of some frictions, between those scanned, rad/s."""
-    return float(np.interp(np.log(mu), np.log(onset["mu"].values), onset.values).min())
 
 
 def _scatter(times: xr.DataArray) -> float:

@@ -93,22 +93,19 @@ def _name(run: xr.Dataset) -> str:
 
 @CHAPTER.examines("section-5-stiff")
 def _(counts: xr.Dataset) -> Finding:
+    columns = (counts[name].values for name in ("launch_spin", "launch_tilt", "launch_mu", "stiffness"))
+    ratios = listed("{:g} rad/s, {:.5g} rad, {:g} s/m: {:.1f}", *columns, between="; ")
     return Finding.unlisted(
         bool((counts["stiffness"] > _STIFF).any()),
         f"A launch counts as stiff if the best implicit method needs less than 1/{_STIFF:g} of the "
         "evaluations of the right-hand side that the best explicit one needs: methods of different orders "
         f"differ by less anyway (Jacobians counted, {counts.attrs['span_s']:g} s, the report's tolerances). "
-        f"The ratio, by spin, tilt and mu: {_ratios(counts)}.",
+        f"The ratio, by spin, tilt and mu: {ratios}.",
     )
 
 
 _STIFF = 2.0
 """By how much an implicit method must be the cheaper in a stiff case."""
-
-
-def _ratios(counts: xr.Dataset) -> str:
-    columns = (counts[name].values for name in ("launch_spin", "launch_tilt", "launch_mu", "stiffness"))
-    return listed("{:g} rad/s, {:.5g} rad, {:g} s/m: {:.1f}", *columns, between="; ")
 
 
 @CHAPTER.examines("section-5-cause")

@@ -93,18 +93,14 @@ def _(times: xr.Dataset, wide: xr.Dataset) -> Finding:
 @CHAPTER.examines("why-only-simulation", "why-critical", "why-bifurcation", "why-exponent")
 def _(theory: xr.Dataset, states: xr.Dataset, times: xr.Dataset) -> Finding:
     tilt, law = _tilt_miss(states), max(_law_misses(times))
-    known = _spectral_miss(theory) < _NEAR_LIMIT and tilt < SETTLED and law < _NEAR_LIMIT
+    spectral = float(abs(theory["critical_spectrum"] / theory["critical_formula"] - 1.0).max())
+    known = spectral < _NEAR_LIMIT and tilt < SETTLED and law < _NEAR_LIMIT
     return Finding.unlisted(
         not known,
         "Without a simulation one has the critical spins, the final tilt (runs differ from it by at most "
         f"{tilt:.0e} rad) and for small mu the time to turn over (by {law:.0e} of it). The single swings of "
         "a launch do take a simulation.",
     )
-
-
-def _spectral_miss(theory: xr.Dataset) -> float:
-    """Largest relative difference between critical spins by formula and by spectrum."""
-    return float(abs(theory["critical_spectrum"] / theory["critical_formula"] - 1.0).max())
 
 
 def _tilt_miss(states: xr.Dataset) -> float:

@@ -1,7 +1,6 @@
 """The report's printed equations, put to numbers: of motion, of rotation, and of the steady state."""
 
 import math
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -158,9 +157,8 @@ def _steady(quick: bool) -> xr.Dataset:
         rates = published_rates(y, problem.top, math)
         speed = float(body.surface.size) * abs(y[4])
         slip = [math.hypot(*pair) / size for pair, size in ((y[5:], speed), (rates[5:], speed * abs(y[3])))]
-        rows.append(
-            (y[0], y[3], y[4], *_residuals(y, problem.top), abs(rates[4]), *_turning(y, rates), *slip)
-        )
+        turning = abs(rates[3]) / y[3] ** 2, abs(y[1] / y[3])
+        rows.append((y[0], y[3], y[4], *_residuals(y, problem.top), abs(rates[4]), *turning, *slip))
     table = np.array(rows).T
     names = {
         "theta": ("rad", "tilt"),
@@ -179,11 +177,6 @@ def _steady(quick: bool) -> xr.Dataset:
         for i, (name, (units, long_name)) in enumerate(names.items())
     }
     return xr.Dataset(data, {"body": [name for name, _, _ in tops]}, {"duration_s": duration})
-
-
-def _turning(y: list[float], rates: Sequence[float]) -> tuple[float, float]:
-    """The rates of precession and tilt in this state, in units of the precession."""
-    return abs(rates[3]) / y[3] ** 2, abs(y[1] / y[3])
 
 
 def _residuals(y: list[float], top: Top) -> tuple[float, float]:

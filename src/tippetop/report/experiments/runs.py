@@ -256,7 +256,8 @@ def _slow(quick: bool) -> xr.Dataset:
         true = simulate(on_table(problem), WINDOW, samples=2_001 if quick else 20_001)
         for suffix, run in (("", true), ("_listing", listing_run(problem, WINDOW))):
             theta = run["theta"].values
-            swings = int((np.abs(np.diff(theta[_turns(theta)])) > SETTLED).sum())
+            turns = np.flatnonzero(np.diff(np.sign(np.diff(theta)))) + 1
+            swings = int((np.abs(np.diff(theta[[0, *turns]])) > SETTLED).sum())
             for name, value in (("highest", theta.max()), ("final", theta[-1]), ("swings", swings)):
                 columns.setdefault(f"{name}{suffix}", []).append(float(value))
     meanings = {
@@ -271,11 +272,6 @@ def _slow(quick: bool) -> xr.Dataset:
         },
         along(spin=list(SLOW_SPINS)),
     )
-
-
-def _turns(values: np.ndarray) -> np.ndarray:
-    """Where a series begins and where it turns."""
-    return np.concatenate([[0], np.flatnonzero(np.diff(np.sign(np.diff(values)))) + 1])
 
 
 _launch("run-155", 1.4, "launch at 155 rad/s", 155.0)

@@ -72,7 +72,8 @@ def _stepping(quick: bool) -> xr.Dataset:
     exact, impacts = events_of(run), happenings(run, "impact")
     exact["strikes"] = int(((impacts >= exact["back"]) & (impacts <= exact["both"])).sum())
     shown = (times >= ROCKING[0]) & (times <= ROCKING[1])
-    tilts = [np.interp(times[shown], *_middles(history)) for history in histories]
+    ends = [one.step * np.arange(1, len(one.tilts) + 1) for one in histories]
+    tilts = [np.interp(times[shown], end, one.tilts) for end, one in zip(ends, histories, strict=True)]
     last = [history.tilts[-1] for history in histories]
     told = {
         **{name: _column(found, name, "s", long) for name, long in EVENTS.items()},
@@ -84,10 +85,6 @@ def _stepping(quick: bool) -> xr.Dataset:
     }
     told |= {f"exact_{name}": variable(value, "s", f"{name}, exactly") for name, value in exact.items()}
     return xr.Dataset(told, along(step=[history.step for history in histories], time=times[shown]))
-
-
-def _middles(history: History) -> tuple[np.ndarray, list[float]]:
-    return (np.arange(len(history.tilts)) + 1.0) * history.step, history.tilts
 
 
 def _column(found: Iterable[dict[str, float]], name: str, unit: str, long: str) -> object:
