@@ -223,6 +223,7 @@ def test_an_end_of_slip_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
     arcs = closing.followed(make_integrator("dop853", 1e-12), turning, [1e4], start)
     assert arcs[-1].failure == "slip, or rolling, takes too many steps to end"
     assert sum(arc.steps for arc in arcs) < 64
+    assert [arc.method and arc.method.name for arc in (arcs[0], arcs[-1])] == [None, "radau"]
     slow = closing.followed(make_integrator("dop853", 1e-12), turning, [1e-4], start)
     assert slow[-1].failure is None
     assert slow[-1].solution.end == closing.LONGEST

@@ -58,10 +58,11 @@ def followed(
         return [first]
     # It goes on from there: about the start, next to the branch of a law, its trials may have no solution.
     arcs, onwards = [first], (first.solution.end, first.end_state)
-    for arc in make_integrator("radau", STIFF_TOLERANCE).integrate(motion, parameters, onwards, LONGEST):
-        arcs.append(arc)
+    implicit = make_integrator("radau", STIFF_TOLERANCE)
+    for arc in implicit.integrate(motion, parameters, onwards, LONGEST):
+        arcs.append(replace(arc, method=implicit))
         if arc.guard is None and sum(one.steps for one in arcs[1:]) >= MOST_STEPS:
-            arcs[-1] = replace(arc, failure="slip, or rolling, takes too many steps to end")
+            arcs[-1] = replace(arcs[-1], failure="slip, or rolling, takes too many steps to end")
             break
     return arcs
 

@@ -156,7 +156,7 @@ class Stopping(Passing):
             yield Segment(self, solution.moved(time, time + arrival.left), last, then, steps=1)
             return
         here, steps, arc, parts = closing_of(begin, ending), 0, None, list[DenseSolution]()
-        rest = here
+        rest, method = here, None
         start = 0.0, as_array(begin)
         motion = closing_motion(self.top.kind, ending, not self.rules.pulls)
         for horizon in LANDING:
@@ -164,6 +164,7 @@ class Stopping(Passing):
                 continue
             arcs = followed(integrator, motion, (*self.top.numbers, end - time, horizon), start)
             steps += sum(arc.steps for arc in arcs)
+            method = arcs[-1].method or method
             arc, parts = arcs[-1], [*parts, *(arc.solution for arc in arcs if len(arc.solution.terms))]
             start = arc.solution.end, arc.end_state
             here = closing_of(arc.end_state.tolist(), ending)
@@ -183,7 +184,7 @@ class Stopping(Passing):
         last = self.state(shown(here))
         solution = self._in_time(parts, begin, time, before, here)
         then = self._next(arc, solution.end, last)
-        yield Segment(self, solution, last, then, steps, steps)
+        yield Segment(self, solution, last, then, steps, steps, method=method)
 
     def _arrival(self, here: Closing, longest: float, integrator: Integrator) -> Arrival | None:
         """The end of slip by power series, if its direction has come to rest and nothing else happens."""

@@ -3114,10 +3114,15 @@ function followed(integrator, motion, parameters, start) {
     return [first];
   }
   var [arcs, onwards] = [[first], [first.solution.end, first.end_state]];
-  for (var arc of make_integrator("radau", STIFF_TOLERANCE).integrate(motion, parameters, onwards, LONGEST)) {
-    arcs.push(arc);
+  var implicit = make_integrator("radau", STIFF_TOLERANCE);
+  for (var arc of implicit.integrate(motion, parameters, onwards, LONGEST)) {
+    arcs.push(py.replace(arc, { method: implicit }));
     if (arc.guard === null && py.sum([...arcs.slice(1)].map((one) => one.steps)) >= MOST_STEPS_of_closing) {
-      py.put(arcs, -1, py.replace(arc, { failure: "slip, or rolling, takes too many steps to end" }));
+      py.put(
+        arcs,
+        -1,
+        py.replace(py.item(arcs, -1), { failure: "slip, or rolling, takes too many steps to end" })
+      );
       break;
     }
   }
@@ -3296,7 +3301,7 @@ class Stopping extends Passing {
       return null;
     }
     var [here, steps, arc, parts] = [closing_of(begin, ending), 0, null, py.list()];
-    var rest = here;
+    var [rest, method] = [here, null];
     var start = [0.0, as_array(begin)];
     var motion = closing_motion(this.top.kind, ending, !py.truth(this.rules.pulls));
     for (var horizon of LANDING) {
@@ -3305,6 +3310,7 @@ class Stopping extends Passing {
       }
       var arcs = followed(integrator, motion, [...this.top.numbers, py.sub(end, time), horizon], start);
       steps = py.add(steps, py.sum([...arcs].map((arc) => arc.steps)));
+      method = py.or(py.item(arcs, -1).method, () => method);
       [arc, parts] = [
         py.item(arcs, -1),
         [
@@ -3333,7 +3339,7 @@ class Stopping extends Passing {
     last = this.state(shown(here));
     solution = this._in_time(parts, begin, time, before, here);
     then = this._next(arc, solution.end, last);
-    yield new Segment(this, solution, last, then, steps, steps);
+    yield new Segment(this, solution, last, then, steps, steps, undefined, method);
   }
   /** The end of slip by power series, if its direction has come to rest and nothing else happens. */
   _arrival(here, longest, integrator) {

@@ -37,6 +37,8 @@ GUARDED = 2.0**-5
 guard's zero needs fewer digits than they do, since the state there is theirs: by itself a guard would cost
 steps."""
 
+# What it says of guards on the terminal, its makers understand.
+hy.set_logger_level_critical()
 # What is compiled is kept by this package, whole or not at all.
 hy.llvm_state.set_diskcache_enabled(False)
 
