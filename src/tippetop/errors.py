@@ -82,6 +82,11 @@ class InvalidInput(TippetopError, ValueError):
         fault = "is missing" if value is MISSING else f"= {short(value)} is not possible"
         super().__init__(f"{name} {fault}; accepted: {accepted}{more}")
 
+    def within(self, part: str, more: int = 0) -> "InvalidInput":
+        """The same of a field of a part, or of the part itself if it names none; more cannot be besides."""
+        field = f"{part}.{self.field}".strip(".")
+        return InvalidInput(field, self.value, self.accepted, self.others + more)
+
     def __reduce__(self) -> tuple[type["InvalidInput"], tuple[str, object, str, int]]:
         return type(self), (self.field, self.value, self.accepted, self.others)
 

@@ -208,8 +208,7 @@ class _OfItsKind:
                 try:
                     found.append(chosen(inner))
                 except InvalidInput as error:
-                    where = f"{place}.{error.field}"
-                    raise InvalidInput(where, error.value, error.accepted, error.others) from None
+                    raise error.within(str(place)) from None
             if not found:
                 raise PydanticCustomError("model_type", "a table of its fields")
             return tuple(found) if len(found) > 1 else found[0]
@@ -279,9 +278,7 @@ def _as_invalid_input(error: ValidationError, part: type[Part]) -> InvalidInput:
     field = ".".join(str(step) for step in first["loc"])
     cause = first.get("ctx", {}).get("error")
     if isinstance(cause, InvalidInput):
-        within = not f"{cause.field}.".startswith(f"{field}.")
-        inner = f"{field}.{cause.field}".strip(".") if within else cause.field
-        return InvalidInput(inner, cause.value, cause.accepted, cause.others + others)
+        return cause.within("" if f"{cause.field}.".startswith(f"{field}.") else field, others)
     value = MISSING if first["type"] == "missing" else first["input"]
     return InvalidInput(field, value, _accepted(first, part), others)
 

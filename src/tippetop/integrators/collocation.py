@@ -148,13 +148,9 @@ class Step:
     end_state: Array
     """The state at its end."""
 
-    def __call__(self, time: float) -> Array:
-        """The solution within the step."""
-        return np.asarray(chebval(self._place(time), self.terms))
-
-    def at(self, times: Array) -> Array:
-        """The solution at times within the step, shape (m, size)."""
-        return np.asarray(chebval(self._place(times), self.terms)).T
+    def __call__(self, time: Any) -> Array:
+        """The solution at a time within the step, shape (size,), or at m times, shape (m, size)."""
+        return np.asarray(chebval(self._place(time), self.terms)).T
 
     def beyond(self, times: Array) -> Array:
         """What the polynomial, but for its last terms, says of times after the step, shape (m, size)."""
@@ -188,7 +184,7 @@ def solved(rates: RightHandSide, start: Array, span: float, guess: Array) -> Arr
 def _landed(rates: RightHandSide, start: Array, step: Step, end: float) -> Array:
     """The state after a step that begins as another does, and ends at exactly this time."""
     span = end - step.start
-    found = solved(rates, start, span, step.at(step.start + span * radau_points().places[1:]))
+    found = solved(rates, start, span, step(step.start + span * radau_points().places[1:]))
     return step(end) if found is None else found[-1]
 
 

@@ -13,16 +13,14 @@ from tippetop.integrators.rates import RightHandSide
 from tippetop.integrators.sampling import Steps
 from tippetop.integrators.stepping import MANY
 
-METHODS: dict[str, Any] = {
-    "dop853": DOP853,
-    "rk45": RK45,
-    "radau": Radau,
-    "bdf": BDF,
-    "lsoda": LSODA,
+METHODS: dict[str, tuple[Any, int]] = {
+    "dop853": (DOP853, 7),
+    "rk45": (RK45, 4),
+    "radau": (Radau, 3),
+    "bdf": (BDF, 5),
+    "lsoda": (LSODA, 12),
 }
-
-DEGREES = {"dop853": 7, "rk45": 4, "radau": 3, "bdf": 5, "lsoda": 12}
-"""Degrees of the polynomials by which they interpolate."""
+"""The solvers, and the degrees of the polynomials by which they interpolate."""
 
 LEAST_STEP = 1e-15
 """A step shorter than this part of the time gets nowhere."""
@@ -44,7 +42,7 @@ class SciPy:
     ) -> Iterator[Arc]:
         """Follow the motion; see `tippetop.integrators.base.Integrator`."""
         rates = RightHandSide(motion, parameters)
-        steps = Steps(rates, start[0], DEGREES[self.name])
+        steps = Steps(rates, start[0], METHODS[self.name][1])
         if not np.all(np.isfinite(rates(*start))):
             yield steps.arc(start[1], failure="the motion is singular from the start")
             return
@@ -73,7 +71,7 @@ class SciPy:
 
     def _solver(self, rates: RightHandSide, start: tuple[float, Array], end: float) -> Any:
         absolute = self.tolerance if self.absolute is None else self.absolute
-        return METHODS[self.name](rates, start[0], start[1], end, rtol=self.tolerance, atol=absolute)
+        return METHODS[self.name][0](rates, start[0], start[1], end, rtol=self.tolerance, atol=absolute)
 
     def _land(self, rates: RightHandSide, start: tuple[float, Array], end: float) -> Array:
         """The state after integrating afresh to exactly this time."""

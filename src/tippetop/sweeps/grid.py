@@ -197,8 +197,7 @@ def _read(name: str, table: Any, of: Callable[[str, Any], _Kind]) -> tuple[_Kind
         try:
             found.append(of(field, entry))
         except InvalidInput as fault:
-            where = f"{field}.{fault.field}".rstrip(".")
-            raise InvalidInput(where, fault.value, fault.accepted, fault.others) from None
+            raise fault.within(field) from None
     return tuple(found)
 
 
