@@ -19,8 +19,6 @@ function short(value) {
   return text.length <= 60 ? text : `${text.slice(0, 57)}...`;
 }
 
-export const one_of = (_, choices) => choices.join(", ");
-
 /** Every number in the fields of a part, with its name with dots. */
 export function* numbers_of(value, name = "") {
   if (typeof value === "number") yield [name, value];

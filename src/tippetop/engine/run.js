@@ -35,12 +35,13 @@ class Run {
     const units = m.natural_units(problem.top), top = m.natural(problem.top), start = m.natural_state(problem.start(), units);
     const { liftoff, restitution } = problem.contact, launch = m.rules_for(top, liftoff, restitution).launch(start);
     const pole = start.axis[2] >= 0 ? 1 : -1, lost = energyLost(launch.events), least = m.jellett(start, top);
-    Object.assign(this, { duration, tolerance, units, top, start, pole, pieces: [], hops: [], pressed: [], tips: [], landed: true });
+    Object.assign(this, { duration, tolerance, units, top, start, pole, pieces: [], hops: [], landed: true, turned: NaN, steps: 0 });
     this.trajectory = new m.Trajectory(launch, duration / units.time, make_integrator("dop853", tolerance));
     this.sums = Float64Array.of(0, 0, pole * problem.launch.azimuth, -lost, 0, 0, lost);
     this.energy = m.energy(start, top);
     this.off = { imbalance: 0, largest: Math.abs(this.energy), stretch: 0, sunk: 0, least, most: least };
-    Object.assign(this, { down: Infinity, up: -Infinity, turned: NaN, leastForce: Infinity, highest: 0, steps: 0 });
+    // Of the tip and, in flights, of the centre of mass: where these are highest, their negatives are least.
+    [this.force, this.down, this.up, this.depth] = [new Least(), new Least(), new Least(), new Least()];
   }
 
   /** A solution in a mode, with how its numbers are read. */
@@ -70,8 +71,8 @@ class Run {
 
   /** Take in the height of the centre of mass in a flight. */
   rise(solution, step) {
-    if (solution.value(step, 9, 0) + solution.reach(step, 9) <= this.highest) return;
-    this.highest = -least((part) => -solution.value(step, 9, part), -this.highest);
+    const start = solution.value(step, 9, 0);
+    this.depth.see(-start, -start - solution.reach(step, 9), (part) => -solution.value(step, 9, part));
   }
 
   fly(segment) {
@@ -102,11 +103,9 @@ class Run {
     piece.poles.push(pole);
     this.along(piece, step, 1, pole, this.sums);
     if (!presses) return;
-    const { least, most } = this;
-    this.leastForce = Math.min(this.leastForce, least);
     // Between Gauss's points, and beyond them, it is lower by a part of what it varies by there.
-    const bound = least - 0.5 * (most - least);
-    if (bound <= this.leastForce) this.pressed.push([bound, (part) => piece.look(step, part)[FORCE]]);
+    const { least, most } = this, bound = least - 0.5 * (most - least);
+    this.force.see(least, bound, (part) => piece.look(step, part)[FORCE]);
   }
 
   /** Add to sums what is gained up to a part of a step; the normal forces on the way. */
@@ -124,26 +123,11 @@ class Run {
 
   /** Take in the motion of the tip of the axis. */
   tip(solution, step) {
-    const start = solution.value(step, 2, 0), far = solution.reach(step, 2), lowest = start - far, highest = start + far;
-    const turns = this.turned !== this.turned && lowest <= 0 && highest >= 0, at = (part) => solution.value(step, 2, part);
-    if (lowest < this.down || highest > this.up) this.tips.push([lowest, highest, at]);
-    this.down = Math.min(this.down, start);
-    this.up = Math.max(this.up, start);
+    const start = solution.value(step, 2, 0), far = solution.reach(step, 2), at = (part) => solution.value(step, 2, part);
+    this.down.see(start, start - far, at);
+    this.up.see(-start, -start - far, (part) => -at(part));
+    const turns = this.turned !== this.turned && Math.abs(start) <= far;
     if (turns) this.turned = timeAt(solution, step, firstFall(at, true));
-  }
-
-  /** Look at the steps in which there may be less of something than was seen so far. */
-  refine() {
-    if (!this.hops.length) {
-      for (const [bound, force] of this.pressed) if (bound <= this.leastForce) this.leastForce = least(force, this.leastForce);
-    }
-    const last = this.trajectory.state.axis[2];
-    [this.down, this.up] = this.steps || this.pieces.length ? [Math.min(this.down, last), Math.max(this.up, last)] : [NaN, NaN];
-    for (const [lowest, highest, tip] of this.tips.sort(([a], [b]) => a - b)) {
-      if (lowest < this.down) this.down = least(tip, this.down);
-      if (highest > this.up) this.up = -least((part) => -tip(part), -this.up);
-    }
-    [this.pressed, this.tips] = [null, null];
   }
 
   /** First time at which n_z is in a band. */
@@ -173,13 +157,13 @@ class Run {
     }));
     this.flights = hops.map(([start, end, gap]) => (
       { start: start * units.time, end: end * units.time, highestGap: gap * units.length }));
-    this.refine();
+    for (const [way, last] of [[this.down, state.axis[2]], [this.up, -state.axis[2]]]) way.see(this.pieces.length ? last : NaN, last);
     const lifts = events.filter((event) => event.kind === m.EventKind.LIFT_OFF).map((event) => event.time);
     const airborne = hops.reduce((total, [from, to]) => total + to - from, 0), gap = Math.max(0, ...hops.map((hop) => hop[2]));
     const ends = new m.Ends(
-      state, trajectory.time, null, this.steps, hops.length, lifts.length || hops.length ? 0 : this.leastForce, lifts[0] ?? NaN,
-      energyLost(events), sums[DRILLED], sums[ROLLED], airborne, gap, this.highest, this.down, this.up, this.turned,
-      this.arrival(m.final_band(state)));
+      state, trajectory.time, null, this.steps, hops.length, lifts.length || hops.length ? 0 : this.force.found(), lifts[0] ?? NaN,
+      energyLost(events), sums[DRILLED], sums[ROLLED], airborne, gap, Math.max(0, -this.depth.found()), this.down.found(), -this.up.found(),
+      this.turned, this.arrival(m.final_band(state)));
     this.metrics = Object.fromEntries(m.metrics(ends, this.start, this.top, units).items());
     if (!this.pieces.some(({ solution }) => solution.count)) {
       const still = this.piece(new m.Flight(this.top, null), DenseSolution.in_time([0, 1], [this.start.pack().map((number) => [number])]), "sliding");
@@ -236,6 +220,27 @@ class Run {
 
 const PLACES = Array.from({ length: LOOKS + 1 }, (_, look) => look / LOOKS);
 
+/** The least value of something along a run: what was seen, and where between there may be less of it. */
+class Least {
+  constructor() {
+    Object.assign(this, { value: Infinity, places: [] });
+  }
+
+  /** Take in a step with a value in it, a bound for all of them there, and the values at its parts. */
+  see(value, bound, values) {
+    this.value = Math.min(this.value, value);
+    if (bound < this.value) this.places.push([bound, values]);
+  }
+
+  found() {
+    for (const [bound, values] of this.places.sort(([a], [b]) => a - b)) {
+      if (bound < this.value) this.value = least(values, this.value);
+    }
+    this.places = [];
+    return this.value;
+  }
+}
+
 /** The least value of a function on [0, 1], or one known: by parabolas about the least of some looks. */
 function least(value, known = Infinity) {
   const looks = PLACES.map(value);
@@ -263,9 +268,8 @@ const energyLost = (events) => events.reduce((total, event) => total + event.ene
 /** Give quaternions in a row the signs that let none jump. */
 function smooth(rows) {
   for (let i = 4; i < rows.length; i += 4) {
-    let product = 0;
-    for (let k = 0; k < 4; k += 1) product += rows[i + k] * rows[i + k - 4];
-    if (product < 0) for (let k = 0; k < 4; k += 1) rows[i + k] = -rows[i + k];
+    const before = rows.subarray(i - 4, i), here = rows.subarray(i, i + 4);
+    if (here.reduce((sum, one, k) => sum + one * before[k], 0) < 0) here.forEach((one, k) => (here[k] = -one));
   }
 }
 
@@ -274,11 +278,9 @@ const flying = cached((kind) =>
 
 /** A flight's numbers as a function of its time, compiled. */
 m.Flight.prototype._numbers = function numbers(state) {
-  const code = flying(this.top.kind), given = Float64Array.of(...state.pack(), ...this.top.numbers);
-  const time = new Float64Array(1), out = new Float64Array(10);
+  const code = flying(this.top.kind), given = [...state.pack(), ...this.top.numbers], out = new Float64Array(10);
   return (elapsed) => {
-    time[0] = elapsed;
-    code(time, given, out);
+    code([elapsed], given, out);
     return out;
   };
 };
