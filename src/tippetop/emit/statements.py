@@ -43,6 +43,11 @@ class Statements(Calls):
                 yield f"{self.text(value)};"
             case ast.Return(value=value):
                 yield "return null;" if value is None else f"return {self.text(value)};"
+            case ast.Assign(targets=[ast.Tuple() as places], value=ast.Tuple() as given) if is_each_its_own(
+                places, given
+            ):
+                for target, value in zip(places.elts, given.elts, strict=True):
+                    yield self._assigned(target, self.text(value))
             case ast.Assign(value=value) | ast.AnnAssign(value=ast.expr() as value):
                 said = self.text(value)
                 for target in targets_of(node):
@@ -136,6 +141,15 @@ class Statements(Calls):
         yield from indented(self._block(node.body))
         self.rows = {}
         yield "}"
+
+
+def is_each_its_own(places: ast.Tuple, values: ast.Tuple) -> bool:
+    """Whether names are bound one after the other to values in which none of them is."""
+    names = {node.id for place in places.elts for node in ast.walk(place) if isinstance(node, ast.Name)}
+    read = {node.id for node in ast.walk(values) if isinstance(node, ast.Name)}
+    plain = all(isinstance(place, ast.Name) for place in places.elts)
+    starred = any(isinstance(value, ast.Starred) for value in values.elts)
+    return plain and not starred and not names & read
 
 
 def is_row(node: Any, index: str) -> bool:

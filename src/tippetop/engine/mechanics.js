@@ -854,7 +854,8 @@ class ContactPoint extends py.NamedTuple {
   }
   /** Acceleration that a wrench adds. */
   response(wrench) {
-    var [transverse, axial] = [py.div(1.0, this.top.transverse_inertia), py.div(1.0, this.top.axial_inertia)];
+    var transverse = py.div(1.0, this.top.transverse_inertia);
+    var axial = py.div(1.0, this.top.axial_inertia);
     var moment = this.moment(wrench);
     var along = py.mul(py.sub(axial, transverse), dot(this.axis, moment));
     var turning = add(scale(transverse, moment), scale(along, this.axis));
@@ -868,7 +869,8 @@ class ContactPoint extends py.NamedTuple {
   /** The combination of wrenches that keeps as many velocities constant, and the acceleration then. */
   holding(unit, held) {
     var responses = [...unit].map((wrench) => this.response(wrench));
-    var [columns, free] = [[...responses].map((response) => flat(response)), flat(this.free)];
+    var columns = [...responses].map((response) => flat(response));
+    var free = flat(this.free);
     var sizes = solve(
       [...held].map((i) => [...columns].map((column) => py.item(column, i))),
       [...held].map((i) => py.neg(py.item(free, i)))
@@ -901,7 +903,8 @@ function contact_motion(point, slip, rolling = null) {
   var law = point.top.friction;
   var resistance = py.isinstance(law, RollingResistance) ? law : null;
   var held = [];
-  var [force, torque] = [[0.0, 0.0], NO_TORQUE];
+  var force = [0.0, 0.0];
+  var torque = NO_TORQUE;
   if (slip === null) {
     held = py.add(held, [[0, FORCES[0]], [1, FORCES[1]]]);
     held = py.add(held, slip_length(law) === null ? [] : [[5, DRILLING]]);
@@ -936,7 +939,8 @@ function slip_reserve(top, wrench) {
 /** Positive while the table can exert the couple in a wrench that holds rolling, (N m)^2. */
 function rolling_reserve(point, wrench, slip) {
   var law = point.top.friction;
-  var [couple, normal] = [[wrench.torque[0], wrench.torque[1]], wrench.force[2]];
+  var couple = [wrench.torque[0], wrench.torque[1]];
+  var normal = wrench.force[2];
   if (slip !== null) {
     var torque = sliding_law(law).traction([slip[0], slip[1]], turning_with(point, slip)).torque;
     couple = [py.sub(couple[0], py.mul(normal, torque[0])), py.sub(couple[1], py.mul(normal, torque[1]))];
@@ -1156,7 +1160,8 @@ function slip_part(accelerations, reach) {
 
 /** Falls through zero where slip ends soon; for a sliding state and its time derivative. */
 function stopping_guard(state, rate, top) {
-  var [turning, tilting] = [angular_velocity(state.axis, state.momentum, top), rate.axis];
+  var turning = angular_velocity(state.axis, state.momentum, top);
+  var tilting = rate.axis;
   var turned = angular_acceleration(state, rate, top);
   var arm = contact_vector(state.axis, top.surface);
   var carried = add(cross(turned, arm), cross(turning, arm_rate(state.axis, tilting, top)));
@@ -1360,12 +1365,14 @@ function slip_beside(state, ending, top) {
 function closing_rates(state, ending, top) {
   var rates = rates_in_time(state, ending, top);
   var pace = py.pow(inner(rates.xi, rates.xi), -0.5);
-  var [along, step] = [py.mul(pace, inner(rates.xi, state.direction)), py.mul(pace, state.speed)];
+  var along = py.mul(pace, inner(rates.xi, state.direction));
+  var step = py.mul(pace, state.speed);
   var unit = py.sub(py.mul(2.0, py.sub(1.0, inner(state.direction, state.direction))), along);
   var turn = py.tuple(
     py.zip(rates.xi, state.direction).map(([a, e]) => py.add(py.mul(pace, a), py.mul(unit, e)))
   );
-  var [moved, speeding] = [scaled(step, rates.velocity), py.mul(along, state.speed)];
+  var moved = scaled(step, rates.velocity);
+  var speeding = py.mul(along, state.speed);
   return new Closing(scale(step, rates.axis), scale(step, rates.momentum), moved, turn, speeding, step);
 }
 
@@ -1637,7 +1644,8 @@ function number_of(top) {
 
 /** Guards of the open surfaces of bodies of this kind, and of the face that one is the edge of. */
 function surface_guards(kind) {
-  var [surface, active] = [kind.example.surface, number_of(kind.example)];
+  var surface = kind.example.surface;
+  var active = number_of(kind.example);
   var guards = [];
   if (py.truth(py.hasattr(acting(surface), "face_guard"))) {
     guards.push(new Guard(FACE, (y, numbers) => _face(y, _surface(kind, numbers))));
@@ -1798,7 +1806,8 @@ class TruncatedSeries extends Algebra {
   }
   /** A real power, term by term from y' a = exponent a' y. */
   power(exponent) {
-    var [a, y] = [this.terms, [py.pow(this.terms[0], exponent)]];
+    var a = this.terms;
+    var y = [py.pow(this.terms[0], exponent)];
     for (var k = 1; k < py.len(a); k += 1) {
       var total = py.sum(
         py.range(1, py.add(k, 1)).map(
@@ -1838,7 +1847,8 @@ class Disc extends Algebra {
   }
   /** A real power, by the mean value theorem; the disc must lie right of zero for it to be analytic. */
   power(exponent) {
-    var [near, far] = [py.sub(this.centre, this.radius), py.add(this.centre, this.radius)];
+    var near = py.sub(this.centre, this.radius);
+    var far = py.add(this.centre, this.radius);
     if (near <= 0.0) {
       throw new py.ArithmeticError("a power of a disc that touches zero");
     }
@@ -1853,7 +1863,9 @@ const [GOLDEN, NARROWED] = [py.mul(0.5, py.sub(3.0, py.pow(5.0, 0.5))), 29];
 
 /** First root from `low` to `high`, or `low` if not positive there; `jerk` bounds the third derivative. */
 function first_root(function_, low, high, jerk) {
-  var [time, step, finest] = [low, py.sub(high, low), py.mul(FINEST, py.sub(high, low))];
+  var time = low;
+  var step = py.sub(high, low);
+  var finest = py.mul(FINEST, py.sub(high, low));
   var [value, rate, acceleration] = function_(time);
   while (value > 0.0) {
     step = py.min(step, py.sub(high, time));
@@ -1912,9 +1924,12 @@ function is_one_way(rate, acceleration, jerk, step) {
 
 /** Place and value of a function's least value between two points, or of one that is not positive. */
 function dip(function_, low, high) {
-  var [a, b] = [low, high];
-  var [x, y] = [py.add(a, py.mul(GOLDEN, py.sub(b, a))), py.sub(b, py.mul(GOLDEN, py.sub(b, a)))];
-  var [f, g] = [function_(x), function_(y)];
+  var a = low;
+  var b = high;
+  var x = py.add(a, py.mul(GOLDEN, py.sub(b, a)));
+  var y = py.sub(b, py.mul(GOLDEN, py.sub(b, a)));
+  var f = function_(x);
+  var g = function_(y);
   for (var turn = 0; turn < NARROWED; turn += 1) {
     if (f <= 0.0 || g <= 0.0) {
       break;
@@ -1934,8 +1949,11 @@ function dip(function_, low, high) {
 
 /** Root of a function between two points where its signs differ, by the method of Chandrupatla (1997). */
 function crossing(function_, low, high) {
-  var [x1, x2, part] = [high, low, 0.5];
-  var [y1, y2] = [function_(x1), function_(x2)];
+  var x1 = high;
+  var x2 = low;
+  var part = 0.5;
+  var y1 = function_(x1);
+  var y2 = function_(x2);
   if (y1 === 0.0 || y2 === 0.0) {
     return y2 === 0.0 ? x2 : x1;
   }
@@ -1944,17 +1962,20 @@ function crossing(function_, low, high) {
     var x = py.add(x1, py.mul(part, py.sub(x2, x1)));
     var y = function_(x);
     if (py.eq(y > 0.0, y1 > 0.0)) {
-      var [x3, y3] = [x1, y1];
+      var x3 = x1;
+      var y3 = y1;
     } else {
       [x3, y3, x2, y2] = [x2, y2, x1, y1];
     }
-    [x1, y1] = [x, y];
+    x1 = x;
+    y1 = y;
     best = py.abs(y1) < py.abs(y2) ? x1 : x2;
     var fuzz = py.div(py.mul(2.3e-16, py.abs(best)), py.abs(py.sub(x2, x1)));
     if (fuzz > 0.5 || y === 0.0) {
       break;
     }
-    var [xi, phi] = [py.div(py.sub(x1, x2), py.sub(x3, x2)), py.div(py.sub(y1, y2), py.sub(y3, y2))];
+    var xi = py.div(py.sub(x1, x2), py.sub(x3, x2));
+    var phi = py.div(py.sub(y1, y2), py.sub(y3, y2));
     part = 0.5;
     if (py.mul(phi, phi) < xi && py.pow(py.sub(1.0, phi), 2) < py.sub(1.0, xi)) {
       part = py.div(py.mul(py.div(y1, py.sub(y2, y1)), y3), py.sub(y2, y3));
@@ -2065,12 +2086,11 @@ function highest_gap(state, top, duration) {
   var gaps = [...times].map((time) => gap(time)[0]);
   var best = py.max(py.range(py.add(count, 1)), py.how({ key: py.bound(gaps, "__getitem__") }));
   if (gap(py.item(times, best))[1] > 0.0) {
-    var [low, high] = [py.item(times, best), py.item(times, py.min(py.add(best, 1), count))];
+    var low = py.item(times, best);
+    var high = py.item(times, py.min(py.add(best, 1), count));
   } else {
-    [low, high] = [
-      py.max(py.item(times, py.max(py.sub(best, 1), 0)), py.mul(0.001, times[1])),
-      py.item(times, best)
-    ];
+    low = py.max(py.item(times, py.max(py.sub(best, 1), 0)), py.mul(0.001, times[1]));
+    high = py.item(times, best);
   }
   if (!(gap(low)[1] > 0.0 && 0.0 > gap(high)[1])) {
     return py.item(gaps, best);
@@ -2100,11 +2120,9 @@ class Tip extends py.NamedTuple {
   /** Height, rate and acceleration at a time: c'' turns into -w^2 c' and back. */
   at(time) {
     var w = this.frequency;
-    var [cosine, sine, half] = [
-      py.math.cos(py.mul(w, time)),
-      py.div(py.math.sin(py.mul(w, time)), w),
-      py.div(py.math.sin(py.mul(py.mul(0.5, w), time)), w)
-    ];
+    var cosine = py.math.cos(py.mul(w, time));
+    var sine = py.div(py.math.sin(py.mul(w, time)), w);
+    var half = py.div(py.math.sin(py.mul(py.mul(0.5, w), time)), w);
     return [
       py.add(
         py.add(this.height, py.mul(this.rate, sine)),
@@ -2259,7 +2277,8 @@ class Flight extends Mode {
       var elapsed = py.range(first, py.add(last, 1)).map((step) => py.mul(py.div(duration, count), step));
       py.put(elapsed, -1, py.eq(last, count) ? duration : py.item(elapsed, -1));
       var here = fly(state, py.item(elapsed, -1), this.top, py.math);
-      var [transition, reach] = [null, py.add(time, py.item(elapsed, -1))];
+      var transition = null;
+      var reach = py.add(time, py.item(elapsed, -1));
       if (py.eq(last, count)) {
         reach = landing === null ? end : reach;
         var low = landing === null ? null : lowest;
@@ -2282,7 +2301,8 @@ class Flight extends Mode {
         var limit = found === null ? horizon : found;
         var sooner = touchdown(state, other, limit, start_of(state, other));
         if (sooner !== null && (found === null || sooner < found)) {
-          [found, lowest] = [sooner, other];
+          found = sooner;
+          lowest = other;
         }
       }
     }
@@ -2419,7 +2439,9 @@ function held_rates(state, top) {
 
 /** Equations of motion of a sliding top of this kind, whose rolling may be held. */
 const sliding_motion = py.cached((kind, guarded, near = false, held = false) => {
-  var [law, rate, guards] = [kind.example.friction, py.truth(held) ? held_rates : sliding_rates, py.list()];
+  var law = kind.example.friction;
+  var rate = py.truth(held) ? held_rates : sliding_rates;
+  var guards = py.list();
   var rates = (y, numbers) => {
     return rate(SlidingState.unpack(y), kind.top(py.tuple(numbers))).pack();
   };
@@ -2620,7 +2642,8 @@ class Series extends py.Thing {
     return this._made((k) => py.mul(other, py.item(this, k)));
   }
   _product(other, k) {
-    var [ours, theirs] = [this.up_to(k), other.up_to(k)];
+    var ours = this.up_to(k);
+    var theirs = other.up_to(k);
     return this.arithmetic.total(py.list(py.map(py.mul, ours, py.slice(theirs, k, null, -1))));
   }
   _squared() {
@@ -2663,7 +2686,8 @@ class Series extends py.Thing {
         inverse.push(py.div(1.0, py.item(this, 0)));
         return py.pow(py.item(this, 0), exponent);
       }
-      var [base, found] = [this.up_to(k), power.known];
+      var base = this.up_to(k);
+      var found = power.known;
       var factors = py.range(1, py.add(k, 1)).map(
         (j) => py.div(py.sub(py.mul(py.add(exponent, 1.0), j), k), k)
       );
@@ -2772,7 +2796,8 @@ class Onset extends py.NamedTuple {
   }
   /** Coefficients of n, L, u where that is free, and zeta. */
   get rows() {
-    var [begun, count] = [py.mul([0.0], this.power), py.len(this.speed)];
+    var begun = py.mul([0.0], this.power);
+    var count = py.len(this.speed);
     var zeta = [...this.direction].map(
       (row) => py.add(
         begun,
@@ -2799,13 +2824,15 @@ function onset(known, power, order) {
   var slopes = [...across].map((b) => turned_slope(known, b));
   var aside = [...across].map((b) => [...slopes].map((g) => inner(b, g)));
   var ahead = [...slopes].map((g) => inner(first, g));
-  var [e, s] = [[...first].map((number) => [number]), py.list()];
+  var e = [...first].map((number) => [number]);
+  var s = py.list();
   if (power === 1) {
     s.push(inner(known.accelerations(0), first));
   }
   for (var j = 1; j < py.add(order, power); j += 1) {
     var k = py.add(py.sub(j, power), 1);
-    var [factor, along] = [py.add(k, power), 0.0];
+    var factor = py.add(k, power);
+    var along = 0.0;
     for (var row of e) {
       along = py.sub(along, py.mul(0.5, py.sum(py.map(py.mul, row.slice(1), py.slice(row, null, 0, -1)))));
     }
@@ -3028,19 +3055,24 @@ function arriving(here, ending, top, integrator) {
   if (along >= 0.0) {
     return null;
   }
-  var [left, now] = [py.div(py.neg(here.speed), along), [...here.axis, ...here.momentum]];
-  var [end, way] = [plus(now, scaled(left, [...rates.axis, ...rates.momentum])), here.direction];
+  var left = py.div(py.neg(here.speed), along);
+  var now = [...here.axis, ...here.momentum];
+  var end = plus(now, scaled(left, [...rates.axis, ...rates.momentum]));
+  var way = here.direction;
   var at_rest = py.max(AT_REST, py.getattr(integrator, "tolerance", 0.0));
   try {
     for (var turn = 0; turn < MOST; turn += 1) {
-      var [axis, momentum] = [[end[0], end[1], end[2]], [end[3], end[4], end[5]]];
+      var axis = [end[0], end[1], end[2]];
+      var momentum = [end[3], end[4], end[5]];
       if (!(py.abs(axis[2]) < 1.0)) {
         return null;
       }
       var known = resting_way(axis, momentum, way, ending, top, integrator);
-      var [begin, way] = [onset(known, 1, DEGREE_of_arriving), known.first];
+      var begin = onset(known, 1, DEGREE_of_arriving);
+      way = known.first;
       var found = new Arrival(time_to(here.speed, begin.rows, left), begin.rows);
-      var [left, then] = [found.left, found.at(1.0)];
+      left = found.left;
+      var then = found.at(1.0);
       var off = plus(now, scaled(-1.0, py.tuple(then.slice(0, 6))));
       var aside = py.math.dist(
         here.direction,
@@ -3066,7 +3098,8 @@ function arriving(here, ending, top, integrator) {
 function resting_way(axis, momentum, way, ending, top, integrator) {
   for (var turn = 0; turn < TURNS; turn += 1) {
     var known = growth([axis, momentum, way], top, ending, [], DEGREE_of_arriving, integrator);
-    var [rate, across] = [known.accelerations(0), tangents(way)];
+    var rate = known.accelerations(0);
+    var across = tangents(way);
     var along = inner(rate, way);
     var slopes = [...across].map((b) => turned_slope(known, b));
     var matrix = [...across].map(
@@ -3113,7 +3146,8 @@ function followed(integrator, motion, parameters, start) {
   if (first.guard !== null || first.failure !== null || first.solution.end >= LONGEST) {
     return [first];
   }
-  var [arcs, onwards] = [[first], [first.solution.end, first.end_state]];
+  var arcs = [first];
+  var onwards = [first.solution.end, first.end_state];
   var implicit = make_integrator("radau", STIFF_TOLERANCE);
   for (var arc of implicit.integrate(motion, parameters, onwards, LONGEST)) {
     arcs.push(py.replace(arc, { method: implicit }));
@@ -3153,7 +3187,8 @@ const closing_motion = py.cached((kind, ending, guarded) => {
     guard(TIME, (state, _, numbers) => py.sub(py.item(numbers, -2), state.time))
   ];
   var top = kind.example;
-  var [law, stuck] = [top.friction, py.and(!py.truth(ending.slip), () => ending.held)];
+  var law = top.friction;
+  var stuck = py.and(!py.truth(ending.slip), () => ending.held);
   if (py.truth(guarded)) {
     guards.push(guard(LIFT_OFF, (state, top, _) => held_by(state, top).force[2]));
   }
@@ -3191,7 +3226,8 @@ function spared(state, ending, top) {
 
 /** The state of a velocity that is about to end, from its numbers. */
 function closing_of(y, ending) {
-  var [count, free] = [py.len(y), py.truth(ending.moves) ? 8 : 6];
+  var count = py.len(y);
+  var free = py.truth(ending.moves) ? 8 : 6;
   return new Closing(
     ...split(y),
     py.tuple(y.slice(6, free)),
@@ -3291,7 +3327,8 @@ class Stopping extends Passing {
   }
   /** Follow it to its end, or to where it is no longer about to end. */
   *segments(time, state, end, integrator) {
-    var [ending, begin] = [this.ending, py.or(this.begin, () => this._clock(state))];
+    var ending = this.ending;
+    var begin = py.or(this.begin, () => this._clock(state));
     var arrival = this._arrival(closing_of(begin, ending), py.sub(end, time), integrator);
     if (arrival !== null) {
       var solution = DenseSolution.in_time([0.0, arrival.left], [arrival.onwards]);
@@ -3300,8 +3337,12 @@ class Stopping extends Passing {
       yield new Segment(this, solution.moved(time, py.add(time, arrival.left)), last, then, 1);
       return null;
     }
-    var [here, steps, arc, parts] = [closing_of(begin, ending), 0, null, py.list()];
-    var [rest, method] = [here, null];
+    var here = closing_of(begin, ending);
+    var steps = 0;
+    var arc = null;
+    var parts = py.list();
+    var rest = here;
+    var method = null;
     var start = [0.0, as_array(begin)];
     var motion = closing_motion(this.top.kind, ending, !py.truth(this.rules.pulls));
     for (var horizon of LANDING) {
@@ -3383,7 +3424,8 @@ class Stopping extends Passing {
     return [...state.axis, ...state.momentum, ...free, ...scaled(py.div(1.0, size(xi)), xi), size(xi), 0.0];
   }
   _next(arc, time, state) {
-    var [ending, stuck] = [this.ending, py.and(!py.truth(this.ending.slip), () => this.ending.held)];
+    var ending = this.ending;
+    var stuck = py.and(!py.truth(this.ending.slip), () => this.ending.held);
     if (arc === null || py.eq(arc.guard, LANDED)) {
       return this.rules.settled(time, state, [ending.slip, !py.truth(ending.slip)], ending.held);
     }
@@ -3438,7 +3480,8 @@ class Stopping extends Passing {
       var still = shown(closing_of(begin, this.ending));
       return straight(still, still, time, py.add(time, py.float(after.time)));
     }
-    var [clock, elapsed] = [DenseSolution.joined(parts), py.sub(py.len(begin), 1)];
+    var clock = DenseSolution.joined(parts);
+    var elapsed = py.sub(py.len(begin), 1);
     var numbers = (times) => {
       return shown(closing_of(clock.rows(clock.when(elapsed, times)), this.ending));
     };
@@ -3467,7 +3510,8 @@ function straight(begin, last, start, end) {
 
 /** Ends of steps, so few of them that each leaves but a share of the time to the last. */
 function thinned(knots) {
-  var [end, found] = [py.item(knots, -1), [knots[0]]];
+  var end = py.item(knots, -1);
+  var found = [knots[0]];
   for (var knot of py.slice(knots, 1, -1, null)) {
     if (py.sub(end, knot) <= py.mul(SHARE, py.sub(end, py.item(found, -1)))) {
       found.push(knot);
@@ -3575,7 +3619,8 @@ function _integral(k, x, at) {
 
 /** Coefficients of the integrals of Legendre's polynomials in powers of what has passed of a part. */
 function _in_powers(stages, part) {
-  var [begin, slope] = [py.sub(py.div(py.mul(2.0, part), PARTS), 1.0), py.div(2.0, PARTS)];
+  var begin = py.sub(py.div(py.mul(2.0, part), PARTS), 1.0);
+  var slope = py.div(2.0, PARTS);
   var none = py.mul([0.0], stages);
   var rows = [[1.0, ...none.slice(1)], [begin, slope, ...none.slice(2)]];
   for (var k = 1; k < py.sub(stages, 1); k += 1) {
@@ -3633,14 +3678,14 @@ py.fields(StepRows, ["free"]);
 /** Make the unknowns of a step better. */
 function sweep(y, p, ending, kind, points) {
   var layout = StepRows.of(ending);
-  var [free, given] = [layout.free, layout.given];
+  var free = layout.free;
+  var given = layout.given;
   var last = py.add(given, kind.numbers);
-  var [top, integrals, units] = [
-    kind.top(py.tuple(p.slice(given, last))),
-    py.slice(p, last, py.add(last, STAGES), null),
-    py.slice(p, py.add(last, STAGES), null, null)
-  ];
-  var [way, step] = [[py.item(y, free), py.item(y, py.add(free, 1))], py.item(p, layout.size)];
+  var top = kind.top(py.tuple(p.slice(given, last)));
+  var integrals = py.slice(p, last, py.add(last, STAGES), null);
+  var units = py.slice(p, py.add(last, STAGES), null, null);
+  var way = [py.item(y, free), py.item(y, py.add(free, 1))];
+  var step = py.item(p, layout.size);
   var across = [py.neg(way[1]), way[0]];
   var [rates, slopes, normal] = _answers(y.slice(0, free), way, across, ending, top);
   var xi = _moved(py.tuple(p.slice(free, layout.size)), step, rates.slice(free), integrals, points);
@@ -3661,7 +3706,8 @@ function sweep(y, p, ending, kind, points) {
 
 /** What a step makes of numbers, from their rates y. */
 function step_terms(y, p, points) {
-  var [step, legendre_rows] = [p[0], py.slice(p, 1, py.add(STAGES, 1), null)];
+  var step = p[0];
+  var legendre_rows = py.slice(p, 1, py.add(STAGES, 1), null);
   var series = [...y].map(
     (rate) => py.tuple([...legendre_rows].map((row) => py.mul(step, points.total(py.mul(rate, row)))))
   );
@@ -3709,9 +3755,12 @@ function _solved(columns, right, units, points) {
 /** Rates of y and xi, their derivatives as the direction turns, and the normal force. */
 function _answers(y, way, beside, ending, top) {
   var here = new Closing([y[0], y[1], y[2]], [y[3], y[4], y[5]], py.tuple(y.slice(6)), way, 0.0, 0.0);
-  var [point, slip] = [ContactPoint.of(here.axis, here.momentum, top), slip_beside(here, ending, top)];
+  var point = ContactPoint.of(here.axis, here.momentum, top);
+  var slip = slip_beside(here, ending, top);
   var [wrench, acceleration] = ending.contact(point, way, slip);
-  var [normal, force, torque] = [wrench.force[2], NO_TORQUE, NO_TORQUE];
+  var normal = wrench.force[2];
+  var force = NO_TORQUE;
+  var torque = NO_TORQUE;
   for (var [share, unit] of py.zip(ending.shares(beside, top), ending.wrenches(top))) {
     [force, torque] = [add(force, scale(share, unit.force)), add(torque, scale(share, unit.torque))];
   }
@@ -3779,7 +3828,8 @@ const compiled_step = py.cached((kind, ending) => {
 
 /** What steps of a top are made with. */
 const machinery_of = py.cached((top, ending) => {
-  var [first, numbers] = [StepRows.of(ending).given, top.numbers];
+  var first = StepRows.of(ending).given;
+  var numbers = top.numbers;
   var given = room(py.add(py.mul(py.add(first, py.len(numbers)), STAGES), py.len(CONSTANTS)));
   put_rows(given, first, numbers, STAGES);
   put_from(given, py.mul(py.add(first, py.len(numbers)), STAGES), CONSTANTS);
@@ -3858,7 +3908,8 @@ class SlipStep extends py.Thing {
   /** Coefficients of s in a part of it, at whose start it is this; beyond slip s is less than zero. */
   speed(number, begin, way) {
     var first = py.add(py.mul(number, this.layout.size), this.layout.free);
-    var [x, y] = [row_of(this.rows, first), row_of(this.rows, py.add(first, 1))];
+    var x = row_of(this.rows, first);
+    var y = row_of(this.rows, py.add(first, 1));
     return [begin, ...py.zip(x, y).map(([a, b]) => py.add(py.mul(way[0], a), py.mul(way[1], b)))];
   }
   /** After how many parts of it slip ends, that is xi at its start; None if that is not told. */
@@ -3870,7 +3921,8 @@ class SlipStep extends py.Thing {
     if (point === 0) {
       return null;
     }
-    var [way, polynomials] = [this.last_way, py.list()];
+    var way = this.last_way;
+    var polynomials = py.list();
     var begin = inner(xi, way);
     for (var number = 0; number < PARTS; number += 1) {
       polynomials.push(this.speed(number, begin, way));
@@ -3888,10 +3940,16 @@ class SlipStep extends py.Thing {
 /** Follow slip, or rolling, that begins, as far as the method goes, which may be nowhere. */
 function slip_phase(y, way, top, ending, longest, pulls) {
   var step = new SlipStep(top, ending);
-  var [now, length, free] = [[...y, ...[...way].map((_) => 0.0)], FIRST, py.len(y)];
-  var [knots, rows, ended] = [[0.0], py.list(), false];
+  var now = [...y, ...[...way].map((_) => 0.0)];
+  var length = FIRST;
+  var free = py.len(y);
+  var knots = [0.0];
+  var rows = py.list();
+  var ended = false;
   while (!py.truth(ended) && py.item(knots, -1) < longest && size(py.tuple(now.slice(free))) < APART) {
-    var [begin, known, before] = [py.item(knots, -1), py.len(knots), now];
+    var begin = py.item(knots, -1);
+    var known = py.len(knots);
+    var before = now;
     length = py.min(length, py.sub(longest, begin));
     var solved = step.solve(now, way, length);
     var factor = py.truth(solved) ? py.mul(
@@ -3899,7 +3957,8 @@ function slip_phase(y, way, top, ending, longest, pulls) {
       py.pow(py.div(ACCURACY_of_slipping, py.add(step.error, TINY_of_slipping)), py.div(0.5, STAGES))
     ) : 0.0;
     var after = py.zip(now, step.changes).map(([a, b]) => py.add(a, b));
-    var [last, speeds] = [step.last_way, step.speeds];
+    var last = step.last_way;
+    var speeds = step.speeds;
     var lasts = py.and(
       py.min(speeds) > 0.0,
       () => py.add(
@@ -3936,10 +3995,8 @@ function slip_phase(y, way, top, ending, longest, pulls) {
       if (py.eq(length, py.sub(longest, begin))) {
         py.put(knots, py.sub(py.len(knots), 1), longest);
       }
-      [now, way] = [
-        after,
-        scaled(py.div(1.0, size(py.tuple(after.slice(free)))), py.tuple(after.slice(free)))
-      ];
+      now = after;
+      way = scaled(py.div(1.0, size(py.tuple(after.slice(free)))), py.tuple(after.slice(free)));
       var speed = step.speed(py.sub(PARTS, 1), 0.0, last);
       py.put(speed, 0, py.sub(inner(py.tuple(after.slice(free)), last), py.sum(speed)));
       length = py.min(
@@ -3996,7 +4053,8 @@ function directions(response, start) {
   var ways = [...start].map((direction) => _unit(direction));
   for (var turn = 0; turn < ROUNDS; turn += 1) {
     for (var step = 0; step < ITERATIONS; step += 1) {
-      var [before, answers] = [ways, response(ways)];
+      var before = ways;
+      var answers = response(ways);
       ways = py.zip(answers, ways).map(
         ([answer, e]) => _unit(plus(scaled(py.add(answer.strength, size(answer.rate)), e), answer.rate))
       );
@@ -4065,7 +4123,8 @@ function _newton(response, ways) {
     return py.zip(lefts, bases).flatMap(([left, basis]) => [...basis].map((b) => inner(left, b)));
   };
   var moved = (parts) => {
-    var [found, used] = [py.list(), 0];
+    var found = py.list();
+    var used = 0;
     for (var [e, basis] of py.zip(ways, bases)) {
       var turned = e;
       for (var b of basis) {
@@ -4243,7 +4302,8 @@ class Loosening extends Passing {
           return null;
         }
       }
-      var [start, degree] = [[state.axis, state.momentum, direction], py.sub(py.add(ORDER, this.power), 1)];
+      var start = [state.axis, state.momentum, direction];
+      var degree = py.sub(py.add(ORDER, this.power), 1);
       var known = growth(start, passing.top, this.ending, velocity, degree, integrator);
       var begin = onset(known, this.power, ORDER);
     } catch (error) {
@@ -4284,9 +4344,11 @@ class Loosening extends Passing {
   }
   /** The mode on its law's branch, the direction of what begins, and how long it lasts at most. */
   _directed(state) {
-    var [ending, other] = [this.ending, new Vanishing(!py.truth(this.ending.slip))];
+    var ending = this.ending;
+    var other = new Vanishing(!py.truth(this.ending.slip));
     var point = ContactPoint.of(state.axis, state.momentum, this.top);
-    var [slip, rolling] = [null, null];
+    var slip = null;
+    var rolling = null;
     if (py.truth(ending.moves)) {
       slip = slip_of(state.axis, state.momentum, state.velocity.slice(0, 2), this.top);
     }
@@ -4327,10 +4389,12 @@ class Loosening extends Passing {
     var at = (look) => {
       return [...rows].map((row) => horner(row, py.div(py.mul(duration, look), LOOKS_of_passing)));
     };
-    var [looks, pressed] = [
-      py.range(1, py.add(LOOKS_of_passing, 1)),
-      py.range(py.add(1, PRESSED_of_loosening), py.add(LOOKS_of_passing, 1), PRESSED_of_loosening)
-    ];
+    var looks = py.range(1, py.add(LOOKS_of_passing, 1));
+    var pressed = py.range(
+      py.add(1, PRESSED_of_loosening),
+      py.add(LOOKS_of_passing, 1),
+      PRESSED_of_loosening
+    );
     if (
       py.isinstance(this.top.surface, Hull) && !py.truth(
         py.all([...looks].map((look) => stays_open(this.top, at(look))))
@@ -4366,14 +4430,10 @@ class BothLoosening extends Loosening {
       return null;
     }
     py.assert(found.slip !== null);
-    var [passing, pace] = [
-      py.replace(this, { top: on_branch(this.top, found.slip) }),
-      scaled(found.rates[0], found.slip)
-    ];
-    var [still, growing] = [
-      [...state.axis, ...state.momentum],
-      [0.0, 0.0, 0.0, ...point.moment(found.wrench)]
-    ];
+    var passing = py.replace(this, { top: on_branch(this.top, found.slip) });
+    var pace = scaled(found.rates[0], found.slip);
+    var still = [...state.axis, ...state.momentum];
+    var growing = [0.0, 0.0, 0.0, ...point.moment(found.wrench)];
     var rows = py.zip(still, growing);
     rows = py.add(rows, [...pace].map((rate) => [0.0, rate]));
     yield passing.piece(rows, found.slip, time, py.min(INSTANT, py.sub(end, time)), end);
@@ -4544,7 +4604,8 @@ class DryContact extends py.NamedTuple {
     var columns = [...FORCES, ...COUPLES, DRILLING].map((wrench) => flat(point.response(wrench)));
     var law = body.top.friction;
     var resistance = py.isinstance(law, RollingResistance) ? law : null;
-    var [before, response] = [[...body.point, ...point.turning], py.tuple(py.zip(...columns))];
+    var before = [...body.point, ...point.turning];
+    var response = py.tuple(py.zip(...columns));
     var of_law = [resistance, is_set_valued(law), slip_length(law)];
     return new this(body, speed, before, response, ...of_law, length(body.arm), length(body.point));
   }
@@ -4597,7 +4658,8 @@ class DryContact extends py.NamedTuple {
   }
   /** Whether the table can hold those velocities that are None. */
   admits(slip, rolling) {
-    var [unit, resistance] = [this.unit(slip, rolling), this.resistance];
+    var unit = this.unit(slip, rolling);
+    var resistance = this.resistance;
     if (slip === null && set_valued(this.law).reserve(1.0, unit.slice(0, 2), unit[5]) < 0.0) {
       return false;
     }
@@ -4615,7 +4677,8 @@ class DryContact extends py.NamedTuple {
   }
   /** Force and torque per unit normal impulse, six numbers; a velocity that is None is held. */
   unit(slip, rolling) {
-    var [force, torque] = [[0.0, 0.0], NO_TORQUE];
+    var force = [0.0, 0.0];
+    var torque = NO_TORQUE;
     var held = [];
     if (slip === null) {
       held = py.add(held, this.reach === null ? [0, 1] : [0, 1, 5]);
@@ -4881,10 +4944,8 @@ class RungeKuttaStep extends py.NamedTuple {
   /** The cubic through its ends, at a part of it. */
   between(part) {
     var rest = py.sub(1.0, part);
-    var [at, pull] = [
-      py.mul(py.mul(part, part), py.sub(3.0, py.mul(2.0, part))),
-      py.mul(py.mul(part, rest), this.size)
-    ];
+    var at = py.mul(py.mul(part, part), py.sub(3.0, py.mul(2.0, part)));
+    var pull = py.mul(py.mul(part, rest), this.size);
     return py.tuple(
       py.zip(this.here, this.there, this.slopes[0], py.item(this.slopes, -1)).map(
         ([x, y, a, b]) => py.add(
@@ -4955,7 +5016,8 @@ function straight_of_straight_impact(dry, impulse, goal, guess) {
     return null;
   }
   var [unit, longest] = line;
-  var [approach, rise] = [dry.body.approach(impulse), dry.change(unit)[2]];
+  var approach = dry.body.approach(impulse);
+  var rise = dry.change(unit)[2];
   var along = (q) => {
     var [[east, north], [x, y, z]] = [impulse.tangential, impulse.angular];
     return new Impulse(
@@ -4982,9 +5044,12 @@ function _line(dry, impulse) {
   if (py.truth(dry.ended)) {
     return [unit, py.math.inf];
   }
-  var [speed, grip] = [size(slip), size(dry.resisting(SLIPPING, unit))];
-  var [way, change] = [scaled(py.div(1.0, speed), slip), dry.part(SLIPPING, dry.change(unit))];
-  var [doing, along] = [_impulse_for(dry, change), _impulse_for(dry, way)];
+  var speed = size(slip);
+  var grip = size(dry.resisting(SLIPPING, unit));
+  var way = scaled(py.div(1.0, speed), slip);
+  var change = dry.part(SLIPPING, dry.change(unit));
+  var doing = _impulse_for(dry, change);
+  var along = _impulse_for(dry, way);
   var inertia = inner(way, along);
   var rate = py.div(inner(way, doing), inertia);
   var fuzz = py.div(py.mul(FUZZ, dry.speed), speed);
@@ -5032,8 +5097,10 @@ class IntegratedProcess extends py.NamedTuple {
   }
   /** The first impulse from a given one on at which the goal is not negative. */
   until(impulse, goal, guess) {
-    var [now, waiting] = [this.settled(impulse), goal(impulse) >= 0.0];
-    var [here, slope] = [pack(impulse), now.slope(pack(impulse))];
+    var now = this.settled(impulse);
+    var waiting = goal(impulse) >= 0.0;
+    var here = pack(impulse);
+    var slope = now.slope(pack(impulse));
     var longest = py.div(
       py.mul(2.0, LONGEST_of_integrated_impact),
       py.add(this.body.inverse_mass[0][0], this.body.inverse_mass[1][1])
@@ -5050,7 +5117,8 @@ class IntegratedProcess extends py.NamedTuple {
           if (goal(ended) >= 0.0) {
             return ended._replace({ steps: taken });
           }
-          [here, waiting] = [pack(ended), false];
+          here = pack(ended);
+          waiting = false;
           now = now.settled(ended);
           slope = now.slope(here);
           continue;
@@ -5071,7 +5139,9 @@ class IntegratedProcess extends py.NamedTuple {
       if (py.truth(reached)) {
         return unpack(now.landing(taking, goal))._replace({ steps: py.add(taken, 1) });
       }
-      [here, slope, waiting] = [taking.there, taking.new_slope, false];
+      here = taking.there;
+      slope = taking.new_slope;
+      waiting = false;
       if (now.dry !== null) {
         now = now.settled(unpack(here));
         slope = now.slope(here);
@@ -5095,7 +5165,9 @@ class IntegratedProcess extends py.NamedTuple {
     var last = taking.size;
     var here = along(py.mul(last, crossing((part) => missing(taking.between(part)), 0.0, 1.0)));
     for (var turn = 0; turn < NEWTON_of_integrated_impact; turn += 1) {
-      var [slope, left, nudge] = [this.slope(here), missing(here), py.mul(0.001, taking.size)];
+      var slope = this.slope(here);
+      var left = missing(here);
+      var nudge = py.mul(0.001, taking.size);
       var rate = py.div(py.sub(missing(moved(here, nudge, slope)), left), nudge);
       var more = rate > 0.0 ? py.div(py.neg(left), rate) : taking.size;
       if (py.abs(more) < py.mul(STRAIGHT, taking.size)) {
@@ -5118,7 +5190,8 @@ class IntegratedProcess extends py.NamedTuple {
       return this.dry.rates(unpack(here));
     }
     var [point, omega, [force, torque]] = this.body.friction(unpack(here));
-    var [slip, grip] = [py.math.hypot(point[0], point[1]), py.math.hypot(...force)];
+    var slip = py.math.hypot(point[0], point[1]);
+    var grip = py.math.hypot(...force);
     if (slip === 0.0) {
       slip = py.mul(1e-12, length(this.body.point));
       grip = py.math.hypot(...this.body.top.friction.traction([slip, 0.0], omega).force);
@@ -5134,7 +5207,9 @@ class IntegratedProcess extends py.NamedTuple {
   }
   /** The error of a step over the one allowed. */
   doubt(taken) {
-    var [here, there, speed] = [unpack(taken.here), unpack(taken.there), length(this.body.point)];
+    var here = unpack(taken.here);
+    var there = unpack(taken.there);
+    var speed = length(this.body.point);
     var slip = py.max(this.slip(taken.here), this.slip(taken.there), py.mul(1e-09, speed));
     var measure = (error) => {
       var off = unpack(error);
@@ -5235,16 +5310,15 @@ class ViscousProcess extends py.NamedTuple {
   static of(body, law) {
     var [east, north, up] = body.inverse_mass;
     var angle = py.mul(0.5, py.math.atan2(py.mul(2.0, east[1]), py.sub(east[0], north[1])));
-    var [cosine, sine] = [py.math.cos(angle), py.math.sin(angle)];
+    var cosine = py.math.cos(angle);
+    var sine = py.math.sin(angle);
     var mode = (x, y) => {
       var stiffness = py.add(
         py.add(py.mul(py.mul(x, x), east[0]), py.mul(py.mul(py.mul(2.0, x), y), east[1])),
         py.mul(py.mul(y, y), north[1])
       );
-      var [coupling, slip] = [
-        py.add(py.mul(x, up[0]), py.mul(y, up[1])),
-        py.add(py.mul(x, body.point[0]), py.mul(y, body.point[1]))
-      ];
+      var coupling = py.add(py.mul(x, up[0]), py.mul(y, up[1]));
+      var slip = py.add(py.mul(x, body.point[0]), py.mul(y, body.point[1]));
       return new PrincipalDirection([x, y], stiffness, coupling, slip);
     };
     return new this(body, law.mu, [mode(cosine, sine), mode(py.neg(sine), cosine)]);
@@ -5334,7 +5408,8 @@ function impact(state, restitution, top) {
     body.inverse_mass[2][2]
   );
   var compressed = process.until(NO_IMPULSE, py.bound(body, "approach"), frictionless);
-  var [impulse, steps] = [compressed, compressed.steps];
+  var impulse = compressed;
+  var steps = compressed.steps;
   if (restitution > 0.0) {
     var goal = restitution_goal(body, compressed, restitution);
     impulse = process.until(compressed, goal, py.mul(restitution, compressed.normal));
@@ -5401,7 +5476,9 @@ function impact_of_patch(state, top, integrator) {
     return null;
   }
   top = on_branch(top, slip_of(...along_table(state), top));
-  var [impulse, moving, steps] = [0.0, as_array([...state.momentum, ...state.velocity]), 0];
+  var impulse = 0.0;
+  var moving = as_array([...state.momentum, ...state.velocity]);
+  var steps = 0;
   var longest = py.mul(py.mul(LONGEST_of_striking, top.mass), length(body.point));
   for (var turn = 0; turn < MOST_PIECES; turn += 1) {
     var motion = impact_motion(top.kind, true);
@@ -5496,7 +5573,8 @@ class ContactRules extends Rules {
     }
     var rolls = this._rolls(state);
     if (py.truth(slips)) {
-      var [top, sliding] = [this._branched(state, slips), along_table(state)];
+      var top = this._branched(state, slips);
+      var sliding = along_table(state);
       var near = py.and(is_set_valued(top.friction), () => py.bool(is_near(sliding, top)));
       return py.call(py.truth(rolls) ? Sliding : SlidingWithoutRolling, top, this, near);
     }
@@ -5606,7 +5684,8 @@ class ContactRules extends Rules {
   }
   /** Which velocity ends first at present rates, and the time left; none if all grow or none can end. */
   _next_to_end(state, slips) {
-    var [rolls, ends] = [this._rolls(state), py.and(slips, () => is_set_valued(this.top.friction))];
+    var rolls = this._rolls(state);
+    var ends = py.and(slips, () => is_set_valued(this.top.friction));
     var possible = py.truth(ends) ? [new Vanishing(true, !py.truth(rolls))] : [];
     possible = py.add(
       possible,
@@ -5615,17 +5694,20 @@ class ContactRules extends Rules {
     if (!py.truth(possible)) {
       return [null, py.float("inf")];
     }
-    var [sliding, top] = [along_table(state), this._branched(state, slips)];
+    var sliding = along_table(state);
+    var top = this._branched(state, slips);
     var point = ContactPoint.of(state.axis, state.momentum, top);
     var slip = py.truth(slips) ? slip_of(...sliding, top) : null;
     var acceleration = contact_motion(point, slip, py.truth(rolls) ? point.turning.slice(0, 2) : null)[1];
-    var [found, least] = [null, py.float("inf")];
+    var found = null;
+    var least = py.float("inf");
     for (var ending of possible) {
       var xi = ending.of(...sliding, top);
       var change = inner(xi, ending.rate(acceleration, top));
       var left = change < 0.0 ? py.div(py.pow(size(xi), 2), py.neg(change)) : py.float("inf");
       if (left < least) {
-        [found, least] = [ending, left];
+        found = ending;
+        least = left;
       }
     }
     return [found, least];
@@ -5882,7 +5964,8 @@ class PairMotion extends py.NamedTuple {
   }
   /** mu^2 N_i^2 - T_i^2 where both stick, N^2. */
   left(number) {
-    var [law, normal] = [set_valued(py.item(this.pair, number).top.friction), py.item(this.normal, number)];
+    var law = set_valued(py.item(this.pair, number).top.friction);
+    var normal = py.item(this.normal, number);
     return law.reserve(normal, [this.needed(number), 0.0], 0.0);
   }
   /** S, the force along e at both, N. */
@@ -5905,7 +5988,9 @@ class PairMotion extends py.NamedTuple {
   }
   /** Positive while the table can exert S, N^2: (sqrt(A_1) + sqrt(A_2))^2 - S^2 for positive A_i. */
   get both_reserve() {
-    var [one, other, along] = [this.left(0), this.left(1), this.along];
+    var one = this.left(0);
+    var other = this.left(1);
+    var along = this.along;
     var product = py.mul(one, other);
     return py.sub(
       py.add(py.add(one, other), py.mul(2.0, py.pow(py.add(py.mul(product, product), TINY), 0.25))),
@@ -5937,7 +6022,8 @@ py.fields(PairMotion, ["pair", "wrenches", "moving", "holding"]);
 /** Horizontal unit vectors e along the axis and t across it. */
 function directions_of(axis) {
   var inverse = py.pow(py.add(py.mul(axis[0], axis[0]), py.mul(axis[1], axis[1])), -0.5);
-  var [x, y] = [py.mul(axis[0], inverse), py.mul(axis[1], inverse)];
+  var x = py.mul(axis[0], inverse);
+  var y = py.mul(axis[1], inverse);
   return [[x, y, py.mul(0.0, x)], [py.neg(y), x, py.mul(0.0, x)]];
 }
 
@@ -5959,10 +6045,8 @@ function turning_along(pair) {
 
 /** What the table does to a body whose two contacts stay closed, and how it accelerates. */
 function pair_motion(pair, slips, rolls) {
-  var [along, stopped] = [
-    directions_of(pair.first.axis)[0],
-    py.and(pair.first.top.resists_rolling, () => !py.truth(rolls))
-  ];
+  var along = directions_of(pair.first.axis)[0];
+  var stopped = py.and(pair.first.top.resists_rolling, () => !py.truth(rolls));
   var [one, other] = py.zip(pair, slips).map((contact) => normal_wrench(...contact, scale(rolls, along)));
   var pushes = pair.holding([slips[0] === null, slips[1] === null], [one, other], pair.free, stopped);
   var found = [new Wrench(NO_TORQUE, NO_TORQUE), new Wrench(NO_TORQUE, NO_TORQUE)];
@@ -5976,7 +6060,8 @@ function pair_motion(pair, slips, rolls) {
 /** A unit normal force with what goes with it where the contact slips, and rolls in this direction. */
 function normal_wrench(point, slip, rolling) {
   var law = point.top.friction;
-  var [force, torque] = [[0.0, 0.0], NO_TORQUE];
+  var force = [0.0, 0.0];
+  var torque = NO_TORQUE;
   if (slip !== null) {
     [force, torque] = sliding_law(law).traction([slip[0], slip[1]], turning_with(point, slip));
   }
@@ -6002,10 +6087,8 @@ function without_tilting(state, top) {
 /** How both contacts slip, and drill if their law resists that. */
 function slips_of(pair, xi) {
   var across = directions_of(pair.first.axis)[1];
-  var [one, other] = [
-    [xi[0], xi[1]],
-    [py.add(xi[0], py.mul(xi[2], across[0])), py.add(xi[1], py.mul(xi[2], across[1]))]
-  ];
+  var one = [xi[0], xi[1]];
+  var other = [py.add(xi[0], py.mul(xi[2], across[0])), py.add(xi[1], py.mul(xi[2], across[1]))];
   var reach = slip_length(pair.first.top.friction);
   if (reach === null) {
     return [one, other];
@@ -6016,7 +6099,8 @@ function slips_of(pair, xi) {
 
 /** Angular momentum and velocity after the impulses that end what is left of slip, and of rolling. */
 function at_rest(pair, velocity, ended, stopped) {
-  var [omega, up] = [pair.first.turning, new Wrench(VERTICAL, NO_TORQUE)];
+  var omega = pair.first.turning;
+  var up = new Wrench(VERTICAL, NO_TORQUE);
   var [one, other] = [...pair].map((point) => add(velocity, cross(omega, point.arm)));
   var pushes = pair.holding(ended, [up, up], [one, other, omega], stopped);
   var momentum = add(pair.first.momentum, pair.moment(pushes));
@@ -6189,11 +6273,14 @@ function patches_letting_go(pair, rolls) {
 
 /** The |omega_e|, less than there is, at which patches that stick while the body rolls slip; -1 for none. */
 function rolling_of_slip(pair, rolls) {
-  var [axis, momentum, tops] = [pair.first.axis, pair.first.momentum, [pair.first.top, pair.second.top]];
+  var axis = pair.first.axis;
+  var momentum = pair.first.momentum;
+  var tops = [pair.first.top, pair.second.top];
   var at = (q) => {
     return ContactPair.of(axis, scale(py.pow(q, 0.5), momentum), tops);
   };
-  var [q, still] = [0.0, at(0.0)];
+  var q = 0.0;
+  var still = at(0.0);
   for (var turn = 0; turn < CUTS; turn += 1) {
     var found = patches_letting_go(at(q), rolls);
     if (found === null) {
@@ -6402,7 +6489,8 @@ function on_two(state, rules, other, rolls) {
 
 /** Equations of motion of a mode without tops, for tops of which each has a surface and a branch. */
 const motion_on_two = py.cached((form, first, second) => {
-  var [cut, last] = [first.numbers, py.add(first.numbers, second.numbers)];
+  var cut = first.numbers;
+  var last = py.add(first.numbers, second.numbers);
   var mode = (numbers) => {
     var tops = [first.top(py.tuple(numbers.slice(0, cut))), second.top(py.tuple(numbers.slice(cut, last)))];
     return form.with_tops(tops, numbers.slice(last));
@@ -6485,7 +6573,8 @@ class StickingAndSliding extends HeldOnTwo {
   /** What the table does, and how both contacts slip. */
   found(y) {
     var pair = ContactPair.of(...split(y), this.tops);
-    var [zeta, way] = [slip_apart(pair), scaled(this.sign, directions_of(pair.first.axis)[1].slice(0, 2))];
+    var zeta = slip_apart(pair);
+    var way = scaled(this.sign, directions_of(pair.first.axis)[1].slice(0, 2));
     return [
       pair_motion(pair, [null, way], this.rolls),
       slips_of(pair, [py.mul(0.0, zeta), py.mul(0.0, zeta), zeta])
@@ -6639,10 +6728,8 @@ class SlipBeginningOnTwo extends SlidingOnTwo {
   }
   /** Follow it by an implicit method: its direction is damped the faster the slower it is. */
   *segments(time, state, end, integrator) {
-    var [reach, method] = [
-      py.min(py.add(time, BEGINNING), end),
-      make_integrator("collocation", TOLERANCE_of_double_sticking)
-    ];
+    var reach = py.min(py.add(time, BEGINNING), end);
+    var method = make_integrator("collocation", TOLERANCE_of_double_sticking);
     for (var segment of super.segments(time, state, reach, method)) {
       var found = segment.transition;
       if (found !== null && found.then === Outcome.COMPLETED && reach < end) {
@@ -6733,7 +6820,8 @@ class TwoClosed extends py.Record {
   }
   /** Which contacts may stay closed: exactly one answer is expected. */
   consistent(found) {
-    var [normal, free] = [found.motion.normal, this.pair.free];
+    var normal = found.motion.normal;
+    var free = this.pair.free;
     var answers = normal[0] > 0.0 && normal[1] > 0.0 ? [BOTH] : [];
     if (py.truth(this.stopped) && py.truth(answers) && !py.truth(found.rolls)) {
       return answers;
@@ -6859,7 +6947,8 @@ function ended_slips(state, tops) {
     return [false, false];
   }
   var [one, other] = [...tops].map((top) => size(slip_of(...along_table(state), top)));
-  var [least, limit] = [py.min(one, other), py.mul(ABOUT, SLOWEST_SLIP)];
+  var least = py.min(one, other);
+  var limit = py.mul(ABOUT, SLOWEST_SLIP);
   if (slip_length(tops[0].friction) !== null) {
     return py.add(
       py.mul(one, one),
@@ -6956,7 +7045,8 @@ function _left_of_two_closed(state, here) {
   var tops = here.tops;
   var slips = [...tops].map((top) => slip_of(...along_table(state), top));
   var number = size(slips[0]) <= size(slips[1]) ? 0 : 1;
-  var [slip, speed] = [py.item(slips, number), size(py.item(slips, number))];
+  var slip = py.item(slips, number);
+  var speed = size(py.item(slips, number));
   if (
     !(
       0.0 < speed && speed <= py.mul(TOGETHER, SLOWEST_SLIP)
@@ -6968,7 +7058,8 @@ function _left_of_two_closed(state, here) {
   var found = pair_motion(pair, [slips[0], slips[1]], here.rolls);
   var change = py.item(found.moving, number).slice(0, 2);
   if (slip_length(tops[0].friction) !== null) {
-    [slip, change] = [[slips[0][0], slips[0][1], slip_apart(pair)], found.rate];
+    slip = [slips[0][0], slips[0][1], slip_apart(pair)];
+    change = found.rate;
   }
   var rate = inner(slip, change);
   return rate < 0.0 ? py.div(inner(slip, slip), py.neg(rate)) : 0.0;
@@ -7023,10 +7114,13 @@ class StruckOnTwo extends py.NamedTuple {
   }
   /** Rate of the numbers in a clock in which slip that ends decays exponentially. */
   slope(here, pressed) {
-    var [state, top] = [this.after(here), this.tops[0]];
+    var state = this.after(here);
+    var top = this.tops[0];
     var omega = angular_velocity(state.axis, state.momentum, top);
     var points = this.velocities(here);
-    var [pace, units, responses] = [py.div(1.0, this.speed), [], []];
+    var pace = py.div(1.0, this.speed);
+    var units = [];
+    var responses = [];
     if (py.isinstance(top.friction, RollingResistance)) {
       var lever = length(this.arms[0]);
       var rolling = py.mul(lever, length([...omega.slice(0, 2), 0.0]));
@@ -7045,9 +7139,11 @@ class StruckOnTwo extends py.NamedTuple {
         throw new SlipEnds("slip ends in an impact on two surfaces");
       }
       var traction = top.friction.traction([point[0], point[1]], omega);
-      var [slip, grip] = [length([...point.slice(0, 2), 0.0]), length([...traction.force, 0.0])];
+      var slip = length([...point.slice(0, 2), 0.0]);
+      var grip = length([...traction.force, 0.0]);
       pace = py.add(pace, py.truth(slip) ? py.div(grip, slip) : 0.0);
-      var [moment, force] = [moment_per_normal_force(arm, traction), [...traction.force, 1.0]];
+      var moment = moment_per_normal_force(arm, traction);
+      var force = [...traction.force, 1.0];
       units.push([...moment, ...scale(py.div(1.0, top.mass), force)]);
       responses.push(this.change(py.item(units, -1)));
     }
@@ -7071,7 +7167,8 @@ class StruckOnTwo extends py.NamedTuple {
   }
   /** The first numbers from given ones on at which the goal is not negative, and the steps to there. */
   until(here, goal) {
-    var [step, longest] = [py.mul(0.05, this.tops[0].mass), this.longest];
+    var step = py.mul(0.05, this.tops[0].mass);
+    var longest = this.longest;
     for (var taken = 0; taken < MOST_of_integrated_impact; taken += 1) {
       var lifted = this.velocities(here)[1][2];
       var pressed = py.bool(lifted <= py.mul(OPEN, this.speed));
@@ -7107,10 +7204,8 @@ class StruckOnTwo extends py.NamedTuple {
     var rates = this.slope(here, true);
     var unit = py.tuple([...rates].map((rate) => py.div(rate, rates[6])));
     var [[x, y, rise], [other_x, other_y]] = this.change(unit);
-    var [approach, shift] = [
-      this.velocities(here)[0][2],
-      py.add(length([x, y, 0.0]), length([other_x, other_y, 0.0]))
-    ];
+    var approach = this.velocities(here)[0][2];
+    var shift = py.add(length([x, y, 0.0]), length([other_x, other_y, 0.0]));
     if (!(shift < py.mul(STUCK, rise))) {
       return null;
     }
@@ -7149,9 +7244,11 @@ function impact_on_two(state, restitution, tops) {
   );
   var end = compressed;
   if (restitution > 0.0) {
-    var [full, stored] = [py.mul(py.add(1.0, restitution), compressed[6]), py.neg(compressed[8])];
+    var full = py.mul(py.add(1.0, restitution), compressed[6]);
+    var stored = py.neg(compressed[8]);
     var goal = (here) => {
-      var [spent, left] = [py.sub(py.div(here[6], full), 1.0), py.div(here[8], stored)];
+      var spent = py.sub(py.div(here[6], full), 1.0);
+      var left = py.div(here[8], stored);
       return py.float(py.max(spent, left));
     };
     var [end, more] = body.until(compressed, goal);
@@ -7199,7 +7296,9 @@ class OnSeveral extends FreeToFly {
   }
   /** As for one surface, unless others touch too, and open no faster than rocking that has ended. */
   resting(time, state, events = []) {
-    var [closed, told, beside] = [false, events, this._beside(state)];
+    var closed = false;
+    var told = events;
+    var beside = this._beside(state);
     for (var other of beside) {
       var rate = gap_rate(state, other);
       if (rate < py.neg(SLOWEST_ROCKING)) {
@@ -7244,7 +7343,8 @@ class OnSeveral extends FreeToFly {
   }
   /** Velocity of another surface that touches too below which it stays, or comes back at once. */
   _slowest(other, state) {
-    var [back, depth] = [1.0, py.max(0.0, py.float(py.sub(gap(state, this.top), gap(state, other))))];
+    var back = 1.0;
+    var depth = py.max(0.0, py.float(py.sub(gap(state, this.top), gap(state, other))));
     if (py.truth(this._slips(other, state))) {
       var pair = ContactPair.of(state.axis, state.momentum, [this.top, other]);
       var slip = slip_of(...along_table(state), this.top);
@@ -7391,7 +7491,8 @@ function _reaches_out(number, shapes) {
   var others = py.enumerate(shapes).filter(
     ([place, shape]) => !py.eq(place, number)
   ).map(([place, shape]) => shape.surface);
-  var [low, high] = [0.0, py.math.pi];
+  var low = 0.0;
+  var high = py.math.pi;
   for (var turn = 0; turn < SEARCHES; turn += 1) {
     var looks = py.range(py.add(LOOKS_of_bodies, 1)).map(
       (k) => py.add(low, py.div(py.mul(py.sub(high, low), k), LOOKS_of_bodies))
@@ -7408,10 +7509,8 @@ function _reaches_out(number, shapes) {
       return true;
     }
     var best = ahead.indexOf(py.max(ahead));
-    [low, high] = [
-      py.item(looks, py.max(py.sub(best, 1), 0)),
-      py.item(looks, py.min(py.add(best, 1), LOOKS_of_bodies))
-    ];
+    low = py.item(looks, py.max(py.sub(best, 1), 0));
+    high = py.item(looks, py.min(py.add(best, 1), LOOKS_of_bodies));
   }
   return false;
 }
@@ -7467,7 +7566,8 @@ class EllipsoidalLaw extends PatchLaw {
   }
   /** (mu N)^2 - T^2 - (M / rho)^2, N^2. */
   reserve(normal, force, drilling) {
-    var [limit, torque] = [py.mul(this.mu, normal), py.div(drilling, this.slip_length)];
+    var limit = py.mul(this.mu, normal);
+    var torque = py.div(drilling, this.slip_length);
     return py.sub(
       py.sub(py.sub(py.mul(limit, limit), py.mul(force[0], force[0])), py.mul(force[1], force[1])),
       py.mul(torque, torque)
@@ -7897,8 +7997,10 @@ py.fields(PoleExact, ["functions"]);
 
 /** The state of a sliding body from Euler angles. */
 function state_from_angles(angles, top, functions) {
-  var [sin_tilt, cos_tilt] = [functions.sin(angles.tilt), functions.cos(angles.tilt)];
-  var [sin_azimuth, cos_azimuth] = [functions.sin(angles.azimuth), functions.cos(angles.azimuth)];
+  var sin_tilt = functions.sin(angles.tilt);
+  var cos_tilt = functions.cos(angles.tilt);
+  var sin_azimuth = functions.sin(angles.azimuth);
+  var cos_azimuth = functions.cos(angles.azimuth);
   var axis = [py.mul(sin_tilt, cos_azimuth), py.mul(sin_tilt, sin_azimuth), cos_tilt];
   var second = [py.neg(sin_azimuth), cos_azimuth, 0.0];
   var first = cross(second, axis);
@@ -7991,7 +8093,8 @@ class Problem extends Part {
   /** The resistance of the contact at launch; nan where its arithmetic breaks down. */
   _resistance() {
     try {
-      var [start, top] = [along_table(this.start()), this.standing()];
+      var start = along_table(this.start());
+      var top = this.standing();
       if (py.truth(is_set_valued(this.friction.law)) && !py.truth(is_slipping(...start, top))) {
         return py.add(1.0, py.mul(0.0, size(start.momentum)));
       }
@@ -8050,7 +8153,8 @@ class Problem extends Part {
   }
   /** The law of friction with the rolling resistance beside it, if there is any. */
   get _law() {
-    var [arm, law] = [this.rolling_resistance, this.friction.law];
+    var arm = this.rolling_resistance;
+    var law = this.friction.law;
     if (py.isinstance(arm, py.float) && !py.truth(arm)) {
       return law;
     }
@@ -8060,7 +8164,8 @@ class Problem extends Part {
   }
   /** The top on the surface that reaches lowest at launch. */
   standing(functions = py.math) {
-    var [top, cosine] = [this.top, new PoleExact(functions).cos(this.launch.tilt)];
+    var top = this.top;
+    var cosine = new PoleExact(functions).cos(this.launch.tilt);
     if (!py.isinstance(top.surface, Hull)) {
       return top;
     }
@@ -8068,7 +8173,8 @@ class Problem extends Part {
   }
   /** The state at launch, SI; with sine and cosine for whatever the fields are, such as arrays. */
   start(functions = py.math) {
-    var [launch, top] = [this.launch, this.standing(functions)];
+    var launch = this.launch;
+    var top = this.standing(functions);
     var angles = new Angles(
       launch.tilt,
       launch.tilt_rate,
@@ -8145,7 +8251,9 @@ class Trajectory extends py.Record {
   }
   /** Follow the launch, mode by mode and piece by piece. */
   *segments() {
-    var [transition, modes, steps] = [this._enter(this.start), 0, 0];
+    var transition = this._enter(this.start);
+    var modes = 0;
+    var steps = 0;
     while (py.isinstance(transition.then, Mode)) {
       if (this.time >= this.end || py.eq(modes, this.limit)) {
         this.outcome = this.time >= this.end ? Outcome.COMPLETED : Outcome.TOO_MANY_PHASES;
@@ -8301,7 +8409,8 @@ function series_of(function_, low, high) {
 
 /** Value of a Chebyshev series at a place in [-1, 1], by Clenshaw's recurrence. */
 function value_of(series, place) {
-  var [after, now] = [0.0, 0.0];
+  var after = 0.0;
+  var now = 0.0;
   for (var term of py.reversed(series.slice(1))) {
     [now, after] = [py.sub(py.add(term, py.mul(py.mul(2.0, place), now)), after), now];
   }
@@ -8514,7 +8623,8 @@ const FASTEST = 100000000.0;
 
 /** Tilts of the steady precessions with this Jellett's integral, roots of a balance smooth in c. */
 function _precession_tilts(top, jellett) {
-  var [scaled, square] = [natural(top), py.pow(py.div(jellett, py.float(natural_units(top).jellett)), 2)];
+  var scaled = natural(top);
+  var square = py.pow(py.div(jellett, py.float(natural_units(top).jellett)), 2);
   var balance = (c) => {
     var supported = py.mul(
       weight_moment(c, scaled),
@@ -8601,7 +8711,8 @@ function on_surface(problem, number) {
 /** The tilts around one, rad, between which no other surface touches beside the active one. */
 function tilts_held(hull, tilt) {
   var ends = touching_tilts(hull, tilt);
-  var [below, above] = [[...ends].filter((at) => at <= tilt), [...ends].filter((at) => at > tilt)];
+  var below = [...ends].filter((at) => at <= tilt);
+  var above = [...ends].filter((at) => at > tilt);
   return [py.max(below, py.how({ default: 0.0 })), py.min(above, py.how({ default: py.math.pi }))];
 }
 
@@ -8617,7 +8728,8 @@ function touching_tilts(hull, tilt) {
       found.update([..._meetings(hull, other, tilts)].map((at) => [at, number]));
     }
   }
-  var [below, above] = [[...found].filter((at) => at <= tilt), [...found].filter((at) => at > tilt)];
+  var below = [...found].filter((at) => at <= tilt);
+  var above = [...found].filter((at) => at > tilt);
   return new py.Dict(
     [
       ...py.slice(py.sorted(below), -1, null, null),
@@ -8864,7 +8976,8 @@ function precession_boundaries(alpha) {
   if (discriminant < 0.0) {
     return [py.math.nan, py.math.nan];
   }
-  var [middle, half] = [py.sub(7.0, alpha), py.math.sqrt(discriminant)];
+  var middle = py.sub(7.0, alpha);
+  var half = py.math.sqrt(discriminant);
   return [
     py.mul(py.div(py.add(1.0, alpha), 8.0), py.sub(middle, half)),
     py.mul(py.div(py.add(1.0, alpha), 8.0), py.add(middle, half))
@@ -8884,7 +8997,8 @@ function fold(top) {
   if (!py.contains([Group.IA, Group.IIB], classify_top(top))) {
     return null;
   }
-  var [gamma, alpha] = [inertia_ratio(top), eccentricity(top)];
+  var gamma = inertia_ratio(top);
+  var alpha = eccentricity(top);
   var cosine = py.div(py.sub(alpha, _fold_measure(gamma, alpha)), py.sub(1.0, gamma));
   var tilt = py.math.acos(py.max(-1.0, py.min(1.0, cosine)));
   return new Fold(tilt, branch_jellett(tilt, top));
@@ -8982,9 +9096,11 @@ function _touch(problem, surfaces, group) {
 }
 
 function _stem(problem, surfaces, touch) {
-  var [body, inverted] = [problem.body, SteadyKind.INVERTED];
+  var body = problem.body;
+  var inverted = SteadyKind.INVERTED;
   var top = new Top(body.mass, body.I1, body.I3, py.item(surfaces, -1), new ViscousLaw(1.0), problem.gravity);
-  var [least, launch] = [critical_jellett(inverted, top), py.math.nan];
+  var least = critical_jellett(inverted, top);
+  var launch = py.math.nan;
   if (touch !== null && py.eq(touch.surface, py.sub(py.len(surfaces), 1))) {
     var share = _handed_over(touch.tilt, problem.top, py.item(surfaces, -1));
     launch = py.max(
@@ -8998,8 +9114,10 @@ function _stem(problem, surfaces, touch) {
 /** Jellett's integral about another surface, of the motion that has the least energy with that of one: 1. */
 function _handed_over(tilt, top, other) {
   var axis = [py.math.sin(tilt), 0.0, py.math.cos(tilt)];
-  var [arm, new_] = [contact_vector(axis, top.surface), contact_vector(axis, other)];
-  var [along, across] = [dot(arm, axis), top.transverse_inertia];
+  var arm = contact_vector(axis, top.surface);
+  var new_ = contact_vector(axis, other);
+  var along = dot(arm, axis);
+  var across = top.transverse_inertia;
   var momentum = add(scale(across, arm), scale(py.mul(py.sub(top.axial_inertia, across), along), axis));
   return py.float(py.div(dot(momentum, new_), dot(momentum, arm)));
 }
@@ -9045,17 +9163,17 @@ function resistance_powers(state, torque, top) {
 
 /** Unit quaternion, scalar first, of a body whose axis is n and whose psi in a chart is `turn`, rad. */
 function orientation(axis, turn, pole, functions) {
-  var [cosine, sine] = [functions.cos(py.mul(0.5, turn)), functions.sin(py.mul(0.5, turn))];
+  var cosine = functions.cos(py.mul(0.5, turn));
+  var sine = functions.sin(py.mul(0.5, turn));
   var size = py.pow(py.mul(0.5, py.add(1.0, py.mul(pole, axis[2]))), 0.5);
-  var [x, y] = [py.div(py.mul(0.5, axis[0]), size), py.div(py.mul(0.5, axis[1]), size)];
+  var x = py.div(py.mul(0.5, axis[0]), size);
+  var y = py.div(py.mul(0.5, axis[1]), size);
   var up = py.mul(0.5, py.add(1.0, pole));
   var down = py.sub(1.0, up);
-  var [w, i, j, k] = [
-    py.add(py.mul(up, size), py.mul(down, x)),
-    py.mul(py.neg(up), y),
-    py.add(py.mul(down, size), py.mul(up, x)),
-    py.mul(down, y)
-  ];
+  var w = py.add(py.mul(up, size), py.mul(down, x));
+  var i = py.mul(py.neg(up), y);
+  var j = py.add(py.mul(down, size), py.mul(up, x));
+  var k = py.mul(down, y);
   return [
     py.sub(py.mul(w, cosine), py.mul(k, sine)),
     py.add(py.mul(i, cosine), py.mul(j, sine)),
@@ -9081,12 +9199,14 @@ function evaluate(function_, y, p, out) {
 /** Error of a step: less than 1 is good enough. */
 function error_of(h, y, new_, k, tolerance) {
   combined_of_dormand_prince(y, k);
-  var [fifth, third] = [0.0, 0.0];
+  var fifth = 0.0;
+  var third = 0.0;
   var k16 = k[16];
   var k17 = k[17];
   for (var i = 0; i < y.length; i += 1) {
     var scale = tolerance[1] + tolerance[0] * Math.max(Math.abs(y[i]), Math.abs(new_[i]));
-    var [first, second] = [k16[i] / scale, k17[i] / scale];
+    var first = k16[i] / scale;
+    var second = k17[i] / scale;
     fifth = fifth + first * first;
     third = third + second * second;
   }
@@ -9124,7 +9244,8 @@ function first_step(rates, p, y, k, place, span, tolerance) {
   for (var i = 0; i < y.length; i += 1) {
     place[i] = 0.0;
   }
-  var [size, slope] = [measure(y, place, y, tolerance), measure(k[0], place, y, tolerance)];
+  var size = measure(y, place, y, tolerance);
+  var slope = measure(k[0], place, y, tolerance);
   var trial = Math.min(span, size < 1e-05 || slope < 1e-05 ? 1e-06 : 0.01 * size / slope);
   var k0 = k[0];
   for (var i = 0; i < y.length; i += 1) {
@@ -9150,11 +9271,9 @@ function within(terms, first, part, y) {
 /** Whether a guard with these values at the looks falls through zero, or may dip below it in between. */
 function may_fall(values, guard) {
   for (var i = 0; i < LOOKS_of_dormand_prince + 1; i += 1) {
-    var [before, here, after] = [
-      Math.max(i - 1, 0),
-      values[i][guard],
-      Math.min(i + 1, LOOKS_of_dormand_prince)
-    ];
+    var before = Math.max(i - 1, 0);
+    var here = values[i][guard];
+    var after = Math.min(i + 1, LOOKS_of_dormand_prince);
     if (here > 0.0) {
       if (values[after][guard] <= 0.0) {
         return true;
@@ -9215,9 +9334,12 @@ function suspect(guards, p, terms, first, y, values) {
 /** Take steps from a state, which is brought up to date. */
 function advance(rates, guards, count, p, y, lost, k, span, tolerance, knots, terms, steps) {
   var size = y.length;
-  var [moved, new_, place] = [py.np.empty(size), py.np.empty(size), py.np.empty(size)];
+  var moved = py.np.empty(size);
+  var new_ = py.np.empty(size);
+  var place = py.np.empty(size);
   var values = py.np.empty([LOOKS_of_dormand_prince + 2, count]);
-  var [time, end] = [span[0], span[1]];
+  var time = span[0];
+  var end = span[1];
   var calls = 0;
   if (span[2] === 0.0) {
     evaluate(rates, y, p, k[0]);
@@ -9237,7 +9359,8 @@ function advance(rates, guards, count, p, y, lost, k, span, tolerance, knots, te
     if (steps === knots.length - 1) {
       return [steps, calls, FULL];
     }
-    var [error, tries] = [2.0, 0];
+    var error = 2.0;
+    var tries = 0;
     while (!(error < 1.0)) {
       if (!(span[2] > NOTHING * Math.abs(time))) {
         return [steps, calls, STUCK_of_dormand_prince];
@@ -9710,7 +9833,8 @@ function _fall_along(guards, parameters, dense, advance, step, least) {
   var states = [...probes].map((time) => py.tolist(dense(time)));
   for (var [index, guard] of py.enumerate(guards)) {
     var values = [...states].map((state) => py.float(guard.value(state, parameters)));
-    var [value, exact] = [_along(guard, parameters, dense), _along(guard, parameters, advance)];
+    var value = _along(guard, parameters, dense);
+    var exact = _along(guard, parameters, advance);
     for (var [low, high, function_] of brackets(probes, values, value, exact)) {
       var time = crossing(function_, low, high);
       if (
@@ -9745,7 +9869,8 @@ function* brackets(probes, values, value, exact) {
     }
   }
   for (var i = 0; i < py.add(last, 1); i += 1) {
-    var [before, after] = [py.max(py.sub(i, 1), 0), py.min(py.add(i, 1), last)];
+    var before = py.max(py.sub(i, 1), 0);
+    var after = py.min(py.add(i, 1), last);
     if (
       py.item(values, i) > 0.0 && py.item(values, i) <= py.min(
         py.item(values, before),
@@ -9777,10 +9902,8 @@ function* brackets(probes, values, value, exact) {
 function _early_bracket(start, end, value) {
   var part = EARLIEST;
   while (part < py.div(1.0, LOOKS_of_dormand_prince)) {
-    var [low, high] = [
-      py.add(start, py.mul(part, py.sub(end, start))),
-      py.add(start, py.mul(py.mul(2.0, part), py.sub(end, start)))
-    ];
+    var low = py.add(start, py.mul(part, py.sub(end, start)));
+    var high = py.add(start, py.mul(py.mul(2.0, part), py.sub(end, start)));
     if (value(low) > RISEN && value(high) <= 0.0) {
       return [low, high, value];
     }
@@ -9793,10 +9916,13 @@ function _early_bracket(start, end, value) {
 function _polished(guard, parameters, advance, step, guess) {
   var [start, end] = step;
   var shift = py.min(py.mul(0.0001, py.sub(end, start)), py.mul(0.1, py.sub(guess, start)));
-  var [time, other] = [guess, py.sub(guess, shift) > start ? py.sub(guess, shift) : py.add(guess, shift)];
-  var [state, beside] = [advance(time), advance(other)];
+  var time = guess;
+  var other = py.sub(guess, shift) > start ? py.sub(guess, shift) : py.add(guess, shift);
+  var state = advance(time);
+  var beside = advance(other);
   var [value, theirs] = [state, beside].map((one) => py.float(guard.value(py.tolist(one), parameters)));
-  var [moved, finest] = [shift, py.mul(0.001, shift)];
+  var moved = shift;
+  var finest = py.mul(0.001, shift);
   for (var turn = 0; turn < 8; turn += 1) {
     if (py.eq(value, theirs)) {
       break;
@@ -9935,11 +10061,9 @@ class Stepping extends py.Thing {
   }
   /** The guard that first falls through zero in the last step, when, and the state there. */
   fall(guards) {
-    var [size, begin, reach] = [
-      py.len(this.state),
-      py.float(py.item(this.knots, py.sub(this.steps, 1))),
-      this.time
-    ];
+    var size = py.len(this.state);
+    var begin = py.float(py.item(this.knots, py.sub(this.steps, 1)));
+    var reach = this.time;
     var first = py.mul(py.mul(py.sub(this.steps, 1), size), POWERS);
     var dense = (at) => {
       var found = py.np.empty(size);
@@ -9957,11 +10081,10 @@ class Stepping extends py.Thing {
   }
   /** End within the last step. */
   end_at(time, state) {
-    var [begin, end] = [py.item(this.knots, py.sub(this.steps, 1)), py.item(this.knots, this.steps)];
-    var [part, last] = [
-      py.div(py.sub(time, begin), py.sub(end, begin)),
-      py.mul(py.mul(this.steps, py.len(state)), POWERS)
-    ];
+    var begin = py.item(this.knots, py.sub(this.steps, 1));
+    var end = py.item(this.knots, this.steps);
+    var part = py.div(py.sub(time, begin), py.sub(end, begin));
+    var last = py.mul(py.mul(this.steps, py.len(state)), POWERS);
     for (var number = py.sub(last, py.mul(py.len(state), POWERS)); number < last; number += 1) {
       py.put(this.terms, number, py.mul(py.item(this.terms, number), py.pow(part, py.mod(number, POWERS))));
     }
@@ -9972,7 +10095,8 @@ class Stepping extends py.Thing {
   /** Another motion of the same kind, for trial. */
   beside() {
     if (this.other === null) {
-      var [begin, end] = [py.float(this.span[0]), py.float(this.span[1])];
+      var begin = py.float(this.span[0]);
+      var end = py.float(this.span[1]);
       this.other = new Stepping(
         this.functions,
         this.parameters,
@@ -10011,7 +10135,8 @@ function lowest_contact_vector(axis, surface) {
   try {
     var [x, y, z] = contact_vector(axis, last);
     for (var one of others) {
-      var [lowest, arm] = [one.height(axis[2]) >= level, contact_vector(axis, one)];
+      var lowest = one.height(axis[2]) >= level;
+      var arm = contact_vector(axis, one);
       [x, y, z] = py.enumerate([x, y, z]).map(([i, other]) => py.np.where(lowest, py.item(arm, i), other));
     }
   } finally {
@@ -10180,7 +10305,8 @@ class Rates extends py.NamedTuple {
   }
   /** Read them off the numbers of a mode, with the angle about the axis in the chart of a pole. */
   static of(mode, y, pole) {
-    var [state, reaction] = [mode.state(y), mode.reaction(y)];
+    var state = mode.state(y);
+    var reaction = mode.reaction(y);
     var [east, north, turn, work] = quadrature_rates(state, reaction.power, pole, mode.top);
     var drilling = 0.0;
     var rolling = 0.0;
@@ -10210,8 +10336,11 @@ class Instants extends py.NamedTuple {
   }
   /** Read them off the numbers of a mode. */
   static of(mode, y) {
-    var [state, reaction, top] = [mode.state(y), mode.reaction(y), mode.top];
-    var [axis, momentum] = [state.axis, state.momentum];
+    var state = mode.state(y);
+    var reaction = mode.reaction(y);
+    var top = mode.top;
+    var axis = state.axis;
+    var momentum = state.momentum;
     var arm = lowest_contact_vector(axis, top.surface);
     var [x, y] = point_velocity(state.velocity, angular_velocity(axis, momentum, top), arm);
     return new this(
@@ -10235,8 +10364,10 @@ class Instants extends py.NamedTuple {
   }
   /** Read them from their numbers. */
   static unpack(rows) {
-    var [force, torque] = [[rows[10], rows[11], rows[12]], [rows[13], rows[14], rows[15]]];
-    var [slip, point] = [[rows[22], rows[23]], [rows[24], rows[25]]];
+    var force = [rows[10], rows[11], rows[12]];
+    var torque = [rows[13], rows[14], rows[15]];
+    var slip = [rows[22], rows[23]];
+    var point = [rows[24], rows[25]];
     var numbers = [rows[16], rows[17], rows[18], rows[19], rows[20], rows[21]];
     return new this(State.unpack(rows), force, torque, ...numbers, slip, point);
   }
@@ -10278,8 +10409,10 @@ py.fields(
 
 /** Every variable of `tippetop.catalogue.SAMPLED` in SI, by name, of a top in natural units. */
 function observe(samples, top, units) {
-  var [told, state] = [samples.instants, samples.instants.state];
-  var [axis, momentum] = [state.axis, state.momentum];
+  var told = samples.instants;
+  var state = samples.instants.state;
+  var axis = state.axis;
+  var momentum = state.momentum;
   var [sine, [slip_x, slip_y], tilting] = [axis_sine(axis), told.slip, told.tilting];
   var upright = sine === 0.0;
   if (py.truth(py.np.any(upright))) {
@@ -10473,7 +10606,8 @@ class Graph extends py.Record {
     if (exponent < 0.0) {
       return this.quotient(1.0, this.power(base, py.neg(exponent)));
     }
-    var [part, whole] = [py.mod(exponent, 1.0), py.floordiv(exponent, 1.0)];
+    var part = py.mod(exponent, 1.0);
+    var whole = py.floordiv(exponent, 1.0);
     if (part > 0.0) {
       return py.mul(this.power(this.node(ROOT, [base]), py.mul(2.0, part)), this.power(base, whole));
     }
@@ -10529,7 +10663,8 @@ function record(function_, size, parameters) {
 
 /** The nodes of a graph of which some are made. */
 function needed(graph, outputs) {
-  var [places, waiting] = [py.set(), py.list(outputs)];
+  var places = py.set();
+  var waiting = py.list(outputs);
   while (py.truth(waiting)) {
     var node = py.pop(waiting);
     if (!py.contains(places, node.place)) {
@@ -10595,7 +10730,8 @@ class NodeValues extends py.Thing {
 
 /** What does the same with each of so many values, one after another in the state and the parameters. */
 function unrolled(recorded, abreast) {
-  var [graph, values] = [new Graph(), py.dict()];
+  var graph = new Graph();
+  var values = py.dict();
   for (var node of recorded.nodes) {
     var operands = [...node.operands].map((operand) => py.item(values, operand.place));
     if (py.eq(node.name, CONSTANT)) {
@@ -10624,7 +10760,8 @@ function unrolled(recorded, abreast) {
     py.put(values, node.place, found);
   }
   var outputs = [...recorded.outputs].flatMap((output) => [...py.item(values, output.place)]);
-  var [size, parameters] = [py.mul(recorded.size, abreast), py.mul(recorded.parameters, abreast)];
+  var size = py.mul(recorded.size, abreast);
+  var parameters = py.mul(recorded.parameters, abreast);
   return new Recorded(needed(graph, outputs), py.tuple(outputs), size, parameters);
 }
 
