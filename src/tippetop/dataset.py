@@ -17,6 +17,9 @@ NAMED = {
 }
 """The components of vectors and quaternions."""
 
+LABELS = {name: index.create_variables()[name] for name, index in NAMED.items()}
+"""Their names as coordinates."""
+
 TIME = {"long_name": "time since launch", "units": "s", "standard_name": "time"}
 CONVENTIONS = "CF-1.11"
 
@@ -54,8 +57,8 @@ def assemble(
     # What xarray would find out about the times is known.
     instants = PandasIndex(pd.Index(times, name="time"), "time", times.dtype, fastpath=True)
     indexes: dict[Any, Index] = {"time": instants, **NAMED}
-    for index in indexes.values():
-        found |= index.create_variables()
+    found |= instants.create_variables()
+    found |= {name: labels.copy(deep=False) for name, labels in LABELS.items()}
     found["time"].attrs = dict(TIME)
     # The public constructor would align and merge what is aligned: it takes five times as long.
     return xr.Dataset._construct_direct(

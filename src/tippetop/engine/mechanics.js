@@ -466,11 +466,7 @@ py.fields(RingSurface, ["radius", "center", "tube"]);
 function contact_vector(axis, surface) {
   var c = axis[2];
   var slope = surface.slope(c);
-  return [
-    py.mul(py.neg(slope), axis[0]),
-    py.mul(py.neg(slope), axis[1]),
-    py.sub(py.mul(py.neg(slope), py.sub(axis[2], c)), surface.height(c))
-  ];
+  return [py.mul(py.neg(slope), axis[0]), py.mul(py.neg(slope), axis[1]), py.neg(surface.height(c))];
 }
 
 // tippetop.mechanics.hull

@@ -182,4 +182,4 @@ def contact_vector(axis: Vector, surface: Surface) -> Vector:
     """Vector from the centre of mass to the lowest point of the body, m: -h'(c) (n - c z) - h(c) z."""
     c = axis[2]
     slope = surface.slope(c)
-    return (-slope * axis[0], -slope * axis[1], -slope * (axis[2] - c) - surface.height(c))
+    return (-slope * axis[0], -slope * axis[1], -surface.height(c))
