@@ -1,6 +1,6 @@
 """The contact sticks: the top rolls without slipping, or is held altogether."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import ClassVar
@@ -99,36 +99,33 @@ def sticking_wrench(axis: Vector, momentum: Vector, top: Top, held: bool) -> tup
 @lru_cache
 def sticking_motion(kind: Kind, held: bool) -> Motion:
     """Equations of motion of a sticking top of this kind, whose rolling may be held too."""
+    guards = list[Guard]()
+
+    def here(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[ContactPoint, Wrench]:
+        return sticking_wrench(*split(y), kind.top(tuple(numbers)), held)
 
     def rates(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[Scalar, ...]:
-        axis, momentum = split(y)
-        point, wrench = sticking_wrench(axis, momentum, kind.top(tuple(numbers)), held)
-        return (*axis_rate(axis, momentum, point.top), *point.moment(wrench))
+        point, wrench = here(y, numbers)
+        return (*axis_rate(*split(y), point.top), *point.moment(wrench))
 
-    def reserve(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
-        point, wrench = sticking_wrench(*split(y), kind.top(tuple(numbers)), held)
-        return slip_reserve(point.top, wrench)
+    def watch(name: str, value: Callable[[ContactPoint, Wrench], Scalar]) -> None:
+        guards.append(Guard(name, lambda y, numbers: value(*here(y, numbers))))
 
-    def couple(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
-        return rolling_reserve(*sticking_wrench(*split(y), kind.top(tuple(numbers)), True), None)
-
-    def rolls(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
-        point = ContactPoint.of(*split(y), kind.top(tuple(numbers)))
-        rolling = point.turning[:2]
-        change = contact_motion(point, None, rolling)[1].turning[:2]
-        return remaining(rolling, change)
-
-    def on_branch(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
-        point, wrench = sticking_wrench(*split(y), kind.top(tuple(numbers)), held)
-        return limit_guard(point.top, wrench)
-
-    guards = [Guard(SLIP, reserve)]
+    watch(SLIP, lambda point, wrench: slip_reserve(point.top, wrench))
     if has_limit_branches(kind.example.friction):
-        guards.append(Guard(LIMIT_BRANCH, on_branch))
-    if kind.example.resists_rolling:
-        guards.append(Guard(ROLLING, couple) if held else Guard(ROLLING_STOPPING, rolls))
+        watch(LIMIT_BRANCH, lambda point, wrench: limit_guard(point.top, wrench))
+    if held:
+        watch(ROLLING, lambda point, wrench: rolling_reserve(point, wrench, None))
+    elif kind.example.resists_rolling:
+        watch(ROLLING_STOPPING, lambda point, _: rolling_lasts(point))
     guards += surface_guards(kind)
     return Motion(rates, size=6, parameters=kind.numbers, guards=tuple(guards), lasting=False)
+
+
+def rolling_lasts(point: ContactPoint) -> Scalar:
+    """Positive while a body that rolls without slipping does so for a while."""
+    rolling = point.turning[:2]
+    return remaining(rolling, contact_motion(point, None, rolling)[1].turning[:2])
 
 
 def split(y: Row) -> tuple[Vector, Vector]:

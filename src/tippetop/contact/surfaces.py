@@ -1,6 +1,6 @@
 """Guards of what a body's shape makes happen: another surface touches the table, or its face lies on it."""
 
-from collections.abc import Sequence
+from collections.abc import Callable
 from typing import Any
 
 from tippetop.contact.mode import Mode, Outcome, Transition
@@ -23,12 +23,29 @@ def number_of(top: Top) -> int:
 
 def surface_guards(kind: Kind) -> list[Guard]:
     """Guards of the open surfaces of bodies of this kind, and of the face that one is the edge of."""
-    surface, active = kind.example.surface, number_of(kind.example)
-    guards = []
+    surface, active, guards = kind.example.surface, number_of(kind.example), list[Guard]()
+
+    def watch(name: str, value: Callable[[Any, Row], Scalar]) -> None:
+        guards.append(
+            Guard(name, lambda y, numbers: value(kind.top(tuple(numbers[: kind.numbers])).surface, y))
+        )
+
     if hasattr(acting(surface), "face_guard"):
-        guards.append(Guard(FACE, lambda y, numbers: _face(y, _surface(kind, numbers))))
-    others = [number for number in range(len(each_surface(surface))) if number != active]
-    return guards + [Guard(f"{TOUCH}{number}", _gap(kind, number)) for number in others]
+        watch(FACE, _face)
+    for number in range(len(each_surface(surface))):
+        if number != active:
+            watch(f"{TOUCH}{number}", _gap_of(number))
+    return guards
+
+
+def _face(surface: Any, y: Row) -> Scalar:
+    edge: Any = acting(surface)
+    return edge.face_guard((y[0], y[1], y[2]))
+
+
+def _gap_of(number: int) -> Callable[[Any, Row], Scalar]:
+    """Gap of a surface while the active one touches, from the surfaces and the numbers of a mode."""
+    return lambda surface, y: surface.height(y[2]) - surface.each[number].height(y[2]) + MARGIN
 
 
 def stays_open(top: Top, y: Row) -> bool:
@@ -54,22 +71,3 @@ def follow_surface(mode: Mode, guard: str, time: float, state: State) -> Transit
     if guard.startswith(TOUCH):
         return mode.rules.touch(int(guard.removeprefix(TOUCH)), time, state)
     return None
-
-
-def _surface(kind: Kind, numbers: Sequence[Scalar]) -> Any:
-    return kind.top(tuple(numbers[: kind.numbers])).surface
-
-
-def _face(y: Sequence[Scalar], surface: Any) -> Scalar:
-    edge: Any = acting(surface)
-    return edge.face_guard((y[0], y[1], y[2]))
-
-
-def _gap(kind: Kind, number: int) -> Any:
-    """Gap of a surface while the active one touches, as a function of a mode's numbers and the top's."""
-
-    def value(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
-        surface = _surface(kind, numbers)
-        return surface.height(y[2]) - surface.each[number].height(y[2]) + MARGIN
-
-    return value

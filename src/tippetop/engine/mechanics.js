@@ -1642,14 +1642,33 @@ function number_of(top) {
 function surface_guards(kind) {
   var surface = kind.example.surface;
   var active = number_of(kind.example);
-  var guards = [];
+  var guards = py.list();
+  var watch = (name, value) => {
+    guards.push(
+      new Guard(name, (y, numbers) => value(kind.top(py.tuple(numbers.slice(0, kind.numbers))).surface, y))
+    );
+  };
   if (py.truth(py.hasattr(acting(surface), "face_guard"))) {
-    guards.push(new Guard(FACE, (y, numbers) => _face(y, _surface(kind, numbers))));
+    watch(FACE, _face);
   }
-  var others = py.range(py.len(each_surface(surface))).filter((number) => !py.eq(number, active));
-  return py.add(
-    guards,
-    [...others].map((number) => new Guard(`${py.str(TOUCH)}${py.str(number)}`, _gap(kind, number)))
+  for (var number = 0; number < py.len(each_surface(surface)); number += 1) {
+    if (!py.eq(number, active)) {
+      watch(`${py.str(TOUCH)}${py.str(number)}`, _gap_of(number));
+    }
+  }
+  return guards;
+}
+
+function _face(surface, y) {
+  var edge = acting(surface);
+  return edge.face_guard([y[0], y[1], y[2]]);
+}
+
+/** Gap of a surface while the active one touches, from the surfaces and the numbers of a mode. */
+function _gap_of(number) {
+  return (surface, y) => py.add(
+    py.sub(surface.height(y[2]), py.item(surface.each, number).height(y[2])),
+    MARGIN
   );
 }
 
@@ -1678,24 +1697,6 @@ function follow_surface(mode, guard, time, state) {
     return mode.rules.touch(py.int(py.removeprefix(guard, TOUCH)), time, state);
   }
   return null;
-}
-
-function _surface(kind, numbers) {
-  return kind.top(py.tuple(numbers.slice(0, kind.numbers))).surface;
-}
-
-function _face(y, surface) {
-  var edge = acting(surface);
-  return edge.face_guard([y[0], y[1], y[2]]);
-}
-
-/** Gap of a surface while the active one touches, as a function of a mode's numbers and the top's. */
-function _gap(kind, number) {
-  var value = (y, numbers) => {
-    var surface = _surface(kind, numbers);
-    return py.add(py.sub(surface.height(y[2]), py.item(surface.each, number).height(y[2])), MARGIN);
-  };
-  return value;
 }
 
 // tippetop.mechanics.flight
@@ -2542,38 +2543,35 @@ function sticking_wrench(axis, momentum, top, held) {
 
 /** Equations of motion of a sticking top of this kind, whose rolling may be held too. */
 const sticking_motion = py.cached((kind, held) => {
+  var guards = py.list();
+  var here = (y, numbers) => {
+    return sticking_wrench(...split(y), kind.top(py.tuple(numbers)), held);
+  };
   var rates = (y, numbers) => {
-    var [axis, momentum] = split(y);
-    var [point, wrench] = sticking_wrench(axis, momentum, kind.top(py.tuple(numbers)), held);
-    return [...axis_rate(axis, momentum, point.top), ...point.moment(wrench)];
+    var [point, wrench] = here(y, numbers);
+    return [...axis_rate(...split(y), point.top), ...point.moment(wrench)];
   };
-  var reserve = (y, numbers) => {
-    var [point, wrench] = sticking_wrench(...split(y), kind.top(py.tuple(numbers)), held);
-    return slip_reserve(point.top, wrench);
+  var watch = (name, value) => {
+    guards.push(new Guard(name, (y, numbers) => value(...here(y, numbers))));
   };
-  var couple = (y, numbers) => {
-    return rolling_reserve(...sticking_wrench(...split(y), kind.top(py.tuple(numbers)), true), null);
-  };
-  var rolls = (y, numbers) => {
-    var point = ContactPoint.of(...split(y), kind.top(py.tuple(numbers)));
-    var rolling = point.turning.slice(0, 2);
-    var change = contact_motion(point, null, rolling)[1].turning.slice(0, 2);
-    return remaining(rolling, change);
-  };
-  var on_branch = (y, numbers) => {
-    var [point, wrench] = sticking_wrench(...split(y), kind.top(py.tuple(numbers)), held);
-    return limit_guard(point.top, wrench);
-  };
-  var guards = [new Guard(SLIP, reserve)];
+  watch(SLIP, (point, wrench) => slip_reserve(point.top, wrench));
   if (py.truth(has_limit_branches(kind.example.friction))) {
-    guards.push(new Guard(LIMIT_BRANCH, on_branch));
+    watch(LIMIT_BRANCH, (point, wrench) => limit_guard(point.top, wrench));
   }
-  if (py.truth(kind.example.resists_rolling)) {
-    guards.push(py.truth(held) ? new Guard(ROLLING, couple) : new Guard(ROLLING_STOPPING, rolls));
+  if (py.truth(held)) {
+    watch(ROLLING, (point, wrench) => rolling_reserve(point, wrench, null));
+  } else if (py.truth(kind.example.resists_rolling)) {
+    watch(ROLLING_STOPPING, (point, _) => rolling_lasts(point));
   }
   guards = py.add(guards, surface_guards(kind));
   return new Motion(rates, 6, kind.numbers, py.tuple(guards), false);
 });
+
+/** Positive while a body that rolls without slipping does so for a while. */
+function rolling_lasts(point) {
+  var rolling = point.turning.slice(0, 2);
+  return remaining(rolling, contact_motion(point, null, rolling)[1].turning.slice(0, 2));
+}
 
 /** Axis and angular momentum, the first numbers of every mode in contact. */
 function split(y) {
@@ -11143,7 +11141,7 @@ export {
   _face,
   _fall_along,
   _fold_measure,
-  _gap,
+  _gap_of,
   _grow,
   _handed_over,
   _improved,
@@ -11172,7 +11170,6 @@ export {
   _solved,
   _stem,
   _stiffness,
-  _surface,
   _touch,
   _unit,
   _without_rolling,
@@ -11361,6 +11358,7 @@ export {
   restitution_goal,
   rests,
   rises,
+  rolling_lasts,
   rolling_of,
   rolling_of_slip,
   rolling_precession,
