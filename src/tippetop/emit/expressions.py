@@ -59,7 +59,7 @@ class Expressions(ABC):
             return safe(name)
         if name in ("self", "cls"):
             return "this"
-        return self.program.resolve(self.module, name) or f"py.{safe(name)}"
+        return self.program.names.get((self.module, name)) or f"py.{safe(name)}"
 
     def text(self, node: ast.expr, binds: int = ARROW) -> str:
         """An expression, in parentheses where it binds less."""

@@ -69,6 +69,7 @@ class Program:
         self.trees = {name: ast.parse(text) for name, text in sources.items()}
         self.given, self.left, self.indexed = dict(given), frozenset(left), frozenset(indexed)
         self.numeric = frozenset(numeric)
+        # What a module's names are called in all of the program.
         self.names: dict[tuple[str, str], str] = {}
         self.made: list[str] = []
         self.imported: dict[str, set[str]] = {}
@@ -81,10 +82,6 @@ class Program:
                 self._enter(module, node)
         for found in self.classes.values():
             self._describe(found)
-
-    def resolve(self, module: str, name: str) -> str | None:
-        """What a name at the top of a module is called in the program; None if it is not there."""
-        return self.names.get((module, name))
 
     def is_method(self, name: str) -> bool:
         """Whether an attribute of this name is a method, whatever has it."""
