@@ -2643,15 +2643,43 @@ class Series extends py.Thing {
   _squared() {
     var rule = (k) => {
       var known = this.up_to(k);
-      var terms = py.range(py.floordiv(py.add(k, 1), 2)).map(
-        (j) => py.mul(2.0, py.mul(py.item(known, j), py.item(known, py.sub(k, j))))
-      );
-      if (py.mod(k, 2) === 0) {
-        terms.push(py.mul(py.item(known, py.floordiv(k, 2)), py.item(known, py.floordiv(k, 2))));
-      }
-      return this.arithmetic.total(terms);
+      var middle = py.mod(k, 2) === 0 ? py.mul(
+        py.item(known, py.floordiv(k, 2)),
+        py.item(known, py.floordiv(k, 2))
+      ) : 0.0;
+      return py.add(this._twice(known, py.range(py.floordiv(py.add(k, 1), 2)), k), middle);
     };
     return this._made(rule);
+  }
+  /** Products of coefficients that come twice in the k-th of a square. */
+  _twice(known, places, k) {
+    var terms = [...places].map((j) => py.mul(py.item(known, j), py.item(known, py.sub(k, j))));
+    return py.truth(terms) ? py.mul(2.0, this.arithmetic.total(terms)) : 0.0;
+  }
+  /** The square root: it takes half of what other powers do. */
+  _root() {
+    var half = [];
+    var rule = (k) => {
+      if (k === 0) {
+        var first = py.pow(py.item(this, 0), 0.5);
+        half.push(py.div(0.5, first));
+        return first;
+      }
+      var known = root.known;
+      var middle = py.mod(k, 2) === 0 ? py.mul(
+        py.item(known, py.floordiv(k, 2)),
+        py.item(known, py.floordiv(k, 2))
+      ) : 0.0;
+      return py.mul(
+        py.sub(
+          py.item(this, k),
+          py.add(this._twice(known, py.range(1, py.floordiv(py.add(k, 1), 2)), k), middle)
+        ),
+        py.item(half, 0)
+      );
+    };
+    var root = this._made(rule);
+    return root;
   }
   __truediv__(other) {
     if (!py.isinstance(other, Series)) {
@@ -2673,6 +2701,9 @@ class Series extends py.Thing {
   __pow__(exponent) {
     if (exponent === 2) {
       return this._squared();
+    }
+    if (py.contains([0.5, -0.5, 0.25], exponent)) {
+      return exponent === 0.5 ? this._root() : py.pow(this._root(), py.mul(2.0, exponent));
     }
     var inverse = [];
     var rule = (k) => {
@@ -7570,50 +7601,55 @@ class EllipsoidalLaw extends PatchLaw {
 }
 
 // tippetop.mechanics.contensou_hertz
-const FORCE = [
+
+/** F and T of a branch as ratios of polynomials in a number x, their coefficients in increasing order. */
+class ForceAndTorque extends py.NamedTuple {
+  constructor(force, torque, below) {
+    super();
+    this.force = force;
+    this.torque = torque;
+    this.below = below;
+  }
+}
+py.fields(ForceAndTorque, ["force", "torque", "below"]);
+const DRILLING_of_contensou_hertz = new ForceAndTorque(
+  [py.mul(0.375, PI), py.mul(-0.09375, PI)],
+  [py.mul(0.1875, PI), py.mul(-0.1875, PI), py.mul(0.0703125, PI)],
+  [1.0]
+);
+const SLIDING = new ForceAndTorque(
   [
-    1.0,
-    2.0379589900224446,
-    1.7454503606464322,
-    0.748871602371356,
-    0.1272777587571475,
-    -0.0027191903426678006,
-    -0.0016068785745065434,
-    -2.585824983858782e-05
+    0.8835729338221293,
+    3.588980126262665,
+    5.940405892796844,
+    5.295183697296597,
+    2.8365419666579434,
+    0.9356191279612185,
+    0.17160971680764692,
+    0.012373729468682777,
+    1.1138052094468924e-06
+  ],
+  [
+    0.22089323345553233,
+    0.8972450315656664,
+    1.4114703953806944,
+    1.024714247135719,
+    0.33682013029431185,
+    0.041108935870272395,
+    0.0006245074488087915,
+    -1.9377090596738164e-05,
+    5.569153792789647e-07
   ],
   [
     1.0,
-    2.437958990022489,
-    2.0920625280814025,
-    0.7580271532705276,
-    0.10811738333537868,
-    0.004218755819955418,
-    0.0,
-    0.0
+    4.061894597356628,
+    6.5564975062115085,
+    5.3159395937729235,
+    2.2425592181211225,
+    0.45429743330678546,
+    0.033099956109968943
   ]
-];
-const TORQUE = [
-  [
-    0.4,
-    0.822105487763007,
-    0.5189122287774408,
-    0.08174030474884943,
-    -0.007570333630208161,
-    0.004741971472147535,
-    0.001852985148541204,
-    8.943122718983565e-05
-  ],
-  [
-    1.0,
-    2.7695494336932254,
-    2.8469587388677655,
-    1.3323282422825315,
-    0.2778032550943552,
-    0.020859716514356943,
-    0.00025020282491132825,
-    0.0
-  ]
-];
+);
 const LIMIT = [
   [
     0.8835729338221295,
@@ -7658,19 +7694,7 @@ class HertzDrillingLaw extends HertzPiece {
   /** Force over slip, and torque, per unit normal force, at slip of this square and drilling R w. */
   shares(square, drilling) {
     var rate = py.pow(py.add(py.mul(drilling, drilling), py.mul(BEYOND_of_contensou_hertz, square)), -0.5);
-    var kappa2 = py.mul(py.mul(square, rate), rate);
-    var force = py.mul(
-      py.mul(py.mul(py.neg(this.mu), py.div(py.mul(3.0, PI), 32.0)), py.sub(4.0, kappa2)),
-      rate
-    );
-    var torque = py.mul(
-      py.mul(
-        py.mul(py.neg(this.mu), py.div(py.mul(3.0, PI), 16.0)),
-        py.sub(1.0, py.mul(kappa2, py.sub(1.0, py.mul(0.375, kappa2))))
-      ),
-      rate
-    );
-    return [force, py.mul(py.mul(torque, drilling), this.patch_radius)];
+    return shares_of(this, DRILLING_of_contensou_hertz, py.mul(py.mul(square, rate), rate), rate, drilling);
   }
   /** (mu N F)^2 - T^2 where the limit surface has this drilling torque, N^2. */
   reserve(normal, force, drilling) {
@@ -7702,22 +7726,9 @@ class HertzDrillingLaw extends HertzPiece {
 class HertzSlidingLaw extends HertzPiece {
   /** Force over slip, and torque, per unit normal force, at slip of this square and drilling R w. */
   shares(square, drilling) {
-    square = py.add(square, py.mul(py.mul(BEYOND_of_contensou_hertz, drilling), drilling));
-    var excess = py.sub(square, py.mul(drilling, drilling));
-    var speed = py.pow(square, 0.5);
-    var tangent = py.div(
-      drilling,
-      py.add(speed, py.pow(py.add(py.mul(excess, excess), py.mul(py.mul(NEAR_BRANCH, square), square)), 0.25))
-    );
-    var w = py.mul(tangent, tangent);
-    var w2 = py.mul(w, w);
-    var powers = [w, w2, py.mul(w2, w), py.mul(w2, w2)];
-    var force = py.div(
-      py.mul(py.neg(this.mu), polynomial(FORCE[0], powers)),
-      py.mul(polynomial(FORCE[1], powers), speed)
-    );
-    var grip = py.div(polynomial(TORQUE[0], powers), polynomial(TORQUE[1], powers));
-    return [force, py.mul(py.mul(py.mul(py.neg(this.mu), this.patch_radius), tangent), grip)];
+    var excess = excess_of(square, drilling);
+    var rate = py.pow(py.add(excess, py.mul(drilling, drilling)), -0.5);
+    return shares_of(this, SLIDING, py.mul(py.pow(excess, 0.5), rate), rate, drilling);
   }
   /** (mu N F)^2 - T^2 where the limit surface has this drilling torque, N^2. */
   reserve(normal, force, drilling) {
@@ -7768,12 +7779,32 @@ class HertzBranch extends py.NamedTuple {
   }
   /** Force over slip, and torque, per unit normal force, at slip of this square and drilling R w. */
   shares(square, drilling) {
-    var drills = new HertzDrillingLaw(this.mu, this.patch_radius).shares(square, drilling);
-    var slides = new HertzSlidingLaw(this.mu, this.patch_radius).shares(square, drilling);
-    var mixed = (a, b) => {
-      return py.add(py.mul(this.drills, a), py.mul(py.sub(1.0, this.drills), b));
-    };
-    return [mixed(drills[0], slides[0]), mixed(drills[1], slides[1])];
+    var turning = py.mul(drilling, drilling);
+    var excess = excess_of(square, drilling);
+    var rate = py.pow(py.add(turning, this._either(py.mul(BEYOND_of_contensou_hertz, square), excess)), -0.5);
+    var law = new ForceAndTorque(
+      this._terms(DRILLING_of_contensou_hertz.force, SLIDING.force),
+      this._terms(DRILLING_of_contensou_hertz.torque, SLIDING.torque),
+      this._terms(DRILLING_of_contensou_hertz.below, SLIDING.below)
+    );
+    return shares_of(
+      this,
+      law,
+      this._either(py.mul(py.mul(square, rate), rate), py.mul(py.pow(excess, 0.5), rate)),
+      rate,
+      drilling
+    );
+  }
+  /** The coefficients that belong to the branch; drilling has fewer. */
+  _terms(drills, slides) {
+    var count = py.len(drills);
+    return py.tuple(
+      py.enumerate(slides).map(([k, term]) => this._either(k < count ? py.item(drills, k) : 0.0, term))
+    );
+  }
+  /** The number that belongs to the branch. */
+  _either(drills, slides) {
+    return py.add(py.mul(this.drills, drills), py.mul(py.sub(1.0, this.drills), slides));
   }
   /** That of the whole law. */
   reserve(normal, force, drilling) {
@@ -7860,13 +7891,35 @@ function resisting(law, slip, angular_velocity) {
   return new Traction([py.mul(force, slip[0]), py.mul(force, slip[1])], [0.0, 0.0, torque]);
 }
 
-/** Value of a polynomial of degree 7, given its coefficients and four powers. */
+/** v^2 - (R w)^2 at slip of this square and drilling R w, or its size, but not quite zero, m^2/s^2. */
+function excess_of(square, drilling) {
+  var excess = py.sub(square, py.mul(drilling, drilling));
+  return py.pow(py.add(py.mul(excess, excess), py.mul(py.mul(NEAR_BRANCH, square), square)), 0.5);
+}
+
+/** Force over slip, and torque, per unit normal force. */
+function shares_of(patch, law, x, rate, drilling) {
+  var x2 = py.mul(x, x);
+  var powers = [x, x2, py.mul(x2, x), py.mul(x2, x2)];
+  rate = py.div(py.mul(py.neg(patch.mu), rate), polynomial(law.below, powers));
+  var torque = py.mul(py.mul(patch.patch_radius, drilling), rate);
+  return [py.mul(polynomial(law.force, powers), rate), py.mul(polynomial(law.torque, powers), torque)];
+}
+
+/** Value of a polynomial of degree 8 at most, given its coefficients and four powers. */
 function polynomial(c, powers) {
-  var [x, x2, x3, x4] = powers;
-  return py.add(
-    py.add(py.add(py.add(c[0], py.mul(c[1], x)), py.mul(c[2], x2)), py.mul(c[3], x3)),
-    py.mul(py.add(py.add(py.add(c[4], py.mul(c[5], x)), py.mul(c[6], x2)), py.mul(c[7], x3)), x4)
-  );
+  var low = c[0];
+  for (var [term, power] of py.zip(c.slice(1, 4), powers.slice(0, 3))) {
+    low = py.add(low, py.mul(term, power));
+  }
+  if (py.len(c) <= py.len(powers)) {
+    return low;
+  }
+  var high = c[4];
+  for (var [term, power] of py.zip(c.slice(5), powers)) {
+    high = py.add(high, py.mul(term, power));
+  }
+  return py.add(low, py.mul(high, powers[3]));
 }
 
 // tippetop.frictions
@@ -10813,6 +10866,7 @@ export {
   DIP,
   DIRECTED,
   DRILLING,
+  DRILLING_of_contensou_hertz,
   Disc,
   Driven,
   DryContact,
@@ -10840,12 +10894,12 @@ export {
   FIRST,
   FIRST_of_two_closed,
   FLAT,
-  FORCE,
   FORCES,
   FULL,
   FUZZ,
   Flight,
   Fold,
+  ForceAndTorque,
   FreeToFly,
   Friction,
   GAUSS,
@@ -11031,6 +11085,7 @@ export {
   SINGULAR,
   SINKING,
   SIZE,
+  SLIDING,
   SLIP,
   SLIPPING,
   SLIP_of_double_sticking,
@@ -11100,7 +11155,6 @@ export {
   TOLERANCE,
   TOLERANCES,
   TOLERANCE_of_double_sticking,
-  TORQUE,
   TOTAL,
   TOUCH,
   TOUCHING,
@@ -11230,6 +11284,7 @@ export {
   equal_thresholds,
   error_of,
   evaluate,
+  excess_of,
   factor_for,
   falling_time,
   final_band,
@@ -11376,6 +11431,7 @@ export {
   set_valued,
   settled,
   settling,
+  shares_of,
   short_step,
   shown,
   size,

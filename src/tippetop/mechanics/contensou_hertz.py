@@ -4,6 +4,7 @@ See `contensou`. The law has two derivatives where the branches meet, kappa = 1:
 that stands still is on its rim.
 """
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 from tippetop.mechanics.contensou import PI, PatchLaw
@@ -12,53 +13,55 @@ from tippetop.mechanics.series import horner
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Horizontal, Scalar, Vector
 
-FORCE: tuple[tuple[float, ...], ...] = (
-    (
-        1.0,
-        2.0379589900224446,
-        1.7454503606464322,
-        0.748871602371356,
-        0.1272777587571475,
-        -0.0027191903426678006,
-        -0.0016068785745065434,
-        -2.585824983858782e-05,
-    ),
-    (
-        1.0,
-        2.437958990022489,
-        2.0920625280814025,
-        0.7580271532705276,
-        0.10811738333537868,
-        0.004218755819955418,
-        0.0,
-        0.0,
-    ),
-)
-"""Numerator and denominator of F(w) of a sliding Hertz patch, see `HertzSlidingLaw`; relative error 2e-16."""
 
-TORQUE: tuple[tuple[float, ...], ...] = (
+class ForceAndTorque(NamedTuple):
+    """F and T of a branch as ratios of polynomials in a number x, their coefficients in increasing order."""
+
+    force: tuple[Scalar, ...]
+    """Numerator of F over kappa if drilling prevails, and of F if slip does."""
+    torque: tuple[Scalar, ...]
+    """Numerator of T, and of T kappa."""
+    below: tuple[Scalar, ...]
+    """Denominator of both."""
+
+
+DRILLING = ForceAndTorque((0.375 * PI, -0.09375 * PI), (0.1875 * PI, -0.1875 * PI, 0.0703125 * PI), (1.0,))
+"""The branch where drilling prevails, in x = kappa^2."""
+
+SLIDING = ForceAndTorque(
     (
-        0.4,
-        0.822105487763007,
-        0.5189122287774408,
-        0.08174030474884943,
-        -0.007570333630208161,
-        0.004741971472147535,
-        0.001852985148541204,
-        8.943122718983565e-05,
+        0.8835729338221293,
+        3.588980126262665,
+        5.940405892796844,
+        5.295183697296597,
+        2.8365419666579434,
+        0.9356191279612185,
+        0.17160971680764692,
+        0.012373729468682777,
+        1.1138052094468924e-06,
+    ),
+    (
+        0.22089323345553233,
+        0.8972450315656664,
+        1.4114703953806944,
+        1.024714247135719,
+        0.33682013029431185,
+        0.041108935870272395,
+        0.0006245074488087915,
+        -1.9377090596738164e-05,
+        5.569153792789647e-07,
     ),
     (
         1.0,
-        2.7695494336932254,
-        2.8469587388677655,
-        1.3323282422825315,
-        0.2778032550943552,
-        0.020859716514356943,
-        0.00025020282491132825,
-        0.0,
+        4.061894597356628,
+        6.5564975062115085,
+        5.3159395937729235,
+        2.2425592181211225,
+        0.45429743330678546,
+        0.033099956109968943,
     ),
 )
-"""Numerator and denominator of T(w) / w^(1/2) of such a patch; relative error 1e-16."""
+"""The branch where slip prevails, in x = cos(sig), see `HertzSlidingLaw`; relative error 4e-17."""
 
 
 LIMIT: tuple[tuple[float, ...], ...] = (
@@ -96,7 +99,7 @@ launch is on both branches, or on neither, by rounding.
 """
 
 BEYOND = 1e-20
-"""Share of drilling in slip, and of slip in drilling, that keeps a branch finite far from where it holds."""
+"""Share of slip in drilling that keeps its branch finite far from where it holds."""
 
 BRANCH_TORQUE = 9.0 * PI / 128.0
 """T at kappa = 1."""
@@ -124,10 +127,7 @@ class HertzDrillingLaw(HertzPiece):
     def shares(self, square: Scalar, drilling: Scalar) -> tuple[Scalar, Scalar]:
         """Force over slip, and torque, per unit normal force, at slip of this square and drilling R w."""
         rate = (drilling * drilling + BEYOND * square) ** -0.5
-        kappa2 = square * rate * rate
-        force = -self.mu * (3.0 * PI / 32.0) * (4.0 - kappa2) * rate
-        torque = -self.mu * (3.0 * PI / 16.0) * (1.0 - kappa2 * (1.0 - 0.375 * kappa2)) * rate
-        return force, torque * drilling * self.patch_radius
+        return shares_of(self, DRILLING, square * rate * rate, rate, drilling)
 
     def reserve(self, normal: Scalar, force: Horizontal, drilling: Scalar) -> Scalar:
         """(mu N F)^2 - T^2 where the limit surface has this drilling torque, N^2.
@@ -162,9 +162,9 @@ class HertzSlidingLaw(HertzPiece):
         F = (3/16) [kappa (4 - kappa^2) sig + q (kappa^2 + 2) / kappa],
         T = (3/8) [(1 - kappa^2 + 3/8 kappa^4) sig + q (3/4 - 3/8 kappa^2)],
 
-    f = -mu F along the slip and |t| = mu R T. The terms cancel for large kappa. In w = tan(sig / 2)^2, where
-    tan(sig / 2) = 1 / (kappa + q), F and T / w^(1/2) are analytic on [0, 1] with the nearest singularity at
-    -1, and ratios of polynomials give them to rounding, with plain operators only.
+    f = -mu F along the slip and |t| = mu R T. The terms cancel for large kappa. In cos(sig) = q / kappa, F
+    and T kappa are analytic on [0, 1] with the nearest singularity at -1, and ratios of polynomials give them
+    to rounding, with plain operators only.
 
     Notes
     -----
@@ -175,16 +175,9 @@ class HertzSlidingLaw(HertzPiece):
 
     def shares(self, square: Scalar, drilling: Scalar) -> tuple[Scalar, Scalar]:
         """Force over slip, and torque, per unit normal force, at slip of this square and drilling R w."""
-        square = square + BEYOND * drilling * drilling
-        excess = square - drilling * drilling
-        speed = square**0.5
-        tangent = drilling / (speed + (excess * excess + NEAR_BRANCH * square * square) ** 0.25)
-        w = tangent * tangent
-        w2 = w * w
-        powers = (w, w2, w2 * w, w2 * w2)
-        force = -self.mu * polynomial(FORCE[0], powers) / (polynomial(FORCE[1], powers) * speed)
-        grip = polynomial(TORQUE[0], powers) / polynomial(TORQUE[1], powers)
-        return force, -self.mu * self.patch_radius * tangent * grip
+        excess = excess_of(square, drilling)
+        rate = (excess + drilling * drilling) ** -0.5
+        return shares_of(self, SLIDING, excess**0.5 * rate, rate, drilling)
 
     def reserve(self, normal: Scalar, force: Horizontal, drilling: Scalar) -> Scalar:
         """(mu N F)^2 - T^2 where the limit surface has this drilling torque, N^2.
@@ -246,13 +239,23 @@ class HertzBranch(NamedTuple):
 
     def shares(self, square: Scalar, drilling: Scalar) -> tuple[Scalar, Scalar]:
         """Force over slip, and torque, per unit normal force, at slip of this square and drilling R w."""
-        drills = HertzDrillingLaw(self.mu, self.patch_radius).shares(square, drilling)
-        slides = HertzSlidingLaw(self.mu, self.patch_radius).shares(square, drilling)
+        turning, excess = drilling * drilling, excess_of(square, drilling)
+        rate = (turning + self._either(BEYOND * square, excess)) ** -0.5
+        law = ForceAndTorque(
+            self._terms(DRILLING.force, SLIDING.force),
+            self._terms(DRILLING.torque, SLIDING.torque),
+            self._terms(DRILLING.below, SLIDING.below),
+        )
+        return shares_of(self, law, self._either(square * rate * rate, excess**0.5 * rate), rate, drilling)
 
-        def mixed(a: Scalar, b: Scalar) -> Scalar:
-            return self.drills * a + (1.0 - self.drills) * b
+    def _terms(self, drills: Sequence[float], slides: Sequence[float]) -> tuple[Scalar, ...]:
+        """The coefficients that belong to the branch; drilling has fewer."""
+        count = len(drills)
+        return tuple([self._either(drills[k] if k < count else 0.0, term) for k, term in enumerate(slides)])
 
-        return mixed(drills[0], slides[0]), mixed(drills[1], slides[1])
+    def _either(self, drills: Scalar, slides: Scalar) -> Scalar:
+        """The number that belongs to the branch."""
+        return self.drills * drills + (1.0 - self.drills) * slides
 
     def reserve(self, normal: Scalar, force: Horizontal, drilling: Scalar) -> Scalar:
         """That of the whole law."""
@@ -330,11 +333,49 @@ def resisting(law: Any, slip: Horizontal, angular_velocity: Vector) -> Traction:
     return Traction((force * slip[0], force * slip[1]), (0.0, 0.0, torque))
 
 
-def polynomial(c: tuple[float, ...], powers: tuple[Scalar, ...]) -> Scalar:
-    """Value of a polynomial of degree 7, given its coefficients and four powers.
+def excess_of(square: Scalar, drilling: Scalar) -> Scalar:
+    """v^2 - (R w)^2 at slip of this square and drilling R w, or its size, but not quite zero, m^2/s^2."""
+    excess = square - drilling * drilling
+    return (excess * excess + NEAR_BRANCH * square * square) ** 0.5
+
+
+def shares_of(
+    patch: Any, law: ForceAndTorque, x: Scalar, rate: Scalar, drilling: Scalar
+) -> tuple[Scalar, Scalar]:
+    """Force over slip, and torque, per unit normal force.
+
+    Parameters
+    ----------
+    patch
+        Its friction coefficient and radius.
+    law
+        The branch.
+    x
+        What its polynomials are of.
+    rate
+        One over what prevails, drilling or slip, s/m.
+    drilling
+        R w, m/s.
+    """
+    x2 = x * x
+    powers = (x, x2, x2 * x, x2 * x2)
+    rate = -patch.mu * rate / polynomial(law.below, powers)
+    torque = patch.patch_radius * drilling * rate
+    return polynomial(law.force, powers) * rate, polynomial(law.torque, powers) * torque
+
+
+def polynomial(c: Sequence[Scalar], powers: tuple[Scalar, ...]) -> Scalar:
+    """Value of a polynomial of degree 8 at most, given its coefficients and four powers.
 
     It takes one product of variables beyond those of the powers: where they are power series, products are
     what costs.
     """
-    x, x2, x3, x4 = powers
-    return (c[0] + c[1] * x + c[2] * x2 + c[3] * x3) + (c[4] + c[5] * x + c[6] * x2 + c[7] * x3) * x4
+    low = c[0]
+    for term, power in zip(c[1:4], powers[:3], strict=False):
+        low = low + term * power
+    if len(c) <= len(powers):
+        return low
+    high = c[4]
+    for term, power in zip(c[5:], powers, strict=False):
+        high = high + term * power
+    return low + high * powers[3]

@@ -108,12 +108,31 @@ class Series:
     def _squared(self) -> "Series":
         def rule(k: int) -> Scalar:
             known = self.up_to(k)
-            terms = [2.0 * (known[j] * known[k - j]) for j in range((k + 1) // 2)]
-            if k % 2 == 0:
-                terms.append(known[k // 2] * known[k // 2])
-            return self.arithmetic.total(terms)
+            middle = known[k // 2] * known[k // 2] if k % 2 == 0 else 0.0
+            return self._twice(known, range((k + 1) // 2), k) + middle
 
         return self._made(rule)
+
+    def _twice(self, known: list[Scalar], places: range, k: int) -> Scalar:
+        """Products of coefficients that come twice in the k-th of a square."""
+        terms = [known[j] * known[k - j] for j in places]
+        return 2.0 * self.arithmetic.total(terms) if terms else 0.0
+
+    def _root(self) -> "Series":
+        """The square root: it takes half of what other powers do."""
+        half: list[Scalar] = []
+
+        def rule(k: int) -> Scalar:
+            if k == 0:
+                first = self[0] ** 0.5
+                half.append(0.5 / first)
+                return first
+            known = root.known
+            middle = known[k // 2] * known[k // 2] if k % 2 == 0 else 0.0
+            return (self[k] - (self._twice(known, range(1, (k + 1) // 2), k) + middle)) * half[0]
+
+        root = self._made(rule)
+        return root
 
     def __truediv__(self, other: Any) -> Any:
         if not isinstance(other, Series):
@@ -134,6 +153,8 @@ class Series:
     def __pow__(self, exponent: float) -> "Series":
         if exponent == 2:
             return self._squared()
+        if exponent in (0.5, -0.5, 0.25):
+            return self._root() if exponent == 0.5 else self._root() ** (2.0 * exponent)
         inverse: list[Scalar] = []
 
         def rule(k: int) -> Scalar:
