@@ -3,22 +3,16 @@
 import math
 import operator
 import os
-from typing import Any
 
 import pytest
 
 from tippetop.errors import TippetopError
 from tippetop.report.tasks import Task, carry_out
 
-
-def given(*arguments: Any) -> Any:
-    return lambda _: arguments
-
-
 TASKS = [
-    Task("sum", 1.0, operator.add, lambda done: (done["root"], done["power"]), after=("root", "power")),
-    Task("root", 2.0, math.sqrt, given(16.0)),
-    Task("power", 3.0, pow, given(2, 5)),
+    Task("sum", 1.0, operator.add, (), after=("root", "power")),
+    Task("root", 2.0, math.sqrt, (16.0,)),
+    Task("power", 3.0, pow, (2, 5)),
 ]
 
 
@@ -39,9 +33,9 @@ def test_longest_task_goes_first() -> None:
 
 def test_error_of_a_task_is_raised() -> None:
     with pytest.raises(ValueError, match=r"math domain|nonnegative"):
-        carry_out([Task("root", 1.0, math.sqrt, given(-1.0))], 1)
+        carry_out([Task("root", 1.0, math.sqrt, (-1.0,))], 1)
 
 
 def test_killed_worker_is_reported_in_a_sentence() -> None:
     with pytest.raises(TippetopError, match="killed 4 times during exit"):
-        carry_out([Task("exit", 1.0, os._exit, given(1))], 2)
+        carry_out([Task("exit", 1.0, os._exit, (1,))], 2)

@@ -10,7 +10,6 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import xarray as xr
 
@@ -18,7 +17,7 @@ from tippetop.errors import FileTrouble
 from tippetop.figures.style import save
 from tippetop.files import in_words, put_in_place, refuse_overwriting
 from tippetop.netcdf import write_run
-from tippetop.report.claim import Data, Judgement
+from tippetop.report.claim import Judgement
 from tippetop.report.experiments.registry import EXPERIMENTS
 from tippetop.report.gallery import PLATES
 from tippetop.report.page import render
@@ -99,7 +98,7 @@ def reproduce(
     with _staging(folder) as stage:
         tasks = _tasks(chosen, quick, stage)
         if only is None:
-            tasks.append(Task(_PLAYER, _PLAYER_COST, playable, lambda _: (quick,)))
+            tasks.append(Task(_PLAYER, _PLAYER_COST, playable, (quick,)))
         processes = min(2, os.cpu_count() or 1) if workers is None else max(1, workers)
         results = carry_out(tasks, processes, progress)
         data = {experiment.id: results[experiment.id] for experiment in chosen.experiments}
@@ -139,20 +138,13 @@ def _unseen(chosen: Selection) -> list[str]:
 
 
 def _tasks(chosen: Selection, quick: bool, stage: Path) -> list[Task]:
-    def fixed(*arguments: Any) -> Callable[[dict[str, Any]], tuple[Any, ...]]:
-        return lambda _: arguments
-
-    tasks = [
-        Task(experiment.id, experiment.cost * (0.3 if quick else 1.0), _compute, fixed(experiment.id, quick))
-        for experiment in chosen.experiments
+    share = 0.3 if quick else 1.0
+    computing = [Task(one.id, one.cost * share, _compute, (one.id, quick)) for one in chosen.experiments]
+    drawing = [
+        Task(f"figure {plate.id}", _DRAWING_COST, _draw, (plate.id, stage, quick), plate.needs)
+        for plate in chosen.plates
     ]
-    for plate in chosen.plates:
-
-        def inputs(results: dict[str, Any], id_: str = plate.id) -> tuple[Any, ...]:
-            return id_, {name: results[name] for name in PLATES[id_].needs}, stage, quick
-
-        tasks.append(Task(f"figure {plate.id}", _DRAWING_COST, _draw, inputs, plate.needs))
-    return tasks
+    return computing + drawing
 
 
 def _compute(name: str, quick: bool) -> xr.Dataset:
@@ -160,10 +152,10 @@ def _compute(name: str, quick: bool) -> xr.Dataset:
     return EXPERIMENTS[name].run(quick)
 
 
-def _draw(name: str, data: Data, stage: Path, quick: bool) -> None:
+def _draw(name: str, stage: Path, quick: bool, *data: xr.Dataset) -> None:
     """Draw a figure, and write the data behind it (in a process of its own)."""
     plate = PLATES[name]
-    dataset = plate.dataset(data)
+    dataset = plate.dataset(dict(zip(plate.needs, data, strict=True)))
     if plate.needs:
         write_run(dataset, stage / DATA / f"{name}.nc")
     figure = plate.draw(dataset)

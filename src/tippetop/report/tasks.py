@@ -1,7 +1,7 @@
 """Work for several processes: experiments and drawings, handed out as soon as what they need is there."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 from tippetop.processes import Job, shared
@@ -17,10 +17,10 @@ class Task:
     """About how long it takes, s."""
     call: Callable[..., Any]
     """Function of this module's kind: importable, so that another process can have it."""
-    arguments: Callable[[dict[str, Any]], tuple[Any, ...]]
-    """Makes its arguments from the results of the tasks it is after."""
-    after: tuple[str, ...] = field(default=())
-    """Names of tasks that come first."""
+    arguments: tuple[Any, ...]
+    """What it is called with."""
+    after: tuple[str, ...] = ()
+    """Names of tasks that come first; it is called with their results, too."""
 
 
 def carry_out(
@@ -42,7 +42,7 @@ def carry_out(
         for task in waiting:
             if all(name in results for name in task.after):
                 waiting.remove(task)
-                return Job(task.name, task.call, task.arguments(results))
+                return Job(task.name, task.call, (*task.arguments, *(results[name] for name in task.after)))
         return None
 
     for name, result in shared(longest, workers):

@@ -134,7 +134,6 @@ def stepped(problem: Problem, step: float, duration: float) -> SlidingState:
 
 @BENCH.experiment("dry-cohen", "Cohen's top by his method and exactly", 4.0)
 def _cohen(quick: bool) -> xr.Dataset:
-    """Cohen's top with his method at several steps, and exactly."""
     steps = np.array([10.0, 2.0, 0.5] if quick else [10.0, 5.0, 2.0, 1.0, 0.5, 0.2]) * 1e-3
     times = np.linspace(0.0, FOLLOWED, round(FOLLOWED / COHEN_STEP) + 1)
     tilts, slowest = [], []
@@ -170,7 +169,6 @@ def turning_time(problem: Problem, window: float) -> float:
 
 @BENCH.experiment("dry-smoothed", "smoothed Coulomb friction as the smoothing goes away", 4.0)
 def _smoothed(quick: bool) -> xr.Dataset:
-    """How long a top on smoothed Coulomb friction takes to turn over, as the smoothing goes away."""
     eps = np.geomspace(0.1, 5e-3, 5) if quick else np.geomspace(0.1, 1e-3, 11)
     windows = np.maximum(4.0, 0.02 / eps)
     base = report_problem(SMOOTHED_SPIN)

@@ -123,7 +123,6 @@ def _wide(quick: bool) -> xr.Dataset:
 
 @BENCH.experiment("friction-extremes", "turning over from no friction to far too much", 5.0)
 def _extremes(quick: bool) -> xr.Dataset:
-    """When the report's main launch turns half over, from no friction to far too much."""
     mu = np.array([0.0, 0.3, 1.0, 100.0, *([] if quick else [300.0]), 1000.0])
     window = 0.5 * WINDOW if quick else WINDOW
     found = swept(on_table(report_problem(SPIN)), {"friction.mu": mu}, window)

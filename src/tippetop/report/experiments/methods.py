@@ -187,7 +187,6 @@ def _stiffness(quick: bool) -> xr.Dataset:
 
 @BENCH.experiment("theta-mod-pi", "the listing's right-hand side at the poles", 0.1)
 def _jump(quick: bool) -> xr.Dataset:
-    """The listing's right-hand side just before and just after the axis is vertical."""
     problem = report_problem()
     tiny, rest = 1e-9, (3.0, 0.0, 10.0, 155.0, 0.05, 0.05)
 

@@ -167,7 +167,6 @@ def rolling(body: Body, tilt: float) -> tuple[RestingCenter, xr.Dataset] | None:
 
 @BENCH.experiment("real-rolling", "Euler's disk and hurricane balls", 2.0)
 def _rolling(quick: bool) -> xr.Dataset:
-    """Euler's disk and hurricane balls that roll with their centres at rest."""
     tilts = {"disk": [0.1, 0.3, 0.5] if quick else np.linspace(0.05, 0.6, 12).tolist()}
     tilts["balls"] = np.linspace(*BALL_TILTS, 4 if quick else 12).tolist()
     bodies = {"disk": EULER_DISK, "balls": HURRICANE_BALLS}

@@ -210,7 +210,6 @@ def _settling(quick: bool) -> xr.Dataset:
 
 @BENCH.experiment("run-50-windows", "the end of Fig. 5 against the length of the run", 1.5)
 def _windows(quick: bool) -> xr.Dataset:
-    """The end of the launch at 50 rad/s by both methods, against the length of the run."""
     windows, problem = WINDOWS[3::4] if quick else WINDOWS, report_problem(50.0)
     ends = [listing_run(problem, float(window)).isel(time=-1) for window in windows]
     true = simulate(on_table(problem), float(windows[-1]), times=windows)
