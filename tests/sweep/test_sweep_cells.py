@@ -11,7 +11,7 @@ from strategies import problems
 from tippetop.catalogue import Fault
 from tippetop.errors import InvalidInput
 from tippetop.mechanics.top import natural_state, natural_units
-from tippetop.presets import REPORT_THIN_STEM, report_problem
+from tippetop.presets import REPORT_THIN_STEM, WOODEN, report_problem
 from tippetop.sweeps.cells import cells_of, numeric_fields
 
 EDGES = {
@@ -115,6 +115,13 @@ def test_every_number_of_a_problem_can_be_swept():
     problem = report_problem()
     for field in fields:
         assert cells_of(problem, {field: np.array([0.3, 0.4])}).fault.shape == (2,)
+
+
+def test_points_of_a_picture_are_no_numbers_to_sweep():
+    problem = report_problem().model_copy(update={"body": WOODEN})
+    assert isinstance(problem.body.profile[0], tuple)
+    with pytest.raises(InvalidInput, match=r"axis = 'body.profile.0' is not possible"):
+        cells_of(problem, {"body.profile.0": np.array([1.0])})
 
 
 def test_a_field_that_is_none_is_refused_with_the_likeliest_meant():

@@ -69,23 +69,16 @@ def _from_csv(text: str, path: Path) -> list[list[float]]:
     return [_numbers(number, row, path) for number, row in enumerate(rows, 1) if row]
 
 
-def _is_number(cell: str) -> bool:
-    try:
-        float(cell)
-    except ValueError:
-        return False
-    return True
-
-
 def _numbers(number: int, row: list[str], path: Path) -> list[float]:
     """The numbers of a row, which may end in empty cells, but has none between others."""
     cells = [cell.strip() for cell in row]
     while not cells[-1]:
         cells.pop()
-    if not all(_is_number(cell) for cell in cells):
+    try:
+        return [float(cell) for cell in cells]
+    except ValueError:
         line = f"{','.join(row)} in {named(path)}"
-        raise InvalidInput(f"row {number}", line, "two or three numbers, one in each cell")
-    return [float(cell) for cell in cells]
+        raise InvalidInput(f"row {number}", line, "two or three numbers, one in each cell") from None
 
 
 def _from_svg(text: str, path: Path) -> list[list[float]]:

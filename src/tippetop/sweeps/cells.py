@@ -116,35 +116,29 @@ def cells_of(problem: Problem, values: Mapping[str, Array]) -> Cells:
 def numeric_fields(part: Part, prefix: str = "") -> Iterator[tuple[str, list[Any]]]:
     """Names of all fields that are numbers, with dots, and the limits that each was declared with."""
     for name, info in type(part).model_fields.items():
-        value = getattr(part, name)
-        if isinstance(value, Part):
-            yield from numeric_fields(value, f"{prefix}{name}.")
-        elif isinstance(value, tuple):
-            for place, inner in enumerate(value):
-                if isinstance(inner, Part):
-                    yield from numeric_fields(inner, f"{prefix}{name}.{place}.")
-                else:
-                    yield f"{prefix}{name}.{place}", []
-        elif isinstance(value, float):
-            yield f"{prefix}{name}", list(info.metadata)
+        for path, value in _each(getattr(part, name), f"{prefix}{name}").items():
+            if isinstance(value, Part):
+                yield from numeric_fields(value, f"{path}.")
+            elif isinstance(value, float):
+                yield path, info.metadata
 
 
 def put(part: PartType, values: Mapping[str, Array], prefix: str = "") -> PartType:
     """A part with arrays for some of its numbers: not validated, but with all its properties."""
     fields: dict[str, Any] = {}
     for name in type(part).model_fields:
-        value, path = getattr(part, name), f"{prefix}{name}"
-        if isinstance(value, Part):
-            fields[name] = put(value, values, f"{path}.")
-        elif isinstance(value, tuple):
-            several = {f"{path}.{place}": inner for place, inner in enumerate(value)}
-            fields[name] = tuple(
-                put(inner, values, f"{where}.") if isinstance(inner, Part) else values.get(where, inner)
-                for where, inner in several.items()
-            )
-        else:
-            fields[name] = values.get(path, value)
+        value = getattr(part, name)
+        made = [
+            put(inner, values, f"{path}.") if isinstance(inner, Part) else values.get(path, inner)
+            for path, inner in _each(value, f"{prefix}{name}").items()
+        ]
+        fields[name] = tuple(made) if isinstance(value, tuple) else made[0]
     return cast(PartType, type(part).model_construct(**fields))
+
+
+def _each(value: Any, path: str) -> dict[str, Any]:
+    """A field by its name with dots, or what is in it by theirs if it is a tuple."""
+    return {f"{path}.{k}": one for k, one in enumerate(value)} if isinstance(value, tuple) else {path: value}
 
 
 def single_part(part: PartType, cell: int) -> PartType:
