@@ -52,7 +52,7 @@ def show(*parts: Any, files: Iterable[Path] = ()) -> None:
 
 @contextmanager
 def progress_bar(what: str = "") -> Iterator[Callable[..., None]]:
-    """Show on a terminal how far something is, and how long it still takes.
+    """Show on a terminal how far something is, how long it still takes, and how long it has taken.
 
     Given is what is to be told of it: how much is done, of how much, and, if that changes, what it is at.
     """
@@ -71,8 +71,9 @@ def _bar(what: str) -> Iterator[Callable[..., None]]:
         yield lambda **_: None
         return
     from rich.console import Console  # noqa: PLC0415
-    from rich.progress import Progress  # noqa: PLC0415
+    from rich.progress import Progress, TimeElapsedColumn  # noqa: PLC0415
 
-    with Progress(console=Console(stderr=True), transient=True) as bar:
+    columns = (*Progress.get_default_columns(), TimeElapsedColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(what, total=None)
         yield lambda **told: bar.update(task, **told)
