@@ -7,8 +7,8 @@ drilling, a patch grips less than viscous friction: turning over takes 8 s inste
 all the while, so that the motion alone takes some 1.6 times the steps (what series of viscous friction would
 take along it) and 2.4 times the flights. The law takes the rest, 1.4 to 1.8 times: near every slowest slip it
 is singular at complex times, where v^2 + (rho w)^2 = 0 or kappa is 0 or 1, and polynomials of whatever method
-go no farther. So beside the ratios of what whole launches cost stand those of a step and of a flight, and that
-of a launch to as many steps and flights under viscous friction.
+go no farther. So beside the ratios of what whole launches cost stand those of a step and of a flight, and
+that of a launch to as many steps and flights under viscous friction.
 """
 
 import math
