@@ -8,7 +8,8 @@ from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
 import tippetop as tt
-from tippetop.integrators import has_taylor, make_integrator
+from tippetop.contact import readings
+from tippetop.integrators import has_llvm
 from tippetop.mechanics.motion import along_table, angular_velocity, contact, sliding_rates
 from tippetop.mechanics.quadratures import orientation
 from tippetop.mechanics.state import SlidingState
@@ -143,16 +144,7 @@ def test_what_an_impact_at_launch_takes_is_work_of_the_table():
     assert math.isclose(float(run.energy_lost), -float(run.work[-1]), rel_tol=1e-10)
 
 
-class Uncompiled:
-    """Taylor's method, which compiles nothing but the equations of motion."""
-
-    name = "taylor"
-
-    def integrate(self, motion, parameters, start, end):
-        return make_integrator("taylor").integrate(motion, parameters, start, end)
-
-
-@pytest.mark.skipif(not has_taylor(), reason="nothing is compiled without heyoka")
+@pytest.mark.skipif(not has_llvm(), reason="nothing is compiled without llvmlite")
 @pytest.mark.parametrize(
     ("friction", "shape"),
     [
@@ -163,18 +155,19 @@ class Uncompiled:
     ids=["sphere", "egg", "drilling"],
 )
 def test_what_is_compiled_reads_what_arrays_read(monkeypatch, friction, shape):
-    from tippetop.integrators.taylor import Taylor  # noqa: PLC0415 - optional
-
     asked = []
-    compiled = Taylor.evaluation
-    monkeypatch.setattr(Taylor, "evaluation", lambda *given: asked.append(given[1]) or compiled(*given))
+    compiled = readings.compiled_evaluation
+    monkeypatch.setattr(
+        readings, "compiled_evaluation", lambda *given: asked.append(given) or compiled(*given)
+    )
     problem = report_problem(spin=120.0, tilt=0.3).replace({"contact.liftoff": "ignore"})
     problem = problem.model_copy(
         update={"friction": friction, "body": problem.body.model_copy(update={"shape": shape})}
     )
     quick = tt.simulate(problem, 10.0)
     assert len(asked) >= 2
-    plain = tt.simulate(problem, 10.0, integrator=Uncompiled())
+    monkeypatch.setattr(readings, "compiled_evaluation", lambda *given: None)
+    plain = tt.simulate(problem, 10.0)
     assert quick.steps == plain.steps
     for name, values in plain.data_vars.items():
         if "time" in values.dims and name != "mode":

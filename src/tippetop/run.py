@@ -113,7 +113,7 @@ def simulate(
     trajectory = Trajectory(launch, duration / units.time, method, phase_limit, step_limit)
     lost = sum(event.energy_lost for event in launch.events)
     recorder, tally = Recorder(top, state, problem.launch.azimuth, grid / units.time, lost), Tally()
-    for block in in_blocks(trajectory.segments(), method):
+    for block in in_blocks(trajectory.segments()):
         recorder.take(block)
         tally.take(block)
         if callback is not None:

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tippetop.contact.mode import Mode, Segment
-from tippetop.contact.readings import WORTH, Instants, Rates, instants, read
-from tippetop.integrators.base import Array, Integrator
+from tippetop.contact.readings import Instants, Rates, instants, read
+from tippetop.integrators.base import Array
 from tippetop.integrators.dense import at_fractions, evaluated
 
 STEPS = 4096
@@ -34,8 +34,6 @@ class ModeSteps:
     """Their polynomials, shape (k, size, degree + 1)."""
     spans: Array
     """How long they are, shape (k,)."""
-    integrator: Integrator | None = None
-    """Who followed the motion."""
 
     @cached_property
     def nodes(self) -> Array:
@@ -50,18 +48,13 @@ class ModeSteps:
     def at(self, fractions: Array, some: NDArray[np.intp] | slice = slice(None)) -> Array:
         """`Rates` at fractions of the steps, or of some of them, shape (m,); of shape (8, m, k)."""
         y = at_fractions(self.terms[some], fractions)
-        compiler = self.compiler(len(NODES) * len(self.which))
-        return read(Rates.of, self.mode, y, nearer_pole(y[2]), integrator=compiler)
+        return read(Rates.of, self.mode, y, nearer_pole(y[2]), total=len(NODES) * len(self.which))
 
     @property
     def begun(self) -> Instants:
         """What is told of where the steps begin."""
         y = self.terms[:, :, 0].T
-        return Instants.unpack(read(instants, self.mode, y, integrator=self.compiler(len(self.which))))
-
-    def compiler(self, count: int) -> Integrator | None:
-        """Who compiles what is read of so many instants, if they are enough."""
-        return self.integrator if count >= WORTH else None
+        return Instants.unpack(read(instants, self.mode, y, total=len(self.which)))
 
 
 def nearer_pole(axis: Array) -> Array:
@@ -74,8 +67,6 @@ class Block:
     """Segments that follow one another."""
 
     segments: Sequence[Segment]
-    integrator: Integrator | None = None
-    """Who followed the motion."""
 
     @cached_property
     def lengths(self) -> NDArray[np.intp]:
@@ -116,7 +107,7 @@ class Block:
             pieces = [self.segments[n].solution.terms for n in numbers]
             terms = pieces[0] if len(pieces) == 1 else np.concatenate(pieces)
             mode = self.segments[numbers[0]].mode
-            found.append(ModeSteps(mode, which, terms, spans[which], self.integrator))
+            found.append(ModeSteps(mode, which, terms, spans[which]))
         return found
 
     def step_at(self, times: Array) -> NDArray[np.intp]:
@@ -134,7 +125,7 @@ class Block:
             here, own = self._within(group, step)
             if len(own):
                 y = evaluated(group.terms, own, parts[here])
-                yield group.mode, here, read(instants, group.mode, y.T, integrator=group.compiler(len(own)))
+                yield group.mode, here, read(instants, group.mode, y.T, total=len(own))
 
     def _within(
         self, group: ModeSteps, step: NDArray[np.intp]
@@ -148,7 +139,7 @@ class Block:
         return here, place[step[here]]
 
 
-def in_blocks(segments: Iterable[Segment], integrator: Integrator) -> Iterator[Block]:
+def in_blocks(segments: Iterable[Segment]) -> Iterator[Block]:
     """Segments as blocks of some thousand steps."""
     waiting: list[Segment] = []
     steps = 0
@@ -156,7 +147,7 @@ def in_blocks(segments: Iterable[Segment], integrator: Integrator) -> Iterator[B
         waiting.append(segment)
         steps += len(segment.solution.terms)
         if steps >= STEPS:
-            yield Block(waiting, integrator)
+            yield Block(waiting)
             waiting, steps = [], 0
     if waiting:
-        yield Block(waiting, integrator)
+        yield Block(waiting)

@@ -8,7 +8,8 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 
 from tippetop.contact.mode import IntegratedMode, Mode
-from tippetop.integrators.base import Array, Evaluation, Integrator, Rows
+from tippetop.integrators.base import Array, Rows
+from tippetop.integrators.evaluation import Evaluation, compiled_evaluation
 from tippetop.lowest import lowest_contact_vector
 from tippetop.mechanics.hull import Hull
 from tippetop.mechanics.invariants import energy
@@ -119,9 +120,7 @@ def instants(mode: Mode, y: Row) -> tuple[Scalar, ...]:
     return Instants.of(mode, y).pack()
 
 
-def read(
-    reading: Reading, mode: Mode, y: Array, *others: Scalar, integrator: Integrator | None = None
-) -> Array:
+def read(reading: Reading, mode: Mode, y: Array, *others: Scalar, total: int = 0) -> Array:
     """Read numbers off those of a mode.
 
     Parameters
@@ -134,15 +133,15 @@ def read(
         Its numbers, shape (size, ...).
     others
         Further numbers that the reading takes, each of a shape that becomes that of the instants.
-    integrator
-        Who follows the motion, if it is to compile the reading: it may know how to.
+    total
+        How many instants are read in all, of which these may be a part: of many by a compiled function.
 
     Returns
     -------
     ndarray
         Shape (numbers, ...).
     """
-    evaluation = _compiled(reading, mode, len(y), len(others), integrator)
+    evaluation = _compiled(reading, mode, len(y), len(others)) if total >= WORTH else None
     if evaluation is not None:
         return evaluation(y, (*mode.top.numbers, *others))
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -153,17 +152,14 @@ def read(
     return found
 
 
-def _compiled(
-    reading: Reading, mode: Mode, size: int, others: int, integrator: Integrator | None
-) -> Evaluation | None:
-    """A reading of modes of this kind, compiled, if the integrator can and they are all alike."""
-    compile_: Callable[[Rows, int, int], Evaluation] | None = getattr(integrator, "evaluation", None)
-    if compile_ is None or not isinstance(mode, IntegratedMode) or not mode.motion.lasting:
+def _compiled(reading: Reading, mode: Mode, size: int, others: int) -> Evaluation | None:
+    """A reading of modes of this kind, compiled, if it can be and they are all alike."""
+    if not isinstance(mode, IntegratedMode) or not mode.motion.lasting:
         return None
     if len(mode.tops) > 1 or isinstance(mode.top.surface, Hull):
         return None
     kind = mode.top.kind
-    return compile_(_of_kind(reading, _without_top(mode), kind), size, kind.numbers + others)
+    return compiled_evaluation(_of_kind(reading, _without_top(mode), kind), size, kind.numbers + others)
 
 
 def _without_top(mode: IntegratedMode) -> Any:

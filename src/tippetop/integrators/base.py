@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol, TypeAlias
+from typing import Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,10 +19,6 @@ Rows: TypeAlias = Callable[[Sequence[Scalar], Sequence[Scalar]], Sequence[Scalar
 
 Expansion: TypeAlias = Callable[[Sequence[float]], NDArray[np.float64]]
 """From a state to the coefficients of the solution from there, in powers of time, each number's in a row."""
-
-Evaluation: TypeAlias = Callable[[Array, Sequence[Any]], Array]
-"""From n states, shape (size, ...), and parameters, each of a shape that becomes theirs, to numbers of each,
-shape (numbers, ...)."""
 
 TOLERANCES = {
     "taylor": 2.0**-52,

@@ -17,11 +17,9 @@ from tippetop.integrators.base import (
     TOLERANCES,
     Arc,
     Array,
-    Evaluation,
     Expansion,
     Integrator,
     Motion,
-    Rows,
 )
 from tippetop.integrators.rates import RightHandSide
 from tippetop.mechanics.vectors import Scalar
@@ -58,11 +56,6 @@ class Relieved:
     def expansion(self) -> Callable[[Motion, Sequence[float], int, int], Expansion] | None:
         """How the method expands a motion's solutions in powers of time, if it does."""
         return getattr(self.explicit, "expansion", None)
-
-    @property
-    def evaluation(self) -> Callable[[Rows, int, int], Evaluation] | None:
-        """How the method compiles functions of the state, if it does."""
-        return getattr(self.explicit, "evaluation", None)
 
     def _implicit(self, shortest: float) -> Integrator:
         """The method where the motion is stiff."""

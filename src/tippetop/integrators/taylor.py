@@ -17,10 +17,8 @@ from tippetop.integrators.base import (
     TOLERANCES,
     Arc,
     Array,
-    Evaluation,
     Expansion,
     Motion,
-    Rows,
 )
 from tippetop.integrators.dense import DenseSolution
 from tippetop.integrators.sealed_folders import kept_content
@@ -87,10 +85,6 @@ class Taylor:
         numbers = np.array(parameters)
         return lambda start: compiled.expanded(start, numbers, count)
 
-    def evaluation(self, function: Rows, size: int, parameters: int) -> Evaluation:
-        """Numbers that are functions of state and parameters, for many states at once, compiled."""
-        return _evaluation(function, size, parameters)
-
 
 class _Compiled:
     """An integrator, and a lock that it is used under."""
@@ -142,26 +136,6 @@ def _compiled(motion: Motion, tolerance: float) -> _Compiled:
         )
 
     return _Compiled(_kept(make, (rates, guards, tolerance, motion.lasting)))
-
-
-@lru_cache(maxsize=64)
-def _evaluation(function: Rows, size: int, parameters: int) -> Evaluation:
-    """Compile a function, or fetch it from the cache across processes."""
-    state, numbers = _symbols(size, parameters)
-    values = [hy.expression(value) for value in function(state, numbers)]
-    compiled = _kept(lambda: hy.cfunc(values, vars=state), (values, state))
-
-    def evaluate(y: Array, given: Sequence[Any]) -> Array:
-        shape = y.shape[1:]
-        rows = np.empty((compiled.nparams, *shape))
-        for row, number in zip(rows, given, strict=False):
-            row[...] = number
-        found = np.empty((compiled.nouts, *shape))
-        flat = [np.ascontiguousarray(array).reshape(len(array), -1) for array in (y, found, rows)]
-        compiled(flat[0], outputs=flat[1], pars=flat[2])
-        return found
-
-    return evaluate
 
 
 def _kept(make: Callable[[], Any], made: tuple[Any, ...]) -> Any:

@@ -40,7 +40,7 @@ def follow(
     trajectory, tally = Trajectory(start, end, method, time=time), Tally()
     segments = trajectory.segments()
     segments = segments if settled is None else until_settled(trajectory, segments, settled)
-    for block in in_blocks(segments, method):
+    for block in in_blocks(segments):
         tally.take(block)
     assert trajectory.outcome is not None, "a trajectory that has no more segments has ended"
     return tally.ends(trajectory.state, trajectory.time, trajectory.outcome, trajectory.events), tally

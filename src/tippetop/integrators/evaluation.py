@@ -1,0 +1,48 @@
+"""Functions of states and parameters for many states at once, compiled."""
+
+from collections.abc import Callable, Sequence
+from functools import lru_cache
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from tippetop.emit.llvm import ABREAST
+from tippetop.emit.recording import record
+from tippetop.integrators import has_llvm
+from tippetop.integrators.base import Array, Rows
+
+Evaluation: TypeAlias = Callable[[Array, Sequence[Any]], Array]
+"""From n states, shape (size, ...), and parameters, each of a shape that becomes theirs, to numbers of each,
+shape (numbers, ...)."""
+
+
+@lru_cache(maxsize=64)
+def compiled_evaluation(function: Rows, size: int, parameters: int) -> Evaluation | None:
+    """Compile a function of so many numbers and parameters; None where that cannot be."""
+    if not has_llvm():
+        return None
+    from tippetop.integrators.machine_code import machine_code  # noqa: PLC0415 - optional
+
+    try:
+        recorded = record(function, size, parameters)
+    except (TypeError, ValueError, ArithmeticError, AttributeError):
+        return None
+    compiled, count = machine_code({"values": recorded}, ABREAST)["values"], len(recorded.outputs)
+
+    def evaluate(y: Array, given: Sequence[Any]) -> Array:
+        shape = y.shape[1:]
+        number = int(np.prod(shape))
+        whole = -(-number // ABREAST) * ABREAST
+        if whole == number:
+            states = np.ascontiguousarray(y).reshape(size, number)
+        else:
+            states = np.zeros((size, whole))
+            states[:, :number] = y.reshape(size, number)
+        rows = np.zeros((parameters, whole))
+        for row, value in zip(rows[:, :number].reshape(parameters, *shape), given, strict=True):
+            row[...] = value
+        found = np.empty((count, whole))
+        compiled(states, rows, found)
+        return found[:, :number].reshape(count, *shape)
+
+    return evaluate
