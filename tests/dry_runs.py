@@ -2,6 +2,10 @@
 
 import math
 
+import pytest
+
+pytest.importorskip("heyoka")
+
 from tippetop.contact.mode import EventKind, Outcome
 from tippetop.contact.rules import FreeToFly
 from tippetop.contact.trajectory import Trajectory

@@ -123,7 +123,13 @@ def compared(found: dict[str, Any], run: Any) -> list[str]:
     sizes = sizes_of(run)
     for name, numbers in numbers_of(found).items():
         ours = run[name].values[:count] if name in SAMPLED else run[name].values
-        theirs = np.array(numbers, dtype=float)[: ours.size].reshape(ours.shape)
+        theirs = np.array(numbers, dtype=float).ravel()
+        if name in SAMPLED:
+            theirs = theirs[: ours.size]
+        if theirs.size != ours.size:
+            wrong.append(f"{theirs.size} of {name} instead of {ours.size}")
+            continue
+        theirs = theirs.reshape(ours.shape)
         if not np.array_equal(np.isnan(theirs), np.isnan(ours)):
             wrong.append(f"{name} is missing elsewhere")
         off = np.abs(theirs - ours)

@@ -6,7 +6,7 @@ from scipy.integrate import solve_ivp
 
 from tippetop.contact.rules import FreeToFly
 from tippetop.contact.striking import impact_of_patch
-from tippetop.integrators import make_integrator
+from tippetop.integrators import has_taylor, make_integrator
 from tippetop.mechanics.contensou import EllipsoidalLaw
 from tippetop.mechanics.contensou_hertz import HertzLaw
 from tippetop.mechanics.coulomb import CoulombLaw, RollingResistance
@@ -17,6 +17,9 @@ from tippetop.mechanics.motion import angular_velocity, moment_per_normal_force,
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.surface import SphereSurface, contact_vector
 from tippetop.mechanics.top import Top
+
+if not has_taylor():
+    pytest.skip("heyoka is not installed", allow_module_level=True)
 
 TAYLOR = make_integrator("taylor")
 

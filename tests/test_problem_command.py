@@ -2,6 +2,7 @@
 
 import re
 
+import pytest
 from hypothesis import given
 from typer.testing import CliRunner
 
@@ -24,6 +25,14 @@ def test_every_number_is_explained(problem):
     numbers = [line.strip() for line in commented_toml(problem).splitlines() if NUMBER.match(line.strip())]
     assert len(numbers) >= 8
     assert [line for line in numbers if "  # " not in line] == []
+
+
+@pytest.mark.parametrize("body", tt.presets.BODIES.values(), ids=tt.presets.BODIES)
+def test_every_body_that_is_known_is_written_with_its_profile(body):
+    problem = report_problem().model_copy(update={"body": body})
+    text = commented_toml(problem)
+    assert tt.Problem.from_toml(text) == problem
+    assert not [line for line in text.splitlines() if line.strip("[], ").startswith("#")]
 
 
 def test_units_are_those_of_the_fields():

@@ -145,7 +145,7 @@ def test_rocking_shrinks_by_what_the_inverse_masses_say() -> None:
 
 
 def test_two_contacts_of_a_patch_may_each_drill_or_slide() -> None:
-    """The equations that are integrated are those of both tops as they are, whatever the branch of each."""
+    """A motion on two surfaces is told both tops by its parameters, whatever the branch of each."""
     problem = LEINE_GLOCKER.replace({"friction.pressure": "hertz"})
     both = tuple(natural(problem.top).each)
     state = problem.start()

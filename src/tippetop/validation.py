@@ -118,7 +118,9 @@ class Part(BaseModel):
             part: Part = value[int(place)]
             return part.quantity(inner)
         found = next((item for item in info.metadata if isinstance(item, Quantity)), Quantity("", field))
-        return found._replace(long_name=f"{found.long_name} {found.places[int(rest)]}") if rest else found
+        if not (rest and found.places):
+            return found
+        return found._replace(long_name=f"{found.long_name} {found.places[int(rest)]}")
 
     def modules(self) -> set[str]:
         """The modules outside this package in which the kinds of this part, and of the parts in it, are."""

@@ -1,8 +1,11 @@
 """Compiled code that was damaged in the cache is never run, and costs a compilation."""
 
+import json
 import os
+import pickle
 import subprocess
 import sys
+from hashlib import sha256
 
 import numpy as np
 import pytest
@@ -12,7 +15,8 @@ from tippetop.integrators import has_llvm, has_taylor
 if not has_llvm():
     pytest.skip("llvmlite is not installed", allow_module_level=True)
 
-from tippetop.integrators.sealed_folders import VARIABLE, kept_content
+from tippetop.integrators import sealed_folders
+from tippetop.integrators.sealed_folders import CONTENT, SEAL, VARIABLE, kept_content
 
 MANY = int(os.environ.get("TIPPETOP_FAULTS", "1"))
 """How many times more faults than in a quick run."""
@@ -95,3 +99,37 @@ def test_a_damaged_cache_is_as_good_as_none(tmp_path):
         assert len(files) == 4, "two motions, each with its seal"
         for file in files:
             file.write_bytes(damage(file.read_bytes(), rng, number))
+
+
+@pytest.mark.skipif(not has_taylor(), reason="heyoka is not installed")
+@pytest.mark.parametrize("content", [b"", b"nothing that can be loaded", pickle.dumps({})])
+def test_what_is_whole_but_cannot_be_loaded_is_made_anew(tmp_path, content):
+    swing(tmp_path)
+    for folder in tmp_path.iterdir():
+        (folder / CONTENT).write_bytes(content)
+        (folder / SEAL).write_text(json.dumps({CONTENT: sha256(content).hexdigest()}))
+    swing(tmp_path)
+
+
+@pytest.mark.skipif(not hasattr(os, "getuid"), reason="folders have no owner here")
+def test_what_another_user_made_is_not_run(tmp_path, monkeypatch):
+    monkeypatch.setenv(VARIABLE, str(tmp_path))
+    assert kept_content("code", lambda: b"made") == b"made"
+    monkeypatch.setattr(os, "getuid", lambda: tmp_path.stat().st_uid + 1)
+    assert kept_content("code", lambda: b"own") == b"own"
+
+
+def test_what_was_not_used_for_longest_goes_first(tmp_path, monkeypatch):
+    monkeypatch.setenv(VARIABLE, str(tmp_path))
+    monkeypatch.setattr(sealed_folders, "LARGEST", 2500)
+    places = {}
+    for when, name in enumerate("ab"):
+        kept_content(name, lambda: bytes(1000))
+        [places[name]] = set(tmp_path.iterdir()) - set(places.values())
+        os.utime(places[name], (when, when))
+    kept_content("a", lambda: bytes(1000))
+    kept_content("c", lambda: bytes(1000))
+    assert all(place.exists() for place in places.values())
+    kept_content("d", lambda: bytes(1000))
+    assert places["a"].exists()
+    assert not places["b"].exists()

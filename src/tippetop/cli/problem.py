@@ -13,7 +13,7 @@ from tippetop.fields import part_at
 if TYPE_CHECKING:
     from tippetop.problem import Problem
 
-TABLE, FIELD, ITEM = re.compile(r"\[(.+)]"), re.compile(r"([\w-]+) = "), re.compile(r"    \S")
+TABLE, FIELD, ITEM = re.compile(r"\[(.+)]"), re.compile(r"([\w-]+) = "), re.compile(r"    -?[\d.]")
 """Lines of TOML: that begin a table, a field, or hold an item of a list."""
 
 

@@ -60,7 +60,7 @@ def progress_bar(what: str = "") -> Iterator[Callable[..., None]]:
 
         def tell(done: float, total: float, now: str = what) -> None:
             hear()
-            draw(completed=done, total=total, description=f"{now:<28}")
+            draw(completed=done, total=total, description=now)
 
         yield tell
 
@@ -71,9 +71,17 @@ def _bar(what: str) -> Iterator[Callable[..., None]]:
         yield lambda **_: None
         return
     from rich.console import Console  # noqa: PLC0415
+    from rich.markup import escape  # noqa: PLC0415
     from rich.progress import Progress, TimeElapsedColumn  # noqa: PLC0415
+
+    def written(what: str) -> str:
+        return escape(f"{what:<28}")
 
     columns = (*Progress.get_default_columns(), TimeElapsedColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(what, total=None)
-        yield lambda **told: bar.update(task, **told)
+        task = bar.add_task(written(what), total=None)
+
+        def draw(completed: float, total: float, description: str) -> None:
+            bar.update(task, completed=completed, total=total, description=written(description))
+
+        yield draw

@@ -34,7 +34,7 @@ SLOWEST_SLIP = 1e-9
 """Slip in natural units at which it ends on one of two contacts, or on both where drilling is resisted too,
 and is not followed further."""
 
-Watched: TypeAlias = tuple[str, Callable[[Any, Row], Scalar]]
+GuardValue: TypeAlias = tuple[str, Callable[[Any, Row], Scalar]]
 """Name of a guard, and its value from a mode and the numbers of that."""
 
 
@@ -101,7 +101,7 @@ class OnTwo(IntegratedMode):
         """Those of the numbers after axis and angular momentum: none, where a mode does not say otherwise."""
         return ()
 
-    def watched(self) -> list[Watched]:
+    def guard_values(self) -> list[GuardValue]:
         """The guards of normal forces, and of rolling.
 
         While both contacts stay closed the tilt does not change, and no further surface comes to the table.
@@ -182,14 +182,14 @@ class SlidingOnTwo(OnTwo):
         """Acceleration of the centre of mass."""
         return scaled(1.0 / self.top.mass, now.force[:2])
 
-    def watched(self) -> list[Watched]:
+    def guard_values(self) -> list[GuardValue]:
         """The guards of slip's end, and of the branches of the law, too."""
-        found = [*super().watched(), *self.endings()]
+        found = [*super().guard_values(), *self.endings()]
         if is_branched(self.top.friction):
             found += [(f"{BRANCHING}{number}", _branch(number)) for number in (0, 1)]
         return found
 
-    def endings(self) -> list[Watched]:
+    def endings(self) -> list[GuardValue]:
         """The guards of slip's end: on both contacts at once where drilling is resisted too."""
         law = self.top.friction
         if slip_length(law) is not None:
@@ -235,7 +235,7 @@ def motion_on_two(form: OnTwo, first: Kind, second: Kind) -> Motion:
         return mode(numbers).rates(y)
 
     example = replace(form, top=first.example, other=second.example)
-    guards = tuple(guard(name, value) for name, value in example.watched())
+    guards = tuple(guard(name, value) for name, value in example.guard_values())
     return Motion(rates, form.size, last + form.further, guards, lasting=False)
 
 

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
-from tippetop.contact.double import OPENING, OnTwo, SlidingOnTwo, Watched
+from tippetop.contact.double import OPENING, GuardValue, OnTwo, SlidingOnTwo
 from tippetop.contact.mode import Outcome, Segment, Transition
 from tippetop.contact.sticking import split
 from tippetop.contact.surfaces import number_of
@@ -81,13 +81,13 @@ class StickingAndSliding(HeldOnTwo):
         zeta, way = slip_apart(pair), scaled(self.sign, directions_of(pair.first.axis)[1][:2])
         return pair_motion(pair, (None, way), self.rolls), slips_of(pair, (0.0 * zeta, 0.0 * zeta, zeta))
 
-    def watched(self) -> list[Watched]:
+    def guard_values(self) -> list[GuardValue]:
         """The guards of what holds the first, and of slip on the second, too."""
-        own: list[Watched] = [
+        own: list[GuardValue] = [
             (f"{SLIP}first", lambda mode, y: mode.found(y)[0].reserve(0)),
             (ENDING, lambda mode, y: mode.sign * slip_apart(ContactPair.of(*split(y), mode.tops))),
         ]
-        return own + super().watched()
+        return own + super().guard_values()
 
     def follow(self, guard: str, time: float, state: State) -> Transition:
         """A contact opens; or slip ends on the second, or begins on the first."""
@@ -135,9 +135,9 @@ class StickingOnTwo(HeldOnTwo):
         """With that."""
         return replace(super().with_tops(tops, more), least=more[0])
 
-    def watched(self) -> list[Watched]:
+    def guard_values(self) -> list[GuardValue]:
         """The guards of what holds the contacts, too."""
-        found = super().watched()
+        found = super().guard_values()
         if slip_length(self.top.friction) is None:
             found += [
                 (f"{SLIP}0", lambda mode, y: mode.found(y)[0].left(0)),
@@ -209,7 +209,7 @@ class SlipBeginningOnTwo(SlidingOnTwo):
         """Rate of xi."""
         return now.rate
 
-    def endings(self) -> list[Watched]:
+    def endings(self) -> list[GuardValue]:
         """It has just begun."""
         return []
 

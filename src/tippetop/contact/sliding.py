@@ -150,23 +150,23 @@ def sliding_motion(kind: Kind, guarded: bool, near: bool = False, held: bool = F
     def rates(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[Scalar, ...]:
         return rate(SlidingState.unpack(y), kind.top(tuple(numbers))).pack()
 
-    def watch(name: str, value: Callable[[SlidingState, Top], Scalar]) -> None:
+    def add_guard(name: str, value: Callable[[SlidingState, Top], Scalar]) -> None:
         guards.append(Guard(name, lambda y, numbers: value(SlidingState.unpack(y), kind.top(tuple(numbers)))))
 
     def force(state: SlidingState, top: Top) -> Scalar:
         return holding(state, top)[1].force[2] if held else contact(*state, top).normal_force
 
     if guarded:
-        watch(LIFT_OFF, force)
+        add_guard(LIFT_OFF, force)
     if is_set_valued(law) and near:
-        watch(STOPPING, lambda state, top: stopping_guard(state, rate(state, top), top))
-        watch(PARTING, parting_guard)
+        add_guard(STOPPING, lambda state, top: stopping_guard(state, rate(state, top), top))
+        add_guard(PARTING, parting_guard)
     elif is_set_valued(law):
-        watch(NEARING, nearing_guard)
+        add_guard(NEARING, nearing_guard)
     if hasattr(sliding_law(law), "branch_guard"):
-        watch(BRANCH, lambda state, top: branch_guard(slip_of(*state, top), top))
+        add_guard(BRANCH, lambda state, top: branch_guard(slip_of(*state, top), top))
     if held:
-        watch(ROLLING, lambda state, top: rolling_reserve(*holding(state, top), slip_of(*state, top)))
+        add_guard(ROLLING, lambda state, top: rolling_reserve(*holding(state, top), slip_of(*state, top)))
     elif kind.example.resists_rolling:
-        watch(ROLLING_STOPPING, lambda state, top: rolling_stopping_guard(state, rate(state, top), top))
+        add_guard(ROLLING_STOPPING, lambda state, top: rolling_stopping_guard(state, rate(state, top), top))
     return Motion(rates, 8, kind.numbers, (*guards, *surface_guards(kind)), lasting=not held)

@@ -108,16 +108,16 @@ def sticking_motion(kind: Kind, held: bool) -> Motion:
         point, wrench = here(y, numbers)
         return (*axis_rate(*split(y), point.top), *point.moment(wrench))
 
-    def watch(name: str, value: Callable[[ContactPoint, Wrench], Scalar]) -> None:
+    def add_guard(name: str, value: Callable[[ContactPoint, Wrench], Scalar]) -> None:
         guards.append(Guard(name, lambda y, numbers: value(*here(y, numbers))))
 
-    watch(SLIP, lambda point, wrench: slip_reserve(point.top, wrench))
+    add_guard(SLIP, lambda point, wrench: slip_reserve(point.top, wrench))
     if has_limit_branches(kind.example.friction):
-        watch(LIMIT_BRANCH, lambda point, wrench: limit_guard(point.top, wrench))
+        add_guard(LIMIT_BRANCH, lambda point, wrench: limit_guard(point.top, wrench))
     if held:
-        watch(ROLLING, lambda point, wrench: rolling_reserve(point, wrench, None))
+        add_guard(ROLLING, lambda point, wrench: rolling_reserve(point, wrench, None))
     elif kind.example.resists_rolling:
-        watch(ROLLING_STOPPING, lambda point, _: rolling_lasts(point))
+        add_guard(ROLLING_STOPPING, lambda point, _: rolling_lasts(point))
     guards += surface_guards(kind)
     return Motion(rates, size=6, parameters=kind.numbers, guards=tuple(guards), lasting=False)
 

@@ -40,17 +40,19 @@ def impact_of_patch(state: State, top: Top, integrator: Integrator | None) -> Im
     if isinstance(law, RollingResistance) or not is_set_valued(law) or slip_length(law) is None:
         return None
     body = Striking.of(state, top)
-    if getattr(integrator, "expansion", None) is None or body.point[2] >= 0.0:
+    if integrator is None or getattr(integrator, "expansion", None) is None or body.point[2] >= 0.0:
         return None
-    assert integrator is not None
     if is_near(along_table(state), top):
         return None
     top = on_branch(top, slip_of(*along_table(state), top))
     impulse, moving, steps = 0.0, as_array((*state.momentum, *state.velocity)), 0
     longest = LONGEST * top.mass * length(body.point)
     for _ in range(MOST_PIECES):
-        motion = impact_motion(top.kind, watched=True)
-        arc = next(integrator.integrate(motion, (*top.numbers, *state.axis), (impulse, moving), longest))
+        motion = impact_motion(top.kind, ending=True)
+        parameters = (*top.numbers, *state.axis)
+        arc = next(integrator.integrate(motion, parameters, (impulse, moving), longest), None)
+        if arc is None:
+            return None
         impulse, moving, steps = arc.solution.end, arc.end_state, steps + arc.steps
         if arc.guard == SINKING:
             return impact_between(state, after(state, moving.tolist()), impulse, body)._replace(steps=steps)
@@ -75,10 +77,10 @@ def impact_between(before: State, then: State, normal: float, body: Striking) ->
 
 
 @lru_cache
-def impact_motion(kind: Kind, *, watched: bool = False) -> Motion:
+def impact_motion(kind: Kind, *, ending: bool = False) -> Motion:
     """How angular momentum and velocity of a struck top change with the normal impulse.
 
-    The parameters are its numbers and its axis, which does not move. If `watched`, slip that is about to end
+    The parameters are its numbers and its axis, which does not move. If `ending`, slip that is about to end
     ends the motion.
     """
 
@@ -107,6 +109,6 @@ def impact_motion(kind: Kind, *, watched: bool = False) -> Motion:
     guards = [guard(SINKING, sinking)]
     if is_branched(kind.example.friction):
         guards.append(guard(BRANCH, branch))
-    if watched:
+    if ending:
         guards.append(guard(NEARING, lambda state, top: nearing_guard(along_table(state), top)))
     return Motion(rates, size=6, parameters=kind.numbers + 3, guards=tuple(guards))

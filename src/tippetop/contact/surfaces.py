@@ -25,16 +25,16 @@ def surface_guards(kind: Kind) -> list[Guard]:
     """Guards of the open surfaces of bodies of this kind, and of the face that one is the edge of."""
     surface, active, guards = kind.example.surface, number_of(kind.example), list[Guard]()
 
-    def watch(name: str, value: Callable[[Any, Row], Scalar]) -> None:
+    def add_guard(name: str, value: Callable[[Any, Row], Scalar]) -> None:
         guards.append(
             Guard(name, lambda y, numbers: value(kind.top(tuple(numbers[: kind.numbers])).surface, y))
         )
 
     if hasattr(acting(surface), "face_guard"):
-        watch(FACE, _face)
+        add_guard(FACE, _face)
     for number in range(len(each_surface(surface))):
         if number != active:
-            watch(f"{TOUCH}{number}", _gap_of(number))
+            add_guard(f"{TOUCH}{number}", _gap_of(number))
     return guards
 
 

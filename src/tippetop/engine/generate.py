@@ -34,6 +34,7 @@ GIVEN = {
     "tippetop.integrators.polynomials": "",
     "tippetop.integrators.iteration": "./compile.js",
     "tippetop.integrators.rates": "",
+    "tippetop.integrators.evaluation": "",
     "tippetop.integrators": "./integrate.js",
     "tippetop.validation": "./part.js",
     "tippetop.errors": "./part.js",

@@ -1643,17 +1643,17 @@ function surface_guards(kind) {
   var surface = kind.example.surface;
   var active = number_of(kind.example);
   var guards = py.list();
-  var watch = (name, value) => {
+  var add_guard = (name, value) => {
     guards.push(
       new Guard(name, (y, numbers) => value(kind.top(py.tuple(numbers.slice(0, kind.numbers))).surface, y))
     );
   };
   if (py.truth(py.hasattr(acting(surface), "face_guard"))) {
-    watch(FACE, _face);
+    add_guard(FACE, _face);
   }
   for (var number = 0; number < py.len(each_surface(surface)); number += 1) {
     if (!py.eq(number, active)) {
-      watch(`${py.str(TOUCH)}${py.str(number)}`, _gap_of(number));
+      add_guard(`${py.str(TOUCH)}${py.str(number)}`, _gap_of(number));
     }
   }
   return guards;
@@ -2442,28 +2442,28 @@ const sliding_motion = py.cached((kind, guarded, near = false, held = false) => 
   var rates = (y, numbers) => {
     return rate(SlidingState.unpack(y), kind.top(py.tuple(numbers))).pack();
   };
-  var watch = (name, value) => {
+  var add_guard = (name, value) => {
     guards.push(new Guard(name, (y, numbers) => value(SlidingState.unpack(y), kind.top(py.tuple(numbers)))));
   };
   var force = (state, top) => {
     return py.truth(held) ? holding(state, top)[1].force[2] : contact(...state, top).normal_force;
   };
   if (py.truth(guarded)) {
-    watch(LIFT_OFF, force);
+    add_guard(LIFT_OFF, force);
   }
   if (py.truth(is_set_valued(law)) && py.truth(near)) {
-    watch(STOPPING, (state, top) => stopping_guard(state, rate(state, top), top));
-    watch(PARTING, parting_guard);
+    add_guard(STOPPING, (state, top) => stopping_guard(state, rate(state, top), top));
+    add_guard(PARTING, parting_guard);
   } else if (py.truth(is_set_valued(law))) {
-    watch(NEARING, nearing_guard);
+    add_guard(NEARING, nearing_guard);
   }
   if (py.truth(py.hasattr(sliding_law(law), "branch_guard"))) {
-    watch(BRANCH, (state, top) => branch_guard(slip_of(...state, top), top));
+    add_guard(BRANCH, (state, top) => branch_guard(slip_of(...state, top), top));
   }
   if (py.truth(held)) {
-    watch(ROLLING, (state, top) => rolling_reserve(...holding(state, top), slip_of(...state, top)));
+    add_guard(ROLLING, (state, top) => rolling_reserve(...holding(state, top), slip_of(...state, top)));
   } else if (py.truth(kind.example.resists_rolling)) {
-    watch(ROLLING_STOPPING, (state, top) => rolling_stopping_guard(state, rate(state, top), top));
+    add_guard(ROLLING_STOPPING, (state, top) => rolling_stopping_guard(state, rate(state, top), top));
   }
   return new Motion(rates, 8, kind.numbers, [...guards, ...surface_guards(kind)], !py.truth(held));
 });
@@ -2551,17 +2551,17 @@ const sticking_motion = py.cached((kind, held) => {
     var [point, wrench] = here(y, numbers);
     return [...axis_rate(...split(y), point.top), ...point.moment(wrench)];
   };
-  var watch = (name, value) => {
+  var add_guard = (name, value) => {
     guards.push(new Guard(name, (y, numbers) => value(...here(y, numbers))));
   };
-  watch(SLIP, (point, wrench) => slip_reserve(point.top, wrench));
+  add_guard(SLIP, (point, wrench) => slip_reserve(point.top, wrench));
   if (py.truth(has_limit_branches(kind.example.friction))) {
-    watch(LIMIT_BRANCH, (point, wrench) => limit_guard(point.top, wrench));
+    add_guard(LIMIT_BRANCH, (point, wrench) => limit_guard(point.top, wrench));
   }
   if (py.truth(held)) {
-    watch(ROLLING, (point, wrench) => rolling_reserve(point, wrench, null));
+    add_guard(ROLLING, (point, wrench) => rolling_reserve(point, wrench, null));
   } else if (py.truth(kind.example.resists_rolling)) {
-    watch(ROLLING_STOPPING, (point, _) => rolling_lasts(point));
+    add_guard(ROLLING_STOPPING, (point, _) => rolling_lasts(point));
   }
   guards = py.add(guards, surface_guards(kind));
   return new Motion(rates, 6, kind.numbers, py.tuple(guards), false);
@@ -5493,10 +5493,9 @@ function impact_of_patch(state, top, integrator) {
     return null;
   }
   var body = Striking.of(state, top);
-  if (py.getattr(integrator, "expansion", null) === null || body.point[2] >= 0.0) {
+  if (integrator === null || py.getattr(integrator, "expansion", null) === null || body.point[2] >= 0.0) {
     return null;
   }
-  py.assert(integrator !== null);
   if (py.truth(is_near(along_table(state), top))) {
     return null;
   }
@@ -5507,9 +5506,11 @@ function impact_of_patch(state, top, integrator) {
   var longest = py.mul(py.mul(LONGEST_of_striking, top.mass), length(body.point));
   for (var turn = 0; turn < MOST_PIECES; turn += 1) {
     var motion = impact_motion(top.kind, true);
-    var arc = py.next(
-      integrator.integrate(motion, [...top.numbers, ...state.axis], [impulse, moving], longest)
-    );
+    var parameters = [...top.numbers, ...state.axis];
+    var arc = py.next(integrator.integrate(motion, parameters, [impulse, moving], longest), null);
+    if (arc === null) {
+      return null;
+    }
     [impulse, moving, steps] = [arc.solution.end, arc.end_state, py.add(steps, arc.steps)];
     if (py.eq(arc.guard, SINKING)) {
       return impact_between(state, after(state, py.tolist(moving)), impulse, body)._replace({ steps: steps });
@@ -5537,7 +5538,7 @@ function impact_between(before, then, normal, body) {
 }
 
 /** How angular momentum and velocity of a struck top change with the normal impulse. */
-const impact_motion = py.cached((kind, watched = false) => {
+const impact_motion = py.cached((kind, ending = false) => {
   var read = (y, numbers) => {
     var [first, second, third] = numbers.slice(kind.numbers);
     var state = new State([first, second, third], [y[0], y[1], y[2]], [y[3], y[4], y[5]], 0.0);
@@ -5567,7 +5568,7 @@ const impact_motion = py.cached((kind, watched = false) => {
   if (py.truth(is_branched(kind.example.friction))) {
     guards.push(guard(BRANCH, branch));
   }
-  if (py.truth(watched)) {
+  if (py.truth(ending)) {
     guards.push(guard(NEARING, (state, top) => nearing_guard(along_table(state), top)));
   }
   return new Motion(rates, 6, py.add(kind.numbers, 3), py.tuple(guards));
@@ -6387,7 +6388,7 @@ class OnTwo extends IntegratedMode {
     return [];
   }
   /** The guards of normal forces, and of rolling. */
-  watched() {
+  guard_values() {
     var found = [0, 1].map((number) => [`${py.str(OPENING)}${py.str(number)}`, _normal(number)]);
     if (py.truth(this.stopped)) {
       found.push([ROLLING, (mode, y) => mode.found(y)[0].rolling_reserve]);
@@ -6463,8 +6464,8 @@ class SlidingOnTwo extends OnTwo {
     return scaled(py.div(1.0, this.top.mass), now.force.slice(0, 2));
   }
   /** The guards of slip's end, and of the branches of the law, too. */
-  watched() {
-    var found = [...super.watched(), ...this.endings()];
+  guard_values() {
+    var found = [...super.guard_values(), ...this.endings()];
     if (py.truth(is_branched(this.top.friction))) {
       found = py.add(
         found,
@@ -6527,7 +6528,7 @@ const motion_on_two = py.cached((form, first, second) => {
     return mode(numbers).rates(y);
   };
   var example = py.replace(form, { top: first.example, other: second.example });
-  var guards = py.tuple([...example.watched()].map(([name, value]) => guard(name, value)));
+  var guards = py.tuple([...example.guard_values()].map(([name, value]) => guard(name, value)));
   return new Motion(rates, form.size, py.add(last, form.further), guards, false);
 });
 
@@ -6606,7 +6607,7 @@ class StickingAndSliding extends HeldOnTwo {
     ];
   }
   /** The guards of what holds the first, and of slip on the second, too. */
-  watched() {
+  guard_values() {
     var own = [
       [`${py.str(SLIP_of_double_sticking)}first`, (mode, y) => mode.found(y)[0].reserve(0)],
       [
@@ -6614,7 +6615,7 @@ class StickingAndSliding extends HeldOnTwo {
         (mode, y) => py.mul(mode.sign, slip_apart(ContactPair.of(...split(y), mode.tops)))
       ]
     ];
-    return py.add(own, super.watched());
+    return py.add(own, super.guard_values());
   }
   /** A contact opens; or slip ends on the second, or begins on the first. */
   follow(guard, time, state) {
@@ -6665,8 +6666,8 @@ class StickingOnTwo extends HeldOnTwo {
     return py.replace(super.with_tops(tops, more), { least: more[0] });
   }
   /** The guards of what holds the contacts, too. */
-  watched() {
-    var found = super.watched();
+  guard_values() {
+    var found = super.guard_values();
     if (slip_length(this.top.friction) === null) {
       found = py.add(
         found,

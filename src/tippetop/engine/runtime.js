@@ -283,6 +283,7 @@ export function put(all, place, value) {
 /** A slice of a sequence, every so many, or backwards. */
 export function slice(all, from, to, step) {
   const whole = Array.isArray(all) ? all : [...all];
+  if (step < -1 || (step === -1 && (from < 0 || to < 0))) throw new RangeError("such a slice is not known here");
   if (step === -1) return whole.slice(to === null ? 0 : to + 1, from === null ? undefined : from + 1).reverse();
   const found = whole.slice(from ?? 0, to ?? undefined);
   return step > 1 ? found.filter((_, place) => place % step === 0) : found;

@@ -144,7 +144,7 @@ class DenseSolution:
 
     @classmethod
     def in_time(cls, knots: ArrayLike, terms: ArrayLike) -> "DenseSolution":
-        """The solution by coefficients in powers of the time since a step's start, an array that it takes."""
+        """The solution by coefficients in powers of the time since a step's start, which are overwritten."""
         ends, known = np.asarray(knots, dtype=float), np.asarray(terms, dtype=float)
         with np.errstate(over="ignore"):  # the step of a motion that stands still has no bound
             lengths = powers(ends[1:] - ends[:-1], known.shape[2])

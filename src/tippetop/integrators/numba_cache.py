@@ -1,6 +1,7 @@
 """Functions compiled by numba once, and kept between processes."""
 
 import math
+import os
 import sys
 from collections.abc import Mapping
 from hashlib import sha256
@@ -33,6 +34,8 @@ def _functions(source: str, signatures: Mapping[str, Any], folder: Path | None) 
     sys.modules[module.__name__], place = module, module.__dict__
     place["math"] = math
     path = (folder or Path()) / SOURCE
+    # numba takes code only from where it could put some.
+    cached = folder is not None and os.access(folder, os.W_OK)
     if folder is not None and not path.exists():
         path.write_text(source, encoding="utf-8")
     exec(compile(source, str(path), "exec"), place)
@@ -41,5 +44,5 @@ def _functions(source: str, signatures: Mapping[str, Any], folder: Path | None) 
             place[name] = numba.njit(error_model="numpy")(made)
     for name, signature in signatures.items():
         made = place[name].py_func
-        place[name] = numba.njit(signature, error_model="numpy", cache=folder is not None)(made)
+        place[name] = numba.njit(signature, error_model="numpy", cache=cached)(made)
     return {name: place[name] for name in signatures}

@@ -22,8 +22,9 @@ VARIABLE = "TIPPETOP_CACHE"
 SEAL, CONTENT = "seal.json", "content"
 """The digests of all else in a folder, and what is in it where that is one file."""
 
-PREFIX, MOST = "code-", 256
-"""How the folders are called, and how many there are at most: then the oldest goes."""
+PREFIX, MOST, LARGEST = "code-", 256, 2**27
+"""How the folders are called, and how many there are at most, and bytes in them, when one more is made: then
+those go that were not used for longest."""
 
 MAKING = "making-"
 """How those are called that are not yet whole: with this and the number of the process that makes them."""
@@ -47,7 +48,11 @@ def kept(made: object, use: Callable[[Path | None], Found]) -> Found:
     if place != "off" and find_spec("llvmlite") is not None:
         with contextlib.suppress(OSError):
             folder = Path(place) / (PREFIX + _digest(repr((made, *_processor())).encode())[:32])
+            if folder.exists() and not _is_own(folder):
+                return use(None)
             if _is_whole(folder):
+                with contextlib.suppress(OSError):
+                    os.utime(folder)
                 return use(folder)
             shutil.rmtree(folder, ignore_errors=True)
             return _made(folder, use)
@@ -79,8 +84,6 @@ def _processor() -> tuple[str, ...]:
 def _made(folder: Path, use: Callable[[Path | None], Found]) -> Found:
     """Compile in a folder beside, which takes its name when it is whole."""
     folder.parent.mkdir(parents=True, exist_ok=True)
-    for old in sorted(folder.parent.glob(PREFIX + "*"), key=os.path.getmtime)[: -MOST + 1]:
-        shutil.rmtree(old, ignore_errors=True)
     _clear(folder.parent)
     beside = Path(tempfile.mkdtemp(prefix=f"{MAKING}{os.getpid()}-", dir=folder.parent))
     try:
@@ -94,18 +97,28 @@ def _made(folder: Path, use: Callable[[Path | None], Found]) -> Found:
 
 
 def _clear(place: Path) -> None:
-    """Remove what processes have left that are no more: interrupted, or killed, while they compiled."""
+    """Remove what is too much, and what processes have left that are no more: killed while they compiled."""
+    size = 0
+    for number, old in enumerate(sorted(place.glob(PREFIX + "*"), key=os.path.getmtime, reverse=True), 1):
+        size += sum(path.stat().st_size for path in old.iterdir())
+        if number >= MOST or size > LARGEST:
+            shutil.rmtree(old, ignore_errors=True)
     for left in place.glob(MAKING + "*"):
         process = left.name.split("-")[1]
         if not (process.isdecimal() and psutil.pid_exists(int(process))):
             shutil.rmtree(left, ignore_errors=True)
 
 
+def _is_own(folder: Path) -> bool:
+    """Whether this user made a folder: code of others is not run. Only its maker can write to it."""
+    return not hasattr(os, "getuid") or folder.stat().st_uid == os.getuid()
+
+
 def _is_whole(folder: Path) -> bool:
     """Whether a folder has what was put there, as it was."""
     try:
         return bool(json.loads((folder / SEAL).read_text(encoding="utf-8")) == _digests(folder))
-    except (OSError, ValueError):
+    except (OSError, ValueError, RecursionError):
         return False
 
 

@@ -4,9 +4,10 @@ import math
 import pickle
 import threading
 from array import array
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
+from inspect import getsource
 from typing import Any
 
 import heyoka as hy
@@ -35,9 +36,9 @@ GUARDED = 2.0**-5
 guard's zero needs fewer digits than they do, since the state there is theirs: by itself a guard would cost
 steps."""
 
-# What it says of guards on the terminal, its makers understand.
+# For the whole process: what it says of guards on the terminal, its makers understand; and what is compiled
+# is kept by this package, whole or not at all.
 hy.set_logger_level_critical()
-# What is compiled is kept by this package, whole or not at all.
 hy.llvm_state.set_diskcache_enabled(False)
 
 
@@ -135,13 +136,18 @@ def _compiled(motion: Motion, tolerance: float) -> _Compiled:
             compact_mode=not motion.lasting,
         )
 
-    return _Compiled(_kept(make, (rates, guards, tolerance, motion.lasting)))
-
-
-def _kept(make: Callable[[], Any], made: tuple[Any, ...]) -> Any:
-    """What heyoka makes of some expressions and numbers, or made of them in another process."""
-    known = hy.__version__, pickle.dumps(made)
-    return pickle.loads(heard(lambda: kept_content(known, lambda: pickle.dumps(make()))))
+    # Of two installations of one version, each compiles for itself.
+    made = (
+        pickle.dumps((rates, guards, tolerance, motion.lasting)),
+        getsource(make),
+        hy.__version__,
+        hy.__file__,
+    )
+    content = heard(lambda: kept_content(made, lambda: pickle.dumps(make())))
+    try:
+        return _Compiled(pickle.loads(content))
+    except Exception:  # noqa: BLE001 - whatever is wrong with what was kept, it can be made anew
+        return _Compiled(make())
 
 
 def _symbols(size: int, parameters: int) -> tuple[list[Any], list[Any]]:

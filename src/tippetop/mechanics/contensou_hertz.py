@@ -61,7 +61,7 @@ SLIDING = ForceAndTorque(
         0.033099956109968943,
     ),
 )
-"""The branch where slip prevails, in x = cos(sig), see `HertzSlidingLaw`; relative error 4e-17."""
+"""The branch where slip prevails, in x = cos(sig), see `HertzSlidingLaw`; relative error 8e-17."""
 
 
 LIMIT: tuple[tuple[float, ...], ...] = (

@@ -52,7 +52,7 @@ class Sweep(Part):
     """Length of every run, s."""
     tolerance: Annotated[Number, Field(ge=LEAST_TOLERANCE, le=1e-3)] = DEFAULT_TOLERANCE
     """Relative error per step."""
-    settled: Annotated[Number, Field(ge=SETTLED_RANGE[0], le=SETTLED_RANGE[1])] | None = None
+    settled: Annotated[Number | None, Field(ge=SETTLED_RANGE[0], le=SETTLED_RANGE[1])] = None
     """A run ends once its energy holds the tilt within this for good, rad (see
     `tippetop.theory.prediction.is_held`); None to follow every run for its whole duration."""
 

@@ -12,6 +12,7 @@ from contextlib import contextmanager
 from functools import lru_cache
 from importlib import import_module
 from importlib.util import find_spec
+from numbers import Integral
 from typing import Any, TypeAlias
 
 from numpy.typing import NDArray
@@ -112,7 +113,8 @@ def need_workers(sweep: Sweep, workers: int | None, scheduler: str | None) -> No
 
 def _modules(sweep: Sweep, workers: int | None, scheduler: str | None) -> tuple[str, ...]:
     """The modules that a worker has to import, for kinds of parts that are not of this package."""
-    if workers is not None and workers < 1:
+    known = isinstance(workers, Integral) and not isinstance(workers, bool) and workers >= 1
+    if not (workers is None or known):
         raise InvalidInput("workers", workers, "a whole number, at least 1")
     modules = sweep.problem.modules()
     if HERE in modules and (scheduler is not None or workers not in (None, 1)):
@@ -185,13 +187,16 @@ def _cluster(address: str) -> Iterator[Any]:
     if find_spec("distributed") is None:
         raise Unavailable("a scheduler needs dask.distributed: pip install 'tippetop[sweep]'")
     from distributed import Client  # noqa: PLC0415 - optional, and slow to import
+    from distributed.comm.addressing import get_address_host_port  # noqa: PLC0415
     from distributed.utils import silence_logging_cmgr  # noqa: PLC0415
 
     # What goes wrong is said here, in a sentence.
     with silence_logging_cmgr(logging.CRITICAL):
         try:
+            # A client that is asked for no address tries for long, and complains at its end.
+            get_address_host_port(address)
             client: Any = Client(address, timeout=PATIENCE, set_as_default=False)  # type: ignore[no-untyped-call]
-        except (OSError, ValueError) as error:
+        except (OSError, TypeError, ValueError) as error:
             raise InvalidInput(
                 "scheduler", address, f"the address of a running scheduler ({error})"
             ) from None

@@ -49,12 +49,12 @@ class TipMotion:
         """Take in the least values of a step of every launch, shape (3, n); inf for those that took none."""
         np.fmin(self.lately, least, out=self.lately)
 
-    def take(self, which: int, lanes: Indices, course: Polynomials) -> None:
-        """Take in the course of what may be least on some lanes; a lane may be there several times."""
-        np.fmin.at(self.lately[which], lanes, course.lowest)
-        lower = np.flatnonzero(course.floor <= self.least[which, lanes])
+    def take(self, which: int, lanes: Indices, polynomials: Polynomials) -> None:
+        """Take in polynomials of what may be least on some lanes; a lane may be there several times."""
+        np.fmin.at(self.lately[which], lanes, polynomials.lowest)
+        lower = np.flatnonzero(polynomials.floor <= self.least[which, lanes])
         if len(lower):
-            np.fmin.at(self.lately[which], lanes[lower], course.some(lower).refined_least()[1])
+            np.fmin.at(self.lately[which], lanes[lower], polynomials.some(lower).refined_least()[1])
 
     def see(self, launches: Indices, time: Array, tip: Polynomials) -> None:
         """Take in n_z as polynomials in time since `time`, shape (n,)."""

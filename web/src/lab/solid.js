@@ -1,4 +1,4 @@
-// What a printer makes of a top: its profile turned into a closed surface, in millimetres, as lathe/mesh.py does.
+// What a printer makes of a top: its profile turned into a closed surface, in millimetres, as export/solid.py does.
 
 import { edge } from "../run/arc.js";
 
