@@ -10,6 +10,7 @@ import json
 import warnings
 from enum import IntEnum
 from pathlib import Path
+from threading import Lock
 from typing import Any
 
 from tippetop import __version__
@@ -34,6 +35,9 @@ class Status(IntEnum):
 
 
 STATUS = Variable("whether the cell is computed", dtype="int8", flags=meanings(Status))
+
+_alone = Lock()
+"""Warnings are silenced for all threads at once, which therefore do so one after another."""
 
 
 def lay_out(path: Path, sweep: Sweep) -> None:
@@ -67,7 +71,7 @@ def lay_out(path: Path, sweep: Sweep) -> None:
             attributes=_plain(kind.attributes) | _coordinates(sweep),
             compressors=checked,
         )
-    with warnings.catch_warnings():
+    with _alone, warnings.catch_warnings():
         # Zarr warns that readers other than Python's may pass over this; they then read every array's own.
         warnings.simplefilter("ignore")
         zarr.consolidate_metadata(path)
