@@ -1,6 +1,6 @@
 // What is what: the model, every symbol, the keys.
 
-import { useEffect, useRef } from "preact/hooks";
+import { useLayoutEffect, useRef } from "preact/hooks";
 
 import { part, t } from "./i18n.js";
 import { QUANTITIES } from "./plots.js";
@@ -9,7 +9,7 @@ const FIELDS = ["launch.spin", "launch.tilt", "friction.mu", "friction.patch_rad
 
 export function Help({ onClose }) {
   const dialog = useRef();
-  useEffect(() => {
+  useLayoutEffect(() => {
     const last = document.activeElement;
     dialog.current.showModal();
     return () => last?.focus();
