@@ -67,8 +67,10 @@ BLOCK = """\
 br i1 %any, label %{name}, label %none
 {name}:"""
 
+# What does not fit into registers lies on the stack in whole cache lines: two lines a number cost twice.
 FRAME = """\
-define void @{name}(ptr noalias %y, ptr noalias %p, ptr noalias %out, i64 %count) {{
+define void @{name}(ptr noalias %y, ptr noalias %p, ptr noalias %out, i64 %count)
+alignstack(64) {{
 entry:
   %any = icmp ult i64 0, {count}
   br i1 %any, label %launches, label %none
@@ -86,7 +88,8 @@ none:
 """
 
 AGAIN = """\
-define i64 @{name}(ptr noalias %y, ptr noalias %p, ptr noalias %out, double %enough, i64 %most) {{
+define i64 @{name}(ptr noalias %y, ptr noalias %p, ptr noalias %out, double %enough, i64 %most)
+alignstack(64) {{
 entry:
   %any = icmp ult i64 0, %most
   br i1 %any, label %turn, label %none
