@@ -1,9 +1,9 @@
 """Experiments: the computations that figures and claims are made from, each giving one dataset."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from importlib.metadata import version
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import xarray as xr
 
@@ -50,9 +50,6 @@ class Bench(dict[str, Experiment]):
         return register
 
 
-Variable = tuple[tuple[str, ...], object, dict[str, str]]
-
-
 _ALONG = {
     "spin": ("rad s-1", "spin at launch"),
     "tilt": ("rad", "tilt at launch"),
@@ -66,11 +63,26 @@ _ALONG = {
 """Units and meanings of what experiments go over."""
 
 
-def along(**values: object) -> dict[str, Variable]:
-    """Coordinates by what they are, and perhaps what of, as in spin and spin_listing."""
-    return {name: variable(each, *_ALONG[name.partition("_")[0]], name) for name, each in values.items()}
+def dataset(
+    coordinates: Mapping[str, Any], attrs: Mapping[str, Any] | None = None, /, **variables: Any
+) -> xr.Dataset:
+    """A dataset whose variables are told as values, unit, meaning and dimensions, as `variable` takes them.
+
+    Coordinates are told as values, unit and meaning, or as values alone: words, or what `_ALONG` knows by
+    what it is, and perhaps what of, as in spin and spin_listing.
+    """
+    own = {name: told for name, told in coordinates.items() if isinstance(told, tuple)}
+    kinds = {name: _ALONG.get(name.partition("_")[0]) for name in coordinates}
+    own |= {name: (coordinates[name], *kind) for name, kind in kinds.items() if kind and name not in own}
+    return xr.Dataset(
+        {name: variable(*told) for name, told in variables.items()},
+        {**coordinates, **{name: variable(*told, name) for name, told in own.items()}},
+        attrs,
+    )
 
 
-def variable(values: object, units: str, long_name: str, *dimensions: str) -> Variable:
+def variable(
+    values: object, units: str, long_name: str, *dimensions: str
+) -> tuple[tuple[str, ...], object, dict[str, str]]:
     """A variable of a dataset with its unit and its meaning."""
     return (dimensions, values, {"units": units, "long_name": long_name})

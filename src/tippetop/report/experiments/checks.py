@@ -6,7 +6,7 @@ import xarray as xr
 from tippetop.frictions import ViscousFriction
 from tippetop.presets import report_problem
 from tippetop.problem import Problem
-from tippetop.report.experiment import Bench, variable
+from tippetop.report.experiment import Bench, dataset
 from tippetop.report.experiments.runs import on_table
 from tippetop.run import simulate
 
@@ -21,13 +21,11 @@ def _units(quick: bool) -> xr.Dataset:
     length, time = np.array([-1, 1]), np.array([-2, 2])
     lengths = [_tilt_after(_in_centimetres(report, int(power)), seconds) for power in length]
     times = [_tilt_after(_in_tenths(report, int(power)), 10.0 * seconds) for power in time]
-    return xr.Dataset(
-        {
-            "theta": variable(_tilt_after(report, seconds), "rad", "tilt after 2 s, in metres and seconds"),
-            "theta_in_centimetres": variable(lengths, "rad", "the same in centimetres", "power_of_length"),
-            "theta_in_tenths": variable(times, "rad", "the same in tenths of a second", "power_of_time"),
-        },
+    return dataset(
         {"power_of_length": length, "power_of_time": time},
+        theta=(_tilt_after(report, seconds), "rad", "tilt after 2 s, in metres and seconds"),
+        theta_in_centimetres=(lengths, "rad", "the same in centimetres", "power_of_length"),
+        theta_in_tenths=(times, "rad", "the same in tenths of a second", "power_of_time"),
     )
 
 
@@ -72,7 +70,4 @@ def _block(quick: bool) -> xr.Dataset:
     speeds = 0.5 * (edges[:-1] + edges[1:])
     slowing = gravity * np.array([law.traction((v, 0.0), (0.0, 0.0, 0.0)).force[0] for v in speeds])
     distance = float(np.sum(speeds * np.diff(edges) / slowing))
-    return xr.Dataset(
-        {"distance": variable(distance, "m", "distance to rest")},
-        attrs={"mu_s_per_m": mu, "speed_m_per_s": 1.0},
-    )
+    return dataset({}, {"mu_s_per_m": mu, "speed_m_per_s": 1.0}, distance=(distance, "m", "distance to rest"))

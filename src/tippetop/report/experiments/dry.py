@@ -18,7 +18,7 @@ from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.top import natural, natural_state, natural_units
 from tippetop.presets import report_problem
 from tippetop.problem import Contact, Launch, Problem
-from tippetop.report.experiment import Bench, along, variable
+from tippetop.report.experiment import Bench, dataset
 from tippetop.report.experiments.runs import happenings, stopping
 from tippetop.run import simulate
 
@@ -99,21 +99,22 @@ def _rolling(quick: bool) -> xr.Dataset:
     below = simulate(less, NUTATION, samples=2, phase_limit=1)
     slipping = with_friction(main, CoulombFriction(mu=SLIPPERY))
     slips = simulate(slipping, 0.3 if quick else 3.0, **WITHOUT_COMPILING)
-    return xr.Dataset(
+    return dataset(
         {
-            "friction_needed": variable(least, "1", "least mu for rolling", "tilt", "spin"),
-            "needed_main": variable(needed, "1", "least mu for rolling, main launch"),
-            "theta_held": variable([run["theta"].values for run in held], "rad", "tilt", "held", "time"),
-            "slips_held": variable(slips_held, "1", "times of slipping", "held"),
-            "lost_held": variable(lost, "1", "energy lost, relative", "held"),
-            "held_below": variable(float(below["end_time"]), "s", "how long a little less holds it"),
-            "theta_slips": variable(slips["theta"].values, "rad", "tilt", "time_slips"),
-        },
-        {
-            **along(tilt=tilts, spin=spins, time=times, time_slips=slips["time"].values),
-            "held": variable(coefficients, "1", "friction coefficient", "held"),
+            "tilt": tilts,
+            "spin": spins,
+            "time": times,
+            "time_slips": slips["time"].values,
+            "held": (coefficients, "1", "friction coefficient"),
         },
         {"spin_rad_per_s": SPIN, "tilt_rad": TILT, "slippery_mu": SLIPPERY},
+        friction_needed=(least, "1", "least mu for rolling", "tilt", "spin"),
+        needed_main=(needed, "1", "least mu for rolling, main launch"),
+        theta_held=([run["theta"].values for run in held], "rad", "tilt", "held", "time"),
+        slips_held=(slips_held, "1", "times of slipping", "held"),
+        lost_held=(lost, "1", "energy lost, relative", "held"),
+        held_below=(float(below["end_time"]), "s", "how long a little less holds it"),
+        theta_slips=(slips["theta"].values, "rad", "tilt", "time_slips"),
     )
 
 
@@ -149,16 +150,14 @@ def _cohen(quick: bool) -> xr.Dataset:
     stick = float(happenings(exact, "stick")[0])
     sticking = exact["energy"].values[times > stick]
     kept = float(np.ptp(sticking) / sticking[-1])
-    return xr.Dataset(
-        {
-            "theta_stepped": variable(tilts, "rad", "tilt, stepped", "step", "time"),
-            "slowest": variable(slowest, "m s-1", "least slip speed at a step", "step"),
-            "theta": variable(exact["theta"].values, "rad", "tilt, exact", "time"),
-            "sticks": variable(stick, "s", "when slip ends"),
-            "slips_again": variable(len(happenings(exact, "slip")), "1", "how often it slips again"),
-            "energy_kept": variable(kept, "1", "largest relative change of the energy while it sticks"),
-        },
-        along(step=steps, time=times),
+    return dataset(
+        {"step": steps, "time": times},
+        theta_stepped=(tilts, "rad", "tilt, stepped", "step", "time"),
+        slowest=(slowest, "m s-1", "least slip speed at a step", "step"),
+        theta=(exact["theta"].values, "rad", "tilt, exact", "time"),
+        sticks=(stick, "s", "when slip ends"),
+        slips_again=(len(happenings(exact, "slip")), "1", "how often it slips again"),
+        energy_kept=(kept, "1", "largest relative change of the energy while it sticks"),
     )
 
 
@@ -178,14 +177,12 @@ def _smoothed(quick: bool) -> xr.Dataset:
     ]
     exact = simulate(with_friction(base, CoulombFriction(mu=SMOOTHED)), float(windows.max()), samples=2001)
     turns, slopes = float(exact["turns_over"]), np.diff(np.log(times)) / np.diff(np.log(eps))
-    return xr.Dataset(
-        {
-            "turning_time": variable(times, "s", "first tilt of more than pi/2", "eps"),
-            "last_exponent": variable(slopes[-1], "1", "d ln t / d ln eps at the least eps"),
-            "highest": variable(float(exact["theta"].max()), "rad", "largest tilt on exact Coulomb friction"),
-            "followed": variable(float(exact["end_time"]), "s", "how long that top was followed"),
-            "exact_turns": variable(turns, "s", "when that top turns over; nan if never"),
-        },
-        {"eps": variable(eps, "m s-1", "slip speed below which friction falls to zero", "eps")},
+    return dataset(
+        {"eps": (eps, "m s-1", "slip speed below which friction falls to zero")},
         {"mu": SMOOTHED, "spin_rad_per_s": SMOOTHED_SPIN},
+        turning_time=(times, "s", "first tilt of more than pi/2", "eps"),
+        last_exponent=(slopes[-1], "1", "d ln t / d ln eps at the least eps"),
+        highest=(float(exact["theta"].max()), "rad", "largest tilt on exact Coulomb friction"),
+        followed=(float(exact["end_time"]), "s", "how long that top was followed"),
+        exact_turns=(turns, "s", "when that top turns over; nan if never"),
     )

@@ -15,7 +15,7 @@ from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import VERTICAL, Scalar, Vector, cross, dot, scale
 from tippetop.presets import REPORT, report_problem
 from tippetop.problem import Problem
-from tippetop.report.experiment import Bench, variable
+from tippetop.report.experiment import Bench, dataset
 from tippetop.report.experiments.runs import on_table
 from tippetop.report.listing import VARIABLES
 from tippetop.run import simulate
@@ -50,11 +50,12 @@ def _printed(quick: bool) -> xr.Dataset:
     falling = now["velocity"].values[:, 2]
     rising = _STENCIL @ _arm_height(run["theta"].values, top).reshape(-1, 5).T
     misses["(s + a).z = 0"] = np.abs(falling + rising).max() / np.abs(falling).max()
-    data = {
-        "miss": variable(list(misses.values()), "1", "largest relative difference from the run", "equation"),
+    return dataset(
+        {"equation": list(misses)},
+        {"problem": problem.to_json(), "instant_s": _INSTANT},
+        miss=(list(misses.values()), "1", "largest relative difference from the run", "equation"),
         **_at_one_instant(run, states, published, rates, problem),
-    }
-    return xr.Dataset(data, {"equation": list(misses)}, {"problem": problem.to_json(), "instant_s": _INSTANT})
+    )
 
 
 def _at_one_instant(
@@ -72,19 +73,21 @@ def _at_one_instant(
     over = body.I1 / bracket / (body.I1 * s)
     read = "rate of phi' by (2.9) as printed, read as I1"
     return {
-        "torque_printed": variable(torque["printed"], "N m", "second component of F x a, as (2.7) has it"),
-        "torque_listing": variable(by_listing, "N m", "second component of L' by (2.8)"),
-        "torque": variable(float(_STENCIL @ momentum @ turning), "N m", "second component of L' of the run"),
-        "torque_turned": variable(torque["turned"], "N m", "second component of a x F, F with the weight"),
-        "torque_corrected": variable(torque["corrected"], "N m", "second component of a x F without it"),
-        "power_printed": variable(torque["power_printed"], "W", "power of the contact force with F x a"),
-        "power": variable(torque["power"], "W", "power of the contact force with a x F"),
-        "precession_printed": variable(over, "rad s-2", f"{read} over the bracket over I1 sin(theta)"),
-        "precession_printed_product": variable(
-            body.I1 * listed[3], "rad s-2", f"{read} times the bracket over I1 sin(theta)"
+        "torque_printed": (torque["printed"], "N m", "second component of F x a, as (2.7) has it"),
+        "torque_listing": (by_listing, "N m", "second component of L' by (2.8)"),
+        "torque": (float(_STENCIL @ momentum @ turning), "N m", "second component of L' of the run"),
+        "torque_turned": (torque["turned"], "N m", "second component of a x F, F with the weight"),
+        "torque_corrected": (torque["corrected"], "N m", "second component of a x F without it"),
+        "power_printed": (torque["power_printed"], "W", "power of the contact force with F x a"),
+        "power": (torque["power"], "W", "power of the contact force with a x F"),
+        "precession_printed": (over, "rad s-2", f"{read} over the bracket over I1 sin(theta)"),
+        "precession_printed_product": (
+            body.I1 * listed[3],
+            "rad s-2",
+            f"{read} times the bracket over I1 sin(theta)",
         ),
-        "precession_listing": variable(listed[3], "rad s-2", "rate of phi' by the listing"),
-        "precession": variable(rates[3, k], "rad s-2", "d phi'/dt of the converged run"),
+        "precession_listing": (listed[3], "rad s-2", "rate of phi' by the listing"),
+        "precession": (rates[3, k], "rad s-2", "d phi'/dt of the converged run"),
     }
 
 
@@ -172,11 +175,11 @@ def _steady(quick: bool) -> xr.Dataset:
         "slip": ("1", "slip speed, over R omega3"),
         "slip_rate": ("1", "rates of its components, over R omega3 phi'"),
     }
-    data = {
-        name: variable(table[i], units, long_name, "body")
-        for i, (name, (units, long_name)) in enumerate(names.items())
-    }
-    return xr.Dataset(data, {"body": [name for name, _, _ in tops]}, {"duration_s": duration})
+    return dataset(
+        {"body": [name for name, _, _ in tops]},
+        {"duration_s": duration},
+        **{name: (row, *meaning, "body") for row, (name, meaning) in zip(table, names.items(), strict=True)},
+    )
 
 
 def _residuals(y: list[float], top: Top) -> tuple[float, float]:
@@ -208,9 +211,9 @@ def _rotation(quick: bool) -> xr.Dataset:
         _rotation_misses(random.uniform(0.3, 1.3, 3), random.normal(size=3), random.normal(size=3))
         for _ in range(20)
     ]
-    return xr.Dataset(
-        {"miss": variable(np.max(misses, axis=0), "1", "largest relative difference", "equation")},
+    return dataset(
         {"equation": ["(2.1)", "(2.2)", "(2.6)"]},
+        miss=(np.max(misses, axis=0), "1", "largest relative difference", "equation"),
     )
 
 

@@ -8,7 +8,7 @@ import xarray as xr
 
 from tippetop.presets import report_problem
 from tippetop.problem import Problem
-from tippetop.report.experiment import Bench, along, variable
+from tippetop.report.experiment import Bench, dataset
 from tippetop.report.experiments.runs import WINDOW, flight_readings, stopping, swept, unilateral
 from tippetop.run import simulate
 
@@ -79,12 +79,10 @@ def _onsets(field: str, values: np.ndarray, windows: tuple[float, ...], quick: b
     scans = list(zip(values, times, strict=True))
     onsets = [[onset(window, value, row) for value, row in scans] for window in windows]
     onset_name = "least spin of the scan that leaves the table, refined by halving"
-    return xr.Dataset(
-        {
-            "first_lift_off": variable(times, "s", "when the top first leaves the table", name, "spin"),
-            "onset": variable(onsets, "rad s-1", onset_name, "window", name),
-        },
-        along(spin=spins, window=list(windows), **{name: values}),
+    return dataset(
+        {"spin": spins, "window": list(windows), name: values},
+        first_lift_off=(times, "s", "when the top first leaves the table", name, "spin"),
+        onset=(onsets, "rad s-1", onset_name, "window", name),
     )
 
 
@@ -111,13 +109,13 @@ def followed(spins: tuple[float, ...], restitution: float) -> xr.Dataset:
         run = simulate(unilateral(report_problem(spin), restitution), FLIGHTS_WINDOW, samples=samples)
         lifted = float(run["first_lift_off"]), "s", "when the top first leaves the table"
         rows.append(flight_readings(run) | {"first_lift_off": lifted})
-    return xr.Dataset(
-        {
-            name: variable([[row[name][0] for row in rows]], *meaning, "restitution", "spin")
+    return dataset(
+        {"spin": list(spins), "restitution": [restitution]},
+        {"window_s": FLIGHTS_WINDOW},
+        **{
+            name: ([[row[name][0] for row in rows]], *meaning, "restitution", "spin")
             for name, (_, *meaning) in rows[0].items()
         },
-        along(spin=list(spins), restitution=[restitution]),
-        {"window_s": FLIGHTS_WINDOW},
     )
 
 

@@ -9,7 +9,7 @@ from scipy.optimize import curve_fit
 
 from tippetop.integrators.base import Array
 from tippetop.presets import report_problem
-from tippetop.report.experiment import Bench, along, variable
+from tippetop.report.experiment import Bench, dataset, variable
 from tippetop.report.experiments.runs import WINDOW, on_table, swept
 from tippetop.report.listing import listing_run
 from tippetop.report.quoted import NORMAL_FRICTION
@@ -75,7 +75,7 @@ def power_law(mu: Array, times: Array) -> tuple[float, float, float]:
 def _fitted(spins: Array, count: int) -> xr.Dataset:
     """Times by both methods over the report's range of friction, with fits a mu^b at every spin."""
     mu = np.linspace(*NORMAL_FRICTION, count)
-    data = xr.Dataset(coords=along(spin=spins, mu=mu))
+    data = dataset({"spin": spins, "mu": mu})
     for suffix, measure in (("", converged_times), ("_listing", listing_times)):
         times = measure(spins, mu)
         factor, exponent, correlation = np.array([power_law(mu, row) for row in times.flip]).T
@@ -111,13 +111,11 @@ def _wide(quick: bool) -> xr.Dataset:
         times[:, windows == window] = converged_times(spins, mu[windows == window], float(window)).flip
     small = mu <= 0.1001
     slopes = [float(np.polyfit(np.log(mu[small]), np.log(row[small]), 1)[0]) for row in times]
-    return xr.Dataset(
-        {
-            "flip_time_wide": variable(times, "s", "flip time", "spin_wide", "mu_wide"),
-            "small_exponent": variable(slopes, "1", "exponent of mu up to 0.1 s/m", "spin_wide"),
-        },
-        along(spin_wide=spins, mu_wide=mu),
+    return dataset(
+        {"spin_wide": spins, "mu_wide": mu},
         {"window_wide": "20 s, doubled until it is no less than 3 / mu + 4 s"},
+        flip_time_wide=(times, "s", "flip time", "spin_wide", "mu_wide"),
+        small_exponent=(slopes, "1", "exponent of mu up to 0.1 s/m", "spin_wide"),
     )
 
 
@@ -126,8 +124,8 @@ def _extremes(quick: bool) -> xr.Dataset:
     mu = np.array([0.0, 0.3, 1.0, 100.0, *([] if quick else [300.0]), 1000.0])
     window = 0.5 * WINDOW if quick else WINDOW
     found = swept(on_table(report_problem(SPIN)), {"friction.mu": mu}, window)
-    return xr.Dataset(
-        {"turning_time": variable(found["turns_over"].values, *_TURNING, "mu")},
-        along(mu=mu),
+    return dataset(
+        {"mu": mu},
         {"spin_rad_per_s": SPIN, "window_s": window},
+        turning_time=(found["turns_over"].values, *_TURNING, "mu"),
     )

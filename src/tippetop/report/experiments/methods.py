@@ -13,7 +13,7 @@ from tippetop.integrators.scipy_methods import SciPy
 from tippetop.mechanics.vectors import Scalar
 from tippetop.presets import report_problem
 from tippetop.problem import Problem
-from tippetop.report.experiment import Bench, Variable, along, variable
+from tippetop.report.experiment import Bench, dataset
 from tippetop.report.experiments.runs import on_table
 from tippetop.report.listing import launch_state, listing_rates
 from tippetop.report.ode45 import ABSOLUTE, RELATIVE, dormand_prince_step, ode45
@@ -76,24 +76,28 @@ def _order(quick: bool) -> xr.Dataset:
         "ode45_in_all": [abs(by_dormand_prince(span, h) - tilt) for h in steps],
         "companion_in_all": [abs(by_dormand_prince(span, h, companion=True) - tilt) for h in steps],
     }
-    data = xr.Dataset(coords=along(step=steps))
-    for name, values in errors.items():
-        data[name] = variable(np.array(values), "rad", f"error of the axis or tilt: {name}", "step")
-        data[f"order_{name}"] = _order_of(steps, np.array(values), name)
     coarse = 2.0 / np.array([20.0, 40.0, 80.0, 160.0])
-    data = data.assign_coords(along(step_printed=coarse))
-    for suffix, last in (("", 0.0), ("_mended", 1.0)):
-        table = np.array([_printed_errors(step, last) for step in coarse])
-        for k, part in enumerate(("in_all", "in_a_step")):
-            name = f"printed{suffix}_{part}"
-            data[name] = variable(table[:, k], "1", f"error of (B.1): {name}", "step_printed")
-            data[f"order_{name}"] = _order_of(coarse, table[:, k], name)
-    return data
+    printed = {
+        f"printed{suffix}_{part}": found
+        for suffix, last in (("", 0.0), ("_mended", 1.0))
+        for part, found in zip(_PARTS, np.array([_printed_errors(h, last) for h in coarse]).T, strict=True)
+    }
+    order = "power of the step in the error, between the two finest: "
+    return dataset(
+        {"step": steps, "step_printed": coarse},
+        **{
+            name: (each, "rad", f"error of the axis or tilt: {name}", "step") for name, each in errors.items()
+        },
+        **{name: (each, "1", f"error of (B.1): {name}", "step_printed") for name, each in printed.items()},
+        **{
+            f"order_{name}": (math.log(each[-1] / each[-2], over[-1] / over[-2]), "1", order + name)
+            for over, kind in ((steps, errors), (coarse, printed))
+            for name, each in kind.items()
+        },
+    )
 
 
-def _order_of(steps: Array, errors: Array, name: str) -> Variable:
-    slope = float(np.log(errors[-1] / errors[-2]) / np.log(steps[-1] / steps[-2]))
-    return variable(slope, "1", f"power of the step in the error, between the two finest: {name}")
+_PARTS = ("in_all", "in_a_step")
 
 
 def _printed_errors(step: float, last: float) -> tuple[float, float]:
@@ -169,19 +173,15 @@ def _stiffness(quick: bool) -> xr.Dataset:
     explicit = np.nanmin(counted[:, : len(EXPLICIT)], axis=1)
     implicit = np.nanmin(counted[:, len(EXPLICIT) :], axis=1)
     name = "evaluations of the best explicit method over those of the best implicit one"
-    return xr.Dataset(
-        {
-            "evaluations": variable(
-                counts, "1", "evaluations of the right-hand side", "launch", "integrator"
-            ),
-            "bdf_miss": variable(abs(bdf - true), "rad", "difference of bdf's tilt at the end", "launch"),
-            "stiffness": variable(explicit / implicit, "1", name, "launch"),
-            "launch_spin": variable(spins, "rad s-1", "spin", "launch"),
-            "launch_tilt": variable(tilts, "rad", "tilt", "launch"),
-            "launch_mu": variable(frictions, "s m-1", "friction coefficient", "launch"),
-        },
+    return dataset(
         {"integrator": list(methods)},
         {"span_s": _SPAN, "relative_tolerance": RELATIVE, "absolute_tolerance": ABSOLUTE},
+        evaluations=(counts, "1", "evaluations of the right-hand side", "launch", "integrator"),
+        bdf_miss=(abs(bdf - true), "rad", "difference of bdf's tilt at the end", "launch"),
+        stiffness=(explicit / implicit, "1", name, "launch"),
+        launch_spin=(spins, "rad s-1", "spin", "launch"),
+        launch_tilt=(tilts, "rad", "tilt", "launch"),
+        launch_mu=(frictions, "s m-1", "friction coefficient", "launch"),
     )
 
 
@@ -195,13 +195,10 @@ def _jump(quick: bool) -> xr.Dataset:
 
     before, after = beside(listing_rates(problem))
     true = beside(listing_rates(problem, wrap=None))
-    return xr.Dataset(
-        {
-            "jump_listing": variable(
-                abs(after - before), "m s-2", "jump of the rate of v_y with theta modulo pi"
-            ),
-            "jump": variable(abs(true[1] - true[0]), "m s-2", "its change without the modulo"),
-            "size": variable(abs(after), "m s-2", "the rate of v_y itself"),
-        },
-        attrs={"state": f"theta = -/+{tiny:g}; theta', phi, phi', omega3, v_x, v_y = {rest}"},
+    return dataset(
+        {},
+        {"state": f"theta = -/+{tiny:g}; theta', phi, phi', omega3, v_x, v_y = {rest}"},
+        jump_listing=(abs(after - before), "m s-2", "jump of the rate of v_y with theta modulo pi"),
+        jump=(abs(true[1] - true[0]), "m s-2", "its change without the modulo"),
+        size=(abs(after), "m s-2", "the rate of v_y itself"),
     )

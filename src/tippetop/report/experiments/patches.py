@@ -9,7 +9,7 @@ from tippetop.frictions import ContensouFriction, ViscousFriction
 from tippetop.mechanics.contensou import ELLIPSOIDAL_RADIUS
 from tippetop.mechanics.hertz import MATERIALS, hertz_patch_radius
 from tippetop.presets import LEINE_GLOCKER, report_problem
-from tippetop.report.experiment import Bench, along, variable
+from tippetop.report.experiment import Bench, dataset
 from tippetop.report.experiments.dry import turning_time, with_friction
 from tippetop.report.experiments.real import LEINE
 from tippetop.run import simulate
@@ -62,18 +62,13 @@ def _map(quick: bool) -> xr.Dataset:
     least = min(float(run["least_normal_force"]) for row in runs for run in row)
     theirs = float(simulate(ALONE, 3.0, samples=2)["turns_over"])
     limit = critical_spin(SteadyKind.UPRIGHT, report_problem().top)
-    return xr.Dataset(
-        {
-            "turning_time": variable(times, "s", "first tilt of more than pi/2", "radius", "spin"),
-            "least_force": variable(least, "N", "least normal force of all"),
-            "upright_limit": variable(limit, "rad s-1", "spin below which the upright spin is stable"),
-            "theirs_turns": variable(theirs, "s", "when Leine and Glocker's top turns over"),
-        },
-        {
-            "radius": variable(radii, "m", "radius of the contact patch", "radius"),
-            **along(spin=spins),
-        },
+    return dataset(
+        {"radius": (radii, "m", "radius of the contact patch"), "spin": spins},
         {"mu": MU, "window_s": MAP_WINDOW, "tilt_rad": 0.1},
+        turning_time=(times, "s", "first tilt of more than pi/2", "radius", "spin"),
+        least_force=(least, "N", "least normal force of all"),
+        upright_limit=(limit, "rad s-1", "spin below which the upright spin is stable"),
+        theirs_turns=(theirs, "s", "when Leine and Glocker's top turns over"),
     )
 
 
@@ -95,23 +90,19 @@ def _viscous(quick: bool) -> xr.Dataset:
     radii = [hertz_patch_radius(load, radius, material, material) for material in MATERIALS.values()]
     creep = [CREEP["hertz"] * MU / (r * SPIN_OF_REPORT) for r in radii]
     ratios = "growth rate of a patch over that of viscous friction"
-    return xr.Dataset(
+    return dataset(
         {
-            "patch_time": variable(times, "s", "first tilt of more than pi/2, patch", "mu", "coefficient"),
-            "viscous_time": variable(smooth, "s", "first tilt of more than pi/2, viscous", "coefficient"),
-            "growth_ratio": variable(_growth_ratios(), "1", ratios, "pressure", "pole"),
-            "hertz_radius": variable(radii, "m", "patch of the report's top on its own material", "material"),
-            "hertz_coefficient": variable(
-                creep, "s m-1", "viscous coefficient of that patch at 155 rad/s", "material"
-            ),
-        },
-        {
-            "mu": variable(list(FRICTIONS), "1", "friction coefficient of the patch", "mu"),
-            "coefficient": variable(coefficients, "s m-1", "viscous coefficient at launch", "coefficient"),
+            "mu": (list(FRICTIONS), "1", "friction coefficient of the patch"),
+            "coefficient": (coefficients, "s m-1", "viscous coefficient at launch"),
             "material": list(MATERIALS),
             "pressure": list(CREEP),
         },
         {"spin_rad_per_s": SPIN, "window_s": MAP_WINDOW},
+        patch_time=(times, "s", "first tilt of more than pi/2, patch", "mu", "coefficient"),
+        viscous_time=(smooth, "s", "first tilt of more than pi/2, viscous", "coefficient"),
+        growth_ratio=(_growth_ratios(), "1", ratios, "pressure", "pole"),
+        hertz_radius=(radii, "m", "patch of the report's top on its own material", "material"),
+        hertz_coefficient=(creep, "s m-1", "viscous coefficient of that patch at 155 rad/s", "material"),
     )
 
 

@@ -10,7 +10,7 @@ from tippetop.frictions import ContensouFriction, CoulombFriction, ViscousFricti
 from tippetop.mechanics.top import Top
 from tippetop.presets import EGG, EULER_DISK, HURRICANE_BALLS, LEINE_GLOCKER_STEM, REPORT_STEM, report_problem
 from tippetop.problem import Launch, Problem
-from tippetop.report.experiment import Bench, along, variable
+from tippetop.report.experiment import Bench, dataset
 from tippetop.report.experiments.runs import happenings
 from tippetop.run import simulate
 from tippetop.theory.resting_center import RestingCenter, resting_center
@@ -83,16 +83,11 @@ def _leine(quick: bool) -> xr.Dataset:
     problems = [LEINE.replace({"friction.pressure": name}) for name in pressures]
     runs = [simulate(problem, LEINE_WINDOW, samples=801) for problem in problems]
     found, errors = [events_of(run) for run in runs], [float(run["energy_error"]) for run in runs]
-    return xr.Dataset(
-        {
-            "theta": variable([run["theta"].values for run in runs], "rad", "tilt", "pressure", "time"),
-            "energy_error": variable(errors, "1", "energy", "pressure"),
-            **{
-                name: variable([one[name] for one in found], "s", long, "pressure")
-                for name, long in EVENTS.items()
-            },
-        },
-        {"pressure": pressures, **along(time=runs[0]["time"].values)},
+    return dataset(
+        {"pressure": pressures, "time": runs[0]["time"].values},
+        theta=([run["theta"].values for run in runs], "rad", "tilt", "pressure", "time"),
+        energy_error=(errors, "1", "energy", "pressure"),
+        **{name: ([one[name] for one in found], "s", long, "pressure") for name, long in EVENTS.items()},
     )
 
 
@@ -119,15 +114,13 @@ def _stems(quick: bool) -> xr.Dataset:
         struck.append(touch)
         final.append(float(run["theta"][-1]))
     over = "radius"
-    return xr.Dataset(
-        {
-            "final_theta": variable(final, "rad", "tilt at the end", over),
-            "jellett": variable(brought, "kg m3 s-1", "Jellett's integral about the tip at its touch", over),
-            "jellett_needed": variable(needed, "kg m3 s-1", "what it takes to stand", over),
-            "touch": variable(struck, "s", "first touch of the stem", over),
-        },
-        {"radius": variable(radii, "m", "radius of the stem's tip", over)},
+    return dataset(
+        {"radius": (radii, "m", "radius of the stem's tip")},
         {"window_s": STEM_WINDOW, "upright_rad": UPRIGHT_ON_STEM, "reach_m": REACH},
+        final_theta=(final, "rad", "tilt at the end", over),
+        jellett=(brought, "kg m3 s-1", "Jellett's integral about the tip at its touch", over),
+        jellett_needed=(needed, "kg m3 s-1", "what it takes to stand", over),
+        touch=(struck, "s", "first touch of the stem", over),
     )
 
 
@@ -140,16 +133,14 @@ def _egg(quick: bool) -> xr.Dataset:
     problems = [Problem(body=EGG, friction=friction, launch=launch) for launch in launches]
     runs = [simulate(problem, EGG_WINDOW, samples=401) for problem in problems]
     lifts = [first_of(happenings(run, "lift-off")) for run in runs]
-    return xr.Dataset(
+    return dataset(
         {
-            "theta": variable([run["theta"].values for run in runs], "rad", "tilt", "rate", "time"),
-            "lift_off": variable(lifts, "s", "lift-off", "rate"),
-        },
-        {
-            "rate": variable(rates, "rad s-1", "rate of turning about the vertical at launch", "rate"),
-            **along(time=runs[0]["time"].values),
+            "rate": (rates, "rad s-1", "rate of turning about the vertical at launch"),
+            "time": runs[0]["time"].values,
         },
         {"mu_s_per_m": EGG_MU},
+        theta=([run["theta"].values for run in runs], "rad", "tilt", "rate", "time"),
+        lift_off=(lifts, "s", "lift-off", "rate"),
     )
 
 
@@ -179,19 +170,18 @@ def _rolling(quick: bool) -> xr.Dataset:
                 measured = float(run["phi_dot"].mean())
                 drift = float(np.abs(run["theta"] - tilt).max())
                 found[name].append((tilt, motion.precession, measured, drift))
-    data = {}
-    for name, rows in found.items():
-        for (label, unit, long), values in zip(_COLUMNS, zip(*rows, strict=True), strict=True):
-            data[f"{name}_{label}"] = variable(list(values), unit, long, name)
+    columns = {
+        f"{name}_{label}": (list(values), *meaning, name)
+        for name, rows in found.items()
+        for (label, *meaning), values in zip(_COLUMNS, zip(*rows, strict=True), strict=True)
+    }
     gravity, radius = 9.81, float(EULER_DISK.shapes[0].surface.size)
     thin = np.sqrt(4.0 * gravity / (radius * np.sin([row[0] for row in found["disk"]])))
-    data["disk_thin"] = variable(thin, "rad s-1", "precession of a thin disk", "disk")
-    return xr.Dataset(
-        data,
-        attrs={
-            "ball_radius_m": float(HURRICANE_BALLS.shapes[0].surface.size),
-            "gravity": gravity,
-        },
+    return dataset(
+        {},
+        {"ball_radius_m": float(HURRICANE_BALLS.shapes[0].surface.size), "gravity": gravity},
+        disk_thin=(thin, "rad s-1", "precession of a thin disk", "disk"),
+        **columns,
     )
 
 

@@ -10,7 +10,7 @@ import xarray as xr
 from tippetop.mechanics.euler import published_energy
 from tippetop.presets import REPORT_TABLE_1, report_problem
 from tippetop.problem import Problem
-from tippetop.report.experiment import Bench, Experiment, along, variable
+from tippetop.report.experiment import Bench, Experiment, dataset, variable
 from tippetop.report.listing import VARIABLES, listing_run
 from tippetop.report.quoted import END_OF_FIG_5
 from tippetop.report.readings import SETTLED, SHOWN, crossings, first_below_zero, flip_time, longest_quiet
@@ -202,9 +202,9 @@ def _settling(quick: bool) -> xr.Dataset:
         on_table(report_problem(155.0, mu=100.0)), float(ends[-1]), samples=int(200 * ends[-1]) + 1
     )
     swings = [float(np.ptp(run["theta"].sel(time=slice(end - 1.0, end)).values)) for end in ends]
-    return xr.Dataset(
-        {"swing": variable(swings, "rad", "swing of the tilt in the second before", "end")},
-        {"end": variable(ends, "s", "end of that second", "end")},
+    return dataset(
+        {"end": (ends, "s", "end of that second")},
+        swing=(swings, "rad", "swing of the tilt in the second before", "end"),
     )
 
 
@@ -213,13 +213,12 @@ def _windows(quick: bool) -> xr.Dataset:
     windows, problem = WINDOWS[3::4] if quick else WINDOWS, report_problem(50.0)
     ends = [listing_run(problem, float(window)).isel(time=-1) for window in windows]
     true = simulate(on_table(problem), float(windows[-1]), times=windows)
-    data = {}
+    data = dataset({"window": (windows, "s", "length of the run")})
     for name, units in (("theta", "rad"), ("phi_dot", "rad s-1"), ("omega3", "rad s-1")):
-        theirs = [float(end[name]) for end in ends]
-        over, label = ("window",), "at the end of a run of this length"
-        data[f"{name}_after_listing"] = variable(theirs, units, f"{label}, by the report's method", *over)
-        data[f"{name}_after"] = variable(true[name].values, units, label, *over)
-    return xr.Dataset(data, {"window": variable(windows, "s", "length of the run", "window")})
+        theirs, label = [float(end[name]) for end in ends], "at the end of a run of this length"
+        data[f"{name}_after_listing"] = variable(theirs, units, f"{label}, by the report's method", "window")
+        data[f"{name}_after"] = variable(true[name].values, units, label, "window")
+    return data
 
 
 def likely_end(windows: xr.Dataset) -> xr.Dataset:
@@ -237,12 +236,10 @@ def _capped(quick: bool) -> xr.Dataset:
         runs = [listing_run(report_problem(spin), WINDOW, unilateral=unilateral) for spin in spins]
         return [float(run["theta"][-1]) for run in runs]
 
-    return xr.Dataset(
-        {
-            "final_theta": variable(ends(unilateral=False), "rad", "tilt at the end", "spin"),
-            "final_theta_capped": variable(ends(unilateral=True), "rad", "the same, g_n >= 0", "spin"),
-        },
-        along(spin=list(spins)),
+    return dataset(
+        {"spin": list(spins)},
+        final_theta=(ends(unilateral=False), "rad", "tilt at the end", "spin"),
+        final_theta_capped=(ends(unilateral=True), "rad", "the same, g_n >= 0", "spin"),
     )
 
 
@@ -264,12 +261,12 @@ def _slow(quick: bool) -> xr.Dataset:
         "final": ("rad", "tilt at the end"),
         "swings": ("1", f"swings of the tilt by more than {SETTLED:g} rad"),
     }
-    return xr.Dataset(
-        {
-            name: variable(values, *meanings[name.removesuffix("_listing")], "spin")
+    return dataset(
+        {"spin": list(SLOW_SPINS)},
+        **{
+            name: (values, *meanings[name.removesuffix("_listing")], "spin")
             for name, values in columns.items()
         },
-        along(spin=list(SLOW_SPINS)),
     )
 
 

@@ -7,7 +7,7 @@ import xarray as xr
 from scipy.optimize import brentq
 
 from tippetop.presets import report_problem
-from tippetop.report.experiment import Bench, Variable, along, variable
+from tippetop.report.experiment import Bench, dataset
 from tippetop.report.experiments.flights import leaves_at, onset_between
 from tippetop.report.experiments.runs import WINDOW, on_table, swept, unilateral
 from tippetop.report.listing import listing_run
@@ -63,21 +63,19 @@ def _by_listing(quick: bool) -> xr.Dataset:
     ]
     name = "spin above which the final tilt is no longer 0, by the report's method"
     other = "spin above which the final tilt is pi, by the report's method"
-    return xr.Dataset(
-        {
-            "final_theta_listing": variable(tilts, *_TILT, "spin_listing"),
-            "critical_upright_listing": variable(upright, "rad s-1", name, "margin_listing"),
-            "critical_inverted_listing": variable(inverted, "rad s-1", other, "margin_listing"),
-            "lost_listing": _least_lost(spins, np.abs(tilts - math.pi) > TURNED, ", by the report's method"),
-        },
-        along(spin_listing=spins, margin_listing=LISTED_MARGINS),
+    return dataset(
+        {"spin_listing": spins, "margin_listing": LISTED_MARGINS},
+        final_theta_listing=(tilts, *_TILT, "spin_listing"),
+        critical_upright_listing=(upright, "rad s-1", name, "margin_listing"),
+        critical_inverted_listing=(inverted, "rad s-1", other, "margin_listing"),
+        lost_listing=_least_lost(spins, np.abs(tilts - math.pi) > TURNED, ", by the report's method"),
     )
 
 
-def _least_lost(spins: np.ndarray, lost: np.ndarray, words: str) -> Variable:
+def _least_lost(spins: np.ndarray, lost: np.ndarray, words: str) -> tuple[float, str, str]:
     found = spins[(spins > 100) & lost]
     name = f"least spin above 100 rad/s that does not end at pi{words}"
-    return variable(found.min() if len(found) else np.nan, "rad s-1", name)
+    return found.min() if len(found) else np.nan, "rad s-1", name
 
 
 def _where(x: np.ndarray, y: np.ndarray, level: float) -> float:
@@ -95,19 +93,16 @@ def _converged(quick: bool) -> xr.Dataset:
 
     onset = onset_between(leaves, *_LIFTING, window=WINDOW, accuracy=0.005)
     pulling = "least spin at which the table would have to pull within the window"
+    only = "tilt at the end of the run on a table that only pushes"
     flying = np.arange(FLYING[0], FLYING[1] + 0.1, 7.5 if quick else 2.5)
     true_tilts = swept(unilateral(report_problem()), {"launch.spin": flying})["final_theta"].values
-    return xr.Dataset(
-        {
-            "final_theta": variable(tilts, *_TILT, "spin"),
-            "final_theta_flight": variable(
-                true_tilts, "rad", "tilt at the end of the run on a table that only pushes", "spin_flight"
-            ),
-            "lift_off_onset": variable(onset, "rad s-1", pulling),
-            "lost": _least_lost(spins, ~(np.abs(tilts - math.pi) < TURNED), " on a table that pulls"),
-        },
-        along(spin=spins, spin_flight=flying),
+    return dataset(
+        {"spin": spins, "spin_flight": flying},
         {"window_s": WINDOW},
+        final_theta=(tilts, *_TILT, "spin"),
+        final_theta_flight=(true_tilts, "rad", only, "spin_flight"),
+        lift_off_onset=(onset, "rad s-1", pulling),
+        lost=_least_lost(spins, ~(np.abs(tilts - math.pi) < TURNED), " on a table that pulls"),
     )
 
 
@@ -147,13 +142,11 @@ def _thresholds(quick: bool) -> xr.Dataset:
     by_window = np.array(found)
     by_margin = np.array([critical_spins(WINDOW, margin) for margin in MARGINS])
     names = ("spin above which the final tilt is no longer 0", "spin above which the final tilt is pi")
-    return xr.Dataset(
-        {
-            "upright_by_window": variable(by_window[:, 0], "rad s-1", names[0], "window"),
-            "inverted_by_window": variable(by_window[:, 1], "rad s-1", names[1], "window"),
-            "upright_by_margin": variable(by_margin[:, 0], "rad s-1", names[0], "margin"),
-            "inverted_by_margin": variable(by_margin[:, 1], "rad s-1", names[1], "margin"),
-        },
-        along(window=list(windows), margin=list(MARGINS)),
+    return dataset(
+        {"window": list(windows), "margin": list(MARGINS)},
         {"margin_of_windows_rad": SETTLED},
+        upright_by_window=(by_window[:, 0], "rad s-1", names[0], "window"),
+        inverted_by_window=(by_window[:, 1], "rad s-1", names[1], "window"),
+        upright_by_margin=(by_margin[:, 0], "rad s-1", names[0], "margin"),
+        inverted_by_margin=(by_margin[:, 1], "rad s-1", names[1], "margin"),
     )

@@ -1,14 +1,13 @@
 """Leine and Glocker's top by time-stepping: what a fixed step finds of its impacts and its rocking."""
 
 import math
-from collections.abc import Iterable
 
 import numpy as np
 import xarray as xr
 
 from tippetop.frictions import ContensouFriction
 from tippetop.mechanics.contensou import ELLIPSOIDAL_RADIUS
-from tippetop.report.experiment import Bench, along, variable
+from tippetop.report.experiment import Bench, dataset
 from tippetop.report.experiments.real import EVENTS, LEINE, LEINE_WINDOW, events_of
 from tippetop.report.experiments.runs import happenings
 from tippetop.report.moreau import Ball, History, SphereTop, follow
@@ -75,17 +74,14 @@ def _stepping(quick: bool) -> xr.Dataset:
     ends = [one.step * np.arange(1, len(one.tilts) + 1) for one in histories]
     tilts = [np.interp(times[shown], end, one.tilts) for end, one in zip(ends, histories, strict=True)]
     last = [history.tilts[-1] for history in histories]
-    told = {
-        **{name: _column(found, name, "s", long) for name, long in EVENTS.items()},
-        "strikes": _column(found, "strikes", "1", "strikes of the rocking"),
-        "final_theta": variable(last, "rad", "tilt at the end", "step"),
-        "theta": variable(tilts, "rad", "tilt", "step", "time"),
-        "exact_theta": variable(run["theta"].values[shown], "rad", "tilt of an exact run", "time"),
-        "exact_final_theta": variable(float(run["theta"][-1]), "rad", "tilt at the end of an exact run"),
-    }
-    told |= {f"exact_{name}": variable(value, "s", f"{name}, exactly") for name, value in exact.items()}
-    return xr.Dataset(told, along(step=[history.step for history in histories], time=times[shown]))
-
-
-def _column(found: Iterable[dict[str, float]], name: str, unit: str, long: str) -> object:
-    return variable([one[name] for one in found], unit, long, "step")
+    meanings = {name: ("s", long) for name, long in EVENTS.items()}
+    meanings["strikes"] = ("1", "strikes of the rocking")
+    return dataset(
+        {"step": [history.step for history in histories], "time": times[shown]},
+        final_theta=(last, "rad", "tilt at the end", "step"),
+        theta=(tilts, "rad", "tilt", "step", "time"),
+        exact_theta=(run["theta"].values[shown], "rad", "tilt of an exact run", "time"),
+        exact_final_theta=(float(run["theta"][-1]), "rad", "tilt at the end of an exact run"),
+        **{name: ([one[name] for one in found], *told, "step") for name, told in meanings.items()},
+        **{f"exact_{name}": (value, "s", f"{name}, exactly") for name, value in exact.items()},
+    )

@@ -10,7 +10,7 @@ from tippetop.bodies import Body
 from tippetop.integrators.base import Array
 from tippetop.presets import LEINE_GLOCKER, REPORT, REPORT_TABLE_1, report_problem
 from tippetop.problem import Problem
-from tippetop.report.experiment import Bench, variable
+from tippetop.report.experiment import Bench, dataset
 from tippetop.report.experiments.equations import left_of_217
 from tippetop.report.experiments.runs import WINDOW
 from tippetop.run import simulate
@@ -63,23 +63,20 @@ def _critical(quick: bool) -> xr.Dataset:
     spectrum = [critical_spin_from_spectrum(kind, top) for kind in VERTICAL_SPINS]
     rates = [growth_rates_of_launches(kind, problem, spins) for kind in VERTICAL_SPINS]
     each, zero = "vertical", "critical axial spin, where the growth rate vanishes"
-    data = {
-        "critical_launch": variable(list(astuple(launches)), "rad s-1", "critical spin at launch", each),
-        "critical_formula": variable(formula, "rad s-1", "critical axial spin, by formula", each),
-        "critical_spectrum": variable(spectrum, "rad s-1", zero, each),
-        "growth_rate": variable(rates, "s-1", "growth rate of the vertical spin", each, "growth_spin"),
-    }
-    for name, shown in zip(("upright", "inverted"), zip(*map(astuple, seen), strict=True), strict=True):
-        words = f"critical spin of the {name} spin as the window shows it"
-        data[f"apparent_{name}"] = variable(list(shown), "rad s-1", words, "visible")
-    return xr.Dataset(
-        data,
+    apparent = "critical spin of the {} spin as the window shows it"
+    return dataset(
         {
             "vertical": [kind.value for kind in VERTICAL_SPINS],
-            "growth_spin": variable(spins, "rad s-1", "spin at launch", "growth_spin"),
-            "visible": variable(visible, "rad", "least tilt told from none", "visible"),
+            "growth_spin": (spins, "rad s-1", "spin at launch"),
+            "visible": (visible, "rad", "least tilt told from none"),
         },
         {"apparent_window_s": WINDOW},
+        critical_launch=(list(astuple(launches)), "rad s-1", "critical spin at launch", each),
+        critical_formula=(formula, "rad s-1", "critical axial spin, by formula", each),
+        critical_spectrum=(spectrum, "rad s-1", zero, each),
+        growth_rate=(rates, "s-1", "growth rate of the vertical spin", each, "growth_spin"),
+        apparent_upright=([one.upright for one in seen], "rad s-1", apparent.format("upright"), "visible"),
+        apparent_inverted=([one.inverted for one in seen], "rad s-1", apparent.format("inverted"), "visible"),
     )
 
 
@@ -134,19 +131,16 @@ def _diagram(suffix: str, body: Body, tilts: Array, launches: list[tuple[float, 
     }
     limits = list(astuple(critical_spins(base)))
     run, over = f"run{suffix}", f"branch_theta{suffix}"
-    return xr.Dataset(
+    return dataset(
         {
-            f"branch_spin{suffix}": variable(spins, "rad s-1", "spin of launches that can end there", over),
-            f"branch_growth{suffix}": variable(rates, "s-1", "growth rate of the steady precession", over),
-            **{
-                f"run_{name}{suffix}": variable(values, *_OF_RUNS[name], run)
-                for name, values in of_runs.items()
-            },
-            f"limits{suffix}": variable(limits, "rad s-1", "critical spins at launch", "vertical"),
-        },
-        {
-            over: variable(branch.tilt, "rad", "tilt of the steady precession", over),
+            over: (branch.tilt, "rad", "tilt of the steady precession"),
             "vertical": [kind.value for kind in VERTICAL_SPINS],
+        },
+        **{
+            f"branch_spin{suffix}": (spins, "rad s-1", "spin of launches that can end there", over),
+            f"branch_growth{suffix}": (rates, "s-1", "growth rate of the steady precession", over),
+            **{f"run_{name}{suffix}": (values, *_OF_RUNS[name], run) for name, values in of_runs.items()},
+            f"limits{suffix}": (limits, "rad s-1", "critical spins at launch", "vertical"),
         },
     )
 
@@ -186,13 +180,11 @@ def _groups(quick: bool) -> xr.Dataset:
     gamma = np.linspace(0.5, 1.6, 111 if quick else 441)
     letters = sorted({classify(float(g), float(a)).value for g in gamma[::10] for a in alpha[::10]})
     names = {name: name.replace("_", " ") for name in lines}
-    return xr.Dataset(
-        {
-            **{name: variable(lines[name], "1", f"gamma at the {names[name]}", "alpha") for name in lines},
-            "top_gamma": variable([inertia_ratio(top) for top in tops], "1", "I1 / I3", "top"),
-            "top_alpha": variable([eccentricity(top) for top in tops], "1", "eccentricity", "top"),
-            "top_group": (("top",), [classify_top(top).value for top in tops], {"long_name": "group"}),
-        },
-        {"alpha": variable(alpha, "1", "eccentricity", "alpha"), "top": list(bodies)},
+    return dataset(
+        {"alpha": (alpha, "1", "eccentricity"), "top": list(bodies)},
         {"groups": ", ".join(letters), "gamma_least": float(gamma[0]), "gamma_greatest": float(gamma[-1])},
+        **{name: (lines[name], "1", f"gamma at the {names[name]}", "alpha") for name in lines},
+        top_gamma=([inertia_ratio(top) for top in tops], "1", "I1 / I3", "top"),
+        top_alpha=([eccentricity(top) for top in tops], "1", "eccentricity", "top"),
+        top_group=([classify_top(top).value for top in tops], "1", "group", "top"),
     )

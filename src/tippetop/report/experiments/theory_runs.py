@@ -7,7 +7,7 @@ import xarray as xr
 
 from tippetop.integrators.base import Array
 from tippetop.presets import report_problem
-from tippetop.report.experiment import Bench, along, variable
+from tippetop.report.experiment import Bench, dataset, variable
 from tippetop.report.experiments.runs import WINDOW, on_table
 from tippetop.report.readings import SETTLED, flip_time
 from tippetop.run import simulate
@@ -49,21 +49,19 @@ def _collapse(quick: bool) -> xr.Dataset:
     tilts, swings = swing["theta"].values, FRICTIONS[0] * swing["time"].values
     limit = flip_time_limit(problem, SETTLED)
     of_run = ("friction", "mu_time")
-    return xr.Dataset(
+    return dataset(
         {
-            "flow_low": variable(low, "rad", "least tilt of the nutation, averaged flow", "mu_time"),
-            "flow_high": variable(high, "rad", "largest tilt of the nutation, averaged flow", "mu_time"),
-            "run_low": variable(bounds[:, 0], "rad", "least tilt of the run around this time", *of_run),
-            "run_high": variable(bounds[:, 1], "rad", "largest tilt of the run around this time", *of_run),
-            "theta_swing": variable(tilts, "rad", "tilt of the run with most friction", "mu_time_swing"),
-            "flip_limit": variable(limit, "s2 m-1", "limit of mu times flip time"),
-        },
-        {
-            "mu_time": variable(middle, "s2 m-1", "mu t", "mu_time"),
-            "friction": variable(list(frictions), "s m-1", "friction coefficient", "friction"),
-            "mu_time_swing": variable(swings, "s2 m-1", "mu t", "mu_time_swing"),
+            "mu_time": (middle, "s2 m-1", "mu t"),
+            "friction": (list(frictions), "s m-1", "friction coefficient"),
+            "mu_time_swing": (swings, "s2 m-1", "mu t"),
         },
         {"spin_rad_per_s": SPIN},
+        flow_low=(low, "rad", "least tilt of the nutation, averaged flow", "mu_time"),
+        flow_high=(high, "rad", "largest tilt of the nutation, averaged flow", "mu_time"),
+        run_low=(bounds[:, 0], "rad", "least tilt of the run around this time", *of_run),
+        run_high=(bounds[:, 1], "rad", "largest tilt of the run around this time", *of_run),
+        theta_swing=(tilts, "rad", "tilt of the run with most friction", "mu_time_swing"),
+        flip_limit=(limit, "s2 m-1", "limit of mu times flip time"),
     )
 
 
@@ -87,7 +85,7 @@ def _exponent(quick: bool) -> xr.Dataset:
     times = np.array([_times(float(one), final) for one in mu]).T
     flow = averaged_flow(problem, samples=4000)
     half = float(np.interp(CROSSED, *_rising(flow.tilt_high, flow.mu_time)))
-    data = xr.Dataset(coords=along(mu_flip=mu), attrs={"spin_rad_per_s": SPIN, "within_rad": SETTLED})
+    data = dataset({"mu_flip": mu}, {"spin_rad_per_s": SPIN, "within_rad": SETTLED})
     for (name, long_name), row in zip(_SENSES.items(), times, strict=True):
         data[name] = variable(row, "s", long_name, "mu_flip")
     for name in ("crossing_time", "arrival_time_end"):
@@ -153,21 +151,19 @@ def _diagnostics(quick: bool) -> xr.Dataset:
     tilts = np.linspace(1e-3, math.pi - 1e-3, 1201)
     wells = [potential_at(int(i), axis, momentum, top, tilts) for i in index]
     over = ("time_diagnosed",)
-    return xr.Dataset(
+    return dataset(
         {
-            "theta_diagnosed": variable(run["theta"].values, "rad", "tilt", *over),
-            "balance": variable(xi, "kg m2 s-1", "xi = I1 phi' cos(theta) - I3 omega3", *over),
-            "balance_ratio": variable(xi / float(abs(axial[0])), "1", "xi over I3 omega3 at launch", *over),
-            "envelope_low": variable(low, "rad", "least tilt a smooth table would allow", *over),
-            "envelope_high": variable(high, "rad", "largest tilt a smooth table would allow", *over),
-            "potential": variable(wells, "J", "effective potential", "instant", "well_theta"),
-            "level": variable(np.asarray(values.energy)[index], "J", "energy", "instant"),
-            "instant_theta": variable(run["theta"].values[index], "rad", "tilt", "instant"),
-        },
-        {
-            **along(time_diagnosed=run["time"].values),
-            "instant": variable(run["time"].values[index], "s", "instant of the run", "instant"),
-            "well_theta": variable(tilts, "rad", "tilt", "well_theta"),
+            "time_diagnosed": run["time"].values,
+            "instant": (run["time"].values[index], "s", "instant of the run"),
+            "well_theta": (tilts, "rad", "tilt"),
         },
         {"spin_rad_per_s": DIAGNOSED_SPIN},
+        theta_diagnosed=(run["theta"].values, "rad", "tilt", *over),
+        balance=(xi, "kg m2 s-1", "xi = I1 phi' cos(theta) - I3 omega3", *over),
+        balance_ratio=(xi / float(abs(axial[0])), "1", "xi over I3 omega3 at launch", *over),
+        envelope_low=(low, "rad", "least tilt a smooth table would allow", *over),
+        envelope_high=(high, "rad", "largest tilt a smooth table would allow", *over),
+        potential=(wells, "J", "effective potential", "instant", "well_theta"),
+        level=(np.asarray(values.energy)[index], "J", "energy", "instant"),
+        instant_theta=(run["theta"].values[index], "rad", "tilt", "instant"),
     )
