@@ -31,9 +31,7 @@ def test_people_and_programs_are_told_what_summarize_returns() -> None:
 
 def test_what_there_is_not_is_said_in_words(monkeypatch: pytest.MonkeyPatch) -> None:
     without = ("turns_over", "arrives", "jellett_drift", "energy_error")
-    monkeypatch.setattr(
-        "tippetop.summary.summarize", lambda run: summarize(run) | dict.fromkeys(without, None)
-    )
+    monkeypatch.setattr(tt, "summarize", lambda run: summarize(run) | dict.fromkeys(without, None))
     lines = said("--spin", "20", "--duration", "0.1")
     assert lines.count("never") == 2
     assert lines.count("undefined") == 2

@@ -5,19 +5,17 @@ import math
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
-from tippetop.cli.options import Force, Json, finite
+import tippetop as tt
+from tippetop.cli.options import DRAWINGS, Force, Json, finite, write_figure
 from tippetop.cli.terminal import facts, listing, show
 from tippetop.errors import InvalidInput
-from tippetop.files import place_for, require_ending, written_beside
+from tippetop.files import place_for, require_ending
 
-if TYPE_CHECKING:
-    from tippetop.lathe.workpiece import Workpiece
-
-ENDINGS = {"plot": (".png", ".svg", ".pdf"), "stl": (".stl",), "3mf": (".3mf",)}
+ENDINGS = {"plot": DRAWINGS, "stl": (".stl",), "3mf": (".3mf",)}
 """How the names of files may end."""
 
 
@@ -36,9 +34,7 @@ def body(
     force: Force = False,
 ) -> None:
     """Say what a body turned on a lathe weighs, what it stands on, and whether it turns over."""
-    from tippetop.bodies import Body  # noqa: PLC0415 - slow to import, like what follows
-    from tippetop.lathe.files import read_workpiece  # noqa: PLC0415
-    from tippetop.presets import report_problem  # noqa: PLC0415
+    from tippetop.lathe.files import read_workpiece  # noqa: PLC0415 - slow to import
 
     wanted = {"plot": plot, "stl": stl, "3mf": three_mf}
     files = {kind: path for kind, path in wanted.items() if path is not None}
@@ -50,7 +46,8 @@ def body(
     if as_toml and as_json:
         raise InvalidInput("--toml", "with --json", "one of the two")
     if as_toml:
-        written = report_problem().model_copy(update={"body": Body.turned(piece, whole=whole)}).to_toml()
+        turned = tt.Body.turned(piece, whole=whole)
+        written = tt.presets.report_problem().model_copy(update={"body": turned}).to_toml()
     else:
         told = _told(piece, whole)
     for path in files.values():
@@ -64,13 +61,11 @@ def body(
         show(*_sentences(told), files=files.values())
 
 
-def _told(piece: "Workpiece", whole: bool) -> dict[str, Any]:
+def _told(piece: "tt.Workpiece", whole: bool) -> dict[str, Any]:
     """What is told of a body; what it cannot be simulated for is the trouble with it."""
-    from tippetop.bodies import Body  # noqa: PLC0415 - slow to import
-
     trouble = None
     try:
-        Body.turned(piece, whole=whole)
+        tt.Body.turned(piece, whole=whole)
     except InvalidInput as error:
         trouble = str(error)
     mass, center, I1, I3 = piece.mass_properties
@@ -99,16 +94,16 @@ def _told(piece: "Workpiece", whole: bool) -> dict[str, Any]:
     }
 
 
-def _expected(piece: "Workpiece") -> dict[str, Any]:
+def _expected(piece: "tt.Workpiece") -> dict[str, Any]:
     """What the theory says of it; nothing but None where it does not lie on a sphere."""
-    from tippetop.bodies import Body, touching  # noqa: PLC0415 - slow to import
+    from tippetop.bodies import touching  # noqa: PLC0415 - slow to import
     from tippetop.theory.prospects import prospects  # noqa: PLC0415
 
     mass, _, I1, I3 = piece.mass_properties
     found = None
     with suppress(InvalidInput):
         shapes = touching(piece, whole=True)
-        found = prospects(Body(mass=mass, shape=shapes[0], I1=I1, I3=I3), shapes)
+        found = prospects(tt.Body(mass=mass, shape=shapes[0], I1=I1, I3=I3), shapes)
     if found is None:
         sphere = ("eccentricity", "group", "group_description", "omega_c1", "omega_c2", "omega_c_tilt")
         return dict.fromkeys((*sphere, "touch", "stem"))
@@ -128,17 +123,13 @@ def _expected(piece: "Workpiece") -> dict[str, Any]:
     }
 
 
-def _write(piece: "Workpiece", path: Path, force: bool) -> None:
+def _write(piece: "tt.Workpiece", path: Path, force: bool) -> None:
     if path.suffix.lower() in ENDINGS["plot"]:
         from tippetop.figures.section import section  # noqa: PLC0415 - slow to import
-        from tippetop.figures.style import save  # noqa: PLC0415
 
-        with written_beside(path, force) as beside:
-            save(section(piece), beside)
+        write_figure(section(piece), path, force)
     else:
-        from tippetop.export.solid import write_solid  # noqa: PLC0415
-
-        write_solid(piece, path, force)
+        tt.write_solid(piece, path, force)
 
 
 def _sentences(told: dict[str, Any]) -> Iterator[Any]:

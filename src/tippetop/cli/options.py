@@ -10,10 +10,12 @@ from typing import TYPE_CHECKING, Annotated, Any, Concatenate, NamedTuple
 
 import typer
 
+import tippetop as tt
 from tippetop.errors import InvalidInput
+from tippetop.files import written_beside
 
 if TYPE_CHECKING:
-    from tippetop.problem import Problem
+    from matplotlib.figure import Figure
 
 ProblemFile = Annotated[
     Path | None, typer.Argument(help="Problem to start from, .toml or .json; the report's top if left out.")
@@ -49,6 +51,10 @@ Json = Annotated[bool, typer.Option("--json", help="Print JSON for programs.")]
 Force = Annotated[bool, typer.Option("--force", help="Overwrite results that exist.")]
 
 
+DRAWINGS = (".png", ".svg", ".pdf")
+"""How the names of files with figures may end."""
+
+
 class Choice(NamedTuple):
     """Which problem a command is for: what to start from, and what is other than there."""
 
@@ -57,19 +63,14 @@ class Choice(NamedTuple):
     settings: Mapping[str, Any] = {}
     changes: Sequence[str] = ()
 
-    def problem(self) -> "Problem":
+    def problem(self) -> "tt.Problem":
         """The problem of the file, or the report's, with what is other; sentences for what cannot be."""
-        from tippetop import presets  # noqa: PLC0415 - slow to import, and not needed for --help
-        from tippetop.problem import Problem  # noqa: PLC0415
+        return self.changed(tt.presets.report_problem() if self.file is None else tt.Problem.read(self.file))
 
-        return self.changed(presets.report_problem() if self.file is None else Problem.read(self.file))
-
-    def changed(self, problem: "Problem") -> "Problem":
+    def changed(self, problem: "tt.Problem") -> "tt.Problem":
         """Another problem with what is other."""
-        from tippetop import presets  # noqa: PLC0415 - slow to import, and not needed for --help
-
         if self.preset is not None:
-            problem = problem.model_copy(update={"body": presets.body(self.preset)})
+            problem = problem.model_copy(update={"body": tt.presets.body(self.preset)})
         return problem.replace({**self.settings, **dict(_parsed(change) for change in self.changes)})
 
 
@@ -97,6 +98,14 @@ def of_a_problem(
 def finite(value: float) -> float | None:
     """The number as JSON takes it: None where it is infinite or undefined."""
     return value if math.isfinite(value) else None
+
+
+def write_figure(figure: "Figure", path: Path, force: bool) -> None:
+    """Write a figure in the house style."""
+    from tippetop.figures.style import save  # noqa: PLC0415 - slow to import
+
+    with written_beside(path, force) as beside:
+        save(figure, beside)
 
 
 def _parsed(change: str) -> tuple[str, Any]:

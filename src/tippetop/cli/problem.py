@@ -2,16 +2,14 @@
 
 import json
 import re
-from typing import TYPE_CHECKING, Annotated, Literal, get_args, get_origin
+from typing import Annotated, Literal, get_args, get_origin
 
 import typer
 
+import tippetop as tt
 from tippetop.catalogue import written_unit
 from tippetop.cli.options import Choice, Json, of_a_problem
 from tippetop.fields import part_at
-
-if TYPE_CHECKING:
-    from tippetop.problem import Problem
 
 TABLE, FIELD, ITEM = re.compile(r"\[(.+)]"), re.compile(r"([\w-]+) = "), re.compile(r"    -?[\d.]")
 """Lines of TOML: that begin a table, a field, or hold an item of a list."""
@@ -24,16 +22,14 @@ def problem(
     schema: Annotated[bool, typer.Option("--schema", help="Print the JSON Schema of problems.")] = False,
 ) -> None:
     """Print a problem as TOML with its units, to be edited and given to the other commands."""
-    from tippetop.problem import Problem  # noqa: PLC0415 - slow to import
-
     if schema:
-        typer.echo(json.dumps(Problem.model_json_schema(), indent=2))
+        typer.echo(json.dumps(tt.Problem.model_json_schema(), indent=2))
         return
     chosen = choice.problem()
     typer.echo(chosen.to_json() if as_json else commented_toml(chosen).rstrip())
 
 
-def commented_toml(problem: "Problem") -> str:
+def commented_toml(problem: "tt.Problem") -> str:
     """The problem as TOML, with the unit and the meaning of every number beside it."""
     table = name = ""
     place = 0
@@ -53,7 +49,7 @@ def commented_toml(problem: "Problem") -> str:
     return "\n".join(lines) + "\n"
 
 
-def _remark(problem: "Problem", name: str) -> str:
+def _remark(problem: "tt.Problem", name: str) -> str:
     """What is said beside a field: unit and meaning of a number, or the words that are possible."""
     where, _, field = name.rpartition(".")
     part = part_at(problem, where)

@@ -8,19 +8,18 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tippetop.cli.options import Choice, Force, Json, of_a_problem
+import tippetop as tt
+from tippetop.cli.options import DRAWINGS, Choice, Force, Json, of_a_problem, write_figure
 from tippetop.cli.terminal import facts, progress_bar, show
 from tippetop.errors import InvalidInput
-from tippetop.files import place_for, require_ending, written_beside
+from tippetop.files import place_for, require_ending
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from tippetop.problem import Problem
-
 DEFAULT_SAMPLES = 2001
 MOVING = ("glb", "html", "mp4", "gif")
-ENDINGS = {"plot": (".png", ".svg", ".pdf"), "html": (".html", ".htm")}
+ENDINGS = {"plot": DRAWINGS, "html": (".html", ".htm")}
 """How the names of files may end; of the other kinds but `out`, as the kind is called."""
 
 ROWS = (
@@ -80,9 +79,6 @@ def simulate(
     force: Force = False,
 ) -> None:
     """Simulate one launch and say what becomes of the top."""
-    from tippetop.run import simulate as run_problem  # noqa: PLC0415 - slow to import
-    from tippetop.summary import summarize  # noqa: PLC0415
-
     chosen = choice.problem()
     files = {"out": out, "plot": plot, "csv": csv, "glb": glb, "html": html, "mp4": mp4, "gif": gif}
     wanted = {kind: path for kind, path in files.items() if path is not None}
@@ -91,7 +87,7 @@ def simulate(
         samples = _enough_samples(chosen, duration, wanted)
     began = time.perf_counter()
     with progress_bar("simulating") as progress:
-        run = run_problem(
+        run = tt.simulate(
             chosen,
             duration,
             samples=samples,
@@ -103,7 +99,7 @@ def simulate(
     elapsed = time.perf_counter() - began
     for kind, path in wanted.items():
         _write(run, kind, path, force)
-    summary = summarize(run)
+    summary = tt.summarize(run)
     if as_json:
         written = {kind: path and str(path) for kind, path in files.items()}
         typer.echo(json.dumps({**summary, **written, "problem": chosen.model_dump()}, indent=2))
@@ -116,7 +112,7 @@ def simulate(
         )
 
 
-def _enough_samples(problem: "Problem", duration: float, wanted: Iterable[str]) -> int:
+def _enough_samples(problem: "tt.Problem", duration: float, wanted: Iterable[str]) -> int:
     """As many samples as the files that are wanted need, and no fewer than usual."""
     if not set(MOVING) & set(wanted):
         return DEFAULT_SAMPLES
@@ -129,32 +125,18 @@ def _write(run: "xr.Dataset", kind: str, path: Path, force: bool) -> None:
     """Write one of the files of a run."""
     match kind:
         case "out":
-            from tippetop.netcdf import write_run  # noqa: PLC0415 - slow to import, like what follows
-
-            write_run(run, path, force)
+            tt.write_run(run, path, force)
         case "plot":
-            from tippetop.figures.overview import plot as draw  # noqa: PLC0415
-            from tippetop.figures.style import save  # noqa: PLC0415
-
-            with written_beside(path, force) as beside:
-                save(draw(run), beside)
+            write_figure(tt.plot(run), path, force)
         case "csv":
-            from tippetop.export.csv import write_csv  # noqa: PLC0415
-
-            write_csv(run, path, force)
+            tt.write_csv(run, path, force)
         case "glb":
-            from tippetop.export.glb import write_glb  # noqa: PLC0415
-
-            write_glb(run, path, force)
+            tt.write_glb(run, path, force)
         case "html":
-            from tippetop.export.html import write_html  # noqa: PLC0415
-
-            write_html(run, path, force)
+            tt.write_html(run, path, force)
         case _:
-            from tippetop.export.movie import write_movie  # noqa: PLC0415
-
             with progress_bar(f"drawing {path.name}") as progress:
-                write_movie(run, path, force, progress=progress)
+                tt.write_movie(run, path, force, progress=progress)
 
 
 def _check_files(wanted: dict[str, Path], force: bool) -> None:

@@ -10,16 +10,17 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tippetop.cli.options import Choice, Force, Json, of_a_problem
+import tippetop as tt
+from tippetop.cli.options import Choice, Force, Json, of_a_problem, write_figure
 from tippetop.cli.terminal import facts, progress_bar, show
 from tippetop.errors import MISSING, FileTrouble, InvalidInput
-from tippetop.files import in_words, place_for, read_text, written_beside
+from tippetop.files import in_words, place_for, read_text
 from tippetop.interrupts import INTERRUPTED
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from tippetop.sweeps import Draws, Product, Progress, Sweep
+    from tippetop.sweeps import Product, Progress, Sweep
 
 
 SweepFile = Annotated[
@@ -116,7 +117,7 @@ def sweep(
 
 
 def _chosen_sweep(
-    choice: Choice, kept: "Sweep | None", grid: "Product | Draws | None", limits: dict[str, float | None]
+    choice: Choice, kept: "Sweep | None", grid: "Product | tt.Draws | None", limits: dict[str, float | None]
 ) -> "Sweep":
     """The sweep that the file, or the store to be resumed, and the options ask for."""
     from tippetop.sweeps import Sweep  # noqa: PLC0415 - slow to import
@@ -135,9 +136,9 @@ def _chosen_sweep(
 
 def _chosen_grid(
     axis: list[str] | None, draw: list[str] | None, count: int | None, seed: int | None
-) -> "Product | Draws | None":
+) -> "Product | tt.Draws | None":
     """The grid that the options ask for, if they do."""
-    from tippetop.sweeps import Draws, Product  # noqa: PLC0415 - slow to import
+    from tippetop.sweeps import Product  # noqa: PLC0415 - slow to import
 
     if axis and draw:
         raise InvalidInput("--draw", draw[0], "axes or draws, not both")
@@ -149,7 +150,7 @@ def _chosen_grid(
     if draw:
         if count is None:
             raise InvalidInput("--count", MISSING, "the number of draws")
-        return Draws(**{"fields": [_range(text) for text in draw], "count": count, "seed": seed or 0})
+        return tt.Draws(**{"fields": [_range(text) for text in draw], "count": count, "seed": seed or 0})
     return None
 
 
@@ -202,11 +203,9 @@ def _map_files(out: Path) -> dict[str, Path]:
 def _draw_maps(dataset: "xr.Dataset", files: dict[str, Path], overwrite: bool) -> None:
     """Draw maps beside the store."""
     from tippetop.figures.maps import phase_map  # noqa: PLC0415 - slow to import
-    from tippetop.figures.style import save  # noqa: PLC0415
 
     for name, path in files.items():
-        with written_beside(path, overwrite) as beside:
-            save(phase_map(dataset, name), beside)
+        write_figure(phase_map(dataset, name), path, overwrite)
 
 
 def _summary(dataset: "xr.Dataset", progress: "Progress", elapsed: float) -> dict[str, Any]:
