@@ -89,8 +89,10 @@ def test_workers_of_another_version_are_refused():
 
 
 @pytest.mark.filterwarnings("ignore")
-def test_a_dask_cluster_finds_the_same_though_a_worker_is_killed(small_tasks):
+def test_a_dask_cluster_finds_the_same_though_a_worker_is_killed(small_tasks, monkeypatch):
     distributed = pytest.importorskip("distributed")
+    connected, connect = [], scheduling._cluster
+    monkeypatch.setattr(scheduling, "_cluster", lambda at: connected.append(at) or connect(at))
     sweep = lively("fly", 6, 4, 0.3, 1e-9)
     alone = arrays(compute(sweep, workers=1))
     with distributed.LocalCluster(
@@ -116,6 +118,7 @@ def test_a_dask_cluster_finds_the_same_though_a_worker_is_killed(small_tasks):
             done.set()
             killer.join()
         assert not psutil.pid_exists(victims[0]) or psutil.Process(victims[0]).status() == "zombie"
+    assert connected == [address]
     assert same(alone, arrays(together))
     assert np.all(together["status"].values == 1)
 
@@ -164,6 +167,7 @@ import os, signal
 def kill(progress):
     if 8 <= progress.done < 12:
         os.kill({victim}, signal.SIGKILL)
+        time.sleep({pause})
 try:
     stored(lively("fly", 6, 4, 0.3, 1e-9), {out!r}, scheduler={address!r}, callback=kill)
 except Unavailable as error:
@@ -194,19 +198,24 @@ def cluster(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("lost", "sentence", "warnings"),
-    [("scheduler", "was lost (CancelledError)", 0), ("worker", "has had no workers for 2 s", 1)],
+    ("lost", "pause", "sentence", "warnings"),
+    [
+        ("scheduler", 0.0, "was lost (CancelledError)", 0),
+        ("scheduler", 1.0, "was lost (CancelledError)", 0),
+        ("worker", 0.0, "has had no workers for 2 s", 1),
+    ],
 )
 def test_a_cluster_that_is_gone_is_told_of_in_a_sentence_and_what_is_done_is_kept(
-    cluster, small_tasks, tmp_path, lost, sentence, warnings
+    cluster, small_tasks, tmp_path, lost, pause, sentence, warnings
 ):
+    """With a pause, more tasks are handed out to what is known to be gone."""
     distributed = pytest.importorskip("distributed")
     scheduler, worker, address = cluster
     with distributed.Client(address, set_as_default=False) as client:
         client.wait_for_workers(1, timeout=60)
     paths = [str(Path(__file__).parent), str(Path(__file__).parents[1])]
     out, victim = tmp_path / "a.zarr", scheduler.pid if lost == "scheduler" else worker.pid
-    script = LOST.format(paths=paths, victim=victim, out=str(out), address=address)
+    script = LOST.format(paths=paths, victim=victim, pause=pause, out=str(out), address=address)
     ran = subprocess.run(
         [sys.executable, "-c", script], capture_output=True, text=True, timeout=60, check=True
     )

@@ -88,7 +88,6 @@ def compute(
 
     The variables of `tippetop.catalogue.SWEPT` and `status` are over the grid.
     """
-    need_workers(sweep, workers, scheduler)
     shape, grid = sweep.grid.shape, sweep.grid
     arrays = {name: np.full(shape, kind.missing, dtype=kind.dtype) for name, kind in SWEPT.items()}
 

@@ -165,6 +165,9 @@ def _first_done(client: Any, address: str, running: Mapping[Future[Found], Task]
         done, _ = wait(running, timeout=GLANCE, return_when=FIRST_COMPLETED)
         if done:
             return done
+        if client.status != "running":
+            # Tasks handed out since then are cancelled only when the client gives up reconnecting.
+            raise CancelledError
         if _workers(client):
             alone = 0.0
             continue
