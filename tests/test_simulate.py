@@ -689,6 +689,13 @@ def test_times_may_leave_out_the_launch_and_the_end():
     assert tt.simulate(report(), 1.0, times=[0.5]).time.values.tolist() == [0.5]
 
 
+@pytest.mark.parametrize("duration", [0.2, 0.3, 0.7, 1])
+def test_a_run_to_its_end_ends_when_it_was_to(duration):
+    """To the last bit, though it is followed in natural units."""
+    run = tt.simulate(report(), duration, times=[0.1])
+    assert float(run["end_time"]) == tt.summarize(run)["duration"] == duration
+
+
 def test_more_samples_do_not_change_the_run():
     sparse, dense = tt.simulate(report(), 2.0, samples=11), tt.simulate(report(), 2.0, samples=1001)
     np.testing.assert_allclose(sparse.theta, dense.theta[::100], rtol=0, atol=1e-12)

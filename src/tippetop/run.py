@@ -126,7 +126,9 @@ def simulate(
     found = recorder.finish(trajectory.time, trajectory.state, early)
     ends = tally.ends(trajectory.state, trajectory.time, outcome, trajectory.events)
     begin = State.unpack([np.float64(number) for number in state.pack()])
+    end_time = duration if trajectory.time == trajectory.end else trajectory.time * units.time
     scalars = metrics(ends, begin, top, units) | {
+        "end_time": end_time,
         "energy_start": float(energy(state, top)) * units.energy,
         "impact_energy_lost": sum(event.energy_lost for event in trajectory.events) * units.energy,
         "evaluations": tally.evaluations,
@@ -142,9 +144,9 @@ def simulate(
         "tippetop_version": __version__,
     }
     lists = _event_arrays(trajectory.events, units) | _flight_arrays(tally.flights, units)
-    times = np.append(grid, trajectory.time * units.time)[: len(found.times)]
+    times = np.append(grid, end_time)[: len(found.times)]
     if early:
-        times[-1] = trajectory.time * units.time
+        times[-1] = end_time
     variables = observe(found, top, units)
     variables["orientation"] = continuous(variables["orientation"])
     return assemble(times, variables, (found.mode, recorder.modes), scalars, lists, attributes)
