@@ -9,17 +9,16 @@ import xarray as xr
 import tippetop as tt
 from tippetop.catalogue import SWEPT, Fault
 from tippetop.contact import several
-from tippetop.contact.double import SlidingOnTwo
+from tippetop.contact.double import SlidingOnTwo, on_two
 from tippetop.contact.mode import EventKind, Mode
 from tippetop.contact.passing import Resting
 from tippetop.contact.several import OnSeveral
 from tippetop.mechanics.contact_pair import ContactPair, normal_wrench
-from tippetop.mechanics.contensou_hertz import HertzBranch
-from tippetop.mechanics.motion import along_table, on_table
-from tippetop.mechanics.rolling import sliding_law, with_sliding_law
+from tippetop.mechanics.motion import on_table
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.stick_slip import slip_of
-from tippetop.mechanics.top import natural, natural_state, natural_units
+from tippetop.mechanics.surface import contact_vector
+from tippetop.mechanics.top import natural, natural_units
 
 LEINE_GLOCKER = tt.Problem(
     body=tt.Body(
@@ -144,19 +143,47 @@ def test_rocking_shrinks_by_what_the_inverse_masses_say() -> None:
     assert (cycles[1:] / cycles[:-1])[18:24] == pytest.approx(expected, abs=2e-3)
 
 
-def test_two_contacts_of_a_patch_may_each_drill_or_slide() -> None:
-    """A motion on two surfaces is told both tops by its parameters, whatever the branch of each."""
-    problem = LEINE_GLOCKER.replace({"friction.pressure": "hertz"})
-    both = tuple(natural(problem.top).each)
-    state = problem.start()
-    y = along_table(natural_state(state, natural_units(problem.top))).pack()
-    for drills in ((1.0, 0.0), (0.0, 1.0), (1.0, 1.0)):
-        first, second = (
-            with_sliding_law(top, HertzBranch(*sliding_law(top.friction), drills=d))
-            for top, d in zip(both, drills, strict=True)
-        )
-        mode = SlidingOnTwo(first, None, second)
-        assert mode.motion.rates(y, mode.parameters) == pytest.approx(mode.rates(y), rel=1e-14)
+@pytest.mark.parametrize("sideways", [-0.5, 0.0, -1.0, 1.0], ids=["both drill", "first", "second", "neither"])
+def test_two_patches_which_each_drill_or_slide_move_a_body_as_newton_and_euler_say(sideways: float) -> None:
+    """Two normal forces, with Hertz's law at each patch, give all rates, and keep both contacts closed.
+
+    The patches slip across their line, at velocities of which the second exceeds the first by what they turn.
+    """
+    problem = LEINE_GLOCKER.replace({"friction.pressure": "hertz", "friction.patch_radius": 5e-3})
+    top, unit = natural(problem.top), natural_units(problem.top).length
+    tops, (low, high), law = tuple(top.each), problem.body.shapes, problem.friction.law
+    c = (high.radius - low.radius) / (high.center - low.center)
+    axis, turning = np.array([np.sqrt(1.0 - c * c), 0.0, c]), np.array([-0.5, 0.0, 2.0])
+    inertia, apart = (top.transverse_inertia, top.axial_inertia), (high.center - low.center) / unit * axis[0]
+    momentum = inertia[0] * turning + (inertia[1] - inertia[0]) * (turning @ axis) * axis
+    arms = [np.array(contact_vector(tuple(axis), one.surface)) for one in tops]
+    slips = [np.array([0.0, (sideways + k) * apart * turning[2], 0.0]) for k in (0, 1)]
+    velocity = slips[0] - np.cross(turning, arms[0])
+    sliding = SlidingState(*(tuple(v.tolist()) for v in (axis, momentum, velocity[:2])))
+
+    mode = on_two(on_table(sliding, tops[0]), OnSeveral(tops[0], 0.0), tops[1], 0.0)
+    rates = np.array(mode.motion.rates(sliding.pack(), mode.parameters))
+
+    tractions = [
+        law._replace(patch_radius=law.patch_radius / unit).traction(tuple(slip[:2]), tuple(turning))
+        for slip in slips
+    ]
+    forces = [np.array([*traction.force, 1.0]) for traction in tractions]
+    pushed = [
+        [*force, *(np.cross(arm, force) + traction.torque)]
+        for arm, force, traction in zip(arms, forces, tractions, strict=True)
+    ]
+    told = np.array([*rates[6:], 1.0, *rates[3:6]])
+    normal, *_ = np.linalg.lstsq(np.array(pushed).T, told, rcond=None)
+    assert (normal > 0.0).all()
+    assert np.array(pushed).T @ normal == pytest.approx(told, abs=1e-14)
+
+    def tilting(y: np.ndarray) -> float:
+        return np.cross(y[3:6], y[:3])[2] / inertia[0]
+
+    y, step = np.array(sliding.pack()), 1e-4
+    assert tilting(y) == pytest.approx(0.0, abs=1e-15)
+    assert tilting(y + step * rates) - tilting(y - step * rates) == pytest.approx(0.0, abs=1e-15)
 
 
 def test_a_body_of_one_surface_in_a_list_is_that_surface() -> None:

@@ -13,7 +13,7 @@ from tippetop.contact.loosening import Loosening
 from tippetop.contact.mode import EventKind
 from tippetop.contact.passing import Stopping
 from tippetop.contact.rules import Bilateral
-from tippetop.contact.sticking import split
+from tippetop.contact.sticking import SLIP, split, sticking_motion
 from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators import has_taylor, make_integrator
 from tippetop.integrators.scipy_methods import SciPy
@@ -27,7 +27,6 @@ from tippetop.mechanics.motion import angular_velocity, on_table, sliding_rates
 from tippetop.mechanics.rolling import (
     ContactPoint,
     contact_motion,
-    slip_reserve,
     velocity_without_slip,
     without_drilling,
 )
@@ -186,8 +185,8 @@ def swinging(law, shape=None):
 
 def stuck_reserve(axis, momentum, top):
     """Positive while the table can hold the contact, and the body rolls as it does."""
-    point = ContactPoint.of(axis, momentum, top)
-    return slip_reserve(top, contact_motion(point, None, point.turning[:2])[0])
+    [slip] = [guard for guard in sticking_motion(top.kind, held=False).guards if guard.name == SLIP]
+    return slip.value((*axis, *momentum), top.numbers)
 
 
 WEAK = [
