@@ -122,7 +122,8 @@ class _Compiled:
 @lru_cache(maxsize=32)
 def _compiled(motion: Motion, tolerance: float) -> _Compiled:
     """Compile the equations and the guards, or fetch them from the cache across processes."""
-    state, parameters = _symbols(motion.size, motion.parameters)
+    state = [hy.make_vars(f"y{i}") for i in range(motion.size)]
+    parameters = [hy.par[i] for i in range(motion.parameters)]
     rates = [hy.expression(rate) for rate in motion.rates(state, parameters)]
     guards = [GUARDED * guard.value(state, parameters) for guard in motion.guards]
 
@@ -148,11 +149,6 @@ def _compiled(motion: Motion, tolerance: float) -> _Compiled:
         return _Compiled(pickle.loads(content))
     except Exception:  # noqa: BLE001 - whatever is wrong with what was kept, it can be made anew
         return _Compiled(make())
-
-
-def _symbols(size: int, parameters: int) -> tuple[list[Any], list[Any]]:
-    """State and parameters as the compiler knows them."""
-    return [hy.make_vars(f"y{i}") for i in range(size)], [hy.par[i] for i in range(parameters)]
 
 
 def _before_blow_up(solution: DenseSolution) -> DenseSolution:
