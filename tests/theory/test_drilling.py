@@ -22,11 +22,10 @@ from tippetop.theory.apparent import critical_spin_from_spectrum
 from tippetop.theory.drilling import spin_rate, standing_time, time_to_stand
 from tippetop.theory.overview import outlook
 from tippetop.theory.stability import (
-    branch_eigenvalues,
     drilling,
+    eigenvalues,
     linear_tilts,
     spectrum,
-    vertical_eigenvalues,
 )
 from tippetop.theory.steady import (
     VERTICAL_SPINS,
@@ -62,7 +61,7 @@ def test_about_a_vertical_spin_drilling_makes_dry_friction_viscous(pressure, kin
     for spin in (30.0, 150.0, -80.0):
         mu = 0.3 * CREEP[pressure] / (5e-4 * abs(spin))
         dry, viscous = (
-            vertical_eigenvalues(kind, some, np.array([spin]))
+            eigenvalues(vertical_spin(kind, some, spin), some)
             for some in (top, top._replace(friction=ViscousLaw(mu)))
         )
         assert dry == pytest.approx(viscous, abs=1e-13 * np.abs(viscous).max())
@@ -149,7 +148,7 @@ def test_a_top_stands_until_it_has_too_little_spin(pressure):
     limit = critical_spin(SteadyKind.INVERTED, top)
     rate = spin_rate(vertical_spin(SteadyKind.INVERTED, top, 42.3), top)
     assert standing == pytest.approx((42.3 - limit) / abs(rate), rel=1e-12)
-    turning = vertical_eigenvalues(SteadyKind.INVERTED, top, np.array([limit]))[0, 0].imag
+    turning = eigenvalues(vertical_spin(SteadyKind.INVERTED, top, limit), top)[0, 0].imag
     launch = problem.replace({"launch.precession": -abs(turning)})
     run = tt.simulate(launch, 2.0 * standing, samples=8001)
     late = run["time"].values > 0.2 * standing
@@ -197,7 +196,7 @@ def test_what_the_theory_cannot_tell_is_refused_in_a_sentence():
     asks = [
         ("spin = 0.0 .* without drilling", lambda: time_to_stand(still, top)),
         ("spin = 0.0 .* without drilling", lambda: outlook(problem.replace({"launch.spin": 0.0}))),
-        ("friction = .* without torque", lambda: branch_eigenvalues(branch, top)),
+        ("friction = .* without torque", lambda: eigenvalues(branch, top)),
         ("friction = .* without torque", lambda: tt.predict(problem)),
         ("friction = CoulombLaw.* may roll for ever", lambda: spectrum(leaning, _on(CoulombLaw(0.3)))),
         (

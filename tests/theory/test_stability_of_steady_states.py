@@ -16,10 +16,9 @@ from tippetop.theory import dual
 from tippetop.theory.dual import jacobian
 from tippetop.theory.prediction import stable_by_energy
 from tippetop.theory.stability import (
-    branch_eigenvalues,
+    eigenvalues,
     linear_tilts,
     spectrum,
-    vertical_eigenvalues,
     vertical_growth_rates,
 )
 from tippetop.theory.steady import (
@@ -57,7 +56,7 @@ def test_the_spectrum_of_a_precession_is_that_of_the_published_equations(top, ti
     """In Euler angles the azimuth drops out by itself, and a precession is an equilibrium of the rest."""
     branch = precession_branch(top, np.array([tilt]))
     assume(np.isfinite(branch.precession[0]) and branch.precession[0] < 300.0)
-    ours = branch_eigenvalues(branch, top)[0]
+    ours = eigenvalues(branch, top)[0]
     y = [tilt, 0.0, 0.0, branch.precession[0], branch.spin[0], 0.0, 0.0]
     matrix = jacobian(lambda t: published_rates(t, top, dual), y)
     without_azimuth = np.delete(np.delete(matrix, 2, axis=0), 2, axis=1)
@@ -124,7 +123,7 @@ def test_a_level_spin_has_two_neutral_directions(top, rate):
 def test_many_spins_give_the_spectra_of_each(kind):
     top = sphere(0.9, 0.3)
     spins = np.array([-20.0, 5.0, 60.0])
-    together = vertical_eigenvalues(kind, top, spins)
+    together = eigenvalues(vertical_spin(kind, top, spins), top)
     for row, spin in zip(together, spins, strict=True):
         alone = spectrum(vertical_spin(kind, top, spin), top).eigenvalues
         assert_same_numbers(row, alone, 1e-10 * np.abs(alone).max())

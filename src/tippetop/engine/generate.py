@@ -55,7 +55,7 @@ LEFT = {
     *("read", "_compiled", "_without_top", "_of_kind", "continuous"),
     *("Ends.unknown", "Ends.put", "ending", "turning_time", "arrival_time"),
     *("written_out", "_for_each", "_sum", "_powers"),
-    *("Branch", "precession_branch", "state_of", "is_held", "steady_launch"),
+    *("precession_branch", "state_of", "is_held", "steady_launch"),
     *(f"Problem.{name}" for name in ("replace", "to_toml", "to_json", "from_toml", "from_json", "read")),
 }
 """What no page asks for."""

@@ -8510,7 +8510,7 @@ py.members(
 );
 const VERTICAL_SPINS = [SteadyKind.UPRIGHT, SteadyKind.INVERTED];
 
-/** A motion that friction leaves alone. */
+/** A motion that friction leaves alone, or many of one kind: numbers, or arrays of one shape. */
 class SteadyState extends py.Record {
   constructor(kind, tilt, precession, spin, jellett, energy) {
     super();
@@ -8579,22 +8579,22 @@ function branch_jellett(tilt, top) {
 /** The vertical spin at theta = 0 or pi with this axial spin omega3, rad/s. */
 function vertical_spin(kind, top, spin) {
   var c = kind === SteadyKind.UPRIGHT ? 1.0 : -1.0;
-  var whole = _at_rest([0.0, 0.0, c], [0.0, 0.0, py.mul(py.mul(c, top.axial_inertia), spin)], top);
   var tilt = kind === SteadyKind.UPRIGHT ? 0.0 : py.math.pi;
-  return new SteadyState(kind, tilt, 0.0, spin, jellett(whole, top), energy(whole, top));
+  return _steady(
+    kind,
+    tilt,
+    0.0,
+    spin,
+    [0.0, 0.0, c],
+    [0.0, 0.0, py.mul(py.mul(c, top.axial_inertia), spin)],
+    top
+  );
 }
 
 /** The spin with horizontal axis at this precession, rad/s, of a shape that has one. */
 function level_spin(top, precession) {
-  var whole = _at_rest([1.0, 0.0, 0.0], [0.0, 0.0, py.mul(top.transverse_inertia, precession)], top);
-  return new SteadyState(
-    SteadyKind.LEVEL,
-    py.div(py.math.pi, 2),
-    precession,
-    0.0,
-    jellett(whole, top),
-    energy(whole, top)
-  );
+  var momentum = [0.0, 0.0, py.mul(top.transverse_inertia, precession)];
+  return _steady(SteadyKind.LEVEL, py.div(py.math.pi, 2), precession, 0.0, [1.0, 0.0, 0.0], momentum, top);
 }
 
 /** All steady states with this Jellett's integral, by increasing tilt. */
@@ -8655,17 +8655,20 @@ function _at_rest(axis, momentum, top) {
 /** The steady precession at a tilt known to be one for this Jellett's integral. */
 function precession_at(tilt, jellett, top) {
   var rolling = rolling_precession(tilt, top, py.math);
-  var rate = py.div(jellett, rolling.jellett);
-  var whole = _at_rest(rolling.axis, scale(rate, rolling.momentum), top);
+  return _precession(tilt, py.div(jellett, rolling.jellett), rolling, top);
+}
+
+/** The steady precession at this tilt and rate, of which that without slip is known. */
+function _precession(tilt, rate, rolling, top) {
   var spin = py.mul(rate, rolling_spin(rolling.axis[2], top.surface));
-  return new SteadyState(
-    SteadyKind.PRECESSION,
-    tilt,
-    py.float(rate),
-    py.float(spin),
-    jellett,
-    py.float(energy(whole, top))
-  );
+  var momentum = scale(rate, rolling.momentum);
+  return _steady(SteadyKind.PRECESSION, tilt, rate, spin, rolling.axis, momentum, top);
+}
+
+/** The steady state with these angles and rates, and this axis and angular momentum. */
+function _steady(kind, tilt, precession, spin, axis, momentum, top) {
+  var whole = _at_rest(axis, momentum, top);
+  return new SteadyState(kind, tilt, precession, spin, jellett(whole, top), energy(whole, top));
 }
 const FASTEST = 100000000.0;
 
@@ -11216,6 +11219,7 @@ export {
   _nothing,
   _on_one_of_several,
   _polished,
+  _precession,
   _precession_tilts,
   _reach,
   _reaches_out,
@@ -11223,6 +11227,7 @@ export {
   _root,
   _slip,
   _solved,
+  _steady,
   _stem,
   _stiffness,
   _touch,

@@ -86,4 +86,4 @@ def time_to_stand(steady: SteadyState, top: Top) -> float:
     if rate == 0.0:
         return math.inf
     limit = critical_spin(steady.kind, top)
-    return (spin - limit if limit < spin else spin) / rate
+    return float(spin - limit if limit < spin else spin) / rate

@@ -35,12 +35,12 @@ from tippetop.theory.dual import Array, Dual, derivative, jacobian, variable
 from tippetop.theory.requirements import require_creep
 from tippetop.theory.steady import (
     VERTICAL_SPINS,
-    Branch,
     SteadyKind,
     SteadyState,
     gyroscopic_reaction,
     rolling_spin,
     state_of,
+    vertical_spin,
     weight_moment,
 )
 
@@ -118,32 +118,31 @@ def spectrum(steady: SteadyState, top: Top, frame_rate: float | None = None) -> 
     rate = steady.precession
     if frame_rate is not None and steady.kind in VERTICAL_SPINS:
         rate = frame_rate
-    point = (np.array([steady.tilt]), np.array([steady.precession]), np.array([steady.spin]))
-    eigenvalues = _eigenvalues(steady.kind, *point, np.array([rate]), top)
-    return Spectrum(eigenvalues[0], rate, NEUTRAL[steady.kind])
+    return Spectrum(eigenvalues(steady, top, rate)[0], rate, NEUTRAL[steady.kind])
 
 
-def branch_eigenvalues(branch: Branch, top: Top) -> Complex:
-    """Eigenvalues along a branch of steady precessions, 1/s, shape (n, 5), nan where there is no state."""
-    found = np.full((branch.tilt.size, 5), complex(math.nan, math.nan))
-    exists = np.isfinite(branch.precession)
-    if exists.any():
-        tilt, rate, spin = branch.tilt[exists], branch.precession[exists], branch.spin[exists]
-        found[exists] = _eigenvalues(SteadyKind.PRECESSION, tilt, rate, spin, rate, top)
+def eigenvalues(steady: SteadyState, top: Top, frame_rate: Scalar = None) -> Complex:
+    """Eigenvalues about n steady states of one kind, 1/s, by decreasing real part, shape (n, 5 or 6).
+
+    As of a `spectrum`; nan where there is no such state.
+    """
+    frame = steady.precession if frame_rate is None else frame_rate
+    tilt, precession, spin, frame = (
+        np.ravel(each).astype(float)
+        for each in np.broadcast_arrays(steady.tilt, steady.precession, steady.spin, frame)
+    )
+    exists = np.isfinite(precession)
+    linear = _linear(steady.kind, tilt[exists], precession[exists], spin[exists], frame[exists], top)
+    values: Complex = np.linalg.eigvals(linear.matrix).astype(complex) / linear.units.time
+    order = np.lexsort((values.imag, -values.real))
+    found = np.full((tilt.size, values.shape[-1]), complex(math.nan, math.nan))
+    found[exists] = np.take_along_axis(values, order, axis=-1)
     return found
-
-
-def vertical_eigenvalues(kind: SteadyKind, top: Top, spins: Array) -> Complex:
-    """Eigenvalues of vertical spins at these axial spins (rad/s), in a frame at rest, 1/s, shape (n, 6)."""
-    spins = np.atleast_1d(np.asarray(spins, dtype=float))
-    zero = np.zeros_like(spins)
-    tilt = np.full_like(spins, 0.0 if kind is SteadyKind.UPRIGHT else math.pi)
-    return _eigenvalues(kind, tilt, zero, spins, zero, top)
 
 
 def vertical_growth_rates(kind: SteadyKind, top: Top, spins: Array) -> Array:
     """Growth rates of the vertical spin at these axial spins (rad/s), 1/s, shape (n,)."""
-    return np.asarray(vertical_eigenvalues(kind, top, spins)[:, 0].real)
+    return np.asarray(eigenvalues(vertical_spin(kind, top, spins), top)[:, 0].real)
 
 
 def linear_tilts(steady: SteadyState, top: Top, start: SlidingState, times: Array) -> Array:
@@ -202,16 +201,6 @@ def drilling(top: Top, turning: Array) -> Top:
         accepted = f"at least {SLOWEST / time:.2g} rad/s: without drilling dry friction lets it stick"
         raise InvalidInput("spin", slowest, accepted)
     return on_branch(top, (0.0, 0.0, 1.0))
-
-
-def _eigenvalues(
-    kind: SteadyKind, tilt: Array, precession: Array, spin: Array, frame: Array, top: Top
-) -> Complex:
-    """Eigenvalues of n steady states of one kind, 1/s, by decreasing real part, shape (n, 5 or 6)."""
-    linear = _linear(kind, tilt, precession, spin, frame, top)
-    values: Complex = np.linalg.eigvals(linear.matrix).astype(complex) / linear.units.time
-    order = np.lexsort((values.imag, -values.real))
-    return np.take_along_axis(values, order, axis=-1)
 
 
 def _coordinates(state: SlidingState, like: Array) -> list[Array]:

@@ -43,7 +43,7 @@ VERTICAL_SPINS = (SteadyKind.UPRIGHT, SteadyKind.INVERTED)
 
 @dataclass(frozen=True)
 class SteadyState:
-    """A motion that friction leaves alone.
+    """A motion that friction leaves alone, or many of one kind: numbers, or arrays of one shape.
 
     Attributes
     ----------
@@ -52,7 +52,8 @@ class SteadyState:
     tilt
         theta, rad.
     precession
-        phi', rad/s; 0 by convention for a vertical spin, where only the axial spin has a meaning.
+        phi', rad/s; 0 by convention for a vertical spin, where only the axial spin has a meaning; nan, as
+        what follows, where nothing precesses steadily at this tilt.
     spin
         Axial spin omega3, rad/s.
     jellett
@@ -62,26 +63,11 @@ class SteadyState:
     """
 
     kind: SteadyKind
-    tilt: float
-    precession: float
-    spin: float
-    jellett: float
-    energy: float
-
-
-@dataclass(frozen=True)
-class Branch:
-    """The steady precessions with phi' > 0 at given tilts; those with phi' < 0 are their mirror images.
-
-    All attributes are arrays of one shape, as those of `SteadyState`. Where there is no steady precession,
-    everything but the tilt is nan.
-    """
-
-    tilt: Array
-    precession: Array
-    spin: Array
-    jellett: Array
-    energy: Array
+    tilt: Scalar
+    precession: Scalar
+    spin: Scalar
+    jellett: Scalar
+    energy: Scalar
 
 
 class RollingPrecession(NamedTuple):
@@ -124,21 +110,17 @@ def precession_rate_squared(c: Scalar, top: Top) -> Scalar:
     return weight_moment(c, top) / gyroscopic_reaction(c, top)
 
 
-def precession_branch(top: Top, tilts: Array) -> Branch:
-    """The steady precessions at these tilts (rad, any shape), which may include 0 and pi as limits."""
+def precession_branch(top: Top, tilts: Array) -> SteadyState:
+    """The steady precessions with phi' > 0 at these tilts (rad, any shape), 0 and pi as limits.
+
+    Those with phi' < 0 are their mirror images. Where there is none, all but the tilt is nan.
+    """
     tilts = np.asarray(tilts, dtype=float)
     rolling = rolling_precession(tilts, top, np)
     with np.errstate(divide="ignore", invalid="ignore"):
         squared = precession_rate_squared(rolling.axis[2], top)
         rate = np.sqrt(np.where(np.isfinite(squared) & (squared > 0), squared, np.nan))
-    whole = _at_rest(rolling.axis, scale(rate, rolling.momentum), top)
-    return Branch(
-        tilts,
-        rate,
-        rate * rolling_spin(rolling.axis[2], top.surface),
-        rate * rolling.jellett,
-        energy(whole, top),
-    )
+    return _precession(tilts, rate, rolling, top)
 
 
 def branch_jellett(tilt: float, top: Top) -> float:
@@ -151,20 +133,17 @@ def branch_jellett(tilt: float, top: Top) -> float:
     return abs(squared**0.5 * rolling.jellett) if squared > 0.0 else math.inf
 
 
-def vertical_spin(kind: SteadyKind, top: Top, spin: float) -> SteadyState:
+def vertical_spin(kind: SteadyKind, top: Top, spin: Scalar) -> SteadyState:
     """The vertical spin at theta = 0 or pi with this axial spin omega3, rad/s."""
     c = 1.0 if kind is SteadyKind.UPRIGHT else -1.0
-    whole = _at_rest((0.0, 0.0, c), (0.0, 0.0, c * top.axial_inertia * spin), top)
     tilt = 0.0 if kind is SteadyKind.UPRIGHT else math.pi
-    return SteadyState(kind, tilt, 0.0, spin, jellett(whole, top), energy(whole, top))
+    return _steady(kind, tilt, 0.0, spin, (0.0, 0.0, c), (0.0, 0.0, c * top.axial_inertia * spin), top)
 
 
 def level_spin(top: Top, precession: float) -> SteadyState:
     """The spin with horizontal axis at this precession, rad/s, of a shape that has one."""
-    whole = _at_rest((1.0, 0.0, 0.0), (0.0, 0.0, top.transverse_inertia * precession), top)
-    return SteadyState(
-        SteadyKind.LEVEL, math.pi / 2, precession, 0.0, jellett(whole, top), energy(whole, top)
-    )
+    momentum = (0.0, 0.0, top.transverse_inertia * precession)
+    return _steady(SteadyKind.LEVEL, math.pi / 2, precession, 0.0, (1.0, 0.0, 0.0), momentum, top)
 
 
 def steady_states(top: Top, jellett: float) -> list[SteadyState]:
@@ -246,12 +225,27 @@ def _at_rest(axis: Vector, momentum: Vector, top: Top) -> State:
 def precession_at(tilt: float, jellett: float, top: Top) -> SteadyState:
     """The steady precession at a tilt known to be one for this Jellett's integral."""
     rolling = rolling_precession(tilt, top, math)
-    rate = jellett / rolling.jellett
-    whole = _at_rest(rolling.axis, scale(rate, rolling.momentum), top)
-    spin = rate * rolling_spin(rolling.axis[2], top.surface)
-    return SteadyState(
-        SteadyKind.PRECESSION, tilt, float(rate), float(spin), jellett, float(energy(whole, top))
-    )
+    return _precession(tilt, jellett / rolling.jellett, rolling, top)
+
+
+def _precession(tilt: Scalar, rate: Scalar, rolling: RollingPrecession, top: Top) -> SteadyState:
+    """The steady precession at this tilt and rate, of which that without slip is known."""
+    spin, momentum = rate * rolling_spin(rolling.axis[2], top.surface), scale(rate, rolling.momentum)
+    return _steady(SteadyKind.PRECESSION, tilt, rate, spin, rolling.axis, momentum, top)
+
+
+def _steady(
+    kind: SteadyKind,
+    tilt: Scalar,
+    precession: Scalar,
+    spin: Scalar,
+    axis: Vector,
+    momentum: Vector,
+    top: Top,
+) -> SteadyState:
+    """The steady state with these angles and rates, and this axis and angular momentum."""
+    whole = _at_rest(axis, momentum, top)
+    return SteadyState(kind, tilt, precession, spin, jellett(whole, top), energy(whole, top))
 
 
 FASTEST = 1e8

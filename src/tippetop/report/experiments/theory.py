@@ -31,7 +31,7 @@ from tippetop.theory.groups import (
     upright_boundary,
 )
 from tippetop.theory.prediction import predict
-from tippetop.theory.stability import branch_eigenvalues
+from tippetop.theory.stability import eigenvalues
 from tippetop.theory.steady import VERTICAL_SPINS, jellett_of_launch, precession_branch
 from tippetop.theory.thresholds import critical_spin, critical_spins
 
@@ -115,7 +115,7 @@ def _diagram(suffix: str, body: Body, tilts: Array, launches: list[tuple[float, 
     """
     base = report_problem().replace({"body": body.model_dump()})
     branch = precession_branch(base.top, tilts)
-    rates = np.max(branch_eigenvalues(branch, base.top).real, axis=1)
+    rates = np.max(eigenvalues(branch, base.top).real, axis=1)
     spins = branch.jellett / _per_spin(base)
     found = [_launched(base, spin, tilt) for spin, tilt in launches]
     runs = [simulate(problem, LONG_RUN, samples=2).isel(time=-1) for problem in found]
