@@ -1,9 +1,9 @@
 """Recorded functions as LLVM's code, for one launch or for several an instruction."""
 
 from collections.abc import Mapping, Sequence
-from struct import pack
 
 from tippetop.emit import graph
+from tippetop.emit.powers import is_small_power, power_function, spread
 from tippetop.emit.recording import Recorded
 
 ABREAST = 8
@@ -22,6 +22,7 @@ PLACE = """\
 LOAD = PLACE + "  {t} = load {v}, ptr {t}_place, align 8"
 STORE = PLACE + "  store {v} {0}, ptr {t}_place, align 8"
 CALL = "{t} = call {v} @llvm.{name}.v{n}f64({v} {0})"
+SMALL_POWER = "{t} = call {v} @small_power({v} {0}, {v} {1})"
 CHOICE = "{t} = select <{n} x i1> {0}_flag, {v} {1}, {v} {2}"
 """One of two numbers, by flags that are there already."""
 
@@ -127,10 +128,7 @@ def llvm_source(functions: Mapping[str, Recorded], abreast: int, *, again: bool 
     words = {"v": vector, "n": abreast, "r": ROUNDING, "count": count}
 
     def name_of(node: graph.Node) -> str:
-        if node.name != graph.CONSTANT:
-            return f"%t{node.place}"
-        bits = pack(">d", node.value).hex().upper()
-        return f"<{', '.join([f'double 0x{bits}'] * abreast)}>"
+        return spread(node.value, abreast) if node.name == graph.CONSTANT else f"%t{node.place}"
 
     parts = [
         f"declare {vector} @llvm.{name}.v{abreast}f64({vector}{', ' + vector if name == 'pow' else ''})\n"
@@ -138,6 +136,8 @@ def llvm_source(functions: Mapping[str, Recorded], abreast: int, *, again: bool 
     ]
     parts.append(f"declare double @llvm.vector.reduce.fadd.v{abreast}f64(double, {vector})\n")
     parts.append(f"declare i1 @llvm.vector.reduce.or.v{abreast}i1(<{abreast} x i1>)\n")
+    if abreast > 1 and any(is_small_power(node) for made in functions.values() for node in made.nodes):
+        parts.append(power_function(abreast))
     for name, recorded in functions.items():
         known = {node.place: name_of(node) for node in recorded.nodes}
         lines = spelt(recorded, known, words)
@@ -160,8 +160,7 @@ def spelt(recorded: Recorded, known: Mapping[int, str], words: Mapping[str, obje
     def line(node: graph.Node, spelling: str | None = None) -> str:
         operands = [known[operand.place] for operand in node.operands]
         own = {"t": known[node.place], "name": node.name, "row": node.value}
-        flagged = node.name == graph.SELECT and node.operands[0].name == graph.LESS
-        text = spelling or (CHOICE if flagged else SPELLINGS[node.name])
+        text = spelling or spelling_of(node, words["n"] != 1)
         return text.format(*operands, **own, **words)
 
     always, seldom, either, rest = parted(recorded)
@@ -171,6 +170,13 @@ def spelt(recorded: Recorded, known: Mapping[int, str], words: Mapping[str, obje
         lines += [*(line(node, RARE) for node in either), "br label %rest", "rest:"]
         lines += [*(line(node, EITHER) for node in either), *in_blocks(list(map(line, rest)), "later")]
     return lines
+
+
+def spelling_of(node: graph.Node, several: bool) -> str:
+    """What makes a node, of one launch or of several."""
+    if node.name == graph.SELECT and node.operands[0].name == graph.LESS:
+        return CHOICE
+    return SMALL_POWER if several and is_small_power(node) else SPELLINGS[node.name]
 
 
 def in_blocks(lines: Sequence[str], name: str) -> list[str]:
