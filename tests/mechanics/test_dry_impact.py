@@ -152,9 +152,9 @@ def test_what_has_ended_in_an_impact_is_held_within_friction_or_goes_on_the_way_
         axis = (math.sin(tilt), 0.0, math.cos(tilt))
         state = on_table(SlidingState(axis, (0.0, 0.0, 0.0), (0.0, 0.0)), top)
         body = Striking.of(state._replace(velocity=(0.0, 0.0, -1.0)), top)
-        contact = DryContact.of(body).settled(NO_IMPULSE)
-        unit = contact.unit(contact.way, contact.rolling_way)
-        change = contact.change(unit)
+        contact = DryContact(body).settled(NO_IMPULSE)
+        unit = contact.friction((), ())
+        change = body.change(unit)
         slip, rolling = slip_part(change, contact.reach), change[3:5]
         for way, rate, reserve in (
             (contact.way, slip, law.reserve(1.0, unit[:2], unit[5])),

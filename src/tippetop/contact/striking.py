@@ -10,16 +10,15 @@ from functools import lru_cache
 from tippetop.contact.sliding import BRANCH, NEARING
 from tippetop.integrators.base import Guard, Integrator, Motion
 from tippetop.integrators.dense import as_array
-from tippetop.mechanics.coulomb import RollingResistance
-from tippetop.mechanics.impact import Impact, work_of
-from tippetop.mechanics.impulse import Impulse, Striking, contact_velocity
+from tippetop.mechanics.impact import Impact
+from tippetop.mechanics.impulse import Striking, contact_velocity
 from tippetop.mechanics.motion import along_table, angular_velocity, moment_per_normal_force
 from tippetop.mechanics.rolling import is_branched, is_set_valued, on_branch, on_other_branch, slip_length
 from tippetop.mechanics.state import State
 from tippetop.mechanics.stick_slip import branch_guard, is_near, nearing_guard, slip_of
 from tippetop.mechanics.surface import contact_vector
 from tippetop.mechanics.top import Kind, Top
-from tippetop.mechanics.vectors import Scalar, add, cross, length, scale
+from tippetop.mechanics.vectors import Scalar, add, cross, scale
 
 SINKING = "sinking"
 
@@ -37,16 +36,16 @@ def impact_of_patch(state: State, top: Top, integrator: Integrator | None) -> Im
     resisted or rolling is, the contact point does not sink, or slip is about to end.
     """
     law = top.friction
-    if isinstance(law, RollingResistance) or not is_set_valued(law) or slip_length(law) is None:
+    if top.resists_rolling or not is_set_valued(law) or slip_length(law) is None:
         return None
     body = Striking.of(state, top)
-    if integrator is None or getattr(integrator, "expansion", None) is None or body.point[2] >= 0.0:
+    if integrator is None or getattr(integrator, "expansion", None) is None or body.before[2] >= 0.0:
         return None
     if is_near(along_table(state), top):
         return None
     top = on_branch(top, slip_of(*along_table(state), top))
     impulse, moving, steps = 0.0, as_array((*state.momentum, *state.velocity)), 0
-    longest = LONGEST * top.mass * length(body.point)
+    longest = LONGEST * top.mass * body.striking
     for _ in range(MOST_PIECES):
         motion = impact_motion(top.kind, ending=True)
         parameters = (*top.numbers, *state.axis)
@@ -69,11 +68,10 @@ def after(state: State, y: Sequence[float]) -> State:
 
 def impact_between(before: State, then: State, normal: float, body: Striking) -> Impact:
     """The impact that leads from one state to another."""
-    x, y, _ = scale(body.top.mass, add(then.velocity, scale(-1.0, before.velocity)))
+    x, y, _ = scale(body.contact.top.mass, add(then.velocity, scale(-1.0, before.velocity)))
     moment = add(then.momentum, scale(-1.0, before.momentum))
-    angular = add(moment, cross((x, y, normal), body.arm))
-    lost = -work_of(Impulse(normal, (x, y), angular, 0.0), before, then, body)
-    return Impact(then, normal, max(0.0, lost), normal)
+    torque = add(moment, cross((x, y, normal), body.contact.arm))
+    return Impact(then, normal, max(0.0, -body.work((x, y, normal, *torque, 0.0))), normal)
 
 
 @lru_cache

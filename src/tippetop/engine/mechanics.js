@@ -896,25 +896,50 @@ function arm_rate(axis, tilting, top) {
 
 /** What the table does to a body in contact, and how that accelerates. */
 function contact_motion(point, slip, rolling = null) {
+  var [normal, slipping, turning] = going_on(point, slip, rolling);
+  var held = [...slipping, [2, normal], ...turning];
+  return point.holding([...held].map(([, wrench]) => wrench), [...held].map(([component]) => component));
+}
+
+/** What goes with a unit normal impulse, and that; of floats, as for `contact_motion`. */
+function struck_wrench(point, slip, rolling) {
+  if (slip !== null) {
+    point = point._replace({ top: on_branch(point.top, slip) });
+  }
+  var [normal, slipping, turning] = going_on(point, slip, rolling);
+  var held = [...slipping, ...turning];
+  if (!py.truth(held)) {
+    return normal;
+  }
+  var driven = point._replace({ free: point.response(normal) });
+  var [more] = driven.holding(
+    [...held].map(([, wrench]) => wrench),
+    [...held].map(([component]) => component)
+  );
+  return new Wrench(add(normal.force, more.force), add(normal.torque, more.torque));
+}
+
+/** A unit normal force with what goes with it, and what holds slip, and rolling, where these are None. */
+function going_on(point, slip, rolling) {
   var law = point.top.friction;
-  var resistance = py.isinstance(law, RollingResistance) ? law : null;
-  var held = [];
+  var slipping = slip !== null ? [] : py.list(py.zip([0, 1, 5], slip_wrenches(law)));
+  if (!py.isinstance(law, RollingResistance)) {
+    return [normal_wrench(point, slip), slipping, []];
+  }
+  if (rolling === null) {
+    return [normal_wrench(point, slip), slipping, [[3, COUPLES[0]], [4, COUPLES[1]]]];
+  }
+  return [normal_wrench(point, slip, law.couple([rolling[0], rolling[1], 0.0])), slipping, []];
+}
+
+/** A unit normal force with the friction that goes with it where the contact slips, and a couple. */
+function normal_wrench(point, slip, couple = null) {
   var force = [0.0, 0.0];
   var torque = NO_TORQUE;
-  if (slip === null) {
-    held = py.add(held, [[0, FORCES[0]], [1, FORCES[1]]]);
-    held = py.add(held, slip_length(law) === null ? [] : [[5, DRILLING]]);
-  } else {
-    [force, torque] = sliding_law(law).traction([slip[0], slip[1]], turning_with(point, slip));
+  if (slip !== null) {
+    [force, torque] = sliding_law(point.top.friction).traction([slip[0], slip[1]], turning_with(point, slip));
   }
-  if (resistance !== null && rolling !== null) {
-    torque = add(torque, resistance.couple([...rolling, 0.0]));
-  }
-  held.push([2, new Wrench([...force, 1.0], torque)]);
-  if (resistance !== null && rolling === null) {
-    held = py.add(held, [[3, COUPLES[0]], [4, COUPLES[1]]]);
-  }
-  return point.holding([...held].map(([, wrench]) => wrench), [...held].map(([component]) => component));
+  return new Wrench([...force, 1.0], couple === null ? torque : add(torque, couple));
 }
 
 /** The wrenches that resist slip: two forces, and the drilling torque if the law resists that. */
@@ -1288,6 +1313,17 @@ class Vanishing extends py.NamedTuple {
   /** The wrenches that resist its components. */
   wrenches(top) {
     return py.truth(this.slip) ? slip_wrenches(top.friction) : COUPLES;
+  }
+  /** What of a wrench resists it: of slip's, a drilling torque over the law's length. */
+  resisting(wrench, top) {
+    if (!py.truth(this.slip)) {
+      return wrench.torque.slice(0, 2);
+    }
+    var reach = slip_length(top.friction);
+    return reach === null ? wrench.force.slice(0, 2) : [
+      ...wrench.force.slice(0, 2),
+      py.div(wrench.torque[2], reach)
+    ];
   }
   /** How much of each there is per unit normal force when it goes in a direction. */
   shares(direction, top) {
@@ -4202,7 +4238,7 @@ class Beginning extends py.NamedTuple {
 py.fields(Beginning, ["slip", "rolling", "rates", "wrench", "acceleration"]);
 
 /** Directions in which slip, or rolling, or both, begin. */
-function beginning(point, slip, rolling, begins, held = null) {
+function beginning(point, slip, rolling, begins, held = null, moved = contact_motion) {
   var parts = py.zip([true, false], begins).filter(([which, wanted]) => py.truth(wanted)).map(
     ([which, wanted]) => new Vanishing(which)
   );
@@ -4214,7 +4250,7 @@ function beginning(point, slip, rolling, begins, held = null) {
     }
     var found = py.dict(py.zip(parts, ways));
     var both = [found.get(new Vanishing(true), slip), found.get(new Vanishing(false), rolling)];
-    var answer = [...both, ...contact_motion(point, ...both)];
+    var answer = [...both, ...moved(point, ...both)];
     tried.push([ways, answer]);
     return answer;
   };
@@ -4223,15 +4259,22 @@ function beginning(point, slip, rolling, begins, held = null) {
     return py.zip(parts, stiffness).map(
       ([part, stiff]) => new Resisted(
         part.rate(answer[3], point.top),
-        py.mul(stiff, size(_resisting(part, answer[2], point.top)))
+        py.mul(stiff, size(part.resisting(answer[2], point.top)))
       )
     );
   };
   var ways = [];
   if (py.truth(parts)) {
-    var beside = py.truth(py.all(begins)) ? beginning(point, slip, rolling, [false, true]).rolling : rolling;
-    var against = py.or(held, () => contact_motion(point, slip, beside)[0]);
-    ways = directions(response, [...parts].map((part) => scaled(-1.0, _resisting(part, against, point.top))));
+    var beside = py.truth(py.all(begins)) ? beginning(
+      point,
+      slip,
+      rolling,
+      [false, true],
+      null,
+      moved
+    ).rolling : rolling;
+    var against = py.or(held, () => moved(point, slip, beside)[0]);
+    ways = directions(response, [...parts].map((part) => scaled(-1.0, part.resisting(against, point.top))));
   }
   var found = motion(ways);
   var along = py.zip(parts, ways).map(([part, e]) => inner(part.rate(found[3], point.top), e));
@@ -4245,14 +4288,14 @@ function beginning(point, slip, rolling, begins, held = null) {
 }
 
 /** How a contact goes on whose slip, or rolling, or both, have ended, and which of them begin again. */
-function settling(point, slip, rolling) {
+function settling(point, slip, rolling, moved = contact_motion) {
   var ended = [slip === null, rolling === null];
   for (var begins of CHOICES) {
     if (begins[0] > ended[0] || begins[1] > ended[1]) {
       continue;
     }
     try {
-      var found = beginning(point, slip, rolling, begins);
+      var found = beginning(point, slip, rolling, begins, null, moved);
     } catch (error) {
       if (!(error instanceof py.ArithmeticError)) throw error;
       continue;
@@ -4275,18 +4318,6 @@ function _admits(point, found) {
     found.rolling !== null,
     () => py.bool(rolling_reserve(point, found.wrench, found.slip) >= 0.0)
   );
-}
-
-/** What resists slip, a drilling torque over the law's length, or the couple that resists rolling. */
-function _resisting(part, wrench, top) {
-  if (!py.truth(part.slip)) {
-    return wrench.torque.slice(0, 2);
-  }
-  var reach = slip_length(top.friction);
-  return reach === null ? wrench.force.slice(0, 2) : [
-    ...wrench.force.slice(0, 2),
-    py.div(wrench.torque[2], reach)
-  ];
 }
 
 /** How strongly the contact answers to what resists slip, or rolling, 1/kg or 1/(kg m^2). */
@@ -4478,85 +4509,80 @@ function _nothing(mode, time, state, why) {
 
 // tippetop.mechanics.impulse
 const FUZZ = 1e-14;
+const [NORMAL, WORK] = [2, 6];
+const NO_IMPULSE = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
 
-/** Impulses of the table on the body so far. */
-class Impulse extends py.NamedTuple {
-  constructor(normal, tangential, angular, normal_work, steps = 0) {
-    super();
-    this.normal = normal;
-    this.tangential = tangential;
-    this.angular = angular;
-    this.normal_work = normal_work;
-    this.steps = steps;
-  }
-}
-py.fields(Impulse, ["normal", "tangential", "angular", "normal_work", "steps"]);
-const NO_IMPULSE = new Impulse(0.0, [0.0, 0.0], NO_TORQUE, 0.0);
-
-/** A body at the start of an impact, and what an impulse does to its contact point. */
+/** A body at the start of an impact, and what an impulse does to it there. */
 class Striking extends py.NamedTuple {
-  constructor(state, top, arm, point, inverse_mass) {
+  constructor(state, contact, lever, speed, striking, before, response) {
     super();
     this.state = state;
-    this.top = top;
-    this.arm = arm;
-    this.point = point;
-    this.inverse_mass = inverse_mass;
+    this.contact = contact;
+    this.lever = lever;
+    this.speed = speed;
+    this.striking = striking;
+    this.before = before;
+    this.response = response;
   }
   /** The body in this state. */
   static of(state, top) {
-    var arm = contact_vector(state.axis, top.surface);
-    var at_rest = state._replace({ momentum: NO_TORQUE, velocity: NO_TORQUE });
-    var point = contact_velocity(state, arm, top);
-    var omega = angular_velocity(state.axis, state.momentum, top);
-    if (
-      py.abs(point[2]) <= py.mul(FUZZ, py.add(length(state.velocity), py.mul(length(omega), length(arm))))
-    ) {
-      point = [point[0], point[1], 0.0];
-    }
-    var here = new this(state, top, arm, point, [NO_TORQUE, NO_TORQUE, NO_TORQUE]);
-    var nudged = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(
-      (unit) => contact_velocity(struck(at_rest, arm, unit, NO_TORQUE, top), arm, top)
-    );
-    return here._replace({ inverse_mass: [nudged[0], nudged[1], nudged[2]] });
+    var contact = ContactPoint.of(state.axis, state.momentum, top);
+    var lever = length(contact.arm);
+    var speed = py.add(length(state.velocity), py.mul(length(contact.turning), lever));
+    var [x, y, z] = point_velocity(state.velocity, contact.turning, contact.arm);
+    var columns = [...FORCES, ...COUPLES, DRILLING].map((wrench) => flat(contact.response(wrench)));
+    var point = [x, y, py.abs(z) <= py.mul(FUZZ, speed) ? 0.0 : z];
+    var before = [...point, ...contact.turning];
+    var response = py.tuple(py.zip(...columns));
+    return new this(state, contact, lever, speed, length(point), before, response);
   }
   /** The state after an impulse. */
   after(impulse) {
-    return struck(this.state, this.arm, [...impulse.tangential, impulse.normal], impulse.angular, this.top);
+    var [x, y, z, ...torque] = impulse.slice(0, 6);
+    var moment = this.contact.moment(new Wrench([x, y, z], [torque[0], torque[1], torque[2]]));
+    var gained = scale(py.div(1.0, this.contact.top.mass), [x, y, z]);
+    return this.state._replace({
+      momentum: add(this.state.momentum, moment),
+      velocity: add(this.state.velocity, gained)
+    });
   }
-  /** Change of the velocity of the contact point by an impulse, m/s. */
-  response(impulse) {
-    var [[x, y], p, [east, north, up]] = [impulse.tangential, impulse.normal, this.inverse_mass];
-    var change = [
-      py.add(py.add(py.mul(x, east[0]), py.mul(y, north[0])), py.mul(p, up[0])),
-      py.add(py.add(py.mul(x, east[1]), py.mul(y, north[1])), py.mul(p, up[1])),
-      py.add(py.add(py.mul(x, east[2]), py.mul(y, north[2])), py.mul(p, up[2]))
-    ];
-    if (py.eq(impulse.angular, NO_TORQUE)) {
-      return change;
-    }
-    return add(change, cross(angular_velocity(this.state.axis, impulse.angular, this.top), this.arm));
+  /** What an impulse adds to the six velocities. */
+  change(impulse) {
+    return py.tuple([...this.response].map((row) => py.sum(py.map(py.mul, row, impulse))));
+  }
+  /** The six velocities after an impulse. */
+  velocities(impulse) {
+    return plus(this.before, this.change(impulse));
   }
   /** Normal velocity of the contact point after an impulse, m/s. */
   approach(impulse) {
-    return py.float(py.add(this.point[2], this.response(impulse)[2]));
+    return py.float(py.add(this.before[2], py.sum(py.map(py.mul, this.response[2], impulse))));
   }
-  /** Velocity of the contact point, angular velocity and traction after an impulse. */
-  friction(impulse) {
-    var omega = angular_velocity(this.state.axis, this.after(impulse).momentum, this.top);
-    var point = add(this.point, this.response(impulse));
-    return [point, omega, this.top.friction.traction([point[0], point[1]], omega)];
+  /** Force and torque per unit normal impulse under a law that says them at any slip, six numbers. */
+  friction(velocity) {
+    var [x, y, , ...omega] = velocity;
+    var [force, torque] = this.contact.top.friction.traction([x, y], [omega[0], omega[1], omega[2]]);
+    return [...force, 1.0, ...torque];
+  }
+  /** Work of an impulse, J: times the mean velocity, as that is linear in it (Thomson and Tait). */
+  work(impulse) {
+    return py.float(py.mul(0.5, inner(impulse.slice(0, 6), plus(this.before, this.velocities(impulse)))));
+  }
+  /** The impulse that grows from a given one by so much per unit normal impulse. */
+  straight(impulse, unit) {
+    var approach = this.approach(impulse);
+    var rise = py.sum(py.map(py.mul, this.response[2], unit));
+    var along = (q) => {
+      var six = py.zip(impulse.slice(0, 6), unit).map(([a, b]) => py.add(a, py.mul(q, b)));
+      return [
+        ...six,
+        py.add(py.item(impulse, WORK), py.mul(q, py.add(approach, py.mul(py.mul(0.5, q), rise))))
+      ];
+    };
+    return along;
   }
 }
-py.fields(Striking, ["state", "top", "arm", "point", "inverse_mass"]);
-
-/** The state after an impulse at the contact and an impulse of torque. */
-function struck(state, arm, linear, angular, top) {
-  return state._replace({
-    momentum: add(state.momentum, add(cross(arm, linear), angular)),
-    velocity: add(state.velocity, scale(py.div(1.0, top.mass), linear))
-  });
-}
+py.fields(Striking, ["state", "contact", "lever", "speed", "striking", "before", "response"]);
 
 /** Velocity of the body's contact point, m/s. */
 function contact_velocity(state, arm, top) {
@@ -4583,269 +4609,102 @@ function first_reach(along, goal, guess) {
 
 // tippetop.mechanics.dry_impact
 const ENDED = py.mul(10.0, FUZZ);
-const [SLIPPING, ROLLING_of_dry_impact] = ["slipping", "rolling"];
 
-/** Whether slip or rolling can end under this law. */
-function is_dry(law) {
-  return py.or(py.isinstance(law, RollingResistance), () => is_set_valued(law));
+/** Whether slip or rolling can end under the law of a top. */
+function is_dry(top) {
+  return py.or(top.resists_rolling, () => is_set_valued(top.friction));
 }
 
 /** The contact of a struck body under dry friction, all floats. */
 class DryContact extends py.NamedTuple {
-  constructor(
-    body,
-    speed,
-    before,
-    response,
-    resistance,
-    is_set_valued,
-    reach,
-    arm,
-    striking,
-    ended = false,
-    stopped = false,
-    way = null,
-    rolling_way = null
-  ) {
+  constructor(body, ended = false, stopped = false, way = null, rolling_way = null) {
     super();
     this.body = body;
-    this.speed = speed;
-    this.before = before;
-    this.response = response;
-    this.resistance = resistance;
-    this.is_set_valued = is_set_valued;
-    this.reach = reach;
-    this.arm = arm;
-    this.striking = striking;
     this.ended = ended;
     this.stopped = stopped;
     this.way = way;
     this.rolling_way = rolling_way;
   }
-  /** The contact of this body. */
-  static of(body) {
-    var point = ContactPoint.of(body.state.axis, body.state.momentum, body.top);
-    var speed = py.add(length(body.state.velocity), py.mul(length(point.turning), length(point.arm)));
-    var columns = [...FORCES, ...COUPLES, DRILLING].map((wrench) => flat(point.response(wrench)));
-    var law = body.top.friction;
-    var resistance = py.isinstance(law, RollingResistance) ? law : null;
-    var before = [...body.point, ...point.turning];
-    var response = py.tuple(py.zip(...columns));
-    var of_law = [resistance, is_set_valued(law), slip_length(law)];
-    return new this(body, speed, before, response, ...of_law, length(body.arm), length(body.point));
+  /** The body and its law of friction. */
+  get top() {
+    return this.body.contact.top;
   }
-  /** The law of friction. */
-  get law() {
-    var law = this.body.top.friction;
-    return law;
-  }
-  /** What an impulse and that of a torque, six numbers, add to the six velocities. */
-  change(impulse) {
-    return py.tuple([...this.response].map((row) => py.sum(py.map(py.mul, row, impulse))));
-  }
-  /** Slip zeta and horizontal angular velocity (times the arm's length) after an impulse, m/s. */
-  velocities(impulse) {
-    return this.parts(plus(this.before, this.change(components(impulse))));
+  /** Slip length of the law; None if drilling is free. */
+  get reach() {
+    return slip_length(this.top.friction);
   }
   /** Slip zeta and horizontal angular velocity (times the arm's length) of six velocities, m/s. */
   parts(velocity) {
-    return [slip_part(velocity, this.reach), scaled(this.arm, velocity.slice(3, 5))];
+    return [slip_part(velocity, this.reach), scaled(this.body.lever, velocity.slice(3, 5))];
   }
   /** The contact with what has ended after an impulse, and where that goes on if it cannot stay so. */
   settled(impulse) {
-    var [slip, rolling] = this.velocities(impulse);
-    var ended = py.and(this.is_set_valued, () => size(slip) <= py.mul(ENDED, this.speed));
-    var stopped = py.and(this.resistance !== null, () => size(rolling) <= py.mul(ENDED, this.speed));
+    var [slip, rolling] = this.parts(this.body.velocities(impulse));
+    var ended = py.and(is_set_valued(this.top.friction), () => size(slip) <= py.mul(ENDED, this.body.speed));
+    var stopped = py.and(this.top.resists_rolling, () => size(rolling) <= py.mul(ENDED, this.body.speed));
     if (!(py.truth(ended) || py.truth(stopped))) {
-      return py.truth(this.ended) || py.truth(this.stopped) ? this._replace({
-        ended: false,
-        stopped: false
-      }) : this;
+      return py.truth(this.ended) || py.truth(this.stopped) ? new DryContact(this.body) : this;
     }
     var go_on = [py.truth(ended) ? null : slip, py.truth(stopped) ? null : rolling];
-    for (var begins of CHOICES) {
-      if (begins[0] > ended || begins[1] > stopped) {
-        continue;
-      }
-      try {
-        var ways = this.ways_on(...go_on, begins);
-      } catch (error) {
-        if (!(error instanceof py.ArithmeticError)) throw error;
-        continue;
-      }
-      if (py.truth(this.admits(...ways))) {
-        return this._replace({ ended: ended, stopped: stopped, way: ways[0], rolling_way: ways[1] });
-      }
-    }
-    throw new py.ArithmeticError(
-      "nothing can hold the contact in an impact, and it cannot go on in any direction"
-    );
+    var [found] = settling(this.body.contact, ...go_on, struck_motion);
+    return new DryContact(this.body, ended, stopped, found.slip, found.rolling);
   }
-  /** Whether the table can hold those velocities that are None. */
-  admits(slip, rolling) {
-    var unit = this.unit(slip, rolling);
-    var resistance = this.resistance;
-    if (slip === null && set_valued(this.law).reserve(1.0, unit.slice(0, 2), unit[5]) < 0.0) {
-      return false;
-    }
-    if (rolling === null && resistance !== null) {
-      return py.bool(resistance.reserve(1.0, [unit[3], unit[4]]) >= 0.0);
-    }
-    return true;
-  }
-  /** Force and torque per unit normal impulse at these velocities. */
+  /** Force and torque per unit normal impulse at these velocities, six numbers. */
   friction(slip, rolling) {
-    return this.unit(
-      py.truth(this.ended) ? this.way : slip,
-      py.truth(this.stopped) ? this.rolling_way : rolling
-    );
-  }
-  /** Force and torque per unit normal impulse, six numbers; a velocity that is None is held. */
-  unit(slip, rolling) {
-    var force = [0.0, 0.0];
-    var torque = NO_TORQUE;
-    var held = [];
-    if (slip === null) {
-      held = py.add(held, this.reach === null ? [0, 1] : [0, 1, 5]);
-    } else {
-      var w = this.reach === null ? this.before[5] : py.div(slip[2], this.reach);
-      var turning = [...this.before.slice(3, 5), w];
-      var law = branch_of(this.law, [slip[0], slip[1]], turning);
-      [force, torque] = law.traction([slip[0], slip[1]], turning);
-    }
-    if (this.resistance !== null) {
-      if (rolling === null) {
-        held = py.add(held, [3, 4]);
-      } else {
-        torque = add(torque, this.resistance.couple([rolling[0], rolling[1], 0.0]));
-      }
-    }
-    var unit = [...force, 1.0, ...torque];
-    if (py.truth(held)) {
-      var rows = [...held].map((i) => py.item(this.response, i));
-      var right = [...rows].map((row) => py.neg(py.sum(py.map(py.mul, row, unit))));
-      for (
-        var [i, part] of py.zip(
-          held,
-          solve([...rows].map((row) => [...held].map((j) => py.item(row, j))), right)
-        )
-      ) {
-        py.put(unit, i, py.add(py.item(unit, i), part));
-      }
-    }
-    return py.tuple(unit);
-  }
-  /** Slip and rolling, or the directions in which they begin; None where they are held. */
-  ways_on(slip, rolling, begins) {
-    var parts = py.zip(
-      [SLIPPING, ROLLING_of_dry_impact],
-      begins
-    ).filter(([part, wanted]) => py.truth(wanted)).map(([part, wanted]) => part);
-    if (!py.truth(parts)) {
-      return [slip, rolling];
-    }
-    var both = (ways) => {
-      var found = py.dict(py.zip(parts, ways));
-      return [found.get(SLIPPING, slip), found.get(ROLLING_of_dry_impact, rolling)];
-    };
-    var response = (ways) => {
-      var unit = this.unit(...both(ways));
-      var velocities = this.change(unit);
-      return [...parts].map(
-        (part) => new Resisted(
-          this.part(part, velocities),
-          py.mul(this.stiffness(part), size(this.resisting(part, unit)))
-        )
-      );
-    };
-    var beside = py.truth(py.all(begins)) ? this.ways_on(slip, rolling, [false, true]) : [slip, rolling];
-    var holding = this.unit(...beside);
-    var start = [...parts].map((part) => scaled(-1.0, this.resisting(part, holding)));
-    return both(directions(response, start));
-  }
-  /** Slip zeta, or the horizontal angular velocity, of six velocities. */
-  part(part, velocities) {
-    return py.eq(part, SLIPPING) ? slip_part(velocities, this.reach) : velocities.slice(3, 5);
-  }
-  /** What resists it, per unit normal impulse: a drilling torque over the law's length. */
-  resisting(part, unit) {
-    if (py.eq(part, ROLLING_of_dry_impact)) {
-      return unit.slice(3, 5);
-    }
-    return this.reach === null ? unit.slice(0, 2) : [...unit.slice(0, 2), py.div(unit[5], this.reach)];
-  }
-  /** How strongly it answers to that. */
-  stiffness(part) {
-    if (py.eq(part, ROLLING_of_dry_impact)) {
-      return py.float(py.add(this.response[3][3], this.response[4][4]));
-    }
-    var drilling = this.reach === null ? 0.0 : py.mul(py.pow(this.reach, 2), this.response[5][5]);
-    return py.float(py.add(py.add(this.response[0][0], this.response[1][1]), drilling));
+    var way = py.truth(this.ended) ? this.way : slip;
+    var wrench = struck_wrench(this.body.contact, way, py.truth(this.stopped) ? this.rolling_way : rolling);
+    return [...wrench.force, ...wrench.torque];
   }
   /** Rates of the impulse and its normal work, in a clock in which slip that ends decays exponentially. */
   rates(impulse) {
-    var velocity = plus(this.before, this.change(components(impulse)));
+    var velocity = this.body.velocities(impulse);
     var [slip, rolling] = this.parts(velocity);
-    var [east, north, , ...torque] = this.friction(slip, rolling);
-    var rate = py.div(1.0, this.striking);
-    var drilled = this.reach === null ? 0.0 : py.div(torque[2], this.reach);
+    var unit = this.friction(slip, rolling);
+    var reach = this.reach;
+    var rate = py.div(1.0, this.body.striking);
     if (!py.truth(this.ended) && size(slip) > 0.0) {
-      rate = py.add(rate, py.div(py.math.hypot(east, north, drilled), size(slip)));
+      rate = py.add(
+        rate,
+        py.div(py.math.hypot(unit[0], unit[1], reach === null ? 0.0 : py.div(unit[5], reach)), size(slip))
+      );
     }
-    if (this.resistance !== null && !py.truth(this.stopped) && size(rolling) > 0.0) {
-      rate = py.add(rate, py.div(py.math.hypot(torque[0], torque[1]), py.mul(this.arm, size(rolling))));
+    if (py.truth(this.top.resists_rolling) && !py.truth(this.stopped) && size(rolling) > 0.0) {
+      rate = py.add(rate, py.div(py.math.hypot(unit[3], unit[4]), py.mul(this.body.lever, size(rolling))));
     }
-    return scaled(py.div(1.0, rate), [1.0, east, north, ...torque, velocity[2]]);
+    return scaled(py.div(1.0, rate), [...unit, velocity[2]]);
   }
   /** The state after an impulse, in which slip and rolling that have ended are exactly zero. */
   at_rest(impulse, after) {
-    var top = this.body.top;
-    var [slip, rolling] = this.velocities(impulse);
-    if (py.isinstance(top.friction, RollingResistance) && size(rolling) <= py.mul(ENDED, this.speed)) {
-      after = after._replace({ momentum: without_rolling(after.axis, after.momentum, top) });
+    var [slip, rolling] = this.parts(this.body.velocities(impulse));
+    if (py.truth(this.top.resists_rolling) && size(rolling) <= py.mul(ENDED, this.body.speed)) {
+      after = after._replace({ momentum: without_rolling(after.axis, after.momentum, this.top) });
     }
-    if (!py.truth(this.is_set_valued) || size(slip) > py.mul(ENDED, this.speed)) {
+    if (!py.truth(is_set_valued(this.top.friction)) || size(slip) > py.mul(ENDED, this.body.speed)) {
       return after;
     }
-    var momentum = this.reach === null ? after.momentum : without_drilling(after.axis, after.momentum, top);
-    var velocity = velocity_without_slip(after.axis, momentum, top);
-    return after._replace({ momentum: momentum, velocity: [...velocity, after.velocity[2]] });
+    if (this.reach !== null) {
+      after = after._replace({ momentum: without_drilling(after.axis, after.momentum, this.top) });
+    }
+    var velocity = velocity_without_slip(after.axis, after.momentum, this.top);
+    return after._replace({ velocity: [...velocity, after.velocity[2]] });
   }
-  /** Error of a step in slip and rolling, relative to them or to a millionth of the body's speed. */
-  doubt(here, there, error) {
-    var off = this.parts(this.change(components(error)));
+  /** Error in slip and rolling of a step, relative to them or to a millionth of the body's speed. */
+  doubt(here, there, off) {
+    var parts = py.zip(this.parts(here), this.parts(there), this.parts(off));
+    var least = py.mul(1e-06, this.body.speed);
     return py.max(
-      py.zip(this.velocities(here), this.velocities(there), off).map(
-        ([before, after, wrong]) => py.div(
-          size(wrong),
-          py.max(size(before), size(after), py.mul(1e-06, this.speed))
-        )
+      [...parts].map(
+        ([before, after, wrong]) => py.div(size(wrong), py.max(size(before), size(after), least))
       )
     );
   }
 }
-py.fields(
-  DryContact,
-  [
-    "body",
-    "speed",
-    "before",
-    "response",
-    "resistance",
-    "is_set_valued",
-    "reach",
-    "arm",
-    "striking",
-    "ended",
-    "stopped",
-    "way",
-    "rolling_way"
-  ]
-);
+py.fields(DryContact, ["body", "ended", "stopped", "way", "rolling_way"]);
 
-/** Impulse along x, y and z, and that of the torque. */
-function components(impulse) {
-  return [...impulse.tangential, impulse.normal, ...impulse.angular];
+/** What a unit normal impulse brings with it, and how the velocities change. */
+function struck_motion(point, slip, rolling) {
+  var wrench = struck_wrench(point, slip, rolling);
+  return [wrench, point.response(wrench)];
 }
 
 // tippetop.mechanics.runge_kutta
@@ -5029,11 +4888,12 @@ function combined(here, size, weights, slopes) {
 }
 
 // tippetop.mechanics.straight_impact
+const SLIP_of_straight_impact = new Vanishing(true);
 const KEPT = 1e-08;
 
 /** The impulse at the end of a straight line: at the goal, or where slip ends. */
 function straight_of_straight_impact(dry, impulse, goal, guess) {
-  if (dry.resistance !== null || py.truth(dry.ended) && dry.way !== null || goal(impulse) >= 0.0) {
+  if (py.truth(dry.top.resists_rolling) || py.truth(dry.ended) && dry.way !== null || goal(impulse) >= 0.0) {
     return null;
   }
   var line = _line(dry, impulse);
@@ -5041,17 +4901,7 @@ function straight_of_straight_impact(dry, impulse, goal, guess) {
     return null;
   }
   var [unit, longest] = line;
-  var approach = dry.body.approach(impulse);
-  var rise = dry.change(unit)[2];
-  var along = (q) => {
-    var [[east, north], [x, y, z]] = [impulse.tangential, impulse.angular];
-    return new Impulse(
-      py.add(impulse.normal, q),
-      [py.add(east, py.mul(q, unit[0])), py.add(north, py.mul(q, unit[1]))],
-      [py.add(x, py.mul(q, unit[3])), py.add(y, py.mul(q, unit[4])), py.add(z, py.mul(q, unit[5]))],
-      py.add(impulse.normal_work, py.mul(q, py.add(approach, py.mul(py.mul(0.5, q), rise))))
-    );
-  };
+  var along = dry.body.straight(impulse, unit);
   if (longest < py.math.inf) {
     var end = along(longest);
     if (goal(end) < 0.0) {
@@ -5064,25 +4914,29 @@ function straight_of_straight_impact(dry, impulse, goal, guess) {
 
 /** Force and torque per unit normal impulse on a straight line, and its length until slip ends. */
 function _line(dry, impulse) {
-  var [slip, rolling] = dry.velocities(impulse);
+  var [slip, rolling] = dry.parts(dry.body.velocities(impulse));
   var unit = dry.friction(slip, rolling);
   if (py.truth(dry.ended)) {
     return [unit, py.math.inf];
   }
+  var grip = SLIP_of_straight_impact.resisting(
+    new Wrench([unit[0], unit[1], 1.0], [unit[3], unit[4], unit[5]]),
+    dry.top
+  );
   var speed = size(slip);
-  var grip = size(dry.resisting(SLIPPING, unit));
+  var holds = size(grip);
   var way = scaled(py.div(1.0, speed), slip);
-  var change = dry.part(SLIPPING, dry.change(unit));
+  var change = slip_part(dry.body.change(unit), dry.reach);
   var doing = _impulse_for(dry, change);
   var along = _impulse_for(dry, way);
   var inertia = inner(way, along);
   var rate = py.div(inner(way, doing), inertia);
-  var fuzz = py.div(py.mul(FUZZ, dry.speed), speed);
-  if (py.mul(py.abs(rate), inertia) <= py.mul(fuzz, grip)) {
+  var fuzz = py.div(py.mul(FUZZ, dry.body.speed), speed);
+  if (py.mul(py.abs(rate), inertia) <= py.mul(fuzz, holds)) {
     rate = 0.0;
   }
   var wrong = plus(doing, scaled(py.neg(rate), along));
-  if (size(wrong) > py.mul(rate > 0.0 ? KEPT : py.add(KEPT, fuzz), grip)) {
+  if (size(wrong) > py.mul(rate > 0.0 ? KEPT : py.add(KEPT, fuzz), holds)) {
     return null;
   }
   var drilling = dry.reach === null ? 0.0 : py.mul(dry.reach, wrong[2]);
@@ -5094,10 +4948,11 @@ function _line(dry, impulse) {
 function _impulse_for(dry, change) {
   var [held, lengths] = dry.reach === null ? [[0, 1], [1.0, 1.0]] : [[0, 1, 5], [1.0, 1.0, dry.reach]];
   var pairs = py.list(py.zip(held, lengths));
+  var response = dry.body.response;
   return py.tuple(
     solve(
       [...pairs].map(
-        ([i, a]) => [...pairs].map(([j, b]) => py.mul(py.mul(a, py.item(py.item(dry.response, i), j)), b))
+        ([i, a]) => [...pairs].map(([j, b]) => py.mul(py.mul(a, py.item(py.item(response, i), j)), b))
       ),
       py.list(change)
     )
@@ -5120,38 +4975,36 @@ class IntegratedProcess extends py.NamedTuple {
     this.body = body;
     this.dry = dry;
   }
-  /** The first impulse from a given one on at which the goal is not negative. */
+  /** The first impulse from a given one on at which the goal is not negative, and the steps to there. */
   until(impulse, goal, guess) {
     var now = this.settled(impulse);
+    var here = impulse;
     var waiting = goal(impulse) >= 0.0;
-    var here = pack(impulse);
-    var slope = now.slope(pack(impulse));
+    var slope = now.slope(here);
     var longest = py.div(
       py.mul(2.0, LONGEST_of_integrated_impact),
-      py.add(this.body.inverse_mass[0][0], this.body.inverse_mass[1][1])
+      py.add(this.body.response[0][0], this.body.response[1][1])
     );
     var step = py.mul(0.1, longest);
     for (var taken = 0; taken < MOST_of_integrated_impact; taken += 1) {
-      var held = now.held(unpack(here), goal, guess);
+      var held = now.held(here, goal, guess);
       if (held !== null) {
-        return held._replace({ steps: taken });
+        return [held, taken];
       }
       if (now.dry !== null && py.mod(taken, LOOK) === 0) {
-        var ended = straight_of_straight_impact(now.dry, unpack(here), goal, guess);
+        var ended = straight_of_straight_impact(now.dry, here, goal, guess);
         if (ended !== null) {
           if (goal(ended) >= 0.0) {
-            return ended._replace({ steps: taken });
+            return [ended, taken];
           }
-          here = pack(ended);
-          waiting = false;
-          now = now.settled(ended);
+          [now, here, waiting] = [now.settled(ended), ended, false];
           slope = now.slope(here);
           continue;
         }
       }
       var taking = step_from(here, slope, step, py.bound(now, "slope"));
       var doubt = now.doubt(taking);
-      var reached = goal(unpack(taking.there)) >= 0.0;
+      var reached = goal(taking.there) >= 0.0;
       if (
         doubt > 1.0 && step > py.mul(
           SHORTEST_of_integrated_impact,
@@ -5162,13 +5015,13 @@ class IntegratedProcess extends py.NamedTuple {
         continue;
       }
       if (py.truth(reached)) {
-        return unpack(now.landing(taking, goal))._replace({ steps: py.add(taken, 1) });
+        return [now.landing(taking, goal), py.add(taken, 1)];
       }
       here = taking.there;
       slope = taking.new_slope;
       waiting = false;
       if (now.dry !== null) {
-        now = now.settled(unpack(here));
+        now = now.settled(here);
         slope = now.slope(here);
       }
       step = py.min(longest, py.mul(step, py.min(5.0, py.mul(0.9, py.pow(py.max(doubt, 1e-10), POWER)))));
@@ -5179,21 +5032,18 @@ class IntegratedProcess extends py.NamedTuple {
   settled(impulse) {
     return this.dry === null ? this : this._replace({ dry: this.dry.settled(impulse) });
   }
-  /** The numbers within a step at which the goal is reached. */
+  /** The impulse within a step at which the goal is reached. */
   landing(taking, goal) {
-    var missing = (point) => {
-      return goal(unpack(point));
-    };
     var along = (size) => {
       return step_to(taking.here, taking.slopes[0], size, py.bound(this, "slope"));
     };
     var last = taking.size;
-    var here = along(py.mul(last, crossing((part) => missing(taking.between(part)), 0.0, 1.0)));
+    var here = along(py.mul(last, crossing((part) => goal(taking.between(part)), 0.0, 1.0)));
     for (var turn = 0; turn < NEWTON_of_integrated_impact; turn += 1) {
       var slope = this.slope(here);
-      var left = missing(here);
+      var left = goal(here);
       var nudge = py.mul(0.001, taking.size);
-      var rate = py.div(py.sub(missing(moved(here, nudge, slope)), left), nudge);
+      var rate = py.div(py.sub(goal(moved(here, nudge, slope)), left), nudge);
       var more = rate > 0.0 ? py.div(py.neg(left), rate) : taking.size;
       if (py.abs(more) < py.mul(STRAIGHT, taking.size)) {
         return moved(here, more, slope);
@@ -5207,106 +5057,74 @@ class IntegratedProcess extends py.NamedTuple {
         py.call(py.truth(short) ? short_step : step_to, here, slope, more, py.bound(this, "slope"))
       ];
     }
-    return along(crossing((size) => missing(along(size)), 0.0, taking.size));
+    return along(crossing((size) => goal(along(size)), 0.0, taking.size));
   }
-  /** Rate of the impulse's numbers with the clock s. */
+  /** Rate of the impulse with the clock s. */
   slope(here) {
     if (this.dry !== null) {
-      return this.dry.rates(unpack(here));
+      return this.dry.rates(here);
     }
-    var [point, omega, [force, torque]] = this.body.friction(unpack(here));
-    var slip = py.math.hypot(point[0], point[1]);
-    var grip = py.math.hypot(...force);
+    var velocity = this.body.velocities(here);
+    var speed = this.body.striking;
+    var unit = this.body.friction(velocity);
+    var slip = py.math.hypot(velocity[0], velocity[1]);
+    var grip = py.math.hypot(unit[0], unit[1]);
     if (slip === 0.0) {
-      slip = py.mul(1e-12, length(this.body.point));
-      grip = py.math.hypot(...this.body.top.friction.traction([slip, 0.0], omega).force);
+      slip = py.mul(1e-12, speed);
+      grip = py.math.hypot(...this.body.friction([slip, 0.0, ...velocity.slice(2)]).slice(0, 2));
     }
-    var pace = py.div(1.0, py.add(py.div(grip, slip), py.div(1.0, length(this.body.point))));
-    return [
-      pace,
-      py.mul(pace, force[0]),
-      py.mul(pace, force[1]),
-      ...scale(pace, torque),
-      py.mul(pace, point[2])
-    ];
+    return scaled(py.div(1.0, py.add(py.div(grip, slip), py.div(1.0, speed))), [...unit, velocity[2]]);
   }
   /** The error of a step over the one allowed. */
   doubt(taken) {
-    var here = unpack(taken.here);
-    var there = unpack(taken.there);
-    var speed = length(this.body.point);
-    var slip = py.max(this.slip(taken.here), this.slip(taken.there), py.mul(1e-09, speed));
+    var here = this.body.velocities(taken.here);
+    var there = this.body.velocities(taken.there);
+    var speed = this.body.striking;
+    var slip = py.max(
+      py.math.hypot(...here.slice(0, 2)),
+      py.math.hypot(...there.slice(0, 2)),
+      py.mul(1e-09, speed)
+    );
     var measure = (error) => {
-      var off = unpack(error);
-      var wrong = this.body.response(off);
-      if (this.dry !== null) {
-        return py.float(py.max(this.dry.doubt(here, there, off), py.div(py.abs(wrong[2]), speed)));
-      }
-      return py.float(
-        py.max(py.div(py.math.hypot(wrong[0], wrong[1]), slip), py.div(py.abs(wrong[2]), speed))
-      );
+      var off = this.body.change(error);
+      var wrong = this.dry === null ? py.div(
+        py.math.hypot(...off.slice(0, 2)),
+        slip
+      ) : this.dry.doubt(here, there, off);
+      return py.float(py.max(wrong, py.div(py.abs(off[2]), speed)));
     };
     return py.div(taken.doubt(measure), TOLERANCE);
-  }
-  /** Slip speed, m/s. */
-  slip(here) {
-    var change = this.body.response(unpack(here));
-    return py.math.hypot(py.add(this.body.point[0], change[0]), py.add(this.body.point[1], change[1]));
   }
   /** The rest if friction holds the slip constant, if it does so all along. */
   held(impulse, goal, guess) {
     if (this.dry !== null) {
       return null;
     }
-    var [[a, b], [, d]] = this.body.inverse_mass;
-    var [point, , traction] = this.body.friction(impulse);
-    var [x, y] = this.body.response(new Impulse(1.0, [0.0, 0.0], traction.torque, 0.0));
+    var body = this.body;
+    var velocity = this.body.velocities(impulse);
+    var unit = body.friction(velocity);
+    var [[a, b, ..._], [, d, ..._], ..._] = body.response;
+    var [x, y, ..._] = body.change([0.0, 0.0, ...unit.slice(2)]);
     var holding = [
       py.div(py.sub(py.mul(b, y), py.mul(d, x)), py.sub(py.mul(a, d), py.mul(b, b))),
       py.div(py.sub(py.mul(b, x), py.mul(a, y)), py.sub(py.mul(a, d), py.mul(b, b)))
     ];
     var fuzz = py.div(
-      py.mul(py.mul(FUZZ, length(this.body.point)), py.math.hypot(...traction.force)),
-      py.or(py.math.hypot(...point.slice(0, 2)), () => 1.0)
+      py.mul(py.mul(FUZZ, body.striking), py.math.hypot(...unit.slice(0, 2))),
+      py.or(py.math.hypot(...velocity.slice(0, 2)), () => 1.0)
     );
-    if (py.math.dist(traction.force, holding) > py.add(STUCK, fuzz)) {
+    if (py.math.dist(unit.slice(0, 2), holding) > py.add(STUCK, fuzz)) {
       return null;
     }
-    if (!py.truth(py.any(traction.force))) {
+    if (!py.truth(py.any(unit.slice(0, 2)))) {
       holding = [0.0, 0.0];
     }
-    var rise = py.sub(
-      this.body.approach(new Impulse(1.0, holding, traction.torque, 0.0)),
-      this.body.point[2]
-    );
-    var along = (q) => {
-      return new Impulse(
-        py.add(impulse.normal, q),
-        [
-          py.add(impulse.tangential[0], py.mul(q, holding[0])),
-          py.add(impulse.tangential[1], py.mul(q, holding[1]))
-        ],
-        add(impulse.angular, scale(q, traction.torque)),
-        py.add(impulse.normal_work, py.mul(q, py.add(point[2], py.mul(py.mul(0.5, q), rise))))
-      );
-    };
-    var end = first_reach(along, goal, guess);
-    var later = this.body.friction(end)[2];
-    var drift = py.math.dist([...later.force, ...later.torque], [...traction.force, ...traction.torque]);
-    return drift <= py.mul(2.0, py.add(STUCK, fuzz)) ? end : null;
+    var end = first_reach(body.straight(impulse, [...holding, ...unit.slice(2)]), goal, guess);
+    var later = body.friction(body.velocities(end));
+    return py.math.dist(later, unit) <= py.mul(2.0, py.add(STUCK, fuzz)) ? end : null;
   }
 }
 py.fields(IntegratedProcess, ["body", "dry"]);
-
-/** The numbers of an impulse in a row. */
-function pack(impulse) {
-  return [impulse.normal, ...impulse.tangential, ...impulse.angular, impulse.normal_work];
-}
-
-/** The impulse that has these numbers. */
-function unpack(y) {
-  return new Impulse(y[0], [y[1], y[2]], [y[3], y[4], y[5]], y[6]);
-}
 
 // tippetop.mechanics.viscous_impact
 const ROUNDING_of_viscous_impact = 1e-17;
@@ -5333,7 +5151,7 @@ class ViscousProcess extends py.NamedTuple {
   }
   /** The process of this impact, from the principal directions of its tangential part of M. */
   static of(body, law) {
-    var [east, north, up] = body.inverse_mass;
+    var [east, north, up] = body.response.slice(0, 3);
     var angle = py.mul(0.5, py.math.atan2(py.mul(2.0, east[1]), py.sub(east[0], north[1])));
     var cosine = py.math.cos(angle);
     var sine = py.math.sin(angle);
@@ -5343,26 +5161,27 @@ class ViscousProcess extends py.NamedTuple {
         py.mul(py.mul(y, y), north[1])
       );
       var coupling = py.add(py.mul(x, up[0]), py.mul(y, up[1]));
-      var slip = py.add(py.mul(x, body.point[0]), py.mul(y, body.point[1]));
+      var slip = py.add(py.mul(x, body.before[0]), py.mul(y, body.before[1]));
       return new PrincipalDirection([x, y], stiffness, coupling, slip);
     };
     return new this(body, law.mu, [mode(cosine, sine), mode(py.neg(sine), cosine)]);
   }
-  /** The first impulse from a given one on at which the goal is not negative. */
+  /** The first impulse from a given one on at which the goal is not negative; without steps. */
   until(impulse, goal, guess) {
-    return first_reach((q) => this.at(py.add(impulse.normal, q)), goal, guess);
+    return [first_reach((q) => this.at(py.add(py.item(impulse, NORMAL), q)), goal, guess), 0];
   }
   /** The impulse when the normal impulse is p. */
   at(p) {
-    var tangential = [0.0, 0.0];
-    var work = py.mul(p, py.add(this.body.point[2], py.mul(py.mul(0.5, p), this.body.inverse_mass[2][2])));
+    var east = 0.0;
+    var north = 0.0;
+    var work = py.mul(p, py.add(this.body.before[2], py.mul(py.mul(0.5, p), this.body.response[2][2])));
     for (var [[x, y], stiffness, coupling, slip] of this.modes) {
       var [phi_1, phi_2, phi_3] = phis(py.mul(py.mul(this.mu, stiffness), p));
       var along = py.mul(
         py.mul(py.neg(this.mu), p),
         py.add(py.mul(slip, phi_1), py.mul(py.mul(coupling, p), phi_2))
       );
-      tangential = [py.add(tangential[0], py.mul(along, x)), py.add(tangential[1], py.mul(along, y))];
+      [east, north] = [py.add(east, py.mul(along, x)), py.add(north, py.mul(along, y))];
       work = py.sub(
         work,
         py.mul(
@@ -5371,7 +5190,7 @@ class ViscousProcess extends py.NamedTuple {
         )
       );
     }
-    return new Impulse(p, tangential, NO_TORQUE, work);
+    return [east, north, p, 0.0, 0.0, 0.0, work];
   }
 }
 py.fields(ViscousProcess, ["body", "mu", "modes"]);
@@ -5419,66 +5238,58 @@ function impact(state, restitution, top) {
     );
   }
   var body = Striking.of(state, top);
-  var law = top.friction;
-  var dry = py.truth(is_dry(law)) ? DryContact.of(body) : null;
+  var dry = py.truth(is_dry(top)) ? new DryContact(body) : null;
   if (!py.truth(is_struck(body, dry))) {
     return new Impact(state, 0.0, 0.0, 0.0);
   }
+  var law = top.friction;
   var process = py.isinstance(
     law,
     ViscousLaw
   ) ? ViscousProcess.of(body, law) : new IntegratedProcess(body, dry);
-  var frictionless = py.div(
-    py.or(py.mul(-2.0, body.point[2]), () => length(body.point)),
-    body.inverse_mass[2][2]
-  );
-  var compressed = process.until(NO_IMPULSE, py.bound(body, "approach"), frictionless);
+  var frictionless = py.div(py.or(py.mul(-2.0, body.before[2]), () => body.striking), body.response[2][2]);
+  var [compressed, steps] = process.until(NO_IMPULSE, py.bound(body, "approach"), frictionless);
   var impulse = compressed;
-  var steps = compressed.steps;
+  var compression = py.item(compressed, NORMAL);
   if (restitution > 0.0) {
     var goal = restitution_goal(body, compressed, restitution);
-    impulse = process.until(compressed, goal, py.mul(restitution, compressed.normal));
-    steps = py.add(steps, impulse.steps);
+    var [impulse, more] = process.until(compressed, goal, py.mul(restitution, compression));
+    steps = py.add(steps, more);
   }
   var after = body.after(impulse);
   if (dry !== null) {
     after = dry.at_rest(impulse, after);
   }
-  var lost = py.max(0.0, py.neg(work_of(impulse, state, after, body)));
-  return new Impact(after, impulse.normal, lost, compressed.normal, steps);
+  return new Impact(
+    after,
+    py.item(impulse, NORMAL),
+    py.max(0.0, py.neg(body.work(impulse))),
+    compression,
+    steps
+  );
 }
 
 /** Poisson's end of restitution, or that of the energy stored, but not before the body has stopped. */
 function restitution_goal(body, compressed, restitution) {
-  var full = py.add(compressed.normal, py.mul(restitution, compressed.normal));
+  var full = py.add(py.item(compressed, NORMAL), py.mul(restitution, py.item(compressed, NORMAL)));
   var goal = (impulse) => {
-    var spent = py.div(py.sub(impulse.normal, full), compressed.normal);
-    var returned = py.div(py.neg(impulse.normal_work), compressed.normal_work);
-    return py.float(py.min(py.max(spent, returned), py.div(body.approach(impulse), length(body.point))));
+    var spent = py.div(py.sub(py.item(impulse, NORMAL), full), py.item(compressed, NORMAL));
+    var returned = py.div(py.neg(py.item(impulse, WORK)), py.item(compressed, WORK));
+    return py.float(py.min(py.max(spent, returned), py.div(body.approach(impulse), body.striking)));
   };
   return goal;
 }
 
 /** Whether the contact point sinks into the table, or would, if the impact did not begin. */
 function is_struck(body, dry) {
-  if (body.point[2] !== 0.0) {
-    return py.bool(body.point[2] < 0.0);
+  if (body.before[2] !== 0.0) {
+    return py.bool(body.before[2] < 0.0);
   }
-  if (dry !== null) {
-    var now = dry.settled(NO_IMPULSE);
-    return py.bool(now.change(now.friction(...now.velocities(NO_IMPULSE)))[2] < 0.0);
+  if (dry === null) {
+    return body.approach(body.friction(body.before)) < 0.0;
   }
-  var traction = body.friction(NO_IMPULSE)[2];
-  return body.approach(new Impulse(1.0, traction.force, traction.torque, 0.0)) < 0.0;
-}
-
-/** Work of an impulse, J: times the mean velocity, as velocities are linear in it (Thomson and Tait). */
-function work_of(impulse, before, after, body) {
-  var omega = add(...[before, after].map((state) => angular_velocity(state.axis, state.momentum, body.top)));
-  var point = add(body.point, contact_velocity(after, body.arm, body.top));
-  return py.float(
-    py.mul(0.5, py.add(dot([...impulse.tangential, impulse.normal], point), dot(impulse.angular, omega)))
-  );
+  var now = dry.settled(NO_IMPULSE);
+  return body.approach(now.friction(...now.parts(body.before))) < 0.0;
 }
 
 // tippetop.contact.striking
@@ -5489,11 +5300,11 @@ const MOST_PIECES = 50;
 /** What an impact without restitution does to a body that touches the table. */
 function impact_of_patch(state, top, integrator) {
   var law = top.friction;
-  if (py.isinstance(law, RollingResistance) || !py.truth(is_set_valued(law)) || slip_length(law) === null) {
+  if (py.truth(top.resists_rolling) || !py.truth(is_set_valued(law)) || slip_length(law) === null) {
     return null;
   }
   var body = Striking.of(state, top);
-  if (integrator === null || py.getattr(integrator, "expansion", null) === null || body.point[2] >= 0.0) {
+  if (integrator === null || py.getattr(integrator, "expansion", null) === null || body.before[2] >= 0.0) {
     return null;
   }
   if (py.truth(is_near(along_table(state), top))) {
@@ -5503,7 +5314,7 @@ function impact_of_patch(state, top, integrator) {
   var impulse = 0.0;
   var moving = as_array([...state.momentum, ...state.velocity]);
   var steps = 0;
-  var longest = py.mul(py.mul(LONGEST_of_striking, top.mass), length(body.point));
+  var longest = py.mul(py.mul(LONGEST_of_striking, top.mass), body.striking);
   for (var turn = 0; turn < MOST_PIECES; turn += 1) {
     var motion = impact_motion(top.kind, true);
     var parameters = [...top.numbers, ...state.axis];
@@ -5530,11 +5341,10 @@ function after(state, y) {
 
 /** The impact that leads from one state to another. */
 function impact_between(before, then, normal, body) {
-  var [x, y] = scale(body.top.mass, add(then.velocity, scale(-1.0, before.velocity)));
+  var [x, y] = scale(body.contact.top.mass, add(then.velocity, scale(-1.0, before.velocity)));
   var moment = add(then.momentum, scale(-1.0, before.momentum));
-  var angular = add(moment, cross([x, y, normal], body.arm));
-  var lost = py.neg(work_of(new Impulse(normal, [x, y], angular, 0.0), before, then, body));
-  return new Impact(then, normal, py.max(0.0, lost), normal);
+  var torque = add(moment, cross([x, y, normal], body.contact.arm));
+  return new Impact(then, normal, py.max(0.0, py.neg(body.work([x, y, normal, ...torque, 0.0]))), normal);
 }
 
 /** How angular momentum and velocity of a struck top change with the normal impulse. */
@@ -6072,8 +5882,10 @@ function turning_along(pair) {
 /** What the table does to a body whose two contacts stay closed, and how it accelerates. */
 function pair_motion(pair, slips, rolls) {
   var along = directions_of(pair.first.axis)[0];
+  var law = pair.first.top.friction;
+  var couple = py.isinstance(law, RollingResistance) ? scale(py.mul(py.neg(rolls), law.length), along) : null;
+  var [one, other] = py.zip(pair, slips).map((contact) => normal_wrench(...contact, couple));
   var stopped = py.and(pair.first.top.resists_rolling, () => !py.truth(rolls));
-  var [one, other] = py.zip(pair, slips).map((contact) => normal_wrench(...contact, scale(rolls, along)));
   var pushes = pair.holding([slips[0] === null, slips[1] === null], [one, other], pair.free, stopped);
   var found = [new Wrench(NO_TORQUE, NO_TORQUE), new Wrench(NO_TORQUE, NO_TORQUE)];
   for (var [number, push] of pushes) {
@@ -6081,20 +5893,6 @@ function pair_motion(pair, slips, rolls) {
   }
   var holding = py.truth(stopped) ? dot(py.item(pushes, -1)[1].torque, along) : 0.0;
   return new PairMotion(pair, [found[0], found[1]], pair.under(pushes), holding);
-}
-
-/** A unit normal force with what goes with it where the contact slips, and rolls in this direction. */
-function normal_wrench(point, slip, rolling) {
-  var law = point.top.friction;
-  var force = [0.0, 0.0];
-  var torque = NO_TORQUE;
-  if (slip !== null) {
-    [force, torque] = sliding_law(law).traction([slip[0], slip[1]], turning_with(point, slip));
-  }
-  if (py.isinstance(law, RollingResistance)) {
-    torque = add(torque, scale(py.neg(law.length), rolling));
-  }
-  return new Wrench([...force, 1.0], torque);
 }
 
 /** The state with c' = 0 and no sinking: what is taken from the momentum lies across the axis. */
@@ -7113,8 +6911,11 @@ class StruckOnTwo extends py.NamedTuple {
   }
   /** Longest step of the clock in which slip that friction takes decays smoothly. */
   get longest() {
-    var struck = [...this.tops].map((top) => Striking.of(this.state, top).inverse_mass);
-    return py.div(2.0, py.float(py.sum([...struck].map(([east, north]) => py.add(east[0], north[1])))));
+    var struck = [...this.tops].map((top) => Striking.of(this.state, top).response);
+    return py.div(
+      2.0,
+      py.float(py.sum([...struck].map((response) => py.add(response[0][0], response[1][1]))))
+    );
   }
   /** The state after these impulses. */
   after(here) {
@@ -10928,7 +10729,6 @@ export {
   INSTANT,
   ITERATIONS,
   Impact,
-  Impulse,
   Instants,
   IntegratedMode,
   IntegratedProcess,
@@ -10989,6 +10789,7 @@ export {
   NEWTON,
   NEWTON_of_integrated_impact,
   NONE,
+  NORMAL,
   NORTH,
   NOTHING,
   NOT_FINITE,
@@ -11045,7 +10846,6 @@ export {
   RISEN,
   ROLLING,
   ROLLING_STOPPING,
-  ROLLING_of_dry_impact,
   ROOT,
   ROOTS,
   ROUGH,
@@ -11091,8 +10891,8 @@ export {
   SIZE,
   SLIDING,
   SLIP,
-  SLIPPING,
   SLIP_of_double_sticking,
+  SLIP_of_straight_impact,
   SLOW,
   SLOWEST,
   SLOWEST_REBOUND,
@@ -11184,6 +10984,7 @@ export {
   ViscousProcess,
   WIDER,
   WIDEST,
+  WORK,
   WORTH,
   Wrench,
   _DESCRIPTIONS,
@@ -11223,7 +11024,6 @@ export {
   _precession_tilts,
   _reach,
   _reaches_out,
-  _resisting,
   _root,
   _slip,
   _solved,
@@ -11266,7 +11066,6 @@ export {
   combined,
   combined_of_dormand_prince,
   compiled_step,
-  components,
   contact,
   contact_motion,
   contact_vector,
@@ -11306,6 +11105,7 @@ export {
   gap,
   gap_rate,
   gauss_points,
+  going_on,
   growth,
   gyroscopic_reaction,
   has_level_spin,
@@ -11386,7 +11186,6 @@ export {
   outer_height,
   outermost,
   overtaking_guard,
-  pack,
   pair_motion,
   parting_guard,
   parts_left,
@@ -11480,7 +11279,8 @@ export {
   stopping_guard,
   straight,
   straight_of_straight_impact,
-  struck,
+  struck_motion,
+  struck_wrench,
   surface_guards,
   suspect,
   sweep,
@@ -11499,7 +11299,6 @@ export {
   turning_along,
   turning_with,
   unknown,
-  unpack,
   unrolled,
   upright_boundary,
   value_of,
@@ -11515,5 +11314,4 @@ export {
   without_drilling,
   without_rolling,
   without_tilting,
-  work_of,
 };

@@ -1,6 +1,6 @@
 """In which direction slip, or rolling, begins where the table cannot hold it."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple, TypeAlias
 
 from tippetop.mechanics.direction import Resisted, directions
@@ -16,11 +16,12 @@ from tippetop.mechanics.rolling import (
     slip_reserve,
 )
 from tippetop.mechanics.stick_slip import inner, scaled, size
-from tippetop.mechanics.top import Top
 
 CHOICES = ((False, False), (True, False), (False, True), (True, True))
 """What is tried in turn where slip, and rolling, have ended: whether they go on all the same."""
 
+Moved: TypeAlias = Callable[[ContactPoint, Slip | None, Slip | None], tuple[Wrench, Acceleration]]
+"""From slip and rolling, None where they are held, to what the table does, and the acceleration."""
 
 Motion: TypeAlias = tuple[Slip | None, Slip | None, Wrench, Acceleration]
 """Slip and rolling, or their directions, None where they are held; and what comes of them."""
@@ -45,6 +46,7 @@ def beginning(
     rolling: Slip | None,
     begins: tuple[bool, bool],
     held: Wrench | None = None,
+    moved: Moved = contact_motion,
 ) -> Beginning:
     """Directions in which slip, or rolling, or both, begin.
 
@@ -58,6 +60,8 @@ def beginning(
         Whether slip, and rolling, begin; what is zero and does not is held.
     held
         What would hold what begins, if that is known and not both begin.
+    moved
+        What the table does.
 
     Raises
     ------
@@ -74,30 +78,32 @@ def beginning(
             return tried[-1][1]
         found = dict(zip(parts, ways, strict=True))
         both = found.get(Vanishing(True), slip), found.get(Vanishing(False), rolling)
-        answer = (*both, *contact_motion(point, *both))
+        answer = (*both, *moved(point, *both))
         tried.append((ways, answer))
         return answer
 
     def response(ways: Sequence[Slip]) -> list[Resisted]:
         answer = motion(ways)
         return [
-            Resisted(part.rate(answer[3], point.top), stiff * size(_resisting(part, answer[2], point.top)))
+            Resisted(part.rate(answer[3], point.top), stiff * size(part.resisting(answer[2], point.top)))
             for part, stiff in zip(parts, stiffness, strict=True)
         ]
 
     ways: list[Slip] = []
     if parts:
         # Against what would have held it; slip, if both begin, against what holds it once rolling goes on.
-        beside = beginning(point, slip, rolling, (False, True)).rolling if all(begins) else rolling
-        against = held or contact_motion(point, slip, beside)[0]
-        ways = directions(response, [scaled(-1.0, _resisting(part, against, point.top)) for part in parts])
+        beside = (
+            beginning(point, slip, rolling, (False, True), None, moved).rolling if all(begins) else rolling
+        )
+        against = held or moved(point, slip, beside)[0]
+        ways = directions(response, [scaled(-1.0, part.resisting(against, point.top)) for part in parts])
     found = motion(ways)
     along = [inner(part.rate(found[3], point.top), e) for part, e in zip(parts, ways, strict=True)]
     return Beginning(found[0], found[1], tuple(max(rate, 0.0) for rate in along), found[2], found[3])
 
 
 def settling(
-    point: ContactPoint, slip: Slip | None, rolling: Slip | None
+    point: ContactPoint, slip: Slip | None, rolling: Slip | None, moved: Moved = contact_motion
 ) -> tuple[Beginning, tuple[bool, bool]]:
     """How a contact goes on whose slip, or rolling, or both, have ended, and which of them begin again.
 
@@ -107,6 +113,8 @@ def settling(
         The contact point, floats.
     slip, rolling
         Slip and horizontal angular velocity, None where they have ended.
+    moved
+        What the table does: in contact, or in an impact.
 
     Raises
     ------
@@ -118,7 +126,7 @@ def settling(
         if begins[0] > ended[0] or begins[1] > ended[1]:
             continue
         try:
-            found = beginning(point, slip, rolling, begins)
+            found = beginning(point, slip, rolling, begins, None, moved)
         except ArithmeticError:
             continue
         if _admits(point, found):
@@ -131,14 +139,6 @@ def _admits(point: ContactPoint, found: Beginning) -> bool:
     if found.slip is None and slip_reserve(point.top, found.wrench) < 0.0:
         return False
     return found.rolling is not None or bool(rolling_reserve(point, found.wrench, found.slip) >= 0.0)
-
-
-def _resisting(part: Vanishing, wrench: Wrench, top: Top) -> Slip:
-    """What resists slip, a drilling torque over the law's length, or the couple that resists rolling."""
-    if not part.slip:
-        return wrench.torque[:2]
-    reach = slip_length(top.friction)
-    return wrench.force[:2] if reach is None else (*wrench.force[:2], wrench.torque[2] / reach)
 
 
 def _stiffness(part: Vanishing, point: ContactPoint) -> float:

@@ -38,6 +38,7 @@ from tippetop.mechanics.rolling import (
     ContactPoint,
     Slip,
     Wrench,
+    normal_wrench,
     set_valued,
     sliding_law,
     slip_length,
@@ -286,25 +287,16 @@ def pair_motion(pair: ContactPair, slips: Slips, rolls: float) -> PairMotion:
     rolls
         Sign of omega_e, 0 where it is held at zero; without rolling resistance it does not matter.
     """
-    along, stopped = directions_of(pair.first.axis)[0], pair.first.top.resists_rolling and not rolls
-    one, other = (normal_wrench(*contact, scale(rolls, along)) for contact in zip(pair, slips, strict=True))
+    along, law = directions_of(pair.first.axis)[0], pair.first.top.friction
+    couple = scale(-rolls * law.length, along) if isinstance(law, RollingResistance) else None
+    one, other = (normal_wrench(*contact, couple) for contact in zip(pair, slips, strict=True))
+    stopped = pair.first.top.resists_rolling and not rolls
     pushes = pair.holding((slips[0] is None, slips[1] is None), (one, other), pair.free, stopped=stopped)
     found = [Wrench(NO_TORQUE, NO_TORQUE), Wrench(NO_TORQUE, NO_TORQUE)]
     for number, push in pushes:
         found[number] = Wrench(*(add(a, b) for a, b in zip(found[number], push, strict=True)))
     holding = dot(pushes[-1][1].torque, along) if stopped else 0.0
     return PairMotion(pair, (found[0], found[1]), pair.under(pushes), holding)
-
-
-def normal_wrench(point: ContactPoint, slip: Slip | None, rolling: Vector) -> Wrench:
-    """A unit normal force with what goes with it where the contact slips, and rolls in this direction."""
-    law = point.top.friction
-    force, torque = (0.0, 0.0), NO_TORQUE
-    if slip is not None:
-        force, torque = sliding_law(law).traction((slip[0], slip[1]), turning_with(point, slip))
-    if isinstance(law, RollingResistance):
-        torque = add(torque, scale(-law.length, rolling))
-    return Wrench((*force, 1.0), torque)
 
 
 def without_tilting(state: State, top: Top) -> State:

@@ -69,6 +69,13 @@ class Vanishing(NamedTuple):
         """The wrenches that resist its components."""
         return slip_wrenches(top.friction) if self.slip else COUPLES
 
+    def resisting(self, wrench: Wrench, top: Top) -> Slip:
+        """What of a wrench resists it: of slip's, a drilling torque over the law's length."""
+        if not self.slip:
+            return wrench.torque[:2]
+        reach = slip_length(top.friction)
+        return wrench.force[:2] if reach is None else (*wrench.force[:2], wrench.torque[2] / reach)
+
     def shares(self, direction: Slip, top: Top) -> tuple[Scalar, ...]:
         """How much of each there is per unit normal force when it goes in a direction."""
         law = top.friction

@@ -32,12 +32,11 @@ from typing import NamedTuple
 
 from tippetop.mechanics.dry_impact import DryContact, is_dry
 from tippetop.mechanics.friction import ViscousLaw
-from tippetop.mechanics.impulse import NO_IMPULSE, Goal, Impulse, Process, Striking, contact_velocity
+from tippetop.mechanics.impulse import NO_IMPULSE, NORMAL, WORK, Goal, Impulse, Process, Striking
 from tippetop.mechanics.integrated_impact import IntegratedProcess
-from tippetop.mechanics.motion import angular_velocity
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
-from tippetop.mechanics.vectors import Scalar, add, dot, length
+from tippetop.mechanics.vectors import Scalar
 from tippetop.mechanics.viscous_impact import ViscousProcess
 
 
@@ -76,53 +75,44 @@ def impact(state: State, restitution: float, top: Top) -> Impact:
     if not 0.0 <= restitution <= 1.0:
         raise ValueError(f"the coefficient of restitution must lie between 0 and 1, but is {restitution}")
     body = Striking.of(state, top)
-    law = top.friction
-    dry = DryContact.of(body) if is_dry(law) else None
+    dry = DryContact(body) if is_dry(top) else None
     if not is_struck(body, dry):
         return Impact(state, 0.0, 0.0, 0.0)
+    law = top.friction
     process: Process = (
         ViscousProcess.of(body, law) if isinstance(law, ViscousLaw) else IntegratedProcess(body, dry)
     )
 
-    frictionless = (-2.0 * body.point[2] or length(body.point)) / body.inverse_mass[2][2]
-    compressed = process.until(NO_IMPULSE, body.approach, frictionless)
-    impulse, steps = compressed, compressed.steps
+    frictionless = (-2.0 * body.before[2] or body.striking) / body.response[2][2]
+    compressed, steps = process.until(NO_IMPULSE, body.approach, frictionless)
+    impulse, compression = compressed, compressed[NORMAL]
     if restitution > 0.0:
         goal = restitution_goal(body, compressed, restitution)
-        impulse = process.until(compressed, goal, restitution * compressed.normal)
-        steps += impulse.steps
+        impulse, more = process.until(compressed, goal, restitution * compression)
+        steps += more
     after = body.after(impulse)
     if dry is not None:
         after = dry.at_rest(impulse, after)
-    lost = max(0.0, -work_of(impulse, state, after, body))
-    return Impact(after, impulse.normal, lost, compressed.normal, steps)
+    return Impact(after, impulse[NORMAL], max(0.0, -body.work(impulse)), compression, steps)
 
 
 def restitution_goal(body: Striking, compressed: Impulse, restitution: float) -> Goal:
     """Poisson's end of restitution, or that of the energy stored, but not before the body has stopped."""
-    full = compressed.normal + restitution * compressed.normal
+    full = compressed[NORMAL] + restitution * compressed[NORMAL]
 
     def goal(impulse: Impulse) -> float:
-        spent = (impulse.normal - full) / compressed.normal
-        returned = -impulse.normal_work / compressed.normal_work
-        return float(min(max(spent, returned), body.approach(impulse) / length(body.point)))
+        spent = (impulse[NORMAL] - full) / compressed[NORMAL]
+        returned = -impulse[WORK] / compressed[WORK]
+        return float(min(max(spent, returned), body.approach(impulse) / body.striking))
 
     return goal
 
 
 def is_struck(body: Striking, dry: DryContact | None) -> bool:
     """Whether the contact point sinks into the table, or would, if the impact did not begin."""
-    if body.point[2] != 0.0:
-        return bool(body.point[2] < 0.0)
-    if dry is not None:
-        now = dry.settled(NO_IMPULSE)
-        return bool(now.change(now.friction(*now.velocities(NO_IMPULSE)))[2] < 0.0)
-    traction = body.friction(NO_IMPULSE)[2]
-    return body.approach(Impulse(1.0, traction.force, traction.torque, 0.0)) < 0.0
-
-
-def work_of(impulse: Impulse, before: State, after: State, body: Striking) -> float:
-    """Work of an impulse, J: times the mean velocity, as velocities are linear in it (Thomson and Tait)."""
-    omega = add(*(angular_velocity(state.axis, state.momentum, body.top) for state in (before, after)))
-    point = add(body.point, contact_velocity(after, body.arm, body.top))
-    return float(0.5 * (dot((*impulse.tangential, impulse.normal), point) + dot(impulse.angular, omega)))
+    if body.before[2] != 0.0:
+        return bool(body.before[2] < 0.0)
+    if dry is None:
+        return body.approach(body.friction(body.before)) < 0.0
+    now = dry.settled(NO_IMPULSE)
+    return body.approach(now.friction(*now.parts(body.before))) < 0.0

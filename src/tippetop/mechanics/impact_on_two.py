@@ -56,8 +56,8 @@ class StruckOnTwo(NamedTuple):
     @property
     def longest(self) -> float:
         """Longest step of the clock in which slip that friction takes decays smoothly."""
-        struck = (Striking.of(self.state, top).inverse_mass for top in self.tops)
-        return 2.0 / float(sum(east[0] + north[1] for east, north, _ in struck))
+        struck = (Striking.of(self.state, top).response for top in self.tops)
+        return 2.0 / float(sum(response[0][0] + response[1][1] for response in struck))
 
     def after(self, here: Point) -> State:
         """The state after these impulses."""

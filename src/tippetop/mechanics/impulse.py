@@ -1,114 +1,111 @@
-"""A body that is struck at its contact point: the impulses of the table, and its inverse effective mass."""
+"""A body that is struck at its contact point, and what impulses of the table do to it."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from operator import mul
 from typing import NamedTuple, Protocol, TypeAlias
 
-from tippetop.mechanics.friction import NO_TORQUE, Traction
 from tippetop.mechanics.motion import angular_velocity, point_velocity
+from tippetop.mechanics.rolling import COUPLES, DRILLING, FORCES, ContactPoint, Slip, Wrench, flat
 from tippetop.mechanics.roots import crossing
 from tippetop.mechanics.state import State
-from tippetop.mechanics.surface import contact_vector
+from tippetop.mechanics.stick_slip import inner, plus
 from tippetop.mechanics.top import Top
-from tippetop.mechanics.vectors import Horizontal, Vector, add, cross, length, scale
+from tippetop.mechanics.vectors import Vector, add, length, scale
 
 FUZZ = 1e-14
 """Round-off in the velocity of the contact point, relative to what it is made of."""
 
+Impulse: TypeAlias = tuple[float, ...]
+"""Impulse of the table's force so far, N s, that of its torque, N m s, and the work of the normal part, J."""
 
-class Impulse(NamedTuple):
-    """Impulses of the table on the body so far."""
+NORMAL, WORK = 2, 6
+"""Places of the normal impulse in it, and of its work."""
 
-    normal: float
-    """Normal impulse p, N s."""
-    tangential: Horizontal
-    """Impulse of friction, N s."""
-    angular: Vector
-    """Impulse of the torque, N m s."""
-    normal_work: float
-    """Work of the normal impulse, J."""
-    steps: int = 0
-    """How many steps it took to find them, where they are integrated."""
-
-
-NO_IMPULSE = Impulse(0.0, (0.0, 0.0), NO_TORQUE, 0.0)
+NO_IMPULSE: Impulse = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 Goal: TypeAlias = Callable[[Impulse], float]
 """Negative as long as a phase of the impact lasts."""
 
 
 class Striking(NamedTuple):
-    """A body at the start of an impact, and what an impulse does to its contact point."""
+    """A body at the start of an impact, and what an impulse does to it there."""
 
     state: State
-    top: Top
-    """The body."""
-    arm: Vector
-    """Contact vector a, m."""
-    point: Vector
-    """Velocity of the contact point, m/s; a normal part that is but round-off is zero."""
-    inverse_mass: tuple[Vector, Vector, Vector]
-    """Columns of M, the inverse effective mass (Delassus matrix): velocity of the contact point per unit
-    impulse along x, y and z, 1/kg."""
+    contact: ContactPoint
+    lever: float
+    """Length of the contact vector, m."""
+    speed: float
+    striking: float
+    """Speeds of the body's material, what rounding is measured by, and of its contact point, m/s."""
+    before: Slip
+    """Velocity of the contact point, m/s, and angular velocity, rad/s; what is but round-off of a normal
+    velocity is zero."""
+    response: tuple[Slip, ...]
+    """What an impulse adds to each of these six, per component of the force's and of the torque's: first of
+    all the inverse effective mass M (Delassus matrix), 1/kg."""
 
     @classmethod
     def of(cls, state: State, top: Top) -> "Striking":
         """The body in this state."""
-        arm = contact_vector(state.axis, top.surface)
-        at_rest = state._replace(momentum=NO_TORQUE, velocity=NO_TORQUE)
-        point = contact_velocity(state, arm, top)
-        omega = angular_velocity(state.axis, state.momentum, top)
-        if abs(point[2]) <= FUZZ * (length(state.velocity) + length(omega) * length(arm)):
-            point = (point[0], point[1], 0.0)
-        here = cls(state, top, arm, point, (NO_TORQUE, NO_TORQUE, NO_TORQUE))
-        nudged = [
-            contact_velocity(struck(at_rest, arm, unit, NO_TORQUE, top), arm, top)
-            for unit in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-        ]
-        return here._replace(inverse_mass=(nudged[0], nudged[1], nudged[2]))
+        contact = ContactPoint.of(state.axis, state.momentum, top)
+        lever = length(contact.arm)
+        speed = length(state.velocity) + length(contact.turning) * lever
+        x, y, z = point_velocity(state.velocity, contact.turning, contact.arm)
+        columns = [flat(contact.response(wrench)) for wrench in (*FORCES, *COUPLES, DRILLING)]
+        point = (x, y, 0.0 if abs(z) <= FUZZ * speed else z)
+        before, response = (*point, *contact.turning), tuple(zip(*columns, strict=True))
+        return cls(state, contact, lever, speed, length(point), before, response)
 
     def after(self, impulse: Impulse) -> State:
         """The state after an impulse."""
-        return struck(self.state, self.arm, (*impulse.tangential, impulse.normal), impulse.angular, self.top)
-
-    def response(self, impulse: Impulse) -> Vector:
-        """Change of the velocity of the contact point by an impulse, m/s."""
-        (x, y), p, (east, north, up) = impulse.tangential, impulse.normal, self.inverse_mass
-        change = (
-            x * east[0] + y * north[0] + p * up[0],
-            x * east[1] + y * north[1] + p * up[1],
-            x * east[2] + y * north[2] + p * up[2],
+        x, y, z, *torque = impulse[:6]
+        moment = self.contact.moment(Wrench((x, y, z), (torque[0], torque[1], torque[2])))
+        gained = scale(1.0 / self.contact.top.mass, (x, y, z))
+        return self.state._replace(
+            momentum=add(self.state.momentum, moment), velocity=add(self.state.velocity, gained)
         )
-        if impulse.angular == NO_TORQUE:
-            return change
-        return add(change, cross(angular_velocity(self.state.axis, impulse.angular, self.top), self.arm))
+
+    def change(self, impulse: Sequence[float]) -> Slip:
+        """What an impulse adds to the six velocities."""
+        return tuple([sum(map(mul, row, impulse)) for row in self.response])
+
+    def velocities(self, impulse: Impulse) -> Slip:
+        """The six velocities after an impulse."""
+        return plus(self.before, self.change(impulse))
 
     def approach(self, impulse: Impulse) -> float:
         """Normal velocity of the contact point after an impulse, m/s."""
-        return float(self.point[2] + self.response(impulse)[2])
+        return float(self.before[2] + sum(map(mul, self.response[2], impulse)))
 
-    def friction(self, impulse: Impulse) -> tuple[Vector, Vector, Traction]:
-        """Velocity of the contact point, angular velocity and traction after an impulse."""
-        omega = angular_velocity(self.state.axis, self.after(impulse).momentum, self.top)
-        point = add(self.point, self.response(impulse))
-        return point, omega, self.top.friction.traction((point[0], point[1]), omega)
+    def friction(self, velocity: Slip) -> Slip:
+        """Force and torque per unit normal impulse under a law that says them at any slip, six numbers."""
+        x, y, _, *omega = velocity
+        force, torque = self.contact.top.friction.traction((x, y), (omega[0], omega[1], omega[2]))
+        return (*force, 1.0, *torque)
+
+    def work(self, impulse: Impulse) -> float:
+        """Work of an impulse, J: times the mean velocity, as that is linear in it (Thomson and Tait)."""
+        return float(0.5 * inner(impulse[:6], plus(self.before, self.velocities(impulse))))
+
+    def straight(self, impulse: Impulse, unit: Slip) -> Callable[[float], Impulse]:
+        """The impulse that grows from a given one by so much per unit normal impulse."""
+        approach, rise = self.approach(impulse), sum(map(mul, self.response[2], unit))
+
+        def along(q: float) -> Impulse:
+            six = [a + q * b for a, b in zip(impulse[:6], unit, strict=True)]
+            return (*six, impulse[WORK] + q * (approach + 0.5 * q * rise))
+
+        return along
 
 
 class Process(Protocol):
     """How an impact goes on under some friction law."""
 
-    def until(self, impulse: Impulse, goal: Goal, guess: float) -> Impulse:
-        """The first impulse from a given one on at which the goal is not negative.
+    def until(self, impulse: Impulse, goal: Goal, guess: float) -> tuple[Impulse, int]:
+        """The first impulse from a given one on at which the goal is not negative, and the steps to there.
 
         The guess, positive, is how much the normal impulse may have to grow.
         """
-
-
-def struck(state: State, arm: Vector, linear: Vector, angular: Vector, top: Top) -> State:
-    """The state after an impulse at the contact and an impulse of torque."""
-    return state._replace(
-        momentum=add(state.momentum, add(cross(arm, linear), angular)),
-        velocity=add(state.velocity, scale(1.0 / top.mass, linear)),
-    )
 
 
 def contact_velocity(state: State, arm: Vector, top: Top) -> Vector:

@@ -41,6 +41,10 @@ DRILLING = Wrench(NO_TORQUE, VERTICAL)
 COUPLES = (Wrench(NO_TORQUE, EAST), Wrench(NO_TORQUE, NORTH))
 
 
+Held: TypeAlias = tuple[int, Wrench]
+"""A component that is held, as `ContactPoint.holding` has it, and what holds it."""
+
+
 class Acceleration(NamedTuple):
     """Rate of change of the contact point's velocity, m/s^2, and of the angular velocity, rad/s^2."""
 
@@ -138,21 +142,48 @@ def contact_motion(
         The horizontal angular velocity, of which only the direction counts, or None where it is held at zero;
         without rolling resistance it does not matter.
     """
-    law = point.top.friction
-    resistance = law if isinstance(law, RollingResistance) else None
-    held: list[tuple[int, Wrench]] = []
-    force, torque = (0.0, 0.0), NO_TORQUE
-    if slip is None:
-        held += [(0, FORCES[0]), (1, FORCES[1])]
-        held += [] if slip_length(law) is None else [(5, DRILLING)]
-    else:
-        force, torque = sliding_law(law).traction((slip[0], slip[1]), turning_with(point, slip))
-    if resistance is not None and rolling is not None:
-        torque = add(torque, resistance.couple((*rolling, 0.0)))
-    held.append((2, Wrench((*force, 1.0), torque)))
-    if resistance is not None and rolling is None:
-        held += [(3, COUPLES[0]), (4, COUPLES[1])]
+    normal, slipping, turning = going_on(point, slip, rolling)
+    held = [*slipping, (2, normal), *turning]
     return point.holding([wrench for _, wrench in held], [component for component, _ in held])
+
+
+def struck_wrench(point: ContactPoint, slip: Slip | None, rolling: Horizontal | None) -> Wrench:
+    """What goes with a unit normal impulse, and that; of floats, as for `contact_motion`.
+
+    Velocities that are held stay what they are: the configuration is fixed, and nothing falls meanwhile.
+    """
+    if slip is not None:
+        point = point._replace(top=on_branch(point.top, slip))
+    normal, slipping, turning = going_on(point, slip, rolling)
+    held = [*slipping, *turning]
+    if not held:
+        return normal
+    driven = point._replace(free=point.response(normal))
+    more, _ = driven.holding([wrench for _, wrench in held], [component for component, _ in held])
+    return Wrench(add(normal.force, more.force), add(normal.torque, more.torque))
+
+
+def going_on(
+    point: ContactPoint, slip: Slip | None, rolling: Horizontal | None
+) -> tuple[Wrench, list[Held], list[Held]]:
+    """A unit normal force with what goes with it, and what holds slip, and rolling, where these are None."""
+    law = point.top.friction
+    slipping = [] if slip is not None else list(zip((0, 1, 5), slip_wrenches(law), strict=False))
+    if not isinstance(law, RollingResistance):
+        return normal_wrench(point, slip), slipping, []
+    if rolling is None:
+        return normal_wrench(point, slip), slipping, [(3, COUPLES[0]), (4, COUPLES[1])]
+    return normal_wrench(point, slip, law.couple((rolling[0], rolling[1], 0.0))), slipping, []
+
+
+def normal_wrench(point: ContactPoint, slip: Slip | None, couple: Vector | None = None) -> Wrench:
+    """A unit normal force with the friction that goes with it where the contact slips, and a couple."""
+    force, torque = (0.0, 0.0), NO_TORQUE
+    if slip is not None:
+        force, torque = sliding_law(point.top.friction).traction(
+            (slip[0], slip[1]), turning_with(point, slip)
+        )
+    return Wrench((*force, 1.0), torque if couple is None else add(torque, couple))
 
 
 def slip_wrenches(law: FrictionLaw) -> tuple[Wrench, ...]:

@@ -8,10 +8,13 @@ friction than another, as sliding does on a small patch, on which drilling lasts
 
 import math
 
-from tippetop.mechanics.dry_impact import SLIPPING, DryContact
+from tippetop.mechanics.dry_impact import DryContact
+from tippetop.mechanics.ending import Vanishing
 from tippetop.mechanics.impulse import FUZZ, Goal, Impulse, first_reach
-from tippetop.mechanics.rolling import Slip, solve
-from tippetop.mechanics.stick_slip import inner, plus, scaled, size
+from tippetop.mechanics.rolling import Slip, Wrench, solve
+from tippetop.mechanics.stick_slip import inner, plus, scaled, size, slip_part
+
+SLIP = Vanishing(slip=True)
 
 KEPT = 1e-8
 """How near, relatively, friction must be to what keeps the direction of slip to count as equal to it."""
@@ -22,23 +25,13 @@ def straight(dry: DryContact, impulse: Impulse, goal: Goal, guess: float) -> Imp
 
     It is None if slip changes its direction, or begins, or rolling is resisted.
     """
-    if dry.resistance is not None or (dry.ended and dry.way is not None) or goal(impulse) >= 0.0:
+    if dry.top.resists_rolling or (dry.ended and dry.way is not None) or goal(impulse) >= 0.0:
         return None
     line = _line(dry, impulse)
     if line is None:
         return None
     unit, longest = line
-    approach, rise = dry.body.approach(impulse), dry.change(unit)[2]
-
-    def along(q: float) -> Impulse:
-        (east, north), (x, y, z) = impulse.tangential, impulse.angular
-        return Impulse(
-            impulse.normal + q,
-            (east + q * unit[0], north + q * unit[1]),
-            (x + q * unit[3], y + q * unit[4], z + q * unit[5]),
-            impulse.normal_work + q * (approach + 0.5 * q * rise),
-        )
-
+    along = dry.body.straight(impulse, unit)
     if longest < math.inf:
         end = along(longest)
         if goal(end) < 0.0:
@@ -49,23 +42,24 @@ def straight(dry: DryContact, impulse: Impulse, goal: Goal, guess: float) -> Imp
 
 def _line(dry: DryContact, impulse: Impulse) -> tuple[Slip, float] | None:
     """Force and torque per unit normal impulse on a straight line, and its length until slip ends."""
-    slip, rolling = dry.velocities(impulse)
+    slip, rolling = dry.parts(dry.body.velocities(impulse))
     unit = dry.friction(slip, rolling)
     if dry.ended:
         return unit, math.inf
-    speed, grip = size(slip), size(dry.resisting(SLIPPING, unit))
-    way, change = scaled(1.0 / speed, slip), dry.part(SLIPPING, dry.change(unit))
+    grip = SLIP.resisting(Wrench((unit[0], unit[1], 1.0), (unit[3], unit[4], unit[5])), dry.top)
+    speed, holds = size(slip), size(grip)
+    way, change = scaled(1.0 / speed, slip), slip_part(dry.body.change(unit), dry.reach)
     # What changes slip so, and what changes it along itself; their ratio in the metric of kinetic energy.
     doing, along = _impulse_for(dry, change), _impulse_for(dry, way)
     inertia = inner(way, along)
     rate = inner(way, doing) / inertia
     # Slip has a direction, and a rate, but for rounding.
-    fuzz = FUZZ * dry.speed / speed
-    if abs(rate) * inertia <= fuzz * grip:
+    fuzz = FUZZ * dry.body.speed / speed
+    if abs(rate) * inertia <= fuzz * holds:
         rate = 0.0
     wrong = plus(doing, scaled(-rate, along))
     # What grows along a wrong direction would go ever farther.
-    if size(wrong) > (KEPT if rate > 0.0 else KEPT + fuzz) * grip:
+    if size(wrong) > (KEPT if rate > 0.0 else KEPT + fuzz) * holds:
         return None
     drilling = 0.0 if dry.reach is None else dry.reach * wrong[2]
     exact = plus(unit, (-wrong[0], -wrong[1], 0.0, 0.0, 0.0, -drilling))
@@ -75,5 +69,5 @@ def _line(dry: DryContact, impulse: Impulse) -> tuple[Slip, float] | None:
 def _impulse_for(dry: DryContact, change: Slip) -> Slip:
     """What changes slip so: impulses of force, and that of a drilling torque over the law's length."""
     held, lengths = ((0, 1), (1.0, 1.0)) if dry.reach is None else ((0, 1, 5), (1.0, 1.0, dry.reach))
-    pairs = list(zip(held, lengths, strict=True))
-    return tuple(solve([[a * dry.response[i][j] * b for j, b in pairs] for i, a in pairs], list(change)))
+    pairs, response = list(zip(held, lengths, strict=True)), dry.body.response
+    return tuple(solve([[a * response[i][j] * b for j, b in pairs] for i, a in pairs], list(change)))

@@ -3,8 +3,8 @@
 import math
 from typing import NamedTuple
 
-from tippetop.mechanics.friction import NO_TORQUE, ViscousLaw
-from tippetop.mechanics.impulse import Goal, Impulse, Striking, first_reach
+from tippetop.mechanics.friction import ViscousLaw
+from tippetop.mechanics.impulse import NORMAL, Goal, Impulse, Striking, first_reach
 from tippetop.mechanics.vectors import Horizontal
 
 ROUNDING = 1e-17
@@ -42,31 +42,31 @@ class ViscousProcess(NamedTuple):
     @classmethod
     def of(cls, body: Striking, law: ViscousLaw) -> "ViscousProcess":
         """The process of this impact, from the principal directions of its tangential part of M."""
-        east, north, up = body.inverse_mass
+        east, north, up = body.response[:3]
         angle = 0.5 * math.atan2(2.0 * east[1], east[0] - north[1])
         cosine, sine = math.cos(angle), math.sin(angle)
 
         def mode(x: float, y: float) -> PrincipalDirection:
             stiffness = x * x * east[0] + 2.0 * x * y * east[1] + y * y * north[1]
-            coupling, slip = x * up[0] + y * up[1], x * body.point[0] + y * body.point[1]
+            coupling, slip = x * up[0] + y * up[1], x * body.before[0] + y * body.before[1]
             return PrincipalDirection((x, y), stiffness, coupling, slip)
 
         return cls(body, law.mu, (mode(cosine, sine), mode(-sine, cosine)))
 
-    def until(self, impulse: Impulse, goal: Goal, guess: float) -> Impulse:
-        """The first impulse from a given one on at which the goal is not negative."""
-        return first_reach(lambda q: self.at(impulse.normal + q), goal, guess)
+    def until(self, impulse: Impulse, goal: Goal, guess: float) -> tuple[Impulse, int]:
+        """The first impulse from a given one on at which the goal is not negative; without steps."""
+        return first_reach(lambda q: self.at(impulse[NORMAL] + q), goal, guess), 0
 
     def at(self, p: float) -> Impulse:
         """The impulse when the normal impulse is p."""
-        tangential = (0.0, 0.0)
-        work = p * (self.body.point[2] + 0.5 * p * self.body.inverse_mass[2][2])
+        east = north = 0.0
+        work = p * (self.body.before[2] + 0.5 * p * self.body.response[2][2])
         for (x, y), stiffness, coupling, slip in self.modes:
             phi_1, phi_2, phi_3 = phis(self.mu * stiffness * p)
             along = -self.mu * p * (slip * phi_1 + coupling * p * phi_2)
-            tangential = (tangential[0] + along * x, tangential[1] + along * y)
+            east, north = east + along * x, north + along * y
             work -= self.mu * p * p * coupling * (slip * phi_2 + coupling * p * phi_3)
-        return Impulse(p, tangential, NO_TORQUE, work)
+        return (east, north, p, 0.0, 0.0, 0.0, work)
 
 
 def phis(x: float) -> tuple[float, float, float]:
