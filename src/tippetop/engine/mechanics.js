@@ -4891,7 +4891,7 @@ function combined(here, size, weights, slopes) {
 const SLIP_of_straight_impact = new Vanishing(true);
 const KEPT = 1e-08;
 
-/** The impulse at the end of a straight line: at the goal, or where slip ends. */
+/** The impulse at the end of a straight line, and whether that is the goal: slip may end before. */
 function straight_of_straight_impact(dry, impulse, goal, guess) {
   if (py.truth(dry.top.resists_rolling) || py.truth(dry.ended) && dry.way !== null || goal(impulse) >= 0.0) {
     return null;
@@ -4905,11 +4905,11 @@ function straight_of_straight_impact(dry, impulse, goal, guess) {
   if (longest < py.math.inf) {
     var end = along(longest);
     if (goal(end) < 0.0) {
-      return end;
+      return [end, false];
     }
-    return first_reach(along, goal, longest);
+    guess = longest;
   }
-  return first_reach(along, goal, guess);
+  return [first_reach(along, goal, guess), true];
 }
 
 /** Force and torque per unit normal impulse on a straight line, and its length until slip ends. */
@@ -4968,6 +4968,82 @@ const [NEWTON_of_integrated_impact, SHORT_of_integrated_impact, STRAIGHT] = [4, 
 const MOST_of_integrated_impact = 20000;
 const LOOK = 4;
 
+/** The first numbers of an impact, from given ones on, at which a goal is reached, and the steps to there. */
+function integrated(now, here, goal, guess) {
+  var longest = now.longest;
+  var waiting = goal(here) >= 0.0;
+  var [step, now] = [py.mul(0.1, longest), now.settled(here)];
+  var slope = now.slope(here);
+  for (var taken = 0; taken < MOST_of_integrated_impact; taken += 1) {
+    var line = now.straight(here, goal, guess, taken);
+    if (line !== null) {
+      var [here, ends_there] = line;
+      if (py.truth(ends_there)) {
+        return [here, taken];
+      }
+      [now, waiting] = [now.settled(here), false];
+      slope = now.slope(here);
+      continue;
+    }
+    var taking = step_from(here, slope, step, py.bound(now, "slope"));
+    var ends = now.ends(goal);
+    var doubt = now.doubt(taking);
+    var reached = py.max([...ends].map((end) => end(taking.there))) >= 0.0;
+    if (
+      doubt > 1.0 && step > py.mul(
+        SHORTEST_of_integrated_impact,
+        longest
+      ) || py.truth(reached) && py.truth(waiting)
+    ) {
+      step = py.mul(step, py.min(0.5, py.max(0.1, py.mul(0.9, py.pow(doubt, POWER)))));
+      continue;
+    }
+    here = py.truth(reached) ? landing(now, taking, ends) : taking.there;
+    if (py.truth(reached) && goal(here) >= py.max([...ends].map((end) => end(here)))) {
+      return [here, py.add(taken, 1)];
+    }
+    var then = now.settled(here);
+    waiting = false;
+    slope = py.truth(reached) || then !== now ? then.slope(here) : taking.new_slope;
+    [now, step] = [
+      then,
+      py.min(longest, py.mul(step, py.min(5.0, py.mul(0.9, py.pow(py.max(doubt, 1e-10), POWER)))))
+    ];
+  }
+  throw new py.ArithmeticError("an impact does not come to its end");
+}
+
+/** The numbers within a step at which one of some goals is reached. */
+function landing(now, taking, ends) {
+  var missing = (point) => {
+    return py.max([...ends].map((end) => end(point)));
+  };
+  var along = (size) => {
+    return step_to(taking.here, taking.slopes[0], size, py.bound(now, "slope"));
+  };
+  var last = taking.size;
+  var here = along(py.mul(last, crossing((part) => missing(taking.between(part)), 0.0, 1.0)));
+  for (var turn = 0; turn < NEWTON_of_integrated_impact; turn += 1) {
+    var slope = now.slope(here);
+    var left = missing(here);
+    var nudge = py.mul(0.001, taking.size);
+    var rate = py.div(py.sub(missing(moved(here, nudge, slope)), left), nudge);
+    var more = rate > 0.0 ? py.div(py.neg(left), rate) : taking.size;
+    if (py.abs(more) < py.mul(STRAIGHT, taking.size)) {
+      return moved(here, more, slope);
+    }
+    if (py.abs(more) > py.mul(0.1, last)) {
+      break;
+    }
+    var short = py.abs(more) < py.mul(SHORT_of_integrated_impact, taking.size);
+    [last, here] = [
+      py.abs(more),
+      py.call(py.truth(short) ? short_step : step_to, here, slope, more, py.bound(now, "slope"))
+    ];
+  }
+  return along(crossing((size) => missing(along(size)), 0.0, taking.size));
+}
+
 /** An impact under any friction law, integrated with slip as the clock. */
 class IntegratedProcess extends py.NamedTuple {
   constructor(body, dry = null) {
@@ -4977,87 +5053,30 @@ class IntegratedProcess extends py.NamedTuple {
   }
   /** The first impulse from a given one on at which the goal is not negative, and the steps to there. */
   until(impulse, goal, guess) {
-    var now = this.settled(impulse);
-    var here = impulse;
-    var waiting = goal(impulse) >= 0.0;
-    var slope = now.slope(here);
-    var longest = py.div(
+    return integrated(this, impulse, goal, guess);
+  }
+  /** Longest step of the clock. */
+  get longest() {
+    return py.div(
       py.mul(2.0, LONGEST_of_integrated_impact),
-      py.add(this.body.response[0][0], this.body.response[1][1])
+      py.float(py.add(this.body.response[0][0], this.body.response[1][1]))
     );
-    var step = py.mul(0.1, longest);
-    for (var taken = 0; taken < MOST_of_integrated_impact; taken += 1) {
-      var held = now.held(here, goal, guess);
-      if (held !== null) {
-        return [held, taken];
-      }
-      if (now.dry !== null && py.mod(taken, LOOK) === 0) {
-        var ended = straight_of_straight_impact(now.dry, here, goal, guess);
-        if (ended !== null) {
-          if (goal(ended) >= 0.0) {
-            return [ended, taken];
-          }
-          [now, here, waiting] = [now.settled(ended), ended, false];
-          slope = now.slope(here);
-          continue;
-        }
-      }
-      var taking = step_from(here, slope, step, py.bound(now, "slope"));
-      var doubt = now.doubt(taking);
-      var reached = goal(taking.there) >= 0.0;
-      if (
-        doubt > 1.0 && step > py.mul(
-          SHORTEST_of_integrated_impact,
-          longest
-        ) || py.truth(reached) && py.truth(waiting)
-      ) {
-        step = py.mul(step, py.min(0.5, py.max(0.1, py.mul(0.9, py.pow(doubt, POWER)))));
-        continue;
-      }
-      if (py.truth(reached)) {
-        return [now.landing(taking, goal), py.add(taken, 1)];
-      }
-      here = taking.there;
-      slope = taking.new_slope;
-      waiting = false;
-      if (now.dry !== null) {
-        now = now.settled(here);
-        slope = now.slope(here);
-      }
-      step = py.min(longest, py.mul(step, py.min(5.0, py.mul(0.9, py.pow(py.max(doubt, 1e-10), POWER)))));
-    }
-    throw new py.ArithmeticError("an impact does not come to its end");
   }
   /** The process from an impulse on, where a dry contact does what it does there. */
-  settled(impulse) {
-    return this.dry === null ? this : this._replace({ dry: this.dry.settled(impulse) });
+  settled(here) {
+    var dry = this.dry === null ? null : this.dry.settled(here);
+    return dry === this.dry ? this : this._replace({ dry: dry });
   }
-  /** The impulse within a step at which the goal is reached. */
-  landing(taking, goal) {
-    var along = (size) => {
-      return step_to(taking.here, taking.slopes[0], size, py.bound(this, "slope"));
-    };
-    var last = taking.size;
-    var here = along(py.mul(last, crossing((part) => goal(taking.between(part)), 0.0, 1.0)));
-    for (var turn = 0; turn < NEWTON_of_integrated_impact; turn += 1) {
-      var slope = this.slope(here);
-      var left = goal(here);
-      var nudge = py.mul(0.001, taking.size);
-      var rate = py.div(py.sub(goal(moved(here, nudge, slope)), left), nudge);
-      var more = rate > 0.0 ? py.div(py.neg(left), rate) : taking.size;
-      if (py.abs(more) < py.mul(STRAIGHT, taking.size)) {
-        return moved(here, more, slope);
-      }
-      if (py.abs(more) > py.mul(0.1, last)) {
-        break;
-      }
-      var short = py.abs(more) < py.mul(SHORT_of_integrated_impact, taking.size);
-      [last, here] = [
-        py.abs(more),
-        py.call(py.truth(short) ? short_step : step_to, here, slope, more, py.bound(this, "slope"))
-      ];
+  /** The goal alone. */
+  ends(goal) {
+    return [goal];
+  }
+  /** The rest where friction holds slip, or its direction. */
+  straight(here, goal, guess, taken) {
+    if (this.dry === null) {
+      return this.held(here, goal, guess);
     }
-    return along(crossing((size) => goal(along(size)), 0.0, taking.size));
+    return py.mod(taken, LOOK) === 0 ? straight_of_straight_impact(this.dry, here, goal, guess) : null;
   }
   /** Rate of the impulse with the clock s. */
   slope(here) {
@@ -5097,9 +5116,6 @@ class IntegratedProcess extends py.NamedTuple {
   }
   /** The rest if friction holds the slip constant, if it does so all along. */
   held(impulse, goal, guess) {
-    if (this.dry !== null) {
-      return null;
-    }
     var body = this.body;
     var velocity = this.body.velocities(impulse);
     var unit = body.friction(velocity);
@@ -5121,7 +5137,7 @@ class IntegratedProcess extends py.NamedTuple {
     }
     var end = first_reach(body.straight(impulse, [...holding, ...unit.slice(2)]), goal, guess);
     var later = body.friction(body.velocities(end));
-    return py.math.dist(later, unit) <= py.mul(2.0, py.add(STUCK, fuzz)) ? end : null;
+    return py.math.dist(later, unit) <= py.mul(2.0, py.add(STUCK, fuzz)) ? [end, true] : null;
   }
 }
 py.fields(IntegratedProcess, ["body", "dry"]);
@@ -6898,83 +6914,88 @@ class SlipEnds extends py.ArithmeticError {
 
 /** A body at the start of such an impact, floats. */
 class StruckOnTwo extends py.NamedTuple {
-  constructor(state, tops, arms, points) {
+  constructor(bodies, pressed = true) {
     super();
-    this.state = state;
-    this.tops = tops;
-    this.arms = arms;
-    this.points = points;
+    this.bodies = bodies;
+    this.pressed = pressed;
   }
   /** Speed of what strikes, m/s. */
   get speed() {
-    return py.neg(py.float(this.points[0][2]));
+    return py.neg(py.float(this.bodies[0].before[2]));
   }
   /** Longest step of the clock in which slip that friction takes decays smoothly. */
   get longest() {
-    var struck = [...this.tops].map((top) => Striking.of(this.state, top).response);
     return py.div(
       2.0,
-      py.float(py.sum([...struck].map((response) => py.add(response[0][0], response[1][1]))))
+      py.float(py.sum([...this.bodies].map((body) => py.add(body.response[0][0], body.response[1][1]))))
     );
   }
   /** The state after these impulses. */
   after(here) {
-    var momentum = add(this.state.momentum, [here[0], here[1], here[2]]);
-    return this.state._replace({
-      momentum: momentum,
-      velocity: add(this.state.velocity, [here[3], here[4], here[5]])
-    });
+    var state = this.bodies[0].state;
+    var momentum = add(state.momentum, [here[0], here[1], here[2]]);
+    return state._replace({ momentum: momentum, velocity: add(state.velocity, [here[3], here[4], here[5]]) });
   }
   /** Change of the velocities of both contact points by these impulses, whose digits it keeps. */
   change(here) {
-    var moved = this.state._replace({
+    var moved = this.bodies[0].state._replace({
       momentum: [here[0], here[1], here[2]],
       velocity: [here[3], here[4], here[5]]
     });
-    var [one, other] = [...this.arms].map((arm) => contact_velocity(moved, arm, this.tops[0]));
+    var [one, other] = [...this.bodies].map(
+      (body) => contact_velocity(moved, body.contact.arm, body.contact.top)
+    );
     return [one, other];
   }
   /** Velocities of both contact points after these impulses. */
   velocities(here) {
-    var [one, other] = py.map(add, this.points, this.change(here));
+    var [one, other] = py.zip(this.bodies, this.change(here)).map(
+      ([body, change]) => add([body.before[0], body.before[1], body.before[2]], change)
+    );
     return [one, other];
   }
+  /** The impact from some impulses on, whether or not the other contact is closed then. */
+  settled(here) {
+    var pressed = py.bool(this.velocities(here)[1][2] <= py.mul(OPEN, this.speed));
+    return py.eq(pressed, this.pressed) ? this : this._replace({ pressed: pressed });
+  }
+  /** The goal, and that the other contact closes. */
+  ends(goal) {
+    return py.truth(this.pressed) ? [goal] : [goal, (here) => py.neg(py.float(this.velocities(here)[1][2]))];
+  }
   /** Rate of the numbers in a clock in which slip that ends decays exponentially. */
-  slope(here, pressed) {
+  slope(here) {
     var state = this.after(here);
-    var top = this.tops[0];
+    var top = this.bodies[0].contact.top;
     var omega = angular_velocity(state.axis, state.momentum, top);
     var points = this.velocities(here);
     var pace = py.div(1.0, this.speed);
     var units = [];
     var responses = [];
     if (py.isinstance(top.friction, RollingResistance)) {
-      var lever = length(this.arms[0]);
+      var lever = this.bodies[0].lever;
       var rolling = py.mul(lever, length([...omega.slice(0, 2), 0.0]));
       if (rolling < py.mul(OPEN, this.speed)) {
         throw new SlipEnds("rolling ends in an impact on two surfaces");
       }
       pace = py.add(pace, py.div(py.mul(2.0, top.friction.length), py.mul(lever, rolling)));
     }
-    var touching = py.list(py.zip(points, this.arms));
-    for (var [point, arm] of py.truth(pressed) ? touching : touching.slice(0, 1)) {
-      if (
-        py.truth(
-          is_set_valued(top.friction)
-        ) && length([...point.slice(0, 2), 0.0]) < py.mul(OPEN, this.speed)
-      ) {
+    var touching = py.list(py.zip(points, this.bodies));
+    for (var [point, body] of py.truth(this.pressed) ? touching : touching.slice(0, 1)) {
+      var slip = length([...point.slice(0, 2), 0.0]);
+      if (py.truth(is_set_valued(top.friction)) && slip < py.mul(OPEN, this.speed)) {
         throw new SlipEnds("slip ends in an impact on two surfaces");
       }
       var traction = top.friction.traction([point[0], point[1]], omega);
-      var slip = length([...point.slice(0, 2), 0.0]);
-      var grip = length([...traction.force, 0.0]);
-      pace = py.add(pace, py.truth(slip) ? py.div(grip, slip) : 0.0);
-      var moment = moment_per_normal_force(arm, traction);
-      var force = [...traction.force, 1.0];
-      units.push([...moment, ...scale(py.div(1.0, top.mass), force)]);
+      pace = py.add(pace, py.truth(slip) ? py.div(length([...traction.force, 0.0]), slip) : 0.0);
+      var moment = moment_per_normal_force(body.contact.arm, traction);
+      units.push([...moment, ...scale(py.div(1.0, top.mass), [...traction.force, 1.0])]);
       responses.push(this.change(py.item(units, -1)));
     }
-    var share = py.truth(pressed) ? py.max(0.0, py.div(py.neg(responses[0][1][2]), responses[1][1][2])) : 0.0;
+    var share = py.truth(this.pressed) ? py.max(
+      0.0,
+      py.div(py.neg(responses[0][1][2]), responses[1][1][2])
+    ) : 0.0;
     var rates = [
       ...py.zip(units[0], py.item(units, -1)).map(([a, b]) => py.add(a, py.mul(share, b))),
       1.0,
@@ -6983,52 +7004,19 @@ class StruckOnTwo extends py.NamedTuple {
     ];
     return py.tuple([...rates].map((rate) => py.div(rate, pace)));
   }
-  /** The numbers after a step, and its error over the one allowed. */
-  step(here, step, pressed) {
-    var slope = (point) => {
-      return this.slope(point, pressed);
-    };
-    var taken = step_from(here, slope(here), step, slope);
-    var doubt = taken.doubt((error) => py.max(py.map(length, this.change(error))));
-    return [taken.there, py.float(py.div(doubt, py.mul(TOLERANCE, this.speed)))];
+  /** The error of a step over the one allowed. */
+  doubt(taken) {
+    return py.div(
+      taken.doubt((off) => py.max(py.map(length, this.change(off)))),
+      py.mul(TOLERANCE, this.speed)
+    );
   }
-  /** The first numbers from given ones on at which the goal is not negative, and the steps to there. */
-  until(here, goal) {
-    var step = py.mul(0.05, this.tops[0].mass);
-    var longest = this.longest;
-    for (var taken = 0; taken < MOST_of_integrated_impact; taken += 1) {
-      var lifted = this.velocities(here)[1][2];
-      var pressed = py.bool(lifted <= py.mul(OPEN, this.speed));
-      var held = py.truth(pressed) ? this.held(here, goal) : null;
-      if (held !== null) {
-        return [held, taken];
-      }
-      var [there, doubt] = this.step(here, step, pressed);
-      if (doubt > 1.0) {
-        step = py.mul(step, py.max(0.1, py.mul(0.9, py.pow(doubt, POWER))));
-        continue;
-      }
-      var ends = [goal];
-      if (!py.truth(pressed)) {
-        ends.push((y) => py.neg(this.velocities(y)[1][2]));
-      }
-      var reached = [...ends].filter((end) => end(there) >= 0.0);
-      for (var end of reached) {
-        there = this._landing(here, step, end, there, pressed);
-      }
-      if (py.contains(reached, goal) && goal(there) >= -1e-12) {
-        return [there, py.add(taken, 1)];
-      }
-      [here, step] = [
-        there,
-        py.min(longest, py.mul(step, py.min(5.0, py.mul(0.9, py.pow(py.max(doubt, 1e-10), POWER)))))
-      ];
+  /** The rest if friction has come to hold both slips constant. */
+  straight(here, goal, guess, taken) {
+    if (!py.truth(this.pressed)) {
+      return null;
     }
-    throw new py.ArithmeticError("an impact on two surfaces does not come to its end");
-  }
-  /** The rest if friction has come to hold both slips constant: a straight line. */
-  held(here, goal) {
-    var rates = this.slope(here, true);
+    var rates = this.slope(here);
     var unit = py.tuple([...rates].map((rate) => py.div(rate, rates[6])));
     var [[x, y, rise], [other_x, other_y]] = this.change(unit);
     var approach = this.velocities(here)[0][2];
@@ -7043,47 +7031,37 @@ class StruckOnTwo extends py.NamedTuple {
         py.add(here[8], work)
       ];
     };
-    var guess = py.div(this.speed, rise);
-    while (goal(along(guess)) < 0.0) {
-      guess = py.mul(guess, 2.0);
-    }
-    return along(crossing((q) => goal(along(q)), 0.0, guess));
-  }
-  /** Where within a step an end is reached, unless another one was before. */
-  _landing(here, step, end, there, pressed) {
-    if (end(there) < 0.0) {
-      return there;
-    }
-    var part = crossing((part) => end(this.step(here, part, pressed)[0]), 0.0, step);
-    return this.step(here, part, pressed)[0];
+    return [first_reach(along, goal, py.div(this.speed, rise)), true];
   }
 }
-py.fields(StruckOnTwo, ["state", "tops", "arms", "points"]);
+py.fields(StruckOnTwo, ["bodies", "pressed"]);
 
 /** What an impact does to a body whose other surface touches the table, with no normal velocity. */
 function impact_on_two(state, restitution, tops) {
-  var arms = py.tuple([...tops].map((top) => contact_vector(state.axis, top.surface)));
-  var points = py.tuple([...arms].map((arm) => contact_velocity(state, arm, tops[0])));
-  var body = new StruckOnTwo(state, tops, [arms[0], arms[1]], [points[0], points[1]]);
-  var [compressed, steps] = body.until(
-    py.mul([0.0], 9),
-    (y) => py.div(py.float(body.velocities(y)[0][2]), body.speed)
+  var body = new StruckOnTwo([Striking.of(state, tops[0]), Striking.of(state, tops[1])]);
+  var begin = py.mul([0.0], 9);
+  var guess = 1.0;
+  var [compressed, steps] = integrated(
+    body,
+    begin,
+    (y) => py.div(body.velocities(y)[0][2], body.speed),
+    guess
   );
   var end = compressed;
   if (restitution > 0.0) {
     var full = py.mul(py.add(1.0, restitution), compressed[6]);
     var stored = py.neg(compressed[8]);
-    var goal = (here) => {
-      var spent = py.sub(py.div(here[6], full), 1.0);
-      var left = py.div(here[8], stored);
-      return py.float(py.max(spent, left));
-    };
-    var [end, more] = body.until(compressed, goal);
+    var [end, more] = integrated(
+      body,
+      compressed,
+      (y) => py.max(py.sub(py.div(y[6], full), 1.0), py.div(y[8], stored)),
+      guess
+    );
     steps = py.add(steps, more);
   }
-  var after = body.after(end);
-  var lost = py.max(0.0, py.float(py.sub(energy(state, tops[0]), energy(after, tops[0]))));
-  return new Impact(after, py.add(end[6], end[7]), lost, compressed[6], steps);
+  var then = body.after(end);
+  var lost = py.max(0.0, py.float(py.sub(energy(state, tops[0]), energy(then, tops[0]))));
+  return new Impact(then, py.add(end[6], end[7]), lost, compressed[6], steps);
 }
 
 // tippetop.contact.several
@@ -11125,6 +11103,7 @@ export {
   inertia_ratio,
   inner,
   instants,
+  integrated,
   inverted_boundary,
   is_branched,
   is_dry,
@@ -11144,6 +11123,7 @@ export {
   lambda_down,
   lambda_up,
   landed,
+  landing,
   landing_guard,
   largest,
   least_energy,

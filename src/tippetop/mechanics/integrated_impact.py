@@ -1,13 +1,14 @@
 """An impact under any friction law, integrated."""
 
 import math
-from typing import NamedTuple, Self
+from typing import NamedTuple, Protocol, Self
 
 from tippetop.mechanics.dry_impact import DryContact
 from tippetop.mechanics.impulse import FUZZ, Goal, Impulse, Striking, first_reach
 from tippetop.mechanics.roots import crossing
 from tippetop.mechanics.runge_kutta import (
     POWER,
+    Point,
     RungeKuttaStep,
     moved,
     short_step,
@@ -40,6 +41,93 @@ LOOK = 4
 """After how many steps each it is looked whether slip has come to a direction that it keeps."""
 
 
+class Clocked(Protocol):
+    """An impact in a clock of its own: the numbers that it changes, impulses and work, and their rates."""
+
+    @property
+    def longest(self) -> float:
+        """Longest step of the clock, and a tenth of it is the first."""
+
+    def settled(self, here: Point) -> Self:
+        """The impact from some numbers on: as it is, or with what changes there."""
+
+    def ends(self, goal: Goal) -> list[Goal]:
+        """What a step may reach, the goal first; the impact goes on, as it is settled then, from others."""
+
+    def slope(self, here: Point) -> Point:
+        """Rate of the numbers with the clock."""
+
+    def doubt(self, taken: RungeKuttaStep) -> float:
+        """The error of a step over the one allowed."""
+
+    def straight(self, here: Point, goal: Goal, guess: float, taken: int) -> tuple[Point, bool] | None:
+        """Where a straight line leads, and whether to the goal; None if it is none from here on."""
+
+
+def integrated(now: Clocked, here: Point, goal: Goal, guess: float) -> tuple[Point, int]:
+    """The first numbers of an impact, from given ones on, at which a goal is reached, and the steps to there.
+
+    The guess, positive, is how much the normal impulse may have to grow.
+
+    Raises
+    ------
+    ArithmeticError
+        If it takes too many steps.
+    """
+    longest, waiting = now.longest, goal(here) >= 0.0
+    step, now = 0.1 * longest, now.settled(here)
+    slope = now.slope(here)
+    for taken in range(MOST):
+        line = now.straight(here, goal, guess, taken)
+        if line is not None:
+            here, ends_there = line
+            if ends_there:
+                return here, taken
+            now, waiting = now.settled(here), False
+            slope = now.slope(here)
+            continue
+        taking, ends = step_from(here, slope, step, now.slope), now.ends(goal)
+        doubt, reached = now.doubt(taking), max(end(taking.there) for end in ends) >= 0.0
+        if (doubt > 1.0 and step > SHORTEST * longest) or (reached and waiting):
+            step *= min(0.5, max(0.1, 0.9 * doubt**POWER))
+            continue
+        here = landing(now, taking, ends) if reached else taking.there
+        if reached and goal(here) >= max(end(here) for end in ends):
+            return here, taken + 1
+        then, waiting = now.settled(here), False
+        slope = then.slope(here) if reached or then is not now else taking.new_slope
+        now, step = then, min(longest, step * min(5.0, 0.9 * max(doubt, 1e-10) ** POWER))
+    raise ArithmeticError("an impact does not come to its end")
+
+
+def landing(now: Clocked, taking: RungeKuttaStep, ends: list[Goal]) -> Point:
+    """The numbers within a step at which one of some goals is reached.
+
+    The cubic through its ends tells about where. From there on it is Newton's method, as a goal is linear in
+    the numbers, or the least or largest of some that are.
+    """
+
+    def missing(point: Point) -> float:
+        return max(end(point) for end in ends)
+
+    def along(size: float) -> Point:
+        return step_to(taking.here, taking.slopes[0], size, now.slope)
+
+    last = taking.size
+    here = along(last * crossing(lambda part: missing(taking.between(part)), 0.0, 1.0))
+    for _ in range(NEWTON):
+        slope, left, nudge = now.slope(here), missing(here), 1e-3 * taking.size
+        rate = (missing(moved(here, nudge, slope)) - left) / nudge
+        more = -left / rate if rate > 0.0 else taking.size
+        if abs(more) < STRAIGHT * taking.size:
+            return moved(here, more, slope)
+        if abs(more) > 0.1 * last:
+            break
+        short = abs(more) < SHORT * taking.size
+        last, here = abs(more), (short_step if short else step_to)(here, slope, more, now.slope)
+    return along(crossing(lambda size: missing(along(size)), 0.0, taking.size))
+
+
 class IntegratedProcess(NamedTuple):
     """An impact under any friction law, integrated with slip as the clock.
 
@@ -55,71 +143,28 @@ class IntegratedProcess(NamedTuple):
     dry: DryContact | None = None
 
     def until(self, impulse: Impulse, goal: Goal, guess: float) -> tuple[Impulse, int]:
-        """The first impulse from a given one on at which the goal is not negative, and the steps to there.
+        """The first impulse from a given one on at which the goal is not negative, and the steps to there."""
+        return integrated(self, impulse, goal, guess)
 
-        Raises
-        ------
-        ArithmeticError
-            If it takes too many steps.
-        """
-        now, here, waiting = self.settled(impulse), impulse, goal(impulse) >= 0.0
-        slope = now.slope(here)
-        longest = 2.0 * LONGEST / (self.body.response[0][0] + self.body.response[1][1])
-        step = 0.1 * longest
-        for taken in range(MOST):
-            held = now.held(here, goal, guess)
-            if held is not None:
-                return held, taken
-            if now.dry is not None and taken % LOOK == 0:
-                ended = straight(now.dry, here, goal, guess)
-                if ended is not None:
-                    if goal(ended) >= 0.0:
-                        return ended, taken
-                    now, here, waiting = now.settled(ended), ended, False
-                    slope = now.slope(here)
-                    continue
-            taking = step_from(here, slope, step, now.slope)
-            doubt = now.doubt(taking)
-            reached = goal(taking.there) >= 0.0
-            if (doubt > 1.0 and step > SHORTEST * longest) or (reached and waiting):
-                step *= min(0.5, max(0.1, 0.9 * doubt**POWER))
-                continue
-            if reached:
-                return now.landing(taking, goal), taken + 1
-            here, slope, waiting = taking.there, taking.new_slope, False
-            if now.dry is not None:
-                now = now.settled(here)
-                slope = now.slope(here)
-            step = min(longest, step * min(5.0, 0.9 * max(doubt, 1e-10) ** POWER))
-        raise ArithmeticError("an impact does not come to its end")
+    @property
+    def longest(self) -> float:
+        """Longest step of the clock."""
+        return 2.0 * LONGEST / float(self.body.response[0][0] + self.body.response[1][1])
 
-    def settled(self, impulse: Impulse) -> Self:
+    def settled(self, here: Impulse) -> Self:
         """The process from an impulse on, where a dry contact does what it does there."""
-        return self if self.dry is None else self._replace(dry=self.dry.settled(impulse))
+        dry = None if self.dry is None else self.dry.settled(here)
+        return self if dry is self.dry else self._replace(dry=dry)
 
-    def landing(self, taking: RungeKuttaStep, goal: Goal) -> Impulse:
-        """The impulse within a step at which the goal is reached.
+    def ends(self, goal: Goal) -> list[Goal]:
+        """The goal alone."""
+        return [goal]
 
-        The cubic through its ends tells about where. From there on it is Newton's method, as a goal is linear
-        in the numbers, or the least or largest of some that are.
-        """
-
-        def along(size: float) -> Impulse:
-            return step_to(taking.here, taking.slopes[0], size, self.slope)
-
-        last = taking.size
-        here = along(last * crossing(lambda part: goal(taking.between(part)), 0.0, 1.0))
-        for _ in range(NEWTON):
-            slope, left, nudge = self.slope(here), goal(here), 1e-3 * taking.size
-            rate = (goal(moved(here, nudge, slope)) - left) / nudge
-            more = -left / rate if rate > 0.0 else taking.size
-            if abs(more) < STRAIGHT * taking.size:
-                return moved(here, more, slope)
-            if abs(more) > 0.1 * last:
-                break
-            short = abs(more) < SHORT * taking.size
-            last, here = abs(more), (short_step if short else step_to)(here, slope, more, self.slope)
-        return along(crossing(lambda size: goal(along(size)), 0.0, taking.size))
+    def straight(self, here: Impulse, goal: Goal, guess: float, taken: int) -> tuple[Impulse, bool] | None:
+        """The rest where friction holds slip, or its direction."""
+        if self.dry is None:
+            return self.held(here, goal, guess)
+        return straight(self.dry, here, goal, guess) if taken % LOOK == 0 else None
 
     def slope(self, here: Impulse) -> Impulse:
         """Rate of the impulse with the clock s."""
@@ -146,10 +191,8 @@ class IntegratedProcess(NamedTuple):
 
         return taken.doubt(measure) / TOLERANCE
 
-    def held(self, impulse: Impulse, goal: Goal, guess: float) -> Impulse | None:
+    def held(self, impulse: Impulse, goal: Goal, guess: float) -> tuple[Impulse, bool] | None:
         """The rest if friction holds the slip constant, if it does so all along."""
-        if self.dry is not None:
-            return None
         body, velocity = self.body, self.body.velocities(impulse)
         unit = body.friction(velocity)
         (a, b, *_), (_, d, *_), *_ = body.response
@@ -163,4 +206,4 @@ class IntegratedProcess(NamedTuple):
             holding = (0.0, 0.0)
         end = first_reach(body.straight(impulse, (*holding, *unit[2:])), goal, guess)
         later = body.friction(body.velocities(end))
-        return end if math.dist(later, unit) <= 2.0 * (STUCK + fuzz) else None
+        return (end, True) if math.dist(later, unit) <= 2.0 * (STUCK + fuzz) else None

@@ -20,8 +20,8 @@ KEPT = 1e-8
 """How near, relatively, friction must be to what keeps the direction of slip to count as equal to it."""
 
 
-def straight(dry: DryContact, impulse: Impulse, goal: Goal, guess: float) -> Impulse | None:
-    """The impulse at the end of a straight line: at the goal, or where slip ends.
+def straight(dry: DryContact, impulse: Impulse, goal: Goal, guess: float) -> tuple[Impulse, bool] | None:
+    """The impulse at the end of a straight line, and whether that is the goal: slip may end before.
 
     It is None if slip changes its direction, or begins, or rolling is resisted.
     """
@@ -35,9 +35,9 @@ def straight(dry: DryContact, impulse: Impulse, goal: Goal, guess: float) -> Imp
     if longest < math.inf:
         end = along(longest)
         if goal(end) < 0.0:
-            return end
-        return first_reach(along, goal, longest)
-    return first_reach(along, goal, guess)
+            return end, False
+        guess = longest
+    return first_reach(along, goal, guess), True
 
 
 def _line(dry: DryContact, impulse: Impulse) -> tuple[Slip, float] | None:
