@@ -10,13 +10,11 @@ from tippetop.contact.rules import Bilateral
 from tippetop.contact.sliding import Sliding
 from tippetop.integrators.base import Array
 from tippetop.integrators.dense import parts_of, powers
-from tippetop.lowest import lowest_jellett
-from tippetop.mechanics.hull import Hull, lowest_surface, outer_height
-from tippetop.mechanics.invariants import energy
+from tippetop.mechanics.hull import lowest_surface
 from tippetop.mechanics.motion import along_table
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
-from tippetop.mechanics.vectors import length
+from tippetop.monitor import Monitor
 from tippetop.samples import Samples
 
 _INTEGRALS = np.array(
@@ -29,10 +27,6 @@ _INTEGRALS = np.array(
     ]
 )
 """The integrals of Lagrange's polynomials on Gauss's points, from 0, in powers from -1 to 1 over a step."""
-
-
-LEAST_MOMENT = 1e-6
-"""Size |L| h of Jellett's integral at launch, in natural units, below which its drift says nothing."""
 
 
 class Recorder:
@@ -54,26 +48,7 @@ class Recorder:
         self._resisted = not top.friction.torque_free
         self._sums = np.array([0.0, 0.0, self._pole * azimuth, -lost] + [0.0, 0.0] * self._resisted)
         self._struck = lost
-        self._energy, self._jellett = float(energy(start, top)), float(lowest_jellett(start, top))
-        self._moment = float(length(start.momentum) * outer_height(top.surface, start.axis[2]))
-        self._imbalance, self._least, self._most = 0.0, self._jellett, self._jellett
-        self._largest, self._off_unit, self._sunk = abs(self._energy), 0.0, 0.0
-
-    @property
-    def energy_error(self) -> float:
-        """Largest error so far of the balance of energy and work, relative to the energy."""
-        return self._imbalance / abs(self._energy)
-
-    @property
-    def jellett_drift(self) -> float:
-        """Range so far of Jellett's integral, relative to |L| h at launch; nan where that is 0."""
-        return (self._most - self._least) / self._moment if self._moment else float(np.nan)
-
-    @property
-    def inaccuracy(self) -> float:
-        """How far, relatively, the run is off what every motion keeps: energy and work, |n|, lambda, gaps."""
-        drift = self.jellett_drift if self.top.conserves_jellett and self._moment > LEAST_MOMENT else 0.0
-        return max(0.0, self._imbalance / self._largest, self._off_unit, drift, self._sunk)
+        self.monitor = Monitor(top, start)
 
     def take(self, block: Block) -> None:
         """Take the samples in a block."""
@@ -175,17 +150,11 @@ class Recorder:
         return rates, values[:, :-1], poles, struck[:-1]
 
     def _monitor(self, block: Block, work: Array) -> None:
-        """See that energy and work balance, and how far Jellett's integral goes, where steps begin."""
+        """See what the motion keeps where steps begin."""
         for group in block.groups:
             told = group.begun
-            errors = told.energy - self._energy - work[group.which]
-            self._imbalance = max(self._imbalance, float(np.abs(errors).max()))
-            if isinstance(self.top.surface, Hull):
-                self._sunk = max(self._sunk, -float(told.gap.min()))
-            self._largest = max(self._largest, float(told.energy.max()))
-            self._off_unit = max(self._off_unit, float(np.abs(length(told.state.axis) - 1.0).max()))
-            self._least = min(self._least, float(told.jellett.min()))
-            self._most = max(self._most, float(told.jellett.max()))
+            state, done = told.state, work[group.which]
+            self.monitor.see(state.axis, state.height, told.energy, told.jellett, done)
 
 
 def evenly_summed(gains: Array) -> Array:

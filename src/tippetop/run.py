@@ -30,9 +30,6 @@ from tippetop.tally import Tally
 BYTES_PER_SAMPLE = 1600
 """Memory that a sample takes at most while a result is being made."""
 
-WORST, ACCUMULATED = 1e-6, 1e4
-"""How far, relatively, a run may be off what every motion keeps: this, or this many times its tolerance."""
-
 SURELY_FIT = 10_000
 """Samples for which nobody needs to ask how much memory there is."""
 
@@ -120,7 +117,8 @@ def simulate(
             callback(trajectory.time / trajectory.end)
     outcome = trajectory.outcome
     assert outcome is not None, "a trajectory that has no more segments has ended"
-    if outcome is Outcome.COMPLETED and not recorder.inaccuracy <= tolerated(method):
+    monitor = recorder.monitor
+    if outcome is Outcome.COMPLETED and not monitor.is_trusted(getattr(method, "tolerance", 0.0)):
         outcome = Outcome.INACCURATE
     early = outcome is not Outcome.COMPLETED and trajectory.detail != NOT_FINITE
     found = recorder.finish(trajectory.time, trajectory.state, early)
@@ -132,8 +130,8 @@ def simulate(
         "energy_start": float(energy(state, top)) * units.energy,
         "impact_energy_lost": sum(event.energy_lost for event in trajectory.events) * units.energy,
         "evaluations": tally.evaluations,
-        "energy_error": recorder.energy_error,
-        "jellett_drift": recorder.jellett_drift,
+        "energy_error": monitor.energy_error,
+        "jellett_drift": monitor.jellett_drift,
     }
     attributes = {
         "title": "Motion of a spinning top on a table",
@@ -143,7 +141,7 @@ def simulate(
         **_method_attributes([method, *tally.methods.values()], units),
         "tippetop_version": __version__,
     }
-    lists = _event_arrays(trajectory.events, units) | _flight_arrays(tally.flights, units)
+    lists = _event_arrays(trajectory.events, units) | _flight_arrays(tally.flights.rows, units)
     times = np.append(grid, end_time)[: len(found.times)]
     if early:
         times[-1] = end_time
@@ -185,11 +183,6 @@ def integrator_of(
     return integrator
 
 
-def tolerated(method: Integrator) -> float:
-    """How far a run may be off what every motion keeps and still count as completed."""
-    return max(WORST, ACCUMULATED * float(getattr(method, "tolerance", 0.0)))
-
-
 def _check_memory(samples: int) -> None:
     if samples <= SURELY_FIT:
         return
@@ -212,9 +205,9 @@ def _event_arrays(events: Sequence[Event], units: Units) -> dict[str, NDArray[An
     }
 
 
-def _flight_arrays(flights: Array, units: Units) -> dict[str, NDArray[Any]]:
+def _flight_arrays(flights: Sequence[tuple[float, float, float]], units: Units) -> dict[str, NDArray[Any]]:
     """Values over the flights, in SI."""
-    starts, ends, gaps = flights.T
+    starts, ends, gaps = np.array(flights).reshape(-1, 3).T
     return {
         "flight_start": starts * units.time,
         "flight_end": ends * units.time,

@@ -5,7 +5,8 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from tippetop.contact.block import WEIGHTS, Block, ModeSteps
-from tippetop.contact.mode import Event, EventKind, Outcome, Segment
+from tippetop.contact.flights import Flights
+from tippetop.contact.mode import Event, EventKind, Outcome
 from tippetop.contact.readings import Rates
 from tippetop.integrators.base import Array, Integrator
 from tippetop.integrators.dense import chebyshev
@@ -26,17 +27,12 @@ class Tally:
 
     def __init__(self) -> None:
         self._tips: list[tuple[Polynomials, Array, Array, Array]] = []
-        self._airborne: list[tuple[float, float, float]] = []
+        self.flights = Flights()
         self._lowest, self._highest, self._raised, self._pressed = (list[Polynomials]() for _ in range(4))
-        self._turned, self._landed = np.nan, True
+        self._turned = np.nan
         self._drilled = self._rolled = 0.0
         self.steps = self.evaluations = 0
         self.methods = dict[str, Integrator]()
-
-    @property
-    def flights(self) -> Array:
-        """Begin, end and highest gap of every flight, shape (k, 3)."""
-        return np.array(self._airborne).reshape(-1, 3)
 
     def take(self, block: Block) -> None:
         """Take in the steps of a block."""
@@ -46,24 +42,16 @@ class Tally:
             if segment.method is not None and segment.method.name not in self.methods:
                 self.methods[segment.method.name] = segment.method
             if not segment.mode.touching:
-                self._fly(segment)
+                self.flights.take(segment)
         for group in block.groups:
             self._see(group, block.starts[group.which])
             if not group.mode.touching:
                 self._rise(group)
                 continue
-            if not self._airborne:
+            if not self.flights.rows:
                 self._press(group)
             if not group.mode.top.friction.torque_free:
                 self._resistance(group)
-
-    def _fly(self, segment: Segment) -> None:
-        """Take in a flight, or one more piece of it."""
-        begin, end = float(segment.solution.knots[0]), segment.end_time
-        if self._airborne and not self._landed:
-            begin = self._airborne.pop()[0]
-        self._airborne.append((begin, end, segment.highest_gap))
-        self._landed = segment.transition is not None
 
     def _see(self, group: ModeSteps, starts: Array) -> None:
         """Take in the motion of the tip of the axis."""
@@ -100,21 +88,21 @@ class Tally:
         """All that was found, as numbers, given how and where it ended."""
         last = State.unpack([np.float64(number) for number in state.pack()])
         lift_offs = [event.time for event in events if event.kind is EventKind.LIFT_OFF]
-        flights = self.flights
+        flights = len(self.flights.rows)
         force, down, up, depth = least_of_each(self._pressed, self._lowest, self._highest, self._raised)
         return Ends(
             state=last,
             time=np.float64(time),
             outcome=OUTCOMES.index(outcome),
             steps=self.steps,
-            flights=len(flights),
-            least_force=0.0 if lift_offs or len(flights) else force,
+            flights=flights,
+            least_force=0.0 if lift_offs or flights else force,
             lift_off=min(lift_offs, default=np.nan),
             struck=sum(event.energy_lost for event in events),
             drilled=self._drilled,
             rolled=self._rolled,
-            airborne=(flights[:, 1] - flights[:, 0]).sum(),
-            highest_gap=flights[:, 2].max(initial=0.0),
+            airborne=self.flights.duration,
+            highest_gap=self.flights.highest_gap,
             highest=max(-depth, 0.0),
             down=down,
             up=-up,

@@ -3,26 +3,23 @@ import { NodeValues, javascript_source, record, unrolled } from "./mechanics.js"
 import { ArithmeticError, heed } from "./runtime.js";
 
 /** A function (y, p) => numbers in plain operators as code (y, p, out); run as it stands where it cannot be. */
-export function compiled(function_, size, parameters, count, heeds = true) {
-  if (count === 0) return () => {};
-  let recorded;
+export function compiled(function_, size, parameters, heeds = true) {
   try {
-    recorded = record(function_, size, parameters);
+    return made(record(function_, size, parameters));
   } catch (error) {
-    if (error instanceof ReferenceError) throw error;
-    return (y, p, out) => {
-      heed(heeds);
-      try {
-        out.set(function_(y, p));
-      } catch (trouble) {
-        if (!(trouble instanceof ArithmeticError)) throw trouble;
-        out.fill(NaN);
-      } finally {
-        heed(true);
-      }
-    };
+    if (error instanceof ReferenceError || error instanceof SyntaxError) throw error;
   }
-  return made(recorded);
+  return (y, p, out) => {
+    heed(heeds);
+    try {
+      out.set(function_(y, p));
+    } catch (trouble) {
+      if (!(trouble instanceof ArithmeticError)) throw trouble;
+      out.fill(NaN);
+    } finally {
+      heed(true);
+    }
+  };
 }
 
 function made(recorded) {
@@ -104,9 +101,8 @@ const known = new WeakMap();
 /** The rates and guards of a motion. */
 export function compiledMotion(motion) {
   if (!known.has(motion)) {
-    const rates = compiled(motion.rates, motion.size, motion.parameters, motion.size);
     const values = (y, p) => motion.guards.map((guard) => guard.value(y, p));
-    const guards = compiled(values, motion.size, motion.parameters, motion.guards.length);
+    const [rates, guards] = [motion.rates, values].map((one) => compiled(one, motion.size, motion.parameters));
     known.set(motion, { rates, guards });
   }
   return known.get(motion);

@@ -1,13 +1,10 @@
 // Solutions as polynomials in time, one a step, as in tippetop.integrators.dense.
+import { crossing } from "./mechanics.js";
 import { CHEBYSHEV } from "./tables.js";
-import { math } from "./runtime.js";
 
-/** Elementary functions of numbers, and of the nodes of a graph. */
-const of = (name) => (x) => (typeof x === "number" ? math[name](x) : x.graph.node(name, [x]));
-export const ELEMENTARY = { sin: of("sin"), cos: of("cos") };
 export const as_array = (numbers) => Float64Array.from(numbers);
 
-const NEWTON = 6, SHORTEST = 1e-8;
+const SHORTEST = 1e-8;
 
 /** The first of some places, from 0 on, from which on something holds; the last if it does nowhere. */
 export function earliest(count, holds) {
@@ -71,9 +68,20 @@ export class DenseSolution {
     return out;
   }
 
+  /** Which part of a step has passed at a time. */
+  part(step, time) {
+    const from = this.knots[step], span = this.knots[step + 1] - from;
+    return Math.min(Math.max((time - from) / (span > 0 ? span : 1), 0), 1);
+  }
+
+  /** When a part of a step has passed. */
+  time(step, part) {
+    return this.knots[step] + part * (this.knots[step + 1] - this.knots[step]);
+  }
+
   rows(time) {
-    const step = this.step(time), span = this.knots[step + 1] - this.knots[step];
-    return this.numbers(step, (time - this.knots[step]) / (span > 0 ? span : 1));
+    const step = this.step(time);
+    return this.numbers(step, this.part(step, time));
   }
 
   moved(start, end) {
@@ -88,15 +96,9 @@ export class DenseSolution {
   }
 
   when(number, wanted) {
-    const step = earliest(this.count, (here) => this.value(here, number, 1) > wanted), { knots, degree } = this;
-    const at = (part) => this.value(step, number, part), first = (step * this.size + number) * (degree + 1);
-    let part = (wanted - at(0)) / (at(1) - at(0));
-    for (let turn = 0; turn < NEWTON; turn += 1) {
-      let slope = 0;
-      for (let k = degree; k > 0; k -= 1) slope = slope * part + k * this.terms[first + k];
-      part = Math.min(Math.max(part + (wanted - at(part)) / slope, 0), 1);
-    }
-    return knots[step] + part * (knots[step + 1] - knots[step]);
+    const step = earliest(this.count, (here) => this.value(here, number, 1) > wanted), at = (part) => this.value(step, number, part);
+    const held = Math.min(Math.max(wanted, at(0)), at(1));
+    return this.time(step, crossing((part) => at(part) - held, 0, 1));
   }
 
   /** Size of the largest last term of its polynomials, in Chebyshev's. */

@@ -1,14 +1,6 @@
 // What a mode says of its numbers, compiled once a kind.
-import { energy, jellett } from "./mechanics.js";
 import { compiled } from "./compile.js";
 import { cached, replace } from "./runtime.js";
-
-/** What a motion keeps, of the numbers of a mode: the axis, the height, energy and Jellett's integral. */
-export function kept(mode, y) {
-  const state = mode.state(y);
-  return [...state.axis, state.height, energy(state, mode.top), jellett(state, mode.top)];
-}
-export const KEPT = 6;
 
 const known = cached(() => new Map());
 
@@ -22,7 +14,7 @@ export function reader(mode, size) {
     return [...of(replace(mode, other ? { top, other } : { top }), y, p[from])];
   };
   return (of, count) => {
-    if (!codes.has(of)) codes.set(of, compiled(values(of), size, parameters.length, count, false));
+    if (!codes.has(of)) codes.set(of, compiled(values(of), size, parameters.length, false));
     const code = codes.get(of), out = new Float64Array(count);
     return (y, other = 0) => {
       parameters[numbers.length] = other;

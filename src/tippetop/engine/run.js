@@ -1,22 +1,24 @@
 // One launch: followed from mode to mode, its numbers found on the way, and sampled when asked.
 import * as m from "./mechanics.js";
 import { compiled } from "./compile.js";
-import { DenseSolution, ELEMENTARY, earliest } from "./dense.js";
+import { DenseSolution, earliest } from "./dense.js";
 import { make_integrator } from "./integrate.js";
-import { KEPT, kept, reader } from "./observe.js";
+import { reader } from "./observe.js";
 import { InvalidInput } from "./part.js";
 import { cached } from "./runtime.js";
 import { CATALOGUE, GAUSS } from "./tables.js";
 
-const NOT_FINITE = "the solution is no longer finite";
-const LONGEST = 1e300, LEAST_TOLERANCE = 2.3e-14, LOOKS = 16;
-const [WORST, ACCUMULATED, LEAST_MOMENT] = [1e-6, 1e4, 1e-6];
+const LEAST_TOLERANCE = 2.3e-14, LOOKS = 16;
+const PLACES = Array.from({ length: LOOKS + 1 }, (_, look) => look / LOOKS);
 const rates = (mode, y, pole) => m.Rates.of(mode, y, pole), RATES = 8, FORCE = 7;
+const kept = (mode, y) => keeping(mode.state(y), mode.top), KEPT = 6;
+const keeping = (state, top) => [...state.axis, state.height, m.energy(state, top), m.jellett(state, top)];
+// What is added up: the first of them as they are told, as rates, in `Rates`.
 const [X, Y, TURN, WORK, DRILLED, ROLLED, STRUCK, SUMS] = [0, 1, 2, 3, 4, 5, 6, 7];
 
 /** Follow the launch of a problem (as JSON tells it) for a duration, s, at a relative error a step. */
 export function simulate(problem, { duration, tolerance = 1e-10, onProgress } = {}) {
-  if (!(typeof duration === "number" && duration > 0 && duration <= LONGEST)) {
+  if (!(typeof duration === "number" && duration > 0 && duration <= m.LONGEST_of_trajectory)) {
     throw new InvalidInput("duration", duration, "a number of seconds greater than 0, at most 1e+300");
   }
   if (!(tolerance >= LEAST_TOLERANCE && tolerance < 1)) {
@@ -34,62 +36,42 @@ class Run {
   constructor(problem, duration, tolerance) {
     const units = m.natural_units(problem.top), top = m.natural(problem.top), start = m.natural_state(problem.start(), units);
     const { liftoff, restitution } = problem.contact, launch = m.rules_for(top, liftoff, restitution).launch(start);
-    const pole = start.axis[2] >= 0 ? 1 : -1, lost = energyLost(launch.events), least = m.jellett(start, top);
-    Object.assign(this, { duration, tolerance, units, top, start, pole, pieces: [], hops: [], landed: true, turned: NaN, steps: 0 });
+    const pole = start.axis[2] >= 0 ? 1 : -1, lost = energyLost(launch.events);
+    Object.assign(this, { duration, tolerance, units, top, start, pole, pieces: [], turned: NaN, steps: 0 });
     this.trajectory = new m.Trajectory(launch, duration / units.time, make_integrator("dop853", tolerance));
     this.sums = Float64Array.of(0, 0, pole * problem.launch.azimuth, -lost, 0, 0, lost);
-    this.energy = m.energy(start, top);
-    this.off = { imbalance: 0, largest: Math.abs(this.energy), stretch: 0, sunk: 0, least, most: least };
+    [this.monitor, this.flights] = [new m.Monitor(top, start), new m.Flights()];
     // Of the tip and, in flights, of the centre of mass: where these are highest, their negatives are least.
     [this.force, this.down, this.up, this.depth] = [new Least(), new Least(), new Least(), new Least()];
   }
 
   /** A solution in a mode, with how its numbers are read. */
   piece(mode, solution, label = mode.label) {
-    const { size, degree } = solution, read = reader(mode, size), of = read(rates, RATES), numbers = new Float64Array(size);
-    const look = (step, part, pole = 1) => of(solution.numbers(step, part, numbers), pole);
-    const piece = { solution, label, read, look, numbers, sums: [], poles: [], rule: mode.touching && degree > 7 ? GAUSS[8] : GAUSS[4] };
+    const read = reader(mode, solution.size), of = read(rates, RATES), numbers = new Float64Array(solution.size);
+    const at = (step, part) => solution.numbers(step, part, numbers), look = (step, part, pole = 1) => of(at(step, part), pole);
+    const piece = { solution, label, read, at, look, sums: [], poles: [], rule: mode.touching && solution.degree > 7 ? GAUSS[8] : GAUSS[4] };
     this.pieces.push(piece);
     return piece;
   }
 
   /** Take in a segment: what is integrated along it, and the extremes of the motion. */
   take(segment) {
-    const { solution, mode, transition } = segment, piece = this.piece(mode, solution), known = piece.read(kept, KEPT);
+    const { solution, mode, transition } = segment;
     this.steps += segment.steps;
-    if (!mode.touching) this.fly(segment);
-    for (let step = 0; step < solution.count; step += 1) {
-      this.monitor(known(solution.numbers(step, 0, piece.numbers)));
-      this.sum(piece, step, mode.touching && !this.hops.length);
-      this.tip(solution, step);
-      if (!mode.touching) this.rise(solution, step);
+    if (!mode.touching) this.flights.take(segment);
+    if (solution.count) {
+      const piece = this.piece(mode, solution), known = piece.read(kept, KEPT), presses = mode.touching && !this.flights.rows.length;
+      for (let step = 0; step < solution.count; step += 1) {
+        const out = known(piece.at(step, 0));
+        this.monitor.see([out[0], out[1], out[2]], out[3], out[4], out[5], this.sums[WORK]);
+        this.sum(piece, step, presses);
+        this.see(solution, step, 2, this.down, this.up);
+        if (!mode.touching) this.see(solution, step, 9, null, this.depth);
+      }
     }
     const lost = energyLost(transition?.events ?? []);
     this.sums[STRUCK] += lost;
     this.sums[WORK] -= lost;
-  }
-
-  /** Take in the height of the centre of mass in a flight. */
-  rise(solution, step) {
-    const start = solution.value(step, 9, 0);
-    this.depth.see(-start, -start - solution.reach(step, 9), (part) => -solution.value(step, 9, part));
-  }
-
-  fly(segment) {
-    const begin = this.landed ? segment.solution.knots[0] : this.hops.pop()[0];
-    this.hops.push([begin, segment.end_time, segment.highest_gap]);
-    this.landed = segment.transition !== null;
-  }
-
-  /** See that energy and work balance where a step begins, and what else the motion keeps. */
-  monitor(out) {
-    const { off } = this, x = out[0], y = out[1], z = out[2], energy = out[4], jellett = out[5];
-    off.imbalance = Math.max(off.imbalance, Math.abs(energy - this.energy - this.sums[WORK]));
-    off.largest = Math.max(off.largest, energy);
-    off.stretch = Math.max(off.stretch, Math.abs(Math.sqrt(x * x + y * y + z * z) - 1));
-    off.least = Math.min(off.least, jellett);
-    off.most = Math.max(off.most, jellett);
-    if (this.top.surface instanceof m.Hull) off.sunk = Math.max(off.sunk, m.outer_height(this.top.surface, z) - out[3]);
   }
 
   /** Integrate along a step; and see how small the normal force is. */
@@ -102,10 +84,9 @@ class Run {
     for (let i = 0; i < SUMS; i += 1) piece.sums.push(this.sums[i]);
     piece.poles.push(pole);
     this.along(piece, step, 1, pole, this.sums);
-    if (!presses) return;
     // Between Gauss's points, and beyond them, it is lower by a part of what it varies by there.
-    const { least, most } = this, bound = least - 0.5 * (most - least);
-    this.force.see(least, bound, (part) => piece.look(step, part)[FORCE]);
+    const { least, most } = this;
+    if (presses) this.force.put(least, least - 0.5 * (most - least), (part) => piece.look(step, part)[FORCE]);
   }
 
   /** Add to sums what is gained up to a part of a step; the normal forces on the way. */
@@ -114,20 +95,18 @@ class Run {
     [this.least, this.most] = [Infinity, -Infinity];
     for (let i = 0; i < nodes.length; i += 1) {
       const out = look(step, part * nodes[i], pole), share = weights[i] * span;
-      for (let k = X; k <= WORK; k += 1) sums[k] += share * out[k];
-      for (let k = DRILLED; k <= ROLLED; k += 1) sums[k] -= share * out[k];
+      for (let k = X; k <= ROLLED; k += 1) sums[k] += share * out[k];
       this.least = Math.min(this.least, out[FORCE]);
       this.most = Math.max(this.most, out[FORCE]);
     }
   }
 
-  /** Take in the motion of the tip of the axis. */
-  tip(solution, step) {
-    const start = solution.value(step, 2, 0), far = solution.reach(step, 2), at = (part) => solution.value(step, 2, part);
-    this.down.see(start, start - far, at);
-    this.up.see(-start, -start - far, (part) => -at(part));
-    const turns = this.turned !== this.turned && Math.abs(start) <= far;
-    if (turns) this.turned = timeAt(solution, step, firstFall(at, true));
+  /** Take in how far a number of a solution goes down and up in a step. */
+  see(solution, step, number, down, up) {
+    const start = solution.value(step, number, 0), far = solution.reach(step, number), at = (part) => solution.value(step, number, part);
+    down?.put(start, start - far, at);
+    up.put(-start, -start - far, (part) => -at(part));
+    if (down && this.turned !== this.turned && Math.abs(start) <= far) this.turned = solution.time(step, firstFall(at, true));
   }
 
   /** First time at which n_z is in a band. */
@@ -138,45 +117,37 @@ class Run {
         if (start - far > high || start + far < low) continue;
         const sign = start > high ? 1 : -1, edge = start > high ? high : low;
         const part = start <= high && start >= low ? 0 : firstFall((x) => sign * (solution.value(step, 2, x) - edge));
-        if (!Number.isNaN(part)) return timeAt(solution, step, part);
+        if (!Number.isNaN(part)) return solution.time(step, part);
       }
     }
     return NaN;
   }
 
   finish() {
-    const { trajectory, units, hops, sums } = this, { events, outcome, detail, state } = trajectory;
-    const ended = outcome === m.Outcome.COMPLETED && !(this.inaccuracy <= Math.max(WORST, ACCUMULATED * this.tolerance))
-      ? m.Outcome.INACCURATE : outcome;
+    const { trajectory, units, sums } = this, { events, outcome, detail, state } = trajectory, flights = this.flights.rows;
+    const ended = outcome === m.Outcome.COMPLETED && !this.monitor.is_trusted(this.tolerance) ? m.Outcome.INACCURATE : outcome;
     this.outcome = { name: ended.name.toLowerCase(), advice: [ended.value, detail].filter(Boolean).join(" ") };
-    this.early = ended !== m.Outcome.COMPLETED && detail !== NOT_FINITE;
+    this.early = ended !== m.Outcome.COMPLETED && detail !== m.NOT_FINITE;
     this.endTime = trajectory.time * units.time;
     this.events = events.map((event) => ({
       kind: event.kind.value, time: event.time * units.time, surface: event.surface,
       impulse: event.impulse * units.mass * units.speed, energyLost: event.energy_lost * units.energy,
     }));
-    this.flights = hops.map(([start, end, gap]) => (
-      { start: start * units.time, end: end * units.time, highestGap: gap * units.length }));
-    for (const [way, last] of [[this.down, state.axis[2]], [this.up, -state.axis[2]]]) way.see(this.pieces.length ? last : NaN, last);
+    for (const [way, last] of [[this.down, state.axis[2]], [this.up, -state.axis[2]]]) way.put(this.pieces.length ? last : NaN);
     const lifts = events.filter((event) => event.kind === m.EventKind.LIFT_OFF).map((event) => event.time);
-    const airborne = hops.reduce((total, [from, to]) => total + to - from, 0), gap = Math.max(0, ...hops.map((hop) => hop[2]));
     const ends = new m.Ends(
-      state, trajectory.time, null, this.steps, hops.length, lifts.length || hops.length ? 0 : this.force.found(), lifts[0] ?? NaN,
-      energyLost(events), sums[DRILLED], sums[ROLLED], airborne, gap, Math.max(0, -this.depth.found()), this.down.found(), -this.up.found(),
-      this.turned, this.arrival(m.final_band(state)));
+      state, trajectory.time, null, this.steps, flights.length, lifts.length || flights.length ? 0 : this.force.found(), lifts[0] ?? NaN,
+      energyLost(events), -sums[DRILLED], -sums[ROLLED], this.flights.duration, this.flights.highest_gap, Math.max(0, -this.depth.found()),
+      this.down.found(), -this.up.found(), this.turned, this.arrival(m.final_band(state)));
     this.metrics = Object.fromEntries(m.metrics(ends, this.start, this.top, units).items());
-    if (!this.pieces.some(({ solution }) => solution.count)) {
+    this.flights = flights.map(([start, end, gap]) => (
+      { start: start * units.time, end: end * units.time, highestGap: gap * units.length }));
+    if (!this.pieces.length) {
       const still = this.piece(new m.Flight(this.top, null), DenseSolution.in_time([0, 1], [this.start.pack().map((number) => [number])]), "sliding");
       still.sums.push(...sums);
       still.poles.push(this.pole);
     }
     return this;
-  }
-
-  get inaccuracy() {
-    const { off } = this, moment = Math.hypot(...this.start.momentum) * this.top.surface.height(this.start.axis[2]);
-    const drift = this.top.conserves_jellett && moment > LEAST_MOMENT ? (off.most - off.least) / moment : 0;
-    return Math.max(...[off.imbalance / off.largest, off.stretch, drift, off.sunk].filter((one) => !Number.isNaN(one)));
   }
 
   /** Every variable of the catalogue's SAMPLED at some times, s, or at so many from start to end. */
@@ -199,17 +170,13 @@ class Run {
 
   /** Put what is known of a time, the piece of which is the earlier one where two meet, into a track. */
   sample(track, i, time) {
-    const { pieces } = this;
-    let place = earliest(pieces.length, (here) => pieces[here].solution.end >= time);
-    while (!pieces[place].solution.count) place += place > 0 ? -1 : pieces.findIndex(({ solution }) => solution.count);
-    const piece = pieces[place], { solution } = piece, step = solution.step(time);
-    const from = solution.knots[step], span = solution.knots[step + 1] - from;
-    const part = Math.min(Math.max((time - from) / (span > 0 ? span : 1), 0), 1);
+    const { pieces } = this, piece = pieces[earliest(pieces.length, (here) => pieces[here].solution.end >= time)];
+    const { solution } = piece, step = solution.step(time), part = solution.part(step, time);
     const sums = piece.sums.slice(step * SUMS, (step + 1) * SUMS), pole = piece.poles[step];
     this.along(piece, step, part, pole, sums);
     piece.told ??= piece.read(m.instants, m.TOLD);
     const told = m.Instants.unpack(piece.told(solution.numbers(step, part)));
-    const here = new m.Samples(time, told, sums[X], sums[Y], sums[TURN], sums[WORK], sums[STRUCK], sums[DRILLED], sums[ROLLED], pole, null);
+    const here = new m.Samples(time, told, sums[X], sums[Y], sums[TURN], sums[WORK], sums[STRUCK], -sums[DRILLED], -sums[ROLLED], pole, null);
     for (const [name, value] of m.observe(here, this.top, this.units).items()) {
       if (typeof value === "number") track[name][i] = value;
       else track[name].set(value, i * value.length);
@@ -218,16 +185,14 @@ class Run {
   }
 }
 
-const PLACES = Array.from({ length: LOOKS + 1 }, (_, look) => look / LOOKS);
-
 /** The least value of something along a run: what was seen, and where between there may be less of it. */
 class Least {
   constructor() {
     Object.assign(this, { value: Infinity, places: [] });
   }
 
-  /** Take in a step with a value in it, a bound for all of them there, and the values at its parts. */
-  see(value, bound, values) {
+  /** Take in a value of a step, a bound for all of them there, and the values at its parts. */
+  put(value, bound = value, values = null) {
     this.value = Math.min(this.value, value);
     if (bound < this.value) this.places.push([bound, values]);
   }
@@ -242,12 +207,12 @@ class Least {
 }
 
 /** The least value of a function on [0, 1], or one known: by parabolas about the least of some looks. */
-function least(value, known = Infinity) {
+function least(value, known) {
   const looks = PLACES.map(value);
   let best = Math.min(...looks), x = PLACES[looks.indexOf(best)];
   if (best - 0.1 * (Math.max(...looks) - best) > known) return known;
   for (let h = 1 / LOOKS; h > 1e-5; h *= 0.02) {
-    const [before, here, after] = [value(x - h), value(x), value(x + h)], bend = before - 2 * here + after;
+    const [before, here, after] = [x - h, x, x + h].map(value), bend = before - 2 * here + after;
     best = Math.min(best, here);
     if (bend > 0) x = Math.min(Math.max(x + (0.5 * h * (before - after)) / bend, 0), 1);
   }
@@ -262,7 +227,6 @@ function firstFall(value, fromAbove = false) {
   return found === undefined ? NaN : m.crossing(value, found[0], found[1]);
 }
 
-const timeAt = (solution, step, part) => solution.knots[step] + part * (solution.knots[step + 1] - solution.knots[step]);
 const energyLost = (events) => events.reduce((total, event) => total + event.energy_lost, 0);
 
 /** Give quaternions in a row the signs that let none jump. */
@@ -273,8 +237,9 @@ function smooth(rows) {
   }
 }
 
+const ELEMENTARY = { sin: (x) => x.graph.node("sin", [x]), cos: (x) => x.graph.node("cos", [x]) };
 const flying = cached((kind) =>
-  compiled((y, p) => m.fly(m.State.unpack(p), y[0], kind.top(p.slice(10)), ELEMENTARY).pack(), 1, 10 + kind.numbers, 10));
+  compiled((y, p) => m.fly(m.State.unpack(p), y[0], kind.top(p.slice(10)), ELEMENTARY).pack(), 1, 10 + kind.numbers));
 
 /** A flight's numbers as a function of its time, compiled. */
 m.Flight.prototype._numbers = function numbers(state) {

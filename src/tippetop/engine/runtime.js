@@ -120,6 +120,8 @@ export const np = {
   copysign: (a, b) => (b < 0 || Object.is(b, -0) ? -Math.abs(a) : Math.abs(a)),
   where: (condition, a, b) => (condition ? a : b),
   any: (condition) => condition,
+  max: (number) => number,
+  min: (number) => number,
   stack: (parts) => Float64Array.from(parts),
   empty: (shape) => (typeof shape === "number" ? new Float64Array(shape)
     : Array.from({ length: shape[0] }, () => new Float64Array(shape[1]))),
