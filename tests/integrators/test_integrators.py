@@ -26,12 +26,10 @@ from tippetop.integrators import (
     NAMES,
     Guard,
     Motion,
-    classical,
-    collocation,
     has_numba,
     has_taylor,
     make_integrator,
-    scipy_methods,
+    sampling,
     stepping,
 )
 
@@ -149,7 +147,6 @@ def test_steps_join(method):
 
 CUTS = {
     "taylor": (taylor, {"LONG": 4}) if has_taylor() else None,
-    "collocation": (collocation, {"MANY": 8}),
     "compiled": (stepping, {"MANY": 7}),
 }
 """What decides into how many arcs a solution is cut, and smaller numbers of it."""
@@ -158,10 +155,7 @@ CUTS = {
 @every_method
 def test_how_a_solution_is_cut_into_arcs_does_not_show(method, monkeypatch):
     uncut = follow(method, KEPLER)
-    module, smaller = CUTS.get(method.integrator.name) or (
-        (classical if method.step else scipy_methods),
-        {"MANY": 7},
-    )
+    module, smaller = CUTS.get(method.integrator.name) or (sampling, {"MANY": 7})
     for name, number in smaller.items():
         monkeypatch.setattr(module, name, number)
     arcs = list(method.integrator.integrate(KEPLER.motion, KEPLER.parameters, KEPLER.start, KEPLER.end))

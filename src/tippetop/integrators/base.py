@@ -35,6 +35,9 @@ TOLERANCES = {
 NOT_FINITE = "the solution is no longer finite"
 """Why an integrator gives up where numbers grow beyond all bounds: its last state then means nothing."""
 
+NO_START, NO_STEP = "the motion is singular from the start", "the step size fell to nothing"
+"""Why it finds no step at all, and none any more."""
+
 
 @dataclass(frozen=True)
 class Guard:

@@ -1,54 +1,41 @@
 """The classical Runge-Kutta method of fourth order with fixed step, as in the report's Appendix B."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, field
+from typing import ClassVar
 
 import numpy as np
 
-from tippetop.integrators.base import NOT_FINITE, Arc, Array, Motion
+from tippetop.integrators.base import NOT_FINITE, Array
 from tippetop.integrators.rates import RightHandSide
-from tippetop.integrators.sampling import Steps
-
-DEGREE = 5
-"""Degree of the polynomials that stand for its steps: their error is of higher order than the method's."""
-
-MANY = 512
-"""Steps in an arc."""
+from tippetop.integrators.sampling import Accepted, StepByStep
 
 
 @dataclass(frozen=True)
-class ClassicalRK4:
+class ClassicalRK4(StepByStep):
     """Fourth-order Runge-Kutta: error h^5 in a step, h^4 in all."""
 
     step: float
     """Step size, in the units of time of the motion."""
     name: str = field(default="rk4", init=False)
+    degree: ClassVar[int] = 5
+    """The polynomials' error is of higher order than the method's."""
 
-    def integrate(
-        self, motion: Motion, parameters: Sequence[float], start: tuple[float, Array], end: float
-    ) -> Iterator[Arc]:
-        """Follow the motion; see `tippetop.integrators.base.Integrator`."""
-        rates = RightHandSide(motion, parameters)
+    def steps(self, rates: RightHandSide, start: tuple[float, Array], end: float) -> Iterator[Accepted | str]:
+        """The steps; see `StepByStep`."""
         time, state = start
-        taken = Steps(rates, time, DEGREE)
         steps = max(1, int(np.ceil((end - start[0]) / self.step - 1e-9)))
         for count in range(1, steps + 1):
             reach = end if count == steps else start[0] + count * self.step
-            before, base = time, state
-            time, state = reach, classical_step(rates, base, reach - before)
-            if not np.all(np.isfinite(state)):
-                yield taken.arc(base, failure=NOT_FINITE)
-                return
 
-            def dense(at: float, before: float = before, base: Array = base) -> Array:
+            def dense(at: float, before: float = time, base: Array = state) -> Array:
                 return classical_step(rates, base, at - before)
 
-            last = taken.take(reach, dense, dense)
-            if last is not None:
-                yield last
+            time, state = reach, dense(reach)
+            if not np.all(np.isfinite(state)):
+                yield NOT_FINITE
                 return
-            if len(taken) == MANY or count == steps:
-                yield taken.arc(state)
+            yield Accepted(time, state, dense, dense)
 
 
 def classical_step(rates: RightHandSide, state: Array, step: float) -> Array:

@@ -6,27 +6,24 @@ the step (Hairer and Wanner 1996, Solving Ordinary Differential Equations II, IV
 in Chebyshev's polynomials fall off as fast as the motion is smooth, and say how good a solution it is.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.polynomial.chebyshev import chebval
 from scipy.special import roots_jacobi
 
-from tippetop.integrators.base import TOLERANCES, Arc, Array, Motion
+from tippetop.integrators.base import NO_START, NO_STEP, TOLERANCES, Array
 from tippetop.integrators.rates import RightHandSide
-from tippetop.integrators.sampling import Steps
+from tippetop.integrators.sampling import Accepted, StepByStep
 
 STAGES = 12
 """Points in a step: order 23 at its end."""
 
-PARTS, DEGREE = 4, 11
-"""Parts of a step that stand for it in a solution, and the degree of their polynomials."""
-
-MANY = 64 * PARTS
-"""Polynomials in an arc."""
+PARTS = 4
+"""Parts of a step, each with a polynomial that stands for it in a solution."""
 
 LAST, SMOOTH = 2, 8
 """How many of the last coefficients tell the error of a step, and how many of the first guess at the next."""
@@ -47,8 +44,8 @@ LEAST_STEP = 1e-15
 TINY = 1e-300
 """Added to an error that may be zero."""
 
-NO_STEP, TOO_SHORT = "the step size fell to nothing", "the step size fell below what it may be"
-"""Why the method gives up, and why where another is to go on."""
+TOO_SHORT = "the step size fell below what it may be"
+"""Why the method gives up where another is to go on."""
 
 
 class Points(NamedTuple):
@@ -77,7 +74,7 @@ def radau_points(stages: int = STAGES) -> Points:
 
 
 @dataclass(frozen=True)
-class Collocation:
+class Collocation(StepByStep):
     """Collocation at Radau's points with adaptive steps."""
 
     tolerance: float = TOLERANCES["collocation"]
@@ -85,22 +82,18 @@ class Collocation:
     shortest: float = 0.0
     """The method gives up where its steps would be shorter than this, and begins with such steps."""
     name: str = field(default="collocation", init=False)
+    degree: ClassVar[int] = 11
 
-    def integrate(
-        self, motion: Motion, parameters: Sequence[float], start: tuple[float, Array], end: float
-    ) -> Iterator[Arc]:
-        """Follow the motion; see `tippetop.integrators.base.Integrator`."""
-        rates = RightHandSide(motion, parameters)
-        taken, (time, state), before = Steps(rates, start[0], DEGREE), start, None
-        slope = rates(*start)
+    def steps(self, rates: RightHandSide, start: tuple[float, Array], end: float) -> Iterator[Accepted | str]:
+        """The steps; see `StepByStep`."""
+        (time, state), before, slope = start, None, rates(*start)
         if not np.all(np.isfinite(slope)):
-            yield taken.arc(state, failure="the motion is singular from the start")
+            yield NO_START
             return
         step = self.shortest or FIRST / float(np.max(np.abs(slope) / scale(state)) + FIRST)
         while time < end:
-            least = max(self.shortest, LEAST_STEP * max(1.0, abs(time)))
-            if step < least:
-                yield taken.arc(state, failure=TOO_SHORT if self.shortest else NO_STEP)
+            if step < max(self.shortest, LEAST_STEP * max(1.0, abs(time))):
+                yield TOO_SHORT if self.shortest else NO_STEP
                 return
             reach = end if step >= end - time else time + step
             found, factor = self._step(rates, (time, state), reach, before)
@@ -112,13 +105,9 @@ class Collocation:
                 return _landed(rates, base, step, at)
 
             for until in np.linspace(time, reach, PARTS + 1)[1:].tolist():
-                last = taken.take(until, found, advance)
-                if last is not None:
-                    yield last
-                    return
-            time, state = reach, found.end_state
-            if len(taken) == MANY or time == end:
-                yield taken.arc(state)
+                state = found.end_state if until == reach else found(until)
+                yield Accepted(until, state, found, advance)
+            time = reach
 
     def _step(
         self, rates: RightHandSide, start: tuple[float, Array], end: float, before: "Step | None"

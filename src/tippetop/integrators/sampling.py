@@ -1,62 +1,75 @@
-"""What the step-by-step integrators share: steps as polynomials."""
+"""What the step-by-step integrators share: arcs of their steps, as polynomials, up to where a guard falls."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
-from tippetop.integrators.base import Arc, Array
+from tippetop.integrators.base import Arc, Array, Motion
 from tippetop.integrators.dense import DenseSolution, chebyshev
 from tippetop.integrators.falls import Dense, first_fall
 from tippetop.integrators.rates import RightHandSide
 
+MANY = 512
+"""Steps in an arc."""
 
-class Steps:
-    """Collects the steps of an arc, each by the values of its solution at Chebyshev's points.
 
-    Parameters
-    ----------
-    rates
-        The rates of the motion.
-    start
-        Time at which the arc begins.
-    degree
-        Of the polynomials that are to stand for the solution.
-    """
+class Accepted(NamedTuple):
+    """A step that was taken: when it ends, the state there, and the solution within it (see `first_fall`)."""
 
-    def __init__(self, rates: RightHandSide, start: float, degree: int) -> None:
-        self.rates, self.degree = rates, degree
-        self.knots, self.values, self._counted = [start], list[Array](), rates.calls
+    end: float
+    end_state: Array
+    dense: Dense
+    advance: Dense
 
-    def __len__(self) -> int:
-        return len(self.values)
 
-    def take(self, end: float, dense: Dense, advance: Dense) -> Arc | None:
-        """Take in a step up to a time, or the last arc if a guard falls through zero in it.
+class StepByStep(ABC):
+    """An integrator that takes its steps in Python."""
 
-        Parameters
-        ----------
-        end
-            Where the step ends.
-        dense, advance
-            The solution within it; see `first_fall`.
-        """
-        motion, parameters, step = self.rates.motion, self.rates.parameters, (self.knots[-1], end)
-        fall = first_fall(motion.guards, parameters, dense, advance, step)
-        if fall is None:
-            self._keep(end, dense)
-            return None
-        number, at, last = fall
-        self._keep(at, dense)
-        return self.arc(last, motion.guards[number].name)
+    @property
+    @abstractmethod
+    def degree(self) -> int:
+        """Degree of the polynomials that stand for a step."""
 
-    def _keep(self, end: float, dense: Dense) -> None:
-        start = self.knots[-1]
-        places = chebyshev(self.degree)[0]
-        self.values.append(np.array([dense(start + place * (end - start)) for place in places.tolist()]))
-        self.knots.append(end)
+    @abstractmethod
+    def steps(self, rates: RightHandSide, start: tuple[float, Array], end: float) -> Iterator[Accepted | str]:
+        """Steps that follow one another to the end, or at last why there are no more."""
 
-    def arc(self, state: Array, guard: str | None = None, failure: str | None = None) -> Arc:
-        """The steps as an arc that ends in a state; the next begins there."""
-        values = np.array(self.values).reshape(-1, self.rates.motion.size)
-        solution = DenseSolution.fitted(lambda _: values.T, np.array(self.knots), self.degree)
-        arc = Arc(solution, state, guard, failure, len(self), self.rates.calls - self._counted)
-        self.knots, self.values, self._counted = [self.knots[-1]], [], self.rates.calls
-        return arc
+    def integrate(
+        self, motion: Motion, parameters: Sequence[float], start: tuple[float, Array], end: float
+    ) -> Iterator[Arc]:
+        """Follow the motion; see `tippetop.integrators.base.Integrator`."""
+        rates, places = RightHandSide(motion, parameters), chebyshev(self.degree)[0].tolist()
+        (begin, state), counted = start, 0
+        knots, values = [begin], list[Array]()
+
+        def keep(until: float, dense: Dense) -> None:
+            values.append(np.array([dense(knots[-1] + place * (until - knots[-1])) for place in places]))
+            knots.append(until)
+
+        def arc(end_state: Array, guard: str | None = None, failure: str | None = None) -> Arc:
+            nonlocal counted
+            rows = np.array(values).reshape(-1, motion.size).T
+            solution = DenseSolution.fitted(lambda _: rows, np.array(knots), self.degree)
+            found = Arc(solution, end_state, guard, failure, len(values), rates.calls - counted)
+            del knots[:-1], values[:]
+            counted = rates.calls
+            return found
+
+        for step in self.steps(rates, start, end):
+            if isinstance(step, str):
+                yield arc(state, failure=step)
+                return
+            fall = first_fall(motion.guards, parameters, step.dense, step.advance, (knots[-1], step.end))
+            if fall is not None:
+                number, at, last = fall
+                keep(at, step.dense)
+                yield arc(last, motion.guards[number].name)
+                return
+            keep(step.end, step.dense)
+            state = step.end_state
+            if len(values) == MANY:
+                yield arc(state)
+        if values:
+            yield arc(state)

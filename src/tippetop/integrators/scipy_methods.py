@@ -1,17 +1,16 @@
 """SciPy's integrators behind the seam."""
 
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from scipy.integrate import BDF, DOP853, LSODA, RK45, Radau
 
-from tippetop.integrators.base import NOT_FINITE, Arc, Array, Motion
+from tippetop.integrators.base import NO_START, NO_STEP, NOT_FINITE, Array
 from tippetop.integrators.rates import RightHandSide
-from tippetop.integrators.sampling import Steps
-from tippetop.integrators.stepping import MANY
+from tippetop.integrators.sampling import Accepted, StepByStep
 
 METHODS: dict[str, tuple[Any, int]] = {
     "dop853": (DOP853, 7),
@@ -27,7 +26,7 @@ LEAST_STEP = 1e-15
 
 
 @dataclass(frozen=True)
-class SciPy:
+class SciPy(StepByStep):
     """One of SciPy's adaptive methods."""
 
     name: str
@@ -37,37 +36,31 @@ class SciPy:
     absolute: float | None = None
     """Absolute tolerance per step; None for the same."""
 
-    def integrate(
-        self, motion: Motion, parameters: Sequence[float], start: tuple[float, Array], end: float
-    ) -> Iterator[Arc]:
-        """Follow the motion; see `tippetop.integrators.base.Integrator`."""
-        rates = RightHandSide(motion, parameters)
-        steps = Steps(rates, start[0], METHODS[self.name][1])
+    @property
+    def degree(self) -> int:
+        """Degree of the polynomials by which the solver interpolates."""
+        return METHODS[self.name][1]
+
+    def steps(self, rates: RightHandSide, start: tuple[float, Array], end: float) -> Iterator[Accepted | str]:
+        """The steps; see `StepByStep`."""
         if not np.all(np.isfinite(rates(*start))):
-            yield steps.arc(start[1], failure="the motion is singular from the start")
+            yield NO_START
             return
-        solver, failure = self._solver(rates, start, end), None
+        solver = self._solver(rates, start, end)
         while solver.status == "running":
-            before, base = float(solver.t), solver.y.copy()
+            before = float(solver.t), solver.y.copy()
             failure = _take_step(solver)
-            if failure is not None:
-                break
             reach = float(solver.t)
-            if reach - before <= LEAST_STEP * max(1.0, abs(reach)) and reach < end:
-                failure = "the step size fell to nothing"
-                break
-
-            def advance(at: float, before: float = before, base: Array = base) -> Array:
-                return self._land(rates, (before, base), at)
-
-            last = steps.take(reach, solver.dense_output(), advance)
-            if last is not None:
-                yield last
+            if not failure and reach - before[0] <= LEAST_STEP * max(1.0, abs(reach)) and reach < end:
+                failure = NO_STEP
+            if failure:
+                yield failure
                 return
-            if len(steps) == MANY:
-                yield steps.arc(solver.y.copy())
-        if len(steps) or failure is not None:
-            yield steps.arc(base if failure is not None else solver.y.copy(), failure=failure)
+
+            def advance(at: float, before: tuple[float, Array] = before) -> Array:
+                return self._land(rates, before, at)
+
+            yield Accepted(reach, solver.y.copy(), solver.dense_output(), advance)
 
     def _solver(self, rates: RightHandSide, start: tuple[float, Array], end: float) -> Any:
         absolute = self.tolerance if self.absolute is None else self.absolute
@@ -94,5 +87,5 @@ def _take_step(solver: Any) -> str | None:
         except (ValueError, OverflowError, ZeroDivisionError, np.linalg.LinAlgError):
             return NOT_FINITE
     if solver.status == "failed":
-        return str(message) if message else "the step size fell to nothing"
+        return str(message) if message else NO_STEP
     return None if np.all(np.isfinite(solver.y)) else NOT_FINITE

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tippetop.integrators.base import Arc, Array, Guard, Motion
+from tippetop.integrators.base import NO_START, NO_STEP, Arc, Array, Guard, Motion
 from tippetop.integrators.dense import DenseSolution
 from tippetop.integrators.dormand_prince import FULL, POWERS, ROWS, SINGULAR, STUCK, SUSPECT
 from tippetop.integrators.falls import first_fall
@@ -14,10 +14,7 @@ from tippetop.mechanics.vectors import Scalar
 FEW, WIDER, MANY = 4, 4, 512
 """Steps for which there is room at first, how many times as many there is room for then, and in an arc."""
 
-FAILURES = {
-    SINGULAR: "the motion is singular from the start",
-    STUCK: "the step size fell to nothing",
-}
+FAILURES = {SINGULAR: NO_START, STUCK: NO_STEP}
 """Why there may be no solution, or no more of it."""
 
 
