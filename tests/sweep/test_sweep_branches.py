@@ -3,13 +3,14 @@
 import numpy as np
 
 from tippetop.integrators.polynomials import Polynomials
+from tippetop.sweeps.looks import first_fall
 from tippetop.sweeps.stepper import NumPyArithmetic
-from tippetop.sweeps.stride import branch_change
+from tippetop.sweeps.stride import OTHER_LOOKS
 
 
 def told(terms, span):
     with np.errstate(all="ignore"):
-        time, doubt = branch_change(list(terms), span, NumPyArithmetic())
+        time, doubt = first_fall(list(terms), span, OTHER_LOOKS, NumPyArithmetic())
     return time, doubt > 0.0
 
 

@@ -14,16 +14,17 @@ from tippetop.mechanics.flight import fly, gap_rate
 from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.impact import impact
 from tippetop.mechanics.invariants import energy, jellett
-from tippetop.mechanics.motion import contact, on_table
+from tippetop.mechanics.motion import along_table, contact, on_table
 from tippetop.mechanics.state import State
-from tippetop.mechanics.surface import SphereSurface
+from tippetop.mechanics.surface import SphereSurface, SpheroidSurface
 from tippetop.mechanics.top import Top, natural_state, natural_units
 from tippetop.mechanics.touchdown import Start, touchdown
-from tippetop.sweeps.flights import fly_all
+from tippetop.sweeps.flights import fly_all, look
 from tippetop.sweeps.flights import slides as goes_on
 from tippetop.sweeps.impacts import collide
 from tippetop.sweeps.launches import branched, single
-from tippetop.sweeps.tip import TipMotion
+from tippetop.sweeps.pieces import GIVEN, LEFT, STATE, TIME, VANISHING, WANTED, pieces
+from tippetop.sweeps.tip import DOWN, UP, TipMotion
 
 VISCOUS = tops(friction_laws=(ViscousLaw,))
 
@@ -89,6 +90,45 @@ def test_an_impact_is_the_single_one(slide, speed):
     for ours, theirs in zip(after.pack()[:9], one.pack()[:9], strict=True):
         assert ours[0] == pytest.approx(theirs, rel=1e-9, abs=1e-9 * (1.0 + speed))
         assert ours[0] == ours[1]
+
+
+@pytest.mark.parametrize("surface", [SphereSurface(1.0, 0.3), SpheroidSurface(1.0, 0.9, 0.2)])
+def test_pieces_of_flights_are_what_a_closer_look_finds_and_rarely_need_it(surface):
+    random, count = np.random.default_rng(4), 3000
+    kind = Top(1.0, 0.45, 0.38, surface, ViscousLaw(0.3), 1.0).kind
+    numbers = np.repeat(
+        np.array(Top(1.0, 0.45, 0.38, surface, ViscousLaw(0.3), 1.0).numbers)[:, None], count, 1
+    )
+    axis = random.normal(size=(3, count))
+    axis /= np.linalg.norm(axis, axis=0)
+    sliding = State(tuple(axis), tuple(3.0 * random.normal(size=(3, count))), (0.0, 0.0, 0.0), 0.0)
+    state = on_table(along_table(sliding), kind.top(tuple(numbers)))
+    # Thrown up, rebounding, let go, and lifted off with something that is left of the gap's acceleration.
+    vanishing = random.integers(0, 4, count).astype(float)
+    rise = np.where(vanishing < 2, 0.2 * random.exponential(size=count), 0.0)
+    thrown = state._replace(
+        velocity=(*random.normal(size=(2, count)), state.velocity[2] + rise),
+        height=state.height + np.where(vanishing == 0, random.exponential(size=count), 0.0),
+    )
+    given = np.empty((GIVEN, count))
+    given[STATE], given[VANISHING] = np.array(np.broadcast_arrays(*thrown.pack())), vanishing
+    given[TIME], given[LEFT] = 0.0, 10.0 ** random.uniform(-3.0, 1.0, count)
+    tip, lanes = TipMotion.of(count), np.arange(count)
+    tip.turned[:] = 0.0
+    given[WANTED] = tip.wanted(lanes)
+    found = pieces(kind, given, numbers)
+    looked = look(kind, given, numbers, (tip, lanes, np.zeros(count)))
+    sure = found.doubt == 0.0
+    assert sure[vanishing < 2].mean() > 0.9
+    assert np.count_nonzero(found.touches[sure]) > 100
+    assert np.array_equal(found.touches[sure], looked.touches[sure])
+    for mine, theirs in (
+        (found.span, looked.span),
+        (found.highest_gap, looked.highest_gap),
+        (found.floor, tip.least[DOWN]),
+        (found.ceiling, -tip.least[UP]),
+    ):
+        np.testing.assert_allclose(mine[sure], theirs[sure], rtol=1e-11, atol=1e-14)
 
 
 def test_impacts_are_rarely_left_out():

@@ -20,7 +20,6 @@ from tippetop.mechanics.motion import (
     sliding_rates,
 )
 from tippetop.mechanics.rolling import is_set_valued
-from tippetop.mechanics.series import Series
 from tippetop.mechanics.state import State
 from tippetop.mechanics.stick_slip import (
     is_near,
@@ -30,10 +29,9 @@ from tippetop.mechanics.stick_slip import (
     stopping_guard,
 )
 from tippetop.mechanics.top import Kind, Top
-from tippetop.mechanics.touchdown import Tip
-from tippetop.sweeps.launches import Flags, Indices, picked
+from tippetop.sweeps.launches import Flags, Indices
+from tippetop.sweeps.pieces import LEFT, STATE, TIME, VANISHING, WANTED, Piece, divided, flight_terms, pieces
 from tippetop.sweeps.stepper import NumPyArithmetic
-from tippetop.sweeps.stride import step_size
 from tippetop.sweeps.tip import TipMotion
 
 PLAIN = NumPyArithmetic()
@@ -82,24 +80,26 @@ def fly_all(
     tip, launches, begun = seen
     time, highest = np.zeros_like(horizon), np.zeros_like(horizon)
     landed = np.zeros(horizon.shape, dtype=bool)
-    for piece in range(PIECES):
+    given = np.array([*state.pack(), time, horizon, vanishing, *tip.wanted(launches)])
+    for _ in range(PIECES):
         active = np.flatnonzero(~landed & (time < horizon))
         if not len(active):
             break
-        top = kind.top(tuple(numbers[:, active]))
-        here = fly(picked(state, active), time[active], top, np)
-        height, gap, reach = flight_terms(here, top)
-        reach = np.minimum(reach, horizon[active] - time[active])
-        zero = Polynomials(divided(gap, vanishing[active]) if piece == 0 else gap, reach).first_fall()
-        touches = ~np.isnan(zero)
-        span = np.where(touches, zero, reach)
-        depth = Polynomials(-gap, span)
-        higher = np.flatnonzero(depth.floor < -highest[active])
-        rise = -depth.some(higher).refined_least()[1]
-        highest[active[higher]] = np.maximum(highest[active[higher]], rise)
-        tip.see(launches[active], begun[active] + time[active], Polynomials(height, span))
-        time[active] = np.where(span == horizon[active] - time[active], horizon[active], time[active] + span)
-        landed[active] = touches
+        found = pieces(kind, given[:, active], numbers[:, active])
+        doubtful = np.flatnonzero(found.doubt)
+        if len(doubtful):
+            which = active[doubtful]
+            moments = begun[which] + time[which]
+            looked = look(kind, given[:, which], numbers[:, which], (tip, launches[which], moments))
+            for kept, better in zip(found, looked, strict=True):
+                kept[doubtful] = better
+            given[WANTED] = tip.wanted(launches)
+        tip.put_extremes(launches[active], found.floor, found.ceiling)
+        highest[active] = np.fmax(highest[active], found.highest_gap)
+        over = found.span == given[LEFT, active]
+        time[active] = np.where(over, horizon[active], time[active] + found.span)
+        landed[active] = found.touches != 0.0
+        given[TIME], given[LEFT], given[VANISHING] = time, horizon - time, 0.0
     top = kind.top(tuple(numbers))
     last = fly(state, time, top, np)
     ground = on_table(along_table(last), top).height
@@ -113,28 +113,21 @@ def fly_all(
     )
 
 
-def flight_terms(state: State, top: Top) -> tuple[Array, Array, Array]:
-    """Polynomials of n_z and of the gap in flight, shape (degree + 1, n), and how far they serve."""
-    count = len(state.axis[2])
-    terms = Tip.of(state, top).series().terms
-    support = top.surface.height(Series(lambda k: terms[k], PLAIN))
-    height = np.array([np.broadcast_to(support[k], count) for k in range(len(terms))])
-    gap = -height
-    gap[0] += state.height
-    gap[1] += state.velocity[2]
-    gap[2] -= 0.5 * top.gravity
-    tip = np.array([np.broadcast_to(term, count) for term in terms])
+def look(kind: Kind, given: Array, numbers: Array, seen: tuple[TipMotion, Indices, Array]) -> Piece:
+    """Pieces of flights, by looking at their polynomials, and what happens in them taken in."""
+    tip, launches, begun = seen
+    top = kind.top(tuple(numbers))
+    here = fly(State.unpack(list(given[STATE])), given[TIME], top, np)
     with np.errstate(all="ignore"):
-        reach = step_size([list(tip), list(height)], np.full(count, np.inf), PLAIN)
-    return tip, gap, np.where(np.isnan(reach), np.inf, reach)
-
-
-def divided(terms: Array, vanishing: Indices) -> Array:
-    """Polynomials whose first coefficients vanish, divided by the power of time that they have."""
-    place = np.arange(len(terms))[:, None] + vanishing
-    inside = place < len(terms)
-    found: Array = np.where(inside, np.take_along_axis(terms, np.where(inside, place, 0), axis=0), 0.0)
-    return found
+        height, gap, reach = flight_terms(here, given[LEFT], top, PLAIN)
+    rise, ahead = (np.array(np.broadcast_arrays(*terms)) for terms in (height, gap))
+    zero = Polynomials(np.array(divided(list(ahead), given[VANISHING], PLAIN)), reach).first_fall()
+    touches = ~np.isnan(zero)
+    span = np.where(touches, zero, reach)
+    tip.see(launches, begun, Polynomials(rise, span))
+    highest = -Polynomials(-ahead, span).refined_least()[1]
+    nothing = np.full(span.shape, np.nan)
+    return Piece(span, touches, nothing, highest, nothing, nothing)
 
 
 def slides(state: State, top: Top) -> Flags:

@@ -71,7 +71,7 @@ class Stepper:
         def rows(before: Sequence[Scalar], numbers: Sequence[Scalar]) -> list[Scalar]:
             return stride(self.motion, self.order, before, numbers, NODES)
 
-        return _compiled(rows, self.layout.kept, self.layout.numbers)
+        return compiled(rows, self.layout.kept, self.layout.numbers)
 
     @cached_property
     def _jet(self) -> Callable[[Array, Array, Array], None]:
@@ -80,7 +80,7 @@ class Stepper:
             rows = [series[k] for series in y for k in range(self.order + 1)]
             return rows + [guard[k] for guard in guards for k in range(self.order)]
 
-        return _compiled(rows, self.layout.size, self.layout.parameters, effort=0)
+        return compiled(rows, self.layout.size, self.layout.parameters, effort=0)
 
 
 @lru_cache(maxsize=16)
@@ -89,9 +89,10 @@ def stepper(motion: Motion, tolerance: float) -> Stepper:
     return Stepper(motion, order_for(tolerance))
 
 
-def _compiled(
+def compiled(
     function: Rows, size: int, parameters: int, **options: int
 ) -> Callable[[Array, Array, Array], None]:
+    """A function of so many rows and parameters, compiled for launches abreast."""
     # An interrupted import leaves a module in pieces.
     with deferred():
         from tippetop.integrators.machine_code import machine_code  # noqa: PLC0415 - optional, slow to import

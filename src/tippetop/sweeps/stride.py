@@ -21,16 +21,10 @@ from tippetop.contact.sliding import BRANCH
 from tippetop.integrators.base import Array, Motion
 from tippetop.mechanics.series import Arithmetic, horner, solution
 from tippetop.mechanics.vectors import Scalar
+from tippetop.sweeps.looks import TINY, first_fall, least_value, looked_at, lower_bound, may_fall
 
 GUARD_LOOKS, OTHER_LOOKS, TIP_LOOKS = 32, 16, 12
 """Intervals of a step at whose ends the first guard, the others, and n_z are looked at."""
-
-NEWTON, BRACKETED = 3, 8
-"""Improvements of a least value, by Newton's method from the least look, which cube its small distance, and
-of a zero between two looks."""
-
-TINY = 1e-300
-"""Stands for zero where a number that is zero is to count as below it."""
 
 LANES = 16
 """Arrays are filled up to a multiple of this many launches."""
@@ -118,18 +112,14 @@ def stride(
     """What `Stepper.step` makes of the rows that are kept: all rows."""
     layout = Layout.of(motion)
     start, (left, steps) = before[: layout.size], before[layout.size :]
-    counts, turns, (band_low, band_high) = numbers[layout.counts], numbers[layout.turns], numbers[layout.band]
+    counts, wanted = numbers[layout.counts], numbers[layout.turns :]
     y, guards = motion_series(motion, start, numbers, plain)
     state = [[series[k] for k in range(order + 1)] for series in y]
     falls = [[guard[k] for k in range(order)] for guard in guards]
     whole = step_size(state, left, plain)
     taken, changes, events = later_guards(falls, counts, (whole, layout.branch), plain)
-    heights, upside = looked_at(state[2], taken, TIP_LOOKS), [-term for term in state[2]]
-    floor = least_value(state[2], heights, taken, plain)
-    ceiling = -least_value(upside, [-height for height in heights], taken, plain)
-
-    events += plain.below(floor, 0.0) * plain.below(0.0, ceiling) * turns
-    events += (1.0 - plain.below(band_high, floor)) * (1.0 - plain.below(ceiling, band_low))
+    floor, ceiling = extremes(state[2], taken, plain)
+    events += met(floor, ceiling, wanted, plain)
     pressing = looked_at(falls[0], taken, GUARD_LOOKS)
     events += may_fall(falls[0], pressing, taken, plain) * counts[0]
     moves = plain.below(0.0, taken)
@@ -140,6 +130,20 @@ def stride(
     force = least_value(falls[0], pressing, taken, plain)
     least = [plain.choose(pause, math.inf + 0.0 * value, value) for value in (force, floor, -ceiling)]
     return [*stays, whole, pause, *least, plain.choose(pause, 0.0 * changes, changes)]
+
+
+def extremes(tip: Sequence[Scalar], taken: Scalar, plain: Arithmetic) -> tuple[Scalar, Scalar]:
+    """The least and the largest n_z in a step, given its polynomial."""
+    heights, upside = looked_at(tip, taken, TIP_LOOKS), [-term for term in tip]
+    floor = least_value(tip, heights, taken, plain)
+    return floor, -least_value(upside, [-height for height in heights], taken, plain)
+
+
+def met(floor: Scalar, ceiling: Scalar, wanted: Sequence[Scalar], plain: Arithmetic) -> Scalar:
+    """Whether n_z passes zero, if the top is yet to turn over, or reaches a band: see `Layout`."""
+    turns, low, high = wanted
+    over = plain.below(floor, 0.0) * plain.below(0.0, ceiling) * turns
+    return over + (1.0 - plain.below(high, floor)) * (1.0 - plain.below(ceiling, low))
 
 
 def later_guards(
@@ -172,85 +176,13 @@ def later_guards(
     for number, (terms, count) in enumerate(zip(falls[1:], counts[1:], strict=True), start=1):
         near += plain.below(lower_bound(terms, whole, plain), TINY)
         if number == branch:
-            change, doubt = branch_change(terms, whole, plain)
+            change, doubt = first_fall(terms, whole, OTHER_LOOKS, plain)
             changes, taken, events = plain.below(change, whole), plain.least(change, whole), events + doubt
         else:
             events += may_fall(terms, looked_at(terms, whole, OTHER_LOOKS), whole, plain) * count
     need, found = near * plain.below(0.0, whole), (taken, changes, events)
     taken, changes, events = (plain.rarely(need, a, b) for a, b in zip(found, usual, strict=True))
     return taken, changes, events
-
-
-def lower_bound(terms: Sequence[Scalar], whole: Scalar, plain: Arithmetic) -> Scalar:
-    """What a polynomial is at least in a step: its tangent's ends less all that bends."""
-    bends = horner([plain.size(term) for term in terms[2:]], whole)
-    return plain.least(terms[0], terms[0] + whole * terms[1]) - whole * whole * bends
-
-
-def may_fall(terms: Sequence[Scalar], values: Sequence[Scalar], taken: Scalar, plain: Arithmetic) -> Scalar:
-    """Whether a guard may fall through zero in a step, given its looks."""
-    return plain.below(lowest(values, plain) - slack(terms, taken, len(values) - 1, plain), TINY)
-
-
-def branch_change(terms: Sequence[Scalar], whole: Scalar, plain: Arithmetic) -> tuple[Scalar, Scalar]:
-    """Where in a step the guard of the law's branch falls through zero, and whether that is not told.
-
-    It is inf where no look is below zero. It is not told where the guard begins there, or dips between looks.
-    """
-    values, part = looked_at(terms, whole, OTHER_LOOKS), whole * (1.0 / OTHER_LOOKS)
-    begins, falls, high = plain.below(values[0], TINY), 0.0 * whole, 0.0 * whole
-    nearest = math.inf + 0.0 * whole
-    for k in range(OTHER_LOOKS, 0, -1):
-        under = plain.below(values[k], TINY)
-        falls, high = plain.choose(under, under, falls), plain.choose(under, part * float(k), high)
-        nearest = plain.choose(under, values[k - 1], plain.least(values[k], nearest))
-    slopes = [float(k) * terms[k] for k in range(1, len(terms))]
-    low, place = high - part, high - 0.5 * part
-    for _ in range(BRACKETED):
-        value = horner(terms, place)
-        above, better = plain.below(0.0, value), place - value / horner(slopes, place)
-        low, high = plain.choose(above, place, low), plain.choose(above, high, place)
-        outside = plain.below(better, low) + plain.below(high, better)
-        place = plain.choose(outside, 0.5 * (low + high), better)
-    # Before it falls it may have dipped; if it does not fall, its least value tells.
-    least = plain.choose(
-        falls, nearest - slack(terms, whole, OTHER_LOOKS, plain), least_value(terms, values, whole, plain)
-    )
-    told = plain.choose(falls * (1.0 - begins), place, math.inf + 0.0 * whole)
-    return told, begins + plain.below(least, TINY)
-
-
-def looked_at(terms: Sequence[Scalar], taken: Scalar, looks: int) -> list[Scalar]:
-    """Values of a polynomial at the looks of a step."""
-    part = taken * (1.0 / looks)
-    return [horner(terms, part * float(look)) for look in range(looks + 1)]
-
-
-def slack(terms: Sequence[Scalar], taken: Scalar, looks: int, plain: Arithmetic) -> Scalar:
-    """How far a polynomial may go beyond its looks: between two by (interval)^2 / 8 max |f''| at most."""
-    part = taken * (1.0 / looks)
-    bends = [float(k * (k - 1)) * plain.size(terms[k]) for k in range(2, len(terms))]
-    return part * part * (1.0 / 8.0) * horner(bends, taken)
-
-
-def least_value(
-    terms: Sequence[Scalar], values: Sequence[Scalar], taken: Scalar, plain: Arithmetic
-) -> Scalar:
-    """The least value of a polynomial in a step, given its looks, from the least of which it is sought."""
-    part = taken * (1.0 / (len(values) - 1))
-    least, place = values[0], 0.0 * taken
-    for look, value in enumerate(values[1:], start=1):
-        lower = plain.below(value, least)
-        least, place = plain.choose(lower, value, least), plain.choose(lower, part * float(look), place)
-    slopes = [float(k) * terms[k] for k in range(1, len(terms))]
-    bends = [float(k) * slopes[k] for k in range(1, len(slopes))]
-    low, high = -plain.least(0.0 * part, part - place), plain.least(place + part, taken)
-    for _ in range(NEWTON):
-        bend = horner(bends, place)
-        better = place - horner(slopes, place) / bend
-        better = plain.choose(plain.below(0.0, bend), better, place)
-        place = plain.least(-plain.least(-better, -low), high)
-    return plain.least(horner(terms, place), least)
 
 
 def step_size(state: Sequence[Sequence[Scalar]], left: Scalar, plain: Arithmetic) -> Scalar:
@@ -264,14 +196,6 @@ def step_size(state: Sequence[Sequence[Scalar]], left: Scalar, plain: Arithmetic
     radii = [(whole / square(k)) ** (0.5 / k) for k in (order - 1, order)]
     safety = math.exp(-2.0 - 0.7 / (order - 1))
     return plain.least(safety * plain.least(*radii), left)
-
-
-def lowest(values: Sequence[Scalar], plain: Arithmetic) -> Scalar:
-    """The least of many."""
-    least = values[0]
-    for value in values[1:]:
-        least = plain.least(value, least)
-    return least
 
 
 def order_for(tolerance: float) -> int:

@@ -45,6 +45,22 @@ class TipMotion:
         self.early = self.least
         self.lately[:] = np.inf
 
+    def wanted(self, launches: Indices) -> Array:
+        """Whether some are yet to turn over, and the band that they are yet to reach, shape (3, n).
+
+        Of no band the least n_z is inf and the largest -inf.
+        """
+        waits = np.isnan(self.reached[launches]) & ~np.isnan(self.low[launches])
+        low, high = (
+            np.where(waits, edge[launches], far) for edge, far in ((self.low, np.inf), (self.high, -np.inf))
+        )
+        return np.array([np.isnan(self.turned[launches]), low, high])
+
+    def put_extremes(self, launches: Indices, floor: Array, ceiling: Array) -> None:
+        """Take in the least and the largest n_z of some launches, nan where they are known."""
+        self.lately[DOWN, launches] = np.fmin(self.lately[DOWN, launches], floor)
+        self.lately[UP, launches] = np.fmin(self.lately[UP, launches], -ceiling)
+
     def put(self, least: Array) -> None:
         """Take in the least values of a step of every launch, shape (3, n); inf for those that took none."""
         np.fmin(self.lately, least, out=self.lately)

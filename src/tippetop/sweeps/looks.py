@@ -1,0 +1,111 @@
+"""Where polynomials of many launches at once fall to zero, and how low they come: by looks in a step.
+
+It is written in plain operators and a few choices, for arrays and for what is compiled.
+"""
+
+import math
+from collections.abc import Sequence
+
+from tippetop.mechanics.series import Arithmetic, horner
+from tippetop.mechanics.vectors import Scalar
+
+NEWTON, BRACKETED = 3, 8
+"""Improvements of a least value, by Newton's method from the least look, which cube its small distance, and
+of a zero between two looks."""
+
+NEAR = 1e-9
+"""Last improvement of a zero, over it, beyond which it is not found: the next would be the square of that."""
+
+TINY = 1e-300
+"""Stands for zero where a number that is zero is to count as below it."""
+
+
+def looked_at(terms: Sequence[Scalar], taken: Scalar, looks: int) -> list[Scalar]:
+    """Values of a polynomial at the looks of a step."""
+    part = taken * (1.0 / looks)
+    return [horner(terms, part * float(look)) for look in range(looks + 1)]
+
+
+def slack(terms: Sequence[Scalar], taken: Scalar, looks: int, plain: Arithmetic) -> Scalar:
+    """How far a polynomial may go beyond its looks: between two by (interval)^2 / 8 max |f''| at most."""
+    part = taken * (1.0 / looks)
+    bends = [float(k * (k - 1)) * plain.size(terms[k]) for k in range(2, len(terms))]
+    return part * part * (1.0 / 8.0) * horner(bends, taken)
+
+
+def lower_bound(terms: Sequence[Scalar], whole: Scalar, plain: Arithmetic) -> Scalar:
+    """What a polynomial is at least in a step: its tangent's ends less all that bends."""
+    bends = horner([plain.size(term) for term in terms[2:]], whole)
+    return plain.least(terms[0], terms[0] + whole * terms[1]) - whole * whole * bends
+
+
+def lowest(values: Sequence[Scalar], plain: Arithmetic) -> Scalar:
+    """The least of many."""
+    least = values[0]
+    for value in values[1:]:
+        least = plain.least(value, least)
+    return least
+
+
+def may_fall(terms: Sequence[Scalar], values: Sequence[Scalar], taken: Scalar, plain: Arithmetic) -> Scalar:
+    """Whether a guard may fall through zero in a step, given its looks."""
+    return plain.below(lowest(values, plain) - slack(terms, taken, len(values) - 1, plain), TINY)
+
+
+def first_fall(
+    terms: Sequence[Scalar], whole: Scalar, looks: int, plain: Arithmetic
+) -> tuple[Scalar, Scalar]:
+    """Where in a step a polynomial first falls through zero, and whether that is not told.
+
+    It is inf where no look is below zero. It is not told where the polynomial begins there, or may dip
+    between looks before it falls, or where its zero is not found in a few improvements.
+    """
+    values, part = looked_at(terms, whole, looks), whole * (1.0 / looks)
+    falls = high = late = 0.0 * whole
+    nearest = before = math.inf + 0.0 * whole
+    for k in range(looks, 0, -1):
+        under = plain.below(values[k], TINY)
+        falls, high = plain.choose(under, under, falls), plain.choose(under, part * float(k), high)
+        before = plain.choose(under, values[k - 1], before)
+        nearest = plain.choose(under + late, math.inf + 0.0 * whole, plain.least(values[k], nearest))
+        late = under
+    nearest = plain.choose(late, nearest, plain.least(values[0], nearest))
+    slopes = [float(k) * terms[k] for k in range(1, len(terms))]
+    first = low = high - part
+    place = high - 0.5 * part
+    for _ in range(BRACKETED):
+        value = horner(terms, place)
+        above, better = plain.below(0.0, value), place - value / horner(slopes, place)
+        low, high = plain.choose(above, place, low), plain.choose(above, high, place)
+        outside = plain.below(better, low) + plain.below(high, better)
+        better = plain.choose(outside, 0.5 * (low + high), better)
+        place, moved = better, plain.size(better - place)
+    # Where it rises at the look before its fall, it may have dipped before that, too.
+    rises = plain.below(0.0, horner(slopes, first))
+    nearest = plain.choose(rises, plain.least(before, nearest), nearest)
+    least = plain.choose(
+        falls, nearest - slack(terms, whole, looks, plain), least_value(terms, values, whole, plain)
+    )
+    begins, found = plain.below(values[0], TINY), 1.0 - plain.below(NEAR * place, moved)
+    told = plain.choose(falls * (1.0 - begins), place, math.inf + 0.0 * whole)
+    return told, begins + plain.below(least, TINY) + falls * (1.0 - found)
+
+
+def least_value(
+    terms: Sequence[Scalar], values: Sequence[Scalar], taken: Scalar, plain: Arithmetic
+) -> Scalar:
+    """The least value of a polynomial in a step, given its looks, from the least of which it is sought."""
+    part = taken * (1.0 / (len(values) - 1))
+    least, place = values[0], 0.0 * taken
+    for look, value in enumerate(values[1:], start=1):
+        lower = plain.below(value, least)
+        least, place = plain.choose(lower, value, least), plain.choose(lower, part * float(look), place)
+    slopes = [float(k) * terms[k] for k in range(1, len(terms))]
+    bends = [float(k) * slopes[k] for k in range(1, len(slopes))]
+    low, high = -plain.least(0.0 * part, part - place), plain.least(place + part, taken)
+    for _ in range(NEWTON):
+        bend = horner(bends, place)
+        better = place - horner(slopes, place) / bend
+        better = plain.choose(plain.below(0.0, bend), better, place)
+        place = plain.least(-plain.least(-better, -low), high)
+    return plain.least(horner(terms, place), least)
