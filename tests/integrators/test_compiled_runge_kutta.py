@@ -112,7 +112,7 @@ def test_processes_share_what_they_compile_and_damage_is_thrown_away(tmp_path):
     for process in [started(tmp_path), started(tmp_path)]:
         ended(process)
     whole_ones = contents(tmp_path)
-    assert len(list(tmp_path.glob(f"*/{SEAL}"))) == 2, "the loop, and the motion"
+    assert len(list(tmp_path.glob(f"*/{SEAL}"))) == 3, "the loop, the motion, and its guards at all looks"
     assert not list(tmp_path.glob("making-*"))
     ended(started(tmp_path))
     assert contents(tmp_path) == whole_ones, "nothing was compiled again"

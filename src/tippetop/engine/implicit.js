@@ -14,7 +14,7 @@ export function implicit(rates, guards, count, p, y, lost, k, span, tolerance, k
   const step = new Step(rates, p, y, k, tolerance[0]), told = (ended) => [steps, step.calls, ended];
   rates(y, p, k[0]);
   if (!k[0].every(Number.isFinite)) return told(SINGULAR);
-  if (span[2] === 0) span[2] = first_step(rates, p, y, k, step.place, span[1] - span[0], tolerance);
+  if (span[2] === 0) span[2] = first_step(rates, p, y, k, step.place, span[1] - span[0], tolerance, y.length);
   for (let tries = 1; span[0] < span[1]; tries += 1) {
     if (steps === knots.length - 1) return told(FULL);
     const reach = Math.min(span[0] + span[2], span[1]), h = reach - span[0], doubt = step.take(h);

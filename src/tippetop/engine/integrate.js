@@ -8,7 +8,7 @@ export const make_integrator = (name, tolerance) => ({
   tolerance,
   integrate(motion, given, start, end) {
     const { rates, guards } = compiledMotion(motion), taking = ["radau", "collocation"].includes(name) ? implicit : advance;
-    const machinery = new Machinery(taking, within, rates, guards, motion.guards.length, guards);
+    const machinery = new Machinery(taking, within, rates, guards, motion.guards.length, motion.size, guards);
     return stepped(motion, machinery, Float64Array.from(given), start, end, tolerance);
   },
 });

@@ -9022,8 +9022,21 @@ function evaluate(function_, y, p, out) {
   function_(y, p, out);
 }
 
+/** An array whose shape a compiler may rely on. */
+function fixed(array) {
+  return array;
+}
+
+/** Put the guards' values at the looks of a step into the rows of values after the first. */
+function look(guards, p, terms, first, y, values, room) {
+  for (var number = 1; number < LOOKS_of_dormand_prince + 1; number += 1) {
+    within(terms, first, number / LOOKS_of_dormand_prince, y);
+    evaluate(guards, y, p, values[number]);
+  }
+}
+
 /** Error of a step: less than 1 is good enough. */
-function error_of(h, y, new_, k, tolerance) {
+function error_of(h, y, new_, k, tolerance, size) {
   combined_of_dormand_prince(y, k);
   var fifth = 0.0;
   var third = 0.0;
@@ -9039,47 +9052,49 @@ function error_of(h, y, new_, k, tolerance) {
   if (fifth === 0.0 && third === 0.0) {
     return 0.0;
   }
-  return h * fifth / py.math.sqrt((fifth + 0.01 * third) * y.length);
+  return h * fifth / py.math.sqrt((fifth + 0.01 * third) * size);
+}
+
+/** What a power takes longer for. */
+function eighth_root(number) {
+  return py.math.sqrt(py.math.sqrt(py.math.sqrt(number)));
 }
 
 /** By how much a step of this error may be longer. */
 function factor_for(error, tries) {
   if (!(error < 1.0)) {
-    var factor = SAFETY_of_dormand_prince * py.pow(error, -0.125);
+    var factor = SAFETY_of_dormand_prince / eighth_root(error);
     return factor > LEAST_FACTOR ? factor : LEAST_FACTOR;
   }
-  factor = error === 0.0 ? MOST_FACTOR : Math.min(
-    MOST_FACTOR,
-    SAFETY_of_dormand_prince * py.pow(error, -0.125)
-  );
+  factor = error === 0.0 ? MOST_FACTOR : Math.min(MOST_FACTOR, SAFETY_of_dormand_prince / eighth_root(error));
   return tries === 1 ? factor : Math.min(1.0, factor);
 }
 
 /** How large the difference of two is beside the errors that are allowed: a mean. */
-function measure(a, b, y, tolerance) {
+function measure(a, b, y, tolerance, size) {
   var total = 0.0;
   for (var i = 0; i < y.length; i += 1) {
     var part = (a[i] - b[i]) / (tolerance[1] + tolerance[0] * Math.abs(y[i]));
     total = total + part * part;
   }
-  return py.math.sqrt(total / y.length);
+  return py.math.sqrt(total / size);
 }
 
 /** A step to begin with, whose error is about right; k[0] has the rates. */
-function first_step(rates, p, y, k, place, span, tolerance) {
+function first_step(rates, p, y, k, place, span, tolerance, size) {
   for (var i = 0; i < y.length; i += 1) {
     place[i] = 0.0;
   }
-  var size = measure(y, place, y, tolerance);
-  var slope = measure(k[0], place, y, tolerance);
-  var trial = Math.min(span, size < 1e-05 || slope < 1e-05 ? 1e-06 : 0.01 * size / slope);
+  var extent = measure(y, place, y, tolerance, size);
+  var slope = measure(k[0], place, y, tolerance, size);
+  var trial = Math.min(span, extent < 1e-05 || slope < 1e-05 ? 1e-06 : 0.01 * extent / slope);
   var k0 = k[0];
   for (var i = 0; i < y.length; i += 1) {
     place[i] = y[i] + trial * k0[i];
   }
   evaluate(rates, place, p, k[1]);
-  var steepest = Math.max(slope, measure(k[1], k[0], y, tolerance) / trial);
-  var found = steepest <= 1e-15 ? Math.max(1e-06, trial * 0.001) : py.pow(0.01 / steepest, 0.125);
+  var steepest = Math.max(slope, measure(k[1], k[0], y, tolerance, size) / trial);
+  var found = steepest <= 1e-15 ? Math.max(1e-06, trial * 0.001) : eighth_root(0.01 / steepest);
   return Math.min(100.0 * trial, found, span);
 }
 
@@ -9131,11 +9146,8 @@ function rises(guards, p, terms, first, y, values, guard) {
 }
 
 /** Whether a guard may fall in a step; values has those at its start, and room for the other looks. */
-function suspect(guards, p, terms, first, y, values) {
-  for (var look = 1; look < LOOKS_of_dormand_prince + 1; look += 1) {
-    within(terms, first, look / LOOKS_of_dormand_prince, y);
-    evaluate(guards, y, p, values[look]);
-  }
+function suspect(guards, p, terms, first, y, values, room) {
+  look(guards, p, terms, first, y, values, room);
   var values0 = values[0];
   var values1 = values[1];
   for (var guard = 0; guard < values[0].length; guard += 1) {
@@ -9158,12 +9170,13 @@ function suspect(guards, p, terms, first, y, values) {
 }
 
 /** Take steps from a state, which is brought up to date. */
-function advance(rates, guards, count, p, y, lost, k, span, tolerance, knots, terms, steps) {
-  var size = y.length;
-  var moved = py.np.empty(size);
-  var new_ = py.np.empty(size);
-  var place = py.np.empty(size);
+function advance(rates, guards, count, p, y, lost, k, span, tolerance, knots, terms, steps, size) {
+  [y, lost, k] = [fixed(y), fixed(lost), fixed(k)];
+  var moved = py.np.empty(y.length);
+  var new_ = py.np.empty(y.length);
+  var place = py.np.empty(y.length);
   var values = py.np.empty([LOOKS_of_dormand_prince + 2, count]);
+  var room = py.np.empty(LOOKS_of_dormand_prince * (y.length + count));
   var time = span[0];
   var end = span[1];
   var calls = 0;
@@ -9175,7 +9188,7 @@ function advance(rates, guards, count, p, y, lost, k, span, tolerance, knots, te
         return [steps, 1, SINGULAR];
       }
     }
-    span[2] = first_step(rates, p, y, k, place, end - time, tolerance);
+    span[2] = first_step(rates, p, y, k, place, end - time, tolerance, size);
     calls = calls + 2;
   }
   if (count > 0) {
@@ -9194,17 +9207,17 @@ function advance(rates, guards, count, p, y, lost, k, span, tolerance, knots, te
       var reach = Math.min(time + span[2], end);
       var h = reach - time;
       stages_of_dormand_prince(rates, h, p, y, lost, k, moved, new_);
-      error = error_of(h, y, new_, k, tolerance);
+      error = error_of(h, y, new_, k, tolerance, size);
       tries = tries + 1;
       span[2] = h * factor_for(error, tries);
     }
     calls = calls + (12 * tries + 3);
     more_stages(rates, h, p, y, lost, k, place);
-    var first = steps * size * POWERS;
+    var first = steps * y.length * POWERS;
     polynomials(h, y, new_, k, terms, first);
     var k0 = k[0];
     var k12 = k[12];
-    for (var i = 0; i < size; i += 1) {
+    for (var i = 0; i < y.length; i += 1) {
       lost[i] = moved[i] - (new_[i] - y[i]);
       y[i] = new_[i];
       k0[i] = k12[i];
@@ -9213,7 +9226,7 @@ function advance(rates, guards, count, p, y, lost, k, span, tolerance, knots, te
     steps = steps + 1;
     knots[steps] = time;
     span[0] = time;
-    if (count > 0 && py.truth(suspect(guards, p, terms, first, place, values))) {
+    if (count > 0 && py.truth(suspect(guards, p, terms, first, place, values, room))) {
       return [steps, calls, SUSPECT];
     }
   }
@@ -9783,14 +9796,16 @@ const FAILURES = new py.Dict([
 
 /** What a motion is followed with. */
 class Machinery extends py.NamedTuple {
-  constructor(advance, within, rates, guards, number, values) {
+  constructor(advance, within, rates, guards, number, width, values, kept = null) {
     super();
     this.advance = advance;
     this.within = within;
     this.rates = rates;
     this.guards = guards;
     this.number = number;
+    this.width = width;
     this.values = values;
+    this.kept = kept;
   }
   /** A guard that is evaluated by the compiled function. */
   guard(guard, number) {
@@ -9802,7 +9817,7 @@ class Machinery extends py.NamedTuple {
     return new Guard(guard.name, value);
   }
 }
-py.fields(Machinery, ["advance", "within", "rates", "guards", "number", "values"]);
+py.fields(Machinery, ["advance", "within", "rates", "guards", "number", "width", "values", "kept"]);
 
 /** Follow a motion; see `tippetop.integrators.base.Integrator`. */
 function* stepped(motion, functions, parameters, start, end, tolerance) {
@@ -9832,15 +9847,16 @@ function* stepped(motion, functions, parameters, start, end, tolerance) {
 class Stepping extends py.Thing {
   constructor(functions, parameters, start, end, tolerance) {
     super();
-    var size = py.len(start[1]);
     [this.functions, this.parameters, this.tolerance] = [functions, parameters, py.np.full(2, tolerance)];
-    [this.state, this.lost] = [py.np.array(start[1]), py.np.zeros(size)];
-    [this.stages, this.span] = [py.np.empty([ROWS, size]), py.np.array([start[0], end, 0.0])];
+    this.size = py.len(start[1]);
+    var width = functions.width;
+    [this.row, this.lost] = [this.filled(start[1]), py.np.zeros(width)];
+    [this.stages, this.span] = [py.np.zeros([ROWS, width]), py.np.array([start[0], end, 0.0])];
     [this.steps, this.calls] = [0, 0];
     this.other = null;
     [this.knots, this.terms] = [
       py.np.empty(py.add(FEW_of_stepping, 1)),
-      py.np.empty(py.mul(py.mul(FEW_of_stepping, POWERS), size))
+      py.np.empty(py.mul(py.mul(FEW_of_stepping, POWERS), width))
     ];
     py.put(this.knots, 0, start[0]);
   }
@@ -9848,14 +9864,19 @@ class Stepping extends py.Thing {
   get time() {
     return py.float(this.span[0]);
   }
+  /** The state there. */
+  get state() {
+    return py.np.array(this.row.slice(0, this.size));
+  }
+  /** The row of a state. */
+  filled(state) {
+    return py.np.concatenate([state, py.np.zeros(py.sub(this.functions.width, this.size))]);
+  }
   /** Make room for more steps. */
   widen() {
     var more = py.sub(py.min(py.mul(WIDER, this.steps), MANY), this.steps);
     this.knots = py.np.concatenate([this.knots, py.np.empty(more)]);
-    this.terms = py.np.concatenate([
-      this.terms,
-      py.np.empty(py.mul(py.mul(more, POWERS), py.len(this.state)))
-    ]);
+    this.terms = py.np.concatenate([this.terms, py.np.empty(py.mul(py.mul(more, POWERS), py.len(this.row)))]);
   }
   /** Take steps until something is to be done; tell what. */
   advance(guarded = true) {
@@ -9865,36 +9886,37 @@ class Stepping extends py.Thing {
       functions.guards,
       py.truth(guarded) ? functions.number : 0,
       this.parameters,
-      this.state,
+      this.row,
       this.lost,
       this.stages,
       this.span,
       this.tolerance,
       this.knots,
       this.terms,
-      this.steps
+      this.steps,
+      this.size
     );
     [this.steps, this.calls] = [steps, py.add(this.calls, calls)];
     return ended;
   }
   /** The arc that has been made; the next one begins. */
   arc(guard = null, failure = null) {
-    var solution = DenseSolution.of_steps(this.knots, this.terms, py.len(this.state), this.steps);
-    var arc = new Arc(solution, py.np.array(this.state), guard, failure, this.steps, this.calls);
+    var width = py.len(this.row);
+    var solution = DenseSolution.of_steps(this.knots, this.terms, this.size, this.steps, width);
+    var arc = new Arc(solution, this.state, guard, failure, this.steps, this.calls);
     py.put(this.knots, 0, this.time);
     [this.steps, this.calls] = [0, 0];
     return arc;
   }
   /** The guard that first falls through zero in the last step, when, and the state there. */
   fall(guards) {
-    var size = py.len(this.state);
     var begin = py.float(py.item(this.knots, py.sub(this.steps, 1)));
     var reach = this.time;
-    var first = py.mul(py.mul(py.sub(this.steps, 1), size), POWERS);
+    var first = py.mul(py.mul(py.sub(this.steps, 1), py.len(this.row)), POWERS);
+    var row = py.np.empty(py.len(this.row));
     var dense = (at) => {
-      var found = py.np.empty(size);
-      this.functions.within(this.terms, first, py.div(py.sub(at, begin), py.sub(reach, begin)), found);
-      return found;
+      this.functions.within(this.terms, first, py.div(py.sub(at, begin), py.sub(reach, begin)), row);
+      return py.np.array(row.slice(0, this.size));
     };
     var advance = (at) => {
       return this.beside().landed(begin, state, at);
@@ -9910,13 +9932,13 @@ class Stepping extends py.Thing {
     var begin = py.item(this.knots, py.sub(this.steps, 1));
     var end = py.item(this.knots, this.steps);
     var part = py.div(py.sub(time, begin), py.sub(end, begin));
-    var last = py.mul(py.mul(this.steps, py.len(state)), POWERS);
-    for (var number = py.sub(last, py.mul(py.len(state), POWERS)); number < last; number += 1) {
+    var last = py.mul(py.mul(this.steps, py.len(this.row)), POWERS);
+    for (var number = py.sub(last, py.mul(py.len(this.row), POWERS)); number < last; number += 1) {
       py.put(this.terms, number, py.mul(py.item(this.terms, number), py.pow(part, py.mod(number, POWERS))));
     }
     py.put(this.knots, this.steps, time);
     py.put(this.span, 0, time);
-    this.state = state;
+    this.row = this.filled(state);
   }
   /** Another motion of the same kind, for trial. */
   beside() {
@@ -9935,7 +9957,7 @@ class Stepping extends py.Thing {
   }
   /** The state after steps from another that end at exactly this time. */
   landed(time, state, end) {
-    [this.state, this.lost] = [py.np.array(state), py.np.zeros(py.len(state))];
+    [this.row, this.lost] = [this.filled(state), py.np.zeros(py.len(this.row))];
     this.span = py.np.array([time, end, 0.0]);
     var ended = FULL;
     while (py.eq(ended, FULL) && end > time) {
@@ -11134,6 +11156,7 @@ export {
   driven_motion,
   each_surface,
   eccentricity,
+  eighth_root,
   ended_slips,
   energy,
   equal_thresholds,
@@ -11147,6 +11170,7 @@ export {
   first_reach,
   first_root,
   first_step,
+  fixed,
   flat,
   fly,
   fold,
@@ -11205,6 +11229,7 @@ export {
   letting_go,
   level_spin,
   limit_guard,
+  look,
   lowest_contact_vector,
   lowest_jellett,
   lowest_surface,

@@ -131,7 +131,7 @@ export const np = {
     found.set(b, a.length);
     return found;
   },
-  zeros: (count) => new Float64Array(count),
+  zeros: (shape) => np.empty(shape),
   array: (numbers) => new Float64Array(numbers),
   full: (count, value) => new Float64Array(count).fill(value),
 };

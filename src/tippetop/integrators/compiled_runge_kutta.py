@@ -1,45 +1,39 @@
 """Dormand and Prince's method of order 8(5,3), compiled by numba; what it follows, by LLVM."""
 
-import inspect
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cache, lru_cache
+from inspect import getsource
 from typing import Any
 
+import numpy as np
 from numba import types
 
 from tippetop.emit.recording import record
-from tippetop.integrators import dormand_prince as loop
+from tippetop.integrators import dormand_prince, numba_calls
 from tippetop.integrators.base import Arc, Array, Motion
-from tippetop.integrators.machine_code import Compiled, machine_code
+from tippetop.integrators.dormand_prince import LOOKS
+from tippetop.integrators.machine_code import machine_code
 from tippetop.integrators.numba_cache import compiled
 from tippetop.integrators.scipy_methods import SciPy
 from tippetop.integrators.stepping import Machinery, stepped
 from tippetop.mechanics.vectors import Scalar
 
+ABREAST = 8
+"""Numbers of a state an instruction: rows of them are filled up with zeros to multiples."""
+
 ROW = types.float64[::1]
-PLACE = types.CPointer(types.float64)  # type: ignore[no-untyped-call]
-FUNCTION = types.void(*[PLACE] * 3, types.int64)
 ADVANCE = types.UniTuple(types.int64, 3)(  # type: ignore[no-untyped-call]
-    types.FunctionType(FUNCTION),
-    types.FunctionType(FUNCTION),
+    types.UniTuple(types.int64, 1),  # type: ignore[no-untyped-call]
+    types.UniTuple(types.int64, 2),  # type: ignore[no-untyped-call]
     types.int64,
     *[ROW] * 3,
     types.float64[:, ::1],
     *[ROW] * 4,
-    types.int64,
+    *[types.int64] * 2,
 )
 WITHIN = types.void(ROW, types.int64, types.float64, ROW)
-"""What the functions take: a motion's, and those of `dormand_prince`."""
-
-CALLED = """
-import numba
-
-@numba.njit(inline="always")
-def evaluate(function, y, p, out):
-    function(y.ctypes, p.ctypes, out.ctypes, 1)
-"""
-"""How functions are called that LLVM compiled."""
+"""What the functions of `dormand_prince` take; a motion's functions are the addresses of their code."""
 
 
 @dataclass(frozen=True)
@@ -61,21 +55,8 @@ class CompiledRungeKutta:
         if functions is None:
             yield from SciPy("dop853", self.tolerance).integrate(motion, parameters, start, end)
             return
-        yield from stepped(motion, functions, parameters, start, end, self.tolerance)
-
-
-class _Address(types.WrapperAddressProtocol):
-    """Where a compiled function is, for others that are compiled."""
-
-    def __init__(self, function: Compiled) -> None:
-        self.function = function
-
-    def __wrapper_address__(self) -> int:
-        return int(self.function.address)
-
-    def signature(self) -> Any:
-        """What the function takes and gives."""
-        return FUNCTION
+        numbers = [*parameters, *np.repeat(parameters, LOOKS)]
+        yield from stepped(motion, functions, numbers, start, end, self.tolerance)
 
 
 @lru_cache(maxsize=64)
@@ -92,13 +73,17 @@ def _compiled(motion: Motion) -> Machinery | None:
         }
     except (TypeError, ValueError, ArithmeticError, AttributeError):
         return None
-    found, method = machine_code(recorded), _method()
-    addresses = _Address(found["rates"]), _Address(found["guards"])
-    return Machinery(method["advance"], method["within"], *addresses, len(motion.guards), found["guards"])
+    one, several = machine_code(recorded), machine_code({"guards": recorded["guards"]}, LOOKS)
+    width = -(-motion.size // ABREAST) * ABREAST
+    method = _method(width)
+    addresses = (one["rates"].address,), (one["guards"].address, several["guards"].address)
+    numbers = len(motion.guards), width
+    return Machinery(method["advance"], method["within"], *addresses, *numbers, one["guards"], several)
 
 
 @cache
-def _method() -> dict[str, Any]:
-    """What the method is, compiled."""
-    source = inspect.getsource(loop) + loop.written_out() + CALLED
+def _method(width: int) -> dict[str, Any]:
+    """What the method is, compiled for rows of so many numbers."""
+    parts = getsource(dormand_prince), dormand_prince.written_out(), getsource(numba_calls)
+    source = "\n".join([*parts, f"WIDTH = {width}"])
     return compiled(source, {"advance": ADVANCE, "within": WITHIN})

@@ -113,9 +113,10 @@ class DenseSolution:
         return cls(np.array([time]), np.empty((0, size, 1)))
 
     @classmethod
-    def of_steps(cls, knots: Array, terms: Array, size: int, count: int) -> "DenseSolution":
-        """The first of some steps, with all coefficients in a row."""
-        return cls(knots[: count + 1].copy(), terms.reshape(len(knots) - 1, size, -1)[:count].copy())
+    def of_steps(cls, knots: Array, terms: Array, size: int, count: int, width: int) -> "DenseSolution":
+        """The first of some steps, with all coefficients in a row, beside those of further numbers."""
+        steps = terms.reshape(len(knots) - 1, width, -1)
+        return cls(knots[: count + 1].copy(), steps[:count, :size].copy())
 
     @classmethod
     def of_rows(

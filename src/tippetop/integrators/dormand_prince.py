@@ -51,7 +51,19 @@ def evaluate(function: Compiled, y: Array, p: Array, out: Array) -> None:
     function(y, p, out)
 
 
-def error_of(h: float, y: Array, new: Array, k: Array, tolerance: Array) -> float:
+def fixed(array: Array) -> Array:
+    """An array whose shape a compiler may rely on."""
+    return array
+
+
+def look(guards: Compiled, p: Array, terms: Array, first: int, y: Array, values: Array, room: Array) -> None:
+    """Put the guards' values at the looks of a step into the rows of values after the first."""
+    for number in range(1, LOOKS + 1):
+        within(terms, first, number / LOOKS, y)
+        evaluate(guards, y, p, values[number])
+
+
+def error_of(h: float, y: Array, new: Array, k: Array, tolerance: Array, size: int) -> float:
     """Error of a step: less than 1 is good enough."""
     combined(y, k)
     fifth, third = 0.0, 0.0
@@ -62,41 +74,46 @@ def error_of(h: float, y: Array, new: Array, k: Array, tolerance: Array) -> floa
         third += second * second
     if fifth == 0.0 and third == 0.0:
         return 0.0
-    return h * fifth / math.sqrt((fifth + 0.01 * third) * len(y))
+    return h * fifth / math.sqrt((fifth + 0.01 * third) * size)
+
+
+def eighth_root(number: float) -> float:
+    """What a power takes longer for."""
+    return math.sqrt(math.sqrt(math.sqrt(number)))
 
 
 def factor_for(error: float, tries: int) -> float:
     """By how much a step of this error may be longer."""
     if not error < 1.0:
         # What is no number, after a step too far, is less than the least factor too.
-        factor = SAFETY * error**-0.125
+        factor = SAFETY / eighth_root(error)
         return factor if factor > LEAST_FACTOR else LEAST_FACTOR
-    factor = MOST_FACTOR if error == 0.0 else min(MOST_FACTOR, SAFETY * error**-0.125)
+    factor = MOST_FACTOR if error == 0.0 else min(MOST_FACTOR, SAFETY / eighth_root(error))
     return factor if tries == 1 else min(1.0, factor)
 
 
-def measure(a: Array, b: Array, y: Array, tolerance: Array) -> float:
+def measure(a: Array, b: Array, y: Array, tolerance: Array, size: int) -> float:
     """How large the difference of two is beside the errors that are allowed: a mean."""
     total = 0.0
     for i in range(len(y)):
         part = (a[i] - b[i]) / (tolerance[1] + tolerance[0] * abs(y[i]))
         total += part * part
-    return math.sqrt(total / len(y))
+    return math.sqrt(total / size)
 
 
 def first_step(
-    rates: Compiled, p: Array, y: Array, k: Array, place: Array, span: float, tolerance: Array
+    rates: Compiled, p: Array, y: Array, k: Array, place: Array, span: float, tolerance: Array, size: int
 ) -> float:
     """A step to begin with, whose error is about right; k[0] has the rates."""
     for i in range(len(y)):
         place[i] = 0.0
-    size, slope = measure(y, place, y, tolerance), measure(k[0], place, y, tolerance)
-    trial = min(span, 1e-6 if size < 1e-5 or slope < 1e-5 else 0.01 * size / slope)
+    extent, slope = measure(y, place, y, tolerance, size), measure(k[0], place, y, tolerance, size)
+    trial = min(span, 1e-6 if extent < 1e-5 or slope < 1e-5 else 0.01 * extent / slope)
     for i in range(len(y)):
         place[i] = y[i] + trial * k[0, i]
     evaluate(rates, place, p, k[1])
-    steepest = max(slope, measure(k[1], k[0], y, tolerance) / trial)
-    found = max(1e-6, trial * 1e-3) if steepest <= 1e-15 else (0.01 / steepest) ** 0.125
+    steepest = max(slope, measure(k[1], k[0], y, tolerance, size) / trial)
+    found = max(1e-6, trial * 1e-3) if steepest <= 1e-15 else eighth_root(0.01 / steepest)
     return min(100.0 * trial, found, span)
 
 
@@ -136,11 +153,11 @@ def rises(guards: Compiled, p: Array, terms: Array, first: int, y: Array, values
     return False
 
 
-def suspect(guards: Compiled, p: Array, terms: Array, first: int, y: Array, values: Array) -> bool:
+def suspect(
+    guards: Compiled, p: Array, terms: Array, first: int, y: Array, values: Array, room: Array
+) -> bool:
     """Whether a guard may fall in a step; values has those at its start, and room for the other looks."""
-    for look in range(1, LOOKS + 1):
-        within(terms, first, look / LOOKS, y)
-        evaluate(guards, y, p, values[look])
+    look(guards, p, terms, first, y, values, room)
     for guard in range(len(values[0])):
         if may_fall(values, guard):
             return True
@@ -168,6 +185,7 @@ def advance(
     knots: Array,
     terms: Array,
     steps: int,
+    size: int,
 ) -> tuple[int, int, int]:
     """Take steps from a state, which is brought up to date.
 
@@ -181,25 +199,28 @@ def advance(
         The state, and what rounding has taken from it so far.
     k
         Room for the rates of the stages, the first of which have been found unless all begins here, and for
-        what is made of them, shape (`ROWS`, size).
+        what is made of them, shape (`ROWS`, n).
     span
         Time, the end, and the next step's size, 0 to begin with: time and size are brought up to date.
     tolerance
         Relative and absolute error per step.
     knots, terms
         Room for the ends of n steps, shape (n + 1,), and for the coefficients of their polynomials, those of
-        each number in a row, shape (n * size * `POWERS`,).
+        each number in a row.
     steps
         How many are there.
+    size
+        How many numbers the state has; its rows, and those of what is made of it, may be longer, with zeros
+        at the end.
 
     Returns
     -------
     tuple
         How many steps are there then, how often the rates were asked for, and how it ended.
     """
-    size = len(y)
-    moved, new, place = np.empty(size), np.empty(size), np.empty(size)
-    values = np.empty((LOOKS + 2, count))
+    y, lost, k = fixed(y), fixed(lost), fixed(k)
+    moved, new, place = np.empty(len(y)), np.empty(len(y)), np.empty(len(y))
+    values, room = np.empty((LOOKS + 2, count)), np.empty(LOOKS * (len(y) + count))
     time, end = span[0], span[1]
     calls = 0
     if span[2] == 0.0:
@@ -207,7 +228,7 @@ def advance(
         for i in range(size):
             if not math.isfinite(k[0, i]):
                 return steps, 1, SINGULAR
-        span[2] = first_step(rates, p, y, k, place, end - time, tolerance)
+        span[2] = first_step(rates, p, y, k, place, end - time, tolerance, size)
         calls += 2
     if count > 0:
         evaluate(guards, y, p, values[0])
@@ -221,14 +242,14 @@ def advance(
             reach = min(time + span[2], end)
             h = reach - time
             stages(rates, h, p, y, lost, k, moved, new)
-            error = error_of(h, y, new, k, tolerance)
+            error = error_of(h, y, new, k, tolerance, size)
             tries += 1
             span[2] = h * factor_for(error, tries)
         calls += 12 * tries + 3
         more_stages(rates, h, p, y, lost, k, place)
-        first = steps * size * POWERS
+        first = steps * len(y) * POWERS
         polynomials(h, y, new, k, terms, first)
-        for i in range(size):
+        for i in range(len(y)):
             lost[i] = moved[i] - (new[i] - y[i])
             y[i] = new[i]
             k[0, i] = k[12, i]
@@ -236,7 +257,7 @@ def advance(
         steps += 1
         knots[steps] = time
         span[0] = time
-        if count > 0 and suspect(guards, p, terms, first, place, values):
+        if count > 0 and suspect(guards, p, terms, first, place, values, room):
             return steps, calls, SUSPECT
     return steps, calls, REACHED
 

@@ -41,7 +41,7 @@ def _functions(source: str, signatures: Mapping[str, Any], folder: Path | None) 
     exec(compile(source, str(path), "exec"), place)
     for name, made in list(place.items()):
         if isinstance(made, FunctionType) and made.__module__ == module.__name__:
-            place[name] = numba.njit(error_model="numpy")(made)
+            place[name] = numba.njit(error_model="numpy", forceinline=True)(made)
     for name, signature in signatures.items():
         made = place[name].py_func
         place[name] = numba.njit(signature, error_model="numpy", cache=cached)(made)

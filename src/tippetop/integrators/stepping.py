@@ -29,8 +29,12 @@ class Machinery(NamedTuple):
     """The motion's as that takes them."""
     number: int
     """How many guards there are."""
+    width: int
+    """How long a row of the motion's numbers is, with zeros at its end."""
     values: Callable[[Array, Array, Array], None]
     """The guards as functions (y, p, out) for Python."""
+    kept: Any = None
+    """What has to last as long as these."""
 
     def guard(self, guard: Guard, number: int) -> Guard:
         """A guard that is evaluated by the compiled function."""
@@ -81,13 +85,14 @@ class Stepping:
         end: float,
         tolerance: float,
     ) -> None:
-        size = len(start[1])
         self.functions, self.parameters, self.tolerance = functions, parameters, np.full(2, tolerance)
-        self.state, self.lost = np.array(start[1]), np.zeros(size)
-        self.stages, self.span = np.empty((ROWS, size)), np.array([start[0], end, 0.0])
+        self.size = len(start[1])
+        width = functions.width
+        self.row, self.lost = self.filled(start[1]), np.zeros(width)
+        self.stages, self.span = np.zeros((ROWS, width)), np.array([start[0], end, 0.0])
         self.steps, self.calls = 0, 0
         self.other: Stepping | None = None
-        self.knots, self.terms = np.empty(FEW + 1), np.empty(FEW * POWERS * size)
+        self.knots, self.terms = np.empty(FEW + 1), np.empty(FEW * POWERS * width)
         self.knots[0] = start[0]
 
     @property
@@ -95,11 +100,20 @@ class Stepping:
         """Where it is."""
         return float(self.span[0])
 
+    @property
+    def state(self) -> Array:
+        """The state there."""
+        return np.array(self.row[: self.size])
+
+    def filled(self, state: Array) -> Array:
+        """The row of a state."""
+        return np.concatenate([state, np.zeros(self.functions.width - self.size)])
+
     def widen(self) -> None:
         """Make room for more steps."""
         more = min(WIDER * self.steps, MANY) - self.steps
         self.knots = np.concatenate([self.knots, np.empty(more)])
-        self.terms = np.concatenate([self.terms, np.empty(more * POWERS * len(self.state))])
+        self.terms = np.concatenate([self.terms, np.empty(more * POWERS * len(self.row))])
 
     def advance(self, *, guarded: bool = True) -> int:
         """Take steps until something is to be done; tell what."""
@@ -109,7 +123,7 @@ class Stepping:
             functions.guards,
             functions.number if guarded else 0,
             self.parameters,
-            self.state,
+            self.row,
             self.lost,
             self.stages,
             self.span,
@@ -117,27 +131,28 @@ class Stepping:
             self.knots,
             self.terms,
             self.steps,
+            self.size,
         )
         self.steps, self.calls = steps, self.calls + calls
         return ended
 
     def arc(self, guard: str | None = None, failure: str | None = None) -> Arc:
         """The arc that has been made; the next one begins."""
-        solution = DenseSolution.of_steps(self.knots, self.terms, len(self.state), self.steps)
-        arc = Arc(solution, np.array(self.state), guard, failure, self.steps, self.calls)
+        width = len(self.row)
+        solution = DenseSolution.of_steps(self.knots, self.terms, self.size, self.steps, width)
+        arc = Arc(solution, self.state, guard, failure, self.steps, self.calls)
         self.knots[0] = self.time
         self.steps, self.calls = 0, 0
         return arc
 
     def fall(self, guards: Sequence[Guard]) -> tuple[Guard, float, Array] | None:
         """The guard that first falls through zero in the last step, when, and the state there."""
-        size, begin, reach = len(self.state), float(self.knots[self.steps - 1]), self.time
-        first = (self.steps - 1) * size * POWERS
+        begin, reach = float(self.knots[self.steps - 1]), self.time
+        first, row = (self.steps - 1) * len(self.row) * POWERS, np.empty(len(self.row))
 
         def dense(at: float) -> Array:
-            found = np.empty(size)
-            self.functions.within(self.terms, first, (at - begin) / (reach - begin), found)
-            return found
+            self.functions.within(self.terms, first, (at - begin) / (reach - begin), row)
+            return np.array(row[: self.size])
 
         def advance(at: float) -> Array:
             return self.beside().landed(begin, state, at)
@@ -152,12 +167,12 @@ class Stepping:
     def end_at(self, time: float, state: Array) -> None:
         """End within the last step."""
         begin, end = self.knots[self.steps - 1], self.knots[self.steps]
-        part, last = (time - begin) / (end - begin), self.steps * len(state) * POWERS
-        for number in range(last - len(state) * POWERS, last):
+        part, last = (time - begin) / (end - begin), self.steps * len(self.row) * POWERS
+        for number in range(last - len(self.row) * POWERS, last):
             self.terms[number] *= part ** (number % POWERS)
         self.knots[self.steps] = time
         self.span[0] = time
-        self.state = state
+        self.row = self.filled(state)
 
     def beside(self) -> "Stepping":
         """Another motion of the same kind, for trial."""
@@ -170,7 +185,7 @@ class Stepping:
 
     def landed(self, time: float, state: Array, end: float) -> Array:
         """The state after steps from another that end at exactly this time."""
-        self.state, self.lost = np.array(state), np.zeros(len(state))
+        self.row, self.lost = self.filled(state), np.zeros(len(self.row))
         self.span = np.array([time, end, 0.0])
         ended = FULL
         while ended == FULL and end > time:
