@@ -62,6 +62,30 @@ def test_rounding_does_not_gather():
     assert arc.steps > 5000
 
 
+@pytest.mark.parametrize("count", [1, 4, 5])
+def test_states_of_any_size_and_every_one_of_several_guards(count):
+    """Pendulums that know nothing of each other, whose numbers fill a row, or a part, or more than one."""
+
+    def rates(y, p):
+        return [*y[count:], *(-((1.0 + i) ** 2) * y[i] for i in range(count))]
+
+    def guard(i, level):
+        return Guard(f"{i} below {level}", lambda y, p: y[i] - level)
+
+    start = np.repeat([1.0, 0.0], count)
+    for last in range(count):
+        guards = tuple(guard(i, -0.5 if i == last else -1.5) for i in range(count))
+        motion = Motion(rates, size=2 * count, parameters=0, guards=guards)
+        arc = whole(make_integrator("compiled").integrate(motion, (), (0.0, start), 9.0))
+        assert arc.guard == guards[last].name
+        assert arc.solution.end == pytest.approx(2.0 * math.pi / 3.0 / (1.0 + last), rel=1e-11)
+        angles = (1.0 + np.arange(count)) * arc.solution.end
+        exact = np.concatenate([np.cos(angles), -(1.0 + np.arange(count)) * np.sin(angles)])
+        np.testing.assert_allclose(arc.end_state, exact, rtol=0, atol=1e-10)
+        at = arc.solution(np.array([0.4 * arc.solution.end]))[0]
+        np.testing.assert_allclose(at[:count], np.cos(0.4 * angles), rtol=0, atol=1e-9)
+
+
 @pytest.mark.parametrize("rise", [1e-3, 1e-6])
 def test_a_hop_far_shorter_than_a_step_ends_where_it_lands(rise):
     """A guard that starts at zero, rises and is back before any look: thrown up, it falls as long."""

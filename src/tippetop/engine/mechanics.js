@@ -50,6 +50,7 @@ const TOLERANCES = new py.Dict([
   ["lsoda", 1e-11]
 ]);
 const NOT_FINITE = "the solution is no longer finite";
+const [NO_START, NO_STEP] = ["the motion is singular from the start", "the step size fell to nothing"];
 
 /** A condition that ends a motion: the first time its value falls through zero from above. */
 class Guard extends py.Record {
@@ -9789,10 +9790,7 @@ function _polished(guard, parameters, advance, step, guess) {
 
 // tippetop.integrators.stepping
 const [FEW_of_stepping, WIDER, MANY] = [4, 4, 512];
-const FAILURES = new py.Dict([
-  [SINGULAR, "the motion is singular from the start"],
-  [STUCK_of_dormand_prince, "the step size fell to nothing"]
-]);
+const FAILURES = new py.Dict([[SINGULAR, NO_START], [STUCK_of_dormand_prince, NO_STEP]]);
 
 /** What a motion is followed with. */
 class Machinery extends py.NamedTuple {
@@ -10868,6 +10866,8 @@ export {
   NO_IMPULSE,
   NO_JELLETT,
   NO_REACTION,
+  NO_START,
+  NO_STEP,
   NO_TORQUE,
   Node,
   NodeValues,
