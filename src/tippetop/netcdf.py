@@ -6,10 +6,8 @@ itself takes damaged numbers and words for good ones, and may crash where a file
 """
 
 import hashlib
-import os
 from io import BytesIO
 from pathlib import Path
-from typing import BinaryIO
 
 import psutil
 import xarray as xr
@@ -21,7 +19,6 @@ SEAL = b"\ntippetop sha256 "
 """What stands between the NetCDF and its digest."""
 
 _LENGTH = len(SEAL) + 2 * hashlib.sha256().digest_size + 1
-_PIECE = 2**20
 
 
 def write_run(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Path:
@@ -46,7 +43,7 @@ def write_run(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Pat
     content = memory.getvalue()
     with written_beside(path, overwrite) as beside, beside.open("wb") as file:
         file.write(content)
-        file.write(_seal(hashlib.sha256(content)))
+        file.write(_sealed(content))
     return Path(path)
 
 
@@ -71,45 +68,35 @@ def read_run(path: Path | str) -> xr.Dataset:
     True
     """
     with in_words(path, "read"):
-        if not Path(path).is_file():
-            Path(path).stat()
-            raise FileTrouble(f"{named(path)} cannot be read: it is no file")
-        with Path(path).open("rb") as file:
-            _check(file, path)
-            try:
-                with xr.open_dataset(file, engine="h5netcdf", decode_times=False) as opened:
-                    run = opened.load()
-            except (ValueError, KeyError, RuntimeError) as error:
-                raise FileTrouble(f"{named(path)} cannot be read: {error}") from None
+        content = _whole(Path(path))
+        try:
+            with xr.open_dataset(BytesIO(content), engine="h5netcdf", decode_times=False) as opened:
+                run = opened.load()
+        except (ValueError, KeyError, RuntimeError) as error:
+            raise FileTrouble(f"{named(path)} cannot be read: {error}") from None
     words = {name: run[name].astype(str) for name in run.variables if run[name].dtype == object}
     return run.assign(words)
 
 
-def _seal(digest: "hashlib._Hash") -> bytes:
-    return SEAL + digest.hexdigest().encode() + b"\n"
+def _sealed(content: bytes | memoryview) -> bytes:
+    return SEAL + hashlib.sha256(content).hexdigest().encode() + b"\n"
 
 
-def _check(file: BinaryIO, path: Path | str) -> None:
-    """Refuse a file that is not, to the last bit, as it was written, or for which there is no memory."""
-    size = file.seek(0, os.SEEK_END)
-    free = psutil.virtual_memory().available
-    if size > free:
+def _whole(path: Path) -> bytes:
+    """What a file holds that is, to the last bit, as it was written, and for which there is memory twice."""
+    size, free = path.stat().st_size, psutil.virtual_memory().available
+    if not path.is_file():
+        raise FileTrouble(f"{named(path)} cannot be read: it is no file")
+    if 2 * size > free:
         raise FileTrouble(
-            f"{named(path)} cannot be read: it has {size:,} bytes, and {free:,} of memory are free"
+            f"{named(path)} cannot be read: it has {size:,} bytes, twice as many are needed, and {free:,} of "
+            "memory are free"
         )
-    left = max(size - _LENGTH, 0)
-    file.seek(left)
-    seal = file.read()
-    file.seek(0)
-    if not seal.startswith(SEAL):
+    content = path.read_bytes()
+    if not content[-_LENGTH:].startswith(SEAL):
         raise FileTrouble(
             f"{named(path)} cannot be read: it is not a result of this program, or no longer all of it"
         )
-    digest = hashlib.sha256()
-    while left:
-        piece = file.read(min(left, _PIECE))
-        digest.update(piece)
-        left -= len(piece)
-    if seal != _seal(digest):
+    if content[-_LENGTH:] != _sealed(memoryview(content)[:-_LENGTH]):
         raise FileTrouble(f"{named(path)} cannot be read: it is damaged")
-    file.seek(0)
+    return content
