@@ -21,6 +21,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import CoreSchema, ErrorDetails, PydanticCustomError, core_schema
 
 from tippetop.errors import MISSING, InvalidInput, one_of
+from tippetop.fields import part_at
 
 
 def _no_word(value: Any) -> Any:
@@ -109,18 +110,13 @@ class Part(BaseModel):
 
     def quantity(self, field: str) -> Quantity:
         """What a field measures, named with dots; without a unit if it was declared with none."""
-        first, _, rest = field.partition(".")
-        info, value = type(self).model_fields[first], getattr(self, first)
-        if isinstance(value, Part):
-            return value.quantity(rest)
-        if isinstance(value, tuple) and value and isinstance(value[0], Part):
-            place, _, inner = rest.partition(".")
-            part: Part = value[int(place)]
-            return part.quantity(inner)
-        found = next((item for item in info.metadata if isinstance(item, Quantity)), Quantity("", field))
-        if not (rest and found.places):
-            return found
-        return found._replace(long_name=f"{found.long_name} {found.places[int(rest)]}")
+        where, _, last = field.rpartition(".")
+        part = part_at(self, where)
+        if isinstance(part, tuple):
+            several = self.quantity(where)
+            return several._replace(long_name=f"{several.long_name} {several.places[int(last)]}")
+        info = type(part).model_fields[last]
+        return next((item for item in info.metadata if isinstance(item, Quantity)), Quantity("", last))
 
     def modules(self) -> set[str]:
         """The modules outside this package in which the kinds of this part, and of the parts in it, are."""

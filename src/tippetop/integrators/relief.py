@@ -13,14 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tippetop.integrators.base import (
-    TOLERANCES,
-    Arc,
-    Array,
-    Expansion,
-    Integrator,
-    Motion,
-)
+from tippetop.integrators.base import TOLERANCES, Arc, Array, Expansion, Integrator, Motion
 from tippetop.integrators.rates import RightHandSide
 from tippetop.mechanics.vectors import Scalar
 

@@ -13,14 +13,7 @@ from typing import Any
 import heyoka as hy
 import numpy as np
 
-from tippetop.integrators.base import (
-    NOT_FINITE,
-    TOLERANCES,
-    Arc,
-    Array,
-    Expansion,
-    Motion,
-)
+from tippetop.integrators.base import NOT_FINITE, TOLERANCES, Arc, Array, Expansion, Motion
 from tippetop.integrators.dense import DenseSolution
 from tippetop.integrators.sealed_folders import kept_content
 from tippetop.interrupts import heard

@@ -90,12 +90,13 @@ class Spaced(Axis):
 
     def at(self, places: Flat) -> Array:
         """Some of the values, by their places, without making the others."""
-        first, last = self.first, self.last
-        share = places / max(self.count - 1, 1)
-        inner = (
-            first + (last - first) * share if self.spacing == "linear" else first * (last / first) ** share
-        )
-        return np.where(places == self.count - 1, last if self.count > 1 else first, inner)
+        inner = between(self.first, self.last, places / max(self.count - 1, 1), self.spacing == "geometric")
+        return np.where((places == self.count - 1) & (self.count > 1), self.last, inner)
+
+
+def between(first: float, last: float, shares: Array, geometric: bool) -> Array:
+    """Numbers between two after these shares of the way, by their ratio or by their difference."""
+    return first * (last / first) ** shares if geometric else first + (last - first) * shares
 
 
 class Listed(Axis):

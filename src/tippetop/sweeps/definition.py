@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping
 from functools import cached_property
 from pathlib import Path
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, Self, TypeAlias
 
 import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
@@ -26,6 +26,10 @@ MOST_CELLS_A_TASK = 4096
 LEAST_CELLS_A_TASK = 256
 TASKS = 16
 """A task is a chunk of the store: about a 16th of the cells, within these bounds."""
+
+
+Task: TypeAlias = tuple[int, ...]
+"""The place of a task among those along every dimension."""
 
 
 class Sweep(Part):
@@ -96,12 +100,12 @@ class Sweep(Part):
         return tuple(chunk)
 
     @property
-    def tasks(self) -> list[tuple[int, ...]]:
+    def tasks(self) -> list[Task]:
         """The places of all tasks, row by row."""
         counts = [-(-size // part) for size, part in zip(self.grid.shape, self.chunk, strict=True)]
         return [tuple(int(k) for k in place) for place in np.ndindex(*counts)]
 
-    def region(self, task: tuple[int, ...]) -> tuple[slice, ...]:
+    def region(self, task: Task) -> tuple[slice, ...]:
         """The cells of a task along every dimension."""
         parts = zip(task, self.chunk, self.grid.shape, strict=True)
         return tuple(slice(k * part, min((k + 1) * part, size)) for k, part, size in parts)

@@ -14,7 +14,7 @@ from pydantic import BeforeValidator, Field, field_serializer, model_serializer,
 
 from tippetop.errors import InvalidInput
 from tippetop.integrators.base import Array
-from tippetop.sweeps.axes import MOST_CELLS, Axis, Count, Entry
+from tippetop.sweeps.axes import MOST_CELLS, Axis, Count, Entry, between
 from tippetop.sweeps.axes import Flat as Flat
 from tippetop.validation import Number, Whole
 
@@ -169,10 +169,7 @@ class Draws(Entry):
         for place, entry in enumerate(self.ranges):
             source = np.random.PCG64([self.seed, place]).advance(first)
             shares = np.random.Generator(source).random(last - first)
-            if entry.law == "log-uniform":
-                found[entry.field] = entry.low * (entry.high / entry.low) ** shares
-            else:
-                found[entry.field] = entry.low + (entry.high - entry.low) * shares
+            found[entry.field] = between(entry.low, entry.high, shares, entry.law == "log-uniform")
         return found
 
 

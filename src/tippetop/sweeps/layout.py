@@ -102,7 +102,7 @@ def layout_attributes(sweep: Sweep) -> dict[str, Any]:
 def coordinate_attributes(sweep: Sweep, name: str) -> dict[str, Any]:
     """The attributes of a coordinate by the CF conventions."""
     kind = Quantity("1", "number of the draw") if name == "draw" else sweep.problem.quantity(name)
-    return {"long_name": kind.long_name} | ({"units": kind.units} if kind.units else {})
+    return Variable(kind.long_name, kind.units).attributes
 
 
 def _coordinates(sweep: Sweep) -> dict[str, str]:

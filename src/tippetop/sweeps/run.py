@@ -11,11 +11,11 @@ import xarray as xr
 
 from tippetop.catalogue import SWEPT
 from tippetop.problem import Problem
-from tippetop.sweeps.definition import DEFAULT_TOLERANCE, Sweep
+from tippetop.sweeps.definition import DEFAULT_TOLERANCE, Sweep, Task
 from tippetop.sweeps.grid import Draws, Product
 from tippetop.sweeps.layout import STATUS, Status, coordinate_attributes, layout_attributes
 from tippetop.sweeps.store import Store
-from tippetop.sweeps.tasks import Found, Task, need_workers, results
+from tippetop.sweeps.tasks import Found, need_workers, results
 
 
 @dataclass(frozen=True)

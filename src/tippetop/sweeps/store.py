@@ -22,7 +22,7 @@ from tippetop.catalogue import SWEPT
 from tippetop.errors import OTHER_OUT, OVERWRITE, RESUME, FileTrouble, Unavailable
 from tippetop.files import in_words, refuse_overwriting
 from tippetop.interrupts import deferred
-from tippetop.sweeps.definition import Sweep
+from tippetop.sweeps.definition import Sweep, Task
 from tippetop.sweeps.disk import bring_to_disk, clear_away, identity, locked
 from tippetop.sweeps.layout import (
     DIGEST,
@@ -34,8 +34,6 @@ from tippetop.sweeps.layout import (
     read_metadata,
     refuse_another,
 )
-
-Task = tuple[int, ...]
 
 
 class Store:

@@ -20,10 +20,9 @@ from numpy.typing import NDArray
 from tippetop import __version__
 from tippetop.errors import RESUME, InvalidInput, Unavailable
 from tippetop.processes import RESTARTS, Job, shared
-from tippetop.sweeps.definition import Sweep
+from tippetop.sweeps.definition import Sweep, Task
 from tippetop.sweeps.ensemble import follow_cells
 
-Task: TypeAlias = tuple[int, ...]
 Found: TypeAlias = dict[str, NDArray[Any]]
 Call: TypeAlias = tuple[str, str, tuple[str, ...], tuple[slice, ...]]
 """What `compute_region` is called with."""
