@@ -1,6 +1,5 @@
 """`tippetop body`: what a body turned on a lathe weighs, stands on and will do."""
 
-import json
 import math
 from collections.abc import Iterator
 from contextlib import suppress
@@ -10,8 +9,8 @@ from typing import Annotated, Any
 import typer
 
 import tippetop as tt
-from tippetop.cli.options import DRAWINGS, Force, Json, finite, write_figure
-from tippetop.cli.terminal import facts, listing, show
+from tippetop.cli.options import DRAWINGS, Force, Json, write_figure
+from tippetop.cli.terminal import facts, listing, show, show_json
 from tippetop.errors import InvalidInput
 from tippetop.files import place_for, require_ending
 
@@ -56,7 +55,7 @@ def body(
         typer.echo(written.rstrip())
     elif as_json:
         names = {kind: str(path) for kind, path in files.items()}
-        typer.echo(json.dumps({**told, "files": names}, indent=2))
+        show_json({**told, "files": names})
     else:
         show(*_sentences(told), files=files.values())
 
@@ -88,7 +87,7 @@ def _told(piece: "tt.Workpiece", whole: bool) -> dict[str, Any]:
             }
             for zone in hull.zones
         ],
-        "lies_on_lines_at_tilts": list(hull.flats),
+        "lies_on_lines_at_tilts": hull.flats,
         "trouble": trouble,
         **_expected(piece),
     }
@@ -109,17 +108,16 @@ def _expected(piece: "tt.Workpiece") -> dict[str, Any]:
         return dict.fromkeys((*sphere, "touch", "stem"))
     spins, touch, stem = found.critical_spins, found.touch, found.stem
     # Where something else touches before the stem, nothing is known of launches that reach it.
-    reached = {} if stem is None or math.isnan(stem.launch) else {"least_launch_spin": finite(stem.launch)}
+    reached = {} if stem is None or math.isnan(stem.launch) else {"least_launch_spin": stem.launch}
     return {
         "eccentricity": found.eccentricity,
-        "group": found.group.value,
+        "group": found.group,
         "group_description": found.group.description,
-        "omega_c1": finite(spins.upright),
-        "omega_c2": finite(spins.inverted),
+        "omega_c1": spins.upright,
+        "omega_c2": spins.inverted,
         "omega_c_tilt": found.tilt,
-        "touch": touch
-        and {"surface": touch.surface, "tilt": touch.tilt, "least_launch_spin": finite(touch.spin)},
-        "stem": stem and {"least_jellett": finite(stem.jellett), "least_spin": finite(stem.spin), **reached},
+        "touch": touch and {"surface": touch.surface, "tilt": touch.tilt, "least_launch_spin": touch.spin},
+        "stem": stem and {"least_jellett": stem.jellett, "least_spin": stem.spin, **reached},
     }
 
 
@@ -187,5 +185,5 @@ def _rows(told: dict[str, Any]) -> list[tuple[str, str, str]]:
     return rows
 
 
-def _shown(value: float | None) -> str:
-    return "never" if value is None else f"{value:.7g}"
+def _shown(value: float) -> str:
+    return f"{value:.7g}" if math.isfinite(value) else "never"

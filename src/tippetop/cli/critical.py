@@ -1,18 +1,21 @@
 """`tippetop critical`: what the theory says of a launch, without simulating it."""
 
-import json
 import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-import typer
-
-from tippetop.cli.options import Choice, Json, finite, of_a_problem
-from tippetop.cli.terminal import facts, listing, show
+from tippetop.cli.options import Choice, Json, of_a_problem
+from tippetop.cli.terminal import facts, listing, show, show_json
 
 if TYPE_CHECKING:
     from tippetop.theory.overview import Judged, Outlook
     from tippetop.theory.steady import SteadyState
+
+TOLD = (
+    *("inertia_ratio", "eccentricity", "group", "lambda_up", "lambda_down", "jellett", "swings"),
+    *("mu_flip_time", "flip_time", "standing_time", "surface", "tilts"),
+)
+"""What programs are told under the names that it has."""
 
 
 @of_a_problem
@@ -27,55 +30,39 @@ def critical(
     found = outlook(problem)
     if as_json:
         told = {"critical_spins_tilt": problem.launch.tilt, "problem": problem.model_dump()}
-        typer.echo(json.dumps({**_plain(found), **told}, indent=2))
+        show_json({**_plain(found), **told})
     else:
         show(*_sentences(found))
 
 
 def _plain(found: "Outlook") -> dict[str, Any]:
-    """The record as JSON takes it: what is infinite or undefined is null."""
+    """The record for programs."""
     prediction, stays = found.prediction, found.stays
     final = stays.state if stays else prediction and prediction.final
-    possible = [stays.state] if stays else prediction and list(prediction.reachable)
+    possible = [stays.state] if stays else prediction and prediction.reachable
     return {
-        "inertia_ratio": found.inertia_ratio,
-        "eccentricity": found.eccentricity,
-        "group": found.group and found.group.value,
+        **{name: getattr(found, name) for name in TOLD},
         "group_description": found.group and found.group.description,
-        "lambda_up": finite(found.lambda_up),
-        "lambda_down": finite(found.lambda_down),
-        "omega_c1": finite(found.critical_spins.upright),
-        "omega_c2": finite(found.critical_spins.inverted),
+        "omega_c1": found.critical_spins.upright,
+        "omega_c2": found.critical_spins.inverted,
         "omega_c_tilt": found.tilt,
-        "jellett": found.jellett,
         "stays": None if stays is None else "stable" if stays.spectrum.stable else "until disturbed",
-        "swings": found.swings,
-        "final": final and _plain_state(final),
+        "final": final,
         "final_certain": possible and len(possible) == 1,
-        "final_possible": possible and [_plain_state(state) for state in possible],
+        "final_possible": possible,
         "steady_states": [
             {
-                **_plain_state(judged.state),
+                **vars(judged.state),
                 "stable": judged.spectrum.stable,
                 "growth_rate": judged.spectrum.growth_rate,
                 "frame_rate": judged.spectrum.frame_rate,
                 "eigenvalues": [[value.real, value.imag] for value in judged.spectrum.eigenvalues.tolist()],
-                "neutral": list(judged.spectrum.neutral),
+                "neutral": judged.spectrum.neutral,
             }
             for judged in found.steady
         ],
-        "mu_flip_time": found.mu_flip_time,
-        "flip_time": found.flip_time,
         "jellett_conserved": found.conserved,
-        "standing_time": finite(found.standing_time) if found.standing_time is not None else None,
-        "surface": found.surface,
-        "tilts": list(found.tilts),
     }
-
-
-def _plain_state(state: Any) -> dict[str, Any]:
-    names = ("tilt", "precession", "spin", "jellett", "energy")
-    return {"kind": state.kind.value, **{name: finite(getattr(state, name)) for name in names}}
 
 
 def _sentences(found: "Outlook") -> Iterator[Any]:

@@ -1,7 +1,6 @@
 """The options that several commands share: how a problem is put together on the command line."""
 
 import json
-import math
 from collections.abc import Callable, Mapping, Sequence
 from functools import wraps
 from inspect import Parameter, Signature, signature
@@ -93,11 +92,6 @@ def of_a_problem(
     whole = Signature([*asking, *(one.replace(kind=Parameter.KEYWORD_ONLY) for one in own)])
     asked.__signature__ = whole  # type: ignore[attr-defined]
     return asked
-
-
-def finite(value: float) -> float | None:
-    """The number as JSON takes it: None where it is infinite or undefined."""
-    return value if math.isfinite(value) else None
 
 
 def write_figure(figure: "Figure", path: Path, force: bool) -> None:

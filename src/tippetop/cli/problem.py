@@ -1,6 +1,5 @@
 """`tippetop problem`: write a problem file, or the schema of one."""
 
-import json
 import re
 from typing import Annotated, Literal, get_args, get_origin
 
@@ -9,6 +8,7 @@ import typer
 import tippetop as tt
 from tippetop.catalogue import written_unit
 from tippetop.cli.options import Choice, Json, of_a_problem
+from tippetop.cli.terminal import show_json
 from tippetop.fields import part_at
 
 TABLE, FIELD, ITEM = re.compile(r"\[(.+)]"), re.compile(r"([\w-]+) = "), re.compile(r"    -?[\d.]")
@@ -23,7 +23,7 @@ def problem(
 ) -> None:
     """Print a problem as TOML with its units, to be edited and given to the other commands."""
     if schema:
-        typer.echo(json.dumps(tt.Problem.model_json_schema(), indent=2))
+        show_json(tt.Problem.model_json_schema())
         return
     chosen = choice.problem()
     typer.echo(chosen.to_json() if as_json else commented_toml(chosen).rstrip())

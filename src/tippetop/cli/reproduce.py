@@ -1,13 +1,12 @@
 """`tippetop reproduce`: redo the report, and say what became of its claims."""
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from tippetop.cli.options import Force, Json
-from tippetop.cli.terminal import listing, progress_bar, show
+from tippetop.cli.terminal import listing, progress_bar, show, show_json
 
 if TYPE_CHECKING:
     from tippetop.report.reproduce import Reproduction
@@ -31,7 +30,7 @@ def reproduce(
     with progress_bar("starting") as progress:
         result = report.reproduce(out, only=only, quick=quick, overwrite=force, progress=progress)
     if as_json:
-        typer.echo(json.dumps(_plain(result), ensure_ascii=False, indent=2))
+        show_json(_plain(result))
     else:
         _show(result)
 

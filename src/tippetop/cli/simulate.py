@@ -1,6 +1,5 @@
 """`tippetop simulate`: one run, its summary, its files."""
 
-import json
 import time
 from collections.abc import Iterable
 from pathlib import Path
@@ -10,7 +9,7 @@ import typer
 
 import tippetop as tt
 from tippetop.cli.options import DRAWINGS, Choice, Force, Json, of_a_problem, write_figure
-from tippetop.cli.terminal import facts, progress_bar, show
+from tippetop.cli.terminal import facts, progress_bar, show, show_json
 from tippetop.errors import InvalidInput
 from tippetop.files import place_for, require_ending
 
@@ -102,7 +101,7 @@ def simulate(
     summary = tt.summarize(run)
     if as_json:
         written = {kind: path and str(path) for kind, path in files.items()}
-        typer.echo(json.dumps({**summary, **written, "problem": chosen.model_dump()}, indent=2))
+        show_json({**summary, **written, "problem": chosen.model_dump()})
     else:
         show(
             f"[bold]{summary['outcome'].replace('_', ' ')}[/]: {summary['advice']}",

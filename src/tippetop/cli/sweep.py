@@ -1,6 +1,5 @@
 """`tippetop sweep`: many launches, kept in a store, with maps beside it."""
 
-import json
 import time
 from collections import Counter
 from collections.abc import Iterator
@@ -12,7 +11,7 @@ import typer
 
 import tippetop as tt
 from tippetop.cli.options import Choice, Force, Json, of_a_problem, write_figure
-from tippetop.cli.terminal import facts, progress_bar, show
+from tippetop.cli.terminal import facts, progress_bar, show, show_json
 from tippetop.errors import MISSING, FileTrouble, InvalidInput
 from tippetop.files import in_words, place_for, read_text
 from tippetop.interrupts import INTERRUPTED
@@ -111,7 +110,7 @@ def sweep(
     summary = _summary(dataset, progress[-1], time.perf_counter() - began)
     if as_json:
         files = {"out": str(out), "maps": [str(path) for path in pictures.values()]}
-        typer.echo(json.dumps({**summary, **files, "sweep": store.sweep.describe()}, indent=2))
+        show_json({**summary, **files, "sweep": store.sweep.describe()})
     else:
         show(*_sentences(summary), files=[out, *pictures.values()])
 

@@ -1,10 +1,13 @@
 """What the commands show people: tables, sentences, and how far they are."""
 
+import json
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+import typer
 
 from tippetop.interrupts import hear
 
@@ -48,6 +51,13 @@ def show(*parts: Any, files: Iterable[Path] = ()) -> None:
         console.print(part)
     for path in files:
         console.print(f"wrote {path}", markup=False, soft_wrap=True)
+
+
+def show_json(told: Any) -> None:
+    """Print what is told for programs; what is infinite or undefined is null."""
+    from pydantic_core import to_jsonable_python  # noqa: PLC0415 - slow to import
+
+    typer.echo(json.dumps(to_jsonable_python(told, inf_nan_mode="null"), indent=2))
 
 
 @contextmanager
