@@ -7,6 +7,7 @@ import re
 import pytest
 
 from tippetop.report.claim import (
+    EXAMINERS,
     Claim,
     Examiner,
     Finding,
@@ -16,7 +17,7 @@ from tippetop.report.claim import (
     decide,
     number,
 )
-from tippetop.report.claims.registry import CLAIMS, EXAMINERS
+from tippetop.report.claims.registry import CLAIMS
 from tippetop.report.experiments.registry import EXPERIMENTS
 from tippetop.report.gallery import DRAWN, PLATES
 from tippetop.report.outline import OWN, PICTURES, SECTIONS, UNCHECKED, section_of

@@ -198,19 +198,20 @@ class Judgement:
         }
 
 
-class Chapter(dict[str, Examiner]):
-    """What examines the claims of a module, by their names."""
+EXAMINERS: dict[str, Examiner] = {}
+"""How claims are examined, by their names; `tippetop.report.claims.registry` knows all."""
 
-    def examines(
-        self, claim: str, *needs: str, tolerance: Tolerance | None = None, **options: Any
-    ) -> Callable[[Callable[..., Finding]], Callable[..., Finding]]:
-        """Register the decorated function, with some options, as what examines a claim; see `Examiner`."""
 
-        def register(examine: Callable[..., Finding]) -> Callable[..., Finding]:
-            self[claim] = Examiner(needs, tolerance, partial(examine, **options))
-            return examine
+def examines(
+    claim: str, *needs: str, tolerance: Tolerance | None = None, **options: Any
+) -> Callable[[Callable[..., Finding]], Callable[..., Finding]]:
+    """Register the decorated function, with some options, as what examines a claim; see `Examiner`."""
 
-        return register
+    def register(examine: Callable[..., Finding]) -> Callable[..., Finding]:
+        EXAMINERS[claim] = Examiner(needs, tolerance, partial(examine, **options))
+        return examine
+
+    return register
 
 
 def decide(

@@ -37,17 +37,18 @@ class Experiment:
         return data
 
 
-class Bench(dict[str, Experiment]):
-    """The experiments of a module, by their names."""
+EXPERIMENTS: dict[str, Experiment] = {}
+"""Those that are known by their names; `tippetop.report.experiments.registry` knows all."""
 
-    def experiment(self, name: str, title: str, cost: float) -> Callable[[Compute], Compute]:
-        """Register the decorated function as what does an experiment; see `Experiment`."""
 
-        def register(compute: Compute) -> Compute:
-            self[name] = Experiment(name, title, cost, compute)
-            return compute
+def experiment(name: str, title: str, cost: float) -> Callable[[Compute], Compute]:
+    """Register the decorated function as what does an experiment; see `Experiment`."""
 
-        return register
+    def register(compute: Compute) -> Compute:
+        EXPERIMENTS[name] = Experiment(name, title, cost, compute)
+        return compute
+
+    return register
 
 
 _ALONG = {

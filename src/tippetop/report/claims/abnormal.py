@@ -3,16 +3,14 @@
 import numpy as np
 import xarray as xr
 
-from tippetop.report.claim import Chapter, Finding, listed
+from tippetop.report.claim import Finding, examines, listed
 from tippetop.report.claims.flight import ROUNDED
 from tippetop.report.experiments.flights import TILT
 from tippetop.report.experiments.spins import TURNED
 from tippetop.report.quoted import ABNORMAL_SPIN, CRITICAL_SPINS
 
-CHAPTER = Chapter()
 
-
-@CHAPTER.examines("sec4-energy-falls", "run-175", "flights", "flights-bouncing")
+@examines("sec4-energy-falls", "run-175", "flights", "flights-bouncing")
 def _(run: xr.Dataset, flights: xr.Dataset, bouncing: xr.Dataset) -> Finding:
     rises = [float(data["energy_rise"].max()) for data in (run, flights, bouncing)]
     launch, impacts = float(run["launch_energy"]), float(run["energy_in_impacts"])
@@ -27,7 +25,7 @@ def _(run: xr.Dataset, flights: xr.Dataset, bouncing: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.examines("sec4-huge-spin", "onset-tilt", "onset-mu", "run-175", "final-tilt")
+@examines("sec4-huge-spin", "onset-tilt", "onset-mu", "run-175", "final-tilt")
 def _(over_tilt: xr.Dataset, over_mu: xr.Dataset, run: xr.Dataset, sweep: xr.Dataset) -> Finding:
     own = over_tilt.sel(tilt=TILT)
     huge = own["first_lift_off"].sel(spin=own["spin"] > float(ABNORMAL_SPIN))
@@ -51,7 +49,7 @@ def _(over_tilt: xr.Dataset, over_mu: xr.Dataset, run: xr.Dataset, sweep: xr.Dat
     )
 
 
-@CHAPTER.examines("sum-abnormal", "final-tilt", "flights", "flights-bouncing", "listing-capped")
+@examines("sum-abnormal", "final-tilt", "flights", "flights-bouncing", "listing-capped")
 def _(sweep: xr.Dataset, flights: xr.Dataset, bouncing: xr.Dataset, capped: xr.Dataset) -> Finding:
     true, spins = sweep["final_theta_flight"].values, sweep["spin_flight"].values
     cured = not _turned(capped["final_theta"]) and _turned(capped["final_theta_capped"])
@@ -78,7 +76,7 @@ def _(sweep: xr.Dataset, flights: xr.Dataset, bouncing: xr.Dataset, capped: xr.D
 _CAPPED = ("spin", "final_theta", "final_theta_capped")
 
 
-@CHAPTER.examines("sum-turns-over", "final-tilt-listing", "final-tilt", "flights", "flights-bouncing")
+@examines("sum-turns-over", "final-tilt-listing", "final-tilt", "flights", "flights-bouncing")
 def _(listing: xr.Dataset, sweep: xr.Dataset, flights: xr.Dataset, bouncing: xr.Dataset) -> Finding:
     theirs = _inverting(listing, "_listing", float(ABNORMAL_SPIN))
     ours = _inverting(sweep, "", float(sweep["lift_off_onset"]))

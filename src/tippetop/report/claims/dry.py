@@ -3,13 +3,11 @@
 import numpy as np
 import xarray as xr
 
-from tippetop.report.claim import Chapter, Finding, both, listed
+from tippetop.report.claim import Finding, both, examines, listed
 from tippetop.report.experiments.dry import COHEN_STEP, COHEN_WINDOW
 from tippetop.report.experiments.patches import SPIN_OF_REPORT
 from tippetop.report.quoted import NORMAL_FRICTION, ROUGH_FRICTION
 from tippetop.report.tolerance import ROUNDING
-
-CHAPTER = Chapter()
 
 _SAME = 1e-6
 """Difference of tilts, rad, and of energies, relative, far above rounding and far below any motion."""
@@ -21,7 +19,7 @@ _DRY = (0.1, 1.0)
 tells them."""
 
 
-@CHAPTER.examines("dry-tilting-rate")
+@examines("dry-tilting-rate")
 def _(data: xr.Dataset) -> Finding:
     held = data["theta_held"]
     same = float(abs(held - held.isel(held=0)).max()) < _SAME
@@ -39,7 +37,7 @@ def _(data: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.examines("dry-cohen-inversion")
+@examines("dry-cohen-inversion")
 def _(data: xr.Dataset) -> Finding:
     window = data.sel(time=slice(0.0, COHEN_WINDOW + 1e-9))
     highest = data["theta_stepped"].max("time")
@@ -57,7 +55,7 @@ def _(data: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.examines("dry-cohen-sliding")
+@examines("dry-cohen-sliding")
 def _(data: xr.Dataset) -> Finding:
     least = float(data["slowest"].sel(step=COHEN_STEP, method="nearest"))
     return Finding(
@@ -69,7 +67,7 @@ def _(data: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.examines("dry-coulomb-weaker")
+@examines("dry-coulomb-weaker")
 def _(data: xr.Dataset) -> Finding:
     eps, times = data["eps"].values, data["turning_time"].values
     return Finding.unlisted(
@@ -84,7 +82,7 @@ def _(data: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.examines("dry-patch-inversion")
+@examines("dry-patch-inversion")
 def _(data: xr.Dataset) -> Finding:
     turned = data["turning_time"].notnull()
     fast = data.isel(spin=-1)
@@ -102,7 +100,7 @@ def _(data: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.examines("dry-viscous-limit", tolerance=ROUNDING)
+@examines("dry-viscous-limit", tolerance=ROUNDING)
 def _(data: xr.Dataset) -> Finding:
     ratio = data["patch_time"] / data["viscous_time"]
     least, most = ratio.min("coefficient").values, ratio.max("coefficient").values
@@ -117,7 +115,7 @@ def _(data: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.examines("dry-normal-mu", "dry-viscous", "run-155")
+@examines("dry-normal-mu", "dry-viscous", "run-155")
 def _(data: xr.Dataset, run: xr.Dataset) -> Finding:
     theirs, ours = ([mu * slip for mu in NORMAL_FRICTION] for slip in both(run, "largest_slip"))
     return Finding(
@@ -134,7 +132,7 @@ def _is_dry(ratios: list[float]) -> bool:
     return _DRY[0] <= min(ratios) and max(ratios) <= _DRY[1]
 
 
-@CHAPTER.examines("dry-rough-mu")
+@examines("dry-rough-mu")
 def _(data: xr.Dataset) -> Finding:
     slowest = float((data["hertz_coefficient"].max() / ROUGH_FRICTION) * SPIN_OF_REPORT)
     return Finding.unlisted(

@@ -3,19 +3,17 @@
 import xarray as xr
 
 from tippetop.presets import REPORT, REPORT_TABLE_1
-from tippetop.report.claim import Chapter, Finding
+from tippetop.report.claim import Finding, examines
 from tippetop.report.experiments.runs import likely_end
 from tippetop.report.quoted import END_OF_FIG_5
 from tippetop.report.tolerance import Tolerance
-
-CHAPTER = Chapter()
 
 _DISPLAYED = Tolerance(
     0.00055, "half a unit of the last printed digit, of a number read with the four decimals MATLAB displays"
 )
 
 
-@CHAPTER.examines("fig05-end", "run-50", "run-50-windows", "run-50-table-1", tolerance=_DISPLAYED)
+@examines("fig05-end", "run-50", "run-50-windows", "run-50-table-1", tolerance=_DISPLAYED)
 def _(run: xr.Dataset, windows: xr.Dataset, other: xr.Dataset) -> Finding:
     chosen = likely_end(windows)
     every = float(windows["window"].diff("window")[0])
@@ -47,9 +45,7 @@ def _triple(state: dict[str, float]) -> str:
     return "(" + ", ".join(f"{value:.4f}" for value in state.values()) + ")"
 
 
-@CHAPTER.examines(
-    "table-1-inertia", "run-50", "run-50-table-1", tolerance=Tolerance(1e-6, "fractions are exact")
-)
+@examines("table-1-inertia", "run-50", "run-50-table-1", tolerance=Tolerance(1e-6, "fractions are exact"))
 def _(run: xr.Dataset, other: xr.Dataset) -> Finding:
     unit = REPORT.mass * float(REPORT.surface.size) ** 2
     runs = {"listing": (run, REPORT), "table": (other, REPORT_TABLE_1)}

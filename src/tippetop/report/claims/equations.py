@@ -3,23 +3,21 @@
 import numpy as np
 import xarray as xr
 
-from tippetop.report.claim import Chapter, Finding, both, listed
+from tippetop.report.claim import Finding, both, examines, listed
 from tippetop.report.tolerance import ROUNDING, TRANSCRIBED, Tolerance, rounded
 
-CHAPTER = Chapter()
 
-
-@CHAPTER.examines("eq-2.1", "rotation", tolerance=ROUNDING)
+@examines("eq-2.1", "rotation", tolerance=ROUNDING)
 def _(check: xr.Dataset) -> Finding:
     return _largest_miss(check.sel(equation=["(2.1)", "(2.2)"]), "at random angles and rates")
 
 
-@CHAPTER.examines("eq-2.6", "rotation", tolerance=ROUNDING)
+@examines("eq-2.6", "rotation", tolerance=ROUNDING)
 def _(check: xr.Dataset) -> Finding:
     return _largest_miss(check.sel(equation=["(2.6)"]), "for a body with three different moments")
 
 
-@CHAPTER.examines("eq-2.8", "printed-equations", tolerance=ROUNDING)
+@examines("eq-2.8", "printed-equations", tolerance=ROUNDING)
 def _(check: xr.Dataset) -> Finding:
     return _largest_miss(
         check, "from a run of Fig. 4's launch by equations without Euler angles, at five instants"
@@ -32,7 +30,7 @@ def _largest_miss(check: xr.Dataset, words: str) -> Finding:
     return Finding.unlisted(float(miss.max()), f"Differences {words}: {each}.")
 
 
-@CHAPTER.examines(
+@examines(
     "eq-2.7", "printed-equations", tolerance=Tolerance(1e-9, "far below the torque, far above rounding")
 )
 def _(check: xr.Dataset) -> Finding:
@@ -47,7 +45,7 @@ def _(check: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.examines(
+@examines(
     "eq-2.9",
     "printed-equations",
     tolerance=Tolerance(1e-3, "the accuracy of the derivative taken of the run"),
@@ -63,7 +61,7 @@ def _(check: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.examines("eq-4.1", "run-155", tolerance=ROUNDING)
+@examines("eq-4.1", "run-155", tolerance=ROUNDING)
 def _(run: xr.Dataset) -> Finding:
     launch = float(run["launch_energy"])
     difference = run["energy_published"] - run["energy"]

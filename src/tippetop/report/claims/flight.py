@@ -6,14 +6,12 @@ import xarray as xr
 from tippetop.mechanics.euler import published_parameters
 from tippetop.presets import REPORT
 from tippetop.problem import Problem
-from tippetop.report.claim import Chapter, Finding
+from tippetop.report.claim import Finding, examines
 from tippetop.report.quoted import ENERGY, ENERGY_TIME, STOP
 from tippetop.report.tolerance import PLOTTED, rounded
 
-CHAPTER = Chapter()
 
-
-@CHAPTER.examines("fig11-negative", "run-175")
+@examines("fig11-negative", "run-175")
 def _(run: xr.Dataset) -> Finding:
     return Finding(
         float(run["least_force_listing"]) < 0,
@@ -24,7 +22,7 @@ def _(run: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.examines("fig10-gain", "run-175")
+@examines("fig10-gain", "run-175")
 def _(run: xr.Dataset) -> Finding:
     theirs, ours = _gains(run, "_listing"), _gains(run, "")
     weight = _weight(run)
@@ -73,7 +71,7 @@ def _weight(run: xr.Dataset) -> float:
     return float(problem.body.mass * problem.gravity * float(problem.body.surface.size))
 
 
-@CHAPTER.examines("fig10-fall", "run-175")
+@examines("fig10-fall", "run-175")
 def _(run: xr.Dataset) -> Finding:
     fall = float(ENERGY) / _weight(run)
     return Finding.unlisted(
@@ -83,7 +81,7 @@ def _(run: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.examines("fig10-by-falling", "run-175")
+@examines("fig10-by-falling", "run-175")
 def _(run: xr.Dataset) -> Finding:
     change, height = _kept_in_flight(run)
     work = _weight(run) / float(REPORT.surface.size) * height
@@ -112,7 +110,7 @@ def _kept_in_flight(run: xr.Dataset) -> tuple[float, float]:
     return max(float(np.ptp(part)) for part in inside if len(part) > 1), float(run["highest_gap"])
 
 
-@CHAPTER.examines("fig10-impossible", "run-175")
+@examines("fig10-impossible", "run-175")
 def _(run: xr.Dataset) -> Finding:
     energy, launch = run["energy"], float(run["launch_energy"])
     largest_rise = float(np.diff(energy.sel(time=slice(None, float(run["lift_off_time"]))).values).max())
@@ -135,7 +133,7 @@ ROUNDED = 1e-12
 """Rises of the energy, in parts of that at launch, that are rounding: the tolerance of the runs."""
 
 
-@CHAPTER.examines("fig12-stop-time", "run-175")
+@examines("fig12-stop-time", "run-175")
 def _(run: xr.Dataset) -> Finding:
     stop, theirs, ours = float(STOP), float(run["zero_of_force_listing"]), float(run["lift_off_time"])
     visible = float(run["visible_pull_listing"])
@@ -150,7 +148,7 @@ def _(run: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.examines("fig09-two-motions", "run-175")
+@examines("fig09-two-motions", "run-175")
 def _(run: xr.Dataset) -> Finding:
     theirs, ours = (_swing_by_second(run, suffix) for suffix in ("_listing", ""))
     visible = PLOTTED.value * np.pi
@@ -172,7 +170,7 @@ def _swing_by_second(run: xr.Dataset, suffix: str) -> np.ndarray:
     return np.array([np.median(size[second == k]) for k in np.unique(second)])
 
 
-@CHAPTER.examines("sec2-large-spin", "run-175")
+@examines("sec2-large-spin", "run-175")
 def _(run: xr.Dataset) -> Finding:
     theirs, ours = (_numerator(run, suffix) for suffix in ("_listing", ""))
     return Finding(
@@ -196,7 +194,7 @@ def _numerator(run: xr.Dataset, suffix: str) -> tuple[float, float, float]:
     return m * g * I1, m * R * alpha * turning, -m * R * alpha * I3 * phi_dot * omega3 * s**2
 
 
-@CHAPTER.examines("fig16-stays", "run-150-pi-4")
+@examines("fig16-stays", "run-150-pi-4")
 def _(run: xr.Dataset) -> Finding:
     return Finding(
         not float(run["least_force_listing"]) < 0,
@@ -207,7 +205,7 @@ def _(run: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.examines("sec4-may-fly", "run-175")
+@examines("sec4-may-fly", "run-175")
 def _(run: xr.Dataset) -> Finding:
     return Finding.unlisted(
         float(run["highest_gap"]) > PLOTTED.value * float(REPORT.surface.size),

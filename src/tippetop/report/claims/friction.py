@@ -5,19 +5,17 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from tippetop.report.claim import Chapter, Finding, both, listed
+from tippetop.report.claim import Finding, both, examines, listed
 from tippetop.report.experiments.friction import power_law
 from tippetop.report.quoted import EXPONENT
 from tippetop.report.tolerance import ARRIVED, PLOTTED, TRANSCRIBED, WHOLE, half_last_digit
-
-CHAPTER = Chapter()
 
 _LOST = 0.1
 """Relative departure from the law that counts as losing it: more than its scatter over a decade below; the
 claim fig07-inverse tells it."""
 
 
-@CHAPTER.examines("sec3-friction", "friction-extremes")
+@examines("sec3-friction", "friction-extremes")
 def _(data: xr.Dataset) -> Finding:
     mu, times = data["mu"].values, data["turning_time"].values
     turns = np.isfinite(times)
@@ -32,7 +30,7 @@ def _(data: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.examines("fig07-exponent", "flip-times", "flip-times-spins")
+@examines("fig07-exponent", "flip-times", "flip-times-spins")
 def _(times: xr.Dataset, others: xr.Dataset) -> Finding:
     nearest = min(_fits(times, others), key=lambda fit: abs(fit.exponent - float(EXPONENT)))
     fits = [fit.exponent for fit in _fits(times, others)]
@@ -50,7 +48,7 @@ def _(times: xr.Dataset, others: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.examines("fig07-inverse", "flip-times", "flip-times-spins", "onset-mu")
+@examines("fig07-inverse", "flip-times", "flip-times-spins", "onset-mu")
 def _(times: xr.Dataset, others: xr.Dataset, onsets: xr.Dataset) -> Finding:
     # The least spin that leaves the table with any friction of the range, between those scanned.
     scanned = onsets["onset"].isel(window=-1)
@@ -110,7 +108,7 @@ def _step(mu: xr.DataArray) -> float:
     return float(mu[1] - mu[0])
 
 
-@CHAPTER.examines("summary-large-mu", "flip-times-wide")
+@examines("summary-large-mu", "flip-times-wide")
 def _(wide: xr.Dataset) -> Finding:
     product = wide["mu_wide"] * wide["flip_time_wide"]
     law = product.sel(mu_wide=wide["mu_wide"] <= 0.1001).mean("mu_wide")
@@ -125,7 +123,7 @@ def _(wide: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.examines("fig08-around-pi", "run-mu-100")
+@examines("fig08-around-pi", "run-mu-100")
 def _(run: xr.Dataset) -> Finding:
     (theirs, _), (ours, last) = (_round_the_pole(run, suffix) for suffix in ("_listing", ""))
     late = run["theta"].sel(time=slice(last, None))
@@ -156,7 +154,7 @@ def _round_the_pole(run: xr.Dataset, suffix: str) -> tuple[float, float]:
     return float(round_it.mean()), float(times[round_it][-1])
 
 
-@CHAPTER.examines("fig08-rapid", "run-mu-100")
+@examines("fig08-rapid", "run-mu-100")
 def _(run: xr.Dataset) -> Finding:
     theirs, ours = (float(np.median(np.diff(_nearest_to_pi(run, suffix)[0]))) for suffix in ("_listing", ""))
     shown = PLOTTED.value * float(run["time"][-1])
@@ -167,7 +165,7 @@ def _(run: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.examines("fig08-settles", "settling-mu-100", tolerance=ARRIVED)
+@examines("fig08-settles", "settling-mu-100", tolerance=ARRIVED)
 def _(later: xr.Dataset) -> Finding:
     swing = later["swing"]
     return Finding.unlisted(
@@ -177,7 +175,7 @@ def _(later: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.examines("fig08-block", "block")
+@examines("fig08-block", "block")
 def _(block: xr.Dataset) -> Finding:
     distance = float(block["distance"])
     return Finding.unlisted(distance, f"It comes to rest after {1e3 * distance:.3f} mm.")
@@ -187,9 +185,9 @@ _LENGTH: dict[str, Any] = {"tolerance": WHOLE, "quantity": "length", "others": "
 _TIME: dict[str, Any] = {"tolerance": WHOLE, "quantity": "time", "others": "tenths", "wrong": "m s^2"}
 
 
-@CHAPTER.examines("eq-2.7-mu-unit", "units", **_LENGTH, correct="s/m")
-@CHAPTER.examines("table-1-mu-unit", "units", **_LENGTH, correct="s/m, which section 2.2 has right,")
-@CHAPTER.examines("table-1-g-unit", "units", **_TIME, correct="m s^-2")
+@examines("eq-2.7-mu-unit", "units", **_LENGTH, correct="s/m")
+@examines("table-1-mu-unit", "units", **_LENGTH, correct="s/m, which section 2.2 has right,")
+@examines("table-1-g-unit", "units", **_TIME, correct="m s^-2")
 def _(check: xr.Dataset, *, quantity: str, others: str, wrong: str, correct: str) -> Finding:
     misses = abs(check[f"theta_in_{others}"] - check["theta"])
     k = int(np.argmin(misses.values))

@@ -5,17 +5,15 @@ import math
 import numpy as np
 import xarray as xr
 
-from tippetop.report.claim import Chapter, Finding, both
+from tippetop.report.claim import Finding, both, examines
 from tippetop.report.experiments.flights import TILT as REPORT_TILT
 from tippetop.report.quoted import TURNED_AT
 from tippetop.report.readings import SETTLED
 from tippetop.report.tolerance import ARRIVED, PLOTTED, READ, rounded
 
-CHAPTER = Chapter()
 
-
-@CHAPTER.examines("fig04-flip-time", "run-155", "run-50", tolerance=READ)
-@CHAPTER.examines("fig05-flip-time", "run-50", "run-155", tolerance=READ)
+@examines("fig04-flip-time", "run-155", "run-50", tolerance=READ)
+@examines("fig05-flip-time", "run-50", "run-155", tolerance=READ)
 def _(run: xr.Dataset, other: xr.Dataset) -> Finding:
     theirs, ours = run["arrival_time_listing"].values, run["arrival_time"].values
     k = _common_threshold(run, other)
@@ -42,18 +40,18 @@ def _common_threshold(*runs: xr.Dataset) -> int:
     return int(np.argmin(np.max(misses, axis=0)))
 
 
-@CHAPTER.examines(
+@examines(
     "fig04-first-reversal",
     "run-155",
     tolerance=READ,
     name="quiet_start",
     meant="the last before the long calm",
 )
-@CHAPTER.examines(
+@examines(
     "fig04-second-reversal", "run-155", tolerance=READ, name="quiet_end",
     meant="the first after the long calm",
 )  # fmt: skip
-@CHAPTER.examines("fig05-reversal", "run-50", tolerance=READ, name="last_reversal", meant="the last")
+@examines("fig05-reversal", "run-50", tolerance=READ, name="last_reversal", meant="the last")
 def _(run: xr.Dataset, *, name: str, meant: str) -> Finding:
     return Finding(
         *both(run, name),
@@ -62,7 +60,7 @@ def _(run: xr.Dataset, *, name: str, meant: str) -> Finding:
     )
 
 
-@CHAPTER.examines("fig04-inverts", "run-155", tolerance=ARRIVED)
+@examines("fig04-inverts", "run-155", tolerance=ARRIVED)
 def _(run: xr.Dataset) -> Finding:
     left = math.pi - float(run["end_theta"])
     return Finding(
@@ -71,8 +69,8 @@ def _(run: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.examines("fig04-slip", "run-155", tolerance=PLOTTED)
-@CHAPTER.examines("fig05-slip", "run-50", tolerance=PLOTTED)
+@examines("fig04-slip", "run-155", tolerance=PLOTTED)
+@examines("fig05-slip", "run-50", tolerance=PLOTTED)
 def _(run: xr.Dataset) -> Finding:
     return Finding(
         float(run["end_slip_listing"] / run["largest_slip_listing"]),
@@ -82,7 +80,7 @@ def _(run: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.examines("sec3-omega-smooth", "run-155", "run-50", tolerance=PLOTTED)
+@examines("sec3-omega-smooth", "run-155", "run-50", tolerance=PLOTTED)
 def _(*runs: xr.Dataset) -> Finding:
     theirs, ours, other = (
         [_detour(run[name].values) for run in runs] for name in ("omega3_listing", "omega3", "phi_dot")
@@ -100,7 +98,7 @@ def _detour(values: np.ndarray) -> float:
     return float(np.abs(np.diff(values)).sum() / np.ptp(values)) - 1.0
 
 
-@CHAPTER.examines("fig13-upright", "run-10", tolerance=ARRIVED)
+@examines("fig13-upright", "run-10", tolerance=ARRIVED)
 def _(run: xr.Dataset) -> Finding:
     away = np.abs(run["theta"].values - float(run["end_theta"])) > SETTLED
     since = float(run["time"].values[np.flatnonzero(away)[-1] + 1])
@@ -110,15 +108,15 @@ def _(run: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.examines("fig14-inverts", "run-90", tolerance=ARRIVED)
-@CHAPTER.examines("fig15-inverts", "run-120", tolerance=ARRIVED)
+@examines("fig14-inverts", "run-90", tolerance=ARRIVED)
+@examines("fig15-inverts", "run-120", tolerance=ARRIVED)
 def _(run: xr.Dataset) -> Finding:
     return Finding(
         *both(run, "end_theta"), f"It arrives within {SETTLED:g} rad after {run['arrives']:.2f} s."
     )
 
 
-@CHAPTER.examines("sec3-no-nutation", "slow-spins")
+@examines("sec3-no-nutation", "slow-spins")
 def _(slow: xr.Dataset) -> Finding:
     spins = ", ".join(f"{spin:g}" for spin in slow["spin"].values)
     ends = ", ".join(f"{rounded(end)} rad" for end in slow["final"].values)

@@ -3,16 +3,14 @@
 import numpy as np
 import xarray as xr
 
-from tippetop.report.claim import Chapter, Finding, listed
+from tippetop.report.claim import Finding, examines, listed
 from tippetop.report.experiments.flights import MU
 from tippetop.report.experiments.runs import likely_end
 from tippetop.report.quoted import END_OF_FIG_5, ROUGH_FRICTION
 from tippetop.report.tolerance import PLOTTED, ROUNDING, TRANSCRIBED, Tolerance
 
-CHAPTER = Chapter()
 
-
-@CHAPTER.examines("appendix-b-order")
+@examines("appendix-b-order")
 def _(order: xr.Dataset) -> Finding:
     return Finding.unlisted(
         float(order["order_rk4_in_a_step"]),
@@ -22,7 +20,7 @@ def _(order: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.examines("eq-b.1")
+@examines("eq-b.1")
 def _(order: xr.Dataset) -> Finding:
     return Finding.unlisted(
         float(order["order_printed_in_a_step"]),
@@ -35,7 +33,7 @@ def _(order: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.examines("section-3-method")
+@examines("section-3-method")
 def _(data: xr.Dataset) -> Finding:
     companion = float(data["order_companion_in_all"])
     return Finding(
@@ -47,7 +45,7 @@ def _(data: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.examines(
+@examines(
     "section-3-reliable",
     "run-155",
     "run-50",
@@ -91,7 +89,7 @@ def _name(run: xr.Dataset) -> str:
     return str(run.attrs["experiment"])
 
 
-@CHAPTER.examines("section-5-stiff")
+@examines("section-5-stiff")
 def _(counts: xr.Dataset) -> Finding:
     columns = (counts[name].values for name in ("launch_spin", "launch_tilt", "launch_mu", "stiffness"))
     ratios = listed("{:g} rad/s, {:.5g} rad, {:g} s/m: {:.1f}", *columns, between="; ")
@@ -108,7 +106,7 @@ _STIFF = 2.0
 """By how much an implicit method must be the cheaper in a stiff case."""
 
 
-@CHAPTER.examines("section-5-cause")
+@examines("section-5-cause")
 def _(counts: xr.Dataset) -> Finding:
     friction, stiff = counts["launch_mu"].values, counts["stiffness"].values > _STIFF
     decided = [mu for mu in np.unique(friction) if 0 < stiff[friction == mu].sum() < (friction == mu).sum()]
@@ -123,7 +121,7 @@ def _(counts: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.examines(
+@examines(
     "section-5-ode15s",
     tolerance=Tolerance(PLOTTED.value * np.pi, "1 % of pi: what a plot can show, as where ode45 is judged"),
 )
@@ -141,9 +139,7 @@ def _(counts: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.examines(
-    "listing-theta-mod-pi", "theta-mod-pi", "run-mu-100", "run-155", "run-175", tolerance=ROUNDING
-)
+@examines("listing-theta-mod-pi", "theta-mod-pi", "run-mu-100", "run-155", "run-175", tolerance=ROUNDING)
 def _(check: xr.Dataset, *runs: xr.Dataset) -> Finding:
     size = float(check["size"])
     theirs = float(check["jump_listing"]) / size

@@ -3,10 +3,8 @@
 import numpy as np
 import xarray as xr
 
-from tippetop.report.claim import Chapter, Finding, listed
+from tippetop.report.claim import Finding, examines, listed
 from tippetop.report.tolerance import ROUNDING, Tolerance
-
-CHAPTER = Chapter()
 
 _READ = Tolerance(
     0.13, "1 % of the 8 s of the plot that the time is read off, and half a unit of the last printed digit"
@@ -15,10 +13,10 @@ _READ = Tolerance(
 _THIN = Tolerance(0.02, "2 %: the disk of the toy has a thickness, and the formula is for one that has none")
 
 
-@CHAPTER.examines("real-leine-stem", tolerance=_READ, event="stem", printed=1.5)
-@CHAPTER.examines("real-leine-back", tolerance=_READ, event="back", printed=4.5)
-@CHAPTER.examines("real-leine-both", tolerance=_READ, event="both", printed=4.6)
-@CHAPTER.examines("real-leine-apart", tolerance=_READ, event="apart", printed=5.4)
+@examines("real-leine-stem", tolerance=_READ, event="stem", printed=1.5)
+@examines("real-leine-back", tolerance=_READ, event="back", printed=4.5)
+@examines("real-leine-both", tolerance=_READ, event="both", printed=4.6)
+@examines("real-leine-apart", tolerance=_READ, event="apart", printed=5.4)
 def _(data: xr.Dataset, *, event: str, printed: float) -> Finding:
     times = data[event]
     pressures, misses = data["pressure"].values, abs(times - printed)
@@ -33,7 +31,7 @@ def _(data: xr.Dataset, *, event: str, printed: float) -> Finding:
     )
 
 
-@CHAPTER.examines("real-leine-stepping")
+@examines("real-leine-stepping")
 def _(data: xr.Dataset) -> Finding:
     events = ("stem", "back", "both", "apart")
     off = {name: data[name] - data[f"exact_{name}"] for name in (*events, "final_theta")}
@@ -54,7 +52,7 @@ def _(data: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.examines("real-stem-test")
+@examines("real-stem-test")
 def _(data: xr.Dataset) -> Finding:
     stands = (data["final_theta"] > np.pi - data.attrs["upright_rad"]).values
     enough = (data["jellett"] > data["jellett_needed"]).values
@@ -69,7 +67,7 @@ def _(data: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.examines("real-egg-rises")
+@examines("real-egg-rises")
 def _(data: xr.Dataset) -> Finding:
     final = data["theta"].isel(time=-1)
     tilts = listed("{:g} rad/s: {:.3f}", data["rate"].values, final.values, between="; ")
@@ -80,14 +78,14 @@ def _(data: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.examines("real-egg-jumps")
+@examines("real-egg-jumps")
 def _(data: xr.Dataset) -> Finding:
     lifts = data["lift_off"].dropna("rate")
     times = listed("{:.3f} s at {:g} rad/s", lifts.values, lifts["rate"].values)
     return Finding.unlisted(bool(len(lifts)), f"First lift-offs: {times or 'none'}.")
 
 
-@CHAPTER.examines("real-disk-rate", tolerance=_THIN)
+@examines("real-disk-rate", tolerance=_THIN)
 def _(data: xr.Dataset) -> Finding:
     near = data["disk_tilt"].values < 0.35
     ratio = (data["disk_measured"] / data["disk_thin"]).values[near]
@@ -99,7 +97,7 @@ def _(data: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.examines("real-hurricane-balls", tolerance=ROUNDING)
+@examines("real-hurricane-balls", tolerance=ROUNDING)
 def _(data: xr.Dataset) -> Finding:
     rate, tilt = data["balls_measured"].values, data["balls_tilt"].values
     off = np.cos(tilt) - 2 / 5 + data.attrs["gravity"] / (rate**2 * data.attrs["ball_radius_m"])

@@ -1,7 +1,7 @@
 """Everything the report claims that can be put to numbers: told in `claims.toml`, examined here."""
 
-from tippetop.report.claim import Chapter, Claim, Source
-from tippetop.report.claims import (
+from tippetop.report.claim import EXAMINERS, Claim, Source
+from tippetop.report.claims import (  # noqa: F401 - for what they register
     abnormal,
     dry,
     end_state,
@@ -16,14 +16,6 @@ from tippetop.report.claims import (
     why,
 )
 from tippetop.report.told import told
-
-EXAMINERS = Chapter()
-"""How the claims are examined, by their names."""
-for module in (
-    *(launches, end_state, spins, friction, flight, abnormal),
-    *(equations, steady, methods, why, dry, real),
-):
-    EXAMINERS |= module.CHAPTER
 
 CLAIMS: dict[str, Claim] = {
     name: Claim(name, EXAMINERS[name], Source(**fields.pop("source")), **fields)

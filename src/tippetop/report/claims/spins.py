@@ -3,12 +3,10 @@
 import numpy as np
 import xarray as xr
 
-from tippetop.report.claim import Chapter, Finding, listed
+from tippetop.report.claim import Finding, examines, listed
 from tippetop.report.experiments.spins import TURNED
 from tippetop.report.quoted import CRITICAL_SPINS
 from tippetop.report.tolerance import Tolerance
-
-CHAPTER = Chapter()
 
 _STEP = Tolerance(
     0.1,
@@ -21,7 +19,7 @@ _NEEDED = ("final-tilt-listing", "critical-spins", "why-critical")
 _FIRST, _SECOND = CRITICAL_SPINS
 
 
-@CHAPTER.examines(
+@examines(
     "fig06-c1",
     *_NEEDED,
     tolerance=_STEP,
@@ -29,7 +27,7 @@ _FIRST, _SECOND = CRITICAL_SPINS
     printed=_FIRST,
     change="the upright spin loses its stability",
 )
-@CHAPTER.examines(
+@examines(
     "fig06-c2", *_NEEDED, tolerance=_STEP, name="inverted", printed=_SECOND,
     change="the inverted spin gains stability",
 )  # fmt: skip
@@ -65,7 +63,7 @@ def _common_margin(listing: xr.Dataset) -> float:
     return float(listing["margin_listing"][int(np.argmin(np.max(misses, axis=0)))])
 
 
-@CHAPTER.examines(
+@examines(
     "fig06-a",
     "final-tilt-listing",
     "final-tilt",

@@ -6,15 +6,13 @@ import numpy as np
 import xarray as xr
 
 from tippetop.presets import REPORT
-from tippetop.report.claim import Chapter, Finding, listed
+from tippetop.report.claim import Finding, examines, listed
 from tippetop.report.experiments.equations import left_of_217
 from tippetop.report.quoted import END_OF_FIG_5
 from tippetop.report.tolerance import STEADY, TRANSCRIBED, Tolerance, rounded
 
-CHAPTER = Chapter()
 
-
-@CHAPTER.examines("sec2-no-slip", "steady-bodies", "run-155", "run-50", tolerance=STEADY)
+@examines("sec2-no-slip", "steady-bodies", "run-155", "run-50", tolerance=STEADY)
 def _(steady: xr.Dataset, *runs: xr.Dataset) -> Finding:
     left = np.maximum(steady["slip"], steady["slip_rate"])
     theirs = max(float(run["end_slip_listing"] / run["largest_slip_listing"]) for run in runs)
@@ -27,7 +25,7 @@ def _(steady: xr.Dataset, *runs: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.examines("eq-2.16", "steady-bodies", tolerance=STEADY)
+@examines("eq-2.16", "steady-bodies", tolerance=STEADY)
 def _(steady: xr.Dataset) -> Finding:
     left = np.maximum(steady["residual_216"].values, steady["phi_ddot"].values)
     return Finding.unlisted(
@@ -45,7 +43,7 @@ def _rounding_of_217(theta: float, phi_dot: float, omega3: float) -> float:
     return 0.0005 * (abs(phi_dot * math.sin(theta)) + abs(math.cos(theta) - _ALPHA) + 1.0)
 
 
-@CHAPTER.examines(
+@examines(
     "eq-2.17",
     "run-50",
     tolerance=Tolerance(
@@ -68,7 +66,7 @@ def _(run: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.examines("eq-2.17-range", tolerance=STEADY)
+@examines("eq-2.17-range", tolerance=STEADY)
 def _(states: xr.Dataset) -> Finding:
     low, high = (float(limit) for limit in states["limits"])
     inside = states.isel(run=((states["run_spin"] > low) & (states["run_spin"] < high)).values)
@@ -81,7 +79,7 @@ def _(states: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.examines("eq-2.17-exception", "run-10", tolerance=STEADY)
+@examines("eq-2.17-exception", "run-10", tolerance=STEADY)
 def _(run: xr.Dataset) -> Finding:
     late = run.sel(time=slice(15.0, None))
     left = left_of_217(late["theta"], late["phi_dot"], late["omega3"], _ALPHA)
@@ -94,7 +92,7 @@ def _(run: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.examines("eq-2.14-no-nutation", "why-groups", "steady-bodies")
+@examines("eq-2.14-no-nutation", "why-groups", "steady-bodies")
 def _(chart: xr.Dataset, steady: xr.Dataset) -> Finding:
     # The bracket over I3 is alpha + (gamma - 1) cos(theta): it has a zero where |gamma - 1| reaches alpha.
     bracket = chart["top_alpha"] - abs(chart["top_gamma"] - 1.0)
@@ -108,14 +106,14 @@ def _(chart: xr.Dataset, steady: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.examines("eq-2.17-any-body", "steady-bodies", tolerance=STEADY)
+@examines("eq-2.17-any-body", "steady-bodies", tolerance=STEADY)
 def _(steady: xr.Dataset) -> Finding:
     left = abs(steady["residual_217"]) / abs(steady["phi_dot"])
     each = listed("{} {}", steady["body"].values, map(rounded, left.values))
     return Finding.unlisted(float(left.max()), f"Differences over phi': {each}.")
 
 
-@CHAPTER.examines("eq-2.16-third", "steady-bodies")
+@examines("eq-2.16-third", "steady-bodies")
 def _(steady: xr.Dataset) -> Finding:
     precession, spin = steady["phi_dot"], steady["omega3"]
     rotation = spin - precession * np.cos(steady["theta"])

@@ -3,19 +3,17 @@
 import numpy as np
 import xarray as xr
 
-from tippetop.report.claim import Chapter, Finding, listed
+from tippetop.report.claim import Finding, examines, listed
 from tippetop.report.experiments.theory import QUOTED_SPINS
 from tippetop.report.quoted import ABNORMAL_SPIN, CRITICAL_SPINS
 from tippetop.report.readings import SETTLED
 from tippetop.report.tolerance import Tolerance, rounded
 
-CHAPTER = Chapter()
-
 _NEAR_LIMIT = 1e-3
 """Relative distance from the limit that counts as there: the tolerance of the report's own method."""
 
 
-@CHAPTER.examines("why-final-tilt", tolerance=Tolerance(1e-6, "far below what the report's figures can show"))
+@examines("why-final-tilt", tolerance=Tolerance(1e-6, "far below what the report's figures can show"))
 def _(states: xr.Dataset) -> Finding:
     quoted = states.isel(run=[int(np.argmin(abs(states["run_spin"].values - s))) for s in QUOTED_SPINS])
     spins, tilts, ends = (quoted[f"run_{name}"].values for name in ("spin", "predicted", "end"))
@@ -27,7 +25,7 @@ def _(states: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.examines("why-regimes", "why-bifurcation", "why-groups", "final-tilt-listing")
+@examines("why-regimes", "why-bifurcation", "why-groups", "final-tilt-listing")
 def _(states: xr.Dataset, chart: xr.Dataset, listing: xr.Dataset) -> Finding:
     upright, inverted = (float(limit) for limit in states["limits"])
     spin, end = states["run_spin"].values, states["run_end"].values
@@ -57,7 +55,7 @@ def _(states: xr.Dataset, chart: xr.Dataset, listing: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.examines("why-flip-law", "why-exponent")
+@examines("why-flip-law", "why-exponent")
 def _(times: xr.Dataset) -> Finding:
     misses = _law_misses(times)
     return Finding.unlisted(
@@ -71,7 +69,7 @@ def _(times: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.examines(
+@examines(
     "section-5-small-mu",
     "why-exponent",
     "flip-times-wide",
@@ -90,7 +88,7 @@ def _(times: xr.Dataset, wide: xr.Dataset) -> Finding:
     )
 
 
-@CHAPTER.examines("why-only-simulation", "why-critical", "why-bifurcation", "why-exponent")
+@examines("why-only-simulation", "why-critical", "why-bifurcation", "why-exponent")
 def _(theory: xr.Dataset, states: xr.Dataset, times: xr.Dataset) -> Finding:
     tilt, law = _tilt_miss(states), max(_law_misses(times))
     spectral = float(abs(theory["critical_spectrum"] / theory["critical_formula"] - 1.0).max())

@@ -6,14 +6,12 @@ import xarray as xr
 from tippetop.frictions import ViscousFriction
 from tippetop.presets import report_problem
 from tippetop.problem import Problem
-from tippetop.report.experiment import Bench, dataset
+from tippetop.report.experiment import dataset, experiment
 from tippetop.report.experiments.runs import on_table
 from tippetop.run import simulate
 
-BENCH = Bench()
 
-
-@BENCH.experiment("units", "the units of Table 1", 0.3)
+@experiment("units", "the units of Table 1", 0.3)
 def _units(quick: bool) -> xr.Dataset:
     """The same launch in metres and seconds and in other units, by the units that Table 1 may mean."""
     report = report_problem()
@@ -60,7 +58,7 @@ def _tilt_after(problem: Problem, duration: float) -> float:
     return float(simulate(on_table(problem), duration, samples=2)["theta"].values[-1])
 
 
-@BENCH.experiment("block", "a block on the table of Fig. 8", 0.1)
+@experiment("block", "a block on the table of Fig. 8", 0.1)
 def _block(quick: bool) -> xr.Dataset:
     """How far a block slides on the table of Fig. 8 when it starts with 1 m/s."""
     mu, gravity = 100.0, report_problem().gravity

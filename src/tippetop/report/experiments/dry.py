@@ -18,11 +18,9 @@ from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.top import natural, natural_state, natural_units
 from tippetop.presets import report_problem
 from tippetop.problem import Contact, Launch, Problem
-from tippetop.report.experiment import Bench, dataset
+from tippetop.report.experiment import dataset, experiment
 from tippetop.report.experiments.runs import happenings, stopping
 from tippetop.run import simulate
-
-BENCH = Bench()
 
 SPIN, TILT = 155.0, 0.1
 """The report's main launch, rad/s and rad."""
@@ -82,7 +80,7 @@ def friction_needed(spin: float, tilt: float) -> float:
     return float(here + (after - before) ** 2 / (8.0 * (2.0 * here - before - after)))
 
 
-@BENCH.experiment("dry-rolling", "the friction that rolling needs", 4.0)
+@experiment("dry-rolling", "the friction that rolling needs", 4.0)
 def _rolling(quick: bool) -> xr.Dataset:
     """How much friction rolling needs, and what a launch does with a little more and with a little less."""
     spins = np.linspace(10.0, 250.0, 5 if quick else 17)
@@ -133,7 +131,7 @@ def stepped(problem: Problem, step: float, duration: float) -> SlidingState:
     return SlidingState.unpack(np.array(rows).T)
 
 
-@BENCH.experiment("dry-cohen", "Cohen's top by his method and exactly", 4.0)
+@experiment("dry-cohen", "Cohen's top by his method and exactly", 4.0)
 def _cohen(quick: bool) -> xr.Dataset:
     steps = np.array([10.0, 2.0, 0.5] if quick else [10.0, 5.0, 2.0, 1.0, 0.5, 0.2]) * 1e-3
     times = np.linspace(0.0, FOLLOWED, round(FOLLOWED / COHEN_STEP) + 1)
@@ -166,7 +164,7 @@ def turning_time(problem: Problem, window: float) -> float:
     return float(simulate(problem, window, samples=2, phase_limit=1)["turns_over"])
 
 
-@BENCH.experiment("dry-smoothed", "smoothed Coulomb friction as the smoothing goes away", 4.0)
+@experiment("dry-smoothed", "smoothed Coulomb friction as the smoothing goes away", 4.0)
 def _smoothed(quick: bool) -> xr.Dataset:
     eps = np.geomspace(0.1, 5e-3, 5) if quick else np.geomspace(0.1, 1e-3, 11)
     windows = np.maximum(4.0, 0.02 / eps)

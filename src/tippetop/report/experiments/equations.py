@@ -15,12 +15,10 @@ from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import VERTICAL, Scalar, Vector, cross, dot, scale
 from tippetop.presets import REPORT, report_problem
 from tippetop.problem import Problem
-from tippetop.report.experiment import Bench, dataset
+from tippetop.report.experiment import dataset, experiment
 from tippetop.report.experiments.runs import on_table
 from tippetop.report.listing import VARIABLES
 from tippetop.run import simulate
-
-BENCH = Bench()
 
 _INSTANT = 5.0
 _INSTANTS = np.array([1.0, 3.0, _INSTANT, 6.0, 8.0])
@@ -28,7 +26,7 @@ _STEP = 3e-5
 _STENCIL = np.array([1.0, -8.0, 0.0, 8.0, -1.0]) / (12.0 * _STEP)
 
 
-@BENCH.experiment("printed-equations", "the equations of section 2.2 along a run", 0.3)
+@experiment("printed-equations", "the equations of section 2.2 along a run", 0.3)
 def _printed(quick: bool) -> xr.Dataset:
     """The equations of section 2.2 as printed, as listed and as they are, at instants of the main run."""
     problem = on_table(report_problem())
@@ -136,7 +134,7 @@ def _vector(now: xr.Dataset, name: str) -> Vector:
     return (x, y, z)
 
 
-@BENCH.experiment("steady-bodies", "steady states of several bodies", 0.5)
+@experiment("steady-bodies", "steady states of several bodies", 0.5)
 def _steady(quick: bool) -> xr.Dataset:
     """Where several bodies end up between upright and inverted, and how well (2.16) and (2.17) hold there."""
     m, R = REPORT.mass, float(REPORT.surface.size)
@@ -203,7 +201,7 @@ def left_of_217(theta: Scalar, phi_dot: Scalar, omega3: Scalar, alpha: float) ->
     return omega3 - phi_dot * (np.cos(theta) - alpha)
 
 
-@BENCH.experiment("rotation", "the equations of section 2.1 at random states", 0.1)
+@experiment("rotation", "the equations of section 2.1 at random states", 0.1)
 def _rotation(quick: bool) -> xr.Dataset:
     """Section 2.1 at random states: the angular velocity by (2.1) and (2.2), and Euler's equations (2.6)."""
     random = np.random.default_rng(1)

@@ -8,11 +8,9 @@ import xarray as xr
 
 from tippetop.presets import report_problem
 from tippetop.problem import Problem
-from tippetop.report.experiment import Bench, dataset
+from tippetop.report.experiment import dataset, experiment
 from tippetop.report.experiments.runs import WINDOW, flight_readings, stopping, swept, unilateral
 from tippetop.run import simulate
-
-BENCH = Bench()
 
 LONG_WINDOW = 100.0
 """Length of the longer runs in which a lift-off is looked for, s."""
@@ -86,13 +84,13 @@ def _onsets(field: str, values: np.ndarray, windows: tuple[float, ...], quick: b
     )
 
 
-@BENCH.experiment("onset-mu", "the least spin that leaves the table, against friction", 7.0)
+@experiment("onset-mu", "the least spin that leaves the table, against friction", 7.0)
 def _over_mu(quick: bool) -> xr.Dataset:
     values = np.geomspace(0.05, 10.0, 3 if quick else 8)
     return _onsets("friction.mu", values, (WINDOW, LONG_WINDOW), quick).assign_attrs(tilt_rad=TILT)
 
 
-@BENCH.experiment("onset-tilt", "the least spin that leaves the table, against tilt", 5.0)
+@experiment("onset-tilt", "the least spin that leaves the table, against tilt", 5.0)
 def _over_tilt(quick: bool) -> xr.Dataset:
     values = np.sort([TILT, *np.linspace(0.05, 1.4, 4 if quick else 12)])
     return _onsets("launch.tilt", values, (WINDOW,), quick).assign_attrs(mu_s_per_m=MU)
@@ -119,11 +117,11 @@ def followed(spins: tuple[float, ...], restitution: float) -> xr.Dataset:
     )
 
 
-@BENCH.experiment("flights", "launches followed through their flights", 11.0)
+@experiment("flights", "launches followed through their flights", 11.0)
 def _plastic(quick: bool) -> xr.Dataset:
     return followed(SPINS_QUICK if quick else SPINS, 0.0)
 
 
-@BENCH.experiment("flights-bouncing", "the same with impacts that rebound", 5.0)
+@experiment("flights-bouncing", "the same with impacts that rebound", 5.0)
 def _bouncing(quick: bool) -> xr.Dataset:
     return followed(BOUNCING_SPINS_QUICK if quick else BOUNCING_SPINS, BOUNCING)

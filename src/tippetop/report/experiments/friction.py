@@ -9,13 +9,11 @@ from scipy.optimize import curve_fit
 
 from tippetop.integrators.base import Array
 from tippetop.presets import report_problem
-from tippetop.report.experiment import Bench, dataset, variable
+from tippetop.report.experiment import dataset, experiment, variable
 from tippetop.report.experiments.runs import WINDOW, on_table, swept
 from tippetop.report.listing import listing_run
 from tippetop.report.quoted import NORMAL_FRICTION
 from tippetop.report.readings import SETTLED, crossings, flip_time
-
-BENCH = Bench()
 
 SPIN = 155.0
 """The report does not say at which spin its Fig. 7 was made; this is that of its main run, rad/s."""
@@ -89,18 +87,18 @@ def _fitted(spins: Array, count: int) -> xr.Dataset:
     return data
 
 
-@BENCH.experiment("flip-times", "flip time against friction, at 155 rad/s", 2.0)
+@experiment("flip-times", "flip time against friction, at 155 rad/s", 2.0)
 def _flip_times(quick: bool) -> xr.Dataset:
     told = {"spin_rad_per_s": SPIN, "within_rad": SETTLED, "window_s": WINDOW}
     return _fitted(np.array([SPIN]), 7 if quick else 17).isel(spin=0, drop=True).assign_attrs(told)
 
 
-@BENCH.experiment("flip-times-spins", "the same at other spins", 7.0)
+@experiment("flip-times-spins", "the same at other spins", 7.0)
 def _other_spins(quick: bool) -> xr.Dataset:
     return _fitted(np.array(OTHER_SPINS[:3:2] if quick else OTHER_SPINS), 5 if quick else 9)
 
 
-@BENCH.experiment("flip-times-wide", "flip time over three decades of friction", 2.5)
+@experiment("flip-times-wide", "flip time over three decades of friction", 2.5)
 def _wide(quick: bool) -> xr.Dataset:
     mu = np.geomspace(0.03, 10.0, 9) if quick else np.geomspace(0.01, 10.0, 28)
     spins = np.array([100.0, 155.0])
@@ -119,7 +117,7 @@ def _wide(quick: bool) -> xr.Dataset:
     )
 
 
-@BENCH.experiment("friction-extremes", "turning over from no friction to far too much", 5.0)
+@experiment("friction-extremes", "turning over from no friction to far too much", 5.0)
 def _extremes(quick: bool) -> xr.Dataset:
     mu = np.array([0.0, 0.3, 1.0, 100.0, *([] if quick else [300.0]), 1000.0])
     window = 0.5 * WINDOW if quick else WINDOW

@@ -13,13 +13,11 @@ from tippetop.integrators.scipy_methods import SciPy
 from tippetop.mechanics.vectors import Scalar
 from tippetop.presets import report_problem
 from tippetop.problem import Problem
-from tippetop.report.experiment import Bench, dataset
+from tippetop.report.experiment import dataset, experiment
 from tippetop.report.experiments.runs import on_table
 from tippetop.report.listing import launch_state, listing_rates
 from tippetop.report.ode45 import ABSOLUTE, RELATIVE, dormand_prince_step, ode45
 from tippetop.run import simulate
-
-BENCH = Bench()
 
 EXPLICIT, IMPLICIT = ("ode45", "dop853"), ("radau", "bdf", "lsoda")
 
@@ -44,7 +42,7 @@ def _generic() -> Problem:
     return on_table(report_problem(80.0, tilt=0.7).replace(changes))
 
 
-@BENCH.experiment("order", "order of accuracy of the two Runge-Kutta formulas", 1.0)
+@experiment("order", "order of accuracy of the two Runge-Kutta formulas", 1.0)
 def _order(quick: bool) -> xr.Dataset:
     problem, span = _generic(), 0.1
     steps = span / np.array([50, 100, 200] if quick else [50, 100, 200, 400])
@@ -160,7 +158,7 @@ def effort(problem: Problem, method: str, span: float) -> Effort:
     return Effort(rates.count if failure is None else -1, float(end[0] % math.pi))
 
 
-@BENCH.experiment("stiffness", "evaluations of explicit and implicit methods", 12.0)
+@experiment("stiffness", "evaluations of explicit and implicit methods", 12.0)
 def _stiffness(quick: bool) -> xr.Dataset:
     methods = (*EXPLICIT, *IMPLICIT)
     made = [[effort(report_problem(*launch), method, _SPAN) for method in methods] for launch in LAUNCHES]
@@ -185,7 +183,7 @@ def _stiffness(quick: bool) -> xr.Dataset:
     )
 
 
-@BENCH.experiment("theta-mod-pi", "the listing's right-hand side at the poles", 0.1)
+@experiment("theta-mod-pi", "the listing's right-hand side at the poles", 0.1)
 def _jump(quick: bool) -> xr.Dataset:
     problem = report_problem()
     tiny, rest = 1e-9, (3.0, 0.0, 10.0, 155.0, 0.05, 0.05)

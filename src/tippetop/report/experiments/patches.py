@@ -9,15 +9,13 @@ from tippetop.frictions import ContensouFriction, ViscousFriction
 from tippetop.mechanics.contensou import ELLIPSOIDAL_RADIUS
 from tippetop.mechanics.hertz import MATERIALS, hertz_patch_radius
 from tippetop.presets import LEINE_GLOCKER, report_problem
-from tippetop.report.experiment import Bench, dataset
+from tippetop.report.experiment import dataset, experiment
 from tippetop.report.experiments.dry import turning_time, with_friction
 from tippetop.report.experiments.real import LEINE
 from tippetop.run import simulate
 from tippetop.theory.stability import vertical_growth_rates
 from tippetop.theory.steady import VERTICAL_SPINS, SteadyKind
 from tippetop.theory.thresholds import critical_spin
-
-BENCH = Bench()
 
 MU = 0.3
 """Friction coefficient of the map."""
@@ -51,7 +49,7 @@ def viscous_coefficient(mu: float, radius: float, spin: float) -> float:
     return CREEP["ellipsoidal"] * mu / (radius * spin)
 
 
-@BENCH.experiment("dry-patch", "turning over by patch radius and spin", 5.0)
+@experiment("dry-patch", "turning over by patch radius and spin", 5.0)
 def _map(quick: bool) -> xr.Dataset:
     """When the report's top turns over, if it does, by the radius of its patch and its spin."""
     radii = np.geomspace(2e-4, 6e-3, 5) if quick else np.geomspace(1e-4, 6e-3, 12)
@@ -72,7 +70,7 @@ def _map(quick: bool) -> xr.Dataset:
     )
 
 
-@BENCH.experiment("dry-viscous", "patches against viscous friction", 2.0)
+@experiment("dry-viscous", "patches against viscous friction", 2.0)
 def _viscous(quick: bool) -> xr.Dataset:
     """When patches turn the top over, and viscous friction with their coefficient for small slip."""
     coefficients = np.geomspace(1.0, 40.0, 4 if quick else 10)

@@ -10,13 +10,11 @@ from tippetop.frictions import ContensouFriction, CoulombFriction, ViscousFricti
 from tippetop.mechanics.top import Top
 from tippetop.presets import EGG, EULER_DISK, HURRICANE_BALLS, LEINE_GLOCKER_STEM, REPORT_STEM, report_problem
 from tippetop.problem import Launch, Problem
-from tippetop.report.experiment import Bench, dataset
+from tippetop.report.experiment import dataset, experiment
 from tippetop.report.experiments.runs import happenings
 from tippetop.run import simulate
 from tippetop.theory.resting_center import RestingCenter, resting_center
 from tippetop.theory.stem import jellett_about, least_jellett_to_stand
-
-BENCH = Bench()
 
 LEINE = Problem(
     body=LEINE_GLOCKER_STEM,
@@ -76,7 +74,7 @@ def events_of(run: xr.Dataset) -> dict[str, float]:
     return {"stem": stem, "back": back, "both": both, "apart": first_of(happenings(run, "opening"), both)}
 
 
-@BENCH.experiment("real-leine", "Leine and Glocker's top, stem and all", 8.0)
+@experiment("real-leine", "Leine and Glocker's top, stem and all", 8.0)
 def _leine(quick: bool) -> xr.Dataset:
     """Leine and Glocker's top: when the stem strikes, when it falls back, and how long it rests on both."""
     pressures = ["ellipsoidal"] if quick else ["ellipsoidal", "hertz"]
@@ -98,7 +96,7 @@ def with_stem(radius: float) -> Body:
     return REPORT_STEM.model_copy(update={"shape": tuple(shapes)})
 
 
-@BENCH.experiment("real-stems", "which stems let the report's top stand", 2.0)
+@experiment("real-stems", "which stems let the report's top stand", 2.0)
 def _stems(quick: bool) -> xr.Dataset:
     """Whether the report's top stands on stems of several tips, and Jellett's integral when these strike."""
     radii = np.array([0.003, 0.006, 0.009, 0.012]) if quick else np.arange(0.002, 0.0141, 0.001)
@@ -124,7 +122,7 @@ def _stems(quick: bool) -> xr.Dataset:
     )
 
 
-@BENCH.experiment("real-egg", "a hard-boiled egg that rises", 4.0)
+@experiment("real-egg", "a hard-boiled egg that rises", 4.0)
 def _egg(quick: bool) -> xr.Dataset:
     """A hard-boiled egg that is spun on its side: how far it rises, and whether it leaves the table."""
     rates = [60.0, 200.0] if quick else [40.0, 60.0, 80.0, 100.0, 120.0, 150.0, 200.0]
@@ -156,7 +154,7 @@ def rolling(body: Body, tilt: float) -> tuple[RestingCenter, xr.Dataset] | None:
     return found, simulate(problem.replace({"launch": launch}), ROLLING_WINDOW, samples=41)
 
 
-@BENCH.experiment("real-rolling", "Euler's disk and hurricane balls", 2.0)
+@experiment("real-rolling", "Euler's disk and hurricane balls", 2.0)
 def _rolling(quick: bool) -> xr.Dataset:
     tilts = {"disk": [0.1, 0.3, 0.5] if quick else np.linspace(0.05, 0.6, 12).tolist()}
     tilts["balls"] = np.linspace(*BALL_TILTS, 4 if quick else 12).tolist()

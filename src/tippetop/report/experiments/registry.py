@@ -1,7 +1,7 @@
-"""All experiments by name."""
+"""All experiments by name: each module here registers its own."""
 
-from tippetop.report.experiment import Experiment
-from tippetop.report.experiments import (
+from tippetop.report.experiment import EXPERIMENTS as EXPERIMENTS
+from tippetop.report.experiments import (  # noqa: F401 - for what they register
     checks,
     dry,
     equations,
@@ -16,11 +16,3 @@ from tippetop.report.experiments import (
     theory,
     theory_runs,
 )
-
-EXPERIMENTS: dict[str, Experiment] = {}
-"""Every experiment by its name."""
-for module in (
-    *(runs, spins, friction, flights, methods, equations, checks),
-    *(theory, theory_runs, dry, patches, real, stepping),
-):
-    EXPERIMENTS |= module.BENCH

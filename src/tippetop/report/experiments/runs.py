@@ -10,14 +10,12 @@ import xarray as xr
 from tippetop.mechanics.euler import published_energy
 from tippetop.presets import REPORT_TABLE_1, report_problem
 from tippetop.problem import Problem
-from tippetop.report.experiment import Bench, Experiment, dataset, variable
+from tippetop.report.experiment import dataset, experiment, variable
 from tippetop.report.listing import VARIABLES, listing_run
 from tippetop.report.quoted import END_OF_FIG_5
 from tippetop.report.readings import SETTLED, SHOWN, crossings, first_below_zero, flip_time, longest_quiet
 from tippetop.run import simulate
 from tippetop.sweeps import Ending, Product, Sweep, compute
-
-BENCH = Bench()
 
 WINDOW = 20.0
 """Length of the report's runs, s (its listing, line 13)."""
@@ -186,15 +184,15 @@ def _readings(run: xr.Dataset, suffix: str) -> dict[str, object]:
 
 def _launch(name: str, cost: float, title: str, *numbers: float) -> None:
     """The report's top launched with a spin, and a tilt and a friction if they are others than usual."""
-    BENCH[name] = Experiment(name, title, cost, lambda quick: comparison(report_problem(*numbers), quick))
+    experiment(name, title, cost)(lambda quick: comparison(report_problem(*numbers), quick))
 
 
-@BENCH.experiment("run-50-table-1", "launch at 50 rad/s of the body that Table 1 prints", 0.8)
+@experiment("run-50-table-1", "launch at 50 rad/s of the body that Table 1 prints", 0.8)
 def _table_1(quick: bool) -> xr.Dataset:
     return comparison(report_problem(50.0).replace({"body": REPORT_TABLE_1.model_dump()}), quick)
 
 
-@BENCH.experiment("settling-mu-100", "how the nutation of Fig. 8 dies away", 0.8)
+@experiment("settling-mu-100", "how the nutation of Fig. 8 dies away", 0.8)
 def _settling(quick: bool) -> xr.Dataset:
     """How far the tilt still swings, in the second before several times, on the table of Fig. 8."""
     ends = np.array([20.0, 40.0] if quick else [20.0, 40.0, 80.0])
@@ -208,7 +206,7 @@ def _settling(quick: bool) -> xr.Dataset:
     )
 
 
-@BENCH.experiment("run-50-windows", "the end of Fig. 5 against the length of the run", 1.5)
+@experiment("run-50-windows", "the end of Fig. 5 against the length of the run", 1.5)
 def _windows(quick: bool) -> xr.Dataset:
     windows, problem = WINDOWS[3::4] if quick else WINDOWS, report_problem(50.0)
     ends = [listing_run(problem, float(window)).isel(time=-1) for window in windows]
@@ -227,7 +225,7 @@ def likely_end(windows: xr.Dataset) -> xr.Dataset:
     return windows.isel(window=int(np.argmin(np.max(misses, axis=0))))
 
 
-@BENCH.experiment("listing-capped", "the listing with what it has commented out", 2.5)
+@experiment("listing-capped", "the listing with what it has commented out", 2.5)
 def _capped(quick: bool) -> xr.Dataset:
     """Where launches end by the report's method, and if a negative normal force is set to zero in it."""
     spins = CAPPED_SPINS[1:2] if quick else CAPPED_SPINS
@@ -243,7 +241,7 @@ def _capped(quick: bool) -> xr.Dataset:
     )
 
 
-@BENCH.experiment("slow-spins", "launches below the first critical spin", 1.5)
+@experiment("slow-spins", "launches below the first critical spin", 1.5)
 def _slow(quick: bool) -> xr.Dataset:
     """How far launches below omega_c1 tilt, and where they end, by both methods."""
     columns: dict[str, list[float]] = {}

@@ -7,14 +7,12 @@ import xarray as xr
 from scipy.optimize import brentq
 
 from tippetop.presets import report_problem
-from tippetop.report.experiment import Bench, dataset
+from tippetop.report.experiment import dataset, experiment
 from tippetop.report.experiments.flights import leaves_at, onset_between
 from tippetop.report.experiments.runs import WINDOW, on_table, swept, unilateral
 from tippetop.report.listing import listing_run
 from tippetop.report.readings import SETTLED
 from tippetop.run import simulate
-
-BENCH = Bench()
 
 MARGINS = (0.001, SETTLED, 0.1)
 """Tilts that may count as upright, and distances from pi that may count as turned over, rad."""
@@ -51,7 +49,7 @@ def _listing_spins(quick: bool) -> np.ndarray:
     return np.unique(np.concatenate([coarse, low, high, top, [180.0] if quick else [180, 190, 200, 210]]))
 
 
-@BENCH.experiment("final-tilt-listing", "final tilt against spin, by the report's method", 14.0)
+@experiment("final-tilt-listing", "final tilt against spin, by the report's method", 14.0)
 def _by_listing(quick: bool) -> xr.Dataset:
     spins = _listing_spins(quick)
     runs = (listing_run(report_problem(float(spin)), WINDOW) for spin in spins)
@@ -83,7 +81,7 @@ def _where(x: np.ndarray, y: np.ndarray, level: float) -> float:
     return float(np.interp(level, np.maximum.accumulate(y), x))
 
 
-@BENCH.experiment("final-tilt", "final tilt against spin, converged", 2.5)
+@experiment("final-tilt", "final tilt against spin, converged", 2.5)
 def _converged(quick: bool) -> xr.Dataset:
     spins = np.arange(5.0, 210.1, 2.5 if quick else 0.5)
     tilts = swept(on_table(report_problem()), {"launch.spin": spins})["final_theta"].values
@@ -131,7 +129,7 @@ def critical_spins(
     return float(first), float(second)
 
 
-@BENCH.experiment("critical-spins", "critical spins against the length of the runs", 9.0)
+@experiment("critical-spins", "critical spins against the length of the runs", 9.0)
 def _thresholds(quick: bool) -> xr.Dataset:
     windows = LONG_WINDOWS[:2] if quick else LONG_WINDOWS
     found = [critical_spins(windows[0], SETTLED)]

@@ -7,13 +7,11 @@ import xarray as xr
 
 from tippetop.frictions import ContensouFriction
 from tippetop.mechanics.contensou import ELLIPSOIDAL_RADIUS
-from tippetop.report.experiment import Bench, dataset
+from tippetop.report.experiment import dataset, experiment
 from tippetop.report.experiments.real import EVENTS, LEINE, LEINE_WINDOW, events_of
 from tippetop.report.experiments.runs import happenings
 from tippetop.report.moreau import Ball, History, SphereTop, follow
 from tippetop.run import simulate
-
-BENCH = Bench()
 
 STEPS = (1e-3, 5e-4, 2e-4, 1e-4, 5e-5)
 """Steps that are tried, s."""
@@ -60,7 +58,7 @@ def found_in(history: History) -> dict[str, float]:
     return {"stem": touched, "back": back, "both": both, "apart": apart, "strikes": strikes}
 
 
-@BENCH.experiment("real-stepping", "Leine and Glocker's top by time-stepping", 12.0)
+@experiment("real-stepping", "Leine and Glocker's top by time-stepping", 12.0)
 def _stepping(quick: bool) -> xr.Dataset:
     """What time-stepping finds of the top, over its step, and what an exact run finds."""
     histories = [stepped(step) for step in (STEPS[:3] if quick else STEPS)]

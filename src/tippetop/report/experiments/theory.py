@@ -10,7 +10,7 @@ from tippetop.bodies import Body
 from tippetop.integrators.base import Array
 from tippetop.presets import LEINE_GLOCKER, REPORT, REPORT_TABLE_1, report_problem
 from tippetop.problem import Problem
-from tippetop.report.experiment import Bench, dataset
+from tippetop.report.experiment import dataset, experiment
 from tippetop.report.experiments.equations import left_of_217
 from tippetop.report.experiments.runs import WINDOW
 from tippetop.run import simulate
@@ -35,8 +35,6 @@ from tippetop.theory.stability import eigenvalues
 from tippetop.theory.steady import VERTICAL_SPINS, jellett_of_launch, precession_branch
 from tippetop.theory.thresholds import critical_spin, critical_spins
 
-BENCH = Bench()
-
 VISIBLE = (0.001, 0.002, 0.005, 0.01)
 """Distances from the vertical that may be told from none, rad: up to the report's own 0.01 rad."""
 
@@ -50,7 +48,7 @@ LONG_RUN = 400.0
 """Length of the runs whose end is compared with the steady states, s."""
 
 
-@BENCH.experiment("why-critical", "critical spins without a simulation", 1.0)
+@experiment("why-critical", "critical spins without a simulation", 1.0)
 def _critical(quick: bool) -> xr.Dataset:
     """The critical spins by formula and by the spectrum, and what a short window makes of them."""
     problem = report_problem()
@@ -80,7 +78,7 @@ def _critical(quick: bool) -> xr.Dataset:
     )
 
 
-@BENCH.experiment("why-bifurcation", "steady states against spin, and long runs", 5.0)
+@experiment("why-bifurcation", "steady states against spin, and long runs", 5.0)
 def _bifurcation(quick: bool) -> xr.Dataset:
     """Steady states against spin with their stability, and where long runs end, for two bodies."""
     jumping = REPORT.model_copy(update={"I1": JUMP_RATIO * REPORT.I3})
@@ -162,7 +160,7 @@ def _launched(base: Problem, spin: float, tilt: float) -> Problem:
     return tilted.replace({"launch.spin": spin * _per_spin(base) / _per_spin(tilted)})
 
 
-@BENCH.experiment("why-groups", "which tops turn over", 0.3)
+@experiment("why-groups", "which tops turn over", 0.3)
 def _groups(quick: bool) -> xr.Dataset:
     """The map of the groups over gamma and alpha, and some tops on it."""
     alpha = np.linspace(1e-3, 0.6, 121 if quick else 601)

@@ -7,7 +7,7 @@ import xarray as xr
 
 from tippetop.integrators.base import Array
 from tippetop.presets import report_problem
-from tippetop.report.experiment import Bench, dataset, variable
+from tippetop.report.experiment import dataset, experiment, variable
 from tippetop.report.experiments.runs import WINDOW, on_table
 from tippetop.report.readings import SETTLED, flip_time
 from tippetop.run import simulate
@@ -16,8 +16,6 @@ from tippetop.theory.averaging import averaged_flow, flip_time_limit, local_expo
 from tippetop.theory.diagnostics import gyroscopic_balance, nutation_envelope, potential_at, smooth_constants
 from tippetop.theory.prediction import predict
 from tippetop.theory.steady import SteadyKind
-
-BENCH = Bench()
 
 SPIN = 100.0
 """Spin of the launches whose slow flow is shown, rad/s."""
@@ -34,7 +32,7 @@ DIAGNOSED_SPIN = 155.0
 _BINS = 400
 
 
-@BENCH.experiment("why-collapse", "runs at small friction against the averaged flow", 2.0)
+@experiment("why-collapse", "runs at small friction against the averaged flow", 2.0)
 def _collapse(quick: bool) -> xr.Dataset:
     """The tilt against mu t: the averaged flow, and runs at several frictions."""
     problem = report_problem(SPIN)
@@ -75,7 +73,7 @@ def _band(mu: float, edges: Array) -> tuple[Array, Array]:
     return parts.min(axis=1), parts.max(axis=1)
 
 
-@BENCH.experiment("why-exponent", "turning over against friction, in several senses", 6.0)
+@experiment("why-exponent", "turning over against friction, in several senses", 6.0)
 def _exponent(quick: bool) -> xr.Dataset:
     """The time to turn over against friction, by several definitions, and its limit."""
     small = np.geomspace(0.01 if quick else 0.003, 0.3, 4 if quick else 10)
@@ -135,7 +133,7 @@ def _rising(values: Array, times: Array) -> tuple[Array, Array]:
     return highest[new], times[new]
 
 
-@BENCH.experiment("why-diagnostics", "what the main run says of its nutation", 1.0)
+@experiment("why-diagnostics", "what the main run says of its nutation", 1.0)
 def _diagnostics(quick: bool) -> xr.Dataset:
     """Gyroscopic balance, envelope of the nutation and effective potential along the report's main run."""
     problem = on_table(report_problem(DIAGNOSED_SPIN))
