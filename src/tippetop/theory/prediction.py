@@ -42,24 +42,16 @@ from tippetop.theory.steady import (
 
 @dataclass(frozen=True)
 class Prediction:
-    """What Jellett's integral and the energy say of the end of a launch.
-
-    Attributes
-    ----------
-    jellett
-        lambda of the launch, kg m^3/s.
-    stable
-        All stable steady states with this lambda, the one of least energy first.
-    reachable
-        Those among them that the energy of the launch does not bar, in the same order.
-    surface
-        Number of the body's surface that it ends on.
-    """
+    """What Jellett's integral and the energy say of the end of a launch."""
 
     jellett: float
+    """lambda of the launch, kg m^3/s."""
     stable: tuple[SteadyState, ...]
+    """All stable steady states with this lambda, the one of least energy first."""
     reachable: tuple[SteadyState, ...]
+    """Those among them that the energy of the launch does not bar, in the same order."""
     surface: int = 0
+    """Number of the body's surface that it ends on."""
 
     @property
     def final(self) -> SteadyState:

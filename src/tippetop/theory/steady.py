@@ -43,31 +43,21 @@ VERTICAL_SPINS = (SteadyKind.UPRIGHT, SteadyKind.INVERTED)
 
 @dataclass(frozen=True)
 class SteadyState:
-    """A motion that friction leaves alone, or many of one kind: numbers, or arrays of one shape.
-
-    Attributes
-    ----------
-    kind
-        Vertical spin at theta = 0 or pi, steady precession, or level spin.
-    tilt
-        theta, rad.
-    precession
-        phi', rad/s; 0 by convention for a vertical spin, where only the axial spin has a meaning; nan, as
-        what follows, where nothing precesses steadily at this tilt.
-    spin
-        Axial spin omega3, rad/s.
-    jellett
-        Jellett's integral lambda, kg m^3/s.
-    energy
-        Energy, J, in the convention of `tippetop.mechanics.invariants.energy`.
-    """
+    """A motion that friction leaves alone, or many of one kind: numbers, or arrays of one shape."""
 
     kind: SteadyKind
+    """Vertical spin at theta = 0 or pi, steady precession, or level spin."""
     tilt: Scalar
+    """theta, rad."""
     precession: Scalar
+    """phi', rad/s; 0 by convention for a vertical spin, where only the axial spin has a meaning; nan, as what
+    follows, where nothing precesses steadily at this tilt."""
     spin: Scalar
+    """Axial spin omega3, rad/s."""
     jellett: Scalar
+    """Jellett's integral lambda, kg m^3/s."""
     energy: Scalar
+    """Energy, J, in the convention of `tippetop.mechanics.invariants.energy`."""
 
 
 class RollingPrecession(NamedTuple):

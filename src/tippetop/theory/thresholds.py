@@ -32,18 +32,12 @@ ROUNDING = 1e-14
 
 @dataclass(frozen=True)
 class CriticalSpins:
-    """Spins of a launch, rad/s, at which the two vertical spins change stability.
-
-    Attributes
-    ----------
-    upright
-        omega_c1: an eccentric sphere launched with more spin leaves theta = 0; inf if it never does.
-    inverted
-        omega_c2: launched with more spin it stays at theta = pi once there; inf if it never does.
-    """
+    """Spins of a launch, rad/s, at which the two vertical spins change stability."""
 
     upright: float
+    """omega_c1: an eccentric sphere launched with more spin leaves theta = 0; inf if it never does."""
     inverted: float
+    """omega_c2: launched with more spin it stays at theta = pi once there; inf if it never does."""
 
 
 def critical_jellett(kind: SteadyKind, top: Top) -> float:
