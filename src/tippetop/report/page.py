@@ -19,17 +19,6 @@ from tippetop.report.outline import OWN, PICTURES, SECTIONS, UNCHECKED, section_
 from tippetop.report.plate import Plate
 from tippetop.report.typeset import formula, typeset
 
-_TEMPLATE = "page.html.j2"
-
-_WRONG = (Verdict.CORRECTED, Verdict.EXPLAINED)
-"""Verdicts on what is not true."""
-
-_THUMBNAIL = (640, 420)
-"""Largest size of the pictures that the page opens with, pixels."""
-
-_THEIRS = ": the report"
-"""How sections of ours mark the statements that are the report's nevertheless."""
-
 Worded = dict[str, Any]
 """A claim in words."""
 
@@ -59,7 +48,7 @@ def render(
     environment.filters |= {"typeset": typeset, "formula": formula}
     shown = {plate.id for plate in plates}
     claims = [worded(judgement, shown) for judgement in judgements]
-    wrong = [verdict.name.lower() for verdict in _WRONG]
+    wrong = [verdict.name.lower() for verdict in (Verdict.CORRECTED, Verdict.EXPLAINED)]
     theirs = [claim for claim in claims if claim["section"] not in OWN]
     counts, shown_counts = (Counter(claim["verdict"] for claim in some) for some in (theirs, claims))
     parts: dict[str, Any] = {
@@ -72,7 +61,7 @@ def render(
         "experiments_done": _experiments(plates, judgements),
         "unchecked": [] if partial else UNCHECKED,
     }
-    return environment.get_template(_TEMPLATE).render(
+    return environment.get_template("page.html.j2").render(
         **parts,
         contents=_contents(parts),
         claims=claims,
@@ -153,7 +142,7 @@ def _picture(plate: Plate, figures: Path) -> dict[str, str]:
     """One of the pictures that the page opens with, small."""
     with Image.open(figures / f"{plate.id}.png") as whole:
         small = whole.convert("RGB")
-    small.thumbnail(_THUMBNAIL, Image.Resampling.LANCZOS)
+    small.thumbnail((640, 420), Image.Resampling.LANCZOS)
     file = io.BytesIO()
     small.save(file, "webp", quality=82)
     return {"id": plate.id, "finding": plate.finding, "image": _embedded(file.getvalue(), "webp")}
@@ -185,7 +174,8 @@ def worded(judgement: Judgement, shown: Set[str] = frozenset()) -> Worded:
         "formula": {"printed": claim.formula, "right": claim.formula_right} if claim.formula else None,
         "place": claim.source.place,
         "section": section_of(claim.source.section),
-        "of_others": section_of(claim.source.section) in OWN and _THEIRS not in claim.source.section,
+        # Sections of ours mark so the statements that are the report's nevertheless.
+        "of_others": section_of(claim.source.section) in OWN and ": the report" not in claim.source.section,
         "needs": claim.needs,
         "right": finding.right or claim.right or (_number(finding.converged) + unit),
         "text": claim.text + (" (implied)" if claim.implied else ""),

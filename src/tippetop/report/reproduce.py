@@ -27,9 +27,7 @@ from tippetop.report.tasks import Task, carry_out
 
 PAGE, CLAIMS_FILE, FIGURES, DATA = "index.html", "claims.json", "figures", "data"
 
-_DRAWING_COST = 0.8
-_COARSE = {"dpi": 100}
-_PLAYER, _PLAYER_COST = "run to play", 1.0
+_PLAYER = "run to play"
 
 Progress = Callable[[float, float, str], None]
 """Told the work done, all the work (both in about seconds), and what was done last."""
@@ -98,7 +96,7 @@ def reproduce(
     with _staging(folder) as stage:
         tasks = _tasks(chosen, quick, stage)
         if only is None:
-            tasks.append(Task(_PLAYER, _PLAYER_COST, playable, (quick,)))
+            tasks.append(Task(_PLAYER, 1.0, playable, (quick,)))
         processes = min(2, os.cpu_count() or 1) if workers is None else max(1, workers)
         results = carry_out(tasks, processes, progress)
         data = {experiment.id: results[experiment.id] for experiment in chosen.experiments}
@@ -141,7 +139,7 @@ def _tasks(chosen: Selection, quick: bool, stage: Path) -> list[Task]:
     share = 0.3 if quick else 1.0
     computing = [Task(one.id, one.cost * share, _compute, (one.id, quick)) for one in chosen.experiments]
     drawing = [
-        Task(f"figure {plate.id}", _DRAWING_COST, _draw, (plate.id, stage, quick), plate.needs)
+        Task(f"figure {plate.id}", 0.8, _draw, (plate.id, stage, quick), plate.needs)
         for plate in chosen.plates
     ]
     return computing + drawing
@@ -160,7 +158,7 @@ def _draw(name: str, stage: Path, quick: bool, *data: xr.Dataset) -> None:
         write_run(dataset, stage / DATA / f"{name}.nc")
     figure = plate.draw(dataset)
     for kind in ("png", "svg"):
-        save(figure, stage / FIGURES / f"{name}.{kind}", **(_COARSE if quick else {}))
+        save(figure, stage / FIGURES / f"{name}.{kind}", **({"dpi": 100} if quick else {}))
         figure.set_layout_engine("none")  # all is in its place by now
 
 

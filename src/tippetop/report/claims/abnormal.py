@@ -53,7 +53,8 @@ def _(over_tilt: xr.Dataset, over_mu: xr.Dataset, run: xr.Dataset, sweep: xr.Dat
 def _(sweep: xr.Dataset, flights: xr.Dataset, bouncing: xr.Dataset, capped: xr.Dataset) -> Finding:
     true, spins = sweep["final_theta_flight"].values, sweep["spin_flight"].values
     cured = not _turned(capped["final_theta"]) and _turned(capped["final_theta_capped"])
-    ends = listed("{:g} rad/s {:.2f} and {:.2f} rad", *(capped[name].values for name in _CAPPED))
+    columns = ("spin", "final_theta", "final_theta_capped")
+    ends = listed("{:g} rad/s {:.2f} and {:.2f} rad", *(capped[name].values for name in columns))
     turned = all(_turned(data["final_theta_flight"]) for data in (sweep, flights, bouncing))
     lost = float(sweep["lost"])
     return Finding(
@@ -71,9 +72,6 @@ def _(sweep: xr.Dataset, flights: xr.Dataset, bouncing: xr.Dataset, capped: xr.D
         if cured
         else "",
     )
-
-
-_CAPPED = ("spin", "final_theta", "final_theta_capped")
 
 
 @examines("sum-turns-over", "final-tilt-listing", "final-tilt", "flights", "flights-bouncing")

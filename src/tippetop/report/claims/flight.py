@@ -85,7 +85,7 @@ def _(run: xr.Dataset) -> Finding:
 def _(run: xr.Dataset) -> Finding:
     change, height = _kept_in_flight(run)
     work = _weight(run) / float(REPORT.surface.size) * height
-    none = change < _NO_PART * work
+    none = change < 1e-6 * work  # far above rounding, far below any part of it
     return Finding.unlisted(
         not none,
         "The report argues that the top cannot gain the energy, because it would have to fall so far. But "
@@ -97,10 +97,6 @@ def _(run: xr.Dataset) -> Finding:
         right=f"a fall of any height changes the energy by {'nothing' if none else f'{change:.1e} J'}: "
         "(4.1) counts the height already",
     )
-
-
-_NO_PART = 1e-6
-"""Part of the work of the weight that counts as none of it: far above rounding, far below any."""
 
 
 def _kept_in_flight(run: xr.Dataset) -> tuple[float, float]:

@@ -25,17 +25,11 @@ from tippetop.run import simulate
 SPIN, TILT = 155.0, 0.1
 """The report's main launch, rad/s and rad."""
 
-STICKY = 1.4
-"""A friction coefficient that holds every top of the map, and lets no contact force be inconsistent."""
-
 SLIPPERY = 0.028
 """One that does not quite hold the report's top at its main launch."""
 
 ROLLED = 1.5
 """How long tops are followed to find the most friction they need, s: several periods of their nutation."""
-
-NUTATION = 0.1
-"""More than a period of the nutation of a top that rolls at the main launch, s."""
 
 WITHOUT_COMPILING: Any = {"integrator": "dop853", "tolerance": 1e-11}
 """How single runs are followed: compiling what a top that slips and sticks takes would cost more."""
@@ -69,7 +63,8 @@ def friction_needed(spin: float, tilt: float) -> float:
 
     The largest ratio of friction and normal force on the way, a parabola through the sample nearest to it.
     """
-    problem = with_friction(report_problem(spin, tilt), CoulombFriction(mu=STICKY))
+    # It holds every top of the map, and lets no contact force be inconsistent.
+    problem = with_friction(report_problem(spin, tilt), CoulombFriction(mu=1.4))
     run = simulate(problem, ROLLED, samples=3001)
     force = run["contact_force"].values
     if list(run["event_kind"].values) != ["stick"] or force[:, 2].min() <= 0.0:
@@ -94,7 +89,7 @@ def _rolling(quick: bool) -> xr.Dataset:
     lost = [float(abs(run["energy_lost"] / run["energy_start"])) for run in held]
     slips_held = [len(happenings(run, "slip")) for run in held]
     less = with_friction(main, CoulombFriction(mu=0.999 * needed))
-    below = simulate(less, NUTATION, samples=2, phase_limit=1)
+    below = simulate(less, 0.1, samples=2, phase_limit=1)  # for more than a period of the nutation
     slipping = with_friction(main, CoulombFriction(mu=SLIPPERY))
     slips = simulate(slipping, 0.3 if quick else 3.0, **WITHOUT_COMPILING)
     return dataset(

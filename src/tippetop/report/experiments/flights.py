@@ -12,23 +12,11 @@ from tippetop.report.experiment import dataset, experiment
 from tippetop.report.experiments.runs import WINDOW, flight_readings, stopping, swept, unilateral
 from tippetop.run import simulate
 
-LONG_WINDOW = 100.0
-"""Length of the longer runs in which a lift-off is looked for, s."""
-
 FLIGHTS_WINDOW = 60.0
 """Length of the runs that are followed through all their flights, s."""
 
-SAMPLES_PER_SECOND = 100
-"""Samples a second of these runs."""
-
 TILT, MU = 0.1, 0.3
 """The tilt, rad, and the friction, s/m, that are kept where the other one varies: the report's."""
-
-SPINS = (160.0, 168.0, 175.0, 200.0, 250.0, 300.0, 400.0, 500.0, 700.0, 1000.0)
-SPINS_QUICK = (160.0, 175.0, 300.0, 600.0)
-BOUNCING = 0.5
-BOUNCING_SPINS = (175.0, 200.0, 250.0, 300.0)
-BOUNCING_SPINS_QUICK = (175.0, 200.0)
 
 
 def leaves_at(problem: Problem, window: float) -> float:
@@ -87,7 +75,7 @@ def _onsets(field: str, values: np.ndarray, windows: tuple[float, ...], quick: b
 @experiment("onset-mu", "the least spin that leaves the table, against friction", 7.0)
 def _over_mu(quick: bool) -> xr.Dataset:
     values = np.geomspace(0.05, 10.0, 3 if quick else 8)
-    return _onsets("friction.mu", values, (WINDOW, LONG_WINDOW), quick).assign_attrs(tilt_rad=TILT)
+    return _onsets("friction.mu", values, (WINDOW, 100.0), quick).assign_attrs(tilt_rad=TILT)
 
 
 @experiment("onset-tilt", "the least spin that leaves the table, against tilt", 5.0)
@@ -101,7 +89,7 @@ def followed(spins: tuple[float, ...], restitution: float) -> xr.Dataset:
 
     Variables over restitution and spin: what `flight_readings` gives, and first_lift_off, s.
     """
-    samples = int(SAMPLES_PER_SECOND * FLIGHTS_WINDOW) + 1
+    samples = int(100 * FLIGHTS_WINDOW) + 1
     rows = []
     for spin in spins:
         run = simulate(unilateral(report_problem(spin), restitution), FLIGHTS_WINDOW, samples=samples)
@@ -119,9 +107,10 @@ def followed(spins: tuple[float, ...], restitution: float) -> xr.Dataset:
 
 @experiment("flights", "launches followed through their flights", 11.0)
 def _plastic(quick: bool) -> xr.Dataset:
-    return followed(SPINS_QUICK if quick else SPINS, 0.0)
+    spins = (160.0, 168.0, 175.0, 200.0, 250.0, 300.0, 400.0, 500.0, 700.0, 1000.0)
+    return followed((160.0, 175.0, 300.0, 600.0) if quick else spins, restitution=0.0)
 
 
 @experiment("flights-bouncing", "the same with impacts that rebound", 5.0)
 def _bouncing(quick: bool) -> xr.Dataset:
-    return followed(BOUNCING_SPINS_QUICK if quick else BOUNCING_SPINS, BOUNCING)
+    return followed((175.0, 200.0) if quick else (175.0, 200.0, 250.0, 300.0), restitution=0.5)

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Mapping
-from typing import TypeAlias
 
 import numpy as np
 import xarray as xr
@@ -70,12 +69,8 @@ def happenings(run: xr.Dataset, kind: str, surface: int | None = None) -> np.nda
     return found
 
 
-Reading: TypeAlias = tuple[float, str, str]
-"""A number with its unit and its meaning."""
-
-
-def flight_readings(run: xr.Dataset) -> dict[str, Reading]:
-    """What is read off a run on a table that only pushes."""
+def flight_readings(run: xr.Dataset) -> dict[str, tuple[float, str, str]]:
+    """What is read off a run on a table that only pushes: numbers with their units and meanings."""
     last, gap, tilt = max(run["flight_end"].values, default=0.0), run["highest_gap"], run["final_theta"]
     rise, struck = np.diff(run["energy"].values).max(), run["event_energy_lost"].values.sum()
     return {

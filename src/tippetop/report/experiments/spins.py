@@ -28,9 +28,6 @@ LONG_WINDOWS = (20.0, 60.0, 200.0, 600.0)
 FLYING = (165.0, 210.0)
 """Spins between which Fig. 6 also has the final tilt on a table that only pushes, rad/s."""
 
-_LIFTING = (120.0, 200.0)
-"""Spins of which the first stays on the table and the second does not, rad/s."""
-
 _TILT = ("rad", "tilt at the end of the run")
 
 
@@ -89,7 +86,7 @@ def _converged(quick: bool) -> xr.Dataset:
     def leaves(spin: float) -> float:
         return leaves_at(report_problem(spin), WINDOW)
 
-    onset = onset_between(leaves, *_LIFTING, window=WINDOW, accuracy=0.005)
+    onset = onset_between(leaves, 120.0, 200.0, WINDOW, accuracy=0.005)
     pulling = "least spin at which the table would have to pull within the window"
     only = "tilt at the end of the run on a table that only pushes"
     flying = np.arange(FLYING[0], FLYING[1] + 0.1, 7.5 if quick else 2.5)
@@ -104,12 +101,10 @@ def _converged(quick: bool) -> xr.Dataset:
     )
 
 
-_BETWEEN = ((22.0, 34.0), (72.0, 84.0))
-"""Where to look for the critical spins, rad/s."""
-
-
 def critical_spins(
-    window: float, margin: float, between: tuple[tuple[float, float], tuple[float, float]] = _BETWEEN
+    window: float,
+    margin: float,
+    between: tuple[tuple[float, float], tuple[float, float]] = ((22.0, 34.0), (72.0, 84.0)),
 ) -> tuple[float, float]:
     """Spins between which a launch ends neither upright nor turned over, looked for `between` others, rad/s.
 

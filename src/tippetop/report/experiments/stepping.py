@@ -16,12 +16,6 @@ from tippetop.run import simulate
 STEPS = (1e-3, 5e-4, 2e-4, 1e-4, 5e-5)
 """Steps that are tried, s."""
 
-STANDS = 0.5
-"""How long the top stands on its stem at least before it falls back on its sphere, s."""
-
-RESTS = 0.02
-"""How long both touch at least to have come to rest on both, s."""
-
 ROCKING = (4.4, 4.75)
 """The time around the rocking that is shown, s."""
 
@@ -37,7 +31,10 @@ def stepped(step: float) -> History:
 
 
 def found_in(history: History) -> dict[str, float]:
-    """When things happen as far as the steps tell, s, and how many strikes make up the rocking."""
+    """When things happen as far as the steps tell, s, and how many strikes make up the rocking.
+
+    It stands on its stem for half a second at least, and rests on both where these touch for 20 ms.
+    """
     step, touching = history.step, np.array(history.touching)
     times = (np.arange(len(touching)) + 0.5) * step
     sphere, stem = touching.T
@@ -46,10 +43,10 @@ def found_in(history: History) -> dict[str, float]:
         return float(times[where.argmax()]) if where.any() else math.nan
 
     touched = first(stem)
-    back = first(sphere & (times > touched + STANDS))
+    back = first(sphere & (times > touched + 0.5))
     changes = np.diff(np.concatenate([[False], sphere & stem & (times >= back), [False]]).astype(int))
     begins, ends = np.flatnonzero(changes == 1), np.flatnonzero(changes == -1)
-    rests = np.flatnonzero((ends - begins) * step > RESTS)
+    rests = np.flatnonzero((ends - begins) * step > 0.02)
     both, apart = (
         (float(times[begins[rests[0]]]), float(times[ends[rests[0]] - 1])) if len(rests) else 2 * (math.nan,)
     )

@@ -13,6 +13,7 @@ from tippetop.problem import Problem
 from tippetop.report.experiment import dataset, experiment
 from tippetop.report.experiments.equations import left_of_217
 from tippetop.report.experiments.runs import WINDOW
+from tippetop.report.readings import SETTLED
 from tippetop.run import simulate
 from tippetop.theory.apparent import (
     apparent_critical_spins,
@@ -35,9 +36,6 @@ from tippetop.theory.stability import eigenvalues
 from tippetop.theory.steady import VERTICAL_SPINS, jellett_of_launch, precession_branch
 from tippetop.theory.thresholds import critical_spin, critical_spins
 
-VISIBLE = (0.001, 0.002, 0.005, 0.01)
-"""Distances from the vertical that may be told from none, rad: up to the report's own 0.01 rad."""
-
 QUOTED_SPINS = (50.0, 60.0, 100.0)
 """Spins at which the predicted final tilt is compared with a run in words, rad/s."""
 
@@ -54,7 +52,7 @@ def _critical(quick: bool) -> xr.Dataset:
     problem = report_problem()
     top = problem.top
     spins = np.linspace(10.0, 105.0, 39 if quick else 191)
-    visible = np.array(VISIBLE)
+    visible = np.array([0.001, 0.002, 0.005, SETTLED])
     launches = critical_spins(problem)
     seen = [apparent_critical_spins(problem, WINDOW, float(least)) for least in visible]
     formula = [critical_spin(kind, top) for kind in VERTICAL_SPINS]
