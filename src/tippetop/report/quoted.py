@@ -1,5 +1,8 @@
 """Numbers that the report prints and that more than one figure or claim needs, each with its place."""
 
+SPIN, TILT, MU = 155.0, 0.1, 0.3
+"""The report's main launch, rad/s and rad, and its friction, s/m (section 3.1)."""
+
 TURNED_AT = {"fig04": "7.4", "fig05": "8.9"}
 """When the top has turned over completely and half, s (captions of Figs. 4 and 5)."""
 

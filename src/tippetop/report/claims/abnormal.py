@@ -5,9 +5,8 @@ import xarray as xr
 
 from tippetop.report.claim import Finding, examines, listed
 from tippetop.report.claims.flight import ROUNDED
-from tippetop.report.experiments.flights import TILT
 from tippetop.report.experiments.spins import TURNED
-from tippetop.report.quoted import ABNORMAL_SPIN, CRITICAL_SPINS
+from tippetop.report.quoted import ABNORMAL_SPIN, CRITICAL_SPINS, TILT
 
 
 @examines("sec4-energy-falls", "run-175", "flights", "flights-bouncing")

@@ -5,8 +5,7 @@ import xarray as xr
 
 from tippetop.report.claim import Finding, both, examines, listed
 from tippetop.report.experiments.dry import COHEN_STEP, COHEN_WINDOW
-from tippetop.report.experiments.patches import SPIN_OF_REPORT
-from tippetop.report.quoted import NORMAL_FRICTION, ROUGH_FRICTION
+from tippetop.report.quoted import NORMAL_FRICTION, ROUGH_FRICTION, SPIN
 from tippetop.report.tolerance import ROUNDING
 
 _SAME = 1e-6
@@ -134,7 +133,7 @@ def _is_dry(ratios: list[float]) -> bool:
 
 @examines("dry-rough-mu")
 def _(data: xr.Dataset) -> Finding:
-    slowest = float((data["hertz_coefficient"].max() / ROUGH_FRICTION) * SPIN_OF_REPORT)
+    slowest = float((data["hertz_coefficient"].max() / ROUGH_FRICTION) * SPIN)
     return Finding.unlisted(
         bool((data["hertz_coefficient"] < ROUGH_FRICTION).all()),
         f"{_surfaces(data)} None reaches {ROUGH_FRICTION:g} s/m there, but the coefficient goes as one over "
@@ -150,6 +149,6 @@ def _surfaces(data: xr.Dataset) -> str:
     each = listed("{} {:.0f} µm and {:.0f} s/m", names, 1e6 * radii, coefficients)
     return (
         "Dry friction of mu = 0.3 on the elastic patch under the weight of the report's top, table of the "
-        f"same material, creeps at {SPIN_OF_REPORT:g} rad/s as viscous friction would with this "
+        f"same material, creeps at {SPIN:g} rad/s as viscous friction would with this "
         f"coefficient: {each}."
     )

@@ -6,8 +6,7 @@ import numpy as np
 import xarray as xr
 
 from tippetop.report.claim import Finding, both, examines
-from tippetop.report.experiments.flights import TILT as REPORT_TILT
-from tippetop.report.quoted import TURNED_AT
+from tippetop.report.quoted import TILT, TURNED_AT
 from tippetop.report.readings import SETTLED
 from tippetop.report.tolerance import ARRIVED, PLOTTED, READ, rounded
 
@@ -125,7 +124,7 @@ def _(slow: xr.Dataset) -> Finding:
         _stays_upright(slow, "_listing"),
         _stays_upright(slow, ""),
         "The sentence has two readings. The report calls theta the nutation angle, and judged is that it "
-        f"does not grow: launched at {REPORT_TILT:g} rad at {spins} rad/s, it is never more than "
+        f"does not grow: launched at {TILT:g} rad at {spins} rad/s, it is never more than "
         f"{float(slow['highest'].max()):.3f} rad and ends at {ends}. In the usual sense, of the axis nodding "
         "up and down, the top does nutate, and only friction lets it die away: it makes "
         f"{swings} swings of more than {SETTLED:g} rad.",
@@ -135,4 +134,4 @@ def _(slow: xr.Dataset) -> Finding:
 def _stays_upright(slow: xr.Dataset, suffix: str) -> bool:
     """Whether no tilt exceeds that of the launch, and all are gone in the end."""
     highest, final = slow[f"highest{suffix}"], slow[f"final{suffix}"]
-    return bool((highest <= REPORT_TILT + SETTLED).all() and (final < SETTLED).all())
+    return bool((highest <= TILT + SETTLED).all() and (final < SETTLED).all())

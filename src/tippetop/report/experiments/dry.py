@@ -20,10 +20,8 @@ from tippetop.presets import report_problem
 from tippetop.problem import Contact, Launch, Problem
 from tippetop.report.experiment import dataset, experiment
 from tippetop.report.experiments.runs import happenings, stopping
+from tippetop.report.quoted import SPIN, TILT
 from tippetop.run import simulate
-
-SPIN, TILT = 155.0, 0.1
-"""The report's main launch, rad/s and rad."""
 
 SLIPPERY = 0.028
 """One that does not quite hold the report's top at its main launch."""

@@ -10,13 +10,11 @@ from tippetop.presets import report_problem
 from tippetop.problem import Problem
 from tippetop.report.experiment import dataset, experiment
 from tippetop.report.experiments.runs import WINDOW, flight_readings, stopping, swept, unilateral
+from tippetop.report.quoted import MU, TILT
 from tippetop.run import simulate
 
 FLIGHTS_WINDOW = 60.0
 """Length of the runs that are followed through all their flights, s."""
-
-TILT, MU = 0.1, 0.3
-"""The tilt, rad, and the friction, s/m, that are kept where the other one varies: the report's."""
 
 
 def leaves_at(problem: Problem, window: float) -> float:

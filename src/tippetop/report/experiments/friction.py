@@ -12,14 +12,12 @@ from tippetop.presets import report_problem
 from tippetop.report.experiment import dataset, experiment, variable
 from tippetop.report.experiments.runs import WINDOW, on_table, swept
 from tippetop.report.listing import listing_run
-from tippetop.report.quoted import NORMAL_FRICTION
+from tippetop.report.quoted import NORMAL_FRICTION, SPIN
 from tippetop.report.readings import SETTLED, crossings, flip_time
 
-SPIN = 155.0
-"""The report does not say at which spin its Fig. 7 was made; this is that of its main run, rad/s."""
-
 OTHER_SPINS = (100.0, 115.0, 130.0, 145.0, 160.0)
-"""Other spins it may have used, rad/s: all of them turn the top over without lifting it at mu = 0.3 s/m."""
+"""Other spins than that of its main run that the report, which does not say it, may have used for its Fig. 7,
+rad/s: all of them turn the top over without lifting it at mu = 0.3 s/m."""
 
 
 class Times(NamedTuple):

@@ -9,6 +9,7 @@ from tippetop.frictions import ContensouFriction, ViscousFriction
 from tippetop.mechanics.contensou import ELLIPSOIDAL_RADIUS
 from tippetop.mechanics.hertz import MATERIALS, hertz_patch_radius
 from tippetop.presets import LEINE_GLOCKER, report_problem
+from tippetop.report import quoted
 from tippetop.report.experiment import dataset, experiment
 from tippetop.report.experiments.dry import turning_time, with_friction
 from tippetop.report.experiments.real import LEINE
@@ -19,9 +20,6 @@ from tippetop.theory.thresholds import critical_spin
 
 MU = 0.3
 """Friction coefficient of the map."""
-
-SPIN_OF_REPORT = 155.0
-"""Spin of the report's main run, rad/s."""
 
 CREEP = {"hertz": 3.0 * math.pi / 8.0, "ellipsoidal": 1.0 / ELLIPSOIDAL_RADIUS}
 """Viscous coefficient of a patch that drills, in mu / (R omega), by its pressure."""
@@ -86,7 +84,7 @@ def _viscous(quick: bool) -> xr.Dataset:
     smooth = [turning(ViscousFriction(mu=float(c))) for c in coefficients]
     load, radius = base.body.mass * base.gravity, float(base.top.surface.size)
     radii = [hertz_patch_radius(load, radius, material, material) for material in MATERIALS.values()]
-    creep = [CREEP["hertz"] * MU / (r * SPIN_OF_REPORT) for r in radii]
+    creep = [CREEP["hertz"] * MU / (r * quoted.SPIN) for r in radii]
     ratios = "growth rate of a patch over that of viscous friction"
     return dataset(
         {

@@ -7,6 +7,7 @@ import xarray as xr
 
 from tippetop.integrators.base import Array
 from tippetop.presets import report_problem
+from tippetop.report import quoted
 from tippetop.report.experiment import dataset, experiment, variable
 from tippetop.report.experiments.runs import WINDOW, on_table
 from tippetop.report.readings import SETTLED, flip_time
@@ -25,9 +26,6 @@ FRICTIONS = (0.3, 0.03, 0.003)
 
 CROSSED = math.pi / 2
 """Tilt at which the top has turned half over, rad."""
-
-DIAGNOSED_SPIN = 155.0
-"""Spin of the run that is looked into, rad/s: the report's main one."""
 
 _BINS = 400
 
@@ -136,7 +134,7 @@ def _rising(values: Array, times: Array) -> tuple[Array, Array]:
 @experiment("why-diagnostics", "what the main run says of its nutation", 1.0)
 def _diagnostics(quick: bool) -> xr.Dataset:
     """Gyroscopic balance, envelope of the nutation and effective potential along the report's main run."""
-    problem = on_table(report_problem(DIAGNOSED_SPIN))
+    problem = on_table(report_problem(quoted.SPIN))
     top = problem.top
     run = simulate(problem, 10.0, samples=2001 if quick else 5001)
     axis, momentum = run["axis"].values, run["angular_momentum"].values
@@ -155,7 +153,7 @@ def _diagnostics(quick: bool) -> xr.Dataset:
             "instant": (run["time"].values[index], "s", "instant of the run"),
             "well_theta": (tilts, "rad", "tilt"),
         },
-        {"spin_rad_per_s": DIAGNOSED_SPIN},
+        {"spin_rad_per_s": quoted.SPIN},
         theta_diagnosed=(run["theta"].values, "rad", "tilt", *over),
         balance=(xi, "kg m2 s-1", "xi = I1 phi' cos(theta) - I3 omega3", *over),
         balance_ratio=(xi / float(abs(axial[0])), "1", "xi over I3 omega3 at launch", *over),
