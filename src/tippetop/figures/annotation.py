@@ -1,6 +1,7 @@
 """What is written on figures: notes beside points, letters of panels, ticks, legends and insets."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from functools import wraps
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import FixedLocator, NullFormatter, ScalarFormatter
 
-from tippetop.figures.style import INK, WIDTH, pi_ticks
+from tippetop.figures.style import INK, WIDTH, house_style, pi_ticks
 
 Box = tuple[float, float, float, float]
 
@@ -39,6 +40,27 @@ def panels(
     if lettered and rows * columns > 1:
         letters(made.flat)
     return figure, made
+
+
+def drawn(
+    height: float, rows: int = 1, columns: int = 1, **options: Any
+) -> Callable[[Callable[..., None]], Callable[..., Figure]]:
+    """Let what draws into the `panels` of a figure return the figure, in the house style.
+
+    It is given the panels, those of several rows and columns as an array, before what is to be drawn.
+    """
+
+    def drawing(draw: Callable[..., None]) -> Callable[..., Figure]:
+        @wraps(draw)
+        def figure_of(*told: Any, **others: Any) -> Figure:
+            with house_style():
+                figure, made = panels(height, rows, columns, **options)
+                draw(*([made] if rows > 1 and columns > 1 else np.ravel(made)), *told, **others)
+            return figure
+
+        return figure_of
+
+    return drawing
 
 
 def tilt_axis(axes: Axes, low: float = -0.06, high: float = np.pi + 0.1, label: str = TILT) -> None:

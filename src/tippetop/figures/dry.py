@@ -2,16 +2,15 @@
 
 import numpy as np
 import xarray as xr
-from matplotlib.figure import Figure
+from matplotlib.axes import Axes
 
 import tippetop.figures.annotation as mark
-from tippetop.figures.style import ACCENT, CONVERGED, CYCLE, DASHED, FAINT, INK, MUTED, REPORT, house_style
+from tippetop.figures.style import ACCENT, CONVERGED, CYCLE, DASHED, FAINT, INK, MUTED, REPORT
 
 
-@house_style()
-def rolling_figure(data: xr.Dataset) -> Figure:
+@mark.drawn(5.6, 2, 1, height_ratios=[1.25, 1])
+def rolling_figure(above: Axes, below: Axes, data: xr.Dataset) -> None:
     """Return the friction that rolling needs over the spin, and tilts with more and with less than that."""
-    figure, (above, below) = mark.panels(5.6, 2, 1, height_ratios=[1.25, 1])
     for tilt, row in zip(data["tilt"], data["friction_needed"], strict=True):
         main = float(tilt) == data.attrs["tilt_rad"]
         above.plot(data["spin"], row, color=CONVERGED if main else MUTED)
@@ -32,13 +31,11 @@ def rolling_figure(data: xr.Dataset) -> Figure:
     below.set(xlabel="time (s)", ylabel=mark.TILT, xlim=(0, float(data["time_slips"][-1])))
     below.set_ylim(0, 1.25 * max(float(data["theta_slips"].max()), data.attrs["tilt_rad"]))
     below.legend(loc="upper left", ncols=2)
-    return figure
 
 
-@house_style()
-def cohen_figure(data: xr.Dataset) -> Figure:
+@mark.drawn(4.4)
+def cohen_figure(axes: Axes, data: xr.Dataset) -> None:
     """Return the tilt of Cohen's top by steps of several lengths, and exactly."""
-    figure, axes = mark.panels(4.4)
     colors = (REPORT, *(CYCLE[k] for k in (3, 4, 2, 6, 5)))
     for step, tilt, color in zip(data["step"], data["theta_stepped"], colors, strict=False):
         axes.plot(data["time"], tilt, color=color, lw=1.1, label=f"{1e3 * float(step):g} ms")
@@ -46,13 +43,11 @@ def cohen_figure(data: xr.Dataset) -> Figure:
     axes.set(xlabel="time (s)", xlim=(0, float(data["time"][-1])))
     mark.tilt_axis(axes, -0.05)
     mark.legend_above(axes, 7)
-    return figure
 
 
-@house_style()
-def smoothed_figure(data: xr.Dataset) -> Figure:
+@mark.drawn(3.8)
+def smoothed_figure(axes: Axes, data: xr.Dataset) -> None:
     """Return the time of turning over on smoothed Coulomb friction against the smoothing."""
-    figure, axes = mark.panels(3.8)
     eps, time = data["eps"].values, data["turning_time"].values
     axes.loglog(eps, time, "o-", color=CONVERGED)
     line = time[-1] * eps[-1] / eps
@@ -61,13 +56,11 @@ def smoothed_figure(data: xr.Dataset) -> Figure:
     mark.note(axes, r"as $1/\varepsilon$", (eps[near][0], line[near][0]), (6, 0), INK)
     mark.plain_ticks(axes.yaxis, [tick for tick in (1, 2, 5, 10, 20) if tick < 1.6 * time.max()])
     axes.set(xlabel=r"$\varepsilon$ (m/s)", ylabel="turns over after (s)")
-    return figure
 
 
-@house_style()
-def patch_figure(data: xr.Dataset) -> Figure:
+@mark.drawn(4.2)
+def patch_figure(axes: Axes, data: xr.Dataset) -> None:
     """Return the map of the time of turning over, over patch radius and spin; grey where it does not."""
-    figure, axes = mark.panels(4.2)
     axes.set_facecolor(FAINT)
     axes.grid(visible=False)
     times = np.ma.masked_invalid(data["turning_time"].values.T)
@@ -76,15 +69,13 @@ def patch_figure(data: xr.Dataset) -> Figure:
     mark.plain_ticks(axes.xaxis, (0.1, 0.2, 0.5, 1, 2, 5))
     axes.axhline(float(data["upright_limit"]), color=ACCENT, ls=DASHED, lw=1.2)
     axes.set(xlabel="radius of the contact patch (mm)", ylabel="spin at launch (rad/s)")
-    bar = figure.colorbar(image, pad=0.02, label="turns over after (s)")
+    bar = axes.figure.colorbar(image, pad=0.02, label="turns over after (s)")
     bar.outline.set_visible(False)
-    return figure
 
 
-@house_style()
-def viscous_figure(data: xr.Dataset) -> Figure:
+@mark.drawn(5.2, 2, 1, sharex=True, height_ratios=[1.4, 1])
+def viscous_figure(above: Axes, below: Axes, data: xr.Dataset) -> None:
     """Return times of turning over against the viscous coefficient, of patches that have it and of itself."""
-    figure, (above, below) = mark.panels(5.2, 2, 1, sharex=True, height_ratios=[1.4, 1])
     coefficient = data["coefficient"].values
     above.loglog(coefficient, data["viscous_time"], "--", color=INK, label="viscous")
     below.axhline(1.0, color=INK, ls="--")
@@ -96,4 +87,3 @@ def viscous_figure(data: xr.Dataset) -> Figure:
     above.set_ylabel("turns over after (s)")
     below.set(xlabel="viscous coefficient at launch (s/m)", ylabel="patch / viscous")
     mark.legend_above(above, 4)
-    return figure

@@ -1,15 +1,16 @@
 """Launches that leave the table: where that begins, and what becomes of them."""
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
-from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
 import tippetop.figures.annotation as mark
 from tippetop.figures.envelope import band
-from tippetop.figures.style import ACCENT, CYCLE, DASHED, FAINT, INK, MUTED, REPORT, UNILATERAL, house_style
+from tippetop.figures.style import ACCENT, CYCLE, DASHED, FAINT, INK, MUTED, REPORT, UNILATERAL
 
 _BOUNCES = CYCLE[5]
 
@@ -31,13 +32,12 @@ def _line(axes: Axes, times: ArrayLike, values: ArrayLike, color: str, width: fl
     axes.plot(times, values, color=color, lw=width, zorder=4, label=label)
 
 
-@house_style()
-def onset_figure(sweep: xr.Dataset, over: str, reported: float) -> Figure:
+@mark.drawn(3.9)
+def onset_figure(axes: Axes, sweep: xr.Dataset, over: str, reported: float) -> None:
     """Return the least spin that leaves the table against "mu" or "tilt", with the launches of the scan.
 
     `reported` is the spin of the report's abnormal point, rad/s.
     """
-    figure, axes = mark.panels(3.9)
     values, spins = np.meshgrid(sweep[over].values, sweep["spin"].values, indexing="ij")
     times = sweep["first_lift_off"].values
     stays = ~np.isfinite(times)
@@ -45,7 +45,7 @@ def onset_figure(sweep: xr.Dataset, over: str, reported: float) -> Figure:
     dots = axes.scatter(
         values[~stays], spins[~stays], c=times[~stays], s=22, norm=LogNorm(), zorder=2, edgecolors="none"
     )
-    bar = figure.colorbar(dots, ax=axes, label="first lift-off (s)", pad=0.02)
+    bar = axes.figure.colorbar(dots, ax=axes, label="first lift-off (s)", pad=0.02)
     first, last = np.nanmin(times), np.nanmax(times)
     ticks = (1, 2, 5, 10, 20, 50, 100, 200)
     mark.plain_ticks(bar.ax.yaxis, [tick for tick in ticks if first <= tick <= last])
@@ -65,13 +65,11 @@ def onset_figure(sweep: xr.Dataset, over: str, reported: float) -> Figure:
     else:
         axes.set_xlabel(r"tilt at launch $\theta_0$ (rad)")
     mark.legend_above(axes, 3)
-    return figure
 
 
-@house_style()
-def flights_figure(sweep: xr.Dataset) -> Figure:
+@mark.drawn(5.2, 2, 2, sharex=True)
+def flights_figure(panels: Any, sweep: xr.Dataset) -> None:
     """Return how launches go on after lift-off, against the spin."""
-    figure, panels = mark.panels(5.2, 2, 2, sharex=True)
     share, turning, count, tilt = panels.flat
     for restitution, color, marker in zip(
         sweep["restitution"].values, (UNILATERAL, _BOUNCES), ("o", "s"), strict=False
@@ -94,7 +92,6 @@ def flights_figure(sweep: xr.Dataset) -> Figure:
     mark.tilt_axis(tilt, -0.1, np.pi + 0.25, "tilt after 60 s (rad)")
     for axes in panels[1]:
         axes.set_xlabel(mark.SPIN)
-    return figure
 
 
 def _words(axes: Axes, sweep: xr.Dataset) -> None:

@@ -2,10 +2,10 @@
 
 import numpy as np
 import xarray as xr
-from matplotlib.figure import Figure
+from matplotlib.axes import Axes
 
 import tippetop.figures.annotation as mark
-from tippetop.figures.style import ACCENT, CONVERGED, CYCLE, REPORT, UNILATERAL, house_style
+from tippetop.figures.style import ACCENT, CONVERGED, CYCLE, REPORT, UNILATERAL
 
 _LABELS = {
     "ode45": "ode45 (explicit)",
@@ -16,8 +16,8 @@ _LABELS = {
 }
 
 
-@house_style()
-def order_figure(errors: xr.Dataset) -> Figure:
+@mark.drawn(3.4)
+def order_figure(axes: Axes, errors: xr.Dataset) -> None:
     """Return errors against the length of a step, in all and in one step."""
     series = (
         ("printed_in_all", "(B.1) as printed, time in f", ACCENT, "^-"),
@@ -26,7 +26,6 @@ def order_figure(errors: xr.Dataset) -> Figure:
         ("rk4_in_a_step", "Appendix B, one step", CONVERGED, "o--"),
         ("ode45_in_all", "the formula of ode45", REPORT, "s-"),
     )
-    figure, axes = mark.panels(3.4)
     for name, label, color, marker in series:
         values, order = errors[name], float(errors[f"order_{name}"])
         named = f"{label}: order {order:.2f}"
@@ -34,13 +33,11 @@ def order_figure(errors: xr.Dataset) -> Figure:
     axes.set(xlabel="length of a step (ms)", ylabel="error (rad; of a value near 1)")
     mark.plain_ticks(axes.xaxis, [0.25, 1, 5, 25, 100])
     mark.legend_above(axes, 2)
-    return figure
 
 
-@house_style()
-def stiffness_figure(counts: xr.Dataset) -> Figure:
+@mark.drawn(3.7)
+def stiffness_figure(axes: Axes, counts: xr.Dataset) -> None:
     """Return how often every method evaluates the right-hand side, launch by launch."""
-    figure, axes = mark.panels(3.7)
     methods = [str(name) for name in counts["integrator"].values]
     launches = np.arange(counts.sizes["launch"])
     width = 0.8 / len(methods)
@@ -62,4 +59,3 @@ def stiffness_figure(counts: xr.Dataset) -> Figure:
     axes.grid(visible=False, axis="x")
     axes.set_ylabel("evaluations (thousands)")
     axes.legend(loc="upper left")
-    return figure

@@ -3,16 +3,15 @@
 import numpy as np
 import xarray as xr
 from matplotlib import colormaps
-from matplotlib.figure import Figure
+from matplotlib.axes import Axes
 
 import tippetop.figures.annotation as mark
-from tippetop.figures.style import ACCENT, CONVERGED, CYCLE, DASHED, INK, MUTED, house_style
+from tippetop.figures.style import ACCENT, CONVERGED, CYCLE, DASHED, INK, MUTED
 
 
-@house_style()
-def leine_figure(data: xr.Dataset) -> Figure:
+@mark.drawn(4.2)
+def leine_figure(axes: Axes, data: xr.Dataset) -> None:
     """Return the tilt of Leine and Glocker's top, with what its stem does."""
-    figure, axes = mark.panels(4.2)
     for tilt, color in zip(data["theta"], (CONVERGED, MUTED), strict=False):
         axes.plot(data["time"], tilt, color=color, label=str(tilt["pressure"].values))
     main = data.isel(pressure=0)
@@ -25,13 +24,11 @@ def leine_figure(data: xr.Dataset) -> Figure:
     axes.set(xlabel="time (s)", xlim=(0, float(data["time"][-1])))
     mark.tilt_axis(axes, 0)
     mark.legend_above(axes, 2)
-    return figure
 
 
-@house_style()
-def stepping_figure(data: xr.Dataset) -> Figure:
+@mark.drawn(5.4, 2, 1)
+def stepping_figure(above: Axes, below: Axes, data: xr.Dataset) -> None:
     """Return the tilt during the rocking by time-stepping, and how far off it finds what happens."""
-    figure, (above, below) = mark.panels(5.4, 2, 1)
     for step, tilt, color in zip(data["step"], data["theta"], CYCLE, strict=False):
         above.plot(data["time"], tilt, color=color, lw=1.2, label=f"{1e3 * float(step):g} ms")
     above.plot(data["time"], data["exact_theta"], color=INK, ls=DASHED, lw=1.4, label="exact")
@@ -46,13 +43,11 @@ def stepping_figure(data: xr.Dataset) -> Figure:
     mark.plain_ticks(below.xaxis, steps)
     below.set(xlabel="step (ms)", ylabel="off by (s)")
     mark.legend_above(below, 4)
-    return figure
 
 
-@house_style()
-def stems_figure(data: xr.Dataset) -> Figure:
+@mark.drawn(4.8, 2, 1, sharex=True)
+def stems_figure(above: Axes, below: Axes, data: xr.Dataset) -> None:
     """Return the final tilt, and Jellett's integral about the tip over what it takes, by the tip's radius."""
-    figure, (above, below) = mark.panels(4.8, 2, 1, sharex=True)
     radius = 1e3 * data["radius"].values
     above.plot(radius, data["final_theta"], "o-", color=CONVERGED)
     above.set_ylabel(r"tilt at the end (rad)")
@@ -60,13 +55,11 @@ def stems_figure(data: xr.Dataset) -> Figure:
     below.axhline(1.0, color=ACCENT, ls=DASHED, lw=1.2)
     mark.note(below, "stands above", (radius[0], 1.0), (4, 6), ACCENT)
     below.set(xlabel="radius of the stem's tip (mm)", ylabel="Jellett's integral / needed")
-    return figure
 
 
-@house_style()
-def egg_figure(data: xr.Dataset) -> Figure:
+@mark.drawn(4.0)
+def egg_figure(axes: Axes, data: xr.Dataset) -> None:
     """Return the tilt of eggs that are spun on their sides, with their first lift-offs."""
-    figure, axes = mark.panels(4.0)
     colors = colormaps["viridis"](np.linspace(0.0, 0.9, data.sizes["rate"]))
     for rate, tilt, lift, color in zip(data["rate"], data["theta"], data["lift_off"], colors, strict=True):
         axes.plot(data["time"], tilt, color=color, lw=1.2, label=f"{float(rate):g} rad/s")
@@ -76,13 +69,11 @@ def egg_figure(data: xr.Dataset) -> Figure:
     axes.set(xlabel="time (s)", xlim=(0, float(data["time"][-1])))
     mark.tilt_axis(axes, np.pi / 2 - 0.2)
     mark.legend_above(axes, 4)
-    return figure
 
 
-@house_style()
-def rolling_figure(data: xr.Dataset) -> Figure:
+@mark.drawn(3.8, 1, 2)
+def rolling_figure(left: Axes, right: Axes, data: xr.Dataset) -> None:
     """Return precessions of a disk and of two balls that roll with their centres at rest, by their tilts."""
-    figure, (left, right) = mark.panels(3.8, 1, 2)
     for axes, name in ((left, "disk"), (right, "balls")):
         tilt = data[f"{name}_tilt"]
         axes.plot(tilt, data[f"{name}_precession"], color=CONVERGED, label="closed formula")
@@ -92,4 +83,3 @@ def rolling_figure(data: xr.Dataset) -> Figure:
     left.set_ylabel("precession (rad/s)")
     for axes in (left, right):
         axes.legend()
-    return figure

@@ -1,16 +1,17 @@
 """One launch, by the report's method and converged (the report's Figs. 4, 5 and 8 to 16)."""
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.ticker import MultipleLocator
 
 import tippetop.figures.annotation as mark
 from tippetop.figures.envelope import band
 from tippetop.figures.flights import continue_unilateral
 from tippetop.figures.overview import shade_flights
-from tippetop.figures.style import ACCENT, CONVERGED, DASHED, INK, MUTED, REPORT, house_style
+from tippetop.figures.style import ACCENT, CONVERGED, DASHED, INK, MUTED, REPORT
 
 _NAME, _NAME_REPORT = "converged", "report's method"
 _PULLS = "converged, table pulls"
@@ -22,8 +23,9 @@ _IN_FIG_12 = 60
 _LINES = (("_listing", "time_listing", REPORT, _WIDE), ("", "time", CONVERGED, _THIN))
 
 
-@house_style()
+@mark.drawn(5.0, 2, 2, sharex=True)
 def motion_figure(
+    panels: Any,
     run: xr.Dataset,
     zoom: tuple[float, float],
     reported_turn: float,
@@ -31,7 +33,7 @@ def motion_figure(
     precession_limit: float = 200.0,
     inset: mark.Box = (0.5, 0.13, 0.48, 0.56),
     reported_end: tuple[float, dict[str, float]] | None = None,
-) -> Figure:
+) -> None:
     """Return tilt, axial spin, precession and slip of a launch, by both methods.
 
     The precession is cut at `precession_limit` rad/s: it has peaks wherever the axis comes near the vertical.
@@ -41,7 +43,6 @@ def motion_figure(
     gets squares: when the top has turned over and when the precession reverses, s, and the time of what it
     takes for the end, s, with theta, omega3 and phi_dot then.
     """
-    figure, panels = mark.panels(5.0, 2, 2, sharex=True)
     tilt, spin, turning, slip = panels.flat
     _pair(tilt, run, "theta", legend=True)
     mark.tilt_axis(tilt)
@@ -66,46 +67,43 @@ def motion_figure(
         axes.set_xlabel("time (s)")
     for axes in panels.flat:
         axes.set_xlim(0, float(run["time"][-1]))
-    return figure
 
 
-@house_style()
+@mark.drawn(3.0)
 def tilt_figure(
-    run: xr.Dataset, zoom: tuple[float, float], inset: mark.Box = (0.56, 0.14, 0.42, 0.56)
-) -> Figure:
+    axes: Axes, run: xr.Dataset, zoom: tuple[float, float], inset: mark.Box = (0.56, 0.14, 0.42, 0.56)
+) -> None:
     """Return the tilt of a launch over time by both methods, with the lift-off (`lift_off_time`) marked.
 
     Where the top flies, also how it goes on when the table only pushes. `zoom` is a span of time, s, that is
     also drawn large, in the box `inset` (left, bottom, width, height in parts of the panel).
     """
-    figure, axes = _wide_panel(run)
+    _over_time(axes, run)
     _trio(axes, run, "theta")
     mark.tilt_axis(axes)
     _zoom(axes, run, zoom, inset)
     _mark_lift_off(axes, float(run["lift_off_time"]))
-    return figure
 
 
-@house_style()
-def upright_figure(run: xr.Dataset, until: float = 3.0) -> Figure:
+@mark.drawn(3.0)
+def upright_figure(axes: Axes, run: xr.Dataset, until: float = 3.0) -> None:
     """Return the tilt of a launch that stays near the vertical, up to a time, s, on a scale of its own."""
-    figure, axes = _wide_panel(run)
+    _over_time(axes, run)
     start = run.sel(time=slice(None, until), time_listing=slice(None, until))
     _pair(axes, start, "theta", legend=True)
     axes.set_xlim(0, until)
     axes.xaxis.set_major_locator(MultipleLocator(0.5))
     axes.set_ylim(0, 1.12 * float(run["theta"].max()))
     axes.set_ylabel(mark.TILT)
-    return figure
 
 
-@house_style()
-def energy_figure(run: xr.Dataset, reported: tuple[float, float]) -> Figure:
+@mark.drawn(3.0)
+def energy_figure(axes: Axes, run: xr.Dataset, reported: tuple[float, float]) -> None:
     """Return the energy over time: the report's (4.1) by its method, and the converged one on both tables.
 
     `reported` is the time, s, and the gain, J, that the report names.
     """
-    figure, axes = _wide_panel(run)
+    _over_time(axes, run)
     start = 1e3 * float(run["launch_energy"])
     axes.axhline(start, color=MUTED, lw=0.9, ls=DASHED)
     mark.note(axes, "energy at launch", (0, start), (2, -3), MUTED)
@@ -119,13 +117,12 @@ def energy_figure(run: xr.Dataset, reported: tuple[float, float]) -> Figure:
     text = f"the report's gain\nof {reported[1]:g} J at {reported[0]:g} s"
     mark.note(axes, text, (reported[0], high), (-22, -14), INK, halo=True)
     _mark_lift_off(axes, float(run["lift_off_time"]))
-    return figure
 
 
-@house_style()
-def force_figure(run: xr.Dataset) -> Figure:
+@mark.drawn(3.0)
+def force_figure(axes: Axes, run: xr.Dataset) -> None:
     """Return the normal force over time; below zero the table would have to pull."""
-    figure, axes = _wide_panel(run)
+    _over_time(axes, run)
     low = 1.12 * min(float(run["normal_force"].min()), float(run["normal_force_listing"].min()))
     axes.axhspan(low, 0, color=ACCENT, alpha=0.07, lw=0)
     axes.axhline(0, color=ACCENT, lw=1.0)
@@ -133,13 +130,11 @@ def force_figure(run: xr.Dataset) -> Figure:
     mark.note(axes, "the table pulls", (0, low), (6, 5), ACCENT)
     axes.set(ylabel="normal force $g_n$ (N)", ylim=(low, None))
     _mark_lift_off(axes, float(run["lift_off_time"]))
-    return figure
 
 
-@house_style()
-def stopped_figure(run: xr.Dataset, reported_stop: float) -> Figure:
+@mark.drawn(4.6, 2, 1, height_ratios=[1.3, 1])
+def stopped_figure(tilt: Axes, force: Axes, run: xr.Dataset, reported_stop: float) -> None:
     """Return tilt and force to where the report stopped, s, to the lift-off, and from there in flight."""
-    figure, (tilt, force) = mark.panels(4.6, 2, 1, height_ratios=[1.3, 1])
     stop = float(run["lift_off_time"])
     before = run.sel(time=run["time"] <= stop)
     other = run.sel(time_listing=run["time_listing"] <= reported_stop)
@@ -168,7 +163,6 @@ def stopped_figure(run: xr.Dataset, reported_stop: float) -> Figure:
     _callout(tilt, f"the top leaves the table\nat {stop:.3f} s", (stop, end), (-44, 22), ACCENT, "right")
     _callout(tilt, f"the report stops\nat {reported_stop:g} s", (reported_stop, last), (52, -12), INK, "left")
     tilt.legend(loc="upper left")
-    return figure
 
 
 def _callout(
@@ -180,11 +174,9 @@ def _callout(
     )  # fmt: skip
 
 
-def _wide_panel(run: xr.Dataset) -> tuple[Figure, Axes]:
-    figure, axes = mark.panels(3.0)
+def _over_time(axes: Axes, run: xr.Dataset) -> None:
     axes.set(xlabel="time (s)", xlim=(0, float(run["time"][-1])))
     axes.xaxis.set_major_locator(MultipleLocator(2))
-    return figure, axes
 
 
 def _pair(

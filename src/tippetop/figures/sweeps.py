@@ -5,7 +5,6 @@ from typing import Any
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 import tippetop.figures.annotation as mark
 from tippetop.figures.style import (
@@ -17,17 +16,15 @@ from tippetop.figures.style import (
     MUTED,
     REPORT,
     UNILATERAL,
-    house_style,
 )
 
 
-@house_style()
-def final_tilt_figure(sweep: xr.Dataset, reported: tuple[float, float, float]) -> Figure:
+@mark.drawn(4.3)
+def final_tilt_figure(axes: Axes, sweep: xr.Dataset, reported: tuple[float, float, float]) -> None:
     """Return the final tilt against the spin at launch, with the critical points.
 
     `reported` are the report's two critical spins and the spin of its abnormal point, rad/s.
     """
-    figure, axes = mark.panels(4.3)
     longest = sweep.isel(window=-1)
     ours = (float(longest["upright_by_window"]), float(longest["inverted_by_window"]))
     onset = float(sweep["lift_off_onset"])
@@ -59,7 +56,6 @@ def final_tilt_figure(sweep: xr.Dataset, reported: tuple[float, float, float]) -
         ((0.635, 0.11, 0.125, 0.4), (76.0, 80.5), (np.pi - 0.06, np.pi + 0.006)),
     ):
         _threshold(axes, mark.inset(axes, box), sweep, (around, tilts), (*reported[:2], *ours))
-    return figure
 
 
 def _threshold(
@@ -96,14 +92,13 @@ def _abnormal(axes: Axes, theirs: float, onset: float) -> None:
         mark.note(axes, text, (onset, np.pi + height), (-4, 0), color, va="top")
 
 
-@house_style()
-def flip_time_figure(times: xr.Dataset, reported: float) -> Figure:
+@mark.drawn(3.9, 1, 2)
+def flip_time_figure(left: Axes, right: Axes, times: xr.Dataset, reported: float) -> None:
     """Return flip times against friction: the report's range with fits, and three decades of it.
 
     `reported` is the power of mu that the report prints; its line goes through the middle of the points of
     its method.
     """
-    figure, (left, right) = mark.panels(3.9, 1, 2)
     mu = times["mu"].values
     fine = np.linspace(mu[0], mu[-1], 200)
     series = (("_listing", REPORT, "o", "report's method"), ("", CONVERGED, ".", "converged"))
@@ -122,7 +117,6 @@ def flip_time_figure(times: xr.Dataset, reported: float) -> Figure:
     left.set(xlabel=mark.FRICTION, ylabel="flip time (s)", ylim=(0, high))
     left.set_title(f"{times.attrs['spin_rad_per_s']:g} rad/s", size=10)
     _products(right, times)
-    return figure
 
 
 def _products(axes: Axes, wide: xr.Dataset) -> None:
@@ -140,15 +134,14 @@ def _products(axes: Axes, wide: xr.Dataset) -> None:
     axes.set_title("converged", size=10)
 
 
-@house_style()
-def windows_figure(sweep: xr.Dataset, reported: tuple[float, float]) -> Figure:
+@mark.drawn(3.3, 1, 2, lettered=False)
+def windows_figure(left: Axes, right: Axes, sweep: xr.Dataset, reported: tuple[float, float]) -> None:
     """Return the two critical spins against the length of the runs they are read from.
 
     `reported` are the report's two critical spins, rad/s.
     """
-    figure, panels = mark.panels(3.3, 1, 2, lettered=False)
     names = ("upright", "inverted")
-    for axes, name, symbol, theirs in zip(panels, names, mark.CRITICAL, reported, strict=True):
+    for axes, name, symbol, theirs in zip((left, right), names, mark.CRITICAL, reported, strict=True):
         window = sweep["window"].values
         span = sweep[f"{name}_by_margin"]
         axes.axhline(theirs, color=REPORT, lw=1.2, ls=DASHED)
@@ -165,4 +158,3 @@ def windows_figure(sweep: xr.Dataset, reported: tuple[float, float]) -> Figure:
         axes.set_title(f"{symbol} (rad/s)", weight="normal", color=INK)
         low, high = axes.get_ylim()
         axes.set_ylim(low - 0.06 * (high - low), high + 0.06 * (high - low))
-    return figure

@@ -25,22 +25,20 @@ _LOST = "#C0622B"
 _ROUNDING = 1e-9
 
 
-@house_style()
-def bifurcation_figure(states: xr.Dataset) -> Figure:
+@mark.drawn(3.9, 1, 2, sharey=True)
+def bifurcation_figure(own: Axes, other: Axes, states: xr.Dataset) -> None:
     """Return the steady tilts against the spin, stable and unstable, with the ends of long runs."""
-    figure, panels = mark.panels(3.9, 1, 2, sharey=True)
     titles = ("the report's top", f"$I_1/I_3$ = {states.attrs['inertia_ratio_jump']:g}: a fold")
-    for axes, suffix, title in zip(panels, ("", "_jump"), titles, strict=True):
+    for axes, suffix, title in zip((own, other), ("", "_jump"), titles, strict=True):
         right = 1.04 * float(states[f"run_spin{suffix}"].max())
         _branches(axes, states, suffix, right)
         _ends_of_runs(axes, states, suffix)
         axes.set_title(title, weight="normal", color=INK, size=10)
         axes.set(xlabel=mark.SPIN, xlim=(0, right))
         axes.xaxis.set_major_locator(MultipleLocator(20))
-    mark.tilt_axis(panels[0], -0.12, np.pi + 0.12, r"final tilt $\theta$ (rad)")
-    handles, labels = panels[1].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=4, columnspacing=1.4)
-    return figure
+    mark.tilt_axis(own, -0.12, np.pi + 0.12, r"final tilt $\theta$ (rad)")
+    handles, labels = other.get_legend_handles_labels()
+    own.figure.legend(handles, labels, loc="outside lower center", ncols=4, columnspacing=1.4)
 
 
 def _branches(axes: Axes, states: xr.Dataset, suffix: str, right: float) -> None:
@@ -148,10 +146,9 @@ def _apparent(axes: Axes, critical: xr.Dataset, name: str, symbol: str, theirs: 
 _REGIONS = {"I": "#E8ECF0", "IIa": "#D5E8F8", "IIb": "#F9E3C4", "III": "#F3DCE6"}
 
 
-@house_style()
-def groups_figure(chart: xr.Dataset) -> Figure:
+@mark.drawn(4.9)
+def groups_figure(axes: Axes, chart: xr.Dataset) -> None:
     """Return the map of the eccentric spheres by inertia ratio and eccentricity, with some tops on it."""
-    figure, axes = mark.panels(4.9)
     alpha = chart["alpha"].values
     left, right = chart.attrs["gamma_least"], chart.attrs["gamma_greatest"]
     first, jump, last = (
@@ -175,7 +172,6 @@ def groups_figure(chart: xr.Dataset) -> Figure:
     axes.set(xlabel=r"inertia ratio $\gamma = I_1/I_3$", ylabel=r"eccentricity $\alpha$")
     axes.set(xlim=(left, right), ylim=(0, float(alpha[-1])))
     axes.grid(visible=False)
-    return figure
 
 
 def _no_precession(axes: Axes, chart: xr.Dataset) -> None:

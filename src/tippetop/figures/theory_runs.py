@@ -1,9 +1,10 @@
 """The way to the end: runs against the limit of weak friction, and what a run says of its nutation."""
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.ticker import MultipleLocator, NullLocator
 
 import tippetop.figures.annotation as mark
@@ -16,17 +17,15 @@ from tippetop.figures.style import (
     MUTED,
     REPORT,
     UNILATERAL,
-    house_style,
 )
 
 _SPAN = 3.0
 """Range of energies that every panel of the potential shows above its least value, mJ."""
 
 
-@house_style()
-def collapse_figure(flow: xr.Dataset) -> Figure:
+@mark.drawn(5.6, 2, 1, sharex=True, height_ratios=[1.2, 1])
+def collapse_figure(linear: Axes, logarithmic: Axes, flow: xr.Dataset) -> None:
     """Return the tilt against mu t of runs at several frictions, with the averaged flow, on two scales."""
-    figure, (linear, logarithmic) = mark.panels(5.6, 2, 1, sharex=True, height_ratios=[1.2, 1])
     limit = float(flow["flip_limit"])
     for axes in (linear, logarithmic):
         _runs_and_flow(axes, flow)
@@ -37,7 +36,6 @@ def collapse_figure(flow: xr.Dataset) -> Figure:
     mark.note(linear, f"limit of $\\mu\\,t_{{flip}}$\n{limit:.4f} s²/m", (limit, 0.2), (-6, 0), INK)
     logarithmic.set(yscale="log", ylim=(1e-3, 5.0), xlabel=r"$\mu\,t$ (s²/m)")
     logarithmic.set_xlim(0, float(flow["mu_time"][-1]))
-    return figure
 
 
 def _runs_and_flow(axes: Axes, flow: xr.Dataset) -> None:
@@ -56,10 +54,9 @@ def _runs_and_flow(axes: Axes, flow: xr.Dataset) -> None:
         axes.plot(flow["mu_time"], flow[bound], color=INK, lw=1.1, ls=(0, (5, 3)), label=name)
 
 
-@house_style()
-def exponent_figure(times: xr.Dataset) -> Figure:
+@mark.drawn(5.6, 2, 1, sharex=True, height_ratios=[1.45, 1])
+def exponent_figure(above: Axes, below: Axes, times: xr.Dataset) -> None:
     """Return mu times the time to turn over against friction, in several senses, and the local exponent."""
-    figure, (above, below) = mark.panels(5.6, 2, 1, sharex=True, height_ratios=[1.45, 1])
     mu = times["mu_flip"].values
     limits = (float(times["limit_arrival"]), float(times["limit_crossing"]))
     for limit, color in zip(limits, (CONVERGED, UNILATERAL), strict=True):
@@ -82,7 +79,6 @@ def exponent_figure(times: xr.Dataset) -> Figure:
     for axes in (above, below):
         axes.axvspan(0.2, 1.0, color=REPORT, alpha=0.09, lw=0)
     mark.note(below, "the report's\nrange", (0.447, 1.0), (0, -4), REPORT, size=8.5, xycoords=mark.ALONG_X)
-    return figure
 
 
 def _exponents(axes: Axes, times: xr.Dataset) -> None:
@@ -97,10 +93,9 @@ def _exponents(axes: Axes, times: xr.Dataset) -> None:
     axes.set(xlabel=mark.FRICTION, ylabel=r"exponent $d\ln t\,/\,d\ln\mu$", ylim=(-2.1, 1.3))
 
 
-@house_style()
-def balance_figure(run: xr.Dataset) -> Figure:
+@mark.drawn(5.0, 2, 1, sharex=True)
+def balance_figure(tilt: Axes, ratio: Axes, run: xr.Dataset) -> None:
     """Return how near a run is to gyroscopic balance, and its tilt within the envelope of its nutation."""
-    figure, (tilt, ratio) = mark.panels(5.0, 2, 1, sharex=True)
     time = run["time_diagnosed"].values
     _within_envelope(tilt, run, 0.9)
     inset = mark.inset(tilt, (0.71, 0.13, 0.28, 0.66))
@@ -116,7 +111,6 @@ def balance_figure(run: xr.Dataset) -> Figure:
     ratio.set_ylim(-1.35, 1.35)
     mark.note(ratio, "within a tenth", (time[-1], -0.1), (-3, -3), MUTED)
     ratio.set(xlabel="time (s)", ylabel=r"$\xi\,/\,|I_3\omega_3|$ at launch", xlim=(0, time[-1]))
-    return figure
 
 
 def _within_envelope(axes: Axes, run: xr.Dataset, width: float) -> None:
@@ -128,10 +122,9 @@ def _within_envelope(axes: Axes, run: xr.Dataset, width: float) -> None:
     axes.plot(time, run["theta_diagnosed"], color=CONVERGED, lw=width, label="run")
 
 
-@house_style()
-def potential_figure(run: xr.Dataset) -> Figure:
+@mark.drawn(4.9, 2, 3, sharex=True, lettered=False)
+def potential_figure(panels: Any, run: xr.Dataset) -> None:
     """Return the effective potential of the tilt at several instants of a run, with the energy level."""
-    figure, panels = mark.panels(4.9, 2, 3, sharex=True, lettered=False)
     tilt = run["well_theta"].values
     for k, axes in enumerate(panels.flat):
         well, level = 1e3 * run["potential"][k].values, 1e3 * float(run["level"][k])
@@ -149,4 +142,3 @@ def potential_figure(run: xr.Dataset) -> Figure:
         axes.xaxis.set_ticks([0, np.pi / 4, np.pi / 2, 3 * np.pi / 4, np.pi], ["0", "", "π/2", "", "π"])
     for axes in panels[:, 0]:
         axes.set_ylabel("effective potential (mJ)")
-    return figure
