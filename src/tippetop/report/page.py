@@ -149,14 +149,18 @@ def _picture(plate: Plate, figures: Path) -> dict[str, str]:
 
 
 def _experiments(plates: Sequence[Plate], judgements: Sequence[Judgement]) -> list[dict[str, Any]]:
-    """The experiments with the figures drawn from each, and the claims decided by it."""
-    found = []
-    for name, experiment in EXPERIMENTS.items():
-        drawn = [plate.id for plate in plates if name in plate.needs]
-        decided = [judgement.claim.id for judgement in judgements if name in judgement.claim.needs]
-        if drawn or decided:
-            found.append({"id": name, "title": experiment.title, "figures": drawn, "claims": decided})
-    return found
+    """The experiments, as the page comes to them, with the figures drawn from each and the claims decided."""
+    claims = [judgement.claim for judgement in judgements]
+    needs = [*(plate.needs for plate in plates), *(claim.needs for claim in claims)]
+    return [
+        {
+            "id": name,
+            "title": EXPERIMENTS[name].title,
+            "figures": [plate.id for plate in plates if name in plate.needs],
+            "claims": [claim.id for claim in claims if name in claim.needs],
+        }
+        for name in dict.fromkeys(name for some in needs for name in some)
+    ]
 
 
 def worded(judgement: Judgement, shown: Set[str] = frozenset()) -> Worded:

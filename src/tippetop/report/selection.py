@@ -22,10 +22,9 @@ class Selection:
 
     @property
     def experiments(self) -> tuple[Experiment, ...]:
-        """The experiments needed, in their usual order."""
-        needed = {name for plate in self.plates for name in plate.needs}
-        needed.update(name for claim in self.claims for name in claim.needs)
-        return tuple(experiment for name, experiment in EXPERIMENTS.items() if name in needed)
+        """The experiments needed, in the order of the page."""
+        needs = [*(plate.needs for plate in self.plates), *(claim.needs for claim in self.claims)]
+        return tuple(EXPERIMENTS[name] for name in dict.fromkeys(name for some in needs for name in some))
 
 
 def select(only: str | None = None) -> Selection:
