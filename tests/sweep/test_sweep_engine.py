@@ -36,7 +36,7 @@ from tippetop.sweeps.alone import follow_each
 from tippetop.sweeps.cells import cells_of
 from tippetop.sweeps.ensemble import follow_cells
 from tippetop.sweeps.stepper import NumPyArithmetic, stepper
-from tippetop.sweeps.stride import Layout, motion_series, order_for, stride
+from tippetop.sweeps.stride import Layout, expansion, order_for, stride
 
 EGG = Body(mass=0.05, shape=Spheroid(across=0.02, along=0.03), I1=9e-6, I3=5e-6)
 
@@ -167,10 +167,9 @@ def test_arrays_make_the_steps_that_are_compiled():
     compiled, order, plain = stepper(motion, 1e-9), order_for(1e-9), NumPyArithmetic()
     one = np.empty_like(before)
     compiled.step(before, one, numbers)
-    other = stride(motion, order, list(before[: layout.kept]), list(numbers), plain)
+    jet = expansion(motion, order, list(before[: layout.size]), list(numbers), plain)
+    other = stride(layout, jet, list(before[: layout.kept]), list(numbers), plain)
     assert one == pytest.approx(np.array(other), rel=1e-11, abs=1e-13)
-    y, guards = motion_series(motion, list(before[: layout.size]), list(numbers), plain)
-    jet = [[s[k] for k in range(order + 1)] for s in y], [[s[k] for k in range(order)] for s in guards]
     for ours, theirs in zip(compiled.jet(before, numbers), map(np.array, jet), strict=True):
         assert ours == pytest.approx(theirs, rel=1e-9, abs=1e-9 * np.abs(theirs).max())
     assert np.all(one[layout.taken] > 0)

@@ -1,9 +1,11 @@
 """Coefficients of power series as nodes: what Taylor's method computes, recorded number by number."""
 
+from collections.abc import Callable
 from typing import Any
 
 from tippetop.emit.graph import Node
-from tippetop.mechanics.series import PlainArithmetic
+from tippetop.mechanics.series import PlainArithmetic, Series, Sums
+from tippetop.mechanics.vectors import Scalar
 
 
 class NodeArithmetic(PlainArithmetic):
@@ -30,3 +32,32 @@ class NodeArithmetic(PlainArithmetic):
     def rarely(self, condition: Any, a: Any, b: Any) -> Any:
         """The same, where it is the second mostly; one condition for all that a function computes rarely."""
         return condition.graph.rarely(condition, a, b)
+
+
+class SharedSeries(Series):
+    """A power series; what is made of it and the same other series, or number, is made once.
+
+    Equations of motion and guards ask for the same forces, each for itself.
+    """
+
+    def __init__(self, rule: Callable[[int], Scalar], arithmetic: Sums) -> None:
+        super().__init__(rule, arithmetic)
+        self.shared = dict[Any, Any]()
+
+    def _made(self, rule: Callable[[int], Scalar]) -> "SharedSeries":
+        return SharedSeries(rule, self.arithmetic)
+
+
+def _once(operation: Callable[..., Any]) -> Callable[..., Any]:
+    def shared(series: SharedSeries, *other: Any) -> Any:
+        if not all(isinstance(one, (Series, float, int)) for one in other):
+            return operation(series, *other)
+        if (operation, *other) not in series.shared:
+            series.shared[operation, *other] = operation(series, *other)
+        return series.shared[operation, *other]
+
+    return shared
+
+
+for name in ("__add__", "__mul__", "__truediv__", "__pow__", "__neg__"):
+    setattr(SharedSeries, name, _once(getattr(Series, name)))

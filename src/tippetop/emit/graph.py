@@ -124,11 +124,12 @@ class Graph:
 
     def sum(self, a: Any, b: Any) -> Any:
         """Sum of two, as a difference if one of them is negative."""
-        if is_number(a, 0.0) or is_number(b, 0.0):
-            return b if is_number(a, 0.0) else a
         for one, other in ((a, b), (b, a)):
-            if isinstance(other, Node) and other.name == NEGATIVE:
-                return self.difference(one, other.operands[0])
+            if isinstance(other, Node):
+                if other.name == NEGATIVE:
+                    return self.difference(one, other.operands[0])
+            elif other == 0.0:
+                return one
         return self.node(SUM, in_order(self.taken(a), self.taken(b)))
 
     def difference(self, a: Any, b: Any) -> Any:
@@ -140,10 +141,11 @@ class Graph:
     def product(self, a: Any, b: Any) -> Any:
         """Product of two."""
         for one, other in ((a, b), (b, a)):
-            if is_number(one, 0.0):
-                return 0.0
-            if is_number(one, 1.0) or is_number(one, -1.0):
-                return other if one > 0.0 else -other
+            if not isinstance(one, Node):
+                if one == 0.0:
+                    return 0.0
+                if abs(one) == 1.0:
+                    return other if one > 0.0 else -other
         return self.node(PRODUCT, in_order(self.taken(a), self.taken(b)))
 
     def quotient(self, a: Any, b: Any) -> Any:

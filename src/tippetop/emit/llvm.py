@@ -70,7 +70,7 @@ br i1 %any, label %{name}, label %none
 
 # What does not fit into registers lies on the stack in whole cache lines: two lines a number cost twice.
 FRAME = """\
-define void @{name}(ptr noalias %y, ptr noalias %p, ptr noalias %out, i64 %count)
+define void @{name}(ptr noalias %y, ptr noalias %p, ptr noalias %out, i64 %count{more})
 alignstack(64) {{
 entry:
   %any = icmp ult i64 0, {count}
@@ -81,12 +81,18 @@ launches:
   br label %last
 last:
   %next = add i64 %first, {n}
-  %more = icmp ult i64 %next, {count}
-  br i1 %more, label %launches, label %none
+  %left = icmp ult i64 %next, {count}
+  br i1 %left, label %launches, label %none
 none:
   ret void
 }}
 """
+
+MORE = """\
+%asked = icmp ne ptr %more, null
+  br i1 %asked, label %give, label %last
+give:"""
+"""What is before that which is only given where it is asked for."""
 
 AGAIN = """\
 define i64 @{name}(ptr noalias %y, ptr noalias %p, ptr noalias %out, double %enough, i64 %most)
@@ -115,9 +121,10 @@ none:
 
 
 def llvm_source(functions: Mapping[str, Recorded], abreast: int, *, again: bool = False) -> str:
-    """Functions `name(y, p, out, count)` of arrays whose rows have a number for each of `count` launches.
+    """Functions `name(y, p, out, count, more)` of arrays whose rows have a number for each launch.
 
-    The count is a multiple of the launches `abreast`, and 1 if that is.
+    Their count is a multiple of the launches `abreast`, and 1 if that is. What is computed besides goes to
+    `more`, unless that is null.
 
     If they are made again and again, they are functions `name(y, p, out, enough, most)` of as many numbers
     abreast: what is made of y is put into its place, and only what is made besides goes to `out`, until the
@@ -142,15 +149,16 @@ def llvm_source(functions: Mapping[str, Recorded], abreast: int, *, again: bool 
         known = {node.place: name_of(node) for node in recorded.nodes}
         lines = spelt(recorded, known, words)
         replaced = recorded.size if again else 0
-        for number, node in enumerate(recorded.outputs):
-            row = (
-                {"name": "y", "row": number}
-                if number < replaced
-                else {"name": "out", "row": number - replaced}
-            )
-            lines.append(STORE.format(known[node.place], t=f"%out{number}", **row, **words))
+        given = {"y": recorded.outputs[:replaced], "out": recorded.outputs[replaced:], "more": recorded.more}
+        for place, nodes in given.items():
+            lines += [MORE] if place == "more" and nodes else []
+            lines += [
+                STORE.format(known[node.place], t=f"%{place}{row}", name=place, row=row, **words)
+                for row, node in enumerate(nodes)
+            ]
         last = known[recorded.outputs[-1].place] if again else ""
-        parts.append(frame.format(name=name, body="\n  ".join(lines), last=last, **words))
+        more = ", ptr noalias %more" if recorded.more else ""
+        parts.append(frame.format(name=name, body="\n  ".join(lines), last=last, more=more, **words))
     return "".join(parts)
 
 
@@ -189,7 +197,7 @@ def in_blocks(lines: Sequence[str], name: str) -> list[str]:
 
 def parted(recorded: Recorded) -> tuple[Sequence[graph.Node], ...]:
     """What is computed first, what only where there is need, what is one of both, and the rest."""
-    needed = {node.place for node in recorded.outputs}
+    needed = {node.place for node in (*recorded.outputs, *recorded.more)}
     for node in reversed(recorded.nodes):
         if node.place in needed:
             kept = node.operands[::2] if node.name == graph.RARELY else node.operands

@@ -17,12 +17,15 @@ class Recorded(NamedTuple):
     size: int
     parameters: int
     """How many numbers the state has, and how many parameters there are."""
+    more: tuple[Node, ...] = ()
+    """Some of what it computes on the way, to be had where it is asked for."""
 
 
 def record(
     function: Callable[[Sequence[Scalar], Sequence[Scalar]], Sequence[Scalar]],
     size: int,
     parameters: int,
+    more: int = 0,
 ) -> Recorded:
     """Record what a function of a state and parameters does.
 
@@ -32,6 +35,8 @@ def record(
         It returns a sequence of numbers, and asks nothing of its arguments but operators.
     size, parameters
         How many numbers the state has, and how many parameters there are.
+    more
+        How many of the last numbers it returns are not always asked for.
 
     Raises
     ------
@@ -42,7 +47,10 @@ def record(
     state = [graph.node(STATE, (), i) for i in range(size)]
     given = [graph.node(PARAMETER, (), i) for i in range(parameters)]
     outputs = [graph.taken(output) for output in function(state, given)]
-    return Recorded(needed(graph, outputs), tuple(outputs), size, parameters)
+    always = len(outputs) - more
+    return Recorded(
+        needed(graph, outputs), tuple(outputs[:always]), size, parameters, tuple(outputs[always:])
+    )
 
 
 def needed(graph: Graph, outputs: Sequence[Node]) -> tuple[Node, ...]:

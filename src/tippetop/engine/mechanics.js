@@ -10480,12 +10480,13 @@ class Graph extends py.Record {
   }
   /** Sum of two, as a difference if one of them is negative. */
   sum(a, b) {
-    if (py.truth(is_number(a, 0.0)) || py.truth(is_number(b, 0.0))) {
-      return py.truth(is_number(a, 0.0)) ? b : a;
-    }
     for (var [one, other] of [[a, b], [b, a]]) {
-      if (py.isinstance(other, Node) && py.eq(other.name, NEGATIVE)) {
-        return this.difference(one, other.operands[0]);
+      if (py.isinstance(other, Node)) {
+        if (py.eq(other.name, NEGATIVE)) {
+          return this.difference(one, other.operands[0]);
+        }
+      } else if (other === 0.0) {
+        return one;
       }
     }
     return this.node(SUM, in_order(this.taken(a), this.taken(b)));
@@ -10500,11 +10501,13 @@ class Graph extends py.Record {
   /** Product of two. */
   product(a, b) {
     for (var [one, other] of [[a, b], [b, a]]) {
-      if (py.truth(is_number(one, 0.0))) {
-        return 0.0;
-      }
-      if (py.truth(is_number(one, 1.0)) || py.truth(is_number(one, -1.0))) {
-        return one > 0.0 ? other : py.neg(other);
+      if (!py.isinstance(one, Node)) {
+        if (one === 0.0) {
+          return 0.0;
+        }
+        if (py.abs(one) === 1.0) {
+          return one > 0.0 ? other : py.neg(other);
+        }
       }
     }
     return this.node(PRODUCT, in_order(this.taken(a), this.taken(b)));
@@ -10559,23 +10562,31 @@ function in_order(a, b) {
 
 /** What a function does. */
 class Recorded extends py.NamedTuple {
-  constructor(nodes, outputs, size, parameters) {
+  constructor(nodes, outputs, size, parameters, more = []) {
     super();
     this.nodes = nodes;
     this.outputs = outputs;
     this.size = size;
     this.parameters = parameters;
+    this.more = more;
   }
 }
-py.fields(Recorded, ["nodes", "outputs", "size", "parameters"]);
+py.fields(Recorded, ["nodes", "outputs", "size", "parameters", "more"]);
 
 /** Record what a function of a state and parameters does. */
-function record(function_, size, parameters) {
+function record(function_, size, parameters, more = 0) {
   var graph = new Graph();
   var state = py.range(size).map((i) => graph.node(STATE, [], i));
   var given = py.range(parameters).map((i) => graph.node(PARAMETER, [], i));
   var outputs = [...function_(state, given)].map((output) => graph.taken(output));
-  return new Recorded(needed(graph, outputs), py.tuple(outputs), size, parameters);
+  var always = py.sub(py.len(outputs), more);
+  return new Recorded(
+    needed(graph, outputs),
+    py.tuple(outputs.slice(0, always)),
+    size,
+    parameters,
+    py.tuple(outputs.slice(always))
+  );
 }
 
 /** The nodes of a graph of which some are made. */

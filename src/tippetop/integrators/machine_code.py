@@ -22,7 +22,7 @@ def machine_code(
 ) -> "dict[str, Compiled]":
     """Compile what was recorded, for so many launches an instruction, or take it from the cache."""
     engine = _loaded(llvm_source(functions, abreast), effort)
-    return {name: Compiled(engine, name) for name in functions}
+    return {name: Compiled(engine, name, bool(one.more)) for name, one in functions.items()}
 
 
 def iteration(function: Recorded, abreast: int) -> Callable[..., int]:
@@ -63,13 +63,16 @@ class Compiled:
     an instruction; they lie one after another.
     """
 
-    def __init__(self, engine: llvm.ExecutionEngine, name: str) -> None:
+    def __init__(self, engine: llvm.ExecutionEngine, name: str, gives_more: bool) -> None:
         self.engine, self.address = engine, engine.get_function_address(name)
-        self._function = ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * 3, ctypes.c_int64)(self.address)
+        self._gives_more = gives_more
+        places = [ctypes.c_void_p] * 3, [ctypes.c_void_p] * gives_more
+        self._function = ctypes.CFUNCTYPE(None, *places[0], ctypes.c_int64, *places[1])(self.address)
 
-    def __call__(self, y: Array, p: Array, out: Array) -> None:
-        """Compute, for as many launches as the rows have numbers."""
-        self._function(*map(_address, (y, p, out)), y.shape[1] if y.ndim > 1 else 1)
+    def __call__(self, y: Array, p: Array, out: Array, more: Array | None = None) -> None:
+        """Compute, for as many launches as the rows have numbers, and give more if that is asked for."""
+        asked = [None if more is None else _address(more)] * self._gives_more
+        self._function(*map(_address, (y, p, out)), y.shape[1] if y.ndim > 1 else 1, *asked)
 
 
 def _address(rows: Array) -> int:

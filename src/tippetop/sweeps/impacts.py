@@ -17,7 +17,7 @@ from tippetop.mechanics.surface import contact_vector
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import length
 from tippetop.sweeps.launches import Flags
-from tippetop.sweeps.stepper import NumPyArithmetic, stepper
+from tippetop.sweeps.stepper import NumPyArithmetic, polynomials
 from tippetop.sweeps.stride import Jet, step_size
 
 PLAIN = NumPyArithmetic()
@@ -46,7 +46,7 @@ def collide(state: State, top: Top) -> tuple[State, Flags]:
         if not len(work):
             break
         with np.errstate(all="ignore"):
-            jet = stepper(motion, TOLERANCE).jet(after[:, work], numbers[:, work])
+            jet = polynomials(motion, TOLERANCE)(after[:, work], numbers[:, work])
             span, ended, branched = pieces(jet, longest[work])
             after[:, work] = jet.at(span)
         if branched.any():

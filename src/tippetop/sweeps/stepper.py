@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from functools import cached_property, lru_cache
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,7 @@ from tippetop.emit.recording import record
 from tippetop.integrators.base import Array, Motion, Rows
 from tippetop.interrupts import deferred
 from tippetop.mechanics.vectors import Scalar
-from tippetop.sweeps.stride import LANES, Jet, Layout, motion_series, order_for, stride
+from tippetop.sweeps.stride import LANES, Jet, Layout, expansion, order_for, stride
 
 NODES = NodeArithmetic()
 
@@ -44,7 +45,7 @@ class NumPyArithmetic:
 
 
 class Stepper:
-    """Taylor's method for one motion, of some order, as a pair of compiled functions."""
+    """Taylor's method for one motion, of some order, compiled when first used."""
 
     def __init__(self, motion: Motion, order: int) -> None:
         self.motion, self.order, self.layout = motion, order, Layout.of(motion)
@@ -58,46 +59,69 @@ class Stepper:
 
     def jet(self, before: Array, numbers: Array) -> Jet:
         """The polynomials in time of the steps that start from `before`."""
-        layout, order, count = self.layout, self.order, before.shape[1]
-        start, given = padded(before[: layout.size]), padded(numbers[: layout.parameters])
-        cut = layout.size * (order + 1)
-        values = np.empty((cut + layout.guards * order, start.shape[1]))
-        self._jet(start, given, values)
-        guards = values[cut:, :count].reshape(layout.guards, order, count)
-        return Jet(values[:cut, :count].reshape(layout.size, order + 1, count), guards)
+        start, given = padded(before[: self.layout.kept]), padded(numbers)
+        count = start.shape[1]
+        terms = np.empty((_count(self.motion, self.order), count))
+        self._step(start, given, np.empty((self.layout.rows, count)), terms)
+        return _jet(terms[:, : before.shape[1]], self.motion, self.order)
 
     @cached_property
-    def _step(self) -> Callable[[Array, Array, Array], None]:
+    def _step(self) -> Callable[..., None]:
+        motion, order, layout = self.motion, self.order, self.layout
+
         def rows(before: Sequence[Scalar], numbers: Sequence[Scalar]) -> list[Scalar]:
-            return stride(self.motion, self.order, before, numbers, NODES)
+            jet = expansion(motion, order, before[: layout.size], numbers, NODES)
+            return [*stride(layout, jet, before, numbers, NODES), *chain(*chain(*jet))]
 
-        return compiled(rows, self.layout.kept, self.layout.numbers)
-
-    @cached_property
-    def _jet(self) -> Callable[[Array, Array, Array], None]:
-        def rows(start: Sequence[Scalar], numbers: Sequence[Scalar]) -> list[Scalar]:
-            y, guards = motion_series(self.motion, start, numbers, NODES)
-            rows = [series[k] for series in y for k in range(self.order + 1)]
-            return rows + [guard[k] for guard in guards for k in range(self.order)]
-
-        return compiled(rows, self.layout.size, self.layout.parameters, effort=0)
+        return compiled(rows, layout.kept, layout.numbers, _count(motion, order))
 
 
 @lru_cache(maxsize=16)
 def stepper(motion: Motion, tolerance: float) -> Stepper:
-    """Taylor's method for a motion, whose functions are compiled when first used."""
+    """Taylor's method for a motion."""
     return Stepper(motion, order_for(tolerance))
 
 
+@lru_cache(maxsize=16)
+def polynomials(motion: Motion, tolerance: float) -> Callable[[Array, Array], Jet]:
+    """What makes the polynomials of a motion, from numbers of shape (size, n) and parameters."""
+    order = order_for(tolerance)
+
+    def rows(start: Sequence[Scalar], numbers: Sequence[Scalar]) -> list[Scalar]:
+        return [*chain(*chain(*expansion(motion, order, start, numbers, NODES)))]
+
+    made = compiled(rows, motion.size, motion.parameters, effort=0)
+
+    def expanded(start: Array, numbers: Array) -> Jet:
+        whole = padded(start)
+        terms = np.empty((_count(motion, order), whole.shape[1]))
+        made(whole, padded(numbers), terms)
+        return _jet(terms[:, : start.shape[1]], motion, order)
+
+    return expanded
+
+
 def compiled(
-    function: Rows, size: int, parameters: int, **options: int
-) -> Callable[[Array, Array, Array], None]:
-    """A function of so many rows and parameters, compiled for launches abreast."""
+    function: Rows, size: int, parameters: int, more: int = 0, **options: int
+) -> Callable[..., None]:
+    """A function of so many rows and parameters, compiled for launches abreast; see `record`."""
     # An interrupted import leaves a module in pieces.
     with deferred():
         from tippetop.integrators.machine_code import machine_code  # noqa: PLC0415 - optional, slow to import
 
-    return machine_code({"made": record(function, size, parameters)}, ABREAST, **options)["made"]
+    return machine_code({"made": record(function, size, parameters, more)}, ABREAST, **options)["made"]
+
+
+def _count(motion: Motion, order: int) -> int:
+    """How many coefficients the polynomials of a motion have."""
+    return motion.size * (order + 1) + len(motion.guards) * order
+
+
+def _jet(terms: Array, motion: Motion, order: int) -> Jet:
+    """Coefficients one after another, as what they are."""
+    cut, count = motion.size * (order + 1), terms.shape[1]
+    state, guards = terms[:cut], terms[cut:]
+    return Jet(state.reshape(motion.size, order + 1, count), guards.reshape(-1, order, count))
 
 
 def padded(rows: Array) -> Array:

@@ -18,8 +18,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tippetop.contact.sliding import BRANCH
+from tippetop.emit.coefficients import SharedSeries
 from tippetop.integrators.base import Array, Motion
-from tippetop.mechanics.series import Arithmetic, horner, solution
+from tippetop.mechanics.series import Arithmetic, horner, solved, unknown
 from tippetop.mechanics.vectors import Scalar
 from tippetop.sweeps.looks import TINY, first_fall, least_value, looked_at, lower_bound, may_fall
 
@@ -85,37 +86,38 @@ class Layout(NamedTuple):
 
 
 class Jet(NamedTuple):
-    """Coefficients of polynomials in time, in increasing order, for n launches."""
+    """Coefficients of polynomials in time, in increasing order, which may be arrays of n launches."""
 
-    state: Array
-    """Those of the state, shape (size, order + 1, n)."""
-    guards: Array
-    """Those of the guards, shape (guards, order, n)."""
+    state: Any
+    """Those of the state, size x (order + 1)."""
+    guards: Any
+    """Those of the guards, guards x order."""
 
     def at(self, time: Array) -> Array:
         """The states at one time for every launch, shape (size, n)."""
-        return np.array([horner(series, time) for series in self.state])
+        return np.array([horner(terms, time) for terms in self.state])
 
 
-def motion_series(
-    motion: Motion, start: Sequence[Scalar], numbers: Sequence[Scalar], plain: Arithmetic
-) -> Any:
-    """Series of the solution and of the guards."""
+def expansion(
+    motion: Motion, order: int, start: Sequence[Scalar], numbers: Sequence[Scalar], plain: Arithmetic
+) -> Jet:
+    """The polynomials of a step: coefficients of the solution and of the guards."""
     parameters = numbers[: motion.parameters]
-    y = solution(start, lambda y: motion.rates(y, parameters), plain)
-    return y, [guard.value(y, parameters) for guard in motion.guards]
+    y = solved([SharedSeries(unknown, plain) for _ in start], start, lambda y: motion.rates(y, parameters))
+    guards = [guard.value(y, parameters) for guard in motion.guards]
+    return Jet(
+        [series.up_to(order)[: order + 1] for series in y],
+        [guard.up_to(order - 1)[:order] for guard in guards],
+    )
 
 
 def stride(
-    motion: Motion, order: int, before: Sequence[Scalar], numbers: Sequence[Scalar], plain: Arithmetic
+    layout: Layout, jet: Jet, before: Sequence[Scalar], numbers: Sequence[Scalar], plain: Arithmetic
 ) -> list[Scalar]:
-    """What `Stepper.step` makes of the rows that are kept: all rows."""
-    layout = Layout.of(motion)
-    start, (left, steps) = before[: layout.size], before[layout.size :]
+    """What `Stepper.step` makes of the rows that are kept, by the polynomials from there: all rows."""
+    left, steps = before[layout.size :]
     counts, wanted = numbers[layout.counts], numbers[layout.turns :]
-    y, guards = motion_series(motion, start, numbers, plain)
-    state = [[series[k] for k in range(order + 1)] for series in y]
-    falls = [[guard[k] for k in range(order)] for guard in guards]
+    state, falls = jet
     whole = step_size(state, left, plain)
     taken, changes, events = later_guards(falls, counts, (whole, layout.branch), plain)
     floor, ceiling = extremes(state[2], taken, plain)
@@ -124,7 +126,7 @@ def stride(
     events += may_fall(falls[0], pressing, taken, plain) * counts[0]
     moves = plain.below(0.0, taken)
     pause = events * moves
-    after = [*(horner(series, taken) for series in state), left - taken, steps + moves]
+    after = [*(horner(terms, taken) for terms in state), left - taken, steps + moves]
     stays = [plain.choose(pause, old, new) for old, new in zip(before, after, strict=True)]
     stays[layout.left] = plain.choose(pause, 0.0 * left, after[layout.left])
     force = least_value(falls[0], pressing, taken, plain)
