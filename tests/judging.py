@@ -4,8 +4,7 @@ import xarray as xr
 
 from tippetop.report.claim import Verdict
 from tippetop.report.claims.registry import CLAIMS
-from tippetop.report.gallery import PLATES
-from tippetop.report.plate import Plate
+from tippetop.report.gallery import PLATES, Plate
 
 
 def assert_judged(computed: dict[str, xr.Dataset], name: str, verdict: Verdict) -> None:

@@ -15,8 +15,7 @@ from tippetop.report.claims.registry import CLAIMS
 from tippetop.report.experiments.dry import COHEN, friction_needed, stepped
 from tippetop.report.experiments.patches import CREEP, viscous_coefficient
 from tippetop.report.experiments.registry import EXPERIMENTS
-from tippetop.report.gallery import PLATES
-from tippetop.report.plate import Plate
+from tippetop.report.gallery import PLATES, Plate
 from tippetop.run import simulate
 
 NAMES = ("rolling", "cohen", "smoothed", "patch", "viscous")

@@ -14,8 +14,7 @@ from tippetop.report.claim import Verdict
 from tippetop.report.claims.registry import CLAIMS
 from tippetop.report.experiments.real import ROUGH, rolling, with_stem
 from tippetop.report.experiments.registry import EXPERIMENTS
-from tippetop.report.gallery import PLATES
-from tippetop.report.plate import Plate
+from tippetop.report.gallery import PLATES, Plate
 from tippetop.theory.resting_center import resting_center
 from tippetop.theory.stem import least_jellett_to_stand
 

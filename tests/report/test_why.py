@@ -13,9 +13,8 @@ from tippetop.report.claim import Verdict
 from tippetop.report.claims.registry import CLAIMS
 from tippetop.report.experiment import variable
 from tippetop.report.experiments.registry import EXPERIMENTS
-from tippetop.report.gallery import PLATES
+from tippetop.report.gallery import PLATES, Plate
 from tippetop.report.page import render
-from tippetop.report.plate import Plate
 
 NAMES = ("critical", "bifurcation", "groups", "collapse", "exponent", "diagnostics")
 

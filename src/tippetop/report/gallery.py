@@ -1,6 +1,7 @@
 """The figures: what is told of them, in `figures.toml`, and how each is drawn."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -11,29 +12,48 @@ from tippetop.figures import dry, flights, methods, real, runs, sweeps, theory, 
 from tippetop.figures.euler_angles import euler_angles_drawing
 from tippetop.figures.model import model_drawing
 from tippetop.figures.tippe_top import tippe_top_drawing
+from tippetop.report import quoted
+from tippetop.report.claim import Data
 from tippetop.report.experiments.runs import likely_end
-from tippetop.report.plate import Plate
-from tippetop.report.quoted import (
-    ABNORMAL_SPIN,
-    CRITICAL_SPINS,
-    END_OF_FIG_5,
-    ENERGY,
-    ENERGY_TIME,
-    EXPONENT,
-    REVERSALS,
-    STOP,
-    TURNED_AT,
-)
 from tippetop.report.told import told
 
-_CRITICAL = (float(CRITICAL_SPINS[0]), float(CRITICAL_SPINS[1]))
-_ABNORMAL = float(ABNORMAL_SPIN)
+Draw = Callable[[xr.Dataset], Figure]
+
+
+@dataclass(frozen=True)
+class Plate:
+    """A figure of the report redone, or one of our own."""
+
+    id: str
+    """Name, and stem of its files."""
+    draw: Draw
+    """Makes the figure from their merged dataset (empty for a drawing that needs none)."""
+    title: str
+    """Heading."""
+    caption: str
+    """What is seen, in a few sentences."""
+    needs: tuple[str, ...]
+    """Names of the experiments it shows."""
+    section: str
+    """The section of the page that it belongs to; see `tippetop.report.outline`."""
+    finding: str = ""
+    """What it finds out, in a few words, where that is news or one of the pictures that the page opens
+    with."""
+
+    def dataset(self, data: Data) -> xr.Dataset:
+        """The data behind the figure."""
+        parts = [data[name] for name in self.needs]
+        return xr.merge(parts, combine_attrs="drop_conflicts", compat="no_conflicts", join="outer")
+
+
+_CRITICAL = (float(quoted.CRITICAL_SPINS[0]), float(quoted.CRITICAL_SPINS[1]))
+_ABNORMAL = float(quoted.ABNORMAL_SPIN)
 
 
 def _printed_times(figure: str) -> dict[str, Any]:
     """The times that the report prints for a figure, for its drawing."""
-    times = tuple(float(time) for time in REVERSALS[figure])
-    return {"reported_turn": float(TURNED_AT[figure]), "reported_reversals": times}
+    times = tuple(float(time) for time in quoted.REVERSALS[figure])
+    return {"reported_turn": float(quoted.TURNED_AT[figure]), "reported_reversals": times}
 
 
 def _slow_launch(run: xr.Dataset) -> Figure:
@@ -41,13 +61,13 @@ def _slow_launch(run: xr.Dataset) -> Figure:
         run,
         precession_limit=80.0,
         **_printed_times("fig05"),
-        reported_end=(float(likely_end(run)["window"]), END_OF_FIG_5),
+        reported_end=(float(likely_end(run)["window"]), quoted.END_OF_FIG_5),
         zoom=(0.0, 1.6),
         inset=(0.12, 0.57, 0.34, 0.38),
     )
 
 
-DRAWN: dict[str, Callable[[xr.Dataset], Figure]] = {
+DRAWN: dict[str, Draw] = {
     "fig01": lambda _: tippe_top_drawing(),
     "fig02": lambda _: euler_angles_drawing(),
     "fig03": lambda _: model_drawing(),
@@ -55,12 +75,12 @@ DRAWN: dict[str, Callable[[xr.Dataset], Figure]] = {
     "fig05": _slow_launch,
     "fig06": partial(sweeps.final_tilt_figure, reported=(*_CRITICAL, _ABNORMAL)),
     "windows": partial(sweeps.windows_figure, reported=_CRITICAL),
-    "fig07": partial(sweeps.flip_time_figure, reported=float(EXPONENT)),
+    "fig07": partial(sweeps.flip_time_figure, reported=float(quoted.EXPONENT)),
     "fig08": partial(runs.tilt_figure, zoom=(12.8, 13.8)),
     "fig09": partial(runs.tilt_figure, zoom=(5.3, 5.8), inset=(0.6, 0.52, 0.38, 0.44)),
-    "fig10": partial(runs.energy_figure, reported=(float(ENERGY_TIME), float(ENERGY))),
+    "fig10": partial(runs.energy_figure, reported=(float(quoted.ENERGY_TIME), float(quoted.ENERGY))),
     "fig11": runs.force_figure,
-    "fig12": partial(runs.stopped_figure, reported_stop=float(STOP)),
+    "fig12": partial(runs.stopped_figure, reported_stop=float(quoted.STOP)),
     "fig13": runs.upright_figure,
     "fig14": partial(runs.tilt_figure, zoom=(5.5, 6.0)),
     "fig15": partial(runs.tilt_figure, zoom=(5.5, 6.0)),

@@ -14,9 +14,8 @@ from PIL import Image
 from tippetop.integrators import default_name
 from tippetop.report.claim import RULE, Judgement, Value, Verdict
 from tippetop.report.experiments.registry import EXPERIMENTS
-from tippetop.report.gallery import PLATES
+from tippetop.report.gallery import PLATES, Plate
 from tippetop.report.outline import OWN, PICTURES, SECTIONS, UNCHECKED, section_of
-from tippetop.report.plate import Plate
 from tippetop.report.typeset import formula, typeset
 
 Worded = dict[str, Any]

@@ -9,8 +9,7 @@ from tippetop.report.claim import Claim
 from tippetop.report.claims.registry import CLAIMS
 from tippetop.report.experiment import Experiment
 from tippetop.report.experiments.registry import EXPERIMENTS
-from tippetop.report.gallery import PLATES
-from tippetop.report.plate import Plate
+from tippetop.report.gallery import PLATES, Plate
 
 
 @dataclass(frozen=True)

@@ -11,17 +11,8 @@ from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Vector
 from tippetop.mechanics.view import precession_rate
+from tippetop.theory import nutation
 from tippetop.theory.dual import Array
-from tippetop.theory.nutation import (
-    Constants,
-    amplitudes,
-    constants,
-    effective_potential,
-    natural_constants,
-    numbers_of,
-    orbit,
-    turning_tilts,
-)
 
 
 def gyroscopic_balance(axis: Array, momentum: Array, top: Top) -> Array:
@@ -49,7 +40,7 @@ def gyroscopic_balance(axis: Array, momentum: Array, top: Top) -> Array:
     return np.where(np.isfinite(balance), balance, np.nan)
 
 
-def smooth_constants(axis: Array, momentum: Array, top: Top) -> Constants:
+def smooth_constants(axis: Array, momentum: Array, top: Top) -> nutation.Constants:
     """What a smooth table would leave alone from each instant on: L_z, L3 and energy as arrays, shape (n,).
 
     The energy is that without the horizontal motion of the centre of mass, for a body on the table.
@@ -57,13 +48,13 @@ def smooth_constants(axis: Array, momentum: Array, top: Top) -> Constants:
     n, L = _vector(axis), _vector(momentum)
     zero = np.zeros_like(n[0])
     state = SlidingState(n, L, (zero, zero))
-    return constants(state, top)
+    return nutation.constants(state, top)
 
 
 def potential_at(index: int, axis: Array, momentum: Array, top: Top, tilts: Array) -> Array:
     """Effective potential, J, of these tilts (rad, between 0 and pi, shape (k,)) at one instant of a run."""
     values = smooth_constants(axis[index : index + 1], momentum[index : index + 1], top)
-    return np.asarray(effective_potential(np.asarray(tilts, dtype=float), values, top, np))
+    return np.asarray(nutation.effective_potential(np.asarray(tilts, dtype=float), values, top, np))
 
 
 def nutation_envelope(axis: Array, momentum: Array, top: Top) -> tuple[Array, Array]:
@@ -71,9 +62,9 @@ def nutation_envelope(axis: Array, momentum: Array, top: Top) -> tuple[Array, Ar
 
     Raises `InvalidInput` if the body is not an eccentric sphere.
     """
-    numbers = numbers_of(top)
-    values = natural_constants(smooth_constants(axis, momentum, top), top)
-    return turning_tilts(amplitudes(orbit(values, numbers)))
+    numbers = nutation.numbers_of(top)
+    values = nutation.natural_constants(smooth_constants(axis, momentum, top), top)
+    return nutation.turning_tilts(nutation.amplitudes(nutation.orbit(values, numbers)))
 
 
 def _vector(rows: Array) -> Vector:

@@ -4,7 +4,6 @@ from tippetop.report.claim import EXAMINERS, Claim, Source
 from tippetop.report.claims import (  # noqa: F401 - for what they register
     abnormal,
     dry,
-    end_state,
     equations,
     flight,
     friction,

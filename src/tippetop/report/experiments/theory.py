@@ -15,21 +15,11 @@ from tippetop.report.experiments.equations import left_of_217
 from tippetop.report.experiments.runs import WINDOW
 from tippetop.report.readings import SETTLED
 from tippetop.run import simulate
+from tippetop.theory import groups
 from tippetop.theory.apparent import (
     apparent_critical_spins,
     critical_spin_from_spectrum,
     growth_rates_of_launches,
-)
-from tippetop.theory.groups import (
-    classify,
-    classify_top,
-    eccentricity,
-    equal_thresholds,
-    inertia_ratio,
-    inverted_boundary,
-    jump_boundary,
-    precession_boundaries,
-    upright_boundary,
 )
 from tippetop.theory.prediction import predict
 from tippetop.theory.stability import eigenvalues
@@ -143,7 +133,7 @@ def _diagram(suffix: str, body: Body, tilts: Array, launches: list[tuple[float, 
 
 def _left_of_217(end: xr.Dataset, problem: Problem) -> float:
     """What is left of (2.17) at the end of a run, over phi'."""
-    left = left_of_217(end["theta"], end["phi_dot"], end["omega3"], eccentricity(problem.top))
+    left = left_of_217(end["theta"], end["phi_dot"], end["omega3"], groups.eccentricity(problem.top))
     return float(abs(left / end["phi_dot"]))
 
 
@@ -166,21 +156,21 @@ def _groups(quick: bool) -> xr.Dataset:
     bodies["Leine and Glocker 2003"] = LEINE_GLOCKER
     tops = [report_problem().replace({"body": body.model_dump()}).top for body in bodies.values()]
     lines = {
-        "upright_boundary": [upright_boundary(a) for a in alpha],
-        "inverted_boundary": [inverted_boundary(a) for a in alpha],
-        "jump_boundary": [jump_boundary(a) for a in alpha],
-        "equal_thresholds": [equal_thresholds(a) for a in alpha],
-        "no_precession_from": [precession_boundaries(a)[0] for a in alpha],
-        "no_precession_to": [precession_boundaries(a)[1] for a in alpha],
+        "upright_boundary": [groups.upright_boundary(a) for a in alpha],
+        "inverted_boundary": [groups.inverted_boundary(a) for a in alpha],
+        "jump_boundary": [groups.jump_boundary(a) for a in alpha],
+        "equal_thresholds": [groups.equal_thresholds(a) for a in alpha],
+        "no_precession_from": [groups.precession_boundaries(a)[0] for a in alpha],
+        "no_precession_to": [groups.precession_boundaries(a)[1] for a in alpha],
     }
     gamma = np.linspace(0.5, 1.6, 111 if quick else 441)
-    letters = sorted({classify(float(g), float(a)).value for g in gamma[::10] for a in alpha[::10]})
+    letters = sorted({groups.classify(float(g), float(a)).value for g in gamma[::10] for a in alpha[::10]})
     names = {name: name.replace("_", " ") for name in lines}
     return dataset(
         {"alpha": (alpha, "1", "eccentricity"), "top": list(bodies)},
         {"groups": ", ".join(letters), "gamma_least": float(gamma[0]), "gamma_greatest": float(gamma[-1])},
         **{name: (lines[name], "1", f"gamma at the {names[name]}", "alpha") for name in lines},
-        top_gamma=([inertia_ratio(top) for top in tops], "1", "I1 / I3", "top"),
-        top_alpha=([eccentricity(top) for top in tops], "1", "eccentricity", "top"),
-        top_group=([classify_top(top).value for top in tops], "1", "group", "top"),
+        top_gamma=([groups.inertia_ratio(top) for top in tops], "1", "I1 / I3", "top"),
+        top_alpha=([groups.eccentricity(top) for top in tops], "1", "eccentricity", "top"),
+        top_group=([groups.classify_top(top).value for top in tops], "1", "group", "top"),
     )
