@@ -6,6 +6,7 @@ samples before the next. `web/src/player/track.js` reads it.
 """
 
 import json
+import math
 import struct
 from typing import Any
 
@@ -42,13 +43,13 @@ def sample_count(problem: Problem, duration: float) -> int:
 def pack_run(run: xr.Dataset) -> bytes:
     """The block of bytes of a run."""
     problem = Problem.from_json(run.attrs["problem"])
-    columns = _columns(run)
+    columns, turns_over = _columns(run), float(run["turns_over"])
     header = {
         "samples": run.sizes["time"],
         "duration": float(run["time"].values[-1]),
         "columns": [[name, values.shape[1] if values.ndim > 1 else 1] for name, values in columns.items()],
         "flights": flights(run),
-        "turns_over": _time(run["turns_over"]),
+        "turns_over": turns_over if math.isfinite(turns_over) else None,
         "modes": [str(word) for word in run["mode"].attrs["flag_meanings"].split()],
         "body": {
             "I1": problem.body.I1,
@@ -99,8 +100,3 @@ def _columns(run: xr.Dataset) -> dict[str, Array]:
         "theta": run["theta"].values,
         "omega3": run["omega3"].values,
     }
-
-
-def _time(value: xr.DataArray) -> float | None:
-    """A time that JSON can hold: None where there is none."""
-    return float(value) if np.isfinite(value) else None

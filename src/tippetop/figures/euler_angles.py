@@ -20,7 +20,8 @@ def euler_angles_drawing() -> Figure:
     """
     figure, axes = draw.canvas((-1.22, 1.98), (-0.9, 1.32))
     view = _view(azimuth=np.radians(35), elevation=np.radians(22))
-    space, body = np.eye(3), _body_axes()
+    turned = Rotation.from_euler("ZXZ", [_PRECESSION, _NUTATION, _ROTATION])
+    space, body = np.eye(3), turned.as_matrix().T
     nodes = np.array([np.cos(_PRECESSION), np.sin(_PRECESSION), 0.0])
     _discs(axes, view, space, body, nodes)
     _frame(axes, view, space, ("x", "y", "z"), MUTED)
@@ -35,11 +36,6 @@ def _view(azimuth: float, elevation: float) -> Array:
     """Return the matrix whose product with points in rows is their place in a parallel projection."""
     ca, sa, ce, se = np.cos(azimuth), np.sin(azimuth), np.cos(elevation), np.sin(elevation)
     return np.array([[-sa, -se * ca], [ca, -se * sa], [0.0, ce]])
-
-
-def _body_axes() -> Array:
-    """Return the body axes X, Y, Z as rows: turned by alpha about z, beta about N, then gamma about Z."""
-    return np.asarray(Rotation.from_euler("ZXZ", [_PRECESSION, _NUTATION, _ROTATION]).as_matrix().T)
 
 
 def _discs(axes: Axes, view: Array, space: Array, body: Array, nodes: Array) -> None:

@@ -64,7 +64,7 @@ def _table(axes: Axes, ends: tuple[float, float], camera: Camera) -> None:
 
 def _stage(axes: Axes, x: float, tilt: float, camera: Camera) -> None:
     """Draw one toy: its shadow, its picture, its spin, and how high its centre of mass is."""
-    toy, frame = Toy(REPORT), _frame(tilt, np.radians(-35))
+    toy, frame = Toy(REPORT), Rotation.from_euler("ZY", [np.radians(-35), tilt]).as_matrix()
     centre = np.array([x, 0.0, 1.0])
     o, mass = camera.project(centre), camera.project(centre - frame @ toy.middle)
     flat = 2 * camera.up[1]
@@ -87,11 +87,6 @@ def _spin(axes: Axes, centre: Array, camera: Camera, height: float = 3.0, radius
     draw.arrow(axes, camera.project(ring), ACCENT, width=1.8, head=0.2, z=2.5)
     back, front = camera.project(ends)
     draw.line(axes, [back, front], MUTED, 1.0, dashed=True, z=2.4)
-
-
-def _frame(tilt: float, azimuth: float) -> Array:
-    """Return the body's axes in space as columns, shape (3, 3), the third leaning towards an azimuth."""
-    return np.asarray(Rotation.from_euler("ZY", [azimuth, tilt]).as_matrix())
 
 
 def _picture(toy: Toy, frame: Array, camera: Camera, pixels: int = 300, oversample: int = 2) -> Array:

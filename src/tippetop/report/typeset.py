@@ -30,12 +30,9 @@ _SYMBOL = re.compile(
 
 def typeset(text: str) -> Markup:
     """The text as HTML, with its formulas in letters, indices and powers."""
-    return Markup(_SYMBOL.sub(_symbol, _escaped(text)))
-
-
-def _escaped(text: str) -> str:
     # An apostrophe is a prime here, and harmless in the text of a page.
-    return str(escape(text)).replace("&#39;", "'").replace(" x ", " × ")
+    escaped = str(escape(text)).replace("&#39;", "'").replace(" x ", " × ")
+    return Markup(_SYMBOL.sub(_symbol, escaped))
 
 
 def _symbol(found: re.Match[str]) -> str:

@@ -86,7 +86,7 @@ def outlook(problem: Problem) -> Outlook:
     drills, smooth = not top.friction.torque_free, problem.friction.vanishes
     stays = None if drills else steady_launch(problem)
     grouped = sphere and 0.0 < eccentricity(top) < 1.0
-    limit = _flip_time_limit(problem) if grouped and stays is None else None
+    limit, time = _flip_times(problem) if grouped and stays is None else (None, None)
     return Outlook(
         inertia_ratio=inertia_ratio(top) if sphere else None,
         eccentricity=eccentricity(top) if sphere else None,
@@ -101,7 +101,7 @@ def outlook(problem: Problem) -> Outlook:
         prediction=predict(problem) if sphere and not smooth else None,
         steady=tuple(Judged(state, spectrum(state, top)) for state in steady_states(problem)),
         mu_flip_time=limit,
-        flip_time=None if limit is None else limit / _mu(problem),
+        flip_time=time,
         conserved=sphere,
         standing_time=standing_time(problem) if drills and (vertical or top.surface.spherical) else None,
     )
@@ -175,17 +175,11 @@ def _swings(problem: Problem) -> tuple[float, float]:
     return min(low, problem.launch.tilt), max(high, problem.launch.tilt)
 
 
-def _mu(problem: Problem) -> float:
-    """The coefficient of viscous friction, s/m."""
-    assert isinstance(problem.friction, ViscousFriction)
-    return problem.friction.mu
-
-
-def _flip_time_limit(problem: Problem) -> float | None:
-    """Limit of mu times the flip time, where friction is viscous and the axis moves."""
-    launch = problem.launch
+def _flip_times(problem: Problem) -> tuple[float, float] | tuple[None, None]:
+    """Limit of mu times the flip time, and the flip time, where friction is viscous and the axis moves."""
+    launch, friction = problem.launch, problem.friction
     vertical = launch.tilt in (0.0, math.pi) and launch.tilt_rate == 0.0
-    if vertical or problem.friction.vanishes or not isinstance(problem.friction, ViscousFriction):
-        return None
+    if vertical or friction.vanishes or not isinstance(friction, ViscousFriction):
+        return None, None
     limit = flip_time_limit(problem)
-    return limit if math.isfinite(limit) else None
+    return (limit, limit / friction.mu) if math.isfinite(limit) else (None, None)

@@ -180,10 +180,13 @@ def _linear(kind: SteadyKind, tilt: Array, precession: Array, spin: Array, frame
         )
     scaled = natural(drilling(top, spin))
     angles = Angles(tilt, 0.0, 0.0, precession * units.time, spin * units.time, (0.0, 0.0))
-    point = _coordinates(state_from_angles(angles, scaled, np), tilt)
+    state = state_from_angles(angles, scaled, np)
+    eight = (*state.axis, *state.momentum, *state.velocity)
+    point = [np.broadcast_to(np.asarray(number, dtype=float), tilt.shape) for number in eight]
 
     matrix = jacobian(_rates_in_frame(scaled, frame * units.time), point)
-    basis = _complement(_meaningless(kind, angles, point, scaled))
+    away = _meaningless(kind, angles, point, scaled)
+    basis = np.linalg.qr(away, mode="complete").Q[..., away.shape[-1] :]
     return _Linear(basis, np.swapaxes(basis, -1, -2) @ matrix @ basis, units)
 
 
@@ -201,12 +204,6 @@ def drilling(top: Top, turning: Array) -> Top:
         accepted = f"at least {SLOWEST / time:.2g} rad/s: without drilling dry friction lets it stick"
         raise InvalidInput("spin", slowest, accepted)
     return on_branch(top, (0.0, 0.0, 1.0))
-
-
-def _coordinates(state: SlidingState, like: Array) -> list[Array]:
-    """The 8 numbers n, L, u of n states, as arrays."""
-    eight = (*state.axis, *state.momentum, *state.velocity)
-    return [np.broadcast_to(np.asarray(number, dtype=float), like.shape) for number in eight]
 
 
 def _rates_in_frame(top: Top, frame: Array) -> Callable[[Sequence[Any]], list[Any]]:
@@ -250,8 +247,3 @@ def _along_branch(angles: Angles, top: Top) -> list[Array]:
     moved = Angles(tilt, 0.0, 0.0, rate, rate * rolling_spin(c, top.surface), (0.0, 0.0))
     state = state_from_angles(moved, top, dual)
     return [derivative(number, tilt)[0] for number in (*state.axis, *state.momentum, *state.velocity)]
-
-
-def _complement(directions: Array) -> Array:
-    """Orthonormal basis of what is perpendicular to the directions, shape (n, 8, 8 - m)."""
-    return np.asarray(np.linalg.qr(directions, mode="complete").Q[..., directions.shape[-1] :])
