@@ -57,7 +57,9 @@ def motion_figure(
     turned = reported_turn, float(np.interp(reported_turn, run["time_listing"], run["theta_listing"]))
     tilt.plot(*turned, "s", **square)
     mark.note(tilt, f"report: {reported_turn:g} s", turned, (6, -8), REPORT, halo=True)
-    _slip(slip, run)
+    speeds = {f"speed{end}": np.hypot(run[f"slip_x{end}"], run[f"slip_y{end}"]) for end in ("_listing", "")}
+    _pair(slip, run.assign(speeds), "speed")
+    slip.set(ylabel="slip speed $|v_A|$ (m/s)", ylim=(0, None))
     for axes, name in ((tilt, "theta"), (spin, "omega3"), (turning, "phi_dot")):
         if reported_end:
             end = reported_end[0], reported_end[1][name]
@@ -218,13 +220,6 @@ def _precession(axes: Axes, run: xr.Dataset, limit: float) -> None:
     for time in marks:
         mark.note(axes, f"{time:.2f} s", (time, 0), (7, 5), ACCENT, halo=True)
     axes.set_ylabel(r"precession $\dot\varphi$ (rad/s)")
-
-
-def _slip(axes: Axes, run: xr.Dataset) -> None:
-    for suffix, time, color, width in _LINES:
-        speed = np.hypot(run[f"slip_x{suffix}"], run[f"slip_y{suffix}"])
-        band(axes, run[time], speed, color, _EDGES[width])
-    axes.set(ylabel="slip speed $|v_A|$ (m/s)", ylim=(0, None))
 
 
 def _mark_lift_off(axes: Axes, time: float) -> None:
