@@ -13,18 +13,6 @@ from tippetop.files import written_beside
 _PAGE = Path(__file__).with_name("run.html")
 
 
-def html_page(run: xr.Dataset) -> str:
-    """The page of a run; `Unavailable` if the player is not built: see `tippetop.export.bundle`."""
-    block = pack_run(run)
-    return _PAGE.read_text(encoding="utf-8").format(
-        version=__version__,
-        title=html.escape(f"Tippe top: {unpack_header(block)['story']['headline']}"),
-        run=packed(block),
-        player=player_packed(),
-        loader=LOADER,
-    )
-
-
 def write_html(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Path:
     """Write a run as a self-contained HTML file that plays it in any browser, offline.
 
@@ -43,5 +31,13 @@ def write_html(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Pa
     'run.html'
     """
     with written_beside(path, overwrite) as beside:
-        beside.write_text(html_page(run), encoding="utf-8")
+        block = pack_run(run)
+        page = _PAGE.read_text(encoding="utf-8").format(
+            version=__version__,
+            title=html.escape(f"Tippe top: {unpack_header(block)['story']['headline']}"),
+            run=packed(block),
+            player=player_packed(),
+            loader=LOADER,
+        )
+        beside.write_text(page, encoding="utf-8")
     return Path(path)

@@ -78,7 +78,8 @@ def write_movie(
     extent = pixels or ((640, 480) if encoder else (360, 270))
     _check(rate, speed, extent)
     if not encoder:
-        rate = gif_rate(rate)
+        # What a .gif can hold; browsers slow down what is faster than 50.
+        rate = 100.0 / min(max(round(100.0 / rate), 2), 0xFFFF)
     pictures = frames(run, rate, speed, extent, progress)
     with written_beside(path, overwrite) as beside:
         if encoder:
@@ -86,11 +87,6 @@ def write_movie(
         else:
             _save_gif(pictures, beside, rate)
     return path
-
-
-def gif_rate(fps: float) -> float:
-    """The rate nearest to `fps` that a .gif can hold; browsers slow down what is faster than 50."""
-    return 100.0 / min(max(round(100.0 / fps), 2), 0xFFFF)
 
 
 def ffmpeg() -> str:

@@ -1,6 +1,6 @@
 """Maps of a sweep: what became of every launch, over one or two of its numbers."""
 
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -30,14 +30,6 @@ MOST_PANELS = 9
 
 MOST_STEP = 1.05
 """Ratio of neighbouring steps of an axis from which on it counts as geometric."""
-
-
-class Shade(NamedTuple):
-    """How values become colours: a colormap, and what goes where in it."""
-
-    cmap: Any
-    norm: Any
-    none: str
 
 
 @house_style()
@@ -96,20 +88,19 @@ def _value(sweep: xr.Dataset, name: str) -> str:
     return f"{_name(sweep, name) if name in SHORT else name} = {sweep[name].values:.4g}"
 
 
-def _colours(axes: Axes, sweep: xr.Dataset, variable: str, shade: Shade) -> Any:
+def _colours(axes: Axes, sweep: xr.Dataset, variable: str, shade: dict[str, Any]) -> Any:
     """One cell a rectangle; the first dimension to the right, the second upwards."""
     across, up = (str(name) for name in sweep[variable].dims)
     values = _shown(sweep, variable).T
-    axes.set_facecolor(shade.none)
+    axes.set_facecolor(FAINT)
     axes.grid(visible=False)
     image = axes.pcolormesh(
         sweep[across].values,
         sweep[up].values,
         np.ma.masked_invalid(values),
-        cmap=shade.cmap,
-        norm=shade.norm,
         shading="nearest",
         rasterized=True,
+        **shade,
     )
     for name, axis in ((across, axes.xaxis), (up, axes.yaxis)):
         axis.set_label_text(_name(sweep, name))
@@ -140,7 +131,7 @@ def _scatter(figure: Figure, axes: Axes, sweep: xr.Dataset, variable: str) -> No
         x, y = sweep[fields[0]].values, sweep[fields[1]].values
         nothing = ~np.isfinite(values)
         axes.scatter(x[nothing], y[nothing], 8, facecolors="none", edgecolors=MUTED, linewidths=0.4)
-        image = axes.scatter(x[~nothing], y[~nothing], 8, values[~nothing], cmap=shade.cmap, norm=shade.norm)
+        image = axes.scatter(x[~nothing], y[~nothing], 8, values[~nothing], **shade)
         axes.set_ylabel(_name(sweep, fields[1]))
         _bar(figure, [axes], image, sweep, variable)
     axes.set_xlabel(_name(sweep, fields[0]))
@@ -181,20 +172,20 @@ def _shown(sweep: xr.Dataset, variable: str) -> np.ndarray[Any, Any]:
     return np.where(nothing, np.nan, values)
 
 
-def _shade(sweep: xr.Dataset, variable: str, values: np.ndarray[Any, Any]) -> Shade:
-    """Colours of a variable; what has no value is light grey."""
+def _shade(sweep: xr.Dataset, variable: str, values: np.ndarray[Any, Any]) -> dict[str, Any]:
+    """How the values of a variable become colours: a colormap, and what goes where in it."""
     meanings = sweep[variable].attrs.get("flag_meanings")
     if meanings is not None:
         count = len(meanings.split())
         norm = BoundaryNorm(np.arange(count + 1) - 0.5, count)
-        return Shade(ListedColormap((*CYCLE, INK)[:count]), norm, FAINT)
+        return {"cmap": ListedColormap((*CYCLE, INK)[:count]), "norm": norm}
     if variable == "final_theta":
-        return Shade(SEQUENTIAL, Normalize(0.0, np.pi), FAINT)
+        return {"cmap": SEQUENTIAL, "norm": Normalize(0.0, np.pi)}
     finite = values[np.isfinite(values)]
     least, most = (float(finite.min()), float(finite.max())) if len(finite) else (0.0, 1.0)
     if variable == "flights" and most > 20:
-        return Shade(SEQUENTIAL, LogNorm(1.0, most), FAINT)
-    return Shade(SEQUENTIAL, Normalize(least, most if most > least else least + 1.0), FAINT)
+        return {"cmap": SEQUENTIAL, "norm": LogNorm(1.0, most)}
+    return {"cmap": SEQUENTIAL, "norm": Normalize(least, most if most > least else least + 1.0)}
 
 
 def _bar(figure: Figure, axes: list[Axes], image: Any, sweep: xr.Dataset, variable: str) -> None:
