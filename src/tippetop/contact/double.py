@@ -198,14 +198,13 @@ class SlidingOnTwo(OnTwo):
 
     def follow(self, guard: str, time: float, state: State) -> Transition:
         """One surface opens, while the other goes on; or slip or rolling ends."""
-        kind, _, number = guard.rpartition(" ")
-        if f"{kind} " == OPENING:
-            return self.opening(int(number), time, state, slips=True)
-        if f"{kind} " == BRANCHING:
-            tops = list(self.tops)
-            tops[int(number)] = on_other_branch(tops[int(number)])
+        if guard.startswith(OPENING):
+            return self.opening(int(guard.removeprefix(OPENING)), time, state, slips=True)
+        if guard.startswith(BRANCHING):
+            tops, number = list(self.tops), int(guard.removeprefix(BRANCHING))
+            tops[number] = on_other_branch(tops[number])
             return Transition((), replace(self, top=tops[0], other=tops[1]), state)
-        if f"{kind} " == ENDING:
+        if guard.startswith(ENDING):
             return self.settled(time, state, self.rolls)
         return self.follow_rolling(guard, time, state)
 

@@ -8,7 +8,7 @@ from tippetop.emit.expressions import ATOM, Expressions
 RENAMED = {"startswith": "startsWith", "append": "push", "index": "indexOf"}
 """Methods of Python's own types that have another name."""
 
-METHODS = ("removeprefix", "rpartition", "tolist", "join", "extend", "pop")
+METHODS = ("removeprefix", "tolist", "join", "extend")
 """Methods of Python's own types that are functions of the runtime."""
 
 NAMED = ("_replace", "replace")

@@ -1,6 +1,6 @@
 // What modes state in plain operators, recorded once a kind and compiled by the browser.
 import { NodeValues, javascript_source, record, unrolled } from "./mechanics.js";
-import { ArithmeticError, heed } from "./runtime.js";
+import { ArithmeticError, cached, heed, replace } from "./runtime.js";
 
 /** A function (y, p) => numbers in plain operators as code (y, p, out); run as it stands where it cannot be. */
 export function compiled(function_, size, parameters, heeds = true) {
@@ -37,7 +37,6 @@ const OPERATIONS = {
   "*": (v, to, a, b) => () => { v[to] = v[a] * v[b]; },
   "/": (v, to, a, b) => () => { v[to] = v[a] / v[b]; },
   negative: (v, to, a) => () => { v[to] = -v[a]; },
-  sqrt: (v, to, a) => () => { v[to] = Math.sqrt(v[a]); },
   less: (v, to, a, b) => () => { v[to] = v[a] < v[b] ? 1 : 0; },
   select: (v, to, condition, a, b) => () => { v[to] = v[condition] !== 0 ? v[a] : v[b]; },
 };
@@ -45,16 +44,14 @@ const elementary = (name) => (v, to, a, b = a) => () => { v[to] = Math[name](v[a
 
 /** What is recorded, operation by operation: where pages may not make code, as some servers' policies have it. */
 function interpreted({ nodes, outputs }) {
-  const values = new Float64Array(nodes.at(-1).place + 1), steps = [], given = [];
-  for (const { name, place, value, operands } of nodes) {
-    if (operands.length) steps.push((OPERATIONS[name] ?? elementary(name))(values, place, ...operands.map((one) => one.place)));
-    else if (name === "constant") values[place] = value;
-    else given.push({ name, place, value });
-  }
+  const values = new Float64Array(nodes.length ? nodes.at(-1).place + 1 : 0);
+  const [given, made] = [nodes.filter(({ name }) => name === "y" || name === "p"), nodes.filter(({ operands }) => operands.length)];
+  const steps = made.map(({ name, place, operands }) => (OPERATIONS[name] ?? elementary(name))(values, place, ...operands.map((one) => one.place)));
+  for (const { name, place, value } of nodes) if (name === "constant") values[place] = value;
   return (y, p, out) => {
     for (const { name, place, value } of given) values[place] = (name === "y" ? y : p)[value];
-    for (let i = 0; i < steps.length; i += 1) steps[i]();
-    for (let i = 0; i < outputs.length; i += 1) out[i] = values[outputs[i].place];
+    for (const step of steps) step();
+    outputs.forEach(({ place }, number) => (out[number] = values[place]));
   };
 }
 
@@ -96,14 +93,24 @@ export function iterated(function_, size, parameters, abreast) {
   };
 }
 
-const known = new WeakMap();
+const codes = cached(() => new Map());
 
-/** The rates and guards of a motion. */
-export function compiledMotion(motion) {
-  if (!known.has(motion)) {
-    const values = (y, p) => motion.guards.map((guard) => guard.value(y, p));
-    const [rates, guards] = [motion.rates, values].map((one) => compiled(one, motion.size, motion.parameters));
-    known.set(motion, { rates, guards });
-  }
-  return known.get(motion);
+/** What makes readings, of so many numbers, of those of a mode and another one; what has no value is no number. */
+export function reader(mode, size) {
+  const kinds = mode.tops.map((top) => top.kind), numbers = mode.tops.flatMap((top) => top.numbers);
+  const known = codes(mode.form, kinds, size), parameters = Float64Array.of(...numbers, 0);
+  const values = (of) => (y, p) => {
+    let from = 0;
+    const [top, other] = kinds.map((kind) => kind.top(p.slice(from, (from += kind.numbers))));
+    return [...of(replace(mode, other ? { top, other } : { top }), y, p[from])];
+  };
+  return (of, count) => {
+    if (!known.has(of)) known.set(of, compiled(values(of), size, parameters.length, false));
+    const code = known.get(of), out = new Float64Array(count);
+    return (y, other = 0) => {
+      parameters[numbers.length] = other;
+      code(y, parameters, out);
+      return out;
+    };
+  };
 }

@@ -6297,16 +6297,16 @@ class SlidingOnTwo extends OnTwo {
   }
   /** One surface opens, while the other goes on; or slip or rolling ends. */
   follow(guard, time, state) {
-    var [kind, , number] = py.rpartition(guard, " ");
-    if (py.eq(`${py.str(kind)} `, OPENING)) {
-      return this.opening(py.int(number), time, state, true);
+    if (py.truth(guard.startsWith(OPENING))) {
+      return this.opening(py.int(py.removeprefix(guard, OPENING)), time, state, true);
     }
-    if (py.eq(`${py.str(kind)} `, BRANCHING)) {
+    if (py.truth(guard.startsWith(BRANCHING))) {
       var tops = py.list(this.tops);
-      py.put(tops, py.int(number), on_other_branch(py.item(tops, py.int(number))));
+      var number = py.int(py.removeprefix(guard, BRANCHING));
+      py.put(tops, number, on_other_branch(py.item(tops, number)));
       return new Transition([], py.replace(this, { top: tops[0], other: tops[1] }), state);
     }
-    if (py.eq(`${py.str(kind)} `, ENDING)) {
+    if (py.truth(guard.startsWith(ENDING))) {
       return this.settled(time, state, this.rolls);
     }
     return this.follow_rolling(guard, time, state);
@@ -8194,7 +8194,7 @@ function roots_between(function_, low, high, noise) {
   var found = [];
   var waiting = [[low, high, 0]];
   while (py.truth(waiting)) {
-    var [start, end, depth] = py.pop(waiting);
+    var [start, end, depth] = waiting.pop();
     var series = series_of(function_, start, end);
     if (py.max(py.abs(py.item(series, -1)), py.abs(py.item(series, -2))) > least && depth < HALVINGS) {
       var middle = py.mul(0.5, py.add(start, end));
@@ -8202,7 +8202,7 @@ function roots_between(function_, low, high, noise) {
       continue;
     }
     while (py.truth(series) && py.abs(py.item(series, -1)) <= least) {
-      py.pop(series);
+      series.pop();
     }
     found = py.add(
       found,
@@ -10370,7 +10370,7 @@ class Flights extends py.Thing {
   }
   /** Take in a flight, or one more piece of it. */
   take(segment) {
-    var begin = py.truth(this._landed) ? py.float(segment.solution.knots[0]) : py.pop(this.rows)[0];
+    var begin = py.truth(this._landed) ? py.float(segment.solution.knots[0]) : this.rows.pop()[0];
     this.rows.push([begin, segment.end_time, segment.highest_gap]);
     this._landed = segment.transition !== null;
   }
@@ -10594,7 +10594,7 @@ function needed(graph, outputs) {
   var places = py.set();
   var waiting = py.list(outputs);
   while (py.truth(waiting)) {
-    var node = py.pop(waiting);
+    var node = waiting.pop();
     if (!py.contains(places, node.place)) {
       places.add(node.place);
       py.extend(waiting, node.operands);

@@ -1,15 +1,20 @@
 // Parts of a problem: complete, checked, and clear about what they refuse, as in tippetop.validation.
 import { SCHEMA } from "./tables.js";
 
-export const MISSING = Symbol("nothing");
+export const MISSING = undefined;
 
 /** A value that cannot be. */
 export class InvalidInput extends Error {
   constructor(field, value, accepted, others = 0) {
-    const more = others ? ` (and ${others} more)` : "";
     const fault = value === MISSING ? "is missing" : `= ${short(value)} is not possible`;
-    super(`${field} ${fault}; accepted: ${accepted}${more}`);
-    Object.assign(this, { name: "InvalidInput", field, value: value === MISSING ? undefined : value, accepted, others });
+    super(`${field} ${fault}; accepted: ${accepted}${others ? ` (and ${others} more)` : ""}`);
+    Object.assign(this, { name: "InvalidInput", field, value, accepted, others });
+  }
+
+  /** The same of a field of a part, or of the part itself if it names none; more cannot be besides. */
+  within(part, more = 0) {
+    const field = [part, this.field].filter(Boolean).join(".");
+    return new InvalidInput(field, this.value, this.accepted, this.others + more);
   }
 }
 
@@ -36,19 +41,15 @@ export class Part {
   }
 
   constructor(given = {}) {
-    const { fields, checks } = SCHEMA[this.constructor.title], wrong = [];
-    for (const name of Object.keys(given)) {
-      if (!(name in fields)) wrong.push([name, given[name], `one of the keys ${Object.keys(fields).join(", ")}`]);
-    }
+    const { fields, checks } = SCHEMA[this.constructor.title], keys = Object.keys(fields).join(", ");
+    const unknown = Object.keys(given).filter((name) => !(name in fields));
+    const wrong = unknown.map((name) => new InvalidInput(name, given[name], `one of the keys ${keys}`));
     for (const [name, field] of Object.entries(fields)) {
       const value = given[name] === undefined || (given[name] === null && field.default !== undefined) ? field.default : given[name];
-      if (value === undefined) wrong.push([name, MISSING, "a value; it has no default"]);
+      if (value === undefined) wrong.push(new InvalidInput(name, MISSING, "a value; it has no default"));
       else this[name] = taken(name, value, field, wrong);
     }
-    if (wrong.length) {
-      const [name, value, accepted, others = 0] = wrong[0];
-      throw new InvalidInput(name, value, accepted, wrong.length - 1 + others);
-    }
+    if (wrong.length) throw wrong[0].within("", wrong.length - 1);
     for (const check of checks) this[check]();
   }
 
@@ -66,51 +67,46 @@ export class Part {
   }
 }
 
+/** The value of a field, with parts made of their fields; what is wrong with it is added to the rest. */
 function taken(name, value, field, wrong) {
-  const refuse = (where, what, accepted, others) => wrong.push([where, what, accepted, others]);
-  const number = (where, one) => {
+  const refuse = (where, one, accepted) => wrong.push(new InvalidInput(where, one, accepted));
+  const number = (where, one, depth) => {
     const { gt, ge, lt, le } = field.limits ?? {};
-    if (typeof one !== "number" || !Number.isFinite(one)) refuse(where, one, "a finite number");
+    if (depth) one.forEach((inner, place) => number(`${where}.${place}`, inner, depth - 1));
+    else if (typeof one !== "number" || !Number.isFinite(one)) refuse(where, one, "a finite number");
     else if (one <= gt || one < ge || one >= lt || one > le) refuse(where, one, field.accepted);
   };
-  const listed = (all) => Array.isArray(all) && (field.points ? all.every(Array.isArray) : all.length === field.count);
   if (value === null && field.default === null) return null;
   if (field.parts) {
-    if (!(Array.isArray(value) && field.several)) return part(name, value, field.parts, refuse);
-    const found = value.map((inner, place) => part(`${name}.${place}`, inner, field.parts, refuse));
+    if (!(Array.isArray(value) && field.several)) return part(name, value, field.parts, wrong);
+    const found = value.map((inner, place) => part(`${name}.${place}`, inner, field.parts, wrong));
     if (!found.length) refuse(name, value, TABLE);
     return found.length === 1 ? found[0] : found;
   }
-  if (field.choices ? !field.choices.includes(value) : (field.points || field.count) && !listed(value)) refuse(name, value, field.accepted);
-  else if (field.points) value.forEach((point, place) => point.forEach((one, k) => number(`${name}.${place}.${k}`, one)));
-  else if (field.count) value.forEach((one, place) => number(`${name}.${place}`, one));
-  else if (!field.choices) number(name, value);
+  const listed = Array.isArray(value) && (field.points ? value.every(Array.isArray) : value.length === field.count);
+  if (field.choices ? !field.choices.includes(value) : (field.points || field.count) && !listed) refuse(name, value, field.accepted);
+  else if (!field.choices) number(name, value, field.points ? 2 : field.count ? 1 : 0);
   return value;
 }
 
-/** A part of one of some kinds, told apart by their field `kind`. */
-function part(name, value, kinds, refuse) {
+/** A part of one of some kinds. */
+function part(name, value, kinds, wrong) {
   if (value instanceof Part) return value;
-  if (value === null || typeof value !== "object" || Array.isArray(value)) {
-    refuse(name, value, TABLE);
-    return null;
-  }
-  let found = kinds[0];
-  const words = kinds.map((kind) => SCHEMA[kind].fields.kind?.default);
-  if (words[0] !== undefined) {
-    found = kinds[words.indexOf(value.kind)];
-    if (found === undefined) {
-      const missing = value.kind === undefined;
-      refuse(`${name}.kind`, missing ? MISSING : value.kind, missing ? "a kind of it" : words.map((word) => `'${word}'`).join(", "));
-      return null;
-    }
-  }
   try {
-    return new KINDS[found](value);
+    return new KINDS[chosen(value, kinds)](value);
   } catch (error) {
     if (!(error instanceof InvalidInput)) throw error;
-    const where = `${error.field}.`.startsWith(`${name}.`) ? error.field : `${name}.${error.field}`;
-    refuse(where, error.value === undefined ? MISSING : error.value, error.accepted, error.others);
+    wrong.push(`${error.field}.`.startsWith(`${name}.`) ? error : error.within(name));
     return null;
   }
+}
+
+/** The kind that fields are of, told apart by the one that is called `kind`. */
+function chosen(value, kinds) {
+  if (value === null || typeof value !== "object" || Array.isArray(value)) throw new InvalidInput("", value, TABLE);
+  const words = kinds.map((kind) => SCHEMA[kind].fields.kind?.default);
+  if (words[0] === undefined) return kinds[0];
+  if (value.kind === undefined) throw new InvalidInput("kind", MISSING, "a kind of it");
+  if (!words.includes(value.kind)) throw new InvalidInput("kind", value.kind, words.map(short).join(", "));
+  return kinds[words.indexOf(value.kind)];
 }

@@ -1,9 +1,8 @@
 // One launch: followed from mode to mode, its numbers found on the way, and sampled when asked.
 import * as m from "./mechanics.js";
-import { compiled } from "./compile.js";
+import { compiled, reader } from "./compile.js";
 import { DenseSolution, earliest } from "./dense.js";
 import { make_integrator } from "./integrate.js";
-import { reader } from "./observe.js";
 import { InvalidInput } from "./part.js";
 import { cached } from "./runtime.js";
 import { CATALOGUE, GAUSS } from "./tables.js";

@@ -206,7 +206,7 @@ export function eq(a, b) {
   return typeof a === "boolean" && typeof b === "number" ? Number(a) === b : false;
 }
 
-export const contains = (all, one) => (all instanceof Dict ? all.has(one) : [...all].some((each) => eq(each, one)));
+export const contains = (all, one) => (all instanceof Dict || all instanceof Set ? all.has(one) : [...all].some((each) => eq(each, one)));
 
 const known = new WeakMap();
 let counted = 0;
@@ -231,21 +231,16 @@ export function cached(function_) {
 
 export class Dict {
   constructor(pairs = []) {
-    this.pairs = new Map();
-    this.update(pairs);
+    this.pairs = new Map(Array.from(pairs, (pair) => [key(pair[0]), pair]));
   }
   get length() {
     return this.pairs.size;
   }
   get(one, other = null) {
-    const found = this.pairs.get(key(one));
-    return found === undefined ? other : found[1];
+    return this.has(one) ? this.pairs.get(key(one))[1] : other;
   }
   put(one, value) {
     this.pairs.set(key(one), [one, value]);
-  }
-  add(one) {
-    this.put(one, one);
   }
   has(one) {
     return this.pairs.has(key(one));
@@ -295,7 +290,7 @@ export const len = (all) => (all instanceof NamedTuple ? all.constructor.fields.
 export const tuple = (all = []) => (Array.isArray(all) ? all : [...all]);
 export const list = (all = []) => [...all];
 export const dict = (pairs = []) => new Dict(pairs);
-export const set = (all = []) => new Dict([...all].map((one) => [one, one]));
+export const set = (all = []) => new Set(all);
 export const range = (start, stop, step = 1) => {
   const [from, to] = stop === undefined ? [0, start] : [start, stop];
   return Array.from({ length: Math.max(0, Math.ceil((to - from) / step)) }, (_, i) => from + i * step);
@@ -333,15 +328,13 @@ function most(given, better) {
   return choices.reduce((best, choice) => (better(worth(choice), worth(best)) ? choice : best));
 }
 export function max(...given) {
-  if (given.length === 2 && typeof given[0] === "number" && typeof given[1] === "number") {
-    return given[1] > given[0] ? given[1] : given[0];
-  }
-  return most(given, (a, b) => below(b, a));
+  const [a, b] = given;
+  if (given.length === 2 && typeof a === "number" && typeof b === "number") return b > a ? b : a;
+  return most(given, (one, other) => below(other, one));
 }
 export function min(...given) {
-  if (given.length === 2 && typeof given[0] === "number" && typeof given[1] === "number") {
-    return given[1] < given[0] ? given[1] : given[0];
-  }
+  const [a, b] = given;
+  if (given.length === 2 && typeof a === "number" && typeof b === "number") return b < a ? b : a;
   return most(given, below);
 }
 export const sorted = (all, { key: worth = (one) => one } = {}) =>
@@ -350,12 +343,7 @@ export const sorted = (all, { key: worth = (one) => one } = {}) =>
 export const tolist = (all) => [...all];
 export const join = (between, all) => [...all].join(between);
 export const extend = (all, more) => all.push(...more);
-export const pop = (all) => all.pop();
 export const removeprefix = (text, part) => (text.startsWith(part) ? text.slice(part.length) : text);
-export function rpartition(text, part) {
-  const place = text.lastIndexOf(part);
-  return place < 0 ? ["", "", text] : [text.slice(0, place), part, text.slice(place + part.length)];
-}
 export const format = (value, how_) =>
   how_.endsWith("g") ? String(Number(value.toPrecision(Number(how_.slice(1, -1)) || 6))) : String(value);
 
