@@ -75,6 +75,16 @@ def test_hertz_friction_keeps_its_digits_in_fast_slip(kappa):
     assert torque * kappa == pytest.approx(0.2 + x / 70.0, abs=1e-15 + 0.01 * x**2)
 
 
+@pytest.mark.parametrize("law", [EllipsoidalLaw, HertzLaw])
+@pytest.mark.parametrize("kappa", [0.4, 1.1, 30.0])
+@pytest.mark.parametrize("speed", [1e-140, 1e-90, 1e80, 1e140])
+def test_friction_of_a_patch_depends_on_no_speed_alone(law, kappa, speed):
+    """Slip and drilling are resisted as hard if both are as many times as fast."""
+    force, torque = law(0.3, 1.0).traction((0.6 * kappa, -0.8 * kappa), (0.0, 0.0, -1.0))
+    slip, turning = (0.6 * kappa * speed, -0.8 * kappa * speed), (0.0, 0.0, -speed)
+    assert law(0.3, 1.0).traction(slip, turning) == (pytest.approx(force, rel=4e-15), pytest.approx(torque))
+
+
 def test_hertz_friction_in_slow_slip_is_viscous_with_3_pi_mu_over_8_w_r():
     slip, turning, mu, radius = (2e-9, -1e-9), (3.0, 4.0, 50.0), 0.3, 5e-4
     force, torque = HertzDrillingLaw(mu, radius).traction(slip, turning)

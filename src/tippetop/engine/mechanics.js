@@ -7378,55 +7378,24 @@ class EllipsoidalLaw extends PatchLaw {
 }
 
 // tippetop.mechanics.contensou_hertz
-
-/** F and T of a branch as ratios of polynomials in a number x, their coefficients in increasing order. */
-class ForceAndTorque extends py.NamedTuple {
-  constructor(force, torque, below) {
-    super();
-    this.force = force;
-    this.torque = torque;
-    this.below = below;
-  }
-}
-py.fields(ForceAndTorque, ["force", "torque", "below"]);
-const DRILLING_of_contensou_hertz = new ForceAndTorque(
-  [py.mul(0.375, PI), py.mul(-0.09375, PI)],
-  [py.mul(0.1875, PI), py.mul(-0.1875, PI), py.mul(0.0703125, PI)],
-  [1.0]
-);
-const SLIDING = new ForceAndTorque(
-  [
-    0.8835729338221293,
-    3.588980126262665,
-    5.940405892796844,
-    5.295183697296597,
-    2.8365419666579434,
-    0.9356191279612185,
-    0.17160971680764692,
-    0.012373729468682777,
-    1.1138052094468924e-06
-  ],
-  [
-    0.22089323345553233,
-    0.8972450315656664,
-    1.4114703953806944,
-    1.024714247135719,
-    0.33682013029431185,
-    0.041108935870272395,
-    0.0006245074488087915,
-    -1.9377090596738164e-05,
-    5.569153792789647e-07
-  ],
-  [
-    1.0,
-    4.061894597356628,
-    6.5564975062115085,
-    5.3159395937729235,
-    2.2425592181211225,
-    0.45429743330678546,
-    0.033099956109968943
-  ]
-);
+const ABOVE = [
+  1.5707963267948966,
+  3.881827558189307,
+  3.7302986673933276,
+  1.7319485839406856,
+  0.3822634716370882,
+  0.031121258667402094
+];
+const BELOW = [
+  1.0,
+  4.168900902778227,
+  6.952127871831827,
+  5.877944744228727,
+  2.6214376916842954,
+  0.573386336009741,
+  0.046682203384759896
+];
+const SHARE_of_contensou_hertz = py.div(BELOW[6], BELOW[5]);
 const LIMIT = [
   [
     0.8835729338221295,
@@ -7449,7 +7418,7 @@ const LIMIT = [
     0.006126226581420139
   ]
 ];
-const NEAR_BRANCH = 1e-20;
+const NEAR_BRANCH = 1e-24;
 const EDGE = 1e-05;
 const BEYOND_of_contensou_hertz = 1e-20;
 const BRANCH_TORQUE = py.div(py.mul(9.0, PI), 128.0);
@@ -7471,7 +7440,12 @@ class HertzDrillingLaw extends HertzPiece {
   /** Force over slip, and torque, per unit normal force, at slip of this square and drilling R w. */
   shares(square, drilling) {
     var rate = py.pow(py.add(py.mul(drilling, drilling), py.mul(BEYOND_of_contensou_hertz, square)), -0.5);
-    return shares_of(this, DRILLING_of_contensou_hertz, py.mul(py.mul(square, rate), rate), rate, drilling);
+    return scaled_shares(
+      this,
+      rate,
+      py.mul(drilling, rate),
+      drilling_shares(py.mul(py.mul(square, rate), rate))
+    );
   }
   /** (mu N F)^2 - T^2 where the limit surface has this drilling torque, N^2. */
   reserve(normal, force, drilling) {
@@ -7503,9 +7477,9 @@ class HertzDrillingLaw extends HertzPiece {
 class HertzSlidingLaw extends HertzPiece {
   /** Force over slip, and torque, per unit normal force, at slip of this square and drilling R w. */
   shares(square, drilling) {
-    var excess = excess_of(square, drilling);
-    var rate = py.pow(py.add(excess, py.mul(drilling, drilling)), -0.5);
-    return shares_of(this, SLIDING, py.mul(py.pow(excess, 0.5), rate), rate, drilling);
+    var rate = py.pow(py.add(square, py.mul(BEYOND_of_contensou_hertz, py.mul(drilling, drilling))), -0.5);
+    var turning = py.mul(drilling, rate);
+    return scaled_shares(this, rate, turning, sliding_shares(turning));
   }
   /** (mu N F)^2 - T^2 where the limit surface has this drilling torque, N^2. */
   reserve(normal, force, drilling) {
@@ -7556,28 +7530,19 @@ class HertzBranch extends py.NamedTuple {
   }
   /** Force over slip, and torque, per unit normal force, at slip of this square and drilling R w. */
   shares(square, drilling) {
-    var turning = py.mul(drilling, drilling);
-    var excess = excess_of(square, drilling);
-    var rate = py.pow(py.add(turning, this._either(py.mul(BEYOND_of_contensou_hertz, square), excess)), -0.5);
-    var law = new ForceAndTorque(
-      this._terms(DRILLING_of_contensou_hertz.force, SLIDING.force),
-      this._terms(DRILLING_of_contensou_hertz.torque, SLIDING.torque),
-      this._terms(DRILLING_of_contensou_hertz.below, SLIDING.below)
+    var other = py.mul(drilling, drilling);
+    var rate = py.pow(
+      this._either(
+        py.add(other, py.mul(BEYOND_of_contensou_hertz, square)),
+        py.add(square, py.mul(BEYOND_of_contensou_hertz, other))
+      ),
+      -0.5
     );
-    return shares_of(
-      this,
-      law,
-      this._either(py.mul(py.mul(square, rate), rate), py.mul(py.pow(excess, 0.5), rate)),
-      rate,
-      drilling
-    );
-  }
-  /** The coefficients that belong to the branch; drilling has fewer. */
-  _terms(drills, slides) {
-    var count = py.len(drills);
-    return py.tuple(
-      py.enumerate(slides).map(([k, term]) => this._either(k < count ? py.item(drills, k) : 0.0, term))
-    );
+    var turning = py.mul(drilling, rate);
+    var drills = drilling_shares(py.mul(py.mul(square, rate), rate));
+    var slides = sliding_shares(turning);
+    var law = [this._either(drills[0], slides[0]), this._either(drills[1], slides[1])];
+    return scaled_shares(this, rate, turning, law);
   }
   /** The number that belongs to the branch. */
   _either(drills, slides) {
@@ -7668,35 +7633,52 @@ function resisting(law, slip, angular_velocity) {
   return new Traction([py.mul(force, slip[0]), py.mul(force, slip[1])], [0.0, 0.0, torque]);
 }
 
-/** v^2 - (R w)^2 at slip of this square and drilling R w, or its size, but not quite zero, m^2/s^2. */
-function excess_of(square, drilling) {
-  var excess = py.sub(square, py.mul(drilling, drilling));
-  return py.pow(py.add(py.mul(excess, excess), py.mul(py.mul(NEAR_BRANCH, square), square)), 0.5);
+/** F / kappa and T where drilling prevails, at kappa^2. */
+function drilling_shares(square) {
+  var force = py.mul(py.div(py.mul(3.0, PI), 32.0), py.sub(4.0, square));
+  return [
+    force,
+    py.mul(py.div(py.mul(3.0, PI), 16.0), py.add(py.sub(1.0, square), py.mul(0.375, py.mul(square, square))))
+  ];
+}
+
+/** F and T kappa where slip prevails, at 1 / kappa, see `HertzSlidingLaw`. */
+function sliding_shares(turning) {
+  var excess = py.sub(1.0, py.mul(turning, turning));
+  var x2 = py.pow(py.add(py.mul(excess, excess), NEAR_BRANCH), 0.5);
+  var x = py.pow(x2, 0.5);
+  var x4 = py.mul(x2, x2);
+  var above = py.add(
+    py.add(py.add(py.add(ABOVE[0], py.mul(ABOVE[1], x)), py.mul(ABOVE[2], x2)), py.mul(ABOVE[4], x4)),
+    py.mul(x, py.add(py.mul(ABOVE[3], x2), py.mul(ABOVE[5], x4)))
+  );
+  var odd = py.mul(
+    py.add(x, py.mul(SHARE_of_contensou_hertz, x2)),
+    py.add(py.mul(BELOW[3], x2), py.mul(BELOW[5], x4))
+  );
+  var below = py.add(
+    py.add(
+      py.add(py.add(BELOW[0], py.mul(BELOW[1], x)), py.mul(BELOW[2], x2)),
+      py.mul(py.sub(BELOW[4], py.mul(SHARE_of_contensou_hertz, BELOW[3])), x4)
+    ),
+    odd
+  );
+  var d = py.div(above, below);
+  var y = py.sub(1.0, x2);
+  var c = py.add(py.mul(py.div(2.0, 3.0), x), py.mul(y, d));
+  var less = py.mul(y, c);
+  return [
+    py.sub(py.add(py.mul(1.125, x), py.mul(0.75, less)), py.mul(0.1875, c)),
+    py.add(py.mul(0.375, py.sub(py.add(x, less), c)), py.mul(0.140625, d))
+  ];
 }
 
 /** Force over slip, and torque, per unit normal force. */
-function shares_of(patch, law, x, rate, drilling) {
-  var x2 = py.mul(x, x);
-  var powers = [x, x2, py.mul(x2, x), py.mul(x2, x2)];
-  rate = py.div(py.mul(py.neg(patch.mu), rate), polynomial(law.below, powers));
-  var torque = py.mul(py.mul(patch.patch_radius, drilling), rate);
-  return [py.mul(polynomial(law.force, powers), rate), py.mul(polynomial(law.torque, powers), torque)];
-}
-
-/** Value of a polynomial of degree 8 at most, given its coefficients and four powers. */
-function polynomial(c, powers) {
-  var low = c[0];
-  for (var [term, power] of py.zip(c.slice(1, 4), powers.slice(0, 3))) {
-    low = py.add(low, py.mul(term, power));
-  }
-  if (py.len(c) <= py.len(powers)) {
-    return low;
-  }
-  var high = c[4];
-  for (var [term, power] of py.zip(c.slice(5), powers)) {
-    high = py.add(high, py.mul(term, power));
-  }
-  return py.add(low, py.mul(high, powers[3]));
+function scaled_shares(patch, rate, turning, law) {
+  return [
+    py.mul(py.mul(py.neg(patch.mu), rate), law[0]),
+    py.mul(py.mul(py.mul(py.neg(patch.mu), patch.patch_radius), turning), law[1])
+  ];
 }
 
 // tippetop.frictions
@@ -10695,6 +10677,7 @@ function unrolled(recorded, abreast) {
 
 export {
   ABOUT,
+  ABOVE,
   ACCUMULATED,
   ACCURACY,
   ACCURACY_of_loosening,
@@ -10709,6 +10692,7 @@ export {
   Arc,
   Arrival,
   BEGINNING,
+  BELOW,
   BEYOND,
   BEYOND_of_contensou_hertz,
   BOTH,
@@ -10748,7 +10732,6 @@ export {
   DIP,
   DIRECTED,
   DRILLING,
-  DRILLING_of_contensou_hertz,
   Disc,
   Driven,
   DryContact,
@@ -10782,7 +10765,6 @@ export {
   Flight,
   Flights,
   Fold,
-  ForceAndTorque,
   FreeToFly,
   Friction,
   GAUSS,
@@ -10961,6 +10943,7 @@ export {
   SETTLED,
   SETTLED_of_passing,
   SHARE,
+  SHARE_of_contensou_hertz,
   SHORT,
   SHORTER,
   SHORTER_of_slipping,
@@ -10971,7 +10954,6 @@ export {
   SINGULAR,
   SINKING,
   SIZE,
-  SLIDING,
   SLIP,
   SLIP_of_double_sticking,
   SLIP_of_straight_impact,
@@ -11164,6 +11146,7 @@ export {
   directions,
   directions_of,
   dot,
+  drilling_shares,
   driven_motion,
   each_surface,
   eccentricity,
@@ -11173,7 +11156,6 @@ export {
   equal_thresholds,
   error_of,
   evaluate,
-  excess_of,
   factor_for,
   falling_time,
   final_band,
@@ -11281,7 +11263,6 @@ export {
   phis,
   plus,
   point_velocity,
-  polynomial,
   polynomials,
   precession_at,
   precession_boundaries,
@@ -11320,11 +11301,11 @@ export {
   rules_for,
   scale,
   scaled,
+  scaled_shares,
   series_of,
   set_valued,
   settled,
   settling,
-  shares_of,
   short_step,
   shown,
   size,
@@ -11332,6 +11313,7 @@ export {
   sliding_law,
   sliding_motion,
   sliding_rates,
+  sliding_shares,
   slip_along_tilt,
   slip_apart,
   slip_beside,

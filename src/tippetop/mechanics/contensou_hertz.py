@@ -4,7 +4,6 @@ See `contensou`. The law has two derivatives where the branches meet, kappa = 1:
 that stands still is on its rim.
 """
 
-from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 from tippetop.mechanics.contensou import PI, PatchLaw
@@ -13,56 +12,27 @@ from tippetop.mechanics.series import horner
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Horizontal, Scalar, Vector
 
-
-class ForceAndTorque(NamedTuple):
-    """F and T of a branch as ratios of polynomials in a number x, their coefficients in increasing order."""
-
-    force: tuple[Scalar, ...]
-    """Numerator of F over kappa if drilling prevails, and of F if slip does."""
-    torque: tuple[Scalar, ...]
-    """Numerator of T, and of T kappa."""
-    below: tuple[Scalar, ...]
-    """Denominator of both."""
-
-
-DRILLING = ForceAndTorque((0.375 * PI, -0.09375 * PI), (0.1875 * PI, -0.1875 * PI, 0.0703125 * PI), (1.0,))
-"""The branch where drilling prevails, in x = kappa^2."""
-
-SLIDING = ForceAndTorque(
-    (
-        0.8835729338221293,
-        3.588980126262665,
-        5.940405892796844,
-        5.295183697296597,
-        2.8365419666579434,
-        0.9356191279612185,
-        0.17160971680764692,
-        0.012373729468682777,
-        1.1138052094468924e-06,
-    ),
-    (
-        0.22089323345553233,
-        0.8972450315656664,
-        1.4114703953806944,
-        1.024714247135719,
-        0.33682013029431185,
-        0.041108935870272395,
-        0.0006245074488087915,
-        -1.9377090596738164e-05,
-        5.569153792789647e-07,
-    ),
-    (
-        1.0,
-        4.061894597356628,
-        6.5564975062115085,
-        5.3159395937729235,
-        2.2425592181211225,
-        0.45429743330678546,
-        0.033099956109968943,
-    ),
+ABOVE = (
+    1.5707963267948966,
+    3.881827558189307,
+    3.7302986673933276,
+    1.7319485839406856,
+    0.3822634716370882,
+    0.031121258667402094,
 )
-"""The branch where slip prevails, in x = cos(sig), see `HertzSlidingLaw`; relative error 8e-17."""
+BELOW = (
+    1.0,
+    4.168900902778227,
+    6.952127871831827,
+    5.877944744228727,
+    2.6214376916842954,
+    0.573386336009741,
+    0.046682203384759896,
+)
+"""D in x = cos(sig), see `HertzSlidingLaw`, is the ratio of these polynomials; relative error 1e-17."""
 
+SHARE = BELOW[6] / BELOW[5]
+"""Part of x^2 beside x in a factor of the latter."""
 
 LIMIT: tuple[tuple[float, ...], ...] = (
     (
@@ -86,10 +56,10 @@ LIMIT: tuple[tuple[float, ...], ...] = (
         0.006126226581420139,
     ),
 )
-"""The same of F on its limit surface, in (1 - (T / T(kappa = 1))^2)^(1/2); relative error 4e-16."""
+"""Such polynomials of F on its limit surface, in (1 - (T / T(kappa = 1))^2)^(1/2); relative error 4e-16."""
 
-NEAR_BRANCH = 1e-20
-"""Square of how near kappa^2 comes to 1, for what has a root there."""
+NEAR_BRANCH = 1e-24
+"""Square of how near 1 - 1 / kappa^2 comes to 0, for what has a root there."""
 
 EDGE = 1e-5
 """How far beyond kappa^2 = 1 the law of drilling serves, off by kappa^2 - 1 to the power of 5/2 over 5.
@@ -99,7 +69,7 @@ launch is on both branches, or on neither, by rounding.
 """
 
 BEYOND = 1e-20
-"""Share of slip in drilling that keeps its branch finite far from where it holds."""
+"""Share of slip in drilling, and of drilling in slip, that keeps a branch finite far from where it holds."""
 
 BRANCH_TORQUE = 9.0 * PI / 128.0
 """T at kappa = 1."""
@@ -127,7 +97,7 @@ class HertzDrillingLaw(HertzPiece):
     def shares(self, square: Scalar, drilling: Scalar) -> tuple[Scalar, Scalar]:
         """Force over slip, and torque, per unit normal force, at slip of this square and drilling R w."""
         rate = (drilling * drilling + BEYOND * square) ** -0.5
-        return shares_of(self, DRILLING, square * rate * rate, rate, drilling)
+        return scaled_shares(self, rate, drilling * rate, drilling_shares(square * rate * rate))
 
     def reserve(self, normal: Scalar, force: Horizontal, drilling: Scalar) -> Scalar:
         """(mu N F)^2 - T^2 where the limit surface has this drilling torque, N^2.
@@ -162,22 +132,26 @@ class HertzSlidingLaw(HertzPiece):
         F = (3/16) [kappa (4 - kappa^2) sig + q (kappa^2 + 2) / kappa],
         T = (3/8) [(1 - kappa^2 + 3/8 kappa^4) sig + q (3/4 - 3/8 kappa^2)],
 
-    f = -mu F along the slip and |t| = mu R T. The terms cancel for large kappa. In cos(sig) = q / kappa, F
-    and T kappa are analytic on [0, 1] with the nearest singularity at -1, and ratios of polynomials give them
-    to rounding, with plain operators only.
+    f = -mu F along the slip and |t| = mu R T. The terms cancel for large kappa. They do not in x = cos(sig) =
+    q / kappa and y = 1 - x^2 = 1 / kappa^2, with sig kappa = x + y C and C = 2/3 x + y D:
+
+        F = (3/16) [6 x + (4 y - 1) C],        T kappa = (3/8) [x + (y - 1) C + 3/8 D].
+
+    D is analytic in x on [0, 1] with the nearest singularity at -1, and a ratio of polynomials gives it to
+    rounding, with plain operators only.
 
     Notes
     -----
-    Beyond its branch, q is the root of |kappa^2 - 1|: there is a number there for an integrator that looks
-    ahead, but not the law. It is followed from kappa^2 = 1 + EDGE / 2 on; drilling's branch serves up to 1 +
-    EDGE. So that it has derivatives at kappa = 1 too, q is 1e-5 there.
+    Beyond its branch, x is the root of |1 - 1 / kappa^2|: there is a number there for an integrator that
+    looks ahead, but not the law. It is followed from kappa^2 = 1 + EDGE / 2 on; drilling's branch serves up
+    to 1 + EDGE. So that it has derivatives at kappa = 1 too, x is 1e-6 there.
     """
 
     def shares(self, square: Scalar, drilling: Scalar) -> tuple[Scalar, Scalar]:
         """Force over slip, and torque, per unit normal force, at slip of this square and drilling R w."""
-        excess = excess_of(square, drilling)
-        rate = (excess + drilling * drilling) ** -0.5
-        return shares_of(self, SLIDING, excess**0.5 * rate, rate, drilling)
+        rate = (square + BEYOND * (drilling * drilling)) ** -0.5
+        turning = drilling * rate
+        return scaled_shares(self, rate, turning, sliding_shares(turning))
 
     def reserve(self, normal: Scalar, force: Horizontal, drilling: Scalar) -> Scalar:
         """(mu N F)^2 - T^2 where the limit surface has this drilling torque, N^2.
@@ -239,19 +213,12 @@ class HertzBranch(NamedTuple):
 
     def shares(self, square: Scalar, drilling: Scalar) -> tuple[Scalar, Scalar]:
         """Force over slip, and torque, per unit normal force, at slip of this square and drilling R w."""
-        turning, excess = drilling * drilling, excess_of(square, drilling)
-        rate = (turning + self._either(BEYOND * square, excess)) ** -0.5
-        law = ForceAndTorque(
-            self._terms(DRILLING.force, SLIDING.force),
-            self._terms(DRILLING.torque, SLIDING.torque),
-            self._terms(DRILLING.below, SLIDING.below),
-        )
-        return shares_of(self, law, self._either(square * rate * rate, excess**0.5 * rate), rate, drilling)
-
-    def _terms(self, drills: Sequence[float], slides: Sequence[float]) -> tuple[Scalar, ...]:
-        """The coefficients that belong to the branch; drilling has fewer."""
-        count = len(drills)
-        return tuple([self._either(drills[k] if k < count else 0.0, term) for k, term in enumerate(slides)])
+        other = drilling * drilling
+        rate = self._either(other + BEYOND * square, square + BEYOND * other) ** -0.5
+        turning = drilling * rate
+        drills, slides = drilling_shares(square * rate * rate), sliding_shares(turning)
+        law = self._either(drills[0], slides[0]), self._either(drills[1], slides[1])
+        return scaled_shares(self, rate, turning, law)
 
     def _either(self, drills: Scalar, slides: Scalar) -> Scalar:
         """The number that belongs to the branch."""
@@ -333,14 +300,31 @@ def resisting(law: Any, slip: Horizontal, angular_velocity: Vector) -> Traction:
     return Traction((force * slip[0], force * slip[1]), (0.0, 0.0, torque))
 
 
-def excess_of(square: Scalar, drilling: Scalar) -> Scalar:
-    """v^2 - (R w)^2 at slip of this square and drilling R w, or its size, but not quite zero, m^2/s^2."""
-    excess = square - drilling * drilling
-    return (excess * excess + NEAR_BRANCH * square * square) ** 0.5
+def drilling_shares(square: Scalar) -> tuple[Scalar, Scalar]:
+    """F / kappa and T where drilling prevails, at kappa^2."""
+    force = (3.0 * PI / 32.0) * (4.0 - square)
+    return force, (3.0 * PI / 16.0) * (1.0 - square + 0.375 * (square * square))
 
 
-def shares_of(
-    patch: Any, law: ForceAndTorque, x: Scalar, rate: Scalar, drilling: Scalar
+def sliding_shares(turning: Scalar) -> tuple[Scalar, Scalar]:
+    """F and T kappa where slip prevails, at 1 / kappa, see `HertzSlidingLaw`.
+
+    With few products of variables: where they are power series, these are what costs.
+    """
+    excess = 1.0 - turning * turning
+    x2 = (excess * excess + NEAR_BRANCH) ** 0.5
+    x, x4 = x2**0.5, x2 * x2
+    above = ABOVE[0] + ABOVE[1] * x + ABOVE[2] * x2 + ABOVE[4] * x4 + x * (ABOVE[3] * x2 + ABOVE[5] * x4)
+    odd = (x + SHARE * x2) * (BELOW[3] * x2 + BELOW[5] * x4)
+    below = BELOW[0] + BELOW[1] * x + BELOW[2] * x2 + (BELOW[4] - SHARE * BELOW[3]) * x4 + odd
+    d, y = above / below, 1.0 - x2
+    c = (2.0 / 3.0) * x + y * d
+    less = y * c
+    return 1.125 * x + 0.75 * less - 0.1875 * c, 0.375 * (x + less - c) + 0.140625 * d
+
+
+def scaled_shares(
+    patch: Any, rate: Scalar, turning: Scalar, law: tuple[Scalar, Scalar]
 ) -> tuple[Scalar, Scalar]:
     """Force over slip, and torque, per unit normal force.
 
@@ -348,34 +332,9 @@ def shares_of(
     ----------
     patch
         Its friction coefficient and radius.
+    rate, turning
+        One over what prevails, drilling or slip, s/m; and drilling R w times that.
     law
-        The branch.
-    x
-        What its polynomials are of.
-    rate
-        One over what prevails, drilling or slip, s/m.
-    drilling
-        R w, m/s.
+        F, and T, times what prevails over slip, and over drilling.
     """
-    x2 = x * x
-    powers = (x, x2, x2 * x, x2 * x2)
-    rate = -patch.mu * rate / polynomial(law.below, powers)
-    torque = patch.patch_radius * drilling * rate
-    return polynomial(law.force, powers) * rate, polynomial(law.torque, powers) * torque
-
-
-def polynomial(c: Sequence[Scalar], powers: tuple[Scalar, ...]) -> Scalar:
-    """Value of a polynomial of degree 8 at most, given its coefficients and four powers.
-
-    It takes one product of variables beyond those of the powers: where they are power series, products are
-    what costs.
-    """
-    low = c[0]
-    for term, power in zip(c[1:4], powers[:3], strict=False):
-        low = low + term * power
-    if len(c) <= len(powers):
-        return low
-    high = c[4]
-    for term, power in zip(c[5:], powers, strict=False):
-        high = high + term * power
-    return low + high * powers[3]
+    return (-patch.mu * rate) * law[0], (-patch.mu * patch.patch_radius) * turning * law[1]
