@@ -11,7 +11,7 @@ from tippetop.cli.commands import app
 from tippetop.contact.choice import rules_for
 from tippetop.contact.passing import Stopping
 from tippetop.contact.sliding import Sliding
-from tippetop.integrators import has_taylor, scipy_methods
+from tippetop.integrators import has_taylor, sampling
 from tippetop.mechanics.top import natural, natural_state, natural_units
 
 INTEGRATORS = [
@@ -200,5 +200,5 @@ def test_a_result_tells_who_followed_an_end_of_slip(monkeypatch):
     changes = {"friction.kind": "coulomb", "friction.mu": 0.3, "launch.slip": (0.05, 0.0)}
     problem = tt.presets.report_problem().replace(changes)
     assert tt.simulate(problem, 0.05, integrator="dop853").attrs["integrator"] == "dop853"
-    monkeypatch.setattr(scipy_methods, "MANY", 4)
+    monkeypatch.setattr(sampling, "MANY", 4)
     assert tt.simulate(problem, 0.05, integrator="dop853").attrs["integrator"] == "dop853, radau"
