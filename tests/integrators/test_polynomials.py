@@ -75,6 +75,17 @@ def test_polynomials_do_not_meddle_with_each_other():
     assert np.isnan(found[2])
 
 
+@pytest.mark.parametrize("count", [1, 7, 60])
+def test_zeros_are_to_the_last_bit_those_that_fewer_polynomials_have(count):
+    random = np.random.default_rng(1)
+    terms = random.normal(size=(21, 2000)) * 0.5 ** np.arange(21.0)[:, None]
+    every = Polynomials(terms, np.ones(2000))
+    lots = [every.some(np.arange(first, min(first + count, 2000))) for first in range(0, 2000, count)]
+    found = every.first_fall()
+    assert np.isfinite(found).sum() > 300
+    np.testing.assert_array_equal(found, np.concatenate([lot.first_fall() for lot in lots]))
+
+
 def test_starting_at_zero_and_sinking_falls_at_once_and_rising_does_not():
     assert Polynomials(np.array([[0.0], [-1.0]]), ones()).first_fall()[0] == 0.0
     assert np.isnan(Polynomials(np.array([[0.0], [1.0]]), ones()).first_fall()[0])

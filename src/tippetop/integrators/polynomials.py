@@ -116,14 +116,14 @@ class Polynomials:
             dips &= (slopes[:-1] < 0.0) & (slopes[1:] > 0.0)
         for lane in np.flatnonzero(dips.any(axis=0)):
             for look in np.flatnonzero(dips[:, lane]):
-                place, value = least_near(self.unit[:, [lane]], np.array([(look + 0.5) / LOOKS]))
+                place, value = of_each(_least_near, self.unit[:, [lane]], np.array([(look + 0.5) / LOOKS]))
                 if value[0] <= 0.0:
                     low[lane], high[lane], found[lane] = look / LOOKS, place[0], True
                     break
         zeros = np.full(found.shape, np.nan)
         which = np.flatnonzero(found)
         if len(which):
-            zeros[which] = bracketed_zero(self.unit[:, which], low[which], high[which])
+            zeros[which] = of_each(_zero, self.unit[:, which], low[which], high[which])
         starts = (values[0] == 0.0) if from_above else (values[0] <= 0.0)
         zeros[starts & (values[1] <= 0.0)] = 0.0
         return zeros * self.span
@@ -143,7 +143,7 @@ class Polynomials:
             bend = before - 2.0 * here + after
             vertex = inside + 0.5 * (before - after) / np.where(bend > 0.0, bend, np.inf)
             guess = np.where(np.abs(vertex - best[dips]) <= 1.0, vertex, best[dips]) / LOOKS
-            there, low = least_near(self.unit[:, dips], guess)
+            there, low = of_each(_least_near, self.unit[:, dips], guess)
             better = (there >= 0.0) & (there <= 1.0) & (low < value[dips])
             place[dips[better]], value[dips[better]] = there[better], low[better]
         return place * self.span, value
@@ -180,73 +180,50 @@ def least_of_each(*lots: Sequence["Polynomials"]) -> list[float]:
     return least.tolist()
 
 
-def least_near(unit: Array, guess: Array) -> tuple[Array, Array]:
-    """Places of least values no further than a look from a guess, and those values, by Newton's method."""
-    if len(guess) > FEW:
-        return _least_near(unit, guess, np.where, np.any)
-    each = zip(unit.T.tolist(), guess.tolist(), strict=True)
-    found = np.array([_least_near(terms, near, _chosen, bool) for terms, near in each]).reshape(-1, 2)
-    return found[:, 0], found[:, 1]
+def of_each(find: Callable[..., Any], unit: Array, *given: Array) -> Array:
+    """What is found of each of many polynomials at once, or, where they are few, of one after the other.
+
+    Either way it does not depend on the others: each stands still where it has arrived.
+    """
+    if len(given[0]) > FEW:
+        return np.asarray(find(unit, *given, np.where, np.any))
+    each = zip(unit.T.tolist(), *(numbers.tolist() for numbers in given), strict=True)
+    return np.array([find(*one, _chosen, bool) for one in each]).T
 
 
 def _least_near(
     terms: Row, guess: Scalar, where: Choice, some: Callable[[Any], Any]
 ) -> tuple[Scalar, Scalar]:
-    """The place of the least value near a guess, and that value, of one polynomial or of many at once."""
+    """The place of a least value no further than a look from a guess, and that value, by Newton's method."""
     slopes = [power * term for power, term in enumerate(terms)][1:]
-    first, last, place = guess - 1.0 / LOOKS, guess + 1.0 / LOOKS, guess
+    first, last, place, moving = guess - 1.0 / LOOKS, guess + 1.0 / LOOKS, guess, True
     for _ in range(5):
         slope, bend = _horner(slopes, place)
-        move = slope / where(bend > 0.0, bend, np.inf)
+        move = where(moving, slope / where(bend > 0.0, bend, np.inf), 0.0)
         place = where(place - move < first, first, where(place - move > last, last, place - move))
-        if not some(abs(move) > 1e-9):
+        moving = abs(move) > 1e-9
+        if not some(moving):
             break
     return place, _horner(terms, place)[0]
 
 
-def bracketed_zero(unit: Array, low: Array, high: Array) -> Array:
-    """Zeros between places where the polynomials are positive and not positive."""
-    if len(low) <= FEW:
-        return np.array(
-            [_zero(*one) for one in zip(unit.T.tolist(), low.tolist(), high.tolist(), strict=True)]
-        )
-    zeros = 0.5 * (low + high)
-    work = np.arange(len(zeros))
-    place = zeros.copy()
+def _zero(terms: Row, low: Scalar, high: Scalar, where: Choice, some: Callable[[Any], Any]) -> Scalar:
+    """A zero between places where a polynomial is positive and not positive."""
+    place, moving = 0.5 * (low + high), True
     for _ in range(TURNS):
-        new, low, high, moving = _improved(unit, place, low, high, np.where)
-        zeros[work] = new
-        if not moving.any():
-            break
-        place = new
-        if 2 * np.count_nonzero(moving) < len(work):
-            work, unit = work[moving], unit[:, moving]
-            low, high, place = low[moving], high[moving], place[moving]
-    return zeros
-
-
-def _zero(terms: Sequence[float], low: float, high: float) -> float:
-    """The same of one polynomial."""
-    place = 0.5 * (low + high)
-    for _ in range(TURNS):
-        place, low, high, moving = _improved(terms, place, low, high, _chosen)
-        if not moving:
+        value, slope = _horner(terms, place)
+        positive = value > 0.0
+        low, high = where(positive, place, low), where(positive, high, place)
+        newton = place - value / where(slope == 0.0, 1.0, slope)
+        # Newton's method doubles the digits that are right: from nine on, this was the last step.
+        arrived = abs(newton - place) <= 1e-9 * place
+        outside = where(arrived, where(newton <= low, low, high), 0.5 * (low + high))
+        new = where((newton > low) & (newton < high), newton, outside)
+        still = where(arrived, False, abs(new - place) > 4e-16 * new)
+        place, moving = where(moving, new, place), moving & still
+        if not some(moving):
             break
     return place
-
-
-def _improved(terms: Row, place: Scalar, low: Scalar, high: Scalar, where: Choice) -> tuple[Any, ...]:
-    """A better place of a zero, its bracket, and whether it still moves, of one polynomial or of many."""
-    value, slope = _horner(terms, place)
-    positive = value > 0.0
-    low, high = where(positive, place, low), where(positive, high, place)
-    newton = place - value / where(slope == 0.0, 1.0, slope)
-    # Newton's method doubles the digits that are right: from nine on, this was the last step.
-    arrived = abs(newton - place) <= 1e-9 * place
-    end = where(newton <= low, low, high)
-    outside = where(arrived, end, 0.5 * (low + high))
-    new = where((newton > low) & (newton < high), newton, outside)
-    return new, low, high, where(arrived, False, abs(new - place) > 4e-16 * new)
 
 
 def _chosen(flag: bool, yes: float, no: float) -> float:
