@@ -9094,6 +9094,14 @@ function within(terms, first, part, y) {
 
 /** Whether a guard with these values at the looks falls through zero, or may dip below it in between. */
 function may_fall(values, guard) {
+  var least = values[0][guard];
+  var most = values[0][guard];
+  for (var i = 1; i < LOOKS_of_dormand_prince + 1; i += 1) {
+    [least, most] = [Math.min(least, values[i][guard]), Math.max(most, values[i][guard])];
+  }
+  if (least > 0.0 && 2.0 * least >= most) {
+    return false;
+  }
   for (var i = 0; i < LOOKS_of_dormand_prince + 1; i += 1) {
     var before = Math.max(i - 1, 0);
     var here = values[i][guard];
@@ -9771,7 +9779,7 @@ function _polished(guard, parameters, advance, step, guess) {
 }
 
 // tippetop.integrators.stepping
-const [FEW_of_stepping, WIDER, MANY] = [4, 4, 512];
+const [FEW_of_stepping, WIDER, MANY] = [4, 4, 4096];
 const FAILURES = new py.Dict([[SINGULAR, NO_START], [STUCK_of_dormand_prince, NO_STEP]]);
 
 /** What a motion is followed with. */

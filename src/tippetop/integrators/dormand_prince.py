@@ -129,6 +129,11 @@ def within(terms: Array, first: int, part: float, y: Array) -> None:
 
 def may_fall(values: Array, guard: int) -> bool:
     """Whether a guard with these values at the looks falls through zero, or may dip below it in between."""
+    least, most = values[0, guard], values[0, guard]
+    for i in range(1, LOOKS + 1):
+        least, most = min(least, values[i, guard]), max(most, values[i, guard])
+    if least > 0.0 and 2.0 * least >= most:
+        return False
     for i in range(LOOKS + 1):
         before, here, after = max(i - 1, 0), values[i, guard], min(i + 1, LOOKS)
         if here > 0.0:

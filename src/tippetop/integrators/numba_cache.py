@@ -14,6 +14,9 @@ import numba
 from tippetop.integrators.sealed_folders import kept
 from tippetop.interrupts import heard
 
+OPTIONS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract"}}
+"""How functions are compiled: a sum and a product may be rounded together, as in what LLVM compiles."""
+
 SOURCE = "source.py"
 """The code in a folder of the cache."""
 
@@ -23,7 +26,7 @@ def compiled(source: str, signatures: Mapping[str, Any]) -> dict[str, Any]:
 
     They are taken from the cache, or else kept there; see `kept`.
     """
-    made = (source, str(signatures), numba.__version__, sys.version)
+    made = (source, str(signatures), str(OPTIONS), numba.__version__, sys.version)
     return heard(lambda: kept(made, lambda folder: _functions(source, signatures, folder)))
 
 
@@ -41,8 +44,8 @@ def _functions(source: str, signatures: Mapping[str, Any], folder: Path | None) 
     exec(compile(source, str(path), "exec"), place)
     for name, made in list(place.items()):
         if isinstance(made, FunctionType) and made.__module__ == module.__name__:
-            place[name] = numba.njit(error_model="numpy", forceinline=True)(made)
+            place[name] = numba.njit(forceinline=True, **OPTIONS)(made)
     for name, signature in signatures.items():
         made = place[name].py_func
-        place[name] = numba.njit(signature, error_model="numpy", cache=cached)(made)
+        place[name] = numba.njit(signature, cache=cached, **OPTIONS)(made)
     return {name: place[name] for name in signatures}

@@ -11,7 +11,7 @@ from tippetop.integrators.dormand_prince import FULL, POWERS, ROWS, SINGULAR, ST
 from tippetop.integrators.falls import first_fall
 from tippetop.mechanics.vectors import Scalar
 
-FEW, WIDER, MANY = 4, 4, 512
+FEW, WIDER, MANY = 4, 4, 4096
 """Steps for which there is room at first, how many times as many there is room for then, and in an arc."""
 
 FAILURES = {SINGULAR: NO_START, STUCK: NO_STEP}
