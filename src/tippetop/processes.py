@@ -83,12 +83,7 @@ def shared(next_job: Callable[[], Job | None], count: int) -> Iterator[tuple[Any
     When a process is free, `next_job` gives another, or None if there is none, or none before another result.
     With a count of 1 all is done in this process.
 
-    Raises
-    ------
-    Unavailable
-        If the process of a job was killed, again and again.
-    Exception
-        What a job raises.
+    Raises `Unavailable` if the process of a job was killed, again and again, and whatever a job raises.
     """
     if count == 1:
         while (job := next_job()) is not None:

@@ -79,10 +79,7 @@ def iterated(function: Improvement, size: int, parameters: int, abreast: int) ->
     abreast
         How many values each has, one after another in the room for them.
 
-    Raises
-    ------
-    NotRecordable
-        If the function makes a choice that depends on the numbers.
+    Raises `NotRecordable` if the function makes a choice that depends on the numbers.
     """
     if not has_llvm():
         return _by_arrays(function, size, abreast)

@@ -75,10 +75,7 @@ class Cells:
 def cells_of(problem: Problem, values: Mapping[str, Array]) -> Cells:
     """The cells that put these values, each of shape (n,), into a problem.
 
-    Raises
-    ------
-    InvalidInput
-        If a field is none, or not a number.
+    Raises `InvalidInput` if a field is none, or not a number.
     """
     known = dict(numeric_fields(problem))
     for field in values:
@@ -144,10 +141,7 @@ def _each(value: Any, path: str) -> dict[str, Any]:
 def single_part(part: PartType, cell: int) -> PartType:
     """The part of one cell, from one with arrays for some of its numbers.
 
-    Raises
-    ------
-    InvalidInput
-        If there is no such part.
+    Raises `InvalidInput` if there is no such part.
     """
 
     def single(value: Any) -> Any:

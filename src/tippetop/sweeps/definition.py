@@ -40,11 +40,8 @@ class Sweep(Part):
     grid
         The cells, `axes` or `draws`, whichever it is.
 
-    Raises
-    ------
-    InvalidInput
-        If a field is none, the duration is not positive, or the tolerance is out of range; or if runs are to
-        end when they have settled, and the tops do not conserve Jellett's integral.
+    Raises `InvalidInput` if a field is none, the duration is not positive, or the tolerance is out of range;
+    or if runs are to end when they have settled, and the tops do not conserve Jellett's integral.
     """
 
     problem: Problem
@@ -123,12 +120,7 @@ class Sweep(Part):
     def read(cls, path: Path | str) -> "Sweep":
         """Read a sweep from a TOML file.
 
-        Raises
-        ------
-        FileTrouble
-            If the file cannot be read.
-        InvalidInput
-            If it does not hold a sweep.
+        Raises `FileTrouble` if the file cannot be read; `InvalidInput` if it does not hold a sweep.
         """
         fields = parse_toml(read_text(path, "a sweep in TOML"), "sweep", str(path))
         if isinstance(fields.get("problem"), str):

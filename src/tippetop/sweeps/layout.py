@@ -120,10 +120,7 @@ def _digest(metadata: dict[str, Any]) -> str:
 def read_metadata(path: Path) -> dict[str, Any]:
     """The metadata of a store that this version can read.
 
-    Raises
-    ------
-    FileTrouble
-        If there is no store, or it is of another layout, or damaged.
+    Raises `FileTrouble` if there is no store, or it is of another layout, or damaged.
     """
     try:
         data = (path / METADATA).read_bytes()
@@ -166,10 +163,7 @@ def mend_metadata(path: Path) -> None:
 def kept_sweep(path: Path) -> Sweep:
     """The sweep that a store holds, to go on with it.
 
-    Raises
-    ------
-    FileTrouble
-        As from `read_metadata`, and if it was made by another version.
+    Raises `FileTrouble` as `read_metadata` does, and if it was made by another version.
     """
     attributes = read_metadata(path)["attributes"]
     version = attributes["tippetop_version"]

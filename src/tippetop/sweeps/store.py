@@ -61,13 +61,8 @@ class Store:
     def create(cls, path: Path | str, sweep: Sweep, overwrite: bool = False) -> "Store":
         """Make an empty store, whole from the moment it is there.
 
-        Raises
-        ------
-        FileTrouble
-            If something is there already and `overwrite` is false, or it is no sweep or being filled, or it
-            cannot be written.
-        Unavailable
-            If zarr is not installed.
+        Raises `FileTrouble` if something is there already and `overwrite` is false, or it is no sweep or
+        being filled, or it cannot be written; `Unavailable` if zarr is not installed.
         """
         need_zarr()
         path = Path(path)
@@ -98,10 +93,8 @@ class Store:
     def resume(cls, path: Path | str, sweep: Sweep | None = None) -> "Store":
         """Open a store to finish it.
 
-        Raises
-        ------
-        FileTrouble
-            If there is no store, or it is of another sweep than `sweep`, or made by another version.
+        Raises `FileTrouble` if there is no store, or it is of another sweep than `sweep`, or made by another
+        version.
         """
         need_zarr()
         path = Path(path)
@@ -120,10 +113,7 @@ class Store:
     def held(self) -> Iterator[None]:
         """Keep other processes from filling the store meanwhile, and mend what is around its results.
 
-        Raises
-        ------
-        FileTrouble
-            If another process fills it or has replaced it, or it cannot be written.
+        Raises `FileTrouble` if another process fills it or has replaced it, or it cannot be written.
         """
         self._check_identity()
         with locked(self.path):
@@ -183,10 +173,8 @@ class Store:
     def write(self, task: Task, variables: Mapping[str, NDArray[Any]]) -> None:
         """Keep what a task found, and, once that is on disk, note that it is done.
 
-        Raises
-        ------
-        FileTrouble
-            If it cannot be written, and then the store stays good; or if it was replaced meanwhile.
+        Raises `FileTrouble` if it cannot be written, and then the store stays good; or if it was replaced
+        meanwhile.
         """
         region = self.sweep.region(task)
         shape = tuple(part.stop - part.start for part in region)
@@ -206,20 +194,14 @@ class Store:
     def dataset(self) -> xr.Dataset:
         """The store as a dataset, read when it is used; what is damaged then raises an error of Zarr's.
 
-        Raises
-        ------
-        FileTrouble
-            If something is missing.
+        Raises `FileTrouble` if something is missing.
         """
         return self._opened(SWEPT)
 
     def load(self, names: Collection[str]) -> xr.Dataset:
         """Some of the variables, read now.
 
-        Raises
-        ------
-        FileTrouble
-            If they are damaged, or something is missing of them.
+        Raises `FileTrouble` if they are damaged, or something is missing of them.
         """
         with _damage_in_words(self.path):
             return self._opened(names)[list(names)].load()

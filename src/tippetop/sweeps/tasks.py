@@ -52,10 +52,7 @@ def compute_region(
 
     The modules are those in which the sweep's own kinds of parts are defined, in whoever asks for it.
 
-    Raises
-    ------
-    Unavailable
-        If the worker has another version of this package, or lacks a module.
+    Raises `Unavailable` if the worker has another version of this package, or lacks a module.
     """
     if version != __version__:
         raise Unavailable(f"a worker has tippetop {__version__}, and the sweep is run by {version}")
@@ -97,12 +94,8 @@ def results(
 def need_workers(sweep: Sweep, workers: int | None, scheduler: str | None) -> None:
     """See that there is someone to compute, before anything is written; for both see `sweep`.
 
-    Raises
-    ------
-    InvalidInput
-        If the number of workers is not positive, or there is no scheduler at the address.
-    Unavailable
-        If dask.distributed is needed and not installed.
+    Raises `InvalidInput` if the number of workers is not positive, or there is no scheduler at the address;
+    `Unavailable` if dask.distributed is needed and not installed.
     """
     _modules(sweep, workers, scheduler)
     if scheduler is not None:
