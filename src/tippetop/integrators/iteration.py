@@ -70,6 +70,8 @@ def change_over(pieces: Array, size: int, degree: int) -> list[float]:
 def iterated(function: Improvement, size: int, parameters: int, abreast: int) -> Iteration:
     """Compile an improvement.
 
+    Raises `NotRecordable` if the function makes a choice that depends on the numbers.
+
     Parameters
     ----------
     function
@@ -78,8 +80,6 @@ def iterated(function: Improvement, size: int, parameters: int, abreast: int) ->
         How many numbers and parameters there are.
     abreast
         How many values each has, one after another in the room for them.
-
-    Raises `NotRecordable` if the function makes a choice that depends on the numbers.
     """
     if not has_llvm():
         return _by_arrays(function, size, abreast)

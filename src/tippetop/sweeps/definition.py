@@ -33,12 +33,7 @@ Task: TypeAlias = tuple[int, ...]
 
 
 class Sweep(Part):
-    """What to compute.
-
-    Parameters
-    ----------
-    grid
-        The cells, `axes` or `draws`, whichever it is.
+    """What to compute, over a `grid` of cells, which is either `axes` or `draws`.
 
     Raises `InvalidInput` if a field is none, the duration is not positive, or the tolerance is out of range;
     or if runs are to end when they have settled, and the tops do not conserve Jellett's integral.
