@@ -20,6 +20,7 @@ ROOTS = (
     "tippetop.theory.prospects",
     "tippetop.mechanics.view",
     "tippetop.mechanics.quadratures",
+    "tippetop.mechanics.outline",
     "tippetop.integrators.stepping",
     "tippetop.metrics",
     "tippetop.samples",

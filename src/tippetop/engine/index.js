@@ -2,6 +2,7 @@
 import * as m from "./mechanics.js";
 import { plain } from "./runtime.js";
 
+export { extent } from "./mechanics.js";
 export { InvalidInput } from "./part.js";
 export { simulate } from "./run.js";
 
@@ -16,8 +17,17 @@ export function prospects(body, gravity, tilt) {
   return plain(m.prospects(whole, whole.shapes, gravity, tilt));
 }
 
-/** The surface of a body that touches at cos(tilt): `height` and `slope` of its support function, and `active`. */
+/** The surface of a body that touches at cos(tilt): `height` and `slope` of its support function. */
 export function lowestSurface(body) {
   const { surface } = new m.Body(body), several = surface instanceof m.Hull;
   return several ? (c) => m.lowest_surface(surface, c) : () => surface;
 }
+
+/** The outline of a body: of a profile, whose edges are lines of points, if it is the body's; null if not, or none. */
+export function ownOutline(body, edges) {
+  const lines = m.smoothly_joined(edges);
+  return m.is_outline(lines, new m.Body(body).surface) ? lines : null;
+}
+
+/** The outline of the hull of its surfaces. */
+export const outline = (body) => m.outline(new m.Body(body).surface);

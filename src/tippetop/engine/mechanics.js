@@ -8991,6 +8991,107 @@ function orientation(axis, turn, pole, functions) {
   ];
 }
 
+// tippetop.mechanics.outline
+const SMOOTH = 0.15;
+const FITS = 0.03;
+const TILTS_of_outline = 61;
+const OUTLINE = 97;
+const POLE = 0.0001;
+
+/** The size of an outline: its largest distance from the axis, or half its height, m. */
+function extent(lines) {
+  var points = [...lines].flatMap((line) => [...line]);
+  var across = py.max([...points].map(([r]) => r));
+  var heights = [...points].map(([, z]) => z);
+  return py.max(across, py.div(py.sub(py.max(heights), py.min(heights)), 2.0));
+}
+
+/** Whether a body with these surfaces has this outline: it reaches as far down, whatever the tilt. */
+function is_outline(lines, surface) {
+  var points = [...lines].flatMap((line) => [...line]);
+  var within = py.mul(FITS, extent(lines));
+  for (var look = 0; look < TILTS_of_outline; look += 1) {
+    var tilt = py.div(py.mul(py.math.pi, look), py.sub(TILTS_of_outline, 1));
+    var sine = py.math.sin(tilt);
+    var c = py.math.cos(tilt);
+    if (
+      py.abs(
+        py.sub(
+          py.max([...points].map(([r, z]) => py.sub(py.mul(r, sine), py.mul(z, c)))),
+          outer_height(surface, c)
+        )
+      ) > within
+    ) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/** Edges that follow one another as lines without corners. */
+function smoothly_joined(edges) {
+  var lines = py.list();
+  for (var edge of edges) {
+    if (py.truth(lines) && _turn(py.item(lines, -1), edge) < SMOOTH) {
+      py.put(lines, -1, [...py.item(lines, -1), ...edge.slice(1)]);
+    } else {
+      lines.push(edge);
+    }
+  }
+  return lines;
+}
+
+/** The angle between the end of a line and the beginning of the next. */
+function _turn(before, after) {
+  var [[a, b], [c, d]] = [py.item(before, -2), py.item(before, -1)];
+  var [[e, f], [g, h]] = [after[0], after[1]];
+  var x = py.sub(c, a);
+  var y = py.sub(d, b);
+  var u = py.sub(g, e);
+  var v = py.sub(h, f);
+  return py.abs(py.math.atan2(py.sub(py.mul(x, v), py.mul(y, u)), py.add(py.mul(x, u), py.mul(y, v))));
+}
+
+/** The hull of a body's surfaces from below, in smooth arcs and the straight lines between them. */
+function outline(surface) {
+  var arcs = py.list();
+  var last = surface;
+  var corner = py.mul(py.mul(10.0, POLE), surface.size);
+  for (var look = 0; look < OUTLINE; look += 1) {
+    var tilt = py.min(
+      py.max(py.div(py.mul(py.math.pi, look), py.sub(OUTLINE, 1)), POLE),
+      py.sub(py.math.pi, POLE)
+    );
+    var c = py.math.cos(tilt);
+    var lowest = lowest_surface(surface, c);
+    if (!py.truth(arcs) || !py.eq(lowest, last)) {
+      arcs.push([]);
+    }
+    last = lowest;
+    var slope = lowest.slope(c);
+    var across = py.sub(lowest.height(c), py.mul(c, slope));
+    var r = py.mul(py.math.sin(tilt), across);
+    var z = py.sub(py.neg(slope), py.mul(c, across));
+    var point = [py.abs(r) < corner ? 0.0 : r, z];
+    if (!py.truth(py.item(arcs, -1)) || py.math.dist(point, py.item(py.item(arcs, -1), -1)) > corner) {
+      py.item(arcs, -1).push(point);
+    }
+  }
+  var begin = arcs[0][0];
+  var end = py.item(py.item(arcs, -1), -1);
+  if (begin[0] !== 0.0) {
+    arcs = [[[0.0, begin[1]]], ...arcs];
+  }
+  if (end[0] !== 0.0) {
+    arcs.push([[0.0, end[1]]]);
+  }
+  var found = arcs.slice(0, 1);
+  for (var [before, arc] of py.pairwise(arcs)) {
+    found = py.add(found, [[py.item(before, -1), arc[0]], arc]);
+  }
+  return [...found].filter((line) => py.len(line) > 1);
+}
+
 // tippetop.integrators.dormand_prince
 const [REACHED, FULL, SUSPECT, STUCK_of_dormand_prince, SINGULAR] = py.range(5);
 const [SAFETY_of_dormand_prince, LEAST_FACTOR, MOST_FACTOR] = [0.9, 0.2, 10.0];
@@ -10766,6 +10867,7 @@ export {
   FINEST,
   FIRST,
   FIRST_of_two_closed,
+  FITS,
   FLAT,
   FORCES,
   FULL,
@@ -10878,6 +10980,7 @@ export {
   OPENS,
   ORDER,
   OUTCOMES,
+  OUTLINE,
   OVERTAKEN,
   OnSeveral,
   OnTwo,
@@ -10891,6 +10994,7 @@ export {
   PHASE_LIMIT,
   PI,
   PLAIN,
+  POLE,
   POWER,
   POWERS,
   POWER_of_graph,
@@ -10971,6 +11075,7 @@ export {
   SLOWEST_ROCKING,
   SLOWEST_SLIP,
   SMALL,
+  SMOOTH,
   SPREAD,
   STAGES,
   STAGES_of_runge_kutta,
@@ -11022,6 +11127,7 @@ export {
   TERMS,
   THIRD,
   TILTS,
+  TILTS_of_outline,
   TIME,
   TINY,
   TINY_of_loosening,
@@ -11104,6 +11210,7 @@ export {
   _stem,
   _stiffness,
   _touch,
+  _turn,
   _unit,
   _without_rolling,
   _written,
@@ -11164,6 +11271,7 @@ export {
   equal_thresholds,
   error_of,
   evaluate,
+  extent,
   factor_for,
   falling_time,
   final_band,
@@ -11207,6 +11315,7 @@ export {
   is_near,
   is_number,
   is_one_way,
+  is_outline,
   is_rolling,
   is_set_valued,
   is_slipping,
@@ -11263,6 +11372,7 @@ export {
   orientation,
   outer_height,
   outermost,
+  outline,
   overtaking_guard,
   pair_motion,
   parting_guard,
@@ -11334,6 +11444,7 @@ export {
   slipping,
   slips_of,
   slowing,
+  smoothly_joined,
   solution,
   solve,
   solved,

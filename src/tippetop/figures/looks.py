@@ -14,10 +14,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-import tippetop.figures.meridian as meridians
 from tippetop.bodies import Body, EccentricSphere
-from tippetop.figures.meridian import extent, meridian, own_profile
+from tippetop.figures.meridian import ARC_STEP, meridian, own_profile
 from tippetop.figures.style import ACCENT, CONVERGED, REPORT
+from tippetop.mechanics.outline import extent
 
 Array = NDArray[np.float64]
 
@@ -73,8 +73,8 @@ def toy_parts(body: Body) -> tuple[ToyPart, ...]:
     ball = _plain_ball(body)
     if ball:
         return _tippe_top(ball.eccentricity)
-    pieces = meridian(body)
-    pieces = [piece / extent(pieces) for piece in pieces]
+    lines = meridian(body)
+    pieces = [np.array(line) / extent(lines) for line in lines]
     if len(pieces) == 1:
         middle, last = len(pieces[0]) // 2, len(pieces[0]) - 1
         pieces = [pieces[0][i : j + 1] for i, j in pairwise((0, middle - BAND, middle + BAND, last))]
@@ -109,10 +109,7 @@ def _tippe_top(eccentricity: float) -> tuple[ToyPart, ...]:
 def as_json() -> str:
     """What the page draws toys from, its `looks.json`: scenes, a tippe top, the colours of belts, rules."""
     parts = [part._replace(profile=part.profile.round(9).tolist())._asdict() for part in _tippe_top(0.0)]
-    rules = {
-        "arc_step": meridians.ARC_STEP, "smooth": meridians.SMOOTH, "fits": meridians.FITS,
-        "tilts": meridians.TILTS, "outline": meridians.OUTLINE, "pole": meridians.POLE, "band": BAND,
-    }  # fmt: skip
+    rules = {"arc_step": ARC_STEP, "band": BAND}
     told = {"scenes": SCENES, "tippe_top": parts, "bowl": _BOWL, "band": _BAND, "meridian": rules}
     return json.dumps(told) + "\n"
 
