@@ -20,13 +20,7 @@ PATIENCE = 10.0
 
 
 def page_path() -> Path:
-    """Where the page is.
-
-    Raises
-    ------
-    Unavailable
-        If it is not built.
-    """
+    """Where the page is; `Unavailable` if it is not built."""
     built(PAGE)
     return BUILT / PAGE
 
@@ -57,23 +51,10 @@ class PageHandler(SimpleHTTPRequestHandler):
 
 
 def serve(host: str, port: int, browser: bool, announce: Callable[[str], None]) -> None:
-    """Serve the page until interrupted.
+    """Serve the page until interrupted, at an address and a port; 0.0.0.0 lets other devices in.
 
-    Parameters
-    ----------
-    host, port
-        Where to listen; 0.0.0.0 lets other devices in.
-    browser
-        Whether to open it here.
-    announce
-        Is told the address, and a code to scan for it.
-
-    Raises
-    ------
-    InvalidInput
-        If nothing can listen there.
-    Unavailable
-        If the page is not built.
+    `browser` says whether to open it here, and `announce` is told the address, and a code to scan for it.
+    Raises `InvalidInput` if nothing can listen there, and `Unavailable` if the page is not built.
     """
     page_path()
     try:

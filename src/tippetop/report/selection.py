@@ -27,18 +27,10 @@ class Selection:
 
 
 def select(only: str | None = None) -> Selection:
-    """Choose what to redo.
+    """Choose what to redo: everything, or `only` the figure (fig06; 6 will do) or claim of this name.
 
-    Parameters
-    ----------
-    only
-        Name of a figure (fig06; 6 will do) or of a claim; None for everything. With a figure come the claims
-        that can be decided from its data; with a claim, the figure that shows it if it needs nothing more.
-
-    Raises
-    ------
-    InvalidInput
-        If there is no such figure or claim.
+    With a figure come the claims that can be decided from its data; with a claim, the figure that shows it if
+    it needs nothing more. Raises `InvalidInput` if there is no such figure or claim.
     """
     if only is None:
         return Selection(tuple(PLATES.values()), tuple(CLAIMS.values()))

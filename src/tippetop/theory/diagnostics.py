@@ -1,7 +1,7 @@
 """What a run says about the theory: gyroscopic balance, constants of the smooth table, envelope.
 
-All functions take the axis and the angular momentum of a run, as arrays over time, and have no singularity
-where the axis is vertical, except for quantities that are infinite there.
+All functions take the axis n and the angular momentum L about the centre of mass (kg m^2/s) of a run, shape
+(n, 3), and have no singularity where the axis is vertical, except for quantities that are infinite there.
 """
 
 import numpy as np
@@ -16,22 +16,10 @@ from tippetop.theory.dual import Array
 
 
 def gyroscopic_balance(axis: Array, momentum: Array, top: Top) -> Array:
-    """Xi = I1 phi' cos(theta) - I3 omega3, kg m^2/s, shape (n,).
+    """Xi = I1 phi' cos(theta) - I3 omega3, kg m^2/s, shape (n,); nan where the axis is vertical.
 
     A spinning body is in gyroscopic balance where xi is small beside I3 omega3: its nutation is then fast,
     and its tilt moves slowly (Moffatt and Shimomura 2002; Ueda, Sasaki and Watanabe 2005).
-
-    Parameters
-    ----------
-    axis, momentum
-        Axis n and angular momentum L about the centre of mass (kg m^2/s), shape (n, 3).
-    top
-        The body.
-
-    Returns
-    -------
-    array
-        nan where the axis is vertical, where phi' has no meaning.
     """
     n, L = _vector(axis), _vector(momentum)
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -70,16 +70,8 @@ class Prospects:
 def prospects(body: Body, shapes: list[Shape], gravity: float = 9.8, tilt: float = 0.1) -> Prospects | None:
     """What a toy can be expected to do; None if it does not lie on a sphere, below the centre of that.
 
-    Parameters
-    ----------
-    body
-        Its mass and moments of inertia.
-    shapes
-        Its surfaces, from the one it stands on upright to the one it stands on inverted.
-    gravity
-        Acceleration of gravity, m/s^2.
-    tilt
-        Tilt of the launches that are spoken of, rad.
+    Of the body count its mass and moments of inertia; its surfaces are given from the one it stands on
+    upright to the one it stands on inverted. `gravity` is in m/s^2, `tilt` that of the launches meant, rad.
     """
     sphere = shapes[0]
     if isinstance(sphere, Sphere) and 0.0 < sphere.center < sphere.radius:
