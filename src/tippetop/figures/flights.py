@@ -12,8 +12,6 @@ import tippetop.figures.annotation as mark
 from tippetop.figures.envelope import band
 from tippetop.figures.style import ACCENT, CYCLE, DASHED, FAINT, INK, MUTED, REPORT, UNILATERAL
 
-_BOUNCES = CYCLE[5]
-
 
 def continue_unilateral(
     axes: Axes, run: xr.Dataset, name: str, scale: float = 1.0, *, whole: bool = False
@@ -72,7 +70,7 @@ def flights_figure(panels: Any, sweep: xr.Dataset) -> None:
     """Return how launches go on after lift-off, against the spin."""
     share, turning, count, tilt = panels.flat
     for restitution, color, marker in zip(
-        sweep["restitution"].values, (UNILATERAL, _BOUNCES), ("o", "s"), strict=False
+        sweep["restitution"].values, (UNILATERAL, CYCLE[5]), ("o", "s"), strict=False
     ):
         runs = sweep.sel(restitution=restitution).dropna("spin", subset=["airborne_time"])
         spins, air = runs["spin"], runs["airborne_time"]

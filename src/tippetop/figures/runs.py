@@ -14,13 +14,8 @@ from tippetop.figures.overview import shade_flights
 from tippetop.figures.style import ACCENT, CONVERGED, DASHED, INK, MUTED, REPORT
 
 _NAME, _NAME_REPORT = "converged", "report's method"
-_PULLS = "converged, table pulls"
-_WIDE, _THIN = 2.6, 1.0
-_EDGES = {_WIDE: 1.8, _THIN: 0.8}
-_IN_FIG_12 = 60
-"""How many oscillations Fig. 12 can show before it stops."""
-
-_LINES = (("_listing", "time_listing", REPORT, _WIDE), ("", "time", CONVERGED, _THIN))
+_LINES = (("_listing", "time_listing", REPORT, 2.6, 1.8), ("", "time", CONVERGED, 1.0, 0.8))
+"""Of both methods: endings of variables, times, colours, widths of lines, and of the edges of bands."""
 
 
 @mark.drawn(5.0, 2, 2, sharex=True)
@@ -141,13 +136,13 @@ def stopped_figure(tilt: Axes, force: Axes, run: xr.Dataset, reported_stop: floa
     before = run.sel(time=run["time"] <= stop)
     other = run.sel(time_listing=run["time_listing"] <= reported_stop)
     for axes, name in ((tilt, "theta"), (force, "normal_force")):
-        for part, suffix, color, width, label in (
-            (other, "_listing", REPORT, _WIDE, _NAME_REPORT),
-            (before, "", CONVERGED, _THIN + 0.3, _NAME),
+        for part, suffix, color, width, edge, label in (
+            (other, "_listing", REPORT, 2.6, 1.8, _NAME_REPORT),
+            (before, "", CONVERGED, 1.3, 1.3, _NAME),
         ):
             times, values = part[f"time{suffix}"], part[f"{name}{suffix}"]
             if axes is tilt:
-                band(axes, times, values, color, _EDGES.get(width, width), label, _IN_FIG_12)
+                band(axes, times, values, color, edge, label, across=60)  # before it stops
             else:
                 axes.plot(times, values, color=color, lw=width)
         continue_unilateral(axes, run, name)
@@ -191,8 +186,8 @@ def _pair(
     names: tuple[str, str] = (_NAME_REPORT, _NAME),
 ) -> None:
     """Draw a variable by both methods: the report's below and wide, so that it shows where they differ."""
-    for (suffix, time, color, width), label in zip(_LINES, names, strict=True):
-        band(axes, run[time], scale * run[f"{name}{suffix}"], color, _EDGES[width], label)
+    for (suffix, time, color, _, edge), label in zip(_LINES, names, strict=True):
+        band(axes, run[time], scale * run[f"{name}{suffix}"], color, edge, label)
     if legend:
         mark.legend_above(axes, 2)
 
@@ -202,7 +197,13 @@ def _trio(
 ) -> None:
     """Draw a variable by both methods and, where the top flies, as it goes on when the table only pushes."""
     flies = f"{name}_flight" in run
-    _pair(axes, run, name, scale=scale, names=names or (_NAME_REPORT, _PULLS if flies else _NAME))
+    _pair(
+        axes,
+        run,
+        name,
+        scale=scale,
+        names=names or (_NAME_REPORT, "converged, table pulls" if flies else _NAME),
+    )
     if flies:
         shade_flights(axes, run)
         continue_unilateral(axes, run, name, scale=scale, whole=True)
@@ -234,7 +235,7 @@ def _zoom(axes: Axes, run: xr.Dataset, span: tuple[float, float], box: mark.Box)
     """Draw a span of time of the tilt large inside the panel, and show where it is taken from."""
     inset = mark.inset(axes, box)
     drawn = []
-    for suffix, time, color, width in _LINES:
+    for suffix, time, color, width, _ in _LINES:
         part = run.sel({time: slice(*span)})
         inset.plot(part[time], part[f"theta{suffix}"], color=color, lw=width)
         drawn.append(part[f"theta{suffix}"].values)

@@ -7,16 +7,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 import tippetop.figures.annotation as mark
-from tippetop.figures.style import (
-    ACCENT,
-    CONVERGED,
-    DASHED,
-    FAINT,
-    INK,
-    MUTED,
-    REPORT,
-    UNILATERAL,
-)
+from tippetop.figures.style import ACCENT, CONVERGED, DASHED, FAINT, INK, MUTED, REPORT, UNILATERAL
 
 
 @mark.drawn(4.3)

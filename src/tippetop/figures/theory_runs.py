@@ -8,16 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MultipleLocator, NullLocator
 
 import tippetop.figures.annotation as mark
-from tippetop.figures.style import (
-    ACCENT,
-    CONVERGED,
-    DASHED,
-    FAINT,
-    INK,
-    MUTED,
-    REPORT,
-    UNILATERAL,
-)
+from tippetop.figures.style import ACCENT, CONVERGED, DASHED, FAINT, INK, MUTED, REPORT, UNILATERAL
 
 _SPAN = 3.0
 """Range of energies that every panel of the potential shows above its least value, mJ."""
