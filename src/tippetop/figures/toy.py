@@ -91,16 +91,9 @@ class Hits(NamedTuple):
 
 
 class Toy:
-    """The toy of a body.
+    """The toy of a body: of a `size`, m, by which it is measured, and a `reach` from its `middle`.
 
-    Attributes
-    ----------
-    size
-        The length by which it is measured, m.
-    middle
-        The point halfway along its axis.
-    reach
-        How far from that it reaches.
+    That is the point halfway along its axis.
     """
 
     def __init__(self, body: Body) -> None:

@@ -52,25 +52,15 @@ def apparent_critical_spins(problem: Problem, window: float, visible: float) -> 
     (or above, if launches have time to come closer than that even at it), and the inverted spin seems to be
     reached only above its own.
 
-    Parameters
-    ----------
-    problem
-        A launch near theta = 0; its spin does not matter.
-    window
-        Length of the runs, s.
-    visible
-        Least distance from the vertical that is told from none, rad; less than the launch's tilt.
+    The launch is near theta = 0, and its spin does not matter; `window` is the length of the runs, s, and
+    `visible` the least distance from the vertical that is told from none, rad. Raises `InvalidInput` if this
+    is not between 0 and the launch's tilt, or the window is not positive.
 
     Notes
     -----
     The upright spin: the launch is followed in the linear motion about the upright spin. The inverted spin:
     a distance of 1 rad at the start of the window is let decay at the growth rate of the inverted spin; the
     time of turning over is not counted, so this is a lower bound of the bias.
-
-    Raises
-    ------
-    InvalidInput
-        If `visible` is not between 0 and the launch's tilt, or the window is not positive.
     """
     if not 0.0 < visible < problem.launch.tilt:
         raise InvalidInput("visible", visible, "a distance between 0 and the launch's tilt")
