@@ -8,7 +8,7 @@ from tippetop.contact.closing import closing_motion
 from tippetop.contact.double import SlidingOnTwo
 from tippetop.contact.double_sticking import SlipBeginningOnTwo, StickingAndSlidingBack, StickingOnTwo
 from tippetop.contact.sliding import sliding_motion
-from tippetop.contact.sticking import sticking_motion
+from tippetop.contact.sticking import Sticking, StickingWithoutRolling
 from tippetop.integrators.base import Motion
 from tippetop.mechanics.contensou import EllipsoidalLaw
 from tippetop.mechanics.contensou_hertz import HertzBranch, HertzDrillingLaw, HertzSlidingLaw
@@ -87,8 +87,8 @@ def sticking_motions(surface, law):
     """Every motion of a top with this surface and law in which it sticks."""
     top = top_of(surface, law)
     kind, numbers, rolls = top.kind, top.numbers, isinstance(law, RollingResistance)
-    for held in (False, True)[: 1 + rolls]:
-        yield f"sticking {held}", sticking_motion(kind, held), numbers
+    for form in (Sticking, StickingWithoutRolling)[: 1 + rolls]:
+        yield form.name, form(top, None).motion, numbers
     if rolls:
         yield "sticking closing", closing_motion(kind, Vanishing(False, True), True), (*numbers, 1e9, 1e-3)
 

@@ -7,8 +7,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from dry_runs import DryRun
+from tippetop.contact.closed import split
 from tippetop.contact.closing import closing_of
-from tippetop.contact.sticking import split
 from tippetop.integrators.scipy_methods import SciPy
 from tippetop.mechanics.contensou_hertz import BRANCH_TORQUE, HertzLaw
 from tippetop.mechanics.coulomb import CoulombLaw

@@ -8,12 +8,13 @@ from scipy.integrate import solve_ivp
 
 from creeping import creep_rates, direction_of_slip
 from dry_runs import DryRun, launched
+from tippetop.contact.closed import SLIP, split
 from tippetop.contact.growth import growth
 from tippetop.contact.loosening import Loosening
 from tippetop.contact.mode import EventKind
 from tippetop.contact.passing import Stopping
 from tippetop.contact.rules import Bilateral
-from tippetop.contact.sticking import SLIP, split, sticking_motion
+from tippetop.contact.sticking import Sticking
 from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators import has_taylor, make_integrator
 from tippetop.integrators.scipy_methods import SciPy
@@ -185,7 +186,7 @@ def swinging(law, shape=None):
 
 def stuck_reserve(axis, momentum, top):
     """Positive while the table can hold the contact, and the body rolls as it does."""
-    [slip] = [guard for guard in sticking_motion(top.kind, held=False).guards if guard.name == SLIP]
+    [slip] = [guard for guard in Sticking(top, None).motion.guards if guard.name == SLIP]
     return slip.value((*axis, *momentum), top.numbers)
 
 

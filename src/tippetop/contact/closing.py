@@ -3,9 +3,9 @@
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import lru_cache
+from typing import Any
 
-from tippetop.contact.sliding import BRANCH, LIFT_OFF, ROLLING
-from tippetop.contact.sticking import LIMIT_BRANCH, SLIP, split
+from tippetop.contact.closed import BRANCH, LIFT_OFF, LIMIT_BRANCH, ROLLING, SLIP, split
 from tippetop.contact.surfaces import surface_guards
 from tippetop.integrators import make_integrator
 from tippetop.integrators.base import Arc, Array, Guard, Integrator, Motion
@@ -31,7 +31,7 @@ from tippetop.mechanics.rolling import (
 )
 from tippetop.mechanics.stick_slip import branch_guard
 from tippetop.mechanics.top import Kind, Top
-from tippetop.mechanics.vectors import Row, Scalar
+from tippetop.mechanics.vectors import Row, Scalar, Vector
 
 REOPENING, LANDED, TIME, OVERTAKEN = "reopening", "landed", "time", "overtaken"
 
@@ -108,9 +108,13 @@ def closing_motion(kind: Kind, ending: Vanishing, guarded: bool) -> Motion:
         guards.append(guard(BRANCH, on_branch_still))
     if stuck and has_limit_branches(law):
         guards.append(guard(LIMIT_BRANCH, lambda state, top, _: limit_guard(top, held_by(state, top))))
-    guards += surface_guards(kind)
+    guards += [guard(name, _of_axis(value)) for name, value in surface_guards(top)]
     size = (10 if ending.moves else 8) + len(ending.wrenches(top))
     return Motion(rates, size, kind.numbers + 2, tuple(guards), lasting=False)
+
+
+def _of_axis(value: Callable[[Top, Vector], Scalar]) -> Callable[[Closing, Top, Any], Scalar]:
+    return lambda state, top, _: value(top, state.axis)
 
 
 def spared(state: Closing, ending: Vanishing, top: Top) -> Scalar:

@@ -3,14 +3,11 @@
 from abc import abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
-from typing import Any, ClassVar, Self, TypeAlias
+from typing import Any, ClassVar, Self
 
-from tippetop.contact.mode import Event, EventKind, IntegratedMode, Reaction, Transition
-from tippetop.contact.sliding import ROLLING, ROLLING_STOPPING
-from tippetop.contact.sticking import split
+from tippetop.contact.closed import ROLLING, ROLLING_STOPPING, GuardValue, StatedMode, split
+from tippetop.contact.mode import Event, EventKind, Reaction, Transition
 from tippetop.contact.surfaces import number_of
-from tippetop.integrators.base import Guard, Motion
 from tippetop.mechanics.contact_pair import ContactPair, PairMotion, Tops, pair_motion
 from tippetop.mechanics.motion import along_table, axis_rate, on_table
 from tippetop.mechanics.pair_resolver import rolling_way
@@ -25,7 +22,7 @@ from tippetop.mechanics.rolling import (
 )
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.stick_slip import branch_guard, inner, scaled, slip_of
-from tippetop.mechanics.top import Kind, Top
+from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Row, Scalar, Vector, dot
 
 OPENING, ENDING, BRANCHING = "opening ", "ending ", "branching "
@@ -34,12 +31,9 @@ SLOWEST_SLIP = 1e-9
 """Slip in natural units at which it ends on one of two contacts, or on both where drilling is resisted too,
 and is not followed further."""
 
-GuardValue: TypeAlias = tuple[str, Callable[[Any, Row], Scalar]]
-"""Name of a guard, and its value from a mode and the numbers of that."""
-
 
 @dataclass(frozen=True)
-class OnTwo(IntegratedMode):
+class OnTwo(StatedMode):
     """Two surfaces touch."""
 
     other: Top
@@ -48,9 +42,6 @@ class OnTwo(IntegratedMode):
     """Sign of omega_e (see `tippetop.mechanics.contact_pair`); 0 where rolling is held, or not resisted."""
 
     size: ClassVar[int] = 6
-    """How many numbers the mode has."""
-    further: ClassVar[int] = 0
-    """How many parameters, beside the numbers of both tops."""
 
     @property
     def form(self) -> str:
@@ -78,18 +69,13 @@ class OnTwo(IntegratedMode):
         """Numbers of the surfaces that stick: none, where a mode does not say otherwise."""
         return ()
 
-    @property
-    def motion(self) -> Motion:
-        """Equations of motion, with the guards of both contacts."""
-        return motion_on_two(self.without_tops(), self.top.kind, self.other.kind)
-
     def without_tops(self) -> Self:
-        """What remains of it without its tops, and what follows it."""
+        """Without the other top, too."""
         nothing: Any = None
-        return replace(self, top=nothing, rules=nothing, other=nothing)
+        return replace(super().without_tops(), other=nothing)
 
-    def with_tops(self, tops: Tops, more: Sequence[Scalar]) -> Self:
-        """The same with tops, and with its further parameters."""
+    def with_tops(self, tops: Sequence[Top], more: Sequence[Scalar]) -> Self:
+        """The same with both tops, and with its further parameters."""
         return replace(self, top=tops[0], other=tops[1])
 
     def rates(self, y: Row) -> tuple[Scalar, ...]:
@@ -140,13 +126,8 @@ class OnTwo(IntegratedMode):
 
     @property
     def tops(self) -> Tops:
-        """The top with either surface active."""
+        """The top with either surface active: the branches of their laws may differ."""
         return self.top, self.other
-
-    @property
-    def parameters(self) -> tuple[Scalar, ...]:
-        """The numbers of the top on either surface: the branches of their laws may differ."""
-        return (*self.top.numbers, *self.other.numbers)
 
     def opening(self, number: int, time: float, state: State, *, slips: bool) -> Transition:
         """One of both surfaces opens, while the other goes on, slipping or not."""
@@ -216,26 +197,6 @@ def on_two(state: State, rules: Any, other: Top, rolls: float) -> SlidingOnTwo:
         one, two = (on_numbered_branch(top, slip_of(*along_table(state), top)) for top in tops)
         tops = one, two
     return SlidingOnTwo(tops[0], rules, tops[1], rolls)
-
-
-@lru_cache
-def motion_on_two(form: OnTwo, first: Kind, second: Kind) -> Motion:
-    """Equations of motion of a mode without tops, for tops of which each has a surface and a branch."""
-    cut, last = first.numbers, first.numbers + second.numbers
-
-    def mode(numbers: Sequence[Scalar]) -> OnTwo:
-        tops = first.top(tuple(numbers[:cut])), second.top(tuple(numbers[cut:last]))
-        return form.with_tops(tops, numbers[last:])
-
-    def guard(name: str, value: Callable[[Any, Row], Scalar]) -> Guard:
-        return Guard(name, lambda y, numbers: value(mode(numbers), y))
-
-    def rates(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[Scalar, ...]:
-        return mode(numbers).rates(y)
-
-    example = replace(form, top=first.example, other=second.example)
-    guards = tuple(guard(name, value) for name, value in example.guard_values())
-    return Motion(rates, form.size, last + form.further, guards, lasting=False)
 
 
 def _normal(number: int) -> Callable[[Any, Row], Scalar]:

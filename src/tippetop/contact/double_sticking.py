@@ -4,16 +4,15 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
-from tippetop.contact.double import OPENING, GuardValue, OnTwo, SlidingOnTwo
+from tippetop.contact.closed import GuardValue, split
+from tippetop.contact.double import OPENING, OnTwo, SlidingOnTwo
 from tippetop.contact.mode import Outcome, Segment, Transition
-from tippetop.contact.sticking import split
 from tippetop.contact.surfaces import number_of
 from tippetop.integrators import make_integrator
 from tippetop.integrators.base import Integrator
 from tippetop.mechanics.contact_pair import (
     ContactPair,
     PairMotion,
-    Tops,
     directions_of,
     pair_motion,
     slip_apart,
@@ -23,6 +22,7 @@ from tippetop.mechanics.motion import along_table, on_table
 from tippetop.mechanics.rolling import Slip, slip_length, velocity_without_slip, without_drilling
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.stick_slip import scaled, slip_of, velocity_of
+from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Row, Scalar
 
 SLIP, ENDING = "slip ", "ending"
@@ -120,7 +120,7 @@ class StickingOnTwo(HeldOnTwo):
     @property
     def parameters(self) -> tuple[Scalar, ...]:
         """The numbers of the top on either surface, and when patches slip."""
-        return (*self.top.numbers, *self.other.numbers, self.least)
+        return (*super().parameters, self.least)
 
     @property
     def stuck(self) -> tuple[int, ...]:
@@ -131,7 +131,7 @@ class StickingOnTwo(HeldOnTwo):
         """Without what is a parameter, too."""
         return replace(super().without_tops(), least=0.0)
 
-    def with_tops(self, tops: Tops, more: Sequence[Scalar]) -> Self:
+    def with_tops(self, tops: Sequence[Top], more: Sequence[Scalar]) -> Self:
         """With that."""
         return replace(super().with_tops(tops, more), least=more[0])
 

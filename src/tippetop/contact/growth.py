@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from functools import lru_cache
 from typing import Any
 
-from tippetop.contact.sticking import split
+from tippetop.contact.closed import split
 from tippetop.integrators.base import NOT_FINITE, Expansion, Integrator, Motion
 from tippetop.mechanics.ending import Closing, Vanishing, rates_in_time
 from tippetop.mechanics.rolling import Slip

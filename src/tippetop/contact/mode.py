@@ -9,7 +9,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from enum import Enum
-from typing import ClassVar, NamedTuple, Self
+from typing import Any, ClassVar, NamedTuple, Self
 
 from tippetop.integrators.base import Integrator, Motion
 from tippetop.integrators.dense import DenseSolution, as_array
@@ -278,6 +278,11 @@ class Mode(ABC):
 @dataclass(frozen=True)
 class IntegratedMode(Mode):
     """A mode stated by its equations of motion and guards."""
+
+    def without_tops(self) -> Self:
+        """What remains of it when its tops are taken away, and what follows it: what it is among its like."""
+        nothing: Any = None
+        return replace(self, top=nothing, rules=nothing)
 
     @property
     @abstractmethod

@@ -5,10 +5,11 @@ from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from tippetop.contact.arriving import Arrival, arriving
+from tippetop.contact.closed import ClosedMode, split
 from tippetop.contact.closing import LANDED, closing_motion, closing_of, followed
 from tippetop.contact.mode import EventKind, IntegratedMode, Mode, Outcome, Reaction, Segment, Transition
 from tippetop.contact.sliding import Sliding, SlidingWithoutRolling
-from tippetop.contact.sticking import Sticking, split
+from tippetop.contact.sticking import Sticking
 from tippetop.contact.surfaces import follow_surface, stays_open
 from tippetop.integrators.base import Arc, Array, Integrator
 from tippetop.integrators.dense import DenseSolution, as_array
@@ -76,7 +77,7 @@ class Passing(Mode):
     name: ClassVar[str] = "passing"
 
     @property
-    def told(self) -> Sliding | Sticking:
+    def told(self) -> ClosedMode:
         """The mode as which it is told."""
         if self.ending.slip:
             return (SlidingWithoutRolling if self.ending.held else Sliding)(self.top, self.rules)

@@ -159,13 +159,7 @@ def _compiled(reading: Reading, mode: Mode, size: int, others: int) -> Evaluatio
     if len(mode.tops) > 1 or isinstance(mode.top.surface, Hull):
         return None
     kind = mode.top.kind
-    return compiled_evaluation(_of_kind(reading, _without_top(mode), kind), size, kind.numbers + others)
-
-
-def _without_top(mode: IntegratedMode) -> Any:
-    """What remains of a mode when its top is taken away, and what follows it, which is not read off it."""
-    nothing: Any = None
-    return replace(mode, top=nothing, rules=nothing)
+    return compiled_evaluation(_of_kind(reading, mode.without_tops(), kind), size, kind.numbers + others)
 
 
 @lru_cache

@@ -1,172 +1,119 @@
 """The top touches the table and slides, rolling or not."""
 
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
-from typing import ClassVar
+from typing import Any, ClassVar, Self
 
-from tippetop.contact.mode import EventKind, IntegratedMode, Reaction, Transition
-from tippetop.contact.surfaces import follow_surface, surface_guards
-from tippetop.integrators.base import Guard, Motion
-from tippetop.mechanics.ending import Vanishing
-from tippetop.mechanics.motion import (
-    along_table,
-    axis_rate,
-    contact,
-    on_table,
-    sliding_rates,
-)
-from tippetop.mechanics.rolling import (
-    ContactPoint,
-    Wrench,
-    contact_motion,
-    is_set_valued,
-    on_other_branch,
-    rolling_reserve,
-    sliding_law,
-    without_rolling,
-)
+from tippetop.contact.closed import BRANCH, LIFT_OFF, STOPPING, ClosedMode, GuardValue, motion_of
+from tippetop.contact.mode import Reaction, Transition
+from tippetop.integrators.base import Motion
+from tippetop.mechanics.motion import SlidingContact, contact, sliding_rates
+from tippetop.mechanics.rolling import is_set_valued, sliding_law
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.stick_slip import (
     branch_guard,
     nearing_guard,
     parting_guard,
     rolling_stopping_guard,
-    scaled,
     slip_of,
     stopping_guard,
 )
-from tippetop.mechanics.top import Kind, Top
-from tippetop.mechanics.vectors import Row, Scalar, dot
+from tippetop.mechanics.top import Kind
+from tippetop.mechanics.vectors import Row, Scalar
 
-LIFT_OFF, NEARING, PARTING, STOPPING, ROLLING_STOPPING, ROLLING, BRANCH = (
-    "lift-off",
-    "nearing",
-    "parting",
-    "stopping",
-    "rolling stopping",
-    "rolling",
-    "branch",
-)
+NEARING, PARTING = "nearing", "parting"
 
 
 @dataclass(frozen=True)
-class Sliding(IntegratedMode):
+class SlidingMode(ClosedMode):
     """Sliding, as long as the normal force is positive or the table may pull, and slip does not end."""
 
     near: bool = False
-    """Whether slip is so small that it may be about to end."""
+    """Whether slip is so small that it may be about to end: it is watched how long it lasts."""
+    guarded: bool = True
+    """Whether it ends where the table would have to pull; of a mode without rules."""
 
-    name: ClassVar[str] = "sliding"
-    held: ClassVar[bool] = False
+    def without_tops(self) -> Self:
+        """Without its rules, but for what they say of lift-off."""
+        return replace(super().without_tops(), guarded=not self.rules.pulls)
 
-    @property
-    def motion(self) -> Motion:
-        """Equations of motion, with the guards of lift-off and of ending velocities where there are such."""
-        return sliding_motion(self.top.kind, not self.rules.pulls, self.near, self.held)
+    def guard_values(self) -> list[GuardValue]:
+        """The guards of lift-off, of slip that ends, and of the branch of the law, too."""
+        law, own = self.top.friction, list[GuardValue]()
+        if self.guarded:
+            own.append((LIFT_OFF, lambda mode, y: mode.normal_force(y)))
+        if is_set_valued(law) and self.near:
+            own.append((STOPPING, lambda mode, y: mode.slip_left(y)))
+            own.append((PARTING, lambda mode, y: parting_guard(SlidingState.unpack(y), mode.top)))
+        elif is_set_valued(law):
+            own.append((NEARING, lambda mode, y: nearing_guard(SlidingState.unpack(y), mode.top)))
+        if hasattr(sliding_law(law), "branch_guard"):
+            own.append(
+                (BRANCH, lambda mode, y: branch_guard(slip_of(*SlidingState.unpack(y), mode.top), mode.top))
+            )
+        return own + super().guard_values()
 
-    def numbers(self, state: State) -> tuple[Scalar, ...]:
-        """The 8 numbers of a sliding state."""
-        return along_table(state).pack()
+    def on_branch(self, y: Row) -> Scalar:
+        """Positive as long as the branch of the law holds."""
+        return branch_guard(slip_of(*SlidingState.unpack(y), self.top), self.top)
 
-    def state(self, y: Row) -> State:
-        """The state, with its height and sinking."""
-        return on_table(SlidingState.unpack(y), self.top)
+    def normal_force(self, y: Row) -> Scalar:
+        """The normal force."""
+        return self.found(y)[2].force[2]
 
-    def reaction(self, y: Row) -> Reaction:
-        """The contact force and torque."""
-        state = SlidingState.unpack(y)
-        touch = contact(state.axis, state.momentum, state.velocity, self.top)
-        return Reaction(touch.force, touch.torque, touch.power)
+    def slip_left(self, y: Row) -> Scalar:
+        """Positive while slip goes on for a while."""
+        return stopping_guard(SlidingState.unpack(y), SlidingState.unpack(self.rates(y)), self.top)
 
     def follow(self, guard: str, time: float, state: State) -> Transition:
-        """What the rules say of lift-off, or of slip that is about to end; or the law's other branch."""
-        if guard == LIFT_OFF:
-            return self.rules.lift_off(time, state)
+        """It is to be watched, or no longer, how long slip lasts; or what follows any contact."""
         if guard in (NEARING, PARTING):
             return Transition((), self.rules.going_on(state, slips=True), state)
-        if guard in (STOPPING, ROLLING_STOPPING):
-            return self.rules.stopping(time, state)
-        found = follow_surface(self, guard, time, state)
-        if found is not None:
-            return found
-        return Transition((), replace(self, top=on_other_branch(self.top)), state)
+        return super().follow(guard, time, state)
 
 
 @dataclass(frozen=True)
-class SlidingWithoutRolling(Sliding):
+class SlidingWithoutRolling(SlidingMode):
     """Sliding while rolling resistance holds the top: it turns about the vertical, or not at all."""
 
     name: ClassVar[str] = "sliding_without_rolling"
     held: ClassVar[bool] = True
 
-    def state(self, y: Row) -> State:
-        """The state, with its height and sinking, and without rolling."""
-        sliding = SlidingState.unpack(y)
-        momentum = without_rolling(sliding.axis, sliding.momentum, self.top)
-        return on_table(sliding._replace(momentum=momentum), self.top)
+
+@dataclass(frozen=True)
+class Sliding(SlidingMode):
+    """Sliding while rolling goes on, or is not resisted."""
+
+    name: ClassVar[str] = "sliding"
+    lasting: ClassVar[bool] = True
+
+    def touch(self, y: Row) -> SlidingContact:
+        """The contact: one equation tells the normal force."""
+        return contact(*SlidingState.unpack(y), self.top)
+
+    def rates(self, y: Row) -> tuple[Scalar, ...]:
+        """Time derivatives of the 8 numbers of a sliding state."""
+        return sliding_rates(SlidingState.unpack(y), self.top).pack()
+
+    def normal_force(self, y: Row) -> Scalar:
+        """The normal force."""
+        return self.touch(y).normal_force
+
+    def rolling_left(self, y: Row) -> Scalar:
+        """Positive while rolling goes on for a while."""
+        return rolling_stopping_guard(SlidingState.unpack(y), SlidingState.unpack(self.rates(y)), self.top)
 
     def reaction(self, y: Row) -> Reaction:
         """The contact force and torque."""
-        state = SlidingState.unpack(y)
-        point, wrench = holding(state, self.top)
-        slip = slip_of(*state, self.top)
-        power = wrench.force[0] * slip[0] + wrench.force[1] * slip[1] + dot(wrench.torque, point.turning)
-        return Reaction(wrench.force, wrench.torque, power)
-
-    def follow(self, guard: str, time: float, state: State) -> Transition:
-        """Rolling begins; or what follows sliding."""
-        if guard == ROLLING:
-            if self.reaction(self.numbers(state)).force[2] <= 0.0 and not self.rules.pulls:
-                return self.rules.lift_off(time, state)
-            return self.rules.giving_way(
-                state, (self.rules.event(EventKind.ROLL, time),), Vanishing(slip=False)
-            )
-        return super().follow(guard, time, state)
+        touch = self.touch(y)
+        return Reaction(touch.force, touch.torque, touch.power)
 
 
-def holding(state: SlidingState, top: Top) -> tuple[ContactPoint, Wrench]:
-    """The contact point of a sliding body whose rolling is held, and what the table does."""
-    point = ContactPoint.of(state.axis, state.momentum, top)
-    return point, contact_motion(point, slip_of(*state, top), None)[0]
-
-
-def held_rates(state: SlidingState, top: Top) -> SlidingState:
-    """Time derivative of the state of a sliding body whose rolling is held."""
-    point, wrench = holding(state, top)
-    x, y = scaled(1.0 / top.mass, wrench.force[:2])
-    return SlidingState(axis_rate(state.axis, state.momentum, top), point.moment(wrench), (x, y))
-
-
-@lru_cache
 def sliding_motion(kind: Kind, guarded: bool, near: bool = False, held: bool = False) -> Motion:
     """Equations of motion of a sliding top of this kind, whose rolling may be held.
 
     If `guarded`, the first guard is of lift-off. Where slip can end, it is watched how long it lasts if that
     may be soon (`near`), and else whether it may.
     """
-    law, rate, guards = kind.example.friction, held_rates if held else sliding_rates, list[Guard]()
-
-    def rates(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[Scalar, ...]:
-        return rate(SlidingState.unpack(y), kind.top(tuple(numbers))).pack()
-
-    def add_guard(name: str, value: Callable[[SlidingState, Top], Scalar]) -> None:
-        guards.append(Guard(name, lambda y, numbers: value(SlidingState.unpack(y), kind.top(tuple(numbers)))))
-
-    def force(state: SlidingState, top: Top) -> Scalar:
-        return holding(state, top)[1].force[2] if held else contact(*state, top).normal_force
-
-    if guarded:
-        add_guard(LIFT_OFF, force)
-    if is_set_valued(law) and near:
-        add_guard(STOPPING, lambda state, top: stopping_guard(state, rate(state, top), top))
-        add_guard(PARTING, parting_guard)
-    elif is_set_valued(law):
-        add_guard(NEARING, nearing_guard)
-    if hasattr(sliding_law(law), "branch_guard"):
-        add_guard(BRANCH, lambda state, top: branch_guard(slip_of(*state, top), top))
-    if held:
-        add_guard(ROLLING, lambda state, top: rolling_reserve(*holding(state, top), slip_of(*state, top)))
-    elif kind.example.resists_rolling:
-        add_guard(ROLLING_STOPPING, lambda state, top: rolling_stopping_guard(state, rate(state, top), top))
-    return Motion(rates, 8, kind.numbers, (*guards, *surface_guards(kind)), lasting=not held)
+    nothing: Any = None
+    form = (SlidingWithoutRolling if held else Sliding)(nothing, nothing, near, guarded)
+    return motion_of(form, (kind,))

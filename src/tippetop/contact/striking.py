@@ -7,7 +7,8 @@ launch, and of many, follows it too, unless slip ends on the way, which that mod
 from collections.abc import Callable, Sequence
 from functools import lru_cache
 
-from tippetop.contact.sliding import BRANCH, NEARING
+from tippetop.contact.closed import BRANCH
+from tippetop.contact.sliding import NEARING
 from tippetop.integrators.base import Guard, Integrator, Motion
 from tippetop.integrators.dense import as_array
 from tippetop.mechanics.impact import Impact

@@ -4,11 +4,10 @@ from collections.abc import Callable
 from typing import Any
 
 from tippetop.contact.mode import Mode, Outcome, Transition
-from tippetop.integrators.base import Guard
 from tippetop.mechanics.hull import Hull, acting, each_surface
 from tippetop.mechanics.state import State
-from tippetop.mechanics.top import Kind, Top
-from tippetop.mechanics.vectors import Row, Scalar
+from tippetop.mechanics.top import Top
+from tippetop.mechanics.vectors import Row, Scalar, Vector
 
 FACE, TOUCH = "face", "touch "
 
@@ -21,31 +20,31 @@ def number_of(top: Top) -> int:
     return top.surface.active if isinstance(top.surface, Hull) else 0
 
 
-def surface_guards(kind: Kind) -> list[Guard]:
-    """Guards of the open surfaces of bodies of this kind, and of the face that one is the edge of."""
-    surface, active, guards = kind.example.surface, number_of(kind.example), list[Guard]()
+def surface_guards(top: Top) -> list[tuple[str, Callable[[Top, Vector], Scalar]]]:
+    """Guards of the open surfaces of a body, and of the face that the active one is the edge of.
 
-    def add_guard(name: str, value: Callable[[Any, Row], Scalar]) -> None:
-        guards.append(
-            Guard(name, lambda y, numbers: value(kind.top(tuple(numbers[: kind.numbers])).surface, y))
-        )
-
-    if hasattr(acting(surface), "face_guard"):
-        add_guard(FACE, _face)
-    for number in range(len(each_surface(surface))):
-        if number != active:
-            add_guard(f"{TOUCH}{number}", _gap_of(number))
-    return guards
+    By name, as functions of the top and the axis.
+    """
+    found: list[tuple[str, Callable[[Top, Vector], Scalar]]] = []
+    if hasattr(acting(top.surface), "face_guard"):
+        found.append((FACE, _face))
+    open_ones = [number for number in range(len(each_surface(top.surface))) if number != number_of(top)]
+    return found + [(f"{TOUCH}{number}", _gap_of(number)) for number in open_ones]
 
 
-def _face(surface: Any, y: Row) -> Scalar:
-    edge: Any = acting(surface)
-    return edge.face_guard((y[0], y[1], y[2]))
+def _face(top: Top, axis: Vector) -> Scalar:
+    edge: Any = acting(top.surface)
+    return edge.face_guard(axis)
 
 
-def _gap_of(number: int) -> Callable[[Any, Row], Scalar]:
-    """Gap of a surface while the active one touches, from the surfaces and the numbers of a mode."""
-    return lambda surface, y: surface.height(y[2]) - surface.each[number].height(y[2]) + MARGIN
+def _gap_of(number: int) -> Callable[[Top, Vector], Scalar]:
+    """Gap of a surface while the active one touches."""
+
+    def gap(top: Top, axis: Vector) -> Scalar:
+        surface: Any = top.surface
+        return surface.height(axis[2]) - surface.each[number].height(axis[2]) + MARGIN
+
+    return gap
 
 
 def stays_open(top: Top, y: Row) -> bool:

@@ -1634,6 +1634,11 @@ class IntegratedMode extends Mode {
   constructor(top, rules) {
     super(top, rules);
   }
+  /** What remains of it when its tops are taken away, and what follows it: what it is among its like. */
+  without_tops() {
+    var nothing = null;
+    return py.replace(this, { top: nothing, rules: nothing });
+  }
   /** The parameters of the equations of motion. */
   get parameters() {
     return this.top.numbers;
@@ -1675,38 +1680,33 @@ function number_of(top) {
   return py.isinstance(top.surface, Hull) ? top.surface.active : 0;
 }
 
-/** Guards of the open surfaces of bodies of this kind, and of the face that one is the edge of. */
-function surface_guards(kind) {
-  var surface = kind.example.surface;
-  var active = number_of(kind.example);
-  var guards = py.list();
-  var add_guard = (name, value) => {
-    guards.push(
-      new Guard(name, (y, numbers) => value(kind.top(py.tuple(numbers.slice(0, kind.numbers))).surface, y))
-    );
-  };
-  if (py.truth(py.hasattr(acting(surface), "face_guard"))) {
-    add_guard(FACE, _face);
+/** Guards of the open surfaces of a body, and of the face that the active one is the edge of. */
+function surface_guards(top) {
+  var found = [];
+  if (py.truth(py.hasattr(acting(top.surface), "face_guard"))) {
+    found.push([FACE, _face]);
   }
-  for (var number = 0; number < py.len(each_surface(surface)); number += 1) {
-    if (!py.eq(number, active)) {
-      add_guard(`${py.str(TOUCH)}${py.str(number)}`, _gap_of(number));
-    }
-  }
-  return guards;
-}
-
-function _face(surface, y) {
-  var edge = acting(surface);
-  return edge.face_guard([y[0], y[1], y[2]]);
-}
-
-/** Gap of a surface while the active one touches, from the surfaces and the numbers of a mode. */
-function _gap_of(number) {
-  return (surface, y) => py.add(
-    py.sub(surface.height(y[2]), py.item(surface.each, number).height(y[2])),
-    MARGIN
+  var open_ones = py.range(py.len(each_surface(top.surface))).filter(
+    (number) => !py.eq(number, number_of(top))
   );
+  return py.add(
+    found,
+    [...open_ones].map((number) => [`${py.str(TOUCH)}${py.str(number)}`, _gap_of(number)])
+  );
+}
+
+function _face(top, axis) {
+  var edge = acting(top.surface);
+  return edge.face_guard(axis);
+}
+
+/** Gap of a surface while the active one touches. */
+function _gap_of(number) {
+  var gap = (top, axis) => {
+    var surface = top.surface;
+    return py.add(py.sub(surface.height(axis[2]), py.item(surface.each, number).height(axis[2])), MARGIN);
+  };
+  return gap;
 }
 
 /** Whether no other surface touches at these numbers of a mode on the active one, floats. */
@@ -2360,250 +2360,157 @@ function start_of(state, top) {
   return rate > TOUCHING ? Start.REBOUND : Start.RELEASE;
 }
 
-// tippetop.contact.sliding
-const [LIFT_OFF, NEARING, PARTING, STOPPING, ROLLING_STOPPING, ROLLING, BRANCH] = [
+// tippetop.contact.closed
+const [LIFT_OFF, STOPPING, SLIP, BRANCH, LIMIT_BRANCH] = [
   "lift-off",
-  "nearing",
-  "parting",
   "stopping",
-  "rolling stopping",
-  "rolling",
-  "branch"
+  "slip",
+  "branch",
+  "limit branch"
 ];
+const [ROLLING, ROLLING_STOPPING] = ["rolling", "rolling stopping"];
 
-/** Sliding, as long as the normal force is positive or the table may pull, and slip does not end. */
-class Sliding extends IntegratedMode {
-  constructor(top, rules, near = false) {
+/** A mode that states its rates and guards for its own tops: others of their kinds have them too. */
+class StatedMode extends IntegratedMode {
+  constructor(top, rules) {
     super(top, rules);
-    this.near = near;
   }
-  get name() { return "sliding"; }
-  get held() { return false; }
-  /** Equations of motion, with the guards of lift-off and of ending velocities where there are such. */
+  get size() { return 8; }
+  get further() { return 0; }
+  get lasting() { return false; }
+  /** Equations of motion and guards. */
   get motion() {
-    return sliding_motion(this.top.kind, !py.truth(this.rules.pulls), this.near, this.held);
+    return motion_of(this.without_tops(), py.tuple([...this.tops].map((top) => top.kind)));
   }
-  /** The 8 numbers of a sliding state. */
+  /** The numbers of its tops. */
+  get parameters() {
+    return py.tuple([...this.tops].flatMap((top) => [...top.numbers]));
+  }
+  /** The same with tops, and with its further parameters. */
+  with_tops(tops, more) {
+    return py.replace(this, { top: tops[0] });
+  }
+}
+py.fields(StatedMode, ["top", "rules"]);
+
+/** Equations of motion of a mode without tops, for tops of these kinds. */
+const motion_of = py.cached((form, kinds) => {
+  var mode = (numbers) => {
+    var tops = py.list();
+    var first = 0;
+    for (var kind of kinds) {
+      tops.push(kind.top(py.tuple(py.slice(numbers, first, py.add(first, kind.numbers), null))));
+      first = py.add(first, kind.numbers);
+    }
+    return form.with_tops(tops, numbers.slice(first));
+  };
+  var guard = (name, value) => {
+    return new Guard(name, (y, numbers) => value(mode(numbers), y));
+  };
+  var rates = (y, numbers) => {
+    var found = mode(numbers).rates(y);
+    return found;
+  };
+  var example = form.with_tops([...kinds].map((kind) => kind.example), py.mul([0.0], form.further));
+  var guards = py.tuple([...example.guard_values()].map(([name, value]) => guard(name, value)));
+  var count = py.add(py.sum([...kinds].map((kind) => kind.numbers)), form.further);
+  return new Motion(rates, form.size, count, guards, form.lasting);
+});
+
+/** One contact is closed. */
+class ClosedMode extends StatedMode {
+  constructor(top, rules) {
+    super(top, rules);
+  }
+  get sticks() { return false; }
+  get held() { return false; }
+  /** The contact point, its slip, what the table does, and the acceleration, from the numbers. */
+  found(y) {
+    var point = ContactPoint.of(...split(y), this.top);
+    var slip = py.truth(this.sticks) ? null : slip_of(...split(y), [y[6], y[7]], this.top);
+    return [
+      point,
+      slip,
+      ...contact_motion(point, slip, py.truth(this.held) ? null : point.turning.slice(0, 2))
+    ];
+  }
+  /** Axis, angular momentum, and velocity if it slips. */
   numbers(state) {
-    return along_table(state).pack();
+    return along_table(state).pack().slice(0, this.size);
   }
-  /** The state, with its height and sinking. */
+  /** The state, with its height and sinking; what is held is zero. */
   state(y) {
-    return on_table(SlidingState.unpack(y), this.top);
+    var [axis, momentum] = split(y);
+    if (py.truth(this.held)) {
+      momentum = without_rolling(axis, momentum, this.top);
+    }
+    var velocity = py.truth(this.sticks) ? velocity_without_slip(axis, momentum, this.top) : [y[6], y[7]];
+    return on_table(new SlidingState(axis, momentum, velocity), this.top);
+  }
+  /** Rates of axis and angular momentum, and of the velocity if it slips. */
+  rates(y) {
+    var [point, slip, wrench] = this.found(y);
+    var drawn = slip === null ? [] : scaled(py.div(1.0, this.top.mass), wrench.force.slice(0, 2));
+    return [...axis_rate(...split(y), this.top), ...point.moment(wrench), ...drawn];
   }
   /** The contact force and torque. */
   reaction(y) {
-    var state = SlidingState.unpack(y);
-    var touch = contact(state.axis, state.momentum, state.velocity, this.top);
-    return new Reaction(touch.force, touch.torque, touch.power);
+    var [point, slip, wrench] = this.found(y);
+    var power = dot(wrench.torque, point.turning);
+    if (slip !== null) {
+      power = py.add(py.add(py.mul(wrench.force[0], slip[0]), py.mul(wrench.force[1], slip[1])), power);
+    }
+    return new Reaction(wrench.force, wrench.torque, power);
   }
-  /** What the rules say of lift-off, or of slip that is about to end; or the law's other branch. */
+  /** The guards of rolling, and of what the body's shape makes happen. */
+  guard_values() {
+    var found = py.list();
+    if (py.truth(this.held)) {
+      found.push([ROLLING, (mode, y) => mode.rolling_reserve(y)]);
+    } else if (py.truth(this.top.resists_rolling)) {
+      found.push([ROLLING_STOPPING, (mode, y) => mode.rolling_left(y)]);
+    }
+    return py.add(found, [...surface_guards(this.top)].map(([name, value]) => [name, _of_top(value)]));
+  }
+  /** Positive while the table can exert the couple that holds rolling. */
+  rolling_reserve(y) {
+    var [point, slip, wrench] = this.found(y);
+    return rolling_reserve(point, wrench, slip);
+  }
+  /** Positive while rolling goes on for a while. */
+  rolling_left(y) {
+    var [point, , , acceleration] = this.found(y);
+    return remaining(point.turning.slice(0, 2), acceleration.turning.slice(0, 2));
+  }
+  /** What is about to end, begins, or holds from here on. */
   follow(guard, time, state) {
     if (py.eq(guard, LIFT_OFF)) {
       return this.rules.lift_off(time, state);
     }
-    if (py.contains([NEARING, PARTING], guard)) {
-      return new Transition([], this.rules.going_on(state, true), state);
-    }
     if (py.contains([STOPPING, ROLLING_STOPPING], guard)) {
-      return this.rules.stopping(time, state);
+      return this.rules.stopping(time, state, !py.truth(this.sticks));
     }
-    var found = follow_surface(this, guard, time, state);
-    if (found !== null) {
-      return found;
-    }
-    return new Transition([], py.replace(this, { top: on_other_branch(this.top) }), state);
-  }
-}
-py.fields(Sliding, ["top", "rules", "near"]);
-
-/** Sliding while rolling resistance holds the top: it turns about the vertical, or not at all. */
-class SlidingWithoutRolling extends Sliding {
-  constructor(top, rules, near = false) {
-    super(top, rules, near);
-  }
-  get name() { return "sliding_without_rolling"; }
-  get held() { return true; }
-  /** The state, with its height and sinking, and without rolling. */
-  state(y) {
-    var sliding = SlidingState.unpack(y);
-    var momentum = without_rolling(sliding.axis, sliding.momentum, this.top);
-    return on_table(sliding._replace({ momentum: momentum }), this.top);
-  }
-  /** The contact force and torque. */
-  reaction(y) {
-    var state = SlidingState.unpack(y);
-    var [point, wrench] = holding(state, this.top);
-    var slip = slip_of(...state, this.top);
-    var power = py.add(
-      py.add(py.mul(wrench.force[0], slip[0]), py.mul(wrench.force[1], slip[1])),
-      dot(wrench.torque, point.turning)
-    );
-    return new Reaction(wrench.force, wrench.torque, power);
-  }
-  /** Rolling begins; or what follows sliding. */
-  follow(guard, time, state) {
-    if (py.eq(guard, ROLLING)) {
-      if (this.reaction(this.numbers(state)).force[2] <= 0.0 && !py.truth(this.rules.pulls)) {
-        return this.rules.lift_off(time, state);
-      }
-      return this.rules.giving_way(state, [this.rules.event(EventKind.ROLL, time)], new Vanishing(false));
-    }
-    return super.follow(guard, time, state);
-  }
-}
-py.fields(SlidingWithoutRolling, ["top", "rules", "near"]);
-
-/** The contact point of a sliding body whose rolling is held, and what the table does. */
-function holding(state, top) {
-  var point = ContactPoint.of(state.axis, state.momentum, top);
-  return [point, contact_motion(point, slip_of(...state, top), null)[0]];
-}
-
-/** Time derivative of the state of a sliding body whose rolling is held. */
-function held_rates(state, top) {
-  var [point, wrench] = holding(state, top);
-  var [x, y] = scaled(py.div(1.0, top.mass), wrench.force.slice(0, 2));
-  return new SlidingState(axis_rate(state.axis, state.momentum, top), point.moment(wrench), [x, y]);
-}
-
-/** Equations of motion of a sliding top of this kind, whose rolling may be held. */
-const sliding_motion = py.cached((kind, guarded, near = false, held = false) => {
-  var law = kind.example.friction;
-  var rate = py.truth(held) ? held_rates : sliding_rates;
-  var guards = py.list();
-  var rates = (y, numbers) => {
-    return rate(SlidingState.unpack(y), kind.top(py.tuple(numbers))).pack();
-  };
-  var add_guard = (name, value) => {
-    guards.push(new Guard(name, (y, numbers) => value(SlidingState.unpack(y), kind.top(py.tuple(numbers)))));
-  };
-  var force = (state, top) => {
-    return py.truth(held) ? holding(state, top)[1].force[2] : contact(...state, top).normal_force;
-  };
-  if (py.truth(guarded)) {
-    add_guard(LIFT_OFF, force);
-  }
-  if (py.truth(is_set_valued(law)) && py.truth(near)) {
-    add_guard(STOPPING, (state, top) => stopping_guard(state, rate(state, top), top));
-    add_guard(PARTING, parting_guard);
-  } else if (py.truth(is_set_valued(law))) {
-    add_guard(NEARING, nearing_guard);
-  }
-  if (py.truth(py.hasattr(sliding_law(law), "branch_guard"))) {
-    add_guard(BRANCH, (state, top) => branch_guard(slip_of(...state, top), top));
-  }
-  if (py.truth(held)) {
-    add_guard(ROLLING, (state, top) => rolling_reserve(...holding(state, top), slip_of(...state, top)));
-  } else if (py.truth(kind.example.resists_rolling)) {
-    add_guard(ROLLING_STOPPING, (state, top) => rolling_stopping_guard(state, rate(state, top), top));
-  }
-  return new Motion(rates, 8, kind.numbers, [...guards, ...surface_guards(kind)], !py.truth(held));
-});
-
-// tippetop.contact.sticking
-const [SLIP, LIMIT_BRANCH] = ["slip", "limit branch"];
-
-/** Rolling without slipping, and without drilling where the law resists that. */
-class Sticking extends IntegratedMode {
-  constructor(top, rules) {
-    super(top, rules);
-  }
-  get name() { return "sticking"; }
-  get held() { return false; }
-  /** Equations of motion of axis and angular momentum, and the guards of what holds the contact. */
-  get motion() {
-    return sticking_motion(this.top.kind, this.held);
-  }
-  /** Axis and angular momentum. */
-  numbers(state) {
-    return [...state.axis, ...state.momentum];
-  }
-  /** The state, whose velocity is that of rolling. */
-  state(y) {
-    var [axis, momentum] = split(y);
-    var velocity = velocity_without_slip(axis, momentum, this.top);
-    return on_table(new SlidingState(axis, momentum, velocity), this.top);
-  }
-  /** The contact force and torque that hold the contact point. */
-  reaction(y) {
-    var [point, wrench] = sticking_wrench(...split(y), this.top, this.held);
-    return new Reaction(wrench.force, wrench.torque, dot(wrench.torque, point.turning));
-  }
-  /** Slip begins, or rolling; or rolling is about to end; or the limit surface's other branch holds. */
-  follow(guard, time, state) {
-    if (py.eq(guard, ROLLING_STOPPING)) {
-      return this.rules.stopping(time, state, false);
-    }
-    if (py.eq(guard, LIMIT_BRANCH)) {
+    if (py.contains([BRANCH, LIMIT_BRANCH], guard)) {
       return new Transition([], py.replace(this, { top: on_other_branch(this.top) }), state);
     }
     var found = follow_surface(this, guard, time, state);
     if (found !== null) {
       return found;
     }
-    var [, wrench] = sticking_wrench(state.axis, state.momentum, this.top, this.held);
+    var wrench = this.found(this.numbers(state))[2];
     if (wrench.force[2] <= 0.0 && !py.truth(this.rules.pulls)) {
       return this.rules.lift_off(time, state);
     }
-    var kind = py.eq(guard, ROLLING) ? EventKind.ROLL : EventKind.SLIP;
-    var beginning = py.eq(guard, ROLLING) ? new Vanishing(false, true) : new Vanishing(true, this.held);
-    return this.rules.giving_way(state, [this.rules.event(kind, time)], beginning, wrench);
+    var slip = py.eq(guard, SLIP);
+    var event = this.rules.event(py.truth(slip) ? EventKind.SLIP : EventKind.ROLL, time);
+    var beginning = new Vanishing(slip, py.truth(slip) ? this.held : this.sticks);
+    return this.rules.giving_way(state, [event], beginning, wrench);
   }
 }
-py.fields(Sticking, ["top", "rules"]);
+py.fields(ClosedMode, ["top", "rules"]);
 
-/** Neither slip nor rolling: the top turns about the vertical, or not at all. */
-class StickingWithoutRolling extends Sticking {
-  constructor(top, rules) {
-    super(top, rules);
-  }
-  get name() { return "sticking_without_rolling"; }
-  get held() { return true; }
-  /** The state, without rolling. */
-  state(y) {
-    var [axis, momentum] = split(y);
-    return super.state([...axis, ...without_rolling(axis, momentum, this.top)]);
-  }
-}
-py.fields(StickingWithoutRolling, ["top", "rules"]);
-
-/** The contact point of a sticking body, whose rolling may be held too, and what the table does. */
-function sticking_wrench(axis, momentum, top, held) {
-  var point = ContactPoint.of(axis, momentum, top);
-  return [point, contact_motion(point, null, py.truth(held) ? null : point.turning.slice(0, 2))[0]];
-}
-
-/** Equations of motion of a sticking top of this kind, whose rolling may be held too. */
-const sticking_motion = py.cached((kind, held) => {
-  var guards = py.list();
-  var here = (y, numbers) => {
-    return sticking_wrench(...split(y), kind.top(py.tuple(numbers)), held);
-  };
-  var rates = (y, numbers) => {
-    var [point, wrench] = here(y, numbers);
-    return [...axis_rate(...split(y), point.top), ...point.moment(wrench)];
-  };
-  var add_guard = (name, value) => {
-    guards.push(new Guard(name, (y, numbers) => value(...here(y, numbers))));
-  };
-  add_guard(SLIP, (point, wrench) => slip_reserve(point.top, wrench));
-  if (py.truth(has_limit_branches(kind.example.friction))) {
-    add_guard(LIMIT_BRANCH, (point, wrench) => limit_guard(point.top, wrench));
-  }
-  if (py.truth(held)) {
-    add_guard(ROLLING, (point, wrench) => rolling_reserve(point, wrench, null));
-  } else if (py.truth(kind.example.resists_rolling)) {
-    add_guard(ROLLING_STOPPING, (point, _) => rolling_lasts(point));
-  }
-  guards = py.add(guards, surface_guards(kind));
-  return new Motion(rates, 6, kind.numbers, py.tuple(guards), false);
-});
-
-/** Positive while a body that rolls without slipping does so for a while. */
-function rolling_lasts(point) {
-  var rolling = point.turning.slice(0, 2);
-  return remaining(rolling, contact_motion(point, null, rolling)[1].turning.slice(0, 2));
+function _of_top(value) {
+  return (mode, y) => value(mode.top, [y[0], y[1], y[2]]);
 }
 
 /** Axis and angular momentum, the first numbers of every mode in contact. */
@@ -3267,10 +3174,14 @@ const closing_motion = py.cached((kind, ending, guarded) => {
   if (py.truth(stuck) && py.truth(has_limit_branches(law))) {
     guards.push(guard(LIMIT_BRANCH, (state, top, _) => limit_guard(top, held_by(state, top))));
   }
-  guards = py.add(guards, surface_guards(kind));
+  guards = py.add(guards, [...surface_guards(top)].map(([name, value]) => guard(name, _of_axis(value))));
   var size = py.add(py.truth(ending.moves) ? 10 : 8, py.len(ending.wrenches(top)));
   return new Motion(rates, size, py.add(kind.numbers, 2), py.tuple(guards), false);
 });
+
+function _of_axis(value) {
+  return (state, top, _) => value(top, state.axis);
+}
 
 /** Positive while the table can hold what is held beside a velocity that ends. */
 function spared(state, ending, top) {
@@ -3294,6 +3205,139 @@ function closing_of(y, ending) {
     py.item(y, py.sub(count, 1))
   );
 }
+
+// tippetop.contact.sliding
+const [NEARING, PARTING] = ["nearing", "parting"];
+
+/** Sliding, as long as the normal force is positive or the table may pull, and slip does not end. */
+class SlidingMode extends ClosedMode {
+  constructor(top, rules, near = false, guarded = true) {
+    super(top, rules);
+    this.near = near;
+    this.guarded = guarded;
+  }
+  /** Without its rules, but for what they say of lift-off. */
+  without_tops() {
+    return py.replace(super.without_tops(), { guarded: !py.truth(this.rules.pulls) });
+  }
+  /** The guards of lift-off, of slip that ends, and of the branch of the law, too. */
+  guard_values() {
+    var law = this.top.friction;
+    var own = py.list();
+    if (py.truth(this.guarded)) {
+      own.push([LIFT_OFF, (mode, y) => mode.normal_force(y)]);
+    }
+    if (py.truth(is_set_valued(law)) && py.truth(this.near)) {
+      own.push([STOPPING, (mode, y) => mode.slip_left(y)]);
+      own.push([PARTING, (mode, y) => parting_guard(SlidingState.unpack(y), mode.top)]);
+    } else if (py.truth(is_set_valued(law))) {
+      own.push([NEARING, (mode, y) => nearing_guard(SlidingState.unpack(y), mode.top)]);
+    }
+    if (py.truth(py.hasattr(sliding_law(law), "branch_guard"))) {
+      own.push([BRANCH, (mode, y) => branch_guard(slip_of(...SlidingState.unpack(y), mode.top), mode.top)]);
+    }
+    return py.add(own, super.guard_values());
+  }
+  /** Positive as long as the branch of the law holds. */
+  on_branch(y) {
+    return branch_guard(slip_of(...SlidingState.unpack(y), this.top), this.top);
+  }
+  /** The normal force. */
+  normal_force(y) {
+    return this.found(y)[2].force[2];
+  }
+  /** Positive while slip goes on for a while. */
+  slip_left(y) {
+    return stopping_guard(SlidingState.unpack(y), SlidingState.unpack(this.rates(y)), this.top);
+  }
+  /** It is to be watched, or no longer, how long slip lasts; or what follows any contact. */
+  follow(guard, time, state) {
+    if (py.contains([NEARING, PARTING], guard)) {
+      return new Transition([], this.rules.going_on(state, true), state);
+    }
+    return super.follow(guard, time, state);
+  }
+}
+py.fields(SlidingMode, ["top", "rules", "near", "guarded"]);
+
+/** Sliding while rolling resistance holds the top: it turns about the vertical, or not at all. */
+class SlidingWithoutRolling extends SlidingMode {
+  constructor(top, rules, near = false, guarded = true) {
+    super(top, rules, near, guarded);
+  }
+  get name() { return "sliding_without_rolling"; }
+  get held() { return true; }
+}
+py.fields(SlidingWithoutRolling, ["top", "rules", "near", "guarded"]);
+
+/** Sliding while rolling goes on, or is not resisted. */
+class Sliding extends SlidingMode {
+  constructor(top, rules, near = false, guarded = true) {
+    super(top, rules, near, guarded);
+  }
+  get name() { return "sliding"; }
+  get lasting() { return true; }
+  /** The contact: one equation tells the normal force. */
+  touch(y) {
+    return contact(...SlidingState.unpack(y), this.top);
+  }
+  /** Time derivatives of the 8 numbers of a sliding state. */
+  rates(y) {
+    return sliding_rates(SlidingState.unpack(y), this.top).pack();
+  }
+  /** The normal force. */
+  normal_force(y) {
+    return this.touch(y).normal_force;
+  }
+  /** Positive while rolling goes on for a while. */
+  rolling_left(y) {
+    return rolling_stopping_guard(SlidingState.unpack(y), SlidingState.unpack(this.rates(y)), this.top);
+  }
+  /** The contact force and torque. */
+  reaction(y) {
+    var touch = this.touch(y);
+    return new Reaction(touch.force, touch.torque, touch.power);
+  }
+}
+py.fields(Sliding, ["top", "rules", "near", "guarded"]);
+
+/** Equations of motion of a sliding top of this kind, whose rolling may be held. */
+function sliding_motion(kind, guarded, near = false, held = false) {
+  var nothing = null;
+  var form = py.call(py.truth(held) ? SlidingWithoutRolling : Sliding, nothing, nothing, near, guarded);
+  return motion_of(form, [kind]);
+}
+
+// tippetop.contact.sticking
+
+/** Rolling without slipping, and without drilling where the law resists that. */
+class Sticking extends ClosedMode {
+  constructor(top, rules) {
+    super(top, rules);
+  }
+  get name() { return "sticking"; }
+  get size() { return 6; }
+  get sticks() { return true; }
+  /** The guards of what holds the contact, too. */
+  guard_values() {
+    var own = [[SLIP, (mode, y) => slip_reserve(mode.top, mode.found(y)[2])]];
+    if (py.truth(has_limit_branches(this.top.friction))) {
+      own.push([LIMIT_BRANCH, (mode, y) => limit_guard(mode.top, mode.found(y)[2])]);
+    }
+    return py.add(own, super.guard_values());
+  }
+}
+py.fields(Sticking, ["top", "rules"]);
+
+/** Neither slip nor rolling: the top turns about the vertical, or not at all. */
+class StickingWithoutRolling extends Sticking {
+  constructor(top, rules) {
+    super(top, rules);
+  }
+  get name() { return "sticking_without_rolling"; }
+  get held() { return true; }
+}
+py.fields(StickingWithoutRolling, ["top", "rules"]);
 
 // tippetop.contact.passing
 const LANDING = [3e-08, 1e-16];
@@ -6147,14 +6191,13 @@ const [OPENING, ENDING, BRANCHING] = ["opening ", "ending ", "branching "];
 const SLOWEST_SLIP = 1e-09;
 
 /** Two surfaces touch. */
-class OnTwo extends IntegratedMode {
+class OnTwo extends StatedMode {
   constructor(top, rules, other, rolls = 0.0) {
     super(top, rules);
     this.other = other;
     this.rolls = rolls;
   }
   get size() { return 6; }
-  get further() { return 0; }
   /** How it rolls decides what its numbers say of the couple. */
   get form() {
     return `${py.str(this.name)} ${py.str(this.rolls)}`;
@@ -6176,16 +6219,12 @@ class OnTwo extends IntegratedMode {
   get stuck() {
     return [];
   }
-  /** Equations of motion, with the guards of both contacts. */
-  get motion() {
-    return motion_on_two(this.without_tops(), this.top.kind, this.other.kind);
-  }
-  /** What remains of it without its tops, and what follows it. */
+  /** Without the other top, too. */
   without_tops() {
     var nothing = null;
-    return py.replace(this, { top: nothing, rules: nothing, other: nothing });
+    return py.replace(super.without_tops(), { other: nothing });
   }
-  /** The same with tops, and with its further parameters. */
+  /** The same with both tops, and with its further parameters. */
   with_tops(tops, more) {
     return py.replace(this, { top: tops[0], other: tops[1] });
   }
@@ -6230,13 +6269,9 @@ class OnTwo extends IntegratedMode {
     var ends = py.eq(guard, ROLLING_STOPPING);
     return this.settled(time, state, py.truth(ends) ? 0.0 : rolling_way(this.found(this.numbers(state))[0]));
   }
-  /** The top with either surface active. */
+  /** The top with either surface active: the branches of their laws may differ. */
   get tops() {
     return [this.top, this.other];
-  }
-  /** The numbers of the top on either surface: the branches of their laws may differ. */
-  get parameters() {
-    return [...this.top.numbers, ...this.other.numbers];
   }
   /** One of both surfaces opens, while the other goes on, slipping or not. */
   opening(number, time, state, slips) {
@@ -6323,25 +6358,6 @@ function on_two(state, rules, other, rolls) {
   }
   return new SlidingOnTwo(tops[0], rules, tops[1], rolls);
 }
-
-/** Equations of motion of a mode without tops, for tops of which each has a surface and a branch. */
-const motion_on_two = py.cached((form, first, second) => {
-  var cut = first.numbers;
-  var last = py.add(first.numbers, second.numbers);
-  var mode = (numbers) => {
-    var tops = [first.top(py.tuple(numbers.slice(0, cut))), second.top(py.tuple(numbers.slice(cut, last)))];
-    return form.with_tops(tops, numbers.slice(last));
-  };
-  var guard = (name, value) => {
-    return new Guard(name, (y, numbers) => value(mode(numbers), y));
-  };
-  var rates = (y, numbers) => {
-    return mode(numbers).rates(y);
-  };
-  var example = py.replace(form, { top: first.example, other: second.example });
-  var guards = py.tuple([...example.guard_values()].map(([name, value]) => guard(name, value)));
-  return new Motion(rates, form.size, py.add(last, form.further), guards, false);
-});
 
 function _normal(number) {
   return (mode, y) => py.item(mode.found(y)[0].normal, number);
@@ -6462,7 +6478,7 @@ class StickingOnTwo extends HeldOnTwo {
   get further() { return 1; }
   /** The numbers of the top on either surface, and when patches slip. */
   get parameters() {
-    return [...this.top.numbers, ...this.other.numbers, this.least];
+    return [...py.super().parameters, this.least];
   }
   /** Both surfaces. */
   get stuck() {
@@ -10821,6 +10837,7 @@ export {
   COSINE,
   COUPLES,
   CUTS,
+  ClosedMode,
   Closing,
   ClosingRates,
   Contact,
@@ -11097,6 +11114,7 @@ export {
   Shape,
   Sliding,
   SlidingContact,
+  SlidingMode,
   SlidingOnTwo,
   SlidingState,
   SlidingWithoutRolling,
@@ -11110,6 +11128,7 @@ export {
   SpheroidSurface,
   Start,
   State,
+  StatedMode,
   SteadyKind,
   SteadyState,
   StemTest,
@@ -11197,6 +11216,8 @@ export {
   _newton,
   _normal,
   _nothing,
+  _of_axis,
+  _of_top,
   _on_one_of_several,
   _polished,
   _precession,
@@ -11294,10 +11315,8 @@ export {
   has_level_spin,
   has_limit_branches,
   heaviness,
-  held_rates,
   highest_between,
   highest_gap,
-  holding,
   horner,
   impact,
   impact_between,
@@ -11349,7 +11368,7 @@ export {
   metrics,
   moment_per_normal_force,
   more_stages,
-  motion_on_two,
+  motion_of,
   moved,
   natural,
   natural_state,
@@ -11405,7 +11424,6 @@ export {
   restitution_goal,
   rests,
   rises,
-  rolling_lasts,
   rolling_of,
   rolling_of_slip,
   rolling_precession,
@@ -11463,8 +11481,6 @@ export {
   step_terms,
   step_to,
   stepped,
-  sticking_motion,
-  sticking_wrench,
   stopping_guard,
   straight,
   straight_of_straight_impact,

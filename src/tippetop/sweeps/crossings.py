@@ -7,9 +7,10 @@ lane that enters a mode which only a single launch knows is followed alone to it
 
 import numpy as np
 
+from tippetop.contact.closed import BRANCH, LIFT_OFF
 from tippetop.contact.flight import TOUCHING, Flight
 from tippetop.contact.mode import EventKind, Mode, Outcome, Transition
-from tippetop.contact.sliding import BRANCH, LIFT_OFF, Sliding, sliding_motion
+from tippetop.contact.sliding import Sliding, sliding_motion
 from tippetop.integrators.base import Array
 from tippetop.mechanics.flight import gap, gap_rate
 from tippetop.mechanics.invariants import energy

@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tippetop.contact.sliding import BRANCH
+from tippetop.contact.closed import BRANCH
 from tippetop.emit.coefficients import SharedSeries
 from tippetop.integrators.base import Array, Motion
 from tippetop.mechanics.series import Arithmetic, horner, solved, unknown
