@@ -120,7 +120,7 @@ class StickingOnTwo(HeldOnTwo):
     @property
     def parameters(self) -> tuple[Scalar, ...]:
         """The numbers of the top on either surface, and when patches slip."""
-        return (*super().parameters, self.least)
+        return (*self.top.numbers, *self.other.numbers, self.least)
 
     @property
     def stuck(self) -> tuple[int, ...]:

@@ -8,12 +8,10 @@ from tippetop.contact.growth import growth
 from tippetop.contact.mode import Mode, Outcome, Segment, Transition
 from tippetop.contact.passing import LOOKS, SETTLED, Passing
 from tippetop.contact.slipping import slip_phase
-from tippetop.contact.surfaces import stays_open
 from tippetop.integrators.base import Integrator
 from tippetop.integrators.dense import DenseSolution
 from tippetop.mechanics.beginning import beginning
 from tippetop.mechanics.ending import Vanishing
-from tippetop.mechanics.hull import Hull
 from tippetop.mechanics.rolling import ContactPoint, Slip, Wrench, on_branch
 from tippetop.mechanics.series import horner
 from tippetop.mechanics.slip_onset import onset
@@ -51,7 +49,7 @@ class Loosening(Passing):
         try:
             passing, direction, longest = self._directed(state)
             velocity = state.velocity[:2] if self.ending.moves else ()
-            if self.ending.recurs(self.top.friction):
+            if self.ending.recurs(self.top):
                 found = passing.slips(time, state, direction, end)
                 if found is not None:
                     yield found
@@ -110,7 +108,11 @@ class Loosening(Passing):
         self, rows: Sequence[list[Scalar]], direction: Slip, time: float, duration: float, end: float
     ) -> Segment:
         """The segment in which the numbers are polynomials in the time since its start."""
-        while duration > SETTLED and not self._goes_on(rows, duration):
+
+        def at(look: int) -> list[Scalar]:
+            return [horner(row, duration * look / LOOKS) for row in rows]
+
+        while duration > SETTLED and not self.goes_on(at, range(1 + PRESSED, LOOKS + 1, PRESSED)):
             duration *= 0.5
         # What is zero has no direction, and friction none to be against.
         first = len(rows) - len(direction)
@@ -120,17 +122,6 @@ class Loosening(Passing):
         last = self.state([horner(row, duration) for row in rows])
         then = Outcome.COMPLETED if reach >= end else self.rules.going_on(last, slips=not self.stuck)
         return Segment(self, solution, last, Transition((), then, last), steps=1)
-
-    def _goes_on(self, rows: Sequence[list[Scalar]], duration: float) -> bool:
-        """Whether no other surface touches meanwhile, and the table does not pull that may not."""
-
-        def at(look: int) -> list[Scalar]:
-            return [horner(row, duration * look / LOOKS) for row in rows]
-
-        looks, pressed = range(1, LOOKS + 1), range(1 + PRESSED, LOOKS + 1, PRESSED)
-        if isinstance(self.top.surface, Hull) and not all(stays_open(self.top, at(look)) for look in looks):
-            return False
-        return self.rules.pulls or all(self.reaction(at(look)).force[2] > 0.0 for look in pressed)
 
     @property
     def stuck(self) -> bool:

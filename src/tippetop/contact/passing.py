@@ -1,6 +1,6 @@
 """The moments in which slip, or rolling, ends or begins, under friction that is set-valued."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
@@ -114,6 +114,13 @@ class Passing(Mode):
             power = power + (force[0] * slip[0] + force[1] * slip[1])
         return Reaction(force, torque, power)
 
+    def goes_on(self, at: Callable[[int], Row], pressed: Sequence[int]) -> bool:
+        """Whether no other surface touches at any look, and at some the table does not pull that may not."""
+        looks = range(1, LOOKS + 1)
+        if isinstance(self.top.surface, Hull) and not all(stays_open(self.top, at(look)) for look in looks):
+            return False
+        return self.rules.pulls or all(self.reaction(at(look)).force[2] > 0.0 for look in pressed)
+
     def _parts(self, y: Row) -> tuple[Vector, Vector, Slip, Slip]:
         free = 8 if self.ending.moves else 6
         return *split(y), tuple(y[6:free]), tuple(y[free:])
@@ -195,15 +202,13 @@ class Stopping(Passing):
         found = arriving(here, self.ending, self.top, integrator)
         if found is None or found.left > longest:
             return None
-        looks = [found.at(look / LOOKS) for look in range(1, LOOKS + 1)]
-        if isinstance(self.top.surface, Hull) and not all(stays_open(self.top, y) for y in looks):
+        arrival, looks = found, range(1, LOOKS + 1)
+        if not self.goes_on(lambda look: arrival.at(look / LOOKS), looks):
             return None
-        if not self.rules.pulls and not all(self.reaction(y).force[2] > 0.0 for y in looks):
-            return None
-        if hasattr(law, "branch_guard") and not all(
-            branch_guard(tuple(y[6:]), self.top) > 0.0 for y in looks
-        ):
-            return None
+        if hasattr(law, "branch_guard"):
+            ways = [tuple(found.at(look / LOOKS)[6:]) for look in looks]
+            if not all(branch_guard(way, self.top) > 0.0 for way in ways):
+                return None
         return found
 
     def _clock(self, state: State) -> tuple[float, ...]:

@@ -1291,10 +1291,10 @@ class Vanishing extends py.NamedTuple {
     return py.and(!py.truth(this.slip), () => !py.truth(this.held));
   }
   /** Whether it may end and begin many times a second: slip under a law that resists nothing else. */
-  recurs(law) {
+  recurs(top) {
     return py.and(
       this.slip,
-      () => py.and(slip_length(law) === null, () => !py.isinstance(law, RollingResistance))
+      () => py.and(slip_length(top.friction) === null, () => !py.truth(top.resists_rolling))
     );
   }
   /** The velocity xi, from axis, angular momentum and horizontal velocity of the centre of mass. */
@@ -3394,6 +3394,21 @@ class Passing extends Mode {
     }
     return new Reaction(force, torque, power);
   }
+  /** Whether no other surface touches at any look, and at some the table does not pull that may not. */
+  goes_on(at, pressed) {
+    var looks = py.range(1, py.add(LOOKS_of_passing, 1));
+    if (
+      py.isinstance(this.top.surface, Hull) && !py.truth(
+        py.all([...looks].map((look) => stays_open(this.top, at(look))))
+      )
+    ) {
+      return false;
+    }
+    return py.or(
+      this.rules.pulls,
+      () => py.all([...pressed].map((look) => this.reaction(at(look)).force[2] > 0.0))
+    );
+  }
   _parts(y) {
     var free = py.truth(this.ending.moves) ? 8 : 6;
     return [...split(y), py.tuple(y.slice(6, free)), py.tuple(y.slice(free))];
@@ -3494,27 +3509,16 @@ class Stopping extends Passing {
     if (found === null || found.left > longest) {
       return null;
     }
-    var looks = py.range(1, py.add(LOOKS_of_passing, 1)).map(
-      (look) => found.at(py.div(look, LOOKS_of_passing))
-    );
-    if (
-      py.isinstance(this.top.surface, Hull) && !py.truth(
-        py.all([...looks].map((y) => stays_open(this.top, y)))
-      )
-    ) {
+    var arrival = found;
+    var looks = py.range(1, py.add(LOOKS_of_passing, 1));
+    if (!py.truth(this.goes_on((look) => arrival.at(py.div(look, LOOKS_of_passing)), looks))) {
       return null;
     }
-    if (
-      !py.truth(this.rules.pulls) && !py.truth(py.all([...looks].map((y) => this.reaction(y).force[2] > 0.0)))
-    ) {
-      return null;
-    }
-    if (
-      py.truth(py.hasattr(law, "branch_guard")) && !py.truth(
-        py.all([...looks].map((y) => branch_guard(py.tuple(y.slice(6)), this.top) > 0.0))
-      )
-    ) {
-      return null;
+    if (py.truth(py.hasattr(law, "branch_guard"))) {
+      var ways = [...looks].map((look) => py.tuple(found.at(py.div(look, LOOKS_of_passing)).slice(6)));
+      if (!py.truth(py.all([...ways].map((way) => branch_guard(way, this.top) > 0.0)))) {
+        return null;
+      }
     }
     return found;
   }
@@ -4392,7 +4396,7 @@ class Loosening extends Passing {
     try {
       var [passing, direction, longest] = this._directed(state);
       var velocity = py.truth(this.ending.moves) ? state.velocity.slice(0, 2) : [];
-      if (py.truth(this.ending.recurs(this.top.friction))) {
+      if (py.truth(this.ending.recurs(this.top))) {
         var found = passing.slips(time, state, direction, end);
         if (found !== null) {
           yield found;
@@ -4465,7 +4469,17 @@ class Loosening extends Passing {
   }
   /** The segment in which the numbers are polynomials in the time since its start. */
   piece(rows, direction, time, duration, end) {
-    while (duration > SETTLED_of_passing && !py.truth(this._goes_on(rows, duration))) {
+    var at = (look) => {
+      return [...rows].map((row) => horner(row, py.div(py.mul(duration, look), LOOKS_of_passing)));
+    };
+    while (
+      duration > SETTLED_of_passing && !py.truth(
+        this.goes_on(
+          at,
+          py.range(py.add(1, PRESSED_of_loosening), py.add(LOOKS_of_passing, 1), PRESSED_of_loosening)
+        )
+      )
+    ) {
       duration = py.mul(duration, 0.5);
     }
     var first = py.sub(py.len(rows), py.len(direction));
@@ -4480,29 +4494,6 @@ class Loosening extends Passing {
     var last = this.state([...rows].map((row) => horner(row, duration)));
     var then = reach >= end ? Outcome.COMPLETED : this.rules.going_on(last, !py.truth(this.stuck));
     return new Segment(this, solution, last, new Transition([], then, last), 1);
-  }
-  /** Whether no other surface touches meanwhile, and the table does not pull that may not. */
-  _goes_on(rows, duration) {
-    var at = (look) => {
-      return [...rows].map((row) => horner(row, py.div(py.mul(duration, look), LOOKS_of_passing)));
-    };
-    var looks = py.range(1, py.add(LOOKS_of_passing, 1));
-    var pressed = py.range(
-      py.add(1, PRESSED_of_loosening),
-      py.add(LOOKS_of_passing, 1),
-      PRESSED_of_loosening
-    );
-    if (
-      py.isinstance(this.top.surface, Hull) && !py.truth(
-        py.all([...looks].map((look) => stays_open(this.top, at(look))))
-      )
-    ) {
-      return false;
-    }
-    return py.or(
-      this.rules.pulls,
-      () => py.all([...pressed].map((look) => this.reaction(at(look)).force[2] > 0.0))
-    );
   }
   /** Whether the contact sticks meanwhile. */
   get stuck() {
@@ -5991,64 +5982,6 @@ function at_rest(pair, velocity, ended, stopped) {
   return [momentum, velocity];
 }
 
-/** Direction in which the first contact begins to slip, and the motion then. */
-function way_of_one(pair, slip, rolls) {
-  var answers = [EAST, NORTH].map((way) => pair.response([0, new Wrench(way, NO_TORQUE)])[0]);
-  var stiffness = py.float(py.add(py.abs(answers[0][0]), py.abs(answers[1][1])));
-  var response = (ways) => {
-    var found = pair_motion(pair, [ways[0], slip], rolls);
-    return [
-      new Resisted(found.moving[0].slice(0, 2), py.mul(stiffness, size(found.wrenches[0].force.slice(0, 2))))
-    ];
-  };
-  var held = pair_motion(pair, [null, slip], rolls).wrenches[0];
-  var way = directions(response, [scaled(-1.0, held.force.slice(0, 2))])[0];
-  return [way, pair_motion(pair, [way, slip], rolls)];
-}
-
-/** Direction of xi in which both contacts begin to slip that cannot be held, and the motion then. */
-function way_of_both(pair, rolls) {
-  var across = directions_of(pair.first.axis)[1];
-  var lever = py.float(apart(pair));
-  var answers = [EAST, NORTH].map((way) => pair.response([0, new Wrench(way, NO_TORQUE)])[0]);
-  var turned = pair.response([1, new Wrench(across, NO_TORQUE)])[2][2];
-  var stiffness = py.float(
-    py.add(py.add(py.abs(answers[0][0]), py.abs(answers[1][1])), py.abs(py.mul(lever, turned)))
-  );
-  var drilled = py.abs(py.mul(lever, py.float(pair.response([0, DRILLING])[2][2])));
-  var motion = (way) => {
-    return pair_motion(pair, slips_of(pair, way), rolls);
-  };
-  var response = (ways) => {
-    var found = motion(ways[0]);
-    var strength = py.sum(
-      [...found.wrenches].map(
-        (wrench) => py.add(
-          py.mul(stiffness, size(wrench.force.slice(0, 2))),
-          py.mul(drilled, py.abs(wrench.torque[2]))
-        )
-      )
-    );
-    return [new Resisted(found.rate, strength)];
-  };
-  var way = directions(response, [against(pair_motion(pair, [null, null], rolls))])[0];
-  return [way, motion(way)];
-}
-
-/** Direction of xi against which friction exerts all it can along e, and what is needed across it. */
-function against(held) {
-  var [along, across] = directions_of(held.pair.first.axis);
-  var sign = held.along >= 0.0 ? -1.0 : 1.0;
-  var ratios = [];
-  for (var number of [0, 1]) {
-    var across_force = held.needed(number);
-    var spare = py.max(held.left(number), py.pow(py.mul(0.001, py.item(held.normal, number)), 2));
-    ratios.push(py.div(across_force, py.pow(spare, 0.5)));
-  }
-  var v = plus(scaled(sign, along.slice(0, 2)), scaled(py.neg(ratios[0]), across.slice(0, 2)));
-  return [...v, py.neg(py.sub(ratios[1], ratios[0]))];
-}
-
 // tippetop.mechanics.pair_resolver
 const CUTS = 50;
 
@@ -6129,14 +6062,64 @@ function of_slips(pair, xi, ended, rolls) {
 
 /** The first contact, which alone sticks, begins to slip. */
 function letting_go(pair, xi, rolls) {
-  var [way, motion] = way_of_one(pair, slips_of(pair, xi)[1], rolls);
-  return new Resolution(motion, [false, false], rolls, [...way, 0.0]);
+  var slip = slips_of(pair, xi)[1];
+  var stiffness = _stiffness_of_pair_resolver(pair);
+  var motion = (way) => {
+    return pair_motion(pair, [way, slip], rolls);
+  };
+  var response = (ways) => {
+    var found = motion(ways[0]);
+    return [
+      new Resisted(found.moving[0].slice(0, 2), py.mul(stiffness, size(found.wrenches[0].force.slice(0, 2))))
+    ];
+  };
+  var way = directions(response, [scaled(-1.0, motion(null).wrenches[0].force.slice(0, 2))])[0];
+  return new Resolution(motion(way), [false, false], rolls, [...way, 0.0]);
 }
 
-/** Both contacts begin to slip. */
+/** Both contacts begin to slip, which cannot be held. */
 function both_letting_go(pair, rolls) {
-  var [way, motion] = way_of_both(pair, rolls);
-  return new Resolution(motion, [false, false], rolls, way);
+  var across = directions_of(pair.first.axis)[1];
+  var lever = py.float(apart(pair));
+  var turned = pair.response([1, new Wrench(across, NO_TORQUE)])[2][2];
+  var stiffness = py.add(_stiffness_of_pair_resolver(pair), py.float(py.abs(py.mul(lever, turned))));
+  var drilled = py.abs(py.mul(lever, py.float(pair.response([0, DRILLING])[2][2])));
+  var motion = (way) => {
+    return pair_motion(pair, slips_of(pair, way), rolls);
+  };
+  var response = (ways) => {
+    var found = motion(ways[0]);
+    var strength = py.sum(
+      [...found.wrenches].map(
+        (wrench) => py.add(
+          py.mul(stiffness, size(wrench.force.slice(0, 2))),
+          py.mul(drilled, py.abs(wrench.torque[2]))
+        )
+      )
+    );
+    return [new Resisted(found.rate, strength)];
+  };
+  var way = directions(response, [against(pair_motion(pair, [null, null], rolls))])[0];
+  return new Resolution(motion(way), [false, false], rolls, way);
+}
+
+function _stiffness_of_pair_resolver(pair) {
+  var answers = [EAST, NORTH].map((way) => pair.response([0, new Wrench(way, NO_TORQUE)])[0]);
+  return py.float(py.add(py.abs(answers[0][0]), py.abs(answers[1][1])));
+}
+
+/** Direction of xi against which friction exerts all it can along e, and what is needed across it. */
+function against(held) {
+  var [along, across] = directions_of(held.pair.first.axis);
+  var sign = held.along >= 0.0 ? -1.0 : 1.0;
+  var ratios = [];
+  for (var number of [0, 1]) {
+    var across_force = held.needed(number);
+    var spare = py.max(held.left(number), py.pow(py.mul(0.001, py.item(held.normal, number)), 2));
+    ratios.push(py.div(across_force, py.pow(spare, 0.5)));
+  }
+  var v = plus(scaled(sign, along.slice(0, 2)), scaled(py.neg(ratios[0]), across.slice(0, 2)));
+  return [...v, py.neg(py.sub(ratios[1], ratios[0]))];
 }
 
 /** How patches begin to slip that both stick; None where they can be held. */
@@ -6478,7 +6461,7 @@ class StickingOnTwo extends HeldOnTwo {
   get further() { return 1; }
   /** The numbers of the top on either surface, and when patches slip. */
   get parameters() {
-    return [...py.super().parameters, this.least];
+    return [...this.top.numbers, ...this.other.numbers, this.least];
   }
   /** Both surfaces. */
   get stuck() {
@@ -11230,6 +11213,7 @@ export {
   _steady,
   _stem,
   _stiffness,
+  _stiffness_of_pair_resolver,
   _touch,
   _turn,
   _unit,
@@ -11510,8 +11494,6 @@ export {
   velocity_of,
   velocity_without_slip,
   vertical_spin,
-  way_of_both,
-  way_of_one,
   weight_moment,
   whole_law,
   with_sliding_law,

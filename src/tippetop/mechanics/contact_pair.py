@@ -28,11 +28,9 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 from tippetop.mechanics.coulomb import TINY, RollingResistance
-from tippetop.mechanics.direction import Resisted, directions
 from tippetop.mechanics.friction import NO_TORQUE
 from tippetop.mechanics.motion import axis_rate
 from tippetop.mechanics.rolling import (
-    DRILLING,
     EAST,
     NORTH,
     ContactPoint,
@@ -46,7 +44,6 @@ from tippetop.mechanics.rolling import (
     turning_with,
 )
 from tippetop.mechanics.state import State
-from tippetop.mechanics.stick_slip import plus, scaled, size
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import VERTICAL, Scalar, Vector, add, cross, dot, scale
 
@@ -334,75 +331,3 @@ def at_rest(
     for _, push in pushes:
         velocity = add(velocity, scale(1.0 / pair.first.top.mass, push.force))
     return momentum, velocity
-
-
-def way_of_one(pair: ContactPair, slip: Slip, rolls: float) -> tuple[Slip, PairMotion]:
-    """Direction in which the first contact begins to slip, and the motion then.
-
-    Parameters
-    ----------
-    pair
-        The contact points.
-    slip
-        How the second contact slips.
-    rolls
-        As for `pair_motion`.
-
-    Raises
-    ------
-    ArithmeticError
-        If there is no such direction, or more than one.
-    """
-    answers = [pair.response((0, Wrench(way, NO_TORQUE)))[0] for way in (EAST, NORTH)]
-    stiffness = float(abs(answers[0][0]) + abs(answers[1][1]))
-
-    def response(ways: Sequence[Slip]) -> list[Resisted]:
-        found = pair_motion(pair, (ways[0], slip), rolls)
-        return [Resisted(found.moving[0][:2], stiffness * size(found.wrenches[0].force[:2]))]
-
-    held = pair_motion(pair, (None, slip), rolls).wrenches[0]
-    way = directions(response, [scaled(-1.0, held.force[:2])])[0]
-    return way, pair_motion(pair, (way, slip), rolls)
-
-
-def way_of_both(pair: ContactPair, rolls: float) -> tuple[Slip, PairMotion]:
-    """Direction of xi in which both contacts begin to slip that cannot be held, and the motion then.
-
-    Raises
-    ------
-    ArithmeticError
-        If there is no such direction, or more than one.
-    """
-    across = directions_of(pair.first.axis)[1]
-    lever = float(apart(pair))
-    answers = [pair.response((0, Wrench(way, NO_TORQUE)))[0] for way in (EAST, NORTH)]
-    turned = pair.response((1, Wrench(across, NO_TORQUE)))[2][2]
-    stiffness = float(abs(answers[0][0]) + abs(answers[1][1]) + abs(lever * turned))
-    drilled = abs(lever * float(pair.response((0, DRILLING))[2][2]))
-
-    def motion(way: Slip) -> PairMotion:
-        return pair_motion(pair, slips_of(pair, way), rolls)
-
-    def response(ways: Sequence[Slip]) -> list[Resisted]:
-        found = motion(ways[0])
-        strength = sum(
-            stiffness * size(wrench.force[:2]) + drilled * abs(wrench.torque[2]) for wrench in found.wrenches
-        )
-        return [Resisted(found.rate, strength)]
-
-    way = directions(response, [against(pair_motion(pair, (None, None), rolls))])[0]
-    return way, motion(way)
-
-
-def against(held: PairMotion) -> Slip:
-    """Direction of xi against which friction exerts all it can along e, and what is needed across it."""
-    along, across = directions_of(held.pair.first.axis)
-    sign = -1.0 if held.along >= 0.0 else 1.0
-    ratios = []
-    for number in (0, 1):
-        across_force = held.needed(number)
-        spare = max(held.left(number), (1e-3 * held.normal[number]) ** 2)
-        ratios.append(across_force / spare**0.5)
-    # Forces S_i e + T_i t act against v_e (e + T_i / S_i t), where S_i has the sign of S.
-    v = plus(scaled(sign, along[:2]), scaled(-ratios[0], across[:2]))
-    return (*v, -(ratios[1] - ratios[0]))

@@ -14,7 +14,6 @@ de = V/|A|, dy = s Y/|A|, dt = s/|A|, ds = s R/|A|. Nor does it where s has a le
 from typing import NamedTuple
 
 from tippetop.mechanics.coulomb import RollingResistance
-from tippetop.mechanics.friction import FrictionLaw
 from tippetop.mechanics.motion import angular_velocity, axis_rate
 from tippetop.mechanics.rolling import (
     COUPLES,
@@ -49,9 +48,9 @@ class Vanishing(NamedTuple):
         """Whether the velocity of the centre of mass is free beside it."""
         return not self.slip and not self.held
 
-    def recurs(self, law: FrictionLaw) -> bool:
+    def recurs(self, top: Top) -> bool:
         """Whether it may end and begin many times a second: slip under a law that resists nothing else."""
-        return self.slip and slip_length(law) is None and not isinstance(law, RollingResistance)
+        return self.slip and slip_length(top.friction) is None and not top.resists_rolling
 
     def of(self, axis: Vector, momentum: Vector, velocity: Slip, top: Top) -> Slip:
         """The velocity xi, from axis, angular momentum and horizontal velocity of the centre of mass."""

@@ -1,20 +1,22 @@
 """Which of two closed contacts stick, whether rolling is held, and how what cannot be goes on."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from tippetop.mechanics.contact_pair import (
     ContactPair,
     PairMotion,
     Slips,
+    apart,
     directions_of,
     pair_motion,
     slips_of,
     turning_along,
-    way_of_both,
-    way_of_one,
 )
-from tippetop.mechanics.rolling import Slip, slip_length
-from tippetop.mechanics.stick_slip import scaled
+from tippetop.mechanics.direction import Resisted, directions
+from tippetop.mechanics.friction import NO_TORQUE
+from tippetop.mechanics.rolling import DRILLING, EAST, NORTH, Slip, Wrench, slip_length
+from tippetop.mechanics.stick_slip import plus, scaled, size
 from tippetop.mechanics.vectors import scale
 
 CUTS = 50
@@ -98,15 +100,71 @@ def of_slips(pair: ContactPair, xi: Slip, ended: tuple[bool, bool], rolls: float
 
 
 def letting_go(pair: ContactPair, xi: Slip, rolls: float) -> Resolution:
-    """The first contact, which alone sticks, begins to slip."""
-    way, motion = way_of_one(pair, slips_of(pair, xi)[1], rolls)
-    return Resolution(motion, (False, False), rolls, (*way, 0.0))
+    """The first contact, which alone sticks, begins to slip.
+
+    Raises
+    ------
+    ArithmeticError
+        If there is no direction for it, or more than one.
+    """
+    slip = slips_of(pair, xi)[1]
+    stiffness = _stiffness(pair)
+
+    def motion(way: Slip | None) -> PairMotion:
+        return pair_motion(pair, (way, slip), rolls)
+
+    def response(ways: Sequence[Slip]) -> list[Resisted]:
+        found = motion(ways[0])
+        return [Resisted(found.moving[0][:2], stiffness * size(found.wrenches[0].force[:2]))]
+
+    way = directions(response, [scaled(-1.0, motion(None).wrenches[0].force[:2])])[0]
+    return Resolution(motion(way), (False, False), rolls, (*way, 0.0))
 
 
 def both_letting_go(pair: ContactPair, rolls: float) -> Resolution:
-    """Both contacts begin to slip."""
-    way, motion = way_of_both(pair, rolls)
-    return Resolution(motion, (False, False), rolls, way)
+    """Both contacts begin to slip, which cannot be held.
+
+    Raises
+    ------
+    ArithmeticError
+        If there is no direction of xi for it, or more than one.
+    """
+    across, lever = directions_of(pair.first.axis)[1], float(apart(pair))
+    turned = pair.response((1, Wrench(across, NO_TORQUE)))[2][2]
+    stiffness = _stiffness(pair) + float(abs(lever * turned))
+    drilled = abs(lever * float(pair.response((0, DRILLING))[2][2]))
+
+    def motion(way: Slip) -> PairMotion:
+        return pair_motion(pair, slips_of(pair, way), rolls)
+
+    def response(ways: Sequence[Slip]) -> list[Resisted]:
+        found = motion(ways[0])
+        strength = sum(
+            stiffness * size(wrench.force[:2]) + drilled * abs(wrench.torque[2]) for wrench in found.wrenches
+        )
+        return [Resisted(found.rate, strength)]
+
+    way = directions(response, [against(pair_motion(pair, (None, None), rolls))])[0]
+    return Resolution(motion(way), (False, False), rolls, way)
+
+
+def _stiffness(pair: ContactPair) -> float:
+    answers = [pair.response((0, Wrench(way, NO_TORQUE)))[0] for way in (EAST, NORTH)]
+    return float(abs(answers[0][0]) + abs(answers[1][1]))
+
+
+def against(held: PairMotion) -> Slip:
+    """Direction of xi against which friction exerts all it can along e, and what is needed across it."""
+    along, across = directions_of(held.pair.first.axis)
+    sign = -1.0 if held.along >= 0.0 else 1.0
+    ratios = []
+    for number in (0, 1):
+        across_force = held.needed(number)
+        spare = max(held.left(number), (1e-3 * held.normal[number]) ** 2)
+        ratios.append(across_force / spare**0.5)
+    # Forces S_i e + T_i t act against v_e (e + T_i / S_i t), where S_i has the sign of S.
+    v = plus(scaled(sign, along[:2]), scaled(-ratios[0], across[:2]))
+    return (*v, -(ratios[1] - ratios[0]))
 
 
 def patches_letting_go(pair: ContactPair, rolls: float) -> Resolution | None:
