@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 import moreau
 import tippetop as tt
 from lying import R, lying, resisted
-from tippetop.contact import double, two_closed
+from tippetop.contact import closed, double, two_closed
 from tippetop.contact.choice import rules_for
 from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators import make_integrator
@@ -174,13 +174,13 @@ def test_rolling_that_slip_held_up_begins_when_that_ends(monkeypatch: pytest.Mon
     for slowest in (1e-9, 1e-6):
         for module in (double, two_closed):
             monkeypatch.setattr(module, "SLOWEST_SLIP", slowest)
-        double.motion_on_two.cache_clear()
+        closed.motion_of.cache_clear()
         run = followed(body.replace(launch), 0.004)
         (sticks,), (*_, one, other) = events(run, "stick"), events(run, "rolling starts")
         assert one == other == sticks
         assert run["event_time"].values.tolist() == sorted(run["event_time"].values)
         found.append(sticks)
-    double.motion_on_two.cache_clear()
+    closed.motion_of.cache_clear()
     assert found[1] == pytest.approx(found[0], abs=1e-12)
 
 

@@ -20,16 +20,21 @@ LOOKS = 65
 
 def lowest_number(surface: Surface, c: Any) -> NDArray[np.intp]:
     """Number of the surface that reaches lowest for each c = n_z."""
-    heights = np.array([one.height(c) for one in each_surface(surface)])
-    found: NDArray[np.intp] = np.argmax(heights >= heights.max(axis=0) - LEVEL * surface.size, axis=0)
+    level = _level(surface, c)
+    found: NDArray[np.intp] = np.argmax([one.height(c) >= level for one in each_surface(surface)], axis=0)
     return found
+
+
+def _level(surface: Surface, c: Scalar) -> Scalar:
+    """Height from which on a surface is as low as the lowest."""
+    return outer_height(surface, c) - LEVEL * surface.size
 
 
 def lowest_contact_vector(axis: Vector, surface: Surface) -> Vector:
     """Vectors from the centre of mass to the lowest point of the body; of numbers, or arrays of one shape."""
     if not isinstance(surface, Hull):
         return contact_vector(axis, surface)
-    level = outer_height(surface, axis[2]) - LEVEL * surface.size
+    level = _level(surface, axis[2])
     last, *others = reversed(each_surface(surface))
     with np.errstate(divide="ignore", invalid="ignore"):
         x, y, z = contact_vector(axis, last)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Self
 
 from tippetop.contact.closed import ROLLING, ROLLING_STOPPING, GuardValue, StatedMode, split
-from tippetop.contact.mode import Event, EventKind, Reaction, Transition
+from tippetop.contact.mode import Before, Event, EventKind, Reaction, Transition
 from tippetop.contact.surfaces import number_of
 from tippetop.mechanics.contact_pair import ContactPair, PairMotion, Tops, pair_motion
 from tippetop.mechanics.motion import along_table, axis_rate, on_table
@@ -117,7 +117,7 @@ class OnTwo(StatedMode):
 
     def settled(self, time: float, state: State, rolls: float) -> Transition:
         """What the resolver finds where slip, or rolling, has ended, or begins as signed."""
-        return self.rules.settled_on_two(time, state, self.tops, self.stuck, (self.rolls, rolls))
+        return self.rules.settled_on_two(time, state, self.tops, Before(self.stuck, bool(self.rolls)), rolls)
 
     def follow_rolling(self, guard: str, time: float, state: State) -> Transition:
         """What follows where rolling ends, or can be held no longer: there are no other guards."""

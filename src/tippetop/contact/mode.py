@@ -155,6 +155,15 @@ class Segment:
         return self.solution.end
 
 
+class Before(NamedTuple):
+    """What two contacts did before something happened to them."""
+
+    stuck: tuple[int, ...] = ()
+    """Numbers of the surfaces that stuck."""
+    rolled: bool = False
+    """Whether the body rolled, if that is resisted."""
+
+
 @dataclass(frozen=True)
 class Rules(ABC):
     """What follows where contact, or slip, begins or ends; what never happens under some raises an error."""
@@ -196,17 +205,9 @@ class Rules(ABC):
         raise NotImplementedError
 
     def settled_on_two(
-        self,
-        time: float,
-        state: State,
-        tops: tuple[Top, Top],
-        stuck: tuple[int, ...],
-        rolls: tuple[float, float],
+        self, time: float, state: State, tops: tuple[Top, Top], before: Before, rolls: float
     ) -> Transition:
-        """What follows when slip ends on a contact beside another one, or rolling; some surfaces stuck.
-
-        The body rolled, and now does, as signed (see `tippetop.contact.double.OnTwo`).
-        """
+        """What follows when slip ends on a contact beside another one, or rolling; it rolls as signed now."""
         raise NotImplementedError
 
     def slipping_on_two(

@@ -25,13 +25,18 @@ from tippetop.mechanics.rolling import (
     is_set_valued,
     on_branch,
     on_limit_branch,
-    slip_length,
-    velocity_without_slip,
-    without_drilling,
-    without_rolling,
 )
-from tippetop.mechanics.state import SlidingState, State
-from tippetop.mechanics.stick_slip import HORIZON, inner, is_near, is_rolling, is_slipping, size, slip_of
+from tippetop.mechanics.state import State
+from tippetop.mechanics.stick_slip import (
+    HORIZON,
+    come_to_rest,
+    inner,
+    is_near,
+    is_rolling,
+    is_slipping,
+    size,
+    slip_of,
+)
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.touchdown import Start
 from tippetop.mechanics.vectors import Scalar
@@ -92,7 +97,7 @@ class ContactRules(Rules):
         What is tried first is to hold everything, then to let slip begin, rolling, and both.
         """
         ended = (new[0] or (held and new[1]), new[1] or (held and new[0]))
-        state = self._at_rest(state, *ended)
+        state = on_table(come_to_rest(along_table(state), self.top, *ended), self.top)
         point = ContactPoint.of(state.axis, state.momentum, self.top)
         slip = None if ended[0] else slip_of(*along_table(state), self.top)
         rolling = None if ended[1] else point.turning[:2]
@@ -143,17 +148,6 @@ class ContactRules(Rules):
             elif starts and not ended:
                 told.append(self.event(start, time))
         return tuple(told)
-
-    def _at_rest(self, state: State, slip: bool, rolling: bool) -> State:
-        """The state in which slip, or rolling, that has ended is exactly zero."""
-        axis, momentum, velocity = along_table(state)
-        if slip and slip_length(self.top.friction) is not None:
-            momentum = without_drilling(axis, momentum, self.top)
-        if rolling:
-            momentum = without_rolling(axis, momentum, self.top)
-        if slip:
-            velocity = velocity_without_slip(axis, momentum, self.top)
-        return on_table(SlidingState(axis, momentum, velocity), self.top)
 
     def _rolls(self, state: State) -> bool:
         """Whether nothing holds rolling."""

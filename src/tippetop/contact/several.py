@@ -6,10 +6,10 @@ from typing import Self
 
 from tippetop.contact.double import SLOWEST_SLIP
 from tippetop.contact.flight import TOUCHING
-from tippetop.contact.mode import Event, EventKind, Outcome, Transition
+from tippetop.contact.mode import Before, Event, EventKind, Outcome, Transition
 from tippetop.contact.rules import FreeToFly
 from tippetop.contact.surfaces import number_of
-from tippetop.contact.two_closed import Before, rolling_of, settled, slipping
+from tippetop.contact.two_closed import rolling_of, settled, slipping
 from tippetop.integrators.base import Integrator
 from tippetop.mechanics.contact_pair import ContactPair, Tops, without_tilting
 from tippetop.mechanics.flight import gap, gap_rate
@@ -134,10 +134,10 @@ class OnSeveral(FreeToFly):
         return super().resting(time, state, events)
 
     def settled_on_two(
-        self, time: float, state: State, tops: Tops, stuck: tuple[int, ...], rolls: tuple[float, float]
+        self, time: float, state: State, tops: Tops, before: Before, rolls: float
     ) -> Transition:
         """As the resolver of two contacts finds."""
-        return settled(self, time, state, tops, Before(stuck, bool(rolls[0])), rolls[1])
+        return settled(self, time, state, tops, before, rolls)
 
     def slipping_on_two(self, time: float, state: State, tops: Tops, which: str, rolls: float) -> Transition:
         """Slip begins at the limit of what the table can hold."""

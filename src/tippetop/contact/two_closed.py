@@ -10,7 +10,7 @@ from tippetop.contact.double_sticking import (
     StickingAndSlidingBack,
     StickingOnTwo,
 )
-from tippetop.contact.mode import Event, EventKind, Outcome, Transition
+from tippetop.contact.mode import Before, Event, EventKind, Outcome, Transition
 from tippetop.contact.passing import Resting
 from tippetop.contact.rules import rests
 from tippetop.contact.surfaces import number_of
@@ -59,16 +59,6 @@ ABOUT = 1.0 + 1e-3
 FIRST, SECOND, BOTH, NEITHER = "first", "second", "both", "neither"
 
 OPENS, HELD, CLOSES = "opens", "held", "closes"
-
-
-@dataclass(frozen=True)
-class Before:
-    """What two contacts did before."""
-
-    stuck: tuple[int, ...] = ()
-    """Numbers of the surfaces that stuck."""
-    rolled: bool = False
-    """Whether the body rolled, if that is resisted."""
 
 
 @dataclass(frozen=True)

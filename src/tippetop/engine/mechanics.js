@@ -1029,13 +1029,6 @@ function whole_law(law) {
   return py.truth(py.hasattr(inner, "whole")) ? inner.whole : inner;
 }
 
-/** The law of slip and drilling, the branch that holds where it is made of such; of floats. */
-function branch_of(law, slip, angular_velocity) {
-  var whole = whole_law(law);
-  var inner = py.truth(is_branched(law)) ? whole.branch(slip, angular_velocity) : sliding_law(law);
-  return inner;
-}
-
 /** A top with another law of slip and drilling, and the same rolling resistance. */
 function with_sliding_law(top, law) {
   var outer = top.friction;
@@ -1051,8 +1044,8 @@ function on_branch(top, slip) {
   if (!py.truth(is_branched(top.friction))) {
     return top;
   }
-  var turning = [0.0, 0.0, py.div(slip[2], whole_law(top.friction).slip_length)];
-  return with_sliding_law(top, branch_of(top.friction, [slip[0], slip[1]], turning));
+  var law = whole_law(top.friction);
+  return with_sliding_law(top, law.branch(slip.slice(0, 2), [0.0, 0.0, py.div(slip[2], law.slip_length)]));
 }
 
 /** The same where a number tells the branch, for arrays, or for floats that share equations. */
@@ -1146,6 +1139,22 @@ function slip_of(axis, momentum, velocity, top) {
 function velocity_of(axis, momentum, slip, top) {
   var rolling = velocity_without_slip(axis, momentum, top);
   return [py.add(rolling[0], slip[0]), py.add(rolling[1], slip[1])];
+}
+
+/** The state in which slip, or rolling, that has ended is exactly zero. */
+function come_to_rest(state, top, slip, rolling) {
+  var [axis, momentum, velocity] = state;
+  if (py.truth(slip) && slip_length(top.friction) !== null) {
+    momentum = without_drilling(axis, momentum, top);
+  }
+  if (py.truth(rolling)) {
+    momentum = without_rolling(axis, momentum, top);
+  }
+  return new SlidingState(
+    axis,
+    momentum,
+    py.truth(slip) ? velocity_without_slip(axis, momentum, top) : velocity
+  );
 }
 
 /** Whether the contact slips, or drills where its law resists that, by more than rounding. */
@@ -1564,6 +1573,16 @@ py.fields(
   ["mode", "solution", "end_state", "transition", "steps", "evaluations", "highest_gap", "method"]
 );
 
+/** What two contacts did before something happened to them. */
+class Before extends py.NamedTuple {
+  constructor(stuck = [], rolled = false) {
+    super();
+    this.stuck = stuck;
+    this.rolled = rolled;
+  }
+}
+py.fields(Before, ["stuck", "rolled"]);
+
 /** What follows where contact, or slip, begins or ends; what never happens under some raises an error. */
 class Rules extends py.Record {
   constructor(top) {
@@ -1587,8 +1606,8 @@ class Rules extends py.Record {
   touch(surface, time, state, integrator = null) {
     throw new py.NotImplementedError();
   }
-  /** What follows when slip ends on a contact beside another one, or rolling; some surfaces stuck. */
-  settled_on_two(time, state, tops, stuck, rolls) {
+  /** What follows when slip ends on a contact beside another one, or rolling; it rolls as signed now. */
+  settled_on_two(time, state, tops, before, rolls) {
     throw new py.NotImplementedError();
   }
   /** What follows when one of two contacts, or both, can be held no longer. */
@@ -4669,11 +4688,16 @@ class DryContact extends py.NamedTuple {
   parts(velocity) {
     return [slip_part(velocity, this.reach), scaled(this.body.lever, velocity.slice(3, 5))];
   }
+  /** Whether slip, and rolling, of which there is so much have ended, if they can. */
+  zeros(slip, rolling) {
+    var least = py.mul(ENDED, this.body.speed);
+    var ended = py.and(is_set_valued(this.top.friction), () => size(slip) <= least);
+    return [ended, py.and(this.top.resists_rolling, () => size(rolling) <= least)];
+  }
   /** The contact with what has ended after an impulse, and where that goes on if it cannot stay so. */
   settled(impulse) {
     var [slip, rolling] = this.parts(this.body.velocities(impulse));
-    var ended = py.and(is_set_valued(this.top.friction), () => size(slip) <= py.mul(ENDED, this.body.speed));
-    var stopped = py.and(this.top.resists_rolling, () => size(rolling) <= py.mul(ENDED, this.body.speed));
+    var [ended, stopped] = this.zeros(slip, rolling);
     if (!(py.truth(ended) || py.truth(stopped))) {
       return py.truth(this.ended) || py.truth(this.stopped) ? new DryContact(this.body) : this;
     }
@@ -4707,18 +4731,9 @@ class DryContact extends py.NamedTuple {
   }
   /** The state after an impulse, in which slip and rolling that have ended are exactly zero. */
   at_rest(impulse, after) {
-    var [slip, rolling] = this.parts(this.body.velocities(impulse));
-    if (py.truth(this.top.resists_rolling) && size(rolling) <= py.mul(ENDED, this.body.speed)) {
-      after = after._replace({ momentum: without_rolling(after.axis, after.momentum, this.top) });
-    }
-    if (!py.truth(is_set_valued(this.top.friction)) || size(slip) > py.mul(ENDED, this.body.speed)) {
-      return after;
-    }
-    if (this.reach !== null) {
-      after = after._replace({ momentum: without_drilling(after.axis, after.momentum, this.top) });
-    }
-    var velocity = velocity_without_slip(after.axis, after.momentum, this.top);
-    return after._replace({ velocity: [...velocity, after.velocity[2]] });
+    var zeros = this.zeros(...this.parts(this.body.velocities(impulse)));
+    var still = come_to_rest(along_table(after), this.top, ...zeros);
+    return after._replace({ momentum: still.momentum, velocity: [...still.velocity, after.velocity[2]] });
   }
   /** Error in slip and rolling of a step, relative to them or to a millionth of the body's speed. */
   doubt(here, there, off) {
@@ -5291,10 +5306,8 @@ function impact(state, restitution, top) {
     return new Impact(state, 0.0, 0.0, 0.0);
   }
   var law = top.friction;
-  var process = py.isinstance(
-    law,
-    ViscousLaw
-  ) ? ViscousProcess.of(body, law) : new IntegratedProcess(body, dry);
+  var viscous = py.isinstance(law, ViscousLaw) ? ViscousProcess.of(body, law) : null;
+  var process = py.or(viscous, () => new IntegratedProcess(body, dry));
   var frictionless = py.div(py.or(py.mul(-2.0, body.before[2]), () => body.striking), body.response[2][2]);
   var [compressed, steps] = process.until(NO_IMPULSE, py.bound(body, "approach"), frictionless);
   var impulse = compressed;
@@ -5478,7 +5491,7 @@ class ContactRules extends Rules {
       py.or(new_[0], () => py.and(held, () => new_[1])),
       py.or(new_[1], () => py.and(held, () => new_[0]))
     ];
-    state = this._at_rest(state, ...ended);
+    state = on_table(come_to_rest(along_table(state), this.top, ...ended), this.top);
     var point = ContactPoint.of(state.axis, state.momentum, this.top);
     var slip = py.truth(ended[0]) ? null : slip_of(...along_table(state), this.top);
     var rolling = py.truth(ended[1]) ? null : point.turning.slice(0, 2);
@@ -5532,20 +5545,6 @@ class ContactRules extends Rules {
       }
     }
     return py.tuple(told);
-  }
-  /** The state in which slip, or rolling, that has ended is exactly zero. */
-  _at_rest(state, slip, rolling) {
-    var [axis, momentum, velocity] = along_table(state);
-    if (py.truth(slip) && slip_length(this.top.friction) !== null) {
-      momentum = without_drilling(axis, momentum, this.top);
-    }
-    if (py.truth(rolling)) {
-      momentum = without_rolling(axis, momentum, this.top);
-    }
-    if (py.truth(slip)) {
-      velocity = velocity_without_slip(axis, momentum, this.top);
-    }
-    return on_table(new SlidingState(axis, momentum, velocity), this.top);
   }
   /** Whether nothing holds rolling. */
   _rolls(state) {
@@ -6245,7 +6244,13 @@ class OnTwo extends StatedMode {
   }
   /** What the resolver finds where slip, or rolling, has ended, or begins as signed. */
   settled(time, state, rolls) {
-    return this.rules.settled_on_two(time, state, this.tops, this.stuck, [this.rolls, rolls]);
+    return this.rules.settled_on_two(
+      time,
+      state,
+      this.tops,
+      new Before(this.stuck, py.bool(this.rolls)),
+      rolls
+    );
   }
   /** What follows where rolling ends, or can be held no longer: there are no other guards. */
   follow_rolling(guard, time, state) {
@@ -6600,16 +6605,6 @@ const TOGETHER = 30.0;
 const ABOUT = py.add(1.0, 0.001);
 const [FIRST_of_two_closed, SECOND, BOTH, NEITHER] = ["first", "second", "both", "neither"];
 const [OPENS, HELD, CLOSES] = ["opens", "held", "closes"];
-
-/** What two contacts did before. */
-class Before extends py.Record {
-  constructor(stuck = [], rolled = false) {
-    super();
-    this.stuck = stuck;
-    this.rolled = rolled;
-  }
-}
-py.fields(Before, ["stuck", "rolled"]);
 
 /** Two contacts that are closed and have no normal velocities. */
 class TwoClosed extends py.Record {
@@ -7171,8 +7166,8 @@ class OnSeveral extends FreeToFly {
     return super.resting(time, state, events);
   }
   /** As the resolver of two contacts finds. */
-  settled_on_two(time, state, tops, stuck, rolls) {
-    return settled(this, time, state, tops, new Before(stuck, py.bool(rolls[0])), rolls[1]);
+  settled_on_two(time, state, tops, before, rolls) {
+    return settled(this, time, state, tops, before, rolls);
   }
   /** Slip begins at the limit of what the table can hold. */
   slipping_on_two(time, state, tops, which, rolls) {
@@ -10060,12 +10055,17 @@ class Stepping extends py.Thing {
 const LEVEL = 1e-09;
 const LOOKS_of_lowest = 65;
 
+/** Height from which on a surface is as low as the lowest. */
+function _level(surface, c) {
+  return py.sub(outer_height(surface, c), py.mul(LEVEL, surface.size));
+}
+
 /** Vectors from the centre of mass to the lowest point of the body; of numbers, or arrays of one shape. */
 function lowest_contact_vector(axis, surface) {
   if (!py.isinstance(surface, Hull)) {
     return contact_vector(axis, surface);
   }
-  var level = py.sub(outer_height(surface, axis[2]), py.mul(LEVEL, surface.size));
+  var level = _level(surface, axis[2]);
   var [last, ...others] = py.reversed(each_surface(surface));
   py.heed(false);
   try {
@@ -11192,6 +11192,7 @@ export {
   _leads,
   _left,
   _left_of_two_closed,
+  _level,
   _line,
   _marks,
   _meetings,
@@ -11240,7 +11241,6 @@ export {
   brackets,
   branch_guard,
   branch_jellett,
-  branch_of,
   classify,
   classify_top,
   clearance,
@@ -11250,6 +11250,7 @@ export {
   coexistence,
   combined,
   combined_of_dormand_prince,
+  come_to_rest,
   compiled_step,
   contact,
   contact_motion,

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from tippetop.mechanics.beginning import settling
 from tippetop.mechanics.impulse import FUZZ, Impulse, Striking
+from tippetop.mechanics.motion import along_table
 from tippetop.mechanics.rolling import (
     Acceleration,
     ContactPoint,
@@ -19,12 +20,9 @@ from tippetop.mechanics.rolling import (
     is_set_valued,
     slip_length,
     struck_wrench,
-    velocity_without_slip,
-    without_drilling,
-    without_rolling,
 )
 from tippetop.mechanics.state import State
-from tippetop.mechanics.stick_slip import scaled, size, slip_part
+from tippetop.mechanics.stick_slip import come_to_rest, scaled, size, slip_part
 from tippetop.mechanics.top import Top
 
 ENDED = 10.0 * FUZZ
@@ -62,11 +60,16 @@ class DryContact(NamedTuple):
         """Slip zeta and horizontal angular velocity (times the arm's length) of six velocities, m/s."""
         return slip_part(velocity, self.reach), scaled(self.body.lever, velocity[3:5])
 
+    def zeros(self, slip: Slip, rolling: Slip) -> tuple[bool, bool]:
+        """Whether slip, and rolling, of which there is so much have ended, if they can."""
+        least = ENDED * self.body.speed
+        ended = is_set_valued(self.top.friction) and size(slip) <= least
+        return ended, self.top.resists_rolling and size(rolling) <= least
+
     def settled(self, impulse: Impulse) -> "DryContact":
         """The contact with what has ended after an impulse, and where that goes on if it cannot stay so."""
         slip, rolling = self.parts(self.body.velocities(impulse))
-        ended = is_set_valued(self.top.friction) and size(slip) <= ENDED * self.body.speed
-        stopped = self.top.resists_rolling and size(rolling) <= ENDED * self.body.speed
+        ended, stopped = self.zeros(slip, rolling)
         if not (ended or stopped):
             return DryContact(self.body) if self.ended or self.stopped else self
         go_on = None if ended else slip, None if stopped else rolling
@@ -96,15 +99,9 @@ class DryContact(NamedTuple):
 
     def at_rest(self, impulse: Impulse, after: State) -> State:
         """The state after an impulse, in which slip and rolling that have ended are exactly zero."""
-        slip, rolling = self.parts(self.body.velocities(impulse))
-        if self.top.resists_rolling and size(rolling) <= ENDED * self.body.speed:
-            after = after._replace(momentum=without_rolling(after.axis, after.momentum, self.top))
-        if not is_set_valued(self.top.friction) or size(slip) > ENDED * self.body.speed:
-            return after
-        if self.reach is not None:
-            after = after._replace(momentum=without_drilling(after.axis, after.momentum, self.top))
-        velocity = velocity_without_slip(after.axis, after.momentum, self.top)
-        return after._replace(velocity=(*velocity, after.velocity[2]))
+        zeros = self.zeros(*self.parts(self.body.velocities(impulse)))
+        still = come_to_rest(along_table(after), self.top, *zeros)
+        return after._replace(momentum=still.momentum, velocity=(*still.velocity, after.velocity[2]))
 
     def doubt(self, here: Slip, there: Slip, off: Slip) -> float:
         """Error in slip and rolling of a step, relative to them or to a millionth of the body's speed.

@@ -32,7 +32,7 @@ from typing import NamedTuple
 
 from tippetop.mechanics.dry_impact import DryContact, is_dry
 from tippetop.mechanics.friction import ViscousLaw
-from tippetop.mechanics.impulse import NO_IMPULSE, NORMAL, WORK, Goal, Impulse, Process, Striking
+from tippetop.mechanics.impulse import NO_IMPULSE, NORMAL, WORK, Goal, Impulse, Striking
 from tippetop.mechanics.integrated_impact import IntegratedProcess
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
@@ -79,9 +79,8 @@ def impact(state: State, restitution: float, top: Top) -> Impact:
     if not is_struck(body, dry):
         return Impact(state, 0.0, 0.0, 0.0)
     law = top.friction
-    process: Process = (
-        ViscousProcess.of(body, law) if isinstance(law, ViscousLaw) else IntegratedProcess(body, dry)
-    )
+    viscous = ViscousProcess.of(body, law) if isinstance(law, ViscousLaw) else None
+    process = viscous or IntegratedProcess(body, dry)
 
     frictionless = (-2.0 * body.before[2] or body.striking) / body.response[2][2]
     compressed, steps = process.until(NO_IMPULSE, body.approach, frictionless)

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from operator import mul
-from typing import NamedTuple, Protocol, TypeAlias
+from typing import NamedTuple, TypeAlias
 
 from tippetop.mechanics.motion import angular_velocity, point_velocity
 from tippetop.mechanics.rolling import COUPLES, DRILLING, FORCES, ContactPoint, Slip, Wrench, flat
@@ -96,16 +96,6 @@ class Striking(NamedTuple):
             return (*six, impulse[WORK] + q * (approach + 0.5 * q * rise))
 
         return along
-
-
-class Process(Protocol):
-    """How an impact goes on under some friction law."""
-
-    def until(self, impulse: Impulse, goal: Goal, guess: float) -> tuple[Impulse, int]:
-        """The first impulse from a given one on at which the goal is not negative, and the steps to there.
-
-        The guess, positive, is how much the normal impulse may have to grow.
-        """
 
 
 def contact_velocity(state: State, arm: Vector, top: Top) -> Vector:

@@ -273,13 +273,6 @@ def whole_law(law: FrictionLaw) -> Any:
     return inner.whole if hasattr(inner, "whole") else inner
 
 
-def branch_of(law: FrictionLaw, slip: Horizontal, angular_velocity: Vector) -> FrictionLaw:
-    """The law of slip and drilling, the branch that holds where it is made of such; of floats."""
-    whole = whole_law(law)
-    inner: FrictionLaw = whole.branch(slip, angular_velocity) if is_branched(law) else sliding_law(law)
-    return inner
-
-
 def with_sliding_law(top: Top, law: FrictionLaw) -> Top:
     """A top with another law of slip and drilling, and the same rolling resistance."""
     outer = top.friction
@@ -290,8 +283,8 @@ def on_branch(top: Top, slip: Slip) -> Top:
     """A top with the branch of its law that holds where it slips, or in that direction; of floats."""
     if not is_branched(top.friction):
         return top
-    turning = (0.0, 0.0, slip[2] / whole_law(top.friction).slip_length)
-    return with_sliding_law(top, branch_of(top.friction, (slip[0], slip[1]), turning))
+    law = whole_law(top.friction)
+    return with_sliding_law(top, law.branch(slip[:2], (0.0, 0.0, slip[2] / law.slip_length)))
 
 
 def on_numbered_branch(top: Top, slip: Slip) -> Top:

@@ -22,6 +22,8 @@ from tippetop.mechanics.rolling import (
     sliding_law,
     slip_length,
     velocity_without_slip,
+    without_drilling,
+    without_rolling,
 )
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.surface import contact_vector
@@ -57,6 +59,16 @@ def velocity_of(axis: Vector, momentum: Vector, slip: Slip, top: Top) -> Horizon
     """Horizontal velocity of the centre of mass with this slip, m/s."""
     rolling = velocity_without_slip(axis, momentum, top)
     return (rolling[0] + slip[0], rolling[1] + slip[1])
+
+
+def come_to_rest(state: SlidingState, top: Top, slip: bool, rolling: bool) -> SlidingState:
+    """The state in which slip, or rolling, that has ended is exactly zero."""
+    axis, momentum, velocity = state
+    if slip and slip_length(top.friction) is not None:
+        momentum = without_drilling(axis, momentum, top)
+    if rolling:
+        momentum = without_rolling(axis, momentum, top)
+    return SlidingState(axis, momentum, velocity_without_slip(axis, momentum, top) if slip else velocity)
 
 
 def is_slipping(axis: Vector, momentum: Vector, velocity: Horizontal, top: Top) -> Scalar:
