@@ -7,7 +7,7 @@ the engine of sweeps many; neither knows mechanics.
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Any, ClassVar, NamedTuple, Self
 
@@ -237,7 +237,7 @@ class Mode(ABC):
 
     top: Top
     """The top in natural units."""
-    rules: Rules = field(repr=False)
+    rules: Rules
     """What follows where contact begins or ends."""
 
     name: ClassVar[str]

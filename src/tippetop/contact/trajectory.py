@@ -1,7 +1,6 @@
 """One launch, followed from mode to mode: the executor of single launches."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 
 from tippetop.contact.mode import Event, Mode, Outcome, Segment, Transition
 from tippetop.integrators.base import Integrator
@@ -17,7 +16,6 @@ STEP_LIMIT = 500_000
 """How many steps a run takes at most unless told otherwise: more than an hour of a tippe top's spinning."""
 
 
-@dataclass
 class Trajectory:
     """A launch under way; iterate over `segments` to follow it.
 
@@ -40,23 +38,20 @@ class Trajectory:
         Everything that happened so far, in order.
     """
 
-    start: Transition
-    end: float
-    integrator: Integrator
-    limit: int = PHASE_LIMIT
-    step_limit: int = STEP_LIMIT
-    time: float = 0.0
-    outcome: Outcome | None = None
-    detail: str = ""
-    events: list[Event] = field(default_factory=list)
-
-    @property
-    def state(self) -> State:
-        """The state where the trajectory is."""
-        return self._state
-
-    def __post_init__(self) -> None:
-        self._state = self.start.state
+    def __init__(
+        self,
+        start: Transition,
+        end: float,
+        integrator: Integrator,
+        limit: int = PHASE_LIMIT,
+        step_limit: int = STEP_LIMIT,
+        time: float = 0.0,
+    ) -> None:
+        self.start, self.end, self.integrator = start, end, integrator
+        self.limit, self.step_limit = limit, step_limit
+        self.time, self.state = time, start.state
+        self.outcome: Outcome | None = None
+        self.detail, self.events = "", list[Event]()
 
     def segments(self) -> Iterator[Segment]:
         """Follow the launch, mode by mode and piece by piece."""
@@ -66,8 +61,8 @@ class Trajectory:
                 self.outcome = Outcome.COMPLETED if self.time >= self.end else Outcome.TOO_MANY_PHASES
                 return
             modes += 1
-            for segment in transition.then.segments(self.time, self._state, self.end, self.integrator):
-                self.time, self._state = segment.end_time, segment.end_state
+            for segment in transition.then.segments(self.time, self.state, self.end, self.integrator):
+                self.time, self.state = segment.end_time, segment.end_state
                 steps += max(segment.steps, len(segment.solution.knots) - 1)
                 if segment.transition is not None:
                     transition = self._enter(segment.transition)
@@ -79,12 +74,12 @@ class Trajectory:
 
     def end_at(self, time: float, state: State) -> None:
         """Leave the rest of the run out, from a time and state in the last segment on."""
-        self.time, self._state, self.outcome = time, state, Outcome.COMPLETED
+        self.time, self.state, self.outcome = time, state, Outcome.COMPLETED
         self.events = [event for event in self.events if event.time <= time]
 
     def _enter(self, transition: Transition) -> Transition:
         self.events += transition.events
-        self._state = transition.state
+        self.state = transition.state
         if isinstance(transition.then, Outcome):
             self.outcome, self.detail = transition.then, transition.detail
         return transition

@@ -61,8 +61,6 @@ class Definitions(Statements):
         yield f"constructor({', '.join(given)}) {{"
         yield f"  super({', '.join(map(safe, above))});"
         yield from (f"  this.{name} = {safe(name)};" for name in known.fields if name not in above)
-        if "__post_init__" in ast.unparse(known.node):
-            yield "  this.__post_init__();"
         yield "}"
 
     def _method(self, node: ast.FunctionDef) -> Iterator[str]:

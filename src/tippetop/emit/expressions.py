@@ -5,8 +5,7 @@ import json
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 
-from tippetop.emit.program import Program, safe
-from tippetop.emit.scope import given
+from tippetop.emit.program import Program, given, safe
 
 ARROW, OR, AND, BITS, EQUAL, LESS, SUM, PRODUCT, UNARY, ATOM = range(10)
 """How tightly an expression binds."""

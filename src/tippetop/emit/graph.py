@@ -5,7 +5,7 @@ or 1 is left out, and what is computed twice is computed once. All of that is ex
 powers of halves and quarters become products and roots.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 from tippetop.mechanics.series import Series, is_number
@@ -28,11 +28,11 @@ class NotRecordable(TypeError):
     """A function asked of a node what only a number can tell."""
 
 
-@dataclass(eq=False, slots=True)
+@dataclass(eq=False, repr=False, slots=True)
 class Node:
     """A number that is to be computed, or given."""
 
-    graph: "Graph" = field(repr=False)
+    graph: "Graph"
     """Where it belongs."""
     name: str
     """What makes it: an operation, or `STATE`, `PARAMETER` or `CONSTANT`."""
@@ -97,23 +97,28 @@ class Node:
         raise NotRecordable(NO_CHOICE)
 
 
-@dataclass(eq=False)
 class Graph:
-    """Nodes, each of which is there once."""
+    """Nodes, each of which is there once.
 
-    nodes: list[Node] = field(default_factory=list)
-    """All of them, operands before what is made of them."""
-    known: dict[str, Node] = field(default_factory=dict)
-    """The same by what they are."""
+    Attributes
+    ----------
+    nodes
+        All of them, operands before what is made of them.
+    """
+
+    def __init__(self) -> None:
+        self.nodes = list[Node]()
+        # The same by what they are.
+        self._known = dict[str, Node]()
 
     def node(self, name: str, operands: tuple[Node, ...], value: float = 0.0) -> Node:
         """The node of this description, which is made if there is none."""
-        key = key_of(name, operands, value)
-        found = self.known.get(key)
+        key = " ".join([name, repr(value), *[str(operand.place) for operand in operands]])
+        found = self._known.get(key)
         if found is None:
             found = Node(self, name, operands, value, len(self.nodes))
             self.nodes.append(found)
-            self.known[key] = found
+            self._known[key] = found
         return found
 
     def taken(self, number: Any) -> Node:
@@ -177,11 +182,6 @@ class Graph:
     def rarely(self, condition: Any, a: Any, b: Any) -> Any:
         """The same; the first is computed only where launches abreast have need of it."""
         return self.node(RARELY, (self.taken(condition), self.taken(a), self.taken(b)))
-
-
-def key_of(name: str, operands: tuple[Node, ...], value: float = 0.0) -> str:
-    """What tells a node from all others of its graph."""
-    return " ".join([name, repr(value), *[str(operand.place) for operand in operands]])
 
 
 def in_order(a: Node, b: Node) -> tuple[Node, Node]:

@@ -1,7 +1,7 @@
 """Python modules that are to be another language's: who is who in them."""
 
 import ast
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
 RESERVED = " new function default delete var this typeof void switch case null arguments "
@@ -21,6 +21,9 @@ KINDS = {
 
 RECORDS = ("py.NamedTuple", "py.Record")
 """Kinds whose fields are what they are made of, by their places."""
+
+OWN = (ast.FunctionDef, ast.Lambda, ast.ListComp, ast.GeneratorExp, ast.DictComp)
+"""What has names of its own."""
 
 NOTHING = ast.Constant(None)
 
@@ -138,7 +141,7 @@ class Program:
             match node:
                 case ast.AnnAssign(target=ast.Name(id=name)) if found.kind in (*RECORDS, "Part"):
                     if not ast.unparse(node.annotation).startswith("ClassVar"):
-                        found.fields[name] = default_of(node.value)
+                        found.fields[name] = node.value
                 case ast.FunctionDef(name="__init__"):
                     found.fields = dict.fromkeys(parameters(node))
                 case ast.FunctionDef(name=name) if "property" in " ".join(marks_of(node)):
@@ -153,17 +156,34 @@ def parameters(node: ast.FunctionDef | ast.Lambda) -> list[str]:
     return found[1:] if found[:1] in (["self"], ["cls"]) else found
 
 
+def given(node: ast.FunctionDef | ast.Lambda) -> set[str]:
+    """The parameters of a function."""
+    return {*parameters(node), *([node.args.vararg.arg] if node.args.vararg else [])}
+
+
+def bound(node: ast.FunctionDef | ast.Lambda) -> set[str]:
+    """Those, and the names that the function binds."""
+    names = given(node)
+    for inner in within(node):
+        match inner:
+            case ast.Name(id=name, ctx=ast.Store()) | ast.FunctionDef(name=name):
+                names.add(name)
+            case ast.ExceptHandler(name=str(name)):
+                names.add(name)
+    return names
+
+
+def within(node: ast.AST) -> Iterator[ast.AST]:
+    """All that is in a function, but not what is in others that are in it."""
+    for child in ast.iter_child_nodes(node):
+        yield child
+        if not isinstance(child, OWN):
+            yield from within(child)
+
+
 def marks_of(node: ast.FunctionDef) -> list[str]:
     """The names of a function's decorators."""
     return [ast.unparse(mark).partition("(")[0].rpartition(".")[2] for mark in node.decorator_list]
-
-
-def default_of(value: ast.expr | None) -> ast.expr | None:
-    """The default of a field."""
-    if isinstance(value, ast.Call) and ast.unparse(value.func) == "field":
-        made = [keyword.value for keyword in value.keywords if keyword.arg == "default_factory"]
-        return ast.Call(made[0], [], []) if made else None
-    return value
 
 
 def targets_of(node: ast.Assign | ast.AnnAssign) -> list[ast.expr]:

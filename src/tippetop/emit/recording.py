@@ -1,10 +1,13 @@
 """Functions of a state and parameters recorded as graphs."""
 
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 from tippetop.emit.graph import PARAMETER, STATE, Graph, Node
 from tippetop.mechanics.vectors import Scalar
+
+Function: TypeAlias = Callable[[Sequence[Scalar], Sequence[Scalar]], Sequence[Scalar]]
+"""Of a state and parameters."""
 
 
 class Recorded(NamedTuple):
@@ -21,12 +24,7 @@ class Recorded(NamedTuple):
     """Some of what it computes on the way, to be had where it is asked for."""
 
 
-def record(
-    function: Callable[[Sequence[Scalar], Sequence[Scalar]], Sequence[Scalar]],
-    size: int,
-    parameters: int,
-    more: int = 0,
-) -> Recorded:
+def record(function: Function, size: int, parameters: int, more: int = 0) -> Recorded:
     """Record what a function of a state and parameters does.
 
     Parameters
@@ -51,6 +49,14 @@ def record(
     return Recorded(
         needed(graph, outputs), tuple(outputs[:always]), size, parameters, tuple(outputs[always:])
     )
+
+
+def recordable(function: Function, size: int, parameters: int) -> Recorded | None:
+    """What a function does, see `record`; None where it asks nodes for what only numbers have."""
+    try:
+        return record(function, size, parameters)
+    except (TypeError, ValueError, ArithmeticError, AttributeError):
+        return None
 
 
 def needed(graph: Graph, outputs: Sequence[Node]) -> tuple[Node, ...]:

@@ -6,8 +6,7 @@ from typing import Any
 
 from tippetop.emit.calls import Calls
 from tippetop.emit.expressions import ATOM, LESS
-from tippetop.emit.program import marks_of, names_in, targets_of
-from tippetop.emit.scope import bound, given, within
+from tippetop.emit.program import bound, given, marks_of, names_in, targets_of, within
 
 
 class Statements(Calls):

@@ -55,7 +55,7 @@ LEFT = {
     "_a_profile",
     "Body.turned",
     "Contact.rules",
-    *("read", "_compiled", "_without_top", "_of_kind", "continuous"),
+    *("read", "recordable", "_compiled", "_without_top", "_of_kind", "continuous"),
     *("Ends.unknown", "Ends.put", "ending", "turning_time", "arrival_time"),
     *("Monitor.energy_error", "Graph.rarely", "Flight._numbers"),
     *("written_out", "_for_each", "_sum", "_powers"),

@@ -8018,36 +8018,14 @@ const LONGEST_of_trajectory = 1e+300;
 const STEP_LIMIT = 500000;
 
 /** A launch under way; iterate over `segments` to follow it. */
-class Trajectory extends py.Record {
-  constructor(
-    start,
-    end,
-    integrator,
-    limit = PHASE_LIMIT,
-    step_limit = STEP_LIMIT,
-    time = 0.0,
-    outcome = null,
-    detail = "",
-    events = py.list()
-  ) {
+class Trajectory extends py.Thing {
+  constructor(start, end, integrator, limit = PHASE_LIMIT, step_limit = STEP_LIMIT, time = 0.0) {
     super();
-    this.start = start;
-    this.end = end;
-    this.integrator = integrator;
-    this.limit = limit;
-    this.step_limit = step_limit;
-    this.time = time;
-    this.outcome = outcome;
-    this.detail = detail;
-    this.events = events;
-    this.__post_init__();
-  }
-  /** The state where the trajectory is. */
-  get state() {
-    return this._state;
-  }
-  __post_init__() {
-    this._state = this.start.state;
+    [this.start, this.end, this.integrator] = [start, end, integrator];
+    [this.limit, this.step_limit] = [limit, step_limit];
+    [this.time, this.state] = [time, start.state];
+    this.outcome = null;
+    [this.detail, this.events] = ["", py.list()];
   }
   /** Follow the launch, mode by mode and piece by piece. */
   *segments() {
@@ -8060,8 +8038,8 @@ class Trajectory extends py.Record {
         return null;
       }
       modes = py.add(modes, 1);
-      for (var segment of transition.then.segments(this.time, this._state, this.end, this.integrator)) {
-        [this.time, this._state] = [segment.end_time, segment.end_state];
+      for (var segment of transition.then.segments(this.time, this.state, this.end, this.integrator)) {
+        [this.time, this.state] = [segment.end_time, segment.end_state];
         steps = py.add(steps, py.max(segment.steps, py.sub(py.len(segment.solution.knots), 1)));
         if (segment.transition !== null) {
           transition = this._enter(segment.transition);
@@ -8077,22 +8055,18 @@ class Trajectory extends py.Record {
   }
   /** Leave the rest of the run out, from a time and state in the last segment on. */
   end_at(time, state) {
-    [this.time, this._state, this.outcome] = [time, state, Outcome.COMPLETED];
+    [this.time, this.state, this.outcome] = [time, state, Outcome.COMPLETED];
     this.events = [...this.events].filter((event) => event.time <= time);
   }
   _enter(transition) {
     this.events = py.add(this.events, transition.events);
-    this._state = transition.state;
+    this.state = transition.state;
     if (py.isinstance(transition.then, Outcome)) {
       [this.outcome, this.detail] = [transition.then, transition.detail];
     }
     return transition;
   }
 }
-py.fields(
-  Trajectory,
-  ["start", "end", "integrator", "limit", "step_limit", "time", "outcome", "detail", "events"]
-);
 
 // tippetop.theory.requirements
 
@@ -10544,20 +10518,20 @@ class Node extends py.Record {
 py.fields(Node, ["graph", "name", "operands", "value", "place"]);
 
 /** Nodes, each of which is there once. */
-class Graph extends py.Record {
-  constructor(nodes = py.list(), known = py.dict()) {
+class Graph extends py.Thing {
+  constructor() {
     super();
-    this.nodes = nodes;
-    this.known = known;
+    this.nodes = py.list();
+    this._known = py.dict();
   }
   /** The node of this description, which is made if there is none. */
   node(name, operands, value = 0.0) {
-    var key = key_of(name, operands, value);
-    var found = this.known.get(key);
+    var key = py.join(" ", [name, py.repr(value), ...[...operands].map((operand) => py.str(operand.place))]);
+    var found = this._known.get(key);
     if (found === null) {
       found = new Node(this, name, operands, value, py.len(this.nodes));
       this.nodes.push(found);
-      py.put(this.known, key, found);
+      py.put(this._known, key, found);
     }
     return found;
   }
@@ -10635,12 +10609,6 @@ class Graph extends py.Record {
     }
     return this.node(SELECT, [condition, this.taken(a), this.taken(b)]);
   }
-}
-py.fields(Graph, ["nodes", "known"]);
-
-/** What tells a node from all others of its graph. */
-function key_of(name, operands, value = 0.0) {
-  return py.join(" ", [name, py.repr(value), ...[...operands].map((operand) => py.str(operand.place))]);
 }
 
 /** Two operands whose order does not matter. */
@@ -11329,7 +11297,6 @@ export {
   jellett_line,
   jellett_of_launch,
   jump_boundary,
-  key_of,
   lambda_down,
   lambda_up,
   landed,

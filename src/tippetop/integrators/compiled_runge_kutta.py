@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numba import types
 
-from tippetop.emit.recording import record
+from tippetop.emit.recording import recordable
 from tippetop.integrators import dormand_prince, numba_calls
 from tippetop.integrators.base import Arc, Array, Motion
 from tippetop.integrators.dormand_prince import LOOKS
@@ -63,17 +63,15 @@ class CompiledRungeKutta:
 def _compiled(motion: Motion) -> Machinery | None:
     """A motion's functions; None where they cannot be recorded."""
 
-    def guards(y: Sequence[Scalar], p: Sequence[Scalar]) -> list[Scalar]:
+    def all_guards(y: Sequence[Scalar], p: Sequence[Scalar]) -> list[Scalar]:
         return [guard.value(y, p) for guard in motion.guards]
 
-    try:
-        recorded = {
-            name: record(function, motion.size, motion.parameters)
-            for name, function in {"rates": motion.rates, "guards": guards}.items()
-        }
-    except (TypeError, ValueError, ArithmeticError, AttributeError):
+    rates = recordable(motion.rates, motion.size, motion.parameters)
+    guards = recordable(all_guards, motion.size, motion.parameters)
+    if rates is None or guards is None:
         return None
-    one, several = machine_code(recorded), machine_code({"guards": recorded["guards"]}, LOOKS)
+    one = machine_code({"rates": rates, "guards": guards})
+    several = machine_code({"guards": guards}, LOOKS)
     width = -(-motion.size // ABREAST) * ABREAST
     method = _method(width)
     addresses = (one["rates"].address,), (one["guards"].address, several["guards"].address)

@@ -7,7 +7,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from tippetop.emit.llvm import ABREAST
-from tippetop.emit.recording import record
+from tippetop.emit.recording import recordable
 from tippetop.integrators import has_llvm
 from tippetop.integrators.base import Array, Rows
 
@@ -23,9 +23,8 @@ def compiled_evaluation(function: Rows, size: int, parameters: int) -> Evaluatio
         return None
     from tippetop.integrators.machine_code import machine_code  # noqa: PLC0415 - optional
 
-    try:
-        recorded = record(function, size, parameters)
-    except (TypeError, ValueError, ArithmeticError, AttributeError):
+    recorded = recordable(function, size, parameters)
+    if recorded is None:
         return None
     compiled, count = machine_code({"values": recorded}, ABREAST)["values"], len(recorded.outputs)
 
