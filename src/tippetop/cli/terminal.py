@@ -66,32 +66,19 @@ def progress_bar(what: str = "") -> Iterator[Callable[..., None]]:
 
     Given is what is to be told of it: how much is done, of how much, and, if that changes, what it is at.
     """
-    with _bar(what) as draw:
-
-        def tell(done: float, total: float, now: str = what) -> None:
-            hear()
-            draw(completed=done, total=total, description=now)
-
-        yield tell
-
-
-@contextmanager
-def _bar(what: str) -> Iterator[Callable[..., None]]:
     if not sys.stderr.isatty():
-        yield lambda **_: None
+        yield lambda *_: hear()
         return
     from rich.console import Console  # noqa: PLC0415
     from rich.markup import escape  # noqa: PLC0415
     from rich.progress import Progress, TimeElapsedColumn  # noqa: PLC0415
 
-    def written(what: str) -> str:
-        return escape(f"{what:<28}")
-
     columns = (*Progress.get_default_columns(), TimeElapsedColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(written(what), total=None)
+        task = bar.add_task(escape(f"{what:<28}"), total=None)
 
-        def draw(completed: float, total: float, description: str) -> None:
-            bar.update(task, completed=completed, total=total, description=written(description))
+        def tell(done: float, total: float, now: str = what) -> None:
+            hear()
+            bar.update(task, completed=done, total=total, description=escape(f"{now:<28}"))
 
-        yield draw
+        yield tell

@@ -1,5 +1,7 @@
 """The Euler angles of equation (2.1) (the report's Fig. 2)."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -26,7 +28,8 @@ def euler_angles_drawing() -> Figure:
     _discs(axes, view, space, body, nodes)
     _frame(axes, view, space, ("x", "y", "z"), MUTED)
     _frame(axes, view, body, ("X", "Y", "Z"), CONVERGED)
-    _line_of_nodes(axes, view, nodes)
+    draw.line(axes, np.outer([-1.1, 0.0], nodes @ view), INK, 1.1, dashed=True, z=3)
+    _frame(axes, view, nodes[None], "N", INK)
     _euler_arcs(axes, view, space, body, nodes)
     _euler_key(axes, (1.08, 1.2))
     return figure
@@ -50,18 +53,11 @@ def _discs(axes: Axes, view: Array, space: Array, body: Array, nodes: Array) -> 
     draw.line(axes, level, MUTED, 1.0, z=0.9)
 
 
-def _frame(axes: Axes, view: Array, frame: Array, names: tuple[str, str, str], color: str) -> None:
+def _frame(axes: Axes, view: Array, frame: Array, names: Sequence[str], color: str) -> None:
     for direction, name in zip(frame, names, strict=True):
         tip = direction @ view
         draw.arrow(axes, [0 * tip, 1.2 * tip], color, width=1.6, head=0.09)
         draw.label(axes, 1.2 * tip + 0.09 * draw.unit(tip), f"$\\mathbf{{{name}}}$", color=color, size=12)
-
-
-def _line_of_nodes(axes: Axes, view: Array, nodes: Array) -> None:
-    tip = nodes @ view
-    draw.line(axes, [-1.1 * tip, 0 * tip], INK, 1.1, dashed=True, z=3)
-    draw.arrow(axes, [0 * tip, 1.2 * tip], INK, width=1.6, head=0.09)
-    draw.label(axes, 1.2 * tip + 0.09 * draw.unit(tip), "$\\mathbf{N}$", size=12)
 
 
 def _euler_arcs(axes: Axes, view: Array, space: Array, body: Array, nodes: Array) -> None:
