@@ -42,12 +42,9 @@ def _common_threshold(*runs: xr.Dataset) -> int:
 
 
 @examines(
-    "fig04-first-reversal",
-    "run-155",
-    tolerance=READ,
-    name="quiet_start",
+    "fig04-first-reversal", "run-155", tolerance=READ, name="quiet_start",
     meant="the last before the long calm",
-)
+)  # fmt: skip
 @examines(
     "fig04-second-reversal", "run-155", tolerance=READ, name="quiet_end",
     meant="the first after the long calm",

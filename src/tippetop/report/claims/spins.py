@@ -16,19 +16,14 @@ _STEP = Tolerance(
 
 
 _NEEDED = ("final-tilt-listing", "critical-spins", "why-critical")
-_FIRST, _SECOND = CRITICAL_SPINS
 
 
 @examines(
-    "fig06-c1",
-    *_NEEDED,
-    tolerance=_STEP,
-    name="upright",
-    printed=_FIRST,
+    "fig06-c1", *_NEEDED, tolerance=_STEP, name="upright", printed=CRITICAL_SPINS[0],
     change="the upright spin loses its stability",
-)
+)  # fmt: skip
 @examines(
-    "fig06-c2", *_NEEDED, tolerance=_STEP, name="inverted", printed=_SECOND,
+    "fig06-c2", *_NEEDED, tolerance=_STEP, name="inverted", printed=CRITICAL_SPINS[1],
     change="the inverted spin gains stability",
 )  # fmt: skip
 def _(
