@@ -21,7 +21,7 @@ from tippetop.mechanics.top import natural_units
 from tippetop.mechanics.view import Angles
 from tippetop.problem import Problem
 from tippetop.theory.dual import Array
-from tippetop.theory.nutation import Numbers, numbers_of
+from tippetop.theory.nutation import numbers_of
 from tippetop.theory.nutation_decay import Goals, Nutation, Stage, follow_nutation, launched
 from tippetop.theory.prediction import stable_by_energy
 from tippetop.theory.steady import jellett_of_launch, steady_states
@@ -82,8 +82,21 @@ def averaged_flow(
         [state.tilt for state in states], [state.tilt for state in stable_by_energy(states)], distance
     )
     jellett /= float(natural_units(top).jellett)
-    begin = nutation_of_launch(problem)
-    return _follow(begin, jellett, numbers, goals, samples, tolerance, 1.0 / float(top.gravity))
+    nutation, begin, stages = nutation_of_launch(problem), 0.0, list[Stage]()
+    # From the pole that it is nearer to, until it has died away; then the tilt alone.
+    while not (stages and stages[-1].done) and len(stages) < _MOST_STAGES:
+        stage = follow_nutation(nutation, jellett, numbers, goals, samples, tolerance)
+        stages.append(stage._replace(time=begin + stage.time))
+        begin, nutation = float(stages[-1].time[-1]), stage.end.turn(numbers)
+    last = stages[-1]
+    time, low, high = (
+        np.concatenate([first, *(array[1:] for array in rest)])
+        for first, *rest in zip(*((stage.time, stage.low, stage.high) for stage in stages), strict=True)
+    )
+    if last.tail is not None:
+        time = np.concatenate([time, begin + last.tail.time[1:]])
+        low, high = (np.concatenate([bound, last.tail.tilt[1:]]) for bound in (low, high))
+    return SlowFlow(time / float(top.gravity), low, high, last.final_tilt)
 
 
 def nutation_of_launch(problem: Problem) -> Nutation:
@@ -134,33 +147,3 @@ _MOST_STAGES = 20
 def _distances(flow: SlowFlow) -> Array:
     """Distance of the nutation from the final tilt, rad, negative where it contains it."""
     return np.asarray(np.maximum(flow.tilt_low - flow.final_tilt, flow.final_tilt - flow.tilt_high))
-
-
-def _follow(
-    nutation: Nutation,
-    jellett: float,
-    numbers: Numbers,
-    goals: Goals,
-    samples: int,
-    tolerance: float,
-    unit: float,
-) -> SlowFlow:
-    """Follow the nutation, from the pole that it is nearer to, until it has died away, then the tilt alone.
-
-    All in natural units; `unit` is that of mu t.
-    """
-    stages: list[Stage] = []
-    begin = 0.0
-    while not (stages and stages[-1].done) and len(stages) < _MOST_STAGES:
-        stage = follow_nutation(nutation, jellett, numbers, goals, samples, tolerance)
-        stages.append(stage._replace(time=begin + stage.time))
-        begin, nutation = float(stages[-1].time[-1]), stage.end.turn(numbers)
-    last = stages[-1]
-    time, low, high = (
-        np.concatenate([first, *(array[1:] for array in rest)])
-        for first, *rest in zip(*((stage.time, stage.low, stage.high) for stage in stages), strict=True)
-    )
-    if last.tail is not None:
-        time = np.concatenate([time, begin + last.tail.time[1:]])
-        low, high = (np.concatenate([bound, last.tail.tilt[1:]]) for bound in (low, high))
-    return SlowFlow(time * unit, low, high, last.final_tilt)

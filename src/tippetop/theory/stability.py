@@ -97,17 +97,10 @@ class Spectrum:
 
 
 def spectrum(steady: SteadyState, top: Top, frame_rate: float | None = None) -> Spectrum:
-    """Eigenvalues of the linear motion about a steady state.
+    """Eigenvalues of the linear motion about a steady state; here the top's friction matters.
 
-    Parameters
-    ----------
-    steady
-        The steady state.
-    top
-        The body on its table; here its friction matters.
-    frame_rate
-        Angular velocity of the frame, rad/s. Default: the state's precession, which is 0, a frame at rest,
-        for a vertical spin. Only a vertical spin is steady in other frames.
+    The angular velocity of the frame, rad/s, is the state's precession, which is 0, a frame at rest, for a
+    vertical spin, unless it is given. Only a vertical spin is steady in other frames.
 
     Raises
     ------
