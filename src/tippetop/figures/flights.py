@@ -6,7 +6,6 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
-from numpy.typing import ArrayLike
 
 import tippetop.figures.annotation as mark
 from tippetop.figures.envelope import band
@@ -21,13 +20,11 @@ def continue_unilateral(
     `run` has the variable with the suffix _flight over time, and lift_off_time. If `whole`, the axis is too
     long for its oscillations to be seen, and they are drawn as a band.
     """
-    after = run[f"{name}_flight"].sel(time=slice(float(run["lift_off_time"]), None))
-    draw = band if whole else _line
-    draw(axes, after["time"], scale * after, UNILATERAL, 1.1, "table only pushes")
-
-
-def _line(axes: Axes, times: ArrayLike, values: ArrayLike, color: str, width: float, label: str) -> None:
-    axes.plot(times, values, color=color, lw=width, zorder=4, label=label)
+    after = scale * run[f"{name}_flight"].sel(time=slice(float(run["lift_off_time"]), None))
+    if whole:
+        band(axes, after["time"], after, UNILATERAL, 1.1, "table only pushes")
+    else:
+        axes.plot(after["time"], after, color=UNILATERAL, lw=1.1, zorder=4, label="table only pushes")
 
 
 @mark.drawn(3.9)

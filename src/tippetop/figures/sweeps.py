@@ -46,25 +46,14 @@ def final_tilt_figure(axes: Axes, sweep: xr.Dataset, reported: tuple[float, floa
         ((0.455, 0.11, 0.13, 0.4), (23.5, 30.5), (-0.006, 0.06)),
         ((0.635, 0.11, 0.125, 0.4), (76.0, 80.5), (np.pi - 0.06, np.pi + 0.006)),
     ):
-        _threshold(axes, mark.inset(axes, box), sweep, (around, tilts), (*reported[:2], *ours))
-
-
-def _threshold(
-    axes: Axes,
-    panel: Axes,
-    sweep: xr.Dataset,
-    limits: tuple[tuple[float, float], tuple[float, float]],
-    spins: tuple[float, float, float, float],
-) -> None:
-    """Draw one of the thresholds large: the critical spins are the report's two, then the converged ones."""
-    _critical(panel, spins, 1.0)
-    panel.plot(sweep["spin"], sweep["final_theta"], ".-", color=CONVERGED, lw=1.2, ms=3)
-    panel.plot(
-        sweep["spin_listing"], sweep["final_theta_listing"], "o", color=REPORT, ms=4, mec="white", mew=0.4
-    )
-    panel.set(xlim=limits[0], ylim=limits[1])
-    panel.locator_params(nbins=4)
-    mark.source(axes, panel)
+        panel = mark.inset(axes, box)
+        _critical(panel, (*reported[:2], *ours), 1.0)
+        panel.plot(sweep["spin"], sweep["final_theta"], ".-", color=CONVERGED, lw=1.2, ms=3)
+        dots: dict[str, Any] = {"color": REPORT, "ms": 4, "mec": "white", "mew": 0.4}
+        panel.plot(sweep["spin_listing"], sweep["final_theta_listing"], "o", **dots)
+        panel.set(xlim=around, ylim=tilts)
+        panel.locator_params(nbins=4)
+        mark.source(axes, panel)
 
 
 def _critical(axes: Axes, spins: tuple[float, ...], width: float) -> None:
