@@ -94,7 +94,8 @@ def fly_all(
             for kept, better in zip(found, looked, strict=True):
                 kept[doubtful] = better
             given[WANTED] = tip.wanted(launches)
-        tip.put_extremes(launches[active], found.floor, found.ceiling)
+        none = np.full(len(active), np.nan)
+        tip.put_of(launches[active], np.array([none, found.floor, -found.ceiling]))
         highest[active] = np.fmax(highest[active], found.highest_gap)
         over = found.span == given[LEFT, active]
         time[active] = np.where(over, horizon[active], time[active] + found.span)

@@ -9,18 +9,15 @@ import numpy as np
 
 from tippetop.contact.striking import MOST_PIECES, impact_motion
 from tippetop.integrators.base import Array
-from tippetop.integrators.polynomials import Polynomials
 from tippetop.mechanics.impulse import contact_velocity
 from tippetop.mechanics.rolling import on_other_branch
 from tippetop.mechanics.state import State
 from tippetop.mechanics.surface import contact_vector
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import length
+from tippetop.sweeps.arcs import arcs
 from tippetop.sweeps.launches import Flags
-from tippetop.sweeps.stepper import NumPyArithmetic, polynomials
-from tippetop.sweeps.stride import Jet, step_size
-
-PLAIN = NumPyArithmetic()
+from tippetop.sweeps.stepper import polynomials
 
 TOLERANCE = 1e-10
 """What is left out of the polynomials, relative to the momenta and velocities."""
@@ -40,6 +37,7 @@ def collide(state: State, top: Top) -> tuple[State, Flags]:
     longest = top.mass * length(point) + TINY
     moving = np.array(np.broadcast_arrays(*state.momentum, *state.velocity))
     numbers = np.array(np.broadcast_arrays(*top.numbers, *state.axis))
+    pauses = np.repeat([[1.0] for _ in motion.guards] + [[0.0], [np.inf], [-np.inf]], moving.shape[1], axis=1)
     struck = np.zeros(moving.shape[1], dtype=bool)
     after, work = moving.copy(), np.flatnonzero(point[2] < 0.0)
     for _ in range(MOST_PIECES):
@@ -47,24 +45,15 @@ def collide(state: State, top: Top) -> tuple[State, Flags]:
             break
         with np.errstate(all="ignore"):
             jet = polynomials(motion, TOLERANCE)(after[:, work], numbers[:, work])
-            span, ended, branched = pieces(jet, longest[work])
-            after[:, work] = jet.at(span)
+            found = arcs(jet, np.zeros(len(work)), longest[work], pauses[:, work])
+            found.look_closer(jet, pauses[:, work])
+        after[:, work], ended, branched = found.after, found.fallen == 0.0, found.fallen == 1.0
         if branched.any():
             numbers[: kind.numbers, work[branched]] = others(kind, numbers[: kind.numbers, work[branched]])
         struck[work[ended]] = True
-        work = work[~ended & np.isfinite(span)]
+        work = work[~ended & np.isfinite(found.span)]
     after[:, ~struck] = moving[:, ~struck]
     return state._replace(momentum=tuple(after[:3]), velocity=tuple(after[3:])), struck
-
-
-def pieces(jet: Jet, longest: Array) -> tuple[Array, Flags, Flags]:
-    """How far pieces of impacts go, which of them end with the impact, and which with the law's branch."""
-    size = step_size([list(series) for series in jet.state], longest, PLAIN)
-    end, *changes = (Polynomials(terms, size).first_fall() for terms in jet.guards)
-    change = changes[0] if changes else np.full(size.shape, np.nan)
-    ended = ~np.isnan(end) & ~(change < end)
-    branched = ~np.isnan(change) & ~ended
-    return np.where(ended, end, np.where(branched, change, size)), ended, branched
 
 
 def others(kind: Kind, numbers: Array) -> Array:

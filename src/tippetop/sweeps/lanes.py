@@ -14,6 +14,7 @@ from tippetop.integrators.base import Array
 from tippetop.integrators.polynomials import Polynomials
 from tippetop.integrators.relief import PATIENCE, is_stiff
 from tippetop.metrics import Ends
+from tippetop.sweeps.arcs import arcs
 from tippetop.sweeps.crossings import Crossings
 from tippetop.sweeps.launches import Flags, Indices, Launches, Note, picked
 from tippetop.sweeps.slots import Slots
@@ -119,23 +120,27 @@ class Lanes:
         lanes = np.flatnonzero(slots.held > 0.0)
         if not len(lanes):
             return
-        span, left = slots.held[lanes], slots.before[lanes]
+        left, numbers = slots.before[lanes], slots.numbers[:, lanes]
         begun = slots.end[lanes] - left
-        jet = self.slots.stepper.jet(slots.rows[:, lanes], slots.numbers[:, lanes])
-        fallen = np.full(len(lanes), -1)
-        for number, terms in enumerate(jet.guards):
-            fall = Polynomials(terms, slots.held[lanes]).first_fall()
-            earlier = (slots.numbers[layout.counts][number, lanes] != 0.0) & (fall <= span)
-            fallen[earlier], span = number, np.where(earlier, fall, span)
-        slots.tip.take(FORCE, lanes, Polynomials(jet.guards[0], span))
-        slots.tip.see(lanes, begun, Polynomials(jet.state[2], span))
-        slots.rows[: layout.size, lanes] = jet.at(span)
-        slots.rows[layout.left, lanes], slots.rows[layout.taken, lanes] = left - span, slots.held[lanes]
+        held = slots.held[lanes]
+        jet = slots.stepper.jet(slots.rows[:, lanes], numbers)
+        found = arcs(jet, held, held, numbers[layout.parameters :])
+        closer = found.look_closer(jet, numbers[layout.counts])
+        if len(closer):
+            pressing, tip = (
+                Polynomials(terms[:, closer], found.span[closer]) for terms in (jet.guards[0], jet.state[2])
+            )
+            slots.tip.take(FORCE, lanes[closer], pressing)
+            slots.tip.see(lanes[closer], begun[closer], tip)
+            found.least[:, closer] = np.nan
+        slots.tip.put_of(lanes, found.least)
+        slots.rows[: layout.size, lanes], span = found.after, found.span
+        slots.rows[layout.left, lanes], slots.rows[layout.taken, lanes] = left - span, held
         slots.rows[layout.steps, lanes] += 1
         slots.held[lanes] = 0.0
-        if (fallen >= 0).any():
-            some = fallen >= 0
-            self.crossings.fall(lanes[some], begun[some] + span[some], fallen[some])
+        some = found.fallen >= 0.0
+        if some.any():
+            self.crossings.fall(lanes[some], begun[some] + span[some], found.fallen[some].astype(np.intp))
         slots.numbers[layout.turns, lanes] = np.isnan(slots.tip.turned[lanes])
         if self.banded:
             slots.rows[layout.left, ~np.isnan(slots.tip.reached)] = 0.0

@@ -126,5 +126,7 @@ def _jet(terms: Array, motion: Motion, order: int) -> Jet:
 
 def padded(rows: Array) -> Array:
     """Rows filled up with copies of their last number to a multiple of `LANES`."""
-    missing = -rows.shape[1] % LANES
-    return np.ascontiguousarray(np.pad(rows, ((0, 0), (0, missing)), mode="edge"))
+    count = rows.shape[1]
+    filled = np.empty((len(rows), count + -count % LANES))
+    filled[:, :count], filled[:, count:] = rows, rows[:, -1:]
+    return filled

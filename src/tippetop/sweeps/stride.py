@@ -15,11 +15,9 @@ import math
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from tippetop.contact.closed import BRANCH
 from tippetop.emit.coefficients import SharedSeries
-from tippetop.integrators.base import Array, Motion
+from tippetop.integrators.base import Motion
 from tippetop.mechanics.series import Arithmetic, horner, solved, unknown
 from tippetop.mechanics.vectors import Scalar
 from tippetop.sweeps.looks import TINY, first_fall, least_value, looked_at, lower_bound, may_fall
@@ -92,10 +90,6 @@ class Jet(NamedTuple):
     """Those of the state, size x (order + 1)."""
     guards: Any
     """Those of the guards, guards x order."""
-
-    def at(self, time: Array) -> Array:
-        """The states at one time for every launch, shape (size, n)."""
-        return np.array([horner(terms, time) for terms in self.state])
 
 
 def expansion(

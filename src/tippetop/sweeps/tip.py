@@ -56,14 +56,13 @@ class TipMotion:
         )
         return np.array([np.isnan(self.turned[launches]), low, high])
 
-    def put_extremes(self, launches: Indices, floor: Array, ceiling: Array) -> None:
-        """Take in the least and the largest n_z of some launches, nan where they are known."""
-        self.lately[DOWN, launches] = np.fmin(self.lately[DOWN, launches], floor)
-        self.lately[UP, launches] = np.fmin(self.lately[UP, launches], -ceiling)
-
     def put(self, least: Array) -> None:
         """Take in the least values of a step of every launch, shape (3, n); inf for those that took none."""
         np.fmin(self.lately, least, out=self.lately)
+
+    def put_of(self, launches: Indices, least: Array) -> None:
+        """The same of some launches; nan where there is none, or it is taken in already."""
+        self.lately[:, launches] = np.fmin(self.lately[:, launches], least)
 
     def take(self, which: int, lanes: Indices, polynomials: Polynomials) -> None:
         """Take in polynomials of what may be least on some lanes; a lane may be there several times."""
