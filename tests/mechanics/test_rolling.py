@@ -66,11 +66,12 @@ def test_what_is_held_stays(slide, mode):
     top = top._replace(friction=laws[mode])
     point = ContactPoint.of(state.axis, state.momentum, top)
     slip = (0.6, -0.8) if mode == "slip" else None
-    wrench = contact_motion(point, slip, None)[0]
+    wrench, told = contact_motion(point, slip, None)
     rates = np.concatenate(newton_euler(top, state.axis, point.turning, wrench))
     size = scale_of(top, point)
     units = np.array([1.0] * 3 + [length] * 3) / size
     assert (rates * units)[held[mode]] == pytest.approx(np.zeros(len(held[mode])), abs=1e-11)
+    assert np.array([*told.point, *told.turning]) * units == pytest.approx(rates * units, abs=1e-11)
     free = [i for i in range(3, 6) if i not in held[mode]]
     assert all(wrench.torque[i - 3] == 0.0 for i in free)
 

@@ -828,13 +828,14 @@ py.fields(Acceleration, ["point", "turning"]);
 
 /** The contact point of a body in some configuration, and how it accelerates. */
 class ContactPoint extends py.NamedTuple {
-  constructor(axis, momentum, arm, turning, free, top) {
+  constructor(axis, momentum, arm, turning, free, carried, top) {
     super();
     this.axis = axis;
     this.momentum = momentum;
     this.arm = arm;
     this.turning = turning;
     this.free = free;
+    this.carried = carried;
     this.top = top;
   }
   /** The contact point for this axis and angular momentum (kg m^2/s). */
@@ -844,10 +845,9 @@ class ContactPoint extends py.NamedTuple {
     var excess = py.div(py.sub(top.transverse_inertia, top.axial_inertia), top.transverse_inertia);
     var tilting = axis_rate(axis, momentum, top);
     var gyration = scale(py.mul(excess, axial_spin(axis, momentum, top)), tilting);
-    var carried = cross(turning, arm_rate(axis, tilting, top));
-    var falling = [0.0, 0.0, py.neg(top.gravity)];
-    var free = new Acceleration(add(add(falling, cross(gyration, arm)), carried), gyration);
-    return new this(axis, momentum, arm, turning, free, top);
+    var carried = add([0.0, 0.0, py.neg(top.gravity)], cross(turning, arm_rate(axis, tilting, top)));
+    var free = new Acceleration(add(cross(gyration, arm), carried), gyration);
+    return new this(axis, momentum, arm, turning, free, carried, top);
   }
   /** Acceleration that a wrench adds. */
   response(wrench) {
@@ -884,8 +884,39 @@ class ContactPoint extends py.NamedTuple {
     }
     return [new Wrench(force, torque), new Acceleration(point, turning)];
   }
+  /** What keeps the contact point's velocity constant, drilling too unless it drills, and what follows. */
+  pivoting(drills) {
+    var top = this.top;
+    var n = this.axis;
+    var a = this.arm;
+    var across = py.add(top.transverse_inertia, py.mul(top.mass, dot(a, a)));
+    var excess = py.sub(top.axial_inertia, top.transverse_inertia);
+    var row = (i, count) => {
+      var found = py.range(count).map(
+        (j) => py.sub(
+          py.mul(py.mul(excess, py.item(n, i)), py.item(n, j)),
+          py.mul(top.mass, py.mul(py.item(a, i), py.item(a, j)))
+        )
+      );
+      return py.enumerate(found).map(([j, part]) => py.eq(i, j) ? py.add(part, across) : part);
+    };
+    var carried = scale(py.neg(top.mass), cross(a, this.carried));
+    var right = add(scale(top.transverse_inertia, this.free.turning), carried);
+    if (py.truth(drills)) {
+      var [x, y, z] = solve([row(0, 3), row(1, 3), row(2, 3)], py.list(right));
+      var turning = [x, y, z];
+      var torque = NO_TORQUE;
+    } else {
+      [x, y] = solve([row(0, 2), row(1, 2)], [right[0], right[1]]);
+      var last = row(2, 2);
+      turning = [x, y, 0.0];
+      torque = [0.0, 0.0, py.sub(py.add(py.mul(last[0], x), py.mul(last[1], y)), right[2])];
+    }
+    var force = scale(py.neg(top.mass), add(this.carried, cross(turning, a)));
+    return [new Wrench(force, torque), new Acceleration(NO_TORQUE, turning)];
+  }
 }
-py.fields(ContactPoint, ["axis", "momentum", "arm", "turning", "free", "top"]);
+py.fields(ContactPoint, ["axis", "momentum", "arm", "turning", "free", "carried", "top"]);
 
 /** Rate of the contact vector for this rate of the axis (1/s): -h' n' - h'' c' (n - c z), m/s. */
 function arm_rate(axis, tilting, top) {
@@ -897,6 +928,9 @@ function arm_rate(axis, tilting, top) {
 
 /** What the table does to a body in contact, and how that accelerates. */
 function contact_motion(point, slip, rolling = null) {
+  if (slip === null && !py.truth(point.top.resists_rolling)) {
+    return point.pivoting(slip_length(point.top.friction) === null);
+  }
   var [normal, slipping, turning] = going_on(point, slip, rolling);
   var held = [...slipping, [2, normal], ...turning];
   return point.holding([...held].map(([, wrench]) => wrench), [...held].map(([component]) => component));

@@ -10,6 +10,11 @@ enough. The response to F and t is symmetric and positive definite (Delassus), a
 linear equation: slip needs v_z' = 0 with the law's F = N (f, 1), and rolling v' = 0. A contact that sticks
 under Contensou's friction does not drill either, omega_z' = 0, and rolling that is held has omega_x' =
 omega_y' = 0.
+
+Where v' = 0, and nothing holds rolling, the equations are those of omega' alone, since F = -m (gamma + omega'
+x a), gamma = -g z + omega x a':
+
+    (1/J + m a^2 - m a a) omega' = (1/J) k omega3 n' - m a x gamma + t.
 """
 
 from collections.abc import Sequence
@@ -64,6 +69,8 @@ class ContactPoint(NamedTuple):
     """Angular velocity omega, rad/s."""
     free: Acceleration
     """Acceleration without contact force."""
+    carried: Vector
+    """Acceleration of the point if the body went on turning as it does, gamma above, m/s^2."""
     top: Top
     """The body."""
 
@@ -75,10 +82,9 @@ class ContactPoint(NamedTuple):
         excess = (top.transverse_inertia - top.axial_inertia) / top.transverse_inertia
         tilting = axis_rate(axis, momentum, top)
         gyration = scale(excess * axial_spin(axis, momentum, top), tilting)
-        carried = cross(turning, arm_rate(axis, tilting, top))
-        falling = (0.0, 0.0, -top.gravity)
-        free = Acceleration(add(add(falling, cross(gyration, arm)), carried), gyration)
-        return cls(axis, momentum, arm, turning, free, top)
+        carried = add((0.0, 0.0, -top.gravity), cross(turning, arm_rate(axis, tilting, top)))
+        free = Acceleration(add(cross(gyration, arm), carried), gyration)
+        return cls(axis, momentum, arm, turning, free, carried, top)
 
     def response(self, wrench: Wrench) -> Acceleration:
         """Acceleration that a wrench adds."""
@@ -116,6 +122,31 @@ class ContactPoint(NamedTuple):
             )
         return Wrench(force, torque), Acceleration(point, turning)
 
+    def pivoting(self, drills: bool) -> tuple[Wrench, Acceleration]:
+        """What keeps the contact point's velocity constant, drilling too unless it drills, and what follows.
+
+        The fewest equations for that, and the motion of what sticks is made of little else.
+        """
+        top, n, a = self.top, self.axis, self.arm
+        across = top.transverse_inertia + top.mass * dot(a, a)
+        excess = top.axial_inertia - top.transverse_inertia
+
+        def row(i: int, count: int) -> list[Scalar]:
+            found = [excess * n[i] * n[j] - top.mass * (a[i] * a[j]) for j in range(count)]
+            return [part + across if i == j else part for j, part in enumerate(found)]
+
+        carried = scale(-top.mass, cross(a, self.carried))
+        right = add(scale(top.transverse_inertia, self.free.turning), carried)
+        if drills:
+            x, y, z = solve([row(0, 3), row(1, 3), row(2, 3)], list(right))
+            turning, torque = (x, y, z), NO_TORQUE
+        else:
+            x, y = solve([row(0, 2), row(1, 2)], [right[0], right[1]])
+            last = row(2, 2)
+            turning, torque = (x, y, 0.0), (0.0, 0.0, last[0] * x + last[1] * y - right[2])
+        force = scale(-top.mass, add(self.carried, cross(turning, a)))
+        return Wrench(force, torque), Acceleration(NO_TORQUE, turning)
+
 
 def arm_rate(axis: Vector, tilting: Vector, top: Top) -> Vector:
     """Rate of the contact vector for this rate of the axis (1/s): -h' n' - h'' c' (n - c z), m/s."""
@@ -142,6 +173,8 @@ def contact_motion(
         The horizontal angular velocity, of which only the direction counts, or None where it is held at zero;
         without rolling resistance it does not matter.
     """
+    if slip is None and not point.top.resists_rolling:
+        return point.pivoting(drills=slip_length(point.top.friction) is None)
     normal, slipping, turning = going_on(point, slip, rolling)
     held = [*slipping, (2, normal), *turning]
     return point.holding([wrench for _, wrench in held], [component for component, _ in held])
