@@ -215,7 +215,7 @@ function key(a) {
   if (typeof a === "string" || typeof a === "number") return a;
   if (a === null || typeof a === "boolean" || a === undefined) return String(a);
   if (Array.isArray(a)) return `(${a.map(key).join()})`;
-  if (a instanceof NamedTuple) return `${key(a.constructor)}(${[...a].map(key).join()})`;
+  if (a instanceof NamedTuple || a instanceof Record) return `${key(a.constructor)}(${a.constructor.fields.map((name) => key(a[name])).join()})`;
   if (!known.has(a)) known.set(a, `#${(counted += 1)}`);
   return known.get(a);
 }
