@@ -14,7 +14,7 @@ import pytest
 import tippetop as tt
 from tippetop.contact import closing
 from tippetop.errors import TippetopError
-from tippetop.integrators import has_taylor, make_integrator, scipy_methods
+from tippetop.integrators import has_numba, has_taylor, make_integrator, scipy_methods
 from tippetop.integrators.base import Motion
 from tippetop.mechanics import integrated_impact, touchdown
 
@@ -134,6 +134,21 @@ def test_hostile_problems_end_with_an_outcome_or_a_sentence(part: int) -> None:
 )
 def test_hostile_problems_that_were_hard(seed: int, outcomes: set[str]) -> None:
     assert outcome_of(seed) in outcomes
+
+
+@pytest.mark.parametrize(
+    "integrator",
+    [
+        "dop853",
+        pytest.param("compiled", marks=pytest.mark.skipif(not has_numba(), reason="numba is not installed")),
+    ],
+)
+def test_stiff_motion_does_not_leave_a_table_that_it_presses(integrator: str) -> None:
+    """Slip decays 1e10 times a second: errors of explicit steps throw the normal force through infinity."""
+    problem = tt.Problem(**hostile(np.random.default_rng(110)))
+    run = tt.simulate(problem, 2.0, samples=51, step_limit=STEPS, phase_limit=MODES, integrator=integrator)
+    assert "lift-off" not in run["event_kind"].values
+    assert float(run["gap"].min()) > -CLOSE * problem.body.shape.surface.size
 
 
 @pytest.mark.parametrize(

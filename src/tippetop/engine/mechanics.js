@@ -683,6 +683,7 @@ function natural_state(state, units) {
 }
 
 // tippetop.mechanics.motion
+const PRESSED = 0.001;
 
 /** The geometry, kinematics and forces of the contact at an instant. */
 class SlidingContact extends py.NamedTuple {
@@ -743,31 +744,41 @@ function point_velocity(velocity, omega, arm) {
 
 /** Geometry, slip and contact force of the body on the table. */
 function contact(axis, momentum, velocity, top) {
-  var c = axis[2];
-  var slope = top.surface.slope(c);
   var arm = contact_vector(axis, top.surface);
   var omega = angular_velocity(axis, momentum, top);
   var point = point_velocity([velocity[0], velocity[1], 0.0], omega, arm);
   var slip = [point[0], point[1]];
   var traction = top.friction.traction(slip, omega);
-  var turning = axis_rate(axis, momentum, top);
-  var lever = py.div(slope, top.transverse_inertia);
-  var falling = py.add(
-    top.gravity,
-    py.add(
-      py.mul(py.mul(top.surface.curvature(c), turning[2]), turning[2]),
-      py.mul(lever, cross(momentum, turning)[2])
-    )
-  );
+  var lever = py.div(top.surface.slope(axis[2]), top.transverse_inertia);
   var reaction = cross(moment_per_normal_force(arm, traction), axis)[2];
+  var free = free_acceleration(axis, momentum, top);
   return new SlidingContact(
     arm,
     slip,
     omega,
     traction,
-    py.neg(falling),
+    free,
     py.sub(py.div(1.0, top.mass), py.mul(lever, reaction))
   );
+}
+
+/** Acceleration of the gap in free flight, -(g + h'' c'^2 + h' [L x n']_z / I1), m/s^2. */
+function free_acceleration(axis, momentum, top) {
+  return py.neg(py.add(top.gravity, _sagging(axis, momentum, top)));
+}
+
+/** Acceleration of the height above the contact point, by the turning of the axis. */
+function _sagging(axis, momentum, top) {
+  var turning = axis_rate(axis, momentum, top);
+  var lever = py.div(top.surface.slope(axis[2]), top.transverse_inertia);
+  var bending = py.mul(py.mul(top.surface.curvature(axis[2]), turning[2]), turning[2]);
+  return py.add(bending, py.mul(lever, cross(momentum, turning)[2]));
+}
+
+/** Whether the gap would close without a contact force, by more than errors of a run. */
+function presses(axis, momentum, top) {
+  var sagging = _sagging(axis, momentum, top);
+  return py.add(top.gravity, sagging) > py.mul(PRESSED, py.add(top.gravity, py.abs(sagging)));
 }
 
 /** Moment of the contact force about the centre of mass per unit normal force, a x (z + f) + t, m. */
@@ -3940,7 +3951,7 @@ const [ENOUGH, MOST_of_slipping] = [1e-28, 50];
 const ACCURACY_of_slipping = 1e-22;
 const BEYOND = 1.05;
 const [DIP, NONE] = [0.1, 1e-11];
-const [PRESSED, CLEAR] = [0.1, 0.01];
+const [PRESSED_of_slipping, CLEAR] = [0.1, 0.01];
 const [LONGER, SHORTER_of_slipping, SHORTEST, SAFETY] = [1.5, 0.8, 0.3, 0.9];
 const TINY_of_slipping = 1e-300;
 
@@ -4062,7 +4073,7 @@ class SlipStep extends py.Thing {
     if (py.truth(several) && !(py.min([...row_of(this.unknowns, 2)].map((c) => clearance(top, c))) > CLEAR)) {
       return false;
     }
-    return py.or(pulls, () => py.bool(py.min(row_of(this.found, this.layout.normal)) > PRESSED));
+    return py.or(pulls, () => py.bool(py.min(row_of(this.found, this.layout.normal)) > PRESSED_of_slipping));
   }
   /** Coefficients of s in a part of it, at whose start it is this; beyond slip s is less than zero. */
   speed(number, begin, way) {
@@ -5646,6 +5657,17 @@ class ContactRules extends Rules {
     }
     return this._let_go(time, state, events);
   }
+  /** Leave the table, unless the normal force changed its sign by way of infinity. */
+  lift_off(time, state) {
+    if (py.truth(presses(state.axis, state.momentum, this.top))) {
+      return this.resting(time, state);
+    }
+    return this._leaving(time, state);
+  }
+  /** What follows when the normal force falls to zero. */
+  _leaving(time, state) {
+    throw new py.NotImplementedError();
+  }
   /** Lift-off after some events. */
   _let_go(time, state, events) {
     var found = this.lift_off(time, state);
@@ -5673,7 +5695,7 @@ class StopAtLiftOff extends ContactRules {
     super(top);
   }
   /** End the run. */
-  lift_off(time, state) {
+  _leaving(time, state) {
     return new Transition([this.event(EventKind.LIFT_OFF, time)], Outcome.LIFTED_OFF, state);
   }
 }
@@ -5700,7 +5722,7 @@ class FreeToFly extends ContactRules {
     return this.resting(0.0, state);
   }
   /** Fly from where the normal force reached zero. */
-  lift_off(time, state) {
+  _leaving(time, state) {
     return new Transition([this.event(EventKind.LIFT_OFF, time)], this._flight(Start.LIFT_OFF), state);
   }
   /** Collide, and go on as the impact leaves the top. */
@@ -11002,6 +11024,7 @@ export {
   POWER_of_graph,
   PRESSED,
   PRESSED_of_loosening,
+  PRESSED_of_slipping,
   PRODUCT,
   PROTRUDING,
   PairMotion,
@@ -11211,6 +11234,7 @@ export {
   _reach,
   _reaches_out,
   _root,
+  _sagging,
   _slip,
   _solved,
   _steady,
@@ -11293,6 +11317,7 @@ export {
   fold,
   follow_surface,
   followed,
+  free_acceleration,
   gap,
   gap_rate,
   gauss_points,
@@ -11392,6 +11417,7 @@ export {
   precession_rate,
   precession_rate_squared,
   predict,
+  presses,
   prevalence,
   prospects,
   quadrature_rates,

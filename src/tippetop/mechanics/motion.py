@@ -14,6 +14,9 @@ from tippetop.mechanics.surface import contact_vector
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import VERTICAL, Horizontal, Scalar, Vector, add, cross, dot, scale
 
+PRESSED = 1e-3
+"""Acceleration of the gap, over the largest of its parts, below which it is taken for zero at a lift-off."""
+
 
 class SlidingContact(NamedTuple):
     """The geometry, kinematics and forces of the contact at an instant."""
@@ -89,24 +92,41 @@ def contact(axis: Vector, momentum: Vector, velocity: Horizontal, top: Top) -> S
 
     Notes
     -----
-    The second derivative of the gap z - h(c), c = n_z, is A N + b with
-    A = 1/m - (h'/I1) [(a x (z + f) + t) x n]_z and b = -(g + h'' c'^2 + h' [L x n']_z / I1).
+    The second derivative of the gap z - h(c), c = n_z, is A N + b with b of `free_acceleration` and
+    A = 1/m - (h'/I1) [(a x (z + f) + t) x n]_z.
     """
-    c = axis[2]
-    slope = top.surface.slope(c)
     arm = contact_vector(axis, top.surface)
     omega = angular_velocity(axis, momentum, top)
     point = point_velocity((velocity[0], velocity[1], 0.0), omega, arm)
     slip = (point[0], point[1])
     traction = top.friction.traction(slip, omega)
 
-    turning = axis_rate(axis, momentum, top)
-    lever = slope / top.transverse_inertia
-    falling = top.gravity + (
-        top.surface.curvature(c) * turning[2] * turning[2] + lever * cross(momentum, turning)[2]
-    )
+    lever = top.surface.slope(axis[2]) / top.transverse_inertia
     reaction = cross(moment_per_normal_force(arm, traction), axis)[2]
-    return SlidingContact(arm, slip, omega, traction, -falling, 1.0 / top.mass - lever * reaction)
+    free = free_acceleration(axis, momentum, top)
+    return SlidingContact(arm, slip, omega, traction, free, 1.0 / top.mass - lever * reaction)
+
+
+def free_acceleration(axis: Vector, momentum: Vector, top: Top) -> Scalar:
+    """Acceleration of the gap in free flight, -(g + h'' c'^2 + h' [L x n']_z / I1), m/s^2."""
+    return -(top.gravity + _sagging(axis, momentum, top))
+
+
+def _sagging(axis: Vector, momentum: Vector, top: Top) -> Scalar:
+    """Acceleration of the height above the contact point, by the turning of the axis."""
+    turning = axis_rate(axis, momentum, top)
+    lever = top.surface.slope(axis[2]) / top.transverse_inertia
+    bending = top.surface.curvature(axis[2]) * turning[2] * turning[2]
+    return bending + lever * cross(momentum, turning)[2]
+
+
+def presses(axis: Vector, momentum: Vector, top: Top) -> Scalar:
+    """Whether the gap would close without a contact force, by more than errors of a run.
+
+    A truth value of floats, or an array of them.
+    """
+    sagging = _sagging(axis, momentum, top)
+    return top.gravity + sagging > PRESSED * (top.gravity + abs(sagging))
 
 
 def moment_per_normal_force(arm: Vector, traction: Traction) -> Vector:

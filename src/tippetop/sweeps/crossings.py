@@ -14,6 +14,7 @@ from tippetop.contact.sliding import Sliding, sliding_motion
 from tippetop.integrators.base import Array
 from tippetop.mechanics.flight import gap, gap_rate
 from tippetop.mechanics.invariants import energy
+from tippetop.mechanics.motion import presses
 from tippetop.mechanics.state import State
 from tippetop.mechanics.touchdown import Start
 from tippetop.metrics import OUTCOMES
@@ -69,6 +70,9 @@ class Crossings:
         """What follows where guards fall through zero."""
         names = np.array([guard.name for guard in self.motion.guards])[guards]
         other, free = names == BRANCH, names == LIFT_OFF
+        if free.any():
+            here = self.slots.whole(lanes)
+            free &= ~presses(here.axis, here.momentum, self.slots.tops(lanes))
         ending = ~(other | free)
         if ending.any():
             cells, state = self.slots.cell[lanes[ending]], self.slots.whole(lanes[ending])
