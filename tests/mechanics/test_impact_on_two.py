@@ -85,45 +85,56 @@ def test_slow_impact_of_a_fast_body_is_no_harder_than_a_quick_one():
     state = on_table(SlidingState(axis, momentum, (7.0, -3.0)), first)
     assert gap_rate(state, second) == pytest.approx(-slow, rel=1e-6)
     found = impact_on_two(state, 0.0, (second, first))
-    _, velocity = naive(state, (second, first), 100)
+    _, velocity, _ = naive(state, (second, first), 100)
     assert found.impulse == pytest.approx(velocity[2] - state.velocity[2], rel=1e-4)
     assert gap_rate(found.state, second) == pytest.approx(0.0, abs=1e-15)
 
 
 def naive(state, tops, steps):
-    """The same impact by matrices, with Heun's method in the normal impulse, until what strikes stops."""
+    """The same impact by matrices, with Heun's method in the normal impulse, until what strikes stops.
+
+    Returns momentum and velocity then, and after each step the other contact's normal impulse and velocity.
+    """
     top = tops[0]
     axis = np.array(state.axis)
     inverse = (np.eye(3) - np.outer(axis, axis)) / top.transverse_inertia
     inverse += np.outer(axis, axis) / top.axial_inertia
     arms = [np.array(contact_vector(state.axis, one.surface)) for one in tops]
 
-    def rates(momentum, velocity):
-        omega = inverse @ momentum
-        sums, pushes = [], []
+    def normal(y, arm):
+        return (y[3:] + np.cross(inverse @ y[:3], arm))[2]
+
+    def units(y):
+        """What a unit of either normal impulse changes, with the friction that it causes."""
+        omega = inverse @ y[:3]
         for arm in arms:
-            slip = velocity + np.cross(omega, arm)
+            slip = y[3:] + np.cross(omega, arm)
             force = np.array([*top.friction.traction(tuple(slip[:2]), tuple(omega)).force, 1.0])
-            turn = inverse @ np.cross(arm, force)
-            sums.append((np.cross(arm, force), force / top.mass))
-            pushes.append([(force / top.mass + np.cross(turn, other))[2] for other in arms])
-        share = max(0.0, -pushes[0][1] / pushes[1][1])
-        return sums[0][0] + share * sums[1][0], sums[0][1] + share * sums[1][1]
+            yield np.array([*np.cross(arm, force), *(force / top.mass)])
 
-    def normal(momentum, velocity):
-        return (velocity + np.cross(inverse @ momentum, arms[0]))[2]
+    def rates(y, closed):
+        one, other = units(y)
+        share = max(0.0, -normal(one, arms[1]) / normal(other, arms[1])) if closed else 0.0
+        return one + share * other, share
 
-    momentum, velocity = np.array(state.momentum), np.array(state.velocity)
-    step = -normal(momentum, velocity) / steps
+    y, pushed, others = np.array([*state.momentum, *state.velocity]), 0.0, []
+    step = -normal(y, arms[0]) / steps
     while True:
-        one = rates(momentum, velocity)
-        two = rates(momentum + step * one[0], velocity + step * one[1])
-        mean = [(a + b) / 2 for a, b in zip(one, two, strict=True)]
-        here, there = normal(momentum, velocity), normal(momentum + step * mean[0], velocity + step * mean[1])
-        if there >= 0.0:
-            part = step * here / (here - there)
-            return momentum + part * mean[0], velocity + part * mean[1]
-        momentum, velocity = momentum + step * mean[0], velocity + step * mean[1]
+        closed = normal(y, arms[1]) < 1e-12
+        one, share = rates(y, closed)
+        two, later = rates(y + step * one, closed)
+        there = y + 0.5 * step * (one + two)
+        more = 0.5 * step * (share + later)
+        if not closed and (inside := normal(there, arms[1])) < 0.0:
+            _, unit = units(there)
+            more = -inside / normal(unit, arms[1])
+            there = there + more * unit
+        before, after = normal(y, arms[0]), normal(there, arms[0])
+        part = before / (before - after) if after >= 0.0 else 1.0
+        y, pushed = y + part * (there - y), pushed + part * more
+        others.append((pushed, normal(y, arms[1])))
+        if after >= 0.0:
+            return y[:3], y[3:], np.array(others).T
 
 
 @pytest.mark.parametrize("law", [ViscousLaw(0.3), RegularizedCoulombLaw(0.2, 0.3)])
@@ -133,7 +144,7 @@ def test_with_friction_it_is_what_small_steps_find(law):
     def agree(blow):
         state, tops = blow
         found = impact_on_two(state, 0.0, tops)
-        momentum, velocity = naive(state, tops, 1000)
+        momentum, velocity, _ = naive(state, tops, 1000)
         assert found.impulse == pytest.approx(velocity[2] - state.velocity[2], rel=1e-5)
         assert found.state.momentum == pytest.approx(momentum, abs=1e-5)
         assert found.state.velocity == pytest.approx(velocity, abs=1e-5)
@@ -145,6 +156,40 @@ def test_with_friction_it_is_what_small_steps_find(law):
         assert axis_rate(state.axis, found.state.momentum, tops[0])[2] == pytest.approx(0.0, abs=1e-8)
 
     agree()
+
+
+@pytest.mark.parametrize(("law", "slip"), [(ViscousLaw(0.3), -8.0), (RegularizedCoulombLaw(1.1, 0.3), -2.0)])
+def test_an_end_that_opens_meanwhile_closes_again(law, slip):
+    """Friction at the end that strikes lifts the other one, until slip has fallen; then it is pressed."""
+    hull = Hull.of((SphereSurface(1.0, 2.0), SphereSurface(1.0, -2.0)))
+    inertia, tilting, turned = 2.0, -8.0, 0.3
+    first, second = Top(1.0, inertia, 0.5, hull, law, 1.0).each
+    along, across = (math.cos(turned), math.sin(turned), 0.0), (-math.sin(turned), math.cos(turned), 0.0)
+    # Tilting moves both ends along the axis too, as their surfaces have radii of 1.
+    turning = zip(along, across, (0.0, 0.0, 0.4 * inertia), strict=True)
+    momentum = tuple(0.05 * one + tilting * inertia * other + up for one, other, up in turning)
+    velocity = tuple((slip + tilting) * one + 0.3 * other for one, other in zip(along, across, strict=True))
+    state = on_table(SlidingState(along, momentum, (velocity[0], velocity[1])), first)
+    assert gap_rate(state, second) == pytest.approx(4.0 * tilting)
+    found = impact_on_two(state, 0.0, (second, first))
+    momentum, velocity, (pressed, rises) = naive(state, (second, first), 2000)
+    assert rises.max() > 0.1, "it opens"
+    opened, closed = np.flatnonzero(rises > 1e-9)[[0, -1]]
+    assert closed < 1900, "and closes"
+    assert np.ptp(pressed[opened:closed]) == 0.0
+    assert pressed[-1] > 0.1
+    assert found.state.momentum == pytest.approx(momentum, abs=1e-5)
+    assert found.state.velocity == pytest.approx(velocity, abs=1e-5)
+    assert gap_rate(found.state, second) == pytest.approx(0.0, abs=1e-12)
+    assert gap_rate(found.state, first) == pytest.approx(0.0, abs=1e-12)
+    # The torque across the axis tells which end gives how much of the vertical impulse.
+    gained = np.subtract(found.state.momentum, state.momentum) @ across
+    slowed = np.subtract(found.state.velocity, state.velocity) @ along
+    other = 0.5 * found.impulse - 0.25 * (gained + slowed)
+    assert other == pytest.approx(pressed[-1], abs=1e-5)
+    assert found.energy_lost > 0.0
+    lost = energy(state, second) - energy(found.state, second)
+    assert found.energy_lost == pytest.approx(lost, rel=1e-12)
 
 
 @pytest.mark.parametrize("restitution", [0.0, 0.6])
