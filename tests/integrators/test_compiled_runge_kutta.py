@@ -1,5 +1,6 @@
 """The method that numba compiles takes SciPy's steps, on every motion, and is compiled once."""
 
+import itertools
 import math
 import os
 import subprocess
@@ -10,7 +11,7 @@ import pytest
 from exact_motions import KEPLER, whole
 
 from every_motion import CASES, states
-from tippetop.integrators import Guard, Motion, has_numba, make_integrator
+from tippetop.integrators import Guard, Motion, has_numba, make_integrator, stepping
 from tippetop.presets import report_problem
 
 if not has_numba():
@@ -62,28 +63,48 @@ def test_rounding_does_not_gather():
     assert arc.steps > 5000
 
 
-@pytest.mark.parametrize("count", [1, 4, 5])
-def test_states_of_any_size_and_every_one_of_several_guards(count):
-    """Pendulums that know nothing of each other, whose numbers fill a row, or a part, or more than one."""
+def pendulums(count):
+    """Pendulums of frequencies 1, 2, 3 that know nothing of each other, each with a level and its guard."""
 
     def rates(y, p):
         return [*y[count:], *(-((1.0 + i) ** 2) * y[i] for i in range(count))]
 
-    def guard(i, level):
-        return Guard(f"{i} below {level}", lambda y, p: y[i] - level)
+    def guard(i):
+        return Guard(f"{i} below its level", lambda y, p: y[i] - p[i])
 
-    start = np.repeat([1.0, 0.0], count)
-    for last in range(count):
-        guards = tuple(guard(i, -0.5 if i == last else -1.5) for i in range(count))
-        motion = Motion(rates, size=2 * count, parameters=0, guards=guards)
-        arc = whole(make_integrator("compiled").integrate(motion, (), (0.0, start), 9.0))
-        assert arc.guard == guards[last].name
-        assert arc.solution.end == pytest.approx(2.0 * math.pi / 3.0 / (1.0 + last), rel=1e-11)
-        angles = (1.0 + np.arange(count)) * arc.solution.end
-        exact = np.concatenate([np.cos(angles), -(1.0 + np.arange(count)) * np.sin(angles)])
+    return Motion(rates, size=2 * count, parameters=count, guards=tuple(map(guard, range(count))))
+
+
+@pytest.mark.parametrize("count", [1, 4, 5])
+def test_states_of_any_size_and_every_one_of_several_guards(count):
+    """Numbers fill a row, or a part, or more than one, and levels are passed at every part of a step."""
+    motion, frequencies = pendulums(count), 1.0 + np.arange(count)
+    for last, side, level in itertools.product(range(count), (1.0, -1.0), np.linspace(-0.9, 0.9, 9)):
+        levels = np.where(np.arange(count) == last, level, -1.5)
+        start = np.repeat([side, 0.0], count)
+        arc = whole(make_integrator("compiled").integrate(motion, levels, (0.0, start), 9.0))
+        # What begins below its level has to rise above it first.
+        phase = math.acos(level) if side > level else 2.0 * math.pi - math.acos(-level)
+        assert arc.guard == motion.guards[last].name
+        assert arc.solution.end == pytest.approx(phase / frequencies[last], rel=1e-11)
+        angles = frequencies * arc.solution.end
+        exact = side * np.concatenate([np.cos(angles), -frequencies * np.sin(angles)])
         np.testing.assert_allclose(arc.end_state, exact, rtol=0, atol=1e-10)
         at = arc.solution(np.array([0.4 * arc.solution.end]))[0]
-        np.testing.assert_allclose(at[:count], np.cos(0.4 * angles), rtol=0, atol=1e-9)
+        np.testing.assert_allclose(at[:count], side * np.cos(0.4 * angles), rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("count", [1, 4, 5])
+def test_no_fall_is_looked_for_where_every_guard_is_far_from_zero(count, monkeypatch):
+    def refused(*given):
+        raise AssertionError("no guard comes near zero")
+
+    monkeypatch.setattr(stepping, "first_fall", refused)
+    motion, levels = pendulums(count), [-30.0 * 100.0**i for i in range(count)]
+    start = np.repeat([1.0, 0.0], count)
+    arc = whole(make_integrator("compiled").integrate(motion, levels, (0.0, start), 9.0))
+    assert arc.guard is None
+    assert arc.solution.end == 9.0
 
 
 @pytest.mark.parametrize("rise", [1e-3, 1e-6])
