@@ -9,6 +9,7 @@ import tippetop as tt
 from tippetop.lowest import lowest_jellett
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.top import natural, natural_state, natural_units
+from tippetop.mechanics.vectors import length
 from tippetop.monitor import Monitor
 
 PROBLEM = tt.presets.report_problem()
@@ -22,7 +23,8 @@ def seen(**changes: Any) -> Monitor:
     monitor = Monitor(TOP, START)
     ones = np.array([1.0, 1.0, 1.0])
     told = {
-        "axis": tuple([number * ones for number in START.axis]),
+        "size": length(START.axis) * ones,
+        "cosine": START.axis[2] * ones,
         "height": START.height * ones,
         "energy": ENERGY * ones,
         "jellett": lowest_jellett(START, TOP) * ones,

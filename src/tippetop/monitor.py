@@ -7,7 +7,7 @@ from tippetop.mechanics.hull import Hull, outer_height
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
-from tippetop.mechanics.vectors import Scalar, Vector, length
+from tippetop.mechanics.vectors import Scalar, length
 
 LEAST_MOMENT = 1e-6
 """Size |L| h of Jellett's integral at launch, in natural units, below which its drift says nothing."""
@@ -47,13 +47,15 @@ class Monitor:
         """Whether that is little, for steps of a relative error."""
         return self.inaccuracy <= max(WORST, ACCUMULATED * tolerance)
 
-    def see(self, axis: Vector, height: Scalar, energy: Scalar, jellett: Scalar, work: Scalar) -> None:
-        """See some instants: numbers, or arrays of one shape; of work, all since launch."""
+    def see(
+        self, size: Scalar, cosine: Scalar, height: Scalar, energy: Scalar, jellett: Scalar, work: Scalar
+    ) -> None:
+        """See some instants, numbers or arrays of one shape: |n|, n_z, and of work all since launch."""
         self._imbalance = max(self._imbalance, float(np.max(np.abs(energy - self._energy - work))))
         self._largest = max(self._largest, float(np.max(energy)))
-        self._off_unit = max(self._off_unit, float(np.max(np.abs(length(axis) - 1.0))))
+        self._off_unit = max(self._off_unit, float(np.max(np.abs(size - 1.0))))
         self._least = min(self._least, float(np.min(jellett)))
         self._most = max(self._most, float(np.max(jellett)))
         if isinstance(self.top.surface, Hull):
-            sunk = outer_height(self.top.surface, axis[2]) - height
+            sunk = outer_height(self.top.surface, cosine) - height
             self._sunk = max(self._sunk, float(np.max(sunk)))

@@ -14,6 +14,7 @@ from tippetop.mechanics.hull import lowest_surface
 from tippetop.mechanics.motion import along_table
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
+from tippetop.mechanics.vectors import length
 from tippetop.monitor import Monitor
 from tippetop.samples import Samples
 
@@ -153,8 +154,8 @@ class Recorder:
         """See what the motion keeps where steps begin."""
         for group in block.groups:
             told = group.begun
-            state, done = told.state, work[group.which]
-            self.monitor.see(state.axis, state.height, told.energy, told.jellett, done)
+            axis, height, done = told.state.axis, told.state.height, work[group.which]
+            self.monitor.see(length(axis), axis[2], height, told.energy, told.jellett, done)
 
 
 def evenly_summed(gains: Array) -> Array:

@@ -147,7 +147,7 @@ def test_steps_join(method):
 
 CUTS = {
     "taylor": (taylor, {"LONG": 4}) if has_taylor() else None,
-    "compiled": (stepping, {"MANY": 7}),
+    "compiled": (stepping, {"FEW": 4, "MANY": 7}),
 }
 """What decides into how many arcs a solution is cut, and smaller numbers of it."""
 

@@ -9222,7 +9222,8 @@ function may_fall(values, guard) {
   var least = values[0][guard];
   var most = values[0][guard];
   for (var i = 1; i < LOOKS_of_dormand_prince + 1; i += 1) {
-    [least, most] = [Math.min(least, values[i][guard]), Math.max(most, values[i][guard])];
+    least = Math.min(least, values[i][guard]);
+    most = Math.max(most, values[i][guard]);
   }
   if (least > 0.0 && 2.0 * least >= most) {
     return false;
@@ -9904,7 +9905,7 @@ function _polished(guard, parameters, advance, step, guess) {
 }
 
 // tippetop.integrators.stepping
-const [FEW_of_stepping, WIDER, MANY] = [4, 4, 4096];
+const [FEW_of_stepping, WIDER, MANY] = [16, 4, 4096];
 const FAILURES = new py.Dict([[SINGULAR, NO_START], [STUCK_of_dormand_prince, NO_STEP]]);
 
 /** What a motion is followed with. */
@@ -9987,9 +9988,9 @@ class Stepping extends py.Thing {
   }
   /** Make room for more steps. */
   widen() {
-    var more = py.sub(py.min(py.mul(WIDER, this.steps), MANY), this.steps);
-    this.knots = py.np.concatenate([this.knots, py.np.empty(more)]);
-    this.terms = py.np.concatenate([this.terms, py.np.empty(py.mul(py.mul(more, POWERS), py.len(this.row)))]);
+    var steps = py.min(py.mul(WIDER, this.steps), MANY);
+    this.knots = py.np.resize(this.knots, py.add(steps, 1));
+    this.terms = py.np.resize(this.terms, py.mul(py.mul(steps, POWERS), py.len(this.row)));
   }
   /** Take steps until something is to be done; tell what. */
   advance(guarded = true) {
@@ -10454,18 +10455,18 @@ class Monitor extends py.Thing {
   is_trusted(tolerance) {
     return this.inaccuracy <= py.max(WORST, py.mul(ACCUMULATED, tolerance));
   }
-  /** See some instants: numbers, or arrays of one shape; of work, all since launch. */
-  see(axis, height, energy, jellett, work) {
+  /** See some instants, numbers or arrays of one shape: |n|, n_z, and of work all since launch. */
+  see(size, cosine, height, energy, jellett, work) {
     this._imbalance = py.max(
       this._imbalance,
       py.float(py.np.max(py.np.abs(py.sub(py.sub(energy, this._energy), work))))
     );
     this._largest = py.max(this._largest, py.float(py.np.max(energy)));
-    this._off_unit = py.max(this._off_unit, py.float(py.np.max(py.np.abs(py.sub(length(axis), 1.0)))));
+    this._off_unit = py.max(this._off_unit, py.float(py.np.max(py.np.abs(py.sub(size, 1.0)))));
     this._least = py.min(this._least, py.float(py.np.min(jellett)));
     this._most = py.max(this._most, py.float(py.np.max(jellett)));
     if (py.isinstance(this.top.surface, Hull)) {
-      var sunk = py.sub(outer_height(this.top.surface, axis[2]), height);
+      var sunk = py.sub(outer_height(this.top.surface, cosine), height);
       this._sunk = py.max(this._sunk, py.float(py.np.max(sunk)));
     }
   }

@@ -10,8 +10,8 @@ import { CATALOGUE, GAUSS } from "./tables.js";
 const LEAST_TOLERANCE = 2.3e-14, LOOKS = 16;
 const PLACES = Array.from({ length: LOOKS + 1 }, (_, look) => look / LOOKS);
 const rates = (mode, y, pole) => m.Rates.of(mode, y, pole), RATES = 8, FORCE = 7;
-const kept = (mode, y) => keeping(mode.state(y), mode.top), KEPT = 6;
-const keeping = (state, top) => [...state.axis, state.height, m.energy(state, top), m.jellett(state, top)];
+const kept = (mode, y) => keeping(mode.state(y), mode.top), KEPT = 5;
+const keeping = (state, top) => [m.length(state.axis), state.axis[2], state.height, m.energy(state, top), m.jellett(state, top)];
 // What is added up: the first of them as they are told, as rates, in `Rates`.
 const [X, Y, TURN, WORK, DRILLED, ROLLED, STRUCK, SUMS] = [0, 1, 2, 3, 4, 5, 6, 7];
 
@@ -62,7 +62,7 @@ class Run {
       const piece = this.piece(mode, solution), known = piece.read(kept, KEPT), presses = mode.touching && !this.flights.rows.length;
       for (let step = 0; step < solution.count; step += 1) {
         const out = known(piece.at(step, 0));
-        this.monitor.see([out[0], out[1], out[2]], out[3], out[4], out[5], this.sums[WORK]);
+        this.monitor.see(out[0], out[1], out[2], out[3], out[4], this.sums[WORK]);
         this.sum(piece, step, presses);
         this.see(solution, step, 2, this.down, this.up);
         if (!mode.touching) this.see(solution, step, 9, null, this.depth);

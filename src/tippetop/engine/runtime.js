@@ -125,6 +125,11 @@ export const np = {
   stack: (parts) => Float64Array.from(parts),
   empty: (shape) => (typeof shape === "number" ? new Float64Array(shape)
     : Array.from({ length: shape[0] }, () => new Float64Array(shape[1]))),
+  resize(numbers, count) {
+    const found = new Float64Array(count);
+    for (let at = 0; at < count; at += numbers.length) found.set(numbers.subarray(0, count - at), at);
+    return found;
+  },
   concatenate([a, b]) {
     const found = new Float64Array(a.length + b.length);
     found.set(a);
@@ -297,11 +302,15 @@ export const range = (start, stop, step = 1) => {
 };
 export const enumerate = (all) => Array.from(all, (one, place) => [place, one]);
 export const reversed = (all) => [...all].reverse();
-export const map = (function_, ...rows) => zip(...rows).map((given) => function_(...given));
+export function map(function_, first, second) {
+  const a = tuple(first), b = second === undefined ? a : tuple(second), found = [];
+  for (let i = 0; i < a.length && i < b.length; i += 1) found.push(function_(a[i], b[i]));
+  return found;
+}
 export function zip(...rows) {
-  const whole = rows.map((row) => (Array.isArray(row) ? row : [...row]));
-  const count = Math.min(...whole.map((row) => row.length));
-  return Array.from({ length: count }, (_, i) => whole.map((row) => row[i]));
+  const whole = rows.map(tuple), count = Math.min(...whole.map((row) => row.length)), found = [];
+  for (let i = 0; i < count; i += 1) found.push(whole.map((row) => row[i]));
+  return found;
 }
 export const pairwise = (all) => zip(all, all.slice(1));
 export const any = (all) => [...all].some(truth);
@@ -327,15 +336,13 @@ function most(given, better) {
   if (!choices.length && "default" in told) return told.default;
   return choices.reduce((best, choice) => (better(worth(choice), worth(best)) ? choice : best));
 }
-export function max(...given) {
-  const [a, b] = given;
-  if (given.length === 2 && typeof a === "number" && typeof b === "number") return b > a ? b : a;
-  return most(given, (one, other) => below(other, one));
+export function max(a, b) {
+  if (arguments.length === 2 && typeof a === "number" && typeof b === "number") return b > a ? b : a;
+  return most([...arguments], (one, other) => below(other, one));
 }
-export function min(...given) {
-  const [a, b] = given;
-  if (given.length === 2 && typeof a === "number" && typeof b === "number") return b < a ? b : a;
-  return most(given, below);
+export function min(a, b) {
+  if (arguments.length === 2 && typeof a === "number" && typeof b === "number") return b < a ? b : a;
+  return most([...arguments], below);
 }
 export const sorted = (all, { key: worth = (one) => one } = {}) =>
   [...all].sort((a, b) => (below(worth(a), worth(b)) ? -1 : Number(below(worth(b), worth(a)))));

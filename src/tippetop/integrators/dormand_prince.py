@@ -131,7 +131,8 @@ def may_fall(values: Array, guard: int) -> bool:
     """Whether a guard with these values at the looks falls through zero, or may dip below it in between."""
     least, most = values[0, guard], values[0, guard]
     for i in range(1, LOOKS + 1):
-        least, most = min(least, values[i, guard]), max(most, values[i, guard])
+        least = min(least, values[i, guard])
+        most = max(most, values[i, guard])
     if least > 0.0 and 2.0 * least >= most:
         return False
     for i in range(LOOKS + 1):

@@ -11,7 +11,7 @@ from tippetop.integrators.dormand_prince import FULL, POWERS, ROWS, SINGULAR, ST
 from tippetop.integrators.falls import first_fall
 from tippetop.mechanics.vectors import Scalar
 
-FEW, WIDER, MANY = 4, 4, 4096
+FEW, WIDER, MANY = 16, 4, 4096
 """Steps for which there is room at first, how many times as many there is room for then, and in an arc."""
 
 FAILURES = {SINGULAR: NO_START, STUCK: NO_STEP}
@@ -111,9 +111,9 @@ class Stepping:
 
     def widen(self) -> None:
         """Make room for more steps."""
-        more = min(WIDER * self.steps, MANY) - self.steps
-        self.knots = np.concatenate([self.knots, np.empty(more)])
-        self.terms = np.concatenate([self.terms, np.empty(more * POWERS * len(self.row))])
+        steps = min(WIDER * self.steps, MANY)
+        self.knots = np.resize(self.knots, steps + 1)
+        self.terms = np.resize(self.terms, steps * POWERS * len(self.row))
 
     def advance(self, *, guarded: bool = True) -> int:
         """Take steps until something is to be done; tell what."""
