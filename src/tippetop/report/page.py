@@ -18,6 +18,9 @@ from tippetop.report.gallery import PLATES, Plate
 from tippetop.report.outline import OWN, PICTURES, SECTIONS, UNCHECKED, section_of
 from tippetop.report.typeset import formula, typeset
 
+_THUMBNAIL = (640, 420)
+"""Largest size of the pictures that the page opens with, pixels."""
+
 Worded = dict[str, Any]
 """A claim in words."""
 
@@ -141,7 +144,7 @@ def _picture(plate: Plate, figures: Path) -> dict[str, str]:
     """One of the pictures that the page opens with, small."""
     with Image.open(figures / f"{plate.id}.png") as whole:
         small = whole.convert("RGB")
-    small.thumbnail((640, 420), Image.Resampling.LANCZOS)
+    small.thumbnail(_THUMBNAIL, Image.Resampling.LANCZOS)
     file = io.BytesIO()
     small.save(file, "webp", quality=82)
     return {"id": plate.id, "finding": plate.finding, "image": _embedded(file.getvalue(), "webp")}

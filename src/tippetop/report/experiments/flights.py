@@ -13,8 +13,14 @@ from tippetop.report.experiments.runs import WINDOW, flight_readings, stopping, 
 from tippetop.report.quoted import MU, TILT
 from tippetop.run import simulate
 
+LONG_WINDOW = 100.0
+"""Length of the longer runs in which a lift-off is looked for, s."""
+
 FLIGHTS_WINDOW = 60.0
 """Length of the runs that are followed through all their flights, s."""
+
+SAMPLES_PER_SECOND = 100
+"""Samples a second of these runs."""
 
 
 def leaves_at(problem: Problem, window: float) -> float:
@@ -73,7 +79,7 @@ def _onsets(field: str, values: np.ndarray, windows: tuple[float, ...], quick: b
 @experiment("onset-mu", "the least spin that leaves the table, against friction", 7.0)
 def _over_mu(quick: bool) -> xr.Dataset:
     values = np.geomspace(0.05, 10.0, 3 if quick else 8)
-    return _onsets("friction.mu", values, (WINDOW, 100.0), quick).assign_attrs(tilt_rad=TILT)
+    return _onsets("friction.mu", values, (WINDOW, LONG_WINDOW), quick).assign_attrs(tilt_rad=TILT)
 
 
 @experiment("onset-tilt", "the least spin that leaves the table, against tilt", 5.0)
@@ -87,7 +93,7 @@ def followed(spins: tuple[float, ...], restitution: float) -> xr.Dataset:
 
     Variables over restitution and spin: what `flight_readings` gives, and first_lift_off, s.
     """
-    samples = int(100 * FLIGHTS_WINDOW) + 1
+    samples = int(SAMPLES_PER_SECOND * FLIGHTS_WINDOW) + 1
     rows = []
     for spin in spins:
         run = simulate(unilateral(report_problem(spin), restitution), FLIGHTS_WINDOW, samples=samples)

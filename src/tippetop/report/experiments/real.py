@@ -33,11 +33,23 @@ REACH = 0.03
 STEM_WINDOW = 20.0
 """How long tops with stems are followed, s."""
 
+UPRIGHT_ON_STEM = 0.1
+"""Tilt short of pi at the end, rad, within which a top stands on its stem."""
+
 EGG_MU = 1.0
 """Viscous friction under the egg, s/m."""
 
+EGG_WINDOW = 8.0
+"""How long eggs are followed, s."""
+
 ROUGH = CoulombFriction(mu=1.0)
 """Friction that lets nothing slip here."""
+
+BALL_TILTS = (1.2, 1.55)
+"""Tilts of the hurricane balls, rad: below a right angle, at which the other ball touches too."""
+
+ROLLING_WINDOW = 0.2
+"""How long steady rolling is followed, s: some turns."""
 
 
 def first_of(times: np.ndarray, after: float = 0.0) -> float:
@@ -102,7 +114,7 @@ def _stems(quick: bool) -> xr.Dataset:
     over = "radius"
     return dataset(
         {"radius": (radii, "m", "radius of the stem's tip")},
-        {"window_s": STEM_WINDOW, "upright_rad": 0.1, "reach_m": REACH},
+        {"window_s": STEM_WINDOW, "upright_rad": UPRIGHT_ON_STEM, "reach_m": REACH},
         final_theta=(final, "rad", "tilt at the end", over),
         jellett=(brought, "kg m3 s-1", "Jellett's integral about the tip at its touch", over),
         jellett_needed=(needed, "kg m3 s-1", "what it takes to stand", over),
@@ -117,7 +129,7 @@ def _egg(quick: bool) -> xr.Dataset:
     friction = ViscousFriction(mu=EGG_MU)
     launches = [Launch(tilt=1.5, spin=0.0, precession=rate) for rate in rates]
     problems = [Problem(body=EGG, friction=friction, launch=launch) for launch in launches]
-    runs = [simulate(problem, 8.0, samples=401) for problem in problems]
+    runs = [simulate(problem, EGG_WINDOW, samples=401) for problem in problems]
     lifts = [first_of(happenings(run, "lift-off")) for run in runs]
     return dataset(
         {
@@ -139,14 +151,13 @@ def rolling(body: Body, tilt: float) -> tuple[RestingCenter, xr.Dataset] | None:
     if found is None:
         return None
     launch = Launch(tilt=tilt, spin=found.spin, precession=found.precession)
-    return found, simulate(problem.replace({"launch": launch}), 0.2, samples=41)
+    return found, simulate(problem.replace({"launch": launch}), ROLLING_WINDOW, samples=41)
 
 
 @experiment("real-rolling", "Euler's disk and hurricane balls", 2.0)
 def _rolling(quick: bool) -> xr.Dataset:
     tilts = {"disk": [0.1, 0.3, 0.5] if quick else np.linspace(0.05, 0.6, 12).tolist()}
-    # At a right angle the other ball touches too.
-    tilts["balls"] = np.linspace(1.2, 1.55, 4 if quick else 12).tolist()
+    tilts["balls"] = np.linspace(*BALL_TILTS, 4 if quick else 12).tolist()
     bodies = {"disk": EULER_DISK, "balls": HURRICANE_BALLS}
     found: dict[str, list[tuple[float, float, float, float]]] = {name: [] for name in bodies}
     for name, body in bodies.items():
