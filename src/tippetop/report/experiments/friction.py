@@ -85,7 +85,7 @@ def _fitted(spins: Array, count: int) -> xr.Dataset:
     return data
 
 
-@experiment("flip-times", "flip time against friction, at 155 rad/s", 2.0)
+@experiment("flip-times", f"flip time against friction, at {SPIN:g} rad/s", 2.0)
 def _flip_times(quick: bool) -> xr.Dataset:
     told = {"spin_rad_per_s": SPIN, "within_rad": SETTLED, "window_s": WINDOW}
     return _fitted(np.array([SPIN]), 7 if quick else 17).isel(spin=0, drop=True).assign_attrs(told)
@@ -99,7 +99,7 @@ def _other_spins(quick: bool) -> xr.Dataset:
 @experiment("flip-times-wide", "flip time over three decades of friction", 2.5)
 def _wide(quick: bool) -> xr.Dataset:
     mu = np.geomspace(0.03, 10.0, 9) if quick else np.geomspace(0.01, 10.0, 28)
-    spins = np.array([100.0, 155.0])
+    spins = np.array([100.0, SPIN])
     # Long enough to turn over, and the same for neighbours, so that they can be followed together.
     windows = WINDOW * 2.0 ** np.ceil(np.log2(np.maximum(1.0, (3.0 / mu + 4.0) / WINDOW)))
     times = np.empty((len(spins), len(mu)))

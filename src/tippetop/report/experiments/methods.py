@@ -17,19 +17,20 @@ from tippetop.report.experiment import dataset, experiment
 from tippetop.report.experiments.runs import on_table
 from tippetop.report.listing import launch_state, listing_rates
 from tippetop.report.ode45 import ABSOLUTE, RELATIVE, dormand_prince_step, ode45
+from tippetop.report.quoted import MU, ROUGH_FRICTION, SPIN, TILT
 from tippetop.run import simulate
 
 EXPLICIT, IMPLICIT = ("ode45", "dop853"), ("radau", "bdf", "lsoda")
 
 LAUNCHES = (
-    (10.0, 0.1, 0.3),
-    (155.0, 0.1, 0.3),
-    (155.0, 1.4, 0.3),
-    (155.0, 1e-6, 0.3),
-    (155.0, math.pi - 1e-3, 0.3),
-    (155.0, 0.1, 10.0),
-    (10.0, 0.1, 100.0),
-    (155.0, 0.1, 100.0),
+    (10.0, TILT, MU),
+    (SPIN, TILT, MU),
+    (SPIN, 1.4, MU),
+    (SPIN, 1e-6, MU),
+    (SPIN, math.pi - 1e-3, MU),
+    (SPIN, TILT, 10.0),
+    (10.0, TILT, ROUGH_FRICTION),
+    (SPIN, TILT, ROUGH_FRICTION),
 )
 """Spins (rad/s), tilts (rad) and friction coefficients (s/m) of the launches the methods are compared on."""
 
@@ -182,7 +183,7 @@ def _stiffness(quick: bool) -> xr.Dataset:
 @experiment("theta-mod-pi", "the listing's right-hand side at the poles", 0.1)
 def _jump(quick: bool) -> xr.Dataset:
     problem = report_problem()
-    tiny, rest = 1e-9, (3.0, 0.0, 10.0, 155.0, 0.05, 0.05)
+    tiny, rest = 1e-9, (3.0, 0.0, 10.0, SPIN, 0.05, 0.05)
 
     def beside(motion: Motion) -> list[float]:
         return [float(motion.rates((side * tiny, *rest), ())[6]) for side in (-1, 1)]

@@ -60,7 +60,7 @@ def _map(quick: bool) -> xr.Dataset:
     limit = critical_spin(SteadyKind.UPRIGHT, report_problem().top)
     return dataset(
         {"radius": (radii, "m", "radius of the contact patch"), "spin": spins},
-        {"mu": MU, "window_s": MAP_WINDOW, "tilt_rad": 0.1},
+        {"mu": MU, "window_s": MAP_WINDOW, "tilt_rad": quoted.TILT},
         turning_time=(times, "s", "first tilt of more than pi/2", "radius", "spin"),
         least_force=(least, "N", "least normal force of all"),
         upright_limit=(limit, "rad s-1", "spin below which the upright spin is stable"),
@@ -84,6 +84,7 @@ def _viscous(quick: bool) -> xr.Dataset:
     smooth = [turning(ViscousFriction(mu=float(c))) for c in coefficients]
     load, radius = base.body.mass * base.gravity, float(base.top.surface.size)
     radii = [hertz_patch_radius(load, radius, material, material) for material in MATERIALS.values()]
+    at_launch = f"viscous coefficient of that patch at {quoted.SPIN:g} rad/s"
     creep = [CREEP["hertz"] * MU / (r * quoted.SPIN) for r in radii]
     ratios = "growth rate of a patch over that of viscous friction"
     return dataset(
@@ -98,7 +99,7 @@ def _viscous(quick: bool) -> xr.Dataset:
         viscous_time=(smooth, "s", "first tilt of more than pi/2, viscous", "coefficient"),
         growth_ratio=(_growth_ratios(), "1", ratios, "pressure", "pole"),
         hertz_radius=(radii, "m", "patch of the report's top on its own material", "material"),
-        hertz_coefficient=(creep, "s m-1", "viscous coefficient of that patch at 155 rad/s", "material"),
+        hertz_coefficient=(creep, "s m-1", at_launch, "material"),
     )
 
 

@@ -11,7 +11,7 @@ from tippetop.presets import REPORT_TABLE_1, report_problem
 from tippetop.problem import Problem
 from tippetop.report.experiment import dataset, experiment, variable
 from tippetop.report.listing import VARIABLES, listing_run
-from tippetop.report.quoted import END_OF_FIG_5
+from tippetop.report.quoted import END_OF_FIG_5, ROUGH_FRICTION, SPIN, TILT
 from tippetop.report.readings import SETTLED, SHOWN, crossings, first_below_zero, flip_time, longest_quiet
 from tippetop.run import simulate
 from tippetop.sweeps import Ending, Product, Sweep, compute
@@ -192,7 +192,7 @@ def _settling(quick: bool) -> xr.Dataset:
     """How far the tilt still swings, in the second before several times, on the table of Fig. 8."""
     ends = np.array([20.0, 40.0] if quick else [20.0, 40.0, 80.0])
     run = simulate(
-        on_table(report_problem(155.0, mu=100.0)), float(ends[-1]), samples=int(200 * ends[-1]) + 1
+        on_table(report_problem(SPIN, mu=ROUGH_FRICTION)), float(ends[-1]), samples=int(200 * ends[-1]) + 1
     )
     swings = [float(np.ptp(run["theta"].sel(time=slice(end - 1.0, end)).values)) for end in ends]
     return dataset(
@@ -263,9 +263,9 @@ def _slow(quick: bool) -> xr.Dataset:
     )
 
 
-_launch("run-155", 1.4, "launch at 155 rad/s", 155.0)
+_launch("run-155", 1.4, f"launch at {SPIN:g} rad/s", SPIN)
 _launch("run-50", 0.8, "launch at 50 rad/s", 50.0)
-_launch("run-mu-100", 4.0, "launch on an impossible table", 155.0, 0.1, 100.0)
+_launch("run-mu-100", 4.0, "launch on an impossible table", SPIN, TILT, ROUGH_FRICTION)
 _launch("run-175", 2.0, "launch at 175 rad/s", 175.0)
 _launch("run-10", 0.5, "launch at 10 rad/s", 10.0)
 _launch("run-90", 1.0, "launch at 90 rad/s", 90.0)
