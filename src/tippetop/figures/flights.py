@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
+from matplotlib.ticker import LogLocator, MaxNLocator
 
 import tippetop.figures.annotation as mark
 from tippetop.figures.envelope import band
@@ -42,8 +43,9 @@ def onset_figure(axes: Axes, sweep: xr.Dataset, over: str, reported: float) -> N
     )
     bar = axes.figure.colorbar(dots, ax=axes, label="first lift-off (s)", pad=0.02)
     first, last = np.nanmin(times), np.nanmax(times)
-    ticks = (1, 2, 5, 10, 20, 50, 100, 200)
-    mark.plain_ticks(bar.ax.yaxis, [tick for tick in ticks if first <= tick <= last])
+    locator = LogLocator(subs=(1, 2, 5)) if last > 5 * first else MaxNLocator(4)
+    ticks = locator.tick_values(first, last)
+    mark.plain_ticks(bar.ax.yaxis, ticks[(first <= ticks) & (ticks <= last)])
     for k, (window, style) in enumerate(zip(sweep["window"].values, ("-", (0, (4, 2))), strict=False)):
         axes.plot(
             sweep[over], sweep["onset"].sel(window=window), color=ACCENT, ls=style, lw=1.8, zorder=4 - k,
