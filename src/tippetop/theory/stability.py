@@ -99,8 +99,9 @@ class Spectrum:
 def spectrum(steady: SteadyState, top: Top, frame_rate: float | None = None) -> Spectrum:
     """Eigenvalues of the linear motion about a steady state; here the top's friction matters.
 
-    The angular velocity of the frame, rad/s, is the state's precession, which is 0, a frame at rest, for a
-    vertical spin, unless it is given. Only a vertical spin is steady in other frames.
+    It is that in a frame which turns about the vertical at `frame_rate`, rad/s; if this is None, at the
+    state's precession, which for a vertical spin is 0: a frame at rest. Only a vertical spin is steady in
+    other frames; for other states `frame_rate` is ignored.
 
     Raises
     ------
