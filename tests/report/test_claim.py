@@ -7,7 +7,6 @@ import re
 import pytest
 
 from tippetop.report.claim import (
-    EXAMINERS,
     Claim,
     Examiner,
     Finding,
@@ -15,9 +14,11 @@ from tippetop.report.claim import (
     Source,
     Verdict,
     decide,
+    examines,
     number,
 )
-from tippetop.report.claims.registry import CLAIMS
+from tippetop.report.claims.registry import CLAIMS, EXAMINERS
+from tippetop.report.experiment import dataset, experiment
 from tippetop.report.experiments.registry import EXPERIMENTS
 from tippetop.report.gallery import DRAWN, PLATES
 from tippetop.report.outline import OWN, PICTURES, SECTIONS, UNCHECKED, section_of
@@ -161,6 +162,24 @@ def test_every_statement_of_the_report_is_quoted() -> None:
 def test_all_that_is_told_is_examined_or_drawn_and_the_other_way_round() -> None:
     assert set(EXAMINERS) == set(CLAIMS)
     assert set(DRAWN) == set(PLATES)
+
+
+def test_no_name_is_registered_twice() -> None:
+    told, done = next(iter(EXAMINERS)), next(iter(EXPERIMENTS))
+    known = EXAMINERS[told], EXPERIMENTS[done]
+    with pytest.raises(ValueError, match=told):
+        examines(told)(lambda: Finding.unlisted(True, ""))
+    with pytest.raises(ValueError, match=done):
+        experiment(done, "", 0.0)(lambda quick: dataset({}))
+    assert (EXAMINERS[told], EXPERIMENTS[done]) == known
+
+
+def test_words_have_no_unit() -> None:
+    found = dataset(
+        {"top": ["a", "b"]}, group=(["I", "II"], None, "group", "top"), size=([1.0, 2.0], "m", "size", "top")
+    )
+    assert found["group"].attrs == {"long_name": "group"}
+    assert found["size"].attrs["units"] == "m"
 
 
 def test_constants_stand_in_what_is_told_of_them() -> None:

@@ -199,15 +199,18 @@ class Judgement:
 
 
 EXAMINERS: dict[str, Examiner] = {}
-"""How claims are examined, by their names; `tippetop.report.claims.registry` knows all."""
+"""How claims are examined, by their names: those registered so far; take all from
+`tippetop.report.claims.registry`."""
 
 
 def examines(
     claim: str, *needs: str, tolerance: Tolerance | None = None, **options: Any
 ) -> Callable[[Callable[..., Finding]], Callable[..., Finding]]:
-    """Register the decorated function, with some options, as what examines a claim; see `Examiner`."""
+    """Register the decorated function, with some options, as what alone examines a claim; see `Examiner`."""
 
     def register(examine: Callable[..., Finding]) -> Callable[..., Finding]:
+        if claim in EXAMINERS:
+            raise ValueError(f"the claim {claim} is examined twice")
         EXAMINERS[claim] = Examiner(needs, tolerance, partial(examine, **options))
         return examine
 

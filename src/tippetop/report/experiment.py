@@ -38,13 +38,15 @@ class Experiment:
 
 
 EXPERIMENTS: dict[str, Experiment] = {}
-"""Those that are known by their names; `tippetop.report.experiments.registry` knows all."""
+"""Those registered so far; take all from `tippetop.report.experiments.registry`."""
 
 
 def experiment(name: str, title: str, cost: float) -> Callable[[Compute], Compute]:
-    """Register the decorated function as what does an experiment; see `Experiment`."""
+    """Register the decorated function as what does an experiment, which no other may; see `Experiment`."""
 
     def register(compute: Compute) -> Compute:
+        if name in EXPERIMENTS:
+            raise ValueError(f"two experiments are called {name}")
         EXPERIMENTS[name] = Experiment(name, title, cost, compute)
         return compute
 
@@ -83,7 +85,8 @@ def dataset(
 
 
 def variable(
-    values: object, units: str, long_name: str, *dimensions: str
+    values: object, units: str | None, long_name: str, *dimensions: str
 ) -> tuple[tuple[str, ...], object, dict[str, str]]:
-    """A variable of a dataset with its unit and its meaning."""
-    return (dimensions, values, {"units": units, "long_name": long_name})
+    """A variable of a dataset with its meaning and its unit, None for words."""
+    unit = {} if units is None else {"units": units}
+    return (dimensions, values, {**unit, "long_name": long_name})

@@ -1,6 +1,7 @@
 """Everything the report claims that can be put to numbers: told in `claims.toml`, examined here."""
 
-from tippetop.report.claim import EXAMINERS, Claim, Source
+from tippetop.report.claim import EXAMINERS as EXAMINERS
+from tippetop.report.claim import Claim, Source
 from tippetop.report.claims import (  # noqa: F401 - for what they register
     abnormal,
     dry,

@@ -172,5 +172,5 @@ def _groups(quick: bool) -> xr.Dataset:
         **{name: (lines[name], "1", f"gamma at the {names[name]}", "alpha") for name in lines},
         top_gamma=([groups.inertia_ratio(top) for top in tops], "1", "I1 / I3", "top"),
         top_alpha=([groups.eccentricity(top) for top in tops], "1", "eccentricity", "top"),
-        top_group=([groups.classify_top(top).value for top in tops], "1", "group", "top"),
+        top_group=([groups.classify_top(top).value for top in tops], None, "group", "top"),
     )
