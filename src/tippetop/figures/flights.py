@@ -43,7 +43,7 @@ def onset_figure(axes: Axes, sweep: xr.Dataset, over: str, reported: float) -> N
     )
     bar = axes.figure.colorbar(dots, ax=axes, label="first lift-off (s)", pad=0.02)
     first, last = np.nanmin(times), np.nanmax(times)
-    locator = LogLocator(subs=(1, 2, 5)) if last > 5 * first else MaxNLocator(4)
+    locator = LogLocator(subs=(1, 2, 5)) if last > 5 * first else MaxNLocator(4, steps=[1, 2, 5, 10])
     ticks = locator.tick_values(first, last)
     mark.plain_ticks(bar.ax.yaxis, ticks[(first <= ticks) & (ticks <= last)])
     for k, (window, style) in enumerate(zip(sweep["window"].values, ("-", (0, (4, 2))), strict=False)):
