@@ -8,6 +8,7 @@ from tippetop.figures.looks import size, toy_parts
 from tippetop.figures.meridian import own_profile
 from tippetop.figures.toy import FAR, Toy
 from tippetop.mechanics.hull import outer_height
+from tippetop.mechanics.outline import outline
 
 EGG = tt.Body(mass=0.02, shape=tt.Spheroid(across=0.015, along=0.025), I1=4e-6, I3=2e-6)
 STEMMED = tt.Body(
@@ -25,6 +26,24 @@ COIN = tt.Body(
 TURNED, BALLS = tt.presets.WOODEN, tt.presets.HURRICANE_BALLS
 BODIES = [tt.presets.REPORT, EGG, STEMMED, COIN, TURNED, BALLS]
 NAMES = ["top", "egg", "stem", "coin", "turned", "balls"]
+
+
+HOOP = tt.Body(mass=4e-3, shape=tt.Ring(radius=0.01, center=0.0), I1=1e-7, I3=2e-7)
+OUTLINED = {**tt.presets.BODIES, "hoop": HOOP}
+
+
+@pytest.mark.parametrize("body", OUTLINED.values(), ids=OUTLINED)
+def test_an_outline_reaches_down_to_the_table_at_every_tilt(body: tt.Body) -> None:
+    lines = outline(body.surface)
+    r, z = np.concatenate(lines).T
+    tilts = np.linspace(0.0, np.pi, 200)[:, None]
+    lowest = (r * np.sin(tilts) - z * np.cos(tilts)).max(axis=1)
+    heights = outer_height(body.surface, np.cos(tilts[:, 0]))
+    assert lowest == pytest.approx(heights, abs=3e-3 * size(body))
+    assert (r[0], r[-1]) == (0.0, 0.0), "it is closed by the axis"
+    # Lines between surfaces that follow one another; rings are corners, and end in faces.
+    rings = sum(isinstance(shape, tt.Ring) for shape in body.shapes)
+    assert len(lines) == (rings + 1 if rings else 2 * len(body.shapes) - 1)
 
 
 @pytest.mark.parametrize("body", BODIES, ids=NAMES)
