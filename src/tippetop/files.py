@@ -32,10 +32,13 @@ def require_ending(field: str, path: Path, endings: Sequence[str]) -> None:
         raise InvalidInput(field, str(path), f"a file name that ends in {' or '.join(endings)}")
 
 
-def refuse_overwriting(path: Path, overwrite: bool) -> None:
-    """Raise `FileTrouble` if something is there, even a link to nothing, and may not be overwritten."""
+def refuse_overwriting(path: Path, overwrite: bool, otherwise: str = "") -> None:
+    """Raise `FileTrouble` if something is there, even a link to nothing, and may not be overwritten.
+
+    What else may be done with it is told, if anything: "it is <otherwise>overwritten only with ...".
+    """
     if os.path.lexists(path) and not overwrite:
-        raise FileTrouble(f"{named(path)} exists; it is overwritten only with {OVERWRITE}")
+        raise FileTrouble(f"{named(path)} exists; it is {otherwise}overwritten only with {OVERWRITE}")
 
 
 def place_for(path: Path | str, overwrite: bool) -> Path:

@@ -55,7 +55,7 @@ def test_programs_get_json(tmp_path):
     said = json.loads(run(*AXES, *SHORT, "--settled", "1e-3", "--out", out, "--json", "--no-maps"))
     assert said["sweep"]["settled"] == 1e-3
     assert said["cells"] == said["computed"] == sum(said["outcomes"].values()) == 6
-    assert said["launches_per_second"] > 0
+    assert said["launches_per_second"] == pytest.approx(said["computed"] / said["seconds"])
     assert said["maps"] == []
     assert said["sweep"]["problem"]["launch"]["tilt"] == 1.0
     again = json.loads(run("--out", out, "--resume", "--json", "--no-maps"))
@@ -124,6 +124,13 @@ def test_stems_are_swept_from_a_file_and_from_the_command_as_in_python(tmp_path)
     assert (tmp_path / "a.final_theta.png").exists()
 
 
+@pytest.mark.parametrize("name", ["x.txt", "x", "x.zarr.nc"])
+def test_stores_are_called_so(tmp_path, name):
+    with pytest.raises(InvalidInput, match=r"accepted: a file name that ends in \.zarr"):
+        run(*AXES, *SHORT, "--out", tmp_path / name)
+    assert list(tmp_path.iterdir()) == []
+
+
 UNREADABLE = {
     "--axis": ["launch.spin", "launch.spin=", "launch.spin=1:2", "launch.spin=1:2:x", "launch.spin=1,b"],
     "--draw": ["launch.spin", "launch.spin=1", "launch.spin=1:2:lin", "launch.spin=1:x"],
@@ -172,8 +179,8 @@ def test_a_picture_of_somebody_else_is_not_overwritten(tmp_path):
 
 def test_a_store_is_not_overwritten_or_mixed_with_another(tmp_path):
     out = tmp_path / "a.zarr"
-    run(*AXES, *SHORT, "--out", out, "--no-maps")
-    with pytest.raises(FileTrouble, match="overwrite"):
+    run(*AXES, *SHORT, "--out", out)
+    with pytest.raises(FileTrouble, match=r"a\.zarr exists; it is finished with .*, and overwritten only"):
         run(*AXES, *SHORT, "--out", out)
     with pytest.raises(FileTrouble, match=r"problem\.friction\.mu is 0\.3 in it, and 0\.9 here"):
         run("--mu", 0.9, "--resume", "--out", out)
@@ -185,7 +192,7 @@ def test_sentences_name_options_here_and_arguments_in_python(tmp_path, monkeypat
     run(*AXES, *SHORT, "--out", out, "--no-maps")
     problem = report_problem()
     for options, wanted in (
-        ([*AXES], "exists; it is overwritten only with --force"),
+        ([*AXES], "a.zarr exists; it is finished with --resume, and overwritten only with --force"),
         (["--mu", "0.9", "--resume"], "choose another --out, or start afresh with --force"),
     ):
         monkeypatch.setattr(sys, "argv", ["tippetop", "sweep", *options, *SHORT, "--out", str(out)])
@@ -194,7 +201,7 @@ def test_sentences_name_options_here_and_arguments_in_python(tmp_path, monkeypat
         assert ended.value.code == 2
         assert wanted in capsys.readouterr().err
     over = {"launch.spin": [1.0]}
-    with pytest.raises(FileTrouble, match="exists; it is overwritten only with overwrite=True"):
+    with pytest.raises(FileTrouble, match="with resume=True, and overwritten only with overwrite=True"):
         tt.sweep(problem, over, out=out)
     with pytest.raises(FileTrouble, match="choose another out, or start afresh with overwrite=True"):
         tt.sweep(problem, over, out=out, resume=True)
@@ -208,7 +215,7 @@ def test_sentences_name_options_here_and_arguments_in_python(tmp_path, monkeypat
 @pytest.mark.parametrize("options", [AXES, [*AXES, "--no-maps"], [*AXES, "--force"], ["--resume"]])
 def test_names_that_no_file_can_have_are_told_in_a_sentence(tmp_path, name, options):
     with pytest.raises(FileTrouble, match=r"cannot be (written|read)"):
-        run(*options, *SHORT, "--out", tmp_path / name)
+        run(*options, *SHORT, "--out", tmp_path / f"{name}.zarr")
     assert list(tmp_path.iterdir()) == []
 
 

@@ -1,6 +1,5 @@
 """`tippetop sweep`: many launches, kept in a store, with maps beside it."""
 
-import time
 from collections import Counter
 from collections.abc import Iterator
 from functools import partial
@@ -13,7 +12,7 @@ import tippetop as tt
 from tippetop.cli.options import Choice, Force, Json, of_a_problem, write_figure
 from tippetop.cli.terminal import facts, progress_bar, show, show_json
 from tippetop.errors import MISSING, FileTrouble, InvalidInput
-from tippetop.files import in_words, place_for, read_text
+from tippetop.files import in_words, place_for, read_text, require_ending
 from tippetop.interrupts import INTERRUPTED
 
 if TYPE_CHECKING:
@@ -49,7 +48,7 @@ Processes = Annotated[int | None, typer.Option(help="Number of processes; all pr
 Scheduler = Annotated[
     str | None, typer.Option(metavar="ADDRESS", help="Compute on a running dask.distributed cluster.")
 ]
-Out = Annotated[Path, typer.Option(help="Zarr store to write.")]
+Out = Annotated[Path, typer.Option(help="Zarr store to write: .zarr.")]
 Resume = Annotated[bool, typer.Option("--resume", help="Finish a store that is there.")]
 Maps = Annotated[
     bool, typer.Option(show_default=False, help="Draw maps beside the store; drawn if left out.")
@@ -76,7 +75,7 @@ def sweep(
 ) -> None:
     """See what becomes of many launches: over axes that cross, or draws at random."""
     from tippetop.sweeps import Store, fill  # noqa: PLC0415 - slow to import
-    from tippetop.sweeps.layout import kept_sweep  # noqa: PLC0415
+    from tippetop.sweeps.layout import kept_sweep, refuse_existing  # noqa: PLC0415
     from tippetop.sweeps.tasks import need_workers  # noqa: PLC0415
 
     if resume and force:
@@ -86,11 +85,13 @@ def sweep(
     limits = {"duration": duration, "tolerance": tolerance, "settled": settled}
     chosen = _chosen_sweep(choice, kept, _chosen_grid(axis, draw, count, seed), limits)
     need_workers(chosen, workers, scheduler)
+    if not resume:
+        require_ending("--out", out, [".zarr"])
+        refuse_existing(out, force)
     pictures = _map_files(out) if maps else {}
     for path in pictures.values():
         place_for(path, force or resume)
     store = Store.resume(out, chosen) if resume else Store.create(out, chosen, force)
-    began = time.perf_counter()
     progress: list[Progress] = []
     try:
         with progress_bar() as tell:
@@ -107,7 +108,7 @@ def sweep(
         done = f"{progress[-1].done:,} of {progress[-1].cells:,}" if progress else "none"
         typer.echo(f"tippetop: interrupted; {done} cells are in {out}: go on with --resume", err=True)
         raise typer.Exit(INTERRUPTED) from None
-    summary = _summary(dataset, progress[-1], time.perf_counter() - began)
+    summary = _summary(dataset, progress[-1])
     if as_json:
         files = {"out": str(out), "maps": [str(path) for path in pictures.values()]}
         show_json({**summary, **files, "sweep": store.sweep.describe()})
@@ -207,13 +208,13 @@ def _draw_maps(dataset: "xr.Dataset", files: dict[str, Path], overwrite: bool) -
         write_figure(phase_map(dataset, name), path, overwrite)
 
 
-def _summary(dataset: "xr.Dataset", progress: "Progress", elapsed: float) -> dict[str, Any]:
+def _summary(dataset: "xr.Dataset", progress: "Progress") -> dict[str, Any]:
     names = dataset["outcome"].attrs["flag_meanings"].split()
     groups = Counter(int(value) for value in dataset["outcome"].values.ravel())
     return {
         "cells": progress.cells,
         "computed": progress.done - progress.before,
-        "seconds": elapsed,
+        "seconds": progress.elapsed,
         "launches_per_second": progress.rate,
         "outcomes": {name: groups[k] for k, name in enumerate(names) if groups[k]},
         "flights": int(dataset["flights"].where(dataset["flights"] >= 0, 0).sum()),

@@ -16,7 +16,8 @@ from typing import Any
 from tippetop import __version__
 from tippetop.catalogue import SWEPT, Variable, meanings
 from tippetop.dataset import CONVENTIONS
-from tippetop.errors import OTHER_OUT, OVERWRITE, FileTrouble, short
+from tippetop.errors import OTHER_OUT, OVERWRITE, RESUME, FileTrouble, short
+from tippetop.files import refuse_overwriting
 from tippetop.sweeps.definition import Sweep
 from tippetop.validation import Quantity
 
@@ -158,6 +159,11 @@ def mend_metadata(path: Path) -> None:
         if not whole:
             file.parent.mkdir(exist_ok=True)
             file.write_text(json.dumps(metadata), encoding="utf-8")
+
+
+def refuse_existing(path: Path, overwrite: bool) -> None:
+    """Raise `FileTrouble` if something is where a store is to be made, and may not be overwritten."""
+    refuse_overwriting(path, overwrite, f"finished with {RESUME}, and ")
 
 
 def kept_sweep(path: Path) -> Sweep:

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from tippetop.catalogue import SWEPT
 from tippetop.errors import OTHER_OUT, OVERWRITE, RESUME, FileTrouble, Unavailable
-from tippetop.files import in_words, refuse_overwriting
+from tippetop.files import in_words
 from tippetop.interrupts import deferred
 from tippetop.sweeps.definition import Sweep, Task
 from tippetop.sweeps.disk import bring_to_disk, clear_away, identity, locked
@@ -33,6 +33,7 @@ from tippetop.sweeps.layout import (
     mend_metadata,
     read_metadata,
     refuse_another,
+    refuse_existing,
 )
 
 
@@ -68,7 +69,7 @@ class Store:
         path = Path(path)
         # Zarr writes in a thread of its own, which Ctrl-C does not stop.
         with in_words(path, "written"), deferred(), ExitStack() as stack:
-            refuse_overwriting(path, overwrite)
+            refuse_existing(path, overwrite)
             there = path.exists()
             if path.is_symlink() or (there and not may_be_replaced(path)):
                 raise FileTrouble(
