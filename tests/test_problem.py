@@ -529,6 +529,14 @@ class TestFiles:
             Problem.read(path)
         the_one_line_of(caught.value)
 
+    @pytest.mark.parametrize(("name", "language"), [("mine.toml", "TOML"), ("mine.json", "JSON")])
+    def test_a_file_that_cannot_be_read_is_named(self, tmp_path, name, language):
+        path = self.write(tmp_path / name, "{ gravity")
+        with pytest.raises(InvalidInput) as caught:
+            Problem.read(path)
+        said = the_one_line_of(caught.value)
+        assert said.startswith(f"problem = '{name}' is not possible; accepted: {language}; ")
+
     @pytest.mark.parametrize("number", ["NaN", "Infinity", "-Infinity", "1e999"])
     def test_json_with_a_number_that_is_not_finite(self, number):
         text = top_problem().to_json().replace("9.8", number)

@@ -368,7 +368,8 @@ class Problem(Part):
             If it does not hold a problem.
         """
         text = read_text(path, "a problem in TOML or JSON")
-        return cls.from_json(text) if Path(path).suffix.lower() == ".json" else cls.from_toml(text)
+        parse = parse_json if Path(path).suffix.lower() == ".json" else parse_toml
+        return cls(**parse(text, "problem", Path(path).name))
 
 
 def _inside(bound: float, side: float) -> str:

@@ -227,17 +227,19 @@ OF_ITS_KIND = _OfItsKind()
 ONE_OR_SEVERAL = _OfItsKind(several=True)
 
 
-def parse_json(text: str, field: str) -> dict[str, Any]:
+def parse_json(text: str, field: str, shown: str | None = None) -> dict[str, Any]:
     """The fields of a JSON text that states something, which is called a field in sentences.
+
+    They show the text, or its file if it has one.
 
     Raises `InvalidInput` if it is no JSON object, is nested deeper than `DEEPEST`, or holds whole numbers of
     thousands of digits.
     """
-    return _parsed("JSON", json.loads, text, field, text.strip())
+    return _parsed("JSON", json.loads, text, field, shown or text.strip())
 
 
 def parse_toml(text: str, field: str, shown: str | None = None) -> dict[str, Any]:
-    """The same of a TOML text, shown as something else if need be."""
+    """The same of a TOML text."""
     return _parsed("TOML", tomllib.loads, text, field, shown or text.strip())
 
 

@@ -73,7 +73,7 @@ def test_profiles_may_be_in_files_beside(tmp_path):
             SVG.format("M 0 0 L 1 1 L 0 1").replace("<g>", '<g transform="scale(2)">'),
             "transformations",
         ),
-        ("a.toml", "profile = [", "accepted: TOML"),
+        ("a.toml", "profile = [", "workpiece = 'a.toml' is not possible; accepted: TOML"),
         ("a.toml", "profile = 'b.csv'", "b.csv cannot be read"),
         ("a.toml", "density = 700", "profile is missing"),
         ("a.toml", "density = 700\nprofile = [[0, 0], [1, 1], [0, 1]]\ncolour = 'red'", "colour = 'red'"),

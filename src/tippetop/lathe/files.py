@@ -43,7 +43,7 @@ def read_workpiece(path: Path | str, **fields: Any) -> Workpiece:
     path = Path(path)
     if path.suffix.lower() != ".toml":
         return Workpiece(**{"profile": read_points(path), **fields})
-    found = {**parse_toml(read_text(path, ACCEPTED), "workpiece"), **fields}
+    found = {**parse_toml(read_text(path, ACCEPTED), "workpiece", path.name), **fields}
     inserts = found.get("inserts")
     for part in [found, *(inserts if isinstance(inserts, list) else [])]:
         if isinstance(part, dict) and isinstance(part.get("profile"), str):

@@ -117,7 +117,7 @@ class Sweep(Part):
 
         Raises `FileTrouble` if the file cannot be read; `InvalidInput` if it does not hold a sweep.
         """
-        fields = parse_toml(read_text(path, "a sweep in TOML"), "sweep", str(path))
+        fields = parse_toml(read_text(path, "a sweep in TOML"), "sweep", Path(path).name)
         if isinstance(fields.get("problem"), str):
             fields["problem"] = Problem.read(Path(path).parent / fields["problem"])
         return cls(**fields)
