@@ -57,3 +57,17 @@ def test_numbers_of_several_values_are_made_better_until_they_are_good():
     assert 3 < turns < 10
     np.testing.assert_allclose(roots, np.sqrt([2.0, 9.0]), rtol=1e-15)
     assert found[3] == found[4] < 1e-12
+
+
+def test_trouble_in_what_is_made_of_a_mode_is_told():
+    """A mode that cannot be recorded runs as it stands; one that is recorded and not compiled says so."""
+    kinds = told(
+        """(() => {
+          const plus = ([y]) => [y.__add__(1.0)], branches = () => { throw new RangeError("a branch"); };
+          const found = [plus, branches].map((one) => typeof compile.compiled(one, 1, 0));
+          globalThis.Function = function () { throw new TypeError("no such operation"); };
+          try { compile.compiled(plus, 1, 0); } catch ({ name }) { found.push(name); }
+          return found;
+        })()"""
+    )
+    assert kinds == ["function", "function", "TypeError"]

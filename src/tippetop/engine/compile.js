@@ -4,11 +4,13 @@ import { ArithmeticError, cached, heed, replace } from "./runtime.js";
 
 /** A function (y, p) => numbers in plain operators as code (y, p, out); run as it stands where it cannot be. */
 export function compiled(function_, size, parameters, heeds = true) {
+  let recorded;
   try {
-    return made(record(function_, size, parameters));
+    recorded = record(function_, size, parameters);
   } catch (error) {
     if (error instanceof ReferenceError || error instanceof SyntaxError) throw error;
   }
+  if (recorded) return made(recorded);
   return (y, p, out) => {
     heed(heeds);
     try {

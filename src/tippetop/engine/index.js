@@ -19,8 +19,8 @@ export function prospects(body, gravity, tilt) {
 
 /** The surface of a body that touches at cos(tilt): `height` and `slope` of its support function. */
 export function lowestSurface(body) {
-  const { surface } = new m.Body(body), several = surface instanceof m.Hull;
-  return several ? (c) => m.lowest_surface(surface, c) : () => surface;
+  const { surface } = new m.Body(body);
+  return (c) => m.lowest_surface(surface, c);
 }
 
 /** The outline of a body: of a profile, whose edges are lines of points, if it is the body's; null if not, or none. */
