@@ -10,9 +10,15 @@ import tippetop as tt
 from tippetop.cli.commands import app
 from tippetop.contact.choice import rules_for
 from tippetop.contact.passing import Stopping
+from tippetop.contact.rules import FreeToFly
 from tippetop.contact.sliding import Sliding
-from tippetop.integrators import has_taylor, sampling
-from tippetop.mechanics.top import natural, natural_state, natural_units
+from tippetop.integrators import has_taylor, make_integrator, sampling
+from tippetop.mechanics.coulomb import CoulombLaw
+from tippetop.mechanics.motion import along_table, contact, on_table, presses
+from tippetop.mechanics.rolling import ContactPoint, contact_motion, slip_reserve, velocity_without_slip
+from tippetop.mechanics.state import SlidingState
+from tippetop.mechanics.surface import SphereSurface
+from tippetop.mechanics.top import Top, natural, natural_state, natural_units
 
 INTEGRATORS = [
     pytest.param("taylor", marks=pytest.mark.skipif(not has_taylor(), reason="no heyoka")),
@@ -202,3 +208,25 @@ def test_a_result_tells_who_followed_an_end_of_slip(monkeypatch):
     assert tt.simulate(problem, 0.05, integrator="dop853").attrs["integrator"] == "dop853"
     monkeypatch.setattr(sampling, "MANY", 4)
     assert tt.simulate(problem, 0.05, integrator="dop853").attrs["integrator"] == "dop853, radau"
+
+
+def test_what_could_be_held_by_a_pull_only_slips():
+    """Sticking would need a pull, though the gap would close: neither that nor flight is consistent."""
+    rng, count = np.random.default_rng(3), 0
+    while count < 40:
+        surface = SphereSurface(1.0, rng.uniform(-0.9, 0.9))
+        across = rng.uniform(0.05, 0.6)
+        along, law = rng.uniform(0.05, 2.0 * across), CoulombLaw(rng.uniform(0.5, 4.0))
+        top = Top(1.0, across, along, surface, law, 1.0)
+        way, momentum = rng.normal(size=3), tuple(rng.normal(size=3))
+        axis = tuple(way / np.linalg.norm(way))
+        held = contact_motion(ContactPoint.of(axis, momentum, top), None)[0]
+        if held.force[2] > 0.0 or slip_reserve(top, held) < 0.0 or not presses(axis, momentum, top):
+            continue
+        state = on_table(SlidingState(axis, momentum, velocity_without_slip(axis, momentum, top)), top)
+        mode = FreeToFly(top, 0.0).resting(0.0, state).then
+        segment = next(mode.segments(0.0, state, 1e-3, make_integrator("dop853")))
+        touch = contact(*along_table(segment.end_state), top)
+        assert touch.normal_force > 0.0
+        assert np.hypot(*touch.slip) > 0.0
+        count += 1

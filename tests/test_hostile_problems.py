@@ -14,7 +14,7 @@ import pytest
 import tippetop as tt
 from tippetop.contact import closing
 from tippetop.errors import TippetopError
-from tippetop.integrators import has_numba, has_taylor, make_integrator, scipy_methods
+from tippetop.integrators import has_numba, has_taylor, make_integrator, sampling
 from tippetop.integrators.base import Motion
 from tippetop.mechanics import integrated_impact, touchdown
 
@@ -232,7 +232,7 @@ def test_steps_within_impacts_on_two_surfaces_count(monkeypatch: pytest.MonkeyPa
 def test_an_end_of_slip_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
     """Numbers that turn for ever, as the direction of slip may, in the clock in which it ends."""
     monkeypatch.setattr(closing, "MOST_STEPS", 16)
-    monkeypatch.setattr(scipy_methods, "MANY", 16)
+    monkeypatch.setattr(sampling, "MANY", 16)
     turning = Motion(lambda y, pace: (pace[0] * y[1], -pace[0] * y[0]), size=2, parameters=1, guards=())
     start = 0.0, np.array([1.0, 0.0])
     arcs = closing.followed(make_integrator("dop853", 1e-12), turning, [1e4], start)

@@ -34,6 +34,9 @@ PART = 0.25
 TINY = 1e-100
 """What begins at zero, and has no direction there, in natural units: nothing, but for that."""
 
+UNSEEN = "slip cannot be told from its beginning"
+"""Why a run fails where what begins is lost in rounding."""
+
 
 @dataclass(frozen=True)
 class Loosening(Passing):
@@ -62,7 +65,7 @@ class Loosening(Passing):
             return
         duration = min(begin.valid_until(ACCURACY), longest, end - time)
         if duration <= 1e-299:
-            yield _nothing(self.told, time, state, "slip cannot be told from its beginning")
+            yield _nothing(self.told, time, state, UNSEEN)
             return
         yield passing.piece(begin.rows, direction, time, duration, end)
 
@@ -120,8 +123,12 @@ class Loosening(Passing):
         reach = min(time + duration, end)
         solution = DenseSolution.in_time([0.0, duration], [[*rows[:first], *apart]]).moved(time, reach)
         last = self.state([horner(row, duration) for row in rows])
-        then = Outcome.COMPLETED if reach >= end else self.rules.going_on(last, slips=not self.stuck)
-        return Segment(self, solution, last, Transition((), then, last), steps=1)
+        try:
+            mode = Outcome.COMPLETED if reach >= end else self.rules.going_on(last, slips=not self.stuck)
+            then = Transition((), mode, last)
+        except ArithmeticError:
+            then = Transition((), Outcome.FAILED, last, UNSEEN)
+        return Segment(self, solution, last, then, steps=1)
 
     @property
     def stuck(self) -> bool:

@@ -217,7 +217,7 @@ class ContactRules(Rules):
 
     def _let_go(self, time: float, state: State, events: tuple[Event, ...]) -> Transition:
         """Lift-off after some events."""
-        found = self.lift_off(time, state)
+        found = self._leaving(time, state)
         return replace(found, events=(*events, *found.events))
 
     def inconsistent(self, time: float, state: State, events: tuple[Event, ...]) -> Transition:
@@ -270,7 +270,7 @@ class FreeToFly(ContactRules):
 
     def _let_go(self, time: float, state: State, events: tuple[Event, ...]) -> Transition:
         """Fly from where the table would have to pull from now on, not from zero force."""
-        found = self.lift_off(time, state)
+        found = self._leaving(time, state)
         return replace(found, events=(*events, *found.events), then=self._flight(Start.RELEASE))
 
     def inconsistent(self, time: float, state: State, events: tuple[Event, ...]) -> Transition:

@@ -47,9 +47,7 @@ class SlidingMode(ClosedMode):
         elif is_set_valued(law):
             own.append((NEARING, lambda mode, y: nearing_guard(SlidingState.unpack(y), mode.top)))
         if hasattr(sliding_law(law), "branch_guard"):
-            own.append(
-                (BRANCH, lambda mode, y: branch_guard(slip_of(*SlidingState.unpack(y), mode.top), mode.top))
-            )
+            own.append((BRANCH, lambda mode, y: mode.on_branch(y)))
         return own + super().guard_values()
 
     def on_branch(self, y: Row) -> Scalar:

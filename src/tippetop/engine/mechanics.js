@@ -3298,7 +3298,7 @@ class SlidingMode extends ClosedMode {
       own.push([NEARING, (mode, y) => nearing_guard(SlidingState.unpack(y), mode.top)]);
     }
     if (py.truth(py.hasattr(sliding_law(law), "branch_guard"))) {
-      own.push([BRANCH, (mode, y) => branch_guard(slip_of(...SlidingState.unpack(y), mode.top), mode.top)]);
+      own.push([BRANCH, (mode, y) => mode.on_branch(y)]);
     }
     return py.add(own, super.guard_values());
   }
@@ -4418,8 +4418,11 @@ function settling(point, slip, rolling, moved = contact_motion) {
   );
 }
 
-/** Whether the table can hold what does not go on. */
+/** Whether the table can hold what does not go on, and the contact closed if the gap would close. */
 function _admits(point, found) {
+  if (found.wrench.force[2] <= 0.0 && py.truth(presses(point.axis, point.momentum, point.top))) {
+    return false;
+  }
   if (found.slip === null && slip_reserve(point.top, found.wrench) < 0.0) {
     return false;
   }
@@ -4447,6 +4450,7 @@ const [ORDER, ACCURACY_of_loosening] = [20, 1e-13];
 const INSTANT = 1e-09;
 const PART = 0.25;
 const TINY_of_loosening = 1e-100;
+const UNSEEN_of_loosening = "slip cannot be told from its beginning";
 
 /** The first moments of slip, or of rolling, as a power series in time. */
 class Loosening extends Passing {
@@ -4478,7 +4482,7 @@ class Loosening extends Passing {
     }
     var duration = py.min(begin.valid_until(ACCURACY_of_loosening), longest, py.sub(end, time));
     if (duration <= 1e-299) {
-      yield _nothing(this.told, time, state, "slip cannot be told from its beginning");
+      yield _nothing(this.told, time, state, UNSEEN_of_loosening);
       return null;
     }
     yield passing.piece(begin.rows, direction, time, duration, end);
@@ -4556,8 +4560,14 @@ class Loosening extends Passing {
       [[...rows.slice(0, first), ...apart]]
     ).moved(time, reach);
     var last = this.state([...rows].map((row) => horner(row, duration)));
-    var then = reach >= end ? Outcome.COMPLETED : this.rules.going_on(last, !py.truth(this.stuck));
-    return new Segment(this, solution, last, new Transition([], then, last), 1);
+    try {
+      var mode = reach >= end ? Outcome.COMPLETED : this.rules.going_on(last, !py.truth(this.stuck));
+      var then = new Transition([], mode, last);
+    } catch (error) {
+      if (!(error instanceof py.ArithmeticError)) throw error;
+      then = new Transition([], Outcome.FAILED, last, UNSEEN_of_loosening);
+    }
+    return new Segment(this, solution, last, then, 1);
   }
   /** Whether the contact sticks meanwhile. */
   get stuck() {
@@ -5670,7 +5680,7 @@ class ContactRules extends Rules {
   }
   /** Lift-off after some events. */
   _let_go(time, state, events) {
-    var found = this.lift_off(time, state);
+    var found = this._leaving(time, state);
     return py.replace(found, { events: [...events, ...found.events] });
   }
   /** What follows where no contact force is consistent with the friction. */
@@ -5732,7 +5742,7 @@ class FreeToFly extends ContactRules {
   }
   /** Fly from where the table would have to pull from now on, not from zero force. */
   _let_go(time, state, events) {
-    var found = this.lift_off(time, state);
+    var found = this._leaving(time, state);
     return py.replace(found, { events: [...events, ...found.events], then: this._flight(Start.RELEASE) });
   }
   /** Collide without approach, unless that has just left it so: then rounding decides, not friction. */
@@ -11181,6 +11191,7 @@ export {
   TruncatedSeries,
   TwoClosed,
   UNSEEN,
+  UNSEEN_of_loosening,
   Units,
   VERTICAL,
   VERTICAL_SPINS,

@@ -5,6 +5,7 @@ from typing import NamedTuple, TypeAlias
 
 from tippetop.mechanics.direction import Resisted, directions
 from tippetop.mechanics.ending import Vanishing
+from tippetop.mechanics.motion import presses
 from tippetop.mechanics.rolling import (
     Acceleration,
     ContactPoint,
@@ -135,7 +136,9 @@ def settling(
 
 
 def _admits(point: ContactPoint, found: Beginning) -> bool:
-    """Whether the table can hold what does not go on."""
+    """Whether the table can hold what does not go on, and the contact closed if the gap would close."""
+    if found.wrench.force[2] <= 0.0 and presses(point.axis, point.momentum, point.top):
+        return False
     if found.slip is None and slip_reserve(point.top, found.wrench) < 0.0:
         return False
     return found.rolling is not None or bool(rolling_reserve(point, found.wrench, found.slip) >= 0.0)
