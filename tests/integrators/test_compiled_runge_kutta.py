@@ -90,8 +90,9 @@ def test_states_of_any_size_and_every_one_of_several_guards(count):
         angles = frequencies * arc.solution.end
         exact = side * np.concatenate([np.cos(angles), -frequencies * np.sin(angles)])
         np.testing.assert_allclose(arc.end_state, exact, rtol=0, atol=1e-10)
-        at = arc.solution(np.array([0.4 * arc.solution.end]))[0]
-        np.testing.assert_allclose(at[:count], side * np.cos(0.4 * angles), rtol=0, atol=1e-9)
+        for part in (0.4, 0.99):
+            at = arc.solution(np.array([part * arc.solution.end]))[0]
+            np.testing.assert_allclose(at[:count], side * np.cos(part * angles), rtol=0, atol=1e-9)
 
 
 @pytest.mark.parametrize("count", [1, 4, 5])
