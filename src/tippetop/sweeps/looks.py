@@ -86,7 +86,7 @@ def first_fall(
     least = plain.choose(
         falls, nearest - slack(terms, whole, looks, plain), least_value(terms, values, whole, plain)
     )
-    begins, found = plain.below(values[0], TINY), 1.0 - plain.below(NEAR * place, moved)
+    begins, found = plain.below(values[0], TINY), plain.below(moved, NEAR * place)
     told = plain.choose(falls * (1.0 - begins), place, math.inf + 0.0 * whole)
     return told, begins + plain.below(least, TINY) + falls * (1.0 - found)
 
