@@ -13,25 +13,27 @@ from tippetop.mechanics.vectors import length
 from tippetop.monitor import Monitor
 
 PROBLEM = tt.presets.report_problem()
+STEMMED = PROBLEM.replace({"body": tt.presets.REPORT_STEM})
 TOP = natural(PROBLEM.top)
 START = natural_state(PROBLEM.start(), natural_units(PROBLEM.top))
 ENERGY = float(energy(START, TOP))
 
 
-def seen(**changes: Any) -> Monitor:
+def seen(problem: tt.Problem = PROBLEM, **changes: Any) -> Monitor:
     """A monitor that saw three instants as the first, but for some changes to the last."""
-    monitor = Monitor(TOP, START)
+    top, start = natural(problem.top), natural_state(problem.start(), natural_units(problem.top))
+    monitor = Monitor(top, start)
     ones = np.array([1.0, 1.0, 1.0])
     told = {
-        "size": length(START.axis) * ones,
-        "cosine": START.axis[2] * ones,
-        "height": START.height * ones,
-        "energy": ENERGY * ones,
-        "jellett": lowest_jellett(START, TOP) * ones,
+        "size": length(start.axis) * ones,
+        "cosine": start.axis[2] * ones,
+        "height": start.height * ones,
+        "energy": energy(start, top) * ones,
+        "jellett": lowest_jellett(start, top) * ones,
         "work": 0.0 * ones,
     }
     for name, change in changes.items():
-        told[name] = told[name] + change * np.array([0.0, 0.0, 1.0])
+        told[name] = told[name] + np.array([0.0, 0.0, change])
     monitor.see(**told)
     return monitor
 
@@ -51,6 +53,34 @@ def test_jellett_s_integral_may_not_drift() -> None:
     assert TOP.conserves_jellett
     assert seen(jellett=1e-3).inaccuracy > 1e-5
     assert seen(jellett=1e-3).jellett_drift == pytest.approx(seen(jellett=-1e-3).jellett_drift)
+
+
+def test_a_launch_that_hardly_turns_has_no_integral_to_drift() -> None:
+    """What rounding does to 1e-8 of a moment says nothing of a run."""
+    slow = PROBLEM.replace({"launch.spin": 1e-8, "launch.tilt": 0.0})
+    assert seen(slow, jellett=1e-12).jellett_drift > 1e-6
+    assert seen(slow, jellett=1e-12).is_trusted(1e-12)
+    assert not seen(jellett=1e-3).is_trusted(1e-12)
+
+
+def test_a_body_may_not_be_in_the_table() -> None:
+    assert seen(STEMMED).inaccuracy < 1e-15
+    assert seen(STEMMED, height=-1e-3).inaccuracy == pytest.approx(1e-3)
+    assert seen(STEMMED, height=1e-3).inaccuracy < 1e-15, "it may be above it"
+
+
+def test_coarser_steps_may_be_further_off() -> None:
+    slightly = seen(energy=5e-5 * ENERGY)
+    assert slightly.is_trusted(1e-8)
+    assert not slightly.is_trusted(1e-9)
+
+
+@pytest.mark.parametrize("number", [np.nan, np.inf, -np.inf])
+def test_what_is_no_number_is_not_trusted(number: float) -> None:
+    for name in ("size", "energy", "jellett", "work"):
+        assert not seen(**{name: number}).is_trusted(1e-2), name
+    assert not seen(STEMMED, height=-abs(number)).is_trusted(1e-2)
+    assert not seen(STEMMED, cosine=np.nan).is_trusted(1e-2)
 
 
 def test_steps_that_are_too_long_are_told() -> None:

@@ -39,9 +39,12 @@ class Monitor:
 
     @property
     def inaccuracy(self) -> float:
-        """How far, relatively, the run is off what every motion keeps: energy and work, |n|, lambda, gaps."""
+        """How far, relatively, the run is off what every motion keeps: energy and work, |n|, lambda, gaps.
+
+        No number if one of these is none.
+        """
         drift = self.jellett_drift if self.top.conserves_jellett and self._moment > LEAST_MOMENT else 0.0
-        return max(0.0, self._imbalance / self._largest, self._off_unit, drift, self._sunk)
+        return _worse(_worse(self._imbalance / self._largest, self._off_unit), _worse(drift, self._sunk))
 
     def is_trusted(self, tolerance: float) -> bool:
         """Whether that is little, for steps of a relative error."""
@@ -51,11 +54,16 @@ class Monitor:
         self, size: Scalar, cosine: Scalar, height: Scalar, energy: Scalar, jellett: Scalar, work: Scalar
     ) -> None:
         """See some instants, numbers or arrays of one shape: |n|, n_z, and of work all since launch."""
-        self._imbalance = max(self._imbalance, float(np.max(np.abs(energy - self._energy - work))))
-        self._largest = max(self._largest, float(np.max(energy)))
-        self._off_unit = max(self._off_unit, float(np.max(np.abs(size - 1.0))))
+        self._imbalance = _worse(self._imbalance, float(np.max(np.abs(energy - self._energy - work))))
+        self._largest = _worse(self._largest, float(np.max(energy)))
+        self._off_unit = _worse(self._off_unit, float(np.max(np.abs(size - 1.0))))
         self._least = min(self._least, float(np.min(jellett)))
-        self._most = max(self._most, float(np.max(jellett)))
+        self._most = _worse(self._most, float(np.max(jellett)))
         if isinstance(self.top.surface, Hull):
             sunk = outer_height(self.top.surface, cosine) - height
-            self._sunk = max(self._sunk, float(np.max(sunk)))
+            self._sunk = _worse(self._sunk, float(np.max(sunk)))
+
+
+def _worse(one: float, other: float) -> float:
+    """The larger of two; no number if one is none, which `max` would pass over."""
+    return one if one >= other or one != one else other

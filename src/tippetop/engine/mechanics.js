@@ -10459,7 +10459,7 @@ class Monitor extends py.Thing {
     var drift = py.truth(
       this.top.conserves_jellett
     ) && this._moment > LEAST_MOMENT ? this.jellett_drift : 0.0;
-    return py.max(0.0, py.div(this._imbalance, this._largest), this._off_unit, drift, this._sunk);
+    return _worse(_worse(py.div(this._imbalance, this._largest), this._off_unit), _worse(drift, this._sunk));
   }
   /** Whether that is little, for steps of a relative error. */
   is_trusted(tolerance) {
@@ -10467,19 +10467,24 @@ class Monitor extends py.Thing {
   }
   /** See some instants, numbers or arrays of one shape: |n|, n_z, and of work all since launch. */
   see(size, cosine, height, energy, jellett, work) {
-    this._imbalance = py.max(
+    this._imbalance = _worse(
       this._imbalance,
       py.float(py.np.max(py.np.abs(py.sub(py.sub(energy, this._energy), work))))
     );
-    this._largest = py.max(this._largest, py.float(py.np.max(energy)));
-    this._off_unit = py.max(this._off_unit, py.float(py.np.max(py.np.abs(py.sub(size, 1.0)))));
+    this._largest = _worse(this._largest, py.float(py.np.max(energy)));
+    this._off_unit = _worse(this._off_unit, py.float(py.np.max(py.np.abs(py.sub(size, 1.0)))));
     this._least = py.min(this._least, py.float(py.np.min(jellett)));
-    this._most = py.max(this._most, py.float(py.np.max(jellett)));
+    this._most = _worse(this._most, py.float(py.np.max(jellett)));
     if (py.isinstance(this.top.surface, Hull)) {
       var sunk = py.sub(outer_height(this.top.surface, cosine), height);
-      this._sunk = py.max(this._sunk, py.float(py.np.max(sunk)));
+      this._sunk = _worse(this._sunk, py.float(py.np.max(sunk)));
     }
   }
+}
+
+/** The larger of two; no number if one is none, which `max` would pass over. */
+function _worse(one, other) {
+  return one >= other || !py.eq(one, one) ? one : other;
 }
 
 // tippetop.contact.flights
@@ -11257,6 +11262,7 @@ export {
   _turn,
   _unit,
   _without_rolling,
+  _worse,
   _written,
   acting,
   add,
