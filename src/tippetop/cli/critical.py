@@ -130,7 +130,7 @@ def _end_rows(found: "Outlook") -> list[tuple[str, str, str]]:
     return rows
 
 
-def _told(state: "SteadyState") -> str:
+def _told(state: "SteadyState[float]") -> str:
     return f"{state.kind.value} at θ = {state.tilt:.9g}"
 
 

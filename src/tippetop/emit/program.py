@@ -201,7 +201,8 @@ def names_in(target: ast.AST) -> list[str]:
 def is_type(node: ast.Assign | ast.AnnAssign) -> bool:
     """Whether an assignment at the top of a module names a type, or is there for what is written later."""
     if isinstance(node, ast.Assign):
-        return isinstance(node.value, ast.Subscript)
+        made = node.value.func if isinstance(node.value, ast.Call) else node.value
+        return isinstance(made, ast.Subscript) or ast.unparse(made) == "TypeVar"
     return ast.unparse(node.annotation) == "TypeAlias" or ast.unparse(node.value or NOTHING) == "None"
 
 

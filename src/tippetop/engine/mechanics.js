@@ -8302,7 +8302,7 @@ py.members(
 );
 const VERTICAL_SPINS = [SteadyKind.UPRIGHT, SteadyKind.INVERTED];
 
-/** A motion that friction leaves alone, or many of one kind: numbers, or arrays of one shape. */
+/** A motion that friction leaves alone, or many of one kind: floats, or arrays of one shape. */
 class SteadyState extends py.Record {
   constructor(kind, tilt, precession, spin, jellett, energy) {
     super();
@@ -8368,14 +8368,15 @@ function branch_jellett(tilt, top) {
   return squared > 0.0 ? py.abs(py.mul(py.pow(squared, 0.5), rolling.jellett)) : py.math.inf;
 }
 
-/** The vertical spin at theta = 0 or pi with this axial spin omega3, rad/s. */
+/** The vertical spin at theta = 0 or pi with this axial spin omega3, rad/s, finite. */
 function vertical_spin(kind, top, spin) {
   var c = kind === SteadyKind.UPRIGHT ? 1.0 : -1.0;
-  var tilt = kind === SteadyKind.UPRIGHT ? 0.0 : py.math.pi;
+  var still = py.mul(0.0, py.abs(spin));
+  var tilt = kind === SteadyKind.UPRIGHT ? still : py.add(still, py.math.pi);
   return _steady(
     kind,
     tilt,
-    0.0,
+    still,
     spin,
     [0.0, 0.0, c],
     [0.0, 0.0, py.mul(py.mul(c, top.axial_inertia), spin)],

@@ -77,7 +77,7 @@ def end_in_words(prediction: Prediction) -> str:
     return states if prediction.certain else f"{states}: each is stable, and the launch's details decide"
 
 
-def steady_in_words(state: SteadyState) -> str:
+def steady_in_words(state: SteadyState[float]) -> str:
     """A steady state as a phrase."""
     precession, spin = (_number(value) for value in (state.precession, state.spin))
     if state.kind is SteadyKind.PRECESSION:

@@ -28,7 +28,7 @@ from tippetop.theory.steady import (
 from tippetop.theory.thresholds import critical_spin
 
 
-def spin_rate(steady: SteadyState, top: Top) -> float:
+def spin_rate(steady: SteadyState[float], top: Top) -> float:
     """Rate omega3' of the axial spin that drilling takes from a vertical spin, rad/s^2; 0 without drilling.
 
     Raises `InvalidInput` if friction has no linear motion about a vertical spin.
@@ -70,7 +70,7 @@ def standing_time(problem: Problem) -> float:
     return time_to_stand(vertical_spin(kind, top, spin), top)
 
 
-def time_to_stand(steady: SteadyState, top: Top) -> float:
+def time_to_stand(steady: SteadyState[float], top: Top) -> float:
     """How long drilling lets a vertical spin stand, s; see `standing_time`.
 
     Raises `InvalidInput` if it is another steady state, there is no linear motion about it, or a torque
@@ -86,4 +86,4 @@ def time_to_stand(steady: SteadyState, top: Top) -> float:
     if rate == 0.0:
         return math.inf
     limit = critical_spin(steady.kind, top)
-    return float(spin - limit if limit < spin else spin) / rate
+    return (spin - limit if limit < spin else spin) / rate

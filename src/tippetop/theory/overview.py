@@ -22,7 +22,7 @@ from tippetop.theory.thresholds import CriticalSpins, critical_spins, lambda_dow
 class Judged:
     """A steady state with the eigenvalues of its linear motion."""
 
-    state: SteadyState
+    state: SteadyState[float]
     spectrum: Spectrum
 
 
@@ -137,7 +137,7 @@ def _standing_on(problem: Problem) -> Hull:
     return hull
 
 
-def steady_states(problem: Problem) -> list[SteadyState]:
+def steady_states(problem: Problem) -> list[SteadyState[float]]:
     """Steady states that a launch might end in, by increasing tilt.
 
     All with its Jellett's integral, or where that is not conserved, both vertical spins at its axial spin. Of

@@ -46,15 +46,15 @@ class Prediction:
 
     jellett: float
     """lambda of the launch, kg m^3/s."""
-    stable: tuple[SteadyState, ...]
+    stable: tuple[SteadyState[float], ...]
     """All stable steady states with this lambda, the one of least energy first."""
-    reachable: tuple[SteadyState, ...]
+    reachable: tuple[SteadyState[float], ...]
     """Those among them that the energy of the launch does not bar, in the same order."""
     surface: int = 0
     """Number of the body's surface that it ends on."""
 
     @property
-    def final(self) -> SteadyState:
+    def final(self) -> SteadyState[float]:
         """The reachable stable state of least energy: the end of the launch, if it is `certain`."""
         return self.reachable[0]
 
@@ -166,7 +166,7 @@ TILTS = 200
 """Tilts between which the touch of another surface is looked for."""
 
 
-def steady_launch(problem: Problem) -> SteadyState | None:
+def steady_launch(problem: Problem) -> SteadyState[float] | None:
     """The steady state that a launch is exactly on, to rounding, or None: nothing but its azimuth changes.
 
     Raises `InvalidInput` if it turns too fast for the theory.
@@ -212,7 +212,7 @@ def is_held(state: State, top: Top, closeness: float) -> NDArray[np.bool_]:
     return held
 
 
-def stable_by_energy(states: list[SteadyState]) -> list[SteadyState]:
+def stable_by_energy(states: list[SteadyState[float]]) -> list[SteadyState[float]]:
     """Those of all steady states with one Jellett's integral, by their tilts, that are minima of the energy.
 
     They are the extrema of the least energy over the tilt, which are minima and maxima in turn.
@@ -230,11 +230,11 @@ ROUNDING = 1e-12
 """What counts as the same number, relative to the largest it is made of."""
 
 
-def _by_energy(states: list[SteadyState]) -> tuple[SteadyState, ...]:
+def _by_energy(states: list[SteadyState[float]]) -> tuple[SteadyState[float], ...]:
     return tuple(sorted(states, key=lambda state: state.energy))
 
 
-def _reach(states: list[SteadyState], tilt: float, available: float) -> tuple[float, float]:
+def _reach(states: list[SteadyState[float]], tilt: float, available: float) -> tuple[float, float]:
     """Tilts between the nearest barriers on both sides: steady states with more energy than is available.
 
     A minimum of the energy is between them, the lowest if nothing else.

@@ -96,7 +96,7 @@ class Spectrum:
         return ROUNDING * float(np.abs(self.eigenvalues).max())
 
 
-def spectrum(steady: SteadyState, top: Top, frame_rate: float | None = None) -> Spectrum:
+def spectrum(steady: SteadyState[float], top: Top, frame_rate: float | None = None) -> Spectrum:
     """Eigenvalues of the linear motion about a steady state; here the top's friction matters.
 
     It is that in a frame which turns about the vertical at `frame_rate`, rad/s; if this is None, at the
@@ -115,7 +115,7 @@ def spectrum(steady: SteadyState, top: Top, frame_rate: float | None = None) -> 
     return Spectrum(eigenvalues(steady, top, rate)[0], rate, NEUTRAL[steady.kind])
 
 
-def eigenvalues(steady: SteadyState, top: Top, frame_rate: Scalar = None) -> Complex:
+def eigenvalues(steady: SteadyState[Scalar], top: Top, frame_rate: Scalar = None) -> Complex:
     """Eigenvalues about n steady states of one kind, 1/s, by decreasing real part, shape (n, 5 or 6).
 
     As of a `spectrum`; nan where there is no such state.
@@ -139,7 +139,7 @@ def vertical_growth_rates(kind: SteadyKind, top: Top, spins: Array) -> Array:
     return np.asarray(eigenvalues(vertical_spin(kind, top, spins), top)[:, 0].real)
 
 
-def linear_tilts(steady: SteadyState, top: Top, start: SlidingState, times: Array) -> Array:
+def linear_tilts(steady: SteadyState[float], top: Top, start: SlidingState, times: Array) -> Array:
     """Distance of the axis from the vertical in the linear motion about a vertical spin, rad, shape (n,).
 
     It starts in a state close to this, SI; the times after it, s, are of shape (n,).

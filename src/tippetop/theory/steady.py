@@ -12,7 +12,7 @@ Friction does not enter: the same states serve every friction law. What counts t
 import math
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import NamedTuple
+from typing import Generic, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -26,6 +26,9 @@ from tippetop.mechanics.view import Angles, state_from_angles
 from tippetop.problem import Problem
 from tippetop.theory.dual import Array
 from tippetop.theory.series_roots import roots_between
+
+Number = TypeVar("Number", float, Array)
+"""One number, or many."""
 
 
 class SteadyKind(StrEnum):
@@ -42,21 +45,24 @@ VERTICAL_SPINS = (SteadyKind.UPRIGHT, SteadyKind.INVERTED)
 
 
 @dataclass(frozen=True)
-class SteadyState:
-    """A motion that friction leaves alone, or many of one kind: numbers, or arrays of one shape."""
+class SteadyState(Generic[Number]):
+    """A motion that friction leaves alone, or many of one kind: floats, or arrays of one shape.
+
+    Those with arrays do not compare.
+    """
 
     kind: SteadyKind
     """Vertical spin at theta = 0 or pi, steady precession, or level spin."""
-    tilt: Scalar
+    tilt: Number
     """theta, rad."""
-    precession: Scalar
+    precession: Number
     """phi', rad/s; 0 by convention for a vertical spin, where only the axial spin has a meaning; nan, as what
     follows, where nothing precesses steadily at this tilt."""
-    spin: Scalar
+    spin: Number
     """Axial spin omega3, rad/s."""
-    jellett: Scalar
+    jellett: Number
     """Jellett's integral lambda, kg m^3/s."""
-    energy: Scalar
+    energy: Number
     """Energy, J, in the convention of `tippetop.mechanics.invariants.energy`."""
 
 
@@ -100,7 +106,7 @@ def precession_rate_squared(c: Scalar, top: Top) -> Scalar:
     return weight_moment(c, top) / gyroscopic_reaction(c, top)
 
 
-def precession_branch(top: Top, tilts: Array) -> SteadyState:
+def precession_branch(top: Top, tilts: Array) -> SteadyState[Array]:
     """The steady precessions with phi' > 0 at these tilts (rad, any shape), 0 and pi as limits.
 
     Those with phi' < 0 are their mirror images. Where there is none, all but the tilt is nan.
@@ -123,20 +129,21 @@ def branch_jellett(tilt: float, top: Top) -> float:
     return abs(squared**0.5 * rolling.jellett) if squared > 0.0 else math.inf
 
 
-def vertical_spin(kind: SteadyKind, top: Top, spin: Scalar) -> SteadyState:
-    """The vertical spin at theta = 0 or pi with this axial spin omega3, rad/s."""
+def vertical_spin(kind: SteadyKind, top: Top, spin: Number) -> SteadyState[Number]:
+    """The vertical spin at theta = 0 or pi with this axial spin omega3, rad/s, finite."""
     c = 1.0 if kind is SteadyKind.UPRIGHT else -1.0
-    tilt = 0.0 if kind is SteadyKind.UPRIGHT else math.pi
-    return _steady(kind, tilt, 0.0, spin, (0.0, 0.0, c), (0.0, 0.0, c * top.axial_inertia * spin), top)
+    still = 0.0 * abs(spin)
+    tilt = still if kind is SteadyKind.UPRIGHT else still + math.pi
+    return _steady(kind, tilt, still, spin, (0.0, 0.0, c), (0.0, 0.0, c * top.axial_inertia * spin), top)
 
 
-def level_spin(top: Top, precession: float) -> SteadyState:
+def level_spin(top: Top, precession: float) -> SteadyState[float]:
     """The spin with horizontal axis at this precession, rad/s, of a shape that has one."""
     momentum = (0.0, 0.0, top.transverse_inertia * precession)
     return _steady(SteadyKind.LEVEL, math.pi / 2, precession, 0.0, (1.0, 0.0, 0.0), momentum, top)
 
 
-def steady_states(top: Top, jellett: float) -> list[SteadyState]:
+def steady_states(top: Top, jellett: float) -> list[SteadyState[float]]:
     """All steady states with this Jellett's integral, by increasing tilt.
 
     Parameters
@@ -200,7 +207,7 @@ def least_energy(tilt: Scalar, jellett: Scalar, top: Top, functions: Functions) 
     return potential + 0.5 * jellett**2 / inertia
 
 
-def state_of(steady: SteadyState, top: Top) -> SlidingState:
+def state_of(steady: SteadyState[float], top: Top) -> SlidingState:
     """The mechanical state of a steady state, leaning along x."""
     angles = Angles(steady.tilt, 0.0, 0.0, steady.precession, steady.spin, (0.0, 0.0))
     return state_from_angles(angles, top, math)
@@ -212,13 +219,13 @@ def _at_rest(axis: Vector, momentum: Vector, top: Top) -> State:
     return State(axis, momentum, zero, top.surface.height(axis[2]))
 
 
-def precession_at(tilt: float, jellett: float, top: Top) -> SteadyState:
+def precession_at(tilt: float, jellett: float, top: Top) -> SteadyState[float]:
     """The steady precession at a tilt known to be one for this Jellett's integral."""
     rolling = rolling_precession(tilt, top, math)
     return _precession(tilt, jellett / rolling.jellett, rolling, top)
 
 
-def _precession(tilt: Scalar, rate: Scalar, rolling: RollingPrecession, top: Top) -> SteadyState:
+def _precession(tilt: Number, rate: Number, rolling: RollingPrecession, top: Top) -> SteadyState[Number]:
     """The steady precession at this tilt and rate, of which that without slip is known."""
     spin, momentum = rate * rolling_spin(rolling.axis[2], top.surface), scale(rate, rolling.momentum)
     return _steady(SteadyKind.PRECESSION, tilt, rate, spin, rolling.axis, momentum, top)
@@ -226,13 +233,13 @@ def _precession(tilt: Scalar, rate: Scalar, rolling: RollingPrecession, top: Top
 
 def _steady(
     kind: SteadyKind,
-    tilt: Scalar,
-    precession: Scalar,
-    spin: Scalar,
+    tilt: Number,
+    precession: Number,
+    spin: Number,
     axis: Vector,
     momentum: Vector,
     top: Top,
-) -> SteadyState:
+) -> SteadyState[Number]:
     """The steady state with these angles and rates, and this axis and angular momentum."""
     whole = _at_rest(axis, momentum, top)
     return SteadyState(kind, tilt, precession, spin, jellett(whole, top), energy(whole, top))
