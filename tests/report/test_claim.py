@@ -3,8 +3,11 @@
 import json
 import math
 import re
+from inspect import Parameter, signature
 
 import pytest
+import xarray as xr
+from matplotlib.axes import Axes
 
 from tippetop.report.claim import (
     Claim,
@@ -172,6 +175,13 @@ def test_no_name_is_registered_twice() -> None:
     with pytest.raises(ValueError, match=done):
         experiment(done, "", 0.0)(lambda quick: dataset({}))
     assert (EXAMINERS[told], EXPERIMENTS[done]) == known
+
+
+def test_every_figure_tells_that_it_is_drawn_from_data_and_not_into_panels() -> None:
+    for draw in DRAWN.values():
+        first, *others = (told.annotation for told in signature(draw).parameters.values())
+        assert first in {xr.Dataset, Parameter.empty}
+        assert Axes not in others
 
 
 def test_words_have_no_unit() -> None:

@@ -2,7 +2,8 @@
 
 from collections.abc import Callable, Iterable
 from functools import wraps
-from typing import Any
+from inspect import signature
+from typing import Any, Concatenate, ParamSpec, Protocol, overload
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -42,22 +43,37 @@ def panels(
     return figure, made
 
 
-def drawn(
-    height: float, rows: int = 1, columns: int = 1, **options: Any
-) -> Callable[[Callable[..., None]], Callable[..., Figure]]:
+Told = ParamSpec("Told")
+
+
+class Drawing(Protocol):
+    """Makes what draws into two panels, or into one or an array of them, a figure of what it is told."""
+
+    @overload
+    def __call__(self, draw: Callable[Concatenate[Axes, Axes, Told], None], /) -> Callable[Told, Figure]: ...
+
+    @overload
+    def __call__(self, draw: Callable[Concatenate[Axes, Told], None], /) -> Callable[Told, Figure]: ...
+
+
+def drawn(height: float, rows: int = 1, columns: int = 1, **options: Any) -> Drawing:
     """Let what draws into the `panels` of a figure return the figure, in the house style.
 
     It is given the panels, those of several rows and columns as an array, before what is to be drawn.
     """
+    whole = rows > 1 and columns > 1
 
     def drawing(draw: Callable[..., None]) -> Callable[..., Figure]:
         @wraps(draw)
         def figure_of(*told: Any, **others: Any) -> Figure:
             with house_style():
                 figure, made = panels(height, rows, columns, **options)
-                draw(*([made] if rows > 1 and columns > 1 else np.ravel(made)), *told, **others)
+                draw(*([made] if whole else np.ravel(made)), *told, **others)
             return figure
 
+        own = signature(draw)
+        rest = list(own.parameters.values())[1 if whole else rows * columns :]
+        vars(figure_of)["__signature__"] = own.replace(parameters=rest, return_annotation=Figure)
         return figure_of
 
     return drawing
