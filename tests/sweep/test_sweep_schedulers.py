@@ -156,6 +156,25 @@ def test_a_cluster_without_workers_is_refused_and_one_that_is_lost_is_told_of(sm
         list(found)
 
 
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize(
+    ("raised_in", "expected"), [("distributed.cfexecutor", Unavailable), ("tippetop.sweeps", ValueError)]
+)
+def test_the_library_that_stumbles_over_a_lost_result_means_a_lost_cluster(monkeypatch, raised_in, expected):
+    """Dask takes a result whose worker is lost for an error, and unpacks it as one."""
+    distributed = pytest.importorskip("distributed")
+    names = {"__name__": raised_in}
+    exec("def stumble(*_):\n    raise ValueError('too many values to unpack')", names)
+    monkeypatch.setattr(scheduling, "_first_done", names["stumble"])
+    with (
+        distributed.LocalCluster(
+            n_workers=1, threads_per_worker=1, dashboard_address=None, silence_logs=50
+        ) as cluster,
+        pytest.raises(expected),
+    ):
+        list(scheduling.results(quick(), quick().tasks, scheduler=cluster.scheduler_address))
+
+
 LOST = """
 import sys, time
 sys.path[:0] = {paths!r}

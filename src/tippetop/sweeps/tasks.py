@@ -13,6 +13,7 @@ from functools import lru_cache
 from importlib import import_module
 from importlib.util import find_spec
 from numbers import Integral
+from traceback import walk_tb
 from typing import Any, TypeAlias
 
 from numpy.typing import NDArray
@@ -140,7 +141,7 @@ def _share_with_cluster(address: str, calls: Mapping[Task, Call]) -> Iterator[tu
                     task = running.pop(future)
                     yield task, future.result()
         except Exception as error:
-            if isinstance(error, CancelledError) or type(error).__module__.startswith("distributed"):
+            if _is_of_cluster(error):
                 raise Unavailable(
                     f"the cluster at {address} was lost ({type(error).__name__}); {KEPT}"
                 ) from None
@@ -148,6 +149,13 @@ def _share_with_cluster(address: str, calls: Mapping[Task, Call]) -> Iterator[tu
         finally:
             for future in running:
                 future.cancel()
+
+
+def _is_of_cluster(error: Exception) -> bool:
+    """Whether the cluster failed, not a task: the library stumbles over results of workers that are lost."""
+    *_, (innermost, _) = walk_tb(error.__traceback__)
+    where = (type(error).__module__, innermost.f_globals.get("__name__", ""))
+    return isinstance(error, CancelledError) or any(name.startswith("distributed") for name in where)
 
 
 def _first_done(client: Any, address: str, running: Mapping[Future[Found], Task]) -> set[Future[Found]]:
