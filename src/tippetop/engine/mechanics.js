@@ -764,21 +764,16 @@ function contact(axis, momentum, velocity, top) {
 
 /** Acceleration of the gap in free flight, -(g + h'' c'^2 + h' [L x n']_z / I1), m/s^2. */
 function free_acceleration(axis, momentum, top) {
-  return py.neg(py.add(top.gravity, _sagging(axis, momentum, top)));
-}
-
-/** Acceleration of the height above the contact point, by the turning of the axis. */
-function _sagging(axis, momentum, top) {
   var turning = axis_rate(axis, momentum, top);
   var lever = py.div(top.surface.slope(axis[2]), top.transverse_inertia);
   var bending = py.mul(py.mul(top.surface.curvature(axis[2]), turning[2]), turning[2]);
-  return py.add(bending, py.mul(lever, cross(momentum, turning)[2]));
+  return py.neg(py.add(top.gravity, py.add(bending, py.mul(lever, cross(momentum, turning)[2]))));
 }
 
 /** Whether the gap would close without a contact force, by more than errors of a run. */
 function presses(axis, momentum, top) {
-  var sagging = _sagging(axis, momentum, top);
-  return py.add(top.gravity, sagging) > py.mul(PRESSED, py.add(top.gravity, py.abs(sagging)));
+  var free = free_acceleration(axis, momentum, top);
+  return py.neg(free) > py.mul(PRESSED, py.add(top.gravity, py.abs(py.add(free, top.gravity))));
 }
 
 /** Moment of the contact force about the centre of mass per unit normal force, a x (z + f) + t, m. */
@@ -11252,7 +11247,6 @@ export {
   _reach,
   _reaches_out,
   _root,
-  _sagging,
   _slip,
   _solved,
   _steady,

@@ -109,15 +109,10 @@ def contact(axis: Vector, momentum: Vector, velocity: Horizontal, top: Top) -> S
 
 def free_acceleration(axis: Vector, momentum: Vector, top: Top) -> Scalar:
     """Acceleration of the gap in free flight, -(g + h'' c'^2 + h' [L x n']_z / I1), m/s^2."""
-    return -(top.gravity + _sagging(axis, momentum, top))
-
-
-def _sagging(axis: Vector, momentum: Vector, top: Top) -> Scalar:
-    """Acceleration of the height above the contact point, by the turning of the axis."""
     turning = axis_rate(axis, momentum, top)
     lever = top.surface.slope(axis[2]) / top.transverse_inertia
     bending = top.surface.curvature(axis[2]) * turning[2] * turning[2]
-    return bending + lever * cross(momentum, turning)[2]
+    return -(top.gravity + (bending + lever * cross(momentum, turning)[2]))
 
 
 def presses(axis: Vector, momentum: Vector, top: Top) -> Scalar:
@@ -125,8 +120,8 @@ def presses(axis: Vector, momentum: Vector, top: Top) -> Scalar:
 
     A truth value of floats, or an array of them.
     """
-    sagging = _sagging(axis, momentum, top)
-    return top.gravity + sagging > PRESSED * (top.gravity + abs(sagging))
+    free = free_acceleration(axis, momentum, top)
+    return -free > PRESSED * (top.gravity + abs(free + top.gravity))
 
 
 def moment_per_normal_force(arm: Vector, traction: Traction) -> Vector:
