@@ -16,7 +16,7 @@ from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.hertz import MATERIALS, Material, hertz_patch_radius
 from tippetop.mechanics.series import solution
 from tippetop.mechanics.top import Units
-from tippetop.theory.dual import jacobian
+from tippetop.theory.derivatives import jacobian
 
 LAWS = [EllipsoidalLaw, HertzDrillingLaw, HertzSlidingLaw]
 KAPPAS = [1e-3, 0.3, 0.9, 0.999, 1.001, 1.1, 2.0, 7.0]

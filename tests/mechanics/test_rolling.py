@@ -23,7 +23,7 @@ from tippetop.mechanics.rolling import (
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.surface import SphereSurface, contact_vector
 from tippetop.mechanics.top import Top
-from tippetop.theory.dual import jacobian
+from tippetop.theory.derivatives import jacobian
 
 M, R = 0.02, 0.02
 REPORT = Top(M, 131 / 350 * M * R**2, 2 / 5 * M * R**2, SphereSurface(R, 0.3 * R), CoulombLaw(0.3), 9.8)

@@ -15,7 +15,8 @@ from tippetop.mechanics.motion import along_table, contact, sliding_rates
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.surface import SpheroidSurface
 from tippetop.mechanics.top import natural_units
-from tippetop.theory import dual
+from tippetop.mechanics.vectors import dot
+from tippetop.theory.derivatives import jacobian
 from tippetop.theory.diagnostics import smooth_constants
 from tippetop.theory.dissipation import amplitude_rates, mean_dissipation
 from tippetop.theory.nutation import (
@@ -80,13 +81,14 @@ def test_friction_takes_from_a_nutation_what_the_mechanics_says_on_average(probl
     phase = np.clip(times / times[-1], 1e-12, 1.0 - 1e-12)
     window = np.exp(-1.0 / (phase * (1.0 - phase)))
     axis, momentum, _ = full_run(problem, times, smooth=True)
-    mu = dual.variable(np.zeros_like(times))
     zero = np.zeros_like(times)
     state = SlidingState(tuple(axis.T), tuple(momentum.T), (zero, zero))
-    rough = top._replace(friction=ViscousLaw(mu))
-    rates, touch = sliding_rates(state, rough), contact(*state, rough)
-    torque = sum(rate.gradient[0] * n for rate, n in zip(rates.momentum, axis.T, strict=True))
-    power = touch.power.gradient[0]
+
+    def taken_by(point):
+        rough = top._replace(friction=ViscousLaw(point[0]))
+        return dot(sliding_rates(state, rough).momentum, state.axis), contact(*state, rough).power
+
+    torque, power = jacobian(taken_by, [zero])[..., 0].T
     units = natural_units(top)
     taken = mean_dissipation(*path_of(problem))
     expected = np.array([torque @ window, power @ window]) / window.sum()

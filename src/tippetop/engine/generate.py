@@ -43,7 +43,6 @@ GIVEN = {
     "tippetop.errors": "./part.js",
     "tippetop.fields": "./part.js",
     "tippetop.files": "",
-    "tippetop.theory.dual": "",
 }
 """What is written by hand, and where; nothing is asked of those without a place."""
 

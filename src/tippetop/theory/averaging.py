@@ -16,11 +16,11 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from tippetop.errors import InvalidInput
+from tippetop.integrators.base import Array
 from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.top import natural_units
 from tippetop.mechanics.view import Angles
 from tippetop.problem import Problem
-from tippetop.theory.dual import Array
 from tippetop.theory.nutation import numbers_of
 from tippetop.theory.nutation_decay import Goals, Nutation, Stage, follow_nutation, launched
 from tippetop.theory.prediction import stable_by_energy

@@ -6,13 +6,13 @@ All functions take the axis n and the angular momentum L about the centre of mas
 
 import numpy as np
 
+from tippetop.integrators.base import Array
 from tippetop.mechanics.motion import axial_spin
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Vector
 from tippetop.mechanics.view import precession_rate
 from tippetop.theory import nutation
-from tippetop.theory.dual import Array
 
 
 def gyroscopic_balance(axis: Array, momentum: Array, top: Top) -> Array:

@@ -15,8 +15,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tippetop.integrators.base import Array
 from tippetop.mechanics.vectors import Scalar
-from tippetop.theory.dual import Array, variable
+from tippetop.theory.derivatives import derivative
 from tippetop.theory.nutation import Numbers
 
 
@@ -106,11 +107,14 @@ def _between(log_ratio: Array, start: float, end: float) -> Array:
 
 def _speeds(tilts: Array, jellett: float, fast: bool, numbers: Numbers) -> Array:
     """Speed d theta / d(mu t) in natural units; nan where there is no such precession."""
-    c = variable(np.cos(tilts))
+
+    def rate(c: Array) -> Scalar:
+        return smooth_precession(c, jellett, fast, numbers)
+
+    c = np.cos(tilts)
     with np.errstate(invalid="ignore", divide="ignore"):
-        rate = smooth_precession(c, jellett, fast, numbers)
-        per_cosine = axial_momentum(c, rate, numbers).gradient[0]
-        speeds: Array = np.sin(tilts) * slip_per_sine(c.value, rate.value, numbers) / per_cosine
+        per_cosine = derivative(lambda c: axial_momentum(c, rate(c), numbers), c)
+        speeds: Array = np.sin(tilts) * slip_per_sine(c, rate(c), numbers) / per_cosine
     return speeds
 
 

@@ -11,10 +11,10 @@ from typing import NamedTuple
 import numpy as np
 from scipy.integrate import DOP853, OdeSolution
 
+from tippetop.integrators.base import Array
 from tippetop.mechanics.view import Angles
 from tippetop.theory.dissipation import AmplitudeRates, amplitude_rates
 from tippetop.theory.drift import Drift, drift, smooth_precession
-from tippetop.theory.dual import Array
 from tippetop.theory.nutation import (
     Amplitudes,
     Numbers,

@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from scipy.linalg import expm
 
 from tippetop.errors import InvalidInput
+from tippetop.integrators.base import Array
 from tippetop.mechanics.motion import sliding_rates
 from tippetop.mechanics.rolling import is_set_valued, on_branch
 from tippetop.mechanics.state import SlidingState
@@ -30,8 +31,7 @@ from tippetop.mechanics.top import Top, natural, natural_units
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Scalar
 from tippetop.mechanics.view import Angles, state_from_angles
-from tippetop.theory import dual
-from tippetop.theory.dual import Array, Dual, derivative, jacobian, variable
+from tippetop.theory.derivatives import derivative, jacobian
 from tippetop.theory.requirements import require_creep
 from tippetop.theory.steady import (
     VERTICAL_SPINS,
@@ -233,11 +233,19 @@ def _meaningless(kind: SteadyKind, angles: Angles, point: list[Array], top: Top)
 
 def _along_branch(angles: Angles, top: Top) -> list[Array]:
     """Derivative of the steady precession by its tilt, that of its rate from the balance of the moments."""
-    tilt = variable(angles.tilt)
-    c = dual.cos(tilt)
-    unbalanced = weight_moment(c, top) - gyroscopic_reaction(c, top) * angles.precession**2
-    steepness = 2.0 * weight_moment(c.value, top) / angles.precession
-    rate = Dual(angles.precession, derivative(unbalanced, tilt) / steepness)
-    moved = Angles(tilt, 0.0, 0.0, rate, rate * rolling_spin(c, top.surface), (0.0, 0.0))
-    state = state_from_angles(moved, top, dual)
-    return [derivative(number, tilt)[0] for number in (*state.axis, *state.momentum, *state.velocity)]
+
+    def unbalanced(tilt: Array) -> Scalar:
+        return (
+            weight_moment(np.cos(tilt), top) - gyroscopic_reaction(np.cos(tilt), top) * angles.precession**2
+        )
+
+    steepness = 2.0 * weight_moment(np.cos(angles.tilt), top) / angles.precession
+    slope = derivative(unbalanced, angles.tilt) / steepness
+
+    def eight(point: list[Array]) -> Sequence[Array]:
+        (tilt,) = point
+        rate = angles.precession + slope * (tilt - angles.tilt)
+        spin = rate * rolling_spin(np.cos(tilt), top.surface)
+        return state_from_angles(Angles(tilt, 0.0, 0.0, rate, spin, (0.0, 0.0)), top, np).pack()
+
+    return list(jacobian(eight, [angles.tilt])[..., 0].T)
