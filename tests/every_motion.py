@@ -16,7 +16,7 @@ from tippetop.mechanics.coulomb import CoulombLaw, RollingResistance
 from tippetop.mechanics.ending import Vanishing
 from tippetop.mechanics.friction import RegularizedCoulombLaw, ViscousLaw
 from tippetop.mechanics.hull import Hull
-from tippetop.mechanics.rolling import is_set_valued, sliding_law
+from tippetop.mechanics.rolling import is_set_valued
 from tippetop.mechanics.surface import RingSurface, SphereSurface, SpheroidSurface
 from tippetop.mechanics.top import Top
 
@@ -52,14 +52,9 @@ class Case(NamedTuple):
     parameters: tuple[float, ...]
 
 
-def top_of(surface, law):
-    return Top(1.0, 0.45, 0.38, surface, law, 1.0)
-
-
-def sliding_motions(surface, law):
-    """Every motion of a top with this surface and law in which it slips."""
-    top = top_of(surface, law)
-    kind, numbers, rolls = top.kind, top.numbers, isinstance(law, RollingResistance)
+def sliding_motions(top):
+    """Every motion of a top in which it slips."""
+    kind, numbers, surface, law, rolls = top.kind, top.numbers, top.surface, top.friction, top.resists_rolling
     yield "sliding", sliding_motion(kind, True), numbers
     endings = [Vanishing(slip=False)] if rolls else []
     if rolls:
@@ -71,7 +66,7 @@ def sliding_motions(surface, law):
     if isinstance(surface, Hull):
         other = top._replace(surface=surface._replace(active=1))
         modes = {"": SlidingOnTwo}
-        if isinstance(sliding_law(law), CoulombLaw):
+        if isinstance(law, CoulombLaw):
             modes |= {
                 " beginning": SlipBeginningOnTwo,
                 " turning": StickingAndSlidingBack,
@@ -83,10 +78,9 @@ def sliding_motions(surface, law):
                 yield f"two {way}{told}", mode.motion, mode.parameters
 
 
-def sticking_motions(surface, law):
-    """Every motion of a top with this surface and law in which it sticks."""
-    top = top_of(surface, law)
-    kind, numbers, rolls = top.kind, top.numbers, isinstance(law, RollingResistance)
+def sticking_motions(top):
+    """Every motion of a top in which it sticks."""
+    kind, numbers, rolls = top.kind, top.numbers, top.resists_rolling
     for form in (Sticking, StickingWithoutRolling)[: 1 + rolls]:
         yield form.name, form(top, None).motion, numbers
     if rolls:
@@ -97,9 +91,9 @@ CASES = [
     Case(f"{shape} {name} {mode}", motion, tuple(map(float, parameters)))
     for laws, motions in ((SLIDING, sliding_motions), (STICKING, sticking_motions))
     for shape, surface in SURFACES.items()
-    for name, plain in laws.items()
-    for name, law in ((name, plain), (f"{name} and rolling", RollingResistance(plain, 1e-3)))
-    for mode, motion, parameters in motions(surface, law)
+    for law_name, law in laws.items()
+    for name, resistance in ((law_name, None), (f"{law_name} and rolling", RollingResistance(1e-3)))
+    for mode, motion, parameters in motions(Top(1.0, 0.45, 0.38, surface, law, 1.0, resistance))
 ]
 
 

@@ -90,10 +90,12 @@ def drills(state, top):
 def test_impacts_are_left_to_other_ways_where_this_is_none():
     random = np.random.default_rng(7)
     patch = EllipsoidalLaw(0.3, 0.1)
-    for law in (ViscousLaw(0.3), CoulombLaw(0.3), RollingResistance(patch, 0.01)):
+    for law in (ViscousLaw(0.3), CoulombLaw(0.3)):
         state, top = struck_top(law, random)
         assert impact_of_patch(state, top, TAYLOR) is None
     state, top = struck_top(patch, random)
+    resisted = top._replace(rolling_resistance=RollingResistance(0.01))
+    assert impact_of_patch(state, resisted, TAYLOR) is None
     assert impact_of_patch(state, top, None) is None
     assert impact_of_patch(state, top, make_integrator("dop853")) is None
     x, y, z = state.velocity

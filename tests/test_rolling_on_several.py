@@ -213,7 +213,7 @@ class SmoothedLaw(NamedTuple):
 def ends(problem: tt.Problem, duration: float, law: SmoothedLaw | None = None) -> tuple[np.ndarray, set[str]]:
     """Axis, angular momentum and velocity at the end, in natural units, and in which modes it went there."""
     units, top = natural_units(problem.top), problem.top
-    top = natural(top if law is None else top._replace(friction=law))
+    top = natural(top if law is None else top._replace(friction=law, rolling_resistance=None))
     start = rules_for(top, "fly", 0.0).launch(natural_state(problem.start(), units))
     method = make_integrator("dop853", 3e-14) if law is None else make_integrator("collocation")
     run = Trajectory(start, duration / units.time, method)

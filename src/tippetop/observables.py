@@ -46,7 +46,7 @@ class Recorder:
         self._last: tuple[Block, tuple[Array, Array, Array, Array]] | None = None
         self._pole = 1.0 if start.axis[2] >= 0.0 else -1.0
         # A law without torque has nothing to lose by drilling or rolling.
-        self._resisted = not top.friction.torque_free
+        self._resisted = not top.torque_free
         self._sums = np.array([0.0, 0.0, self._pole * azimuth, -lost] + [0.0, 0.0] * self._resisted)
         self._struck = lost
         self.monitor = Monitor(top, start)

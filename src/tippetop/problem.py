@@ -18,7 +18,6 @@ from tippetop.fields import dotted_names, numbers_of, part_at, table_at
 from tippetop.files import read_text
 from tippetop.frictions import LEAST_PATCH, Friction
 from tippetop.mechanics.coulomb import RollingResistance
-from tippetop.mechanics.friction import FrictionLaw
 from tippetop.mechanics.hull import Hull, acting, lowest_surface, sizes
 from tippetop.mechanics.motion import along_table, contact, on_table
 from tippetop.mechanics.rolling import is_set_valued
@@ -266,18 +265,9 @@ class Problem(Part):
     @property
     def top(self) -> Top:
         """The problem's numbers as the mechanics takes them, SI."""
-        body = self.body
-        return Top(body.mass, body.I1, body.I3, body.surface, self._law, self.gravity)
-
-    @property
-    def _law(self) -> FrictionLaw:
-        """The law of friction with the rolling resistance beside it, if there is any."""
-        arm, law = self.rolling_resistance, self.friction.law
-        if isinstance(arm, float) and not arm:
-            return law
-        resisted: Any = RollingResistance(law, arm)
-        found: FrictionLaw = resisted
-        return found
+        body, arm = self.body, self.rolling_resistance
+        resistance = None if isinstance(arm, float) and not arm else RollingResistance(arm)
+        return Top(body.mass, body.I1, body.I3, body.surface, self.friction.law, self.gravity, resistance)
 
     def standing(self, functions: Functions = math) -> Top:
         """The top on the surface that reaches lowest at launch."""

@@ -50,7 +50,7 @@ class Tally:
                 continue
             if not self.flights.rows:
                 self._press(group)
-            if not group.mode.top.friction.torque_free:
+            if not group.mode.top.torque_free:
                 self._resistance(group)
 
     def _see(self, group: ModeSteps, starts: Array) -> None:

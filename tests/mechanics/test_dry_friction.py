@@ -15,7 +15,8 @@ from tippetop.mechanics.coulomb import CoulombLaw, RollingResistance
 from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.hertz import MATERIALS, Material, hertz_patch_radius
 from tippetop.mechanics.series import solution
-from tippetop.mechanics.top import Units
+from tippetop.mechanics.surface import SphereSurface
+from tippetop.mechanics.top import Top, natural, natural_units
 from tippetop.theory.derivatives import jacobian
 
 LAWS = [EllipsoidalLaw, HertzDrillingLaw, HertzSlidingLaw]
@@ -178,23 +179,29 @@ def test_coulomb_friction_opposes_slip_and_has_its_cone():
 
 
 def test_rolling_resistance_opposes_rolling_beside_any_law():
-    law = RollingResistance(EllipsoidalLaw(0.3, 1e-3), 2e-5)
+    law, resistance = EllipsoidalLaw(0.3, 1e-3), RollingResistance(2e-5)
     turning = (3.0, -4.0, 5.0)
-    force, torque = law.traction((0.1, 0.2), turning)
-    beside = law.law.traction((0.1, 0.2), turning)
+    force, torque = on(law, resistance).traction((0.1, 0.2), turning)
+    beside = law.traction((0.1, 0.2), turning)
     assert force == beside.force
     assert torque == pytest.approx((-1.2e-5, 1.6e-5, beside.torque[2]))
-    assert law.reserve(2.0, (2.4e-5, 3.2e-5)) == pytest.approx(0.0, abs=1e-24)
+    assert resistance.reserve(2.0, (2.4e-5, 3.2e-5)) == pytest.approx(0.0, abs=1e-24)
+
+
+def on(law, resistance):
+    """A top on a table."""
+    return Top(0.02, 3.0e-6, 3.2e-6, SphereSurface(0.02, 0.006), law, 9.8, resistance)
 
 
 @pytest.mark.parametrize("law", [CoulombLaw(0.3), *(law(0.3, 2e-3) for law in LAWS)])
 def test_laws_are_the_same_in_any_units(law):
-    units = Units(0.02, 0.05, 0.01)
-    resisted = RollingResistance(law, 3e-5)
-    there = resisted.from_coefficients(resisted.coefficients(units))
+    top = on(law, RollingResistance(3e-5))
+    units = natural_units(top)
     slip, turning = (0.3, -0.2), (10.0, 20.0, 170.0)
-    force, torque = resisted.traction(slip, turning)
-    scaled = there.traction(tuple(v / units.speed for v in slip), tuple(w * units.time for w in turning))
+    force, torque = top.traction(slip, turning)
+    scaled = natural(top).traction(
+        tuple(v / units.speed for v in slip), tuple(w * units.time for w in turning)
+    )
     assert scaled.force == pytest.approx(force, rel=1e-13)
     assert tuple(t * units.length for t in scaled.torque) == pytest.approx(torque, rel=1e-13, abs=1e-20)
 

@@ -112,7 +112,7 @@ DRY = {
     "coulomb": lambda mu, size: CoulombLaw(mu),
     "ellipsoidal": lambda mu, size: EllipsoidalLaw(mu, 0.05 * size),
     "hertz": lambda mu, size: HertzLaw(mu, 0.05 * size),
-    "rolling": lambda mu, size: RollingResistance(CoulombLaw(mu), 0.01 * size),
+    "rolling": lambda mu, size: CoulombLaw(mu),
 }
 
 
@@ -121,7 +121,8 @@ DRY = {
 def test_dry_impacts_obey_the_laws_of_mechanics(name, slide, mu, fall, restitution):
     """No energy is gained, momentum is balanced, and the friction impulse stays inside of the cone."""
     top, sliding = slide
-    top = top._replace(friction=DRY[name](mu, top.surface.size))
+    resistance = RollingResistance(0.01 * top.surface.size) if name == "rolling" else None
+    top = top._replace(friction=DRY[name](mu, top.surface.size), rolling_resistance=resistance)
     state = on_table(sliding, top)
     falling = 10.0**fall * math.sqrt(top.gravity * top.surface.size)
     state = state._replace(velocity=(*state.velocity[:2], state.velocity[2] - falling))
@@ -147,7 +148,7 @@ def test_what_has_ended_in_an_impact_is_held_within_friction_or_goes_on_the_way_
         law = CoulombLaw(mu) if patch is None else EllipsoidalLaw(mu, patch)
         inertia = random.uniform(0.2, 0.6)
         shape = SpheroidSurface(1.0, random.uniform(0.4, 1.8))
-        top = Top(1.0, inertia, random.uniform(0.5, 1.6) * inertia, shape, RollingResistance(law, arm), 1.0)
+        top = Top(1.0, inertia, random.uniform(0.5, 1.6) * inertia, shape, law, 1.0, RollingResistance(arm))
         tilt = random.uniform(0.1, 3.0)
         axis = (math.sin(tilt), 0.0, math.cos(tilt))
         state = on_table(SlidingState(axis, (0.0, 0.0, 0.0), (0.0, 0.0)), top)
@@ -158,7 +159,7 @@ def test_what_has_ended_in_an_impact_is_held_within_friction_or_goes_on_the_way_
         slip, rolling = slip_part(change, contact.reach), change[3:5]
         for way, rate, reserve in (
             (contact.way, slip, law.reserve(1.0, unit[:2], unit[5])),
-            (contact.rolling_way, rolling, top.friction.reserve(1.0, unit[3:5])),
+            (contact.rolling_way, rolling, RollingResistance(arm).reserve(1.0, unit[3:5])),
         ):
             if way is None:
                 assert rate == pytest.approx((0.0,) * len(rate), abs=1e-12)

@@ -58,12 +58,13 @@ def test_what_is_held_stays(slide, mode):
         "slip": CoulombLaw(0.1),
         "stick": CoulombLaw(0.3),
         "grip": HertzDrillingLaw(0.3, 0.1 * length),
-        "drill at rest": RollingResistance(CoulombLaw(0.3), 0.01 * length),
-        "rest": RollingResistance(EllipsoidalLaw(0.3, 0.1 * length), 0.01 * length),
+        "drill at rest": CoulombLaw(0.3),
+        "rest": EllipsoidalLaw(0.3, 0.1 * length),
     }
     held = {"slip": [2], "stick": [0, 1, 2], "grip": [0, 1, 2, 5]}
     held |= {"drill at rest": [0, 1, 2, 3, 4], "rest": [0, 1, 2, 3, 4, 5]}
-    top = top._replace(friction=laws[mode])
+    resistance = RollingResistance(0.01 * length) if "rest" in mode else None
+    top = top._replace(friction=laws[mode], rolling_resistance=resistance)
     point = ContactPoint.of(state.axis, state.momentum, top)
     slip = (0.6, -0.8) if mode == "slip" else None
     wrench, told = contact_motion(point, slip, None)
@@ -93,14 +94,14 @@ def test_sliding_has_the_normal_force_of_the_equations_of_sliding(slide):
 def test_a_body_that_rolls_with_resistance_keeps_its_contact_point_at_rest(slide, angle):
     """The couple goes with the normal force; it is the law's."""
     top, state = slide
-    law = RollingResistance(CoulombLaw(0.3), 0.02 * top.surface.size)
-    top = top._replace(friction=law)
+    resistance = RollingResistance(0.02 * top.surface.size)
+    top = top._replace(friction=CoulombLaw(0.3), rolling_resistance=resistance)
     point = ContactPoint.of(state.axis, state.momentum, top)
     rolling = (math.cos(angle), math.sin(angle))
     wrench = contact_motion(point, None, rolling)[0]
     rate, _ = newton_euler(top, state.axis, point.turning, wrench)
     assert rate == pytest.approx(np.zeros(3), abs=1e-11 * scale_of(top, point))
-    couple = -law.length * wrench.force[2]
+    couple = -resistance.length * wrench.force[2]
     assert wrench.torque == pytest.approx((couple * rolling[0], couple * rolling[1], 0.0), rel=1e-12)
 
 

@@ -197,11 +197,15 @@ def test_what_the_theory_cannot_tell_is_refused_in_a_sentence():
         ("spin = 0.0 .* without drilling", lambda: time_to_stand(still, top)),
         ("spin = 0.0 .* without drilling", lambda: outlook(problem.replace({"launch.spin": 0.0}))),
         ("friction = .* without torque", lambda: eigenvalues(branch, top)),
+        (
+            "rolling_resistance = 1e-05",
+            lambda: eigenvalues(branch, _on(ViscousLaw(0.3), RollingResistance(1e-5))),
+        ),
         ("friction = .* without torque", lambda: tt.predict(problem)),
         ("friction = CoulombLaw.* may roll for ever", lambda: spectrum(leaning, _on(CoulombLaw(0.3)))),
         (
             "rolling_resistance = 1e-05",
-            lambda: spectrum(leaning, _on(RollingResistance(ViscousLaw(0.3), 1e-5))),
+            lambda: spectrum(leaning, _on(ViscousLaw(0.3), RollingResistance(1e-5))),
         ),
         ("body.shape", lambda: standing_time(egg.replace({"launch.tilt": 0.1}))),
         ("kind = 'precession'", lambda: time_to_stand(steady_states(top, 1.9e-6)[1], top)),
@@ -211,8 +215,8 @@ def test_what_the_theory_cannot_tell_is_refused_in_a_sentence():
             ask()
 
 
-def _on(law):
-    return patch().top._replace(friction=law)
+def _on(law, resistance=None):
+    return patch().top._replace(friction=law, rolling_resistance=resistance)
 
 
 def test_the_outlook_of_a_top_that_drills_ends_nowhere_and_stands_a_while():

@@ -26,7 +26,6 @@ from tippetop.mechanics.rolling import (
     is_set_valued,
     limit_guard,
     rolling_reserve,
-    sliding_law,
     slip_reserve,
 )
 from tippetop.mechanics.stick_slip import branch_guard
@@ -104,7 +103,7 @@ def closing_motion(kind: Kind, ending: Vanishing, guarded: bool) -> Motion:
     if ending.held:
         held = ROLLING if ending.slip else SLIP
         guards.append(guard(held, lambda state, top, _: spared(state, ending, top)))
-    if (ending.slip or ending.moves) and hasattr(sliding_law(law), "branch_guard"):
+    if (ending.slip or ending.moves) and hasattr(law, "branch_guard"):
         guards.append(guard(BRANCH, on_branch_still))
     if stuck and has_limit_branches(law):
         guards.append(guard(LIMIT_BRANCH, lambda state, top, _: limit_guard(top, held_by(state, top))))

@@ -46,7 +46,7 @@ class Rates(NamedTuple):
         state, reaction = mode.state(y), mode.reaction(y)
         east, north, turn, work = quadrature_rates(state, reaction.power, pole, mode.top)
         drilling = rolling = 0.0
-        if not mode.top.friction.torque_free:
+        if not mode.top.torque_free:
             drilling, rolling = resistance_powers(state, reaction.resistance, mode.top)
         return cls(east, north, turn, work, drilling, rolling, state.axis[2], reaction.force[2])
 

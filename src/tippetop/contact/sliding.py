@@ -7,7 +7,7 @@ from tippetop.contact.closed import BRANCH, LIFT_OFF, STOPPING, ClosedMode, Guar
 from tippetop.contact.mode import Reaction, Transition
 from tippetop.integrators.base import Motion
 from tippetop.mechanics.motion import SlidingContact, contact, sliding_rates
-from tippetop.mechanics.rolling import is_set_valued, sliding_law
+from tippetop.mechanics.rolling import is_set_valued
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.stick_slip import (
     branch_guard,
@@ -46,7 +46,7 @@ class SlidingMode(ClosedMode):
             own.append((PARTING, lambda mode, y: parting_guard(SlidingState.unpack(y), mode.top)))
         elif is_set_valued(law):
             own.append((NEARING, lambda mode, y: nearing_guard(SlidingState.unpack(y), mode.top)))
-        if hasattr(sliding_law(law), "branch_guard"):
+        if hasattr(law, "branch_guard"):
             own.append((BRANCH, lambda mode, y: mode.on_branch(y)))
         return own + super().guard_values()
 

@@ -96,7 +96,7 @@ def impact_motion(kind: Kind, *, ending: bool = False) -> Motion:
         arm = contact_vector(state.axis, top.surface)
         point = contact_velocity(state, arm, top)
         turning = angular_velocity(state.axis, state.momentum, top)
-        traction = top.friction.traction((point[0], point[1]), turning)
+        traction = top.traction((point[0], point[1]), turning)
         return (*moment_per_normal_force(arm, traction), *scale(1.0 / top.mass, (*traction.force, 1.0)))
 
     def sinking(state: State, top: Top) -> Scalar:

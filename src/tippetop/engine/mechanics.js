@@ -191,92 +191,6 @@ class RegularizedCoulombLaw extends py.NamedTuple {
 }
 py.fields(RegularizedCoulombLaw, ["mu", "eps"]);
 
-// tippetop.mechanics.coulomb
-const TINY = 1e-300;
-
-/** Coulomb's friction: f = -mu v / |v| in sliding, and at v = 0 any force up to mu N. No torque. */
-class CoulombLaw extends py.NamedTuple {
-  constructor(mu) {
-    super();
-    this.mu = mu;
-  }
-  /** Drilling is free. */
-  get slip_length() {
-    return null;
-  }
-  /** It has no torque. */
-  get torque_free() {
-    return true;
-  }
-  /** Force and torque per unit normal force; the slip must not be zero. */
-  traction(slip, angular_velocity) {
-    var factor = py.mul(
-      py.neg(this.mu),
-      py.pow(py.add(py.mul(slip[0], slip[0]), py.mul(slip[1], slip[1])), -0.5)
-    );
-    return new Traction([py.mul(factor, slip[0]), py.mul(factor, slip[1])], NO_TORQUE);
-  }
-  /** (mu N)^2 - T^2, N^2. */
-  reserve(normal, force, drilling) {
-    var limit = py.mul(this.mu, normal);
-    return py.sub(py.sub(py.mul(limit, limit), py.mul(force[0], force[0])), py.mul(force[1], force[1]));
-  }
-  /** Friction coefficient mu. */
-  coefficients(units) {
-    return [this.mu];
-  }
-  /** Make the law with this mu. */
-  static from_coefficients(coefficients) {
-    return new this(...coefficients);
-  }
-}
-py.fields(CoulombLaw, ["mu"]);
-
-/** Another law, and a torque -length w_t / |w_t| against rolling, w_t the horizontal angular velocity. */
-class RollingResistance extends py.NamedTuple {
-  constructor(law, length) {
-    super();
-    this.law = law;
-    this.length = length;
-  }
-  /** Force and torque per unit normal force. */
-  traction(slip, angular_velocity) {
-    var [force, torque] = this.law.traction(slip, angular_velocity);
-    return new Traction(force, add(torque, this.couple(angular_velocity)));
-  }
-  /** Torque against rolling per unit normal force, m; nothing where there is none at all. */
-  couple(angular_velocity) {
-    var [x, y] = angular_velocity;
-    var factor = py.mul(py.neg(this.length), py.pow(py.add(py.add(py.mul(x, x), py.mul(y, y)), TINY), -0.5));
-    return [py.mul(factor, x), py.mul(factor, y), 0.0];
-  }
-  /** Positive while the contact can exert this horizontal couple at rest, (N m)^2. */
-  reserve(normal, couple) {
-    var limit = py.mul(this.length, normal);
-    return py.sub(py.sub(py.mul(limit, limit), py.mul(couple[0], couple[0])), py.mul(couple[1], couple[1]));
-  }
-  /** The numbers of the law beside, and the arm in units of length. */
-  coefficients(units) {
-    return [...this.law.coefficients(units), py.div(this.length, units.length)];
-  }
-  /** What is left of it without its numbers: it makes laws like it. */
-  get make() {
-    return new RollingResistance(py.getattr(this.law, "make", py.type(this.law)), 0.0);
-  }
-  /** It is a torque. */
-  get torque_free() {
-    return false;
-  }
-  /** Make a law of the same make with these numbers. */
-  from_coefficients(coefficients) {
-    return new RollingResistance(
-      this.law.from_coefficients(py.slice(coefficients, null, -1, null)),
-      py.item(coefficients, -1)
-    );
-  }
-}
-py.fields(RollingResistance, ["law", "length"]);
-
 // tippetop.mechanics.state
 
 /** What the motion of the body depends on, whether it touches the table or not. */
@@ -470,6 +384,67 @@ function contact_vector(axis, surface) {
   return [py.mul(py.neg(slope), axis[0]), py.mul(py.neg(slope), axis[1]), py.neg(surface.height(c))];
 }
 
+// tippetop.mechanics.coulomb
+const TINY = 1e-300;
+
+/** Coulomb's friction: f = -mu v / |v| in sliding, and at v = 0 any force up to mu N. No torque. */
+class CoulombLaw extends py.NamedTuple {
+  constructor(mu) {
+    super();
+    this.mu = mu;
+  }
+  /** Drilling is free. */
+  get slip_length() {
+    return null;
+  }
+  /** It has no torque. */
+  get torque_free() {
+    return true;
+  }
+  /** Force and torque per unit normal force; the slip must not be zero. */
+  traction(slip, angular_velocity) {
+    var factor = py.mul(
+      py.neg(this.mu),
+      py.pow(py.add(py.mul(slip[0], slip[0]), py.mul(slip[1], slip[1])), -0.5)
+    );
+    return new Traction([py.mul(factor, slip[0]), py.mul(factor, slip[1])], NO_TORQUE);
+  }
+  /** (mu N)^2 - T^2, N^2. */
+  reserve(normal, force, drilling) {
+    var limit = py.mul(this.mu, normal);
+    return py.sub(py.sub(py.mul(limit, limit), py.mul(force[0], force[0])), py.mul(force[1], force[1]));
+  }
+  /** Friction coefficient mu. */
+  coefficients(units) {
+    return [this.mu];
+  }
+  /** Make the law with this mu. */
+  static from_coefficients(coefficients) {
+    return new this(...coefficients);
+  }
+}
+py.fields(CoulombLaw, ["mu"]);
+
+/** A torque -length w_t / |w_t| against rolling, w_t the horizontal angular velocity. */
+class RollingResistance extends py.NamedTuple {
+  constructor(length) {
+    super();
+    this.length = length;
+  }
+  /** Torque against rolling per unit normal force, m; nothing where there is none at all. */
+  couple(angular_velocity) {
+    var [x, y] = angular_velocity;
+    var factor = py.mul(py.neg(this.length), py.pow(py.add(py.add(py.mul(x, x), py.mul(y, y)), TINY), -0.5));
+    return [py.mul(factor, x), py.mul(factor, y), 0.0];
+  }
+  /** Positive while the contact can exert this horizontal couple at rest, (N m)^2. */
+  reserve(normal, couple) {
+    var limit = py.mul(this.length, normal);
+    return py.sub(py.sub(py.mul(limit, limit), py.mul(couple[0], couple[0])), py.mul(couple[1], couple[1]));
+  }
+}
+py.fields(RollingResistance, ["length"]);
+
 // tippetop.mechanics.hull
 
 /** The surfaces of a body: a `Surface` that answers for the active one. */
@@ -593,7 +568,15 @@ function lowest_surface(surface, c) {
 
 /** A body of revolution, the table's friction law and gravity: all that the equations of motion need. */
 class Top extends py.NamedTuple {
-  constructor(mass, transverse_inertia, axial_inertia, surface, friction, gravity) {
+  constructor(
+    mass,
+    transverse_inertia,
+    axial_inertia,
+    surface,
+    friction,
+    gravity,
+    rolling_resistance = null
+  ) {
     super();
     this.mass = mass;
     this.transverse_inertia = transverse_inertia;
@@ -601,21 +584,34 @@ class Top extends py.NamedTuple {
     this.surface = surface;
     this.friction = friction;
     this.gravity = gravity;
+    this.rolling_resistance = rolling_resistance;
   }
   /** Whether Jellett's integral -L.a is constant on one contact, whatever the motion. */
   get conserves_jellett() {
-    return py.and(this.surface.spherical, () => this.friction.torque_free);
+    return py.and(this.surface.spherical, () => this.torque_free);
   }
   /** Whether the table resists rolling, and holds it where that takes little enough. */
   get resists_rolling() {
-    return py.isinstance(this.friction, RollingResistance);
+    return this.rolling_resistance !== null;
+  }
+  /** Whether the table's torque, about the vertical and of rolling, is zero at any slip. */
+  get torque_free() {
+    return py.and(this.friction.torque_free, () => !py.truth(this.resists_rolling));
+  }
+  /** Force and torque per unit normal force at this slip velocity (m/s) and angular velocity (rad/s). */
+  traction(slip, angular_velocity) {
+    var [force, torque] = this.friction.traction(slip, angular_velocity);
+    if (this.rolling_resistance !== null) {
+      torque = add(torque, this.rolling_resistance.couple(angular_velocity));
+    }
+    return new Traction(force, torque);
   }
   /** What remains of it without its numbers. */
   get kind() {
     var coefficients = py.len(this.friction.coefficients(new Units(1.0, 1.0, 1.0)));
-    var make = py.getattr(this.friction, "make", py.type(this.friction));
     var surface = py.getattr(this.surface, "make", py.type(this.surface));
-    return new Kind(surface, make, py.len(this.surface.proportions), coefficients);
+    var proportions = py.len(this.surface.proportions);
+    return new Kind(surface, py.type(this.friction), proportions, coefficients, this.resists_rolling);
   }
   /** The top with every one of its surfaces active in turn. */
   get each() {
@@ -624,28 +620,34 @@ class Top extends py.NamedTuple {
   /** The numbers that remain in natural units: inertias, proportions of the surface, friction law. */
   get numbers() {
     var units = natural_units(this);
+    var resistance = this.rolling_resistance;
     return [
       py.div(this.transverse_inertia, units.inertia),
       py.div(this.axial_inertia, units.inertia),
       ...this.surface.proportions,
-      ...this.friction.coefficients(units)
+      ...this.friction.coefficients(units),
+      ...(resistance === null ? [] : [py.div(resistance.length, units.length)])
     ];
   }
 }
-py.fields(Top, ["mass", "transverse_inertia", "axial_inertia", "surface", "friction", "gravity"]);
+py.fields(
+  Top,
+  ["mass", "transverse_inertia", "axial_inertia", "surface", "friction", "gravity", "rolling_resistance"]
+);
 
 /** What remains of a top when its numbers are taken away: how it is shaped and how it rubs. */
 class Kind extends py.NamedTuple {
-  constructor(surface, friction, proportions, coefficients) {
+  constructor(surface, friction, proportions, coefficients, resists_rolling) {
     super();
     this.surface = surface;
     this.friction = friction;
     this.proportions = proportions;
     this.coefficients = coefficients;
+    this.resists_rolling = resists_rolling;
   }
   /** How many dimensionless numbers a top of this kind has. */
   get numbers() {
-    return py.add(py.add(2, this.proportions), this.coefficients);
+    return py.add(py.add(py.add(2, this.proportions), this.coefficients), this.resists_rolling);
   }
   /** Some top of this kind, to ask what is common to all. */
   get example() {
@@ -653,13 +655,15 @@ class Kind extends py.NamedTuple {
   }
   /** Make the top of this kind, in natural units, with these dimensionless numbers. */
   top(numbers) {
-    var cut = py.add(2, this.proportions);
-    var surface = this.surface.from_proportions(py.tuple(numbers.slice(2, cut)));
-    var friction = this.friction.from_coefficients(py.tuple(numbers.slice(cut)));
-    return new Top(1.0, numbers[0], numbers[1], surface, friction, 1.0);
+    var first = py.add(2, this.proportions);
+    var last = py.add(py.add(2, this.proportions), this.coefficients);
+    var surface = this.surface.from_proportions(py.tuple(numbers.slice(2, first)));
+    var friction = this.friction.from_coefficients(py.tuple(numbers.slice(first, last)));
+    var resistance = py.truth(this.resists_rolling) ? new RollingResistance(py.item(numbers, last)) : null;
+    return new Top(1.0, numbers[0], numbers[1], surface, friction, 1.0, resistance);
   }
 }
-py.fields(Kind, ["surface", "friction", "proportions", "coefficients"]);
+py.fields(Kind, ["surface", "friction", "proportions", "coefficients", "resists_rolling"]);
 
 /** Units in which the top's mass, its size and gravity are all 1. */
 function natural_units(top) {
@@ -748,7 +752,7 @@ function contact(axis, momentum, velocity, top) {
   var omega = angular_velocity(axis, momentum, top);
   var point = point_velocity([velocity[0], velocity[1], 0.0], omega, arm);
   var slip = [point[0], point[1]];
-  var traction = top.friction.traction(slip, omega);
+  var traction = top.traction(slip, omega);
   var lever = py.div(top.surface.slope(axis[2]), top.transverse_inertia);
   var reaction = cross(moment_per_normal_force(arm, traction), axis)[2];
   var free = free_acceleration(axis, momentum, top);
@@ -962,15 +966,16 @@ function struck_wrench(point, slip, rolling) {
 
 /** A unit normal force with what goes with it, and what holds slip, and rolling, where these are None. */
 function going_on(point, slip, rolling) {
-  var law = point.top.friction;
-  var slipping = slip !== null ? [] : py.list(py.zip([0, 1, 5], slip_wrenches(law)));
-  if (!py.isinstance(law, RollingResistance)) {
+  var top = point.top;
+  var slipping = slip !== null ? [] : py.list(py.zip([0, 1, 5], slip_wrenches(top.friction)));
+  if (top.rolling_resistance === null) {
     return [normal_wrench(point, slip), slipping, []];
   }
   if (rolling === null) {
     return [normal_wrench(point, slip), slipping, [[3, COUPLES[0]], [4, COUPLES[1]]]];
   }
-  return [normal_wrench(point, slip, law.couple([rolling[0], rolling[1], 0.0])), slipping, []];
+  var couple = top.rolling_resistance.couple([rolling[0], rolling[1], 0.0]);
+  return [normal_wrench(point, slip, couple), slipping, []];
 }
 
 /** A unit normal force with the friction that goes with it where the contact slips, and a couple. */
@@ -978,7 +983,7 @@ function normal_wrench(point, slip, couple = null) {
   var force = [0.0, 0.0];
   var torque = NO_TORQUE;
   if (slip !== null) {
-    [force, torque] = sliding_law(point.top.friction).traction([slip[0], slip[1]], turning_with(point, slip));
+    [force, torque] = point.top.friction.traction([slip[0], slip[1]], turning_with(point, slip));
   }
   return new Wrench([...force, 1.0], couple === null ? torque : add(torque, couple));
 }
@@ -988,26 +993,27 @@ function slip_wrenches(law) {
   return slip_length(law) === null ? FORCES.slice(0, 2) : [...FORCES.slice(0, 2), DRILLING];
 }
 
-/** Length by which drilling compares with slip under a law with or without rolling resistance, m. */
+/** Length by which drilling compares with slip under a law, m; None where it does not resist drilling. */
 function slip_length(law) {
-  return py.getattr(sliding_law(law), "slip_length", null);
+  return py.getattr(law, "slip_length", null);
 }
 
 /** Positive while the table can exert the force and drilling torque in a wrench that holds slip, N^2. */
 function slip_reserve(top, wrench) {
-  return set_valued(top.friction).reserve(wrench.force[2], wrench.force.slice(0, 2), wrench.torque[2]);
+  var law = top.friction;
+  return law.reserve(wrench.force[2], wrench.force.slice(0, 2), wrench.torque[2]);
 }
 
 /** Positive while the table can exert the couple in a wrench that holds rolling, (N m)^2. */
 function rolling_reserve(point, wrench, slip) {
-  var law = point.top.friction;
+  var resistance = point.top.rolling_resistance;
   var couple = [wrench.torque[0], wrench.torque[1]];
   var normal = wrench.force[2];
   if (slip !== null) {
-    var torque = sliding_law(law).traction([slip[0], slip[1]], turning_with(point, slip)).torque;
+    var torque = point.top.friction.traction([slip[0], slip[1]], turning_with(point, slip)).torque;
     couple = [py.sub(couple[0], py.mul(normal, torque[0])), py.sub(couple[1], py.mul(normal, torque[1]))];
   }
-  return law.reserve(normal, couple);
+  return resistance.reserve(normal, couple);
 }
 
 /** The angular velocity as a law takes it, drilling as the slip has it, rad/s. */
@@ -1041,21 +1047,9 @@ function spun_up(axis, momentum, change, top) {
   return add(momentum, add(scale(top.transverse_inertia, change), scale(along, axis)));
 }
 
-/** The law of slip and drilling of a law with or without rolling resistance. */
-function sliding_law(law) {
-  var inner = py.isinstance(law, RollingResistance) ? law.law : law;
-  return inner;
-}
-
-/** The law of slip and drilling of one that lets slip end. */
-function set_valued(law) {
-  var inner = sliding_law(law);
-  return inner;
-}
-
 /** Whether a law lets slip end. */
 function is_set_valued(law) {
-  return py.hasattr(sliding_law(law), "reserve");
+  return py.hasattr(law, "reserve");
 }
 
 /** Whether a law is made of branches, and knows itself which holds, or is one of them. */
@@ -1063,20 +1057,9 @@ function is_branched(law) {
   return py.hasattr(whole_law(law), "branch");
 }
 
-/** The law of slip and drilling, the whole of it where there is but a branch. */
+/** A law, the whole of it where there is but a branch. */
 function whole_law(law) {
-  var inner = sliding_law(law);
-  return py.truth(py.hasattr(inner, "whole")) ? inner.whole : inner;
-}
-
-/** A top with another law of slip and drilling, and the same rolling resistance. */
-function with_sliding_law(top, law) {
-  var outer = top.friction;
-  return top._replace({
-    friction: py.isinstance(outer, RollingResistance)
-    ? outer._replace({ law: law })
-    : law
-  });
+  return py.getattr(law, "whole", law);
 }
 
 /** A top with the branch of its law that holds where it slips, or in that direction; of floats. */
@@ -1085,7 +1068,9 @@ function on_branch(top, slip) {
     return top;
   }
   var law = whole_law(top.friction);
-  return with_sliding_law(top, law.branch(slip.slice(0, 2), [0.0, 0.0, py.div(slip[2], law.slip_length)]));
+  return top._replace({
+    friction: law.branch(slip.slice(0, 2), [0.0, 0.0, py.div(slip[2], law.slip_length)])
+  });
 }
 
 /** The same where a number tells the branch, for arrays, or for floats that share equations. */
@@ -1094,21 +1079,20 @@ function on_numbered_branch(top, slip) {
     return top;
   }
   var law = whole_law(top.friction);
-  return with_sliding_law(
-    top,
-    law.numbered_branch(slip.slice(0, 2), [0.0, 0.0, py.div(slip[2], law.slip_length)])
-  );
+  return top._replace({
+    friction: law.numbered_branch(slip.slice(0, 2), [0.0, 0.0, py.div(slip[2], law.slip_length)])
+  });
 }
 
 /** A top with the branch of its law, or of its limit surface, that takes over where its own ends. */
 function on_other_branch(top) {
-  var law = sliding_law(top.friction);
-  return with_sliding_law(top, law.other_branch());
+  var law = top.friction;
+  return top._replace({ friction: law.other_branch() });
 }
 
 /** A top with the whole of its law, if it has but a branch of it. */
 function off_branch(top) {
-  return with_sliding_law(top, whole_law(top.friction));
+  return top._replace({ friction: whole_law(top.friction) });
 }
 
 /** A top with the branch of its law's limit surface that belongs to what holds it at rest; of floats. */
@@ -1116,17 +1100,17 @@ function on_limit_branch(top, wrench) {
   if (!py.truth(is_branched(top.friction))) {
     return top;
   }
-  return with_sliding_law(top, whole_law(top.friction).limit_branch(wrench.force[2], wrench.torque[2]));
+  return top._replace({ friction: whole_law(top.friction).limit_branch(wrench.force[2], wrench.torque[2]) });
 }
 
 /** Whether a law is one of the branches of a limit surface. */
 function has_limit_branches(law) {
-  return py.hasattr(sliding_law(law), "limit_guard");
+  return py.hasattr(law, "limit_guard");
 }
 
 /** Positive as long as the branch of the limit surface that a body at rest has is the one it is on. */
 function limit_guard(top, wrench) {
-  var law = set_valued(top.friction);
+  var law = top.friction;
   return law.limit_guard(wrench.force[2], wrench.torque[2]);
 }
 
@@ -1275,7 +1259,7 @@ function remaining(velocity, change) {
 
 /** Positive as long as a branch of a law holds where it slips so, or in that direction, m^2/s^2. */
 function branch_guard(slip, top) {
-  var law = sliding_law(top.friction);
+  var law = top.friction;
   return law.branch_guard(slip.slice(0, 2), [0.0, 0.0, py.div(slip[2], law.slip_length)]);
 }
 
@@ -1377,14 +1361,13 @@ class Vanishing extends py.NamedTuple {
   }
   /** How much of each there is per unit normal force when it goes in a direction. */
   shares(direction, top) {
-    var law = top.friction;
     if (!py.truth(this.slip)) {
-      py.assert(py.isinstance(law, RollingResistance));
-      return law.couple([direction[0], direction[1], 0.0]).slice(0, 2);
+      py.assert(top.rolling_resistance !== null);
+      return top.rolling_resistance.couple([direction[0], direction[1], 0.0]).slice(0, 2);
     }
-    var reach = slip_length(law);
+    var reach = slip_length(top.friction);
     var w = reach === null ? py.mul(0.0, direction[0]) : py.mul(direction[2], py.div(1.0, reach));
-    var [force, torque] = sliding_law(law).traction([direction[0], direction[1]], [0.0, 0.0, w]);
+    var [force, torque] = top.friction.traction([direction[0], direction[1]], [0.0, 0.0, w]);
     return reach === null ? force : [...force, torque[2]];
   }
   /** What the table does, and how the contact accelerates, for a direction of xi; None is held. */
@@ -3223,11 +3206,7 @@ const closing_motion = py.cached((kind, ending, guarded) => {
     var held = py.truth(ending.slip) ? ROLLING : SLIP;
     guards.push(guard(held, (state, top, _) => spared(state, ending, top)));
   }
-  if (
-    (
-      py.truth(ending.slip) || py.truth(ending.moves)
-    ) && py.truth(py.hasattr(sliding_law(law), "branch_guard"))
-  ) {
+  if ((py.truth(ending.slip) || py.truth(ending.moves)) && py.truth(py.hasattr(law, "branch_guard"))) {
     guards.push(guard(BRANCH, on_branch_still));
   }
   if (py.truth(stuck) && py.truth(has_limit_branches(law))) {
@@ -3292,7 +3271,7 @@ class SlidingMode extends ClosedMode {
     } else if (py.truth(is_set_valued(law))) {
       own.push([NEARING, (mode, y) => nearing_guard(SlidingState.unpack(y), mode.top)]);
     }
-    if (py.truth(py.hasattr(sliding_law(law), "branch_guard"))) {
+    if (py.truth(py.hasattr(law, "branch_guard"))) {
       own.push([BRANCH, (mode, y) => mode.on_branch(y)]);
     }
     return py.add(own, super.guard_values());
@@ -4662,7 +4641,7 @@ class Striking extends py.NamedTuple {
   /** Force and torque per unit normal impulse under a law that says them at any slip, six numbers. */
   friction(velocity) {
     var [x, y, , ...omega] = velocity;
-    var [force, torque] = this.contact.top.friction.traction([x, y], [omega[0], omega[1], omega[2]]);
+    var [force, torque] = this.contact.top.traction([x, y], [omega[0], omega[1], omega[2]]);
     return [...force, 1.0, ...torque];
   }
   /** Work of an impulse, J: times the mean velocity, as that is linear in it (Thomson and Tait). */
@@ -5473,7 +5452,7 @@ const impact_motion = py.cached((kind, ending = false) => {
     var arm = contact_vector(state.axis, top.surface);
     var point = contact_velocity(state, arm, top);
     var turning = angular_velocity(state.axis, state.momentum, top);
-    var traction = top.friction.traction([point[0], point[1]], turning);
+    var traction = top.traction([point[0], point[1]], turning);
     return [
       ...moment_per_normal_force(arm, traction),
       ...scale(py.div(1.0, top.mass), [...traction.force, 1.0])
@@ -5903,14 +5882,15 @@ class PairMotion extends py.NamedTuple {
   }
   /** Positive while the table can exert the horizontal force on a contact that alone sticks, N^2. */
   reserve(number) {
-    var [x, y, normal] = py.item(this.wrenches, number).force;
-    return set_valued(py.item(this.pair, number).top.friction).reserve(normal, [x, y], 0.0);
+    return slip_reserve(
+      py.item(this.pair, number).top,
+      new Wrench(py.item(this.wrenches, number).force, NO_TORQUE)
+    );
   }
   /** mu^2 N_i^2 - T_i^2 where both stick, N^2. */
   left(number) {
-    var law = set_valued(py.item(this.pair, number).top.friction);
-    var normal = py.item(this.normal, number);
-    return law.reserve(normal, [this.needed(number), 0.0], 0.0);
+    var force = [this.needed(number), 0.0, py.item(this.normal, number)];
+    return slip_reserve(py.item(this.pair, number).top, new Wrench(force, NO_TORQUE));
   }
   /** S, the force along e at both, N. */
   get along() {
@@ -5926,9 +5906,9 @@ class PairMotion extends py.NamedTuple {
   }
   /** Positive while the table can exert the couple that holds rolling, (N m)^2. */
   get rolling_reserve() {
-    var law = this.pair.first.top.friction;
+    var resistance = this.pair.first.top.rolling_resistance;
     var [one, other] = this.normal;
-    return law.reserve(py.add(one, other), [this.holding, 0.0]);
+    return resistance.reserve(py.add(one, other), [this.holding, 0.0]);
   }
   /** Positive while the table can exert S, N^2: (sqrt(A_1) + sqrt(A_2))^2 - S^2 for positive A_i. */
   get both_reserve() {
@@ -5950,7 +5930,7 @@ class PairMotion extends py.NamedTuple {
     var spare = 0.0;
     for (var [point, slip, wrench] of py.zip(this.pair, slips_of(this.pair, way), this.wrenches)) {
       var turning = turning_with(point, slip);
-      var [force, torque] = sliding_law(point.top.friction).traction([slip[0], slip[1]], turning);
+      var [force, torque] = point.top.friction.traction([slip[0], slip[1]], turning);
       var [x, y, normal] = wrench.force;
       spare = py.sub(spare, py.mul(py.mul(normal, torque[2]), turning[2]));
       spare = py.add(
@@ -5990,10 +5970,10 @@ function turning_along(pair) {
 /** What the table does to a body whose two contacts stay closed, and how it accelerates. */
 function pair_motion(pair, slips, rolls) {
   var along = directions_of(pair.first.axis)[0];
-  var law = pair.first.top.friction;
-  var couple = py.isinstance(law, RollingResistance) ? scale(py.mul(py.neg(rolls), law.length), along) : null;
+  var resistance = pair.first.top.rolling_resistance;
+  var couple = resistance === null ? null : scale(py.mul(py.neg(rolls), resistance.length), along);
   var [one, other] = py.zip(pair, slips).map((contact) => normal_wrench(...contact, couple));
-  var stopped = py.and(pair.first.top.resists_rolling, () => !py.truth(rolls));
+  var stopped = py.and(resistance !== null, () => !py.truth(rolls));
   var pushes = pair.holding([slips[0] === null, slips[1] === null], [one, other], pair.free, stopped);
   var found = [new Wrench(NO_TORQUE, NO_TORQUE), new Wrench(NO_TORQUE, NO_TORQUE)];
   for (var [number, push] of pushes) {
@@ -7024,13 +7004,13 @@ class StruckOnTwo extends py.NamedTuple {
     var pace = py.div(1.0, this.speed);
     var units = [];
     var responses = [];
-    if (py.isinstance(top.friction, RollingResistance)) {
+    if (top.rolling_resistance !== null) {
       var lever = this.bodies[0].lever;
       var rolling = py.mul(lever, length([...omega.slice(0, 2), 0.0]));
       if (rolling < py.mul(OPEN, this.speed)) {
         throw new SlipEnds("rolling ends in an impact on two surfaces");
       }
-      pace = py.add(pace, py.div(py.mul(2.0, top.friction.length), py.mul(lever, rolling)));
+      pace = py.add(pace, py.div(py.mul(2.0, top.rolling_resistance.length), py.mul(lever, rolling)));
     }
     var touching = py.list(py.zip(points, this.bodies));
     for (var [point, body] of py.truth(this.pressed) ? touching : touching.slice(0, 1)) {
@@ -7038,7 +7018,7 @@ class StruckOnTwo extends py.NamedTuple {
       if (py.truth(is_set_valued(top.friction)) && slip < py.mul(OPEN, this.speed)) {
         throw new SlipEnds("slip ends in an impact on two surfaces");
       }
-      var traction = top.friction.traction([point[0], point[1]], omega);
+      var traction = top.traction([point[0], point[1]], omega);
       pace = py.add(pace, py.truth(slip) ? py.div(length([...traction.force, 0.0]), slip) : 0.0);
       var moment = moment_per_normal_force(body.contact.arm, traction);
       units.push([...moment, ...scale(py.div(1.0, top.mass), [...traction.force, 1.0])]);
@@ -8010,18 +7990,9 @@ class Problem extends Part {
   /** The problem's numbers as the mechanics takes them, SI. */
   get top() {
     var body = this.body;
-    return new Top(body.mass, body.I1, body.I3, body.surface, this._law, this.gravity);
-  }
-  /** The law of friction with the rolling resistance beside it, if there is any. */
-  get _law() {
     var arm = this.rolling_resistance;
-    var law = this.friction.law;
-    if (py.isinstance(arm, py.float) && !py.truth(arm)) {
-      return law;
-    }
-    var resisted = new RollingResistance(law, arm);
-    var found = resisted;
-    return found;
+    var resistance = py.isinstance(arm, py.float) && !py.truth(arm) ? null : new RollingResistance(arm);
+    return new Top(body.mass, body.I1, body.I3, body.surface, this.friction.law, this.gravity, resistance);
   }
   /** The top on the surface that reaches lowest at launch. */
   standing(functions = py.math) {
@@ -8153,12 +8124,9 @@ function require_sphere(top) {
 /** Refuse a top that does not conserve Jellett's integral, with `InvalidInput`. */
 function require_jellett(top) {
   require_sphere(top);
-  if (py.isinstance(top.friction, RollingResistance)) {
-    throw new InvalidInput(
-      "rolling_resistance",
-      top.friction.length,
-      "0: with it Jellett's integral is not conserved"
-    );
+  if (top.rolling_resistance !== null) {
+    var arm = top.rolling_resistance.length;
+    throw new InvalidInput("rolling_resistance", arm, "0: with it Jellett's integral is not conserved");
   }
   if (!py.truth(top.conserves_jellett)) {
     throw new InvalidInput(
@@ -8179,10 +8147,11 @@ function require_creep(top) {
       "a shape that touches in one point when its axis is vertical"
     );
   }
-  if (py.isinstance(top.friction, RollingResistance)) {
+  if (top.rolling_resistance !== null) {
+    var arm = top.rolling_resistance.length;
     throw new InvalidInput(
       "rolling_resistance",
-      top.friction.length,
+      arm,
       "0: with it a spin about the vertical has no linear motion"
     );
   }
@@ -10283,7 +10252,7 @@ class Rates extends py.NamedTuple {
     var [east, north, turn, work] = quadrature_rates(state, reaction.power, pole, mode.top);
     var drilling = 0.0;
     var rolling = 0.0;
-    if (!py.truth(mode.top.friction.torque_free)) {
+    if (!py.truth(mode.top.torque_free)) {
       [drilling, rolling] = resistance_powers(state, reaction.resistance, mode.top);
     }
     return new this(east, north, turn, work, drilling, rolling, state.axis[2], reaction.force[2]);
@@ -11464,14 +11433,12 @@ export {
   scaled,
   scaled_shares,
   series_of,
-  set_valued,
   settled,
   settling,
   short_step,
   shown,
   size,
   sizes,
-  sliding_law,
   sliding_motion,
   sliding_rates,
   sliding_shares,
@@ -11537,7 +11504,6 @@ export {
   vertical_spin,
   weight_moment,
   whole_law,
-  with_sliding_law,
   within,
   without_drilling,
   without_rolling,

@@ -27,7 +27,7 @@ omega_e = 0 it is any up to that, along e: across e the normal forces hold the b
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
-from tippetop.mechanics.coulomb import TINY, RollingResistance
+from tippetop.mechanics.coulomb import TINY
 from tippetop.mechanics.friction import NO_TORQUE
 from tippetop.mechanics.motion import axis_rate
 from tippetop.mechanics.rolling import (
@@ -37,9 +37,8 @@ from tippetop.mechanics.rolling import (
     Slip,
     Wrench,
     normal_wrench,
-    set_valued,
-    sliding_law,
     slip_length,
+    slip_reserve,
     solve,
     turning_with,
 )
@@ -195,13 +194,12 @@ class PairMotion(NamedTuple):
 
     def reserve(self, number: int) -> Scalar:
         """Positive while the table can exert the horizontal force on a contact that alone sticks, N^2."""
-        x, y, normal = self.wrenches[number].force
-        return set_valued(self.pair[number].top.friction).reserve(normal, (x, y), 0.0)
+        return slip_reserve(self.pair[number].top, Wrench(self.wrenches[number].force, NO_TORQUE))
 
     def left(self, number: int) -> Scalar:
         """mu^2 N_i^2 - T_i^2 where both stick, N^2."""
-        law, normal = set_valued(self.pair[number].top.friction), self.normal[number]
-        return law.reserve(normal, (self.needed(number), 0.0), 0.0)
+        force = (self.needed(number), 0.0, self.normal[number])
+        return slip_reserve(self.pair[number].top, Wrench(force, NO_TORQUE))
 
     @property
     def along(self) -> Scalar:
@@ -221,9 +219,9 @@ class PairMotion(NamedTuple):
     @property
     def rolling_reserve(self) -> Scalar:
         """Positive while the table can exert the couple that holds rolling, (N m)^2."""
-        law: Any = self.pair.first.top.friction
+        resistance: Any = self.pair.first.top.rolling_resistance
         one, other = self.normal
-        return law.reserve(one + other, (self.holding, 0.0))
+        return resistance.reserve(one + other, (self.holding, 0.0))
 
     @property
     def both_reserve(self) -> Scalar:
@@ -242,7 +240,7 @@ class PairMotion(NamedTuple):
         spare: Any = 0.0
         for point, slip, wrench in zip(self.pair, slips_of(self.pair, way), self.wrenches, strict=True):
             turning = turning_with(point, slip)
-            force, torque = sliding_law(point.top.friction).traction((slip[0], slip[1]), turning)
+            force, torque = point.top.friction.traction((slip[0], slip[1]), turning)
             x, y, normal = wrench.force
             spare = spare - normal * torque[2] * turning[2]
             spare = spare + (x - normal * force[0]) * slip[0] + (y - normal * force[1]) * slip[1]
@@ -284,10 +282,10 @@ def pair_motion(pair: ContactPair, slips: Slips, rolls: float) -> PairMotion:
     rolls
         Sign of omega_e, 0 where it is held at zero; without rolling resistance it does not matter.
     """
-    along, law = directions_of(pair.first.axis)[0], pair.first.top.friction
-    couple = scale(-rolls * law.length, along) if isinstance(law, RollingResistance) else None
+    along, resistance = directions_of(pair.first.axis)[0], pair.first.top.rolling_resistance
+    couple = None if resistance is None else scale(-rolls * resistance.length, along)
     one, other = (normal_wrench(*contact, couple) for contact in zip(pair, slips, strict=True))
-    stopped = pair.first.top.resists_rolling and not rolls
+    stopped = resistance is not None and not rolls
     pushes = pair.holding((slips[0] is None, slips[1] is None), (one, other), pair.free, stopped=stopped)
     found = [Wrench(NO_TORQUE, NO_TORQUE), Wrench(NO_TORQUE, NO_TORQUE)]
     for number, push in pushes:

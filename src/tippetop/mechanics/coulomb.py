@@ -1,10 +1,10 @@
 """Dry friction: a sliding body feels all of it, and one that sticks no more than it takes."""
 
-from typing import Any, NamedTuple, Protocol
+from typing import NamedTuple, Protocol
 
 from tippetop.mechanics.friction import NO_TORQUE, FrictionLaw, Traction
 from tippetop.mechanics.units import Units
-from tippetop.mechanics.vectors import Horizontal, Scalar, Vector, add
+from tippetop.mechanics.vectors import Horizontal, Scalar, Vector
 
 TINY = 1e-300
 """Square of an angular velocity that is none, so that no direction of it is asked for."""
@@ -60,17 +60,10 @@ class CoulombLaw(NamedTuple):
 
 
 class RollingResistance(NamedTuple):
-    """Another law, and a torque -length w_t / |w_t| against rolling, w_t the horizontal angular velocity."""
+    """A torque -length w_t / |w_t| against rolling, w_t the horizontal angular velocity."""
 
-    law: Any
-    """The law of slip and drilling."""
     length: Scalar
     """Arm of the normal force's couple, m. At w_t = 0 it is any horizontal torque up to length N."""
-
-    def traction(self, slip: Horizontal, angular_velocity: Vector) -> Traction:
-        """Force and torque per unit normal force."""
-        force, torque = self.law.traction(slip, angular_velocity)
-        return Traction(force, add(torque, self.couple(angular_velocity)))
 
     def couple(self, angular_velocity: Vector) -> Vector:
         """Torque against rolling per unit normal force, m; nothing where there is none at all."""
@@ -82,21 +75,3 @@ class RollingResistance(NamedTuple):
         """Positive while the contact can exert this horizontal couple at rest, (N m)^2."""
         limit = self.length * normal
         return limit * limit - couple[0] * couple[0] - couple[1] * couple[1]
-
-    def coefficients(self, units: Units) -> tuple[Scalar, ...]:
-        """The numbers of the law beside, and the arm in units of length."""
-        return (*self.law.coefficients(units), self.length / units.length)
-
-    @property
-    def make(self) -> "RollingResistance":
-        """What is left of it without its numbers: it makes laws like it."""
-        return RollingResistance(getattr(self.law, "make", type(self.law)), 0.0)
-
-    @property
-    def torque_free(self) -> bool:
-        """It is a torque."""
-        return False
-
-    def from_coefficients(self, coefficients: tuple[Scalar, ...]) -> "RollingResistance":
-        """Make a law of the same make with these numbers."""
-        return RollingResistance(self.law.from_coefficients(coefficients[:-1]), coefficients[-1])

@@ -13,7 +13,6 @@ de = V/|A|, dy = s Y/|A|, dt = s/|A|, ds = s R/|A|. Nor does it where s has a le
 
 from typing import NamedTuple
 
-from tippetop.mechanics.coulomb import RollingResistance
 from tippetop.mechanics.motion import angular_velocity, axis_rate
 from tippetop.mechanics.rolling import (
     COUPLES,
@@ -23,7 +22,6 @@ from tippetop.mechanics.rolling import (
     Wrench,
     contact_motion,
     flat,
-    sliding_law,
     slip_length,
     slip_wrenches,
 )
@@ -77,13 +75,12 @@ class Vanishing(NamedTuple):
 
     def shares(self, direction: Slip, top: Top) -> tuple[Scalar, ...]:
         """How much of each there is per unit normal force when it goes in a direction."""
-        law = top.friction
         if not self.slip:
-            assert isinstance(law, RollingResistance)
-            return law.couple((direction[0], direction[1], 0.0))[:2]
-        reach = slip_length(law)
+            assert top.rolling_resistance is not None
+            return top.rolling_resistance.couple((direction[0], direction[1], 0.0))[:2]
+        reach = slip_length(top.friction)
         w = 0.0 * direction[0] if reach is None else direction[2] * (1.0 / reach)
-        force, torque = sliding_law(law).traction((direction[0], direction[1]), (0.0, 0.0, w))
+        force, torque = top.friction.traction((direction[0], direction[1]), (0.0, 0.0, w))
         return force if reach is None else (*force, torque[2])
 
     def contact(self, point: ContactPoint, xi: Slip | None, slip: Slip | None) -> tuple[Wrench, Acceleration]:

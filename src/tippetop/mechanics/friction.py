@@ -21,7 +21,7 @@ class FrictionLaw(Protocol):
 
     @property
     def torque_free(self) -> bool:
-        """Whether its torque, about the vertical and of rolling, is zero at any slip."""
+        """Whether its torque is zero at any slip."""
 
     def traction(self, slip: Horizontal, angular_velocity: Vector) -> Traction:
         """Force and torque per unit normal force at this slip velocity (m/s) and angular velocity (rad/s)."""

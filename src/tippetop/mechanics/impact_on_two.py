@@ -10,7 +10,6 @@ and none of its own while it is open. At both, friction follows the law along th
 from typing import NamedTuple, Self
 
 from tippetop.mechanics.contact_pair import Tops
-from tippetop.mechanics.coulomb import RollingResistance
 from tippetop.mechanics.impact import Impact
 from tippetop.mechanics.impulse import Goal, Striking, contact_velocity, first_reach
 from tippetop.mechanics.integrated_impact import STUCK, TOLERANCE, integrated
@@ -88,18 +87,18 @@ class StruckOnTwo(NamedTuple):
         omega = angular_velocity(state.axis, state.momentum, top)
         points = self.velocities(here)
         pace, units, responses = 1.0 / self.speed, [], []
-        if isinstance(top.friction, RollingResistance):
+        if top.rolling_resistance is not None:
             lever = self.bodies[0].lever
             rolling = lever * length((*omega[:2], 0.0))
             if rolling < OPEN * self.speed:
                 raise SlipEnds("rolling ends in an impact on two surfaces")
-            pace += 2.0 * top.friction.length / (lever * rolling)
+            pace += 2.0 * top.rolling_resistance.length / (lever * rolling)
         touching = list(zip(points, self.bodies, strict=True))
         for point, body in touching if self.pressed else touching[:1]:
             slip = length((*point[:2], 0.0))
             if is_set_valued(top.friction) and slip < OPEN * self.speed:
                 raise SlipEnds("slip ends in an impact on two surfaces")
-            traction = top.friction.traction((point[0], point[1]), omega)
+            traction = top.traction((point[0], point[1]), omega)
             pace += length((*traction.force, 0.0)) / slip if slip else 0.0
             moment = moment_per_normal_force(body.contact.arm, traction)
             units.append((*moment, *scale(1.0 / top.mass, (*traction.force, 1.0))))

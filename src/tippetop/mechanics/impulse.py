@@ -80,7 +80,7 @@ class Striking(NamedTuple):
     def friction(self, velocity: Slip) -> Slip:
         """Force and torque per unit normal impulse under a law that says them at any slip, six numbers."""
         x, y, _, *omega = velocity
-        force, torque = self.contact.top.friction.traction((x, y), (omega[0], omega[1], omega[2]))
+        force, torque = self.contact.top.traction((x, y), (omega[0], omega[1], omega[2]))
         return (*force, 1.0, *torque)
 
     def work(self, impulse: Impulse) -> float:

@@ -99,7 +99,7 @@ def contact(axis: Vector, momentum: Vector, velocity: Horizontal, top: Top) -> S
     omega = angular_velocity(axis, momentum, top)
     point = point_velocity((velocity[0], velocity[1], 0.0), omega, arm)
     slip = (point[0], point[1])
-    traction = top.friction.traction(slip, omega)
+    traction = top.traction(slip, omega)
 
     lever = top.surface.slope(axis[2]) / top.transverse_inertia
     reaction = cross(moment_per_normal_force(arm, traction), axis)[2]

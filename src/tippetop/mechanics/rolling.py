@@ -20,7 +20,6 @@ x a), gamma = -g z + omega x a':
 from collections.abc import Sequence
 from typing import Any, NamedTuple, TypeAlias
 
-from tippetop.mechanics.coulomb import RollingResistance, SetValuedLaw
 from tippetop.mechanics.friction import NO_TORQUE, FrictionLaw
 from tippetop.mechanics.motion import angular_velocity, axial_spin, axis_rate
 from tippetop.mechanics.surface import contact_vector
@@ -200,22 +199,21 @@ def going_on(
     point: ContactPoint, slip: Slip | None, rolling: Horizontal | None
 ) -> tuple[Wrench, list[Held], list[Held]]:
     """A unit normal force with what goes with it, and what holds slip, and rolling, where these are None."""
-    law = point.top.friction
-    slipping = [] if slip is not None else list(zip((0, 1, 5), slip_wrenches(law), strict=False))
-    if not isinstance(law, RollingResistance):
+    top = point.top
+    slipping = [] if slip is not None else list(zip((0, 1, 5), slip_wrenches(top.friction), strict=False))
+    if top.rolling_resistance is None:
         return normal_wrench(point, slip), slipping, []
     if rolling is None:
         return normal_wrench(point, slip), slipping, [(3, COUPLES[0]), (4, COUPLES[1])]
-    return normal_wrench(point, slip, law.couple((rolling[0], rolling[1], 0.0))), slipping, []
+    couple = top.rolling_resistance.couple((rolling[0], rolling[1], 0.0))
+    return normal_wrench(point, slip, couple), slipping, []
 
 
 def normal_wrench(point: ContactPoint, slip: Slip | None, couple: Vector | None = None) -> Wrench:
     """A unit normal force with the friction that goes with it where the contact slips, and a couple."""
     force, torque = (0.0, 0.0), NO_TORQUE
     if slip is not None:
-        force, torque = sliding_law(point.top.friction).traction(
-            (slip[0], slip[1]), turning_with(point, slip)
-        )
+        force, torque = point.top.friction.traction((slip[0], slip[1]), turning_with(point, slip))
     return Wrench((*force, 1.0), torque if couple is None else add(torque, couple))
 
 
@@ -225,23 +223,24 @@ def slip_wrenches(law: FrictionLaw) -> tuple[Wrench, ...]:
 
 
 def slip_length(law: FrictionLaw) -> Scalar | None:
-    """Length by which drilling compares with slip under a law with or without rolling resistance, m."""
-    return getattr(sliding_law(law), "slip_length", None)
+    """Length by which drilling compares with slip under a law, m; None where it does not resist drilling."""
+    return getattr(law, "slip_length", None)
 
 
 def slip_reserve(top: Top, wrench: Wrench) -> Scalar:
     """Positive while the table can exert the force and drilling torque in a wrench that holds slip, N^2."""
-    return set_valued(top.friction).reserve(wrench.force[2], wrench.force[:2], wrench.torque[2])
+    law: Any = top.friction
+    return law.reserve(wrench.force[2], wrench.force[:2], wrench.torque[2])
 
 
 def rolling_reserve(point: "ContactPoint", wrench: Wrench, slip: Slip | None) -> Scalar:
     """Positive while the table can exert the couple in a wrench that holds rolling, (N m)^2."""
-    law: Any = point.top.friction
+    resistance: Any = point.top.rolling_resistance
     couple, normal = (wrench.torque[0], wrench.torque[1]), wrench.force[2]
     if slip is not None:
-        torque = sliding_law(law).traction((slip[0], slip[1]), turning_with(point, slip)).torque
+        torque = point.top.friction.traction((slip[0], slip[1]), turning_with(point, slip)).torque
         couple = (couple[0] - normal * torque[0], couple[1] - normal * torque[1])
-    return law.reserve(normal, couple)
+    return resistance.reserve(normal, couple)
 
 
 def turning_with(point: "ContactPoint", slip: Slip) -> Vector:
@@ -278,21 +277,9 @@ def spun_up(axis: Vector, momentum: Vector, change: Vector, top: Top) -> Vector:
     return add(momentum, add(scale(top.transverse_inertia, change), scale(along, axis)))
 
 
-def sliding_law(law: FrictionLaw) -> FrictionLaw:
-    """The law of slip and drilling of a law with or without rolling resistance."""
-    inner: FrictionLaw = law.law if isinstance(law, RollingResistance) else law
-    return inner
-
-
-def set_valued(law: FrictionLaw) -> SetValuedLaw:
-    """The law of slip and drilling of one that lets slip end."""
-    inner: SetValuedLaw = sliding_law(law)  # type: ignore[assignment]
-    return inner
-
-
 def is_set_valued(law: FrictionLaw) -> bool:
     """Whether a law lets slip end."""
-    return hasattr(sliding_law(law), "reserve")
+    return hasattr(law, "reserve")
 
 
 def is_branched(law: FrictionLaw) -> bool:
@@ -301,15 +288,8 @@ def is_branched(law: FrictionLaw) -> bool:
 
 
 def whole_law(law: FrictionLaw) -> Any:
-    """The law of slip and drilling, the whole of it where there is but a branch."""
-    inner: Any = sliding_law(law)
-    return inner.whole if hasattr(inner, "whole") else inner
-
-
-def with_sliding_law(top: Top, law: FrictionLaw) -> Top:
-    """A top with another law of slip and drilling, and the same rolling resistance."""
-    outer = top.friction
-    return top._replace(friction=outer._replace(law=law) if isinstance(outer, RollingResistance) else law)
+    """A law, the whole of it where there is but a branch."""
+    return getattr(law, "whole", law)
 
 
 def on_branch(top: Top, slip: Slip) -> Top:
@@ -317,7 +297,7 @@ def on_branch(top: Top, slip: Slip) -> Top:
     if not is_branched(top.friction):
         return top
     law = whole_law(top.friction)
-    return with_sliding_law(top, law.branch(slip[:2], (0.0, 0.0, slip[2] / law.slip_length)))
+    return top._replace(friction=law.branch(slip[:2], (0.0, 0.0, slip[2] / law.slip_length)))
 
 
 def on_numbered_branch(top: Top, slip: Slip) -> Top:
@@ -325,35 +305,35 @@ def on_numbered_branch(top: Top, slip: Slip) -> Top:
     if not is_branched(top.friction):
         return top
     law = whole_law(top.friction)
-    return with_sliding_law(top, law.numbered_branch(slip[:2], (0.0, 0.0, slip[2] / law.slip_length)))
+    return top._replace(friction=law.numbered_branch(slip[:2], (0.0, 0.0, slip[2] / law.slip_length)))
 
 
 def on_other_branch(top: Top) -> Top:
     """A top with the branch of its law, or of its limit surface, that takes over where its own ends."""
-    law: Any = sliding_law(top.friction)
-    return with_sliding_law(top, law.other_branch())
+    law: Any = top.friction
+    return top._replace(friction=law.other_branch())
 
 
 def off_branch(top: Top) -> Top:
     """A top with the whole of its law, if it has but a branch of it."""
-    return with_sliding_law(top, whole_law(top.friction))
+    return top._replace(friction=whole_law(top.friction))
 
 
 def on_limit_branch(top: Top, wrench: Wrench) -> Top:
     """A top with the branch of its law's limit surface that belongs to what holds it at rest; of floats."""
     if not is_branched(top.friction):
         return top
-    return with_sliding_law(top, whole_law(top.friction).limit_branch(wrench.force[2], wrench.torque[2]))
+    return top._replace(friction=whole_law(top.friction).limit_branch(wrench.force[2], wrench.torque[2]))
 
 
 def has_limit_branches(law: FrictionLaw) -> bool:
     """Whether a law is one of the branches of a limit surface."""
-    return hasattr(sliding_law(law), "limit_guard")
+    return hasattr(law, "limit_guard")
 
 
 def limit_guard(top: Top, wrench: Wrench) -> Scalar:
     """Positive as long as the branch of the limit surface that a body at rest has is the one it is on."""
-    law: Any = set_valued(top.friction)
+    law: Any = top.friction
     return law.limit_guard(wrench.force[2], wrench.torque[2])
 
 

@@ -19,7 +19,6 @@ from tippetop.mechanics.motion import angular_velocity, axial_spin, point_veloci
 from tippetop.mechanics.rolling import (
     Slip,
     arm_rate,
-    sliding_law,
     slip_length,
     velocity_without_slip,
     without_drilling,
@@ -146,7 +145,7 @@ def remaining(velocity: Slip, change: Slip) -> Scalar:
 
 def branch_guard(slip: Slip, top: Top) -> Scalar:
     """Positive as long as a branch of a law holds where it slips so, or in that direction, m^2/s^2."""
-    law: Any = sliding_law(top.friction)
+    law: Any = top.friction
     return law.branch_guard(slip[:2], (0.0, 0.0, slip[2] / law.slip_length))
 
 

@@ -3,12 +3,12 @@
 from typing import Any, NamedTuple
 
 from tippetop.mechanics.coulomb import RollingResistance
-from tippetop.mechanics.friction import FrictionLaw
+from tippetop.mechanics.friction import FrictionLaw, Traction
 from tippetop.mechanics.hull import each_surface
 from tippetop.mechanics.state import State
 from tippetop.mechanics.surface import Surface
 from tippetop.mechanics.units import Units
-from tippetop.mechanics.vectors import Scalar, scale
+from tippetop.mechanics.vectors import Horizontal, Scalar, Vector, add, scale
 
 
 class Top(NamedTuple):
@@ -20,6 +20,8 @@ class Top(NamedTuple):
     surface: Surface
     friction: FrictionLaw
     gravity: Scalar
+    rolling_resistance: RollingResistance | None = None
+    """What resists rolling beside friction, if anything does."""
 
     @property
     def conserves_jellett(self) -> bool:
@@ -28,20 +30,32 @@ class Top(NamedTuple):
         The contact force has no part in it on a sphere, because both its moment a x F and the change of a are
         perpendicular to the other; a torque of the table has.
         """
-        return self.surface.spherical and self.friction.torque_free
+        return self.surface.spherical and self.torque_free
 
     @property
     def resists_rolling(self) -> bool:
         """Whether the table resists rolling, and holds it where that takes little enough."""
-        return isinstance(self.friction, RollingResistance)
+        return self.rolling_resistance is not None
+
+    @property
+    def torque_free(self) -> bool:
+        """Whether the table's torque, about the vertical and of rolling, is zero at any slip."""
+        return self.friction.torque_free and not self.resists_rolling
+
+    def traction(self, slip: Horizontal, angular_velocity: Vector) -> Traction:
+        """Force and torque per unit normal force at this slip velocity (m/s) and angular velocity (rad/s)."""
+        force, torque = self.friction.traction(slip, angular_velocity)
+        if self.rolling_resistance is not None:
+            torque = add(torque, self.rolling_resistance.couple(angular_velocity))
+        return Traction(force, torque)
 
     @property
     def kind(self) -> "Kind":
         """What remains of it without its numbers."""
         coefficients = len(self.friction.coefficients(Units(1.0, 1.0, 1.0)))
-        make = getattr(self.friction, "make", type(self.friction))
         surface = getattr(self.surface, "make", type(self.surface))
-        return Kind(surface, make, len(self.surface.proportions), coefficients)
+        proportions = len(self.surface.proportions)
+        return Kind(surface, type(self.friction), proportions, coefficients, self.resists_rolling)
 
     @property
     def each(self) -> tuple["Top", ...]:
@@ -50,13 +64,17 @@ class Top(NamedTuple):
 
     @property
     def numbers(self) -> tuple[Scalar, ...]:
-        """The numbers that remain in natural units: inertias, proportions of the surface, friction law."""
-        units = natural_units(self)
+        """The numbers that remain in natural units: inertias, proportions of the surface, friction law.
+
+        And the arm of rolling resistance, if there is any.
+        """
+        units, resistance = natural_units(self), self.rolling_resistance
         return (
             self.transverse_inertia / units.inertia,
             self.axial_inertia / units.inertia,
             *self.surface.proportions,
             *self.friction.coefficients(units),
+            *(() if resistance is None else (resistance.length / units.length,)),
         )
 
 
@@ -67,11 +85,12 @@ class Kind(NamedTuple):
     friction: Any
     proportions: int
     coefficients: int
+    resists_rolling: bool
 
     @property
     def numbers(self) -> int:
         """How many dimensionless numbers a top of this kind has."""
-        return 2 + self.proportions + self.coefficients
+        return 2 + self.proportions + self.coefficients + self.resists_rolling
 
     @property
     def example(self) -> "Top":
@@ -80,10 +99,11 @@ class Kind(NamedTuple):
 
     def top(self, numbers: tuple[Scalar, ...]) -> Top:
         """Make the top of this kind, in natural units, with these dimensionless numbers."""
-        cut = 2 + self.proportions
-        surface: Surface = self.surface.from_proportions(tuple(numbers[2:cut]))
-        friction = self.friction.from_coefficients(tuple(numbers[cut:]))
-        return Top(1.0, numbers[0], numbers[1], surface, friction, 1.0)
+        first, last = 2 + self.proportions, 2 + self.proportions + self.coefficients
+        surface: Surface = self.surface.from_proportions(tuple(numbers[2:first]))
+        friction = self.friction.from_coefficients(tuple(numbers[first:last]))
+        resistance = RollingResistance(numbers[last]) if self.resists_rolling else None
+        return Top(1.0, numbers[0], numbers[1], surface, friction, 1.0, resistance)
 
 
 def natural_units(top: Top) -> Units:

@@ -71,7 +71,7 @@ def follow_cells(sweep: Sweep, numbers: Flat) -> dict[str, NDArray[np.generic]]:
 def swept_motion(kind: Kind) -> Motion:
     """Equations of motion of sliding, and the work of drilling and of rolling if the law has a torque."""
     sliding = sliding_motion(kind, guarded=True)
-    if kind.example.friction.torque_free:
+    if kind.example.torque_free:
         return sliding
 
     def rates(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[Scalar, ...]:

@@ -9,7 +9,6 @@ from tippetop.contact.choice import rules_for
 from tippetop.contact.mode import Rules
 from tippetop.contact.sliding import Sliding
 from tippetop.integrators.base import Array
-from tippetop.mechanics.coulomb import RollingResistance
 from tippetop.mechanics.motion import along_table
 from tippetop.mechanics.rolling import is_branched, off_branch, on_numbered_branch
 from tippetop.mechanics.state import State
@@ -62,15 +61,15 @@ class Launches:
     @property
     def unresisted(self) -> Flags:
         """Which roll without the resistance that the others have, shape (n,)."""
-        law = self.top.friction
-        none: Flags = np.zeros(len(self), dtype=bool)
-        return none | (law.length == 0.0) if isinstance(law, RollingResistance) else none
+        resistance, none = self.top.rolling_resistance, np.zeros(len(self), dtype=bool)
+        found: Flags = none if resistance is None else none | (resistance.length == 0.0)
+        return found
 
     def rules(self, launch: int) -> Rules:
         """What follows where the contact of one launch begins or ends."""
         top = off_branch(self._top(launch))
-        if isinstance(top.friction, RollingResistance) and top.friction.length == 0.0:
-            top = top._replace(friction=top.friction.law)
+        if top.rolling_resistance is not None and top.rolling_resistance.length == 0.0:
+            top = top._replace(rolling_resistance=None)
         if self.own is not None:
             rules: Rules = self.own[launch](top)
             return rules

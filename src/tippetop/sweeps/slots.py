@@ -127,7 +127,7 @@ class Slots:
 
     def _put(self, lanes: Indices, top: Top) -> None:
         """Let tops on some lanes have these tops' law."""
-        first = self.layout.parameters - self.launches.kind.coefficients
+        first = 2 + self.launches.kind.proportions
         for row, number in enumerate(top.friction.coefficients(NATURAL), start=first):
             self.numbers[row, lanes] = number
 

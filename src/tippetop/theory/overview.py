@@ -83,7 +83,7 @@ def outlook(problem: Problem) -> Outlook:
     require_creep(top)
     jellett = jellett_of_launch(problem)
     sphere, vertical = top.conserves_jellett, problem.launch.tilt in (0.0, math.pi)
-    drills, smooth = not top.friction.torque_free, problem.friction.vanishes
+    drills, smooth = not top.torque_free, problem.friction.vanishes
     stays = None if drills else steady_launch(problem)
     grouped = sphere and 0.0 < eccentricity(top) < 1.0
     limit, time = _flip_times(problem) if grouped and stays is None else (None, None)

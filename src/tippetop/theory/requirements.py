@@ -1,7 +1,6 @@
 """What the theory asks of a top, with a sentence for those it does not hold for."""
 
 from tippetop.errors import InvalidInput
-from tippetop.mechanics.coulomb import RollingResistance
 from tippetop.mechanics.hull import Hull
 from tippetop.mechanics.rolling import is_set_valued, slip_length
 from tippetop.mechanics.top import Top
@@ -25,10 +24,9 @@ def require_sphere(top: Top) -> None:
 def require_jellett(top: Top) -> None:
     """Refuse a top that does not conserve Jellett's integral, with `InvalidInput`."""
     require_sphere(top)
-    if isinstance(top.friction, RollingResistance):
-        raise InvalidInput(
-            "rolling_resistance", top.friction.length, "0: with it Jellett's integral is not conserved"
-        )
+    if top.rolling_resistance is not None:
+        arm = top.rolling_resistance.length
+        raise InvalidInput("rolling_resistance", arm, "0: with it Jellett's integral is not conserved")
     if not top.conserves_jellett:
         raise InvalidInput(
             "friction", top.friction, "friction without torque, which conserves Jellett's integral"
@@ -47,11 +45,10 @@ def require_creep(top: Top) -> None:
         raise InvalidInput(
             "body.shape", top.surface, "a shape that touches in one point when its axis is vertical"
         )
-    if isinstance(top.friction, RollingResistance):
+    if top.rolling_resistance is not None:
+        arm = top.rolling_resistance.length
         raise InvalidInput(
-            "rolling_resistance",
-            top.friction.length,
-            "0: with it a spin about the vertical has no linear motion",
+            "rolling_resistance", arm, "0: with it a spin about the vertical has no linear motion"
         )
     if is_set_valued(top.friction) and slip_length(top.friction) is None:
         raise InvalidInput(
