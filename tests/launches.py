@@ -24,37 +24,42 @@ MOST_OFF = 1e-7
 """How much numbers may differ, beside the largest of their unit in the run."""
 
 
-def law_of(random: np.random.Generator, size: float) -> dict[str, Any]:
-    """A law of friction of any kind."""
+def laws_of(random: np.random.Generator, size: float) -> list[dict[str, Any]]:
+    """Laws of friction of every kind."""
     mu = random.uniform(0.05, 0.6)
     patch = size * 10.0 ** random.uniform(-2.5, -0.7)
-    laws: list[dict[str, Any]] = [
+    return [
         {"kind": "viscous", "mu": mu},
         {"kind": "regularized_coulomb", "mu": mu, "eps": 10.0 ** random.uniform(-2.5, -0.5)},
         {"kind": "coulomb", "mu": mu},
         {"kind": "contensou", "mu": mu, "patch_radius": patch, "pressure": "ellipsoidal"},
         {"kind": "contensou", "mu": mu, "patch_radius": patch, "pressure": "hertz"},
     ]
-    return laws[random.integers(len(laws))]
 
 
-def surface_of(random: np.random.Generator, size: float, single: bool) -> dict[str, Any]:
-    """A surface of any kind; one that a body has alone is tame."""
-    if single:
-        shapes: list[dict[str, Any]] = [
-            {"kind": "eccentric_sphere", "radius": size, "eccentricity": random.uniform(0.05, 0.6)},
-            {"kind": "sphere", "radius": size, "center": random.uniform(-0.5, 0.5) * size},
-            {"kind": "spheroid", "across": size, "along": size * random.uniform(0.6, 1.7)},
-            {"kind": "ring", "radius": size, "center": 0.0, "tube": 0.2 * size},
-        ]
-        return shapes[random.integers(len(shapes))]
+def surfaces_of(random: np.random.Generator, size: float) -> list[dict[str, Any]]:
+    """Tame surfaces of every kind, each for a body that has it alone."""
+    return [
+        {"kind": "eccentric_sphere", "radius": size, "eccentricity": random.uniform(0.05, 0.6)},
+        {"kind": "sphere", "radius": size, "center": random.uniform(-0.5, 0.5) * size},
+        {"kind": "spheroid", "across": size, "along": size * random.uniform(0.6, 1.7)},
+        {"kind": "ring", "radius": size, "center": 0.0, "tube": 0.2 * size},
+    ]
+
+
+def parts_of(random: np.random.Generator, size: float) -> list[dict[str, Any]]:
+    """Surfaces of every kind for a body that has several."""
     part, center = size * random.uniform(0.2, 1.0, 2), size * random.uniform(-1.0, 1.0)
-    parts: list[dict[str, Any]] = [
+    return [
         {"kind": "sphere", "radius": part[0], "center": center},
         {"kind": "ring", "radius": part[0], "center": center, "tube": 0.3 * part[1]},
         {"kind": "spheroid", "across": part[0], "along": part[1], "center": 0.6 * center},
     ]
-    return parts[random.integers(len(parts))]
+
+
+def any_of(random: np.random.Generator, kinds: list[dict[str, Any]]) -> dict[str, Any]:
+    """One of some kinds."""
+    return kinds[random.integers(len(kinds))]
 
 
 def launch_of(seed: int) -> dict[str, Any]:
@@ -63,8 +68,8 @@ def launch_of(seed: int) -> dict[str, Any]:
     size, mass = random.uniform(0.005, 0.05), random.uniform(0.002, 0.1)
     several = random.random() < 0.25
     transverse = random.uniform(0.2, 0.6) * mass * size**2
-    single = surface_of(random, size, True)
-    shape: Any = [surface_of(random, size, False) for _ in range(2)] if several else single
+    single = any_of(random, surfaces_of(random, size))
+    shape: Any = [any_of(random, parts_of(random, size)) for _ in range(2)] if several else single
     launch: dict[str, Any] = {
         "tilt": random.uniform(0.02, 3.1),
         "spin": random.choice([-1.0, 1.0]) * 10.0 ** random.uniform(0.0, 2.2),
@@ -79,7 +84,7 @@ def launch_of(seed: int) -> dict[str, Any]:
         launch["gap"] = size * random.uniform(0.1, 1.0)
     fields: dict[str, Any] = {
         "body": {"mass": mass, "shape": shape, "I1": transverse, "I3": random.uniform(0.4, 1.7) * transverse},
-        "friction": law_of(random, size),
+        "friction": any_of(random, laws_of(random, size)),
         "launch": launch,
         "contact": {"liftoff": liftoff, "restitution": float(random.choice([0.0, 0.0, 0.5]))},
     }

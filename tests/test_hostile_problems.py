@@ -168,6 +168,15 @@ def test_what_breaks_down_at_once_has_the_launch_for_a_result(changes: dict[str,
     assert float(run["theta"][0]) == pytest.approx(problem.launch.tilt)
 
 
+def test_a_table_that_would_have_to_pull_at_once_does_not() -> None:
+    """A top whose centre of mass is thrown up by its spin: the force that would hold it is no result."""
+    problem = tt.presets.report_problem(spin=500.0, tilt=1.5).replace({"contact.liftoff": "stop"})
+    run = tt.simulate(problem.replace({"launch.precession": 200.0}), 2.0, samples=51)
+    assert run.attrs["outcome"] == "lifted_off"
+    assert run.sizes["time"] == 1
+    assert not run["contact_force"].values.any()
+
+
 @pytest.mark.skipif(not has_taylor(), reason="the steps of others have bounds")
 def test_a_top_that_stands_still_has_steps_without_bound() -> None:
     still = tt.presets.report_problem(spin=100.0, tilt=np.pi)

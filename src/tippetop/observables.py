@@ -3,15 +3,12 @@
 import numpy as np
 
 from tippetop.contact.block import NODES, WEIGHTS, Block
+from tippetop.contact.choice import as_begun
 from tippetop.contact.flight import Flight
-from tippetop.contact.mode import NO_REACTION
 from tippetop.contact.readings import TOLD, Instants, instants, read
-from tippetop.contact.rules import Bilateral
 from tippetop.contact.sliding import Sliding
 from tippetop.integrators.base import Array
 from tippetop.integrators.dense import parts_of, powers
-from tippetop.mechanics.hull import lowest_surface
-from tippetop.mechanics.motion import along_table
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import length
@@ -100,16 +97,10 @@ class Recorder:
 
     def _single(self, state: State) -> Array:
         """The sample of a launch that ended as it began."""
-        try:
-            lowest = self.top._replace(surface=lowest_surface(self.top.surface, state.axis[2]))
-            reaction = Sliding(lowest, Bilateral(lowest)).reaction(along_table(state).pack())
-        except ZeroDivisionError:  # Without slip dry friction says nothing, and the table lets go at once.
-            reaction = NO_REACTION
-        aloft = Flight(self.top, Bilateral(self.top))
-        found = Instants.unpack(read(instants, aloft, np.array([state.pack()]).T)[:, 0].tolist())
-        told = found._replace(force=reaction.force, torque=reaction.torque)
+        mode, numbers = as_begun(state, self.top)
+        told = read(instants, mode, np.array([numbers]).T)[:, 0]
         sums = [*self._sums[:4], 0.0, 0.0, self._struck, self._pole]
-        return np.array([[0.0, 0.0, *sums, *told.pack()]]).T
+        return np.array([[0.0, 0.0, *sums, *told]]).T
 
     def _integrate(self, block: Block) -> tuple[Array, Array, Array, Array]:
         """Integrate along the steps of a block.

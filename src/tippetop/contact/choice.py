@@ -1,11 +1,16 @@
-"""Which rules hold for a top."""
+"""Which rules hold for a top, and what is told of one that ends as it begins."""
 
-from tippetop.contact.mode import Rules
+from tippetop.contact.flight import Flight
+from tippetop.contact.mode import Mode, Rules
 from tippetop.contact.rules import Bilateral, FreeToFly, StopAtLiftOff
 from tippetop.contact.several import OnSeveral
-from tippetop.mechanics.hull import Hull
+from tippetop.contact.sliding import Sliding
+from tippetop.mechanics.hull import Hull, lowest_surface
+from tippetop.mechanics.motion import along_table
+from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.units import Units
+from tippetop.mechanics.vectors import Scalar
 from tippetop.problem import Contact
 
 
@@ -31,3 +36,17 @@ def rules_of(way: Contact, top: Top, units: Units) -> Rules:
     """The rules of a top in natural units: those that its problem's contact brings, or the usual."""
     own: Rules | None = way.rules(top, units)
     return rules_for(top, way.liftoff, way.restitution) if own is None else own
+
+
+def as_begun(state: State, top: Top) -> tuple[Mode, tuple[Scalar, ...]]:
+    """The mode that a launch is told in that ends as it begins, and its numbers.
+
+    It slides, but where the table would have to pull: then it lets go.
+    """
+    lowest = top._replace(surface=lowest_surface(top.surface, state.axis[2]))
+    sliding, numbers = Sliding(lowest, Bilateral(lowest)), along_table(state).pack()
+    try:
+        presses = sliding.normal_force(numbers) > 0.0
+    except ZeroDivisionError:  # Without slip dry friction says nothing, and the table lets go at once.
+        presses = False
+    return (sliding, numbers) if presses else (Flight(top, Bilateral(top)), state.pack())

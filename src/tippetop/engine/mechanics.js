@@ -8044,6 +8044,20 @@ function rules_for(top, liftoff, restitution) {
   return liftoff === "stop" ? new StopAtLiftOff(top) : new Bilateral(top);
 }
 
+/** The mode that a launch is told in that ends as it begins, and its numbers. */
+function as_begun(state, top) {
+  var lowest = top._replace({ surface: lowest_surface(top.surface, state.axis[2]) });
+  var sliding = new Sliding(lowest, new Bilateral(lowest));
+  var numbers = along_table(state).pack();
+  try {
+    var presses = sliding.normal_force(numbers) > 0.0;
+  } catch (error) {
+    if (!(error instanceof py.ZeroDivisionError)) throw error;
+    presses = false;
+  }
+  return py.truth(presses) ? [sliding, numbers] : [new Flight(top, new Bilateral(top)), state.pack()];
+}
+
 // tippetop.contact.trajectory
 const PHASE_LIMIT = 100000;
 const LONGEST_of_trajectory = 1e+300;
@@ -11240,6 +11254,7 @@ export {
   apart,
   arm_rate,
   arriving,
+  as_begun,
   at_rest,
   axial_spin,
   axis_rate,

@@ -12,6 +12,8 @@ const PLACES = Array.from({ length: LOOKS + 1 }, (_, look) => look / LOOKS);
 const rates = (mode, y, pole) => m.Rates.of(mode, y, pole), RATES = 8, FORCE = 7;
 const kept = (mode, y) => keeping(mode.state(y), mode.top), KEPT = 5;
 const keeping = (state, top) => [m.length(state.axis), state.axis[2], state.height, m.energy(state, top), m.jellett(state, top)];
+// Parts of a step from its ends on in which friction has a direction, which it has not where slip is zero.
+const WITHIN = 1e-8;
 // What is added up: the first of them as they are told, as rates, in `Rates`.
 const [X, Y, TURN, WORK, DRILLED, ROLLED, STRUCK, SUMS] = [0, 1, 2, 3, 4, 5, 6, 7];
 
@@ -85,7 +87,8 @@ class Run {
     this.along(piece, step, 1, pole, this.sums);
     // Between Gauss's points, and beyond them, it is lower by a part of what it varies by there.
     const { least, most } = this;
-    if (presses) this.force.put(least, least - 0.5 * (most - least), (part) => piece.look(step, part)[FORCE]);
+    const at = (part) => piece.look(step, Math.min(Math.max(part, WITHIN), 1 - WITHIN))[FORCE];
+    if (presses) this.force.put(least, least - 0.5 * (most - least), at);
   }
 
   /** Add to sums what is gained up to a part of a step; the normal forces on the way. */
@@ -142,7 +145,8 @@ class Run {
     this.flights = flights.map(([start, end, gap]) => (
       { start: start * units.time, end: end * units.time, highestGap: gap * units.length }));
     if (!this.pieces.length) {
-      const still = this.piece(new m.Flight(this.top, null), DenseSolution.in_time([0, 1], [this.start.pack().map((number) => [number])]), "sliding");
+      const [mode, numbers] = m.as_begun(this.start, this.top);
+      const still = this.piece(mode, DenseSolution.in_time([0, 1], [numbers.map((number) => [number])]), "sliding");
       still.sums.push(...sums);
       still.poles.push(this.pole);
     }
@@ -211,9 +215,10 @@ function least(value, known) {
   let best = Math.min(...looks), x = PLACES[looks.indexOf(best)];
   if (best - 0.1 * (Math.max(...looks) - best) > known) return known;
   for (let h = 1 / LOOKS; h > 1e-5; h *= 0.02) {
-    const [before, here, after] = [x - h, x, x + h].map(value), bend = before - 2 * here + after;
-    best = Math.min(best, here);
-    if (bend > 0) x = Math.min(Math.max(x + (0.5 * h * (before - after)) / bend, 0), 1);
+    const middle = Math.min(Math.max(x, h), 1 - h), [before, here, after] = [middle - h, middle, middle + h].map(value);
+    const bend = before - 2 * here + after;
+    best = Math.min(best, before, here, after);
+    if (bend > 0) x = Math.min(Math.max(middle + (0.5 * h * (before - after)) / bend, 0), 1);
   }
   return Math.min(known, best, value(x));
 }
