@@ -8532,9 +8532,13 @@ function on_surface(problem, number) {
 
 /** The tilts around one, rad, between which no other surface touches beside the active one. */
 function tilts_held(hull, tilt) {
-  var ends = touching_tilts(hull, tilt);
-  var below = [...ends].filter((at) => at <= tilt);
-  var above = [...ends].filter((at) => at > tilt);
+  return nearest(touching_tilts(hull, tilt), tilt);
+}
+
+/** The last of some tilts up to one, and the first above it, rad; 0 and pi where there is none. */
+function nearest(tilts, tilt) {
+  var below = [...tilts].filter((at) => at <= tilt);
+  var above = [...tilts].filter((at) => at > tilt);
   return [py.max(below, py.how({ default: 0.0 })), py.min(above, py.how({ default: py.math.pi }))];
 }
 
@@ -8550,13 +8554,8 @@ function touching_tilts(hull, tilt) {
       found.update([..._meetings(hull, other, tilts)].map((at) => [at, number]));
     }
   }
-  var below = [...found].filter((at) => at <= tilt);
-  var above = [...found].filter((at) => at > tilt);
   return new py.Dict(
-    [
-      ...py.slice(py.sorted(below), -1, null, null),
-      ...py.sorted(above).slice(0, 1)
-    ].map((at) => [at, py.item(found, at)])
+    [...nearest(found, tilt)].filter((at) => py.contains(found, at)).map((at) => [at, py.item(found, at)])
   );
 }
 
@@ -8588,12 +8587,10 @@ function _by_energy(states) {
 /** Tilts between the nearest barriers on both sides: steady states with more energy than is available. */
 function _reach(states, tilt, available) {
   var rounding = py.mul(ROUNDING_of_prediction, py.max([...states].map((state) => py.abs(state.energy))));
-  var barriers = [...states].filter(
-    (state) => state.energy > py.add(available, rounding)
-  ).map((state) => state.tilt);
-  var below = [...barriers].filter((barrier) => barrier <= tilt);
-  var above = [...barriers].filter((barrier) => barrier >= tilt);
-  return [py.max(below, py.how({ default: 0.0 })), py.min(above, py.how({ default: py.math.pi }))];
+  return nearest(
+    [...states].filter((state) => state.energy > py.add(available, rounding)).map((state) => state.tilt),
+    tilt
+  );
 }
 
 // tippetop.theory.thresholds
@@ -11381,6 +11378,7 @@ export {
   natural,
   natural_state,
   natural_units,
+  nearest,
   nearing_guard,
   needed,
   normal_wrench,

@@ -10,6 +10,7 @@ This holds while the table only pushes. A bilateral contact that pulls can give 
 """
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
@@ -135,8 +136,12 @@ def on_surface(problem: Problem, number: int) -> Problem:
 
 def tilts_held(hull: Hull, tilt: float) -> tuple[float, float]:
     """The tilts around one, rad, between which no other surface touches beside the active one."""
-    ends = touching_tilts(hull, tilt)
-    below, above = [at for at in ends if at <= tilt], [at for at in ends if at > tilt]
+    return nearest(touching_tilts(hull, tilt), tilt)
+
+
+def nearest(tilts: Iterable[float], tilt: float) -> tuple[float, float]:
+    """The last of some tilts up to one, and the first above it, rad; 0 and pi where there is none."""
+    below, above = [at for at in tilts if at <= tilt], [at for at in tilts if at > tilt]
     return max(below, default=0.0), min(above, default=math.pi)
 
 
@@ -147,8 +152,7 @@ def touching_tilts(hull: Hull, tilt: float) -> dict[float, int]:
     for number, other in enumerate(hull.each):
         if number != hull.active:
             found.update((at, number) for at in _meetings(hull, other, tilts))
-    below, above = [at for at in found if at <= tilt], [at for at in found if at > tilt]
-    return {at: found[at] for at in (*sorted(below)[-1:], *sorted(above)[:1])}
+    return {at: found[at] for at in nearest(found, tilt) if at in found}
 
 
 def _meetings(one: Hull, other: Hull, tilts: list[float]) -> list[float]:
@@ -240,7 +244,4 @@ def _reach(states: list[SteadyState[float]], tilt: float, available: float) -> t
     A minimum of the energy is between them, the lowest if nothing else.
     """
     rounding = ROUNDING * max(abs(state.energy) for state in states)
-    barriers = [state.tilt for state in states if state.energy > available + rounding]
-    below = [barrier for barrier in barriers if barrier <= tilt]
-    above = [barrier for barrier in barriers if barrier >= tilt]
-    return max(below, default=0.0), min(above, default=math.pi)
+    return nearest([state.tilt for state in states if state.energy > available + rounding], tilt)
