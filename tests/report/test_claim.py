@@ -3,12 +3,15 @@
 import json
 import math
 import re
+from functools import partial
 from inspect import Parameter, signature
+from typing import get_type_hints
 
 import pytest
 import xarray as xr
 from matplotlib.axes import Axes
 
+from tippetop.figures.annotation import drawn
 from tippetop.report.claim import (
     Claim,
     Examiner,
@@ -16,7 +19,6 @@ from tippetop.report.claim import (
     Judgement,
     Source,
     Verdict,
-    decide,
     examines,
     number,
 )
@@ -77,7 +79,7 @@ def test_tolerance_is_half_of_the_last_printed_digit(printed: str, half: float) 
 def test_rule_for_numbers(
     listing: float | None, converged: float, chosen: float | None, verdict: Verdict
 ) -> None:
-    assert decide(7.4, listing, converged, 0.05, chosen) is verdict
+    assert judged(Finding(listing, converged, "", chosen), "7.4").verdict is verdict
 
 
 @pytest.mark.parametrize(
@@ -90,12 +92,12 @@ def test_rule_for_numbers(
     ],
 )
 def test_rule_for_what_is_true_or_false(listing: bool | None, converged: bool, verdict: Verdict) -> None:
-    assert decide(True, listing, converged, None) is verdict
+    assert judged(Finding(listing, converged, "")).verdict is verdict
 
 
 def test_half_a_digit_is_still_agreement_in_binary() -> None:
     # 7.45 - 7.4 is a little more than 0.05 in floating point.
-    assert decide(7.4, None, 7.45, half_last_digit("7.4").value) is Verdict.REPRODUCED
+    assert judged(Finding(None, 7.45, ""), "7.4").verdict is Verdict.REPRODUCED
 
 
 def test_record_is_json_and_says_all() -> None:
@@ -182,6 +184,16 @@ def test_every_figure_tells_that_it_is_drawn_from_data_and_not_into_panels() -> 
         first, *others = (told.annotation for told in signature(draw).parameters.values())
         assert first in {xr.Dataset, Parameter.empty}
         assert Axes not in others
+        function = draw.func if isinstance(draw, partial) else draw
+        assert Axes not in get_type_hints(function).values()
+
+
+@pytest.mark.parametrize(("rows", "columns"), [(1, 1), (2, 2)])
+def test_what_draws_into_other_panels_than_there_are_is_refused(rows: int, columns: int) -> None:
+    def two(left: Axes, right: Axes, data: xr.Dataset) -> None: ...
+
+    with pytest.raises(TypeError, match=f"two draws into 2 panels, and the figure has {rows * columns}"):
+        drawn(3.0, rows, columns)(two)
 
 
 def test_words_have_no_unit() -> None:

@@ -72,7 +72,11 @@ def drawn(height: float, rows: int = 1, columns: int = 1, **options: Any) -> Dra
             return figure
 
         own = signature(draw)
-        rest = list(own.parameters.values())[1 if whole else rows * columns :]
+        taken, told = sum(one.annotation is Axes for one in own.parameters.values()), rows * columns
+        if taken != (0 if whole else told):
+            raise TypeError(f"{draw.__name__} draws into {taken} panels, and the figure has {told}")
+        rest = list(own.parameters.values())[taken or 1 :]
+        figure_of.__annotations__ = {one.name: one.annotation for one in rest} | {"return": Figure}
         vars(figure_of)["__signature__"] = own.replace(parameters=rest, return_annotation=Figure)
         return figure_of
 

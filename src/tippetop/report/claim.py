@@ -167,10 +167,18 @@ class Judgement:
 
     @property
     def verdict(self) -> Verdict:
-        """What the values say."""
-        finding = self.finding
-        allowed = self.tolerance and self.tolerance.value
-        return decide(self.reported, finding.listing, finding.converged, allowed, finding.chosen)
+        """What the values say; see `RULE`."""
+        given = [value for value in (self.finding.listing, self.finding.chosen) if value is not None]
+        theirs = any(map(self._agrees_with, given))
+        if self._agrees_with(self.finding.converged):
+            return Verdict.REPRODUCED if theirs or not given else Verdict.UPHELD
+        return Verdict.EXPLAINED if theirs else Verdict.CORRECTED
+
+    def _agrees_with(self, found: Value) -> bool:
+        if self.tolerance is None:
+            return bool(self.reported) == bool(found)
+        # A bound that rounding alone decides is met: 7.4 and 7.45 differ by half a digit.
+        return abs(self.reported - found) <= self.tolerance.value * (1.0 + 1e-9)
 
     def record(self) -> dict[str, object]:
         """The claim as plain data."""
@@ -215,31 +223,6 @@ def examines(
         return examine
 
     return register
-
-
-def decide(
-    reported: Value,
-    listing: Value | None,
-    converged: Value,
-    tolerance: float | None,
-    chosen: Value | None = None,
-) -> Verdict:
-    """The verdict on a claim by what the report says, what its method gives, and what is true; see `RULE`.
-
-    The tolerance is the largest difference that counts as agreement; None for values that are true or false.
-    """
-    given = [value for value in (listing, chosen) if value is not None]
-    theirs = any(_agree(reported, value, tolerance) for value in given)
-    if _agree(reported, converged, tolerance):
-        return Verdict.REPRODUCED if theirs or not given else Verdict.UPHELD
-    return Verdict.EXPLAINED if theirs else Verdict.CORRECTED
-
-
-def _agree(reported: Value, found: Value, tolerance: float | None) -> bool:
-    if tolerance is None:
-        return bool(reported) == bool(found)
-    # A bound that rounding alone decides is met: 7.4 and 7.45 differ by half a digit.
-    return abs(reported - found) <= tolerance * (1.0 + 1e-9)
 
 
 def both(run: xr.Dataset, name: str) -> tuple[float, float]:

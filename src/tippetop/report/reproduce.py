@@ -2,14 +2,13 @@
 
 import json
 import os
-import shutil
-import tempfile
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import xarray as xr
 
@@ -169,13 +168,11 @@ def _staging(folder: Path) -> Iterator[Path]:
         folder.parent.mkdir(parents=True, exist_ok=True)
         if folder.exists() and not folder.is_dir():
             raise FileTrouble(f"{folder} is not a folder")
-        stage = Path(tempfile.mkdtemp(dir=folder.parent, prefix=f".{folder.name}."))
-    try:
-        for name in (FIGURES, DATA):
-            (stage / name).mkdir()
-        yield stage
-    finally:
-        shutil.rmtree(stage, ignore_errors=True)
+        stage = TemporaryDirectory(dir=folder.parent, prefix=f".{folder.name}.", ignore_cleanup_errors=True)
+    with stage as name:
+        for part in (FIGURES, DATA):
+            (Path(name) / part).mkdir()
+        yield Path(name)
 
 
 def _move(stage: Path, folder: Path, names: list[str], overwrite: bool) -> None:

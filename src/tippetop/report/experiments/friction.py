@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 from scipy.optimize import curve_fit
+from scipy.stats import linregress
 
 from tippetop.integrators.base import Array
 from tippetop.presets import report_problem
@@ -63,9 +64,9 @@ def power_law(mu: Array, times: Array) -> tuple[float, float, float]:
     if sound.sum() < 3:
         return (math.nan,) * 3
     x, y = mu[sound], times[sound]
-    exponent, logarithm = np.polyfit(np.log(x), np.log(y), 1)
-    (a, b), _ = curve_fit(lambda m, a, b: a * m**b, x, y, p0=(math.exp(logarithm), exponent))
-    return float(a), float(b), float(np.corrcoef(np.log(x), np.log(y))[0, 1])
+    line = linregress(np.log(x), np.log(y))
+    (a, b), _ = curve_fit(lambda m, a, b: a * m**b, x, y, p0=(math.exp(line.intercept), line.slope))
+    return float(a), float(b), float(line.rvalue)
 
 
 def _fitted(spins: Array, count: int) -> xr.Dataset:
@@ -106,7 +107,7 @@ def _wide(quick: bool) -> xr.Dataset:
     for window in np.unique(windows):
         times[:, windows == window] = converged_times(spins, mu[windows == window], float(window)).flip
     small = mu <= 0.1001
-    slopes = [float(np.polyfit(np.log(mu[small]), np.log(row[small]), 1)[0]) for row in times]
+    slopes = [linregress(np.log(mu[small]), np.log(row[small])).slope for row in times]
     return dataset(
         {"spin_wide": spins, "mu_wide": mu},
         {"window_wide": "20 s, doubled until it is no less than 3 / mu + 4 s"},

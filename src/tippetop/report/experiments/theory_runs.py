@@ -10,7 +10,7 @@ from tippetop.presets import report_problem
 from tippetop.report import quoted
 from tippetop.report.experiment import dataset, experiment, variable
 from tippetop.report.experiments.runs import WINDOW, on_table
-from tippetop.report.readings import SETTLED, flip_time
+from tippetop.report.readings import SETTLED, crossings, flip_time
 from tippetop.run import simulate
 from tippetop.theory.apparent import growth_rates_of_launches
 from tippetop.theory.averaging import averaged_flow, flip_time_limit, local_exponent
@@ -80,7 +80,7 @@ def _exponent(quick: bool) -> xr.Dataset:
     final = predict(problem).final.tilt
     times = np.array([_times(float(one), final) for one in mu]).T
     flow = averaged_flow(problem, samples=4000)
-    half = float(np.interp(CROSSED, *_rising(flow.tilt_high, flow.mu_time)))
+    half = crossings(flow.mu_time, flow.tilt_high - CROSSED)[0]
     data = dataset({"mu_flip": mu}, {"spin_rad_per_s": SPIN, "within_rad": SETTLED})
     for (name, long_name), row in zip(_SENSES.items(), times, strict=True):
         data[name] = variable(row, "s", long_name, "mu_flip")
@@ -122,13 +122,6 @@ def _decay_rate(mu: float) -> float:
     """Decay rate of the inverted spin that the launch leads to, 1/s."""
     problem = report_problem(SPIN, mu=mu)
     return -float(growth_rates_of_launches(SteadyKind.INVERTED, problem, np.array([SPIN]))[0])
-
-
-def _rising(values: Array, times: Array) -> tuple[Array, Array]:
-    """What `numpy.interp` needs to find when the values first reach a level."""
-    highest = np.maximum.accumulate(values)
-    new = np.append(True, np.diff(highest) > 0)
-    return highest[new], times[new]
 
 
 @experiment("why-diagnostics", "what the main run says of its nutation", 1.0)
