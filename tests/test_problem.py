@@ -537,6 +537,23 @@ class TestFiles:
         said = the_one_line_of(caught.value)
         assert said.startswith(f"problem = '{name}' is not possible; accepted: {language}; ")
 
+    def test_of_what_cannot_be_in_a_file_the_file_is_named(self, tmp_path):
+        text = top_problem().to_toml()
+        for wrong, said in (
+            (
+                text.replace("gravity = 9.8", "gravity = -9.8"),
+                "gravity = -9.8 in mine.toml is not possible; ",
+            ),
+            (text.replace("[launch]", "[launched]"), "launched = {"),
+            (text.replace("mass = ", "weight = "), "body.weight = "),
+        ):
+            assert wrong != text
+            with pytest.raises(InvalidInput) as caught:
+                Problem.read(self.write(tmp_path / "mine.toml", wrong))
+            assert the_one_line_of(caught.value).startswith(said)
+            assert " in mine.toml is not possible; " in str(caught.value)
+            assert str(pickle.loads(pickle.dumps(caught.value))) == str(caught.value)
+
     @pytest.mark.parametrize("number", ["NaN", "Infinity", "-Infinity", "1e999"])
     def test_json_with_a_number_that_is_not_finite(self, number):
         text = top_problem().to_json().replace("9.8", number)

@@ -61,6 +61,8 @@ class InvalidInput(TippetopError, ValueError):
         What would be accepted, as the end of the sentence "accepted: ...".
     others
         How many more values of the same input cannot be.
+    file
+        The file that the value is in; "" where it is in none.
 
     Examples
     --------
@@ -72,23 +74,25 @@ class InvalidInput(TippetopError, ValueError):
     ('tilt', 4.0, 'a number at least 0 and at most pi')
     """
 
-    def __init__(self, field: str, value: object, accepted: str, others: int = 0) -> None:
+    def __init__(self, field: str, value: object, accepted: str, others: int = 0, file: str = "") -> None:
         self.field = field
         self.value = value
         self.accepted = accepted
         self.others = others
+        self.file = file
         more = f" (and {others} more)" if others else ""
         name = field if field.isprintable() else repr(field)
-        fault = "is missing" if value is MISSING else f"= {short(value)} is not possible"
+        where = f" in {file}" if file else ""
+        fault = f"is missing{where}" if value is MISSING else f"= {short(value)}{where} is not possible"
         super().__init__(f"{name} {fault}; accepted: {accepted}{more}")
 
     def within(self, part: str, more: int = 0) -> "InvalidInput":
         """The same of a field of a part, or of the part itself if it names none; more cannot be besides."""
         field = f"{part}.{self.field}".strip(".")
-        return InvalidInput(field, self.value, self.accepted, self.others + more)
+        return InvalidInput(field, self.value, self.accepted, self.others + more, self.file)
 
-    def __reduce__(self) -> tuple[type["InvalidInput"], tuple[str, object, str, int]]:
-        return type(self), (self.field, self.value, self.accepted, self.others)
+    def __reduce__(self) -> tuple[type["InvalidInput"], tuple[object, ...]]:
+        return type(self), (self.field, self.value, self.accepted, self.others, self.file)
 
 
 class FileTrouble(TippetopError, OSError):

@@ -5,7 +5,7 @@ import os
 import secrets
 import stat
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Container, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO
@@ -121,6 +121,18 @@ def read_text(path: Path | str, accepted: str) -> str:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError:
         raise FileTrouble(f"{named(path)} is not a text file; accepted: {accepted}") from None
+
+
+@contextmanager
+def made_of(path: Path | str, given: Container[str] = ()) -> Iterator[None]:
+    """Say of what cannot be that it is in this file, unless it is in another, or a field that is given."""
+    try:
+        yield
+    except InvalidInput as error:
+        if error.file or error.field.partition(".")[0] in given:
+            raise
+        file = named(Path(path).name)
+        raise InvalidInput(error.field, error.value, error.accepted, error.others, file) from None
 
 
 def named(path: Path | str) -> str:

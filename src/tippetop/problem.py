@@ -15,7 +15,7 @@ from pydantic import Field, model_validator
 from tippetop.bodies import Body
 from tippetop.errors import MISSING, InvalidInput, one_of
 from tippetop.fields import dotted_names, numbers_of, part_at, table_at
-from tippetop.files import read_text
+from tippetop.files import made_of, read_text
 from tippetop.frictions import LEAST_PATCH, Friction
 from tippetop.mechanics.coulomb import RollingResistance
 from tippetop.mechanics.hull import Hull, acting, lowest_surface, sizes
@@ -359,7 +359,9 @@ class Problem(Part):
         """
         text = read_text(path, "a problem in TOML or JSON")
         parse = parse_json if Path(path).suffix.lower() == ".json" else parse_toml
-        return cls(**parse(text, "problem", Path(path).name))
+        fields = parse(text, "problem", Path(path).name)
+        with made_of(path):
+            return cls(**fields)
 
 
 def _inside(bound: float, side: float) -> str:

@@ -76,7 +76,11 @@ def test_profiles_may_be_in_files_beside(tmp_path):
         ("a.toml", "profile = [", "workpiece = 'a.toml' is not possible; accepted: TOML"),
         ("a.toml", "profile = 'b.csv'", "b.csv cannot be read"),
         ("a.toml", "density = 700", "profile is missing"),
-        ("a.toml", "density = 700\nprofile = [[0, 0], [1, 1], [0, 1]]\ncolour = 'red'", "colour = 'red'"),
+        (
+            "a.toml",
+            "density = 700\nprofile = [[0, 0], [1, 1], [0, 1]]\ncolour = 'red'",
+            "colour = 'red' in a.toml",
+        ),
         ("a.txt", "0,0", "accepted: one whose name ends in .toml, .csv or .svg"),
     ],
 )
@@ -88,6 +92,14 @@ def test_what_cannot_be_read_is_refused(tmp_path, name, text, sentence):
     with pytest.raises(tt.TippetopError) as refusal:
         read_workpiece(tmp_path / name, **fields)
     assert sentence in str(refusal.value)
+
+
+def test_what_is_given_beside_a_file_is_not_said_to_be_in_it(tmp_path):
+    (tmp_path / "a.csv").write_text("0,0\n1,1\n0,1\n")
+    with pytest.raises(tt.InvalidInput, match=r"^density = -1.0 is not possible"):
+        read_workpiece(tmp_path / "a.csv", density=-1.0)
+    with pytest.raises(tt.InvalidInput, match=r"^density is missing in a.csv; "):
+        read_workpiece(tmp_path / "a.csv")
 
 
 def test_what_is_not_installed_is_said(tmp_path, monkeypatch):

@@ -207,7 +207,7 @@ def test_files_that_cannot_be_are_refused_by_the_field(tmp_path, change, field):
     (tmp_path / "sweep.toml").write_text(SWEEP.replace(*change))
     with pytest.raises(InvalidInput if field else FileTrouble) as refusal:
         Sweep.read(tmp_path / "sweep.toml")
-    assert field is None or refusal.value.field.startswith(field)
+    assert field is None or (refusal.value.field.startswith(field) and "sweep.toml" in str(refusal.value))
     assert len(str(refusal.value)) < 1000
 
 

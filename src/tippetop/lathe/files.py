@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from tippetop.errors import InvalidInput, Unavailable
-from tippetop.files import named, read_text
+from tippetop.files import made_of, named, read_text
 from tippetop.lathe.workpiece import Workpiece
 from tippetop.validation import parse_toml
 
@@ -42,13 +42,15 @@ def read_workpiece(path: Path | str, **fields: Any) -> Workpiece:
     """
     path = Path(path)
     if path.suffix.lower() != ".toml":
-        return Workpiece(**{"profile": read_points(path), **fields})
-    found = {**parse_toml(read_text(path, ACCEPTED), "workpiece", path.name), **fields}
+        found = {"profile": read_points(path), **fields}
+    else:
+        found = {**parse_toml(read_text(path, ACCEPTED), "workpiece", path.name), **fields}
     inserts = found.get("inserts")
     for part in [found, *(inserts if isinstance(inserts, list) else [])]:
         if isinstance(part, dict) and isinstance(part.get("profile"), str):
             part["profile"] = read_points(path.parent / part["profile"])
-    return Workpiece(**found)
+    with made_of(path, fields):
+        return Workpiece(**found)
 
 
 def read_points(path: Path) -> list[list[float]]:

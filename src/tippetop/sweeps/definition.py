@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
 from tippetop.errors import MISSING, InvalidInput
-from tippetop.files import read_text
+from tippetop.files import made_of, read_text
 from tippetop.problem import Problem
 from tippetop.sweeps.cells import cells_of
 from tippetop.sweeps.grid import Draws, Product
@@ -120,7 +120,8 @@ class Sweep(Part):
         fields = parse_toml(read_text(path, "a sweep in TOML"), "sweep", Path(path).name)
         if isinstance(fields.get("problem"), str):
             fields["problem"] = Problem.read(Path(path).parent / fields["problem"])
-        return cls(**fields)
+        with made_of(path):
+            return cls(**fields)
 
 
 def is_sweep(fields: Mapping[str, Any]) -> bool:
