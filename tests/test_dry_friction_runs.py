@@ -12,7 +12,7 @@ from tippetop.contact.choice import rules_for
 from tippetop.contact.passing import Stopping
 from tippetop.contact.rules import FreeToFly
 from tippetop.contact.sliding import Sliding
-from tippetop.integrators import has_taylor, make_integrator, sampling
+from tippetop.integrators import has_taylor, make_integrator
 from tippetop.mechanics.coulomb import CoulombLaw
 from tippetop.mechanics.motion import along_table, contact, on_table, presses
 from tippetop.mechanics.rolling import ContactPoint, contact_motion, slip_reserve, velocity_without_slip
@@ -199,15 +199,6 @@ def test_slip_that_grows_is_not_followed_to_an_end(slip: float, mode: type) -> N
     top = natural(problem.top)
     rules = rules_for(top, "ignore", 0.0)
     assert type(rules.stopping(0.0, natural_state(problem.start(), natural_units(problem.top))).then) is mode
-
-
-def test_a_result_tells_who_followed_an_end_of_slip(monkeypatch):
-    """An implicit method does where that takes more steps than there are in an arc."""
-    changes = {"friction.kind": "coulomb", "friction.mu": 0.3, "launch.slip": (0.05, 0.0)}
-    problem = tt.presets.report_problem().replace(changes)
-    assert tt.simulate(problem, 0.05, integrator="dop853").attrs["integrator"] == "dop853"
-    monkeypatch.setattr(sampling, "MANY", 4)
-    assert tt.simulate(problem, 0.05, integrator="dop853").attrs["integrator"] == "dop853, radau"
 
 
 def test_what_could_be_held_by_a_pull_only_slips():

@@ -9,10 +9,15 @@ from scipy.integrate import solve_ivp
 from dry_runs import DryRun
 from tippetop.contact.arriving import DEGREE, Arrival, arriving
 from tippetop.contact.closing import closing_of
+from tippetop.contact.mode import EventKind
+from tippetop.contact.passing import Stopping
+from tippetop.contact.rules import Bilateral
+from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators import make_integrator
 from tippetop.integrators.scipy_methods import SciPy
 from tippetop.mechanics.contensou import EllipsoidalLaw
 from tippetop.mechanics.contensou_hertz import HertzDrillingLaw, HertzLaw
+from tippetop.mechanics.coulomb import RollingResistance
 from tippetop.mechanics.ending import Vanishing, closing_rates
 from tippetop.mechanics.stick_slip import size, velocity_of
 from tippetop.mechanics.surface import SphereSurface
@@ -32,13 +37,13 @@ def in_its_clock(top, start, until):
     return solve_ivp(rates, (0.0, until), start, "Radau", rtol=1e-9, atol=1e-13).y[:, -1].tolist()
 
 
-def slipping(law):
+def slipping(law, speed=1e-3):
     """A top that slips and drills, and its numbers in the clock."""
     top = Top(1.0, 131 / 350, 2 / 5, SphereSurface(1.0, 0.3), law, 1.0)
     way = (0.6, 0.0, 0.8)
     axis, momentum = (math.sin(1.1), 0.0, math.cos(1.1)), (0.05, 0.02, 0.0)
-    momentum = (*momentum[:2], spin_for(top, axis, momentum, 1e-3 * way[2] / law.slip_length))
-    return top, [*axis, *momentum, *way, 1e-3, 0.0]
+    momentum = (*momentum[:2], spin_for(top, axis, momentum, speed * way[2] / law.slip_length))
+    return top, [*axis, *momentum, *way, speed, 0.0]
 
 
 def spin_for(top, axis, momentum, rate):
@@ -92,6 +97,26 @@ def test_a_top_on_a_small_patch_sticks_when_it_does():
     axis, momentum, slip = tuple(start[:3]), tuple(start[3:6]), [start[-2] * e for e in start[6:9]]
     run = DryRun(top, axis, momentum, velocity_of(axis, momentum, slip, top)).follow(1.5 * end[-1])
     assert run.times("stick") == pytest.approx([end[-1]], rel=1e-7)
+
+
+@pytest.mark.parametrize("resists", [False, True], ids=["", "rolling"])
+@pytest.mark.parametrize("integrator", [make_integrator(), SciPy("dop853", 1e-12)], ids=["best", "dop853"])
+def test_friction_that_turns_slip_much_faster_than_it_ends_takes_few_steps(integrator, resists):
+    """Its direction is at rest soon: explicit steps as short as it is turned then go no farther."""
+    top, start = slipping(EllipsoidalLaw(0.4, 0.02), 5e-6)
+    top = top._replace(rolling_resistance=RollingResistance(1e-3) if resists else None)
+    end = in_its_clock(top, start, 25.0)
+    axis, momentum, slip = tuple(start[:3]), tuple(start[3:6]), [start[-2] * e for e in start[6:9]]
+    velocity = velocity_of(axis, momentum, slip, top)
+    run = DryRun(top, axis, momentum, velocity, integrator)
+    begun = Bilateral(top).launch(run.start)
+    segments = Trajectory(begun, 1.5 * end[-1], integrator).segments()
+    first = next(segments)
+    assert isinstance(begun.then, Stopping)
+    assert first.transition.events[0].kind is EventKind.STICK
+    assert first.end_time == pytest.approx(end[-1], rel=1e-8)
+    assert first.solution(np.array([first.end_time]))[0, :6] == pytest.approx(end[:6], abs=1e-9)
+    assert first.steps < 1000
 
 
 @pytest.mark.parametrize("law", [EllipsoidalLaw(0.4, 0.1), HertzDrillingLaw(0.4, 0.1)])

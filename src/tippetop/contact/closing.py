@@ -1,13 +1,12 @@
 """The motion in which slip, or rolling, ends, in its clock."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
 from tippetop.contact.closed import BRANCH, LIFT_OFF, LIMIT_BRANCH, ROLLING, SLIP, split
 from tippetop.contact.surfaces import surface_guards
-from tippetop.integrators import make_integrator
 from tippetop.integrators.base import Arc, Array, Guard, Integrator, Motion
 from tippetop.mechanics.ending import (
     Closing,
@@ -34,36 +33,36 @@ from tippetop.mechanics.vectors import Row, Scalar, Vector
 
 REOPENING, LANDED, TIME, OVERTAKEN = "reopening", "landed", "time", "overtaken"
 
+OWN = (REOPENING, LANDED, TIME)
+"""Guards of the clock itself; the others are of what else may happen."""
+
 LONGEST = 100.0
 """More of the clock than any velocity takes to end, but one that turns for ever."""
 
-STIFF_TOLERANCE = 1e-12
-"""Relative error per step of the implicit method that takes over where slip ends in many steps."""
+SOON = (0.3, 2.0)
+"""Parts of the clock after which friction that takes thousands of steps to slip's end may have turned it as
+far as it does: what it turns so fast is then told by power series (see `arriving`)."""
 
-MOST_STEPS = 2048
-"""Steps of the implicit method after which such an end is given up, within seconds; most take hundreds."""
+FEW = 16
+"""Steps in such a part from which that may be."""
+
+MOST = 16
+"""Arcs after which such an end is given up, within seconds; most take two."""
 
 
 def followed(
     integrator: Integrator, motion: Motion, parameters: Sequence[float], start: tuple[float, Array]
-) -> list[Arc]:
-    """The end of slip, or of rolling, in its clock.
-
-    On a small patch the direction of slip follows the friction much faster than slip ends: where that takes
-    more steps than there are in an arc, an implicit method takes them instead.
-    """
-    first = next(iter(integrator.integrate(motion, parameters, start, LONGEST)))
-    if first.guard is not None or first.failure is not None or first.solution.end >= LONGEST:
-        return [first]
-    # It goes on from there: about the start, next to the branch of a law, its trials may have no solution.
-    arcs, onwards = [first], (first.solution.end, first.end_state)
-    implicit = make_integrator("radau", STIFF_TOLERANCE)
-    for arc in implicit.integrate(motion, parameters, onwards, LONGEST):
-        arcs.append(replace(arc, method=implicit))
-        if arc.guard is None and sum(one.steps for one in arcs[1:]) >= MOST_STEPS:
-            arcs[-1] = replace(arcs[-1], failure="slip, or rolling, takes too many steps to end")
-            break
-    return arcs
+) -> Iterator[Arc]:
+    """The end of slip, or of rolling, in its clock, arc by arc."""
+    arcs = 0
+    for end in (*[start[0] + part for part in SOON], LONGEST):
+        for arc in integrator.integrate(motion, parameters, start, end):
+            arcs += 1
+            many = arc.guard is None and arc.failure is None and arcs == MOST
+            yield replace(arc, failure="slip, or rolling, takes too many steps to end") if many else arc
+            if many or arc.guard is not None or arc.failure is not None:
+                return
+            start = arc.solution.end, arc.end_state
 
 
 @lru_cache

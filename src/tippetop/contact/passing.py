@@ -6,12 +6,12 @@ from typing import ClassVar
 
 from tippetop.contact.arriving import Arrival, arriving
 from tippetop.contact.closed import ClosedMode, split
-from tippetop.contact.closing import LANDED, closing_motion, closing_of, followed
+from tippetop.contact.closing import FEW, LANDED, OWN, closing_motion, closing_of, followed
 from tippetop.contact.mode import EventKind, IntegratedMode, Mode, Outcome, Reaction, Segment, Transition
 from tippetop.contact.sliding import Sliding, SlidingWithoutRolling
 from tippetop.contact.sticking import Sticking
 from tippetop.contact.surfaces import follow_surface, stays_open
-from tippetop.integrators.base import Arc, Array, Integrator
+from tippetop.integrators.base import Arc, Array, Integrator, Motion
 from tippetop.integrators.dense import DenseSolution, as_array
 from tippetop.mechanics.ending import (
     Closing,
@@ -32,7 +32,6 @@ from tippetop.mechanics.rolling import (
 )
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.stick_slip import (
-    branch_guard,
     scaled,
     size,
     velocity_of,
@@ -153,61 +152,67 @@ class Stopping(Passing):
     begin: tuple[float, ...] = ()
     """The numbers of the clock where another branch of the law has left off; else they are the state's."""
 
+    @property
+    def motion(self) -> Motion:
+        """Its equations in the clock."""
+        return closing_motion(self.top.kind, self.ending, not self.rules.pulls)
+
     def segments(self, time: float, state: State, end: float, integrator: Integrator) -> Iterator[Segment]:
         """Follow it to its end, or to where it is no longer about to end."""
-        ending, begin = self.ending, self.begin or self._clock(state)
-        arrival = self._arrival(closing_of(begin, ending), end - time, integrator)
-        if arrival is not None:
-            solution = DenseSolution.in_time([0.0, arrival.left], [arrival.onwards])
-            last = self.state(arrival.at(0.0))
-            then = self._next(None, time + arrival.left, last)
-            yield Segment(self, solution.moved(time, time + arrival.left), last, then, steps=1)
-            return
-        here, steps, arc, parts = closing_of(begin, ending), 0, None, list[DenseSolution]()
-        rest, method = here, None
-        start = 0.0, as_array(begin)
-        motion = closing_motion(self.top.kind, ending, not self.rules.pulls)
-        for horizon in LANDING:
-            if landing_guard(here, ending, self.top, horizon) <= 0.0:
-                continue
-            arcs = followed(integrator, motion, (*self.top.numbers, end - time, horizon), start)
-            steps += sum(arc.steps for arc in arcs)
-            method = arcs[-1].method or method
-            arc, parts = arcs[-1], [*parts, *(arc.solution for arc in arcs if len(arc.solution.terms))]
-            start = arc.solution.end, arc.end_state
-            here = closing_of(arc.end_state.tolist(), ending)
-            if arc.guard != LANDED:
-                break
-            rest, doubt = landed(here, ending, self.top)
-            if doubt < SETTLED:
-                break
-        before = here
+        begin = self.begin or self._clock(state)
+        arcs, rest, arrival = self._followed(begin, end - time, integrator)
+        here = closing_of(arcs[-1].end_state.tolist() if arcs else begin, self.ending)
+        arc, until = arcs[-1] if arcs and arrival is None else None, float(here.time)
         if arc is not None and arc.failure is not None and here.speed < SLOWEST:
             # It passes zero by so little that no step is short enough to see it turn round.
-            here, arc = here._replace(speed=0.0), None
-        elif arc is None:
-            here = landed(here, ending, self.top)[0]
-        elif arc.guard == LANDED:
-            here = rest
-        last = self.state(shown(here))
-        solution = self._in_time(parts, begin, time, before, here)
-        then = self._next(arc, solution.end, last)
+            rest, arc = here._replace(speed=0.0), None
+        if arrival is None:
+            last, onwards = self.state(shown(rest)), straight(shown(here), shown(rest), until, rest.time)
+        else:
+            last, onwards = self.state(arrival.at(0.0)), in_one_step(arrival.onwards, until, arrival.left)
+        solution = self._in_time(arcs, until, onwards).moved(time, time + onwards.end)
+        then, steps = self._next(arc, solution.end, last), sum(one.steps for one in arcs)
+        steps += arrival is not None
+        method = next((one.method for one in arcs[::-1] if one.method is not None), None)
         yield Segment(self, solution, last, then, steps, steps, method=method)
+
+    def _followed(
+        self, begin: Row, longest: float, integrator: Integrator
+    ) -> tuple[list[Arc], Closing, Arrival | None]:
+        """It in its clock; and where it ends after that, in one step, if not by power series."""
+        here, start, arcs = closing_of(begin, self.ending), (0.0, as_array(begin)), list[Arc]()
+        arrival, rest = self._arrival(here, longest, integrator), here
+        for horizon in LANDING:
+            if arrival is not None or landing_guard(here, self.ending, self.top, horizon) <= 0.0:
+                continue
+            for arc in followed(integrator, self.motion, (*self.top.numbers, longest, horizon), start):
+                arcs.append(arc)
+                start = arc.solution.end, arc.end_state
+                here = closing_of(arc.end_state.tolist(), self.ending)
+                if arc.guard is None and arc.failure is None and arc.steps >= FEW:
+                    arrival = self._arrival(here, longest, integrator)
+                if arrival is not None:
+                    return arcs, here, arrival
+            if arcs[-1].guard != LANDED:
+                return arcs, here, None
+            rest, doubt = landed(here, self.ending, self.top)
+            if doubt < SETTLED:
+                break
+        return arcs, rest if arcs or arrival is not None else landed(here, self.ending, self.top)[0], arrival
 
     def _arrival(self, here: Closing, longest: float, integrator: Integrator) -> Arrival | None:
         """The end of slip by power series, if its direction has come to rest and nothing else happens."""
-        law = self.top.friction
-        if not self.ending.slip or self.top.resists_rolling or slip_length(law) is None:
+        if not self.ending.slip or slip_length(self.top.friction) is None:
             return None
         found = arriving(here, self.ending, self.top, integrator)
-        if found is None or found.left > longest:
+        if found is None or here.time + found.left > longest:
             return None
-        arrival, looks = found, range(1, LOOKS + 1)
-        if not self.goes_on(lambda look: arrival.at(look / LOOKS), looks):
-            return None
-        if hasattr(law, "branch_guard"):
-            ways = [tuple(found.at(look / LOOKS)[6:]) for look in looks]
-            if not all(branch_guard(way, self.top) > 0.0 for way in ways):
+        numbers = (*self.top.numbers, longest, 0.0)
+        for look in range(1, LOOKS + 1):
+            then = found.at(look / LOOKS)
+            xi = tuple(then[6:])
+            clock = (*then[:6], *scaled(1.0 / size(xi), xi), size(xi), here.time)
+            if not all(one.value(clock, numbers) > 0.0 for one in self.motion.guards if one.name not in OWN):
                 return None
         return found
 
@@ -247,36 +252,33 @@ class Stopping(Passing):
         """The mode that takes the clock up where an arc leaves it, on another branch of the law."""
         return replace(self, top=top, begin=(*arc.end_state.tolist()[:-1], 0.0))
 
-    def _in_time(
-        self, parts: Sequence[DenseSolution], begin: Row, time: float, before: Closing, after: Closing
-    ) -> DenseSolution:
-        """The numbers of the mode as polynomials in time, from their solution in the clock.
-
-        It goes on in a straight line from the end of the clock (before) to where the velocity ends (after).
-        """
+    def _in_time(self, arcs: Sequence[Arc], until: float, rest: DenseSolution) -> DenseSolution:
+        """The numbers of the mode as polynomials in time: up to some time from the clock's, and the rest."""
+        parts = [arc.solution for arc in arcs if len(arc.solution.terms)]
         if not parts:
-            still = shown(closing_of(begin, self.ending))
-            return straight(still, still, time, time + float(after.time))
-        clock, elapsed = DenseSolution.joined(parts), len(begin) - 1
+            return rest
+        clock, elapsed = DenseSolution.joined(parts), parts[0].size - 1
 
         def numbers(times: Array) -> tuple[Scalar, ...]:
             return shown(closing_of(clock.rows(clock.when(elapsed, times)), self.ending))
 
-        knots = clock.knots_of(elapsed, float(before.time))
+        knots = clock.knots_of(elapsed, until)
         solution = DenseSolution.fitted(numbers, thinned(knots), DEGREE)
         if solution.unresolved > RESOLVED:
             solution = DenseSolution.fitted(numbers, knots, DEGREE)
-        reach = float(after.time)
-        if reach > knots[-1]:
-            rest = straight(shown(before), shown(after), knots[-1], reach)
-            solution = DenseSolution.joined([solution, rest])
-        return solution.moved(time, time + reach)
+        return DenseSolution.joined([solution, rest]) if rest.end > until else solution
 
 
 def straight(begin: Sequence[float], last: Sequence[float], start: float, end: float) -> DenseSolution:
     """Numbers that go from some to others in a straight line."""
-    terms = [(a, b - a, *[0.0] * (DEGREE - 1)) for a, b in zip(begin, last, strict=True)]
-    return DenseSolution.in_time([0.0, 1.0], [terms]).moved(start, end)
+    rows = [[a, b - a] for a, b in zip(begin, last, strict=True)]
+    return in_one_step(rows, 0.0, 1.0).moved(start, end)
+
+
+def in_one_step(rows: Sequence[list[Scalar]], start: float, lasts: float) -> DenseSolution:
+    """Numbers by coefficients in powers of the time since some time, for as long as that."""
+    terms = [[*row, *[0.0] * (DEGREE + 1 - len(row))] for row in rows]
+    return DenseSolution.in_time([0.0, lasts], [terms]).moved(start, start + lasts)
 
 
 def thinned(knots: Sequence[float]) -> list[float]:
