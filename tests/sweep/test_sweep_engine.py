@@ -15,8 +15,11 @@ from tippetop.contact.sliding import sliding_motion
 from tippetop.errors import InvalidInput
 from tippetop.frictions import RegularizedCoulombFriction
 from tippetop.integrators import has_llvm, has_taylor
+from tippetop.mechanics.motion import along_table
+from tippetop.mechanics.series import horner
 from tippetop.presets import report_problem
 from tippetop.problem import Problem
+from tippetop.run import simulate
 from tippetop.summary import summarize
 from tippetop.sweeps import (
     SWEPT,
@@ -173,6 +176,49 @@ def test_arrays_make_the_steps_that_are_compiled():
     for ours, theirs in zip(compiled.jet(before, numbers), map(np.array, jet), strict=True):
         assert ours == pytest.approx(theirs, rel=1e-9, abs=1e-9 * np.abs(theirs).max())
     assert np.all(one[layout.taken] > 0)
+
+
+@pytest.mark.skipif(not has_llvm(), reason="llvmlite is not installed")
+@pytest.mark.parametrize("field", ["launch.spin", "launch.slip.0"])
+def test_a_step_of_a_fast_top_leaves_little_out_of_its_axis(field):
+    """Beside polynomials of far higher degree over the same step."""
+    tolerance, count = 1e-9, 16
+    problem = report_problem(spin=100.0).replace({"contact.liftoff": "ignore"})
+    cells = cells_of(problem, {field: np.geomspace(1e2, 1e6, count)})
+    launches = cells.launches(np.arange(count), 1.0)
+    motion = sliding_motion(launches.kind, guarded=True)
+    usual, finer = stepper(motion, tolerance), stepper(motion, 1e-16)
+    before, after = np.zeros((2, usual.layout.rows, count))
+    for row, number in enumerate(along_table(launches.state).pack()):
+        before[row] = number
+    before[usual.layout.left] = np.inf
+    numbers = np.concatenate((launches.numbers, np.tile([[0.0], [0.0], [np.inf], [-np.inf]], count)))
+    usual.step(before, after, numbers)
+    exact = [horner(terms, after[usual.layout.taken]) for terms in finer.jet(before, numbers).state[:3]]
+    off = np.linalg.norm(after[:3] - exact, axis=0)
+    assert off.max() <= striding.FAST * tolerance
+    assert off.max() > 1e-16
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"launch.spin": 1e150},
+        {"friction.mu": 1e300},
+        {"launch.spin": 1e150, "launch.gap": 0.01},
+        {"launch.spin": 1e80, "launch.gap": 0.01},
+        {"launch.slip": (0.0, -1e120), "contact.restitution": 1.0},
+    ],
+)
+def test_what_is_no_number_is_not_followed(changes):
+    """The rest of a run is no step, and of a launch that breaks down at once the launch is the result."""
+    problem = report_problem(spin=155.0).replace(changes)
+    alone = simulate(problem, 0.5, samples=2)
+    found = follow_cells(Sweep(problem, Product((Axis.of("gravity", [9.81]),)), 0.5), np.arange(1))
+    assert found["outcome"] == Ending.FAILED
+    assert alone.attrs["outcome"] == "failed"
+    assert found["end_time"] == float(alone["end_time"]) == 0.0
+    assert found["final_theta"] == pytest.approx(problem.launch.tilt)
 
 
 def test_lift_off_is_not_left_to_looks(monkeypatch):

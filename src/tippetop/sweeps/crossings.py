@@ -112,8 +112,10 @@ class Crossings:
             over = ~flown.landed & (flown.duration >= horizon)
             time = np.where(over, slots.end[lanes], time + flown.duration)
             slots.retire(lanes[over], picked(flown.state, over), time[over], Outcome.COMPLETED)
+            slots.retire(lanes[flown.lost], picked(flown.state, flown.lost), time[flown.lost], Outcome.FAILED)
             spent = ~over & (~flown.landed | (ends.flights[cells] >= FLIGHT_LIMIT))
-            slots.retire(lanes[spent], picked(flown.state, spent), time[spent], Outcome.TOO_MANY_PHASES)
+            which = spent & ~flown.lost
+            slots.retire(lanes[which], picked(flown.state, which), time[which], Outcome.TOO_MANY_PHASES)
             landed = flown.landed & ~spent
             lanes, time, state = lanes[landed], time[landed], picked(flown.state, landed)
             lanes, state, time, vanishing = self._land(lanes, state, time)

@@ -47,6 +47,8 @@ class Flown(NamedTuple):
     """How long each lasted."""
     landed: Flags
     """Whether it ended on the table rather than at the horizon."""
+    lost: Flags
+    """Whether it could not be followed, as its polynomials are no numbers."""
     state: State
     """The states at the end."""
     highest_gap: Array
@@ -79,10 +81,10 @@ def fly_all(
     """
     tip, launches, begun = seen
     time, highest = np.zeros_like(horizon), np.zeros_like(horizon)
-    landed = np.zeros(horizon.shape, dtype=bool)
+    landed, lost = np.zeros((2, *horizon.shape), dtype=bool)
     given = np.array([*state.pack(), time, horizon, vanishing, *tip.wanted(launches)])
     for _ in range(PIECES):
-        active = np.flatnonzero(~landed & (time < horizon))
+        active = np.flatnonzero(~landed & ~lost & (time < horizon))
         if not len(active):
             break
         found = pieces(kind, given[:, active], numbers[:, active])
@@ -100,6 +102,7 @@ def fly_all(
         over = found.span == given[LEFT, active]
         time[active] = np.where(over, horizon[active], time[active] + found.span)
         landed[active] = found.touches != 0.0
+        lost[active] = ~landed[active] & ~(found.span > 0.0)
         given[TIME], given[LEFT], given[VANISHING] = time, horizon - time, 0.0
     top = kind.top(tuple(numbers))
     last = fly(state, time, top, np)
@@ -108,6 +111,7 @@ def fly_all(
     return Flown(
         time,
         landed,
+        lost,
         last._replace(height=np.where(landed, ground, last.height)),
         highest,
         fly(state, summit, top, np).height,

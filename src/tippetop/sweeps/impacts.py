@@ -51,7 +51,7 @@ def collide(state: State, top: Top) -> tuple[State, Flags]:
         if branched.any():
             numbers[: kind.numbers, work[branched]] = others(kind, numbers[: kind.numbers, work[branched]])
         struck[work[ended]] = True
-        work = work[~ended & np.isfinite(found.span)]
+        work = work[~ended & (branched | (found.span > 0.0))]
     after[:, ~struck] = moving[:, ~struck]
     return state._replace(momentum=tuple(after[:3]), velocity=tuple(after[3:])), struck
 

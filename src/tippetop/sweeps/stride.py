@@ -2,10 +2,12 @@
 
 The equations of motion and guards of a contact mode, in plain operators, are evaluated on power series.
 LLVM compiles the whole step, with its dense output, into one function that works on eight launches an
-instruction; without it launches are followed one by one. Order and step size are chosen as by heyoka's
+instruction; without it launches are followed one by one. Order and step size are chosen much as by heyoka's
 integrators (Biscani and Izzo 2021, MNRAS 504; Jorba and Zou 2005, Experimental Mathematics 14):
 the order p from the tolerance, and the step from the last two coefficients, so that what is left out is below
-the tolerance.
+the tolerance. What is left out of all numbers is compared with all of them, by the roots of their squares; so
+a spin or slip that is large would let the axis go astray, and what is left out of that is compared with no
+more than `FAST`. Heyoka compares the largest numbers, and in a single launch the guards with them.
 
 A launch's step depends on nothing but its own numbers: arrays are filled up to a multiple of `LANES`, so that
 every launch is computed by the same instructions wherever it stands in them.
@@ -24,6 +26,9 @@ from tippetop.sweeps.looks import TINY, first_fall, least_value, looked_at, lowe
 
 GUARD_LOOKS, OTHER_LOOKS, TIP_LOOKS = 32, 16, 12
 """Intervals of a step at whose ends the first guard, the others, and n_z are looked at."""
+
+FAST = 10.0
+"""Size of the state, in natural units, beyond which a top is so fast that its axis needs more care."""
 
 LANES = 16
 """Arrays are filled up to a multiple of this many launches."""
@@ -112,7 +117,7 @@ def stride(
     left, steps = before[layout.size :]
     counts, wanted = numbers[layout.counts], numbers[layout.turns :]
     state, falls = jet
-    whole = step_size(state, left, plain)
+    whole = step_size(state, left, plain, axis=3)
     taken, changes, events = later_guards(falls, counts, (whole, layout.branch), plain)
     floor, ceiling = extremes(state[2], taken, plain)
     events += met(floor, ceiling, wanted, plain)
@@ -121,7 +126,8 @@ def stride(
     moves = plain.below(0.0, taken)
     pause = events * moves
     after = [*(horner(terms, taken) for terms in state), left - taken, steps + moves]
-    stays = [plain.choose(pause, old, new) for old, new in zip(before, after, strict=True)]
+    goes = plain.below(pause, moves)
+    stays = [plain.choose(goes, new, old) for old, new in zip(before, after, strict=True)]
     stays[layout.left] = plain.choose(pause, 0.0 * left, after[layout.left])
     force = least_value(falls[0], pressing, taken, plain)
     least = [plain.choose(pause, math.inf + 0.0 * value, value) for value in (force, floor, -ceiling)]
@@ -181,17 +187,29 @@ def later_guards(
     return taken, changes, events
 
 
-def step_size(state: Sequence[Sequence[Scalar]], left: Scalar, plain: Arithmetic) -> Scalar:
-    """Step for which the last terms of the polynomials are below the tolerance, or all that is left."""
+def step_size(state: Sequence[Sequence[Scalar]], left: Scalar, plain: Arithmetic, axis: int = 0) -> Scalar:
+    """Step for which the last terms of the polynomials are below the tolerance, or all that is left.
+
+    They are compared with the state; the first, as many as are of the axis, with `FAST` at most. The step is
+    0 where they are no numbers.
+    """
     order = len(state[0]) - 1
 
-    def square(k: int) -> Scalar:
-        return plain.total([series[k] * series[k] for series in state])
+    def square(k: int, some: slice) -> Scalar:
+        return plain.total([series[k] * series[k] for series in state[some]])
 
-    whole = square(0)
-    radii = [(whole / square(k)) ** (0.5 / k) for k in (order - 1, order)]
+    def ratio(k: int) -> Scalar:
+        others = square(k, slice(axis, None))
+        if not axis:
+            return whole / others
+        own = square(k, slice(axis))
+        return plain.least(bounded / own, whole / (own + others))
+
+    whole = square(0, slice(None))
+    bounded = plain.least(whole, FAST * FAST)
+    radius = plain.least(*(ratio(k) ** (0.5 / k) for k in (order - 1, order)))
     safety = math.exp(-2.0 - 0.7 / (order - 1))
-    return plain.least(safety * plain.least(*radii), left)
+    return plain.choose(plain.below(0.0, radius), plain.least(safety * radius, left), 0.0 * left)
 
 
 def order_for(tolerance: float) -> int:
