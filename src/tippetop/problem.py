@@ -135,7 +135,7 @@ class Contact(Variant):
 
         Returns
         -------
-        tippetop.contact.mode.Rules or None
+        tippetop.contact.rules.Rules or None
             None, unless a subclass has rules of its own.
         """
         return None

@@ -3,7 +3,7 @@
 from abc import abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from tippetop.contact.closed import ROLLING, ROLLING_STOPPING, GuardValue, StatedMode, split
 from tippetop.contact.mode import Before, Event, EventKind, Reaction, Transition
@@ -25,6 +25,9 @@ from tippetop.mechanics.stick_slip import branch_guard, inner, scaled, slip_of
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Row, Scalar, Vector, dot
 
+if TYPE_CHECKING:
+    from tippetop.contact.several import OnSeveral
+
 OPENING, ENDING, BRANCHING = "opening ", "ending ", "branching "
 
 SLOWEST_SLIP = 1e-9
@@ -36,6 +39,8 @@ and is not followed further."""
 class OnTwo(StatedMode):
     """Two surfaces touch."""
 
+    rules: "OnSeveral"
+    """What follows where one of them opens, sticks or slips."""
     other: Top
     """The top with the second surface active."""
     rolls: float = 0.0
@@ -190,7 +195,7 @@ class SlidingOnTwo(OnTwo):
         return self.follow_rolling(guard, time, state)
 
 
-def on_two(state: State, rules: Any, other: Top, rolls: float) -> SlidingOnTwo:
+def on_two(state: State, rules: "OnSeveral", other: Top, rolls: float) -> SlidingOnTwo:
     """The mode of a body that slides on the surface of some rules and on another."""
     tops: Tops = (rules.top, other)
     if is_branched(other.friction):

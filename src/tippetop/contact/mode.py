@@ -9,16 +9,17 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from enum import Enum
-from typing import Any, ClassVar, NamedTuple, Self
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 from tippetop.integrators.base import Integrator, Motion
 from tippetop.integrators.dense import DenseSolution, as_array
-from tippetop.mechanics.ending import Vanishing
 from tippetop.mechanics.hull import Hull
-from tippetop.mechanics.rolling import Wrench
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Row, Scalar, Vector
+
+if TYPE_CHECKING:
+    from tippetop.contact.rules import Rules
 
 
 class Outcome(Enum):
@@ -165,79 +166,12 @@ class Before(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Rules(ABC):
-    """What follows where contact, or slip, begins or ends; what never happens under some raises an error."""
-
-    top: Top
-    """The top in natural units."""
-
-    pulls: ClassVar[bool] = False
-    """Whether the table may pull, so that contact does not end."""
-
-    def on(self, surface: int) -> Self:
-        """The rules of the top with another of its surfaces active."""
-        return replace(self, top=self.top.each[surface])
-
-    @abstractmethod
-    def launch(self, state: State) -> Transition:
-        """How a run begins."""
-
-    def lift_off(self, time: float, state: State) -> Transition:
-        """What follows when the normal force falls to zero."""
-        raise NotImplementedError
-
-    def touchdown(self, time: float, state: State, integrator: Integrator | None = None) -> Transition:
-        """What follows when the top reaches the table; the integrator may follow the impact too."""
-        raise NotImplementedError
-
-    @abstractmethod
-    def event(self, kind: EventKind, time: float) -> Event:
-        """Something that happens to the surface that is active."""
-
-    @abstractmethod
-    def going_on(self, state: State, *, slips: bool) -> "Mode":
-        """The mode of a contact whose velocities go on, or stay held; it sticks or slips."""
-
-    def touch(
-        self, surface: int, time: float, state: State, integrator: Integrator | None = None
-    ) -> Transition:
-        """What follows when another surface of the top, of this number, reaches the table too."""
-        raise NotImplementedError
-
-    def settled_on_two(
-        self, time: float, state: State, tops: tuple[Top, Top], before: Before, rolls: float
-    ) -> Transition:
-        """What follows when slip ends on a contact beside another one, or rolling; it rolls as signed now."""
-        raise NotImplementedError
-
-    def slipping_on_two(
-        self, time: float, state: State, tops: tuple[Top, Top], which: str, rolls: float
-    ) -> Transition:
-        """What follows when one of two contacts, or both, can be held no longer."""
-        raise NotImplementedError
-
-    @abstractmethod
-    def stopping(self, time: float, state: State, *, slips: bool = True) -> Transition:
-        """What follows when slip, or rolling, is about to end; the contact sticks or slips."""
-
-    @abstractmethod
-    def settled(self, time: float, state: State, new: tuple[bool, bool], *, held: bool) -> Transition:
-        """What follows when slip, or rolling (new), has ended, and whether the other was held already."""
-
-    @abstractmethod
-    def giving_way(
-        self, state: State, events: tuple[Event, ...], beginning: Vanishing, wrench: Wrench | None = None
-    ) -> Transition:
-        """What follows when slip, or rolling, can be held no longer, by a wrench if that is known."""
-
-
-@dataclass(frozen=True)
 class Mode(ABC):
     """A way to move."""
 
     top: Top
     """The top in natural units."""
-    rules: Rules
+    rules: "Rules"
     """What follows where contact begins or ends."""
 
     name: ClassVar[str]

@@ -1,11 +1,11 @@
 """What follows when contact begins or ends, for each way of treating lift-off."""
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
+from typing import ClassVar, Self
 
 from tippetop.contact.flight import TOUCHING, Flight
 from tippetop.contact.loosening import BothLoosening, Loosening
-from tippetop.contact.mode import Event, EventKind, IntegratedMode, Mode, Outcome, Rules, Transition
+from tippetop.contact.mode import Event, EventKind, IntegratedMode, Mode, Outcome, Transition
 from tippetop.contact.passing import Resting, Stopping
 from tippetop.contact.sliding import Sliding, SlidingWithoutRolling
 from tippetop.contact.sticking import Sticking, StickingWithoutRolling
@@ -53,8 +53,18 @@ REST = 1e-13
 
 
 @dataclass(frozen=True)
-class ContactRules(Rules):
+class Rules:
     """What all rules have in common: the resolver of a contact that is closed and has no normal velocity."""
+
+    top: Top
+    """The top in natural units."""
+
+    pulls: ClassVar[bool] = False
+    """Whether the table may pull, so that contact does not end."""
+
+    def on(self, surface: int) -> Self:
+        """The rules of the top with another of its surfaces active."""
+        return replace(self, top=self.top.each[surface])
 
     def launch(self, state: State) -> Transition:
         """Go on from contact."""
@@ -215,6 +225,16 @@ class ContactRules(Rules):
         """What follows when the normal force falls to zero."""
         raise NotImplementedError
 
+    def touchdown(self, time: float, state: State, integrator: Integrator | None = None) -> Transition:
+        """What follows when the top reaches the table; the integrator may follow the impact too."""
+        raise NotImplementedError
+
+    def touch(
+        self, surface: int, time: float, state: State, integrator: Integrator | None = None
+    ) -> Transition:
+        """What follows when another surface of the top, of this number, reaches the table too."""
+        raise NotImplementedError
+
     def _let_go(self, time: float, state: State, events: tuple[Event, ...]) -> Transition:
         """Lift-off after some events."""
         found = self._leaving(time, state)
@@ -226,14 +246,14 @@ class ContactRules(Rules):
 
 
 @dataclass(frozen=True)
-class Bilateral(ContactRules):
+class Bilateral(Rules):
     """The table may pull: the top never leaves it."""
 
     pulls: ClassVar[bool] = True
 
 
 @dataclass(frozen=True)
-class StopAtLiftOff(ContactRules):
+class StopAtLiftOff(Rules):
     """The run ends where the table would have to pull."""
 
     def _leaving(self, time: float, state: State) -> Transition:
@@ -242,7 +262,7 @@ class StopAtLiftOff(ContactRules):
 
 
 @dataclass(frozen=True)
-class FreeToFly(ContactRules):
+class FreeToFly(Rules):
     """The top leaves the table where that would have to pull, flies, and comes back with an impact."""
 
     restitution: float
@@ -270,8 +290,7 @@ class FreeToFly(ContactRules):
 
     def _let_go(self, time: float, state: State, events: tuple[Event, ...]) -> Transition:
         """Fly from where the table would have to pull from now on, not from zero force."""
-        found = self._leaving(time, state)
-        return replace(found, events=(*events, *found.events), then=self._flight(Start.RELEASE))
+        return replace(super()._let_go(time, state, events), then=self._flight(Start.RELEASE))
 
     def inconsistent(self, time: float, state: State, events: tuple[Event, ...]) -> Transition:
         """Collide without approach, unless that has just left it so: then rounding decides, not friction."""

@@ -1,7 +1,7 @@
 """What follows where two surfaces touch and have no normal velocities, and slip ends or begins at them."""
 
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING
 
 from tippetop.contact.double import SLOWEST_SLIP, on_two
 from tippetop.contact.double_sticking import (
@@ -50,6 +50,9 @@ from tippetop.mechanics.stick_slip import inner, is_rolling, least_slip, scaled,
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import scale
 
+if TYPE_CHECKING:
+    from tippetop.contact.several import OnSeveral
+
 TOGETHER = 30.0
 """How many times `SLOWEST_SLIP` the slip of the other contact may be where it ends on one to end with it."""
 
@@ -65,7 +68,7 @@ OPENS, HELD, CLOSES = "opens", "held", "closes"
 class TwoClosed:
     """Two contacts that are closed and have no normal velocities."""
 
-    rules: Any
+    rules: "OnSeveral"
     """The rules of the body."""
     tops: Tops
     """The top with either surface active; if slip has ended on one, that comes first."""
@@ -80,7 +83,12 @@ class TwoClosed:
 
     @classmethod
     def of(
-        cls, rules: Any, state: State, tops: Tops, rolls: float, ended: tuple[bool, bool] | None = None
+        cls,
+        rules: "OnSeveral",
+        state: State,
+        tops: Tops,
+        rolls: float,
+        ended: tuple[bool, bool] | None = None,
     ) -> "TwoClosed":
         """The contacts in a state that has slip, or tilts, by no more than what is taken for none."""
         state, tops = without_tilting(state, tops[0]), (off_branch(tops[0]), off_branch(tops[1]))
@@ -216,7 +224,7 @@ def ended_slips(state: State, tops: Tops) -> tuple[bool, bool]:
 
 
 def settled(
-    rules: Any,
+    rules: "OnSeveral",
     time: float,
     state: State,
     tops: Tops,
@@ -248,11 +256,12 @@ def settled(
     numbers = [number_of(top) for top in here.tops]
     left, kept = numbers if answers == [SECOND] else numbers[::-1]
     events = (*events, Event(EventKind.OPENING, time, surface=left))
-    then: Transition = rules.on(kept).resting_alone(time, here.state, events)
-    return then
+    return rules.on(kept).resting_alone(time, here.state, events)
 
 
-def slipping(rules: Any, time: float, state: State, tops: Tops, which: str, rolls: float) -> Transition:
+def slipping(
+    rules: "OnSeveral", time: float, state: State, tops: Tops, which: str, rolls: float
+) -> Transition:
     """What follows where what both contacts need, or one of them, reaches the limit of what the table can.
 
     Of those that stick, that of this number slips, or "both"; where only the first does, it does.

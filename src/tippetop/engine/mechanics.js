@@ -90,148 +90,6 @@ class Arc extends py.Record {
 }
 py.fields(Arc, ["solution", "end_state", "guard", "failure", "steps", "evaluations", "method"]);
 
-// tippetop.mechanics.units
-
-/** Units of mass (kg), length (m) and time (s) in which a top is simulated. */
-class Units extends py.NamedTuple {
-  constructor(mass, length, time) {
-    super();
-    this.mass = mass;
-    this.length = length;
-    this.time = time;
-  }
-  /** Unit of velocity, m/s. */
-  get speed() {
-    return py.div(this.length, this.time);
-  }
-  /** Unit of moment of inertia, kg m^2. */
-  get inertia() {
-    return py.mul(this.mass, py.pow(this.length, 2));
-  }
-  /** Unit of energy, J. */
-  get energy() {
-    return py.mul(this.mass, py.pow(this.speed, 2));
-  }
-  /** Unit of angular momentum, kg m^2/s. */
-  get angular_momentum() {
-    return py.mul(py.mul(this.mass, this.length), this.speed);
-  }
-  /** Unit of Jellett's integral, kg m^3/s. */
-  get jellett() {
-    return py.mul(this.angular_momentum, this.length);
-  }
-}
-py.fields(Units, ["mass", "length", "time"]);
-
-// tippetop.mechanics.friction
-
-/** What the table does to the body at the contact, per unit normal force. */
-class Traction extends py.NamedTuple {
-  constructor(force, torque) {
-    super();
-    this.force = force;
-    this.torque = torque;
-  }
-}
-py.fields(Traction, ["force", "torque"]);
-const NO_TORQUE = [0.0, 0.0, 0.0];
-
-/** Friction proportional to slip and normal force, f = -mu v (mu in s/m), with no torque. */
-class ViscousLaw extends py.NamedTuple {
-  constructor(mu) {
-    super();
-    this.mu = mu;
-  }
-  /** It is a force alone. */
-  get torque_free() {
-    return true;
-  }
-  /** Force and torque per unit normal force. */
-  traction(slip, angular_velocity) {
-    return new Traction([py.mul(py.neg(this.mu), slip[0]), py.mul(py.neg(this.mu), slip[1])], NO_TORQUE);
-  }
-  /** Friction coefficient mu in units of 1 / speed. */
-  coefficients(units) {
-    return [py.mul(this.mu, units.speed)];
-  }
-  /** Make the law with this mu. */
-  static from_coefficients(coefficients) {
-    return new this(...coefficients);
-  }
-}
-py.fields(ViscousLaw, ["mu"]);
-
-/** Coulomb friction smoothed below the slip speed eps (m/s): f = -mu v / sqrt(v^2 + eps^2), no torque. */
-class RegularizedCoulombLaw extends py.NamedTuple {
-  constructor(mu, eps) {
-    super();
-    this.mu = mu;
-    this.eps = eps;
-  }
-  /** It is a force alone. */
-  get torque_free() {
-    return true;
-  }
-  /** Force and torque per unit normal force. */
-  traction(slip, angular_velocity) {
-    var factor = py.mul(
-      py.neg(this.mu),
-      py.pow(py.add(py.add(py.pow(slip[0], 2), py.pow(slip[1], 2)), py.pow(this.eps, 2)), -0.5)
-    );
-    return new Traction([py.mul(factor, slip[0]), py.mul(factor, slip[1])], NO_TORQUE);
-  }
-  /** Friction coefficient mu, and eps in units of speed. */
-  coefficients(units) {
-    return [this.mu, py.div(this.eps, units.speed)];
-  }
-  /** Make the law with these mu and eps. */
-  static from_coefficients(coefficients) {
-    return new this(...coefficients);
-  }
-}
-py.fields(RegularizedCoulombLaw, ["mu", "eps"]);
-
-// tippetop.mechanics.state
-
-/** What the motion of the body depends on, whether it touches the table or not. */
-class State extends py.NamedTuple {
-  constructor(axis, momentum, velocity, height) {
-    super();
-    this.axis = axis;
-    this.momentum = momentum;
-    this.velocity = velocity;
-    this.height = height;
-  }
-  /** The 10 numbers of the state in the order of its attributes. */
-  pack() {
-    return [...this.axis, ...this.momentum, ...this.velocity, this.height];
-  }
-  /** Read a state from its 10 numbers. */
-  static unpack(y) {
-    return new this([y[0], y[1], y[2]], [y[3], y[4], y[5]], [y[6], y[7], y[8]], y[9]);
-  }
-}
-py.fields(State, ["axis", "momentum", "velocity", "height"]);
-
-/** The part of a `State` that is free while the body touches the table: height and sinking are not. */
-class SlidingState extends py.NamedTuple {
-  constructor(axis, momentum, velocity) {
-    super();
-    this.axis = axis;
-    this.momentum = momentum;
-    this.velocity = velocity;
-  }
-  /** The 8 numbers of the state in the order of its attributes. */
-  pack() {
-    return [...this.axis, ...this.momentum, ...this.velocity];
-  }
-  /** Read a state from its 8 numbers. */
-  static unpack(y) {
-    return new this([y[0], y[1], y[2]], [y[3], y[4], y[5]], [y[6], y[7]]);
-  }
-}
-py.fields(SlidingState, ["axis", "momentum", "velocity"]);
-
 // tippetop.mechanics.surface
 const FLAT = 0.001;
 
@@ -384,67 +242,6 @@ function contact_vector(axis, surface) {
   return [py.mul(py.neg(slope), axis[0]), py.mul(py.neg(slope), axis[1]), py.neg(surface.height(c))];
 }
 
-// tippetop.mechanics.coulomb
-const TINY = 1e-300;
-
-/** Coulomb's friction: f = -mu v / |v| in sliding, and at v = 0 any force up to mu N. No torque. */
-class CoulombLaw extends py.NamedTuple {
-  constructor(mu) {
-    super();
-    this.mu = mu;
-  }
-  /** Drilling is free. */
-  get slip_length() {
-    return null;
-  }
-  /** It has no torque. */
-  get torque_free() {
-    return true;
-  }
-  /** Force and torque per unit normal force; the slip must not be zero. */
-  traction(slip, angular_velocity) {
-    var factor = py.mul(
-      py.neg(this.mu),
-      py.pow(py.add(py.mul(slip[0], slip[0]), py.mul(slip[1], slip[1])), -0.5)
-    );
-    return new Traction([py.mul(factor, slip[0]), py.mul(factor, slip[1])], NO_TORQUE);
-  }
-  /** (mu N)^2 - T^2, N^2. */
-  reserve(normal, force, drilling) {
-    var limit = py.mul(this.mu, normal);
-    return py.sub(py.sub(py.mul(limit, limit), py.mul(force[0], force[0])), py.mul(force[1], force[1]));
-  }
-  /** Friction coefficient mu. */
-  coefficients(units) {
-    return [this.mu];
-  }
-  /** Make the law with this mu. */
-  static from_coefficients(coefficients) {
-    return new this(...coefficients);
-  }
-}
-py.fields(CoulombLaw, ["mu"]);
-
-/** A torque -length w_t / |w_t| against rolling, w_t the horizontal angular velocity. */
-class RollingResistance extends py.NamedTuple {
-  constructor(length) {
-    super();
-    this.length = length;
-  }
-  /** Torque against rolling per unit normal force, m; nothing where there is none at all. */
-  couple(angular_velocity) {
-    var [x, y] = angular_velocity;
-    var factor = py.mul(py.neg(this.length), py.pow(py.add(py.add(py.mul(x, x), py.mul(y, y)), TINY), -0.5));
-    return [py.mul(factor, x), py.mul(factor, y), 0.0];
-  }
-  /** Positive while the contact can exert this horizontal couple at rest, (N m)^2. */
-  reserve(normal, couple) {
-    var limit = py.mul(this.length, normal);
-    return py.sub(py.sub(py.mul(limit, limit), py.mul(couple[0], couple[0])), py.mul(couple[1], couple[1]));
-  }
-}
-py.fields(RollingResistance, ["length"]);
-
 // tippetop.mechanics.hull
 
 /** The surfaces of a body: a `Surface` that answers for the active one. */
@@ -563,6 +360,209 @@ function outer_height(surface, c) {
 function lowest_surface(surface, c) {
   return py.max(each_surface(surface), py.how({ key: (one) => py.float(one.height(c)) }));
 }
+
+// tippetop.mechanics.state
+
+/** What the motion of the body depends on, whether it touches the table or not. */
+class State extends py.NamedTuple {
+  constructor(axis, momentum, velocity, height) {
+    super();
+    this.axis = axis;
+    this.momentum = momentum;
+    this.velocity = velocity;
+    this.height = height;
+  }
+  /** The 10 numbers of the state in the order of its attributes. */
+  pack() {
+    return [...this.axis, ...this.momentum, ...this.velocity, this.height];
+  }
+  /** Read a state from its 10 numbers. */
+  static unpack(y) {
+    return new this([y[0], y[1], y[2]], [y[3], y[4], y[5]], [y[6], y[7], y[8]], y[9]);
+  }
+}
+py.fields(State, ["axis", "momentum", "velocity", "height"]);
+
+/** The part of a `State` that is free while the body touches the table: height and sinking are not. */
+class SlidingState extends py.NamedTuple {
+  constructor(axis, momentum, velocity) {
+    super();
+    this.axis = axis;
+    this.momentum = momentum;
+    this.velocity = velocity;
+  }
+  /** The 8 numbers of the state in the order of its attributes. */
+  pack() {
+    return [...this.axis, ...this.momentum, ...this.velocity];
+  }
+  /** Read a state from its 8 numbers. */
+  static unpack(y) {
+    return new this([y[0], y[1], y[2]], [y[3], y[4], y[5]], [y[6], y[7]]);
+  }
+}
+py.fields(SlidingState, ["axis", "momentum", "velocity"]);
+
+// tippetop.mechanics.units
+
+/** Units of mass (kg), length (m) and time (s) in which a top is simulated. */
+class Units extends py.NamedTuple {
+  constructor(mass, length, time) {
+    super();
+    this.mass = mass;
+    this.length = length;
+    this.time = time;
+  }
+  /** Unit of velocity, m/s. */
+  get speed() {
+    return py.div(this.length, this.time);
+  }
+  /** Unit of moment of inertia, kg m^2. */
+  get inertia() {
+    return py.mul(this.mass, py.pow(this.length, 2));
+  }
+  /** Unit of energy, J. */
+  get energy() {
+    return py.mul(this.mass, py.pow(this.speed, 2));
+  }
+  /** Unit of angular momentum, kg m^2/s. */
+  get angular_momentum() {
+    return py.mul(py.mul(this.mass, this.length), this.speed);
+  }
+  /** Unit of Jellett's integral, kg m^3/s. */
+  get jellett() {
+    return py.mul(this.angular_momentum, this.length);
+  }
+}
+py.fields(Units, ["mass", "length", "time"]);
+
+// tippetop.mechanics.friction
+
+/** What the table does to the body at the contact, per unit normal force. */
+class Traction extends py.NamedTuple {
+  constructor(force, torque) {
+    super();
+    this.force = force;
+    this.torque = torque;
+  }
+}
+py.fields(Traction, ["force", "torque"]);
+const NO_TORQUE = [0.0, 0.0, 0.0];
+
+/** Friction proportional to slip and normal force, f = -mu v (mu in s/m), with no torque. */
+class ViscousLaw extends py.NamedTuple {
+  constructor(mu) {
+    super();
+    this.mu = mu;
+  }
+  /** It is a force alone. */
+  get torque_free() {
+    return true;
+  }
+  /** Force and torque per unit normal force. */
+  traction(slip, angular_velocity) {
+    return new Traction([py.mul(py.neg(this.mu), slip[0]), py.mul(py.neg(this.mu), slip[1])], NO_TORQUE);
+  }
+  /** Friction coefficient mu in units of 1 / speed. */
+  coefficients(units) {
+    return [py.mul(this.mu, units.speed)];
+  }
+  /** Make the law with this mu. */
+  static from_coefficients(coefficients) {
+    return new this(...coefficients);
+  }
+}
+py.fields(ViscousLaw, ["mu"]);
+
+/** Coulomb friction smoothed below the slip speed eps (m/s): f = -mu v / sqrt(v^2 + eps^2), no torque. */
+class RegularizedCoulombLaw extends py.NamedTuple {
+  constructor(mu, eps) {
+    super();
+    this.mu = mu;
+    this.eps = eps;
+  }
+  /** It is a force alone. */
+  get torque_free() {
+    return true;
+  }
+  /** Force and torque per unit normal force. */
+  traction(slip, angular_velocity) {
+    var factor = py.mul(
+      py.neg(this.mu),
+      py.pow(py.add(py.add(py.pow(slip[0], 2), py.pow(slip[1], 2)), py.pow(this.eps, 2)), -0.5)
+    );
+    return new Traction([py.mul(factor, slip[0]), py.mul(factor, slip[1])], NO_TORQUE);
+  }
+  /** Friction coefficient mu, and eps in units of speed. */
+  coefficients(units) {
+    return [this.mu, py.div(this.eps, units.speed)];
+  }
+  /** Make the law with these mu and eps. */
+  static from_coefficients(coefficients) {
+    return new this(...coefficients);
+  }
+}
+py.fields(RegularizedCoulombLaw, ["mu", "eps"]);
+
+// tippetop.mechanics.coulomb
+const TINY = 1e-300;
+
+/** Coulomb's friction: f = -mu v / |v| in sliding, and at v = 0 any force up to mu N. No torque. */
+class CoulombLaw extends py.NamedTuple {
+  constructor(mu) {
+    super();
+    this.mu = mu;
+  }
+  /** Drilling is free. */
+  get slip_length() {
+    return null;
+  }
+  /** It has no torque. */
+  get torque_free() {
+    return true;
+  }
+  /** Force and torque per unit normal force; the slip must not be zero. */
+  traction(slip, angular_velocity) {
+    var factor = py.mul(
+      py.neg(this.mu),
+      py.pow(py.add(py.mul(slip[0], slip[0]), py.mul(slip[1], slip[1])), -0.5)
+    );
+    return new Traction([py.mul(factor, slip[0]), py.mul(factor, slip[1])], NO_TORQUE);
+  }
+  /** (mu N)^2 - T^2, N^2. */
+  reserve(normal, force, drilling) {
+    var limit = py.mul(this.mu, normal);
+    return py.sub(py.sub(py.mul(limit, limit), py.mul(force[0], force[0])), py.mul(force[1], force[1]));
+  }
+  /** Friction coefficient mu. */
+  coefficients(units) {
+    return [this.mu];
+  }
+  /** Make the law with this mu. */
+  static from_coefficients(coefficients) {
+    return new this(...coefficients);
+  }
+}
+py.fields(CoulombLaw, ["mu"]);
+
+/** A torque -length w_t / |w_t| against rolling, w_t the horizontal angular velocity. */
+class RollingResistance extends py.NamedTuple {
+  constructor(length) {
+    super();
+    this.length = length;
+  }
+  /** Torque against rolling per unit normal force, m; nothing where there is none at all. */
+  couple(angular_velocity) {
+    var [x, y] = angular_velocity;
+    var factor = py.mul(py.neg(this.length), py.pow(py.add(py.add(py.mul(x, x), py.mul(y, y)), TINY), -0.5));
+    return [py.mul(factor, x), py.mul(factor, y), 0.0];
+  }
+  /** Positive while the contact can exert this horizontal couple at rest, (N m)^2. */
+  reserve(normal, couple) {
+    var limit = py.mul(this.length, normal);
+    return py.sub(py.sub(py.mul(limit, limit), py.mul(couple[0], couple[0])), py.mul(couple[1], couple[1]));
+  }
+}
+py.fields(RollingResistance, ["length"]);
 
 // tippetop.mechanics.top
 
@@ -686,6 +686,266 @@ function natural_state(state, units) {
   );
 }
 
+// tippetop.contact.mode
+
+/** How a run ended; the value is advice. */
+class Outcome extends py.Enum {
+}
+py.members(
+  Outcome,
+  {
+    COMPLETED: "The run reached its end.",
+    LIFTED_OFF: "The table would have to pull from here on; with liftoff = ignore it does, and with fly the top leaves it.",
+    AT_REST: "The top came to rest, and the table holds it so: nothing happens any more.",
+    LYING_FLAT: "The body came to lie flat: there it touches the table all around, which is not followed further; this is the end of its motion, but for what the impact of its face would add.",
+    TOO_MANY_PHASES: "The top bounced and slid more often than the run allows; shorten the duration, lower the restitution, or raise the limit on phases.",
+    TOO_MANY_STEPS: "The motion took more steps than the run allows: it is very fast, or stiff; shorten the duration, lessen the friction, try the integrator collocation, which is made for stiff friction, or raise the limit on steps.",
+    INACCURATE: "The numbers do not keep what the motion keeps: do not trust them; try another integrator or a smaller tolerance.",
+    FAILED: "The integrator could not go on: the motion became singular or too stiff for it; try another integrator, or less friction."
+  }
+);
+
+/** What can happen to a top; the value is its name in a result. */
+class EventKind extends py.Enum {
+}
+py.members(
+  EventKind,
+  {
+    LIFT_OFF: "lift-off",
+    TOUCHDOWN: "touchdown",
+    STICK: "stick",
+    SLIP: "slip",
+    HALT: "rolling stops",
+    ROLL: "rolling starts",
+    IMPACT: "impact",
+    OPENING: "opening",
+    DOUBLE_CONTACT: "double contact"
+  }
+);
+
+/** Something that happened at an instant. */
+class Event extends py.Record {
+  constructor(kind, time, impulse = 0.0, energy_lost = 0.0, surface = 0, steps = 0) {
+    super();
+    this.kind = kind;
+    this.time = time;
+    this.impulse = impulse;
+    this.energy_lost = energy_lost;
+    this.surface = surface;
+    this.steps = steps;
+  }
+}
+py.fields(Event, ["kind", "time", "impulse", "energy_lost", "surface", "steps"]);
+
+/** What follows the end of a mode. */
+class Transition extends py.Record {
+  constructor(events, then, state, detail = "") {
+    super();
+    this.events = events;
+    this.then = then;
+    this.state = state;
+    this.detail = detail;
+  }
+}
+py.fields(Transition, ["events", "then", "state", "detail"]);
+
+/** What the table does to the top at an instant. */
+class Reaction extends py.NamedTuple {
+  constructor(force, torque, power, couple = null) {
+    super();
+    this.force = force;
+    this.torque = torque;
+    this.power = power;
+    this.couple = couple;
+  }
+  /** Torque of drilling and rolling friction. */
+  get resistance() {
+    return this.couple === null ? this.torque : this.couple;
+  }
+}
+py.fields(Reaction, ["force", "torque", "power", "couple"]);
+const NO_REACTION = new Reaction([0.0, 0.0, 0.0], [0.0, 0.0, 0.0], 0.0);
+
+/** A piece of a trajectory within one mode. */
+class Segment extends py.Record {
+  constructor(
+    mode,
+    solution,
+    end_state,
+    transition,
+    steps = 0,
+    evaluations = 0,
+    highest_gap = 0.0,
+    method = null
+  ) {
+    super();
+    this.mode = mode;
+    this.solution = solution;
+    this.end_state = end_state;
+    this.transition = transition;
+    this.steps = steps;
+    this.evaluations = evaluations;
+    this.highest_gap = highest_gap;
+    this.method = method;
+  }
+  /** When it ended. */
+  get end_time() {
+    return this.solution.end;
+  }
+}
+py.fields(
+  Segment,
+  ["mode", "solution", "end_state", "transition", "steps", "evaluations", "highest_gap", "method"]
+);
+
+/** What two contacts did before something happened to them. */
+class Before extends py.NamedTuple {
+  constructor(stuck = [], rolled = false) {
+    super();
+    this.stuck = stuck;
+    this.rolled = rolled;
+  }
+}
+py.fields(Before, ["stuck", "rolled"]);
+
+/** A way to move. */
+class Mode extends py.Record {
+  constructor(top, rules) {
+    super();
+    this.top = top;
+    this.rules = rules;
+  }
+  get touching() { return true; }
+  /** The top with each surface active that touches: one, where a mode does not say otherwise. */
+  get tops() {
+    return [this.top];
+  }
+  /** Modes of the same form and tops read the same from their numbers. */
+  get form() {
+    return this.name;
+  }
+  /** Its name, with the numbers of the surfaces that touch if the body has several. */
+  get label() {
+    if (!py.truth(this.touching) || !py.isinstance(this.top.surface, Hull)) {
+      return this.name;
+    }
+    var touching = py.sorted([...this.tops].map((top) => py.getattr(top.surface, "active", 0)));
+    return `${py.str(this.name)}_on_${py.str(py.join("_and_", py.map(py.str, touching)))}`;
+  }
+  /** What the table does, from the numbers of the mode, in plain operators; nothing by default. */
+  reaction(y) {
+    return NO_REACTION;
+  }
+}
+py.fields(Mode, ["top", "rules"]);
+
+/** A mode stated by its equations of motion and guards. */
+class IntegratedMode extends Mode {
+  constructor(top, rules) {
+    super(top, rules);
+  }
+  /** What remains of it when its tops are taken away, and what follows it: what it is among its like. */
+  without_tops() {
+    var nothing = null;
+    return py.replace(this, { top: nothing, rules: nothing });
+  }
+  /** The parameters of the equations of motion. */
+  get parameters() {
+    return this.top.numbers;
+  }
+  /** Integrate the equations of motion. */
+  *segments(time, state, end, integrator) {
+    var begin = [time, as_array(this.numbers(state))];
+    for (var arc of integrator.integrate(this.motion, this.parameters, begin, end)) {
+      var last = this.state(py.tolist(arc.end_state));
+      var transition = null;
+      if (arc.failure !== null) {
+        transition = new Transition([], Outcome.FAILED, last, arc.failure);
+      } else if (arc.guard !== null) {
+        transition = this.follow(arc.guard, arc.solution.end, last);
+      } else if (arc.solution.end >= end) {
+        transition = new Transition([], Outcome.COMPLETED, last);
+      }
+      yield new Segment(
+        this,
+        arc.solution,
+        last,
+        transition,
+        arc.steps,
+        arc.evaluations,
+        undefined,
+        arc.method
+      );
+    }
+  }
+}
+py.fields(IntegratedMode, ["top", "rules"]);
+
+// tippetop.contact.surfaces
+const [FACE, TOUCH] = ["face", "touch "];
+const MARGIN = 1e-15;
+
+/** Number of the surface that is active. */
+function number_of(top) {
+  return py.isinstance(top.surface, Hull) ? top.surface.active : 0;
+}
+
+/** Guards of the open surfaces of a body, and of the face that the active one is the edge of. */
+function surface_guards(top) {
+  var found = [];
+  if (py.truth(py.hasattr(acting(top.surface), "face_guard"))) {
+    found.push([FACE, _face]);
+  }
+  var open_ones = py.range(py.len(each_surface(top.surface))).filter(
+    (number) => !py.eq(number, number_of(top))
+  );
+  return py.add(
+    found,
+    [...open_ones].map((number) => [`${py.str(TOUCH)}${py.str(number)}`, _gap_of(number)])
+  );
+}
+
+function _face(top, axis) {
+  var edge = acting(top.surface);
+  return edge.face_guard(axis);
+}
+
+/** Gap of a surface while the active one touches. */
+function _gap_of(number) {
+  var gap = (top, axis) => {
+    var surface = top.surface;
+    return py.add(py.sub(surface.height(axis[2]), py.item(surface.each, number).height(axis[2])), MARGIN);
+  };
+  return gap;
+}
+
+/** Whether no other surface touches at these numbers of a mode on the active one, floats. */
+function stays_open(top, y) {
+  return clearance(top, y[2]) > py.neg(MARGIN);
+}
+
+/** The least gap of the other surfaces while the active one touches, at a cosine of the tilt, floats. */
+function clearance(top, c) {
+  var height = top.surface.height(c);
+  var gaps = py.enumerate(each_surface(top.surface)).filter(
+    ([number, other]) => !py.eq(number, number_of(top))
+  ).map(
+    ([number, other]) => py.sub(height, other.height(c))
+  );
+  return py.float(py.min(gaps));
+}
+
+/** What follows one of these guards; None for any other. */
+function follow_surface(mode, guard, time, state) {
+  if (py.eq(guard, FACE)) {
+    return new Transition([], Outcome.LYING_FLAT, state);
+  }
+  if (py.truth(guard.startsWith(TOUCH))) {
+    return mode.rules.touch(py.int(py.removeprefix(guard, TOUCH)), time, state);
+  }
+  return null;
+}
+
 // tippetop.mechanics.motion
 const PRESSED = 0.001;
 
@@ -807,6 +1067,630 @@ function on_table(state, top) {
 /** The part of the state that is free while the body touches the table. */
 function along_table(state) {
   return new SlidingState(state.axis, state.momentum, state.velocity.slice(0, 2));
+}
+
+// tippetop.mechanics.flight
+const SMALL = 1e-100;
+
+/** The state after a time of free flight. */
+function fly(state, elapsed, top, functions) {
+  var precession = scale(py.div(1.0, top.transverse_inertia), state.momentum);
+  var still = [py.mul(0.0, elapsed), py.mul(0.0, elapsed), py.mul(0.0, elapsed)];
+  var falling = [py.mul(0.0, elapsed), py.mul(0.0, elapsed), py.mul(py.neg(top.gravity), elapsed)];
+  return new State(
+    turned(state.axis, precession, elapsed, functions),
+    add(state.momentum, still),
+    add(state.velocity, falling),
+    py.add(state.height, py.mul(elapsed, py.add(state.velocity[2], py.mul(0.5, falling[2]))))
+  );
+}
+
+/** A vector after turning for a time with a constant angular velocity (rad/s), which may be zero. */
+function turned(vector, rate, elapsed, functions) {
+  var half = py.add(py.mul(py.mul(0.5, elapsed), length(rate)), SMALL);
+  var pivot = scale(py.div(py.mul(py.mul(0.5, elapsed), functions.sin(half)), half), rate);
+  var swung = cross(pivot, vector);
+  return add(vector, scale(2.0, add(scale(functions.cos(half), swung), cross(pivot, swung))));
+}
+
+/** Height of the lowest point of the body above the table, z - h(n_z), m. */
+function gap(state, top) {
+  return py.sub(state.height, on_table(along_table(state), top).height);
+}
+
+/** Rate of change of the gap, m/s: the vertical velocity of the body's lowest point. */
+function gap_rate(state, top) {
+  return py.sub(state.velocity[2], on_table(along_table(state), top).velocity[2]);
+}
+
+// tippetop.mechanics.algebra
+
+/** Arithmetic that follows from a sum, a product and a power, for what the mechanics may run on. */
+class Algebra extends py.Thing {
+  __add__(other) {
+    throw new py.NotImplementedError();
+  }
+  __mul__(other) {
+    throw new py.NotImplementedError();
+  }
+  /** A power that is not a natural number. */
+  power(exponent) {
+    throw new py.NotImplementedError();
+  }
+  __pow__(exponent) {
+    if (exponent < 1 || !py.eq(exponent, py.int(exponent))) {
+      return this.power(exponent);
+    }
+    return exponent === 1 ? this : py.mul(this, py.pow(this, py.sub(exponent, 1)));
+  }
+  __neg__() {
+    return py.mul(this, -1.0);
+  }
+  __sub__(other) {
+    return this.__add__(py.neg(other));
+  }
+  __truediv__(other) {
+    return this.__mul__(py.pow(other, -1.0));
+  }
+  __radd__(other) {
+    return py.add(this, other);
+  }
+  __rsub__(other) {
+    return py.add(py.neg(this), other);
+  }
+  __rmul__(other) {
+    return py.mul(this, other);
+  }
+  __rtruediv__(other) {
+    return py.mul(py.pow(this, -1.0), other);
+  }
+}
+
+/** A power series in time, truncated after the degree of all others. */
+class TruncatedSeries extends Algebra {
+  constructor(terms) {
+    super();
+    this.terms = terms;
+  }
+  __add__(other) {
+    if (py.isinstance(other, TruncatedSeries)) {
+      return new TruncatedSeries(py.zip(this.terms, other.terms).map(([a, b]) => py.add(a, b)));
+    }
+    return new TruncatedSeries([py.add(this.terms[0], other), ...this.terms.slice(1)]);
+  }
+  __mul__(other) {
+    var a = this.terms;
+    if (py.isinstance(other, TruncatedSeries)) {
+      var b = py.slice(other.terms, null, null, -1);
+      var last = py.sub(py.len(a), 1);
+      return new TruncatedSeries(
+        py.range(py.add(last, 1)).map(
+          (k) => py.sum(py.map(py.mul, a, py.slice(b, py.sub(last, k), null, null)))
+        )
+      );
+    }
+    return new TruncatedSeries([...a].map((term) => py.mul(other, term)));
+  }
+  /** A real power, term by term from y' a = exponent a' y. */
+  power(exponent) {
+    var a = this.terms;
+    var y = [py.pow(this.terms[0], exponent)];
+    for (var k = 1; k < py.len(a); k += 1) {
+      var total = py.sum(
+        py.range(1, py.add(k, 1)).map(
+          (j) => py.mul(
+            py.mul(py.sub(py.mul(py.add(exponent, 1.0), j), k), py.item(a, j)),
+            py.item(y, py.sub(k, j))
+          )
+        )
+      );
+      y.push(py.div(total, py.mul(k, a[0])));
+    }
+    return new TruncatedSeries(y);
+  }
+}
+
+/** All complex numbers within a radius of a real centre, and what arithmetic can make of them. */
+class Disc extends Algebra {
+  constructor(centre, radius) {
+    super();
+    [this.centre, this.radius] = [centre, radius];
+  }
+  __add__(other) {
+    if (py.isinstance(other, Disc)) {
+      return new Disc(py.add(this.centre, other.centre), py.add(this.radius, other.radius));
+    }
+    return new Disc(py.add(this.centre, other), this.radius);
+  }
+  __mul__(other) {
+    if (py.isinstance(other, Disc)) {
+      var far = py.add(py.abs(other.centre), other.radius);
+      return new Disc(
+        py.mul(this.centre, other.centre),
+        py.add(py.mul(py.abs(this.centre), other.radius), py.mul(this.radius, far))
+      );
+    }
+    return new Disc(py.mul(this.centre, other), py.mul(this.radius, py.abs(other)));
+  }
+  /** A real power, by the mean value theorem; the disc must lie right of zero for it to be analytic. */
+  power(exponent) {
+    var near = py.sub(this.centre, this.radius);
+    var far = py.add(this.centre, this.radius);
+    if (near <= 0.0) {
+      throw new py.ArithmeticError("a power of a disc that touches zero");
+    }
+    var steepest = py.max(py.pow(near, py.sub(exponent, 1.0)), py.pow(far, py.sub(exponent, 1.0)));
+    return new Disc(py.pow(this.centre, exponent), py.mul(py.mul(this.radius, py.abs(exponent)), steepest));
+  }
+}
+
+// tippetop.mechanics.roots
+const FINEST = 1e-10;
+const [GOLDEN, NARROWED] = [py.mul(0.5, py.sub(3.0, py.pow(5.0, 0.5))), 29];
+
+/** First root from `low` to `high`, or `low` if not positive there; `jerk` bounds the third derivative. */
+function first_root(function_, low, high, jerk) {
+  var time = low;
+  var step = py.sub(high, low);
+  var finest = py.mul(FINEST, py.sub(high, low));
+  var [value, rate, acceleration] = function_(time);
+  while (value > 0.0) {
+    step = py.min(step, py.sub(high, time));
+    var end = py.eq(step, py.sub(high, time)) ? high : py.add(time, step);
+    var positive = stays_positive(value, rate, acceleration, jerk, step);
+    if (py.truth(positive) || py.truth(is_one_way(rate, acceleration, jerk, step))) {
+      if (py.eq(end, high) && py.truth(positive)) {
+        return null;
+      }
+      var later = function_(end);
+      if (later[0] <= 0.0 && !py.truth(positive)) {
+        return crossing((t) => function_(t)[0], time, end);
+      }
+      if (py.eq(end, high) && later[0] > 0.0) {
+        return null;
+      }
+      [time, step] = [end, py.mul(2.0, step)];
+      [value, rate, acceleration] = later;
+    } else {
+      step = py.mul(step, 0.5);
+      if (step < finest) {
+        break;
+      }
+    }
+  }
+  return time;
+}
+
+/** Whether value + rate s + acceleration s^2/2 - jerk s^3/6 is positive for all s in [0, step]. */
+function stays_positive(value, rate, acceleration, jerk, step) {
+  var cubic = (s) => {
+    return py.add(
+      value,
+      py.mul(s, py.add(rate, py.mul(s, py.sub(py.div(acceleration, 2.0), py.div(py.mul(s, jerk), 6.0)))))
+    );
+  };
+  if (cubic(step) <= 0.0) {
+    return false;
+  }
+  var discriminant = py.add(py.mul(acceleration, acceleration), py.mul(py.mul(2.0, jerk), rate));
+  if (rate >= 0.0 || acceleration <= 0.0 || discriminant <= 0.0) {
+    return true;
+  }
+  var dip = py.div(py.mul(-2.0, rate), py.add(acceleration, py.pow(discriminant, 0.5)));
+  return py.or(dip >= step, () => cubic(dip) > 0.0);
+}
+
+/** Whether a function surely falls, or surely is concave, all along a step: it has one root at most. */
+function is_one_way(rate, acceleration, jerk, step) {
+  var falls = py.and(
+    rate < 0.0,
+    () => py.add(rate, py.mul(step, py.add(acceleration, py.mul(py.mul(0.5, step), jerk)))) < 0.0
+  );
+  return py.or(falls, () => py.add(acceleration, py.mul(step, jerk)) < 0.0);
+}
+
+/** Place and value of a function's least value between two points, or of one that is not positive. */
+function dip(function_, low, high) {
+  var a = low;
+  var b = high;
+  var x = py.add(a, py.mul(GOLDEN, py.sub(b, a)));
+  var y = py.sub(b, py.mul(GOLDEN, py.sub(b, a)));
+  var f = function_(x);
+  var g = function_(y);
+  for (var turn = 0; turn < NARROWED; turn += 1) {
+    if (f <= 0.0 || g <= 0.0) {
+      break;
+    }
+    if (f < g) {
+      [b, y, g] = [y, x, f];
+      x = py.add(a, py.mul(GOLDEN, py.sub(b, a)));
+      f = function_(x);
+    } else {
+      [a, x, f] = [x, y, g];
+      y = py.sub(b, py.mul(GOLDEN, py.sub(b, a)));
+      g = function_(y);
+    }
+  }
+  return f < g ? [x, f] : [y, g];
+}
+
+/** Root of a function between two points where its signs differ, by the method of Chandrupatla (1997). */
+function crossing(function_, low, high) {
+  var x1 = high;
+  var x2 = low;
+  var part = 0.5;
+  var y1 = function_(x1);
+  var y2 = function_(x2);
+  if (y1 === 0.0 || y2 === 0.0) {
+    return y2 === 0.0 ? x2 : x1;
+  }
+  var best = x1;
+  for (var turn = 0; turn < 400; turn += 1) {
+    var x = py.add(x1, py.mul(part, py.sub(x2, x1)));
+    var y = function_(x);
+    if (py.eq(y > 0.0, y1 > 0.0)) {
+      var x3 = x1;
+      var y3 = y1;
+    } else {
+      [x3, y3, x2, y2] = [x2, y2, x1, y1];
+    }
+    x1 = x;
+    y1 = y;
+    best = py.abs(y1) < py.abs(y2) ? x1 : x2;
+    var fuzz = py.div(py.mul(2.3e-16, py.abs(best)), py.abs(py.sub(x2, x1)));
+    if (fuzz > 0.5 || y === 0.0) {
+      break;
+    }
+    var xi = py.div(py.sub(x1, x2), py.sub(x3, x2));
+    var phi = py.div(py.sub(y1, y2), py.sub(y3, y2));
+    part = 0.5;
+    if (py.mul(phi, phi) < xi && py.pow(py.sub(1.0, phi), 2) < py.sub(1.0, xi)) {
+      part = py.div(py.mul(py.div(y1, py.sub(y2, y1)), y3), py.sub(y2, y3));
+      part = py.add(
+        part,
+        py.div(
+          py.mul(py.div(py.mul(py.div(py.sub(x3, x1), py.sub(x2, x1)), y1), py.sub(y3, y1)), y2),
+          py.sub(y3, y2)
+        )
+      );
+    }
+    part = py.min(py.max(part, fuzz), py.sub(1.0, fuzz));
+  }
+  return best;
+}
+
+// tippetop.mechanics.touchdown
+const DEGREE = 16;
+const START = py.pow(10.0, py.div(-16.0, py.add(DEGREE, 1)));
+const WIDEST = 4.0;
+const NARROWEST = 1e-09;
+const LOOKS = 10.0;
+const MOST_LOOKS = 1000;
+const MOST_DISCS = 100000;
+
+/** How a flight starts: how many of gap, gap rate and gap acceleration are then zero by construction. */
+class Start extends py.IntEnum {
+}
+py.members(Start, { AIRBORNE: 0, REBOUND: 1, RELEASE: 2, LIFT_OFF: 3 });
+
+/** Time of the first touch of the table after the start of a flight, s. */
+function touchdown(state, top, horizon, start = Start.AIRBORNE) {
+  var [tip, , ballistic] = Separation.of(state, top);
+  var deepest = py.min(0.0, ...[-1.0, 1.0].map((c) => py.float(top.surface.height(c))));
+  horizon = py.min(horizon, py.mul(2.0, falling_time(py.sub(ballistic[0], deepest), ...ballistic.slice(1))));
+  var time = 0.0;
+  if (!py.eq(start, Start.AIRBORNE)) {
+    var support = py.add(top.surface.height(tip.series()), py.mul(0.0, tip.series())).terms;
+    ballistic = [...support.slice(0, start), ...ballistic.slice(start)];
+    var terms = py.add(
+      py.zip(ballistic, support.slice(0, 3)).map(([b, s]) => py.sub(b, s)),
+      [...support.slice(3)].map((s) => py.neg(s))
+    );
+    var opening = new Opening(
+      py.slice(
+        terms,
+        py.next(py.range(start, DEGREE).filter((j) => py.truth(py.item(terms, j))), DEGREE),
+        null,
+        null
+      )
+    );
+    time = py.min(horizon, py.mul(START, analytic_disc(tip, top.surface, 0.0, 0.0, WIDEST)[0]));
+    var root = first_root(py.bound(opening, "at"), 0.0, time, opening.jerk_bound(time));
+    if (root !== null) {
+      return root;
+    }
+  }
+  var separation = new Separation(tip, top.surface, ballistic);
+  var angle = WIDEST;
+  for (var turn = 0; turn < MOST_DISCS; turn += 1) {
+    if (time >= horizon) {
+      return null;
+    }
+    var [radius, spread] = analytic_disc(tip, top.surface, time, 0.25, angle);
+    angle = py.min(WIDEST, py.mul(py.mul(2.0, radius), tip.frequency));
+    var end = py.min(horizon, py.add(time, py.mul(0.5, radius)));
+    root = first_root(
+      py.bound(separation, "at"),
+      time,
+      end,
+      py.div(py.mul(6.0, spread), py.mul(py.pow(0.75, 4), py.pow(radius, 3)))
+    );
+    if (root !== null) {
+      return root;
+    }
+    time = end;
+  }
+  throw new py.ArithmeticError("a flight turns too often for its end to be found");
+}
+
+/** Time after which height + rate t + half t^2 stays negative, infinite if half is not negative. */
+function falling_time(height, rate, half) {
+  if (half >= 0.0) {
+    return py.math.inf;
+  }
+  return py.div(
+    py.neg(
+      py.add(rate, py.math.sqrt(py.max(py.sub(py.mul(rate, rate), py.mul(py.mul(4.0, half), height)), 0.0)))
+    ),
+    py.mul(2.0, half)
+  );
+}
+
+/** The highest gap of a free flight that lasts some time, s; floats. */
+function highest_gap(state, top, duration) {
+  var [gap, ...others] = [...top.each].map((one) => py.bound(Separation.of(state, one), "at"));
+  if (py.truth(others)) {
+    var everywhere = [gap, ...others];
+    gap = (time) => {
+      return py.min([...everywhere].map((at) => at(time)));
+    };
+  }
+  var count = py.min(
+    MOST_LOOKS,
+    py.add(2, py.int(py.div(py.mul(py.mul(LOOKS, duration), length(state.momentum)), top.transverse_inertia)))
+  );
+  var times = py.range(py.add(count, 1)).map((j) => py.div(py.mul(duration, j), count));
+  var gaps = [...times].map((time) => gap(time)[0]);
+  var best = py.max(py.range(py.add(count, 1)), py.how({ key: py.bound(gaps, "__getitem__") }));
+  if (gap(py.item(times, best))[1] > 0.0) {
+    var low = py.item(times, best);
+    var high = py.item(times, py.min(py.add(best, 1), count));
+  } else {
+    low = py.max(py.item(times, py.max(py.sub(best, 1), 0)), py.mul(0.001, times[1]));
+    high = py.item(times, best);
+  }
+  if (!(gap(low)[1] > 0.0 && 0.0 > gap(high)[1])) {
+    return py.item(gaps, best);
+  }
+  return py.max(py.item(gaps, best), gap(crossing((time) => gap(time)[1], low, high))[0]);
+}
+
+/** Height c = n_z of the tip of the axis in free flight: its value, two derivatives, and frequency. */
+class Tip extends py.NamedTuple {
+  constructor(height, rate, acceleration, frequency) {
+    super();
+    this.height = height;
+    this.rate = rate;
+    this.acceleration = acceleration;
+    this.frequency = frequency;
+  }
+  /** The tip in a free flight from a state on; of numbers, or arrays of them. */
+  static of(state, top) {
+    var turning = axis_rate(state.axis, state.momentum, top);
+    return new this(
+      state.axis[2],
+      turning[2],
+      axis_rate(turning, state.momentum, top)[2],
+      py.add(length(scale(py.div(1.0, top.transverse_inertia), state.momentum)), SMALL)
+    );
+  }
+  /** Height, rate and acceleration at a time: c'' turns into -w^2 c' and back. */
+  at(time) {
+    var w = this.frequency;
+    var cosine = py.math.cos(py.mul(w, time));
+    var sine = py.div(py.math.sin(py.mul(w, time)), w);
+    var half = py.div(py.math.sin(py.mul(py.mul(0.5, w), time)), w);
+    return [
+      py.add(
+        py.add(this.height, py.mul(this.rate, sine)),
+        py.mul(py.mul(py.mul(2.0, this.acceleration), half), half)
+      ),
+      py.add(py.mul(this.rate, cosine), py.mul(this.acceleration, sine)),
+      py.sub(py.mul(this.acceleration, cosine), py.mul(py.mul(py.mul(this.rate, w), w), sine))
+    ];
+  }
+  /** Height as a power series in time. */
+  series() {
+    var terms = [this.height, this.rate, py.mul(0.5, this.acceleration)];
+    for (var j = 1; j < py.sub(DEGREE, 1); j += 1) {
+      terms.push(
+        py.div(
+          py.mul(py.neg(py.pow(this.frequency, 2)), py.item(terms, j)),
+          py.mul(py.add(j, 1), py.add(j, 2))
+        )
+      );
+    }
+    return new TruncatedSeries(terms);
+  }
+  /** Largest |c - c(time)| for complex times within angle / frequency of a real one. */
+  spread(time, angle) {
+    var [, rate, acceleration] = this.at(time);
+    var w = this.frequency;
+    return py.add(
+      py.div(py.mul(py.abs(rate), py.math.sinh(angle)), w),
+      py.div(py.mul(py.abs(acceleration), py.sub(py.math.cosh(angle), 1.0)), py.pow(w, 2))
+    );
+  }
+}
+py.fields(Tip, ["height", "rate", "acceleration", "frequency"]);
+
+/** The gap as a function of time: a parabola less the support function at the tip's height. */
+class Separation extends py.NamedTuple {
+  constructor(tip, shape, parabola) {
+    super();
+    this.tip = tip;
+    this.shape = shape;
+    this.parabola = parabola;
+  }
+  /** The gap of a free flight from a state on. */
+  static of(state, top) {
+    return new this(
+      Tip.of(state, top),
+      top.surface,
+      [state.height, state.velocity[2], py.mul(-0.5, top.gravity)]
+    );
+  }
+  /** Gap, its rate and its acceleration. */
+  at(time) {
+    var [p0, p1, p2] = this.parabola;
+    var [c, rate, acceleration] = this.tip.at(time);
+    var slope = this.shape.slope(c);
+    return [
+      py.sub(py.add(p0, py.mul(time, py.add(p1, py.mul(time, p2)))), this.shape.height(c)),
+      py.sub(py.add(p1, py.mul(py.mul(2.0, time), p2)), py.mul(slope, rate)),
+      py.sub(
+        py.sub(py.mul(2.0, p2), py.mul(py.mul(this.shape.curvature(c), rate), rate)),
+        py.mul(slope, acceleration)
+      )
+    ];
+  }
+}
+py.fields(Separation, ["tip", "shape", "parabola"]);
+
+/** A polynomial in time: the gap at the start of a flight, divided by the power of time that it has. */
+class Opening extends py.NamedTuple {
+  constructor(terms) {
+    super();
+    this.terms = terms;
+  }
+  /** Value and first two derivatives, by Horner's rule. */
+  at(time) {
+    var value = 0.0;
+    var rate = 0.0;
+    var half = 0.0;
+    for (var term of py.reversed(this.terms)) {
+      half = py.add(py.mul(half, time), rate);
+      rate = py.add(py.mul(rate, time), value);
+      value = py.add(py.mul(value, time), term);
+    }
+    return [value, rate, py.mul(2.0, half)];
+  }
+  /** A bound on the third derivative up to this time. */
+  jerk_bound(time) {
+    var bound = 0.0;
+    for (var j = py.sub(py.len(this.terms), 1); j > 2; j += -1) {
+      bound = py.add(
+        py.mul(bound, time),
+        py.mul(py.mul(py.mul(j, py.sub(j, 1)), py.sub(j, 2)), py.abs(py.item(this.terms, j)))
+      );
+    }
+    return bound;
+  }
+}
+py.fields(Opening, ["terms"]);
+
+/** Radius of a disc of time centred `ahead` radii after `time` where h(c) is analytic, and of h(c). */
+function analytic_disc(tip, shape, time, ahead, angle) {
+  while (py.truth(true)) {
+    var radius = py.div(angle, tip.frequency);
+    var centre = py.add(time, py.mul(ahead, radius));
+    try {
+      var c = new Disc(tip.at(centre)[0], tip.spread(centre, angle));
+      return [radius, py.float(py.add(shape.height(c), py.mul(0.0, c)).radius)];
+    } catch (error) {
+      if (!(error instanceof py.ArithmeticError)) throw error;
+      angle = py.mul(angle, 0.5);
+      if (angle < NARROWEST) {
+        throw error;
+      }
+    }
+  }
+}
+
+// tippetop.contact.flight
+const DEGREE_of_flight = 9;
+const TURN = 0.25;
+const MOST_STEPS = 4096;
+const TOUCHING = 1e-12;
+
+/** Free flight, until the body's lowest point touches the table again. */
+class Flight extends Mode {
+  constructor(top, rules, start = Start.AIRBORNE) {
+    super(top, rules);
+    this.start = start;
+  }
+  get name() { return "flight"; }
+  get touching() { return false; }
+  /** The numbers of a flight are those of the state. */
+  state(y) {
+    return State.unpack(y);
+  }
+  /** Evaluate the flight, which needs no integrator: the impact at its end may. */
+  *segments(time, state, end, integrator) {
+    try {
+      var [landing, lowest] = this._landing(state, py.sub(end, time));
+    } catch (error) {
+      if (!(error instanceof py.ArithmeticError)) throw error;
+      var failed = new Transition([], Outcome.FAILED, state, py.str(error));
+      yield new Segment(this, DenseSolution.nothing(time, py.len(state.pack())), state, failed);
+      return null;
+    }
+    var duration = landing === null ? py.sub(end, time) : landing;
+    var rate = py.div(length(state.momentum), this.top.transverse_inertia);
+    var count = py.add(1, py.int(py.div(py.mul(duration, rate), TURN)));
+    var highest = highest_gap(state, this.top, duration);
+    for (var first = 0; first < count; first += MOST_STEPS) {
+      var last = py.min(py.add(first, MOST_STEPS), count);
+      var elapsed = py.range(first, py.add(last, 1)).map((step) => py.mul(py.div(duration, count), step));
+      py.put(elapsed, -1, py.eq(last, count) ? duration : py.item(elapsed, -1));
+      var here = fly(state, py.item(elapsed, -1), this.top, py.math);
+      var transition = null;
+      var reach = py.add(time, py.item(elapsed, -1));
+      if (py.eq(last, count)) {
+        reach = landing === null ? end : reach;
+        var low = landing === null ? null : lowest;
+        transition = this._transition(reach, here, low, integrator);
+      }
+      var solution = DenseSolution.fitted(this._numbers(state), elapsed, DEGREE_of_flight).moved(time, reach);
+      yield new Segment(this, solution, here, transition, undefined, undefined, highest);
+    }
+  }
+  /** When the first surface touches the table, and the top with that surface active. */
+  _landing(state, horizon) {
+    var found = touchdown(state, this.top, horizon, this.start);
+    var lowest = this.top;
+    for (var other of this.top.each) {
+      if (!py.eq(other, this.top)) {
+        var limit = found === null ? horizon : found;
+        var sooner = touchdown(state, other, limit, start_of(state, other));
+        if (sooner !== null && (found === null || sooner < found)) {
+          found = sooner;
+          lowest = other;
+        }
+      }
+    }
+    return [found, lowest];
+  }
+  _transition(time, state, lowest, integrator) {
+    if (lowest === null) {
+      return new Transition([], Outcome.COMPLETED, state);
+    }
+    var here = state._replace({ height: on_table(along_table(state), lowest).height });
+    if (py.eq(lowest, this.top)) {
+      return this.rules.touchdown(time, here, integrator);
+    }
+    return this.rules.touch(number_of(lowest), time, here, integrator);
+  }
+}
+py.fields(Flight, ["top", "rules", "start"]);
+
+/** How a flight starts for a surface that did not decide it: far, or just opened. */
+function start_of(state, top) {
+  var rate = gap_rate(state, top);
+  if (gap(state, top) > TOUCHING || rate < py.neg(TOUCHING)) {
+    return Start.AIRBORNE;
+  }
+  return rate > TOUCHING ? Start.REBOUND : Start.RELEASE;
 }
 
 // tippetop.mechanics.rolling
@@ -1482,924 +2366,6 @@ function landed(state, ending, top) {
     py.add(state.time, left)
   );
   return [rest, py.div(py.mul(left, size(across)), py.neg(along))];
-}
-
-// tippetop.contact.mode
-
-/** How a run ended; the value is advice. */
-class Outcome extends py.Enum {
-}
-py.members(
-  Outcome,
-  {
-    COMPLETED: "The run reached its end.",
-    LIFTED_OFF: "The table would have to pull from here on; with liftoff = ignore it does, and with fly the top leaves it.",
-    AT_REST: "The top came to rest, and the table holds it so: nothing happens any more.",
-    LYING_FLAT: "The body came to lie flat: there it touches the table all around, which is not followed further; this is the end of its motion, but for what the impact of its face would add.",
-    TOO_MANY_PHASES: "The top bounced and slid more often than the run allows; shorten the duration, lower the restitution, or raise the limit on phases.",
-    TOO_MANY_STEPS: "The motion took more steps than the run allows: it is very fast, or stiff; shorten the duration, lessen the friction, try the integrator collocation, which is made for stiff friction, or raise the limit on steps.",
-    INACCURATE: "The numbers do not keep what the motion keeps: do not trust them; try another integrator or a smaller tolerance.",
-    FAILED: "The integrator could not go on: the motion became singular or too stiff for it; try another integrator, or less friction."
-  }
-);
-
-/** What can happen to a top; the value is its name in a result. */
-class EventKind extends py.Enum {
-}
-py.members(
-  EventKind,
-  {
-    LIFT_OFF: "lift-off",
-    TOUCHDOWN: "touchdown",
-    STICK: "stick",
-    SLIP: "slip",
-    HALT: "rolling stops",
-    ROLL: "rolling starts",
-    IMPACT: "impact",
-    OPENING: "opening",
-    DOUBLE_CONTACT: "double contact"
-  }
-);
-
-/** Something that happened at an instant. */
-class Event extends py.Record {
-  constructor(kind, time, impulse = 0.0, energy_lost = 0.0, surface = 0, steps = 0) {
-    super();
-    this.kind = kind;
-    this.time = time;
-    this.impulse = impulse;
-    this.energy_lost = energy_lost;
-    this.surface = surface;
-    this.steps = steps;
-  }
-}
-py.fields(Event, ["kind", "time", "impulse", "energy_lost", "surface", "steps"]);
-
-/** What follows the end of a mode. */
-class Transition extends py.Record {
-  constructor(events, then, state, detail = "") {
-    super();
-    this.events = events;
-    this.then = then;
-    this.state = state;
-    this.detail = detail;
-  }
-}
-py.fields(Transition, ["events", "then", "state", "detail"]);
-
-/** What the table does to the top at an instant. */
-class Reaction extends py.NamedTuple {
-  constructor(force, torque, power, couple = null) {
-    super();
-    this.force = force;
-    this.torque = torque;
-    this.power = power;
-    this.couple = couple;
-  }
-  /** Torque of drilling and rolling friction. */
-  get resistance() {
-    return this.couple === null ? this.torque : this.couple;
-  }
-}
-py.fields(Reaction, ["force", "torque", "power", "couple"]);
-const NO_REACTION = new Reaction([0.0, 0.0, 0.0], [0.0, 0.0, 0.0], 0.0);
-
-/** A piece of a trajectory within one mode. */
-class Segment extends py.Record {
-  constructor(
-    mode,
-    solution,
-    end_state,
-    transition,
-    steps = 0,
-    evaluations = 0,
-    highest_gap = 0.0,
-    method = null
-  ) {
-    super();
-    this.mode = mode;
-    this.solution = solution;
-    this.end_state = end_state;
-    this.transition = transition;
-    this.steps = steps;
-    this.evaluations = evaluations;
-    this.highest_gap = highest_gap;
-    this.method = method;
-  }
-  /** When it ended. */
-  get end_time() {
-    return this.solution.end;
-  }
-}
-py.fields(
-  Segment,
-  ["mode", "solution", "end_state", "transition", "steps", "evaluations", "highest_gap", "method"]
-);
-
-/** What two contacts did before something happened to them. */
-class Before extends py.NamedTuple {
-  constructor(stuck = [], rolled = false) {
-    super();
-    this.stuck = stuck;
-    this.rolled = rolled;
-  }
-}
-py.fields(Before, ["stuck", "rolled"]);
-
-/** What follows where contact, or slip, begins or ends; what never happens under some raises an error. */
-class Rules extends py.Record {
-  constructor(top) {
-    super();
-    this.top = top;
-  }
-  get pulls() { return false; }
-  /** The rules of the top with another of its surfaces active. */
-  on(surface) {
-    return py.replace(this, { top: py.item(this.top.each, surface) });
-  }
-  /** What follows when the normal force falls to zero. */
-  lift_off(time, state) {
-    throw new py.NotImplementedError();
-  }
-  /** What follows when the top reaches the table; the integrator may follow the impact too. */
-  touchdown(time, state, integrator = null) {
-    throw new py.NotImplementedError();
-  }
-  /** What follows when another surface of the top, of this number, reaches the table too. */
-  touch(surface, time, state, integrator = null) {
-    throw new py.NotImplementedError();
-  }
-  /** What follows when slip ends on a contact beside another one, or rolling; it rolls as signed now. */
-  settled_on_two(time, state, tops, before, rolls) {
-    throw new py.NotImplementedError();
-  }
-  /** What follows when one of two contacts, or both, can be held no longer. */
-  slipping_on_two(time, state, tops, which, rolls) {
-    throw new py.NotImplementedError();
-  }
-}
-py.fields(Rules, ["top"]);
-
-/** A way to move. */
-class Mode extends py.Record {
-  constructor(top, rules) {
-    super();
-    this.top = top;
-    this.rules = rules;
-  }
-  get touching() { return true; }
-  /** The top with each surface active that touches: one, where a mode does not say otherwise. */
-  get tops() {
-    return [this.top];
-  }
-  /** Modes of the same form and tops read the same from their numbers. */
-  get form() {
-    return this.name;
-  }
-  /** Its name, with the numbers of the surfaces that touch if the body has several. */
-  get label() {
-    if (!py.truth(this.touching) || !py.isinstance(this.top.surface, Hull)) {
-      return this.name;
-    }
-    var touching = py.sorted([...this.tops].map((top) => py.getattr(top.surface, "active", 0)));
-    return `${py.str(this.name)}_on_${py.str(py.join("_and_", py.map(py.str, touching)))}`;
-  }
-  /** What the table does, from the numbers of the mode, in plain operators; nothing by default. */
-  reaction(y) {
-    return NO_REACTION;
-  }
-}
-py.fields(Mode, ["top", "rules"]);
-
-/** A mode stated by its equations of motion and guards. */
-class IntegratedMode extends Mode {
-  constructor(top, rules) {
-    super(top, rules);
-  }
-  /** What remains of it when its tops are taken away, and what follows it: what it is among its like. */
-  without_tops() {
-    var nothing = null;
-    return py.replace(this, { top: nothing, rules: nothing });
-  }
-  /** The parameters of the equations of motion. */
-  get parameters() {
-    return this.top.numbers;
-  }
-  /** Integrate the equations of motion. */
-  *segments(time, state, end, integrator) {
-    var begin = [time, as_array(this.numbers(state))];
-    for (var arc of integrator.integrate(this.motion, this.parameters, begin, end)) {
-      var last = this.state(py.tolist(arc.end_state));
-      var transition = null;
-      if (arc.failure !== null) {
-        transition = new Transition([], Outcome.FAILED, last, arc.failure);
-      } else if (arc.guard !== null) {
-        transition = this.follow(arc.guard, arc.solution.end, last);
-      } else if (arc.solution.end >= end) {
-        transition = new Transition([], Outcome.COMPLETED, last);
-      }
-      yield new Segment(
-        this,
-        arc.solution,
-        last,
-        transition,
-        arc.steps,
-        arc.evaluations,
-        undefined,
-        arc.method
-      );
-    }
-  }
-}
-py.fields(IntegratedMode, ["top", "rules"]);
-
-// tippetop.contact.surfaces
-const [FACE, TOUCH] = ["face", "touch "];
-const MARGIN = 1e-15;
-
-/** Number of the surface that is active. */
-function number_of(top) {
-  return py.isinstance(top.surface, Hull) ? top.surface.active : 0;
-}
-
-/** Guards of the open surfaces of a body, and of the face that the active one is the edge of. */
-function surface_guards(top) {
-  var found = [];
-  if (py.truth(py.hasattr(acting(top.surface), "face_guard"))) {
-    found.push([FACE, _face]);
-  }
-  var open_ones = py.range(py.len(each_surface(top.surface))).filter(
-    (number) => !py.eq(number, number_of(top))
-  );
-  return py.add(
-    found,
-    [...open_ones].map((number) => [`${py.str(TOUCH)}${py.str(number)}`, _gap_of(number)])
-  );
-}
-
-function _face(top, axis) {
-  var edge = acting(top.surface);
-  return edge.face_guard(axis);
-}
-
-/** Gap of a surface while the active one touches. */
-function _gap_of(number) {
-  var gap = (top, axis) => {
-    var surface = top.surface;
-    return py.add(py.sub(surface.height(axis[2]), py.item(surface.each, number).height(axis[2])), MARGIN);
-  };
-  return gap;
-}
-
-/** Whether no other surface touches at these numbers of a mode on the active one, floats. */
-function stays_open(top, y) {
-  return clearance(top, y[2]) > py.neg(MARGIN);
-}
-
-/** The least gap of the other surfaces while the active one touches, at a cosine of the tilt, floats. */
-function clearance(top, c) {
-  var height = top.surface.height(c);
-  var gaps = py.enumerate(each_surface(top.surface)).filter(
-    ([number, other]) => !py.eq(number, number_of(top))
-  ).map(
-    ([number, other]) => py.sub(height, other.height(c))
-  );
-  return py.float(py.min(gaps));
-}
-
-/** What follows one of these guards; None for any other. */
-function follow_surface(mode, guard, time, state) {
-  if (py.eq(guard, FACE)) {
-    return new Transition([], Outcome.LYING_FLAT, state);
-  }
-  if (py.truth(guard.startsWith(TOUCH))) {
-    return mode.rules.touch(py.int(py.removeprefix(guard, TOUCH)), time, state);
-  }
-  return null;
-}
-
-// tippetop.mechanics.flight
-const SMALL = 1e-100;
-
-/** The state after a time of free flight. */
-function fly(state, elapsed, top, functions) {
-  var precession = scale(py.div(1.0, top.transverse_inertia), state.momentum);
-  var still = [py.mul(0.0, elapsed), py.mul(0.0, elapsed), py.mul(0.0, elapsed)];
-  var falling = [py.mul(0.0, elapsed), py.mul(0.0, elapsed), py.mul(py.neg(top.gravity), elapsed)];
-  return new State(
-    turned(state.axis, precession, elapsed, functions),
-    add(state.momentum, still),
-    add(state.velocity, falling),
-    py.add(state.height, py.mul(elapsed, py.add(state.velocity[2], py.mul(0.5, falling[2]))))
-  );
-}
-
-/** A vector after turning for a time with a constant angular velocity (rad/s), which may be zero. */
-function turned(vector, rate, elapsed, functions) {
-  var half = py.add(py.mul(py.mul(0.5, elapsed), length(rate)), SMALL);
-  var pivot = scale(py.div(py.mul(py.mul(0.5, elapsed), functions.sin(half)), half), rate);
-  var swung = cross(pivot, vector);
-  return add(vector, scale(2.0, add(scale(functions.cos(half), swung), cross(pivot, swung))));
-}
-
-/** Height of the lowest point of the body above the table, z - h(n_z), m. */
-function gap(state, top) {
-  return py.sub(state.height, on_table(along_table(state), top).height);
-}
-
-/** Rate of change of the gap, m/s: the vertical velocity of the body's lowest point. */
-function gap_rate(state, top) {
-  return py.sub(state.velocity[2], on_table(along_table(state), top).velocity[2]);
-}
-
-// tippetop.mechanics.algebra
-
-/** Arithmetic that follows from a sum, a product and a power, for what the mechanics may run on. */
-class Algebra extends py.Thing {
-  __add__(other) {
-    throw new py.NotImplementedError();
-  }
-  __mul__(other) {
-    throw new py.NotImplementedError();
-  }
-  /** A power that is not a natural number. */
-  power(exponent) {
-    throw new py.NotImplementedError();
-  }
-  __pow__(exponent) {
-    if (exponent < 1 || !py.eq(exponent, py.int(exponent))) {
-      return this.power(exponent);
-    }
-    return exponent === 1 ? this : py.mul(this, py.pow(this, py.sub(exponent, 1)));
-  }
-  __neg__() {
-    return py.mul(this, -1.0);
-  }
-  __sub__(other) {
-    return this.__add__(py.neg(other));
-  }
-  __truediv__(other) {
-    return this.__mul__(py.pow(other, -1.0));
-  }
-  __radd__(other) {
-    return py.add(this, other);
-  }
-  __rsub__(other) {
-    return py.add(py.neg(this), other);
-  }
-  __rmul__(other) {
-    return py.mul(this, other);
-  }
-  __rtruediv__(other) {
-    return py.mul(py.pow(this, -1.0), other);
-  }
-}
-
-/** A power series in time, truncated after the degree of all others. */
-class TruncatedSeries extends Algebra {
-  constructor(terms) {
-    super();
-    this.terms = terms;
-  }
-  __add__(other) {
-    if (py.isinstance(other, TruncatedSeries)) {
-      return new TruncatedSeries(py.zip(this.terms, other.terms).map(([a, b]) => py.add(a, b)));
-    }
-    return new TruncatedSeries([py.add(this.terms[0], other), ...this.terms.slice(1)]);
-  }
-  __mul__(other) {
-    var a = this.terms;
-    if (py.isinstance(other, TruncatedSeries)) {
-      var b = py.slice(other.terms, null, null, -1);
-      var last = py.sub(py.len(a), 1);
-      return new TruncatedSeries(
-        py.range(py.add(last, 1)).map(
-          (k) => py.sum(py.map(py.mul, a, py.slice(b, py.sub(last, k), null, null)))
-        )
-      );
-    }
-    return new TruncatedSeries([...a].map((term) => py.mul(other, term)));
-  }
-  /** A real power, term by term from y' a = exponent a' y. */
-  power(exponent) {
-    var a = this.terms;
-    var y = [py.pow(this.terms[0], exponent)];
-    for (var k = 1; k < py.len(a); k += 1) {
-      var total = py.sum(
-        py.range(1, py.add(k, 1)).map(
-          (j) => py.mul(
-            py.mul(py.sub(py.mul(py.add(exponent, 1.0), j), k), py.item(a, j)),
-            py.item(y, py.sub(k, j))
-          )
-        )
-      );
-      y.push(py.div(total, py.mul(k, a[0])));
-    }
-    return new TruncatedSeries(y);
-  }
-}
-
-/** All complex numbers within a radius of a real centre, and what arithmetic can make of them. */
-class Disc extends Algebra {
-  constructor(centre, radius) {
-    super();
-    [this.centre, this.radius] = [centre, radius];
-  }
-  __add__(other) {
-    if (py.isinstance(other, Disc)) {
-      return new Disc(py.add(this.centre, other.centre), py.add(this.radius, other.radius));
-    }
-    return new Disc(py.add(this.centre, other), this.radius);
-  }
-  __mul__(other) {
-    if (py.isinstance(other, Disc)) {
-      var far = py.add(py.abs(other.centre), other.radius);
-      return new Disc(
-        py.mul(this.centre, other.centre),
-        py.add(py.mul(py.abs(this.centre), other.radius), py.mul(this.radius, far))
-      );
-    }
-    return new Disc(py.mul(this.centre, other), py.mul(this.radius, py.abs(other)));
-  }
-  /** A real power, by the mean value theorem; the disc must lie right of zero for it to be analytic. */
-  power(exponent) {
-    var near = py.sub(this.centre, this.radius);
-    var far = py.add(this.centre, this.radius);
-    if (near <= 0.0) {
-      throw new py.ArithmeticError("a power of a disc that touches zero");
-    }
-    var steepest = py.max(py.pow(near, py.sub(exponent, 1.0)), py.pow(far, py.sub(exponent, 1.0)));
-    return new Disc(py.pow(this.centre, exponent), py.mul(py.mul(this.radius, py.abs(exponent)), steepest));
-  }
-}
-
-// tippetop.mechanics.roots
-const FINEST = 1e-10;
-const [GOLDEN, NARROWED] = [py.mul(0.5, py.sub(3.0, py.pow(5.0, 0.5))), 29];
-
-/** First root from `low` to `high`, or `low` if not positive there; `jerk` bounds the third derivative. */
-function first_root(function_, low, high, jerk) {
-  var time = low;
-  var step = py.sub(high, low);
-  var finest = py.mul(FINEST, py.sub(high, low));
-  var [value, rate, acceleration] = function_(time);
-  while (value > 0.0) {
-    step = py.min(step, py.sub(high, time));
-    var end = py.eq(step, py.sub(high, time)) ? high : py.add(time, step);
-    var positive = stays_positive(value, rate, acceleration, jerk, step);
-    if (py.truth(positive) || py.truth(is_one_way(rate, acceleration, jerk, step))) {
-      if (py.eq(end, high) && py.truth(positive)) {
-        return null;
-      }
-      var later = function_(end);
-      if (later[0] <= 0.0 && !py.truth(positive)) {
-        return crossing((t) => function_(t)[0], time, end);
-      }
-      if (py.eq(end, high) && later[0] > 0.0) {
-        return null;
-      }
-      [time, step] = [end, py.mul(2.0, step)];
-      [value, rate, acceleration] = later;
-    } else {
-      step = py.mul(step, 0.5);
-      if (step < finest) {
-        break;
-      }
-    }
-  }
-  return time;
-}
-
-/** Whether value + rate s + acceleration s^2/2 - jerk s^3/6 is positive for all s in [0, step]. */
-function stays_positive(value, rate, acceleration, jerk, step) {
-  var cubic = (s) => {
-    return py.add(
-      value,
-      py.mul(s, py.add(rate, py.mul(s, py.sub(py.div(acceleration, 2.0), py.div(py.mul(s, jerk), 6.0)))))
-    );
-  };
-  if (cubic(step) <= 0.0) {
-    return false;
-  }
-  var discriminant = py.add(py.mul(acceleration, acceleration), py.mul(py.mul(2.0, jerk), rate));
-  if (rate >= 0.0 || acceleration <= 0.0 || discriminant <= 0.0) {
-    return true;
-  }
-  var dip = py.div(py.mul(-2.0, rate), py.add(acceleration, py.pow(discriminant, 0.5)));
-  return py.or(dip >= step, () => cubic(dip) > 0.0);
-}
-
-/** Whether a function surely falls, or surely is concave, all along a step: it has one root at most. */
-function is_one_way(rate, acceleration, jerk, step) {
-  var falls = py.and(
-    rate < 0.0,
-    () => py.add(rate, py.mul(step, py.add(acceleration, py.mul(py.mul(0.5, step), jerk)))) < 0.0
-  );
-  return py.or(falls, () => py.add(acceleration, py.mul(step, jerk)) < 0.0);
-}
-
-/** Place and value of a function's least value between two points, or of one that is not positive. */
-function dip(function_, low, high) {
-  var a = low;
-  var b = high;
-  var x = py.add(a, py.mul(GOLDEN, py.sub(b, a)));
-  var y = py.sub(b, py.mul(GOLDEN, py.sub(b, a)));
-  var f = function_(x);
-  var g = function_(y);
-  for (var turn = 0; turn < NARROWED; turn += 1) {
-    if (f <= 0.0 || g <= 0.0) {
-      break;
-    }
-    if (f < g) {
-      [b, y, g] = [y, x, f];
-      x = py.add(a, py.mul(GOLDEN, py.sub(b, a)));
-      f = function_(x);
-    } else {
-      [a, x, f] = [x, y, g];
-      y = py.sub(b, py.mul(GOLDEN, py.sub(b, a)));
-      g = function_(y);
-    }
-  }
-  return f < g ? [x, f] : [y, g];
-}
-
-/** Root of a function between two points where its signs differ, by the method of Chandrupatla (1997). */
-function crossing(function_, low, high) {
-  var x1 = high;
-  var x2 = low;
-  var part = 0.5;
-  var y1 = function_(x1);
-  var y2 = function_(x2);
-  if (y1 === 0.0 || y2 === 0.0) {
-    return y2 === 0.0 ? x2 : x1;
-  }
-  var best = x1;
-  for (var turn = 0; turn < 400; turn += 1) {
-    var x = py.add(x1, py.mul(part, py.sub(x2, x1)));
-    var y = function_(x);
-    if (py.eq(y > 0.0, y1 > 0.0)) {
-      var x3 = x1;
-      var y3 = y1;
-    } else {
-      [x3, y3, x2, y2] = [x2, y2, x1, y1];
-    }
-    x1 = x;
-    y1 = y;
-    best = py.abs(y1) < py.abs(y2) ? x1 : x2;
-    var fuzz = py.div(py.mul(2.3e-16, py.abs(best)), py.abs(py.sub(x2, x1)));
-    if (fuzz > 0.5 || y === 0.0) {
-      break;
-    }
-    var xi = py.div(py.sub(x1, x2), py.sub(x3, x2));
-    var phi = py.div(py.sub(y1, y2), py.sub(y3, y2));
-    part = 0.5;
-    if (py.mul(phi, phi) < xi && py.pow(py.sub(1.0, phi), 2) < py.sub(1.0, xi)) {
-      part = py.div(py.mul(py.div(y1, py.sub(y2, y1)), y3), py.sub(y2, y3));
-      part = py.add(
-        part,
-        py.div(
-          py.mul(py.div(py.mul(py.div(py.sub(x3, x1), py.sub(x2, x1)), y1), py.sub(y3, y1)), y2),
-          py.sub(y3, y2)
-        )
-      );
-    }
-    part = py.min(py.max(part, fuzz), py.sub(1.0, fuzz));
-  }
-  return best;
-}
-
-// tippetop.mechanics.touchdown
-const DEGREE = 16;
-const START = py.pow(10.0, py.div(-16.0, py.add(DEGREE, 1)));
-const WIDEST = 4.0;
-const NARROWEST = 1e-09;
-const LOOKS = 10.0;
-const MOST_LOOKS = 1000;
-const MOST_DISCS = 100000;
-
-/** How a flight starts: how many of gap, gap rate and gap acceleration are then zero by construction. */
-class Start extends py.IntEnum {
-}
-py.members(Start, { AIRBORNE: 0, REBOUND: 1, RELEASE: 2, LIFT_OFF: 3 });
-
-/** Time of the first touch of the table after the start of a flight, s. */
-function touchdown(state, top, horizon, start = Start.AIRBORNE) {
-  var [tip, , ballistic] = Separation.of(state, top);
-  var deepest = py.min(0.0, ...[-1.0, 1.0].map((c) => py.float(top.surface.height(c))));
-  horizon = py.min(horizon, py.mul(2.0, falling_time(py.sub(ballistic[0], deepest), ...ballistic.slice(1))));
-  var time = 0.0;
-  if (!py.eq(start, Start.AIRBORNE)) {
-    var support = py.add(top.surface.height(tip.series()), py.mul(0.0, tip.series())).terms;
-    ballistic = [...support.slice(0, start), ...ballistic.slice(start)];
-    var terms = py.add(
-      py.zip(ballistic, support.slice(0, 3)).map(([b, s]) => py.sub(b, s)),
-      [...support.slice(3)].map((s) => py.neg(s))
-    );
-    var opening = new Opening(
-      py.slice(
-        terms,
-        py.next(py.range(start, DEGREE).filter((j) => py.truth(py.item(terms, j))), DEGREE),
-        null,
-        null
-      )
-    );
-    time = py.min(horizon, py.mul(START, analytic_disc(tip, top.surface, 0.0, 0.0, WIDEST)[0]));
-    var root = first_root(py.bound(opening, "at"), 0.0, time, opening.jerk_bound(time));
-    if (root !== null) {
-      return root;
-    }
-  }
-  var separation = new Separation(tip, top.surface, ballistic);
-  var angle = WIDEST;
-  for (var turn = 0; turn < MOST_DISCS; turn += 1) {
-    if (time >= horizon) {
-      return null;
-    }
-    var [radius, spread] = analytic_disc(tip, top.surface, time, 0.25, angle);
-    angle = py.min(WIDEST, py.mul(py.mul(2.0, radius), tip.frequency));
-    var end = py.min(horizon, py.add(time, py.mul(0.5, radius)));
-    root = first_root(
-      py.bound(separation, "at"),
-      time,
-      end,
-      py.div(py.mul(6.0, spread), py.mul(py.pow(0.75, 4), py.pow(radius, 3)))
-    );
-    if (root !== null) {
-      return root;
-    }
-    time = end;
-  }
-  throw new py.ArithmeticError("a flight turns too often for its end to be found");
-}
-
-/** Time after which height + rate t + half t^2 stays negative, infinite if half is not negative. */
-function falling_time(height, rate, half) {
-  if (half >= 0.0) {
-    return py.math.inf;
-  }
-  return py.div(
-    py.neg(
-      py.add(rate, py.math.sqrt(py.max(py.sub(py.mul(rate, rate), py.mul(py.mul(4.0, half), height)), 0.0)))
-    ),
-    py.mul(2.0, half)
-  );
-}
-
-/** The highest gap of a free flight that lasts some time, s; floats. */
-function highest_gap(state, top, duration) {
-  var [gap, ...others] = [...top.each].map((one) => py.bound(Separation.of(state, one), "at"));
-  if (py.truth(others)) {
-    var everywhere = [gap, ...others];
-    gap = (time) => {
-      return py.min([...everywhere].map((at) => at(time)));
-    };
-  }
-  var count = py.min(
-    MOST_LOOKS,
-    py.add(2, py.int(py.div(py.mul(py.mul(LOOKS, duration), length(state.momentum)), top.transverse_inertia)))
-  );
-  var times = py.range(py.add(count, 1)).map((j) => py.div(py.mul(duration, j), count));
-  var gaps = [...times].map((time) => gap(time)[0]);
-  var best = py.max(py.range(py.add(count, 1)), py.how({ key: py.bound(gaps, "__getitem__") }));
-  if (gap(py.item(times, best))[1] > 0.0) {
-    var low = py.item(times, best);
-    var high = py.item(times, py.min(py.add(best, 1), count));
-  } else {
-    low = py.max(py.item(times, py.max(py.sub(best, 1), 0)), py.mul(0.001, times[1]));
-    high = py.item(times, best);
-  }
-  if (!(gap(low)[1] > 0.0 && 0.0 > gap(high)[1])) {
-    return py.item(gaps, best);
-  }
-  return py.max(py.item(gaps, best), gap(crossing((time) => gap(time)[1], low, high))[0]);
-}
-
-/** Height c = n_z of the tip of the axis in free flight: its value, two derivatives, and frequency. */
-class Tip extends py.NamedTuple {
-  constructor(height, rate, acceleration, frequency) {
-    super();
-    this.height = height;
-    this.rate = rate;
-    this.acceleration = acceleration;
-    this.frequency = frequency;
-  }
-  /** The tip in a free flight from a state on; of numbers, or arrays of them. */
-  static of(state, top) {
-    var turning = axis_rate(state.axis, state.momentum, top);
-    return new this(
-      state.axis[2],
-      turning[2],
-      axis_rate(turning, state.momentum, top)[2],
-      py.add(length(scale(py.div(1.0, top.transverse_inertia), state.momentum)), SMALL)
-    );
-  }
-  /** Height, rate and acceleration at a time: c'' turns into -w^2 c' and back. */
-  at(time) {
-    var w = this.frequency;
-    var cosine = py.math.cos(py.mul(w, time));
-    var sine = py.div(py.math.sin(py.mul(w, time)), w);
-    var half = py.div(py.math.sin(py.mul(py.mul(0.5, w), time)), w);
-    return [
-      py.add(
-        py.add(this.height, py.mul(this.rate, sine)),
-        py.mul(py.mul(py.mul(2.0, this.acceleration), half), half)
-      ),
-      py.add(py.mul(this.rate, cosine), py.mul(this.acceleration, sine)),
-      py.sub(py.mul(this.acceleration, cosine), py.mul(py.mul(py.mul(this.rate, w), w), sine))
-    ];
-  }
-  /** Height as a power series in time. */
-  series() {
-    var terms = [this.height, this.rate, py.mul(0.5, this.acceleration)];
-    for (var j = 1; j < py.sub(DEGREE, 1); j += 1) {
-      terms.push(
-        py.div(
-          py.mul(py.neg(py.pow(this.frequency, 2)), py.item(terms, j)),
-          py.mul(py.add(j, 1), py.add(j, 2))
-        )
-      );
-    }
-    return new TruncatedSeries(terms);
-  }
-  /** Largest |c - c(time)| for complex times within angle / frequency of a real one. */
-  spread(time, angle) {
-    var [, rate, acceleration] = this.at(time);
-    var w = this.frequency;
-    return py.add(
-      py.div(py.mul(py.abs(rate), py.math.sinh(angle)), w),
-      py.div(py.mul(py.abs(acceleration), py.sub(py.math.cosh(angle), 1.0)), py.pow(w, 2))
-    );
-  }
-}
-py.fields(Tip, ["height", "rate", "acceleration", "frequency"]);
-
-/** The gap as a function of time: a parabola less the support function at the tip's height. */
-class Separation extends py.NamedTuple {
-  constructor(tip, shape, parabola) {
-    super();
-    this.tip = tip;
-    this.shape = shape;
-    this.parabola = parabola;
-  }
-  /** The gap of a free flight from a state on. */
-  static of(state, top) {
-    return new this(
-      Tip.of(state, top),
-      top.surface,
-      [state.height, state.velocity[2], py.mul(-0.5, top.gravity)]
-    );
-  }
-  /** Gap, its rate and its acceleration. */
-  at(time) {
-    var [p0, p1, p2] = this.parabola;
-    var [c, rate, acceleration] = this.tip.at(time);
-    var slope = this.shape.slope(c);
-    return [
-      py.sub(py.add(p0, py.mul(time, py.add(p1, py.mul(time, p2)))), this.shape.height(c)),
-      py.sub(py.add(p1, py.mul(py.mul(2.0, time), p2)), py.mul(slope, rate)),
-      py.sub(
-        py.sub(py.mul(2.0, p2), py.mul(py.mul(this.shape.curvature(c), rate), rate)),
-        py.mul(slope, acceleration)
-      )
-    ];
-  }
-}
-py.fields(Separation, ["tip", "shape", "parabola"]);
-
-/** A polynomial in time: the gap at the start of a flight, divided by the power of time that it has. */
-class Opening extends py.NamedTuple {
-  constructor(terms) {
-    super();
-    this.terms = terms;
-  }
-  /** Value and first two derivatives, by Horner's rule. */
-  at(time) {
-    var value = 0.0;
-    var rate = 0.0;
-    var half = 0.0;
-    for (var term of py.reversed(this.terms)) {
-      half = py.add(py.mul(half, time), rate);
-      rate = py.add(py.mul(rate, time), value);
-      value = py.add(py.mul(value, time), term);
-    }
-    return [value, rate, py.mul(2.0, half)];
-  }
-  /** A bound on the third derivative up to this time. */
-  jerk_bound(time) {
-    var bound = 0.0;
-    for (var j = py.sub(py.len(this.terms), 1); j > 2; j += -1) {
-      bound = py.add(
-        py.mul(bound, time),
-        py.mul(py.mul(py.mul(j, py.sub(j, 1)), py.sub(j, 2)), py.abs(py.item(this.terms, j)))
-      );
-    }
-    return bound;
-  }
-}
-py.fields(Opening, ["terms"]);
-
-/** Radius of a disc of time centred `ahead` radii after `time` where h(c) is analytic, and of h(c). */
-function analytic_disc(tip, shape, time, ahead, angle) {
-  while (py.truth(true)) {
-    var radius = py.div(angle, tip.frequency);
-    var centre = py.add(time, py.mul(ahead, radius));
-    try {
-      var c = new Disc(tip.at(centre)[0], tip.spread(centre, angle));
-      return [radius, py.float(py.add(shape.height(c), py.mul(0.0, c)).radius)];
-    } catch (error) {
-      if (!(error instanceof py.ArithmeticError)) throw error;
-      angle = py.mul(angle, 0.5);
-      if (angle < NARROWEST) {
-        throw error;
-      }
-    }
-  }
-}
-
-// tippetop.contact.flight
-const DEGREE_of_flight = 9;
-const TURN = 0.25;
-const MOST_STEPS = 4096;
-const TOUCHING = 1e-12;
-
-/** Free flight, until the body's lowest point touches the table again. */
-class Flight extends Mode {
-  constructor(top, rules, start = Start.AIRBORNE) {
-    super(top, rules);
-    this.start = start;
-  }
-  get name() { return "flight"; }
-  get touching() { return false; }
-  /** The numbers of a flight are those of the state. */
-  state(y) {
-    return State.unpack(y);
-  }
-  /** Evaluate the flight, which needs no integrator: the impact at its end may. */
-  *segments(time, state, end, integrator) {
-    try {
-      var [landing, lowest] = this._landing(state, py.sub(end, time));
-    } catch (error) {
-      if (!(error instanceof py.ArithmeticError)) throw error;
-      var failed = new Transition([], Outcome.FAILED, state, py.str(error));
-      yield new Segment(this, DenseSolution.nothing(time, py.len(state.pack())), state, failed);
-      return null;
-    }
-    var duration = landing === null ? py.sub(end, time) : landing;
-    var rate = py.div(length(state.momentum), this.top.transverse_inertia);
-    var count = py.add(1, py.int(py.div(py.mul(duration, rate), TURN)));
-    var highest = highest_gap(state, this.top, duration);
-    for (var first = 0; first < count; first += MOST_STEPS) {
-      var last = py.min(py.add(first, MOST_STEPS), count);
-      var elapsed = py.range(first, py.add(last, 1)).map((step) => py.mul(py.div(duration, count), step));
-      py.put(elapsed, -1, py.eq(last, count) ? duration : py.item(elapsed, -1));
-      var here = fly(state, py.item(elapsed, -1), this.top, py.math);
-      var transition = null;
-      var reach = py.add(time, py.item(elapsed, -1));
-      if (py.eq(last, count)) {
-        reach = landing === null ? end : reach;
-        var low = landing === null ? null : lowest;
-        transition = this._transition(reach, here, low, integrator);
-      }
-      var solution = DenseSolution.fitted(this._numbers(state), elapsed, DEGREE_of_flight).moved(time, reach);
-      yield new Segment(this, solution, here, transition, undefined, undefined, highest);
-    }
-  }
-  /** When the first surface touches the table, and the top with that surface active. */
-  _landing(state, horizon) {
-    var found = touchdown(state, this.top, horizon, this.start);
-    var lowest = this.top;
-    for (var other of this.top.each) {
-      if (!py.eq(other, this.top)) {
-        var limit = found === null ? horizon : found;
-        var sooner = touchdown(state, other, limit, start_of(state, other));
-        if (sooner !== null && (found === null || sooner < found)) {
-          found = sooner;
-          lowest = other;
-        }
-      }
-    }
-    return [found, lowest];
-  }
-  _transition(time, state, lowest, integrator) {
-    if (lowest === null) {
-      return new Transition([], Outcome.COMPLETED, state);
-    }
-    var here = state._replace({ height: on_table(along_table(state), lowest).height });
-    if (py.eq(lowest, this.top)) {
-      return this.rules.touchdown(time, here, integrator);
-    }
-    return this.rules.touch(number_of(lowest), time, here, integrator);
-  }
-}
-py.fields(Flight, ["top", "rules", "start"]);
-
-/** How a flight starts for a surface that did not decide it: far, or just opened. */
-function start_of(state, top) {
-  var rate = gap_rate(state, top);
-  if (gap(state, top) > TOUCHING || rate < py.neg(TOUCHING)) {
-    return Start.AIRBORNE;
-  }
-  return rate > TOUCHING ? Start.REBOUND : Start.RELEASE;
 }
 
 // tippetop.contact.closed
@@ -5497,9 +5463,15 @@ const SLOWEST_REBOUND = 1e-06;
 const REST = 1e-13;
 
 /** What all rules have in common: the resolver of a contact that is closed and has no normal velocity. */
-class ContactRules extends Rules {
+class Rules extends py.Record {
   constructor(top) {
-    super(top);
+    super();
+    this.top = top;
+  }
+  get pulls() { return false; }
+  /** The rules of the top with another of its surfaces active. */
+  on(surface) {
+    return py.replace(this, { top: py.item(this.top.each, surface) });
   }
   /** Go on from contact. */
   launch(state) {
@@ -5670,6 +5642,14 @@ class ContactRules extends Rules {
   _leaving(time, state) {
     throw new py.NotImplementedError();
   }
+  /** What follows when the top reaches the table; the integrator may follow the impact too. */
+  touchdown(time, state, integrator = null) {
+    throw new py.NotImplementedError();
+  }
+  /** What follows when another surface of the top, of this number, reaches the table too. */
+  touch(surface, time, state, integrator = null) {
+    throw new py.NotImplementedError();
+  }
   /** Lift-off after some events. */
   _let_go(time, state, events) {
     var found = this._leaving(time, state);
@@ -5680,10 +5660,10 @@ class ContactRules extends Rules {
     return new Transition(events, Outcome.FAILED, state, "no contact force is consistent with the friction");
   }
 }
-py.fields(ContactRules, ["top"]);
+py.fields(Rules, ["top"]);
 
 /** The table may pull: the top never leaves it. */
-class Bilateral extends ContactRules {
+class Bilateral extends Rules {
   constructor(top) {
     super(top);
   }
@@ -5692,7 +5672,7 @@ class Bilateral extends ContactRules {
 py.fields(Bilateral, ["top"]);
 
 /** The run ends where the table would have to pull. */
-class StopAtLiftOff extends ContactRules {
+class StopAtLiftOff extends Rules {
   constructor(top) {
     super(top);
   }
@@ -5704,7 +5684,7 @@ class StopAtLiftOff extends ContactRules {
 py.fields(StopAtLiftOff, ["top"]);
 
 /** The top leaves the table where that would have to pull, flies, and comes back with an impact. */
-class FreeToFly extends ContactRules {
+class FreeToFly extends Rules {
   constructor(top, restitution) {
     super(top);
     this.restitution = restitution;
@@ -5734,8 +5714,7 @@ class FreeToFly extends ContactRules {
   }
   /** Fly from where the table would have to pull from now on, not from zero force. */
   _let_go(time, state, events) {
-    var found = this._leaving(time, state);
-    return py.replace(found, { events: [...events, ...found.events], then: this._flight(Start.RELEASE) });
+    return py.replace(super._let_go(time, state, events), { then: this._flight(Start.RELEASE) });
   }
   /** Collide without approach, unless that has just left it so: then rounding decides, not friction. */
   inconsistent(time, state, events) {
@@ -6878,8 +6857,7 @@ function settled(rules, time, state, tops, before, rolls, events = [], arrived =
   var numbers = [...here.tops].map((top) => number_of(top));
   var [left, kept] = py.eq(answers, [SECOND]) ? numbers : py.slice(numbers, null, null, -1);
   events = [...events, new Event(EventKind.OPENING, time, undefined, undefined, left)];
-  var then = rules.on(kept).resting_alone(time, here.state, events);
-  return then;
+  return rules.on(kept).resting_alone(time, here.state, events);
 }
 
 /** What follows where what both contacts need, or one of them, reaches the limit of what the table can. */
@@ -10860,7 +10838,6 @@ export {
   Contact,
   ContactPair,
   ContactPoint,
-  ContactRules,
   ContensouFriction,
   CoulombFriction,
   CoulombLaw,

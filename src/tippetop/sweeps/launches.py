@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tippetop.contact.choice import rules_for
-from tippetop.contact.mode import Rules
+from tippetop.contact.rules import Rules
 from tippetop.contact.sliding import Sliding
 from tippetop.integrators.base import Array
 from tippetop.mechanics.motion import along_table
