@@ -13,8 +13,9 @@ from tippetop.mechanics.coulomb import CoulombLaw, RollingResistance
 from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.impulse import contact_velocity
 from tippetop.mechanics.invariants import energy
-from tippetop.mechanics.motion import angular_velocity, moment_per_normal_force, on_table
+from tippetop.mechanics.motion import along_table, angular_velocity, moment_per_normal_force, on_table
 from tippetop.mechanics.state import SlidingState, State
+from tippetop.mechanics.stick_slip import slip_of
 from tippetop.mechanics.surface import SphereSurface, contact_vector
 from tippetop.mechanics.top import Top
 
@@ -83,8 +84,7 @@ def test_an_impact_of_a_patch_is_the_integrated_one(law):
 
 def drills(state, top):
     """Whether drilling prevails."""
-    slip = contact_velocity(state, contact_vector(state.axis, top.surface), top)[:2]
-    return bool(top.friction.drills(slip, angular_velocity(state.axis, state.momentum, top)))
+    return bool(top.friction.drills(slip_of(*along_table(state), top)))
 
 
 def test_impacts_are_left_to_other_ways_where_this_is_none():

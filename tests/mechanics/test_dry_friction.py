@@ -118,7 +118,7 @@ def at(law, motion):
 def gradient(law, motion):
     """Derivative of that by (v, w)."""
     if isinstance(law, HertzLaw):
-        law = law.branch(motion[:2], (0.0, 0.0, motion[2]))
+        law = law.branch((*motion[:2], law.patch_radius * motion[2]))
     return jacobian(lambda z: at_list(law, z), motion)
 
 

@@ -12,8 +12,9 @@ from strategies import numbers, slides
 from tippetop.mechanics.contensou import EllipsoidalLaw
 from tippetop.mechanics.contensou_hertz import HertzDrillingLaw
 from tippetop.mechanics.coulomb import CoulombLaw, RollingResistance
+from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.invariants import energy
-from tippetop.mechanics.motion import axis_rate, contact, on_table
+from tippetop.mechanics.motion import angular_velocity, axis_rate, contact, on_table, sliding_rates
 from tippetop.mechanics.rolling import (
     ContactPoint,
     contact_motion,
@@ -21,9 +22,10 @@ from tippetop.mechanics.rolling import (
     without_drilling,
 )
 from tippetop.mechanics.state import SlidingState
+from tippetop.mechanics.stick_slip import HORIZON, rolling_stopping_guard
 from tippetop.mechanics.surface import SphereSurface, contact_vector
 from tippetop.mechanics.top import Top
-from tippetop.theory.derivatives import jacobian
+from tippetop.theory.derivatives import derivative, jacobian
 
 M, R = 0.02, 0.02
 REPORT = Top(M, 131 / 350 * M * R**2, 2 / 5 * M * R**2, SphereSurface(R, 0.3 * R), CoulombLaw(0.3), 9.8)
@@ -167,3 +169,22 @@ def test_rolling_of_the_report_s_top_against_an_independent_solver():
     assert math.acos(y[2]) == pytest.approx(0.09991970469945298, abs=1e-9)
     spin = sum(a * b for a, b in zip(y[:3], y[3:], strict=True)) / REPORT.axial_inertia
     assert spin == pytest.approx(100.0002182380354, abs=1e-9)
+
+
+@given(slides())
+def test_rolling_is_watched_by_how_fast_it_falls_along_the_motion(slide):
+    """The guard is the square of the horizontal angular velocity, and half its rate times the horizon."""
+    top, state = slide
+    resistance = RollingResistance(0.01 * top.surface.size)
+    top = top._replace(friction=ViscousLaw(0.3), rolling_resistance=resistance)
+    rate = sliding_rates(state, top)
+
+    def square(time):
+        numbers = [a + time * b for a, b in zip(state.pack(), rate.pack(), strict=True)]
+        x, y, _ = angular_velocity(tuple(numbers[:3]), tuple(numbers[3:6]), top)
+        return x * x + y * y
+
+    falls = float(derivative(square, 0.0))
+    size = sum(abs(w) for w in angular_velocity(state.axis, state.momentum, top)) + abs(falls) ** 0.5
+    found = rolling_stopping_guard(state, rate, top)
+    assert found == pytest.approx(square(0.0) + 0.5 * HORIZON * falls, abs=1e-12 * size * size)

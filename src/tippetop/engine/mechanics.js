@@ -1951,10 +1951,7 @@ function on_branch(top, slip) {
   if (!py.truth(is_branched(top.friction))) {
     return top;
   }
-  var law = whole_law(top.friction);
-  return top._replace({
-    friction: law.branch(slip.slice(0, 2), [0.0, 0.0, py.div(slip[2], law.slip_length)])
-  });
+  return top._replace({ friction: whole_law(top.friction).branch(slip) });
 }
 
 /** The same where a number tells the branch, for arrays, or for floats that share equations. */
@@ -1962,10 +1959,7 @@ function on_numbered_branch(top, slip) {
   if (!py.truth(is_branched(top.friction))) {
     return top;
   }
-  var law = whole_law(top.friction);
-  return top._replace({
-    friction: law.numbered_branch(slip.slice(0, 2), [0.0, 0.0, py.div(slip[2], law.slip_length)])
-  });
+  return top._replace({ friction: whole_law(top.friction).numbered_branch(slip) });
 }
 
 /** A top with the branch of its law, or of its limit surface, that takes over where its own ends. */
@@ -2131,9 +2125,18 @@ function is_near(state, top) {
 
 /** The same of rolling, (rad/s)^2; velocities are not asked for. */
 function rolling_stopping_guard(state, rate, top) {
-  var rolling = angular_velocity(state.axis, state.momentum, top).slice(0, 2);
-  var change = angular_acceleration(state, rate, top).slice(0, 2);
-  return remaining(rolling, change);
+  var [x, y, turning] = angular_velocity(state.axis, state.momentum, top);
+  var [spin, spinning] = [state.momentum, rate.momentum].map(
+    (momentum) => axial_spin(state.axis, momentum, top)
+  );
+  var along = py.sub(
+    py.mul(py.sub(spin, py.mul(turning, state.axis[2])), spinning),
+    py.mul(py.mul(spin, turning), rate.axis[2])
+  );
+  var pushed = py.add(py.mul(x, rate.momentum[0]), py.mul(y, rate.momentum[1]));
+  var excess = py.sub(top.transverse_inertia, top.axial_inertia);
+  var change = py.div(py.add(pushed, py.mul(excess, along)), top.transverse_inertia);
+  return py.add(py.add(py.mul(x, x), py.mul(y, y)), py.mul(HORIZON, change));
 }
 
 /** Positive while a velocity, at its present rate of change, outlasts `HORIZON`: s (s + HORIZON R). */
@@ -2144,17 +2147,14 @@ function remaining(velocity, change) {
 /** Positive as long as a branch of a law holds where it slips so, or in that direction, m^2/s^2. */
 function branch_guard(slip, top) {
   var law = top.friction;
-  return law.branch_guard(slip.slice(0, 2), [0.0, 0.0, py.div(slip[2], law.slip_length)]);
+  return law.branch_guard(slip);
 }
 
 /** Rate of the angular velocity, rad/s^2, from a state and its time derivative. */
 function angular_acceleration(state, rate, top) {
   var excess = py.div(py.sub(top.transverse_inertia, top.axial_inertia), top.transverse_inertia);
   var spin = axial_spin(state.axis, state.momentum, top);
-  var spinning = py.div(
-    py.add(dot(rate.momentum, state.axis), dot(state.momentum, rate.axis)),
-    top.axial_inertia
-  );
+  var spinning = axial_spin(state.axis, rate.momentum, top);
   var turned = scale(py.div(1.0, top.transverse_inertia), rate.momentum);
   return add(turned, scale(excess, add(scale(spinning, state.axis), scale(spin, rate.axis))));
 }
@@ -7495,8 +7495,8 @@ class HertzDrillingLaw extends HertzPiece {
     return heaviness(this, normal, drilling, py.mul(py.div(4.0, 3.0), EDGE));
   }
   /** Positive as long as this branch is followed, up to `EDGE`, m^2/s^2. */
-  branch_guard(slip, angular_velocity) {
-    return prevalence(slip, py.mul(this.patch_radius, angular_velocity[2]), EDGE);
+  branch_guard(slip) {
+    return prevalence(slip, EDGE);
   }
   /** The law where this one does not hold, and whose piece of the limit surface adjoins this one's. */
   other_branch() {
@@ -7526,8 +7526,8 @@ class HertzSlidingLaw extends HertzPiece {
     return py.neg(heaviness(this, normal, drilling, py.mul(py.div(2.0, 3.0), EDGE)));
   }
   /** Positive as long as this branch is followed, down to half of `EDGE`, m^2/s^2. */
-  branch_guard(slip, angular_velocity) {
-    return py.neg(prevalence(slip, py.mul(this.patch_radius, angular_velocity[2]), py.mul(0.5, EDGE)));
+  branch_guard(slip) {
+    return py.neg(prevalence(slip, py.mul(0.5, EDGE)));
   }
   /** The law where this one does not hold, and whose piece of the limit surface adjoins this one's. */
   other_branch() {
@@ -7562,15 +7562,16 @@ class HertzBranch extends py.NamedTuple {
   /** Force over slip, and torque, per unit normal force, at slip of this square and drilling R w. */
   shares(square, drilling) {
     var other = py.mul(drilling, drilling);
-    var rate = py.pow(
+    var inverse = py.div(
+      1.0,
       this._either(
         py.add(other, py.mul(BEYOND_of_contensou_hertz, square)),
         py.add(square, py.mul(BEYOND_of_contensou_hertz, other))
-      ),
-      -0.5
+      )
     );
+    var rate = py.pow(inverse, 0.5);
     var turning = py.mul(drilling, rate);
-    var drills = drilling_shares(py.mul(py.mul(square, rate), rate));
+    var drills = drilling_shares(py.mul(square, inverse));
     var slides = sliding_shares(turning);
     var law = [this._either(drills[0], slides[0]), this._either(drills[1], slides[1])];
     return scaled_shares(this, rate, turning, law);
@@ -7584,11 +7585,10 @@ class HertzBranch extends py.NamedTuple {
     return this.whole.reserve(normal, force, drilling);
   }
   /** Positive as long as this branch is followed, up to `EDGE` or down to half of it, m^2/s^2. */
-  branch_guard(slip, angular_velocity) {
-    var drilling = py.mul(this.patch_radius, angular_velocity[2]);
+  branch_guard(slip) {
     return py.mul(
       py.sub(py.mul(2.0, this.drills), 1.0),
-      prevalence(slip, drilling, py.mul(py.mul(0.5, EDGE), py.add(1.0, this.drills)))
+      prevalence(slip, py.mul(py.mul(0.5, EDGE), py.add(1.0, this.drills)))
     );
   }
   /** The law where this one does not hold. */
@@ -7609,18 +7609,16 @@ py.fields(HertzBranch, ["mu", "patch_radius", "drills"]);
 /** Contensou friction with Hertz's pressure, whichever branch holds: for numbers, or arrays of them. */
 class HertzLaw extends PatchLaw {
   /** Whether drilling prevails here, a truth value of floats, or an array of them. */
-  drills(slip, angular_velocity) {
-    return prevalence(slip, py.mul(this.patch_radius, angular_velocity[2]), py.mul(0.75, EDGE)) > 0.0;
+  drills(slip) {
+    return prevalence(slip, py.mul(0.75, EDGE)) > 0.0;
   }
   /** The law that holds here; of floats. */
-  branch(slip, angular_velocity) {
-    return py.truth(
-      this.drills(slip, angular_velocity)
-    ) ? new HertzDrillingLaw(...this) : new HertzSlidingLaw(...this);
+  branch(slip) {
+    return py.truth(this.drills(slip)) ? new HertzDrillingLaw(...this) : new HertzSlidingLaw(...this);
   }
   /** The branch that holds here, in plain operators. */
-  numbered_branch(slip, angular_velocity) {
-    return new HertzBranch(...this, py.mul(1.0, this.drills(slip, angular_velocity)));
+  numbered_branch(slip) {
+    return new HertzBranch(...this, py.mul(1.0, this.drills(slip)));
   }
   /** The law whose piece of the limit surface has this drilling torque, N m; of floats. */
   limit_branch(normal, drilling) {
@@ -7629,7 +7627,8 @@ class HertzLaw extends PatchLaw {
   }
   /** Force and torque per unit normal force; slip and drilling must not both be zero. */
   traction(slip, angular_velocity) {
-    return this.numbered_branch(slip, angular_velocity).traction(slip, angular_velocity);
+    var drilling = py.mul(this.patch_radius, angular_velocity[2]);
+    return this.numbered_branch([...slip, drilling]).traction(slip, angular_velocity);
   }
   /** (mu N F)^2 - T^2 where the limit surface has this drilling torque, N^2; else less than zero. */
   reserve(normal, force, drilling) {
@@ -7643,12 +7642,10 @@ class HertzLaw extends PatchLaw {
   }
 }
 
-/** (1 + edge) (R w)^2 - v^2, of the slip v and drilling R w: positive where drilling prevails, m^2/s^2. */
-function prevalence(slip, drilling, edge) {
-  return py.sub(
-    py.sub(py.mul(py.mul(py.add(1.0, edge), drilling), drilling), py.mul(slip[0], slip[0])),
-    py.mul(slip[1], slip[1])
-  );
+/** (1 + edge) (R w)^2 - v^2, of slip (v, R w): positive where drilling prevails, m^2/s^2. */
+function prevalence(slip, edge) {
+  var [x, y, drilling] = slip;
+  return py.sub(py.mul(py.add(1.0, edge), py.mul(drilling, drilling)), py.add(py.mul(x, x), py.mul(y, y)));
 }
 
 /** M^2 - (1 - edge) (mu N R T(1))^2, (N m)^2: positive where drilling torque M is on drilling's piece. */
@@ -7676,9 +7673,9 @@ function drilling_shares(square) {
 /** F and T kappa where slip prevails, at 1 / kappa, see `HertzSlidingLaw`. */
 function sliding_shares(turning) {
   var excess = py.sub(1.0, py.mul(turning, turning));
-  var x2 = py.pow(py.add(py.mul(excess, excess), NEAR_BRANCH), 0.5);
+  var x4 = py.add(py.mul(excess, excess), NEAR_BRANCH);
+  var x2 = py.pow(x4, 0.5);
   var x = py.pow(x2, 0.5);
-  var x4 = py.mul(x2, x2);
   var above = py.add(
     py.add(py.add(py.add(ABOVE[0], py.mul(ABOVE[1], x)), py.mul(ABOVE[2], x2)), py.mul(ABOVE[4], x4)),
     py.mul(x, py.add(py.mul(ABOVE[3], x2), py.mul(ABOVE[5], x4)))

@@ -115,9 +115,9 @@ class HertzDrillingLaw(HertzPiece):
         """Positive as long as this piece of the limit surface is followed, (N m)^2."""
         return heaviness(self, normal, drilling, 4.0 / 3.0 * EDGE)
 
-    def branch_guard(self, slip: Horizontal, angular_velocity: Vector) -> Scalar:
+    def branch_guard(self, slip: Vector) -> Scalar:
         """Positive as long as this branch is followed, up to `EDGE`, m^2/s^2."""
-        return prevalence(slip, self.patch_radius * angular_velocity[2], EDGE)
+        return prevalence(slip, EDGE)
 
     def other_branch(self) -> "HertzSlidingLaw":
         """The law where this one does not hold, and whose piece of the limit surface adjoins this one's."""
@@ -169,9 +169,9 @@ class HertzSlidingLaw(HertzPiece):
         """Positive as long as this piece of the limit surface is followed, (N m)^2."""
         return -heaviness(self, normal, drilling, 2.0 / 3.0 * EDGE)
 
-    def branch_guard(self, slip: Horizontal, angular_velocity: Vector) -> Scalar:
+    def branch_guard(self, slip: Vector) -> Scalar:
         """Positive as long as this branch is followed, down to half of `EDGE`, m^2/s^2."""
-        return -prevalence(slip, self.patch_radius * angular_velocity[2], 0.5 * EDGE)
+        return -prevalence(slip, 0.5 * EDGE)
 
     def other_branch(self) -> "HertzDrillingLaw":
         """The law where this one does not hold, and whose piece of the limit surface adjoins this one's."""
@@ -214,9 +214,10 @@ class HertzBranch(NamedTuple):
     def shares(self, square: Scalar, drilling: Scalar) -> tuple[Scalar, Scalar]:
         """Force over slip, and torque, per unit normal force, at slip of this square and drilling R w."""
         other = drilling * drilling
-        rate = self._either(other + BEYOND * square, square + BEYOND * other) ** -0.5
+        inverse = 1.0 / self._either(other + BEYOND * square, square + BEYOND * other)
+        rate = inverse**0.5
         turning = drilling * rate
-        drills, slides = drilling_shares(square * rate * rate), sliding_shares(turning)
+        drills, slides = drilling_shares(square * inverse), sliding_shares(turning)
         law = self._either(drills[0], slides[0]), self._either(drills[1], slides[1])
         return scaled_shares(self, rate, turning, law)
 
@@ -228,10 +229,9 @@ class HertzBranch(NamedTuple):
         """That of the whole law."""
         return self.whole.reserve(normal, force, drilling)
 
-    def branch_guard(self, slip: Horizontal, angular_velocity: Vector) -> Scalar:
+    def branch_guard(self, slip: Vector) -> Scalar:
         """Positive as long as this branch is followed, up to `EDGE` or down to half of it, m^2/s^2."""
-        drilling = self.patch_radius * angular_velocity[2]
-        return (2.0 * self.drills - 1.0) * prevalence(slip, drilling, 0.5 * EDGE * (1.0 + self.drills))
+        return (2.0 * self.drills - 1.0) * prevalence(slip, 0.5 * EDGE * (1.0 + self.drills))
 
     def other_branch(self) -> "HertzBranch":
         """The law where this one does not hold."""
@@ -250,17 +250,17 @@ class HertzBranch(NamedTuple):
 class HertzLaw(PatchLaw):
     """Contensou friction with Hertz's pressure, whichever branch holds: for numbers, or arrays of them."""
 
-    def drills(self, slip: Horizontal, angular_velocity: Vector) -> Scalar:
+    def drills(self, slip: Vector) -> Scalar:
         """Whether drilling prevails here, a truth value of floats, or an array of them."""
-        return prevalence(slip, self.patch_radius * angular_velocity[2], 0.75 * EDGE) > 0.0
+        return prevalence(slip, 0.75 * EDGE) > 0.0
 
-    def branch(self, slip: Horizontal, angular_velocity: Vector) -> HertzDrillingLaw | HertzSlidingLaw:
+    def branch(self, slip: Vector) -> HertzDrillingLaw | HertzSlidingLaw:
         """The law that holds here; of floats."""
-        return HertzDrillingLaw(*self) if self.drills(slip, angular_velocity) else HertzSlidingLaw(*self)
+        return HertzDrillingLaw(*self) if self.drills(slip) else HertzSlidingLaw(*self)
 
-    def numbered_branch(self, slip: Horizontal, angular_velocity: Vector) -> HertzBranch:
+    def numbered_branch(self, slip: Vector) -> HertzBranch:
         """The branch that holds here, in plain operators."""
-        return HertzBranch(*self, 1.0 * self.drills(slip, angular_velocity))
+        return HertzBranch(*self, 1.0 * self.drills(slip))
 
     def limit_branch(self, normal: float, drilling: float) -> HertzDrillingLaw | HertzSlidingLaw:
         """The law whose piece of the limit surface has this drilling torque, N m; of floats."""
@@ -270,7 +270,8 @@ class HertzLaw(PatchLaw):
 
     def traction(self, slip: Horizontal, angular_velocity: Vector) -> Traction:
         """Force and torque per unit normal force; slip and drilling must not both be zero."""
-        return self.numbered_branch(slip, angular_velocity).traction(slip, angular_velocity)
+        drilling = self.patch_radius * angular_velocity[2]
+        return self.numbered_branch((*slip, drilling)).traction(slip, angular_velocity)
 
     def reserve(self, normal: Scalar, force: Horizontal, drilling: Scalar) -> Scalar:
         """(mu N F)^2 - T^2 where the limit surface has this drilling torque, N^2; else less than zero."""
@@ -279,9 +280,10 @@ class HertzLaw(PatchLaw):
         return self.limit_branch(normal, drilling).reserve(normal, force, drilling)
 
 
-def prevalence(slip: Horizontal, drilling: Scalar, edge: Scalar) -> Scalar:
-    """(1 + edge) (R w)^2 - v^2, of the slip v and drilling R w: positive where drilling prevails, m^2/s^2."""
-    return (1.0 + edge) * drilling * drilling - slip[0] * slip[0] - slip[1] * slip[1]
+def prevalence(slip: Vector, edge: Scalar) -> Scalar:
+    """(1 + edge) (R w)^2 - v^2, of slip (v, R w): positive where drilling prevails, m^2/s^2."""
+    x, y, drilling = slip
+    return (1.0 + edge) * (drilling * drilling) - (x * x + y * y)
 
 
 def heaviness(law: Any, normal: Scalar, drilling: Scalar, edge: Scalar) -> Scalar:
@@ -312,8 +314,9 @@ def sliding_shares(turning: Scalar) -> tuple[Scalar, Scalar]:
     With few products of variables: where they are power series, these are what costs.
     """
     excess = 1.0 - turning * turning
-    x2 = (excess * excess + NEAR_BRANCH) ** 0.5
-    x, x4 = x2**0.5, x2 * x2
+    x4 = excess * excess + NEAR_BRANCH
+    x2 = x4**0.5
+    x = x2**0.5
     above = ABOVE[0] + ABOVE[1] * x + ABOVE[2] * x2 + ABOVE[4] * x4 + x * (ABOVE[3] * x2 + ABOVE[5] * x4)
     odd = (x + SHARE * x2) * (BELOW[3] * x2 + BELOW[5] * x4)
     below = BELOW[0] + BELOW[1] * x + BELOW[2] * x2 + (BELOW[4] - SHARE * BELOW[3]) * x4 + odd

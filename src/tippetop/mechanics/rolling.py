@@ -296,16 +296,14 @@ def on_branch(top: Top, slip: Slip) -> Top:
     """A top with the branch of its law that holds where it slips, or in that direction; of floats."""
     if not is_branched(top.friction):
         return top
-    law = whole_law(top.friction)
-    return top._replace(friction=law.branch(slip[:2], (0.0, 0.0, slip[2] / law.slip_length)))
+    return top._replace(friction=whole_law(top.friction).branch(slip))
 
 
 def on_numbered_branch(top: Top, slip: Slip) -> Top:
     """The same where a number tells the branch, for arrays, or for floats that share equations."""
     if not is_branched(top.friction):
         return top
-    law = whole_law(top.friction)
-    return top._replace(friction=law.numbered_branch(slip[:2], (0.0, 0.0, slip[2] / law.slip_length)))
+    return top._replace(friction=whole_law(top.friction).numbered_branch(slip))
 
 
 def on_other_branch(top: Top) -> Top:

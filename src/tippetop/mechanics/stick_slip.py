@@ -27,7 +27,7 @@ from tippetop.mechanics.rolling import (
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.surface import contact_vector
 from tippetop.mechanics.top import Top
-from tippetop.mechanics.vectors import Horizontal, Scalar, Vector, add, cross, dot, scale
+from tippetop.mechanics.vectors import Horizontal, Scalar, Vector, add, cross, scale
 
 HORIZON = 0.05
 """How long before its end slip is followed in a clock of its own, in natural units of time."""
@@ -132,10 +132,17 @@ def is_near(state: SlidingState, top: Top) -> Scalar:
 
 
 def rolling_stopping_guard(state: SlidingState, rate: SlidingState, top: Top) -> Scalar:
-    """The same of rolling, (rad/s)^2; velocities are not asked for."""
-    rolling = angular_velocity(state.axis, state.momentum, top)[:2]
-    change = angular_acceleration(state, rate, top)[:2]
-    return remaining(rolling, change)
+    """The same of rolling, (rad/s)^2; velocities are not asked for.
+
+    omega . n' = 0, so that the horizontal parts of omega and n' have the product -omega_z n_z'.
+    """
+    x, y, turning = angular_velocity(state.axis, state.momentum, top)
+    spin, spinning = (axial_spin(state.axis, momentum, top) for momentum in (state.momentum, rate.momentum))
+    along = (spin - turning * state.axis[2]) * spinning - spin * turning * rate.axis[2]
+    pushed = x * rate.momentum[0] + y * rate.momentum[1]
+    excess = top.transverse_inertia - top.axial_inertia
+    change = (pushed + excess * along) / top.transverse_inertia
+    return x * x + y * y + HORIZON * change
 
 
 def remaining(velocity: Slip, change: Slip) -> Scalar:
@@ -146,14 +153,15 @@ def remaining(velocity: Slip, change: Slip) -> Scalar:
 def branch_guard(slip: Slip, top: Top) -> Scalar:
     """Positive as long as a branch of a law holds where it slips so, or in that direction, m^2/s^2."""
     law: Any = top.friction
-    return law.branch_guard(slip[:2], (0.0, 0.0, slip[2] / law.slip_length))
+    return law.branch_guard(slip)
 
 
 def angular_acceleration(state: SlidingState, rate: SlidingState, top: Top) -> Vector:
     """Rate of the angular velocity, rad/s^2, from a state and its time derivative."""
     excess = (top.transverse_inertia - top.axial_inertia) / top.transverse_inertia
     spin = axial_spin(state.axis, state.momentum, top)
-    spinning = (dot(rate.momentum, state.axis) + dot(state.momentum, rate.axis)) / top.axial_inertia
+    # The axis moves at right angles to the momentum.
+    spinning = axial_spin(state.axis, rate.momentum, top)
     turned = scale(1.0 / top.transverse_inertia, rate.momentum)
     return add(turned, scale(excess, add(scale(spinning, state.axis), scale(spin, rate.axis))))
 

@@ -76,8 +76,9 @@ def swept_motion(kind: Kind) -> Motion:
 
     def rates(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[Scalar, ...]:
         top, state = kind.top(tuple(numbers)), SlidingState.unpack(y)
-        torque = contact(state.axis, state.momentum, state.velocity, top).torque
-        return (*sliding.rates(y, numbers), *resistance_powers(on_table(state, top), torque, top))
+        touch = contact(state.axis, state.momentum, state.velocity, top)
+        powers = resistance_powers(on_table(state, top), touch.traction.torque, top)
+        return (*sliding.rates(y, numbers), *[touch.normal_force * power for power in powers])
 
     return replace(sliding, rates=rates, size=10)
 
