@@ -123,6 +123,18 @@ def test_a_wide_nutation_that_reaches_the_end_counts():
     assert flip_time_limit(swinging) == 0.0
 
 
+@pytest.mark.parametrize(("spin", "tilt"), [(25.0, 0.1), (50.0, 1.0), (100.0, 1.0)])
+@pytest.mark.skipif(not has_taylor(), reason="long runs need the Taylor integrator")
+def test_a_nutation_that_passes_the_end_on_its_way_counts(spin, tilt):
+    problem, mu = presets.report_problem(spin=spin, tilt=tilt), 0.0005
+    limit, end = flip_time_limit(problem), predict(problem).final.tilt
+    mu_times = np.linspace(0.0, 1.1 * limit, 40001)
+    axis, _, _ = full_run(problem.replace({"friction.mu": mu}), mu_times / mu)
+    near = np.abs(tilts_of(axis) - end) < 0.01
+    assert near.any()
+    assert mu_times[np.argmax(near)] == pytest.approx(limit, rel=0.01)
+
+
 def test_a_nutation_that_dies_on_the_way_to_an_unstable_state_grows_again():
     """This launch drifts to theta = 0 first, which is unstable, and inverts only then."""
     problem = sphere_problem(0.58, 0.46, 0.7, 190.0)

@@ -61,7 +61,7 @@ def averaged_flow(
     distance
         How far from the final tilt the flow is followed, rad.
     samples
-        At how many times the nutating part is given; 0 for those of the integrator's steps.
+        At how many times the nutating part is given.
     tolerance
         Error of the logarithms of the amplitudes in a step of the nutating part.
 
@@ -120,15 +120,12 @@ def flip_time_limit(problem: Problem, distance: float = 0.01) -> float:
     InvalidInput
         As `averaged_flow`.
     """
-    flow = averaged_flow(problem, distance=distance, samples=0)
-    away = _distances(flow)
+    flow = averaged_flow(problem, distance=distance, samples=_FINE)
     if not math.isfinite(flow.final_tilt):
         return math.inf
-    if np.all(away[:-1] >= distance):
-        return float(flow.mu_time[-1])
-    flow = averaged_flow(problem, distance=distance, samples=_FINE)
-    away = _distances(flow)
-    first = int(np.flatnonzero(away <= distance * (1.0 + 1e-9))[0])
+    # How far the end is outside of the nutation, which may pass it long before it has died away.
+    away = np.maximum(flow.tilt_low - flow.final_tilt, flow.final_tilt - flow.tilt_high)
+    first = int(np.argmax(np.append(away[:-1] <= distance, True)))
     if first == 0:
         return 0.0
     share = (away[first - 1] - distance) / (away[first - 1] - away[first])
@@ -142,8 +139,3 @@ def local_exponent(mu: Array, flip_time: Array) -> Array:
 
 _FINE = 4000
 _MOST_STAGES = 20
-
-
-def _distances(flow: SlowFlow) -> Array:
-    """Distance of the nutation from the final tilt, rad, negative where it contains it."""
-    return np.asarray(np.maximum(flow.tilt_low - flow.final_tilt, flow.final_tilt - flow.tilt_high))

@@ -110,8 +110,8 @@ def follow_nutation(
 ) -> Stage:
     """Follow the amplitudes until the nutation has died away, is steady, or is nearer to the other pole.
 
-    The turning tilts are given at so many `samples`; 0 for the integrator's steps. The `tolerance` is the
-    error in a step, of the logarithms.
+    The turning tilts are given at so many `samples`. The `tolerance` is the error in a step, of the
+    logarithms.
     """
     turned, seen = begin.turned, begin.orbit
     seen_numbers = numbers.turned if turned else numbers
@@ -122,7 +122,7 @@ def follow_nutation(
 
     first = _LONGEST / max(1.0, _LONGEST * np.abs(rates(0.0, point)).max())
     solver = DOP853(rates, 0.0, point, _LONGEST, first_step=first, rtol=tolerance, atol=tolerance)
-    times, points, pieces = [0.0], [point], []
+    knots, pieces = [0.0], []
     tail: Drift | None = None
     final, done = math.nan, True
     for _ in range(_MOST_STEPS):
@@ -142,16 +142,12 @@ def follow_nutation(
             break
         if solver.status == "finished" or solver.step() is not None:
             break
-        times.append(float(solver.t))
-        points.append(solver.y)
-        if samples:
-            pieces.append(solver.dense_output())
-    if pieces:
-        solution = OdeSolution(times, pieces)
-        times = list(np.linspace(times[0], times[-1], samples))
-        points = list(solution(times).T)
-    low, high = _seen_tilts(Amplitudes(*np.exp(np.array(points)[:, :2]).T), turned)
-    return Stage(np.array(times), low, high, Nutation(seen, turned), tail, final, done)
+        knots.append(float(solver.t))
+        pieces.append(solver.dense_output())
+    times = np.linspace(0.0, knots[-1], samples if pieces else 1)
+    points = OdeSolution(knots, pieces)(times) if pieces else point[:, None]
+    low, high = _seen_tilts(Amplitudes(*np.exp(points[:2])), turned)
+    return Stage(times, low, high, Nutation(seen, turned), tail, final, done)
 
 
 _DEAD = 1e-3
