@@ -94,19 +94,11 @@ def followed(spins: tuple[float, ...], restitution: float) -> xr.Dataset:
     Variables over restitution and spin: what `flight_readings` gives, and first_lift_off, s.
     """
     samples = int(SAMPLES_PER_SECOND * FLIGHTS_WINDOW) + 1
-    rows = []
-    for spin in spins:
-        run = simulate(unilateral(report_problem(spin), restitution), FLIGHTS_WINDOW, samples=samples)
-        lifted = float(run["first_lift_off"]), "s", "when the top first leaves the table"
-        rows.append(flight_readings(run) | {"first_lift_off": lifted})
-    return dataset(
-        {"spin": list(spins), "restitution": [restitution]},
-        {"window_s": FLIGHTS_WINDOW},
-        **{
-            name: ([[row[name][0] for row in rows]], *meaning, "restitution", "spin")
-            for name, (_, *meaning) in rows[0].items()
-        },
-    )
+    problems = [unilateral(report_problem(spin), restitution) for spin in spins]
+    runs = [simulate(problem, FLIGHTS_WINDOW, samples=samples) for problem in problems]
+    read = [flight_readings(run).assign(first_lift_off=run["first_lift_off"]) for run in runs]
+    whole = dataset({"spin": list(spins), "restitution": [restitution]}, {"window_s": FLIGHTS_WINDOW})
+    return whole.assign(xr.concat(read, "spin").expand_dims("restitution"))
 
 
 @experiment("flights", "launches followed through their flights", 11.0)
