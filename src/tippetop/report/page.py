@@ -13,9 +13,9 @@ from PIL import Image
 
 from tippetop.integrators import default_name
 from tippetop.report.claim import RULE, Judgement, Value, Verdict
-from tippetop.report.experiments.registry import EXPERIMENTS
 from tippetop.report.gallery import PLATES, Plate
 from tippetop.report.outline import OWN, PICTURES, SECTIONS, UNCHECKED, section_of
+from tippetop.report.selection import Selection
 from tippetop.report.typeset import formula, typeset
 
 _THUMBNAIL = (640, 420)
@@ -60,7 +60,7 @@ def render(
         "news": [claim for claim in claims if claim["news"]],
         "player": player,
         "sections": _sections(plates, claims, figures),
-        "experiments_done": _experiments(plates, judgements),
+        "experiments_done": _experiments(Selection(tuple(plates), tuple(one.claim for one in judgements))),
         "unchecked": [] if partial else UNCHECKED,
     }
     return environment.get_template("page.html.j2").render(
@@ -150,18 +150,16 @@ def _picture(plate: Plate, figures: Path) -> dict[str, str]:
     return {"id": plate.id, "finding": plate.finding, "image": _embedded(file.getvalue(), "webp")}
 
 
-def _experiments(plates: Sequence[Plate], judgements: Sequence[Judgement]) -> list[dict[str, Any]]:
+def _experiments(chosen: Selection) -> list[dict[str, Any]]:
     """The experiments, as the page comes to them, with the figures drawn from each and the claims decided."""
-    claims = [judgement.claim for judgement in judgements]
-    needs = [*(plate.needs for plate in plates), *(claim.needs for claim in claims)]
     return [
         {
-            "id": name,
-            "title": EXPERIMENTS[name].title,
-            "figures": [plate.id for plate in plates if name in plate.needs],
-            "claims": [claim.id for claim in claims if name in claim.needs],
+            "id": one.id,
+            "title": one.title,
+            "figures": [plate.id for plate in chosen.plates if one.id in plate.needs],
+            "claims": [claim.id for claim in chosen.claims if one.id in claim.needs],
         }
-        for name in dict.fromkeys(name for some in needs for name in some)
+        for one in chosen.experiments
     ]
 
 

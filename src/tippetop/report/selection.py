@@ -3,6 +3,7 @@
 import re
 from dataclasses import dataclass
 from difflib import get_close_matches
+from itertools import chain
 
 from tippetop.errors import InvalidInput
 from tippetop.report.claim import Claim
@@ -22,8 +23,8 @@ class Selection:
     @property
     def experiments(self) -> tuple[Experiment, ...]:
         """The experiments needed, in the order of the page."""
-        needs = [*(plate.needs for plate in self.plates), *(claim.needs for claim in self.claims)]
-        return tuple(EXPERIMENTS[name] for name in dict.fromkeys(name for some in needs for name in some))
+        needs = chain(*(plate.needs for plate in self.plates), *(claim.needs for claim in self.claims))
+        return tuple(EXPERIMENTS[name] for name in dict.fromkeys(needs))
 
 
 def select(only: str | None = None) -> Selection:

@@ -5,7 +5,7 @@ Both are written as tables by fields, the same in TOML, in JSON and on the comma
 """
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Annotated, Any, Literal, Self, TypeVar
 
 import numpy as np
@@ -198,14 +198,10 @@ def _read(name: str, table: Any, of: Callable[[str, Any], _Kind]) -> tuple[_Kind
     return tuple(found)
 
 
-def _flattened(table: Mapping[str, Any]) -> list[tuple[str, Any]]:
+def _flattened(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
     """Fields and what stands there, in their order: keys may be dotted keys of TOML, or strings with dots."""
-    found, waiting = [], [("", table)]
-    while waiting:
-        field, value = waiting.pop()
+    for key, value in table.items():
         if isinstance(value, Mapping) and not {"from", "values", "to"} & set(value):
-            inner = [(f"{field}.{key}".lstrip("."), entry) for key, entry in value.items()]
-            waiting += reversed(inner)
+            yield from _flattened(value, f"{prefix}{key}.")
         else:
-            found.append((field, value))
-    return found
+            yield f"{prefix}{key}", value

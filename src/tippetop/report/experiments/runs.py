@@ -144,7 +144,7 @@ def _continuation(problem: Problem, times: np.ndarray) -> dict[str, object]:
         drawn[f"{name}_flight"] = variable(run[name].values, run[name].attrs["units"], label, "time")
     for name in ("flight_start", "flight_end", "flight_highest_gap"):
         drawn[name] = run[name]
-    return drawn | dict(flight_readings(run).items())
+    return drawn | {str(name): found for name, found in flight_readings(run).items()}
 
 
 def _readings(run: xr.Dataset, suffix: str) -> dict[str, object]:
