@@ -1,5 +1,6 @@
 """Runs that leave the table: slides, flights and impacts as one."""
 
+import itertools
 import math
 
 import numpy as np
@@ -181,3 +182,60 @@ def test_a_launch_in_painleves_paradox_starts_with_an_impact():
     assert np.hypot(run.slip_x, run.slip_y).values[0] <= 10.0
     with pytest.raises(tt.InvalidInput, match="Painleve"):
         paradox.replace({"contact.liftoff": "stop"})
+
+
+@pytest.mark.parametrize("friction", [tt.ViscousFriction(mu=0.3), tt.CoulombFriction(mu=0.3)])
+@pytest.mark.parametrize("azimuth", [0.0, 0.7])
+def test_a_coin_tossed_without_spin_tumbles_on_its_edges_until_it_lies_flat(friction, azimuth):
+    """Between impacts it turns uniformly in one plane, its centre of mass on a parabola."""
+    problem = tt.Problem(
+        body=tt.presets.COIN,
+        friction=friction,
+        launch=tt.Launch(tilt=1.2, spin=0.0, gap=0.01, azimuth=azimuth),
+        contact=tt.Contact(restitution=0.5),
+    )
+    run = tt.simulate(problem, 0.3, samples=20_001)
+    assert run.attrs["outcome"] == "lying_flat"
+    touchdowns = run.event_time.values[run.event_kind.values == "touchdown"]
+    assert touchdowns[0] == pytest.approx(math.sqrt(2 * 0.01 / 9.8), rel=1e-12)
+    assert float(run.energy_error) < 1e-12
+    radius, half = 0.023_25 / 2, 2.33e-3 / 2
+    times, tilts, heights = run.time.values, run.theta.values, run.height.values
+    gaps = heights - radius * np.sin(tilts) - half * np.abs(np.cos(tilts))
+    turned = 0
+    for begin, end in itertools.pairwise(touchdowns[:8]):
+        flight = (times > begin) & (times < end)
+        t = times[flight] - begin
+        assert gaps[flight].min() > 0.0
+        fall = np.polynomial.Polynomial.fit(t, heights[flight], 2)
+        assert np.abs(heights[flight] - fall(t)).max() < 1e-13
+        assert fall.deriv(2)(0.0) == pytest.approx(-9.8, rel=1e-5)
+        # Beyond a pole the tilt comes back: as a polynomial in time its cosine is that of a straight line.
+        rates = np.diff(tilts[flight]) / np.diff(t)
+        assert np.ptp(np.abs(rates[[0, -1]])) < 1e-6 * np.abs(rates[0])
+        turned += rates[0] * rates[-1] < 0.0
+        # At the touchdown the gap has just closed.
+        closing = fall(end - begin) - (
+            radius * np.sin(tilts[flight][-1] + rates[-1] * (end - times[flight][-1]))
+        )
+        assert closing == pytest.approx(half * abs(math.cos(tilts[flight][-1])), abs=1e-6)
+    assert turned, "it is to pass flat on its way"
+
+
+def test_a_coin_tossed_without_spin_does_the_same_in_a_sweep():
+    problem = tt.Problem(
+        body=tt.presets.COIN,
+        friction=tt.ViscousFriction(mu=0.3),
+        launch=tt.Launch(tilt=1.2, spin=0.0, gap=0.01),
+        contact=tt.Contact(restitution=0.5),
+    )
+    rings = problem.replace(
+        {"body": tt.Body(mass=0.0075, shape=tt.Ring(radius=0.0116), I1=2.6e-7, I3=5.1e-7)}
+    )
+    for one in (problem, rings):
+        swept = tt.sweep(one, {"launch.tilt": [0.8, 1.2, 1.9]}, duration=0.3, workers=1)
+        for tilt in (0.8, 1.2, 1.9):
+            run, cell = tt.simulate(one.replace({"launch.tilt": tilt}), 0.3), swept.sel({"launch.tilt": tilt})
+            assert run.attrs["outcome"] == "lying_flat"
+            for name in ("end_time", "flights", "highest_gap", "airborne_time", "final_theta"):
+                assert float(cell[name]) == pytest.approx(float(run[name]), rel=1e-7), (tilt, name)

@@ -46,6 +46,7 @@ def lowest_contact_vector(axis: Vector, surface: Surface) -> Vector:
 
 def highest_between(surface: Surface, low: Scalar, high: Scalar) -> Scalar:
     """Largest height of the centre of mass on the table for n_z from `low` to `high`, in some looks."""
+    low, high = np.maximum(low, -1.0), np.minimum(high, 1.0)
     found = outer_height(surface, low)
     for look in range(1, LOOKS):
         found = np.maximum(found, outer_height(surface, low + look / (LOOKS - 1) * (high - low)))

@@ -18,7 +18,7 @@ from tippetop.fields import dotted_names, numbers_of, part_at, table_at
 from tippetop.files import made_of, read_text
 from tippetop.frictions import LEAST_PATCH, Friction
 from tippetop.mechanics.coulomb import RollingResistance
-from tippetop.mechanics.hull import Hull, acting, lowest_surface, sizes
+from tippetop.mechanics.hull import Hull, is_edge, lowest_surface, sizes
 from tippetop.mechanics.motion import along_table, contact, on_table
 from tippetop.mechanics.rolling import is_set_valued
 from tippetop.mechanics.state import State
@@ -247,7 +247,7 @@ class Problem(Part):
     def _lying_flat(self) -> InvalidInput | None:
         """The refusal of a launch on a face; None where that is not what is wrong."""
         try:
-            edge = hasattr(acting(self.standing().surface), "face_guard")
+            edge = is_edge(self.standing().surface)
         except ArithmeticError:
             return None
         if not edge or math.cos(self.launch.tilt) ** 2 < 1.0:

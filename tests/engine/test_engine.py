@@ -52,6 +52,17 @@ def test_the_report_s_launch_with_flights_is_the_same() -> None:
     assert not compared(found, run)
 
 
+def test_a_coin_that_tumbles_through_flat_is_the_same() -> None:
+    launch, contact = tt.Launch(tilt=1.2, spin=0.0, gap=0.01), tt.Contact(restitution=0.5)
+    for friction in (tt.ViscousFriction(mu=0.3), tt.CoulombFriction(mu=0.3)):
+        problem = tt.Problem(body=tt.presets.COIN, friction=friction, launch=launch, contact=contact)
+        fields = problem.model_dump(mode="json")
+        (found,) = in_javascript([asked(0, DURATION) | {"problem": fields}])
+        run = in_python(fields, DURATION)
+        assert run.attrs["outcome"] == "lying_flat"
+        assert not compared(found, run)
+
+
 def test_random_launches_are_the_same() -> None:
     found = in_javascript([asked(seed, DURATION) for seed in SEEDS])
     wrong = {}

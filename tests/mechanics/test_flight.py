@@ -9,6 +9,7 @@ import pytest
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
 from strategies import numbers, slides, spheres, spheroids, tops
 from tippetop.mechanics.flight import fly, gap, gap_rate
@@ -21,6 +22,7 @@ from tippetop.mechanics.top import Top
 from tippetop.mechanics.touchdown import Start, highest_gap, touchdown
 from tippetop.mechanics.vectors import dot, length, scale
 from tippetop.mechanics.view import Angles, state_from_angles
+from tumbling import EDGES, Tumbling, reach
 
 DIGITS = 50
 SHAPES = {
@@ -412,3 +414,100 @@ def test_no_look_at_a_hop_is_higher_than_its_highest_gap(slide, decades):
     assert gaps.max() - fuzz <= highest
     bend = np.abs(np.diff(gaps, 2)).max()
     assert highest <= max(gaps.max(), 0.0) + bend + fuzz
+
+
+# Through flat ------------------------------------------------------------------------------------------
+
+
+@st.composite
+def tumbling(draw):
+    """Flights whose axis passes the poles, in any vertical plane; most pass one or several."""
+    shape = draw(st.sampled_from([*EDGES.values(), *SHAPES.values()]))
+    azimuth = draw(st.sampled_from([0.0, 0.3, -2.0]))
+    rate = draw(st.sampled_from([-1.0, 1.0])) * draw(numbers(1.0, 200.0))
+    return Tumbling(
+        shape, draw(numbers(0.1, 3.0)), rate, draw(numbers(1e-3, 0.1)), draw(numbers(-1.0, 1.5)), azimuth
+    )
+
+
+@settings(max_examples=60)
+@given(tumbling())
+@example(Tumbling(EDGES["edge"], 1.2, -40.0, 0.01, 0.5, 0.0))
+@example(Tumbling(EDGES["edge of a face"], 1.0, 25.0, 0.01, 0.5, 0.3))
+@example(Tumbling(EDGES["tube"], 2.0, -200.0, 0.1, 1.5, -2.0))
+def test_a_body_that_tumbles_through_flat_lands_when_its_lowest_point_does(flight):
+    top, state = flight.thrown
+    landing = flight.landing
+    sinking = (flight.gap(landing) - flight.gap(landing - 1e-7)) / 1e-7
+    assume(
+        landing > 1e-5 and abs(sinking) > 1e-2 and abs(math.sin(flight.tilt + flight.rate * landing)) > 1e-3
+    )
+    assert touchdown(state, top, math.inf) == pytest.approx(landing, rel=1e-9)
+    assert touchdown(state, top, 0.999 * landing) is None
+    assert highest_gap(state, top, landing) == pytest.approx(flight.highest, abs=3e-7)
+
+
+@pytest.mark.parametrize("rise", [0.3, 0.8])
+@pytest.mark.parametrize("shape", EDGES.values(), ids=EDGES)
+def test_an_edge_that_rebounds_through_flat_lands_when_its_lowest_point_does(shape, rise):
+    rate = -60.0
+    sinking = rate * (reach(shape, 1.2 + 1e-6) - reach(shape, 1.2 - 1e-6)) / 2e-6
+    flight = Tumbling(shape, 1.2, rate, 0.0, float(sinking) + rise, 0.0)
+    top, state = flight.thrown
+    assert 1.2 + rate * flight.landing < 0.0
+    assert touchdown(state, top, math.inf, Start.REBOUND) == pytest.approx(flight.landing, rel=1e-9)
+
+
+@pytest.mark.parametrize("miss", [1e-2, 1e-4, 1e-7, 1e-8, 1e-10, 1e-13])
+@pytest.mark.parametrize("shape", EDGES.values(), ids=EDGES)
+def test_an_edge_that_almost_turns_through_flat_lands_as_the_rotation_of_its_axis_says(shape, miss):
+    """The axis turns about a momentum off the horizontal by an angle: so near it comes to the pole."""
+    top, state = Tumbling(shape, 1.2, -60.0, 0.02, 0.4, 0.0).thrown
+    size = length(state.momentum)
+    along = (0.0, -math.cos(miss), math.sin(miss))
+    turned = state._replace(axis=(math.sin(1.2), 0.0, math.cos(1.2)), momentum=scale(size, along))
+
+    def gap_at(time):
+        # Rodrigues' formula, in the parts of the axis along the momentum and across it.
+        angle = 60.0 * time
+        axis, pole = np.array(turned.axis), np.array(along)
+        n = axis * np.cos(angle) + np.cross(pole, axis) * np.sin(angle)
+        n += pole * (pole @ axis) * (1.0 - np.cos(angle))
+        height = shape.tube + shape.radius * np.hypot(n[0], n[1]) - shape.center * n[2]
+        return turned.height + 0.4 * time - 4.9 * time**2 - height
+
+    looks = np.linspace(1e-6, 0.3, 5_001)
+    first = next(k for k, time in enumerate(looks) if gap_at(time) <= 0.0)
+    expected = brentq(gap_at, looks[first - 1], looks[first], xtol=1e-16)
+    assert 60.0 * expected > 1.3
+    assert touchdown(turned, top, math.inf) == pytest.approx(expected, rel=1e-9)
+
+
+def test_a_disk_that_falls_flat_all_the_way_lands_flat():
+    top, state = Tumbling(EDGES["edge"], 1.2, 0.0, 0.02, 0.4, 0.0).thrown
+    for axis in [(0.0, 0.0, 1.0), (1e-9, 0.0, 1.0), (0.0, -1e-7, -1.0)]:
+        flat = state._replace(axis=axis, height=0.02, momentum=(0.0, 0.0, 1e-5))
+        falls = (0.4 + math.sqrt(0.16 + 4 * 4.9 * 0.02)) / 9.8
+        assert touchdown(flat, top, math.inf) == pytest.approx(falls, rel=1e-6)
+
+
+# Many turns --------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("turns", [10.0, 1e3, 1e5, 1e7])
+@pytest.mark.parametrize("shape", [*SHAPES.values(), *EDGES.values()], ids=[*SHAPES, *EDGES])
+def test_flights_of_many_turns_end_at_their_first_touch(shape, turns):
+    """It is within the first turn of the axis in which the centre of mass is low enough: there by looks."""
+    top, state = Tumbling(shape, 1.2, 2.0 * math.pi * turns, 0.3, 4.0, 0.0).thrown
+    spinning = state._replace(momentum=(state.momentum[0], state.momentum[1], 0.3 * state.momentum[1]))
+    time = touchdown(spinning, top, math.inf)
+    period = 2.0 * math.pi * top.transverse_inertia / length(spinning.momentum)
+    gaps = gap(fly(spinning, np.linspace(time - 1.5 * period, time, 30_001)[:-1], top, np), top)
+    # Of the phase, time has no more digits than this.
+    lost = 3e-15 * turns * top.surface.size + 1e-14
+    assert gaps.min() > -lost
+    assert abs(gap(fly(spinning, time, top, math), top)) < lost
+    summit = spinning.velocity[2] / top.gravity
+    gaps = gap(fly(spinning, summit + np.linspace(-1.0, 1.0, 30_001) * period, top, np), top)
+    highest = highest_gap(spinning, top, time)
+    assert gaps.max() - lost <= highest <= gaps.max() + 3e-7 * top.surface.size + lost

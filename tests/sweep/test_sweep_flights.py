@@ -18,13 +18,14 @@ from tippetop.mechanics.motion import along_table, contact, on_table
 from tippetop.mechanics.state import State
 from tippetop.mechanics.surface import SphereSurface, SpheroidSurface
 from tippetop.mechanics.top import Top, natural_state, natural_units
-from tippetop.mechanics.touchdown import Start, touchdown
+from tippetop.mechanics.touchdown import Start, highest_gap, touchdown
 from tippetop.sweeps.flights import fly_all, look
 from tippetop.sweeps.flights import slides as goes_on
 from tippetop.sweeps.impacts import collide
 from tippetop.sweeps.launches import branched, single
 from tippetop.sweeps.pieces import GIVEN, LEFT, STATE, TIME, VANISHING, WANTED, pieces
 from tippetop.sweeps.tip import DOWN, UP, TipMotion
+from tumbling import EDGES, Tumbling
 
 VISCOUS = tops(friction_laws=(ViscousLaw,))
 
@@ -210,3 +211,49 @@ def test_impacts_of_patches_go_on_where_another_branch_takes_over(monkeypatch) -
         assert single(after, i).momentum == pytest.approx(hit.state.momentum, abs=1e-10)
     assert changed > 10, "on many the other branch should take over"
     assert struck.sum() > 0.9 * np.sum(gap_rate(state, top) < 0.0)
+
+
+@pytest.mark.parametrize("azimuth", [0.0, -2.0])
+@pytest.mark.parametrize("rate", [-25.0, 40.0, 200.0])
+@pytest.mark.parametrize("shape", EDGES.values(), ids=EDGES)
+def test_edges_that_tumble_through_flat_land_when_their_lowest_point_does(shape, rate, azimuth):
+    flight = Tumbling(shape, 1.0, rate, 0.01, 1.0, azimuth)
+    top, thrown = flight.thrown
+    units = natural_units(top)
+    found, tip = flown(top.kind, top.numbers, natural_state(thrown, units), 0)
+    assert abs(1.0 + rate * flight.landing - math.pi / 2) > math.pi / 2, "it is to pass flat"
+    assert found.landed.all()
+    assert found.duration[0] * units.time == pytest.approx(flight.landing, rel=1e-9)
+    looks = np.linspace(0.0, flight.landing, 20_001)
+    assert found.highest_gap[0] * units.length == pytest.approx(flight.highest, abs=3e-7)
+    heights = np.cos(1.0 + rate * looks)
+    assert tip.least[DOWN, 0] == pytest.approx(heights.min(), abs=1e-5)
+    assert -tip.least[UP, 0] == pytest.approx(heights.max(), abs=1e-5)
+
+
+@pytest.mark.parametrize("turns", [3.0, 30.0, 1e4, 1e6])
+@pytest.mark.parametrize("surface", [SphereSurface(1.0, 0.3), SpheroidSurface(1.0, 0.9, 0.2)])
+def test_flights_of_many_turns_are_those_of_single_launches(monkeypatch, surface, turns):
+    """And take no more pieces than a few turns do."""
+    monkeypatch.setattr("tippetop.sweeps.flights.PIECES", 400)
+    top = Top(1.0, 0.45, 0.38, surface, ViscousLaw(0.3), 1.0)
+    swing = 2.0 * math.pi * turns * top.transverse_inertia
+    for height, rise in ((3.0, 4.0), (40.0, 0.0), (3.0, 0.01)):
+        state = State((0.6, 0.0, 0.8), (0.0, 0.9 * swing, 0.3 * swing), (0.1, 0.2, rise), height)
+        found, tip = flown(top.kind, top.numbers, state, 0)
+        landing = touchdown(state, top, 50.0)
+        assert found.landed.all()
+        assert found.duration[0] == pytest.approx(landing, rel=1e-10)
+        assert found.highest_gap[0] == pytest.approx(
+            highest_gap(state, top, landing), abs=1e-13 * (turns + 100.0)
+        )
+        for short in (0.4 * landing, 0.9 * landing):
+            some, _ = flown(top.kind, top.numbers, state, 0, short)
+            assert some.duration.tolist() == [short, short]
+            assert some.highest_gap[0] == pytest.approx(
+                highest_gap(state, top, short), abs=1e-13 * (turns + 100.0)
+            )
+        # The axis goes round the momentum: as near to the vertical as the two lean from each other.
+        momentum, axis = math.atan2(0.9, 0.3), math.acos(0.3 * 0.8 / math.hypot(0.9, 0.3))
+        assert -tip.least[UP, 0] == pytest.approx(math.cos(momentum - axis), abs=1e-12)
+        assert tip.least[DOWN, 0] == pytest.approx(math.cos(momentum + axis), abs=1e-12)

@@ -10,7 +10,6 @@ from tippetop.contact.surfaces import number_of
 from tippetop.integrators.base import Integrator
 from tippetop.integrators.dense import ELEMENTARY, DenseSolution
 from tippetop.mechanics.flight import fly, gap, gap_rate
-from tippetop.mechanics.motion import along_table, on_table
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.touchdown import Start, highest_gap, touchdown
@@ -92,7 +91,8 @@ class Flight(Mode):
     ) -> Transition:
         if lowest is None:
             return Transition((), Outcome.COMPLETED, state)
-        here = state._replace(height=on_table(along_table(state), lowest).height)
+        c = min(max(state.axis[2], -1.0), 1.0)
+        here = state._replace(height=lowest.surface.height(c))
         if lowest == self.top:
             return self.rules.touchdown(time, here, integrator)
         return self.rules.touch(number_of(lowest), time, here, integrator)

@@ -10,7 +10,7 @@ from tippetop.contact.passing import Resting, Stopping
 from tippetop.contact.sliding import Sliding, SlidingWithoutRolling
 from tippetop.contact.sticking import Sticking, StickingWithoutRolling
 from tippetop.contact.striking import impact_of_patch
-from tippetop.contact.surfaces import number_of
+from tippetop.contact.surfaces import lies_flat, number_of
 from tippetop.integrators.base import Integrator
 from tippetop.mechanics.beginning import Beginning, settling
 from tippetop.mechanics.ending import Vanishing
@@ -284,8 +284,10 @@ class FreeToFly(Rules):
         return Transition((self.event(EventKind.LIFT_OFF, time),), self._flight(Start.LIFT_OFF), state)
 
     def touchdown(self, time: float, state: State, integrator: Integrator | None = None) -> Transition:
-        """Collide, and go on as the impact leaves the top."""
+        """Collide, unless with a face, and go on as the impact leaves the top."""
         told = (self.event(EventKind.TOUCHDOWN, time),)
+        if lies_flat(self.top, state.axis):
+            return Transition(told, Outcome.LYING_FLAT, state)
         return self._collide(time, state, told, self.restitution, integrator)
 
     def _let_go(self, time: float, state: State, events: tuple[Event, ...]) -> Transition:

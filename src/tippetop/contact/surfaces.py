@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import Any
 
 from tippetop.contact.mode import Mode, Outcome, Transition
-from tippetop.mechanics.hull import Hull, acting, each_surface
+from tippetop.mechanics.hull import Hull, acting, each_surface, is_edge
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Row, Scalar, Vector
@@ -26,10 +26,15 @@ def surface_guards(top: Top) -> list[tuple[str, Callable[[Top, Vector], Scalar]]
     By name, as functions of the top and the axis.
     """
     found: list[tuple[str, Callable[[Top, Vector], Scalar]]] = []
-    if hasattr(acting(top.surface), "face_guard"):
+    if is_edge(top.surface):
         found.append((FACE, _face))
     open_ones = [number for number in range(len(each_surface(top.surface))) if number != number_of(top)]
     return found + [(f"{TOUCH}{number}", _gap_of(number)) for number in open_ones]
+
+
+def lies_flat(top: Top, axis: Vector) -> Scalar:
+    """Whether a body whose active surface touches the table lies on the face that this is the edge of."""
+    return is_edge(top.surface) and _face(top, axis) <= 0.0
 
 
 def _face(top: Top, axis: Vector) -> Scalar:

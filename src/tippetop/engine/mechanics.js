@@ -345,6 +345,11 @@ function acting(surface) {
   return py.isinstance(surface, Hull) ? py.item(surface.units, surface.active) : surface;
 }
 
+/** Whether a surface, or the one that is active, is an edge, on whose face the body may lie flat. */
+function is_edge(surface) {
+  return py.hasattr(acting(surface), "face_guard");
+}
+
 /** Height of the centre of mass above the table while the lowest of all surfaces touches it, m. */
 function outer_height(surface, c) {
   var [first, ...others] = each_surface(surface);
@@ -893,7 +898,7 @@ function number_of(top) {
 /** Guards of the open surfaces of a body, and of the face that the active one is the edge of. */
 function surface_guards(top) {
   var found = [];
-  if (py.truth(py.hasattr(acting(top.surface), "face_guard"))) {
+  if (py.truth(is_edge(top.surface))) {
     found.push([FACE, _face]);
   }
   var open_ones = py.range(py.len(each_surface(top.surface))).filter(
@@ -903,6 +908,11 @@ function surface_guards(top) {
     found,
     [...open_ones].map((number) => [`${py.str(TOUCH)}${py.str(number)}`, _gap_of(number)])
   );
+}
+
+/** Whether a body whose active surface touches the table lies on the face that this is the edge of. */
+function lies_flat(top, axis) {
+  return py.and(is_edge(top.surface), () => _face(top, axis) <= 0.0);
 }
 
 function _face(top, axis) {
@@ -1103,127 +1113,6 @@ function gap_rate(state, top) {
   return py.sub(state.velocity[2], on_table(along_table(state), top).velocity[2]);
 }
 
-// tippetop.mechanics.algebra
-
-/** Arithmetic that follows from a sum, a product and a power, for what the mechanics may run on. */
-class Algebra extends py.Thing {
-  __add__(other) {
-    throw new py.NotImplementedError();
-  }
-  __mul__(other) {
-    throw new py.NotImplementedError();
-  }
-  /** A power that is not a natural number. */
-  power(exponent) {
-    throw new py.NotImplementedError();
-  }
-  __pow__(exponent) {
-    if (exponent < 1 || !py.eq(exponent, py.int(exponent))) {
-      return this.power(exponent);
-    }
-    return exponent === 1 ? this : py.mul(this, py.pow(this, py.sub(exponent, 1)));
-  }
-  __neg__() {
-    return py.mul(this, -1.0);
-  }
-  __sub__(other) {
-    return this.__add__(py.neg(other));
-  }
-  __truediv__(other) {
-    return this.__mul__(py.pow(other, -1.0));
-  }
-  __radd__(other) {
-    return py.add(this, other);
-  }
-  __rsub__(other) {
-    return py.add(py.neg(this), other);
-  }
-  __rmul__(other) {
-    return py.mul(this, other);
-  }
-  __rtruediv__(other) {
-    return py.mul(py.pow(this, -1.0), other);
-  }
-}
-
-/** A power series in time, truncated after the degree of all others. */
-class TruncatedSeries extends Algebra {
-  constructor(terms) {
-    super();
-    this.terms = terms;
-  }
-  __add__(other) {
-    if (py.isinstance(other, TruncatedSeries)) {
-      return new TruncatedSeries(py.zip(this.terms, other.terms).map(([a, b]) => py.add(a, b)));
-    }
-    return new TruncatedSeries([py.add(this.terms[0], other), ...this.terms.slice(1)]);
-  }
-  __mul__(other) {
-    var a = this.terms;
-    if (py.isinstance(other, TruncatedSeries)) {
-      var b = py.slice(other.terms, null, null, -1);
-      var last = py.sub(py.len(a), 1);
-      return new TruncatedSeries(
-        py.range(py.add(last, 1)).map(
-          (k) => py.sum(py.map(py.mul, a, py.slice(b, py.sub(last, k), null, null)))
-        )
-      );
-    }
-    return new TruncatedSeries([...a].map((term) => py.mul(other, term)));
-  }
-  /** A real power, term by term from y' a = exponent a' y. */
-  power(exponent) {
-    var a = this.terms;
-    var y = [py.pow(this.terms[0], exponent)];
-    for (var k = 1; k < py.len(a); k += 1) {
-      var total = py.sum(
-        py.range(1, py.add(k, 1)).map(
-          (j) => py.mul(
-            py.mul(py.sub(py.mul(py.add(exponent, 1.0), j), k), py.item(a, j)),
-            py.item(y, py.sub(k, j))
-          )
-        )
-      );
-      y.push(py.div(total, py.mul(k, a[0])));
-    }
-    return new TruncatedSeries(y);
-  }
-}
-
-/** All complex numbers within a radius of a real centre, and what arithmetic can make of them. */
-class Disc extends Algebra {
-  constructor(centre, radius) {
-    super();
-    [this.centre, this.radius] = [centre, radius];
-  }
-  __add__(other) {
-    if (py.isinstance(other, Disc)) {
-      return new Disc(py.add(this.centre, other.centre), py.add(this.radius, other.radius));
-    }
-    return new Disc(py.add(this.centre, other), this.radius);
-  }
-  __mul__(other) {
-    if (py.isinstance(other, Disc)) {
-      var far = py.add(py.abs(other.centre), other.radius);
-      return new Disc(
-        py.mul(this.centre, other.centre),
-        py.add(py.mul(py.abs(this.centre), other.radius), py.mul(this.radius, far))
-      );
-    }
-    return new Disc(py.mul(this.centre, other), py.mul(this.radius, py.abs(other)));
-  }
-  /** A real power, by the mean value theorem; the disc must lie right of zero for it to be analytic. */
-  power(exponent) {
-    var near = py.sub(this.centre, this.radius);
-    var far = py.add(this.centre, this.radius);
-    if (near <= 0.0) {
-      throw new py.ArithmeticError("a power of a disc that touches zero");
-    }
-    var steepest = py.max(py.pow(near, py.sub(exponent, 1.0)), py.pow(far, py.sub(exponent, 1.0)));
-    return new Disc(py.pow(this.centre, exponent), py.mul(py.mul(this.radius, py.abs(exponent)), steepest));
-  }
-}
-
 // tippetop.mechanics.roots
 const FINEST = 1e-10;
 const [GOLDEN, NARROWED] = [py.mul(0.5, py.sub(3.0, py.pow(5.0, 0.5))), 29];
@@ -1359,111 +1248,134 @@ function crossing(function_, low, high) {
   return best;
 }
 
-// tippetop.mechanics.touchdown
+// tippetop.mechanics.algebra
+
+/** Arithmetic that follows from a sum, a product and a power, for what the mechanics may run on. */
+class Algebra extends py.Thing {
+  __add__(other) {
+    throw new py.NotImplementedError();
+  }
+  __mul__(other) {
+    throw new py.NotImplementedError();
+  }
+  /** A power that is not a natural number. */
+  power(exponent) {
+    throw new py.NotImplementedError();
+  }
+  __pow__(exponent) {
+    if (exponent < 1 || !py.eq(exponent, py.int(exponent))) {
+      return this.power(exponent);
+    }
+    return exponent === 1 ? this : py.mul(this, py.pow(this, py.sub(exponent, 1)));
+  }
+  __neg__() {
+    return py.mul(this, -1.0);
+  }
+  __sub__(other) {
+    return this.__add__(py.neg(other));
+  }
+  __truediv__(other) {
+    return this.__mul__(py.pow(other, -1.0));
+  }
+  __radd__(other) {
+    return py.add(this, other);
+  }
+  __rsub__(other) {
+    return py.add(py.neg(this), other);
+  }
+  __rmul__(other) {
+    return py.mul(this, other);
+  }
+  __rtruediv__(other) {
+    return py.mul(py.pow(this, -1.0), other);
+  }
+}
+
+/** A power series in time, truncated after the degree of all others. */
+class TruncatedSeries extends Algebra {
+  constructor(terms) {
+    super();
+    this.terms = terms;
+  }
+  __add__(other) {
+    if (py.isinstance(other, TruncatedSeries)) {
+      return new TruncatedSeries(py.zip(this.terms, other.terms).map(([a, b]) => py.add(a, b)));
+    }
+    return new TruncatedSeries([py.add(this.terms[0], other), ...this.terms.slice(1)]);
+  }
+  __mul__(other) {
+    var a = this.terms;
+    if (py.isinstance(other, TruncatedSeries)) {
+      var b = py.slice(other.terms, null, null, -1);
+      var last = py.sub(py.len(a), 1);
+      return new TruncatedSeries(
+        py.range(py.add(last, 1)).map(
+          (k) => py.sum(py.map(py.mul, a, py.slice(b, py.sub(last, k), null, null)))
+        )
+      );
+    }
+    return new TruncatedSeries([...a].map((term) => py.mul(other, term)));
+  }
+  /** A real power, term by term from y' a = exponent a' y. */
+  power(exponent) {
+    var a = this.terms;
+    var y = [py.pow(this.terms[0], exponent)];
+    for (var k = 1; k < py.len(a); k += 1) {
+      var total = py.sum(
+        py.range(1, py.add(k, 1)).map(
+          (j) => py.mul(
+            py.mul(py.sub(py.mul(py.add(exponent, 1.0), j), k), py.item(a, j)),
+            py.item(y, py.sub(k, j))
+          )
+        )
+      );
+      y.push(py.div(total, py.mul(k, a[0])));
+    }
+    return new TruncatedSeries(y);
+  }
+}
+
+/** All complex numbers within a radius of a real centre, and what arithmetic can make of them. */
+class Disc extends Algebra {
+  constructor(centre, radius) {
+    super();
+    [this.centre, this.radius] = [centre, radius];
+  }
+  __add__(other) {
+    if (py.isinstance(other, Disc)) {
+      return new Disc(py.add(this.centre, other.centre), py.add(this.radius, other.radius));
+    }
+    return new Disc(py.add(this.centre, other), this.radius);
+  }
+  __mul__(other) {
+    if (py.isinstance(other, Disc)) {
+      var far = py.add(py.abs(other.centre), other.radius);
+      return new Disc(
+        py.mul(this.centre, other.centre),
+        py.add(py.mul(py.abs(this.centre), other.radius), py.mul(this.radius, far))
+      );
+    }
+    return new Disc(py.mul(this.centre, other), py.mul(this.radius, py.abs(other)));
+  }
+  /** A real power, by the mean value theorem; the disc must lie right of zero for it to be analytic. */
+  power(exponent) {
+    var near = py.sub(this.centre, this.radius);
+    var far = py.add(this.centre, this.radius);
+    if (near <= 0.0) {
+      throw new py.ArithmeticError("a power of a disc that touches zero");
+    }
+    var steepest = py.max(py.pow(near, py.sub(exponent, 1.0)), py.pow(far, py.sub(exponent, 1.0)));
+    return new Disc(py.pow(this.centre, exponent), py.mul(py.mul(this.radius, py.abs(exponent)), steepest));
+  }
+}
+
+// tippetop.mechanics.separation
 const DEGREE = 16;
-const START = py.pow(10.0, py.div(-16.0, py.add(DEGREE, 1)));
+const NARROWEST = 1e-07;
+const ACROSS = py.mul(8.0, NARROWEST);
 const WIDEST = 4.0;
-const NARROWEST = 1e-09;
-const LOOKS = 10.0;
-const MOST_LOOKS = 1000;
-const MOST_DISCS = 100000;
-
-/** How a flight starts: how many of gap, gap rate and gap acceleration are then zero by construction. */
-class Start extends py.IntEnum {
-}
-py.members(Start, { AIRBORNE: 0, REBOUND: 1, RELEASE: 2, LIFT_OFF: 3 });
-
-/** Time of the first touch of the table after the start of a flight, s. */
-function touchdown(state, top, horizon, start = Start.AIRBORNE) {
-  var [tip, , ballistic] = Separation.of(state, top);
-  var deepest = py.min(0.0, ...[-1.0, 1.0].map((c) => py.float(top.surface.height(c))));
-  horizon = py.min(horizon, py.mul(2.0, falling_time(py.sub(ballistic[0], deepest), ...ballistic.slice(1))));
-  var time = 0.0;
-  if (!py.eq(start, Start.AIRBORNE)) {
-    var support = py.add(top.surface.height(tip.series()), py.mul(0.0, tip.series())).terms;
-    ballistic = [...support.slice(0, start), ...ballistic.slice(start)];
-    var terms = py.add(
-      py.zip(ballistic, support.slice(0, 3)).map(([b, s]) => py.sub(b, s)),
-      [...support.slice(3)].map((s) => py.neg(s))
-    );
-    var opening = new Opening(
-      py.slice(
-        terms,
-        py.next(py.range(start, DEGREE).filter((j) => py.truth(py.item(terms, j))), DEGREE),
-        null,
-        null
-      )
-    );
-    time = py.min(horizon, py.mul(START, analytic_disc(tip, top.surface, 0.0, 0.0, WIDEST)[0]));
-    var root = first_root(py.bound(opening, "at"), 0.0, time, opening.jerk_bound(time));
-    if (root !== null) {
-      return root;
-    }
-  }
-  var separation = new Separation(tip, top.surface, ballistic);
-  var angle = WIDEST;
-  for (var turn = 0; turn < MOST_DISCS; turn += 1) {
-    if (time >= horizon) {
-      return null;
-    }
-    var [radius, spread] = analytic_disc(tip, top.surface, time, 0.25, angle);
-    angle = py.min(WIDEST, py.mul(py.mul(2.0, radius), tip.frequency));
-    var end = py.min(horizon, py.add(time, py.mul(0.5, radius)));
-    root = first_root(
-      py.bound(separation, "at"),
-      time,
-      end,
-      py.div(py.mul(6.0, spread), py.mul(py.pow(0.75, 4), py.pow(radius, 3)))
-    );
-    if (root !== null) {
-      return root;
-    }
-    time = end;
-  }
-  throw new py.ArithmeticError("a flight turns too often for its end to be found");
-}
-
-/** Time after which height + rate t + half t^2 stays negative, infinite if half is not negative. */
-function falling_time(height, rate, half) {
-  if (half >= 0.0) {
-    return py.math.inf;
-  }
-  return py.div(
-    py.neg(
-      py.add(rate, py.math.sqrt(py.max(py.sub(py.mul(rate, rate), py.mul(py.mul(4.0, half), height)), 0.0)))
-    ),
-    py.mul(2.0, half)
-  );
-}
-
-/** The highest gap of a free flight that lasts some time, s; floats. */
-function highest_gap(state, top, duration) {
-  var [gap, ...others] = [...top.each].map((one) => py.bound(Separation.of(state, one), "at"));
-  if (py.truth(others)) {
-    var everywhere = [gap, ...others];
-    gap = (time) => {
-      return py.min([...everywhere].map((at) => at(time)));
-    };
-  }
-  var count = py.min(
-    MOST_LOOKS,
-    py.add(2, py.int(py.div(py.mul(py.mul(LOOKS, duration), length(state.momentum)), top.transverse_inertia)))
-  );
-  var times = py.range(py.add(count, 1)).map((j) => py.div(py.mul(duration, j), count));
-  var gaps = [...times].map((time) => gap(time)[0]);
-  var best = py.max(py.range(py.add(count, 1)), py.how({ key: py.bound(gaps, "__getitem__") }));
-  if (gap(py.item(times, best))[1] > 0.0) {
-    var low = py.item(times, best);
-    var high = py.item(times, py.min(py.add(best, 1), count));
-  } else {
-    low = py.max(py.item(times, py.max(py.sub(best, 1), 0)), py.mul(0.001, times[1]));
-    high = py.item(times, best);
-  }
-  if (!(gap(low)[1] > 0.0 && 0.0 > gap(high)[1])) {
-    return py.item(gaps, best);
-  }
-  return py.max(py.item(gaps, best), gap(crossing((time) => gap(time)[1], low, high))[0]);
-}
+const CLEAR = 1e-09;
+const INSIDE = py.sub(1.0, py.pow(2.0, -53));
 
 /** Height c = n_z of the tip of the axis in free flight: its value, two derivatives, and frequency. */
 class Tip extends py.NamedTuple {
@@ -1491,13 +1403,34 @@ class Tip extends py.NamedTuple {
     var sine = py.div(py.math.sin(py.mul(w, time)), w);
     var half = py.div(py.math.sin(py.mul(py.mul(0.5, w), time)), w);
     return [
-      py.add(
-        py.add(this.height, py.mul(this.rate, sine)),
-        py.mul(py.mul(py.mul(2.0, this.acceleration), half), half)
+      py.min(
+        py.max(
+          py.add(
+            py.add(this.height, py.mul(this.rate, sine)),
+            py.mul(py.mul(py.mul(2.0, this.acceleration), half), half)
+          ),
+          -1.0
+        ),
+        1.0
       ),
       py.add(py.mul(this.rate, cosine), py.mul(this.acceleration, sine)),
       py.sub(py.mul(this.acceleration, cosine), py.mul(py.mul(py.mul(this.rate, w), w), sine))
     ];
+  }
+  /** Time of a turn about the angular momentum. */
+  get period() {
+    return py.div(py.mul(2.0, py.math.pi), this.frequency);
+  }
+  /** Least and largest height, between the poles. */
+  get range() {
+    var sway = py.div(this.acceleration, py.pow(this.frequency, 2));
+    var mean = py.add(this.height, sway);
+    var amplitude = py.math.hypot(sway, py.div(this.rate, this.frequency));
+    var [low, high] = [
+      py.sub(mean, amplitude),
+      py.add(mean, amplitude)
+    ].map((c) => py.min(py.max(c, py.neg(INSIDE)), INSIDE));
+    return [low, high];
   }
   /** Height as a power series in time. */
   series() {
@@ -1542,17 +1475,59 @@ class Separation extends py.NamedTuple {
   }
   /** Gap, its rate and its acceleration. */
   at(time) {
-    var [p0, p1, p2] = this.parabola;
     var [c, rate, acceleration] = this.tip.at(time);
-    var slope = this.shape.slope(c);
+    try {
+      var slope = this.shape.slope(c);
+      var curvature = this.shape.curvature(c);
+    } catch (error) {
+      if (!(error instanceof py.ArithmeticError)) throw error;
+      slope = 0.0;
+      curvature = 0.0;
+    }
+    var [z, rise, fall] = this.fall(time);
     return [
-      py.sub(py.add(p0, py.mul(time, py.add(p1, py.mul(time, p2)))), this.shape.height(c)),
-      py.sub(py.add(p1, py.mul(py.mul(2.0, time), p2)), py.mul(slope, rate)),
-      py.sub(
-        py.sub(py.mul(2.0, p2), py.mul(py.mul(this.shape.curvature(c), rate), rate)),
-        py.mul(slope, acceleration)
-      )
+      py.sub(z, this.shape.height(c)),
+      py.sub(rise, py.mul(slope, rate)),
+      py.sub(py.sub(fall, py.mul(py.mul(curvature, rate), rate)), py.mul(slope, acceleration))
     ];
+  }
+  /** Height of the centre of mass, its rate and its acceleration. */
+  fall(time) {
+    var [p0, p1, p2] = this.parabola;
+    return [
+      py.add(p0, py.mul(time, py.add(p1, py.mul(time, p2)))),
+      py.add(p1, py.mul(py.mul(2.0, time), p2)),
+      py.mul(2.0, p2)
+    ];
+  }
+  /** Height of the centre of mass above which the body touches nowhere on its way. */
+  get level() {
+    var [low, high] = this.tip.range;
+    var highest = py.max(this.shape.height(low), this.shape.height(high));
+    if (this.shape.slope(low) > 0.0 && 0.0 > this.shape.slope(high)) {
+      highest = py.max(highest, this.shape.height(crossing(py.bound(this.shape, "slope"), low, high)));
+    }
+    return py.float(py.add(highest, py.mul(CLEAR, this.shape.size)));
+  }
+  /** Until when, from a time on, the centre of mass is above a level; the time itself if it is not. */
+  clear_until(time, level) {
+    var [z, rise, fall] = this.fall(time);
+    return z > level ? py.add(time, falling_time(py.sub(z, level), rise, py.mul(0.5, fall))) : time;
+  }
+  /** Past an edge that lies flat: until when, and when the table is touched meanwhile, if it is. */
+  across_flat(time, horizon) {
+    var angle = ACROSS;
+    while (this.at(time)[0] > 0.0) {
+      var end = py.min(horizon, py.add(time, py.div(angle, this.tip.frequency)));
+      if (this.at(end)[0] <= 0.0) {
+        return [end, crossing((t) => this.at(t)[0], time, end)];
+      }
+      if (end >= horizon || analytic_disc(this.tip, this.shape, end, 0.25, WIDEST) !== null) {
+        return [end, null];
+      }
+      [time, angle] = [end, py.mul(2.0, angle)];
+    }
+    return [time, time];
   }
 }
 py.fields(Separation, ["tip", "shape", "parabola"]);
@@ -1591,7 +1566,7 @@ py.fields(Opening, ["terms"]);
 
 /** Radius of a disc of time centred `ahead` radii after `time` where h(c) is analytic, and of h(c). */
 function analytic_disc(tip, shape, time, ahead, angle) {
-  while (py.truth(true)) {
+  while (angle >= NARROWEST) {
     var radius = py.div(angle, tip.frequency);
     var centre = py.add(time, py.mul(ahead, radius));
     try {
@@ -1600,11 +1575,123 @@ function analytic_disc(tip, shape, time, ahead, angle) {
     } catch (error) {
       if (!(error instanceof py.ArithmeticError)) throw error;
       angle = py.mul(angle, 0.5);
-      if (angle < NARROWEST) {
-        throw error;
-      }
     }
   }
+  return null;
+}
+
+/** Time after which height + rate t + half t^2 stays negative; infinite where it never does. */
+function falling_time(height, rate, half) {
+  var root = py.math.sqrt(py.max(py.sub(py.mul(rate, rate), py.mul(py.mul(4.0, half), height)), 0.0));
+  if (rate > 0.0) {
+    return half < 0.0 ? py.div(py.neg(py.add(rate, root)), py.mul(2.0, half)) : py.math.inf;
+  }
+  return root > rate ? py.div(py.mul(2.0, height), py.sub(root, rate)) : py.math.inf;
+}
+
+// tippetop.mechanics.touchdown
+const START = py.pow(10.0, py.div(-16.0, py.add(DEGREE, 1)));
+const LOOKS = 10.0;
+
+/** How a flight starts: how many of gap, gap rate and gap acceleration are then zero by construction. */
+class Start extends py.IntEnum {
+}
+py.members(Start, { AIRBORNE: 0, REBOUND: 1, RELEASE: 2, LIFT_OFF: 3 });
+
+/** Time of the first touch of the table after the start of a flight, s. */
+function touchdown(state, top, horizon, start = Start.AIRBORNE) {
+  var [tip, , ballistic] = Separation.of(state, top);
+  var deepest = py.min(0.0, ...[-1.0, 1.0].map((c) => py.float(top.surface.height(c))));
+  horizon = py.min(horizon, py.mul(2.0, falling_time(py.sub(ballistic[0], deepest), ...ballistic.slice(1))));
+  var time = 0.0;
+  if (!py.eq(start, Start.AIRBORNE)) {
+    var disc = analytic_disc(tip, top.surface, 0.0, 0.0, WIDEST);
+    if (disc === null) {
+      throw new py.ArithmeticError("a flight begins where the body lies flat, which has no one lowest point");
+    }
+    var support = py.add(top.surface.height(tip.series()), py.mul(0.0, tip.series())).terms;
+    ballistic = [...support.slice(0, start), ...ballistic.slice(start)];
+    var terms = py.add(
+      py.zip(ballistic, support.slice(0, 3)).map(([b, s]) => py.sub(b, s)),
+      [...support.slice(3)].map((s) => py.neg(s))
+    );
+    var opening = new Opening(
+      py.slice(
+        terms,
+        py.next(py.range(start, DEGREE).filter((j) => py.truth(py.item(terms, j))), DEGREE),
+        null,
+        null
+      )
+    );
+    time = py.min(horizon, py.mul(START, disc[0]));
+    var root = first_root(py.bound(opening, "at"), 0.0, time, opening.jerk_bound(time));
+    if (root !== null) {
+      return root;
+    }
+  }
+  var separation = new Separation(tip, top.surface, ballistic);
+  var level = separation.level;
+  var angle = WIDEST;
+  while (py.truth(true)) {
+    time = separation.clear_until(time, level);
+    if (time >= horizon) {
+      return null;
+    }
+    disc = analytic_disc(tip, top.surface, time, 0.25, angle);
+    if (disc === null) {
+      var [end, root] = separation.across_flat(time, horizon);
+    } else {
+      var [radius, spread] = disc;
+      angle = py.min(WIDEST, py.mul(py.mul(2.0, radius), tip.frequency));
+      end = py.min(horizon, py.add(time, py.mul(0.5, radius)));
+      root = first_root(
+        py.bound(separation, "at"),
+        time,
+        end,
+        py.div(py.mul(6.0, spread), py.mul(py.pow(0.75, 4), py.pow(radius, 3)))
+      );
+    }
+    if (root !== null) {
+      return root;
+    }
+    if (end <= time) {
+      throw new py.ArithmeticError("a flight turns so often that its turns are lost in rounding of time");
+    }
+    time = end;
+  }
+}
+
+/** The highest gap of a free flight that lasts some time, s; floats. */
+function highest_gap(state, top, duration) {
+  var everywhere = [...top.each].map((one) => Separation.of(state, one));
+  var tip = everywhere[0].tip;
+  var gap = (time) => {
+    return py.min([...everywhere].map((one) => one.at(time)));
+  };
+  var summit = py.min(py.max(py.div(state.velocity[2], top.gravity), 0.0), duration);
+  var first = py.max(py.sub(summit, tip.period), 0.0);
+  var last = py.min(py.add(summit, tip.period), duration);
+  var count = py.add(2, py.int(py.mul(py.mul(LOOKS, py.sub(last, first)), tip.frequency)));
+  var step = py.div(py.sub(last, first), count);
+  var times = py.range(py.add(count, 1)).map((j) => py.add(first, py.mul(step, j)));
+  var gaps = [...times].map((time) => gap(time)[0]);
+  var found = py.max(gaps);
+  for (var [j, here] of py.enumerate(gaps)) {
+    var before = py.max(py.sub(j, 1), 0);
+    var after = py.min(py.add(j, 1), count);
+    if (here < py.item(gaps, before) || here < py.item(gaps, after)) {
+      continue;
+    }
+    var rises = gap(py.item(times, j))[1] > 0.0;
+    var [low, high] = py.truth(rises) ? [py.item(times, j), py.item(times, after)] : [
+      py.max(py.item(times, before), py.add(first, py.mul(0.001, step))),
+      py.item(times, j)
+    ];
+    if (gap(low)[1] > 0.0 && 0.0 > gap(high)[1]) {
+      found = py.max(found, gap(crossing((time) => gap(time)[1], low, high))[0]);
+    }
+  }
+  return found;
 }
 
 // tippetop.contact.flight
@@ -1675,7 +1762,8 @@ class Flight extends Mode {
     if (lowest === null) {
       return new Transition([], Outcome.COMPLETED, state);
     }
-    var here = state._replace({ height: on_table(along_table(state), lowest).height });
+    var c = py.min(py.max(state.axis[2], -1.0), 1.0);
+    var here = state._replace({ height: lowest.surface.height(c) });
     if (py.eq(lowest, this.top)) {
       return this.rules.touchdown(time, here, integrator);
     }
@@ -3909,7 +3997,7 @@ const [ENOUGH, MOST_of_slipping] = [1e-28, 50];
 const ACCURACY_of_slipping = 1e-22;
 const BEYOND = 1.05;
 const [DIP, NONE] = [0.1, 1e-11];
-const [PRESSED_of_slipping, CLEAR] = [0.1, 0.01];
+const [PRESSED_of_slipping, CLEAR_of_slipping] = [0.1, 0.01];
 const [LONGER, SHORTER_of_slipping, SHORTEST, SAFETY] = [1.5, 0.8, 0.3, 0.9];
 const TINY_of_slipping = 1e-300;
 
@@ -4028,7 +4116,11 @@ class SlipStep extends py.Thing {
   /** Whether no other surface comes near the table, and that is far from pulling if it may not. */
   goes_on(top, pulls) {
     var several = py.isinstance(top.surface, Hull);
-    if (py.truth(several) && !(py.min([...row_of(this.unknowns, 2)].map((c) => clearance(top, c))) > CLEAR)) {
+    if (
+      py.truth(several) && !(
+        py.min([...row_of(this.unknowns, 2)].map((c) => clearance(top, c))) > CLEAR_of_slipping
+      )
+    ) {
       return false;
     }
     return py.or(pulls, () => py.bool(py.min(row_of(this.found, this.layout.normal)) > PRESSED_of_slipping));
@@ -5707,9 +5799,12 @@ class FreeToFly extends Rules {
   _leaving(time, state) {
     return new Transition([this.event(EventKind.LIFT_OFF, time)], this._flight(Start.LIFT_OFF), state);
   }
-  /** Collide, and go on as the impact leaves the top. */
+  /** Collide, unless with a face, and go on as the impact leaves the top. */
   touchdown(time, state, integrator = null) {
     var told = [this.event(EventKind.TOUCHDOWN, time)];
+    if (py.truth(lies_flat(this.top, state.axis))) {
+      return new Transition(told, Outcome.LYING_FLAT, state);
+    }
     return this._collide(time, state, told, this.restitution, integrator);
   }
   /** Fly from where the table would have to pull from now on, not from zero force. */
@@ -7957,7 +8052,7 @@ class Problem extends Part {
   /** The refusal of a launch on a face; None where that is not what is wrong. */
   _lying_flat() {
     try {
-      var edge = py.hasattr(acting(this.standing().surface), "face_guard");
+      var edge = is_edge(this.standing().surface);
     } catch (error) {
       if (!(error instanceof py.ArithmeticError)) throw error;
       return null;
@@ -8147,7 +8242,7 @@ function require_jellett(top) {
 /** Refuse friction that is not proportional to small slip about a vertical spin, with `InvalidInput`. */
 function require_creep(top) {
   require_one_surface(top);
-  if (py.truth(py.hasattr(top.surface, "face_guard"))) {
+  if (py.truth(is_edge(top.surface))) {
     throw new InvalidInput(
       "body.shape",
       top.surface,
@@ -10093,6 +10188,7 @@ function lowest_contact_vector(axis, surface) {
 
 /** Largest height of the centre of mass on the table for n_z from `low` to `high`, in some looks. */
 function highest_between(surface, low, high) {
+  [low, high] = [py.np.maximum(low, -1.0), py.np.minimum(high, 1.0)];
   var found = outer_height(surface, low);
   for (var look = 1; look < LOOKS_of_lowest; look += 1) {
     found = py.np.maximum(
@@ -10799,6 +10895,7 @@ export {
   ACCURACY,
   ACCURACY_of_loosening,
   ACCURACY_of_slipping,
+  ACROSS,
   APART,
   APART_of_direction,
   AT_ONCE,
@@ -10823,6 +10920,7 @@ export {
   BothLoosening,
   CHOICES,
   CLEAR,
+  CLEAR_of_slipping,
   CLOSES,
   CONSTANT,
   CONSTANTS,
@@ -10905,6 +11003,7 @@ export {
   Hull,
   HullKind,
   INEXACT,
+  INSIDE,
   INSTANT,
   ITERATIONS,
   Impact,
@@ -10946,10 +11045,8 @@ export {
   MARGIN,
   MOST,
   MOST_ASPECT,
-  MOST_DISCS,
   MOST_FACTOR,
   MOST_IN_TURNS,
-  MOST_LOOKS,
   MOST_PIECES,
   MOST_STEPS,
   MOST_of_bodies,
@@ -11332,6 +11429,7 @@ export {
   inverted_boundary,
   is_branched,
   is_dry,
+  is_edge,
   is_near,
   is_number,
   is_one_way,
@@ -11357,6 +11455,7 @@ export {
   length,
   letting_go,
   level_spin,
+  lies_flat,
   limit_guard,
   look,
   lowest_contact_vector,

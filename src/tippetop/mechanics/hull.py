@@ -106,6 +106,11 @@ def acting(surface: Surface) -> Surface:
     return surface.units[surface.active] if isinstance(surface, Hull) else surface
 
 
+def is_edge(surface: Surface) -> bool:
+    """Whether a surface, or the one that is active, is an edge, on whose face the body may lie flat."""
+    return hasattr(acting(surface), "face_guard")
+
+
 def outer_height(surface: Surface, c: Scalar) -> Scalar:
     """Height of the centre of mass above the table while the lowest of all surfaces touches it, m."""
     first, *others = each_surface(surface)

@@ -11,6 +11,7 @@ from tippetop.contact.closed import BRANCH, LIFT_OFF
 from tippetop.contact.flight import TOUCHING, Flight
 from tippetop.contact.mode import EventKind, Mode, Outcome, Transition
 from tippetop.contact.sliding import Sliding, sliding_motion
+from tippetop.contact.surfaces import lies_flat
 from tippetop.integrators.base import Array
 from tippetop.mechanics.flight import gap, gap_rate
 from tippetop.mechanics.invariants import energy
@@ -126,7 +127,12 @@ class Crossings:
         cells, launches = slots.cell[lanes], slots.launches
         top = branched(launches.tops(cells), state)
         after, struck = collide(state, top)
-        sliding = struck & (launches.restitution[cells] == 0.0) & slides(after, top)
+        sliding = (
+            struck
+            & ~np.asarray(lies_flat(top, state.axis))
+            & (launches.restitution[cells] == 0.0)
+            & slides(after, top)
+        )
         sliding &= slips(after, top, far=True)
         slots.place(lanes[sliding], picked(after, sliding), time[sliding])
         taken = energy(state, top) - energy(after, top)

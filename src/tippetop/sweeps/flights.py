@@ -6,6 +6,7 @@ exact to rounding there. What vanishes at the start of a flight (`tippetop.mecha
 divided out.
 """
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -13,13 +14,14 @@ import numpy as np
 from tippetop.integrators.base import Array
 from tippetop.integrators.polynomials import Polynomials
 from tippetop.mechanics.flight import fly
+from tippetop.mechanics.hull import is_edge
 from tippetop.mechanics.motion import (
     along_table,
     contact,
-    on_table,
     sliding_rates,
 )
 from tippetop.mechanics.rolling import is_set_valued
+from tippetop.mechanics.separation import NARROWEST, Separation, Tip
 from tippetop.mechanics.state import State
 from tippetop.mechanics.stick_slip import (
     is_near,
@@ -29,7 +31,9 @@ from tippetop.mechanics.stick_slip import (
     stopping_guard,
 )
 from tippetop.mechanics.top import Kind, Top
-from tippetop.sweeps.launches import Flags, Indices
+from tippetop.mechanics.touchdown import highest_gap
+from tippetop.mechanics.view import axis_sine
+from tippetop.sweeps.launches import Flags, Indices, single
 from tippetop.sweeps.pieces import LEFT, STATE, TIME, VANISHING, WANTED, Piece, divided, flight_terms, pieces
 from tippetop.sweeps.stepper import NumPyArithmetic
 from tippetop.sweeps.tip import TipMotion
@@ -48,7 +52,7 @@ class Flown(NamedTuple):
     landed: Flags
     """Whether it ended on the table rather than at the horizon."""
     lost: Flags
-    """Whether it could not be followed, as its polynomials are no numbers."""
+    """Whether it could not be followed, and is as it began: its polynomials are no numbers, or no pieces."""
     state: State
     """The states at the end."""
     highest_gap: Array
@@ -82,6 +86,12 @@ def fly_all(
     tip, launches, begun = seen
     time, highest = np.zeros_like(horizon), np.zeros_like(horizon)
     landed, lost = np.zeros((2, *horizon.shape), dtype=bool)
+    top = kind.top(tuple(numbers))
+    turns = Turns.of(state, top, horizon)
+
+    def separation(i: int) -> Separation:
+        return Separation.of(single(state, i), kind.top(tuple(numbers[:, i].tolist())))
+
     given = np.array([*state.pack(), time, horizon, vanishing, *tip.wanted(launches)])
     for _ in range(PIECES):
         active = np.flatnonzero(~landed & ~lost & (time < horizon))
@@ -99,14 +109,16 @@ def fly_all(
         none = np.full(len(active), np.nan)
         tip.put_of(launches[active], np.array([none, found.floor, -found.ceiling]))
         highest[active] = np.fmax(highest[active], found.highest_gap)
-        over = found.span == given[LEFT, active]
-        time[active] = np.where(over, horizon[active], time[active] + found.span)
+        over, before = found.span == given[LEFT, active], time[active]
+        time[active] = np.where(over, horizon[active], before + found.span)
         landed[active] = found.touches != 0.0
-        lost[active] = ~landed[active] & ~(found.span > 0.0)
+        lost[active] = ~landed[active] & ~(time[active] > before)
+        flying = ~landed & ~lost & (time < horizon)
+        time = np.minimum(turns.leap(time, flying, separation), horizon)
         given[TIME], given[LEFT], given[VANISHING] = time, horizon - time, 0.0
-    top = kind.top(tuple(numbers))
+    time[lost] = 0.0
     last = fly(state, time, top, np)
-    ground = on_table(along_table(last), top).height
+    ground = top.surface.height(np.clip(last.axis[2], -1.0, 1.0))
     summit = np.clip(state.velocity[2] / top.gravity, 0.0, time)
     return Flown(
         time,
@@ -116,6 +128,38 @@ def fly_all(
         highest,
         fly(state, summit, top, np).height,
     )
+
+
+class Turns(NamedTuple):
+    """What of flights of many turns need not be looked at: all of shape (n,).
+
+    After a turn all has been seen of the tip's motion, and a turn nearer the summit the gap is larger.
+    """
+
+    period: Array
+    """How long the axis takes for a turn."""
+    summit: Array
+    """When the centre of mass is highest while it may fly."""
+    clear: Array
+    """Until when it is too high for any touch; 0 where that is not known yet."""
+
+    @classmethod
+    def of(cls, state: State, top: Top, horizon: Array) -> "Turns":
+        """Those of flights from some states on, for so long at most."""
+        period: Array = np.asarray(2.0 * np.pi / Tip.of(state, top).frequency)
+        return cls(period, np.clip(state.velocity[2] / top.gravity, 0.0, horizon), np.zeros_like(period))
+
+    def leap(self, time: Array, flying: Flags, separation: Callable[[int], Separation]) -> Array:
+        """Times at which flights go on, of those that still fly, given the gap of each."""
+        turned = flying & (time >= self.period)
+        if not turned.any():
+            return time
+        for i in np.flatnonzero(turned & (self.clear == 0.0)).tolist():
+            gap = separation(i)
+            self.clear[i] = gap.clear_until(float(time[i]), gap.level)
+        goal = np.where(time < self.summit, np.minimum(self.clear, self.summit - self.period), self.clear)
+        leaps = turned & (np.abs(time - self.summit) > self.period)
+        return np.where(leaps, np.maximum(goal, time), time)
 
 
 def look(kind: Kind, given: Array, numbers: Array, seen: tuple[TipMotion, Indices, Array]) -> Piece:
@@ -129,8 +173,14 @@ def look(kind: Kind, given: Array, numbers: Array, seen: tuple[TipMotion, Indice
     zero = Polynomials(np.array(divided(list(ahead), given[VANISHING], PLAIN)), reach).first_fall()
     touches = ~np.isnan(zero)
     span = np.where(touches, zero, reach)
-    tip.see(launches, begun, Polynomials(rise, span))
     highest = -Polynomials(-ahead, span).refined_least()[1]
+    flat = axis_sine(here.axis) <= NARROWEST if is_edge(top.surface) else np.zeros(span.shape)
+    for i in np.flatnonzero(flat).tolist():
+        one, its = single(here, i), kind.top(tuple(numbers[:, i].tolist()))
+        end, root = Separation.of(one, its).across_flat(0.0, float(given[LEFT, i]))
+        touches[i], span[i] = root is not None, end if root is None else root
+        highest[i] = highest_gap(one, its, float(span[i]))
+    tip.see(launches, begun, Polynomials(rise, span))
     nothing = np.full(span.shape, np.nan)
     return Piece(span, touches, nothing, highest, nothing, nothing)
 

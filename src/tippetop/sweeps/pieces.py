@@ -13,11 +13,14 @@ import numpy as np
 from tippetop.emit.graph import COSINE, SINE, Node
 from tippetop.integrators.base import Array
 from tippetop.mechanics.flight import fly
+from tippetop.mechanics.hull import is_edge
+from tippetop.mechanics.separation import NARROWEST, Tip
 from tippetop.mechanics.series import Arithmetic, Series
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Kind, Top
-from tippetop.mechanics.touchdown import Start, Tip
+from tippetop.mechanics.touchdown import Start
 from tippetop.mechanics.vectors import Scalar
+from tippetop.mechanics.view import axis_sine
 from tippetop.sweeps.looks import first_fall, least_value, looked_at
 from tippetop.sweeps.stepper import NODES, compiled, padded
 from tippetop.sweeps.stride import GUARD_LOOKS, TIP_LOOKS, extremes, met, step_size
@@ -25,6 +28,10 @@ from tippetop.sweeps.stride import GUARD_LOOKS, TIP_LOOKS, extremes, met, step_s
 STATE, TIME, LEFT, VANISHING, WANTED, GIVEN = slice(10), 10, 11, 12, slice(13, 16), 16
 """Rows of what is given, and how many: the state at the start of the flight, the time since then and what is
 left, how many of gap, gap rate and gap acceleration vanish now, and what is wanted (see `met`)."""
+
+
+BESIDE = 0.5
+"""Part of the angle to flat that an edge turns in a piece at most: in one plane, series see no kink there."""
 
 
 class Piece(NamedTuple):
@@ -81,18 +88,29 @@ def piece(top: Top, given: Sequence[Any], plain: Arithmetic) -> Piece:
     floor, ceiling = extremes(tip, span, plain)
     depth = [-term for term in gap]
     highest = -least_value(depth, looked_at(depth, span, TIP_LOOKS), span, plain)
+    if is_edge(top.surface):
+        doubt += 1.0 - plain.below(0.0, reach)
     return Piece(span, touches, doubt + met(floor, ceiling, given[WANTED], plain), highest, floor, ceiling)
 
 
 def flight_terms(
     state: State, left: Scalar, top: Top, plain: Arithmetic
 ) -> tuple[list[Scalar], list[Scalar], Scalar]:
-    """Polynomials of n_z and of the gap in flight, and how far they serve, all that is left at most."""
-    tip = Tip.of(state, top).series().terms
+    """Polynomials of n_z and of the gap in flight, and how far they serve, all that is left at most.
+
+    That is 0 where an edge lies flat, or almost.
+    """
+    moving = Tip.of(state, top)
+    tip = moving.series().terms
     support = top.surface.height(Series(lambda k: tip[k], plain)).up_to(len(tip) - 1)
     fall = (state.height, state.velocity[2], -0.5 * top.gravity)
     gap = [b - s for b, s in zip(fall, support[:3], strict=True)] + [-term for term in support[3:]]
-    return tip, gap, step_size([tip, support], left, plain)
+    reach = step_size([tip, support], left, plain)
+    if is_edge(top.surface):
+        sine = axis_sine(state.axis)
+        beside = plain.least(reach, BESIDE * sine / moving.frequency)
+        reach = plain.choose(plain.below(NARROWEST, sine), beside, 0.0 * left)
+    return tip, gap, reach
 
 
 def divided(terms: Sequence[Scalar], vanishing: Scalar, plain: Arithmetic) -> list[Scalar]:

@@ -1,7 +1,7 @@
 """What the theory asks of a top, with a sentence for those it does not hold for."""
 
 from tippetop.errors import InvalidInput
-from tippetop.mechanics.hull import Hull
+from tippetop.mechanics.hull import Hull, is_edge
 from tippetop.mechanics.rolling import is_set_valued, slip_length
 from tippetop.mechanics.top import Top
 
@@ -41,7 +41,7 @@ def require_creep(top: Top) -> None:
     A body of several surfaces is refused too, and one that lies flat when its axis is vertical.
     """
     require_one_surface(top)
-    if hasattr(top.surface, "face_guard"):
+    if is_edge(top.surface):
         raise InvalidInput(
             "body.shape", top.surface, "a shape that touches in one point when its axis is vertical"
         )
