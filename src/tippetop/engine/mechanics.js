@@ -7482,15 +7482,18 @@ class EllipsoidalLaw extends PatchLaw {
   /** Force and torque per unit normal force; slip and drilling must not both be zero. */
   traction(slip, angular_velocity) {
     var drilling = py.mul(this.slip_length, angular_velocity[2]);
-    var factor = py.mul(
-      py.neg(this.mu),
-      py.pow(
-        py.add(py.add(py.mul(slip[0], slip[0]), py.mul(slip[1], slip[1])), py.mul(drilling, drilling)),
-        -0.5
-      )
+    var speed = py.pow(
+      py.add(py.add(py.mul(slip[0], slip[0]), py.mul(slip[1], slip[1])), py.mul(drilling, drilling)),
+      0.5
     );
-    var torque = py.mul(py.mul(factor, this.slip_length), drilling);
-    return new Traction([py.mul(factor, slip[0]), py.mul(factor, slip[1])], [0.0, 0.0, torque]);
+    var force = [
+      py.div(py.mul(py.neg(this.mu), slip[0]), speed),
+      py.div(py.mul(py.neg(this.mu), slip[1]), speed)
+    ];
+    return new Traction(
+      force,
+      [0.0, 0.0, py.div(py.mul(py.mul(py.neg(this.mu), this.slip_length), drilling), speed)]
+    );
   }
   /** (mu N)^2 - T^2 - (M / rho)^2, N^2. */
   reserve(normal, force, drilling) {
@@ -7565,13 +7568,8 @@ class HertzPiece extends PatchLaw {
 class HertzDrillingLaw extends HertzPiece {
   /** Force over slip, and torque, per unit normal force, at slip of this square and drilling R w. */
   shares(square, drilling) {
-    var rate = py.pow(py.add(py.mul(drilling, drilling), py.mul(BEYOND_of_contensou_hertz, square)), -0.5);
-    return scaled_shares(
-      this,
-      rate,
-      py.mul(drilling, rate),
-      drilling_shares(py.mul(py.mul(square, rate), rate))
-    );
+    var larger = py.add(py.mul(drilling, drilling), py.mul(BEYOND_of_contensou_hertz, square));
+    return scaled_shares(this, larger, drilling, drilling_shares(py.div(square, larger)));
   }
   /** (mu N F)^2 - T^2 where the limit surface has this drilling torque, N^2. */
   reserve(normal, force, drilling) {
@@ -7603,9 +7601,9 @@ class HertzDrillingLaw extends HertzPiece {
 class HertzSlidingLaw extends HertzPiece {
   /** Force over slip, and torque, per unit normal force, at slip of this square and drilling R w. */
   shares(square, drilling) {
-    var rate = py.pow(py.add(square, py.mul(BEYOND_of_contensou_hertz, py.mul(drilling, drilling))), -0.5);
-    var turning = py.mul(drilling, rate);
-    return scaled_shares(this, rate, turning, sliding_shares(turning));
+    var other = py.mul(drilling, drilling);
+    var larger = py.add(square, py.mul(BEYOND_of_contensou_hertz, other));
+    return scaled_shares(this, larger, drilling, sliding_shares(py.sub(1.0, py.div(other, larger))));
   }
   /** (mu N F)^2 - T^2 where the limit surface has this drilling torque, N^2. */
   reserve(normal, force, drilling) {
@@ -7657,19 +7655,15 @@ class HertzBranch extends py.NamedTuple {
   /** Force over slip, and torque, per unit normal force, at slip of this square and drilling R w. */
   shares(square, drilling) {
     var other = py.mul(drilling, drilling);
-    var inverse = py.div(
-      1.0,
-      this._either(
-        py.add(other, py.mul(BEYOND_of_contensou_hertz, square)),
-        py.add(square, py.mul(BEYOND_of_contensou_hertz, other))
-      )
+    var larger = this._either(
+      py.add(other, py.mul(BEYOND_of_contensou_hertz, square)),
+      py.add(square, py.mul(BEYOND_of_contensou_hertz, other))
     );
-    var rate = py.pow(inverse, 0.5);
-    var turning = py.mul(drilling, rate);
-    var drills = drilling_shares(py.mul(square, inverse));
-    var slides = sliding_shares(turning);
+    var share = py.div(this._either(square, other), larger);
+    var drills = drilling_shares(share);
+    var slides = sliding_shares(this._either(1.0, py.sub(1.0, share)));
     var law = [this._either(drills[0], slides[0]), this._either(drills[1], slides[1])];
-    return scaled_shares(this, rate, turning, law);
+    return scaled_shares(this, larger, drilling, law);
   }
   /** The number that belongs to the branch. */
   _either(drills, slides) {
@@ -7765,9 +7759,8 @@ function drilling_shares(square) {
   ];
 }
 
-/** F and T kappa where slip prevails, at 1 / kappa, see `HertzSlidingLaw`. */
-function sliding_shares(turning) {
-  var excess = py.sub(1.0, py.mul(turning, turning));
+/** F and T kappa where slip prevails, at 1 - 1 / kappa^2, see `HertzSlidingLaw`. */
+function sliding_shares(excess) {
   var x4 = py.add(py.mul(excess, excess), NEAR_BRANCH);
   var x2 = py.pow(x4, 0.5);
   var x = py.pow(x2, 0.5);
@@ -7788,19 +7781,20 @@ function sliding_shares(turning) {
   );
   var d = py.div(above, below);
   var y = py.sub(1.0, x2);
-  var c = py.add(py.mul(py.div(2.0, 3.0), x), py.mul(y, d));
-  var less = py.mul(y, c);
+  var c = py.mul(y, d);
+  var less = py.mul(y, py.add(py.mul(py.div(2.0, 3.0), x), c));
   return [
-    py.sub(py.add(py.mul(1.125, x), py.mul(0.75, less)), py.mul(0.1875, c)),
-    py.add(py.mul(0.375, py.sub(py.add(x, less), c)), py.mul(0.140625, d))
+    py.sub(py.add(x, py.mul(0.75, less)), py.mul(0.1875, c)),
+    py.add(py.add(py.mul(0.125, x), py.mul(0.375, py.sub(less, c))), py.mul(0.140625, d))
   ];
 }
 
 /** Force over slip, and torque, per unit normal force. */
-function scaled_shares(patch, rate, turning, law) {
+function scaled_shares(patch, larger, drilling, law) {
+  var speed = py.pow(larger, 0.5);
   return [
-    py.mul(py.mul(py.neg(patch.mu), rate), law[0]),
-    py.mul(py.mul(py.mul(py.neg(patch.mu), patch.patch_radius), turning), law[1])
+    py.div(py.mul(py.neg(patch.mu), law[0]), speed),
+    py.div(py.mul(py.mul(py.neg(patch.mu), patch.patch_radius), py.mul(drilling, law[1])), speed)
   ];
 }
 

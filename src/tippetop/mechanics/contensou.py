@@ -61,9 +61,9 @@ class EllipsoidalLaw(PatchLaw):
     def traction(self, slip: Horizontal, angular_velocity: Vector) -> Traction:
         """Force and torque per unit normal force; slip and drilling must not both be zero."""
         drilling = self.slip_length * angular_velocity[2]
-        factor = -self.mu * (slip[0] * slip[0] + slip[1] * slip[1] + drilling * drilling) ** -0.5
-        torque = factor * self.slip_length * drilling
-        return Traction((factor * slip[0], factor * slip[1]), (0.0, 0.0, torque))
+        speed = (slip[0] * slip[0] + slip[1] * slip[1] + drilling * drilling) ** 0.5
+        force = -self.mu * slip[0] / speed, -self.mu * slip[1] / speed
+        return Traction(force, (0.0, 0.0, -self.mu * self.slip_length * drilling / speed))
 
     def reserve(self, normal: Scalar, force: Horizontal, drilling: Scalar) -> Scalar:
         """(mu N)^2 - T^2 - (M / rho)^2, N^2."""

@@ -96,8 +96,8 @@ class HertzDrillingLaw(HertzPiece):
 
     def shares(self, square: Scalar, drilling: Scalar) -> tuple[Scalar, Scalar]:
         """Force over slip, and torque, per unit normal force, at slip of this square and drilling R w."""
-        rate = (drilling * drilling + BEYOND * square) ** -0.5
-        return scaled_shares(self, rate, drilling * rate, drilling_shares(square * rate * rate))
+        larger = drilling * drilling + BEYOND * square
+        return scaled_shares(self, larger, drilling, drilling_shares(square / larger))
 
     def reserve(self, normal: Scalar, force: Horizontal, drilling: Scalar) -> Scalar:
         """(mu N F)^2 - T^2 where the limit surface has this drilling torque, N^2.
@@ -149,9 +149,9 @@ class HertzSlidingLaw(HertzPiece):
 
     def shares(self, square: Scalar, drilling: Scalar) -> tuple[Scalar, Scalar]:
         """Force over slip, and torque, per unit normal force, at slip of this square and drilling R w."""
-        rate = (square + BEYOND * (drilling * drilling)) ** -0.5
-        turning = drilling * rate
-        return scaled_shares(self, rate, turning, sliding_shares(turning))
+        other = drilling * drilling
+        larger = square + BEYOND * other
+        return scaled_shares(self, larger, drilling, sliding_shares(1.0 - other / larger))
 
     def reserve(self, normal: Scalar, force: Horizontal, drilling: Scalar) -> Scalar:
         """(mu N F)^2 - T^2 where the limit surface has this drilling torque, N^2.
@@ -214,12 +214,11 @@ class HertzBranch(NamedTuple):
     def shares(self, square: Scalar, drilling: Scalar) -> tuple[Scalar, Scalar]:
         """Force over slip, and torque, per unit normal force, at slip of this square and drilling R w."""
         other = drilling * drilling
-        inverse = 1.0 / self._either(other + BEYOND * square, square + BEYOND * other)
-        rate = inverse**0.5
-        turning = drilling * rate
-        drills, slides = drilling_shares(square * inverse), sliding_shares(turning)
+        larger = self._either(other + BEYOND * square, square + BEYOND * other)
+        share = self._either(square, other) / larger
+        drills, slides = drilling_shares(share), sliding_shares(self._either(1.0, 1.0 - share))
         law = self._either(drills[0], slides[0]), self._either(drills[1], slides[1])
-        return scaled_shares(self, rate, turning, law)
+        return scaled_shares(self, larger, drilling, law)
 
     def _either(self, drills: Scalar, slides: Scalar) -> Scalar:
         """The number that belongs to the branch."""
@@ -308,12 +307,11 @@ def drilling_shares(square: Scalar) -> tuple[Scalar, Scalar]:
     return force, (3.0 * PI / 16.0) * (1.0 - square + 0.375 * (square * square))
 
 
-def sliding_shares(turning: Scalar) -> tuple[Scalar, Scalar]:
-    """F and T kappa where slip prevails, at 1 / kappa, see `HertzSlidingLaw`.
+def sliding_shares(excess: Scalar) -> tuple[Scalar, Scalar]:
+    """F and T kappa where slip prevails, at 1 - 1 / kappa^2, see `HertzSlidingLaw`.
 
     With few products of variables: where they are power series, these are what costs.
     """
-    excess = 1.0 - turning * turning
     x4 = excess * excess + NEAR_BRANCH
     x2 = x4**0.5
     x = x2**0.5
@@ -321,13 +319,13 @@ def sliding_shares(turning: Scalar) -> tuple[Scalar, Scalar]:
     odd = (x + SHARE * x2) * (BELOW[3] * x2 + BELOW[5] * x4)
     below = BELOW[0] + BELOW[1] * x + BELOW[2] * x2 + (BELOW[4] - SHARE * BELOW[3]) * x4 + odd
     d, y = above / below, 1.0 - x2
-    c = (2.0 / 3.0) * x + y * d
-    less = y * c
-    return 1.125 * x + 0.75 * less - 0.1875 * c, 0.375 * (x + less - c) + 0.140625 * d
+    c = y * d
+    less = y * ((2.0 / 3.0) * x + c)
+    return x + 0.75 * less - 0.1875 * c, 0.125 * x + 0.375 * (less - c) + 0.140625 * d
 
 
 def scaled_shares(
-    patch: Any, rate: Scalar, turning: Scalar, law: tuple[Scalar, Scalar]
+    patch: Any, larger: Scalar, drilling: Scalar, law: tuple[Scalar, Scalar]
 ) -> tuple[Scalar, Scalar]:
     """Force over slip, and torque, per unit normal force.
 
@@ -335,9 +333,10 @@ def scaled_shares(
     ----------
     patch
         Its friction coefficient and radius.
-    rate, turning
-        One over what prevails, drilling or slip, s/m; and drilling R w times that.
+    larger, drilling
+        Square of what prevails, drilling or slip, m^2/s^2; and drilling R w, m/s.
     law
         F, and T, times what prevails over slip, and over drilling.
     """
-    return (-patch.mu * rate) * law[0], (-patch.mu * patch.patch_radius) * turning * law[1]
+    speed = larger**0.5
+    return -patch.mu * law[0] / speed, (-patch.mu * patch.patch_radius) * (drilling * law[1]) / speed

@@ -1,5 +1,7 @@
 """The arrays of launches under way: one lane a launch."""
 
+from functools import cached_property
+
 import numpy as np
 
 from tippetop.contact.mode import Outcome
@@ -121,9 +123,17 @@ class Slots:
             lanes = np.arange(len(self.cell))
             self._put(lanes, branched(self.tops(lanes), self.whole(lanes)))
 
+    @cached_property
+    def branch(self) -> int:
+        """Row of the number, 0 or 1, that tells the branch of the law."""
+        example = self.launches.kind.example
+        pairs = zip(example.numbers, on_other_branch(example).numbers, strict=True)
+        return next(row for row, (one, other) in enumerate(pairs) if one != other)
+
     def change_branch(self, lanes: Indices) -> None:
         """Let tops slide on along the other branch of their law."""
-        self._put(lanes, on_other_branch(self.tops(lanes)))
+        branches = self.numbers[self.branch]
+        branches[lanes] = 1.0 - branches[lanes]
 
     def _put(self, lanes: Indices, top: Top) -> None:
         """Let tops on some lanes have these tops' law."""
