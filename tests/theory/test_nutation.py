@@ -11,7 +11,7 @@ from strategies import numbers
 from tippetop import presets
 from tippetop.errors import InvalidInput
 from tippetop.mechanics.friction import ViscousLaw
-from tippetop.mechanics.motion import along_table, contact, sliding_rates
+from tippetop.mechanics.motion import contact, sliding_rates
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.surface import SpheroidSurface
 from tippetop.mechanics.top import natural_units
@@ -42,8 +42,8 @@ LAUNCHES = [
 
 
 def natural(problem):
-    top = problem.top
-    return natural_constants(constants(along_table(problem.start()), top), top), numbers_of(top)
+    top, start = problem.top, problem.start()
+    return natural_constants(constants(start.axis, start.momentum, top), top), numbers_of(top)
 
 
 def path_of(problem):
@@ -67,7 +67,8 @@ def test_turning_tilts_are_the_extremes_of_a_run_on_a_smooth_table(problem):
 
 @pytest.mark.parametrize("problem", LAUNCHES)
 def test_at_the_turning_tilts_the_effective_potential_is_the_energy(problem):
-    values = constants(along_table(problem.start()), problem.top)
+    start = problem.start()
+    values = constants(start.axis, start.momentum, problem.top)
     for tilt in turning_tilts(amplitudes(path_of(problem)[0])):
         assert effective_potential(tilt, values, problem.top, math) == pytest.approx(values.energy, rel=1e-9)
 

@@ -8,7 +8,6 @@ import numpy as np
 
 from tippetop.integrators.base import Array
 from tippetop.mechanics.motion import axial_spin
-from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Vector
 from tippetop.mechanics.view import precession_rate
@@ -33,10 +32,7 @@ def smooth_constants(axis: Array, momentum: Array, top: Top) -> nutation.Constan
 
     The energy is that without the horizontal motion of the centre of mass, for a body on the table.
     """
-    n, L = _vector(axis), _vector(momentum)
-    zero = np.zeros_like(n[0])
-    state = SlidingState(n, L, (zero, zero))
-    return nutation.constants(state, top)
+    return nutation.constants(_vector(axis), _vector(momentum), top)
 
 
 def potential_at(index: int, axis: Array, momentum: Array, top: Top, tilts: Array) -> Array:
@@ -57,5 +53,5 @@ def nutation_envelope(axis: Array, momentum: Array, top: Top) -> tuple[Array, Ar
 
 def _vector(rows: Array) -> Vector:
     """The three components of vectors in rows."""
-    rows = np.asarray(rows, dtype=float)
-    return rows[:, 0], rows[:, 1], rows[:, 2]
+    x, y, z = np.asarray(rows, dtype=float).T
+    return x, y, z

@@ -26,7 +26,7 @@ from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import axial_spin, on_table
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.top import Top, natural_units
-from tippetop.mechanics.vectors import Functions, Scalar
+from tippetop.mechanics.vectors import Functions, Scalar, Vector
 from tippetop.mechanics.view import Angles
 from tippetop.theory.groups import eccentricity
 from tippetop.theory.requirements import require_sphere
@@ -78,11 +78,11 @@ class Amplitudes(NamedTuple):
     slow: Scalar
 
 
-def constants(state: SlidingState, top: Top) -> Constants:
-    """The constants of the smooth table at an instant, SI."""
-    resting = state._replace(velocity=(0.0, 0.0))
-    axial = top.axial_inertia * axial_spin(state.axis, state.momentum, top)
-    return Constants(state.momentum[2], axial, energy(on_table(resting, top), top))
+def constants(axis: Vector, momentum: Vector, top: Top) -> Constants:
+    """The constants of the smooth table at an instant, SI; arrays of them too."""
+    resting = on_table(SlidingState(axis, momentum, (0.0, 0.0)), top)
+    axial = top.axial_inertia * axial_spin(axis, momentum, top)
+    return Constants(momentum[2], axial, energy(resting, top))
 
 
 def natural_constants(values: Constants, top: Top) -> Constants:
