@@ -22,6 +22,7 @@ from tippetop.mechanics.series import horner
 from tippetop.mechanics.slip_onset import Growth, onset, turned_slope
 from tippetop.mechanics.stick_slip import inner, plus, scaled, size, tangents
 from tippetop.mechanics.top import Top
+from tippetop.mechanics.unsolved import Unsolved
 from tippetop.mechanics.vectors import Scalar, Vector
 
 DEGREE, ACCURACY = 12, 1e-13
@@ -142,13 +143,13 @@ def resting_way(
         ]
         turned = solve(matrix, [-inner(a, rate) for a in across])
         if not math.hypot(*turned) < 1.0:
-            raise ArithmeticError("slip does not end near this direction")
+            raise Unsolved("slip does not end near this direction")
         if along < 0.0 and math.hypot(*turned) < SETTLED:
             return known
         for amount, b in zip(turned, across, strict=True):
             way = plus(way, scaled(amount, b))
         way = scaled(1.0 / size(way), way)
-    raise ArithmeticError("no direction is found in which slip ends")
+    raise Unsolved("no direction is found in which slip ends")
 
 
 def time_to(speed: float, rows: Sequence[list[Scalar]], guess: float) -> float:

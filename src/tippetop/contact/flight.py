@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import ClassVar
 
-from tippetop.contact.mode import Mode, Outcome, Segment, Transition
+from tippetop.contact.mode import Mode, Outcome, Segment, Transition, failed
 from tippetop.contact.surfaces import number_of
 from tippetop.integrators.base import Integrator
 from tippetop.integrators.dense import ELEMENTARY, DenseSolution
@@ -50,8 +50,8 @@ class Flight(Mode):
         try:
             landing, lowest = self._landing(state, end - time)
         except ArithmeticError as error:
-            failed = Transition((), Outcome.FAILED, state, str(error))
-            yield Segment(self, DenseSolution.nothing(time, len(state.pack())), state, failed)
+            nothing = DenseSolution.nothing(time, len(state.pack()))
+            yield Segment(self, nothing, state, failed("The end of the flight", error, state))
             return
         duration = end - time if landing is None else landing
         rate = length(state.momentum) / self.top.transverse_inertia

@@ -12,6 +12,7 @@ from tippetop.mechanics.rolling import Slip
 from tippetop.mechanics.slip_onset import Growing, Growth
 from tippetop.mechanics.stick_slip import scaled
 from tippetop.mechanics.top import Kind, Top
+from tippetop.mechanics.unsolved import Unsolved
 from tippetop.mechanics.vectors import Scalar, Vector
 
 FEW = 11
@@ -43,7 +44,7 @@ class Driven:
         """Coefficients of n, L, and u where that is free."""
         rows = [[float(term) for term in row] for row in self._expand[-1](self._arguments)[: self._free]]
         if not math.isfinite(sum(sum(row) for row in rows)):
-            raise ArithmeticError(NOT_FINITE)
+            raise Unsolved(NOT_FINITE)
         return rows
 
     def turn(self, j: int, direction: Sequence[Scalar]) -> None:

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from tippetop.contact.growth import growth
-from tippetop.contact.mode import Mode, Outcome, Segment, Transition
+from tippetop.contact.mode import Mode, Outcome, Segment, Transition, failed
 from tippetop.contact.passing import LOOKS, SETTLED, Passing
 from tippetop.contact.slipping import slip_phase
 from tippetop.integrators.base import Integrator
@@ -61,11 +61,13 @@ class Loosening(Passing):
             known = growth(start, passing.top, self.ending, velocity, degree, integrator)
             begin = onset(known, self.power, ORDER)
         except ArithmeticError as error:
-            yield _nothing(self.told, time, state, str(error))
+            what = "slip" if self.ending.slip else "rolling"
+            unknown = failed(f"The direction in which {what} begins", error, state)
+            yield _nothing(self.told, time, unknown)
             return
         duration = min(begin.valid_until(ACCURACY), longest, end - time)
         if duration <= 1e-299:
-            yield _nothing(self.told, time, state, UNSEEN)
+            yield _nothing(self.told, time, Transition((), Outcome.FAILED, state, UNSEEN))
             return
         yield passing.piece(begin.rows, direction, time, duration, end)
 
@@ -148,7 +150,8 @@ class BothLoosening(Loosening):
         try:
             found = beginning(point, None, None, (True, True))
         except ArithmeticError as error:
-            yield _nothing(self.told, time, state, str(error))
+            unknown = failed("The direction in which slip and rolling begin", error, state)
+            yield _nothing(self.told, time, unknown)
             return
         assert found.slip is not None
         passing, pace = replace(self, top=on_branch(self.top, found.slip)), scaled(found.rates[0], found.slip)
@@ -158,6 +161,6 @@ class BothLoosening(Loosening):
         yield passing.piece(rows, found.slip, time, min(INSTANT, end - time), end)
 
 
-def _nothing(mode: Mode, time: float, state: State, why: str) -> Segment:
-    """No motion at all, and why."""
-    return Segment(mode, DenseSolution.nothing(time, 8), state, Transition((), Outcome.FAILED, state, why))
+def _nothing(mode: Mode, time: float, ending: Transition) -> Segment:
+    """No motion at all."""
+    return Segment(mode, DenseSolution.nothing(time, 8), ending.state, ending)

@@ -16,10 +16,15 @@ from tippetop.integrators.dense import DenseSolution, as_array
 from tippetop.mechanics.hull import Hull
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
+from tippetop.mechanics.unsolved import Unsolved
 from tippetop.mechanics.vectors import Row, Scalar, Vector
 
 if TYPE_CHECKING:
     from tippetop.contact.rules import Rules
+
+
+BROKEN = "a number on the way to it is too large for a computer, or zero where it divides"
+"""Why something cannot be found where arithmetic breaks down."""
 
 
 class Outcome(Enum):
@@ -107,6 +112,12 @@ class Transition:
     """The state in which it begins, floats."""
     detail: str = ""
     """More about the outcome, where there is more to say."""
+
+
+def failed(what: str, error: ArithmeticError, state: State, events: tuple[Event, ...] = ()) -> Transition:
+    """The end of a run where something cannot be found; arithmetic's own words say nothing of the motion."""
+    why = str(error) if isinstance(error, Unsolved) else BROKEN
+    return Transition(events, Outcome.FAILED, state, f"{what} cannot be found: {why}.")
 
 
 class Reaction(NamedTuple):

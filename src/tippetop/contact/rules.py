@@ -5,7 +5,7 @@ from typing import ClassVar, Self
 
 from tippetop.contact.flight import TOUCHING, Flight
 from tippetop.contact.loosening import BothLoosening, Loosening
-from tippetop.contact.mode import Event, EventKind, IntegratedMode, Mode, Outcome, Transition
+from tippetop.contact.mode import Event, EventKind, IntegratedMode, Mode, Outcome, Transition, failed
 from tippetop.contact.passing import Resting, Stopping
 from tippetop.contact.sliding import Sliding, SlidingWithoutRolling
 from tippetop.contact.sticking import Sticking, StickingWithoutRolling
@@ -114,7 +114,7 @@ class Rules:
         try:
             found, begins = settling(point, slip, rolling)
         except ArithmeticError as error:
-            return Transition(events, Outcome.FAILED, state, str(error))
+            return failed("The force that holds the contact", error, state, events)
         events = (*events, *self._marks(time, new, begins))
         return self._settle(time, state, found, begins, ended, events)
 
@@ -316,7 +316,7 @@ class FreeToFly(Rules):
                 collision = self._impact(state, 0.0, integrator)
                 collision = collision._replace(steps=taken + collision.steps)
         except ArithmeticError as error:
-            return Transition(events, Outcome.FAILED, state, str(error))
+            return failed("The impulse of the impact", error, state, events)
         hit = replace(
             self.event(EventKind.IMPACT, time, float(collision.impulse), float(collision.energy_lost)),
             steps=collision.steps,

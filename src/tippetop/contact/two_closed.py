@@ -10,7 +10,7 @@ from tippetop.contact.double_sticking import (
     StickingAndSlidingBack,
     StickingOnTwo,
 )
-from tippetop.contact.mode import Before, Event, EventKind, Outcome, Transition
+from tippetop.contact.mode import Before, Event, EventKind, Outcome, Transition, failed
 from tippetop.contact.passing import Resting
 from tippetop.contact.rules import rests
 from tippetop.contact.surfaces import number_of
@@ -240,7 +240,7 @@ def settled(
         found = here.resolved()
         answers = here.consistent(found)
     except ArithmeticError as error:
-        return Transition(events, Outcome.FAILED, state, str(error))
+        return failed("The forces on two surfaces that touch", error, state, events)
     if len(answers) != 1:
         detail = "not exactly one set of forces is consistent with two surfaces that touch"
         return Transition(events, Outcome.FAILED, state, detail)
@@ -279,7 +279,7 @@ def slipping(
             needed = pair_motion(pair, (None, None), rolls).needed(number)
             found = turning_about(pair, 1 - number, 1.0 if (needed > 0.0) == (number == 0) else -1.0, rolls)
     except ArithmeticError as error:
-        return Transition((), Outcome.FAILED, state, str(error))
+        return failed("The direction in which slip, or rolling, begins on two surfaces", error, state)
     stuck = (number_of(tops[0]),) if alone else (number_of(tops[0]), number_of(tops[1]))
     marks = _marks((time, time), here, found, Before(stuck, bool(rolls)))
     return replace(here.letting_go(found), events=marks)

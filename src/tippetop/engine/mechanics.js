@@ -691,7 +691,14 @@ function natural_state(state, units) {
   );
 }
 
+// tippetop.mechanics.unsolved
+
+/** There is no answer, or none is found; it says why, in words for those who launched the top. */
+class Unsolved extends py.ArithmeticError {
+}
+
 // tippetop.contact.mode
+const BROKEN = "a number on the way to it is too large for a computer, or zero where it divides";
 
 /** How a run ended; the value is advice. */
 class Outcome extends py.Enum {
@@ -753,6 +760,12 @@ class Transition extends py.Record {
   }
 }
 py.fields(Transition, ["events", "then", "state", "detail"]);
+
+/** The end of a run where something cannot be found; arithmetic's own words say nothing of the motion. */
+function failed(what, error, state, events = []) {
+  var why = py.isinstance(error, Unsolved) ? py.str(error) : BROKEN;
+  return new Transition(events, Outcome.FAILED, state, `${py.str(what)} cannot be found: ${py.str(why)}.`);
+}
 
 /** What the table does to the top at an instant. */
 class Reaction extends py.NamedTuple {
@@ -1607,7 +1620,7 @@ function touchdown(state, top, horizon, start = Start.AIRBORNE) {
   if (!py.eq(start, Start.AIRBORNE)) {
     var disc = analytic_disc(tip, top.surface, 0.0, 0.0, WIDEST);
     if (disc === null) {
-      throw new py.ArithmeticError("a flight begins where the body lies flat, which has no one lowest point");
+      throw new Unsolved("the body lies flat at its start, where no one point is lowest");
     }
     var support = py.add(top.surface.height(tip.series()), py.mul(0.0, tip.series())).terms;
     ballistic = [...support.slice(0, start), ...ballistic.slice(start)];
@@ -1655,7 +1668,7 @@ function touchdown(state, top, horizon, start = Start.AIRBORNE) {
       return root;
     }
     if (end <= time) {
-      throw new py.ArithmeticError("a flight turns so often that its turns are lost in rounding of time");
+      throw new Unsolved("the body turns so often that its turns are lost in rounding of time");
     }
     time = end;
   }
@@ -1718,8 +1731,8 @@ class Flight extends Mode {
       var [landing, lowest] = this._landing(state, py.sub(end, time));
     } catch (error) {
       if (!(error instanceof py.ArithmeticError)) throw error;
-      var failed = new Transition([], Outcome.FAILED, state, py.str(error));
-      yield new Segment(this, DenseSolution.nothing(time, py.len(state.pack())), state, failed);
+      var nothing = DenseSolution.nothing(time, py.len(state.pack()));
+      yield new Segment(this, nothing, state, failed("The end of the flight", error, state));
       return null;
     }
     var duration = landing === null ? py.sub(end, time) : landing;
@@ -3003,7 +3016,7 @@ class Driven extends py.Thing {
       ...py.call(py.item(this._expand, -1), this._arguments).slice(0, this._free)
     ].map((row) => [...row].map((term) => py.float(term)));
     if (!py.truth(py.math.isfinite(py.sum([...rows].map((row) => py.sum(row)))))) {
-      throw new py.ArithmeticError(NOT_FINITE);
+      throw new Unsolved(NOT_FINITE);
     }
     return rows;
   }
@@ -3168,7 +3181,7 @@ function resting_way(axis, momentum, way, ending, top, integrator) {
     );
     var turned = solve(matrix, [...across].map((a) => py.neg(inner(a, rate))));
     if (!(py.math.hypot(...turned) < 1.0)) {
-      throw new py.ArithmeticError("slip does not end near this direction");
+      throw new Unsolved("slip does not end near this direction");
     }
     if (along < 0.0 && py.math.hypot(...turned) < SETTLED) {
       return known;
@@ -3178,7 +3191,7 @@ function resting_way(axis, momentum, way, ending, top, integrator) {
     }
     way = scaled(py.div(1.0, size(way)), way);
   }
-  throw new py.ArithmeticError("no direction is found in which slip ends");
+  throw new Unsolved("no direction is found in which slip ends");
 }
 
 /** How long before its end slip had this speed. */
@@ -4298,7 +4311,7 @@ function directions(response, start) {
       : py.item(ways, i)
     );
   }
-  throw new py.ArithmeticError("no direction in which the contact can go on, though nothing can hold it");
+  throw new Unsolved("no direction in which the contact can go on, though nothing can hold it");
 }
 
 /** The directions by Newton's method from near ones; None if that does not lead to any. */
@@ -4463,9 +4476,7 @@ function settling(point, slip, rolling, moved = contact_motion) {
       return [found, begins];
     }
   }
-  throw new py.ArithmeticError(
-    "nothing can hold the contact, and there is no direction in which it can go on"
-  );
+  throw new Unsolved("nothing can hold the contact, and there is no direction in which it can go on");
 }
 
 /** Whether the table can hold what does not go on, and the contact closed if the gap would close. */
@@ -4527,12 +4538,14 @@ class Loosening extends Passing {
       var begin = onset(known, this.power, ORDER);
     } catch (error) {
       if (!(error instanceof py.ArithmeticError)) throw error;
-      yield _nothing(this.told, time, state, py.str(error));
+      var what = py.truth(this.ending.slip) ? "slip" : "rolling";
+      var unknown = failed(`The direction in which ${py.str(what)} begins`, error, state);
+      yield _nothing(this.told, time, unknown);
       return null;
     }
     var duration = py.min(begin.valid_until(ACCURACY_of_loosening), longest, py.sub(end, time));
     if (duration <= 1e-299) {
-      yield _nothing(this.told, time, state, UNSEEN_of_loosening);
+      yield _nothing(this.told, time, new Transition([], Outcome.FAILED, state, UNSEEN_of_loosening));
       return null;
     }
     yield passing.piece(begin.rows, direction, time, duration, end);
@@ -4638,7 +4651,8 @@ class BothLoosening extends Loosening {
       var found = beginning(point, null, null, [true, true]);
     } catch (error) {
       if (!(error instanceof py.ArithmeticError)) throw error;
-      yield _nothing(this.told, time, state, py.str(error));
+      var unknown = failed("The direction in which slip and rolling begin", error, state);
+      yield _nothing(this.told, time, unknown);
       return null;
     }
     py.assert(found.slip !== null);
@@ -4653,14 +4667,9 @@ class BothLoosening extends Loosening {
 }
 py.fields(BothLoosening, ["top", "rules", "ending", "power", "wrench"]);
 
-/** No motion at all, and why. */
-function _nothing(mode, time, state, why) {
-  return new Segment(
-    mode,
-    DenseSolution.nothing(time, 8),
-    state,
-    new Transition([], Outcome.FAILED, state, why)
-  );
+/** No motion at all. */
+function _nothing(mode, time, ending) {
+  return new Segment(mode, DenseSolution.nothing(time, 8), ending.state, ending);
 }
 
 // tippetop.mechanics.impulse
@@ -5162,7 +5171,7 @@ function integrated(now, here, goal, guess) {
       py.min(longest, py.mul(step, py.min(5.0, py.mul(0.9, py.pow(py.max(doubt, 1e-10), POWER)))))
     ];
   }
-  throw new py.ArithmeticError("an impact does not come to its end");
+  throw new Unsolved("an impact does not come to its end");
 }
 
 /** The numbers within a step at which one of some goals is reached. */
@@ -5610,7 +5619,7 @@ class Rules extends py.Record {
       var [found, begins] = settling(point, slip, rolling);
     } catch (error) {
       if (!(error instanceof py.ArithmeticError)) throw error;
-      return new Transition(events, Outcome.FAILED, state, py.str(error));
+      return failed("The force that holds the contact", error, state, events);
     }
     events = [...events, ...this._marks(time, new_, begins)];
     return this._settle(time, state, found, begins, ended, events);
@@ -5829,7 +5838,7 @@ class FreeToFly extends Rules {
       }
     } catch (error) {
       if (!(error instanceof py.ArithmeticError)) throw error;
-      return new Transition(events, Outcome.FAILED, state, py.str(error));
+      return failed("The impulse of the impact", error, state, events);
     }
     var hit = py.replace(
       this.event(EventKind.IMPACT, time, py.float(collision.impulse), py.float(collision.energy_lost)),
@@ -6145,7 +6154,7 @@ function resolution(pair, xi, ended, rolls) {
       return found;
     }
   }
-  throw new py.ArithmeticError("nothing can hold the rolling of two contacts, and it can begin neither way");
+  throw new Unsolved("nothing can hold the rolling of two contacts, and it can begin neither way");
 }
 
 /** How they go on while rolling is held; None where that is no way to. */
@@ -6933,7 +6942,7 @@ function settled(rules, time, state, tops, before, rolls, events = [], arrived =
     var answers = here.consistent(found);
   } catch (error) {
     if (!(error instanceof py.ArithmeticError)) throw error;
-    return new Transition(events, Outcome.FAILED, state, py.str(error));
+    return failed("The forces on two surfaces that touch", error, state, events);
   }
   if (py.len(answers) !== 1) {
     var detail = "not exactly one set of forces is consistent with two surfaces that touch";
@@ -6972,7 +6981,7 @@ function slipping(rules, time, state, tops, which, rolls) {
     }
   } catch (error) {
     if (!(error instanceof py.ArithmeticError)) throw error;
-    return new Transition([], Outcome.FAILED, state, py.str(error));
+    return failed("The direction in which slip, or rolling, begins on two surfaces", error, state);
   }
   var stuck = py.truth(alone) ? [number_of(tops[0])] : [number_of(tops[0]), number_of(tops[1])];
   var marks = _marks([time, time], here, found, new Before(stuck, py.bool(rolls)));
@@ -10907,6 +10916,7 @@ export {
   BRANCH,
   BRANCHING,
   BRANCH_TORQUE,
+  BROKEN,
   Before,
   Beginning,
   Bilateral,
@@ -11259,6 +11269,7 @@ export {
   UNSEEN,
   UNSEEN_of_loosening,
   Units,
+  Unsolved,
   VERTICAL,
   VERTICAL_SPINS,
   Vanishing,
@@ -11384,6 +11395,7 @@ export {
   evaluate,
   extent,
   factor_for,
+  failed,
   falling_time,
   final_band,
   first_fall,

@@ -17,6 +17,7 @@ from tippetop.mechanics.rolling import (
     slip_reserve,
 )
 from tippetop.mechanics.stick_slip import inner, scaled, size
+from tippetop.mechanics.unsolved import Unsolved
 
 CHOICES = ((False, False), (True, False), (False, True), (True, True))
 """What is tried in turn where slip, and rolling, have ended: whether they go on all the same."""
@@ -132,7 +133,7 @@ def settling(
             continue
         if _admits(point, found):
             return found, begins
-    raise ArithmeticError("nothing can hold the contact, and there is no direction in which it can go on")
+    raise Unsolved("nothing can hold the contact, and there is no direction in which it can go on")
 
 
 def _admits(point: ContactPoint, found: Beginning) -> bool:

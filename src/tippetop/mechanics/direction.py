@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from tippetop.mechanics.rolling import Slip, solve
 from tippetop.mechanics.stick_slip import inner, plus, scaled, size, tangents
+from tippetop.mechanics.unsolved import Unsolved
 
 ROUNDS, ITERATIONS, NEWTON = 100, 50, 12
 """Rounds of the search, iterations in each, and steps of Newton's method that try to end it."""
@@ -72,7 +73,7 @@ def directions(response: Response, start: Sequence[Slip]) -> list[Slip]:
         ways = [
             _unit(rates[i]) if along[i] < 0.0 and along[i] == against else ways[i] for i in range(len(ways))
         ]
-    raise ArithmeticError("no direction in which the contact can go on, though nothing can hold it")
+    raise Unsolved("no direction in which the contact can go on, though nothing can hold it")
 
 
 def _improved(response: Response, ways: list[Slip]) -> list[Slip] | None:

@@ -17,6 +17,7 @@ from tippetop.mechanics.runge_kutta import (
 )
 from tippetop.mechanics.stick_slip import scaled
 from tippetop.mechanics.straight_impact import straight
+from tippetop.mechanics.unsolved import Unsolved
 
 LONGEST = 5.0
 """Step at most, in the time in which slip falls by a factor of e: so many times it are still stable."""
@@ -97,7 +98,7 @@ def integrated(now: Clocked, here: Point, goal: Goal, guess: float) -> tuple[Poi
         then, waiting = now.settled(here), False
         slope = then.slope(here) if reached or then is not now else taking.new_slope
         now, step = then, min(longest, step * min(5.0, 0.9 * max(doubt, 1e-10) ** POWER))
-    raise ArithmeticError("an impact does not come to its end")
+    raise Unsolved("an impact does not come to its end")
 
 
 def landing(now: Clocked, taking: RungeKuttaStep, ends: list[Goal]) -> Point:

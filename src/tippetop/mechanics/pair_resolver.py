@@ -17,6 +17,7 @@ from tippetop.mechanics.direction import Resisted, directions
 from tippetop.mechanics.friction import NO_TORQUE
 from tippetop.mechanics.rolling import DRILLING, EAST, NORTH, Slip, Wrench, slip_length
 from tippetop.mechanics.stick_slip import plus, scaled, size
+from tippetop.mechanics.unsolved import Unsolved
 from tippetop.mechanics.vectors import scale
 
 CUTS = 50
@@ -57,7 +58,7 @@ def resolution(pair: ContactPair, xi: Slip, ended: tuple[bool, bool], rolls: flo
         found = of_slips(pair, xi, ended, sign)
         if found.motion.rolling_rate * sign >= 0.0:
             return found
-    raise ArithmeticError("nothing can hold the rolling of two contacts, and it can begin neither way")
+    raise Unsolved("nothing can hold the rolling of two contacts, and it can begin neither way")
 
 
 def _without_rolling(pair: ContactPair, xi: Slip, ended: tuple[bool, bool]) -> Resolution | None:

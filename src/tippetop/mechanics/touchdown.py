@@ -6,6 +6,7 @@ from tippetop.mechanics.roots import Triple, crossing, first_root
 from tippetop.mechanics.separation import DEGREE, WIDEST, Opening, Separation, analytic_disc, falling_time
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
+from tippetop.mechanics.unsolved import Unsolved
 
 START = 10.0 ** (-16.0 / (DEGREE + 1))
 """Fraction of its disc on which that polynomial is used: its tail is below round-off there."""
@@ -88,7 +89,7 @@ def touchdown(state: State, top: Top, horizon: float, start: Start = Start.AIRBO
     if start != Start.AIRBORNE:
         disc = analytic_disc(tip, top.surface, 0.0, 0.0, WIDEST)
         if disc is None:
-            raise ArithmeticError("a flight begins where the body lies flat, which has no one lowest point")
+            raise Unsolved("the body lies flat at its start, where no one point is lowest")
         support = (top.surface.height(tip.series()) + 0.0 * tip.series()).terms
         ballistic = (*support[:start], *ballistic[start:])
         terms = [b - s for b, s in zip(ballistic, support[:3], strict=True)] + [-s for s in support[3:]]
@@ -114,7 +115,7 @@ def touchdown(state: State, top: Top, horizon: float, start: Start = Start.AIRBO
         if root is not None:
             return root
         if end <= time:
-            raise ArithmeticError("a flight turns so often that its turns are lost in rounding of time")
+            raise Unsolved("the body turns so often that its turns are lost in rounding of time")
         time = end
 
 
