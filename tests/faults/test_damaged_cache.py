@@ -133,3 +133,22 @@ def test_what_was_not_used_for_longest_goes_first(tmp_path, monkeypatch):
     kept_content("d", lambda: bytes(1000))
     assert places["a"].exists()
     assert not places["b"].exists()
+
+
+@pytest.mark.parametrize("users", [True, False], ids=["user's own", "named"])
+def test_what_earlier_versions_kept_goes_as_the_rest_does_and_nothing_else(tmp_path, monkeypatch, users):
+    monkeypatch.setattr(sealed_folders, "users_folder", lambda: tmp_path if users else tmp_path / "other")
+    monkeypatch.setenv(VARIABLE, str(tmp_path))
+    monkeypatch.setattr(sealed_folders, "LARGEST", 1500)
+    old, others = [tmp_path / f"numba-{when:032x}" for when in range(2)], tmp_path / "code-of-mine"
+    for when, folder in enumerate([*old, others]):
+        folder.mkdir()
+        (folder / CONTENT).write_bytes(bytes(1000))
+        if folder in old:
+            (folder / SEAL).write_text("{}")
+        os.utime(folder, (when, when))
+    (tmp_path / "cache.db").write_bytes(bytes(1000))
+    os.utime(tmp_path / "cache.db", (0, 0))
+    kept_content("new", lambda: bytes(1000))
+    assert [folder.exists() for folder in (*old, others)] == [False, True, True]
+    assert (tmp_path / "cache.db").exists() is not users

@@ -26,6 +26,9 @@ PREFIX, MOST, LARGEST = "code-", 256, 2**27
 """How the folders are called, and how many there are at most, and bytes in them, when one more is made: then
 those go that were not used for longest."""
 
+OLD = "cache.db*"
+"""What else earlier versions kept in the user's folder, beside sealed folders of other names."""
+
 MAKING = "making-"
 """How those are called that are not yet whole: with this and the number of the process that makes them."""
 
@@ -44,7 +47,7 @@ def kept(made: object, use: Callable[[Path | None], Found]) -> Found:
         Takes the code from a folder, or compiles it and puts it there if it is empty; with no folder it
         compiles only.
     """
-    place = os.environ.get(VARIABLE) or platformdirs.user_cache_path("tippetop", appauthor=False)
+    place = os.environ.get(VARIABLE) or users_folder()
     if place != "off" and find_spec("llvmlite") is not None:
         with contextlib.suppress(OSError):
             folder = Path(place) / (PREFIX + _digest(repr((made, *_processor())).encode())[:32])
@@ -57,6 +60,11 @@ def kept(made: object, use: Callable[[Path | None], Found]) -> Found:
             shutil.rmtree(folder, ignore_errors=True)
             return _made(folder, use)
     return use(None)
+
+
+def users_folder() -> Path:
+    """The user's own folder for the cache: all that is in it is of this package."""
+    return platformdirs.user_cache_path("tippetop", appauthor=False)
 
 
 def kept_content(made: object, make: Callable[[], bytes]) -> bytes:
@@ -98,11 +106,13 @@ def _made(folder: Path, use: Callable[[Path | None], Found]) -> Found:
 
 def _clear(place: Path) -> None:
     """Remove what is too much, and what processes have left that are no more: killed while they compiled."""
-    size = 0
-    for number, old in enumerate(sorted(place.glob(PREFIX + "*"), key=os.path.getmtime, reverse=True), 1):
-        size += sum(path.stat().st_size for path in old.iterdir())
+    # A folder that the variable names may hold anything: what is sealed there is of this package.
+    size, own = 0, [seal.parent for seal in place.glob(f"*-*/{SEAL}")]
+    own += place.glob(OLD) if place == users_folder() else ()
+    for number, old in enumerate(sorted(own, key=os.path.getmtime, reverse=True), 1):
+        size += sum(path.stat().st_size for path in (old, *old.glob("*")) if path.is_file())
         if number >= MOST or size > LARGEST:
-            shutil.rmtree(old, ignore_errors=True)
+            shutil.rmtree(old, ignore_errors=True) if old.is_dir() else old.unlink(missing_ok=True)
     for left in place.glob(MAKING + "*"):
         process = left.name.split("-")[1]
         if not (process.isdecimal() and psutil.pid_exists(int(process))):
