@@ -61,7 +61,7 @@ RARE = "{t}_rare = select <{n} x i1> %need, {v} {1}, {v} {2}"
 EITHER = "{t} = phi {v} [ {2}, %ready ], [ {t}_rare, %rare ]"
 """What is computed only where one of the launches has need of it: how that begins, and what it makes."""
 
-PART = 400
+PART = 200
 """Operations a block: for thousands in one, LLVM takes twice as long to find registers."""
 
 BLOCK = """\

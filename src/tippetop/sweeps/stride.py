@@ -24,8 +24,8 @@ from tippetop.mechanics.series import Arithmetic, horner, solved, unknown
 from tippetop.mechanics.vectors import Scalar
 from tippetop.sweeps.looks import TINY, first_fall, least_value, looked_at, lower_bound, may_fall
 
-GUARD_LOOKS, OTHER_LOOKS, TIP_LOOKS = 32, 16, 12
-"""Intervals of a step at whose ends the first guard, the others, and n_z are looked at."""
+GUARD_LOOKS, BRANCH_LOOKS, TIP_LOOKS = 32, 16, 12
+"""Intervals of a step at whose ends the first guard, that of the law's branch, and n_z are looked at."""
 
 FAST = 10.0
 """Size of the state, in natural units, beyond which a top is so fast that its axis needs more care."""
@@ -167,23 +167,20 @@ def later_guards(
     -------
     tuple
         The step that is taken, whether it ends where another branch of the law takes over, and whether a
-        guard may fall in it. Only where one comes near zero are they looked at.
+        guard may fall in it. Only where that of the branch comes near zero is it looked at.
     """
     whole, branch = step
     none = 0.0 * whole
-    usual = taken, changes, events = whole, none, none
-    if len(falls) == 1:
-        return usual
-    near = none
+    taken, changes, events = whole, none, none
     for number, (terms, count) in enumerate(zip(falls[1:], counts[1:], strict=True), start=1):
-        near += plain.below(lower_bound(terms, whole, plain), TINY)
-        if number == branch:
-            change, doubt = first_fall(terms, whole, OTHER_LOOKS, plain)
-            changes, taken, events = plain.below(change, whole), plain.least(change, whole), events + doubt
-        else:
-            events += may_fall(terms, looked_at(terms, whole, OTHER_LOOKS), whole, plain) * count
-    need, found = near * plain.below(0.0, whole), (taken, changes, events)
-    taken, changes, events = (plain.rarely(need, a, b) for a, b in zip(found, usual, strict=True))
+        near = plain.below(lower_bound(terms, whole, plain), TINY)
+        if number != branch:
+            events += near * count
+            continue
+        need, (change, doubt) = near * plain.below(0.0, whole), first_fall(terms, whole, BRANCH_LOOKS, plain)
+        found, usual = (plain.least(change, whole), plain.below(change, whole), doubt), (whole, none, none)
+        taken, changes, doubt = (plain.rarely(need, a, b) for a, b in zip(found, usual, strict=True))
+        events += doubt
     return taken, changes, events
 
 
