@@ -14,9 +14,11 @@ import pytest
 import tippetop as tt
 from tippetop.contact import closing
 from tippetop.errors import TippetopError
-from tippetop.integrators import has_numba, has_taylor, make_integrator, sampling
+from tippetop.integrators import has_llvm, has_numba, has_taylor, make_integrator, sampling
 from tippetop.integrators.base import Motion
 from tippetop.mechanics import integrated_impact, touchdown
+from tippetop.sweeps import stride
+from tippetop.sweeps.stepper import stepper
 
 COUNT, PARTS = int(os.environ.get("TIPPETOP_HOSTILE", "64")), 8
 STEPS, MODES = 2_000, 200
@@ -134,6 +136,46 @@ def test_hostile_problems_end_with_an_outcome_or_a_sentence(part: int) -> None:
 )
 def test_hostile_problems_that_were_hard(seed: int, outcomes: set[str]) -> None:
     assert outcome_of(seed) in outcomes
+
+
+@pytest.mark.skipif(not (has_taylor() and has_llvm()), reason="the others have other errors")
+@pytest.mark.parametrize(
+    ("seed", "outcome"),
+    [
+        pytest.param(66, "completed", id="a small patch that is struck"),
+        pytest.param(324, "inaccurate", id="an impact at launch that sticks"),
+        pytest.param(3697, "inaccurate", id="a patch that sticks"),
+        pytest.param(6711, "inaccurate", id="Coulomb's friction, with an axis that does not keep its length"),
+        pytest.param(7247, "inaccurate", id="Coulomb's friction that sticks"),
+    ],
+)
+def test_one_launch_and_many_tell_the_same_of_their_accuracy(seed: int, outcome: str) -> None:
+    problem = tt.Problem(**hostile(np.random.default_rng(seed)))
+    assert tt.simulate(problem, 2.0, samples=2, tolerance=1e-12).attrs["outcome"] == outcome
+    ending = swept_ending(problem, 1e-12)
+    assert ending is not tt.Ending.FAILED
+    assert (ending is tt.Ending.INACCURATE) == (outcome == "inaccurate")
+
+
+@pytest.mark.skipif(not has_llvm(), reason="llvmlite is not installed")
+@pytest.mark.parametrize("seed", [1093, 1204])
+def test_launches_followed_together_are_watched(monkeypatch: pytest.MonkeyPatch, seed: int) -> None:
+    """Steps that care for slip alone let the axis change its length."""
+    problem = tt.Problem(**hostile(np.random.default_rng(seed)))
+    ordinary = swept_ending(problem, 1e-9)
+    assert ordinary not in (tt.Ending.FAILED, tt.Ending.INACCURATE)
+    stepper.cache_clear()
+    monkeypatch.setattr(stride, "FAST", np.inf)
+    careless = swept_ending(problem, 1e-9)
+    stepper.cache_clear()
+    assert careless is tt.Ending.INACCURATE
+
+
+def swept_ending(problem: tt.Problem, tolerance: float) -> tt.Ending:
+    """What a sweep of one launch says of it."""
+    over = {"launch.spin": [problem.launch.spin]}
+    swept = tt.sweep(problem, over, duration=2.0, tolerance=tolerance, workers=1)
+    return tt.Ending(int(swept["outcome"][0]))
 
 
 @pytest.mark.parametrize(

@@ -8,6 +8,7 @@ import pytest
 import tippetop as tt
 from tippetop.lowest import lowest_jellett
 from tippetop.mechanics.invariants import energy
+from tippetop.mechanics.state import State
 from tippetop.mechanics.top import natural, natural_state, natural_units
 from tippetop.mechanics.vectors import length
 from tippetop.monitor import Monitor
@@ -81,6 +82,35 @@ def test_what_is_no_number_is_not_trusted(number: float) -> None:
         assert not seen(**{name: number}).is_trusted(1e-2), name
     assert not seen(STEMMED, height=-abs(number)).is_trusted(1e-2)
     assert not seen(STEMMED, cosine=np.nan).is_trusted(1e-2)
+
+
+def test_many_launches_are_held_against_what_each_keeps() -> None:
+    problems = [PROBLEM.replace({"launch.spin": spin}) for spin in (1e-8, 50.0, 155.0)]
+    starts = [natural_state(one.start(), natural_units(one.top)) for one in problems]
+    many = State.unpack([np.array(numbers) for numbers in zip(*(one.pack() for one in starts), strict=True)])
+    monitor = Monitor(TOP, many)
+    for off in (0.0, 1e-3):
+        told = (length(many.axis), many.axis[2], many.height, energy(many, TOP), lowest_jellett(many, TOP))
+        size, *others, jellett = (number[None] for number in told)
+        size[0, 2] += off
+        jellett[0, :2] += off
+        monitor.see(size, *others, jellett, np.zeros((1, 3)))
+        assert monitor.is_trusted(1e-9).tolist() == [True, not off, not off]
+
+
+def test_the_end_of_a_run_is_seen() -> None:
+    """A run of a single step begins nowhere but at its launch."""
+    run = tt.simulate(PROBLEM, 0.05, samples=2, integrator="rk4", step=0.05)
+    assert int(run["steps"]) == 1
+    assert run.attrs["outcome"] == "inaccurate"
+
+
+def test_fixed_steps_are_warned_of() -> None:
+    advice = [
+        tt.simulate(PROBLEM, 0.01, samples=2, **method).attrs["outcome_advice"]
+        for method in ({"integrator": "rk4", "step": 1e-3}, {"integrator": "dop853"})
+    ]
+    assert ["half the step" in one for one in advice] == [True, False]
 
 
 def test_steps_that_are_too_long_are_told() -> None:

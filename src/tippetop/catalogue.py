@@ -32,6 +32,7 @@ class Ending(IntEnum):
     FAILED = 4
     BAD = 5
     AT_REST = 6
+    INACCURATE = 7
 
 
 class Fault(IntEnum):

@@ -162,9 +162,7 @@ def ending(ends: Ends) -> NDArray[np.int8]:
     final = tilt(ends.state)
     near = [final <= NEAR_POLE, final >= np.pi - NEAR_POLE]
     found = np.select(near, [Ending.UPRIGHT, Ending.INVERTED], Ending.TILTED)
-    found[ends.outcome == OUTCOMES.index(Outcome.LIFTED_OFF)] = Ending.LIFTED_OFF
-    found[ends.outcome == OUTCOMES.index(Outcome.AT_REST)] = Ending.AT_REST
-    ended = (Outcome.COMPLETED, Outcome.LIFTED_OFF, Outcome.AT_REST, Outcome.LYING_FLAT)
-    completed = [OUTCOMES.index(outcome) for outcome in ended]
-    found[~np.isin(ends.outcome, completed)] = Ending.FAILED
+    for number, outcome in enumerate(OUTCOMES):
+        if outcome not in (Outcome.COMPLETED, Outcome.LYING_FLAT):
+            found[ends.outcome == number] = getattr(Ending, outcome.name, Ending.FAILED)
     return found.astype(np.int8)

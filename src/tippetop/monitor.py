@@ -1,7 +1,8 @@
-"""What every motion keeps, and how far a run is off it."""
+"""What every motion keeps, and how far a run is off it: the same for one launch and for many."""
 
 import numpy as np
 
+from tippetop.contact.mode import Outcome
 from tippetop.lowest import lowest_jellett
 from tippetop.mechanics.hull import Hull, outer_height
 from tippetop.mechanics.invariants import energy
@@ -17,53 +18,60 @@ WORST, ACCUMULATED = 1e-6, 1e4
 
 
 class Monitor:
-    """How far a launch of a top goes off what it begins with, in natural units."""
+    """How far launches go off what they begin with, in natural units: one, or n with arrays for numbers."""
 
     def __init__(self, top: Top, start: State) -> None:
         self.top = top
-        jellett = float(lowest_jellett(start, top))
-        self._energy = float(energy(start, top))
-        self._moment = float(length(start.momentum) * outer_height(top.surface, start.axis[2]))
+        jellett = lowest_jellett(start, top)
+        self._energy = energy(start, top)
+        self._moment = length(start.momentum) * outer_height(top.surface, start.axis[2])
         self._imbalance, self._least, self._most = 0.0, jellett, jellett
         self._largest, self._off_unit, self._sunk = abs(self._energy), 0.0, 0.0
 
     @property
-    def energy_error(self) -> float:
+    def energy_error(self) -> Scalar:
         """Largest error so far of the balance of energy and work, relative to the energy."""
         return self._imbalance / abs(self._energy)
 
     @property
-    def jellett_drift(self) -> float:
+    def jellett_drift(self) -> Scalar:
         """Range so far of Jellett's integral, relative to |L| h at launch; nan where that is 0."""
-        return (self._most - self._least) / self._moment if self._moment else float(np.nan)
+        return (self._most - self._least) / np.where(self._moment > 0.0, self._moment, np.nan)
 
     @property
-    def inaccuracy(self) -> float:
+    def inaccuracy(self) -> Scalar:
         """How far, relatively, the run is off what every motion keeps: energy and work, |n|, lambda, gaps.
 
         No number if one of these is none.
         """
-        drift = self.jellett_drift if self.top.conserves_jellett and self._moment > LEAST_MOMENT else 0.0
-        return _worse(_worse(self._imbalance / self._largest, self._off_unit), _worse(drift, self._sunk))
+        telling = self._moment > LEAST_MOMENT
+        drift = np.where(telling, self.jellett_drift, 0.0) if self.top.conserves_jellett else 0.0
+        with np.errstate(invalid="ignore"):
+            imbalance = self._imbalance / self._largest
+        return np.maximum(np.maximum(imbalance, self._off_unit), np.maximum(drift, self._sunk))
 
-    def is_trusted(self, tolerance: float) -> bool:
-        """Whether that is little, for steps of a relative error."""
+    def is_trusted(self, tolerance: float) -> Scalar:
+        """Whether that is little, for steps of a relative error: a truth value, or an array of them."""
         return self.inaccuracy <= max(WORST, ACCUMULATED * tolerance)
+
+    def judged(self, outcome: Outcome, tolerance: float) -> Outcome:
+        """How one launch ended: completed only if it can be trusted."""
+        completed = outcome is Outcome.COMPLETED
+        return Outcome.INACCURATE if completed and not self.is_trusted(tolerance) else outcome
 
     def see(
         self, size: Scalar, cosine: Scalar, height: Scalar, energy: Scalar, jellett: Scalar, work: Scalar
     ) -> None:
-        """See some instants, numbers or arrays of one shape: |n|, n_z, and of work all since launch."""
-        self._imbalance = _worse(self._imbalance, float(np.max(np.abs(energy - self._energy - work))))
-        self._largest = _worse(self._largest, float(np.max(energy)))
-        self._off_unit = _worse(self._off_unit, float(np.max(np.abs(size - 1.0))))
-        self._least = min(self._least, float(np.min(jellett)))
-        self._most = _worse(self._most, float(np.max(jellett)))
+        """See some instants: |n|, n_z, and of work all since launch.
+
+        Numbers, or arrays of one shape whose first axis is that of the instants.
+        """
+        imbalance = np.max(np.abs(energy - self._energy - work), 0)
+        self._imbalance = np.maximum(self._imbalance, imbalance)
+        self._largest = np.maximum(self._largest, np.max(energy, 0))
+        self._off_unit = np.maximum(self._off_unit, np.max(np.abs(size - 1.0), 0))
+        self._least = np.minimum(self._least, np.min(jellett, 0))
+        self._most = np.maximum(self._most, np.max(jellett, 0))
         if isinstance(self.top.surface, Hull):
             sunk = outer_height(self.top.surface, cosine) - height
-            self._sunk = _worse(self._sunk, float(np.max(sunk)))
-
-
-def _worse(one: float, other: float) -> float:
-    """The larger of two; no number if one is none, which `max` would pass over."""
-    return one if one >= other or one != one else other
+            self._sunk = np.maximum(self._sunk, np.max(sunk, 0))

@@ -5,10 +5,14 @@ import numpy as np
 from tippetop.contact.block import NODES, WEIGHTS, Block
 from tippetop.contact.choice import as_begun
 from tippetop.contact.flight import Flight
+from tippetop.contact.mode import Outcome
 from tippetop.contact.readings import TOLD, Instants, instants, read
 from tippetop.contact.sliding import Sliding
+from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators.base import Array
 from tippetop.integrators.dense import parts_of, powers
+from tippetop.lowest import lowest_jellett
+from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import length
@@ -59,6 +63,15 @@ class Recorder:
         self._last = block, integrals
         if len(times):
             self._sample(block, times, *integrals)
+
+    def outcome_of(self, trajectory: Trajectory) -> Outcome:
+        """How a trajectory of which all was taken ended, by what it kept on its way and keeps at its end."""
+        outcome, state = trajectory.outcome, trajectory.state
+        assert outcome is not None, "a trajectory that has no more segments has ended"
+        if outcome is Outcome.COMPLETED:
+            keeps = energy(state, self.top), lowest_jellett(state, self.top)
+            self.monitor.see(length(state.axis), state.axis[2], state.height, *keeps, self._sums[3])
+        return self.monitor.judged(outcome, getattr(trajectory.integrator, "tolerance", 0.0))
 
     def finish(self, end: float, state: State, early: bool) -> Samples:
         """All samples of a launch that ended; where it did so early, its end is the last of them."""

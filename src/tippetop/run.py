@@ -115,11 +115,7 @@ def simulate(
         tally.take(block)
         if callback is not None:
             callback(trajectory.time / trajectory.end)
-    outcome = trajectory.outcome
-    assert outcome is not None, "a trajectory that has no more segments has ended"
-    monitor = recorder.monitor
-    if outcome is Outcome.COMPLETED and not monitor.is_trusted(getattr(method, "tolerance", 0.0)):
-        outcome = Outcome.INACCURATE
+    outcome = recorder.outcome_of(trajectory)
     early = outcome is not Outcome.COMPLETED and trajectory.detail != NOT_FINITE
     found = recorder.finish(trajectory.time, trajectory.state, early)
     ends = tally.ends(trajectory.state, trajectory.time, outcome, trajectory.events)
@@ -130,14 +126,15 @@ def simulate(
         "energy_start": float(energy(state, top)) * units.energy,
         "impact_energy_lost": sum(event.energy_lost for event in trajectory.events) * units.energy,
         "evaluations": tally.evaluations,
-        "energy_error": monitor.energy_error,
-        "jellett_drift": monitor.jellett_drift,
+        "energy_error": recorder.monitor.energy_error,
+        "jellett_drift": recorder.monitor.jellett_drift,
     }
+    caution = getattr(method, "caution", "")
     attributes = {
         "title": "Motion of a spinning top on a table",
         "problem": problem.to_json(),
         "outcome": outcome.name.lower(),
-        "outcome_advice": " ".join(filter(None, (outcome.value, trajectory.detail))),
+        "outcome_advice": " ".join(filter(None, (outcome.value, trajectory.detail, caution))),
         **_method_attributes([method, *tally.methods.values()], units),
         "tippetop_version": __version__,
     }

@@ -183,8 +183,10 @@ def test_arrays_make_the_steps_that_are_compiled():
 def test_a_step_of_a_fast_top_leaves_little_out_of_its_axis(field):
     """Beside polynomials of far higher degree over the same step."""
     tolerance, count = 1e-9, 16
-    problem = report_problem(spin=100.0).replace({"contact.liftoff": "ignore"})
-    cells = cells_of(problem, {field: np.geomspace(1e2, 1e6, count)})
+    friction = RegularizedCoulombFriction(mu=0.3, eps=0.1)
+    cells = cells_of(
+        report_problem(spin=100.0).replace({"friction": friction}), {field: np.geomspace(1e2, 1e6, count)}
+    )
     launches = cells.launches(np.arange(count), 1.0)
     motion = sliding_motion(launches.kind, guarded=True)
     usual, finer = stepper(motion, tolerance), stepper(motion, 1e-16)

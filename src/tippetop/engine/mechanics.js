@@ -10504,55 +10504,55 @@ function observe(samples, top, units) {
 const LEAST_MOMENT = 1e-06;
 const [WORST, ACCUMULATED] = [1e-06, 10000.0];
 
-/** How far a launch of a top goes off what it begins with, in natural units. */
+/** How far launches go off what they begin with, in natural units: one, or n with arrays for numbers. */
 class Monitor extends py.Thing {
   constructor(top, start) {
     super();
     this.top = top;
-    var jellett = py.float(lowest_jellett(start, top));
-    this._energy = py.float(energy(start, top));
-    this._moment = py.float(py.mul(length(start.momentum), outer_height(top.surface, start.axis[2])));
+    var jellett = lowest_jellett(start, top);
+    this._energy = energy(start, top);
+    this._moment = py.mul(length(start.momentum), outer_height(top.surface, start.axis[2]));
     [this._imbalance, this._least, this._most] = [0.0, jellett, jellett];
     [this._largest, this._off_unit, this._sunk] = [py.abs(this._energy), 0.0, 0.0];
   }
   /** Range so far of Jellett's integral, relative to |L| h at launch; nan where that is 0. */
   get jellett_drift() {
-    return py.truth(this._moment) ? py.div(
-      py.sub(this._most, this._least),
-      this._moment
-    ) : py.float(py.np.nan);
+    return py.div(py.sub(this._most, this._least), py.np.where(this._moment > 0.0, this._moment, py.np.nan));
   }
   /** How far, relatively, the run is off what every motion keeps: energy and work, |n|, lambda, gaps. */
   get inaccuracy() {
-    var drift = py.truth(
-      this.top.conserves_jellett
-    ) && this._moment > LEAST_MOMENT ? this.jellett_drift : 0.0;
-    return _worse(_worse(py.div(this._imbalance, this._largest), this._off_unit), _worse(drift, this._sunk));
+    var telling = this._moment > LEAST_MOMENT;
+    var drift = py.truth(this.top.conserves_jellett) ? py.np.where(telling, this.jellett_drift, 0.0) : 0.0;
+    py.heed(false);
+    try {
+      var imbalance = py.div(this._imbalance, this._largest);
+    } finally {
+      py.heed(true);
+    }
+    return py.np.maximum(py.np.maximum(imbalance, this._off_unit), py.np.maximum(drift, this._sunk));
   }
-  /** Whether that is little, for steps of a relative error. */
+  /** Whether that is little, for steps of a relative error: a truth value, or an array of them. */
   is_trusted(tolerance) {
     return this.inaccuracy <= py.max(WORST, py.mul(ACCUMULATED, tolerance));
   }
-  /** See some instants, numbers or arrays of one shape: |n|, n_z, and of work all since launch. */
+  /** How one launch ended: completed only if it can be trusted. */
+  judged(outcome, tolerance) {
+    var completed = outcome === Outcome.COMPLETED;
+    return py.truth(completed) && !py.truth(this.is_trusted(tolerance)) ? Outcome.INACCURATE : outcome;
+  }
+  /** See some instants: |n|, n_z, and of work all since launch. */
   see(size, cosine, height, energy, jellett, work) {
-    this._imbalance = _worse(
-      this._imbalance,
-      py.float(py.np.max(py.np.abs(py.sub(py.sub(energy, this._energy), work))))
-    );
-    this._largest = _worse(this._largest, py.float(py.np.max(energy)));
-    this._off_unit = _worse(this._off_unit, py.float(py.np.max(py.np.abs(py.sub(size, 1.0)))));
-    this._least = py.min(this._least, py.float(py.np.min(jellett)));
-    this._most = _worse(this._most, py.float(py.np.max(jellett)));
+    var imbalance = py.np.max(py.np.abs(py.sub(py.sub(energy, this._energy), work)), 0);
+    this._imbalance = py.np.maximum(this._imbalance, imbalance);
+    this._largest = py.np.maximum(this._largest, py.np.max(energy, 0));
+    this._off_unit = py.np.maximum(this._off_unit, py.np.max(py.np.abs(py.sub(size, 1.0)), 0));
+    this._least = py.np.minimum(this._least, py.np.min(jellett, 0));
+    this._most = py.np.maximum(this._most, py.np.max(jellett, 0));
     if (py.isinstance(this.top.surface, Hull)) {
       var sunk = py.sub(outer_height(this.top.surface, cosine), height);
-      this._sunk = _worse(this._sunk, py.float(py.np.max(sunk)));
+      this._sunk = py.np.maximum(this._sunk, py.np.max(sunk, 0));
     }
   }
-}
-
-/** The larger of two; no number if one is none, which `max` would pass over. */
-function _worse(one, other) {
-  return one >= other || !py.eq(one, one) ? one : other;
 }
 
 // tippetop.contact.flights
@@ -11333,7 +11333,6 @@ export {
   _turn,
   _unit,
   _without_rolling,
-  _worse,
   _written,
   acting,
   add,

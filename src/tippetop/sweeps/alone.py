@@ -11,7 +11,10 @@ from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators import TOLERANCES, default_name, has_llvm, make_integrator
 from tippetop.integrators.dense import DenseSolution
 from tippetop.mechanics.hull import Hull
+from tippetop.mechanics.state import State
+from tippetop.mechanics.top import Top
 from tippetop.metrics import Ends
+from tippetop.observables import Recorder
 from tippetop.sweeps.launches import Launches, single
 from tippetop.tally import Tally
 from tippetop.theory.prediction import is_held
@@ -27,23 +30,32 @@ def follow_each(launches: Launches, tolerance: float, settled: float | None = No
     """Follow every launch to its end, or until its tilt is held within `settled`, rad."""
     ends = Ends.unknown(len(launches))
     for i in range(len(launches)):
-        start = launches.rules(i).launch(single(launches.state, i))
-        ends.put(np.array([i]), follow(start, 0.0, float(launches.end[i]), tolerance, settled)[0])
+        rules, state = launches.rules(i), single(launches.state, i)
+        begin = rules.top, state, 0.0
+        found, _ = follow(begin, rules.launch(state), float(launches.end[i]), tolerance, settled)
+        ends.put(np.array([i]), found)
     return ends
 
 
 def follow(
-    start: Transition, time: float, end: float, tolerance: float, settled: float | None = None
+    begin: tuple[Top, State, float],
+    start: Transition,
+    end: float,
+    tolerance: float,
+    settled: float | None = None,
 ) -> tuple[Ends, Tally]:
-    """What one launch comes to that is followed from a transition to its end, or until its tilt is held."""
+    """What a launch comes to: followed from a top, a state, a time and what follows, or until it settles."""
+    top, state, time = begin
+    lost = sum(event.energy_lost for event in start.events)
     method = make_integrator(None, max(tolerance, TOLERANCES[default_name()]))
     trajectory, tally = Trajectory(start, end, method, time=time), Tally()
-    segments = trajectory.segments()
+    segments, recorder = trajectory.segments(), Recorder(top, state, 0.0, np.empty(0), lost)
     segments = segments if settled is None else until_settled(trajectory, segments, settled)
     for block in in_blocks(segments):
+        recorder.take(block)
         tally.take(block)
-    assert trajectory.outcome is not None, "a trajectory that has no more segments has ended"
-    return tally.ends(trajectory.state, trajectory.time, trajectory.outcome, trajectory.events), tally
+    outcome = recorder.outcome_of(trajectory)
+    return tally.ends(trajectory.state, trajectory.time, outcome, trajectory.events), tally
 
 
 def until_settled(trajectory: Trajectory, segments: Iterator[Segment], closeness: float) -> Iterator[Segment]:

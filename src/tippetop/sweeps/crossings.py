@@ -56,7 +56,8 @@ class Crossings:
         launches = self.slots.launches
         alone = launches.unresisted
         for i in np.flatnonzero(alone).tolist():
-            self._follow_alone(int(lanes[i]), 0.0, launches.rules(i).launch(single(state, i)))
+            here = single(state, i)
+            self._follow_alone(int(lanes[i]), 0.0, here, launches.rules(i).launch(here))
         plain = slips(state, launches.top, far=True) & rolls(state, launches.top)
         if launches.liftoff != "ignore":
             plain &= slides(state, launches.top)
@@ -65,7 +66,7 @@ class Crossings:
             plain &= np.abs(gap_rate(state, launches.top)) <= TOUCHING
         others = np.flatnonzero(~plain & ~alone)
         transitions = [launches.rules(i).launch(single(state, i)) for i in others.tolist()]
-        self._enter(lanes[others], np.zeros(len(others)), transitions)
+        self._enter(lanes[others], np.zeros(len(others)), picked(state, others), transitions)
 
     def fall(self, lanes: Indices, time: Array, guards: Indices) -> None:
         """What follows where guards fall through zero."""
@@ -82,7 +83,7 @@ class Crossings:
                 mode.follow(str(name), float(moment), single(state, i))
                 for i, (mode, name, moment) in enumerate(zip(modes, names[ending], time[ending], strict=True))
             ]
-            self._enter(lanes[ending], time[ending], transitions)
+            self._enter(lanes[ending], time[ending], state, transitions)
         if other.any():
             self.slots.change_branch(lanes[other])
         self._let_go(lanes[free], time[free])
@@ -141,17 +142,20 @@ class Crossings:
         transitions = [
             launches.rules(int(cells[i])).touchdown(float(time[i]), single(state, i)) for i in others.tolist()
         ]
-        return self._enter(lanes[others], time[others], transitions, fly=False)
+        return self._enter(lanes[others], time[others], picked(state, others), transitions, fly=False)
 
     def _enter(
-        self, lanes: Indices, time: Array, transitions: list[Transition], fly: bool = True
+        self, lanes: Indices, time: Array, state: State, transitions: list[Transition], fly: bool = True
     ) -> tuple[Indices, State, Array, Indices]:
-        """Put lanes where transitions lead; those that fly do so, or are returned as `_fly` takes them."""
+        """Put lanes where transitions lead from their states.
+
+        Those that fly do so, or are returned as `_fly` takes them.
+        """
         again, starts, states = [], [], []
         for i, transition in enumerate(transitions):
             self._note(lanes[i], float(time[i]), transition)
             if not isinstance(transition.then, Flight | Outcome) and not is_plain(transition.then):
-                self._follow_alone(int(lanes[i]), float(time[i]), transition)
+                self._follow_alone(int(lanes[i]), float(time[i]), single(state, i), transition)
                 continue
             lost = sum(event.energy_lost for event in transition.events)
             self.slots.ends.struck[self.slots.cell[lanes[i]]] += lost
@@ -188,12 +192,13 @@ class Crossings:
         for i, lane in enumerate(lanes.tolist()):
             here = single(state, i)
             mode = self.slots.launches.rules(int(self.slots.cell[lane])).going_on(here, slips=True)
-            self._follow_alone(lane, float(time[i]), Transition((), mode, here))
+            self._follow_alone(lane, float(time[i]), here, Transition((), mode, here))
 
-    def _follow_alone(self, lane: int, time: float, transition: Transition) -> None:
-        """Follow one launch to its end as a single launch is."""
+    def _follow_alone(self, lane: int, time: float, state: State, transition: Transition) -> None:
+        """Follow one launch from a transition in a state to its end as a single launch is."""
         slots, ends, cell, where = self.slots, self.slots.ends, self.slots.cell[[lane]], np.array([lane])
-        found, tally = follow(transition, time, float(slots.end[lane]), self.tolerance)
+        begin = slots.launches.rules(int(slots.cell[lane])).top, state, time
+        found, tally = follow(begin, transition, float(slots.end[lane]), self.tolerance)
         for name in ("flights", "airborne", "struck", "drilled", "rolled"):
             getattr(ends, name)[cell] += getattr(found, name)
         for name in ("highest_gap", "highest", "up"):

@@ -8,15 +8,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tippetop.catalogue import SWEPT, Ending, Fault
+from tippetop.contact.mode import Outcome
 from tippetop.contact.sliding import sliding_motion
 from tippetop.integrators.base import Array, Motion
+from tippetop.lowest import lowest_jellett
+from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import contact, on_table
 from tippetop.mechanics.quadratures import resistance_powers
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.top import Kind
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Scalar, length
-from tippetop.metrics import ending, final_band, metrics
+from tippetop.metrics import OUTCOMES, Ends, ending, final_band, metrics
+from tippetop.monitor import Monitor
 from tippetop.sweeps.alone import follow_each, is_alone
 from tippetop.sweeps.cells import cells_of, spread
 from tippetop.sweeps.definition import Sweep
@@ -58,6 +62,7 @@ def follow_cells(sweep: Sweep, numbers: Flat) -> dict[str, NDArray[np.generic]]:
         else:
             lanes = Lanes(some, method, sweep.tolerance, settled=sweep.settled)
             ends = lanes.run()
+            judge(ends, some, sweep.tolerance)
             again = arrivals(lanes, final_band(ends.state))
             ends.arrived = np.where(np.isnan(again), ends.arrived, again)
         units = Units(*(spread(unit, count)[which] for unit in cells.units))
@@ -65,6 +70,20 @@ def follow_cells(sweep: Sweep, numbers: Flat) -> dict[str, NDArray[np.generic]]:
         for name, numbers_found in values.items():
             found[name][which] = numbers_found.astype(SWEPT[name].dtype)
     return found
+
+
+def judge(ends: Ends, launches: Launches, tolerance: float) -> None:
+    """Call launches inaccurate that are off what every motion keeps where they end.
+
+    What goes off stays off, so that the end tells of all before. Of the work of friction nothing is known but
+    the energy that is gone: the axis is what goes off first, by steps that keep their balance to rounding.
+    """
+    top, end = launches.top, ends.state
+    monitor, left = Monitor(top, launches.state), energy(end, top)
+    keeps = length(end.axis), end.axis[2], end.height, left, lowest_jellett(end, top)
+    monitor.see(*(number[None] for number in (*keeps, left - energy(launches.state, top))))
+    completed, inaccurate = map(OUTCOMES.index, (Outcome.COMPLETED, Outcome.INACCURATE))
+    ends.outcome[(ends.outcome == completed) & ~monitor.is_trusted(tolerance)] = inaccurate
 
 
 @lru_cache

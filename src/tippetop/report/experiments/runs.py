@@ -55,9 +55,9 @@ SWEPT = 1e-12
 
 
 def swept(problem: Problem, values: Mapping[str, np.ndarray], window: float = WINDOW) -> xr.Dataset:
-    """What becomes of the launches that cross these values of fields; nan where one became singular."""
+    """What becomes of the launches that cross these values of fields; nan where that is not to be had."""
     found = compute(Sweep(problem, Product.of(values), window, SWEPT))
-    return found.where(~found["outcome"].isin([Ending.FAILED, Ending.BAD]))
+    return found.where(~found["outcome"].isin([Ending.FAILED, Ending.INACCURATE, Ending.BAD]))
 
 
 def happenings(run: xr.Dataset, kind: str, surface: int | None = None) -> np.ndarray:
