@@ -22,7 +22,7 @@ from tippetop.mechanics.top import natural_units
 from tippetop.mechanics.view import Angles
 from tippetop.problem import Problem
 from tippetop.theory.nutation import numbers_of
-from tippetop.theory.nutation_decay import Goals, Nutation, Stage, follow_nutation, launched
+from tippetop.theory.nutation_decay import Goals, Nutation, follow_nutation, launched
 from tippetop.theory.prediction import stable_by_energy
 from tippetop.theory.steady import jellett_of_launch, steady_states
 
@@ -82,21 +82,19 @@ def averaged_flow(
         [state.tilt for state in states], [state.tilt for state in stable_by_energy(states)], distance
     )
     jellett /= float(natural_units(top).jellett)
-    nutation, begin, stages = nutation_of_launch(problem), 0.0, list[Stage]()
+    nutation, begin, parts = nutation_of_launch(problem), 0.0, list[Array]()
     # From the pole that it is nearer to, until it has died away; then the tilt alone.
-    while not (stages and stages[-1].done) and len(stages) < _MOST_STAGES:
+    for _ in range(_MOST_STAGES):
         stage = follow_nutation(nutation, jellett, numbers, goals, samples, tolerance)
-        stages.append(stage._replace(time=begin + stage.time))
-        begin, nutation = float(stages[-1].time[-1]), stage.end.turn(numbers)
-    last = stages[-1]
-    time, low, high = (
-        np.concatenate([first, *(array[1:] for array in rest)])
-        for first, *rest in zip(*((stage.time, stage.low, stage.high) for stage in stages), strict=True)
-    )
-    if last.tail is not None:
-        time = np.concatenate([time, begin + last.tail.time[1:]])
-        low, high = (np.concatenate([bound, last.tail.tilt[1:]]) for bound in (low, high))
-    return SlowFlow(time / float(top.gravity), low, high, last.final_tilt)
+        parts.append(np.array([begin + stage.time, stage.low, stage.high]))
+        begin, nutation = float(parts[-1][0, -1]), stage.end.turn(numbers)
+        if stage.done:
+            break
+    if stage.tail is not None:
+        parts.append(np.array([begin + stage.tail.time, stage.tail.tilt, stage.tail.tilt]))
+    # Each begins where the one before ends.
+    time, low, high = np.hstack([parts[0][:, :1], *(part[:, 1:] for part in parts)])
+    return SlowFlow(time / float(top.gravity), low, high, stage.final_tilt)
 
 
 def nutation_of_launch(problem: Problem) -> Nutation:
