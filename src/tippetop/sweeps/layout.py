@@ -35,7 +35,8 @@ class Status(IntEnum):
     DONE = 1
 
 
-STATUS = Variable("whether the cell is computed", dtype="int8", flags=meanings(Status))
+CONTENTS = {"status": Variable("whether the cell is computed", dtype="int8", flags=meanings(Status)), **SWEPT}
+"""What a sweep's dataset has over the grid."""
 
 _alone = Lock()
 """Warnings are silenced for all threads at once, which therefore do so one after another."""
@@ -61,7 +62,7 @@ def lay_out(path: Path, sweep: Sweep) -> None:
             compressors=checked,
         )
         coordinate[...] = values
-    for name, kind in {"status": STATUS, **SWEPT}.items():
+    for name, kind in CONTENTS.items():
         group.create_array(
             name,
             shape=grid.shape,
@@ -194,7 +195,7 @@ def may_be_replaced(path: Path) -> bool:
 
 def _has_every_array(path: Path) -> bool:
     """Whether a folder that does not say what it holds is a sweep all the same: it has all that one has."""
-    return all((path / name).is_dir() for name in ("status", *SWEPT))
+    return all((path / name).is_dir() for name in CONTENTS)
 
 
 def refuse_another(path: Path, kept: Sweep, sweep: Sweep) -> None:

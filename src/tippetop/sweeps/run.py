@@ -9,11 +9,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from tippetop.catalogue import SWEPT
 from tippetop.problem import Problem
 from tippetop.sweeps.definition import DEFAULT_TOLERANCE, Sweep, Task
 from tippetop.sweeps.grid import Draws, Product
-from tippetop.sweeps.layout import STATUS, Status, coordinate_attributes, layout_attributes
+from tippetop.sweeps.layout import CONTENTS, Status, coordinate_attributes, layout_attributes
 from tippetop.sweeps.store import Store
 from tippetop.sweeps.tasks import Found, need_workers, results
 
@@ -89,7 +88,7 @@ def compute(
     The variables of `tippetop.catalogue.SWEPT` and `status` are over the grid.
     """
     shape, grid = sweep.grid.shape, sweep.grid
-    arrays = {name: np.full(shape, kind.missing, dtype=kind.dtype) for name, kind in SWEPT.items()}
+    arrays = {name: np.full(shape, kind.missing, dtype=kind.dtype) for name, kind in CONTENTS.items()}
 
     def keep(task: Task, found: Found) -> None:
         region = sweep.region(task)
@@ -97,10 +96,8 @@ def compute(
             arrays[name][region] = values.reshape(arrays[name][region].shape)
 
     _carry_out(sweep, sweep.tasks, keep, workers, scheduler, callback)
-    status = np.full(shape, Status.DONE, dtype=np.int8)
-    data = {"status": (grid.dimensions, status, STATUS.attributes)}
-    for name, kind in SWEPT.items():
-        data[name] = (grid.dimensions, arrays[name], kind.attributes)
+    arrays["status"][...] = Status.DONE
+    data = {name: (grid.dimensions, arrays[name], kind.attributes) for name, kind in CONTENTS.items()}
     coordinates = {
         name: ((along,), values, coordinate_attributes(sweep, name))
         for name, (along, values) in grid.coordinates().items()

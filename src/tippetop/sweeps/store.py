@@ -25,6 +25,7 @@ from tippetop.interrupts import deferred
 from tippetop.sweeps.definition import Sweep, Task
 from tippetop.sweeps.disk import bring_to_disk, clear_away, identity, locked
 from tippetop.sweeps.layout import (
+    CONTENTS,
     DIGEST,
     Status,
     kept_sweep,
@@ -244,7 +245,7 @@ def read_sweep(path: Path | str, names: Collection[str] | None = None) -> xr.Dat
     path = Path(path)
     with in_words(path, "read"):
         sweep = Sweep(**json.loads(read_metadata(path)["attributes"]["sweep"]))
-    return Store(path, sweep).load([*SWEPT, "status"] if names is None else names)
+    return Store(path, sweep).load(list(CONTENTS) if names is None else names)
 
 
 def need_zarr() -> None:
