@@ -19,10 +19,6 @@ export function earliest(count, holds) {
 
 /** Put coefficients in powers of a polynomial with some values at Chebyshev's points in `out` from `at` on. */
 function toPowers(values, { transform, powers }, out, at) {
-  if (values.every((value) => value === values[0])) {
-    out[at] = values[0];
-    return;
-  }
   for (let k = 0; k < values.length; k += 1) {
     const terms = powers[k], row = transform[k];
     let weight = 0;

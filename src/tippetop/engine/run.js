@@ -1,10 +1,9 @@
 // One launch: followed from mode to mode, its numbers found on the way, and sampled when asked.
 import * as m from "./mechanics.js";
-import { compiled, reader } from "./compile.js";
+import { reader } from "./compile.js";
 import { DenseSolution, earliest } from "./dense.js";
 import { make_integrator } from "./integrate.js";
 import { InvalidInput } from "./part.js";
-import { cached } from "./runtime.js";
 import { CATALOGUE, GAUSS } from "./tables.js";
 
 const LEAST_TOLERANCE = 2.3e-14, LOOKS = 16;
@@ -244,14 +243,10 @@ function smooth(rows) {
 }
 
 const ELEMENTARY = { sin: (x) => x.graph.node("sin", [x]), cos: (x) => x.graph.node("cos", [x]) };
-const flying = cached((kind) =>
-  compiled((y, p) => m.fly(m.State.unpack(p), y[0], kind.top(p.slice(10)), ELEMENTARY).pack(), 1, 10 + kind.numbers));
+const flown = (mode, y, elapsed) => m.fly(mode.state(y), elapsed, mode.top, ELEMENTARY).pack();
 
 /** A flight's numbers as a function of its time, compiled. */
 m.Flight.prototype._numbers = function numbers(state) {
-  const code = flying(this.top.kind), given = [...state.pack(), ...this.top.numbers], out = new Float64Array(10);
-  return (elapsed) => {
-    code([elapsed], given, out);
-    return out;
-  };
+  const code = reader(this, 10)(flown, 10), given = state.pack();
+  return (elapsed) => code(given, elapsed);
 };
