@@ -6,7 +6,7 @@ import numpy as np
 
 from tippetop.contact.closing import closing_motion
 from tippetop.contact.double import SlidingOnTwo
-from tippetop.contact.double_sticking import SlipBeginningOnTwo, StickingAndSlidingBack, StickingOnTwo
+from tippetop.contact.double_sticking import StickingAndSlidingBack, StickingOnTwo
 from tippetop.contact.sliding import sliding_motion
 from tippetop.contact.sticking import Sticking, StickingWithoutRolling
 from tippetop.integrators.base import Motion
@@ -68,7 +68,6 @@ def sliding_motions(top):
         modes = {"": SlidingOnTwo}
         if isinstance(law, CoulombLaw):
             modes |= {
-                " beginning": SlipBeginningOnTwo,
                 " turning": StickingAndSlidingBack,
                 " sticking": StickingOnTwo,
             }

@@ -21,11 +21,7 @@ from test_sticking_on_two import (
     lying,
     times,
 )
-from tippetop.contact.choice import rules_of
-from tippetop.contact.double import SlidingOnTwo
-from tippetop.contact.double_sticking import SlipBeginningOnTwo
 from tippetop.mechanics.contensou_hertz import HertzLaw
-from tippetop.mechanics.top import natural, natural_state, natural_units
 
 RADIUS = 0.004
 """A patch nearly as large as the dumbbell's balls: drilling counts."""
@@ -205,23 +201,6 @@ def test_patches_slip_when_rolling_has_become_too_slow_for_what_holds_them() -> 
     run = followed_by_steps(problem, expected + 1e-4)
     assert times(run, "slip") == pytest.approx([expected] * 2, rel=1e-7)
     assert float(run["energy_error"]) < 1e-11
-
-
-def test_slip_that_begins_goes_on_where_hertz_branches_meet() -> None:
-    body = with_patch(lying(SLIPS_AGAIN), "hertz").replace(
-        {"launch.slip": (0.1, 0.1), "launch.velocity": None}
-    )
-    units = natural_units(body.top)
-    rules = rules_of(body.contact, natural(body.top), units)
-    slides = rules.launch(natural_state(body.start(), units))
-    assert isinstance(slides.then, SlidingOnTwo)
-    begins = SlipBeginningOnTwo(slides.then.top, slides.then.rules, slides.then.other)
-    for number, changed in enumerate(("top", "other")):
-        on = begins.follow(f"branching {number}", 0.0, slides.state).then
-        assert isinstance(on, SlipBeginningOnTwo)
-        assert on.state(on.numbers(slides.state)).velocity == pytest.approx(slides.state.velocity, abs=1e-15)
-        here = getattr(on, changed).friction.drills, getattr(begins, changed).friction.drills
-        assert sum(here) == 1.0
 
 
 def test_what_holds_hertz_s_patch_without_drilling_is_an_expression():

@@ -32,7 +32,7 @@ from tippetop.mechanics.rolling import (
     without_drilling,
 )
 from tippetop.mechanics.series import horner
-from tippetop.mechanics.slip_onset import Growing, Onset, onset
+from tippetop.mechanics.slip_onset import Growing, Onset, onset, rates_of
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.stick_slip import (
     inner,
@@ -225,9 +225,14 @@ def at_the_limit(family, shape=SPHERE):
             low, high = (low, middle) if held else (middle, high)
         top = family(high, shape)
         direction, _ = direction_of_slip(axis, momentum, top)
-        if onset(Growing((axis, momentum, direction), top), 2, 1).speed[0] > 0.0:
+        if onset(growing(axis, momentum, direction, top), 2, 1).speed[0] > 0.0:
             return top, axis, momentum
     raise AssertionError("it comes to its limit, and does not leave it")
+
+
+def growing(axis, momentum, direction, top):
+    """The series of slip that begins in a direction."""
+    return Growing((*axis, *momentum), direction, rates_of(top, Vanishing(slip=True)))
 
 
 def starting(family, power, shape=SPHERE):
@@ -261,7 +266,7 @@ def test_the_beginning_of_slip_solves_the_equations_to_its_order(family, power, 
     direction, rate = direction_of_slip(axis, momentum, top)
     assert (rate < 1e-12) is (power == 2)
     order = 6
-    begin = onset(Growing((axis, momentum, direction), top), power, order)
+    begin = onset(growing(axis, momentum, direction, top), power, order)
     assert begin.speed[0] > 0.0
     first, second, third = (tuple(row[k] for row in begin.direction) for k in range(3))
     assert inner(first, second) == pytest.approx(0.0, abs=1e-9 * size(second))
@@ -318,7 +323,7 @@ def test_a_driven_motion_gives_the_same_beginning(family, power):
     degree, integrator = order + power - 1, make_integrator()
     driven = growth(start, top, Vanishing(slip=True), (), degree, integrator)
     assert not isinstance(driven, Growing)
-    ends = [onset(known, power, order) for known in (driven, Growing(start, top))]
+    ends = [onset(known, power, order) for known in (driven, growing(*start, top))]
     time = ends[1].valid_until(1e-6)
     for one, other in zip(ends[0].rows, ends[1].rows, strict=True):
         terms = [[term * time**k for k, term in enumerate(row)] for row in (one, other)]
@@ -354,7 +359,7 @@ def test_slip_starts_against_the_force_that_held_it():
     direction, _ = direction_of_slip(axis, momentum, top)
     force = contact_motion(ContactPoint.of(axis, momentum, top), None)[0].force[:2]
     assert direction == pytest.approx(scaled(-1.0 / size(force), force), abs=1e-12)
-    begin = onset(Growing((axis, momentum, direction), top), 2, 8)
+    begin = onset(growing(axis, momentum, direction, top), 2, 8)
     # s = s_0 t^2: the doubling of time quadruples the slip
     short, long = (size(grown(begin, t)[2]) for t in (1e-6, 2e-6))
     assert long / short == pytest.approx(4.0, rel=1e-5)
@@ -366,7 +371,7 @@ def test_where_the_series_is_left_does_not_matter():
     direction, _ = direction_of_slip(axis, momentum, top)
     ends = []
     for order, error in ((12, 1e-13), (12, 1e-15), (9, 1e-13)):
-        begin = onset(Growing((axis, momentum, direction), top), 2, order)
+        begin = onset(growing(axis, momentum, direction, top), 2, order)
         time = begin.valid_until(error)
         n, L, zeta = grown(begin, time)
 

@@ -1,14 +1,15 @@
 """Two surfaces touch the table at once, and one does not slip, or both; and how slip begins there."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
 from tippetop.contact.closed import GuardValue, split
-from tippetop.contact.double import OPENING, OnTwo, SlidingOnTwo
-from tippetop.contact.mode import Outcome, Segment, Transition
+from tippetop.contact.double import OPENING, OnTwo, SlidingOnTwo, on_two
+from tippetop.contact.loosening import ACCURACY, ORDER, nothing, piece
+from tippetop.contact.mode import Mode, Segment, Transition, failed
+from tippetop.contact.passing import LOOKS
 from tippetop.contact.surfaces import number_of
-from tippetop.integrators import make_integrator
 from tippetop.integrators.base import Integrator
 from tippetop.mechanics.contact_pair import (
     ContactPair,
@@ -18,21 +19,15 @@ from tippetop.mechanics.contact_pair import (
     slip_apart,
     slips_of,
 )
-from tippetop.mechanics.motion import along_table, on_table
+from tippetop.mechanics.motion import axis_rate, on_table
 from tippetop.mechanics.rolling import Slip, slip_length, velocity_without_slip, without_drilling
+from tippetop.mechanics.slip_onset import Growing, onset
 from tippetop.mechanics.state import SlidingState, State
-from tippetop.mechanics.stick_slip import scaled, slip_of, velocity_of
+from tippetop.mechanics.stick_slip import scaled, velocity_of
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Row, Scalar
 
 SLIP, ENDING = "slip ", "ending"
-
-BEGINNING = 0.02
-"""How long slip that begins is followed by the implicit method, in natural units of time: afterwards its
-direction is damped no faster than the body moves."""
-
-TOLERANCE = 1e-13
-"""Relative error per step of that method."""
 
 
 @dataclass(frozen=True)
@@ -167,20 +162,20 @@ class StickingOnTwo(HeldOnTwo):
 
 @dataclass(frozen=True)
 class SlipBeginningOnTwo(SlidingOnTwo):
-    """The first moments of slip at a contact, or at both: slip itself is what moves, and loses no digits."""
+    """The first moments of slip at a contact, or at both, as power series in time.
+
+    Slip itself is told, and loses no digits.
+    """
 
     begin: tuple[float, ...] = ()
     """Its numbers at the start: axis, angular momentum, and xi (see `tippetop.mechanics.contact_pair`)."""
+    direction: Slip = ()
+    """Direction of what begins: of the slip of the first contact, or of xi."""
+    growing: int = 1
+    """With which power of time it does; see `tippetop.mechanics.slip_onset`."""
 
-    size: ClassVar[int] = 9
-
-    def without_tops(self) -> Self:
-        """Without the numbers at the start, too."""
-        return replace(super().without_tops(), begin=())
-
-    def numbers(self, state: State) -> tuple[Scalar, ...]:
-        """Those it begins with."""
-        return self.begin
+    free: ClassVar[int] = 6
+    """How many numbers come before what begins."""
 
     def state(self, y: Row) -> State:
         """The state, with its height."""
@@ -189,36 +184,40 @@ class SlipBeginningOnTwo(SlidingOnTwo):
         velocity = velocity_of(axis, momentum, (y[6], y[7]), self.top)
         return on_table(SlidingState(axis, momentum, velocity), self.top)
 
-    def follow(self, guard: str, time: float, state: State) -> Transition:
-        """As where it has begun; on another branch of the law it goes on as it is."""
-        found = super().follow(guard, time, state)
-        if not isinstance(found.then, SlipBeginningOnTwo):
-            return found
-        slip = slip_of(*along_table(state), self.top)
-        apart = slip_apart(ContactPair.of(state.axis, state.momentum, self.tops))
-        begin = (*state.axis, *state.momentum, slip[0], slip[1], apart)
-        return replace(found, then=replace(found.then, begin=begin))
-
     def found(self, y: Row) -> tuple[PairMotion, tuple[Slip, Slip]]:
         """What the table does, and how both contacts slip."""
         pair = ContactPair.of(*split(y), self.tops)
         slips = slips_of(pair, (y[6], y[7], y[8]))
         return pair_motion(pair, slips, self.rolls), slips
 
-    def slipping(self, now: PairMotion) -> Slip:
-        """Rate of xi."""
-        return now.rate
+    def growth(self, y: Row, way: Slip) -> tuple[Row, Row]:
+        """How its numbers, and what begins, change where that goes this way."""
+        axis, momentum = split(y)
+        pair = ContactPair.of(axis, momentum, self.tops)
+        slips = slips_of(pair, way) if len(way) == 3 else (way, slips_of(pair, (y[6], y[7], y[8]))[1])
+        now = pair_motion(pair, slips, self.rolls)
+        return (*axis_rate(axis, momentum, self.top), *now.moment, *now.rate), now.rate[: len(way)]
 
     def endings(self) -> list[GuardValue]:
         """It has just begun."""
         return []
 
+    def goes_on(self, at: Callable[[int], Row], pressed: Sequence[int]) -> bool:
+        """Whether no guard has fallen at any look."""
+        looks = [at(look) for look in range(1, LOOKS + 1)]
+        return all(value(self, y) > 0.0 for _, value in self.guard_values() for y in looks)
+
+    def onwards(self, last: State) -> Mode:
+        """Sliding on two."""
+        return on_two(last, self.rules, self.other, self.rolls)
+
     def segments(self, time: float, state: State, end: float, integrator: Integrator) -> Iterator[Segment]:
-        """Follow it by an implicit method: its direction is damped the faster the slower it is."""
-        reach, method = min(time + BEGINNING, end), make_integrator("collocation", TOLERANCE)
-        for segment in super().segments(time, state, reach, method):
-            found = segment.transition
-            if found is not None and found.then is Outcome.COMPLETED and reach < end:
-                then = SlidingOnTwo(self.top, self.rules, self.other, self.rolls)
-                found = Transition((), then, found.state)
-            yield replace(segment, transition=found, method=method)
+        """Evaluate the series."""
+        try:
+            begun = onset(Growing(self.begin, self.direction, self.growth), self.growing, ORDER)
+            rows = [*begun.axis, *begun.momentum, *begun.velocity]
+            duration = min(begun.valid_until(ACCURACY), end - time)
+            yield piece(self, rows, self.direction, (time, duration, end))
+        except ArithmeticError as error:
+            unknown = failed("How slip begins on two surfaces", error, state)
+            yield nothing(self.onwards(state), time, unknown)

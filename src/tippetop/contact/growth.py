@@ -9,7 +9,7 @@ from tippetop.contact.closed import split
 from tippetop.integrators.base import NOT_FINITE, Expansion, Integrator, Motion
 from tippetop.mechanics.ending import Closing, Vanishing, rates_in_time
 from tippetop.mechanics.rolling import Slip
-from tippetop.mechanics.slip_onset import Growing, Growth
+from tippetop.mechanics.slip_onset import Growing, Growth, rates_of
 from tippetop.mechanics.stick_slip import scaled
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.unsolved import Unsolved
@@ -87,7 +87,7 @@ def growth(
     expansion: Callable[[Motion, Sequence[float], int, int], Expansion] | None
     expansion = getattr(integrator, "expansion", None)
     if expansion is None:
-        return Growing(start, top, ending, velocity)
+        return Growing((*start[0], *start[1], *velocity), start[2], rates_of(top, ending))
     motion = driven_motion(top.kind, ending, len(start[2]), degree)
     count = motion.size - len(start[2]) * (degree + 1)
     degrees = [FEW, degree + 1] if degree >= FEW else [degree + 1]

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 from tippetop.contact.growth import growth
 from tippetop.contact.mode import Mode, Outcome, Segment, Transition, failed
@@ -63,13 +64,13 @@ class Loosening(Passing):
         except ArithmeticError as error:
             what = "slip" if self.ending.slip else "rolling"
             unknown = failed(f"The direction in which {what} begins", error, state)
-            yield _nothing(self.told, time, unknown)
+            yield nothing(self.told, time, unknown)
             return
         duration = min(begin.valid_until(ACCURACY), longest, end - time)
         if duration <= 1e-299:
-            yield _nothing(self.told, time, Transition((), Outcome.FAILED, state, UNSEEN))
+            yield nothing(self.told, time, Transition((), Outcome.FAILED, state, UNSEEN))
             return
-        yield passing.piece(begin.rows, direction, time, duration, end)
+        yield piece(passing, begin.rows, direction, (time, duration, end))
 
     def slips(self, time: float, state: State, direction: Slip, end: float) -> Segment | None:
         """Slip to its end, or as far as it follows what drives it; None if it does not from the beginning."""
@@ -109,28 +110,9 @@ class Loosening(Passing):
         longest = PART * size(beside) / size(other.rate(found.acceleration, top)) if beside else math.inf
         return replace(self, top=top), way, longest
 
-    def piece(
-        self, rows: Sequence[list[Scalar]], direction: Slip, time: float, duration: float, end: float
-    ) -> Segment:
-        """The segment in which the numbers are polynomials in the time since its start."""
-
-        def at(look: int) -> list[Scalar]:
-            return [horner(row, duration * look / LOOKS) for row in rows]
-
-        while duration > SETTLED and not self.goes_on(at, range(1 + PRESSED, LOOKS + 1, PRESSED)):
-            duration *= 0.5
-        # What is zero has no direction, and friction none to be against.
-        first = len(rows) - len(direction)
-        apart = [[TINY * e, *row[1:]] for e, row in zip(direction, rows[first:], strict=True)]
-        reach = min(time + duration, end)
-        solution = DenseSolution.in_time([0.0, duration], [[*rows[:first], *apart]]).moved(time, reach)
-        last = self.state([horner(row, duration) for row in rows])
-        try:
-            mode = Outcome.COMPLETED if reach >= end else self.rules.going_on(last, slips=not self.stuck)
-            then = Transition((), mode, last)
-        except ArithmeticError:
-            then = Transition((), Outcome.FAILED, last, UNSEEN)
-        return Segment(self, solution, last, then, steps=1)
+    def onwards(self, last: State) -> Mode:
+        """The mode that takes over."""
+        return self.rules.going_on(last, slips=not self.stuck)
 
     @property
     def stuck(self) -> bool:
@@ -151,16 +133,55 @@ class BothLoosening(Loosening):
             found = beginning(point, None, None, (True, True))
         except ArithmeticError as error:
             unknown = failed("The direction in which slip and rolling begin", error, state)
-            yield _nothing(self.told, time, unknown)
+            yield nothing(self.told, time, unknown)
             return
         assert found.slip is not None
         passing, pace = replace(self, top=on_branch(self.top, found.slip)), scaled(found.rates[0], found.slip)
         still, growing = (*state.axis, *state.momentum), (0.0, 0.0, 0.0, *point.moment(found.wrench))
         rows = [[number, rate] for number, rate in zip(still, growing, strict=True)]
         rows += [[0.0, rate] for rate in pace]
-        yield passing.piece(rows, found.slip, time, min(INSTANT, end - time), end)
+        yield piece(passing, rows, found.slip, (time, min(INSTANT, end - time), end))
 
 
-def _nothing(mode: Mode, time: float, ending: Transition) -> Segment:
+def piece(
+    mode: Any, rows: Sequence[list[Scalar]], direction: Slip, times: tuple[float, float, float]
+) -> Segment:
+    """The segment in which the numbers of a mode are polynomials in the time since its start.
+
+    Parameters
+    ----------
+    mode
+        What begins.
+    rows
+        The coefficients.
+    direction
+        That of what begins, which is zero, from the number on at which a mode has it.
+    times
+        When it begins, how long the polynomials are good, and when the run ends.
+    """
+    time, duration, end = times
+
+    def at(look: int) -> list[Scalar]:
+        return [horner(row, duration * look / LOOKS) for row in rows]
+
+    while duration > SETTLED and not mode.goes_on(at, range(1 + PRESSED, LOOKS + 1, PRESSED)):
+        duration *= 0.5
+    # What is zero has no direction, and friction none to be against.
+    first = mode.free
+    past = first + len(direction)
+    apart = [[TINY * e, *row[1:]] for e, row in zip(direction, rows[first:past], strict=True)]
+    reach = min(time + duration, end)
+    solution = DenseSolution.in_time([0.0, duration], [[*rows[:first], *apart, *rows[past:]]]).moved(
+        time, reach
+    )
+    last = mode.state([horner(row, duration) for row in rows])
+    try:
+        then = Transition((), Outcome.COMPLETED if reach >= end else mode.onwards(last), last)
+    except ArithmeticError:
+        then = Transition((), Outcome.FAILED, last, UNSEEN)
+    return Segment(mode, solution, last, then, steps=1)
+
+
+def nothing(mode: Mode, time: float, ending: Transition) -> Segment:
     """No motion at all."""
     return Segment(mode, DenseSolution.nothing(time, 8), ending.state, ending)

@@ -120,9 +120,13 @@ class Passing(Mode):
             return False
         return self.rules.pulls or all(self.reaction(at(look)).force[2] > 0.0 for look in pressed)
 
+    @property
+    def free(self) -> int:
+        """How many numbers come before what ends or begins."""
+        return 8 if self.ending.moves else 6
+
     def _parts(self, y: Row) -> tuple[Vector, Vector, Slip, Slip]:
-        free = 8 if self.ending.moves else 6
-        return *split(y), tuple(y[6:free]), tuple(y[free:])
+        return *split(y), tuple(y[6 : self.free]), tuple(y[self.free :])
 
 
 @dataclass(frozen=True)

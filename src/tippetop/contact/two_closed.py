@@ -46,7 +46,7 @@ from tippetop.mechanics.rolling import (
     spun_up,
 )
 from tippetop.mechanics.state import State
-from tippetop.mechanics.stick_slip import inner, is_rolling, least_slip, scaled, size, slip_of
+from tippetop.mechanics.stick_slip import inner, is_rolling, least_slip, size, slip_of
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import scale
 
@@ -183,23 +183,22 @@ class TwoClosed:
         pair = ContactPair.of(state.axis, state.momentum, self.tops)
         return replace(self, state=state, rolls=rolls, pair=pair)
 
-    def letting_go(self, found: Resolution) -> Transition:
-        """The mode in which slip begins."""
+    def letting_go(self, found: Resolution, growing: int = 1) -> Transition:
+        """The mode in which slip begins, with some power of time."""
         assert found.begins is not None
-        least = 2.0 * least_slip(self.state.momentum, self.state.velocity[:2])
         if any(found.sticks):
+            least = 2.0 * least_slip(self.state.momentum, self.state.velocity[:2])
             tops = self.tops if found.sticks[0] else self.tops[::-1]
             sign = found.begins[2] if found.sticks[0] else -found.begins[2]
             change = (0.0, 0.0, found.begins[2] * least / apart(self.pair))
             momentum = spun_up(self.state.axis, self.state.momentum, change, self.tops[0])
             turning = self._turning(tops, sign)
             return Transition((), turning, turning.state((*self.state.axis, *momentum)))
-        v_x, v_y, zeta = scaled(least / size(found.begins), found.begins)
-        zeta += self.xi[2]
-        begin = (*self.state.axis, *self.state.momentum, v_x, v_y, zeta)
-        slips = slips_of(self.pair, (v_x, v_y, zeta))
+        begin = (*self.state.axis, *self.state.momentum, 0.0, 0.0, self.xi[2])
+        slips = slips_of(self.pair, found.begins)
         one, other = (on_branch(top, slip) for top, slip in zip(self.tops, slips, strict=True))
-        mode = SlipBeginningOnTwo(one, self.rules, other, self.rolls, begin)
+        way = found.begins if all(self.ended) else found.begins[:2]
+        mode = SlipBeginningOnTwo(one, self.rules, other, self.rolls, begin, way, growing)
         return Transition((), mode, mode.state(begin))
 
 
@@ -282,7 +281,7 @@ def slipping(
         return failed("The direction in which slip, or rolling, begins on two surfaces", error, state)
     stuck = (number_of(tops[0]),) if alone else (number_of(tops[0]), number_of(tops[1]))
     marks = _marks((time, time), here, found, Before(stuck, bool(rolls)))
-    return replace(here.letting_go(found), events=marks)
+    return replace(here.letting_go(found, 2), events=marks)
 
 
 def _marks(

@@ -38,7 +38,6 @@ GIVEN = {
     "tippetop.integrators.iteration": "./compile.js",
     "tippetop.integrators.rates": "",
     "tippetop.integrators.evaluation": "",
-    "tippetop.integrators": "./integrate.js",
     "tippetop.validation": "./part.js",
     "tippetop.errors": "./part.js",
     "tippetop.fields": "./part.js",

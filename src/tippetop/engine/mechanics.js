@@ -2,7 +2,6 @@
 import * as py from "./runtime.js";
 import { DenseSolution, as_array } from "./dense.js";
 import { change_over, copied, iterated, pieces_of, put_from, put_rows, room } from "./compile.js";
-import { make_integrator } from "./integrate.js";
 import { InvalidInput, MISSING, Part, numbers_of } from "./part.js";
 import { NEAR_FINAL } from "./tables.js";
 
@@ -2945,28 +2944,36 @@ function onset(known, power, order) {
   );
 }
 
+/** How y and xi change, for the words of `ending`. */
+function rates_of(top, ending) {
+  var rates = (y, direction) => {
+    var state = new Closing(
+      [py.item(y, 0), py.item(y, 1), py.item(y, 2)],
+      [py.item(y, 3), py.item(y, 4), py.item(y, 5)],
+      py.tuple(y.slice(6)),
+      direction,
+      0.0,
+      0.0
+    );
+    var found = rates_in_time(state, ending, top);
+    return [[...found.axis, ...found.momentum, ...found.velocity], found.xi];
+  };
+  return rates;
+}
+
 /** Series that are made in plain operators: the state follows from the directions known so far. */
 class Growing extends py.Thing {
-  constructor(start, top, ending = new Vanishing(true), velocity = []) {
+  constructor(begin, first, rates) {
     super();
-    [this.first, this._made] = [py.item(start, 2), py.list()];
-    this._direction = py.tuple([...this.first].map((_) => new Revisable(unknown, this._made)));
-    this.turn(0, this.first);
-    var begin = [...py.item(start, 0), ...py.item(start, 1), ...velocity];
-    var rates = (y) => {
-      var state = new Closing(
-        [py.item(y, 0), py.item(y, 1), py.item(y, 2)],
-        [py.item(y, 3), py.item(y, 4), py.item(y, 5)],
-        py.tuple(y.slice(6)),
-        this._direction,
-        0.0,
-        0.0
-      );
-      var found = rates_in_time(state, ending, top);
-      this._rates = found.xi;
-      return [...found.axis, ...found.momentum, ...found.velocity];
+    [this.first, this._made] = [first, py.list()];
+    this._direction = py.tuple([...first].map((_) => new Revisable(unknown, this._made)));
+    this.turn(0, first);
+    var changing = (y) => {
+      var [found, grows] = rates(y, this._direction);
+      this._rates = grows;
+      return found;
     };
-    this.state = solved([...begin].map((_) => new Revisable(unknown, this._made)), begin, rates);
+    this.state = solved([...begin].map((_) => new Revisable(unknown, this._made)), begin, changing);
   }
   /** Set the j-th coefficient of the direction, and forget what was made of another. */
   turn(j, direction) {
@@ -3038,7 +3045,7 @@ class Driven extends py.Thing {
 function growth(start, top, ending, velocity, degree, integrator) {
   var expansion = py.getattr(integrator, "expansion", null);
   if (expansion === null) {
-    return new Growing(start, top, ending, velocity);
+    return new Growing([...start[0], ...start[1], ...velocity], start[2], rates_of(top, ending));
   }
   var motion = driven_motion(top.kind, ending, py.len(start[2]), degree);
   var count = py.sub(motion.size, py.mul(py.len(start[2]), py.add(degree, 1)));
@@ -3515,9 +3522,12 @@ class Passing extends Mode {
       () => py.all([...pressed].map((look) => this.reaction(at(look)).force[2] > 0.0))
     );
   }
+  /** How many numbers come before what ends or begins. */
+  get free() {
+    return py.truth(this.ending.moves) ? 8 : 6;
+  }
   _parts(y) {
-    var free = py.truth(this.ending.moves) ? 8 : 6;
-    return [...split(y), py.tuple(y.slice(6, free)), py.tuple(y.slice(free))];
+    return [...split(y), py.tuple(y.slice(6, this.free)), py.tuple(y.slice(this.free))];
   }
 }
 py.fields(Passing, ["top", "rules", "ending"]);
@@ -4540,15 +4550,15 @@ class Loosening extends Passing {
       if (!(error instanceof py.ArithmeticError)) throw error;
       var what = py.truth(this.ending.slip) ? "slip" : "rolling";
       var unknown = failed(`The direction in which ${py.str(what)} begins`, error, state);
-      yield _nothing(this.told, time, unknown);
+      yield nothing(this.told, time, unknown);
       return null;
     }
     var duration = py.min(begin.valid_until(ACCURACY_of_loosening), longest, py.sub(end, time));
     if (duration <= 1e-299) {
-      yield _nothing(this.told, time, new Transition([], Outcome.FAILED, state, UNSEEN_of_loosening));
+      yield nothing(this.told, time, new Transition([], Outcome.FAILED, state, UNSEEN_of_loosening));
       return null;
     }
-    yield passing.piece(begin.rows, direction, time, duration, end);
+    yield piece(passing, begin.rows, direction, [time, duration, end]);
   }
   /** Slip to its end, or as far as it follows what drives it; None if it does not from the beginning. */
   slips(time, state, direction, end) {
@@ -4598,39 +4608,9 @@ class Loosening extends Passing {
     ) : py.math.inf;
     return [py.replace(this, { top: top }), way, longest];
   }
-  /** The segment in which the numbers are polynomials in the time since its start. */
-  piece(rows, direction, time, duration, end) {
-    var at = (look) => {
-      return [...rows].map((row) => horner(row, py.div(py.mul(duration, look), LOOKS_of_passing)));
-    };
-    while (
-      duration > SETTLED_of_passing && !py.truth(
-        this.goes_on(
-          at,
-          py.range(py.add(1, PRESSED_of_loosening), py.add(LOOKS_of_passing, 1), PRESSED_of_loosening)
-        )
-      )
-    ) {
-      duration = py.mul(duration, 0.5);
-    }
-    var first = py.sub(py.len(rows), py.len(direction));
-    var apart = py.zip(direction, rows.slice(first)).map(
-      ([e, row]) => [py.mul(TINY_of_loosening, e), ...row.slice(1)]
-    );
-    var reach = py.min(py.add(time, duration), end);
-    var solution = DenseSolution.in_time(
-      [0.0, duration],
-      [[...rows.slice(0, first), ...apart]]
-    ).moved(time, reach);
-    var last = this.state([...rows].map((row) => horner(row, duration)));
-    try {
-      var mode = reach >= end ? Outcome.COMPLETED : this.rules.going_on(last, !py.truth(this.stuck));
-      var then = new Transition([], mode, last);
-    } catch (error) {
-      if (!(error instanceof py.ArithmeticError)) throw error;
-      then = new Transition([], Outcome.FAILED, last, UNSEEN_of_loosening);
-    }
-    return new Segment(this, solution, last, then, 1);
+  /** The mode that takes over. */
+  onwards(last) {
+    return this.rules.going_on(last, !py.truth(this.stuck));
   }
   /** Whether the contact sticks meanwhile. */
   get stuck() {
@@ -4652,7 +4632,7 @@ class BothLoosening extends Loosening {
     } catch (error) {
       if (!(error instanceof py.ArithmeticError)) throw error;
       var unknown = failed("The direction in which slip and rolling begin", error, state);
-      yield _nothing(this.told, time, unknown);
+      yield nothing(this.told, time, unknown);
       return null;
     }
     py.assert(found.slip !== null);
@@ -4662,13 +4642,49 @@ class BothLoosening extends Loosening {
     var growing = [0.0, 0.0, 0.0, ...point.moment(found.wrench)];
     var rows = py.zip(still, growing);
     rows = py.add(rows, [...pace].map((rate) => [0.0, rate]));
-    yield passing.piece(rows, found.slip, time, py.min(INSTANT, py.sub(end, time)), end);
+    yield piece(passing, rows, found.slip, [time, py.min(INSTANT, py.sub(end, time)), end]);
   }
 }
 py.fields(BothLoosening, ["top", "rules", "ending", "power", "wrench"]);
 
+/** The segment in which the numbers of a mode are polynomials in the time since its start. */
+function piece(mode, rows, direction, times) {
+  var [time, duration, end] = times;
+  var at = (look) => {
+    return [...rows].map((row) => horner(row, py.div(py.mul(duration, look), LOOKS_of_passing)));
+  };
+  while (
+    duration > SETTLED_of_passing && !py.truth(
+      mode.goes_on(
+        at,
+        py.range(py.add(1, PRESSED_of_loosening), py.add(LOOKS_of_passing, 1), PRESSED_of_loosening)
+      )
+    )
+  ) {
+    duration = py.mul(duration, 0.5);
+  }
+  var first = mode.free;
+  var past = py.add(first, py.len(direction));
+  var apart = py.zip(direction, rows.slice(first, past)).map(
+    ([e, row]) => [py.mul(TINY_of_loosening, e), ...row.slice(1)]
+  );
+  var reach = py.min(py.add(time, duration), end);
+  var solution = DenseSolution.in_time(
+    [0.0, duration],
+    [[...rows.slice(0, first), ...apart, ...rows.slice(past)]]
+  ).moved(time, reach);
+  var last = mode.state([...rows].map((row) => horner(row, duration)));
+  try {
+    var then = new Transition([], reach >= end ? Outcome.COMPLETED : mode.onwards(last), last);
+  } catch (error) {
+    if (!(error instanceof py.ArithmeticError)) throw error;
+    then = new Transition([], Outcome.FAILED, last, UNSEEN_of_loosening);
+  }
+  return new Segment(mode, solution, last, then, 1);
+}
+
 /** No motion at all. */
-function _nothing(mode, time, ending) {
+function nothing(mode, time, ending) {
   return new Segment(mode, DenseSolution.nothing(time, 8), ending.state, ending);
 }
 
@@ -6508,8 +6524,6 @@ function _left(...slips) {
 
 // tippetop.contact.double_sticking
 const [SLIP_of_double_sticking, ENDING_of_double_sticking] = ["slip ", "ending"];
-const BEGINNING = 0.02;
-const TOLERANCE_of_double_sticking = 1e-13;
 
 /** The first contact sticks, if not both: axis and angular momentum say how the body rolls on it. */
 class HeldOnTwo extends OnTwo {
@@ -6662,21 +6676,15 @@ class StickingOnTwo extends HeldOnTwo {
 }
 py.fields(StickingOnTwo, ["top", "rules", "other", "rolls", "least"]);
 
-/** The first moments of slip at a contact, or at both: slip itself is what moves, and loses no digits. */
+/** The first moments of slip at a contact, or at both, as power series in time. */
 class SlipBeginningOnTwo extends SlidingOnTwo {
-  constructor(top, rules, other, rolls = 0.0, begin = []) {
+  constructor(top, rules, other, rolls = 0.0, begin = [], direction = [], growing = 1) {
     super(top, rules, other, rolls);
     this.begin = begin;
+    this.direction = direction;
+    this.growing = growing;
   }
-  get size() { return 9; }
-  /** Without the numbers at the start, too. */
-  without_tops() {
-    return py.replace(super.without_tops(), { begin: [] });
-  }
-  /** Those it begins with. */
-  numbers(state) {
-    return this.begin;
-  }
+  get free() { return 6; }
   /** The state, with its height. */
   state(y) {
     var [axis, momentum] = split(y);
@@ -6684,46 +6692,57 @@ class SlipBeginningOnTwo extends SlidingOnTwo {
     var velocity = velocity_of(axis, momentum, [y[6], y[7]], this.top);
     return on_table(new SlidingState(axis, momentum, velocity), this.top);
   }
-  /** As where it has begun; on another branch of the law it goes on as it is. */
-  follow(guard, time, state) {
-    var found = super.follow(guard, time, state);
-    if (!py.isinstance(found.then, SlipBeginningOnTwo)) {
-      return found;
-    }
-    var slip = slip_of(...along_table(state), this.top);
-    var apart = slip_apart(ContactPair.of(state.axis, state.momentum, this.tops));
-    var begin = [...state.axis, ...state.momentum, slip[0], slip[1], apart];
-    return py.replace(found, { then: py.replace(found.then, { begin: begin }) });
-  }
   /** What the table does, and how both contacts slip. */
   found(y) {
     var pair = ContactPair.of(...split(y), this.tops);
     var slips = slips_of(pair, [y[6], y[7], y[8]]);
     return [pair_motion(pair, slips, this.rolls), slips];
   }
-  /** Rate of xi. */
-  slipping(now) {
-    return now.rate;
+  /** How its numbers, and what begins, change where that goes this way. */
+  growth(y, way) {
+    var [axis, momentum] = split(y);
+    var pair = ContactPair.of(axis, momentum, this.tops);
+    var slips = py.len(way) === 3 ? slips_of(pair, way) : [way, slips_of(pair, [y[6], y[7], y[8]])[1]];
+    var now = pair_motion(pair, slips, this.rolls);
+    return [
+      [...axis_rate(axis, momentum, this.top), ...now.moment, ...now.rate],
+      py.slice(now.rate, null, py.len(way), null)
+    ];
   }
   /** It has just begun. */
   endings() {
     return [];
   }
-  /** Follow it by an implicit method: its direction is damped the faster the slower it is. */
+  /** Whether no guard has fallen at any look. */
+  goes_on(at, pressed) {
+    var looks = py.range(1, py.add(LOOKS_of_passing, 1)).map((look) => at(look));
+    return py.all(
+      [...this.guard_values()].flatMap(([, value]) => [...looks].map((y) => value(this, y) > 0.0))
+    );
+  }
+  /** Sliding on two. */
+  onwards(last) {
+    return on_two(last, this.rules, this.other, this.rolls);
+  }
+  /** Evaluate the series. */
   *segments(time, state, end, integrator) {
-    var reach = py.min(py.add(time, BEGINNING), end);
-    var method = make_integrator("collocation", TOLERANCE_of_double_sticking);
-    for (var segment of super.segments(time, state, reach, method)) {
-      var found = segment.transition;
-      if (found !== null && found.then === Outcome.COMPLETED && reach < end) {
-        var then = new SlidingOnTwo(this.top, this.rules, this.other, this.rolls);
-        found = new Transition([], then, found.state);
-      }
-      yield py.replace(segment, { transition: found, method: method });
+    try {
+      var begun = onset(
+        new Growing(this.begin, this.direction, py.bound(this, "growth")),
+        this.growing,
+        ORDER
+      );
+      var rows = [...begun.axis, ...begun.momentum, ...begun.velocity];
+      var duration = py.min(begun.valid_until(ACCURACY_of_loosening), py.sub(end, time));
+      yield piece(this, rows, this.direction, [time, duration, end]);
+    } catch (error) {
+      if (!(error instanceof py.ArithmeticError)) throw error;
+      var unknown = failed("How slip begins on two surfaces", error, state);
+      yield nothing(this.onwards(state), time, unknown);
     }
   }
 }
-py.fields(SlipBeginningOnTwo, ["top", "rules", "other", "rolls", "begin"]);
+py.fields(SlipBeginningOnTwo, ["top", "rules", "other", "rolls", "begin", "direction", "growing"]);
 
 // tippetop.mechanics.invariants
 
@@ -6883,11 +6902,11 @@ class TwoClosed extends py.Record {
     var pair = ContactPair.of(state.axis, state.momentum, this.tops);
     return py.replace(this, { state: state, rolls: rolls, pair: pair });
   }
-  /** The mode in which slip begins. */
-  letting_go(found) {
+  /** The mode in which slip begins, with some power of time. */
+  letting_go(found, growing = 1) {
     py.assert(found.begins !== null);
-    var least = py.mul(2.0, least_slip(this.state.momentum, this.state.velocity.slice(0, 2)));
     if (py.truth(py.any(found.sticks))) {
+      var least = py.mul(2.0, least_slip(this.state.momentum, this.state.velocity.slice(0, 2)));
       var tops = py.truth(found.sticks[0]) ? this.tops : py.slice(this.tops, null, null, -1);
       var sign = py.truth(found.sticks[0]) ? found.begins[2] : py.neg(found.begins[2]);
       var change = [0.0, 0.0, py.div(py.mul(found.begins[2], least), apart(this.pair))];
@@ -6895,12 +6914,11 @@ class TwoClosed extends py.Record {
       var turning = this._turning(tops, sign);
       return new Transition([], turning, turning.state([...this.state.axis, ...momentum]));
     }
-    var [v_x, v_y, zeta] = scaled(py.div(least, size(found.begins)), found.begins);
-    zeta = py.add(zeta, this.xi[2]);
-    var begin = [...this.state.axis, ...this.state.momentum, v_x, v_y, zeta];
-    var slips = slips_of(this.pair, [v_x, v_y, zeta]);
+    var begin = [...this.state.axis, ...this.state.momentum, 0.0, 0.0, this.xi[2]];
+    var slips = slips_of(this.pair, found.begins);
     var [one, other] = py.zip(this.tops, slips).map(([top, slip]) => on_branch(top, slip));
-    var mode = new SlipBeginningOnTwo(one, this.rules, other, this.rolls, begin);
+    var way = py.truth(py.all(this.ended)) ? found.begins : found.begins.slice(0, 2);
+    var mode = new SlipBeginningOnTwo(one, this.rules, other, this.rolls, begin, way, growing);
     return new Transition([], mode, mode.state(begin));
   }
 }
@@ -6985,7 +7003,7 @@ function slipping(rules, time, state, tops, which, rolls) {
   }
   var stuck = py.truth(alone) ? [number_of(tops[0])] : [number_of(tops[0]), number_of(tops[1])];
   var marks = _marks([time, time], here, found, new Before(stuck, py.bool(rolls)));
-  return py.replace(here.letting_go(found), { events: marks });
+  return py.replace(here.letting_go(found, 2), { events: marks });
 }
 
 /** What is told where a contact sticks that did not, or slips that stuck; and the same of rolling. */
@@ -10908,7 +10926,6 @@ export {
   Angles,
   Arc,
   Arrival,
-  BEGINNING,
   BELOW,
   BEYOND,
   BEYOND_of_contensou_hertz,
@@ -11250,7 +11267,6 @@ export {
   TOLD,
   TOLERANCE,
   TOLERANCES,
-  TOLERANCE_of_double_sticking,
   TOTAL,
   TOUCH,
   TOUCHING,
@@ -11313,7 +11329,6 @@ export {
   _moved,
   _newton,
   _normal,
-  _nothing,
   _of_axis,
   _of_top,
   _on_one_of_several,
@@ -11481,6 +11496,7 @@ export {
   nearing_guard,
   needed,
   normal_wrench,
+  nothing,
   number_of,
   observe,
   of_slips,
@@ -11503,6 +11519,7 @@ export {
   parts_left,
   patches_letting_go,
   phis,
+  piece,
   plus,
   point_velocity,
   polynomials,
@@ -11516,6 +11533,7 @@ export {
   prospects,
   quadrature_rates,
   rates_in_time,
+  rates_of,
   record,
   remaining,
   reopening_guard,

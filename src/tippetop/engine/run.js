@@ -2,7 +2,7 @@
 import * as m from "./mechanics.js";
 import { reader } from "./compile.js";
 import { DenseSolution, earliest } from "./dense.js";
-import { make_integrator } from "./integrate.js";
+import { integrator } from "./integrate.js";
 import { InvalidInput } from "./part.js";
 import { CATALOGUE, GAUSS } from "./tables.js";
 
@@ -38,7 +38,7 @@ class Run {
     const { liftoff, restitution } = problem.contact, launch = m.rules_for(top, liftoff, restitution).launch(start);
     const pole = start.axis[2] >= 0 ? 1 : -1, lost = energyLost(launch.events);
     Object.assign(this, { duration, tolerance, units, top, start, pole, pieces: [], turned: NaN, steps: 0 });
-    this.trajectory = new m.Trajectory(launch, duration / units.time, make_integrator("dop853", tolerance));
+    this.trajectory = new m.Trajectory(launch, duration / units.time, integrator(tolerance));
     this.sums = Float64Array.of(0, 0, pole * problem.launch.azimuth, -lost, 0, 0, lost);
     [this.monitor, this.flights] = [new m.Monitor(top, start), new m.Flights()];
     // Of the tip and, in flights, of the centre of mass: where these are highest, their negatives are least.

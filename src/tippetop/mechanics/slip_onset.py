@@ -11,14 +11,14 @@ nearby decay to it like exp(-1/t), and an ordinary integrator goes on.
 import math
 from collections.abc import Callable, Sequence
 from operator import mul
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol, TypeAlias
 
 from tippetop.mechanics.ending import Closing, Vanishing, rates_in_time
 from tippetop.mechanics.rolling import Slip, solve
 from tippetop.mechanics.series import PLAIN, Series, horner, solved, unknown
 from tippetop.mechanics.stick_slip import inner, plus, scaled, tangents
 from tippetop.mechanics.top import Top
-from tippetop.mechanics.vectors import Scalar, Vector
+from tippetop.mechanics.vectors import Scalar
 
 LOST, SHORTER = 0.5, 0.9
 """Part of what a speed grows by at first that it may lose, and the factor by which times are tried."""
@@ -149,32 +149,38 @@ def onset(known: Growth, power: int, order: int) -> Onset:
     return Onset(tuple(rows[:3]), tuple(rows[3:6]), tuple(rows[6:]), turning, s[: order + 1], power)
 
 
+Rates: TypeAlias = Callable[[Any, Any], tuple[Sequence[Any], Sequence[Any]]]
+"""From y and the direction e to Y and A, in plain operators."""
+
+
+def rates_of(top: Top, ending: Vanishing) -> Rates:
+    """How y and xi change, for the words of `ending`."""
+
+    def rates(y: Sequence[Any], direction: Slip) -> tuple[Sequence[Any], Slip]:
+        state = Closing((y[0], y[1], y[2]), (y[3], y[4], y[5]), tuple(y[6:]), direction, 0.0, 0.0)
+        found = rates_in_time(state, ending, top)
+        return (*found.axis, *found.momentum, *found.velocity), found.xi
+
+    return rates
+
+
 class Growing:
     """Series that are made in plain operators: the state follows from the directions known so far.
 
-    Made of axis, angular momentum and e_0, the body, which velocity begins and whether the other is held, and
-    the horizontal velocity of the centre of mass where that is free beside it, m/s.
+    Made of y where slip, or rolling, begins, e_0, and how y and xi change.
     """
 
-    def __init__(
-        self,
-        start: tuple[Vector, Vector, Slip],
-        top: Top,
-        ending: Vanishing = Vanishing(slip=True),  # noqa: B008
-        velocity: Slip = (),
-    ) -> None:
-        self.first, self._made = start[2], list[Series]()
-        self._direction = tuple(Revisable(unknown, self._made) for _ in self.first)
-        self.turn(0, self.first)
-        begin = (*start[0], *start[1], *velocity)
+    def __init__(self, begin: Sequence[Scalar], first: Slip, rates: Rates) -> None:
+        self.first, self._made = first, list[Series]()
+        self._direction = tuple(Revisable(unknown, self._made) for _ in first)
+        self.turn(0, first)
 
-        def rates(y: Sequence[Series]) -> Sequence[Any]:
-            state = Closing((y[0], y[1], y[2]), (y[3], y[4], y[5]), tuple(y[6:]), self._direction, 0.0, 0.0)
-            found = rates_in_time(state, ending, top)
-            self._rates = found.xi
-            return (*found.axis, *found.momentum, *found.velocity)
+        def changing(y: Sequence[Series]) -> Sequence[Any]:
+            found, grows = rates(y, self._direction)
+            self._rates = grows
+            return found
 
-        self.state = solved([Revisable(unknown, self._made) for _ in begin], begin, rates)
+        self.state = solved([Revisable(unknown, self._made) for _ in begin], begin, changing)
 
     def turn(self, j: int, direction: Sequence[Scalar]) -> None:
         """Set the j-th coefficient of the direction, and forget what was made of another."""
