@@ -1,10 +1,12 @@
 """How far polynomials of many launches are followed, against a closer look at them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from tippetop.frictions import ContensouFriction
-from tippetop.integrators import has_llvm
+from tippetop.integrators import has_llvm, make_integrator
 from tippetop.integrators.polynomials import Polynomials
 from tippetop.presets import report_problem
 from tippetop.sweeps import Axis, Product, Sweep
@@ -15,28 +17,37 @@ from tippetop.sweeps.slots import Slots
 from tippetop.sweeps.stepper import stepper
 from tippetop.sweeps.tip import DOWN, FORCE, UP, TipMotion
 
+pytestmark = pytest.mark.skipif(not has_llvm(), reason="llvmlite is not installed")
+COUNT = 2000
 
-@pytest.mark.skipif(not has_llvm(), reason="llvmlite is not installed")
-def test_where_guards_fall_is_what_a_closer_look_finds():
-    """Polynomials are followed far beyond where they serve, so that many guards fall."""
+
+def anywhere():
+    """Taylor's method for tops with a patch, and lanes on which they are anywhere, with all to pause for."""
     problem = report_problem().replace({"friction": ContensouFriction(mu=0.3, patch_radius=1e-3)})
-    sweep = Sweep(problem, Product((Axis.of("friction.mu", np.linspace(0.1, 0.5, 2000)),)), 1.0)
-    launches = cells_of(sweep.problem, sweep.grid.values(np.arange(2000))).launches(np.arange(2000), 1.0)
+    sweep = Sweep(problem, Product((Axis.of("friction.mu", np.linspace(0.1, 0.5, COUNT)),)), 1.0)
+    cells = cells_of(sweep.problem, sweep.grid.values(np.arange(COUNT)))
+    launches = cells.launches(np.arange(COUNT), 1.0)
     method = stepper(swept_motion(launches.kind), 1e-9)
-    slots, counts = Slots(launches, method, None), method.layout.counts
-    random = np.random.default_rng(2)
-    axis = random.normal(size=(3, 2000))
+    slots, random = Slots(launches, method, None), np.random.default_rng(2)
+    axis = random.normal(size=(3, COUNT))
     axis /= np.linalg.norm(axis, axis=0)
     slots.rows[:8] = np.concatenate(
-        (axis, random.normal(size=(3, 2000)), 0.3 * random.normal(size=(2, 2000)))
+        (axis, random.normal(size=(3, COUNT)), 0.3 * random.normal(size=(2, COUNT)))
     )
     slots.choose_branch()
+    return method, slots
+
+
+def test_where_guards_fall_is_what_a_closer_look_finds():
+    """Polynomials are followed far beyond where they serve, so that many guards fall."""
+    method, slots = anywhere()
+    counts, waits = method.layout.counts, np.arange(COUNT) % 4 < 2
     slots.numbers[counts, ::2] = 0.0
-    slots.numbers[method.layout.turns] = 0.0
-    far = 10.0 ** random.uniform(-2.0, -0.5, len(slots.cell))
+    slots.numbers[method.layout.turns] = waits
+    far = 10.0 ** np.random.default_rng(3).uniform(-2.0, -0.5, COUNT)
     jet = method.jet(slots.rows, slots.numbers)
     found = arcs(jet, far, far, slots.numbers[method.layout.parameters :])
-    copied = Arcs(*map(np.array, found))._replace(doubt=np.ones(len(far)))
+    copied = Arcs(*map(np.array, found))._replace(doubt=np.ones(COUNT))
     copied.look_closer(jet, slots.numbers[counts])
     sure = found.doubt == 0.0
     assert sure.mean() > 0.5
@@ -45,8 +56,33 @@ def test_where_guards_fall_is_what_a_closer_look_finds():
     )
     assert np.array_equal(found.fallen[sure], copied.fallen[sure])
     assert found.span[sure] == pytest.approx(copied.span[sure], rel=1e-12)
-    tip = TipMotion.of(len(far))
+    size = 1.0 + np.abs(copied.after)
+    assert (found.after / size)[:, sure] == pytest.approx((copied.after / size)[:, sure], abs=1e-9)
+    tip = TipMotion.of(COUNT)
     for which, terms in ((FORCE, jet.guards[0]), (DOWN, jet.state[2]), (UP, -jet.state[2])):
-        tip.take(which, np.arange(len(far)), Polynomials(terms, copied.span))
+        tip.take(which, np.arange(COUNT), Polynomials(terms, copied.span))
     size = 1.0 + np.abs(tip.least)
     assert (found.least / size)[:, sure] == pytest.approx((tip.least / size)[:, sure], abs=1e-9)
+    over = (tip.least[DOWN] < 0.0) & (tip.least[UP] < 0.0)
+    assert not (sure & over & waits).any(), "tops that may turn over are looked at"
+    assert (sure & over).any(), "unless that is not waited for"
+
+
+def test_where_polynomials_end_is_where_single_launches_are():
+    """As far as they serve, or to where a guard falls; the tops go on as dop853 has it."""
+    method, slots = anywhere()
+    slots.left[:] = np.inf
+    jet, none = method.jet(slots.rows, slots.numbers), np.zeros(COUNT)
+    pauses = slots.numbers[method.layout.parameters :]
+    found = arcs(jet, none, none + np.inf, pauses)
+    found.look_closer(jet, slots.numbers[method.layout.counts])
+    unguarded, moves = replace(method.motion, guards=()), found.span > 0.0
+    lanes = np.concatenate([np.flatnonzero(moves & (found.fallen == guard))[:8] for guard in (-1.0, 0.0)])
+    assert len(lanes) == 16, "nothing falls, or the force does"
+    for lane in lanes.tolist():
+        numbers = slots.numbers[: method.layout.parameters, lane].tolist()
+        start, span = slots.rows[: len(jet.state), lane], float(found.span[lane])
+        *_, last = make_integrator("dop853", 1e-12).integrate(unguarded, numbers, (0.0, start), span)
+        assert last.solution.end == span
+        size = np.abs(start).max()
+        assert found.after[:, lane] == pytest.approx(last.end_state, abs=1e-7 * size), lane
