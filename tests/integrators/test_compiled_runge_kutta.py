@@ -197,3 +197,15 @@ def test_the_reports_run_is_that_of_the_other_integrators():
     ]
     np.testing.assert_allclose(runs[0].theta, runs[1].theta, rtol=0, atol=1e-9)
     assert runs[0].attrs["integrator"] == "compiled"
+
+
+@pytest.mark.parametrize("name", ["compiled", "taylor", "collocation", "dop853"])
+@pytest.mark.parametrize("kind", [tuple, np.array])
+def test_whole_numbers_are_numbers(name, kind):
+    """A motion of a user's own may be given parameters, and a start, in integers."""
+    touches = Guard("touches", lambda y, p: y[0] + p[1])
+    motion = Motion(lambda y, p: (y[1], -p[0] + 0.0 * y[0]), size=2, parameters=2, guards=(touches,))
+    *_, arc = make_integrator(name).integrate(motion, kind([2, 0]), (0, np.array([4, 0])), 7)
+    assert arc.guard == "touches"
+    assert arc.solution.end == pytest.approx(2.0, rel=1e-12)
+    assert arc.end_state == pytest.approx([0.0, -4.0], abs=1e-11)

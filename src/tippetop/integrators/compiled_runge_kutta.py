@@ -55,7 +55,8 @@ class CompiledRungeKutta:
         if functions is None:
             yield from SciPy("dop853", self.tolerance).integrate(motion, parameters, start, end)
             return
-        numbers = [*parameters, *np.repeat(parameters, LOOKS)]
+        known = [float(number) for number in parameters]
+        numbers = [*known, *np.repeat(known, LOOKS)]
         yield from stepped(motion, functions, numbers, start, end, self.tolerance)
 
 
