@@ -15,13 +15,14 @@ from tippetop.mechanics.top import Top
 from tippetop.mechanics.touchdown import Start, highest_gap, touchdown
 from tippetop.mechanics.vectors import Row, Scalar, length
 
-DEGREE = 9
+DEGREE = 10
 """Degree of the polynomials that stand for a flight in a solution."""
 
-TURN = 0.25
+TURN = 0.5
 """Angle through which the axis turns in each of them, rad: what they leave out is below rounding.
 
-It is (TURN / 2)^(DEGREE + 1) / (2^DEGREE (DEGREE + 1)!), 5e-19.
+It is (TURN / 2)^(DEGREE + 1) / (2^DEGREE (DEGREE + 1)!), 6e-18. The marker's angle is a quadrature over each,
+whose rate is singular at the farther pole: longer ones would come near that.
 """
 
 MOST_STEPS = 4096

@@ -1707,8 +1707,8 @@ function highest_gap(state, top, duration) {
 }
 
 // tippetop.contact.flight
-const DEGREE_of_flight = 9;
-const TURN = 0.25;
+const DEGREE_of_flight = 10;
+const TURN = 0.5;
 const MOST_STEPS = 4096;
 const TOUCHING = 1e-12;
 
