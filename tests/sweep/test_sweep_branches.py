@@ -5,12 +5,12 @@ import numpy as np
 from tippetop.integrators.polynomials import Polynomials
 from tippetop.sweeps.looks import first_fall
 from tippetop.sweeps.stepper import NumPyArithmetic
-from tippetop.sweeps.stride import BRANCH_LOOKS
+from tippetop.sweeps.stride import LOOKS
 
 
 def told(terms, span):
     with np.errstate(all="ignore"):
-        time, doubt = first_fall(list(terms), span, BRANCH_LOOKS, NumPyArithmetic())
+        time, doubt = first_fall(list(terms), span, LOOKS, NumPyArithmetic())
     return time, doubt > 0.0
 
 

@@ -227,7 +227,7 @@ def test_lift_off_is_not_left_to_looks(monkeypatch):
     """Seen at its ends only, a step in which the force dips below zero often shows nothing of it."""
     sweep = lively("stop", 8, 4, tolerance=1e-9)
     usual = follow_cells(sweep, np.arange(32))
-    monkeypatch.setattr(striding, "GUARD_LOOKS", 1)
+    monkeypatch.setattr(striding, "LOOKS", 1)
     stepper.cache_clear()
     found = follow_cells(sweep, np.arange(32))
     stepper.cache_clear()

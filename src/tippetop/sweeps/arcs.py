@@ -16,7 +16,7 @@ from tippetop.mechanics.vectors import Scalar
 from tippetop.sweeps.launches import Indices
 from tippetop.sweeps.looks import first_fall, least_value, looked_at
 from tippetop.sweeps.stepper import NODES, compiled, padded
-from tippetop.sweeps.stride import GUARD_LOOKS, LANES, TIP_LOOKS, Jet, extremes, met, step_size
+from tippetop.sweeps.stride import CLOSER_LOOKS, LANES, LOOKS, Jet, extremes, met, step_size
 
 
 class Arcs(NamedTuple):
@@ -87,12 +87,12 @@ def arc(jet: Jet, steps: Sequence[Scalar], pauses: Sequence[Scalar], plain: Arit
     span, fallen, doubt = whole, 0.0 * whole - 1.0, 0.0 * whole
     for number, (terms, count) in enumerate(zip(falls, pauses, strict=False)):
         # Few looks are enough: what they leave in doubt is looked at closer.
-        fall, unsure = first_fall(terms, whole, TIP_LOOKS, plain)
+        fall, unsure = first_fall(terms, whole, LOOKS, plain)
         earlier = (1.0 - plain.below(span, fall)) * count
         span, fallen = plain.choose(earlier, fall, span), plain.choose(earlier, float(number), fallen)
         doubt += unsure * count
     after = [horner(terms, span) for terms in state]
     floor, ceiling = extremes(state[2], span, plain)
     doubt += met(floor, ceiling, pauses[len(falls) :], plain)
-    force = least_value(falls[0], looked_at(falls[0], span, GUARD_LOOKS), span, plain)
+    force = least_value(falls[0], looked_at(falls[0], span, CLOSER_LOOKS), span, plain)
     return [*after, force, floor, -ceiling, whole, span, fallen, doubt]

@@ -23,7 +23,7 @@ from tippetop.mechanics.vectors import Scalar
 from tippetop.mechanics.view import axis_sine
 from tippetop.sweeps.looks import first_fall, least_value, looked_at
 from tippetop.sweeps.stepper import NODES, compiled, padded
-from tippetop.sweeps.stride import GUARD_LOOKS, TIP_LOOKS, extremes, met, step_size
+from tippetop.sweeps.stride import CLOSER_LOOKS, LOOKS, extremes, met, step_size
 
 STATE, TIME, LEFT, VANISHING, WANTED, GIVEN = slice(10), 10, 11, 12, slice(13, 16), 16
 """Rows of what is given, and how many: the state at the start of the flight, the time since then and what is
@@ -82,12 +82,12 @@ def piece(top: Top, given: Sequence[Any], plain: Arithmetic) -> Piece:
     """The piece of a flight that begins as given."""
     here = fly(State.unpack(given[STATE]), given[TIME], top, NodeFunctions())
     tip, gap, reach = flight_terms(here, given[LEFT], top, plain)
-    zero, doubt = first_fall(divided(gap, given[VANISHING], plain), reach, GUARD_LOOKS, plain)
+    zero, doubt = first_fall(divided(gap, given[VANISHING], plain), reach, CLOSER_LOOKS, plain)
     touches = plain.below(zero, reach)
     span = plain.least(zero, reach)
     floor, ceiling = extremes(tip, span, plain)
     depth = [-term for term in gap]
-    highest = -least_value(depth, looked_at(depth, span, TIP_LOOKS), span, plain)
+    highest = -least_value(depth, looked_at(depth, span, LOOKS), span, plain)
     if is_edge(top.surface):
         doubt += 1.0 - plain.below(0.0, reach)
     return Piece(span, touches, doubt + met(floor, ceiling, given[WANTED], plain), highest, floor, ceiling)

@@ -24,8 +24,8 @@ from tippetop.mechanics.series import Arithmetic, horner, solved, unknown
 from tippetop.mechanics.vectors import Scalar
 from tippetop.sweeps.looks import TINY, first_fall, least_value, looked_at, lower_bound, may_fall
 
-GUARD_LOOKS, BRANCH_LOOKS, TIP_LOOKS = 32, 16, 12
-"""Intervals of a step at whose ends the first guard, that of the law's branch, and n_z are looked at."""
+LOOKS, CLOSER_LOOKS = 12, 32
+"""Intervals of a step at whose ends n_z and guards are looked at, and of what may be longer than a step."""
 
 FAST = 10.0
 """Size of the state, in natural units, beyond which a top is so fast that its axis needs more care."""
@@ -121,7 +121,7 @@ def stride(
     taken, changes, events = later_guards(falls, counts, (whole, layout.branch), plain)
     floor, ceiling = extremes(state[2], taken, plain)
     events += met(floor, ceiling, wanted, plain)
-    pressing = looked_at(falls[0], taken, GUARD_LOOKS)
+    pressing = looked_at(falls[0], taken, LOOKS)
     events += may_fall(falls[0], pressing, taken, plain) * counts[0]
     moves = plain.below(0.0, taken)
     pause = events * moves
@@ -136,7 +136,7 @@ def stride(
 
 def extremes(tip: Sequence[Scalar], taken: Scalar, plain: Arithmetic) -> tuple[Scalar, Scalar]:
     """The least and the largest n_z in a step, given its polynomial."""
-    heights, upside = looked_at(tip, taken, TIP_LOOKS), [-term for term in tip]
+    heights, upside = looked_at(tip, taken, LOOKS), [-term for term in tip]
     floor = least_value(tip, heights, taken, plain)
     return floor, -least_value(upside, [-height for height in heights], taken, plain)
 
@@ -177,7 +177,7 @@ def later_guards(
         if number != branch:
             events += near * count
             continue
-        need, (change, doubt) = near * plain.below(0.0, whole), first_fall(terms, whole, BRANCH_LOOKS, plain)
+        need, (change, doubt) = near * plain.below(0.0, whole), first_fall(terms, whole, LOOKS, plain)
         found, usual = (plain.least(change, whole), plain.below(change, whole), doubt), (whole, none, none)
         taken, changes, doubt = (plain.rarely(need, a, b) for a, b in zip(found, usual, strict=True))
         events += doubt
