@@ -46,7 +46,7 @@ def as_begun(state: State, top: Top) -> tuple[Mode, tuple[Scalar, ...]]:
     lowest = top._replace(surface=lowest_surface(top.surface, state.axis[2]))
     sliding, numbers = Sliding(lowest, Bilateral(lowest)), along_table(state).pack()
     try:
-        presses = sliding.normal_force(numbers) > 0.0
+        presses = sliding.reaction(numbers).force[2] > 0.0
     except ZeroDivisionError:  # Without slip dry friction says nothing, and the table lets go at once.
         presses = False
     return (sliding, numbers) if presses else (Flight(top, Bilateral(top)), state.pack())

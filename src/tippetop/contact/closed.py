@@ -103,7 +103,7 @@ class ClosedMode(StatedMode):
     def found(self, y: Row) -> tuple[ContactPoint, Slip | None, Wrench, Acceleration]:
         """The contact point, its slip, what the table does, and the acceleration, from the numbers."""
         point = ContactPoint.of(*split(y), self.top)
-        slip = None if self.sticks else slip_of(*split(y), (y[6], y[7]), self.top)
+        slip = None if self.sticks else slip_of(*split(y), (y[6], y[7]), self.top)[:2]
         return point, slip, *contact_motion(point, slip, None if self.held else point.turning[:2])
 
     def numbers(self, state: State) -> tuple[Scalar, ...]:

@@ -4,18 +4,19 @@ from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Self
 
 from tippetop.contact.closed import BRANCH, LIFT_OFF, STOPPING, ClosedMode, GuardValue, motion_of
-from tippetop.contact.mode import Reaction, Transition
+from tippetop.contact.mode import Transition
 from tippetop.integrators.base import Motion
-from tippetop.mechanics.motion import SlidingContact, contact, sliding_rates
-from tippetop.mechanics.rolling import is_set_valued
+from tippetop.mechanics.motion import sliding_rates
+from tippetop.mechanics.rolling import flat, is_set_valued, slip_length
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.stick_slip import (
     branch_guard,
     nearing_guard,
     parting_guard,
+    remaining,
     rolling_stopping_guard,
     slip_of,
-    stopping_guard,
+    slip_part,
 )
 from tippetop.mechanics.top import Kind
 from tippetop.mechanics.vectors import Row, Scalar
@@ -40,7 +41,7 @@ class SlidingMode(ClosedMode):
         """The guards of lift-off, of slip that ends, and of the branch of the law, too."""
         law, own = self.top.friction, list[GuardValue]()
         if self.guarded:
-            own.append((LIFT_OFF, lambda mode, y: mode.normal_force(y)))
+            own.append((LIFT_OFF, lambda mode, y: mode.found(y)[2].force[2]))
         if is_set_valued(law) and self.near:
             own.append((STOPPING, lambda mode, y: mode.slip_left(y)))
             own.append((PARTING, lambda mode, y: parting_guard(SlidingState.unpack(y), mode.top)))
@@ -54,13 +55,10 @@ class SlidingMode(ClosedMode):
         """Positive as long as the branch of the law holds."""
         return branch_guard(slip_of(*SlidingState.unpack(y), self.top), self.top)
 
-    def normal_force(self, y: Row) -> Scalar:
-        """The normal force."""
-        return self.found(y)[2].force[2]
-
     def slip_left(self, y: Row) -> Scalar:
         """Positive while slip goes on for a while."""
-        return stopping_guard(SlidingState.unpack(y), SlidingState.unpack(self.rates(y)), self.top)
+        change = slip_part(flat(self.found(y)[3]), slip_length(self.top.friction))
+        return remaining(slip_of(*SlidingState.unpack(y), self.top), change)
 
     def follow(self, guard: str, time: float, state: State) -> Transition:
         """It is to be watched, or no longer, how long slip lasts; or what follows any contact."""
@@ -84,26 +82,13 @@ class Sliding(SlidingMode):
     name: ClassVar[str] = "sliding"
     lasting: ClassVar[bool] = True
 
-    def touch(self, y: Row) -> SlidingContact:
-        """The contact: one equation tells the normal force."""
-        return contact(*SlidingState.unpack(y), self.top)
-
     def rates(self, y: Row) -> tuple[Scalar, ...]:
-        """Time derivatives of the 8 numbers of a sliding state."""
+        """Time derivatives of the 8 numbers of a sliding state, in the fewest operations."""
         return sliding_rates(SlidingState.unpack(y), self.top).pack()
-
-    def normal_force(self, y: Row) -> Scalar:
-        """The normal force."""
-        return self.touch(y).normal_force
 
     def rolling_left(self, y: Row) -> Scalar:
         """Positive while rolling goes on for a while."""
         return rolling_stopping_guard(SlidingState.unpack(y), SlidingState.unpack(self.rates(y)), self.top)
-
-    def reaction(self, y: Row) -> Reaction:
-        """The contact force and torque."""
-        touch = self.touch(y)
-        return Reaction(touch.force, touch.torque, touch.power)
 
 
 def sliding_motion(kind: Kind, guarded: bool, near: bool = False, held: bool = False) -> Motion:

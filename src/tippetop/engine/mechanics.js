@@ -1035,17 +1035,9 @@ function contact(axis, momentum, velocity, top) {
   var point = point_velocity([velocity[0], velocity[1], 0.0], omega, arm);
   var slip = [point[0], point[1]];
   var traction = top.traction(slip, omega);
-  var lever = py.div(top.surface.slope(axis[2]), top.transverse_inertia);
-  var reaction = cross(moment_per_normal_force(arm, traction), axis)[2];
   var free = free_acceleration(axis, momentum, top);
-  return new SlidingContact(
-    arm,
-    slip,
-    omega,
-    traction,
-    free,
-    py.sub(py.div(1.0, top.mass), py.mul(lever, reaction))
-  );
+  var delassus = driven_acceleration(axis, 1.0, moment_per_normal_force(arm, traction), top);
+  return new SlidingContact(arm, slip, omega, traction, free, delassus);
 }
 
 /** Acceleration of the gap in free flight, -(g + h'' c'^2 + h' [L x n']_z / I1), m/s^2. */
@@ -1054,6 +1046,12 @@ function free_acceleration(axis, momentum, top) {
   var lever = py.div(top.surface.slope(axis[2]), top.transverse_inertia);
   var bending = py.mul(py.mul(top.surface.curvature(axis[2]), turning[2]), turning[2]);
   return py.neg(py.add(top.gravity, py.add(bending, py.mul(lever, cross(momentum, turning)[2]))));
+}
+
+/** What a force upwards, N, and a moment M about the centre of mass, N m, add: F/m - (h'/I1) [M x n]_z. */
+function driven_acceleration(axis, upwards, moment, top) {
+  var lever = py.div(top.surface.slope(axis[2]), top.transverse_inertia);
+  return py.sub(py.div(upwards, top.mass), py.mul(lever, cross(moment, axis)[2]));
 }
 
 /** Whether the gap would close without a contact force, by more than errors of a run. */
@@ -1840,7 +1838,8 @@ class ContactPoint extends py.NamedTuple {
     var tilting = axis_rate(axis, momentum, top);
     var gyration = scale(py.mul(excess, axial_spin(axis, momentum, top)), tilting);
     var carried = add([0.0, 0.0, py.neg(top.gravity)], cross(turning, arm_rate(axis, tilting, top)));
-    var free = new Acceleration(add(cross(gyration, arm), carried), gyration);
+    var [x, y] = add(cross(gyration, arm), carried);
+    var free = new Acceleration([x, y, free_acceleration(axis, momentum, top)], gyration);
     return new this(axis, momentum, arm, turning, free, carried, top);
   }
   /** Acceleration that a wrench adds. */
@@ -1850,8 +1849,9 @@ class ContactPoint extends py.NamedTuple {
     var moment = this.moment(wrench);
     var along = py.mul(py.sub(axial, transverse), dot(this.axis, moment));
     var turning = add(scale(transverse, moment), scale(along, this.axis));
-    var point = add(scale(py.div(1.0, this.top.mass), wrench.force), cross(turning, this.arm));
-    return new Acceleration(point, turning);
+    var [x, y] = add(scale(py.div(1.0, this.top.mass), wrench.force), cross(turning, this.arm));
+    var upwards = driven_acceleration(this.axis, wrench.force[2], moment, this.top);
+    return new Acceleration([x, y, upwards], turning);
   }
   /** Moment of a wrench about the centre of mass, N m. */
   moment(wrench) {
@@ -2191,20 +2191,6 @@ function slip_part(accelerations, reach) {
   return [accelerations[0], accelerations[1], py.mul(reach, accelerations[5])];
 }
 
-/** Falls through zero where slip ends soon; for a sliding state and its time derivative. */
-function stopping_guard(state, rate, top) {
-  var turning = angular_velocity(state.axis, state.momentum, top);
-  var tilting = rate.axis;
-  var turned = angular_acceleration(state, rate, top);
-  var arm = contact_vector(state.axis, top.surface);
-  var carried = add(cross(turned, arm), cross(turning, arm_rate(state.axis, tilting, top)));
-  var slip = slip_of(state.axis, state.momentum, state.velocity, top);
-  var reach = slip_length(top.friction);
-  var change = [py.add(rate.velocity[0], carried[0]), py.add(rate.velocity[1], carried[1])];
-  change = reach === null ? change : [...change, py.mul(reach, turned[2])];
-  return remaining(slip, change);
-}
-
 /** Falls through zero where slip becomes so small that it is to be watched, (m/s)^2. */
 function nearing_guard(state, top) {
   var slip = slip_of(...state, top);
@@ -2223,7 +2209,7 @@ function is_near(state, top) {
   return inner(slip, slip) < py.mul(NEAR, APART);
 }
 
-/** The same of rolling, (rad/s)^2; velocities are not asked for. */
+/** Falls through zero where rolling ends soon, (rad/s)^2; for a sliding state and its time derivative. */
 function rolling_stopping_guard(state, rate, top) {
   var [x, y, turning] = angular_velocity(state.axis, state.momentum, top);
   var [spin, spinning] = [state.momentum, rate.momentum].map(
@@ -2248,15 +2234,6 @@ function remaining(velocity, change) {
 function branch_guard(slip, top) {
   var law = top.friction;
   return law.branch_guard(slip);
-}
-
-/** Rate of the angular velocity, rad/s^2, from a state and its time derivative. */
-function angular_acceleration(state, rate, top) {
-  var excess = py.div(py.sub(top.transverse_inertia, top.axial_inertia), top.transverse_inertia);
-  var spin = axial_spin(state.axis, state.momentum, top);
-  var spinning = axial_spin(state.axis, rate.momentum, top);
-  var turned = scale(py.div(1.0, top.transverse_inertia), rate.momentum);
-  return add(turned, scale(excess, add(scale(spinning, state.axis), scale(spin, rate.axis))));
 }
 
 /** Scalar product. */
@@ -2535,7 +2512,7 @@ class ClosedMode extends StatedMode {
   /** The contact point, its slip, what the table does, and the acceleration, from the numbers. */
   found(y) {
     var point = ContactPoint.of(...split(y), this.top);
-    var slip = py.truth(this.sticks) ? null : slip_of(...split(y), [y[6], y[7]], this.top);
+    var slip = py.truth(this.sticks) ? null : slip_of(...split(y), [y[6], y[7]], this.top).slice(0, 2);
     return [
       point,
       slip,
@@ -3338,7 +3315,7 @@ class SlidingMode extends ClosedMode {
     var law = this.top.friction;
     var own = py.list();
     if (py.truth(this.guarded)) {
-      own.push([LIFT_OFF, (mode, y) => mode.normal_force(y)]);
+      own.push([LIFT_OFF, (mode, y) => mode.found(y)[2].force[2]]);
     }
     if (py.truth(is_set_valued(law)) && py.truth(this.near)) {
       own.push([STOPPING, (mode, y) => mode.slip_left(y)]);
@@ -3355,13 +3332,10 @@ class SlidingMode extends ClosedMode {
   on_branch(y) {
     return branch_guard(slip_of(...SlidingState.unpack(y), this.top), this.top);
   }
-  /** The normal force. */
-  normal_force(y) {
-    return this.found(y)[2].force[2];
-  }
   /** Positive while slip goes on for a while. */
   slip_left(y) {
-    return stopping_guard(SlidingState.unpack(y), SlidingState.unpack(this.rates(y)), this.top);
+    var change = slip_part(flat(this.found(y)[3]), slip_length(this.top.friction));
+    return remaining(slip_of(...SlidingState.unpack(y), this.top), change);
   }
   /** It is to be watched, or no longer, how long slip lasts; or what follows any contact. */
   follow(guard, time, state) {
@@ -3390,26 +3364,13 @@ class Sliding extends SlidingMode {
   }
   get name() { return "sliding"; }
   get lasting() { return true; }
-  /** The contact: one equation tells the normal force. */
-  touch(y) {
-    return contact(...SlidingState.unpack(y), this.top);
-  }
-  /** Time derivatives of the 8 numbers of a sliding state. */
+  /** Time derivatives of the 8 numbers of a sliding state, in the fewest operations. */
   rates(y) {
     return sliding_rates(SlidingState.unpack(y), this.top).pack();
-  }
-  /** The normal force. */
-  normal_force(y) {
-    return this.touch(y).normal_force;
   }
   /** Positive while rolling goes on for a while. */
   rolling_left(y) {
     return rolling_stopping_guard(SlidingState.unpack(y), SlidingState.unpack(this.rates(y)), this.top);
-  }
-  /** The contact force and torque. */
-  reaction(y) {
-    var touch = this.touch(y);
-    return new Reaction(touch.force, touch.torque, touch.power);
   }
 }
 py.fields(Sliding, ["top", "rules", "near", "guarded"]);
@@ -8159,7 +8120,7 @@ function as_begun(state, top) {
   var sliding = new Sliding(lowest, new Bilateral(lowest));
   var numbers = along_table(state).pack();
   try {
-    var presses = sliding.normal_force(numbers) > 0.0;
+    var presses = sliding.reaction(numbers).force[2] > 0.0;
   } catch (error) {
     if (!(error instanceof py.ZeroDivisionError)) throw error;
     presses = false;
@@ -11356,7 +11317,6 @@ export {
   against,
   along_table,
   analytic_disc,
-  angular_acceleration,
   angular_velocity,
   apart,
   arm_rate,
@@ -11398,6 +11358,7 @@ export {
   directions_of,
   dot,
   drilling_shares,
+  driven_acceleration,
   driven_motion,
   each_surface,
   eccentricity,
@@ -11603,7 +11564,6 @@ export {
   step_terms,
   step_to,
   stepped,
-  stopping_guard,
   straight,
   straight_of_straight_impact,
   struck_motion,

@@ -92,8 +92,8 @@ def contact(axis: Vector, momentum: Vector, velocity: Horizontal, top: Top) -> S
 
     Notes
     -----
-    The second derivative of the gap z - h(c), c = n_z, is A N + b with b of `free_acceleration` and
-    A = 1/m - (h'/I1) [(a x (z + f) + t) x n]_z.
+    The second derivative of the gap z - h(c), c = n_z, is A N + b with b of `free_acceleration` and A of
+    `driven_acceleration`, by z + f and a x (z + f) + t.
     """
     arm = contact_vector(axis, top.surface)
     omega = angular_velocity(axis, momentum, top)
@@ -101,10 +101,9 @@ def contact(axis: Vector, momentum: Vector, velocity: Horizontal, top: Top) -> S
     slip = (point[0], point[1])
     traction = top.traction(slip, omega)
 
-    lever = top.surface.slope(axis[2]) / top.transverse_inertia
-    reaction = cross(moment_per_normal_force(arm, traction), axis)[2]
     free = free_acceleration(axis, momentum, top)
-    return SlidingContact(arm, slip, omega, traction, free, 1.0 / top.mass - lever * reaction)
+    delassus = driven_acceleration(axis, 1.0, moment_per_normal_force(arm, traction), top)
+    return SlidingContact(arm, slip, omega, traction, free, delassus)
 
 
 def free_acceleration(axis: Vector, momentum: Vector, top: Top) -> Scalar:
@@ -113,6 +112,12 @@ def free_acceleration(axis: Vector, momentum: Vector, top: Top) -> Scalar:
     lever = top.surface.slope(axis[2]) / top.transverse_inertia
     bending = top.surface.curvature(axis[2]) * turning[2] * turning[2]
     return -(top.gravity + (bending + lever * cross(momentum, turning)[2]))
+
+
+def driven_acceleration(axis: Vector, upwards: Scalar, moment: Vector, top: Top) -> Scalar:
+    """What a force upwards, N, and a moment M about the centre of mass, N m, add: F/m - (h'/I1) [M x n]_z."""
+    lever = top.surface.slope(axis[2]) / top.transverse_inertia
+    return upwards / top.mass - lever * cross(moment, axis)[2]
 
 
 def presses(axis: Vector, momentum: Vector, top: Top) -> Scalar:

@@ -21,7 +21,13 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple, TypeAlias
 
 from tippetop.mechanics.friction import NO_TORQUE, FrictionLaw
-from tippetop.mechanics.motion import angular_velocity, axial_spin, axis_rate
+from tippetop.mechanics.motion import (
+    angular_velocity,
+    axial_spin,
+    axis_rate,
+    driven_acceleration,
+    free_acceleration,
+)
 from tippetop.mechanics.surface import contact_vector
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import VERTICAL, Horizontal, Scalar, Vector, add, cross, dot, scale
@@ -82,7 +88,8 @@ class ContactPoint(NamedTuple):
         tilting = axis_rate(axis, momentum, top)
         gyration = scale(excess * axial_spin(axis, momentum, top), tilting)
         carried = add((0.0, 0.0, -top.gravity), cross(turning, arm_rate(axis, tilting, top)))
-        free = Acceleration(add(cross(gyration, arm), carried), gyration)
+        x, y, _ = add(cross(gyration, arm), carried)
+        free = Acceleration((x, y, free_acceleration(axis, momentum, top)), gyration)
         return cls(axis, momentum, arm, turning, free, carried, top)
 
     def response(self, wrench: Wrench) -> Acceleration:
@@ -91,8 +98,9 @@ class ContactPoint(NamedTuple):
         moment = self.moment(wrench)
         along = (axial - transverse) * dot(self.axis, moment)
         turning = add(scale(transverse, moment), scale(along, self.axis))
-        point = add(scale(1.0 / self.top.mass, wrench.force), cross(turning, self.arm))
-        return Acceleration(point, turning)
+        x, y, _ = add(scale(1.0 / self.top.mass, wrench.force), cross(turning, self.arm))
+        upwards = driven_acceleration(self.axis, wrench.force[2], moment, self.top)
+        return Acceleration((x, y, upwards), turning)
 
     def moment(self, wrench: Wrench) -> Vector:
         """Moment of a wrench about the centre of mass, N m."""

@@ -18,7 +18,6 @@ from typing import Any
 from tippetop.mechanics.motion import angular_velocity, axial_spin, point_velocity
 from tippetop.mechanics.rolling import (
     Slip,
-    arm_rate,
     slip_length,
     velocity_without_slip,
     without_drilling,
@@ -27,7 +26,7 @@ from tippetop.mechanics.rolling import (
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.surface import contact_vector
 from tippetop.mechanics.top import Top
-from tippetop.mechanics.vectors import Horizontal, Scalar, Vector, add, cross, scale
+from tippetop.mechanics.vectors import Horizontal, Scalar, Vector
 
 HORIZON = 0.05
 """How long before its end slip is followed in a clock of its own, in natural units of time."""
@@ -100,19 +99,6 @@ def slip_part(accelerations: Sequence[Scalar], reach: Scalar | None) -> Slip:
     return (accelerations[0], accelerations[1], reach * accelerations[5])
 
 
-def stopping_guard(state: SlidingState, rate: SlidingState, top: Top) -> Scalar:
-    """Falls through zero where slip ends soon; for a sliding state and its time derivative."""
-    turning, tilting = angular_velocity(state.axis, state.momentum, top), rate.axis
-    turned = angular_acceleration(state, rate, top)
-    arm = contact_vector(state.axis, top.surface)
-    carried = add(cross(turned, arm), cross(turning, arm_rate(state.axis, tilting, top)))
-    slip = slip_of(state.axis, state.momentum, state.velocity, top)
-    reach = slip_length(top.friction)
-    change: Slip = (rate.velocity[0] + carried[0], rate.velocity[1] + carried[1])
-    change = change if reach is None else (*change, reach * turned[2])
-    return remaining(slip, change)
-
-
 def nearing_guard(state: SlidingState, top: Top) -> Scalar:
     """Falls through zero where slip becomes so small that it is to be watched, (m/s)^2."""
     slip = slip_of(*state, top)
@@ -132,7 +118,7 @@ def is_near(state: SlidingState, top: Top) -> Scalar:
 
 
 def rolling_stopping_guard(state: SlidingState, rate: SlidingState, top: Top) -> Scalar:
-    """The same of rolling, (rad/s)^2; velocities are not asked for.
+    """Falls through zero where rolling ends soon, (rad/s)^2; for a sliding state and its time derivative.
 
     omega . n' = 0, so that the horizontal parts of omega and n' have the product -omega_z n_z'.
     """
@@ -154,16 +140,6 @@ def branch_guard(slip: Slip, top: Top) -> Scalar:
     """Positive as long as a branch of a law holds where it slips so, or in that direction, m^2/s^2."""
     law: Any = top.friction
     return law.branch_guard(slip)
-
-
-def angular_acceleration(state: SlidingState, rate: SlidingState, top: Top) -> Vector:
-    """Rate of the angular velocity, rad/s^2, from a state and its time derivative."""
-    excess = (top.transverse_inertia - top.axial_inertia) / top.transverse_inertia
-    spin = axial_spin(state.axis, state.momentum, top)
-    # The axis moves at right angles to the momentum.
-    spinning = axial_spin(state.axis, rate.momentum, top)
-    turned = scale(1.0 / top.transverse_inertia, rate.momentum)
-    return add(turned, scale(excess, add(scale(spinning, state.axis), scale(spin, rate.axis))))
 
 
 def inner(a: Slip, b: Slip) -> Scalar:

@@ -7,10 +7,11 @@ divided out.
 """
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from tippetop.contact.sliding import Sliding
 from tippetop.integrators.base import Array
 from tippetop.integrators.polynomials import Polynomials
 from tippetop.mechanics.flight import fly
@@ -28,7 +29,6 @@ from tippetop.mechanics.stick_slip import (
     is_rolling,
     is_slipping,
     rolling_stopping_guard,
-    stopping_guard,
 )
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.touchdown import highest_gap
@@ -215,7 +215,8 @@ def slips(state: State, top: Top, *, far: bool = False) -> Flags:
     if not is_set_valued(top.friction):
         return count
     y = along_table(state)
+    nothing: Any = None
     with np.errstate(all="ignore"):
-        lasting = stopping_guard(y, sliding_rates(y, top), top) > 0.0
+        lasting = Sliding(top, nothing).slip_left(y.pack()) > 0.0
     found: Flags = count & is_slipping(*y, top) & lasting
     return found & ~is_near(y, top) if far else found
