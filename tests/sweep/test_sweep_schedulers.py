@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import psutil
 import pytest
-from sweeps import lively, same
+from sweeps import lively, same, stored
 
 from tippetop.errors import InvalidInput, Unavailable
 from tippetop.sweeps import SWEPT, Store, compute, fill, read_sweep
@@ -121,6 +121,20 @@ def test_a_dask_cluster_finds_the_same_though_a_worker_is_killed(small_tasks, mo
     assert connected == [address]
     assert same(alone, arrays(together))
     assert np.all(together["status"].values == 1)
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_a_sweep_that_is_kept_connects_once(monkeypatch, tmp_path):
+    distributed = pytest.importorskip("distributed")
+    made, client = [], distributed.Client
+    monkeypatch.setattr(distributed, "Client", lambda *at, **how: made.append(at) or client(*at, **how))
+    with distributed.LocalCluster(
+        n_workers=1, threads_per_worker=1, protocol="tcp", dashboard_address=None, silence_logs=50
+    ) as cluster:
+        made.clear()
+        kept = stored(quick(), tmp_path / "a.zarr", scheduler=cluster.scheduler_address)
+        assert made == [(cluster.scheduler_address,)]
+        assert same(arrays(kept), arrays(compute(quick(), workers=1)))
 
 
 @pytest.mark.filterwarnings("ignore")

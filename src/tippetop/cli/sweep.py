@@ -84,30 +84,30 @@ def sweep(
         kept = kept_sweep(out) if resume and choice.file is None else None
     limits = {"duration": duration, "tolerance": tolerance, "settled": settled}
     chosen = _chosen_sweep(choice, kept, _chosen_grid(axis, draw, count, seed), limits)
-    need_workers(chosen, workers, scheduler)
-    if not resume:
-        require_ending("--out", out, [".zarr"])
-        refuse_existing(out, force)
-    pictures = _map_files(out) if maps else {}
-    for path in pictures.values():
-        place_for(path, force or resume)
-    store = Store.resume(out, chosen) if resume else Store.create(out, chosen, force)
-    progress: list[Progress] = []
-    try:
-        with progress_bar() as tell:
+    with need_workers(chosen, workers, scheduler) as cluster:
+        if not resume:
+            require_ending("--out", out, [".zarr"])
+            refuse_existing(out, force)
+        pictures = _map_files(out) if maps else {}
+        for path in pictures.values():
+            place_for(path, force or resume)
+        store = Store.resume(out, chosen) if resume else Store.create(out, chosen, force)
+        progress: list[Progress] = []
+        try:
+            with progress_bar() as tell:
 
-            def callback(now: "Progress") -> None:
-                progress.append(now)
-                rate = f" {now.rate:,.0f} launches/s" if now.rate else ""
-                tell(now.done, now.cells, f"{now.done:,} of {now.cells:,}{rate}")
+                def callback(now: "Progress") -> None:
+                    progress.append(now)
+                    rate = f" {now.rate:,.0f} launches/s" if now.rate else ""
+                    tell(now.done, now.cells, f"{now.done:,} of {now.cells:,}{rate}")
 
-            fill(store, workers=workers, scheduler=scheduler, callback=callback)
-        dataset = store.load(["status", "outcome", *dict.fromkeys(["flights", *pictures])])
-        _draw_maps(dataset, pictures, force or resume)
-    except KeyboardInterrupt:
-        done = f"{progress[-1].done:,} of {progress[-1].cells:,}" if progress else "none"
-        typer.echo(f"tippetop: interrupted; {done} cells are in {out}: go on with --resume", err=True)
-        raise typer.Exit(INTERRUPTED) from None
+                fill(store, workers=workers, scheduler=cluster, callback=callback)
+            dataset = store.load(["status", "outcome", *dict.fromkeys(["flights", *pictures])])
+            _draw_maps(dataset, pictures, force or resume)
+        except KeyboardInterrupt:
+            done = f"{progress[-1].done:,} of {progress[-1].cells:,}" if progress else "none"
+            typer.echo(f"tippetop: interrupted; {done} cells are in {out}: go on with --resume", err=True)
+            raise typer.Exit(INTERRUPTED) from None
     summary = _summary(dataset, progress[-1])
     if as_json:
         files = {"out": str(out), "maps": [str(path) for path in pictures.values()]}

@@ -14,7 +14,7 @@ from tippetop.sweeps.definition import DEFAULT_TOLERANCE, Sweep, Task
 from tippetop.sweeps.grid import Draws, Product
 from tippetop.sweeps.layout import CONTENTS, Status, coordinate_attributes, layout_attributes
 from tippetop.sweeps.store import Store
-from tippetop.sweeps.tasks import Found, need_workers, results
+from tippetop.sweeps.tasks import Cluster, Found, need_workers, results
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ def _carry_out(
     tasks: Sequence[Task],
     keep: Callable[[Task, Found], None],
     workers: int | None,
-    scheduler: str | None,
+    scheduler: str | Cluster | None,
     callback: Callback | None,
 ) -> Progress:
     """Compute tasks of a sweep whose others are done, and keep what they find."""
@@ -64,7 +64,7 @@ def fill(
     store: Store,
     *,
     workers: int | None = None,
-    scheduler: str | None = None,
+    scheduler: str | Cluster | None = None,
     callback: Callback | None = None,
 ) -> Progress:
     """Compute what is missing in a store; for workers, scheduler and callback see `sweep`.
@@ -173,7 +173,7 @@ def sweep(
     chosen = Sweep(problem, grid, duration, tolerance, settled)
     if out is None:
         return compute(chosen, workers=workers, scheduler=scheduler, callback=callback)
-    need_workers(chosen, workers, scheduler)
-    store = Store.resume(out, chosen) if resume else Store.create(out, chosen, overwrite)
-    fill(store, workers=workers, scheduler=scheduler, callback=callback)
+    with need_workers(chosen, workers, scheduler) as cluster:
+        store = Store.resume(out, chosen) if resume else Store.create(out, chosen, overwrite)
+        fill(store, workers=workers, scheduler=cluster, callback=callback)
     return store.dataset()

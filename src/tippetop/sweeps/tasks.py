@@ -8,13 +8,13 @@ import time
 from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from functools import lru_cache
 from importlib import import_module
 from importlib.util import find_spec
 from numbers import Integral
 from traceback import walk_tb
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 from numpy.typing import NDArray
 
@@ -46,6 +46,13 @@ HERE = "__main__"
 _turn = threading.Lock()
 
 
+class Cluster(NamedTuple):
+    """A running cluster that is connected to."""
+
+    address: str
+    client: Any
+
+
 def compute_region(
     description: str, version: str, modules: tuple[str, ...], region: tuple[slice, ...]
 ) -> Found:
@@ -74,7 +81,7 @@ def _sweep(description: str) -> Sweep:
 
 
 def results(
-    sweep: Sweep, tasks: Sequence[Task], workers: int | None = None, scheduler: str | None = None
+    sweep: Sweep, tasks: Sequence[Task], workers: int | None = None, scheduler: str | Cluster | None = None
 ) -> Iterator[tuple[Task, Found]]:
     """Compute tasks of a sweep and give what they found as it comes, in any order; see `need_workers`."""
     modules = _modules(sweep, workers, scheduler)
@@ -92,19 +99,21 @@ def results(
         raise Unavailable(f"{error}; {KEPT}") from None
 
 
-def need_workers(sweep: Sweep, workers: int | None, scheduler: str | None) -> None:
+@contextmanager
+def need_workers(sweep: Sweep, workers: int | None, scheduler: str | None) -> Iterator[Cluster | None]:
     """See that there is someone to compute, before anything is written; for both see `sweep`.
+
+    Gives the cluster, connected to, that takes the place of the scheduler's address meanwhile.
 
     Raises `InvalidInput` if the number of workers is not positive, or there is no scheduler at the address;
     `Unavailable` if dask.distributed is needed and not installed.
     """
     _modules(sweep, workers, scheduler)
-    if scheduler is not None:
-        with _cluster(scheduler):
-            pass
+    with nullcontext() if scheduler is None else _cluster(scheduler) as cluster:
+        yield cluster
 
 
-def _modules(sweep: Sweep, workers: int | None, scheduler: str | None) -> tuple[str, ...]:
+def _modules(sweep: Sweep, workers: int | None, scheduler: str | Cluster | None) -> tuple[str, ...]:
     """The modules that a worker has to import, for kinds of parts that are not of this package."""
     known = isinstance(workers, Integral) and not isinstance(workers, bool) and workers >= 1
     if not (workers is None or known):
@@ -125,11 +134,12 @@ def processors() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def _share_with_cluster(address: str, calls: Mapping[Task, Call]) -> Iterator[tuple[Task, Found]]:
+def _share_with_cluster(scheduler: str | Cluster, calls: Mapping[Task, Call]) -> Iterator[tuple[Task, Found]]:
     """Hand tasks to a cluster, a few ahead of every worker; it does those of workers that died again."""
     waiting = deque(calls)
     running: dict[Future[Found], Task] = {}
-    with _cluster(address) as client:
+    with nullcontext(scheduler) if isinstance(scheduler, Cluster) else _cluster(scheduler) as cluster:
+        address, client = cluster
         executor = client.get_executor(retries=RESTARTS)
         most = AHEAD * _workers(client)
         try:
@@ -185,8 +195,8 @@ def _workers(client: Any) -> int:
 
 
 @contextmanager
-def _cluster(address: str) -> Iterator[Any]:
-    """A client of a running cluster that has workers."""
+def _cluster(address: str) -> Iterator[Cluster]:
+    """A running cluster that has workers."""
     if find_spec("distributed") is None:
         raise Unavailable("a scheduler needs dask.distributed: pip install 'tippetop[sweep]'")
     from distributed import Client  # noqa: PLC0415 - optional, and slow to import
@@ -206,4 +216,4 @@ def _cluster(address: str) -> Iterator[Any]:
         with client:
             if not _workers(client):
                 raise InvalidInput("scheduler", address, "a scheduler that has workers")
-            yield client
+            yield Cluster(address, client)
