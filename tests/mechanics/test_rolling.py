@@ -4,11 +4,12 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from strategies import numbers, slides
+from tippetop.contact.sliding import Sliding
 from tippetop.mechanics.contensou import EllipsoidalLaw
 from tippetop.mechanics.contensou_hertz import HertzDrillingLaw
 from tippetop.mechanics.coulomb import CoulombLaw, RollingResistance
@@ -22,7 +23,7 @@ from tippetop.mechanics.rolling import (
     without_drilling,
 )
 from tippetop.mechanics.state import SlidingState
-from tippetop.mechanics.stick_slip import HORIZON, rolling_stopping_guard
+from tippetop.mechanics.stick_slip import HORIZON, rolling_stopping_guard, size, slip_of
 from tippetop.mechanics.surface import SphereSurface, contact_vector
 from tippetop.mechanics.top import Top
 from tippetop.theory.derivatives import derivative, jacobian
@@ -188,3 +189,22 @@ def test_rolling_is_watched_by_how_fast_it_falls_along_the_motion(slide):
     size = sum(abs(w) for w in angular_velocity(state.axis, state.momentum, top)) + abs(falls) ** 0.5
     found = rolling_stopping_guard(state, rate, top)
     assert found == pytest.approx(square(0.0) + 0.5 * HORIZON * falls, abs=1e-12 * size * size)
+
+
+@given(slides(), st.sampled_from([CoulombLaw(0.3), EllipsoidalLaw(0.3, 0.01)]))
+def test_slip_is_watched_by_how_fast_it_falls_along_the_motion(slide, law):
+    """The guard is the square of slip (and drilling, if resisted), and half its rate times the horizon."""
+    top, state = slide
+    top = top._replace(friction=law)
+    assume(size(slip_of(*state, top)) > 1e-3)
+    rate = sliding_rates(state, top)
+
+    def square(time):
+        numbers = [a + time * b for a, b in zip(state.pack(), rate.pack(), strict=True)]
+        slip = slip_of(*SlidingState.unpack(numbers), top)
+        return sum(part * part for part in slip)
+
+    falls = float(derivative(square, 0.0))
+    scale = float(square(0.0)) + abs(falls) + scale_of(top, ContactPoint.of(*state[:2], top)) ** 2
+    found = Sliding(top, None).slip_left(state.pack())
+    assert found == pytest.approx(float(square(0.0)) + 0.5 * HORIZON * falls, abs=1e-11 * scale)
