@@ -3,10 +3,9 @@
 For small mu the tilt nutates as on a smooth table, lambda is constant, and what else the nutation leaves
 alone, L3 and the energy, drifts at a rate proportional to mu: by friction's torque and power averaged over
 one nutation (`tippetop.theory.dissipation`). Time enters only as mu t, which is why the time to turn over
-goes as 1 / mu.
+goes as 1 / mu. The nutation dies away, and what is left follows the precessions of the smooth table.
 
-When the nutation has died away, what is left is a drift along the steady precessions of the smooth table,
-in the tilt alone, and time is an integral over the tilt (`tippetop.theory.drift`).
+It is the limit of runs only while the nutation needs no pull of a table that pushes: beyond, they fly.
 """
 
 import math
@@ -18,11 +17,12 @@ from scipy.interpolate import PchipInterpolator
 from tippetop.errors import InvalidInput
 from tippetop.integrators.base import Array
 from tippetop.mechanics.friction import ViscousLaw
+from tippetop.mechanics.roots import crossing
 from tippetop.mechanics.top import natural_units
 from tippetop.mechanics.view import Angles
 from tippetop.problem import Problem
 from tippetop.theory.nutation import numbers_of
-from tippetop.theory.nutation_decay import Goals, Nutation, follow_nutation, launched
+from tippetop.theory.nutation_decay import Goals, Nutation, Stage, follow_nutation, launched
 from tippetop.theory.prediction import stable_by_energy
 from tippetop.theory.steady import jellett_of_launch, steady_states
 
@@ -37,8 +37,8 @@ class SlowFlow:
     tilt_high: Array
     """Least and largest tilt of the nutation at that time, rad, shape (n,): equal once it has died away."""
     final_tilt: float
-    """Tilt of the steady state the flow ends in, rad; nan if it could not be followed that far, as where so
-    wide a nutation would need a table that pulls."""
+    """Tilt of the steady state the flow ends in, rad; nan if it cannot be followed that far: it ends where
+    a table that only pushes does not hold so wide a nutation."""
 
     def tilts(self, mu_times: Array) -> tuple[Array, Array]:
         """Least and largest tilt at these values of mu t (s^2/m), rad: nan outside those followed."""
@@ -49,8 +49,12 @@ class SlowFlow:
         return low, high
 
 
+TOLERANCE = 1e-9
+"""Error of the logarithms of the amplitudes in a step."""
+
+
 def averaged_flow(
-    problem: Problem, distance: float = 1e-6, samples: int = 200, tolerance: float = 1e-5
+    problem: Problem, distance: float = 1e-6, samples: int = 200, tolerance: float = TOLERANCE
 ) -> SlowFlow:
     """The slow flow of a launch of an eccentric sphere with viscous friction; the size of mu does not matter.
 
@@ -61,15 +65,29 @@ def averaged_flow(
     distance
         How far from the final tilt the flow is followed, rad.
     samples
-        At how many times the nutating part is given.
+        At how many times, at least, each part is given: from one pole, and if it comes nearer, the other.
     tolerance
-        Error of the logarithms of the amplitudes in a step of the nutating part.
+        Error of the logarithms of the amplitudes in a step.
 
     Raises
     ------
     InvalidInput
         If the body is no eccentric sphere, its friction is not viscous, or the launch is exactly vertical.
     """
+    parts, begin = list[Array](), 0.0
+    stages = _stages(problem, distance, tolerance)
+    for stage in stages:
+        even = np.linspace(0.0, stage.knots[-1], samples)
+        times = np.union1d(even, stage.knots)
+        parts.append(np.array([begin + times, *np.broadcast_arrays(*stage.tilts(times))]))
+        begin = float(parts[-1][0, -1])
+    # Each begins where the one before ends.
+    time, low, high = np.hstack([parts[0][:, :1], *(part[:, 1:] for part in parts)])
+    return SlowFlow(time / float(problem.top.gravity), low, high, stages[-1].final_tilt)
+
+
+def _stages(problem: Problem, distance: float, tolerance: float) -> list[Stage]:
+    """The parts of the slow flow, each from the pole that the nutation is nearer to."""
     top = problem.top
     numbers = numbers_of(top)
     if not isinstance(top.friction, ViscousLaw):
@@ -77,24 +95,16 @@ def averaged_flow(
     if problem.launch.tilt in (0.0, math.pi) and problem.launch.tilt_rate == 0.0:
         raise InvalidInput("launch.tilt", problem.launch.tilt, "a tilted launch: a vertical spin is steady")
     jellett = jellett_of_launch(problem)
-    states = steady_states(top, jellett)
-    goals = Goals(
-        [state.tilt for state in states], [state.tilt for state in stable_by_energy(states)], distance
-    )
+    stable = [state.tilt for state in stable_by_energy(steady_states(top, jellett))]
+    goals = Goals(stable, distance, problem.contact.liftoff != "ignore")
     jellett /= float(natural_units(top).jellett)
-    nutation, begin, parts = nutation_of_launch(problem), 0.0, list[Array]()
-    # From the pole that it is nearer to, until it has died away; then the tilt alone.
+    nutation, stages = nutation_of_launch(problem), list[Stage]()
     for _ in range(_MOST_STAGES):
-        stage = follow_nutation(nutation, jellett, numbers, goals, samples, tolerance)
-        parts.append(np.array([begin + stage.time, stage.low, stage.high]))
-        begin, nutation = float(parts[-1][0, -1]), stage.end.turn(numbers)
-        if stage.done:
+        stages.append(follow_nutation(nutation, jellett, numbers, goals, tolerance))
+        if stages[-1].done:
             break
-    if stage.tail is not None:
-        parts.append(np.array([begin + stage.tail.time, stage.tail.tilt, stage.tail.tilt]))
-    # Each begins where the one before ends.
-    time, low, high = np.hstack([parts[0][:, :1], *(part[:, 1:] for part in parts)])
-    return SlowFlow(time / float(top.gravity), low, high, stage.final_tilt)
+        nutation = stages[-1].end.turn(numbers)
+    return stages
 
 
 def nutation_of_launch(problem: Problem) -> Nutation:
@@ -110,24 +120,40 @@ def nutation_of_launch(problem: Problem) -> Nutation:
 def flip_time_limit(problem: Problem, distance: float = 0.01) -> float:
     """Limit for small mu of mu times the flip time, s^2/m.
 
-    The flip time is the first at which the tilt is within `distance` (rad) of its end; inf where the flow
-    does not reach one.
+    The flip time is the first at which the tilt is within `distance` (rad) of its end.
 
     Raises
     ------
     InvalidInput
-        As `averaged_flow`.
+        As `averaged_flow`, and if the flow cannot be followed to its end.
     """
-    flow = averaged_flow(problem, distance=distance, samples=_FINE)
-    if not math.isfinite(flow.final_tilt):
-        return math.inf
-    # How far the end is outside of the nutation, which may pass it long before it has died away.
-    away = np.maximum(flow.tilt_low - flow.final_tilt, flow.final_tilt - flow.tilt_high)
-    first = int(np.argmax(np.append(away[:-1] <= distance, True)))
-    if first == 0:
-        return 0.0
-    share = (away[first - 1] - distance) / (away[first - 1] - away[first])
-    return float(flow.mu_time[first - 1] + share * (flow.mu_time[first] - flow.mu_time[first - 1]))
+    stages = _stages(problem, distance, TOLERANCE)
+    final = stages[-1].final_tilt
+    if not math.isfinite(final):
+        raise InvalidInput(
+            "launch",
+            problem.launch,
+            "one whose nutation the table holds without a pull, until it has died away",
+        )
+    begin = 0.0
+    for stage in stages:
+
+        def away(time: float, stage: Stage = stage) -> float:
+            """How far the end is outside of the nutation, which may pass it long before it has died away."""
+            low, high = stage.tilts(np.array([time]))
+            return float(max(low[0] - final, final - high[0])) - distance
+
+        # A step may be so long that the end is passed on the way.
+        shares = np.linspace(stage.knots[:-1], stage.knots[1:], _PER_STEP, endpoint=False).T.ravel()
+        times = np.append(shares, stage.knots[-1])
+        low, high = stage.tilts(times)
+        near = np.maximum(low - final, final - high) <= distance
+        if near.any():
+            first = int(np.argmax(near))
+            inside = 0.0 if first == 0 else crossing(away, float(times[first - 1]), float(times[first]))
+            return (begin + inside) / float(problem.top.gravity)
+        begin += float(stage.knots[-1])
+    return begin / float(problem.top.gravity)
 
 
 def local_exponent(mu: Array, flip_time: Array) -> Array:
@@ -135,5 +161,5 @@ def local_exponent(mu: Array, flip_time: Array) -> Array:
     return np.asarray(np.gradient(np.log(flip_time), np.log(mu)))
 
 
-_FINE = 4000
+_PER_STEP = 40
 _MOST_STAGES = 20

@@ -58,28 +58,51 @@ def mean_dissipation(path: Orbit, numbers: Numbers) -> Dissipation:
     smooth table, 1 + z'' with z = 1 - alpha c.
     """
     I1, I3, alpha = numbers
-    middle, half, far, excess, axial, swing = path
+    middle, half, far, excess, axial, _ = path
     spin = axial / I3
     weights = torque = power = 0.0
     for cosine in phases(path):
         p = middle + half * cosine
         c = 1.0 - p
         sine_squared = p * (2.0 - p)
-        inertia = I1 + alpha * alpha * sine_squared
-        about = excess + axial * p
-        room = swing - alpha * p
-        rate_squared = (2.0 * sine_squared * room - about * about / I1) / inertia
-        acceleration = (
-            2.0 * c * room - alpha * sine_squared - about * axial / I1 - rate_squared * alpha * alpha * c
-        ) / inertia
-        across = sine_squared * spin - about / I1 * (c - alpha)
+        inertia, rate_squared, reaction = _motion(p, path, numbers)
+        across = sine_squared * spin - (excess + axial * p) / I1 * (c - alpha)
         height = 1.0 - alpha * c
         weight = math.sqrt(inertia / (alpha * (far - p)))
-        pressed = weight * (1.0 + alpha * acceleration)
+        pressed = weight * reaction
         weights += weight
         torque -= pressed * across
         power -= pressed * (height * height * rate_squared + across * across) / sine_squared
     return Dissipation(torque / weights, power / weights)
+
+
+def least_reaction(path: Orbit, numbers: Numbers) -> float:
+    """Least reaction of the table over a nutation, in weights: negative where it would have to pull."""
+    places = (path.middle + path.half * cosine for cosine in (1.0, *phases(path), -1.0))
+    return min(_motion(p, path, numbers).reaction for p in places)
+
+
+class _Motion(NamedTuple):
+    """A nutation at one tilt."""
+
+    inertia: float
+    rate_squared: float
+    """p'^2."""
+    reaction: float
+    """1 + z'' = 1 + alpha p''."""
+
+
+def _motion(p: float, path: Orbit, numbers: Numbers) -> _Motion:
+    I1, _, alpha = numbers
+    c, sine_squared = 1.0 - p, p * (2.0 - p)
+    inertia = I1 + alpha * alpha * sine_squared
+    about = path.excess + path.axial * p
+    room = path.swing - alpha * p
+    rate_squared = (2.0 * sine_squared * room - about * about / I1) / inertia
+    acceleration = (
+        2.0 * c * room - alpha * sine_squared - about * path.axial / I1 - rate_squared * alpha * alpha * c
+    ) / inertia
+    return _Motion(inertia, rate_squared, 1.0 + alpha * acceleration)
 
 
 def amplitude_rates(pair: Amplitudes, root: float, jellett: float, numbers: Numbers) -> AmplitudeRates:

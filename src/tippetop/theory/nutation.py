@@ -171,7 +171,8 @@ def orbit_of_amplitudes(pair: Amplitudes, root: float, jellett: float, numbers: 
     """The nutation with these amplitudes and this Jellett's integral, sqrt(|p3|) near `root`; natural units.
 
     L_z - L3 and L3 are linear in r = sqrt(|p3|), and eliminating the energy from the coefficients of the
-    cubic leaves a quadratic equation for r. Newton's method improves the root given, but not where two meet.
+    cubic leaves a quadratic equation for r. Newton's method improves the root given, the less the closer the
+    other one is, and smoothly so: a flow may pass where the two meet.
     """
     I1, _, alpha = numbers
     difference = pair.fast - pair.slow
@@ -182,11 +183,12 @@ def orbit_of_amplitudes(pair: Amplitudes, root: float, jellett: float, numbers: 
     square = abs(alpha) * I1 * (2.0 - both) - alpha * slope * slope * off
     linear = jellett * slope * (1.0 + alpha) * off
     constant = -alpha * I1 * (4.0 + near - 2.0 * both) - jellett * jellett * off
-    for _ in range(2):
+    for _ in range(4):
         steepness = 2.0 * square * root + linear
-        step = ((square * root + linear) * root + constant) / steepness if steepness != 0.0 else math.inf
-        if abs(step) < _CLOSE * (abs(root) + _CLOSE):
-            root -= step
+        least = _CLOSE * (abs(2.0 * square * root) + abs(linear))
+        if least > 0.0:
+            value = (square * root + linear) * root + constant
+            root -= value * steepness**3 / (steepness**4 + least**4)
     far = math.copysign(root * root, alpha)
     excess = slope * root
     axial = (jellett - excess) / (1.0 - alpha)
@@ -199,7 +201,7 @@ def excess_slope(numbers: Numbers) -> float:
     return 2.0 * math.sqrt(2.0 * numbers.transverse * abs(numbers.alpha))
 
 
-_CLOSE = 1e-2
+_CLOSE = 1e-3
 
 
 def upside_down(path: Orbit, numbers: Numbers) -> Orbit:

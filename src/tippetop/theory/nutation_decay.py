@@ -13,8 +13,7 @@ from scipy.integrate import DOP853, OdeSolution
 
 from tippetop.integrators.base import Array
 from tippetop.mechanics.view import Angles
-from tippetop.theory.dissipation import AmplitudeRates, amplitude_rates
-from tippetop.theory.drift import Drift, drift, smooth_precession
+from tippetop.theory.dissipation import AmplitudeRates, amplitude_rates, least_reaction
 from tippetop.theory.nutation import (
     Amplitudes,
     Numbers,
@@ -37,6 +36,8 @@ class Nutation(NamedTuple):
     log_scale: float = 0.0
     """Logarithm of what the amplitudes are of those of `orbit`: for nutations so narrow that their squares
     are no numbers. They are linear."""
+    log_share: float = 0.0
+    """The same of the smaller amplitude alone, where it is too small beside the other for its rate."""
 
     @property
     def point(self) -> Array:
@@ -44,11 +45,13 @@ class Nutation(NamedTuple):
         pair = amplitudes(self.orbit)
         least = _NO_AMPLITUDE * (pair.fast + pair.slow)
         logs = [math.log(max(amplitude, least)) + self.log_scale for amplitude in pair]
+        logs[int(pair.fast > pair.slow)] += self.log_share
         return np.array([*logs, math.sqrt(abs(self.orbit.far))])
 
     def turn(self, numbers: Numbers) -> "Nutation":
         """The same seen from the other pole."""
-        return Nutation(upside_down(self.orbit, numbers.turned if self.turned else numbers), not self.turned)
+        seen = upside_down(self.orbit, numbers.turned if self.turned else numbers)
+        return Nutation(seen, not self.turned, log_share=self.log_share)
 
     @property
     def tilts(self) -> tuple[float, float]:
@@ -80,38 +83,42 @@ def launched(angles: Angles, numbers: Numbers) -> Nutation:
 
 
 class Goals(NamedTuple):
-    """Tilts of all and of the stable steady states, and how close the flow is to come to them, rad."""
+    """Where a flow may end."""
 
-    steady: list[float]
-    stable: list[float]
+    tilts: list[float]
+    """Tilts of the stable steady states, rad."""
     distance: float
+    """How close the whole nutation is to come to one of them, rad."""
+    pushed: bool
+    """Whether the table only pushes, so that there is no flow where a nutation needs more."""
 
 
 class Stage(NamedTuple):
     """A part of the slow flow, in natural units."""
 
-    time: Array
-    """mu t from its begin, shape (n,)."""
-    low: Array
-    high: Array
-    """Turning tilts of the nutation, rad, shape (n,)."""
+    knots: Array
+    """mu t at the ends of its steps, from 0, shape (n,)."""
+    path: OdeSolution | None
+    """`Nutation.point` over mu t; None if there is no step."""
+    begin: Nutation
     end: Nutation
-    """The nutation at its end."""
-    tail: Drift | None
-    """The drift of the tilt that follows, or None."""
     final_tilt: float
-    """Tilt of the steady state that it or its tail ends in, rad, or nan."""
+    """Tilt of the steady state that it ends in, rad, or nan."""
     done: bool
     """Whether it leads to the end of the flow; otherwise the other pole has come nearer."""
 
+    def tilts(self, times: Array) -> tuple[Array, Array]:
+        """Turning tilts of the nutation, rad, at these times, shape (n,)."""
+        points = self.begin.point[:, None] if self.path is None else self.path(times)
+        return _tilts_of(points, self.begin.turned)
+
 
 def follow_nutation(
-    begin: Nutation, jellett: float, numbers: Numbers, goals: Goals, samples: int, tolerance: float
+    begin: Nutation, jellett: float, numbers: Numbers, goals: Goals, tolerance: float
 ) -> Stage:
-    """Follow the amplitudes until the nutation has died away, is steady, or is nearer to the other pole.
+    """Follow the amplitudes until the nutation is steady, is nearer to the other pole, or needs a pull.
 
-    The turning tilts are given at so many `samples`. The `tolerance` is the error in a step, of the
-    logarithms.
+    The `tolerance` is the error in a step, of the logarithms.
     """
     turned, seen = begin.turned, begin.orbit
     seen_numbers = numbers.turned if turned else numbers
@@ -123,20 +130,14 @@ def follow_nutation(
     first = _LONGEST / max(1.0, _LONGEST * np.abs(rates(0.0, point)).max())
     solver = DOP853(rates, 0.0, point, _LONGEST, first_step=first, rtol=tolerance, atol=tolerance)
     knots, pieces = [0.0], []
-    tail: Drift | None = None
     final, done = math.nan, True
     for _ in range(_MOST_STEPS):
-        pair = _amplitudes_of(solver.y)
-        seen = orbit_of_amplitudes(pair, float(solver.y[2]), jellett, seen_numbers)
-        final = _reached(_seen_tilts(pair, turned), goals)
+        seen = orbit_of_amplitudes(_amplitudes_of(solver.y), float(solver.y[2]), jellett, seen_numbers)
+        if goals.pushed and least_reaction(seen, seen_numbers) < 0.0:
+            break
+        final = _reached(_tilts_of(solver.y, turned), goals)
         if math.isfinite(final):
             break
-        if _dies(seen, pair, AmplitudeRates(*solver.f)):
-            path = upside_down(seen, seen_numbers) if turned else seen
-            tail = _drift_from(path, jellett, numbers, goals)
-            if tail is not None:
-                final = tail.final_tilt
-                break
         if seen.middle > _FAR_FROM_POLE:
             done = False
             break
@@ -144,17 +145,10 @@ def follow_nutation(
             break
         knots.append(float(solver.t))
         pieces.append(solver.dense_output())
-    times = np.linspace(0.0, knots[-1], samples if pieces else 1)
-    points = OdeSolution(knots, pieces)(times) if pieces else point[:, None]
-    low, high = _seen_tilts(Amplitudes(*np.exp(points[:2])), turned)
-    return Stage(times, low, high, Nutation(seen, turned), tail, final, done)
+    share = min(0.0, -abs(solver.y[0] - solver.y[1]) - math.log(_LEAST_AMPLITUDE))
+    path = OdeSolution(knots, pieces) if pieces else None
+    return Stage(np.array(knots), path, begin, Nutation(seen, turned, log_share=share), final, done)
 
-
-_DEAD = 1e-3
-"""Half-width of the nutation over sin^2(theta) below which the tilt alone is followed."""
-
-_NEAR_POLE = 1e-10
-"""sin^2(theta) below which the amplitudes are followed all the same: a tilt so near to pi is no number."""
 
 _FAR_FROM_POLE = 1.3
 """Middle of the nutation, 1 - cos(theta), beyond which the other pole is clearly nearer."""
@@ -169,7 +163,7 @@ _NARROWEST = -55.0
 """Logarithm of amplitudes that are as good as any smaller ones."""
 
 _LONGEST = 1e5
-_MOST_STEPS = 400
+_MOST_STEPS = 1000
 _LEAST_AMPLITUDE = 1e-7
 _NO_AMPLITUDE = 1e-16
 _ROUNDING = 1e-12
@@ -193,42 +187,16 @@ def _amplitudes_of(y: Array) -> Amplitudes:
     return Amplitudes(max(fast, _LEAST_AMPLITUDE * slow), max(slow, _LEAST_AMPLITUDE * fast))
 
 
-def _seen_tilts(pair: Amplitudes, turned: bool) -> tuple[Array, Array]:
-    """Turning tilts of a nutation seen from theta = 0, or from pi."""
-    low, high = turning_tilts(pair)
+def _tilts_of(y: Array, turned: bool) -> tuple[Array, Array]:
+    """Turning tilts of a nutation with this `Nutation.point`, seen from theta = 0, or from pi."""
+    low, high = turning_tilts(Amplitudes(*np.exp(y[:2])))
     return (math.pi - high, math.pi - low) if turned else (low, high)
 
 
 def _reached(tilts: tuple[Array, Array], goals: Goals) -> float:
     """Tilt of the stable steady state that the whole nutation is close to, or nan."""
     low, high = tilts
-    for goal in goals.stable:
+    for goal in goals.tilts:
         if abs(low - goal) <= goals.distance and abs(high - goal) <= goals.distance:
             return goal
     return math.nan
-
-
-def _dies(path: Orbit, pair: Amplitudes, rates: AmplitudeRates) -> bool:
-    """Whether the nutation is small, and getting smaller, relative to the distance from the vertical."""
-    sine_squared = path.middle * (2.0 - path.middle)
-    if path.half > _DEAD * sine_squared or sine_squared < _NEAR_POLE:
-        return False
-    middle_rate = 2.0 * (pair.fast * rates.fast + pair.slow * rates.slow)
-    widening = 0.5 * (rates.fast + rates.slow) - middle_rate * 2.0 * (1.0 - path.middle) / sine_squared
-    return bool(widening < 0.0)
-
-
-def _drift_from(path: Orbit, jellett: float, numbers: Numbers, goals: Goals) -> Drift | None:
-    """The drift in the tilt alone from here on: along whichever precession the nutation goes about."""
-    tilt = 2.0 * math.asin(math.sqrt(min(path.middle / 2.0, 1.0)))
-    sine_squared = path.middle * (2.0 - path.middle)
-    turning = (path.excess + path.axial * path.middle) / (numbers.transverse * sine_squared)
-    c = np.float64(1.0 - path.middle)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        fast, slow = (smooth_precession(c, jellett, which, numbers) for which in (True, False))
-    if not math.isfinite(fast):
-        return None
-    nearer_fast = bool(abs(turning - fast) < abs(turning - slow))
-    found = drift(tilt, jellett, nearer_fast, numbers, goals.steady, goals.distance)
-    # On the way to an unstable state the nutation grows again.
-    return found if found is not None and found.final_tilt in goals.stable else None

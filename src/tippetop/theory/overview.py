@@ -181,5 +181,8 @@ def _flip_times(problem: Problem) -> tuple[float, float] | tuple[None, None]:
     vertical = launch.tilt in (0.0, math.pi) and launch.tilt_rate == 0.0
     if vertical or friction.vanishes or not isinstance(friction, ViscousFriction):
         return None, None
-    limit = flip_time_limit(problem)
-    return (limit, limit / friction.mu) if math.isfinite(limit) else (None, None)
+    try:
+        limit = flip_time_limit(problem)
+    except InvalidInput:  # the table does not hold the nutation
+        return None, None
+    return limit, limit / friction.mu
