@@ -23,6 +23,9 @@ page: with 1e-12 a step either may be off by more than the 1e-7 by which they ar
 MOST_OFF = 1e-7
 """How much numbers may differ, beside the largest of their unit in the run."""
 
+ROUNDINGS = 10.0
+"""How much more, at most, than by what Python's own change where a launch changes by a rounding."""
+
 
 def laws_of(random: np.random.Generator, size: float) -> list[dict[str, Any]]:
     """Laws of friction of every kind."""
@@ -108,8 +111,11 @@ def in_javascript(launches: list[dict[str, Any]], *options: str) -> Iterator[dic
         yield json.loads(line)
 
 
-def compared(found: dict[str, Any], run: Any) -> list[str]:
-    """How what JavaScript made of a launch differs from a run; nothing if it does not."""
+def compared(found: dict[str, Any], run: Any, beside: Any = None) -> list[str]:
+    """How what JavaScript made of a launch differs from a run; nothing if it does not.
+
+    A run of nearly the same launch, if one is given, tells how far a rounding may grow.
+    """
     if "outcome" not in found:
         return [str(found)]
     wrong = []
@@ -137,11 +143,10 @@ def compared(found: dict[str, Any], run: Any) -> list[str]:
         theirs = theirs.reshape(ours.shape)
         if not np.array_equal(np.isnan(theirs), np.isnan(ours)):
             wrong.append(f"{name} is missing elsewhere")
-        off = np.abs(theirs - ours)
-        if name == "phi":
-            off = np.minimum(off, 2.0 * np.pi - off)
-        most, size = largest(off), sizes[run[name].attrs.get("units", "1")]
-        if most > MOST_OFF * size:
+        most, size = apart(theirs, ours, name), sizes[run[name].attrs.get("units", "1")]
+        known = beside is not None and beside[name].shape == run[name].shape
+        grown = apart(beside[name].values, run[name].values, name) if known else 0.0
+        if most > max(MOST_OFF * size, ROUNDINGS * grown):
             wrong.append(f"{name} off by {most:.1e} of {size:.1e}")
     return wrong
 
@@ -154,6 +159,12 @@ def sizes_of(run: Any) -> dict[str, float]:
             units = run[name].attrs["units"]
             sizes[units] = max(sizes.get(units, 0.0), largest(np.abs(run[name].values)))
     return sizes | dict.fromkeys(("rad", "s", "1"), 1.0)
+
+
+def apart(a: Any, b: Any, name: str) -> float:
+    """How far some numbers are from others, at most."""
+    off = np.abs(a - b)
+    return largest(np.minimum(off, 2.0 * np.pi - off) if name == "phi" else off)
 
 
 def largest(numbers: Any) -> float:
@@ -193,6 +204,11 @@ def in_python(fields: dict[str, Any], duration: float) -> Any:
         )
     except tt.InvalidInput as refusal:
         return str(refusal)
+
+
+def nudged(fields: dict[str, Any]) -> dict[str, Any]:
+    """The same launch but for a rounding of its tilt."""
+    return fields | {"launch": fields["launch"] | {"tilt": math.nextafter(fields["launch"]["tilt"], 4.0)}}
 
 
 def is_rounding(a: float, b: float, error: float) -> bool:
