@@ -61,7 +61,8 @@ def averaged_flow(
     Parameters
     ----------
     problem
-        The launch. The horizontal velocity of its centre of mass has no part: it dies away by itself.
+        The launch. The horizontal velocity of its centre of mass has no part: it dies away by itself, unless
+        one nutation brings the axis round just once (Limits in docs/theory/slow.md).
     distance
         How far from the final tilt the flow is followed, rad.
     samples
