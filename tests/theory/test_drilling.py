@@ -238,3 +238,22 @@ def test_the_command_line_says_how_long_it_stands():
     )
     assert "not conserved" in told.stdout
     assert "would stand" in CliRunner().invoke(app, ["critical", *changes, "0.1"]).stdout
+
+
+@pytest.mark.parametrize("pressure", PRESSURES)
+def test_while_drilling_takes_the_spin_a_small_tilt_grows_as_one_over_it(pressure):
+    """Times its decay by the spectrum: the vertical torque leaves the horizontal angular momentum alone."""
+    body = {"mass": 0.02, "shape": {"kind": "spheroid", "across": 0.02, "along": 0.0232}}
+    problem = tt.Problem(
+        body={**body, "I1": 2.88e-6, "I3": 3.2e-6},
+        friction={"kind": "contensou", "mu": 0.3, "patch_radius": 1e-3, "pressure": pressure},
+        launch={"tilt": 1e-5, "spin": 300.0},
+    )
+    run = tt.simulate(problem, 2.0, samples=3)
+    spins = run["omega3"].values
+    upright = vertical_spin(SteadyKind.UPRIGHT, problem.top, spins)
+    decay = math.exp((eigenvalues(upright, problem.top)[:, 0].real * [1.0, 4.0, 1.0]).sum() / 3.0)
+    assert decay < 1.0
+    growth = run["theta"].values[-1] / run["theta"].values[0]
+    assert growth == pytest.approx(decay * spins[0] / spins[-1], rel=5e-3)
+    assert growth > 1.05

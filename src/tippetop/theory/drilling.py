@@ -4,6 +4,9 @@ A torque M about the vertical changes Jellett's integral of a sphere at the rate
 of the centre of mass. Under Contensou's friction with a patch of radius R a steady state, which has no
 slip, feels M = -(3 pi / 16) mu m g R, whatever its spin and for both pressures: lambda' is a slow clock. A
 vertical spin loses |M| / I3 per second, exactly, and stands until too little is left for stability.
+
+The torque takes from the vertical part of L alone, so that L leans the more the less of it is left: while the
+spin is stable, a small tilt decays as its eigenvalue says and grows as 1 / omega3, which is often quicker.
 """
 
 import math
@@ -46,6 +49,7 @@ def standing_time(problem: Problem) -> float:
     Exact for a launch at tilt 0 or pi, which the torque of drilling alone changes. For any other launch of an
     eccentric sphere it is the time of the inverted spin with its Jellett's integral: how long it could stand
     if it turned over at once. inf without drilling, and 0 where the spin is not stable to begin with.
+    A small tilt may grow meanwhile, but hardly more than as 1 / omega3.
 
     Raises
     ------
