@@ -145,10 +145,48 @@ def test_what_earlier_versions_kept_goes_as_the_rest_does_and_nothing_else(tmp_p
         folder.mkdir()
         (folder / CONTENT).write_bytes(bytes(1000))
         if folder in old:
-            (folder / SEAL).write_text("{}")
+            (folder / SEAL).write_text(json.dumps({CONTENT: sha256(bytes(1000)).hexdigest()}))
         os.utime(folder, (when, when))
     (tmp_path / "cache.db").write_bytes(bytes(1000))
     os.utime(tmp_path / "cache.db", (0, 0))
     kept_content("new", lambda: bytes(1000))
     assert [folder.exists() for folder in (*old, others)] == [False, True, True]
     assert (tmp_path / "cache.db").exists() is not users
+
+
+NOT_OURS = {
+    "making-music/song": "not compiled",
+    f"making-{2**22 + 1}-pictures/first.png": "not compiled",
+    f"photos-2024/{SEAL}": json.dumps({"beach.jpg": 64 * "0"}),
+    f"code-{32 * '0'}/{SEAL}": "[]",
+    f"numba-{32 * '1'}/{SEAL}": json.dumps({"closed": "with wax"}),
+    f"numba-{32 * '2'}/notes": "no seal",
+    "code-of-mine/notes": "no seal",
+}
+
+
+def test_what_others_keep_in_the_same_folder_stays(tmp_path, monkeypatch):
+    monkeypatch.setenv(VARIABLE, str(tmp_path))
+    monkeypatch.setattr(sealed_folders, "MOST", 1)
+    for name, content in NOT_OURS.items():
+        (tmp_path / name).parent.mkdir()
+        (tmp_path / name).write_text(content)
+    for made in "ab":
+        kept_content(made, lambda: b"new")
+    assert {
+        name: (tmp_path / name).read_text() for name in NOT_OURS if (tmp_path / name).exists()
+    } == NOT_OURS
+
+
+@pytest.mark.skipif(not hasattr(os, "getuid"), reason="folders have no owner here")
+def test_what_another_user_made_is_not_removed(tmp_path, monkeypatch):
+    monkeypatch.setenv(VARIABLE, str(tmp_path))
+    monkeypatch.setattr(sealed_folders, "MOST", 1)
+    kept_content("theirs", lambda: b"made")
+    [theirs] = tmp_path.iterdir()
+    left = tmp_path / f"{theirs.name}-{2**22 + 1}-a1_45678"
+    left.mkdir()
+    monkeypatch.setattr(os, "getuid", lambda: tmp_path.stat().st_uid + 1)
+    kept_content("ours", lambda: b"made")
+    assert theirs.exists()
+    assert left.exists()

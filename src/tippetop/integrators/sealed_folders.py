@@ -4,6 +4,7 @@ import contextlib
 import hashlib
 import json
 import os
+import re
 import shutil
 import tempfile
 from collections.abc import Callable
@@ -26,11 +27,14 @@ PREFIX, MOST, LARGEST = "code-", 256, 2**27
 """How the folders are called, and how many there are at most, and bytes in them, when one more is made: then
 those go that were not used for longest."""
 
-OLD = "cache.db*"
-"""What else earlier versions kept in the user's folder, beside sealed folders of other names."""
+SEALED = re.compile(r"(code|numba)-[0-9a-f]{32}")
+"""Names of folders that are whole, of this version and of earlier ones."""
 
-MAKING = "making-"
-"""How those are called that are not yet whole: with this and the number of the process that makes them."""
+MAKING = re.compile(rf"{PREFIX}[0-9a-f]{{32}}-([0-9]{{1,9}})-[a-z0-9_]{{8}}")
+"""Names of those that are not yet whole: with the number of the process that makes them."""
+
+OLD = "cache.db*", "making-*"
+"""What else earlier versions kept in the user's folder."""
 
 
 def kept(made: object, use: Callable[[Path | None], Found]) -> Found:
@@ -93,7 +97,7 @@ def _made(folder: Path, use: Callable[[Path | None], Found]) -> Found:
     """Compile in a folder beside, which takes its name when it is whole."""
     folder.parent.mkdir(parents=True, exist_ok=True)
     _clear(folder.parent)
-    beside = Path(tempfile.mkdtemp(prefix=f"{MAKING}{os.getpid()}-", dir=folder.parent))
+    beside = Path(tempfile.mkdtemp(prefix=f"{folder.name}-{os.getpid()}-", dir=folder.parent))
     try:
         found = use(beside)
         (beside / SEAL).write_text(json.dumps(_digests(beside)), encoding="utf-8")
@@ -106,16 +110,21 @@ def _made(folder: Path, use: Callable[[Path | None], Found]) -> Found:
 
 def _clear(place: Path) -> None:
     """Remove what is too much, and what processes have left that are no more: killed while they compiled."""
-    # A folder that the variable names may hold anything: what is sealed there is of this package.
-    size, own = 0, [seal.parent for seal in place.glob(f"*-*/{SEAL}")]
-    own += place.glob(OLD) if place == users_folder() else ()
+    # A folder that the variable names may hold anything: only what is surely of this package goes.
+    folders = [folder for folder in place.iterdir() if folder.is_dir() and _is_own(folder)]
+    size, own = (
+        0,
+        [folder for folder in folders if SEALED.fullmatch(folder.name) and _seal(folder) is not None],
+    )
+    for pattern in OLD if place == users_folder() else ():
+        own += place.glob(pattern)
     for number, old in enumerate(sorted(own, key=os.path.getmtime, reverse=True), 1):
         size += sum(path.stat().st_size for path in (old, *old.glob("*")) if path.is_file())
         if number >= MOST or size > LARGEST:
             shutil.rmtree(old, ignore_errors=True) if old.is_dir() else old.unlink(missing_ok=True)
-    for left in place.glob(MAKING + "*"):
-        process = left.name.split("-")[1]
-        if not (process.isdecimal() and psutil.pid_exists(int(process))):
+    for left in folders:
+        process = MAKING.fullmatch(left.name)
+        if process and not psutil.pid_exists(int(process[1])):
             shutil.rmtree(left, ignore_errors=True)
 
 
@@ -127,9 +136,19 @@ def _is_own(folder: Path) -> bool:
 def _is_whole(folder: Path) -> bool:
     """Whether a folder has what was put there, as it was."""
     try:
-        return bool(json.loads((folder / SEAL).read_text(encoding="utf-8")) == _digests(folder))
-    except (OSError, ValueError, RecursionError):
+        return _seal(folder) == _digests(folder)
+    except OSError:
         return False
+
+
+def _seal(folder: Path) -> dict[str, str] | None:
+    """The digests that a folder is sealed with; none if it is not."""
+    try:
+        seal = json.loads((folder / SEAL).read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError):
+        return None
+    digests = seal.values() if isinstance(seal, dict) else [None]
+    return seal if all(re.fullmatch("[0-9a-f]{64}", str(digest)) for digest in digests) else None
 
 
 def _digests(folder: Path) -> dict[str, str]:
