@@ -130,6 +130,17 @@ def test_another_version_is_refused(tmp_path, monkeypatch):
         Store.resume(tmp_path / "a.zarr", quick())
 
 
+def test_a_store_that_knows_fewer_endings_is_refused(tmp_path, monkeypatch):
+    """What it would be given could not be told by its words."""
+    fewer = layout.CONTENTS["outcome"]._replace(flags=layout.CONTENTS["outcome"].flags[:-1])
+    with monkeypatch.context() as patch:
+        patch.setattr(layout, "CONTENTS", {**layout.CONTENTS, "outcome": fewer})
+        Store.create(tmp_path / "a.zarr", quick())
+    with pytest.raises(FileTrouble, match=r"tells outcome by other words .* overwrite=True"):
+        Store.resume(tmp_path / "a.zarr", quick())
+    assert set(read_sweep(tmp_path / "a.zarr")) == set(layout.CONTENTS)
+
+
 def test_what_is_there_is_not_overwritten_unasked(tmp_path):
     stored(quick(), tmp_path / "a.zarr", workers=1)
     with pytest.raises(FileTrouble, match="overwrite=True"):

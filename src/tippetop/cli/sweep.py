@@ -209,14 +209,13 @@ def _draw_maps(dataset: "xr.Dataset", files: dict[str, Path], overwrite: bool) -
 
 
 def _summary(dataset: "xr.Dataset", progress: "Progress") -> dict[str, Any]:
-    names = dataset["outcome"].attrs["flag_meanings"].split()
     groups = Counter(int(value) for value in dataset["outcome"].values.ravel())
     return {
         "cells": progress.cells,
         "computed": progress.done - progress.before,
         "seconds": progress.elapsed,
         "launches_per_second": progress.rate,
-        "outcomes": {name: groups[k] for k, name in enumerate(names) if groups[k]},
+        "outcomes": {ending.name.lower(): groups[ending] for ending in tt.Ending if groups[ending]},
         "flights": int(dataset["flights"].where(dataset["flights"] >= 0, 0).sum()),
     }
 

@@ -170,15 +170,23 @@ def refuse_existing(path: Path, overwrite: bool) -> None:
 def kept_sweep(path: Path) -> Sweep:
     """The sweep that a store holds, to go on with it.
 
-    Raises `FileTrouble` as `read_metadata` does, and if it was made by another version.
+    Raises `FileTrouble` as `read_metadata` does, and if it was made by another version, also by one of the
+    same name that had other flags.
     """
-    attributes = read_metadata(path)["attributes"]
+    metadata = read_metadata(path)
+    attributes, arrays = metadata["attributes"], metadata["consolidated_metadata"]["metadata"]
     version = attributes["tippetop_version"]
     if version != __version__:
         raise FileTrouble(
             f"{path} was made by version {version} of tippetop, and this is {__version__}, whose results may "
             f"differ; finish it with that version, or start afresh with {OVERWRITE}"
         )
+    for name, kind in CONTENTS.items():
+        if arrays.get(name, {}).get("attributes", {}).get("flag_meanings", "") != " ".join(kind.flags):
+            raise FileTrouble(
+                f"{path} was made by a version that tells {name} by other words than this one, whose results "
+                f"may differ; start afresh with {OVERWRITE}"
+            )
     return Sweep(**json.loads(attributes["sweep"]))
 
 
