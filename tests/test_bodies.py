@@ -89,6 +89,40 @@ def test_sweeps_find_disks_lying_flat_as_runs_do() -> None:
     assert float(found.sel({"launch.spin": 0.0, "launch.tilt": 0.3})["end_time"]) < 0.1
 
 
+LAWS = {
+    "viscous": tt.ViscousFriction(mu=0.3),
+    "coulomb": tt.CoulombFriction(mu=0.1),
+    "ellipsoidal": tt.ContensouFriction(mu=0.3, patch_radius=1e-3, pressure="ellipsoidal"),
+    "hertz": tt.ContensouFriction(mu=0.1, patch_radius=1e-3, pressure="hertz"),
+}
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize(("tilt", "rate"), [(0.16, -20.0), (0.14, -10.0), (math.pi - 0.2, 40.0)])
+def test_a_coin_thrown_onto_its_face_slips_until_it_lies_flat(law: str, tilt: float, rate: float) -> None:
+    """In one plane, where its tip passes the pole within a step, its edge lies flat on the way there."""
+    problem = tt.Problem(
+        body=tt.presets.COIN, friction=LAWS[law], launch=tt.Launch(tilt=tilt, spin=0.0, tilt_rate=rate)
+    )
+    run = tt.simulate(problem, 0.1, samples=1001)
+    assert run.attrs["outcome"] == "lying_flat"
+    assert float(run["energy_error"]) < 1e-9
+    theta = run["theta"].values if rate < 0.0 else math.pi - run["theta"].values
+    assert theta[-1] == pytest.approx(1e-3, rel=1e-6)
+    assert (np.diff(theta) < 0.0).all()
+
+
+def test_coins_that_slip_until_they_lie_flat_do_the_same_in_a_sweep() -> None:
+    launch = tt.Launch(tilt=0.2, spin=0.0, tilt_rate=-40.0)
+    problem = tt.Problem(body=tt.presets.COIN, friction=LAWS["coulomb"], launch=launch)
+    swept = tt.sweep(problem, {"launch.tilt": [0.18, 0.2]}, duration=0.1, workers=1)
+    for tilt in (0.18, 0.2):
+        run, cell = tt.simulate(problem.replace({"launch.tilt": tilt}), 0.1), swept.sel({"launch.tilt": tilt})
+        assert float(cell["final_theta"]) == pytest.approx(1e-3, rel=1e-6)
+        assert float(cell["end_time"]) == pytest.approx(float(run["end_time"]), rel=1e-9)
+        assert float(cell["energy_lost"]) == pytest.approx(float(run["energy_lost"]), rel=1e-9)
+
+
 @pytest.mark.parametrize("body", [DISK, BALLS])
 def test_their_shapes_go_into_text_and_come_back(body: tt.Body) -> None:
     problem = tt.Problem(body=body, friction=ROUGH, launch=tt.Launch(tilt=0.3, spin=1.0))

@@ -64,6 +64,18 @@ def test_a_coin_that_tumbles_through_flat_is_the_same() -> None:
         assert not compared(found, run)
 
 
+def test_a_coin_that_slips_until_it_lies_flat_is_the_same() -> None:
+    launch = tt.Launch(tilt=0.16, spin=0.0, tilt_rate=-20.0)
+    for pressure in ("ellipsoidal", "hertz"):
+        law = tt.ContensouFriction(mu=0.3, patch_radius=1e-3, pressure=pressure)
+        fields = tt.Problem(body=tt.presets.COIN, friction=law, launch=launch).model_dump(mode="json")
+        (found,) = in_javascript([asked(0, DURATION) | {"problem": fields}])
+        run = in_python(fields, DURATION)
+        assert run.attrs["outcome"] == "lying_flat"
+        assert abs(float(run["theta"][-1]) - 1e-3) < 1e-9
+        assert not compared(found, run)
+
+
 def test_random_launches_are_the_same() -> None:
     found = in_javascript([asked(seed, DURATION) for seed in SEEDS])
     wrong = {}

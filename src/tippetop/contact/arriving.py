@@ -109,12 +109,12 @@ def arriving(here: Closing, ending: Vanishing, top: Top, integrator: Integrator)
             begin, way = onset(known, 1, DEGREE), known.first
             found = Arrival(time_to(here.speed, begin.rows, left), begin.rows)
             left, then = found.left, found.at(1.0)
-            off = plus(now, scaled(-1.0, tuple(then[:6])))
-            aside = math.dist(here.direction, scaled(1.0 / size(tuple(then[6:])), tuple(then[6:])))
+            off, speed = plus(now, scaled(-1.0, tuple(then[:6]))), size(tuple(then[6:]))
+            aside = math.dist(here.direction, scaled(1.0 / speed, tuple(then[6:])))
             rounding = aside * here.speed < UNSEEN
             if not (aside < TURNING * left or rounding):
                 return None
-            if size(off) < SETTLED:
+            if max(size(off), abs(speed - here.speed)) < SETTLED:
                 return found if (aside * left < at_rest or rounding) and found.serves else None
             end = plus(end, off)
     except ArithmeticError:

@@ -10,7 +10,7 @@ from tippetop.contact.closing import FEW, LANDED, OWN, closing_motion, closing_o
 from tippetop.contact.mode import EventKind, IntegratedMode, Mode, Outcome, Reaction, Segment, Transition
 from tippetop.contact.sliding import Sliding, SlidingWithoutRolling
 from tippetop.contact.sticking import Sticking
-from tippetop.contact.surfaces import follow_surface, stays_open
+from tippetop.contact.surfaces import follow_surface, passes_flat, stays_open
 from tippetop.integrators.base import Arc, Array, Integrator, Motion
 from tippetop.integrators.dense import DenseSolution, as_array
 from tippetop.mechanics.ending import (
@@ -114,9 +114,14 @@ class Passing(Mode):
         return Reaction(force, torque, power)
 
     def goes_on(self, at: Callable[[int], Row], pressed: Sequence[int]) -> bool:
-        """Whether no other surface touches at any look, and at some the table does not pull that may not."""
+        """Whether no other surface touches, nor a face, and the table does not pull that may not.
+
+        Whether it pulls is told at some of the looks.
+        """
         looks = range(1, LOOKS + 1)
         if isinstance(self.top.surface, Hull) and not all(stays_open(self.top, at(look)) for look in looks):
+            return False
+        if passes_flat(self.top, [at(look) for look in range(LOOKS + 1)]):
             return False
         return self.rules.pulls or all(self.reaction(at(look)).force[2] > 0.0 for look in pressed)
 
@@ -218,7 +223,8 @@ class Stopping(Passing):
             clock = (*then[:6], *scaled(1.0 / size(xi), xi), size(xi), here.time)
             if not all(one.value(clock, numbers) > 0.0 for one in self.motion.guards if one.name not in OWN):
                 return None
-        return found
+        way = [found.at(look / LOOKS) for look in range(LOOKS + 1)]
+        return None if passes_flat(self.top, way) else found
 
     def _clock(self, state: State) -> tuple[float, ...]:
         """The numbers of the clock at a state."""

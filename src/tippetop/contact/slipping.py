@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any, NamedTuple
 
-from tippetop.contact.surfaces import clearance
+from tippetop.contact.surfaces import clearance, passes_flat
 from tippetop.integrators.base import Array
 from tippetop.integrators.iteration import (
     Iteration,
@@ -177,10 +177,16 @@ class SlipStep:
         """Coefficients of y and xi in so many of its parts, of the last of which it may be a share."""
         return pieces_of(self.rows, self.layout.size, STAGES, parts)
 
-    def goes_on(self, top: Top, *, pulls: bool) -> bool:
-        """Whether no other surface comes near the table, and that is far from pulling if it may not."""
+    def goes_on(self, top: Top, ends: tuple[Sequence[float], Sequence[float]], *, pulls: bool) -> bool:
+        """Whether nothing else comes near the table, and that is far from pulling if it may not.
+
+        By its points, and the numbers at its ends.
+        """
         several = isinstance(top.surface, Hull)
         if several and not min([clearance(top, c) for c in row_of(self.unknowns, 2)]) > CLEAR:
+            return False
+        points = zip(row_of(self.unknowns, 0), row_of(self.unknowns, 1), strict=True)
+        if passes_flat(top, [ends[0], *points, ends[1]]):
             return False
         return pulls or bool(min(row_of(self.found, self.layout.normal)) > PRESSED)
 
@@ -247,7 +253,7 @@ def slip_phase(
             if length < LEAST:
                 break
             continue
-        if not step.goes_on(top, pulls=pulls):
+        if not step.goes_on(top, (now, after), pulls=pulls):
             break
         ended = not lasts
         pieces = step.pieces(part)

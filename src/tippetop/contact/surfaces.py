@@ -1,6 +1,6 @@
 """Guards of what a body's shape makes happen: another surface touches the table, or its face lies on it."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from tippetop.contact.mode import Mode, Outcome, Transition
@@ -35,6 +35,24 @@ def surface_guards(top: Top) -> list[tuple[str, Callable[[Top, Vector], Scalar]]
 def lies_flat(top: Top, axis: Vector) -> Scalar:
     """Whether a body whose active surface touches the table lies on the face that this is the edge of."""
     return is_edge(top.surface) and _face(top, axis) <= 0.0
+
+
+def passes_flat(top: Top, looks: Sequence[Row]) -> bool:
+    """Whether a body may come to lie flat between looks at its axis, the first of the numbers, floats.
+
+    In one plane its tip passes the pole within so little that no look tells: the straight line between two
+    does, by its place nearest the pole, from which the tip strays by less than a quarter of the line.
+    """
+    if not is_edge(top.surface):
+        return False
+    for look in range(1, len(looks)):
+        a, b = looks[look - 1], looks[look]
+        x, y = b[0] - a[0], b[1] - a[1]
+        square = x * x + y * y
+        part = min(max(-(a[0] * x + a[1] * y) / square, 0.0), 1.0) if square > 0.0 else 0.0
+        if _face(top, (a[0] + part * x, a[1] + part * y, 0.0)) <= square / 16.0:
+            return True
+    return False
 
 
 def _face(top: Top, axis: Vector) -> Scalar:

@@ -927,6 +927,30 @@ function lies_flat(top, axis) {
   return py.and(is_edge(top.surface), () => _face(top, axis) <= 0.0);
 }
 
+/** Whether a body may come to lie flat between looks at its axis, the first of the numbers, floats. */
+function passes_flat(top, looks) {
+  if (!py.truth(is_edge(top.surface))) {
+    return false;
+  }
+  for (var look = 1; look < py.len(looks); look += 1) {
+    var a = py.item(looks, py.sub(look, 1));
+    var b = py.item(looks, look);
+    var x = py.sub(b[0], a[0]);
+    var y = py.sub(b[1], a[1]);
+    var square = py.add(py.mul(x, x), py.mul(y, y));
+    var part = square > 0.0 ? py.min(
+      py.max(py.div(py.neg(py.add(py.mul(a[0], x), py.mul(a[1], y))), square), 0.0),
+      1.0
+    ) : 0.0;
+    if (
+      _face(top, [py.add(a[0], py.mul(part, x)), py.add(a[1], py.mul(part, y)), 0.0]) <= py.div(square, 16.0)
+    ) {
+      return true;
+    }
+  }
+  return false;
+}
+
 function _face(top, axis) {
   var edge = acting(top.surface);
   return edge.face_guard(axis);
@@ -3132,15 +3156,13 @@ function arriving(here, ending, top, integrator) {
       left = found.left;
       var then = found.at(1.0);
       var off = plus(now, scaled(-1.0, py.tuple(then.slice(0, 6))));
-      var aside = py.math.dist(
-        here.direction,
-        scaled(py.div(1.0, size(py.tuple(then.slice(6)))), py.tuple(then.slice(6)))
-      );
+      var speed = size(py.tuple(then.slice(6)));
+      var aside = py.math.dist(here.direction, scaled(py.div(1.0, speed), py.tuple(then.slice(6))));
       var rounding = py.mul(aside, here.speed) < UNSEEN;
       if (!(aside < py.mul(TURNING, left) || py.truth(rounding))) {
         return null;
       }
-      if (size(off) < SETTLED) {
+      if (py.max(size(off), py.abs(py.sub(speed, here.speed))) < SETTLED) {
         return (py.mul(aside, left) < at_rest || py.truth(rounding)) && py.truth(found.serves) ? found : null;
       }
       end = plus(end, off);
@@ -3468,7 +3490,7 @@ class Passing extends Mode {
     }
     return new Reaction(force, torque, power);
   }
-  /** Whether no other surface touches at any look, and at some the table does not pull that may not. */
+  /** Whether no other surface touches, nor a face, and the table does not pull that may not. */
   goes_on(at, pressed) {
     var looks = py.range(1, py.add(LOOKS_of_passing, 1));
     if (
@@ -3476,6 +3498,9 @@ class Passing extends Mode {
         py.all([...looks].map((look) => stays_open(this.top, at(look))))
       )
     ) {
+      return false;
+    }
+    if (py.truth(passes_flat(this.top, py.range(py.add(LOOKS_of_passing, 1)).map((look) => at(look))))) {
       return false;
     }
     return py.or(
@@ -3613,7 +3638,8 @@ class Stopping extends Passing {
         return null;
       }
     }
-    return found;
+    var way = py.range(py.add(LOOKS_of_passing, 1)).map((look) => found.at(py.div(look, LOOKS_of_passing)));
+    return py.truth(passes_flat(this.top, way)) ? null : found;
   }
   /** The numbers of the clock at a state. */
   _clock(state) {
@@ -4097,14 +4123,18 @@ class SlipStep extends py.Thing {
   pieces(parts) {
     return pieces_of(this.rows, this.layout.size, STAGES, parts);
   }
-  /** Whether no other surface comes near the table, and that is far from pulling if it may not. */
-  goes_on(top, pulls) {
+  /** Whether nothing else comes near the table, and that is far from pulling if it may not. */
+  goes_on(top, ends, pulls) {
     var several = py.isinstance(top.surface, Hull);
     if (
       py.truth(several) && !(
         py.min([...row_of(this.unknowns, 2)].map((c) => clearance(top, c))) > CLEAR_of_slipping
       )
     ) {
+      return false;
+    }
+    var points = py.zip(row_of(this.unknowns, 0), row_of(this.unknowns, 1));
+    if (py.truth(passes_flat(top, [ends[0], ...points, ends[1]]))) {
       return false;
     }
     return py.or(pulls, () => py.bool(py.min(row_of(this.found, this.layout.normal)) > PRESSED_of_slipping));
@@ -4181,7 +4211,7 @@ function slip_phase(y, way, top, ending, longest, pulls) {
       }
       continue;
     }
-    if (!py.truth(step.goes_on(top, pulls))) {
+    if (!py.truth(step.goes_on(top, [now, after], pulls))) {
       break;
     }
     ended = !py.truth(lasts);
@@ -11478,6 +11508,7 @@ export {
   pair_motion,
   parting_guard,
   parts_left,
+  passes_flat,
   patches_letting_go,
   phis,
   piece,
