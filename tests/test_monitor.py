@@ -119,3 +119,24 @@ def test_steps_that_are_too_long_are_told() -> None:
         for step in (1e-2, 1e-3)
     ]
     assert outcomes == ["inaccurate", "completed"]
+
+
+def test_what_a_motion_seemed_to_come_to_is_not_told_of_one_that_cannot_be_trusted() -> None:
+    off, kept = seen(energy=1e-3 * ENERGY), seen()
+    for outcome in tt.Outcome:
+        ends = outcome in (
+            tt.Outcome.COMPLETED,
+            tt.Outcome.LIFTED_OFF,
+            tt.Outcome.AT_REST,
+            tt.Outcome.LYING_FLAT,
+        )
+        assert kept.judged(outcome, 1e-12) is outcome
+        assert off.judged(outcome, 1e-12) is (tt.Outcome.INACCURATE if ends else outcome)
+
+
+def test_a_lift_off_that_steps_too_long_find_is_not_told() -> None:
+    problem = tt.presets.report_problem(spin=175.0).replace({"contact.liftoff": "stop"})
+    methods: list[dict[str, Any]] = [{"integrator": "rk4", "step": 3e-3}, {"integrator": "dop853"}]
+    runs = [tt.simulate(problem, 6.5, samples=2, **method) for method in methods]
+    assert [run.attrs["outcome"] for run in runs] == ["inaccurate", "lifted_off"]
+    assert all(run["end_time"] < 6.5 for run in runs)

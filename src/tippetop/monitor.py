@@ -16,6 +16,10 @@ LEAST_MOMENT = 1e-6
 WORST, ACCUMULATED = 1e-6, 1e4
 """How far, relatively, a run may be off what every motion keeps: this, or this many times its tolerance."""
 
+WAYS_TO_END = (Outcome.COMPLETED, Outcome.LIFTED_OFF, Outcome.AT_REST, Outcome.LYING_FLAT)
+"""Outcomes that tell what the motion came to, which is not known of a run that cannot be trusted; the others
+say why it is not told."""
+
 
 class Monitor:
     """How far launches go off what they begin with, in natural units: one, or n with arrays for numbers."""
@@ -55,9 +59,8 @@ class Monitor:
         return self.inaccuracy <= max(WORST, ACCUMULATED * tolerance)
 
     def judged(self, outcome: Outcome, tolerance: float) -> Outcome:
-        """How one launch ended: completed only if it can be trusted."""
-        completed = outcome is Outcome.COMPLETED
-        return Outcome.INACCURATE if completed and not self.is_trusted(tolerance) else outcome
+        """How one launch ended: as its motion came to end only if it can be trusted."""
+        return Outcome.INACCURATE if outcome in WAYS_TO_END and not self.is_trusted(tolerance) else outcome
 
     def see(
         self, size: Scalar, cosine: Scalar, height: Scalar, energy: Scalar, jellett: Scalar, work: Scalar

@@ -16,7 +16,7 @@ from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import length
-from tippetop.monitor import Monitor
+from tippetop.monitor import WAYS_TO_END, Monitor
 from tippetop.samples import Samples
 
 _INTEGRALS = np.array(
@@ -68,7 +68,7 @@ class Recorder:
         """How a trajectory of which all was taken ended, by what it kept on its way and keeps at its end."""
         outcome, state = trajectory.outcome, trajectory.state
         assert outcome is not None, "a trajectory that has no more segments has ended"
-        if outcome is Outcome.COMPLETED:
+        if outcome in WAYS_TO_END:
             keeps = energy(state, self.top), lowest_jellett(state, self.top)
             self.monitor.see(length(state.axis), state.axis[2], state.height, *keeps, self._sums[3])
         return self.monitor.judged(outcome, getattr(trajectory.integrator, "tolerance", 0.0))

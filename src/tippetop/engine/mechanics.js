@@ -10512,6 +10512,7 @@ function observe(samples, top, units) {
 // tippetop.monitor
 const LEAST_MOMENT = 1e-06;
 const [WORST, ACCUMULATED] = [1e-06, 10000.0];
+const WAYS_TO_END = [Outcome.COMPLETED, Outcome.LIFTED_OFF, Outcome.AT_REST, Outcome.LYING_FLAT];
 
 /** How far launches go off what they begin with, in natural units: one, or n with arrays for numbers. */
 class Monitor extends py.Thing {
@@ -10544,10 +10545,11 @@ class Monitor extends py.Thing {
   is_trusted(tolerance) {
     return this.inaccuracy <= py.max(WORST, py.mul(ACCUMULATED, tolerance));
   }
-  /** How one launch ended: completed only if it can be trusted. */
+  /** How one launch ended: as its motion came to end only if it can be trusted. */
   judged(outcome, tolerance) {
-    var completed = outcome === Outcome.COMPLETED;
-    return py.truth(completed) && !py.truth(this.is_trusted(tolerance)) ? Outcome.INACCURATE : outcome;
+    return py.contains(WAYS_TO_END, outcome) && !py.truth(
+      this.is_trusted(tolerance)
+    ) ? Outcome.INACCURATE : outcome;
   }
   /** See some instants: |n|, n_z, and of work all since launch. */
   see(size, cosine, height, energy, jellett, work) {
@@ -11283,6 +11285,7 @@ export {
   ViscousFriction,
   ViscousLaw,
   ViscousProcess,
+  WAYS_TO_END,
   WIDER,
   WIDEST,
   WORK,

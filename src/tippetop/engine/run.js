@@ -127,7 +127,7 @@ class Run {
   finish() {
     const { trajectory, units, sums } = this, { events, outcome, detail, state } = trajectory, flights = this.flights.rows;
     const [size, cosine, height, left] = keeping(state, this.top), jellett = m.lowest_jellett(state, this.top);
-    if (outcome === m.Outcome.COMPLETED) this.monitor.see(size, cosine, height, left, jellett, sums[WORK]);
+    if (m.WAYS_TO_END.includes(outcome)) this.monitor.see(size, cosine, height, left, jellett, sums[WORK]);
     const ended = this.monitor.judged(outcome, this.tolerance);
     this.outcome = { name: ended.name.toLowerCase(), advice: [ended.value, detail].filter(Boolean).join(" ") };
     this.early = ended !== m.Outcome.COMPLETED && detail !== m.NOT_FINITE;

@@ -20,7 +20,7 @@ from tippetop.mechanics.top import Kind
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Scalar, length
 from tippetop.metrics import OUTCOMES, Ends, ending, final_band, metrics
-from tippetop.monitor import Monitor
+from tippetop.monitor import WAYS_TO_END, Monitor
 from tippetop.sweeps.alone import follow_each, is_alone
 from tippetop.sweeps.cells import cells_of, spread
 from tippetop.sweeps.definition import Sweep
@@ -82,8 +82,8 @@ def judge(ends: Ends, launches: Launches, tolerance: float) -> None:
     monitor, left = Monitor(top, launches.state), energy(end, top)
     keeps = length(end.axis), end.axis[2], end.height, left, lowest_jellett(end, top)
     monitor.see(*(number[None] for number in (*keeps, left - energy(launches.state, top))))
-    completed, inaccurate = map(OUTCOMES.index, (Outcome.COMPLETED, Outcome.INACCURATE))
-    ends.outcome[(ends.outcome == completed) & ~monitor.is_trusted(tolerance)] = inaccurate
+    told = np.isin(ends.outcome, [OUTCOMES.index(outcome) for outcome in WAYS_TO_END])
+    ends.outcome[told & ~monitor.is_trusted(tolerance)] = OUTCOMES.index(Outcome.INACCURATE)
 
 
 @lru_cache
