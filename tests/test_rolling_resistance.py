@@ -190,3 +190,36 @@ def test_wrong_arms_are_refused_and_right_ones_are_written():
     assert tt.Problem.from_toml(problem.to_toml()) == problem
     assert tt.Problem.from_json(problem.to_json()) == problem
     assert "rolling_resistance = 1e-05" in problem.to_toml()
+
+
+SMOOTH = [tt.ViscousFriction(mu=0.3), tt.RegularizedCoulombFriction(mu=0.3, eps=0.05)]
+SLIPPERY = [law.model_copy(update={"mu": 0.02}) for law in (COULOMB, *PATCHES)]
+
+
+@pytest.mark.parametrize(
+    ("friction", "arm"),
+    [
+        *[(law, arm) for law in (*SMOOTH, COULOMB) for arm in (0.0, 1e-5)],
+        *[(law, 0.0) for law in SLIPPERY],
+        (PATCHES[0], 1e-5),
+    ],
+    ids=lambda it: str(it) if isinstance(it, float) else f"{it.kind}-{it.mu}-{getattr(it, 'pressure', '')}",
+)
+def test_a_top_released_at_rest_falls_under_every_law(friction, arm):
+    """What begins to slip, or to roll, lasts no shorter for a velocity beside it that is zero and goes on."""
+    problem = REPORT.model_copy(
+        update={
+            "friction": friction,
+            "launch": tt.Launch(tilt=0.8, spin=0.0),
+            "rolling_resistance": arm,
+        }
+    )
+    run, other = (tt.simulate(problem, 0.1, samples=11, integrator=name) for name in ("taylor", "dop853"))
+    assert run.attrs["outcome"] == other.attrs["outcome"] == "completed"
+    assert abs(float(run["energy_error"])) < 1e-14
+    assert np.ptp(run["theta"].values) > 0.01
+    for name in ("theta", "x", "theta_dot"):
+        exact = 1e-10 * np.abs(run[name].values).max()
+        np.testing.assert_allclose(other[name], run[name], rtol=0.0, atol=exact, err_msg=name)
+    assert (float(run["energy_lost_rolling"]) > 0.0) == (arm > 0.0)
+    assert float(run["energy_lost_sliding"]) >= -1e-14 * float(run["energy_start"])

@@ -13,7 +13,7 @@ from tippetop.integrators.base import Integrator
 from tippetop.integrators.dense import DenseSolution
 from tippetop.mechanics.beginning import beginning
 from tippetop.mechanics.ending import Vanishing
-from tippetop.mechanics.rolling import ContactPoint, Slip, Wrench, on_branch
+from tippetop.mechanics.rolling import ContactPoint, Slip, Wrench, is_set_valued, on_branch
 from tippetop.mechanics.series import horner
 from tippetop.mechanics.slip_onset import onset
 from tippetop.mechanics.state import State
@@ -35,7 +35,7 @@ PART = 0.25
 TINY = 1e-100
 """What begins at zero, and has no direction there, in natural units: nothing, but for that."""
 
-UNSEEN = "slip cannot be told from its beginning"
+UNSEEN = "slip, or rolling, cannot be told from its beginning"
 """Why a run fails where what begins is lost in rounding."""
 
 
@@ -106,8 +106,12 @@ class Loosening(Passing):
         top = on_branch(self.top, found.slip) if found.slip is not None else self.top
         way = found.slip if ending.slip else found.rolling
         assert way is not None
-        beside = slip if ending.moves else rolling
-        longest = PART * size(beside) / size(other.rate(found.acceleration, top)) if beside else math.inf
+        beside, ends = rolling, top.resists_rolling
+        if ending.moves:
+            beside, ends = slip, is_set_valued(top.friction)
+        longest = math.inf
+        if beside is not None and ends and size(beside) > 0.0:
+            longest = PART * size(beside) / size(other.rate(found.acceleration, top))
         return replace(self, top=top), way, longest
 
     def onwards(self, last: State) -> Mode:

@@ -4512,7 +4512,7 @@ const [ORDER, ACCURACY_of_loosening] = [20, 1e-13];
 const INSTANT = 1e-09;
 const PART = 0.25;
 const TINY_of_loosening = 1e-100;
-const UNSEEN_of_loosening = "slip cannot be told from its beginning";
+const UNSEEN_of_loosening = "slip, or rolling, cannot be told from its beginning";
 
 /** The first moments of slip, or of rolling, as a power series in time. */
 class Loosening extends Passing {
@@ -4592,11 +4592,16 @@ class Loosening extends Passing {
     var top = found.slip !== null ? on_branch(this.top, found.slip) : this.top;
     var way = py.truth(ending.slip) ? found.slip : found.rolling;
     py.assert(way !== null);
-    var beside = py.truth(ending.moves) ? slip : rolling;
-    var longest = py.truth(beside) ? py.div(
-      py.mul(PART, size(beside)),
-      size(other.rate(found.acceleration, top))
-    ) : py.math.inf;
+    var beside = rolling;
+    var ends = top.resists_rolling;
+    if (py.truth(ending.moves)) {
+      beside = slip;
+      ends = is_set_valued(top.friction);
+    }
+    var longest = py.math.inf;
+    if (beside !== null && py.truth(ends) && size(beside) > 0.0) {
+      longest = py.div(py.mul(PART, size(beside)), size(other.rate(found.acceleration, top)));
+    }
     return [py.replace(this, { top: top }), way, longest];
   }
   /** The mode that takes over. */
