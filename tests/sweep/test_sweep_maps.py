@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.collections import QuadMesh
 from sweeps import lively
 
-from tippetop.figures.maps import MAPPED, phase_map
+from tippetop.figures.maps import FLAGS, MAPPED, phase_map
 from tippetop.figures.style import save
 from tippetop.presets import report_problem
 from tippetop.sweeps import SWEPT, Draws, Ending, Product, Range, Sweep, compute
@@ -103,6 +103,22 @@ def test_launches_that_were_stopped_at_lift_off_show_no_final_tilt():
     mesh = next(child for child in axes.get_children() if isinstance(child, QuadMesh))
     assert np.array_equal(np.ma.getmaskarray(mesh.get_array()), lifted.T)
     assert "left the table" in axes.get_title(loc="left")
+
+
+def test_launches_that_failed_or_are_inaccurate_show_no_final_tilt(plane):
+    some = plane.copy(deep=True)
+    some["outcome"].values[0, :2] = Ending.INACCURATE, Ending.FAILED
+    axes = phase_map(some).axes[0]
+    mesh = next(child for child in axes.get_children() if isinstance(child, QuadMesh))
+    masked = np.ma.getmaskarray(mesh.get_array()).T
+    assert masked[0, :2].all()
+    assert masked.sum() == 2
+    assert axes.get_title(loc="left").endswith("grey: failed, inaccurate")
+    assert "grey" not in phase_map(plane).axes[0].get_title(loc="left")
+
+
+def test_every_flag_has_a_colour_of_its_own():
+    assert len(set(FLAGS)) == len(FLAGS) >= max(len(kind.flags) for kind in SWEPT.values())
 
 
 def test_axes_have_the_units_of_the_problem():

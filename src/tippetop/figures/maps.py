@@ -25,6 +25,16 @@ SHORT = {
 GREY = {"turns_over": "; grey: never", "flights": "; grey: none", "first_lift_off": "; grey: never"}
 """What grey means in maps of some variables."""
 
+UNFINISHED = {
+    Ending.LIFTED_OFF: "left the table before the end",
+    Ending.FAILED: "failed",
+    Ending.INACCURATE: "inaccurate",
+}
+"""Launches whose last tilt is not their end, or not to be trusted, and how maps of it name them."""
+
+FLAGS = (*CYCLE, INK)
+"""Colours of the variables of flags, for as many flags as any has."""
+
 MOST_PANELS = 9
 """Maps that are drawn side by side."""
 
@@ -151,14 +161,10 @@ def _heading(words: str, units: str) -> str:
 
 def _title(sweep: xr.Dataset, variable: str) -> str:
     title = _heading(SWEPT[variable].label, SWEPT[variable].units) + GREY.get(variable, "")
-    if variable == "final_theta" and _ended_early(sweep).any():
-        return f"{title}; grey: left the table before the end"
+    if variable == "final_theta":
+        there = [words for ending, words in UNFINISHED.items() if (sweep["outcome"].values == ending).any()]
+        return "; grey: ".join([title, ", ".join(there)] if there else [title])
     return title
-
-
-def _ended_early(sweep: xr.Dataset) -> np.ndarray[Any, Any]:
-    """Which launches were stopped where they lifted off, so that their last tilt is not their end."""
-    return np.asarray(sweep["outcome"].values == Ending.LIFTED_OFF)
 
 
 def _shown(sweep: xr.Dataset, variable: str) -> np.ndarray[Any, Any]:
@@ -166,7 +172,7 @@ def _shown(sweep: xr.Dataset, variable: str) -> np.ndarray[Any, Any]:
     values = np.asarray(sweep[variable].values, dtype=float)
     nothing = sweep["status"].values == 0
     if variable == "final_theta":
-        nothing = nothing | _ended_early(sweep)
+        nothing = nothing | np.isin(sweep["outcome"].values, list(UNFINISHED))
     if np.issubdtype(sweep[variable].dtype, np.integer):
         nothing = nothing | (values < 0)
     return np.where(nothing, np.nan, values)
@@ -178,7 +184,7 @@ def _shade(sweep: xr.Dataset, variable: str, values: np.ndarray[Any, Any]) -> di
     if meanings is not None:
         count = len(meanings.split())
         norm = BoundaryNorm(np.arange(count + 1) - 0.5, count)
-        return {"cmap": ListedColormap((*CYCLE, INK)[:count]), "norm": norm}
+        return {"cmap": ListedColormap(FLAGS[:count]), "norm": norm}
     if variable == "final_theta":
         return {"cmap": SEQUENTIAL, "norm": Normalize(0.0, np.pi)}
     finite = values[np.isfinite(values)]
