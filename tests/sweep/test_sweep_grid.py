@@ -250,3 +250,20 @@ def test_a_sweep_over_nothing_or_over_a_field_twice_is_refused():
         Product((Axis.of("launch.spin", [1]), Axis.of("launch.spin", [2])))
     with pytest.raises(InvalidInput, match="cells"):
         Product((Spaced("launch.spin", 0, 1, 10**6), Spaced("friction.mu", 0, 1, 10**6)))
+
+
+def test_axes_nested_without_end_or_without_a_name_are_refused_in_a_sentence():
+    deep = {"launch": {}}
+    inner = deep["launch"]
+    for _ in range(3000):
+        inner["launch"] = inner = {}
+    with pytest.raises(InvalidInput, match="accepted: tables nested at most") as refusal:
+        Product.of(deep)
+    assert len(str(refusal.value)) < 500
+    for nameless in (
+        {".launch.spin": [1.0, 2.0]},
+        {"": {"launch.spin": [1.0, 2.0]}},
+        {"launch": {"": [1.0]}},
+    ):
+        with pytest.raises(InvalidInput, match="accepted: names with single dots"):
+            Product.of(nameless)

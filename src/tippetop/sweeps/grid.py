@@ -16,7 +16,7 @@ from tippetop.errors import InvalidInput
 from tippetop.integrators.base import Array
 from tippetop.sweeps.axes import MOST_CELLS, Axis, Count, Entry, between
 from tippetop.sweeps.axes import Flat as Flat
-from tippetop.validation import Number, Whole
+from tippetop.validation import DEEPEST, Number, Whole
 
 _Kind = TypeVar("_Kind")
 
@@ -190,7 +190,7 @@ def _read(name: str, table: Any, of: Callable[[str, Any], _Kind]) -> tuple[_Kind
     if not isinstance(table, Mapping | list):
         raise InvalidInput(name, table, "a table of fields")
     found = []
-    for field, entry in _flattened(table) if isinstance(table, Mapping) else table:
+    for field, entry in _flattened(name, table) if isinstance(table, Mapping) else table:
         try:
             found.append(of(field, entry))
         except InvalidInput as fault:
@@ -198,10 +198,15 @@ def _read(name: str, table: Any, of: Callable[[str, Any], _Kind]) -> tuple[_Kind
     return tuple(found)
 
 
-def _flattened(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+def _flattened(name: str, table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
     """Fields and what stands there, in their order: keys may be dotted keys of TOML, or strings with dots."""
     for key, value in table.items():
+        field = f"{prefix}{key}"
+        if "" in field.split("."):
+            raise InvalidInput(name, field, "names with single dots between them, such as launch.spin")
         if isinstance(value, Mapping) and not {"from", "values", "to"} & set(value):
-            yield from _flattened(value, f"{prefix}{key}.")
+            if field.count(".") >= DEEPEST:
+                raise InvalidInput(name, value, f"tables nested at most {DEEPEST} deep")
+            yield from _flattened(name, value, f"{field}.")
         else:
-            yield f"{prefix}{key}", value
+            yield field, value
