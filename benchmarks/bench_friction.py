@@ -140,7 +140,7 @@ def alone(laws: list[tt.Friction], rounds: int) -> list[tuple[float, float, floa
 
 
 def as_late(turning: float) -> tt.Friction | None:
-    """Viscous friction under which the top turns over as late, s; None where it does not turn over."""
+    """Viscous friction under which the top turns over as late, s; None where it does not, or none is."""
     if not math.isfinite(turning):
         return None
 
@@ -148,7 +148,10 @@ def as_late(turning: float) -> tt.Friction | None:
         found = alone([tt.ViscousFriction(mu=mu)], 0)[0][2]
         return (found if math.isfinite(found) else DURATION) - turning
 
-    return tt.ViscousFriction(mu=float(brentq(later, 0.1 * VISCOUS, 4.0 * VISCOUS, rtol=1e-3)))
+    ends = 0.1 * VISCOUS, 4.0 * VISCOUS
+    if later(ends[0]) * later(ends[1]) > 0.0:
+        return None
+    return tt.ViscousFriction(mu=float(brentq(later, *ends, rtol=1e-3)))
 
 
 def over_radii(rounds: int) -> list[dict[str, Any]]:

@@ -51,3 +51,11 @@ def test_power_law_is_found_again() -> None:
     times = 2.5 * mu**-0.9
     times[3] = np.nan
     assert power_law(mu, times) == pytest.approx((2.5, -0.9, -1.0))
+
+
+@pytest.mark.parametrize(
+    ("mu", "times"),
+    [([0.1, 0.2], [2.0, 1.0]), ([0.2, 0.2, 0.2], [1.0, 1.0, 1.1]), ([0.1, 0.2, 0.3], [1.0, 0.0, 0.5])],
+)
+def test_no_power_law_is_fitted_where_there_is_none(mu: list[float], times: list[float]) -> None:
+    assert np.isnan(power_law(np.array(mu), np.array(times))).all()

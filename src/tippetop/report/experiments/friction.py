@@ -59,11 +59,12 @@ def power_law(mu: Array, times: Array) -> tuple[float, float, float]:
     """Fit t = a mu^b; return a, b, and a correlation.
 
     The fit is that of the curve itself, by least squares; the correlation is Pearson's, of log t with log mu.
+    They are nan where there are no three positive times, of coefficients that differ.
     """
     sound = np.isfinite(times)
-    if sound.sum() < 3:
-        return (math.nan,) * 3
     x, y = mu[sound], times[sound]
+    if len(x) < 3 or not np.ptp(x) > 0.0 or not np.all(y > 0.0):
+        return (math.nan,) * 3
     line = linregress(np.log(x), np.log(y))
     (a, b), _ = curve_fit(lambda m, a, b: a * m**b, x, y, p0=(math.exp(line.intercept), line.slope))
     return float(a), float(b), float(line.rvalue)
