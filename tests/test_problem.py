@@ -494,6 +494,12 @@ class TestFiles:
             Problem.read(path)
         assert the_one_line_of(caught.value).startswith(f"{path} is not a text file")
 
+    @pytest.mark.parametrize("text", ["[1, 2]", '"x"', "null"])
+    def test_json_that_is_no_object(self, tmp_path, text):
+        with pytest.raises(InvalidInput) as caught:
+            Problem.read(self.write(tmp_path / "a.json", text))
+        assert the_one_line_of(caught.value).endswith(" in a.json is not possible; accepted: a JSON object")
+
     def test_every_truncated_toml_is_refused_or_lacks_only_defaults(self, tmp_path):
         """A file cut short anywhere is refused in one line, unless what is left is a problem by itself."""
         text = top_problem(launch__azimuth=0.5).to_toml()

@@ -124,12 +124,16 @@ def read_text(path: Path | str, accepted: str) -> str:
 
 
 @contextmanager
-def made_of(path: Path | str, given: Container[str] = ()) -> Iterator[None]:
-    """Say of what cannot be that it is in this file, unless it is in another, or a field that is given."""
+def made_of(path: Path | str, given: Container[str] = (), part: str = "") -> Iterator[None]:
+    """Say of what cannot be that it is in this file, unless it is in another, or a field that is given.
+
+    If only a part is in the file, it is said of fields of that alone.
+    """
     try:
         yield
     except InvalidInput as error:
-        if error.file or error.field.partition(".")[0] in given:
+        elsewhere = part and not f"{error.field}.".startswith(f"{part}.")
+        if error.file or elsewhere or error.field.partition(".")[0] in given:
             raise
         file = named(Path(path).name)
         raise InvalidInput(error.field, error.value, error.accepted, error.others, file) from None

@@ -22,6 +22,7 @@ from pydantic_core import CoreSchema, ErrorDetails, PydanticCustomError, core_sc
 
 from tippetop.errors import MISSING, InvalidInput, one_of
 from tippetop.fields import part_at
+from tippetop.files import named
 
 
 def _no_word(value: Any) -> Any:
@@ -227,7 +228,7 @@ OF_ITS_KIND = _OfItsKind()
 ONE_OR_SEVERAL = _OfItsKind(several=True)
 
 
-def parse_json(text: str, field: str, shown: str | None = None) -> dict[str, Any]:
+def parse_json(text: str, field: str, file: str = "") -> dict[str, Any]:
     """The fields of a JSON text that states something, which is called a field in sentences.
 
     They show the text, or its file if it has one.
@@ -235,23 +236,23 @@ def parse_json(text: str, field: str, shown: str | None = None) -> dict[str, Any
     Raises `InvalidInput` if it is no JSON object, is nested deeper than `DEEPEST`, or holds whole numbers of
     thousands of digits.
     """
-    return _parsed("JSON", json.loads, text, field, shown or text.strip())
+    return _parsed("JSON", json.loads, text, field, file)
 
 
-def parse_toml(text: str, field: str, shown: str | None = None) -> dict[str, Any]:
+def parse_toml(text: str, field: str, file: str = "") -> dict[str, Any]:
     """The same of a TOML text."""
-    return _parsed("TOML", tomllib.loads, text, field, shown or text.strip())
+    return _parsed("TOML", tomllib.loads, text, field, file)
 
 
-def _parsed(language: str, loads: Callable[[str], Any], text: str, field: str, shown: str) -> dict[str, Any]:
+def _parsed(language: str, loads: Callable[[str], Any], text: str, field: str, file: str) -> dict[str, Any]:
     try:
         fields = loads(text)
         _refuse_depths(fields)
     except (ValueError, RecursionError) as error:
         told = _TOO_DEEP if isinstance(error, RecursionError) else error
-        raise InvalidInput(field, shown, f"{language}; {told}") from None
+        raise InvalidInput(field, file or text.strip(), f"{language}; {told}") from None
     if not isinstance(fields, dict):
-        raise InvalidInput(field, fields, f"a {language} object")
+        raise InvalidInput(field, fields, f"a {language} object", file=file and named(file))
     return fields
 
 

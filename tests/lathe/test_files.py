@@ -98,8 +98,28 @@ def test_what_is_given_beside_a_file_is_not_said_to_be_in_it(tmp_path):
     (tmp_path / "a.csv").write_text("0,0\n1,1\n0,1\n")
     with pytest.raises(tt.InvalidInput, match=r"^density = -1.0 is not possible"):
         read_workpiece(tmp_path / "a.csv", density=-1.0)
-    with pytest.raises(tt.InvalidInput, match=r"^density is missing in a.csv; "):
+    with pytest.raises(tt.InvalidInput, match=r"^density is missing; "):
         read_workpiece(tmp_path / "a.csv")
+
+
+@pytest.mark.parametrize(
+    ("bad", "sentence"),
+    [
+        ("hole.csv", "inserts.0.profile.1.0 = -1.0 in hole.csv is not"),
+        ("ball.csv", "profile.1.0 = -1.0 in ball.csv is not"),
+    ],
+)
+def test_the_file_of_the_points_is_named_where_they_cannot_be(tmp_path, bad, sentence):
+    (tmp_path / "ball.csv").write_text("0,-20\n0,20,20\n")
+    (tmp_path / "hole.csv").write_text("0,-10\n0,10,10\n")
+    (tmp_path / bad).write_text("0,-10\n-1,0\n0,10\n")
+    beside = 'profile = "{}"\ndensity = {}\n[[inserts]]\nprofile = "{}"\ndensity = 0\n'
+    (tmp_path / "mine.toml").write_text(beside.format("ball.csv", 700, "hole.csv"))
+    with pytest.raises(tt.InvalidInput, match=f"^{sentence}"):
+        read_workpiece(tmp_path / "mine.toml")
+    (tmp_path / "mine.toml").write_text(beside.format("ball.csv", -1, "hole.csv"))
+    with pytest.raises(tt.InvalidInput, match=r"^density = -1 in mine.toml is not"):
+        read_workpiece(tmp_path / "mine.toml")
 
 
 def test_what_is_not_installed_is_said(tmp_path, monkeypatch):

@@ -2,6 +2,7 @@
 
 import csv
 import xml.etree.ElementTree as ElementTree
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
@@ -41,15 +42,21 @@ def read_workpiece(path: Path | str, **fields: Any) -> Workpiece:
         If SVG cannot be read here.
     """
     path = Path(path)
-    if path.suffix.lower() != ".toml":
-        found = {"profile": read_points(path), **fields}
-    else:
-        found = {**parse_toml(read_text(path, ACCEPTED), "workpiece", path.name), **fields}
+    whole = path.suffix.lower() == ".toml"
+    told = parse_toml(read_text(path, ACCEPTED), "workpiece", path.name) if whole else {"profile": path.name}
+    found = {**told, **fields}
     inserts = found.get("inserts")
-    for part in [found, *(inserts if isinstance(inserts, list) else [])]:
-        if isinstance(part, dict) and isinstance(part.get("profile"), str):
-            part["profile"] = read_points(path.parent / part["profile"])
-    with made_of(path, fields):
+    parts = {"": found}
+    if isinstance(inserts, list):
+        parts |= {f"inserts.{number}.": part for number, part in enumerate(inserts)}
+    with ExitStack() as files:
+        if whole:
+            files.enter_context(made_of(path, fields))
+        for name, part in parts.items():
+            if isinstance(part, dict) and isinstance(part.get("profile"), str):
+                beside = path.parent / part["profile"]
+                part["profile"] = read_points(beside)
+                files.enter_context(made_of(beside, part=f"{name}profile"))
         return Workpiece(**found)
 
 
