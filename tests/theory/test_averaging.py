@@ -177,6 +177,27 @@ def test_a_nutation_that_passes_the_end_on_its_way_counts(spin, tilt):
     assert mu_times[np.argmax(near)] == pytest.approx(limit, rel=0.01)
 
 
+def launched(spin, tilt, tilt_rate=0.0):
+    changes = {"launch.tilt_rate": tilt_rate, "contact.liftoff": "ignore"}
+    return presets.report_problem(spin=spin, tilt=tilt).replace(changes)
+
+
+@pytest.mark.parametrize(
+    ("problem", "distance"),
+    [
+        (launched(50.0, 1.0), 1e-4),
+        (launched(192.767, 1.8668, 8.508), 1e-3),
+        *((launched(spin, tilt, 15.0), 1e-3) for spin in (15.0, 60.0, 180.0) for tilt in (0.2, 1.5, 2.9)),
+    ],
+)
+def test_the_limit_is_the_first_time_near_the_end_however_short(problem, distance):
+    flow = averaged_flow(problem, distance=distance, samples=50000)
+    away = np.maximum(flow.tilt_low - flow.final_tilt, flow.final_tilt - flow.tilt_high)
+    first = int(np.argmax(away <= distance * (1.0 + 1e-9)))
+    limit = flip_time_limit(problem, distance)
+    assert flow.mu_time[max(first - 1, 0)] - 1e-12 <= limit <= flow.mu_time[first] + 1e-12
+
+
 def test_a_nutation_that_dies_on_the_way_to_an_unstable_state_grows_again():
     """This launch drifts to theta = 0 first, which is unstable, and inverts only then."""
     problem = sphere_problem(0.58, 0.46, 0.7, 190.0)

@@ -9,6 +9,7 @@ It is the limit of runs only while the nutation needs no pull of a table that pu
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,7 +18,7 @@ from scipy.interpolate import PchipInterpolator
 from tippetop.errors import InvalidInput
 from tippetop.integrators.base import Array
 from tippetop.mechanics.friction import ViscousLaw
-from tippetop.mechanics.roots import crossing
+from tippetop.mechanics.roots import crossing, dip
 from tippetop.mechanics.top import natural_units
 from tippetop.mechanics.view import Angles
 from tippetop.problem import Problem
@@ -138,23 +139,52 @@ def flip_time_limit(problem: Problem, distance: float = 0.01) -> float:
         )
     begin = 0.0
     for stage in stages:
-
-        def away(time: float, stage: Stage = stage) -> float:
-            """How far the end is outside of the nutation, which may pass it long before it has died away."""
-            low, high = stage.tilts(np.array([time]))
-            return float(max(low[0] - final, final - high[0])) - distance
-
-        # A step may be so long that the end is passed on the way.
-        shares = np.linspace(stage.knots[:-1], stage.knots[1:], _PER_STEP, endpoint=False).T.ravel()
-        times = np.append(shares, stage.knots[-1])
-        low, high = stage.tilts(times)
-        near = np.maximum(low - final, final - high) <= distance
-        if near.any():
-            first = int(np.argmax(near))
-            inside = 0.0 if first == 0 else crossing(away, float(times[first - 1]), float(times[first]))
-            return (begin + inside) / float(problem.top.gravity)
+        time = _first_near(stage, final, distance)
+        if time is not None:
+            return (begin + time) / float(problem.top.gravity)
         begin += float(stage.knots[-1])
     return begin / float(problem.top.gravity)
+
+
+def _first_near(stage: Stage, final: float, distance: float) -> float | None:
+    """First time at which a nutation is near its end, which it may pass long before it has died away."""
+
+    def away(times: Array) -> Array:
+        """How far the end is outside of the nutation, beyond what is near."""
+        low, high = stage.tilts(times)
+        return np.maximum(low - final, final - high) - distance
+
+    def apart(times: Array) -> Array:
+        fast, slow, _ = stage.points(times)
+        return np.asarray(fast - slow)
+
+    def beyond(times: Array) -> Array:
+        low, high = stage.tilts(times)
+        return low + high - 2.0 * final
+
+    def of_one(function: Callable[[Array], Array]) -> Callable[[float], float]:
+        return lambda time: float(function(np.array([time]))[0])
+
+    shares = np.linspace(stage.knots[:-1], stage.knots[1:], _PER_STEP, endpoint=False).T.ravel()
+    times = np.append(shares, stage.knots[-1])
+    # It may be near for an instant only: where it goes through a vertical, or its middle through the end.
+    for through in (apart, beyond):
+        ahead = through(times) > 0.0
+        turns = np.flatnonzero(ahead[:-1] != ahead[1:])
+        roots = [crossing(of_one(through), float(times[i]), float(times[i + 1])) for i in turns]
+        times = np.union1d(times, roots)
+    # Or where it comes near and turns back.
+    values = away(times)
+    around = np.pad(values, 1, constant_values=math.inf)
+    lowest = (values <= 0.0) | (values <= np.minimum(around[:-2], around[2:]))
+    for i in np.flatnonzero(lowest).tolist():
+        before, here, after = times[[max(i - 1, 0), i, min(i + 1, len(times) - 1)]].tolist()
+        least = values[i]
+        if least > 0.0:
+            here, least = dip(of_one(away), before, after)
+        if least <= 0.0:
+            return here if i == 0 and values[0] <= 0.0 else crossing(of_one(away), before, here)
+    return None
 
 
 def local_exponent(mu: Array, flip_time: Array) -> Array:

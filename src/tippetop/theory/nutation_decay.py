@@ -109,8 +109,11 @@ class Stage(NamedTuple):
 
     def tilts(self, times: Array) -> tuple[Array, Array]:
         """Turning tilts of the nutation, rad, at these times, shape (n,)."""
-        points = self.begin.point[:, None] if self.path is None else self.path(times)
-        return _tilts_of(points, self.begin.turned)
+        return _tilts_of(self.points(times), self.begin.turned)
+
+    def points(self, times: Array) -> Array:
+        """`Nutation.point` at these times, shape (3, n)."""
+        return np.asarray(self.begin.point[:, None] if self.path is None else self.path(times))
 
 
 def follow_nutation(
