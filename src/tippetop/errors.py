@@ -11,7 +11,8 @@ How a run ends is not an error: see `tippetop.contact.mode.Outcome`.
 import math
 from collections.abc import Mapping
 from difflib import get_close_matches
-from numbers import Real
+from numbers import Integral, Real
+from typing import TypeGuard
 
 
 class _Missing:
@@ -123,6 +124,11 @@ class Unavailable(TippetopError, RuntimeError):
 def is_number(value: object) -> bool:
     """Whether a value is a finite real number."""
     return isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value)
+
+
+def is_whole(value: object) -> TypeGuard[int]:
+    """Whether a value is a whole number, also of numpy, and no truth value."""
+    return isinstance(value, Integral) and not isinstance(value, bool)
 
 
 def short(value: object, limit: int = 60) -> str:

@@ -14,7 +14,7 @@ from tippetop.contact.choice import rules_of
 from tippetop.contact.mode import Event, Outcome
 from tippetop.contact.trajectory import LONGEST, PHASE_LIMIT, STEP_LIMIT, Trajectory
 from tippetop.dataset import assemble
-from tippetop.errors import InvalidInput, is_number
+from tippetop.errors import InvalidInput, is_number, is_whole
 from tippetop.integrators import Integrator, make_integrator
 from tippetop.integrators.base import NOT_FINITE, Array
 from tippetop.mechanics.invariants import energy
@@ -152,7 +152,7 @@ def sample_times(duration: float, samples: int, times: ArrayLike | None, longest
     if not (is_number(duration) and 0 < duration <= longest):
         raise InvalidInput("duration", duration, f"a number of seconds greater than 0, at most {longest:.3g}")
     if times is None:
-        if isinstance(samples, bool) or not isinstance(samples, (int, np.integer)) or samples < 2:
+        if not is_whole(samples) or samples < 2:
             raise InvalidInput("samples", samples, "a whole number, at least 2")
         _check_memory(samples)
         return np.linspace(0.0, duration, int(samples))

@@ -5,7 +5,6 @@ import json
 import math
 import tomllib
 from collections.abc import Callable, Mapping
-from numbers import Integral
 from typing import Annotated, Any, ClassVar, NamedTuple, Self, TypeAlias, get_args
 
 from pydantic import (
@@ -20,7 +19,7 @@ from pydantic import (
 from pydantic.fields import FieldInfo
 from pydantic_core import CoreSchema, ErrorDetails, PydanticCustomError, core_schema
 
-from tippetop.errors import MISSING, InvalidInput, one_of
+from tippetop.errors import MISSING, InvalidInput, is_whole, one_of
 from tippetop.fields import part_at
 from tippetop.files import named
 
@@ -46,7 +45,7 @@ DEEPEST = 20
 
 
 def _whole(value: Any) -> int:
-    if isinstance(value, bool) or not isinstance(value, Integral):
+    if not is_whole(value):
         raise PydanticCustomError("int_type", "a whole number")
     return int(value)
 

@@ -259,6 +259,18 @@ def test_launches_without_a_slow_flow_are_refused(changes):
         averaged_flow(REPORT.replace(changes))
 
 
+@pytest.mark.parametrize(
+    ("field", "value"),
+    [
+        *(("samples", samples) for samples in (0, -3, 1, 3.5, True, "many")),
+        *((field, value) for field in ("distance", "tolerance") for value in (0.0, -1e-3, math.nan)),
+    ],
+)
+def test_settings_that_cannot_be_are_refused(field, value):
+    with pytest.raises(InvalidInput, match=f"{field} = .* accepted: a (whole|finite) number"):
+        averaged_flow(REPORT, **{field: value})
+
+
 def test_the_flow_needs_no_units():
     """Twice the radius, mass times 3: time goes as sqrt(R/g), mu as 1/sqrt(g R), so that mu t goes as 1/g."""
     body = REPORT.body

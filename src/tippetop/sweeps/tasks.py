@@ -12,14 +12,13 @@ from contextlib import contextmanager, nullcontext
 from functools import lru_cache
 from importlib import import_module
 from importlib.util import find_spec
-from numbers import Integral
 from traceback import walk_tb
 from typing import Any, NamedTuple, TypeAlias
 
 from numpy.typing import NDArray
 
 from tippetop import __version__
-from tippetop.errors import RESUME, InvalidInput, Unavailable
+from tippetop.errors import RESUME, InvalidInput, Unavailable, is_whole
 from tippetop.processes import RESTARTS, Job, shared
 from tippetop.sweeps.definition import Sweep, Task
 from tippetop.sweeps.ensemble import follow_cells
@@ -115,7 +114,7 @@ def need_workers(sweep: Sweep, workers: int | None, scheduler: str | None) -> It
 
 def _modules(sweep: Sweep, workers: int | None, scheduler: str | Cluster | None) -> tuple[str, ...]:
     """The modules that a worker has to import, for kinds of parts that are not of this package."""
-    known = isinstance(workers, Integral) and not isinstance(workers, bool) and workers >= 1
+    known = is_whole(workers) and workers >= 1
     if not (workers is None or known):
         raise InvalidInput("workers", workers, "a whole number, at least 1")
     modules = sweep.problem.modules()

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from tippetop.errors import InvalidInput
+from tippetop.errors import InvalidInput, is_number, is_whole
 from tippetop.integrators.base import Array
 from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.roots import crossing, dip
@@ -74,8 +74,11 @@ def averaged_flow(
     Raises
     ------
     InvalidInput
-        If the body is no eccentric sphere, its friction is not viscous, or the launch is exactly vertical.
+        If the body is no eccentric sphere, its friction is not viscous, the launch is exactly vertical, or a
+        setting is not possible.
     """
+    if not is_whole(samples) or samples < 2:
+        raise InvalidInput("samples", samples, "a whole number, at least 2")
     parts, begin = list[Array](), 0.0
     stages = _stages(problem, distance, tolerance)
     for stage in stages:
@@ -90,6 +93,9 @@ def averaged_flow(
 
 def _stages(problem: Problem, distance: float, tolerance: float) -> list[Stage]:
     """The parts of the slow flow, each from the pole that the nutation is nearer to."""
+    for field, value in {"distance": distance, "tolerance": tolerance}.items():
+        if not (is_number(value) and value > 0.0):
+            raise InvalidInput(field, value, "a finite number greater than 0")
     top = problem.top
     numbers = numbers_of(top)
     if not isinstance(top.friction, ViscousLaw):
