@@ -239,3 +239,17 @@ def test_a_coin_tossed_without_spin_does_the_same_in_a_sweep():
             assert run.attrs["outcome"] == "lying_flat"
             for name in ("end_time", "flights", "highest_gap", "airborne_time", "final_theta"):
                 assert float(cell[name]) == pytest.approx(float(run[name]), rel=1e-7), (tilt, name)
+
+
+def test_a_flight_that_is_cut_short_rose_no_higher_than_it_was_followed():
+    """It rises as its centre of mass does, whose height is a parabola in time, to within its size."""
+    launch = tt.Launch(tilt=1.2, spin=1e6, tilt_rate=1e6 / 3, gap=0.05)
+    problem = tt.Problem(body=tt.presets.COIN, friction=tt.CoulombFriction(mu=0.3), launch=launch)
+    run = tt.simulate(problem, 0.05, samples=11, step_limit=5000)
+    assert run.attrs["outcome"] == "too_many_steps"
+    flown = float(run["end_time"])
+    rise = float(run["velocity"][0, 2]) * flown - 0.5 * problem.gravity * flown**2
+    highest = float(run["highest_gap"])
+    assert rise > 1.0
+    assert abs(highest - 0.05 - rise) < 0.024
+    assert highest == float(run["flight_highest_gap"][-1])

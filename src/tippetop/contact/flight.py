@@ -57,7 +57,6 @@ class Flight(Mode):
         duration = end - time if landing is None else landing
         rate = length(state.momentum) / self.top.transverse_inertia
         count = 1 + int(duration * rate / TURN)
-        highest = highest_gap(state, self.top, duration)
         for first in range(0, count, MOST_STEPS):
             last = min(first + MOST_STEPS, count)
             elapsed = [duration / count * step for step in range(first, last + 1)]
@@ -69,6 +68,7 @@ class Flight(Mode):
                 low = None if landing is None else lowest
                 transition = self._transition(reach, here, low, integrator)
             solution = DenseSolution.fitted(self._numbers(state), elapsed, DEGREE).moved(time, reach)
+            highest = highest_gap(state, self.top, elapsed[-1])
             yield Segment(self, solution, here, transition, highest_gap=highest)
 
     def _numbers(self, state: State) -> Callable[[Scalar], tuple[Scalar, ...]]:

@@ -157,7 +157,7 @@ class Segment:
     evaluations: int = 0
     """Work done by the integrator."""
     highest_gap: float = 0.0
-    """How high the lowest point rose above the table."""
+    """How high the lowest point rose above the table in this flight so far."""
     method: Integrator | None = None
     """The integrator that took the steps, if it is not the one that was asked."""
 

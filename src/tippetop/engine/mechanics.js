@@ -1759,7 +1759,6 @@ class Flight extends Mode {
     var duration = landing === null ? py.sub(end, time) : landing;
     var rate = py.div(length(state.momentum), this.top.transverse_inertia);
     var count = py.add(1, py.int(py.div(py.mul(duration, rate), TURN)));
-    var highest = highest_gap(state, this.top, duration);
     for (var first = 0; first < count; first += MOST_STEPS) {
       var last = py.min(py.add(first, MOST_STEPS), count);
       var elapsed = py.range(first, py.add(last, 1)).map((step) => py.mul(py.div(duration, count), step));
@@ -1773,6 +1772,7 @@ class Flight extends Mode {
         transition = this._transition(reach, here, low, integrator);
       }
       var solution = DenseSolution.fitted(this._numbers(state), elapsed, DEGREE_of_flight).moved(time, reach);
+      var highest = highest_gap(state, this.top, py.item(elapsed, -1));
       yield new Segment(this, solution, here, transition, undefined, undefined, highest);
     }
   }
