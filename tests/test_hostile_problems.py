@@ -289,6 +289,8 @@ def test_an_end_of_slip_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
     slow = list(closing.followed(method, turning, [1e-4], start))
     assert slow[-1].failure is None
     assert [arc.solution.end for arc in slow] == [*closing.SOON, closing.LONGEST]
+    late = list(closing.followed(method, turning, [1e-4], (closing.LONGEST - 1.0, start[1])))
+    assert [arc.solution.end for arc in late] == [closing.LONGEST - 1.0 + closing.SOON[0], closing.LONGEST]
 
 
 @pytest.mark.parametrize("duration", [1e308, 1e300, np.inf, np.nan, 0.0])

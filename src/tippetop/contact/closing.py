@@ -55,7 +55,7 @@ def followed(
 ) -> Iterator[Arc]:
     """The end of slip, or of rolling, in its clock, arc by arc."""
     arcs = 0
-    for end in (*[start[0] + part for part in SOON], LONGEST):
+    for end in (*[start[0] + part for part in SOON if start[0] + part < LONGEST], LONGEST):
         for arc in integrator.integrate(motion, parameters, start, end):
             arcs += 1
             many = arc.guard is None and arc.failure is None and arcs == MOST

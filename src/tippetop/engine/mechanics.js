@@ -3225,7 +3225,12 @@ const MOST_of_closing = 16;
 /** The end of slip, or of rolling, in its clock, arc by arc. */
 function* followed(integrator, motion, parameters, start) {
   var arcs = 0;
-  for (var end of [...[...SOON].map((part) => py.add(start[0], part)), LONGEST]) {
+  for (
+    var end of [
+      ...[...SOON].filter((part) => py.add(start[0], part) < LONGEST).map((part) => py.add(start[0], part)),
+      LONGEST
+    ]
+  ) {
     for (var arc of integrator.integrate(motion, parameters, start, end)) {
       arcs = py.add(arcs, 1);
       var many = py.and(
