@@ -422,3 +422,14 @@ def test_every_variable_is_described():
         assert variable.dtype == kind.dtype
         if "flag_meanings" in variable.attrs:
             assert len(variable.attrs["flag_meanings"].split()) == len(variable.attrs["flag_values"])
+
+
+@pytest.mark.parametrize("spin", [1e6, 1e7, 1e8])
+def test_a_top_however_fast_presses_on_the_table_as_in_a_single_run(spin):
+    """What its axis is off changes the force by as much times the square of the spin."""
+    problem, duration = report_problem(), 1e3 / spin
+    swept = compute(Sweep(problem, Product.of({"launch.spin": [spin]}), duration))
+    run = simulate(problem.replace({"launch.spin": spin}), duration, samples=2)
+    assert int(run["flights"]) == 0
+    assert int(swept["flights"][0]) == 0
+    assert float(swept["final_theta"][0]) == pytest.approx(float(run["theta"][-1]), abs=1e-9)

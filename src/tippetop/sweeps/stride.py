@@ -7,7 +7,8 @@ integrators (Biscani and Izzo 2021, MNRAS 504; Jorba and Zou 2005, Experimental 
 the order p from the tolerance, and the step from the last two coefficients, so that what is left out is below
 the tolerance. What is left out of all numbers is compared with all of them, by the roots of their squares; so
 a spin or slip that is large would let the axis go astray, and what is left out of that is compared with no
-more than `FAST`. Heyoka compares the largest numbers, and in a single launch the guards with them.
+more than `FAST`, and less beyond `FASTER`. Heyoka compares the largest numbers, and in a single launch
+the guards with them.
 
 A launch's step depends on nothing but its own numbers: arrays are filled up to a multiple of `LANES`, so that
 every launch is computed by the same instructions wherever it stands in them.
@@ -29,6 +30,9 @@ LOOKS, CLOSER_LOOKS = 12, 32
 
 FAST = 10.0
 """Size of the state, in natural units, beyond which a top is so fast that its axis needs more care."""
+
+FASTER = 1e3
+"""Size beyond which it needs yet more, as the square: by so much what the axis is off changes the force."""
 
 LANES = 16
 """Arrays are filled up to a multiple of this many launches."""
@@ -187,8 +191,8 @@ def later_guards(
 def step_size(state: Sequence[Sequence[Scalar]], left: Scalar, plain: Arithmetic, axis: int = 0) -> Scalar:
     """Step for which the last terms of the polynomials are below the tolerance, or all that is left.
 
-    They are compared with the state; the first, as many as are of the axis, with `FAST` at most. The step is
-    0 where they are no numbers.
+    They are compared with the state; the first, as many as are of the axis, with `FAST` at most, and with
+    less beyond `FASTER`. The step is 0 where they are no numbers.
     """
     order = len(state[0]) - 1
 
@@ -203,7 +207,10 @@ def step_size(state: Sequence[Sequence[Scalar]], left: Scalar, plain: Arithmetic
         return plain.least(bounded / own, whole / (own + others))
 
     whole = square(0, slice(None))
-    bounded = plain.least(whole, FAST * FAST)
+    bounded = whole
+    if axis:
+        most = FAST * FASTER * FASTER / whole
+        bounded = plain.least(plain.least(whole, FAST * FAST), most * most)
     radius = plain.least(*(ratio(k) ** (0.5 / k) for k in (order - 1, order)))
     safety = math.exp(-2.0 - 0.7 / (order - 1))
     return plain.choose(plain.below(0.0, radius), plain.least(safety * radius, left), 0.0 * left)
