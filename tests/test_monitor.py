@@ -103,6 +103,7 @@ def test_the_end_of_a_run_is_seen() -> None:
     run = tt.simulate(PROBLEM, 0.05, samples=2, integrator="rk4", step=0.05)
     assert int(run["steps"]) == 1
     assert run.attrs["outcome"] == "inaccurate"
+    assert "shorter steps" in run.attrs["outcome_advice"]
 
 
 def test_fixed_steps_are_warned_of() -> None:

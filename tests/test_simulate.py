@@ -781,7 +781,7 @@ def test_what_cannot_be_is_refused_in_one_line_that_names_it(field, arguments):
 class Quitter:
     """Follows a motion well for a while, and then gives up."""
 
-    name = "quitter"
+    name, caution = "quitter", ""
 
     def __init__(self, patience):
         self.patience = patience

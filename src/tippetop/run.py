@@ -129,12 +129,11 @@ def simulate(
         "energy_error": recorder.monitor.energy_error,
         "jellett_drift": recorder.monitor.jellett_drift,
     }
-    caution = getattr(method, "caution", "")
     attributes = {
         "title": "Motion of a spinning top on a table",
         "problem": problem.to_json(),
         "outcome": outcome.name.lower(),
-        "outcome_advice": " ".join(filter(None, (outcome.value, trajectory.detail, caution))),
+        "outcome_advice": " ".join(filter(None, (outcome.value, trajectory.detail, method.caution))),
         **_method_attributes([method, *tally.methods.values()], units),
         "tippetop_version": __version__,
     }

@@ -92,7 +92,7 @@ class Recorded:
     def __init__(self):
         self.method, self.asked = make_integrator("taylor"), []
 
-    name = "recorded"
+    name, caution = "recorded", ""
     tolerance = 2.3e-16
 
     def integrate(self, motion, parameters, start, end):

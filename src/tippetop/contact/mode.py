@@ -61,7 +61,7 @@ class Outcome(Enum):
     )
     INACCURATE = (
         "The numbers do not keep what the motion keeps: do not trust them; "
-        "try another integrator or a smaller tolerance."
+        "try another integrator or shorter steps, which a smaller tolerance makes where a method takes one."
     )
     FAILED = (
         "The integrator could not go on: the motion became singular or too stiff for it; "

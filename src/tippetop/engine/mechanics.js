@@ -711,7 +711,7 @@ py.members(
     LYING_FLAT: "The body came to lie flat: there it touches the table all around, which is not followed further; this is the end of its motion, but for what the impact of its face would add.",
     TOO_MANY_PHASES: "The top bounced and slid more often than the run allows; shorten the duration, lower the restitution, or raise the limit on phases.",
     TOO_MANY_STEPS: "The motion took more steps than the run allows: it is very fast, or stiff; shorten the duration, lessen the friction, try the integrator collocation, which is made for stiff friction, or raise the limit on steps.",
-    INACCURATE: "The numbers do not keep what the motion keeps: do not trust them; try another integrator or a smaller tolerance.",
+    INACCURATE: "The numbers do not keep what the motion keeps: do not trust them; try another integrator or shorter steps, which a smaller tolerance makes where a method takes one.",
     FAILED: "The integrator could not go on: the motion became singular or too stiff for it; try another integrator, or less friction."
   }
 );

@@ -94,6 +94,10 @@ class Integrator(Protocol):
     def name(self) -> str:
         """What users call it."""
 
+    @property
+    def caution(self) -> str:
+        """What is to be said of a run, however it ended; nothing where errors are held in every step."""
+
     def integrate(
         self, motion: Motion, parameters: Sequence[float], start: tuple[float, Array], end: float
     ) -> Iterator[Arc]:

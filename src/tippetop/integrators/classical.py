@@ -19,7 +19,6 @@ class ClassicalRK4(StepByStep):
     """Step size, in the units of time of the motion."""
     name: str = field(default="rk4", init=False)
     caution: ClassVar[str] = "How far fixed steps are off is not known: compare a run of half the step."
-    """What is to be said of a run, however it ended."""
     degree: ClassVar[int] = 5
     """The polynomials' error is of higher order than the method's."""
 

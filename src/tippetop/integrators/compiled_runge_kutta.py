@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cache, lru_cache
 from inspect import getsource
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numba import types
@@ -46,6 +46,7 @@ class CompiledRungeKutta:
     tolerance: float
     """Relative and absolute error per step."""
     name: str = field(default="compiled", init=False)
+    caution: ClassVar[str] = ""
 
     def integrate(
         self, motion: Motion, parameters: Sequence[float], start: tuple[float, Array], end: float

@@ -41,6 +41,11 @@ class Relieved:
         return self.explicit.name
 
     @property
+    def caution(self) -> str:
+        """What is to be said of a run, however it ended."""
+        return self.explicit.caution
+
+    @property
     def tolerance(self) -> float:
         """Relative error per step where the motion is not stiff."""
         return float(getattr(self.explicit, "tolerance", 0.0))

@@ -2,7 +2,7 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
@@ -26,6 +26,8 @@ class Accepted(NamedTuple):
 
 class StepByStep(ABC):
     """An integrator that takes its steps in Python."""
+
+    caution: ClassVar[str] = ""
 
     @property
     @abstractmethod

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 from inspect import getsource
-from typing import Any
+from typing import Any, ClassVar
 
 import heyoka as hy
 import numpy as np
@@ -42,6 +42,7 @@ class Taylor:
     tolerance: float = TOLERANCES["taylor"]
     """Relative and absolute error per step, at least 2.2e-16."""
     name: str = field(default="taylor", init=False)
+    caution: ClassVar[str] = ""
 
     def integrate(
         self, motion: Motion, parameters: Sequence[float], start: tuple[float, Array], end: float
