@@ -62,3 +62,12 @@ def test_the_page_says_the_same(spin: float) -> None:
     (found,) = in_javascript([asked(0, 0.5) | {"problem": problem.model_dump(mode="json")}])
     assert found["outcome"] == {"name": "failed", "advice": run.attrs["outcome_advice"]}
     assert "The end of the flight cannot be found" in run.attrs["outcome_advice"]
+
+
+@pytest.mark.parametrize(("step", "tilt"), [(2e-3, 0.5), (2e-3, 1.2), (4e-3, 0.1), (1e-2, 0.5), (3e-2, 1.2)])
+def test_steps_too_long_for_an_edge_are_told_whatever_they_lead_to(step: float, tilt: float) -> None:
+    """They turn the axis beyond flat, where no body can be."""
+    for friction in (tt.ViscousFriction(mu=0.3), tt.CoulombFriction(mu=0.3)):
+        problem = tt.Problem(body=tt.presets.COIN, friction=friction, launch=tt.Launch(tilt=tilt, spin=0.0))
+        run = tt.simulate(problem, 0.6, integrator="rk4", step=step)
+        assert run.attrs["outcome"] in {"inaccurate", "failed"}

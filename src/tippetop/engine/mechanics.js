@@ -37,6 +37,11 @@ function length(a) {
   return py.pow(dot(a, a), 0.5);
 }
 
+/** A power that is not whole; no number of a negative float, of which Python makes a complex number. */
+function power(base, exponent) {
+  return py.isinstance(base, py.float) && base < 0.0 ? py.nan : py.pow(base, exponent);
+}
+
 // tippetop.integrators.base
 const TOLERANCES = new py.Dict([
   ["taylor", py.pow(2.0, -52)],
@@ -174,7 +179,7 @@ class SpheroidSurface extends py.NamedTuple {
   }
   /** Height of the spheroid's centre above the table, m. */
   _central_height(c) {
-    return py.pow(
+    return power(
       py.add(
         py.mul(py.pow(this.across, 2), py.sub(1.0, py.mul(c, c))),
         py.mul(py.mul(py.pow(this.along, 2), c), c)
@@ -196,20 +201,20 @@ class RingSurface extends py.NamedTuple {
   /** Support function h(c), m. */
   height(c) {
     return py.sub(
-      py.add(this.tube, py.mul(this.radius, py.pow(py.sub(1.0, py.mul(c, c)), 0.5))),
+      py.add(this.tube, py.mul(this.radius, power(py.sub(1.0, py.mul(c, c)), 0.5))),
       py.mul(this.center, c)
     );
   }
   /** First derivative h'(c), m. */
   slope(c) {
     return py.sub(
-      py.mul(py.mul(py.neg(this.radius), c), py.pow(py.sub(1.0, py.mul(c, c)), -0.5)),
+      py.mul(py.mul(py.neg(this.radius), c), power(py.sub(1.0, py.mul(c, c)), -0.5)),
       this.center
     );
   }
   /** Second derivative h''(c), m. */
   curvature(c) {
-    return py.mul(py.neg(this.radius), py.pow(py.sub(1.0, py.mul(c, c)), -1.5));
+    return py.mul(py.neg(this.radius), power(py.sub(1.0, py.mul(c, c)), -1.5));
   }
   /** Falls through zero where the body comes to lie flat: s^2 less that of `FLAT`. */
   face_guard(axis) {
@@ -11528,6 +11533,7 @@ export {
   plus,
   point_velocity,
   polynomials,
+  power,
   precession_at,
   precession_boundaries,
   precession_rate,

@@ -6,7 +6,7 @@ a function of c = cos(tilt). It determines the contact point: see `contact_vecto
 
 from typing import NamedTuple, Protocol, Self
 
-from tippetop.mechanics.vectors import Scalar, Vector
+from tippetop.mechanics.vectors import Scalar, Vector, power
 
 FLAT = 1e-3
 """Sine of the tilt at which a body on its edge lies flat: below it, too few digits of 1 - c^2 remain."""
@@ -127,7 +127,7 @@ class SpheroidSurface(NamedTuple):
 
     def _central_height(self, c: Scalar) -> Scalar:
         """Height of the spheroid's centre above the table, m."""
-        return (self.across**2 * (1.0 - c * c) + self.along**2 * c * c) ** 0.5
+        return power(self.across**2 * (1.0 - c * c) + self.along**2 * c * c, 0.5)
 
 
 class RingSurface(NamedTuple):
@@ -143,15 +143,15 @@ class RingSurface(NamedTuple):
 
     def height(self, c: Scalar) -> Scalar:
         """Support function h(c), m."""
-        return self.tube + self.radius * (1.0 - c * c) ** 0.5 - self.center * c
+        return self.tube + self.radius * power(1.0 - c * c, 0.5) - self.center * c
 
     def slope(self, c: Scalar) -> Scalar:
         """First derivative h'(c), m."""
-        return -self.radius * c * (1.0 - c * c) ** -0.5 - self.center
+        return -self.radius * c * power(1.0 - c * c, -0.5) - self.center
 
     def curvature(self, c: Scalar) -> Scalar:
         """Second derivative h''(c), m."""
-        return -self.radius * (1.0 - c * c) ** -1.5
+        return -self.radius * power(1.0 - c * c, -1.5)
 
     def face_guard(self, axis: Vector) -> Scalar:
         """Falls through zero where the body comes to lie flat: s^2 less that of `FLAT`."""

@@ -1,5 +1,6 @@
 """Vectors as plain tuples of anything that has arithmetic."""
 
+from math import nan
 from typing import Any, Protocol, TypeAlias
 
 Scalar: TypeAlias = Any
@@ -52,3 +53,8 @@ def scale(factor: Scalar, a: Vector) -> Vector:
 def length(a: Vector) -> Scalar:
     """Euclidean length of a vector."""
     return dot(a, a) ** 0.5
+
+
+def power(base: Scalar, exponent: float) -> Scalar:
+    """A power that is not whole; no number of a negative float, of which Python makes a complex number."""
+    return nan if isinstance(base, float) and base < 0.0 else base**exponent
