@@ -37,6 +37,23 @@ def test_every_operation_differentiates_as_the_rules_say(x):
         assert derivative(function, np.array([x, 1.0]))[0] == pytest.approx(slope, rel=1e-14, abs=1e-15)
 
 
+@pytest.mark.parametrize("at", [-2.0, np.array([-2.0, 3.0])], ids=["number", "array"])
+def test_what_is_not_analytic_is_refused(at):
+    for function in (abs, np.sign, lambda t: t * abs(1.0 - t)):
+        with pytest.raises(TypeError, match="analytic"):
+            derivative(function, at)
+        with pytest.raises(TypeError, match="analytic"):
+            jacobian(lambda y, taken=function: [y[0], taken(y[1])], [at, at])
+
+
+@pytest.mark.parametrize("root", [lambda t: t**0.5, np.sqrt, lambda t: (t**0.75) ** 4, np.log])
+def test_a_root_of_a_negative_number_has_no_derivative(root):
+    assert math.isnan(derivative(root, -2.0))
+    assert np.isnan(derivative(root, np.array([-2.0, 3.0]))).tolist() == [True, False]
+    assert np.isnan(jacobian(lambda y: [root(y[0]), y[0]], [-2.0])).tolist() == [[True], [False]]
+    assert derivative(lambda t: (t * t) ** 0.5, -2.0) == -1.0
+
+
 def test_plain_results_have_zero_derivatives():
     assert jacobian(lambda y: [y[0] * y[1], 5.0], [2.0, 3.0]).tolist() == [[3.0, 2.0], [0.0, 0.0]]
 
