@@ -9,6 +9,7 @@ import pytest
 import tippetop as tt
 from launches import TOLERANCE, asked, in_javascript
 from tippetop.contact.mode import BROKEN
+from tippetop.mechanics.roots import first_root
 from tippetop.mechanics.unsolved import Unsolved
 from tippetop.presets import REPORT, report_problem
 
@@ -71,3 +72,9 @@ def test_steps_too_long_for_an_edge_are_told_whatever_they_lead_to(step: float, 
         problem = tt.Problem(body=tt.presets.COIN, friction=friction, launch=tt.Launch(tilt=tilt, spin=0.0))
         run = tt.simulate(problem, 0.6, integrator="rk4", step=step)
         assert run.attrs["outcome"] in {"inaccurate", "failed"}
+
+
+def test_steps_that_are_lost_in_rounding_are_not_taken_for_ever() -> None:
+    """The bound lets steps be positive that are shorter than the distance of two numbers at that time."""
+    with pytest.raises(Unsolved, match="rounding"):
+        first_root(lambda _: (1.0, 0.0, 0.0), 1.8, 1.8 + 1e-14, 6.0 / 1e-17**3)

@@ -1165,6 +1165,9 @@ function first_root(function_, low, high, jerk) {
   while (value > 0.0) {
     step = py.min(step, py.sub(high, time));
     var end = py.eq(step, py.sub(high, time)) ? high : py.add(time, step);
+    if (py.eq(end, time)) {
+      throw new Unsolved("steps of time are lost in its rounding");
+    }
     var positive = stays_positive(value, rate, acceleration, jerk, step);
     if (py.truth(positive) || py.truth(is_one_way(rate, acceleration, jerk, step))) {
       if (py.eq(end, high) && py.truth(positive)) {
@@ -1631,6 +1634,7 @@ function falling_time(height, rate, half) {
 // tippetop.mechanics.touchdown
 const START = py.pow(10.0, py.div(-16.0, py.add(DEGREE, 1)));
 const LOOKS = 10.0;
+const MOST_DISCS = 100000;
 
 /** How a flight starts: how many of gap, gap rate and gap acceleration are then zero by construction. */
 class Start extends py.IntEnum {
@@ -1671,7 +1675,7 @@ function touchdown(state, top, horizon, start = Start.AIRBORNE) {
   var separation = new Separation(tip, top.surface, ballistic);
   var level = separation.level;
   var angle = WIDEST;
-  while (py.truth(true)) {
+  for (var turn = 0; turn < MOST_DISCS; turn += 1) {
     time = separation.clear_until(time, level);
     if (time >= horizon) {
       return null;
@@ -1698,6 +1702,7 @@ function touchdown(state, top, horizon, start = Start.AIRBORNE) {
     }
     time = end;
   }
+  throw new Unsolved("the body turns too often so near the table");
 }
 
 /** The highest gap of a free flight that lasts some time, s; floats. */
@@ -11074,6 +11079,7 @@ export {
   MARGIN,
   MOST,
   MOST_ASPECT,
+  MOST_DISCS,
   MOST_FACTOR,
   MOST_IN_TURNS,
   MOST_PIECES,

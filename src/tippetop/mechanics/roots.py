@@ -3,6 +3,8 @@
 from collections.abc import Callable
 from typing import TypeAlias
 
+from tippetop.mechanics.unsolved import Unsolved
+
 FINEST = 1e-10
 """Step, relative to its piece, below which a gap that is neither open nor closing counts as closed."""
 
@@ -14,12 +16,17 @@ Triple: TypeAlias = tuple[float, float, float]
 
 
 def first_root(function: Callable[[float], Triple], low: float, high: float, jerk: float) -> float | None:
-    """First root from `low` to `high`, or `low` if not positive there; `jerk` bounds the third derivative."""
+    """First root from `low` to `high`, or `low` if not positive there; `jerk` bounds the third derivative.
+
+    Raises `Unsolved` where it takes steps that are lost in rounding.
+    """
     time, step, finest = low, high - low, FINEST * (high - low)
     value, rate, acceleration = function(time)
     while value > 0.0:
         step = min(step, high - time)
         end = high if step == high - time else time + step
+        if end == time:
+            raise Unsolved("steps of time are lost in its rounding")
         positive = stays_positive(value, rate, acceleration, jerk, step)
         if positive or is_one_way(rate, acceleration, jerk, step):
             if end == high and positive:

@@ -15,6 +15,10 @@ LOOKS = 10.0
 """Looks for the highest gap per radian that the axis turns; between them, its rate is searched for a zero."""
 
 
+MOST_DISCS = 100_000
+"""How many discs a flight is searched in at most: one that all but grazes the table may need any number."""
+
+
 class Start(IntEnum):
     """How a flight starts: how many of gap, gap rate and gap acceleration are then zero by construction."""
 
@@ -49,7 +53,8 @@ def touchdown(state: State, top: Top, horizon: float, start: Start = Start.AIRBO
     Raises
     ------
     ArithmeticError
-        If the body turns so often until then that its turns are lost in rounding of time.
+        If the body turns so often until then that its turns are lost in rounding of time, or too often near
+        the table.
 
     Notes
     -----
@@ -101,7 +106,7 @@ def touchdown(state: State, top: Top, horizon: float, start: Start = Start.AIRBO
 
     separation = Separation(tip, top.surface, ballistic)
     level, angle = separation.level, WIDEST
-    while True:
+    for _ in range(MOST_DISCS):
         time = separation.clear_until(time, level)
         if time >= horizon:
             return None
@@ -117,6 +122,7 @@ def touchdown(state: State, top: Top, horizon: float, start: Start = Start.AIRBO
         if end <= time:
             raise Unsolved("the body turns so often that its turns are lost in rounding of time")
         time = end
+    raise Unsolved("the body turns too often so near the table")
 
 
 def highest_gap(state: State, top: Top, duration: float) -> float:
