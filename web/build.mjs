@@ -27,7 +27,8 @@ const COMMON = {
 };
 
 async function bundled(entry, options) {
-  const { outputFiles } = await build({ ...COMMON, entryPoints: [entry], ...options });
+  const { outputFiles, warnings } = await build({ ...COMMON, entryPoints: [entry], ...options });
+  if (warnings.length) throw new Error(`${entry}: esbuild warns, see above`);
   const text = (ending) => outputFiles.find(({ path }) => path.endsWith(ending))?.text ?? "";
   return { script: text(".js"), style: text(".css") };
 }

@@ -18,6 +18,8 @@ import math
 from dataclasses import dataclass, replace
 from enum import Enum, IntEnum
 from functools import lru_cache
+from math import hypot as distance
+from math import inf
 from typing import Any, ClassVar, NamedTuple
 
 class Colour(Enum):
@@ -112,7 +114,7 @@ def arithmetic():
     gold = Ring(1) + Gold(2)
     rings = [gold.number, isinstance(gold, Gold)]
     return [*found, *rings, (2 + three).number, (three * three).number, 7 // 2, -7 // 2, -7 % 3, 2.0**0.5,
-            True + 1, sum([1, 2], 10), max(3, 1, 2), min([4.0, 2.0]),
+            True + 1, -inf < 0.0, distance(3.0, 4.0), sum([1, 2], 10), max(3, 1, 2), min([4.0, 2.0]),
             max([], default=-1.0), 1 if not () else 0]
 
 def choices():

@@ -25,6 +25,7 @@ from launches import (
     surfaces_of,
 )
 from lying import lying, resisted
+from node import NODE
 from tippetop.engine import COMMAND, HERE
 
 SLIPS_IN_THE_END = 21
@@ -41,6 +42,22 @@ def test_what_is_generated_is_current() -> None:
     said = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
     for name, text in json.loads(said.stdout).items():
         assert (HERE / name).read_text(encoding="utf-8") == text, f"{name} is out of date: run `{COMMAND}`"
+
+
+def test_all_that_is_generated_asks_for_is_there() -> None:
+    script = f"""
+      import {{ readFileSync }} from "node:fs";
+      import * as py from {json.dumps((HERE / "runtime.js").as_uri())};
+      const text = readFileSync({json.dumps(str(HERE / "mechanics.js"))}, "utf8");
+      const asked = new Set(Array.from(text.matchAll(/\\bpy\\.(?:(math|np)\\.)?(\\w+)/g), ([name]) => name));
+      const there = (name) => name.split(".").slice(1).reduce((one, part) => one?.[part], py) !== undefined;
+      console.log(JSON.stringify([[...asked].filter((name) => !there(name)), [...asked]]));
+    """
+    options = [NODE, "--input-type=module", "-"]
+    ran = subprocess.run(options, input=script, check=True, capture_output=True, text=True, timeout=60)
+    missing, asked = json.loads(ran.stdout)
+    assert {"py.add", "py.math.pi", "py.np.nan"} <= set(asked)
+    assert not missing
 
 
 def test_the_report_s_launch_with_flights_is_the_same() -> None:

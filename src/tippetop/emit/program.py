@@ -99,6 +99,9 @@ class Program:
                         self.imported.setdefault(self.given[where], set()).add(alias.name)
                     known = self.names.get((str(where), alias.name), alias.name)
                     self.names[module, alias.asname or alias.name] = known
+            case ast.ImportFrom(module="math", names=names):
+                for alias in names:
+                    self.names[module, alias.asname or alias.name] = f"py.math.{alias.name}"
             case ast.FunctionDef(name=name) if name not in self.left:
                 self.functions[self._unique(module, name)] = parameters(node)
             case ast.ClassDef(name=name) if name not in self.left:

@@ -39,7 +39,7 @@ function length(a) {
 
 /** A power that is not whole; no number of a negative float, of which Python makes a complex number. */
 function power(base, exponent) {
-  return py.isinstance(base, py.float) && base < 0.0 ? py.nan : py.pow(base, exponent);
+  return py.isinstance(base, py.float) && base < 0.0 ? py.math.nan : py.pow(base, exponent);
 }
 
 // tippetop.integrators.base
