@@ -54,6 +54,16 @@ def test_profiles_may_be_in_files_beside(tmp_path):
     assert found.mass_properties.mass == pytest.approx(2 * 7 / 8 * MASS, rel=1e-12)
 
 
+def test_inserts_given_are_left_as_they_were(tmp_path):
+    (tmp_path / "ball.csv").write_text("0,-20\n0,20,20\n")
+    (tmp_path / "hole.csv").write_text("0,-10\n0,10,10\n")
+    inserts = [{"profile": "hole.csv", "density": 0}]
+    for _ in range(2):
+        found = read_workpiece(tmp_path / "ball.csv", density=700.0, unit="mm", inserts=inserts)
+        assert found.mass_properties.mass == pytest.approx(7 / 8 * MASS, rel=1e-12)
+    assert inserts == [{"profile": "hole.csv", "density": 0}]
+
+
 @pytest.mark.parametrize(
     ("name", "text", "sentence"),
     [

@@ -48,6 +48,8 @@ def read_workpiece(path: Path | str, **fields: Any) -> Workpiece:
     inserts = found.get("inserts")
     parts = {"": found}
     if isinstance(inserts, list):
+        # What is read is put in, and not into what was given.
+        found["inserts"] = inserts = [dict(part) if isinstance(part, dict) else part for part in inserts]
         parts |= {f"inserts.{number}.": part for number, part in enumerate(inserts)}
     with ExitStack() as files:
         if whole:
