@@ -795,6 +795,26 @@ class Quitter:
             yield replace(arc, failure="it was tired" if tired else None, evaluations=7)
 
 
+class Nameless:
+    integrate, caution = Quitter.integrate, ""
+
+
+class Careless:
+    integrate, name = Quitter.integrate, "careless"
+
+
+class Silent(Careless):
+    caution = None
+
+
+@pytest.mark.parametrize("incomplete", [Nameless(), Careless(), Silent(), Quitter])
+def test_integrators_that_lack_something_are_refused_before_the_run(incomplete):
+    needed = "a method integrate, and as texts a name and a caution"
+    with pytest.raises(tt.InvalidInput, match=needed) as refusal:
+        tt.simulate(report(), 0.5, integrator=incomplete)
+    assert refusal.value.field == "integrator"
+
+
 UNIT = math.sqrt(REPORT.shape.radius / 9.8)
 
 

@@ -176,6 +176,11 @@ def integrator_of(
     for setting, value in {"tolerance": tolerance, "step": step}.items():
         if value is not None:
             raise InvalidInput(setting, value, "none with an integrator object, which has its own")
+    texts = [getattr(integrator, name, None) for name in ("name", "caution")]
+    if isinstance(integrator, type) or not all(isinstance(text, str) for text in texts):
+        raise InvalidInput(
+            "integrator", integrator, "an object with a method integrate, and as texts a name and a caution"
+        )
     return integrator
 
 
