@@ -147,7 +147,10 @@ def closures():
     values = [1.0, 2.0, 3.0, 4.0]
     values = values[:2]
     values[0] = values[1]
-    return [total, count, values, remembered(Point(1.0), "a"), remembered(Point(1.0), "a"), len(CALLS)]
+    numbers = (0.0, 2.6, -293456.0, 1e6, 9.9996, 9.96e-5, 1e-4, inf)
+    words = [f"{number:g} {number:.3g} {number:.0e}" for number in numbers]
+    calls = [remembered(Point(1.0), "a"), remembered(Point(1.0), "a"), len(CALLS)]
+    return [*words, total, count, values, *calls]
 """
 
 TESTS = ("tuples", "records", "arithmetic", "choices", "closures")

@@ -30,8 +30,9 @@ from tippetop.engine import COMMAND, HERE
 
 SLIPS_IN_THE_END = 21
 STOP_ON_TWO = (80, 192, 426)
-LIFTS_OFF_AT_ONCE, SLIPS_TO_ITS_END = 327, 374
-SEEDS, DURATION = (1, 3, 32, 62, 64, 104, 195, LIFTS_OFF_AT_ONCE, SLIPS_TO_ITS_END), 0.3
+LIFTS_OFF_AT_ONCE, SLIPS_TO_ITS_END, TRIES_NO_SHAPE = 327, 374, 1030
+"""The last's first trial leads beyond lying flat, where nothing is a number; its step is then shortened."""
+SEEDS, DURATION = (1, 3, 32, 62, 64, 104, 195, LIFTS_OFF_AT_ONCE, SLIPS_TO_ITS_END, TRIES_NO_SHAPE), 0.3
 if "TIPPETOP_PARITY" in os.environ:
     SEEDS = tuple(range(int(os.environ["TIPPETOP_PARITY"])))
 

@@ -32,8 +32,8 @@ class Calls(Expressions):
                 return f"{self.text(value, ATOM)}.{RENAMED.get(attr, attr)}({self._given(node)})"
             case ast.Subscript(value=ast.Name(id="list" | "dict" | "set" as word)):
                 return f"py.{word}({self.arguments(node.args)})"
-            case ast.Name(id="abs" | "max" | "min" as word) if self.numeric:
-                return f"Math.{word}({self.arguments(node.args)})"
+            case ast.Name(id="abs") if self.numeric:
+                return f"Math.abs({self.arguments(node.args)})"
             case ast.Name(id="len") if self.numeric:
                 return f"{self.text(node.args[0])}.length"
             case ast.Name(id=name):

@@ -9257,7 +9257,7 @@ function error_of(h, y, new_, k, tolerance, size) {
   var k16 = k[16];
   var k17 = k[17];
   for (var i = 0; i < y.length; i += 1) {
-    var scale = tolerance[1] + tolerance[0] * Math.max(Math.abs(y[i]), Math.abs(new_[i]));
+    var scale = tolerance[1] + tolerance[0] * py.max(Math.abs(y[i]), Math.abs(new_[i]));
     var first = k16[i] / scale;
     var second = k17[i] / scale;
     fifth = fifth + first * first;
@@ -9280,8 +9280,8 @@ function factor_for(error, tries) {
     var factor = SAFETY_of_dormand_prince / eighth_root(error);
     return factor > LEAST_FACTOR ? factor : LEAST_FACTOR;
   }
-  factor = error === 0.0 ? MOST_FACTOR : Math.min(MOST_FACTOR, SAFETY_of_dormand_prince / eighth_root(error));
-  return tries === 1 ? factor : Math.min(1.0, factor);
+  factor = error === 0.0 ? MOST_FACTOR : py.min(MOST_FACTOR, SAFETY_of_dormand_prince / eighth_root(error));
+  return tries === 1 ? factor : py.min(1.0, factor);
 }
 
 /** How large the difference of two is beside the errors that are allowed: a mean. */
@@ -9301,15 +9301,15 @@ function first_step(rates, p, y, k, place, span, tolerance, size) {
   }
   var extent = measure(y, place, y, tolerance, size);
   var slope = measure(k[0], place, y, tolerance, size);
-  var trial = Math.min(span, extent < 1e-05 || slope < 1e-05 ? 1e-06 : 0.01 * extent / slope);
+  var trial = py.min(span, extent < 1e-05 || slope < 1e-05 ? 1e-06 : 0.01 * extent / slope);
   var k0 = k[0];
   for (var i = 0; i < y.length; i += 1) {
     place[i] = y[i] + trial * k0[i];
   }
   evaluate(rates, place, p, k[1]);
-  var steepest = Math.max(slope, measure(k[1], k[0], y, tolerance, size) / trial);
-  var found = steepest <= 1e-15 ? Math.max(1e-06, trial * 0.001) : eighth_root(0.01 / steepest);
-  return Math.min(100.0 * trial, found, span);
+  var steepest = py.max(slope, measure(k[1], k[0], y, tolerance, size) / trial);
+  var found = steepest <= 1e-15 ? py.max(1e-06, trial * 0.001) : eighth_root(0.01 / steepest);
+  return py.min(100.0 * trial, found, span);
 }
 
 /** Put the state at a part of a step, whose coefficients are from `first` on, in y. */
@@ -9328,22 +9328,22 @@ function may_fall(values, guard) {
   var least = values[0][guard];
   var most = values[0][guard];
   for (var i = 1; i < LOOKS_of_dormand_prince + 1; i += 1) {
-    least = Math.min(least, values[i][guard]);
-    most = Math.max(most, values[i][guard]);
+    least = py.min(least, values[i][guard]);
+    most = py.max(most, values[i][guard]);
   }
   if (least > 0.0 && 2.0 * least >= most) {
     return false;
   }
   for (var i = 0; i < LOOKS_of_dormand_prince + 1; i += 1) {
-    var before = Math.max(i - 1, 0);
+    var before = py.max(i - 1, 0);
     var here = values[i][guard];
-    var after = Math.min(i + 1, LOOKS_of_dormand_prince);
+    var after = py.min(i + 1, LOOKS_of_dormand_prince);
     if (here > 0.0) {
       if (values[after][guard] <= 0.0) {
         return true;
       }
       if (here <= values[before][guard] && here <= values[after][guard]) {
-        for (var j = Math.max(i - 2, 0); j < Math.min(i + 2, LOOKS_of_dormand_prince) + 1; j += 1) {
+        for (var j = py.max(i - 2, 0); j < py.min(i + 2, LOOKS_of_dormand_prince) + 1; j += 1) {
           if (2.0 * here < values[j][guard]) {
             return true;
           }
@@ -9427,7 +9427,7 @@ function advance(rates, guards, count, p, y, lost, k, span, tolerance, knots, te
       if (!(span[2] > NOTHING * Math.abs(time))) {
         return [steps, calls, STUCK_of_dormand_prince];
       }
-      var reach = Math.min(time + span[2], end);
+      var reach = py.min(time + span[2], end);
       var h = reach - time;
       stages_of_dormand_prince(rates, h, p, y, lost, k, moved, new_);
       error = error_of(h, y, new_, k, tolerance, size);

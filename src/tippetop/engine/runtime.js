@@ -351,8 +351,13 @@ export const tolist = (all) => [...all];
 export const join = (between, all) => [...all].join(between);
 export const extend = (all, more) => all.push(...more);
 export const removeprefix = (text, part) => (text.startsWith(part) ? text.slice(part.length) : text);
-export const format = (value, how_) =>
-  how_.endsWith("g") ? String(Number(value.toPrecision(Number(how_.slice(1, -1)) || 6))) : String(value);
+export function format(value, how_) {
+  if (!Number.isFinite(value)) return String(value).toLowerCase().replace("inity", "");
+  const kind = how_.at(-1), digits = how_.length > 1 ? Number(how_.slice(1, -1)) : 6;
+  const [mantissa, power] = value.toExponential(kind === "g" ? Math.max(digits, 1) - 1 : digits).split("e");
+  if (kind === "g" && power >= -4 && power < digits) return String(Number(value.toPrecision(digits)));
+  return `${kind === "g" ? Number(mantissa) : mantissa}e${power[0]}${power.slice(1).padStart(2, "0")}`;
+}
 
 // ---- objects
 
