@@ -202,6 +202,20 @@ def test_a_step_of_a_fast_top_leaves_little_out_of_its_axis(field):
     assert off.max() > 1e-16
 
 
+@pytest.mark.parametrize("tolerance", [1e-9, 1e-12])
+def test_weaker_gravity_is_no_singular_motion(tolerance):
+    """Where there is hardly any, the motion does not depend on it: only how short its steps are beside 1."""
+    problem = report_problem(spin=155.0, tilt=1.0)
+    problem = problem.replace({"contact.liftoff": "ignore", "launch.precession": -20.0, "gravity": 1e-10})
+    run = truth(problem, 0.3, 2)
+    axis = Axis.of("gravity", [1e-10, 1e-20, 1e-26, 1e-30])
+    found = follow_cells(Sweep(problem, Product((axis,)), 0.3, tolerance), np.arange(4))
+    assert np.all(found["outcome"] == Ending.TILTED)
+    for name in ("final_theta", "final_omega3", "highest"):
+        assert found[name] == pytest.approx(np.full(4, float(run[name])), rel=1e-8), name
+    assert abs(found["final_theta"][0] - 1.0) > 0.01
+
+
 @pytest.mark.parametrize(
     "changes",
     [

@@ -30,8 +30,8 @@ some costs Python as much as several steps of all."""
 WINDOW = 64
 """Steps between notes of the states, from which a part of the run can be done again."""
 
-SHORTEST = 1e-13
-"""Step, in natural units, below which a motion counts as singular."""
+SHORTEST, ROUNDED = 1e-13, float(np.finfo(float).eps)
+"""Step, in natural units and over the time left, both of which it is below where a motion is singular."""
 
 CROWDED = 0.75
 """Share of lanes at work below which the others are taken out."""
@@ -155,7 +155,8 @@ class Lanes:
         ended = np.flatnonzero(slots.alive & (slots.left <= 0.0))
         if len(ended):
             slots.retire(ended, slots.whole(ended), slots.end[ended], Outcome.COMPLETED)
-        singular, many = slots.rows[layout.taken] < SHORTEST, slots.rows[layout.steps] >= STEP_LIMIT
+        shortest = np.minimum(SHORTEST, ROUNDED * slots.left)
+        singular, many = slots.rows[layout.taken] < shortest, slots.rows[layout.steps] >= STEP_LIMIT
         for lost, outcome in ((singular, Outcome.FAILED), (~singular & many, Outcome.TOO_MANY_STEPS)):
             which = np.flatnonzero(slots.alive & lost)
             slots.retire(which, slots.whole(which), slots.time(which), outcome)

@@ -196,22 +196,26 @@ def step_size(state: Sequence[Sequence[Scalar]], left: Scalar, plain: Arithmetic
     """
     order = len(state[0]) - 1
 
-    def square(k: int, some: slice) -> Scalar:
-        return plain.total([series[k] * series[k] for series in state[some]])
+    def square(terms: Sequence[Scalar]) -> Scalar:
+        return plain.total([term * term for term in terms])
 
     def ratio(k: int) -> Scalar:
-        others = square(k, slice(axis, None))
-        if not axis:
-            return whole / others
-        own = square(k, slice(axis))
-        return plain.least(bounded / own, whole / (own + others))
+        # Of fast motion the last terms are so large that their squares are no numbers.
+        scale = 1.0 / (plain.total([plain.size(series[k]) for series in state]) + TINY)
+        terms = [scale * series[k] for series in state]
+        others = square(terms[axis:])
+        left_out = whole / others
+        if axis:
+            own = square(terms[:axis])
+            left_out = plain.least(bounded / own, whole / (own + others))
+        return scale * left_out**0.5
 
-    whole = square(0, slice(None))
+    whole = square([series[0] for series in state])
     bounded = whole
     if axis:
         most = FAST * FASTER * FASTER / whole
         bounded = plain.least(plain.least(whole, FAST * FAST), most * most)
-    radius = plain.least(*(ratio(k) ** (0.5 / k) for k in (order - 1, order)))
+    radius = plain.least(*(ratio(k) ** (1.0 / k) for k in (order - 1, order)))
     safety = math.exp(-2.0 - 0.7 / (order - 1))
     return plain.choose(plain.below(0.0, radius), plain.least(safety * radius, left), 0.0 * left)
 
