@@ -7,6 +7,7 @@ import pytest
 
 from tippetop.frictions import ContensouFriction
 from tippetop.integrators import has_llvm, make_integrator
+from tippetop.integrators.base import Guard, Motion
 from tippetop.integrators.polynomials import Polynomials
 from tippetop.presets import report_problem
 from tippetop.sweeps import Axis, Product, Sweep
@@ -86,3 +87,33 @@ def test_where_polynomials_end_is_where_single_launches_are():
         assert last.solution.end == span
         size = np.abs(start).max()
         assert found.after[:, lane] == pytest.approx(last.end_state, abs=1e-7 * size), lane
+
+
+def test_guards_that_are_no_numbers_end_nothing_as_in_single_launches():
+    """Beside them a guard that falls is found all the same."""
+    none = [Guard(name, lambda y, _: (-1.0 - y[0] * y[0]) ** 0.5) for name in ("first", "second")]
+    quarter = Guard("quarter", lambda y, _: y[0])
+    for guards, ends in ((none, 3.0), ([*none, quarter], 0.5 * np.pi)):
+        motion = Motion(lambda y, _: (-y[1], y[0], 0.1 * y[0], y[2]), 4, 1, tuple(guards))
+        *_, arc = make_integrator(None).integrate(motion, [0.0], (0.0, np.array([1.0, 0.0, 0.5, 0.0])), 3.0)
+        method, pauses = stepper(motion, 1e-12), [1.0] * len(guards) + [0.0, np.inf, -np.inf]
+        layout, numbers = method.layout, np.tile(np.array([[0.0, *pauses]]).T, 16)
+        before, after = np.zeros((2, layout.rows, 16))
+        before[[0, 2, layout.left]] = np.array([[1.0], [0.5], [3.0]])
+        paused = np.zeros(16)
+        for _ in range(50):
+            method.step(before, after, numbers)
+            paused = after[layout.pause]
+            if paused.any() or not after[layout.left].any():
+                break
+            before, after = after, before
+        assert paused.any() == (len(guards) == 3)
+        end = 3.0 - after[layout.left]
+        if paused.any():
+            jet, held = method.jet(before, numbers), after[layout.taken]
+            found = arcs(jet, held, held, numbers[layout.parameters :])
+            end = 3.0 - before[layout.left] + found.span
+            assert np.all(found.fallen == 2.0)
+        assert end == pytest.approx(np.full(16, ends), rel=1e-12)
+        assert arc.solution.end == pytest.approx(ends, rel=1e-9)
+        assert (arc.guard, arc.failure) == ("quarter" if len(guards) == 3 else None, None)
