@@ -859,3 +859,14 @@ def test_motion_that_becomes_singular_is_a_failed_run_and_no_exception(integrato
     start = run.isel(time=slice(0, run.sizes["time"] // 2))
     assert start.sizes["time"] > 3
     np.testing.assert_allclose(start.energy, start.energy[0] + start.work, rtol=1e-9)
+
+
+@pytest.mark.skipif(not has_taylor(), reason="heyoka is not installed")
+def test_steps_that_rounding_of_time_swallows_are_no_more_than_a_few_thousand():
+    run = tt.simulate(runaway(), 5.0, samples=11, integrator="taylor", tolerance=1e-9)
+    assert run.attrs["outcome"] == "failed"
+    assert "the step size fell to nothing" in run.attrs["outcome_advice"]
+    assert int(run["steps"]) < 10_000
+    assert np.all(np.diff(run.time) > 0)
+    exact = tt.simulate(runaway(), 5.0, samples=11, integrator="taylor")
+    assert float(run["end_time"]) == pytest.approx(float(exact["end_time"]), rel=1e-6)

@@ -13,7 +13,7 @@ from typing import Any, ClassVar
 import heyoka as hy
 import numpy as np
 
-from tippetop.integrators.base import NOT_FINITE, TOLERANCES, Arc, Array, Expansion, Motion
+from tippetop.integrators.base import NO_STEP, NOT_FINITE, TOLERANCES, Arc, Array, Expansion, Motion
 from tippetop.integrators.dense import DenseSolution
 from tippetop.integrators.sealed_folders import kept_content
 from tippetop.interrupts import heard
@@ -61,10 +61,12 @@ class Taylor:
                 solution, outcome = compiled.advance(end)
                 state = np.array(run.state)
             steps = len(solution.terms)
-            if outcome == hy.taylor_outcome.err_nf_state:
+            # Rounding of time may swallow all steps before numbers have grown beyond all bounds.
+            stuck = outcome == hy.taylor_outcome.step_limit and not solution.end > start[0]
+            if stuck or outcome == hy.taylor_outcome.err_nf_state:
                 solution = _before_blow_up(solution)
                 state = solution(solution.knots[-1:])[0] if len(solution.terms) else start[1]
-                yield Arc(solution, state, None, NOT_FINITE, steps, steps)
+                yield Arc(solution, state, None, NO_STEP if stuck else NOT_FINITE, steps, steps)
                 return
             guard = None
             if outcome not in (hy.taylor_outcome.step_limit, hy.taylor_outcome.time_limit):
