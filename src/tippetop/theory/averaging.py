@@ -141,7 +141,7 @@ def flip_time_limit(problem: Problem, distance: float = 0.01) -> float:
         raise InvalidInput(
             "launch",
             problem.launch,
-            "one whose nutation the table holds without a pull, until it has died away",
+            "one whose nutation can be followed until it has died away, and the table holds without a pull",
         )
     begin = 0.0
     for stage in stages:

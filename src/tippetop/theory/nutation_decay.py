@@ -64,22 +64,34 @@ class Nutation(NamedTuple):
 
 def launched(angles: Angles, numbers: Numbers) -> Nutation:
     """The nutation of a launch, both in natural units."""
-    upright = orbit_of_angles(angles, numbers)
-    turned = upright.middle > 1.0
+    seen = _whole(angles, numbers)
+    turned = seen.middle > 1.0
     if turned:
-        seen = upside_down(upright, numbers)
-        numbers, tilt = numbers.turned, math.pi - angles.tilt
-        if angles.tilt > 0.5 * math.pi:  # as exact as the tilt, but for pi itself, which is vertical
-            tilt = math.asin(math.sin(angles.tilt)) if angles.tilt < math.pi else 0.0
-        angles = angles._replace(tilt=tilt, spin=-angles.spin)
+        angles, numbers = _turned(angles), numbers.turned
+        seen = _whole(angles, numbers)
     width = max(angles.tilt, abs(angles.tilt_rate), abs(angles.tilt * angles.precession))
     wider = _NARROW / width if 0.0 < width < _NARROW else 1.0
     wide = angles._replace(tilt=wider * angles.tilt, tilt_rate=wider * angles.tilt_rate)
     orbit = orbit_of_angles(wide, numbers)
-    if turned and not orbit.far < -_APART:  # where it just passes or just reaches the pole
+    if numbers.alpha < 0.0 and not orbit.far < -_APART:  # where it just passes or just reaches the pole
         middle = max(seen.middle, seen.half, _APART)
         return Nutation(seen._replace(middle=middle, far=min(seen.far, -(_APART**2))), turned)
     return Nutation(orbit, turned, -2.0 * math.log(wider))
+
+
+def _whole(angles: Angles, numbers: Numbers) -> Orbit:
+    """The nutation of a motion, its roots reckoned from the pole that the third one is far from."""
+    if numbers.alpha > 0.0:
+        return orbit_of_angles(angles, numbers)
+    return upside_down(orbit_of_angles(_turned(angles), numbers.turned), numbers.turned)
+
+
+def _turned(angles: Angles) -> Angles:
+    """The same motion with the axis drawn the other way."""
+    tilt = math.pi - angles.tilt
+    if tilt < 0.5 * math.pi:  # as exact as the tilt, but for pi itself, which is vertical
+        tilt = math.asin(math.sin(angles.tilt)) if angles.tilt < math.pi else 0.0
+    return angles._replace(tilt=tilt, tilt_rate=-angles.tilt_rate, spin=-angles.spin)
 
 
 class Goals(NamedTuple):
