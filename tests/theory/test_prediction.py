@@ -106,6 +106,25 @@ def test_what_may_touch_with_its_stem_is_refused_where_the_stem_touches():
         predict(STEMMED)
 
 
+def test_a_rim_that_hardly_reaches_out_of_the_ball_is_not_overlooked():
+    """A sharp rim 1e-6 radii outside of the ball, in the direction psi from its middle, touches near psi."""
+    radius, center, psi, reach = 0.02, 0.006, 1.5, 1.0 + 1e-6
+    shapes = [
+        {"kind": "sphere", "radius": radius, "center": center},
+        {
+            "kind": "ring",
+            "radius": radius * reach * math.sin(psi),
+            "center": center - radius * reach * math.cos(psi),
+        },
+    ]
+    problem = presets.report_problem().replace({"body.shape": shapes})
+    for tilt, sign in ((0.1, -1.0), (3.0, 1.0)):
+        around = psi + sign * math.acos(1.0 / reach)
+        assert list(touching_tilts(problem.top.surface, tilt)) == pytest.approx([around], abs=1e-9)
+    with pytest.raises(InvalidInput, match=r"surface 1 can touch, at a tilt of 1\.499 rad"):
+        predict(problem)
+
+
 def test_the_energy_that_is_named_is_what_decides():
     """Just above the least spin that is refused, the launch has hardly more than it takes."""
     accepted, refused = 40.0, 155.0

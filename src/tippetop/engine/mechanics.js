@@ -8664,14 +8664,10 @@ function nearest(tilts, tilt) {
 
 /** The tilts next to one, rad, at which another surface touches beside the active one, and its number. */
 function touching_tilts(hull, tilt) {
-  var tilts = py.sorted([
-    ...py.range(py.add(TILTS, 1)).map((k) => py.div(py.mul(py.math.pi, k), TILTS)),
-    tilt
-  ]);
   var found = new py.Dict([]);
   for (var [number, other] of py.enumerate(hull.each)) {
     if (!py.eq(number, hull.active)) {
-      found.update([..._meetings(hull, other, tilts)].map((at) => [at, number]));
+      found.update([..._meetings(hull, other)].map((at) => [at, number]));
     }
   }
   return new py.Dict(
@@ -8679,16 +8675,13 @@ function touching_tilts(hull, tilt) {
   );
 }
 
-/** The tilts at which two surfaces touch together, rad, where they change places between some others. */
-function _meetings(one, other, tilts) {
+/** The tilts at which two surfaces touch together, rad, and change places, however soon again. */
+function _meetings(one, other) {
   var gap = (at) => {
     return py.float(py.sub(one.height(py.math.cos(at)), other.height(py.math.cos(at))));
   };
-  return [...py.pairwise(tilts)].filter(
-    ([low, high]) => !py.eq(gap(low) < 0.0, gap(high) < 0.0)
-  ).map(([low, high]) => crossing(gap, low, high));
+  return roots_between(gap, 0.0, py.math.pi, 0.0);
 }
-const TILTS = 200;
 
 /** Those of all steady states with one Jellett's integral, by their tilts, that are minima of the energy. */
 function stable_by_energy(states) {
@@ -9124,7 +9117,7 @@ function orientation(axis, turn, pole, functions) {
 // tippetop.mechanics.outline
 const SMOOTH = 0.15;
 const FITS = 0.03;
-const TILTS_of_outline = 61;
+const TILTS = 61;
 const OUTLINE = 97;
 const POLE = 0.0001;
 
@@ -9140,8 +9133,8 @@ function extent(lines) {
 function is_outline(lines, surface) {
   var points = [...lines].flatMap((line) => [...line]);
   var within = py.mul(FITS, extent(lines));
-  for (var look = 0; look < TILTS_of_outline; look += 1) {
-    var tilt = py.div(py.mul(py.math.pi, look), py.sub(TILTS_of_outline, 1));
+  for (var look = 0; look < TILTS; look += 1) {
+    var tilt = py.div(py.mul(py.math.pi, look), py.sub(TILTS, 1));
     var sine = py.math.sin(tilt);
     var c = py.math.cos(tilt);
     if (
@@ -11272,7 +11265,6 @@ export {
   TERMS,
   THIRD,
   TILTS,
-  TILTS_of_outline,
   TIME,
   TINY,
   TINY_of_loosening,

@@ -12,7 +12,6 @@ This holds while the table only pushes. A bilateral contact that pulls can give 
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -21,12 +20,12 @@ from numpy.typing import NDArray
 from tippetop.errors import InvalidInput
 from tippetop.mechanics.hull import Hull
 from tippetop.mechanics.invariants import energy, jellett
-from tippetop.mechanics.roots import crossing
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top, natural_units
 from tippetop.mechanics.view import axis_sine
 from tippetop.problem import Problem
 from tippetop.theory.requirements import require_creep, require_jellett
+from tippetop.theory.series_roots import roots_between
 from tippetop.theory.steady import (
     SteadyKind,
     SteadyState,
@@ -147,27 +146,20 @@ def nearest(tilts: Iterable[float], tilt: float) -> tuple[float, float]:
 
 def touching_tilts(hull: Hull, tilt: float) -> dict[float, int]:
     """The tilts next to one, rad, at which another surface touches beside the active one, and its number."""
-    tilts = sorted([*(math.pi * k / TILTS for k in range(TILTS + 1)), tilt])
     found: dict[float, int] = {}
     for number, other in enumerate(hull.each):
         if number != hull.active:
-            found.update((at, number) for at in _meetings(hull, other, tilts))
+            found.update((at, number) for at in _meetings(hull, other))
     return {at: found[at] for at in nearest(found, tilt) if at in found}
 
 
-def _meetings(one: Hull, other: Hull, tilts: list[float]) -> list[float]:
-    """The tilts at which two surfaces touch together, rad, where they change places between some others."""
+def _meetings(one: Hull, other: Hull) -> list[float]:
+    """The tilts at which two surfaces touch together, rad, and change places, however soon again."""
 
     def gap(at: float) -> float:
         return float(one.height(math.cos(at)) - other.height(math.cos(at)))
 
-    return [
-        crossing(gap, low, high) for low, high in pairwise(tilts) if (gap(low) < 0.0) != (gap(high) < 0.0)
-    ]
-
-
-TILTS = 200
-"""Tilts between which the touch of another surface is looked for."""
+    return roots_between(gap, 0.0, math.pi, 0.0)
 
 
 def steady_launch(problem: Problem) -> SteadyState[float] | None:
