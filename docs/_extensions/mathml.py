@@ -40,6 +40,8 @@ def mathml(tex: str, as_block: bool = False) -> str:
     for bar in tree.iter(f"{{{MATHML}}}mo"):
         if bar.text == "|":
             bar.set("form", "prefix" if bar.get("class") == "mathopen" else "postfix")
+            # The closing one may bear an exponent, alone, and would not stretch as the other does.
+            bar.set("stretchy", "false")
     return ElementTree.tostring(tree, encoding="unicode")
 
 
