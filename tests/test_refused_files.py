@@ -15,8 +15,9 @@ import pytest
         ("--mp4 run", "--mp4"),
         ("--glb run.html", "--glb"),
         ("--html run.glb", "--html"),
-        ("--out run.csv --csv run.csv", "--csv"),
-        ("--out ./run.csv --csv run.csv --force", "--csv"),
+        ("--out run.csv", "--out"),
+        ("--csv run.csv --out run.csv", "--out"),
+        ("--plot run.PNG --html ./run.png --force", "--html"),
     ],
 )
 def test_names_that_cannot_be_are_refused_before_anything_is_written(tmp_path, arguments, field):

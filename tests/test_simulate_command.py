@@ -52,7 +52,7 @@ def test_every_file_asked_for_is_written(tmp_path: Path) -> None:
         (["--csv", "run.txt"], "--csv = 'run.txt' is not possible; accepted: a file name that ends in .csv"),
         (
             ["--html", "a.html", "--out", "a.html"],
-            "--html = 'a.html' is not possible; accepted: a file other",
+            "--out = 'a.html' is not possible; accepted: a file name that ends in .nc",
         ),
     ],
 )
@@ -60,3 +60,20 @@ def test_names_that_cannot_be_are_refused(words: list[str], sentence: str) -> No
     done = CliRunner().invoke(app, ["simulate", *words])
     assert isinstance(done.exception, tt.InvalidInput)
     assert sentence in str(done.exception)
+
+
+@pytest.mark.parametrize(
+    ("command", "sentence"),
+    [
+        ("simulate --spin fast", "--spin = 'fast' is not possible; accepted: a number"),
+        ("simulate --samples 2.5", "--samples = '2.5' is not possible; accepted: a whole number"),
+        ("sweep --workers many", "--workers = 'many' is not possible; accepted: a whole number"),
+        ("lab --port 99999", "--port = '99999' is not possible; accepted: less than or equal to 65535"),
+    ],
+)
+def test_what_is_no_number_is_refused_as_everything_else(command: str, sentence: str) -> None:
+    done = CliRunner().invoke(app, command.split())
+    # Older typers have words of their own, in which the value is too.
+    assert isinstance(done.exception, tt.TippetopError)
+    if isinstance(done.exception, tt.InvalidInput):
+        assert str(done.exception) == sentence

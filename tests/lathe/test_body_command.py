@@ -76,7 +76,9 @@ def test_people_are_told_too(files):
 
 
 def test_the_problem_is_one_that_is_simulated(files):
-    (files / "problem.toml").write_text(said("ball.toml", "--toml"))
+    written = said("ball.toml", "--toml")
+    assert "  # kg: mass of the body\n" in written
+    (files / "problem.toml").write_text(written)
     assert tt.Problem.read(files / "problem.toml").body == tt.Body.turned(files / "ball.toml")
 
 

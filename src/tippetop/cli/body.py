@@ -10,6 +10,7 @@ import typer
 
 import tippetop as tt
 from tippetop.cli.options import DRAWINGS, Force, Json, write_figure
+from tippetop.cli.problem import commented_toml
 from tippetop.cli.terminal import facts, listing, show, show_json
 from tippetop.errors import InvalidInput
 from tippetop.files import place_for, require_ending
@@ -46,7 +47,7 @@ def body(
         raise InvalidInput("--toml", "with --json", "one of the two")
     if as_toml:
         turned = tt.Body.turned(piece, whole=whole)
-        written = tt.presets.report_problem().model_copy(update={"body": turned}).to_toml()
+        written = commented_toml(tt.presets.report_problem().model_copy(update={"body": turned}))
     else:
         told = _told(piece, whole)
     for path in files.values():

@@ -14,13 +14,17 @@ from tippetop.cli.problem import problem
 from tippetop.cli.reproduce import reproduce
 from tippetop.cli.simulate import simulate
 from tippetop.cli.sweep import sweep
-from tippetop.errors import OTHER_OUT, OVERWRITE, RESUME, TippetopError
+from tippetop.errors import OTHER_OUT, OVERWRITE, RESUME, InvalidInput, TippetopError
 from tippetop.interrupts import INTERRUPTED, asked_to_end, let_end, let_raise
 
 MISUSE = 2
 
 WORDS = {OVERWRITE: "--force", RESUME: "--resume", OTHER_OUT: "another --out"}
 """What is asked for here, by how it is asked for in Python."""
+
+
+NUMBERS = {"float_parsing": "a number", "int_parsing": "a whole number"}
+"""What is accepted where typer finds none."""
 
 
 class Commands(TyperGroup):
@@ -31,6 +35,8 @@ class Commands(TyperGroup):
         try:
             let_raise()
             return super().invoke(ctx)
+        except typer.BadParameter as error:
+            raise _in_a_sentence(error) from None
         except (KeyboardInterrupt, Exception) as error:
             if not (isinstance(error, KeyboardInterrupt) or asked_to_end()) or isinstance(error, typer.Exit):
                 raise
@@ -38,6 +44,16 @@ class Commands(TyperGroup):
             raise typer.Exit(INTERRUPTED) from None
         finally:
             let_end()
+
+
+def _in_a_sentence(error: Any) -> Exception:
+    """What typer says of an option that cannot be, with the value and in the words of all other sentences."""
+    name: str = error.param.opts[0]
+    told: list[Any] = getattr(error.__cause__, "errors", list)()
+    if not told:
+        return TippetopError(f"{name}: {error.message}") if error.message else error
+    accepted = NUMBERS.get(told[0]["type"], told[0]["msg"].removeprefix("Input should be "))
+    return InvalidInput(name, told[0]["input"], accepted)
 
 
 app = typer.Typer(

@@ -148,4 +148,4 @@ def _eigenvalues(judged: "Judged") -> str:
 
 
 def _shown(value: float) -> str:
-    return f"{value:.10g}" if math.isfinite(value) else "never"
+    return f"{value + 0.0:.10g}" if math.isfinite(value) else "never"

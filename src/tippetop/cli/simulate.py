@@ -10,7 +10,6 @@ import typer
 import tippetop as tt
 from tippetop.cli.options import DRAWINGS, Choice, Force, Json, of_a_problem, write_figure
 from tippetop.cli.terminal import facts, progress_bar, show, show_json
-from tippetop.errors import InvalidInput
 from tippetop.files import place_for, require_ending
 
 if TYPE_CHECKING:
@@ -20,6 +19,9 @@ DEFAULT_SAMPLES = 2001
 MOVING = ("glb", "html", "mp4", "gif")
 ENDINGS = {"plot": DRAWINGS, "html": (".html", ".htm")}
 """How the names of files may end; of the other kinds but `out`, as the kind is called."""
+
+OF_OTHERS = (*DRAWINGS, ".html", ".htm", ".csv", ".glb", ".mp4", ".gif", ".json", ".toml", ".zarr")
+"""How that of the run's NetCDF may not end, which has no ending of its own."""
 
 ROWS = (
     ("simulated", "duration", "s", ".6g", ""),
@@ -139,15 +141,12 @@ def _write(run: "xr.Dataset", kind: str, path: Path, force: bool) -> None:
 
 
 def _check_files(wanted: dict[str, Path], force: bool) -> None:
-    """Refuse names that promise another kind of file, are given twice or taken, and films without ffmpeg."""
-    taken: dict[Path, str] = {}
+    """Refuse names that promise another kind of file or are taken, and films without ffmpeg."""
     for kind, path in wanted.items():
         if kind != "out":
             require_ending(f"--{kind}", path, ENDINGS.get(kind, (f".{kind}",)))
-        if path.resolve() in taken:
-            raise InvalidInput(f"--{kind}", str(path), f"a file other than that of --{taken[path.resolve()]}")
-        taken[path.resolve()] = kind
-    for path in wanted.values():
+        elif path.suffix.lower() in OF_OTHERS:
+            require_ending("--out", path, (".nc",))
         place_for(path, force)
     if "mp4" in wanted:
         from tippetop.export.movie import ffmpeg  # noqa: PLC0415 - slow to import

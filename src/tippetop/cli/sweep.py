@@ -16,7 +16,9 @@ from tippetop.files import in_words, place_for, read_text, require_ending
 from tippetop.interrupts import INTERRUPTED
 
 if TYPE_CHECKING:
+    import numpy as np
     import xarray as xr
+    from numpy.typing import NDArray
 
     from tippetop.sweeps import Product, Progress, Sweep
 
@@ -102,13 +104,13 @@ def sweep(
                     tell(now.done, now.cells, f"{now.done:,} of {now.cells:,}{rate}")
 
                 fill(store, workers=workers, scheduler=cluster, callback=callback)
-            dataset = store.load(["status", "outcome", *dict.fromkeys(["flights", *pictures])])
+            dataset = store.load(["status", "outcome", "fault", *dict.fromkeys(["flights", *pictures])])
             _draw_maps(dataset, pictures, force or resume)
         except KeyboardInterrupt:
             done = f"{progress[-1].done:,} of {progress[-1].cells:,}" if progress else "none"
             typer.echo(f"tippetop: interrupted; {done} cells are in {out}: go on with --resume", err=True)
             raise typer.Exit(INTERRUPTED) from None
-    summary = _summary(dataset, progress[-1])
+    summary = {**_summary(dataset, progress[-1]), "refusal": _refusal(store.sweep, dataset["fault"].values)}
     if as_json:
         files = {"out": str(out), "maps": [str(path) for path in pictures.values()]}
         show_json({**summary, **files, "sweep": store.sweep.describe()})
@@ -220,12 +222,29 @@ def _summary(dataset: "xr.Dataset", progress: "Progress") -> dict[str, Any]:
     }
 
 
+def _refusal(sweep: "Sweep", faults: "NDArray[np.int8]") -> str | None:
+    """Why the first launch that there is no problem for cannot be, if there is one."""
+    from tippetop.sweeps.cells import put, single_part  # noqa: PLC0415 - slow to import
+
+    bad = faults.ravel().nonzero()[0][:1]
+    try:
+        if len(bad):
+            single_part(put(sweep.problem, sweep.grid.values(bad)), 0)
+    except InvalidInput as error:
+        return str(error)
+    return None
+
+
 def _sentences(summary: dict[str, Any]) -> Iterator[Any]:
+    from rich.markup import escape  # noqa: PLC0415 - slow to import
+
     rows = [(name.replace("_", " "), f"{number:,}") for name, number in summary["outcomes"].items()]
     if summary["flights"]:
         rows.append(("flights", f"{summary['flights']:,}"))
     yield f"[bold]{summary['cells']:,} launches[/]"
     yield facts(rows)
+    if summary["refusal"]:
+        yield escape(f"The first that is bad: {summary['refusal']}")
     yield (
         f"[dim]{summary['computed']:,} computed in {summary['seconds']:.3g} s, "
         f"{summary['launches_per_second']:,.0f} a second[/]"
