@@ -67,10 +67,10 @@ def test_inserts_given_are_left_as_they_were(tmp_path):
 @pytest.mark.parametrize(
     ("name", "text", "sentence"),
     [
-        ("a.csv", "0,0\n1,x\n0,1\n", "row 2 = '1,x in "),
-        ("a.csv", "r,z\n0,0\n1,,2\n0,1\n", "row 3 = '1,,2 in "),
-        ("a.csv", "0,O\n1,2\n0,1\n", "row 1 = '0,O in "),
-        ("a.csv", "O,-2O\n1,2\n0,1\n", "row 1 = 'O,-2O in "),
+        ("a.csv", "0,0\n1,x\n0,1\n", "row 2 = '1,x' in "),
+        ("a.csv", "r,z\n0,0\n1,,2\n0,1\n", "row 3 = '1,,2' in "),
+        ("a.csv", "0,O\n1,2\n0,1\n", "row 1 = '0,O' in "),
+        ("a.csv", "O,-2O\n1,2\n0,1\n", "row 1 = 'O,-2O' in "),
         ("a.csv", "", "0 points"),
         ("a.svg", "<svg", "accepted: XML"),
         ("a.svg", "<svg/>", "0 paths"),

@@ -88,8 +88,8 @@ def _numbers(number: int, row: list[str], path: Path) -> list[float]:
     try:
         return [float(cell) for cell in cells]
     except ValueError:
-        line = f"{','.join(row)} in {named(path)}"
-        raise InvalidInput(f"row {number}", line, "two or three numbers, one in each cell") from None
+        accepted = "two or three numbers, with commas between them"
+        raise InvalidInput(f"row {number}", ",".join(row), accepted, file=named(path)) from None
 
 
 def _from_svg(text: str, path: Path) -> list[list[float]]:
