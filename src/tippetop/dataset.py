@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from xarray.indexes import Index, PandasIndex
 
 from tippetop.catalogue import LISTED, METRICS, MONITORS, SAMPLED, Variable
+from tippetop.errors import InvalidInput
 
 NAMED = {
     name: PandasIndex(np.array(list(components)), name, coord_dtype=np.dtype("<U1"))
@@ -22,6 +23,13 @@ LABELS = {name: index.create_variables()[name] for name, index in NAMED.items()}
 
 TIME = {"long_name": "time since launch", "units": "s", "standard_name": "time"}
 CONVENTIONS = "CF-1.11"
+
+
+def require_run(run: object) -> None:
+    """Raise `InvalidInput` unless something is a run, as `simulate` returns it, or some of its samples."""
+    named = {"time", *SAMPLED, *METRICS, *MONITORS, *LISTED}
+    if not (isinstance(run, xr.Dataset) and named <= set(run.variables) and run.sizes.get("time")):
+        raise InvalidInput("run", run, "a run that simulate returned, whole or some of its samples")
 
 
 def assemble(

@@ -121,6 +121,12 @@ class Unavailable(TippetopError, RuntimeError):
     """
 
 
+def require(field: str, value: object, kind: type, accepted: str) -> None:
+    """Raise `InvalidInput` unless a value is of a kind."""
+    if not isinstance(value, kind):
+        raise InvalidInput(field, value, accepted)
+
+
 def is_number(value: object) -> bool:
     """Whether a value is a finite real number."""
     return isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value)
@@ -139,6 +145,7 @@ def short(value: object, limit: int = 60) -> str:
         text = f"({type(value).__name__}, nested too deep to be shown)"
     except ValueError:  # Python refuses to write down whole numbers of thousands of digits.
         text = f"({type(value).__name__}, too long to be shown)"
+    text = " ".join(text.split()) if "\n" in text else text
     return text if len(text) <= limit else text[: limit - 3] + "..."
 
 

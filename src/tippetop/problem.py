@@ -298,6 +298,8 @@ class Problem(Part):
         InvalidInput
             If there is no such field, or it cannot have such a value.
         """
+        if not isinstance(changes, Mapping):
+            raise InvalidInput("changes", changes, "a dict of values by the names of fields")
         fields = self.model_dump()
         renewed = set()
         for name, value in changes.items():
@@ -362,6 +364,12 @@ class Problem(Part):
         fields = parse(text, "problem", Path(path).name)
         with made_of(path):
             return cls(**fields)
+
+
+def require_problem(problem: object) -> None:
+    """Refuse what is no problem, with `InvalidInput`."""
+    if not isinstance(problem, Problem):
+        raise InvalidInput("problem", problem, "a Problem, such as presets.report_problem() makes")
 
 
 def _inside(bound: float, side: float) -> str:

@@ -23,7 +23,7 @@ from tippetop.mechanics.top import natural, natural_state, natural_units
 from tippetop.mechanics.units import Units
 from tippetop.metrics import metrics
 from tippetop.observables import Recorder
-from tippetop.problem import Problem
+from tippetop.problem import Problem, require_problem
 from tippetop.samples import continuous, observe
 from tippetop.tally import Tally
 
@@ -88,7 +88,7 @@ def simulate(
     Raises
     ------
     InvalidInput
-        If the duration, samples, integrator, tolerance or step cannot be.
+        If the problem is none, or the duration, samples, integrator, tolerance, step or a limit cannot be.
     Unavailable
         If the integrator is not installed.
 
@@ -101,8 +101,12 @@ def simulate(
     >>> bool(run["energy_error"] < 1e-12)
     True
     """
+    require_problem(problem)
     units = natural_units(problem.top)
     grid = sample_times(duration, samples, times, LONGEST * min(1.0, units.time))
+    for name, limit in {"phase_limit": phase_limit, "step_limit": step_limit}.items():
+        if not is_whole(limit) or limit < 0:
+            raise InvalidInput(name, limit, "a whole number, at least 0")
     top = natural(problem.top)
     method = integrator_of(integrator, tolerance, step, units)
     state = natural_state(problem.start(), units)

@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 
 from tippetop.catalogue import METRICS, MONITORS
+from tippetop.dataset import require_run
 
 
 def summarize(run: xr.Dataset) -> dict[str, Any]:
@@ -28,6 +29,7 @@ def summarize(run: xr.Dataset) -> dict[str, Any]:
     >>> summary["outcome"], round(summary["turns_over"], 2), summary["flights"]
     ('completed', 5.88, 0)
     """
+    require_run(run)
     last = run.isel(time=-1)
     names = ("theta", "theta_dot", "omega3", "phi_dot")
     return {

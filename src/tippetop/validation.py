@@ -5,7 +5,7 @@ import json
 import math
 import tomllib
 from collections.abc import Callable, Mapping
-from typing import Annotated, Any, ClassVar, NamedTuple, Self, TypeAlias, get_args
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple, Self, TypeAlias, get_args
 
 from pydantic import (
     BaseModel,
@@ -107,6 +107,15 @@ class Part(BaseModel):
         """Copy with some fields replaced, and validated like any other."""
         fields = {name: getattr(self, name) for name in type(self).model_fields}
         return type(self)(**{**fields, **(update or {})})
+
+    if not TYPE_CHECKING:  # else mypy takes it that every attribute may be set
+
+        def __setattr__(self, name: str, value: Any) -> None:
+            try:
+                super().__setattr__(name, value)
+            except ValidationError:
+                accepted = "no change, but a copy: model_copy(update={...})"
+                raise InvalidInput(name, value, accepted) from None
 
     def quantity(self, field: str) -> Quantity:
         """What a field measures, named with dots; without a unit if it was declared with none."""
@@ -301,6 +310,12 @@ def _accepted(detail: ErrorDetails, part: type[Part]) -> str:
             return "one of the keys " + one_of(detail["loc"][-1], list(_written(part)))
         case "literal_error":
             return str(detail["ctx"]["expected"])
+        case "tuple_type" | "list_type":
+            return "a list"
+        case "too_short":
+            return f"at least {detail['ctx']['min_length']} of them"
+        case "too_long":
+            return f"at most {detail['ctx']['max_length']} of them"
         case "model_type" | "model_attributes_type":
             return "a table of its fields"
         case _:

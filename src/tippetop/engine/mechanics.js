@@ -8144,6 +8144,13 @@ class Problem extends Part {
 }
 Part.enter("Problem", Problem);
 
+/** Refuse what is no problem, with `InvalidInput`. */
+function require_problem(problem) {
+  if (!py.isinstance(problem, Problem)) {
+    throw new InvalidInput("problem", problem, "a Problem, such as presets.report_problem() makes");
+  }
+}
+
 /** A bound in three digits, not beyond it: no less if the side is 1, and no more if it is -1. */
 function _inside(bound, side) {
   var near = py.float(`${py.format(bound, ".3g")}`);
@@ -8607,6 +8614,7 @@ py.fields(Prediction, ["jellett", "stable", "reachable", "surface"]);
 
 /** The steady states a launch of an eccentric sphere can end in. */
 function predict(problem) {
+  require_problem(problem);
   var top = problem.top;
   if (py.isinstance(top.surface, Hull)) {
     return _on_one_of_several(problem, problem.standing().surface);
@@ -8749,6 +8757,7 @@ function critical_spin(kind, top) {
 
 /** Critical spins of a launch: with its tilt and its rates, and any axial spin. */
 function critical_spins(problem) {
+  require_problem(problem);
   require_creep(problem.top);
   if (!py.truth(problem.top.conserves_jellett)) {
     return new CriticalSpins(...[...VERTICAL_SPINS].map((kind) => critical_spin(kind, problem.top)));
@@ -11549,6 +11558,7 @@ export {
   require_creep,
   require_jellett,
   require_one_surface,
+  require_problem,
   require_sphere,
   resistance_powers,
   resisting,

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from tippetop.dataset import require_run
 from tippetop.files import written_beside
 
 
@@ -27,6 +28,7 @@ def write_csv(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Pat
     >>> path.read_text().splitlines()[0][:40]
     'time (s),theta (rad),theta_dot (rad s-1)'
     """
+    require_run(run)
     columns: dict[str, Any] = {}
     for name, variable in {"time": run["time"], **run.data_vars}.items():
         units = variable.attrs.get("units", "1")

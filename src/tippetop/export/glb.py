@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from tippetop import __version__
 from tippetop.bodies import Body
+from tippetop.dataset import require_run
 from tippetop.errors import InvalidInput
 from tippetop.export.geometry import Mesh, lathe
 from tippetop.export.poses import poses_at
@@ -46,6 +47,7 @@ def write_glb(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Pat
     >>> tt.write_glb(run, "run.glb").read_bytes()[:4]
     b'glTF'
     """
+    require_run(run)
     with written_beside(path, overwrite) as beside:
         beside.write_bytes(glb_bytes(run))
     return Path(path)

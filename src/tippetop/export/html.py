@@ -6,6 +6,7 @@ from pathlib import Path
 import xarray as xr
 
 from tippetop import __version__
+from tippetop.dataset import require_run
 from tippetop.export.bundle import LOADER, packed, player_packed
 from tippetop.export.track import pack_run, unpack_header
 from tippetop.files import written_beside
@@ -30,6 +31,7 @@ def write_html(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Pa
     >>> tt.write_html(run, "run.html").name  # open it in any browser, on any machine
     'run.html'
     """
+    require_run(run)
     with written_beside(path, overwrite) as beside:
         block = pack_run(run)
         page = _PAGE.read_text(encoding="utf-8").format(

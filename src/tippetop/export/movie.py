@@ -3,7 +3,7 @@
 import math
 import shutil
 import subprocess
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +11,8 @@ import xarray as xr
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
-from tippetop.errors import FileTrouble, InvalidInput, Unavailable
+from tippetop.dataset import require_run
+from tippetop.errors import FileTrouble, InvalidInput, Unavailable, is_number, is_whole
 from tippetop.export.poses import contact_path, poses_at
 from tippetop.export.raycast import fine_path, picture, view_of
 from tippetop.export.words import tell
@@ -69,6 +70,7 @@ def write_movie(
     >>> tt.write_movie(run, "run.gif", fps=10, pixels=(120, 90)).name
     'run.gif'
     """
+    require_run(run)
     path = Path(path)
     kind = path.suffix.lower()
     require_ending("path", path, (".mp4", ".gif"))
@@ -140,11 +142,12 @@ def _captioned(drawn: Frame, headline: str, clock: str, speed: float) -> Frame:
 
 
 def _check(fps: float, speed: float, pixels: tuple[int, int]) -> None:
-    if not (math.isfinite(fps) and 0 < fps <= 240):
+    if not (is_number(fps) and 0 < fps <= 240):
         raise InvalidInput("fps", fps, "a number greater than 0 and at most 240")
-    if not (math.isfinite(speed) and 0 < speed <= 100):
+    if not (is_number(speed) and 0 < speed <= 100):
         raise InvalidInput("speed", speed, "a number greater than 0 and at most 100")
-    if any(side < 16 or side > 4096 or side % 2 for side in pixels):
+    two = isinstance(pixels, Sequence) and len(pixels) == 2 and all(is_whole(side) for side in pixels)
+    if not two or any(side < 16 or side > 4096 or side % 2 for side in pixels):
         raise InvalidInput("pixels", pixels, "two even numbers from 16 to 4096")
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from tippetop.errors import InvalidInput, Unavailable
+from tippetop.errors import InvalidInput, Unavailable, require
 from tippetop.files import require_ending, written_beside
 from tippetop.lathe.profile import Profile
 from tippetop.lathe.workpiece import Workpiece
@@ -50,6 +50,7 @@ def write_solid(piece: Workpiece, path: Path | str, overwrite: bool = False, *, 
     >>> ball = tt.Workpiece(profile=[(0, -20), (0, 20, 20)], density=700, unit="mm")
     >>> tt.write_solid(ball, "ball.stl")
     """
+    require("piece", piece, Workpiece, "a Workpiece")
     suffix = Path(path).suffix.lower()
     require_ending("path", Path(path), (".stl", ".3mf"))
     if isinstance(facets, bool) or not isinstance(facets, int) or facets < 8:

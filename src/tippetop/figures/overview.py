@@ -8,6 +8,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from tippetop.dataset import require_run
 from tippetop.figures.style import ACCENT, CONVERGED, DASHED, MUTED, WIDTH, house_style, pi_ticks
 
 TALLEST_PRECESSION = 400.0
@@ -34,6 +35,7 @@ def plot(run: xr.Dataset) -> Figure:
     >>> figure = tt.plot(tt.simulate(tt.presets.report_problem(), duration=10.0))
     >>> figure.savefig("run.svg")
     """
+    require_run(run)
     panels = {
         "Tilt θ (rad)": run["theta"].values,
         "Axial spin ω₃ (rad/s)": run["omega3"].values,

@@ -5,7 +5,8 @@ from typing import Any
 
 import xarray as xr
 
-from tippetop.errors import InvalidInput, Unavailable
+from tippetop.dataset import require_run
+from tippetop.errors import InvalidInput, Unavailable, is_whole
 from tippetop.export.bundle import built
 from tippetop.export.track import pack_run
 
@@ -37,10 +38,11 @@ def view(run: xr.Dataset, height: int = 480, theme: str = "auto") -> Any:
     >>> player = tt.view(tt.simulate(tt.presets.report_problem(), duration=1.0, samples=501))
     >>> player.show(tt.simulate(tt.presets.report_problem(spin=50.0), duration=1.0, samples=501))
     """
+    require_run(run)
     if theme not in THEMES:
         raise InvalidInput("theme", theme, ", ".join(THEMES))
-    if height <= 0:
-        raise InvalidInput("height", height, "a number of pixels greater than 0")
+    if not is_whole(height) or height <= 0:
+        raise InvalidInput("height", height, "a whole number of pixels greater than 0")
     return _widget()(track=pack_run(run), height=height, theme=theme)
 
 

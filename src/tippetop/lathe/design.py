@@ -7,7 +7,7 @@ from itertools import groupby, pairwise
 import numpy as np
 from scipy.optimize import brentq
 
-from tippetop.errors import InvalidInput
+from tippetop.errors import InvalidInput, require
 from tippetop.lathe.profile import ROUNDING
 from tippetop.lathe.workpiece import UNITS, Insert, Workpiece
 
@@ -55,6 +55,7 @@ def design_insert(
     >>> round(-found.center / 0.02, 9), round(found.I1 / found.I3, 9)
     (0.1, 0.95)
     """
+    require("piece", piece, Workpiece, "a Workpiece")
     sphere = piece.hull.zones[0]
     if sphere.name != "sphere":
         raise InvalidInput("piece", f"a body that stands on a {sphere.name}", "one that stands on a sphere")

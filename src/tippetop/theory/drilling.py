@@ -17,7 +17,7 @@ from tippetop.errors import InvalidInput
 from tippetop.mechanics.motion import angular_velocity, contact
 from tippetop.mechanics.rolling import is_set_valued
 from tippetop.mechanics.top import Top
-from tippetop.problem import Problem
+from tippetop.problem import Problem, require_problem
 from tippetop.theory.requirements import require_sphere
 from tippetop.theory.stability import drilling, spectrum
 from tippetop.theory.steady import (
@@ -66,6 +66,7 @@ def standing_time(problem: Problem) -> float:
     >>> tt.standing_time(tt.presets.report_problem())  # viscous friction does not drill
     inf
     """
+    require_problem(problem)
     top, tilt = problem.top, problem.launch.tilt
     if tilt not in (0.0, math.pi):
         require_sphere(top)

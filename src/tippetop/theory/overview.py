@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from tippetop.errors import InvalidInput
 from tippetop.frictions import ViscousFriction
 from tippetop.mechanics.hull import Hull
-from tippetop.problem import Problem
+from tippetop.problem import Problem, require_problem
 from tippetop.theory.averaging import flip_time_limit, nutation_of_launch
 from tippetop.theory.drilling import standing_time
 from tippetop.theory.groups import Group, classify_top, eccentricity, inertia_ratio
@@ -158,6 +158,7 @@ def steady_states(problem: Problem) -> list[SteadyState[float]]:
     precession 1.504 -8.2
     inverted 3.142 -26.7
     """
+    require_problem(problem)
     if isinstance(problem.top.surface, Hull):
         hull = _standing_on(problem)
         low, high = tilts_held(hull, problem.launch.tilt)

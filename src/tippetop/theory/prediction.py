@@ -23,7 +23,7 @@ from tippetop.mechanics.invariants import energy, jellett
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top, natural_units
 from tippetop.mechanics.view import axis_sine
-from tippetop.problem import Problem
+from tippetop.problem import Problem, require_problem
 from tippetop.theory.requirements import require_creep, require_jellett
 from tippetop.theory.series_roots import roots_between
 from tippetop.theory.steady import (
@@ -84,6 +84,7 @@ def predict(problem: Problem) -> Prediction:
     >>> str(ahead.final.kind), round(ahead.final.spin, 2), ahead.certain
     ('inverted', -82.87, True)
     """
+    require_problem(problem)
     top = problem.top
     if isinstance(top.surface, Hull):
         return _on_one_of_several(problem, problem.standing().surface)

@@ -1,7 +1,7 @@
 """What it takes to stand on a stem: the least Jellett's integral about its tip."""
 
 from tippetop.bodies import Body
-from tippetop.errors import InvalidInput
+from tippetop.errors import InvalidInput, is_number, require
 from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.hull import each_surface
 from tippetop.mechanics.surface import contact_vector
@@ -32,7 +32,7 @@ def least_jellett_to_stand(body: Body, surface: int = 1, gravity: float = 9.8) -
     Raises
     ------
     InvalidInput
-        If the body has no such surface, or it is no sphere.
+        If the body has no such surface, or it is no sphere; if there is no such gravity.
 
     Notes
     -----
@@ -52,6 +52,9 @@ def least_jellett_to_stand(body: Body, surface: int = 1, gravity: float = 9.8) -
     >>> f"{tt.least_jellett_to_stand(top):.3e}"
     '1.129e-05'
     """
+    require("body", body, Body, "a Body")
+    if not (is_number(gravity) and gravity > 0.0):
+        raise InvalidInput("gravity", gravity, "a number greater than 0")
     if surface not in range(len(body.shapes)):
         raise InvalidInput("surface", surface, f"a number from 0 to {len(body.shapes) - 1}")
     tip = body.shapes[surface].surface

@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Scalar
-from tippetop.problem import Problem
+from tippetop.problem import Problem, require_problem
 from tippetop.theory.requirements import require_creep
 from tippetop.theory.steady import (
     VERTICAL_SPINS,
@@ -87,6 +87,7 @@ def critical_spins(problem: Problem) -> CriticalSpins:
     >>> round(spins.upright, 2), round(spins.inverted, 2)  # rad/s
     (27.84, 77.23)
     """
+    require_problem(problem)
     require_creep(problem.top)
     if not problem.top.conserves_jellett:
         return CriticalSpins(*(critical_spin(kind, problem.top) for kind in VERTICAL_SPINS))

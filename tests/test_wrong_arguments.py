@@ -1,0 +1,120 @@
+"""What the public functions are given by mistake is refused in a sentence that names it."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import tippetop as tt
+
+PROBLEM = tt.presets.report_problem()
+PIECE = tt.Workpiece(profile=[(0, -20), (0, 20, 20)], density=700, unit="mm")
+NONE = {"None": None, "a word": "x", "a number": 3, "a body": PROBLEM.body, "rows": np.zeros((2, 2))}
+
+OF_A_PROBLEM = {
+    "simulate": lambda wrong: tt.simulate(wrong, 1.0),
+    "sweep": lambda wrong: tt.sweep(wrong, {"launch.spin": [50.0]}, duration=1.0, workers=1),
+    "critical_spins": tt.critical_spins,
+    "predict": tt.predict,
+    "standing_time": tt.standing_time,
+    "steady_states": tt.steady_states,
+}
+OF_A_RUN = {
+    "plot": tt.plot,
+    "summarize": tt.summarize,
+    "view": tt.view,
+    "write_csv": lambda wrong: tt.write_csv(wrong, "run.csv"),
+    "write_glb": lambda wrong: tt.write_glb(wrong, "run.glb"),
+    "write_html": lambda wrong: tt.write_html(wrong, "run.html"),
+    "write_movie": lambda wrong: tt.write_movie(wrong, "run.gif"),
+}
+
+
+@cache
+def run():
+    return tt.simulate(PROBLEM, 0.1, samples=5)
+
+
+def refused(field, call, *arguments):
+    with pytest.raises(tt.InvalidInput) as refusal:
+        call(*arguments)
+    assert refusal.value.field == field
+    told = str(refusal.value)
+    assert "accepted: " in told
+    assert "\n" not in told
+
+
+@pytest.mark.parametrize("name", OF_A_PROBLEM)
+@pytest.mark.parametrize("wrong", NONE)
+def test_what_is_no_problem(name, wrong):
+    refused("problem", OF_A_PROBLEM[name], NONE[wrong])
+
+
+@pytest.mark.parametrize("name", OF_A_RUN)
+def test_what_is_no_run(name, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for wrong in (*NONE.values(), xr.Dataset(), run()["theta"], run()[["theta"]]):
+        refused("run", OF_A_RUN[name], wrong)
+    for wrong in (run().isel(time=[]), run().isel(time=0)):
+        refused("run", OF_A_RUN[name], wrong)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_some_samples_of_a_run_are_a_run():
+    assert tt.summarize(run().isel(time=slice(2, 4)))["final"]["theta"] == run()["theta"][3]
+
+
+@pytest.mark.parametrize("wrong", NONE)
+def test_what_is_no_piece_and_no_stem(wrong, tmp_path):
+    wrong = None if wrong == "a body" else NONE[wrong]
+    refused("piece", lambda: tt.design_insert(wrong, 0.1, 1.0))
+    refused("piece", lambda: tt.write_solid(wrong, tmp_path / "x.stl"))
+    refused("body", lambda: tt.least_jellett_to_stand(wrong))
+
+
+@pytest.mark.parametrize("gravity", [0, -9.8, float("nan"), "g", None])
+def test_no_gravity_to_stand_in(gravity):
+    refused("gravity", lambda: tt.least_jellett_to_stand(tt.presets.LEINE_GLOCKER_STEM, gravity=gravity))
+
+
+@pytest.mark.parametrize(
+    ("field", "wrong"),
+    [
+        *(("phase_limit", bad) for bad in (-1, 1.5, "many", None, True)),
+        *(("step_limit", bad) for bad in (-1, 1.5, "many", None, True)),
+        ("times", np.zeros((2, 2))),
+    ],
+)
+def test_limits_and_times_of_a_run(field, wrong):
+    refused(field, lambda: tt.simulate(PROBLEM, 0.1, **{field: wrong}))
+
+
+@pytest.mark.parametrize(
+    ("field", "wrong"),
+    [
+        *(("fps", bad) for bad in (0, "a", float("nan"), True)),
+        *(("speed", bad) for bad in (0, "a", float("nan"), None)),
+        *(("pixels", bad) for bad in (3, "ab", (64,), (64, 64, 64), (64.0, 64.0), (65, 64))),
+    ],
+)
+def test_settings_of_a_film(field, wrong, tmp_path):
+    refused(field, lambda: tt.write_movie(run(), tmp_path / "run.gif", **{field: wrong}))
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("height", [0, -3, "tall", 1.5, float("nan"), None])
+def test_the_height_of_a_player(height):
+    refused("height", lambda: tt.view(run(), height))
+
+
+@pytest.mark.parametrize("wrong", [None, 3, "launch.spin", [("launch.spin", 3.0)]])
+def test_changes_that_are_no_dict(wrong):
+    refused("changes", PROBLEM.replace, wrong)
+
+
+@pytest.mark.parametrize("wrong", [(1.0,), (1.0, 2.0, 3.0), "ab", 3, None])
+def test_a_slip_that_is_no_pair(wrong):
+    with pytest.raises(tt.InvalidInput) as refusal:
+        tt.Launch(tilt=0.1, spin=1.0, slip=wrong)
+    assert "tuple" not in refusal.value.accepted
