@@ -9,11 +9,10 @@ from hypothesis import strategies as st
 from test_impact import RESTITUTIONS, Rigid, check_laws_of_impact, planar
 
 from strategies import numbers, slides
-from tippetop.mechanics import integrated_impact
 from tippetop.mechanics.contensou import EllipsoidalLaw
 from tippetop.mechanics.contensou_hertz import HertzLaw
 from tippetop.mechanics.coulomb import CoulombLaw, RollingResistance
-from tippetop.mechanics.dry_impact import DryContact
+from tippetop.mechanics.dry_impact import DryProcess
 from tippetop.mechanics.friction import RegularizedCoulombLaw
 from tippetop.mechanics.impact import impact
 from tippetop.mechanics.impulse import NO_IMPULSE, Striking
@@ -99,7 +98,7 @@ def test_a_direction_that_slip_keeps_is_followed_in_one_step(law, monkeypatch):
 
     quick = [struck(patch) for patch in (3e-3, 1e-5, 1e-8)]
     assert all(one.steps < 500 for one in quick)
-    monkeypatch.setattr(integrated_impact, "straight", lambda *_: None)
+    monkeypatch.setattr(DryProcess, "straight", lambda *_: None)
     slow = struck(3e-3)
     assert slow.steps > 2 * quick[0].steps
     assert quick[0].state.momentum == pytest.approx(slow.state.momentum, abs=1e-9)
@@ -153,8 +152,8 @@ def test_what_has_ended_in_an_impact_is_held_within_friction_or_goes_on_the_way_
         axis = (math.sin(tilt), 0.0, math.cos(tilt))
         state = on_table(SlidingState(axis, (0.0, 0.0, 0.0), (0.0, 0.0)), top)
         body = Striking.of(state._replace(velocity=(0.0, 0.0, -1.0)), top)
-        contact = DryContact(body).settled(NO_IMPULSE)
-        unit = contact.friction((), ())
+        contact = DryProcess(body).settled(NO_IMPULSE)
+        unit = contact.friction(body.before)
         change = body.change(unit)
         slip, rolling = slip_part(change, contact.reach), change[3:5]
         for way, rate, reserve in (

@@ -8,13 +8,13 @@ from hypothesis import Phase, assume, given, settings
 from hypothesis import strategies as st
 
 from strategies import numbers
-from tippetop.mechanics import integrated_impact
+from tippetop.mechanics import impact_process
 from tippetop.mechanics.coulomb import CoulombLaw
 from tippetop.mechanics.flight import gap_rate
 from tippetop.mechanics.friction import RegularizedCoulombLaw, ViscousLaw
 from tippetop.mechanics.hull import Hull
 from tippetop.mechanics.impact import impact
-from tippetop.mechanics.impact_on_two import SlipEnds, impact_on_two
+from tippetop.mechanics.impact_on_two import SlipEnds
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import axis_rate, on_table
 from tippetop.mechanics.state import SlidingState
@@ -63,7 +63,7 @@ def test_without_friction_it_is_a_linear_complementarity_problem(blow, restituti
     assert matrix[0, 1] < 0.0
     approach = gap_rate(state, tops[0])
     struck = (1.0 + restitution) * -approach / (matrix[0, 0] - matrix[0, 1] ** 2 / matrix[1, 1])
-    found = impact_on_two(state, restitution, tops)
+    found = impact(state, restitution, *tops)
     assert gap_rate(found.state, tops[0]) == pytest.approx(-restitution * approach, abs=1e-12)
     assert gap_rate(found.state, tops[1]) == pytest.approx(0.0, abs=1e-12)
     pressed = -matrix[0, 1] * struck / matrix[1, 1]
@@ -84,7 +84,7 @@ def test_slow_impact_of_a_fast_body_is_no_harder_than_a_quick_one():
     momentum = tuple(20.0 * along - slow / 5.0 * over + up for along, over, up in parts)
     state = on_table(SlidingState(axis, momentum, (7.0, -3.0)), first)
     assert gap_rate(state, second) == pytest.approx(-slow, rel=1e-6)
-    found = impact_on_two(state, 0.0, (second, first))
+    found = impact(state, 0.0, second, first)
     _, velocity, _ = naive(state, (second, first), 100)
     assert found.impulse == pytest.approx(velocity[2] - state.velocity[2], rel=1e-4)
     assert gap_rate(found.state, second) == pytest.approx(0.0, abs=1e-15)
@@ -143,7 +143,7 @@ def test_with_friction_it_is_what_small_steps_find(law):
     @given(blows(law))
     def agree(blow):
         state, tops = blow
-        found = impact_on_two(state, 0.0, tops)
+        found = impact(state, 0.0, *tops)
         momentum, velocity, _ = naive(state, tops, 1000)
         assert found.impulse == pytest.approx(velocity[2] - state.velocity[2], rel=1e-5)
         assert found.state.momentum == pytest.approx(momentum, abs=1e-5)
@@ -171,7 +171,7 @@ def test_an_end_that_opens_meanwhile_closes_again(law, slip):
     velocity = tuple((slip + tilting) * one + 0.3 * other for one, other in zip(along, across, strict=True))
     state = on_table(SlidingState(along, momentum, (velocity[0], velocity[1])), first)
     assert gap_rate(state, second) == pytest.approx(4.0 * tilting)
-    found = impact_on_two(state, 0.0, (second, first))
+    found = impact(state, 0.0, second, first)
     momentum, velocity, (pressed, rises) = naive(state, (second, first), 2000)
     assert rises.max() > 0.1, "it opens"
     opened, closed = np.flatnonzero(rises > 1e-9)[[0, -1]]
@@ -201,7 +201,7 @@ def test_its_impulse_is_all_that_lifts_the_body(law, restitution):
     @given(blows(law))
     def balance(blow):
         state, tops = blow
-        found = impact_on_two(state, restitution, tops)
+        found = impact(state, restitution, *tops)
         lifted = tops[0].mass * (found.state.velocity[2] - state.velocity[2])
         assert found.impulse == pytest.approx(lifted, rel=1e-12)
         assert found.impulse > found.compression * (1.0 + 1e-3)
@@ -218,7 +218,7 @@ def test_an_end_that_opens_neither_slips_nor_sticks():
     state = still._replace(momentum=(0.1, -0.75, 0.6), velocity=(-0.5, -1.0, 0.0))
     assert gap_rate(state, first) == pytest.approx(1.0)
     assert gap_rate(state, second) == pytest.approx(-1.0)
-    found, alone = impact_on_two(state, 0.0, (second, first)), impact(state, 0.0, second)
+    found, alone = impact(state, 0.0, second, first), impact(state, 0.0, second)
     assert gap_rate(found.state, first) > 0.0
     assert found.impulse == pytest.approx(alone.impulse, rel=1e-7)
     assert found.state.momentum == pytest.approx(alone.state.momentum, abs=1e-7)
@@ -238,7 +238,7 @@ def test_a_steep_law_holds_both_ends_and_takes_few_steps():
     state, tops = sliding_slowly(RegularizedCoulombLaw(0.6, 1e-6))
     top = tops[0]
     assert gap_rate(state, top) < -1.0
-    found = impact_on_two(state, 0.0, tops)
+    found = impact(state, 0.0, *tops)
     assert found.steps < 2000
     inertia = np.diag([top.axial_inertia, top.transverse_inertia, top.transverse_inertia])
     masses = np.block([[inertia, np.zeros((3, 3))], [np.zeros((3, 3)), np.eye(3)]])
@@ -258,9 +258,9 @@ def cross_matrix(a):
 
 def test_steps_are_bounded_and_told(monkeypatch):
     state, tops = sliding_slowly(RegularizedCoulombLaw(0.6, 1e-6))
-    steps = impact_on_two(state, 1.0, tops).steps
-    assert steps > impact_on_two(state, 0.0, tops).steps > 10
-    monkeypatch.setattr(integrated_impact, "MOST", 10)
+    steps = impact(state, 1.0, *tops).steps
+    assert steps > impact(state, 0.0, *tops).steps > 10
+    monkeypatch.setattr(impact_process, "MOST", 10)
     with pytest.raises(ArithmeticError, match="end") as error:
-        impact_on_two(state, 0.0, tops)
+        impact(state, 0.0, *tops)
     assert not isinstance(error.value, SlipEnds)

@@ -8,7 +8,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from strategies import slides, spheres, spheroids, tops
-from tippetop.mechanics import integrated_impact
+from tippetop.mechanics import impact_process
 from tippetop.mechanics.contensou_hertz import HertzLaw
 from tippetop.mechanics.flight import fly, gap_rate
 from tippetop.mechanics.friction import ViscousLaw
@@ -192,7 +192,7 @@ def test_a_flight_that_outlasts_its_horizon_ends_there():
 
 def test_impacts_of_patches_go_on_where_another_branch_takes_over(monkeypatch) -> None:
     """They are what they are alone, and that to more digits than are asked of a single one."""
-    monkeypatch.setattr(integrated_impact, "TOLERANCE", 1e-12)
+    monkeypatch.setattr(impact_process, "TOLERANCE", 1e-12)
     random, count = np.random.default_rng(3), 150
     axis = random.normal(size=(3, count))
     axis /= np.linalg.norm(axis, axis=0)

@@ -14,8 +14,8 @@ from tippetop.integrators.base import Integrator
 from tippetop.mechanics.contact_pair import ContactPair, Tops, without_tilting
 from tippetop.mechanics.flight import gap, gap_rate
 from tippetop.mechanics.hull import lowest_surface
-from tippetop.mechanics.impact import Impact
-from tippetop.mechanics.impact_on_two import SlipEnds, impact_on_two
+from tippetop.mechanics.impact import Impact, impact
+from tippetop.mechanics.impact_on_two import SlipEnds
 from tippetop.mechanics.motion import along_table
 from tippetop.mechanics.rolling import contact_motion, is_set_valued
 from tippetop.mechanics.state import State
@@ -101,7 +101,7 @@ class OnSeveral(FreeToFly):
             pressed = gap_rate(alone.state, other) < -SLOWEST_ROCKING
             if pressed and abs(gap_rate(state, other)) <= SLOWEST_ROCKING:
                 try:
-                    found = impact_on_two(state, restitution, (self.top, other))
+                    found = impact(state, restitution, self.top, other)
                 except SlipEnds:
                     return alone
                 return found._replace(steps=alone.steps + found.steps)

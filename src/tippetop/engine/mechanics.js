@@ -4760,16 +4760,14 @@ class Striking extends py.NamedTuple {
   work(impulse) {
     return py.float(py.mul(0.5, inner(impulse.slice(0, 6), plus(this.before, this.velocities(impulse)))));
   }
-  /** The impulse that grows from a given one by so much per unit normal impulse. */
+  /** The impulse that grows from a given one by so much per unit normal impulse of what strikes. */
   straight(impulse, unit) {
     var approach = this.approach(impulse);
     var rise = py.sum(py.map(py.mul, this.response[2], unit));
     var along = (q) => {
-      var six = py.zip(impulse.slice(0, 6), unit).map(([a, b]) => py.add(a, py.mul(q, b)));
-      return [
-        ...six,
-        py.add(py.item(impulse, WORK), py.mul(q, py.add(approach, py.mul(py.mul(0.5, q), rise))))
-      ];
+      var moved = py.zip(impulse, unit).map(([a, b]) => py.add(a, py.mul(q, b)));
+      var work = py.add(py.item(impulse, WORK), py.mul(q, py.add(approach, py.mul(py.mul(0.5, q), rise))));
+      return [...moved.slice(0, WORK), work, ...py.slice(moved, py.add(WORK, 1), null, null)];
     };
     return along;
   }
@@ -4797,102 +4795,6 @@ function first_reach(along, goal, guess) {
     [low, high] = [py.mul(0.5, low), low];
   }
   return along(crossing((q) => goal(along(q)), low, high));
-}
-
-// tippetop.mechanics.dry_impact
-const ENDED = py.mul(10.0, FUZZ);
-
-/** Whether slip or rolling can end under the law of a top. */
-function is_dry(top) {
-  return py.or(top.resists_rolling, () => is_set_valued(top.friction));
-}
-
-/** The contact of a struck body under dry friction, all floats. */
-class DryContact extends py.NamedTuple {
-  constructor(body, ended = false, stopped = false, way = null, rolling_way = null) {
-    super();
-    this.body = body;
-    this.ended = ended;
-    this.stopped = stopped;
-    this.way = way;
-    this.rolling_way = rolling_way;
-  }
-  /** The body and its law of friction. */
-  get top() {
-    return this.body.contact.top;
-  }
-  /** Slip length of the law; None if drilling is free. */
-  get reach() {
-    return slip_length(this.top.friction);
-  }
-  /** Slip zeta and horizontal angular velocity (times the arm's length) of six velocities, m/s. */
-  parts(velocity) {
-    return [slip_part(velocity, this.reach), scaled(this.body.lever, velocity.slice(3, 5))];
-  }
-  /** Whether slip, and rolling, of which there is so much have ended, if they can. */
-  zeros(slip, rolling) {
-    var least = py.mul(ENDED, this.body.speed);
-    var ended = py.and(is_set_valued(this.top.friction), () => size(slip) <= least);
-    return [ended, py.and(this.top.resists_rolling, () => size(rolling) <= least)];
-  }
-  /** The contact with what has ended after an impulse, and where that goes on if it cannot stay so. */
-  settled(impulse) {
-    var [slip, rolling] = this.parts(this.body.velocities(impulse));
-    var [ended, stopped] = this.zeros(slip, rolling);
-    if (!(py.truth(ended) || py.truth(stopped))) {
-      return py.truth(this.ended) || py.truth(this.stopped) ? new DryContact(this.body) : this;
-    }
-    var go_on = [py.truth(ended) ? null : slip, py.truth(stopped) ? null : rolling];
-    var [found] = settling(this.body.contact, ...go_on, struck_motion);
-    return new DryContact(this.body, ended, stopped, found.slip, found.rolling);
-  }
-  /** Force and torque per unit normal impulse at these velocities, six numbers. */
-  friction(slip, rolling) {
-    var way = py.truth(this.ended) ? this.way : slip;
-    var wrench = struck_wrench(this.body.contact, way, py.truth(this.stopped) ? this.rolling_way : rolling);
-    return [...wrench.force, ...wrench.torque];
-  }
-  /** Rates of the impulse and its normal work, in a clock in which slip that ends decays exponentially. */
-  rates(impulse) {
-    var velocity = this.body.velocities(impulse);
-    var [slip, rolling] = this.parts(velocity);
-    var unit = this.friction(slip, rolling);
-    var reach = this.reach;
-    var rate = py.div(1.0, this.body.striking);
-    if (!py.truth(this.ended) && size(slip) > 0.0) {
-      rate = py.add(
-        rate,
-        py.div(py.math.hypot(unit[0], unit[1], reach === null ? 0.0 : py.div(unit[5], reach)), size(slip))
-      );
-    }
-    if (py.truth(this.top.resists_rolling) && !py.truth(this.stopped) && size(rolling) > 0.0) {
-      rate = py.add(rate, py.div(py.math.hypot(unit[3], unit[4]), py.mul(this.body.lever, size(rolling))));
-    }
-    return scaled(py.div(1.0, rate), [...unit, velocity[2]]);
-  }
-  /** The state after an impulse, in which slip and rolling that have ended are exactly zero. */
-  at_rest(impulse, after) {
-    var zeros = this.zeros(...this.parts(this.body.velocities(impulse)));
-    var still = come_to_rest(along_table(after), this.top, ...zeros);
-    return after._replace({ momentum: still.momentum, velocity: [...still.velocity, after.velocity[2]] });
-  }
-  /** Error in slip and rolling of a step, relative to them or to a millionth of the body's speed. */
-  doubt(here, there, off) {
-    var parts = py.zip(this.parts(here), this.parts(there), this.parts(off));
-    var least = py.mul(1e-06, this.body.speed);
-    return py.max(
-      [...parts].map(
-        ([before, after, wrong]) => py.div(size(wrong), py.max(size(before), size(after), least))
-      )
-    );
-  }
-}
-py.fields(DryContact, ["body", "ended", "stopped", "way", "rolling_way"]);
-
-/** What a unit normal impulse brings with it, and how the velocities change. */
-function struck_motion(point, slip, rolling) {
-  var wrench = struck_wrench(point, slip, rolling);
-  return [wrench, point.response(wrench)];
 }
 
 // tippetop.mechanics.runge_kutta
@@ -5075,238 +4977,100 @@ function combined(here, size, weights, slopes) {
   );
 }
 
-// tippetop.mechanics.straight_impact
-const SLIP_of_straight_impact = new Vanishing(true);
-const KEPT = 1e-08;
-
-/** The impulse at the end of a straight line, and whether that is the goal: slip may end before. */
-function straight_of_straight_impact(dry, impulse, goal, guess) {
-  if (py.truth(dry.top.resists_rolling) || py.truth(dry.ended) && dry.way !== null || goal(impulse) >= 0.0) {
-    return null;
-  }
-  var line = _line(dry, impulse);
-  if (line === null) {
-    return null;
-  }
-  var [unit, longest] = line;
-  var along = dry.body.straight(impulse, unit);
-  if (longest < py.math.inf) {
-    var end = along(longest);
-    if (goal(end) < 0.0) {
-      return [end, false];
-    }
-    guess = longest;
-  }
-  return [first_reach(along, goal, guess), true];
-}
-
-/** Force and torque per unit normal impulse on a straight line, and its length until slip ends. */
-function _line(dry, impulse) {
-  var [slip, rolling] = dry.parts(dry.body.velocities(impulse));
-  var unit = dry.friction(slip, rolling);
-  if (py.truth(dry.ended)) {
-    return [unit, py.math.inf];
-  }
-  var grip = SLIP_of_straight_impact.resisting(
-    new Wrench([unit[0], unit[1], 1.0], [unit[3], unit[4], unit[5]]),
-    dry.top
-  );
-  var speed = size(slip);
-  var holds = size(grip);
-  var way = scaled(py.div(1.0, speed), slip);
-  var change = slip_part(dry.body.change(unit), dry.reach);
-  var doing = _impulse_for(dry, change);
-  var along = _impulse_for(dry, way);
-  var inertia = inner(way, along);
-  var rate = py.div(inner(way, doing), inertia);
-  var fuzz = py.div(py.mul(FUZZ, dry.body.speed), speed);
-  if (py.mul(py.abs(rate), inertia) <= py.mul(fuzz, holds)) {
-    rate = 0.0;
-  }
-  var wrong = plus(doing, scaled(py.neg(rate), along));
-  if (size(wrong) > py.mul(rate > 0.0 ? KEPT : py.add(KEPT, fuzz), holds)) {
-    return null;
-  }
-  var drilling = dry.reach === null ? 0.0 : py.mul(dry.reach, wrong[2]);
-  var exact = plus(unit, [py.neg(wrong[0]), py.neg(wrong[1]), 0.0, 0.0, 0.0, py.neg(drilling)]);
-  return [exact, rate < 0.0 ? py.div(speed, py.neg(rate)) : py.math.inf];
-}
-
-/** What changes slip so: impulses of force, and that of a drilling torque over the law's length. */
-function _impulse_for(dry, change) {
-  var [held, lengths] = dry.reach === null ? [[0, 1], [1.0, 1.0]] : [[0, 1, 5], [1.0, 1.0, dry.reach]];
-  var pairs = py.list(py.zip(held, lengths));
-  var response = dry.body.response;
-  return py.tuple(
-    solve(
-      [...pairs].map(
-        ([i, a]) => [...pairs].map(([j, b]) => py.mul(py.mul(a, py.item(py.item(response, i), j)), b))
-      ),
-      py.list(change)
-    )
-  );
-}
-
-// tippetop.mechanics.integrated_impact
-const LONGEST_of_integrated_impact = 5.0;
+// tippetop.mechanics.impact_process
+const LONGEST_of_impact_process = 5.0;
 const TOLERANCE = 1e-09;
 const STUCK = 1e-08;
-const SHORTEST_of_integrated_impact = 1e-12;
-const [NEWTON_of_integrated_impact, SHORT_of_integrated_impact, STRAIGHT] = [4, 0.002, 1e-08];
-const MOST_of_integrated_impact = 20000;
-const LOOK = 4;
+const SHORTEST_of_impact_process = 1e-12;
+const [NEWTON_of_impact_process, SHORT_of_impact_process, STRAIGHT] = [4, 0.002, 1e-08];
+const MOST_of_impact_process = 20000;
 
-/** The first numbers of an impact, from given ones on, at which a goal is reached, and the steps to there. */
-function integrated(now, here, goal, guess) {
-  var longest = now.longest;
-  var waiting = goal(here) >= 0.0;
-  var [step, now] = [py.mul(0.1, longest), now.settled(here)];
-  var slope = now.slope(here);
-  for (var taken = 0; taken < MOST_of_integrated_impact; taken += 1) {
-    var line = now.straight(here, goal, guess, taken);
-    if (line !== null) {
-      var [here, ends_there] = line;
-      if (py.truth(ends_there)) {
-        return [here, taken];
-      }
-      [now, waiting] = [now.settled(here), false];
-      slope = now.slope(here);
-      continue;
-    }
-    var taking = step_from(here, slope, step, py.bound(now, "slope"));
-    var ends = now.ends(goal);
-    var doubt = now.doubt(taking);
-    var reached = py.max([...ends].map((end) => end(taking.there))) >= 0.0;
-    if (
-      doubt > 1.0 && step > py.mul(
-        SHORTEST_of_integrated_impact,
-        longest
-      ) || py.truth(reached) && py.truth(waiting)
-    ) {
-      step = py.mul(step, py.min(0.5, py.max(0.1, py.mul(0.9, py.pow(doubt, POWER)))));
-      continue;
-    }
-    here = py.truth(reached) ? landing(now, taking, ends) : taking.there;
-    if (py.truth(reached) && goal(here) >= py.max([...ends].map((end) => end(here)))) {
-      return [here, py.add(taken, 1)];
-    }
-    var then = now.settled(here);
-    waiting = false;
-    slope = py.truth(reached) || then !== now ? then.slope(here) : taking.new_slope;
-    [now, step] = [
-      then,
-      py.min(longest, py.mul(step, py.min(5.0, py.mul(0.9, py.pow(py.max(doubt, 1e-10), POWER)))))
-    ];
-  }
-  throw new Unsolved("an impact does not come to its end");
-}
-
-/** The numbers within a step at which one of some goals is reached. */
-function landing(now, taking, ends) {
-  var missing = (point) => {
-    return py.max([...ends].map((end) => end(point)));
-  };
-  var along = (size) => {
-    return step_to(taking.here, taking.slopes[0], size, py.bound(now, "slope"));
-  };
-  var last = taking.size;
-  var here = along(py.mul(last, crossing((part) => missing(taking.between(part)), 0.0, 1.0)));
-  for (var turn = 0; turn < NEWTON_of_integrated_impact; turn += 1) {
-    var slope = now.slope(here);
-    var left = missing(here);
-    var nudge = py.mul(0.001, taking.size);
-    var rate = py.div(py.sub(missing(moved(here, nudge, slope)), left), nudge);
-    var more = rate > 0.0 ? py.div(py.neg(left), rate) : taking.size;
-    if (py.abs(more) < py.mul(STRAIGHT, taking.size)) {
-      return moved(here, more, slope);
-    }
-    if (py.abs(more) > py.mul(0.1, last)) {
-      break;
-    }
-    var short = py.abs(more) < py.mul(SHORT_of_integrated_impact, taking.size);
-    [last, here] = [
-      py.abs(more),
-      py.call(py.truth(short) ? short_step : step_to, here, slope, more, py.bound(now, "slope"))
-    ];
-  }
-  return along(crossing((size) => missing(along(size)), 0.0, taking.size));
-}
-
-/** An impact under any friction law, integrated with slip as the clock. */
-class IntegratedProcess extends py.NamedTuple {
-  constructor(body, dry = null) {
+/** An impact of one contact under a law that says the friction at any slip, with slip as the clock. */
+class ImpactProcess extends py.Record {
+  constructor(body) {
     super();
     this.body = body;
-    this.dry = dry;
   }
-  /** The first impulse from a given one on at which the goal is not negative, and the steps to there. */
-  until(impulse, goal, guess) {
-    return integrated(this, impulse, goal, guess);
+  /** The impulse at the start. */
+  get begin() {
+    return NO_IMPULSE;
   }
-  /** Longest step of the clock. */
+  /** What errors of velocities are measured by, m/s. */
+  get speed() {
+    return this.body.striking;
+  }
+  /** Longest step of the clock, and a tenth of it is the first. */
   get longest() {
     return py.div(
-      py.mul(2.0, LONGEST_of_integrated_impact),
+      py.mul(2.0, LONGEST_of_impact_process),
       py.float(py.add(this.body.response[0][0], this.body.response[1][1]))
     );
   }
-  /** The process from an impulse on, where a dry contact does what it does there. */
-  settled(here) {
-    var dry = this.dry === null ? null : this.dry.settled(here);
-    return dry === this.dry ? this : this._replace({ dry: dry });
+  /** Whether the contact point sinks into the table, or would, if the impact did not begin. */
+  get is_struck() {
+    var before = this.body.before;
+    if (before[2] !== 0.0) {
+      return py.bool(before[2] < 0.0);
+    }
+    return this.body.approach(this.settled(this.begin).friction(before)) < 0.0;
   }
-  /** The goal alone. */
+  /** Normal impulse of what strikes, N s. */
+  normal(here) {
+    return py.item(here, NORMAL);
+  }
+  /** The state after an impulse. */
+  after(here) {
+    return this.body.after(here);
+  }
+  /** The impact from an impulse on: as it is, or with what changes there. */
+  settled(here) {
+    return this;
+  }
+  /** What a step may reach, the goal first; the impact goes on, as it is settled then, from others. */
   ends(goal) {
     return [goal];
   }
-  /** The rest where friction holds slip, or its direction. */
-  straight(here, goal, guess, taken) {
-    if (this.dry === null) {
-      return this.held(here, goal, guess);
-    }
-    return py.mod(taken, LOOK) === 0 ? straight_of_straight_impact(this.dry, here, goal, guess) : null;
+  /** Force and torque per unit normal impulse at these velocities, six numbers. */
+  friction(velocity) {
+    return this.body.friction(velocity);
   }
-  /** Rate of the impulse with the clock s. */
-  slope(here) {
-    if (this.dry !== null) {
-      return this.dry.rates(here);
-    }
-    var velocity = this.body.velocities(here);
-    var speed = this.body.striking;
-    var unit = this.body.friction(velocity);
+  /** Rate of the clock with the normal impulse, of what slips, for force and torque that go with it. */
+  pace(velocity, unit) {
     var slip = py.math.hypot(velocity[0], velocity[1]);
     var grip = py.math.hypot(unit[0], unit[1]);
     if (slip === 0.0) {
-      slip = py.mul(1e-12, speed);
-      grip = py.math.hypot(...this.body.friction([slip, 0.0, ...velocity.slice(2)]).slice(0, 2));
+      slip = py.mul(1e-12, this.speed);
+      grip = py.math.hypot(...this.friction([slip, 0.0, ...velocity.slice(2)]).slice(0, 2));
     }
-    return scaled(py.div(1.0, py.add(py.div(grip, slip), py.div(1.0, speed))), [...unit, velocity[2]]);
+    return py.div(grip, slip);
   }
-  /** The error of a step over the one allowed. */
-  doubt(taken) {
+  /** Rate of the impulse, and of its normal work, with the clock. */
+  slope(here) {
+    var velocity = this.body.velocities(here);
+    var unit = this.friction(velocity);
+    return scaled(
+      py.div(1.0, py.add(this.pace(velocity, unit), py.div(1.0, this.speed))),
+      [...unit, velocity[2]]
+    );
+  }
+  /** What an error in the six velocities counts as, that is one of a step. */
+  wrong(taken, off) {
     var here = this.body.velocities(taken.here);
     var there = this.body.velocities(taken.there);
-    var speed = this.body.striking;
     var slip = py.max(
       py.math.hypot(...here.slice(0, 2)),
       py.math.hypot(...there.slice(0, 2)),
-      py.mul(1e-09, speed)
+      py.mul(1e-09, this.speed)
     );
-    var measure = (error) => {
-      var off = this.body.change(error);
-      var wrong = this.dry === null ? py.div(
-        py.math.hypot(...off.slice(0, 2)),
-        slip
-      ) : this.dry.doubt(here, there, off);
-      return py.float(py.max(wrong, py.div(py.abs(off[2]), speed)));
-    };
-    return py.div(taken.doubt(measure), TOLERANCE);
+    return py.float(
+      py.max(py.div(py.math.hypot(...off.slice(0, 2)), slip), py.div(py.abs(off[2]), this.speed))
+    );
   }
-  /** The rest if friction holds the slip constant, if it does so all along. */
-  held(impulse, goal, guess) {
+  /** Where a straight line leads after some steps, and whether to the goal; None if there is none. */
+  straight(here, goal, guess, taken) {
     var body = this.body;
-    var velocity = this.body.velocities(impulse);
-    var unit = body.friction(velocity);
+    var velocity = this.body.velocities(here);
+    var unit = this.friction(velocity);
     var [[a, b, ..._], [, d, ..._], ..._] = body.response;
     var [x, y, ..._] = body.change([0.0, 0.0, ...unit.slice(2)]);
     var holding = [
@@ -5323,12 +5087,383 @@ class IntegratedProcess extends py.NamedTuple {
     if (!py.truth(py.any(unit.slice(0, 2)))) {
       holding = [0.0, 0.0];
     }
-    var end = first_reach(body.straight(impulse, [...holding, ...unit.slice(2)]), goal, guess);
-    var later = body.friction(body.velocities(end));
+    var end = first_reach(body.straight(here, [...holding, ...unit.slice(2)]), goal, guess);
+    var later = this.friction(body.velocities(end));
     return py.math.dist(later, unit) <= py.mul(2.0, py.add(STUCK, fuzz)) ? [end, true] : null;
   }
+  /** The first impulse from a given one on at which the goal is not negative, and the steps to there. */
+  until(here, goal, guess) {
+    var longest = this.longest;
+    var waiting = goal(here) >= 0.0;
+    var step = py.mul(0.1, longest);
+    var now = this.settled(here);
+    var slope = now.slope(here);
+    for (var taken = 0; taken < MOST_of_impact_process; taken += 1) {
+      var line = now.straight(here, goal, guess, taken);
+      if (line !== null) {
+        var [here, ends_there] = line;
+        if (py.truth(ends_there)) {
+          return [here, taken];
+        }
+        [now, waiting] = [now.settled(here), false];
+        slope = now.slope(here);
+        continue;
+      }
+      var taking = step_from(here, slope, step, py.bound(now, "slope"));
+      var ends = now.ends(goal);
+      var doubt = doubt_of(now, taking);
+      var reached = py.max([...ends].map((end) => end(taking.there))) >= 0.0;
+      if (
+        doubt > 1.0 && step > py.mul(
+          SHORTEST_of_impact_process,
+          longest
+        ) || py.truth(reached) && py.truth(waiting)
+      ) {
+        step = py.mul(step, py.min(0.5, py.max(0.1, py.mul(0.9, py.pow(doubt, POWER)))));
+        continue;
+      }
+      here = py.truth(reached) ? landing(now, taking, ends) : taking.there;
+      if (py.truth(reached) && goal(here) >= py.max([...ends].map((end) => end(here)))) {
+        return [here, py.add(taken, 1)];
+      }
+      var then = now.settled(here);
+      waiting = false;
+      slope = py.truth(reached) || then !== now ? then.slope(here) : taking.new_slope;
+      [now, step] = [
+        then,
+        py.min(longest, py.mul(step, py.min(5.0, py.mul(0.9, py.pow(py.max(doubt, 1e-10), POWER)))))
+      ];
+    }
+    throw new Unsolved("an impact does not come to its end");
+  }
 }
-py.fields(IntegratedProcess, ["body", "dry"]);
+py.fields(ImpactProcess, ["body"]);
+
+/** The error of a step over the one allowed. */
+function doubt_of(now, taken) {
+  return py.div(taken.doubt((error) => now.wrong(taken, now.body.change(error))), TOLERANCE);
+}
+
+/** The impulse within a step at which one of some goals is reached. */
+function landing(now, taking, ends) {
+  var missing = (point) => {
+    return py.max([...ends].map((end) => end(point)));
+  };
+  var along = (size) => {
+    return step_to(taking.here, taking.slopes[0], size, py.bound(now, "slope"));
+  };
+  var last = taking.size;
+  var here = along(py.mul(last, crossing((part) => missing(taking.between(part)), 0.0, 1.0)));
+  for (var turn = 0; turn < NEWTON_of_impact_process; turn += 1) {
+    var slope = now.slope(here);
+    var left = missing(here);
+    var nudge = py.mul(0.001, taking.size);
+    var rate = py.div(py.sub(missing(moved(here, nudge, slope)), left), nudge);
+    var more = rate > 0.0 ? py.div(py.neg(left), rate) : taking.size;
+    if (py.abs(more) < py.mul(STRAIGHT, taking.size)) {
+      return moved(here, more, slope);
+    }
+    if (py.abs(more) > py.mul(0.1, last)) {
+      break;
+    }
+    var short = py.abs(more) < py.mul(SHORT_of_impact_process, taking.size);
+    [last, here] = [
+      py.abs(more),
+      py.call(py.truth(short) ? short_step : step_to, here, slope, more, py.bound(now, "slope"))
+    ];
+  }
+  return along(crossing((size) => missing(along(size)), 0.0, taking.size));
+}
+
+// tippetop.mechanics.dry_impact
+const SLIP_of_dry_impact = new Vanishing(true);
+const ENDED = py.mul(10.0, FUZZ);
+const KEPT = 1e-08;
+const LOOK = 4;
+
+/** Whether slip or rolling can end under the law of a top. */
+function is_dry(top) {
+  return py.or(top.resists_rolling, () => is_set_valued(top.friction));
+}
+
+/** An impact under dry friction, all floats. */
+class DryProcess extends ImpactProcess {
+  constructor(body, ended = false, stopped = false, way = null, rolling_way = null) {
+    super(body);
+    this.ended = ended;
+    this.stopped = stopped;
+    this.way = way;
+    this.rolling_way = rolling_way;
+  }
+  /** The body and its law of friction. */
+  get top() {
+    return this.body.contact.top;
+  }
+  /** Slip length of the law; None if drilling is free. */
+  get reach() {
+    return slip_length(this.top.friction);
+  }
+  /** Slip zeta and horizontal angular velocity (times the arm's length) of six velocities, m/s. */
+  parts(velocity) {
+    return [slip_part(velocity, this.reach), scaled(this.body.lever, velocity.slice(3, 5))];
+  }
+  /** Whether slip, and rolling, have ended at these velocities, if they can. */
+  zeros(velocity) {
+    var [[slip, rolling], least] = [this.parts(velocity), py.mul(ENDED, this.body.speed)];
+    var ended = py.and(is_set_valued(this.top.friction), () => size(slip) <= least);
+    return [ended, py.and(this.top.resists_rolling, () => size(rolling) <= least)];
+  }
+  /** The impact with what has ended after an impulse, and where that goes on if it cannot stay so. */
+  settled(here) {
+    var velocity = this.body.velocities(here);
+    var [ended, stopped] = this.zeros(velocity);
+    if (!(py.truth(ended) || py.truth(stopped))) {
+      return py.truth(this.ended) || py.truth(this.stopped) ? py.call(py.type(this), this.body) : this;
+    }
+    var [slip, rolling] = this.parts(velocity);
+    var go_on = [py.truth(ended) ? null : slip, py.truth(stopped) ? null : rolling];
+    var [found] = settling(this.body.contact, ...go_on, struck_motion);
+    return py.call(py.type(this), this.body, ended, stopped, found.slip, found.rolling);
+  }
+  /** Force and torque per unit normal impulse at these velocities, six numbers. */
+  friction(velocity) {
+    var way = py.truth(this.ended) ? this.way : slip_part(velocity, this.reach);
+    var wrench = struck_wrench(
+      this.body.contact,
+      way,
+      py.truth(this.stopped) ? this.rolling_way : velocity.slice(3, 5)
+    );
+    return [...wrench.force, ...wrench.torque];
+  }
+  /** Rate of a clock in which slip, and rolling, that end decay exponentially: traction over both. */
+  pace(velocity, unit) {
+    var reach = this.reach;
+    var rate = 0.0;
+    var slip = size(slip_part(velocity, reach));
+    var rolling = size(velocity.slice(3, 5));
+    if (!py.truth(this.ended) && slip > 0.0) {
+      rate = py.add(
+        rate,
+        py.div(py.math.hypot(unit[0], unit[1], reach === null ? 0.0 : py.div(unit[5], reach)), slip)
+      );
+    }
+    if (py.truth(this.top.resists_rolling) && !py.truth(this.stopped) && rolling > 0.0) {
+      rate = py.add(
+        rate,
+        py.div(py.math.hypot(unit[3], unit[4]), py.mul(py.pow(this.body.lever, 2), rolling))
+      );
+    }
+    return rate;
+  }
+  /** The state after an impulse, in which slip and rolling that have ended are exactly zero. */
+  after(here) {
+    var then = this.body.after(here);
+    var still = come_to_rest(along_table(then), this.top, ...this.zeros(this.body.velocities(here)));
+    return then._replace({ momentum: still.momentum, velocity: [...still.velocity, then.velocity[2]] });
+  }
+  /** An error in slip and rolling, relative to them or to a millionth of the body's speed. */
+  wrong(taken, off) {
+    var here = this.body.velocities(taken.here);
+    var there = this.body.velocities(taken.there);
+    var parts = py.zip(this.parts(here), this.parts(there), this.parts(off));
+    var least = py.mul(1e-06, this.body.speed);
+    var ratios = [...parts].map(
+      ([before, after, wrong]) => py.div(size(wrong), py.max(size(before), size(after), least))
+    );
+    return py.float(py.max(...ratios, py.div(py.abs(off[2]), this.speed)));
+  }
+  /** Where a straight line leads, and whether to the goal: slip may end before. */
+  straight(here, goal, guess, taken) {
+    if (
+      py.truth(py.mod(taken, LOOK)) || py.truth(
+        this.top.resists_rolling
+      ) || py.truth(this.ended) && this.way !== null
+    ) {
+      return null;
+    }
+    var line = goal(here) >= 0.0 ? null : this.line(here);
+    if (line === null) {
+      return null;
+    }
+    var [unit, longest] = line;
+    var along = this.body.straight(here, unit);
+    if (longest < py.math.inf) {
+      var end = along(longest);
+      if (goal(end) < 0.0) {
+        return [end, false];
+      }
+      guess = longest;
+    }
+    return [first_reach(along, goal, guess), true];
+  }
+  /** Force and torque per unit normal impulse on a straight line, and its length until slip ends. */
+  line(here) {
+    var velocity = this.body.velocities(here);
+    var slip = this.parts(velocity)[0];
+    var unit = this.friction(velocity);
+    if (py.truth(this.ended)) {
+      return [unit, py.math.inf];
+    }
+    var grip = SLIP_of_dry_impact.resisting(
+      new Wrench([unit[0], unit[1], 1.0], [unit[3], unit[4], unit[5]]),
+      this.top
+    );
+    var speed = size(slip);
+    var holds = size(grip);
+    var way = scaled(py.div(1.0, speed), slip);
+    var change = slip_part(this.body.change(unit), this.reach);
+    var doing = this.impulse_for(change);
+    var along = this.impulse_for(way);
+    var inertia = inner(way, along);
+    var rate = py.div(inner(way, doing), inertia);
+    var fuzz = py.div(py.mul(FUZZ, this.body.speed), speed);
+    if (py.mul(py.abs(rate), inertia) <= py.mul(fuzz, holds)) {
+      rate = 0.0;
+    }
+    var wrong = plus(doing, scaled(py.neg(rate), along));
+    if (size(wrong) > py.mul(rate > 0.0 ? KEPT : py.add(KEPT, fuzz), holds)) {
+      return null;
+    }
+    var drilling = this.reach === null ? 0.0 : py.mul(this.reach, wrong[2]);
+    var exact = plus(unit, [py.neg(wrong[0]), py.neg(wrong[1]), 0.0, 0.0, 0.0, py.neg(drilling)]);
+    return [exact, rate < 0.0 ? py.div(speed, py.neg(rate)) : py.math.inf];
+  }
+  /** What changes slip so: impulses of force, and that of a drilling torque over the law's length. */
+  impulse_for(change) {
+    var [held, lengths] = this.reach === null ? [[0, 1], [1.0, 1.0]] : [[0, 1, 5], [1.0, 1.0, this.reach]];
+    var pairs = py.list(py.zip(held, lengths));
+    var response = this.body.response;
+    return py.tuple(
+      solve(
+        [...pairs].map(
+          ([i, a]) => [...pairs].map(([j, b]) => py.mul(py.mul(a, py.item(py.item(response, i), j)), b))
+        ),
+        py.list(change)
+      )
+    );
+  }
+}
+py.fields(DryProcess, ["body", "ended", "stopped", "way", "rolling_way"]);
+
+/** What a unit normal impulse brings with it, and how the velocities change. */
+function struck_motion(point, slip, rolling) {
+  var wrench = struck_wrench(point, slip, rolling);
+  return [wrench, point.response(wrench)];
+}
+
+// tippetop.mechanics.impact_on_two
+const OPEN = 1e-09;
+const OTHER = 7;
+
+/** Slip, or rolling, ends under a law that then leaves what resists it open. */
+class SlipEnds extends py.ArithmeticError {
+}
+
+/** Such an impact, floats: impulses are those of both contacts at what strikes, and work is its own. */
+class ProcessOnTwo extends ImpactProcess {
+  constructor(body, apart, before, pressed = true) {
+    super(body);
+    this.apart = apart;
+    this.before = before;
+    this.pressed = pressed;
+  }
+  /** The impact of a body at what strikes, and at what touches. */
+  static of(body, other) {
+    return new this(body, add(other.contact.arm, scale(-1.0, body.contact.arm)), other.before);
+  }
+  /** No impulse. */
+  get begin() {
+    return [...NO_IMPULSE, 0.0];
+  }
+  /** Speed at which what strikes sinks, m/s. */
+  get speed() {
+    return py.neg(py.float(this.body.before[2]));
+  }
+  /** Normal impulse of what strikes, N s. */
+  normal(here) {
+    return py.sub(py.item(here, NORMAL), py.item(here, OTHER));
+  }
+  /** Change of the six velocities of the other contact, by that of what strikes: it keeps digits. */
+  beside(change) {
+    var [x, y, z, ...turning] = change;
+    var turned = [turning[0], turning[1], turning[2]];
+    return [...point_velocity([x, y, z], turned, this.apart), ...turned];
+  }
+  /** The six velocities of the other contact after an impulse. */
+  there(here) {
+    return plus(this.before, this.beside(this.body.change(here)));
+  }
+  /** The impact from some impulses on, whether or not the other contact is closed then. */
+  settled(here) {
+    var pressed = py.bool(this.there(here)[2] <= py.mul(OPEN, this.speed));
+    return py.eq(pressed, this.pressed) ? this : py.replace(this, { pressed: pressed });
+  }
+  /** The goal, and that the other contact closes. */
+  ends(goal) {
+    return py.truth(this.pressed) ? [goal] : [goal, (here) => py.neg(this.there(here)[2])];
+  }
+  /** Rate of the numbers in a clock in which slip that ends decays exponentially. */
+  slope(here) {
+    var velocity = this.body.velocities(here);
+    var resistance = this.body.contact.top.rolling_resistance;
+    var rate = py.div(1.0, this.speed);
+    if (resistance !== null) {
+      var rolling = length([velocity[3], velocity[4], 0.0]);
+      if (py.mul(this.body.lever, rolling) < py.mul(OPEN, this.speed)) {
+        throw new SlipEnds("rolling ends in an impact on two surfaces");
+      }
+      rate = py.add(
+        rate,
+        py.div(py.mul(2.0, resistance.length), py.mul(py.pow(this.body.lever, 2), rolling))
+      );
+    }
+    var unit = this.sliding(velocity);
+    var share = 0.0;
+    rate = py.add(rate, this.pace(velocity, unit));
+    if (py.truth(this.pressed)) {
+      var there = this.there(here);
+      var [x, y, z, ...torque] = this.sliding(there);
+      var more = this.sliding(there);
+      rate = py.add(rate, this.pace(there, more));
+      var moment = add([torque[0], torque[1], torque[2]], cross(this.apart, [x, y, z]));
+      var at_first = [x, y, z, ...moment];
+      var [one, other] = [unit, at_first].map((wrench) => this.beside(this.body.change(wrench))[2]);
+      share = py.max(0.0, py.div(py.neg(one), other));
+      unit = py.tuple(py.zip(unit, at_first).map(([a, b]) => py.add(a, py.mul(share, b))));
+    }
+    return py.tuple([...unit, velocity[2], share].map((number) => py.div(number, rate)));
+  }
+  /** The friction at a contact with these velocities; see `friction`. */
+  sliding(velocity) {
+    var slip = length([velocity[0], velocity[1], 0.0]);
+    if (py.truth(is_set_valued(this.body.contact.top.friction)) && slip < py.mul(OPEN, this.speed)) {
+      throw new SlipEnds("slip ends in an impact on two surfaces");
+    }
+    return this.friction(velocity);
+  }
+  /** What an error counts as: that of the contact's velocity where it is the larger. */
+  wrong(taken, off) {
+    var one = off.slice(0, 3);
+    var other = this.beside(off).slice(0, 3);
+    return py.float(py.div(py.max([one, other].map(([x, y, z]) => length([x, y, z]))), this.speed));
+  }
+  /** The rest if friction has come to hold both slips constant. */
+  straight(here, goal, guess, taken) {
+    if (!py.truth(this.pressed)) {
+      return null;
+    }
+    var rates = this.slope(here);
+    var unit = py.tuple([...rates].map((rate) => py.div(rate, this.normal(rates))));
+    var change = this.body.change(unit);
+    var [x, y, rise, ..._] = change;
+    var other = this.beside(change);
+    if (!(py.add(length([x, y, 0.0]), length([other[0], other[1], 0.0])) < py.mul(STUCK, rise))) {
+      return null;
+    }
+    return [first_reach(this.body.straight(here, unit), goal, py.div(this.speed, rise)), true];
+  }
+}
+py.fields(ProcessOnTwo, ["body", "apart", "before", "pressed"]);
 
 // tippetop.mechanics.viscous_impact
 const ROUNDING_of_viscous_impact = 1e-17;
@@ -5346,10 +5481,9 @@ class PrincipalDirection extends py.NamedTuple {
 py.fields(PrincipalDirection, ["direction", "stiffness", "coupling", "slip"]);
 
 /** An impact with viscous friction, in closed form. */
-class ViscousProcess extends py.NamedTuple {
+class ViscousProcess extends ImpactProcess {
   constructor(body, mu, modes) {
-    super();
-    this.body = body;
+    super(body);
     this.mu = mu;
     this.modes = modes;
   }
@@ -5371,8 +5505,8 @@ class ViscousProcess extends py.NamedTuple {
     return new this(body, law.mu, [mode(cosine, sine), mode(py.neg(sine), cosine)]);
   }
   /** The first impulse from a given one on at which the goal is not negative; without steps. */
-  until(impulse, goal, guess) {
-    return [first_reach((q) => this.at(py.add(py.item(impulse, NORMAL), q)), goal, guess), 0];
+  until(here, goal, guess) {
+    return [first_reach((q) => this.at(py.add(py.item(here, NORMAL), q)), goal, guess), 0];
   }
   /** The impulse when the normal impulse is p. */
   at(p) {
@@ -5435,63 +5569,52 @@ class Impact extends py.NamedTuple {
 py.fields(Impact, ["state", "impulse", "energy_lost", "compression", "steps"]);
 
 /** What an impact does to a body that touches the table. */
-function impact(state, restitution, top) {
+function impact(state, restitution, top, beside = null) {
   if (!(0.0 <= restitution && restitution <= 1.0)) {
     throw new py.ValueError(
       `the coefficient of restitution must lie between 0 and 1, but is ${py.str(restitution)}`
     );
   }
   var body = Striking.of(state, top);
-  var dry = py.truth(is_dry(top)) ? new DryContact(body) : null;
-  if (!py.truth(is_struck(body, dry))) {
+  var process = process_of(body, beside);
+  if (!py.truth(process.is_struck)) {
     return new Impact(state, 0.0, 0.0, 0.0);
   }
-  var law = top.friction;
-  var viscous = py.isinstance(law, ViscousLaw) ? ViscousProcess.of(body, law) : null;
-  var process = py.or(viscous, () => new IntegratedProcess(body, dry));
   var frictionless = py.div(py.or(py.mul(-2.0, body.before[2]), () => body.striking), body.response[2][2]);
-  var [compressed, steps] = process.until(NO_IMPULSE, py.bound(body, "approach"), frictionless);
-  var impulse = compressed;
-  var compression = py.item(compressed, NORMAL);
+  var [impulse, steps] = process.until(process.begin, py.bound(body, "approach"), frictionless);
+  var compression = process.normal(impulse);
   if (restitution > 0.0) {
-    var goal = restitution_goal(body, compressed, restitution);
-    var [impulse, more] = process.until(compressed, goal, py.mul(restitution, compression));
+    var goal = restitution_goal(process, impulse, restitution);
+    var [impulse, more] = process.until(impulse, goal, py.mul(restitution, compression));
     steps = py.add(steps, more);
   }
-  var after = body.after(impulse);
-  if (dry !== null) {
-    after = dry.at_rest(impulse, after);
+  var lost = py.max(0.0, py.neg(body.work(impulse)));
+  return new Impact(process.after(impulse), py.item(impulse, NORMAL), lost, compression, steps);
+}
+
+/** How an impact goes on under the law of a body, alone or with another surface on the table. */
+function process_of(body, beside) {
+  var law = body.contact.top.friction;
+  if (beside !== null) {
+    return ProcessOnTwo.of(body, Striking.of(body.state, beside));
   }
-  return new Impact(
-    after,
-    py.item(impulse, NORMAL),
-    py.max(0.0, py.neg(body.work(impulse))),
-    compression,
-    steps
-  );
+  if (py.isinstance(law, ViscousLaw)) {
+    return ViscousProcess.of(body, law);
+  }
+  return py.truth(is_dry(body.contact.top)) ? new DryProcess(body) : new ImpactProcess(body);
 }
 
 /** Poisson's end of restitution, or that of the energy stored, but not before the body has stopped. */
-function restitution_goal(body, compressed, restitution) {
-  var full = py.add(py.item(compressed, NORMAL), py.mul(restitution, py.item(compressed, NORMAL)));
+function restitution_goal(process, compressed, restitution) {
+  var body = process.body;
+  var compression = process.normal(compressed);
+  var full = py.add(compression, py.mul(restitution, compression));
   var goal = (impulse) => {
-    var spent = py.div(py.sub(py.item(impulse, NORMAL), full), py.item(compressed, NORMAL));
+    var spent = py.div(py.sub(process.normal(impulse), full), compression);
     var returned = py.div(py.neg(py.item(impulse, WORK)), py.item(compressed, WORK));
     return py.float(py.min(py.max(spent, returned), py.div(body.approach(impulse), body.striking)));
   };
   return goal;
-}
-
-/** Whether the contact point sinks into the table, or would, if the impact did not begin. */
-function is_struck(body, dry) {
-  if (body.before[2] !== 0.0) {
-    return py.bool(body.before[2] < 0.0);
-  }
-  if (dry === null) {
-    return body.approach(body.friction(body.before)) < 0.0;
-  }
-  var now = dry.settled(NO_IMPULSE);
-  return body.approach(now.friction(...now.parts(body.before))) < 0.0;
 }
 
 // tippetop.contact.striking
@@ -7066,165 +7189,6 @@ function _left_of_two_closed(state, here) {
   return rate < 0.0 ? py.div(inner(slip, slip), py.neg(rate)) : 0.0;
 }
 
-// tippetop.mechanics.impact_on_two
-const OPEN = 1e-09;
-
-/** Slip, or rolling, ends under a law that then leaves what resists it open. */
-class SlipEnds extends py.ArithmeticError {
-}
-
-/** A body at the start of such an impact, floats. */
-class StruckOnTwo extends py.NamedTuple {
-  constructor(bodies, pressed = true) {
-    super();
-    this.bodies = bodies;
-    this.pressed = pressed;
-  }
-  /** Speed of what strikes, m/s. */
-  get speed() {
-    return py.neg(py.float(this.bodies[0].before[2]));
-  }
-  /** Longest step of the clock in which slip that friction takes decays smoothly. */
-  get longest() {
-    return py.div(
-      2.0,
-      py.float(py.sum([...this.bodies].map((body) => py.add(body.response[0][0], body.response[1][1]))))
-    );
-  }
-  /** The state after these impulses. */
-  after(here) {
-    var state = this.bodies[0].state;
-    var momentum = add(state.momentum, [here[0], here[1], here[2]]);
-    return state._replace({ momentum: momentum, velocity: add(state.velocity, [here[3], here[4], here[5]]) });
-  }
-  /** Change of the velocities of both contact points by these impulses, whose digits it keeps. */
-  change(here) {
-    var moved = this.bodies[0].state._replace({
-      momentum: [here[0], here[1], here[2]],
-      velocity: [here[3], here[4], here[5]]
-    });
-    var [one, other] = [...this.bodies].map(
-      (body) => contact_velocity(moved, body.contact.arm, body.contact.top)
-    );
-    return [one, other];
-  }
-  /** Velocities of both contact points after these impulses. */
-  velocities(here) {
-    var [one, other] = py.zip(this.bodies, this.change(here)).map(
-      ([body, change]) => add([body.before[0], body.before[1], body.before[2]], change)
-    );
-    return [one, other];
-  }
-  /** The impact from some impulses on, whether or not the other contact is closed then. */
-  settled(here) {
-    var pressed = py.bool(this.velocities(here)[1][2] <= py.mul(OPEN, this.speed));
-    return py.eq(pressed, this.pressed) ? this : this._replace({ pressed: pressed });
-  }
-  /** The goal, and that the other contact closes. */
-  ends(goal) {
-    return py.truth(this.pressed) ? [goal] : [goal, (here) => py.neg(py.float(this.velocities(here)[1][2]))];
-  }
-  /** Rate of the numbers in a clock in which slip that ends decays exponentially. */
-  slope(here) {
-    var state = this.after(here);
-    var top = this.bodies[0].contact.top;
-    var omega = angular_velocity(state.axis, state.momentum, top);
-    var points = this.velocities(here);
-    var pace = py.div(1.0, this.speed);
-    var units = [];
-    var responses = [];
-    if (top.rolling_resistance !== null) {
-      var lever = this.bodies[0].lever;
-      var rolling = py.mul(lever, length([...omega.slice(0, 2), 0.0]));
-      if (rolling < py.mul(OPEN, this.speed)) {
-        throw new SlipEnds("rolling ends in an impact on two surfaces");
-      }
-      pace = py.add(pace, py.div(py.mul(2.0, top.rolling_resistance.length), py.mul(lever, rolling)));
-    }
-    var touching = py.list(py.zip(points, this.bodies));
-    for (var [point, body] of py.truth(this.pressed) ? touching : touching.slice(0, 1)) {
-      var slip = length([...point.slice(0, 2), 0.0]);
-      if (py.truth(is_set_valued(top.friction)) && slip < py.mul(OPEN, this.speed)) {
-        throw new SlipEnds("slip ends in an impact on two surfaces");
-      }
-      var traction = top.traction([point[0], point[1]], omega);
-      pace = py.add(pace, py.truth(slip) ? py.div(length([...traction.force, 0.0]), slip) : 0.0);
-      var moment = moment_per_normal_force(body.contact.arm, traction);
-      units.push([...moment, ...scale(py.div(1.0, top.mass), [...traction.force, 1.0])]);
-      responses.push(this.change(py.item(units, -1)));
-    }
-    var share = py.truth(this.pressed) ? py.max(
-      0.0,
-      py.div(py.neg(responses[0][1][2]), responses[1][1][2])
-    ) : 0.0;
-    var rates = [
-      ...py.zip(units[0], py.item(units, -1)).map(([a, b]) => py.add(a, py.mul(share, b))),
-      1.0,
-      share,
-      points[0][2]
-    ];
-    return py.tuple([...rates].map((rate) => py.div(rate, pace)));
-  }
-  /** The error of a step over the one allowed. */
-  doubt(taken) {
-    return py.div(
-      taken.doubt((off) => py.max(py.map(length, this.change(off)))),
-      py.mul(TOLERANCE, this.speed)
-    );
-  }
-  /** The rest if friction has come to hold both slips constant. */
-  straight(here, goal, guess, taken) {
-    if (!py.truth(this.pressed)) {
-      return null;
-    }
-    var rates = this.slope(here);
-    var unit = py.tuple([...rates].map((rate) => py.div(rate, rates[6])));
-    var [[x, y, rise], [other_x, other_y]] = this.change(unit);
-    var approach = this.velocities(here)[0][2];
-    var shift = py.add(length([x, y, 0.0]), length([other_x, other_y, 0.0]));
-    if (!(shift < py.mul(STUCK, rise))) {
-      return null;
-    }
-    var along = (q) => {
-      var work = py.mul(q, py.add(approach, py.mul(py.mul(0.5, q), rise)));
-      return [
-        ...py.zip(here.slice(0, 8), unit.slice(0, 8)).map(([a, b]) => py.add(a, py.mul(q, b))),
-        py.add(here[8], work)
-      ];
-    };
-    return [first_reach(along, goal, py.div(this.speed, rise)), true];
-  }
-}
-py.fields(StruckOnTwo, ["bodies", "pressed"]);
-
-/** What an impact does to a body whose other surface touches the table, with no normal velocity. */
-function impact_on_two(state, restitution, tops) {
-  var body = new StruckOnTwo([Striking.of(state, tops[0]), Striking.of(state, tops[1])]);
-  var begin = py.mul([0.0], 9);
-  var guess = 1.0;
-  var [compressed, steps] = integrated(
-    body,
-    begin,
-    (y) => py.div(body.velocities(y)[0][2], body.speed),
-    guess
-  );
-  var end = compressed;
-  if (restitution > 0.0) {
-    var full = py.mul(py.add(1.0, restitution), compressed[6]);
-    var stored = py.neg(compressed[8]);
-    var [end, more] = integrated(
-      body,
-      compressed,
-      (y) => py.max(py.sub(py.div(y[6], full), 1.0), py.div(y[8], stored)),
-      guess
-    );
-    steps = py.add(steps, more);
-  }
-  var then = body.after(end);
-  var lost = py.max(0.0, py.float(py.sub(energy(state, tops[0]), energy(then, tops[0]))));
-  return new Impact(then, py.add(end[6], end[7]), lost, compressed[6], steps);
-}
-
 // tippetop.contact.several
 const SLOWEST_ROCKING = 1e-07;
 const MOST_IN_TURNS = 200;
@@ -7294,7 +7258,7 @@ class OnSeveral extends FreeToFly {
       var pressed = gap_rate(alone.state, other) < py.neg(SLOWEST_ROCKING);
       if (py.truth(pressed) && py.abs(gap_rate(state, other)) <= SLOWEST_ROCKING) {
         try {
-          var found = impact_on_two(state, restitution, [this.top, other]);
+          var found = impact(state, restitution, this.top, other);
         } catch (error) {
           if (!(error instanceof SlipEnds)) throw error;
           return alone;
@@ -10985,7 +10949,7 @@ export {
   DRILLING,
   Disc,
   Driven,
-  DryContact,
+  DryProcess,
   EARLIEST,
   EAST,
   EDGE,
@@ -11043,9 +11007,9 @@ export {
   INSTANT,
   ITERATIONS,
   Impact,
+  ImpactProcess,
   Instants,
   IntegratedMode,
-  IntegratedProcess,
   JellettLine,
   KEPT,
   Kind,
@@ -11065,7 +11029,7 @@ export {
   LIMIT_BRANCH,
   LONGER,
   LONGEST,
-  LONGEST_of_integrated_impact,
+  LONGEST_of_impact_process,
   LONGEST_of_striking,
   LONGEST_of_trajectory,
   LOOK,
@@ -11088,7 +11052,7 @@ export {
   MOST_STEPS,
   MOST_of_bodies,
   MOST_of_closing,
-  MOST_of_integrated_impact,
+  MOST_of_impact_process,
   MOST_of_slipping,
   Machinery,
   Mode,
@@ -11102,7 +11066,7 @@ export {
   NEGATIVE,
   NEITHER,
   NEWTON,
-  NEWTON_of_integrated_impact,
+  NEWTON_of_impact_process,
   NONE,
   NORMAL,
   NORTH,
@@ -11122,6 +11086,7 @@ export {
   OPENING,
   OPENS,
   ORDER,
+  OTHER,
   OUTCOMES,
   OUTLINE,
   OVERTAKEN,
@@ -11155,6 +11120,7 @@ export {
   Prediction,
   PrincipalDirection,
   Problem,
+  ProcessOnTwo,
   Prospects,
   QUOTIENT,
   Quadratures,
@@ -11205,15 +11171,15 @@ export {
   SHORTER,
   SHORTER_of_slipping,
   SHORTEST,
-  SHORTEST_of_integrated_impact,
-  SHORT_of_integrated_impact,
+  SHORTEST_of_impact_process,
+  SHORT_of_impact_process,
   SINE,
   SINGULAR,
   SINKING,
   SIZE,
   SLIP,
   SLIP_of_double_sticking,
-  SLIP_of_straight_impact,
+  SLIP_of_dry_impact,
   SLOW,
   SLOWEST,
   SLOWEST_REBOUND,
@@ -11270,7 +11236,6 @@ export {
   StopAtLiftOff,
   Stopping,
   Striking,
-  StruckOnTwo,
   TERMS,
   THIRD,
   TILTS,
@@ -11331,7 +11296,6 @@ export {
   _grow,
   _handed_over,
   _improved,
-  _impulse_for,
   _in_powers,
   _inside,
   _integral,
@@ -11339,7 +11303,6 @@ export {
   _left,
   _left_of_two_closed,
   _level,
-  _line,
   _marks,
   _meetings,
   _moved,
@@ -11412,6 +11375,7 @@ export {
   directions,
   directions_of,
   dot,
+  doubt_of,
   drilling_shares,
   driven_acceleration,
   driven_motion,
@@ -11455,13 +11419,11 @@ export {
   impact_between,
   impact_motion,
   impact_of_patch,
-  impact_on_two,
   in_one_step,
   in_order,
   inertia_ratio,
   inner,
   instants,
-  integrated,
   inverted_boundary,
   is_branched,
   is_dry,
@@ -11473,7 +11435,6 @@ export {
   is_rolling,
   is_set_valued,
   is_slipping,
-  is_struck,
   javascript_source,
   jellett,
   jellett_line,
@@ -11548,6 +11509,7 @@ export {
   predict,
   presses,
   prevalence,
+  process_of,
   prospects,
   quadrature_rates,
   rates_in_time,
@@ -11623,7 +11585,6 @@ export {
   step_to,
   stepped,
   straight,
-  straight_of_straight_impact,
   struck_motion,
   struck_wrench,
   surface_guards,

@@ -30,10 +30,11 @@ Jellett's integral is conserved: P acts at the fixed arm, and a.(a x P) = 0.
 
 from typing import NamedTuple
 
-from tippetop.mechanics.dry_impact import DryContact, is_dry
+from tippetop.mechanics.dry_impact import DryProcess, is_dry
 from tippetop.mechanics.friction import ViscousLaw
-from tippetop.mechanics.impulse import NO_IMPULSE, NORMAL, WORK, Goal, Impulse, Striking
-from tippetop.mechanics.integrated_impact import IntegratedProcess
+from tippetop.mechanics.impact_on_two import ProcessOnTwo
+from tippetop.mechanics.impact_process import ImpactProcess
+from tippetop.mechanics.impulse import NORMAL, WORK, Goal, Impulse, Striking
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Scalar
@@ -55,7 +56,7 @@ class Impact(NamedTuple):
     """How many steps it took to find them, where they are integrated."""
 
 
-def impact(state: State, restitution: float, top: Top) -> Impact:
+def impact(state: State, restitution: float, top: Top, beside: Top | None = None) -> Impact:
     """What an impact does to a body that touches the table.
 
     Parameters
@@ -66,52 +67,54 @@ def impact(state: State, restitution: float, top: Top) -> Impact:
         Poisson's coefficient e between 0 and 1: normal impulse of restitution over that of compression.
     top
         The body and the friction law, floats.
+    beside
+        The same with another surface active that touches too, with no normal velocity, and is pressed onto
+        the table; None if none is.
 
     Raises
     ------
     ValueError
         If the coefficient of restitution is not between 0 and 1.
+    SlipEnds
+        If slip ends on one of two surfaces under a law that then leaves the force open.
+    ArithmeticError
+        If it takes too many steps.
     """
     if not 0.0 <= restitution <= 1.0:
         raise ValueError(f"the coefficient of restitution must lie between 0 and 1, but is {restitution}")
     body = Striking.of(state, top)
-    dry = DryContact(body) if is_dry(top) else None
-    if not is_struck(body, dry):
+    process = process_of(body, beside)
+    if not process.is_struck:
         return Impact(state, 0.0, 0.0, 0.0)
-    law = top.friction
-    viscous = ViscousProcess.of(body, law) if isinstance(law, ViscousLaw) else None
-    process = viscous or IntegratedProcess(body, dry)
-
     frictionless = (-2.0 * body.before[2] or body.striking) / body.response[2][2]
-    compressed, steps = process.until(NO_IMPULSE, body.approach, frictionless)
-    impulse, compression = compressed, compressed[NORMAL]
+    impulse, steps = process.until(process.begin, body.approach, frictionless)
+    compression = process.normal(impulse)
     if restitution > 0.0:
-        goal = restitution_goal(body, compressed, restitution)
-        impulse, more = process.until(compressed, goal, restitution * compression)
+        goal = restitution_goal(process, impulse, restitution)
+        impulse, more = process.until(impulse, goal, restitution * compression)
         steps += more
-    after = body.after(impulse)
-    if dry is not None:
-        after = dry.at_rest(impulse, after)
-    return Impact(after, impulse[NORMAL], max(0.0, -body.work(impulse)), compression, steps)
+    lost = max(0.0, -body.work(impulse))
+    return Impact(process.after(impulse), impulse[NORMAL], lost, compression, steps)
 
 
-def restitution_goal(body: Striking, compressed: Impulse, restitution: float) -> Goal:
+def process_of(body: Striking, beside: Top | None) -> ImpactProcess:
+    """How an impact goes on under the law of a body, alone or with another surface on the table."""
+    law = body.contact.top.friction
+    if beside is not None:
+        return ProcessOnTwo.of(body, Striking.of(body.state, beside))
+    if isinstance(law, ViscousLaw):
+        return ViscousProcess.of(body, law)
+    return DryProcess(body) if is_dry(body.contact.top) else ImpactProcess(body)
+
+
+def restitution_goal(process: ImpactProcess, compressed: Impulse, restitution: float) -> Goal:
     """Poisson's end of restitution, or that of the energy stored, but not before the body has stopped."""
-    full = compressed[NORMAL] + restitution * compressed[NORMAL]
+    body, compression = process.body, process.normal(compressed)
+    full = compression + restitution * compression
 
     def goal(impulse: Impulse) -> float:
-        spent = (impulse[NORMAL] - full) / compressed[NORMAL]
+        spent = (process.normal(impulse) - full) / compression
         returned = -impulse[WORK] / compressed[WORK]
         return float(min(max(spent, returned), body.approach(impulse) / body.striking))
 
     return goal
-
-
-def is_struck(body: Striking, dry: DryContact | None) -> bool:
-    """Whether the contact point sinks into the table, or would, if the impact did not begin."""
-    if body.before[2] != 0.0:
-        return bool(body.before[2] < 0.0)
-    if dry is None:
-        return body.approach(body.friction(body.before)) < 0.0
-    now = dry.settled(NO_IMPULSE)
-    return body.approach(now.friction(*now.parts(body.before))) < 0.0

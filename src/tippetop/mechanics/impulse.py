@@ -16,7 +16,8 @@ FUZZ = 1e-14
 """Round-off in the velocity of the contact point, relative to what it is made of."""
 
 Impulse: TypeAlias = tuple[float, ...]
-"""Impulse of the table's force so far, N s, that of its torque, N m s, and the work of the normal part, J."""
+"""Impulse of the table's force so far, N s, that of its torque, N m s, and the work of the normal part, J; or
+that, and more."""
 
 NORMAL, WORK = 2, 6
 """Places of the normal impulse in it, and of its work."""
@@ -88,12 +89,13 @@ class Striking(NamedTuple):
         return float(0.5 * inner(impulse[:6], plus(self.before, self.velocities(impulse))))
 
     def straight(self, impulse: Impulse, unit: Slip) -> Callable[[float], Impulse]:
-        """The impulse that grows from a given one by so much per unit normal impulse."""
+        """The impulse that grows from a given one by so much per unit normal impulse of what strikes."""
         approach, rise = self.approach(impulse), sum(map(mul, self.response[2], unit))
 
         def along(q: float) -> Impulse:
-            six = [a + q * b for a, b in zip(impulse[:6], unit, strict=True)]
-            return (*six, impulse[WORK] + q * (approach + 0.5 * q * rise))
+            moved = [a + q * b for a, b in zip(impulse, unit, strict=False)]
+            work = impulse[WORK] + q * (approach + 0.5 * q * rise)
+            return (*moved[:WORK], work, *moved[WORK + 1 :])
 
         return along
 

@@ -1,9 +1,11 @@
 """An impact with viscous friction, in closed form."""
 
 import math
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from tippetop.mechanics.friction import ViscousLaw
+from tippetop.mechanics.impact_process import ImpactProcess
 from tippetop.mechanics.impulse import NORMAL, Goal, Impulse, Striking, first_reach
 from tippetop.mechanics.vectors import Horizontal
 
@@ -23,7 +25,8 @@ class PrincipalDirection(NamedTuple):
     """Slip along it at the start, m/s."""
 
 
-class ViscousProcess(NamedTuple):
+@dataclass(frozen=True)
+class ViscousProcess(ImpactProcess):
     """An impact with viscous friction, in closed form.
 
     With phi_1(x) = (1 - exp(-x)) / x and phi_(k+1) = (1/k! - phi_k) / x at x = mu stiffness p, the slip of a
@@ -35,7 +38,6 @@ class ViscousProcess(NamedTuple):
     keeps growing after it.
     """
 
-    body: Striking
     mu: float
     modes: tuple[PrincipalDirection, PrincipalDirection]
 
@@ -53,9 +55,9 @@ class ViscousProcess(NamedTuple):
 
         return cls(body, law.mu, (mode(cosine, sine), mode(-sine, cosine)))
 
-    def until(self, impulse: Impulse, goal: Goal, guess: float) -> tuple[Impulse, int]:
+    def until(self, here: Impulse, goal: Goal, guess: float) -> tuple[Impulse, int]:
         """The first impulse from a given one on at which the goal is not negative; without steps."""
-        return first_reach(lambda q: self.at(impulse[NORMAL] + q), goal, guess), 0
+        return first_reach(lambda q: self.at(here[NORMAL] + q), goal, guess), 0
 
     def at(self, p: float) -> Impulse:
         """The impulse when the normal impulse is p."""
