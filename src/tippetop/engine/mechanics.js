@@ -1290,25 +1290,42 @@ function crossing(function_, low, high) {
   return best;
 }
 
-// tippetop.mechanics.algebra
+// tippetop.mechanics.disc
 
-/** Arithmetic that follows from a sum, a product and a power, for what the mechanics may run on. */
-class Algebra extends py.Thing {
+/** All complex numbers within a radius of a real centre, and what arithmetic can make of them. */
+class Disc extends py.Thing {
+  constructor(centre, radius) {
+    super();
+    [this.centre, this.radius] = [centre, radius];
+  }
   __add__(other) {
-    throw new py.NotImplementedError();
+    if (py.isinstance(other, Disc)) {
+      return new Disc(py.add(this.centre, other.centre), py.add(this.radius, other.radius));
+    }
+    return new Disc(py.add(this.centre, other), this.radius);
   }
   __mul__(other) {
-    throw new py.NotImplementedError();
-  }
-  /** A power that is not a natural number. */
-  power(exponent) {
-    throw new py.NotImplementedError();
-  }
-  __pow__(exponent) {
-    if (exponent < 1 || !py.eq(exponent, py.int(exponent))) {
-      return this.power(exponent);
+    if (py.isinstance(other, Disc)) {
+      var far = py.add(py.abs(other.centre), other.radius);
+      return new Disc(
+        py.mul(this.centre, other.centre),
+        py.add(py.mul(py.abs(this.centre), other.radius), py.mul(this.radius, far))
+      );
     }
-    return exponent === 1 ? this : py.mul(this, py.pow(this, py.sub(exponent, 1)));
+    return new Disc(py.mul(this.centre, other), py.mul(this.radius, py.abs(other)));
+  }
+  /** A real power: a natural one by products, others by the mean value theorem. */
+  __pow__(exponent) {
+    if (exponent >= 1 && py.eq(exponent, py.int(exponent))) {
+      return exponent === 1 ? this : py.mul(this, py.pow(this, py.sub(exponent, 1)));
+    }
+    var near = py.sub(this.centre, this.radius);
+    var far = py.add(this.centre, this.radius);
+    if (near <= 0.0) {
+      throw new py.ArithmeticError("a power of a disc that touches zero");
+    }
+    var steepest = py.max(py.pow(near, py.sub(exponent, 1.0)), py.pow(far, py.sub(exponent, 1.0)));
+    return new Disc(py.pow(this.centre, exponent), py.mul(py.mul(this.radius, py.abs(exponent)), steepest));
   }
   __neg__() {
     return py.mul(this, -1.0);
@@ -1333,82 +1350,208 @@ class Algebra extends py.Thing {
   }
 }
 
-/** A power series in time, truncated after the degree of all others. */
-class TruncatedSeries extends Algebra {
-  constructor(terms) {
+// tippetop.mechanics.series
+
+/** Coefficients that have plain operators, such as floats. */
+class PlainArithmetic extends py.Thing {
+  /** Sum of terms. */
+  total(terms) {
+    return py.sum(terms.slice(1), py.item(terms, 0));
+  }
+}
+const PLAIN = new PlainArithmetic();
+
+/** A power series in time, by a rule for its k-th coefficient. */
+class Series extends py.Thing {
+  constructor(rule, arithmetic) {
     super();
-    this.terms = terms;
+    this.rule = rule;
+    this.arithmetic = arithmetic;
+    this.known = [];
+  }
+  __getitem__(k) {
+    return py.item(this.up_to(k), k);
+  }
+  /** Coefficients, at least as many as up to the k-th. */
+  up_to(k) {
+    var known = this.known;
+    while (py.len(known) <= k) {
+      known.push(this.rule(py.len(known)));
+    }
+    return known;
+  }
+  _made(rule) {
+    return new Series(rule, this.arithmetic);
   }
   __add__(other) {
-    if (py.isinstance(other, TruncatedSeries)) {
-      return new TruncatedSeries(py.zip(this.terms, other.terms).map(([a, b]) => py.add(a, b)));
+    if (py.isinstance(other, Series)) {
+      return this._made((k) => py.add(py.item(this, k), py.item(other, k)));
     }
-    return new TruncatedSeries([py.add(this.terms[0], other), ...this.terms.slice(1)]);
+    if (py.truth(is_number(other, 0.0))) {
+      return this;
+    }
+    return this._made((k) => py.truth(k) ? py.item(this, k) : py.add(py.item(this, 0), other));
   }
   __mul__(other) {
-    var a = this.terms;
-    if (py.isinstance(other, TruncatedSeries)) {
-      var b = py.slice(other.terms, null, null, -1);
-      var last = py.sub(py.len(a), 1);
-      return new TruncatedSeries(
-        py.range(py.add(last, 1)).map(
-          (k) => py.sum(py.map(py.mul, a, py.slice(b, py.sub(last, k), null, null)))
-        )
-      );
+    if (py.isinstance(other, Series)) {
+      if (other === this) {
+        return this._squared();
+      }
+      return this._made((k) => this._product(other, k));
     }
-    return new TruncatedSeries([...a].map((term) => py.mul(other, term)));
+    if (py.truth(is_number(other, 0.0))) {
+      return 0.0;
+    }
+    if (py.truth(is_number(other, 1.0))) {
+      return this;
+    }
+    return this._made((k) => py.mul(other, py.item(this, k)));
   }
-  /** A real power, term by term from y' a = exponent a' y. */
-  power(exponent) {
-    var a = this.terms;
-    var y = [py.pow(this.terms[0], exponent)];
-    for (var k = 1; k < py.len(a); k += 1) {
-      var total = py.sum(
-        py.range(1, py.add(k, 1)).map(
-          (j) => py.mul(
-            py.mul(py.sub(py.mul(py.add(exponent, 1.0), j), k), py.item(a, j)),
-            py.item(y, py.sub(k, j))
-          )
-        )
+  _product(other, k) {
+    var ours = this.up_to(k);
+    var theirs = other.up_to(k);
+    return this.arithmetic.total(py.list(py.map(py.mul, ours, py.slice(theirs, k, null, -1))));
+  }
+  _squared() {
+    var rule = (k) => {
+      var known = this.up_to(k);
+      var middle = py.mod(k, 2) === 0 ? py.mul(
+        py.item(known, py.floordiv(k, 2)),
+        py.item(known, py.floordiv(k, 2))
+      ) : 0.0;
+      return py.add(this._twice(known, py.range(py.floordiv(py.add(k, 1), 2)), k), middle);
+    };
+    return this._made(rule);
+  }
+  /** Products of coefficients that come twice in the k-th of a square. */
+  _twice(known, places, k) {
+    var terms = [...places].map((j) => py.mul(py.item(known, j), py.item(known, py.sub(k, j))));
+    return py.truth(terms) ? py.mul(2.0, this.arithmetic.total(terms)) : 0.0;
+  }
+  /** The square root: it takes half of what other powers do. */
+  _root() {
+    var half = [];
+    var rule = (k) => {
+      if (k === 0) {
+        var first = py.pow(py.item(this, 0), 0.5);
+        half.push(py.div(0.5, first));
+        return first;
+      }
+      var known = root.known;
+      var middle = py.mod(k, 2) === 0 ? py.mul(
+        py.item(known, py.floordiv(k, 2)),
+        py.item(known, py.floordiv(k, 2))
+      ) : 0.0;
+      return py.mul(
+        py.sub(
+          py.item(this, k),
+          py.add(this._twice(known, py.range(1, py.floordiv(py.add(k, 1), 2)), k), middle)
+        ),
+        py.item(half, 0)
       );
-      y.push(py.div(total, py.mul(k, a[0])));
+    };
+    var root = this._made(rule);
+    return root;
+  }
+  __truediv__(other) {
+    if (!py.isinstance(other, Series)) {
+      return py.mul(this, py.div(1.0, other));
     }
-    return new TruncatedSeries(y);
+    var inverse = [];
+    var rule = (k) => {
+      if (k === 0) {
+        inverse.push(py.div(1.0, py.item(other, 0)));
+        return py.mul(py.item(this, 0), py.item(inverse, 0));
+      }
+      var divisor = other.up_to(k);
+      var known = this.arithmetic.total(py.list(py.map(py.mul, quotient.known, py.slice(divisor, k, 0, -1))));
+      return py.mul(py.sub(py.item(this, k), known), py.item(inverse, 0));
+    };
+    var quotient = this._made(rule);
+    return quotient;
+  }
+  __pow__(exponent) {
+    if (exponent === 2) {
+      return this._squared();
+    }
+    if (py.contains([0.5, -0.5, 0.25], exponent)) {
+      return exponent === 0.5 ? this._root() : py.pow(this._root(), py.mul(2.0, exponent));
+    }
+    var inverse = [];
+    var rule = (k) => {
+      if (k === 0) {
+        inverse.push(py.div(1.0, py.item(this, 0)));
+        return py.pow(py.item(this, 0), exponent);
+      }
+      var base = this.up_to(k);
+      var found = power.known;
+      var factors = py.range(1, py.add(k, 1)).map(
+        (j) => py.div(py.sub(py.mul(py.add(exponent, 1.0), j), k), k)
+      );
+      var terms = py.list(
+        py.map(py.mul, factors, py.map(py.mul, base.slice(1), py.slice(found, py.sub(k, 1), null, -1)))
+      );
+      return py.mul(this.arithmetic.total(terms), py.item(inverse, 0));
+    };
+    var power = this._made(rule);
+    return power;
+  }
+  __neg__() {
+    return this._made((k) => py.neg(py.item(this, k)));
+  }
+  __sub__(other) {
+    return this.__add__(py.neg(other));
+  }
+  __radd__(other) {
+    return this.__add__(other);
+  }
+  __rsub__(other) {
+    return py.neg(this).__add__(other);
+  }
+  __rmul__(other) {
+    return py.mul(this, other);
+  }
+  __rtruediv__(other) {
+    return py.mul(py.pow(this, -1.0), other);
   }
 }
 
-/** All complex numbers within a radius of a real centre, and what arithmetic can make of them. */
-class Disc extends Algebra {
-  constructor(centre, radius) {
-    super();
-    [this.centre, this.radius] = [centre, radius];
-  }
-  __add__(other) {
-    if (py.isinstance(other, Disc)) {
-      return new Disc(py.add(this.centre, other.centre), py.add(this.radius, other.radius));
+/** Whether a value is a plain number, and this one. */
+function is_number(value, number) {
+  return py.and(py.isinstance(value, [py.int, py.float]), () => py.eq(value, number));
+}
+
+/** The series of the solution of y' = rates(y) that starts at y = start. */
+function solution(start, rates, arithmetic) {
+  return solved([...start].map((_) => new Series(unknown, arithmetic)), start, rates);
+}
+
+/** Series that are unknown, made the solution. */
+function solved(series, start, rates) {
+  var rule = (first, slope) => {
+    if (!py.isinstance(slope, Series)) {
+      return (k) => k < 2 ? py.item([first, py.add(py.mul(0.0, first), slope)], k) : py.mul(0.0, first);
     }
-    return new Disc(py.add(this.centre, other), this.radius);
+    return (k) => py.truth(k) ? py.mul(py.item(slope, py.sub(k, 1)), py.div(1.0, k)) : first;
+  };
+  for (var [one, first, slope] of py.zip(series, start, rates(series))) {
+    one.rule = rule(first, slope);
   }
-  __mul__(other) {
-    if (py.isinstance(other, Disc)) {
-      var far = py.add(py.abs(other.centre), other.radius);
-      return new Disc(
-        py.mul(this.centre, other.centre),
-        py.add(py.mul(py.abs(this.centre), other.radius), py.mul(this.radius, far))
-      );
-    }
-    return new Disc(py.mul(this.centre, other), py.mul(this.radius, py.abs(other)));
+  return series;
+}
+
+/** The rule of a series that has none yet. */
+function unknown(k) {
+  throw new py.AssertionError(`a series is asked for its coefficient ${py.str(k)} before that is known`);
+}
+
+/** Value of a polynomial, its coefficients in increasing order, at a time. */
+function horner(coefficients, time) {
+  var value = py.item(coefficients, -1);
+  for (var coefficient of py.reversed(py.slice(coefficients, null, -1, null))) {
+    value = py.add(coefficient, py.mul(value, time));
   }
-  /** A real power, by the mean value theorem; the disc must lie right of zero for it to be analytic. */
-  power(exponent) {
-    var near = py.sub(this.centre, this.radius);
-    var far = py.add(this.centre, this.radius);
-    if (near <= 0.0) {
-      throw new py.ArithmeticError("a power of a disc that touches zero");
-    }
-    var steepest = py.max(py.pow(near, py.sub(exponent, 1.0)), py.pow(far, py.sub(exponent, 1.0)));
-    return new Disc(py.pow(this.centre, exponent), py.mul(py.mul(this.radius, py.abs(exponent)), steepest));
-  }
+  return value;
 }
 
 // tippetop.mechanics.separation
@@ -1474,8 +1617,8 @@ class Tip extends py.NamedTuple {
     ].map((c) => py.min(py.max(c, py.neg(INSIDE)), INSIDE));
     return [low, high];
   }
-  /** Height as a power series in time. */
-  series() {
+  /** Coefficients of the height in powers of time. */
+  get terms() {
     var terms = [this.height, this.rate, py.mul(0.5, this.acceleration)];
     for (var j = 1; j < py.sub(DEGREE, 1); j += 1) {
       terms.push(
@@ -1485,7 +1628,7 @@ class Tip extends py.NamedTuple {
         )
       );
     }
-    return new TruncatedSeries(terms);
+    return terms;
   }
   /** Largest |c - c(time)| for complex times within angle / frequency of a real one. */
   spread(time, angle) {
@@ -1574,6 +1717,16 @@ class Separation extends py.NamedTuple {
 }
 py.fields(Separation, ["tip", "shape", "parabola"]);
 
+/** Coefficients of the support function in powers of time, by those of the tip's height. */
+function support_terms(shape, tip, plain) {
+  var found = shape.height(new Series((k) => py.item(tip, k), plain));
+  var height = py.isinstance(found, Series) ? found : py.add(
+    new Series((k) => py.mul(0.0, py.item(tip, k)), plain),
+    found
+  );
+  return height.up_to(py.sub(py.len(tip), 1));
+}
+
 /** A polynomial in time: the gap at the start of a flight, divided by the power of time that it has. */
 class Opening extends py.NamedTuple {
   constructor(terms) {
@@ -1652,7 +1805,7 @@ function touchdown(state, top, horizon, start = Start.AIRBORNE) {
     if (disc === null) {
       throw new Unsolved("the body lies flat at its start, where no one point is lowest");
     }
-    var support = py.add(top.surface.height(tip.series()), py.mul(0.0, tip.series())).terms;
+    var support = support_terms(top.surface, tip.terms, PLAIN);
     ballistic = [...support.slice(0, start), ...ballistic.slice(start)];
     var terms = py.add(
       py.zip(ballistic, support.slice(0, 3)).map(([b, s]) => py.sub(b, s)),
@@ -2635,210 +2788,6 @@ function _of_top(value) {
 /** Axis and angular momentum, the first numbers of every mode in contact. */
 function split(y) {
   return [[y[0], y[1], y[2]], [y[3], y[4], y[5]]];
-}
-
-// tippetop.mechanics.series
-
-/** Coefficients that have plain operators, such as floats. */
-class PlainArithmetic extends py.Thing {
-  /** Sum of terms. */
-  total(terms) {
-    return py.sum(terms.slice(1), py.item(terms, 0));
-  }
-}
-const PLAIN = new PlainArithmetic();
-
-/** A power series in time, by a rule for its k-th coefficient. */
-class Series extends py.Thing {
-  constructor(rule, arithmetic) {
-    super();
-    this.rule = rule;
-    this.arithmetic = arithmetic;
-    this.known = [];
-  }
-  __getitem__(k) {
-    return py.item(this.up_to(k), k);
-  }
-  /** Coefficients, at least as many as up to the k-th. */
-  up_to(k) {
-    var known = this.known;
-    while (py.len(known) <= k) {
-      known.push(this.rule(py.len(known)));
-    }
-    return known;
-  }
-  _made(rule) {
-    return new Series(rule, this.arithmetic);
-  }
-  __add__(other) {
-    if (py.isinstance(other, Series)) {
-      return this._made((k) => py.add(py.item(this, k), py.item(other, k)));
-    }
-    if (py.truth(is_number(other, 0.0))) {
-      return this;
-    }
-    return this._made((k) => py.truth(k) ? py.item(this, k) : py.add(py.item(this, 0), other));
-  }
-  __mul__(other) {
-    if (py.isinstance(other, Series)) {
-      if (other === this) {
-        return this._squared();
-      }
-      return this._made((k) => this._product(other, k));
-    }
-    if (py.truth(is_number(other, 0.0))) {
-      return 0.0;
-    }
-    if (py.truth(is_number(other, 1.0))) {
-      return this;
-    }
-    return this._made((k) => py.mul(other, py.item(this, k)));
-  }
-  _product(other, k) {
-    var ours = this.up_to(k);
-    var theirs = other.up_to(k);
-    return this.arithmetic.total(py.list(py.map(py.mul, ours, py.slice(theirs, k, null, -1))));
-  }
-  _squared() {
-    var rule = (k) => {
-      var known = this.up_to(k);
-      var middle = py.mod(k, 2) === 0 ? py.mul(
-        py.item(known, py.floordiv(k, 2)),
-        py.item(known, py.floordiv(k, 2))
-      ) : 0.0;
-      return py.add(this._twice(known, py.range(py.floordiv(py.add(k, 1), 2)), k), middle);
-    };
-    return this._made(rule);
-  }
-  /** Products of coefficients that come twice in the k-th of a square. */
-  _twice(known, places, k) {
-    var terms = [...places].map((j) => py.mul(py.item(known, j), py.item(known, py.sub(k, j))));
-    return py.truth(terms) ? py.mul(2.0, this.arithmetic.total(terms)) : 0.0;
-  }
-  /** The square root: it takes half of what other powers do. */
-  _root() {
-    var half = [];
-    var rule = (k) => {
-      if (k === 0) {
-        var first = py.pow(py.item(this, 0), 0.5);
-        half.push(py.div(0.5, first));
-        return first;
-      }
-      var known = root.known;
-      var middle = py.mod(k, 2) === 0 ? py.mul(
-        py.item(known, py.floordiv(k, 2)),
-        py.item(known, py.floordiv(k, 2))
-      ) : 0.0;
-      return py.mul(
-        py.sub(
-          py.item(this, k),
-          py.add(this._twice(known, py.range(1, py.floordiv(py.add(k, 1), 2)), k), middle)
-        ),
-        py.item(half, 0)
-      );
-    };
-    var root = this._made(rule);
-    return root;
-  }
-  __truediv__(other) {
-    if (!py.isinstance(other, Series)) {
-      return py.mul(this, py.div(1.0, other));
-    }
-    var inverse = [];
-    var rule = (k) => {
-      if (k === 0) {
-        inverse.push(py.div(1.0, py.item(other, 0)));
-        return py.mul(py.item(this, 0), py.item(inverse, 0));
-      }
-      var divisor = other.up_to(k);
-      var known = this.arithmetic.total(py.list(py.map(py.mul, quotient.known, py.slice(divisor, k, 0, -1))));
-      return py.mul(py.sub(py.item(this, k), known), py.item(inverse, 0));
-    };
-    var quotient = this._made(rule);
-    return quotient;
-  }
-  __pow__(exponent) {
-    if (exponent === 2) {
-      return this._squared();
-    }
-    if (py.contains([0.5, -0.5, 0.25], exponent)) {
-      return exponent === 0.5 ? this._root() : py.pow(this._root(), py.mul(2.0, exponent));
-    }
-    var inverse = [];
-    var rule = (k) => {
-      if (k === 0) {
-        inverse.push(py.div(1.0, py.item(this, 0)));
-        return py.pow(py.item(this, 0), exponent);
-      }
-      var base = this.up_to(k);
-      var found = power.known;
-      var factors = py.range(1, py.add(k, 1)).map(
-        (j) => py.div(py.sub(py.mul(py.add(exponent, 1.0), j), k), k)
-      );
-      var terms = py.list(
-        py.map(py.mul, factors, py.map(py.mul, base.slice(1), py.slice(found, py.sub(k, 1), null, -1)))
-      );
-      return py.mul(this.arithmetic.total(terms), py.item(inverse, 0));
-    };
-    var power = this._made(rule);
-    return power;
-  }
-  __neg__() {
-    return this._made((k) => py.neg(py.item(this, k)));
-  }
-  __sub__(other) {
-    return this.__add__(py.neg(other));
-  }
-  __radd__(other) {
-    return this.__add__(other);
-  }
-  __rsub__(other) {
-    return py.neg(this).__add__(other);
-  }
-  __rmul__(other) {
-    return py.mul(this, other);
-  }
-  __rtruediv__(other) {
-    return py.mul(py.pow(this, -1.0), other);
-  }
-}
-
-/** Whether a value is a plain number, and this one. */
-function is_number(value, number) {
-  return py.and(py.isinstance(value, [py.int, py.float]), () => py.eq(value, number));
-}
-
-/** The series of the solution of y' = rates(y) that starts at y = start. */
-function solution(start, rates, arithmetic) {
-  return solved([...start].map((_) => new Series(unknown, arithmetic)), start, rates);
-}
-
-/** Series that are unknown, made the solution. */
-function solved(series, start, rates) {
-  var rule = (first, slope) => {
-    if (!py.isinstance(slope, Series)) {
-      return (k) => k < 2 ? py.item([first, py.add(py.mul(0.0, first), slope)], k) : py.mul(0.0, first);
-    }
-    return (k) => py.truth(k) ? py.mul(py.item(slope, py.sub(k, 1)), py.div(1.0, k)) : first;
-  };
-  for (var [one, first, slope] of py.zip(series, start, rates(series))) {
-    one.rule = rule(first, slope);
-  }
-  return series;
-}
-
-/** The rule of a series that has none yet. */
-function unknown(k) {
-  throw new py.AssertionError(`a series is asked for its coefficient ${py.str(k)} before that is known`);
-}
-
-/** Value of a polynomial, its coefficients in increasing order, at a time. */
-function horner(coefficients, time) {
-  var value = py.item(coefficients, -1);
-  for (var coefficient of py.reversed(py.slice(coefficients, null, -1, null))) {
-    value = py.add(coefficient, py.mul(value, time));
-  }
-  return value;
 }
 
 // tippetop.mechanics.slip_onset
@@ -10901,7 +10850,6 @@ export {
   AT_ONCE,
   AT_REST,
   Acceleration,
-  Algebra,
   Angles,
   Arc,
   Arrival,
@@ -11260,7 +11208,6 @@ export {
   Traction,
   Trajectory,
   Transition,
-  TruncatedSeries,
   TwoClosed,
   UNSEEN,
   UNSEEN_of_loosening,
@@ -11587,6 +11534,7 @@ export {
   straight,
   struck_motion,
   struck_wrench,
+  support_terms,
   surface_guards,
   suspect,
   sweep,

@@ -1,16 +1,18 @@
 """The gap of a body in free flight as a function of time."""
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
-from tippetop.mechanics.algebra import Disc, TruncatedSeries
+from tippetop.mechanics.disc import Disc
 from tippetop.mechanics.flight import SMALL
 from tippetop.mechanics.motion import axis_rate
 from tippetop.mechanics.roots import Triple, crossing
+from tippetop.mechanics.series import Series, Sums
 from tippetop.mechanics.state import State
 from tippetop.mechanics.surface import Surface
 from tippetop.mechanics.top import Top
-from tippetop.mechanics.vectors import length, scale
+from tippetop.mechanics.vectors import Scalar, length, scale
 
 DEGREE = 16
 """Degree of the Taylor polynomial of the gap at the start of a flight."""
@@ -75,12 +77,13 @@ class Tip(NamedTuple):
         low, high = (min(max(c, -INSIDE), INSIDE) for c in (mean - amplitude, mean + amplitude))
         return low, high
 
-    def series(self) -> TruncatedSeries:
-        """Height as a power series in time."""
+    @property
+    def terms(self) -> list[Scalar]:
+        """Coefficients of the height in powers of time."""
         terms = [self.height, self.rate, 0.5 * self.acceleration]
         for j in range(1, DEGREE - 1):
             terms.append(-(self.frequency**2) * terms[j] / ((j + 1) * (j + 2)))
-        return TruncatedSeries(terms)
+        return terms
 
     def spread(self, time: float, angle: float) -> float:
         """Largest |c - c(time)| for complex times within angle / frequency of a real one."""
@@ -145,6 +148,14 @@ class Separation(NamedTuple):
                 return end, None
             time, angle = end, 2.0 * angle
         return time, time
+
+
+def support_terms(shape: Surface, tip: Sequence[Scalar], plain: Sums) -> list[Scalar]:
+    """Coefficients of the support function in powers of time, by those of the tip's height."""
+    found = shape.height(Series(lambda k: tip[k], plain))
+    # It may be the same number at any tilt.
+    height: Series = found if isinstance(found, Series) else Series(lambda k: 0.0 * tip[k], plain) + found
+    return height.up_to(len(tip) - 1)
 
 
 class Opening(NamedTuple):

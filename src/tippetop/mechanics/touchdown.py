@@ -3,7 +3,16 @@
 from enum import IntEnum
 
 from tippetop.mechanics.roots import Triple, crossing, first_root
-from tippetop.mechanics.separation import DEGREE, WIDEST, Opening, Separation, analytic_disc, falling_time
+from tippetop.mechanics.separation import (
+    DEGREE,
+    WIDEST,
+    Opening,
+    Separation,
+    analytic_disc,
+    falling_time,
+    support_terms,
+)
+from tippetop.mechanics.series import PLAIN
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.unsolved import Unsolved
@@ -13,7 +22,6 @@ START = 10.0 ** (-16.0 / (DEGREE + 1))
 
 LOOKS = 10.0
 """Looks for the highest gap per radian that the axis turns; between them, its rate is searched for a zero."""
-
 
 MOST_DISCS = 100_000
 """How many discs a flight is searched in at most: one that all but grazes the table may need any number."""
@@ -95,7 +103,7 @@ def touchdown(state: State, top: Top, horizon: float, start: Start = Start.AIRBO
         disc = analytic_disc(tip, top.surface, 0.0, 0.0, WIDEST)
         if disc is None:
             raise Unsolved("the body lies flat at its start, where no one point is lowest")
-        support = (top.surface.height(tip.series()) + 0.0 * tip.series()).terms
+        support = support_terms(top.surface, tip.terms, PLAIN)
         ballistic = (*support[:start], *ballistic[start:])
         terms = [b - s for b, s in zip(ballistic, support[:3], strict=True)] + [-s for s in support[3:]]
         opening = Opening(terms[next((j for j in range(start, DEGREE) if terms[j]), DEGREE) :])

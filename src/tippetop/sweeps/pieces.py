@@ -14,8 +14,8 @@ from tippetop.emit.graph import COSINE, SINE, Node
 from tippetop.integrators.base import Array
 from tippetop.mechanics.flight import fly
 from tippetop.mechanics.hull import is_edge
-from tippetop.mechanics.separation import NARROWEST, Tip
-from tippetop.mechanics.series import Arithmetic, Series
+from tippetop.mechanics.separation import NARROWEST, Tip, support_terms
+from tippetop.mechanics.series import Arithmetic
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.touchdown import Start
@@ -101,8 +101,8 @@ def flight_terms(
     That is 0 where an edge lies flat, or almost.
     """
     moving = Tip.of(state, top)
-    tip = moving.series().terms
-    support = top.surface.height(Series(lambda k: tip[k], plain)).up_to(len(tip) - 1)
+    tip = moving.terms
+    support = support_terms(top.surface, tip, plain)
     fall = (state.height, state.velocity[2], -0.5 * top.gravity)
     gap = [b - s for b, s in zip(fall, support[:3], strict=True)] + [-term for term in support[3:]]
     reach = step_size([tip, support], left, plain)
