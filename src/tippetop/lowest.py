@@ -39,7 +39,7 @@ def lowest_contact_vector(axis: Vector, surface: Surface) -> Vector:
     with np.errstate(divide="ignore", invalid="ignore"):
         x, y, z = contact_vector(axis, last)
         for one in others:
-            lowest, arm = one.height(axis[2]) >= level, contact_vector(axis, one)
+            lowest, arm = np.less(level, one.height(axis[2])), contact_vector(axis, one)
             x, y, z = (np.where(lowest, arm[i], other) for i, other in enumerate((x, y, z)))
     return (x, y, z)
 

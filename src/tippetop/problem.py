@@ -258,7 +258,7 @@ class Problem(Part):
         """The refusal of numbers with which no computer can reckon, about the one furthest from 1."""
         numbers = {name: value for name, value in numbers_of(self.model_dump()) if value}
         distance = {name: abs(math.log(abs(value))) for name, value in numbers.items()}
-        worst = max(distance, key=distance.__getitem__)
+        worst = max(distance, key=lambda name: distance[name])
         others = sum(2 * other > distance[worst] for other in distance.values()) - 1
         return InvalidInput(worst, numbers[worst], "a number whose square is a number too", others)
 

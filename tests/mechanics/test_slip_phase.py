@@ -100,15 +100,16 @@ def test_it_is_the_same_where_nothing_is_compiled(monkeypatch):
 
 
 def test_a_share_of_a_piece_is_the_same_polynomial():
-    whole = np.random.default_rng(1).normal(size=(2, 3, 4))
+    whole = np.random.default_rng(1).normal(size=(3, 3, STAGES))
     numbers = iteration.room(whole.size)
     iteration.put_from(numbers, 0, whole.ravel().tolist())
-    pieces = iteration.pieces_of(numbers, 3, 4, 1.3)
-    cut, powers = pieces.reshape(2, 3, 4), np.arange(1, 5)
+    np.testing.assert_array_equal(slipping.pieces_of(numbers, 3, 2.0), whole[:2].ravel())
+    pieces = slipping.pieces_of(numbers, 3, 1.3)
+    cut, powers = pieces.reshape(2, 3, STAGES), np.arange(1, STAGES + 1)
     np.testing.assert_array_equal(cut[0], whole[0])
     np.testing.assert_allclose(cut[1] @ 0.7**powers, whole[1] @ 0.21**powers, rtol=1e-14)
     change = whole[0].sum(axis=1) + whole[1] @ 0.3**powers
-    np.testing.assert_allclose(iteration.change_over(pieces, 3, 4), change, rtol=1e-14)
+    np.testing.assert_allclose(slipping.change_over(pieces, 3), change, rtol=1e-14)
 
 
 def test_the_end_of_a_polynomial_is_foreseen_and_a_dip_seen():

@@ -5,14 +5,15 @@ from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from tippetop.contact.surfaces import clearance, passes_flat
 from tippetop.integrators.base import Array
 from tippetop.integrators.iteration import (
     Iteration,
-    change_over,
     copied,
+    first_of,
     iterated,
-    pieces_of,
     put_from,
     put_rows,
     room,
@@ -175,7 +176,7 @@ class SlipStep:
 
     def pieces(self, parts: float) -> Array:
         """Coefficients of y and xi in so many of its parts, of the last of which it may be a share."""
-        return pieces_of(self.rows, self.layout.size, STAGES, parts)
+        return pieces_of(self.rows, self.layout.size, parts)
 
     def goes_on(self, top: Top, ends: tuple[Sequence[float], Sequence[float]], *, pulls: bool) -> bool:
         """Whether nothing else comes near the table, and that is far from pulling if it may not.
@@ -260,7 +261,7 @@ def slip_phase(
         ends = [min(part, number + 1.0) / PARTS for number in range(PARTS) if part > number]
         knots += [begin + length * end for end in ends]
         if ended:
-            now = [a + b for a, b in zip(now, change_over(pieces, len(now), STAGES), strict=True)]
+            now = [a + b for a, b in zip(now, change_over(pieces, len(now)), strict=True)]
             if not size(tuple(now[free:])) < NONE:
                 # Its direction turned by so much that it ends elsewhere.
                 return SlipPhase(knots[:known], rows, before, False, step.sweeps)
@@ -273,6 +274,26 @@ def slip_phase(
             length = min(length * min(factor, LONGER), BEYOND * length / PARTS * parts_left(speed))
         rows.append(pieces)
     return SlipPhase(knots, rows, now, ended, step.sweeps)
+
+
+def pieces_of(rows: Any, size: int, parts: float) -> Array:
+    """Polynomials of so many numbers in the first parts of a step, of the last of which it may be a share.
+
+    Part after part, and one number after the other: coefficients from the first power on.
+    """
+    whole, count = math.ceil(parts), size * STAGES
+    if parts == whole:
+        return first_of(rows, whole * count)
+    before, shares = (whole - 1) * count, [(parts - whole + 1) ** (k + 1) for k in range(STAGES)]
+    last = [term * share for term, share in zip(rows[before : before + count], shares * size, strict=True)]
+    return np.concatenate([first_of(rows, before), np.array(last)])
+
+
+def change_over(pieces: Array, size: int) -> list[float]:
+    """By how much so many numbers change over these polynomials."""
+    terms = pieces.tolist()
+    places = [range(number * STAGES, len(terms), size * STAGES) for number in range(size)]
+    return [sum([sum(terms[first : first + STAGES]) for first in each]) for each in places]
 
 
 def parts_left(terms: Sequence[float]) -> float:

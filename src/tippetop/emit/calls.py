@@ -5,10 +5,12 @@ from collections.abc import Sequence
 
 from tippetop.emit.expressions import ATOM, Expressions
 
-RENAMED = {"startswith": "startsWith", "append": "push", "index": "indexOf"}
+RENAMED = {"startswith": "startsWith", "append": "push", "index": "indexOf", "items": "entries"}
 """Methods of Python's own types that have another name."""
 
-METHODS = ("removeprefix", "tolist", "join", "extend")
+METHODS = {"tolist": "list", "_replace": "replace"} | {
+    word: word for word in ("removeprefix", "join", "extend")
+}
 """Methods of Python's own types that are functions of the runtime."""
 
 NAMED = ("_replace", "replace")
@@ -27,7 +29,8 @@ class Calls(Expressions):
             case ast.Attribute(value=ast.Call(func=ast.Name(id="super")), attr=attr):
                 return f"super{'' if attr == '__init__' else '.' + attr}({self._given(node)})"
             case ast.Attribute(value=value, attr=attr) if attr in METHODS:
-                return f"py.{attr}({self.arguments([value, *node.args])})"
+                given = filter(None, [self.text(value), self._given(node)])
+                return f"py.{METHODS[attr]}({', '.join(given)})"
             case ast.Attribute(value=value, attr=attr):
                 return f"{self.text(value, ATOM)}.{RENAMED.get(attr, attr)}({self._given(node)})"
             case ast.Subscript(value=ast.Name(id="list" | "dict" | "set" as word)):
@@ -43,7 +46,9 @@ class Calls(Expressions):
                     return f"new {own}({self._named(node.keywords)})"
                 made = known is not None or name == "cls" or is_class(own.rpartition(".")[2])
                 return f"{'new ' if made else ''}{own}({self._given(node)})"
-        return f"py.call({', '.join(map(self.text, [node.func, *node.args]))})"
+            case ast.IfExp(body=ast.Name(id=name)) if is_class(name):
+                return f"new ({self.text(node.func)})({self._given(node)})"
+        return f"{self.text(node.func, ATOM)}({self._given(node)})"
 
     def _named(self, keywords: Sequence[ast.keyword]) -> str:
         return f"{{ {', '.join(f'{word.arg}: {self.text(word.value)}' for word in keywords)} }}"
@@ -55,10 +60,8 @@ class Calls(Expressions):
         if not words:
             return ", ".join(found)
         called = ast.unparse(node.func).rpartition(".")[2]
-        if called in NAMED:
+        if called in NAMED or self.name(called) in CHOICES:
             return ", ".join([*found, self._named(node.keywords)])
-        if self.name(called) in CHOICES:
-            return ", ".join([*found, f"py.how({self._named(node.keywords)})"])
         order = self._order(node, set(words))
         rest = order[len(found) : max(map(order.index, words)) + 1]
         return ", ".join([*found, *(self.text(words[one]) if one in words else "undefined" for one in rest)])

@@ -31,20 +31,22 @@ class Definitions(Statements):
         yield f"class {known.name} extends {[*known.bases, known.kind][0]} {{"
         yield from indented(self._members(known))
         yield "}"
-        if known.kind in RECORDS:
-            yield f"py.fields({known.name}, {json.dumps(list(known.fields))});"
         if known.kind == "Part":
             yield f'Part.enter("{known.name}", {known.name});'
-        if known.kind in ("py.Enum", "py.IntEnum"):
-            named = [one for one in known.node.body if isinstance(one, ast.Assign)]
-            members = ", ".join(f"{ast.unparse(one.targets[0])}: {self.text(one.value)}" for one in named)
-            yield f"py.members({known.name}, {{ {members} }});"
 
     def _members(self, known: Class) -> Iterator[str]:
+        if known.kind in RECORDS:
+            yield f"static fields = {json.dumps(list(known.fields))};"
+        if known.kind == "py.NamedTuple":
+            yield from (f"get {place}() {{ return this.{name}; }}" for place, name in enumerate(known.fields))
         if known.kind in RECORDS and known.fields:
             yield from self._constructor(known)
         for node in known.node.body:
             match node:
+                case ast.Assign(targets=[ast.Name(id=name)], value=value) if known.kind == "py.Enum":
+                    yield f'static {name} = new this("{name}", {self.text(value)});'
+                case ast.Assign(targets=[ast.Name(id=name)], value=value) if known.kind == "py.Thing":
+                    yield f"static {name} = {self.text(value)};"
                 case ast.AnnAssign(target=ast.Name(id=name), value=ast.expr() as value):
                     if ast.unparse(node.annotation).startswith("ClassVar") and known.kind == "py.Record":
                         yield f"get {name}() {{ return {self.text(value)}; }}"

@@ -138,7 +138,7 @@ class Expressions(ABC):
                 return f"new py.Dict({self._comprehension(node.generators, pair)})", ATOM
             case ast.Dict(keys=keys, values=values):
                 pairs = [
-                    f"[{self.text(k)}, {self.text(v)}]" if k else f"...{self.text(v, ATOM)}.items()"
+                    f"[{self.text(k)}, {self.text(v)}]" if k else f"...{self.text(v, ATOM)}.entries()"
                     for k, v in zip(keys, values, strict=True)
                 ]
                 return f"new py.Dict([{', '.join(pairs)}])", ATOM

@@ -11,7 +11,7 @@ KINDS = {
     "NamedTuple": "py.NamedTuple",
     "Enum": "py.Enum",
     "StrEnum": "py.Enum",
-    "IntEnum": "py.IntEnum",
+    "IntEnum": "py.Thing",
     "Part": "Part",
     "Variant": "Part",
     "ArithmeticError": "py.ArithmeticError",
@@ -78,7 +78,7 @@ class Program:
         self.imported: dict[str, set[str]] = {}
         self.classes: dict[str, Class] = {}
         self.functions: dict[str, list[str]] = {}
-        self.methods: dict[str, list[list[str]]] = {"__getitem__": [], "model_copy": [["update"]]}
+        self.methods: dict[str, list[list[str]]] = {"model_copy": [["update"]]}
         self.values: set[str] = set()
         for module, tree in self.trees.items():
             for node in tree.body:

@@ -36,7 +36,7 @@ class Statements(Calls):
 
     def _statement(self, node: ast.stmt) -> Iterator[str]:
         match node:
-            case ast.Expr(value=ast.Constant()) | ast.Pass() | ast.AnnAssign(value=None):
+            case ast.Expr(value=ast.Constant()) | ast.Pass() | ast.Assert() | ast.AnnAssign(value=None):
                 return
             case ast.Expr(value=value):
                 yield f"{self.text(value)};"
@@ -71,8 +71,6 @@ class Statements(Calls):
                 yield f"throw new {self.text(error)}();"
             case ast.Raise(exc=ast.expr() as error):
                 yield f"throw {self.text(error)};"
-            case ast.Assert(test=test, msg=msg):
-                yield f"py.assert({self.truth(test)}{', ' + self.text(msg) if msg else ''});"
             case ast.Break():
                 yield "break;"
             case ast.Continue():

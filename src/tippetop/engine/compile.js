@@ -1,28 +1,9 @@
 // What modes state in plain operators, recorded once a kind and compiled by the browser.
-import { NodeValues, javascript_source, record, unrolled } from "./mechanics.js";
-import { ArithmeticError, cached, heed, replace } from "./runtime.js";
+import { Machinery, NodeValues, advance, javascript_source, record, stepped, unrolled, within } from "./mechanics.js";
+import { cached, replace } from "./runtime.js";
 
-/** A function (y, p) => numbers in plain operators as code (y, p, out); run as it stands where it cannot be. */
-export function compiled(function_, size, parameters, heeds = true) {
-  let recorded;
-  try {
-    recorded = record(function_, size, parameters);
-  } catch (error) {
-    if (error instanceof ReferenceError || error instanceof SyntaxError) throw error;
-  }
-  if (recorded) return made(recorded);
-  return (y, p, out) => {
-    heed(heeds);
-    try {
-      out.set(function_(y, p));
-    } catch (trouble) {
-      if (!(trouble instanceof ArithmeticError)) throw trouble;
-      out.fill(NaN);
-    } finally {
-      heed(true);
-    }
-  };
-}
+/** A function (y, p) => numbers in plain operators as code (y, p, out). */
+export const compiled = (function_, size, parameters) => made(record(function_, size, parameters));
 
 function made(recorded) {
   try {
@@ -57,28 +38,25 @@ function interpreted({ nodes, outputs }) {
   };
 }
 
+/** The integrator behind the seam of tippetop.integrators.base: Dormand and Prince's steps. */
+export const integrator = (tolerance) => ({
+  tolerance,
+  integrate(motion, given, start, end) {
+    const { rates, guards, size, parameters } = motion, values = (y, p) => guards.map((guard) => guard.value(y, p));
+    motion.code ??= [rates, values].map((one) => compiled(one, size, parameters));
+    const machinery = new Machinery(advance, within, ...motion.code, guards.length, size, motion.code[1]);
+    return stepped(motion, machinery, Float64Array.from(given), start, end, tolerance);
+  },
+});
+
 export const room = (count) => new Float64Array(count);
 export const copied = (numbers) => numbers.slice();
+export const first_of = (numbers, count) => numbers.slice(0, count);
 export const put_from = (numbers, first, values) => numbers.set(values, first);
 
 /** Put values into room for numbers, from one of them on, each for as many as there are abreast. */
 export function put_rows(numbers, first, values, abreast) {
   values.forEach((value, i) => numbers.fill(value, (first + i) * abreast, (first + i + 1) * abreast));
-}
-
-/** The first of some pieces of polynomials, of which the last may be a share. */
-export function pieces_of(numbers, size, degree, count) {
-  const whole = Math.ceil(count), share = count - (whole - 1), found = numbers.slice(0, whole * size * degree);
-  if (count === whole) return found;
-  for (let at = (whole - 1) * size * degree; at < found.length; at += 1) found[at] *= share ** (1 + at % degree);
-  return found;
-}
-
-/** By how much numbers change over pieces. */
-export function change_over(pieces, size, degree) {
-  const found = new Array(size).fill(0);
-  pieces.forEach((term, at) => (found[Math.floor(at / degree) % size] += term));
-  return found;
 }
 
 /** A function that makes numbers, of some values each, better again and again: see tippetop.integrators.iteration. */
@@ -97,7 +75,7 @@ export function iterated(function_, size, parameters, abreast) {
 
 const codes = cached(() => new Map());
 
-/** What makes readings, of so many numbers, of those of a mode and another one; what has no value is no number. */
+/** What makes readings, of so many numbers, of those of a mode and another one. */
 export function reader(mode, size) {
   const kinds = mode.tops.map((top) => top.kind), numbers = mode.tops.flatMap((top) => top.numbers);
   const known = codes(mode.form, kinds, size), parameters = Float64Array.of(...numbers, 0);
@@ -107,7 +85,7 @@ export function reader(mode, size) {
     return [...of(replace(mode, other ? { top, other } : { top }), y, p[from])];
   };
   return (of, count) => {
-    if (!known.has(of)) known.set(of, compiled(values(of), size, parameters.length, false));
+    if (!known.has(of)) known.set(of, compiled(values(of), size, parameters.length));
     const code = known.get(of), out = new Float64Array(count);
     return (y, other = 0) => {
       parameters[numbers.length] = other;

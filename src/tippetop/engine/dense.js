@@ -2,6 +2,7 @@
 import { crossing } from "./mechanics.js";
 import { CHEBYSHEV } from "./tables.js";
 
+export const ELEMENTARY = Math;
 export const as_array = (numbers) => Float64Array.from(numbers);
 
 const SHORTEST = 1e-8;
@@ -17,20 +18,20 @@ export function earliest(count, holds) {
   return low;
 }
 
-/** Put coefficients in powers of a polynomial with some values at Chebyshev's points in `out` from `at` on. */
-function toPowers(values, { transform, powers }, out, at) {
-  for (let k = 0; k < values.length; k += 1) {
-    const terms = powers[k], row = transform[k];
-    let weight = 0;
-    for (let j = 0; j < values.length; j += 1) weight += row[j] * values[j];
-    for (let i = 0; i <= k; i += 1) out[at + i] += weight * terms[i];
+/** Put a matrix times a column in `out` from `at` on. */
+function multiply(matrix, column, out, at) {
+  for (let i = 0; i < matrix.length; i += 1) {
+    let sum = 0;
+    for (let k = 0; k < column.length; k += 1) sum += matrix[i][k] * column[k];
+    out[at + i] = sum;
   }
 }
 
 export class DenseSolution {
   /** Knots, and coefficients [step][number][power], in a row, in powers of the part of a step that has passed. */
-  constructor(knots, terms, size, degree) {
-    Object.assign(this, { knots, terms, size, degree, count: knots.length - 1 });
+  constructor(knots, terms, size) {
+    const count = knots.length - 1;
+    Object.assign(this, { knots, terms, size, count, degree: terms.length / size / count - 1 });
   }
 
   get end() {
@@ -83,7 +84,7 @@ export class DenseSolution {
   moved(start, end) {
     const knots = this.knots.map((knot) => start + knot);
     knots[knots.length - 1] = end;
-    return new DenseSolution(knots, this.terms, this.size, this.degree);
+    return new DenseSolution(knots, this.terms, this.size);
   }
 
   knots_of(number, end) {
@@ -105,8 +106,7 @@ export class DenseSolution {
 
   /** The first of some steps, with all coefficients in a row. */
   static of_steps(knots, terms, size, count) {
-    const wide = terms.length / (knots.length - 1);
-    return new DenseSolution(knots.slice(0, count + 1), terms.slice(0, count * wide), size, wide / size - 1);
+    return new DenseSolution(knots.slice(0, count + 1), terms.slice(0, (count * terms.length) / (knots.length - 1)), size);
   }
 
   /** Steps whose coefficients from the first on lie in rows, from the numbers with which they begin. */
@@ -118,35 +118,34 @@ export class DenseSolution {
       terms.push(now[i], ...some);
       now[i] += some.reduce((a, b) => a + b);
     }
-    return new DenseSolution(knots, Float64Array.from(terms), size, degree);
+    return new DenseSolution(knots, Float64Array.from(terms), size);
   }
 
   static nothing(time, size) {
-    return new DenseSolution([time], new Float64Array(0), size, 0);
+    return new DenseSolution([time], new Float64Array(0), size);
   }
 
   static joined(parts) {
-    const { size, degree } = parts[0], knots = parts.flatMap((part, i) => Array.from(part.knots).slice(i ? 1 : 0));
-    return new DenseSolution(knots, Float64Array.from(parts.flatMap((part) => Array.from(part.terms))), size, degree);
+    const knots = parts.flatMap((part, i) => Array.from(part.knots).slice(i ? 1 : 0));
+    return new DenseSolution(knots, Float64Array.from(parts.flatMap((part) => Array.from(part.terms))), parts[0].size);
   }
 
   static in_time(knots, terms) {
-    const size = terms[0].length, degree = terms[0][0].length - 1;
     const scaled = terms.flatMap((rows, step) => rows.flatMap((row) => row.map((term, k) => term * (knots[step + 1] - knots[step]) ** k)));
-    return new DenseSolution(knots, Float64Array.from(scaled), size, degree);
+    return new DenseSolution(knots, Float64Array.from(scaled), terms[0].length);
   }
 
   /** Polynomials that agree with a function, from a time to numbers, at Chebyshev's points of every step. */
   static fitted(function_, knots, degree) {
-    const size = function_(knots[0]).length, count = knots.length - 1, wide = degree + 1, known = CHEBYSHEV[degree];
-    const terms = new Float64Array(count * size * wide), rows = new Float64Array(wide * size), values = new Float64Array(wide);
-    for (let step = 0, at = 0; step < count; step += 1) {
-      known.places.forEach((place, k) => rows.set(function_(knots[step] + place * (knots[step + 1] - knots[step])), k * size));
+    const { places, transform, powers } = CHEBYSHEV[degree], size = function_(knots[0]).length, wide = degree + 1;
+    const terms = new Float64Array((knots.length - 1) * size * wide), weights = new Float64Array(wide);
+    for (let step = 1, at = 0; step < knots.length; step += 1) {
+      const rows = places.map((place) => function_(knots[step - 1] + place * (knots[step] - knots[step - 1])));
       for (let number = 0; number < size; number += 1, at += wide) {
-        for (let k = 0; k < wide; k += 1) values[k] = rows[k * size + number];
-        toPowers(values, known, terms, at);
+        multiply(transform, rows.map((row) => row[number]), weights, 0);
+        multiply(powers, weights, terms, at);
       }
     }
-    return new DenseSolution(Array.from(knots), terms, size, degree);
+    return new DenseSolution(knots, terms, size);
   }
 }

@@ -55,7 +55,7 @@ LEFT = {
     "Contact.rules",
     *("read", "recordable", "_compiled", "_without_top", "_of_kind", "continuous"),
     *("Ends.unknown", "Ends.put", "ending", "turning_time", "arrival_time"),
-    *("Monitor.energy_error", "Graph.rarely", "Flight._numbers"),
+    *("Monitor.energy_error", "Graph.rarely"),
     *("written_out", "_for_each", "_sum", "_powers"),
     *("precession_branch", "state_of", "is_held", "steady_launch"),
     *(f"Problem.{name}" for name in ("replace", "to_toml", "to_json", "from_toml", "from_json", "read")),

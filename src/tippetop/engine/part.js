@@ -59,7 +59,7 @@ export class Part {
 
   /** A copy with other values, which are not checked. */
   model_copy(changes) {
-    return Object.assign(Object.create(Object.getPrototypeOf(this)), this, Object.fromEntries(changes.items()));
+    return Object.assign(Object.create(Object.getPrototypeOf(this)), this, Object.fromEntries(changes.entries()));
   }
 
   model_dump() {

@@ -1,8 +1,7 @@
 // One launch: followed from mode to mode, its numbers found on the way, and sampled when asked.
 import * as m from "./mechanics.js";
-import { reader } from "./compile.js";
+import { integrator, reader } from "./compile.js";
 import { DenseSolution, earliest } from "./dense.js";
-import { integrator } from "./integrate.js";
 import { InvalidInput } from "./part.js";
 import { CATALOGUE, GAUSS } from "./tables.js";
 
@@ -142,7 +141,7 @@ class Run {
       state, trajectory.time, null, this.steps, flights.length, lifts.length || flights.length ? 0 : this.force.found(), lifts[0] ?? NaN,
       energyLost(events), -sums[DRILLED], -sums[ROLLED], this.flights.duration, this.flights.highest_gap, Math.max(0, -this.depth.found()),
       this.down.found(), -this.up.found(), this.turned, this.arrival(m.final_band(state)));
-    this.metrics = Object.fromEntries(m.metrics(ends, this.start, this.top, units).items());
+    this.metrics = Object.fromEntries(m.metrics(ends, this.start, this.top, units).entries());
     this.flights = flights.map(([start, end, gap]) => (
       { start: start * units.time, end: end * units.time, highestGap: gap * units.length }));
     if (!this.pieces.length) {
@@ -181,7 +180,7 @@ class Run {
     piece.told ??= piece.read(m.instants, m.TOLD);
     const told = m.Instants.unpack(piece.told(solution.numbers(step, part)));
     const here = new m.Samples(time, told, sums[X], sums[Y], sums[TURN], sums[WORK], sums[STRUCK], -sums[DRILLED], -sums[ROLLED], pole, null);
-    for (const [name, value] of m.observe(here, this.top, this.units).items()) {
+    for (const [name, value] of m.observe(here, this.top, this.units).entries()) {
       if (typeof value === "number") track[name][i] = value;
       else track[name].set(value, i * value.length);
     }
@@ -191,9 +190,8 @@ class Run {
 
 /** The least value of something along a run: what was seen, and where between there may be less of it. */
 class Least {
-  constructor() {
-    Object.assign(this, { value: Infinity, places: [] });
-  }
+  value = Infinity;
+  places = [];
 
   /** Take in a value of a step, a bound for all of them there, and the values at its parts. */
   put(value, bound = value, values = null) {
@@ -203,25 +201,14 @@ class Least {
 
   found() {
     for (const [bound, values] of this.places.sort(([a], [b]) => a - b)) {
-      if (bound < this.value) this.value = least(values, this.value);
+      if (bound >= this.value) break;
+      const looks = PLACES.map(values), low = Math.min(...looks), high = Math.max(...looks), at = looks.indexOf(low);
+      if (low - 0.1 * (high - low) > this.value) continue;
+      const [start, end] = [Math.max(at - 1, 0), Math.min(at + 1, LOOKS)].map((look) => PLACES[look]);
+      this.value = Math.min(this.value, low, values(m.dip((part) => values(part) - low + (high - low), start, end)[0]));
     }
-    this.places = [];
     return this.value;
   }
-}
-
-/** The least value of a function on [0, 1], or one known: by parabolas about the least of some looks. */
-function least(value, known) {
-  const looks = PLACES.map(value);
-  let best = Math.min(...looks), x = PLACES[looks.indexOf(best)];
-  if (best - 0.1 * (Math.max(...looks) - best) > known) return known;
-  for (let h = 1 / LOOKS; h > 1e-5; h *= 0.02) {
-    const middle = Math.min(Math.max(x, h), 1 - h), [before, here, after] = [middle - h, middle, middle + h].map(value);
-    const bend = before - 2 * here + after;
-    best = Math.min(best, before, here, after);
-    if (bend > 0) x = Math.min(Math.max(middle + (0.5 * h * (before - after)) / bend, 0), 1);
-  }
-  return Math.min(known, best, value(x));
 }
 
 /** Where a function on [0, 1] first falls to zero from above; nan where it does not. */
@@ -242,11 +229,3 @@ function smooth(rows) {
   }
 }
 
-const ELEMENTARY = { sin: (x) => x.graph.node("sin", [x]), cos: (x) => x.graph.node("cos", [x]) };
-const flown = (mode, y, elapsed) => m.fly(mode.state(y), elapsed, mode.top, ELEMENTARY).pack();
-
-/** A flight's numbers as a function of its time, compiled. */
-m.Flight.prototype._numbers = function numbers(state) {
-  const code = reader(this, 10)(flown, 10), given = state.pack();
-  return (elapsed) => code(given, elapsed);
-};

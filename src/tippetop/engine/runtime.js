@@ -2,11 +2,7 @@
 
 export class ArithmeticError extends Error {}
 export class ZeroDivisionError extends ArithmeticError {}
-export class OverflowError extends ArithmeticError {}
-export class ValueError extends Error {}
-export class NotImplementedError extends Error {}
-export const NotImplemented = null;
-export class AssertionError extends Error {}
+export const NotImplemented = null, [ValueError, NotImplementedError, AssertionError] = [Error, Error, Error];
 
 let heeded = true;
 /** Whether what has no value is an error, or no number, as in arrays. */
@@ -65,7 +61,7 @@ export function pow(a, b) {
 }
 
 function finite(value, ...given) {
-  if (heeded && !Number.isFinite(value) && given.every(Number.isFinite)) throw new OverflowError("a result too large");
+  if (heeded && !Number.isFinite(value) && given.every(Number.isFinite)) throw new ArithmeticError("a result too large");
   return value;
 }
 
@@ -77,11 +73,10 @@ export const float = (a) => (a === "inf" ? Infinity : Number(a));
 export const int = (a) => Math.trunc(Number(a));
 export const str = (a) => (a instanceof Error ? a.message : a instanceof Enum ? a.name : repr(a));
 export const repr = (a) => (typeof a === "number" && Object.is(a, -0) ? "-0" : String(a));
-export const sum = (values, start = 0) => {
-  let total = start;
-  for (const value of values) total = add(total, value);
-  return total;
-};
+export function sum(values, start = 0) {
+  for (const value of values) start = add(start, value);
+  return start;
+}
 
 export function truth(a) {
   if (typeof a === "number") return a !== 0;
@@ -110,26 +105,20 @@ export const math = {
 
 /** What is asked of NumPy: arrays to be filled, those of two dimensions as lists of arrays; and numbers for arrays. */
 export const np = {
-  __proto__: Math,
-  pi: Math.PI,
-  nan: NaN,
+  __proto__: math,
   arctan2: Math.atan2,
   minimum: Math.min,
   maximum: Math.max,
   fmax: (a, b) => (a >= b || b !== b ? a : b),
   copysign: (a, b) => (b < 0 || Object.is(b, -0) ? -Math.abs(a) : Math.abs(a)),
-  where: (condition, a, b) => (condition ? a : b),
+  less: (a, b) => (takes(a, "__lt__") ? a.__lt__(b) : a < b),
+  where: (condition, a, b) => (takes(condition, "graph") ? condition.graph.select(condition, a, b) : condition ? a : b),
   any: (condition) => condition,
   max: (number) => number,
   min: (number) => number,
   stack: (parts) => Float64Array.from(parts),
   empty: (shape) => (typeof shape === "number" ? new Float64Array(shape)
     : Array.from({ length: shape[0] }, () => new Float64Array(shape[1]))),
-  resize(numbers, count) {
-    const found = new Float64Array(count);
-    for (let at = 0; at < count; at += numbers.length) found.set(numbers.subarray(0, count - at), at);
-    return found;
-  },
   concatenate([a, b]) {
     const found = new Float64Array(a.length + b.length);
     found.set(a);
@@ -138,7 +127,6 @@ export const np = {
   },
   zeros: (shape) => np.empty(shape),
   array: (numbers) => new Float64Array(numbers),
-  full: (count, value) => new Float64Array(count).fill(value),
 };
 
 // ---- tuples with names, records and enumerations
@@ -152,9 +140,6 @@ export class NamedTuple {
   slice(from, to) {
     return this.constructor.fields.slice(from, to).map((name) => this[name]);
   }
-  _replace(changes) {
-    return new this.constructor(...this.constructor.fields.map((name) => (name in changes ? changes[name] : this[name])));
-  }
 }
 
 export class Record {
@@ -163,30 +148,15 @@ export class Record {
   }
 }
 
-export function fields(kind, names) {
-  kind.fields = names;
-  if (!(kind.prototype instanceof NamedTuple)) return;
-  names.forEach((name, place) => {
-    Object.defineProperty(kind.prototype, place, { get() { return this[name]; } });
-  });
-}
-
 export const replace = (one, changes) =>
   new one.constructor(...one.constructor.fields.map((name) => (name in changes ? changes[name] : one[name])));
 
-export class IntEnum {}
-
 export class Enum {
   constructor(name, value) {
-    this.name = name;
-    this.value = value;
+    Object.freeze(Object.assign(this, { name, value }));
   }
-}
-
-export function members(kind, values) {
-  kind[Symbol.iterator] = () => Object.keys(values).map((name) => kind[name])[Symbol.iterator]();
-  for (const [name, value] of Object.entries(values)) {
-    kind[name] = kind.prototype instanceof Enum ? Object.freeze(new kind(name, value)) : value;
+  static [Symbol.iterator]() {
+    return Object.values(this)[Symbol.iterator]();
   }
 }
 
@@ -211,14 +181,13 @@ export function eq(a, b) {
   return typeof a === "boolean" && typeof b === "number" ? Number(a) === b : false;
 }
 
-export const contains = (all, one) => (all instanceof Dict || all instanceof Set ? all.has(one) : [...all].some((each) => eq(each, one)));
+export const contains = (all, one) => (all instanceof Map || all instanceof Set ? all.has(one) : [...all].some((each) => eq(each, one)));
 
 const known = new WeakMap();
 let counted = 0;
 
 function key(a) {
-  if (typeof a === "string" || typeof a === "number") return a;
-  if (a === null || typeof a === "boolean" || a === undefined) return String(a);
+  if (a === null || (typeof a !== "object" && typeof a !== "function")) return String(a);
   if (Array.isArray(a)) return `(${a.map(key).join()})`;
   if (a instanceof NamedTuple || a instanceof Record) return `${key(a.constructor)}(${a.constructor.fields.map((name) => key(a[name])).join()})`;
   if (!known.has(a)) known.set(a, `#${(counted += 1)}`);
@@ -228,42 +197,18 @@ function key(a) {
 export function cached(function_) {
   const values = new Map();
   return (...given) => {
-    const place = given.length === 1 && typeof given[0] === "number" ? given[0] : given.map(key).join(";");
+    const place = key(given);
     if (!values.has(place)) values.set(place, function_(...given));
     return values.get(place);
   };
 }
 
-export class Dict {
-  constructor(pairs = []) {
-    this.pairs = new Map(Array.from(pairs, (pair) => [key(pair[0]), pair]));
-  }
-  get length() {
-    return this.pairs.size;
-  }
+export class Dict extends Map {
   get(one, other = null) {
-    return this.has(one) ? this.pairs.get(key(one))[1] : other;
-  }
-  put(one, value) {
-    this.pairs.set(key(one), [one, value]);
-  }
-  has(one) {
-    return this.pairs.has(key(one));
-  }
-  items() {
-    return [...this.pairs.values()];
-  }
-  keys() {
-    return this.items().map(([one]) => one);
-  }
-  values() {
-    return this.items().map(([, value]) => value);
-  }
-  update(pairs) {
-    for (const [one, value] of pairs) this.put(one, value);
+    return this.has(one) ? super.get(one) : other;
   }
   [Symbol.iterator]() {
-    return this.keys()[Symbol.iterator]();
+    return this.keys();
   }
 }
 
@@ -278,17 +223,15 @@ export function item(all, place) {
 }
 
 export function put(all, place, value) {
-  if (all instanceof Dict) all.put(place, value);
+  if (all instanceof Dict) all.set(place, value);
   else all[place < 0 ? all.length + place : place] = value;
 }
 
-/** A slice of a sequence, every so many, or backwards. */
+/** A slice of a sequence, or one backwards. */
 export function slice(all, from, to, step) {
-  const whole = Array.isArray(all) ? all : [...all];
-  if (step < -1 || (step === -1 && (from < 0 || to < 0))) throw new RangeError("such a slice is not known here");
-  if (step === -1) return whole.slice(to === null ? 0 : to + 1, from === null ? undefined : from + 1).reverse();
-  const found = whole.slice(from ?? 0, to ?? undefined);
-  return step > 1 ? found.filter((_, place) => place % step === 0) : found;
+  if (step === null) return tuple(all).slice(from ?? 0, to ?? undefined);
+  if (step !== -1 || from < 0 || to < 0) throw new RangeError("such a slice is not known here");
+  return tuple(all).slice(to === null ? 0 : to + 1, from === null ? undefined : from + 1).reverse();
 }
 
 export const len = (all) => (all instanceof NamedTuple ? all.constructor.fields.length : all.length);
@@ -302,36 +245,24 @@ export const range = (start, stop, step = 1) => {
 };
 export const enumerate = (all) => Array.from(all, (one, place) => [place, one]);
 export const reversed = (all) => [...all].reverse();
-export function map(function_, first, second) {
-  const a = tuple(first), b = second === undefined ? a : tuple(second), found = [];
-  for (let i = 0; i < a.length && i < b.length; i += 1) found.push(function_(a[i], b[i]));
-  return found;
-}
 export function zip(...rows) {
-  const whole = rows.map(tuple), count = Math.min(...whole.map((row) => row.length)), found = [];
-  for (let i = 0; i < count; i += 1) found.push(whole.map((row) => row[i]));
-  return found;
+  const whole = rows.map(tuple), shortest = whole.reduce((a, b) => (b.length < a.length ? b : a));
+  return shortest.map((_, place) => whole.map((row) => row[place]));
 }
+export const map = (function_, ...rows) => zip(...rows).map((row) => function_(...row));
 export const pairwise = (all) => zip(all, all.slice(1));
 export const any = (all) => [...all].some(truth);
 export const all = (each) => [...each].every(truth);
-export const iter = (all) => all[Symbol.iterator]();
-export const next = (all, otherwise) => {
-  const { done, value } = iter(all).next();
-  return done ? otherwise : value;
-};
-
-class How {}
-export const how = (given) => Object.assign(new How(), given);
+export const next = ([first], otherwise) => (first === undefined ? otherwise : first);
 
 function below(a, b) {
   if (!isRow(a)) return a < b;
-  for (let i = 0; i < a.length; i += 1) if (a[i] !== b[i]) return below(a[i], b[i]);
-  return false;
+  const place = [...a].findIndex((one, i) => one !== b[i]);
+  return place >= 0 && below(a[place], b[place]);
 }
 
 function most(given, better) {
-  const told = given.at(-1) instanceof How ? given.pop() : {}, { key: worth = (one) => one } = told;
+  const told = given.at(-1)?.constructor === Object ? given.pop() : {}, { key: worth = (one) => one } = told;
   const choices = given.length === 1 ? [...given[0]] : given;
   if (!choices.length && "default" in told) return told.default;
   return choices.reduce((best, choice) => (better(worth(choice), worth(best)) ? choice : best));
@@ -345,9 +276,8 @@ export function min(a, b) {
   return most([...arguments], below);
 }
 export const sorted = (all, { key: worth = (one) => one } = {}) =>
-  [...all].sort((a, b) => (below(worth(a), worth(b)) ? -1 : Number(below(worth(b), worth(a)))));
+  [...all].sort((a, b) => below(worth(b), worth(a)) - below(worth(a), worth(b)));
 
-export const tolist = (all) => [...all];
 export const join = (between, all) => [...all].join(between);
 export const extend = (all, more) => all.push(...more);
 export const removeprefix = (text, part) => (text.startsWith(part) ? text.slice(part.length) : text);
@@ -363,16 +293,11 @@ export function format(value, how_) {
 
 export const hasattr = (one, name) => one !== null && typeof one === "object" && name in one;
 export const getattr = (one, name, otherwise) => (hasattr(one, name) ? one[name] : otherwise);
-export const bound = (one, name) => (name === "__getitem__" ? (place) => item(one, place) : one[name].bind(one));
+export const bound = (one, name) => one[name].bind(one);
 export const type = (one) => one.constructor;
-export const call = (one, ...given) => (/^class\b/.test(Function.prototype.toString.call(one)) ? new one(...given) : one(...given));
 export function isinstance(one, kind) {
   if (Array.isArray(kind)) return kind.some((each) => isinstance(one, each));
   if (kind === float || kind === int) return typeof one === "number" || typeof one === "boolean";
   if (kind === tuple || kind === list) return Array.isArray(one);
   return one instanceof kind;
 }
-function assert_(holds, said = "") {
-  if (!holds) throw new AssertionError(said);
-}
-export { assert_ as assert };

@@ -47,10 +47,9 @@ def tables(command: str) -> str:
 
 
 def interpolation(degree: int) -> dict[str, list[Any]]:
-    """Chebyshev's points, the matrix from values there to his coefficients, and his polynomials in powers."""
-    places, transform, to_powers = chebyshev(degree)
-    powers = [row[: k + 1] for k, row in enumerate(to_powers.T.tolist())]
-    return {"places": places.tolist(), "transform": transform.tolist(), "powers": powers}
+    """Chebyshev's points, and the matrices from values there to his coefficients and to powers."""
+    names = ("places", "transform", "powers")
+    return {name: one.tolist() for name, one in zip(names, chebyshev(degree), strict=True)}
 
 
 def gauss(count: int) -> dict[str, list[float]]:

@@ -1,7 +1,6 @@
 """Functions that make numbers of several values better again and again, compiled where they can be."""
 
 import ctypes
-import math
 from collections.abc import Callable, Sequence
 from typing import Any, TypeAlias
 
@@ -41,30 +40,9 @@ def put_rows(numbers: Any, first: int, values: Sequence[float], abreast: int) ->
     _rows(numbers, abreast)[first : first + len(values)] = np.array(values)[:, None]
 
 
-def pieces_of(numbers: Any, size: int, degree: int, count: float) -> Array:
-    """The first of some pieces of polynomials, of which the last may be a share.
-
-    Parameters
-    ----------
-    numbers
-        Coefficients of piece after piece, and of one number after the other, from the first power on.
-    size, degree
-        How many numbers there are, and the degree of their polynomials.
-    count
-        How many pieces are wanted, more than none: what a fraction is over is a share of the last one.
-    """
-    whole = math.ceil(count)
-    found = np.frombuffer(numbers, count=whole * size * degree).copy()
-    if count < whole:
-        share = count - (whole - 1)
-        found[-size * degree :].reshape(size, degree)[:] *= share ** np.arange(1, degree + 1)
-    return found
-
-
-def change_over(pieces: Array, size: int, degree: int) -> list[float]:
-    """By how much numbers change over pieces."""
-    found: list[float] = pieces.reshape(-1, size, degree).sum(axis=(0, 2)).tolist()
-    return found
+def first_of(numbers: Any, count: int) -> Array:
+    """An array of the first of some numbers."""
+    return np.frombuffer(numbers, count=count).copy()
 
 
 def iterated(function: Improvement, size: int, parameters: int, abreast: int) -> Iteration:

@@ -85,10 +85,10 @@ class Stepping:
         end: float,
         tolerance: float,
     ) -> None:
-        self.functions, self.parameters, self.tolerance = functions, parameters, np.full(2, tolerance)
-        self.size = len(start[1])
+        self.functions, self.parameters = functions, parameters
+        self.tolerance, self.size = np.array([tolerance, tolerance]), len(start[1])
         width = functions.width
-        self.row, self.lost = self.filled(start[1]), np.zeros(width)
+        self.row, self.lost = longer(start[1], width), np.zeros(width)
         self.stages, self.span = np.zeros((ROWS, width)), np.array([start[0], end, 0.0])
         self.steps, self.calls = 0, 0
         self.other: Stepping | None = None
@@ -105,15 +105,11 @@ class Stepping:
         """The state there."""
         return np.array(self.row[: self.size])
 
-    def filled(self, state: Array) -> Array:
-        """The row of a state."""
-        return np.concatenate([state, np.zeros(self.functions.width - self.size)])
-
     def widen(self) -> None:
         """Make room for more steps."""
         steps = min(WIDER * self.steps, MANY)
-        self.knots = np.resize(self.knots, steps + 1)
-        self.terms = np.resize(self.terms, steps * POWERS * len(self.row))
+        self.knots = longer(self.knots, steps + 1)
+        self.terms = longer(self.terms, steps * POWERS * len(self.row))
 
     def advance(self, *, guarded: bool = True) -> int:
         """Take steps until something is to be done; tell what."""
@@ -172,7 +168,7 @@ class Stepping:
             self.terms[number] *= part ** (number % POWERS)
         self.knots[self.steps] = time
         self.span[0] = time
-        self.row = self.filled(state)
+        self.row = longer(state, len(self.row))
 
     def beside(self) -> "Stepping":
         """Another motion of the same kind, for trial."""
@@ -185,10 +181,15 @@ class Stepping:
 
     def landed(self, time: float, state: Array, end: float) -> Array:
         """The state after steps from another that end at exactly this time."""
-        self.row, self.lost = self.filled(state), np.zeros(len(self.row))
+        self.row, self.lost = longer(state, len(self.row)), np.zeros(len(self.row))
         self.span = np.array([time, end, 0.0])
         ended = FULL
         while ended == FULL and end > time:
             self.steps = 0
             ended = self.advance(guarded=False)
         return self.state
+
+
+def longer(numbers: Array, count: int) -> Array:
+    """So many numbers: these, and zeros."""
+    return np.concatenate([numbers, np.zeros(count - len(numbers))])

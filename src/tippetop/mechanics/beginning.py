@@ -78,8 +78,8 @@ def beginning(
     def motion(ways: Sequence[Slip]) -> Motion:
         if tried and tried[-1][0] is ways:
             return tried[-1][1]
-        found = dict(zip(parts, ways, strict=True))
-        both = found.get(Vanishing(True), slip), found.get(Vanishing(False), rolling)
+        each = dict(zip([part.slip for part in parts], ways, strict=True))
+        both = each.get(True, slip), each.get(False, rolling)
         answer = (*both, *moved(point, *both))
         tried.append((ways, answer))
         return answer

@@ -150,7 +150,8 @@ def touching_tilts(hull: Hull, tilt: float) -> dict[float, int]:
     found: dict[float, int] = {}
     for number, other in enumerate(hull.each):
         if number != hull.active:
-            found.update((at, number) for at in _meetings(hull, other))
+            for at in _meetings(hull, other):
+                found[at] = number
     return {at: found[at] for at in nearest(found, tilt) if at in found}
 
 
