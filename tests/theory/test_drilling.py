@@ -215,6 +215,18 @@ def test_what_the_theory_cannot_tell_is_refused_in_a_sentence():
             ask()
 
 
+@pytest.mark.parametrize("pressure", PRESSURES)
+def test_one_ball_on_top_of_the_other_stands_no_time(pressure):
+    """Inverted on one ball the centre of mass is on the table, and no spin has the lambda of a launch."""
+    balls = patch(pressure).replace({"contact.liftoff": "fly", "body": presets.HURRICANE_BALLS})
+    for problem in (balls, balls.replace({"launch.tilt": 0.5})):
+        with pytest.raises(tt.InvalidInput, match="several surfaces"):
+            standing_time(problem)
+        assert outlook(problem).standing_time == 0.0
+    lower = balls.replace({"body.shape": presets.HURRICANE_BALLS.shapes[0], "launch.tilt": 0.5})
+    assert standing_time(lower) == 0.0
+
+
 def _on(law, resistance=None):
     return patch().top._replace(friction=law, rolling_resistance=resistance)
 

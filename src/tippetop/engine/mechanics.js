@@ -8865,11 +8865,13 @@ class CriticalSpins extends py.Record {
 
 /** Jellett's integral at which a vertical spin changes stability, kg m^3/s: inf where it never does. */
 function critical_jellett(kind, top) {
-  var standing = py.float(top.surface.height(kind === SteadyKind.UPRIGHT ? 1.0 : -1.0));
-  if (standing <= py.mul(ROUNDING_of_thresholds, top.surface.size)) {
-    return py.math.inf;
-  }
-  return branch_jellett(vertical_spin(kind, top, 0.0).tilt, top);
+  return py.truth(stands(kind, top)) ? branch_jellett(vertical_spin(kind, top, 0.0).tilt, top) : py.math.inf;
+}
+
+/** Whether the centre of mass is above the table when the axis is vertical. */
+function stands(kind, top) {
+  var height = py.float(top.surface.height(kind === SteadyKind.UPRIGHT ? 1.0 : -1.0));
+  return height > py.mul(ROUNDING_of_thresholds, py.float(top.surface.size));
 }
 
 /** Jellett's integral below which the upright spin of an eccentric sphere is stable, kg m^3/s, or inf. */
@@ -11820,6 +11822,7 @@ export {
   stable_by_energy,
   stages,
   stages_of_dormand_prince,
+  stands,
   start_of,
   state_from_angles,
   stays_open,

@@ -18,7 +18,7 @@ from tippetop.mechanics.motion import angular_velocity, contact
 from tippetop.mechanics.rolling import is_set_valued
 from tippetop.mechanics.top import Top
 from tippetop.problem import Problem, require_problem
-from tippetop.theory.requirements import require_sphere
+from tippetop.theory.requirements import require_creep, require_sphere
 from tippetop.theory.stability import drilling, spectrum
 from tippetop.theory.steady import (
     VERTICAL_SPINS,
@@ -28,7 +28,7 @@ from tippetop.theory.steady import (
     state_of,
     vertical_spin,
 )
-from tippetop.theory.thresholds import critical_spin
+from tippetop.theory.thresholds import critical_spin, stands
 
 
 def spin_rate(steady: SteadyState[float], top: Top) -> float:
@@ -48,14 +48,16 @@ def standing_time(problem: Problem) -> float:
 
     Exact for a launch at tilt 0 or pi, which the torque of drilling alone changes. For any other launch of an
     eccentric sphere it is the time of the inverted spin with its Jellett's integral: how long it could stand
-    if it turned over at once. inf without drilling, and 0 where the spin is not stable to begin with.
-    A small tilt may grow meanwhile, but hardly more than as 1 / omega3.
+    if it turned over at once. inf without drilling, and 0 where the spin is not stable to begin with, or the
+    centre of mass is not above the table. A small tilt may grow meanwhile, but hardly more than as
+    1 / omega3.
 
     Raises
     ------
     InvalidInput
         If there is no linear motion about a vertical spin: a dry point rubs, rolling is resisted, or nothing
-        spins. If a body other than an eccentric sphere is not launched at tilt 0 or pi.
+        spins. If a body other than an eccentric sphere is not launched at tilt 0 or pi, or it has several
+        surfaces.
 
     Examples
     --------
@@ -68,9 +70,12 @@ def standing_time(problem: Problem) -> float:
     """
     require_problem(problem)
     top, tilt = problem.top, problem.launch.tilt
+    require_creep(top)
     if tilt not in (0.0, math.pi):
         require_sphere(top)
     kind = SteadyKind.INVERTED if tilt else SteadyKind.UPRIGHT
+    if not stands(kind, top):  # and no spin has any lambda
+        return 0.0
     spin = jellett_of_launch(problem) / vertical_spin(kind, top, 1.0).jellett
     return time_to_stand(vertical_spin(kind, top, spin), top)
 

@@ -45,10 +45,13 @@ def critical_jellett(kind: SteadyKind, top: Top) -> float:
 
     Nor does it where the centre of mass is not above the table: as of one of two balls on top of the other.
     """
-    standing = float(top.surface.height(1.0 if kind is SteadyKind.UPRIGHT else -1.0))
-    if standing <= ROUNDING * top.surface.size:
-        return math.inf
-    return branch_jellett(vertical_spin(kind, top, 0.0).tilt, top)
+    return branch_jellett(vertical_spin(kind, top, 0.0).tilt, top) if stands(kind, top) else math.inf
+
+
+def stands(kind: SteadyKind, top: Top) -> bool:
+    """Whether the centre of mass is above the table when the axis is vertical."""
+    height = float(top.surface.height(1.0 if kind is SteadyKind.UPRIGHT else -1.0))
+    return height > ROUNDING * float(top.surface.size)
 
 
 def lambda_up(top: Top) -> float:
