@@ -38,7 +38,7 @@ class TippetopError(Exception):
     ...     tt.ViscousFriction(mu=-1.0)
     ... except tt.TippetopError as error:
     ...     print(error)
-    mu = -1.0 is not possible; accepted: a number at least 0
+    mu = -1 is not possible; accepted: a number at least 0
     """
 
     def told(self, words: Mapping[str, str]) -> str:
@@ -138,15 +138,23 @@ def is_whole(value: object) -> TypeGuard[int]:
 
 
 def short(value: object, limit: int = 60) -> str:
-    """A value as it would be typed, cut to at most `limit` characters."""
+    """A value as it would be typed, numbers as briefly as can be, cut to at most `limit` characters."""
     try:
-        text = repr(value)
+        text = _typed(value)
     except RecursionError:
         text = f"({type(value).__name__}, nested too deep to be shown)"
     except ValueError:  # Python refuses to write down whole numbers of thousands of digits.
         text = f"({type(value).__name__}, too long to be shown)"
     text = " ".join(text.split()) if "\n" in text else text
     return text if len(text) <= limit else text[: limit - 3] + "..."
+
+
+def _typed(value: object) -> str:
+    if isinstance(value, list | tuple) and not hasattr(value, "_fields"):
+        inner = ", ".join(map(_typed, value))
+        return f"[{inner}]" if isinstance(value, list) else f"({inner})"
+    # What was refused may have been made a fraction on its way: a whole number is told as one.
+    return repr(float(value) + 0.0).removesuffix(".0") if isinstance(value, float) else repr(value)
 
 
 def one_of(given: object, choices: list[str]) -> str:

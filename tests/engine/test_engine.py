@@ -10,6 +10,7 @@ import sys
 from typing import Any
 
 import numpy as np
+import pytest
 
 import tippetop as tt
 from launches import (
@@ -162,6 +163,21 @@ def test_two_patches_stop_whatever_a_step_may_be_wrong_by() -> None:
         ends.append([[(event["kind"], event["surface"]) for event in run["events"]] for run in found])
     assert ends[0] == ends[1]
     assert all([kind for kind, _ in events[-2:]] == ["stick", "stick"] for events in ends[0])
+
+
+def test_numbers_that_are_refused_are_told_the_same() -> None:
+    question, sentences = asked(0, DURATION), list[str]()
+    numbers = (0.0, -0.0, -2.0, -3, -0.5, -1e-4, -1.5e-5, -3e-7, -1e15, -2e16, -1.25e22, -5e-324, -1e300)
+    for number in numbers:
+        fields = question["problem"] | {"gravity": number}
+        with pytest.raises(tt.InvalidInput) as refusal:
+            tt.Problem(**fields)
+        sentences.append(str(refusal.value))
+    questions = [question | {"problem": question["problem"] | {"gravity": number}} for number in numbers]
+    assert [found["refused"] for found in in_javascript(questions)] == sentences
+    told = [sentence.removeprefix("gravity = ").split(" is ")[0] for sentence in sentences]
+    assert told[:6] == ["0", "0", "-2", "-3", "-0.5", "-0.0001"]
+    assert list(map(float, told)) == list(numbers)
 
 
 def test_where_no_code_may_be_made_the_numbers_are_the_same() -> None:

@@ -100,7 +100,7 @@ def test_files_are_written_once(files):
         ("top.toml --stl ball.toml.stl --json --toml", "--toml = 'with --json'"),
         ("bowl.csv", "density is missing"),
         ("bowl.csv --density 700 --unit ft", "unit = 'ft'"),
-        ("bowl.csv --density -1", "density = -1.0"),
+        ("bowl.csv --density -1", "density = -1"),
         ("bowl.csv --density 700 --toml", "profile = 'a sphere cut off"),
         ("none.toml", "none.toml cannot be read"),
         ("top.toml --plot taken.png", "taken.png exists"),

@@ -106,7 +106,7 @@ def test_what_cannot_be_read_is_refused(tmp_path, name, text, sentence):
 
 def test_what_is_given_beside_a_file_is_not_said_to_be_in_it(tmp_path):
     (tmp_path / "a.csv").write_text("0,0\n1,1\n0,1\n")
-    with pytest.raises(tt.InvalidInput, match=r"^density = -1.0 is not possible"):
+    with pytest.raises(tt.InvalidInput, match=r"^density = -1 is not possible"):
         read_workpiece(tmp_path / "a.csv", density=-1.0)
     with pytest.raises(tt.InvalidInput, match=r"^density is missing; "):
         read_workpiece(tmp_path / "a.csv")
@@ -115,8 +115,8 @@ def test_what_is_given_beside_a_file_is_not_said_to_be_in_it(tmp_path):
 @pytest.mark.parametrize(
     ("bad", "sentence"),
     [
-        ("hole.csv", "inserts.0.profile.1.0 = -1.0 in hole.csv is not"),
-        ("ball.csv", "profile.1.0 = -1.0 in ball.csv is not"),
+        ("hole.csv", "inserts.0.profile.1.0 = -1 in hole.csv is not"),
+        ("ball.csv", "profile.1.0 = -1 in ball.csv is not"),
     ],
 )
 def test_the_file_of_the_points_is_named_where_they_cannot_be(tmp_path, bad, sentence):

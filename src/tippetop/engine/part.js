@@ -20,8 +20,16 @@ export class InvalidInput extends Error {
 
 function short(value) {
   const text = typeof value === "string" ? `'${value}'` : Array.isArray(value) ? `(${value.map(short).join(", ")})`
+    : typeof value === "number" ? number_as_typed(value)
     : value !== null && typeof value === "object" ? JSON.stringify(value) : value === null ? "None" : String(value);
   return text.length <= 60 ? text : `${text.slice(0, 57)}...`;
+}
+
+/** As in Python, which has other powers of ten. */
+function number_as_typed(value) {
+  const size = Math.abs(value);
+  if (!Number.isFinite(value)) return String(value).replace("NaN", "nan").replace("Infinity", "inf");
+  return value === 0 || (size >= 1e-4 && size < 1e16) ? String(value) : value.toExponential().replace(/([+-])(\d)$/, "$10$2");
 }
 
 /** Every number in the fields of a part, with its name with dots. */

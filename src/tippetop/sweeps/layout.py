@@ -185,7 +185,8 @@ def kept_sweep(path: Path) -> Sweep:
         if arrays.get(name, {}).get("attributes", {}).get("flag_meanings", "") != " ".join(kind.flags):
             raise FileTrouble(
                 f"{path} was made by a version that tells {name} by other words than this one, whose results "
-                f"may differ; start afresh with {OVERWRITE}"
+                f"may differ; what is done can still be read: choose {OTHER_OUT}, or start afresh with "
+                f"{OVERWRITE}"
             )
     return Sweep(**json.loads(attributes["sweep"]))
 
