@@ -228,8 +228,10 @@ def test_a_map_leads_to_its_launches(lab: Lab) -> None:
     page.get_by_role("button", name="Compute the map").click()
     page.locator(".map [role=status]", has_text="launches").wait_for()
     page.locator(".chart canvas").focus()
-    for key in ("ArrowRight", "ArrowRight", "Enter"):
+    for key in ("ArrowRight", "ArrowRight"):
         page.keyboard.press(key)
+    page.locator(".map .tip", has_text="s/m").wait_for()
+    page.keyboard.press("Enter")
     settled(visitor, "problem.launch.spin < 60 && problem.friction.mu < 0.1")
     if page.get_by_role("button", name="Stop").count():
         page.get_by_role("button", name="Stop").click()

@@ -224,3 +224,21 @@ def test_the_mark_on_every_plot_is_at_the_time_that_is_shown(lab: Lab) -> None:
     assert visitor.ask(shares) == pytest.approx([0.75] * 6, abs=0.01)
     visitor.page.set_viewport_size({"width": 800, "height": 700})
     visitor.wait("(share) => Math.abs(share()[0] - 0.75) < 0.01".replace("share()", f"({shares})()"))
+
+
+def test_flights_shade_what_they_fill_once(lab: Lab) -> None:
+    """However many there are in a pixel, what flies under the shade is seen."""
+    visitor = lab("tab=launch&duration=2&t=0&plots=theta")
+    shade = """(count) => {
+      const hop = (_, k) => [0.5 + k / count, 0.5 + (k + 1) / count];
+      tippetopLab.track.header.flights = Array.from({ length: count }, hop);
+      const [{ chart }] = tippetopLab.plots.charts, { ctx, bbox } = chart;
+      chart.redraw(false);
+      return new Promise((done) => requestAnimationFrame(() => {
+        const { data } = ctx.getImageData(bbox.left + bbox.width / 2, bbox.top + bbox.height / 3, 1, 1);
+        done(data[3]);
+      }));
+    }"""
+    one, many = (visitor.ask(shade, count) for count in (1, 5000))
+    assert 0 < one < 64
+    assert many == one

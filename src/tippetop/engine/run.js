@@ -16,14 +16,14 @@ const WITHIN = 1e-8;
 const [X, Y, TURN, WORK, DRILLED, ROLLED, STRUCK, SUMS] = [0, 1, 2, 3, 4, 5, 6, 7];
 
 /** Follow the launch of a problem (as JSON tells it) for a duration, s, at a relative error a step. */
-export function simulate(problem, { duration, tolerance = 1e-10, onProgress } = {}) {
+export function simulate(problem, { duration, tolerance = 1e-10, stepLimit, phaseLimit, onProgress } = {}) {
   if (!(typeof duration === "number" && duration > 0 && duration <= m.LONGEST_of_trajectory)) {
     throw new InvalidInput("duration", duration, "a number of seconds greater than 0, at most 1e+300");
   }
   if (!(tolerance >= LEAST_TOLERANCE && tolerance < 1)) {
     throw new InvalidInput("tolerance", tolerance, `a number from ${LEAST_TOLERANCE} to 1`);
   }
-  const run = new Run(new m.Problem(problem), duration, tolerance);
+  const run = new Run(new m.Problem(problem), duration, tolerance, [phaseLimit, stepLimit]);
   for (const segment of run.trajectory.segments()) {
     run.take(segment);
     onProgress?.(run.trajectory.time / run.trajectory.end);
@@ -32,12 +32,12 @@ export function simulate(problem, { duration, tolerance = 1e-10, onProgress } = 
 }
 
 class Run {
-  constructor(problem, duration, tolerance) {
+  constructor(problem, duration, tolerance, limits) {
     const units = m.natural_units(problem.top), top = m.natural(problem.top), start = m.natural_state(problem.start(), units);
     const { liftoff, restitution } = problem.contact, launch = m.rules_for(top, liftoff, restitution).launch(start);
     const pole = start.axis[2] >= 0 ? 1 : -1, lost = energyLost(launch.events);
     Object.assign(this, { duration, tolerance, units, top, start, pole, pieces: [], turned: NaN, steps: 0 });
-    this.trajectory = new m.Trajectory(launch, duration / units.time, integrator(tolerance));
+    this.trajectory = new m.Trajectory(launch, duration / units.time, integrator(tolerance), ...limits);
     this.sums = Float64Array.of(0, 0, pole * problem.launch.azimuth, -lost, 0, 0, lost);
     [this.monitor, this.flights] = [new m.Monitor(top, start), new m.Flights()];
     // Of the tip and, in flights, of the centre of mass: where these are highest, their negatives are least.
@@ -130,7 +130,7 @@ class Run {
     const ended = this.monitor.judged(outcome, this.tolerance);
     this.outcome = { name: ended.name.toLowerCase(), advice: [ended.value, detail].filter(Boolean).join(" ") };
     this.early = ended !== m.Outcome.COMPLETED && detail !== m.NOT_FINITE;
-    this.endTime = trajectory.time * units.time;
+    this.endTime = outcome === m.Outcome.COMPLETED ? this.duration : trajectory.time * units.time;
     this.events = events.map((event) => ({
       kind: event.kind.value, time: event.time * units.time, surface: event.surface,
       impulse: event.impulse * units.mass * units.speed, energyLost: event.energy_lost * units.energy,

@@ -1,5 +1,6 @@
 // The map's picture: squares coloured by the final tilt, coarse ones where finer are not known yet.
 
+import { frictionKind } from "./dials.js";
 import { t } from "./i18n.js";
 import { shown } from "./units.js";
 
@@ -7,7 +8,7 @@ const STOPS = ["#00224e", "#3c4e6c", "#7c7b78", "#bbae6c", "#fee838"].map((colou
   [1, 3, 5].map((k) => parseInt(colour.slice(k, k + 2), 16)),
 );
 const REACH = [1, 2, 4];
-const ROOM = { left: 46, right: 14, top: 8, bottom: 34 };
+const ROOM = { left: 50, right: 14, top: 8, bottom: 34 };
 
 // How fine a grid must be to have a cell: 0 for the coarsest.
 export function fineness({ row, column }) {
@@ -148,7 +149,8 @@ export class Chart {
     pen.translate(11, ROOM.top + height / 2);
     pen.rotate(-Math.PI / 2);
     pen.textAlign = "center";
-    pen.fillText(t("map.friction"), 0, 0);
+    const kind = frictionKind(plan.setup);
+    pen.fillText(`${t("map.friction")}${kind && ` (${kind})`}`, 0, 0);
     pen.restore();
   }
 

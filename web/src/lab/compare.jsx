@@ -1,6 +1,6 @@
 // Pinned runs beside the one that is shown: what was changed, and what that changed.
 
-import { ALL, scaleOf } from "./dials.js";
+import { ALL, kindOf, scaleOf } from "./dials.js";
 import { part, t } from "./i18n.js";
 import { differences } from "./setup.js";
 import { digits, shown, unitOf } from "./units.js";
@@ -48,7 +48,7 @@ function valueOf(field, value, setup, units) {
   const dial = ALL.find((one) => one.field === field);
   if (field === "friction.kind") return t(`laws.${value}`);
   if (typeof value !== "number" || !dial) return value === undefined ? "–" : typeof value === "string" ? value : JSON.stringify(value);
-  return shown(value / scaleOf(dial, setup), dial.kind, units);
+  return shown(value / scaleOf(dial, setup), kindOf(dial, setup), units);
 }
 
 function Table({ ghost, track, units }) {

@@ -2,7 +2,7 @@
 
 import { useState } from "preact/hooks";
 
-import { ALL, LAW, MAIN, placeOf, scaleOf, START, TABLE, TOP, valueAt } from "./dials.js";
+import { ALL, kindOf, LAW, MAIN, placeOf, scaleOf, START, TABLE, TOP, valueAt } from "./dials.js";
 import { part, t, translated } from "./i18n.js";
 import { PRESETS, TABLES } from "./presets.js";
 import { same, valueOf } from "./setup.js";
@@ -27,10 +27,10 @@ function Dial({ dial, lab, marks = [] }) {
   const [typed, type] = useState(null);
   if (value === undefined || value === null) return null;
   const { name, symbol, help } = part(`quantities.${dial.field}`);
-  const { name: unit, size } = unitOf(dial.kind, units);
+  const kind = kindOf(dial, setup);
+  const { name: unit, size } = unitOf(kind, units);
   const scale = scaleOf(dial, setup);
-  const suffix = dial.field === "friction.mu" && setup.problem.friction.kind === "viscous" ? "s/m" : unit;
-  const label = `${name} ${symbol}${suffix ? ` (${suffix})` : ""}`;
+  const label = `${name} ${symbol}${unit ? ` (${unit})` : ""}`;
   const id = `dial-${dial.field.replaceAll(".", "-")}`;
   const [low, high] = [placeOf(dial, dial.low), placeOf(dial, dial.high)];
   const place = placeOf(dial, value / scale);
@@ -52,7 +52,7 @@ function Dial({ dial, lab, marks = [] }) {
         onKeyDown={(event) => event.key === "Enter" && commit(event.target.value)} />
       <div class="dial-slide">
         <input id={id} type="range" min={low} max={high} step={dial.step} value={place} data-field={dial.field}
-          aria-valuetext={shown(value / scale, dial.kind, units)}
+          aria-valuetext={shown(value / scale, kind, units)}
           onInput={(event) => lab.change({ [dial.field]: valueAt(dial, Number(event.target.value)) * scale }, true)}
           onChange={() => lab.settle()} />
         {marks.length > 0 && <div class="dial-marks" aria-hidden="true">

@@ -2,11 +2,12 @@
 
 import { useEffect, useRef, useState } from "preact/hooks";
 
+import { Chart, fineness } from "./chart.js";
+import { frictionKind } from "./dials.js";
 import { Crew } from "./engine.js";
 import { t } from "./i18n.js";
-import { Chart, fineness } from "./chart.js";
 import { changed } from "./setup.js";
-import { digits, shown } from "./units.js";
+import { shown } from "./units.js";
 
 export const COLUMNS = 48;
 export const ROWS = 24;
@@ -86,7 +87,7 @@ function* jobsOf(plan) {
 }
 
 function wordsOf(plan, { row, column, answer }, units) {
-  const gaps = { spin: shown(plan.spins[column], "spin", units), mu: digits(plan.frictions[row]) };
+  const gaps = { spin: shown(plan.spins[column], "spin", units), mu: shown(plan.frictions[row], frictionKind(plan.setup), units) };
   if (answer.error || !Number.isFinite(answer.tilt)) return t("map.failed", { ...gaps, message: answer.error?.message ?? answer.outcome?.advice ?? "" });
   const { tilt, flights } = answer;
   return t(flights ? "map.cellJumps" : "map.cell", { ...gaps, tilt: shown(tilt, "angle", units, 3), flights });

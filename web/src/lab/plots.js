@@ -110,7 +110,7 @@ export class Plots {
       scales: { x: { time: false, range: () => this.span }, y: { range: () => this.range(name) } },
       axes: [
         { ...axis, label: t("plots.time"), size: 30, space: 55 },
-        { ...axis, label, size: 48, space: 30, ...turned, values: (_, ticks) => ticks.map(brief) },
+        { ...axis, label, size: 60, space: 30, ...turned, values: (_, ticks) => ticks.map(brief) },
       ],
       series: [
         {},
@@ -129,11 +129,14 @@ export class Plots {
     if (!this.track) return;
     const [begin, end] = this.span;
     chart.ctx.fillStyle = this.dark ? "rgba(102,197,240,.20)" : "rgba(11,95,165,.14)";
+    // Of flights that lie in one pixel that is shaded once.
+    chart.ctx.beginPath();
     for (const [from, to] of this.track.header.flights) {
       if (to < begin || from > end) continue;
       const [left, right] = [Math.max(from, begin), Math.min(to, end)].map((time) => chart.valToPos(time, "x", true));
-      chart.ctx.fillRect(left, chart.bbox.top, Math.max(right - left, 1), chart.bbox.height);
+      chart.ctx.rect(left, chart.bbox.top, Math.max(right - left, 1), chart.bbox.height);
     }
+    chart.ctx.fill();
   }
 
   drag(chart) {

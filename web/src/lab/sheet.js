@@ -1,6 +1,6 @@
 // The printed sheet: what was launched, what became of it, the scene and the curves.
 
-import { ALL, scaleOf } from "./dials.js";
+import { ALL, kindOf, scaleOf } from "./dials.js";
 import { part, t } from "./i18n.js";
 import { valueOf } from "./setup.js";
 import { digits, shown } from "./units.js";
@@ -44,8 +44,7 @@ function table({ state: { setup, units } }) {
   const rows = ALL.map((dial) => {
     const value = valueOf(setup, dial.field);
     if (!value) return null;
-    const unit = dial.field === "friction.mu" && kind === "viscous" ? " s/m" : "";
-    return row(part(`quantities.${dial.field}`).name, shown(value / scaleOf(dial, setup), dial.kind, units) + unit);
+    return row(part(`quantities.${dial.field}`).name, shown(value / scaleOf(dial, setup), kindOf(dial, setup), units));
   });
   const element = document.createElement("table");
   element.append(row(t("controls.law"), t(`laws.${kind}`)), ...rows.filter(Boolean));

@@ -8,9 +8,12 @@ export function drawStrip(canvas, track, dark, ghosts = []) {
   const duration = track.duration || 1;
   pen.clearRect(0, 0, width, height);
   pen.fillStyle = dark ? "rgba(102,197,240,.25)" : "rgba(11,95,165,.16)";
+  // Of flights that lie in one pixel that is shaded once.
+  pen.beginPath();
   for (const [begin, end] of track.header.flights) {
-    pen.fillRect((begin / duration) * width, 0, Math.max(1, ((end - begin) / duration) * width), height);
+    pen.rect((begin / duration) * width, 0, Math.max(1, ((end - begin) / duration) * width), height);
   }
+  pen.fill();
   for (const ghost of ghosts) line(pen, ghost, duration, width, height, ratio, dark ? "#8b96a1" : "#9aa5b0");
   line(pen, track, duration, width, height, ratio, dark ? "#66c5f0" : "#0b5fa5");
 }
