@@ -4,9 +4,9 @@ import { pathToFileURL } from "node:url";
 
 const { InvalidInput, criticalSpins, predict, prospects, simulate } = await import(pathToFileURL(process.argv[2]));
 
-function followed({ problem, duration, tolerance, times }) {
+function followed({ problem, times, ...options }) {
   try {
-    const run = simulate(problem, { duration, tolerance });
+    const run = simulate(problem, options);
     const track = run.track(times.filter((time) => time <= run.endTime));
     return {
       outcome: run.outcome, end: run.endTime, events: run.events, flights: run.flights, metrics: run.metrics,

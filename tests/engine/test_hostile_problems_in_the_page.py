@@ -1,0 +1,54 @@
+"""Problems that nobody would ask for, in the engine: each ends as in Python, with an outcome or refused.
+
+TIPPETOP_HOSTILE=1000 asks for as many of them instead of the few that every check takes.
+"""
+
+import json
+import re
+import warnings
+from typing import Any
+
+import numpy as np
+
+import tippetop as tt
+from launches import in_javascript
+from test_hostile_problems import COUNT, MODES, STEPS, hostile
+
+DURATION, TOLERANCE, TIMES = 2.0, 1e-10, (0.0, 1e-9, 0.1, 2.0)
+
+
+def named(fields: dict[str, Any]) -> str:
+    """What becomes of a problem in Python: an outcome, or the field that is refused."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        try:
+            run = tt.simulate(
+                tt.Problem(**fields),
+                DURATION,
+                samples=2,
+                step_limit=STEPS,
+                phase_limit=MODES,
+                integrator="dop853",
+                tolerance=TOLERANCE,
+            )
+        except tt.InvalidInput as refusal:
+            return refusal.field
+    return str(run.attrs["outcome"])
+
+
+def named_there(found: dict[str, Any]) -> str:
+    """The same of what the engine tells."""
+    return found["outcome"]["name"] if "outcome" in found else found.get("refused", str(found)).split()[0]
+
+
+def test_hostile_problems_end_as_in_python() -> None:
+    drawn = [hostile(np.random.default_rng(seed)) for seed in range(0, COUNT, 4)]
+    # Pages have no numbers but those of JSON.
+    told = [fields for fields in drawn if not re.search("NaN|Infinity", json.dumps(fields))]
+    limits = {"stepLimit": STEPS, "phaseLimit": MODES}
+    asked = {"duration": DURATION, "tolerance": TOLERANCE, "times": TIMES, **limits}
+    found = in_javascript([{"problem": fields, **asked} for fields in told])
+    ends = [(named_there(theirs), named(fields)) for fields, theirs in zip(told, found, strict=True)]
+    assert not [(number, *both) for number, both in enumerate(ends) if both[0] != both[1]]
+    outcomes = [ours for _, ours in ends]
+    assert outcomes.count("completed") > 0.2 * len(outcomes)
