@@ -48,6 +48,8 @@ class Calls(Expressions):
                 return f"{'new ' if made else ''}{own}({self._given(node)})"
             case ast.IfExp(body=ast.Name(id=name)) if is_class(name):
                 return f"new ({self.text(node.func)})({self._given(node)})"
+            case ast.Call(func=ast.Name(id="type")):
+                return f"new ({self.text(node.func)})({self._given(node)})"
         return f"{self.text(node.func, ATOM)}({self._given(node)})"
 
     def _named(self, keywords: Sequence[ast.keyword]) -> str:

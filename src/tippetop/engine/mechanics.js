@@ -5355,12 +5355,12 @@ class DryProcess extends ImpactProcess {
     var velocity = this.body.velocities(here);
     var [ended, stopped] = this.zeros(velocity);
     if (!(py.truth(ended) || py.truth(stopped))) {
-      return py.truth(this.ended) || py.truth(this.stopped) ? py.type(this)(this.body) : this;
+      return py.truth(this.ended) || py.truth(this.stopped) ? new (py.type(this))(this.body) : this;
     }
     var [slip, rolling] = this.parts(velocity);
     var go_on = [py.truth(ended) ? null : slip, py.truth(stopped) ? null : rolling];
     var [found] = settling(this.body.contact, ...go_on, struck_motion);
-    return py.type(this)(this.body, ended, stopped, found.slip, found.rolling);
+    return new (py.type(this))(this.body, ended, stopped, found.slip, found.rolling);
   }
   /** Force and torque per unit normal impulse at these velocities, six numbers. */
   friction(velocity) {
