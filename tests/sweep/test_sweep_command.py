@@ -52,7 +52,7 @@ def test_a_sweep_writes_a_store_and_maps_beside_it(tmp_path):
 
 def test_the_first_launch_that_cannot_be_is_told(tmp_path):
     options = ["--axis", "launch.tilt=0.1,45,90", *SHORT[2:], "--no-maps", "--out", tmp_path / "a.zarr"]
-    assert "The first that is bad: tilt = 45 is not possible" in run(*options)
+    assert "The first that is bad: launch.tilt = 45 is not possible" in run(*options)
     assert "bad" not in run("--axis", "launch.tilt=0.1,0.2", *options[2:], "--force")
 
 

@@ -144,17 +144,20 @@ def single_part(part: PartType, cell: int) -> PartType:
     Raises `InvalidInput` if there is no such part.
     """
 
-    def single(value: Any) -> Any:
+    def single(value: Any, name: str) -> Any:
         match value:
             case Part():
-                return single_part(value, cell)
+                try:
+                    return single_part(value, cell)
+                except InvalidInput as error:
+                    raise error.within(name) from None
             case tuple():
-                return tuple(map(single, value))
+                return tuple(single(one, f"{name}.{k}") for k, one in enumerate(value))
             case np.ndarray():
                 return float(value[cell])
         return value
 
-    return type(part)(**{name: single(getattr(part, name)) for name in type(part).model_fields})
+    return type(part)(**{name: single(getattr(part, name), name) for name in type(part).model_fields})
 
 
 def refused(part: Part, count: int) -> NDArray[np.bool_]:
