@@ -9,7 +9,9 @@ from full_runs import full_run, sphere_problem, tilts_of
 
 from tippetop import presets
 from tippetop.errors import InvalidInput
+from tippetop.mechanics.hull import Hull
 from tippetop.mechanics.invariants import energy
+from tippetop.mechanics.surface import RingSurface, SphereSurface, SpheroidSurface
 from tippetop.run import simulate
 from tippetop.theory.prediction import predict, touching_tilts
 from tippetop.theory.steady import SteadyKind, jellett_of_launch, precession_branch
@@ -123,6 +125,18 @@ def test_a_rim_that_hardly_reaches_out_of_the_ball_is_not_overlooked():
         assert list(touching_tilts(problem.top.surface, tilt)) == pytest.approx([around], abs=1e-9)
     with pytest.raises(InvalidInput, match=r"surface 1 can touch, at a tilt of 1\.499 rad"):
         predict(problem)
+
+
+@pytest.mark.parametrize(
+    "pair",
+    [
+        (SphereSurface(0.02, 0.006), SphereSurface(0.02, 0.006 * (1.0 - 2e-16))),
+        (SpheroidSurface(0.02, 1e-9), RingSurface(0.02)),
+    ],
+)
+def test_surfaces_that_are_one_but_for_rounding_touch_nowhere_in_particular(pair):
+    assert pair[0] != pair[1]
+    assert touching_tilts(Hull.of(pair), 0.5) == {}
 
 
 def test_the_energy_that_is_named_is_what_decides():

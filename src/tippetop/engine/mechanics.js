@@ -8824,7 +8824,7 @@ function _meetings(one, other) {
   var gap = (at) => {
     return py.float(py.sub(one.height(py.math.cos(at)), other.height(py.math.cos(at))));
   };
-  return roots_between(gap, 0.0, py.math.pi, 0.0);
+  return roots_between(gap, 0.0, py.math.pi, py.mul(ROUNDING_of_prediction, py.float(one.size)));
 }
 
 /** Those of all steady states with one Jellett's integral, by their tilts, that are minima of the energy. */

@@ -161,7 +161,7 @@ def _meetings(one: Hull, other: Hull) -> list[float]:
     def gap(at: float) -> float:
         return float(one.height(math.cos(at)) - other.height(math.cos(at)))
 
-    return roots_between(gap, 0.0, math.pi, 0.0)
+    return roots_between(gap, 0.0, math.pi, ROUNDING * float(one.size))
 
 
 def steady_launch(problem: Problem) -> SteadyState[float] | None:
