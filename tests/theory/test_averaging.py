@@ -267,6 +267,7 @@ def test_the_local_exponent_of_a_power_law():
     "changes",
     [
         {"body.shape": {"kind": "spheroid", "across": 0.02, "along": 0.03}},
+        {"body.shape": {"kind": "sphere", "radius": 0.02, "center": 0.0}},
         {"friction": {"kind": "regularized_coulomb", "mu": 0.3, "eps": 0.01}},
         {"launch.tilt": 0.0},
         {"launch.tilt": math.pi},

@@ -98,6 +98,8 @@ def _stages(problem: Problem, distance: float, tolerance: float) -> list[Stage]:
             raise InvalidInput(field, value, "a finite number greater than 0")
     top = problem.top
     numbers = numbers_of(top)
+    if numbers.alpha == 0.0:
+        raise InvalidInput("body.shape", top.surface, "an eccentric sphere: no other nutates by its weight")
     if not isinstance(top.friction, ViscousLaw):
         raise InvalidInput("friction", top.friction, "viscous friction; no other slip averages out")
     if problem.launch.tilt in (0.0, math.pi) and problem.launch.tilt_rate == 0.0:
