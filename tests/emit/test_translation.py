@@ -133,7 +133,8 @@ def choices():
     table["c"] = 5
     square = next((n for n in range(9) if n * n > 20), None)
     return [*found, best.x, square, table.get("d", -1), sorted([2, 1]),
-            [a + b for a in (1, 2) for b in (10, 20) if b > 10], table["a"], any([]), all([])]
+            [a + b for a in (1, 2) for b in (10, 20) if b > 10], table["a"], any([]), all([]),
+            len(table), 1 if table else 0, 1 if dict([]) else 0]
 
 def closures():
     total = 0.0

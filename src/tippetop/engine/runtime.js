@@ -204,6 +204,9 @@ export function cached(function_) {
 }
 
 export class Dict extends Map {
+  get length() {
+    return this.size;
+  }
   get(one, other = null) {
     return this.has(one) ? super.get(one) : other;
   }
