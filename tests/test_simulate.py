@@ -807,7 +807,11 @@ class Silent(Careless):
     caution = None
 
 
-@pytest.mark.parametrize("incomplete", [Nameless(), Careless(), Silent(), Quitter])
+class Idle:
+    name, caution, integrate = "idle", "", None
+
+
+@pytest.mark.parametrize("incomplete", [Nameless(), Careless(), Silent(), Idle(), Quitter, object(), 3])
 def test_integrators_that_lack_something_are_refused_before_the_run(incomplete):
     needed = "a method integrate, and as texts a name and a caution"
     with pytest.raises(tt.InvalidInput, match=needed) as refusal:

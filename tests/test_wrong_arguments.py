@@ -108,13 +108,23 @@ def test_the_height_of_a_player(height):
     refused("height", lambda: tt.view(run(), height))
 
 
-@pytest.mark.parametrize("wrong", [None, 3, "launch.spin", [("launch.spin", 3.0)]])
+@pytest.mark.parametrize("wrong", [None, 3, "launch.spin", [("launch.spin", 3.0)], {3: 3.0}])
 def test_changes_that_are_no_dict(wrong):
     refused("changes", PROBLEM.replace, wrong)
 
 
-@pytest.mark.parametrize("wrong", [(1.0,), (1.0, 2.0, 3.0), "ab", 3, None])
-def test_a_slip_that_is_no_pair(wrong):
+@pytest.mark.parametrize("wrong", [[1], [("launch.spin", [50.0], 3)], ["launch.spin"], 3])
+def test_axes_that_are_no_table(wrong):
+    refused("axes", lambda: tt.sweep(PROBLEM, wrong, duration=1.0, workers=1))
+
+
+@pytest.mark.parametrize("wrong", [(1.0, 2.0, 3.0, 4.0), "ab", 3])
+@pytest.mark.parametrize(("field", "accepted"), [("slip", "2 numbers"), ("velocity", "3 numbers")])
+def test_velocities_that_are_no_lists_of_numbers(field, accepted, wrong):
     with pytest.raises(tt.InvalidInput) as refusal:
-        tt.Launch(tilt=0.1, spin=1.0, slip=wrong)
-    assert "tuple" not in refusal.value.accepted
+        tt.Launch(tilt=0.1, spin=1.0, **{field: wrong})
+    assert refusal.value.accepted == accepted
+
+
+def test_a_slip_of_one_number():
+    refused("slip.1", lambda: tt.Launch(tilt=0.1, spin=1.0, slip=(1.0,)))

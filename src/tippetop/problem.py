@@ -298,7 +298,7 @@ class Problem(Part):
         InvalidInput
             If there is no such field, or it cannot have such a value.
         """
-        if not isinstance(changes, Mapping):
+        if not (isinstance(changes, Mapping) and all(isinstance(name, str) for name in changes)):
             raise InvalidInput("changes", changes, "a dict of values by the names of fields")
         fields = self.model_dump()
         renewed = set()

@@ -175,16 +175,16 @@ def integrator_of(
     integrator: str | Integrator | None, tolerance: float | None, step: float | None, units: Units
 ) -> Integrator:
     """The integrator asked for, with its step in natural units."""
-    if integrator is None or isinstance(integrator, str) or not hasattr(integrator, "integrate"):
+    if integrator is None or isinstance(integrator, str):
         return make_integrator(integrator, tolerance, step, units.time)
     for setting, value in {"tolerance": tolerance, "step": step}.items():
         if value is not None:
             raise InvalidInput(setting, value, "none with an integrator object, which has its own")
-    texts = [getattr(integrator, name, None) for name in ("name", "caution")]
-    if isinstance(integrator, type) or not all(isinstance(text, str) for text in texts):
-        raise InvalidInput(
-            "integrator", integrator, "an object with a method integrate, and as texts a name and a caution"
-        )
+    method, *texts = (getattr(integrator, name, None) for name in ("integrate", "name", "caution"))
+    told = all(isinstance(text, str) for text in texts)
+    if isinstance(integrator, type) or not (callable(method) and told):
+        accepted = "a name, or an object with a method integrate, and as texts a name and a caution"
+        raise InvalidInput("integrator", integrator, accepted)
     return integrator
 
 

@@ -5,7 +5,7 @@ import json
 import math
 import tomllib
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple, Self, TypeAlias, get_args
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple, Self, TypeAlias, get_args, get_origin
 
 from pydantic import (
     BaseModel,
@@ -310,6 +310,8 @@ def _accepted(detail: ErrorDetails, part: type[Part]) -> str:
             return "one of the keys " + one_of(detail["loc"][-1], list(_written(part)))
         case "literal_error":
             return str(detail["ctx"]["expected"])
+        case "tuple_type" | "too_long" if count := _length(_written(part).get(str(detail["loc"][-1]))):
+            return f"{count} numbers"
         case "tuple_type" | "list_type":
             return "a list"
         case "too_short":
@@ -320,6 +322,13 @@ def _accepted(detail: ErrorDetails, part: type[Part]) -> str:
             return "a table of its fields"
         case _:
             return detail["msg"][0].lower() + detail["msg"][1:]
+
+
+def _length(info: FieldInfo | None) -> int:
+    """How many numbers a field lists; 0 where that is not said."""
+    kinds = (info.annotation, *get_args(info.annotation)) if info else ()
+    listed = [get_args(kind) for kind in kinds if get_origin(kind) is tuple]
+    return len(listed[0]) if listed and Ellipsis not in listed[0] else 0
 
 
 def range_of(info: FieldInfo) -> str:

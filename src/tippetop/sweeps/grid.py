@@ -187,7 +187,8 @@ def _read(name: str, table: Any, of: Callable[[str, Any], _Kind]) -> tuple[_Kind
     """The axes, or ranges, of a table, or of pairs of a field and what stands there."""
     if isinstance(table, tuple):
         return table
-    if not isinstance(table, Mapping | list):
+    pairs = isinstance(table, list) and all(isinstance(one, tuple | list) and len(one) == 2 for one in table)
+    if not (pairs or isinstance(table, Mapping)):
         raise InvalidInput(name, table, "a table of fields")
     found = []
     for field, entry in _flattened(name, table) if isinstance(table, Mapping) else table:
