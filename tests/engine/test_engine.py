@@ -165,6 +165,18 @@ def test_two_patches_stop_whatever_a_step_may_be_wrong_by() -> None:
     assert all([kind for kind, _ in events[-2:]] == ["stick", "stick"] for events in ends[0])
 
 
+def test_bodies_of_several_surfaces_may_end_upright() -> None:
+    """Where the precession has no value, which is no number there."""
+    changes = {"body": tt.presets.LEINE_GLOCKER_STEM, "launch.tilt": 0.0}
+    upright = tt.presets.report_problem().replace(changes)
+    [found] = in_javascript([asked(0, 0.1) | {"problem": json.loads(upright.to_json())}])
+    run = tt.simulate(upright, 0.1, samples=2)
+    assert found["outcome"]["name"] == run.attrs["outcome"] == "completed"
+    assert np.isnan(run["final_phi_dot"])
+    assert found["metrics"]["final_phi_dot"] is None
+    assert found["metrics"]["final_omega3"] == pytest.approx(upright.launch.spin, rel=1e-9)
+
+
 def test_numbers_that_are_refused_are_told_the_same() -> None:
     question, sentences = asked(0, DURATION), list[str]()
     numbers = (0.0, -0.0, -2.0, -3, -0.5, -1e-4, -1.5e-5, -3e-7, -1e15, -2e16, -1.25e22, -5e-324, -1e300)

@@ -4,9 +4,12 @@ export class ArithmeticError extends Error {}
 export class ZeroDivisionError extends ArithmeticError {}
 export const NotImplemented = null, [ValueError, NotImplementedError, AssertionError] = [Error, Error, Error];
 
-let heeded = true;
-/** Whether what has no value is an error, or no number, as in arrays. */
-export const heed = (whether) => (heeded = whether);
+let heeded = true, within = 0;
+/** Whether what has no value is an error, or no number, as in arrays: until every block that asked for those is left. */
+export function heed(whether) {
+  within += whether ? -1 : 1;
+  heeded = within === 0;
+}
 
 // ---- numbers, and what else has arithmetic: series, discs, nodes of a graph; lists are joined
 
