@@ -13,13 +13,13 @@ from tippetop.mechanics.contensou import EllipsoidalLaw
 from tippetop.mechanics.contensou_hertz import HertzLaw
 from tippetop.mechanics.coulomb import CoulombLaw, RollingResistance
 from tippetop.mechanics.dry_impact import DryProcess
-from tippetop.mechanics.friction import RegularizedCoulombLaw
+from tippetop.mechanics.friction import RegularizedCoulombLaw, ViscousLaw
 from tippetop.mechanics.impact import impact
 from tippetop.mechanics.impulse import NO_IMPULSE, Striking
 from tippetop.mechanics.motion import on_table
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.stick_slip import slip_of, slip_part
-from tippetop.mechanics.surface import SpheroidSurface
+from tippetop.mechanics.surface import SphereSurface, SpheroidSurface
 from tippetop.mechanics.top import Top
 
 
@@ -58,6 +58,34 @@ def test_slip_that_cannot_end_turns_back():
     assert result.impulse == pytest.approx(compression, rel=1e-9)
     after = Rigid(state, top).velocity_of_point(result.state)
     assert after[0] == pytest.approx((compression - stop) * (M[0, 2] - mu * M[0, 0]), rel=1e-8)
+
+
+@pytest.mark.parametrize("restitution", [0.0, 0.4])
+def test_rolling_is_resisted_in_viscous_impacts_too(restitution):
+    """Without friction a ball gets (1 + e) m v_n, and l times as much of it against its rolling."""
+    arm, falling, momentum = 0.01, -0.7, (0.3, -0.4, 0.2)
+    top = Top(1.0, 0.4, 0.4, SphereSurface(1.0, 0.0), ViscousLaw(0.0), 1.0, RollingResistance(arm))
+    state = on_table(SlidingState((0.6, 0.0, 0.8), momentum, (0.1, 0.2)), top)
+    result = impact(state._replace(velocity=(0.1, 0.2, falling)), restitution, top)
+    impulse = -(1.0 + restitution) * falling
+    left = 1.0 - arm * impulse / math.hypot(*momentum[:2])
+    assert result.impulse == pytest.approx(impulse, rel=1e-9)
+    expected = (left * momentum[0], left * momentum[1], momentum[2])
+    assert result.state.momentum == pytest.approx(expected, rel=1e-9)
+    assert result.state.velocity == pytest.approx((0.1, 0.2, -restitution * falling), abs=1e-9)
+
+
+def test_viscous_impacts_with_rolling_resistance_are_those_of_slow_slip():
+    """A regularized law is viscous far below its speed, to the square of their ratio."""
+    mu, far = 0.3, 1e4
+    found = []
+    for law in (ViscousLaw(mu), RegularizedCoulombLaw(mu * far, far)):
+        top = Top(1.0, 0.4, 0.3, SphereSurface(1.0, 0.2), law, 1.0, RollingResistance(0.05))
+        state = on_table(SlidingState((math.sin(1.0), 0.0, math.cos(1.0)), (0.3, 0.2, 0.1), (1.0, 0.3)), top)
+        found.append(impact(state._replace(velocity=(1.0, 0.3, state.velocity[2] - 2.0)), 0.3, top))
+    viscous, slow = found
+    assert viscous.state.momentum == pytest.approx(slow.state.momentum, abs=1e-7)
+    assert viscous.state.velocity == pytest.approx(slow.state.velocity, abs=1e-7)
 
 
 @pytest.mark.parametrize("velocity", [(0.3, -0.2, -0.7), (-0.4, 0.1, -1.5)])

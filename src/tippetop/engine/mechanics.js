@@ -5743,10 +5743,10 @@ function process_of(body, beside) {
   if (beside !== null) {
     return ProcessOnTwo.of(body, Striking.of(body.state, beside));
   }
-  if (py.isinstance(law, ViscousLaw)) {
-    return ViscousProcess.of(body, law);
+  if (py.truth(is_dry(body.contact.top))) {
+    return new DryProcess(body);
   }
-  return py.truth(is_dry(body.contact.top)) ? new DryProcess(body) : new ImpactProcess(body);
+  return py.isinstance(law, ViscousLaw) ? ViscousProcess.of(body, law) : new ImpactProcess(body);
 }
 
 /** Poisson's end of restitution, or that of the energy stored, but not before the body has stopped. */

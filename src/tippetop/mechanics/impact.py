@@ -8,8 +8,8 @@ to the contact point, stay fixed while its velocities jump. The normal impulse p
     dP = (z + f) dp,        dL = (a x (z + f) + t) dp,        f, t = law(slip, angular velocity),
 
 and the velocity w of its contact point changes by dw = M dP, with M the inverse inertia that the contact
-feels, symmetric and positive definite. For viscous friction this is a linear equation, solved exactly; for
-another law it is integrated (Glocker 2014, Meccanica 49, and Leine and Glocker 2003, Eur. J. Mech. A 22,
+feels, symmetric and positive definite. For viscous friction alone this is a linear equation, solved exactly;
+for another law it is integrated (Glocker 2014, Meccanica 49, and Leine and Glocker 2003, Eur. J. Mech. A 22,
 treat set-valued laws in the same setting).
 
 *Compression* lasts until the normal velocity v_n returns to zero from below. It may sink first: where
@@ -102,9 +102,9 @@ def process_of(body: Striking, beside: Top | None) -> ImpactProcess:
     law = body.contact.top.friction
     if beside is not None:
         return ProcessOnTwo.of(body, Striking.of(body.state, beside))
-    if isinstance(law, ViscousLaw):
-        return ViscousProcess.of(body, law)
-    return DryProcess(body) if is_dry(body.contact.top) else ImpactProcess(body)
+    if is_dry(body.contact.top):
+        return DryProcess(body)
+    return ViscousProcess.of(body, law) if isinstance(law, ViscousLaw) else ImpactProcess(body)
 
 
 def restitution_goal(process: ImpactProcess, compressed: Impulse, restitution: float) -> Goal:
