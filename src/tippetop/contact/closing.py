@@ -12,6 +12,7 @@ from tippetop.mechanics.ending import (
     Closing,
     Vanishing,
     closing_rates,
+    jamming_guard,
     landing_guard,
     overtaking_guard,
     rates_in_time,
@@ -31,7 +32,7 @@ from tippetop.mechanics.stick_slip import branch_guard
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import Row, Scalar, Vector
 
-REOPENING, LANDED, TIME, OVERTAKEN = "reopening", "landed", "time", "overtaken"
+REOPENING, LANDED, TIME, OVERTAKEN, JAMMED = "reopening", "landed", "time", "overtaken", "jammed"
 
 OWN = (REOPENING, LANDED, TIME)
 """Guards of the clock itself; the others are of what else may happen."""
@@ -97,6 +98,8 @@ def closing_motion(kind: Kind, ending: Vanishing, guarded: bool) -> Motion:
     law, stuck = top.friction, not ending.slip and ending.held
     if guarded:
         guards.append(guard(LIFT_OFF, lambda state, top, _: held_by(state, top).force[2]))
+    if not ending.held:
+        guards.append(guard(JAMMED, lambda state, top, _: jamming_guard(state, ending, top)))
     if not ending.held and top.resists_rolling and is_set_valued(law):
         guards.append(guard(OVERTAKEN, lambda state, top, _: overtaking_guard(state, ending, top)))
     if ending.held:

@@ -244,6 +244,8 @@ class Stopping(Passing):
             return found
         if arc.guard == "time":
             return Transition((), Outcome.COMPLETED, state)
+        if arc.guard == "jammed":
+            return self.rules.jammed(time, state)
         if arc.guard == "lift-off":
             return self.rules.lift_off(time, state)
         if arc.guard == "reopening":

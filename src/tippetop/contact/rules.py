@@ -16,6 +16,7 @@ from tippetop.mechanics.beginning import Beginning, settling
 from tippetop.mechanics.ending import Vanishing
 from tippetop.mechanics.flight import gap, gap_rate
 from tippetop.mechanics.impact import Impact, impact
+from tippetop.mechanics.jamming import past_jamming
 from tippetop.mechanics.motion import along_table, contact, on_table, presses
 from tippetop.mechanics.rolling import (
     ContactPoint,
@@ -220,6 +221,14 @@ class Rules:
         if presses(state.axis, state.momentum, self.top):
             return self.resting(time, state)
         return self._leaving(time, state)
+
+    def jammed(self, time: float, state: State) -> Transition:
+        """What follows where the normal force has grown beyond all bounds, and slip goes on."""
+        try:
+            beyond = on_table(past_jamming(along_table(state), self.top), self.top)
+        except ArithmeticError as error:
+            return failed("What follows where friction jams the contact", error, state)
+        return self.inconsistent(time, beyond, ())
 
     def _leaving(self, time: float, state: State) -> Transition:
         """What follows when the normal force falls to zero."""

@@ -175,7 +175,7 @@ class TwoClosed:
 
     def _rolling(self, rolls: float) -> "TwoClosed":
         """The same where rolling has begun."""
-        least = 2.0 * least_slip(self.state.momentum, self.state.velocity[:2])
+        least = 2.0 * least_slip(*along_table(self.state), self.tops[0])
         change = scale(rolls * least, directions_of(self.state.axis)[0])
         state = self.state._replace(
             momentum=spun_up(self.state.axis, self.state.momentum, change, self.tops[0])
@@ -187,7 +187,7 @@ class TwoClosed:
         """The mode in which slip begins, with some power of time."""
         assert found.begins is not None
         if any(found.sticks):
-            least = 2.0 * least_slip(self.state.momentum, self.state.velocity[:2])
+            least = 2.0 * least_slip(*along_table(self.state), self.tops[0])
             tops = self.tops if found.sticks[0] else self.tops[::-1]
             sign = found.begins[2] if found.sticks[0] else -found.begins[2]
             change = (0.0, 0.0, found.begins[2] * least / apart(self.pair))

@@ -1148,10 +1148,16 @@ function contact(axis, momentum, velocity, top) {
 
 /** Acceleration of the gap in free flight, -(g + h'' c'^2 + h' [L x n']_z / I1), m/s^2. */
 function free_acceleration(axis, momentum, top) {
+  var [bending, swinging] = turning_parts(axis, momentum, top);
+  return py.neg(py.add(top.gravity, py.add(bending, swinging)));
+}
+
+/** The parts h'' c'^2 and h' [L x n']_z / I1 of that, m/s^2. */
+function turning_parts(axis, momentum, top) {
   var turning = axis_rate(axis, momentum, top);
   var lever = py.div(top.surface.slope(axis[2]), top.transverse_inertia);
   var bending = py.mul(py.mul(top.surface.curvature(axis[2]), turning[2]), turning[2]);
-  return py.neg(py.add(top.gravity, py.add(bending, py.mul(lever, cross(momentum, turning)[2]))));
+  return [bending, py.mul(lever, cross(momentum, turning)[2])];
 }
 
 /** What a force upwards, N, and a moment M about the centre of mass, N m, add: F/m - (h'/I1) [M x n]_z. */
@@ -1162,8 +1168,9 @@ function driven_acceleration(axis, upwards, moment, top) {
 
 /** Whether the gap would close without a contact force, by more than errors of a run. */
 function presses(axis, momentum, top) {
-  var free = free_acceleration(axis, momentum, top);
-  return py.neg(free) > py.mul(PRESSED, py.add(top.gravity, py.abs(py.add(free, top.gravity))));
+  var [bending, swinging] = turning_parts(axis, momentum, top);
+  var sinking = py.add(top.gravity, py.add(bending, swinging));
+  return sinking > py.mul(PRESSED, py.add(py.add(top.gravity, py.abs(bending)), py.abs(swinging)));
 }
 
 /** Moment of the contact force about the centre of mass per unit normal force, a x (z + f) + t, m. */
@@ -2456,15 +2463,17 @@ function come_to_rest(state, top, slip, rolling) {
 /** Whether the contact slips, or drills where its law resists that, by more than rounding. */
 function is_slipping(axis, momentum, velocity, top) {
   var found = false;
+  var least = least_slip(axis, momentum, velocity, top);
   for (var number of slip_of(axis, momentum, velocity, top)) {
-    found = found | py.abs(number) > least_slip(momentum, velocity);
+    found = found | py.abs(number) > least;
   }
   return found;
 }
 
 /** Slip that is more than rounding. */
-function least_slip(momentum, velocity) {
-  return py.mul(ROUNDING, py.sum([...momentum, ...velocity].map((number) => py.abs(number))));
+function least_slip(axis, momentum, velocity, top) {
+  var turning = scaled(top.surface.size, angular_velocity(axis, momentum, top));
+  return py.mul(ROUNDING, py.sum([...turning, ...velocity].map((number) => py.abs(number))));
 }
 
 /** Whether the body turns, by more than rounding, about anything but the vertical; as `is_slipping`. */
@@ -2566,6 +2575,8 @@ function tangents(e) {
 
 // tippetop.mechanics.ending
 const [DIGITS, SLOW] = [1e-11, 1e-09];
+const QUICK = 100000.0;
+const JAMMING = 1e-12;
 
 /** A velocity that ends or begins, and what the other does meanwhile. */
 class Vanishing extends py.NamedTuple {
@@ -2629,10 +2640,14 @@ class Vanishing extends py.NamedTuple {
   }
   /** What the table does, and how the contact accelerates, for a direction of xi; None is held. */
   contact(point, xi, slip) {
+    return contact_motion(point, ...this.beside(point, xi, slip));
+  }
+  /** Slip and rolling, None where they are held, for the same. */
+  beside(point, xi, slip) {
     if (py.truth(this.slip)) {
-      return contact_motion(point, xi, py.truth(this.held) ? null : point.turning.slice(0, 2));
+      return [xi, py.truth(this.held) ? null : point.turning.slice(0, 2)];
     }
-    return contact_motion(point, py.truth(this.moves) ? slip : null, xi === null ? null : [xi[0], xi[1]]);
+    return [py.truth(this.moves) ? slip : null, xi === null ? null : [xi[0], xi[1]]];
   }
 }
 
@@ -2709,11 +2724,6 @@ function closing_rates(state, ending, top) {
   return new Closing(scale(step, rates.axis), scale(step, rates.momentum), moved, turn, speeding, step);
 }
 
-/** R, the rate of s. */
-function slowing(state, ending, top) {
-  return inner(rates_in_time(state, ending, top).xi, state.direction);
-}
-
 /** Falls through zero where the end is twice as far as `HORIZON` again: -(s + 2 HORIZON R). */
 function reopening_guard(state, ending, top) {
   var rate = rates_in_time(state, ending, top).xi;
@@ -2721,9 +2731,13 @@ function reopening_guard(state, ending, top) {
   return py.sub(py.mul(py.mul(-2.0, HORIZON), py.sub(inner(rate, state.direction), doubt)), state.speed);
 }
 
-/** Falls through zero where xi, at its present rate, ends within the horizon (s): s + horizon R. */
+/** Falls through zero where xi, at its present rate, ends within the horizon (s), and is small by itself. */
 function landing_guard(state, ending, top, horizon) {
-  return py.add(state.speed, py.mul(horizon, slowing(state, ending, top)));
+  var rate = rates_in_time(state, ending, top).xi;
+  var turning = angular_velocity(state.axis, state.momentum, top);
+  var quick = py.mul(QUICK, py.pow(py.add(1.0, dot(turning, turning)), 0.5));
+  var share = py.div(quick, py.add(quick, py.pow(inner(rate, rate), 0.5)));
+  return py.add(state.speed, py.mul(py.mul(horizon, share), inner(rate, state.direction)));
 }
 
 /** Falls through zero where the other velocity, at present rates, ends in half the time left to this. */
@@ -2735,7 +2749,14 @@ function overtaking_guard(state, ending, top) {
   return py.add(ahead, py.mul(state.speed, inner(xi, other.rate(rates.acceleration, top))));
 }
 
-/** The state where xi has ended, in one step at the present rates, and an estimate of its error, s. */
+/** Falls through zero where the normal force grows beyond all bounds: Painleve's paradox begins. */
+function jamming_guard(state, ending, top) {
+  var point = ContactPoint.of(state.axis, state.momentum, top);
+  var pressed = going_on(point, ...ending.beside(point, state.direction, slip_beside(state, ending, top)))[0];
+  return py.sub(point.response(pressed).point[2], py.mul(JAMMING, point.response(FORCES[2]).point[2]));
+}
+
+/** The state where xi has ended, in one step at the present rates, and an estimate of its error. */
 function landed(state, ending, top) {
   var rates = rates_in_time(state, ending, top);
   var along = inner(rates.xi, state.direction);
@@ -2749,7 +2770,7 @@ function landed(state, ending, top) {
     0.0,
     py.add(state.time, left)
   );
-  return [rest, py.div(py.mul(left, size(across)), py.neg(along))];
+  return [rest, py.mul(py.mul(left, size(across)), py.max(1.0, py.div(-1.0, along)))];
 }
 
 // tippetop.contact.closed
@@ -3302,7 +3323,7 @@ function time_to(speed, rows, guess) {
 }
 
 // tippetop.contact.closing
-const [REOPENING, LANDED, TIME, OVERTAKEN] = ["reopening", "landed", "time", "overtaken"];
+const [REOPENING, LANDED, TIME, OVERTAKEN, JAMMED] = ["reopening", "landed", "time", "overtaken", "jammed"];
 const OWN = [REOPENING, LANDED, TIME];
 const LONGEST = 100.0;
 const SOON = [0.3, 2.0];
@@ -3364,6 +3385,9 @@ const closing_motion = py.cached((kind, ending, guarded) => {
   var stuck = py.and(!py.truth(ending.slip), () => ending.held);
   if (py.truth(guarded)) {
     guards.push(guard(LIFT_OFF, (state, top, _) => held_by(state, top).force[2]));
+  }
+  if (!py.truth(ending.held)) {
+    guards.push(guard(JAMMED, (state, top, _) => jamming_guard(state, ending, top)));
   }
   if (!py.truth(ending.held) && py.truth(top.resists_rolling) && py.truth(is_set_valued(law))) {
     guards.push(guard(OVERTAKEN, (state, top, _) => overtaking_guard(state, ending, top)));
@@ -3761,6 +3785,9 @@ class Stopping extends Passing {
     }
     if (arc.guard === "time") {
       return new Transition([], Outcome.COMPLETED, state);
+    }
+    if (arc.guard === "jammed") {
+      return this.rules.jammed(time, state);
     }
     if (arc.guard === "lift-off") {
       return this.rules.lift_off(time, state);
@@ -5857,6 +5884,27 @@ const impact_motion = py.cached((kind, ending = false) => {
   return new Motion(rates, 6, py.add(kind.numbers, 3), py.tuple(guards));
 });
 
+// tippetop.mechanics.jamming
+const PROBED = 1e-06;
+
+/** The state past the normal impulse over which friction comes to press the contact, which it jams. */
+function past_jamming(state, top) {
+  var touch = contact(...state, top);
+  var force = touch.traction.force;
+  var moment = moment_per_normal_force(touch.arm, touch.traction);
+  var after = (impulse) => {
+    var [x, y] = plus(state.velocity, scaled(py.div(impulse, top.mass), force));
+    return new SlidingState(state.axis, add(state.momentum, scale(impulse, moment)), [x, y]);
+  };
+  var before = slip_of(...state, top);
+  var whole = py.div(size(before), py.math.dist(slip_of(...after(1.0), top), before));
+  var fall = py.sub(touch.delassus, contact(...after(py.mul(PROBED, whole)), top).delassus);
+  if (!(fall > 0.0)) {
+    throw new Unsolved("it is not friction that jams it");
+  }
+  return after(py.mul(py.mul(py.div(py.mul(2.0, touch.delassus), fall), PROBED), whole));
+}
+
 // tippetop.contact.rules
 const SLOWEST_REBOUND = 1e-06;
 const REST = 1e-13;
@@ -6037,6 +6085,16 @@ class Rules extends py.Record {
       return this.resting(time, state);
     }
     return this._leaving(time, state);
+  }
+  /** What follows where the normal force has grown beyond all bounds, and slip goes on. */
+  jammed(time, state) {
+    try {
+      var beyond = on_table(past_jamming(along_table(state), this.top), this.top);
+    } catch (error) {
+      if (!(error instanceof py.ArithmeticError)) throw error;
+      return failed("What follows where friction jams the contact", error, state);
+    }
+    return this.inconsistent(time, beyond, []);
   }
   /** What follows when the normal force falls to zero. */
   _leaving(time, state) {
@@ -7181,7 +7239,7 @@ class TwoClosed extends py.Record {
   }
   /** The same where rolling has begun. */
   _rolling(rolls) {
-    var least = py.mul(2.0, least_slip(this.state.momentum, this.state.velocity.slice(0, 2)));
+    var least = py.mul(2.0, least_slip(...along_table(this.state), this.tops[0]));
     var change = scale(py.mul(rolls, least), directions_of(this.state.axis)[0]);
     var state = py.replace(
       this.state,
@@ -7193,7 +7251,7 @@ class TwoClosed extends py.Record {
   /** The mode in which slip begins, with some power of time. */
   letting_go(found, growing = 1) {
     if (py.truth(py.any(found.sticks))) {
-      var least = py.mul(2.0, least_slip(this.state.momentum, this.state.velocity.slice(0, 2)));
+      var least = py.mul(2.0, least_slip(...along_table(this.state), this.tops[0]));
       var tops = py.truth(found.sticks[0]) ? this.tops : py.slice(this.tops, null, null, -1);
       var sign = py.truth(found.sticks[0]) ? found.begins[2] : py.neg(found.begins[2]);
       var change = [0.0, 0.0, py.div(py.mul(found.begins[2], least), apart(this.pair))];
@@ -11255,6 +11313,8 @@ export {
   ImpactProcess,
   Instants,
   IntegratedMode,
+  JAMMED,
+  JAMMING,
   JellettLine,
   KEPT,
   Kind,
@@ -11355,6 +11415,7 @@ export {
   PRESSED,
   PRESSED_of_loosening,
   PRESSED_of_slipping,
+  PROBED,
   PRODUCT,
   PROTRUDING,
   PairMotion,
@@ -11367,6 +11428,7 @@ export {
   Problem,
   ProcessOnTwo,
   Prospects,
+  QUICK,
   QUOTIENT,
   Quadratures,
   RARELY,
@@ -11680,6 +11742,7 @@ export {
   is_rolling,
   is_set_valued,
   is_slipping,
+  jamming_guard,
   javascript_source,
   jellett,
   jellett_line,
@@ -11741,6 +11804,7 @@ export {
   parting_guard,
   parts_left,
   passes_flat,
+  past_jamming,
   patches_letting_go,
   phis,
   piece,
@@ -11811,7 +11875,6 @@ export {
   slip_wrenches,
   slipping,
   slips_of,
-  slowing,
   smoothly_joined,
   solution,
   solve,
@@ -11852,6 +11915,7 @@ export {
   turned_slope,
   turning_about,
   turning_along,
+  turning_parts,
   turning_with,
   unknown,
   unrolled,

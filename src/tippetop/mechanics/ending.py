@@ -16,21 +16,29 @@ from typing import NamedTuple
 from tippetop.mechanics.motion import angular_velocity, axis_rate
 from tippetop.mechanics.rolling import (
     COUPLES,
+    FORCES,
     Acceleration,
     ContactPoint,
     Slip,
     Wrench,
     contact_motion,
     flat,
+    going_on,
     slip_length,
     slip_wrenches,
 )
 from tippetop.mechanics.stick_slip import HORIZON, inner, plus, scaled, size, slip_of, slip_part
 from tippetop.mechanics.top import Top
-from tippetop.mechanics.vectors import Scalar, Vector, add, scale
+from tippetop.mechanics.vectors import Horizontal, Scalar, Vector, add, dot, scale
 
 DIGITS, SLOW = 1e-11, 1e-9
 """Error of a velocity that is not followed by itself, in natural units, and one that is slow beside it."""
+
+QUICK = 1e5
+"""How many times its own velocities change in a natural unit of time where they change fast."""
+
+JAMMING = 1e-12
+"""Delassus number of the slipping contact, over that without friction, that is next to nothing."""
 
 
 class Vanishing(NamedTuple):
@@ -88,9 +96,15 @@ class Vanishing(NamedTuple):
 
         The slip is asked for only where rolling ends or begins and the contact slips meanwhile.
         """
+        return contact_motion(point, *self.beside(point, xi, slip))
+
+    def beside(
+        self, point: ContactPoint, xi: Slip | None, slip: Slip | None
+    ) -> tuple[Slip | None, Horizontal | None]:
+        """Slip and rolling, None where they are held, for the same."""
         if self.slip:
-            return contact_motion(point, xi, None if self.held else point.turning[:2])
-        return contact_motion(point, slip if self.moves else None, None if xi is None else (xi[0], xi[1]))
+            return xi, None if self.held else point.turning[:2]
+        return slip if self.moves else None, None if xi is None else (xi[0], xi[1])
 
 
 class Closing(NamedTuple):
@@ -149,11 +163,6 @@ def closing_rates(state: Closing, ending: Vanishing, top: Top) -> Closing:
     return Closing(scale(step, rates.axis), scale(step, rates.momentum), moved, turn, speeding, step)
 
 
-def slowing(state: Closing, ending: Vanishing, top: Top) -> Scalar:
-    """R, the rate of s."""
-    return inner(rates_in_time(state, ending, top).xi, state.direction)
-
-
 def reopening_guard(state: Closing, ending: Vanishing, top: Top) -> Scalar:
     """Falls through zero where the end is twice as far as `HORIZON` again: -(s + 2 HORIZON R).
 
@@ -165,8 +174,15 @@ def reopening_guard(state: Closing, ending: Vanishing, top: Top) -> Scalar:
 
 
 def landing_guard(state: Closing, ending: Vanishing, top: Top, horizon: Scalar) -> Scalar:
-    """Falls through zero where xi, at its present rate, ends within the horizon (s): s + horizon R."""
-    return state.speed + horizon * slowing(state, ending, top)
+    """Falls through zero where xi, at its present rate, ends within the horizon (s), and is small by itself.
+
+    That is s + horizon R V / (V + |A|) with a velocity V that is `QUICK` times the body's own: where xi
+    changes faster than that, there may be much of it left for so short a time.
+    """
+    rate, turning = rates_in_time(state, ending, top).xi, angular_velocity(state.axis, state.momentum, top)
+    quick = QUICK * (1.0 + dot(turning, turning)) ** 0.5
+    share = quick / (quick + inner(rate, rate) ** 0.5)
+    return state.speed + horizon * share * inner(rate, state.direction)
 
 
 def overtaking_guard(state: Closing, ending: Vanishing, top: Top) -> Scalar:
@@ -178,8 +194,22 @@ def overtaking_guard(state: Closing, ending: Vanishing, top: Top) -> Scalar:
     return ahead + state.speed * inner(xi, other.rate(rates.acceleration, top))
 
 
+def jamming_guard(state: Closing, ending: Vanishing, top: Top) -> Scalar:
+    """Falls through zero where the normal force grows beyond all bounds: Painleve's paradox begins.
+
+    Friction that turns is about to press the contact as much as that is pushed apart. There xi changes as
+    fast, and would seem to end, however much of it is left.
+    """
+    point = ContactPoint.of(state.axis, state.momentum, top)
+    pressed = going_on(point, *ending.beside(point, state.direction, slip_beside(state, ending, top)))[0]
+    return point.response(pressed).point[2] - JAMMING * point.response(FORCES[2]).point[2]
+
+
 def landed(state: Closing, ending: Vanishing, top: Top) -> tuple[Closing, float]:
-    """The state where xi has ended, in one step at the present rates, and an estimate of its error, s."""
+    """The state where xi has ended, in one step at the present rates, and an estimate of its error.
+
+    In natural units, of the time and of the velocities.
+    """
     rates = rates_in_time(state, ending, top)
     along = inner(rates.xi, state.direction)
     left = -state.speed / along
@@ -192,4 +222,4 @@ def landed(state: Closing, ending: Vanishing, top: Top) -> tuple[Closing, float]
         0.0,
         state.time + left,
     )
-    return rest, left * size(across) / -along
+    return rest, left * size(across) * max(1.0, -1.0 / along)

@@ -108,10 +108,16 @@ def contact(axis: Vector, momentum: Vector, velocity: Horizontal, top: Top) -> S
 
 def free_acceleration(axis: Vector, momentum: Vector, top: Top) -> Scalar:
     """Acceleration of the gap in free flight, -(g + h'' c'^2 + h' [L x n']_z / I1), m/s^2."""
+    bending, swinging = turning_parts(axis, momentum, top)
+    return -(top.gravity + (bending + swinging))
+
+
+def turning_parts(axis: Vector, momentum: Vector, top: Top) -> Horizontal:
+    """The parts h'' c'^2 and h' [L x n']_z / I1 of that, m/s^2."""
     turning = axis_rate(axis, momentum, top)
     lever = top.surface.slope(axis[2]) / top.transverse_inertia
     bending = top.surface.curvature(axis[2]) * turning[2] * turning[2]
-    return -(top.gravity + (bending + lever * cross(momentum, turning)[2]))
+    return bending, lever * cross(momentum, turning)[2]
 
 
 def driven_acceleration(axis: Vector, upwards: Scalar, moment: Vector, top: Top) -> Scalar:
@@ -125,8 +131,9 @@ def presses(axis: Vector, momentum: Vector, top: Top) -> Scalar:
 
     A truth value of floats, or an array of them.
     """
-    free = free_acceleration(axis, momentum, top)
-    return -free > PRESSED * (top.gravity + abs(free + top.gravity))
+    bending, swinging = turning_parts(axis, momentum, top)
+    sinking = top.gravity + (bending + swinging)
+    return sinking > PRESSED * (top.gravity + abs(bending) + abs(swinging))
 
 
 def moment_per_normal_force(arm: Vector, traction: Traction) -> Vector:

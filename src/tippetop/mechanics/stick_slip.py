@@ -38,7 +38,7 @@ To watch it costs as much again as to follow the motion, and most of a motion it
 """
 
 ROUNDING = 1e-14
-"""Slip, relative to the momenta and velocities it is made of in natural units, that is rounding."""
+"""Slip, relative to the velocities it is made of, that is rounding."""
 
 
 STILL = 0.1
@@ -74,15 +74,16 @@ def is_slipping(axis: Vector, momentum: Vector, velocity: Horizontal, top: Top) 
 
     A truth value of floats, or an array of them.
     """
-    found = False
+    found, least = False, least_slip(axis, momentum, velocity, top)
     for number in slip_of(axis, momentum, velocity, top):
-        found = found | (abs(number) > least_slip(momentum, velocity))
+        found = found | (abs(number) > least)
     return found
 
 
-def least_slip(momentum: Vector, velocity: Horizontal) -> Scalar:
+def least_slip(axis: Vector, momentum: Vector, velocity: Horizontal, top: Top) -> Scalar:
     """Slip that is more than rounding."""
-    return ROUNDING * sum(abs(number) for number in (*momentum, *velocity))
+    turning = scaled(top.surface.size, angular_velocity(axis, momentum, top))
+    return ROUNDING * sum(abs(number) for number in (*turning, *velocity))
 
 
 def is_rolling(axis: Vector, momentum: Vector, top: Top) -> Scalar:

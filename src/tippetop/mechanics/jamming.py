@@ -1,0 +1,46 @@
+"""What an impulse does where friction that turns comes to press the contact, which it jams."""
+
+import math
+
+from tippetop.mechanics.motion import contact, moment_per_normal_force
+from tippetop.mechanics.state import SlidingState
+from tippetop.mechanics.stick_slip import plus, scaled, size, slip_of
+from tippetop.mechanics.top import Top
+from tippetop.mechanics.unsolved import Unsolved
+from tippetop.mechanics.vectors import add, scale
+
+PROBED = 1e-6
+"""Part of the slip that an impulse takes or turns that tells how the Delassus number changes with it."""
+
+
+def past_jamming(state: SlidingState, top: Top) -> SlidingState:
+    """The state past the normal impulse over which friction comes to press the contact, which it jams.
+
+    There the Delassus number of the slipping contact falls through zero. A little before, it is as much above
+    as it is below after twice that impulse, while the contact opens by nothing.
+
+    Parameters
+    ----------
+    state
+        The state before, floats: see `tippetop.mechanics.ending.jamming_guard`.
+    top
+        The body and the friction law.
+
+    Raises
+    ------
+    ArithmeticError
+        If that number does not fall as the impulse grows.
+    """
+    touch = contact(*state, top)
+    force, moment = touch.traction.force, moment_per_normal_force(touch.arm, touch.traction)
+
+    def after(impulse: float) -> SlidingState:
+        x, y = plus(state.velocity, scaled(impulse / top.mass, force))
+        return SlidingState(state.axis, add(state.momentum, scale(impulse, moment)), (x, y))
+
+    before = slip_of(*state, top)
+    whole = size(before) / math.dist(slip_of(*after(1.0), top), before)
+    fall = touch.delassus - contact(*after(PROBED * whole), top).delassus
+    if not fall > 0.0:
+        raise Unsolved("it is not friction that jams it")
+    return after(2.0 * touch.delassus / fall * PROBED * whole)

@@ -1,0 +1,90 @@
+"""Friction that turns comes to press the contact onto the table: Painleve's paradox in the midst of slip.
+
+A heavy core in a light sphere: the contact point answers to a normal force with the acceleration A, which
+friction in some directions of slip makes less than zero. Slip that is slowed down turns towards them.
+"""
+
+import itertools
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import tippetop as tt
+from tippetop.integrators import has_taylor
+
+M, R, OFF, INERTIA, MU, G = 0.02, 0.02, 0.001, 4e-8, 0.3, 9.81
+"""Mass, radius, distance of the centres, moments of inertia, friction and gravity, SI."""
+
+pytestmark = pytest.mark.skipif(not has_taylor(), reason="the other integrators take long to come so near")
+
+
+def jamming(liftoff: str = "fly") -> tt.Problem:
+    """The sphere, which slips across the direction in which it leans."""
+    return tt.Problem(
+        body=tt.Body(
+            mass=M, shape=tt.EccentricSphere(radius=R, eccentricity=OFF / R), I1=INERTIA, I3=INERTIA
+        ),
+        friction=tt.CoulombFriction(mu=MU),
+        launch=tt.Launch(tilt=1.2, spin=0.0, slip=(0.0, 0.05)),
+        contact=tt.Contact(liftoff=liftoff, restitution=0.0),
+        gravity=G,
+    )
+
+
+def on_springs(stiffness: float, jams: float, eps: float = 1e-6) -> np.ndarray:
+    """Angular velocity at the end of compression on an elastic table, without any notion of an impact."""
+    start = jamming().start()
+
+    def contact(y: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
+        arm = OFF * y[:3] - np.array([0.0, 0.0, R])
+        return arm, y[6:9] + np.cross(y[3:6] / INERTIA, arm), -(y[9] + arm[2])
+
+    def rates(_: float, y: np.ndarray) -> np.ndarray:
+        arm, slip, depth = contact(y)
+        normal = stiffness * max(depth, 0.0)
+        force = np.array([*(-MU * normal * slip[:2] / np.hypot(eps, np.hypot(*slip[:2]))), normal])
+        turned = np.cross(y[3:6] / INERTIA, y[:3])
+        return np.array([*turned, *np.cross(arm, force), *(force / M - [0.0, 0.0, G]), y[8]])
+
+    def rebounding(_: float, y: np.ndarray) -> float:
+        return float(contact(y)[1][2])
+
+    rebounding.direction = 1.0  # type: ignore[attr-defined]
+    pressed = float(tt.simulate(jamming(), 1e-6, samples=2)["normal_force"][0]) / stiffness
+    begin = np.array([*start.axis, *start.momentum, *start.velocity, start.height - pressed])
+    found = solve_ivp(
+        rates, (0.0, 1.5 * jams), begin, method="LSODA", rtol=1e-8, atol=1e-14, events=rebounding
+    )
+    ends = [y for t, y in zip(found.t_events[0], found.y_events[0], strict=True) if t > jams]
+    return np.asarray(ends[0][3:6]) / INERTIA
+
+
+def test_a_contact_that_jams_is_struck_as_the_limit_of_elastic_ones_is() -> None:
+    run = tt.simulate(jamming(), 1e-3, times=[0.0, 1e-4])
+    assert run["event_kind"].values.tolist() == ["impact", "stick"]
+    assert float(run["event_energy_lost"][0]) > 0.0
+    assert float(run["energy_error"]) < 1e-9
+    jams = float(run["event_time"][0])
+    # It has slipped until then, and while it sticks weight alone turns it.
+    after = tt.simulate(jamming(), 1e-3, times=[0.0, jams * (1.0 + 1e-9)])
+    turning = angular_velocity(after)
+    off = [np.abs(on_springs(stiffness, jams) - turning) for stiffness in (1e8, 1e9, 1e10)]
+    size = np.linalg.norm(turning)
+    assert np.linalg.norm(off[2]) < 1e-4 * size
+    # What gravity does meanwhile falls as the time of compression, and the rest faster.
+    assert all(np.linalg.norm(b) < 0.6 * np.linalg.norm(a) for a, b in itertools.pairwise(off))
+
+
+def angular_velocity(run) -> np.ndarray:
+    """Angular velocity of the last sample, of a body whose moments of inertia are all the same."""
+    return np.asarray(run["angular_momentum"].values[-1]) / INERTIA
+
+
+@pytest.mark.parametrize("liftoff", ["stop", "ignore"])
+def test_a_contact_that_jams_ends_a_run_without_impacts(liftoff: str) -> None:
+    run = tt.simulate(jamming(liftoff), 1e-3, samples=11)
+    assert run.attrs["outcome"] == "failed"
+    assert "no contact force is consistent" in run.attrs["outcome_advice"]
+    assert float(run["energy_error"]) < 1e-9
+    assert float(np.hypot(run["slip_x"], run["slip_y"])[-1]) > 1e-4
