@@ -50,6 +50,9 @@ FEW = 16
 MOST = 16
 """Arcs after which such an end is given up, within seconds; most take two."""
 
+STALLED = 1e-9
+"""Part of the clock that an arc of thousands of steps goes, if it goes no farther, from which none ends."""
+
 
 def followed(
     integrator: Integrator, motion: Motion, parameters: Sequence[float], start: tuple[float, Array]
@@ -59,7 +62,8 @@ def followed(
     for end in (*[start[0] + part for part in SOON if start[0] + part < LONGEST], LONGEST):
         for arc in integrator.integrate(motion, parameters, start, end):
             arcs += 1
-            many = arc.guard is None and arc.failure is None and arcs == MOST
+            stalled = arc.solution.end - start[0] < STALLED * start[0]
+            many = arc.guard is None and arc.failure is None and (arcs == MOST or stalled)
             yield replace(arc, failure="slip, or rolling, takes too many steps to end") if many else arc
             if many or arc.guard is not None or arc.failure is not None:
                 return

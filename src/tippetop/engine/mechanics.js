@@ -3329,6 +3329,7 @@ const LONGEST = 100.0;
 const SOON = [0.3, 2.0];
 const FEW_of_closing = 16;
 const MOST_of_closing = 16;
+const STALLED = 1e-09;
 
 /** The end of slip, or of rolling, in its clock, arc by arc. */
 function* followed(integrator, motion, parameters, start) {
@@ -3341,9 +3342,10 @@ function* followed(integrator, motion, parameters, start) {
   ) {
     for (var arc of integrator.integrate(motion, parameters, start, end)) {
       arcs = py.add(arcs, 1);
+      var stalled = py.sub(arc.solution.end, start[0]) < py.mul(STALLED, start[0]);
       var many = py.and(
         arc.guard === null,
-        () => py.and(arc.failure === null, () => py.eq(arcs, MOST_of_closing))
+        () => py.and(arc.failure === null, () => py.or(py.eq(arcs, MOST_of_closing), () => stalled))
       );
       yield py.truth(many) ? py.replace(
         arc,
@@ -11498,6 +11500,7 @@ export {
   SPREAD,
   STAGES,
   STAGES_of_runge_kutta,
+  STALLED,
   START,
   STATE,
   STEP_LIMIT,
