@@ -311,6 +311,12 @@ class TestRefusals:
         assert message.startswith(f"{name} = 1 is not possible; accepted: one of the keys ")
         assert message.endswith(f"(did you mean {hint}?)")
 
+    def test_values_without_their_names_are_answered_with_the_names(self):
+        with pytest.raises(InvalidInput) as caught:
+            Launch(0.1, 155.0)
+        told = "Launch = (0.1, 155) is not possible; accepted: its fields by name: tilt, spin, azimuth, "
+        assert the_one_line_of(caught.value).startswith(told)
+
     def test_a_misspelt_key_is_told_before_the_key_that_is_missing_for_it(self):
         fields = fields_with("launch.tilt", ...)
         fields["launch"]["tlit"] = 0.1

@@ -65,10 +65,10 @@ def test_names_that_cannot_be_are_refused(words: list[str], sentence: str) -> No
 @pytest.mark.parametrize(
     ("command", "sentence"),
     [
-        ("simulate --spin fast", "--spin = 'fast' is not possible; accepted: a number"),
+        ("simulate --spin fast", "--spin = 'fast' is not possible; accepted: a finite number"),
         ("simulate --samples 2.5", "--samples = '2.5' is not possible; accepted: a whole number"),
         ("sweep --workers many", "--workers = 'many' is not possible; accepted: a whole number"),
-        ("lab --port 99999", "--port = '99999' is not possible; accepted: less than or equal to 65535"),
+        ("lab --port 99999", "--port = '99999' is not possible; accepted: a number at most 65535"),
     ],
 )
 def test_what_is_no_number_is_refused_as_everything_else(command: str, sentence: str) -> None:
@@ -77,3 +77,31 @@ def test_what_is_no_number_is_refused_as_everything_else(command: str, sentence:
     assert isinstance(done.exception, tt.TippetopError)
     if isinstance(done.exception, tt.InvalidInput):
         assert str(done.exception) == sentence
+
+
+@pytest.mark.parametrize(
+    ("command", "sentence"),
+    [
+        ("simulate --nope", "no such option: --nope"),
+        ("--nope", "no such option: --nope"),
+        ("simulate --duration", "--duration"),
+        ("simulat", "no such command 'simulat'"),
+        ("simulate one.toml two.toml", "two.toml"),
+    ],
+)
+def test_a_command_line_that_is_none_is_refused_in_one_sentence(command: str, sentence: str) -> None:
+    done = CliRunner().invoke(app, command.split())
+    assert isinstance(done.exception, tt.TippetopError)
+    assert sentence in str(done.exception)
+    assert "\n" not in str(done.exception)
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"), [({"kind": "coulomb"}, "dry friction of a point"), ({"kind": "nope"}, "'nope'")]
+)
+def test_critical_refuses_friction_in_the_words_of_users(changes: dict[str, str], told: str) -> None:
+    words = [word for name, value in changes.items() for word in ("--set", f"friction.{name}={value}")]
+    done = CliRunner().invoke(app, ["critical", *words])
+    assert isinstance(done.exception, tt.InvalidInput)
+    assert told in str(done.exception)
+    assert "Law(" not in str(done.exception)

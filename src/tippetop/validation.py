@@ -97,7 +97,10 @@ class Part(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, validate_default=True)
 
-    def __init__(self, /, **fields: Any) -> None:
+    def __init__(self, /, *values: Any, **fields: Any) -> None:
+        if values:
+            names = ", ".join(_written(type(self)))
+            raise InvalidInput(type(self).__name__, values, f"its fields by name: {names}")
         try:
             super().__init__(**fields)
         except ValidationError as error:
@@ -289,7 +292,7 @@ def _as_invalid_input(error: ValidationError, part: type[Part]) -> InvalidInput:
     if isinstance(cause, InvalidInput):
         return cause.within("" if f"{cause.field}.".startswith(f"{field}.") else field, others)
     value = MISSING if first["type"] == "missing" else first["input"]
-    return InvalidInput(field, value, _accepted(first, part), others)
+    return InvalidInput(field, value, accepted_by(first, _written(part)), others)
 
 
 def _written(part: type[Part]) -> dict[str, FieldInfo]:
@@ -297,20 +300,26 @@ def _written(part: type[Part]) -> dict[str, FieldInfo]:
     return {info.alias or name: info for name, info in part.model_fields.items()}
 
 
-def _accepted(detail: ErrorDetails, part: type[Part]) -> str:
-    """What would be accepted instead, from the kind of validation error."""
+def accepted_by(detail: ErrorDetails, fields: Mapping[str, FieldInfo]) -> str:
+    """What some fields, by their names, would accept instead, from the kind of validation error.
+
+    Without the field of a number that is out of its range, that is the limit it goes beyond.
+    """
+    place = [*map(str, detail["loc"]), ""]
     match detail["type"]:
         case "greater_than" | "greater_than_equal" | "less_than" | "less_than_equal":
-            return range_of(_written(part)[str(detail["loc"][0])])
+            return range_of(fields[place[0]]) if place[0] in fields else _ranged(detail["ctx"])
         case "finite_number" | "float_type" | "float_parsing":
             return "a finite number"
+        case "int_parsing":
+            return "a whole number"
         case "missing":
             return "a value; it has no default"
         case "extra_forbidden":
-            return "one of the keys " + one_of(detail["loc"][-1], list(_written(part)))
+            return "one of the keys " + one_of(place[-2], list(fields))
         case "literal_error":
             return str(detail["ctx"]["expected"])
-        case "tuple_type" | "too_long" if count := _length(_written(part).get(str(detail["loc"][-1]))):
+        case "tuple_type" | "too_long" if count := _length(fields.get(place[-2])):
             return f"{count} numbers"
         case "tuple_type" | "list_type":
             return "a list"
@@ -333,11 +342,23 @@ def _length(info: FieldInfo | None) -> int:
 
 def range_of(info: FieldInfo) -> str:
     """The constraints of a number in words: "a number greater than 0 and less than 1"."""
-    words = {"gt": "greater than", "ge": "at least", "lt": "less than", "le": "at most"}
-    bounds = [
-        f"{phrase} {'pi' if bound == math.pi else format(bound, 'g')}"
+    limits = {
+        name: getattr(constraint, name)
         for constraint in info.metadata
-        for name, phrase in words.items()
-        if (bound := getattr(constraint, name, None)) is not None
+        for name in _LIMITS
+        if getattr(constraint, name, None) is not None
+    }
+    return _ranged(limits, "a whole number" if info.annotation is int else "a number")
+
+
+_LIMITS = {"gt": "greater than", "ge": "at least", "lt": "less than", "le": "at most"}
+
+
+def _ranged(limits: Mapping[str, Any], kind: str = "a number") -> str:
+    """A kind of number within some limits."""
+    bounds = [
+        f"{words} {'pi' if limits[name] == math.pi else format(limits[name], 'g')}"
+        for name, words in _LIMITS.items()
+        if name in limits
     ]
-    return f"a {'whole ' if info.annotation is int else ''}number {' and '.join(bounds)}"
+    return f"{kind} {' and '.join(bounds)}"

@@ -150,6 +150,14 @@ def test_a_launch_that_a_table_cannot_hold_is_refused():
             flip_time_limit(problem.replace({"contact.liftoff": liftoff}))
 
 
+def test_a_launch_so_near_an_unstable_vertical_that_rounding_decides_is_refused_with_the_reason():
+    """The third turning point is at the pole itself, and which side of it is told by the last digit."""
+    launches = [REPORT.replace({"launch.tilt": math.pi - off, "launch.spin": 1.0}) for off in (1e-6, 1e-7)]
+    for launch in launches:
+        with pytest.raises(InvalidInput, match=r"launch\.tilt.*unstable vertical.*rounding decides"):
+            flip_time_limit(launch)
+
+
 def test_the_size_of_the_friction_and_the_sense_of_the_spin_do_not_matter():
     limit = flip_time_limit(REPORT)
     assert flip_time_limit(REPORT.replace({"friction.mu": 7.0})) == limit

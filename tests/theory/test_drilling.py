@@ -202,7 +202,10 @@ def test_what_the_theory_cannot_tell_is_refused_in_a_sentence():
             lambda: eigenvalues(branch, _on(ViscousLaw(0.3), RollingResistance(1e-5))),
         ),
         ("friction = .* without torque", lambda: tt.predict(problem)),
-        ("friction = CoulombLaw.* may roll for ever", lambda: spectrum(leaning, _on(CoulombLaw(0.3)))),
+        (
+            "friction = 'dry friction of a point'.* may roll for ever",
+            lambda: spectrum(leaning, _on(CoulombLaw(0.3))),
+        ),
         (
             "rolling_resistance = 1e-05",
             lambda: spectrum(leaning, _on(ViscousLaw(0.3), RollingResistance(1e-5))),

@@ -4,6 +4,7 @@ import sys
 from typing import Annotated, Any
 
 import typer
+from pydantic import ValidationError
 from typer.core import TyperGroup
 
 from tippetop import __version__
@@ -16,6 +17,7 @@ from tippetop.cli.simulate import simulate
 from tippetop.cli.sweep import sweep
 from tippetop.errors import OTHER_OUT, OVERWRITE, RESUME, InvalidInput, TippetopError
 from tippetop.interrupts import INTERRUPTED, asked_to_end, let_end, let_raise
+from tippetop.validation import accepted_by
 
 MISUSE = 2
 
@@ -23,19 +25,26 @@ WORDS = {OVERWRITE: "--force", RESUME: "--resume", OTHER_OUT: "another --out"}
 """What is asked for here, by how it is asked for in Python."""
 
 
-NUMBERS = {"float_parsing": "a number", "int_parsing": "a whole number"}
-"""What is accepted where typer finds none."""
+UsageError: Any = typer.BadParameter.__base__
+"""What typer says of a command line that is none."""
 
 
 class Commands(TyperGroup):
     """Commands that say so when Ctrl-C ends them: typer alone ends them without a word."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Take what stands before the command."""
+        try:
+            return super().parse_args(ctx, args)
+        except UsageError as error:
+            raise _in_a_sentence(error) from None
 
     def invoke(self, ctx: Any) -> Any:
         """Run the command asked for."""
         try:
             let_raise()
             return super().invoke(ctx)
-        except typer.BadParameter as error:
+        except UsageError as error:
             raise _in_a_sentence(error) from None
         except (KeyboardInterrupt, Exception) as error:
             if not (isinstance(error, KeyboardInterrupt) or asked_to_end()) or isinstance(error, typer.Exit):
@@ -47,13 +56,13 @@ class Commands(TyperGroup):
 
 
 def _in_a_sentence(error: Any) -> Exception:
-    """What typer says of an option that cannot be, with the value and in the words of all other sentences."""
-    name: str = error.param.opts[0]
-    told: list[Any] = getattr(error.__cause__, "errors", list)()
-    if not told:
-        return TippetopError(f"{name}: {error.message}") if error.message else error
-    accepted = NUMBERS.get(told[0]["type"], told[0]["msg"].removeprefix("Input should be "))
-    return InvalidInput(name, told[0]["input"], accepted)
+    """What typer says of a command line, in the words of all other sentences; help that it shows as it is."""
+    cause = error.__cause__
+    if isinstance(cause, ValidationError):
+        detail = cause.errors()[0]
+        return InvalidInput(error.param.opts[0], detail["input"], accepted_by(detail, {}))
+    told: str = error.format_message()
+    return TippetopError(told[0].lower() + told[1:].removesuffix(".")) if told else error
 
 
 app = typer.Typer(

@@ -78,6 +78,11 @@ def _sentences(found: "Outlook") -> Iterator[Any]:
         )
     if found.group is not None:
         yield f"[dim]ω_c1, ω_c2: spins of launches with this one's tilt, {found.tilt:.6g} rad, and rates.[/]"
+    if found.flip_time is not None:
+        yield (
+            "[dim]At this friction: far off if that is much, or if a nutation brings the axis round the "
+            "vertical about once.[/]"
+        )
     headings = ("kind", "tilt", "precession", "axial spin", "energy", "", "growth rate")
     rows = (_state_row(judged) for judged in found.steady)
     yield listing("Steady states of this launch", headings, rows, words=("kind", ""))

@@ -8447,7 +8447,7 @@ function require_sphere(top) {
   if (!py.truth(top.surface.spherical)) {
     throw new InvalidInput(
       "body.shape",
-      top.surface,
+      "no sphere",
       "an eccentric sphere; Jellett's integral holds for no other"
     );
   }
@@ -8463,7 +8463,7 @@ function require_jellett(top) {
   if (!py.truth(top.conserves_jellett)) {
     throw new InvalidInput(
       "friction",
-      top.friction,
+      "one with a torque",
       "friction without torque, which conserves Jellett's integral"
     );
   }
@@ -8475,7 +8475,7 @@ function require_creep(top) {
   if (py.truth(is_edge(top.surface))) {
     throw new InvalidInput(
       "body.shape",
-      top.surface,
+      "one that lies flat",
       "a shape that touches in one point when its axis is vertical"
     );
   }
@@ -8490,7 +8490,7 @@ function require_creep(top) {
   if (py.truth(is_set_valued(top.friction)) && slip_length(top.friction) === null) {
     throw new InvalidInput(
       "friction",
-      top.friction,
+      "dry friction of a point",
       "viscous, regularized or Contensou friction, by which slip never ends while the top spins; on this one it sticks, and may roll for ever in a state that is not stable"
     );
   }

@@ -99,9 +99,13 @@ def _stages(problem: Problem, distance: float, tolerance: float) -> list[Stage]:
     top = problem.top
     numbers = numbers_of(top)
     if numbers.alpha == 0.0:
-        raise InvalidInput("body.shape", top.surface, "an eccentric sphere: no other nutates by its weight")
+        raise InvalidInput(
+            "body.shape", "a centred sphere", "an eccentric one: no other nutates by its weight"
+        )
     if not isinstance(top.friction, ViscousLaw):
-        raise InvalidInput("friction", top.friction, "viscous friction; no other slip averages out")
+        raise InvalidInput(
+            "friction", "one that is not viscous", "viscous friction; no other slip averages out"
+        )
     if problem.launch.tilt in (0.0, math.pi) and problem.launch.tilt_rate == 0.0:
         raise InvalidInput("launch.tilt", problem.launch.tilt, "a tilted launch: a vertical spin is steady")
     jellett = jellett_of_launch(problem)
@@ -140,11 +144,7 @@ def flip_time_limit(problem: Problem, distance: float = 0.01) -> float:
     stages = _stages(problem, distance, TOLERANCE)
     final = stages[-1].final_tilt
     if not math.isfinite(final):
-        raise InvalidInput(
-            "launch",
-            problem.launch,
-            "one whose nutation can be followed until it has died away, and the table holds without a pull",
-        )
+        raise _no_end(problem, stages)
     begin = 0.0
     for stage in stages:
         time = _first_near(stage, final, distance)
@@ -152,6 +152,16 @@ def flip_time_limit(problem: Problem, distance: float = 0.01) -> float:
             return (begin + time) / float(problem.top.gravity)
         begin += float(stage.knots[-1])
     return begin / float(problem.top.gravity)
+
+
+def _no_end(problem: Problem, stages: list[Stage]) -> InvalidInput:
+    """The refusal of a launch whose slow flow is not followed to its end."""
+    if stages[0].begin.grazes:
+        other = "one further from the unstable vertical: here rounding decides how the nutation begins"
+        return InvalidInput("launch.tilt", problem.launch.tilt, other)
+    pulled = stages[-1].pulled
+    launch = "one that needs a pull of the table" if pulled else "one that gains from a table that pulls"
+    return InvalidInput("launch", launch, "one whose nutation dies away without a pull")
 
 
 def _first_near(stage: Stage, final: float, distance: float) -> float | None:

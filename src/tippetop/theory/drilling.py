@@ -89,7 +89,9 @@ def time_to_stand(steady: SteadyState[float], top: Top) -> float:
     if steady.kind not in VERTICAL_SPINS:
         raise InvalidInput("kind", steady.kind.value, "a vertical spin")
     if not (top.friction.torque_free or is_set_valued(top.friction)):
-        raise InvalidInput("friction", top.friction, "Contensou friction, or one without torque")
+        raise InvalidInput(
+            "friction", "one whose torque changes", "Contensou friction, or one without torque"
+        )
     if not spectrum(steady, top).stable:
         return 0.0
     rate, spin = abs(spin_rate(steady, top)), abs(steady.spin)

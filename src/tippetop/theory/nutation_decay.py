@@ -48,6 +48,11 @@ class Nutation(NamedTuple):
         logs[int(pair.fast > pair.slow)] += self.log_share
         return np.array([*logs, math.sqrt(abs(self.orbit.far))])
 
+    @property
+    def grazes(self) -> bool:
+        """Whether it just reaches the other pole, or just passes it: rounding decides which."""
+        return bool(abs(self.orbit.far) <= _APART**2)
+
     def turn(self, numbers: Numbers) -> "Nutation":
         """The same seen from the other pole."""
         seen = upside_down(self.orbit, numbers.turned if self.turned else numbers)
@@ -118,6 +123,8 @@ class Stage(NamedTuple):
     """Tilt of the steady state that it ends in, rad, or nan."""
     done: bool
     """Whether it leads to the end of the flow; otherwise the other pole has come nearer."""
+    pulled: bool
+    """Whether the flow ends there because the nutation needs a pull of the table."""
 
     def tilts(self, times: Array) -> tuple[Array, Array]:
         """Turning tilts of the nutation, rad, at these times, shape (n,)."""
@@ -145,10 +152,11 @@ def follow_nutation(
     first = _LONGEST / max(1.0, _LONGEST * np.abs(rates(0.0, point)).max())
     solver = DOP853(rates, 0.0, point, _LONGEST, first_step=first, rtol=tolerance, atol=tolerance)
     knots, pieces = [0.0], []
-    final, done = math.nan, True
+    final, done, pulled = math.nan, True, False
     for _ in range(_MOST_STEPS):
         seen = orbit_of_amplitudes(_amplitudes_of(solver.y), float(solver.y[2]), jellett, seen_numbers)
-        if goals.pushed and least_reaction(seen, seen_numbers) < 0.0:
+        pulled = goals.pushed and least_reaction(seen, seen_numbers) < 0.0
+        if pulled:
             break
         final = _reached(_tilts_of(solver.y, turned), goals)
         if math.isfinite(final):
@@ -162,7 +170,7 @@ def follow_nutation(
         pieces.append(solver.dense_output())
     share = min(0.0, -abs(solver.y[0] - solver.y[1]) - math.log(_LEAST_AMPLITUDE))
     path = OdeSolution(knots, pieces) if pieces else None
-    return Stage(np.array(knots), path, begin, Nutation(seen, turned, log_share=share), final, done)
+    return Stage(np.array(knots), path, begin, Nutation(seen, turned, log_share=share), final, done, pulled)
 
 
 _FAR_FROM_POLE = 1.3

@@ -17,7 +17,7 @@ def require_sphere(top: Top) -> None:
     require_one_surface(top)
     if not top.surface.spherical:
         raise InvalidInput(
-            "body.shape", top.surface, "an eccentric sphere; Jellett's integral holds for no other"
+            "body.shape", "no sphere", "an eccentric sphere; Jellett's integral holds for no other"
         )
 
 
@@ -29,7 +29,7 @@ def require_jellett(top: Top) -> None:
         raise InvalidInput("rolling_resistance", arm, "0: with it Jellett's integral is not conserved")
     if not top.conserves_jellett:
         raise InvalidInput(
-            "friction", top.friction, "friction without torque, which conserves Jellett's integral"
+            "friction", "one with a torque", "friction without torque, which conserves Jellett's integral"
         )
 
 
@@ -43,7 +43,7 @@ def require_creep(top: Top) -> None:
     require_one_surface(top)
     if is_edge(top.surface):
         raise InvalidInput(
-            "body.shape", top.surface, "a shape that touches in one point when its axis is vertical"
+            "body.shape", "one that lies flat", "a shape that touches in one point when its axis is vertical"
         )
     if top.rolling_resistance is not None:
         arm = top.rolling_resistance.length
@@ -53,7 +53,7 @@ def require_creep(top: Top) -> None:
     if is_set_valued(top.friction) and slip_length(top.friction) is None:
         raise InvalidInput(
             "friction",
-            top.friction,
+            "dry friction of a point",
             "viscous, regularized or Contensou friction, by which slip never ends while the top spins; on "
             "this one it sticks, and may roll for ever in a state that is not stable",
         )

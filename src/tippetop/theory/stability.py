@@ -170,7 +170,7 @@ def _linear(kind: SteadyKind, tilt: Array, precession: Array, spin: Array, frame
     units = Units(*(float(unit) for unit in natural_units(top)))
     if kind not in VERTICAL_SPINS and not top.friction.torque_free:
         raise InvalidInput(
-            "friction", top.friction, "friction without torque; no precession is steady under it"
+            "friction", "one with a torque", "friction without torque; no precession is steady under it"
         )
     scaled = natural(drilling(top, spin))
     angles = Angles(tilt, 0.0, 0.0, precession * units.time, spin * units.time, (0.0, 0.0))
