@@ -269,6 +269,21 @@ def test_a_rod_falls_on_its_ends_in_turn_and_comes_to_lie(restitution: float) ->
     assert restitution or touches == [1, 0], "at rest at once, and no rocking"
 
 
+def test_two_balls_that_friction_holds_rock_to_rest() -> None:
+    """Their angular momentum about what strikes is I1 omega before, and (I1 + 2 m r^2) omega after.
+
+    That is 7/5 and 17/5 m r^2 omega. Friction this strong would tip them over if they slid.
+    """
+    launch, contact = tt.Launch(tilt=1.4, spin=0.0), tt.Contact(liftoff="fly")
+    balls, friction = tt.presets.HURRICANE_BALLS, tt.CoulombFriction(mu=2.0)
+    problem = tt.Problem(body=balls, friction=friction, launch=launch, contact=contact)
+    run = tt.simulate(problem, 0.5, times=[0.0, 0.5], integrator="dop853", step_limit=2000)
+    impulses = run["event_impulse"].values[run["event_kind"].values == "impact"]
+    assert impulses[1:10] / impulses[:9] == pytest.approx(np.full(9, 7 / 17), rel=1e-6)
+    assert run.attrs["outcome"] == "at_rest"
+    assert times(run, "stick")[-2:] == pytest.approx(np.full(2, times(run, "double contact")[0]), rel=1e-9)
+
+
 def lying(law: str, centers: tuple[float, float], velocity: float) -> tuple[OnSeveral, State]:
     """A body on two like spheres, whose axis lies along x and which moves along it, in natural units."""
     shapes = [tt.Sphere(radius=0.005, center=center) for center in centers]

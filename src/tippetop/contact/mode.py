@@ -64,8 +64,8 @@ class Outcome(Enum):
         "try another integrator or shorter steps, which a smaller tolerance makes where a method takes one."
     )
     FAILED = (
-        "The integrator could not go on: the motion became singular or too stiff for it; "
-        "try another integrator, or less friction."
+        "The run could not go on: it is not known what the table does from here on, or the integrator finds "
+        "no step; try less friction, or, where the reason is the integrator's, another one."
     )
 
 

@@ -91,8 +91,10 @@ class TwoClosed:
         ended: tuple[bool, bool] | None = None,
     ) -> "TwoClosed":
         """The contacts in a state that has slip, or tilts, by no more than what is taken for none."""
-        state, tops = without_tilting(state, tops[0]), (off_branch(tops[0]), off_branch(tops[1]))
+        tops = off_branch(tops[0]), off_branch(tops[1])
+        # What sticks does not slip because tilting has ended: that is held, too.
         ended = ended_slips(state, tops) if ended is None else ended
+        state = without_tilting(state, tops[0])
         if ended == (False, True):
             tops, ended = tops[::-1], ended[::-1]
         pair = ContactPair.of(state.axis, state.momentum, tops)

@@ -781,7 +781,7 @@ class Outcome extends py.Enum {
   );
   static FAILED = new this(
     "FAILED",
-    "The integrator could not go on: the motion became singular or too stiff for it; try another integrator, or less friction."
+    "The run could not go on: it is not known what the table does from here on, or the integrator finds no step; try less friction, or, where the reason is the integrator's, another one."
   );
 }
 
@@ -7132,8 +7132,9 @@ class TwoClosed extends py.Record {
   }
   /** The contacts in a state that has slip, or tilts, by no more than what is taken for none. */
   static of(rules, state, tops, rolls, ended = null) {
-    [state, tops] = [without_tilting(state, tops[0]), [off_branch(tops[0]), off_branch(tops[1])]];
+    tops = [off_branch(tops[0]), off_branch(tops[1])];
     ended = ended === null ? ended_slips(state, tops) : ended;
+    state = without_tilting(state, tops[0]);
     if (py.eq(ended, [false, true])) {
       [tops, ended] = [py.slice(tops, null, null, -1), py.slice(ended, null, null, -1)];
     }
