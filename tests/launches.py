@@ -2,7 +2,6 @@
 
 import json
 import math
-import re
 import subprocess
 from collections.abc import Iterator
 from pathlib import Path
@@ -179,9 +178,7 @@ def numbers_of(found: dict[str, Any]) -> dict[str, list[Any]]:
     for name in LISTED:
         table, _, word = name.partition("_")
         if name != "event_kind":
-            numbers[name] = [
-                one[re.sub("_(.)", lambda found: found[1].upper(), word)] for one in found[f"{table}s"]
-            ]
+            numbers[name] = [one[word] for one in found[f"{table}s"]]
     return numbers
 
 

@@ -178,7 +178,7 @@ class Spheroid(Shape):
     @model_validator(mode="after")
     def _has_a_thickness(self) -> Self:
         if not 1.0 / MOST_ASPECT <= self.along / self.across <= MOST_ASPECT:
-            accepted = f"within a factor of {MOST_ASPECT:.0e} of across = {self.across:g}"
+            accepted = f"within a factor of {MOST_ASPECT:.1g} of across = {self.across:g}"
             raise InvalidInput("along", self.along, accepted)
         return self
 

@@ -4,6 +4,7 @@ A number is an event or an extreme of the motion itself, never of its samples. `
 finds on its way, in natural units; `metrics` makes every number of `tippetop.catalogue.METRICS` of it.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -11,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tippetop.catalogue import NEAR_FINAL, NEAR_POLE, Ending
-from tippetop.contact.mode import Outcome
+from tippetop.contact.flights import Flights
+from tippetop.contact.mode import Event, EventKind, Outcome
 from tippetop.integrators.base import Array
 from tippetop.integrators.polynomials import Polynomials
 from tippetop.lowest import highest_between, lowest_jellett
@@ -75,6 +77,53 @@ class Ends:
         outcome = np.full(count, OUTCOMES.index(Outcome.FAILED), dtype=np.int8)
         state = State.unpack([np.full(count, np.nan) for _ in range(10)])
         return cls(**{**unknown, **none, **counts, "outcome": outcome, "state": state})
+
+    @classmethod
+    def of_one(
+        cls,
+        state: State,
+        time: float,
+        outcome: int,
+        events: Sequence[Event],
+        flights: Flights,
+        steps: int,
+        resisted: tuple[float, float],
+        least: Sequence[float],
+        when: tuple[float, float],
+    ) -> "Ends":
+        """The ends of one launch.
+
+        Parameters
+        ----------
+        state, time, outcome, events, flights, steps
+            How it ended, what happened, and the steps it took.
+        resisted
+            Energy lost to drilling and to rolling.
+        least
+            Least values of the normal force, n_z, -n_z and, in flights, the negative height.
+        when
+            First times at which n_z fell through 0, and was in the band of `final_band`; nan for never.
+        """
+        lift_offs = [event.time for event in events if event.kind is EventKind.LIFT_OFF]
+        struck, count = sum([event.energy_lost for event in events]), len(flights.rows)
+        force, down, up, depth = least
+        return cls(
+            state,
+            time,
+            outcome,
+            steps,
+            count,
+            0.0 if lift_offs or count else force,
+            min(lift_offs, default=np.nan),
+            struck,
+            *resisted,
+            flights.duration,
+            flights.highest_gap,
+            max(-depth, 0.0),
+            down,
+            -up,
+            *when,
+        )
 
     def put(self, where: NDArray[np.intp], found: "Ends") -> None:
         """Put what was found of some launches in its places."""

@@ -21,6 +21,11 @@ WAYS_TO_END = (Outcome.COMPLETED, Outcome.LIFTED_OFF, Outcome.AT_REST, Outcome.L
 say why it is not told."""
 
 
+def kept(state: State, top: Top) -> tuple[Scalar, Scalar, Scalar, Scalar, Scalar]:
+    """What `Monitor.see` sees of a state but the work: |n|, n_z, height, energy and Jellett's integral."""
+    return length(state.axis), state.axis[2], state.height, energy(state, top), lowest_jellett(state, top)
+
+
 class Monitor:
     """How far launches go off what they begin with, in natural units: one, or n with arrays for numbers."""
 
@@ -61,6 +66,12 @@ class Monitor:
     def judged(self, outcome: Outcome, tolerance: float) -> Outcome:
         """How one launch ended: as its motion came to end only if it can be trusted."""
         return Outcome.INACCURATE if outcome in WAYS_TO_END and not self.is_trusted(tolerance) else outcome
+
+    def concluded(self, outcome: Outcome, state: State, work: Scalar, tolerance: float) -> Outcome:
+        """How one launch ended, by its last state, too, and all work since launch; see `judged`."""
+        if outcome in WAYS_TO_END:
+            self.see(*kept(state, self.top), work)
+        return self.judged(outcome, tolerance)
 
     def see(
         self, size: Scalar, cosine: Scalar, height: Scalar, energy: Scalar, jellett: Scalar, work: Scalar

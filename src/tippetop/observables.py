@@ -11,12 +11,10 @@ from tippetop.contact.sliding import Sliding
 from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators.base import Array
 from tippetop.integrators.dense import parts_of, powers
-from tippetop.lowest import lowest_jellett
-from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import length
-from tippetop.monitor import WAYS_TO_END, Monitor
+from tippetop.monitor import Monitor
 from tippetop.samples import Samples
 
 _INTEGRALS = np.array(
@@ -66,12 +64,9 @@ class Recorder:
 
     def outcome_of(self, trajectory: Trajectory) -> Outcome:
         """How a trajectory of which all was taken ended, by what it kept on its way and keeps at its end."""
-        outcome, state = trajectory.outcome, trajectory.state
-        assert outcome is not None, "a trajectory that has no more segments has ended"
-        if outcome in WAYS_TO_END:
-            keeps = energy(state, self.top), lowest_jellett(state, self.top)
-            self.monitor.see(length(state.axis), state.axis[2], state.height, *keeps, self._sums[3])
-        return self.monitor.judged(outcome, getattr(trajectory.integrator, "tolerance", 0.0))
+        assert trajectory.outcome is not None, "a trajectory that has no more segments has ended"
+        tolerance = getattr(trajectory.integrator, "tolerance", 0.0)
+        return self.monitor.concluded(trajectory.outcome, trajectory.state, self._sums[3], tolerance)
 
     def finish(self, end: float, state: State, early: bool) -> Samples:
         """All samples of a launch that ended; where it did so early, its end is the last of them."""

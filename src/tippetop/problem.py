@@ -13,7 +13,7 @@ import tomli_w
 from pydantic import Field, model_validator
 
 from tippetop.bodies import Body
-from tippetop.errors import MISSING, InvalidInput, one_of
+from tippetop.errors import MISSING, InvalidInput, one_of, require
 from tippetop.fields import dotted_names, numbers_of, part_at, table_at
 from tippetop.files import made_of, read_text
 from tippetop.frictions import LEAST_PATCH, Friction
@@ -368,8 +368,7 @@ class Problem(Part):
 
 def require_problem(problem: object) -> None:
     """Refuse what is no problem, with `InvalidInput`."""
-    if not isinstance(problem, Problem):
-        raise InvalidInput("problem", problem, "a Problem, such as presets.report_problem() makes")
+    require("problem", problem, Problem, "a Problem, such as presets.report_problem() makes")
 
 
 def _inside(bound: float, side: float) -> str:

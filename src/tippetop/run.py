@@ -12,9 +12,9 @@ from tippetop import __version__
 from tippetop.contact.block import in_blocks
 from tippetop.contact.choice import rules_of
 from tippetop.contact.mode import Event, Outcome
-from tippetop.contact.trajectory import LONGEST, PHASE_LIMIT, STEP_LIMIT, Trajectory
+from tippetop.contact.trajectory import PHASE_LIMIT, STEP_LIMIT, Trajectory, require_limits
 from tippetop.dataset import assemble
-from tippetop.errors import InvalidInput, is_number, is_whole
+from tippetop.errors import InvalidInput, is_whole
 from tippetop.integrators import Integrator, make_integrator
 from tippetop.integrators.base import NOT_FINITE, Array
 from tippetop.mechanics.invariants import energy
@@ -24,7 +24,7 @@ from tippetop.mechanics.units import Units
 from tippetop.metrics import metrics
 from tippetop.observables import Recorder
 from tippetop.problem import Problem, require_problem
-from tippetop.samples import continuous, observe
+from tippetop.samples import continuous, event_in_si, observe
 from tippetop.tally import Tally
 
 BYTES_PER_SAMPLE = 1600
@@ -103,10 +103,8 @@ def simulate(
     """
     require_problem(problem)
     units = natural_units(problem.top)
-    grid = sample_times(duration, samples, times, LONGEST * min(1.0, units.time))
-    for name, limit in {"phase_limit": phase_limit, "step_limit": step_limit}.items():
-        if not is_whole(limit) or limit < 0:
-            raise InvalidInput(name, limit, "a whole number, at least 0")
+    require_limits(duration, units.time, phase_limit, step_limit)
+    grid = sample_times(duration, samples, times)
     top = natural(problem.top)
     method = integrator_of(integrator, tolerance, step, units)
     state = natural_state(problem.start(), units)
@@ -150,10 +148,8 @@ def simulate(
     return assemble(times, variables, (found.mode, recorder.modes), scalars, lists, attributes)
 
 
-def sample_times(duration: float, samples: int, times: ArrayLike | None, longest: float = LONGEST) -> Array:
-    """Sample times, s, checked; see `simulate`. No run may last longer than `longest`."""
-    if not (is_number(duration) and 0 < duration <= longest):
-        raise InvalidInput("duration", duration, f"a number of seconds greater than 0, at most {longest:.3g}")
+def sample_times(duration: float, samples: int, times: ArrayLike | None) -> Array:
+    """Sample times, s, checked; see `simulate`."""
     if times is None:
         if not is_whole(samples) or samples < 2:
             raise InvalidInput("samples", samples, "a whole number, at least 2")
@@ -199,14 +195,13 @@ def _check_memory(samples: int) -> None:
 
 def _event_arrays(events: Sequence[Event], units: Units) -> dict[str, NDArray[Any]]:
     """Values over the events, in SI."""
-    numbers = [(event.time, event.impulse, event.energy_lost) for event in events]
-    times, impulses, losses = np.array(numbers, dtype=float).reshape(-1, 3).T
+    told = [event_in_si(event, units) for event in events]
     return {
-        "event_time": times * units.time,
-        "event_kind": np.array([event.kind.value for event in events], dtype=str),
-        "event_impulse": impulses * units.mass * units.speed,
-        "event_energy_lost": losses * units.energy,
-        "event_surface": np.array([event.surface for event in events], dtype=np.int8),
+        "event_time": np.array([event.time for event in told], dtype=float),
+        "event_kind": np.array([event.kind.value for event in told], dtype=str),
+        "event_impulse": np.array([event.impulse for event in told], dtype=float),
+        "event_energy_lost": np.array([event.energy_lost for event in told], dtype=float),
+        "event_surface": np.array([event.surface for event in told], dtype=np.int8),
     }
 
 

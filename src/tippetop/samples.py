@@ -1,10 +1,12 @@
 """Samples of a run, and every variable over time: the report's variables, forces and invariants."""
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tippetop.contact.mode import Event
 from tippetop.contact.readings import Instants
 from tippetop.integrators.base import Array
 from tippetop.mechanics.quadratures import orientation
@@ -76,6 +78,16 @@ def observe(samples: Samples, top: Top, units: Units) -> dict[str, Array]:
         "angular_momentum": np.stack(scale(units.angular_momentum, momentum), -1),
         "orientation": np.stack(orientation(axis, samples.turn, samples.pole, np), -1),
     }
+
+
+def event_in_si(event: Event, units: Units) -> Event:
+    """An event with its numbers in SI."""
+    return replace(
+        event,
+        time=event.time * units.time,
+        impulse=event.impulse * units.mass * units.speed,
+        energy_lost=event.energy_lost * units.energy,
+    )
 
 
 def continuous(quaternions: Array) -> Array:

@@ -6,7 +6,7 @@ import numpy as np
 
 from tippetop.contact.block import WEIGHTS, Block, ModeSteps
 from tippetop.contact.flights import Flights
-from tippetop.contact.mode import Event, EventKind, Outcome
+from tippetop.contact.mode import Event, Outcome
 from tippetop.contact.readings import Rates
 from tippetop.integrators.base import Array, Integrator
 from tippetop.integrators.dense import chebyshev
@@ -87,28 +87,10 @@ class Tally:
     def ends(self, state: State, time: float, outcome: Outcome, events: Sequence[Event]) -> Ends:
         """All that was found, as numbers, given how and where it ended."""
         last = State.unpack([np.float64(number) for number in state.pack()])
-        lift_offs = [event.time for event in events if event.kind is EventKind.LIFT_OFF]
-        flights = len(self.flights.rows)
-        force, down, up, depth = least_of_each(self._pressed, self._lowest, self._highest, self._raised)
-        return Ends(
-            state=last,
-            time=np.float64(time),
-            outcome=OUTCOMES.index(outcome),
-            steps=self.steps,
-            flights=flights,
-            least_force=0.0 if lift_offs or flights else force,
-            lift_off=min(lift_offs, default=np.nan),
-            struck=sum(event.energy_lost for event in events),
-            drilled=self._drilled,
-            rolled=self._rolled,
-            airborne=self.flights.duration,
-            highest_gap=self.flights.highest_gap,
-            highest=max(-depth, 0.0),
-            down=down,
-            up=-up,
-            turned=self._turned,
-            arrived=self.arrival(*final_band(last)),
-        )
+        least = least_of_each(self._pressed, self._lowest, self._highest, self._raised)
+        resisted, when = (self._drilled, self._rolled), (self._turned, self.arrival(*final_band(last)))
+        number, ended = OUTCOMES.index(outcome), np.float64(time)
+        return Ends.of_one(last, ended, number, events, self.flights, self.steps, resisted, least, when)
 
     def arrival(self, low: Scalar, high: Scalar) -> float:
         """First time at which n_z is between `low` and `high`; nan if it never is."""

@@ -198,3 +198,37 @@ def test_where_no_code_may_be_made_the_numbers_are_the_same() -> None:
     plain = list(in_javascript(launches))
     assert all("outcome" in found for found in plain)
     assert list(in_javascript(launches, "--disallow-code-generation-from-strings")) == plain
+
+
+def test_durations_and_limits_are_refused_the_same() -> None:
+    """What is asked of a run beside the problem; neither may a count of steps be a fraction."""
+    problem = tt.presets.report_problem()
+    changes: list[dict[str, Any]] = [
+        {"duration": 0.0},
+        {"duration": "1"},
+        {"duration": 2e300},
+        {"step_limit": -1},
+        {"step_limit": 0.5},
+        {"phase_limit": "3"},
+    ]
+    sentences = list[str]()
+    for change in changes:
+        with pytest.raises(tt.InvalidInput) as refusal:
+            tt.simulate(problem, **{"duration": DURATION, **change})
+        sentences.append(str(refusal.value))
+    question = asked(0, DURATION) | {"problem": json.loads(problem.to_json())}
+    assert [found.get("refused") for found in in_javascript([question | one for one in changes])] == sentences
+
+
+def test_no_more_is_kept_than_so_much() -> None:
+    """A page may follow launches of ever other tops, each with tables of its own."""
+    script = f"""
+      import {{ cached }} from {json.dumps((HERE / "runtime.js").as_uri())};
+      let made = 0;
+      const square = cached((number) => (made += 1, number ** 2));
+      for (let number = 0; number < 5000; number += 1) square(number);
+      console.log(JSON.stringify([square(4999), made, square(0), made]));
+    """
+    options = [NODE, "--input-type=module", "-"]
+    ran = subprocess.run(options, input=script, check=True, capture_output=True, text=True, timeout=60)
+    assert json.loads(ran.stdout) == [4999**2, 5000, 0, 5001]

@@ -45,7 +45,7 @@ def test_hostile_problems_end_as_in_python() -> None:
     drawn = [hostile(np.random.default_rng(seed)) for seed in range(0, COUNT, 4)]
     # Pages have no numbers but those of JSON.
     told = [fields for fields in drawn if not re.search("NaN|Infinity", json.dumps(fields))]
-    limits = {"stepLimit": STEPS, "phaseLimit": MODES}
+    limits = {"step_limit": STEPS, "phase_limit": MODES}
     asked = {"duration": DURATION, "tolerance": TOLERANCE, "times": TIMES, **limits}
     found = in_javascript([{"problem": fields, **asked} for fields in told])
     ends = [(named_there(theirs), named(fields)) for fields, theirs in zip(told, found, strict=True)]

@@ -1,8 +1,10 @@
 """One launch, followed from mode to mode: the executor of single launches."""
 
 from collections.abc import Iterator
+from typing import Any
 
 from tippetop.contact.mode import Event, Mode, Outcome, Segment, Transition
+from tippetop.errors import InvalidInput, is_number, is_whole
 from tippetop.integrators.base import Integrator
 from tippetop.mechanics.state import State
 
@@ -83,3 +85,15 @@ class Trajectory:
         if isinstance(transition.then, Outcome):
             self.outcome, self.detail = transition.then, transition.detail
         return transition
+
+
+def require_limits(
+    duration: Any, unit: float, phase_limit: Any = PHASE_LIMIT, step_limit: Any = STEP_LIMIT
+) -> None:
+    """Refuse, with `InvalidInput`, a duration, s, or limits that no run can have; `unit` is that of time."""
+    longest = LONGEST * min(1.0, unit)
+    if not (is_number(duration) and 0.0 < duration <= longest):
+        raise InvalidInput("duration", duration, f"a number of seconds greater than 0, at most {longest:.3g}")
+    for name, limit in {"phase_limit": phase_limit, "step_limit": step_limit}.items():
+        if not is_whole(limit) or limit < 0:
+            raise InvalidInput(name, limit, "a whole number, at least 0")

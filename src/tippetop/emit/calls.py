@@ -8,9 +8,7 @@ from tippetop.emit.expressions import ATOM, Expressions
 RENAMED = {"startswith": "startsWith", "append": "push", "index": "indexOf", "items": "entries"}
 """Methods of Python's own types that have another name."""
 
-METHODS = {"tolist": "list", "_replace": "replace"} | {
-    word: word for word in ("removeprefix", "join", "extend")
-}
+METHODS = {"tolist": "list", "_replace": "replace"} | {word: word for word in ("removeprefix", "join")}
 """Methods of Python's own types that are functions of the runtime."""
 
 NAMED = ("_replace", "replace")

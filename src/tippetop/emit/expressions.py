@@ -133,6 +133,8 @@ class Expressions(ABC):
                 )
             case ast.ListComp(elt=element) | ast.GeneratorExp(elt=element):
                 return self._comprehension(node.generators, element), ATOM
+            case ast.SetComp(elt=element):
+                return f"new Set({self._comprehension(node.generators, element)})", ATOM
             case ast.DictComp(key=key, value=value):
                 pair = ast.Tuple([key, value], ast.Load())
                 return f"new py.Dict({self._comprehension(node.generators, pair)})", ATOM

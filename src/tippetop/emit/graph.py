@@ -8,7 +8,7 @@ powers of halves and quarters become products and roots.
 from dataclasses import dataclass
 from typing import Any
 
-from tippetop.mechanics.series import Series, is_number
+from tippetop.mechanics.series import Series, is_exactly
 
 STATE, PARAMETER, CONSTANT = "y", "p", "constant"
 SUM, DIFFERENCE, PRODUCT, QUOTIENT = "+", "-", "*", "/"
@@ -139,8 +139,8 @@ class Graph:
 
     def difference(self, a: Any, b: Any) -> Any:
         """Difference of two."""
-        if is_number(a, 0.0) or is_number(b, 0.0):
-            return -b if is_number(a, 0.0) else a
+        if is_exactly(a, 0.0) or is_exactly(b, 0.0):
+            return -b if is_exactly(a, 0.0) else a
         return 0.0 if a is b else self.node(DIFFERENCE, (self.taken(a), self.taken(b)))
 
     def product(self, a: Any, b: Any) -> Any:
@@ -155,7 +155,7 @@ class Graph:
 
     def quotient(self, a: Any, b: Any) -> Any:
         """Quotient of two."""
-        if is_number(a, 0.0) or is_number(b, 1.0):
+        if is_exactly(a, 0.0) or is_exactly(b, 1.0):
             return a
         return self.node(QUOTIENT, (self.taken(a), self.taken(b)))
 

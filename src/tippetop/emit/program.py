@@ -22,7 +22,7 @@ KINDS = {
 RECORDS = ("py.NamedTuple", "py.Record")
 """Kinds whose fields are what they are made of, by their places."""
 
-OWN = (ast.FunctionDef, ast.Lambda, ast.ListComp, ast.GeneratorExp, ast.DictComp)
+OWN = (ast.FunctionDef, ast.Lambda, ast.ListComp, ast.GeneratorExp, ast.SetComp, ast.DictComp)
 """What has names of its own."""
 
 NOTHING = ast.Constant(None)

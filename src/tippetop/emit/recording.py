@@ -61,10 +61,9 @@ def recordable(function: Function, size: int, parameters: int) -> Recorded | Non
 
 def needed(graph: Graph, outputs: Sequence[Node]) -> tuple[Node, ...]:
     """The nodes of a graph of which some are made."""
-    places, waiting = set[int](), list(outputs)
-    while waiting:
-        node = waiting.pop()
-        if node.place not in places:
-            places.add(node.place)
-            waiting.extend(node.operands)
+    places = {node.place for node in outputs}
+    for node in reversed(graph.nodes):
+        if node.place in places:
+            for operand in node.operands:
+                places.add(operand.place)
     return tuple([node for node in graph.nodes if node.place in places])

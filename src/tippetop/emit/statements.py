@@ -38,6 +38,8 @@ class Statements(Calls):
         match node:
             case ast.Expr(value=ast.Constant()) | ast.Pass() | ast.Assert() | ast.AnnAssign(value=None):
                 return
+            case ast.Expr(value=ast.Call(func=ast.Name(id=name))) if name in self.program.left:
+                return
             case ast.Expr(value=value):
                 yield f"{self.text(value)};"
             case ast.Return(value=value):

@@ -15,25 +15,25 @@ function made(recorded) {
 }
 
 const OPERATIONS = {
-  "+": (v, to, a, b) => () => { v[to] = v[a] + v[b]; },
-  "-": (v, to, a, b) => () => { v[to] = v[a] - v[b]; },
-  "*": (v, to, a, b) => () => { v[to] = v[a] * v[b]; },
-  "/": (v, to, a, b) => () => { v[to] = v[a] / v[b]; },
-  negative: (v, to, a) => () => { v[to] = -v[a]; },
-  less: (v, to, a, b) => () => { v[to] = v[a] < v[b] ? 1 : 0; },
-  select: (v, to, condition, a, b) => () => { v[to] = v[condition] !== 0 ? v[a] : v[b]; },
+  __proto__: Math,
+  "+": (a, b) => a + b,
+  "-": (a, b) => a - b,
+  "*": (a, b) => a * b,
+  "/": (a, b) => a / b,
+  negative: (a) => -a,
+  less: (a, b) => (a < b ? 1 : 0),
+  select: (condition, a, b) => (condition !== 0 ? a : b),
 };
-const elementary = (name) => (v, to, a, b = a) => () => { v[to] = Math[name](v[a], v[b]); };
 
 /** What is recorded, operation by operation: where pages may not make code, as some servers' policies have it. */
 function interpreted({ nodes, outputs }) {
   const values = new Float64Array(nodes.length ? nodes.at(-1).place + 1 : 0);
-  const [given, made] = [nodes.filter(({ name }) => name === "y" || name === "p"), nodes.filter(({ operands }) => operands.length)];
-  const steps = made.map(({ name, place, operands }) => (OPERATIONS[name] ?? elementary(name))(values, place, ...operands.map((one) => one.place)));
+  const given = nodes.filter(({ name }) => name === "y" || name === "p"), made = nodes.filter(({ operands }) => operands.length);
+  const steps = made.map(({ name, place, operands: [a, b = a, c = a] }) => [OPERATIONS[name], place, a.place, b.place, c.place]);
   for (const { name, place, value } of nodes) if (name === "constant") values[place] = value;
   return (y, p, out) => {
     for (const { name, place, value } of given) values[place] = (name === "y" ? y : p)[value];
-    for (const step of steps) step();
+    for (const [operation, place, a, b, c] of steps) values[place] = operation(values[a], values[b], values[c]);
     outputs.forEach(({ place }, number) => (out[number] = values[place]));
   };
 }

@@ -53,6 +53,7 @@ LEFT = {
     "_a_profile",
     "Body.turned",
     "Contact.rules",
+    "require_problem",
     *("read", "recordable", "_compiled", "_without_top", "_of_kind", "continuous"),
     *("Ends.unknown", "Ends.put", "ending", "turning_time", "arrival_time"),
     *("Monitor.energy_error", "Graph.rarely"),

@@ -2,7 +2,7 @@
 import * as py from "./runtime.js";
 import { DenseSolution, ELEMENTARY, as_array } from "./dense.js";
 import { copied, first_of, iterated, put_from, put_rows, room } from "./compile.js";
-import { InvalidInput, MISSING, Part, numbers_of } from "./part.js";
+import { InvalidInput, MISSING, Part, is_number, is_whole, numbers_of } from "./part.js";
 import { NEAR_FINAL } from "./tables.js";
 
 // tippetop.mechanics.vectors
@@ -1472,7 +1472,7 @@ class Series extends py.Thing {
     if (py.isinstance(other, Series)) {
       return this._made((k) => py.add(py.item(this, k), py.item(other, k)));
     }
-    if (py.truth(is_number(other, 0.0))) {
+    if (py.truth(is_exactly(other, 0.0))) {
       return this;
     }
     return this._made((k) => py.truth(k) ? py.item(this, k) : py.add(py.item(this, 0), other));
@@ -1484,10 +1484,10 @@ class Series extends py.Thing {
       }
       return this._made((k) => this._product(other, k));
     }
-    if (py.truth(is_number(other, 0.0))) {
+    if (py.truth(is_exactly(other, 0.0))) {
       return 0.0;
     }
-    if (py.truth(is_number(other, 1.0))) {
+    if (py.truth(is_exactly(other, 1.0))) {
       return this;
     }
     return this._made((k) => py.mul(other, py.item(this, k)));
@@ -1602,7 +1602,7 @@ class Series extends py.Thing {
 }
 
 /** Whether a value is a plain number, and this one. */
-function is_number(value, number) {
+function is_exactly(value, number) {
   return py.and(py.isinstance(value, [py.int, py.float]), () => py.eq(value, number));
 }
 
@@ -7576,7 +7576,7 @@ class Spheroid extends Shape {
         ) && py.div(this.along, this.across) <= MOST_ASPECT
       )
     ) {
-      var accepted = `within a factor of ${py.format(MOST_ASPECT, ".0e")} of across = ${py.format(this.across, "g")}`;
+      var accepted = `within a factor of ${py.format(MOST_ASPECT, ".1g")} of across = ${py.format(this.across, "g")}`;
       throw new InvalidInput("along", this.along, accepted);
     }
     return this;
@@ -8336,13 +8336,6 @@ class Problem extends Part {
 }
 Part.enter("Problem", Problem);
 
-/** Refuse what is no problem, with `InvalidInput`. */
-function require_problem(problem) {
-  if (!py.isinstance(problem, Problem)) {
-    throw new InvalidInput("problem", problem, "a Problem, such as presets.report_problem() makes");
-  }
-}
-
 /** A bound in three digits, not beyond it: no less if the side is 1, and no more if it is -1. */
 function _inside(bound, side) {
   var near = py.float(`${py.format(bound, ".3g")}`);
@@ -8430,6 +8423,25 @@ class Trajectory extends py.Thing {
       [this.outcome, this.detail] = [transition.then, transition.detail];
     }
     return transition;
+  }
+}
+
+/** Refuse, with `InvalidInput`, a duration, s, or limits that no run can have; `unit` is that of time. */
+function require_limits(duration, unit, phase_limit = PHASE_LIMIT, step_limit = STEP_LIMIT) {
+  var longest = py.mul(LONGEST_of_trajectory, py.min(1.0, unit));
+  if (!(py.truth(is_number(duration)) && (0.0 < duration && duration <= longest))) {
+    throw new InvalidInput(
+      "duration",
+      duration,
+      `a number of seconds greater than 0, at most ${py.format(longest, ".3g")}`
+    );
+  }
+  for (
+    var [name, limit] of new py.Dict([["phase_limit", phase_limit], ["step_limit", step_limit]]).entries()
+  ) {
+    if (!py.truth(is_whole(limit)) || limit < 0) {
+      throw new InvalidInput(name, limit, "a whole number, at least 0");
+    }
   }
 }
 
@@ -8809,7 +8821,6 @@ class Prediction extends py.Record {
 
 /** The steady states a launch of an eccentric sphere can end in. */
 function predict(problem) {
-  require_problem(problem);
   var top = problem.top;
   if (py.isinstance(top.surface, Hull)) {
     return _on_one_of_several(problem, problem.standing().surface);
@@ -8956,7 +8967,6 @@ function critical_spin(kind, top) {
 
 /** Critical spins of a launch: with its tilt and its rates, and any axial spin. */
 function critical_spins(problem) {
-  require_problem(problem);
   require_creep(problem.top);
   if (!py.truth(problem.top.conserves_jellett)) {
     return new CriticalSpins(...[...VERTICAL_SPINS].map((kind) => critical_spin(kind, problem.top)));
@@ -10411,6 +10421,31 @@ function longer(numbers, count) {
   return py.np.concatenate([numbers, py.np.zeros(py.sub(count, py.len(numbers)))]);
 }
 
+// tippetop.contact.flights
+
+/** Flights that were made so far. */
+class Flights extends py.Thing {
+  constructor() {
+    super();
+    this.rows = py.list();
+    this._landed = true;
+  }
+  /** How long they took together. */
+  get duration() {
+    return py.sum([...this.rows].map(([begin, end]) => py.sub(end, begin)));
+  }
+  /** The largest gap in any of them. */
+  get highest_gap() {
+    return py.max([...this.rows].map(([, , gap]) => gap), { default: 0.0 });
+  }
+  /** Take in a flight, or one more piece of it. */
+  take(segment) {
+    var begin = py.truth(this._landed) ? py.float(segment.solution.knots[0]) : this.rows.pop()[0];
+    this.rows.push([begin, segment.end_time, segment.highest_gap]);
+    this._landed = segment.transition !== null;
+  }
+}
+
 // tippetop.lowest
 const LEVEL = 1e-09;
 const LOOKS_of_lowest = 65;
@@ -10520,6 +10555,32 @@ class Ends extends py.Record {
     this.up = up;
     this.turned = turned;
     this.arrived = arrived;
+  }
+  /** The ends of one launch. */
+  static of_one(state, time, outcome, events, flights, steps, resisted, least, when) {
+    var lift_offs = [...events].filter(
+      (event) => event.kind === EventKind.LIFT_OFF
+    ).map((event) => event.time);
+    var struck = py.sum([...events].map((event) => event.energy_lost));
+    var count = py.len(flights.rows);
+    var [force, down, up, depth] = least;
+    return new this(
+      state,
+      time,
+      outcome,
+      steps,
+      count,
+      py.truth(lift_offs) || py.truth(count) ? 0.0 : force,
+      py.min(lift_offs, { default: py.np.nan }),
+      struck,
+      ...resisted,
+      flights.duration,
+      flights.highest_gap,
+      py.max(py.neg(depth), 0.0),
+      down,
+      py.neg(up),
+      ...when
+    );
   }
 }
 
@@ -10797,10 +10858,27 @@ function observe(samples, top, units) {
   ]);
 }
 
+/** An event with its numbers in SI. */
+function event_in_si(event, units) {
+  return py.replace(
+    event,
+    {
+      time: py.mul(event.time, units.time),
+      impulse: py.mul(py.mul(event.impulse, units.mass), units.speed),
+      energy_lost: py.mul(event.energy_lost, units.energy)
+    }
+  );
+}
+
 // tippetop.monitor
 const LEAST_MOMENT = 1e-06;
 const [WORST, ACCUMULATED] = [1e-06, 10000.0];
 const WAYS_TO_END = [Outcome.COMPLETED, Outcome.LIFTED_OFF, Outcome.AT_REST, Outcome.LYING_FLAT];
+
+/** What `Monitor.see` sees of a state but the work: |n|, n_z, height, energy and Jellett's integral. */
+function kept(state, top) {
+  return [length(state.axis), state.axis[2], state.height, energy(state, top), lowest_jellett(state, top)];
+}
 
 /** How far launches go off what they begin with, in natural units: one, or n with arrays for numbers. */
 class Monitor extends py.Thing {
@@ -10839,6 +10917,13 @@ class Monitor extends py.Thing {
       this.is_trusted(tolerance)
     ) ? Outcome.INACCURATE : outcome;
   }
+  /** How one launch ended, by its last state, too, and all work since launch; see `judged`. */
+  concluded(outcome, state, work, tolerance) {
+    if (py.contains(WAYS_TO_END, outcome)) {
+      this.see(...kept(state, this.top), work);
+    }
+    return this.judged(outcome, tolerance);
+  }
   /** See some instants: |n|, n_z, and of work all since launch. */
   see(size, cosine, height, energy, jellett, work) {
     var imbalance = py.np.max(py.np.abs(py.sub(py.sub(energy, this._energy), work)), 0);
@@ -10851,31 +10936,6 @@ class Monitor extends py.Thing {
       var sunk = py.sub(outer_height(this.top.surface, cosine), height);
       this._sunk = py.np.maximum(this._sunk, py.np.max(sunk, 0));
     }
-  }
-}
-
-// tippetop.contact.flights
-
-/** Flights that were made so far. */
-class Flights extends py.Thing {
-  constructor() {
-    super();
-    this.rows = py.list();
-    this._landed = true;
-  }
-  /** How long they took together. */
-  get duration() {
-    return py.sum([...this.rows].map(([begin, end]) => py.sub(end, begin)));
-  }
-  /** The largest gap in any of them. */
-  get highest_gap() {
-    return py.max([...this.rows].map(([, , gap]) => gap), { default: 0.0 });
-  }
-  /** Take in a flight, or one more piece of it. */
-  take(segment) {
-    var begin = py.truth(this._landed) ? py.float(segment.solution.knots[0]) : this.rows.pop()[0];
-    this.rows.push([begin, segment.end_time, segment.highest_gap]);
-    this._landed = segment.transition !== null;
   }
 }
 
@@ -10996,8 +11056,8 @@ class Graph extends py.Thing {
   }
   /** Difference of two. */
   difference(a, b) {
-    if (py.truth(is_number(a, 0.0)) || py.truth(is_number(b, 0.0))) {
-      return py.truth(is_number(a, 0.0)) ? py.neg(b) : a;
+    if (py.truth(is_exactly(a, 0.0)) || py.truth(is_exactly(b, 0.0))) {
+      return py.truth(is_exactly(a, 0.0)) ? py.neg(b) : a;
     }
     return a === b ? 0.0 : this.node(DIFFERENCE, [this.taken(a), this.taken(b)]);
   }
@@ -11017,7 +11077,7 @@ class Graph extends py.Thing {
   }
   /** Quotient of two. */
   quotient(a, b) {
-    if (py.truth(is_number(a, 0.0)) || py.truth(is_number(b, 1.0))) {
+    if (py.truth(is_exactly(a, 0.0)) || py.truth(is_exactly(b, 1.0))) {
       return a;
     }
     return this.node(QUOTIENT, [this.taken(a), this.taken(b)]);
@@ -11093,13 +11153,12 @@ function record(function_, size, parameters, more = 0) {
 
 /** The nodes of a graph of which some are made. */
 function needed(graph, outputs) {
-  var places = py.set();
-  var waiting = py.list(outputs);
-  while (py.truth(waiting)) {
-    var node = waiting.pop();
-    if (!py.contains(places, node.place)) {
-      places.add(node.place);
-      py.extend(waiting, node.operands);
+  var places = new Set([...outputs].map((node) => node.place));
+  for (var node of py.reversed(graph.nodes)) {
+    if (py.contains(places, node.place)) {
+      for (var operand of node.operands) {
+        places.add(operand.place);
+      }
     }
   }
   return py.tuple([...graph.nodes].filter((node) => py.contains(places, node.place)));
@@ -11698,6 +11757,7 @@ export {
   equal_thresholds,
   error_of,
   evaluate,
+  event_in_si,
   extent,
   factor_for,
   failed,
@@ -11739,8 +11799,8 @@ export {
   is_branched,
   is_dry,
   is_edge,
+  is_exactly,
   is_near,
-  is_number,
   is_one_way,
   is_outline,
   is_rolling,
@@ -11752,6 +11812,7 @@ export {
   jellett_line,
   jellett_of_launch,
   jump_boundary,
+  kept,
   lambda_down,
   lambda_up,
   landed,
@@ -11834,8 +11895,8 @@ export {
   reopening_guard,
   require_creep,
   require_jellett,
+  require_limits,
   require_one_surface,
-  require_problem,
   require_sphere,
   resistance_powers,
   resisting,

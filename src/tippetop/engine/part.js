@@ -1,4 +1,5 @@
 // Parts of a problem: complete, checked, and clear about what they refuse, as in tippetop.validation.
+import { typed } from "./runtime.js";
 import { SCHEMA } from "./tables.js";
 
 export const MISSING = undefined;
@@ -20,25 +21,19 @@ export class InvalidInput extends Error {
 
 function short(value) {
   const text = typeof value === "string" ? `'${value}'` : Array.isArray(value) ? `(${value.map(short).join(", ")})`
-    : typeof value === "number" ? number_as_typed(value)
+    : typeof value === "number" ? typed(value)
     : value !== null && typeof value === "object" ? JSON.stringify(value) : value === null ? "None" : String(value);
   return text.length <= 60 ? text : `${text.slice(0, 57)}...`;
 }
 
-/** As in Python, which has other powers of ten. */
-function number_as_typed(value) {
-  const size = Math.abs(value);
-  if (!Number.isFinite(value)) return String(value).replace("NaN", "nan").replace("Infinity", "inf");
-  return value === 0 || (size >= 1e-4 && size < 1e16) ? String(value) : value.toExponential().replace(/([+-])(\d)$/, "$10$2");
+/** Every number in the fields of a part, with its name with dots. */
+export function numbers_of(value, name = "") {
+  if (typeof value === "number") return [[name, value]];
+  if (value === null || typeof value !== "object") return [];
+  return Object.entries(value).flatMap(([field, inner]) => numbers_of(inner, name ? `${name}.${field}` : field));
 }
 
-/** Every number in the fields of a part, with its name with dots. */
-export function* numbers_of(value, name = "") {
-  if (typeof value === "number") yield [name, value];
-  else if (value !== null && typeof value === "object") {
-    for (const [field, inner] of Object.entries(value)) yield* numbers_of(inner, name ? `${name}.${field}` : field);
-  }
-}
+export const is_number = Number.isFinite, is_whole = Number.isInteger;
 
 const KINDS = {}, TABLE = "a table of its fields";
 

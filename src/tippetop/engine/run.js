@@ -2,28 +2,25 @@
 import * as m from "./mechanics.js";
 import { integrator, reader } from "./compile.js";
 import { DenseSolution, earliest } from "./dense.js";
-import { InvalidInput } from "./part.js";
+import { InvalidInput, is_number } from "./part.js";
+import { plain } from "./runtime.js";
 import { CATALOGUE, GAUSS } from "./tables.js";
 
 const LEAST_TOLERANCE = 2.3e-14, LOOKS = 16;
 const PLACES = Array.from({ length: LOOKS + 1 }, (_, look) => look / LOOKS);
 const rates = (mode, y, pole) => m.Rates.of(mode, y, pole), RATES = 8, FORCE = 7;
-const kept = (mode, y) => keeping(mode.state(y), mode.top), KEPT = 5;
-const keeping = (state, top) => [m.length(state.axis), state.axis[2], state.height, m.energy(state, top), m.jellett(state, top)];
+const kept = (mode, y) => m.kept(mode.state(y), mode.top), KEPT = 5;
 // Parts of a step from its ends on in which friction has a direction, which it has not where slip is zero.
 const WITHIN = 1e-8;
 // What is added up: the first of them as they are told, as rates, in `Rates`.
 const [X, Y, TURN, WORK, DRILLED, ROLLED, STRUCK, SUMS] = [0, 1, 2, 3, 4, 5, 6, 7];
 
 /** Follow the launch of a problem (as JSON tells it) for a duration, s, at a relative error a step. */
-export function simulate(problem, { duration, tolerance = 1e-10, stepLimit, phaseLimit, onProgress } = {}) {
-  if (!(typeof duration === "number" && duration > 0 && duration <= m.LONGEST_of_trajectory)) {
-    throw new InvalidInput("duration", duration, "a number of seconds greater than 0, at most 1e+300");
-  }
-  if (!(tolerance >= LEAST_TOLERANCE && tolerance < 1)) {
+export function simulate(problem, { duration, tolerance = 1e-10, step_limit, phase_limit, onProgress } = {}) {
+  if (!(is_number(tolerance) && tolerance >= LEAST_TOLERANCE && tolerance < 1)) {
     throw new InvalidInput("tolerance", tolerance, `a number from ${LEAST_TOLERANCE} to 1`);
   }
-  const run = new Run(new m.Problem(problem), duration, tolerance, [phaseLimit, stepLimit]);
+  const run = new Run(new m.Problem(problem), duration, tolerance, [phase_limit, step_limit]);
   for (const segment of run.trajectory.segments()) {
     run.take(segment);
     onProgress?.(run.trajectory.time / run.trajectory.end);
@@ -34,6 +31,7 @@ export function simulate(problem, { duration, tolerance = 1e-10, stepLimit, phas
 class Run {
   constructor(problem, duration, tolerance, limits) {
     const units = m.natural_units(problem.top), top = m.natural(problem.top), start = m.natural_state(problem.start(), units);
+    m.require_limits(duration, units.time, ...limits);
     const { liftoff, restitution } = problem.contact, launch = m.rules_for(top, liftoff, restitution).launch(start);
     const pole = start.axis[2] >= 0 ? 1 : -1, lost = energyLost(launch.events);
     Object.assign(this, { duration, tolerance, units, top, start, pole, pieces: [], turned: NaN, steps: 0 });
@@ -125,25 +123,18 @@ class Run {
 
   finish() {
     const { trajectory, units, sums } = this, { events, outcome, detail, state } = trajectory, flights = this.flights.rows;
-    const [size, cosine, height, left] = keeping(state, this.top), jellett = m.lowest_jellett(state, this.top);
-    if (m.WAYS_TO_END.includes(outcome)) this.monitor.see(size, cosine, height, left, jellett, sums[WORK]);
-    const ended = this.monitor.judged(outcome, this.tolerance);
+    const ended = this.monitor.concluded(outcome, state, sums[WORK], this.tolerance);
     this.outcome = { name: ended.name.toLowerCase(), advice: [ended.value, detail].filter(Boolean).join(" ") };
     this.early = ended !== m.Outcome.COMPLETED && detail !== m.NOT_FINITE;
     this.endTime = outcome === m.Outcome.COMPLETED ? this.duration : trajectory.time * units.time;
-    this.events = events.map((event) => ({
-      kind: event.kind.value, time: event.time * units.time, surface: event.surface,
-      impulse: event.impulse * units.mass * units.speed, energyLost: event.energy_lost * units.energy,
-    }));
+    this.events = plain(events.map((event) => m.event_in_si(event, units)));
     for (const [way, last] of [[this.down, state.axis[2]], [this.up, -state.axis[2]]]) way.put(this.pieces.length ? last : NaN);
-    const lifts = events.filter((event) => event.kind === m.EventKind.LIFT_OFF).map((event) => event.time);
-    const ends = new m.Ends(
-      state, trajectory.time, null, this.steps, flights.length, lifts.length || flights.length ? 0 : this.force.found(), lifts[0] ?? NaN,
-      energyLost(events), -sums[DRILLED], -sums[ROLLED], this.flights.duration, this.flights.highest_gap, Math.max(0, -this.depth.found()),
-      this.down.found(), -this.up.found(), this.turned, this.arrival(m.final_band(state)));
+    const least = [this.force, this.down, this.up, this.depth].map((one) => one.found());
+    const [resisted, when] = [[-sums[DRILLED], -sums[ROLLED]], [this.turned, this.arrival(m.final_band(state))]];
+    const ends = m.Ends.of_one(state, trajectory.time, null, events, this.flights, this.steps, resisted, least, when);
     this.metrics = Object.fromEntries(m.metrics(ends, this.start, this.top, units).entries());
     this.flights = flights.map(([start, end, gap]) => (
-      { start: start * units.time, end: end * units.time, highestGap: gap * units.length }));
+      { start: start * units.time, end: end * units.time, highest_gap: gap * units.length }));
     if (!this.pieces.length) {
       const [mode, numbers] = m.as_begun(this.start, this.top);
       const still = this.piece(mode, DenseSolution.in_time([0, 1], [numbers.map((number) => [number])]), "sliding");
@@ -165,8 +156,7 @@ class Run {
 
   grid(count) {
     const all = Array.from({ length: count }, (_, i) => (this.duration * i) / (count - 1));
-    // Its end is the last of them but for rounding.
-    const times = this.early ? all.filter((time) => time <= this.endTime) : all;
+    const times = all.filter((time) => time <= this.endTime);
     if (this.early && times.at(-1) < this.endTime) times.push(this.endTime);
     return Float64Array.from(times);
   }

@@ -16,9 +16,7 @@ export function heed(whether) {
 const takes = (a, word) => a !== null && typeof a === "object" && word in a;
 
 function applied(a, b, word, turned, plain) {
-  // Where the second's class is one of the first's kind, it is asked first.
-  const special = takes(b, turned) && takes(a, word) && b instanceof a.constructor && b.constructor !== a.constructor;
-  if (takes(a, word) && !special) return a[word](b);
+  if (takes(a, word)) return a[word](b);
   if (takes(b, turned)) return b[turned](a);
   if (typeof a === "boolean" || typeof b === "boolean") return plain(Number(a), Number(b));
   throw new TypeError(`${word} of ${a} and ${b}`);
@@ -197,11 +195,13 @@ function key(a) {
   return known.get(a);
 }
 
-export function cached(function_) {
+/** A function that keeps what it was last asked for, but not more than so much. */
+export function cached(function_, most = 1024) {
   const values = new Map();
   return (...given) => {
     const place = key(given);
     if (!values.has(place)) values.set(place, function_(...given));
+    if (values.size > most) values.delete(values.keys().next().value);
     return values.get(place);
   };
 }
@@ -244,7 +244,6 @@ export const len = (all) => (all instanceof NamedTuple ? all.constructor.fields.
 export const tuple = (all = []) => (Array.isArray(all) ? all : [...all]);
 export const list = (all = []) => [...all];
 export const dict = (pairs = []) => new Dict(pairs);
-export const set = (all = []) => new Set(all);
 export const range = (start, stop, step = 1) => {
   const [from, to] = stop === undefined ? [0, start] : [start, stop];
   return Array.from({ length: Math.max(0, Math.ceil((to - from) / step)) }, (_, i) => from + i * step);
@@ -285,14 +284,17 @@ export const sorted = (all, { key: worth = (one) => one } = {}) =>
   [...all].sort((a, b) => below(worth(b), worth(a)) - below(worth(a), worth(b)));
 
 export const join = (between, all) => [...all].join(between);
-export const extend = (all, more) => all.push(...more);
 export const removeprefix = (text, part) => (text.startsWith(part) ? text.slice(part.length) : text);
-export function format(value, how_) {
+/** A number as it is typed, with powers of ten from some size on. */
+export function typed(value, most = 1e16) {
   if (!Number.isFinite(value)) return String(value).toLowerCase().replace("inity", "");
-  const kind = how_.at(-1), digits = how_.length > 1 ? Number(how_.slice(1, -1)) : 6;
-  const [mantissa, power] = value.toExponential(kind === "g" ? Math.max(digits, 1) - 1 : digits).split("e");
-  if (kind === "g" && power >= -4 && power < digits) return String(Number(value.toPrecision(digits)));
-  return `${kind === "g" ? Number(mantissa) : mantissa}e${power[0]}${power.slice(1).padStart(2, "0")}`;
+  const size = Math.abs(value), plainly = value === 0 || (size >= 1e-4 && size < most);
+  return plainly ? String(value) : value.toExponential().replace(/([+-])(\d)$/, "$10$2");
+}
+/** The same of so many digits: of Python's formats `g` alone. */
+export function format(value, how_) {
+  const digits = how_.length > 1 ? Number(how_.slice(1, -1)) : 6;
+  return typed(Number(value.toPrecision(digits)), 10 ** digits);
 }
 
 // ---- objects

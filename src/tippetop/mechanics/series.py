@@ -86,7 +86,7 @@ class Series:
     def __add__(self, other: Any) -> "Series":
         if isinstance(other, Series):
             return self._made(lambda k: self[k] + other[k])
-        if is_number(other, 0.0):
+        if is_exactly(other, 0.0):
             return self
         return self._made(lambda k: self[k] if k else self[0] + other)
 
@@ -95,9 +95,9 @@ class Series:
             if other is self:
                 return self._squared()
             return self._made(lambda k: self._product(other, k))
-        if is_number(other, 0.0):
+        if is_exactly(other, 0.0):
             return 0.0
-        if is_number(other, 1.0):
+        if is_exactly(other, 1.0):
             return self
         return self._made(lambda k: other * self[k])
 
@@ -189,7 +189,7 @@ class Series:
         return self**-1.0 * other
 
 
-def is_number(value: object, number: float) -> bool:
+def is_exactly(value: object, number: float) -> bool:
     """Whether a value is a plain number, and this one."""
     return isinstance(value, (int, float)) and value == number
 

@@ -11,7 +11,6 @@ from tippetop.catalogue import SWEPT, Ending, Fault
 from tippetop.contact.mode import Outcome
 from tippetop.contact.sliding import sliding_motion
 from tippetop.integrators.base import Array, Motion
-from tippetop.lowest import lowest_jellett
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import contact, on_table
 from tippetop.mechanics.quadratures import resistance_powers
@@ -20,7 +19,7 @@ from tippetop.mechanics.top import Kind
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Scalar, length
 from tippetop.metrics import OUTCOMES, Ends, ending, final_band, metrics
-from tippetop.monitor import WAYS_TO_END, Monitor
+from tippetop.monitor import WAYS_TO_END, Monitor, kept
 from tippetop.sweeps.alone import follow_each, is_alone
 from tippetop.sweeps.cells import cells_of, spread
 from tippetop.sweeps.definition import Sweep
@@ -79,9 +78,8 @@ def judge(ends: Ends, launches: Launches, tolerance: float) -> None:
     the energy that is gone: the axis is what goes off first, by steps that keep their balance to rounding.
     """
     top, end = launches.top, ends.state
-    monitor, left = Monitor(top, launches.state), energy(end, top)
-    keeps = length(end.axis), end.axis[2], end.height, left, lowest_jellett(end, top)
-    monitor.see(*(number[None] for number in (*keeps, left - energy(launches.state, top))))
+    monitor, gone = Monitor(top, launches.state), energy(end, top) - energy(launches.state, top)
+    monitor.see(*(number[None] for number in (*kept(end, top), gone)))
     told = np.isin(ends.outcome, [OUTCOMES.index(outcome) for outcome in WAYS_TO_END])
     ends.outcome[told & ~monitor.is_trusted(tolerance)] = OUTCOMES.index(Outcome.INACCURATE)
 
