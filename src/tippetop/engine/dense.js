@@ -20,10 +20,11 @@ export function earliest(count, holds) {
 
 /** Put a matrix times a column in `out` from `at` on. */
 function multiply(matrix, column, out, at) {
-  for (let i = 0; i < matrix.length; i += 1) {
+  for (const row of matrix) {
     let sum = 0;
-    for (let k = 0; k < column.length; k += 1) sum += matrix[i][k] * column[k];
-    out[at + i] = sum;
+    for (let k = 0; k < row.length; k += 1) sum += row[k] * column[k];
+    out[at] = sum;
+    at += 1;
   }
 }
 
@@ -138,11 +139,12 @@ export class DenseSolution {
   /** Polynomials that agree with a function, from a time to numbers, at Chebyshev's points of every step. */
   static fitted(function_, knots, degree) {
     const { places, transform, powers } = CHEBYSHEV[degree], size = function_(knots[0]).length, wide = degree + 1;
-    const terms = new Float64Array((knots.length - 1) * size * wide), weights = new Float64Array(wide);
+    const terms = new Float64Array((knots.length - 1) * size * wide), [values, weights] = [new Float64Array(wide), new Float64Array(wide)];
     for (let step = 1, at = 0; step < knots.length; step += 1) {
       const rows = places.map((place) => function_(knots[step - 1] + place * (knots[step] - knots[step - 1])));
       for (let number = 0; number < size; number += 1, at += wide) {
-        multiply(transform, rows.map((row) => row[number]), weights, 0);
+        for (let place = 0; place < wide; place += 1) values[place] = rows[place][number];
+        multiply(transform, values, weights, 0);
         multiply(powers, weights, terms, at);
       }
     }
