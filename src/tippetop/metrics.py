@@ -93,37 +93,15 @@ class Ends:
     ) -> "Ends":
         """The ends of one launch.
 
-        Parameters
-        ----------
-        state, time, outcome, events, flights, steps
-            How it ended, what happened, and the steps it took.
-        resisted
-            Energy lost to drilling and to rolling.
-        least
-            Least values of the normal force, n_z, -n_z and, in flights, the negative height.
-        when
-            First times at which n_z fell through 0, and was in the band of `final_band`; nan for never.
+        `resisted` has the energy lost to drilling and to rolling; `least`, the least values of the normal
+        force, n_z, -n_z and, in flights, the negative height; `when`, the times `turned` and `arrived`.
         """
         lift_offs = [event.time for event in events if event.kind is EventKind.LIFT_OFF]
         struck, count = sum([event.energy_lost for event in events]), len(flights.rows)
         force, down, up, depth = least
-        return cls(
-            state,
-            time,
-            outcome,
-            steps,
-            count,
-            0.0 if lift_offs or count else force,
-            min(lift_offs, default=np.nan),
-            struck,
-            *resisted,
-            flights.duration,
-            flights.highest_gap,
-            max(-depth, 0.0),
-            down,
-            -up,
-            *when,
-        )
+        pressed = 0.0 if lift_offs or count else force, min(lift_offs, default=np.nan)
+        aloft = flights.duration, flights.highest_gap, max(-depth, 0.0)
+        return cls(state, time, outcome, steps, count, *pressed, struck, *resisted, *aloft, down, -up, *when)
 
     def put(self, where: NDArray[np.intp], found: "Ends") -> None:
         """Put what was found of some launches in its places."""

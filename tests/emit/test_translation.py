@@ -149,7 +149,7 @@ def closures():
     values = values[:2]
     values[0] = values[1]
     numbers = (0.0, 2.6, -293456.0, 1e6, 9.9996, 9.96e-5, 1e-4, inf)
-    words = [f"{number:g} {number:.3g} {number:.0e}" for number in numbers]
+    words = [f"{number:g} {number:.3g} {number:.1g}" for number in numbers]
     calls = [remembered(Point(1.0), "a"), remembered(Point(1.0), "a"), len(CALLS)]
     return [*words, total, count, values, *calls]
 """
@@ -185,7 +185,7 @@ def test_translated_functions_return_the_same(both, name):
     assert both[1][name] == both[0][name]
 
 
-@pytest.mark.parametrize("statement", ["return f(**k)", "with open(x) as f: pass"])
+@pytest.mark.parametrize("statement", ["return f(**k)", "with open(x) as f: pass", 'return f"{x:.0e}"'])
 def test_what_is_not_known_is_refused(statement):
     text = f"def some(x, k, f):\n    {statement}\n"
     program = Program({"sample": text}, {}, ())

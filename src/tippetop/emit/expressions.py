@@ -206,7 +206,7 @@ class Expressions(ABC):
         match part:
             case ast.FormattedValue(value=inner, format_spec=None):
                 return f"${{py.str({self.text(inner)})}}"
-            case ast.FormattedValue(value=inner, format_spec=ast.expr() as spec):
+            case ast.FormattedValue(value=inner, format_spec=ast.expr() as spec) if "g'" in ast.unparse(spec):
                 return f'${{py.format({self.text(inner)}, "{ast.unparse(spec)[2:-1]}")}}'
             case ast.Constant(value=text):
                 return json.dumps(text)[1:-1].replace("`", "\\`").replace("${", "\\${")

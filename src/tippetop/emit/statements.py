@@ -67,8 +67,6 @@ class Statements(Calls):
                 yield f"{self._var(name)}{self.name(name)} = {self.function(node)} => {{"
                 yield from indented(self._body(node))
                 yield "};"
-            case ast.Raise(exc=None):
-                yield "throw error;"
             case ast.Raise(exc=ast.Name() as error):
                 yield f"throw new {self.text(error)}();"
             case ast.Raise(exc=ast.expr() as error):

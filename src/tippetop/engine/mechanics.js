@@ -10564,19 +10564,21 @@ class Ends extends py.Record {
     var struck = py.sum([...events].map((event) => event.energy_lost));
     var count = py.len(flights.rows);
     var [force, down, up, depth] = least;
+    var pressed = [
+      py.truth(lift_offs) || py.truth(count) ? 0.0 : force,
+      py.min(lift_offs, { default: py.np.nan })
+    ];
+    var aloft = [flights.duration, flights.highest_gap, py.max(py.neg(depth), 0.0)];
     return new this(
       state,
       time,
       outcome,
       steps,
       count,
-      py.truth(lift_offs) || py.truth(count) ? 0.0 : force,
-      py.min(lift_offs, { default: py.np.nan }),
+      ...pressed,
       struck,
       ...resisted,
-      flights.duration,
-      flights.highest_gap,
-      py.max(py.neg(depth), 0.0),
+      ...aloft,
       down,
       py.neg(up),
       ...when

@@ -16,7 +16,9 @@ export function heed(whether) {
 const takes = (a, word) => a !== null && typeof a === "object" && word in a;
 
 function applied(a, b, word, turned, plain) {
-  if (takes(a, word)) return a[word](b);
+  // Where the second's class is one of the first's kind, it is asked first.
+  const special = takes(b, turned) && takes(a, word) && b instanceof a.constructor && b.constructor !== a.constructor;
+  if (takes(a, word) && !special) return a[word](b);
   if (takes(b, turned)) return b[turned](a);
   if (typeof a === "boolean" || typeof b === "boolean") return plain(Number(a), Number(b));
   throw new TypeError(`${word} of ${a} and ${b}`);
@@ -291,7 +293,7 @@ export function typed(value, most = 1e16) {
   const size = Math.abs(value), plainly = value === 0 || (size >= 1e-4 && size < most);
   return plainly ? String(value) : value.toExponential().replace(/([+-])(\d)$/, "$10$2");
 }
-/** The same of so many digits: of Python's formats `g` alone. */
+/** The same of so many digits, as the format `g` says. */
 export function format(value, how_) {
   const digits = how_.length > 1 ? Number(how_.slice(1, -1)) : 6;
   return typed(Number(value.toPrecision(digits)), 10 ** digits);
