@@ -13,8 +13,7 @@ from tippetop.integrators.base import Array
 from tippetop.integrators.dense import parts_of, powers
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
-from tippetop.mechanics.vectors import length
-from tippetop.monitor import Monitor
+from tippetop.monitor import Monitor, kept
 from tippetop.samples import Samples
 
 _INTEGRALS = np.array(
@@ -90,9 +89,7 @@ class Recorder:
         step = block.step_at(times)
         part = parts_of(times, block.starts[step], block.ends[step])
         integrals = _INTEGRALS @ powers(2.0 * part - 1.0, len(NODES) + 1).T * block.spans[step]
-        sums = values[:, step]
-        for row, rate in enumerate(rates):
-            sums[row] += np.einsum("ik,ik->k", integrals, rate.take(step, axis=1))
+        sums = values.take(step, axis=1) + np.einsum("ik,qik->qk", integrals, rates.take(step, axis=2))
         rows = np.empty((10 + TOLD, len(times)))
         rows[0], rows[2:6], rows[6:8] = times, sums[:4], -sums[4:] if self._resisted else 0.0
         rows[8], rows[9] = struck[step], poles[step]
@@ -110,6 +107,7 @@ class Recorder:
         sums = [*self._sums[:4], 0.0, 0.0, self._struck, self._pole]
         return np.array([[0.0, 0.0, *sums, *told]]).T
 
+    @np.errstate(divide="ignore", invalid="ignore")  # of edges on which the axis is vertical
     def _integrate(self, block: Block) -> tuple[Array, Array, Array, Array]:
         """Integrate along the steps of a block.
 
@@ -146,15 +144,9 @@ class Recorder:
         struck += self._struck
         self._struck = float(struck[-1])
         self._sums, self._pole = values[:, -1], float(poles[-1])
-        self._monitor(block, values[3])
-        return rates, values[:, :-1], poles, struck[:-1]
-
-    def _monitor(self, block: Block, work: Array) -> None:
-        """See what the motion keeps where steps begin."""
         for group in block.groups:
-            told = group.begun
-            axis, height, done = told.state.axis, told.state.height, work[group.which]
-            self.monitor.see(length(axis), axis[2], height, told.energy, told.jellett, done)
+            self.monitor.see(*kept(group.begun, self.top), values[3, group.which])
+        return rates, values[:, :-1], poles, struck[:-1]
 
 
 def evenly_summed(gains: Array) -> Array:

@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tippetop.contact.mode import Mode, Segment
-from tippetop.contact.readings import Instants, Rates, instants, read
+from tippetop.contact.readings import Rates, instants, read
 from tippetop.integrators.base import Array
 from tippetop.integrators.dense import at_fractions, evaluated
+from tippetop.mechanics.state import State
 
 STEPS = 4096
 """Steps in a block, about."""
@@ -51,10 +52,9 @@ class ModeSteps:
         return read(Rates.of, self.mode, y, nearer_pole(y[2]), total=len(NODES) * len(self.which))
 
     @property
-    def begun(self) -> Instants:
-        """What is told of where the steps begin."""
-        y = self.terms[:, :, 0].T
-        return Instants.unpack(read(instants, self.mode, y, total=len(self.which)))
+    def begun(self) -> State:
+        """The states in which the steps begin, every number of shape (k,)."""
+        return self.mode.state(np.ascontiguousarray(self.terms[:, :, 0].T))
 
 
 def nearer_pole(axis: Array) -> Array:

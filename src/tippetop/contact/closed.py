@@ -43,7 +43,6 @@ class StatedMode(IntegratedMode):
     further: ClassVar[int] = 0
     """How many parameters, beside the numbers of its tops."""
     lasting: ClassVar[bool] = False
-    """Whether runs may spend most of their steps in it."""
 
     @property
     def motion(self) -> Motion:

@@ -154,7 +154,7 @@ def read(reading: Reading, mode: Mode, y: Array, *others: Scalar, total: int = 0
 
 def _compiled(reading: Reading, mode: Mode, size: int, others: int) -> Evaluation | None:
     """A reading of modes of this kind, compiled, if it can be and they are all alike."""
-    if not isinstance(mode, IntegratedMode) or not mode.motion.lasting:
+    if not isinstance(mode, IntegratedMode) or not mode.lasting:
         return None
     if len(mode.tops) > 1 or isinstance(mode.top.surface, Hull):
         return None

@@ -938,6 +938,7 @@ class IntegratedMode extends Mode {
   constructor(top, rules) {
     super(top, rules);
   }
+  get lasting() { return true; }
   /** What remains of it when its tops are taken away, and what follows it: what it is among its like. */
   without_tops() {
     var nothing = null;
@@ -1966,22 +1967,15 @@ function highest_gap(state, top, duration) {
   var last = py.min(py.add(summit, tip.period), duration);
   var count = py.add(2, py.int(py.mul(py.mul(LOOKS, py.sub(last, first)), tip.frequency)));
   var step = py.div(py.sub(last, first), count);
-  var times = py.range(py.add(count, 1)).map((j) => py.add(first, py.mul(step, j)));
-  var gaps = [...times].map((time) => gap(time)[0]);
-  var found = py.max(gaps);
-  for (var [j, here] of py.enumerate(gaps)) {
-    var before = py.max(py.sub(j, 1), 0);
-    var after = py.min(py.add(j, 1), count);
-    if (here < py.item(gaps, before) || here < py.item(gaps, after)) {
-      continue;
-    }
-    var rises = gap(py.item(times, j))[1] > 0.0;
-    var [low, high] = py.truth(rises) ? [py.item(times, j), py.item(times, after)] : [
-      py.max(py.item(times, before), py.add(first, py.mul(0.001, step))),
-      py.item(times, j)
-    ];
-    if (gap(low)[1] > 0.0 && 0.0 > gap(high)[1]) {
-      found = py.max(found, gap(crossing((time) => gap(time)[1], low, high))[0]);
+  var times = py.range(py.add(count, 1)).map((j) => py.add(first, py.mul(step, py.max(j, 0.001))));
+  var looks = [...times].map((time) => gap(time));
+  var found = py.max([gap(first)[0], ...[...looks].map(([here]) => here)]);
+  for (var j = 0; j < count; j += 1) {
+    if (py.item(looks, j)[1] > 0.0 && 0.0 > py.item(looks, py.add(j, 1))[1]) {
+      found = py.max(
+        found,
+        gap(crossing((time) => gap(time)[1], py.item(times, j), py.item(times, py.add(j, 1))))[0]
+      );
     }
   }
   return found;

@@ -148,7 +148,7 @@ class DenseSolution:
         """The solution by coefficients in powers of the time since a step's start, which are overwritten."""
         ends, known = np.asarray(knots, dtype=float), np.asarray(terms, dtype=float)
         with np.errstate(over="ignore"):  # the step of a motion that stands still has no bound
-            lengths = powers(ends[1:] - ends[:-1], known.shape[2])
+            lengths = np.ascontiguousarray(powers(ends[1:] - ends[:-1], known.shape[2]))
         if not np.isfinite(lengths[:, -1]).all():
             lengths = np.nan_to_num(lengths)
         known *= lengths[:, None, :]
@@ -195,7 +195,7 @@ def evaluated(terms: Array, which: NDArray[np.intp], parts: Array) -> Array:
     found = np.empty((len(parts), terms.shape[1]))
     for first in range(0, len(parts), MANY):
         here = slice(first, first + MANY)
-        places = powers(parts[here], terms.shape[2])
+        places = np.ascontiguousarray(powers(parts[here], terms.shape[2]))
         np.matmul(terms.take(which[here], axis=0), places[:, :, None], out=found[here, :, None])
     return found
 
@@ -205,10 +205,9 @@ def at_fractions(terms: Array, fractions: Array) -> Array:
     found = np.empty((terms.shape[1], len(fractions), len(terms)))
     places = powers(fractions, terms.shape[2])
     most = max(ALONE // max(places.size, 1), 1)
-    for number, values in enumerate(found):
-        for first in range(0, len(terms), most):
-            some = terms[first : first + most, number]
-            np.matmul(places, some.T, out=values[:, first : first + most])
+    for first in range(0, len(terms), most):
+        here = slice(first, first + most)
+        np.matmul(places, terms[here].transpose(1, 2, 0), out=found[:, :, here])
     return found
 
 
@@ -219,7 +218,7 @@ def powers(numbers: Array, count: int) -> Array:
     found = np.ones((count, len(numbers)))
     for power in range(1, count):
         np.multiply(found[power - 1], numbers, out=found[power])
-    return np.ascontiguousarray(found.T)
+    return found.T
 
 
 @lru_cache

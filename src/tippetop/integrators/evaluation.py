@@ -35,9 +35,9 @@ def compiled_evaluation(function: Rows, size: int, parameters: int) -> Evaluatio
         if whole == number:
             states = np.ascontiguousarray(y).reshape(size, number)
         else:
-            states = np.zeros((size, whole))
+            states = np.empty((size, whole))
             states[:, :number] = y.reshape(size, number)
-        rows = np.zeros((parameters, whole))
+        rows = np.empty((parameters, whole))
         for row, value in zip(rows[:, :number].reshape(parameters, *shape), given, strict=True):
             row[...] = value
         found = np.empty((count, whole))

@@ -148,16 +148,11 @@ def highest_gap(state: State, top: Top, duration: float) -> float:
     first, last = max(summit - tip.period, 0.0), min(summit + tip.period, duration)
     count = 2 + int(LOOKS * (last - first) * tip.frequency)
     step = (last - first) / count
-    times = [first + step * j for j in range(count + 1)]
-    gaps = [gap(time)[0] for time in times]
-    found = max(gaps)
-    for j, here in enumerate(gaps):
-        before, after = max(j - 1, 0), min(j + 1, count)
-        if here < gaps[before] or here < gaps[after]:
-            continue
-        # At the start of a flight the rate may vanish too.
-        rises = gap(times[j])[1] > 0.0
-        low, high = (times[j], times[after]) if rises else (max(times[before], first + 1e-3 * step), times[j])
-        if gap(low)[1] > 0.0 > gap(high)[1]:
-            found = max(found, gap(crossing(lambda time: gap(time)[1], low, high))[0])
+    # At the start of a flight the rate may vanish.
+    times = [first + step * max(j, 1e-3) for j in range(count + 1)]
+    looks = [gap(time) for time in times]
+    found = max([gap(first)[0], *(here for here, _, _ in looks)])
+    for j in range(count):
+        if looks[j][1] > 0.0 > looks[j + 1][1]:
+            found = max(found, gap(crossing(lambda time: gap(time)[1], times[j], times[j + 1]))[0])
     return found
