@@ -90,6 +90,29 @@ def test_slow_impact_of_a_fast_body_is_no_harder_than_a_quick_one():
     assert gap_rate(found.state, second) == pytest.approx(0.0, abs=1e-15)
 
 
+def test_a_contact_that_friction_all_but_jams_takes_over_without_a_jump():
+    """Its normal velocity answers to its own normal impulse by 1 + (x^2 - f x) / I1, which f makes zero."""
+    reach, inertia, speed, turning, eps = 2.0, 0.5, 1.0, 0.2, 0.1
+    hull = Hull.of((SphereSurface(1.0, reach), SphereSurface(1.0, -3.0)))
+    slip, found = speed + turning, []
+    for part in (1.0 - 1e-7, 1.0 + 1e-7):
+        mu = part * (reach + inertia / reach) * math.hypot(slip, eps) / slip
+        law = RegularizedCoulombLaw(mu, eps)
+        first, second = Top(1.0, inertia, 0.5, hull, law, 1.0).each
+        momentum = (0.0, -inertia * turning, 0.0)
+        state = on_table(SlidingState((1.0, 0.0, 0.0), momentum, (speed, 0.0)), first)
+        assert gap_rate(state, second) == pytest.approx(-5.0 * turning)
+        found.append(impact(state, 0.0, second, first))
+    before, after = found
+    assert after.state.velocity == pytest.approx(before.state.velocity, abs=1e-5)
+    assert after.state.momentum == pytest.approx(before.state.momentum, abs=1e-5)
+    for one in found:
+        assert one.steps < 1000
+        assert abs(gap_rate(one.state, second)) < 1e-9
+        assert gap_rate(one.state, first) > -1e-6
+        assert one.energy_lost > 0.0
+
+
 def naive(state, tops, steps):
     """The same impact by matrices, with Heun's method in the normal impulse, until what strikes stops.
 
@@ -144,7 +167,7 @@ def test_with_friction_it_is_what_small_steps_find(law):
     def agree(blow):
         state, tops = blow
         found = impact(state, 0.0, *tops)
-        momentum, velocity, _ = naive(state, tops, 1000)
+        momentum, velocity, _ = naive(state, tops, 2000)
         assert found.impulse == pytest.approx(velocity[2] - state.velocity[2], rel=1e-5)
         assert found.state.momentum == pytest.approx(momentum, abs=1e-5)
         assert found.state.velocity == pytest.approx(velocity, abs=1e-5)

@@ -5144,7 +5144,7 @@ const SHORTEST_of_impact_process = 1e-12;
 const [NEWTON_of_impact_process, SHORT_of_impact_process, STRAIGHT] = [4, 0.002, 1e-08];
 const MOST_of_impact_process = 20000;
 
-/** An impact of one contact under a law that says the friction at any slip, with slip as the clock. */
+/** An impact under some law of friction: what may be asked of any, however its impulses are found. */
 class ImpactProcess extends py.Record {
   static fields = ["body"];
   constructor(body) {
@@ -5154,17 +5154,6 @@ class ImpactProcess extends py.Record {
   /** The impulse at the start. */
   get begin() {
     return NO_IMPULSE;
-  }
-  /** What errors of velocities are measured by, m/s. */
-  get speed() {
-    return this.body.striking;
-  }
-  /** Longest step of the clock, and a tenth of it is the first. */
-  get longest() {
-    return py.div(
-      py.mul(2.0, LONGEST_of_impact_process),
-      py.float(py.add(this.body.response[0][0], this.body.response[1][1]))
-    );
   }
   /** Whether the contact point sinks into the table, or would, if the impact did not begin. */
   get is_struck() {
@@ -5186,13 +5175,32 @@ class ImpactProcess extends py.Record {
   settled(here) {
     return this;
   }
-  /** What a step may reach, the goal first; the impact goes on, as it is settled then, from others. */
-  ends(goal) {
-    return [goal];
-  }
   /** Force and torque per unit normal impulse at these velocities, six numbers. */
   friction(velocity) {
     return this.body.friction(velocity);
+  }
+}
+
+/** An impact of one contact under a law that says the friction at any slip, with slip as the clock. */
+class SteppedProcess extends ImpactProcess {
+  static fields = ["body"];
+  constructor(body) {
+    super(body);
+  }
+  /** What errors of velocities are measured by, m/s. */
+  get speed() {
+    return this.body.striking;
+  }
+  /** Longest step of the clock, and a tenth of it is the first. */
+  get longest() {
+    return py.div(
+      py.mul(2.0, LONGEST_of_impact_process),
+      py.float(py.add(this.body.response[0][0], this.body.response[1][1]))
+    );
+  }
+  /** What a step may reach, the goal first; the impact goes on, as it is settled then, from others. */
+  ends(goal) {
+    return [goal];
   }
   /** Rate of the clock with the normal impulse, of what slips, for force and torque that go with it. */
   pace(velocity, unit) {
@@ -5251,7 +5259,7 @@ class ImpactProcess extends py.Record {
     var later = this.friction(body.velocities(end));
     return py.math.dist(later, unit) <= py.mul(2.0, py.add(STUCK, fuzz)) ? [end, true] : null;
   }
-  /** The first impulse from a given one on at which the goal is not negative, and the steps to there. */
+  /** Step by step. */
   until(here, goal, guess) {
     var longest = this.longest;
     var waiting = goal(here) >= 0.0;
@@ -5346,7 +5354,7 @@ function is_dry(top) {
 }
 
 /** An impact under dry friction, all floats. */
-class DryProcess extends ImpactProcess {
+class DryProcess extends SteppedProcess {
   static fields = ["body", "ended", "stopped", "way", "rolling_way"];
   constructor(body, ended = false, stopped = false, way = null, rolling_way = null) {
     super(body);
@@ -5512,6 +5520,7 @@ function struck_motion(point, slip, rolling) {
 
 // tippetop.mechanics.impact_on_two
 const OPEN = 1e-09;
+const SUNK = 1e-07;
 const OTHER = 7;
 
 /** Slip, or rolling, ends under a law that then leaves what resists it open. */
@@ -5519,7 +5528,7 @@ class SlipEnds extends py.ArithmeticError {
 }
 
 /** Such an impact, floats: impulses are those of both contacts at what strikes, and work is its own. */
-class ProcessOnTwo extends ImpactProcess {
+class ProcessOnTwo extends SteppedProcess {
   static fields = ["body", "apart", "before", "pressed"];
   constructor(body, apart, before, pressed = true) {
     super(body);
@@ -5579,19 +5588,29 @@ class ProcessOnTwo extends ImpactProcess {
     }
     var unit = this.sliding(velocity);
     var share = 0.0;
-    rate = py.add(rate, this.pace(velocity, unit));
+    var pace = this.pace(velocity, unit);
     if (py.truth(this.pressed)) {
       var there = this.there(here);
       var [x, y, z, ...torque] = this.sliding(there);
       var more = this.sliding(there);
-      rate = py.add(rate, this.pace(there, more));
       var moment = add([torque[0], torque[1], torque[2]], cross(this.apart, [x, y, z]));
       var at_first = [x, y, z, ...moment];
-      var [one, other] = [unit, at_first].map((wrench) => this.beside(this.body.change(wrench))[2]);
-      share = py.max(0.0, py.div(py.neg(one), other));
-      unit = py.tuple(py.zip(unit, at_first).map(([a, b]) => py.add(a, py.mul(share, b))));
+      share = this.share(unit, at_first, there[2]);
+      unit = py.tuple(
+        py.zip(unit, at_first).map(([a, b]) => py.add(py.mul(py.sub(1.0, share), a), py.mul(share, b)))
+      );
+      pace = py.add(py.mul(py.sub(1.0, share), pace), py.mul(share, this.pace(there, more)));
     }
-    return py.tuple([...unit, velocity[2], share].map((number) => py.div(number, rate)));
+    var work = py.mul(py.sub(1.0, share), velocity[2]);
+    return py.tuple([...unit, work, share].map((number) => py.div(number, py.add(rate, pace))));
+  }
+  /** Part of the normal impulses that acts at the other contact, which they keep closed. */
+  share(unit, other, rise) {
+    var [pushed, answer] = [unit, other].map((wrench) => this.beside(this.body.change(wrench))[2]);
+    if (rise < py.mul(py.neg(SUNK), this.speed) || pushed < 0.0 && answer <= 0.0) {
+      return 1.0;
+    }
+    return pushed < 0.0 ? py.div(py.neg(pushed), py.sub(answer, pushed)) : 0.0;
   }
   /** The friction at a contact with these velocities; see `friction`. */
   sliding(velocity) {
@@ -5613,6 +5632,9 @@ class ProcessOnTwo extends ImpactProcess {
       return null;
     }
     var rates = this.slope(here);
+    if (!(this.normal(rates) > 0.0)) {
+      return null;
+    }
     var unit = py.tuple([...rates].map((rate) => py.div(rate, this.normal(rates))));
     var change = this.body.change(unit);
     var [x, y, rise, ..._] = change;
@@ -5769,7 +5791,7 @@ function process_of(body, beside) {
   if (py.truth(is_dry(body.contact.top))) {
     return new DryProcess(body);
   }
-  return py.isinstance(law, ViscousLaw) ? ViscousProcess.of(body, law) : new ImpactProcess(body);
+  return py.isinstance(law, ViscousLaw) ? ViscousProcess.of(body, law) : new SteppedProcess(body);
 }
 
 /** Poisson's end of restitution, or that of the energy stored, but not before the body has stopped. */
@@ -11566,6 +11588,7 @@ export {
   STUCK,
   STUCK_of_dormand_prince,
   SUM,
+  SUNK,
   SUSPECT,
   Samples,
   Segment,
@@ -11593,6 +11616,7 @@ export {
   SteadyState,
   StemTest,
   StepRows,
+  SteppedProcess,
   Stepping,
   Sticking,
   StickingAndSliding,

@@ -16,7 +16,7 @@ from typing import Self
 
 from tippetop.mechanics.beginning import settling
 from tippetop.mechanics.ending import Vanishing
-from tippetop.mechanics.impact_process import ImpactProcess
+from tippetop.mechanics.impact_process import SteppedProcess
 from tippetop.mechanics.impulse import FUZZ, Goal, Impulse, first_reach
 from tippetop.mechanics.motion import along_table
 from tippetop.mechanics.rolling import (
@@ -52,7 +52,7 @@ def is_dry(top: Top) -> bool:
 
 
 @dataclass(frozen=True)
-class DryProcess(ImpactProcess):
+class DryProcess(SteppedProcess):
     """An impact under dry friction, all floats."""
 
     ended: bool = False

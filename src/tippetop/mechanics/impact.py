@@ -33,7 +33,7 @@ from typing import NamedTuple
 from tippetop.mechanics.dry_impact import DryProcess, is_dry
 from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.impact_on_two import ProcessOnTwo
-from tippetop.mechanics.impact_process import ImpactProcess
+from tippetop.mechanics.impact_process import ImpactProcess, SteppedProcess
 from tippetop.mechanics.impulse import NORMAL, WORK, Goal, Impulse, Striking
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
@@ -104,7 +104,7 @@ def process_of(body: Striking, beside: Top | None) -> ImpactProcess:
         return ProcessOnTwo.of(body, Striking.of(body.state, beside))
     if is_dry(body.contact.top):
         return DryProcess(body)
-    return ViscousProcess.of(body, law) if isinstance(law, ViscousLaw) else ImpactProcess(body)
+    return ViscousProcess.of(body, law) if isinstance(law, ViscousLaw) else SteppedProcess(body)
 
 
 def restitution_goal(process: ImpactProcess, compressed: Impulse, restitution: float) -> Goal:

@@ -11,7 +11,7 @@ the other contact is a force and a torque at the first, too: that of its moment 
 from dataclasses import dataclass, replace
 from typing import Self
 
-from tippetop.mechanics.impact_process import STUCK, ImpactProcess
+from tippetop.mechanics.impact_process import STUCK, SteppedProcess
 from tippetop.mechanics.impulse import NO_IMPULSE, NORMAL, Goal, Impulse, Striking, first_reach
 from tippetop.mechanics.motion import point_velocity
 from tippetop.mechanics.rolling import Slip, is_set_valued
@@ -22,6 +22,9 @@ from tippetop.mechanics.vectors import Vector, add, cross, length, scale
 OPEN = 1e-9
 """Normal velocity of a contact that is closed, and slip that has ended, in units of what strikes."""
 
+SUNK = 1e-7
+"""Normal velocity below zero at which it sinks, in the same units: beyond all errors of steps."""
+
 OTHER = 7
 """Place of the other contact's normal impulse."""
 
@@ -31,7 +34,7 @@ class SlipEnds(ArithmeticError):
 
 
 @dataclass(frozen=True)
-class ProcessOnTwo(ImpactProcess):
+class ProcessOnTwo(SteppedProcess):
     """Such an impact, floats: impulses are those of both contacts at what strikes, and work is its own.
 
     The other contact's normal impulse is one more of their numbers.
@@ -92,17 +95,35 @@ class ProcessOnTwo(ImpactProcess):
                 raise SlipEnds("rolling ends in an impact on two surfaces")
             rate += 2.0 * resistance.length / (self.body.lever**2 * rolling)
         unit, share = self.sliding(velocity), 0.0
-        rate += self.pace(velocity, unit)
+        pace = self.pace(velocity, unit)
         if self.pressed:
             there = self.there(here)
             x, y, z, *torque = more = self.sliding(there)
-            rate += self.pace(there, more)
             moment = add((torque[0], torque[1], torque[2]), cross(self.apart, (x, y, z)))
             at_first = (x, y, z, *moment)
-            one, other = (self.beside(self.body.change(wrench))[2] for wrench in (unit, at_first))
-            share = max(0.0, -one / other)
-            unit = tuple(a + share * b for a, b in zip(unit, at_first, strict=True))
-        return tuple(number / rate for number in (*unit, velocity[2], share))
+            share = self.share(unit, at_first, there[2])
+            unit = tuple((1.0 - share) * a + share * b for a, b in zip(unit, at_first, strict=True))
+            pace = (1.0 - share) * pace + share * self.pace(there, more)
+        work = (1.0 - share) * velocity[2]
+        return tuple(number / (rate + pace) for number in (*unit, work, share))
+
+    def share(self, unit: Slip, other: Slip, rise: float) -> float:
+        """Part of the normal impulses that acts at the other contact, which they keep closed.
+
+        Where friction presses it as much as that pushes it apart (Painleve's paradox) it sinks, and has all
+        of them until its slip has changed and it is back, as in an impact of its own.
+
+        Parameters
+        ----------
+        unit, other
+            Normal impulse and friction at what strikes, and at the other contact.
+        rise
+            Normal velocity of the other contact, m/s.
+        """
+        pushed, answer = (self.beside(self.body.change(wrench))[2] for wrench in (unit, other))
+        if rise < -SUNK * self.speed or (pushed < 0.0 and answer <= 0.0):
+            return 1.0
+        return -pushed / (answer - pushed) if pushed < 0.0 else 0.0
 
     def sliding(self, velocity: Slip) -> Slip:
         """The friction at a contact with these velocities; see `friction`."""
@@ -125,6 +146,8 @@ class ProcessOnTwo(ImpactProcess):
         if not self.pressed:
             return None
         rates = self.slope(here)
+        if not self.normal(rates) > 0.0:
+            return None
         unit = tuple(rate / self.normal(rates) for rate in rates)
         change = self.body.change(unit)
         x, y, rise, *_ = change

@@ -1,6 +1,7 @@
-"""An impact under a friction law, integrated."""
+"""Impacts under a friction law, and how one is integrated."""
 
 import math
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import Self
 
@@ -40,16 +41,8 @@ MOST = 20_000
 
 
 @dataclass(frozen=True)
-class ImpactProcess:
-    """An impact of one contact under a law that says the friction at any slip, with slip as the clock.
-
-    A law that is steep at small slip makes the equations stiff in p, as slip then changes fast. They are
-    integrated over s instead, dp = ds / (|f|/|v| + 1/v_0) with v_0 the initial speed of the contact point:
-    slip then decays at the rate of M however steep the law, and needs no more than some tens of units of s
-    to fall by twenty orders of magnitude. Once friction has come to hold the slip constant, f = -M_tt^-1
-    M_tn (less what a torque does), it stays so, and the rest is a straight line; it is checked
-    that the law agrees.
-    """
+class ImpactProcess(ABC):
+    """An impact under some law of friction: what may be asked of any, however its impulses are found."""
 
     body: Striking
     """The body at the start of the impact."""
@@ -58,16 +51,6 @@ class ImpactProcess:
     def begin(self) -> Impulse:
         """The impulse at the start."""
         return NO_IMPULSE
-
-    @property
-    def speed(self) -> float:
-        """What errors of velocities are measured by, m/s."""
-        return self.body.striking
-
-    @property
-    def longest(self) -> float:
-        """Longest step of the clock, and a tenth of it is the first."""
-        return 2.0 * LONGEST / float(self.body.response[0][0] + self.body.response[1][1])
 
     @property
     def is_struck(self) -> bool:
@@ -89,13 +72,48 @@ class ImpactProcess:
         """The impact from an impulse on: as it is, or with what changes there."""
         return self
 
-    def ends(self, goal: Goal) -> list[Goal]:
-        """What a step may reach, the goal first; the impact goes on, as it is settled then, from others."""
-        return [goal]
-
     def friction(self, velocity: Slip) -> Slip:
         """Force and torque per unit normal impulse at these velocities, six numbers."""
         return self.body.friction(velocity)
+
+    @abstractmethod
+    def until(self, here: Impulse, goal: Goal, guess: float) -> tuple[Impulse, int]:
+        """The first impulse from a given one on at which the goal is not negative, and the steps to there.
+
+        The guess, positive, is how much the normal impulse may have to grow.
+
+        Raises
+        ------
+        ArithmeticError
+            If it takes too many steps.
+        """
+
+
+@dataclass(frozen=True)
+class SteppedProcess(ImpactProcess):
+    """An impact of one contact under a law that says the friction at any slip, with slip as the clock.
+
+    A law that is steep at small slip makes the equations stiff in p, as slip then changes fast. They are
+    integrated over s instead, dp = ds / (|f|/|v| + 1/v_0) with v_0 the initial speed of the contact point:
+    slip then decays at the rate of M however steep the law, and needs no more than some tens of units of s
+    to fall by twenty orders of magnitude. Once friction has come to hold the slip constant, f = -M_tt^-1
+    M_tn (less what a torque does), it stays so, and the rest is a straight line; it is checked
+    that the law agrees.
+    """
+
+    @property
+    def speed(self) -> float:
+        """What errors of velocities are measured by, m/s."""
+        return self.body.striking
+
+    @property
+    def longest(self) -> float:
+        """Longest step of the clock, and a tenth of it is the first."""
+        return 2.0 * LONGEST / float(self.body.response[0][0] + self.body.response[1][1])
+
+    def ends(self, goal: Goal) -> list[Goal]:
+        """What a step may reach, the goal first; the impact goes on, as it is settled then, from others."""
+        return [goal]
 
     def pace(self, velocity: Slip, unit: Slip) -> float:
         """Rate of the clock with the normal impulse, of what slips, for force and torque that go with it."""
@@ -138,15 +156,7 @@ class ImpactProcess:
         return (end, True) if math.dist(later, unit) <= 2.0 * (STUCK + fuzz) else None
 
     def until(self, here: Impulse, goal: Goal, guess: float) -> tuple[Impulse, int]:
-        """The first impulse from a given one on at which the goal is not negative, and the steps to there.
-
-        The guess, positive, is how much the normal impulse may have to grow.
-
-        Raises
-        ------
-        ArithmeticError
-            If it takes too many steps.
-        """
+        """Step by step."""
         longest, waiting = self.longest, goal(here) >= 0.0
         step, now = 0.1 * longest, self.settled(here)
         slope = now.slope(here)
@@ -173,12 +183,12 @@ class ImpactProcess:
         raise Unsolved("an impact does not come to its end")
 
 
-def doubt_of(now: ImpactProcess, taken: RungeKuttaStep) -> float:
+def doubt_of(now: SteppedProcess, taken: RungeKuttaStep) -> float:
     """The error of a step over the one allowed."""
     return taken.doubt(lambda error: now.wrong(taken, now.body.change(error))) / TOLERANCE
 
 
-def landing(now: ImpactProcess, taking: RungeKuttaStep, ends: list[Goal]) -> Impulse:
+def landing(now: SteppedProcess, taking: RungeKuttaStep, ends: list[Goal]) -> Impulse:
     """The impulse within a step at which one of some goals is reached.
 
     The cubic through its ends tells about where. From there on it is Newton's method, as a goal is linear in
