@@ -552,10 +552,6 @@ class CoulombLaw extends py.NamedTuple {
     super();
     this.mu = mu;
   }
-  /** Drilling is free. */
-  get slip_length() {
-    return null;
-  }
   /** It has no torque. */
   get torque_free() {
     return true;
@@ -2323,7 +2319,7 @@ function spun_up(axis, momentum, change, top) {
   return add(momentum, add(scale(top.transverse_inertia, change), scale(along, axis)));
 }
 
-/** Whether a law lets slip end. */
+/** Whether a law lets slip end: it has a `reserve`, and elsewhere depends on slip's direction alone. */
 function is_set_valued(law) {
   return py.hasattr(law, "reserve");
 }

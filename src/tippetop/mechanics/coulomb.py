@@ -1,8 +1,8 @@
 """Dry friction: a sliding body feels all of it, and one that sticks no more than it takes."""
 
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
-from tippetop.mechanics.friction import NO_TORQUE, FrictionLaw, Traction
+from tippetop.mechanics.friction import NO_TORQUE, Traction
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Horizontal, Scalar, Vector
 
@@ -10,29 +10,10 @@ TINY = 1e-300
 """Square of an angular velocity that is none, so that no direction of it is asked for."""
 
 
-class SetValuedLaw(FrictionLaw, Protocol):
-    """A law that says less than the force where slip, and drilling if it resists that, are zero.
-
-    Elsewhere the traction depends on the direction of (slip, slip_length * drilling rate) alone.
-    """
-
-    @property
-    def slip_length(self) -> Scalar | None:
-        """Length by which a drilling rate compares with a slip speed, m; None if drilling is free."""
-
-    def reserve(self, normal: Scalar, force: Horizontal, drilling: Scalar) -> Scalar:
-        """Positive inside of the limit surface, zero on it, N^2: for normal and friction force and torque."""
-
-
 class CoulombLaw(NamedTuple):
     """Coulomb's friction: f = -mu v / |v| in sliding, and at v = 0 any force up to mu N. No torque."""
 
     mu: Scalar
-
-    @property
-    def slip_length(self) -> None:
-        """Drilling is free."""
-        return
 
     @property
     def torque_free(self) -> bool:

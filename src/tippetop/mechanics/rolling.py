@@ -286,7 +286,7 @@ def spun_up(axis: Vector, momentum: Vector, change: Vector, top: Top) -> Vector:
 
 
 def is_set_valued(law: FrictionLaw) -> bool:
-    """Whether a law lets slip end."""
+    """Whether a law lets slip end: it has a `reserve`, and elsewhere depends on slip's direction alone."""
     return hasattr(law, "reserve")
 
 
