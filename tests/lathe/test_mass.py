@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from profiles import BALL, lines, made, profiles
 
 from strategies import numbers
-from tippetop.lathe.mass import Filling, mass_properties
+from tippetop.lathe.mass import mass_properties
 from tippetop.lathe.profile import profile_of
 from tippetop.lathe.workpiece import Insert, Workpiece
 
@@ -15,7 +15,7 @@ RHO = 700.0
 
 
 def properties(points, density=RHO):
-    return mass_properties([Filling(profile_of(points), density)])
+    return mass_properties([(profile_of(points), density)])
 
 
 def exactly(mass, center, I1, I3, of):
@@ -119,8 +119,8 @@ def test_the_parts_of_a_body_cut_by_a_plane_add_up(points, density):
     middle = next(k for k, point in enumerate(points) if point[0] and point[1] == 0.0)
     below = made([*points[: middle + 1], (0.0, 0.0)])
     above = made([(0.0, 0.0), points[middle][:2], *points[middle + 1 :]])
-    whole = mass_properties([Filling(made(points), density)])
-    parts = [mass_properties([Filling(part, density)]) for part in (below, above)]
+    whole = mass_properties([(made(points), density)])
+    parts = [mass_properties([(part, density)]) for part in (below, above)]
     mass = sum(part.mass for part in parts)
     center = sum(part.mass * part.center for part in parts) / mass
     assert whole == (
@@ -138,8 +138,8 @@ def test_a_body_moved_up_and_enlarged_keeps_its_proportions(profile, lift, facto
         edge._replace(start=factor * edge.start + 1j * lift, end=factor * edge.end + 1j * lift)
         for edge in profile.edges
     ]
-    one = mass_properties([Filling(profile, 1.0)])
-    other = mass_properties([Filling(type(profile)(moved), 1.0)])
+    one = mass_properties([(profile, 1.0)])
+    other = mass_properties([(type(profile)(moved), 1.0)])
     assert other == (
         pytest.approx(factor**3 * one.mass, rel=1e-11),
         pytest.approx(factor * one.center + lift, abs=1e-12),

@@ -55,10 +55,7 @@ def pack_run(run: xr.Dataset) -> bytes:
             "I1": problem.body.I1,
             "I3": problem.body.I3,
             "size": size(problem.body),
-            "parts": [
-                part._replace(profile=part.profile.round(9).tolist())._asdict()
-                for part in toy_parts(problem.body)
-            ],
+            "parts": [part.plain() for part in toy_parts(problem.body)],
         },
         "scenes": SCENES,
         "story": tell(run)._asdict(),

@@ -103,6 +103,10 @@ ALONG_X, ALONG_Y = ("data", "axes fraction"), ("axes fraction", "data")
 """Coordinates of notes that belong to a value of one axis and to a height or width of the panel."""
 
 
+LEADER = {"arrowstyle": "-", "lw": 0.8, "shrinkA": 2, "shrinkB": 5}
+"""The thin line from a note to what it is about, but for its colour."""
+
+
 def note(
     axes: Axes,
     text: str,

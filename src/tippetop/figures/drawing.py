@@ -36,6 +36,15 @@ def unit(vector: ArrayLike) -> Array:
     return array / float(np.linalg.norm(array))
 
 
+def projection(azimuth: float, elevation: float) -> Array:
+    """Return the matrix whose product with points in rows is their place in a parallel projection.
+
+    Its columns point to the right and upwards in the picture, z up; the angles are those of the eye.
+    """
+    ca, sa, ce, se = np.cos(azimuth), np.sin(azimuth), np.cos(elevation), np.sin(elevation)
+    return np.array([[-sa, -se * ca], [ca, -se * sa], [0.0, ce]])
+
+
 def arc(first: ArrayLike, towards: ArrayLike, angle: float, start: float = 0.0) -> Array:
     """Return points of the unit circle about the origin, from `start` to `angle` radians.
 

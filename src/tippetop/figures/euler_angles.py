@@ -21,7 +21,7 @@ def euler_angles_drawing() -> Figure:
     Space axes x, y, z are grey, body axes X, Y, Z blue; everything is drawn by one parallel projection.
     """
     figure, axes = draw.canvas((-1.22, 1.98), (-0.9, 1.32))
-    view = _view(azimuth=np.radians(35), elevation=np.radians(22))
+    view = draw.projection(azimuth=np.radians(35), elevation=np.radians(22))
     turned = Rotation.from_euler("ZXZ", [_PRECESSION, _NUTATION, _ROTATION])
     space, body = np.eye(3), turned.as_matrix().T
     nodes = np.array([np.cos(_PRECESSION), np.sin(_PRECESSION), 0.0])
@@ -33,12 +33,6 @@ def euler_angles_drawing() -> Figure:
     _euler_arcs(axes, view, space, body, nodes)
     _euler_key(axes, (1.08, 1.2))
     return figure
-
-
-def _view(azimuth: float, elevation: float) -> Array:
-    """Return the matrix whose product with points in rows is their place in a parallel projection."""
-    ca, sa, ce, se = np.cos(azimuth), np.sin(azimuth), np.cos(elevation), np.sin(elevation)
-    return np.array([[-sa, -se * ca], [ca, -se * sa], [0.0, ce]])
 
 
 def _discs(axes: Axes, view: Array, space: Array, body: Array, nodes: Array) -> None:

@@ -57,6 +57,10 @@ class ToyPart(NamedTuple):
     opacity: float = 1.0
     """1 for solid, less for glass."""
 
+    def plain(self) -> dict[str, Any]:
+        """It as plain numbers and words."""
+        return self._replace(profile=self.profile.round(9).tolist())._asdict()
+
 
 BAND = 4
 """Half the width of the band around an outline without corners, in points of it."""
@@ -108,7 +112,7 @@ def _tippe_top(eccentricity: float) -> tuple[ToyPart, ...]:
 
 def as_json() -> str:
     """What the page draws toys from, its `looks.json`: scenes, a tippe top, the colours of belts, rules."""
-    parts = [part._replace(profile=part.profile.round(9).tolist())._asdict() for part in _tippe_top(0.0)]
+    parts = [part.plain() for part in _tippe_top(0.0)]
     rules = {"arc_step": ARC_STEP, "band": BAND}
     told = {"scenes": SCENES, "tippe_top": parts, "bowl": _BOWL, "band": _BAND, "meridian": rules}
     return json.dumps(told) + "\n"

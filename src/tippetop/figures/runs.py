@@ -157,18 +157,12 @@ def stopped_figure(tilt: Axes, force: Axes, run: xr.Dataset, reported_stop: floa
     last = float(other["theta_listing"][-1])
     tilt.plot([stop], [end], "o", color=ACCENT, ms=6, zorder=5)
     tilt.plot([reported_stop], [last], "s", color=REPORT, ms=6, zorder=5, mec=INK, mew=0.6)
-    _callout(tilt, f"the top leaves the table\nat {stop:.3f} s", (stop, end), (-44, 22), ACCENT, "right")
-    _callout(tilt, f"the report stops\nat {reported_stop:g} s", (reported_stop, last), (52, -12), INK, "left")
+    for text, at, offset, color in (
+        (f"the top leaves the table\nat {stop:.3f} s", (stop, end), (-44, 22), ACCENT),
+        (f"the report stops\nat {reported_stop:g} s", (reported_stop, last), (52, -12), INK),
+    ):
+        mark.note(tilt, text, at, offset, color, va="center", arrowprops={**mark.LEADER, "color": color})
     tilt.legend(loc="upper left")
-
-
-def _callout(
-    axes: Axes, text: str, at: tuple[float, float], offset: tuple[float, float], color: str, side: str
-) -> None:
-    axes.annotate(
-        text, at, offset, textcoords="offset points", color=color, size=9, ha=side, va="center",
-        arrowprops={"arrowstyle": "-", "color": color, "lw": 0.8, "shrinkA": 2, "shrinkB": 5},
-    )  # fmt: skip
 
 
 def _over_time(axes: Axes, run: xr.Dataset) -> None:

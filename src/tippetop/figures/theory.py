@@ -185,26 +185,21 @@ def _no_precession(axes: Axes, chart: xr.Dataset) -> None:
     middle = 0.5 * float(low[0] + high[0])
     axes.annotate(
         "no tilted\nprecession is stable", (middle, 0.03), (0.63, 0.085), color=INK, size=9, ha="center",
-        arrowprops={"arrowstyle": "-", "color": INK, "lw": 0.8},
+        arrowprops={**mark.LEADER, "color": INK},
     )  # fmt: skip
 
 
 def _name_regions(axes: Axes) -> None:
-    for text, at, turn in (
-        ("never inverts:\nupright stays stable", (0.63, 0.195), 0),
-        ("inverts completely,\ngradually", (1.0, 0.47), 0),
-        ("inverts with a jump:\ntwo states coexist", (0.712, 0.385), -49.5),
-        ("stops part-way:\ninverted never stable", (1.42, 0.16), 0),
+    for text, at, turn, size in (
+        ("never inverts:\nupright stays stable", (0.63, 0.195), 0, 10),
+        ("inverts completely,\ngradually", (1.0, 0.47), 0, 10),
+        ("inverts with a jump:\ntwo states coexist", (0.712, 0.385), -49.5, 8.5),
+        ("stops part-way:\ninverted never stable", (1.42, 0.16), 0, 10),
+        (r"$\gamma = 1 - \alpha$", (0.66, 0.308), -51.5, 9),
+        (r"$\gamma = 1 + \alpha$", (1.222, 0.255), 51.5, 9),
     ):
-        axes.annotate(
-            text, at, ha="center", va="center", rotation=turn, size=10 if turn == 0 else 8.5, color=INK,
-            linespacing=1.3, rotation_mode="anchor",
-        )  # fmt: skip
-    for text, at, turn in (
-        (r"$\gamma = 1 - \alpha$", (0.66, 0.308), -51.5),
-        (r"$\gamma = 1 + \alpha$", (1.222, 0.255), 51.5),
-    ):
-        axes.annotate(text, at, ha="center", va="center", rotation=turn, size=9, color=INK)
+        turned: dict[str, Any] = {"rotation": turn, "rotation_mode": "anchor", "linespacing": 1.3}
+        mark.note(axes, text, at, (0, 0), INK, size=size, **turned)
 
 
 def _tops(axes: Axes, chart: xr.Dataset) -> None:

@@ -21,81 +21,67 @@ _STAGES = (
 )
 
 
-class Camera:
-    """Parallel projection of space (x right, y away, z up) from an elevation in radians."""
-
-    def __init__(self, elevation: float) -> None:
-        sine, cosine = np.sin(elevation), np.cos(elevation)
-        self.right = np.array([1.0, 0.0, 0.0])
-        self.up = np.array([0.0, sine, cosine])
-        self.towards = np.array([0.0, -cosine, sine])
-
-    def project(self, points: Array) -> Array:
-        """Return the picture coordinates of points given as rows."""
-        return np.stack([points @ self.right, points @ self.up], axis=-1)
-
-
+@house_style()
 def tippe_top_drawing() -> Figure:
     """Return the toy upright, half-way and inverted, side by side.
 
     The spin keeps its sense in space throughout; the centre of mass rises.
     """
-    with house_style():
-        camera = Camera(np.radians(14))
-        figure, axes = draw.canvas((-1.85, 8.85), (-1.72, 3.5))
-        _table(axes, (-1.7, 8.7), camera)
-        for number, (tilt, title, text) in enumerate(_STAGES):
-            x = 3.5 * number
-            _stage(axes, x, np.radians(tilt), camera)
-            draw.label(axes, (x, -1.1), title, size=10.5)
-            draw.label(axes, (x, -1.44), text, color=MUTED, size=9)
-        draw.label(axes, (0.55, 2.94), "spin", color=ACCENT, size=9.5, ha="left")
-        draw.label(axes, (0.27, 1.8), "stem", size=9.5, ha="left")
+    view = draw.projection(azimuth=np.radians(-90), elevation=np.radians(14))
+    figure, axes = draw.canvas((-1.85, 8.85), (-1.72, 3.5))
+    _table(axes, (-1.7, 8.7), view)
+    for number, (tilt, title, text) in enumerate(_STAGES):
+        x = 3.5 * number
+        _stage(axes, x, np.radians(tilt), view)
+        draw.label(axes, (x, -1.1), title, size=10.5)
+        draw.label(axes, (x, -1.44), text, color=MUTED, size=9)
+    draw.label(axes, (0.55, 2.94), "spin", color=ACCENT, size=9.5, ha="left")
+    draw.label(axes, (0.27, 1.8), "stem", size=9.5, ha="left")
     return figure
 
 
-def _table(axes: Axes, ends: tuple[float, float], camera: Camera) -> None:
+def _table(axes: Axes, ends: tuple[float, float], view: Array) -> None:
     left, right = ends
-    far, near = (camera.up[1] * y for y in (5.5, -2.7))
+    far, near = (view[1, 1] * y for y in (5.5, -2.7))
     draw.filled(axes, draw.box(left, right, near, far), TABLE, z=0)
     draw.filled(axes, draw.box(left, right, near - 0.09, near), TABLE_EDGE, z=0)
     draw.line(axes, [(left, far), (right, far)], TABLE_EDGE, 1.0, z=0)
 
 
-def _stage(axes: Axes, x: float, tilt: float, camera: Camera) -> None:
+def _stage(axes: Axes, x: float, tilt: float, view: Array) -> None:
     """Draw one toy: its shadow, its picture, its spin, and how high its centre of mass is."""
     toy, frame = Toy(REPORT), Rotation.from_euler("ZY", [np.radians(-35), tilt]).as_matrix()
     centre = np.array([x, 0.0, 1.0])
-    o, mass = camera.project(centre), camera.project(centre - frame @ toy.middle)
-    flat = 2 * camera.up[1]
+    o, mass = centre @ view, (centre - frame @ toy.middle) @ view
+    flat = 2 * view[1, 1]
     for offset, spread, strength in ((0.3, 0.95, 0.24), (0.06, 0.36, 0.45)):
         draw.picture(axes, _shadow(offset, spread, strength), (x - 2, x + 2, -flat, flat), z=0.5)
-    _spin(axes, centre, camera)
+    _spin(axes, centre, view)
     place = (o[0] - _REACH, o[0] + _REACH, o[1] - _REACH, o[1] + _REACH)
-    draw.picture(axes, _picture(toy, frame, camera), place, z=3)
+    draw.picture(axes, _picture(toy, frame, view), place, z=3)
     draw.mass_centre(axes, mass, radius=0.085)
     draw.line(axes, [(x - 1.38, mass[1]), (x - 1.04, mass[1])], MUTED, 0.9)
     draw.dimension(axes, (x - 1.25, 0), (x - 1.25, mass[1]))
     draw.label(axes, (x - 1.25, mass[1] + 0.05), "CM", size=9.5, va="bottom")
 
 
-def _spin(axes: Axes, centre: Array, camera: Camera, height: float = 3.0, radius: float = 0.42) -> None:
+def _spin(axes: Axes, centre: Array, view: Array, height: float = 3.0, radius: float = 0.42) -> None:
     """Draw the vertical through the sphere's centre and an arrow turning about it, the far part behind it."""
     ends = centre * [1, 1, 0] + [[0, 0, centre[2]], [0, 0, height + 0.4]]
     ring = draw.arc([1, 0, 0], [0, 1, 0], np.radians(325), np.radians(25)) * radius + centre * [1, 1, 0]
     ring[:, 2] = height
-    draw.arrow(axes, camera.project(ring), ACCENT, width=1.8, head=0.2, z=2.5)
-    back, front = camera.project(ends)
-    draw.line(axes, [back, front], MUTED, 1.0, dashed=True, z=2.4)
+    draw.arrow(axes, ring @ view, ACCENT, width=1.8, head=0.2, z=2.5)
+    draw.line(axes, ends @ view, MUTED, 1.0, dashed=True, z=2.4)
 
 
-def _picture(toy: Toy, frame: Array, camera: Camera, pixels: int = 300, oversample: int = 2) -> Array:
+def _picture(toy: Toy, frame: Array, view: Array, pixels: int = 300, oversample: int = 2) -> Array:
     """Return the toy's picture about the sphere's centre: RGBA, rows from the bottom up."""
     n = pixels * oversample
     grid = ((np.arange(n) + 0.5) / n * 2 - 1) * _REACH
     across, upward = np.meshgrid(grid, grid)
-    start = across[..., None] * camera.right + upward[..., None] * camera.up + 2 * camera.towards
-    start, ahead, light = start @ frame + toy.middle, -camera.towards @ frame, _LIGHT @ frame
+    towards = np.cross(*view.T)
+    start = np.stack([across, upward], axis=-1) @ view.T + 2 * towards
+    start, ahead, light = start @ frame + toy.middle, -towards @ frame, _LIGHT @ frame
     hits = toy.meet(start, np.broadcast_to(ahead, start.shape))
     hit = hits.distances < FAR
     rgba = np.zeros((n, n, 4))

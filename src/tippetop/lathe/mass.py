@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 from tippetop.lathe.profile import Profile
 
@@ -26,13 +26,8 @@ class MassProperties(NamedTuple):
     I3: float
 
 
-class Filling(NamedTuple):
-    """A profile filled with a material."""
-
-    profile: Profile
-    """The edge of it."""
-    density: float
-    """Density, less that of what it takes the place of, kg/m^3."""
+Filling: TypeAlias = tuple[Profile, float]
+"""A profile filled with a material: its density, less that of what it takes the place of, kg/m^3."""
 
 
 def mass_properties(fillings: Sequence[Filling]) -> MassProperties:

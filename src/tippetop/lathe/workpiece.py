@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 
 from tippetop.errors import InvalidInput
 from tippetop.lathe.hull import ConvexHull, hull_of
-from tippetop.lathe.mass import Filling, MassProperties, mass_properties
+from tippetop.lathe.mass import MassProperties, mass_properties
 from tippetop.lathe.profile import Profile, area_of, profile_of
 from tippetop.validation import NotNegative, Part, Points, Positive, Quantity
 
@@ -113,10 +113,10 @@ class Workpiece(Part):
     @cached_property
     def mass_properties(self) -> MassProperties:
         """What it weighs, and how: exact but for rounding."""
-        fillings = [Filling(self.outline, self.density)]
+        fillings = [(self.outline, self.density)]
         for inner, insert, outer in zip(self.insides, self.inserts, self.around, strict=True):
             replaced = self.density if outer is None else self.inserts[outer].density
-            fillings.append(Filling(inner, insert.density - replaced))
+            fillings.append((inner, insert.density - replaced))
         return mass_properties(fillings)
 
     @cached_property

@@ -30,21 +30,9 @@ FLIGHT_LIMIT = 50_000
 
 
 class Crossings:
-    """Transitions of launches under way.
+    """Transitions of launches under way, which end when they reach a band of n_z if they are `banded`.
 
-    Parameters
-    ----------
-    slots
-        The launches.
-    tolerance
-        Relative error per step, of the integrator of launches that are followed alone.
-    banded
-        Whether launches end when they reach a band of n_z.
-
-    Attributes
-    ----------
-    motion
-        How a top of their kind slides.
+    The tolerance is that of the integrator of launches that are followed alone: relative error per step.
     """
 
     def __init__(self, slots: Slots, tolerance: float, banded: bool) -> None:

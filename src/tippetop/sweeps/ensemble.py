@@ -33,15 +33,7 @@ LANES_AT_ONCE = 2048
 
 
 def follow_cells(sweep: Sweep, numbers: Flat) -> dict[str, NDArray[np.generic]]:
-    """Every variable of `tippetop.catalogue.SWEPT` for some cells of a sweep, each of shape (n,).
-
-    Parameters
-    ----------
-    sweep
-        What to compute.
-    numbers
-        Which cells, counted row by row.
-    """
+    """Every variable of `tippetop.catalogue.SWEPT` for cells counted row by row, each of shape (n,)."""
     cells = cells_of(sweep.problem, sweep.grid.values(numbers))
     count = len(numbers)
     found = {name: np.full(count, kind.missing, dtype=kind.dtype) for name, kind in SWEPT.items()}

@@ -68,20 +68,11 @@ def fly_all(
     vanishing: Indices,
     seen: tuple[TipMotion, Indices, Array],
 ) -> Flown:
-    """Fly until the table is touched.
+    """Fly until the table is touched, for the `horizon` at most: all of shape (n,).
 
-    Parameters
-    ----------
-    state
-        The states at the start, every number an array of shape (n,).
-    kind, numbers
-        The tops: their dimensionless numbers, shape (kind.numbers, n).
-    horizon
-        How long to fly at most, shape (n,).
-    vanishing
-        How many of gap, gap rate and gap acceleration vanish at the start, shape (n,).
-    seen
-        What follows the tip of the axis, under which numbers, and the times at the start.
+    The tops are told by their dimensionless numbers, shape (kind.numbers, n); of gap, gap rate and gap
+    acceleration so many are `vanishing` at the start. Given is also what follows the tip of the axis, under
+    which numbers, and the times at the start.
     """
     tip, launches, begun = seen
     time, highest = np.zeros_like(horizon), np.zeros_like(horizon)

@@ -38,22 +38,11 @@ CROWDED = 0.75
 
 
 class Lanes:
-    """Launches under way.
+    """Launches under way, by Taylor's method for sliding tops of their kind, and what follows of them alone.
 
-    Parameters
-    ----------
-    launches
-        What is launched.
-    stepper
-        Taylor's method for sliding tops of their kind.
-    tolerance
-        Relative error per step, of the integrator of launches that are followed alone.
-    band
-        Least and largest n_z of a band, each of shape (n,); a launch ends when it reaches its own.
-    resumed
-        Numbers of the motion and times left, shape (size + 1, n), where the launches are not at the start.
-    settled
-        A launch ends once its tilt is held within this, rad; None for none.
+    The tolerance is that of the latter: relative error per step. A launch ends when n_z reaches its own
+    `band`, the least and the largest of shape (n,), and once its tilt is held within `settled`, rad. Launches
+    that are not at the start are `resumed`: numbers of the motion and times left, shape (size + 1, n).
     """
 
     def __init__(

@@ -27,15 +27,6 @@ LOSSES = slice(8, 10)
 class Slots:
     """Lanes, and what is kept of each; all of shape (n,) or (rows, n).
 
-    Parameters
-    ----------
-    launches
-        What is launched.
-    stepper
-        Taylor's method for sliding tops of their kind.
-    band
-        The least and the largest n_z that each waits for, if there are such.
-
     Attributes
     ----------
     ends

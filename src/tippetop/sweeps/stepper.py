@@ -59,11 +59,11 @@ class Stepper:
 
     def jet(self, before: Array, numbers: Array) -> Jet:
         """The polynomials in time of the steps that start from `before`."""
-        start, given = padded(before[: self.layout.kept]), padded(numbers)
-        count = start.shape[1]
-        terms = np.empty((_count(self.motion, self.order), count))
-        self._step(start, given, np.empty((self.layout.rows, count)), terms)
-        return _jet(terms[:, : before.shape[1]], self.motion, self.order)
+
+        def made(start: Array, given: Array, terms: Array) -> None:
+            self._step(start, given, np.empty((self.layout.rows, start.shape[1])), terms)
+
+        return _expanded(made, before[: self.layout.kept], numbers, self.motion, self.order)
 
     @cached_property
     def _step(self) -> Callable[..., None]:
@@ -91,14 +91,7 @@ def polynomials(motion: Motion, tolerance: float) -> Callable[[Array, Array], Je
         return [*chain(*chain(*expansion(motion, order, start, numbers, NODES)))]
 
     made = compiled(rows, motion.size, motion.parameters, effort=0)
-
-    def expanded(start: Array, numbers: Array) -> Jet:
-        whole = padded(start)
-        terms = np.empty((_count(motion, order), whole.shape[1]))
-        made(whole, padded(numbers), terms)
-        return _jet(terms[:, : start.shape[1]], motion, order)
-
-    return expanded
+    return lambda start, numbers: _expanded(made, start, numbers, motion, order)
 
 
 def compiled(
@@ -117,10 +110,12 @@ def _count(motion: Motion, order: int) -> int:
     return motion.size * (order + 1) + len(motion.guards) * order
 
 
-def _jet(terms: Array, motion: Motion, order: int) -> Jet:
-    """Coefficients one after another, as what they are."""
-    cut, count = motion.size * (order + 1), terms.shape[1]
-    state, guards = terms[:cut], terms[cut:]
+def _expanded(made: Callable[..., None], start: Array, numbers: Array, motion: Motion, order: int) -> Jet:
+    """The polynomials of a motion that compiled code makes, coefficients one after another."""
+    count, whole = start.shape[1], padded(start)
+    terms = np.empty((_count(motion, order), whole.shape[1]))
+    made(whole, padded(numbers), terms)
+    state, guards = np.split(terms[:, :count], [motion.size * (order + 1)])
     return Jet(state.reshape(motion.size, order + 1, count), guards.reshape(-1, order, count))
 
 

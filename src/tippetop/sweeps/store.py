@@ -39,15 +39,7 @@ from tippetop.sweeps.layout import (
 
 
 class Store:
-    """A sweep on disk.
-
-    Parameters
-    ----------
-    path
-        Its folder.
-    sweep
-        The sweep that it holds.
-    """
+    """A sweep on disk, in a folder."""
 
     def __init__(self, path: Path, sweep: Sweep) -> None:
         import zarr  # noqa: PLC0415 - optional

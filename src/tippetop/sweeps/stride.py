@@ -158,20 +158,11 @@ def later_guards(
     step: tuple[Scalar, int | None],
     plain: Arithmetic,
 ) -> tuple[Scalar, Scalar, Scalar]:
-    """What a step is because of all guards but the first.
+    """What a step is because of all guards but the first, as far as they count.
 
-    Parameters
-    ----------
-    falls, counts
-        The guards, and whether each of them counts.
-    step
-        The step that may be taken, and which of the guards is of the law's branch.
-
-    Returns
-    -------
-    tuple
-        The step that is taken, whether it ends where another branch of the law takes over, and whether a
-        guard may fall in it. Only where that of the branch comes near zero is it looked at.
+    Of the step that may be taken, and of which guard is of the law's branch, it makes the step that is taken,
+    whether that ends where another branch of the law takes over, and whether a guard may fall in it. Only
+    where that of the branch comes near zero is it looked at.
     """
     whole, branch = step
     none = 0.0 * whole

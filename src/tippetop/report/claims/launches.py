@@ -178,7 +178,7 @@ def _(run: xr.Dataset, other: xr.Dataset) -> Finding:
     unit = REPORT.mass * float(REPORT.surface.size) ** 2
     runs = {"listing": (run, REPORT), "table": (other, REPORT_TABLE_1)}
     misses = {
-        name: max(abs(float(run[f"end_{key}"]) - value) for key, value in END_OF_FIG_5.items())
+        name: _miss({key: float(run[f"end_{key}"]) for key in END_OF_FIG_5})
         for name, (run, _) in runs.items()
     }
     right = min(misses, key=lambda name: misses[name])
