@@ -89,10 +89,7 @@ def written_beside(path: Path | str, overwrite: bool = False) -> Iterator[Path]:
 def put_in_place(beside: Path, path: Path | str, overwrite: bool) -> None:
     """Move a finished file to its place, at once; of several that make the same new file, one succeeds.
 
-    Raises
-    ------
-    FileTrouble
-        As `place_for` does, at this very moment.
+    Raises `FileTrouble` as `place_for` does, at this very moment.
     """
     target = place_for(path, overwrite)
     with in_words(path, "written"):

@@ -8714,7 +8714,7 @@ function level_spin(top, precession) {
   return _steady(SteadyKind.LEVEL, py.div(py.math.pi, 2), precession, 0.0, [1.0, 0.0, 0.0], momentum, top);
 }
 
-/** All steady states with this Jellett's integral, by increasing tilt. */
+/** All steady states with this Jellett's integral lambda, kg m^3/s, by increasing tilt, whatever friction. */
 function steady_states(top, jellett) {
   var units = [...VERTICAL_SPINS].map((kind) => vertical_spin(kind, top, 1.0));
   var least = py.mul(py.mul(NO_JELLETT, top.axial_inertia), top.surface.size);

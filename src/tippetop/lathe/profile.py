@@ -99,23 +99,13 @@ class Profile:
 
 
 def profile_of(points: Sequence[Sequence[float]], unit: float = 1.0, field: str = "profile") -> Profile:
-    """The profile through points.
+    """The profile through points, whose numbers are in a unit, m; in sentences they are called a `field`.
 
-    Parameters
-    ----------
-    points
-        Distance from the axis, height along it and, where an arc ends, its radius: positive if it turns to
-        the left. In a row either way round, from the axis to the axis or from one to itself.
-    unit
-        What their numbers are in, m.
-    field
-        What they are called in sentences.
+    They are distance from the axis, height along it and, where an arc ends, its radius: positive if it turns
+    to the left. In a row either way round, from the axis to the axis or from one to itself.
 
-    Raises
-    ------
-    InvalidInput
-        If they are not the edge of a body: an open line, one that meets itself or crosses the axis, an arc
-        too tight for its ends, or nothing inside.
+    Raises `InvalidInput` if they are not the edge of a body: an open line, one that meets itself or crosses
+    the axis, an arc too tight for its ends, or nothing inside.
     """
     _refuse_points(points, field)
     size = max(max(abs(point[0]), abs(point[1] - points[0][1])) for point in points)

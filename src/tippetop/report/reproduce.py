@@ -62,29 +62,14 @@ def reproduce(
     workers: int | None = None,
     progress: Progress | None = None,
 ) -> Reproduction:
-    """Redo the report's figures and examine its claims.
+    """Redo the report's figures and examine its claims, all or `only` one; see `select`.
 
-    Parameters
-    ----------
-    folder
-        Where to write index.html, claims.json, figures/ and data/. Nothing is written before all is computed.
-    only
-        Name of one figure or claim; see `tippetop.report.selection.select`.
-    quick
-        Use coarser sweeps and fewer samples; the results say so.
-    overwrite
-        Overwrite files of an earlier run.
-    workers
-        Number of processes; None for one per processor, at most 2.
-    progress
-        Told how far it is.
+    The folder gets index.html, claims.json, figures/ and data/, once all is computed. A `quick` run has
+    coarser sweeps and fewer samples, and its results say so. Without a number of `workers` there are as many
+    processes as processors, 2 at most.
 
-    Raises
-    ------
-    InvalidInput
-        If there is no such figure or claim.
-    FileTrouble
-        If there are results already, or the folder cannot be written.
+    Raises `InvalidInput` if there is no such figure or claim; `FileTrouble` if there are results already, or
+    the folder cannot be written.
     """
     began = time.monotonic()
     folder = Path(folder)

@@ -134,12 +134,8 @@ def nutation_of_launch(problem: Problem) -> Nutation:
 def flip_time_limit(problem: Problem, distance: float = 0.01) -> float:
     """Limit for small mu of mu times the flip time, s^2/m.
 
-    The flip time is the first at which the tilt is within `distance` (rad) of its end.
-
-    Raises
-    ------
-    InvalidInput
-        As `averaged_flow`, and if the flow cannot be followed to its end.
+    The flip time is the first at which the tilt is within `distance` (rad) of its end. Raises `InvalidInput`
+    as `averaged_flow`, and if the flow cannot be followed to its end.
     """
     stages = _stages(problem, distance, TOLERANCE)
     final = stages[-1].final_tilt

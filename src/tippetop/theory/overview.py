@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
+from typing import Any
 
 from tippetop.errors import InvalidInput
 from tippetop.frictions import ViscousFriction
@@ -112,7 +113,7 @@ def _on_one_of_several(problem: Problem) -> Outlook:
 
     How it gets there is not told: another surface may touch on the way.
     """
-    hull = _standing_on(problem)
+    hull: Any = problem.standing().surface
     found = outlook(on_surface(problem, hull.active))
     low, high = tilts_held(hull, problem.launch.tilt)
     try:
@@ -128,13 +129,6 @@ def _on_one_of_several(problem: Problem) -> Outlook:
         surface=hull.active,
         tilts=(low, high),
     )
-
-
-def _standing_on(problem: Problem) -> Hull:
-    """The surfaces of a body that has several, of which that of the launch is active."""
-    hull = problem.standing().surface
-    assert isinstance(hull, Hull)
-    return hull
 
 
 def steady_states(problem: Problem) -> list[SteadyState[float]]:
@@ -160,7 +154,7 @@ def steady_states(problem: Problem) -> list[SteadyState[float]]:
     """
     require_problem(problem)
     if isinstance(problem.top.surface, Hull):
-        hull = _standing_on(problem)
+        hull: Any = problem.standing().surface
         low, high = tilts_held(hull, problem.launch.tilt)
         states = steady_states(on_surface(problem, hull.active))
         return [state for state in states if low <= state.tilt <= high]

@@ -103,11 +103,8 @@ def spectrum(steady: SteadyState[float], top: Top, frame_rate: float | None = No
     state's precession, which for a vertical spin is 0: a frame at rest. Only a vertical spin is steady in
     other frames; for other states `frame_rate` is ignored.
 
-    Raises
-    ------
-    InvalidInput
-        If there is no linear motion: friction of a point is dry, rolling is resisted, or the top drills on
-        anything but a vertical spin, or on one that hardly turns.
+    Raises `InvalidInput` if there is no linear motion: friction of a point is dry, rolling is resisted, or
+    the top drills on anything but a vertical spin, or on one that hardly turns.
     """
     rate = steady.precession
     if frame_rate is not None and steady.kind in VERTICAL_SPINS:

@@ -144,15 +144,10 @@ def level_spin(top: Top, precession: float) -> SteadyState[float]:
 
 
 def steady_states(top: Top, jellett: float) -> list[SteadyState[float]]:
-    """All steady states with this Jellett's integral, by increasing tilt.
+    """All steady states with this Jellett's integral lambda, kg m^3/s, by increasing tilt, whatever friction.
 
-    Parameters
-    ----------
-    top
-        The body on its table; its friction does not matter.
-    jellett
-        lambda, kg m^3/s. For an eccentric sphere it is conserved, and these are all the states a motion can
-        end in; for other shapes it only labels them.
+    For an eccentric sphere it is conserved, and these are all the states a motion can end in; for other
+    shapes it only labels them.
 
     Notes
     -----

@@ -8,6 +8,7 @@ from tippetop.presets import report_problem
 from tippetop.problem import Problem
 from tippetop.report.experiment import dataset, experiment
 from tippetop.report.experiments.runs import on_table
+from tippetop.report.quoted import MU
 from tippetop.run import simulate
 
 
@@ -30,7 +31,7 @@ def _units(quick: bool) -> xr.Dataset:
 def _in_tenths(problem: Problem, power: int) -> Problem:
     """The problem with every time in tenths of a second, if g has this power of time in its unit."""
     unit = 10.0
-    times = {"friction.mu": _viscosity(problem) * unit, "launch.spin": problem.launch.spin / unit}
+    times = {"friction.mu": MU * unit, "launch.spin": problem.launch.spin / unit}
     return problem.replace({**times, "gravity": problem.gravity * unit**power})
 
 
@@ -42,16 +43,10 @@ def _in_centimetres(problem: Problem, power: int) -> Problem:
             "body.shape.radius": float(body.surface.size) * unit,
             "body.I1": body.I1 * unit**2,
             "body.I3": body.I3 * unit**2,
-            "friction.mu": _viscosity(problem) * unit**power,
+            "friction.mu": MU * unit**power,
             "gravity": problem.gravity * unit,
         }
     )
-
-
-def _viscosity(problem: Problem) -> float:
-    """The friction coefficient of a problem with viscous friction, s/m."""
-    assert isinstance(problem.friction, ViscousFriction)
-    return problem.friction.mu
 
 
 def _tilt_after(problem: Problem, duration: float) -> float:

@@ -7,7 +7,6 @@ import xarray as xr
 
 from tippetop.bodies import Body, Shape, Sphere
 from tippetop.frictions import ContensouFriction, CoulombFriction, ViscousFriction
-from tippetop.mechanics.top import Top
 from tippetop.presets import EGG, EULER_DISK, HURRICANE_BALLS, LEINE_GLOCKER_STEM, REPORT_STEM, report_problem
 from tippetop.problem import Launch, Problem
 from tippetop.report.experiment import dataset, experiment
@@ -144,14 +143,12 @@ def _egg(quick: bool) -> xr.Dataset:
 
 def rolling(body: Body, tilt: float) -> tuple[RestingCenter, xr.Dataset] | None:
     """How a body rolls with its centre at rest, and a run of it; None where it cannot."""
-    launch = Launch(tilt=tilt, spin=0.0)
-    problem = Problem(body=body, friction=ROUGH, launch=launch, gravity=9.81)
-    top: Top = problem.top
-    found = resting_center(tilt, top)
+    problem = Problem(body=body, friction=ROUGH, launch=Launch(tilt=tilt, spin=0.0), gravity=9.81)
+    found = resting_center(tilt, problem.top)
     if found is None:
         return None
-    launch = Launch(tilt=tilt, spin=found.spin, precession=found.precession)
-    return found, simulate(problem.replace({"launch": launch}), ROLLING_WINDOW, samples=41)
+    turning = problem.replace({"launch.spin": found.spin, "launch.precession": found.precession})
+    return found, simulate(turning, ROLLING_WINDOW, samples=41)
 
 
 @experiment("real-rolling", "Euler's disk and hurricane balls", 2.0)

@@ -115,24 +115,18 @@ def _series(true: xr.Dataset, listing: xr.Dataset) -> xr.Dataset:
     def thin(run: xr.Dataset) -> xr.Dataset:
         return run.isel(time=slice(None, None, max(1, math.ceil(run.sizes["time"] / _DRAWN))))
 
-    kept = thin(true[[*SERIES, "energy_published"]]).drop_attrs(deep=False)
-    kept["energy_published"].attrs = {
-        "units": "J",
-        "long_name": "energy by the report's equation (4.1), along the converged motion",
-    }
-    other = thin(listing[[*SERIES, "theta_integrated"]]).rename(
-        {"time": "time_listing"} | {name: f"{name}_listing" for name in (*SERIES, "theta_integrated")}
-    )
-    for name in SERIES:
-        described = dict(kept[name].attrs)
-        described["long_name"] = f"{described['long_name']}, by the report's method"
-        other[f"{name}_listing"].attrs = described
-    other["energy_listing"].attrs["long_name"] = "energy by the report's equation (4.1) and its method"
-    other["theta_integrated_listing"].attrs = {"units": "rad", "long_name": "theta before it is wrapped"}
-    every = math.ceil(listing.sizes["time"] / other.sizes["time_listing"])
-    name = "time of the report's method" + (f", one in {every} of its points of output" if every > 1 else "")
-    other["time_listing"].attrs = {"units": "s", "long_name": name}
-    return xr.merge([kept, other], combine_attrs="override", compat="no_conflicts")
+    data, other = thin(true[[*SERIES, "energy_published"]]).drop_attrs(deep=False), thin(listing)
+    published = "energy by the report's equation (4.1)"
+    data["energy_published"].attrs = {"units": "J", "long_name": f"{published}, along the converged motion"}
+    every = math.ceil(listing.sizes["time"] / other.sizes["time"])
+    label = "time of the report's method" + (f", one in {every} of its points of output" if every > 1 else "")
+    data["time_listing"] = variable(other["time"].values, "s", label, "time_listing")
+    labels = {"energy": f"{published} and its method", "theta_integrated": "theta before it is wrapped"}
+    for name in (*SERIES, "theta_integrated"):
+        told = data["theta" if name not in data else name].attrs
+        label = labels.get(name, f"{told['long_name']}, by the report's method")
+        data[f"{name}_listing"] = variable(other[name].values, told["units"], label, "time_listing")
+    return data
 
 
 def _continuation(problem: Problem, times: np.ndarray) -> dict[str, object]:

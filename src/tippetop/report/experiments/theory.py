@@ -23,8 +23,8 @@ from tippetop.theory.apparent import (
 )
 from tippetop.theory.prediction import predict
 from tippetop.theory.stability import eigenvalues
-from tippetop.theory.steady import VERTICAL_SPINS, jellett_of_launch, precession_branch
-from tippetop.theory.thresholds import critical_spin, critical_spins
+from tippetop.theory.steady import VERTICAL_SPINS, precession_branch
+from tippetop.theory.thresholds import critical_spin, critical_spins, jellett_line
 
 QUOTED_SPINS = (50.0, 60.0, 100.0)
 """Spins at which the predicted final tilt is compared with a run in words, rad/s."""
@@ -102,7 +102,7 @@ def _diagram(suffix: str, body: Body, tilts: Array, launches: list[tuple[float, 
     base = report_problem().replace({"body": body.model_dump()})
     branch = precession_branch(base.top, tilts)
     rates = np.max(eigenvalues(branch, base.top).real, axis=1)
-    spins = branch.jellett / _per_spin(base)
+    spins = branch.jellett / jellett_line(base).per_spin
     found = [_launched(base, spin, tilt) for spin, tilt in launches]
     runs = [simulate(problem, LONG_RUN, samples=2).isel(time=-1) for problem in found]
     ends = [float(run["theta"]) for run in runs]
@@ -137,15 +137,10 @@ def _left_of_217(end: xr.Dataset, problem: Problem) -> float:
     return float(abs(left / end["phi_dot"]))
 
 
-def _per_spin(problem: Problem) -> float:
-    """Jellett's integral of the launch, per unit of spin."""
-    return jellett_of_launch(problem.replace({"launch.spin": 1.0}))
-
-
 def _launched(base: Problem, spin: float, tilt: float) -> Problem:
     """The launch at this tilt with the Jellett's integral of one at the usual tilt with this spin."""
     tilted = base.replace({"launch.tilt": tilt})
-    return tilted.replace({"launch.spin": spin * _per_spin(base) / _per_spin(tilted)})
+    return tilted.replace({"launch.spin": spin * jellett_line(base).per_spin / jellett_line(tilted).per_spin})
 
 
 @experiment("why-groups", "which tops turn over", 0.3)
