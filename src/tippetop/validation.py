@@ -69,21 +69,13 @@ Points: TypeAlias = Annotated[tuple[tuple[Number, ...], ...], BeforeValidator(_l
 
 
 class Quantity(NamedTuple):
-    """What a field of numbers measures.
-
-    Attributes
-    ----------
-    units
-        Its SI unit, as in CF: ``rad s-1``; "1" for a pure number.
-    long_name
-        What it is.
-    places
-        What each number is, of a field of several.
-    """
+    """What a field of numbers measures."""
 
     units: str
+    """Its SI unit, as in CF: ``rad s-1``; "1" for a pure number."""
     long_name: str
     places: tuple[str, ...] = ()
+    """What each number is, of a field of several."""
 
 
 class Part(BaseModel):
@@ -181,10 +173,7 @@ class Variant(Part):
 class _OfItsKind:
     """Makes a field take all kinds of a variant, and keep what each has of its own.
 
-    Attributes
-    ----------
-    several
-        Whether a list of them is taken too; of one in a list, the list is forgotten.
+    A list of them is taken too if there may be `several`; of one in a list, the list is forgotten.
     """
 
     def __init__(self, *, several: bool = False) -> None:

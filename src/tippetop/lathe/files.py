@@ -25,21 +25,8 @@ def read_workpiece(path: Path | str, **fields: Any) -> Workpiece:
     with or without a heading: distance from the axis, height and radius of the arc that ends there. An SVG
     file has one path, of lines and circular arcs, in no moved or turned group, with the axis at x = 0.
 
-    Parameters
-    ----------
-    path
-        The file.
-    **fields
-        Fields of the workpiece to be set, or to be other than in the file.
-
-    Raises
-    ------
-    FileTrouble
-        If a file cannot be read.
-    InvalidInput
-        If it does not hold what it should.
-    Unavailable
-        If SVG cannot be read here.
+    Fields that are given are set, or are other than in the file. Raises `FileTrouble` if a file cannot be
+    read, `InvalidInput` if it does not hold what it should, `Unavailable` if SVG cannot be read here.
     """
     path = Path(path)
     whole = path.suffix.lower() == ".toml"

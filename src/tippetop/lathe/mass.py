@@ -8,22 +8,14 @@ from tippetop.lathe.profile import Profile
 
 
 class MassProperties(NamedTuple):
-    """Mass and what follows from how it lies.
-
-    Attributes
-    ----------
-    mass
-        Mass, kg.
-    center
-        Height of the centre of mass, in the profile's own coordinates, m.
-    I1, I3
-        Moments of inertia about the centre of mass, transverse to and along the axis, kg m^2.
-    """
+    """Mass, kg, and what follows from how it lies."""
 
     mass: float
     center: float
+    """Height of the centre of mass, in the profile's own coordinates, m."""
     I1: float
     I3: float
+    """Moments of inertia about the centre of mass, transverse to and along the axis, kg m^2."""
 
 
 Filling: TypeAlias = tuple[Profile, float]

@@ -59,23 +59,15 @@ def averaged_flow(
 ) -> SlowFlow:
     """The slow flow of a launch of an eccentric sphere with viscous friction; the size of mu does not matter.
 
-    Parameters
-    ----------
-    problem
-        The launch. The horizontal velocity of its centre of mass has no part: it dies away by itself, unless
-        one nutation brings the axis round just once (Limits in docs/theory/slow.md).
-    distance
-        How far from the final tilt the flow is followed, rad.
-    samples
-        At how many times, at least, each part is given: from one pole, and if it comes nearer, the other.
-    tolerance
-        Error of the logarithms of the amplitudes in a step.
+    The horizontal velocity of its centre of mass has no part: it dies away by itself, unless one nutation
+    brings the axis round just once (Limits in docs/theory/slow.md).
 
-    Raises
-    ------
-    InvalidInput
-        If the body is no eccentric sphere, its friction is not viscous, the launch is exactly vertical, or a
-        setting is not possible.
+    The flow is followed to a `distance` from the final tilt, rad. Each of its parts, from one pole, and if it
+    comes nearer, the other, is given at so many `samples` at least. The `tolerance` is the error of the
+    logarithms of the amplitudes in a step.
+
+    Raises `InvalidInput` if the body is no eccentric sphere, its friction is not viscous, the launch is
+    exactly vertical, or a setting is not possible.
     """
     if not is_whole(samples) or samples < 2:
         raise InvalidInput("samples", samples, "a whole number, at least 2")
