@@ -21,8 +21,13 @@ from tippetop.interrupts import heard
 SHORTEST = 1e-6
 """Step, relative to the longest, that only a solution that blows up takes; rounding of time matters in it."""
 
-LONG = 4096
-"""Steps in an arc at most."""
+LONG, SHORT = 4096, 64
+"""Steps in an arc at most, and in one whose steps may have to be shorter than the compiler's."""
+
+LEFT_OUT, SAFETY = 100.0, 0.9
+"""What a step may leave out of a number, in tolerances of that number or of 1, the larger; and how much
+shorter than that is the step that repeats it. The compiler compares what is left out with the largest number
+or guard, and beside huge slip or friction the axis would go astray."""
 
 GUARDED = 2.0**-5
 """Weight of guards beside the numbers of the motion where the compiler chooses steps by the largest of all. A
@@ -48,7 +53,7 @@ class Taylor:
         self, motion: Motion, parameters: Sequence[float], start: tuple[float, Array], end: float
     ) -> Iterator[Arc]:
         """Follow the motion; see `tippetop.integrators.base.Integrator`."""
-        compiled = _compiled(motion, self.tolerance)
+        compiled, longest, most = _compiled(motion, self.tolerance), math.inf, LONG
         while start[0] < end:
             with compiled.lock:
                 run = compiled.integrator
@@ -58,8 +63,13 @@ class Taylor:
                 run.pars[:] = parameters[: len(run.pars)]
                 if motion.guards:
                     run.reset_cooldowns()
-                solution, outcome = compiled.advance(end)
+                solution, outcome = compiled.advance(end, longest, most)
                 state = np.array(run.state)
+            good = SAFETY * _longest_good(solution, LEFT_OUT * self.tolerance)
+            if good < longest:
+                longest, most = good, SHORT
+                continue
+            longest = math.inf
             steps = len(solution.terms)
             # Rounding of time may swallow all steps before numbers have grown beyond all bounds.
             stuck = outcome == hy.taylor_outcome.step_limit and not solution.end > start[0]
@@ -90,8 +100,8 @@ class _Compiled:
         self.integrator, self.lock = integrator, threading.Lock()
         self._coefficients, self._state, self._parameters = integrator.tc, integrator.state, integrator.pars
 
-    def advance(self, end: float) -> tuple[DenseSolution, Any]:
-        """Take an arc's steps: for half the price of heyoka's continuous output."""
+    def advance(self, end: float, longest: float, most: int) -> tuple[DenseSolution, Any]:
+        """Take an arc's steps, of such a length and number at most: for half the price of heyoka's output."""
         shape, terms, knots = self._coefficients.shape, bytearray(), array("d", [self.integrator.time])
         # Bytes are copied in a third of the time that arrays need.
         step, keep, note = self._coefficients.reshape(-1).data, terms.extend, knots.append
@@ -101,7 +111,9 @@ class _Compiled:
             note(run.time)
             return True
 
-        outcome, *_ = self.integrator.propagate_until(end, max_steps=LONG, write_tc=True, callback=take)
+        outcome, *_ = self.integrator.propagate_until(
+            end, max_steps=most, max_delta_t=longest, write_tc=True, callback=take
+        )
         if outcome == hy.taylor_outcome.time_limit:
             knots[-1] = end
         return DenseSolution.in_time(np.array(knots), np.frombuffer(terms).reshape(-1, *shape)), outcome
@@ -145,6 +157,17 @@ def _compiled(motion: Motion, tolerance: float) -> _Compiled:
         return _Compiled(pickle.loads(content))
     except Exception:  # noqa: BLE001 - whatever is wrong with what was kept, it can be made anew
         return _Compiled(make())
+
+
+def _longest_good(solution: DenseSolution, accuracy: float) -> float:
+    """How long the first step that leaves out too much should be; infinite if none does."""
+    size, last = (np.abs(solution.terms[:, :, term]) for term in (0, -1))
+    allowed = accuracy * np.maximum(size, 1.0)
+    bad = np.flatnonzero(np.any((last > allowed) & np.isfinite(last), axis=1))
+    if not len(bad):
+        return math.inf
+    span, order = np.diff(solution.knots)[bad[0]], solution.terms.shape[2] - 1
+    return float(span * np.max(last[bad[0]] / allowed[bad[0]]) ** (-1.0 / order))
 
 
 def _before_blow_up(solution: DenseSolution) -> DenseSolution:
