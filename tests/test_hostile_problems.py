@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 import tippetop as tt
 from tippetop.contact import closing, several
@@ -228,6 +229,35 @@ def test_a_top_that_stands_still_has_steps_without_bound() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         assert tt.simulate(heavy, 1.0, samples=3).attrs["outcome"] == "completed"
+
+
+@pytest.mark.parametrize("tolerance", [1e-9, 1e-12])
+@pytest.mark.parametrize("integrator", ["taylor", "compiled", "dop853"])
+def test_a_top_faster_than_any_leaves_the_table_in_its_first_nutation(
+    integrator: str, tolerance: float
+) -> None:
+    """Where the normal force falls to zero, rounding of its parts is as large as the weight."""
+    if not {"taylor": has_taylor(), "compiled": has_numba()}.get(integrator, True):
+        pytest.skip("the integrator is not installed")
+    problem = tt.Problem(**hostile(np.random.default_rng(349)))
+    run = tt.simulate(
+        problem, 2.0, samples=2, integrator=integrator, tolerance=tolerance, phase_limit=9, step_limit=9
+    )
+    # Until then the table hardly turns the angular momentum, about which the axis turns at a constant rate.
+    axis, momentum = (np.array(part) for part in problem.start()[:2])
+    pace, turning = np.linalg.norm(momentum) / problem.body.I1, np.cross(momentum, axis) / problem.body.I1
+    bend = np.cross(momentum, turning)[2] / problem.body.I1
+    across, along = problem.body.shape.across, problem.body.shape.along
+
+    def fall(time: float) -> float:
+        c = axis[2] + turning[2] * np.sin(pace * time) / pace + bend * (1.0 - np.cos(pace * time)) / pace**2
+        rate = turning[2] * np.cos(pace * time) + bend * np.sin(pace * time) / pace
+        change = bend * np.cos(pace * time) - pace * turning[2] * np.sin(pace * time)
+        stretch, height = along**2 - across**2, np.hypot(across, np.sqrt(along**2 - across**2) * c)
+        return problem.gravity + stretch * (across**2 * rate**2 / height**2 + c * change) / height
+
+    expected = brentq(fall, 0.0, 4.0 / pace, xtol=1e-18)
+    assert float(run["first_lift_off"]) == pytest.approx(expected, rel=1e-6)
 
 
 def bouncing(**changes: Any) -> tt.Problem:

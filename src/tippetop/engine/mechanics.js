@@ -1066,7 +1066,7 @@ function follow_surface(mode, guard, time, state) {
 }
 
 // tippetop.mechanics.motion
-const PRESSED = 0.001;
+const [PRESSED, ROUNDING] = [0.001, 1e-13];
 
 /** The geometry, kinematics and forces of the contact at an instant. */
 class SlidingContact extends py.NamedTuple {
@@ -1167,7 +1167,12 @@ function driven_acceleration(axis, upwards, moment, top) {
 function presses(axis, momentum, top) {
   var [bending, swinging] = turning_parts(axis, momentum, top);
   var sinking = py.add(top.gravity, py.add(bending, swinging));
-  return sinking > py.mul(PRESSED, py.add(py.add(top.gravity, py.abs(bending)), py.abs(swinging)));
+  var lever = py.div(py.abs(top.surface.slope(axis[2])), top.transverse_inertia);
+  var error = py.div(py.mul(py.mul(ROUNDING, lever), dot(momentum, momentum)), top.transverse_inertia);
+  return sinking > py.add(
+    py.mul(PRESSED, py.add(py.add(top.gravity, py.abs(bending)), py.abs(swinging))),
+    error
+  );
 }
 
 /** Moment of the contact force about the centre of mass per unit normal force, a x (z + f) + t, m. */
@@ -2417,7 +2422,7 @@ function solve(matrix, right) {
 // tippetop.mechanics.stick_slip
 const HORIZON = 0.05;
 const [NEAR, APART] = [0.001, 0.1];
-const ROUNDING = 1e-14;
+const ROUNDING_of_stick_slip = 1e-14;
 const STILL = 0.1;
 
 /** The velocity zeta of a body in contact whose centre of mass has this horizontal velocity. */
@@ -2463,7 +2468,7 @@ function is_slipping(axis, momentum, velocity, top) {
 /** Slip that is more than rounding. */
 function least_slip(axis, momentum, velocity, top) {
   var turning = scaled(top.surface.size, angular_velocity(axis, momentum, top));
-  return py.mul(ROUNDING, py.sum([...turning, ...velocity].map((number) => py.abs(number))));
+  return py.mul(ROUNDING_of_stick_slip, py.sum([...turning, ...velocity].map((number) => py.abs(number))));
 }
 
 /** Whether the body turns, by more than rounding, about anything but the vertical; as `is_slipping`. */
@@ -2473,7 +2478,10 @@ function is_rolling(axis, momentum, top) {
     STILL
   );
   var [x, y] = angular_velocity(axis, momentum, top);
-  return py.abs(x) > py.mul(ROUNDING, measure) | py.abs(y) > py.mul(ROUNDING, measure);
+  return py.abs(x) > py.mul(
+    ROUNDING_of_stick_slip,
+    measure
+  ) | py.abs(y) > py.mul(ROUNDING_of_stick_slip, measure);
 }
 
 /** Rate of zeta among the six accelerations of the contact. */
@@ -11522,6 +11530,7 @@ export {
   ROUNDING,
   ROUNDING_of_prediction,
   ROUNDING_of_series_roots,
+  ROUNDING_of_stick_slip,
   ROUNDING_of_thresholds,
   ROUNDING_of_viscous_impact,
   ROUNDS,

@@ -14,8 +14,9 @@ from tippetop.mechanics.surface import contact_vector
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import VERTICAL, Horizontal, Scalar, Vector, add, cross, dot, scale
 
-PRESSED = 1e-3
-"""Acceleration of the gap, over the largest of its parts, below which it is taken for zero at a lift-off."""
+PRESSED, ROUNDING = 1e-3, 1e-13
+"""Acceleration of the gap, over the largest of its parts, below which it is taken for zero at a lift-off; and
+the relative error of the axis, which is what such an acceleration may be made of in fast motion."""
 
 
 class SlidingContact(NamedTuple):
@@ -133,7 +134,9 @@ def presses(axis: Vector, momentum: Vector, top: Top) -> Scalar:
     """
     bending, swinging = turning_parts(axis, momentum, top)
     sinking = top.gravity + (bending + swinging)
-    return sinking > PRESSED * (top.gravity + abs(bending) + abs(swinging))
+    lever = abs(top.surface.slope(axis[2])) / top.transverse_inertia
+    error = ROUNDING * lever * dot(momentum, momentum) / top.transverse_inertia
+    return sinking > PRESSED * (top.gravity + abs(bending) + abs(swinging)) + error
 
 
 def moment_per_normal_force(arm: Vector, traction: Traction) -> Vector:
