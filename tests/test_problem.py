@@ -316,6 +316,7 @@ class TestRefusals:
             Launch(0.1, 155.0)
         told = "Launch = (0.1, 155) is not possible; accepted: its fields by name: tilt, spin, azimuth, "
         assert the_one_line_of(caught.value).startswith(told)
+        assert next(iter(inspect.signature(Launch).parameters)) == "tilt", "and help tells of no others"
 
     def test_a_misspelt_key_is_told_before_the_key_that_is_missing_for_it(self):
         fields = fields_with("launch.tilt", ...)

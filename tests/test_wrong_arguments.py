@@ -128,3 +128,19 @@ def test_velocities_that_are_no_lists_of_numbers(field, accepted, wrong):
 
 def test_a_slip_of_one_number():
     refused("slip.1", lambda: tt.Launch(tilt=0.1, spin=1.0, slip=(1.0,)))
+
+
+@pytest.mark.parametrize("wrong", [None, 3, ["a.nc"]])
+def test_what_is_no_name_of_a_file(wrong):
+    writers = (tt.write_csv, tt.write_glb, tt.write_html, tt.write_movie, tt.write_run)
+    calls = [lambda write=write: write(run(), wrong) for write in writers]
+    for call in (*calls, lambda: tt.write_solid(PIECE, wrong)):
+        refused("path", call)
+    for read in (tt.Problem.read, tt.read_run, tt.read_sweep):
+        refused("path", read, wrong)
+
+
+@pytest.mark.parametrize("wrong", [None, 3, b"gravity = 9.8"])
+def test_what_is_no_text(wrong):
+    for read in (tt.Problem.from_toml, tt.Problem.from_json):
+        refused("problem", read, wrong)

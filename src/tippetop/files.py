@@ -142,9 +142,17 @@ def named(path: Path | str) -> str:
     return text if len(text) <= LONGEST_NAME else f"...{text[-LONGEST_NAME:]}"
 
 
+def path_of(path: object) -> Path:
+    """The path of a file or folder by its name; raises `InvalidInput` if that is none."""
+    if not isinstance(path, str | os.PathLike):
+        raise InvalidInput("path", path, "the name of a file or folder")
+    return Path(path)
+
+
 @contextmanager
 def in_words(path: Path | str, done: str) -> Iterator[None]:
     """Turn what the file system says into one sentence."""
+    path_of(path)
     try:
         yield
     except FileTrouble:

@@ -19,7 +19,7 @@ from pydantic import (
 from pydantic.fields import FieldInfo
 from pydantic_core import CoreSchema, ErrorDetails, PydanticCustomError, core_schema
 
-from tippetop.errors import MISSING, InvalidInput, is_whole, one_of
+from tippetop.errors import MISSING, InvalidInput, is_whole, one_of, require
 from tippetop.fields import part_at
 from tippetop.files import named
 
@@ -89,10 +89,15 @@ class Part(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, validate_default=True)
 
-    def __init__(self, /, *values: Any, **fields: Any) -> None:
-        if values:
-            names = ", ".join(_written(type(self)))
-            raise InvalidInput(type(self).__name__, values, f"its fields by name: {names}")
+    if not TYPE_CHECKING:  # else mypy takes it that values may do without names
+
+        def __new__(cls, /, *values: Any, **_: Any) -> Self:
+            """Refuse values without their names here, where signatures of parts, made of `__init__`, stay."""
+            if values and cls.__init__ is Part.__init__:
+                raise InvalidInput(cls.__name__, values, f"its fields by name: {', '.join(_written(cls))}")
+            return super().__new__(cls)
+
+    def __init__(self, /, **fields: Any) -> None:
         try:
             super().__init__(**fields)
         except ValidationError as error:
@@ -245,6 +250,7 @@ def parse_toml(text: str, field: str, file: str = "") -> dict[str, Any]:
 
 
 def _parsed(language: str, loads: Callable[[str], Any], text: str, field: str, file: str) -> dict[str, Any]:
+    require(field, text, str, f"a text in {language}")
     try:
         fields = loads(text)
         _refuse_depths(fields)

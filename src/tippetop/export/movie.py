@@ -18,7 +18,7 @@ from tippetop.export.raycast import fine_path, picture, view_of
 from tippetop.export.words import tell
 from tippetop.figures.style import INK
 from tippetop.figures.toy import Toy
-from tippetop.files import place_for, require_ending, written_beside
+from tippetop.files import path_of, place_for, require_ending, written_beside
 from tippetop.problem import Problem
 
 Frame = NDArray[np.uint8]
@@ -71,7 +71,7 @@ def write_movie(
     'run.gif'
     """
     require_run(run)
-    path = Path(path)
+    path = path_of(path)
     kind = path.suffix.lower()
     require_ending("path", path, (".mp4", ".gif"))
     encoder = ffmpeg() if kind == ".mp4" else ""

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from tippetop.errors import InvalidInput, Unavailable, require
-from tippetop.files import require_ending, written_beside
+from tippetop.files import path_of, require_ending, written_beside
 from tippetop.lathe.profile import Profile
 from tippetop.lathe.workpiece import Workpiece
 
@@ -51,8 +51,9 @@ def write_solid(piece: Workpiece, path: Path | str, overwrite: bool = False, *, 
     >>> tt.write_solid(ball, "ball.stl")
     """
     require("piece", piece, Workpiece, "a Workpiece")
-    suffix = Path(path).suffix.lower()
-    require_ending("path", Path(path), (".stl", ".3mf"))
+    place = path_of(path)
+    suffix = place.suffix.lower()
+    require_ending("path", place, (".stl", ".3mf"))
     if isinstance(facets, bool) or not isinstance(facets, int) or facets < 8:
         raise InvalidInput("facets", facets, "a whole number at least 8")
     meshes = solids(piece, facets)

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from tippetop.errors import InvalidInput, Unavailable
-from tippetop.files import made_of, named, read_text
+from tippetop.files import made_of, named, path_of, read_text
 from tippetop.lathe.workpiece import Workpiece
 from tippetop.validation import parse_toml
 
@@ -28,7 +28,7 @@ def read_workpiece(path: Path | str, **fields: Any) -> Workpiece:
     Fields that are given are set, or are other than in the file. Raises `FileTrouble` if a file cannot be
     read, `InvalidInput` if it does not hold what it should, `Unavailable` if SVG cannot be read here.
     """
-    path = Path(path)
+    path = path_of(path)
     whole = path.suffix.lower() == ".toml"
     told = parse_toml(read_text(path, ACCEPTED), "workpiece", path.name) if whole else {"profile": path.name}
     found = {**told, **fields}

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from tippetop.catalogue import SWEPT
 from tippetop.errors import OTHER_OUT, OVERWRITE, RESUME, FileTrouble, Unavailable
-from tippetop.files import in_words
+from tippetop.files import in_words, path_of
 from tippetop.interrupts import deferred
 from tippetop.sweeps.definition import Sweep, Task
 from tippetop.sweeps.disk import bring_to_disk, clear_away, identity, locked
@@ -59,7 +59,7 @@ class Store:
         being filled, or it cannot be written; `Unavailable` if zarr is not installed.
         """
         need_zarr()
-        path = Path(path)
+        path = path_of(path)
         # Zarr writes in a thread of its own, which Ctrl-C does not stop.
         with in_words(path, "written"), deferred(), ExitStack() as stack:
             refuse_existing(path, overwrite)
@@ -91,7 +91,7 @@ class Store:
         version.
         """
         need_zarr()
-        path = Path(path)
+        path = path_of(path)
         with in_words(path, "read"):
             kept = kept_sweep(path)
         if sweep is not None:
@@ -234,7 +234,7 @@ def read_sweep(path: Path | str, names: Collection[str] | None = None) -> xr.Dat
     True
     """
     need_zarr()
-    path = Path(path)
+    path = path_of(path)
     with in_words(path, "read"):
         sweep = Sweep(**json.loads(read_metadata(path)["attributes"]["sweep"]))
     return Store(path, sweep).load(list(CONTENTS) if names is None else names)
