@@ -28,7 +28,7 @@ from tippetop.theory.groups import (
 )
 from tippetop.theory.prediction import stable_by_energy
 from tippetop.theory.steady import SteadyKind, least_energy, precession_branch, steady_states
-from tippetop.theory.thresholds import lambda_down, lambda_up
+from tippetop.theory.thresholds import critical_jellett
 
 TILTS = np.linspace(0.0, math.pi, 4001)
 JELLETTS = np.geomspace(0.02, 100.0, 600)
@@ -109,12 +109,14 @@ def test_the_boundaries_are_where_something_happens_to_the_branch(alpha):
     """A threshold goes to infinity, the fold reaches a pole, both thresholds are equal."""
     just = 1e-9
     far = 1e3 * (1.0 - alpha) ** 2 * jellett_unit(sphere(1.0, alpha))
-    assert lambda_up(sphere(upright_boundary(alpha) + just, alpha)) > far
-    assert lambda_up(sphere(upright_boundary(alpha) - just, alpha)) == math.inf
-    assert lambda_down(sphere(inverted_boundary(alpha) - just, alpha)) > far
-    assert lambda_down(sphere(inverted_boundary(alpha) + just, alpha)) == math.inf
+    assert critical_jellett(SteadyKind.UPRIGHT, sphere(upright_boundary(alpha) + just, alpha)) > far
+    assert critical_jellett(SteadyKind.UPRIGHT, sphere(upright_boundary(alpha) - just, alpha)) == math.inf
+    assert critical_jellett(SteadyKind.INVERTED, sphere(inverted_boundary(alpha) - just, alpha)) > far
+    assert critical_jellett(SteadyKind.INVERTED, sphere(inverted_boundary(alpha) + just, alpha)) == math.inf
     equal = sphere(equal_thresholds(alpha), alpha)
-    assert lambda_up(equal) == pytest.approx(lambda_down(equal), rel=1e-11)
+    assert critical_jellett(SteadyKind.UPRIGHT, equal) == pytest.approx(
+        critical_jellett(SteadyKind.INVERTED, equal), rel=1e-11
+    )
     jump = jump_boundary(alpha)
     assert classify(jump + just, alpha) is Group.IIA
     assert classify(jump - just, alpha) is Group.IIB

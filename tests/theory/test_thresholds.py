@@ -18,13 +18,7 @@ from tippetop.theory.apparent import (
     growth_rates_of_launches,
 )
 from tippetop.theory.steady import SteadyKind, jellett_of_launch, vertical_spin
-from tippetop.theory.thresholds import (
-    critical_spin,
-    critical_spins,
-    jellett_line,
-    lambda_down,
-    lambda_up,
-)
+from tippetop.theory.thresholds import critical_jellett, critical_spin, critical_spins, jellett_line
 
 VERTICAL = [SteadyKind.UPRIGHT, SteadyKind.INVERTED]
 
@@ -46,8 +40,8 @@ def test_the_thresholds_are_the_closed_forms(gamma, alpha):
     assume(min(abs(room_up), abs(room_down)) > 1e-6)
     up = (1.0 - alpha) ** 2 / math.sqrt(room_up) if room_up > 0.0 else math.inf
     down = (1.0 + alpha) ** 2 / math.sqrt(room_down) if room_down > 0.0 else math.inf
-    assert lambda_up(top) == pytest.approx(unit * up, rel=1e-9)
-    assert lambda_down(top) == pytest.approx(unit * down, rel=1e-9)
+    assert critical_jellett(SteadyKind.UPRIGHT, top) == pytest.approx(unit * up, rel=1e-9)
+    assert critical_jellett(SteadyKind.INVERTED, top) == pytest.approx(unit * down, rel=1e-9)
 
 
 @pytest.mark.parametrize("kind", VERTICAL)
@@ -73,9 +67,9 @@ def test_the_spectrum_of_a_spheroid_changes_sign_at_the_threshold(top):
 def test_a_launch_with_a_precession_has_its_own_critical_spins():
     problem = presets.report_problem(tilt=0.4).replace({"launch.precession": 12.0, "launch.tilt_rate": 3.0})
     spins = critical_spins(problem)
-    for spin, threshold in ((spins.upright, lambda_up), (spins.inverted, lambda_down)):
+    for spin, kind in ((spins.upright, SteadyKind.UPRIGHT), (spins.inverted, SteadyKind.INVERTED)):
         launched = jellett_of_launch(problem.replace({"launch.spin": spin}))
-        assert launched == pytest.approx(threshold(problem.top), rel=1e-12)
+        assert launched == pytest.approx(critical_jellett(kind, problem.top), rel=1e-12)
 
 
 def test_a_launch_whose_spin_has_no_part_in_lambda_has_no_critical_spin():

@@ -11,7 +11,7 @@ import typer
 import tippetop as tt
 from tippetop.cli.options import DRAWINGS, Force, Json, write_figure
 from tippetop.cli.problem import commented_toml
-from tippetop.cli.terminal import facts, listing, show, show_json
+from tippetop.cli.terminal import facts, listing, show, show_json, spelled
 from tippetop.errors import InvalidInput
 from tippetop.files import place_for, require_ending
 
@@ -163,18 +163,18 @@ def _rows(told: dict[str, Any]) -> list[tuple[str, str, str]]:
     if told["group"]:
         rows += [
             ("α, the centre of mass below the sphere's centre", f"{told['eccentricity']:.7g}", "radii"),
-            ("upright spin is left above ω_c1", _shown(told["omega_c1"]), "rad/s"),
-            ("inverted spin holds above ω_c2", _shown(told["omega_c2"]), "rad/s"),
+            ("upright spin is left above ω_c1", spelled(told["omega_c1"], 7), "rad/s"),
+            ("inverted spin holds above ω_c2", spelled(told["omega_c2"], 7), "rad/s"),
         ]
     if told["touch"]:
-        spin = _shown(told["touch"]["least_launch_spin"])
+        spin = spelled(told["touch"]["least_launch_spin"], 7)
         rows.append(
             (f"surface {told['touch']['surface']} comes down to the table, launched above", spin, "rad/s")
         )
     if told["stem"]:
-        rows.append(("stands on its stem above", _shown(told["stem"]["least_spin"]), "rad/s"))
+        rows.append(("stands on its stem above", spelled(told["stem"]["least_spin"], 7), "rad/s"))
         if "least_launch_spin" in told["stem"]:
-            rows.append(("that is, launched above", _shown(told["stem"]["least_launch_spin"]), "rad/s"))
+            rows.append(("that is, launched above", spelled(told["stem"]["least_launch_spin"], 7), "rad/s"))
     between = [tilt for tilt in told["lies_on_lines_at_tilts"] if 0.0 < tilt < math.pi]
     rows += [("touches in two points or a line at tilt", f"{tilt:.7g}", "rad") for tilt in between]
     ends = {0.0: "below", math.pi: "above"}
@@ -184,7 +184,3 @@ def _rows(told: dict[str, Any]) -> list[tuple[str, str, str]]:
         if tilt in ends
     ]
     return rows
-
-
-def _shown(value: float) -> str:
-    return f"{value:.7g}" if math.isfinite(value) else "never"

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from tippetop.cli.options import Choice, Json, of_a_problem
-from tippetop.cli.terminal import facts, listing, show, show_json
+from tippetop.cli.terminal import facts, listing, show, show_json, spelled
 
 if TYPE_CHECKING:
     from tippetop.theory.overview import Judged, Outlook
@@ -80,8 +80,8 @@ def _sentences(found: "Outlook") -> Iterator[Any]:
         yield f"[dim]ω_c1, ω_c2: spins of launches with this one's tilt, {found.tilt:.6g} rad, and rates.[/]"
     if found.flip_time is not None:
         yield (
-            "[dim]At this friction: far off if that is much, or if a nutation brings the axis round the "
-            "vertical about once.[/]"
+            "[dim]The last is the limit over μ: far off where friction is strong, or where a nutation brings "
+            "the axis round the vertical just once.[/]"
         )
     headings = ("kind", "tilt", "precession", "axial spin", "energy", "", "growth rate")
     rows = (_state_row(judged) for judged in found.steady)
@@ -98,11 +98,11 @@ def _rows(found: "Outlook") -> list[tuple[str, str, str]]:
     upright, inverted = found.critical_spins.upright, found.critical_spins.inverted
     sphere, kept = found.group is not None, "" if found.conserved else ", not conserved"
     rows = [
-        ("upright spin is left above ω_c1" if sphere else "upright changes at", _shown(upright), "rad/s"),
-        ("inverted spin holds above ω_c2" if sphere else "inverted changes at", _shown(inverted), "rad/s"),
-        ("λ_up", _shown(found.lambda_up), "kg m³/s"),
-        ("λ_down", _shown(found.lambda_down), "kg m³/s"),
-        ("λ of this launch", _shown(found.jellett), "kg m³/s" + kept),
+        ("upright spin is left above ω_c1" if sphere else "upright changes at", spelled(upright), "rad/s"),
+        ("inverted spin holds above ω_c2" if sphere else "inverted changes at", spelled(inverted), "rad/s"),
+        ("λ_up", spelled(found.lambda_up), "kg m³/s"),
+        ("λ_down", spelled(found.lambda_down), "kg m³/s"),
+        ("λ of this launch", spelled(found.jellett), "kg m³/s" + kept),
     ]
     if found.inertia_ratio is not None and found.eccentricity is not None:
         rows.insert(0, ("γ = I1/I3, α", f"{found.inertia_ratio:.6g}, {found.eccentricity:.6g}", ""))
@@ -110,11 +110,11 @@ def _rows(found: "Outlook") -> list[tuple[str, str, str]]:
     if found.standing_time is not None:
         vertical = found.tilt in (0.0, math.pi)
         what = "drilling lets it stand" if vertical else "inverted with this λ it would stand"
-        rows.append((what, _shown(found.standing_time), "s"))
+        rows.append((what, spelled(found.standing_time), "s"))
     if found.mu_flip_time is not None:
-        rows.append(("μ t until 0.01 rad from there, μ → 0", _shown(found.mu_flip_time), "s²/m"))
+        rows.append(("μ t until 0.01 rad from there, μ → 0", spelled(found.mu_flip_time), "s²/m"))
     if found.flip_time is not None:
-        rows.append(("so at this friction about", _shown(found.flip_time), "s"))
+        rows.append(("so at this friction about", spelled(found.flip_time), "s"))
     return rows
 
 
@@ -150,7 +150,3 @@ def _eigenvalues(judged: "Judged") -> str:
     """The eigenvalues in a row; of each pair of conjugates, the one above stands for both."""
     shown = [value for value in judged.spectrum.eigenvalues.tolist() if value.imag >= 0]
     return ", ".join(f"{v.real:.5g} ± {v.imag:.6g}i" if v.imag else f"{v.real:.5g}" for v in shown)
-
-
-def _shown(value: float) -> str:
-    return f"{value + 0.0:.10g}" if math.isfinite(value) else "never"

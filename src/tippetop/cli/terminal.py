@@ -1,6 +1,7 @@
 """What the commands show people: tables, sentences, and how far they are."""
 
 import json
+import math
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
@@ -26,6 +27,11 @@ def facts(rows: Iterable[Sequence[str]]) -> "Table":
     for row in rows:
         table.add_row(*row)
     return table
+
+
+def spelled(value: float, digits: int = 10) -> str:
+    """A number, or that what it is of never comes."""
+    return f"{value + 0.0:.{digits}g}" if math.isfinite(value) else "never"
 
 
 def listing(

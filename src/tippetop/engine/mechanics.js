@@ -8966,16 +8966,6 @@ function stands(kind, top) {
   return height > py.mul(ROUNDING_of_thresholds, py.float(top.surface.size));
 }
 
-/** Jellett's integral below which the upright spin of an eccentric sphere is stable, kg m^3/s, or inf. */
-function lambda_up(top) {
-  return critical_jellett(SteadyKind.UPRIGHT, top);
-}
-
-/** Jellett's integral above which the inverted spin of an eccentric sphere is stable, kg m^3/s, or inf. */
-function lambda_down(top) {
-  return critical_jellett(SteadyKind.INVERTED, top);
-}
-
 /** Axial spin at which a vertical spin changes stability, by formula, rad/s; inf where it never does. */
 function critical_spin(kind, top) {
   var critical = critical_jellett(kind, top);
@@ -9189,7 +9179,10 @@ function coexistence(top) {
     return null;
   }
   var turning = fold(top);
-  return [turning === null ? lambda_down(top) : turning.jellett, lambda_up(top)];
+  return [
+    turning === null ? critical_jellett(SteadyKind.INVERTED, top) : turning.jellett,
+    critical_jellett(SteadyKind.UPRIGHT, top)
+  ];
 }
 
 /** D at the fold, sqrt(gamma (1 - gamma - alpha^2) / 3); 0 where there is none and every D is larger. */
@@ -9269,7 +9262,10 @@ function _touch(problem, surfaces, group) {
   if (!py.truth(beyond)) {
     return null;
   }
-  var needed = py.max(lambda_up(problem.top), branch_jellett(beyond[0], problem.top));
+  var needed = py.max(
+    critical_jellett(SteadyKind.UPRIGHT, problem.top),
+    branch_jellett(beyond[0], problem.top)
+  );
   var spin = jellett_line(problem).spin_at(py.truth(group.leaves_upright) ? needed : py.math.inf);
   return new Touch(beyond[0], py.item(ends, beyond[0]), spin);
 }
@@ -11838,8 +11834,6 @@ export {
   jellett_of_launch,
   jump_boundary,
   kept,
-  lambda_down,
-  lambda_up,
   landed,
   landing,
   landing_guard,

@@ -148,7 +148,7 @@ def _no_end(problem: Problem, stages: list[Stage]) -> InvalidInput:
         other = "one further from the unstable vertical: here rounding decides how the nutation begins"
         return InvalidInput("launch.tilt", problem.launch.tilt, other)
     pulled = stages[-1].pulled
-    launch = "one that needs a pull of the table" if pulled else "one that gains from a table that pulls"
+    launch = "one that needs a pull of the table" if pulled else "one whose nutation is not seen to die away"
     return InvalidInput("launch", launch, "one whose nutation dies away without a pull")
 
 

@@ -21,8 +21,8 @@ from typing import NamedTuple
 from tippetop.errors import InvalidInput
 from tippetop.mechanics.top import Top
 from tippetop.theory.requirements import require_jellett
-from tippetop.theory.steady import branch_jellett
-from tippetop.theory.thresholds import lambda_down, lambda_up
+from tippetop.theory.steady import SteadyKind, branch_jellett
+from tippetop.theory.thresholds import critical_jellett
 
 
 class Group(StrEnum):
@@ -175,7 +175,9 @@ def coexistence(top: Top) -> tuple[float, float] | None:
     if not classify_top(top).coexistence:
         return None
     turning = fold(top)
-    return (lambda_down(top) if turning is None else turning.jellett), lambda_up(top)
+    return (
+        critical_jellett(SteadyKind.INVERTED, top) if turning is None else turning.jellett
+    ), critical_jellett(SteadyKind.UPRIGHT, top)
 
 
 def _fold_measure(gamma: float, alpha: float) -> float:

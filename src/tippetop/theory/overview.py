@@ -14,9 +14,9 @@ from tippetop.theory.groups import Group, classify_top, eccentricity, inertia_ra
 from tippetop.theory.prediction import Prediction, on_surface, predict, steady_launch, tilts_held
 from tippetop.theory.requirements import require_creep
 from tippetop.theory.stability import Spectrum, spectrum
-from tippetop.theory.steady import VERTICAL_SPINS, SteadyState, jellett_of_launch, vertical_spin
+from tippetop.theory.steady import VERTICAL_SPINS, SteadyKind, SteadyState, jellett_of_launch, vertical_spin
 from tippetop.theory.steady import steady_states as all_steady_states
-from tippetop.theory.thresholds import CriticalSpins, critical_spins, lambda_down, lambda_up
+from tippetop.theory.thresholds import CriticalSpins, critical_jellett, critical_spins
 
 
 @dataclass(frozen=True)
@@ -92,8 +92,8 @@ def outlook(problem: Problem) -> Outlook:
         inertia_ratio=inertia_ratio(top) if sphere else None,
         eccentricity=eccentricity(top) if sphere else None,
         group=classify_top(top) if grouped else None,
-        lambda_up=lambda_up(top),
-        lambda_down=lambda_down(top),
+        lambda_up=critical_jellett(SteadyKind.UPRIGHT, top),
+        lambda_down=critical_jellett(SteadyKind.INVERTED, top),
         critical_spins=critical_spins(problem),
         tilt=problem.launch.tilt,
         jellett=jellett,

@@ -20,7 +20,6 @@ from tippetop.theory.thresholds import (
     critical_spin,
     critical_spins,
     jellett_line,
-    lambda_up,
 )
 
 
@@ -97,7 +96,7 @@ def _touch(problem: Problem, surfaces: tuple[Surface, ...], group: Group) -> Tou
     if not beyond:
         return None
     # From upright it rises along the steady precessions once they have no stable one before this tilt.
-    needed = max(lambda_up(problem.top), branch_jellett(beyond[0], problem.top))
+    needed = max(critical_jellett(SteadyKind.UPRIGHT, problem.top), branch_jellett(beyond[0], problem.top))
     spin = jellett_line(problem).spin_at(needed if group.leaves_upright else math.inf)
     return Touch(beyond[0], ends[beyond[0]], spin)
 

@@ -44,6 +44,7 @@ def critical_jellett(kind: SteadyKind, top: Top) -> float:
     """Jellett's integral at which a vertical spin changes stability, kg m^3/s: inf where it never does.
 
     Nor does it where the centre of mass is not above the table: as of one of two balls on top of the other.
+    An eccentric sphere's upright spin is stable below, lambda_up, and its inverted one above, lambda_down.
     """
     return branch_jellett(vertical_spin(kind, top, 0.0).tilt, top) if stands(kind, top) else math.inf
 
@@ -52,16 +53,6 @@ def stands(kind: SteadyKind, top: Top) -> bool:
     """Whether the centre of mass is above the table when the axis is vertical."""
     height = float(top.surface.height(1.0 if kind is SteadyKind.UPRIGHT else -1.0))
     return height > ROUNDING * float(top.surface.size)
-
-
-def lambda_up(top: Top) -> float:
-    """Jellett's integral below which the upright spin of an eccentric sphere is stable, kg m^3/s, or inf."""
-    return critical_jellett(SteadyKind.UPRIGHT, top)
-
-
-def lambda_down(top: Top) -> float:
-    """Jellett's integral above which the inverted spin of an eccentric sphere is stable, kg m^3/s, or inf."""
-    return critical_jellett(SteadyKind.INVERTED, top)
 
 
 def critical_spin(kind: SteadyKind, top: Top) -> float:
