@@ -50,9 +50,9 @@ class Arcs(NamedTuple):
 
 
 def arcs(jet: Jet, step: Array, longest: Array, pauses: Array) -> Arcs:
-    """Follow polynomials of n launches as far as they serve: for `step`, shape (n,), or to find if that is 0.
+    """Follow polynomials of n launches as far as they serve, `step`, shape (n,).
 
-    Then it is `longest` at most. What to pause for is of shape (guards + 3, n), see `Layout`.
+    Where that is 0 it is found, `longest` at most. What to pause for, shape (guards + 3, n): see `Layout`.
     """
     (size, terms, count), guards = jet.state.shape, len(jet.guards)
     given = np.concatenate((jet.state.reshape(-1, count), jet.guards.reshape(-1, count), [step, longest]))

@@ -38,11 +38,12 @@ CROWDED = 0.75
 
 
 class Lanes:
-    """Launches under way, by Taylor's method for sliding tops of their kind, and what follows of them alone.
+    """Launches under way, by Taylor's method for sliding tops of their kind, and otherwise alone.
 
-    The tolerance is that of the latter: relative error per step. A launch ends when n_z reaches its own
-    `band`, the least and the largest of shape (n,), and once its tilt is held within `settled`, rad. Launches
-    that are not at the start are `resumed`: numbers of the motion and times left, shape (size + 1, n).
+    The tolerance is that of the integrator of launches that are followed alone: relative error per step. A
+    launch ends when n_z reaches its own `band`, the least and the largest of shape (n,), and once its tilt is
+    held within `settled`, rad. Launches that are not at the start are `resumed`: numbers of the motion and
+    times left, shape (size + 1, n).
     """
 
     def __init__(
