@@ -220,6 +220,23 @@ def test_durations_and_limits_are_refused_the_same() -> None:
     assert [found.get("refused") for found in in_javascript([question | one for one in changes])] == sentences
 
 
+def test_the_last_of_so_many_samples_is_at_the_end() -> None:
+    """Also where the duration times a number, over that number, is rounded to more than the duration."""
+    duration, count = 0.007, 100
+    assert duration * (count - 1) / (count - 1) > duration
+    problem = json.dumps(tt.presets.report_problem().model_dump(mode="json"))
+    script = f"""
+      import {{ simulate }} from {json.dumps((HERE / "index.js").as_uri())};
+      const run = simulate({problem}, {{ duration: {duration} }});
+      console.log(JSON.stringify(Array.from(run.track({count}).time)));
+    """
+    options = [NODE, "--input-type=module", "-"]
+    ran = subprocess.run(options, input=script, check=True, capture_output=True, text=True, timeout=60)
+    times = json.loads(ran.stdout)
+    assert times == pytest.approx(np.linspace(0.0, duration, count), rel=1e-15)
+    assert times[-1] == duration
+
+
 def test_no_more_is_kept_than_so_much() -> None:
     """A page may follow launches of ever other tops, each with tables of its own."""
     script = f"""

@@ -155,7 +155,7 @@ class Run {
   }
 
   grid(count) {
-    const all = Array.from({ length: count }, (_, i) => (this.duration * i) / (count - 1));
+    const all = Array.from({ length: count }, (_, i) => this.duration * (i / (count - 1)));
     const times = all.filter((time) => time <= this.endTime);
     if (this.early && times.at(-1) < this.endTime) times.push(this.endTime);
     return Float64Array.from(times);
