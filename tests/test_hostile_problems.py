@@ -243,7 +243,8 @@ def test_a_top_faster_than_any_leaves_the_table_in_its_first_nutation(
     run = tt.simulate(
         problem, 2.0, samples=2, integrator=integrator, tolerance=tolerance, phase_limit=9, step_limit=9
     )
-    # Until then the table hardly turns the angular momentum, about which the axis turns at a constant rate.
+    # Until then the table hardly turns the angular momentum, about which the axis turns at a constant rate:
+    # normal force and friction change its rate by m h' s (h' s + a f) / I1, a few thousandths.
     axis, momentum = (np.array(part) for part in problem.start()[:2])
     pace, turning = np.linalg.norm(momentum) / problem.body.I1, np.cross(momentum, axis) / problem.body.I1
     bend = np.cross(momentum, turning)[2] / problem.body.I1
@@ -257,7 +258,7 @@ def test_a_top_faster_than_any_leaves_the_table_in_its_first_nutation(
         return problem.gravity + stretch * (across**2 * rate**2 / height**2 + c * change) / height
 
     expected = brentq(fall, 0.0, 4.0 / pace, xtol=1e-18)
-    assert float(run["first_lift_off"]) == pytest.approx(expected, rel=1e-6)
+    assert float(run["first_lift_off"]) == pytest.approx(expected, rel=3e-3, abs=0.0)
 
 
 def bouncing(**changes: Any) -> tt.Problem:
