@@ -113,6 +113,41 @@ def test_a_contact_that_friction_all_but_jams_takes_over_without_a_jump():
         assert one.energy_lost > 0.0
 
 
+def test_what_a_jammed_contact_stops_has_no_restitution():
+    """Of two ends in a plane: what jams has all of the normal impulse, and sinks while it lifts the other."""
+    reach, inertia, speed, turning, eps = 2.0, 0.5, 5.0, 0.2, 1e-3
+    hull = Hull.of((SphereSurface(1.0, reach), SphereSurface(1.0, -3.0)))
+    mu = 1.1 * (reach + inertia / reach)
+    first, second = Top(1.0, inertia, 0.5, hull, RegularizedCoulombLaw(mu, eps), 1.0).each
+    state = on_table(SlidingState((1.0, 0.0, 0.0), (0.0, -inertia * turning, 0.0), (speed, 0.0)), first)
+    for restitution in (0.0, 0.5):
+        found = impact(state, restitution, second, first)
+        assert found.compression == 0.0
+        stopped = 5.0 * turning / (1.0 + 3.0 * (mu - reach) / inertia)
+        assert found.impulse == pytest.approx(stopped, rel=1e-5)
+        assert gap_rate(found.state, second) == pytest.approx(0.0, abs=1e-9)
+        sinks = stopped * (1.0 - reach * (mu - reach) / inertia)
+        assert gap_rate(found.state, first) == pytest.approx(sinks, rel=1e-4)
+
+
+def test_a_contact_that_friction_jams_comes_back_and_stays_closed():
+    """In a plane both ends slip alike until they stick, and with both closed nothing moves any more.
+
+    The balances of momentum and angular momentum then tell the impulses at both.
+    """
+    reach, inertia, speed, turning, eps = 2.0, 0.5, 1.0, 0.5, 1e-2
+    hull = Hull.of((SphereSurface(1.0, reach), SphereSurface(1.0, -3.0)))
+    mu = 1.1 * (reach + inertia / reach)
+    first, second = Top(1.0, inertia, 0.5, hull, RegularizedCoulombLaw(mu, eps), 1.0).each
+    state = on_table(SlidingState((1.0, 0.0, 0.0), (0.0, -inertia * turning, 0.0), (speed, 0.0)), first)
+    found = impact(state, 0.0, second, first)
+    assert gap_rate(found.state, first) == pytest.approx(0.0, abs=1e-9)
+    assert gap_rate(found.state, second) == pytest.approx(0.0, abs=1e-9)
+    assert found.state.velocity == pytest.approx((0.0, 0.0, 0.0), abs=eps)
+    assert found.impulse == pytest.approx(reach * turning, rel=eps)
+    assert found.compression == pytest.approx(((inertia + 2.0 * reach) * turning - speed) / 5.0, rel=eps)
+
+
 def naive(state, tops, steps):
     """The same impact by matrices, with Heun's method in the normal impulse, until what strikes stops.
 

@@ -5533,12 +5533,13 @@ class SlipEnds extends py.ArithmeticError {
 
 /** Such an impact, floats: impulses are those of both contacts at what strikes, and work is its own. */
 class ProcessOnTwo extends SteppedProcess {
-  static fields = ["body", "apart", "before", "pressed"];
-  constructor(body, apart, before, pressed = true) {
+  static fields = ["body", "apart", "before", "pressed", "sunk"];
+  constructor(body, apart, before, pressed = true, sunk = false) {
     super(body);
     this.apart = apart;
     this.before = before;
     this.pressed = pressed;
+    this.sunk = sunk;
   }
   /** The impact of a body at what strikes, and at what touches. */
   static of(body, other) {
@@ -5566,14 +5567,21 @@ class ProcessOnTwo extends SteppedProcess {
   there(here) {
     return plus(this.before, this.beside(this.body.change(here)));
   }
-  /** The impact from some impulses on, whether or not the other contact is closed then. */
+  /** The impact from some impulses on, whether or not the other contact is closed, or sinks, then. */
   settled(here) {
-    var pressed = py.bool(this.there(here)[2] <= py.mul(OPEN, this.speed));
-    return py.eq(pressed, this.pressed) ? this : py.replace(this, { pressed: pressed });
+    var rise = py.div(this.there(here)[2], this.speed);
+    var pressed = py.bool(rise <= OPEN);
+    var sunk = py.bool(rise < py.neg(py.truth(this.sunk) ? OPEN : SUNK));
+    var same = py.and(py.eq(pressed, this.pressed), () => py.eq(sunk, this.sunk));
+    return py.truth(same) ? this : py.replace(this, { pressed: pressed, sunk: sunk });
   }
-  /** The goal, and that the other contact closes. */
+  /** The goal, and that the other contact closes, or has come back. */
   ends(goal) {
-    return py.truth(this.pressed) ? [goal] : [goal, (here) => py.neg(this.there(here)[2])];
+    if (py.truth(this.pressed) && !py.truth(this.sunk)) {
+      return [goal];
+    }
+    var way = py.truth(this.sunk) ? 1.0 : -1.0;
+    return [goal, (here) => py.mul(way, this.there(here)[2])];
   }
   /** Rate of the numbers in a clock in which slip that ends decays exponentially. */
   slope(here) {
@@ -5599,7 +5607,7 @@ class ProcessOnTwo extends SteppedProcess {
       var more = this.sliding(there);
       var moment = add([torque[0], torque[1], torque[2]], cross(this.apart, [x, y, z]));
       var at_first = [x, y, z, ...moment];
-      share = this.share(unit, at_first, there[2]);
+      share = this.share(unit, at_first);
       unit = py.tuple(
         py.zip(unit, at_first).map(([a, b]) => py.add(py.mul(py.sub(1.0, share), a), py.mul(share, b)))
       );
@@ -5609,9 +5617,9 @@ class ProcessOnTwo extends SteppedProcess {
     return py.tuple([...unit, work, share].map((number) => py.div(number, py.add(rate, pace))));
   }
   /** Part of the normal impulses that acts at the other contact, which they keep closed. */
-  share(unit, other, rise) {
+  share(unit, other) {
     var [pushed, answer] = [unit, other].map((wrench) => this.beside(this.body.change(wrench))[2]);
-    if (rise < py.mul(py.neg(SUNK), this.speed) || pushed < 0.0 && answer <= 0.0) {
+    if (py.truth(this.sunk) || pushed < 0.0 && answer <= 0.0) {
       return 1.0;
     }
     return pushed < 0.0 ? py.div(py.neg(pushed), py.sub(answer, pushed)) : 0.0;
@@ -5777,7 +5785,7 @@ function impact(state, restitution, top, beside = null) {
   var frictionless = py.div(py.or(py.mul(-2.0, body.before[2]), () => body.striking), body.response[2][2]);
   var [impulse, steps] = process.until(process.begin, py.bound(body, "approach"), frictionless);
   var compression = process.normal(impulse);
-  if (restitution > 0.0) {
+  if (restitution > 0.0 && compression > 0.0) {
     var goal = restitution_goal(process, impulse, restitution);
     var [impulse, more] = process.until(impulse, goal, py.mul(restitution, compression));
     steps = py.add(steps, more);

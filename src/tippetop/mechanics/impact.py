@@ -89,7 +89,7 @@ def impact(state: State, restitution: float, top: Top, beside: Top | None = None
     frictionless = (-2.0 * body.before[2] or body.striking) / body.response[2][2]
     impulse, steps = process.until(process.begin, body.approach, frictionless)
     compression = process.normal(impulse)
-    if restitution > 0.0:
+    if restitution > 0.0 and compression > 0.0:
         goal = restitution_goal(process, impulse, restitution)
         impulse, more = process.until(impulse, goal, restitution * compression)
         steps += more

@@ -46,6 +46,8 @@ class ProcessOnTwo(SteppedProcess):
     """The six velocities of the other contact at the start."""
     pressed: bool = True
     """Whether the other contact is closed."""
+    sunk: bool = False
+    """Whether it sinks, as friction has jammed it."""
 
     @classmethod
     def of(cls, body: Striking, other: Striking) -> Self:
@@ -77,13 +79,18 @@ class ProcessOnTwo(SteppedProcess):
         return plus(self.before, self.beside(self.body.change(here)))
 
     def settled(self, here: Impulse) -> Self:
-        """The impact from some impulses on, whether or not the other contact is closed then."""
-        pressed = bool(self.there(here)[2] <= OPEN * self.speed)
-        return self if pressed == self.pressed else replace(self, pressed=pressed)
+        """The impact from some impulses on, whether or not the other contact is closed, or sinks, then."""
+        rise = self.there(here)[2] / self.speed
+        pressed, sunk = bool(rise <= OPEN), bool(rise < -(OPEN if self.sunk else SUNK))
+        same = pressed == self.pressed and sunk == self.sunk
+        return self if same else replace(self, pressed=pressed, sunk=sunk)
 
     def ends(self, goal: Goal) -> list[Goal]:
-        """The goal, and that the other contact closes."""
-        return [goal] if self.pressed else [goal, lambda here: -self.there(here)[2]]
+        """The goal, and that the other contact closes, or has come back."""
+        if self.pressed and not self.sunk:
+            return [goal]
+        way = 1.0 if self.sunk else -1.0
+        return [goal, lambda here: way * self.there(here)[2]]
 
     def slope(self, here: Impulse) -> Impulse:
         """Rate of the numbers in a clock in which slip that ends decays exponentially."""
@@ -101,27 +108,21 @@ class ProcessOnTwo(SteppedProcess):
             x, y, z, *torque = more = self.sliding(there)
             moment = add((torque[0], torque[1], torque[2]), cross(self.apart, (x, y, z)))
             at_first = (x, y, z, *moment)
-            share = self.share(unit, at_first, there[2])
+            share = self.share(unit, at_first)
             unit = tuple((1.0 - share) * a + share * b for a, b in zip(unit, at_first, strict=True))
             pace = (1.0 - share) * pace + share * self.pace(there, more)
         work = (1.0 - share) * velocity[2]
         return tuple(number / (rate + pace) for number in (*unit, work, share))
 
-    def share(self, unit: Slip, other: Slip, rise: float) -> float:
+    def share(self, unit: Slip, other: Slip) -> float:
         """Part of the normal impulses that acts at the other contact, which they keep closed.
 
         Where friction presses it as much as that pushes it apart (Painleve's paradox) it sinks, and has all
         of them until its slip has changed and it is back, as in an impact of its own.
-
-        Parameters
-        ----------
-        unit, other
-            Normal impulse and friction at what strikes, and at the other contact.
-        rise
-            Normal velocity of the other contact, m/s.
+        Those, with the friction that they cause, are given: `unit` at what strikes, `other` at the other one.
         """
         pushed, answer = (self.beside(self.body.change(wrench))[2] for wrench in (unit, other))
-        if rise < -SUNK * self.speed or (pushed < 0.0 and answer <= 0.0):
+        if self.sunk or (pushed < 0.0 and answer <= 0.0):
             return 1.0
         return -pushed / (answer - pushed) if pushed < 0.0 else 0.0
 
