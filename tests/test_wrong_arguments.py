@@ -144,3 +144,9 @@ def test_what_is_no_name_of_a_file(wrong):
 def test_what_is_no_text(wrong):
     for read in (tt.Problem.from_toml, tt.Problem.from_json):
         refused("problem", read, wrong)
+
+
+@pytest.mark.parametrize("wrong", NONE)
+def test_what_is_no_dataset_to_write(wrong, tmp_path):
+    refused("run", lambda: tt.write_run(NONE[wrong], tmp_path / "run.nc"))
+    assert list(tmp_path.iterdir()) == []

@@ -12,7 +12,7 @@ from pathlib import Path
 import psutil
 import xarray as xr
 
-from tippetop.errors import FileTrouble
+from tippetop.errors import FileTrouble, require
 from tippetop.files import in_words, named, place_for, written_beside
 
 SEAL = b"\ntippetop sha256 "
@@ -26,6 +26,8 @@ def write_run(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Pat
 
     Raises
     ------
+    InvalidInput
+        If it is no dataset.
     FileTrouble
         If the file exists and `overwrite` is false, or cannot be written.
 
@@ -36,6 +38,7 @@ def write_run(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Pat
     >>> tt.write_run(run, "run.nc").name
     'run.nc'
     """
+    require("run", run, xr.Dataset, "a dataset, such as simulate returns")
     place_for(path, overwrite)
     # In memory first: where a disk is full HDF5 takes the whole process with it.
     memory = BytesIO()
