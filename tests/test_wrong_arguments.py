@@ -7,6 +7,9 @@ import pytest
 import xarray as xr
 
 import tippetop as tt
+from tippetop.sweeps.axes import Listed
+from tippetop.sweeps.definition import Sweep
+from tippetop.sweeps.grid import Product
 
 PROBLEM = tt.presets.report_problem()
 PIECE = tt.Workpiece(profile=[(0, -20), (0, 20, 20)], density=700, unit="mm")
@@ -150,3 +153,8 @@ def test_what_is_no_text(wrong):
 def test_what_is_no_dataset_to_write(wrong, tmp_path):
     refused("run", lambda: tt.write_run(NONE[wrong], tmp_path / "run.nc"))
     assert list(tmp_path.iterdir()) == []
+
+
+def test_more_values_than_fields():
+    refused("Listed", Listed, "launch.spin", (1.0, 2.0), 3)
+    refused("Sweep", Sweep, PROBLEM, Product([Listed("launch.spin", (1.0, 2.0))]), 1.0, 1e-9, None, 7)

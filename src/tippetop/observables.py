@@ -107,7 +107,6 @@ class Recorder:
         sums = [*self._sums[:4], 0.0, 0.0, self._struck, self._pole]
         return np.array([[0.0, 0.0, *sums, *told]]).T
 
-    @np.errstate(divide="ignore", invalid="ignore")  # of edges on which the axis is vertical
     def _integrate(self, block: Block) -> tuple[Array, Array, Array, Array]:
         """Integrate along the steps of a block.
 
@@ -144,8 +143,9 @@ class Recorder:
         struck += self._struck
         self._struck = float(struck[-1])
         self._sums, self._pole = values[:, -1], float(poles[-1])
-        for group in block.groups:
-            self.monitor.see(*kept(group.begun, self.top), values[3, group.which])
+        with np.errstate(divide="ignore", invalid="ignore"):  # of edges on which the axis is vertical
+            for group in block.groups:
+                self.monitor.see(*kept(group.begun, self.top), values[3, group.which])
         return rates, values[:, :-1], poles, struck[:-1]
 
 

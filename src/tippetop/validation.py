@@ -4,7 +4,7 @@ import inspect
 import json
 import math
 import tomllib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple, Self, TypeAlias, get_args, get_origin
 
 from pydantic import (
@@ -136,6 +136,14 @@ class Part(BaseModel):
 
 
 _PACKAGE = __name__.partition(".")[0]
+
+
+def in_order(part: type[Part], names: Iterable[str], values: Sequence[Any]) -> dict[str, Any]:
+    """Fields of a part by values given without their names; raises `InvalidInput` if there are too many."""
+    names = list(names)
+    if len(values) > len(names):
+        raise InvalidInput(part.__name__, values, f"at most these, in order: {', '.join(names)}")
+    return dict(zip(names, values, strict=False))
 
 
 class Variant(Part):

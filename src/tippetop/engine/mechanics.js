@@ -8851,7 +8851,7 @@ class Prediction extends py.Record {
 function predict(problem) {
   var top = problem.top;
   if (py.isinstance(top.surface, Hull)) {
-    return _on_one_of_several(problem, problem.standing().surface);
+    return _on_one_of_several(problem, hull_of(problem));
   }
   require_jellett(top);
   require_creep(top);
@@ -8884,6 +8884,12 @@ function _on_one_of_several(problem, hull) {
   var [low, high] = tilts_held(hull, problem.launch.tilt);
   var stable = py.tuple([...found.stable].filter((state) => low <= state.tilt && state.tilt <= high));
   return py.replace(found, { stable: stable, surface: hull.active });
+}
+
+/** The surfaces of a body that has several; that of the launch is active. */
+function hull_of(problem) {
+  var hull = problem.standing().surface;
+  return hull;
 }
 
 /** The problem with one of the body's surfaces alone. */
@@ -11815,6 +11821,7 @@ export {
   highest_between,
   highest_gap,
   horner,
+  hull_of,
   impact,
   impact_between,
   impact_motion,

@@ -12,7 +12,7 @@ from pydantic import BeforeValidator, ConfigDict, Field, model_validator
 
 from tippetop.errors import InvalidInput
 from tippetop.integrators.base import Array
-from tippetop.validation import Number, Part, Whole
+from tippetop.validation import Number, Part, Whole, in_order
 
 MOST_CELLS = 10**8
 """Cells a sweep may have."""
@@ -31,7 +31,7 @@ class Entry(Part):
     model_config = ConfigDict(populate_by_name=True)
 
     def __init__(self, /, *values: Any, **fields: Any) -> None:
-        super().__init__(**dict(zip(type(self).model_fields, values, strict=False)), **fields)
+        super().__init__(**in_order(type(self), type(self).model_fields, values), **fields)
 
 
 class Axis(Entry):

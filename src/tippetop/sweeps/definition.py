@@ -15,7 +15,7 @@ from tippetop.problem import Problem
 from tippetop.sweeps.cells import cells_of
 from tippetop.sweeps.grid import Draws, Product
 from tippetop.theory.requirements import require_jellett
-from tippetop.validation import Number, Part, Positive, parse_toml
+from tippetop.validation import Number, Part, Positive, in_order, parse_toml
 
 DEFAULT_TOLERANCE = 1e-9
 SETTLED_RANGE = (1e-6, 1e-2)
@@ -53,7 +53,7 @@ class Sweep(Part):
     `tippetop.theory.prediction.is_held`); None to follow every run for its whole duration."""
 
     def __init__(self, /, *values: Any, **fields: Any) -> None:
-        fields |= dict(zip(("problem", "grid", "duration", "tolerance", "settled"), values, strict=False))
+        fields |= in_order(type(self), ("problem", "grid", "duration", "tolerance", "settled"), values)
         grid = fields.pop("grid", None)
         if grid is not None:
             product = isinstance(grid, Product)

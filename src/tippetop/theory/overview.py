@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any
 
 from tippetop.errors import InvalidInput
 from tippetop.frictions import ViscousFriction
@@ -11,7 +10,7 @@ from tippetop.problem import Problem, require_problem
 from tippetop.theory.averaging import flip_time_limit, nutation_of_launch
 from tippetop.theory.drilling import standing_time
 from tippetop.theory.groups import Group, classify_top, eccentricity, inertia_ratio
-from tippetop.theory.prediction import Prediction, on_surface, predict, steady_launch, tilts_held
+from tippetop.theory.prediction import Prediction, hull_of, on_surface, predict, steady_launch, tilts_held
 from tippetop.theory.requirements import require_creep
 from tippetop.theory.stability import Spectrum, spectrum
 from tippetop.theory.steady import VERTICAL_SPINS, SteadyKind, SteadyState, jellett_of_launch, vertical_spin
@@ -113,7 +112,7 @@ def _on_one_of_several(problem: Problem) -> Outlook:
 
     How it gets there is not told: another surface may touch on the way.
     """
-    hull: Any = problem.standing().surface
+    hull = hull_of(problem)
     found = outlook(on_surface(problem, hull.active))
     low, high = tilts_held(hull, problem.launch.tilt)
     try:
@@ -154,7 +153,7 @@ def steady_states(problem: Problem) -> list[SteadyState[float]]:
     """
     require_problem(problem)
     if isinstance(problem.top.surface, Hull):
-        hull: Any = problem.standing().surface
+        hull = hull_of(problem)
         low, high = tilts_held(hull, problem.launch.tilt)
         states = steady_states(on_surface(problem, hull.active))
         return [state for state in states if low <= state.tilt <= high]

@@ -12,7 +12,6 @@ This holds while the table only pushes. A bilateral contact that pulls can give 
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -87,7 +86,7 @@ def predict(problem: Problem) -> Prediction:
     require_problem(problem)
     top = problem.top
     if isinstance(top.surface, Hull):
-        return _on_one_of_several(problem, problem.standing().surface)
+        return _on_one_of_several(problem, hull_of(problem))
     require_jellett(top)
     require_creep(top)
     if problem.friction.vanishes:
@@ -101,7 +100,7 @@ def predict(problem: Problem) -> Prediction:
     return Prediction(jellett, _by_energy(minima), _by_energy(within or minima))
 
 
-def _on_one_of_several(problem: Problem, hull: Any) -> Prediction:
+def _on_one_of_several(problem: Problem, hull: Hull) -> Prediction:
     """The end on the surface of the launch, where the energy of the launch keeps all others off the table.
 
     Jellett's integral holds on one surface. When another touches, it begins anew with a number that the
@@ -126,6 +125,13 @@ def _on_one_of_several(problem: Problem, hull: Any) -> Prediction:
     low, high = tilts_held(hull, problem.launch.tilt)
     stable = tuple(state for state in found.stable if low <= state.tilt <= high)
     return replace(found, stable=stable, surface=hull.active)
+
+
+def hull_of(problem: Problem) -> Hull:
+    """The surfaces of a body that has several; that of the launch is active."""
+    hull = problem.standing().surface
+    assert isinstance(hull, Hull)
+    return hull
 
 
 def on_surface(problem: Problem, number: int) -> Problem:
