@@ -53,7 +53,7 @@ class Taylor:
         self, motion: Motion, parameters: Sequence[float], start: tuple[float, Array], end: float
     ) -> Iterator[Arc]:
         """Follow the motion; see `tippetop.integrators.base.Integrator`."""
-        compiled, longest, most = _compiled(motion, self.tolerance), math.inf, LONG
+        compiled, longest, most, usual = _compiled(motion, self.tolerance), math.inf, LONG, 0.0
         while start[0] < end:
             with compiled.lock:
                 run = compiled.integrator
@@ -65,9 +65,13 @@ class Taylor:
                     run.reset_cooldowns()
                 solution, outcome = compiled.advance(end, longest, most)
                 state = np.array(run.state)
-            good = SAFETY * _longest_good(solution, LEFT_OUT * self.tolerance)
-            if good < longest:
-                longest, most = good, SHORT
+            usual = max(usual, np.diff(solution.knots).max(initial=0.0))
+            bad = _first_bad(solution, LEFT_OUT * self.tolerance, SHORTEST * usual)
+            if bad is not None:
+                steps, longest = bad
+                start, most = (float(solution.knots[steps]), solution.terms[steps, :, 0].copy()), SHORT
+                if steps:
+                    yield Arc(_beginning(solution, steps), start[1], None, None, steps, steps)
                 continue
             longest = math.inf
             steps = len(solution.terms)
@@ -159,21 +163,28 @@ def _compiled(motion: Motion, tolerance: float) -> _Compiled:
         return _Compiled(make())
 
 
-def _longest_good(solution: DenseSolution, accuracy: float) -> float:
-    """How long the first step that leaves out too much should be; infinite if none does."""
+def _first_bad(solution: DenseSolution, accuracy: float, shortest: float) -> tuple[int, float] | None:
+    """The first step that leaves out too much, and how long it should be; None if none does.
+
+    Those too short to be told, before numbers grow beyond all bounds, leave out what they like.
+    """
+    spans = np.diff(solution.knots)
     size, last = (np.abs(solution.terms[:, :, term]) for term in (0, -1))
     allowed = accuracy * np.maximum(size, 1.0)
-    bad = np.flatnonzero(np.any((last > allowed) & np.isfinite(last), axis=1))
+    bad = np.flatnonzero(((last > allowed) & np.isfinite(last)).any(axis=1) & (spans > shortest))
     if not len(bad):
-        return math.inf
-    span, order = np.diff(solution.knots)[bad[0]], solution.terms.shape[2] - 1
-    return float(span * np.max(last[bad[0]] / allowed[bad[0]]) ** (-1.0 / order))
+        return None
+    first, order = int(bad[0]), solution.terms.shape[2] - 1
+    return first, float(SAFETY * spans[first] * np.max(last[first] / allowed[first]) ** (-1.0 / order))
+
+
+def _beginning(solution: DenseSolution, steps: int) -> DenseSolution:
+    """The first steps of a solution."""
+    return DenseSolution(solution.knots[: steps + 1], solution.terms[:steps])
 
 
 def _before_blow_up(solution: DenseSolution) -> DenseSolution:
     """A solution that ended in numbers that are none, without its last steps, too short to be told."""
-    knots = solution.knots
-    spans = np.diff(knots)
+    spans = np.diff(solution.knots)
     fine = np.flatnonzero(spans > SHORTEST * spans.max(initial=0.0))
-    steps = fine[-1] + 1 if len(fine) else 0
-    return DenseSolution(knots[: steps + 1], solution.terms[:steps])
+    return _beginning(solution, fine[-1] + 1 if len(fine) else 0)
