@@ -21,13 +21,8 @@ from tippetop.interrupts import heard
 SHORTEST = 1e-6
 """Step, relative to the longest, that only a solution that blows up takes; rounding of time matters in it."""
 
-LONG, SHORT = 4096, 64
-"""Steps in an arc at most, and in one whose steps may have to be shorter than the compiler's."""
-
-LEFT_OUT, SAFETY = 100.0, 0.9
-"""What a step may leave out of a number, in tolerances of that number or of 1, the larger; and how much
-shorter than that is the step that repeats it. The compiler compares what is left out with the largest number
-or guard, and beside huge slip or friction the axis would go astray."""
+LONG = 4096
+"""Steps in an arc at most."""
 
 GUARDED = 2.0**-5
 """Weight of guards beside the numbers of the motion where the compiler chooses steps by the largest of all. A
@@ -53,7 +48,7 @@ class Taylor:
         self, motion: Motion, parameters: Sequence[float], start: tuple[float, Array], end: float
     ) -> Iterator[Arc]:
         """Follow the motion; see `tippetop.integrators.base.Integrator`."""
-        compiled, longest, most, usual = _compiled(motion, self.tolerance), math.inf, LONG, 0.0
+        compiled = _compiled(motion, self.tolerance)
         while start[0] < end:
             with compiled.lock:
                 run = compiled.integrator
@@ -63,17 +58,8 @@ class Taylor:
                 run.pars[:] = parameters[: len(run.pars)]
                 if motion.guards:
                     run.reset_cooldowns()
-                solution, outcome = compiled.advance(end, longest, most)
+                solution, outcome = compiled.advance(end)
                 state = np.array(run.state)
-            usual = max(usual, np.diff(solution.knots).max(initial=0.0))
-            bad = _first_bad(solution, LEFT_OUT * self.tolerance, SHORTEST * usual)
-            if bad is not None:
-                steps, longest = bad
-                start, most = (float(solution.knots[steps]), solution.terms[steps, :, 0].copy()), SHORT
-                if steps:
-                    yield Arc(_beginning(solution, steps), start[1], None, None, steps, steps)
-                continue
-            longest = math.inf
             steps = len(solution.terms)
             # Rounding of time may swallow all steps before numbers have grown beyond all bounds.
             stuck = outcome == hy.taylor_outcome.step_limit and not solution.end > start[0]
@@ -104,8 +90,8 @@ class _Compiled:
         self.integrator, self.lock = integrator, threading.Lock()
         self._coefficients, self._state, self._parameters = integrator.tc, integrator.state, integrator.pars
 
-    def advance(self, end: float, longest: float, most: int) -> tuple[DenseSolution, Any]:
-        """Take an arc's steps, of such a length and number at most: for half the price of heyoka's output."""
+    def advance(self, end: float) -> tuple[DenseSolution, Any]:
+        """Take an arc's steps: for half the price of heyoka's continuous output."""
         shape, terms, knots = self._coefficients.shape, bytearray(), array("d", [self.integrator.time])
         # Bytes are copied in a third of the time that arrays need.
         step, keep, note = self._coefficients.reshape(-1).data, terms.extend, knots.append
@@ -115,9 +101,7 @@ class _Compiled:
             note(run.time)
             return True
 
-        outcome, *_ = self.integrator.propagate_until(
-            end, max_steps=most, max_delta_t=longest, write_tc=True, callback=take
-        )
+        outcome, *_ = self.integrator.propagate_until(end, max_steps=LONG, write_tc=True, callback=take)
         if outcome == hy.taylor_outcome.time_limit:
             knots[-1] = end
         return DenseSolution.in_time(np.array(knots), np.frombuffer(terms).reshape(-1, *shape)), outcome
@@ -163,28 +147,10 @@ def _compiled(motion: Motion, tolerance: float) -> _Compiled:
         return _Compiled(make())
 
 
-def _first_bad(solution: DenseSolution, accuracy: float, shortest: float) -> tuple[int, float] | None:
-    """The first step that leaves out too much, and how long it should be; None if none does.
-
-    Those too short to be told, before numbers grow beyond all bounds, leave out what they like.
-    """
-    spans = np.diff(solution.knots)
-    size, last = (np.abs(solution.terms[:, :, term]) for term in (0, -1))
-    allowed = accuracy * np.maximum(size, 1.0)
-    bad = np.flatnonzero(((last > allowed) & np.isfinite(last)).any(axis=1) & (spans > shortest))
-    if not len(bad):
-        return None
-    first, order = int(bad[0]), solution.terms.shape[2] - 1
-    return first, float(SAFETY * spans[first] * np.max(last[first] / allowed[first]) ** (-1.0 / order))
-
-
-def _beginning(solution: DenseSolution, steps: int) -> DenseSolution:
-    """The first steps of a solution."""
-    return DenseSolution(solution.knots[: steps + 1], solution.terms[:steps])
-
-
 def _before_blow_up(solution: DenseSolution) -> DenseSolution:
     """A solution that ended in numbers that are none, without its last steps, too short to be told."""
-    spans = np.diff(solution.knots)
+    knots = solution.knots
+    spans = np.diff(knots)
     fine = np.flatnonzero(spans > SHORTEST * spans.max(initial=0.0))
-    return _beginning(solution, fine[-1] + 1 if len(fine) else 0)
+    steps = fine[-1] + 1 if len(fine) else 0
+    return DenseSolution(knots[: steps + 1], solution.terms[:steps])
