@@ -9,6 +9,7 @@ from typer.testing import CliRunner
 import tippetop as tt
 from tippetop.cli.commands import app
 from tippetop.summary import summarize
+from tippetop.theory.averaging import flip_time_limit
 
 
 def said(*words: str) -> str:
@@ -100,3 +101,12 @@ def test_critical_refuses_friction_in_the_words_of_users() -> None:
     done = CliRunner().invoke(app, ["critical", "--set", "friction.kind=coulomb"])
     assert isinstance(done.exception, tt.InvalidInput)
     assert str(done.exception).startswith("friction = 'dry friction of a point' is not possible; accepted: ")
+
+
+def test_critical_tells_why_it_leaves_out_how_long_a_launch_takes() -> None:
+    """One so fast that the limit of small friction needs a pull of the table."""
+    with pytest.raises(tt.InvalidInput) as refusal:
+        flip_time_limit(tt.presets.report_problem(spin=1000.0))
+    done = CliRunner().invoke(app, ["critical", "--spin", "1000"])
+    assert "so at this friction about" not in done.output
+    assert refusal.value.accepted in " ".join(done.output.split())

@@ -147,7 +147,7 @@ UNREADABLE = {
     ("arguments", "field"),
     [
         ([], "--axis"),
-        (["--axis", "launch.spn=1,2"], "axis"),
+        (["--axis", "launch.spn=1,2"], "field"),
         *(([word, text], word) for word, texts in UNREADABLE.items() for text in texts),
         (["--axis", "launch.spin=1:2:3:log"], "launch.spin.spacing"),
         (["--axis", "launch.spin=1:2:0"], "launch.spin.count"),

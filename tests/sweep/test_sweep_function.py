@@ -44,7 +44,7 @@ def test_a_sweep_is_kept_where_it_is_told_to(tmp_path):
 @pytest.mark.parametrize(
     ("over", "options", "field"),
     [
-        ({"launch.spn": [1]}, {}, "axis"),
+        ({"launch.spn": [1]}, {}, "field"),
         ({"launch.spin": [1, 1]}, {}, "launch.spin"),
         ({"launch.spin": np.array([1.0, np.nan])}, {}, "launch.spin.values.1"),
         ({"launch.spin": np.ones((2, 2))}, {}, "launch.spin.values.0"),

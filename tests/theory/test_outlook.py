@@ -119,6 +119,7 @@ def check_what_is_said(problem):
         assert 0.0 <= low <= problem.launch.tilt <= high <= math.pi
     if found.flip_time is not None:
         assert found.flip_time >= 0.0
+        assert found.flip_time_known_of is None
 
 
 ALL = list(itertools.product(BODIES, FRICTION, TILTS, SPINS, RATES))

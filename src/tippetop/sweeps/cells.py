@@ -80,10 +80,10 @@ def cells_of(problem: Problem, values: Mapping[str, Array]) -> Cells:
     known = dict(numeric_fields(problem))
     for field in values:
         if field not in known:
-            raise InvalidInput("axis", field, "one of " + one_of(field, list(known)))
+            raise InvalidInput("field", field, "one of " + one_of(field, list(known)))
     if problem.launch.velocity is not None and any(field.startswith("launch.slip.") for field in values):
         raise InvalidInput(
-            "axis", "launch.slip", "no slip where launch.velocity is given, which determines it"
+            "field", "launch.slip", "no slip where launch.velocity is given, which determines it"
         )
     count = len(next(iter(values.values())))
     filled = put(problem, values)

@@ -95,7 +95,7 @@ class Range(Entry):
     def _can_be_drawn_from(self) -> Self:
         given, logarithmic = f"{self.low:g} to {self.high:g}", self.law == "log-uniform"
         if self.low > self.high or (logarithmic and self.low <= 0):
-            raise InvalidInput("", given, "a low and a high end" + ", both above 0" * logarithmic)
+            raise InvalidInput("", given, "a low end and no lower high one" + ", both above 0" * logarithmic)
         return self
 
     @classmethod

@@ -60,6 +60,8 @@ class Outlook:
     there is none, or no friction."""
     flip_time: float | None
     """The same divided by the problem's mu, s."""
+    flip_time_known_of: str | None
+    """Where the limit is not known, of which launches it is."""
     conserved: bool
     """Whether Jellett's integral is constant: for an eccentric sphere under friction without torque."""
     standing_time: float | None
@@ -86,7 +88,7 @@ def outlook(problem: Problem) -> Outlook:
     drills, smooth = not top.torque_free, problem.friction.vanishes
     stays = None if drills else steady_launch(problem)
     grouped = sphere and 0.0 < eccentricity(top) < 1.0
-    limit, time = _flip_times(problem) if grouped and stays is None else (None, None)
+    limit, time, known_of = _flip_times(problem) if grouped and stays is None else (None, None, None)
     return Outlook(
         inertia_ratio=inertia_ratio(top) if sphere else None,
         eccentricity=eccentricity(top) if sphere else None,
@@ -102,6 +104,7 @@ def outlook(problem: Problem) -> Outlook:
         steady=tuple(Judged(state, spectrum(state, top)) for state in steady_states(problem)),
         mu_flip_time=limit,
         flip_time=time,
+        flip_time_known_of=known_of,
         conserved=sphere,
         standing_time=standing_time(problem) if drills and (vertical or top.surface.spherical) else None,
     )
@@ -125,6 +128,7 @@ def _on_one_of_several(problem: Problem) -> Outlook:
         steady=tuple(judged for judged in found.steady if low <= judged.state.tilt <= high),
         mu_flip_time=None,
         flip_time=None,
+        flip_time_known_of=None,
         surface=hull.active,
         tilts=(low, high),
     )
@@ -169,14 +173,17 @@ def _swings(problem: Problem) -> tuple[float, float]:
     return min(low, problem.launch.tilt), max(high, problem.launch.tilt)
 
 
-def _flip_times(problem: Problem) -> tuple[float, float] | tuple[None, None]:
-    """Limit of mu times the flip time, and the flip time, where friction is viscous and the axis moves."""
+def _flip_times(problem: Problem) -> tuple[float | None, float | None, str | None]:
+    """Limit of mu times the flip time, and the flip time, where friction is viscous and the axis moves.
+
+    Or else of which launches they are known, if one as this may have them.
+    """
     launch, friction = problem.launch, problem.friction
     vertical = launch.tilt in (0.0, math.pi) and launch.tilt_rate == 0.0
     if vertical or friction.vanishes or not isinstance(friction, ViscousFriction):
-        return None, None
+        return None, None, None
     try:
         limit = flip_time_limit(problem)
-    except InvalidInput:  # the table does not hold the nutation
-        return None, None
-    return limit, limit / friction.mu
+    except InvalidInput as refusal:
+        return None, None, refusal.accepted
+    return limit, limit / friction.mu, None
