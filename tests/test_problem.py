@@ -13,8 +13,9 @@ from hypothesis import strategies as st
 from pydantic import BaseModel
 
 from strategies import problems
-from tippetop import bodies, frictions, presets, problem
-from tippetop.bodies import Body, EccentricSphere, Ring, Sphere, Spheroid
+from tippetop import bodies, contacts, frictions, launch, presets, problem, shapes
+from tippetop.bodies import Body
+from tippetop.contacts import Contact
 from tippetop.errors import FileTrouble, InvalidInput, TippetopError
 from tippetop.frictions import (
     ContensouFriction,
@@ -22,12 +23,14 @@ from tippetop.frictions import (
     RegularizedCoulombFriction,
     ViscousFriction,
 )
+from tippetop.launch import Launch
 from tippetop.mechanics.friction import RegularizedCoulombLaw, ViscousLaw
 from tippetop.mechanics.motion import angular_velocity, contact, point_velocity
 from tippetop.mechanics.surface import SphereSurface, SpheroidSurface, contact_vector
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import length
-from tippetop.problem import Contact, Launch, Problem
+from tippetop.problem import Problem
+from tippetop.shapes import EccentricSphere, Ring, Sphere, Spheroid
 
 EGG = {"mass": 0.05, "shape": {"kind": "spheroid", "across": 0.02, "along": 0.03}, "I1": 1.3e-5, "I3": 8e-6}
 COULOMB = {"kind": "regularized_coulomb", "mu": 0.3, "eps": 1e-3}
@@ -203,9 +206,9 @@ class TestRefusals:
 
     def test_a_patch_and_an_arm_fit_the_largest_surface_whichever_comes_first(self):
         ball, tip = Sphere(radius=0.02, center=-0.006), Sphere(radius=0.004, center=0.02)
-        for shapes in ([ball, tip], [tip, ball]):
+        for two in ([ball, tip], [tip, ball]):
             patch = {"friction.kind": "contensou", "friction.patch_radius": 0.01, "rolling_resistance": 0.01}
-            problem = presets.report_problem(mu=0.3).replace({"body.shape": shapes} | patch)
+            problem = presets.report_problem(mu=0.3).replace({"body.shape": two} | patch)
             for name, value in (("friction.patch_radius", 1e-11), ("rolling_resistance", 0.021)):
                 with pytest.raises(InvalidInput) as caught:
                     problem.replace({name: value})
@@ -857,7 +860,7 @@ class TestSchema:
     def test_the_parts_are_all_the_models_there_are(self):
         defined = {
             model
-            for module in (bodies, frictions, problem)
+            for module in (bodies, contacts, frictions, launch, problem, shapes)
             for model in vars(module).values()
             if isinstance(model, type)
             and issubclass(model, BaseModel)

@@ -2,13 +2,9 @@
 
 from . import presets as presets
 from .bodies import Body as Body
-from .bodies import EccentricSphere as EccentricSphere
-from .bodies import Ring as Ring
-from .bodies import Shape as Shape
-from .bodies import Sphere as Sphere
-from .bodies import Spheroid as Spheroid
 from .catalogue import Ending as Ending
 from .contact.mode import Outcome as Outcome
+from .contacts import Contact as Contact
 from .errors import FileTrouble as FileTrouble
 from .errors import InvalidInput as InvalidInput
 from .errors import TippetopError as TippetopError
@@ -29,15 +25,19 @@ from .lathe.design import design_bowl as design_bowl
 from .lathe.design import design_insert as design_insert
 from .lathe.workpiece import Insert as Insert
 from .lathe.workpiece import Workpiece as Workpiece
+from .launch import Launch as Launch
 from .mechanics.hertz import MATERIALS as MATERIALS
 from .mechanics.hertz import Material as Material
 from .mechanics.hertz import hertz_patch_radius as hertz_patch_radius
 from .netcdf import read_run as read_run
 from .netcdf import write_run as write_run
-from .problem import Contact as Contact
-from .problem import Launch as Launch
 from .problem import Problem as Problem
 from .run import simulate as simulate
+from .shapes import EccentricSphere as EccentricSphere
+from .shapes import Ring as Ring
+from .shapes import Shape as Shape
+from .shapes import Sphere as Sphere
+from .shapes import Spheroid as Spheroid
 from .summary import summarize as summarize
 from .sweeps.grid import Draws as Draws
 from .sweeps.grid import Range as Range

@@ -2,10 +2,12 @@
 
 import math
 
-from tippetop.bodies import Body, EccentricSphere, Ring, Sphere, Spheroid
+from tippetop.bodies import Body
 from tippetop.errors import InvalidInput, one_of
 from tippetop.frictions import RegularizedCoulombFriction, ViscousFriction
-from tippetop.problem import Launch, Problem
+from tippetop.launch import Launch
+from tippetop.problem import Problem
+from tippetop.shapes import EccentricSphere, Ring, Sphere, Spheroid
 
 _MASS, _RADIUS = 0.02, 0.02
 _TWO_FIFTHS = 2 / 5 * _MASS * _RADIUS**2

@@ -7,16 +7,18 @@ import json
 import math
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, Self
 
 import tomli_w
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from tippetop.bodies import Body
+from tippetop.contacts import Contact
 from tippetop.errors import MISSING, InvalidInput, one_of, require
 from tippetop.fields import dotted_names, numbers_of, part_at, table_at
 from tippetop.files import made_of, read_text
 from tippetop.frictions import LEAST_PATCH, Friction
+from tippetop.launch import Launch
 from tippetop.mechanics.coulomb import RollingResistance
 from tippetop.mechanics.hull import Hull, is_edge, lowest_surface, sizes
 from tippetop.mechanics.motion import along_table, contact, on_table
@@ -24,121 +26,10 @@ from tippetop.mechanics.rolling import is_set_valued
 from tippetop.mechanics.state import State
 from tippetop.mechanics.stick_slip import is_slipping, size
 from tippetop.mechanics.top import Top, natural_state, natural_units
-from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Functions
 from tippetop.mechanics.view import Angles, PoleExact, state_from_angles
-from tippetop.validation import (
-    NO_WORD,
-    OF_ITS_KIND,
-    NotNegative,
-    Number,
-    Part,
-    Positive,
-    Quantity,
-    Variant,
-    parse_json,
-    parse_toml,
-)
-
-Fraction = Annotated[float, Field(ge=0, le=1), NO_WORD]
-Tilt = Annotated[float, Field(ge=0, le=math.pi), NO_WORD]
-
-LEANING = (
-    "along the direction into which the axis leans",
-    "90 degrees to the left of the direction into which the axis leans",
-)
-
-
-class Launch(Part):
-    """How the top is set on the table.
-
-    Attributes
-    ----------
-    tilt
-        Angle theta between the axis and the vertical, rad, in [0, pi].
-    spin
-        Axial spin omega3, rad/s.
-    azimuth
-        Direction phi into which the axis leans, rad.
-    tilt_rate
-        theta', rad/s.
-    precession
-        phi', rad/s.
-    slip
-        Slip velocity of the contact point, m/s: along the direction into which the axis leans, and 90
-        degrees to the left of it.
-    gap
-        Height of the lowest point above the table, m: more than 0 for a top that is dropped or thrown.
-    velocity
-        Velocity of the centre of mass along x, y and z, m/s; it takes the place of `slip`. Without it the
-        lowest point moves with the slip velocity and neither up nor down.
-
-    Examples
-    --------
-    >>> import tippetop as tt
-    >>> tt.Launch(tilt=0.1, spin=155.0).slip
-    (0.0, 0.0)
-    >>> dropped = tt.Launch(tilt=0.1, spin=155.0, gap=0.01)  # from 1 cm
-    """
-
-    tilt: Annotated[Tilt, Quantity("rad", "tilt of the axis at launch")]
-    spin: Annotated[Number, Quantity("rad s-1", "axial spin at launch")]
-    azimuth: Annotated[Number, Quantity("rad", "azimuth of the axis at launch")] = 0.0
-    tilt_rate: Annotated[Number, Quantity("rad s-1", "rate of the tilt at launch")] = 0.0
-    precession: Annotated[Number, Quantity("rad s-1", "precession at launch")] = 0.0
-    slip: Annotated[tuple[Number, Number], Quantity("m s-1", "slip velocity at launch", LEANING)] = (0.0, 0.0)
-    gap: Annotated[NotNegative, Quantity("m", "height of the lowest point at launch")] = 0.0
-    velocity: Annotated[
-        tuple[Number, Number, Number] | None,
-        Quantity("m s-1", "velocity of the centre of mass at launch", ("along x", "along y", "along z")),
-    ] = None
-
-    @model_validator(mode="after")
-    def _moves_one_way(self) -> Self:
-        if self.velocity is not None and self.slip != (0.0, 0.0):
-            raise InvalidInput("slip", self.slip, "0 where velocity is given, which determines it")
-        return self
-
-
-class Contact(Variant):
-    """What happens when the table would have to pull.
-
-    A subclass with a field `kind` is a contact of its own, if it has rules.
-
-    Attributes
-    ----------
-    liftoff
-        "fly": the top leaves the table; "stop": the run ends there; "ignore": the table pulls (bilateral
-        contact).
-    restitution
-        Ratio of the normal impulses of restitution and compression in an impact (Poisson), in [0, 1].
-
-    Examples
-    --------
-    >>> import tippetop as tt
-    >>> tt.Contact()  # it may leave the table, and does not bounce
-    Contact(liftoff='fly', restitution=0.0)
-    """
-
-    liftoff: Literal["fly", "stop", "ignore"] = "fly"
-    restitution: Annotated[Fraction, Quantity("1", "coefficient of restitution")] = 0.0
-
-    def rules(self, top: Top, units: Units) -> Any:
-        """What follows where contact begins or ends, in natural units, where that is not as described here.
-
-        Parameters
-        ----------
-        top
-            The top in natural units.
-        units
-            Those units.
-
-        Returns
-        -------
-        tippetop.contact.rules.Rules or None
-            None, unless a subclass has rules of its own.
-        """
-        return None
+from tippetop.parsing import parse_json, parse_toml
+from tippetop.validation import OF_ITS_KIND, NotNegative, Part, Positive, Quantity, Variant
 
 
 class Problem(Part):

@@ -1,11 +1,8 @@
 """The base of every part of a problem: frozen, validated, and clear about what it refuses."""
 
 import inspect
-import json
-import math
-import tomllib
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple, Self, TypeAlias, get_args, get_origin
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple, Self, TypeAlias, get_args
 
 from pydantic import (
     BaseModel,
@@ -17,11 +14,11 @@ from pydantic import (
     ValidationError,
 )
 from pydantic.fields import FieldInfo
-from pydantic_core import CoreSchema, ErrorDetails, PydanticCustomError, core_schema
+from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
-from tippetop.errors import MISSING, InvalidInput, is_whole, one_of, require
+from tippetop.accepted import accepted_by
+from tippetop.errors import MISSING, InvalidInput, is_whole
 from tippetop.fields import part_at
-from tippetop.files import named
 
 
 def _no_word(value: Any) -> Any:
@@ -39,9 +36,6 @@ Number: TypeAlias = Annotated[float, NO_WORD]
 
 Positive: TypeAlias = Annotated[float, Field(gt=0), NO_WORD]
 NotNegative: TypeAlias = Annotated[float, Field(ge=0), NO_WORD]
-
-DEEPEST = 20
-"""How deep tables and lists may be nested in a text; a problem's are three deep."""
 
 
 def _whole(value: Any) -> int:
@@ -241,51 +235,6 @@ OF_ITS_KIND = _OfItsKind()
 ONE_OR_SEVERAL = _OfItsKind(several=True)
 
 
-def parse_json(text: str, field: str, file: str = "") -> dict[str, Any]:
-    """The fields of a JSON text that states something, which is called a field in sentences.
-
-    They show the text, or its file if it has one.
-
-    Raises `InvalidInput` if it is no JSON object, is nested deeper than `DEEPEST`, or holds whole numbers of
-    thousands of digits.
-    """
-    return _parsed("JSON", json.loads, text, field, file)
-
-
-def parse_toml(text: str, field: str, file: str = "") -> dict[str, Any]:
-    """The same of a TOML text."""
-    return _parsed("TOML", tomllib.loads, text, field, file)
-
-
-def _parsed(language: str, loads: Callable[[str], Any], text: str, field: str, file: str) -> dict[str, Any]:
-    require(field, text, str, f"a text in {language}")
-    try:
-        fields = loads(text)
-        _refuse_depths(fields)
-    except (ValueError, RecursionError) as error:
-        told = _TOO_DEEP if isinstance(error, RecursionError) else error
-        raise InvalidInput(field, file or text.strip(), f"{language}; {told}") from None
-    if not isinstance(fields, dict):
-        raise InvalidInput(field, fields, f"a {language} object", file=file and named(file))
-    return fields
-
-
-_TOO_DEEP = f"tables and lists at most {DEEPEST} deep"
-
-
-def _refuse_depths(value: Any) -> None:
-    layer = [value]
-    for _ in range(DEEPEST):
-        layer = [
-            inner
-            for outer in layer
-            if isinstance(outer, dict | list)
-            for inner in (outer.values() if isinstance(outer, dict) else outer)
-        ]
-    if layer:
-        raise ValueError(_TOO_DEEP)
-
-
 def _as_invalid_input(error: ValidationError, part: type[Part]) -> InvalidInput:
     """Turn a validation error into the one sentence a user reads, about the most telling of its details."""
     details = sorted(error.errors(), key=lambda detail: detail["type"] != "extra_forbidden")
@@ -301,67 +250,3 @@ def _as_invalid_input(error: ValidationError, part: type[Part]) -> InvalidInput:
 def _written(part: type[Part]) -> dict[str, FieldInfo]:
     """The fields of a part by the names they are written with."""
     return {info.alias or name: info for name, info in part.model_fields.items()}
-
-
-def accepted_by(detail: ErrorDetails, fields: Mapping[str, FieldInfo]) -> str:
-    """What some fields, by their names, would accept instead, from the kind of validation error.
-
-    Without the field of a number that is out of its range, that is the limit it goes beyond.
-    """
-    place = [*map(str, detail["loc"]), ""]
-    match detail["type"]:
-        case "greater_than" | "greater_than_equal" | "less_than" | "less_than_equal":
-            return range_of(fields[place[0]]) if place[0] in fields else _ranged(detail["ctx"])
-        case "finite_number" | "float_type" | "float_parsing":
-            return "a finite number"
-        case "int_parsing":
-            return "a whole number"
-        case "missing":
-            return "a value; it has no default"
-        case "extra_forbidden":
-            return "one of the keys " + one_of(place[-2], list(fields))
-        case "literal_error":
-            return str(detail["ctx"]["expected"])
-        case "tuple_type" | "too_long" if count := _length(fields.get(place[-2])):
-            return f"{count} numbers"
-        case "tuple_type" | "list_type":
-            return "a list"
-        case "too_short":
-            return f"at least {detail['ctx']['min_length']} of them"
-        case "too_long":
-            return f"at most {detail['ctx']['max_length']} of them"
-        case "model_type" | "model_attributes_type":
-            return "a table of its fields"
-        case _:
-            return detail["msg"][0].lower() + detail["msg"][1:]
-
-
-def _length(info: FieldInfo | None) -> int:
-    """How many numbers a field lists; 0 where that is not said."""
-    kinds = (info.annotation, *get_args(info.annotation)) if info else ()
-    listed = [get_args(kind) for kind in kinds if get_origin(kind) is tuple]
-    return len(listed[0]) if listed and Ellipsis not in listed[0] else 0
-
-
-def range_of(info: FieldInfo) -> str:
-    """The constraints of a number in words: "a number greater than 0 and less than 1"."""
-    limits = {
-        name: getattr(constraint, name)
-        for constraint in info.metadata
-        for name in _LIMITS
-        if getattr(constraint, name, None) is not None
-    }
-    return _ranged(limits, "a whole number" if info.annotation is int else "a number")
-
-
-_LIMITS = {"gt": "greater than", "ge": "at least", "lt": "less than", "le": "at most"}
-
-
-def _ranged(limits: Mapping[str, Any], kind: str = "a number") -> str:
-    """A kind of number within some limits."""
-    bounds = [
-        f"{words} {'pi' if limits[name] == math.pi else format(limits[name], 'g')}"
-        for name, words in _LIMITS.items()
-        if name in limits
-    ]
-    return f"{kind} {' and '.join(bounds)}"

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from sweeps import lively, problem_of, same, thrown, truth
 
-from tippetop.bodies import Body, Spheroid
+from tippetop.bodies import Body
 from tippetop.catalogue import METRICS
 from tippetop.contact.sliding import sliding_motion
 from tippetop.errors import InvalidInput
@@ -20,6 +20,7 @@ from tippetop.mechanics.series import horner
 from tippetop.presets import report_problem
 from tippetop.problem import Problem
 from tippetop.run import simulate
+from tippetop.shapes import Spheroid
 from tippetop.summary import summarize
 from tippetop.sweeps import (
     SWEPT,

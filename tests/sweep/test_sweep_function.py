@@ -4,11 +4,13 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from tippetop.bodies import Body, EccentricSphere, Spheroid
+from tippetop.bodies import Body
 from tippetop.errors import FileTrouble, InvalidInput
 from tippetop.frictions import RegularizedCoulombFriction, ViscousFriction
+from tippetop.launch import Launch
 from tippetop.presets import report_problem
-from tippetop.problem import Launch, Problem
+from tippetop.problem import Problem
+from tippetop.shapes import EccentricSphere, Spheroid
 from tippetop.sweeps import Axis, Draws, Product, Range, Sweep, compute, sweep
 from tippetop.sweeps.cells import numeric_fields
 

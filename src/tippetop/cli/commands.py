@@ -8,6 +8,7 @@ from pydantic import ValidationError
 from typer.core import TyperGroup
 
 from tippetop import __version__
+from tippetop.accepted import accepted_by
 from tippetop.cli.body import body
 from tippetop.cli.critical import critical
 from tippetop.cli.lab import lab
@@ -17,7 +18,6 @@ from tippetop.cli.simulate import simulate
 from tippetop.cli.sweep import sweep
 from tippetop.errors import OTHER_OUT, OVERWRITE, RESUME, InvalidInput, TippetopError
 from tippetop.interrupts import INTERRUPTED, asked_to_end, let_end, let_raise
-from tippetop.validation import accepted_by
 
 MISUSE = 2
 

@@ -186,8 +186,8 @@ def _range(text: str) -> tuple[str, Any]:
 
 def _holds_sweep(file: Path) -> bool:
     """Whether a file is a sweep's rather than a problem's."""
+    from tippetop.parsing import parse_toml  # noqa: PLC0415
     from tippetop.sweeps.definition import is_sweep  # noqa: PLC0415 - slow to import
-    from tippetop.validation import parse_toml  # noqa: PLC0415
 
     try:
         return file.suffix != ".json" and is_sweep(parse_toml(read_text(file, "a sweep or a problem"), ""))

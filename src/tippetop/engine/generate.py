@@ -42,6 +42,8 @@ GIVEN = {
     "tippetop.errors": "./part.js",
     "tippetop.fields": "./part.js",
     "tippetop.files": "",
+    "tippetop.parsing": "",
+    "tippetop.accepted": "",
 }
 """What is written by hand, and where; nothing is asked of those without a place."""
 

@@ -7558,7 +7558,114 @@ function outermost(touching, c) {
   return [py.item(touching, first), py.item(touching, second)];
 }
 
-// tippetop.bodies
+// tippetop.contacts
+
+/** What happens when the table would have to pull. */
+class Contact extends Part {
+}
+Part.enter("Contact", Contact);
+
+// tippetop.contact.choice
+
+/** The rules of a top in natural units. */
+function rules_for(top, liftoff, restitution) {
+  if (liftoff === "fly") {
+    var several = py.isinstance(top.surface, Hull);
+    return py.truth(several) ? new OnSeveral(top, restitution) : new FreeToFly(top, restitution);
+  }
+  return liftoff === "stop" ? new StopAtLiftOff(top) : new Bilateral(top);
+}
+
+/** The mode that a launch is told in that ends as it begins, and its numbers. */
+function as_begun(state, top) {
+  var lowest = py.replace(top, { surface: lowest_surface(top.surface, state.axis[2]) });
+  var sliding = new Sliding(lowest, new Bilateral(lowest));
+  var numbers = along_table(state).pack();
+  try {
+    var presses = sliding.reaction(numbers).force[2] > 0.0;
+  } catch (error) {
+    if (!(error instanceof py.ZeroDivisionError)) throw error;
+    presses = false;
+  }
+  return py.truth(presses) ? [sliding, numbers] : [new Flight(top, new Bilateral(top)), state.pack()];
+}
+
+// tippetop.contact.trajectory
+const PHASE_LIMIT = 100000;
+const LONGEST_of_trajectory = 1e+300;
+const STEP_LIMIT = 500000;
+
+/** A launch under way; iterate over `segments` to follow it. */
+class Trajectory extends py.Thing {
+  constructor(start, end, integrator, limit = PHASE_LIMIT, step_limit = STEP_LIMIT, time = 0.0) {
+    super();
+    [this.start, this.end, this.integrator] = [start, end, integrator];
+    [this.limit, this.step_limit] = [limit, step_limit];
+    [this.time, this.state] = [time, start.state];
+    this.outcome = null;
+    [this.detail, this.events] = ["", py.list()];
+  }
+  /** Follow the launch, mode by mode and piece by piece. */
+  *segments() {
+    var transition = this._enter(this.start);
+    var modes = 0;
+    var steps = 0;
+    while (py.isinstance(transition.then, Mode)) {
+      if (this.time >= this.end || py.eq(modes, this.limit)) {
+        this.outcome = this.time >= this.end ? Outcome.COMPLETED : Outcome.TOO_MANY_PHASES;
+        return null;
+      }
+      modes = py.add(modes, 1);
+      for (var segment of transition.then.segments(this.time, this.state, this.end, this.integrator)) {
+        [this.time, this.state] = [segment.end_time, segment.end_state];
+        steps = py.add(steps, py.max(segment.steps, py.sub(py.len(segment.solution.knots), 1)));
+        if (segment.transition !== null) {
+          transition = this._enter(segment.transition);
+          steps = py.add(steps, py.sum([...transition.events].map((event) => event.steps)));
+        }
+        yield segment;
+        if (steps >= this.step_limit && this.outcome === null) {
+          this.outcome = Outcome.TOO_MANY_STEPS;
+          return null;
+        }
+      }
+    }
+  }
+  /** Leave the rest of the run out, from a time and state in the last segment on. */
+  end_at(time, state) {
+    [this.time, this.state, this.outcome] = [time, state, Outcome.COMPLETED];
+    this.events = [...this.events].filter((event) => event.time <= time);
+  }
+  _enter(transition) {
+    this.events = py.add(this.events, transition.events);
+    this.state = transition.state;
+    if (py.isinstance(transition.then, Outcome)) {
+      [this.outcome, this.detail] = [transition.then, transition.detail];
+    }
+    return transition;
+  }
+}
+
+/** Refuse, with `InvalidInput`, a duration, s, or limits that no run can have; `unit` is that of time. */
+function require_limits(duration, unit, phase_limit = PHASE_LIMIT, step_limit = STEP_LIMIT) {
+  var longest = py.mul(LONGEST_of_trajectory, py.min(1.0, unit));
+  if (!(py.truth(is_number(duration)) && (0.0 < duration && duration <= longest))) {
+    throw new InvalidInput(
+      "duration",
+      duration,
+      `a number of seconds greater than 0, at most ${py.format(longest, ".3g")}`
+    );
+  }
+  for (
+    var [name, limit] of new py.Dict([["phase_limit", phase_limit], ["step_limit", step_limit]]).entries()
+  ) {
+    if (!py.truth(is_whole(limit)) || limit < 0) {
+      throw new InvalidInput(name, limit, "a whole number, at least 0");
+    }
+  }
+}
+
+// tippetop.shapes
 
 /** The outer surface of a body, and where the centre of mass is in it; a kind of it is a subclass. */
 class Shape extends Part {
@@ -7615,6 +7722,8 @@ class Spheroid extends Shape {
   }
 }
 Part.enter("Spheroid", Spheroid);
+
+// tippetop.bodies
 
 /** A rigid body of revolution. */
 class Body extends Part {
@@ -8104,6 +8213,23 @@ class ContensouFriction extends Friction {
 }
 Part.enter("ContensouFriction", ContensouFriction);
 
+// tippetop.launch
+const LEANING = [
+  "along the direction into which the axis leans",
+  "90 degrees to the left of the direction into which the axis leans"
+];
+
+/** How the top is set on the table. */
+class Launch extends Part {
+  _moves_one_way() {
+    if (this.velocity !== null && !py.eq(this.slip, [0.0, 0.0])) {
+      throw new InvalidInput("slip", this.slip, "0 where velocity is given, which determines it");
+    }
+    return this;
+  }
+}
+Part.enter("Launch", Launch);
+
 // tippetop.mechanics.view
 
 /** The state of a sliding body in Euler angles. */
@@ -8199,26 +8325,6 @@ function state_from_angles(angles, top, functions) {
 }
 
 // tippetop.problem
-const LEANING = [
-  "along the direction into which the axis leans",
-  "90 degrees to the left of the direction into which the axis leans"
-];
-
-/** How the top is set on the table. */
-class Launch extends Part {
-  _moves_one_way() {
-    if (this.velocity !== null && !py.eq(this.slip, [0.0, 0.0])) {
-      throw new InvalidInput("slip", this.slip, "0 where velocity is given, which determines it");
-    }
-    return this;
-  }
-}
-Part.enter("Launch", Launch);
-
-/** What happens when the table would have to pull. */
-class Contact extends Part {
-}
-Part.enter("Contact", Contact);
 
 /** Everything physical about a run. */
 class Problem extends Part {
@@ -8371,106 +8477,6 @@ function _inside(bound, side) {
     near = py.add(near, py.mul(side, py.pow(10.0, py.sub(py.math.floor(py.math.log10(bound)), 2))));
   }
   return `${py.format(near, ".3g")}`;
-}
-
-// tippetop.contact.choice
-
-/** The rules of a top in natural units. */
-function rules_for(top, liftoff, restitution) {
-  if (liftoff === "fly") {
-    var several = py.isinstance(top.surface, Hull);
-    return py.truth(several) ? new OnSeveral(top, restitution) : new FreeToFly(top, restitution);
-  }
-  return liftoff === "stop" ? new StopAtLiftOff(top) : new Bilateral(top);
-}
-
-/** The mode that a launch is told in that ends as it begins, and its numbers. */
-function as_begun(state, top) {
-  var lowest = py.replace(top, { surface: lowest_surface(top.surface, state.axis[2]) });
-  var sliding = new Sliding(lowest, new Bilateral(lowest));
-  var numbers = along_table(state).pack();
-  try {
-    var presses = sliding.reaction(numbers).force[2] > 0.0;
-  } catch (error) {
-    if (!(error instanceof py.ZeroDivisionError)) throw error;
-    presses = false;
-  }
-  return py.truth(presses) ? [sliding, numbers] : [new Flight(top, new Bilateral(top)), state.pack()];
-}
-
-// tippetop.contact.trajectory
-const PHASE_LIMIT = 100000;
-const LONGEST_of_trajectory = 1e+300;
-const STEP_LIMIT = 500000;
-
-/** A launch under way; iterate over `segments` to follow it. */
-class Trajectory extends py.Thing {
-  constructor(start, end, integrator, limit = PHASE_LIMIT, step_limit = STEP_LIMIT, time = 0.0) {
-    super();
-    [this.start, this.end, this.integrator] = [start, end, integrator];
-    [this.limit, this.step_limit] = [limit, step_limit];
-    [this.time, this.state] = [time, start.state];
-    this.outcome = null;
-    [this.detail, this.events] = ["", py.list()];
-  }
-  /** Follow the launch, mode by mode and piece by piece. */
-  *segments() {
-    var transition = this._enter(this.start);
-    var modes = 0;
-    var steps = 0;
-    while (py.isinstance(transition.then, Mode)) {
-      if (this.time >= this.end || py.eq(modes, this.limit)) {
-        this.outcome = this.time >= this.end ? Outcome.COMPLETED : Outcome.TOO_MANY_PHASES;
-        return null;
-      }
-      modes = py.add(modes, 1);
-      for (var segment of transition.then.segments(this.time, this.state, this.end, this.integrator)) {
-        [this.time, this.state] = [segment.end_time, segment.end_state];
-        steps = py.add(steps, py.max(segment.steps, py.sub(py.len(segment.solution.knots), 1)));
-        if (segment.transition !== null) {
-          transition = this._enter(segment.transition);
-          steps = py.add(steps, py.sum([...transition.events].map((event) => event.steps)));
-        }
-        yield segment;
-        if (steps >= this.step_limit && this.outcome === null) {
-          this.outcome = Outcome.TOO_MANY_STEPS;
-          return null;
-        }
-      }
-    }
-  }
-  /** Leave the rest of the run out, from a time and state in the last segment on. */
-  end_at(time, state) {
-    [this.time, this.state, this.outcome] = [time, state, Outcome.COMPLETED];
-    this.events = [...this.events].filter((event) => event.time <= time);
-  }
-  _enter(transition) {
-    this.events = py.add(this.events, transition.events);
-    this.state = transition.state;
-    if (py.isinstance(transition.then, Outcome)) {
-      [this.outcome, this.detail] = [transition.then, transition.detail];
-    }
-    return transition;
-  }
-}
-
-/** Refuse, with `InvalidInput`, a duration, s, or limits that no run can have; `unit` is that of time. */
-function require_limits(duration, unit, phase_limit = PHASE_LIMIT, step_limit = STEP_LIMIT) {
-  var longest = py.mul(LONGEST_of_trajectory, py.min(1.0, unit));
-  if (!(py.truth(is_number(duration)) && (0.0 < duration && duration <= longest))) {
-    throw new InvalidInput(
-      "duration",
-      duration,
-      `a number of seconds greater than 0, at most ${py.format(longest, ".3g")}`
-    );
-  }
-  for (
-    var [name, limit] of new py.Dict([["phase_limit", phase_limit], ["step_limit", step_limit]]).entries()
-  ) {
-    if (!py.truth(is_whole(limit)) || limit < 0) {
-      throw new InvalidInput(name, limit, "a whole number, at least 0");
-    }
-  }
 }
 
 // tippetop.theory.requirements

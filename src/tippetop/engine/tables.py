@@ -8,12 +8,16 @@ from pydantic.fields import FieldInfo
 from pydantic_core import to_jsonable_python
 
 from tippetop import catalogue, presets
-from tippetop.bodies import Body, Shape
+from tippetop.accepted import range_of
+from tippetop.bodies import Body
 from tippetop.contact import flight, passing
+from tippetop.contacts import Contact
 from tippetop.frictions import Friction
 from tippetop.integrators.dense import chebyshev
-from tippetop.problem import Contact, Launch, Problem
-from tippetop.validation import POINTS, Part, range_of
+from tippetop.launch import Launch
+from tippetop.problem import Problem
+from tippetop.shapes import Shape
+from tippetop.validation import POINTS, Part
 
 LIMITS = {"exclusiveMinimum": "gt", "minimum": "ge", "exclusiveMaximum": "lt", "maximum": "le"}
 WIDTHS = {"space": 3, "quaternion": 4}

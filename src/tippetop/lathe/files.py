@@ -9,7 +9,7 @@ from typing import Any
 from tippetop.errors import InvalidInput, Unavailable
 from tippetop.files import made_of, named, path_of, read_text
 from tippetop.lathe.workpiece import Workpiece
-from tippetop.validation import parse_toml
+from tippetop.parsing import parse_toml
 
 ACCEPTED = "a workpiece in TOML, or a profile in CSV or SVG"
 

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from tippetop.catalogue import Fault
 from tippetop.contact.choice import rules_of
 from tippetop.contact.trajectory import LONGEST
+from tippetop.contacts import Contact
 from tippetop.errors import InvalidInput, one_of
 from tippetop.integrators.base import Array
 from tippetop.mechanics.hull import Hull, sizes
@@ -22,7 +23,7 @@ from tippetop.mechanics.motion import along_table, contact
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top, natural_state, natural_units
 from tippetop.mechanics.units import Units
-from tippetop.problem import Contact, Problem
+from tippetop.problem import Problem
 from tippetop.sweeps.flights import slips
 from tippetop.sweeps.launches import Launches, Own, branched
 from tippetop.validation import Part

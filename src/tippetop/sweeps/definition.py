@@ -11,11 +11,12 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from tippetop.errors import MISSING, InvalidInput
 from tippetop.files import made_of, read_text
+from tippetop.parsing import parse_toml
 from tippetop.problem import Problem
 from tippetop.sweeps.cells import cells_of
 from tippetop.sweeps.grid import Draws, Product
 from tippetop.theory.requirements import require_jellett
-from tippetop.validation import Number, Part, Positive, in_order, parse_toml
+from tippetop.validation import Number, Part, Positive, in_order
 
 DEFAULT_TOLERANCE = 1e-9
 SETTLED_RANGE = (1e-6, 1e-2)

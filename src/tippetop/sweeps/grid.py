@@ -14,9 +14,10 @@ from pydantic import BeforeValidator, Field, field_serializer, model_serializer,
 
 from tippetop.errors import InvalidInput
 from tippetop.integrators.base import Array
+from tippetop.parsing import DEEPEST
 from tippetop.sweeps.axes import MOST_CELLS, Axis, Count, Entry, between
 from tippetop.sweeps.axes import Flat as Flat
-from tippetop.validation import DEEPEST, Number, Whole
+from tippetop.validation import Number, Whole
 
 _Kind = TypeVar("_Kind")
 

@@ -3,14 +3,16 @@
 import math
 from dataclasses import dataclass
 
-from tippetop.bodies import Body, EccentricSphere, Shape, Sphere
+from tippetop.bodies import Body
 from tippetop.frictions import ViscousFriction
+from tippetop.launch import Launch
 from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.hull import Hull
 from tippetop.mechanics.surface import Surface, contact_vector
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Vector, add, dot, scale
-from tippetop.problem import Launch, Problem
+from tippetop.problem import Problem
+from tippetop.shapes import EccentricSphere, Shape, Sphere
 from tippetop.theory.groups import Group, classify
 from tippetop.theory.prediction import touching_tilts
 from tippetop.theory.steady import SteadyKind, branch_jellett

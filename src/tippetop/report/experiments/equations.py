@@ -7,7 +7,6 @@ import numpy as np
 import xarray as xr
 from scipy.spatial.transform import Rotation
 
-from tippetop.bodies import EccentricSphere
 from tippetop.integrators.base import Array
 from tippetop.mechanics.euler import published_normal_force, published_parameters, published_rates
 from tippetop.mechanics.motion import angular_velocity, contact
@@ -19,6 +18,7 @@ from tippetop.report.experiment import dataset, experiment
 from tippetop.report.experiments.runs import on_table
 from tippetop.report.listing import VARIABLES
 from tippetop.run import simulate
+from tippetop.shapes import EccentricSphere
 
 _INSTANT = 5.0
 _INSTANTS = np.array([1.0, 3.0, _INSTANT, 6.0, 8.0])

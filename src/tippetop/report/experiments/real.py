@@ -5,13 +5,15 @@ import math
 import numpy as np
 import xarray as xr
 
-from tippetop.bodies import Body, Shape, Sphere
+from tippetop.bodies import Body
 from tippetop.frictions import ContensouFriction, CoulombFriction, ViscousFriction
+from tippetop.launch import Launch
 from tippetop.presets import EGG, EULER_DISK, HURRICANE_BALLS, LEINE_GLOCKER_STEM, REPORT_STEM, report_problem
-from tippetop.problem import Launch, Problem
+from tippetop.problem import Problem
 from tippetop.report.experiment import dataset, experiment
 from tippetop.report.experiments.runs import happenings
 from tippetop.run import simulate
+from tippetop.shapes import Shape, Sphere
 from tippetop.theory.resting_center import RestingCenter, resting_center
 from tippetop.theory.stem import jellett_about, least_jellett_to_stand
 
