@@ -10,7 +10,7 @@ from tippetop.emit.layout import laid_out
 from tippetop.emit.program import Program
 from tippetop.engine import COMMAND
 from tippetop.engine.tables import tables
-from tippetop.integrators import dormand_prince
+from tippetop.integrators.tableau import written_out
 
 ROOTS = (
     "tippetop.contact.choice",
@@ -59,7 +59,6 @@ LEFT = {
     *("read", "recordable", "_compiled", "_without_top", "_of_kind", "continuous"),
     *("Ends.unknown", "Ends.put", "ending", "turning_time", "arrival_time"),
     *("Monitor.energy_error", "Graph.rarely"),
-    *("written_out", "_for_each", "_sum", "_powers"),
     *("precession_branch", "state_of", "is_held", "steady_launch"),
     *(f"Problem.{name}" for name in ("replace", "to_toml", "to_json", "from_toml", "from_json", "read")),
 }
@@ -68,7 +67,10 @@ LEFT = {
 INDEXED = {"tippetop.mechanics.series", "tippetop.mechanics.slip_onset"}
 """Where what is indexed may be a series."""
 
-NUMERIC = {"tippetop.integrators.dormand_prince"}
+METHOD = "tippetop.integrators.dormand_prince"
+"""Its coefficients are written out beside it."""
+
+NUMERIC = {METHOD}
 """Where all is numbers, and arrays of them."""
 
 
@@ -117,4 +119,4 @@ def sources() -> dict[str, str]:
 
 def _text(module: str) -> str:
     text = inspect.getsource(importlib.import_module(module))
-    return text + dormand_prince.written_out() if module == dormand_prince.__name__ else text
+    return text + written_out() if module == METHOD else text

@@ -17,6 +17,7 @@ from tippetop.integrators.machine_code import machine_code
 from tippetop.integrators.numba_cache import compiled
 from tippetop.integrators.scipy_methods import SciPy
 from tippetop.integrators.stepping import Machinery, stepped
+from tippetop.integrators.tableau import written_out
 from tippetop.mechanics.vectors import Scalar
 
 ABREAST = 8
@@ -84,6 +85,6 @@ def _compiled(motion: Motion) -> Machinery | None:
 @cache
 def _method(width: int) -> dict[str, Any]:
     """What the method is, compiled for rows of so many numbers."""
-    parts = getsource(dormand_prince), dormand_prince.written_out(), getsource(numba_calls)
+    parts = getsource(dormand_prince), written_out(), getsource(numba_calls)
     source = "\n".join([*parts, f"WIDTH = {width}"])
     return compiled(source, {"advance": ADVANCE, "within": WITHIN})
