@@ -7,7 +7,8 @@ one in which all of it ends. With t the time since the end, less than zero, it t
     zeta = t (s_0 + s_1 t + ...) e(t),        A(e_0) = s_0 e_0,        s_0 < 0,
 
 slip that begins with the time reversed. Its state at the end is not known: from a guess, the series tell how
-far off they are now, and moving the guess by that makes it as much better as little time is left.
+far off they are now, and moving the guess by that makes it as much better as little time is left. Early
+series need no more terms than they have digits.
 """
 
 import math
@@ -19,7 +20,7 @@ from tippetop.integrators.base import Integrator
 from tippetop.mechanics.ending import Closing, Vanishing, rates_in_time
 from tippetop.mechanics.rolling import Slip, solve
 from tippetop.mechanics.series import horner
-from tippetop.mechanics.slip_onset import Growth, onset, turned_slope
+from tippetop.mechanics.slip_onset import Growth, onset, turned_slopes
 from tippetop.mechanics.stick_slip import inner, plus, scaled, size, tangents
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.unsolved import Unsolved
@@ -29,11 +30,15 @@ DEGREE, ACCURACY = 12, 1e-13
 """Degree of the series of speed and direction, one less than of the others, and the size of the last terms in
 natural units, or relative to zeta's."""
 
+FIRST, MORE = 3, 2
+"""Degree of the first series, and by how much that of the next is higher."""
+
 MOST, TURNS = 16, 8
 """Improvements of the state at the end, and of the direction there, at most."""
 
-SETTLED = 1e-14
-"""Error of the state, in natural units, that counts as none, and of a direction."""
+SETTLED, CLOSE = 1e-14, 1e-7
+"""Error of the state, in natural units, that counts as none, and that of a direction which Newton's method
+makes none, since it squares it."""
 
 AT_REST, UNSEEN = 1e-12, 1e-15
 """How far the direction may be from the series' at most, times the time that is left, in natural units; or
@@ -100,13 +105,14 @@ def arriving(here: Closing, ending: Vanishing, top: Top, integrator: Integrator)
     end, way = plus(now, scaled(left, (*rates.axis, *rates.momentum))), here.direction
     at_rest = max(AT_REST, getattr(integrator, "tolerance", 0.0))
     try:
-        for _ in range(MOST):
+        for turn in range(MOST):
             axis, momentum = (end[0], end[1], end[2]), (end[3], end[4], end[5])
             if not abs(axis[2]) < 1.0:
                 # So far off that there is no such tilt, and no shape to ask.
                 return None
             known = resting_way(axis, momentum, way, ending, top, integrator)
-            begin, way = onset(known, 1, DEGREE), known.first
+            degree = min(FIRST + MORE * turn, DEGREE)
+            begin, way = onset(known, 1, degree), known.first
             found = Arrival(time_to(here.speed, begin.rows, left), begin.rows)
             left, then = found.left, found.at(1.0)
             off, speed = plus(now, scaled(-1.0, tuple(then[:6]))), size(tuple(then[6:]))
@@ -114,7 +120,7 @@ def arriving(here: Closing, ending: Vanishing, top: Top, integrator: Integrator)
             rounding = aside * here.speed < UNSEEN
             if not (aside < TURNING * left or rounding):
                 return None
-            if max(size(off), abs(speed - here.speed)) < SETTLED:
+            if degree == DEGREE and max(size(off), abs(speed - here.speed)) < SETTLED:
                 return found if (aside * left < at_rest or rounding) and found.serves else None
             end = plus(end, off)
     except ArithmeticError:
@@ -136,7 +142,7 @@ def resting_way(
         known = growth((axis, momentum, way), top, ending, (), DEGREE, integrator)
         rate, across = known.accelerations(0), tangents(way)
         along = inner(rate, way)
-        slopes = [turned_slope(known, b) for b in across]
+        slopes = turned_slopes(known, across)
         matrix = [
             [inner(a, g) - (along if a is b else 0.0) for b, g in zip(across, slopes, strict=True)]
             for a in across
@@ -144,11 +150,11 @@ def resting_way(
         turned = solve(matrix, [-inner(a, rate) for a in across])
         if not math.hypot(*turned) < 1.0:
             raise Unsolved("slip does not end near this direction")
-        if along < 0.0 and math.hypot(*turned) < SETTLED:
-            return known
         for amount, b in zip(turned, across, strict=True):
             way = plus(way, scaled(amount, b))
         way = scaled(1.0 / size(way), way)
+        if along < 0.0 and math.hypot(*turned) < CLOSE:
+            return growth((axis, momentum, way), top, ending, (), DEGREE, integrator)
     raise Unsolved("no direction is found in which slip ends")
 
 

@@ -2176,31 +2176,48 @@ class ContactPoint extends py.NamedTuple {
   pivoting(drills) {
     var top = this.top;
     var n = this.axis;
-    var a = this.arm;
-    var across = py.add(top.transverse_inertia, py.mul(top.mass, dot(a, a)));
+    var c = this.axis[2];
+    var slope = top.surface.slope(c);
+    var height = top.surface.height(c);
+    var tilted = py.add(py.mul(n[0], n[0]), py.mul(n[1], n[1]));
     var excess = py.sub(top.axial_inertia, top.transverse_inertia);
-    var row = (i, count) => {
-      var found = py.range(count).map(
-        (j) => py.sub(
-          py.mul(py.mul(excess, py.item(n, i)), py.item(n, j)),
-          py.mul(top.mass, py.mul(py.item(a, i), py.item(a, j)))
-        )
-      );
-      return py.enumerate(found).map(([j, part]) => py.eq(i, j) ? py.add(part, across) : part);
-    };
-    var carried = scale(py.neg(top.mass), cross(a, this.carried));
+    var high = py.mul(top.mass, py.mul(height, height));
+    var wide = py.mul(py.mul(top.mass, py.mul(slope, slope)), tilted);
+    var lever = py.mul(top.mass, py.mul(height, slope));
+    var leant = py.add(top.transverse_inertia, py.mul(excess, tilted));
+    var mixed = py.sub(py.mul(excess, c), lever);
+    var along = py.add(leant, high);
+    var carried = scale(py.neg(top.mass), cross(this.arm, this.carried));
     var right = add(scale(top.transverse_inertia, this.free.turning), carried);
+    var leaning = py.add(py.mul(n[0], right[0]), py.mul(n[1], right[1]));
     if (py.truth(drills)) {
-      var [x, y, z] = solve([row(0, 3), row(1, 3), row(2, 3)], py.list(right));
-      var turning = [x, y, z];
+      var upright = py.add(top.transverse_inertia, py.mul(excess, py.mul(c, c)));
+      var across = py.mul(py.mul(py.mul(py.mul(2.0, excess), c), lever), tilted);
+      var determinant = py.add(
+        py.add(
+          py.add(py.mul(top.transverse_inertia, top.axial_inertia), py.mul(leant, wide)),
+          py.mul(upright, high)
+        ),
+        across
+      );
+      var leans = py.div(
+        py.sub(py.mul(py.add(upright, wide), leaning), py.mul(py.mul(mixed, tilted), right[2])),
+        determinant
+      );
+      var spins = py.div(py.sub(py.mul(along, right[2]), py.mul(mixed, leaning)), determinant);
       var torque = NO_TORQUE;
+      var turned = py.mul(mixed, spins);
     } else {
-      [x, y] = solve([row(0, 2), row(1, 2)], [right[0], right[1]]);
-      var last = row(2, 2);
-      turning = [x, y, 0.0];
-      torque = [0.0, 0.0, py.sub(py.add(py.mul(last[0], x), py.mul(last[1], y)), right[2])];
+      leans = py.div(leaning, along);
+      spins = 0.0;
+      torque = [0.0, 0.0, py.sub(py.mul(mixed, leans), right[2])];
+      turned = 0.0;
     }
-    var force = scale(py.neg(top.mass), add(this.carried, cross(turning, a)));
+    var inertia = py.add(py.add(top.transverse_inertia, high), wide);
+    turned = py.add(turned, py.mul(py.sub(excess, py.mul(top.mass, py.mul(slope, slope))), leans));
+    var [x, y] = [0, 1].map((i) => py.div(py.sub(py.item(right, i), py.mul(turned, py.item(n, i))), inertia));
+    var turning = [x, y, spins];
+    var force = scale(py.neg(top.mass), add(this.carried, cross(turning, this.arm)));
     return [new Wrench(force, torque), new Acceleration(NO_TORQUE, turning)];
   }
 }
@@ -2987,19 +3004,23 @@ class Onset extends py.NamedTuple {
   }
 }
 
-/** Derivative of A along a direction across e_0, at the start: its order 1 is linear in that of e. */
-function turned_slope(known, across) {
-  known.turn(1, across);
-  var turned = known.accelerations(1);
-  known.turn(1, scaled(0.0, across));
-  return plus(turned, scaled(-1.0, known.accelerations(1)));
+/** Derivatives of A along directions across e_0, at the start: its order 1 is linear in that of e. */
+function turned_slopes(known, across) {
+  known.turn(1, scaled(0.0, py.item(across, 0)));
+  var straight = known.accelerations(1);
+  var found = py.list();
+  for (var b of across) {
+    known.turn(1, b);
+    found.push(plus(known.accelerations(1), scaled(-1.0, straight)));
+  }
+  return found;
 }
 
 /** The beginning of slip, or rolling, order by order. */
 function onset(known, power, order) {
   var first = known.first;
   var across = tangents(first);
-  var slopes = [...across].map((b) => turned_slope(known, b));
+  var slopes = turned_slopes(known, across);
   var aside = [...across].map((b) => [...slopes].map((g) => inner(b, g)));
   var ahead = [...slopes].map((g) => inner(first, g));
   var e = [...first].map((number) => [number]);
@@ -3188,8 +3209,9 @@ const driven_motion = py.cached((kind, ending, components, degree) => {
 
 // tippetop.contact.arriving
 const [DEGREE_of_arriving, ACCURACY] = [12, 1e-13];
+const [FIRST, MORE] = [3, 2];
 const [MOST, TURNS] = [16, 8];
-const SETTLED = 1e-14;
+const [SETTLED, CLOSE] = [1e-14, 1e-07];
 const [AT_REST, UNSEEN] = [1e-12, 1e-15];
 const TURNING = 1.0;
 
@@ -3256,7 +3278,8 @@ function arriving(here, ending, top, integrator) {
         return null;
       }
       var known = resting_way(axis, momentum, way, ending, top, integrator);
-      var begin = onset(known, 1, DEGREE_of_arriving);
+      var degree = py.min(py.add(FIRST, py.mul(MORE, turn)), DEGREE_of_arriving);
+      var begin = onset(known, 1, degree);
       way = known.first;
       var found = new Arrival(time_to(here.speed, begin.rows, left), begin.rows);
       left = found.left;
@@ -3268,7 +3291,9 @@ function arriving(here, ending, top, integrator) {
       if (!(aside < py.mul(TURNING, left) || py.truth(rounding))) {
         return null;
       }
-      if (py.max(size(off), py.abs(py.sub(speed, here.speed))) < SETTLED) {
+      if (
+        py.eq(degree, DEGREE_of_arriving) && py.max(size(off), py.abs(py.sub(speed, here.speed))) < SETTLED
+      ) {
         return (py.mul(aside, left) < at_rest || py.truth(rounding)) && py.truth(found.serves) ? found : null;
       }
       end = plus(end, off);
@@ -3287,7 +3312,7 @@ function resting_way(axis, momentum, way, ending, top, integrator) {
     var rate = known.accelerations(0);
     var across = tangents(way);
     var along = inner(rate, way);
-    var slopes = [...across].map((b) => turned_slope(known, b));
+    var slopes = turned_slopes(known, across);
     var matrix = [...across].map(
       (a) => py.zip(across, slopes).map(([b, g]) => py.sub(inner(a, g), a === b ? along : 0.0))
     );
@@ -3295,13 +3320,13 @@ function resting_way(axis, momentum, way, ending, top, integrator) {
     if (!(py.math.hypot(...turned) < 1.0)) {
       throw new Unsolved("slip does not end near this direction");
     }
-    if (along < 0.0 && py.math.hypot(...turned) < SETTLED) {
-      return known;
-    }
     for (var [amount, b] of py.zip(turned, across)) {
       way = plus(way, scaled(amount, b));
     }
     way = scaled(py.div(1.0, size(way)), way);
+    if (along < 0.0 && py.math.hypot(...turned) < CLOSE) {
+      return growth([axis, momentum, way], top, ending, [], DEGREE_of_arriving, integrator);
+    }
   }
   throw new Unsolved("no direction is found in which slip ends");
 }
@@ -4128,7 +4153,7 @@ function _answers(y, way, beside, ending, top) {
 }
 
 // tippetop.contact.slipping
-const [FIRST, LEAST] = [0.5, 0.005];
+const [FIRST_of_slipping, LEAST] = [0.5, 0.005];
 const [ENOUGH, MOST_of_slipping] = [1e-28, 50];
 const ACCURACY_of_slipping = 1e-22;
 const BEYOND = 1.05;
@@ -4310,7 +4335,7 @@ class SlipStep extends py.Thing {
 function slip_phase(y, way, top, ending, longest, pulls) {
   var step = new SlipStep(top, ending);
   var now = [...y, ...[...way].map((_) => 0.0)];
-  var length = FIRST;
+  var length = FIRST_of_slipping;
   var free = py.len(y);
   var knots = [0.0];
   var rows = py.list();
@@ -11324,6 +11349,7 @@ export {
   CHOICES,
   CLEAR,
   CLEAR_of_slipping,
+  CLOSE,
   CLOSES,
   CONSTANT,
   CONSTANTS,
@@ -11376,6 +11402,7 @@ export {
   FINE,
   FINEST,
   FIRST,
+  FIRST_of_slipping,
   FIRST_of_two_closed,
   FITS,
   FLAT,
@@ -11448,6 +11475,7 @@ export {
   Loosening,
   MANY,
   MARGIN,
+  MORE,
   MOST,
   MOST_ASPECT,
   MOST_DISCS,
@@ -12017,7 +12045,7 @@ export {
   touching_tilts,
   turn_rate,
   turned,
-  turned_slope,
+  turned_slopes,
   turning_about,
   turning_along,
   turning_parts,

@@ -14,7 +14,13 @@ omega_y' = 0.
 Where v' = 0, and nothing holds rolling, the equations are those of omega' alone, since F = -m (gamma + omega'
 x a), gamma = -g z + omega x a':
 
-    (1/J + m a^2 - m a a) omega' = (1/J) k omega3 n' - m a x gamma + t.
+    (1/J + m a^2 - m a a) omega' = (1/J) k omega3 n' - m a x gamma + t,
+
+and with e the horizontal part of n, which that of a is -h' times, the matrix takes a horizontal rate w and
+omega_z' to alpha w + (beta (e.w) + kappa omega_z') e and kappa (e.w) + delta omega_z', where
+
+    alpha = I1 + m h^2 + m h'^2 e^2,          beta = I3 - I1 - m h'^2,
+    delta = I1 + (I3 - I1) c^2 + m h'^2 e^2,  kappa = (I3 - I1) c - m h h'.
 """
 
 from collections.abc import Sequence
@@ -132,26 +138,32 @@ class ContactPoint(NamedTuple):
     def pivoting(self, drills: bool) -> tuple[Wrench, Acceleration]:
         """What keeps the contact point's velocity constant, drilling too unless it drills, and what follows.
 
-        The fewest equations for that, and the motion of what sticks is made of little else.
+        In the fewest operations: the motion of what sticks is made of little else.
         """
-        top, n, a = self.top, self.axis, self.arm
-        across = top.transverse_inertia + top.mass * dot(a, a)
-        excess = top.axial_inertia - top.transverse_inertia
-
-        def row(i: int, count: int) -> list[Scalar]:
-            found = [excess * n[i] * n[j] - top.mass * (a[i] * a[j]) for j in range(count)]
-            return [part + across if i == j else part for j, part in enumerate(found)]
-
-        carried = scale(-top.mass, cross(a, self.carried))
+        top, n, c = self.top, self.axis, self.axis[2]
+        slope, height = top.surface.slope(c), top.surface.height(c)
+        tilted, excess = n[0] * n[0] + n[1] * n[1], top.axial_inertia - top.transverse_inertia
+        high, wide = top.mass * (height * height), top.mass * (slope * slope) * tilted
+        lever, leant = top.mass * (height * slope), top.transverse_inertia + excess * tilted
+        mixed, along = excess * c - lever, leant + high
+        carried = scale(-top.mass, cross(self.arm, self.carried))
         right = add(scale(top.transverse_inertia, self.free.turning), carried)
+        leaning = n[0] * right[0] + n[1] * right[1]
         if drills:
-            x, y, z = solve([row(0, 3), row(1, 3), row(2, 3)], list(right))
-            turning, torque = (x, y, z), NO_TORQUE
+            # That of the two equations, without what cancels in it.
+            upright, across = top.transverse_inertia + excess * (c * c), 2.0 * excess * c * lever * tilted
+            determinant = top.transverse_inertia * top.axial_inertia + leant * wide + upright * high + across
+            leans = ((upright + wide) * leaning - mixed * tilted * right[2]) / determinant
+            spins, torque = (along * right[2] - mixed * leaning) / determinant, NO_TORQUE
+            turned = mixed * spins
         else:
-            x, y = solve([row(0, 2), row(1, 2)], [right[0], right[1]])
-            last = row(2, 2)
-            turning, torque = (x, y, 0.0), (0.0, 0.0, last[0] * x + last[1] * y - right[2])
-        force = scale(-top.mass, add(self.carried, cross(turning, a)))
+            leans, spins = leaning / along, 0.0
+            torque, turned = (0.0, 0.0, mixed * leans - right[2]), 0.0
+        inertia = top.transverse_inertia + high + wide
+        turned = turned + (excess - top.mass * (slope * slope)) * leans
+        x, y = [(right[i] - turned * n[i]) / inertia for i in (0, 1)]
+        turning = (x, y, spins)
+        force = scale(-top.mass, add(self.carried, cross(turning, self.arm)))
         return Wrench(force, torque), Acceleration(NO_TORQUE, turning)
 
 

@@ -89,12 +89,14 @@ class Growth(Protocol):
         """Coefficient of order j of A."""
 
 
-def turned_slope(known: Growth, across: Slip) -> Slip:
-    """Derivative of A along a direction across e_0, at the start: its order 1 is linear in that of e."""
-    known.turn(1, across)
-    turned = known.accelerations(1)
-    known.turn(1, scaled(0.0, across))
-    return plus(turned, scaled(-1.0, known.accelerations(1)))
+def turned_slopes(known: Growth, across: Sequence[Slip]) -> list[Slip]:
+    """Derivatives of A along directions across e_0, at the start: its order 1 is linear in that of e."""
+    known.turn(1, scaled(0.0, across[0]))
+    straight, found = known.accelerations(1), list[Slip]()
+    for b in across:
+        known.turn(1, b)
+        found.append(plus(known.accelerations(1), scaled(-1.0, straight)))
+    return found
 
 
 def onset(known: Growth, power: int, order: int) -> Onset:
@@ -117,7 +119,7 @@ def onset(known: Growth, power: int, order: int) -> Onset:
     """
     first = known.first
     across = tangents(first)
-    slopes = [turned_slope(known, b) for b in across]
+    slopes = turned_slopes(known, across)
     aside = [[inner(b, g) for g in slopes] for b in across]
     ahead = [inner(first, g) for g in slopes]
     e, s = [[number] for number in first], list[Scalar]()
