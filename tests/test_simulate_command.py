@@ -69,7 +69,10 @@ def test_names_that_cannot_be_are_refused(words: list[str], sentence: str) -> No
         ("simulate --spin fast", "--spin = 'fast' is not possible; accepted: a finite number"),
         ("simulate --samples 2.5", "--samples = '2.5' is not possible; accepted: a whole number"),
         ("sweep --workers many", "--workers = 'many' is not possible; accepted: a whole number"),
-        ("lab --port 99999", "--port = '99999' is not possible; accepted: a number at most 65535"),
+        (
+            "lab --port 99999",
+            "--port = '99999' is not possible; accepted: a number at least 0 and at most 65535",
+        ),
     ],
 )
 def test_what_is_no_number_is_refused_as_everything_else(command: str, sentence: str) -> None:

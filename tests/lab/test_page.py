@@ -1,7 +1,9 @@
 """The page in a real browser, from its file and without a network, as its visitors use it."""
 
+import json
 from collections.abc import Callable
 from pathlib import Path
+from urllib.parse import quote
 
 import numpy as np
 import pandas as pd
@@ -15,6 +17,9 @@ BEECH = 720.0
 """Density of the page's first material, kg/m^3."""
 
 Lab = Callable[..., Visit]
+
+LIMITED = "Possible: at most 2 I1 = 0.7486, as for any body"
+WITHIN = "Möglich: von 0 bis 20 bei diesem Körper, der nur darin gedrückt wird"
 
 PROBLEM = "tippetopLab.track.header.problem"
 
@@ -219,7 +224,53 @@ def test_what_cannot_be_is_refused_at_its_control_in_the_visitors_units(lab: Lab
     spin = visitor.page.get_by_label("Spin ω₃ (rad/s)").and_(visitor.page.locator("input[type=text]"))
     spin.fill("1e7")
     spin.press("Enter")
-    visitor.page.get_by_text("turns to compute").wait_for()
+    visitor.page.get_by_text("Spin of 1.00e+7 rad/s means").wait_for()
+
+
+@pytest.mark.parametrize(
+    ("language", "field", "typed", "sentence"),
+    [
+        ("en", "launch.spin", "", "Spin cannot be “”. Possible: a finite number."),
+        ("en", "body.I3", "5", f"Inertia along cannot be 5 mR². {LIMITED}."),
+        ("de", "launch.tilt", "x", "Neigung kann nicht „x“ sein. Möglich: eine endliche Zahl."),
+        ("de", "rolling_resistance", "50", f"Rollwiderstand kann nicht 50 mm sein. {WITHIN}."),
+    ],
+)
+def test_bounds_are_told_in_the_units_and_the_language_of_the_dial(
+    lab: Lab, language: str, field: str, typed: str, sentence: str
+) -> None:
+    visitor = lab(f"tab=launch&lang={language}")
+    for summary in visitor.page.locator(".controls summary").all():
+        summary.click()
+    number = visitor.page.locator(f'.dial:has([data-field="{field}"]) .dial-number')
+    before = number.input_value()
+    number.fill(typed)
+    number.press("Enter")
+    said = visitor.page.locator(".dial .refused")
+    said.wait_for()
+    assert said.inner_text() == sentence
+    assert number.input_value() == before
+
+
+def test_numbers_have_the_decimal_sign_of_the_language(lab: Lab) -> None:
+    visitor = lab("tab=launch&lang=de&t=1.5")
+    number = visitor.page.get_by_label("Reibung μ (s/m)").and_(visitor.page.locator("input[type=text]"))
+    assert number.input_value() == "0,3"
+    assert visitor.page.locator(".tt-time").inner_text() == "1,500 s"
+    number.fill("0,25")
+    number.press("Enter")
+    settled(visitor, "problem.friction.mu === 0.25")
+
+
+def test_of_an_egg_the_marks_say_no_more_than_holds(lab: Lab) -> None:
+    """Spun faster than the mark it stays upright; a sphere turns over."""
+    shape, body = json.dumps(tt.presets.EGG.shape.model_dump(mode="json")), tt.presets.EGG
+    inertia = f"body.mass={body.mass!r}&body.I1={body.I1!r}&body.I3={body.I3!r}"
+    for link, claims in (("launch.spin=155", True), (f"body.shape={quote(shape)}&{inertia}", False)):
+        visitor = lab(f"tab=launch&duration=1&{link}")
+        said = visitor.page.locator(".prospect", has_text="ω₁ =").inner_text()
+        assert ("turns over completely" in said) is claims
+        assert ("changes between stable and unstable" in said) is not claims
 
 
 def test_a_map_leads_to_its_launches(lab: Lab) -> None:

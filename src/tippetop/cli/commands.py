@@ -59,8 +59,10 @@ def _in_a_sentence(error: Any) -> Exception:
     """What typer says of a command line, in the words of all other sentences; help that it shows as it is."""
     cause = error.__cause__
     if isinstance(cause, ValidationError):
-        detail = cause.errors()[0]
-        return InvalidInput(error.param.opts[0], detail["input"], accepted_by(detail, {}))
+        detail, option = cause.errors()[0], error.param
+        bounds = {"ge": getattr(option, "min", None), "le": getattr(option, "max", None)}
+        detail["ctx"] = {limit: value for limit, value in bounds.items() if value is not None}
+        return InvalidInput(option.opts[0], detail["input"], accepted_by(detail, {}))
     told: str = error.format_message()
     return TippetopError(told[0].lower() + told[1:].removesuffix(".")) if told else error
 

@@ -3,10 +3,10 @@
 import { useState } from "preact/hooks";
 
 import { ALL, kindOf, LAW, MAIN, placeOf, scaleOf, START, TABLE, TOP, valueAt } from "./dials.js";
-import { part, t, translated } from "./i18n.js";
+import { decimal, part, t, translated } from "./i18n.js";
 import { PRESETS, TABLES } from "./presets.js";
 import { same, valueOf } from "./setup.js";
-import { CHOICES, shown, unitOf } from "./units.js";
+import { CHOICES, digits, shown, unitOf } from "./units.js";
 import { heading } from "./words.js";
 
 export const LAWS = ["viscous", "coulomb", "contensou", "regularized_coulomb"];
@@ -35,7 +35,7 @@ function Dial({ dial, lab, marks = [] }) {
   const [low, high] = [placeOf(dial, dial.low), placeOf(dial, dial.high)];
   const place = placeOf(dial, value / scale);
   const wrong = trouble?.field === dial.field;
-  const text = String(Number((value / scale / size).toPrecision(4)));
+  const text = typeof value === "number" ? decimal(String(Number((value / scale / size).toPrecision(4)))) : String(value);
   const commit = (input) => {
     type(null);
     const number = Number(input.replace(",", ".").replace("−", "-"));
@@ -86,6 +86,11 @@ function Units({ lab }) {
   );
 }
 
+// What the marks say: of a sphere that is upright below the first and turns over above the second; of others, less.
+function markHelp({ kind }, { upright, inverted }) {
+  return kind === "eccentric_sphere" && upright < inverted ? "controls.markHelp" : "controls.marksHelp";
+}
+
 export function marksOf(prospect) {
   const { upright, inverted } = prospect?.critical ?? {};
   const marks = [{ name: "ω₁", value: upright }, { name: "ω₂", value: inverted }];
@@ -96,6 +101,7 @@ export function Launch({ lab }) {
   const { setup, prospect, units } = lab.state;
   const { problem } = setup;
   const known = PRESETS.find((one) => same(one.setup, setup));
+  const source = known && part(`sources.${known.key}`);
   const table = Object.entries(TABLES).find(([, law]) => same(law, problem.friction))?.[0] ?? "";
   const marks = marksOf(prospect);
   const dials = (some) => some.map((dial) => (
@@ -107,13 +113,11 @@ export function Launch({ lab }) {
       <Choice name={t("controls.start")} value={known?.key ?? ""}
         options={[["", t("controls.other")], ...PRESETS.map(({ key }) => [key, t(`presets.${key}`)])]}
         onChange={(key) => key && lab.go(PRESETS.find((one) => one.key === key).setup)} />
-      {known && <p class="source">{known.figure
-        ? <a href={known.figure} rel="noreferrer" title={t("presets.figure")}>{t("presets.source", { source: known.source })}</a>
-        : t("presets.source", { source: known.source })}</p>}
+      {source && <p class="source">{known.figure ? <a href={known.figure} rel="noreferrer" title={t("presets.figure")}>{source}</a> : source}</p>}
       {dials(MAIN)}
       <p class="prospect">
         {prospect?.ends?.length ? heading(prospect, units) : t("controls.unknown")}
-        {marks.length > 1 && <> {t("controls.markHelp", { tilt: shown(problem.launch.tilt, "angle", units, 3) })}{" "}
+        {marks.length > 0 && <> {t(markHelp(problem.body.shape, prospect.critical), { tilt: shown(problem.launch.tilt, "angle", units, 3) })}{" "}
           {marks.map(({ name, value }) => `${name} = ${shown(value, "spin", units)}`).join(", ")}.</>}
       </p>
       <Choice name={t("controls.table")} value={table}
@@ -142,12 +146,15 @@ export function refusal(error, { units, setup }) {
   if (!field) return { field: null, sentence: t("controls.refusedOther", { message: error.message }) };
   const dial = ALL.find((one) => one.field === field);
   const { name } = part(`quantities.${field}`);
-  const value = typeof error.value === "number" ? shown(error.value / scaleOf(dial, setup), dial.kind, units) : String(error.value);
-  return { field, sentence: t("controls.refused", { name, value, accepted: accepted(error.accepted, dial, units) }) };
+  const scale = scaleOf(dial, setup);
+  const value = typeof error.value === "number" ? shown(error.value / scale, dial.kind, units) : t("controls.quoted", { text: error.value });
+  return { field, sentence: t("controls.refused", { name, value, accepted: accepted(error.accepted, dial, scale, units) }) };
 }
 
-// Bounds as the engine says them are in SI; an angle's are told in the visitor's unit.
-function accepted(text, dial, units) {
-  if (dial.kind !== "angle") return translated(text);
-  return translated(text).replace(/\bpi\b/, shown(Math.PI, "angle", units, 4));
+// Bounds as the engine says them are in SI; here they are told in the unit of the dial.
+function accepted(text, { kind }, scale, units) {
+  const { size } = unitOf(kind, units);
+  return translated(text)
+    .replace(/(?<![\w.])\d[\d.]*(e[-+]?\d+)?(?! I1)/g, (number) => digits(Number(number) / scale / size))
+    .replace(/\bpi\b/, shown(Math.PI, "angle", units, 4));
 }

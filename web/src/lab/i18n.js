@@ -17,9 +17,9 @@ export function preferred() {
 
 // A part of the catalogue, by its name with dots; fields of a launch have dots in their own names.
 export function part(name, found = words) {
-  if (found === undefined || name in found) return found?.[name];
-  const [first, ...rest] = name.split(".");
-  return rest.length ? part(rest.join("."), found[first]) : undefined;
+  if (typeof found !== "object" || name in found) return found[name];
+  const first = Object.keys(found).find((key) => name.startsWith(`${key}.`));
+  return first && part(name.slice(first.length + 1), found[first]);
 }
 
 // A text with its gaps filled.
@@ -36,5 +36,5 @@ export function translated(text) {
 
 // A number with the language's decimal sign.
 export function decimal(text) {
-  return words === de ? text.replace(".", ",") : text;
+  return text.replace(".", words.player.point);
 }

@@ -88,7 +88,7 @@ function* jobsOf(plan) {
 
 function wordsOf(plan, { row, column, answer }, units) {
   const gaps = { spin: shown(plan.spins[column], "spin", units), mu: shown(plan.frictions[row], frictionKind(plan.setup), units) };
-  if (answer.error || !Number.isFinite(answer.tilt)) return t("map.failed", { ...gaps, message: answer.error?.message ?? answer.outcome?.advice ?? "" });
+  if (answer.error || !Number.isFinite(answer.tilt)) return t("map.failed", { ...gaps, message: answer.error?.message ?? t(`outcomes.${answer.outcome.name}`) });
   const { tilt, flights } = answer;
   return t(flights ? "map.cellJumps" : "map.cell", { ...gaps, tilt: shown(tilt, "angle", units, 3), flights });
 }

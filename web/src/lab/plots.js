@@ -100,7 +100,7 @@ export class Plots {
   options(name, width, number, label) {
     const ink = this.dark ? "#c6ced6" : "#3b444d";
     const faint = this.dark ? "#2c343d" : "#e4e8ec";
-    const axis = { stroke: ink, grid: { stroke: faint, width: 1 }, ticks: { stroke: faint }, font: "11px system-ui", labelFont: "11px system-ui", labelSize: 14 };
+    const axis = { stroke: ink, grid: { stroke: faint, width: 1 }, ticks: { stroke: faint }, font: "11px system-ui", labelFont: "11px system-ui", labelSize: 14, values: (_, ticks) => ticks.map(brief) };
     const colour = (this.dark ? DARK_COLOURS : COLOURS)[number];
     const quarters = () => [0, 1, 2, 3, 4].map((k) => (k * Math.PI) / 4 / unitOf("angle", this.units).size);
     const turned = name === "theta" ? { splits: (_, __, low, high) => (this.window ? [0, 1, 2, 3, 4].map((k) => low + (k * (high - low)) / 4) : quarters()) } : {};
@@ -110,7 +110,7 @@ export class Plots {
       scales: { x: { time: false, range: () => this.span }, y: { range: () => this.range(name) } },
       axes: [
         { ...axis, label: t("plots.time"), size: 30, space: 55 },
-        { ...axis, label, size: 60, space: 30, ...turned, values: (_, ticks) => ticks.map(brief) },
+        { ...axis, label, size: 60, space: 30, ...turned },
       ],
       series: [
         {},

@@ -10,21 +10,21 @@ const DRILL = { kind: "contensou", mu: 0.3, patch_radius: 3e-4, pressure: "hertz
 // Where the report's figures stand beside what this package makes of them.
 const REPRODUCTION = "https://tippetop.github.io/tippetop/report/index.html#";
 
-// Key of its name, what it changes, where it is from, and which figure shows it.
+// Key of its name and source, what it changes, and which figure shows it.
 export const PRESETS = [
-  ["turns", {}, "Report, Fig. 4", "fig04"],
-  ["half", { "launch.spin": 50 }, "Report, Fig. 5", "fig05"],
-  ["slow", { "launch.spin": 20 }, "Report, section 3.2"],
-  ["jumps", { "launch.spin": 175 }, "Report, Fig. 9", "fig09"],
-  ["much", { "friction.mu": 100 }, "Report, Fig. 8", "fig08"],
-  ["none", { "friction.mu": 0 }, "no friction"],
-  ["dry", { friction: { kind: "coulomb", mu: 0.3 } }, "Coulomb's law"],
-  ["drill", { friction: DRILL, "launch.spin": 100, duration: 6 }, "Contensou 1963; Leine & Glocker 2003"],
-  ["stem", { body: bodies["report-stem"], duration: 10 }, "a stem on the report's top"],
-  ["thin", { body: bodies["report-thin-stem"], duration: 10 }, "a thin stem on the report's top"],
-  ["wooden", { body: bodies.wooden, friction: DRILL, duration: 10 }, "a common top by a turner's measures"],
-  ["leine", problems["leine-glocker"], "Leine & Glocker 2003"],
-].map(([key, changes, source, figure]) => ({ key, source, figure: figure && REPRODUCTION + figure, setup: changed(FIRST, changes) }));
+  ["turns", {}, "fig04"],
+  ["half", { "launch.spin": 50 }, "fig05"],
+  ["slow", { "launch.spin": 20 }],
+  ["jumps", { "launch.spin": 175 }, "fig09"],
+  ["much", { "friction.mu": 100 }, "fig08"],
+  ["none", { "friction.mu": 0 }],
+  ["dry", { friction: { kind: "coulomb", mu: 0.3 } }],
+  ["drill", { friction: DRILL, "launch.spin": 100, duration: 6 }],
+  ["stem", { body: bodies["report-stem"], duration: 10 }],
+  ["thin", { body: bodies["report-thin-stem"], duration: 10 }],
+  ["wooden", { body: bodies.wooden, friction: DRILL, duration: 10 }],
+  ["leine", problems["leine-glocker"]],
+].map(([key, changes, figure]) => ({ key, figure: figure && REPRODUCTION + figure, setup: changed(FIRST, changes) }));
 
 export function preset(key) {
   return PRESETS.find((one) => one.key === key).setup;

@@ -16,7 +16,7 @@ export function tell(track, prospect, units) {
   if (header.problem.friction.mu === 0) details.push(t("words.frictionless"));
   if (header.outcome.name === "lifted_off") details.push(t("words.stopped"));
   else if (!["completed", "at_rest"].includes(header.outcome.name)) {
-    details.unshift(t("words.ended", { advice: header.outcome.advice }));
+    details.unshift(t("words.ended", { advice: t(`outcomes.${header.outcome.name}`) }));
   }
   const jumps = jumpsOf(header);
   if (jumps) details.unshift(jumps);

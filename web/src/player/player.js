@@ -262,8 +262,9 @@ export class Player extends EventTarget {
     }
     if (this.playing && now - this.told < READING) return;
     this.told = now;
-    this.range.setAttribute("aria-valuetext", `${time.toFixed(3)} s`);
-    this.readout.textContent = `${time.toFixed(this.speed < 0.02 ? 5 : 3)} s`;
+    const seconds = (count) => `${time.toFixed(count).replace(".", this.labels.point)} s`;
+    this.range.setAttribute("aria-valuetext", seconds(3));
+    this.readout.textContent = seconds(this.speed < 0.02 ? 5 : 3);
   }
 
   // Whether the top slides, rolls, flies or stands on its stem.
