@@ -76,20 +76,20 @@ class InvalidInput(TippetopError, ValueError):
     """
 
     def __init__(self, field: str, value: object, accepted: str, others: int = 0, file: str = "") -> None:
-        self.field = field
-        self.value = value
-        self.accepted = accepted
-        self.others = others
-        self.file = file
         more = f" (and {others} more)" if others else ""
         name = field if field.isprintable() else repr(field)
         where = f" in {file}" if file else ""
         fault = f"is missing{where}" if value is MISSING else f"= {short(value)}{where} is not possible"
         super().__init__(f"{name} {fault}; accepted: {accepted}{more}")
+        self.field = field
+        self.value = value
+        self.accepted = accepted
+        self.others = others
+        self.file = file
 
     def within(self, part: str, more: int = 0) -> "InvalidInput":
         """The same of a field of a part, or of the part itself if it names none; more cannot be besides."""
-        field = f"{part}.{self.field}".strip(".")
+        field = ".".join([name for name in (part, self.field) if name])
         return InvalidInput(field, self.value, self.accepted, self.others + more, self.file)
 
     def __reduce__(self) -> tuple[type["InvalidInput"], tuple[object, ...]]:

@@ -137,7 +137,7 @@ class Recorder:
         lost = np.zeros(count + 1)
         for place, segment in zip(np.cumsum(block.lengths), block.segments, strict=True):
             if segment.transition is not None:
-                lost[place] += sum(event.energy_lost for event in segment.transition.events)
+                lost[place] += segment.transition.energy_lost
         struck = np.cumsum(lost)
         values[3] -= struck
         struck += self._struck

@@ -110,8 +110,8 @@ def simulate(
     state = natural_state(problem.start(), units)
     launch = rules_of(problem.contact, top, units).launch(state)
     trajectory = Trajectory(launch, duration / units.time, method, phase_limit, step_limit)
-    lost = sum(event.energy_lost for event in launch.events)
-    recorder, tally = Recorder(top, state, problem.launch.azimuth, grid / units.time, lost), Tally()
+    recorder = Recorder(top, state, problem.launch.azimuth, grid / units.time, launch.energy_lost)
+    tally = Tally()
     for block in in_blocks(trajectory.segments()):
         recorder.take(block)
         tally.take(block)

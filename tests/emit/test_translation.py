@@ -70,6 +70,8 @@ class Ring:
         self.number = number % 7
 
     def __add__(self, other):
+        if isinstance(other, Knot):
+            return NotImplemented
         return Ring(self.number + (other.number if isinstance(other, Ring) else other))
 
     def __radd__(self, other):
@@ -81,6 +83,16 @@ class Ring:
 class Gold(Ring):
     def __radd__(self, other):
         return Gold(self.number + other.number + 3)
+
+class Knot:
+    def __radd__(self, other):
+        return Ring(other.number + 4)
+
+class Wrong(ValueError):
+    def __init__(self, field):
+        name = field if field.isprintable() else "it"
+        super().__init__(f"{name} is wrong")
+        self.field = field
 
 CALLS = []
 
@@ -110,9 +122,14 @@ def arithmetic():
             found.append(work())
         except ArithmeticError as error:
             found.append(str(type(error).__name__) != "")
+    for word in ("a field", "two\\nlines"):
+        try:
+            raise Wrong(word)
+        except ValueError as error:
+            found += [str(error), error.field, repr(word[:3])]
     three = Ring(5) + 4
     gold = Ring(1) + Gold(2)
-    rings = [gold.number, isinstance(gold, Gold)]
+    rings = [(Ring(5) + Knot()).number, gold.number, isinstance(gold, Gold)]
     return [*found, *rings, (2 + three).number, (three * three).number, 7 // 2, -7 // 2, -7 % 3, 2.0**0.5,
             True + 1, -inf < 0.0, distance(3.0, 4.0), sum([1, 2], 10), max(3, 1, 2), min([4.0, 2.0]),
             max([], default=-1.0), 1 if not () else 0]
@@ -191,6 +208,22 @@ def test_what_is_not_known_is_refused(statement):
     program = Program({"sample": text}, {}, ())
     with pytest.raises(Untranslatable):
         list(Definitions(program, "sample").module_lines())
+
+
+def test_what_a_module_leaves_out_is_the_runtimes():
+    sources = {
+        "one": "def size(x):\n    return x\n",
+        "two": "from one import size\ndef f(x):\n    return size(x)\n",
+    }
+    assert "return size(x);" in "".join(Definitions(Program(sources, {}, ()), "two").module_lines())
+    assert "return py.size(x);" in "".join(Definitions(Program(sources, {}, ("size",)), "two").module_lines())
+
+
+def test_what_is_written_by_hand_is_not_taken_for_another_modules():
+    sources = {"one": "def size(x):\n    return x\n", "two": "from by_hand import size\n"}
+    with pytest.raises(ValueError, match="two: size of by_hand"):
+        Program(sources, {"by_hand": "./hand.js"}, ())
+    Program(dict(reversed(sources.items())), {"by_hand": "./hand.js"}, ())
 
 
 def test_long_lines_are_broken_into_the_same_code():

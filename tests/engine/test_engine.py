@@ -210,11 +210,13 @@ def test_durations_and_limits_are_refused_the_same() -> None:
         {"step_limit": -1},
         {"step_limit": 0.5},
         {"phase_limit": "3"},
+        {"tolerance": 1.0},
+        {"tolerance": "a"},
     ]
     sentences = list[str]()
     for change in changes:
         with pytest.raises(tt.InvalidInput) as refusal:
-            tt.simulate(problem, **{"duration": DURATION, **change})
+            tt.simulate(problem, integrator="compiled", **{"duration": DURATION, **change})
         sentences.append(str(refusal.value))
     question = asked(0, DURATION) | {"problem": json.loads(problem.to_json())}
     assert [found.get("refused") for found in in_javascript([question | one for one in changes])] == sentences

@@ -113,6 +113,11 @@ class Transition:
     detail: str = ""
     """More about the outcome, where there is more to say."""
 
+    @property
+    def energy_lost(self) -> float:
+        """Energy that went with what happened."""
+        return sum([event.energy_lost for event in self.events])
+
 
 def failed(what: str, error: ArithmeticError, state: State, events: tuple[Event, ...] = ()) -> Transition:
     """The end of a run where something cannot be found; arithmetic's own words say nothing of the motion."""

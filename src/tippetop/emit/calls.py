@@ -8,7 +8,9 @@ from tippetop.emit.expressions import ATOM, Expressions
 RENAMED = {"startswith": "startsWith", "append": "push", "index": "indexOf", "items": "entries"}
 """Methods of Python's own types that have another name."""
 
-METHODS = {"tolist": "list", "_replace": "replace"} | {word: word for word in ("removeprefix", "join")}
+METHODS = {"tolist": "list", "_replace": "replace"} | {
+    word: word for word in ("removeprefix", "join", "isprintable")
+}
 """Methods of Python's own types that are functions of the runtime."""
 
 NAMED = ("_replace", "replace")

@@ -31,10 +31,10 @@ class Definitions(Statements):
         yield f"class {known.name} extends {[*known.bases, known.kind][0]} {{"
         yield from indented(self._members(known))
         yield "}"
-        if known.kind == "Part":
-            yield f'Part.enter("{known.name}", {known.name});'
 
     def _members(self, known: Class) -> Iterator[str]:
+        if known.kind == "Part":
+            yield f'static title = "{known.name}";'
         if known.kind in RECORDS:
             yield f"static fields = {json.dumps(list(known.fields))};"
         if known.kind == "py.NamedTuple":

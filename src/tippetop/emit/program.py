@@ -15,6 +15,7 @@ KINDS = {
     "Part": "Part",
     "Variant": "Part",
     "ArithmeticError": "py.ArithmeticError",
+    "ValueError": "py.ValueError",
     "Protocol": "",
 }
 """What classes of a base are in the other language; of a protocol nothing remains."""
@@ -59,6 +60,11 @@ class Program:
         Modules in which what is indexed may be an object of its own kind.
     numeric
         Modules of numbers and arrays of them alone, in which nothing is an error.
+
+    Raises
+    ------
+    ValueError
+        If what a module imports of one written by hand would be taken for something of another module.
     """
 
     def __init__(
@@ -95,10 +101,15 @@ class Program:
         match node:
             case ast.ImportFrom(module=where, names=names) if where in self.trees or where in self.given:
                 for alias in names:
+                    known = self.names.get((str(where), alias.name))
                     if where in self.given:
+                        if alias.name in self.made and self.given[where]:
+                            raise ValueError(f"{module}: {alias.name} of {where} is another module's name")
                         self.imported.setdefault(self.given[where], set()).add(alias.name)
-                    known = self.names.get((str(where), alias.name), alias.name)
-                    self.names[module, alias.asname or alias.name] = known
+                        known = alias.name
+                    # What a translated module leaves out is the runtime's.
+                    if known is not None:
+                        self.names[module, alias.asname or alias.name] = known
             case ast.ImportFrom(module="math", names=names):
                 for alias in names:
                     self.names[module, alias.asname or alias.name] = f"py.math.{alias.name}"

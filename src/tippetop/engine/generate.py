@@ -39,7 +39,6 @@ GIVEN = {
     "tippetop.integrators.rates": "",
     "tippetop.integrators.evaluation": "",
     "tippetop.validation": "./part.js",
-    "tippetop.errors": "./part.js",
     "tippetop.fields": "./part.js",
     "tippetop.files": "",
     "tippetop.parsing": "",
@@ -56,13 +55,15 @@ LEFT = {
     "Body.turned",
     "Contact.rules",
     "require_problem",
+    *("TippetopError", "FileTrouble", "Unavailable", "InvalidInput.__reduce__", "require", "one_of"),
+    *("is_number", "is_whole", "short", "_typed"),
     *("read", "recordable", "_compiled", "_without_top", "_of_kind", "continuous"),
     *("Ends.unknown", "Ends.put", "ending", "turning_time", "arrival_time"),
     *("Monitor.energy_error", "Graph.rarely"),
     *("precession_branch", "state_of", "is_held", "steady_launch"),
     *(f"Problem.{name}" for name in ("replace", "to_toml", "to_json", "from_toml", "from_json", "read")),
 }
-"""What no page asks for."""
+"""What no page asks for, or what it has of the runtime."""
 
 INDEXED = {"tippetop.mechanics.series", "tippetop.mechanics.slip_onset"}
 """Where what is indexed may be a series."""

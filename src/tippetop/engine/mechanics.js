@@ -2,8 +2,39 @@
 import * as py from "./runtime.js";
 import { DenseSolution, ELEMENTARY, as_array } from "./dense.js";
 import { copied, first_of, iterated, put_from, put_rows, room } from "./compile.js";
-import { InvalidInput, MISSING, Part, is_number, is_whole, numbers_of } from "./part.js";
+import { Part, numbers_of } from "./part.js";
 import { NEAR_FINAL } from "./tables.js";
+
+// tippetop.errors
+
+class _Missing extends py.Thing {
+  __repr__() {
+    return "(nothing)";
+  }
+}
+const MISSING = new _Missing();
+const [OVERWRITE, RESUME, OTHER_OUT] = ["overwrite=True", "resume=True", "another out"];
+
+/** A value that cannot be. */
+class InvalidInput extends py.ValueError {
+  constructor(field, value, accepted, others = 0, file = "") {
+    var more = py.truth(others) ? ` (and ${py.str(others)} more)` : "";
+    var name = py.truth(py.isprintable(field)) ? field : py.repr(field);
+    var where = py.truth(file) ? ` in ${py.str(file)}` : "";
+    var fault = value === MISSING ? `is missing${py.str(where)}` : `= ${py.str(py.short(value))}${py.str(where)} is not possible`;
+    super(`${py.str(name)} ${py.str(fault)}; accepted: ${py.str(accepted)}${py.str(more)}`);
+    this.field = field;
+    this.value = value;
+    this.accepted = accepted;
+    this.others = others;
+    this.file = file;
+  }
+  /** The same of a field of a part, or of the part itself if it names none; more cannot be besides. */
+  within(part, more = 0) {
+    var field = py.join(".", [part, this.field].filter((name) => py.truth(name)));
+    return new InvalidInput(field, this.value, this.accepted, py.add(this.others, more), this.file);
+  }
+}
 
 // tippetop.mechanics.vectors
 const VERTICAL = [0.0, 0.0, 1.0];
@@ -53,6 +84,7 @@ const TOLERANCES = new py.Dict([
   ["bdf", 1e-09],
   ["lsoda", 1e-11]
 ]);
+const LEAST_TOLERANCE = 2.3e-14;
 const NOT_FINITE = "the solution is no longer finite";
 const [NO_START, NO_STEP] = ["the motion is singular from the start", "the step size fell to nothing"];
 
@@ -91,6 +123,18 @@ class Arc extends py.Record {
     this.steps = steps;
     this.evaluations = evaluations;
     this.method = method;
+  }
+}
+
+/** Refuse, with `InvalidInput`, a relative error per step that the integrator of a name cannot keep to. */
+function require_tolerance(tolerance, name) {
+  var least = name === "taylor" ? py.item(TOLERANCES, "taylor") : LEAST_TOLERANCE;
+  if (!(py.truth(py.is_number(tolerance)) && (least <= tolerance && tolerance < 1))) {
+    throw new InvalidInput(
+      "tolerance",
+      tolerance,
+      `a number from ${py.format(least, ".2g")} to 1 with ${py.str(name)}`
+    );
   }
 }
 
@@ -817,6 +861,10 @@ class Transition extends py.Record {
     this.then = then;
     this.state = state;
     this.detail = detail;
+  }
+  /** Energy that went with what happened. */
+  get energy_lost() {
+    return py.sum([...this.events].map((event) => event.energy_lost));
   }
 }
 
@@ -7587,8 +7635,8 @@ function outermost(touching, c) {
 
 /** What happens when the table would have to pull. */
 class Contact extends Part {
+  static title = "Contact";
 }
-Part.enter("Contact", Contact);
 
 // tippetop.contact.choice
 
@@ -7674,7 +7722,7 @@ class Trajectory extends py.Thing {
 /** Refuse, with `InvalidInput`, a duration, s, or limits that no run can have; `unit` is that of time. */
 function require_limits(duration, unit, phase_limit = PHASE_LIMIT, step_limit = STEP_LIMIT) {
   var longest = py.mul(LONGEST_of_trajectory, py.min(1.0, unit));
-  if (!(py.truth(is_number(duration)) && (0.0 < duration && duration <= longest))) {
+  if (!(py.truth(py.is_number(duration)) && (0.0 < duration && duration <= longest))) {
     throw new InvalidInput(
       "duration",
       duration,
@@ -7684,7 +7732,7 @@ function require_limits(duration, unit, phase_limit = PHASE_LIMIT, step_limit = 
   for (
     var [name, limit] of new py.Dict([["phase_limit", phase_limit], ["step_limit", step_limit]]).entries()
   ) {
-    if (!py.truth(is_whole(limit)) || limit < 0) {
+    if (!py.truth(py.is_whole(limit)) || limit < 0) {
       throw new InvalidInput(name, limit, "a whole number, at least 0");
     }
   }
@@ -7694,39 +7742,40 @@ function require_limits(duration, unit, phase_limit = PHASE_LIMIT, step_limit = 
 
 /** The outer surface of a body, and where the centre of mass is in it; a kind of it is a subclass. */
 class Shape extends Part {
+  static title = "Shape";
 }
-Part.enter("Shape", Shape);
 
 /** A sphere whose centre of mass is off its centre: the tippe top. */
 class EccentricSphere extends Shape {
+  static title = "EccentricSphere";
   /** The outer surface, from the centre of mass, as the mechanics takes it. */
   get surface() {
     return new SphereSurface(this.radius, py.mul(this.eccentricity, this.radius));
   }
 }
-Part.enter("EccentricSphere", EccentricSphere);
 
 /** A sphere whose centre is anywhere on the axis: the tip of a stem, or one of two hurricane balls. */
 class Sphere extends Shape {
+  static title = "Sphere";
   /** The outer surface, from the centre of mass, as the mechanics takes it. */
   get surface() {
     return new SphereSurface(this.radius, this.center);
   }
 }
-Part.enter("Sphere", Sphere);
 
 /** A ring about the axis, sharp or round: the edge of a disk or a coin. */
 class Ring extends Shape {
+  static title = "Ring";
   /** The outer surface, from the centre of mass, as the mechanics takes it. */
   get surface() {
     return new RingSurface(this.radius, this.center, this.tube);
   }
 }
-Part.enter("Ring", Ring);
 const MOST_ASPECT = 1000000.0;
 
 /** A spheroid: the spinning egg. */
 class Spheroid extends Shape {
+  static title = "Spheroid";
   _has_a_thickness() {
     if (
       !(
@@ -7746,12 +7795,12 @@ class Spheroid extends Shape {
     return new SpheroidSurface(this.across, this.along, this.center);
   }
 }
-Part.enter("Spheroid", Spheroid);
 
 // tippetop.bodies
 
 /** A rigid body of revolution. */
 class Body extends Part {
+  static title = "Body";
   _can_exist() {
     if (this.I3 > py.mul(2, this.I1)) {
       throw new InvalidInput(
@@ -7784,7 +7833,6 @@ class Body extends Part {
     return this.shape.surface;
   }
 }
-Part.enter("Body", Body);
 const MOST_of_bodies = 12;
 const PROTRUDING = 1e-06;
 const [LOOKS_of_bodies, SEARCHES] = [64, 5];
@@ -8186,6 +8234,7 @@ const LEAST_EPS = 1e-100;
 
 /** The friction of the table; a kind of it is a subclass. */
 class Friction extends Part {
+  static title = "Friction";
   /** Whether the contact of a body of this size, m, can be so; of arrays, an array of it. */
   fits(size) {
     return true;
@@ -8195,37 +8244,37 @@ class Friction extends Part {
     return py.getattr(this, "mu", null) === 0.0;
   }
 }
-Part.enter("Friction", Friction);
 
 /** Friction force -mu N v for slip velocity v and normal force N. */
 class ViscousFriction extends Friction {
+  static title = "ViscousFriction";
   /** The law as the mechanics takes it. */
   get law() {
     return new ViscousLaw(this.mu);
   }
 }
-Part.enter("ViscousFriction", ViscousFriction);
 
 /** Friction force -mu N v / sqrt(v^2 + eps^2) for slip velocity v and normal force N. */
 class RegularizedCoulombFriction extends Friction {
+  static title = "RegularizedCoulombFriction";
   /** The law as the mechanics takes it. */
   get law() {
     return new RegularizedCoulombLaw(this.mu, this.eps);
   }
 }
-Part.enter("RegularizedCoulombFriction", RegularizedCoulombFriction);
 
 /** Dry friction, Coulomb's law as it is: ``-mu N v / |v|`` for slip velocity v and normal force N. */
 class CoulombFriction extends Friction {
+  static title = "CoulombFriction";
   /** The law as the mechanics takes it. */
   get law() {
     return new CoulombLaw(this.mu);
   }
 }
-Part.enter("CoulombFriction", CoulombFriction);
 
 /** Dry friction of a round patch that slides and drills at once (Contensou 1963). */
 class ContensouFriction extends Friction {
+  static title = "ContensouFriction";
   /** The law as the mechanics takes it. */
   get law() {
     return new (this.pressure === "hertz" ? HertzLaw : EllipsoidalLaw)(this.mu, this.patch_radius);
@@ -8236,7 +8285,6 @@ class ContensouFriction extends Friction {
     return fits;
   }
 }
-Part.enter("ContensouFriction", ContensouFriction);
 
 // tippetop.launch
 const LEANING = [
@@ -8246,6 +8294,7 @@ const LEANING = [
 
 /** How the top is set on the table. */
 class Launch extends Part {
+  static title = "Launch";
   _moves_one_way() {
     if (this.velocity !== null && !py.eq(this.slip, [0.0, 0.0])) {
       throw new InvalidInput("slip", this.slip, "0 where velocity is given, which determines it");
@@ -8253,7 +8302,6 @@ class Launch extends Part {
     return this;
   }
 }
-Part.enter("Launch", Launch);
 
 // tippetop.mechanics.view
 
@@ -8353,6 +8401,7 @@ function state_from_angles(angles, top, functions) {
 
 /** Everything physical about a run. */
 class Problem extends Part {
+  static title = "Problem";
   _contact_is_possible() {
     this._refuse_what_does_not_fit();
     if (
@@ -8493,7 +8542,6 @@ class Problem extends Part {
     );
   }
 }
-Part.enter("Problem", Problem);
 
 /** A bound in three digits, not beyond it: no less if the side is 1, and no more if it is -1. */
 function _inside(bound, side) {
@@ -11440,6 +11488,7 @@ export {
   ImpactProcess,
   Instants,
   IntegratedMode,
+  InvalidInput,
   JAMMED,
   JAMMING,
   JellettLine,
@@ -11454,6 +11503,7 @@ export {
   LEAST_FACTOR,
   LEAST_MOMENT,
   LEAST_PATCH,
+  LEAST_TOLERANCE,
   LESS,
   LEVEL,
   LIFT_OFF,
@@ -11475,6 +11525,7 @@ export {
   Loosening,
   MANY,
   MARGIN,
+  MISSING,
   MORE,
   MOST,
   MOST_ASPECT,
@@ -11520,9 +11571,11 @@ export {
   OPENS,
   ORDER,
   OTHER,
+  OTHER_OUT,
   OUTCOMES,
   OUTLINE,
   OVERTAKEN,
+  OVERWRITE,
   OWN,
   OnSeveral,
   OnTwo,
@@ -11565,6 +11618,7 @@ export {
   REOPENING,
   RESOLVED,
   REST,
+  RESUME,
   RISEN,
   ROLLING,
   ROLLING_STOPPING,
@@ -11719,6 +11773,7 @@ export {
   Wrench,
   _DESCRIPTIONS,
   _Machinery,
+  _Missing,
   _admits,
   _along,
   _answers,
@@ -11966,6 +12021,7 @@ export {
   require_limits,
   require_one_surface,
   require_sphere,
+  require_tolerance,
   resistance_powers,
   resisting,
   resolution,

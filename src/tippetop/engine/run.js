@@ -2,11 +2,10 @@
 import * as m from "./mechanics.js";
 import { integrator, reader } from "./compile.js";
 import { DenseSolution, earliest } from "./dense.js";
-import { InvalidInput, is_number } from "./part.js";
 import { plain } from "./runtime.js";
 import { CATALOGUE, GAUSS } from "./tables.js";
 
-const LEAST_TOLERANCE = 2.3e-14, LOOKS = 16;
+const LOOKS = 16;
 const PLACES = Array.from({ length: LOOKS + 1 }, (_, look) => look / LOOKS);
 const rates = (mode, y, pole) => m.Rates.of(mode, y, pole), RATES = 8, FORCE = 7;
 const kept = (mode, y) => m.kept(mode.state(y), mode.top), KEPT = 5;
@@ -17,9 +16,7 @@ const [X, Y, TURN, WORK, DRILLED, ROLLED, STRUCK, SUMS] = [0, 1, 2, 3, 4, 5, 6, 
 
 /** Follow the launch of a problem (as JSON tells it) for a duration, s, at a relative error a step. */
 export function simulate(problem, { duration, tolerance = 1e-10, step_limit, phase_limit, onProgress } = {}) {
-  if (!(is_number(tolerance) && tolerance >= LEAST_TOLERANCE && tolerance < 1)) {
-    throw new InvalidInput("tolerance", tolerance, `a number from ${LEAST_TOLERANCE} to 1`);
-  }
+  m.require_tolerance(tolerance, "compiled");
   const run = new Run(new m.Problem(problem), duration, tolerance, [phase_limit, step_limit]);
   for (const segment of run.trajectory.segments()) {
     run.take(segment);
@@ -33,7 +30,7 @@ class Run {
     const units = m.natural_units(problem.top), top = m.natural(problem.top), start = m.natural_state(problem.start(), units);
     m.require_limits(duration, units.time, ...limits);
     const { liftoff, restitution } = problem.contact, launch = m.rules_for(top, liftoff, restitution).launch(start);
-    const pole = start.axis[2] >= 0 ? 1 : -1, lost = energyLost(launch.events);
+    const pole = start.axis[2] >= 0 ? 1 : -1, lost = launch.energy_lost;
     Object.assign(this, { duration, tolerance, units, top, start, pole, pieces: [], turned: NaN, steps: 0 });
     this.trajectory = new m.Trajectory(launch, duration / units.time, integrator(tolerance), ...limits);
     this.sums = Float64Array.of(0, 0, pole * problem.launch.azimuth, -lost, 0, 0, lost);
@@ -66,7 +63,7 @@ class Run {
         if (!mode.touching) this.see(solution, step, 9, null, this.depth);
       }
     }
-    const lost = energyLost(transition?.events ?? []);
+    const lost = transition?.energy_lost ?? 0;
     this.sums[STRUCK] += lost;
     this.sums[WORK] -= lost;
   }
@@ -208,8 +205,6 @@ function firstFall(value, fromAbove = false) {
   const [found] = m.brackets(PLACES, looks, value, value);
   return found === undefined ? NaN : m.crossing(value, found[0], found[1]);
 }
-
-const energyLost = (events) => events.reduce((total, event) => total + event.energy_lost, 0);
 
 /** Give quaternions in a row the signs that let none jump. */
 function smooth(rows) {

@@ -18,7 +18,8 @@ const takes = (a, word) => a !== null && typeof a === "object" && word in a;
 function applied(a, b, word, turned, plain) {
   // Where the second's class is one of the first's kind, it is asked first.
   const special = takes(b, turned) && takes(a, word) && b instanceof a.constructor && b.constructor !== a.constructor;
-  if (takes(a, word) && !special) return a[word](b);
+  const found = takes(a, word) && !special ? a[word](b) : NotImplemented;
+  if (found !== NotImplemented) return found;
   if (takes(b, turned)) return b[turned](a);
   if (typeof a === "boolean" || typeof b === "boolean") return plain(Number(a), Number(b));
   throw new TypeError(`${word} of ${a} and ${b}`);
@@ -74,8 +75,8 @@ export const neg = (a) => (typeof a === "number" ? -a : typeof a === "boolean" ?
 export const abs = (a) => (typeof a === "number" ? Math.abs(a) : a.__abs__());
 export const float = (a) => (a === "inf" ? Infinity : Number(a));
 export const int = (a) => Math.trunc(Number(a));
-export const str = (a) => (a instanceof Error ? a.message : a instanceof Enum ? a.name : repr(a));
-export const repr = (a) => (typeof a === "number" && Object.is(a, -0) ? "-0" : String(a));
+export const str = (a) => (a instanceof Error ? a.message : a instanceof Enum ? a.name : typeof a === "string" ? a : repr(a));
+export const repr = (a) => (typeof a === "number" && Object.is(a, -0) ? "-0" : typeof a === "string" ? `'${a}'` : String(a));
 export function sum(values, start = 0) {
   for (const value of values) start = add(start, value);
   return start;
@@ -87,10 +88,9 @@ export function truth(a) {
   if (typeof a.__bool__ === "function") return a.__bool__();
   return a instanceof NamedTuple || a.length === undefined ? true : a.length > 0;
 }
-export { truth as bool };
 const or_ = (a, other) => (truth(a) ? a : other());
 const and_ = (a, other) => (truth(a) ? other() : a);
-export { or_ as or, and_ as and };
+export { truth as bool, or_ as or, and_ as and };
 
 export const math = {
   __proto__: Math,
@@ -100,7 +100,6 @@ export const math = {
   factorial: (count) => (count > 1 ? count * math.factorial(count - 1) : 1),
   isfinite: Number.isFinite,
   isinf: (x) => Math.abs(x) === Infinity,
-  exp: (x) => finite(Math.exp(x), x),
   sinh: (x) => finite(Math.sinh(x), x),
   cosh: (x) => finite(Math.cosh(x), x),
   dist: (a, b) => Math.hypot(...Array.from(a, (x, i) => x - b[i])),
@@ -139,9 +138,6 @@ export class Thing {}
 export class NamedTuple {
   *[Symbol.iterator]() {
     for (const name of this.constructor.fields) yield this[name];
-  }
-  slice(from, to) {
-    return this.constructor.fields.slice(from, to).map((name) => this[name]);
   }
 }
 
@@ -286,6 +282,7 @@ export const sorted = (all, { key: worth = (one) => one } = {}) =>
   [...all].sort((a, b) => below(worth(b), worth(a)) - below(worth(a), worth(b)));
 
 export const join = (between, all) => [...all].join(between);
+export const isprintable = (text) => !/[\p{C}\p{Zl}\p{Zp}]/u.test(text);
 export const removeprefix = (text, part) => (text.startsWith(part) ? text.slice(part.length) : text);
 /** A number as it is typed, with powers of ten from some size on. */
 export function typed(value, most = 1e16) {
@@ -299,8 +296,16 @@ export function format(value, how_) {
   return typed(Number(value.toPrecision(digits)), 10 ** digits);
 }
 
+/** A value in a sentence, as it would be typed. */
+export function short(value) {
+  const text = Array.isArray(value) ? `(${value.map(short).join(", ")})` : typeof value === "number" ? typed(value)
+    : value === null ? "None" : typeof value === "object" ? JSON.stringify(value) : repr(value);
+  return text.length <= 60 ? text : `${text.slice(0, 57)}...`;
+}
+
 // ---- objects
 
+export const is_number = Number.isFinite, is_whole = Number.isInteger;
 export const hasattr = (one, name) => one !== null && typeof one === "object" && name in one;
 export const getattr = (one, name, otherwise) => (hasattr(one, name) ? one[name] : otherwise);
 export const bound = (one, name) => one[name].bind(one);

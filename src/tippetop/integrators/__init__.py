@@ -8,10 +8,8 @@ from tippetop.integrators.base import Arc as Arc
 from tippetop.integrators.base import Guard as Guard
 from tippetop.integrators.base import Integrator as Integrator
 from tippetop.integrators.base import Motion as Motion
+from tippetop.integrators.base import require_tolerance
 from tippetop.interrupts import import_heard
-
-LEAST_TOLERANCE = 2.3e-14
-"""Below this no solver but Taylor's honours a relative tolerance."""
 
 NAMES = [*TOLERANCES, "rk4"]
 """The integrators by the names users give."""
@@ -85,9 +83,8 @@ def make_integrator(
         return ClassicalRK4(step / time_unit)
     if step is not None:
         raise InvalidInput("step", step, f"none with {name}, which chooses its own")
-    least = TOLERANCES["taylor"] if name == "taylor" else LEAST_TOLERANCE
-    if tolerance is not None and not (is_number(tolerance) and least <= tolerance < 1):
-        raise InvalidInput("tolerance", tolerance, f"a number from {least:.2g} to 1 with {name}")
+    if tolerance is not None:
+        require_tolerance(tolerance, name)
     return _adaptive(name, TOLERANCES[name] if tolerance is None else tolerance)
 
 

@@ -2,11 +2,12 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Protocol, TypeAlias
+from typing import Any, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tippetop.errors import InvalidInput, is_number
 from tippetop.integrators.dense import DenseSolution
 from tippetop.mechanics.vectors import Scalar
 
@@ -31,6 +32,9 @@ TOLERANCES = {
     "lsoda": 1e-11,
 }
 """The integrators that choose their steps, and the relative error per step of each where nobody says."""
+
+LEAST_TOLERANCE = 2.3e-14
+"""Below this no solver but Taylor's honours a relative tolerance."""
 
 NOT_FINITE = "the solution is no longer finite"
 """Why an integrator gives up where numbers grow beyond all bounds: its last state then means nothing."""
@@ -118,3 +122,10 @@ class Integrator(Protocol):
             Arcs that join, none longer than fits in memory; the last reaches the end, or names the guard that
             ended the motion, located to the integrator's tolerance, or says why there is no more.
         """
+
+
+def require_tolerance(tolerance: Any, name: str) -> None:
+    """Refuse, with `InvalidInput`, a relative error per step that the integrator of a name cannot keep to."""
+    least = TOLERANCES["taylor"] if name == "taylor" else LEAST_TOLERANCE
+    if not (is_number(tolerance) and least <= tolerance < 1):
+        raise InvalidInput("tolerance", tolerance, f"a number from {least:.2g} to 1 with {name}")

@@ -46,10 +46,9 @@ def follow(
 ) -> tuple[Ends, Tally]:
     """What a launch comes to: followed from a top, a state, a time and what follows, or until it settles."""
     top, state, time = begin
-    lost = sum(event.energy_lost for event in start.events)
     method = make_integrator(None, max(tolerance, TOLERANCES[default_name()]))
     trajectory, tally = Trajectory(start, end, method, time=time), Tally()
-    segments, recorder = trajectory.segments(), Recorder(top, state, 0.0, np.empty(0), lost)
+    segments, recorder = trajectory.segments(), Recorder(top, state, 0.0, np.empty(0), start.energy_lost)
     segments = segments if settled is None else until_settled(trajectory, segments, settled)
     for block in in_blocks(segments):
         recorder.take(block)

@@ -145,8 +145,7 @@ class Crossings:
             if not isinstance(transition.then, Flight | Outcome) and not is_plain(transition.then):
                 self._follow_alone(int(lanes[i]), float(time[i]), single(state, i), transition)
                 continue
-            lost = sum(event.energy_lost for event in transition.events)
-            self.slots.ends.struck[self.slots.cell[lanes[i]]] += lost
+            self.slots.ends.struck[self.slots.cell[lanes[i]]] += transition.energy_lost
             if isinstance(transition.then, Flight):
                 again.append(i)
                 starts.append(int(transition.then.start))
