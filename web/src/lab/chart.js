@@ -2,7 +2,7 @@
 
 import { frictionKind } from "./dials.js";
 import { t } from "./i18n.js";
-import { shown } from "./units.js";
+import { digits, shown } from "./units.js";
 
 const STOPS = ["#00224e", "#3c4e6c", "#7c7b78", "#bbae6c", "#fee838"].map((colour) =>
   [1, 3, 5].map((k) => parseInt(colour.slice(k, k + 2), 16)),
@@ -143,7 +143,7 @@ export class Chart {
     pen.textAlign = "right";
     const count = plan.frictions.length;
     for (const row of [0, Math.floor(count / 2), count - 1]) {
-      pen.fillText(String(Number(plan.frictions[row].toPrecision(2))), ROOM.left - 5, ROOM.top + height - (row + 0.5) * (height / count) + 4);
+      pen.fillText(digits(plan.frictions[row], 2), ROOM.left - 5, ROOM.top + height - (row + 0.5) * (height / count) + 4);
     }
     pen.save();
     pen.translate(11, ROOM.top + height / 2);

@@ -15,7 +15,7 @@ export function tell(track, prospect, units) {
   if (prospect?.ends?.length) details.push(far(track, prospect) ? slowly(prospect, units) : heading(prospect, units));
   if (header.problem.friction.mu === 0) details.push(t("words.frictionless"));
   if (header.outcome.name === "lifted_off") details.push(t("words.stopped"));
-  else if (!["completed", "at_rest"].includes(header.outcome.name)) {
+  else if (!["completed", "at_rest", "lying_flat"].includes(header.outcome.name)) {
     details.unshift(t("words.ended", { advice: t(`outcomes.${header.outcome.name}`) }));
   }
   const jumps = jumpsOf(header);
@@ -53,13 +53,16 @@ function headline(track, prospect, units) {
   const tilt = shown(last, "angle", units, 3);
   const [low, high] = range(theta, 0);
   const time = (value) => digits(Math.round(100 * value) / 100, 4);
+  if (outcome.name === "lying_flat") return t("words.flat", { time: time(track.duration) });
   if (high < AROUND && last < NEAR + problem.launch.tilt) return upright(track, prospect, units, last, tilt);
   if (low > Math.PI - AROUND) return t("words.staysInverted");
   const [lateLow, lateHigh] = range(theta, 1 - LATE);
   const settled = lateHigh - lateLow < STILL;
   if (last > Math.PI - NEAR && (settled || lateLow > Math.PI - 2 * NEAR)) return t("words.inverts", { time: time(metrics.arrives) });
   if (outcome.name === "at_rest") return t("words.rest", { tilt, time: time(track.duration) });
-  if (Number.isFinite(track.header.turns_over) && track.header.turns_over !== null) {
+  // What settles level, as on two balls, has not turned over.
+  const level = settled && Math.abs(last - Math.PI / 2) < NEAR;
+  if (Number.isFinite(track.header.turns_over) && !level) {
     return t("words.turnsOver", { time: time(metrics.turns_over), tilt });
   }
   if (last < NEAR) return t("words.comesUpright");
