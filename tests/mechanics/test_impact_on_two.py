@@ -283,17 +283,31 @@ def test_an_end_that_opens_neither_slips_nor_sticks():
     assert found.state.velocity == pytest.approx(alone.state.velocity, abs=1e-7)
 
 
+def rod(ends, inertias, law, momentum, velocity):
+    """A rod along x that falls on its second end, and its tops."""
+    hull = Hull.of((SphereSurface(1.0, ends[0]), SphereSurface(1.0, -ends[1])))
+    first, second = Top(1.0, *inertias, hull, law, 1.0).each
+    return on_table(SlidingState((1.0, 0.0, 0.0), momentum, velocity), first), (second, first)
+
+
 def sliding_slowly(law):
     """A rod that falls on its second end faster than it slips, and its tops."""
-    hull = Hull.of((SphereSurface(1.0, 2.0), SphereSurface(1.0, -3.0)))
-    first, second = Top(1.0, 1.5, 0.5, hull, law, 1.0).each
     momentum = (0.03, -0.9, 0.03)  # turns about y, by which the second end sinks
-    return on_table(SlidingState((1.0, 0.0, 0.0), momentum, (0.05, -0.04)), first), (second, first)
+    return rod((2.0, 3.0), (1.5, 0.5), law, momentum, (0.05, -0.04))
 
 
-def test_a_steep_law_holds_both_ends_and_takes_few_steps():
+@pytest.mark.parametrize(
+    "falling",
+    [
+        sliding_slowly(RegularizedCoulombLaw(0.6, 1e-6)),
+        rod((3.64, 3.92), (1.36, 0.46), RegularizedCoulombLaw(2.55, 9e-6), (-0.23, -1.0, 0.02), (-0.1, 0.38)),
+        rod((3.5, 4.0), (1.7, 0.8), RegularizedCoulombLaw(3.3, 3e-5), (-0.6, -0.6, -0.4), (-0.1, 1.1)),
+    ],
+    ids=["slowly", "firmly", "one end after the other"],
+)
+def test_a_steep_law_holds_both_ends_and_takes_few_steps(falling):
     """What is left is the motion next to the one before, by kinetic energy, that moves neither end."""
-    state, tops = sliding_slowly(RegularizedCoulombLaw(0.6, 1e-6))
+    state, tops = falling
     top = tops[0]
     assert gap_rate(state, top) < -1.0
     found = impact(state, 0.0, *tops)
@@ -308,6 +322,8 @@ def test_a_steep_law_holds_both_ends_and_takes_few_steps():
     after = before - inverse @ held.T @ impulse
     assert found.state.momentum == pytest.approx(inertia @ after[:3], abs=1e-5)
     assert found.state.velocity == pytest.approx(after[3:], abs=1e-5)
+    change = energy(state, top) - energy(found.state, top)
+    assert found.energy_lost == pytest.approx(change, rel=1e-9)
 
 
 def cross_matrix(a):

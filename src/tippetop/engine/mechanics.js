@@ -5300,16 +5300,8 @@ class SteppedProcess extends ImpactProcess {
   }
   /** What an error in the six velocities counts as, that is one of a step. */
   wrong(taken, off) {
-    var here = this.body.velocities(taken.here);
-    var there = this.body.velocities(taken.there);
-    var slip = py.max(
-      py.math.hypot(...here.slice(0, 2)),
-      py.math.hypot(...there.slice(0, 2)),
-      py.mul(1e-09, this.speed)
-    );
-    return py.float(
-      py.max(py.div(py.math.hypot(...off.slice(0, 2)), slip), py.div(py.abs(off[2]), this.speed))
-    );
+    var ends = [taken.here, taken.there].map((here) => this.body.velocities(here));
+    return slip_error(ends, off, this.speed);
   }
   /** Where a straight line leads after some steps, and whether to the goal; None if there is none. */
   straight(here, goal, guess, taken) {
@@ -5381,6 +5373,12 @@ class SteppedProcess extends ImpactProcess {
     }
     throw new Unsolved("an impact does not come to its end");
   }
+}
+
+/** An error in velocities, known at a step's ends: of slip beside it, and of the normal one by a speed. */
+function slip_error(ends, off, speed) {
+  var slip = py.max(py.mul(1e-09, speed), ...[...ends].map((end) => py.math.hypot(...end.slice(0, 2))));
+  return py.float(py.max(py.div(py.math.hypot(...off.slice(0, 2)), slip), py.div(py.abs(off[2]), speed)));
 }
 
 /** The error of a step over the one allowed. */
@@ -5705,11 +5703,10 @@ class ProcessOnTwo extends SteppedProcess {
     }
     return this.friction(velocity);
   }
-  /** What an error counts as: that of the contact's velocity where it is the larger. */
+  /** What an error counts as: that of the contact where it is the larger. */
   wrong(taken, off) {
-    var one = off.slice(0, 3);
-    var other = this.beside(off).slice(0, 3);
-    return py.float(py.div(py.max([one, other].map(([x, y, z]) => length([x, y, z]))), this.speed));
+    var there = [taken.here, taken.there].map((here) => this.there(here));
+    return py.max(super.wrong(taken, off), slip_error(there, this.beside(off), this.speed));
   }
   /** The rest if friction has come to hold both slips constant. */
   straight(here, goal, guess, taken) {
@@ -12056,6 +12053,7 @@ export {
   slip_along_tilt,
   slip_apart,
   slip_beside,
+  slip_error,
   slip_length,
   slip_of,
   slip_part,

@@ -11,7 +11,7 @@ the other contact is a force and a torque at the first, too: that of its moment 
 from dataclasses import dataclass, replace
 from typing import Self
 
-from tippetop.mechanics.impact_process import STUCK, SteppedProcess
+from tippetop.mechanics.impact_process import STUCK, SteppedProcess, slip_error
 from tippetop.mechanics.impulse import NO_IMPULSE, NORMAL, Goal, Impulse, Striking, first_reach
 from tippetop.mechanics.motion import point_velocity
 from tippetop.mechanics.rolling import Slip, is_set_valued
@@ -134,9 +134,12 @@ class ProcessOnTwo(SteppedProcess):
         return self.friction(velocity)
 
     def wrong(self, taken: RungeKuttaStep, off: Slip) -> float:
-        """What an error counts as: that of the contact's velocity where it is the larger."""
-        one, other = off[:3], self.beside(off)[:3]
-        return float(max(length((x, y, z)) for x, y, z in (one, other)) / self.speed)
+        """What an error counts as: that of the contact where it is the larger.
+
+        A steep law may hold slip so slow that its force has no digits but those beside it.
+        """
+        there = [self.there(here) for here in (taken.here, taken.there)]
+        return max(super().wrong(taken, off), slip_error(there, self.beside(off), self.speed))
 
     def straight(self, here: Impulse, goal: Goal, guess: float, taken: int) -> tuple[Impulse, bool] | None:
         """The rest if friction has come to hold both slips constant.

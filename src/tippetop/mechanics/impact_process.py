@@ -2,6 +2,7 @@
 
 import math
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Self
 
@@ -131,9 +132,8 @@ class SteppedProcess(ImpactProcess):
 
     def wrong(self, taken: RungeKuttaStep, off: Slip) -> float:
         """What an error in the six velocities counts as, that is one of a step."""
-        here, there = self.body.velocities(taken.here), self.body.velocities(taken.there)
-        slip = max(math.hypot(*here[:2]), math.hypot(*there[:2]), 1e-9 * self.speed)
-        return float(max(math.hypot(*off[:2]) / slip, abs(off[2]) / self.speed))
+        ends = [self.body.velocities(here) for here in (taken.here, taken.there)]
+        return slip_error(ends, off, self.speed)
 
     def straight(self, here: Impulse, goal: Goal, guess: float, taken: int) -> tuple[Impulse, bool] | None:
         """Where a straight line leads after some steps, and whether to the goal; None if there is none.
@@ -181,6 +181,12 @@ class SteppedProcess(ImpactProcess):
             slope = then.slope(here) if reached or then is not now else taking.new_slope
             now, step = then, min(longest, step * min(5.0, 0.9 * max(doubt, 1e-10) ** POWER))
         raise Unsolved("an impact does not come to its end")
+
+
+def slip_error(ends: Sequence[Slip], off: Slip, speed: float) -> float:
+    """An error in velocities, known at a step's ends: of slip beside it, and of the normal one by a speed."""
+    slip = max(1e-9 * speed, *[math.hypot(*end[:2]) for end in ends])
+    return float(max(math.hypot(*off[:2]) / slip, abs(off[2]) / speed))
 
 
 def doubt_of(now: SteppedProcess, taken: RungeKuttaStep) -> float:
