@@ -19,12 +19,13 @@ from tippetop.errors import InvalidInput
 from tippetop.integrators.base import Guard, Motion
 from tippetop.mechanics.friction import NO_TORQUE, FrictionLaw, Traction
 from tippetop.mechanics.motion import axis_rate, on_table
-from tippetop.mechanics.rolling import FORCES, ContactPoint, Wrench, velocity_without_slip
+from tippetop.mechanics.rolling import ContactPoint, velocity_without_slip
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.surface import Surface
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Horizontal, Row, Scalar, Vector
+from tippetop.mechanics.wrench import FORCES, Wrench
 from tippetop.validation import Positive, Quantity
 
 DURATION = 1.0

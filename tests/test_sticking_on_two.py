@@ -22,9 +22,9 @@ from tippetop.mechanics.contact_pair import ContactPair, pair_motion, slip_apart
 from tippetop.mechanics.flight import gap_rate
 from tippetop.mechanics.friction import NO_TORQUE
 from tippetop.mechanics.motion import angular_velocity
-from tippetop.mechanics.rolling import Wrench
 from tippetop.mechanics.surface import contact_vector
 from tippetop.mechanics.top import natural, natural_state, natural_units
+from tippetop.mechanics.wrench import Wrench
 
 MASS, BALL, HALF, MU, G = 0.01, 0.005, 0.02, 0.3, 9.8
 ACROSS = 2e-6

@@ -18,13 +18,13 @@ from typing import NamedTuple
 from tippetop.contact.growth import growth
 from tippetop.integrators.base import Integrator
 from tippetop.mechanics.ending import Closing, Vanishing, rates_in_time
-from tippetop.mechanics.rolling import Slip, solve
 from tippetop.mechanics.series import horner
 from tippetop.mechanics.slip_onset import Growth, onset, turned_slopes
 from tippetop.mechanics.stick_slip import inner, plus, scaled, size, tangents
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.unsolved import Unsolved
-from tippetop.mechanics.vectors import Scalar, Vector
+from tippetop.mechanics.vectors import Scalar, Vector, solve
+from tippetop.mechanics.wrench import Slip
 
 DEGREE, ACCURACY = 12, 1e-13
 """Degree of the series of speed and direction, one less than of the others, and the size of the last terms in

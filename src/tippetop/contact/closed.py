@@ -9,15 +9,13 @@ from typing import Any, ClassVar, Self, TypeAlias
 from tippetop.contact.mode import EventKind, IntegratedMode, Reaction, Transition
 from tippetop.contact.surfaces import follow_surface, surface_guards
 from tippetop.integrators.base import Guard, Motion
+from tippetop.mechanics.branches import on_other_branch
 from tippetop.mechanics.ending import Vanishing
 from tippetop.mechanics.motion import along_table, axis_rate, on_table
 from tippetop.mechanics.rolling import (
     Acceleration,
     ContactPoint,
-    Slip,
-    Wrench,
     contact_motion,
-    on_other_branch,
     rolling_reserve,
     velocity_without_slip,
     without_rolling,
@@ -26,6 +24,7 @@ from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.stick_slip import remaining, scaled, slip_of
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import Row, Scalar, Vector, dot
+from tippetop.mechanics.wrench import Slip, Wrench
 
 LIFT_OFF, STOPPING, SLIP, BRANCH, LIMIT_BRANCH = "lift-off", "stopping", "slip", "branch", "limit branch"
 ROLLING, ROLLING_STOPPING = "rolling", "rolling stopping"

@@ -8,6 +8,7 @@ from typing import Any
 from tippetop.contact.closed import BRANCH, LIFT_OFF, LIMIT_BRANCH, ROLLING, SLIP, split
 from tippetop.contact.surfaces import surface_guards
 from tippetop.integrators.base import Arc, Array, Guard, Integrator, Motion
+from tippetop.mechanics.branches import has_limit_branches, limit_guard
 from tippetop.mechanics.ending import (
     Closing,
     Vanishing,
@@ -19,18 +20,11 @@ from tippetop.mechanics.ending import (
     reopening_guard,
     slip_beside,
 )
-from tippetop.mechanics.rolling import (
-    ContactPoint,
-    Wrench,
-    has_limit_branches,
-    is_set_valued,
-    limit_guard,
-    rolling_reserve,
-    slip_reserve,
-)
+from tippetop.mechanics.rolling import ContactPoint, is_set_valued, rolling_reserve, slip_reserve
 from tippetop.mechanics.stick_slip import branch_guard
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import Row, Scalar, Vector
+from tippetop.mechanics.wrench import Wrench
 
 REOPENING, LANDED, TIME, OVERTAKEN, JAMMED = "reopening", "landed", "time", "overtaken", "jammed"
 

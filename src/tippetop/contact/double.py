@@ -8,22 +8,16 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 from tippetop.contact.closed import ROLLING, ROLLING_STOPPING, GuardValue, StatedMode, split
 from tippetop.contact.mode import Before, Event, EventKind, Reaction, Transition
 from tippetop.contact.surfaces import number_of
+from tippetop.mechanics.branches import is_branched, on_numbered_branch, on_other_branch
 from tippetop.mechanics.contact_pair import ContactPair, PairMotion, Tops, pair_motion
 from tippetop.mechanics.motion import along_table, axis_rate, on_table
 from tippetop.mechanics.pair_resolver import rolling_way
-from tippetop.mechanics.rolling import (
-    Slip,
-    is_branched,
-    is_set_valued,
-    on_numbered_branch,
-    on_other_branch,
-    slip_length,
-    without_rolling,
-)
+from tippetop.mechanics.rolling import is_set_valued, slip_length, without_rolling
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.stick_slip import branch_guard, inner, scaled, slip_of
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Row, Scalar, Vector, dot
+from tippetop.mechanics.wrench import Slip
 
 if TYPE_CHECKING:
     from tippetop.contact.several import OnSeveral

@@ -20,12 +20,13 @@ from tippetop.mechanics.contact_pair import (
     slips_of,
 )
 from tippetop.mechanics.motion import axis_rate, on_table
-from tippetop.mechanics.rolling import Slip, slip_length, velocity_without_slip, without_drilling
+from tippetop.mechanics.rolling import slip_length, velocity_without_slip, without_drilling
 from tippetop.mechanics.slip_onset import Growing, onset
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.stick_slip import scaled, velocity_of
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Row, Scalar
+from tippetop.mechanics.wrench import Slip
 
 SLIP, ENDING = "slip ", "ending"
 

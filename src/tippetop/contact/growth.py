@@ -8,12 +8,12 @@ from typing import Any
 from tippetop.contact.closed import split
 from tippetop.integrators.base import NOT_FINITE, Expansion, Integrator, Motion
 from tippetop.mechanics.ending import Closing, Vanishing, rates_in_time
-from tippetop.mechanics.rolling import Slip
 from tippetop.mechanics.slip_onset import Growing, Growth, rates_of
 from tippetop.mechanics.stick_slip import scaled
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.unsolved import Unsolved
 from tippetop.mechanics.vectors import Scalar, Vector
+from tippetop.mechanics.wrench import Slip
 
 FEW = 11
 """Degree up to which the first coefficients of the direction are expanded: half the others', for a third of

@@ -12,13 +12,15 @@ from tippetop.contact.slipping import slip_phase
 from tippetop.integrators.base import Integrator
 from tippetop.integrators.dense import DenseSolution
 from tippetop.mechanics.beginning import beginning
+from tippetop.mechanics.branches import on_branch
 from tippetop.mechanics.ending import Vanishing
-from tippetop.mechanics.rolling import ContactPoint, Slip, Wrench, is_set_valued, on_branch
+from tippetop.mechanics.rolling import ContactPoint, is_set_valued
 from tippetop.mechanics.series import horner
 from tippetop.mechanics.slip_onset import onset
 from tippetop.mechanics.state import State
 from tippetop.mechanics.stick_slip import scaled, size, slip_of
 from tippetop.mechanics.vectors import Scalar
+from tippetop.mechanics.wrench import Slip, Wrench
 
 PRESSED = 5
 """Which of the looks along a beginning look at the normal force, too."""

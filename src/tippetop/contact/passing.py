@@ -13,6 +13,7 @@ from tippetop.contact.sticking import Sticking
 from tippetop.contact.surfaces import follow_surface, passes_flat, stays_open
 from tippetop.integrators.base import Arc, Array, Integrator, Motion
 from tippetop.integrators.dense import DenseSolution, as_array
+from tippetop.mechanics.branches import on_other_branch
 from tippetop.mechanics.ending import (
     Closing,
     Vanishing,
@@ -23,13 +24,7 @@ from tippetop.mechanics.ending import (
 )
 from tippetop.mechanics.hull import Hull
 from tippetop.mechanics.motion import angular_velocity, on_table
-from tippetop.mechanics.rolling import (
-    Slip,
-    on_other_branch,
-    slip_length,
-    velocity_without_slip,
-    without_rolling,
-)
+from tippetop.mechanics.rolling import slip_length, velocity_without_slip, without_rolling
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.stick_slip import (
     scaled,
@@ -38,6 +33,7 @@ from tippetop.mechanics.stick_slip import (
 )
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Row, Scalar, Vector, dot
+from tippetop.mechanics.wrench import Slip
 
 LANDING = (3e-8, 1e-16)
 """How long before its end the rest of a velocity may be taken in one step, in natural units of time: if its

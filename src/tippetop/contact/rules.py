@@ -13,20 +13,13 @@ from tippetop.contact.striking import impact_of_patch
 from tippetop.contact.surfaces import lies_flat, number_of
 from tippetop.integrators.base import Integrator
 from tippetop.mechanics.beginning import Beginning, settling
+from tippetop.mechanics.branches import is_branched, on_branch, on_limit_branch
 from tippetop.mechanics.ending import Vanishing
 from tippetop.mechanics.flight import gap, gap_rate
 from tippetop.mechanics.impact import Impact, impact
 from tippetop.mechanics.jamming import past_jamming
 from tippetop.mechanics.motion import along_table, contact, on_table, presses
-from tippetop.mechanics.rolling import (
-    ContactPoint,
-    Wrench,
-    contact_motion,
-    is_branched,
-    is_set_valued,
-    on_branch,
-    on_limit_branch,
-)
+from tippetop.mechanics.rolling import ContactPoint, contact_motion, is_set_valued
 from tippetop.mechanics.state import State
 from tippetop.mechanics.stick_slip import (
     HORIZON,
@@ -41,6 +34,7 @@ from tippetop.mechanics.stick_slip import (
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.touchdown import Start
 from tippetop.mechanics.vectors import Scalar
+from tippetop.mechanics.wrench import Wrench
 
 SLOWEST_REBOUND = 1e-6
 """Rebound velocity, in units of sqrt(g R), below which a rebound is none and the top stays on the table.

@@ -20,7 +20,6 @@ from tippetop.integrators.iteration import (
 )
 from tippetop.mechanics.ending import Vanishing
 from tippetop.mechanics.hull import Hull
-from tippetop.mechanics.rolling import Slip
 from tippetop.mechanics.roots import crossing
 from tippetop.mechanics.series import horner
 from tippetop.mechanics.slip_phase import (
@@ -37,6 +36,7 @@ from tippetop.mechanics.slip_phase import (
 from tippetop.mechanics.stick_slip import APART, inner, scaled, size
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import Scalar
+from tippetop.mechanics.wrench import Slip
 
 FIRST, LEAST = 0.5, 0.005
 """The first step, in natural units of time, and the least that a step is shortened to: where shorter ones are

@@ -4,7 +4,8 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from tippetop.contact.closed import LIMIT_BRANCH, SLIP, ClosedMode, GuardValue
-from tippetop.mechanics.rolling import has_limit_branches, limit_guard, slip_reserve
+from tippetop.mechanics.branches import has_limit_branches, limit_guard
+from tippetop.mechanics.rolling import slip_reserve
 
 
 @dataclass(frozen=True)

@@ -11,10 +11,11 @@ from tippetop.contact.closed import BRANCH
 from tippetop.contact.sliding import NEARING
 from tippetop.integrators.base import Guard, Integrator, Motion
 from tippetop.integrators.dense import as_array
+from tippetop.mechanics.branches import is_branched, on_branch, on_other_branch
 from tippetop.mechanics.impact import Impact
 from tippetop.mechanics.impulse import Striking, contact_velocity
 from tippetop.mechanics.motion import along_table, angular_velocity, moment_per_normal_force
-from tippetop.mechanics.rolling import is_branched, is_set_valued, on_branch, on_other_branch, slip_length
+from tippetop.mechanics.rolling import is_set_valued, slip_length
 from tippetop.mechanics.state import State
 from tippetop.mechanics.stick_slip import branch_guard, is_near, nearing_guard, slip_of
 from tippetop.mechanics.surface import contact_vector

@@ -15,6 +15,7 @@ from tippetop.contact.passing import Resting
 from tippetop.contact.rules import rests
 from tippetop.contact.surfaces import number_of
 from tippetop.mechanics.beginning import settling
+from tippetop.mechanics.branches import off_branch, on_branch
 from tippetop.mechanics.contact_pair import (
     ContactPair,
     Tops,
@@ -37,18 +38,12 @@ from tippetop.mechanics.pair_resolver import (
     rolling_of_slip,
     turning_about,
 )
-from tippetop.mechanics.rolling import (
-    Slip,
-    is_set_valued,
-    off_branch,
-    on_branch,
-    slip_length,
-    spun_up,
-)
+from tippetop.mechanics.rolling import is_set_valued, slip_length, spun_up
 from tippetop.mechanics.state import State
 from tippetop.mechanics.stick_slip import inner, is_rolling, least_slip, size, slip_of
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import scale
+from tippetop.mechanics.wrench import Slip
 
 if TYPE_CHECKING:
     from tippetop.contact.several import OnSeveral

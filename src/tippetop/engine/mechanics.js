@@ -73,6 +73,32 @@ function power(base, exponent) {
   return py.isinstance(base, py.float) && base < 0.0 ? py.math.nan : py.pow(base, exponent);
 }
 
+/** Solution of a few linear equations, by elimination without pivots: nearly symmetric and definite. */
+function solve(matrix, right) {
+  if (py.len(right) === 1) {
+    return [py.div(right[0], matrix[0][0])];
+  }
+  var rows = py.zip(matrix, right).map(([row, b]) => [...row, b]);
+  var count = py.len(rows);
+  for (var [i, pivot] of py.enumerate(rows)) {
+    var inverse = py.div(1.0, py.item(pivot, i));
+    for (var row of py.slice(rows, py.add(i, 1), null, null)) {
+      var factor = py.mul(py.item(row, i), inverse);
+      for (var j = py.add(i, 1); j < py.add(count, 1); j += 1) {
+        py.put(row, j, py.sub(py.item(row, j), py.mul(factor, py.item(pivot, j))));
+      }
+    }
+  }
+  for (var i of py.reversed(py.range(count))) {
+    var known = py.item(py.item(rows, i), count);
+    for (var j = py.add(i, 1); j < count; j += 1) {
+      known = py.sub(known, py.mul(py.item(py.item(rows, i), j), py.item(py.item(rows, j), count)));
+    }
+    py.put(py.item(rows, i), count, py.div(known, py.item(py.item(rows, i), i)));
+  }
+  return [...rows].map((row) => py.item(row, count));
+}
+
 // tippetop.integrators.base
 const TOLERANCES = new py.Dict([
   ["taylor", py.pow(2.0, -52)],
@@ -2121,7 +2147,7 @@ function start_of(state, top) {
   return rate > TOUCHING ? Start.REBOUND : Start.RELEASE;
 }
 
-// tippetop.mechanics.rolling
+// tippetop.mechanics.wrench
 const EAST = [1.0, 0.0, 0.0];
 const NORTH = [0.0, 1.0, 0.0];
 
@@ -2139,6 +2165,69 @@ class Wrench extends py.NamedTuple {
 const FORCES = [new Wrench(EAST, NO_TORQUE), new Wrench(NORTH, NO_TORQUE), new Wrench(VERTICAL, NO_TORQUE)];
 const DRILLING = new Wrench(NO_TORQUE, VERTICAL);
 const COUPLES = [new Wrench(NO_TORQUE, EAST), new Wrench(NO_TORQUE, NORTH)];
+
+// tippetop.mechanics.branches
+
+/** Whether a law is made of branches, and knows itself which holds, or is one of them. */
+function is_branched(law) {
+  return py.hasattr(whole_law(law), "branch");
+}
+
+/** A law, the whole of it where there is but a branch. */
+function whole_law(law) {
+  return py.getattr(law, "whole", law);
+}
+
+/** A top with the branch of its law that holds where it slips, or in that direction; of floats. */
+function on_branch(top, slip) {
+  if (!py.truth(is_branched(top.friction))) {
+    return top;
+  }
+  return py.replace(top, { friction: whole_law(top.friction).branch(slip) });
+}
+
+/** The same where a number tells the branch, for arrays, or for floats that share equations. */
+function on_numbered_branch(top, slip) {
+  if (!py.truth(is_branched(top.friction))) {
+    return top;
+  }
+  return py.replace(top, { friction: whole_law(top.friction).numbered_branch(slip) });
+}
+
+/** A top with the branch of its law, or of its limit surface, that takes over where its own ends. */
+function on_other_branch(top) {
+  var law = top.friction;
+  return py.replace(top, { friction: law.other_branch() });
+}
+
+/** A top with the whole of its law, if it has but a branch of it. */
+function off_branch(top) {
+  return py.replace(top, { friction: whole_law(top.friction) });
+}
+
+/** A top with the branch of its law's limit surface that belongs to what holds it at rest; of floats. */
+function on_limit_branch(top, wrench) {
+  if (!py.truth(is_branched(top.friction))) {
+    return top;
+  }
+  return py.replace(
+    top,
+    { friction: whole_law(top.friction).limit_branch(wrench.force[2], wrench.torque[2]) }
+  );
+}
+
+/** Whether a law is one of the branches of a limit surface. */
+function has_limit_branches(law) {
+  return py.hasattr(law, "limit_guard");
+}
+
+/** Positive as long as the branch of the limit surface that a body at rest has is the one it is on. */
+function limit_guard(top, wrench) {
+  var law = top.friction;
+  return law.limit_guard(wrench.force[2], wrench.torque[2]);
+}
+
+// tippetop.mechanics.rolling
 
 /** Rate of change of the contact point's velocity, m/s^2, and of the angular velocity, rad/s^2. */
 class Acceleration extends py.NamedTuple {
@@ -2394,94 +2483,9 @@ function is_set_valued(law) {
   return py.hasattr(law, "reserve");
 }
 
-/** Whether a law is made of branches, and knows itself which holds, or is one of them. */
-function is_branched(law) {
-  return py.hasattr(whole_law(law), "branch");
-}
-
-/** A law, the whole of it where there is but a branch. */
-function whole_law(law) {
-  return py.getattr(law, "whole", law);
-}
-
-/** A top with the branch of its law that holds where it slips, or in that direction; of floats. */
-function on_branch(top, slip) {
-  if (!py.truth(is_branched(top.friction))) {
-    return top;
-  }
-  return py.replace(top, { friction: whole_law(top.friction).branch(slip) });
-}
-
-/** The same where a number tells the branch, for arrays, or for floats that share equations. */
-function on_numbered_branch(top, slip) {
-  if (!py.truth(is_branched(top.friction))) {
-    return top;
-  }
-  return py.replace(top, { friction: whole_law(top.friction).numbered_branch(slip) });
-}
-
-/** A top with the branch of its law, or of its limit surface, that takes over where its own ends. */
-function on_other_branch(top) {
-  var law = top.friction;
-  return py.replace(top, { friction: law.other_branch() });
-}
-
-/** A top with the whole of its law, if it has but a branch of it. */
-function off_branch(top) {
-  return py.replace(top, { friction: whole_law(top.friction) });
-}
-
-/** A top with the branch of its law's limit surface that belongs to what holds it at rest; of floats. */
-function on_limit_branch(top, wrench) {
-  if (!py.truth(is_branched(top.friction))) {
-    return top;
-  }
-  return py.replace(
-    top,
-    { friction: whole_law(top.friction).limit_branch(wrench.force[2], wrench.torque[2]) }
-  );
-}
-
-/** Whether a law is one of the branches of a limit surface. */
-function has_limit_branches(law) {
-  return py.hasattr(law, "limit_guard");
-}
-
-/** Positive as long as the branch of the limit surface that a body at rest has is the one it is on. */
-function limit_guard(top, wrench) {
-  var law = top.friction;
-  return law.limit_guard(wrench.force[2], wrench.torque[2]);
-}
-
 /** Six numbers in a row. */
 function flat(motion) {
   return [...motion.point, ...motion.turning];
-}
-
-/** Solution of a few linear equations, by elimination without pivots: nearly symmetric and definite. */
-function solve(matrix, right) {
-  if (py.len(right) === 1) {
-    return [py.div(right[0], matrix[0][0])];
-  }
-  var rows = py.zip(matrix, right).map(([row, b]) => [...row, b]);
-  var count = py.len(rows);
-  for (var [i, pivot] of py.enumerate(rows)) {
-    var inverse = py.div(1.0, py.item(pivot, i));
-    for (var row of py.slice(rows, py.add(i, 1), null, null)) {
-      var factor = py.mul(py.item(row, i), inverse);
-      for (var j = py.add(i, 1); j < py.add(count, 1); j += 1) {
-        py.put(row, j, py.sub(py.item(row, j), py.mul(factor, py.item(pivot, j))));
-      }
-    }
-  }
-  for (var i of py.reversed(py.range(count))) {
-    var known = py.item(py.item(rows, i), count);
-    for (var j = py.add(i, 1); j < count; j += 1) {
-      known = py.sub(known, py.mul(py.item(py.item(rows, i), j), py.item(py.item(rows, j), count)));
-    }
-    py.put(py.item(rows, i), count, py.div(known, py.item(py.item(rows, i), i)));
-  }
-  return [...rows].map((row) => py.item(row, count));
 }
 
 // tippetop.mechanics.stick_slip

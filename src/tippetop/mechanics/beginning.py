@@ -9,8 +9,6 @@ from tippetop.mechanics.motion import presses
 from tippetop.mechanics.rolling import (
     Acceleration,
     ContactPoint,
-    Slip,
-    Wrench,
     contact_motion,
     rolling_reserve,
     slip_length,
@@ -18,6 +16,7 @@ from tippetop.mechanics.rolling import (
 )
 from tippetop.mechanics.stick_slip import inner, scaled, size
 from tippetop.mechanics.unsolved import Unsolved
+from tippetop.mechanics.wrench import Slip, Wrench
 
 CHOICES = ((False, False), (True, False), (False, True), (True, True))
 """What is tried in turn where slip, and rolling, have ended: whether they go on all the same."""

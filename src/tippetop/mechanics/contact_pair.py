@@ -30,21 +30,11 @@ from typing import Any, NamedTuple
 from tippetop.mechanics.coulomb import TINY
 from tippetop.mechanics.friction import NO_TORQUE
 from tippetop.mechanics.motion import axis_rate
-from tippetop.mechanics.rolling import (
-    EAST,
-    NORTH,
-    ContactPoint,
-    Slip,
-    Wrench,
-    normal_wrench,
-    slip_length,
-    slip_reserve,
-    solve,
-    turning_with,
-)
+from tippetop.mechanics.rolling import ContactPoint, normal_wrench, slip_length, slip_reserve, turning_with
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
-from tippetop.mechanics.vectors import VERTICAL, Scalar, Vector, add, cross, dot, scale
+from tippetop.mechanics.vectors import VERTICAL, Scalar, Vector, add, cross, dot, scale, solve
+from tippetop.mechanics.wrench import EAST, NORTH, Slip, Wrench
 
 Tops = tuple[Top, Top]
 """A top with one, and with the other, of two of its surfaces active."""

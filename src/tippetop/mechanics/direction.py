@@ -9,9 +9,10 @@ small patch: Newton's method ends the search.
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
-from tippetop.mechanics.rolling import Slip, solve
 from tippetop.mechanics.stick_slip import inner, plus, scaled, size, tangents
 from tippetop.mechanics.unsolved import Unsolved
+from tippetop.mechanics.vectors import solve
+from tippetop.mechanics.wrench import Slip
 
 ROUNDS, ITERATIONS, NEWTON = 100, 50, 12
 """Rounds of the search, iterations in each, and steps of Newton's method that try to end it."""

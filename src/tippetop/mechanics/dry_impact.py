@@ -19,20 +19,13 @@ from tippetop.mechanics.ending import Vanishing
 from tippetop.mechanics.impact_process import SteppedProcess
 from tippetop.mechanics.impulse import FUZZ, Goal, Impulse, first_reach
 from tippetop.mechanics.motion import along_table
-from tippetop.mechanics.rolling import (
-    Acceleration,
-    ContactPoint,
-    Slip,
-    Wrench,
-    is_set_valued,
-    slip_length,
-    solve,
-    struck_wrench,
-)
+from tippetop.mechanics.rolling import Acceleration, ContactPoint, is_set_valued, slip_length, struck_wrench
 from tippetop.mechanics.runge_kutta import RungeKuttaStep
 from tippetop.mechanics.state import State
 from tippetop.mechanics.stick_slip import come_to_rest, inner, plus, scaled, size, slip_part
 from tippetop.mechanics.top import Top
+from tippetop.mechanics.vectors import solve
+from tippetop.mechanics.wrench import Slip, Wrench
 
 SLIP = Vanishing(slip=True)
 

@@ -15,12 +15,8 @@ from typing import NamedTuple
 
 from tippetop.mechanics.motion import angular_velocity, axis_rate
 from tippetop.mechanics.rolling import (
-    COUPLES,
-    FORCES,
     Acceleration,
     ContactPoint,
-    Slip,
-    Wrench,
     contact_motion,
     flat,
     going_on,
@@ -30,6 +26,7 @@ from tippetop.mechanics.rolling import (
 from tippetop.mechanics.stick_slip import HORIZON, inner, plus, scaled, size, slip_of, slip_part
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Horizontal, Scalar, Vector, add, dot, scale
+from tippetop.mechanics.wrench import COUPLES, FORCES, Slip, Wrench
 
 DIGITS, SLOW = 1e-11, 1e-9
 """Error of a velocity that is not followed by itself, in natural units, and one that is slow beside it."""

@@ -14,10 +14,11 @@ from typing import Self
 from tippetop.mechanics.impact_process import STUCK, SteppedProcess, slip_error
 from tippetop.mechanics.impulse import NO_IMPULSE, NORMAL, Goal, Impulse, Striking, first_reach
 from tippetop.mechanics.motion import point_velocity
-from tippetop.mechanics.rolling import Slip, is_set_valued
+from tippetop.mechanics.rolling import is_set_valued
 from tippetop.mechanics.runge_kutta import RungeKuttaStep
 from tippetop.mechanics.stick_slip import plus
 from tippetop.mechanics.vectors import Vector, add, cross, length, scale
+from tippetop.mechanics.wrench import Slip
 
 OPEN = 1e-9
 """Normal velocity of a contact that is closed, and slip that has ended, in units of what strikes."""

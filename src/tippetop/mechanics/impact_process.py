@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Self
 
 from tippetop.mechanics.impulse import FUZZ, NO_IMPULSE, NORMAL, Goal, Impulse, Striking, first_reach
-from tippetop.mechanics.rolling import Slip
 from tippetop.mechanics.roots import crossing
 from tippetop.mechanics.runge_kutta import (
     POWER,
@@ -20,6 +19,7 @@ from tippetop.mechanics.runge_kutta import (
 from tippetop.mechanics.state import State
 from tippetop.mechanics.stick_slip import scaled
 from tippetop.mechanics.unsolved import Unsolved
+from tippetop.mechanics.wrench import Slip
 
 LONGEST = 5.0
 """Step at most, in the time in which slip falls by a factor of e: so many times it are still stable."""

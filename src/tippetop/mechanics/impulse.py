@@ -5,12 +5,13 @@ from operator import mul
 from typing import NamedTuple, TypeAlias
 
 from tippetop.mechanics.motion import angular_velocity, point_velocity
-from tippetop.mechanics.rolling import COUPLES, DRILLING, FORCES, ContactPoint, Slip, Wrench, flat
+from tippetop.mechanics.rolling import ContactPoint, flat
 from tippetop.mechanics.roots import crossing
 from tippetop.mechanics.state import State
 from tippetop.mechanics.stick_slip import inner, plus
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Vector, add, length, scale
+from tippetop.mechanics.wrench import COUPLES, DRILLING, FORCES, Slip, Wrench
 
 FUZZ = 1e-14
 """Round-off in the velocity of the contact point, relative to what it is made of."""

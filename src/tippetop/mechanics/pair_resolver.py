@@ -15,10 +15,11 @@ from tippetop.mechanics.contact_pair import (
 )
 from tippetop.mechanics.direction import Resisted, directions
 from tippetop.mechanics.friction import NO_TORQUE
-from tippetop.mechanics.rolling import DRILLING, EAST, NORTH, Slip, Wrench, slip_length
+from tippetop.mechanics.rolling import slip_length
 from tippetop.mechanics.stick_slip import plus, scaled, size
 from tippetop.mechanics.unsolved import Unsolved
 from tippetop.mechanics.vectors import scale
+from tippetop.mechanics.wrench import DRILLING, EAST, NORTH, Slip, Wrench
 
 CUTS = 50
 """Bounds of the rolling at which patches slip, at most: a few find it to rounding."""

@@ -24,8 +24,9 @@ omega_z' to alpha w + (beta (e.w) + kappa omega_z') e and kappa (e.w) + delta om
 """
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple, TypeAlias
+from typing import Any, NamedTuple
 
+from tippetop.mechanics.branches import on_branch
 from tippetop.mechanics.friction import NO_TORQUE, FrictionLaw
 from tippetop.mechanics.motion import (
     angular_velocity,
@@ -36,29 +37,8 @@ from tippetop.mechanics.motion import (
 )
 from tippetop.mechanics.surface import contact_vector
 from tippetop.mechanics.top import Top
-from tippetop.mechanics.vectors import VERTICAL, Horizontal, Scalar, Vector, add, cross, dot, scale
-
-Slip: TypeAlias = tuple[Scalar, ...]
-"""The velocity zeta, m/s, or its direction: two components, or three where drilling is resisted."""
-
-EAST: Vector = (1.0, 0.0, 0.0)
-NORTH: Vector = (0.0, 1.0, 0.0)
-
-
-class Wrench(NamedTuple):
-    """A force at the contact point, N, and a torque, N m; or both per unit of something."""
-
-    force: Vector
-    torque: Vector
-
-
-FORCES = (Wrench(EAST, NO_TORQUE), Wrench(NORTH, NO_TORQUE), Wrench(VERTICAL, NO_TORQUE))
-DRILLING = Wrench(NO_TORQUE, VERTICAL)
-COUPLES = (Wrench(NO_TORQUE, EAST), Wrench(NO_TORQUE, NORTH))
-
-
-Held: TypeAlias = tuple[int, Wrench]
-"""A component that is held, as `ContactPoint.holding` has it, and what holds it."""
+from tippetop.mechanics.vectors import Horizontal, Scalar, Vector, add, cross, dot, scale, solve
+from tippetop.mechanics.wrench import COUPLES, DRILLING, FORCES, Held, Slip, Wrench
 
 
 class Acceleration(NamedTuple):
@@ -302,79 +282,6 @@ def is_set_valued(law: FrictionLaw) -> bool:
     return hasattr(law, "reserve")
 
 
-def is_branched(law: FrictionLaw) -> bool:
-    """Whether a law is made of branches, and knows itself which holds, or is one of them."""
-    return hasattr(whole_law(law), "branch")
-
-
-def whole_law(law: FrictionLaw) -> Any:
-    """A law, the whole of it where there is but a branch."""
-    return getattr(law, "whole", law)
-
-
-def on_branch(top: Top, slip: Slip) -> Top:
-    """A top with the branch of its law that holds where it slips, or in that direction; of floats."""
-    if not is_branched(top.friction):
-        return top
-    return top._replace(friction=whole_law(top.friction).branch(slip))
-
-
-def on_numbered_branch(top: Top, slip: Slip) -> Top:
-    """The same where a number tells the branch, for arrays, or for floats that share equations."""
-    if not is_branched(top.friction):
-        return top
-    return top._replace(friction=whole_law(top.friction).numbered_branch(slip))
-
-
-def on_other_branch(top: Top) -> Top:
-    """A top with the branch of its law, or of its limit surface, that takes over where its own ends."""
-    law: Any = top.friction
-    return top._replace(friction=law.other_branch())
-
-
-def off_branch(top: Top) -> Top:
-    """A top with the whole of its law, if it has but a branch of it."""
-    return top._replace(friction=whole_law(top.friction))
-
-
-def on_limit_branch(top: Top, wrench: Wrench) -> Top:
-    """A top with the branch of its law's limit surface that belongs to what holds it at rest; of floats."""
-    if not is_branched(top.friction):
-        return top
-    return top._replace(friction=whole_law(top.friction).limit_branch(wrench.force[2], wrench.torque[2]))
-
-
-def has_limit_branches(law: FrictionLaw) -> bool:
-    """Whether a law is one of the branches of a limit surface."""
-    return hasattr(law, "limit_guard")
-
-
-def limit_guard(top: Top, wrench: Wrench) -> Scalar:
-    """Positive as long as the branch of the limit surface that a body at rest has is the one it is on."""
-    law: Any = top.friction
-    return law.limit_guard(wrench.force[2], wrench.torque[2])
-
-
 def flat(motion: Acceleration) -> tuple[Scalar, ...]:
     """Six numbers in a row."""
     return (*motion.point, *motion.turning)
-
-
-def solve(matrix: list[list[Scalar]], right: list[Scalar]) -> list[Scalar]:
-    """Solution of a few linear equations, by elimination without pivots: nearly symmetric and definite."""
-    if len(right) == 1:
-        return [right[0] / matrix[0][0]]
-    rows = [[*row, b] for row, b in zip(matrix, right, strict=True)]
-    count = len(rows)
-    for i, pivot in enumerate(rows):
-        inverse = 1.0 / pivot[i]
-        for row in rows[i + 1 :]:
-            factor = row[i] * inverse
-            for j in range(i + 1, count + 1):
-                row[j] = row[j] - factor * pivot[j]
-    for i in reversed(range(count)):
-        known = rows[i][count]
-        for j in range(i + 1, count):
-            known = known - rows[i][j] * rows[j][count]
-        rows[i][count] = known / rows[i][i]
-    return [row[count] for row in rows]

@@ -14,11 +14,11 @@ from operator import mul
 from typing import Any, NamedTuple, Protocol, TypeAlias
 
 from tippetop.mechanics.ending import Closing, Vanishing, rates_in_time
-from tippetop.mechanics.rolling import Slip, solve
 from tippetop.mechanics.series import PLAIN, Series, horner, solved, unknown
 from tippetop.mechanics.stick_slip import inner, plus, scaled, tangents
 from tippetop.mechanics.top import Top
-from tippetop.mechanics.vectors import Scalar
+from tippetop.mechanics.vectors import Scalar, solve
+from tippetop.mechanics.wrench import Slip
 
 LOST, SHORTER = 0.5, 0.9
 """Part of what a speed grows by at first that it may lose, and the factor by which times are tried."""

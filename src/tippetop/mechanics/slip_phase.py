@@ -18,10 +18,11 @@ from typing import NamedTuple, Protocol
 from tippetop.mechanics.ending import Closing, Vanishing, slip_beside
 from tippetop.mechanics.friction import NO_TORQUE
 from tippetop.mechanics.motion import axis_rate
-from tippetop.mechanics.rolling import Acceleration, ContactPoint, Slip, Wrench
+from tippetop.mechanics.rolling import Acceleration, ContactPoint
 from tippetop.mechanics.stick_slip import inner, plus, scaled
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import Scalar, add, scale
+from tippetop.mechanics.wrench import Slip, Wrench
 
 STAGES = 16
 """Points in a step: order 32 at its end."""

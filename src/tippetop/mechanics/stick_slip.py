@@ -16,17 +16,12 @@ from collections.abc import Sequence
 from typing import Any
 
 from tippetop.mechanics.motion import angular_velocity, axial_spin, point_velocity
-from tippetop.mechanics.rolling import (
-    Slip,
-    slip_length,
-    velocity_without_slip,
-    without_drilling,
-    without_rolling,
-)
+from tippetop.mechanics.rolling import slip_length, velocity_without_slip, without_drilling, without_rolling
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.surface import contact_vector
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Horizontal, Scalar, Vector
+from tippetop.mechanics.wrench import Slip
 
 HORIZON = 0.05
 """How long before its end slip is followed in a clock of its own, in natural units of time."""

@@ -58,3 +58,23 @@ def length(a: Vector) -> Scalar:
 def power(base: Scalar, exponent: float) -> Scalar:
     """A power that is not whole; no number of a negative float, of which Python makes a complex number."""
     return nan if isinstance(base, float) and base < 0.0 else base**exponent
+
+
+def solve(matrix: list[list[Scalar]], right: list[Scalar]) -> list[Scalar]:
+    """Solution of a few linear equations, by elimination without pivots: nearly symmetric and definite."""
+    if len(right) == 1:
+        return [right[0] / matrix[0][0]]
+    rows = [[*row, b] for row, b in zip(matrix, right, strict=True)]
+    count = len(rows)
+    for i, pivot in enumerate(rows):
+        inverse = 1.0 / pivot[i]
+        for row in rows[i + 1 :]:
+            factor = row[i] * inverse
+            for j in range(i + 1, count + 1):
+                row[j] = row[j] - factor * pivot[j]
+    for i in reversed(range(count)):
+        known = rows[i][count]
+        for j in range(i + 1, count):
+            known = known - rows[i][j] * rows[j][count]
+        rows[i][count] = known / rows[i][i]
+    return [row[count] for row in rows]

@@ -9,8 +9,8 @@ import numpy as np
 
 from tippetop.contact.striking import MOST_PIECES, impact_motion
 from tippetop.integrators.base import Array
+from tippetop.mechanics.branches import on_other_branch
 from tippetop.mechanics.impulse import contact_velocity
-from tippetop.mechanics.rolling import on_other_branch
 from tippetop.mechanics.state import State
 from tippetop.mechanics.surface import contact_vector
 from tippetop.mechanics.top import Kind, Top

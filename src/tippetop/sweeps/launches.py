@@ -9,8 +9,8 @@ from tippetop.contact.choice import rules_for
 from tippetop.contact.rules import Rules
 from tippetop.contact.sliding import Sliding
 from tippetop.integrators.base import Array
+from tippetop.mechanics.branches import is_branched, off_branch, on_numbered_branch
 from tippetop.mechanics.motion import along_table
-from tippetop.mechanics.rolling import is_branched, off_branch, on_numbered_branch
 from tippetop.mechanics.state import State
 from tippetop.mechanics.stick_slip import slip_of
 from tippetop.mechanics.top import Kind, Top

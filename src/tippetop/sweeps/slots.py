@@ -6,8 +6,8 @@ import numpy as np
 
 from tippetop.contact.mode import Outcome
 from tippetop.integrators.base import Array
+from tippetop.mechanics.branches import is_branched, on_other_branch
 from tippetop.mechanics.motion import along_table, on_table
-from tippetop.mechanics.rolling import is_branched, on_other_branch
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.units import Units

@@ -24,8 +24,9 @@ from scipy.linalg import expm
 
 from tippetop.errors import InvalidInput
 from tippetop.integrators.base import Array
+from tippetop.mechanics.branches import on_branch
 from tippetop.mechanics.motion import sliding_rates
-from tippetop.mechanics.rolling import is_set_valued, on_branch
+from tippetop.mechanics.rolling import is_set_valued
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.top import Top, natural, natural_units
 from tippetop.mechanics.units import Units
