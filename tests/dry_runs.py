@@ -6,8 +6,8 @@ import pytest
 
 pytest.importorskip("heyoka")
 
+from tippetop.contact.leaving import FreeToFly
 from tippetop.contact.mode import EventKind, Outcome
-from tippetop.contact.rules import FreeToFly
 from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators.taylor import Taylor
 from tippetop.mechanics.motion import on_table

@@ -9,9 +9,9 @@ from typer.testing import CliRunner
 import tippetop as tt
 from tippetop.cli.commands import app
 from tippetop.contact.choice import rules_for
-from tippetop.contact.passing import Stopping
-from tippetop.contact.rules import FreeToFly
+from tippetop.contact.leaving import FreeToFly
 from tippetop.contact.sliding import Sliding
+from tippetop.contact.stopping import Stopping
 from tippetop.integrators import has_taylor, make_integrator
 from tippetop.mechanics.coulomb import CoulombLaw
 from tippetop.mechanics.motion import along_table, contact, on_table, presses

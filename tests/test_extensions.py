@@ -13,8 +13,8 @@ from pydantic import Field, model_validator
 
 import tippetop as tt
 from tippetop.catalogue import SWEPT, Fault
+from tippetop.contact.leaving import FreeToFly
 from tippetop.contact.mode import IntegratedMode, Reaction, Transition
-from tippetop.contact.rules import FreeToFly
 from tippetop.errors import InvalidInput
 from tippetop.integrators.base import Guard, Motion
 from tippetop.mechanics.friction import NO_TORQUE, FrictionLaw, Traction

@@ -10,13 +10,14 @@ from scipy.spatial.transform import Rotation
 import moreau
 import tippetop as tt
 from lying import R, lying, resisted
-from tippetop.contact import closed, double, two_closed
+from tippetop.contact import closed, double, two_closed, two_resolver
 from tippetop.contact.choice import rules_for
 from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators import make_integrator
-from tippetop.mechanics.contact_pair import ContactPair, pair_motion, turning_along
+from tippetop.mechanics.contact_pair import ContactPair, turning_along
 from tippetop.mechanics.friction import Traction
 from tippetop.mechanics.motion import angular_velocity
+from tippetop.mechanics.pair_motion import pair_motion
 from tippetop.mechanics.top import natural, natural_state, natural_units
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Horizontal, Scalar, Vector
@@ -172,7 +173,7 @@ def test_rolling_that_slip_held_up_begins_when_that_ends(monkeypatch: pytest.Mon
     }
     found = []
     for slowest in (1e-9, 1e-6):
-        for module in (double, two_closed):
+        for module in (double, two_closed, two_resolver):
             monkeypatch.setattr(module, "SLOWEST_SLIP", slowest)
         closed.motion_of.cache_clear()
         run = followed(body.replace(launch), 0.004)

@@ -18,10 +18,11 @@ from tippetop.contact.double_sticking import (
 )
 from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators import make_integrator
-from tippetop.mechanics.contact_pair import ContactPair, pair_motion, slip_apart
+from tippetop.mechanics.contact_pair import ContactPair, slip_apart
 from tippetop.mechanics.flight import gap_rate
 from tippetop.mechanics.friction import NO_TORQUE
 from tippetop.mechanics.motion import angular_velocity
+from tippetop.mechanics.pair_motion import pair_motion
 from tippetop.mechanics.surface import contact_vector
 from tippetop.mechanics.top import natural, natural_state, natural_units
 from tippetop.mechanics.wrench import Wrench

@@ -9,9 +9,9 @@ from scipy.integrate import solve_ivp
 from dry_runs import DryRun
 from tippetop.contact.arriving import DEGREE, Arrival, arriving
 from tippetop.contact.closing import closing_of
+from tippetop.contact.leaving import Bilateral
 from tippetop.contact.mode import EventKind
-from tippetop.contact.passing import Stopping
-from tippetop.contact.rules import Bilateral
+from tippetop.contact.stopping import Stopping
 from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators import make_integrator
 from tippetop.integrators.scipy_methods import SciPy

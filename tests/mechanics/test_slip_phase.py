@@ -7,11 +7,11 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from dry_runs import launched
-from tippetop.contact import slipping
+from tippetop.contact import slip_step
+from tippetop.contact.leaving import FreeToFly
 from tippetop.contact.loosening import Loosening
 from tippetop.contact.mode import EventKind
-from tippetop.contact.rules import FreeToFly
-from tippetop.contact.slipping import dips, parts_left
+from tippetop.contact.slipping import change_over, dips, parts_left
 from tippetop.contact.sticking import Sticking
 from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators import iteration, make_integrator
@@ -88,12 +88,12 @@ def test_series_and_clocks_tell_the_same_of_it(name, monkeypatch):
 def test_it_is_the_same_where_nothing_is_compiled(monkeypatch):
     kinds, times = told(followed("sphere", 6.0)[1])
     monkeypatch.setattr(iteration, "has_llvm", lambda: False)
-    for cached in (slipping.compiled_step, slipping.machinery_of):
+    for cached in (slip_step.compiled_step, slip_step.machinery_of):
         cached.cache_clear()
     try:
         others, seconds = told(followed("sphere", 6.0)[1])
     finally:
-        for cached in (slipping.compiled_step, slipping.machinery_of):
+        for cached in (slip_step.compiled_step, slip_step.machinery_of):
             cached.cache_clear()
     assert kinds == others
     assert times == pytest.approx(seconds, abs=1e-12)
@@ -103,13 +103,13 @@ def test_a_share_of_a_piece_is_the_same_polynomial():
     whole = np.random.default_rng(1).normal(size=(3, 3, STAGES))
     numbers = iteration.room(whole.size)
     iteration.put_from(numbers, 0, whole.ravel().tolist())
-    np.testing.assert_array_equal(slipping.pieces_of(numbers, 3, 2.0), whole[:2].ravel())
-    pieces = slipping.pieces_of(numbers, 3, 1.3)
+    np.testing.assert_array_equal(slip_step.pieces_of(numbers, 3, 2.0), whole[:2].ravel())
+    pieces = slip_step.pieces_of(numbers, 3, 1.3)
     cut, powers = pieces.reshape(2, 3, STAGES), np.arange(1, STAGES + 1)
     np.testing.assert_array_equal(cut[0], whole[0])
     np.testing.assert_allclose(cut[1] @ 0.7**powers, whole[1] @ 0.21**powers, rtol=1e-14)
     change = whole[0].sum(axis=1) + whole[1] @ 0.3**powers
-    np.testing.assert_allclose(slipping.change_over(pieces, 3), change, rtol=1e-14)
+    np.testing.assert_allclose(change_over(pieces, 3), change, rtol=1e-14)
 
 
 def test_the_end_of_a_polynomial_is_foreseen_and_a_dip_seen():

@@ -10,11 +10,11 @@ from creeping import creep_rates, direction_of_slip
 from dry_runs import DryRun, launched
 from tippetop.contact.closed import SLIP, split
 from tippetop.contact.growth import growth
+from tippetop.contact.leaving import Bilateral
 from tippetop.contact.loosening import Loosening
 from tippetop.contact.mode import EventKind
-from tippetop.contact.passing import Stopping
-from tippetop.contact.rules import Bilateral
 from tippetop.contact.sticking import Sticking
+from tippetop.contact.stopping import Stopping
 from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators import has_taylor, make_integrator
 from tippetop.integrators.scipy_methods import SciPy

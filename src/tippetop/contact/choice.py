@@ -1,8 +1,9 @@
 """Which rules hold for a top, and what is told of one that ends as it begins."""
 
 from tippetop.contact.flight import Flight
+from tippetop.contact.leaving import Bilateral, FreeToFly, StopAtLiftOff
 from tippetop.contact.mode import Mode
-from tippetop.contact.rules import Bilateral, FreeToFly, Rules, StopAtLiftOff
+from tippetop.contact.rules import Rules
 from tippetop.contact.several import OnSeveral
 from tippetop.contact.sliding import Sliding
 from tippetop.contacts import Contact

@@ -9,8 +9,9 @@ from tippetop.contact.closed import ROLLING, ROLLING_STOPPING, GuardValue, State
 from tippetop.contact.mode import Before, Event, EventKind, Reaction, Transition
 from tippetop.contact.surfaces import number_of
 from tippetop.mechanics.branches import is_branched, on_numbered_branch, on_other_branch
-from tippetop.mechanics.contact_pair import ContactPair, PairMotion, Tops, pair_motion
+from tippetop.mechanics.contact_pair import ContactPair, Tops
 from tippetop.mechanics.motion import along_table, axis_rate, on_table
+from tippetop.mechanics.pair_motion import PairMotion, pair_motion
 from tippetop.mechanics.pair_resolver import rolling_way
 from tippetop.mechanics.rolling import is_set_valued, slip_length, without_rolling
 from tippetop.mechanics.state import SlidingState, State

@@ -6,10 +6,11 @@ from typing import Self
 
 from tippetop.contact.double import SLOWEST_SLIP
 from tippetop.contact.flight import TOUCHING
+from tippetop.contact.leaving import FreeToFly
 from tippetop.contact.mode import Before, Event, EventKind, Outcome, Transition
-from tippetop.contact.rules import FreeToFly
 from tippetop.contact.surfaces import number_of
-from tippetop.contact.two_closed import rolling_of, settled, slipping
+from tippetop.contact.two_closed import rolling_of
+from tippetop.contact.two_resolver import settled, slipping
 from tippetop.integrators.base import Integrator
 from tippetop.mechanics.contact_pair import ContactPair, Tops, without_tilting
 from tippetop.mechanics.flight import gap, gap_rate

@@ -3259,258 +3259,6 @@ const driven_motion = py.cached((kind, ending, components, degree) => {
   );
 });
 
-// tippetop.contact.arriving
-const [DEGREE_of_arriving, ACCURACY] = [12, 1e-13];
-const [FIRST, MORE] = [3, 2];
-const [MOST, TURNS] = [16, 8];
-const [SETTLED, CLOSE] = [1e-14, 1e-07];
-const [AT_REST, UNSEEN] = [1e-12, 1e-15];
-const TURNING = 1.0;
-
-/** The end of slip. */
-class Arrival extends py.NamedTuple {
-  static fields = ["left", "rows"];
-  get 0() { return this.left; }
-  get 1() { return this.rows; }
-  constructor(left, rows) {
-    super();
-    this.left = left;
-    this.rows = rows;
-  }
-  /** The numbers where a part of the time is left. */
-  at(part) {
-    return [...this.rows].map((row) => horner(row, py.mul(py.neg(part), this.left)));
-  }
-  /** Whether the last two terms are small, those of zeta beside zeta. */
-  get serves() {
-    var whole = size(py.tuple(this.at(1.0).slice(6)));
-    return py.all(
-      [[this.rows.slice(0, 6), 1.0], [this.rows.slice(6), whole]].flatMap(
-        ([rows, unit]) => py.range(py.sub(py.len(rows[0]), 2), py.len(rows[0])).map(
-          (k) => size(
-            py.tuple([...rows].map((row) => py.mul(py.item(row, k), py.pow(this.left, k))))
-          ) < py.mul(ACCURACY, unit)
-        )
-      )
-    );
-  }
-  /** Coefficients in powers of the time since the start. */
-  get onwards() {
-    var rows = [];
-    for (var row of this.rows) {
-      var shifted = py.list(row);
-      for (var first = 0; first < py.sub(py.len(row), 1); first += 1) {
-        for (var k = py.sub(py.len(row), 2); k > py.sub(first, 1); k += -1) {
-          py.put(shifted, k, py.sub(py.item(shifted, k), py.mul(this.left, py.item(shifted, py.add(k, 1)))));
-        }
-      }
-      rows.push(shifted);
-    }
-    return rows;
-  }
-}
-
-/** The end of slip from a state on; None where its direction has not come to rest. */
-function arriving(here, ending, top, integrator) {
-  var rates = rates_in_time(here, ending, top);
-  var along = inner(rates.xi, here.direction);
-  if (along >= 0.0) {
-    return null;
-  }
-  var left = py.div(py.neg(here.speed), along);
-  var now = [...here.axis, ...here.momentum];
-  var end = plus(now, scaled(left, [...rates.axis, ...rates.momentum]));
-  var way = here.direction;
-  var at_rest = py.max(AT_REST, py.getattr(integrator, "tolerance", 0.0));
-  try {
-    for (var turn = 0; turn < MOST; turn += 1) {
-      var axis = [end[0], end[1], end[2]];
-      var momentum = [end[3], end[4], end[5]];
-      if (!(py.abs(axis[2]) < 1.0)) {
-        return null;
-      }
-      var known = resting_way(axis, momentum, way, ending, top, integrator);
-      var degree = py.min(py.add(FIRST, py.mul(MORE, turn)), DEGREE_of_arriving);
-      var begin = onset(known, 1, degree);
-      way = known.first;
-      var found = new Arrival(time_to(here.speed, begin.rows, left), begin.rows);
-      left = found.left;
-      var then = found.at(1.0);
-      var off = plus(now, scaled(-1.0, py.tuple(then.slice(0, 6))));
-      var speed = size(py.tuple(then.slice(6)));
-      var aside = py.math.dist(here.direction, scaled(py.div(1.0, speed), py.tuple(then.slice(6))));
-      var rounding = py.mul(aside, here.speed) < UNSEEN;
-      if (!(aside < py.mul(TURNING, left) || py.truth(rounding))) {
-        return null;
-      }
-      if (
-        py.eq(degree, DEGREE_of_arriving) && py.max(size(off), py.abs(py.sub(speed, here.speed))) < SETTLED
-      ) {
-        return (py.mul(aside, left) < at_rest || py.truth(rounding)) && py.truth(found.serves) ? found : null;
-      }
-      end = plus(end, off);
-    }
-  } catch (error) {
-    if (!(error instanceof py.ArithmeticError)) throw error;
-    return null;
-  }
-  return null;
-}
-
-/** The series at the end, in the direction in which slip ends there, by Newton's method from another one. */
-function resting_way(axis, momentum, way, ending, top, integrator) {
-  for (var turn = 0; turn < TURNS; turn += 1) {
-    var known = growth([axis, momentum, way], top, ending, [], DEGREE_of_arriving, integrator);
-    var rate = known.accelerations(0);
-    var across = tangents(way);
-    var along = inner(rate, way);
-    var slopes = turned_slopes(known, across);
-    var matrix = [...across].map(
-      (a) => py.zip(across, slopes).map(([b, g]) => py.sub(inner(a, g), a === b ? along : 0.0))
-    );
-    var turned = solve(matrix, [...across].map((a) => py.neg(inner(a, rate))));
-    if (!(py.math.hypot(...turned) < 1.0)) {
-      throw new Unsolved("slip does not end near this direction");
-    }
-    for (var [amount, b] of py.zip(turned, across)) {
-      way = plus(way, scaled(amount, b));
-    }
-    way = scaled(py.div(1.0, size(way)), way);
-    if (along < 0.0 && py.math.hypot(...turned) < CLOSE) {
-      return growth([axis, momentum, way], top, ending, [], DEGREE_of_arriving, integrator);
-    }
-  }
-  throw new Unsolved("no direction is found in which slip ends");
-}
-
-/** How long before its end slip had this speed. */
-function time_to(speed, rows, guess) {
-  var left = guess;
-  for (var turn = 0; turn < MOST; turn += 1) {
-    var then = size(py.tuple([...rows.slice(6)].map((row) => horner(row, py.neg(left)))));
-    var better = py.div(py.mul(left, speed), then);
-    if (py.abs(py.sub(better, left)) <= py.mul(SETTLED, left)) {
-      return better;
-    }
-    left = better;
-  }
-  return left;
-}
-
-// tippetop.contact.closing
-const [REOPENING, LANDED, TIME, OVERTAKEN, JAMMED] = ["reopening", "landed", "time", "overtaken", "jammed"];
-const OWN = [REOPENING, LANDED, TIME];
-const LONGEST = 100.0;
-const SOON = [0.3, 2.0];
-const FEW_of_closing = 16;
-const MOST_of_closing = 16;
-const STALLED = 1e-09;
-
-/** The end of slip, or of rolling, in its clock, arc by arc. */
-function* followed(integrator, motion, parameters, start) {
-  var arcs = 0;
-  for (
-    var end of [
-      ...[...SOON].filter((part) => py.add(start[0], part) < LONGEST).map((part) => py.add(start[0], part)),
-      LONGEST
-    ]
-  ) {
-    for (var arc of integrator.integrate(motion, parameters, start, end)) {
-      arcs = py.add(arcs, 1);
-      var stalled = py.sub(arc.solution.end, start[0]) < py.mul(STALLED, start[0]);
-      var many = py.and(
-        arc.guard === null,
-        () => py.and(arc.failure === null, () => py.or(py.eq(arcs, MOST_of_closing), () => stalled))
-      );
-      yield py.truth(many) ? py.replace(
-        arc,
-        { failure: "slip, or rolling, takes too many steps to end" }
-      ) : arc;
-      if (py.truth(many) || arc.guard !== null || arc.failure !== null) {
-        return null;
-      }
-      start = [arc.solution.end, arc.end_state];
-    }
-  }
-}
-
-/** Equations of motion in the clock of `ending` where a velocity is about to end; time is the last number. */
-const closing_motion = py.cached((kind, ending, guarded) => {
-  var top_of = (numbers) => {
-    return kind.top(py.tuple(numbers.slice(0, kind.numbers)));
-  };
-  var rates = (y, numbers) => {
-    var rate = closing_rates(closing_of(y, ending), ending, top_of(numbers));
-    return [...rate.axis, ...rate.momentum, ...rate.velocity, ...rate.direction, rate.speed, rate.time];
-  };
-  var guard = (name, value) => {
-    return new Guard(name, (y, numbers) => value(closing_of(y, ending), top_of(numbers), numbers));
-  };
-  var held_by = (state, top) => {
-    return rates_in_time(state, ending, top).wrench;
-  };
-  var on_branch_still = (state, top, _) => {
-    return branch_guard(py.or(slip_beside(state, ending, top), () => state.direction), top);
-  };
-  var guards = [
-    guard(REOPENING, (state, top, _) => reopening_guard(state, ending, top)),
-    guard(LANDED, (state, top, numbers) => landing_guard(state, ending, top, py.item(numbers, -1))),
-    guard(TIME, (state, _, numbers) => py.sub(py.item(numbers, -2), state.time))
-  ];
-  var top = kind.example;
-  var law = top.friction;
-  var stuck = py.and(!py.truth(ending.slip), () => ending.held);
-  if (py.truth(guarded)) {
-    guards.push(guard(LIFT_OFF, (state, top, _) => held_by(state, top).force[2]));
-  }
-  if (!py.truth(ending.held)) {
-    guards.push(guard(JAMMED, (state, top, _) => jamming_guard(state, ending, top)));
-  }
-  if (!py.truth(ending.held) && py.truth(top.resists_rolling) && py.truth(is_set_valued(law))) {
-    guards.push(guard(OVERTAKEN, (state, top, _) => overtaking_guard(state, ending, top)));
-  }
-  if (py.truth(ending.held)) {
-    var held = py.truth(ending.slip) ? ROLLING : SLIP;
-    guards.push(guard(held, (state, top, _) => spared(state, ending, top)));
-  }
-  if ((py.truth(ending.slip) || py.truth(ending.moves)) && py.truth(py.hasattr(law, "branch_guard"))) {
-    guards.push(guard(BRANCH, on_branch_still));
-  }
-  if (py.truth(stuck) && py.truth(has_limit_branches(law))) {
-    guards.push(guard(LIMIT_BRANCH, (state, top, _) => limit_guard(top, held_by(state, top))));
-  }
-  guards = py.add(guards, [...surface_guards(top)].map(([name, value]) => guard(name, _of_axis(value))));
-  var size = py.add(py.truth(ending.moves) ? 10 : 8, py.len(ending.wrenches(top)));
-  return new Motion(rates, size, py.add(kind.numbers, 2), py.tuple(guards), false);
-});
-
-function _of_axis(value) {
-  return (state, top, _) => value(top, state.axis);
-}
-
-/** Positive while the table can hold what is held beside a velocity that ends. */
-function spared(state, ending, top) {
-  var wrench = rates_in_time(state, ending, top).wrench;
-  if (py.truth(ending.slip)) {
-    var point = ContactPoint.of(state.axis, state.momentum, top);
-    return rolling_reserve(point, wrench, state.direction);
-  }
-  return slip_reserve(top, wrench);
-}
-
-/** The state of a velocity that is about to end, from its numbers. */
-function closing_of(y, ending) {
-  var count = py.len(y);
-  var free = py.truth(ending.moves) ? 8 : 6;
-  return new Closing(
-    ...split(y),
-    py.tuple(y.slice(6, free)),
-    py.tuple(py.slice(y, free, py.sub(count, 2), null)),
-    py.item(y, py.sub(count, 2)),
-    py.item(y, py.sub(count, 1))
-  );
-}
-
 // tippetop.contact.sliding
 const [NEARING, PARTING] = ["nearing", "parting"];
 
@@ -3629,14 +3377,10 @@ class StickingWithoutRolling extends Sticking {
 }
 
 // tippetop.contact.passing
-const LANDING = [3e-08, 1e-16];
-const SETTLED_of_passing = 1e-14;
-const SLOWEST = 1e-12;
+const SETTLED = 1e-14;
 const LOOKS_of_passing = 16;
 const SHORT = 1e-14;
 const DEGREE_of_passing = 14;
-const SHARE = 0.01;
-const RESOLVED = 1e-15;
 
 /** A moment between two modes, which is told as the one of them in which something moves. */
 class Passing extends Mode {
@@ -3731,188 +3475,6 @@ class Resting extends Mode {
   }
 }
 
-/** The last moments of slip, or of rolling, in a clock of their own (see `tippetop.mechanics.ending`). */
-class Stopping extends Passing {
-  static fields = ["top", "rules", "ending", "begin"];
-  constructor(top, rules, ending, begin = []) {
-    super(top, rules, ending);
-    this.begin = begin;
-  }
-  /** Its equations in the clock. */
-  get motion() {
-    return closing_motion(this.top.kind, this.ending, !py.truth(this.rules.pulls));
-  }
-  /** Follow it to its end, or to where it is no longer about to end. */
-  *segments(time, state, end, integrator) {
-    var begin = py.or(this.begin, () => this._clock(state));
-    var [arcs, rest, arrival] = this._followed(begin, py.sub(end, time), integrator);
-    var here = closing_of(py.truth(arcs) ? py.list(py.item(arcs, -1).end_state) : begin, this.ending);
-    var arc = py.truth(arcs) && arrival === null ? py.item(arcs, -1) : null;
-    var until = py.float(here.time);
-    if (arc !== null && arc.failure !== null && here.speed < SLOWEST) {
-      rest = py.replace(here, { speed: 0.0 });
-      arc = null;
-    }
-    if (arrival === null) {
-      var last = this.state(shown(rest));
-      var onwards = straight(shown(here), shown(rest), until, rest.time);
-    } else {
-      last = this.state(arrival.at(0.0));
-      onwards = in_one_step(arrival.onwards, until, arrival.left);
-    }
-    var solution = this._in_time(arcs, until, onwards).moved(time, py.add(time, onwards.end));
-    var then = this._next(arc, solution.end, last);
-    var steps = py.sum([...arcs].map((one) => one.steps));
-    steps = py.add(steps, arrival !== null);
-    var method = py.next(
-      [...py.slice(arcs, null, null, -1)].filter((one) => one.method !== null).map((one) => one.method),
-      null
-    );
-    yield new Segment(this, solution, last, then, steps, steps, undefined, method);
-  }
-  /** It in its clock; and where it ends after that, in one step, if not by power series. */
-  _followed(begin, longest, integrator) {
-    var here = closing_of(begin, this.ending);
-    var start = [0.0, as_array(begin)];
-    var arcs = py.list();
-    var arrival = this._arrival(here, longest, integrator);
-    var rest = here;
-    for (var horizon of LANDING) {
-      if (arrival !== null || landing_guard(here, this.ending, this.top, horizon) <= 0.0) {
-        continue;
-      }
-      for (var arc of followed(integrator, this.motion, [...this.top.numbers, longest, horizon], start)) {
-        arcs.push(arc);
-        start = [arc.solution.end, arc.end_state];
-        here = closing_of(py.list(arc.end_state), this.ending);
-        if (arc.guard === null && arc.failure === null && arc.steps >= FEW_of_closing) {
-          arrival = this._arrival(here, longest, integrator);
-        }
-        if (arrival !== null) {
-          return [arcs, here, arrival];
-        }
-      }
-      if (!py.eq(py.item(arcs, -1).guard, LANDED)) {
-        return [arcs, here, null];
-      }
-      var [rest, doubt] = landed(here, this.ending, this.top);
-      if (doubt < SETTLED_of_passing) {
-        break;
-      }
-    }
-    return [
-      arcs,
-      py.truth(arcs) || arrival !== null ? rest : landed(here, this.ending, this.top)[0],
-      arrival
-    ];
-  }
-  /** The end of slip by power series, if its direction has come to rest and nothing else happens. */
-  _arrival(here, longest, integrator) {
-    if (!py.truth(this.ending.slip) || slip_length(this.top.friction) === null) {
-      return null;
-    }
-    var found = arriving(here, this.ending, this.top, integrator);
-    if (found === null || py.add(here.time, found.left) > longest) {
-      return null;
-    }
-    var numbers = [...this.top.numbers, longest, 0.0];
-    for (var look = 1; look < py.add(LOOKS_of_passing, 1); look += 1) {
-      var then = found.at(py.div(look, LOOKS_of_passing));
-      var xi = py.tuple(then.slice(6));
-      var clock = [...then.slice(0, 6), ...scaled(py.div(1.0, size(xi)), xi), size(xi), here.time];
-      if (
-        !py.truth(
-          py.all(
-            [...this.motion.guards].filter((one) => !py.contains(OWN, one.name)).map(
-              (one) => one.value(clock, numbers) > 0.0
-            )
-          )
-        )
-      ) {
-        return null;
-      }
-    }
-    var way = py.range(py.add(LOOKS_of_passing, 1)).map((look) => found.at(py.div(look, LOOKS_of_passing)));
-    return py.truth(passes_flat(this.top, way)) ? null : found;
-  }
-  /** The numbers of the clock at a state. */
-  _clock(state) {
-    var velocity = state.velocity.slice(0, 2);
-    var xi = this.ending.of(state.axis, state.momentum, velocity, this.top);
-    var free = py.truth(this.ending.moves) ? velocity : [];
-    return [...state.axis, ...state.momentum, ...free, ...scaled(py.div(1.0, size(xi)), xi), size(xi), 0.0];
-  }
-  _next(arc, time, state) {
-    var ending = this.ending;
-    var stuck = py.and(!py.truth(this.ending.slip), () => this.ending.held);
-    if (arc === null || py.eq(arc.guard, LANDED)) {
-      return this.rules.settled(time, state, [ending.slip, !py.truth(ending.slip)], ending.held);
-    }
-    if (arc.failure !== null || arc.guard === null) {
-      return new Transition(
-        [],
-        Outcome.FAILED,
-        state,
-        py.or(arc.failure, () => "the slip neither ends nor goes on")
-      );
-    }
-    var found = follow_surface(this, arc.guard, time, state);
-    if (found !== null) {
-      return found;
-    }
-    if (arc.guard === "time") {
-      return new Transition([], Outcome.COMPLETED, state);
-    }
-    if (arc.guard === "jammed") {
-      return this.rules.jammed(time, state);
-    }
-    if (arc.guard === "lift-off") {
-      return this.rules.lift_off(time, state);
-    }
-    if (arc.guard === "reopening") {
-      return new Transition([], this.rules.going_on(state, !py.truth(stuck)), state);
-    }
-    if (arc.guard === "overtaken") {
-      return new Transition(
-        [],
-        py.replace(this, { ending: new Vanishing(!py.truth(ending.slip)), begin: [] }),
-        state
-      );
-    }
-    if (py.contains(["branch", "limit branch"], arc.guard)) {
-      return new Transition([], this._onwards(arc, on_other_branch(this.top)), state);
-    }
-    if (py.contains(["slip", "rolling"], arc.guard)) {
-      var slip = arc.guard === "slip";
-      var event = this.rules.event(py.truth(slip) ? EventKind.SLIP : EventKind.ROLL, time);
-      return this.rules.giving_way(state, [event], new Vanishing(slip));
-    }
-    throw new py.AssertionError(`nothing is said of what follows ${py.str(arc.guard)}`);
-  }
-  /** The mode that takes the clock up where an arc leaves it, on another branch of the law. */
-  _onwards(arc, top) {
-    return py.replace(this, { top: top, begin: [...py.slice(py.list(arc.end_state), null, -1, null), 0.0] });
-  }
-  /** The numbers of the mode as polynomials in time: up to some time from the clock's, and the rest. */
-  _in_time(arcs, until, rest) {
-    var parts = [...arcs].filter((arc) => py.truth(py.len(arc.solution.terms))).map((arc) => arc.solution);
-    if (!py.truth(parts)) {
-      return rest;
-    }
-    var clock = DenseSolution.joined(parts);
-    var elapsed = py.sub(parts[0].size, 1);
-    var numbers = (times) => {
-      return shown(closing_of(clock.rows(clock.when(elapsed, times)), this.ending));
-    };
-    var knots = clock.knots_of(elapsed, until);
-    var solution = DenseSolution.fitted(numbers, thinned(knots), DEGREE_of_passing);
-    if (solution.unresolved > RESOLVED) {
-      solution = DenseSolution.fitted(numbers, knots, DEGREE_of_passing);
-    }
-    return rest.end > until ? DenseSolution.joined([solution, rest]) : solution;
-  }
-}
-
 /** Numbers that go from some to others in a straight line. */
 function straight(begin, last, start, end) {
   var rows = py.zip(begin, last).map(([a, b]) => [a, py.sub(b, a)]);
@@ -3925,18 +3487,6 @@ function in_one_step(rows, start, lasts) {
     (row) => [...row, ...py.mul([0.0], py.sub(py.add(DEGREE_of_passing, 1), py.len(row)))]
   );
   return DenseSolution.in_time([0.0, lasts], [terms]).moved(start, py.add(start, lasts));
-}
-
-/** Ends of steps, so few of them that each leaves but a share of the time to the last. */
-function thinned(knots) {
-  var end = py.item(knots, -1);
-  var found = [knots[0]];
-  for (var knot of py.slice(knots, 1, -1, null)) {
-    if (py.sub(end, knot) <= py.mul(SHARE, py.sub(end, py.item(found, -1)))) {
-      found.push(knot);
-    }
-  }
-  return [...found, end];
 }
 
 /** The numbers of a moment that passes: axis, momentum, velocity where it is free, and xi. */
@@ -4204,33 +3754,9 @@ function _answers(y, way, beside, ending, top) {
   return [[...tilting, ...rates(wrench, acceleration)], [0.0, 0.0, 0.0, ...rates(added, change)], normal];
 }
 
-// tippetop.contact.slipping
-const [FIRST_of_slipping, LEAST] = [0.5, 0.005];
-const [ENOUGH, MOST_of_slipping] = [1e-28, 50];
-const ACCURACY_of_slipping = 1e-22;
-const BEYOND = 1.05;
-const [DIP, NONE] = [0.1, 1e-11];
-const [PRESSED_of_slipping, CLEAR_of_slipping] = [0.1, 0.01];
-const [LONGER, SHORTER_of_slipping, SHORTEST, SAFETY] = [1.5, 0.8, 0.3, 0.9];
-const TINY_of_slipping = 1e-300;
-
-/** Slip that began, and how far it was followed. */
-class SlipPhase extends py.NamedTuple {
-  static fields = ["knots", "rows", "last", "ended", "sweeps"];
-  get 0() { return this.knots; }
-  get 1() { return this.rows; }
-  get 2() { return this.last; }
-  get 3() { return this.ended; }
-  get 4() { return this.sweeps; }
-  constructor(knots, rows, last, ended, sweeps) {
-    super();
-    this.knots = knots;
-    this.rows = rows;
-    this.last = last;
-    this.ended = ended;
-    this.sweeps = sweeps;
-  }
-}
+// tippetop.contact.slip_step
+const [ENOUGH, MOST] = [1e-28, 50];
+const [PRESSED_of_slip_step, CLEAR_of_slip_step] = [0.1, 0.01];
 
 /** What steps are made with. */
 class _Machinery extends py.NamedTuple {
@@ -4298,7 +3824,7 @@ class SlipStep extends py.Thing {
     put_rows(this.unknowns, 0, [...now.slice(0, this.layout.free), ...way], STAGES);
     this.sweeps = py.add(
       this.sweeps,
-      this.machinery.better(this.unknowns, this.given, this.found, ENOUGH, MOST_of_slipping)
+      this.machinery.better(this.unknowns, this.given, this.found, ENOUGH, MOST)
     );
     if (!(py.item(this.found, py.sub(py.len(this.found), 1)) < ENOUGH)) {
       return false;
@@ -4340,7 +3866,7 @@ class SlipStep extends py.Thing {
     var several = py.isinstance(top.surface, Hull);
     if (
       py.truth(several) && !(
-        py.min([...row_of(this.unknowns, 2)].map((c) => clearance(top, c))) > CLEAR_of_slipping
+        py.min([...row_of(this.unknowns, 2)].map((c) => clearance(top, c))) > CLEAR_of_slip_step
       )
     ) {
       return false;
@@ -4349,7 +3875,7 @@ class SlipStep extends py.Thing {
     if (py.truth(passes_flat(top, [ends[0], ...points, ends[1]]))) {
       return false;
     }
-    return py.or(pulls, () => py.bool(py.min(row_of(this.found, this.layout.normal)) > PRESSED_of_slipping));
+    return py.or(pulls, () => py.bool(py.min(row_of(this.found, this.layout.normal)) > PRESSED_of_slip_step));
   }
   /** Coefficients of s in a part of it, at whose start it is this; beyond slip s is less than zero. */
   speed(number, begin, way) {
@@ -4383,11 +3909,53 @@ class SlipStep extends py.Thing {
   }
 }
 
+/** Polynomials of so many numbers in the first parts of a step, of the last of which it may be a share. */
+function pieces_of(rows, size, parts) {
+  var whole = py.math.ceil(parts);
+  var count = py.mul(size, STAGES);
+  if (py.eq(parts, whole)) {
+    return first_of(rows, py.mul(whole, count));
+  }
+  var before = py.mul(py.sub(whole, 1), count);
+  var shares = py.range(STAGES).map((k) => py.pow(py.add(py.sub(parts, whole), 1), py.add(k, 1)));
+  var last = py.zip(
+    py.slice(rows, before, py.add(before, count), null),
+    py.mul(shares, size)
+  ).map(([term, share]) => py.mul(term, share));
+  return py.np.concatenate([first_of(rows, before), py.np.array(last)]);
+}
+
+// tippetop.contact.slipping
+const [FIRST, LEAST] = [0.5, 0.005];
+const ACCURACY = 1e-22;
+const BEYOND = 1.05;
+const [DIP, NONE] = [0.1, 1e-11];
+const [LONGER, SHORTER_of_slipping, SHORTEST, SAFETY] = [1.5, 0.8, 0.3, 0.9];
+const TINY_of_slipping = 1e-300;
+
+/** Slip that began, and how far it was followed. */
+class SlipPhase extends py.NamedTuple {
+  static fields = ["knots", "rows", "last", "ended", "sweeps"];
+  get 0() { return this.knots; }
+  get 1() { return this.rows; }
+  get 2() { return this.last; }
+  get 3() { return this.ended; }
+  get 4() { return this.sweeps; }
+  constructor(knots, rows, last, ended, sweeps) {
+    super();
+    this.knots = knots;
+    this.rows = rows;
+    this.last = last;
+    this.ended = ended;
+    this.sweeps = sweeps;
+  }
+}
+
 /** Follow slip, or rolling, that begins, as far as the method goes, which may be nowhere. */
 function slip_phase(y, way, top, ending, longest, pulls) {
   var step = new SlipStep(top, ending);
   var now = [...y, ...[...way].map((_) => 0.0)];
-  var length = FIRST_of_slipping;
+  var length = FIRST;
   var free = py.len(y);
   var knots = [0.0];
   var rows = py.list();
@@ -4400,7 +3968,7 @@ function slip_phase(y, way, top, ending, longest, pulls) {
     var solved = step.solve(now, way, length);
     var factor = py.truth(solved) ? py.mul(
       SAFETY,
-      py.pow(py.div(ACCURACY_of_slipping, py.add(step.error, TINY_of_slipping)), py.div(0.5, STAGES))
+      py.pow(py.div(ACCURACY, py.add(step.error, TINY_of_slipping)), py.div(0.5, STAGES))
     ) : 0.0;
     var after = py.zip(now, step.changes).map(([a, b]) => py.add(a, b));
     var last = step.last_way;
@@ -4453,22 +4021,6 @@ function slip_phase(y, way, top, ending, longest, pulls) {
     rows.push(pieces);
   }
   return new SlipPhase(knots, rows, now, ended, step.sweeps);
-}
-
-/** Polynomials of so many numbers in the first parts of a step, of the last of which it may be a share. */
-function pieces_of(rows, size, parts) {
-  var whole = py.math.ceil(parts);
-  var count = py.mul(size, STAGES);
-  if (py.eq(parts, whole)) {
-    return first_of(rows, py.mul(whole, count));
-  }
-  var before = py.mul(py.sub(whole, 1), count);
-  var shares = py.range(STAGES).map((k) => py.pow(py.add(py.sub(parts, whole), 1), py.add(k, 1)));
-  var last = py.zip(
-    py.slice(rows, before, py.add(before, count), null),
-    py.mul(shares, size)
-  ).map(([term, share]) => py.mul(term, share));
-  return py.np.concatenate([first_of(rows, before), py.np.array(last)]);
 }
 
 /** By how much so many numbers change over these polynomials. */
@@ -4758,7 +4310,7 @@ const [ORDER, ACCURACY_of_loosening] = [20, 1e-13];
 const INSTANT = 1e-09;
 const PART = 0.25;
 const TINY_of_loosening = 1e-100;
-const UNSEEN_of_loosening = "slip, or rolling, cannot be told from its beginning";
+const UNSEEN = "slip, or rolling, cannot be told from its beginning";
 
 /** The first moments of slip, or of rolling, as a power series in time. */
 class Loosening extends Passing {
@@ -4793,7 +4345,7 @@ class Loosening extends Passing {
     }
     var duration = py.min(begin.valid_until(ACCURACY_of_loosening), longest, py.sub(end, time));
     if (duration <= 1e-299) {
-      yield nothing(this.told, time, new Transition([], Outcome.FAILED, state, UNSEEN_of_loosening));
+      yield nothing(this.told, time, new Transition([], Outcome.FAILED, state, UNSEEN));
       return null;
     }
     yield piece(passing, begin.rows, direction, [time, duration, end]);
@@ -4894,7 +4446,7 @@ function piece(mode, rows, direction, times) {
     return [...rows].map((row) => horner(row, py.div(py.mul(duration, look), LOOKS_of_passing)));
   };
   while (
-    duration > SETTLED_of_passing && !py.truth(
+    duration > SETTLED && !py.truth(
       mode.goes_on(
         at,
         py.range(py.add(1, PRESSED_of_loosening), py.add(LOOKS_of_passing, 1), PRESSED_of_loosening)
@@ -4918,7 +4470,7 @@ function piece(mode, rows, direction, times) {
     var then = new Transition([], reach >= end ? Outcome.COMPLETED : mode.onwards(last), last);
   } catch (error) {
     if (!(error instanceof py.ArithmeticError)) throw error;
-    then = new Transition([], Outcome.FAILED, last, UNSEEN_of_loosening);
+    then = new Transition([], Outcome.FAILED, last, UNSEEN);
   }
   return new Segment(mode, solution, last, then, 1);
 }
@@ -4926,6 +4478,700 @@ function piece(mode, rows, direction, times) {
 /** No motion at all. */
 function nothing(mode, time, ending) {
   return new Segment(mode, DenseSolution.nothing(time, 8), ending.state, ending);
+}
+
+// tippetop.contact.arriving
+const [DEGREE_of_arriving, ACCURACY_of_arriving] = [12, 1e-13];
+const [FIRST_of_arriving, MORE] = [3, 2];
+const [MOST_of_arriving, TURNS] = [16, 8];
+const [SETTLED_of_arriving, CLOSE] = [1e-14, 1e-07];
+const [AT_REST, UNSEEN_of_arriving] = [1e-12, 1e-15];
+const TURNING = 1.0;
+
+/** The end of slip. */
+class Arrival extends py.NamedTuple {
+  static fields = ["left", "rows"];
+  get 0() { return this.left; }
+  get 1() { return this.rows; }
+  constructor(left, rows) {
+    super();
+    this.left = left;
+    this.rows = rows;
+  }
+  /** The numbers where a part of the time is left. */
+  at(part) {
+    return [...this.rows].map((row) => horner(row, py.mul(py.neg(part), this.left)));
+  }
+  /** Whether the last two terms are small, those of zeta beside zeta. */
+  get serves() {
+    var whole = size(py.tuple(this.at(1.0).slice(6)));
+    return py.all(
+      [[this.rows.slice(0, 6), 1.0], [this.rows.slice(6), whole]].flatMap(
+        ([rows, unit]) => py.range(py.sub(py.len(rows[0]), 2), py.len(rows[0])).map(
+          (k) => size(
+            py.tuple([...rows].map((row) => py.mul(py.item(row, k), py.pow(this.left, k))))
+          ) < py.mul(ACCURACY_of_arriving, unit)
+        )
+      )
+    );
+  }
+  /** Coefficients in powers of the time since the start. */
+  get onwards() {
+    var rows = [];
+    for (var row of this.rows) {
+      var shifted = py.list(row);
+      for (var first = 0; first < py.sub(py.len(row), 1); first += 1) {
+        for (var k = py.sub(py.len(row), 2); k > py.sub(first, 1); k += -1) {
+          py.put(shifted, k, py.sub(py.item(shifted, k), py.mul(this.left, py.item(shifted, py.add(k, 1)))));
+        }
+      }
+      rows.push(shifted);
+    }
+    return rows;
+  }
+}
+
+/** The end of slip from a state on; None where its direction has not come to rest. */
+function arriving(here, ending, top, integrator) {
+  var rates = rates_in_time(here, ending, top);
+  var along = inner(rates.xi, here.direction);
+  if (along >= 0.0) {
+    return null;
+  }
+  var left = py.div(py.neg(here.speed), along);
+  var now = [...here.axis, ...here.momentum];
+  var end = plus(now, scaled(left, [...rates.axis, ...rates.momentum]));
+  var way = here.direction;
+  var at_rest = py.max(AT_REST, py.getattr(integrator, "tolerance", 0.0));
+  try {
+    for (var turn = 0; turn < MOST_of_arriving; turn += 1) {
+      var axis = [end[0], end[1], end[2]];
+      var momentum = [end[3], end[4], end[5]];
+      if (!(py.abs(axis[2]) < 1.0)) {
+        return null;
+      }
+      var known = resting_way(axis, momentum, way, ending, top, integrator);
+      var degree = py.min(py.add(FIRST_of_arriving, py.mul(MORE, turn)), DEGREE_of_arriving);
+      var begin = onset(known, 1, degree);
+      way = known.first;
+      var found = new Arrival(time_to(here.speed, begin.rows, left), begin.rows);
+      left = found.left;
+      var then = found.at(1.0);
+      var off = plus(now, scaled(-1.0, py.tuple(then.slice(0, 6))));
+      var speed = size(py.tuple(then.slice(6)));
+      var aside = py.math.dist(here.direction, scaled(py.div(1.0, speed), py.tuple(then.slice(6))));
+      var rounding = py.mul(aside, here.speed) < UNSEEN_of_arriving;
+      if (!(aside < py.mul(TURNING, left) || py.truth(rounding))) {
+        return null;
+      }
+      if (
+        py.eq(degree, DEGREE_of_arriving) && py.max(
+          size(off),
+          py.abs(py.sub(speed, here.speed))
+        ) < SETTLED_of_arriving
+      ) {
+        return (py.mul(aside, left) < at_rest || py.truth(rounding)) && py.truth(found.serves) ? found : null;
+      }
+      end = plus(end, off);
+    }
+  } catch (error) {
+    if (!(error instanceof py.ArithmeticError)) throw error;
+    return null;
+  }
+  return null;
+}
+
+/** The series at the end, in the direction in which slip ends there, by Newton's method from another one. */
+function resting_way(axis, momentum, way, ending, top, integrator) {
+  for (var turn = 0; turn < TURNS; turn += 1) {
+    var known = growth([axis, momentum, way], top, ending, [], DEGREE_of_arriving, integrator);
+    var rate = known.accelerations(0);
+    var across = tangents(way);
+    var along = inner(rate, way);
+    var slopes = turned_slopes(known, across);
+    var matrix = [...across].map(
+      (a) => py.zip(across, slopes).map(([b, g]) => py.sub(inner(a, g), a === b ? along : 0.0))
+    );
+    var turned = solve(matrix, [...across].map((a) => py.neg(inner(a, rate))));
+    if (!(py.math.hypot(...turned) < 1.0)) {
+      throw new Unsolved("slip does not end near this direction");
+    }
+    for (var [amount, b] of py.zip(turned, across)) {
+      way = plus(way, scaled(amount, b));
+    }
+    way = scaled(py.div(1.0, size(way)), way);
+    if (along < 0.0 && py.math.hypot(...turned) < CLOSE) {
+      return growth([axis, momentum, way], top, ending, [], DEGREE_of_arriving, integrator);
+    }
+  }
+  throw new Unsolved("no direction is found in which slip ends");
+}
+
+/** How long before its end slip had this speed. */
+function time_to(speed, rows, guess) {
+  var left = guess;
+  for (var turn = 0; turn < MOST_of_arriving; turn += 1) {
+    var then = size(py.tuple([...rows.slice(6)].map((row) => horner(row, py.neg(left)))));
+    var better = py.div(py.mul(left, speed), then);
+    if (py.abs(py.sub(better, left)) <= py.mul(SETTLED_of_arriving, left)) {
+      return better;
+    }
+    left = better;
+  }
+  return left;
+}
+
+// tippetop.contact.closing
+const [REOPENING, LANDED, TIME, OVERTAKEN, JAMMED] = ["reopening", "landed", "time", "overtaken", "jammed"];
+const OWN = [REOPENING, LANDED, TIME];
+const LONGEST = 100.0;
+const SOON = [0.3, 2.0];
+const FEW_of_closing = 16;
+const MOST_of_closing = 16;
+const STALLED = 1e-09;
+
+/** The end of slip, or of rolling, in its clock, arc by arc. */
+function* followed(integrator, motion, parameters, start) {
+  var arcs = 0;
+  for (
+    var end of [
+      ...[...SOON].filter((part) => py.add(start[0], part) < LONGEST).map((part) => py.add(start[0], part)),
+      LONGEST
+    ]
+  ) {
+    for (var arc of integrator.integrate(motion, parameters, start, end)) {
+      arcs = py.add(arcs, 1);
+      var stalled = py.sub(arc.solution.end, start[0]) < py.mul(STALLED, start[0]);
+      var many = py.and(
+        arc.guard === null,
+        () => py.and(arc.failure === null, () => py.or(py.eq(arcs, MOST_of_closing), () => stalled))
+      );
+      yield py.truth(many) ? py.replace(
+        arc,
+        { failure: "slip, or rolling, takes too many steps to end" }
+      ) : arc;
+      if (py.truth(many) || arc.guard !== null || arc.failure !== null) {
+        return null;
+      }
+      start = [arc.solution.end, arc.end_state];
+    }
+  }
+}
+
+/** Equations of motion in the clock of `ending` where a velocity is about to end; time is the last number. */
+const closing_motion = py.cached((kind, ending, guarded) => {
+  var top_of = (numbers) => {
+    return kind.top(py.tuple(numbers.slice(0, kind.numbers)));
+  };
+  var rates = (y, numbers) => {
+    var rate = closing_rates(closing_of(y, ending), ending, top_of(numbers));
+    return [...rate.axis, ...rate.momentum, ...rate.velocity, ...rate.direction, rate.speed, rate.time];
+  };
+  var guard = (name, value) => {
+    return new Guard(name, (y, numbers) => value(closing_of(y, ending), top_of(numbers), numbers));
+  };
+  var held_by = (state, top) => {
+    return rates_in_time(state, ending, top).wrench;
+  };
+  var on_branch_still = (state, top, _) => {
+    return branch_guard(py.or(slip_beside(state, ending, top), () => state.direction), top);
+  };
+  var guards = [
+    guard(REOPENING, (state, top, _) => reopening_guard(state, ending, top)),
+    guard(LANDED, (state, top, numbers) => landing_guard(state, ending, top, py.item(numbers, -1))),
+    guard(TIME, (state, _, numbers) => py.sub(py.item(numbers, -2), state.time))
+  ];
+  var top = kind.example;
+  var law = top.friction;
+  var stuck = py.and(!py.truth(ending.slip), () => ending.held);
+  if (py.truth(guarded)) {
+    guards.push(guard(LIFT_OFF, (state, top, _) => held_by(state, top).force[2]));
+  }
+  if (!py.truth(ending.held)) {
+    guards.push(guard(JAMMED, (state, top, _) => jamming_guard(state, ending, top)));
+  }
+  if (!py.truth(ending.held) && py.truth(top.resists_rolling) && py.truth(is_set_valued(law))) {
+    guards.push(guard(OVERTAKEN, (state, top, _) => overtaking_guard(state, ending, top)));
+  }
+  if (py.truth(ending.held)) {
+    var held = py.truth(ending.slip) ? ROLLING : SLIP;
+    guards.push(guard(held, (state, top, _) => spared(state, ending, top)));
+  }
+  if ((py.truth(ending.slip) || py.truth(ending.moves)) && py.truth(py.hasattr(law, "branch_guard"))) {
+    guards.push(guard(BRANCH, on_branch_still));
+  }
+  if (py.truth(stuck) && py.truth(has_limit_branches(law))) {
+    guards.push(guard(LIMIT_BRANCH, (state, top, _) => limit_guard(top, held_by(state, top))));
+  }
+  guards = py.add(guards, [...surface_guards(top)].map(([name, value]) => guard(name, _of_axis(value))));
+  var size = py.add(py.truth(ending.moves) ? 10 : 8, py.len(ending.wrenches(top)));
+  return new Motion(rates, size, py.add(kind.numbers, 2), py.tuple(guards), false);
+});
+
+function _of_axis(value) {
+  return (state, top, _) => value(top, state.axis);
+}
+
+/** Positive while the table can hold what is held beside a velocity that ends. */
+function spared(state, ending, top) {
+  var wrench = rates_in_time(state, ending, top).wrench;
+  if (py.truth(ending.slip)) {
+    var point = ContactPoint.of(state.axis, state.momentum, top);
+    return rolling_reserve(point, wrench, state.direction);
+  }
+  return slip_reserve(top, wrench);
+}
+
+/** The state of a velocity that is about to end, from its numbers. */
+function closing_of(y, ending) {
+  var count = py.len(y);
+  var free = py.truth(ending.moves) ? 8 : 6;
+  return new Closing(
+    ...split(y),
+    py.tuple(y.slice(6, free)),
+    py.tuple(py.slice(y, free, py.sub(count, 2), null)),
+    py.item(y, py.sub(count, 2)),
+    py.item(y, py.sub(count, 1))
+  );
+}
+
+// tippetop.contact.stopping
+const LANDING = [3e-08, 1e-16];
+const SLOWEST = 1e-12;
+const SHARE = 0.01;
+const RESOLVED = 1e-15;
+
+/** The last moments of slip, or of rolling, in a clock of their own (see `tippetop.mechanics.ending`). */
+class Stopping extends Passing {
+  static fields = ["top", "rules", "ending", "begin"];
+  constructor(top, rules, ending, begin = []) {
+    super(top, rules, ending);
+    this.begin = begin;
+  }
+  /** Its equations in the clock. */
+  get motion() {
+    return closing_motion(this.top.kind, this.ending, !py.truth(this.rules.pulls));
+  }
+  /** Follow it to its end, or to where it is no longer about to end. */
+  *segments(time, state, end, integrator) {
+    var begin = py.or(this.begin, () => this._clock(state));
+    var [arcs, rest, arrival] = this._followed(begin, py.sub(end, time), integrator);
+    var here = closing_of(py.truth(arcs) ? py.list(py.item(arcs, -1).end_state) : begin, this.ending);
+    var arc = py.truth(arcs) && arrival === null ? py.item(arcs, -1) : null;
+    var until = py.float(here.time);
+    if (arc !== null && arc.failure !== null && here.speed < SLOWEST) {
+      rest = py.replace(here, { speed: 0.0 });
+      arc = null;
+    }
+    if (arrival === null) {
+      var last = this.state(shown(rest));
+      var onwards = straight(shown(here), shown(rest), until, rest.time);
+    } else {
+      last = this.state(arrival.at(0.0));
+      onwards = in_one_step(arrival.onwards, until, arrival.left);
+    }
+    var solution = this._in_time(arcs, until, onwards).moved(time, py.add(time, onwards.end));
+    var then = this._next(arc, solution.end, last);
+    var steps = py.sum([...arcs].map((one) => one.steps));
+    steps = py.add(steps, arrival !== null);
+    var method = py.next(
+      [...py.slice(arcs, null, null, -1)].filter((one) => one.method !== null).map((one) => one.method),
+      null
+    );
+    yield new Segment(this, solution, last, then, steps, steps, undefined, method);
+  }
+  /** It in its clock; and where it ends after that, in one step, if not by power series. */
+  _followed(begin, longest, integrator) {
+    var here = closing_of(begin, this.ending);
+    var start = [0.0, as_array(begin)];
+    var arcs = py.list();
+    var arrival = this._arrival(here, longest, integrator);
+    var rest = here;
+    for (var horizon of LANDING) {
+      if (arrival !== null || landing_guard(here, this.ending, this.top, horizon) <= 0.0) {
+        continue;
+      }
+      for (var arc of followed(integrator, this.motion, [...this.top.numbers, longest, horizon], start)) {
+        arcs.push(arc);
+        start = [arc.solution.end, arc.end_state];
+        here = closing_of(py.list(arc.end_state), this.ending);
+        if (arc.guard === null && arc.failure === null && arc.steps >= FEW_of_closing) {
+          arrival = this._arrival(here, longest, integrator);
+        }
+        if (arrival !== null) {
+          return [arcs, here, arrival];
+        }
+      }
+      if (!py.eq(py.item(arcs, -1).guard, LANDED)) {
+        return [arcs, here, null];
+      }
+      var [rest, doubt] = landed(here, this.ending, this.top);
+      if (doubt < SETTLED) {
+        break;
+      }
+    }
+    return [
+      arcs,
+      py.truth(arcs) || arrival !== null ? rest : landed(here, this.ending, this.top)[0],
+      arrival
+    ];
+  }
+  /** The end of slip by power series, if its direction has come to rest and nothing else happens. */
+  _arrival(here, longest, integrator) {
+    if (!py.truth(this.ending.slip) || slip_length(this.top.friction) === null) {
+      return null;
+    }
+    var found = arriving(here, this.ending, this.top, integrator);
+    if (found === null || py.add(here.time, found.left) > longest) {
+      return null;
+    }
+    var numbers = [...this.top.numbers, longest, 0.0];
+    for (var look = 1; look < py.add(LOOKS_of_passing, 1); look += 1) {
+      var then = found.at(py.div(look, LOOKS_of_passing));
+      var xi = py.tuple(then.slice(6));
+      var clock = [...then.slice(0, 6), ...scaled(py.div(1.0, size(xi)), xi), size(xi), here.time];
+      if (
+        !py.truth(
+          py.all(
+            [...this.motion.guards].filter((one) => !py.contains(OWN, one.name)).map(
+              (one) => one.value(clock, numbers) > 0.0
+            )
+          )
+        )
+      ) {
+        return null;
+      }
+    }
+    var way = py.range(py.add(LOOKS_of_passing, 1)).map((look) => found.at(py.div(look, LOOKS_of_passing)));
+    return py.truth(passes_flat(this.top, way)) ? null : found;
+  }
+  /** The numbers of the clock at a state. */
+  _clock(state) {
+    var velocity = state.velocity.slice(0, 2);
+    var xi = this.ending.of(state.axis, state.momentum, velocity, this.top);
+    var free = py.truth(this.ending.moves) ? velocity : [];
+    return [...state.axis, ...state.momentum, ...free, ...scaled(py.div(1.0, size(xi)), xi), size(xi), 0.0];
+  }
+  _next(arc, time, state) {
+    var ending = this.ending;
+    var stuck = py.and(!py.truth(this.ending.slip), () => this.ending.held);
+    if (arc === null || py.eq(arc.guard, LANDED)) {
+      return this.rules.settled(time, state, [ending.slip, !py.truth(ending.slip)], ending.held);
+    }
+    if (arc.failure !== null || arc.guard === null) {
+      return new Transition(
+        [],
+        Outcome.FAILED,
+        state,
+        py.or(arc.failure, () => "the slip neither ends nor goes on")
+      );
+    }
+    var found = follow_surface(this, arc.guard, time, state);
+    if (found !== null) {
+      return found;
+    }
+    if (arc.guard === "time") {
+      return new Transition([], Outcome.COMPLETED, state);
+    }
+    if (arc.guard === "jammed") {
+      return this.rules.jammed(time, state);
+    }
+    if (arc.guard === "lift-off") {
+      return this.rules.lift_off(time, state);
+    }
+    if (arc.guard === "reopening") {
+      return new Transition([], this.rules.going_on(state, !py.truth(stuck)), state);
+    }
+    if (arc.guard === "overtaken") {
+      return new Transition(
+        [],
+        py.replace(this, { ending: new Vanishing(!py.truth(ending.slip)), begin: [] }),
+        state
+      );
+    }
+    if (py.contains(["branch", "limit branch"], arc.guard)) {
+      return new Transition([], this._onwards(arc, on_other_branch(this.top)), state);
+    }
+    if (py.contains(["slip", "rolling"], arc.guard)) {
+      var slip = arc.guard === "slip";
+      var event = this.rules.event(py.truth(slip) ? EventKind.SLIP : EventKind.ROLL, time);
+      return this.rules.giving_way(state, [event], new Vanishing(slip));
+    }
+    throw new py.AssertionError(`nothing is said of what follows ${py.str(arc.guard)}`);
+  }
+  /** The mode that takes the clock up where an arc leaves it, on another branch of the law. */
+  _onwards(arc, top) {
+    return py.replace(this, { top: top, begin: [...py.slice(py.list(arc.end_state), null, -1, null), 0.0] });
+  }
+  /** The numbers of the mode as polynomials in time: up to some time from the clock's, and the rest. */
+  _in_time(arcs, until, rest) {
+    var parts = [...arcs].filter((arc) => py.truth(py.len(arc.solution.terms))).map((arc) => arc.solution);
+    if (!py.truth(parts)) {
+      return rest;
+    }
+    var clock = DenseSolution.joined(parts);
+    var elapsed = py.sub(parts[0].size, 1);
+    var numbers = (times) => {
+      return shown(closing_of(clock.rows(clock.when(elapsed, times)), this.ending));
+    };
+    var knots = clock.knots_of(elapsed, until);
+    var solution = DenseSolution.fitted(numbers, thinned(knots), DEGREE_of_passing);
+    if (solution.unresolved > RESOLVED) {
+      solution = DenseSolution.fitted(numbers, knots, DEGREE_of_passing);
+    }
+    return rest.end > until ? DenseSolution.joined([solution, rest]) : solution;
+  }
+}
+
+/** Ends of steps, so few of them that each leaves but a share of the time to the last. */
+function thinned(knots) {
+  var end = py.item(knots, -1);
+  var found = [knots[0]];
+  for (var knot of py.slice(knots, 1, -1, null)) {
+    if (py.sub(end, knot) <= py.mul(SHARE, py.sub(end, py.item(found, -1)))) {
+      found.push(knot);
+    }
+  }
+  return [...found, end];
+}
+
+// tippetop.mechanics.jamming
+const PROBED = 1e-06;
+
+/** The state past the normal impulse over which friction comes to press the contact, which it jams. */
+function past_jamming(state, top) {
+  var touch = contact(...state, top);
+  var force = touch.traction.force;
+  var moment = moment_per_normal_force(touch.arm, touch.traction);
+  var after = (impulse) => {
+    var [x, y] = plus(state.velocity, scaled(py.div(impulse, top.mass), force));
+    return new SlidingState(state.axis, add(state.momentum, scale(impulse, moment)), [x, y]);
+  };
+  var before = slip_of(...state, top);
+  var whole = py.div(size(before), py.math.dist(slip_of(...after(1.0), top), before));
+  var fall = py.sub(touch.delassus, contact(...after(py.mul(PROBED, whole)), top).delassus);
+  if (!(fall > 0.0)) {
+    throw new Unsolved("it is not friction that jams it");
+  }
+  return after(py.mul(py.mul(py.div(py.mul(2.0, touch.delassus), fall), PROBED), whole));
+}
+
+// tippetop.contact.rules
+const REST = 1e-13;
+
+/** What all rules have in common: the resolver of a contact that is closed and has no normal velocity. */
+class Rules extends py.Record {
+  static fields = ["top"];
+  constructor(top) {
+    super();
+    this.top = top;
+  }
+  get pulls() { return false; }
+  /** The rules of the top with another of its surfaces active. */
+  on(surface) {
+    return py.replace(this, { top: py.item(this.top.each, surface) });
+  }
+  /** Go on from contact. */
+  launch(state) {
+    return this.resting(0.0, state);
+  }
+  /** Something that happens to the surface that is active. */
+  event(kind, time, impulse = 0.0, lost = 0.0) {
+    return new Event(kind, time, impulse, lost, number_of(this.top));
+  }
+  /** Slide, or stick; or follow slip, or rolling, to its end where that is near already. */
+  going_on(state, slips) {
+    var [ending, left] = this._next_to_end(state, slips);
+    if (ending !== null && left <= HORIZON) {
+      return new Stopping(this._branched(state, slips), this, ending);
+    }
+    var rolls = this._rolls(state);
+    if (py.truth(slips)) {
+      var top = this._branched(state, slips);
+      var sliding = along_table(state);
+      var near = py.and(is_set_valued(top.friction), () => py.bool(is_near(sliding, top)));
+      return new (py.truth(rolls) ? Sliding : SlidingWithoutRolling)(top, this, near);
+    }
+    return new (py.truth(rolls) ? Sticking : StickingWithoutRolling)(this._branched(state, slips), this);
+  }
+  /** Follow what ends first to its end; where a guard was touched by rounding, nothing does. */
+  stopping(time, state, slips = true) {
+    var [ending] = this._next_to_end(state, slips);
+    if (ending === null) {
+      return new Transition([], this.going_on(state, slips), state);
+    }
+    return new Transition([], new Stopping(this._branched(state, slips), this, ending), state);
+  }
+  /** Hold what has ended, slip or rolling (new) or what was held already, if the table can; or let go. */
+  settled(time, state, new_, held = false, events = []) {
+    var ended = [
+      py.or(new_[0], () => py.and(held, () => new_[1])),
+      py.or(new_[1], () => py.and(held, () => new_[0]))
+    ];
+    state = on_table(come_to_rest(along_table(state), this.top, ...ended), this.top);
+    var point = ContactPoint.of(state.axis, state.momentum, this.top);
+    var slip = py.truth(ended[0]) ? null : slip_of(...along_table(state), this.top);
+    var rolling = py.truth(ended[1]) ? null : point.turning.slice(0, 2);
+    try {
+      var [found, begins] = settling(point, slip, rolling);
+    } catch (error) {
+      if (!(error instanceof py.ArithmeticError)) throw error;
+      return failed("The force that holds the contact", error, state, events);
+    }
+    events = [...events, ...this._marks(time, new_, begins)];
+    return this._settle(time, state, found, begins, ended, events);
+  }
+  /** Slip, or rolling, begins from the limit of what the table can hold, which is a wrench. */
+  giving_way(state, events, beginning, wrench = null) {
+    return new Transition(events, new Loosening(this.top, this, beginning, 2, wrench), state);
+  }
+  /** The mode that follows where it is known what is held and what begins. */
+  _settle(time, state, found, begins, ended, events) {
+    if (found.wrench.force[2] <= 0.0 && !py.truth(this.pulls)) {
+      return this._let_go(time, state, events);
+    }
+    if (py.truth(py.all(begins))) {
+      return new Transition(events, new BothLoosening(this.top, this), state);
+    }
+    if (py.truth(py.any(begins))) {
+      var ending = new Vanishing(begins[0], py.truth(begins[0]) ? ended[1] : ended[0]);
+      return new Transition(events, new Loosening(this.top, this, ending, 1), state);
+    }
+    var mode = this.going_on(state, !py.truth(ended[0]));
+    var [at, turning] = found.acceleration;
+    if (py.isinstance(mode, IntegratedMode) && py.truth(rests(state, ...turning, ...at.slice(0, 2)))) {
+      return new Transition(events, new Resting(this.top, this, mode), state);
+    }
+    return new Transition(events, mode, state);
+  }
+  /** What is told where slip, or rolling, has newly ended and is held, or was held and begins. */
+  _marks(time, new_, begins) {
+    var told = [];
+    for (
+      var [ended, starts, stop, start] of py.zip(
+        new_,
+        begins,
+        [EventKind.STICK, EventKind.HALT],
+        [EventKind.SLIP, EventKind.ROLL]
+      )
+    ) {
+      if (py.truth(ended) && !py.truth(starts)) {
+        told.push(this.event(stop, time));
+      } else if (py.truth(starts) && !py.truth(ended)) {
+        told.push(this.event(start, time));
+      }
+    }
+    return py.tuple(told);
+  }
+  /** Whether nothing holds rolling. */
+  _rolls(state) {
+    return py.or(
+      !py.truth(this.top.resists_rolling),
+      () => py.bool(is_rolling(state.axis, state.momentum, this.top))
+    );
+  }
+  /** The top with the branch of its law that holds. */
+  _branched(state, slips) {
+    if (!py.truth(is_branched(this.top.friction))) {
+      return this.top;
+    }
+    if (py.truth(slips)) {
+      return on_branch(this.top, slip_of(...along_table(state), this.top));
+    }
+    var point = ContactPoint.of(state.axis, state.momentum, this.top);
+    var rolling = py.truth(this._rolls(state)) ? point.turning.slice(0, 2) : null;
+    return on_limit_branch(this.top, contact_motion(point, null, rolling)[0]);
+  }
+  /** Which velocity ends first at present rates, and the time left; none if all grow or none can end. */
+  _next_to_end(state, slips) {
+    var rolls = this._rolls(state);
+    var ends = py.and(slips, () => is_set_valued(this.top.friction));
+    var possible = py.truth(ends) ? [new Vanishing(true, !py.truth(rolls))] : [];
+    possible = py.add(
+      possible,
+      py.truth(rolls) && py.truth(this.top.resists_rolling) ? [new Vanishing(false, !py.truth(slips))] : []
+    );
+    if (!py.truth(possible)) {
+      return [null, py.float("inf")];
+    }
+    var sliding = along_table(state);
+    var top = this._branched(state, slips);
+    var point = ContactPoint.of(state.axis, state.momentum, top);
+    var slip = py.truth(slips) ? slip_of(...sliding, top) : null;
+    var acceleration = contact_motion(point, slip, py.truth(rolls) ? point.turning.slice(0, 2) : null)[1];
+    var found = null;
+    var least = py.float("inf");
+    for (var ending of possible) {
+      var xi = ending.of(...sliding, top);
+      var change = inner(xi, ending.rate(acceleration, top));
+      var left = change < 0.0 ? py.div(py.pow(size(xi), 2), py.neg(change)) : py.float("inf");
+      if (left < least) {
+        found = ending;
+        least = left;
+      }
+    }
+    return [found, least];
+  }
+  /** Go on from contact without normal velocity: slide, stick, or leave a table that would have to pull. */
+  resting(time, state, events = []) {
+    var sliding = along_table(state);
+    var stuck = py.and(is_set_valued(this.top.friction), () => !py.truth(is_slipping(...sliding, this.top)));
+    var held = !py.truth(this._rolls(state));
+    if (py.truth(stuck) || py.truth(held)) {
+      return this.settled(time, state, [stuck, held], undefined, events);
+    }
+    var touch = contact(sliding.axis, sliding.momentum, sliding.velocity, this.top);
+    if (touch.delassus <= 0 && !py.truth(this.pulls)) {
+      return this.inconsistent(time, state, events);
+    }
+    if (touch.free_acceleration < 0 || py.truth(this.pulls)) {
+      return new Transition(events, this.going_on(state, true), state);
+    }
+    return this._let_go(time, state, events);
+  }
+  /** Leave the table, unless the normal force changed its sign by way of infinity. */
+  lift_off(time, state) {
+    if (py.truth(presses(state.axis, state.momentum, this.top))) {
+      return this.resting(time, state);
+    }
+    return this._leaving(time, state);
+  }
+  /** What follows where the normal force has grown beyond all bounds, and slip goes on. */
+  jammed(time, state) {
+    try {
+      var beyond = on_table(past_jamming(along_table(state), this.top), this.top);
+    } catch (error) {
+      if (!(error instanceof py.ArithmeticError)) throw error;
+      return failed("What follows where friction jams the contact", error, state);
+    }
+    return this.inconsistent(time, beyond, []);
+  }
+  /** What follows when the normal force falls to zero. */
+  _leaving(time, state) {
+    throw new py.NotImplementedError();
+  }
+  /** What follows when the top reaches the table; the integrator may follow the impact too. */
+  touchdown(time, state, integrator = null) {
+    throw new py.NotImplementedError();
+  }
+  /** What follows when another surface of the top, of this number, reaches the table too. */
+  touch(surface, time, state, integrator = null) {
+    throw new py.NotImplementedError();
+  }
+  /** Lift-off after some events. */
+  _let_go(time, state, events) {
+    var found = this._leaving(time, state);
+    return py.replace(found, { events: [...events, ...found.events] });
+  }
+  /** What follows where no contact force is consistent with the friction. */
+  inconsistent(time, state, events) {
+    return new Transition(events, Outcome.FAILED, state, "no contact force is consistent with the friction");
+  }
+}
+
+/** Whether a body in contact neither moves nor begins to, by the rates of its velocities. */
+function rests(state, ...rates) {
+  return py.bool(py.max(py.map(py.abs, [...rates, ...state.momentum, ...state.velocity])) <= REST);
 }
 
 // tippetop.mechanics.impulse
@@ -5988,240 +6234,8 @@ const impact_motion = py.cached((kind, ending = false) => {
   return new Motion(rates, 6, py.add(kind.numbers, 3), py.tuple(guards));
 });
 
-// tippetop.mechanics.jamming
-const PROBED = 1e-06;
-
-/** The state past the normal impulse over which friction comes to press the contact, which it jams. */
-function past_jamming(state, top) {
-  var touch = contact(...state, top);
-  var force = touch.traction.force;
-  var moment = moment_per_normal_force(touch.arm, touch.traction);
-  var after = (impulse) => {
-    var [x, y] = plus(state.velocity, scaled(py.div(impulse, top.mass), force));
-    return new SlidingState(state.axis, add(state.momentum, scale(impulse, moment)), [x, y]);
-  };
-  var before = slip_of(...state, top);
-  var whole = py.div(size(before), py.math.dist(slip_of(...after(1.0), top), before));
-  var fall = py.sub(touch.delassus, contact(...after(py.mul(PROBED, whole)), top).delassus);
-  if (!(fall > 0.0)) {
-    throw new Unsolved("it is not friction that jams it");
-  }
-  return after(py.mul(py.mul(py.div(py.mul(2.0, touch.delassus), fall), PROBED), whole));
-}
-
-// tippetop.contact.rules
+// tippetop.contact.leaving
 const SLOWEST_REBOUND = 1e-06;
-const REST = 1e-13;
-
-/** What all rules have in common: the resolver of a contact that is closed and has no normal velocity. */
-class Rules extends py.Record {
-  static fields = ["top"];
-  constructor(top) {
-    super();
-    this.top = top;
-  }
-  get pulls() { return false; }
-  /** The rules of the top with another of its surfaces active. */
-  on(surface) {
-    return py.replace(this, { top: py.item(this.top.each, surface) });
-  }
-  /** Go on from contact. */
-  launch(state) {
-    return this.resting(0.0, state);
-  }
-  /** Something that happens to the surface that is active. */
-  event(kind, time, impulse = 0.0, lost = 0.0) {
-    return new Event(kind, time, impulse, lost, number_of(this.top));
-  }
-  /** Slide, or stick; or follow slip, or rolling, to its end where that is near already. */
-  going_on(state, slips) {
-    var [ending, left] = this._next_to_end(state, slips);
-    if (ending !== null && left <= HORIZON) {
-      return new Stopping(this._branched(state, slips), this, ending);
-    }
-    var rolls = this._rolls(state);
-    if (py.truth(slips)) {
-      var top = this._branched(state, slips);
-      var sliding = along_table(state);
-      var near = py.and(is_set_valued(top.friction), () => py.bool(is_near(sliding, top)));
-      return new (py.truth(rolls) ? Sliding : SlidingWithoutRolling)(top, this, near);
-    }
-    return new (py.truth(rolls) ? Sticking : StickingWithoutRolling)(this._branched(state, slips), this);
-  }
-  /** Follow what ends first to its end; where a guard was touched by rounding, nothing does. */
-  stopping(time, state, slips = true) {
-    var [ending] = this._next_to_end(state, slips);
-    if (ending === null) {
-      return new Transition([], this.going_on(state, slips), state);
-    }
-    return new Transition([], new Stopping(this._branched(state, slips), this, ending), state);
-  }
-  /** Hold what has ended, slip or rolling (new) or what was held already, if the table can; or let go. */
-  settled(time, state, new_, held = false, events = []) {
-    var ended = [
-      py.or(new_[0], () => py.and(held, () => new_[1])),
-      py.or(new_[1], () => py.and(held, () => new_[0]))
-    ];
-    state = on_table(come_to_rest(along_table(state), this.top, ...ended), this.top);
-    var point = ContactPoint.of(state.axis, state.momentum, this.top);
-    var slip = py.truth(ended[0]) ? null : slip_of(...along_table(state), this.top);
-    var rolling = py.truth(ended[1]) ? null : point.turning.slice(0, 2);
-    try {
-      var [found, begins] = settling(point, slip, rolling);
-    } catch (error) {
-      if (!(error instanceof py.ArithmeticError)) throw error;
-      return failed("The force that holds the contact", error, state, events);
-    }
-    events = [...events, ...this._marks(time, new_, begins)];
-    return this._settle(time, state, found, begins, ended, events);
-  }
-  /** Slip, or rolling, begins from the limit of what the table can hold, which is a wrench. */
-  giving_way(state, events, beginning, wrench = null) {
-    return new Transition(events, new Loosening(this.top, this, beginning, 2, wrench), state);
-  }
-  /** The mode that follows where it is known what is held and what begins. */
-  _settle(time, state, found, begins, ended, events) {
-    if (found.wrench.force[2] <= 0.0 && !py.truth(this.pulls)) {
-      return this._let_go(time, state, events);
-    }
-    if (py.truth(py.all(begins))) {
-      return new Transition(events, new BothLoosening(this.top, this), state);
-    }
-    if (py.truth(py.any(begins))) {
-      var ending = new Vanishing(begins[0], py.truth(begins[0]) ? ended[1] : ended[0]);
-      return new Transition(events, new Loosening(this.top, this, ending, 1), state);
-    }
-    var mode = this.going_on(state, !py.truth(ended[0]));
-    var [at, turning] = found.acceleration;
-    if (py.isinstance(mode, IntegratedMode) && py.truth(rests(state, ...turning, ...at.slice(0, 2)))) {
-      return new Transition(events, new Resting(this.top, this, mode), state);
-    }
-    return new Transition(events, mode, state);
-  }
-  /** What is told where slip, or rolling, has newly ended and is held, or was held and begins. */
-  _marks(time, new_, begins) {
-    var told = [];
-    for (
-      var [ended, starts, stop, start] of py.zip(
-        new_,
-        begins,
-        [EventKind.STICK, EventKind.HALT],
-        [EventKind.SLIP, EventKind.ROLL]
-      )
-    ) {
-      if (py.truth(ended) && !py.truth(starts)) {
-        told.push(this.event(stop, time));
-      } else if (py.truth(starts) && !py.truth(ended)) {
-        told.push(this.event(start, time));
-      }
-    }
-    return py.tuple(told);
-  }
-  /** Whether nothing holds rolling. */
-  _rolls(state) {
-    return py.or(
-      !py.truth(this.top.resists_rolling),
-      () => py.bool(is_rolling(state.axis, state.momentum, this.top))
-    );
-  }
-  /** The top with the branch of its law that holds. */
-  _branched(state, slips) {
-    if (!py.truth(is_branched(this.top.friction))) {
-      return this.top;
-    }
-    if (py.truth(slips)) {
-      return on_branch(this.top, slip_of(...along_table(state), this.top));
-    }
-    var point = ContactPoint.of(state.axis, state.momentum, this.top);
-    var rolling = py.truth(this._rolls(state)) ? point.turning.slice(0, 2) : null;
-    return on_limit_branch(this.top, contact_motion(point, null, rolling)[0]);
-  }
-  /** Which velocity ends first at present rates, and the time left; none if all grow or none can end. */
-  _next_to_end(state, slips) {
-    var rolls = this._rolls(state);
-    var ends = py.and(slips, () => is_set_valued(this.top.friction));
-    var possible = py.truth(ends) ? [new Vanishing(true, !py.truth(rolls))] : [];
-    possible = py.add(
-      possible,
-      py.truth(rolls) && py.truth(this.top.resists_rolling) ? [new Vanishing(false, !py.truth(slips))] : []
-    );
-    if (!py.truth(possible)) {
-      return [null, py.float("inf")];
-    }
-    var sliding = along_table(state);
-    var top = this._branched(state, slips);
-    var point = ContactPoint.of(state.axis, state.momentum, top);
-    var slip = py.truth(slips) ? slip_of(...sliding, top) : null;
-    var acceleration = contact_motion(point, slip, py.truth(rolls) ? point.turning.slice(0, 2) : null)[1];
-    var found = null;
-    var least = py.float("inf");
-    for (var ending of possible) {
-      var xi = ending.of(...sliding, top);
-      var change = inner(xi, ending.rate(acceleration, top));
-      var left = change < 0.0 ? py.div(py.pow(size(xi), 2), py.neg(change)) : py.float("inf");
-      if (left < least) {
-        found = ending;
-        least = left;
-      }
-    }
-    return [found, least];
-  }
-  /** Go on from contact without normal velocity: slide, stick, or leave a table that would have to pull. */
-  resting(time, state, events = []) {
-    var sliding = along_table(state);
-    var stuck = py.and(is_set_valued(this.top.friction), () => !py.truth(is_slipping(...sliding, this.top)));
-    var held = !py.truth(this._rolls(state));
-    if (py.truth(stuck) || py.truth(held)) {
-      return this.settled(time, state, [stuck, held], undefined, events);
-    }
-    var touch = contact(sliding.axis, sliding.momentum, sliding.velocity, this.top);
-    if (touch.delassus <= 0 && !py.truth(this.pulls)) {
-      return this.inconsistent(time, state, events);
-    }
-    if (touch.free_acceleration < 0 || py.truth(this.pulls)) {
-      return new Transition(events, this.going_on(state, true), state);
-    }
-    return this._let_go(time, state, events);
-  }
-  /** Leave the table, unless the normal force changed its sign by way of infinity. */
-  lift_off(time, state) {
-    if (py.truth(presses(state.axis, state.momentum, this.top))) {
-      return this.resting(time, state);
-    }
-    return this._leaving(time, state);
-  }
-  /** What follows where the normal force has grown beyond all bounds, and slip goes on. */
-  jammed(time, state) {
-    try {
-      var beyond = on_table(past_jamming(along_table(state), this.top), this.top);
-    } catch (error) {
-      if (!(error instanceof py.ArithmeticError)) throw error;
-      return failed("What follows where friction jams the contact", error, state);
-    }
-    return this.inconsistent(time, beyond, []);
-  }
-  /** What follows when the normal force falls to zero. */
-  _leaving(time, state) {
-    throw new py.NotImplementedError();
-  }
-  /** What follows when the top reaches the table; the integrator may follow the impact too. */
-  touchdown(time, state, integrator = null) {
-    throw new py.NotImplementedError();
-  }
-  /** What follows when another surface of the top, of this number, reaches the table too. */
-  touch(surface, time, state, integrator = null) {
-    throw new py.NotImplementedError();
-  }
-  /** Lift-off after some events. */
-  _let_go(time, state, events) {
-    var found = this._leaving(time, state);
-    return py.replace(found, { events: [...events, ...found.events] });
-  }
-  /** What follows where no contact force is consistent with the friction. */
-  inconsistent(time, state, events) {
-    return new Transition(events, Outcome.FAILED, state, "no contact force is consistent with the friction");
-  }
-}
 
 /** The table may pull: the top never leaves it. */
 class Bilateral extends Rules {
@@ -6328,11 +6342,6 @@ class FreeToFly extends Rules {
   }
 }
 
-/** Whether a body in contact neither moves nor begins to, by the rates of its velocities. */
-function rests(state, ...rates) {
-  return py.bool(py.max(py.map(py.abs, [...rates, ...state.momentum, ...state.velocity])) <= REST);
-}
-
 // tippetop.mechanics.contact_pair
 const TURNING_of_contact_pair = 2;
 
@@ -6404,6 +6413,71 @@ class ContactPair extends py.NamedTuple {
     return [one, other, turning];
   }
 }
+
+/** Horizontal unit vectors e along the axis and t across it. */
+function directions_of(axis) {
+  var inverse = py.pow(py.add(py.mul(axis[0], axis[0]), py.mul(axis[1], axis[1])), -0.5);
+  var x = py.mul(axis[0], inverse);
+  var y = py.mul(axis[1], inverse);
+  return [[x, y, py.mul(0.0, x)], [py.neg(y), x, py.mul(0.0, x)]];
+}
+
+/** D, how far the second contact is from the first along e, m. */
+function apart(pair) {
+  var e = directions_of(pair.first.axis)[0];
+  return py.sub(dot(pair.second.arm, e), dot(pair.first.arm, e));
+}
+
+/** D omega_z, m/s. */
+function slip_apart(pair) {
+  return py.mul(apart(pair), pair.first.turning[2]);
+}
+
+/** omega_e, rad/s. */
+function turning_along(pair) {
+  return dot(pair.first.turning, directions_of(pair.first.axis)[0]);
+}
+
+/** The state with c' = 0 and no sinking: what is taken from the momentum lies across the axis. */
+function without_tilting(state, top) {
+  var n = state.axis;
+  var rate = axis_rate(n, state.momentum, top)[2];
+  var part = py.div(py.mul(top.transverse_inertia, rate), py.add(py.mul(n[0], n[0]), py.mul(n[1], n[1])));
+  var momentum = [
+    py.sub(state.momentum[0], py.mul(part, n[1])),
+    py.add(state.momentum[1], py.mul(part, n[0])),
+    state.momentum[2]
+  ];
+  return py.replace(state, { momentum: momentum, velocity: [...state.velocity.slice(0, 2), 0.0] });
+}
+
+/** How both contacts slip, and drill if their law resists that. */
+function slips_of(pair, xi) {
+  var across = directions_of(pair.first.axis)[1];
+  var one = [xi[0], xi[1]];
+  var other = [py.add(xi[0], py.mul(xi[2], across[0])), py.add(xi[1], py.mul(xi[2], across[1]))];
+  var reach = slip_length(pair.first.top.friction);
+  if (reach === null) {
+    return [one, other];
+  }
+  var drilling = py.div(py.mul(reach, xi[2]), apart(pair));
+  return [[...one, drilling], [...other, drilling]];
+}
+
+/** Angular momentum and velocity after the impulses that end what is left of slip, and of rolling. */
+function at_rest(pair, velocity, ended, stopped) {
+  var omega = pair.first.turning;
+  var up = new Wrench(VERTICAL, NO_TORQUE);
+  var [one, other] = [...pair].map((point) => add(velocity, cross(omega, point.arm)));
+  var pushes = pair.holding(ended, [up, up], [one, other, omega], stopped);
+  var momentum = add(pair.first.momentum, pair.moment(pushes));
+  for (var [, push] of pushes) {
+    velocity = add(velocity, scale(py.div(1.0, pair.first.top.mass), push.force));
+  }
+  return [momentum, velocity];
+}
+
+// tippetop.mechanics.pair_motion
 
 /** What the table does at both contacts that stay closed, and how they accelerate. */
 class PairMotion extends py.NamedTuple {
@@ -6510,30 +6584,6 @@ class PairMotion extends py.NamedTuple {
   }
 }
 
-/** Horizontal unit vectors e along the axis and t across it. */
-function directions_of(axis) {
-  var inverse = py.pow(py.add(py.mul(axis[0], axis[0]), py.mul(axis[1], axis[1])), -0.5);
-  var x = py.mul(axis[0], inverse);
-  var y = py.mul(axis[1], inverse);
-  return [[x, y, py.mul(0.0, x)], [py.neg(y), x, py.mul(0.0, x)]];
-}
-
-/** D, how far the second contact is from the first along e, m. */
-function apart(pair) {
-  var e = directions_of(pair.first.axis)[0];
-  return py.sub(dot(pair.second.arm, e), dot(pair.first.arm, e));
-}
-
-/** D omega_z, m/s. */
-function slip_apart(pair) {
-  return py.mul(apart(pair), pair.first.turning[2]);
-}
-
-/** omega_e, rad/s. */
-function turning_along(pair) {
-  return dot(pair.first.turning, directions_of(pair.first.axis)[0]);
-}
-
 /** What the table does to a body whose two contacts stay closed, and how it accelerates. */
 function pair_motion(pair, slips, rolls) {
   var along = directions_of(pair.first.axis)[0];
@@ -6548,45 +6598,6 @@ function pair_motion(pair, slips, rolls) {
   }
   var holding = py.truth(stopped) ? dot(py.item(pushes, -1)[1].torque, along) : 0.0;
   return new PairMotion(pair, [found[0], found[1]], pair.under(pushes), holding);
-}
-
-/** The state with c' = 0 and no sinking: what is taken from the momentum lies across the axis. */
-function without_tilting(state, top) {
-  var n = state.axis;
-  var rate = axis_rate(n, state.momentum, top)[2];
-  var part = py.div(py.mul(top.transverse_inertia, rate), py.add(py.mul(n[0], n[0]), py.mul(n[1], n[1])));
-  var momentum = [
-    py.sub(state.momentum[0], py.mul(part, n[1])),
-    py.add(state.momentum[1], py.mul(part, n[0])),
-    state.momentum[2]
-  ];
-  return py.replace(state, { momentum: momentum, velocity: [...state.velocity.slice(0, 2), 0.0] });
-}
-
-/** How both contacts slip, and drill if their law resists that. */
-function slips_of(pair, xi) {
-  var across = directions_of(pair.first.axis)[1];
-  var one = [xi[0], xi[1]];
-  var other = [py.add(xi[0], py.mul(xi[2], across[0])), py.add(xi[1], py.mul(xi[2], across[1]))];
-  var reach = slip_length(pair.first.top.friction);
-  if (reach === null) {
-    return [one, other];
-  }
-  var drilling = py.div(py.mul(reach, xi[2]), apart(pair));
-  return [[...one, drilling], [...other, drilling]];
-}
-
-/** Angular momentum and velocity after the impulses that end what is left of slip, and of rolling. */
-function at_rest(pair, velocity, ended, stopped) {
-  var omega = pair.first.turning;
-  var up = new Wrench(VERTICAL, NO_TORQUE);
-  var [one, other] = [...pair].map((point) => add(velocity, cross(omega, point.arm)));
-  var pushes = pair.holding(ended, [up, up], [one, other, omega], stopped);
-  var momentum = add(pair.first.momentum, pair.moment(pushes));
-  for (var [, push] of pushes) {
-    velocity = add(velocity, scale(py.div(1.0, pair.first.top.mass), push.force));
-  }
-  return [momentum, velocity];
 }
 
 // tippetop.mechanics.pair_resolver
@@ -7197,23 +7208,6 @@ class SlipBeginningOnTwo extends SlidingOnTwo {
   }
 }
 
-// tippetop.mechanics.invariants
-
-/** Kinetic and potential energy, (m |r'|^2 + omega.L)/2 + m g z, J; zero at rest with z = 0. */
-function energy(state, top) {
-  var omega = angular_velocity(state.axis, state.momentum, top);
-  var translation = py.mul(top.mass, dot(state.velocity, state.velocity));
-  return py.add(
-    py.mul(0.5, py.add(translation, dot(omega, state.momentum))),
-    py.mul(py.mul(top.mass, top.gravity), state.height)
-  );
-}
-
-/** Jellett's integral lambda = -L.a, kg m^3/s. */
-function jellett(state, top) {
-  return py.neg(dot(state.momentum, contact_vector(state.axis, top.surface)));
-}
-
 // tippetop.contact.two_closed
 const TOGETHER = 30.0;
 const ABOUT = py.add(1.0, 0.001);
@@ -7401,6 +7395,25 @@ function ended_slips(state, tops) {
   return [one <= py.mul(TOGETHER, limit), other <= py.mul(TOGETHER, limit)];
 }
 
+// tippetop.mechanics.invariants
+
+/** Kinetic and potential energy, (m |r'|^2 + omega.L)/2 + m g z, J; zero at rest with z = 0. */
+function energy(state, top) {
+  var omega = angular_velocity(state.axis, state.momentum, top);
+  var translation = py.mul(top.mass, dot(state.velocity, state.velocity));
+  return py.add(
+    py.mul(0.5, py.add(translation, dot(omega, state.momentum))),
+    py.mul(py.mul(top.mass, top.gravity), state.height)
+  );
+}
+
+/** Jellett's integral lambda = -L.a, kg m^3/s. */
+function jellett(state, top) {
+  return py.neg(dot(state.momentum, contact_vector(state.axis, top.surface)));
+}
+
+// tippetop.contact.two_resolver
+
 /** The resolver of two contacts, where the body rolls as signed, or not (0). */
 function settled(rules, time, state, tops, before, rolls, events = [], arrived = false) {
   var here = TwoClosed.of(rules, state, tops, rolls);
@@ -7420,7 +7433,7 @@ function settled(rules, time, state, tops, before, rolls, events = [], arrived =
       var lost = py.float(py.sub(energy(state, tops[0]), energy(here.state, tops[0])));
       events = [...events, rules.event(EventKind.DOUBLE_CONTACT, time, 0.0, lost)];
     }
-    var ended = py.add(time, _left_of_two_closed(state, here));
+    var ended = py.add(time, _left_of_two_resolver(state, here));
     var turned = !py.eq(found.rolls, rolls) ? ended : time;
     events = [...events, ..._marks([ended, turned], here, found, before)];
     return py.replace(here.going_on(found), { events: events });
@@ -7477,7 +7490,7 @@ function _marks(times, here, found, before) {
 }
 
 /** Time to the end of slip that is followed no further, at its present rate. */
-function _left_of_two_closed(state, here) {
+function _left_of_two_resolver(state, here) {
   if (!py.truth(py.any(here.ended))) {
     return 0.0;
   }
@@ -7934,7 +7947,7 @@ class EllipsoidalLaw extends PatchLaw {
   }
 }
 
-// tippetop.mechanics.contensou_hertz
+// tippetop.mechanics.hertz_shares
 const ABOVE = [
   1.5707963267948966,
   3.881827558189307,
@@ -7952,7 +7965,58 @@ const BELOW = [
   0.573386336009741,
   0.046682203384759896
 ];
-const SHARE_of_contensou_hertz = py.div(BELOW[6], BELOW[5]);
+const SHARE_of_hertz_shares = py.div(BELOW[6], BELOW[5]);
+const NEAR_BRANCH = 1e-24;
+
+/** F / kappa and T where drilling prevails, at kappa^2. */
+function drilling_shares(square) {
+  var force = py.mul(py.div(py.mul(3.0, PI), 32.0), py.sub(4.0, square));
+  return [
+    force,
+    py.mul(py.div(py.mul(3.0, PI), 16.0), py.add(py.sub(1.0, square), py.mul(0.375, py.mul(square, square))))
+  ];
+}
+
+/** F and T kappa where slip prevails, at 1 - 1 / kappa^2, see `HertzSlidingLaw`. */
+function sliding_shares(excess) {
+  var x4 = py.add(py.mul(excess, excess), NEAR_BRANCH);
+  var x2 = py.pow(x4, 0.5);
+  var x = py.pow(x2, 0.5);
+  var above = py.add(
+    py.add(py.add(py.add(ABOVE[0], py.mul(ABOVE[1], x)), py.mul(ABOVE[2], x2)), py.mul(ABOVE[4], x4)),
+    py.mul(x, py.add(py.mul(ABOVE[3], x2), py.mul(ABOVE[5], x4)))
+  );
+  var odd = py.mul(
+    py.add(x, py.mul(SHARE_of_hertz_shares, x2)),
+    py.add(py.mul(BELOW[3], x2), py.mul(BELOW[5], x4))
+  );
+  var below = py.add(
+    py.add(
+      py.add(py.add(BELOW[0], py.mul(BELOW[1], x)), py.mul(BELOW[2], x2)),
+      py.mul(py.sub(BELOW[4], py.mul(SHARE_of_hertz_shares, BELOW[3])), x4)
+    ),
+    odd
+  );
+  var d = py.div(above, below);
+  var y = py.sub(1.0, x2);
+  var c = py.mul(y, d);
+  var less = py.mul(y, py.add(py.mul(py.div(2.0, 3.0), x), c));
+  return [
+    py.sub(py.add(x, py.mul(0.75, less)), py.mul(0.1875, c)),
+    py.add(py.add(py.mul(0.125, x), py.mul(0.375, py.sub(less, c))), py.mul(0.140625, d))
+  ];
+}
+
+/** Force over slip, and torque, per unit normal force. */
+function scaled_shares(patch, larger, drilling, law) {
+  var speed = py.pow(larger, 0.5);
+  return [
+    py.div(py.mul(py.neg(patch.mu), law[0]), speed),
+    py.div(py.mul(py.mul(py.neg(patch.mu), patch.patch_radius), py.mul(drilling, law[1])), speed)
+  ];
+}
+
+// tippetop.mechanics.contensou_hertz
 const LIMIT = [
   [
     0.8835729338221295,
@@ -7975,7 +8039,6 @@ const LIMIT = [
     0.006126226581420139
   ]
 ];
-const NEAR_BRANCH = 1e-24;
 const EDGE = 1e-05;
 const BEYOND_of_contensou_hertz = 1e-20;
 const BRANCH_TORQUE = py.div(py.mul(9.0, PI), 128.0);
@@ -8179,54 +8242,6 @@ function resisting(law, slip, angular_velocity) {
   var square = py.add(py.mul(slip[0], slip[0]), py.mul(slip[1], slip[1]));
   var [force, torque] = law.shares(square, py.mul(law.patch_radius, angular_velocity[2]));
   return new Traction([py.mul(force, slip[0]), py.mul(force, slip[1])], [0.0, 0.0, torque]);
-}
-
-/** F / kappa and T where drilling prevails, at kappa^2. */
-function drilling_shares(square) {
-  var force = py.mul(py.div(py.mul(3.0, PI), 32.0), py.sub(4.0, square));
-  return [
-    force,
-    py.mul(py.div(py.mul(3.0, PI), 16.0), py.add(py.sub(1.0, square), py.mul(0.375, py.mul(square, square))))
-  ];
-}
-
-/** F and T kappa where slip prevails, at 1 - 1 / kappa^2, see `HertzSlidingLaw`. */
-function sliding_shares(excess) {
-  var x4 = py.add(py.mul(excess, excess), NEAR_BRANCH);
-  var x2 = py.pow(x4, 0.5);
-  var x = py.pow(x2, 0.5);
-  var above = py.add(
-    py.add(py.add(py.add(ABOVE[0], py.mul(ABOVE[1], x)), py.mul(ABOVE[2], x2)), py.mul(ABOVE[4], x4)),
-    py.mul(x, py.add(py.mul(ABOVE[3], x2), py.mul(ABOVE[5], x4)))
-  );
-  var odd = py.mul(
-    py.add(x, py.mul(SHARE_of_contensou_hertz, x2)),
-    py.add(py.mul(BELOW[3], x2), py.mul(BELOW[5], x4))
-  );
-  var below = py.add(
-    py.add(
-      py.add(py.add(BELOW[0], py.mul(BELOW[1], x)), py.mul(BELOW[2], x2)),
-      py.mul(py.sub(BELOW[4], py.mul(SHARE_of_contensou_hertz, BELOW[3])), x4)
-    ),
-    odd
-  );
-  var d = py.div(above, below);
-  var y = py.sub(1.0, x2);
-  var c = py.mul(y, d);
-  var less = py.mul(y, py.add(py.mul(py.div(2.0, 3.0), x), c));
-  return [
-    py.sub(py.add(x, py.mul(0.75, less)), py.mul(0.1875, c)),
-    py.add(py.add(py.mul(0.125, x), py.mul(0.375, py.sub(less, c))), py.mul(0.140625, d))
-  ];
-}
-
-/** Force over slip, and torque, per unit normal force. */
-function scaled_shares(patch, larger, drilling, law) {
-  var speed = py.pow(larger, 0.5);
-  return [
-    py.div(py.mul(py.neg(patch.mu), law[0]), speed),
-    py.div(py.mul(py.mul(py.neg(patch.mu), patch.patch_radius), py.mul(drilling, law[1])), speed)
-  ];
 }
 
 // tippetop.frictions
@@ -11371,8 +11386,8 @@ export {
   ABOVE,
   ACCUMULATED,
   ACCURACY,
+  ACCURACY_of_arriving,
   ACCURACY_of_loosening,
-  ACCURACY_of_slipping,
   ACROSS,
   APART,
   APART_of_direction,
@@ -11397,7 +11412,7 @@ export {
   BothLoosening,
   CHOICES,
   CLEAR,
-  CLEAR_of_slipping,
+  CLEAR_of_slip_step,
   CLOSE,
   CLOSES,
   CONSTANT,
@@ -11451,7 +11466,7 @@ export {
   FINE,
   FINEST,
   FIRST,
-  FIRST_of_slipping,
+  FIRST_of_arriving,
   FIRST_of_two_closed,
   FITS,
   FLAT,
@@ -11535,10 +11550,10 @@ export {
   MOST_IN_TURNS,
   MOST_PIECES,
   MOST_STEPS,
+  MOST_of_arriving,
   MOST_of_bodies,
   MOST_of_closing,
   MOST_of_impact_process,
-  MOST_of_slipping,
   Machinery,
   Mode,
   Monitor,
@@ -11596,7 +11611,7 @@ export {
   POWER_of_graph,
   PRESSED,
   PRESSED_of_loosening,
-  PRESSED_of_slipping,
+  PRESSED_of_slip_step,
   PROBED,
   PRODUCT,
   PROTRUDING,
@@ -11655,9 +11670,9 @@ export {
   SECOND,
   SELECT,
   SETTLED,
-  SETTLED_of_passing,
+  SETTLED_of_arriving,
   SHARE,
-  SHARE_of_contensou_hertz,
+  SHARE_of_hertz_shares,
   SHORT,
   SHORTER,
   SHORTER_of_slipping,
@@ -11756,7 +11771,7 @@ export {
   Transition,
   TwoClosed,
   UNSEEN,
-  UNSEEN_of_loosening,
+  UNSEEN_of_arriving,
   Units,
   Unsolved,
   VERTICAL,
@@ -11795,7 +11810,7 @@ export {
   _integral,
   _leads,
   _left,
-  _left_of_two_closed,
+  _left_of_two_resolver,
   _level,
   _marks,
   _meetings,

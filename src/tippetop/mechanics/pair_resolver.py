@@ -3,18 +3,10 @@
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from tippetop.mechanics.contact_pair import (
-    ContactPair,
-    PairMotion,
-    Slips,
-    apart,
-    directions_of,
-    pair_motion,
-    slips_of,
-    turning_along,
-)
+from tippetop.mechanics.contact_pair import ContactPair, Slips, apart, directions_of, slips_of, turning_along
 from tippetop.mechanics.direction import Resisted, directions
 from tippetop.mechanics.friction import NO_TORQUE
+from tippetop.mechanics.pair_motion import PairMotion, pair_motion
 from tippetop.mechanics.rolling import slip_length
 from tippetop.mechanics.stick_slip import plus, scaled, size
 from tippetop.mechanics.unsolved import Unsolved

@@ -1,0 +1,176 @@
+"""The last moments of slip, or of rolling, under friction that is set-valued."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+from tippetop.contact.arriving import Arrival, arriving
+from tippetop.contact.closing import FEW, LANDED, OWN, closing_motion, closing_of, followed
+from tippetop.contact.mode import EventKind, Outcome, Segment, Transition
+from tippetop.contact.passing import DEGREE, LOOKS, SETTLED, Passing, in_one_step, shown, straight
+from tippetop.contact.surfaces import follow_surface, passes_flat
+from tippetop.integrators.base import Arc, Array, Integrator, Motion
+from tippetop.integrators.dense import DenseSolution, as_array
+from tippetop.mechanics.branches import on_other_branch
+from tippetop.mechanics.ending import (
+    Closing,
+    Vanishing,
+    landed,
+    landing_guard,
+)
+from tippetop.mechanics.rolling import slip_length
+from tippetop.mechanics.state import State
+from tippetop.mechanics.stick_slip import (
+    scaled,
+    size,
+)
+from tippetop.mechanics.top import Top
+from tippetop.mechanics.vectors import Row, Scalar
+
+LANDING = (3e-8, 1e-16)
+"""How long before its end the rest of a velocity may be taken in one step, in natural units of time: if its
+direction has come to rest by then, and in any case."""
+
+SLOWEST = 1e-12
+"""A velocity, in natural units, that has ended where it cannot be followed further."""
+
+SHARE = 0.01
+"""Part of the time to the end that such a polynomial leaves: what follows its friction ends smoothly."""
+
+RESOLVED = 1e-15
+"""Last term of these polynomials, in natural units, that is small: else they are made for shorter times."""
+
+
+@dataclass(frozen=True)
+class Stopping(Passing):
+    """The last moments of slip, or of rolling, in a clock of their own (see `tippetop.mechanics.ending`)."""
+
+    begin: tuple[float, ...] = ()
+    """The numbers of the clock where another branch of the law has left off; else they are the state's."""
+
+    @property
+    def motion(self) -> Motion:
+        """Its equations in the clock."""
+        return closing_motion(self.top.kind, self.ending, not self.rules.pulls)
+
+    def segments(self, time: float, state: State, end: float, integrator: Integrator) -> Iterator[Segment]:
+        """Follow it to its end, or to where it is no longer about to end."""
+        begin = self.begin or self._clock(state)
+        arcs, rest, arrival = self._followed(begin, end - time, integrator)
+        here = closing_of(arcs[-1].end_state.tolist() if arcs else begin, self.ending)
+        arc, until = arcs[-1] if arcs and arrival is None else None, float(here.time)
+        if arc is not None and arc.failure is not None and here.speed < SLOWEST:
+            # It passes zero by so little that no step is short enough to see it turn round.
+            rest, arc = here._replace(speed=0.0), None
+        if arrival is None:
+            last, onwards = self.state(shown(rest)), straight(shown(here), shown(rest), until, rest.time)
+        else:
+            last, onwards = self.state(arrival.at(0.0)), in_one_step(arrival.onwards, until, arrival.left)
+        solution = self._in_time(arcs, until, onwards).moved(time, time + onwards.end)
+        then, steps = self._next(arc, solution.end, last), sum(one.steps for one in arcs)
+        steps += arrival is not None
+        method = next((one.method for one in arcs[::-1] if one.method is not None), None)
+        yield Segment(self, solution, last, then, steps, steps, method=method)
+
+    def _followed(
+        self, begin: Row, longest: float, integrator: Integrator
+    ) -> tuple[list[Arc], Closing, Arrival | None]:
+        """It in its clock; and where it ends after that, in one step, if not by power series."""
+        here, start, arcs = closing_of(begin, self.ending), (0.0, as_array(begin)), list[Arc]()
+        arrival, rest = self._arrival(here, longest, integrator), here
+        for horizon in LANDING:
+            if arrival is not None or landing_guard(here, self.ending, self.top, horizon) <= 0.0:
+                continue
+            for arc in followed(integrator, self.motion, (*self.top.numbers, longest, horizon), start):
+                arcs.append(arc)
+                start = arc.solution.end, arc.end_state
+                here = closing_of(arc.end_state.tolist(), self.ending)
+                if arc.guard is None and arc.failure is None and arc.steps >= FEW:
+                    arrival = self._arrival(here, longest, integrator)
+                if arrival is not None:
+                    return arcs, here, arrival
+            if arcs[-1].guard != LANDED:
+                return arcs, here, None
+            rest, doubt = landed(here, self.ending, self.top)
+            if doubt < SETTLED:
+                break
+        return arcs, rest if arcs or arrival is not None else landed(here, self.ending, self.top)[0], arrival
+
+    def _arrival(self, here: Closing, longest: float, integrator: Integrator) -> Arrival | None:
+        """The end of slip by power series, if its direction has come to rest and nothing else happens."""
+        if not self.ending.slip or slip_length(self.top.friction) is None:
+            return None
+        found = arriving(here, self.ending, self.top, integrator)
+        if found is None or here.time + found.left > longest:
+            return None
+        numbers = (*self.top.numbers, longest, 0.0)
+        for look in range(1, LOOKS + 1):
+            then = found.at(look / LOOKS)
+            xi = tuple(then[6:])
+            clock = (*then[:6], *scaled(1.0 / size(xi), xi), size(xi), here.time)
+            if not all(one.value(clock, numbers) > 0.0 for one in self.motion.guards if one.name not in OWN):
+                return None
+        way = [found.at(look / LOOKS) for look in range(LOOKS + 1)]
+        return None if passes_flat(self.top, way) else found
+
+    def _clock(self, state: State) -> tuple[float, ...]:
+        """The numbers of the clock at a state."""
+        velocity = state.velocity[:2]
+        xi = self.ending.of(state.axis, state.momentum, velocity, self.top)
+        free = velocity if self.ending.moves else ()
+        return (*state.axis, *state.momentum, *free, *scaled(1.0 / size(xi), xi), size(xi), 0.0)
+
+    def _next(self, arc: Arc | None, time: float, state: State) -> Transition:
+        ending, stuck = self.ending, not self.ending.slip and self.ending.held
+        if arc is None or arc.guard == LANDED:
+            return self.rules.settled(time, state, new=(ending.slip, not ending.slip), held=ending.held)
+        if arc.failure is not None or arc.guard is None:
+            return Transition((), Outcome.FAILED, state, arc.failure or "the slip neither ends nor goes on")
+        found = follow_surface(self, arc.guard, time, state)
+        if found is not None:
+            return found
+        if arc.guard == "time":
+            return Transition((), Outcome.COMPLETED, state)
+        if arc.guard == "jammed":
+            return self.rules.jammed(time, state)
+        if arc.guard == "lift-off":
+            return self.rules.lift_off(time, state)
+        if arc.guard == "reopening":
+            return Transition((), self.rules.going_on(state, slips=not stuck), state)
+        if arc.guard == "overtaken":
+            return Transition((), replace(self, ending=Vanishing(not ending.slip), begin=()), state)
+        if arc.guard in ("branch", "limit branch"):
+            return Transition((), self._onwards(arc, on_other_branch(self.top)), state)
+        if arc.guard in ("slip", "rolling"):
+            slip = arc.guard == "slip"
+            event = self.rules.event(EventKind.SLIP if slip else EventKind.ROLL, time)
+            return self.rules.giving_way(state, (event,), Vanishing(slip=slip))
+        raise AssertionError(f"nothing is said of what follows {arc.guard}")
+
+    def _onwards(self, arc: Arc, top: Top) -> "Stopping":
+        """The mode that takes the clock up where an arc leaves it, on another branch of the law."""
+        return replace(self, top=top, begin=(*arc.end_state.tolist()[:-1], 0.0))
+
+    def _in_time(self, arcs: Sequence[Arc], until: float, rest: DenseSolution) -> DenseSolution:
+        """The numbers of the mode as polynomials in time: up to some time from the clock's, and the rest."""
+        parts = [arc.solution for arc in arcs if len(arc.solution.terms)]
+        if not parts:
+            return rest
+        clock, elapsed = DenseSolution.joined(parts), parts[0].size - 1
+
+        def numbers(times: Array) -> tuple[Scalar, ...]:
+            return shown(closing_of(clock.rows(clock.when(elapsed, times)), self.ending))
+
+        knots = clock.knots_of(elapsed, until)
+        solution = DenseSolution.fitted(numbers, thinned(knots), DEGREE)
+        if solution.unresolved > RESOLVED:
+            solution = DenseSolution.fitted(numbers, knots, DEGREE)
+        return DenseSolution.joined([solution, rest]) if rest.end > until else solution
+
+
+def thinned(knots: Sequence[float]) -> list[float]:
+    """Ends of steps, so few of them that each leaves but a share of the time to the last."""
+    end, found = knots[-1], [knots[0]]
+    for knot in knots[1:-1]:
+        if end - knot <= SHARE * (end - found[-1]):
+            found.append(knot)
+    return [*found, end]
