@@ -6,7 +6,7 @@ import pytest
 
 pytest.importorskip("heyoka")
 
-from tippetop.contact.leaving import FreeToFly
+from tippetop.contact.liftoff import FreeToFly
 from tippetop.contact.mode import EventKind, Outcome
 from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators.taylor import Taylor

@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 import tippetop as tt
 from tippetop.cli.commands import app
 from tippetop.contact.choice import rules_for
-from tippetop.contact.leaving import FreeToFly
+from tippetop.contact.liftoff import FreeToFly
 from tippetop.contact.sliding import Sliding
 from tippetop.contact.stopping import Stopping
 from tippetop.integrators import has_taylor, make_integrator

@@ -13,7 +13,7 @@ from pydantic import Field, model_validator
 
 import tippetop as tt
 from tippetop.catalogue import SWEPT, Fault
-from tippetop.contact.leaving import FreeToFly
+from tippetop.contact.liftoff import FreeToFly
 from tippetop.contact.mode import IntegratedMode, Reaction, Transition
 from tippetop.errors import InvalidInput
 from tippetop.integrators.base import Guard, Motion

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from tippetop.contact.leaving import FreeToFly
+from tippetop.contact.liftoff import FreeToFly
 from tippetop.contact.striking import impact_of_patch
 from tippetop.integrators import has_taylor, make_integrator
 from tippetop.mechanics.contensou import EllipsoidalLaw

@@ -13,7 +13,7 @@ from tippetop.errors import one_of
 def accepted_by(detail: ErrorDetails, fields: Mapping[str, FieldInfo]) -> str:
     """What some fields, by their names, would accept instead, from the kind of validation error.
 
-    Without the field of a number that is out of its range, that is the limit it goes beyond.
+    Without the field of a number that is out of its range, these are the limits that the error has.
     """
     place = [*map(str, detail["loc"]), ""]
     match detail["type"]:

@@ -223,7 +223,8 @@ def test_what_is_written_by_hand_is_not_taken_for_another_modules():
     sources = {"one": "def size(x):\n    return x\n", "two": "from by_hand import size\n"}
     with pytest.raises(ValueError, match="two: size of by_hand"):
         Program(sources, {"by_hand": "./hand.js"}, ())
-    Program(dict(reversed(sources.items())), {"by_hand": "./hand.js"}, ())
+    program = Program(dict(reversed(sources.items())), {"by_hand": "./hand.js"}, ())
+    assert program.names["one", "size"] != program.names["two", "size"]
 
 
 def test_long_lines_are_broken_into_the_same_code():

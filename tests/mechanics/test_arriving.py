@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 from dry_runs import DryRun
 from tippetop.contact.arriving import DEGREE, Arrival, arriving
 from tippetop.contact.closing import closing_of
-from tippetop.contact.leaving import Bilateral
+from tippetop.contact.liftoff import Bilateral
 from tippetop.contact.mode import EventKind
 from tippetop.contact.stopping import Stopping
 from tippetop.contact.trajectory import Trajectory

@@ -8,7 +8,7 @@ from scipy.integrate import solve_ivp
 
 from dry_runs import launched
 from tippetop.contact import slip_step
-from tippetop.contact.leaving import FreeToFly
+from tippetop.contact.liftoff import FreeToFly
 from tippetop.contact.loosening import Loosening
 from tippetop.contact.mode import EventKind
 from tippetop.contact.slipping import change_over, dips, parts_left

@@ -10,7 +10,7 @@ from creeping import creep_rates, direction_of_slip
 from dry_runs import DryRun, launched
 from tippetop.contact.closed import SLIP, split
 from tippetop.contact.growth import growth
-from tippetop.contact.leaving import Bilateral
+from tippetop.contact.liftoff import Bilateral
 from tippetop.contact.loosening import Loosening
 from tippetop.contact.mode import EventKind
 from tippetop.contact.sticking import Sticking

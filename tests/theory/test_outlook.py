@@ -15,6 +15,7 @@ from typer.testing import CliRunner
 from tippetop import presets
 from tippetop.cli.commands import app
 from tippetop.errors import InvalidInput
+from tippetop.frictions import ViscousFriction
 from tippetop.problem import Problem
 from tippetop.theory.averaging import flip_time_limit, nutation_of_launch
 from tippetop.theory.groups import Group
@@ -119,7 +120,10 @@ def check_what_is_said(problem):
         assert 0.0 <= low <= problem.launch.tilt <= high <= math.pi
     if found.flip_time is not None:
         assert found.flip_time >= 0.0
-        assert found.flip_time_known_of is None
+        assert found.flip_time_needs is None
+    elif found.group is not None and found.stays is None and 0.0 < problem.launch.tilt < math.pi:
+        viscous = isinstance(problem.friction, ViscousFriction) and problem.friction.mu
+        assert (found.flip_time_needs is not None) == bool(viscous)
 
 
 ALL = list(itertools.product(BODIES, FRICTION, TILTS, SPINS, RATES))

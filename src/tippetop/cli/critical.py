@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 TOLD = (
     *("inertia_ratio", "eccentricity", "group", "lambda_up", "lambda_down", "jellett", "swings"),
-    *("mu_flip_time", "flip_time", "flip_time_known_of", "standing_time", "surface", "tilts"),
+    *("mu_flip_time", "flip_time", "flip_time_needs", "standing_time", "surface", "tilts"),
 )
 """What programs are told under the names that it has."""
 
@@ -83,8 +83,8 @@ def _sentences(found: "Outlook") -> Iterator[Any]:
             "[dim]The last is the limit over μ: far off where friction is strong, or where a nutation brings "
             "the axis round the vertical just once.[/]"
         )
-    if found.flip_time_known_of is not None:
-        yield f"[dim]How long it takes is known only of {found.flip_time_known_of}.[/]"
+    if found.flip_time_needs is not None:
+        yield f"[dim]Of launches, the flip time is known only of {found.flip_time_needs}.[/]"
     headings = ("kind", "tilt", "precession", "axial spin", "energy", "", "growth rate")
     rows = (_state_row(judged) for judged in found.steady)
     yield listing("Steady states of this launch", headings, rows, words=("kind", ""))

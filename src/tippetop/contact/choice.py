@@ -1,7 +1,7 @@
 """Which rules hold for a top, and what is told of one that ends as it begins."""
 
 from tippetop.contact.flight import Flight
-from tippetop.contact.leaving import Bilateral, FreeToFly, StopAtLiftOff
+from tippetop.contact.liftoff import Bilateral, FreeToFly, StopAtLiftOff
 from tippetop.contact.mode import Mode
 from tippetop.contact.rules import Rules
 from tippetop.contact.several import OnSeveral

@@ -11,20 +11,12 @@ from tippetop.contact.sticking import Sticking
 from tippetop.contact.surfaces import passes_flat, stays_open
 from tippetop.integrators.base import Integrator
 from tippetop.integrators.dense import DenseSolution
-from tippetop.mechanics.ending import (
-    Closing,
-    Vanishing,
-    rates_in_time,
-    slip_beside,
-)
+from tippetop.mechanics.ending import Closing, Vanishing, rates_in_time, slip_beside
 from tippetop.mechanics.hull import Hull
 from tippetop.mechanics.motion import angular_velocity, on_table
 from tippetop.mechanics.rolling import velocity_without_slip, without_rolling
 from tippetop.mechanics.state import SlidingState, State
-from tippetop.mechanics.stick_slip import (
-    scaled,
-    velocity_of,
-)
+from tippetop.mechanics.stick_slip import scaled, velocity_of
 from tippetop.mechanics.vectors import Row, Scalar, Vector, dot
 from tippetop.mechanics.wrench import Slip
 

@@ -6,7 +6,7 @@ from typing import Self
 
 from tippetop.contact.double import SLOWEST_SLIP
 from tippetop.contact.flight import TOUCHING
-from tippetop.contact.leaving import FreeToFly
+from tippetop.contact.liftoff import FreeToFly
 from tippetop.contact.mode import Before, Event, EventKind, Outcome, Transition
 from tippetop.contact.surfaces import number_of
 from tippetop.contact.two_closed import rolling_of

@@ -9,15 +9,7 @@ import numpy as np
 
 from tippetop.contact.surfaces import clearance, passes_flat
 from tippetop.integrators.base import Array
-from tippetop.integrators.iteration import (
-    Iteration,
-    copied,
-    first_of,
-    iterated,
-    put_from,
-    put_rows,
-    room,
-)
+from tippetop.integrators.iteration import Iteration, copied, first_of, iterated, put_from, put_rows, room
 from tippetop.mechanics.ending import Vanishing
 from tippetop.mechanics.hull import Hull
 from tippetop.mechanics.roots import crossing

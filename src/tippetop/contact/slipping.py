@@ -7,10 +7,7 @@ from typing import NamedTuple
 from tippetop.contact.slip_step import SlipStep
 from tippetop.integrators.base import Array
 from tippetop.mechanics.ending import Vanishing
-from tippetop.mechanics.slip_phase import (
-    PARTS,
-    STAGES,
-)
+from tippetop.mechanics.slip_phase import PARTS, STAGES
 from tippetop.mechanics.stick_slip import APART, inner, scaled, size
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.wrench import Slip

@@ -11,18 +11,10 @@ from tippetop.contact.surfaces import follow_surface, passes_flat
 from tippetop.integrators.base import Arc, Array, Integrator, Motion
 from tippetop.integrators.dense import DenseSolution, as_array
 from tippetop.mechanics.branches import on_other_branch
-from tippetop.mechanics.ending import (
-    Closing,
-    Vanishing,
-    landed,
-    landing_guard,
-)
+from tippetop.mechanics.ending import Closing, Vanishing, landed, landing_guard
 from tippetop.mechanics.rolling import slip_length
 from tippetop.mechanics.state import State
-from tippetop.mechanics.stick_slip import (
-    scaled,
-    size,
-)
+from tippetop.mechanics.stick_slip import scaled, size
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Row, Scalar
 
@@ -34,10 +26,10 @@ SLOWEST = 1e-12
 """A velocity, in natural units, that has ended where it cannot be followed further."""
 
 SHARE = 0.01
-"""Part of the time to the end that such a polynomial leaves: what follows its friction ends smoothly."""
+"""Part of the time to the end that a polynomial of `DEGREE` leaves: friction after it ends smoothly."""
 
 RESOLVED = 1e-15
-"""Last term of these polynomials, in natural units, that is small: else they are made for shorter times."""
+"""Last term of such polynomials, in natural units, that is small: else they are made for shorter times."""
 
 
 @dataclass(frozen=True)

@@ -28,11 +28,7 @@ from tippetop.mechanics.contact_pair import (
     without_tilting,
 )
 from tippetop.mechanics.motion import along_table
-from tippetop.mechanics.pair_resolver import (
-    Resolution,
-    resolution,
-    rolling_of_slip,
-)
+from tippetop.mechanics.pair_resolver import Resolution, resolution, rolling_of_slip
 from tippetop.mechanics.rolling import is_set_valued, slip_length, spun_up
 from tippetop.mechanics.state import State
 from tippetop.mechanics.stick_slip import is_rolling, least_slip, size, slip_of

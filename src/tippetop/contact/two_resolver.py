@@ -11,12 +11,7 @@ from tippetop.mechanics.contact_pair import ContactPair, Tops, slip_apart
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import along_table
 from tippetop.mechanics.pair_motion import pair_motion
-from tippetop.mechanics.pair_resolver import (
-    Resolution,
-    both_letting_go,
-    letting_go,
-    turning_about,
-)
+from tippetop.mechanics.pair_resolver import Resolution, both_letting_go, letting_go, turning_about
 from tippetop.mechanics.rolling import slip_length
 from tippetop.mechanics.state import State
 from tippetop.mechanics.stick_slip import inner, size, slip_of

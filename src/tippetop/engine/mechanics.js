@@ -6234,7 +6234,7 @@ const impact_motion = py.cached((kind, ending = false) => {
   return new Motion(rates, 6, py.add(kind.numbers, 3), py.tuple(guards));
 });
 
-// tippetop.contact.leaving
+// tippetop.contact.liftoff
 const SLOWEST_REBOUND = 1e-06;
 
 /** The table may pull: the top never leaves it. */
@@ -7977,7 +7977,7 @@ function drilling_shares(square) {
   ];
 }
 
-/** F and T kappa where slip prevails, at 1 - 1 / kappa^2, see `HertzSlidingLaw`. */
+/** F and T kappa where slip prevails, at 1 - 1 / kappa^2, see `contensou_hertz.HertzSlidingLaw`. */
 function sliding_shares(excess) {
   var x4 = py.add(py.mul(excess, excess), NEAR_BRANCH);
   var x2 = py.pow(x4, 0.5);

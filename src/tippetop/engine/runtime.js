@@ -14,13 +14,13 @@ export function heed(whether) {
 // ---- numbers, and what else has arithmetic: series, discs, nodes of a graph; lists are joined
 
 const takes = (a, word) => a !== null && typeof a === "object" && word in a;
+const asked = (a, word, b) => (takes(a, word) ? a[word](b) : NotImplemented);
 
 function applied(a, b, word, turned, plain) {
   // Where the second's class is one of the first's kind, it is asked first.
   const special = takes(b, turned) && takes(a, word) && b instanceof a.constructor && b.constructor !== a.constructor;
-  const found = takes(a, word) && !special ? a[word](b) : NotImplemented;
+  const first = special ? NotImplemented : asked(a, word, b), found = first === NotImplemented ? asked(b, turned, a) : first;
   if (found !== NotImplemented) return found;
-  if (takes(b, turned)) return b[turned](a);
   if (typeof a === "boolean" || typeof b === "boolean") return plain(Number(a), Number(b));
   throw new TypeError(`${word} of ${a} and ${b}`);
 }
@@ -76,7 +76,7 @@ export const abs = (a) => (typeof a === "number" ? Math.abs(a) : a.__abs__());
 export const float = (a) => (a === "inf" ? Infinity : Number(a));
 export const int = (a) => Math.trunc(Number(a));
 export const str = (a) => (a instanceof Error ? a.message : a instanceof Enum ? a.name : typeof a === "string" ? a : repr(a));
-export const repr = (a) => (typeof a === "number" && Object.is(a, -0) ? "-0" : typeof a === "string" ? `'${a}'` : String(a));
+export const repr = (a) => (typeof a === "string" ? `'${JSON.stringify(a).slice(1, -1).replaceAll('\\"', '"')}'` : Object.is(a, -0) ? "-0" : String(a));
 export function sum(values, start = 0) {
   for (const value of values) start = add(start, value);
   return start;
@@ -282,7 +282,7 @@ export const sorted = (all, { key: worth = (one) => one } = {}) =>
   [...all].sort((a, b) => below(worth(b), worth(a)) - below(worth(a), worth(b)));
 
 export const join = (between, all) => [...all].join(between);
-export const isprintable = (text) => !/[\p{C}\p{Zl}\p{Zp}]/u.test(text);
+export const isprintable = (text) => !/[\p{C}\p{Zl}\p{Zp}]|(?! )\p{Zs}/u.test(text);
 export const removeprefix = (text, part) => (text.startsWith(part) ? text.slice(part.length) : text);
 /** A number as it is typed, with powers of ten from some size on. */
 export function typed(value, most = 1e16) {

@@ -1,4 +1,4 @@
-"""Laws and limit surfaces made of branches, of which one holds at a time: see `contensou_hertz`."""
+"""Laws and limit surfaces made of branches, of which one holds: see `tippetop.mechanics.contensou_hertz`."""
 
 from typing import Any
 

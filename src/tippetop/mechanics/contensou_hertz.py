@@ -21,7 +21,8 @@ LIMIT: tuple[tuple[float, ...], ...] = (
      -0.09382811272248932, 0.006126226581420139),
 )
 # fmt: on
-"""Such polynomials of F on its limit surface, in (1 - (T / T(kappa = 1))^2)^(1/2); relative error 4e-16."""
+"""Coefficients of two polynomials whose ratio is F on the limit surface, in (1 - (T / T(kappa = 1))^2)^(1/2);
+relative error 4e-16."""
 
 EDGE = 1e-5
 """How far beyond kappa^2 = 1 the law of drilling serves, off by kappa^2 - 1 to the power of 5/2 over 5.

@@ -1,4 +1,4 @@
-"""The shares of force and torque under a patch with Hertz's pressure."""
+"""Shares of force and torque under Hertz's pressure: see `tippetop.mechanics.contensou_hertz`."""
 
 from typing import Any
 
@@ -10,13 +10,13 @@ ABOVE = (
     1.5707963267948966, 3.881827558189307, 3.7302986673933276, 1.7319485839406856, 0.3822634716370882,
     0.031121258667402094,
 )
-
 BELOW = (
     1.0, 4.168900902778227, 6.952127871831827, 5.877944744228727, 2.6214376916842954, 0.573386336009741,
     0.046682203384759896,
 )
 # fmt: on
-"""D in x = cos(sig), see `HertzSlidingLaw`, is the ratio of these polynomials; relative error 1e-17."""
+"""D in x = cos(sig), see `contensou_hertz.HertzSlidingLaw`, is the ratio of these polynomials; relative
+error 1e-17."""
 
 SHARE = BELOW[6] / BELOW[5]
 """Part of x^2 beside x in a factor of the latter."""
@@ -32,7 +32,7 @@ def drilling_shares(square: Scalar) -> tuple[Scalar, Scalar]:
 
 
 def sliding_shares(excess: Scalar) -> tuple[Scalar, Scalar]:
-    """F and T kappa where slip prevails, at 1 - 1 / kappa^2, see `HertzSlidingLaw`.
+    """F and T kappa where slip prevails, at 1 - 1 / kappa^2, see `contensou_hertz.HertzSlidingLaw`.
 
     With few products of variables: where they are power series, these are what costs.
     """

@@ -24,7 +24,7 @@ omega_z' to alpha w + (beta (e.w) + kappa omega_z') e and kappa (e.w) + delta om
 """
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 from tippetop.mechanics.branches import on_branch
 from tippetop.mechanics.friction import NO_TORQUE, FrictionLaw
@@ -38,7 +38,10 @@ from tippetop.mechanics.motion import (
 from tippetop.mechanics.surface import contact_vector
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Horizontal, Scalar, Vector, add, cross, dot, scale, solve
-from tippetop.mechanics.wrench import COUPLES, DRILLING, FORCES, Held, Slip, Wrench
+from tippetop.mechanics.wrench import COUPLES, DRILLING, FORCES, Slip, Wrench
+
+Held: TypeAlias = tuple[int, Wrench]
+"""A component that is held, as `ContactPoint.holding` has it, and what holds it."""
 
 
 class Acceleration(NamedTuple):

@@ -1,4 +1,4 @@
-"""Vectors as plain tuples of anything that has arithmetic."""
+"""Vectors as plain tuples of anything that has arithmetic, and a few linear equations."""
 
 from math import nan
 from typing import Any, Protocol, TypeAlias

@@ -22,6 +22,3 @@ class Wrench(NamedTuple):
 FORCES = (Wrench(EAST, NO_TORQUE), Wrench(NORTH, NO_TORQUE), Wrench(VERTICAL, NO_TORQUE))
 DRILLING = Wrench(NO_TORQUE, VERTICAL)
 COUPLES = (Wrench(NO_TORQUE, EAST), Wrench(NO_TORQUE, NORTH))
-
-Held: TypeAlias = tuple[int, Wrench]
-"""A component that is held, as `ContactPoint.holding` has it, and what holds it."""

@@ -60,8 +60,8 @@ class Outlook:
     there is none, or no friction."""
     flip_time: float | None
     """The same divided by the problem's mu, s."""
-    flip_time_known_of: str | None
-    """Where the limit is not known, of which launches it is."""
+    flip_time_needs: str | None
+    """What a launch must be for these to be known, where it moves on viscous friction and they are not."""
     conserved: bool
     """Whether Jellett's integral is constant: for an eccentric sphere under friction without torque."""
     standing_time: float | None
@@ -104,7 +104,7 @@ def outlook(problem: Problem) -> Outlook:
         steady=tuple(Judged(state, spectrum(state, top)) for state in steady_states(problem)),
         mu_flip_time=limit,
         flip_time=time,
-        flip_time_known_of=known_of,
+        flip_time_needs=known_of,
         conserved=sphere,
         standing_time=standing_time(problem) if drills and (vertical or top.surface.spherical) else None,
     )
@@ -128,7 +128,7 @@ def _on_one_of_several(problem: Problem) -> Outlook:
         steady=tuple(judged for judged in found.steady if low <= judged.state.tilt <= high),
         mu_flip_time=None,
         flip_time=None,
-        flip_time_known_of=None,
+        flip_time_needs=None,
         surface=hull.active,
         tilts=(low, high),
     )
@@ -176,7 +176,7 @@ def _swings(problem: Problem) -> tuple[float, float]:
 def _flip_times(problem: Problem) -> tuple[float | None, float | None, str | None]:
     """Limit of mu times the flip time, and the flip time, where friction is viscous and the axis moves.
 
-    Or else of which launches they are known, if one as this may have them.
+    And, where the limit is not known, what a launch must be for that.
     """
     launch, friction = problem.launch, problem.friction
     vertical = launch.tilt in (0.0, math.pi) and launch.tilt_rate == 0.0

@@ -86,15 +86,20 @@ function Units({ lab }) {
   );
 }
 
-// What the marks say: of a sphere that is upright below the first and turns over above the second; of others, less.
-function markHelp({ kind }, { upright, inverted }) {
-  return kind === "eccentric_sphere" && upright < inverted ? "controls.markHelp" : "controls.marksHelp";
-}
-
 export function marksOf(prospect) {
   const { upright, inverted } = prospect?.critical ?? {};
-  const marks = [{ name: "ω₁", value: upright }, { name: "ω₂", value: inverted }];
+  const marks = [{ name: "ω₁", what: "upright", value: upright }, { name: "ω₂", what: "inverted", value: inverted }];
   return marks.filter(({ value }) => Number.isFinite(value) && value < 250);
+}
+
+// What the marks say: of a sphere that is upright below the first and turns over above the second; of others, less.
+function* told(marks, { body, launch }, units) {
+  const [first, second] = marks, whole = second && first.value < second.value && body.shape.kind === "eccentric_sphere";
+  if (whole) yield t("controls.marks.both", { tilt: shown(launch.tilt, "angle", units, 3) });
+  for (const { name, what, value } of marks) {
+    const spin = `${name} = ${shown(value, "spin", units)}`;
+    yield whole ? `${spin}.` : t(`controls.marks.${what}`, { spin });
+  }
 }
 
 export function Launch({ lab }) {
@@ -117,8 +122,7 @@ export function Launch({ lab }) {
       {dials(MAIN)}
       <p class="prospect">
         {prospect?.ends?.length ? heading(prospect, units) : t("controls.unknown")}
-        {marks.length > 0 && <> {t(markHelp(problem.body.shape, prospect.critical), { tilt: shown(problem.launch.tilt, "angle", units, 3) })}{" "}
-          {marks.map(({ name, value }) => `${name} = ${shown(value, "spin", units)}`).join(", ")}.</>}
+        {[...told(marks, problem, units)].map((sentence) => ` ${sentence}`)}
       </p>
       <Choice name={t("controls.table")} value={table}
         options={[["", t("tables.choose")], ...Object.keys(TABLES).map((key) => [key, t(`tables.${key}`)])]}
@@ -146,15 +150,25 @@ export function refusal(error, { units, setup }) {
   if (!field) return { field: null, sentence: t("controls.refusedOther", { message: error.message }) };
   const dial = ALL.find((one) => one.field === field);
   const { name } = part(`quantities.${field}`);
+  if (error.missing) return { field, sentence: t("controls.missing", { name }) };
   const scale = scaleOf(dial, setup);
-  const value = typeof error.value === "number" ? shown(error.value / scale, dial.kind, units) : t("controls.quoted", { text: error.value });
+  const value = typeof error.value === "number" ? shown(error.value / scale, kindOf(dial, setup), units) : t("controls.quoted", { text: error.value });
   return { field, sentence: t("controls.refused", { name, value, accepted: accepted(error.accepted, dial, scale, units) }) };
 }
 
-// Bounds as the engine says them are in SI; here they are told in the unit of the dial.
+// Bounds as the engine says them are in SI; here they are told in the unit of the dial, and so that these are possible.
 function accepted(text, { kind }, scale, units) {
-  const { size } = unitOf(kind, units);
-  return translated(text)
-    .replace(/(?<![\w.])\d[\d.]*(e[-+]?\d+)?(?! I1)/g, (number) => digits(Number(number) / scale / size))
-    .replace(/\bpi\b/, shown(Math.PI, "angle", units, 4));
+  const size = scale * unitOf(kind, units).size;
+  return translated(text.replace(BOUND, (whole, words, number) => {
+    const bound = (number === "pi" ? Math.PI : Number(number)) / size;
+    return `${words} ${digits(/least|greater|from/.test(words) ? above(bound) : -above(-bound))}`;
+  }));
+}
+
+const BOUND = /(at least|greater than|from|at most|less than|to|=) (pi|\d+(?:\.\d+)?(?:e[-+]?\d+)?)(?![\w.]| I1)/g;
+
+// A number of four digits that is no less, but for rounding.
+function above(number) {
+  const near = Number(number.toPrecision(4));
+  return near >= number - 1e-12 * Math.abs(number) ? near : Number((near + 10 ** (Math.floor(Math.log10(Math.abs(number))) - 3)).toPrecision(4));
 }

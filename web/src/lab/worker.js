@@ -1,6 +1,6 @@
 // What the page's workers do: runs, their numbers, what a body is good for, and single launches of a map.
 
-import { prospects, simulate } from "engine";
+import { MISSING, prospects, simulate } from "engine";
 
 import { numbers } from "../run/numbers.js";
 import { buffersOf, pack, samplesFor } from "../run/pack.js";
@@ -38,7 +38,7 @@ self.onmessage = ({ data }) => {
     const answer = JOBS[job](data);
     postMessage({ id, answer }, answer?.track ? buffersOf(answer.track) : []);
   } catch (error) {
-    const { name, field, value, accepted, message } = error;
-    postMessage({ id, error: { name, field, value, accepted, message: message ?? String(error) } });
+    const { field, value, accepted, message } = error;
+    postMessage({ id, error: { field, missing: value === MISSING, value, accepted, message: message ?? String(error) } });
   }
 };

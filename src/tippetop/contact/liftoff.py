@@ -14,10 +14,7 @@ from tippetop.mechanics.impact import Impact, impact
 from tippetop.mechanics.motion import along_table
 from tippetop.mechanics.rolling import is_set_valued
 from tippetop.mechanics.state import State
-from tippetop.mechanics.stick_slip import (
-    inner,
-    slip_of,
-)
+from tippetop.mechanics.stick_slip import inner, slip_of
 from tippetop.mechanics.touchdown import Start
 
 SLOWEST_REBOUND = 1e-6
