@@ -172,6 +172,24 @@ def test_jellett_and_energy_hold_for_every_tippe_top(problem):
         assert float(run.normal_force.min()) >= -1e-12 * problem.body.mass * problem.gravity
 
 
+@pytest.mark.skipif(not has_taylor(), reason="the steps of others are chosen by every number")
+@pytest.mark.parametrize("tolerance", [1e-9, 1e-12, None])
+def test_huge_slip_leads_no_axis_astray(tolerance):
+    """Coulomb's friction is the same however fast the top slips, and so is what it does to the axis."""
+    rules = {"friction": tt.CoulombFriction(mu=0.3), "contact.liftoff": "ignore"}
+    fast, faster = (
+        tt.simulate(
+            report(155.0).replace({**rules, "launch.slip": (slip, 0.0)}), 0.5, samples=51, tolerance=tolerance
+        )
+        for slip in (1e4, 1e8)
+    )
+    allowed = 10.0 * int(faster.steps) * (tolerance or np.finfo(float).eps)
+    np.testing.assert_allclose(np.linalg.norm(faster.axis, axis=1), 1.0, rtol=0, atol=allowed)
+    assert largest(faster.energy - faster.energy[0] - faster.work) <= allowed * largest(faster.energy)
+    # The slip changes by less than 10 m/s, and its direction by less than a part in a thousand.
+    np.testing.assert_allclose(faster.axis, fast.axis, rtol=0, atol=1e-3 + allowed)
+
+
 @pytest.mark.parametrize("problem", [report(155.0), egg()], ids=["tippe top", "egg"])
 def test_newtons_laws_hold_for_what_a_result_says(problem):
     """m r'' and L', differentiated from the samples, against the force and the arm that go with them."""

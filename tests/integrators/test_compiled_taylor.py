@@ -1,5 +1,6 @@
 """The Taylor method is compiled once for all values, and kept between processes where that is possible."""
 
+import itertools
 import os
 import subprocess
 import sys
@@ -11,7 +12,8 @@ import numpy as np
 import pytest
 from exact_motions import DEFAULTS, FREQUENCY, KEPLER, OSCILLATOR, follow, whole
 
-from tippetop.integrators import Guard, Motion, has_taylor
+from tippetop.integrators import Guard, Motion, has_taylor, make_integrator
+from tippetop.integrators.base import NOT_FINITE
 
 if not has_taylor():
     pytest.skip("heyoka is not installed", allow_module_level=True)
@@ -95,6 +97,29 @@ def test_long_motions_are_followed_in_arcs_that_do_not_show(monkeypatch, long):
     np.testing.assert_allclose(arc.solution.knots, uncut.solution.knots, rtol=1e-9)
     np.testing.assert_allclose(arc.solution(times), KEPLER.states(times), rtol=0, atol=1e-12)
     np.testing.assert_allclose(arc.end_state, uncut.end_state, rtol=0, atol=1e-13)
+
+
+@pytest.mark.parametrize("relieved", [False, True])
+@pytest.mark.parametrize("begin", [0.0, 1e3])
+def test_what_turns_beside_what_blows_up_keeps_its_length_to_the_end(begin, relieved):
+    """One number is 1e8 / (1 - t), and two turn at 50 / (1 - t), whose steps must be the shorter ones."""
+
+    def rates(y, _):
+        growth = 1e-8 * y[0]
+        return growth * y[0], -50.0 * growth * y[2], 50.0 * growth * y[1]
+
+    motion = Motion(rates, size=3, parameters=0)
+    integrator = make_integrator() if relieved else taylor.Taylor()
+    start = begin, np.array([1e8, 1.0, 0.0])
+    arcs = list(itertools.islice(integrator.integrate(motion, (), start, begin + 2.0), 16))
+    arc = whole(arcs)
+    assert arc.failure == NOT_FINITE
+    assert arc.solution.end == pytest.approx(begin + 1.0, rel=0, abs=1e-6 * (1.0 + begin))
+    # Where steps are as short as a million roundings of time, they are what they can be.
+    told = begin + 1.0 - 1e-6 * (1.0 + begin)
+    states = arc.solution(np.linspace(begin, told, 1000))
+    lengths = np.hypot(states[:, 1], states[:, 2])
+    np.testing.assert_allclose(lengths, 1.0, rtol=0, atol=10.0 * arc.steps * integrator.tolerance)
 
 
 @pytest.mark.parametrize("long", [1, 2, 24, 4096])

@@ -72,6 +72,13 @@ def test_solution_is_the_exact_one_at_any_time(method, exact):
     np.testing.assert_allclose(arc.solution(times), exact.states(times), rtol=0, atol=allowed)
 
 
+@every_method_also_loose
+def test_no_guard_is_so_large_that_steps_leave_out_more(method):
+    arc = follow(method, FREE_TOP, [Guard("far", lambda n, p: 1e13 + n[0])])
+    exact = FREE_TOP.state(FREE_TOP.end)
+    np.testing.assert_allclose(arc.end_state, exact, rtol=0, atol=method.allowed(arc, FREE_TOP))
+
+
 @every_method
 def test_energy_angular_momentum_and_perihelion_are_conserved(method):
     arc = follow(method, KEPLER)

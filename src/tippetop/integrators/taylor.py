@@ -18,11 +18,16 @@ from tippetop.integrators.dense import DenseSolution
 from tippetop.integrators.sealed_folders import kept_content
 from tippetop.interrupts import heard
 
-SHORTEST = 1e-6
-"""Step, relative to the longest, that only a solution that blows up takes; rounding of time matters in it."""
+RESOLVED = 1e6
+"""Step, in roundings of time, below which only a solution that blows up is followed: these matter in it."""
 
-LONG = 4096
-"""Steps in an arc at most."""
+LONG, SHORT = 4096, 16
+"""Steps in an arc at most, and after one that was cut, as long as what was kept of it."""
+
+LEFT_OUT, SAFETY = 100.0, 0.9
+"""What the last terms of a step's series may add to a number, in tolerances of that number or of 1, the
+larger, and how much shorter than that is a step that is cut. The compiler compares them with the largest
+number or guard alone: beside huge slip or friction the axis would go astray."""
 
 GUARDED = 2.0**-5
 """Weight of guards beside the numbers of the motion where the compiler chooses steps by the largest of all. A
@@ -50,16 +55,7 @@ class Taylor:
         """Follow the motion; see `tippetop.integrators.base.Integrator`."""
         compiled = _compiled(motion, self.tolerance)
         while start[0] < end:
-            with compiled.lock:
-                run = compiled.integrator
-                run.time = start[0]
-                run.state[:] = start[1]
-                # Those that appear in no equation, beyond the last that does, it has no room for.
-                run.pars[:] = parameters[: len(run.pars)]
-                if motion.guards:
-                    run.reset_cooldowns()
-                solution, outcome = compiled.advance(end)
-                state = np.array(run.state)
+            solution, state, outcome = compiled.arc(parameters, start, end, LEFT_OUT * self.tolerance)
             steps = len(solution.terms)
             # Rounding of time may swallow all steps before numbers have grown beyond all bounds.
             stuck = outcome == hy.taylor_outcome.step_limit and not solution.end > start[0]
@@ -90,8 +86,36 @@ class _Compiled:
         self.integrator, self.lock = integrator, threading.Lock()
         self._coefficients, self._state, self._parameters = integrator.tc, integrator.state, integrator.pars
 
-    def advance(self, end: float) -> tuple[DenseSolution, Any]:
-        """Take an arc's steps: for half the price of heyoka's continuous output."""
+    def arc(
+        self, parameters: Sequence[float], start: tuple[float, Array], end: float, accuracy: float
+    ) -> tuple[DenseSolution, Array, Any]:
+        """An arc of a solution in steps that leave no more out of any number, its end, and what ended it."""
+        (time, state), parts, left, longest, most = start, list[DenseSolution](), LONG, math.inf, LONG
+        run, outcome = self.integrator, hy.taylor_outcome.step_limit
+        with self.lock:
+            # Those that appear in no equation, beyond the last that does, it has no room for.
+            run.pars[:] = parameters[: len(run.pars)]
+            while left and outcome == hy.taylor_outcome.step_limit:
+                run.time = time
+                run.state[:] = state
+                if run.with_events:
+                    run.reset_cooldowns()
+                solution, outcome = self._advance(end, longest, min(left, most))
+                cut = _cut(solution, accuracy)
+                if cut is None:
+                    state = np.array(run.state)
+                    # What follows a step that is cut is lost: more are taken as long as none is.
+                    longest, most = math.inf, 1 if longest < math.inf else 2 * most
+                else:
+                    solution, outcome = cut, hy.taylor_outcome.step_limit
+                    state = cut.terms[-1].sum(axis=1)
+                    longest, most = float(cut.knots[-1] - cut.knots[-2]), SHORT
+                parts.append(solution)
+                time, left = solution.end, left - len(solution.terms)
+        return DenseSolution.joined(parts), state, outcome
+
+    def _advance(self, end: float, longest: float, most: int) -> tuple[DenseSolution, Any]:
+        """Take so many steps at most, none longer: for half the price of heyoka's continuous output."""
         shape, terms, knots = self._coefficients.shape, bytearray(), array("d", [self.integrator.time])
         # Bytes are copied in a third of the time that arrays need.
         step, keep, note = self._coefficients.reshape(-1).data, terms.extend, knots.append
@@ -101,7 +125,9 @@ class _Compiled:
             note(run.time)
             return True
 
-        outcome, *_ = self.integrator.propagate_until(end, max_steps=LONG, write_tc=True, callback=take)
+        outcome, *_ = self.integrator.propagate_until(
+            end, max_steps=most, max_delta_t=longest, write_tc=True, callback=take
+        )
         if outcome == hy.taylor_outcome.time_limit:
             knots[-1] = end
         return DenseSolution.in_time(np.array(knots), np.frombuffer(terms).reshape(-1, *shape)), outcome
@@ -147,10 +173,37 @@ def _compiled(motion: Motion, tolerance: float) -> _Compiled:
         return _Compiled(make())
 
 
+def _cut(solution: DenseSolution, accuracy: float) -> DenseSolution | None:
+    """A solution up to its first step that leaves out more of some number, and as much of that as does not.
+
+    None if there is none, or if rounding of time would matter in what is kept of it. A step that is cut needs
+    not be repeated: a shorter one has the same series.
+    """
+    last = np.maximum(np.abs(solution.terms[:, :, -1]), np.abs(solution.terms[:, :, -2]))
+    if last.max(initial=0.0) <= accuracy:
+        return None
+    spans, degree = np.diff(solution.knots), solution.terms.shape[2] - 1
+    with np.errstate(all="ignore"):  # where nothing is left out, or numbers grow beyond all bounds
+        excess = (last / (accuracy * np.maximum(np.abs(solution.terms[:, :, 0]), 1.0))).max(axis=1)
+        spans *= SAFETY * excess ** (-1.0 / (degree - 1))
+    bad = np.flatnonzero((excess > 1.0) & (spans > _resolved(solution.knots)))
+    if not len(bad):
+        return None
+    step = int(bad[0])
+    begin, end = solution.knots[step : step + 2]
+    knots, terms = solution.knots[: step + 2].copy(), solution.terms[: step + 1].copy()
+    knots[-1] = begin + spans[step]
+    terms[-1] *= ((knots[-1] - begin) / (end - begin)) ** np.arange(degree + 1)
+    return DenseSolution(knots, terms)
+
+
+def _resolved(knots: Array) -> Array:
+    """The shortest steps in which rounding of time does not matter, by their ends."""
+    return RESOLVED * np.spacing(np.maximum(np.abs(knots[:-1]), np.abs(knots[1:])))
+
+
 def _before_blow_up(solution: DenseSolution) -> DenseSolution:
     """A solution that ended in numbers that are none, without its last steps, too short to be told."""
-    knots = solution.knots
-    spans = np.diff(knots)
-    fine = np.flatnonzero(spans > SHORTEST * spans.max(initial=0.0))
+    fine = np.flatnonzero(np.diff(solution.knots) > _resolved(solution.knots))
     steps = fine[-1] + 1 if len(fine) else 0
-    return DenseSolution(knots[: steps + 1], solution.terms[:steps])
+    return DenseSolution(solution.knots[: steps + 1], solution.terms[:steps])

@@ -8,7 +8,7 @@ the order p from the tolerance, and the step from the last two coefficients, so 
 the tolerance. What is left out of all numbers is compared with all of them, by the roots of their squares; so
 a spin or slip that is large would let the axis go astray, and what is left out of that is compared with no
 more than `FAST`, and less beyond `FASTER`. Heyoka compares the largest numbers, and in a single launch
-the guards with them.
+the guards with them, where `tippetop.integrators.taylor` cuts steps that are too long for any.
 
 A launch's step depends on nothing but its own numbers: arrays are filled up to a multiple of `LANES`, so that
 every launch is computed by the same instructions wherever it stands in them.
