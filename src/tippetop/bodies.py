@@ -1,4 +1,4 @@
-"""Bodies of revolution as users state them, validated: their shapes, masses and moments of inertia."""
+"""Bodies of revolution as users state them, validated, and as a lathe makes them."""
 
 import math
 from collections.abc import Mapping, Sequence

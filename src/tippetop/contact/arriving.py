@@ -150,6 +150,8 @@ def resting_way(
         turned = solve(matrix, [-inner(a, rate) for a in across])
         if not math.hypot(*turned) < 1.0:
             raise Unsolved("slip does not end near this direction")
+        if along < 0.0 and math.hypot(*turned) < SETTLED:
+            return known
         for amount, b in zip(turned, across, strict=True):
             way = plus(way, scaled(amount, b))
         way = scaled(1.0 / size(way), way)

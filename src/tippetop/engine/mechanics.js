@@ -2316,20 +2316,23 @@ class ContactPoint extends py.NamedTuple {
     var c = this.axis[2];
     var slope = top.surface.slope(c);
     var height = top.surface.height(c);
-    var tilted = py.add(py.mul(n[0], n[0]), py.mul(n[1], n[1]));
+    var leaning = py.add(py.mul(n[0], n[0]), py.mul(n[1], n[1]));
     var excess = py.sub(top.axial_inertia, top.transverse_inertia);
     var high = py.mul(top.mass, py.mul(height, height));
-    var wide = py.mul(py.mul(top.mass, py.mul(slope, slope)), tilted);
+    var steep = py.mul(top.mass, py.mul(slope, slope));
     var lever = py.mul(top.mass, py.mul(height, slope));
-    var leant = py.add(top.transverse_inertia, py.mul(excess, tilted));
-    var mixed = py.sub(py.mul(excess, c), lever);
+    var wide = py.mul(steep, leaning);
+    var leant = py.add(top.transverse_inertia, py.mul(excess, leaning));
+    var alpha = py.add(py.add(top.transverse_inertia, high), wide);
+    var beta = py.sub(excess, steep);
+    var kappa = py.sub(py.mul(excess, c), lever);
     var along = py.add(leant, high);
     var carried = scale(py.neg(top.mass), cross(this.arm, this.carried));
     var right = add(scale(top.transverse_inertia, this.free.turning), carried);
-    var leaning = py.add(py.mul(n[0], right[0]), py.mul(n[1], right[1]));
+    var driven = py.add(py.mul(n[0], right[0]), py.mul(n[1], right[1]));
     if (py.truth(drills)) {
       var upright = py.add(top.transverse_inertia, py.mul(excess, py.mul(c, c)));
-      var across = py.mul(py.mul(py.mul(py.mul(2.0, excess), c), lever), tilted);
+      var across = py.mul(py.mul(py.mul(py.mul(2.0, excess), c), lever), leaning);
       var determinant = py.add(
         py.add(
           py.add(py.mul(top.transverse_inertia, top.axial_inertia), py.mul(leant, wide)),
@@ -2337,22 +2340,20 @@ class ContactPoint extends py.NamedTuple {
         ),
         across
       );
+      var delta = py.add(upright, wide);
       var leans = py.div(
-        py.sub(py.mul(py.add(upright, wide), leaning), py.mul(py.mul(mixed, tilted), right[2])),
+        py.sub(py.mul(delta, driven), py.mul(py.mul(kappa, leaning), right[2])),
         determinant
       );
-      var spins = py.div(py.sub(py.mul(along, right[2]), py.mul(mixed, leaning)), determinant);
+      var spins = py.div(py.sub(py.mul(along, right[2]), py.mul(kappa, driven)), determinant);
       var torque = NO_TORQUE;
-      var turned = py.mul(mixed, spins);
     } else {
-      leans = py.div(leaning, along);
+      leans = py.div(driven, along);
       spins = 0.0;
-      torque = [0.0, 0.0, py.sub(py.mul(mixed, leans), right[2])];
-      turned = 0.0;
+      torque = [0.0, 0.0, py.sub(py.mul(kappa, leans), right[2])];
     }
-    var inertia = py.add(py.add(top.transverse_inertia, high), wide);
-    turned = py.add(turned, py.mul(py.sub(excess, py.mul(top.mass, py.mul(slope, slope))), leans));
-    var [x, y] = [0, 1].map((i) => py.div(py.sub(py.item(right, i), py.mul(turned, py.item(n, i))), inertia));
+    var aside = py.truth(drills) ? py.add(py.mul(beta, leans), py.mul(kappa, spins)) : py.mul(beta, leans);
+    var [x, y] = [0, 1].map((i) => py.div(py.sub(py.item(right, i), py.mul(aside, py.item(n, i))), alpha));
     var turning = [x, y, spins];
     var force = scale(py.neg(top.mass), add(this.carried, cross(turning, this.arm)));
     return [new Wrench(force, torque), new Acceleration(NO_TORQUE, turning)];
@@ -4596,6 +4597,9 @@ function resting_way(axis, momentum, way, ending, top, integrator) {
     if (!(py.math.hypot(...turned) < 1.0)) {
       throw new Unsolved("slip does not end near this direction");
     }
+    if (along < 0.0 && py.math.hypot(...turned) < SETTLED_of_arriving) {
+      return known;
+    }
     for (var [amount, b] of py.zip(turned, across)) {
       way = plus(way, scaled(amount, b));
     }
@@ -5550,8 +5554,8 @@ class SteppedProcess extends ImpactProcess {
   }
   /** What an error in the six velocities counts as, that is one of a step. */
   wrong(taken, off) {
-    var ends = [taken.here, taken.there].map((here) => this.body.velocities(here));
-    return slip_error(ends, off, this.speed);
+    var velocities = [taken.here, taken.there].map((end) => this.body.velocities(end));
+    return slip_error(velocities, off, this.speed);
   }
   /** Where a straight line leads after some steps, and whether to the goal; None if there is none. */
   straight(here, goal, guess, taken) {
@@ -5955,8 +5959,8 @@ class ProcessOnTwo extends SteppedProcess {
   }
   /** What an error counts as: that of the contact where it is the larger. */
   wrong(taken, off) {
-    var there = [taken.here, taken.there].map((here) => this.there(here));
-    return py.max(super.wrong(taken, off), slip_error(there, this.beside(off), this.speed));
+    var velocities = [taken.here, taken.there].map((end) => this.there(end));
+    return py.max(super.wrong(taken, off), slip_error(velocities, this.beside(off), this.speed));
   }
   /** The rest if friction has come to hold both slips constant. */
   straight(here, goal, guess, taken) {

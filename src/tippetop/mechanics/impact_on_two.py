@@ -139,8 +139,8 @@ class ProcessOnTwo(SteppedProcess):
 
         A steep law may hold slip so slow that its force has no digits but those beside it.
         """
-        there = [self.there(here) for here in (taken.here, taken.there)]
-        return max(super().wrong(taken, off), slip_error(there, self.beside(off), self.speed))
+        velocities = [self.there(end) for end in (taken.here, taken.there)]
+        return max(super().wrong(taken, off), slip_error(velocities, self.beside(off), self.speed))
 
     def straight(self, here: Impulse, goal: Goal, guess: float, taken: int) -> tuple[Impulse, bool] | None:
         """The rest if friction has come to hold both slips constant.

@@ -132,8 +132,8 @@ class SteppedProcess(ImpactProcess):
 
     def wrong(self, taken: RungeKuttaStep, off: Slip) -> float:
         """What an error in the six velocities counts as, that is one of a step."""
-        ends = [self.body.velocities(here) for here in (taken.here, taken.there)]
-        return slip_error(ends, off, self.speed)
+        velocities = [self.body.velocities(end) for end in (taken.here, taken.there)]
+        return slip_error(velocities, off, self.speed)
 
     def straight(self, here: Impulse, goal: Goal, guess: float, taken: int) -> tuple[Impulse, bool] | None:
         """Where a straight line leads after some steps, and whether to the goal; None if there is none.

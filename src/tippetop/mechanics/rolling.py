@@ -125,26 +125,27 @@ class ContactPoint(NamedTuple):
         """
         top, n, c = self.top, self.axis, self.axis[2]
         slope, height = top.surface.slope(c), top.surface.height(c)
-        tilted, excess = n[0] * n[0] + n[1] * n[1], top.axial_inertia - top.transverse_inertia
-        high, wide = top.mass * (height * height), top.mass * (slope * slope) * tilted
-        lever, leant = top.mass * (height * slope), top.transverse_inertia + excess * tilted
-        mixed, along = excess * c - lever, leant + high
+        leaning, excess = n[0] * n[0] + n[1] * n[1], top.axial_inertia - top.transverse_inertia
+        high, steep = top.mass * (height * height), top.mass * (slope * slope)
+        lever = top.mass * (height * slope)
+        wide, leant = steep * leaning, top.transverse_inertia + excess * leaning
+        alpha, beta, kappa = top.transverse_inertia + high + wide, excess - steep, excess * c - lever
+        along = leant + high  # alpha + beta e^2
         carried = scale(-top.mass, cross(self.arm, self.carried))
         right = add(scale(top.transverse_inertia, self.free.turning), carried)
-        leaning = n[0] * right[0] + n[1] * right[1]
+        driven = n[0] * right[0] + n[1] * right[1]
         if drills:
-            # That of the two equations, without what cancels in it.
-            upright, across = top.transverse_inertia + excess * (c * c), 2.0 * excess * c * lever * tilted
+            upright, across = top.transverse_inertia + excess * (c * c), 2.0 * excess * c * lever * leaning
+            # (alpha + beta e^2) delta - kappa^2 e^2, without what cancels in it.
             determinant = top.transverse_inertia * top.axial_inertia + leant * wide + upright * high + across
-            leans = ((upright + wide) * leaning - mixed * tilted * right[2]) / determinant
-            spins, torque = (along * right[2] - mixed * leaning) / determinant, NO_TORQUE
-            turned = mixed * spins
+            delta = upright + wide
+            leans = (delta * driven - kappa * leaning * right[2]) / determinant
+            spins, torque = (along * right[2] - kappa * driven) / determinant, NO_TORQUE
         else:
-            leans, spins = leaning / along, 0.0
-            torque, turned = (0.0, 0.0, mixed * leans - right[2]), 0.0
-        inertia = top.transverse_inertia + high + wide
-        turned = turned + (excess - top.mass * (slope * slope)) * leans
-        x, y = [(right[i] - turned * n[i]) / inertia for i in (0, 1)]
+            leans, spins = driven / along, 0.0
+            torque = (0.0, 0.0, kappa * leans - right[2])
+        aside = beta * leans + kappa * spins if drills else beta * leans
+        x, y = [(right[i] - aside * n[i]) / alpha for i in (0, 1)]
         turning = (x, y, spins)
         force = scale(-top.mass, add(self.carried, cross(turning, self.arm)))
         return Wrench(force, torque), Acceleration(NO_TORQUE, turning)
