@@ -181,13 +181,12 @@ def test_huge_slip_leads_no_axis_astray(tolerance):
         tt.simulate(
             report(155.0).replace({**rules, "launch.slip": (slip, 0.0)}), 0.5, samples=51, tolerance=tolerance
         )
-        for slip in (1e4, 1e8)
+        for slip in (1e6, 1e8)
     )
     allowed = 10.0 * int(faster.steps) * (tolerance or np.finfo(float).eps)
     np.testing.assert_allclose(np.linalg.norm(faster.axis, axis=1), 1.0, rtol=0, atol=allowed)
-    assert largest(faster.energy - faster.energy[0] - faster.work) <= allowed * largest(faster.energy)
-    # The slip changes by less than 10 m/s, and its direction by less than a part in a thousand.
-    np.testing.assert_allclose(faster.axis, fast.axis, rtol=0, atol=1e-3 + allowed)
+    # The slip changes by less than 10 m/s, and its direction by less than a part in a hundred thousand.
+    np.testing.assert_allclose(faster.axis, fast.axis, rtol=0, atol=1e-5 + allowed)
 
 
 @pytest.mark.parametrize("problem", [report(155.0), egg()], ids=["tippe top", "egg"])

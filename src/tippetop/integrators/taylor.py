@@ -21,13 +21,17 @@ from tippetop.interrupts import heard
 RESOLVED = 1e6
 """Step, in roundings of time, below which only a solution that blows up is followed: these matter in it."""
 
-LONG, SHORT = 4096, 16
-"""Steps in an arc at most, and after one that was cut, as long as what was kept of it."""
+LONG = 4096
+"""Steps in an arc at most."""
 
-LEFT_OUT, SAFETY = 100.0, 0.9
+LEFT_OUT = 100.0
 """What the last terms of a step's series may add to a number, in tolerances of that number or of 1, the
-larger, and how much shorter than that is a step that is cut. The compiler compares them with the largest
-number or guard alone: beside huge slip or friction the axis would go astray."""
+larger: else the step is cut. The compiler compares them with the largest number or guard alone: beside huge
+slip or friction the axis would go astray."""
+
+SAFETY, SHORT = 0.9, 16
+"""How long a step that is cut may be, of what that allows; and how many steps at most, none longer than that,
+are taken next."""
 
 GUARDED = 2.0**-5
 """Weight of guards beside the numbers of the motion where the compiler chooses steps by the largest of all. A
@@ -55,19 +59,19 @@ class Taylor:
         """Follow the motion; see `tippetop.integrators.base.Integrator`."""
         compiled = _compiled(motion, self.tolerance)
         while start[0] < end:
-            solution, state, outcome = compiled.arc(parameters, start, end, LEFT_OUT * self.tolerance)
+            solution, state, outcome, taken = compiled.arc(parameters, start, end, LEFT_OUT * self.tolerance)
             steps = len(solution.terms)
             # Rounding of time may swallow all steps before numbers have grown beyond all bounds.
             stuck = outcome == hy.taylor_outcome.step_limit and not solution.end > start[0]
             if stuck or outcome == hy.taylor_outcome.err_nf_state:
                 solution = _before_blow_up(solution)
                 state = solution(solution.knots[-1:])[0] if len(solution.terms) else start[1]
-                yield Arc(solution, state, None, NO_STEP if stuck else NOT_FINITE, steps, steps)
+                yield Arc(solution, state, None, NO_STEP if stuck else NOT_FINITE, steps, taken)
                 return
             guard = None
             if outcome not in (hy.taylor_outcome.step_limit, hy.taylor_outcome.time_limit):
                 guard = motion.guards[-int(outcome) - 1].name
-            yield Arc(solution, state, guard, None, steps, steps)
+            yield Arc(solution, state, guard, None, steps, taken)
             if guard is not None:
                 return
             start = solution.end, state
@@ -88,9 +92,10 @@ class _Compiled:
 
     def arc(
         self, parameters: Sequence[float], start: tuple[float, Array], end: float, accuracy: float
-    ) -> tuple[DenseSolution, Array, Any]:
-        """An arc of a solution in steps that leave no more out of any number, its end, and what ended it."""
+    ) -> tuple[DenseSolution, Array, Any, int]:
+        """An arc whose steps leave out no more of any number, its end, what ended it, and steps taken."""
         (time, state), parts, left, longest, most = start, list[DenseSolution](), LONG, math.inf, LONG
+        taken = 0
         run, outcome = self.integrator, hy.taylor_outcome.step_limit
         with self.lock:
             # Those that appear in no equation, beyond the last that does, it has no room for.
@@ -101,6 +106,7 @@ class _Compiled:
                 if run.with_events:
                     run.reset_cooldowns()
                 solution, outcome = self._advance(end, longest, min(left, most))
+                taken += len(solution.terms)
                 cut = _cut(solution, accuracy)
                 if cut is None:
                     state = np.array(run.state)
@@ -112,7 +118,7 @@ class _Compiled:
                     longest, most = float(cut.knots[-1] - cut.knots[-2]), SHORT
                 parts.append(solution)
                 time, left = solution.end, left - len(solution.terms)
-        return DenseSolution.joined(parts), state, outcome
+        return DenseSolution.joined(parts), state, outcome, taken
 
     def _advance(self, end: float, longest: float, most: int) -> tuple[DenseSolution, Any]:
         """Take so many steps at most, none longer: for half the price of heyoka's continuous output."""
@@ -176,23 +182,23 @@ def _compiled(motion: Motion, tolerance: float) -> _Compiled:
 def _cut(solution: DenseSolution, accuracy: float) -> DenseSolution | None:
     """A solution up to its first step that leaves out more of some number, and as much of that as does not.
 
-    None if there is none, or if rounding of time would matter in what is kept of it. A step that is cut needs
-    not be repeated: a shorter one has the same series.
+    None if there is none but those in which rounding of time matters; to less than these, none is cut. A step
+    that is cut needs not be repeated: a shorter one has the same series.
     """
     last = np.maximum(np.abs(solution.terms[:, :, -1]), np.abs(solution.terms[:, :, -2]))
     if last.max(initial=0.0) <= accuracy:
         return None
-    spans, degree = np.diff(solution.knots), solution.terms.shape[2] - 1
+    spans, degree, shortest = np.diff(solution.knots), solution.terms.shape[2] - 1, _resolved(solution.knots)
     with np.errstate(all="ignore"):  # where nothing is left out, or numbers grow beyond all bounds
         excess = (last / (accuracy * np.maximum(np.abs(solution.terms[:, :, 0]), 1.0))).max(axis=1)
-        spans *= SAFETY * excess ** (-1.0 / (degree - 1))
-    bad = np.flatnonzero((excess > 1.0) & (spans > _resolved(solution.knots)))
+        allowed = np.maximum(SAFETY * spans * excess ** (-1.0 / (degree - 1)), shortest)
+    bad = np.flatnonzero((excess > 1.0) & (spans > shortest))
     if not len(bad):
         return None
     step = int(bad[0])
     begin, end = solution.knots[step : step + 2]
     knots, terms = solution.knots[: step + 2].copy(), solution.terms[: step + 1].copy()
-    knots[-1] = begin + spans[step]
+    knots[-1] = begin + allowed[step]
     terms[-1] *= ((knots[-1] - begin) / (end - begin)) ** np.arange(degree + 1)
     return DenseSolution(knots, terms)
 
