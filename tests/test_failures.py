@@ -26,7 +26,7 @@ TWO = tt.Problem(
 
 SITES: list[tuple[str, tt.Problem, str]] = [
     ("flight.touchdown", THROWN, "The end of the flight"),
-    ("rules.impact", THROWN, "The impulse of the impact"),
+    ("liftoff.impact", THROWN, "The impulse of the impact"),
     ("rules.settling", SLIPPERY, "The force that holds the contact"),
     ("loosening.beginning", SLIPPERY, "The direction in which slip begins"),
     ("loosening.beginning", BRAKED, "The direction in which slip and rolling begin"),

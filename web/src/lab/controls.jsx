@@ -6,7 +6,7 @@ import { ALL, kindOf, LAW, MAIN, placeOf, scaleOf, START, TABLE, TOP, valueAt } 
 import { decimal, part, t, translated } from "./i18n.js";
 import { PRESETS, TABLES } from "./presets.js";
 import { same, valueOf } from "./setup.js";
-import { CHOICES, digits, shown, unitOf } from "./units.js";
+import { CHOICES, digits, shown, unitOf, withUnit } from "./units.js";
 import { heading } from "./words.js";
 
 export const LAWS = ["viscous", "coulomb", "contensou", "regularized_coulomb"];
@@ -150,7 +150,7 @@ export function refusal(error, { units, setup }) {
   if (!field) return { field: null, sentence: t("controls.refusedOther", { message: error.message }) };
   const dial = ALL.find((one) => one.field === field);
   const { name } = part(`quantities.${field}`);
-  if (error.missing) return { field, sentence: t("controls.missing", { name }) };
+  if (error.missing) return { field: null, sentence: t("controls.missing", { name }) };
   const scale = scaleOf(dial, setup);
   const value = typeof error.value === "number" ? shown(error.value / scale, kindOf(dial, setup), units) : t("controls.quoted", { text: error.value });
   return { field, sentence: t("controls.refused", { name, value, accepted: accepted(error.accepted, dial, scale, units) }) };
@@ -158,10 +158,11 @@ export function refusal(error, { units, setup }) {
 
 // Bounds as the engine says them are in SI; here they are told in the unit of the dial, and so that these are possible.
 function accepted(text, { kind }, scale, units) {
-  const size = scale * unitOf(kind, units).size;
+  const unit = unitOf(kind, units), size = scale * unit.size;
   return translated(text.replace(BOUND, (whole, words, number) => {
     const bound = (number === "pi" ? Math.PI : Number(number)) / size;
-    return `${words} ${digits(/least|greater|from/.test(words) ? above(bound) : -above(-bound))}`;
+    const told = digits(/least|greater|from/.test(words) ? above(bound) : -above(-bound));
+    return `${words} ${number === "pi" ? withUnit(told, unit) : told}`;
   }));
 }
 

@@ -30,7 +30,10 @@ export function digits(value, count = 4) {
 }
 
 export function shown(value, kind, units, count = 4) {
-  const { name, size } = unitOf(kind, units);
-  const text = digits(value / size, count);
+  const unit = unitOf(kind, units);
+  return withUnit(digits(value / unit.size, count), unit);
+}
+
+export function withUnit(text, { name }) {
   return name === "°" ? `${text}°` : name ? `${text} ${name}` : text;
 }
