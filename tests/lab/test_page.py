@@ -35,6 +35,12 @@ def settled(visitor: Visit, condition: str) -> None:
     visitor.wait(f"() => ((problem) => {condition})({PROBLEM}) && !tippetopLab.engine.busy")
 
 
+def open_all(visitor: Visit) -> None:
+    """Show every control of the launch."""
+    for summary in visitor.page.locator(".controls summary").all():
+        summary.click()
+
+
 def headline(visitor: Visit) -> str:
     return str(visitor.page.locator(".tt-words strong").inner_text())
 
@@ -87,8 +93,7 @@ def test_the_story_asks_first_and_then_shows_and_says_why(lab: Lab) -> None:
 def test_every_control_is_explained_in_place(lab: Lab) -> None:
     visitor = lab("tab=launch")
     page = visitor.page
-    for name in page.locator(".controls summary").all():
-        name.click()
+    open_all(visitor)
     dials = page.locator(".dial").count()
     assert dials >= 12
     for button in page.locator(".why").all():
@@ -242,8 +247,7 @@ def test_bounds_are_told_in_the_units_and_the_language_of_the_dial(
     lab: Lab, language: str, field: str, typed: str, sentence: str
 ) -> None:
     visitor = lab(f"tab=launch&lang={language}")
-    for summary in visitor.page.locator(".controls summary").all():
-        summary.click()
+    open_all(visitor)
     number = visitor.page.locator(f'.dial:has([data-field="{field}"]) .dial-number')
     before = number.input_value()
     number.fill(typed)
@@ -306,8 +310,7 @@ def test_of_the_marks_no_more_is_said_than_holds(lab: Lab, body: tt.Body) -> Non
 
 def test_a_bound_that_is_told_is_possible(lab: Lab) -> None:
     visitor = lab("tab=launch")
-    for summary in visitor.page.locator(".controls summary").all():
-        summary.click()
+    open_all(visitor)
     number = visitor.page.locator('.dial:has([data-field="body.I3"]) .dial-number')
     said = visitor.page.locator(".dial .refused")
     number.fill("5")

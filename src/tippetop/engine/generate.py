@@ -57,7 +57,7 @@ LEFT = {
     "require_problem",
     *("TippetopError", "FileTrouble", "Unavailable", "InvalidInput.__reduce__", "require", "one_of"),
     *("is_number", "is_whole", "short", "_typed"),
-    *("read", "recordable", "_compiled", "_without_top", "_of_kind", "continuous"),
+    *("read", "recordable", "_compiled", "_of_kind", "continuous"),
     *("Ends.unknown", "Ends.put", "ending", "turning_time", "arrival_time"),
     *("Monitor.energy_error", "Graph.rarely"),
     *("precession_branch", "state_of", "is_held", "steady_launch"),
