@@ -74,9 +74,9 @@ class Problem(Part):
 
     @model_validator(mode="after")
     def _contact_is_possible(self) -> Self:
-        self._refuse_what_does_not_fit()
-        if not (math.isfinite(self._resistance()) and math.isfinite(self._largest_square())):
-            raise self._lying_flat() or self._out_of_reach()
+        _refuse_what_does_not_fit(self)
+        if not (math.isfinite(_resistance(self)) and math.isfinite(_largest_square(self))):
+            raise _lying_flat(self) or _out_of_reach(self)
         if self.contact.liftoff == "fly":
             return self
         if isinstance(self.top.surface, Hull):
@@ -85,10 +85,13 @@ class Problem(Part):
             )
         launch = self.launch
         if launch.gap or launch.velocity is not None:
-            field = "launch.gap" if launch.gap else "launch.velocity"
-            value = launch.gap if launch.gap else launch.velocity
-            raise InvalidInput(field, value, "a launch on the table, unless contact.liftoff is 'fly'")
-        if not self._resistance() > 0:
+            field = "gap" if launch.gap else "velocity"
+            raise InvalidInput(
+                f"launch.{field}",
+                getattr(launch, field),
+                "a launch on the table, unless contact.liftoff is 'fly'",
+            )
+        if not _resistance(self) > 0:
             raise InvalidInput(
                 "launch.slip",
                 self.launch.slip,
@@ -96,62 +99,6 @@ class Problem(Part):
                 "(Painleve's paradox), unless contact.liftoff is 'fly'",
             )
         return self
-
-    def _refuse_what_does_not_fit(self) -> None:
-        """Refuse a patch, or an arm, that is larger than the body, or a patch that is but a point."""
-        size = max(sizes(self.body.surface))
-        if not self.friction.fits(size):
-            raise InvalidInput(
-                "friction.patch_radius",
-                getattr(self.friction, "patch_radius", MISSING),
-                f"from {_inside(LEAST_PATCH * size, 1.0)} to {_inside(size, -1.0)} on this body; a smaller "
-                "patch is a point, for which there is coulomb",
-            )
-        if self.rolling_resistance > size:
-            raise InvalidInput(
-                "rolling_resistance",
-                self.rolling_resistance,
-                f"from 0 to {_inside(size, -1.0)} on this body, within which the table presses",
-            )
-
-    def _resistance(self) -> float:
-        """The resistance of the contact at launch; nan where its arithmetic breaks down."""
-        try:
-            start, top = along_table(self.start()), self.standing()
-            if is_set_valued(self.friction.law) and not is_slipping(*start, top):
-                return 1.0 + 0.0 * size(start.momentum)
-            touch = contact(start.axis, start.momentum, start.velocity, top)
-            return float(touch.delassus + 0.0 * touch.free_acceleration)
-        except ArithmeticError:
-            return math.nan
-
-    def _largest_square(self) -> float:
-        """The largest square among the numbers of the launch in natural units, and in SI; nan without one."""
-        try:
-            units = natural_units(self.top)
-            start = natural_state(self.start(), units)
-            largest = float(max(map(abs, (*start.momentum, *start.velocity, start.height))))
-            return largest**2 * max(1.0, float(units.energy), float(self.body.mass * self.gravity))
-        except ArithmeticError:
-            return math.nan
-
-    def _lying_flat(self) -> InvalidInput | None:
-        """The refusal of a launch on a face; None where that is not what is wrong."""
-        try:
-            edge = is_edge(self.standing().surface)
-        except ArithmeticError:
-            return None
-        if not edge or math.cos(self.launch.tilt) ** 2 < 1.0:
-            return None
-        return InvalidInput("launch.tilt", self.launch.tilt, "a tilt at which the body does not lie flat")
-
-    def _out_of_reach(self) -> InvalidInput:
-        """The refusal of numbers with which no computer can reckon, about the one furthest from 1."""
-        numbers = {name: value for name, value in numbers_of(self.model_dump()) if value}
-        distance = {name: abs(math.log(abs(value))) for name, value in numbers.items()}
-        worst = max(distance, key=lambda name: distance[name])
-        others = sum(2 * other > distance[worst] for other in distance.values()) - 1
-        return InvalidInput(worst, numbers[worst], "a number whose square is a number too", others)
 
     @property
     def top(self) -> Top:
@@ -260,6 +207,67 @@ class Problem(Part):
 def require_problem(problem: object) -> None:
     """Refuse what is no problem, with `InvalidInput`."""
     require("problem", problem, Problem, "a Problem, such as presets.report_problem() makes")
+
+
+def _refuse_what_does_not_fit(problem: Problem) -> None:
+    """Refuse a patch, or an arm, that is larger than the body, or a patch that is but a point."""
+    size = max(sizes(problem.body.surface))
+    if not problem.friction.fits(size):
+        raise InvalidInput(
+            "friction.patch_radius",
+            getattr(problem.friction, "patch_radius", MISSING),
+            f"from {_inside(LEAST_PATCH * size, 1.0)} to {_inside(size, -1.0)} on this body; a smaller "
+            "patch is a point, for which there is coulomb",
+        )
+    if problem.rolling_resistance > size:
+        raise InvalidInput(
+            "rolling_resistance",
+            problem.rolling_resistance,
+            f"from 0 to {_inside(size, -1.0)} on this body, within which the table presses",
+        )
+
+
+def _resistance(problem: Problem) -> float:
+    """The resistance of the contact at launch; nan where its arithmetic breaks down."""
+    try:
+        start, top = along_table(problem.start()), problem.standing()
+        if is_set_valued(problem.friction.law) and not is_slipping(*start, top):
+            return 1.0 + 0.0 * size(start.momentum)
+        touch = contact(start.axis, start.momentum, start.velocity, top)
+        return float(touch.delassus + 0.0 * touch.free_acceleration)
+    except ArithmeticError:
+        return math.nan
+
+
+def _largest_square(problem: Problem) -> float:
+    """The largest square among the numbers of the launch in natural units, and in SI; nan without one."""
+    try:
+        units = natural_units(problem.top)
+        start = natural_state(problem.start(), units)
+        largest = float(max(map(abs, (*start.momentum, *start.velocity, start.height))))
+        return largest**2 * max(1.0, float(units.energy), float(problem.body.mass * problem.gravity))
+    except ArithmeticError:
+        return math.nan
+
+
+def _lying_flat(problem: Problem) -> InvalidInput | None:
+    """The refusal of a launch on a face; None where that is not what is wrong."""
+    try:
+        edge = is_edge(problem.standing().surface)
+    except ArithmeticError:
+        return None
+    if not edge or math.cos(problem.launch.tilt) ** 2 < 1.0:
+        return None
+    return InvalidInput("launch.tilt", problem.launch.tilt, "a tilt at which the body does not lie flat")
+
+
+def _out_of_reach(problem: Problem) -> InvalidInput:
+    """The refusal of numbers with which no computer can reckon, about the one furthest from 1."""
+    numbers = {name: value for name, value in numbers_of(problem.model_dump()) if value}
+    distance = {name: abs(math.log(abs(value))) for name, value in numbers.items()}
+    worst = max(distance, key=lambda name: distance[name])
+    others = sum(2 * other > distance[worst] for other in distance.values()) - 1
+    return InvalidInput(worst, numbers[worst], "a number whose square is a number too", others)
 
 
 def _inside(bound: float, side: float) -> str:

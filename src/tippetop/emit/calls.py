@@ -1,9 +1,10 @@
-"""Python's calls as JavaScript."""
+"""Python's calls, and what is given to functions, as JavaScript."""
 
 import ast
 from collections.abc import Sequence
 
 from tippetop.emit.expressions import ATOM, Expressions
+from tippetop.emit.program import safe
 
 RENAMED = {"startswith": "startsWith", "append": "push", "index": "indexOf", "items": "entries"}
 """Methods of Python's own types that have another name."""
@@ -21,7 +22,7 @@ CHOICES = ("py.max", "py.min", "py.sorted")
 
 
 class Calls(Expressions):
-    """Translates the calls of a module."""
+    """Translates the calls of a module, and what functions take."""
 
     def call(self, node: ast.Call) -> str:
         """A call."""
@@ -51,6 +52,21 @@ class Calls(Expressions):
             case ast.Call(func=ast.Name(id="type")):
                 return f"new ({self.text(node.func)})({self._given(node)})"
         return f"{self.text(node.func, ATOM)}({self._given(node)})"
+
+    def function(self, node: ast.FunctionDef | ast.Lambda) -> str:
+        """The parameters of a function, with their defaults, which are seen from outside."""
+        given = [*node.args.posonlyargs, *node.args.args]
+        defaults: list[ast.expr | None] = [None] * (len(given) - len(node.args.defaults))
+        pairs = [*zip(given, [*defaults, *node.args.defaults], strict=True)]
+        pairs += zip(node.args.kwonlyargs, node.args.kw_defaults, strict=True)
+        names = list[str]()
+        for one, default in pairs:
+            if one.arg not in ("self", "cls") or one is not given[0]:
+                name = safe(one.arg) + ("_" if one.arg in names else "")
+                names.append(name if default is None else f"{name} = {self.text(default)}")
+        if node.args.vararg:
+            names.append(f"...{safe(node.args.vararg.arg)}")
+        return f"({', '.join(names)})"
 
     def _named(self, keywords: Sequence[ast.keyword]) -> str:
         return f"{{ {', '.join(f'{word.arg}: {self.text(word.value)}' for word in keywords)} }}"

@@ -48,6 +48,10 @@ class Expressions(ABC):
     def call(self, node: ast.Call) -> str:
         """A call."""
 
+    @abstractmethod
+    def function(self, node: ast.FunctionDef | ast.Lambda) -> str:
+        """The parameters of a function, with their defaults."""
+
     def refused(self, node: ast.AST) -> Untranslatable:
         """What is said of what is not known."""
         return Untranslatable(f"{self.module}: {ast.unparse(node)}")
@@ -127,10 +131,7 @@ class Expressions(ABC):
             case ast.Subscript():
                 return self._item(node), ATOM
             case ast.Lambda(body=body):
-                return (
-                    f"{self.function(node)} => {self._inside(given(node), body)}",
-                    ARROW,
-                )
+                return f"{self.function(node)} => {self._inside(given(node), body)}", ARROW
             case ast.ListComp(elt=element) | ast.GeneratorExp(elt=element):
                 return self._comprehension(node.generators, element), ATOM
             case ast.SetComp(elt=element):
@@ -149,21 +150,6 @@ class Expressions(ABC):
             case ast.Yield(value=value):
                 return f"yield {self.text(value) if value else ''}", ARROW
         raise self.refused(node)
-
-    def function(self, node: ast.FunctionDef | ast.Lambda) -> str:
-        """The parameters of a function, with their defaults, which are seen from outside."""
-        given = [*node.args.posonlyargs, *node.args.args]
-        defaults: list[ast.expr | None] = [None] * (len(given) - len(node.args.defaults))
-        pairs = [*zip(given, [*defaults, *node.args.defaults], strict=True)]
-        pairs += zip(node.args.kwonlyargs, node.args.kw_defaults, strict=True)
-        names = list[str]()
-        for one, default in pairs:
-            if one.arg not in ("self", "cls") or one is not given[0]:
-                name = safe(one.arg) + ("_" if one.arg in names else "")
-                names.append(name if default is None else f"{name} = {self.text(default)}")
-        if node.args.vararg:
-            names.append(f"...{safe(node.args.vararg.arg)}")
-        return f"({', '.join(names)})"
 
     def _inside(self, names: set[str], body: ast.expr) -> str:
         """An expression where other names hold."""
@@ -192,11 +178,7 @@ class Expressions(ABC):
         negated = isinstance(op, ast.NotEq | ast.IsNot | ast.NotIn)  # codespell:ignore
         if isinstance(op, ast.In | ast.NotIn):  # codespell:ignore
             found = f"py.contains({right}, {left})"
-        elif (
-            isinstance(op, ast.Is | ast.IsNot)
-            or self.numeric
-            or any(isinstance(one, ast.Constant) for one in (a, b))
-        ):
+        elif self.numeric or isinstance(op, ast.Is | ast.IsNot) or ast.Constant in (type(a), type(b)):
             return f"{left} {'!' if negated else '='}== {right}", EQUAL
         else:
             found = f"py.eq({left}, {right})"
@@ -215,10 +197,10 @@ class Expressions(ABC):
     def _item(self, node: ast.Subscript) -> str:
         whole = self.text(node.value, ATOM)
         match node.slice:
+            case ast.Slice(lower=low, upper=high, step=None):
+                parts = [self.text(low) if low else "0", *([self.text(high)] if high else [])]
+                return f"{whole}.slice({', '.join(parts)})"
             case ast.Slice(lower=low, upper=high, step=step):
-                if step is None and all(isinstance(one, PLAIN) for one in (low, high)):
-                    parts = [self.text(low) if low else "0", *([self.text(high)] if high else [])]
-                    return f"{whole}.slice({', '.join(parts)})"
                 parts = [self.text(one) if one else "null" for one in (low, high, step)]
                 return f"py.slice({whole}, {', '.join(parts)})"
             case ast.Tuple(elts=places):
@@ -247,9 +229,6 @@ class Expressions(ABC):
         self.scopes.pop()
         return whole
 
-
-PLAIN = (type(None), ast.Constant, ast.Name, ast.Attribute)
-"""Indices that do not count from the end."""
 
 ROWS = ("py.zip(", "py.range(", "py.enumerate(", "py.list(", "[")
 """How what is a list by itself begins."""

@@ -82,7 +82,7 @@ function solve(matrix, right) {
   var count = py.len(rows);
   for (var [i, pivot] of py.enumerate(rows)) {
     var inverse = py.div(1.0, py.item(pivot, i));
-    for (var row of py.slice(rows, py.add(i, 1), null, null)) {
+    for (var row of rows.slice(py.add(i, 1))) {
       var factor = py.mul(py.item(row, i), inverse);
       for (var j = py.add(i, 1); j < py.add(count, 1); j += 1) {
         py.put(row, j, py.sub(py.item(row, j), py.mul(factor, py.item(pivot, j))));
@@ -411,7 +411,7 @@ class HullKind extends py.NamedTuple {
     for (var [number, [unit, count]] of py.enumerate(py.zip(this.units, this.counts))) {
       sizes.push(py.truth(number) ? py.item(proportions, place) : 1.0);
       place = py.add(place, number > 0);
-      units.push(unit.from_proportions(py.tuple(py.slice(proportions, place, py.add(place, count), null))));
+      units.push(unit.from_proportions(py.tuple(proportions.slice(place, py.add(place, count)))));
       place = py.add(place, count);
     }
     return new Hull(py.tuple(units), py.tuple(sizes), this.active);
@@ -1709,7 +1709,7 @@ function unknown(k) {
 /** Value of a polynomial, its coefficients in increasing order, at a time. */
 function horner(coefficients, time) {
   var value = py.item(coefficients, -1);
-  for (var coefficient of py.reversed(py.slice(coefficients, null, -1, null))) {
+  for (var coefficient of py.reversed(coefficients.slice(0, -1))) {
     value = py.add(coefficient, py.mul(value, time));
   }
   return value;
@@ -1973,25 +1973,8 @@ function touchdown(state, top, horizon, start = Start.AIRBORNE) {
   horizon = py.min(horizon, py.mul(2.0, falling_time(py.sub(ballistic[0], deepest), ...ballistic.slice(1))));
   var time = 0.0;
   if (!py.eq(start, Start.AIRBORNE)) {
-    var disc = analytic_disc(tip, top.surface, 0.0, 0.0, WIDEST);
-    if (disc === null) {
-      throw new Unsolved("the body lies flat at its start, where no one point is lowest");
-    }
-    var support = support_terms(top.surface, tip.terms, PLAIN);
-    ballistic = [...support.slice(0, start), ...ballistic.slice(start)];
-    var terms = py.add(
-      py.zip(ballistic, support.slice(0, 3)).map(([b, s]) => py.sub(b, s)),
-      [...support.slice(3)].map((s) => py.neg(s))
-    );
-    var opening = new Opening(
-      py.slice(
-        terms,
-        py.next(py.range(start, DEGREE).filter((j) => py.truth(py.item(terms, j))), DEGREE),
-        null,
-        null
-      )
-    );
-    time = py.min(horizon, py.mul(START, disc[0]));
+    var [opening, ballistic, length] = first_interval(tip, top.surface, ballistic, start);
+    time = py.min(horizon, length);
     var root = first_root(py.bound(opening, "at"), 0.0, time, opening.jerk_bound(time));
     if (root !== null) {
       return root;
@@ -2005,7 +1988,7 @@ function touchdown(state, top, horizon, start = Start.AIRBORNE) {
     if (time >= horizon) {
       return null;
     }
-    disc = analytic_disc(tip, top.surface, time, 0.25, angle);
+    var disc = analytic_disc(tip, top.surface, time, 0.25, angle);
     if (disc === null) {
       var [end, root] = separation.across_flat(time, horizon);
     } else {
@@ -2028,6 +2011,24 @@ function touchdown(state, top, horizon, start = Start.AIRBORNE) {
     time = end;
   }
   throw new Unsolved("the body turns too often so near the table");
+}
+
+/** The gap on a first interval, the flight with what vanishes at its start, and how long that is, s. */
+function first_interval(tip, surface, ballistic, start) {
+  var disc = analytic_disc(tip, surface, 0.0, 0.0, WIDEST);
+  if (disc === null) {
+    throw new Unsolved("the body lies flat at its start, where no one point is lowest");
+  }
+  var support = support_terms(surface, tip.terms, PLAIN);
+  ballistic = [...support.slice(0, start), ...ballistic.slice(start)];
+  var terms = py.add(
+    py.zip(ballistic, support.slice(0, 3)).map(([b, s]) => py.sub(b, s)),
+    [...support.slice(3)].map((s) => py.neg(s))
+  );
+  var opening = new Opening(
+    terms.slice(py.next(py.range(start, DEGREE).filter((j) => py.truth(py.item(terms, j))), DEGREE))
+  );
+  return [opening, ballistic, py.mul(START, disc[0])];
 }
 
 /** The highest gap of a free flight that lasts some time, s; floats. */
@@ -2763,7 +2764,7 @@ class ClosingRates extends py.NamedTuple {
 function rates_in_time(state, ending, top) {
   var point = ContactPoint.of(state.axis, state.momentum, top);
   var [wrench, acceleration] = ending.contact(point, state.direction, slip_beside(state, ending, top));
-  var drawn = scaled(py.div(1.0, top.mass), py.slice(wrench.force, null, py.len(state.velocity), null));
+  var drawn = scaled(py.div(1.0, top.mass), wrench.force.slice(0, py.len(state.velocity)));
   var tilting = axis_rate(state.axis, state.momentum, top);
   var xi = ending.rate(acceleration, top);
   return new ClosingRates(tilting, point.moment(wrench), drawn, xi, wrench, acceleration);
@@ -2880,7 +2881,7 @@ const motion_of = py.cached((form, kinds) => {
     var tops = py.list();
     var first = 0;
     for (var kind of kinds) {
-      tops.push(kind.top(py.tuple(py.slice(numbers, first, py.add(first, kind.numbers), null))));
+      tops.push(kind.top(py.tuple(numbers.slice(first, py.add(first, kind.numbers)))));
       first = py.add(first, kind.numbers);
     }
     return form.with_tops(tops, numbers.slice(first));
@@ -3112,13 +3113,13 @@ function onset(known, power, order) {
     s.push(py.div(py.add(py.sum(py.map(py.mul, first, rest)), py.sum(py.map(py.mul, parts, ahead))), factor));
   }
   var rows = [...known.state].map((y) => py.range(py.add(py.add(order, power), 1)).map((k) => py.item(y, k)));
-  var turning = py.tuple([...e].map((row) => py.slice(row, null, py.add(order, 1), null)));
+  var turning = py.tuple([...e].map((row) => row.slice(0, py.add(order, 1))));
   return new Onset(
     py.tuple(rows.slice(0, 3)),
     py.tuple(rows.slice(3, 6)),
     py.tuple(rows.slice(6)),
     turning,
-    py.slice(s, null, py.add(order, 1), null),
+    s.slice(0, py.add(order, 1)),
     power
   );
 }
@@ -3238,7 +3239,7 @@ const driven_motion = py.cached((kind, ending, components, degree) => {
   var free = py.truth(ending.moves) ? 8 : 6;
   var chain = py.add(degree, 1);
   var rates = (y, numbers) => {
-    var given = py.slice(y, py.add(free, components), null, null);
+    var given = y.slice(py.add(free, components));
     var direction = py.tuple(py.range(components).map((i) => py.item(given, py.mul(i, chain))));
     var state = new Closing(...split(y), py.tuple(y.slice(6, free)), direction, 0.0, 0.0);
     var rate = rates_in_time(state, ending, kind.top(py.tuple(numbers)));
@@ -3246,7 +3247,7 @@ const driven_motion = py.cached((kind, ending, components, degree) => {
     for (var i = 0; i < components; i += 1) {
       turning = py.add(
         turning,
-        [...py.slice(given, py.add(py.mul(i, chain), 1), py.mul(py.add(i, 1), chain), null), 0.0]
+        [...given.slice(py.add(py.mul(i, chain), 1), py.mul(py.add(i, 1), chain)), 0.0]
       );
     }
     return [...rate.axis, ...rate.momentum, ...rate.velocity, ...rate.xi, ...turning];
@@ -3601,7 +3602,7 @@ function _in_powers(stages, part) {
   for (var k = 1; k < py.sub(stages, 1); k += 1) {
     var times = py.zip(
       py.item(rows, k),
-      [0.0, ...py.slice(py.item(rows, k), null, py.sub(stages, 1), null)]
+      [0.0, ...py.item(rows, k).slice(0, py.sub(stages, 1))]
     ).map(([a, b]) => py.add(py.mul(begin, a), py.mul(slope, b)));
     rows.push(
       py.zip(times, py.item(rows, py.sub(k, 1))).map(
@@ -3658,8 +3659,8 @@ function sweep(y, p, ending, kind, points) {
   var given = layout.given;
   var last = py.add(given, kind.numbers);
   var top = kind.top(py.tuple(p.slice(given, last)));
-  var integrals = py.slice(p, last, py.add(last, STAGES), null);
-  var units = py.slice(p, py.add(last, STAGES), null, null);
+  var integrals = p.slice(last, py.add(last, STAGES));
+  var units = p.slice(py.add(last, STAGES));
   var way = [py.item(y, free), py.item(y, py.add(free, 1))];
   var step = py.item(p, layout.size);
   var across = [py.neg(way[1]), way[0]];
@@ -3683,14 +3684,14 @@ function sweep(y, p, ending, kind, points) {
 /** What a step makes of numbers, from their rates y. */
 function step_terms(y, p, points) {
   var step = p[0];
-  var legendre_rows = py.slice(p, 1, py.add(STAGES, 1), null);
+  var legendre_rows = p.slice(1, py.add(STAGES, 1));
   var series = [...y].map(
     (rate) => py.tuple([...legendre_rows].map((row) => py.mul(step, points.total(py.mul(rate, row)))))
   );
   var found = py.list();
   for (var part = 1; part < py.add(PARTS, 1); part += 1) {
     var powers = py.tuple(
-      py.slice(p, py.add(py.mul(part, STAGES), 1), py.add(py.mul(py.add(part, 1), STAGES), 1), null)
+      p.slice(py.add(py.mul(part, STAGES), 1), py.add(py.mul(py.add(part, 1), STAGES), 1))
     );
     found = py.add(found, [...series].map((terms) => inner(terms, powers)));
   }
@@ -3748,7 +3749,7 @@ function _answers(y, way, beside, ending, top) {
   );
   var added = new Wrench(add(turned.force, more), add(turned.torque, couple));
   var rates = (wrench, acceleration) => {
-    var drawn = scaled(py.div(1.0, top.mass), py.slice(wrench.force, null, py.len(here.velocity), null));
+    var drawn = scaled(py.div(1.0, top.mass), wrench.force.slice(0, py.len(here.velocity)));
     return [...point.moment(wrench), ...drawn, ...ending.rate(acceleration, top)];
   };
   var tilting = axis_rate(here.axis, here.momentum, top);
@@ -3805,7 +3806,7 @@ const machinery_of = py.cached((top, ending) => {
 
 /** What a number is at every point, by its row. */
 function row_of(numbers, row) {
-  return [...py.slice(numbers, py.mul(row, STAGES), py.mul(py.add(row, 1), STAGES), null)];
+  return [...numbers.slice(py.mul(row, STAGES), py.mul(py.add(row, 1), STAGES))];
 }
 
 /** A step of collocation. */
@@ -3920,7 +3921,7 @@ function pieces_of(rows, size, parts) {
   var before = py.mul(py.sub(whole, 1), count);
   var shares = py.range(STAGES).map((k) => py.pow(py.add(py.sub(parts, whole), 1), py.add(k, 1)));
   var last = py.zip(
-    py.slice(rows, before, py.add(before, count), null),
+    rows.slice(before, py.add(before, count)),
     py.mul(shares, size)
   ).map(([term, share]) => py.mul(term, share));
   return py.np.concatenate([first_of(rows, before), py.np.array(last)]);
@@ -4031,7 +4032,7 @@ function change_over(pieces, size) {
     (number) => py.range(py.mul(number, STAGES), py.len(terms), py.mul(size, STAGES))
   );
   return [...places].map(
-    (each) => py.sum([...each].map((first) => py.sum(py.slice(terms, first, py.add(first, STAGES), null))))
+    (each) => py.sum([...each].map((first) => py.sum(terms.slice(first, py.add(first, STAGES)))))
   );
 }
 
@@ -4052,7 +4053,7 @@ function parts_left(terms) {
 
 /** Whether s comes near zero within a step, perhaps to it between two points. */
 function dips(speeds) {
-  var least = py.min(py.slice(speeds, 1, py.sub(STAGES, 1), null));
+  var least = py.min(speeds.slice(1, py.sub(STAGES, 1)));
   return py.and(
     py.min(speeds[0], py.item(speeds, py.sub(STAGES, 1))) > least,
     () => 0.0 < least && least < py.mul(DIP, py.max(speeds))
@@ -4359,11 +4360,7 @@ class Loosening extends Passing {
       return null;
     }
     var start = [...begin, ...scaled(TINY_of_loosening, direction)];
-    var last = this.state(
-      py.truth(phase.ended)
-      ? [...py.slice(phase.last, null, -2, null), 0.0, 0.0]
-      : phase.last
-    );
+    var last = this.state(py.truth(phase.ended) ? [...phase.last.slice(0, -2), 0.0, 0.0] : phase.last);
     var duration = py.item(phase.knots, -1);
     var reach = duration >= py.sub(end, time) ? end : py.add(time, duration);
     var solution = DenseSolution.of_rows(phase.knots, start, phase.rows).moved(time, reach);
@@ -4733,7 +4730,7 @@ function closing_of(y, ending) {
   return new Closing(
     ...split(y),
     py.tuple(y.slice(6, free)),
-    py.tuple(py.slice(y, free, py.sub(count, 2), null)),
+    py.tuple(y.slice(free, py.sub(count, 2))),
     py.item(y, py.sub(count, 2)),
     py.item(y, py.sub(count, 1))
   );
@@ -4905,7 +4902,7 @@ class Stopping extends Passing {
   }
   /** The mode that takes the clock up where an arc leaves it, on another branch of the law. */
   _onwards(arc, top) {
-    return py.replace(this, { top: top, begin: [...py.slice(py.list(arc.end_state), null, -1, null), 0.0] });
+    return py.replace(this, { top: top, begin: [...py.list(arc.end_state).slice(0, -1), 0.0] });
   }
   /** The numbers of the mode as polynomials in time: up to some time from the clock's, and the rest. */
   _in_time(arcs, until, rest) {
@@ -4931,7 +4928,7 @@ class Stopping extends Passing {
 function thinned(knots) {
   var end = py.item(knots, -1);
   var found = [knots[0]];
-  for (var knot of py.slice(knots, 1, -1, null)) {
+  for (var knot of knots.slice(1, -1)) {
     if (py.sub(end, knot) <= py.mul(SHARE, py.sub(end, py.item(found, -1)))) {
       found.push(knot);
     }
@@ -5254,7 +5251,7 @@ class Striking extends py.NamedTuple {
     var along = (q) => {
       var moved = py.zip(impulse, unit).map(([a, b]) => py.add(a, py.mul(q, b)));
       var work = py.add(py.item(impulse, WORK), py.mul(q, py.add(approach, py.mul(py.mul(0.5, q), rise))));
-      return [...moved.slice(0, WORK), work, ...py.slice(moved, py.add(WORK, 1), null, null)];
+      return [...moved.slice(0, WORK), work, ...moved.slice(py.add(WORK, 1))];
     };
     return along;
   }
@@ -5437,7 +5434,7 @@ function step_to(here, slope, size, rates) {
 /** The rates at its start and at its stages. */
 function stages(here, slope, size, rates) {
   var slopes = [slope];
-  for (var weights of py.slice(STAGES_of_runge_kutta, null, -1, null)) {
+  for (var weights of STAGES_of_runge_kutta.slice(0, -1)) {
     slopes.push(rates(combined(here, size, weights, slopes)));
   }
   return slopes;
@@ -7175,7 +7172,7 @@ class SlipBeginningOnTwo extends SlidingOnTwo {
     var now = pair_motion(pair, slips, this.rolls);
     return [
       [...axis_rate(axis, momentum, this.top), ...now.moment, ...now.rate],
-      py.slice(now.rate, null, py.len(way), null)
+      now.rate.slice(0, py.len(way))
     ];
   }
   /** It has just begun. */
@@ -8423,11 +8420,11 @@ function state_from_angles(angles, top, functions) {
 class Problem extends Part {
   static title = "Problem";
   _contact_is_possible() {
-    this._refuse_what_does_not_fit();
+    _refuse_what_does_not_fit(this);
     if (
-      !(py.truth(py.math.isfinite(this._resistance())) && py.truth(py.math.isfinite(this._largest_square())))
+      !(py.truth(py.math.isfinite(_resistance(this))) && py.truth(py.math.isfinite(_largest_square(this))))
     ) {
-      throw py.or(this._lying_flat(), () => this._out_of_reach());
+      throw py.or(_lying_flat(this), () => _out_of_reach(this));
     }
     if (this.contact.liftoff === "fly") {
       return this;
@@ -8437,11 +8434,14 @@ class Problem extends Part {
     }
     var launch = this.launch;
     if (py.truth(launch.gap) || launch.velocity !== null) {
-      var field = py.truth(launch.gap) ? "launch.gap" : "launch.velocity";
-      var value = py.truth(launch.gap) ? launch.gap : launch.velocity;
-      throw new InvalidInput(field, value, "a launch on the table, unless contact.liftoff is 'fly'");
+      var field = py.truth(launch.gap) ? "gap" : "velocity";
+      throw new InvalidInput(
+        `launch.${py.str(field)}`,
+        py.getattr(launch, field),
+        "a launch on the table, unless contact.liftoff is 'fly'"
+      );
     }
-    if (!(this._resistance() > 0)) {
+    if (!(_resistance(this) > 0)) {
       throw new InvalidInput(
         "launch.slip",
         this.launch.slip,
@@ -8449,80 +8449,6 @@ class Problem extends Part {
       );
     }
     return this;
-  }
-  /** Refuse a patch, or an arm, that is larger than the body, or a patch that is but a point. */
-  _refuse_what_does_not_fit() {
-    var size = py.max(sizes(this.body.surface));
-    if (!py.truth(this.friction.fits(size))) {
-      throw new InvalidInput(
-        "friction.patch_radius",
-        py.getattr(this.friction, "patch_radius", MISSING),
-        `from ${py.str(_inside(py.mul(LEAST_PATCH, size), 1.0))} to ${py.str(_inside(size, -1.0))} on this body; a smaller patch is a point, for which there is coulomb`
-      );
-    }
-    if (this.rolling_resistance > size) {
-      throw new InvalidInput(
-        "rolling_resistance",
-        this.rolling_resistance,
-        `from 0 to ${py.str(_inside(size, -1.0))} on this body, within which the table presses`
-      );
-    }
-  }
-  /** The resistance of the contact at launch; nan where its arithmetic breaks down. */
-  _resistance() {
-    try {
-      var start = along_table(this.start());
-      var top = this.standing();
-      if (py.truth(is_set_valued(this.friction.law)) && !py.truth(is_slipping(...start, top))) {
-        return py.add(1.0, py.mul(0.0, size(start.momentum)));
-      }
-      var touch = contact(start.axis, start.momentum, start.velocity, top);
-      return py.float(py.add(touch.delassus, py.mul(0.0, touch.free_acceleration)));
-    } catch (error) {
-      if (!(error instanceof py.ArithmeticError)) throw error;
-      return py.math.nan;
-    }
-  }
-  /** The largest square among the numbers of the launch in natural units, and in SI; nan without one. */
-  _largest_square() {
-    try {
-      var units = natural_units(this.top);
-      var start = natural_state(this.start(), units);
-      var largest = py.float(py.max(py.map(py.abs, [...start.momentum, ...start.velocity, start.height])));
-      return py.mul(
-        py.pow(largest, 2),
-        py.max(1.0, py.float(units.energy), py.float(py.mul(this.body.mass, this.gravity)))
-      );
-    } catch (error) {
-      if (!(error instanceof py.ArithmeticError)) throw error;
-      return py.math.nan;
-    }
-  }
-  /** The refusal of a launch on a face; None where that is not what is wrong. */
-  _lying_flat() {
-    try {
-      var edge = is_edge(this.standing().surface);
-    } catch (error) {
-      if (!(error instanceof py.ArithmeticError)) throw error;
-      return null;
-    }
-    if (!py.truth(edge) || py.pow(py.math.cos(this.launch.tilt), 2) < 1.0) {
-      return null;
-    }
-    return new InvalidInput("launch.tilt", this.launch.tilt, "a tilt at which the body does not lie flat");
-  }
-  /** The refusal of numbers with which no computer can reckon, about the one furthest from 1. */
-  _out_of_reach() {
-    var numbers = new py.Dict([...numbers_of(this.model_dump())].filter(([name, value]) => py.truth(value)));
-    var distance = new py.Dict(
-      [...numbers.entries()].map(([name, value]) => [name, py.abs(py.math.log(py.abs(value)))])
-    );
-    var worst = py.max(distance, { key: (name) => py.item(distance, name) });
-    var others = py.sub(
-      py.sum([...distance.values()].map((other) => py.mul(2, other) > py.item(distance, worst))),
-      1
-    );
-    return new InvalidInput(worst, py.item(numbers, worst), "a number whose square is a number too", others);
   }
   /** The problem's numbers as the mechanics takes them, SI. */
   get top() {
@@ -8561,6 +8487,85 @@ class Problem extends Part {
       }
     );
   }
+}
+
+/** Refuse a patch, or an arm, that is larger than the body, or a patch that is but a point. */
+function _refuse_what_does_not_fit(problem) {
+  var size = py.max(sizes(problem.body.surface));
+  if (!py.truth(problem.friction.fits(size))) {
+    throw new InvalidInput(
+      "friction.patch_radius",
+      py.getattr(problem.friction, "patch_radius", MISSING),
+      `from ${py.str(_inside(py.mul(LEAST_PATCH, size), 1.0))} to ${py.str(_inside(size, -1.0))} on this body; a smaller patch is a point, for which there is coulomb`
+    );
+  }
+  if (problem.rolling_resistance > size) {
+    throw new InvalidInput(
+      "rolling_resistance",
+      problem.rolling_resistance,
+      `from 0 to ${py.str(_inside(size, -1.0))} on this body, within which the table presses`
+    );
+  }
+}
+
+/** The resistance of the contact at launch; nan where its arithmetic breaks down. */
+function _resistance(problem) {
+  try {
+    var start = along_table(problem.start());
+    var top = problem.standing();
+    if (py.truth(is_set_valued(problem.friction.law)) && !py.truth(is_slipping(...start, top))) {
+      return py.add(1.0, py.mul(0.0, size(start.momentum)));
+    }
+    var touch = contact(start.axis, start.momentum, start.velocity, top);
+    return py.float(py.add(touch.delassus, py.mul(0.0, touch.free_acceleration)));
+  } catch (error) {
+    if (!(error instanceof py.ArithmeticError)) throw error;
+    return py.math.nan;
+  }
+}
+
+/** The largest square among the numbers of the launch in natural units, and in SI; nan without one. */
+function _largest_square(problem) {
+  try {
+    var units = natural_units(problem.top);
+    var start = natural_state(problem.start(), units);
+    var largest = py.float(py.max(py.map(py.abs, [...start.momentum, ...start.velocity, start.height])));
+    return py.mul(
+      py.pow(largest, 2),
+      py.max(1.0, py.float(units.energy), py.float(py.mul(problem.body.mass, problem.gravity)))
+    );
+  } catch (error) {
+    if (!(error instanceof py.ArithmeticError)) throw error;
+    return py.math.nan;
+  }
+}
+
+/** The refusal of a launch on a face; None where that is not what is wrong. */
+function _lying_flat(problem) {
+  try {
+    var edge = is_edge(problem.standing().surface);
+  } catch (error) {
+    if (!(error instanceof py.ArithmeticError)) throw error;
+    return null;
+  }
+  if (!py.truth(edge) || py.pow(py.math.cos(problem.launch.tilt), 2) < 1.0) {
+    return null;
+  }
+  return new InvalidInput("launch.tilt", problem.launch.tilt, "a tilt at which the body does not lie flat");
+}
+
+/** The refusal of numbers with which no computer can reckon, about the one furthest from 1. */
+function _out_of_reach(problem) {
+  var numbers = new py.Dict([...numbers_of(problem.model_dump())].filter(([name, value]) => py.truth(value)));
+  var distance = new py.Dict(
+    [...numbers.entries()].map(([name, value]) => [name, py.abs(py.math.log(py.abs(value)))])
+  );
+  var worst = py.max(distance, { key: (name) => py.item(distance, name) });
+  var others = py.sub(
+    py.sum([...distance.values()].map((other) => py.mul(2, other) > py.item(distance, worst))),
+    1
+  );
+  return new InvalidInput(worst, py.item(numbers, worst), "a number whose square is a number too", others);
 }
 
 /** A bound in three digits, not beyond it: no less if the side is 1, and no more if it is -1. */
@@ -8704,7 +8709,7 @@ function derivative_of(series) {
     );
   }
   py.put(found, 0, py.mul(found[0], 0.5));
-  return py.slice(found, null, py.sub(py.len(series), 1), null);
+  return found.slice(0, py.sub(py.len(series), 1));
 }
 
 /** Places in [-1, 1) at which a Chebyshev series changes its sign, in order. */
@@ -9647,8 +9652,15 @@ function measure(a, b, y, tolerance, size) {
   return py.math.sqrt(total / size);
 }
 
-/** A step to begin with, whose error is about right; k[0] has the rates. */
+/** A step to begin with, whose error is about right, and the rates in k[0]; -1 where there are none. */
 function first_step(rates, p, y, k, place, span, tolerance, size) {
+  evaluate(rates, y, p, k[0]);
+  var k0 = k[0];
+  for (var i = 0; i < size; i += 1) {
+    if (!py.truth(py.math.isfinite(k0[i]))) {
+      return -1.0;
+    }
+  }
   for (var i = 0; i < y.length; i += 1) {
     place[i] = 0.0;
   }
@@ -9745,6 +9757,35 @@ function suspect(guards, p, terms, first, y, values, room) {
   return false;
 }
 
+/** Take the longest step whose error is allowed; how many were tried, 0 if none is long enough. */
+function take_step(rates, p, y, lost, k, span, tolerance, terms, first, size, moved, new_, place) {
+  var time = span[0];
+  var reach = span[0];
+  var error = 2.0;
+  var tries = 0;
+  while (!(error < 1.0)) {
+    if (!(span[2] > NOTHING * Math.abs(time))) {
+      return 0;
+    }
+    reach = py.min(time + span[2], span[1]);
+    stages_of_dormand_prince(rates, reach - time, p, y, lost, k, moved, new_);
+    error = error_of(reach - time, y, new_, k, tolerance, size);
+    tries = tries + 1;
+    span[2] = (reach - time) * factor_for(error, tries);
+  }
+  more_stages(rates, reach - time, p, y, lost, k, place);
+  polynomials(reach - time, y, new_, k, terms, first);
+  var k0 = k[0];
+  var k12 = k[12];
+  for (var i = 0; i < y.length; i += 1) {
+    lost[i] = moved[i] - (new_[i] - y[i]);
+    y[i] = new_[i];
+    k0[i] = k12[i];
+  }
+  span[0] = reach;
+  return tries;
+}
+
 /** Take steps from a state, which is brought up to date. */
 function advance(rates, guards, count, p, y, lost, k, span, tolerance, knots, terms, steps, size) {
   [y, lost, k] = [fixed(y), fixed(lost), fixed(k)];
@@ -9753,55 +9794,29 @@ function advance(rates, guards, count, p, y, lost, k, span, tolerance, knots, te
   var place = py.np.empty(y.length);
   var values = py.np.empty([LOOKS_of_dormand_prince + 2, count]);
   var room = py.np.empty(LOOKS_of_dormand_prince * (y.length + count));
-  var time = span[0];
-  var end = span[1];
   var calls = 0;
   if (span[2] === 0.0) {
-    evaluate(rates, y, p, k[0]);
-    var k0 = k[0];
-    for (var i = 0; i < size; i += 1) {
-      if (!py.truth(py.math.isfinite(k0[i]))) {
-        return [steps, 1, SINGULAR];
-      }
+    span[2] = first_step(rates, p, y, k, place, span[1] - span[0], tolerance, size);
+    if (span[2] < 0.0) {
+      return [steps, 1, SINGULAR];
     }
-    span[2] = first_step(rates, p, y, k, place, end - time, tolerance, size);
     calls = calls + 2;
   }
   if (count > 0) {
     evaluate(guards, y, p, values[0]);
   }
-  while (time < end) {
+  while (span[0] < span[1]) {
     if (steps === knots.length - 1) {
       return [steps, calls, FULL];
     }
-    var error = 2.0;
-    var tries = 0;
-    while (!(error < 1.0)) {
-      if (!(span[2] > NOTHING * Math.abs(time))) {
-        return [steps, calls, STUCK_of_dormand_prince];
-      }
-      var reach = py.min(time + span[2], end);
-      var h = reach - time;
-      stages_of_dormand_prince(rates, h, p, y, lost, k, moved, new_);
-      error = error_of(h, y, new_, k, tolerance, size);
-      tries = tries + 1;
-      span[2] = h * factor_for(error, tries);
+    var first = steps * y.length * POWERS;
+    var tries = take_step(rates, p, y, lost, k, span, tolerance, terms, first, size, moved, new_, place);
+    if (tries === 0) {
+      return [steps, calls, STUCK_of_dormand_prince];
     }
     calls = calls + (12 * tries + 3);
-    more_stages(rates, h, p, y, lost, k, place);
-    var first = steps * y.length * POWERS;
-    polynomials(h, y, new_, k, terms, first);
-    var k0 = k[0];
-    var k12 = k[12];
-    for (var i = 0; i < y.length; i += 1) {
-      lost[i] = moved[i] - (new_[i] - y[i]);
-      y[i] = new_[i];
-      k0[i] = k12[i];
-    }
-    time = reach;
     steps = steps + 1;
-    knots[steps] = time;
-    span[0] = time;
+    knots[steps] = span[0];
     if (count > 0 && py.truth(suspect(guards, p, terms, first, place, values, room))) {
       return [steps, calls, SUSPECT];
     }
@@ -10292,10 +10307,7 @@ function* brackets(probes, values, value, exact) {
         py.item(values, after)
       )
     ) {
-      var drop = py.sub(
-        py.max(py.slice(values, py.max(py.sub(i, 2), 0), py.add(i, 3), null)),
-        py.item(values, i)
-      );
+      var drop = py.sub(py.max(values.slice(py.max(py.sub(i, 2), 0), py.add(i, 3))), py.item(values, i));
       if (py.item(values, i) < drop) {
         var [place, least] = dip(value, py.item(probes, before), py.item(probes, after));
         if (least <= 0.0) {
@@ -11812,10 +11824,12 @@ export {
   _in_powers,
   _inside,
   _integral,
+  _largest_square,
   _leads,
   _left,
   _left_of_two_resolver,
   _level,
+  _lying_flat,
   _marks,
   _meetings,
   _moved,
@@ -11824,11 +11838,14 @@ export {
   _of_axis,
   _of_top,
   _on_one_of_several,
+  _out_of_reach,
   _polished,
   _precession,
   _precession_tilts,
   _reach,
   _reaches_out,
+  _refuse_what_does_not_fit,
+  _resistance,
   _root,
   _slip,
   _solved,
@@ -11908,6 +11925,7 @@ export {
   falling_time,
   final_band,
   first_fall,
+  first_interval,
   first_reach,
   first_root,
   first_step,
@@ -12112,6 +12130,7 @@ export {
   surface_guards,
   suspect,
   sweep,
+  take_step,
   tangents,
   thinned,
   tilt,

@@ -231,9 +231,8 @@ export function put(all, place, value) {
   else all[place < 0 ? all.length + place : place] = value;
 }
 
-/** A slice of a sequence, or one backwards. */
+/** A slice of a sequence, backwards. */
 export function slice(all, from, to, step) {
-  if (step === null) return tuple(all).slice(from ?? 0, to ?? undefined);
   if (step !== -1 || from < 0 || to < 0) throw new RangeError("such a slice is not known here");
   return tuple(all).slice(to === null ? 0 : to + 1, from === null ? undefined : from + 1).reverse();
 }

@@ -103,7 +103,11 @@ def measure(a: Array, b: Array, y: Array, tolerance: Array, size: int) -> float:
 def first_step(
     rates: Compiled, p: Array, y: Array, k: Array, place: Array, span: float, tolerance: Array, size: int
 ) -> float:
-    """A step to begin with, whose error is about right; k[0] has the rates."""
+    """A step to begin with, whose error is about right, and the rates in k[0]; -1 where there are none."""
+    evaluate(rates, y, p, k[0])
+    for i in range(size):
+        if not math.isfinite(k[0, i]):
+            return -1.0
     for i in range(len(y)):
         place[i] = 0.0
     extent, slope = measure(y, place, y, tolerance, size), measure(k[0], place, y, tolerance, size)
@@ -177,6 +181,45 @@ def suspect(
     return False
 
 
+def take_step(
+    rates: Compiled,
+    p: Array,
+    y: Array,
+    lost: Array,
+    k: Array,
+    span: Array,
+    tolerance: Array,
+    terms: Array,
+    first: int,
+    size: int,
+    moved: Array,
+    new: Array,
+    place: Array,
+) -> int:
+    """Take the longest step whose error is allowed; how many were tried, 0 if none is long enough.
+
+    It brings the time in `span` up to date too, and puts the coefficients of its polynomials into `terms`,
+    from `first` on; the last three are room.
+    """
+    time, reach, error, tries = span[0], span[0], 2.0, 0
+    while not error < 1.0:
+        if not span[2] > NOTHING * abs(time):
+            return 0
+        reach = min(time + span[2], span[1])
+        stages(rates, reach - time, p, y, lost, k, moved, new)
+        error = error_of(reach - time, y, new, k, tolerance, size)
+        tries += 1
+        span[2] = (reach - time) * factor_for(error, tries)
+    more_stages(rates, reach - time, p, y, lost, k, place)
+    polynomials(reach - time, y, new, k, terms, first)
+    for i in range(len(y)):
+        lost[i] = moved[i] - (new[i] - y[i])
+        y[i] = new[i]
+        k[0, i] = k[12, i]
+    span[0] = reach
+    return tries
+
+
 def advance(
     rates: Compiled,
     guards: Compiled,
@@ -194,74 +237,38 @@ def advance(
 ) -> tuple[int, int, int]:
     """Take steps from a state, which is brought up to date.
 
-    Parameters
-    ----------
-    rates, guards, count
-        The motion, and how many guards it has.
-    p
-        Its parameters.
-    y, lost
-        The state, and what rounding has taken from it so far.
-    k
-        Room for the rates of the stages, the first of which have been found unless all begins here, and for
-        what is made of them, shape (`ROWS`, n).
-    span
-        Time, the end, and the next step's size, 0 to begin with: time and size are brought up to date.
-    tolerance
-        Relative and absolute error per step.
-    knots, terms
-        Room for the ends of n steps, shape (n + 1,), and for the coefficients of their polynomials, those of
-        each number in a row.
-    steps
-        How many are there.
-    size
-        How many numbers the state has; its rows, and those of what is made of it, may be longer, with zeros
-        at the end.
+    A motion is rates and guards, so many as `count`, of its state y and parameters p. What rounding has taken
+    from the state so far is in `lost`. The rows of `k`, shape (`ROWS`, n), are room for the rates of the
+    stages, of which the first have been found unless all begins here, and for what is made of them. `span` is
+    the time, the end, and the next step's size, 0 to begin with: time and size are brought up to date.
+    `tolerance` is the relative and the absolute error per step. `knots`, shape (n + 1,), and `terms` are room
+    for the ends of steps and the coefficients of their polynomials, those of each number in a row; `steps` of
+    them are there. The state has `size` numbers; its rows, and those of what is made of it, may be longer,
+    with zeros at the end.
 
-    Returns
-    -------
-    tuple
-        How many steps are there then, how often the rates were asked for, and how it ended.
+    It returns how many steps are there then, how often the rates were asked for, and how it ended.
     """
     y, lost, k = fixed(y), fixed(lost), fixed(k)
     moved, new, place = np.empty(len(y)), np.empty(len(y)), np.empty(len(y))
     values, room = np.empty((LOOKS + 2, count)), np.empty(LOOKS * (len(y) + count))
-    time, end = span[0], span[1]
     calls = 0
     if span[2] == 0.0:
-        evaluate(rates, y, p, k[0])
-        for i in range(size):
-            if not math.isfinite(k[0, i]):
-                return steps, 1, SINGULAR
-        span[2] = first_step(rates, p, y, k, place, end - time, tolerance, size)
+        span[2] = first_step(rates, p, y, k, place, span[1] - span[0], tolerance, size)
+        if span[2] < 0.0:
+            return steps, 1, SINGULAR
         calls += 2
     if count > 0:
         evaluate(guards, y, p, values[0])
-    while time < end:
+    while span[0] < span[1]:
         if steps == len(knots) - 1:
             return steps, calls, FULL
-        error, tries = 2.0, 0
-        while not error < 1.0:
-            if not span[2] > NOTHING * abs(time):
-                return steps, calls, STUCK
-            reach = min(time + span[2], end)
-            h = reach - time
-            stages(rates, h, p, y, lost, k, moved, new)
-            error = error_of(h, y, new, k, tolerance, size)
-            tries += 1
-            span[2] = h * factor_for(error, tries)
-        calls += 12 * tries + 3
-        more_stages(rates, h, p, y, lost, k, place)
         first = steps * len(y) * POWERS
-        polynomials(h, y, new, k, terms, first)
-        for i in range(len(y)):
-            lost[i] = moved[i] - (new[i] - y[i])
-            y[i] = new[i]
-            k[0, i] = k[12, i]
-        time = reach
+        tries = take_step(rates, p, y, lost, k, span, tolerance, terms, first, size, moved, new, place)
+        if tries == 0:
+            return steps, calls, STUCK
+        calls += 12 * tries + 3
         steps += 1
-        knots[steps] = time
-        span[0] = time
+        knots[steps] = span[0]
         if count > 0 and suspect(guards, p, terms, first, place, values, room):
             return steps, calls, SUSPECT
     return steps, calls, REACHED

@@ -1,4 +1,34 @@
-"""The instant at which a free flight ends."""
+"""The instant at which a free flight ends.
+
+The gap is G(t) = z + v t - g t^2/2 - h(c(t)), where the height c of the axis's tip is a sine in time.
+
+*Start.* On a first interval G is its Taylor polynomial of degree 16, made by arithmetic of truncated power
+series on h and divided by t^k, where k coefficients vanish: what remains is free of cancellation, and has a
+simple root even for flights of picoseconds. After it, G is evaluated directly.
+
+*Bounds.* On a disc of complex time of radius rho, c stays in a disc that is known, and arithmetic of discs on
+h gives a disc of some radius r for h(c). By Cauchy's estimate, |G'''| <= 6 r / (rho^3 (1 - q)^4) within q rho
+of its centre. For the first polynomial the same estimate bounds the tail, below 2e-16 r.
+
+*Horizon.* A body of revolution reaches at least as low as the lower of the ends of its axis, h(c) >= |c|
+h(+-1): it has touched by the time at which the centre of mass falls as deep as that.
+
+*Turns.* While the centre of mass is higher than the largest h(c) on the way there is nothing to search. The
+tip is back after every turn about L. So the search takes little more than the first turn and the last one,
+however many there are: within one the body touches, or its centre of mass passes that height.
+
+*Flat.* Where the tip passes a pole, the h of an edge has a kink, and no disc is wide enough. Every point of
+the body moves on a sine, and the gap is the least of their heights, so that G'' is bounded from above,
+whatever the shape: over an angle so small, G is nowhere below both its ends by more than rounding. Where that
+angle leads to no other height, as in a body that stays flat, it is doubled.
+
+*Search.* With G, G', G'' at t and that bound on G''', a step [t, t + s] is passed only if the cubic below G
+is positive on it, or if G is surely falling or surely concave on it and positive at its end. If it is falling
+or concave, and not positive at its end, the step holds exactly one root, which is the first: it is found by
+bracketing. Otherwise s is halved. So no touch is passed over and none is invented, up to round-off: the gap
+is known within about 1e-16 of h, and a graze nearer than that counts as a touch. Any shape will do that is
+written in plain operators and is analytic on [-1, 1].
+"""
 
 from enum import IntEnum
 
@@ -8,12 +38,14 @@ from tippetop.mechanics.separation import (
     WIDEST,
     Opening,
     Separation,
+    Tip,
     analytic_disc,
     falling_time,
     support_terms,
 )
 from tippetop.mechanics.series import PLAIN
 from tippetop.mechanics.state import State
+from tippetop.mechanics.surface import Surface
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.unsolved import Unsolved
 
@@ -63,51 +95,14 @@ def touchdown(state: State, top: Top, horizon: float, start: Start = Start.AIRBO
     ArithmeticError
         If the body turns so often until then that its turns are lost in rounding of time, or too often near
         the table.
-
-    Notes
-    -----
-    The gap is G(t) = z + v t - g t^2/2 - h(c(t)), where the height c of the axis's tip is a sine in time.
-
-    *Start.* On a first interval G is its Taylor polynomial of degree 16, made by arithmetic of truncated
-    power series on h and divided by t^k, where k coefficients vanish: what remains is free of cancellation,
-    and has a simple root even for flights of picoseconds. After it, G is evaluated directly.
-
-    *Bounds.* On a disc of complex time of radius rho, c stays in a disc that is known, and arithmetic of
-    discs on h gives a disc of some radius r for h(c). By Cauchy's estimate, |G'''| <= 6 r / (rho^3 (1 - q)^4)
-    within q rho of its centre. For the first polynomial the same estimate bounds the tail, below 2e-16 r.
-
-    *Horizon.* A body of revolution reaches at least as low as the lower of the ends of its axis, h(c) >= |c|
-    h(+-1): it has touched by the time at which the centre of mass falls as deep as that.
-
-    *Turns.* While the centre of mass is higher than the largest h(c) on the way there is nothing to search.
-    The tip is back after every turn about L. So the search takes little more than the first turn and the last
-    one, however many there are: within one the body touches, or its centre of mass passes that height.
-
-    *Flat.* Where the tip passes a pole, the h of an edge has a kink, and no disc is wide enough. Every point
-    of the body moves on a sine, and the gap is the least of their heights, so that G'' is bounded from above,
-    whatever the shape: over an angle so small, G is nowhere below both its ends by more than rounding. Where
-    that angle leads to no other height, as in a body that stays flat, it is doubled.
-
-    *Search.* With G, G', G'' at t and that bound on G''', a step [t, t + s] is passed only if the cubic below
-    G is positive on it, or if G is surely falling or surely concave on it and positive at its end. If it is
-    falling or concave, and not positive at its end, the step holds exactly one root, which is the first: it
-    is found by bracketing. Otherwise s is halved. So no touch is passed over and none is invented, up to
-    round-off: the gap is known within about 1e-16 of h, and a graze nearer than that counts as a touch. Any
-    shape will do that is written in plain operators and is analytic on [-1, 1].
     """
     tip, _, ballistic = Separation.of(state, top)
     deepest = min(0.0, *(float(top.surface.height(c)) for c in (-1.0, 1.0)))
     horizon = min(horizon, 2.0 * falling_time(ballistic[0] - deepest, *ballistic[1:]))
     time = 0.0
     if start != Start.AIRBORNE:
-        disc = analytic_disc(tip, top.surface, 0.0, 0.0, WIDEST)
-        if disc is None:
-            raise Unsolved("the body lies flat at its start, where no one point is lowest")
-        support = support_terms(top.surface, tip.terms, PLAIN)
-        ballistic = (*support[:start], *ballistic[start:])
-        terms = [b - s for b, s in zip(ballistic, support[:3], strict=True)] + [-s for s in support[3:]]
-        opening = Opening(terms[next((j for j in range(start, DEGREE) if terms[j]), DEGREE) :])
-        time = min(horizon, START * disc[0])
+        opening, ballistic, length = first_interval(tip, top.surface, ballistic, start)
+        time = min(horizon, length)
         root = first_root(opening.at, 0.0, time, opening.jerk_bound(time))
         if root is not None:
             return root
@@ -131,6 +126,20 @@ def touchdown(state: State, top: Top, horizon: float, start: Start = Start.AIRBO
             raise Unsolved("the body turns so often that its turns are lost in rounding of time")
         time = end
     raise Unsolved("the body turns too often so near the table")
+
+
+def first_interval(
+    tip: Tip, surface: Surface, ballistic: Triple, start: Start
+) -> tuple[Opening, Triple, float]:
+    """The gap on a first interval, the flight with what vanishes at its start, and how long that is, s."""
+    disc = analytic_disc(tip, surface, 0.0, 0.0, WIDEST)
+    if disc is None:
+        raise Unsolved("the body lies flat at its start, where no one point is lowest")
+    support = support_terms(surface, tip.terms, PLAIN)
+    ballistic = (*support[:start], *ballistic[start:])
+    terms = [b - s for b, s in zip(ballistic, support[:3], strict=True)] + [-s for s in support[3:]]
+    opening = Opening(terms[next((j for j in range(start, DEGREE) if terms[j]), DEGREE) :])
+    return opening, ballistic, START * disc[0]
 
 
 def highest_gap(state: State, top: Top, duration: float) -> float:
